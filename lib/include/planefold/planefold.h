@@ -1,0 +1,339 @@
+/* planefold: a camera's pose and a map, from its frames, in one block of memory that the caller owns.
+ *
+ *   pf_config_t config;
+ *   pf_config_default(&config);              every field gets a value that works
+ *   config.camera = ...;                     the one thing that only you know
+ *   pf_memory_query(&config, &need);         how many bytes
+ *   pf_create(&config, block, bytes, &slam); carves your block; nothing is allocated, ever
+ *   pf_push_frame(slam, &image);             once per frame
+ *   pf_get_pose(slam, &pose);                where the camera is, and how sure that is
+ *
+ * There is no destroy: forget the block when you are done. pf_reset() starts over in the same block.
+ *
+ * FRAMES. W is the world, C the camera (x right, y down, z forward, in metres or, where nothing told the scale, in
+ * units of the median depth of the first frame). p_W = R_WC p_C + p_WC. Pixels: (0, 0) is the centre of the top-left one.
+ * ERRORS of a pose are (theta, p): R_true = Exp(theta) R, p_true = p + e, both in W. Covariances are row-major.
+ * Quaternions are (w, x, y, z), of unit length.
+ *
+ * STATUS. 0 is done. Positive: done, with something to know. Negative: refused, and nothing was changed.
+ * THREADS. A context belongs to one thread at a time. Contexts are independent. There are no globals.
+ * TIME. Work per call is bounded by the capacities in the config. No clock is read unless you give one.
+ * STATES. Tracked means: a pose that this frame's own measurements support, by at least 8 gated inliers.
+ */
+#ifndef PLANEFOLD_PLANEFOLD_H
+#define PLANEFOLD_PLANEFOLD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define PF_API __attribute__((visibility("default")))
+#else
+#define PF_API
+#endif
+
+#define PF_VERSION_MAJOR 0
+#define PF_VERSION_MINOR 1
+#define PF_VERSION_PATCH 0
+#define PF_VERSION ((PF_VERSION_MAJOR << 16) | (PF_VERSION_MINOR << 8) | PF_VERSION_PATCH)
+
+/* ---------------------------------------------------------------------------------------------------- status -- */
+
+typedef enum pf_status {
+  PF_OK = 0,
+
+  PF_NOTE_STARTING = 1,  /* taken; there is no pose yet, or it is not yet supported by known depths */
+  PF_NOTE_COASTING = 2,  /* taken; too few measurements, the pose is a prediction with growing covariance */
+  PF_NOTE_LOST = 3,      /* taken; the pose is no longer usable; the map is kept and searched for in every frame */
+  PF_NOTE_UNUSABLE = 4,  /* taken; the image has no usable content (black, white, blurred out); pose coasts */
+  PF_NOTE_TRUNCATED = 5, /* done; there was more than your array holds, *count says how many there are */
+
+  PF_ERROR_NULL = -1,      /* a pointer that must not be null is */
+  PF_ERROR_CONFIG = -2,    /* a field of the config is out of its range; pf_config_check names it */
+  PF_ERROR_VERSION = -3,   /* size or version of the structure belong to another release of this header */
+  PF_ERROR_SCALAR = -4,    /* the config was made for the other library (planefold computes in double, planefoldf in float) */
+  PF_ERROR_MEMORY = -5,    /* the block is smaller than pf_memory_query said */
+  PF_ERROR_ALIGNMENT = -6, /* the block does not begin at a multiple of pf_memory_t.alignment */
+  PF_ERROR_SIZE = -7,      /* width, height or stride of the image do not fit the calibration */
+  PF_ERROR_TIME = -8,      /* the timestamp is not after the last one */
+  PF_ERROR_NONFINITE = -9, /* a number that was passed in is NaN or infinite */
+  PF_ERROR_STATE = -10,    /* not possible in this state (a start after the first frame; a pose before the start) */
+  PF_ERROR_RANGE = -11,    /* a number that was passed in is outside of its domain */
+  PF_ERROR_CONTEXT = -12   /* not a context, or one whose block was overwritten */
+} pf_status_t;
+
+/* One line in English for a status; never null. */
+PF_API const char *pf_status_text(pf_status_t status);
+
+/* ---------------------------------------------------------------------------------------------------- camera -- */
+
+typedef enum pf_camera_model {
+  PF_CAMERA_PINHOLE = 1,     /* no distortion */
+  PF_CAMERA_RADTAN = 2,      /* distortion = k1 k2 p1 p2 k3 (Brown-Conrady; OpenCV and ROS plumb_bob order) */
+  PF_CAMERA_EQUIDISTANT = 3, /* distortion = k1 k2 k3 k4 (Kannala-Brandt; OpenCV fisheye) */
+  PF_CAMERA_DIVISION = 4     /* distortion = k [1/px^2]: r_d = r_u / sqrt(1 + 2 k r_u^2), r in pixels (Harris; MonoSLAM) */
+} pf_camera_model_t;
+
+typedef struct pf_camera {
+  int32_t model; /* pf_camera_model_t */
+  int32_t width, height;       /* [px] 32 .. 4096 */
+  double fx, fy, cx, cy;       /* [px] */
+  double distortion[8];        /* as the model says; unused entries are zero */
+} pf_camera_t;
+
+/* Pixel of a point in C, z > 0 (equidistant: anywhere but the optical centre).
+ * PF_ERROR_RANGE: behind the camera or where the model is not one to one; the pixel may lie outside of the image. */
+PF_API pf_status_t pf_camera_project(const pf_camera_t *camera, const double p_C[3], double pixel[2]);
+
+/* Unit ray in C that projects to a pixel. PF_ERROR_RANGE where the model has none. */
+PF_API pf_status_t pf_camera_unproject(const pf_camera_t *camera, const double pixel[2], double ray_C[3]);
+
+/* ---------------------------------------------------------------------------------------------------- config -- */
+
+typedef enum pf_motion {
+  PF_MOTION_CONSTANT_VELOCITY = 1, /* white accelerations; the default */
+  PF_MOTION_CONSTANT_POSITION = 2  /* random walk of the pose (Gee 2007, eq 1); for reproducing that paper */
+} pf_motion_t;
+
+typedef enum pf_kernels {
+  PF_KERNELS_AUTO = 0, /* the fastest that this processor runs */
+  PF_KERNELS_REFERENCE = 1,
+  PF_KERNELS_PORTABLE = 2,
+  PF_KERNELS_AVX2 = 3,
+  PF_KERNELS_AVX512 = 4,
+  PF_KERNELS_NEON = 5
+} pf_kernels_t;
+
+typedef enum pf_scalar { PF_SCALAR_DOUBLE = 8, PF_SCALAR_FLOAT = 4 } pf_scalar_t;
+
+/* Fill with pf_config_default, then change what you know better. Only the capacities and the image size change the
+ * memory. Lengths are in metres or, with no target, in units of the median depth of the first frame. */
+typedef struct pf_config {
+  uint32_t size;    /* sizeof(pf_config_t), set by pf_config_default */
+  uint32_t version; /* PF_VERSION, set by pf_config_default */
+  uint32_t scalar;  /* pf_scalar_t of the library that filled this in */
+  uint32_t kernels; /* pf_kernels_t; a set that this processor cannot run is PF_ERROR_CONFIG. Default auto */
+
+  pf_camera_t camera; /* no default: the calibration of your camera */
+
+  /* Capacities. */
+  int32_t max_state_dim;    /* rows of the covariance, 32 .. 2000. Memory grows with its square. Default 300 */
+  int32_t max_features;     /* features in the map, 8 .. 1000. Default 100 */
+  int32_t max_observations; /* features measured in one frame, 8 .. 200. Default 60 */
+
+  /* Motion. Densities are those of white noise: over a time dt the velocity's variance grows by density^2 dt. */
+  uint32_t motion;                    /* pf_motion_t. Default constant velocity */
+  double linear_acceleration_density;  /* [m/s^2/sqrt(Hz)]  > 0. Default 1 */
+  double angular_acceleration_density; /* [rad/s^2/sqrt(Hz)] > 0. Default 2 */
+  double linear_walk;                  /* [m/sqrt(s)]  > 0, constant position only. Default 0.1 */
+  double angular_walk;                 /* [rad/sqrt(s)] > 0, constant position only. Default 0.2 */
+
+  /* Measurements. */
+  double sigma_pixel;      /* of a matched feature [px] 0.05 .. 10. Default 0.6 */
+  double gate_probability; /* of a true match passing the gate, 0.9 .. 0.9999. Default 0.99 */
+
+  /* Depth of a feature that was seen once: 1/depth = rho0 with standard deviation sigma_rho = relative_sigma * rho0.
+   * rho0 is 1 / start_depth until the map knows better, and then the median inverse depth of what is in view. */
+  double start_depth;                  /* > 0. Default 1 */
+  double inverse_depth_relative_sigma; /* 0.05 .. 2. Default 0.5 */
+  double linearity_index;              /* below it an inverse-depth point becomes a 3-D point, 0.001 .. 1. Default 0.1 */
+
+  /* Map. */
+  int32_t features_in_view; /* features that the front end tries to keep in view, 8 .. max_observations. Default 45 */
+  int32_t border_px;        /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
+
+  double coast_seconds; /* without tracking for longer than this, the state is lost, 0.05 .. 10. Default 1 */
+
+  /* 1 keeps the covariance consistent with what a camera alone cannot observe (lib/docs/gauge.md); 0 is the textbook EKF,
+   * which is overconfident, for comparison. Default 1 */
+  uint32_t keep_gauge;
+
+  /* Nanoseconds of any steady clock, for the cost of each stage in the report; null reads no clock. Default null */
+  int64_t (*clock_ns)(void *user);
+  /* One line of plain text on what the library decided (a start, a reset, a loss); null keeps silent. Default null */
+  void (*log)(void *user, const char *line);
+  void *user; /* handed to both */
+} pf_config_t;
+
+PF_API pf_status_t pf_config_default(pf_config_t *config);
+
+/* PF_OK, or an error; *field (may be null) is then the name of the first bad field and stays valid for ever. */
+PF_API pf_status_t pf_config_check(const pf_config_t *config, const char **field);
+
+/* ---------------------------------------------------------------------------------------------------- memory -- */
+
+typedef struct pf_memory {
+  size_t bytes;       /* the block must have at least these */
+  size_t alignment;   /* and begin at a multiple of this */
+  size_t stack_bytes; /* the most stack that any call uses (a tested bound) */
+} pf_memory_t;
+
+PF_API pf_status_t pf_memory_query(const pf_config_t *config, pf_memory_t *memory);
+
+typedef struct pf_slam pf_slam_t; /* lives in your block */
+
+/* Carve the block. On an error *slam is null and the block may be reused. What the block held before has no influence. */
+PF_API pf_status_t pf_create(const pf_config_t *config, void *block, size_t bytes, pf_slam_t **slam);
+
+/* Back to the moment after pf_create: same config, no map, no pose, any timestamp is welcome. */
+PF_API pf_status_t pf_reset(pf_slam_t *slam);
+
+/* ---------------------------------------------------------------------------------------------------- starting -- */
+
+typedef struct pf_pose {
+  int64_t t_ns;
+  double q_WC[4];        /* w x y z */
+  double p_WC[3];        /* [m] */
+  double covariance[36]; /* 6x6 of (theta, p) [rad, m] */
+  double v_W[3];         /* velocity [m/s]; zero with the constant-position model */
+  double w_C[3];         /* angular velocity [rad/s], in C; likewise */
+} pf_pose_t;
+
+#define PF_TARGET_MAX_POINTS 16
+
+typedef enum pf_target_kind {
+  PF_TARGET_RECTANGLE = 1, /* a dark rectangle on a light ground, of known size, found by itself (Gee 2007, section 4) */
+  PF_TARGET_POINTS = 2     /* known points, seen from about a known pose */
+} pf_target_kind_t;
+
+typedef struct pf_target {
+  uint32_t kind; /* pf_target_kind_t */
+  /* Rectangle: W is its centre, x right and y down as seen upright, z into the wall. */
+  double width, height; /* [m] > 0, of the outer edge of the dark area */
+  /* Points. */
+  int32_t count;                            /* 4 .. PF_TARGET_MAX_POINTS */
+  double points_W[PF_TARGET_MAX_POINTS][3]; /* [m] */
+  pf_pose_t first_pose;                     /* about where the camera is at first; its covariance says how sure, t_ns is unused */
+  /* Both. */
+  double sigma_m; /* how well the target's points are known [m] > 0 */
+} pf_target_t;
+
+/* Start in front of a known target. Before the first frame only. Until the target is seen the state is starting. */
+PF_API pf_status_t pf_start_from_target(pf_slam_t *slam, const pf_target_t *target);
+
+/* Start from a known pose, with its covariance and velocity; velocity_covariance is 6x6 of (v_W, w_C). Before the first frame.
+ * With neither start, W is the first camera and the scale is set by start_depth. */
+PF_API pf_status_t pf_start_from_pose(pf_slam_t *slam, const pf_pose_t *pose, const double velocity_covariance[36]);
+
+/* The target's own points are measured no more (they stay in the map as what they were). */
+PF_API pf_status_t pf_withdraw_target(pf_slam_t *slam);
+
+/* ---------------------------------------------------------------------------------------------------- input -- */
+
+typedef struct pf_image {
+  const uint8_t *pixels; /* grey levels; read during the call only */
+  int32_t width, height; /* [px] those of the calibration */
+  int32_t stride;        /* bytes from row to row, >= width */
+  int64_t t_ns;          /* middle of the exposure, after that of every earlier frame */
+} pf_image_t;
+
+/* Track one frame. PF_OK means tracked. */
+PF_API pf_status_t pf_push_frame(pf_slam_t *slam, const pf_image_t *image);
+
+/* A feature that something else has found and recognised: the front door for trackers in hardware and for simulations.
+ * A new id begins a feature (if the map has room for it), a known one measures it. With a target of points, the ids 0 .. count-1
+ * are its points. A context takes frames or observations, not both. */
+typedef struct pf_observation {
+  uint32_t id;
+  double pixel[2];
+  double sigma_px; /* 0: that of the config */
+} pf_observation_t;
+
+PF_API pf_status_t pf_push_observations(pf_slam_t *slam, int64_t t_ns, const pf_observation_t *observations, size_t count);
+
+/* ---------------------------------------------------------------------------------------------------- output -- */
+
+typedef enum pf_state {
+  PF_STATE_STARTING = 0, /* no pose yet, or a pose whose depths are not yet known (nothing but rotation so far) */
+  PF_STATE_TRACKING = 1,
+  PF_STATE_COASTING = 2, /* the pose is a prediction; covariance grows */
+  PF_STATE_LOST = 3
+} pf_state_t;
+
+PF_API pf_status_t pf_get_state(const pf_slam_t *slam, pf_state_t *state);
+
+/* Pose at the last frame. PF_ERROR_STATE before the first one. */
+PF_API pf_status_t pf_get_pose(const pf_slam_t *slam, pf_pose_t *pose);
+
+/* Pose predicted to a time not before the last frame, for display; the state does not change. */
+PF_API pf_status_t pf_predict_pose(const pf_slam_t *slam, int64_t t_ns, pf_pose_t *pose);
+
+/* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be null). */
+PF_API pf_status_t pf_project_point(const pf_slam_t *slam, const double p_W[3], double pixel[2], double covariance[4]);
+
+typedef enum pf_feature_kind {
+  PF_FEATURE_INVERSE_DEPTH = 1, /* direction known, depth not yet */
+  PF_FEATURE_POINT = 2
+} pf_feature_kind_t;
+
+typedef struct pf_feature {
+  uint32_t id;
+  uint32_t kind;        /* pf_feature_kind_t */
+  uint32_t is_target;   /* 1 for a point of the target */
+  double p_W[3];        /* [m] inverse depth: at the mean inverse depth */
+  double covariance[9]; /* 3x3; inverse depth: to first order */
+  int32_t observations; /* frames in which it was measured */
+  int32_t attempts;     /* frames in which it was looked for */
+} pf_feature_t;
+
+/* Copy of the map. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
+PF_API pf_status_t pf_get_features(const pf_slam_t *slam, pf_feature_t *features, size_t capacity, size_t *count);
+
+typedef enum pf_track_status {
+  PF_TRACK_INLIER = 1,  /* measured and used */
+  PF_TRACK_OUTLIER = 2, /* found, but it does not agree with the others */
+  PF_TRACK_MISSED = 3,  /* looked for in the ellipse and not found */
+  PF_TRACK_NEW = 4      /* began in this frame */
+} pf_track_status_t;
+
+typedef struct pf_track {
+  uint32_t id;
+  uint32_t status; /* pf_track_status_t */
+  uint32_t kind;   /* pf_feature_kind_t */
+  double predicted_px[2];
+  double covariance_px[4]; /* 2x2 of the innovation: the search ellipse */
+  double measured_px[2];   /* inliers, outliers and new ones */
+} pf_track_t;
+
+/* What was looked for in the last frame, and what was found. */
+PF_API pf_status_t pf_get_tracks(const pf_slam_t *slam, pf_track_t *tracks, size_t capacity, size_t *count);
+
+enum {
+  PF_STAGE_PYRAMID = 0, /* image levels */
+  PF_STAGE_PREDICT = 1, /* motion, predicted pixels, innovation covariance */
+  PF_STAGE_SEARCH = 2,  /* warps, search, sub-pixel refinement */
+  PF_STAGE_GATE = 3,    /* agreement between matches */
+  PF_STAGE_UPDATE = 4,  /* covariance and state */
+  PF_STAGE_MAP = 5,     /* conversion, eviction, corners, new features */
+  PF_STAGE_COUNT = 8
+};
+
+typedef struct pf_report {
+  int64_t t_ns;
+  pf_state_t state;
+  int32_t frames;  /* frames pushed since create or reset */
+  int32_t attempts, matches, inliers, new_features, evicted;
+  int32_t features, features_point, features_inverse_depth;
+  int32_t state_dim;
+  double nis;      /* normalised innovation squared of this frame's inliers */
+  int32_t nis_dof; /* and its degrees of freedom */
+  uint32_t kernels; /* pf_kernels_t in use */
+  int64_t stage_ns[PF_STAGE_COUNT]; /* all zero without a clock */
+} pf_report_t;
+
+PF_API pf_status_t pf_get_report(const pf_slam_t *slam, pf_report_t *report);
+
+/* Information that the filter holds about what a camera alone cannot observe: N^T P^-1 N, 7x7, row-major, in the order
+ * translation, rotation, log scale of the whole world. It must never grow without absolute data. For tests and
+ * simulations: cubic in the state's dimension. scratch needs scratch_count >= state_dim * (state_dim + 8) doubles. */
+PF_API pf_status_t pf_get_gauge_information(const pf_slam_t *slam, double *scratch, size_t scratch_count, double information[49]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
