@@ -1,0 +1,2 @@
+set(PLANEFOLD_FLOAT_TESTS
+)

@@ -1,0 +1,35 @@
+# Flags that every target of a build shares: language levels, build type, output folders, special modes.
+
+set(CMAKE_C_STANDARD 99)
+set(CMAKE_C_STANDARD_REQUIRED ON)
+set(CMAKE_C_EXTENSIONS OFF)
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_INTERPROCEDURAL_OPTIMIZATION OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+get_property(planefold_multi_config GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
+if(NOT CMAKE_BUILD_TYPE AND NOT planefold_multi_config)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+if(PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+endif()
+
+if(PLANEFOLD_SANITIZE)
+  add_compile_options(-fsanitize=${PLANEFOLD_SANITIZE} -fno-omit-frame-pointer
+                      -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${PLANEFOLD_SANITIZE})
+endif()
+if(PLANEFOLD_COVERAGE)
+  add_compile_options(--coverage -fprofile-update=atomic)
+  add_link_options(--coverage)
+endif()
+
+# For programs, platform and tests, which may use the C++ runtime.
+add_library(planefold_warnings INTERFACE)
+target_compile_options(planefold_warnings INTERFACE -Wall -Wextra -Wshadow
+                       $<$<BOOL:${PLANEFOLD_WERROR}>:-Werror>)
