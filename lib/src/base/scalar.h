@@ -1,0 +1,12 @@
+#pragma once
+
+namespace pf {
+
+/// What the library computes in: planefold in double, planefoldf in float.
+#ifdef PF_SCALAR_FLOAT
+using Scalar = float;
+#else
+using Scalar = double;
+#endif
+
+}  // namespace pf

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "base/scalar.h"
+#include "covariance/triangle.h"
+
+/// The O(n^2) work on the covariance, as free functions over raw arrays. One table of function pointers per kernel set.
+/// Thin matrices (rows m or k, columns n) are row-major with leading dimension ld >= padded(n): each row is contiguous in the
+/// state index, and the padding columns are kept at zero by whoever owns the buffer.
+
+namespace pf {
+
+/// A run of columns of the state.
+struct Segment {
+  int first;
+  int size;
+};
+
+/// Rows of a Jacobian that touch the same few columns: dense over the columns of its segments, in their order.
+struct SparseRows {
+  static constexpr int kMaxRows = 6;
+  static constexpr int kMaxSegments = 6;
+  static constexpr int kMaxColumns = 36;
+
+  int rows = 0;
+  int segments = 0;
+  Segment segment[kMaxSegments];
+  Scalar h[kMaxRows * kMaxColumns];  ///< row-major, rows x columns()
+
+  int columns() const {
+    int sum = 0;
+    for (int s = 0; s < segments; ++s) sum += segment[s].size;
+    return sum;
+  }
+};
+
+/// Leading dimension for thin matrices over n state rows: a multiple of eight, never of 64 (no power-of-two strides).
+constexpr int padded(int n) {
+  const int p = (n + 7) / 8 * 8;
+  return p % 64 == 0 ? p + 8 : p;
+}
+
+struct Kernels {
+  /// out (rows x n) = J P, for rows of J that touch few columns. out has leading dimension ld.
+  void (*gather)(const Triangle& P, const SparseRows& J, Scalar* out, int ld);
+
+  /// S (m x m, lower, leading dimension lds) = L L^T in place; false where a pivot is not positive (S is then garbage).
+  bool (*cholesky)(Scalar* S, int m, int lds);
+
+  /// X (m x n) <- L^-1 X, in place, for the factor above.
+  void (*solve_lower)(const Scalar* L, int m, int lds, Scalar* X, int n, int ld);
+
+  /// P -= W^T W (W: m x n), then, where k > 0, P += U^T G + G^T U (U, G: k x n), in one pass over the triangle.
+  /// Rows and columns from `active` on are considered (Schmidt): for i, j >= active the first term is left out; the second is
+  /// always applied. active = n is the plain update.
+  void (*downdate)(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int active);
+
+  /// Leading block of b rows moves by F (b x b, row-major), noise Q (b x b) is added:
+  ///   P_bb <- F P_bb F^T + Q,  P_xb <- P_xb F^T.
+  void (*predict)(Triangle& P, const Scalar* F, const Scalar* Q, int b);
+
+  /// Append r new rows: x_new = J x + noise; r = J.rows, noise r x r row-major.  n grows by r.
+  void (*augment)(Triangle& P, const SparseRows& J, const Scalar* noise);
+
+  /// Replace the `size` rows that begin at `first` by the J.rows <= size new ones x_new = J x + noise (J may touch any columns, the
+  /// old ones of this block too; noise may be null), then close the gap. Other rows keep their order.
+  void (*transform)(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise);
+
+  /// Remove the rows and columns of `count` ascending, disjoint segments in one pass.
+  void (*remove)(Triangle& P, const Segment* gone, int count);
+};
+
+/// Never null; falls back to what the processor can run.
+const Kernels& reference_kernels();
+
+}  // namespace pf
