@@ -3,7 +3,7 @@
 namespace pf {
 
 /// What the library computes in: planefold in double, planefoldf in float.
-#ifdef PF_SCALAR_FLOAT
+#ifdef PLANEFOLD_SCALAR_FLOAT
 using Scalar = float;
 #else
 using Scalar = double;
