@@ -1,2 +1,3 @@
 set(PLANEFOLD_FLOAT_TESTS
+    unit/test_build_mode.cpp
 )
