@@ -13,7 +13,7 @@
 #include "base/scalar.h"
 #include "unity.h"
 
-extern "C" void __gcov_dump(void) __attribute__((weak));
+extern "C" void __gcov_init(void) __attribute__((weak));
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -107,7 +107,7 @@ void test_thread_sanitizer_should_report_a_race_when_the_preset_asks_for_it() {
 }
 
 void test_coverage_should_be_counted_when_the_preset_asks_for_it() {
-  TEST_ASSERT_EQUAL_INT(preset() == "coverage", __gcov_dump != nullptr);
+  TEST_ASSERT_EQUAL_INT(preset() == "coverage", __gcov_init != nullptr);
 }
 
 void test_scalar_should_be_float_when_the_float_library_is_linked() {
