@@ -10,6 +10,8 @@ import script  # noqa: E402
 
 if script.cache("PLANEFOLD_SANITIZE") or script.is_on("PLANEFOLD_COVERAGE"):
     script.skip("instrumentation adds symbols of its own")
+if script.cache("CMAKE_BUILD_TYPE") != "Release":
+    script.skip("only release builds ship")
 
 NM = script.cache("CMAKE_NM", "nm")
 READELF = script.cache("CMAKE_READELF", "readelf")
