@@ -1,0 +1,48 @@
+"""Three lines on a run:  demo_summary.py RUN_DIR SOURCE"""
+
+import json
+import pathlib
+import sys
+
+
+def load(path):
+    try:
+        return json.loads(path.read_text())
+    except FileNotFoundError:
+        return {}
+
+
+def length(metres):
+    return f"{1000 * metres:.1f} mm" if metres < 0.1 else f"{metres:.2f} m"
+
+
+def main():
+    run, source = pathlib.Path(sys.argv[1]), sys.argv[2]
+    report, evaluation = load(run / "report.json"), load(run / "eval.json")
+    if not report:
+        sys.exit(f"{run}/report.json is missing")
+
+    frames = report["frames"] - report.get("start_frame", 0)
+    lost = f", lost {report['lost']}" if report.get("lost") else ", never lost"
+    print(f"Camera: tracked {report['tracked']} of {frames} frames of {source}{lost}; "
+          f"{report['ms_per_frame']['median']:.2f} ms a frame, {report['ms_per_frame']['p95']:.2f} ms at the 95th percentile.")
+
+    planes = len(report.get("planes", []))
+    print(f"Map:    {report['features']['median']:.0f} features ({report['features']['max']:.0f} at most)"
+          + (f" and {planes} planes" if planes else "")
+          + f", {report['state_dim']['max']:.0f} numbers with their full covariance, "
+          f"in a block of {report['memory_bytes'] / 2**20:.2f} MiB that never grows.")
+
+    files = [name for name in ("overlay.mp4", "trajectory.png", "trajectory.tum", "map.ply") if (run / name).exists()]
+    others = len([entry for entry in run.iterdir() if entry.is_file()]) - len(files)
+    where = f"See {run}: {', '.join(files)} and {others} more."
+    if evaluation:
+        nees = evaluation.get("nees_position")
+        print(f"Truth:  {length(evaluation['ate_rmse_m'])} RMS off on a path of {evaluation['path_m']:.1f} m"
+              + (f", position NEES {nees:.1f} (3 is honest)" if nees is not None else "") + f". {where}")
+    else:
+        print(f"Truth:  none was given. {where}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,18 @@
+# A Python with what plots and evaluation need, in build/venv, made on first use. To be sourced after common.sh.
+
+# venv_python   prints the path of the interpreter; progress goes to stderr
+venv_python() {
+  local venv=build/venv requirements=tools/requirements.txt stamp
+  stamp=$venv/installed-$(sha256sum "$requirements" | cut -c1-16)
+  if [ ! -e "$stamp" ]; then
+    echo "Making the Python environment for plots in $venv (once; downloads about 150 MB)" >&2
+    rm -rf "$venv"
+    if ! { python3 -m venv "$venv" &&
+      "$venv/bin/pip" install --quiet --disable-pip-version-check -r "$requirements"; } >&2; then
+      echo "The Python environment could not be made; no plots." >&2
+      return 1
+    fi
+    touch "$stamp"
+  fi
+  echo "$PWD/$venv/bin/python"
+}
