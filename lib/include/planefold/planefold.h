@@ -137,8 +137,9 @@ typedef struct pf_config {
   double gate_probability; /* of a true match passing the gate, 0.9 .. 0.9999. Default 0.99 */
 
   /* Depth of a feature that was seen once: 1/depth = rho0 with standard deviation sigma_rho = relative_sigma * rho0.
-   * rho0 is 1 / start_depth until the map knows better, and then the median inverse depth of what is in view. */
+   * rho0 is 1 / start_depth until the map knows better, and then, with depth_from_map, the median of what is in view. */
   double start_depth;                  /* > 0. Default 1 */
+  uint32_t depth_from_map;             /* 0 or 1. Default 1 */
   double inverse_depth_relative_sigma; /* 0.05 .. 2. Default 0.5 */
   double linearity_index;              /* below it an inverse-depth point becomes a 3-D point, 0.001 .. 1. Default 0.1 */
 
@@ -244,6 +245,11 @@ typedef struct pf_observation {
 } pf_observation_t;
 
 PF_API pf_status_t pf_push_observations(pf_slam_t *slam, int64_t t_ns, const pf_observation_t *observations, size_t count);
+
+/* A change of velocity that is known beforehand (a motor, a thruster, the steering of a simulation): it is added at the next
+ * frame's prediction to the velocities, in camera axes: v_W += R_WC dv_C [m/s], w_C += dw_C [rad/s]. Calls add up.
+ * PF_ERROR_STATE with the constant-position model, which has no velocity. */
+PF_API pf_status_t pf_push_steering(pf_slam_t *slam, const double dv_C[3], const double dw_C[3]);
 
 /* ---------------------------------------------------------------------------------------------------- output -- */
 

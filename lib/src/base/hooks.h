@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+namespace pf {
+
+/// What the caller lends: a clock and a place for lines of text. Both may be missing.
+struct Hooks {
+  std::int64_t (*clock_ns)(void* user) = nullptr;
+  void (*log)(void* user, const char* line) = nullptr;
+  void* user = nullptr;
+
+  std::int64_t now() const { return clock_ns != nullptr ? clock_ns(user) : 0; }
+  void say(const char* line) const {
+    if (log != nullptr) log(user, line);
+  }
+};
+
+/// Adds the time that a scope takes to a stage.
+class StageTimer {
+ public:
+  StageTimer(const Hooks& hooks, std::int64_t* stage_ns) : hooks_(hooks), stage_ns_(stage_ns), begin_(hooks.now()) {}
+  ~StageTimer() { *stage_ns_ += hooks_.now() - begin_; }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  const Hooks& hooks_;
+  std::int64_t* stage_ns_;
+  std::int64_t begin_;
+};
+
+}  // namespace pf

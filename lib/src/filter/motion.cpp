@@ -1,0 +1,56 @@
+#include "filter/motion.h"
+
+#include "geometry/so3.h"
+
+namespace pf {
+namespace {
+
+void clear(Transition* t, int dim) {
+  t->dim = dim;
+  for (int i = 0; i < dim * dim; ++i) t->F[i] = t->Q[i] = Scalar(0);
+  for (int i = 0; i < dim; ++i) t->F[i * dim + i] = Scalar(1);
+}
+
+void set_block(Scalar* matrix, int dim, int row, int column, const Mat3& value) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) matrix[(row + i) * dim + column + j] = value(i, j);
+}
+
+}  // namespace
+
+void predict_constant_velocity(Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) {
+  const Vec3 turn = body.w_C * dt;
+  const Mat3 J = body.q_WC.toRotationMatrix().lazyProduct(left_jacobian_so3(turn));
+  body.q_WC = body.q_WC * exp_so3(turn);
+  body.q_WC.normalize();
+  body.p_W += body.v_W * dt;
+
+  constexpr int kDim = Body::kMaxDim;
+  clear(transition, kDim);
+  const Mat3 I = Mat3::Identity();
+  set_block(transition->F, kDim, Body::kTheta, Body::kRate, dt * J);
+  set_block(transition->F, kDim, Body::kPosition, Body::kVelocity, dt * I);
+
+  const Scalar a = noise.linear * noise.linear;
+  const Scalar b = noise.angular * noise.angular;
+  const Scalar d1 = dt, d2 = dt * dt / Scalar(2), d3 = dt * dt * dt / Scalar(3);
+  set_block(transition->Q, kDim, Body::kPosition, Body::kPosition, a * d3 * I);
+  set_block(transition->Q, kDim, Body::kPosition, Body::kVelocity, a * d2 * I);
+  set_block(transition->Q, kDim, Body::kVelocity, Body::kPosition, a * d2 * I);
+  set_block(transition->Q, kDim, Body::kVelocity, Body::kVelocity, a * d1 * I);
+  const Mat3 Jt = J.transpose();
+  set_block(transition->Q, kDim, Body::kTheta, Body::kTheta, b * d3 * J.lazyProduct(Jt));
+  set_block(transition->Q, kDim, Body::kTheta, Body::kRate, b * d2 * J);
+  set_block(transition->Q, kDim, Body::kRate, Body::kTheta, b * d2 * Jt);
+  set_block(transition->Q, kDim, Body::kRate, Body::kRate, b * d1 * I);
+}
+
+void predict_constant_position(Body&, Scalar dt, const MotionNoise& noise, Transition* transition) {
+  constexpr int kDim = Body::kPoseDim;
+  clear(transition, kDim);
+  const Mat3 I = Mat3::Identity();
+  set_block(transition->Q, kDim, Body::kTheta, Body::kTheta, noise.angular * noise.angular * dt * I);
+  set_block(transition->Q, kDim, Body::kPosition, Body::kPosition, noise.linear * noise.linear * dt * I);
+}
+
+}  // namespace pf

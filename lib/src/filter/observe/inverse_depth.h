@@ -1,0 +1,78 @@
+#pragma once
+
+#include "filter/state.h"
+#include "geometry/camera.h"
+#include "geometry/so3.h"
+
+namespace pf {
+
+/// Pixel of an inverse-depth point, and its Jacobians. Works at rho = 0 (a point at infinity) too.
+///
+///   d_W = rho (o_W - p_WC) + b,   z = pi(R_WC^T d_W)            in front of the camera
+///   dd_W: theta [d]x (through R^T),   p -rho I,   o rho I,   e_b B,   e_rho o - p
+///
+/// J_z_body 2x6 of (theta, p), J_z_anchor 2x3, J_z_feature 2x3 of (e_1, e_2, e_rho).
+/// False when the point does not project; outputs are then undefined.
+/// src Montiel, Civera, Davison 2006; the bearing is a unit vector with a tangent basis in place of two angles.
+inline bool observe_inverse_depth(const Camera& camera, const Body& body, const Vec3& o_W, const InverseDepth& feature,
+                                  Vec2* z, Mat26* J_z_body, Mat23* J_z_anchor, Mat23* J_z_feature) {
+  const Mat3 R_CW = body.q_WC.toRotationMatrix().transpose();
+  const Mat3 R_b = feature.q_b.toRotationMatrix();
+  const Vec3 baseline = o_W - body.p_W;
+  const Vec3 d_W = feature.rho * baseline + R_b.col(2);
+  Mat23 J_z_C;
+  if (!project(camera, R_CW.lazyProduct(d_W), z, &J_z_C)) return false;
+  const Mat23 J_z_W = J_z_C.lazyProduct(R_CW);
+  J_z_body->leftCols<3>() = J_z_W.lazyProduct(hat(d_W));
+  J_z_body->rightCols<3>() = -feature.rho * J_z_W;
+  *J_z_anchor = feature.rho * J_z_W;
+  J_z_feature->leftCols<2>() = J_z_W.lazyProduct(R_b.leftCols<2>());
+  J_z_feature->col(2) = J_z_W.lazyProduct(baseline);
+  return true;
+}
+
+/// 3-D point of an inverse-depth point, and its Jacobians.  f = o + b / rho,  rho > 0
+///   J_f_o = I,   J_f_feature = [B / rho, -b / rho^2]
+inline Vec3 inverse_depth_to_point(const Vec3& o_W, const InverseDepth& feature, Mat3* J_f_feature) {
+  const Mat3 R_b = feature.q_b.toRotationMatrix();
+  const Scalar depth = Scalar(1) / feature.rho;
+  J_f_feature->leftCols<2>() = depth * R_b.leftCols<2>();
+  J_f_feature->col(2) = -depth * depth * R_b.col(2);
+  return o_W + depth * R_b.col(2);
+}
+
+/// How far from linear (Gaussian) the depth is: 4 sigma_d |cos a| / d1 (Civera, Davison, Montiel 2007), where sigma_d = sigma_rho /
+/// rho^2, d1 the distance from the camera now, a the angle at the point between the first ray and the ray now.
+/// Large where rho is not well above zero.
+inline Scalar linearity_index(const Body& body, const Vec3& o_W, const InverseDepth& feature, Scalar sigma_rho) {
+  constexpr Scalar kNever = Scalar(1e6);
+  if (feature.rho <= Scalar(2) * sigma_rho || feature.rho <= Scalar(1e-6)) return kNever;
+  const Vec3 b = feature.q_b.toRotationMatrix().col(2);
+  const Vec3 ray = o_W + b / feature.rho - body.p_W;
+  const Scalar d1 = ray.norm();
+  if (d1 <= Scalar(1e-9)) return kNever;
+  const Scalar cosine = b.dot(ray) / d1;
+  return Scalar(4) * sigma_rho / (feature.rho * feature.rho) * std::abs(cosine) / d1;
+}
+
+/// State and Jacobians of a new inverse-depth point at a pixel whose unit ray in C is ray_C.
+///
+///   b = R_WC r;   e_b = B^T (-[b]x theta + R J_r_z e_z);   rho free
+///
+/// J_feature_theta 2x3, J_feature_z 2x2 (both for the bearing's two rows).
+inline InverseDepth begin_inverse_depth(const Body& body, const Vec3& ray_C, const Mat32& J_ray_z, Scalar rho,
+                                        Mat23* J_feature_theta, Mat2* J_feature_z) {
+  const Mat3 R = body.q_WC.toRotationMatrix();
+  const Vec3 b = R.lazyProduct(ray_C);
+  InverseDepth feature;
+  feature.q_b = Quat::FromTwoVectors(Vec3::UnitZ(), b);
+  feature.q_b.normalize();
+  feature.rho = rho;
+  const Mat32 B = feature.q_b.toRotationMatrix().leftCols<2>();
+  *J_feature_theta = -B.transpose().lazyProduct(hat(b));
+  const Mat32 RJ = R.lazyProduct(J_ray_z);
+  *J_feature_z = B.transpose().lazyProduct(RJ);
+  return feature;
+}
+
+}  // namespace pf

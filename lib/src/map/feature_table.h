@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "base/eigen.h"
+
+/// What is kept about each feature beside its block in the filter.
+
+namespace pf {
+
+struct Feature {
+  std::uint32_t id = 0;       ///< never used twice
+  std::uint32_t track = 0;    ///< the caller's id, for features that came through the observation door
+  int slot = -1;              ///< block in the filter; -1: this entry is free
+  bool is_target = false;
+  int observations = 0;       ///< frames in which it was measured and used
+  int attempts = 0;           ///< frames in which it was looked for
+  int failures = 0;           ///< attempts since it was last measured
+  std::int64_t last_seen_ns = 0;
+  int appearance = -1;        ///< entry in the tracker's templates
+};
+
+class FeatureTable {
+ public:
+  bool layout(Arena& arena, int capacity) {
+    feature_ = arena.take<Feature>(static_cast<std::size_t>(capacity));
+    capacity_ = capacity;
+    return arena.ok();
+  }
+  void init() {
+    for (int i = 0; i < capacity_; ++i) feature_[i] = Feature();
+    count_ = 0;
+    next_id_ = 1;
+  }
+
+  int capacity() const { return capacity_; }
+  int count() const { return count_; }
+  bool used(int i) const { return feature_[i].slot >= 0; }
+  Feature& operator[](int i) { return feature_[i]; }
+  const Feature& operator[](int i) const { return feature_[i]; }
+
+  /// Entry of a new feature, or -1 when the table is full.
+  int add(int slot) {
+    for (int i = 0; i < capacity_; ++i) {
+      if (used(i)) continue;
+      feature_[i] = Feature();
+      feature_[i].slot = slot;
+      feature_[i].id = next_id_++;
+      ++count_;
+      return i;
+    }
+    return -1;
+  }
+  void remove(int i) {
+    feature_[i] = Feature();
+    --count_;
+  }
+
+  /// The entry that is missed least: not of the target, not seen since `not_since_ns`, longest unseen; -1 where there is none.
+  int least_useful(std::int64_t not_since_ns) const {
+    int worst = -1;
+    for (int i = 0; i < capacity_; ++i) {
+      if (!used(i) || feature_[i].is_target || feature_[i].last_seen_ns >= not_since_ns) continue;
+      if (worst < 0 || feature_[i].last_seen_ns < feature_[worst].last_seen_ns) worst = i;
+    }
+    return worst;
+  }
+
+ private:
+  Feature* feature_ = nullptr;
+  int capacity_ = 0;
+  int count_ = 0;
+  std::uint32_t next_id_ = 1;
+};
+
+}  // namespace pf
