@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "base/scalar.h"
 #include "covariance/triangle.h"
 
@@ -40,6 +42,8 @@ constexpr int padded(int n) {
 }
 
 struct Kernels {
+  static constexpr int kMaxLeading = 32;
+
   /// out (rows x n) = J P, for rows of J that touch few columns. out has leading dimension ld.
   void (*gather)(const Triangle& P, const SparseRows& J, Scalar* out, int ld);
 
@@ -55,7 +59,7 @@ struct Kernels {
   void (*downdate)(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int active);
 
   /// Leading block of b rows moves by F (b x b, row-major), noise Q (b x b) is added:
-  ///   P_bb <- F P_bb F^T + Q,  P_xb <- P_xb F^T.
+  ///   P_bb <- F P_bb F^T + Q,  P_xb <- P_xb F^T,  b <= kMaxLeading.
   void (*predict)(Triangle& P, const Scalar* F, const Scalar* Q, int b);
 
   /// Append r new rows: x_new = J x + noise; r = J.rows, noise r x r row-major.  n grows by r.
@@ -67,9 +71,22 @@ struct Kernels {
 
   /// Remove the rows and columns of `count` ascending, disjoint segments in one pass.
   void (*remove)(Triangle& P, const Segment* gone, int count);
+
+  /// gather for `count` Jacobians at once, their rows one below the other in out; what they share is read once.
+  void (*gather_many)(const Triangle& P, const SparseRows* J, int count, Scalar* out, int ld);
+
+  /// transform that leaves the gap open: rows first + J.rows .. first + size - 1 keep old values, for a later `remove` of the
+  /// gaps of many replaces in one pass.
+  void (*replace)(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise);
 };
 
-/// Never null; falls back to what the processor can run.
+/// The plain twin of every tuned kernel.
 const Kernels& reference_kernels();
+
+/// The set that was asked for (pf_kernels_t; 0 is the fastest); null where this processor or build cannot run it.
+const Kernels* select_kernels(uint32_t wanted);
+
+/// pf_kernels_t of a set.
+uint32_t kernels_id(const Kernels* kernels);
 
 }  // namespace pf

@@ -1,0 +1,42 @@
+#include "covariance/reference/reference.h"
+
+namespace pf::reference {
+
+int state_column(const SparseRows& J, int column) {
+  int s = 0;
+  while (column >= J.segment[s].size) column -= J.segment[s++].size;
+  return J.segment[s].first + column;
+}
+
+Scalar product(const SparseRows& J, int a, const Triangle& P, int j) {
+  const int columns = J.columns();
+  Scalar sum = 0;
+  for (int c = 0; c < columns; ++c) sum += J.h[a * columns + c] * P(state_column(J, c), j);
+  return sum;
+}
+
+void project(const SparseRows& J, const Triangle& P, Scalar* out) {
+  const int columns = J.columns();
+  for (int a = 0; a < J.rows; ++a) {
+    for (int b = 0; b < J.rows; ++b) {
+      Scalar sum = 0;
+      for (int c = 0; c < columns; ++c) sum += product(J, a, P, state_column(J, c)) * J.h[b * columns + c];
+      out[a * SparseRows::kMaxRows + b] = sum;
+    }
+  }
+}
+
+void gather(const Triangle& P, const SparseRows& J, Scalar* out, int ld) {
+  for (int a = 0; a < J.rows; ++a) {
+    for (int j = 0; j < P.n; ++j) out[static_cast<std::size_t>(a) * ld + j] = product(J, a, P, j);
+  }
+}
+
+void gather_many(const Triangle& P, const SparseRows* J, int count, Scalar* out, int ld) {
+  for (int i = 0; i < count; ++i) {
+    gather(P, J[i], out, ld);
+    out += static_cast<std::ptrdiff_t>(J[i].rows) * ld;
+  }
+}
+
+}  // namespace pf::reference
