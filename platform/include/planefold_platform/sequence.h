@@ -1,0 +1,85 @@
+/* Image sequences on disk, their calibration and their targets, as the structures of planefold.h.
+ *
+ *   char message[PF_SEQUENCE_MESSAGE];
+ *   pf_sequence_t *sequence;
+ *   if (pf_open_sequence("images:/data/desk", NULL, &sequence, message) != 0) puts(message);
+ *   pf_sequence_info_t info;
+ *   pf_get_sequence_info(sequence, &info);       config.camera = info.camera;
+ *   pf_read_sequence_frame(sequence, i, &image, message);
+ *   pf_close_sequence(sequence);
+ *
+ * Every function that can fail returns 0, or -1 with one line of plain text in message that names the file, says what is
+ * wrong with it and what to do. Files are not trusted: whatever they hold, the answer is one of the two.
+ * This is the desktop side: it uses the heap and the file system. A sequence belongs to one thread at a time.
+ */
+#ifndef PLANEFOLD_PLATFORM_SEQUENCE_H
+#define PLANEFOLD_PLATFORM_SEQUENCE_H
+
+#include <planefold/planefold.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define PF_SEQUENCE_MESSAGE 1024 /* bytes of a message, with its terminating zero */
+
+typedef struct pf_sequence pf_sequence_t;
+
+typedef struct pf_sequence_info {
+  pf_camera_t camera;
+  int64_t count; /* frames */
+  int64_t first_t_ns, last_t_ns;
+  double rate_hz;     /* as the calibration says, or else from the times */
+  const char* folder; /* these five are valid until the sequence is closed; "" where there is none */
+  const char* calibration_path;
+  const char* calibration_form; /* "kalibr", "euroc", "ros" or "plain" */
+  const char* truth_path;       /* a trajectory beside the images, in the TUM format */
+  const char* warning;          /* one line on what had to be assumed */
+} pf_sequence_info_t;
+
+/* Sources:
+ *   images:DIR  images/ (or the images themselves), times.txt (index seconds name, or seconds name), calib.yaml. Without
+ *               times.txt the names are taken in natural order at the calibration's rate_hz, or 30 Hz, with a warning.
+ *   euroc:DIR   mav0/cam0/data, data.csv and sensor.yaml; DIR may also be mav0 or cam0, or of the layout above.
+ *   tum:DIR     rgb.txt and rgb/; the calibration is calib.yaml inside, or given.
+ * PNG, JPEG and binary PGM; colour becomes grey, 16 bits become 8. Times must grow from frame to frame.
+ * calibration  a file in one of the forms of pf_read_calibration; null: the one inside DIR */
+int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t** sequence,
+                     char message[PF_SEQUENCE_MESSAGE]);
+void pf_close_sequence(pf_sequence_t* sequence); /* null is welcome */
+void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* info);
+
+/* Frame number index of 0 .. count-1. The pixels are valid until the next call with this sequence. An image of another
+ * size than the calibration's is an error. */
+int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,
+                           char message[PF_SEQUENCE_MESSAGE]);
+
+/* File of a frame, for messages. */
+const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t index);
+
+/* A calibration file: Kalibr camchain (cam0), EuRoC sensor.yaml, ROS camera_info, or the plain form
+ *   camera_model: pinhole / width / height / fx / fy / cx / cy /
+ *   distortion_model: none | radtan | equidistant | harris_division / distortion: [..] / rate_hz (optional)
+ * rate_hz (may be null) is 0 where the file does not say it. */
+int pf_read_calibration(const char* path, pf_camera_t* camera, double* rate_hz, char message[PF_SEQUENCE_MESSAGE]);
+
+/* The same from text in memory; name stands for the file in messages. */
+int pf_parse_calibration(const char* text, size_t size, const char* name, pf_camera_t* camera, double* rate_hz,
+                         char message[PF_SEQUENCE_MESSAGE]);
+
+/* A target file:
+ *   width, height [m], sigma [m] (optional, 0.0005)                                 a dark rectangle
+ *   points: [[x, y, z], ..] [m], first_pose: {position: [x, y, z], quaternion_wxyz: [w, x, y, z],
+ *     sigma_position [m] (optional, 0.02), sigma_rotation [rad] (optional, 0.05)}, sigma [m] (optional, 0.001)
+ *     (T_WC is welcome as another name of first_pose)                               known points
+ *   features, start_camera_position, start_camera_quat_wxyz, sigma (optional)       known points in SceneLib's form */
+int pf_read_target(const char* path, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]);
+
+/* "0.1832x0.1295" in metres, as a rectangle. */
+int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,222 @@
+#include "calibration.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "file.h"
+#include "refuse.h"
+#include "yaml_fields.h"
+
+namespace pf::sequence {
+
+namespace {
+
+struct Model {
+  const char* name;
+  pf_camera_model_t model;
+  size_t fewest, most;  ///< distortion coefficients
+};
+
+/// Names that Kalibr, EuRoC, ROS, OpenCV and the plain form give to the models.
+constexpr Model kModels[] = {
+    {"none", PF_CAMERA_PINHOLE, 0, 0},
+    {"radtan", PF_CAMERA_RADTAN, 4, 5},
+    {"radial-tangential", PF_CAMERA_RADTAN, 4, 5},
+    {"plumb_bob", PF_CAMERA_RADTAN, 4, 5},
+    {"rational_polynomial", PF_CAMERA_RADTAN, 5, 8},
+    {"equidistant", PF_CAMERA_EQUIDISTANT, 4, 4},
+    {"fisheye", PF_CAMERA_EQUIDISTANT, 4, 4},
+    {"harris_division", PF_CAMERA_DIVISION, 1, 1},
+    {"division", PF_CAMERA_DIVISION, 1, 1},
+};
+
+std::string format(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g", value);
+  return text;
+}
+
+void set_distortion(const Fields& fields, const std::string& name_key, const std::string& list_key,
+                    const std::string& name, const std::vector<double>& coefficients, pf_camera_t& camera) {
+  const Model* model =
+      std::find_if(std::begin(kModels), std::end(kModels), [&](const Model& m) { return name == m.name; });
+  if (model == std::end(kModels)) {
+    fields.refuse_field(name_key, "is '" + name +
+                                      "'; known are none, radtan, equidistant, plumb_bob, rational_polynomial "
+                                      "(with zeros after the fifth) and harris_division");
+  }
+  // Zeros at the end say nothing: ROS writes five of them for a camera without distortion.
+  size_t used = coefficients.size();
+  while (used > 0 && coefficients[used - 1] == 0.0) {
+    --used;
+  }
+  if (used > (model->model == PF_CAMERA_RADTAN ? 5 : model->most)) {
+    fields.refuse_field(list_key, "has " + std::to_string(used) + " coefficients; '" + name + "' can use " +
+                                      std::to_string(std::min<size_t>(model->most, 5)));
+  }
+  if (coefficients.size() < model->fewest && !(coefficients.empty() && model->model == PF_CAMERA_RADTAN)) {
+    fields.refuse_field(list_key, "has " + std::to_string(coefficients.size()) + " coefficients; '" + name +
+                                      "' needs " + std::to_string(model->fewest));
+  }
+  camera.model = model->model;
+  if (model->model == PF_CAMERA_RADTAN && used == 0) {
+    camera.model = PF_CAMERA_PINHOLE;
+  }
+  for (size_t i = 0; i < used; ++i) {
+    if (std::fabs(coefficients[i]) > 100.0) {
+      fields.refuse_field(list_key, "has the absurd coefficient " + format(coefficients[i]));
+    }
+    camera.distortion[i] = coefficients[i];
+  }
+}
+
+/// Where the four numbers of the pinhole came from, for messages.
+struct IntrinsicNames {
+  const char *width, *height, *fx, *fy, *cx, *cy, *distortion;
+};
+
+void check(const Fields& fields, const IntrinsicNames& names, const pf_camera_t& camera) {
+  const auto side = [&](const char* key, int value) {
+    if (value < 32 || value > 4096) {
+      fields.refuse_field(key, "is " + std::to_string(value) + " px; 32 to 4096 are possible");
+    }
+  };
+  side(names.width, camera.width);
+  side(names.height, camera.height);
+  const auto focal = [&](const char* key, double value, int size) {
+    if (!(value > 0.05 * size) || value > 50.0 * size) {
+      fields.refuse_field(key, "says a focal length of " + format(value) + " px, which is absurd for an image of " +
+                                   std::to_string(size) + " px");
+    }
+  };
+  focal(names.fx, camera.fx, camera.width);
+  focal(names.fy, camera.fy, camera.height);
+  if (camera.fx > 2.0 * camera.fy || camera.fy > 2.0 * camera.fx) {
+    fields.refuse_field(names.fy, "makes pixels more than twice as high as wide or the reverse (fx " +
+                                      format(camera.fx) + ", fy " + format(camera.fy) + ")");
+  }
+  const auto centre = [&](const char* key, double value, int size) {
+    if (!(value >= 0.0) || value > size - 1.0) {
+      fields.refuse_field(key, "says a principal point at " + format(value) + " px, outside of the image of " +
+                                   std::to_string(size) + " px");
+    }
+  };
+  centre(names.cx, camera.cx, camera.width);
+  centre(names.cy, camera.cy, camera.height);
+  if (camera.model == PF_CAMERA_DIVISION) {
+    // r_u = r_d / sqrt(1 - 2 k r_d^2) must exist up to the farthest corner.
+    const double x = std::max(camera.cx, camera.width - camera.cx);
+    const double y = std::max(camera.cy, camera.height - camera.cy);
+    if (2.0 * camera.distortion[0] * (x * x + y * y) >= 1.0) {
+      fields.refuse_field(names.distortion, "is too strong (" + format(camera.distortion[0]) +
+                                                " 1/px^2): the image's corners would have no ray");
+    }
+  }
+}
+
+void set_intrinsics(pf_camera_t& camera, double fx, double fy, double cx, double cy) {
+  camera.fx = fx;
+  camera.fy = fy;
+  camera.cx = cx;
+  camera.cy = cy;
+}
+
+/// Lists of Kalibr and EuRoC, which differ in the name of the coefficients only.
+void read_lists(const Fields& fields, const char* coefficients_key, pf_camera_t& camera) {
+  const std::string model = fields.text("camera_model");
+  if (model != "pinhole") {
+    fields.refuse_field("camera_model", "is '" + model + "'; only pinhole (with a distortion) is known");
+  }
+  const std::vector<double> size = fields.numbers("resolution", 2);
+  if (size.size() != 2 || size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]) ||
+      std::fabs(size[0]) > 1e6 || std::fabs(size[1]) > 1e6) {
+    fields.refuse_field("resolution", "must be two whole numbers, width and height");
+  }
+  camera.width = static_cast<int32_t>(size[0]);
+  camera.height = static_cast<int32_t>(size[1]);
+  const std::vector<double> values = fields.numbers("intrinsics", 4);
+  if (values.size() != 4) {
+    fields.refuse_field("intrinsics", "must be four numbers: fx, fy, cx, cy");
+  }
+  set_intrinsics(camera, values[0], values[1], values[2], values[3]);
+  const std::string name = fields.text("distortion_model");
+  const std::vector<double> coefficients =
+      fields.has(coefficients_key) || name != "none" ? fields.numbers(coefficients_key, 14) : std::vector<double>();
+  set_distortion(fields, "distortion_model", coefficients_key, name, coefficients, camera);
+  check(fields, {"resolution", "resolution", "intrinsics", "intrinsics", "intrinsics", "intrinsics", coefficients_key},
+        camera);
+}
+
+void read_ros(const Fields& fields, pf_camera_t& camera) {
+  camera.width = fields.integer("image_width");
+  camera.height = fields.integer("image_height");
+  const Fields matrix = fields.below("camera_matrix");
+  const std::vector<double> k = matrix.numbers("data", 9);
+  if (k.size() != 9) {
+    matrix.refuse_field("data", "must be nine numbers");
+  }
+  if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
+    matrix.refuse_field("data", "must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew)");
+  }
+  set_intrinsics(camera, k[0], k[4], k[2], k[5]);
+  const std::string name = fields.text_or("distortion_model", "plumb_bob");
+  const std::vector<double> coefficients = fields.has("distortion_coefficients")
+                                               ? fields.below("distortion_coefficients").numbers("data", 14)
+                                               : std::vector<double>();
+  set_distortion(fields, "distortion_model", "distortion_coefficients.data", name, coefficients, camera);
+  const char* data = "camera_matrix.data";
+  check(fields, {"image_width", "image_height", data, data, data, data, "distortion_coefficients.data"}, camera);
+}
+
+void read_plain(const Fields& fields, pf_camera_t& camera) {
+  const std::string model = fields.text_or("camera_model", "pinhole");
+  if (model != "pinhole") {
+    fields.refuse_field("camera_model", "is '" + model + "'; only pinhole (with a distortion) is known");
+  }
+  camera.width = fields.integer("width");
+  camera.height = fields.integer("height");
+  set_intrinsics(camera, fields.number("fx"), fields.number("fy"), fields.number("cx"), fields.number("cy"));
+  const std::string name = fields.text("distortion_model");
+  const std::vector<double> coefficients =
+      fields.has("distortion") || name != "none" ? fields.numbers("distortion", 14) : std::vector<double>();
+  set_distortion(fields, "distortion_model", "distortion", name, coefficients, camera);
+  check(fields, {"width", "height", "fx", "fy", "cx", "cy", "distortion"}, camera);
+}
+
+double read_rate(const Fields& fields, const char* key) {
+  const double rate = fields.number_or(key, 0.0);
+  if (rate != 0.0 && !(rate >= 0.1 && rate <= 10000.0)) {
+    fields.refuse_field(key, "is " + format(rate) + "; 0.1 to 10000 frames per second are possible");
+  }
+  return rate;
+}
+
+}  // namespace
+
+Calibration parse_calibration(const std::string& text, const std::string& file) {
+  const Fields fields(text, file);
+  Calibration calibration{};
+  if (fields.has("cam0")) {
+    calibration.form = "kalibr";
+    read_lists(fields.below("cam0"), "distortion_coeffs", calibration.camera);
+  } else if (fields.has("image_width") || fields.has("camera_matrix")) {
+    calibration.form = "ros";
+    read_ros(fields, calibration.camera);
+  } else if (fields.has("intrinsics") || fields.has("resolution")) {
+    const bool kalibr = fields.has("distortion_coeffs");
+    calibration.form = kalibr ? "kalibr" : "euroc";
+    read_lists(fields, kalibr ? "distortion_coeffs" : "distortion_coefficients", calibration.camera);
+    calibration.rate_hz = read_rate(fields, "rate_hz");
+  } else {
+    calibration.form = "plain";
+    read_plain(fields, calibration.camera);
+    calibration.rate_hz = read_rate(fields, "rate_hz");
+  }
+  return calibration;
+}
+
+Calibration read_calibration(const std::string& path) {
+  return parse_calibration(read_text(path, kMaxYamlBytes, "calibration"), path);
+}
+
+}  // namespace pf::sequence

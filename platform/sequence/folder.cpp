@@ -1,0 +1,156 @@
+#include "folder.h"
+
+#include <cmath>
+
+#include "numbers.h"
+#include "refuse.h"
+
+namespace pf::sequence {
+
+namespace {
+
+constexpr size_t kMaxTableBytes = size_t{256} << 20;
+
+enum class Times { kSeconds, kNanoseconds };
+
+/// Names in tables stay inside of their folder.
+fs::path inside(const fs::path& folder, const fs::path& table, const Row& row, std::string_view name) {
+  const fs::path relative(name);
+  bool climbs = relative.is_absolute();
+  for (const fs::path& part : relative) {
+    climbs = climbs || part == "..";
+  }
+  if (climbs) {
+    refuse(table.string() + " line " + std::to_string(row.number) + ": the image name '" + std::string(name) +
+           "' leaves the sequence's folder");
+  }
+  return folder / relative;
+}
+
+/// Rows of "time name" or "index time name" to frames; times must grow.
+std::vector<Frame> read_table(const fs::path& table, const fs::path& images, Times times) {
+  const std::string text = read_text(table, kMaxTableBytes, "times");
+  std::vector<Frame> frames;
+  for (const Row& row : split_rows(text)) {
+    const std::string where = table.string() + " line " + std::to_string(row.number) + ": ";
+    if (row.words.size() < 2) {
+      refuse(where + "expected a time and an image name, found '" + std::string(row.words[0]) + "'");
+    }
+    const size_t at = row.words.size() == 2 ? 0 : row.words.size() == 3 && times == Times::kSeconds ? 1 : 0;
+    int64_t t_ns = 0;
+    if (!(times == Times::kSeconds ? parse_seconds(row.words[at], t_ns) : parse_integer(row.words[at], t_ns))) {
+      refuse(where + "'" + std::string(row.words[at]) + "' is not a time in " +
+             (times == Times::kSeconds ? "seconds" : "whole nanoseconds"));
+    }
+    if (!frames.empty() && t_ns <= frames.back().t_ns) {
+      refuse(where + "the time " + std::string(row.words[at]) +
+             (t_ns == frames.back().t_ns ? " repeats" : " runs back") + "; times must grow from frame to frame");
+    }
+    frames.push_back({t_ns, inside(images, table, row, row.words[at + 1])});
+  }
+  if (frames.empty()) {
+    refuse(table.string() + ": lists no frame");
+  }
+  return frames;
+}
+
+fs::path first_file(const fs::path& folder, std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    if (is_file(folder / name)) {
+      return folder / name;
+    }
+  }
+  return {};
+}
+
+void find_calibration(Folder& folder, const std::string& given, const fs::path& where,
+                      std::initializer_list<const char*> names) {
+  folder.calibration_path = given.empty() ? first_file(where, names) : fs::path(given);
+  if (folder.calibration_path.empty()) {
+    std::string list;
+    for (const char* name : names) {
+      list += (list.empty() ? "" : ", ") + std::string(name);
+    }
+    refuse(where.string() + ": no calibration inside (looked for " + list + "); give one with --calib FILE");
+  }
+  folder.calibration = read_calibration(folder.calibration_path.string());
+}
+
+void open_images(Folder& folder, const std::string& calibration) {
+  const fs::path& root = folder.root;
+  find_calibration(folder, calibration, root,
+                   {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml"});
+  const fs::path images = is_folder(root / "images") ? root / "images" : root;
+  const fs::path times = root / "times.txt";
+  if (is_file(times)) {
+    folder.frames = read_table(times, images, Times::kSeconds);
+  } else {
+    const double rate = folder.calibration.rate_hz > 0.0 ? folder.calibration.rate_hz : 30.0;
+    for (const std::string& name : list_images(images)) {
+      const double t = static_cast<double>(folder.frames.size()) / rate;
+      folder.frames.push_back({static_cast<int64_t>(std::llround(t * 1e9)), images / name});
+    }
+    if (folder.frames.empty()) {
+      refuse(images.string() + ": holds no PNG, JPEG or PGM image; check the path");
+    }
+    char text[64];
+    std::snprintf(text, sizeof(text), "%g frames per second", rate);
+    folder.warning = root.string() + ": no times.txt; the images are taken in the order of their names at " + text;
+  }
+  folder.truth_path = first_file(root, {"groundtruth.tum", "groundtruth.txt"});
+}
+
+void open_tum(Folder& folder, const std::string& calibration) {
+  const fs::path table = folder.root / "rgb.txt";
+  if (!is_file(table)) {
+    refuse(table.string() + ": missing; a tum: folder holds rgb.txt and rgb/ (use images: for other layouts)");
+  }
+  find_calibration(folder, calibration, folder.root, {"calib.yaml", "calib.yml", "camchain.yaml", "camera_info.yaml"});
+  folder.frames = read_table(table, folder.root, Times::kSeconds);
+  folder.truth_path = first_file(folder.root, {"groundtruth.txt", "groundtruth.tum"});
+}
+
+void open_euroc(Folder& folder, const std::string& calibration) {
+  for (const char* below : {"mav0/cam0", "cam0", "."}) {
+    const fs::path camera = folder.root / below;
+    if (is_file(camera / "data.csv")) {
+      find_calibration(folder, calibration, camera, {"sensor.yaml", "calib.yaml"});
+      folder.frames = read_table(camera / "data.csv", camera / "data", Times::kNanoseconds);
+      folder.truth_path = first_file(folder.root, {"groundtruth.tum"});
+      return;
+    }
+  }
+  if (is_file(folder.root / "times.txt") || is_folder(folder.root / "images")) {
+    open_images(folder, calibration);
+    return;
+  }
+  refuse(folder.root.string() +
+         ": no mav0/cam0/data.csv inside; give the folder that holds mav0, or mav0 or cam0 itself");
+}
+
+}  // namespace
+
+Folder open_folder(const std::string& source, const std::string& calibration) {
+  const size_t colon = source.find(':');
+  const std::string kind = source.substr(0, colon);
+  const std::string where = colon == std::string::npos ? "" : source.substr(colon + 1);
+  if (kind != "images" && kind != "euroc" && kind != "tum") {
+    refuse("source '" + source + "': begins with none of images:, euroc:, tum:");
+  }
+  if (where.empty()) {
+    refuse("source '" + source + "': names no folder; write " + kind + ":DIR");
+  }
+  Folder folder{};
+  folder.root = where;
+  require_folder(folder.root);
+  if (kind == "images") {
+    open_images(folder, calibration);
+  } else if (kind == "tum") {
+    open_tum(folder, calibration);
+  } else {
+    open_euroc(folder, calibration);
+  }
+  return folder;
+}
+
+}  // namespace pf::sequence

@@ -1,0 +1,178 @@
+/// The C functions of sequence.h: they check, call, and turn what was thrown into a message.
+#include <planefold_platform/sequence.h>
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "calibration.h"
+#include "decode.h"
+#include "folder.h"
+#include "refuse.h"
+#include "target.h"
+
+struct pf_sequence {
+  pf::sequence::Folder folder;
+  std::string root, calibration_path, truth_path;
+  std::vector<unsigned char> bytes;
+  pf_decoded_t image{};
+
+  pf_sequence() = default;
+  pf_sequence(const pf_sequence&) = delete;
+  pf_sequence& operator=(const pf_sequence&) = delete;
+  ~pf_sequence() { pf_decode_free(&image); }
+};
+
+namespace {
+
+using pf::sequence::refuse;
+
+constexpr size_t kMaxImageBytes = size_t{64} << 20;
+
+void put(char message[PF_SEQUENCE_MESSAGE], const char* text) {
+  if (message != nullptr) {
+    std::snprintf(message, PF_SEQUENCE_MESSAGE, "%s", text);
+  }
+}
+
+/// Runs a function that may throw; nothing passes the C boundary.
+template <typename Function>
+int guarded(char message[PF_SEQUENCE_MESSAGE], const Function& function) {
+  try {
+    put(message, "");
+    function();
+    return 0;
+  } catch (const std::bad_alloc&) {
+    put(message, "not enough memory to read this");
+  } catch (const std::exception& error) {
+    put(message, error.what());
+  } catch (...) {
+    put(message, "unknown failure while reading");
+  }
+  return -1;
+}
+
+void require(const void* pointer, const char* name) {
+  if (pointer == nullptr) {
+    refuse(std::string(name) + " is null");
+  }
+}
+
+}  // namespace
+
+int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t** sequence,
+                     char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(source, "source");
+    require(sequence, "sequence");
+    *sequence = nullptr;
+    auto opened = std::make_unique<pf_sequence>();
+    opened->folder = pf::sequence::open_folder(source, calibration != nullptr ? calibration : "");
+    opened->root = opened->folder.root.string();
+    opened->calibration_path = opened->folder.calibration_path.string();
+    opened->truth_path = opened->folder.truth_path.string();
+    *sequence = opened.release();
+  });
+}
+
+void pf_close_sequence(pf_sequence_t* sequence) { delete sequence; }
+
+void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* info) {
+  if (sequence == nullptr || info == nullptr) {
+    return;
+  }
+  const pf::sequence::Folder& folder = sequence->folder;
+  info->camera = folder.calibration.camera;
+  info->count = static_cast<int64_t>(folder.frames.size());
+  info->first_t_ns = folder.frames.front().t_ns;
+  info->last_t_ns = folder.frames.back().t_ns;
+  info->rate_hz = folder.calibration.rate_hz;
+  if (!(info->rate_hz > 0.0)) {
+    const double seconds = 1e-9 * static_cast<double>(info->last_t_ns - info->first_t_ns);
+    info->rate_hz = seconds > 0.0 ? static_cast<double>(info->count - 1) / seconds : 30.0;
+  }
+  info->folder = sequence->root.c_str();
+  info->calibration_path = sequence->calibration_path.c_str();
+  info->calibration_form = folder.calibration.form;
+  info->truth_path = sequence->truth_path.c_str();
+  info->warning = folder.warning.c_str();
+}
+
+int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,
+                           char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(sequence, "sequence");
+    require(image, "image");
+    const pf::sequence::Folder& folder = sequence->folder;
+    if (index < 0 || index >= static_cast<int64_t>(folder.frames.size())) {
+      refuse(sequence->root + ": frame " + std::to_string(index) + " is not one of its " +
+             std::to_string(folder.frames.size()));
+    }
+    const pf::sequence::Frame& frame = folder.frames[static_cast<size_t>(index)];
+    pf::sequence::read_bytes(frame.path, kMaxImageBytes, "image", sequence->bytes);
+    char why[PF_DECODE_WHY] = "";
+    pf_decoded_t& decoded = sequence->image;
+    if (pf_decode_image(sequence->bytes.data(), sequence->bytes.size(), &decoded, why) != 0) {
+      refuse(frame.path.string() + ": " + why + "; replace or remove this image");
+    }
+    const pf_camera_t& camera = folder.calibration.camera;
+    if (decoded.width != camera.width || decoded.height != camera.height) {
+      refuse(frame.path.string() + ": is " + std::to_string(decoded.width) + " x " + std::to_string(decoded.height) +
+             " pixels, but the calibration " + sequence->calibration_path + " is for " + std::to_string(camera.width) +
+             " x " + std::to_string(camera.height) + "; use the calibration of these images");
+    }
+    *image = pf_image_t{decoded.pixels, decoded.width, decoded.height, decoded.width, frame.t_ns};
+  });
+}
+
+const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t index) {
+  if (sequence == nullptr || index < 0 || index >= static_cast<int64_t>(sequence->folder.frames.size())) {
+    return "";
+  }
+  return sequence->folder.frames[static_cast<size_t>(index)].path.c_str();
+}
+
+int pf_parse_calibration(const char* text, size_t size, const char* name, pf_camera_t* camera, double* rate_hz,
+                         char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(text, "text");
+    require(camera, "camera");
+    const auto calibration =
+        pf::sequence::parse_calibration(std::string(text, size), name != nullptr ? name : "calibration");
+    *camera = calibration.camera;
+    if (rate_hz != nullptr) {
+      *rate_hz = calibration.rate_hz;
+    }
+  });
+}
+
+int pf_read_calibration(const char* path, pf_camera_t* camera, double* rate_hz, char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(path, "path");
+    require(camera, "camera");
+    const auto calibration = pf::sequence::read_calibration(path);
+    *camera = calibration.camera;
+    if (rate_hz != nullptr) {
+      *rate_hz = calibration.rate_hz;
+    }
+  });
+}
+
+int pf_read_target(const char* path, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(path, "path");
+    require(target, "target");
+    *target = pf::sequence::read_target(path);
+  });
+}
+
+int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(text, "text");
+    require(target, "target");
+    *target = pf::sequence::parse_rectangle(text);
+  });
+}

@@ -1,0 +1,150 @@
+#include "target.h"
+
+#include <cmath>
+
+#include "file.h"
+#include "numbers.h"
+#include "refuse.h"
+#include "yaml_fields.h"
+
+namespace pf::sequence {
+
+namespace {
+
+constexpr double kLargest = 1000.0;  ///< [m] of a target's side, point or distance; more is a mistaken unit
+
+constexpr double kRectangleSigma = 0.0005;
+constexpr double kPointSigma = 0.001;
+constexpr double kFirstPositionSigma = 0.02;
+constexpr double kFirstRotationSigma = 0.05;
+
+double positive(const Fields& fields, const char* key, double value, double largest) {
+  if (!(value > 0.0) || value > largest) {
+    char why[96];
+    std::snprintf(why, sizeof(why), "is %g; more than 0 and at most %g is possible", value, largest);
+    fields.refuse_field(key, why);
+  }
+  return value;
+}
+
+pf_target_t rectangle_of(double width, double height, double sigma) {
+  pf_target_t target{};
+  target.kind = PF_TARGET_RECTANGLE;
+  target.width = width;
+  target.height = height;
+  target.sigma_m = sigma;
+  target.first_pose.q_WC[0] = 1.0;
+  return target;
+}
+
+void set_points(const Fields& fields, const char* key, pf_target_t& target) {
+  const auto points = fields.rows(key, PF_TARGET_MAX_POINTS, 3);
+  if (points.size() < 4) {
+    fields.refuse_field(key, "has " + std::to_string(points.size()) + " points; 4 to " +
+                                 std::to_string(PF_TARGET_MAX_POINTS) + " are needed");
+  }
+  target.count = static_cast<int32_t>(points.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    for (size_t k = 0; k < 3; ++k) {
+      if (std::fabs(points[i][k]) > kLargest) {
+        fields.refuse_field(key, "has a point farther than 1000 m from the origin; the unit is the metre");
+      }
+      target.points_W[i][k] = points[i][k];
+    }
+    for (size_t j = 0; j < i; ++j) {
+      if (points[i] == points[j]) {
+        fields.refuse_field(key, "has the same point twice");
+      }
+    }
+  }
+}
+
+void set_first_pose(const Fields& fields, const char* position_key, const char* quaternion_key, pf_target_t& target) {
+  const std::vector<double> position = fields.numbers(position_key, 3);
+  const std::vector<double> q = fields.numbers(quaternion_key, 4);
+  if (position.size() != 3) {
+    fields.refuse_field(position_key, "must be three numbers [m]");
+  }
+  if (q.size() != 4) {
+    fields.refuse_field(quaternion_key, "must be four numbers: w, x, y, z");
+  }
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!(std::fabs(norm - 1.0) < 0.01)) {
+    fields.refuse_field(quaternion_key, "must have length 1");
+  }
+  for (size_t i = 0; i < 4; ++i) {
+    target.first_pose.q_WC[i] = q[i] / norm;
+  }
+  for (size_t i = 0; i < 3; ++i) {
+    if (std::fabs(position[i]) > kLargest) {
+      fields.refuse_field(position_key, "is farther than 1000 m from the origin; the unit is the metre");
+    }
+    target.first_pose.p_WC[i] = position[i];
+  }
+  const double sigma_rotation =
+      positive(fields, "sigma_rotation", fields.number_or("sigma_rotation", kFirstRotationSigma), 3.15);
+  const double sigma_position =
+      positive(fields, "sigma_position", fields.number_or("sigma_position", kFirstPositionSigma), kLargest);
+  for (size_t i = 0; i < 3; ++i) {
+    target.first_pose.covariance[7 * i] = sigma_rotation * sigma_rotation;
+    target.first_pose.covariance[7 * (i + 3)] = sigma_position * sigma_position;
+  }
+}
+
+/// SceneLib's camera axes are x left, y up, z forward; those of planefold are x right, y down, z forward. Both are right-handed
+/// and differ by half a turn about z, so with q_WC for SceneLib's camera
+///   R_WC = R_scenelib diag(-1, -1, 1)        as quaternions   q_WC = q_scenelib * (0, 0, 0, 1)
+/// The world stays as the file has it.
+void turn_scenelib_camera(double q[4]) {
+  const double w = q[0];
+  const double x = q[1];
+  const double y = q[2];
+  const double z = q[3];
+  q[0] = -z;
+  q[1] = y;
+  q[2] = -x;
+  q[3] = w;
+}
+
+}  // namespace
+
+pf_target_t parse_target(const std::string& text, const std::string& file) {
+  const Fields fields(text, file);
+  pf_target_t target = rectangle_of(0.0, 0.0, kPointSigma);
+  if (fields.has("features")) {
+    target.kind = PF_TARGET_POINTS;
+    set_points(fields, "features", target);
+    set_first_pose(fields, "start_camera_position", "start_camera_quat_wxyz", target);
+    turn_scenelib_camera(target.first_pose.q_WC);
+  } else if (fields.has("points")) {
+    target.kind = PF_TARGET_POINTS;
+    set_points(fields, "points", target);
+    set_first_pose(fields.below(fields.has("T_WC") ? "T_WC" : "first_pose"), "position", "quaternion_wxyz", target);
+  } else if (fields.has("width") || fields.has("height")) {
+    target.width = positive(fields, "width", fields.number("width"), kLargest);
+    target.height = positive(fields, "height", fields.number("height"), kLargest);
+    target.sigma_m = kRectangleSigma;
+  } else {
+    refuse(file + ": is no target; it needs width and height [m] of a dark rectangle, or points and first_pose");
+  }
+  target.sigma_m = positive(fields, "sigma", fields.number_or("sigma", target.sigma_m), 1.0);
+  return target;
+}
+
+pf_target_t read_target(const std::string& path) {
+  return parse_target(read_text(path, kMaxYamlBytes, "target"), path);
+}
+
+pf_target_t parse_rectangle(const std::string& text) {
+  const size_t cross = text.find_first_of("xX");
+  double width = 0.0;
+  double height = 0.0;
+  if (cross == std::string::npos || !parse_double(text.substr(0, cross), width) ||
+      !parse_double(text.substr(cross + 1), height) || !(width > 0.0 && width <= kLargest) ||
+      !(height > 0.0 && height <= kLargest)) {
+    refuse("rectangle:" + text + ": is not a size; write width and height in metres, as in rectangle:0.21x0.148");
+  }
+  return rectangle_of(width, height, kRectangleSigma);
+}
+
+}  // namespace pf::sequence
