@@ -1,0 +1,37 @@
+#pragma once
+
+#include "geometry/camera.h"
+
+namespace pf {
+
+/// Parts of the camera models, shared by camera.cpp and camera_domain.cpp.
+
+/// Rays more than this from the axis (tan 89.9 degrees) are outside of every flat model.
+constexpr Scalar kMaxTangent = Scalar(572.957);
+/// Equidistant: no ray straight backwards.
+constexpr Scalar kMaxTheta = Scalar(3.13);
+/// Slope below which a model counts as folding back.
+constexpr Scalar kMinSlope = Scalar(0.01);
+
+/// Radial-tangential distortion of m and its Jacobian, which is symmetric.
+inline Vec2 distort_radtan(const Scalar k[8], const Vec2& m, Mat2* J) {
+  const Scalar x = m.x(), y = m.y(), r2 = x * x + y * y;
+  const Scalar radial = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+  const Scalar slope = k[0] + r2 * (2 * k[1] + r2 * 3 * k[4]);  // d radial / d r²
+  if (J != nullptr) {
+    const Scalar off = 2 * (x * y * slope + k[2] * x + k[3] * y);
+    *J << radial + 2 * x * x * slope + 2 * k[2] * y + 6 * k[3] * x, off,  //
+        off, radial + 2 * y * y * slope + 6 * k[2] * y + 2 * k[3] * x;
+  }
+  return Vec2(x * radial + 2 * k[2] * x * y + k[3] * (r2 + 2 * x * x),
+              y * radial + k[2] * (r2 + 2 * y * y) + 2 * k[3] * x * y);
+}
+
+/// Kannala-Brandt polynomial θd(θ) and its slope.
+inline Scalar distort_theta(const Scalar k[8], Scalar theta, Scalar* slope) {
+  const Scalar t2 = theta * theta;
+  *slope = 1 + t2 * (3 * k[0] + t2 * (5 * k[1] + t2 * (7 * k[2] + t2 * 9 * k[3])));
+  return theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+}
+
+}  // namespace pf
