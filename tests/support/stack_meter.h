@@ -22,12 +22,12 @@
 #define STACK_METER_GUARD_BYTES ((size_t)64 << 10)
 #define STACK_METER_PAINT UINT64_C(0xa5c3965ae17d2b48)
 
-typedef void (*stack_meter_call_t)(void *context);
+typedef void (*stack_meter_call_t)(void* context);
 
 typedef struct stack_meter_job {
   stack_meter_call_t call;
-  void *context;
-  const char *top;
+  void* context;
+  const char* top;
 } stack_meter_job_t;
 
 static inline int stack_meter_is_meaningful(void) {
@@ -44,18 +44,18 @@ static inline int stack_meter_is_meaningful(void) {
 #endif
 }
 
-static void *stack_meter_thread(void *argument) {
-  stack_meter_job_t *job = (stack_meter_job_t *)argument;
-  job->top = (const char *)__builtin_frame_address(0);
+static void* stack_meter_thread(void* argument) {
+  stack_meter_job_t* job = (stack_meter_job_t*)argument;
+  job->top = (const char*)__builtin_frame_address(0);
   job->call(job->context);
   return NULL;
 }
 
 /* Bytes of stack that call(context) used. A call that needs more than STACK_METER_BYTES ends the program with a fault. */
-static inline size_t stack_meter_run(stack_meter_call_t call, void *context) {
+static inline size_t stack_meter_run(stack_meter_call_t call, void* context) {
   const size_t bytes = STACK_METER_BYTES;
-  char *block = (char *)mmap(NULL, bytes + STACK_METER_GUARD_BYTES, PROT_READ | PROT_WRITE,
-                             MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  char* block =
+      (char*)mmap(NULL, bytes + STACK_METER_GUARD_BYTES, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   stack_meter_job_t job = {call, context, NULL};
   pthread_attr_t attributes;
   pthread_t thread;
@@ -63,14 +63,13 @@ static inline size_t stack_meter_run(stack_meter_call_t call, void *context) {
     perror("stack_meter: mmap");
     exit(1);
   }
-  char *stack = block + STACK_METER_GUARD_BYTES;
-  uint64_t *words = (uint64_t *)(void *)stack;
+  char* stack = block + STACK_METER_GUARD_BYTES;
+  uint64_t* words = (uint64_t*)(void*)stack;
   for (size_t i = 0; i < bytes / sizeof(uint64_t); ++i) {
     words[i] = STACK_METER_PAINT;
   }
   if (pthread_attr_init(&attributes) != 0 || pthread_attr_setstack(&attributes, stack, bytes) != 0 ||
-      pthread_create(&thread, &attributes, stack_meter_thread, &job) != 0 ||
-      pthread_join(thread, NULL) != 0) {
+      pthread_create(&thread, &attributes, stack_meter_thread, &job) != 0 || pthread_join(thread, NULL) != 0) {
     fprintf(stderr, "stack_meter: the thread could not be run\n");
     exit(1);
   }
@@ -79,7 +78,7 @@ static inline size_t stack_meter_run(stack_meter_call_t call, void *context) {
   while (untouched < bytes / sizeof(uint64_t) && words[untouched] == STACK_METER_PAINT) {
     ++untouched;
   }
-  const char *lowest = stack + untouched * sizeof(uint64_t);
+  const char* lowest = stack + untouched * sizeof(uint64_t);
   const size_t used = lowest < job.top ? (size_t)(job.top - lowest) : 0;
   munmap(block, bytes + STACK_METER_GUARD_BYTES);
   return used;

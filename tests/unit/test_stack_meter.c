@@ -1,24 +1,21 @@
 #define _GNU_SOURCE
-#include "stack_meter.h"
-
 #include <string.h>
 
 #include "skip.h"
+#include "stack_meter.h"
 #include "unity.h"
 
 void setUp(void) {}
 void tearDown(void) {}
 
-static void use_nothing(void *context) {
-  (void)context;
-}
+static void use_nothing(void* context) { (void)context; }
 
-__attribute__((noinline)) static void use_bytes(void *context) {
+__attribute__((noinline)) static void use_bytes(void* context) {
   volatile char bytes[20000];
   for (size_t i = 0; i < sizeof(bytes); ++i) {
     bytes[i] = (char)i;
   }
-  *(char *)context = bytes[77];
+  *(char*)context = bytes[77];
 }
 
 static void test_stack_meter_should_report_little_when_nothing_is_called(void) {

@@ -6,9 +6,9 @@
 int main(void) {
   pf_config_t config;
   pf_memory_t memory;
-  pf_slam_t *slam = NULL;
+  pf_slam_t* slam = NULL;
   pf_state_t state;
-  void *block;
+  void* block;
   if (pf_config_default(&config) != PF_OK) {
     return 1;
   }
@@ -26,7 +26,7 @@ int main(void) {
     return 3;
   }
   {
-    char *aligned = (char *)block;
+    char* aligned = (char*)block;
     while ((size_t)aligned % memory.alignment != 0) {
       ++aligned;
     }
@@ -37,8 +37,8 @@ int main(void) {
   if (pf_get_state(slam, &state) != PF_OK || state != PF_STATE_STARTING) {
     return 5;
   }
-  printf("planefold %d.%d.%d scalar %u bytes %lu\n", PF_VERSION_MAJOR, PF_VERSION_MINOR,
-         PF_VERSION_PATCH, (unsigned)config.scalar, (unsigned long)memory.bytes);
+  printf("planefold %d.%d.%d scalar %u bytes %lu\n", PF_VERSION_MAJOR, PF_VERSION_MINOR, PF_VERSION_PATCH,
+         (unsigned)config.scalar, (unsigned long)memory.bytes);
   free(block);
   return 0;
 }

@@ -1,0 +1,21 @@
+"""Every C and C++ file is as clang-format leaves it."""
+
+import shutil
+import subprocess
+
+import source
+from source import script
+
+if shutil.which("clang-format") is None:
+    script.skip("clang-format is not installed")
+
+problems = []
+for path in source.files("lib", "platform", "examples", "tools", "tests"):
+    result = subprocess.run(["clang-format", "--style=file", str(path)], capture_output=True, cwd=source.ROOT)
+    if result.returncode != 0:
+        script.fail(result.stderr.decode())
+    if result.stdout != path.read_bytes():
+        problems.append(source.name(path))
+if problems:
+    print("mend with: clang-format -i", *problems)
+source.report(problems)
