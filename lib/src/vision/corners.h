@@ -1,0 +1,46 @@
+#pragma once
+
+#include "base/arena.h"
+#include "vision/image.h"
+
+namespace pf {
+
+struct Corner {
+  float x = 0;
+  float y = 0;
+  float score = 0;  // min_eigenvalue there
+};
+
+/// Corners lie at least so far from the image's edge: what the score of a 7x7 window reads.
+constexpr int kCornerBorder = 5;
+
+/// Scratch for detect_corners: three rows of scores and of candidates, about 18 bytes per column.
+struct CornerWorkspace {
+  float* score[3] = {};
+  std::uint16_t* candidate[3] = {};
+  int width = 0;
+
+  bool layout(Arena& arena, int image_width);
+};
+
+/// Corners in a rectangle: the FAST segment test (of 16 pixels on a circle of radius 3, 9 in a row are all brighter or all
+/// darker than the centre by more than `threshold`), scored with min_eigenvalue, and only where no pixel of the 3x3
+/// around has a higher score.
+///
+/// roi         clipped to the image less kCornerBorder; any is welcome
+/// threshold   grey levels, clamped to 1 .. 254
+/// out         the best `capacity` of them, best first
+/// returns how many
+/// Time and scratch are proportional to the rectangle. src: Rosten and Drummond 2006 (segment test), Shi and Tomasi 1994.
+int detect_corners(const ImageView& image, const Rect& roi, int threshold, Corner* out, int capacity,
+                   const CornerWorkspace& workspace);
+
+/// The segment test at one pixel, at least 3 from the edge: the plain twin of what detect_corners runs on 16 at once.
+bool is_segment_corner(const ImageView& image, int x, int y, int threshold);
+
+/// Smaller eigenvalue of the mean of g gᵀ over the 7x7 pixels around (x, y), g the central difference [grey/px].
+/// Zero nearer to the edge than kCornerBorder. The reference is the plain twin.
+float min_eigenvalue(const ImageView& image, int x, int y);
+float min_eigenvalue_reference(const ImageView& image, int x, int y);
+
+}  // namespace pf
