@@ -277,7 +277,8 @@ typedef enum pf_feature_kind {
 } pf_feature_kind_t;
 
 typedef struct pf_feature {
-  uint32_t id;
+  uint32_t id;          /* never used twice */
+  uint32_t track;       /* pf_observation_t.id, for what came in through pf_push_observations; target points: their index */
   uint32_t kind;        /* pf_feature_kind_t */
   uint32_t is_target;   /* 1 for a point of the target */
   double p_W[3];        /* [m] inverse depth: at the mean inverse depth */

@@ -46,6 +46,8 @@ class Filter {
   void set_body(const Body& body, const Scalar* covariance);
 
   // --- predict
+  /// Known change of the velocities, in camera axes:  v_W += R_WC dv,  w_C += dw;  e_v -= [R_WC dv]x theta.
+  void steer(const Vec3& dv_C, const Vec3& dw_C);
   void predict(const Transition& transition);
 
   // --- augment; -1 where there is no room

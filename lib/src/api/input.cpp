@@ -1,0 +1,150 @@
+#include <cmath>
+
+#include "api/context.h"
+
+namespace {
+
+using pf::Scalar;
+
+pf::Vec3 vec3(const double* v) {
+  return pf::Vec3(static_cast<Scalar>(v[0]), static_cast<Scalar>(v[1]), static_cast<Scalar>(v[2]));
+}
+
+/// Symmetric to rounding, with positive diagonal and Cauchy-Schwarz between any two.
+bool is_covariance(const double* P, int n) {
+  for (int i = 0; i < n; ++i) {
+    if (!(P[i * n + i] > 0.0)) return false;
+    for (int j = 0; j < i; ++j) {
+      const double scale = std::sqrt(P[i * n + i] * P[j * n + j]);
+      if (std::fabs(P[i * n + j] - P[j * n + i]) > 1e-9 * scale) return false;
+      if (std::fabs(P[i * n + j]) > scale * (1.0 + 1e-9)) return false;
+    }
+  }
+  return true;
+}
+
+pf_status_t body_from(const pf_pose_t& pose, pf::Body* body) {
+  if (!pf::finite(pose.q_WC, 4) || !pf::finite(pose.p_WC, 3) || !pf::finite(pose.covariance, 36) ||
+      !pf::finite(pose.v_W, 3) || !pf::finite(pose.w_C, 3))
+    return PF_ERROR_NONFINITE;
+  const double* q = pose.q_WC;
+  const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  if (!(norm2 > 0.98 && norm2 < 1.02)) return PF_ERROR_RANGE;
+  if (!is_covariance(pose.covariance, 6)) return PF_ERROR_RANGE;
+  body->q_WC = pf::Quat(static_cast<Scalar>(q[0]), static_cast<Scalar>(q[1]), static_cast<Scalar>(q[2]),
+                        static_cast<Scalar>(q[3]));
+  body->q_WC.normalize();
+  body->p_W = vec3(pose.p_WC);
+  body->v_W = vec3(pose.v_W);
+  body->w_C = vec3(pose.w_C);
+  return PF_OK;
+}
+
+}  // namespace
+
+pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (target == nullptr) return PF_ERROR_NULL;
+  if (slam->slam.used()) return PF_ERROR_STATE;
+  if (!pf::finite(&target->sigma_m, 1)) return PF_ERROR_NONFINITE;
+  if (!(target->sigma_m > 0.0 && target->sigma_m < 1e3)) return PF_ERROR_RANGE;
+  pf::Target t;
+  t.sigma_m = static_cast<Scalar>(target->sigma_m);
+  if (target->kind == PF_TARGET_RECTANGLE) {
+    const double size[2] = {target->width, target->height};
+    if (!pf::finite(size, 2)) return PF_ERROR_NONFINITE;
+    for (double s : size)
+      if (!(s > 1e-4 && s < 1e3)) return PF_ERROR_RANGE;
+    t.kind = pf::TargetKind::kRectangle;
+    t.width = static_cast<Scalar>(target->width);
+    t.height = static_cast<Scalar>(target->height);
+  } else if (target->kind == PF_TARGET_POINTS) {
+    if (target->count < 4 || target->count > PF_TARGET_MAX_POINTS) return PF_ERROR_RANGE;
+    t.kind = pf::TargetKind::kPoints;
+    t.count = target->count;
+    for (int i = 0; i < t.count; ++i) {
+      if (!pf::finite(target->points_W[i], 3)) return PF_ERROR_NONFINITE;
+      t.point_W[i] = vec3(target->points_W[i]);
+    }
+    const pf_status_t status = body_from(target->first_pose, &t.first_pose);
+    if (status != PF_OK) return status;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) t.first_covariance(i, j) = static_cast<Scalar>(target->first_pose.covariance[i * 6 + j]);
+  } else {
+    return PF_ERROR_RANGE;
+  }
+  return pf::to_c(slam->slam.start_from_target(t));
+}
+
+pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (pose == nullptr) return PF_ERROR_NULL;
+  if (slam->slam.used()) return PF_ERROR_STATE;
+  pf::KnownBody known;
+  const pf_status_t status = body_from(*pose, &known.body);
+  if (status != PF_OK) return status;
+  const bool moves = slam->settings.constant_velocity;
+  const int dim = moves ? pf::Body::kMaxDim : pf::Body::kPoseDim;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) known.covariance[i * dim + j] = static_cast<Scalar>(pose->covariance[i * 6 + j]);
+  if (moves) {
+    if (velocity_covariance == nullptr) return PF_ERROR_NULL;
+    if (!pf::finite(velocity_covariance, 36)) return PF_ERROR_NONFINITE;
+    if (!is_covariance(velocity_covariance, 6)) return PF_ERROR_RANGE;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j)
+        known.covariance[(6 + i) * dim + 6 + j] = static_cast<Scalar>(velocity_covariance[i * 6 + j]);
+  }
+  return pf::to_c(slam->slam.start_from_pose(known));
+}
+
+pf_status_t pf_withdraw_target(pf_slam_t* slam) {
+  PF_REQUIRE_CONTEXT(slam);
+  slam->slam.withdraw_target();
+  return PF_OK;
+}
+
+pf_status_t pf_push_steering(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (dv_C == nullptr || dw_C == nullptr) return PF_ERROR_NULL;
+  if (!pf::finite(dv_C, 3) || !pf::finite(dw_C, 3)) return PF_ERROR_NONFINITE;
+  if (!slam->settings.constant_velocity) return PF_ERROR_STATE;
+  slam->slam.push_steering(vec3(dv_C), vec3(dw_C));
+  return PF_OK;
+}
+
+pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (image == nullptr || image->pixels == nullptr) return PF_ERROR_NULL;
+  if (slam->takes_observations) return PF_ERROR_STATE;
+  const pf_camera_t& camera = slam->config.camera;
+  if (image->width != camera.width || image->height != camera.height || image->stride < image->width)
+    return PF_ERROR_SIZE;
+  if (slam->slam.used() && image->t_ns <= slam->slam.last_ns()) return PF_ERROR_TIME;
+  slam->takes_frames = true;
+  return pf::to_c(slam->slam.push_frame({image->pixels, image->width, image->height, image->stride}, image->t_ns));
+}
+
+pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations, size_t count) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (observations == nullptr && count > 0) return PF_ERROR_NULL;
+  if (slam->takes_frames) return PF_ERROR_STATE;
+  if (slam->slam.used() && t_ns <= slam->slam.last_ns()) return PF_ERROR_TIME;
+  for (size_t i = 0; i < count; ++i) {
+    const pf_observation_t& o = observations[i];
+    if (!pf::finite(o.pixel, 2) || !pf::finite(&o.sigma_px, 1)) return PF_ERROR_NONFINITE;
+    if (!(o.sigma_px == 0.0 || (o.sigma_px >= 0.01 && o.sigma_px <= 100.0))) return PF_ERROR_RANGE;
+    if (!(std::fabs(o.pixel[0]) < 1e5 && std::fabs(o.pixel[1]) < 1e5)) return PF_ERROR_RANGE;
+  }
+  slam->takes_observations = true;
+  pf::PixelObservation* taken = slam->slam.observation_inbox();
+  const size_t most = static_cast<size_t>(slam->slam.observation_inbox_size());
+  const size_t n = count < most ? count : most;
+  for (size_t i = 0; i < n; ++i) {
+    const pf_observation_t& o = observations[i];
+    taken[i].track = o.id;
+    taken[i].pixel = pf::Vec2(static_cast<Scalar>(o.pixel[0]), static_cast<Scalar>(o.pixel[1]));
+    taken[i].sigma_px = o.sigma_px > 0.0 ? static_cast<Scalar>(o.sigma_px) : slam->settings.sigma_px;
+  }
+  return pf::to_c(slam->slam.push_observations(taken, static_cast<int>(n), t_ns));
+}

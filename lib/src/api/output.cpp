@@ -1,0 +1,185 @@
+#include "api/context.h"
+#include "covariance/select.h"
+#include "filter/gauge_information.h"
+#include "filter/observe/inverse_depth.h"
+#include "filter/observe/point.h"
+
+namespace {
+
+template <typename Vector>
+void copy(const Vector& from, int count, double* to) {
+  for (int i = 0; i < count; ++i) to[i] = static_cast<double>(from[i]);
+}
+
+template <typename Matrix>
+void copy_matrix(const Matrix& from, double* to) {
+  const int rows = static_cast<int>(from.rows()), columns = static_cast<int>(from.cols());
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) to[i * columns + j] = static_cast<double>(from(i, j));
+}
+
+void pose_at(const pf::FilterSlam& slam, int64_t t_ns, pf_pose_t* pose) {
+  pf::Body body;
+  pf::Mat6 covariance;
+  slam.predict_pose(t_ns, &body, &covariance);
+  pose->t_ns = t_ns;
+  pose->q_WC[0] = static_cast<double>(body.q_WC.w());
+  copy(body.q_WC.vec(), 3, pose->q_WC + 1);
+  copy(body.p_W, 3, pose->p_WC);
+  copy(body.v_W, 3, pose->v_W);
+  copy(body.w_C, 3, pose->w_C);
+  copy_matrix(covariance, pose->covariance);
+}
+
+}  // namespace
+
+pf_status_t pf_get_state(const pf_slam_t* slam, pf_state_t* state) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (state == nullptr) return PF_ERROR_NULL;
+  *state = static_cast<pf_state_t>(slam->slam.state());
+  return PF_OK;
+}
+
+pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (pose == nullptr) return PF_ERROR_NULL;
+  if (!slam->slam.has_pose()) return PF_ERROR_STATE;
+  pose_at(slam->slam, slam->slam.last_ns(), pose);
+  return PF_OK;
+}
+
+pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (pose == nullptr) return PF_ERROR_NULL;
+  if (!slam->slam.has_pose()) return PF_ERROR_STATE;
+  if (t_ns < slam->slam.last_ns()) return PF_ERROR_TIME;
+  if (t_ns - slam->slam.last_ns() > INT64_C(10000000000)) return PF_ERROR_RANGE;
+  pose_at(slam->slam, t_ns, pose);
+  return PF_OK;
+}
+
+pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double pixel[2], double covariance[4]) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (p_W == nullptr || pixel == nullptr) return PF_ERROR_NULL;
+  if (!pf::finite(p_W, 3)) return PF_ERROR_NONFINITE;
+  if (!slam->slam.has_pose()) return PF_ERROR_STATE;
+  pf::Vec2 z;
+  pf::Mat26 J_body;
+  pf::Mat23 J_point;
+  const pf::Vec3 p(static_cast<pf::Scalar>(p_W[0]), static_cast<pf::Scalar>(p_W[1]), static_cast<pf::Scalar>(p_W[2]));
+  if (!pf::observe_point(slam->settings.camera, slam->slam.filter().state().body, p, &z, &J_body, &J_point))
+    return PF_ERROR_RANGE;
+  copy(z, 2, pixel);
+  if (covariance == nullptr) return PF_OK;
+  pf::Body body;
+  pf::Mat6 P;
+  slam->slam.predict_pose(slam->slam.last_ns(), &body, &P);
+  const pf::Mat26 JP = J_body.lazyProduct(P);
+  const pf::Mat2 C = JP.lazyProduct(J_body.transpose());
+  copy_matrix(C, covariance);
+  return PF_OK;
+}
+
+pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_t capacity, size_t* count) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (count == nullptr || (features == nullptr && capacity > 0)) return PF_ERROR_NULL;
+  const pf::FeatureTable& table = slam->slam.features();
+  const pf::State& state = slam->slam.filter().state();
+  const pf::Triangle& P = slam->slam.filter().covariance();
+  *count = 0;
+  for (int i = 0; i < table.capacity(); ++i) {
+    if (!table.used(i)) continue;
+    const size_t at = (*count)++;
+    if (at >= capacity) continue;
+    const pf::Feature& f = table[i];
+    const pf::Block& block = state.block[f.slot];
+    pf_feature_t& out = features[at];
+    out = pf_feature_t();
+    out.id = f.id;
+    out.track = f.track;
+    out.is_target = f.is_target ? 1 : 0;
+    out.observations = f.observations;
+    out.attempts = f.attempts;
+    if (block.kind == pf::BlockKind::kPoint) {
+      out.kind = PF_FEATURE_POINT;
+      copy(block.xyz(), 3, out.p_W);
+      copy_matrix(slam->slam.filter().covariance3(f.slot), out.covariance);
+      continue;
+    }
+    out.kind = PF_FEATURE_INVERSE_DEPTH;
+    const pf::Block& anchor = state.block[block.parent];
+    pf::InverseDepth d = block.inverse_depth();
+    const pf::Scalar least = pf::Scalar(1e-6);
+    if (d.rho < least) d.rho = least;
+    pf::Mat3 J;
+    copy(pf::inverse_depth_to_point(anchor.xyz(), d, &J), 3, out.p_W);
+    Eigen::Matrix<pf::Scalar, 3, 6> J6;
+    J6.leftCols<3>().setIdentity();
+    J6.rightCols<3>() = J;
+    pf::Mat6 P6;
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c < 6; ++c)
+        P6(r, c) = P(r < 3 ? anchor.first + r : block.first + r - 3, c < 3 ? anchor.first + c : block.first + c - 3);
+    const Eigen::Matrix<pf::Scalar, 3, 6> JP = J6.lazyProduct(P6);
+    const pf::Mat3 C = JP.lazyProduct(J6.transpose());
+    copy_matrix(C, out.covariance);
+  }
+  return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
+}
+
+pf_status_t pf_get_tracks(const pf_slam_t* slam, pf_track_t* tracks, size_t capacity, size_t* count) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (count == nullptr || (tracks == nullptr && capacity > 0)) return PF_ERROR_NULL;
+  *count = static_cast<size_t>(slam->slam.track_count());
+  for (size_t i = 0; i < *count && i < capacity; ++i) {
+    const pf::Track& t = slam->slam.tracks()[i];
+    pf_track_t& out = tracks[i];
+    out.id = t.id;
+    out.status = static_cast<uint32_t>(t.status);
+    out.kind = t.inverse_depth ? PF_FEATURE_INVERSE_DEPTH : PF_FEATURE_POINT;
+    copy(t.predicted, 2, out.predicted_px);
+    copy_matrix(t.innovation, out.covariance_px);
+    copy(t.measured, 2, out.measured_px);
+  }
+  return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
+}
+
+pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (report == nullptr) return PF_ERROR_NULL;
+  const pf::FrameReport& r = slam->slam.report();
+  *report = pf_report_t();
+  report->t_ns = r.t_ns;
+  report->state = static_cast<pf_state_t>(slam->slam.state());
+  report->frames = r.frames;
+  report->attempts = r.attempts;
+  report->matches = r.matches;
+  report->inliers = r.inliers;
+  report->new_features = r.new_features;
+  report->evicted = r.evicted;
+  const pf::FeatureTable& table = slam->slam.features();
+  for (int i = 0; i < table.capacity(); ++i) {
+    if (!table.used(i)) continue;
+    ++report->features;
+    if (slam->slam.filter().state().block[table[i].slot].kind == pf::BlockKind::kPoint)
+      ++report->features_point;
+    else
+      ++report->features_inverse_depth;
+  }
+  report->state_dim = slam->slam.filter().state().dim;
+  report->nis = r.nis;
+  report->nis_dof = r.nis_dof;
+  report->kernels = pf::kernels_id(slam->settings.kernels);
+  for (int i = 0; i < PF_STAGE_COUNT; ++i) report->stage_ns[i] = r.stage_ns[i];
+  return PF_OK;
+}
+
+pf_status_t pf_get_gauge_information(const pf_slam_t* slam, double* scratch, size_t scratch_count,
+                                     double information[49]) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (scratch == nullptr || information == nullptr) return PF_ERROR_NULL;
+  if (!slam->slam.has_pose()) return PF_ERROR_STATE;
+  const size_t n = static_cast<size_t>(slam->slam.filter().state().dim);
+  if (scratch_count < n * (n + 8)) return PF_ERROR_MEMORY;
+  return pf::gauge_information(slam->slam.filter(), scratch, information) ? PF_OK : PF_ERROR_RANGE;
+}

@@ -1,0 +1,82 @@
+#include "filter/gauge_information.h"
+
+#include <cmath>
+
+namespace pf {
+namespace {
+
+constexpr int kDirections = 7;
+
+/// The seven directions as columns of N (n x 8, the last column unused), in double.
+void directions(const State& state, double* N) {
+  const int n = state.dim;
+  for (int i = 0; i < n * 8; ++i) N[i] = 0.0;
+  const auto three = [&](int first, const Vec3& a) {
+    const double x = static_cast<double>(a.x()), y = static_cast<double>(a.y()), z = static_cast<double>(a.z());
+    const double turn[3][3] = {{0, z, -y}, {-z, 0, x}, {y, -x, 0}};  // -[a]x
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) N[(first + i) * 8 + 3 + j] = turn[i][j];
+      N[(first + i) * 8 + 6] = static_cast<double>(a[i]);
+    }
+  };
+  const auto shift = [&](int first) {
+    for (int i = 0; i < 3; ++i) N[(first + i) * 8 + i] = 1.0;
+  };
+  for (int i = 0; i < 3; ++i) N[(Body::kTheta + i) * 8 + 3 + i] = 1.0;
+  three(Body::kPosition, state.body.p_W);
+  shift(Body::kPosition);
+  if (state.body_dim > Body::kPoseDim) three(Body::kVelocity, state.body.v_W);
+  for (int s = 0; s < state.slots; ++s) {
+    const Block& block = state.block[s];
+    if (block.kind == BlockKind::kPoint || block.kind == BlockKind::kAnchor) {
+      three(block.first, block.xyz());
+      shift(block.first);
+    } else if (block.kind == BlockKind::kInverseDepth) {
+      const InverseDepth d = block.inverse_depth();
+      const Mat3 R = d.q_b.toRotationMatrix();
+      for (int axis = 0; axis < 3; ++axis) {
+        N[block.first * 8 + 3 + axis] = static_cast<double>(R(axis, 1));
+        N[(block.first + 1) * 8 + 3 + axis] = -static_cast<double>(R(axis, 0));
+      }
+      N[(block.first + 2) * 8 + 6] = -static_cast<double>(d.rho);
+    }
+  }
+}
+
+}  // namespace
+
+bool gauge_information(const Filter& filter, double* scratch, double information[49]) {
+  const int n = filter.state().dim;
+  double* L = scratch;
+  double* N = scratch + static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) L[i * n + j] = static_cast<double>(filter.covariance()(i, j));
+  directions(filter.state(), N);
+  for (int i = 0; i < n; ++i) {
+    const double before = L[i * n + i];
+    for (int j = 0; j <= i; ++j) {
+      double sum = L[i * n + j];
+      for (int k = 0; k < j; ++k) sum -= L[i * n + k] * L[j * n + k];
+      if (j < i) {
+        L[i * n + j] = sum / L[j * n + j];
+        continue;
+      }
+      if (!(sum > 1e-14 * before)) return false;
+      L[i * n + i] = std::sqrt(sum);
+    }
+    for (int c = 0; c < kDirections; ++c) {  // N <- L^-1 N, row by row
+      double sum = N[i * 8 + c];
+      for (int k = 0; k < i; ++k) sum -= L[i * n + k] * N[k * 8 + c];
+      N[i * 8 + c] = sum / L[i * n + i];
+    }
+  }
+  for (int a = 0; a < kDirections; ++a)
+    for (int b = 0; b < kDirections; ++b) {
+      double sum = 0;
+      for (int i = 0; i < n; ++i) sum += N[i * 8 + a] * N[i * 8 + b];
+      information[a * kDirections + b] = sum;
+    }
+  return true;
+}
+
+}  // namespace pf

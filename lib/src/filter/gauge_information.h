@@ -1,0 +1,11 @@
+#pragma once
+
+#include "filter/filter.h"
+
+namespace pf {
+
+/// N^T P^-1 N for the seven unobservable directions of a bare camera (translation, turn, log scale), by a dense Cholesky in double.
+/// scratch: n (n + 8). False when P is not positive definite (a direction that is known exactly).
+bool gauge_information(const Filter& filter, double* scratch, double information[49]);
+
+}  // namespace pf

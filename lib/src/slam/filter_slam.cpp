@@ -1,0 +1,282 @@
+#include "slam/filter_slam.h"
+
+#include "slam/consensus.h"
+
+namespace pf {
+namespace {
+
+constexpr int kMinInliers = 8;  ///< fewer do not carry a pose
+
+/// How little is known of the velocities at a start that says nothing of them.
+constexpr Scalar kStartSpeed = Scalar(0.5);  // [m/s], times the start depth where that sets the scale
+constexpr Scalar kStartRate = Scalar(0.5);   // [rad/s]
+
+/// Of a pose that defines the world: small enough to be certain, large enough to keep P invertible.
+constexpr Scalar kDefinedSigma = Scalar(1e-5);
+
+}  // namespace
+
+bool FilterSlam::layout(Arena& arena, const Settings& settings) {
+  filter_.layout(arena, {settings.max_state_dim, settings.max_features, settings.max_observations});
+  features_.layout(arena, settings.max_features);
+  tracker_.layout(arena, settings.camera.width, settings.camera.height, settings.max_features);
+  const std::size_t observations = static_cast<std::size_t>(settings.max_observations);
+  tracks_ = arena.take<Track>(static_cast<std::size_t>(settings.max_features + settings.max_observations));
+  observation_ = arena.take<Observation>(observations);
+  entry_ = arena.take<int>(observations);
+  keep_ = arena.take<unsigned char>(observations);
+  scratch_ = arena.take<int>(static_cast<std::size_t>(settings.max_features));
+  inbox_ = arena.take<PixelObservation>(static_cast<std::size_t>(settings.max_features + settings.max_observations));
+  return arena.ok();
+}
+
+void FilterSlam::init(const Settings& settings) {
+  settings_ = settings;
+  filter_.init(settings.kernels, settings.constant_velocity ? Body::kMaxDim : Body::kPoseDim, settings.keep_gauge);
+  features_.init();
+  tracker_.init(settings.camera);
+  target_ = Target();
+  known_body_ = KnownBody();
+  target_withdrawn_ = false;
+  state_ = SlamState::kStarting;
+  has_pose_ = false;
+  lost_ = false;
+  last_tracked_ns_ = 0;
+  steering_v_C_.setZero();
+  steering_w_C_.setZero();
+  report_ = FrameReport();
+  track_count_ = 0;
+}
+
+Status FilterSlam::start_from_target(const Target& target) {
+  if (used()) return Status::kState;
+  target_ = target;
+  return Status::kOk;
+}
+
+Status FilterSlam::start_from_pose(const KnownBody& known) {
+  if (used()) return Status::kState;
+  known_body_ = known;
+  known_body_.given = true;
+  return Status::kOk;
+}
+
+void FilterSlam::push_steering(const Vec3& dv_C, const Vec3& dw_C) {
+  steering_v_C_ += dv_C;
+  steering_w_C_ += dw_C;
+}
+
+/// Starts the report and moves the body to the new time. False for a time that does not rise.
+bool FilterSlam::begin_frame(std::int64_t t_ns) {
+  if (used() && t_ns <= report_.t_ns) return false;
+  const std::int64_t before = report_.t_ns;
+  const int frames = report_.frames;
+  report_ = FrameReport();
+  report_.t_ns = t_ns;
+  report_.frames = frames + 1;
+  track_count_ = 0;
+  if (!has_pose_) return true;
+
+  StageTimer timer(settings_.hooks, &report_.stage_ns[kPredict]);
+  // A gap that is longer than any motion stays predictable grows the covariance no further.
+  constexpr std::int64_t kLongest = 2000000000;
+  const std::int64_t gap = t_ns - before;
+  const Scalar dt = static_cast<Scalar>(static_cast<double>(gap < kLongest ? gap : kLongest) * 1e-9);
+  Transition transition;
+  if (settings_.constant_velocity) {
+    filter_.steer(steering_v_C_, steering_w_C_);
+    predict_constant_velocity(filter_.body(), dt, settings_.motion_noise, &transition);
+  } else {
+    predict_constant_position(filter_.body(), dt, settings_.motion_noise, &transition);
+  }
+  filter_.predict(transition);
+  steering_v_C_.setZero();
+  steering_w_C_.setZero();
+  return true;
+}
+
+/// What the caller is told, from how many inliers there were.
+Status FilterSlam::end_frame() {
+  if (!has_pose_) return Status::kStarting;
+  if (report_.inliers >= kMinInliers) {
+    if (lost_) settings_.hooks.say("found the map again");
+    lost_ = false;
+    last_tracked_ns_ = report_.t_ns;
+    if (state_ != SlamState::kStarting || target_.kind != TargetKind::kNone || known_body_.given || depth_is_known())
+      state_ = SlamState::kTracking;
+    return state_ == SlamState::kStarting ? Status::kStarting : Status::kOk;
+  }
+  if (!lost_ && report_.t_ns - last_tracked_ns_ > settings_.coast_ns) {
+    lost_ = true;
+    settings_.hooks.say("lost: too few features were found for too long");
+  }
+  state_ = lost_ ? SlamState::kLost : SlamState::kCoasting;
+  return lost_ ? Status::kLost : Status::kCoasting;
+}
+
+void FilterSlam::begin_at(const Body& body, const Scalar* covariance) {
+  filter_.set_body(body, covariance);
+  has_pose_ = true;
+  last_tracked_ns_ = report_.t_ns;
+}
+
+/// The pose before the first measurement: what was said to be known, or the world's own definition.
+void FilterSlam::begin_from_knowledge() {
+  if (known_body_.given) {
+    begin_at(known_body_.body, known_body_.covariance);
+    return;
+  }
+  const int dim = filter_.state().body_dim;
+  Scalar covariance[Body::kMaxDim * Body::kMaxDim] = {};
+  const bool has_target = target_.kind != TargetKind::kNone;
+  for (int i = 0; i < Body::kPoseDim; ++i)
+    for (int j = 0; j < Body::kPoseDim; ++j)
+      covariance[i * dim + j] =
+          has_target ? target_.first_covariance(i, j) : (i == j ? kDefinedSigma * kDefinedSigma : Scalar(0));
+  for (int i = Body::kPoseDim; i < dim; ++i) {
+    const Scalar sigma = i < Body::kRate ? kStartSpeed * (has_target ? Scalar(1) : settings_.start_depth) : kStartRate;
+    covariance[i * dim + i] = sigma * sigma;
+  }
+  begin_at(has_target ? target_.first_pose : Body(), covariance);
+}
+
+/// Eight features in view whose depth is better known than a third of itself.
+bool FilterSlam::depth_is_known() const {
+  int known = 0;
+  for (int i = 0; i < features_.capacity(); ++i) {
+    if (!features_.used(i)) continue;
+    const Block& block = filter_.state().block[features_[i].slot];
+    if (block.kind == BlockKind::kPoint) {
+      ++known;
+    } else {
+      const Scalar rho = block.inverse_depth().rho;
+      const Scalar variance = filter_.variance(block.first + 2);
+      if (rho > Scalar(0) && variance * Scalar(9) < rho * rho) ++known;
+    }
+  }
+  return known >= kMinInliers;
+}
+
+/// Takes in the kept ones of observations first .. first+count-1, which begin_update holds. False when nothing was taken in.
+bool FilterSlam::take_in(int first, int count) {
+  StageTimer timer(settings_.hooks, &report_.stage_ns[kUpdate]);
+  Scalar nis = 0;
+  if (!filter_.finish_update(observation_ + first, count, keep_ + first, &nis)) return false;
+  report_.nis += static_cast<double>(nis);
+  for (int i = first; i < first + count; ++i) {
+    if (keep_[i] == 0) continue;
+    report_.nis_dof += 2;
+    ++report_.inliers;
+    Feature& feature = features_[entry_[i]];
+    ++feature.observations;
+    feature.failures = 0;
+    feature.last_seen_ns = report_.t_ns;
+  }
+  return true;
+}
+
+Status FilterSlam::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
+  if (!begin_frame(t_ns)) return Status::kTime;
+  if (!has_pose_) {
+    begin_from_knowledge();
+    add_target_points();
+  }
+
+  int known = 0;
+  {
+    StageTimer timer(settings_.hooks, &report_.stage_ns[kGate]);
+    for (int i = 0; i < count && known < settings_.max_observations; ++i) {
+      const int entry = find_track(observations[i].track);
+      if (entry < 0) continue;
+      Feature& feature = features_[entry];
+      if (feature.is_target && target_withdrawn_) continue;
+      Observation& o = observation_[known];
+      ++feature.attempts;
+      ++report_.attempts;
+      if (!filter_.predict_pixel(settings_.camera, feature.slot, &o)) {
+        ++feature.failures;
+        continue;
+      }
+      o.measured = observations[i].pixel;
+      o.noise = Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px);
+      const Mat2 S = filter_.innovation(o) + o.noise;
+      const bool agrees = squared_distance(o.measured - o.predicted, S) < settings_.gate;
+      tracks_[track_count_++] = {entry, feature.id, agrees ? TrackStatus::kInlier : TrackStatus::kOutlier,
+                                 filter_.state().block[feature.slot].kind == BlockKind::kInverseDepth,
+                                 o.predicted, S, o.measured};
+      ++report_.matches;
+      if (!agrees) {
+        ++feature.failures;
+        continue;
+      }
+      keep_[known] = 1;
+      entry_[known++] = entry;
+    }
+  }
+  if (known > 0) {
+    {
+      StageTimer timer(settings_.hooks, &report_.stage_ns[kUpdate]);
+      filter_.begin_update(observation_, known);
+    }
+    take_in(0, known);
+  }
+
+  StageTimer timer(settings_.hooks, &report_.stage_ns[kMap]);
+  convert_what_is_linear();
+  drop_what_fails();
+  int anchor = -1;
+  for (int i = 0; i < count; ++i) {
+    if (find_track(observations[i].track) >= 0) continue;
+    if (track_count_ >= settings_.max_observations + settings_.max_features) break;
+    if (!make_room(anchor < 0 ? 6 : 3)) break;
+    if (anchor < 0) anchor = filter_.add_anchor();
+    if (anchor < 0) break;
+    const Scalar variance = observations[i].sigma_px * observations[i].sigma_px;
+    const int entry = begin_feature(anchor, observations[i].pixel, Mat2::Identity() * variance);
+    if (entry < 0) continue;
+    features_[entry].track = observations[i].track;
+    tracks_[track_count_++] = {entry, features_[entry].id, TrackStatus::kNew, true, observations[i].pixel,
+                               Mat2::Zero(), observations[i].pixel};
+  }
+  if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child
+  return end_frame();
+}
+
+int FilterSlam::find_track(std::uint32_t track) const {
+  for (int i = 0; i < features_.capacity(); ++i)
+    if (features_.used(i) && features_[i].track == track) return i;
+  return -1;
+}
+
+void FilterSlam::predict_pose(std::int64_t t_ns, Body* body, Mat6* covariance) const {
+  *body = filter_.state().body;
+  const int dim = filter_.state().body_dim;
+  Scalar P[Body::kMaxDim * Body::kMaxDim];
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) P[i * dim + j] = filter_.covariance()(i, j);
+  if (t_ns > report_.t_ns) {
+    const Scalar dt = static_cast<Scalar>(static_cast<double>(t_ns - report_.t_ns) * 1e-9);
+    Transition transition;
+    if (settings_.constant_velocity)
+      predict_constant_velocity(*body, dt, settings_.motion_noise, &transition);
+    else
+      predict_constant_position(*body, dt, settings_.motion_noise, &transition);
+    Scalar FP[Body::kMaxDim * Body::kMaxDim];
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) {
+        Scalar sum = 0;
+        for (int k = 0; k < dim; ++k) sum += transition.F[i * dim + k] * P[k * dim + j];
+        FP[i * dim + j] = sum;
+      }
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) {
+        Scalar sum = transition.Q[i * dim + j];
+        for (int k = 0; k < dim; ++k) sum += FP[i * dim + k] * transition.F[j * dim + k];
+        P[i * dim + j] = sum;
+      }
+  }
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) (*covariance)(i, j) = P[i * dim + j];
+}
+
+}  // namespace pf

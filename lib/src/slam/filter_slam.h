@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "base/status.h"
+#include "filter/filter.h"
+#include "map/feature_table.h"
+#include "slam/frame_report.h"
+#include "slam/settings.h"
+#include "slam/start.h"
+#include "track/tracker.h"
+
+/// The order of work of one frame with the filter as back end (Gee 2007), and nothing else:
+///
+///   predict -> where to look -> search -> agreement -> update -> (what is left: again) -> housekeeping -> new features
+///
+/// Two doors lead in: images, and observations that something else has matched.
+
+namespace pf {
+
+struct PixelObservation {
+  std::uint32_t track;
+  Vec2 pixel;
+  Scalar sigma_px;
+};
+
+class FilterSlam {
+ public:
+  bool layout(Arena& arena, const Settings& settings);
+  void init(const Settings& settings);
+
+  Status start_from_target(const Target& target);
+  Status start_from_pose(const KnownBody& known);
+  void withdraw_target() { target_withdrawn_ = true; }
+  void push_steering(const Vec3& dv_C, const Vec3& dw_C);
+
+  Status push_frame(const ImageView& image, std::int64_t t_ns);
+  Status push_observations(const PixelObservation* observations, int count, std::int64_t t_ns);
+
+  /// Where the observation door leaves what came in: as many as the map and a frame can hold together.
+  PixelObservation* observation_inbox() { return inbox_; }
+  int observation_inbox_size() const { return settings_.max_features + settings_.max_observations; }
+
+  const Settings& settings() const { return settings_; }
+  const Filter& filter() const { return filter_; }
+  const FeatureTable& features() const { return features_; }
+  const FrameReport& report() const { return report_; }
+  const Track* tracks() const { return tracks_; }
+  int track_count() const { return track_count_; }
+  SlamState state() const { return state_; }
+  bool has_pose() const { return has_pose_; }
+  bool used() const { return report_.frames > 0; }
+  std::int64_t last_ns() const { return report_.t_ns; }
+
+  /// Body and pose covariance (6x6) predicted to a later time.
+  void predict_pose(std::int64_t t_ns, Body* body, Mat6* covariance) const;
+
+ private:
+  // filter_slam.cpp
+  bool begin_frame(std::int64_t t_ns);
+  Status end_frame();
+  void begin_at(const Body& body, const Scalar* covariance);
+  void begin_from_knowledge();
+  int find_track(std::uint32_t track) const;
+  int observe_visible();
+  bool take_in(int first, int count);
+  bool depth_is_known() const;
+
+  // housekeeping.cpp
+  void convert_what_is_linear();
+  void drop_what_fails();
+  void drop(const int* entries, int count);
+  bool make_room(int rows);
+  Scalar usual_inverse_depth() const;
+  int begin_feature(int anchor, const Vec2& pixel, const Mat2& noise);
+  void add_target_points();
+
+  // frame_door.cpp
+  void measure_frame(const ImageView& image);
+  void search(int first, int count);
+  void begin_features_in_image();
+  bool start_in_image(const ImageView& image);
+
+  Settings settings_;
+  Filter filter_;
+  FeatureTable features_;
+  Tracker tracker_;
+  Target target_;
+  KnownBody known_body_;
+  bool target_withdrawn_ = false;
+
+  SlamState state_ = SlamState::kStarting;
+  bool has_pose_ = false;
+  bool lost_ = false;
+  std::int64_t last_tracked_ns_ = 0;
+  Vec3 steering_v_C_ = Vec3::Zero();
+  Vec3 steering_w_C_ = Vec3::Zero();
+
+  FrameReport report_;
+  Track* tracks_ = nullptr;          ///< this frame's, the first `attempts` of them looked for
+  int track_count_ = 0;
+  Observation* observation_ = nullptr;  ///< max_observations
+  int* entry_ = nullptr;                ///< feature table entry of each observation
+  unsigned char* keep_ = nullptr;
+  int* scratch_ = nullptr;  ///< max_features
+  PixelObservation* inbox_ = nullptr;
+};
+
+}  // namespace pf

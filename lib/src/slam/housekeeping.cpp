@@ -1,0 +1,135 @@
+#include <algorithm>
+
+#include "filter/observe/inverse_depth.h"
+#include "slam/filter_slam.h"
+
+/// What happens to the map after each update: convert, drop, evict, begin.
+
+namespace pf {
+namespace {
+
+constexpr int kMinAttempts = 10;        ///< before a feature is judged
+constexpr int kMaxFailures = 12;        ///< in a row, for one that was good
+constexpr int kMaxEarlyFailures = 4;    ///< in a row, for one that was seldom seen
+
+}  // namespace
+
+void FilterSlam::convert_what_is_linear() {
+  for (int i = 0; i < features_.capacity(); ++i) {
+    if (!features_.used(i)) continue;
+    const Block& block = filter_.state().block[features_[i].slot];
+    if (block.kind != BlockKind::kInverseDepth) continue;
+    const Scalar sigma_rho = std::sqrt(filter_.variance(block.first + 2));
+    const Vec3 o_W = filter_.state().block[block.parent].xyz();
+    if (linearity_index(filter_.state().body, o_W, block.inverse_depth(), sigma_rho) < settings_.linearity_index)
+      filter_.convert_to_point(features_[i].slot);
+  }
+}
+
+void FilterSlam::drop_what_fails() {
+  int count = 0;
+  for (int i = 0; i < features_.capacity(); ++i) {
+    if (!features_.used(i) || features_[i].is_target) continue;
+    const Feature& f = features_[i];
+    const bool seldom = f.attempts >= kMinAttempts && 2 * f.observations < f.attempts;
+    const bool in_a_row = f.failures >= (f.observations < kMinAttempts ? kMaxEarlyFailures : kMaxFailures);
+    // Behind the camera's own first centre: the depth went wrong.
+    const Block& block = filter_.state().block[f.slot];
+    const bool inverted = block.kind == BlockKind::kInverseDepth && block.inverse_depth().rho < Scalar(0) &&
+                          block.inverse_depth().rho * block.inverse_depth().rho >
+                              Scalar(9) * filter_.variance(block.first + 2);
+    if ((f.failures > 0 && seldom) || in_a_row || inverted) scratch_[count++] = i;
+  }
+  drop(scratch_, count);
+}
+
+/// Table entries, their blocks and their appearance go, in one pass over the covariance.
+void FilterSlam::drop(const int* entries, int count) {
+  constexpr int kChunk = 32;
+  int slots[kChunk];
+  for (int begin = 0; begin < count; begin += kChunk) {
+    const int size = std::min(kChunk, count - begin);
+    for (int k = 0; k < size; ++k) {
+      const int entry = entries[begin + k];
+      slots[k] = features_[entry].slot;
+      tracker_.forget(features_[entry].appearance);
+      for (int t = 0; t < track_count_; ++t)
+        if (tracks_[t].feature == entry) tracks_[t].feature = -1;
+      features_.remove(entry);
+    }
+    filter_.remove(slots, size);
+  }
+  report_.evicted += count;
+}
+
+/// Room for that many rows and one more feature, by eviction of what was not seen in this frame. False when there is none.
+bool FilterSlam::make_room(int rows) {
+  while (features_.count() >= features_.capacity() || filter_.room() < rows || filter_.state().find_free() < 0) {
+    const int entry = features_.least_useful(report_.t_ns);
+    if (entry < 0) return false;
+    drop(&entry, 1);
+  }
+  return true;
+}
+
+/// Median inverse depth of what was measured in this frame, or that of the start.
+Scalar FilterSlam::usual_inverse_depth() const {
+  const Scalar start = Scalar(1) / settings_.start_depth;
+  if (!settings_.depth_from_map) return start;
+  constexpr int kMost = 128;
+  Scalar rho[kMost];
+  int count = 0;
+  const Body& body = filter_.state().body;
+  const Vec3 forward = body.q_WC.toRotationMatrix().col(2);
+  for (int i = 0; i < features_.capacity() && count < kMost; ++i) {
+    if (!features_.used(i) || features_[i].last_seen_ns != report_.t_ns) continue;
+    const Block& block = filter_.state().block[features_[i].slot];
+    Vec3 p_W = block.xyz();
+    if (block.kind == BlockKind::kInverseDepth) {
+      const InverseDepth d = block.inverse_depth();
+      if (d.rho * d.rho < Scalar(9) * filter_.variance(block.first + 2)) continue;
+      p_W = filter_.state().block[block.parent].xyz() + d.q_b.toRotationMatrix().col(2) / d.rho;
+    }
+    const Scalar distance = (p_W - body.p_W).norm();
+    if (forward.dot(p_W - body.p_W) > Scalar(0)) rho[count++] = Scalar(1) / distance;
+  }
+  if (count < 8) return start;
+  std::nth_element(rho, rho + count / 2, rho + count);
+  return rho[count / 2];
+}
+
+/// A new inverse-depth feature at a pixel; its table entry, or -1.
+int FilterSlam::begin_feature(int anchor, const Vec2& pixel, const Mat2& noise) {
+  Vec3 ray_C;
+  Mat32 J_ray_pixel;
+  if (!unproject(settings_.camera, pixel, &ray_C, &J_ray_pixel)) return -1;
+  const Scalar rho = usual_inverse_depth();
+  const int slot = filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho,
+                                             settings_.inverse_depth_relative_sigma * rho);
+  if (slot < 0) return -1;
+  const int entry = features_.add(slot);
+  if (entry < 0) {
+    filter_.remove(&slot, 1);
+    return -1;
+  }
+  Feature& feature = features_[entry];
+  feature.observations = feature.attempts = 1;
+  feature.last_seen_ns = report_.t_ns;
+  ++report_.new_features;
+  return entry;
+}
+
+/// The target's points enter the state with their own uncertainty.
+void FilterSlam::add_target_points() {
+  for (int i = 0; i < target_.count; ++i) {
+    const int slot = filter_.add_point(target_.point_W[i], Mat3::Identity() * (target_.sigma_m * target_.sigma_m));
+    if (slot < 0) return;
+    const int entry = features_.add(slot);
+    if (entry < 0) return;
+    features_[entry].is_target = true;
+    features_[entry].track = static_cast<std::uint32_t>(i);
+    features_[entry].last_seen_ns = report_.t_ns;
+  }
+}
+
+}  // namespace pf

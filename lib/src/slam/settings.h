@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/hooks.h"
+#include "covariance/kernels.h"
+#include "filter/motion.h"
+#include "geometry/camera.h"
+
+namespace pf {
+
+/// The config, checked and in the library's own types.
+struct Settings {
+  Camera camera;
+  const Kernels* kernels = nullptr;
+
+  int max_state_dim = 0;
+  int max_features = 0;
+  int max_observations = 0;
+
+  bool constant_velocity = true;
+  MotionNoise motion_noise = {};
+
+  Scalar sigma_px = 0;
+  Scalar gate = 0;  ///< chi-square bound with two degrees of freedom
+
+  Scalar start_depth = 1;
+  bool depth_from_map = true;
+  Scalar inverse_depth_relative_sigma = 0;
+  Scalar linearity_index = 0;
+
+  int features_in_view = 0;
+  int border_px = 0;
+  std::int64_t coast_ns = 0;
+  bool keep_gauge = true;
+
+  Hooks hooks;
+};
+
+}  // namespace pf

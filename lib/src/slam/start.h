@@ -1,0 +1,29 @@
+#pragma once
+
+#include "filter/state.h"
+
+namespace pf {
+
+enum class TargetKind : int { kNone = 0, kRectangle = 1, kPoints = 2 };
+
+/// Something known that the camera sees first.
+struct Target {
+  static constexpr int kMaxPoints = 16;
+
+  TargetKind kind = TargetKind::kNone;
+  Scalar width = 0, height = 0;  ///< rectangle [m]; its centre is W's origin, x right, y down, z into the wall
+  int count = 0;
+  Vec3 point_W[kMaxPoints];
+  Scalar sigma_m = 0;            ///< of each coordinate of each point
+  Body first_pose;               ///< about where the camera is at first (points)
+  Mat6 first_covariance = Mat6::Zero();
+};
+
+/// A known body at the first frame, with its covariance (body_dim x body_dim, row-major).
+struct KnownBody {
+  bool given = false;
+  Body body;
+  Scalar covariance[Body::kMaxDim * Body::kMaxDim] = {};
+};
+
+}  // namespace pf

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "base/arena.h"
+#include "geometry/camera.h"
+#include "vision/corners.h"
+#include "vision/image.h"
+#include "vision/patch.h"
+#include "vision/pyramid.h"
+
+/// From images to pixels: it is told where to look for which feature and how sure that is, and says where it found it.
+
+namespace pf {
+
+/// Where a feature should be in this frame, and how it was seen first.
+struct SearchTask {
+  int appearance = -1;
+  Vec2 predicted = Vec2::Zero();     ///< [px]
+  Mat2 innovation = Mat2::Identity();///< covariance of (measured - predicted) [px^2]
+  Scalar gate = 9;                   ///< chi-square bound of the ellipse
+  Vec3 p_W = Vec3::Zero();           ///< the point, about
+  Quat q_WC = Quat::Identity();      ///< camera now
+  Vec3 c_W = Vec3::Zero();           ///< its centre
+};
+
+struct SearchOutcome {
+  bool found = false;
+  Vec2 pixel = Vec2::Zero();
+  Scalar sigma_scale = 1;  ///< of the measurement's standard deviation: 2^level of the finest level that was used
+  float score = 0;         ///< zero-mean normalised correlation
+};
+
+class Tracker {
+ public:
+  static constexpr int kLevels = 4;
+
+  bool layout(Arena& arena, int width, int height, int max_features);
+  void init(const Camera& camera);
+
+  /// Takes in a frame. False when there is nothing in it to track by: black, white, blurred out.
+  bool begin_frame(const ImageView& image);
+
+  /// Keeps what is around a pixel of this frame as a feature's appearance; -1 when it is too near to the border or all are in use.
+  int remember(const Vec2& pixel, const Quat& q_WC, const Vec3& c_W);
+  void forget(int appearance);
+
+  SearchOutcome search(const SearchTask& task) const;
+
+  /// Corners of one cell of the image, best first. Returns how many.
+  int corners(const Rect& cell, Corner* out, int capacity);
+
+  const Pyramid& pyramid() const { return pyramid_; }
+  ImageView image() const { return pyramid_.level[0]; }
+
+ private:
+  struct Appearance {
+    bool used;
+    Quat q_WC;
+    Vec3 c_W;
+    Vec2 pixel;
+    SourcePatch patch;
+  };
+  bool warp(const Appearance& source, const SearchTask& task, Mat2* A) const;
+
+  Camera camera_;
+  Pyramid pyramid_;
+  Appearance* appearance_ = nullptr;
+  int capacity_ = 0;
+};
+
+}  // namespace pf
