@@ -1,0 +1,87 @@
+#include "vision/blur.h"
+
+#include <cmath>
+
+#include "vision/simd.h"
+
+namespace pf {
+
+namespace {
+
+constexpr float kLeastDeviation = 3.0f;  // grey
+constexpr float kLeastGradient = 0.5f;   // grey²
+constexpr float kDark = 8.0f;
+constexpr float kBright = 247.0f;
+
+/// Sums over one row: of the pixels, their squares, and the squared differences. `below` may be the row itself.
+struct RowSums {
+  std::uint32_t sum, square, gradient;
+};
+
+RowSums sum_row(const std::uint8_t* row, const std::uint8_t* below, int width) {
+  std::uint32_t sum = row[width - 1];
+  std::uint32_t square = static_cast<std::uint32_t>(row[width - 1] * row[width - 1]);
+  std::uint32_t gradient = 0;
+  for (int x = 0; x < width - 1; ++x) {
+    const std::int16_t value = row[x];
+    const std::int16_t dx = static_cast<std::int16_t>(row[x + 1] - row[x]);
+    const std::int16_t dy = static_cast<std::int16_t>(below[x] - row[x]);
+    sum += static_cast<std::uint32_t>(value);
+    square += static_cast<std::uint32_t>(value * value);
+    gradient += static_cast<std::uint32_t>(dx * dx + dy * dy);
+  }
+  return RowSums{sum, square, gradient};
+}
+
+std::uint32_t difference_row(const std::uint8_t* a, const std::uint8_t* b, int width) {
+  std::uint32_t sum = 0;
+  for (int x = 0; x < width; ++x) {
+    const int d = a[x] - b[x];
+    sum += static_cast<std::uint32_t>(d < 0 ? -d : d);
+  }
+  return sum;
+}
+
+}  // namespace
+
+FrameStatistics frame_statistics(const ImageView& image) {
+  FrameStatistics out;
+  if (image.width < 2 || image.height < 2) return out;
+  std::uint64_t total = 0;
+  std::uint64_t square = 0;
+  std::uint64_t gradient = 0;
+  for (int y = 0; y < image.height; ++y) {
+    const bool last = y == image.height - 1;
+    const RowSums s = sum_row(image.row(y), image.row(last ? y : y + 1), image.width);
+    total += s.sum;
+    square += s.square;
+    gradient += last ? 0 : s.gradient;
+  }
+  // The variance is formed in whole numbers, where nothing cancels: below 2^24 pixels both products fit 64 bits.
+  const std::uint64_t pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+  const std::uint64_t scatter = pixels * square - total * total;
+  const float n = static_cast<float>(pixels);
+  out.mean = static_cast<float>(total) / n;
+  out.deviation = std::sqrt(static_cast<float>(scatter)) / n;
+  out.gradient_energy =
+      static_cast<float>(gradient) / (static_cast<float>(image.width - 1) * static_cast<float>(image.height - 1));
+  return out;
+}
+
+float frame_difference(const ImageView& a, const ImageView& b) {
+  if (a.width != b.width || a.height != b.height || a.width <= 0 || a.height <= 0) return 255.0f;
+  std::uint64_t sum = 0;
+  for (int y = 0; y < a.height; ++y) sum += difference_row(a.row(y), b.row(y), a.width);
+  return static_cast<float>(sum) / (static_cast<float>(a.width) * static_cast<float>(a.height));
+}
+
+FrameUse judge_frame(const FrameStatistics& statistics) {
+  if (statistics.deviation >= kLeastDeviation && statistics.gradient_energy >= kLeastGradient) {
+    return FrameUse::kUsable;
+  }
+  if (statistics.mean < kDark) return FrameUse::kDark;
+  if (statistics.mean > kBright) return FrameUse::kBright;
+  return FrameUse::kFlat;
+}
+
+}  // namespace pf
