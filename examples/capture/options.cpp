@@ -1,0 +1,106 @@
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <map>
+
+namespace pf::capture {
+
+namespace {
+
+constexpr const char* kFooter =
+    "In the window: space pauses, r resets, s saves the picture, q quits.\n"
+    "Writes into --out: report.json, trajectory.txt (TUM), covariance.csv, trajectory_all.txt, map.ply, calib.yaml,\n"
+    "overlay.mp4, overlay_mid.png, overlay_last.png, and truth.tum where the source knows it.\n"
+    "Exit code: 0 done, 1 the run failed, ended early or tracked nothing, 2 the command line is wrong.";
+
+int refuse(const std::string& line) {
+  std::fprintf(stderr, "pf-capture: %s\n", line.c_str());
+  return kExitUsage;
+}
+
+/// What CLI11 cannot check by itself; "" when all is well.
+std::string check(const Options& options, const std::string& backend) {
+  const std::string kind = options.source.substr(0, options.source.find(':'));
+  if (kind == "v4l2" || kind == "libcamera") {
+    return "source '" + options.source + "': cameras are not available yet; use images:, euroc:, tum: or sim:";
+  }
+  if (options.source.find(':') == std::string::npos ||
+      (kind != "images" && kind != "euroc" && kind != "tum" && kind != "sim")) {
+    return "source '" + options.source + "': write images:DIR, euroc:DIR, tum:DIR or sim:NAME";
+  }
+  if (options.start != "auto" && options.start.rfind("target:", 0) != 0 && options.start.rfind("rectangle:", 0) != 0) {
+    return "--start " + options.start + ": write auto, target:FILE or rectangle:WxH (metres)";
+  }
+  if (options.withdraw_target_after >= 0 && options.start == "auto") {
+    return "--withdraw-target-after needs a target: add --start target:FILE or --start rectangle:WxH";
+  }
+  if (backend == "window") {
+    return "--backend window is not available yet; use --backend filter";
+  }
+  if (backend != "filter") {
+    return "--backend " + backend + ": the only back end is filter";
+  }
+  return "";
+}
+
+}  // namespace
+
+Parsed parse_options(int argc, char** argv, Options& options, int& code) {
+  CLI::App app{"Tracks the camera through a sequence of images and builds a map of points."};
+  app.footer(kFooter);
+  std::string backend = "filter";
+  std::string kernels = "auto";
+  bool no_film = false;
+  bool no_gauge = false;
+  const std::map<std::string, pf_kernels_t> kernel_names = {
+      {"auto", PF_KERNELS_AUTO}, {"reference", PF_KERNELS_REFERENCE}, {"portable", PF_KERNELS_PORTABLE},
+      {"avx2", PF_KERNELS_AVX2}, {"avx512", PF_KERNELS_AVX512},       {"neon", PF_KERNELS_NEON}};
+  app.add_option("--source", options.source, "images:DIR, euroc:DIR, tum:DIR or sim:NAME")->required();
+  app.add_option("--calib", options.calibration, "calibration file (Kalibr, EuRoC, ROS camera_info or calib.yaml)");
+  app.add_option("--start", options.start, "auto, target:FILE or rectangle:WxH in metres")->capture_default_str();
+  app.add_option("--withdraw-target-after", options.withdraw_target_after, "measure the target no more after N frames")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--frames", options.frames, "at most N frames")->check(CLI::PositiveNumber);
+  app.add_option("--skip", options.skip, "leave out the first N frames")->check(CLI::NonNegativeNumber);
+  app.add_option("--out", options.out, "folder for what is written; made when it is missing")->capture_default_str();
+  app.add_flag("--headless", options.headless, "no window");
+  app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
+  app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame");
+  app.add_flag("--quiet", options.quiet, "no progress line");
+  app.add_option("--backend", backend, "filter")->capture_default_str();
+  app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
+  app.add_option("--max-features", options.max_features, "capacity of the map")->check(CLI::PositiveNumber);
+  app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(CLI::PositiveNumber);
+  app.add_option("--max-observations", options.max_observations, "features measured in one frame")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--features-in-view", options.features_in_view, "features to keep in view")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--kernels", kernels, "auto, reference, portable, avx2, avx512 or neon")->capture_default_str();
+  app.add_flag("--plain-ekf", no_gauge, "the textbook filter, which is overconfident; for comparison");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {
+      code = app.exit(error);
+    } else {
+      code = refuse(std::string(error.what()) + "; see pf-capture --help");
+    }
+    return Parsed::kExit;
+  }
+  const auto set = kernel_names.find(kernels);
+  std::string wrong = check(options, backend);
+  if (wrong.empty() && set == kernel_names.end()) {
+    wrong = "--kernels " + kernels + ": write auto, reference, portable, avx2, avx512 or neon";
+  }
+  if (!wrong.empty()) {
+    code = refuse(wrong);
+    return Parsed::kExit;
+  }
+  options.kernels = set->second;
+  options.film = !no_film;
+  options.keep_gauge = !no_gauge;
+  return Parsed::kRun;
+}
+
+}  // namespace pf::capture

@@ -1,0 +1,45 @@
+#ifndef PLANEFOLD_CAPTURE_OPTIONS_H
+#define PLANEFOLD_CAPTURE_OPTIONS_H
+
+#include <planefold/planefold.h>
+
+#include <cstdint>
+#include <string>
+
+namespace pf::capture {
+
+constexpr int kExitDone = 0;
+constexpr int kExitRun = 1;    ///< the run could not begin, or ended early, or tracked nothing
+constexpr int kExitUsage = 2;  ///< the command line is wrong
+
+/// What the command line asks for. Negative numbers mean that the library's default is kept.
+struct Options {
+  std::string source;
+  std::string calibration;
+  std::string start = "auto";
+  std::string out = "out/capture";
+  int64_t withdraw_target_after = -1;
+  int64_t frames = -1;
+  int64_t skip = 0;
+  uint64_t seed = 1;
+  int32_t max_features = -1;
+  int32_t max_state_dim = -1;
+  int32_t max_observations = -1;
+  int32_t features_in_view = -1;
+  pf_kernels_t kernels = PF_KERNELS_AUTO;
+  bool keep_gauge = true;
+  bool headless = false;
+  bool film = true;
+  bool tracks = false;
+  bool quiet = false;
+};
+
+enum class Parsed { kRun, kExit };
+
+/// Reads the command line. kExit: there is nothing to run, and code is the exit code; help or one line on what was wrong has
+/// been printed.
+Parsed parse_options(int argc, char** argv, Options& options, int& code);
+
+}  // namespace pf::capture
+
+#endif

@@ -1,0 +1,156 @@
+#include "outputs.h"
+
+#include <cerrno>
+#include <cinttypes>
+#include <cstring>
+
+#include "maths.h"
+
+namespace pf::capture {
+
+namespace {
+
+/// Nanoseconds as decimal seconds, exactly.
+void put_seconds(std::FILE* file, int64_t t_ns) {
+  const uint64_t size = t_ns < 0 ? 0 - static_cast<uint64_t>(t_ns) : static_cast<uint64_t>(t_ns);
+  std::fprintf(file, "%s%" PRIu64 ".%09" PRIu64, t_ns < 0 ? "-" : "", size / 1000000000, size % 1000000000);
+}
+
+/// TUM: timestamp tx ty tz qx qy qz qw
+void put_tum(std::FILE* file, const pf_pose_t& pose) {
+  put_seconds(file, pose.t_ns);
+  const double* p = pose.p_WC;
+  const double* q = pose.q_WC;
+  std::fprintf(file, " %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", p[0], p[1], p[2], q[1], q[2], q[3], q[0]);
+}
+
+const char* track_name(uint32_t status) {
+  constexpr const char* kNames[] = {"unknown", "inlier", "outlier", "missed", "new"};
+  return kNames[status <= 4 ? status : 0];
+}
+
+void write_ply(std::FILE* file, const std::vector<pf_feature_t>& features) {
+  std::fprintf(file,
+               "ply\nformat ascii 1.0\ncomment points in W; green: 3-D point, blue: inverse depth, magenta: target\n"
+               "element vertex %zu\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\n"
+               "property uchar green\nproperty uchar blue\nproperty float sigma\nproperty uint id\n"
+               "property int observations\nproperty uchar inverse_depth\nend_header\n",
+               features.size());
+  for (const pf_feature_t& f : features) {
+    const bool point = f.kind == PF_FEATURE_POINT;
+    const char* colour = f.is_target != 0 ? "224 80 208" : point ? "53 208 127" : "63 160 255";
+    std::fprintf(file, "%.9g %.9g %.9g %s %.6g %u %d %d\n", f.p_W[0], f.p_W[1], f.p_W[2], colour,
+                 largest_sigma(f.covariance), f.id, f.observations, point ? 0 : 1);
+  }
+}
+
+void write_calibration(std::FILE* file, const pf_camera_t& camera) {
+  constexpr const char* kNames[] = {"none", "none", "radtan", "equidistant", "harris_division"};
+  constexpr int kCounts[] = {0, 0, 5, 4, 1};
+  const int model = camera.model >= 1 && camera.model <= 4 ? camera.model : 0;
+  std::fprintf(file, "camera_model: pinhole\nwidth: %d\nheight: %d\nfx: %.17g\nfy: %.17g\ncx: %.17g\ncy: %.17g\n",
+               camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
+  std::fprintf(file, "distortion_model: %s\ndistortion: [", kNames[model]);
+  for (int i = 0; i < kCounts[model]; ++i) {
+    std::fprintf(file, "%s%.17g", i == 0 ? "" : ", ", camera.distortion[i]);
+  }
+  std::fprintf(file, "]\n");
+}
+
+}  // namespace
+
+Outputs::File Outputs::create(const char* name, std::string& error) const {
+  File file(std::fopen(path(name).c_str(), "w"));
+  if (!file) {
+    error = path(name) + ": cannot be written (" + std::strerror(errno) + "); choose another --out";
+  }
+  return file;
+}
+
+bool Outputs::open(const std::string& folder, bool tracks, bool truth, std::string& error) {
+  folder_ = folder;
+  std::error_code failure;
+  std::filesystem::create_directories(folder_, failure);
+  if (failure || !std::filesystem::is_directory(folder_, failure)) {
+    error = folder + ": cannot be made (" + (failure ? failure.message() : "it is a file") + "); choose another --out";
+    return false;
+  }
+  error.clear();
+  trajectory_ = create("trajectory.txt", error);
+  trajectory_all_ = create("trajectory_all.txt", error);
+  covariance_ = create("covariance.csv", error);
+  if (tracks) {
+    tracks_ = create("tracks.csv", error);
+  }
+  if (truth) {
+    truth_ = create("truth.tum", error);
+  }
+  if (!error.empty()) {
+    return false;
+  }
+  std::fprintf(trajectory_.get(), "# T_WC of the tracked frames: timestamp tx ty tz qx qy qz qw\n");
+  std::fprintf(trajectory_all_.get(),
+               "# T_WC of every frame with a pose, coasting ones too: timestamp tx ty tz qx qy qz qw\n");
+  std::fprintf(covariance_.get(), "# rows of trajectory.txt: timestamp, 6x6 of (theta, p) in W, row-major [rad, m]\n");
+  if (tracks_) {
+    std::fprintf(tracks_.get(), "frame,id,status,kind,predicted_u,predicted_v,s_uu,s_uv,s_vv,measured_u,measured_v\n");
+  }
+  if (truth_) {
+    std::fprintf(truth_.get(), "# true T_WC: timestamp tx ty tz qx qy qz qw\n");
+  }
+  return true;
+}
+
+void Outputs::write(const FrameView& view) {
+  if (view.has_pose) {
+    put_tum(trajectory_all_.get(), view.pose);
+  }
+  if (view.tracked) {
+    put_tum(trajectory_.get(), view.pose);
+    put_seconds(covariance_.get(), view.pose.t_ns);
+    for (double value : view.pose.covariance) {
+      std::fprintf(covariance_.get(), ",%.9g", value);
+    }
+    std::fprintf(covariance_.get(), "\n");
+  }
+  if (tracks_) {
+    for (const pf_track_t& t : view.tracks) {
+      std::fprintf(tracks_.get(), "%" PRId64 ",%u,%s,%s,%.3f,%.3f,%.4g,%.4g,%.4g", view.index, t.id,
+                   track_name(t.status), t.kind == PF_FEATURE_POINT ? "point" : "inverse_depth", t.predicted_px[0],
+                   t.predicted_px[1], t.covariance_px[0], t.covariance_px[1], t.covariance_px[3]);
+      if (t.status == PF_TRACK_MISSED) {
+        std::fprintf(tracks_.get(), ",,\n");
+      } else {
+        std::fprintf(tracks_.get(), ",%.3f,%.3f\n", t.measured_px[0], t.measured_px[1]);
+      }
+    }
+  }
+}
+
+void Outputs::write_truth(const pf_pose_t& pose) {
+  if (truth_) {
+    put_tum(truth_.get(), pose);
+  }
+}
+
+bool Outputs::finish(const FrameView& last, const pf_camera_t& camera, const std::string& report, std::string& error) {
+  error.clear();
+  File ply = create("map.ply", error);
+  File calibration = create("calib.yaml", error);
+  File json = create("report.json", error);
+  if (!error.empty()) {
+    return false;
+  }
+  write_ply(ply.get(), last.features);
+  write_calibration(calibration.get(), camera);
+  std::fputs(report.c_str(), json.get());
+  const File* files[] = {&trajectory_, &trajectory_all_, &covariance_, &tracks_, &truth_, &ply, &calibration, &json};
+  for (const File* file : files) {
+    if (*file && (std::fflush(file->get()) != 0 || std::ferror(file->get()) != 0)) {
+      error = folder_.string() + ": could not be written completely (" + std::strerror(errno) + "); is the disk full?";
+    }
+  }
+  return error.empty();
+}
+
+}  // namespace pf::capture

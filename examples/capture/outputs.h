@@ -1,0 +1,43 @@
+#ifndef PLANEFOLD_CAPTURE_OUTPUTS_H
+#define PLANEFOLD_CAPTURE_OUTPUTS_H
+
+#include <planefold/planefold.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "view.h"
+
+namespace pf::capture {
+
+/// The text files of a run. They are written as the run goes, so that a run that ends early leaves what it had.
+class Outputs {
+ public:
+  /// Makes the folder and opens the files. false: error is one line.
+  bool open(const std::string& folder, bool tracks, bool truth, std::string& error);
+
+  /// trajectory.txt and covariance.csv where the frame was tracked, trajectory_all.txt wherever there is a pose, tracks.csv.
+  void write(const FrameView& view);
+  void write_truth(const pf_pose_t& pose);
+  /// map.ply and calib.yaml; false when a file could not be written completely.
+  bool finish(const FrameView& last, const pf_camera_t& camera, const std::string& report, std::string& error);
+
+  std::string path(const char* name) const { return (folder_ / name).string(); }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  using File = std::unique_ptr<std::FILE, Close>;
+
+  File create(const char* name, std::string& error) const;
+
+  std::filesystem::path folder_;
+  File trajectory_, trajectory_all_, covariance_, tracks_, truth_;
+};
+
+}  // namespace pf::capture
+
+#endif

@@ -1,0 +1,247 @@
+#include "run.h"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+
+#include "film.h"
+#include "outputs.h"
+#include "overlay.h"
+#include "progress.h"
+#include "session.h"
+#include "source.h"
+#include "statistics.h"
+#include "window.h"
+
+namespace pf::capture {
+
+namespace {
+
+volatile std::sig_atomic_t g_interrupted = 0;
+void on_interrupt(int) { g_interrupted = 1; }
+
+int fail(const std::string& line, int code = kExitRun) {
+  std::fprintf(stderr, "pf-capture: %s\n", line.c_str());
+  return code;
+}
+
+void note(const std::string& line) { std::fprintf(stderr, "pf-capture: note: %s\n", line.c_str()); }
+
+/// A run from the first frame to the last: one step per frame, and what is kept between them.
+class Run {
+ public:
+  Run(const Options& options, Source& source) : options_(options), source_(source), progress_(options.quiet) {}
+
+  int go();
+
+ private:
+  bool step(int64_t index);
+  void show();
+  void handle_keys();
+  void save(const char* name);
+  int finish();
+  std::string why_nothing_was_tracked() const;
+
+  const Options& options_;
+  Source& source_;
+  Session session_;
+  Outputs outputs_;
+  Statistics statistics_;
+  Progress progress_;
+  std::unique_ptr<Overlay> overlay_;
+  Film film_;
+  Window window_;
+  FrameView view_;
+  int64_t count_ = 0;
+  bool done_any_ = false;
+  bool quit_ = false;
+  bool paused_ = false;
+  std::string failure_;
+};
+
+int Run::go() {
+  const SourceInfo& info = source_.info();
+  if (!info.warning.empty()) {
+    note(info.warning);
+  }
+  if (options_.skip >= info.count) {
+    return fail("--skip " + std::to_string(options_.skip) + " leaves nothing: the source has " +
+                    std::to_string(info.count) + " frames",
+                kExitUsage);
+  }
+  count_ = info.count - options_.skip;
+  count_ = options_.frames > 0 ? std::min(count_, options_.frames) : count_;
+  std::string error;
+  int code = kExitRun;
+  if (!session_.open(options_, source_, error, code)) {
+    return fail(error, code);
+  }
+  pf_pose_t truth{};
+  if (!outputs_.open(options_.out, options_.tracks, source_.truth(options_.skip, truth), error)) {
+    return fail(error);
+  }
+  overlay_ = std::make_unique<Overlay>(session_, "planefold   " + options_.source);
+  if (options_.film &&
+      !film_.open(outputs_.path("overlay.mp4"), overlay_->width(), overlay_->height(), info.rate_hz, error)) {
+    note(error);
+  }
+  if (!options_.headless && !window_.open("planefold", overlay_->width(), overlay_->height(), error)) {
+    note(error);
+  }
+  for (int64_t index = 0; index < count_ && !quit_ && g_interrupted == 0; ++index) {
+    if (!step(index)) {
+      break;
+    }
+  }
+  return finish();
+}
+
+/// One frame. false: the run ends here, and failure_ says why.
+bool Run::step(int64_t index) {
+  const int64_t at = options_.skip + index;
+  pf_image_t image{};
+  if (!source_.read(at, image, failure_)) {
+    failure_ = "frame " + std::to_string(at) + ": " + failure_;
+    return false;
+  }
+  if (index == options_.withdraw_target_after) {
+    session_.withdraw_target();
+  }
+  view_.index = index;
+  view_.count = count_;
+  if (!session_.push(image, view_, failure_)) {
+    failure_ = "frame " + std::to_string(at) + " (" + source_.name(at) + "): " + failure_;
+    return false;
+  }
+  view_.pixels.resize(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+  for (int32_t y = 0; y < image.height; ++y) {
+    std::copy_n(image.pixels + static_cast<ptrdiff_t>(y) * image.stride, image.width,
+                view_.pixels.begin() + static_cast<ptrdiff_t>(y) * image.width);
+  }
+  view_.image = image;
+  view_.image.stride = image.width;
+  view_.image.pixels = view_.pixels.data();
+  done_any_ = true;
+  statistics_.add(view_);
+  outputs_.write(view_);
+  pf_pose_t truth{};
+  if (source_.truth(at, truth)) {
+    outputs_.write_truth(truth);
+  }
+  overlay_->add(view_);
+  progress_.show(view_);
+  show();
+  handle_keys();
+  return true;
+}
+
+void Run::show() {
+  const bool middle = view_.index == count_ / 2;
+  if (film_.is_open() || window_.is_open() || middle) {
+    const Canvas& canvas = overlay_->draw(view_);
+    film_.add(canvas);
+    window_.show(canvas);
+    if (middle) {
+      save("overlay_mid.png");
+    }
+  }
+}
+
+void Run::save(const char* name) {
+  if (!overlay_->draw(view_).save_png(outputs_.path(name))) {
+    note(outputs_.path(name) + ": could not be written");
+  }
+}
+
+void Run::handle_keys() {
+  do {
+    switch (window_.poll(paused_ ? 50 : 0)) {
+      case Key::kPause:
+        paused_ = !paused_;
+        break;
+      case Key::kReset: {
+        std::string error;
+        if (!session_.reset(error)) {
+          note(error);
+        }
+        statistics_.add_reset();
+        break;
+      }
+      case Key::kSave:
+        save(("overlay_" + std::to_string(view_.index) + ".png").c_str());
+        break;
+      case Key::kQuit:
+        quit_ = true;
+        break;
+      case Key::kNone:
+        break;
+    }
+  } while (paused_ && !quit_ && g_interrupted == 0);
+}
+
+std::string Run::why_nothing_was_tracked() const {
+  const std::string frames = std::to_string(statistics_.frames());
+  if (statistics_.frames() > 1 && statistics_.frozen() == statistics_.frames() - 1) {
+    return "all " + frames + " frames are the same picture; is the camera frozen?";
+  }
+  if (statistics_.unusable() == statistics_.frames()) {
+    return "none of the " + frames + " frames has usable content (black, white or blurred out); look at the images";
+  }
+  if (session_.target() != nullptr) {
+    return "the target was not found in any of the " + frames + " frames; check " + session_.start() +
+           " and that the first frames show it";
+  }
+  return "none of the " + frames + " frames was tracked; the camera has to move sideways past something with texture";
+}
+
+int Run::finish() {
+  progress_.end();
+  if (g_interrupted != 0 && failure_.empty()) {
+    failure_ =
+        "interrupted after " + std::to_string(statistics_.frames()) + " of " + std::to_string(count_) + " frames";
+  }
+  if (done_any_) {
+    save("overlay_last.png");
+    if (view_.index < count_ / 2) {
+      save("overlay_mid.png");
+    }
+  }
+  const bool filming = film_.is_open();
+  if (!film_.close()) {
+    note("ffmpeg failed; " + outputs_.path("overlay.mp4") + " is not complete");
+  }
+  if (statistics_.tracked() == 0 && failure_.empty()) {
+    failure_ = why_nothing_was_tracked();
+  } else if (failure_.empty() && statistics_.frames() > 1 && statistics_.frozen() == statistics_.frames() - 1) {
+    failure_ = why_nothing_was_tracked();
+  }
+  std::string error;
+  const std::string report = statistics_.to_json(session_, options_, source_.info(), failure_);
+  if (!outputs_.finish(view_, session_.config().camera, report, error)) {
+    return fail(error);
+  }
+  if (!failure_.empty()) {
+    return fail(failure_);
+  }
+  std::printf("%s\nwritten to %s%s\n", statistics_.summary(session_).c_str(), options_.out.c_str(),
+              filming ? " (overlay.mp4 is the film)" : "");
+  return kExitDone;
+}
+
+}  // namespace
+
+int run(const Options& options) {
+  // ffmpeg may end early: writing to it must then fail, not end this program.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  std::string error;
+  const std::unique_ptr<Source> source = open_source(options, error);
+  if (source == nullptr) {
+    return fail(error);
+  }
+  return Run(options, *source).go();
+}
+
+}  // namespace pf::capture

@@ -1,0 +1,125 @@
+#include "session.h"
+
+#include <planefold_platform/sequence.h>
+
+#include <cstdlib>
+#include <ctime>
+
+namespace pf::capture {
+
+namespace {
+
+int64_t steady_ns(void*) {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<int64_t>(now.tv_sec) * 1000000000 + now.tv_nsec;
+}
+
+void keep_line(void* user, const char* line) { static_cast<std::vector<std::string>*>(user)->emplace_back(line); }
+
+}  // namespace
+
+Session::~Session() { std::free(block_); }
+
+bool Session::open(const Options& options, const Source& source, std::string& error, int& code) {
+  code = kExitRun;
+  if (pf_config_default(&config_) != PF_OK) {
+    error = "the library gives no default configuration";
+    return false;
+  }
+  config_.camera = source.info().camera;
+  config_.kernels = static_cast<uint32_t>(options.kernels);
+  config_.keep_gauge = options.keep_gauge ? 1 : 0;
+  const auto set = [](int32_t& field, int32_t value) { field = value > 0 ? value : field; };
+  set(config_.max_features, options.max_features);
+  set(config_.max_state_dim, options.max_state_dim);
+  set(config_.max_observations, options.max_observations);
+  set(config_.features_in_view, options.features_in_view);
+  config_.clock_ns = steady_ns;
+  config_.log = keep_line;
+  config_.user = &log_;
+  const char* field = "";
+  const pf_status_t checked = pf_config_check(&config_, &field);
+  if (checked != PF_OK) {
+    error = "configuration field '" + std::string(field != nullptr ? field : "?") + "': " + pf_status_text(checked) +
+            "; its range is in planefold.h";
+    code = kExitUsage;
+    return false;
+  }
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  start_ = options.start;
+  if (options.start.rfind("target:", 0) == 0) {
+    has_target_ = pf_read_target(options.start.c_str() + 7, &target_, message) == 0;
+  } else if (options.start.rfind("rectangle:", 0) == 0) {
+    has_target_ = pf_parse_rectangle(options.start.c_str() + 10, &target_, message) == 0;
+    code = has_target_ ? code : kExitUsage;
+  } else {
+    has_target_ = source.target(target_);
+  }
+  if (!has_target_ && options.start != "auto") {
+    error = message;
+    return false;
+  }
+  pf_status_t status = pf_memory_query(&config_, &memory_);
+  if (status == PF_OK && posix_memalign(&block_, memory_.alignment, memory_.bytes) != 0) {
+    error = "no " + std::to_string(memory_.bytes) + " bytes of memory left for the map; lower --max-state-dim";
+    return false;
+  }
+  if (status == PF_OK) {
+    status = pf_create(&config_, block_, memory_.bytes, &slam_);
+  }
+  if (status != PF_OK) {
+    error = std::string("the library could not be set up: ") + pf_status_text(status);
+    return false;
+  }
+  return begin(error);
+}
+
+bool Session::begin(std::string& error) {
+  if (has_target_) {
+    const pf_status_t status = pf_start_from_target(slam_, &target_);
+    if (status < 0) {
+      error = "--start " + start_ + ": the target was refused: " + pf_status_text(status);
+      return false;
+    }
+  }
+  return true;
+}
+
+bool Session::reset(std::string& error) {
+  const pf_status_t status = pf_reset(slam_);
+  if (status < 0) {
+    error = std::string("reset: ") + pf_status_text(status);
+    return false;
+  }
+  return begin(error);
+}
+
+bool Session::push(const pf_image_t& image, FrameView& view, std::string& error) {
+  const int64_t before = steady_ns(nullptr);
+  view.status = pf_push_frame(slam_, &image);
+  view.ms = 1e-6 * static_cast<double>(steady_ns(nullptr) - before);
+  if (view.status < 0) {
+    error = std::string("the library refused it: ") + pf_status_text(view.status);
+    return false;
+  }
+  pf_get_report(slam_, &view.report);
+  view.has_pose = pf_get_pose(slam_, &view.pose) == PF_OK;
+  view.tracked = view.has_pose && view.report.inliers >= 8 &&
+                 (view.report.state == PF_STATE_TRACKING || view.report.state == PF_STATE_STARTING);
+  size_t count = 0;
+  view.tracks.resize(static_cast<size_t>(config_.max_observations + config_.max_features));
+  if (pf_get_tracks(slam_, view.tracks.data(), view.tracks.size(), &count) < 0) {
+    count = 0;
+  }
+  view.tracks.resize(std::min(count, view.tracks.size()));
+  count = 0;
+  view.features.resize(static_cast<size_t>(config_.max_features));
+  if (pf_get_features(slam_, view.features.data(), view.features.size(), &count) < 0) {
+    count = 0;
+  }
+  view.features.resize(std::min(count, view.features.size()));
+  return true;
+}
+
+}  // namespace pf::capture

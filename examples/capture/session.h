@@ -1,0 +1,56 @@
+#ifndef PLANEFOLD_CAPTURE_SESSION_H
+#define PLANEFOLD_CAPTURE_SESSION_H
+
+#include <planefold/planefold.h>
+
+#include <string>
+#include <vector>
+
+#include "options.h"
+#include "source.h"
+#include "view.h"
+
+namespace pf::capture {
+
+/// One planefold context in a block of memory of its own, and the way it was started.
+class Session {
+ public:
+  Session() = default;
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// false: error is one line and code the exit code.
+  bool open(const Options& options, const Source& source, std::string& error, int& code);
+
+  /// Pushes a frame and copies what it left into view. false: the library refused it, and error is one line.
+  /// The time of pf_push_frame alone goes to view.ms.
+  bool push(const pf_image_t& image, FrameView& view, std::string& error);
+
+  /// Starts over, in the same way as at first.
+  bool reset(std::string& error);
+  void withdraw_target() { pf_withdraw_target(slam_); }
+
+  const pf_slam_t* slam() const { return slam_; }
+  const pf_config_t& config() const { return config_; }
+  const pf_memory_t& memory() const { return memory_; }
+  const std::string& start() const { return start_; }
+  const pf_target_t* target() const { return has_target_ ? &target_ : nullptr; }
+  const std::vector<std::string>& log() const { return log_; }
+
+ private:
+  bool begin(std::string& error);
+
+  void* block_ = nullptr;
+  pf_slam_t* slam_ = nullptr;
+  pf_config_t config_{};
+  pf_memory_t memory_{};
+  pf_target_t target_{};
+  bool has_target_ = false;
+  std::string start_;
+  std::vector<std::string> log_;
+};
+
+}  // namespace pf::capture
+
+#endif

@@ -1,0 +1,44 @@
+#ifndef PLANEFOLD_CAPTURE_SOURCE_H
+#define PLANEFOLD_CAPTURE_SOURCE_H
+
+#include <planefold/planefold.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "options.h"
+
+namespace pf::capture {
+
+struct SourceInfo {
+  pf_camera_t camera{};
+  int64_t count = 0;
+  double rate_hz = 30.0;
+  std::string truth_path;  ///< a trajectory that lies beside the source; "" where there is none
+  std::string warning;
+};
+
+/// Frames by number: a folder or a simulated scene.
+class Source {
+ public:
+  virtual ~Source() = default;
+  virtual const SourceInfo& info() const = 0;
+  /// false: error is one line. The pixels are valid until the next call.
+  virtual bool read(int64_t index, pf_image_t& image, std::string& error) = 0;
+  /// File or name of a frame, for messages.
+  virtual std::string name(int64_t index) const = 0;
+  /// The true pose of a frame, where the source itself knows it.
+  virtual bool truth(int64_t, pf_pose_t&) { return false; }
+  /// The target that the source shows, where --start auto should use one.
+  virtual bool target(pf_target_t&) const { return false; }
+};
+
+/// null: error is one line.
+std::unique_ptr<Source> open_source(const Options& options, std::string& error);
+
+std::unique_ptr<Source> open_sim_source(const Options& options, std::string& error);
+
+}  // namespace pf::capture
+
+#endif

@@ -1,0 +1,149 @@
+#include "statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace pf::capture {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Nearest-rank quantile; 0 of nothing.
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const double rank = std::ceil(share * static_cast<double>(values.size())) - 1.0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max(0.0, rank));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+double rounded(double value) { return std::round(value * 1e5) / 1e5; }
+
+uint64_t hash(const std::vector<uint8_t>& bytes) {
+  uint64_t value = 1469598103934665603u;  // FNV-1a
+  for (uint8_t byte : bytes) {
+    value = (value ^ byte) * 1099511628211u;
+  }
+  return value;
+}
+
+const char* kernels_name(uint32_t kernels) {
+  constexpr const char* kNames[] = {"auto", "reference", "portable", "avx2", "avx512", "neon"};
+  return kernels < 6 ? kNames[kernels] : "unknown";
+}
+
+Json camera_json(const pf_camera_t& camera) {
+  constexpr const char* kModels[] = {"unknown", "pinhole", "radtan", "equidistant", "division"};
+  return {{"model", kModels[camera.model >= 1 && camera.model <= 4 ? camera.model : 0]},
+          {"width", camera.width},
+          {"height", camera.height},
+          {"fx", camera.fx},
+          {"fy", camera.fy},
+          {"cx", camera.cx},
+          {"cy", camera.cy}};
+}
+
+}  // namespace
+
+void Statistics::add(const FrameView& view) {
+  const pf_report_t& report = view.report;
+  const uint64_t pixels = hash(view.pixels);
+  frozen_ += frames_ > 0 && pixels == last_hash_ ? 1 : 0;
+  last_hash_ = pixels;
+  if (view.tracked) {
+    ++tracked_;
+    start_frame_ = start_frame_ < 0 ? view.index : start_frame_;
+    inliers_.push_back(report.inliers);
+    attempts_.push_back(report.attempts);
+    state_dim_.push_back(report.state_dim);
+  }
+  starting_ += report.state == PF_STATE_STARTING ? 1 : 0;
+  coasting_ += report.state == PF_STATE_COASTING ? 1 : 0;
+  lost_ += report.state == PF_STATE_LOST ? 1 : 0;
+  losses_ += report.state == PF_STATE_LOST && last_state_ != PF_STATE_LOST ? 1 : 0;
+  unusable_ += view.status == PF_NOTE_UNUSABLE ? 1 : 0;
+  evicted_ += report.evicted;
+  new_features_ += report.new_features;
+  if (report.nis_dof > 0) {
+    nis_ += report.nis;
+    nis_dof_ += report.nis_dof;
+  }
+  ms_.push_back(view.ms);
+  for (int i = 0; i < PF_STAGE_COUNT; ++i) {
+    stage_ms_[i].push_back(1e-6 * static_cast<double>(report.stage_ns[i]));
+  }
+  last_state_ = report.state;
+  last_report_ = report;
+  ++frames_;
+}
+
+std::string Statistics::to_json(const Session& session, const Options& options, const SourceInfo& source,
+                                const std::string& ended) const {
+  constexpr const char* kStages[] = {"pyramid", "predict", "search", "gate", "update", "map"};
+  Json stages = Json::object();
+  for (int i = 0; i <= PF_STAGE_MAP; ++i) {
+    stages[kStages[i]] = rounded(quantile(stage_ms_[i], 0.5));
+  }
+  const pf_config_t& config = session.config();
+  Json json;
+  json["source"] = options.source;
+  json["frames"] = frames_;
+  json["tracked"] = tracked_;
+  json["lost"] = lost_;
+  json["losses"] = losses_;
+  json["resets"] = resets_;
+  json["start_frame"] = start_frame_;
+  json["start"] = session.start();
+  json["starting"] = starting_;
+  json["coasting"] = coasting_;
+  json["unusable"] = unusable_;
+  json["frozen"] = frozen_;
+  json["ms_per_frame"] = {
+      {"median", rounded(quantile(ms_, 0.5))}, {"p95", rounded(quantile(ms_, 0.95))}, {"max", rounded(largest(ms_))}};
+  json["ms_by_stage"] = stages;
+  json["memory_bytes"] = session.memory().bytes;
+  json["stack_bytes"] = session.memory().stack_bytes;
+  json["features"] = {{"median", quantile(inliers_, 0.5)}, {"max", largest(inliers_)}};
+  json["features_in_view"] = {{"median", quantile(attempts_, 0.5)}, {"max", largest(attempts_)}};
+  json["features_in_map"] = {{"points", last_report_.features_point},
+                             {"inverse_depth", last_report_.features_inverse_depth}};
+  json["new_features"] = new_features_;
+  json["evicted"] = evicted_;
+  json["state_dim"] = {
+      {"median", quantile(state_dim_, 0.5)}, {"max", largest(state_dim_)}, {"end", last_report_.state_dim}};
+  json["state_dim_points_only"] = last_report_.state_dim;
+  json["planes"] = Json::array();
+  json["nis_per_dof"] = nis_dof_ > 0 ? Json(rounded(nis_ / static_cast<double>(nis_dof_))) : Json();
+  json["kernels"] = kernels_name(last_report_.kernels);
+  json["scalar"] = config.scalar == PF_SCALAR_FLOAT ? "float" : "double";
+  json["camera"] = camera_json(config.camera);
+  json["config"] = {{"max_state_dim", config.max_state_dim},       {"max_features", config.max_features},
+                    {"max_observations", config.max_observations}, {"features_in_view", config.features_in_view},
+                    {"sigma_pixel", config.sigma_pixel},           {"keep_gauge", config.keep_gauge}};
+  json["withdraw_target_after"] = options.withdraw_target_after >= 0 ? Json(options.withdraw_target_after) : Json();
+  json["truth"] = source.truth_path;
+  json["log"] = session.log();
+  json["ended_early"] = ended;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string Statistics::summary(const Session& session) const {
+  char text[320];
+  std::snprintf(text, sizeof(text),
+                "tracked %lld of %lld frames (lost %lld), median %.0f features measured per frame, %.2f ms per frame "
+                "(p95 %.2f), %.2f MiB",
+                static_cast<long long>(tracked_), static_cast<long long>(frames_), static_cast<long long>(lost_),
+                quantile(inliers_, 0.5), quantile(ms_, 0.5), quantile(ms_, 0.95),
+                static_cast<double>(session.memory().bytes) / 1048576.0);
+  return text;
+}
+
+}  // namespace pf::capture

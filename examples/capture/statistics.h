@@ -1,0 +1,56 @@
+#ifndef PLANEFOLD_CAPTURE_STATISTICS_H
+#define PLANEFOLD_CAPTURE_STATISTICS_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "session.h"
+#include "view.h"
+
+namespace pf::capture {
+
+/// Counts over a run; becomes report.json.
+class Statistics {
+ public:
+  void add(const FrameView& view);
+  void add_reset() { ++resets_; }
+
+  int64_t frames() const { return frames_; }
+  int64_t tracked() const { return tracked_; }
+  int64_t unusable() const { return unusable_; }
+  int64_t start_frame() const { return start_frame_; }
+  /// Frames whose pixels all equal those of the frame before.
+  int64_t frozen() const { return frozen_; }
+
+  /// ended  "" or the line that says why the run ended early
+  std::string to_json(const Session& session, const Options& options, const SourceInfo& source,
+                      const std::string& ended) const;
+  /// One line for people.
+  std::string summary(const Session& session) const;
+
+ private:
+  int64_t frames_ = 0;
+  int64_t tracked_ = 0;
+  int64_t starting_ = 0;
+  int64_t coasting_ = 0;
+  int64_t lost_ = 0;
+  int64_t losses_ = 0;
+  int64_t unusable_ = 0;
+  int64_t frozen_ = 0;
+  int64_t resets_ = 0;
+  int64_t start_frame_ = -1;
+  int64_t evicted_ = 0;
+  int64_t new_features_ = 0;
+  double nis_ = 0.0;
+  int64_t nis_dof_ = 0;
+  uint64_t last_hash_ = 0;
+  pf_state_t last_state_ = PF_STATE_STARTING;
+  pf_report_t last_report_{};
+  std::vector<double> ms_, inliers_, attempts_, state_dim_;
+  std::vector<double> stage_ms_[PF_STAGE_COUNT];
+};
+
+}  // namespace pf::capture
+
+#endif

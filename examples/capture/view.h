@@ -1,0 +1,43 @@
+#ifndef PLANEFOLD_CAPTURE_VIEW_H
+#define PLANEFOLD_CAPTURE_VIEW_H
+
+#include <planefold/planefold.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pf::capture {
+
+/// Everything that one frame left behind, copied out of the library: what is written down and what is drawn.
+struct FrameView {
+  int64_t index = 0;  ///< of the frames of this run, from 0
+  int64_t count = 0;
+  pf_image_t image{};
+  std::vector<uint8_t> pixels;  ///< what image.pixels points to
+  pf_status_t status = PF_OK;
+  pf_report_t report{};
+  bool has_pose = false;
+  bool tracked = false;  ///< at least 8 inliers in this frame, and a pose that comes from them
+  pf_pose_t pose{};
+  double ms = 0.0;
+  std::vector<pf_track_t> tracks;
+  std::vector<pf_feature_t> features;
+};
+
+inline const char* state_name(pf_state_t state) {
+  switch (state) {
+    case PF_STATE_STARTING:
+      return "starting";
+    case PF_STATE_TRACKING:
+      return "tracking";
+    case PF_STATE_COASTING:
+      return "coasting";
+    default:
+      return "lost";
+  }
+}
+
+}  // namespace pf::capture
+
+#endif

@@ -1,0 +1,32 @@
+#ifndef PLANEFOLD_CAPTURE_WINDOW_H
+#define PLANEFOLD_CAPTURE_WINDOW_H
+
+#include <memory>
+#include <string>
+
+#include "canvas.h"
+
+namespace pf::capture {
+
+enum class Key { kNone, kPause, kReset, kSave, kQuit };
+
+/// A window that shows the overlay, where there is a display and SDL2 was there at build time.
+class Window {
+ public:
+  Window();
+  ~Window();
+  /// false: why is one line; the run goes on without a window.
+  bool open(const std::string& title, int width, int height, std::string& why);
+  bool is_open() const { return parts_ != nullptr; }
+  void show(const Canvas& canvas);
+  /// Next key that was pressed; waits for up to wait_ms.
+  Key poll(int wait_ms);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace pf::capture
+
+#endif
