@@ -1,7 +1,8 @@
+#include <stdio.h> /* before jpeglib.h, which uses its types */
+
 #include <jerror.h>
 #include <jpeglib.h>
 #include <setjmp.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "decode.h"
