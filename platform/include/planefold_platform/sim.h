@@ -1,0 +1,101 @@
+/* Rendered scenes with exact truth, for tests, the demo and experiments.
+ *
+ *   pf_sim_options_t options;
+ *   pf_sim_options_default("desk", &options);      every field gets the scene's own value
+ *   pf_sim_t *sim = pf_sim_open("desk", &options); null: no such scene, bad option, no memory
+ *   pf_sim_camera(sim, &config.camera);
+ *   pf_sim_target(sim, PF_TARGET_RECTANGLE, &target);
+ *   while (pf_sim_next(sim, &image, &truth)) pf_push_frame(slam, &image);
+ *   pf_sim_close(sim);
+ *
+ * Scenes: desk      hand-held look around a desk that carries the target
+ *         room      the same through a room of 4 m
+ *         wall      one textured wall
+ *         rotation  the camera only turns (no depth can be known)
+ *         person    the room, with somebody walking through the picture
+ *         exposure  the desk, with exposure that jumps
+ *         repeat    the desk, with texture that repeats
+ *
+ * W is the centre of the target: x right, y down, z into the wall. The same seed and options give the same pixels.
+ * Units: metres, seconds, grey levels 0..255.
+ */
+#ifndef PLANEFOLD_PLATFORM_SIM_H
+#define PLANEFOLD_PLATFORM_SIM_H
+
+#include "planefold/planefold.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct pf_sim pf_sim_t;
+
+typedef struct pf_sim_options {
+  uint64_t seed;
+  pf_camera_t camera; /* any of the four models */
+  int32_t frames;     /* of the whole run, dropped ones included, 1 .. 1000000 */
+  double rate_hz;     /* 1 .. 1000 */
+  int32_t samples;    /* per pixel and direction, 1 .. 8; 2 is smooth, 1 is fast */
+
+  /* The sensor. */
+  double noise_grey;     /* standard deviation of a pixel, 0 .. 50 */
+  double exposure_s;     /* 0 .. 1/rate; blurs what moves if blur_samples > 1 */
+  int32_t blur_samples;  /* views averaged over the exposure, 1 .. 64; the timestamp is its middle */
+  double readout_s;      /* rolling shutter: from first to last row, 0 .. 1/rate; the timestamp is the middle row's */
+  double gain, bias;     /* grey = gain * scene + bias */
+  double exposure_step;  /* gain jumps by up to this factor either way, >= 1; 1: never */
+  double exposure_every; /* seconds between jumps, > 0 */
+  double vignetting;     /* loss of light in the corners, 0 .. 1 */
+
+  /* What goes wrong on the way. */
+  double drop_probability;   /* the frame never comes, 0 .. 0.9 */
+  double repeat_probability; /* the last picture comes again under a new time, 0 .. 0.9 */
+
+  /* The scene. */
+  int32_t target;           /* the dark rectangle is there */
+  int32_t repeated_texture; /* surfaces repeat a small cell */
+  int32_t person;           /* somebody walks through */
+  double shake_m, shake_rad; /* of the hand, standard deviations */
+} pf_sim_options_t;
+
+/* PF_ERROR_RANGE: there is no such scene. */
+pf_status_t pf_sim_options_default(const char *scene, pf_sim_options_t *options);
+
+/* Names of the scenes, null after the last. */
+const char *pf_sim_scene_name(int32_t index);
+
+/* options may be null for the scene's own. */
+pf_sim_t *pf_sim_open(const char *scene, const pf_sim_options_t *options);
+void pf_sim_close(pf_sim_t *sim);
+
+void pf_sim_camera(const pf_sim_t *sim, pf_camera_t *camera);
+
+/* 1 and the next frame, or 0 at the end. The pixels stay valid until the next call. truth (may be null): the camera at
+ * image->t_ns, with velocities and zero covariance. */
+int pf_sim_next(pf_sim_t *sim, pf_image_t *image, pf_pose_t *truth);
+
+/* Back to the first frame. */
+void pf_sim_rewind(pf_sim_t *sim);
+
+/* Truth at any time of the run. */
+void pf_sim_pose_at(const pf_sim_t *sim, int64_t t_ns, pf_pose_t *pose);
+
+/* The target as the library wants it: PF_TARGET_RECTANGLE, or PF_TARGET_POINTS with its corners and the true first pose
+ * with a covariance of (2 degrees)^2 and (3 cm)^2. PF_ERROR_STATE: the scene has none. */
+pf_status_t pf_sim_target(const pf_sim_t *sim, uint32_t kind, pf_target_t *target);
+
+/* A picture from any pose, with the sensor's settings but no noise, blur or readout. The pixels stay valid until the next call. */
+pf_status_t pf_sim_render(pf_sim_t *sim, const pf_pose_t *pose, pf_image_t *image);
+
+/* For each pixel's centre, seen from a pose at its t_ns: depth along z [m] (0: nothing) and the surface's number (-1:
+ * nothing). Either may be null; both are width * height. */
+pf_status_t pf_sim_depth(const pf_sim_t *sim, const pf_pose_t *pose, float *depth, int32_t *surface);
+
+/* Plane of a surface, n . p = d in W, n towards what lies behind it. PF_ERROR_RANGE: no such surface. */
+pf_status_t pf_sim_surface(const pf_sim_t *sim, int32_t surface, double n_W[3], double *d_W);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

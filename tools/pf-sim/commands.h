@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+/// One function per command: adds it to the program; when it is chosen it runs and sets the exit code.
+namespace pfsim {
+
+void add_render(CLI::App &app, int &result);
+
+}  // namespace pfsim
