@@ -2,6 +2,7 @@
 
 // Random covariances, Jacobians and thin matrices for the tests of the covariance kernels.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -42,10 +43,10 @@ class Random {
   std::uint64_t state_;
 };
 
-/// A buffer that begins `shift` scalars behind an address that is a multiple of 64 and holds NaN.
+/// A buffer that begins `shift` scalars behind an address that is a multiple of 64 and holds poison.
 class Buffer {
  public:
-  explicit Buffer(std::size_t count, int shift = 0) : storage_(count + 64, kNaN) {
+  explicit Buffer(std::size_t count, int shift = 0, Scalar poison = kNaN) : storage_(count + 64, poison) {
     const std::size_t misplaced = reinterpret_cast<std::uintptr_t>(storage_.data()) % 64;
     const std::size_t skip = misplaced == 0 ? 0 : (64 - misplaced) / sizeof(Scalar);
     data_ = storage_.data() + skip + shift;
@@ -59,13 +60,18 @@ class Buffer {
   Scalar* data_;
 };
 
-/// Thin matrix as the kernels want it: NaN nowhere but behind the last row, padding zero.
+/// Thin matrix as the kernels want it: padding zero; poison in what is still to be written, and around.
 struct Thin {
   int rows, columns, ld;
   Buffer values;
-  Thin(int r, int n, int shift = 0)
-      : rows(r), columns(n), ld(pf::padded(n)), values(static_cast<std::size_t>(r) * pf::padded(n), shift) {
-    for (int i = 0; i < rows * ld; ++i) values[i] = 0;
+  Thin(int r, int n, int shift = 0, Scalar poison = kNaN)
+      : rows(r),
+        columns(n),
+        ld(pf::padded(n)),
+        values(static_cast<std::size_t>(r) * pf::padded(n), shift, poison) {
+    for (int i = 0; i < rows; ++i) {
+      for (int j = columns; j < ld; ++j) at(i, j) = 0;
+    }
   }
   Scalar* data() { return values.data(); }
   Scalar& at(int i, int j) { return values[static_cast<std::size_t>(i) * ld + j]; }
@@ -80,7 +86,8 @@ struct Thin {
 struct Covariance {
   Buffer values;
   pf::Triangle P;
-  explicit Covariance(int n, int capacity, int shift = 0) : values(pf::Triangle::size_for(capacity), shift) {
+  explicit Covariance(int n, int capacity, int shift = 0, Scalar poison = kNaN)
+      : values(pf::Triangle::size_for(capacity), shift, poison) {
     P.data = values.data();
     P.n = n;
     P.capacity = (capacity + 7) / 8 * 8;
@@ -133,7 +140,7 @@ inline pf::SparseRows random_rows(Random& random, int rows, int n, int segments)
   return J;
 }
 
-/// Largest |A_ij - B_ij| / sqrt(scale_i scale_j), the scale being the larger of the two variances and of `floor`'s.
+/// Largest |A_ij - B_ij| / sqrt(variance_i variance_j).
 inline double difference(const pf::Triangle& A, const pf::Triangle& B, const std::vector<double>& variance) {
   if (A.n != B.n) return std::numeric_limits<double>::infinity();
   double worst = 0;

@@ -1,0 +1,109 @@
+#pragma once
+
+#include "covariance/tuned/tile.h"
+
+namespace pf {
+namespace {
+
+/// Rows i .. i + kRows - 1 of a strip of X:  X_i <- L_ii^-1 (X_i - L_i,0..i-1 X_0..i-1), in registers.
+template <class V, int kRows, int kVectors>
+PF_INLINE void solve_tile(const Scalar* L, std::ptrdiff_t lds, Scalar* X, std::ptrdiff_t ld, int i) {
+  Tile<V, kRows, kVectors> tile;
+  tile.load(X + i * ld, ld);
+  tile.template accumulate<true>(L + i * lds, lds, 1, X, ld, i);
+  tile.solve(L + i * lds + i, lds);
+  tile.store(X + i * ld, ld);
+}
+
+/// Twin: reference::solve_lower. Works on whole groups of eight columns, padding included.
+void solve_lower(const Scalar* L, int m, int lds, Scalar* X, int n, int ld) {
+  for_strips(round_up(n, kGroup), [&](auto v, auto count, int j) {
+    for_heights(m, [&](auto height, int i) PF_LAMBDA {
+      solve_tile<decltype(v), decltype(height)::value, decltype(count)::value>(L, lds, X + j, ld, i);
+    });
+  });
+}
+
+/// L of a block of at most eight rows, in place.
+PF_INLINE bool cholesky_block(Scalar* S, int rows, std::ptrdiff_t lds) {
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < i; ++j) {
+      Scalar sum = S[i * lds + j];
+      for (int k = 0; k < j; ++k) sum -= S[i * lds + k] * S[j * lds + k];
+      S[i * lds + j] = sum / S[j * lds + j];
+    }
+    Scalar pivot = S[i * lds + i];
+    for (int k = 0; k < i; ++k) pivot -= S[i * lds + k] * S[i * lds + k];
+    if (!(pivot > 0)) return false;
+    S[i * lds + i] = square_root(pivot);
+  }
+  return true;
+}
+
+/// Take columns from .. from + terms - 1 of L out of the panel of `width` columns that begins at p:
+///   S_ij -= sum_k L_ik L_jk,   i >= p,  p <= j < p + width,  j <= i
+inline void cholesky_downdate(Scalar* S, int m, std::ptrdiff_t lds, int p, int width, int from,
+                              int terms) {
+  constexpr int kChunk = 32;
+  Scalar B[kChunk * kGroup];
+  for (int k = 0; k < terms; ++k) {
+    for (int j = 0; j < kGroup; ++j) B[k * kGroup + j] = j < width ? S[(p + j) * lds + from + k] : 0;
+  }
+  Scalar square[kGroup * kGroup];
+  for_eight([&](auto v, auto count, int at) {
+    for_heights(width, [&](auto height, int i) PF_LAMBDA {
+      Tile<decltype(v), decltype(height)::value, decltype(count)::value> tile;
+      tile.zero();
+      tile.accumulate(S + (p + i) * lds + from, lds, 1, B + at, kGroup, terms);
+      tile.store(square + i * kGroup + at, kGroup);
+    });
+    for_heights(m - p - width, [&](auto height, int i) PF_LAMBDA {
+      const std::ptrdiff_t row = (p + width + i) * lds;
+      Tile<decltype(v), decltype(height)::value, decltype(count)::value> tile;
+      tile.zero();
+      tile.accumulate(S + row + from, lds, 1, B + at, kGroup, terms);
+      tile.subtract_from(S + row + p + at, lds);
+    });
+  });
+  for (int i = 0; i < width; ++i) {
+    for (int j = 0; j <= i; ++j) S[(p + i) * lds + p + j] -= square[i * kGroup + j];
+  }
+}
+
+/// Twin: reference::cholesky. Panels of eight columns, from the left:
+///
+///   | L      |        1. the panel loses what the columns before it explain, in chunks that fit the stack
+///   | L  S11 |        2. S11 = L11 L11^T
+///   | L  S21 |        3. L21 = S21 L11^-T, eight rows at a time, transposed
+bool cholesky(Scalar* S, int m, int leading) {
+  const std::ptrdiff_t lds = leading;
+  constexpr int kChunk = 32;
+  for (int p = 0; p < m; p += kGroup) {
+    const int width = smaller(kGroup, m - p);
+    for (int from = 0; from < p; from += kChunk) {
+      cholesky_downdate(S, m, lds, p, width, from, smaller(kChunk, p - from));
+    }
+    Scalar* diagonal = S + p * lds + p;
+    if (!cholesky_block(diagonal, width, lds)) return false;
+    for (int i = p + kGroup; i < m; i += kGroup) {
+      const int rows = smaller(kGroup, m - i);
+      Scalar T[kGroup * kGroup] = {};
+      for (int r = 0; r < rows; ++r) {
+        for (int c = 0; c < kGroup; ++c) T[c * kGroup + r] = S[(i + r) * lds + p + c];
+      }
+      for_eight([&](auto v, auto count, int j) {
+        for_heights(kGroup, [&](auto height, int at) PF_LAMBDA {
+          solve_tile<decltype(v), decltype(height)::value, decltype(count)::value>(diagonal, lds, T + j,
+                                                                                   kGroup, at);
+        });
+      });
+      for (int r = 0; r < rows; ++r) {
+        for (int c = 0; c < kGroup; ++c) S[(i + r) * lds + p + c] = T[c * kGroup + r];
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+}  // namespace pf

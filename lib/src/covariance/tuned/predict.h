@@ -1,0 +1,76 @@
+#pragma once
+
+#include "covariance/tuned/tile.h"
+
+namespace pf {
+namespace {
+
+constexpr int kLeading = Kernels::kMaxLeading;
+
+/// to (8 x columns, leading dimension kLeading) = A (8 x columns, stride a_stride) B (columns x columns, leading kLeading)
+PF_INLINE void multiply_rows(const Scalar* A, std::ptrdiff_t a_stride, const Scalar* B, int columns,
+                             Scalar* to, std::ptrdiff_t stride) {
+  for_strips<2>(columns, [&](auto v, auto count, int j) {
+    for (int i = 0; i < kGroup; i += kTileRows) {
+      Tile<decltype(v), kTileRows, decltype(count)::value> tile;
+      tile.zero();
+      tile.accumulate(A + i * a_stride, a_stride, 1, B + j, kLeading, columns);
+      tile.store(to + i * stride + j, stride);
+    }
+  });
+}
+
+/// Twin: reference::predict. F is widened to a multiple of eight by the identity, so that whole vectors move and the columns
+/// that only fill up stay what they are.
+///
+///   | P_bb |            F P_bb F^T + Q,  through copies
+///   | P_xb | P_xx |     P_xb F^T, eight rows at a time
+void predict(Triangle& P, const Scalar* F, const Scalar* Q, int b) {
+  const int columns = round_up(b, kGroup);
+  Scalar Ft[kLeading * kLeading];
+  Scalar block[kLeading * kLeading];
+  for (int i = 0; i < columns; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const bool inside = i < b && j < b;
+      Ft[i * kLeading + j] = inside ? F[j * b + i] : Scalar(i == j);
+      block[i * kLeading + j] = inside ? element(P, i, j) : 0;
+    }
+  }
+
+  Scalar rows[kGroup * kLeading];
+  Scalar moved[kGroup * kLeading];
+  for (int i0 = 0; i0 < columns; i0 += kGroup) {
+    for (int i = 0; i < kGroup; ++i) {
+      for (int j = 0; j < columns; ++j) rows[i * kLeading + j] = Ft[j * kLeading + i0 + i];
+    }
+    multiply_rows(rows, kLeading, block, columns, moved, kLeading);
+    multiply_rows(moved, kLeading, Ft, columns, rows, kLeading);
+    for (int i = i0; i < smaller(i0 + kGroup, b); ++i) {
+      Scalar* to = row_of(P, i);
+      for (int j = 0; j <= i; ++j) to[j] = rows[(i - i0) * kLeading + j] + Q[i * b + j];
+    }
+  }
+
+  // Rows of the group that b ends in, one by one; then whole groups.
+  const int whole = smaller(columns, P.n);
+  for (int x = b; x < whole; ++x) {
+    Scalar* row = row_of(P, x);
+    for (int j = 0; j < b; ++j) {
+      Scalar sum = 0;
+      for (int k = 0; k < b; ++k) sum += row[k] * Ft[k * kLeading + j];
+      moved[j] = sum;
+    }
+    for (int j = 0; j < b; ++j) row[j] = moved[j];
+  }
+  for (int x = columns; x < P.n; x += kGroup) {
+    Scalar* group = row_of(P, x);
+    const std::ptrdiff_t stride = stride_of(x);
+    for (int i = 0; i < kGroup; ++i) {
+      for (int j = 0; j < columns; ++j) rows[i * kLeading + j] = group[i * stride + j];
+    }
+    multiply_rows(rows, kLeading, Ft, columns, group, stride);
+  }
+}
+
+}  // namespace
+}  // namespace pf

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "covariance/tuned/downdate.h"
+#include "covariance/tuned/factor.h"
+#include "covariance/tuned/gather.h"
+#include "covariance/tuned/moves.h"
+#include "covariance/tuned/predict.h"
+
+namespace pf {
+namespace {
+
+constexpr Kernels kTable = {gather,    cholesky, solve_lower, downdate,    predict,
+                            augment,   transform, remove,     gather_many, replace};
+
+}  // namespace
+}  // namespace pf

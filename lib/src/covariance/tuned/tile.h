@@ -1,0 +1,148 @@
+#pragma once
+
+#include "covariance/tuned/vector.h"
+
+namespace pf {
+namespace {
+
+/// kRows x (kVectors * V::kWidth) block of a matrix that stays in registers while a product runs over it.
+///
+///            B, row k   | b0 | b1 | b2 |        loaded once per k
+///   A(r, k)  splat      | c  | c  | c  |        kRows of them per k
+template <class V, int kRowCount, int kVectorCount>
+struct Tile {
+  static constexpr int kRows = kRowCount;
+  static constexpr int kVectors = kVectorCount;
+  static constexpr int kColumns = kVectors * V::kWidth;
+  using Type = typename V::Type;
+
+  Type c[kRows][kVectors];
+
+  PF_INLINE void zero() {
+#pragma GCC unroll 8
+    for (int r = 0; r < kRows; ++r) {
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) c[r][v] = Type{};
+    }
+  }
+
+  PF_INLINE void load(const Scalar* from, std::ptrdiff_t stride) {
+#pragma GCC unroll 8
+    for (int r = 0; r < kRows; ++r) {
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) c[r][v] = V::load(from + r * stride + v * V::kWidth);
+    }
+  }
+
+  PF_INLINE void store(Scalar* to, std::ptrdiff_t stride) const {
+#pragma GCC unroll 8
+    for (int r = 0; r < kRows; ++r) {
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) V::store(to + r * stride + v * V::kWidth, c[r][v]);
+    }
+  }
+
+  /// to -= c
+  PF_INLINE void subtract_from(Scalar* to, std::ptrdiff_t stride) const {
+#pragma GCC unroll 8
+    for (int r = 0; r < kRows; ++r) {
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) {
+        Scalar* at = to + r * stride + v * V::kWidth;
+        V::store(at, V::load(at) - c[r][v]);
+      }
+    }
+  }
+
+  /// c += A B over `count` terms, or c -= A B; A(r, k) = A[r a_row + k a_step], B's row k begins at B + k b_stride.
+  template <bool kMinus = false>
+  PF_INLINE void accumulate(const Scalar* A, std::ptrdiff_t a_row, std::ptrdiff_t a_step,
+                            const Scalar* B, std::ptrdiff_t b_stride, int count) {
+    for (int k = 0; k < count; ++k) {
+      Type b[kVectors];
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) b[v] = V::load(B + v * V::kWidth);
+#pragma GCC unroll 8
+      for (int r = 0; r < kRows; ++r) {
+        const Type a = A[r * a_row] - Type{};
+#pragma GCC unroll 8
+        for (int v = 0; v < kVectors; ++v) {
+          c[r][v] = kMinus ? minus_product(a, b[v], c[r][v]) : plus_product(a, b[v], c[r][v]);
+        }
+      }
+      A += a_step;
+      B += b_stride;
+    }
+  }
+
+  /// c <- L^-1 c for the lower triangle L (kRows x kRows, leading dimension l_stride).
+  PF_INLINE void solve(const Scalar* L, std::ptrdiff_t l_stride) {
+#pragma GCC unroll 8
+    for (int r = 0; r < kRows; ++r) {
+      const Type inverse = (1 / L[r * l_stride + r]) - Type{};
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) c[r][v] *= inverse;
+#pragma GCC unroll 8
+      for (int s = r + 1; s < kRows; ++s) {
+        const Type factor = L[s * l_stride + r] - Type{};
+#pragma GCC unroll 8
+        for (int v = 0; v < kVectors; ++v) c[s][v] = minus_product(factor, c[r][v], c[s][v]);
+      }
+    }
+  }
+};
+
+/// Cut `columns` (a multiple of eight) into strips of kMost vectors (2 or 3), then into what is left. `work` is called with a tile's
+/// columns as types, work(V{}, Count<vectors>{}, first column).
+template <int kValue>
+struct Count {
+  static constexpr int value = kValue;
+};
+
+template <int kMost = kTileVectors, class Work>
+PF_INLINE void for_strip(int j, int columns, const Work& work) {
+  const int vectors = columns / Wide::kWidth;
+  if (vectors >= kMost) {
+    work(Wide{}, Count<kMost>{}, j);
+  } else if (vectors == 2) {
+    work(Wide{}, Count<2>{}, j);
+    if (columns > 2 * Wide::kWidth) work(Narrow{}, Count<1>{}, j + 2 * Wide::kWidth);
+  } else {
+    if (vectors == 1) work(Wide{}, Count<1>{}, j);
+    if (columns > vectors * Wide::kWidth) work(Narrow{}, Count<1>{}, j + vectors * Wide::kWidth);
+  }
+}
+
+template <int kMost = kTileVectors, class Work>
+PF_INLINE void for_strips(int columns, const Work& work) {
+  constexpr int kColumns = kMost * Wide::kWidth;
+  for (int j = 0; j < columns; j += kColumns) {
+    for_strip<kMost>(j, smaller(kColumns, columns - j), work);
+  }
+}
+
+/// Eight columns, in strips of two registers at most.
+template <class Work>
+PF_INLINE void for_eight(const Work& work) {
+  constexpr int kVectors = smaller(2, kGroup / Narrow::kWidth);
+  for (int j = 0; j < kGroup; j += kVectors * Narrow::kWidth) work(Narrow{}, Count<kVectors>{}, j);
+}
+
+/// Cut `rows` into tile heights, work(Count<rows>{}, first row).
+template <class Work>
+PF_INLINE void for_heights(int rows, const Work& work) {
+  int i = 0;
+  for (; i + kTileRows <= rows; i += kTileRows) work(Count<kTileRows>{}, i);
+  if (kTileRows > 4 && i + 4 <= rows) {
+    work(Count<4>{}, i);
+    i += 4;
+  }
+  if (kTileRows > 2 && i + 2 <= rows) {
+    work(Count<2>{}, i);
+    i += 2;
+  }
+  if (i < rows) work(Count<1>{}, i);
+}
+
+}  // namespace
+}  // namespace pf

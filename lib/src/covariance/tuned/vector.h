@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+
+#include "covariance/kernels.h"
+
+/// The vectors that tuned kernels are written in, as wide as the file that includes this says:
+///
+///   PF_VECTOR_BYTES   of a register
+///   PF_TILE_ROWS      register tile: rows of the eight of a group (8, 4 or 2) ...
+///   PF_TILE_VECTORS   ... times vectors across
+/// and gives plus_product(a, b, c) = c + a b and minus_product(a, b, c) = c - a b for each vector type, in one rounding where the
+/// processor has it, and square_root of a scalar.
+///
+/// Everything in the headers of this folder lives in an unnamed namespace, once per kernel set, and calls no inline function from
+/// elsewhere: the linker can never hand code for one processor to another. So rows are addressed by row_of and not by Triangle's
+/// own members, and there is no Eigen and no C++ library.
+
+#define PF_INLINE inline __attribute__((always_inline))
+#define PF_LAMBDA __attribute__((always_inline))
+
+namespace pf {
+namespace {
+
+constexpr int kGroup = Triangle::kGroup;
+
+template <int kBytes>
+struct Vector {
+  static constexpr int kWidth = kBytes / static_cast<int>(sizeof(Scalar));
+  typedef Scalar Type __attribute__((vector_size(kBytes)));
+  typedef Scalar Loose __attribute__((vector_size(kBytes), aligned(sizeof(Scalar)), may_alias));
+
+  static PF_INLINE Type load(const Scalar* from) { return *reinterpret_cast<const Loose*>(from); }
+  static PF_INLINE void store(Scalar* to, Type value) { *reinterpret_cast<Loose*>(to) = value; }
+};
+
+/// Rows of the triangle are multiples of eight scalars long, which may be half of a register.
+using Wide = Vector<PF_VECTOR_BYTES>;
+constexpr int kNarrowBytes = Wide::kWidth > kGroup ? PF_VECTOR_BYTES / 2 : PF_VECTOR_BYTES;
+using Narrow = Vector<kNarrowBytes>;
+
+constexpr int kTileRows = PF_TILE_ROWS;
+constexpr int kTileVectors = PF_TILE_VECTORS;
+
+constexpr int round_up(int n, int to) { return (n + to - 1) / to * to; }
+
+constexpr int smaller(int a, int b) { return a < b ? a : b; }
+
+PF_INLINE std::ptrdiff_t group_offset(int q) {
+  return 32 * static_cast<std::ptrdiff_t>(q) * (q + 1);
+}
+
+/// Triangle::row, and the leading dimension of its group.
+PF_INLINE int stride_of(int i) { return kGroup * (i / kGroup + 1); }
+
+PF_INLINE Scalar* row_of(const Triangle& P, int i) {
+  return P.data + group_offset(i / kGroup) + static_cast<std::ptrdiff_t>(i % kGroup) * stride_of(i);
+}
+
+PF_INLINE Scalar& element(const Triangle& P, int i, int j) {
+  return i >= j ? row_of(P, i)[j] : row_of(P, j)[i];
+}
+
+PF_INLINE int columns_of(const SparseRows& J) {
+  int sum = 0;
+  for (int s = 0; s < J.segments; ++s) sum += J.segment[s].size;
+  return sum;
+}
+
+}  // namespace
+}  // namespace pf
