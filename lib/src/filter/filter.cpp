@@ -463,6 +463,15 @@ bool Filter::scale_row(SparseRows* row) const {
   return found;
 }
 
+Vec3 Filter::point(int slot) const {
+  const Block& block = state_.block[slot];
+  if (block.kind != BlockKind::kInverseDepth) return block.xyz();
+  constexpr Scalar kFar = Scalar(1e-3);
+  const InverseDepth d = block.inverse_depth();
+  const Scalar rho = d.rho > kFar ? d.rho : kFar;
+  return state_.block[block.parent].xyz() + d.q_b.toRotationMatrix().col(2) / rho;
+}
+
 Mat3 Filter::covariance3(int slot) const {
   const int first = state_.block[slot].first;
   Mat3 C;

@@ -75,8 +75,10 @@ class Filter {
   bool finish_update(const Observation* observations, int count, const unsigned char* keep, Scalar* nis);
 
   Mat3 covariance3(int slot) const;
+  /// A feature's place in W; an inverse depth that is not positive counts as far away.
+  Vec3 point(int slot) const;
   Scalar variance(int row) const { return P_(row, row); }
-  /// Largest variance relative to the size, of inverse depth.
+  /// Rows that are still free.
   int room() const { return P_.capacity - state_.dim; }
 
  private:

@@ -5,8 +5,6 @@
 namespace pf {
 namespace {
 
-constexpr int kMinInliers = 8;  ///< fewer do not carry a pose
-
 /// How little is known of the velocities at a start that says nothing of them.
 constexpr Scalar kStartSpeed = Scalar(0.5);  // [m/s], times the start depth where that sets the scale
 constexpr Scalar kStartRate = Scalar(0.5);   // [rad/s]
@@ -25,6 +23,7 @@ bool FilterSlam::layout(Arena& arena, const Settings& settings) {
   observation_ = arena.take<Observation>(observations);
   entry_ = arena.take<int>(observations);
   keep_ = arena.take<unsigned char>(observations);
+  track_of_ = arena.take<int>(observations);
   scratch_ = arena.take<int>(static_cast<std::size_t>(settings.max_features));
   inbox_ = arena.take<PixelObservation>(static_cast<std::size_t>(settings.max_features + settings.max_observations));
   return arena.ok();

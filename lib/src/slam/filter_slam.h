@@ -27,6 +27,8 @@ struct PixelObservation {
 
 class FilterSlam {
  public:
+  static constexpr int kMinInliers = 8;  ///< fewer do not carry a pose
+
   bool layout(Arena& arena, const Settings& settings);
   void init(const Settings& settings);
 
@@ -63,7 +65,6 @@ class FilterSlam {
   void begin_at(const Body& body, const Scalar* covariance);
   void begin_from_knowledge();
   int find_track(std::uint32_t track) const;
-  int observe_visible();
   bool take_in(int first, int count);
   bool depth_is_known() const;
 
@@ -77,10 +78,13 @@ class FilterSlam {
   void add_target_points();
 
   // frame_door.cpp
-  void measure_frame(const ImageView& image);
-  void search(int first, int count);
+  int list_visible();
+  void predict_pixels(int first, int count);
+  int search(int first, int count);
+  void measure(int first, int count);
+  Scalar widest_ellipse(int count) const;
   void begin_features_in_image();
-  bool start_in_image(const ImageView& image);
+  bool start_in_image();
 
   Settings settings_;
   Filter filter_;
@@ -102,7 +106,8 @@ class FilterSlam {
   int track_count_ = 0;
   Observation* observation_ = nullptr;  ///< max_observations
   int* entry_ = nullptr;                ///< feature table entry of each observation
-  unsigned char* keep_ = nullptr;
+  unsigned char* keep_ = nullptr;       ///< of each observation: taken in
+  int* track_of_ = nullptr;             ///< and its track
   int* scratch_ = nullptr;  ///< max_features
   PixelObservation* inbox_ = nullptr;
 };

@@ -23,6 +23,7 @@ struct SearchTask {
 };
 
 struct SearchOutcome {
+  bool comparable = false;  ///< this view can be compared with the first one: not finding it means something
   bool found = false;
   Vec2 pixel = Vec2::Zero();
   Scalar sigma_scale = 1;  ///< of the measurement's standard deviation: 2^level of the finest level that was used
@@ -46,7 +47,7 @@ class Tracker {
   SearchOutcome search(const SearchTask& task) const;
 
   /// Corners of one cell of the image, best first. Returns how many.
-  int corners(const Rect& cell, Corner* out, int capacity);
+  int corners(const Rect& cell, int threshold, Corner* out, int capacity) const;
 
   const Pyramid& pyramid() const { return pyramid_; }
   ImageView image() const { return pyramid_.level[0]; }
@@ -63,6 +64,7 @@ class Tracker {
 
   Camera camera_;
   Pyramid pyramid_;
+  CornerWorkspace corner_workspace_;
   Appearance* appearance_ = nullptr;
   int capacity_ = 0;
 };

@@ -1,0 +1,159 @@
+#include "track/tracker.h"
+
+#include <cmath>
+
+#include "geometry/so3.h"
+#include "vision/align.h"
+#include "vision/blur.h"
+#include "vision/search.h"
+
+namespace pf {
+namespace {
+
+constexpr Scalar kSearchRadius = Scalar(9);   ///< [px of the level] an ellipse that is larger is searched a level up
+constexpr float kLeastSearchScore = 0.6f;
+constexpr float kLeastScore = 0.8f;           ///< of the aligned window
+constexpr float kAmbiguous = 0.04f;           ///< a second peak that is nearly as high as the first is a repeated texture
+
+/// Source pixels per current pixel within which a view can still be compared with the first one.
+constexpr Scalar kLeastScale = Scalar(0.25);
+constexpr Scalar kMostScale = Scalar(3.2);
+
+Scalar largest_eigenvalue(const Mat2& S) {
+  const Scalar mean = (S(0, 0) + S(1, 1)) / Scalar(2);
+  const Scalar half = (S(0, 0) - S(1, 1)) / Scalar(2);
+  return mean + std::sqrt(half * half + S(0, 1) * S(0, 1));
+}
+
+Mat2 inverse2(const Mat2& S) {
+  Mat2 inverse;
+  inverse << S(1, 1), -S(0, 1), -S(1, 0), S(0, 0);
+  return inverse / (S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0));
+}
+
+}  // namespace
+
+bool Tracker::layout(Arena& arena, int width, int height, int max_features) {
+  pyramid_.layout(arena, width, height, kLevels);
+  corner_workspace_.layout(arena, width);
+  appearance_ = arena.take<Appearance>(static_cast<std::size_t>(max_features));
+  capacity_ = max_features;
+  return arena.ok();
+}
+
+void Tracker::init(const Camera& camera) {
+  camera_ = camera;
+  for (int i = 0; i < capacity_; ++i) appearance_[i].used = false;
+}
+
+bool Tracker::begin_frame(const ImageView& image) {
+  pyramid_.build(image);
+  const int level = pyramid_.levels > 2 ? 2 : pyramid_.levels - 1;
+  return judge_frame(frame_statistics(pyramid_.level[level])) == FrameUse::kUsable;
+}
+
+int Tracker::remember(const Vec2& pixel, const Quat& q_WC, const Vec3& c_W) {
+  for (int i = 0; i < capacity_; ++i) {
+    Appearance& a = appearance_[i];
+    if (a.used) continue;
+    if (!extract_source(pyramid_, pixel, &a.patch)) return -1;
+    a.used = true;
+    a.pixel = pixel;
+    a.q_WC = q_WC;
+    a.c_W = c_W;
+    return i;
+  }
+  return -1;
+}
+
+void Tracker::forget(int appearance) {
+  if (appearance >= 0) appearance_[appearance].used = false;
+}
+
+/// Source pixels per current pixel about the feature, for a plane that faced the camera when the feature was first seen:
+/// current pixel -> ray -> plane -> source pixel, by central differences.
+bool Tracker::warp(const Appearance& source, const SearchTask& task, Mat2* A) const {
+  constexpr Scalar kStep = 4;
+  const Vec3 normal = task.p_W - source.c_W;
+  const Mat3 R_WC = task.q_WC.toRotationMatrix();
+  const Mat3 R_SW = source.q_WC.toRotationMatrix().transpose();
+  const Scalar height = normal.dot(task.p_W - task.c_W);
+  Vec2 at[2][2];
+  for (int axis = 0; axis < 2; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      Vec2 pixel = task.predicted;
+      pixel[axis] += side == 0 ? -kStep : kStep;
+      Vec3 ray_C;
+      if (!unproject(camera_, pixel, &ray_C)) return false;
+      const Vec3 ray_W = R_WC.lazyProduct(ray_C);
+      const Scalar slope = normal.dot(ray_W);
+      if (!(slope * height > Scalar(0))) return false;
+      const Vec3 X_W = task.c_W + ray_W * (height / slope);
+      if (!project(camera_, R_SW.lazyProduct(X_W - source.c_W), &at[axis][side])) return false;
+    }
+  for (int axis = 0; axis < 2; ++axis) A->col(axis) = (at[axis][1] - at[axis][0]) / (Scalar(2) * kStep);
+  return true;
+}
+
+SearchOutcome Tracker::search(const SearchTask& task) const {
+  SearchOutcome outcome;
+  if (task.appearance < 0) return outcome;
+  const Appearance& source = appearance_[task.appearance];
+  Mat2 A;
+  if (!warp(source, task, &A)) return outcome;
+  const Scalar scale = std::sqrt(std::abs(A.determinant()));
+  if (!(scale > kLeastScale && scale < kMostScale)) return outcome;
+  outcome.comparable = true;
+
+  int finest = 0;  // where the source is at least about as sharp as the current image
+  while (finest + 1 < pyramid_.levels && scale * static_cast<Scalar>(1 << finest) < Scalar(0.6)) ++finest;
+  int level = finest;
+  const Scalar radius = std::sqrt(task.gate * largest_eigenvalue(task.innovation));
+  while (level + 1 < pyramid_.levels && radius > kSearchRadius * static_cast<Scalar>(1 << level)) ++level;
+
+  float warped[kWarpSize * kWarpSize];
+  if (!warp_template(source.patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
+    // The patch does not reach so far at a coarse level: search the largest part at the finest one.
+    level = finest;
+    if (!warp_template(source.patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
+      outcome.comparable = false;
+      return outcome;
+    }
+  }
+  SearchTemplate pattern;
+  make_search_template(warped, kWarpSize, &pattern);
+  SearchEllipse ellipse;
+  ellipse.centre = to_level(task.predicted, level);
+  const Scalar factor = static_cast<Scalar>(1 << level);
+  Mat2 S = task.innovation / (factor * factor);
+  S(0, 0) += Scalar(0.1);
+  S(1, 1) += Scalar(0.1);
+  ellipse.inverse_covariance = inverse2(S);
+  ellipse.gate = task.gate;
+  const SearchResult found = pf::search(pyramid_.level[level], pattern, ellipse);
+  if (found.score < kLeastSearchScore || found.second > found.score - kAmbiguous) return outcome;
+
+  Vec2 position = found.position;
+  AlignResult aligned;
+  for (;; --level) {
+    AlignTemplate fine;
+    if (!make_align_template(warped, &fine)) return outcome;
+    aligned = align(pyramid_.level[level], fine, position);
+    if (aligned.converged) position = aligned.position;
+    if (level == finest) break;
+    if (!warp_template(source.patch, A * static_cast<Scalar>(1 << (level - 1)), kWarpSize, warped)) return outcome;
+    position = Vec2((position.x() + Scalar(0.25)) * Scalar(2), (position.y() + Scalar(0.25)) * Scalar(2));
+  }
+  if (!aligned.converged || aligned.zncc < kLeastScore) return outcome;
+  outcome.found = true;
+  outcome.pixel = from_level(position, finest);
+  outcome.sigma_scale = static_cast<Scalar>(1 << finest);
+  outcome.score = aligned.zncc;
+  return outcome;
+}
+
+int Tracker::corners(const Rect& cell, int threshold, Corner* out, int capacity) const {
+  return detect_corners(pyramid_.level[0], cell, threshold, out, capacity, corner_workspace_);
+}
+
+}  // namespace pf
