@@ -151,6 +151,8 @@ void MapPanel::draw(const Canvas& canvas, const FrameView& view, double x, doubl
       draw_camera(canvas, view, place(vec(view.pose.p_WC)), pixels);
     }
   }
+  canvas.rectangle(x + 4.0, y + 5.0, canvas.text_width("map from above", 12.0) + 16.0, 21.0, {0.055, 0.067, 0.088},
+                   0.8);
   canvas.colour(kDim);
   canvas.text(x + 12.0, y + 20.0, "map from above", 12.0);
   cairo_restore(pen);

@@ -29,7 +29,8 @@ std::string check(const Options& options, const std::string& backend) {
       (kind != "images" && kind != "euroc" && kind != "tum" && kind != "sim")) {
     return "source '" + options.source + "': write images:DIR, euroc:DIR, tum:DIR or sim:NAME";
   }
-  if (options.start != "auto" && options.start.rfind("target:", 0) != 0 && options.start.rfind("rectangle:", 0) != 0) {
+  if (options.start != "auto" && options.start != "target" && options.start.rfind("target:", 0) != 0 &&
+      options.start.rfind("rectangle:", 0) != 0) {
     return "--start " + options.start + ": write auto, target:FILE or rectangle:WxH (metres)";
   }
   if (options.withdraw_target_after >= 0 && options.start == "auto") {
@@ -58,7 +59,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       {"avx2", PF_KERNELS_AVX2}, {"avx512", PF_KERNELS_AVX512},       {"neon", PF_KERNELS_NEON}};
   app.add_option("--source", options.source, "images:DIR, euroc:DIR, tum:DIR or sim:NAME")->required();
   app.add_option("--calib", options.calibration, "calibration file (Kalibr, EuRoC, ROS camera_info or calib.yaml)");
-  app.add_option("--start", options.start, "auto, target:FILE or rectangle:WxH in metres")->capture_default_str();
+  app.add_option("--start", options.start,
+                 "auto, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
+      ->capture_default_str();
   app.add_option("--withdraw-target-after", options.withdraw_target_after, "measure the target no more after N frames")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--frames", options.frames, "at most N frames")->check(CLI::PositiveNumber);

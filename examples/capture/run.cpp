@@ -28,6 +28,13 @@ int fail(const std::string& line, int code = kExitRun) {
 
 void note(const std::string& line) { std::fprintf(stderr, "pf-capture: note: %s\n", line.c_str()); }
 
+/// "images:/data/desk/" to "desk"; a scene keeps its "sim:".
+std::string short_name(const std::string& source) {
+  const size_t end = source.find_last_not_of('/');
+  const size_t begin = source.find_last_of('/', end);
+  return begin == std::string::npos ? source : source.substr(begin + 1, end - begin);
+}
+
 /// A run from the first frame to the last: one step per frame, and what is kept between them.
 class Run {
  public:
@@ -77,11 +84,10 @@ int Run::go() {
   if (!session_.open(options_, source_, error, code)) {
     return fail(error, code);
   }
-  pf_pose_t truth{};
-  if (!outputs_.open(options_.out, options_.tracks, source_.truth(options_.skip, truth), error)) {
+  if (!outputs_.open(options_.out, options_.tracks, info.knows_truth, error)) {
     return fail(error);
   }
-  overlay_ = std::make_unique<Overlay>(session_, "planefold   " + options_.source);
+  overlay_ = std::make_unique<Overlay>(session_, "planefold   " + short_name(options_.source));
   if (options_.film &&
       !film_.open(outputs_.path("overlay.mp4"), overlay_->width(), overlay_->height(), info.rate_hz, error)) {
     note(error);
@@ -101,7 +107,11 @@ int Run::go() {
 bool Run::step(int64_t index) {
   const int64_t at = options_.skip + index;
   pf_image_t image{};
-  if (!source_.read(at, image, failure_)) {
+  const Read read = source_.read(at, image, failure_);
+  if (read == Read::kEnd) {
+    return false;
+  }
+  if (read == Read::kFailed) {
     failure_ = "frame " + std::to_string(at) + ": " + failure_;
     return false;
   }
@@ -126,7 +136,7 @@ bool Run::step(int64_t index) {
   statistics_.add(view_);
   outputs_.write(view_);
   pf_pose_t truth{};
-  if (source_.truth(at, truth)) {
+  if (source_.truth(truth)) {
     outputs_.write_truth(truth);
   }
   overlay_->add(view_);

@@ -2,6 +2,8 @@
 
 #include <planefold_platform/sequence.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 
@@ -53,8 +55,9 @@ bool Session::open(const Options& options, const Source& source, std::string& er
   } else if (options.start.rfind("rectangle:", 0) == 0) {
     has_target_ = pf_parse_rectangle(options.start.c_str() + 10, &target_, message) == 0;
     code = has_target_ ? code : kExitUsage;
-  } else {
+  } else if (options.start == "target") {
     has_target_ = source.target(target_);
+    std::snprintf(message, sizeof(message), "--start target: this source knows no target; write target:FILE");
   }
   if (!has_target_ && options.start != "auto") {
     error = message;

@@ -20,11 +20,11 @@ class FolderSource : public Source {
 
   const SourceInfo& info() const override { return info_; }
 
-  bool read(int64_t index, pf_image_t& image, std::string& error) override {
+  Read read(int64_t index, pf_image_t& image, std::string& error) override {
     char message[PF_SEQUENCE_MESSAGE];
     const bool done = pf_read_sequence_frame(sequence_.get(), index, &image, message) == 0;
     error = message;
-    return done;
+    return done ? Read::kDone : Read::kFailed;
   }
 
   std::string name(int64_t index) const override { return pf_get_sequence_frame_path(sequence_.get(), index); }

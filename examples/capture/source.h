@@ -11,12 +11,15 @@
 
 namespace pf::capture {
 
+enum class Read { kDone, kEnd, kFailed };
+
 struct SourceInfo {
   pf_camera_t camera{};
-  int64_t count = 0;
+  int64_t count = 0;  ///< at most; a simulated camera that drops frames gives fewer
   double rate_hz = 30.0;
   std::string truth_path;  ///< a trajectory that lies beside the source; "" where there is none
   std::string warning;
+  bool knows_truth = false;  ///< by truth() for every frame that was read
 };
 
 /// Frames by number: a folder or a simulated scene.
@@ -24,13 +27,13 @@ class Source {
  public:
   virtual ~Source() = default;
   virtual const SourceInfo& info() const = 0;
-  /// false: error is one line. The pixels are valid until the next call.
-  virtual bool read(int64_t index, pf_image_t& image, std::string& error) = 0;
+  /// Frames are read in the order of their numbers. kFailed: error is one line. The pixels are valid until the next call.
+  virtual Read read(int64_t index, pf_image_t& image, std::string& error) = 0;
   /// File or name of a frame, for messages.
   virtual std::string name(int64_t index) const = 0;
-  /// The true pose of a frame, where the source itself knows it.
-  virtual bool truth(int64_t, pf_pose_t&) { return false; }
-  /// The target that the source shows, where --start auto should use one.
+  /// The true pose of the frame that was read last.
+  virtual bool truth(pf_pose_t&) { return false; }
+  /// The target that the source itself knows, for --start target.
   virtual bool target(pf_target_t&) const { return false; }
 };
 
