@@ -4,15 +4,20 @@
 venv_python() {
   local venv=build/venv requirements=tools/requirements.txt stamp
   stamp=$venv/installed-$(sha256sum "$requirements" | cut -c1-16)
-  if [ ! -e "$stamp" ]; then
+  mkdir -p build
+  (
+    # Programs that start at the same time wait for the one that makes it.
+    exec 9>build/venv.lock
+    ! command -v flock >/dev/null || flock 9
+    [ ! -e "$stamp" ] || exit 0
     echo "Making the Python environment for plots in $venv (once; downloads about 150 MB)" >&2
     rm -rf "$venv"
     if ! { python3 -m venv "$venv" &&
       "$venv/bin/pip" install --quiet --disable-pip-version-check -r "$requirements"; } >&2; then
       echo "The Python environment could not be made; no plots." >&2
-      return 1
+      exit 1
     fi
     touch "$stamp"
-  fi
+  ) || return 1
   echo "$PWD/$venv/bin/python"
 }

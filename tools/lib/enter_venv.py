@@ -1,0 +1,22 @@
+"""For Python programs of the project that need evo or matplotlib: go on inside the environment of venv.sh."""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+
+def enter(source):
+    """Returns inside build/venv of the project at source; makes the environment where it is missing, with a progress line."""
+    source = pathlib.Path(source)
+    venv = source / "build" / "venv"
+    inside = venv.exists() and os.path.samefile(sys.prefix, venv)
+    if inside or os.environ.get("PLANEFOLD_VENV_ENTERED"):
+        os.environ.pop("PLANEFOLD_VENV_ENTERED", None)
+        return
+    made = subprocess.run(["bash", "-c", ". tools/lib/venv.sh && venv_python"], cwd=source, stdout=subprocess.PIPE, text=True)
+    if made.returncode != 0:
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: needs evo and matplotlib, and their Python environment could not be made")
+    python = made.stdout.strip()
+    os.environ["PLANEFOLD_VENV_ENTERED"] = "1"
+    os.execv(python, [python, *sys.argv])

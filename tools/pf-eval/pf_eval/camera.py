@@ -1,0 +1,83 @@
+"""Calibration files and projection, for comparing with what was measured in the images."""
+
+import numpy as np
+
+from . import Refused
+from .files import read_yaml
+
+
+class Camera:
+    """model: none, radtan, equidistant, division. K fx fy cx cy [px]; distortion as planefold.h orders it."""
+
+    def __init__(self, model, width, height, intrinsics, distortion):
+        self.model, self.width, self.height = model, width, height
+        self.fx, self.fy, self.cx, self.cy = intrinsics
+        self.distortion = np.zeros(8)
+        self.distortion[:len(distortion)] = distortion
+
+    def project(self, p_C):
+        """Pixels (n,2) of points in C (n,3); NaN where a point cannot be seen."""
+        x, y, z = np.asarray(p_C, dtype=float).T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if self.model == "equidistant":
+                r = np.hypot(x, y)
+                theta = np.arctan2(r, z)
+                k = self.distortion
+                t2 = theta * theta
+                bent = theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))))
+                ratio = np.where(r > 1e-12, bent / np.maximum(r, 1e-300), 1 / z)
+                a, b = ratio * x, ratio * y
+            else:
+                a, b = x / z, y / z
+                if self.model == "radtan":
+                    a, b = self._radtan(a, b)
+            u, v = self.fx * a, self.fy * b
+            if self.model == "division":
+                shrink = 1 / np.sqrt(1 + 2 * self.distortion[0] * (u * u + v * v))
+                u, v = shrink * u, shrink * v
+        pixels = np.stack([u + self.cx, v + self.cy], axis=1)
+        if self.model != "equidistant":
+            pixels[z <= 0] = np.nan
+        return pixels
+
+    def _radtan(self, a, b):
+        k1, k2, p1, p2, k3 = self.distortion[:5]
+        r2 = a * a + b * b
+        radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+        return (a * radial + 2 * p1 * a * b + p2 * (r2 + 2 * a * a),
+                b * radial + p1 * (r2 + 2 * b * b) + 2 * p2 * a * b)
+
+
+MODELS = {"": "none", "none": "none", "radtan": "radtan", "plumb_bob": "radtan", "radial-tangential": "radtan",
+          "equidistant": "equidistant", "fisheye": "equidistant", "harris_division": "division", "division": "division"}
+
+
+def _model(path, name):
+    try:
+        return MODELS[str(name or "").lower()]
+    except KeyError as error:
+        raise Refused(f"{path}: distortion_model {name} is none of {', '.join(sorted(m for m in MODELS if m))}") from error
+
+
+def read_camera(path):
+    """The plain form, Kalibr's camchain (cam0), EuRoC's sensor.yaml, or ROS camera_info."""
+    fields = read_yaml(path)
+    try:
+        if "cam0" in fields:
+            fields = fields["cam0"]
+        if "fx" in fields:
+            intrinsics = [fields[name] for name in ("fx", "fy", "cx", "cy")]
+            size, distortion = (fields["width"], fields["height"]), fields.get("distortion")
+        elif "camera_matrix" in fields:
+            K = fields["camera_matrix"]["data"]
+            intrinsics = [K[0], K[4], K[2], K[5]]
+            size, distortion = (fields["image_width"], fields["image_height"]), fields["distortion_coefficients"]["data"]
+        elif "intrinsics" in fields:
+            intrinsics, size = fields["intrinsics"], fields["resolution"]
+            distortion = fields.get("distortion_coefficients", fields.get("distortion_coeffs"))
+        else:
+            raise Refused(f"{path}: is no calibration (no fx, intrinsics or camera_matrix)")
+        return Camera(_model(path, fields.get("distortion_model")), int(size[0]), int(size[1]),
+                      [float(value) for value in intrinsics], [float(value) for value in distortion or []])
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        raise Refused(f"{path}: a field of the calibration is missing or wrong ({error})") from error

@@ -1,0 +1,114 @@
+"""Trajectory errors after alignment, by evo, and the consistency of the covariance."""
+
+import copy
+
+import numpy as np
+from evo.core import metrics
+from evo.core.geometry import GeometryException
+from evo.core.trajectory import PoseTrajectory3D
+from evo.core.units import Unit
+from scipy.spatial.transform import Rotation
+
+from . import Refused
+from .association import associate
+
+
+class Comparison:
+    """A run beside its truth, frame by frame.
+
+    t [s]; estimate, truth  (n,3) positions after alignment [m]; position_error (n,3) truth - estimate, in W [m]
+    rotation_error (n,3) theta of R_true = Exp(theta) R_est, in W [rad]; covariance (n,6,6) or None after alignment
+    summary  what pf-eval prints
+    """
+
+
+def nees(error, covariance):
+    """e^T P^-1 e for rows of errors; NaN where P is not positive definite."""
+    result = np.full(len(error), np.nan)
+    for i, (e, P) in enumerate(zip(error, covariance)):
+        try:
+            y = np.linalg.solve(np.linalg.cholesky(0.5 * (P + P.T)), e)
+            result[i] = y @ y
+        except np.linalg.LinAlgError:
+            pass
+    return result
+
+
+def default_alignment(report):
+    """Runs from a known target or pose are in the frame of that target; others choose their own frame and scale."""
+    start = str(report.get("start", ""))
+    return "none" if start.startswith(("target", "rectangle", "points", "pose")) else "sim3"
+
+
+def _evo(trajectory):
+    return PoseTrajectory3D(positions_xyz=trajectory.p.copy(), orientations_quat_wxyz=trajectory.q.copy(),
+                            timestamps=trajectory.t.copy())
+
+
+def _statistic(metric, pair, name="rmse"):
+    metric.process_data(pair)
+    return float(metric.get_statistic(metrics.StatisticsType[name]))
+
+
+def _rpe(pair, delta):
+    """RMSE of the relative translation over delta frames, from every frame [m]; None for too short a run."""
+    if pair[0].num_poses <= delta:
+        return None
+    return _statistic(metrics.RPE(metrics.PoseRelation.translation_part, delta, Unit.frames, all_pairs=True), pair)
+
+
+def compare(run, truth, align, own_frame=True):
+    """Comparison of a run with truth. align: none, se3, sim3. own_frame false: nobody told the run the truth's frame."""
+    estimate, matched, how = associate(run, truth)
+    reference, aligned = _evo(matched), _evo(estimate)
+    scale = 1.0
+    if align != "none":
+        if len(estimate) < 3:
+            raise Refused(f"{run.source}: has {len(estimate)} frames with truth; alignment needs at least 3")
+        try:
+            scale = float(aligned.align(reference, correct_scale=align == "sim3")[2])
+        except GeometryException as error:
+            raise Refused(f"{run.source}: cannot be aligned, its positions or the true ones do not spread "
+                          "(standing still, or on a straight line)") from error
+    pair = (reference, aligned)
+    rotation = metrics.APE(metrics.PoseRelation.rotation_angle_deg)
+
+    result = Comparison()
+    result.t, result.estimate, result.truth = estimate.t, aligned.positions_xyz, matched.p
+    result.rotations = np.array([pose[:3, :3] for pose in aligned.poses_se3])
+    result.position_error = matched.p - aligned.positions_xyz
+    turn = np.einsum("nij,nkj->nik", matched.rotations(), result.rotations)
+    result.rotation_error = Rotation.from_matrix(turn).as_rotvec()
+    result.covariance = estimate.covariance if align == "none" else None
+    result.align = align
+
+    rate = 1.0 / np.median(np.diff(estimate.t)) if len(estimate) > 1 else 0.0
+    own = Rotation.from_matrix(turn).mean().inv() * Rotation.from_matrix(turn) if align != "none" else None
+    result.summary = {
+        "ate_rmse_m": _statistic(metrics.APE(metrics.PoseRelation.translation_part), pair),
+        "ate_max_m": _statistic(metrics.APE(metrics.PoseRelation.translation_part), pair, "max"),
+        "rpe_rmse_m": _rpe(pair, 1),
+        "rpe_1s_rmse_m": _rpe(copy.deepcopy(pair), max(1, round(rate))),
+        "rot_rmse_deg": _statistic(rotation, pair),
+        "rot_max_deg": float(np.degrees(np.linalg.norm(result.rotation_error, axis=1).max())),
+        "rot_own_rmse_deg": None if own is None else float(np.degrees(np.sqrt(np.mean(own.magnitude() ** 2)))),
+        "pairs": len(estimate),
+        "poses": len(run),
+        "scale": scale,
+        "path_m": matched.path(),
+        "align": align,
+        "association": how,
+        "nees_position": None, "nees_pose": None, "nees_frames": 0,
+        "nees_position_median": None, "nees_pose_median": None,
+    }
+    result.nees_position = result.nees_pose = None
+    if align == "none" and own_frame and estimate.covariance is not None:
+        result.nees_position = nees(result.position_error, estimate.covariance[:, 3:, 3:])
+        result.nees_pose = nees(np.hstack([result.rotation_error, result.position_error]), estimate.covariance)
+        used = np.isfinite(result.nees_pose)
+        if used.any():
+            result.summary.update(
+                nees_position=float(np.mean(result.nees_position[used])), nees_pose=float(np.mean(result.nees_pose[used])),
+                nees_position_median=float(np.median(result.nees_position[used])),
+                nees_pose_median=float(np.median(result.nees_pose[used])), nees_frames=int(used.sum()))
+    return result

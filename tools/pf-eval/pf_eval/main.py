@@ -1,0 +1,138 @@
+"""pf-eval: the command."""
+
+import argparse
+import json
+import math
+import pathlib
+import sys
+
+import numpy as np
+
+from . import Refused
+from .camera import read_camera
+from .corners import compare_corners, read_target
+from .errors import compare, default_alignment
+from .files import read_run, read_tum
+
+DESCRIPTION = """Compares a run of pf-capture with ground truth.
+
+  pf-eval RUN --truth FILE.tum [--align none|se3|sim3] [--json [FILE]]
+  pf-eval RUN --corners FILE.csv --target FILE.yaml [--calib FILE] [--json [FILE]]
+
+RUN is an output folder of pf-capture, or a trajectory in the TUM form (timestamp tx ty tz qx qy qz qw)."""
+
+NOTES = """Truth is taken within 10 ms of a frame: the nearest pose, or interpolated where truth comes at least 1.5 times as
+often as the frames ("association" says which). Errors are those of evo after Umeyama alignment of positions; rpe_rmse_m is
+from frame to frame. rot_rmse_deg uses the alignment that the positions gave; rot_own_rmse_deg the best rotation for the
+rotations themselves, which says more where the path is nearly straight. NEES is given for runs in the truth's own
+frame only, so with --align none; nees_position has 3 degrees of freedom, nees_pose 6.
+
+Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
+
+TABLE = {
+    "ate_rmse_m": ("position error, RMS", "m"), "ate_max_m": ("position error, largest", "m"),
+    "rpe_rmse_m": ("position error frame to frame, RMS", "m"), "rpe_1s_rmse_m": ("position error over 1 s, RMS", "m"),
+    "rot_rmse_deg": ("rotation error, RMS", "deg"), "rot_max_deg": ("rotation error, largest", "deg"),
+    "rot_own_rmse_deg": ("rotation error, rotations aligned by themselves", "deg"),
+    "pairs": ("frames compared", ""), "poses": ("of tracked frames", ""), "scale": ("scale found", ""),
+    "path_m": ("true path", "m"), "align": ("alignment", ""), "association": ("truth taken", ""),
+    "nees_position": ("NEES position, mean (3 is honest)", ""), "nees_pose": ("NEES pose, mean (6 is honest)", ""),
+    "nees_position_median": ("NEES position, median (2.4 is honest)", ""),
+    "nees_pose_median": ("NEES pose, median (5.3 is honest)", ""),
+    "corner_rms_px": ("corner distance, RMS", "px"), "corner_max_px": ("corner distance, largest", "px"),
+    "corner_median_px": ("corner distance, median", "px"), "corner_worst_frame": ("worst frame", ""),
+    "corner_bias_u_px": ("mean offset, horizontal", "px"), "corner_bias_v_px": ("mean offset, vertical", "px"),
+    "frames": ("frames compared", ""), "frames_measured": ("of frames with measured corners", ""),
+}
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="pf-eval", description=DESCRIPTION, epilog=NOTES,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", metavar="RUN")
+    parser.add_argument("--truth", metavar="FILE.tum")
+    parser.add_argument("--align", choices=["none", "se3", "sim3"],
+                        help="default: none where report.json says that the run started from a target, else sim3")
+    parser.add_argument("--corners", metavar="FILE.csv", help="frame,t,u_TL,v_TL,u_TR,v_TR,u_BR,v_BR,u_BL,v_BL")
+    parser.add_argument("--target", metavar="FILE.yaml", help="the target that the run was started from")
+    parser.add_argument("--calib", metavar="FILE", help="default: calib.yaml in RUN, or beside the corners")
+    parser.add_argument("--skip-frames", metavar="N", type=int, default=0, help="leave out corners of the first N frames")
+    parser.add_argument("--json", metavar="FILE", nargs="?", const="-", help="results as JSON, to a file or the output")
+    parser.add_argument("--per-frame", metavar="FILE.csv", help="errors frame by frame")
+    options = parser.parse_args(words)
+    if (options.truth is None) == (options.corners is None):
+        parser.error("give either --truth or --corners")
+    if options.corners and not options.target:
+        parser.error("--corners needs --target")
+    return options
+
+
+def evaluate_truth(options):
+    run, report, folder = read_run(options.run)
+    truth = read_tum(options.truth)
+    align = options.align or default_alignment(report)
+    result = compare(run, truth, align, own_frame=report.get("start") != "auto")
+    if options.per_frame:
+        columns = [result.t[:, None], result.position_error, result.rotation_error]
+        names = "t_s,e_x_m,e_y_m,e_z_m,theta_x_rad,theta_y_rad,theta_z_rad"
+        if result.nees_pose is not None:
+            columns += [result.nees_position[:, None], result.nees_pose[:, None]]
+            names += ",nees_position,nees_pose"
+        write_rows(options.per_frame, names, np.hstack(columns))
+    return result.summary
+
+
+def evaluate_corners(options):
+    run, _, folder = read_run(options.run)
+    places = [folder / "calib.yaml", pathlib.Path(options.corners).parent / "calib.yaml"]
+    calibration = options.calib or next((place for place in places if place.exists()), None)
+    if calibration is None:
+        raise Refused(f"{places[0]}: there is no such file; give the calibration with --calib")
+    target_W = read_target(options.target)
+    summary, rows = compare_corners(run, read_camera(calibration), target_W, options.corners, options.skip_frames)
+    if options.per_frame:
+        write_rows(options.per_frame, "frame,t_s,TL_px,TR_px,BR_px,BL_px", rows)
+    return summary
+
+
+def write(path, text):
+    try:
+        pathlib.Path(path).write_text(text)
+    except OSError as error:
+        raise Refused(f"{path}: cannot be written ({error.strerror})") from error
+
+
+def write_rows(path, names, rows):
+    write(path, names + "\n" + "".join(",".join(f"{value:.9g}" for value in row) + "\n" for row in rows))
+
+
+def finite(summary):
+    return {name: None if isinstance(value, float) and not math.isfinite(value) else value
+            for name, value in summary.items()}
+
+
+def table(summary):
+    lines = []
+    for name, (label, unit) in TABLE.items():
+        if summary.get(name) is not None:
+            value = summary[name]
+            shown = f"{value:.4g}" if isinstance(value, float) else str(value)
+            lines.append(f"  {label:48s} {shown:>10s} {unit}".rstrip())
+    return "\n".join(lines)
+
+
+def main(words=None):
+    options = arguments(words)
+    try:
+        summary = finite(evaluate_truth(options) if options.truth else evaluate_corners(options))
+        text = json.dumps(summary, indent=2) + "\n"
+        if options.json == "-":
+            sys.stdout.write(text)
+        else:
+            if options.json:
+                write(options.json, text)
+            print(f"{options.run}\n{table(summary)}")
+    except Refused as refused:
+        print(f"pf-eval: {refused}", file=sys.stderr)
+        return 1
+    return 0
