@@ -10,8 +10,8 @@ namespace {
 
 constexpr const char* kFooter =
     "In the window: space pauses, r resets, s saves the picture, q quits.\n"
-    "Writes into --out: report.json, trajectory.txt (TUM), covariance.csv, trajectory_all.txt, map.ply, calib.yaml,\n"
-    "overlay.mp4, overlay_mid.png, overlay_last.png, and truth.tum where the source knows it.\n"
+    "Writes into --out: report.json, trajectory.txt (TUM), covariance.csv, trajectory_all.txt, frames.csv, map.ply,\n"
+    "calib.yaml, overlay.mp4, overlay_mid.png, overlay_last.png, and truth.tum where the source knows it.\n"
     "Exit code: 0 done, 1 the run failed, ended early or tracked nothing, 2 the command line is wrong.";
 
 int refuse(const std::string& line) {

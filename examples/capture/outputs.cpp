@@ -79,6 +79,7 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, std::stri
   trajectory_ = create("trajectory.txt", error);
   trajectory_all_ = create("trajectory_all.txt", error);
   covariance_ = create("covariance.csv", error);
+  frames_ = create("frames.csv", error);
   if (tracks) {
     tracks_ = create("tracks.csv", error);
   }
@@ -92,6 +93,7 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, std::stri
   std::fprintf(trajectory_all_.get(),
                "# T_WC of every frame with a pose, coasting ones too: timestamp tx ty tz qx qy qz qw\n");
   std::fprintf(covariance_.get(), "# rows of trajectory.txt: timestamp, 6x6 of (theta, p) in W, row-major [rad, m]\n");
+  std::fprintf(frames_.get(), "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof\n");
   if (tracks_) {
     std::fprintf(tracks_.get(), "frame,id,status,kind,predicted_u,predicted_v,s_uu,s_uv,s_vv,measured_u,measured_v\n");
   }
@@ -102,6 +104,10 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, std::stri
 }
 
 void Outputs::write(const FrameView& view) {
+  const pf_report_t& report = view.report;
+  put_seconds(frames_.get(), view.image.t_ns);
+  std::fprintf(frames_.get(), ",%s,%d,%d,%d,%d,%d,%.4f,%.6g,%d\n", state_name(report.state), report.attempts,
+               report.matches, report.inliers, report.features, report.state_dim, view.ms, report.nis, report.nis_dof);
   if (view.has_pose) {
     put_tum(trajectory_all_.get(), view.pose);
   }
@@ -144,7 +150,7 @@ bool Outputs::finish(const FrameView& last, const pf_camera_t& camera, const std
   write_ply(ply.get(), last.features);
   write_calibration(calibration.get(), camera);
   std::fputs(report.c_str(), json.get());
-  const File* files[] = {&trajectory_, &trajectory_all_, &covariance_, &tracks_, &truth_, &ply, &calibration, &json};
+  const File* files[] = {&trajectory_, &trajectory_all_, &covariance_, &frames_, &tracks_, &truth_, &ply, &calibration, &json};
   for (const File* file : files) {
     if (*file && (std::fflush(file->get()) != 0 || std::ferror(file->get()) != 0)) {
       error = folder_.string() + ": could not be written completely (" + std::strerror(errno) + "); is the disk full?";

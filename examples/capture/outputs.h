@@ -18,7 +18,8 @@ class Outputs {
   /// Makes the folder and opens the files. false: error is one line.
   bool open(const std::string& folder, bool tracks, bool truth, std::string& error);
 
-  /// trajectory.txt and covariance.csv where the frame was tracked, trajectory_all.txt wherever there is a pose, tracks.csv.
+  /// trajectory.txt and covariance.csv where the frame was tracked, trajectory_all.txt wherever there is a pose,
+  /// frames.csv in every frame, tracks.csv.
   void write(const FrameView& view);
   void write_truth(const pf_pose_t& pose);
   /// map.ply and calib.yaml; false when a file could not be written completely.
@@ -35,7 +36,7 @@ class Outputs {
   File create(const char* name, std::string& error) const;
 
   std::filesystem::path folder_;
-  File trajectory_, trajectory_all_, covariance_, tracks_, truth_;
+  File trajectory_, trajectory_all_, covariance_, frames_, tracks_, truth_;
 };
 
 }  // namespace pf::capture
