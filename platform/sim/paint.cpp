@@ -11,25 +11,24 @@ Canvas::Canvas(double width_m, double height_m, double texel_size_m, float fill)
       texel_m(texel_size_m),
       grey(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
 
-void paint_noise(Canvas &canvas, Random &random, double amplitude, double coarse_m, int octaves,
-                 double persistence) {
+void paint_noise(Canvas& canvas, Random& random, double amplitude, double coarse_m, int octaves, double persistence) {
   double cell = coarse_m / canvas.texel_m;
   for (int o = 0; o < octaves && cell >= 1.5; ++o, cell *= 0.5, amplitude *= persistence) {
     const int w = static_cast<int>(canvas.width / cell) + 2, h = static_cast<int>(canvas.height / cell) + 2;
     std::vector<float> lattice(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
-    for (float &v : lattice) v = static_cast<float>(random.uniform(-amplitude, amplitude));
+    for (float& v : lattice) v = static_cast<float>(random.uniform(-amplitude, amplitude));
     for (int j = 0; j < canvas.height; ++j) {
       const double y = j / cell;
       const int y0 = static_cast<int>(y);
       const double fy = y - y0;
       const auto b = static_cast<float>(fy * fy * (3 - 2 * fy));
-      const float *row = &lattice[static_cast<std::size_t>(y0) * static_cast<std::size_t>(w)];
+      const float* row = &lattice[static_cast<std::size_t>(y0) * static_cast<std::size_t>(w)];
       for (int i = 0; i < canvas.width; ++i) {
         const double x = i / cell;
         const int x0 = static_cast<int>(x);
         const double fx = x - x0;
         const auto a = static_cast<float>(fx * fx * (3 - 2 * fx));
-        const float *p = row + x0;
+        const float* p = row + x0;
         const float top = p[0] + a * (p[1] - p[0]), bottom = p[w] + a * (p[w + 1] - p[w]);
         canvas.at(i, j) += top + b * (bottom - top);
       }
@@ -41,26 +40,28 @@ namespace {
 
 /// Texels of the square of half side `reach` about (ci, cj), cut at the canvas.
 struct Window {
-  Window(const Canvas &canvas, double ci, double cj, double reach)
-      : i0(std::max(0, static_cast<int>(ci - reach))), i1(std::min(canvas.width, static_cast<int>(ci + reach) + 2)),
-        j0(std::max(0, static_cast<int>(cj - reach))), j1(std::min(canvas.height, static_cast<int>(cj + reach) + 2)) {}
+  Window(const Canvas& canvas, double ci, double cj, double reach)
+      : i0(std::max(0, static_cast<int>(ci - reach))),
+        i1(std::min(canvas.width, static_cast<int>(ci + reach) + 2)),
+        j0(std::max(0, static_cast<int>(cj - reach))),
+        j1(std::min(canvas.height, static_cast<int>(cj + reach) + 2)) {}
   int i0, i1, j0, j1;
 };
 
 /// Sizes spread evenly over the octaves between the two.
-double draw_size(Random &random, double smallest, double largest) {
+double draw_size(Random& random, double smallest, double largest) {
   return smallest * std::pow(largest / smallest, random.uniform());
 }
 
-float draw_contrast(Random &random, double contrast) {
+float draw_contrast(Random& random, double contrast) {
   const double c = random.uniform(0.4, 1.0) * contrast;
   return static_cast<float>(random.uniform() < 0.5 ? -c : c);
 }
 
 }  // namespace
 
-void paint_rectangles(Canvas &canvas, Random &random, int count, double smallest_m, double largest_m,
-                      double contrast, bool upright) {
+void paint_rectangles(Canvas& canvas, Random& random, int count, double smallest_m, double largest_m, double contrast,
+                      bool upright) {
   for (int k = 0; k < count; ++k) {
     const double a = 0.5 * draw_size(random, smallest_m, largest_m) / canvas.texel_m;
     const double b = a * random.uniform(0.4, 1.0);
@@ -78,8 +79,7 @@ void paint_rectangles(Canvas &canvas, Random &random, int count, double smallest
   }
 }
 
-void paint_blobs(Canvas &canvas, Random &random, int count, double smallest_m, double largest_m,
-                 double contrast) {
+void paint_blobs(Canvas& canvas, Random& random, int count, double smallest_m, double largest_m, double contrast) {
   for (int k = 0; k < count; ++k) {
     const double a = 0.5 * draw_size(random, smallest_m, largest_m) / canvas.texel_m;
     const double b = a * random.uniform(0.4, 1.0);
@@ -91,13 +91,12 @@ void paint_blobs(Canvas &canvas, Random &random, int count, double smallest_m, d
       for (int i = window.i0; i < window.i1; ++i) {
         const double di = i + 0.5 - ci, dj = j + 0.5 - cj;
         const double x = (c * di + s * dj) / a, y = (c * dj - s * di) / b, r = x * x + y * y;
-        if (r < 1)
-          canvas.at(i, j) = std::clamp(canvas.at(i, j) + (r < 0.6 ? inner : rim), 10.0f, 245.0f);
+        if (r < 1) canvas.at(i, j) = std::clamp(canvas.at(i, j) + (r < 0.6 ? inner : rim), 10.0f, 245.0f);
       }
   }
 }
 
-void paint_box(Canvas &canvas, double u0_m, double v0_m, double u1_m, double v1_m, double grey) {
+void paint_box(Canvas& canvas, double u0_m, double v0_m, double u1_m, double v1_m, double grey) {
   const double x0 = u0_m / canvas.texel_m, x1 = u1_m / canvas.texel_m;
   const double y0 = v0_m / canvas.texel_m, y1 = v1_m / canvas.texel_m;
   const int i1 = std::min(canvas.width, static_cast<int>(std::ceil(x1)));
@@ -106,13 +105,12 @@ void paint_box(Canvas &canvas, double u0_m, double v0_m, double u1_m, double v1_
     for (int i = std::max(0, static_cast<int>(x0)); i < i1; ++i) {
       const double cover = std::max(0.0, std::min(x1, i + 1.0) - std::max(x0, i + 0.0)) *
                            std::max(0.0, std::min(y1, j + 1.0) - std::max(y0, j + 0.0));
-      float &g = canvas.at(i, j);
+      float& g = canvas.at(i, j);
       g += static_cast<float>(cover) * (static_cast<float>(grey) - g);
     }
 }
 
-void paint_print(Canvas &canvas, Random &random, double u0_m, double v0_m, double u1_m, double v1_m,
-                 double line_m) {
+void paint_print(Canvas& canvas, Random& random, double u0_m, double v0_m, double u1_m, double v1_m, double line_m) {
   for (double v = v0_m + line_m; v + line_m < v1_m; v += 1.8 * line_m) {
     double u = u0_m + line_m * random.uniform(0.5, 3.0);
     while (u < u1_m - 2 * line_m) {
@@ -124,16 +122,16 @@ void paint_print(Canvas &canvas, Random &random, double u0_m, double v0_m, doubl
   }
 }
 
-void paint_checker(Canvas &canvas, double square_m, double dark, double bright) {
+void paint_checker(Canvas& canvas, double square_m, double dark, double bright) {
   for (int b = 0; b * square_m < canvas.height * canvas.texel_m; ++b)
     for (int a = 0; a * square_m < canvas.width * canvas.texel_m; ++a)
       paint_box(canvas, a * square_m, b * square_m, (a + 1) * square_m, (b + 1) * square_m,
                 (a + b) % 2 ? bright : dark);
 }
 
-void paint_repeat(Canvas &canvas, double cell_m) {
-  const int n = std::clamp(static_cast<int>(std::lround(cell_m / canvas.texel_m)), 1,
-                           std::min(canvas.width, canvas.height));
+void paint_repeat(Canvas& canvas, double cell_m) {
+  const int n =
+      std::clamp(static_cast<int>(std::lround(cell_m / canvas.texel_m)), 1, std::min(canvas.width, canvas.height));
   for (int j = 0; j < canvas.height; ++j)
     for (int i = 0; i < canvas.width; ++i) canvas.at(i, j) = canvas.at(i % n, j % n);
 }

@@ -13,7 +13,7 @@ class Random {
  public:
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0) {
     std::uint64_t s = seed + 0x632be59bd9b4e019ull * (stream + 1);
-    for (auto &word : state_) {
+    for (auto& word : state_) {
       s += 0x9e3779b97f4a7c15ull;
       std::uint64_t z = s;
       z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;

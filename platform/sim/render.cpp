@@ -22,12 +22,16 @@ bool inside_shape(Shape shape, float u, float v, float w, float h) {
   return std::fabs(x) < std::min(half, 0.5f);
 }
 
-Renderer::Renderer(const pf_camera_t &camera, int samples)
-    : width_(camera.width), height_(camera.height), samples_(samples),
-      tiles_x_((camera.width + kTile - 1) / kTile), tiles_y_((camera.height + kTile - 1) / kTile),
+Renderer::Renderer(const pf_camera_t& camera, int samples)
+    : width_(camera.width),
+      height_(camera.height),
+      samples_(samples),
+      tiles_x_((camera.width + kTile - 1) / kTile),
+      tiles_y_((camera.height + kTile - 1) / kTile),
       pixel_angle_(1.0 / std::min(camera.fx, camera.fy)),
       rays_(index(width_) * index(height_) * index(samples * samples)),
-      centre_rays_(index(width_) * index(height_)), tiles_(index(tiles_x_) * index(tiles_y_)) {
+      centre_rays_(index(width_) * index(height_)),
+      tiles_(index(tiles_x_) * index(tiles_y_)) {
   const auto ray_at = [&](double u, double v) {
     const double pixel[2] = {u, v};
     double ray[3] = {0, 0, 1};
@@ -54,7 +58,7 @@ Renderer::Renderer(const pf_camera_t &camera, int samples)
       const int j0 = ty * kTile, j1 = std::min(height_, j0 + kTile) - 1;
       const auto corner = [&](int i, int j) { return centre_rays_[index(j) * index(width_) + index(i)]; };
       const Vec3 c[4] = {corner(i0, j0), corner(i1, j0), corner(i1, j1), corner(i0, j1)};
-      Tile &tile = tiles_[index(ty) * index(tiles_x_) + index(tx)];
+      Tile& tile = tiles_[index(ty) * index(tiles_x_) + index(tx)];
       tile.slack = 1.5 * pixel_angle_;
       for (int k = 0; k < 4; ++k) {
         const Vec3 n = c[k].cross(c[(k + 1) % 4]);
@@ -62,17 +66,17 @@ Renderer::Renderer(const pf_camera_t &camera, int samples)
       }
       for (int j = j0; j <= j1; ++j)
         for (int i = i0; i <= i1; ++i)
-          for (const Vec3 &edge : tile.edge)
+          for (const Vec3& edge : tile.edge)
             tile.slack = std::max(tile.slack, 1.5 * pixel_angle_ - edge.dot(corner(i, j)));
     }
 }
 
-void Renderer::cull(const Scene &scene, const Pose &pose, double extra_slack, int tile_row,
-                    std::vector<std::vector<int>> &lists) const {
+void Renderer::cull(const Scene& scene, const Pose& pose, double extra_slack, int tile_row,
+                    std::vector<std::vector<int>>& lists) const {
   const Mat3 R_CW = pose.R_WC.transposed();
   lists.assign(index(tiles_x_), {});
   for (std::size_t k = 0; k < scene.quads.size(); ++k) {
-    const Quad &q = scene.quads[k];
+    const Quad& q = scene.quads[k];
     // Seen from behind (with a margin for rows that are taken from elsewhere).
     if (q.normal_W().dot(q.corner_W - pose.p_WC) < -2.0 * extra_slack) continue;
     Vec3 vertex[4];
@@ -82,12 +86,11 @@ void Renderer::cull(const Scene &scene, const Pose &pose, double extra_slack, in
       length[i] = vertex[i].norm();
     }
     for (int tx = 0; tx < tiles_x_; ++tx) {
-      const Tile &tile = tiles_[index(tile_row) * index(tiles_x_) + index(tx)];
+      const Tile& tile = tiles_[index(tile_row) * index(tiles_x_) + index(tx)];
       bool outside = false;
-      for (const Vec3 &edge : tile.edge) {
+      for (const Vec3& edge : tile.edge) {
         bool all = true;
-        for (int i = 0; i < 4 && all; ++i)
-          all = edge.dot(vertex[i]) < -(tile.slack + extra_slack) * length[i];
+        for (int i = 0; i < 4 && all; ++i) all = edge.dot(vertex[i]) < -(tile.slack + extra_slack) * length[i];
         outside = outside || all;
       }
       if (!outside) lists[index(tx)].push_back(static_cast<int>(k));
@@ -95,14 +98,13 @@ void Renderer::cull(const Scene &scene, const Pose &pose, double extra_slack, in
   }
 }
 
-void Renderer::render(const Scene &scene, const std::vector<Pose> &row_poses, float weight,
-                      std::vector<float> &sum) {
+void Renderer::render(const Scene& scene, const std::vector<Pose>& row_poses, float weight, std::vector<float>& sum) {
   const bool rolling = row_poses.size() > 1;
   const std::size_t quads = scene.quads.size();
   std::vector<View> views(quads);
-  const auto look_from = [&](const Pose &pose) {
+  const auto look_from = [&](const Pose& pose) {
     for (std::size_t k = 0; k < quads; ++k) {
-      const Quad &q = scene.quads[k];
+      const Quad& q = scene.quads[k];
       const Mat3 R_QW = Mat3::columns(q.u_W, q.v_W, q.normal_W()).transposed();
       const Mat3 R = R_QW * pose.R_WC;
       const Vec3 o = R_QW * (pose.p_WC - q.corner_W);
@@ -120,31 +122,31 @@ void Renderer::render(const Scene &scene, const std::vector<Pose> &row_poses, fl
   for (int ty = 0; ty < tiles_y_; ++ty) {
     const int j1 = std::min(height_, (ty + 1) * kTile);
     double moved = 0;
-    const Pose &middle = rolling ? row_poses[index((ty * kTile + j1) / 2)] : row_poses.front();
+    const Pose& middle = rolling ? row_poses[index((ty * kTile + j1) / 2)] : row_poses.front();
     if (rolling)
       for (int j = ty * kTile; j < j1; ++j) {
-        const Pose &p = row_poses[index(j)];
-        moved = std::max(moved, rotation_log(middle.R_WC.transposed() * p.R_WC).norm() +
-                                    20 * (p.p_WC - middle.p_WC).norm());
+        const Pose& p = row_poses[index(j)];
+        moved = std::max(moved,
+                         rotation_log(middle.R_WC.transposed() * p.R_WC).norm() + 20 * (p.p_WC - middle.p_WC).norm());
       }
     cull(scene, middle, moved, ty, lists);
     for (int j = ty * kTile; j < j1; ++j) {
       if (rolling) look_from(row_poses[index(j)]);
       for (int i = 0; i < width_; ++i) {
-        const std::vector<int> &list = lists[index(i / kTile)];
+        const std::vector<int>& list = lists[index(i / kTile)];
         const std::size_t at = index(j) * index(width_) + index(i);
-        const Ray *ray = &rays_[at * index(per_pixel)];
+        const Ray* ray = &rays_[at * index(per_pixel)];
         float grey = 0;
         for (int s = 0; s < per_pixel; ++s, ++ray) {
           float best = 1e30f, best_u = 0, best_v = 0, best_cos = 1;
           int hit = -1;
           for (const int k : list) {
-            const View &w = views[index(k)];
+            const View& w = views[index(k)];
             const float c = w.R[6] * ray->x + w.R[7] * ray->y + w.R[8] * ray->z;
             if (w.o[2] >= 0 || c < 1e-4f) continue;
             const float t = -w.o[2] / c;
             if (t >= best) continue;
-            const Quad &q = scene.quads[index(k)];
+            const Quad& q = scene.quads[index(k)];
             const float u = w.o[0] + t * (w.R[0] * ray->x + w.R[1] * ray->y + w.R[2] * ray->z);
             const float v = w.o[1] + t * (w.R[3] * ray->x + w.R[4] * ray->y + w.R[5] * ray->z);
             if (!inside_shape(q.shape, u, v, static_cast<float>(q.width), static_cast<float>(q.height))) continue;
@@ -165,15 +167,15 @@ void Renderer::render(const Scene &scene, const std::vector<Pose> &row_poses, fl
   }
 }
 
-void Renderer::truth(const Scene &scene, const Pose &pose, std::vector<float> *depth,
-                     std::vector<std::int32_t> *quad) const {
+void Renderer::truth(const Scene& scene, const Pose& pose, std::vector<float>* depth,
+                     std::vector<std::int32_t>* quad) const {
   if (depth) depth->assign(centre_rays_.size(), 0.0f);
   if (quad) quad->assign(centre_rays_.size(), -1);
   for (std::size_t at = 0; at < centre_rays_.size(); ++at) {
     const Vec3 ray = pose.R_WC * centre_rays_[at];
     double best = 1e30;
     for (std::size_t k = 0; k < scene.quads.size(); ++k) {
-      const Quad &q = scene.quads[k];
+      const Quad& q = scene.quads[k];
       const Vec3 n = q.normal_W();
       const double distance = n.dot(q.corner_W - pose.p_WC), c = n.dot(ray);
       if (distance <= 0 || c < 1e-4 || distance >= best * c) continue;

@@ -13,15 +13,15 @@ namespace pf::sim {
 class Renderer {
  public:
   /// False from `ok` when the camera model has no ray for some pixel of the image.
-  Renderer(const pf_camera_t &camera, int samples);
+  Renderer(const pf_camera_t& camera, int samples);
   bool ok() const { return ok_; }
 
   /// Add the grey levels of one view, times `weight`, to `sum` (width x height).
   /// row_poses: one pose for the whole image, or one for each row (rolling readout).
-  void render(const Scene &scene, const std::vector<Pose> &row_poses, float weight, std::vector<float> &sum);
+  void render(const Scene& scene, const std::vector<Pose>& row_poses, float weight, std::vector<float>& sum);
 
   /// Exact depth along z_C [m] (0: nothing) and index of the quad (-1: nothing) at the centres of the pixels.
-  void truth(const Scene &scene, const Pose &pose, std::vector<float> *depth, std::vector<std::int32_t> *quad) const;
+  void truth(const Scene& scene, const Pose& pose, std::vector<float>* depth, std::vector<std::int32_t>* quad) const;
 
  private:
   struct Ray {
@@ -38,8 +38,8 @@ class Renderer {
     float o[3];
   };
 
-  void cull(const Scene &scene, const Pose &pose, double extra_slack, int tile_row,
-            std::vector<std::vector<int>> &lists) const;
+  void cull(const Scene& scene, const Pose& pose, double extra_slack, int tile_row,
+            std::vector<std::vector<int>>& lists) const;
 
   static constexpr int kTile = 16;
 

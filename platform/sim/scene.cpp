@@ -7,14 +7,14 @@ namespace {
 
 constexpr double kTargetWidth = 0.21, kTargetHeight = 0.1485;  // A5 [m]
 
-using Painter = std::function<void(Canvas &)>;
+using Painter = std::function<void(Canvas&)>;
 
 class Builder {
  public:
-  Builder(Random &random, const SceneOptions &options) : random_(random), options_(options) {}
+  Builder(Random& random, const SceneOptions& options) : random_(random), options_(options) {}
 
   /// Clutter for a surface whose interesting detail is about `scale` metres large.
-  void clutter(Canvas &canvas, double scale, double contrast) {
+  void clutter(Canvas& canvas, double scale, double contrast) {
     const double area = canvas.width * canvas.texel_m * canvas.height * canvas.texel_m;
     const auto count = [&](double density) { return static_cast<int>(density * area / (scale * scale)) + 2; };
     paint_noise(canvas, random_, 0.25 * contrast, scale, 7, 0.75);
@@ -25,8 +25,8 @@ class Builder {
     if (options_.repeated_texture) paint_repeat(canvas, 2.0 * scale);
   }
 
-  void add(const Vec3 &corner, const Vec3 &u, const Vec3 &v, double width, double height, double texel,
-           float base, const Painter &paint) {
+  void add(const Vec3& corner, const Vec3& u, const Vec3& v, double width, double height, double texel, float base,
+           const Painter& paint) {
     Canvas canvas(width, height, texel, base);
     paint(canvas);
     scene.quads.push_back({corner, u, v, width, height, std::make_shared<Texture>(canvas), Shape::kRectangle});
@@ -34,11 +34,11 @@ class Builder {
 
   /// The five faces of a box that stand free: not the one that it stands on. Size is x, y, z before turning by yaw
   /// about the vertical; `foot` is the centre of the bottom.
-  void add_box(const Vec3 &foot, const Vec3 &size, double yaw, double texel, float base, double scale,
-               double contrast, const Painter &front) {
+  void add_box(const Vec3& foot, const Vec3& size, double yaw, double texel, float base, double scale, double contrast,
+               const Painter& front) {
     const Vec3 x{std::cos(yaw), 0, std::sin(yaw)}, z{-std::sin(yaw), 0, std::cos(yaw)}, y{0, 1, 0};
     const Vec3 top = foot - y * size.y;
-    const auto paint = [&](Canvas &c) { clutter(c, scale, contrast); };
+    const auto paint = [&](Canvas& c) { clutter(c, scale, contrast); };
     const Vec3 hx = x * (0.5 * size.x), hz = z * (0.5 * size.z);
     add(top - hx - hz, x, y, size.x, size.y, texel, base, front ? front : paint);  // seen looking along +z
     add(top + hx + hz, -x, y, size.x, size.y, texel, base, paint);                 // along -z
@@ -48,7 +48,7 @@ class Builder {
   }
 
   /// Sheets of paper with print and pictures, over what is there.
-  void papers(Canvas &canvas, int count, double largest) {
+  void papers(Canvas& canvas, int count, double largest) {
     const double w = canvas.width * canvas.texel_m, h = canvas.height * canvas.texel_m;
     for (int k = 0; k < count; ++k) {
       const double a = largest * random_.uniform(0.5, 1.0), b = a * random_.uniform(0.6, 1.4);
@@ -61,7 +61,7 @@ class Builder {
   }
 
   /// White ground with the dark target, its centre at (u, v) of the canvas.
-  void paint_target(Canvas &canvas, double u, double v) {
+  void paint_target(Canvas& canvas, double u, double v) {
     const double a = 0.5 * kTargetWidth, b = 0.5 * kTargetHeight, margin = 0.06;
     paint_box(canvas, u - a - margin, v - b - margin, u + a + margin, v + b + margin, 225);
     paint_box(canvas, u - a, v - b, u + a, v + b, 25);
@@ -69,8 +69,8 @@ class Builder {
     scene.target_height = kTargetHeight;
   }
 
-  void add_person(const Vec3 &start, const Vec3 &velocity, const Vec3 &right, double scale) {
-    add(start, right, {0, 1, 0}, 0.55 * scale, 1.75 * scale, 0.004 * scale, 110, [&](Canvas &c) {
+  void add_person(const Vec3& start, const Vec3& velocity, const Vec3& right, double scale) {
+    add(start, right, {0, 1, 0}, 0.55 * scale, 1.75 * scale, 0.004 * scale, 110, [&](Canvas& c) {
       clutter(c, 0.12 * scale, 80);
       paint_box(c, 0.19 * scale, 0, 0.36 * scale, 0.28 * scale, 170);
       paint_noise(c, random_, 12, 0.05 * scale, 3, 0.8);
@@ -84,31 +84,31 @@ class Builder {
   Scene scene;
 
  private:
-  Random &random_;
-  const SceneOptions &options_;
+  Random& random_;
+  const SceneOptions& options_;
 };
 
 }  // namespace
 
-Scene make_desk(Random &random, const SceneOptions &options) {
+Scene make_desk(Random& random, const SceneOptions& options) {
   Builder b(random, options);
   const double top = 0.16, floor = 0.9;  // heights, y down [m]
   const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-  b.add({-2.4, -1.4, 0.95}, x, y, 4.8, 2.4, 0.0025, 150, [&](Canvas &c) {
+  b.add({-2.4, -1.4, 0.95}, x, y, 4.8, 2.4, 0.0025, 150, [&](Canvas& c) {
     b.clutter(c, 0.30, 60);
     b.papers(c, 14, 0.5);
   });
-  b.add({-1.7, -1.4, -2.05}, z, y, 3.0, 2.4, 0.004, 130, [&](Canvas &c) { b.clutter(c, 0.3, 60); });
-  b.add({-2.4, floor, 1.0}, x, -z, 4.8, 3.4, 0.005, 100, [&](Canvas &c) { b.clutter(c, 0.25, 50); });
-  b.add({-1.0, top, 0.75}, x, -z, 2.0, 1.15, 0.001, 120, [&](Canvas &c) {
+  b.add({-1.7, -1.4, -2.05}, z, y, 3.0, 2.4, 0.004, 130, [&](Canvas& c) { b.clutter(c, 0.3, 60); });
+  b.add({-2.4, floor, 1.0}, x, -z, 4.8, 3.4, 0.005, 100, [&](Canvas& c) { b.clutter(c, 0.25, 50); });
+  b.add({-1.0, top, 0.75}, x, -z, 2.0, 1.15, 0.001, 120, [&](Canvas& c) {
     b.clutter(c, 0.10, 45);
     b.papers(c, 12, 0.28);
   });
-  b.add_box({0, top, 0.08}, {0.40, 0.30, 0.16}, 0, 0.0008, 120, 0.06, 70, [&](Canvas &c) {
+  b.add_box({0, top, 0.08}, {0.40, 0.30, 0.16}, 0, 0.0008, 120, 0.06, 70, [&](Canvas& c) {
     b.clutter(c, 0.06, 70);
     if (options.target) b.paint_target(c, 0.20, 0.14);
   });
-  b.add_box({0.55, top, 0.28}, {0.50, 0.36, 0.06}, -0.35, 0.001, 60, 0.05, 80, [&](Canvas &c) {
+  b.add_box({0.55, top, 0.28}, {0.50, 0.36, 0.06}, -0.35, 0.001, 60, 0.05, 80, [&](Canvas& c) {
     paint_box(c, 0.02, 0.02, 0.48, 0.33, 170);
     b.papers(c, 5, 0.22);
     paint_rectangles(c, random, 40, 0.008, 0.05, 100, true);
@@ -125,12 +125,12 @@ Scene make_desk(Random &random, const SceneOptions &options) {
   return std::move(b.scene);
 }
 
-Scene make_room(Random &random, const SceneOptions &options) {
+Scene make_room(Random& random, const SceneOptions& options) {
   Builder b(random, options);
   const double ceiling = -1.2, floor = 1.4, texel = 0.003;
   const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   const auto wall = [&](bool target) {
-    return [&b, &options, target](Canvas &c) {
+    return [&b, &options, target](Canvas& c) {
       b.clutter(c, 0.35, 65);
       b.papers(c, 9, 0.6);
       if (target && options.target) b.paint_target(c, 2.0, 1.2);
@@ -140,8 +140,8 @@ Scene make_room(Random &random, const SceneOptions &options) {
   b.add({2, ceiling, -4}, -x, y, 4, 2.6, texel, 130, wall(false));  // along -z
   b.add({-2, ceiling, -4}, z, y, 4, 2.6, texel, 120, wall(false));  // along -x
   b.add({2, ceiling, 0}, -z, y, 4, 2.6, texel, 150, wall(false));   // along +x
-  b.add({-2, floor, 0}, x, -z, 4, 4, 0.004, 100, [&](Canvas &c) { b.clutter(c, 0.35, 45); });
-  b.add({-2, ceiling, -4}, x, z, 4, 4, 0.005, 180, [&](Canvas &c) { b.clutter(c, 0.5, 30); });
+  b.add({-2, floor, 0}, x, -z, 4, 4, 0.004, 100, [&](Canvas& c) { b.clutter(c, 0.35, 45); });
+  b.add({-2, ceiling, -4}, x, z, 4, 4, 0.005, 180, [&](Canvas& c) { b.clutter(c, 0.5, 30); });
   b.add_box({1.2, floor, -0.35}, {0.9, 1.1, 0.5}, 0, 0.003, 110, 0.2, 60, nullptr);
   b.add_box({-1.4, floor, -0.6}, {0.6, 0.7, 0.5}, 0.5, 0.003, 150, 0.2, 60, nullptr);
   b.add_box({1.5, floor, -3.0}, {0.6, 1.5, 0.8}, 0.1, 0.003, 90, 0.2, 60, nullptr);
@@ -150,9 +150,9 @@ Scene make_room(Random &random, const SceneOptions &options) {
   return std::move(b.scene);
 }
 
-Scene make_wall(Random &random, const SceneOptions &options) {
+Scene make_wall(Random& random, const SceneOptions& options) {
   Builder b(random, options);
-  b.add({-2.5, -1.8, 0}, {1, 0, 0}, {0, 1, 0}, 5.0, 3.6, 0.002, 135, [&](Canvas &c) {
+  b.add({-2.5, -1.8, 0}, {1, 0, 0}, {0, 1, 0}, 5.0, 3.6, 0.002, 135, [&](Canvas& c) {
     b.clutter(c, 0.2, 75);
     if (options.target) b.paint_target(c, 2.5, 1.8);
   });
@@ -166,8 +166,13 @@ Scene make_checker(double square, int squares) {
   Canvas canvas(square * squares, square * squares, square / 64, 128);
   paint_checker(canvas, square, 40, 215);
   const double half = 0.5 * square * squares;
-  scene.quads.push_back({{-half, -half, 0}, {1, 0, 0}, {0, 1, 0}, 2 * half, 2 * half,
-                         std::make_shared<Texture>(canvas), Shape::kRectangle});
+  scene.quads.push_back({{-half, -half, 0},
+                         {1, 0, 0},
+                         {0, 1, 0},
+                         2 * half,
+                         2 * half,
+                         std::make_shared<Texture>(canvas),
+                         Shape::kRectangle});
   return scene;
 }
 

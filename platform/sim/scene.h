@@ -14,8 +14,8 @@ enum class Shape { kRectangle, kPerson };
 
 /// A flat textured rectangle, seen from the side that u x v points away from (u right, v down, u x v into the wall).
 struct Quad {
-  Vec3 corner_W;    // where u = v = 0 [m]
-  Vec3 u_W, v_W;    // unit and orthogonal
+  Vec3 corner_W;                 // where u = v = 0 [m]
+  Vec3 u_W, v_W;                 // unit and orthogonal
   double width = 0, height = 0;  // along u and v [m]
   std::shared_ptr<const Texture> texture;
   Shape shape = Shape::kRectangle;
@@ -39,11 +39,11 @@ struct SceneOptions {
 };
 
 /// A table with a box that carries the target, books, a monitor and papers; a wall behind, one beside, the floor.
-Scene make_desk(Random &random, const SceneOptions &options);
+Scene make_desk(Random& random, const SceneOptions& options);
 /// A closed room of 4 m x 4 m x 2.6 m with pictures, cupboards and boxes; the target on one wall.
-Scene make_room(Random &random, const SceneOptions &options);
+Scene make_room(Random& random, const SceneOptions& options);
 /// One large wall with the target on it.
-Scene make_wall(Random &random, const SceneOptions &options);
+Scene make_wall(Random& random, const SceneOptions& options);
 /// A checker board of `square` metres in the plane z = 0, its corner of squares at the origin.
 Scene make_checker(double square, int squares);
 

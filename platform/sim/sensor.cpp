@@ -12,11 +12,11 @@ Sensor::Sensor(int width, int height, double vignetting)
       falloff_[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)] =
           static_cast<float>(1 - vignetting * ((i - cx) * (i - cx) + (j - cy) * (j - cy)) / r2);
   Random random(20070901);
-  for (float &n : normals_) n = static_cast<float>(random.normal());
+  for (float& n : normals_) n = static_cast<float>(random.normal());
 }
 
-void Sensor::expose(const std::vector<float> &light, double gain, double bias, double noise, Random &random,
-                    std::vector<std::uint8_t> &grey) const {
+void Sensor::expose(const std::vector<float>& light, double gain, double bias, double noise, Random& random,
+                    std::vector<std::uint8_t>& grey) const {
   grey.resize(light.size());
   const auto g = static_cast<float>(gain), b = static_cast<float>(bias), s = static_cast<float>(noise);
   std::uint64_t bits = 0;

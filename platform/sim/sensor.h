@@ -12,8 +12,8 @@ class Sensor {
  public:
   Sensor(int width, int height, double vignetting);
 
-  void expose(const std::vector<float> &light, double gain, double bias, double noise, Random &random,
-              std::vector<std::uint8_t> &grey) const;
+  void expose(const std::vector<float>& light, double gain, double bias, double noise, Random& random,
+              std::vector<std::uint8_t>& grey) const;
 
  private:
   std::vector<float> falloff_;

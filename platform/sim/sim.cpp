@@ -15,26 +15,25 @@ using namespace pf::sim;
 
 namespace {
 
-const char *const kScenes[] = {"desk", "room", "wall", "rotation", "person", "exposure", "repeat", nullptr};
+const char* const kScenes[] = {"desk", "room", "wall", "rotation", "person", "exposure", "repeat", nullptr};
 
 enum Stream : std::uint64_t { kSceneStream, kPathStream, kNoiseStream, kFaultStream, kGainStream };
 
 bool in_range(double v, double low, double high) { return v >= low && v <= high; }
 
-bool valid(const pf_sim_options_t &o) {
+bool valid(const pf_sim_options_t& o) {
   const double period = 1.0 / o.rate_hz;
   return o.camera.width >= 16 && o.camera.height >= 16 && o.camera.width <= 4096 && o.camera.height <= 4096 &&
-         o.camera.fx > 0 && o.camera.fy > 0 && o.frames >= 1 && o.frames <= 1000000 &&
-         in_range(o.rate_hz, 1, 1000) && o.samples >= 1 && o.samples <= 8 && in_range(o.noise_grey, 0, 50) &&
-         in_range(o.exposure_s, 0, period) && o.blur_samples >= 1 && o.blur_samples <= 64 &&
-         in_range(o.readout_s, 0, period) && in_range(o.gain, 0, 100) && in_range(o.bias, -255, 255) &&
-         in_range(o.exposure_step, 1, 100) && o.exposure_every > 0 && in_range(o.vignetting, 0, 1) &&
-         in_range(o.drop_probability, 0, 0.9) && in_range(o.repeat_probability, 0, 0.9) &&
-         in_range(o.shake_m, 0, 1) && in_range(o.shake_rad, 0, 1);
+         o.camera.fx > 0 && o.camera.fy > 0 && o.frames >= 1 && o.frames <= 1000000 && in_range(o.rate_hz, 1, 1000) &&
+         o.samples >= 1 && o.samples <= 8 && in_range(o.noise_grey, 0, 50) && in_range(o.exposure_s, 0, period) &&
+         o.blur_samples >= 1 && o.blur_samples <= 64 && in_range(o.readout_s, 0, period) && in_range(o.gain, 0, 100) &&
+         in_range(o.bias, -255, 255) && in_range(o.exposure_step, 1, 100) && o.exposure_every > 0 &&
+         in_range(o.vignetting, 0, 1) && in_range(o.drop_probability, 0, 0.9) &&
+         in_range(o.repeat_probability, 0, 0.9) && in_range(o.shake_m, 0, 1) && in_range(o.shake_rad, 0, 1);
 }
 
 /// Way points, one a second, about a nominal walk; `spread` is how far a seed moves them.
-std::vector<Waypoint> vary(std::vector<Waypoint> points, Random &random, double spread) {
+std::vector<Waypoint> vary(std::vector<Waypoint> points, Random& random, double spread) {
   for (std::size_t k = 2; k + 2 < points.size(); ++k) {
     points[k].eye_W += random.normal3() * spread;
     points[k].at_W += random.normal3() * (2 * spread);
@@ -42,24 +41,24 @@ std::vector<Waypoint> vary(std::vector<Waypoint> points, Random &random, double 
   return points;
 }
 
-Trajectory desk_path(Random &random) {
+Trajectory desk_path(Random& random) {
   const std::vector<Waypoint> points = {
-      {{0.02, -0.02, -0.66}, {0, 0, 0}},        {{0.16, -0.08, -0.64}, {0, 0, 0}},
-      {{0.26, -0.12, -0.60}, {0.02, 0, 0}},     {{0.20, -0.18, -0.56}, {0, 0.02, 0}},
-      {{0.05, -0.15, -0.60}, {-0.1, 0, 0.1}},   {{-0.12, -0.12, -0.62}, {-0.3, 0, 0.2}},
+      {{0.02, -0.02, -0.66}, {0, 0, 0}},          {{0.16, -0.08, -0.64}, {0, 0, 0}},
+      {{0.26, -0.12, -0.60}, {0.02, 0, 0}},       {{0.20, -0.18, -0.56}, {0, 0.02, 0}},
+      {{0.05, -0.15, -0.60}, {-0.1, 0, 0.1}},     {{-0.12, -0.12, -0.62}, {-0.3, 0, 0.2}},
       {{-0.28, -0.10, -0.60}, {-0.4, 0.05, 0.2}}, {{-0.40, -0.16, -0.56}, {-0.35, 0, 0.3}},
-      {{-0.36, -0.26, -0.52}, {-0.1, 0, 0.3}},  {{-0.20, -0.32, -0.56}, {0.1, 0.02, 0.2}},
-      {{0.02, -0.30, -0.62}, {0.3, 0, 0.2}},    {{0.22, -0.24, -0.62}, {0.5, -0.02, 0.3}},
-      {{0.40, -0.18, -0.56}, {0.55, 0, 0.3}},   {{0.48, -0.16, -0.50}, {0.4, 0, 0.3}},
-      {{0.42, -0.22, -0.58}, {0.2, 0, 0.2}},    {{0.28, -0.26, -0.68}, {0.05, -0.1, 0.3}},
-      {{0.12, -0.20, -0.74}, {0, -0.15, 0.4}},  {{0.00, -0.12, -0.70}, {0, -0.05, 0.2}},
-      {{-0.05, -0.06, -0.66}, {0, 0, 0}},       {{0.00, -0.03, -0.64}, {0, 0, 0}}};
+      {{-0.36, -0.26, -0.52}, {-0.1, 0, 0.3}},    {{-0.20, -0.32, -0.56}, {0.1, 0.02, 0.2}},
+      {{0.02, -0.30, -0.62}, {0.3, 0, 0.2}},      {{0.22, -0.24, -0.62}, {0.5, -0.02, 0.3}},
+      {{0.40, -0.18, -0.56}, {0.55, 0, 0.3}},     {{0.48, -0.16, -0.50}, {0.4, 0, 0.3}},
+      {{0.42, -0.22, -0.58}, {0.2, 0, 0.2}},      {{0.28, -0.26, -0.68}, {0.05, -0.1, 0.3}},
+      {{0.12, -0.20, -0.74}, {0, -0.15, 0.4}},    {{0.00, -0.12, -0.70}, {0, -0.05, 0.2}},
+      {{-0.05, -0.06, -0.66}, {0, 0, 0}},         {{0.00, -0.03, -0.64}, {0, 0, 0}}};
   return spline(vary(points, random, 0.025), 1.0);
 }
 
-Trajectory room_path(Random &random) {
-  std::vector<Waypoint> points = {{{0.05, 0.0, -0.72}, {0, 0, 0}},    {{0.22, -0.08, -0.74}, {0, 0, 0}},
-                                  {{0.30, -0.12, -0.86}, {0, 0, 0}},  {{0.12, -0.10, -1.1}, {-0.1, 0, 0}},
+Trajectory room_path(Random& random) {
+  std::vector<Waypoint> points = {{{0.05, 0.0, -0.72}, {0, 0, 0}},     {{0.22, -0.08, -0.74}, {0, 0, 0}},
+                                  {{0.30, -0.12, -0.86}, {0, 0, 0}},   {{0.12, -0.10, -1.1}, {-0.1, 0, 0}},
                                   {{-0.1, -0.06, -1.4}, {-0.2, 0, 0}}, {{-0.1, 0.0, -1.7}, {-0.3, 0, 0}}};
   // Then once around the middle, looking outward, at an eighth of a turn in 1.6 way points.
   for (int k = 0; k <= 26; ++k) {
@@ -71,15 +70,14 @@ Trajectory room_path(Random &random) {
   return spline(vary(points, random, 0.03), 0.9);
 }
 
-Trajectory wall_path(Random &random) {
-  const std::vector<Waypoint> points = {
-      {{0.02, 0.0, -0.7}, {0, 0, 0}},        {{0.22, -0.05, -0.68}, {0, 0, 0}},
-      {{0.32, -0.1, -0.7}, {0.05, 0, 0}},    {{0.15, -0.15, -0.85}, {-0.05, 0, 0}},
-      {{-0.15, -0.1, -1.0}, {-0.3, 0, 0}},   {{-0.45, 0.05, -1.1}, {-0.6, 0.1, 0}},
-      {{-0.6, 0.2, -1.0}, {-0.8, 0.2, 0}},   {{-0.4, 0.3, -1.1}, {-0.3, 0.3, 0}},
-      {{0.0, 0.2, -1.2}, {0.2, 0.2, 0}},     {{0.45, 0.05, -1.1}, {0.6, 0.0, 0}},
-      {{0.6, -0.15, -1.0}, {0.7, -0.3, 0}},  {{0.35, -0.3, -1.05}, {0.3, -0.4, 0}},
-      {{0.1, -0.2, -0.9}, {0.1, -0.2, 0}},   {{0.0, -0.05, -0.75}, {0, 0, 0}}};
+Trajectory wall_path(Random& random) {
+  const std::vector<Waypoint> points = {{{0.02, 0.0, -0.7}, {0, 0, 0}},       {{0.22, -0.05, -0.68}, {0, 0, 0}},
+                                        {{0.32, -0.1, -0.7}, {0.05, 0, 0}},   {{0.15, -0.15, -0.85}, {-0.05, 0, 0}},
+                                        {{-0.15, -0.1, -1.0}, {-0.3, 0, 0}},  {{-0.45, 0.05, -1.1}, {-0.6, 0.1, 0}},
+                                        {{-0.6, 0.2, -1.0}, {-0.8, 0.2, 0}},  {{-0.4, 0.3, -1.1}, {-0.3, 0.3, 0}},
+                                        {{0.0, 0.2, -1.2}, {0.2, 0.2, 0}},    {{0.45, 0.05, -1.1}, {0.6, 0.0, 0}},
+                                        {{0.6, -0.15, -1.0}, {0.7, -0.3, 0}}, {{0.35, -0.3, -1.05}, {0.3, -0.4, 0}},
+                                        {{0.1, -0.2, -0.9}, {0.1, -0.2, 0}},  {{0.0, -0.05, -0.75}, {0, 0, 0}}};
   return spline(vary(points, random, 0.03), 1.0);
 }
 
@@ -104,7 +102,7 @@ struct pf_sim {
       // There and back again.
       const double span = 20.0, phase = std::fmod(t, 2 * span);
       const double walked = phase < span ? phase : 2 * span - phase;
-      Quad &q = s.quads[static_cast<std::size_t>(s.person)];
+      Quad& q = s.quads[static_cast<std::size_t>(s.person)];
       q.corner_W = s.person_start_W + s.person_velocity_W * walked;
       q.corner_W.y += 0.02 * std::sin(9.0 * t);
     }
@@ -119,7 +117,7 @@ struct pf_sim {
     return options.gain * std::pow(options.exposure_step, random.uniform(-1, 1));
   }
 
-  void fill(pf_image_t &image, std::int64_t t_ns) const {
+  void fill(pf_image_t& image, std::int64_t t_ns) const {
     image = {grey.data(), options.camera.width, options.camera.height, options.camera.width, t_ns};
   }
 
@@ -131,7 +129,8 @@ struct pf_sim {
       std::vector<Pose> poses;
       if (options.readout_s > 0)
         for (std::size_t j = 0; j < rows; ++j)
-          poses.push_back(path(sub + options.readout_s * ((static_cast<double>(j) + 0.5) / static_cast<double>(rows) - 0.5)));
+          poses.push_back(
+              path(sub + options.readout_s * ((static_cast<double>(j) + 0.5) / static_cast<double>(rows) - 0.5)));
       else
         poses.push_back(path(sub));
       renderer->render(scene_at(sub), poses, 1.0f / static_cast<float>(options.blur_samples), light);
@@ -142,13 +141,14 @@ struct pf_sim {
 
 extern "C" {
 
-const char *pf_sim_scene_name(int32_t index) {
+const char* pf_sim_scene_name(int32_t index) {
   return index >= 0 && index < static_cast<int32_t>(std::size(kScenes)) ? kScenes[index] : nullptr;
 }
 
-pf_status_t pf_sim_options_default(const char *scene, pf_sim_options_t *options) {
+pf_status_t pf_sim_options_default(const char* scene, pf_sim_options_t* options) {
   if (!scene || !options) return PF_ERROR_NULL;
-  const auto known = std::find_if(kScenes, std::end(kScenes) - 1, [&](const char *s) { return std::string(s) == scene; });
+  const auto known =
+      std::find_if(kScenes, std::end(kScenes) - 1, [&](const char* s) { return std::string(s) == scene; });
   if (known == std::end(kScenes) - 1) return PF_ERROR_RANGE;
   const std::string name = scene;
   *options = {};
@@ -172,7 +172,7 @@ pf_status_t pf_sim_options_default(const char *scene, pf_sim_options_t *options)
   return PF_OK;
 }
 
-pf_sim_t *pf_sim_open(const char *scene, const pf_sim_options_t *options) {
+pf_sim_t* pf_sim_open(const char* scene, const pf_sim_options_t* options) {
   pf_sim_options_t own;
   if (pf_sim_options_default(scene, &own) != PF_OK) return nullptr;
   if (options) own = *options;
@@ -190,8 +190,9 @@ pf_sim_t *pf_sim_open(const char *scene, const pf_sim_options_t *options) {
     sim->path = wall_path(way);
   } else {
     sim->scene = make_desk(scenery, what);
-    sim->path = name == "rotation" ? turning({look_along({0, 0.05, 1}, {0, 1, 0}), {0.02, -0.05, -0.7}}, way, 0.5, 0.15, 10.0)
-                                   : desk_path(way);
+    sim->path = name == "rotation"
+                    ? turning({look_along({0, 0.05, 1}, {0, 1, 0}), {0.02, -0.05, -0.7}}, way, 0.5, 0.15, 10.0)
+                    : desk_path(way);
   }
   sim->path = shaken(std::move(sim->path), way, own.shake_m, own.shake_rad);
   sim->renderer = std::make_unique<Renderer>(own.camera, own.samples);
@@ -202,17 +203,17 @@ pf_sim_t *pf_sim_open(const char *scene, const pf_sim_options_t *options) {
   return sim.release();
 }
 
-void pf_sim_close(pf_sim_t *sim) { delete sim; }
+void pf_sim_close(pf_sim_t* sim) { delete sim; }
 
-void pf_sim_camera(const pf_sim_t *sim, pf_camera_t *camera) { *camera = sim->options.camera; }
+void pf_sim_camera(const pf_sim_t* sim, pf_camera_t* camera) { *camera = sim->options.camera; }
 
-void pf_sim_rewind(pf_sim_t *sim) {
+void pf_sim_rewind(pf_sim_t* sim) {
   sim->frame = 0;
   sim->noise = Random(sim->options.seed, kNoiseStream);
   sim->fault = Random(sim->options.seed, kFaultStream);
 }
 
-void pf_sim_pose_at(const pf_sim_t *sim, int64_t t_ns, pf_pose_t *pose) {
+void pf_sim_pose_at(const pf_sim_t* sim, int64_t t_ns, pf_pose_t* pose) {
   const double t = static_cast<double>(t_ns) * 1e-9;
   const Pose p = sim->path(t);
   Vec3 v, w;
@@ -227,8 +228,8 @@ void pf_sim_pose_at(const pf_sim_t *sim, int64_t t_ns, pf_pose_t *pose) {
   std::copy(numbers + 6, numbers + 9, pose->w_C);
 }
 
-int pf_sim_next(pf_sim_t *sim, pf_image_t *image, pf_pose_t *truth) {
-  const pf_sim_options_t &o = sim->options;
+int pf_sim_next(pf_sim_t* sim, pf_image_t* image, pf_pose_t* truth) {
+  const pf_sim_options_t& o = sim->options;
   bool dropped, repeated;
   do {
     if (sim->frame >= o.frames) return 0;
@@ -244,7 +245,7 @@ int pf_sim_next(pf_sim_t *sim, pf_image_t *image, pf_pose_t *truth) {
   return 1;
 }
 
-pf_status_t pf_sim_target(const pf_sim_t *sim, uint32_t kind, pf_target_t *target) {
+pf_status_t pf_sim_target(const pf_sim_t* sim, uint32_t kind, pf_target_t* target) {
   if (!(sim->scene.target_width > 0)) return PF_ERROR_STATE;
   if (kind != PF_TARGET_RECTANGLE && kind != PF_TARGET_POINTS) return PF_ERROR_RANGE;
   *target = {};
@@ -264,7 +265,7 @@ pf_status_t pf_sim_target(const pf_sim_t *sim, uint32_t kind, pf_target_t *targe
   return PF_OK;
 }
 
-pf_status_t pf_sim_render(pf_sim_t *sim, const pf_pose_t *pose, pf_image_t *image) {
+pf_status_t pf_sim_render(pf_sim_t* sim, const pf_pose_t* pose, pf_image_t* image) {
   const double t = static_cast<double>(pose->t_ns) * 1e-9;
   const Pose view{rotation_of(pose->q_WC), {pose->p_WC[0], pose->p_WC[1], pose->p_WC[2]}};
   sim->light.assign(sim->light.size(), 0.0f);
@@ -274,7 +275,7 @@ pf_status_t pf_sim_render(pf_sim_t *sim, const pf_pose_t *pose, pf_image_t *imag
   return PF_OK;
 }
 
-pf_status_t pf_sim_depth(const pf_sim_t *sim, const pf_pose_t *pose, float *depth, int32_t *surface) {
+pf_status_t pf_sim_depth(const pf_sim_t* sim, const pf_pose_t* pose, float* depth, int32_t* surface) {
   const Pose view{rotation_of(pose->q_WC), {pose->p_WC[0], pose->p_WC[1], pose->p_WC[2]}};
   std::vector<float> d;
   std::vector<std::int32_t> s;
@@ -285,9 +286,9 @@ pf_status_t pf_sim_depth(const pf_sim_t *sim, const pf_pose_t *pose, float *dept
   return PF_OK;
 }
 
-pf_status_t pf_sim_surface(const pf_sim_t *sim, int32_t surface, double n_W[3], double *d_W) {
+pf_status_t pf_sim_surface(const pf_sim_t* sim, int32_t surface, double n_W[3], double* d_W) {
   if (surface < 0 || static_cast<std::size_t>(surface) >= sim->scene.quads.size()) return PF_ERROR_RANGE;
-  const Quad &q = sim->scene.quads[static_cast<std::size_t>(surface)];
+  const Quad& q = sim->scene.quads[static_cast<std::size_t>(surface)];
   const Vec3 n = q.normal_W();
   n_W[0] = n.x;
   n_W[1] = n.y;

@@ -5,21 +5,21 @@
 
 namespace pf::sim {
 
-Texture::Texture(const Canvas &canvas) : texels_per_m_(static_cast<float>(1.0 / canvas.texel_m)) {
+Texture::Texture(const Canvas& canvas) : texels_per_m_(static_cast<float>(1.0 / canvas.texel_m)) {
   std::vector<float> grey = canvas.grey;
   int width = canvas.width, height = canvas.height;
   for (;;) {
     Level level{width, height, std::vector<std::uint8_t>(grey.size())};
-    std::transform(grey.begin(), grey.end(), level.grey.begin(), [](float g) {
-      return static_cast<std::uint8_t>(std::clamp(g, 0.0f, 255.0f) + 0.5f);
-    });
+    std::transform(grey.begin(), grey.end(), level.grey.begin(),
+                   [](float g) { return static_cast<std::uint8_t>(std::clamp(g, 0.0f, 255.0f) + 0.5f); });
     levels_.push_back(std::move(level));
     if (std::min(width, height) < 4) break;
     const int w = width / 2, h = height / 2;
     std::vector<float> half(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
     for (int j = 0; j < h; ++j)
       for (int i = 0; i < w; ++i) {
-        const float *a = &grey[static_cast<std::size_t>(2 * j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(2 * i)];
+        const float* a =
+            &grey[static_cast<std::size_t>(2 * j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(2 * i)];
         half[static_cast<std::size_t>(j) * static_cast<std::size_t>(w) + static_cast<std::size_t>(i)] =
             0.25f * (a[0] + a[1] + a[width] + a[width + 1]);
       }
@@ -29,15 +29,14 @@ Texture::Texture(const Canvas &canvas) : texels_per_m_(static_cast<float>(1.0 / 
   }
 }
 
-float Texture::bilinear(const Level &level, float x, float y) {
+float Texture::bilinear(const Level& level, float x, float y) {
   x = std::clamp(x - 0.5f, 0.0f, static_cast<float>(level.width - 1));
   y = std::clamp(y - 0.5f, 0.0f, static_cast<float>(level.height - 1));
   const int i = std::min(static_cast<int>(x), level.width - 2);
   const int j = std::min(static_cast<int>(y), level.height - 2);
   const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
-  const std::uint8_t *p =
-      level.grey.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(level.width) + i;
-  const std::uint8_t *q = p + level.width;
+  const std::uint8_t* p = level.grey.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(level.width) + i;
+  const std::uint8_t* q = p + level.width;
   const float top = static_cast<float>(p[0]) + a * static_cast<float>(p[1] - p[0]);
   const float bottom = static_cast<float>(q[0]) + a * static_cast<float>(q[1] - q[0]);
   return top + b * (bottom - top);

@@ -10,14 +10,14 @@ const Vec3 kDown{0, 1, 0};
 
 }  // namespace
 
-void velocities(const Trajectory &trajectory, double t, Vec3 &v_W, Vec3 &w_C) {
+void velocities(const Trajectory& trajectory, double t, Vec3& v_W, Vec3& w_C) {
   const double h = 1e-4;
   const Pose a = trajectory(t - h), b = trajectory(t + h);
   v_W = (b.p_WC - a.p_WC) * (0.5 / h);
   w_C = rotation_log(a.R_WC.transposed() * b.R_WC) * (0.5 / h);
 }
 
-Trajectory circle(const Circle &c) {
+Trajectory circle(const Circle& c) {
   return [c](double t) {
     const double a = 2 * kPi * t / c.seconds_per_loop;
     const Vec3 radial{std::sin(a), 0, std::cos(a)}, tangent{std::cos(a), 0, -std::sin(a)};
@@ -45,7 +45,7 @@ Trajectory spline(std::vector<Waypoint> points, double interval) {
   };
 }
 
-Trajectory shaken(Trajectory base, Random &random, double sigma_m, double sigma_rad) {
+Trajectory shaken(Trajectory base, Random& random, double sigma_m, double sigma_rad) {
   struct Wave {
     double frequency;
     Vec3 move, turn, phase;
@@ -62,7 +62,7 @@ Trajectory shaken(Trajectory base, Random &random, double sigma_m, double sigma_
   return [base = std::move(base), waves](double t) {
     Pose pose = base(t);
     Vec3 move, turn;
-    for (const Wave &w : waves) {
+    for (const Wave& w : waves) {
       const double a = 2 * kPi * w.frequency * t;
       const Vec3 s{std::sin(a + w.phase.x), std::sin(a + w.phase.y), std::sin(a + w.phase.z)};
       move += Vec3{w.move.x * s.x, w.move.y * s.y, w.move.z * s.z};
@@ -74,7 +74,7 @@ Trajectory shaken(Trajectory base, Random &random, double sigma_m, double sigma_
   };
 }
 
-Trajectory turning(const Pose &start, Random &random, double pan, double tilt, double seconds) {
+Trajectory turning(const Pose& start, Random& random, double pan, double tilt, double seconds) {
   const double a = random.uniform(0.9, 1.1), b = random.uniform(1.4, 1.8);
   return [=](double t) {
     const double s = 2 * kPi * t / seconds;
@@ -85,8 +85,8 @@ Trajectory turning(const Pose &start, Random &random, double pan, double tilt, d
   };
 }
 
-void draw_motion(MotionState &state, Random &random, double dt, double linear_density,
-                 double angular_density, const Vec3 &known_dv, const Vec3 &known_dw) {
+void draw_motion(MotionState& state, Random& random, double dt, double linear_density, double angular_density,
+                 const Vec3& known_dv, const Vec3& known_dw) {
   const Vec3 dv = random.normal3() * (linear_density * std::sqrt(dt)) + known_dv;
   const Vec3 dw = random.normal3() * (angular_density * std::sqrt(dt)) + known_dw;
   state.pose.p_WC += state.v_W * dt + dv * (0.5 * dt);

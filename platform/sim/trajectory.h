@@ -12,16 +12,16 @@ namespace pf::sim {
 using Trajectory = std::function<Pose(double)>;
 
 /// Velocities of a trajectory at a time, by central differences: v_W [m/s] and w_C [rad/s].
-void velocities(const Trajectory &trajectory, double t, Vec3 &v_W, Vec3 &w_C);
+void velocities(const Trajectory& trajectory, double t, Vec3& v_W, Vec3& w_C);
 
 /// Circle in the level plane (W's y is down) about a centre, looking outward or along a tangent.
 struct Circle {
   Vec3 centre_W;
-  double radius = 1;          // [m]
+  double radius = 1;  // [m]
   double seconds_per_loop = 180;
   bool outward = true;
 };
-Trajectory circle(const Circle &circle);
+Trajectory circle(const Circle& circle);
 
 /// Where the camera is and what it looks at.
 struct Waypoint {
@@ -33,10 +33,10 @@ struct Waypoint {
 Trajectory spline(std::vector<Waypoint> points, double interval);
 
 /// Like a hand: sums of sines between 0.7 and 6 Hz on top of another trajectory.
-Trajectory shaken(Trajectory base, Random &random, double sigma_m, double sigma_rad);
+Trajectory shaken(Trajectory base, Random& random, double sigma_m, double sigma_rad);
 
 /// The pose at time 0 of another trajectory, turning only: pan and tilt within the given amplitudes [rad].
-Trajectory turning(const Pose &start, Random &random, double pan, double tilt, double seconds);
+Trajectory turning(const Pose& start, Random& random, double pan, double tilt, double seconds);
 
 /// State of a constant-velocity body: x right, y down, z forward in C.
 struct MotionState {
@@ -50,7 +50,7 @@ struct MotionState {
 ///   dv ~ N(0, density^2 dt),  dw likewise
 ///
 /// known_dv, known_dw  steering that the filter is told too
-void draw_motion(MotionState &state, Random &random, double dt, double linear_density,
-                 double angular_density, const Vec3 &known_dv, const Vec3 &known_dw);
+void draw_motion(MotionState& state, Random& random, double dt, double linear_density, double angular_density,
+                 const Vec3& known_dv, const Vec3& known_dw);
 
 }  // namespace pf::sim

@@ -5,6 +5,6 @@
 /// One function per command: adds it to the program; when it is chosen it runs and sets the exit code.
 namespace pfsim {
 
-void add_render(CLI::App &app, int &result);
+void add_render(CLI::App& app, int& result);
 
 }  // namespace pfsim

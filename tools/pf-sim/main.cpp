@@ -4,7 +4,7 @@
 
 #include "commands.h"
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   CLI::App app{"Simulations: rendered sequences, and Monte Carlo runs against exact truth"};
   app.require_subcommand(1);
   int result = 0;

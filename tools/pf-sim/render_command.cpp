@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool write_png(const std::string &path, const pf_image_t &image) {
+bool write_png(const std::string& path, const pf_image_t& image) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
@@ -25,8 +25,8 @@ bool write_png(const std::string &path, const pf_image_t &image) {
   return png_image_write_to_file(&png, path.c_str(), 0, image.pixels, image.stride, nullptr) != 0;
 }
 
-void write_calibration(const fs::path &path, const pf_camera_t &camera, double rate_hz) {
-  const char *const names[] = {"", "none", "radtan", "equidistant", "harris_division"};
+void write_calibration(const fs::path& path, const pf_camera_t& camera, double rate_hz) {
+  const char* const names[] = {"", "none", "radtan", "equidistant", "harris_division"};
   const int counts[] = {0, 0, 5, 4, 1};
   std::ofstream out(path);
   out.precision(17);
@@ -37,13 +37,13 @@ void write_calibration(const fs::path &path, const pf_camera_t &camera, double r
   out << "]\nrate_hz: " << rate_hz << "\ntimestamps: exact\n";
 }
 
-void write_target(const fs::path &path, const pf_target_t &target) {
+void write_target(const fs::path& path, const pf_target_t& target) {
   std::ofstream out(path);
   out << "# dark rectangle on a white ground; world: its centre, x right, y down, z into the wall; m\n"
-      << "width: " << target.width << "\nheight: " << target.height << "\nsigma_m: " << target.sigma_m << "\n";
+      << "width: " << target.width << "\nheight: " << target.height << "\nsigma: " << target.sigma_m << "\n";
 }
 
-bool choose_camera(const std::string &model, pf_camera_t &camera) {
+bool choose_camera(const std::string& model, pf_camera_t& camera) {
   if (model.empty()) return true;
   if (model == "pinhole") {
     camera.model = PF_CAMERA_PINHOLE;
@@ -71,12 +71,12 @@ struct Choices {
   double noise = -1, readout = -1, exposure_step = 0, drop = 0, repeat = 0, exposure_s = -1;
 };
 
-int fail(const std::string &what) {
+int fail(const std::string& what) {
   std::fprintf(stderr, "pf-sim: %s\n", what.c_str());
   return 1;
 }
 
-int render(const Choices &c) {
+int render(const Choices& c) {
   pf_sim_options_t o;
   if (pf_sim_options_default(c.scene.c_str(), &o) != PF_OK) {
     std::string names;
@@ -104,7 +104,7 @@ int render(const Choices &c) {
   o.drop_probability = c.drop;
   o.repeat_probability = c.repeat;
 
-  pf_sim_t *sim = pf_sim_open(c.scene.c_str(), &o);
+  pf_sim_t* sim = pf_sim_open(c.scene.c_str(), &o);
   if (!sim) return fail("an option is out of its range");
   const fs::path out(c.out);
   std::error_code error;
@@ -138,9 +138,9 @@ int render(const Choices &c) {
 
 }  // namespace
 
-void add_render(CLI::App &app, int &result) {
+void add_render(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
-  CLI::App *command = app.add_subcommand("render", "Render a scene: images, times, calibration, target, truth");
+  CLI::App* command = app.add_subcommand("render", "Render a scene: images, times, calibration, target, truth");
   command->add_option("scene", c->scene, "desk room wall rotation person exposure repeat")->required();
   command->add_option("--out", c->out, "folder to write")->required();
   command->add_option("--seed", c->seed, "of scene, path and noise");

@@ -52,47 +52,47 @@ typedef struct pf_sim_options {
   double repeat_probability; /* the last picture comes again under a new time, 0 .. 0.9 */
 
   /* The scene. */
-  int32_t target;           /* the dark rectangle is there */
-  int32_t repeated_texture; /* surfaces repeat a small cell */
-  int32_t person;           /* somebody walks through */
+  int32_t target;            /* the dark rectangle is there */
+  int32_t repeated_texture;  /* surfaces repeat a small cell */
+  int32_t person;            /* somebody walks through */
   double shake_m, shake_rad; /* of the hand, standard deviations */
 } pf_sim_options_t;
 
 /* PF_ERROR_RANGE: there is no such scene. */
-pf_status_t pf_sim_options_default(const char *scene, pf_sim_options_t *options);
+pf_status_t pf_sim_options_default(const char* scene, pf_sim_options_t* options);
 
 /* Names of the scenes, null after the last. */
-const char *pf_sim_scene_name(int32_t index);
+const char* pf_sim_scene_name(int32_t index);
 
 /* options may be null for the scene's own. */
-pf_sim_t *pf_sim_open(const char *scene, const pf_sim_options_t *options);
-void pf_sim_close(pf_sim_t *sim);
+pf_sim_t* pf_sim_open(const char* scene, const pf_sim_options_t* options);
+void pf_sim_close(pf_sim_t* sim);
 
-void pf_sim_camera(const pf_sim_t *sim, pf_camera_t *camera);
+void pf_sim_camera(const pf_sim_t* sim, pf_camera_t* camera);
 
 /* 1 and the next frame, or 0 at the end. The pixels stay valid until the next call. truth (may be null): the camera at
  * image->t_ns, with velocities and zero covariance. */
-int pf_sim_next(pf_sim_t *sim, pf_image_t *image, pf_pose_t *truth);
+int pf_sim_next(pf_sim_t* sim, pf_image_t* image, pf_pose_t* truth);
 
 /* Back to the first frame. */
-void pf_sim_rewind(pf_sim_t *sim);
+void pf_sim_rewind(pf_sim_t* sim);
 
 /* Truth at any time of the run. */
-void pf_sim_pose_at(const pf_sim_t *sim, int64_t t_ns, pf_pose_t *pose);
+void pf_sim_pose_at(const pf_sim_t* sim, int64_t t_ns, pf_pose_t* pose);
 
 /* The target as the library wants it: PF_TARGET_RECTANGLE, or PF_TARGET_POINTS with its corners and the true first pose
  * with a covariance of (2 degrees)^2 and (3 cm)^2. PF_ERROR_STATE: the scene has none. */
-pf_status_t pf_sim_target(const pf_sim_t *sim, uint32_t kind, pf_target_t *target);
+pf_status_t pf_sim_target(const pf_sim_t* sim, uint32_t kind, pf_target_t* target);
 
 /* A picture from any pose, with the sensor's settings but no noise, blur or readout. The pixels stay valid until the next call. */
-pf_status_t pf_sim_render(pf_sim_t *sim, const pf_pose_t *pose, pf_image_t *image);
+pf_status_t pf_sim_render(pf_sim_t* sim, const pf_pose_t* pose, pf_image_t* image);
 
 /* For each pixel's centre, seen from a pose at its t_ns: depth along z [m] (0: nothing) and the surface's number (-1:
  * nothing). Either may be null; both are width * height. */
-pf_status_t pf_sim_depth(const pf_sim_t *sim, const pf_pose_t *pose, float *depth, int32_t *surface);
+pf_status_t pf_sim_depth(const pf_sim_t* sim, const pf_pose_t* pose, float* depth, int32_t* surface);
 
 /* Plane of a surface, n . p = d in W, n towards what lies behind it. PF_ERROR_RANGE: no such surface. */
-pf_status_t pf_sim_surface(const pf_sim_t *sim, int32_t surface, double n_W[3], double *d_W);
+pf_status_t pf_sim_surface(const pf_sim_t* sim, int32_t surface, double n_W[3], double* d_W);
 
 #ifdef __cplusplus
 }
