@@ -1,0 +1,211 @@
+#include "geometry/planar_pose.h"
+
+#include <cmath>
+#include <limits>
+
+#include "geometry/homography.h"
+#include "geometry/small_cholesky.h"
+#include "geometry/so3.h"
+
+namespace pf {
+namespace {
+
+constexpr Scalar kMost = std::numeric_limits<Scalar>::max();
+
+/// Rotation nearest in spirit to [a b a x b]: the two directions are turned away from each other alike.
+/// False when they are almost parallel.
+bool rotation_from_two(const Vec3& a, const Vec3& b, Mat3* R) {
+  const Vec3 z = a.cross(b);
+  if (!(z.norm() > Scalar(1e-3))) return false;
+  const Vec3 sum = (a + b).normalized(), difference = (a - b).normalized();
+  const Scalar h = std::sqrt(Scalar(0.5));
+  R->col(0) = h * (sum + difference);
+  R->col(1) = h * (sum - difference);
+  R->col(2) = z.normalized();
+  return true;
+}
+
+/// R_CW and t_CW of a plane z = 0 from H = s [r1 r2 t], s > 0.
+bool decompose(const Mat3& H, Mat3* R_CW, Vec3* t_CW) {
+  const Vec3 h1 = H.col(0), h2 = H.col(1);
+  const Scalar n1 = h1.norm(), n2 = h2.norm();
+  if (!(n1 > 0) || !(n2 > 0) || !rotation_from_two(h1 / n1, h2 / n2, R_CW)) return false;
+  *t_CW = H.col(2) / std::sqrt(n1 * n2);
+  return true;
+}
+
+/// The other plane that looks alike: its points mirrored at the line of sight to the origin.
+Mat3 mirrored(const Mat3& R_CW, const Vec3& t_CW) {
+  const Vec3 d = t_CW.normalized();
+  Mat3 M = R_CW - 2 * d * (d.transpose() * R_CW).eval();
+  M.col(2) = -M.col(2).eval();
+  return M;
+}
+
+PoseEstimate pose_of(const Mat3& R_CW, const Vec3& t_CW) {
+  PoseEstimate pose;
+  pose.q_WC = Quat(Mat3(R_CW.transpose()));
+  pose.q_WC.normalize();
+  pose.p_WC = -(R_CW.transpose() * t_CW);
+  return pose;
+}
+
+/// Sum of squares, and the normal equations about the pivot where A and b are given.
+bool residuals(const Camera& camera, const PoseEstimate& pose, const Vec3* points, const Vec2* pixels,
+               int count, const Vec3& pivot, Scalar* cost, Mat6* A = nullptr, Vec6* b = nullptr) {
+  Scalar sum = 0;
+  if (A != nullptr) {
+    A->setZero();
+    b->setZero();
+  }
+  for (int i = 0; i < count; ++i) {
+    Vec2 pixel;
+    Mat26 J;
+    if (!project_from_pose(camera, pose.q_WC, pose.p_WC, points[i], pivot, &pixel, A != nullptr ? &J : nullptr)) {
+      return false;
+    }
+    const Vec2 r = pixels[i] - pixel;
+    sum += r.squaredNorm();
+    if (A != nullptr) {
+      *A += J.transpose().lazyProduct(J);
+      *b += J.transpose().lazyProduct(r);
+    }
+  }
+  if (!std::isfinite(sum)) return false;
+  *cost = sum;
+  return true;
+}
+
+PoseEstimate moved(const PoseEstimate& pose, const Vec3& pivot, const Vec6& step) {
+  PoseEstimate out = pose;
+  const Quat turn = exp_so3(step.head<3>());
+  out.q_WC = (turn * pose.q_WC).normalized();
+  out.p_WC = pivot + turn * (pose.p_WC - pivot) + step.tail<3>();
+  return out;
+}
+
+/// Covariance of the error about the pivot, as one about the camera: e = e_pivot + θ x (p - pivot).
+Mat6 about_camera(const Mat6& P, const Vec3& arm) {
+  Mat6 T = Mat6::Identity();
+  T.block<3, 3>(3, 0) = -hat(arm);
+  const Mat6 TP = T.lazyProduct(P);
+  return TP.lazyProduct(T.transpose());
+}
+
+/// Both estimates are the same pose, as far as this precision goes.
+bool is_same(const PoseEstimate& a, const PoseEstimate& b) {
+  const Scalar distance = a.p_WC.norm();
+  return (a.p_WC - b.p_WC).norm() < Scalar(1e-3) * distance &&
+         log_so3(a.q_WC * b.q_WC.conjugate()).norm() < Scalar(1e-3);
+}
+
+/// Adds what the other solution means for the uncertainty of the best one.
+void widen(const PoseEstimate& other, int count, Scalar sigma_px, PoseEstimate* best) {
+  const Scalar values = static_cast<Scalar>(2 * count), s2 = sigma_px * sigma_px;
+  const Scalar excess = values * (other.rms_px * other.rms_px - best->rms_px * best->rms_px) / s2;
+  if (!(excess < 40)) return;
+  const Scalar odds = std::exp(-excess / 2), w = odds / (1 + odds);
+  Vec6 d;
+  d << log_so3(other.q_WC * best->q_WC.conjugate()), other.p_WC - best->p_WC;
+  best->covariance = (1 - w) * best->covariance + w * (other.covariance + d * d.transpose());
+}
+
+}  // namespace
+
+bool project_from_pose(const Camera& camera, const Quat& q_WC, const Vec3& p_WC, const Vec3& p_W,
+                       const Vec3& pivot, Vec2* pixel, Mat26* J_pixel_pose) {
+  const Mat3 R_CW = q_WC.conjugate().toRotationMatrix();
+  const Vec3 p_C = R_CW * (p_W - p_WC);
+  Mat23 J_pixel_C;
+  if (!project(camera, p_C, pixel, J_pixel_pose != nullptr ? &J_pixel_C : nullptr)) return false;
+  if (J_pixel_pose != nullptr) {
+    const Mat23 J_pixel_W = J_pixel_C * R_CW;
+    J_pixel_pose->leftCols<3>() = J_pixel_W * hat(p_W - pivot);
+    J_pixel_pose->rightCols<3>() = -J_pixel_W;
+  }
+  return true;
+}
+
+bool refine_pose(const Camera& camera, const Vec3* points_W, const Vec2* pixels, int count,
+                 Scalar sigma_px, PoseEstimate* inout) {
+  if (count < 3 || count > kPoseMaxPoints) return false;
+  Vec3 pivot = Vec3::Zero();
+  for (int i = 0; i < count; ++i) pivot += points_W[i] / static_cast<Scalar>(count);
+
+  PoseEstimate pose = *inout;
+  Mat6 A;
+  Vec6 b;
+  Scalar cost;
+  SmallCholesky<6> factored;
+  if (!residuals(camera, pose, points_W, pixels, count, pivot, &cost, &A, &b)) return false;
+  Scalar damping = Scalar(1e-4);
+  for (int i = 0; i < 50; ++i) {
+    Mat6 damped = A;
+    damped.diagonal() *= 1 + damping;
+    if (!factored.factor(damped)) return false;
+    const Vec6 step = factored.solve<1>(b);
+    const PoseEstimate next = moved(pose, pivot, step);
+    Scalar next_cost;
+    if (residuals(camera, next, points_W, pixels, count, pivot, &next_cost) && next_cost <= cost) {
+      const bool done = cost - next_cost <= 16 * std::numeric_limits<Scalar>::epsilon() * cost;
+      pose = next;
+      if (!residuals(camera, pose, points_W, pixels, count, pivot, &cost, &A, &b)) return false;
+      damping *= Scalar(0.1);
+      if (done) break;
+    } else {
+      damping *= 10;
+      if (damping > Scalar(1e8)) break;
+    }
+  }
+  if (!factored.factor(A)) return false;
+  pose.covariance = about_camera(sigma_px * sigma_px * factored.inverse(), pose.p_WC - pivot);
+  pose.rms_px = std::sqrt(cost / static_cast<Scalar>(2 * count));
+  *inout = pose;
+  return true;
+}
+
+void rectangle_points(Scalar width, Scalar height, Vec3 points_W[4]) {
+  const Scalar x = width / 2, y = height / 2;
+  points_W[0] = Vec3(-x, -y, 0);
+  points_W[1] = Vec3(x, -y, 0);
+  points_W[2] = Vec3(x, y, 0);
+  points_W[3] = Vec3(-x, y, 0);
+}
+
+bool rectangle_pose(const Camera& camera, Scalar width, Scalar height, const Vec2 corners[4],
+                    Scalar sigma_px, PoseEstimate* best, Scalar* second_rms) {
+  // In units of the rectangle, so that the plane's points and the rays are of a size.
+  const Scalar unit = (width + height) / 2;
+  if (!(width > 0) || !(height > 0) || !(unit <= kMost)) return false;
+  Vec3 points_W[4], plane[4], rays[4];
+  rectangle_points(width, height, points_W);
+  for (int i = 0; i < 4; ++i) {
+    if (!unproject(camera, corners[i], &rays[i])) return false;
+    plane[i] = Vec3(points_W[i].x() / unit, points_W[i].y() / unit, 1);
+  }
+  Mat3 H, R_CW;
+  Vec3 t_CW;
+  if (!homography_from_4(plane, rays, &H) || !decompose(H, &R_CW, &t_CW)) return false;
+  t_CW *= unit;
+
+  PoseEstimate first = pose_of(R_CW, t_CW), second = pose_of(mirrored(R_CW, t_CW), t_CW);
+  bool first_ok = refine_pose(camera, points_W, corners, 4, sigma_px, &first);
+  bool second_ok = refine_pose(camera, points_W, corners, 4, sigma_px, &second);
+  // Seen from behind, the corners would run the other way round: not a pose in front of the wall.
+  first_ok = first_ok && first.p_WC.z() < 0;
+  second_ok = second_ok && second.p_WC.z() < 0;
+  if (!first_ok && !second_ok) return false;
+  if (first_ok && second_ok && is_same(first, second)) second_ok = false;
+  if (!first_ok || (second_ok && second.rms_px < first.rms_px)) {
+    const PoseEstimate keep = first;
+    first = second;
+    second = keep;
+    second_ok = first_ok && second_ok;
+  }
+  if (second_ok) widen(second, 4, sigma_px, &first);
+  if (second_rms != nullptr) *second_rms = second_ok ? second.rms_px : kMost;
+  *best = first;
+  return true;
+}
+
+}  // namespace pf

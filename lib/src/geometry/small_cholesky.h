@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "base/eigen.h"
+
+namespace pf {
+
+/// A = L Lᵀ of a small symmetric positive definite matrix, for right sides of any fixed width, without a heap.
+///
+/// A is scaled to a unit diagonal first, so that rows in different units are judged alike:
+/// A = D U D, D² = diag(A), U = L Lᵀ.  Only the lower triangle of A is read.
+template <int N>
+class SmallCholesky {
+ public:
+  using Matrix = Eigen::Matrix<Scalar, N, N>;
+
+  /// False when A is not positive definite to working precision; nothing else may then be called.
+  bool factor(const Matrix& A) {
+    constexpr Scalar kTiny = N * std::numeric_limits<Scalar>::epsilon();
+    for (int i = 0; i < N; ++i) {
+      if (!(A(i, i) > 0) || !(A(i, i) <= std::numeric_limits<Scalar>::max())) return false;
+      scale_(i) = 1 / std::sqrt(A(i, i));
+    }
+    for (int j = 0; j < N; ++j) {
+      for (int i = j; i < N; ++i) {
+        Scalar sum = A(i, j) * scale_(i) * scale_(j);
+        for (int k = 0; k < j; ++k) sum -= L_(i, k) * L_(j, k);
+        if (i == j) {
+          if (!(sum > kTiny)) return false;
+          L_(j, j) = std::sqrt(sum);
+        } else {
+          L_(i, j) = sum / L_(j, j);
+        }
+      }
+    }
+    return true;
+  }
+
+  /// A⁻¹ B.
+  template <int M>
+  Eigen::Matrix<Scalar, N, M> solve(const Eigen::Matrix<Scalar, N, M>& B) const {
+    Eigen::Matrix<Scalar, N, M> X;
+    for (int c = 0; c < M; ++c) {
+      for (int i = 0; i < N; ++i) {
+        Scalar sum = B(i, c) * scale_(i);
+        for (int k = 0; k < i; ++k) sum -= L_(i, k) * X(k, c);
+        X(i, c) = sum / L_(i, i);
+      }
+      for (int i = N - 1; i >= 0; --i) {
+        Scalar sum = X(i, c);
+        for (int k = i + 1; k < N; ++k) sum -= L_(k, i) * X(k, c);
+        X(i, c) = sum / L_(i, i);
+      }
+      for (int i = 0; i < N; ++i) X(i, c) *= scale_(i);
+    }
+    return X;
+  }
+
+  /// A⁻¹, symmetric.
+  Matrix inverse() const {
+    const Matrix X = solve<N>(Matrix::Identity());
+    Matrix S;
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j < N; ++j) S(i, j) = (X(i, j) + X(j, i)) / 2;
+    }
+    return S;
+  }
+
+ private:
+  Matrix L_ = Matrix::Zero();
+  Eigen::Matrix<Scalar, N, 1> scale_;
+};
+
+}  // namespace pf
