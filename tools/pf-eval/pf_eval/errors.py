@@ -18,7 +18,9 @@ class Comparison:
 
     t [s]; estimate, truth  (n,3) positions after alignment [m]; position_error (n,3) truth - estimate, in W [m]
     rotation_error (n,3) theta of R_true = Exp(theta) R_est, in W [rad]; covariance (n,6,6) or None after alignment
-    summary  what pf-eval prints
+    rotations      (n,3,3) of the estimate, after alignment
+    scale, turn, shift  the alignment: p_truth = scale turn p_run + shift
+    summary        what pf-eval prints
     """
 
 
@@ -61,12 +63,12 @@ def compare(run, truth, align, own_frame=True):
     """Comparison of a run with truth. align: none, se3, sim3. own_frame false: nobody told the run the truth's frame."""
     estimate, matched, how = associate(run, truth)
     reference, aligned = _evo(matched), _evo(estimate)
-    scale = 1.0
+    turn, shift, scale = np.eye(3), np.zeros(3), 1.0
     if align != "none":
         if len(estimate) < 3:
             raise Refused(f"{run.source}: has {len(estimate)} frames with truth; alignment needs at least 3")
         try:
-            scale = float(aligned.align(reference, correct_scale=align == "sim3")[2])
+            turn, shift, scale = aligned.align(reference, correct_scale=align == "sim3")[:3]
         except GeometryException as error:
             raise Refused(f"{run.source}: cannot be aligned, its positions or the true ones do not spread "
                           "(standing still, or on a straight line)") from error
@@ -74,16 +76,17 @@ def compare(run, truth, align, own_frame=True):
     rotation = metrics.APE(metrics.PoseRelation.rotation_angle_deg)
 
     result = Comparison()
+    result.scale, result.turn, result.shift = float(scale), turn, shift
     result.t, result.estimate, result.truth = estimate.t, aligned.positions_xyz, matched.p
     result.rotations = np.array([pose[:3, :3] for pose in aligned.poses_se3])
     result.position_error = matched.p - aligned.positions_xyz
-    turn = np.einsum("nij,nkj->nik", matched.rotations(), result.rotations)
-    result.rotation_error = Rotation.from_matrix(turn).as_rotvec()
+    off = Rotation.from_matrix(np.einsum("nij,nkj->nik", matched.rotations(), result.rotations))
+    result.rotation_error = off.as_rotvec()
     result.covariance = estimate.covariance if align == "none" else None
     result.align = align
 
     rate = 1.0 / np.median(np.diff(estimate.t)) if len(estimate) > 1 else 0.0
-    own = Rotation.from_matrix(turn).mean().inv() * Rotation.from_matrix(turn) if align != "none" else None
+    own = off.mean().inv() * off if align != "none" else None
     result.summary = {
         "ate_rmse_m": _statistic(metrics.APE(metrics.PoseRelation.translation_part), pair),
         "ate_max_m": _statistic(metrics.APE(metrics.PoseRelation.translation_part), pair, "max"),
@@ -94,7 +97,7 @@ def compare(run, truth, align, own_frame=True):
         "rot_own_rmse_deg": None if own is None else float(np.degrees(np.sqrt(np.mean(own.magnitude() ** 2)))),
         "pairs": len(estimate),
         "poses": len(run),
-        "scale": scale,
+        "scale": result.scale,
         "path_m": matched.path(),
         "align": align,
         "association": how,

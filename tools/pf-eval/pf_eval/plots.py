@@ -1,0 +1,88 @@
+"""plot-run: the command."""
+
+import argparse
+import pathlib
+import sys
+
+import numpy as np
+
+from . import Refused, plot_errors, plot_frames, plot_trajectory
+from .errors import compare, default_alignment
+from .files import read_run, read_table, read_tum
+
+DESCRIPTION = """Draws a run of pf-capture into RUN/plots: trajectory.png (from above and from the side, with the map), frames.png
+(matches, size of the state, milliseconds and innovations over time) and, where truth is known, errors.png: with 3-sigma
+bounds where the run is in the truth's own frame, after alignment otherwise."""
+
+
+def describe(run, report, comparison):
+    words = [pathlib.PurePath(str(report.get("source", run.source)).rstrip("/")).name]
+    if report.get("frames"):
+        words.append(f"tracked {report.get('tracked', '?')} of {report['frames']} frames")
+    if comparison:
+        aligned = {"none": "in the truth's own frame", "se3": "after SE(3) alignment", "sim3": "after Sim(3) alignment"}
+        words.append(f"position error {1000 * comparison.summary['ate_rmse_m']:.1f} mm RMS {aligned[comparison.align]}")
+    return "   ·   ".join(words)
+
+
+def plot(options):
+    run, report, folder = read_run(options.run)
+    truth_path = options.truth or (folder / "truth.tum" if (folder / "truth.tum").exists() else None)
+    align = options.align or default_alignment(report)
+    truth = read_tum(truth_path) if truth_path else None
+    comparison = None
+    if truth:
+        try:
+            comparison = compare(run, truth, align, own_frame=report.get("start") != "auto")
+        except Refused as refused:
+            if options.truth:
+                raise
+            print(f"plot-run: without truth: {refused}", file=sys.stderr)
+            truth = None
+
+    out = pathlib.Path(options.out or folder / "plots")
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Refused(f"{out}: cannot be made ({error.strerror})") from error
+    title = describe(run, report, comparison)
+    known_scale = default_alignment(report) == "none" or truth is not None
+
+    points, sigma, inverse_depth, target = plot_trajectory.read_map(folder / "map.ply")
+    p, rotations = run.p, run.rotations()
+    covariance = None if run.covariance is None else run.covariance[:, 3:, 3:]
+    true_path = None
+    if comparison:  # into the truth's frame
+        s, R, shift = comparison.scale, comparison.turn, comparison.shift
+        p, points, sigma = s * p @ R.T + shift, s * points @ R.T + shift, s * sigma
+        rotations = R @ rotations
+        covariance = None if covariance is None else s * s * R @ covariance @ R.T
+        inside = (truth.t >= run.t[0] - 0.05) & (truth.t <= run.t[-1] + 0.05)
+        true_path = truth.p[inside]
+    yield plot_trajectory.draw(out / "trajectory.png", p, rotations, covariance, true_path,
+                               (points, sigma, inverse_depth, target), "m" if known_scale else "first median depth", title)
+    start = run.t[0]
+    if (folder / "frames.csv").exists():
+        table = read_table(folder / "frames.csv")
+        start = table["t_s"][0]
+        yield plot_frames.draw(out / "frames.png", table, title)
+    if comparison:
+        yield plot_errors.draw(out / "errors.png", comparison, start, title)
+
+
+def main(words=None):
+    parser = argparse.ArgumentParser(prog="plot-run", description=DESCRIPTION,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", metavar="RUN", help="output folder of pf-capture")
+    parser.add_argument("--truth", metavar="FILE.tum", help="default: truth.tum in RUN, if it is there")
+    parser.add_argument("--align", choices=["none", "se3", "sim3"], help="as in pf-eval")
+    parser.add_argument("--out", metavar="DIR", help="default: RUN/plots")
+    options = parser.parse_args(words)
+    try:
+        with np.errstate(all="ignore"):
+            for path in plot(options):
+                print(path)
+    except Refused as refused:
+        print(f"plot-run: {refused}", file=sys.stderr)
+        return 1
+    return 0
