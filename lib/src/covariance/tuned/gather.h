@@ -6,57 +6,75 @@ namespace pf {
 namespace {
 
 /// Columns that a gather works on at a time.
-constexpr int kStrip = 256 / static_cast<int>(sizeof(Scalar));
+constexpr int kStrip = 512 / static_cast<int>(sizeof(Scalar));
 
-/// Row c of the symmetric matrix, columns j0 .. j0 + kStrip - 1, for the `size` rows c from `first`; zero from column n on.
-/// Left of the diagonal a row is contiguous; below it, the rows of the triangle are read across and stored transposed.
-inline void fill_panel(const Triangle& P, int first, int size, int j0, Scalar* panel) {
-  const int end = smaller(P.n, j0 + kStrip);
+/// Rows c of the symmetric matrix, columns j0 .. j0 + columns - 1 (multiples of eight), for the `size` rows c from `first`; zero
+/// from column n on.
+///
+///   j  | before the group of first | up to that of the last row | behind
+///      | rows as they are stored   | element by element         | columns of the triangle, transposed
+///
+/// The panel has room for a multiple of four rows, which transposing fills with what follows in the same rows of the triangle.
+inline void fill_panel(const Triangle& P, int first, int size, int j0, int columns, Scalar* panel) {
+  const int end = j0 + columns;
+  const int left = smaller(end, first / kGroup * kGroup);
+  const int right = smaller(end, round_up(first + size, kGroup));
   for (int c = 0; c < size; ++c) {
-    Scalar* to = panel + c * kStrip;
     const Scalar* row = row_of(P, first + c);
-    const int left = smaller(end, first + c + 1);
-    for (int j = j0; j < left; ++j) to[j - j0] = row[j];
-    for (int j = end; j < j0 + kStrip; ++j) to[j - j0] = 0;
+    Scalar* to = panel + c * kStrip - j0;
+    for (int j = j0; j < left; j += Narrow::kWidth) Narrow::store(to + j, Narrow::load(row + j));
+    for (int j = j0 > left ? j0 : left; j < right; j += kGroup) {
+      const Scalar* column = P.data + group_offset(j / kGroup) + first + c;
+      for (int i = 0; i < kGroup; ++i) {
+        to[j + i] = j + i <= first + c ? row[j + i] : column[i * (j + kGroup)];
+      }
+    }
   }
-  for (int j = j0 > first ? j0 : first; j < end; ++j) {
-    const Scalar* row = row_of(P, j) + first;
-    const int above = smaller(size, j - first);
+  for (int j = j0 > right ? j0 : right; j < end; j += kGroup) {
+    const std::ptrdiff_t stride = j + kGroup;
+    const Scalar* group = P.data + group_offset(j / kGroup) + first;
     Scalar* to = panel + (j - j0);
-    for (int c = 0; c < above; ++c) to[c * kStrip] = row[c];
+    for (int c = 0; c < size; c += 4) {
+      transpose_four(group + c, stride, to + c * kStrip, kStrip);
+      transpose_four(group + 4 * stride + c, stride, to + c * kStrip + 4, kStrip);
+    }
+  }
+  for (int j = P.n; j < end; ++j) {
+    for (int c = 0; c < size; ++c) panel[c * kStrip + j - j0] = 0;
   }
 }
 
-/// Panels of the strip at hand, kept while there is room, so that what Jacobians share is read once.
+/// Panels of the strip at hand, kept while there is room, so that what Jacobians share is read once. The first one (the body, as a
+/// rule) stays.
 struct Panels {
-  static constexpr int kColumns = 64;
+  static constexpr int kColumns = 56;
   static constexpr int kSegments = 16;
 
-  Scalar values[kColumns * kStrip];
+  alignas(64) Scalar values[kColumns * kStrip];
   Segment segment[kSegments];
-  int begin[kSegments];
-  int segments;
-  int columns;
+  int begin[kSegments + 1];
+  int count;
 
-  PF_INLINE void clear() { segments = columns = 0; }
+  PF_INLINE void clear() { count = begin[0] = 0; }
 
   /// Make room for one Jacobian; every segment of it then stays until the next call.
-  PF_INLINE void reserve(int more_segments, int more_columns) {
-    if (segments + more_segments > kSegments || columns + more_columns > kColumns) clear();
+  PF_INLINE void reserve(const SparseRows& J) {
+    int more = 0;
+    for (int s = 0; s < J.segments; ++s) more += round_up(J.segment[s].size, 4);
+    if (count + J.segments <= kSegments && begin[count] + more <= kColumns) return;
+    count = count > 0 && begin[1] + more <= kColumns ? 1 : 0;
   }
 
-  PF_INLINE const Scalar* find(const Triangle& P, Segment wanted, int j0) {
-    for (int s = 0; s < segments; ++s) {
-      if (segment[s].first == wanted.first && segment[s].size == wanted.size) {
-        return values + begin[s] * kStrip;
-      }
+  PF_INLINE const Scalar* find(const Triangle& P, Segment wanted, int j0, int columns) {
+    int s = 0;
+    while (s < count && (segment[s].first != wanted.first || segment[s].size != wanted.size)) ++s;
+    if (s == count) {
+      segment[s] = wanted;
+      begin[s + 1] = begin[s] + round_up(wanted.size, 4);
+      fill_panel(P, wanted.first, wanted.size, j0, columns, values + begin[s] * kStrip);
+      ++count;
     }
-    Scalar* panel = values + columns * kStrip;
-    fill_panel(P, wanted.first, wanted.size, j0, panel);
-    segment[segments] = wanted;
-    begin[segments++] = columns;
-    columns += wanted.size;
-    return panel;
+    return values + begin[s] * kStrip;
   }
 };
 
@@ -65,9 +83,9 @@ inline void gather_strip(const Triangle& P, const SparseRows& J, Panels& panels,
                          Scalar* out, std::ptrdiff_t ld) {
   const int width = columns_of(J);
   const Scalar* operand[SparseRows::kMaxSegments];
-  panels.reserve(J.segments, width);
-  for (int s = 0; s < J.segments; ++s) operand[s] = panels.find(P, J.segment[s], j0);
-  for_strips(columns, [&](auto v, auto count, int j) {
+  panels.reserve(J);
+  for (int s = 0; s < J.segments; ++s) operand[s] = panels.find(P, J.segment[s], j0, columns);
+  for_strips<4>(columns, [&](auto v, auto count, int j) {
     for_heights(J.rows, [&](auto height, int a) PF_LAMBDA {
       Tile<decltype(v), decltype(height)::value, decltype(count)::value> tile;
       tile.zero();

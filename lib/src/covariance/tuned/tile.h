@@ -92,7 +92,7 @@ struct Tile {
   }
 };
 
-/// Cut `columns` (a multiple of eight) into strips of kMost vectors (2 or 3), then into what is left. `work` is called with a tile's
+/// Cut `columns` (a multiple of eight) into strips of kMost vectors (2 to 4), then into what is left. `work` is called with a tile's
 /// columns as types, work(V{}, Count<vectors>{}, first column).
 template <int kValue>
 struct Count {
@@ -104,6 +104,9 @@ PF_INLINE void for_strip(int j, int columns, const Work& work) {
   const int vectors = columns / Wide::kWidth;
   if (vectors >= kMost) {
     work(Wide{}, Count<kMost>{}, j);
+  } else if (vectors == 3) {
+    work(Wide{}, Count<3>{}, j);
+    if (columns > 3 * Wide::kWidth) work(Narrow{}, Count<1>{}, j + 3 * Wide::kWidth);
   } else if (vectors == 2) {
     work(Wide{}, Count<2>{}, j);
     if (columns > 2 * Wide::kWidth) work(Narrow{}, Count<1>{}, j + 2 * Wide::kWidth);

@@ -24,15 +24,52 @@ namespace {
 
 constexpr int kGroup = Triangle::kGroup;
 
+/// The compiler's vector types; `Loose` may lie anywhere. One by one, since the attributes cannot depend on a template's argument.
+template <int kBytes>
+struct Register;
+template <>
+struct Register<16> {
+  typedef Scalar Type __attribute__((vector_size(16)));
+  typedef Scalar Loose __attribute__((vector_size(16), aligned(sizeof(Scalar)), may_alias));
+};
+template <>
+struct Register<32> {
+  typedef Scalar Type __attribute__((vector_size(32)));
+  typedef Scalar Loose __attribute__((vector_size(32), aligned(sizeof(Scalar)), may_alias));
+};
+template <>
+struct Register<64> {
+  typedef Scalar Type __attribute__((vector_size(64)));
+  typedef Scalar Loose __attribute__((vector_size(64), aligned(sizeof(Scalar)), may_alias));
+};
+
 template <int kBytes>
 struct Vector {
   static constexpr int kWidth = kBytes / static_cast<int>(sizeof(Scalar));
-  typedef Scalar Type __attribute__((vector_size(kBytes)));
-  typedef Scalar Loose __attribute__((vector_size(kBytes), aligned(sizeof(Scalar)), may_alias));
+  using Type = typename Register<kBytes>::Type;
+  using Loose = typename Register<kBytes>::Loose;
 
   static PF_INLINE Type load(const Scalar* from) { return *reinterpret_cast<const Loose*>(from); }
-  static PF_INLINE void store(Scalar* to, Type value) { *reinterpret_cast<Loose*>(to) = value; }
+  static PF_INLINE void store(Scalar* to, const Type& value) { *reinterpret_cast<Loose*>(to) = value; }
 };
+
+/// Four rows of four scalars, `stride` apart, become four rows `to_stride` apart.
+PF_INLINE void transpose_four(const Scalar* from, std::ptrdiff_t stride, Scalar* to,
+                              std::ptrdiff_t to_stride) {
+  typedef Register<4 * sizeof(Scalar)> Four;
+  const Four::Type a = *reinterpret_cast<const Four::Loose*>(from);
+  const Four::Type b = *reinterpret_cast<const Four::Loose*>(from + stride);
+  const Four::Type c = *reinterpret_cast<const Four::Loose*>(from + 2 * stride);
+  const Four::Type d = *reinterpret_cast<const Four::Loose*>(from + 3 * stride);
+  const Four::Type ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  const Four::Type ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four::Type cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Four::Type cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  *reinterpret_cast<Four::Loose*>(to) = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5);
+  *reinterpret_cast<Four::Loose*>(to + to_stride) = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
+  *reinterpret_cast<Four::Loose*>(to + 2 * to_stride) = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7);
+  *reinterpret_cast<Four::Loose*>(to + 3 * to_stride) = __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7);
+}
 
 /// Rows of the triangle are multiples of eight scalars long, which may be half of a register.
 using Wide = Vector<PF_VECTOR_BYTES>;

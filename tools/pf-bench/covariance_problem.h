@@ -1,0 +1,61 @@
+#pragma once
+
+#include <vector>
+
+#include "covariance/kernels.h"
+
+namespace bench {
+
+using pf::Scalar;
+
+constexpr int kBody = 13;  ///< rows of the body block
+constexpr int kPoint = 3;  ///< rows of a feature, and of a plane
+
+/// Memory that begins at a multiple of 64 bytes.
+class Aligned {
+ public:
+  explicit Aligned(std::size_t count);
+  Scalar* data() { return data_; }
+  const Scalar* data() const { return data_; }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::vector<Scalar> storage_;
+  Scalar* data_;
+  std::size_t size_;
+};
+
+/// A state of a body, a plane and points, and one frame's rows: two per observed point, which touch the body and the point, and
+/// every tenth pair the plane as well.
+///
+///   state   | body 13 | plane 3 | point 3 | point 3 | ...
+class Problem {
+ public:
+  Problem(int n, int m);
+
+  /// P as it was at the beginning.
+  void restore();
+
+  /// gather, innovation, Cholesky, gain, state change, downdate. considered: rows from active on keep their own covariance;
+  /// transport: rank of the thin symmetric term.
+  void update(const pf::Kernels& kernels, int active, int transport);
+
+  /// Textbook inputs for peers, dense and row-major.
+  std::vector<Scalar> dense_covariance() const;
+  std::vector<Scalar> dense_rows() const;
+
+  int n, m, ld, lds;
+  Aligned start, values, W, U, G, S;
+  pf::Triangle P;
+  std::vector<pf::SparseRows> J;
+  std::vector<Scalar> innovation, y, dx;
+  Scalar variance;  ///< of each row's noise
+
+ private:
+  void innovation_covariance();
+};
+
+/// Columns that an average row touches.
+double touched_columns(const Problem& problem);
+
+}  // namespace bench

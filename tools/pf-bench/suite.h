@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bench {
+
+/// One measurement. ratio = us / (the peer's us in the same run).
+struct Row {
+  std::string suite, name, scalar;
+  int n = 0, m = 0;
+  double us = 0;
+  std::string peer;
+  double ratio = 0;
+};
+
+struct SuiteOptions {
+  std::string json;      ///< file for the rows, empty for none
+  int repetitions = 61;  ///< of every interleaved measurement
+  std::string kernels;   ///< kernel set by name, empty for the fastest
+
+  /// Of suites that run on sequences.
+  std::vector<std::string> sources;
+  std::string start, calibration;
+  int passes = 3;       ///< through every sequence
+  int frames = 100000;  ///< at most, of every sequence
+};
+
+/// Tables on stdout as rows come, and a JSON file at the end.
+class Report {
+ public:
+  explicit Report(const SuiteOptions& options) : options_(options) {}
+  void add(const Row& row);
+  void note(const std::string& key, const std::string& value);  ///< printed, and kept in the file's head
+  int finish() const;                                           ///< 0, or 1 when the file cannot be written
+
+ private:
+  SuiteOptions options_;
+  std::vector<Row> rows_;
+  std::vector<std::pair<std::string, std::string>> notes_;
+};
+
+/// A suite is one file named *_suite.cpp with one of these at namespace scope; main finds it by itself.
+struct Suite {
+  Suite(const char* suite_name, const char* what, int (*entry)(const SuiteOptions&), bool on_sequences = false);
+  static const Suite* first();
+
+  const char* name;
+  const char* description;
+  int (*run)(const SuiteOptions&);
+  bool takes_sequences;
+  const Suite* next;
+};
+
+/// "double" or "float": what this program was built for.
+const char* scalar_name();
+
+}  // namespace bench
