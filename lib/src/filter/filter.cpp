@@ -209,6 +209,7 @@ bool Filter::predict_pixel(const Camera& camera, int slot, Observation* out) con
   Mat26 J_body;
   Mat23 J_anchor, J_feature;
   out->slot = slot;
+  out->second_order.setZero();
   out->segment[0] = {Body::kTheta, Body::kPoseDim};
   if (block.kind == BlockKind::kPoint) {
     if (!observe_point(camera, state_.body, block.xyz(), &out->predicted, &J_body, &J_feature)) return false;
@@ -229,6 +230,20 @@ bool Filter::predict_pixel(const Camera& camera, int slot, Observation* out) con
     put<2, 6>(out->h, 12, 0, J_body);
     put<2, 3>(out->h, 12, 6, J_anchor);
     put<2, 3>(out->h, 12, 9, J_feature);
+    // Parallax is the product of inverse depth and baseline. Where both are uncertain, what neither Jacobian shows is their
+    // product, with covariance sigma_rho^2 J P_baseline J^T (second-order term; zero first-order Jacobian at a baseline of zero).
+    const Scalar rho = block.inverse_depth().rho;
+    out->second_order.setZero();
+    if (rho > Scalar(1e-6)) {
+      const Scalar factor = P_(block.first + 2, block.first + 2) / (rho * rho);
+      Mat3 baseline;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          baseline(i, j) = P_(Body::kPosition + i, Body::kPosition + j) + P_(anchor.first + i, anchor.first + j) -
+                           P_(Body::kPosition + i, anchor.first + j) - P_(anchor.first + i, Body::kPosition + j);
+      const Mat23 JP = J_anchor.lazyProduct(baseline);
+      out->second_order = factor * JP.lazyProduct(J_anchor.transpose());
+    }
     return true;
   }
   return false;

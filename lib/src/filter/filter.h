@@ -25,6 +25,7 @@ struct Observation {
   Vec2 predicted = Vec2::Zero();      ///< [px]
   Vec2 measured = Vec2::Zero();       ///< [px]
   Mat2 noise = Mat2::Identity();      ///< covariance of the measurement [px^2]
+  Mat2 second_order = Mat2::Zero();   ///< what the linearisation leaves out [px^2]; belongs into noise
 };
 
 struct FilterCapacity {

@@ -19,6 +19,7 @@ struct Feature {
   int failures = 0;           ///< attempts since it was last measured
   std::int64_t last_seen_ns = 0;
   int appearance = -1;        ///< entry in the tracker's templates
+  int start_index = -1;       ///< in the record of a start without a target
 };
 
 class FeatureTable {

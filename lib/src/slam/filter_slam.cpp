@@ -17,6 +17,8 @@ constexpr Scalar kDefinedSigma = Scalar(1e-5);
 bool FilterSlam::layout(Arena& arena, const Settings& settings) {
   filter_.layout(arena, {settings.max_state_dim, settings.max_features, settings.max_observations});
   features_.layout(arena, settings.max_features);
+  record_.layout(arena);
+  bundle_.layout(arena);
   tracker_.layout(arena, settings.camera.width, settings.camera.height, settings.max_features);
   const std::size_t observations = static_cast<std::size_t>(settings.max_observations);
   tracks_ = arena.take<Track>(static_cast<std::size_t>(settings.max_features + settings.max_observations));
@@ -37,6 +39,9 @@ void FilterSlam::init(const Settings& settings) {
   target_ = Target();
   known_body_ = KnownBody();
   target_withdrawn_ = false;
+  record_.init();
+  recording_ = false;
+  depth_known_ = false;
   state_ = SlamState::kStarting;
   has_pose_ = false;
   lost_ = false;
@@ -97,13 +102,14 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
 /// What the caller is told, from how many inliers there were.
 Status FilterSlam::end_frame() {
   if (!has_pose_) return Status::kStarting;
+  if (recording_ && report_.frames <= 1) return Status::kStarting;
   if (report_.inliers >= kMinInliers) {
     if (lost_) settings_.hooks.say("found the map again");
     lost_ = false;
     last_tracked_ns_ = report_.t_ns;
-    if (state_ != SlamState::kStarting || target_.kind != TargetKind::kNone || known_body_.given || depth_is_known())
-      state_ = SlamState::kTracking;
-    return state_ == SlamState::kStarting ? Status::kStarting : Status::kOk;
+    const bool starting = recording_ && !depth_known_;
+    state_ = starting ? SlamState::kStarting : SlamState::kTracking;
+    return starting ? Status::kStarting : Status::kOk;
   }
   if (!lost_ && report_.t_ns - last_tracked_ns_ > settings_.coast_ns) {
     lost_ = true;
@@ -126,7 +132,8 @@ void FilterSlam::begin_from_knowledge() {
     return;
   }
   const int dim = filter_.state().body_dim;
-  Scalar covariance[Body::kMaxDim * Body::kMaxDim] = {};
+  Scalar* covariance = start_covariance_;
+  for (Scalar& c : start_covariance_) c = Scalar(0);
   const bool has_target = target_.kind != TargetKind::kNone;
   for (int i = 0; i < Body::kPoseDim; ++i)
     for (int j = 0; j < Body::kPoseDim; ++j)
@@ -137,23 +144,6 @@ void FilterSlam::begin_from_knowledge() {
     covariance[i * dim + i] = sigma * sigma;
   }
   begin_at(has_target ? target_.first_pose : Body(), covariance);
-}
-
-/// Eight features in view whose depth is better known than a third of itself.
-bool FilterSlam::depth_is_known() const {
-  int known = 0;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    const Block& block = filter_.state().block[features_[i].slot];
-    if (block.kind == BlockKind::kPoint) {
-      ++known;
-    } else {
-      const Scalar rho = block.inverse_depth().rho;
-      const Scalar variance = filter_.variance(block.first + 2);
-      if (rho > Scalar(0) && variance * Scalar(9) < rho * rho) ++known;
-    }
-  }
-  return known >= kMinInliers;
 }
 
 /// Takes in the kept ones of observations first .. first+count-1, which begin_update holds. False when nothing was taken in.
@@ -197,7 +187,7 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
         continue;
       }
       o.measured = observations[i].pixel;
-      o.noise = Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px);
+      o.noise = Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order;
       const Mat2 S = filter_.innovation(o) + o.noise;
       const bool agrees = squared_distance(o.measured - o.predicted, S) < settings_.gate;
       tracks_[track_count_++] = {entry, feature.id, agrees ? TrackStatus::kInlier : TrackStatus::kOutlier,

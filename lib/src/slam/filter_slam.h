@@ -10,6 +10,7 @@
 #include "slam/settings.h"
 #include "slam/start.h"
 #include "track/tracker.h"
+#include "window/start_bundle.h"
 
 /// The order of work of one frame with the filter as back end (Gee 2007), and nothing else:
 ///
@@ -66,7 +67,6 @@ class FilterSlam {
   void begin_from_knowledge();
   int find_track(std::uint32_t track) const;
   bool take_in(int first, int count);
-  bool depth_is_known() const;
 
   // housekeeping.cpp
   void convert_what_is_linear();
@@ -86,12 +86,26 @@ class FilterSlam {
   void begin_features_in_image();
   bool start_in_image();
 
+  // start_without_target.cpp
+  void begin_record();
+  void record_frame();
+  void restart_from_record();
+  void release(int entry);
+
   Settings settings_;
   Filter filter_;
   FeatureTable features_;
   Tracker tracker_;
   Target target_;
   KnownBody known_body_;
+  StartRecord record_;
+  StartBundle bundle_;
+  bool recording_ = false;  ///< a start without a target is under way
+  bool depth_known_ = false;  ///< and has been solved at least once
+  Quat base_q_WC_ = Quat::Identity();  ///< the record's frame 0 in W
+  Vec3 base_p_W_ = Vec3::Zero();
+  std::int64_t record_begin_ns_ = 0;
+  Scalar start_covariance_[Body::kMaxDim * Body::kMaxDim] = {};  ///< of the body at the first frame
   bool target_withdrawn_ = false;
 
   SlamState state_ = SlamState::kStarting;

@@ -52,7 +52,9 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
     StageTimer timer(settings_.hooks, &report_.stage_ns[kMap]);
     convert_what_is_linear();
     drop_what_fails();
-    if (report_.inliers >= kMinInliers || report_.attempts == 0 || report_.frames == 1) begin_features_in_image();
+    if (recording_) record_frame();
+    if (report_.inliers >= kMinInliers || report_.attempts == 0) begin_features_in_image();
+    if (recording_ && record_.features() == 0) begin_record();
   }
   return end_frame();
 }
@@ -114,7 +116,7 @@ void FilterSlam::predict_pixels(int first, int count) {
       track.innovation.setZero();
       continue;
     }
-    o.noise = Mat2::Identity() * (settings_.sigma_px * settings_.sigma_px);
+    o.noise = Mat2::Identity() * (settings_.sigma_px * settings_.sigma_px) + o.second_order;
     track.predicted = o.predicted;
     track.innovation = filter_.innovation(o) + o.noise;
   }
@@ -268,6 +270,7 @@ void FilterSlam::begin_features_in_image() {
 bool FilterSlam::start_in_image() {
   if (target_.kind == TargetKind::kNone) {
     begin_from_knowledge();
+    recording_ = !known_body_.given;
     return true;
   }
   return false;

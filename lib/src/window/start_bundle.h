@@ -1,0 +1,105 @@
+#pragma once
+
+#include "base/arena.h"
+#include "geometry/camera.h"
+
+/// The first depths, when nothing is known beforehand: a bundle adjustment over the first frames, from several first guesses.
+///
+/// A filter that starts with a camera that has not moved cannot know that parallax is the product of depth and motion: with a
+/// baseline of zero the derivative by depth is zero, and a scene turned inside out fits as well at first. So the pixels of the
+/// first frames are kept until there is enough parallax, and then explained at once.
+
+namespace pf {
+
+/// Pixels of up to kMaxFeatures features, all first seen in frame 0, over up to kMaxFrames frames. When full, every second frame
+/// goes, so that a camera that rests does not fill it.
+class StartRecord {
+ public:
+  static constexpr int kMaxFrames = 32;
+  static constexpr int kMaxFeatures = 64;
+
+  struct Frame {
+    std::int64_t t_ns;
+    Quat q_WC;  ///< W is frame 0's camera
+    Vec3 p_W;
+  };
+
+  bool layout(Arena& arena);
+  void init();
+
+  /// Feature of frame 0, by the ray on which it was first seen; its index, or -1 when there are kMaxFeatures.
+  int add_feature(const Vec3& ray);
+  /// A later frame, with the pose that is believed; its pixels follow. Returns its index.
+  int add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);
+  void add_pixel(int frame, int feature, const Vec2& pixel);
+
+  int frames() const { return frames_; }
+  int features() const { return features_; }
+  Frame& frame(int k) { return frame_[k]; }
+  const Frame& frame(int k) const { return frame_[k]; }
+  const Vec3& ray(int i) const { return ray_[i]; }
+  bool seen(int k, int i) const { return pixel_[k * kMaxFeatures + i].seen; }
+  Vec2 pixel(int k, int i) const {
+    const Pixel& p = pixel_[k * kMaxFeatures + i];
+    return Vec2(static_cast<Scalar>(p.x), static_cast<Scalar>(p.y));
+  }
+
+ private:
+  struct Pixel {
+    float x, y;
+    bool seen;
+  };
+  Frame* frame_ = nullptr;  ///< frame 0 itself is not stored: its pose is the identity
+  Vec3* ray_ = nullptr;
+  Pixel* pixel_ = nullptr;
+  int frames_ = 0;
+  int features_ = 0;
+};
+
+enum class StartOutcome {
+  kWait,      ///< not enough parallax (more than last time), or more than one explanation
+  kSolved,    ///< explained; more frames may explain it better
+  kSettled,   ///< explained, with as much parallax as it takes
+  kTooFew,    ///< too few of frame 0's features are left: begin again
+};
+
+/// Poses of the record's frames and inverse depths of its features.
+class StartBundle {
+ public:
+  bool layout(Arena& arena);
+  void init();
+
+  /// On kSolved and kSettled the record's frames hold the poses (W is frame 0's camera), rho() the inverse depths and good() which
+  /// features are to be trusted. The unit of length makes the median depth `median_depth` the first time, and stays.
+  StartOutcome solve(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth);
+
+  Scalar rho(int feature) const { return rho_[feature]; }
+  bool good(int feature) const { return good_[feature] != 0; }
+
+ private:
+  static constexpr int kMaxCameras = 8;  ///< of the adjustment
+
+  struct Pose {
+    Quat q_WC;
+    Vec3 p_W;
+  };
+
+  Scalar turn(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const;
+  Scalar adjust(const Camera& camera, const StartRecord& record, const int* frame, int cameras, int rounds,
+                Scalar sigma_px);
+  Scalar cost(const Camera& camera, const StartRecord& record, const int* frame, int cameras, Scalar sigma_px) const;
+  bool locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px, Pose* pose) const;
+
+  Pose pose_[kMaxCameras];
+  Pose trial_pose_[kMaxCameras];
+  Scalar* rho_ = nullptr;        ///< kMaxFeatures each
+  Scalar* trial_rho_ = nullptr;
+  Scalar* best_rho_ = nullptr;
+  Scalar* last_rho_ = nullptr;   ///< of the last solution, zero where it had none
+  Scalar last_parallax_ = 0;     ///< [px]
+  unsigned char* good_ = nullptr;
+  Scalar* W_ = nullptr;          ///< kMaxFeatures x 6 kMaxCameras: camera rows of each feature's column
+  Scalar* H_ = nullptr;          ///< 6 kMaxCameras square
+};
+
+}  // namespace pf
