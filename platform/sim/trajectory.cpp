@@ -86,13 +86,19 @@ Trajectory turning(const Pose& start, Random& random, double pan, double tilt, d
 }
 
 void draw_motion(MotionState& state, Random& random, double dt, double linear_density, double angular_density,
-                 const Vec3& known_dv, const Vec3& known_dw) {
-  const Vec3 dv = random.normal3() * (linear_density * std::sqrt(dt)) + known_dv;
-  const Vec3 dw = random.normal3() * (angular_density * std::sqrt(dt)) + known_dw;
-  state.pose.p_WC += state.v_W * dt + dv * (0.5 * dt);
-  state.pose.R_WC = state.pose.R_WC * rotation_exp((state.w_C + dw * 0.5) * dt);
-  state.v_W += dv;
-  state.w_C += dw;
+                 const Vec3& dv_C, const Vec3& dw_C) {
+  // Half a step's share of the velocity goes with it into the position; the rest of the position's noise is its own.
+  const double root = std::sqrt(dt), own = dt * root / std::sqrt(12.0);
+  const Vec3 b = random.normal3() * (linear_density * root);
+  const Vec3 a = b * (0.5 * dt) + random.normal3() * (linear_density * own);
+  const Vec3 d = random.normal3() * (angular_density * root);
+  const Vec3 c = d * (0.5 * dt) + random.normal3() * (angular_density * own);
+  state.v_W += state.pose.R_WC * dv_C;
+  state.w_C += dw_C;
+  state.pose.p_WC += state.v_W * dt + a;
+  state.pose.R_WC = state.pose.R_WC * rotation_exp(state.w_C * dt + c);
+  state.v_W += b;
+  state.w_C += d;
 }
 
 }  // namespace pf::sim

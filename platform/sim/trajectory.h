@@ -44,13 +44,16 @@ struct MotionState {
   Vec3 v_W, w_C;
 };
 
-/// One step of the constant-velocity model with white accelerations that are constant over the step:
+/// One step of the constant-velocity model with continuous white accelerations, drawn exactly in position and velocity:
 ///
-///   v' = v + dv,  w' = w + dw,  p' = p + v dt + dv dt / 2,  R' = R Exp((w + dw / 2) dt)
-///   dv ~ N(0, density^2 dt),  dw likewise
+///   v = v + R_WC dv_C,  w = w + dw_C                                      the steering, at the start of the step
+///   p' = p + v dt + a,  v' = v + b                                        (a, b) ~ density^2 [dt^3/3 dt^2/2; dt^2/2 dt]
+///   R' = R Exp(w dt + c),  w' = w + d                                     (c, d) likewise
 ///
-/// known_dv, known_dw  steering that the filter is told too
+/// linear_density   [m/s^2/sqrt(Hz)]
+/// angular_density  [rad/s^2/sqrt(Hz)]
+/// dv_C, dw_C       known steering [m/s], [rad/s]
 void draw_motion(MotionState& state, Random& random, double dt, double linear_density, double angular_density,
-                 const Vec3& known_dv, const Vec3& known_dw);
+                 const Vec3& dv_C, const Vec3& dw_C);
 
 }  // namespace pf::sim

@@ -9,6 +9,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int result = 0;
   pfsim::add_render(app, result);
+  pfsim::add_room(app, result);
+  pfsim::add_gee2007(app, result);
   CLI11_PARSE(app, argc, argv);
   return result;
 }

@@ -1,0 +1,175 @@
+// pf-sim room, pf-sim gee2007: Monte Carlo runs of the filter against geometric truth, with perfect association.
+
+#include <cstdio>
+#include <memory>
+
+#include "commands.h"
+#include "report.h"
+
+namespace pfsim {
+namespace {
+
+struct Choices {
+  std::string cases = "A", layout = "model", motion = "velocity", gauge = "both", json, csv;
+  int seeds = 40, frames = 0, jobs = 2, gauge_every = 10;
+  std::uint64_t first_seed = 1;
+  bool plain = false;
+  double fov = 0, linear = 0, angular = 0, relative_sigma = 0, start_depth = 0, linearity = 0, sigma_px = 1;
+  double circle_seconds = 180, slant = 35, height = 0.5;
+  int depth_from_map = -1, in_view = 44, first_birth = 15, target_points = 0, max_state_dim = 0;
+};
+
+int fail(const std::string& what) {
+  std::fprintf(stderr, "pf-sim: %s\n", what.c_str());
+  return 1;
+}
+
+void set_if(double& field, double value) {
+  if (value > 0) field = value;
+}
+
+/// What the two commands share: the filter's settings, and the bed from the options.
+Experiment prepare(const Choices& c, bool gee) {
+  Experiment x;
+  x.seeds = c.seeds;
+  x.first_seed = c.first_seed;
+  x.run.gauge_every = c.gauge_every;
+  x.bed.layout = gee || c.layout == "room" ? Layout::kRoom : Layout::kModel;
+  x.bed.circle = gee;
+  x.bed.circle_seconds = c.circle_seconds;
+  x.bed.fov_deg = c.fov > 0 ? c.fov : gee ? 43 : 80;
+  x.bed.frames = c.frames > 0 ? c.frames : gee ? 10800 : 1800;
+  x.bed.points_in_view = c.in_view;
+  x.bed.first_birth = c.first_birth;
+  x.bed.target_points = c.target_points > 0 ? c.target_points : gee ? 4 : 9;
+  x.bed.target_size = gee ? 0.2 : 0.25;
+  x.bed.target_slant_deg = c.slant;
+  x.bed.room_half_height = c.height;
+  if (gee) x.bed.sigma_start_v = x.bed.sigma_start_w = 0.05;
+
+  pf_config_t& config = x.config;
+  pf_config_default(&config);
+  config.camera = Bed::camera(x.bed.fov_deg);
+  config.sigma_pixel = c.sigma_px;
+  config.gate_probability = 0.9999;  // association is perfect: nothing true should be cut off
+  config.max_features = 300;
+  config.max_state_dim = c.max_state_dim > 0 ? c.max_state_dim : 1000;
+  config.max_observations = 100;
+  config.coast_seconds = 10;
+  config.depth_from_map = x.bed.layout == Layout::kRoom;
+  config.start_depth = gee ? 1.2 : x.bed.layout == Layout::kRoom ? 1.6 : 2.0;
+  config.inverse_depth_relative_sigma = x.bed.layout == Layout::kRoom ? 0.5 : 0.3;
+  if (c.depth_from_map >= 0) config.depth_from_map = static_cast<std::uint32_t>(c.depth_from_map);
+  set_if(config.start_depth, c.start_depth);
+  set_if(config.inverse_depth_relative_sigma, c.relative_sigma);
+  set_if(config.linearity_index, c.linearity);
+  if (gee) {
+    config.motion = c.motion == "walk" ? PF_MOTION_CONSTANT_POSITION : PF_MOTION_CONSTANT_VELOCITY;
+    // The circle's own speed, as the steps of a walk: v sqrt(dt); and its small accelerations, generously.
+    const double speed = 2 * 3.14159265358979 / x.bed.circle_seconds, dt = 1 / x.bed.rate_hz;
+    config.linear_walk = config.angular_walk = speed * std::sqrt(dt);
+    config.linear_acceleration_density = config.angular_acceleration_density = 0.02;
+    set_if(config.linear_walk, c.linear);
+    set_if(config.angular_walk, c.angular);
+  }
+  set_if(config.linear_acceleration_density, c.linear);
+  set_if(config.angular_acceleration_density, c.angular);
+  return x;
+}
+
+nlohmann::json describe(const Experiment& x) {
+  const pf_config_t& c = x.config;
+  return {{"layout", x.bed.layout == Layout::kRoom ? "room" : "model"},
+          {"motion", c.motion == PF_MOTION_CONSTANT_POSITION ? "walk" : "velocity"},
+          {"fov_deg", x.bed.fov_deg},
+          {"sigma_pixel", c.sigma_pixel},
+          {"linear_acceleration_density", c.linear_acceleration_density},
+          {"angular_acceleration_density", c.angular_acceleration_density},
+          {"linear_walk", c.linear_walk},
+          {"angular_walk", c.angular_walk},
+          {"start_depth", c.start_depth},
+          {"depth_from_map", c.depth_from_map},
+          {"inverse_depth_relative_sigma", c.inverse_depth_relative_sigma},
+          {"linearity_index", c.linearity_index},
+          {"max_state_dim", c.max_state_dim},
+          {"first_seed", x.first_seed}};
+}
+
+int run(const Choices& c, bool gee) {
+  if (c.cases != "A") return fail("there is no case " + c.cases + " yet; case A is points only");
+  if (c.layout != "model" && c.layout != "room") return fail("the layout is model or room");
+  if (c.motion != "walk" && c.motion != "velocity") return fail("the motion is walk or velocity");
+  if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 0)
+    return fail("seeds, jobs and frames must be positive");
+  const std::string name = gee ? "gee2007" : "room";
+  nlohmann::json out;
+  out["experiment"] = name;
+  std::vector<bool> keep;
+  if (c.plain) {
+    keep = {false};
+  } else {
+    keep = {true};
+    if (gee) keep.push_back(false);
+  }
+  for (const bool keep_gauge : keep) {
+    Experiment x = prepare(c, gee);
+    x.config.keep_gauge = keep_gauge;
+    const char* field = nullptr;
+    if (pf_config_check(&x.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
+    const std::string label = keep_gauge ? "A" : "A_plain_ekf";
+    if (!run_all(x, c.jobs, (name + " " + label).c_str())) return fail("a run did not come to its end");
+    out["settings"] = describe(x);
+    out["cases"][label] = summarise(x);
+    print(name + " " + label, out["cases"][label]);
+    if (!c.csv.empty() && !write_csv(x, c.csv, name + "_" + label)) return fail("cannot write to " + c.csv);
+  }
+  if (!c.json.empty() && !write_json(c.json, out)) return fail("cannot write " + c.json);
+  return 0;
+}
+
+void add_common(CLI::App* command, Choices& c) {
+  command->add_option("--case", c.cases, "A: points only");
+  command->add_option("--seeds", c.seeds, "how many runs");
+  command->add_option("--first-seed", c.first_seed, "seed of the first run");
+  command->add_option("--frames", c.frames, "of each run");
+  command->add_option("--jobs", c.jobs, "processes at a time");
+  command->add_option("--json", c.json, "report to write");
+  command->add_option("--csv", c.csv, "folder for per-frame tables");
+  command->add_flag("--plain-ekf", c.plain, "the textbook filter, which does not keep the gauge");
+  command->add_option("--gauge-every", c.gauge_every, "frames between readings of the gauge information, 0: never");
+  command->add_option("--fov", c.fov, "horizontal field of view [deg]");
+  command->add_option("--sigma-px", c.sigma_px, "measurement noise [px]");
+  command->add_option("--linear-density", c.linear, "white acceleration [m/s^2/sqrt(Hz)], or walk [m/sqrt(s)]");
+  command->add_option("--angular-density", c.angular, "likewise [rad/s^2/sqrt(Hz)], [rad/sqrt(s)]");
+  command->add_option("--relative-sigma", c.relative_sigma, "of the prior of inverse depth");
+  command->add_option("--start-depth", c.start_depth, "of the prior [m]");
+  command->add_option("--depth-from-map", c.depth_from_map, "0 or 1: new depths from the map's median");
+  command->add_option("--linearity-index", c.linearity, "below it a point becomes 3-D");
+  command->add_option("--slant", c.slant, "between the target's normal and the first line of sight [deg]");
+  command->add_option("--height", c.height, "half height of the room's points [m]");
+  command->add_option("--first-birth", c.first_birth, "frame from which new points begin");
+  command->add_option("--target-points", c.target_points, "4, 9 or 16");
+  command->add_option("--max-state-dim", c.max_state_dim, "capacity of the state");
+}
+
+}  // namespace
+
+void add_room(CLI::App& app, int& result) {
+  auto c = std::make_shared<Choices>();
+  CLI::App* command = app.add_subcommand("room", "Honesty of the filter when all its models are true, or in a room");
+  add_common(command, *c);
+  command->add_option("--layout", c->layout, "model: depths drawn from the prior; room: points of a 4 m room");
+  command->add_option("--in-view", c->in_view, "points that are kept in view (layout model)");
+  command->callback([c, &result] { result = run(*c, false); });
+}
+
+void add_gee2007(CLI::App& app, int& result) {
+  auto c = std::make_shared<Choices>();
+  CLI::App* command = app.add_subcommand("gee2007", "The paper's room and circle, with and without keeping the gauge");
+  add_common(command, *c);
+  command->add_option("--motion", c->motion, "velocity, or walk as the paper has it");
+  command->add_option("--seconds-per-loop", c->circle_seconds, "of the circle");
+  command->callback([c, &result] { result = run(*c, true); });
+}
+
+}  // namespace pfsim

@@ -1,0 +1,201 @@
+#include "report.h"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "statistics.h"
+
+namespace pfsim {
+
+using nlohmann::json;
+
+namespace {
+
+/// Mean over the runs that are valid at a frame, and how many these are.
+struct RunMean {
+  double value = 0;
+  int runs = 0;
+};
+
+template <typename Get>
+RunMean run_mean(const Experiment& x, int frame, Get get) {
+  RunMean mean;
+  for (int s = 0; s < x.seeds; ++s) {
+    const double v = static_cast<double>(get(x.row(s, frame)));
+    if (!(v >= 0) || !std::isfinite(v)) continue;
+    mean.value += v;
+    ++mean.runs;
+  }
+  if (mean.runs > 0) mean.value /= mean.runs;
+  return mean;
+}
+
+/// Time mean of a normalised error, and how its run averages lie against the chi-square bounds of a run average.
+template <typename Get>
+json nees_json(const Experiment& x, int dof, Get get) {
+  double sum = 0;
+  int above = 0, below = 0, frames = 0;
+  for (int f = 0; f < x.bed.frames; ++f) {
+    const RunMean mean = run_mean(x, f, get);
+    if (mean.runs == 0) continue;
+    sum += mean.value;
+    ++frames;
+    const double n = mean.runs;
+    above += mean.value > chi_square_quantile(0.975, dof * n) / n;
+    below += mean.value < chi_square_quantile(0.025, dof * n) / n;
+  }
+  // Each run's own time mean, for the spread that the mean over runs has by chance.
+  double square = 0;
+  std::vector<double> means;
+  for (int s = 0; s < x.seeds; ++s) {
+    double total = 0;
+    int count = 0;
+    for (int f = 0; f < x.bed.frames; ++f) {
+      const double v = static_cast<double>(get(x.row(s, f)));
+      if (v >= 0 && std::isfinite(v)) {
+        total += v;
+        ++count;
+      }
+    }
+    if (count > 0) means.push_back(total / count);
+  }
+  const double n = std::max(1, frames), mean = sum / n;
+  for (const double m : means) square += (m - mean) * (m - mean);
+  const double runs = std::max<double>(2, static_cast<double>(means.size()));
+  return {{"mean", mean},
+          {"standard_error", std::sqrt(square / (runs - 1) / runs)},
+          {"median_of_runs", median(means)},
+          {"above_share", above / n},
+          {"below_share", below / n},
+          {"inside_share", 1 - (above + below) / n},
+          {"bound_low", chi_square_quantile(0.025, dof * x.seeds) / x.seeds},
+          {"bound_high", chi_square_quantile(0.975, dof * x.seeds) / x.seeds},
+          {"dof", dof}};
+}
+
+struct Job {
+  const Experiment* experiment;
+  RunSummary* summaries;
+  FrameRow* rows;
+};
+
+void run_one(int index, void* context) {
+  const Job& job = *static_cast<Job*>(context);
+  const Experiment& x = *job.experiment;
+  job.summaries[index] = run_once(x.bed, x.config, x.run, x.first_seed + static_cast<std::uint64_t>(index),
+                                  job.rows + static_cast<std::size_t>(index) * static_cast<std::size_t>(x.bed.frames));
+}
+
+}  // namespace
+
+bool run_all(Experiment& x, int processes, const char* title) {
+  const auto seeds = static_cast<std::size_t>(x.seeds), frames = static_cast<std::size_t>(x.bed.frames);
+  Job job{&x, static_cast<RunSummary*>(shared_memory(seeds * sizeof(RunSummary))),
+          static_cast<FrameRow*>(shared_memory(seeds * frames * sizeof(FrameRow)))};
+  if (!job.summaries || !job.rows) return false;
+  const bool good = in_processes(x.seeds, processes, title, run_one, &job);
+  x.summaries = job.summaries;
+  x.rows = job.rows;
+  return good;
+}
+
+json summarise(const Experiment& x) {
+  std::vector<double> dims, ends, inliers;
+  double square = 0, frames = 0, nis = 0, nis_dof = 0, seconds = 0;
+  double map_square = 0, map_count = 0, map_nees = 0, pose = 0, scale = 0, scale_step = 0;
+  int lost = 0, tracked = 0;
+  for (int s = 0; s < x.seeds; ++s) {
+    const RunSummary& r = x.summaries[s];
+    lost += r.lost || !r.done;
+    tracked += r.frames_tracked;
+    seconds += r.cpu_seconds;
+    map_square += r.map_square_sum;
+    map_count += r.map_count;
+    map_nees += r.map_nees_sum;
+    pose = std::max(pose, r.gauge_pose_growth);
+    scale = std::max(scale, r.gauge_scale_growth);
+    scale_step = std::max(scale_step, r.gauge_scale_step_growth);
+    for (int f = 0; f < x.bed.frames; ++f) {
+      const FrameRow& row = x.row(s, f);
+      if (!(row.nees_position >= 0)) continue;
+      square += static_cast<double>(row.error_m) * static_cast<double>(row.error_m);
+      frames += 1;
+      nis += static_cast<double>(row.nis);
+      nis_dof += static_cast<double>(row.nis_dof);
+      dims.push_back(static_cast<double>(row.state_dim));
+      inliers.push_back(static_cast<double>(row.inliers));
+    }
+    ends.push_back(static_cast<double>(x.row(s, x.bed.frames - 1).state_dim));
+  }
+  const json dim = {{"median", median(dims)}, {"end", median(ends)}};
+  json out;
+  out["nees_position"] = nees_json(x, 3, [](const FrameRow& r) { return r.nees_position; });
+  out["nees_pose"] = nees_json(x, 6, [](const FrameRow& r) { return r.nees_pose; });
+  out["state_dim"] = out["active_dim"] = dim;
+  out["camera_rmse_m"] = std::sqrt(square / std::max(1.0, frames));
+  out["map_rmse_m"] = std::sqrt(map_square / std::max(1.0, map_count));
+  out["map_nees"] = map_nees / std::max(1.0, map_count);
+  out["planes"] = {{"true", 0}, {"false", 0}, {"duplicate", 0}};
+  out["gauge_growth"] = {
+      {"translation_rotation", pose}, {"scale", scale}, {"scale_one_frame_without_births", scale_step}};
+  out["nis_per_dof"] = nis / std::max(1.0, nis_dof);
+  out["inliers_median"] = median(inliers);
+  out["tracked_share"] = tracked / (static_cast<double>(x.seeds) * x.bed.frames);
+  out["lost_runs"] = lost;
+  out["runs"] = x.seeds;
+  out["frames"] = x.bed.frames;
+  out["frames_per_second"] = frames / std::max(1e-9, seconds);
+  return out;
+}
+
+bool write_csv(const Experiment& x, const std::string& directory, const std::string& label) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  std::ofstream means(directory + "/" + label + ".csv"), runs(directory + "/" + label + "_runs.csv");
+  means << "frame,nees_position,nees_pose,bound_low,bound_high,rmse_m,sigma_m,state_dim,inliers,runs\n";
+  runs << "seed,frame,nees_position,nees_pose,error_m,sigma_m,state_dim,inliers\n";
+  for (int f = 0; f < x.bed.frames; ++f) {
+    const RunMean position = run_mean(x, f, [](const FrameRow& r) { return r.nees_position; });
+    const double n = std::max(1, position.runs);
+    means << f << ',' << position.value << ',' << run_mean(x, f, [](const FrameRow& r) { return r.nees_pose; }).value
+          << ',' << chi_square_quantile(0.025, 3 * n) / n << ',' << chi_square_quantile(0.975, 3 * n) / n << ','
+          << std::sqrt(run_mean(x, f, [](const FrameRow& r) { return r.error_m * r.error_m; }).value) << ','
+          << std::sqrt(run_mean(x, f, [](const FrameRow& r) { return r.sigma_m * r.sigma_m; }).value) << ','
+          << run_mean(x, f, [](const FrameRow& r) { return r.state_dim; }).value << ','
+          << run_mean(x, f, [](const FrameRow& r) { return r.inliers; }).value << ',' << position.runs << '\n';
+  }
+  for (int s = 0; s < x.seeds; ++s)
+    for (int f = 0; f < x.bed.frames; ++f) {
+      const FrameRow& r = x.row(s, f);
+      runs << x.first_seed + static_cast<std::uint64_t>(s) << ',' << f << ',' << r.nees_position << ',' << r.nees_pose
+           << ',' << r.error_m << ',' << r.sigma_m << ',' << r.state_dim << ',' << r.inliers << '\n';
+    }
+  return means.good() && runs.good();
+}
+
+void print(const std::string& label, const json& j) {
+  const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
+  std::printf("%s: position NEES %.3f +- %.3f (3 dof; run averages inside %.1f %%, above %.1f %%, bounds %.2f %.2f)\n",
+              label.c_str(), number("/nees_position/mean"), number("/nees_position/standard_error"),
+              100 * number("/nees_position/inside_share"), 100 * number("/nees_position/above_share"),
+              number("/nees_position/bound_low"), number("/nees_position/bound_high"));
+  std::printf("  pose NEES %.3f (6 dof), NIS per dof %.3f, camera RMSE %.4f m, map RMSE %.4f m, state %g (end %g)\n",
+              number("/nees_pose/mean"), number("/nis_per_dof"), number("/camera_rmse_m"), number("/map_rmse_m"),
+              number("/state_dim/median"), number("/state_dim/end"));
+  std::printf("  gauge information grew: translation, rotation %.2e; scale %.2e (in one frame without births %.2e)\n",
+              number("/gauge_growth/translation_rotation"), number("/gauge_growth/scale"),
+              number("/gauge_growth/scale_one_frame_without_births"));
+  std::printf("  %g runs of %g frames, %g lost, %.1f %% tracked, %g inliers, %.0f frames a second\n", number("/runs"),
+              number("/frames"), number("/lost_runs"), 100 * number("/tracked_share"), number("/inliers_median"),
+              number("/frames_per_second"));
+}
+
+bool write_json(const std::string& path, const json& j) {
+  std::ofstream out(path);
+  out << j.dump(2) << "\n";
+  return out.good();
+}
+
+}  // namespace pfsim

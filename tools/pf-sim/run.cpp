@@ -1,0 +1,172 @@
+#include "run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <memory>
+
+#include "statistics.h"
+
+namespace pfsim {
+namespace {
+
+using pf::sim::rotation_log;
+using pf::sim::rotation_of;
+using pf::sim::Vec3;
+
+double cpu_now() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// A context in its own block.
+class Context {
+ public:
+  explicit Context(const pf_config_t& config) {
+    pf_memory_t need;
+    if (pf_memory_query(&config, &need) != PF_OK) return;
+    const std::size_t bytes = (need.bytes + need.alignment - 1) / need.alignment * need.alignment;
+    block_.reset(std::aligned_alloc(need.alignment, bytes));
+    if (block_) pf_create(&config, block_.get(), bytes, &slam);
+  }
+  pf_slam_t* slam = nullptr;
+
+ private:
+  struct Free {
+    void operator()(void* p) const { std::free(p); }
+  };
+  std::unique_ptr<void, Free> block_;
+};
+
+/// Watches the information about what a camera cannot observe.
+class GaugeWatch {
+ public:
+  void read(const pf_slam_t* slam, int state_dim) {
+    before_valid_ = now_valid_;
+    std::copy(now_, now_ + 49, before_);
+    const auto n = static_cast<std::size_t>(state_dim);
+    if (scratch_.size() < n * (n + 8)) scratch_.resize(n * (n + 8));
+    now_valid_ = pf_get_gauge_information(slam, scratch_.data(), scratch_.size(), now_) == PF_OK;
+  }
+  void keep_as_first() { std::copy(now_, now_ + 49, first_); }
+  void compare(bool births, RunSummary& summary) const {
+    if (!now_valid_) return;
+    summary.gauge_pose_growth = std::max(summary.gauge_pose_growth, largest_ratio(first_, now_, 6, 7) - 1);
+    summary.gauge_scale_growth = std::max(summary.gauge_scale_growth, now_[48] / first_[48] - 1);
+    if (!births && before_valid_)
+      summary.gauge_scale_step_growth = std::max(summary.gauge_scale_step_growth, now_[48] / before_[48] - 1);
+  }
+
+ private:
+  std::vector<double> scratch_;
+  double first_[49] = {}, before_[49] = {}, now_[49] = {};
+  bool before_valid_ = false, now_valid_ = false;
+};
+
+FrameRow judge(const Bed& bed, const pf_pose_t& pose, const pf_report_t& report) {
+  FrameRow row{};
+  const auto& truth = bed.truth().pose;
+  const Vec3 theta = rotation_log(truth.R_WC * rotation_of(pose.q_WC).transposed());
+  const Vec3 p{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
+  const Vec3 e = truth.p_WC - p;
+  const double error[6] = {theta.x, theta.y, theta.z, e.x, e.y, e.z};
+  row.nees_position = static_cast<float>(normalised_error(error + 3, pose.covariance, 3, 6, 3));
+  row.nees_pose = static_cast<float>(normalised_error(error, pose.covariance, 6, 6, 0));
+  row.error_m = static_cast<float>(e.norm());
+  row.sigma_m = static_cast<float>(std::sqrt(pose.covariance[21] + pose.covariance[28] + pose.covariance[35]));
+  row.state_dim = static_cast<float>(report.state_dim);
+  row.inliers = static_cast<float>(report.inliers);
+  row.nis = static_cast<float>(report.nis);
+  row.nis_dof = static_cast<float>(report.nis_dof);
+  return row;
+}
+
+std::vector<pf_feature_t> map_of(const pf_slam_t* slam, const pf_config_t& config) {
+  std::vector<pf_feature_t> features(static_cast<std::size_t>(config.max_features));
+  std::size_t count = 0;
+  pf_get_features(slam, features.data(), features.size(), &count);
+  features.resize(std::min(count, features.size()));
+  return features;
+}
+
+/// Points that were offered and are not in the map are offered no more: their depth would no longer be a fresh draw.
+void retire_what_is_gone(Bed& bed, const std::vector<pf_feature_t>& map) {
+  std::vector<bool> there(bed.points().size(), false);
+  for (const pf_feature_t& f : map)
+    if (f.track < there.size()) there[f.track] = true;
+  for (std::size_t id = 0; id < there.size(); ++id)
+    if (bed.points()[id].begun && !there[id]) bed.retire(static_cast<std::uint32_t>(id));
+}
+
+void judge_map(const Bed& bed, const std::vector<pf_feature_t>& map, RunSummary& summary) {
+  for (const pf_feature_t& f : map) {
+    if (f.kind != PF_FEATURE_POINT || f.is_target || f.track >= bed.points().size()) continue;
+    const Vec3 e = bed.points()[f.track].p_W - Vec3{f.p_W[0], f.p_W[1], f.p_W[2]};
+    const double error[3] = {e.x, e.y, e.z};
+    summary.map_square_sum += e.dot(e);
+    summary.map_nees_sum += normalised_error(error, f.covariance, 3, 3, 0);
+    summary.map_count += 1;
+  }
+}
+
+}  // namespace
+
+RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, const RunOptions& options,
+                    std::uint64_t seed, FrameRow* rows) {
+  RunSummary summary;
+  summary.done = 1;
+  summary.lost = 1;
+  Bed bed(bed_options, config, seed);
+  const Context context(config);
+  pf_slam_t* slam = context.slam;
+  if (!slam || pf_start_from_target(slam, &bed.target()) != PF_OK ||
+      pf_start_from_pose(slam, &bed.start(), bed.velocity_covariance()) != PF_OK)
+    return summary;
+  summary.lost = 0;
+
+  GaugeWatch gauge;
+  pf_pose_t pose = bed.start();
+  pf_report_t report{};
+  for (int frame = 0; frame < bed_options.frames; ++frame) {
+    if (frame > 0) {
+      double dv_C[3], dw_C[3];
+      bed.steer(frame - 1, pose, dv_C, dw_C);
+      if (config.motion == PF_MOTION_CONSTANT_VELOCITY) pf_push_steering(slam, dv_C, dw_C);
+      bed.move(frame, dv_C, dw_C);
+    }
+    int births = 0;
+    const auto seen = bed.observe(frame, &births);
+    const double begin = cpu_now();
+    const auto t_ns = static_cast<std::int64_t>(std::llround(frame * 1e9 / bed_options.rate_hz));
+    const pf_status_t status = pf_push_observations(slam, t_ns, seen.data(), seen.size());
+    summary.cpu_seconds += cpu_now() - begin;
+    if (status < 0 || pf_get_pose(slam, &pose) != PF_OK) {
+      summary.lost = 1;
+      for (int rest = frame; rest < bed_options.frames; ++rest) rows[rest].nees_position = rows[rest].nees_pose = -1;
+      return summary;
+    }
+    pf_get_report(slam, &report);
+    rows[frame] = judge(bed, pose, report);
+    summary.lost |= status == PF_NOTE_LOST || !(rows[frame].nees_position >= 0);
+    summary.frames_tracked += status == PF_OK;
+    if (births > 0 || frame % 10 == 9) retire_what_is_gone(bed, map_of(slam, config));
+
+    const int phase = options.gauge_every > 0 ? frame % options.gauge_every : -1;
+    if (frame == 0 && options.gauge_every > 0) {
+      gauge.read(slam, report.state_dim);
+      gauge.keep_as_first();
+    } else if (phase == options.gauge_every - 1) {
+      gauge.read(slam, report.state_dim);
+      gauge.compare(true, summary);
+    } else if (phase == 0) {
+      gauge.read(slam, report.state_dim);
+      gauge.compare(births > 0, summary);
+    }
+  }
+  judge_map(bed, map_of(slam, config), summary);
+  return summary;
+}
+
+}  // namespace pfsim

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bed.h"
+
+namespace pfsim {
+
+/// What one frame of one run gave.
+struct FrameRow {
+  float nees_position, nees_pose;  ///< negative: no valid covariance
+  float error_m, sigma_m;          ///< of the position; sigma_m is the root of the trace
+  float state_dim, inliers;
+  float nis, nis_dof;
+};
+
+/// What one run gave besides its frames. Plain data, so that it may lie in memory shared between processes.
+struct RunSummary {
+  std::int32_t done = 0;
+  std::int32_t lost = 0;  ///< the state was lost, or the covariance was not valid, at any frame
+  std::int32_t frames_tracked = 0;
+  double gauge_pose_growth = 0;   ///< of the information about global translation and rotation since the first frame
+  double gauge_scale_growth = 0;  ///< of that about scale, likewise; depth priors of new points are part of it
+  double gauge_scale_step_growth = 0;  ///< in one frame without new points
+  double map_square_sum = 0;           ///< of the distances between points of the map and the truth at the end [m^2]
+  double map_count = 0;
+  double map_nees_sum = 0;  ///< of the same points
+  double cpu_seconds = 0;   ///< in pf_push_observations
+};
+
+struct RunOptions {
+  int gauge_every = 10;  ///< frames between readings of the gauge information, 0: never
+};
+
+/// One run, start to end. rows has as many entries as the bed has frames.
+RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, const RunOptions& options,
+                    std::uint64_t seed, FrameRow* rows);
+
+/// Calls job(0 .. count-1) in that many processes at a time, with a progress line on stderr. What a job leaves behind
+/// must lie in shared memory. False when a process died.
+bool in_processes(int count, int processes, const char* title, void (*job)(int index, void* context), void* context);
+
+/// Zeroed memory that child processes write and the parent reads; null when there is none. Lives until the program ends.
+void* shared_memory(std::size_t bytes);
+
+}  // namespace pfsim
