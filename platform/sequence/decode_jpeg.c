@@ -1,9 +1,12 @@
-#include <stdio.h> /* before jpeglib.h, which uses its types */
-
-#include <jerror.h>
-#include <jpeglib.h>
+/* jpeglib.h needs stdio.h before it. */
+/* clang-format off */
 #include <setjmp.h>
+#include <stdio.h>
 #include <string.h>
+
+#include <jpeglib.h>
+#include <jerror.h>
+/* clang-format on */
 
 #include "decode.h"
 

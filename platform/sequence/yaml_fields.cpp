@@ -67,7 +67,7 @@ YAML::Node Fields::at(const std::string& key) const {
   try {
     found.reset(static_cast<const YAML::Node&>(node_)[key]);
   } catch (const YAML::Exception&) {
-    refuse_field(key, "is missing");
+    refuse_field(key, "is missing; add it");
   }
   if (!found.IsDefined() || found.IsNull()) {
     refuse_field(key, "is missing; add it");

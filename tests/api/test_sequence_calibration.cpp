@@ -1,0 +1,225 @@
+// The calibration reader: every form, and every field that can be wrong.
+#include "skip.h"
+
+#if __has_include(<planefold_platform/sequence.h>)
+
+#include <cmath>
+
+#include "sequence_test.h"
+
+using namespace pf::test;
+
+void setUp() {}
+void tearDown() {}
+
+namespace {
+
+const char* const kKalibr =
+    "cam0:\n  cam_overlaps: []\n  camera_model: pinhole\n  distortion_coeffs: [-0.28, 0.07, 0.0002, 1.8e-05]\n"
+    "  distortion_model: radtan\n  intrinsics: [458.654, 457.296, 367.215, 248.375]\n  resolution: [752, 480]\n"
+    "  rostopic: /cam0/image_raw\n";
+const char* const kEuroc =
+    "sensor_type: camera\ncomment: VI-Sensor cam0\nT_BS:\n  cols: 4\n  rows: 4\n  data: [1.0, 0.0, 0.0, 0.0]\nrate_hz: "
+    "20\n"
+    "resolution: [752, 480]\ncamera_model: pinhole\nintrinsics: [458.654, 457.296, 367.215, 248.375]\n"
+    "distortion_model: radial-tangential\ndistortion_coefficients: [-0.28340811, 0.07395907, 0.00019359, "
+    "1.76187114e-05]\n";
+const char* const kRos =
+    "image_width: 640\nimage_height: 480\ncamera_name: usb\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+    "  data: [500, 0, 320, 0, 501, 240, 0, 0, 1]\ndistortion_model: plumb_bob\ndistortion_coefficients:\n  rows: 1\n  "
+    "cols: 5\n"
+    "  data: [0.1, -0.2, 0.001, 0.002, 0.05]\n";
+
+pf_camera_t read(const std::string& text) {
+  pf_camera_t camera;
+  char message[PF_SEQUENCE_MESSAGE];
+  TEST_ASSERT_EQUAL_INT_MESSAGE(0, pf_parse_calibration(text.data(), text.size(), "c.yaml", &camera, nullptr, message),
+                                message);
+  return camera;
+}
+
+/// Replaces the first occurrence; the text must have it.
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const size_t at = text.find(from);
+  TEST_ASSERT_TRUE_MESSAGE(at != std::string::npos, from.c_str());
+  return text.replace(at, from.size(), to);
+}
+
+void refused(const std::string& text, const std::string& field) {
+  pf_camera_t camera;
+  std::memset(&camera, 7, sizeof(camera));
+  const pf_camera_t before = camera;
+  char message[PF_SEQUENCE_MESSAGE];
+  TEST_ASSERT_EQUAL_INT_MESSAGE(-1, pf_parse_calibration(text.data(), text.size(), "c.yaml", &camera, nullptr, message),
+                                text.c_str());
+  require_message(message, field);
+  require_message(message, "c.yaml");
+  TEST_ASSERT_EQUAL_INT(0, std::memcmp(&before, &camera, sizeof(camera)));
+}
+
+}  // namespace
+
+static void test_kalibr_should_be_read_when_it_is_pinhole_radtan() {
+  const pf_camera_t c = read(kKalibr);
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_RADTAN, c.model);
+  TEST_ASSERT_EQUAL_INT(752, c.width);
+  TEST_ASSERT_EQUAL_INT(480, c.height);
+  TEST_ASSERT_EQUAL_DOUBLE(457.296, c.fy);
+  TEST_ASSERT_EQUAL_DOUBLE(367.215, c.cx);
+  TEST_ASSERT_EQUAL_DOUBLE(1.8e-05, c.distortion[3]);
+  TEST_ASSERT_EQUAL_DOUBLE(0.0, c.distortion[4]);
+}
+
+static void test_kalibr_should_be_read_when_it_is_equidistant_or_without_distortion() {
+  const std::string fish = with(kKalibr, "distortion_model: radtan", "distortion_model: equidistant");
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_EQUIDISTANT, read(fish).model);
+  const std::string none =
+      with(with(kKalibr, "distortion_model: radtan", "distortion_model: none"), "[-0.28, 0.07, 0.0002, 1.8e-05]", "[]");
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_PINHOLE, read(none).model);
+}
+
+static void test_euroc_should_be_read_with_its_rate() {
+  pf_camera_t c;
+  double rate = 0.0;
+  char message[PF_SEQUENCE_MESSAGE];
+  TEST_ASSERT_EQUAL_INT(0, pf_parse_calibration(kEuroc, std::strlen(kEuroc), "sensor.yaml", &c, &rate, message));
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_RADTAN, c.model);
+  TEST_ASSERT_EQUAL_DOUBLE(-0.28340811, c.distortion[0]);
+  TEST_ASSERT_EQUAL_DOUBLE(20.0, rate);
+}
+
+static void test_ros_should_be_read_in_its_three_models() {
+  const pf_camera_t c = read(kRos);
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_RADTAN, c.model);
+  TEST_ASSERT_EQUAL_DOUBLE(501.0, c.fy);
+  TEST_ASSERT_EQUAL_DOUBLE(240.0, c.cy);
+  TEST_ASSERT_EQUAL_DOUBLE(0.05, c.distortion[4]);
+  const std::string rational = with(with(kRos, "plumb_bob", "rational_polynomial"), "0.05]", "0.05, 0, 0, 0]");
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_RADTAN, read(rational).model);
+  const std::string fish = with(with(kRos, "plumb_bob", "equidistant"), ", 0.05]", "]");
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_EQUIDISTANT, read(fish).model);
+  const std::string straight = with(kRos, "[0.1, -0.2, 0.001, 0.002, 0.05]", "[0, 0, 0, 0, 0]");
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_PINHOLE, read(straight).model);
+}
+
+static void test_plain_should_be_read_in_its_four_models() {
+  const pf_camera_t c = read(kPlainCalibration);
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_PINHOLE, c.model);
+  TEST_ASSERT_EQUAL_DOUBLE(30.5, c.fx);
+  TEST_ASSERT_EQUAL_DOUBLE(15.25, c.cx);
+  const auto model = [](const std::string& name, const std::string& list) {
+    return read(with(with(kPlainCalibration, "distortion_model: none", "distortion_model: " + name), "distortion: []",
+                     "distortion: " + list));
+  };
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_RADTAN, model("radtan", "[0.1, 0.2, 0, 0.001]").model);
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_EQUIDISTANT, model("equidistant", "[0.1, 0.2, 0, 0]").model);
+  const pf_camera_t division = model("harris_division", "[9e-06]");
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_DIVISION, division.model);
+  TEST_ASSERT_EQUAL_DOUBLE(9e-06, division.distortion[0]);
+}
+
+static void test_plain_should_name_the_field_when_one_is_missing() {
+  for (const char* field : {"width", "height", "fx", "fy", "cx", "cy", "distortion_model"}) {
+    const std::string key = std::string("\n") + field + ":";
+    refused(with(kPlainCalibration, key, "\nother_" + std::string(field) + ":"), "'" + std::string(field) + "'");
+  }
+}
+
+static void test_plain_should_name_the_field_when_one_is_absurd() {
+  const struct {
+    const char *from, *to, *field;
+  } cases[] = {
+      {"width: 32", "width: 0", "'width'"},
+      {"width: 32", "width: 100000", "'width'"},
+      {"width: 32", "width: -32", "'width'"},
+      {"width: 32", "width: 32.5", "'width'"},
+      {"height: 32", "height: abc", "'height'"},
+      {"height: 32", "height: [1, 2]", "'height'"},
+      {"fx: 30.5", "fx: 0", "'fx'"},
+      {"fx: 30.5", "fx: -30", "'fx'"},
+      {"fx: 30.5", "fx: .nan", "'fx'"},
+      {"fx: 30.5", "fx: nan", "'fx'"},
+      {"fx: 30.5", "fx: inf", "'fx'"},
+      {"fx: 30.5", "fx: 1e9", "'fx'"},
+      {"fx: 30.5", "fx: 30px", "'fx'"},
+      {"fy: 31", "fy: 90", "'fy'"},
+      {"cx: 15.25", "cx: 700", "'cx'"},
+      {"cy: 16", "cy: -1", "'cy'"},
+      {"model: none", "model: fov", "'distortion_model'"},
+      {"model: none\ndistortion: []", "model: none\ndistortion: [0.1]", "'distortion'"},
+      {"model: none\ndistortion: []", "model: radtan\ndistortion: [0.1]", "'distortion'"},
+      {"model: none\ndistortion: []", "model: radtan\ndistortion: [0, 0, 0, nan]", "'distortion'"},
+      {"model: none\ndistortion: []", "model: radtan\ndistortion: [0, 0, 0, 1e6]", "'distortion'"},
+      {"model: none\ndistortion: []", "model: equidistant\ndistortion: 3", "'distortion'"},
+      {"model: none\ndistortion: []", "model: harris_division\ndistortion: [0.1]", "'distortion'"},
+      {"camera_model: pinhole", "camera_model: omni", "'camera_model'"},
+      {"rate_hz: 20", "rate_hz: -5", "'rate_hz'"},
+  };
+  for (const auto& c : cases) {
+    refused(with(kPlainCalibration, c.from, c.to), c.field);
+  }
+}
+
+static void test_other_forms_should_name_the_field_when_it_is_bad() {
+  refused(with(kKalibr, "intrinsics: [458.654, ", "intrinsics: ["), "'cam0.intrinsics'");
+  refused(with(kKalibr, "resolution: [752, 480]", "resolution: [752]"), "'cam0.resolution'");
+  refused(with(kKalibr, "camera_model: pinhole", "camera_model: omni"), "'cam0.camera_model'");
+  refused(with(kKalibr, "  distortion_coeffs", "  coeffs"), "'cam0.distortion_coeffs'");
+  refused("cam0: 5\n", "'cam0'");
+  refused(with(kEuroc, "intrinsics: [458.654", "intrinsics: [0"), "'intrinsics'");
+  refused(with(kEuroc, "distortion_coefficients", "coefficients"), "'distortion_coefficients'");
+  refused(with(kRos, "data: [500, 0, 320", "data: [500, 3, 320"), "'camera_matrix.data'");
+  refused(with(kRos, "data: [500, 0, 320", "data: [500, 0, 1320"), "'camera_matrix.data'");
+  refused(with(kRos, "image_height: 480\n", ""), "'image_height'");
+  refused(with(with(kRos, "plumb_bob", "rational_polynomial"), "0.05]", "0.05, 0.1, 0, 0]"),
+          "'distortion_coefficients.data'");
+}
+
+static void test_anything_else_should_be_refused_in_one_line() {
+  refused("", "fields");
+  refused("just words", "fields");
+  refused("a: [1, 2", "YAML");
+  refused("%YAML:1.0\n---\nfx: 1\n", "'width'");
+  refused("a: {b", "YAML");
+  refused(std::string(3000, '['), "YAML");
+  refused(std::string(200, '-') + "\n", "YAML");
+  refused(std::string("wid\0th: 3", 9), "YAML");
+  refused("&a [*a, *a]\n", "fields");
+  refused("width: &w [*w]\n", "width");
+}
+
+static void test_file_should_be_named_when_it_cannot_be_read() {
+  TemporaryFolder folder;
+  folder.write("empty.yaml", std::string());
+  pf_camera_t camera;
+  char message[PF_SEQUENCE_MESSAGE];
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_calibration((folder / "none.yaml").c_str(), &camera, nullptr, message));
+  require_message(message, "none.yaml");
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_calibration((folder / "empty.yaml").c_str(), &camera, nullptr, message));
+  require_message(message, "empty.yaml");
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_calibration(folder.path().c_str(), &camera, nullptr, message));
+  require_message(message, "not a file");
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_calibration(nullptr, &camera, nullptr, message));
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_calibration("x", nullptr, nullptr, nullptr));
+}
+
+int main() {
+  UNITY_BEGIN();
+  RUN_TEST(test_kalibr_should_be_read_when_it_is_pinhole_radtan);
+  RUN_TEST(test_kalibr_should_be_read_when_it_is_equidistant_or_without_distortion);
+  RUN_TEST(test_euroc_should_be_read_with_its_rate);
+  RUN_TEST(test_ros_should_be_read_in_its_three_models);
+  RUN_TEST(test_plain_should_be_read_in_its_four_models);
+  RUN_TEST(test_plain_should_name_the_field_when_one_is_missing);
+  RUN_TEST(test_plain_should_name_the_field_when_one_is_absurd);
+  RUN_TEST(test_other_forms_should_name_the_field_when_it_is_bad);
+  RUN_TEST(test_anything_else_should_be_refused_in_one_line);
+  RUN_TEST(test_file_should_be_named_when_it_cannot_be_read);
+  return UNITY_END();
+}
+
+#else
+
+int main() { SKIP_PROGRAM("this build has no platform layer"); }
+
+#endif

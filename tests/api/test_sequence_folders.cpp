@@ -1,0 +1,279 @@
+// Folders of images: their layouts, their images, and everything that can be wrong with either.
+#include "skip.h"
+
+#if __has_include(<planefold_platform/sequence.h>)
+
+#include <unistd.h>
+
+#include "sequence_test.h"
+
+using namespace pf::test;
+
+void setUp() {}
+void tearDown() {}
+
+namespace {
+
+Bytes flat(size_t bytes, uint8_t level) { return Bytes(bytes, level); }
+Bytes grey_png(uint8_t level) { return make_png(32, 32, 8, 0, flat(1024, level)); }
+
+struct Opened {
+  pf_sequence_t* sequence = nullptr;
+  pf_sequence_info_t info{};
+  char message[PF_SEQUENCE_MESSAGE] = "";
+
+  explicit Opened(const std::string& source, const char* calibration = nullptr) {
+    if (pf_open_sequence(source.c_str(), calibration, &sequence, message) == 0) {
+      pf_get_sequence_info(sequence, &info);
+    }
+  }
+  ~Opened() { pf_close_sequence(sequence); }
+
+  pf_image_t read(int64_t index) {
+    pf_image_t image{};
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, pf_read_sequence_frame(sequence, index, &image, message), message);
+    return image;
+  }
+};
+
+void open_refused(const std::string& source, const std::string& part) {
+  Opened opened(source);
+  TEST_ASSERT_NULL_MESSAGE(opened.sequence, source.c_str());
+  require_message(opened.message, part);
+}
+
+/// One image under a name; the reader's answer to reading it must be a refusal that names the file and says part.
+void image_refused(const Bytes& bytes, const std::string& part) {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  folder.write("times.txt", "0 0.0 a.png\n");
+  folder.write("images/a.png", bytes);
+  Opened opened("images:" + folder.path());
+  TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+  pf_image_t image{};
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_sequence_frame(opened.sequence, 0, &image, opened.message));
+  require_message(opened.message, "a.png");
+  require_message(opened.message, part);
+}
+
+}  // namespace
+
+static void test_images_folder_should_give_frames_with_exact_times() {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  folder.write("times.txt", "# index seconds name\n0 1403636579.763556001 a.png\n1 1403636579.8135550009999 b.pgm\r\n");
+  folder.write("images/a.png", grey_png(7));
+  folder.write("images/b.pgm", make_pgm(32, 32, flat(1024, 9)));
+  folder.write("groundtruth.tum", "# none\n");
+  Opened opened("images:" + folder.path());
+  TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+  TEST_ASSERT_EQUAL_INT64(2, opened.info.count);
+  TEST_ASSERT_EQUAL_STRING("", opened.info.warning);
+  TEST_ASSERT_EQUAL_STRING((folder / "groundtruth.tum").c_str(), opened.info.truth_path);
+  TEST_ASSERT_EQUAL_STRING("plain", opened.info.calibration_form);
+  const pf_image_t a = opened.read(0);
+  TEST_ASSERT_EQUAL_INT64(1403636579763556001, a.t_ns);
+  TEST_ASSERT_EQUAL_UINT8(7, a.pixels[1023]);
+  const pf_image_t b = opened.read(1);
+  TEST_ASSERT_EQUAL_INT64(1403636579813555001, b.t_ns);
+  TEST_ASSERT_EQUAL_UINT8(9, b.pixels[0]);
+}
+
+static void test_images_folder_should_warn_and_use_the_rate_when_it_has_no_times() {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  for (const char* name : {"f10.png", "f9.png", "f2.PNG", "notes.txt"}) {
+    folder.write(name, grey_png(1));
+  }
+  Opened opened("images:" + folder.path());
+  TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+  TEST_ASSERT_EQUAL_INT64(3, opened.info.count);
+  require_message(opened.info.warning, "times.txt");
+  TEST_ASSERT_EQUAL_STRING((folder / "f2.PNG").c_str(), pf_get_sequence_frame_path(opened.sequence, 0));
+  TEST_ASSERT_EQUAL_STRING((folder / "f10.png").c_str(), pf_get_sequence_frame_path(opened.sequence, 2));
+  TEST_ASSERT_EQUAL_INT64(100000000, opened.read(2).t_ns);
+}
+
+static void test_euroc_should_open_from_any_of_its_folders() {
+  TemporaryFolder folder;
+  folder.write("mav0/cam0/sensor.yaml",
+               "resolution: [32, 32]\ncamera_model: pinhole\nintrinsics: [30, 30, 16, 16]\nrate_hz: 20\n"
+               "distortion_model: radial-tangential\ndistortion_coefficients: [-0.1, 0.01, 0, 0]\n");
+  folder.write("mav0/cam0/data.csv",
+               "#timestamp [ns],filename\r\n1403636579763555584,a.png\r\n1403636579813555456,b.png\r\n");
+  folder.write("mav0/cam0/data/a.png", grey_png(3));
+  folder.write("mav0/cam0/data/b.png", grey_png(4));
+  for (const char* below : {"", "/mav0", "/mav0/cam0"}) {
+    Opened opened("euroc:" + folder.path() + below);
+    TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+    TEST_ASSERT_EQUAL_INT64(1403636579813555456, opened.read(1).t_ns);
+    TEST_ASSERT_EQUAL_STRING("euroc", opened.info.calibration_form);
+  }
+}
+
+static void test_tum_should_open_with_a_calibration_that_is_given() {
+  TemporaryFolder folder;
+  folder.write("rgb.txt", "# color images\n1305031102.175304 rgb/1305031102.175304.png\n");
+  folder.write("rgb/1305031102.175304.png", make_png(32, 32, 8, 2, flat(3072, 200)));
+  folder.write("given.yaml", kPlainCalibration);
+  Opened without("tum:" + folder.path());
+  TEST_ASSERT_NULL(without.sequence);
+  require_message(without.message, "--calib");
+  Opened opened("tum:" + folder.path(), (folder / "given.yaml").c_str());
+  TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+  const pf_image_t image = opened.read(0);
+  TEST_ASSERT_EQUAL_INT64(1305031102175304000, image.t_ns);
+  TEST_ASSERT_EQUAL_UINT8(200, image.pixels[5]);
+}
+
+static void test_pixels_should_become_eight_bit_grey() {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  Bytes red(3072, 0);
+  Bytes deep(2048, 0);
+  for (size_t i = 0; i < 1024; ++i) {
+    red[3 * i] = 255;
+    deep[2 * i] = 128;
+  }
+  folder.write("a.png", make_png(32, 32, 8, 2, red));
+  folder.write("b.png", make_png(32, 32, 16, 0, deep));
+  folder.write("c.pgm", make_pgm(32, 32, deep, 65535));
+  folder.write("d.jpg", make_jpeg());
+  Opened opened("images:" + folder.path());
+  TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+  TEST_ASSERT_EQUAL_UINT8(76, opened.read(0).pixels[100]);
+  TEST_ASSERT_UINT8_WITHIN(1, 128, opened.read(1).pixels[100]);
+  TEST_ASSERT_UINT8_WITHIN(1, 128, opened.read(2).pixels[100]);
+  TEST_ASSERT_UINT8_WITHIN(6, 8 * 20, opened.read(3).pixels[32 * 10 + 20]);
+}
+
+static void test_image_should_be_named_when_it_is_truncated_or_damaged() {
+  const Bytes png = grey_png(50);
+  const Bytes jpeg = make_jpeg();
+  const Bytes pgm = make_pgm(32, 32, flat(1024, 1));
+  const auto cut = [](const Bytes& bytes, size_t size) {
+    return Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+  };
+  for (size_t size : {size_t{9}, size_t{30}, png.size() / 2, png.size() - 20}) image_refused(cut(png, size), "cut off");
+  for (size_t size : {size_t{4}, size_t{100}, jpeg.size() / 2, jpeg.size() - 30})
+    image_refused(cut(jpeg, size), "cut off");
+  image_refused(cut(pgm, pgm.size() - 1), "ends after");
+  image_refused(cut(pgm, 5), "header");
+  image_refused({}, "empty");
+  image_refused(flat(500, 0), "neither PNG");
+  Bytes flipped = png;
+  flipped[60] = static_cast<uint8_t>(flipped[60] ^ 0xff);
+  image_refused(flipped, "damaged");
+}
+
+static void test_image_should_be_refused_when_its_size_is_wrong_or_huge() {
+  image_refused(make_png(16, 64, 8, 0, flat(1024, 0)), "16 x 64");
+  image_refused(make_pgm(64, 64, flat(4096, 0)), "calib.yaml");
+  image_refused(make_pgm(100000, 100000, {}), "pixels");
+  image_refused(make_pgm(0, 32, {}), "pixels");
+  image_refused(make_png(0x7fffffff, 0x7fffffff, 8, 0, {}), "damaged");
+  Bytes jpeg = make_jpeg();
+  for (size_t i = 0; i + 8 < jpeg.size(); ++i) {
+    if (jpeg[i] == 0xff && jpeg[i + 1] == 0xc0) {
+      jpeg[i + 5] = jpeg[i + 6] = jpeg[i + 7] = jpeg[i + 8] = 0xff;
+    }
+  }
+  image_refused(jpeg, "pixels");
+}
+
+static void test_image_should_be_named_when_it_is_missing() {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  folder.write("times.txt", "0 0.0 a.png\n");
+  folder.write("images/b.png", grey_png(1));
+  Opened opened("images:" + folder.path());
+  pf_image_t image{};
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_sequence_frame(opened.sequence, 0, &image, opened.message));
+  require_message(opened.message, "a.png");
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_sequence_frame(opened.sequence, 1, &image, opened.message));
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_sequence_frame(opened.sequence, -1, &image, opened.message));
+}
+
+static void test_times_should_be_refused_when_they_repeat_run_back_or_are_no_times() {
+  const struct {
+    const char *text, *part;
+  } cases[] = {{"0 1.0 a.png\n1 1.0 b.png\n", "line 2: the time 1.0 repeats"},
+               {"0 1.0 a.png\n1 0.9 b.png\n", "line 2: the time 0.9 runs back"},
+               {"0 nan a.png\n", "line 1"},
+               {"0 1e3 a.png\n", "line 1"},
+               {"0 99999999999999999999 a.png\n", "line 1"},
+               {"0 - a.png\n", "line 1"},
+               {"a.png\n", "line 1"},
+               {"0 1.0 ../../etc/passwd\n", "leaves"},
+               {"0 1.0 /etc/passwd\n", "leaves"},
+               {"# nothing\n", "no frame"},
+               {"", "empty"}};
+  for (const auto& c : cases) {
+    TemporaryFolder folder;
+    folder.write("calib.yaml", kPlainCalibration);
+    folder.write("times.txt", c.text);
+    folder.write("images/a.png", grey_png(1));
+    open_refused("images:" + folder.path(), c.part);
+    open_refused("images:" + folder.path(), "times.txt");
+  }
+}
+
+static void test_source_should_be_refused_when_its_folder_is_missing_or_no_folder() {
+  TemporaryFolder folder;
+  folder.write("file", "x");
+  folder.write("empty/calib.yaml", kPlainCalibration);
+  open_refused("images:" + (folder / "none"), "no such folder");
+  open_refused("images:" + (folder / "file"), "not a folder");
+  open_refused("images:" + (folder / "empty"), "no PNG, JPEG or PGM");
+  open_refused("images:" + folder.path(), "no calibration");
+  open_refused("tum:" + folder.path(), "rgb.txt");
+  open_refused("euroc:" + folder.path(), "data.csv");
+  open_refused("film:" + folder.path(), "images:");
+  open_refused("images:", "names no folder");
+  open_refused("", "images:");
+}
+
+static void test_folder_should_be_refused_when_it_cannot_be_listed() {
+  if (geteuid() == 0) {
+    TEST_IGNORE_MESSAGE("root may list every folder");
+  }
+  TemporaryFolder folder;
+  folder.write("closed/calib.yaml", kPlainCalibration);
+  namespace fs = std::filesystem;
+  fs::permissions(folder / "closed", fs::perms::none);
+  open_refused("images:" + (folder / "closed"), "permissions");
+  fs::permissions(folder / "closed", fs::perms::owner_all);
+}
+
+static void test_functions_should_refuse_when_a_pointer_is_null() {
+  pf_sequence_t* sequence = nullptr;
+  TEST_ASSERT_EQUAL_INT(-1, pf_open_sequence(nullptr, nullptr, &sequence, nullptr));
+  TEST_ASSERT_EQUAL_INT(-1, pf_open_sequence("images:x", nullptr, nullptr, nullptr));
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_sequence_frame(nullptr, 0, nullptr, nullptr));
+  pf_close_sequence(nullptr);
+  pf_get_sequence_info(nullptr, nullptr);
+  TEST_ASSERT_EQUAL_STRING("", pf_get_sequence_frame_path(nullptr, 0));
+}
+
+int main() {
+  UNITY_BEGIN();
+  RUN_TEST(test_images_folder_should_give_frames_with_exact_times);
+  RUN_TEST(test_images_folder_should_warn_and_use_the_rate_when_it_has_no_times);
+  RUN_TEST(test_euroc_should_open_from_any_of_its_folders);
+  RUN_TEST(test_tum_should_open_with_a_calibration_that_is_given);
+  RUN_TEST(test_pixels_should_become_eight_bit_grey);
+  RUN_TEST(test_image_should_be_named_when_it_is_truncated_or_damaged);
+  RUN_TEST(test_image_should_be_refused_when_its_size_is_wrong_or_huge);
+  RUN_TEST(test_image_should_be_named_when_it_is_missing);
+  RUN_TEST(test_times_should_be_refused_when_they_repeat_run_back_or_are_no_times);
+  RUN_TEST(test_source_should_be_refused_when_its_folder_is_missing_or_no_folder);
+  RUN_TEST(test_folder_should_be_refused_when_it_cannot_be_listed);
+  RUN_TEST(test_functions_should_refuse_when_a_pointer_is_null);
+  return UNITY_END();
+}
+
+#else
+
+int main() { SKIP_PROGRAM("this build has no platform layer"); }
+
+#endif
