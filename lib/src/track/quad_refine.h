@@ -1,0 +1,35 @@
+#pragma once
+
+#include "base/eigen.h"
+#include "geometry/camera.h"
+#include "geometry/planar_pose.h"
+#include "vision/quad.h"
+
+namespace pf {
+
+/// Moves the corners of a quadrilateral to where the lines through its sides meet.
+///
+/// On every side up to 40 places look across it for the middle of the rise from dark to light. A straight side is a
+/// plane through the optical centre, n · ray = 0, whatever the lens does to it: its normal is fitted to the rays of
+/// the places, far ones counting less, and a corner is the ray n_i x n_{i+1}. Twice, because the first sides were rough.
+///
+/// False when a side has too few clear places, is not straight within a pixel, or moves by more than three; quad untouched.
+bool refine_quad(const ImageView& image, const Camera& camera, Quad* quad);
+
+/// A dark rectangle of known size, seen.
+struct RectangleSighting {
+  Quad quad;
+  PoseEstimate pose;
+  Scalar second_rms_px = 0;  ///< of the mirrored solution, the largest Scalar when there is none
+};
+
+/// Finds the dark rectangle of the given size: of the quadrilaterals whose corners a pose explains within 1.5 % of
+/// their size, at least within five sigma_px, the one that is largest and of the strongest contrast.
+///
+/// width, height  of the outer edge of the dark area [m]
+/// sigma_px       of a corner's coordinate [px]
+/// false when there is none
+bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar width, Scalar height,
+                         Scalar sigma_px, const QuadWorkspace& workspace, RectangleSighting* out);
+
+}  // namespace pf
