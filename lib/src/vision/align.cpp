@@ -47,6 +47,8 @@ struct Region {
   static int clamp(int at, int size) { return at < 0 ? 0 : at >= size ? size - 1 : at; }
 };
 
+float smaller(float a, float b) { return a < b ? a : b; }
+
 struct Sums {
   float v, vv, tv, xv, yv;  // Σ I, Σ I², Σ T I, Σ gx I, Σ gy I
 };
@@ -91,65 +93,73 @@ Sums evaluate(const Region& region, const AlignTemplate& pattern, float x, float
   return Sums{sum(v), sum(vv), sum(tv), sum(xv), sum(yv)};
 }
 
-/// Takes the mean of g and its part along the template out of g.
-void project(const float* grey, float energy, float* g) {
-  float mean = 0.0f;
-  float along = 0.0f;
-  for (int j = 0; j < kAlignSize; ++j) {
-    for (int i = 0; i < kAlignSize; ++i) {
-      mean += g[j * kRow + i];
-      along += g[j * kRow + i] * grey[j * kRow + i];
-    }
-  }
-  mean /= kPixels;
-  along /= energy;
-  for (int j = 0; j < kAlignSize; ++j) {
-    for (int i = 0; i < kAlignSize; ++i) g[j * kRow + i] -= mean + along * grey[j * kRow + i];
-  }
+/// Σ a b over all pixels; those that fill up a row are zero in one of the two.
+float dot(const float* a, const float* b) {
+  F32x4 total = {};
+  for (int at = 0; at < kAlignSize * kRow; at += 4) total += load<F32x4>(a + at) * load<F32x4>(b + at);
+  return sum(total);
+}
+
+/// Takes the mean of g and its part along the template out of g. ones is 1 on the pixels.
+void project(const float* grey, const float* ones, float energy, float* g) {
+  const float mean = dot(g, ones) / kPixels;
+  const float along = dot(g, grey) / energy;
+  for (int at = 0; at < kAlignSize * kRow; ++at) g[at] -= mean * ones[at] + along * grey[at];
+}
+
+/// Noise and normal matrix from the squared residuals at (x, y), both for independent noise of the same size in the
+/// pixels of image and source. Two things would make them too good:
+/// - Interpolation averages the image's noise away (to (1 - 2 f (1 - f)) of its variance in each direction), but not
+///   where it matters, since gradients are smoother than noise.
+/// - Noise in the template adds half its variance to that of each gradient, which tells nothing about the place.
+void judge(const AlignTemplate& pattern, float squares, float x, float y, AlignResult* result) {
+  const float fx = x - std::floor(x);
+  const float fy = y - std::floor(y);
+  const float kept = (1.0f - 2.0f * fx * (1.0f - fx)) * (1.0f - 2.0f * fy * (1.0f - fy));
+  const float gain2 = result->gain * result->gain;
+  const float variance = squares > 0.0f ? squares / ((kPixels - 4.0f) * (kept + gain2)) : 0.0f;
+  result->rms = std::sqrt(variance * (1.0f + gain2));
+
+  const float noise = smaller(0.5f * variance * kPixels, 0.75f * pattern.weakest);
+  result->hxx = (pattern.hxx - noise) * gain2;
+  result->hyy = (pattern.hyy - noise) * gain2;
+  result->hxy = pattern.hxy * gain2;
 }
 
 }  // namespace
 
 bool make_align_template(const float* warped, AlignTemplate* out) {
-  float mean = 0.0f;
+  alignas(16) float ones[kAlignSize * kRow];
   for (int j = 0; j < kAlignSize; ++j) {
     const float* row = warped + (j + 1) * kWarpSize + 1;
-    for (int i = 0; i < kRow; ++i) {
-      const int at = j * kRow + i;
-      const bool inside = i < kAlignSize;
-      out->grey[at] = inside ? row[i] : 0.0f;
-      out->gx[at] = inside ? 0.5f * (row[i + 1] - row[i - 1]) : 0.0f;
-      out->gy[at] = inside ? 0.5f * (row[i + kWarpSize] - row[i - kWarpSize]) : 0.0f;
-      mean += out->grey[at];
-    }
-  }
-  mean /= kPixels;
-  out->energy = 0.0f;
-  for (int j = 0; j < kAlignSize; ++j) {
+    const int at = j * kRow;
     for (int i = 0; i < kAlignSize; ++i) {
-      float& grey = out->grey[j * kRow + i];
-      grey -= mean;
-      out->energy += grey * grey;
+      ones[at + i] = 1.0f;
+      out->grey[at + i] = row[i] - 128.0f;
+      out->gx[at + i] = 0.5f * (row[i + 1] - row[i - 1]);
+      out->gy[at + i] = 0.5f * (row[i + kWarpSize] - row[i - kWarpSize]);
     }
+    for (int i = kAlignSize; i < kRow; ++i) ones[at + i] = out->grey[at + i] = out->gx[at + i] = out->gy[at + i] = 0.0f;
   }
+  out->weakest = 0.0f;
+  const float mean = dot(out->grey, ones) / kPixels;
+  for (int at = 0; at < kAlignSize * kRow; ++at) out->grey[at] -= mean * ones[at];
+  out->energy = dot(out->grey, out->grey);
   if (!(out->energy >= kLeastContrast * kLeastContrast * kPixels)) return false;
-  project(out->grey, out->energy, out->gx);
-  project(out->grey, out->energy, out->gy);
-  out->hxx = out->hxy = out->hyy = 0.0f;
-  for (int at = 0; at < kAlignSize * kRow; ++at) {
-    out->hxx += out->gx[at] * out->gx[at];
-    out->hxy += out->gx[at] * out->gy[at];
-    out->hyy += out->gy[at] * out->gy[at];
-  }
+  project(out->grey, ones, out->energy, out->gx);
+  project(out->grey, ones, out->energy, out->gy);
+  out->hxx = dot(out->gx, out->gx);
+  out->hxy = dot(out->gx, out->gy);
+  out->hyy = dot(out->gy, out->gy);
   const float difference = out->hxx - out->hyy;
-  const float smaller =
-      0.5f * (out->hxx + out->hyy - std::sqrt(difference * difference + 4.0f * out->hxy * out->hxy));
-  return smaller >= kLeastGradient * kLeastGradient * kPixels;
+  out->weakest = 0.5f * (out->hxx + out->hyy - std::sqrt(difference * difference + 4.0f * out->hxy * out->hxy));
+  return out->weakest >= kLeastGradient * kLeastGradient * kPixels;
 }
 
 AlignResult align(const ImageView& image, const AlignTemplate& pattern, const Vec2& start) {
   AlignResult result;
   result.position = start;
+  if (!(pattern.weakest > 0.0f)) return result;
   const float limit_x = static_cast<float>(image.width - 1 - kHalf);
   const float limit_y = static_cast<float>(image.height - 1 - kHalf);
   float x = static_cast<float>(start.x());
@@ -180,15 +190,11 @@ AlignResult align(const ImageView& image, const AlignTemplate& pattern, const Ve
     if (!is_inside() || !(std::fabs(x - start_x) <= kAlignReach) || !(std::fabs(y - start_y) <= kAlignReach)) {
       return result;
     }
-    const float left_over = energy - s.tv * gain;
     result.iterations = k;
     result.position = Vec2(static_cast<Scalar>(x), static_cast<Scalar>(y));
     result.zncc = s.tv / std::sqrt(energy * pattern.energy);
-    result.rms = left_over > 0.0f ? std::sqrt(left_over / (kPixels - 4.0f)) : 0.0f;
     result.gain = gain;
-    result.hxx = pattern.hxx * gain * gain;
-    result.hxy = pattern.hxy * gain * gain;
-    result.hyy = pattern.hyy * gain * gain;
+    judge(pattern, energy - s.tv * gain, x - step_x, y - step_y, &result);
     if (step_x * step_x + step_y * step_y < kSmallStep * kSmallStep) {
       result.converged = true;
       return result;
