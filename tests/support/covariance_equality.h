@@ -142,27 +142,37 @@ inline void update(const Kernels& kernels, Problem& p, Triangle& P, Place place,
   for (int i = 0; i < m; ++i) {
     for (int j = 0; j < n; ++j) W.at(i, j) = static_cast<Scalar>(static_cast<double>(W.at(i, j)) / sigma[i]);
   }
+  // With rows of W and of J divided by sigma, S has the noise on top of a matrix of that size.
+  std::vector<SparseRows> J = p.J;
   int b = 0;
-  for (const SparseRows& J : p.J) {
-    for (int a = 0; a < J.rows; ++a, ++b) {
-      for (int i = b; i < m; ++i) {
-        double sum = i == b ? p.noise[b] : 0;
-        int c = 0;
-        for (int s = 0; s < J.segments; ++s) {
-          for (int x = 0; x < J.segment[s].size; ++x, ++c) {
-            sum += static_cast<double>(W.at(i, J.segment[s].first + x)) *
-                   static_cast<double>(J.h[a * J.columns() + c]) / sigma[b];
-          }
-        }
-        S[static_cast<std::size_t>(i) * lds + b] = static_cast<Scalar>(sum);
+  for (SparseRows& rows : J) {
+    for (int a = 0; a < rows.rows; ++a, ++b) {
+      for (int c = 0; c < rows.columns(); ++c) {
+        Scalar& h = rows.h[a * rows.columns() + c];
+        h = static_cast<Scalar>(static_cast<double>(h) / sigma[b]);
       }
     }
+  }
+  kernels.project(W.data(), W.ld, J.data(), static_cast<int>(J.size()), S.data(), lds);
+  for (int i = 0; i < m; ++i) {
+    for (int j = 0; j <= i; ++j) trace.add(S[static_cast<std::size_t>(i) * lds + j], 1);
+    S[static_cast<std::size_t>(i) * lds + i] += static_cast<Scalar>(p.noise[i]);
   }
   TEST_ASSERT_TRUE(kernels.cholesky(S.data(), m, lds));
   for (int i = 0; i < m; ++i) {
     for (int j = 0; j <= i; ++j) trace.add(S[static_cast<std::size_t>(i) * lds + j], 1);
   }
   kernels.solve_lower(S.data(), m, lds, W.data(), n, W.ld);
+
+  Thin y(m, 1, place.shift, place.poison);
+  std::vector<Scalar> whitened;
+  for (int i = 0; i < m; ++i) y.at(i, 0) = static_cast<Scalar>(p.noise[i]);
+  kernels.solve_lower(S.data(), m, lds, y.data(), 1, y.ld);
+  for (int i = 0; i < m; ++i) whitened.push_back(y.at(i, 0));
+  Buffer x(n, place.shift, place.poison);
+  kernels.combine(W.data(), m, n, W.ld, whitened.data(), x.data());
+  for (int j = 0; j < n; ++j) trace.add(x[j], m * std::sqrt(static_cast<double>(P(j, j))));
+
   Covariance before(n, n);
   before.copy_from(P);
   kernels.downdate(P, W.data(), m, p.U.data(), p.G.data(), p.k, W.ld, p.active);

@@ -26,7 +26,8 @@ Problem::Problem(int rows, int measured)
       G(static_cast<std::size_t>(8) * ld),
       S(static_cast<std::size_t>(measured) * lds),
       innovation(static_cast<std::size_t>(measured)),
-      y(static_cast<std::size_t>(measured)),
+      y(static_cast<std::size_t>(measured) * pf::padded(1)),
+      whitened(static_cast<std::size_t>(measured)),
       dx(static_cast<std::size_t>(rows)),
       variance(Scalar(0.5)) {
   std::mt19937_64 random(2008);
@@ -73,48 +74,18 @@ void Problem::restore() {
   P.n = n;
 }
 
-void Problem::innovation_covariance() {
-  int b = 0;
-  for (const SparseRows& Jb : J) {
-    const int columns = Jb.columns();
-    for (int a = b; a < m; ++a) {
-      const Scalar* h = Jb.h;
-      Scalar sum0 = 0, sum1 = 0;
-      for (int s = 0; s < Jb.segments; ++s) {
-        const Scalar* w = W.data() + static_cast<std::ptrdiff_t>(a) * ld + Jb.segment[s].first;
-        for (int c = 0; c < Jb.segment[s].size; ++c) {
-          sum0 += w[c] * h[c];
-          sum1 += w[c] * h[columns + c];
-        }
-        h += Jb.segment[s].size;
-      }
-      Scalar* row = S.data() + static_cast<std::ptrdiff_t>(a) * lds + b;
-      row[0] = sum0;
-      if (a > b) row[1] = sum1;
-    }
-    b += 2;
-  }
-  for (int a = 0; a < m; ++a) S.data()[static_cast<std::ptrdiff_t>(a) * lds + a] += variance;
-}
-
 void Problem::update(const pf::Kernels& kernels, int active, int transport) {
   kernels.gather_many(P, J.data(), static_cast<int>(J.size()), W.data(), ld);
-  innovation_covariance();
+  kernels.project(W.data(), ld, J.data(), static_cast<int>(J.size()), S.data(), lds);
+  for (int i = 0; i < m; ++i) {
+    S.data()[static_cast<std::ptrdiff_t>(i) * lds + i] += variance;
+    y[static_cast<std::size_t>(i) * pf::padded(1)] = innovation[static_cast<std::size_t>(i)];
+  }
   if (!kernels.cholesky(S.data(), m, lds)) std::abort();
   kernels.solve_lower(S.data(), m, lds, W.data(), n, ld);
-  for (int i = 0; i < m; ++i) {
-    const Scalar* l = S.data() + static_cast<std::ptrdiff_t>(i) * lds;
-    Scalar sum = innovation[static_cast<std::size_t>(i)];
-    for (int k = 0; k < i; ++k) sum -= l[k] * y[static_cast<std::size_t>(k)];
-    y[static_cast<std::size_t>(i)] = sum / l[i];
-  }
-  Scalar* to = dx.data();
-  for (int j = 0; j < n; ++j) to[j] = 0;
-  for (int i = 0; i < m; ++i) {
-    const Scalar* w = W.data() + static_cast<std::ptrdiff_t>(i) * ld;
-    const Scalar factor = y[static_cast<std::size_t>(i)];
-    for (int j = 0; j < n; ++j) to[j] += w[j] * factor;
-  }
+  kernels.solve_lower(S.data(), m, lds, y.data(), 1, pf::padded(1));
+  for (int i = 0; i < m; ++i) whitened[static_cast<std::size_t>(i)] = y[static_cast<std::size_t>(i) * pf::padded(1)];
+  kernels.combine(W.data(), m, n, ld, whitened.data(), dx.data());
   kernels.downdate(P, W.data(), m, U.data(), G.data(), transport, ld, active);
 }
 

@@ -48,11 +48,8 @@ class Problem {
   Aligned start, values, W, U, G, S;
   pf::Triangle P;
   std::vector<pf::SparseRows> J;
-  std::vector<Scalar> innovation, y, dx;
+  std::vector<Scalar> innovation, y, whitened, dx;
   Scalar variance;  ///< of each row's noise
-
- private:
-  void innovation_covariance();
 };
 
 /// Columns that an average row touches.

@@ -50,7 +50,7 @@ struct Kernels {
   /// S (m x m, lower, leading dimension lds) = L L^T in place; false where a pivot is not positive (S is then garbage).
   bool (*cholesky)(Scalar* S, int m, int lds);
 
-  /// X (m x n) <- L^-1 X, in place, for the factor above.
+  /// X (m x n) <- L^-1 X, in place, for the factor above. A vector is n = 1 with ld = padded(1).
   void (*solve_lower)(const Scalar* L, int m, int lds, Scalar* X, int n, int ld);
 
   /// P -= W^T W (W: m x n), then, where k > 0, P += U^T G + G^T U (U, G: k x n), in one pass over the triangle.
@@ -78,6 +78,13 @@ struct Kernels {
   /// transform that leaves the gap open: rows first + J.rows .. first + size - 1 keep old values, for a later `remove` of the
   /// gaps of many replaces in one pass.
   void (*replace)(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise);
+
+  /// S (lower triangle, m x m, leading dimension lds) = X J^T for X = J P (m x n, leading dimension ld) as gather_many leaves it,
+  /// with the same Jacobians: the innovation covariance before the noise is added.
+  void (*project)(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S, int lds);
+
+  /// x (n) = W^T y for W (m x n, leading dimension ld): the change of the state.
+  void (*combine)(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x);
 };
 
 /// The plain twin of every tuned kernel.

@@ -15,7 +15,7 @@ Scalar product(const SparseRows& J, int a, const Triangle& P, int j) {
   return sum;
 }
 
-void project(const SparseRows& J, const Triangle& P, Scalar* out) {
+void square(const SparseRows& J, const Triangle& P, Scalar* out) {
   const int columns = J.columns();
   for (int a = 0; a < J.rows; ++a) {
     for (int b = 0; b < J.rows; ++b) {
@@ -36,6 +36,31 @@ void gather_many(const Triangle& P, const SparseRows* J, int count, Scalar* out,
   for (int i = 0; i < count; ++i) {
     gather(P, J[i], out, ld);
     out += static_cast<std::ptrdiff_t>(J[i].rows) * ld;
+  }
+}
+
+void project(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S, int lds) {
+  int m = 0;
+  for (int i = 0; i < count; ++i) m += J[i].rows;
+  int b = 0;
+  for (int i = 0; i < count; ++i) {
+    const int columns = J[i].columns();
+    for (int r = 0; r < J[i].rows; ++r, ++b) {
+      for (int a = b; a < m; ++a) {
+        Scalar sum = 0;
+        for (int c = 0; c < columns; ++c) {
+          sum += X[static_cast<std::ptrdiff_t>(a) * ld + state_column(J[i], c)] * J[i].h[r * columns + c];
+        }
+        S[static_cast<std::ptrdiff_t>(a) * lds + b] = sum;
+      }
+    }
+  }
+}
+
+void combine(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x) {
+  for (int j = 0; j < n; ++j) {
+    x[j] = 0;
+    for (int r = 0; r < m; ++r) x[j] += W[static_cast<std::ptrdiff_t>(r) * ld + j] * y[r];
   }
 }
 

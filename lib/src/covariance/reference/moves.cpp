@@ -50,7 +50,7 @@ void predict(Triangle& P, const Scalar* F, const Scalar* Q, int b) {
 void augment(Triangle& P, const SparseRows& J, const Scalar* noise) {
   PF_ASSERT(P.n + J.rows <= P.capacity);
   Scalar JPJ[kMaxRows * kMaxRows];
-  project(J, P, JPJ);
+  square(J, P, JPJ);
 
   const int n = P.n;
   for (int a = 0; a < J.rows; ++a) {
@@ -66,7 +66,7 @@ void augment(Triangle& P, const SparseRows& J, const Scalar* noise) {
 void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise) {
   PF_ASSERT(J.rows <= size && first + size <= P.n);
   Scalar JPJ[kMaxRows * kMaxRows];
-  project(J, P, JPJ);
+  square(J, P, JPJ);
 
   for (int x = 0; x < P.n; ++x) {
     if (x >= first && x < first + size) continue;

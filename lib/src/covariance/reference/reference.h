@@ -14,7 +14,7 @@ int state_column(const SparseRows& J, int column);
 Scalar product(const SparseRows& J, int a, const Triangle& P, int j);
 
 /// out (J.rows x J.rows, leading dimension kMaxRows, both halves) = J P J^T.
-void project(const SparseRows& J, const Triangle& P, Scalar* out);
+void square(const SparseRows& J, const Triangle& P, Scalar* out);
 
 void gather(const Triangle& P, const SparseRows& J, Scalar* out, int ld);
 void gather_many(const Triangle& P, const SparseRows* J, int count, Scalar* out, int ld);
@@ -26,5 +26,7 @@ void augment(Triangle& P, const SparseRows& J, const Scalar* noise);
 void transform(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise);
 void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise);
 void remove(Triangle& P, const Segment* gone, int count);
+void project(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S, int lds);
+void combine(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x);
 
 }  // namespace pf::reference

@@ -5,7 +5,8 @@ namespace pf {
 const Kernels& reference_kernels() {
   using namespace reference;
   static constexpr Kernels kSet = {gather,    cholesky, solve_lower, downdate,    predict,
-                                   augment,   transform, remove,     gather_many, replace};
+                                   augment,   transform, remove,     gather_many, replace,
+                                   project,   combine};
   return kSet;
 }
 

@@ -24,6 +24,22 @@ void solve_lower(const Scalar* L, int m, int lds, Scalar* X, int n, int ld) {
   });
 }
 
+/// Twin: reference::combine.
+void combine(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x) {
+  const int whole = n / kGroup * kGroup;
+  for_strips<4>(whole, [&](auto v, auto count, int j) PF_LAMBDA {
+    Tile<decltype(v), 1, decltype(count)::value> tile;
+    tile.zero();
+    tile.accumulate(y, 0, 1, W + j, ld, m);
+    tile.store(x + j, 0);
+  });
+  for (int j = whole; j < n; ++j) {
+    Scalar sum = 0;
+    for (int r = 0; r < m; ++r) sum += W[static_cast<std::ptrdiff_t>(r) * ld + j] * y[r];
+    x[j] = sum;
+  }
+}
+
 /// L of a block of at most eight rows, in place.
 PF_INLINE bool cholesky_block(Scalar* S, int rows, std::ptrdiff_t lds) {
   for (int i = 0; i < rows; ++i) {

@@ -8,6 +8,16 @@ namespace {
 /// Columns that a gather works on at a time.
 constexpr int kStrip = 512 / static_cast<int>(sizeof(Scalar));
 
+/// What panels are filled from: rows of a symmetric matrix, or columns of a thin one.
+struct FromTriangle {
+  const Triangle& P;
+};
+struct FromThin {
+  const Scalar* X;
+  int rows;
+  std::ptrdiff_t ld;
+};
+
 /// Rows c of the symmetric matrix, columns j0 .. j0 + columns - 1 (multiples of eight), for the `size` rows c from `first`; zero
 /// from column n on.
 ///
@@ -15,7 +25,8 @@ constexpr int kStrip = 512 / static_cast<int>(sizeof(Scalar));
 ///      | rows as they are stored   | element by element         | columns of the triangle, transposed
 ///
 /// The panel has room for a multiple of four rows, which transposing fills with what follows in the same rows of the triangle.
-inline void fill_panel(const Triangle& P, int first, int size, int j0, int columns, Scalar* panel) {
+inline void fill_panel(FromTriangle source, int first, int size, int j0, int columns, Scalar* panel) {
+  const Triangle& P = source.P;
   const int end = j0 + columns;
   const int left = smaller(end, first / kGroup * kGroup);
   const int right = smaller(end, round_up(first + size, kGroup));
@@ -44,6 +55,23 @@ inline void fill_panel(const Triangle& P, int first, int size, int j0, int colum
   }
 }
 
+/// Columns c of X for its rows a0 .. a0 + count - 1, transposed; zero from row `rows` on.
+inline void fill_panel(FromThin source, int first, int size, int a0, int count, Scalar* panel) {
+  const Scalar* X = source.X + a0 * source.ld + first;
+  const int rows = smaller(count, source.rows - a0);
+  const bool wide = first + round_up(size, 4) <= source.ld;
+  const int whole = wide ? rows / 4 * 4 : 0;
+  for (int a = 0; a < whole; a += 4) {
+    for (int c = 0; c < size; c += 4) {
+      transpose_four(X + a * source.ld + c, source.ld, panel + c * kStrip + a, kStrip);
+    }
+  }
+  for (int c = 0; c < size; ++c) {
+    for (int a = whole; a < rows; ++a) panel[c * kStrip + a] = X[a * source.ld + c];
+    for (int a = rows; a < count; ++a) panel[c * kStrip + a] = 0;
+  }
+}
+
 /// Panels of the strip at hand, kept while there is room, so that what Jacobians share is read once. The first one (the body, as a
 /// rule) stays.
 struct Panels {
@@ -65,26 +93,28 @@ struct Panels {
     count = count > 0 && begin[1] + more <= kColumns ? 1 : 0;
   }
 
-  PF_INLINE const Scalar* find(const Triangle& P, Segment wanted, int j0, int columns) {
+  template <class Source>
+  PF_INLINE const Scalar* find(Source source, Segment wanted, int j0, int columns) {
     int s = 0;
     while (s < count && (segment[s].first != wanted.first || segment[s].size != wanted.size)) ++s;
     if (s == count) {
       segment[s] = wanted;
       begin[s + 1] = begin[s] + round_up(wanted.size, 4);
-      fill_panel(P, wanted.first, wanted.size, j0, columns, values + begin[s] * kStrip);
+      fill_panel(source, wanted.first, wanted.size, j0, columns, values + begin[s] * kStrip);
       ++count;
     }
     return values + begin[s] * kStrip;
   }
 };
 
-/// (J P)(:, j0 .. j0 + kStrip - 1) into out (leading dimension ld), `columns` of it, a multiple of eight.
-inline void gather_strip(const Triangle& P, const SparseRows& J, Panels& panels, int j0, int columns,
+/// J times the source's columns j0 .. j0 + columns - 1 (a multiple of eight) into out (leading dimension ld).
+template <class Source>
+inline void gather_strip(Source source, const SparseRows& J, Panels& panels, int j0, int columns,
                          Scalar* out, std::ptrdiff_t ld) {
   const int width = columns_of(J);
   const Scalar* operand[SparseRows::kMaxSegments];
   panels.reserve(J);
-  for (int s = 0; s < J.segments; ++s) operand[s] = panels.find(P, J.segment[s], j0, columns);
+  for (int s = 0; s < J.segments; ++s) operand[s] = panels.find(source, J.segment[s], j0, columns);
   for_strips<4>(columns, [&](auto v, auto count, int j) {
     for_heights(J.rows, [&](auto height, int a) PF_LAMBDA {
       Tile<decltype(v), decltype(height)::value, decltype(count)::value> tile;
@@ -107,7 +137,7 @@ void gather_many(const Triangle& P, const SparseRows* J, int count, Scalar* out,
     panels.clear();
     Scalar* to = out + j0;
     for (int i = 0; i < count; ++i) {
-      gather_strip(P, J[i], panels, j0, smaller(kStrip, all - j0), to, ld);
+      gather_strip(FromTriangle{P}, J[i], panels, j0, smaller(kStrip, all - j0), to, ld);
       to += static_cast<std::ptrdiff_t>(J[i].rows) * ld;
     }
   }
@@ -117,8 +147,30 @@ void gather(const Triangle& P, const SparseRows& J, Scalar* out, int ld) {
   gather_many(P, &J, 1, out, ld);
 }
 
+/// Twin: reference::project. Rows of X are the strip's columns, so eight or more of them go at a time; of the result, J X^T, the
+/// part on and below the diagonal of S is turned round and kept.
+void project(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S, int lds) {
+  int m = 0;
+  for (int i = 0; i < count; ++i) m += J[i].rows;
+  Panels panels;
+  alignas(64) Scalar strip[SparseRows::kMaxRows * kStrip];
+  for (int a0 = 0; a0 < m; a0 += kStrip) {
+    const int end = smaller(a0 + kStrip, m);
+    panels.clear();
+    for (int i = 0, b0 = 0; i < count && b0 < end; b0 += J[i++].rows) {
+      gather_strip(FromThin{X, m, ld}, J[i], panels, a0, round_up(end - a0, kGroup), strip, kStrip);
+      for (int r = 0; r < J[i].rows; ++r) {
+        const int b = b0 + r;
+        for (int a = b > a0 ? b : a0; a < end; ++a) {
+          S[static_cast<std::ptrdiff_t>(a) * lds + b] = strip[r * kStrip + a - a0];
+        }
+      }
+    }
+  }
+}
+
 /// out (J.rows x J.rows, leading dimension kMaxRows) = J P J^T
-inline void project(const Triangle& P, const SparseRows& J, Scalar* out) {
+inline void square(const Triangle& P, const SparseRows& J, Scalar* out) {
   constexpr int kMaxColumns = SparseRows::kMaxColumns;
   const int width = columns_of(J);
   int at[kMaxColumns];

@@ -17,14 +17,14 @@ PF_INLINE void clear_behind(const Triangle& P, int i, int from) {
 void augment(Triangle& P, const SparseRows& J, const Scalar* noise) {
   const int n = P.n;
   Scalar JPJ[kMaxRows * kMaxRows];
-  project(P, J, JPJ);
+  square(P, J, JPJ);
 
   Panels panels;
   Scalar strip[kMaxRows * kStrip];
   for (int j0 = 0; j0 < n; j0 += kStrip) {
     const int columns = smaller(kStrip, n - j0);
     panels.clear();
-    gather_strip(P, J, panels, j0, round_up(columns, kGroup), strip, kStrip);
+    gather_strip(FromTriangle{P}, J, panels, j0, round_up(columns, kGroup), strip, kStrip);
     for (int a = 0; a < J.rows; ++a) {
       Scalar* row = row_of(P, n + a) + j0;
       for (int j = 0; j < columns; ++j) row[j] = strip[a * kStrip + j];
@@ -43,14 +43,14 @@ void augment(Triangle& P, const SparseRows& J, const Scalar* noise) {
 /// after the other in place; the block with itself is formed before anything moves.
 void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise) {
   Scalar JPJ[kMaxRows * kMaxRows];
-  project(P, J, JPJ);
+  square(P, J, JPJ);
 
   Panels panels;
   Scalar strip[kMaxRows * kStrip];
   for (int j0 = 0; j0 < P.n; j0 += kStrip) {
     const int end = smaller(j0 + kStrip, P.n);
     panels.clear();
-    gather_strip(P, J, panels, j0, round_up(end - j0, kGroup), strip, kStrip);
+    gather_strip(FromTriangle{P}, J, panels, j0, round_up(end - j0, kGroup), strip, kStrip);
     for (int a = 0; a < J.rows; ++a) {
       Scalar* row = row_of(P, first + a);
       for (int j = j0; j < smaller(end, first); ++j) row[j] = strip[a * kStrip + j - j0];
