@@ -32,4 +32,5 @@ endif()
 # For programs, platform and tests, which may use the C++ runtime.
 add_library(planefold_warnings INTERFACE)
 target_compile_options(planefold_warnings INTERFACE -Wall -Wextra -Wshadow
+                       $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-array-bounds>
                        $<$<BOOL:${PLANEFOLD_WERROR}>:-Werror>)
