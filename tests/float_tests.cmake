@@ -3,6 +3,7 @@ set(PLANEFOLD_FLOAT_TESTS
     jacobian/test_camera.cpp
     jacobian/test_planar_pose.cpp
     unit/test_camera.cpp
+    unit/test_dark_quads.cpp
     unit/test_planar_pose.cpp
     unit/test_small_geometry.cpp
 )

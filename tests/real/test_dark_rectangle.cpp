@@ -113,8 +113,8 @@ void test_rectangle_should_be_found_where_it_was_measured_when_the_desk_is_filme
               found, static_cast<int>(info.count), wrong, rms, worst, worst_pose, ambiguous,
               static_cast<double>(candidates) / static_cast<double>(info.count));
   TEST_ASSERT_EQUAL_INT(0, wrong);
-  TEST_ASSERT_GREATER_OR_EQUAL_INT(390, found);
-  TEST_ASSERT_TRUE(rms < 0.4);
+  TEST_ASSERT_EQUAL_INT(400, found);
+  TEST_ASSERT_TRUE(rms < 0.2);
 }
 
 }  // namespace

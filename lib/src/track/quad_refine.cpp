@@ -13,6 +13,7 @@ constexpr int kProfile = 2 * 10 + 1;         ///< samples across: 2 kReach / kSt
 constexpr Scalar kRobust = Scalar(0.4);      ///< residual that counts half [px]
 constexpr Scalar kMaxRms = Scalar(1.0);      ///< [px]
 constexpr Scalar kMaxMove = 4;               ///< [px]
+constexpr Scalar kMinFrontal = Scalar(0.34); ///< cosine of 70 degrees
 
 /// Grey level between pixels. False near the border.
 bool sample(const ImageView& image, const Vec2& p, Scalar* value) {
@@ -173,11 +174,13 @@ bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar wi
   for (int i = 0; i < count; ++i) {
     RectangleSighting found;
     found.quad = quads[i];
-    const Scalar score = quads[i].contrast * quads[i].area;
-    if (!(score > best) || !refine_quad(image, camera, &found.quad)) continue;
+    if (!refine_quad(image, camera, &found.quad)) continue;
     if (!rectangle_pose(camera, width, height, found.quad.corners, sigma_px, &found.pose, &found.second_rms_px)) continue;
-    const Scalar limit = std::fmax(Scalar(0.015) * diagonal(found.quad), 5 * sigma_px);
-    if (!(found.pose.rms_px < limit)) continue;
+    const Scalar misfit = found.pose.rms_px / (Scalar(1.5) * sigma_px + Scalar(0.003) * diagonal(found.quad));
+    const Scalar frontal = -found.pose.p_WC.z() / found.pose.p_WC.norm();  // cosine of the slant
+    if (!(misfit < 1) || !(frontal > kMinFrontal)) continue;
+    const Scalar score = quads[i].contrast * quads[i].area * frontal * frontal * (1 - misfit * misfit / 2);
+    if (!(score > best)) continue;
     best = score;
     *out = found;
   }

@@ -14,7 +14,8 @@ constexpr Scalar kMinArea = Scalar(0.002);    ///< of the image
 constexpr Scalar kSameCorners = 4;            ///< mean distance of the corners of one and the same quadrilateral [px]
 constexpr int kBorder = 3;                    ///< [px] that outlines keep clear of
 
-/// Grey levels below which 1 % and 99 % of the pixels are, from every second row.
+/// Grey levels below which 0.1 % and 99.9 % of the pixels are, from every second row: the smallest quadrilateral is twice
+/// that.
 void grey_range(const ImageView& image, int* low, int* high) {
   int histogram[256] = {};
   int count = 0;
@@ -27,9 +28,9 @@ void grey_range(const ImageView& image, int* low, int* high) {
   *low = 0;
   *high = 255;
   for (int i = 0; i < 256; ++i) {
-    if (below <= count / 100) *low = i;
+    if (below <= count / 1000) *low = i;
     below += histogram[i];
-    if (below < count - count / 100) *high = i + 1;
+    if (below < count - count / 1000) *high = i + 1;
   }
 }
 
