@@ -51,7 +51,7 @@ inline void downdate_columns(const Triangle& P, const Thin& t, int first, int la
         const std::ptrdiff_t stride = kGroup * (q + 1);
         const int columns = smaller(kColumns, smaller(last, kGroup * (q + 1)) - j);
         Scalar* rows = P.data + group_offset(q);
-        for_strip(j, columns, [&](auto v, auto count, int at) PF_LAMBDA {
+        for_strips(j, columns, [&](auto v, auto count, int at) PF_LAMBDA {
           downdate_tile<decltype(v), decltype(count)::value>(t, t.W + at, t.ld, rows + at, stride,
                                                              q * kGroup, at);
         });

@@ -17,7 +17,7 @@ PF_INLINE void solve_tile(const Scalar* L, std::ptrdiff_t lds, Scalar* X, std::p
 
 /// Twin: reference::solve_lower. Works on whole groups of eight columns, padding included.
 void solve_lower(const Scalar* L, int m, int lds, Scalar* X, int n, int ld) {
-  for_strips(round_up(n, kGroup), [&](auto v, auto count, int j) {
+  for_strips(0, round_up(n, kGroup), [&](auto v, auto count, int j) {
     for_heights(m, [&](auto height, int i) PF_LAMBDA {
       solve_tile<decltype(v), decltype(height)::value, decltype(count)::value>(L, lds, X + j, ld, i);
     });
@@ -27,7 +27,7 @@ void solve_lower(const Scalar* L, int m, int lds, Scalar* X, int n, int ld) {
 /// Twin: reference::combine.
 void combine(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x) {
   const int whole = n / kGroup * kGroup;
-  for_strips<4>(whole, [&](auto v, auto count, int j) PF_LAMBDA {
+  for_strips<4>(0, whole, [&](auto v, auto count, int j) PF_LAMBDA {
     Tile<decltype(v), 1, decltype(count)::value> tile;
     tile.zero();
     tile.accumulate(y, 0, 1, W + j, ld, m);

@@ -8,7 +8,7 @@ namespace {
 /// Columns that a gather works on at a time.
 constexpr int kStrip = 512 / static_cast<int>(sizeof(Scalar));
 
-/// What panels are filled from: rows of a symmetric matrix, or columns of a thin one.
+/// What panel are filled from: rows of a symmetric matrix, or columns of a thin one.
 struct FromTriangle {
   const Triangle& P;
 };
@@ -72,72 +72,65 @@ inline void fill_panel(FromThin source, int first, int size, int a0, int count, 
   }
 }
 
-/// Panels of the strip at hand, kept while there is room, so that what Jacobians share is read once. The first one (the body, as a
-/// rule) stays.
-struct Panels {
-  static constexpr int kColumns = 56;
-  static constexpr int kSegments = 16;
+/// The operand of J for the strip at hand: a row per touched column, in J's order, so that one loop runs over all of them.
+///
+///   values  | body | plane | point |      Jacobians that begin with the same segments share them: only the rest is filled again
+struct Panel {
+  // Transposing writes up to three rows too many.
+  alignas(64) Scalar values[(SparseRows::kMaxColumns + 3) * kStrip];
+  Segment segment[SparseRows::kMaxSegments];
+  int segments;
 
-  alignas(64) Scalar values[kColumns * kStrip];
-  Segment segment[kSegments];
-  int begin[kSegments + 1];
-  int count;
-
-  PF_INLINE void clear() { count = begin[0] = 0; }
-
-  /// Make room for one Jacobian; every segment of it then stays until the next call.
-  PF_INLINE void reserve(const SparseRows& J) {
-    int more = 0;
-    for (int s = 0; s < J.segments; ++s) more += round_up(J.segment[s].size, 4);
-    if (count + J.segments <= kSegments && begin[count] + more <= kColumns) return;
-    count = count > 0 && begin[1] + more <= kColumns ? 1 : 0;
-  }
+  PF_INLINE void clear() { segments = 0; }
 
   template <class Source>
-  PF_INLINE const Scalar* find(Source source, Segment wanted, int j0, int columns) {
-    int s = 0;
-    while (s < count && (segment[s].first != wanted.first || segment[s].size != wanted.size)) ++s;
-    if (s == count) {
+  PF_INLINE void fill(Source source, const SparseRows& J, int j0, int columns) {
+    Scalar* to = values;
+    bool same = true;
+    for (int s = 0; s < J.segments; ++s) {
+      const Segment wanted = J.segment[s];
+      same = same && s < segments && segment[s].first == wanted.first && segment[s].size == wanted.size;
+      if (!same) fill_panel(source, wanted.first, wanted.size, j0, columns, to);
       segment[s] = wanted;
-      begin[s + 1] = begin[s] + round_up(wanted.size, 4);
-      fill_panel(source, wanted.first, wanted.size, j0, columns, values + begin[s] * kStrip);
-      ++count;
+      to += wanted.size * kStrip;
     }
-    return values + begin[s] * kStrip;
+    segments = J.segments;
   }
 };
 
-/// J times the source's columns j0 .. j0 + columns - 1 (a multiple of eight) into out (leading dimension ld).
+/// J times the source's columns j0 .. j0 + columns - 1 (a multiple of eight) into out (leading dimension ld), two rows at a time.
 template <class Source>
-inline void gather_strip(Source source, const SparseRows& J, Panels& panels, int j0, int columns,
+inline void gather_strip(Source source, const SparseRows& J, Panel& panel, int j0, int columns,
                          Scalar* out, std::ptrdiff_t ld) {
+  constexpr int kMost = kTileRows * kTileVectors >= 16 ? 8 : 4;
   const int width = columns_of(J);
-  const Scalar* operand[SparseRows::kMaxSegments];
-  panels.reserve(J);
-  for (int s = 0; s < J.segments; ++s) operand[s] = panels.find(source, J.segment[s], j0, columns);
-  for_strips<4>(columns, [&](auto v, auto count, int j) {
-    for_heights(J.rows, [&](auto height, int a) PF_LAMBDA {
-      Tile<decltype(v), decltype(height)::value, decltype(count)::value> tile;
-      tile.zero();
-      const Scalar* h = J.h + a * width;
-      for (int s = 0; s < J.segments; ++s) {
-        tile.accumulate(h, width, 1, operand[s] + j, kStrip, J.segment[s].size);
-        h += J.segment[s].size;
+  panel.fill(source, J, j0, columns);
+  for (int a = 0; a < J.rows; a += 2) {
+    for_strips<kMost>(0, columns, [&](auto v, auto count, int j) PF_LAMBDA {
+      if (a + 1 < J.rows) {
+        Tile<decltype(v), 2, decltype(count)::value> tile;
+        tile.zero();
+        tile.accumulate(J.h + a * width, width, 1, panel.values + j, kStrip, width);
+        tile.store(out + a * ld + j, ld);
+      } else {
+        Tile<decltype(v), 1, decltype(count)::value> tile;
+        tile.zero();
+        tile.accumulate(J.h + a * width, width, 1, panel.values + j, kStrip, width);
+        tile.store(out + a * ld + j, ld);
       }
-      tile.store(out + a * ld + j, ld);
     });
-  });
+  }
 }
 
 /// Twin: reference::gather_many.
 void gather_many(const Triangle& P, const SparseRows* J, int count, Scalar* out, int ld) {
-  Panels panels;
+  Panel panel;
   const int all = round_up(P.n, kGroup);
   for (int j0 = 0; j0 < all; j0 += kStrip) {
-    panels.clear();
+    panel.clear();
     Scalar* to = out + j0;
     for (int i = 0; i < count; ++i) {
-      gather_strip(FromTriangle{P}, J[i], panels, j0, smaller(kStrip, all - j0), to, ld);
+      gather_strip(FromTriangle{P}, J[i], panel, j0, smaller(kStrip, all - j0), to, ld);
       to += static_cast<std::ptrdiff_t>(J[i].rows) * ld;
     }
   }
@@ -152,13 +145,13 @@ void gather(const Triangle& P, const SparseRows& J, Scalar* out, int ld) {
 void project(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S, int lds) {
   int m = 0;
   for (int i = 0; i < count; ++i) m += J[i].rows;
-  Panels panels;
+  Panel panel;
   alignas(64) Scalar strip[SparseRows::kMaxRows * kStrip];
   for (int a0 = 0; a0 < m; a0 += kStrip) {
     const int end = smaller(a0 + kStrip, m);
-    panels.clear();
+    panel.clear();
     for (int i = 0, b0 = 0; i < count && b0 < end; b0 += J[i++].rows) {
-      gather_strip(FromThin{X, m, ld}, J[i], panels, a0, round_up(end - a0, kGroup), strip, kStrip);
+      gather_strip(FromThin{X, m, ld}, J[i], panel, a0, round_up(end - a0, kGroup), strip, kStrip);
       for (int r = 0; r < J[i].rows; ++r) {
         const int b = b0 + r;
         for (int a = b > a0 ? b : a0; a < end; ++a) {

@@ -19,12 +19,12 @@ void augment(Triangle& P, const SparseRows& J, const Scalar* noise) {
   Scalar JPJ[kMaxRows * kMaxRows];
   square(P, J, JPJ);
 
-  Panels panels;
+  Panel panel;
   Scalar strip[kMaxRows * kStrip];
   for (int j0 = 0; j0 < n; j0 += kStrip) {
     const int columns = smaller(kStrip, n - j0);
-    panels.clear();
-    gather_strip(FromTriangle{P}, J, panels, j0, round_up(columns, kGroup), strip, kStrip);
+    panel.clear();
+    gather_strip(FromTriangle{P}, J, panel, j0, round_up(columns, kGroup), strip, kStrip);
     for (int a = 0; a < J.rows; ++a) {
       Scalar* row = row_of(P, n + a) + j0;
       for (int j = 0; j < columns; ++j) row[j] = strip[a * kStrip + j];
@@ -45,12 +45,12 @@ void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar
   Scalar JPJ[kMaxRows * kMaxRows];
   square(P, J, JPJ);
 
-  Panels panels;
+  Panel panel;
   Scalar strip[kMaxRows * kStrip];
   for (int j0 = 0; j0 < P.n; j0 += kStrip) {
     const int end = smaller(j0 + kStrip, P.n);
-    panels.clear();
-    gather_strip(FromTriangle{P}, J, panels, j0, round_up(end - j0, kGroup), strip, kStrip);
+    panel.clear();
+    gather_strip(FromTriangle{P}, J, panel, j0, round_up(end - j0, kGroup), strip, kStrip);
     for (int a = 0; a < J.rows; ++a) {
       Scalar* row = row_of(P, first + a);
       for (int j = j0; j < smaller(end, first); ++j) row[j] = strip[a * kStrip + j - j0];

@@ -92,7 +92,7 @@ struct Tile {
   }
 };
 
-/// Cut `columns` (a multiple of eight) into strips of kMost vectors (2 to 4), then into what is left. `work` is called with a tile's
+/// Cut `columns` (a multiple of eight) into strips of kMost vectors, then into what is left. `work` is called with a tile's
 /// columns as types, work(V{}, Count<vectors>{}, first column).
 template <int kValue>
 struct Count {
@@ -100,28 +100,24 @@ struct Count {
 };
 
 template <int kMost = kTileVectors, class Work>
-PF_INLINE void for_strip(int j, int columns, const Work& work) {
-  const int vectors = columns / Wide::kWidth;
-  if (vectors >= kMost) {
-    work(Wide{}, Count<kMost>{}, j);
-  } else if (vectors == 3) {
-    work(Wide{}, Count<3>{}, j);
-    if (columns > 3 * Wide::kWidth) work(Narrow{}, Count<1>{}, j + 3 * Wide::kWidth);
-  } else if (vectors == 2) {
-    work(Wide{}, Count<2>{}, j);
-    if (columns > 2 * Wide::kWidth) work(Narrow{}, Count<1>{}, j + 2 * Wide::kWidth);
-  } else {
-    if (vectors == 1) work(Wide{}, Count<1>{}, j);
-    if (columns > vectors * Wide::kWidth) work(Narrow{}, Count<1>{}, j + vectors * Wide::kWidth);
+PF_INLINE void for_strips(int first, int columns, const Work& work) {
+  int j = 0;
+  for (; j + kMost * Wide::kWidth <= columns; j += kMost * Wide::kWidth) {
+    work(Wide{}, Count<kMost>{}, first + j);
   }
-}
-
-template <int kMost = kTileVectors, class Work>
-PF_INLINE void for_strips(int columns, const Work& work) {
-  constexpr int kColumns = kMost * Wide::kWidth;
-  for (int j = 0; j < columns; j += kColumns) {
-    for_strip<kMost>(j, smaller(kColumns, columns - j), work);
+  if (kMost > 4 && j + 4 * Wide::kWidth <= columns) {
+    work(Wide{}, Count<4>{}, first + j);
+    j += 4 * Wide::kWidth;
   }
+  if (kMost > 2 && j + 2 * Wide::kWidth <= columns) {
+    work(Wide{}, Count<2>{}, first + j);
+    j += 2 * Wide::kWidth;
+  }
+  if (kMost > 1 && j + Wide::kWidth <= columns) {
+    work(Wide{}, Count<1>{}, first + j);
+    j += Wide::kWidth;
+  }
+  if (j < columns) work(Narrow{}, Count<1>{}, first + j);
 }
 
 /// Eight columns, in strips of two registers at most.
