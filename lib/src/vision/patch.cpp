@@ -3,11 +3,14 @@
 #include <cmath>
 #include <cstring>
 
+#include "vision/simd.h"
+
 namespace pf {
 
 namespace {
 
 constexpr Scalar kStepOfLevel1 = Scalar(1.6);
+constexpr float kMargin = 1e-3f;  // px
 
 int clamp(int value, int low, int high) { return value < low ? low : value > high ? high : value; }
 
@@ -32,6 +35,27 @@ void extract_level(const ImageView& image, const Vec2& at, int l, SourcePatch* p
       for (int i = 0; i < kSize; ++i) to[i] = from[clamp(left + i, 0, image.width - 1)];
     }
   }
+}
+
+/// Four bilinear readings. Four neighbours make one number, which vectors then take apart.
+PF_ALWAYS_INLINE F32x4 sample(const std::uint8_t* pixels, const F32x4& x, const F32x4& y) {
+  constexpr int kSize = SourcePatch::kSize;
+  const I32x4 ix = __builtin_convertvector(x, I32x4);
+  const I32x4 iy = __builtin_convertvector(y, I32x4);
+  const I32x4 at = iy * kSize + ix;
+  U32x4 four;
+  for (int k = 0; k < 4; ++k) {
+    const std::uint8_t* p = pixels + at[k];
+    const unsigned top = static_cast<unsigned>(p[0] | p[1] << 8);
+    const unsigned bottom = static_cast<unsigned>(p[kSize] | p[kSize + 1] << 8);
+    four[k] = top | bottom << 16;
+  }
+  const F32x4 fx = x - __builtin_convertvector(ix, F32x4);
+  const F32x4 fy = y - __builtin_convertvector(iy, F32x4);
+  const auto grey = [&four](int shift) { return __builtin_convertvector((I32x4)(four >> shift & 255), F32x4); };
+  const F32x4 top = grey(0) + fx * (grey(8) - grey(0));
+  const F32x4 bottom = grey(16) + fx * (grey(24) - grey(16));
+  return top + fy * (bottom - top);
 }
 
 }  // namespace
@@ -68,36 +92,33 @@ bool warp_template(const SourcePatch& patch, const Mat2& A_source_current, int s
   const float a10 = static_cast<float>(A(1, 0) * per_level);
   const float a11 = static_cast<float>(A(1, 1) * per_level);
 
-  // The corners are the furthest out: with them inside, all is.
+  // The corners are the furthest out: with them inside, all is. The margin is for rounding on the way there, so that
+  // no reading needs a check of its own.
   const float c = 0.5f * static_cast<float>(size - 1);
-  const float reach_x = c * (std::fabs(a00) + std::fabs(a01));
-  const float reach_y = c * (std::fabs(a10) + std::fabs(a11));
-  constexpr float kSlack = 1e-3f;  // of rounding, so that a reading just beyond the last pixel is none of it
+  const float reach_x = c * (std::fabs(a00) + std::fabs(a01)) + kMargin;
+  const float reach_y = c * (std::fabs(a10) + std::fabs(a11)) + kMargin;
   const float x0 = patch.centre_x[l];
   const float y0 = patch.centre_y[l];
-  if (!(x0 - reach_x >= static_cast<float>(patch.begin_x[l]) - kSlack &&
-        y0 - reach_y >= static_cast<float>(patch.begin_y[l]) - kSlack &&
-        x0 + reach_x <= static_cast<float>(patch.end_x[l] - 1) + kSlack &&
-        y0 + reach_y <= static_cast<float>(patch.end_y[l] - 1) + kSlack)) {
+  if (!(x0 - reach_x >= static_cast<float>(patch.begin_x[l]) && y0 - reach_y >= static_cast<float>(patch.begin_y[l]) &&
+        x0 + reach_x <= static_cast<float>(patch.end_x[l] - 1) &&
+        y0 + reach_y <= static_cast<float>(patch.end_y[l] - 1))) {
     return false;
   }
-  constexpr int kSize = SourcePatch::kSize;
-  const std::uint8_t* pixels = patch.pixels[l];
+  const F32x4 lanes = {0.0f, 1.0f, 2.0f, 3.0f};
   for (int j = 0; j < size; ++j) {
     const float v = static_cast<float>(j) - c;
-    for (int i = 0; i < size; ++i) {
-      const float u = static_cast<float>(i) - c;
-      const float x = x0 + (a00 * u + a01 * v);
-      const float y = y0 + (a10 * u + a11 * v);
-      const int ix = clamp(static_cast<int>(x), 0, kSize - 2);
-      const int iy = clamp(static_cast<int>(y), 0, kSize - 2);
-      const float fx = x - static_cast<float>(ix);
-      const float fy = y - static_cast<float>(iy);
-      const std::uint8_t* p = pixels + iy * kSize + ix;
-      const float top = static_cast<float>(p[0]) + fx * static_cast<float>(p[1] - p[0]);
-      const float bottom = static_cast<float>(p[kSize]) + fx * static_cast<float>(p[kSize + 1] - p[kSize]);
-      out[j * size + i] = top + fy * (bottom - top);
+    const float row_x = x0 + (a01 * v - a00 * c);
+    const float row_y = y0 + (a11 * v - a10 * c);
+    float* row = out + j * size;
+    int i = 0;
+    for (; i + 4 <= size; i += 4) {
+      const F32x4 at = lanes + static_cast<float>(i);
+      store(row + i, sample(patch.pixels[l], row_x + a00 * at, row_y + a10 * at));
     }
+    if (i == size) continue;
+    const F32x4 at = smaller(lanes + static_cast<float>(i), F32x4{} + static_cast<float>(size - 1));
+    const F32x4 values = sample(patch.pixels[l], row_x + a00 * at, row_y + a10 * at);
+    for (int k = 0; i < size; ++i, ++k) row[i] = values[k];
   }
   return true;
 }

@@ -76,20 +76,55 @@ bool solve(float (&A)[kUnknowns][kUnknowns], const float (&floor)[kUnknowns], fl
   return true;
 }
 
-/// Binomial 1 4 6 4 1 along `count` entries that are `step` apart, in place; the ends are repeated.
-void blur_line(float* line, int count, std::ptrdiff_t step) {
-  float a = line[0];
-  float b = a;
-  float c = a;
-  float d = line[count > 1 ? step : 0];
-  for (int i = 0; i < count; ++i) {
-    const float e = line[(i + 2 < count ? i + 2 : count - 1) * step];
-    line[i * step] = (a + e + 4.0f * (b + d) + 6.0f * c) * (1.0f / 16.0f);
-    a = b;
-    b = c;
-    c = d;
-    d = e;
+/// Binomial 1 4 6 4 1 of five values.
+template <typename V>
+PF_ALWAYS_INLINE V binomial(const V& a, const V& b, const V& c, const V& d, const V& e) {
+  return (a + e + 4.0f * (b + d) + 6.0f * c) * (1.0f / 16.0f);
+}
+
+/// Binomial in both directions, the edges repeated. `between` has the same size.
+void blur(float* image, float* between, int width, int height) {
+  alignas(16) float line[RotationAligner::kMaxWidth + 4];
+  for (int y = 0; y < height; ++y) {
+    const float* row = image + y * width;
+    std::memcpy(line + 2, row, static_cast<std::size_t>(width) * sizeof(float));
+    line[0] = line[1] = row[0];
+    line[width + 2] = line[width + 3] = row[width - 1];
+    float* to = between + y * width;
+    for (int x = 0; x < width; ++x) to[x] = binomial(line[x], line[x + 1], line[x + 2], line[x + 3], line[x + 4]);
   }
+  const auto row_at = [&](int y) { return between + (y < 0 ? 0 : y < height ? y : height - 1) * width; };
+  for (int y = 0; y < height; ++y) {
+    const float* a = row_at(y - 2);
+    const float* b = row_at(y - 1);
+    const float* c = row_at(y);
+    const float* d = row_at(y + 1);
+    const float* e = row_at(y + 2);
+    float* to = image + y * width;
+    for (int x = 0; x < width; ++x) to[x] = binomial(a[x], b[x], c[x], d[x], e[x]);
+  }
+}
+
+/// Four bilinear readings; the pixels right and below are readable too.
+PF_ALWAYS_INLINE F32x4 sample(const float* image, int width, const F32x4& x, const F32x4& y) {
+  const I32x4 ix = __builtin_convertvector(x, I32x4);
+  const I32x4 iy = __builtin_convertvector(y, I32x4);
+  const I32x4 at = iy * width + ix;
+  F32x4 pair[4];  // left and right of two pixels, above and below
+  for (int k = 0; k < 4; ++k) {
+    const float* p = image + at[k % 2 * 2] + k / 2 * width;
+    const float* q = image + at[k % 2 * 2 + 1] + k / 2 * width;
+    pair[k] = (F32x4)U64x2{load<std::uint64_t>(p), load<std::uint64_t>(q)};
+  }
+  const I32x4 even = {0, 2, 4, 6};
+  const I32x4 odd = {1, 3, 5, 7};
+  const F32x4 fx = x - __builtin_convertvector(ix, F32x4);
+  const F32x4 fy = y - __builtin_convertvector(iy, F32x4);
+  const F32x4 left_top = __builtin_shuffle(pair[0], pair[1], even);
+  const F32x4 left_bottom = __builtin_shuffle(pair[2], pair[3], even);
+  const F32x4 top = left_top + fx * (__builtin_shuffle(pair[0], pair[1], odd) - left_top);
+  const F32x4 bottom = left_bottom + fx * (__builtin_shuffle(pair[2], pair[3], odd) - left_bottom);
+  return top + fy * (bottom - top);
 }
 
 }  // namespace
@@ -148,77 +183,102 @@ void RotationAligner::shrink(const ImageView& coarse) {
   }
   mean /= static_cast<float>(width_ * height_);
   for (int k = 0; k < width_ * height_; ++k) current_[k] -= mean;
-  for (int pass = 0; pass < 2; ++pass) {
-    for (int y = 0; y < height_; ++y) blur_line(current_ + y * width_, width_, 1);
-    for (int x = 0; x < width_; ++x) blur_line(current_ + x, height_, width_);
-  }
+  for (int pass = 0; pass < 2; ++pass) blur(current_, jacobian_[0], width_, height_);
 }
 
 // A small rotation w moves the ray (x, y, 1) by w × ray, and its pixel by
 //   du = fx (-x y w_x + (1 + x²) w_y - y w_z),   dv = fy (-(1 + y²) w_x + x y w_y + x w_z).
 void RotationAligner::gradients() {
-  for (int v = 0; v < height_; ++v) {
+  const float scale = 1.0f / camera_.fx;
+  for (int v = 1; v < height_ - 1; ++v) {
     const float y = (static_cast<float>(v) - camera_.cy) / camera_.fy;
-    const bool edge_row = v == 0 || v == height_ - 1;
-    for (int u = 0; u < width_; ++u) {
-      const int at = v * width_ + u;
-      const bool edge = edge_row || u == 0 || u == width_ - 1;
-      const float x = (static_cast<float>(u) - camera_.cx) / camera_.fx;
-      const float gu = edge ? 0.0f : 0.5f * (previous_[at + 1] - previous_[at - 1]) * camera_.fx;
-      const float gv = edge ? 0.0f : 0.5f * (previous_[at + width_] - previous_[at - width_]) * camera_.fy;
-      jacobian_[0][at] = -gu * x * y - gv * (1.0f + y * y);
-      jacobian_[1][at] = gu * (1.0f + x * x) + gv * x * y;
-      jacobian_[2][at] = gv * x - gu * y;
+    const float* T = previous_ + v * width_;
+    float* jx = jacobian_[0] + v * width_;
+    float* jy = jacobian_[1] + v * width_;
+    float* jz = jacobian_[2] + v * width_;
+    for (int u = 1; u < width_ - 1; ++u) {
+      const float x = (static_cast<float>(u) - camera_.cx) * scale;
+      const float gu = 0.5f * (T[u + 1] - T[u - 1]) * camera_.fx;
+      const float gv = 0.5f * (T[u + width_] - T[u - width_]) * camera_.fy;
+      jx[u] = -gu * x * y - gv * (1.0f + y * y);
+      jy[u] = gu * (1.0f + x * x) + gv * x * y;
+      jz[u] = gv * x - gu * y;
     }
+    for (float* row : {jx, jy, jz}) row[0] = row[width_ - 1] = 0.0f;
+  }
+  for (float* plane : jacobian_) {
+    std::memset(plane, 0, static_cast<std::size_t>(width_) * sizeof(float));
+    std::memset(plane + (height_ - 1) * width_, 0, static_cast<std::size_t>(width_) * sizeof(float));
   }
 }
 
+// One row of the previous image at a time: first where its pixels are seen now and what is there, then the sums. The
+// last four of a row may reach into the next one, where their weight is zero.
 RotationAligner::Normal RotationAligner::evaluate(const float (&R)[9]) const {
   constexpr int kTerms = Normal::kTerms;
   F32x4 sums[kTerms][kTerms] = {};
-  alignas(16) float seen[kMaxWidth + 4];
-  alignas(16) float value[kMaxWidth + 4];
-  const float limit_x = static_cast<float>(width_ - 1);
-  const float limit_y = static_cast<float>(height_ - 1);
+  const F32x4 zero = {};
+  const F32x4 one = zero + 1.0f;
+  const F32x4 lanes = {0.0f, 1.0f, 2.0f, 3.0f};
+  const F32x4 limit_x = zero + static_cast<float>(width_ - 1);
+  const F32x4 limit_y = zero + static_cast<float>(height_ - 1);
+  const float step = 1.0f / camera_.fx;
+  const int count = width_ - 2;
   for (int v = 1; v < height_ - 1; ++v) {
-    // K R K⁻¹ along the row: three linear functions of u.
+    alignas(16) float seen[kMaxWidth];
+    alignas(16) float value[kMaxWidth];
     const float y = (static_cast<float>(v) - camera_.cy) / camera_.fy;
-    const float x0 = (1.0f - camera_.cx) / camera_.fx;
-    const float px = R[0] * x0 + R[1] * y + R[2];
-    const float py = R[3] * x0 + R[4] * y + R[5];
-    const float pz = R[6] * x0 + R[7] * y + R[8];
-    const int count = width_ - 2;
-    for (int i = 0; i < count; ++i) {
-      const float dx = static_cast<float>(i) / camera_.fx;
-      const float z = pz + R[6] * dx;
-      const float inverse = 1.0f / (z > 0.01f ? z : 0.01f);
-      const float a = camera_.fx * (px + R[0] * dx) * inverse + camera_.cx;
-      const float b = camera_.fy * (py + R[3] * dx) * inverse + camera_.cy;
-      const bool inside = z > 0.01f && a >= 0.0f && b >= 0.0f && a < limit_x && b < limit_y;
-      const int ia = inside ? static_cast<int>(a) : 0;
-      const int ib = inside ? static_cast<int>(b) : 0;
-      const float fa = a - static_cast<float>(ia);
-      const float fb = b - static_cast<float>(ib);
-      const float* p = current_ + ib * width_ + ia;
-      const float top = p[0] + fa * (p[1] - p[0]);
-      const float bottom = p[width_] + fa * (p[width_ + 1] - p[width_]);
-      seen[i] = inside ? 1.0f : 0.0f;
-      value[i] = inside ? top + fb * (bottom - top) : 0.0f;
+    const float x0 = (1.0f - camera_.cx) * step;
+    const F32x4 row_x = zero + (R[0] * x0 + R[1] * y + R[2]);
+    const F32x4 row_y = zero + (R[3] * x0 + R[4] * y + R[5]);
+    const F32x4 row_z = zero + (R[6] * x0 + R[7] * y + R[8]);
+    for (int i = 0; i < count; i += 4) {
+      const F32x4 along = lanes + static_cast<float>(i);
+      const F32x4 dx = along * step;
+      const F32x4 z = row_z + R[6] * dx;
+      const F32x4 inverse = one / larger(z, zero + 0.01f);
+      const F32x4 a = (row_x + R[0] * dx) * inverse * camera_.fx + camera_.cx;
+      const F32x4 b = (row_y + R[3] * dx) * inverse * camera_.fy + camera_.cy;
+      const I32x4 inside = (z > 0.01f) & (a >= zero) & (b >= zero) & (a < limit_x) & (b < limit_y) &
+                           (along < static_cast<float>(count));
+      const auto where_inside = [&inside](const F32x4& what) { return (F32x4)((I32x4)what & inside); };
+      store(seen + i, where_inside(one));
+      store(value + i, where_inside(sample(current_, width_, where_inside(a), where_inside(b))));
     }
-    for (int i = count; i < count + 3; ++i) seen[i] = value[i] = 0.0f;
     const int at = v * width_ + 1;
     for (int i = 0; i < count; i += 4) {
-      // The last load of a row reaches into the next one, where its weight is zero.
       const F32x4 w = load<F32x4>(seen + i);
-      const F32x4 terms[kTerms] = {w,
-                                   w * load<F32x4>(previous_ + at + i),
-                                   w * load<F32x4>(jacobian_[0] + at + i),
-                                   w * load<F32x4>(jacobian_[1] + at + i),
-                                   w * load<F32x4>(jacobian_[2] + at + i),
-                                   load<F32x4>(value + i)};
-      for (int a = 0; a < kTerms; ++a) {
-        for (int b = a; b < kTerms; ++b) sums[a][b] += terms[a] * terms[b];
+      const F32x4 I = load<F32x4>(value + i);
+      const F32x4 T = w * load<F32x4>(previous_ + at + i);
+      sums[0][0] += w;
+      sums[0][1] += T;
+      sums[0][5] += I;
+      sums[1][1] += T * T;
+      sums[1][5] += T * I;
+      sums[5][5] += I * I;
+    }
+    for (int i = 0; i < count; i += 4) {
+      const F32x4 w = load<F32x4>(seen + i);
+      const F32x4 I = load<F32x4>(value + i);
+      const F32x4 T = load<F32x4>(previous_ + at + i);
+      for (int k = 0; k < 3; ++k) {
+        const F32x4 J = w * load<F32x4>(jacobian_[k] + at + i);
+        sums[0][2 + k] += J;
+        sums[1][2 + k] += J * T;
+        sums[2 + k][5] += J * I;
       }
+    }
+    for (int i = 0; i < count; i += 4) {
+      const F32x4 w = load<F32x4>(seen + i);
+      const F32x4 jx = w * load<F32x4>(jacobian_[0] + at + i);
+      const F32x4 jy = w * load<F32x4>(jacobian_[1] + at + i);
+      const F32x4 jz = w * load<F32x4>(jacobian_[2] + at + i);
+      sums[2][2] += jx * jx;
+      sums[2][3] += jx * jy;
+      sums[2][4] += jx * jz;
+      sums[3][3] += jy * jy;
+      sums[3][4] += jy * jz;
+      sums[4][4] += jz * jz;
     }
   }
   Normal out;
@@ -246,12 +306,12 @@ RotationEstimate RotationAligner::update(const ImageView& coarse, const CoarseCa
   const float all = static_cast<float>((width_ - 2) * (height_ - 2));
   float R[9];
   rotation_matrix(0.0f, 0.0f, 0.0f, R);
-  const Normal still = evaluate(R);
-  estimate.before = still.rms();
+  Normal normal = evaluate(R);
+  estimate.before = normal.rms();
   rotation_matrix(static_cast<float>(guess.x()), static_cast<float>(guess.y()), static_cast<float>(guess.z()), R);
   const float f = 0.5f * (camera_.fx + camera_.fy);
   bool settled = false;
-  Normal normal = evaluate(R);
+  if (!(guess.squaredNorm() == 0)) normal = evaluate(R);
   for (int k = 1; k <= kMaxIterations && !settled; ++k) {
     const float pixels = normal.at[0][0];
     if (!(pixels >= kLeastOverlap * all)) return estimate;

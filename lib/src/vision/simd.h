@@ -87,6 +87,14 @@ PF_ALWAYS_INLINE F32x4 larger(const F32x4& a, const F32x4& b) {
 #endif
 }
 
+PF_ALWAYS_INLINE F32x4 smaller(const F32x4& a, const F32x4& b) {
+#if defined(PF_VISION_SSE2)
+  return (F32x4)_mm_min_ps((__m128)a, (__m128)b);
+#else
+  return a < b ? a : b;
+#endif
+}
+
 PF_ALWAYS_INLINE float sum(const F32x4& v) { return (v[0] + v[2]) + (v[1] + v[3]); }
 
 }  // namespace pf
