@@ -1,8 +1,7 @@
 // Jacobians of every camera model, in double and in float.
-#include "geometry/camera.h"
-
 #include <cmath>
 
+#include "geometry/camera.h"
 #include "support/numeric_jacobian.h"
 #include "support/test_cameras.h"
 #include "unity.h"
@@ -85,7 +84,8 @@ void test_ray_jacobian_should_undo_the_projection_when_they_are_chained() {
     TEST_ASSERT_TRUE(unproject(camera, pixel, &ray, &J_ray_pixel));
     TEST_ASSERT_TRUE(project(camera, ray, &again, &J_pixel_p));
     const Mat2 chain = J_pixel_p * J_ray_pixel;
-    TEST_ASSERT_TRUE((chain - Mat2::Identity()).cwiseAbs().maxCoeff() < (kNumericJacobianIsFloat ? Scalar(1e-4) : Scalar(1e-11)));
+    TEST_ASSERT_TRUE((chain - Mat2::Identity()).cwiseAbs().maxCoeff() <
+                     (kNumericJacobianIsFloat ? Scalar(1e-4) : Scalar(1e-11)));
   }
 }
 

@@ -1,6 +1,5 @@
 // Jacobian of a pixel with respect to the pose, about any pivot, in double and in float.
 #include "geometry/planar_pose.h"
-
 #include "geometry/so3.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"

@@ -1,11 +1,11 @@
 // The dark rectangle of the desk sequence, found in every frame by itself and compared with its measured corners.
+#include <planefold_platform/sequence.h>
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
-
-#include <planefold_platform/sequence.h>
 
 #include "support/skip.h"
 #include "track/quad_refine.h"
@@ -63,7 +63,8 @@ double corner_rms(const Row& row, const Quad& quad) {
 void test_rectangle_should_be_found_where_it_was_measured_when_the_desk_is_filmed() {
   char message[PF_SEQUENCE_MESSAGE];
   pf_sequence_t* sequence;
-  TEST_ASSERT_EQUAL_INT_MESSAGE(0, pf_open_sequence(("images:" + folder).c_str(), nullptr, &sequence, message), message);
+  TEST_ASSERT_EQUAL_INT_MESSAGE(0, pf_open_sequence(("images:" + folder).c_str(), nullptr, &sequence, message),
+                                message);
   pf_sequence_info_t info;
   pf_get_sequence_info(sequence, &info);
   const Camera camera = camera_of(info.camera);
@@ -99,7 +100,8 @@ void test_rectangle_should_be_found_where_it_was_measured_when_the_desk_is_filme
       std::printf("frame %d: another place, %.1f px away\n", row->frame, rms);
       continue;
     }
-    if (rms > 0.6) std::printf("frame %d: %.2f px, sides %.2f px\n", row->frame, rms, static_cast<double>(seen.quad.rms_px));
+    if (rms > 0.6)
+      std::printf("frame %d: %.2f px, sides %.2f px\n", row->frame, rms, static_cast<double>(seen.quad.rms_px));
     sum += rms * rms;
     worst = std::fmax(worst, rms);
     worst_pose = std::fmax(worst_pose, static_cast<double>(seen.pose.rms_px));
@@ -108,10 +110,11 @@ void test_rectangle_should_be_found_where_it_was_measured_when_the_desk_is_filme
   pf_close_sequence(sequence);
   const int good = measured - wrong;
   const double rms = std::sqrt(sum / good);
-  std::printf("found in %d of %d frames, %d of them elsewhere; corners %.3f px RMS, worst frame %.2f px;\n"
-              "pose explains them within %.2f px; two poses possible in %d frames; %.2f quadrilaterals a frame\n",
-              found, static_cast<int>(info.count), wrong, rms, worst, worst_pose, ambiguous,
-              static_cast<double>(candidates) / static_cast<double>(info.count));
+  std::printf(
+      "found in %d of %d frames, %d of them elsewhere; corners %.3f px RMS, worst frame %.2f px;\n"
+      "pose explains them within %.2f px; two poses possible in %d frames; %.2f quadrilaterals a frame\n",
+      found, static_cast<int>(info.count), wrong, rms, worst, worst_pose, ambiguous,
+      static_cast<double>(candidates) / static_cast<double>(info.count));
   TEST_ASSERT_EQUAL_INT(0, wrong);
   TEST_ASSERT_EQUAL_INT(400, found);
   TEST_ASSERT_TRUE(rms < 0.2);

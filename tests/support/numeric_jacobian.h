@@ -53,8 +53,8 @@ void check_jacobian(const Eigen::Matrix<Scalar, M, N>& J, F f, const char* name,
       const Scalar error = std::abs(J(r, c) - numeric(r, c));
       if (error <= tolerance * size) continue;
       char text[160];
-      std::snprintf(text, sizeof text, "%s(%d, %d) is %.9g, numerically %.9g", name, r, c,
-                    static_cast<double>(J(r, c)), static_cast<double>(numeric(r, c)));
+      std::snprintf(text, sizeof text, "%s(%d, %d) is %.9g, numerically %.9g", name, r, c, static_cast<double>(J(r, c)),
+                    static_cast<double>(numeric(r, c)));
       TEST_FAIL_MESSAGE(text);
     }
   }

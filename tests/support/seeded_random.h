@@ -12,7 +12,9 @@ namespace pf {
 
 class SeededRandom {
  public:
-  explicit SeededRandom(std::uint64_t seed) : state_(seed) { std::printf("seed %llu\n", static_cast<unsigned long long>(seed)); }
+  explicit SeededRandom(std::uint64_t seed) : state_(seed) {
+    std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  }
 
   double uniform(double low, double high) { return low + (high - low) * static_cast<double>(bits() >> 11) * 0x1p-53; }
 

@@ -29,17 +29,19 @@ inline Camera equidistant_camera() {
                      0.000715034845, -0.002053236141, 0.000202936736);
 }
 
-inline Camera division_camera() {
-  return test_camera(CameraModel::kDivision, 320, 240, 195, 195, 162, 125, 9e-6);
-}
+inline Camera division_camera() { return test_camera(CameraModel::kDivision, 320, 240, 195, 195, 162, 125, 9e-6); }
 
 inline constexpr int kTestCameras = 4;
 inline Camera test_camera_of(int index) {
   switch (index) {
-    case 0: return pinhole_camera();
-    case 1: return radtan_camera();
-    case 2: return equidistant_camera();
-    default: return division_camera();
+    case 0:
+      return pinhole_camera();
+    case 1:
+      return radtan_camera();
+    case 2:
+      return equidistant_camera();
+    default:
+      return division_camera();
   }
 }
 

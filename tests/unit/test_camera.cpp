@@ -1,9 +1,8 @@
 // Camera models: published formulas, round trips, domains, and what a calibration must look like.
-#include "geometry/camera.h"
-
 #include <cmath>
 #include <limits>
 
+#include "geometry/camera.h"
 #include "support/numeric_jacobian.h"
 #include "support/test_cameras.h"
 #include "unity.h"
@@ -44,7 +43,8 @@ void test_projection_should_follow_the_published_formulas_when_points_are_given(
   {  // OpenCV's fisheye: k1 k2 k3 k4 over the angle
     const double k[4] = {0.003482389402, 0.000715034845, -0.002053236141, 0.000202936736};
     const double r = std::sqrt(r2), t = std::atan(r);
-    const double td = t * (1 + k[0] * std::pow(t, 2) + k[1] * std::pow(t, 4) + k[2] * std::pow(t, 6) + k[3] * std::pow(t, 8));
+    const double td =
+        t * (1 + k[0] * std::pow(t, 2) + k[1] * std::pow(t, 4) + k[2] * std::pow(t, 6) + k[3] * std::pow(t, 8));
     expect_pixel(equidistant_camera(), vec3(x, y, z), 190.978 * a * td / r + 254.931, 190.973 * b * td / r + 256.897);
   }
   {  // Harris's division model, in pixels about the principal point
@@ -176,9 +176,9 @@ void test_check_should_name_the_field_when_a_calibration_makes_no_sense() {
   TEST_ASSERT_EQUAL_STRING("distortion", check_with([](Camera* c) { c->distortion[0] = -9; }));
   TEST_ASSERT_EQUAL_STRING("distortion", check_with([](Camera* c) { c->model = 1; }));
   TEST_ASSERT_EQUAL_STRING("distortion", check_with([](Camera* c) {
-    *c = division_camera();
-    c->distortion[0] = Scalar(9e-4);
-  }));
+                             *c = division_camera();
+                             c->distortion[0] = Scalar(9e-4);
+                           }));
 }
 
 }  // namespace

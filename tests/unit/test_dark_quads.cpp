@@ -43,7 +43,8 @@ struct Finder {
 
 PoseEstimate viewpoint(SeededRandom& random, double distance) {
   PoseEstimate pose;
-  const Quat turn = exp_so3(Vec3(static_cast<Scalar>(random.uniform(-0.6, 0.6)), static_cast<Scalar>(random.uniform(-0.6, 0.6)), 0));
+  const Quat turn =
+      exp_so3(Vec3(static_cast<Scalar>(random.uniform(-0.6, 0.6)), static_cast<Scalar>(random.uniform(-0.6, 0.6)), 0));
   pose.q_WC = turn * exp_so3(random.normals<3>(0.1));
   pose.p_WC = turn * Vec3(0, 0, static_cast<Scalar>(-distance));
   return pose;
@@ -96,7 +97,8 @@ void test_rectangle_should_be_placed_to_a_tenth_of_a_pixel_when_seen_through_any
       Picture picture(camera.width, camera.height, 0);
       draw(camera, truth, random, 2, &picture);
       RectangleSighting seen;
-      TEST_ASSERT_TRUE(find_dark_rectangle(picture.view(), camera, kWidth, kHeight, Scalar(0.2), finder.workspace, &seen));
+      TEST_ASSERT_TRUE(
+          find_dark_rectangle(picture.view(), camera, kWidth, kHeight, Scalar(0.2), finder.workspace, &seen));
       Vec3 points[4];
       rectangle_points(kWidth, kHeight, points);
       for (int i = 0; i < 4; ++i) {
@@ -125,7 +127,8 @@ void test_nothing_should_be_found_when_the_picture_has_no_dark_quadrilateral() {
   }
   TEST_ASSERT_EQUAL_INT(0, finder.count(picture));
   for (int y = 0; y < 120; ++y) {  // a spiral: the longest outline
-    for (int x = 0; x < 160; ++x) picture.at(x, y) = y % 4 < 2 || (x > 155 && y % 8 < 4) || (x < 4 && y % 8 >= 4) ? 0 : 255;
+    for (int x = 0; x < 160; ++x)
+      picture.at(x, y) = y % 4 < 2 || (x > 155 && y % 8 < 4) || (x < 4 && y % 8 >= 4) ? 0 : 255;
   }
   TEST_ASSERT_EQUAL_INT(0, finder.count(picture));
   for (int y = 0; y < 120; ++y) {  // a dark disc

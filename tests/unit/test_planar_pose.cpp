@@ -1,10 +1,9 @@
 // Pose from the corners of a rectangle and from known points: exactness, honesty, ambiguity, refusals.
-#include "geometry/planar_pose.h"
-
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
+#include "geometry/planar_pose.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
 #include "support/seeded_random.h"
@@ -59,9 +58,8 @@ void test_rectangle_pose_should_be_exact_when_the_corners_are() {
     const Camera camera = test_camera_of(k);
     double worst = 0;
     for (int trial = 0; trial < 200; ++trial) {
-      const PoseEstimate truth =
-          viewpoint(random.uniform(0.3, 1.0), trial % 10 == 0 ? 0 : random.uniform(0, 1.2), random.uniform(0, 6.28),
-                    random.uniform(-3, 3), random.normals<3>(0.02));
+      const PoseEstimate truth = viewpoint(random.uniform(0.3, 1.0), trial % 10 == 0 ? 0 : random.uniform(0, 1.2),
+                                           random.uniform(0, 6.28), random.uniform(-3, 3), random.normals<3>(0.02));
       Vec2 pixels[4];
       if (!see(camera, truth, points, 4, pixels)) continue;
       PoseEstimate estimate;

@@ -122,8 +122,8 @@ bool undistort_radtan(const Camera& c, const Vec2& target, Vec2* m, Mat2* J) {
   const Scalar tolerance = 32 * kEpsilon * (1 + start), enough = kEpsilon * kEpsilon * e2;
   for (int i = 0; i < 40 && e2 > enough && e2 > 0; ++i) {
     const Scalar det = (*J)(0, 0) * (*J)(1, 1) - (*J)(0, 1) * (*J)(1, 0);
-    const Vec2 step = Vec2((*J)(1, 1) * error.x() - (*J)(0, 1) * error.y(),
-                           (*J)(0, 0) * error.y() - (*J)(1, 0) * error.x()) / det;
+    const Vec2 step =
+        Vec2((*J)(1, 1) * error.x() - (*J)(0, 1) * error.y(), (*J)(0, 0) * error.y() - (*J)(1, 0) * error.x()) / det;
     Scalar fraction = 1;
     bool better = false;
     for (int k = 0; k < 12 && !better; ++k, fraction /= 2) {

@@ -18,17 +18,17 @@ enum class CameraModel : int { kPinhole = 1, kRadtan = 2, kEquidistant = 3, kDiv
 ///
 /// src  Brown 1966 (radtan), Kannala and Brandt 2006 (equidistant), Harris 1992 (division)
 struct Camera {
-  int model = 0;              ///< CameraModel
-  int width = 0, height = 0;  ///< [px]
+  int model = 0;                          ///< CameraModel
+  int width = 0, height = 0;              ///< [px]
   Scalar fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]
-  Scalar distortion[8] = {};  ///< radtan k1 k2 p1 p2 k3; equidistant k1 k2 k3 k4; division k [1/px²]
-  Scalar max_r2 = 0;          ///< domain: |m|² (pinhole, radtan), θ² (equidistant), |u|² [px²] (division)
+  Scalar distortion[8] = {};              ///< radtan k1 k2 p1 p2 k3; equidistant k1 k2 k3 k4; division k [1/px²]
+  Scalar max_r2 = 0;  ///< domain: |m|² (pinhole, radtan), θ² (equidistant), |u|² [px²] (division)
 };
 
 /// Copies the numbers, with their types, and finds the domain. Null when all is well, else the name of the first field
 /// that makes no sense, as check_camera says; the camera is then not to be used.
-const char* make_camera(int model, int width, int height, const double intrinsics[4],
-                        const double distortion[8], Camera* camera);
+const char* make_camera(int model, int width, int height, const double intrinsics[4], const double distortion[8],
+                        Camera* camera);
 
 /// Finds max_r2: the largest disc about the axis on which the model is one to one, with a slope of at least 0.01.
 void init_camera(Camera* camera);

@@ -111,8 +111,8 @@ const char* check_camera(const Camera& c) {
   return nullptr;
 }
 
-const char* make_camera(int model, int width, int height, const double intrinsics[4],
-                        const double distortion[8], Camera* camera) {
+const char* make_camera(int model, int width, int height, const double intrinsics[4], const double distortion[8],
+                        Camera* camera) {
   camera->model = model;
   camera->width = width;
   camera->height = height;

@@ -51,8 +51,8 @@ PoseEstimate pose_of(const Mat3& R_CW, const Vec3& t_CW) {
 }
 
 /// Sum of squares, and the normal equations about the pivot where A and b are given.
-bool residuals(const Camera& camera, const PoseEstimate& pose, const Vec3* points, const Vec2* pixels,
-               int count, const Vec3& pivot, Scalar* cost, Mat6* A = nullptr, Vec6* b = nullptr) {
+bool residuals(const Camera& camera, const PoseEstimate& pose, const Vec3* points, const Vec2* pixels, int count,
+               const Vec3& pivot, Scalar* cost, Mat6* A = nullptr, Vec6* b = nullptr) {
   Scalar sum = 0;
   if (A != nullptr) {
     A->setZero();
@@ -112,8 +112,8 @@ void widen(const PoseEstimate& other, int count, Scalar sigma_px, PoseEstimate* 
 
 }  // namespace
 
-bool project_from_pose(const Camera& camera, const Quat& q_WC, const Vec3& p_WC, const Vec3& p_W,
-                       const Vec3& pivot, Vec2* pixel, Mat26* J_pixel_pose) {
+bool project_from_pose(const Camera& camera, const Quat& q_WC, const Vec3& p_WC, const Vec3& p_W, const Vec3& pivot,
+                       Vec2* pixel, Mat26* J_pixel_pose) {
   const Mat3 R_CW = q_WC.conjugate().toRotationMatrix();
   const Vec3 p_C = R_CW * (p_W - p_WC);
   Mat23 J_pixel_C;
@@ -126,8 +126,8 @@ bool project_from_pose(const Camera& camera, const Quat& q_WC, const Vec3& p_WC,
   return true;
 }
 
-bool refine_pose(const Camera& camera, const Vec3* points_W, const Vec2* pixels, int count,
-                 Scalar sigma_px, PoseEstimate* inout) {
+bool refine_pose(const Camera& camera, const Vec3* points_W, const Vec2* pixels, int count, Scalar sigma_px,
+                 PoseEstimate* inout) {
   if (count < 3 || count > kPoseMaxPoints) return false;
   Vec3 pivot = Vec3::Zero();
   for (int i = 0; i < count; ++i) pivot += points_W[i] / static_cast<Scalar>(count);
@@ -172,8 +172,8 @@ void rectangle_points(Scalar width, Scalar height, Vec3 points_W[4]) {
   points_W[3] = Vec3(-x, y, 0);
 }
 
-bool rectangle_pose(const Camera& camera, Scalar width, Scalar height, const Vec2 corners[4],
-                    Scalar sigma_px, PoseEstimate* best, Scalar* second_rms) {
+bool rectangle_pose(const Camera& camera, Scalar width, Scalar height, const Vec2 corners[4], Scalar sigma_px,
+                    PoseEstimate* best, Scalar* second_rms) {
   // In units of the rectangle, so that the plane's points and the rays are of a size.
   const Scalar unit = (width + height) / 2;
   if (!(width > 0) || !(height > 0) || !(unit <= kMost)) return false;

@@ -7,13 +7,13 @@ namespace {
 
 constexpr int kMaxPlaces = 40;
 constexpr int kPasses = 2;
-constexpr Scalar kReach = 5;                 ///< across a side, each way [px]
-constexpr Scalar kStep = Scalar(0.5);        ///< [px]
-constexpr int kProfile = 2 * 10 + 1;         ///< samples across: 2 kReach / kStep + 1
-constexpr Scalar kRobust = Scalar(0.4);      ///< residual that counts half [px]
-constexpr Scalar kMaxRms = Scalar(1.0);      ///< [px]
-constexpr Scalar kMaxMove = 4;               ///< [px]
-constexpr Scalar kMinFrontal = Scalar(0.34); ///< cosine of 70 degrees
+constexpr Scalar kReach = 5;                  ///< across a side, each way [px]
+constexpr Scalar kStep = Scalar(0.5);         ///< [px]
+constexpr int kProfile = 2 * 10 + 1;          ///< samples across: 2 kReach / kStep + 1
+constexpr Scalar kRobust = Scalar(0.4);       ///< residual that counts half [px]
+constexpr Scalar kMaxRms = Scalar(1.0);       ///< [px]
+constexpr Scalar kMaxMove = 4;                ///< [px]
+constexpr Scalar kMinFrontal = Scalar(0.34);  ///< cosine of 70 degrees
 
 /// Grey level between pixels. False near the border.
 bool sample(const ImageView& image, const Vec2& p, Scalar* value) {
@@ -165,8 +165,8 @@ bool refine_quad(const ImageView& image, const Camera& camera, Quad* quad) {
   return true;
 }
 
-bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar width, Scalar height,
-                         Scalar sigma_px, const QuadWorkspace& workspace, RectangleSighting* out) {
+bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar width, Scalar height, Scalar sigma_px,
+                         const QuadWorkspace& workspace, RectangleSighting* out) {
   constexpr int kCandidates = 16;
   Quad quads[kCandidates];
   const int count = find_dark_quads(image, workspace, quads, kCandidates);
@@ -175,7 +175,8 @@ bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar wi
     RectangleSighting found;
     found.quad = quads[i];
     if (!refine_quad(image, camera, &found.quad)) continue;
-    if (!rectangle_pose(camera, width, height, found.quad.corners, sigma_px, &found.pose, &found.second_rms_px)) continue;
+    if (!rectangle_pose(camera, width, height, found.quad.corners, sigma_px, &found.pose, &found.second_rms_px))
+      continue;
     const Scalar misfit = found.pose.rms_px / (Scalar(1.5) * sigma_px + Scalar(0.003) * diagonal(found.quad));
     const Scalar frontal = -found.pose.p_WC.z() / found.pose.p_WC.norm();  // cosine of the slant
     if (!(misfit < 1) || !(frontal > kMinFrontal)) continue;

@@ -32,7 +32,7 @@ struct RectangleSighting {
 /// width, height  of the outer edge of the dark area [m]
 /// sigma_px       of a corner's coordinate [px]
 /// false when there is none
-bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar width, Scalar height,
-                         Scalar sigma_px, const QuadWorkspace& workspace, RectangleSighting* out);
+bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar width, Scalar height, Scalar sigma_px,
+                         const QuadWorkspace& workspace, RectangleSighting* out);
 
 }  // namespace pf

@@ -10,12 +10,14 @@ ContourWalk::ContourWalk(const ImageView& image, int level, const ContourBuffers
 }
 
 bool ContourWalk::is_marked(int x, int y) const {
-  const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
+  const std::size_t i =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
   return (buffers_.marks[i / 8] >> (i % 8) & 1) != 0;
 }
 
 void ContourWalk::mark(int x, int y) {
-  const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
+  const std::size_t i =
+      static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
   buffers_.marks[i / 8] = static_cast<std::uint8_t>(buffers_.marks[i / 8] | 1U << (i % 8));
 }
 
