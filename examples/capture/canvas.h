@@ -14,8 +14,8 @@ struct Colour {
 
 /// One colour for one meaning, on the image and on the map.
 namespace colours {
-constexpr Colour kPoint{0.21, 0.86, 0.50};         ///< inlier whose depth is known
-constexpr Colour kInverseDepth{0.30, 0.68, 1.00};  ///< inlier whose depth is not known yet
+constexpr Colour kPoint{0.21, 0.86, 0.50};         ///< inlier, 3-D point
+constexpr Colour kInverseDepth{0.30, 0.68, 1.00};  ///< inlier, inverse depth
 constexpr Colour kOutlier{1.00, 0.33, 0.33};
 constexpr Colour kMissed{1.00, 0.70, 0.22};
 constexpr Colour kNew{1.00, 0.95, 0.45};

@@ -14,6 +14,17 @@ constexpr const char* kFooter =
     "calib.yaml, overlay.mp4, overlay_mid.png, overlay_last.png, and truth.tum where the source knows it.\n"
     "Exit code: 0 done, 1 the run failed, ended early or tracked nothing, 2 the command line is wrong.";
 
+/// A whole number of at least this; CLI11's own checks spell out the largest double.
+CLI::Validator at_least(int64_t least) {
+  return CLI::Validator(
+      [least](std::string& text) {
+        int64_t value = 0;
+        const bool fits = CLI::detail::lexical_cast(text, value) && value >= least;
+        return fits ? std::string() : "'" + text + "' is not a whole number of at least " + std::to_string(least);
+      },
+      "");
+}
+
 int refuse(const std::string& line) {
   std::fprintf(stderr, "pf-capture: %s\n", line.c_str());
   return kExitUsage;
@@ -63,9 +74,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "auto, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
       ->capture_default_str();
   app.add_option("--withdraw-target-after", options.withdraw_target_after, "measure the target no more after N frames")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--frames", options.frames, "at most N frames")->check(CLI::PositiveNumber);
-  app.add_option("--skip", options.skip, "leave out the first N frames")->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
+  app.add_option("--frames", options.frames, "at most N frames")->check(at_least(1));
+  app.add_option("--skip", options.skip, "leave out the first N frames")->check(at_least(0));
   app.add_option("--out", options.out, "folder for what is written; made when it is missing")->capture_default_str();
   app.add_flag("--headless", options.headless, "no window");
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
@@ -73,12 +84,10 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_flag("--quiet", options.quiet, "no progress line");
   app.add_option("--backend", backend, "filter")->capture_default_str();
   app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
-  app.add_option("--max-features", options.max_features, "capacity of the map")->check(CLI::PositiveNumber);
-  app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(CLI::PositiveNumber);
-  app.add_option("--max-observations", options.max_observations, "features measured in one frame")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--features-in-view", options.features_in_view, "features to keep in view")
-      ->check(CLI::PositiveNumber);
+  app.add_option("--max-features", options.max_features, "capacity of the map")->check(at_least(1));
+  app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(at_least(1));
+  app.add_option("--max-observations", options.max_observations, "features measured in one frame")->check(at_least(1));
+  app.add_option("--features-in-view", options.features_in_view, "features to keep in view")->check(at_least(1));
   app.add_option("--kernels", kernels, "auto, reference, portable, avx2, avx512 or neon")->capture_default_str();
   app.add_flag("--plain-ekf", no_gauge, "the textbook filter, which is overconfident; for comparison");
   try {

@@ -150,7 +150,8 @@ bool Outputs::finish(const FrameView& last, const pf_camera_t& camera, const std
   write_ply(ply.get(), last.features);
   write_calibration(calibration.get(), camera);
   std::fputs(report.c_str(), json.get());
-  const File* files[] = {&trajectory_, &trajectory_all_, &covariance_, &frames_, &tracks_, &truth_, &ply, &calibration, &json};
+  const File* files[] = {&trajectory_, &trajectory_all_, &covariance_, &frames_, &tracks_, &truth_,
+                         &ply,         &calibration,     &json};
   for (const File* file : files) {
     if (*file && (std::fflush(file->get()) != 0 || std::ferror(file->get()) != 0)) {
       error = folder_.string() + ": could not be written completely (" + std::strerror(errno) + "); is the disk full?";

@@ -222,8 +222,8 @@ void Overlay::draw_numbers(const FrameView& view, double x, double y, double wid
     canvas_.text(right - canvas_.text_width(value, size), row, value, size);
     row += step;
   };
-  put(kPoint, "measured, depth known", std::to_string(points));
-  put(kInverseDepth, "measured, depth open", std::to_string(counts[PF_TRACK_INLIER] - points));
+  put(kPoint, "measured, 3-D point", std::to_string(points));
+  put(kInverseDepth, "measured, inverse depth", std::to_string(counts[PF_TRACK_INLIER] - points));
   put(kOutlier, "found, but disagrees", std::to_string(counts[PF_TRACK_OUTLIER]));
   put(kMissed, "looked for, not found", std::to_string(counts[PF_TRACK_MISSED]));
   put(kNew, "new", std::to_string(counts[PF_TRACK_NEW]));

@@ -192,11 +192,11 @@ void Run::handle_keys() {
 
 std::string Run::why_nothing_was_tracked() const {
   const std::string frames = std::to_string(statistics_.frames());
-  if (statistics_.frames() > 1 && statistics_.frozen() == statistics_.frames() - 1) {
-    return "all " + frames + " frames are the same picture; is the camera frozen?";
-  }
   if (statistics_.unusable() == statistics_.frames()) {
     return "none of the " + frames + " frames has usable content (black, white or blurred out); look at the images";
+  }
+  if (statistics_.frames() > 1 && statistics_.frozen() == statistics_.frames() - 1) {
+    return "all " + frames + " frames are the same picture; is the camera frozen?";
   }
   if (session_.target() != nullptr) {
     return "the target was not found in any of the " + frames + " frames; check " + session_.start() +

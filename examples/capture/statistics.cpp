@@ -35,6 +35,24 @@ uint64_t hash(const std::vector<uint8_t>& bytes) {
   return value;
 }
 
+/// Fewer than four grey levels between the darkest and the brightest hundredth.
+bool is_flat(const std::vector<uint8_t>& pixels) {
+  size_t counts[256] = {};
+  for (uint8_t pixel : pixels) {
+    ++counts[pixel];
+  }
+  const size_t share = pixels.size() / 100;
+  const auto level = [&](bool from_dark) {
+    size_t sum = 0;
+    int at = from_dark ? 0 : 255;
+    while (at >= 0 && at < 256 && (sum += counts[at]) <= share) {
+      at += from_dark ? 1 : -1;
+    }
+    return at;
+  };
+  return level(false) - level(true) < 4;
+}
+
 const char* kernels_name(uint32_t kernels) {
   constexpr const char* kNames[] = {"auto", "reference", "portable", "avx2", "avx512", "neon"};
   return kernels < 6 ? kNames[kernels] : "unknown";
@@ -58,6 +76,7 @@ void Statistics::add(const FrameView& view) {
   const uint64_t pixels = hash(view.pixels);
   frozen_ += frames_ > 0 && pixels == last_hash_ ? 1 : 0;
   last_hash_ = pixels;
+  flat_ += is_flat(view.pixels) ? 1 : 0;
   if (view.tracked) {
     ++tracked_;
     start_frame_ = start_frame_ < 0 ? view.index : start_frame_;
@@ -105,6 +124,7 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["starting"] = starting_;
   json["coasting"] = coasting_;
   json["unusable"] = unusable_;
+  json["flat"] = flat_;
   json["frozen"] = frozen_;
   json["ms_per_frame"] = {
       {"median", rounded(quantile(ms_, 0.5))}, {"p95", rounded(quantile(ms_, 0.95))}, {"max", rounded(largest(ms_))}};

@@ -1,6 +1,7 @@
 #ifndef PLANEFOLD_CAPTURE_STATISTICS_H
 #define PLANEFOLD_CAPTURE_STATISTICS_H
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,7 +19,8 @@ class Statistics {
 
   int64_t frames() const { return frames_; }
   int64_t tracked() const { return tracked_; }
-  int64_t unusable() const { return unusable_; }
+  /// Frames that the library could not use, or that are one flat grey.
+  int64_t unusable() const { return std::max(unusable_, flat_); }
   int64_t start_frame() const { return start_frame_; }
   /// Frames whose pixels all equal those of the frame before.
   int64_t frozen() const { return frozen_; }
@@ -38,6 +40,7 @@ class Statistics {
   int64_t losses_ = 0;
   int64_t unusable_ = 0;
   int64_t frozen_ = 0;
+  int64_t flat_ = 0;
   int64_t resets_ = 0;
   int64_t start_frame_ = -1;
   int64_t evicted_ = 0;

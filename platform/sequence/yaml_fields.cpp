@@ -1,5 +1,6 @@
 #include "yaml_fields.h"
 
+#include <cctype>
 #include <cmath>
 
 #include "numbers.h"
@@ -102,7 +103,14 @@ std::string Fields::text_or(const std::string& key, const std::string& otherwise
 
 double Fields::to_number(const YAML::Node& node, const std::string& key) const {
   double value = 0.0;
-  if (!node.IsScalar() || !parse_double(node.Scalar(), value)) {
+  // YAML writes .nan and .inf where the parser of numbers expects nan and inf.
+  std::string word = node.IsScalar() ? node.Scalar() : std::string();
+  const size_t dot = word.find_first_not_of("+-");
+  if (dot != std::string::npos && dot + 1 < word.size() && word[dot] == '.' &&
+      std::isalpha(static_cast<unsigned char>(word[dot + 1])) != 0) {
+    word.erase(dot, 1);
+  }
+  if (!node.IsScalar() || !parse_double(word, value)) {
     refuse_field(key, "must be a number" + (node.IsScalar() ? ", not '" + node.Scalar() + "'" : std::string()));
   }
   if (!std::isfinite(value)) {

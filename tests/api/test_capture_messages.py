@@ -1,0 +1,177 @@
+"""pf-capture: one clear line and the right exit code for everything that can be wrong, and complete files all the same."""
+
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from script import BIN, fail, skip  # noqa: E402
+
+PROGRAM = BIN / "pf-capture"
+WIDTH, HEIGHT = 96, 64
+CALIBRATION = f"""camera_model: pinhole
+width: {WIDTH}
+height: {HEIGHT}
+fx: 80.0
+fy: 80.0
+cx: 48.0
+cy: 32.0
+distortion_model: none
+distortion: []
+rate_hz: 30
+"""
+SEED = 5
+failures = []
+
+
+def pgm(pixels, width=WIDTH, height=HEIGHT):
+    return f"P5\n{width} {height}\n255\n".encode() + bytes(pixels)
+
+
+def noise():
+    generator = random.Random(SEED)
+    return [generator.randrange(256) for _ in range(WIDTH * HEIGHT)]
+
+
+def folder(root, name, images, times=None, calibration=CALIBRATION):
+    """A sequence of images (bytes each), at 30 frames per second where times does not say otherwise."""
+    path = root / name
+    (path / "images").mkdir(parents=True)
+    for i, image in enumerate(images):
+        (path / "images" / f"{i:03d}.pgm").write_bytes(image)
+    if times is None:
+        times = "".join(f"{i} {i / 30:.6f} {i:03d}.pgm\n" for i in range(len(images)))
+    (path / "times.txt").write_text(times)
+    (path / "calib.yaml").write_text(calibration)
+    return path
+
+
+def capture(*arguments, quiet=True):
+    words = [PROGRAM, *arguments] + (["--quiet", "--headless", "--no-film"] if quiet else [])
+    return subprocess.run([str(word) for word in words], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          timeout=120, check=False)
+
+
+def expect(name, code, parts, *arguments):
+    """The program ends with code, and its last line on stderr has all the parts."""
+    result = capture(*arguments)
+    lines = result.stderr.strip().splitlines()
+    last = lines[-1] if lines else ""
+    wrong = [part for part in parts if part not in last]
+    if result.returncode != code or wrong or not last.startswith("pf-capture: "):
+        failures.append(f"{name}: code {result.returncode} (expected {code}), last line '{last}', without {wrong}")
+    others = [line for line in lines[:-1] if not line.startswith("pf-capture: note: ")]
+    if others:
+        failures.append(f"{name}: more than one line: {others}")
+    print(f"{name}: {result.returncode}: {last}")
+    return result
+
+
+def expect_complete_files(name, out):
+    for file in ("report.json", "trajectory.txt", "trajectory_all.txt", "covariance.csv", "map.ply", "calib.yaml"):
+        if not (out / file).is_file():
+            failures.append(f"{name}: {file} is missing")
+    return json.loads((out / "report.json").read_text())
+
+
+def test_usage(root):
+    good = folder(root, "good", [pgm(noise())] * 2)
+    source = f"images:{good}"
+    out = ["--out", root / "usage"]
+    expect("no source", 2, ["--source", "--help"])
+    expect("unknown option", 2, ["--nonsense"], "--source", source, "--nonsense", "1")
+    expect("number", 2, ["--frames"], "--source", source, "--frames", "many")
+    expect("zero frames", 2, ["--frames"], "--source", source, "--frames", "0")
+    expect("source kind", 2, ["film:x", "images:"], "--source", "film:x")
+    expect("camera", 2, ["not available yet"], "--source", "v4l2:/dev/video0")
+    expect("window back end", 2, ["not available yet"], "--source", source, "--backend", "window")
+    expect("back end", 2, ["--backend", "filter"], "--source", source, "--backend", "magic")
+    expect("start", 2, ["--start"], "--source", source, "--start", "somehow")
+    expect("rectangle", 2, ["rectangle:", "metres"], "--source", source, "--start", "rectangle:big", *out)
+    expect("withdrawn", 2, ["--withdraw-target-after"], "--source", source, "--withdraw-target-after", "5")
+    expect("kernels", 2, ["--kernels"], "--source", source, "--kernels", "fast", *out)
+    expect("capacity", 2, ["max_features"], "--source", source, "--max-features", "100000", *out)
+    expect("skip", 2, ["--skip", "2 frames"], "--source", source, "--skip", "2", *out)
+    if capture("--help", quiet=False).returncode != 0:
+        failures.append("--help does not end with 0")
+
+
+def test_sources(root):
+    out = ["--out", root / "sources"]
+    expect("missing folder", 1, ["nowhere", "no such folder"], "--source", f"images:{root}/nowhere", *out)
+    (root / "file").write_text("x")
+    expect("file for a folder", 1, ["not a folder"], "--source", f"images:{root}/file", *out)
+    (root / "empty").mkdir()
+    expect("no calibration", 1, ["calibration", "--calib"], "--source", f"images:{root}/empty", *out)
+    (root / "empty" / "calib.yaml").write_text(CALIBRATION)
+    expect("no image", 1, ["no PNG"], "--source", f"images:{root}/empty", *out)
+    expect("tum", 1, ["rgb.txt"], "--source", f"tum:{root}/empty", *out)
+    expect("euroc", 1, ["data.csv"], "--source", f"euroc:{root}", *out)
+    frame = pgm(noise())
+    for name, times, part in [("repeating times", "0 0.1 000.pgm\n1 0.1 001.pgm\n", "repeats"),
+                              ("times running back", "0 0.1 000.pgm\n1 0.05 001.pgm\n", "runs back"),
+                              ("no times", "0 soon 000.pgm\n", "not a time")]:
+        path = folder(root, name, [frame, frame], times=times)
+        expect(name, 1, ["times.txt", "line", part], "--source", f"images:{path}", *out)
+    for name, old, new in [("absurd focal length", "fx: 80.0", "fx: 0.0"), ("missing width", "width: 96\n", ""),
+                           ("NaN centre", "cx: 48.0", "cx: .nan")]:
+        path = folder(root, name, [frame], calibration=CALIBRATION.replace(old, new))
+        field = (old.split(":")[0])
+        expect(name, 1, ["calib.yaml", f"'{field}'"], "--source", f"images:{path}", *out)
+    path = folder(root, "target", [frame])
+    (root / "nan.yaml").write_text("width: 0.2\nheight: .nan\n")
+    expect("NaN in a target", 1, ["nan.yaml", "'height'"], "--source", f"images:{path}", "--start",
+           f"target:{root}/nan.yaml", *out)
+    expect("missing target", 1, ["none.yaml"], "--source", f"images:{path}", "--start", f"target:{root}/none.yaml", *out)
+    expect("out is a file", 1, ["--out"], "--source", f"images:{path}", "--out", root / "file")
+    expect("calibration given", 1, ["other.yaml"], "--source", f"images:{path}", "--calib", f"{root}/other.yaml", *out)
+
+
+def test_bad_images(root):
+    frame = pgm(noise())
+    cases = [("truncated image", frame[:-100], ["002.pgm", "ends after"]),
+             ("wrong size", pgm([0] * 64 * 64, 64, 64), ["002.pgm", "64 x 64"]),
+             ("empty image", b"", ["002.pgm", "0 bytes"]),
+             ("no image at all", b"hello, world", ["002.pgm", "neither PNG"])]
+    for name, bad, parts in cases:
+        path = folder(root, name, [frame, pgm(reversed(noise())), bad, frame])
+        out = root / (name + " out")
+        expect(name, 1, ["frame 2", *parts], "--source", f"images:{path}", "--out", out)
+        report = expect_complete_files(name, out)
+        if report["frames"] != 2 or "002.pgm" not in report["ended_early"]:
+            failures.append(f"{name}: the report says {report['frames']} frames, '{report['ended_early']}'")
+        if not (out / "overlay_last.png").is_file():
+            failures.append(f"{name}: no picture of the last frame")
+
+
+def test_useless_images(root):
+    count = 20
+    cases = [("black", [pgm([0] * WIDTH * HEIGHT)] * count, ["usable"]),
+             ("white", [pgm([255] * WIDTH * HEIGHT)] * count, ["usable"]),
+             ("dark noise", [pgm([(i + k) % 2 for i in range(WIDTH * HEIGHT)]) for k in range(count)], ["usable"]),
+             ("frozen", [pgm(noise())] * count, ["same picture"])]
+    for name, images, parts in cases:
+        path = folder(root, name, images)
+        for start in ("auto", "rectangle:0.2x0.1"):
+            out = root / (name + " out " + start[:4])
+            expect(f"{name}, {start}", 1, [str(count), *parts], "--source", f"images:{path}", "--start", start, "--out", out)
+            report = expect_complete_files(name, out)
+            if report["frames"] != count or report["tracked"] != 0 and name != "frozen":
+                failures.append(f"{name}: the report says {report['frames']} frames, {report['tracked']} tracked")
+
+
+def main():
+    if not PROGRAM.is_file():
+        skip("pf-capture was not built")
+    print("seed", SEED)
+    for test in (test_usage, test_sources, test_bad_images, test_useless_images):
+        with tempfile.TemporaryDirectory(prefix="planefold_") as name:
+            test(pathlib.Path(name))
+    if failures:
+        fail("\n  ".join([f"{len(failures)} found:", *failures]))
+
+
+main()
