@@ -133,14 +133,16 @@ typedef struct pf_config {
   double angular_walk;                 /* [rad/sqrt(s)] > 0, constant position only. Default 0.2 */
 
   /* Measurements. */
-  double sigma_pixel;      /* of a matched feature [px] 0.05 .. 10. Default 0.6 */
+  double sigma_pixel;      /* [px] 0.01 .. 10. Default 0.1. Of a match in an image: what remains beside the noise that the image
+                              itself shows (lens, warp, interpolation). Of an observation: all of it, where it says nothing */
   double gate_probability; /* of a true match passing the gate, 0.9 .. 0.9999. Default 0.99 */
 
   /* Depth of a feature that was seen once: 1/depth = rho0 with standard deviation sigma_rho = relative_sigma * rho0.
    * rho0 is 1 / start_depth until the map knows better, and then, with depth_from_map, the median of what is in view. */
   double start_depth;                  /* > 0. Default 1 */
   uint32_t depth_from_map;             /* 0 or 1. Default 1 */
-  double inverse_depth_relative_sigma; /* 0.05 .. 2. Default 0.5 */
+  double inverse_depth_relative_sigma; /* 0.05 .. 5. Default 2: hardly a prior, since
+                                          a prior that is wrong in the same way for many features bends the scale */
   double linearity_index;              /* below it an inverse-depth point becomes a 3-D point, 0.001 .. 1. Default 0.1 */
 
   /* Map. */

@@ -27,10 +27,10 @@ constexpr Range kReals[] = {
     PF_FIELD(angular_acceleration_density, kTiny, 1e4),
     PF_FIELD(linear_walk, kTiny, 1e4),
     PF_FIELD(angular_walk, kTiny, 1e4),
-    PF_FIELD(sigma_pixel, 0.05, 10),
+    PF_FIELD(sigma_pixel, 0.01, 10),
     PF_FIELD(gate_probability, 0.9, 0.9999),
     PF_FIELD(start_depth, 1e-4, 1e5),
-    PF_FIELD(inverse_depth_relative_sigma, 0.05, 2),
+    PF_FIELD(inverse_depth_relative_sigma, 0.05, 5),
     PF_FIELD(linearity_index, 0.001, 1),
     PF_FIELD(coast_seconds, 0.05, 10),
 };
@@ -118,11 +118,11 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->angular_acceleration_density = 2.0;
   config->linear_walk = 0.1;
   config->angular_walk = 0.2;
-  config->sigma_pixel = 0.6;
+  config->sigma_pixel = 0.1;
   config->gate_probability = 0.99;
   config->start_depth = 1.0;
   config->depth_from_map = 1;
-  config->inverse_depth_relative_sigma = 0.5;
+  config->inverse_depth_relative_sigma = 2.0;
   config->linearity_index = 0.1;
   config->features_in_view = 45;
   config->border_px = 8;

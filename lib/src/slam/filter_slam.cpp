@@ -17,6 +17,7 @@ constexpr Scalar kDefinedSigma = Scalar(1e-5);
 bool FilterSlam::layout(Arena& arena, const Settings& settings) {
   filter_.layout(arena, {settings.max_state_dim, settings.max_features, settings.max_observations});
   features_.layout(arena, settings.max_features);
+  quad_workspace_ = take_quad_workspace(&arena, settings.camera.width, settings.camera.height);
   record_.layout(arena);
   bundle_.layout(arena);
   tracker_.layout(arena, settings.camera.width, settings.camera.height, settings.max_features);
@@ -44,6 +45,7 @@ void FilterSlam::init(const Settings& settings) {
   depth_known_ = false;
   state_ = SlamState::kStarting;
   has_pose_ = false;
+  sighted_ = false;
   lost_ = false;
   last_tracked_ns_ = 0;
   steering_v_C_.setZero();
@@ -78,6 +80,7 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
   report_ = FrameReport();
   report_.t_ns = t_ns;
   report_.frames = frames + 1;
+  sighted_ = false;
   track_count_ = 0;
   if (!has_pose_) return true;
 
@@ -103,7 +106,7 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
 Status FilterSlam::end_frame() {
   if (!has_pose_) return Status::kStarting;
   if (recording_ && report_.frames <= 1) return Status::kStarting;
-  if (report_.inliers >= kMinInliers) {
+  if (report_.inliers >= kMinInliers || sighted_) {
     if (lost_) settings_.hooks.say("found the map again");
     lost_ = false;
     last_tracked_ns_ = report_.t_ns;

@@ -9,6 +9,7 @@
 #include "slam/frame_report.h"
 #include "slam/settings.h"
 #include "slam/start.h"
+#include "track/quad_refine.h"
 #include "track/tracker.h"
 #include "window/start_bundle.h"
 
@@ -84,7 +85,11 @@ class FilterSlam {
   void measure(int first, int count);
   Scalar widest_ellipse(int count) const;
   void begin_features_in_image();
+
+  // start_at_target.cpp
   bool start_in_image();
+  bool sight_rectangle(PoseEstimate* pose, Vec2* pixel) const;
+  bool sight_points(PoseEstimate* pose, Vec2* pixel) const;
 
   // start_without_target.cpp
   void begin_record();
@@ -97,6 +102,7 @@ class FilterSlam {
   FeatureTable features_;
   Tracker tracker_;
   Target target_;
+  QuadWorkspace quad_workspace_;
   KnownBody known_body_;
   StartRecord record_;
   StartBundle bundle_;
@@ -110,6 +116,7 @@ class FilterSlam {
 
   SlamState state_ = SlamState::kStarting;
   bool has_pose_ = false;
+  bool sighted_ = false;  ///< this frame's pose comes from the target
   bool lost_ = false;
   std::int64_t last_tracked_ns_ = 0;
   Vec3 steering_v_C_ = Vec3::Zero();

@@ -53,7 +53,7 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
     convert_what_is_linear();
     drop_what_fails();
     if (recording_) record_frame();
-    if (report_.inliers >= kMinInliers || report_.attempts == 0) begin_features_in_image();
+    if (report_.inliers >= kMinInliers || sighted_ || report_.attempts == 0) begin_features_in_image();
     if (recording_ && record_.features() == 0) begin_record();
   }
   return end_frame();
@@ -116,7 +116,7 @@ void FilterSlam::predict_pixels(int first, int count) {
       track.innovation.setZero();
       continue;
     }
-    o.noise = Mat2::Identity() * (settings_.sigma_px * settings_.sigma_px) + o.second_order;
+    o.noise = Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order;
     track.predicted = o.predicted;
     track.innovation = filter_.innovation(o) + o.noise;
   }
@@ -162,7 +162,8 @@ int FilterSlam::search(int first, int count) {
     track.measured = outcome.pixel;
     track.status = TrackStatus::kOutlier;  // until it agrees
     observation_[i].measured = outcome.pixel;
-    observation_[i].noise *= outcome.sigma_scale * outcome.sigma_scale;
+    const Scalar floor = settings_.sigma_px * outcome.level_scale;
+    observation_[i].noise = Mat2::Identity() * (floor * floor) + outcome.noise + observation_[i].second_order;
     if (found != i) {
       std::swap(observation_[found], observation_[i]);
       std::swap(entry_[found], entry_[i]);
@@ -267,13 +268,5 @@ void FilterSlam::begin_features_in_image() {
   if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child
 }
 
-bool FilterSlam::start_in_image() {
-  if (target_.kind == TargetKind::kNone) {
-    begin_from_knowledge();
-    recording_ = !known_body_.given;
-    return true;
-  }
-  return false;
-}
 
 }  // namespace pf

@@ -31,7 +31,7 @@ void FilterSlam::record_frame() {
     if (entry < 0 || tracks_[t].status != TrackStatus::kInlier || features_[entry].start_index < 0) continue;
     record_.add_pixel(k, features_[entry].start_index, tracks_[t].measured);
   }
-  const StartOutcome outcome = bundle_.solve(settings_.camera, record_, settings_.sigma_px, settings_.start_depth);
+  const StartOutcome outcome = bundle_.solve(settings_.camera, record_, Tracker::kTypicalSigma, settings_.start_depth);
   switch (outcome) {
     case StartOutcome::kWait:
       break;
@@ -74,7 +74,7 @@ void FilterSlam::restart_from_record() {
   const int anchor = filter_.add_anchor();
 
   constexpr Scalar kWide = Scalar(0.5);
-  const Mat2 noise = Mat2::Identity() * (settings_.sigma_px * settings_.sigma_px);
+  const Mat2 noise = Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma);
   for (int i = 0; i < features_.capacity(); ++i) {
     if (!features_.used(i)) continue;
     Feature& f = features_[i];

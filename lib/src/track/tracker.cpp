@@ -147,7 +147,8 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
   if (!aligned.converged || aligned.zncc < kLeastScore) return outcome;
   outcome.found = true;
   outcome.pixel = from_level(position, finest);
-  outcome.sigma_scale = static_cast<Scalar>(1 << finest);
+  outcome.level_scale = static_cast<Scalar>(1 << finest);
+  outcome.noise = aligned.covariance() * (outcome.level_scale * outcome.level_scale);
   outcome.score = aligned.zncc;
   return outcome;
 }

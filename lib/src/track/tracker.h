@@ -26,13 +26,15 @@ struct SearchOutcome {
   bool comparable = false;  ///< this view can be compared with the first one: not finding it means something
   bool found = false;
   Vec2 pixel = Vec2::Zero();
-  Scalar sigma_scale = 1;  ///< of the measurement's standard deviation: 2^level of the finest level that was used
+  Mat2 noise = Mat2::Zero();  ///< covariance of the pixel, from how well the template fits the image there [px^2]
+  Scalar level_scale = 1;     ///< pixels of level 0 per pixel of the finest level that was used
   float score = 0;         ///< zero-mean normalised correlation
 };
 
 class Tracker {
  public:
   static constexpr int kLevels = 4;
+  static constexpr Scalar kTypicalSigma = Scalar(0.6);  ///< [px] of a match, before the image has said how good it is
 
   bool layout(Arena& arena, int width, int height, int max_features);
   void init(const Camera& camera);

@@ -12,6 +12,7 @@ namespace {
 constexpr int kUnknowns = 5;            // bias, gain, and gain times rotation
 constexpr float kLeastGradient = 0.2f;  // grey/px, root mean square, that the two do not explain
 constexpr float kSmallStep = 0.02f;     // px
+constexpr int kRowStep = 2;
 constexpr float kRounding = 0.01f;      // grey
 
 /// Exp of a rotation vector, row by row (Rodrigues).
@@ -190,7 +191,7 @@ void RotationAligner::shrink(const ImageView& coarse) {
 //   du = fx (-x y w_x + (1 + x²) w_y - y w_z),   dv = fy (-(1 + y²) w_x + x y w_y + x w_z).
 void RotationAligner::gradients() {
   const float scale = 1.0f / camera_.fx;
-  for (int v = 1; v < height_ - 1; ++v) {
+  for (int v = 1; v < height_ - 1; v += kRowStep) {
     const float y = (static_cast<float>(v) - camera_.cy) / camera_.fy;
     const float* T = previous_ + v * width_;
     float* jx = jacobian_[0] + v * width_;
@@ -206,13 +207,9 @@ void RotationAligner::gradients() {
     }
     for (float* row : {jx, jy, jz}) row[0] = row[width_ - 1] = 0.0f;
   }
-  for (float* plane : jacobian_) {
-    std::memset(plane, 0, static_cast<std::size_t>(width_) * sizeof(float));
-    std::memset(plane + (height_ - 1) * width_, 0, static_cast<std::size_t>(width_) * sizeof(float));
-  }
 }
 
-// One row of the previous image at a time: first where its pixels are seen now and what is there, then the sums. The
+// Every second row is enough, since the blur makes neighbours say the same. One row of the previous image at a time: first where its pixels are seen now and what is there, then the sums. The
 // last four of a row may reach into the next one, where their weight is zero.
 RotationAligner::Normal RotationAligner::evaluate(const float (&R)[9]) const {
   constexpr int kTerms = Normal::kTerms;
@@ -224,7 +221,7 @@ RotationAligner::Normal RotationAligner::evaluate(const float (&R)[9]) const {
   const F32x4 limit_y = zero + static_cast<float>(height_ - 1);
   const float step = 1.0f / camera_.fx;
   const int count = width_ - 2;
-  for (int v = 1; v < height_ - 1; ++v) {
+  for (int v = 1; v < height_ - 1; v += kRowStep) {
     alignas(16) float seen[kMaxWidth];
     alignas(16) float value[kMaxWidth];
     const float y = (static_cast<float>(v) - camera_.cy) / camera_.fy;
@@ -246,40 +243,56 @@ RotationAligner::Normal RotationAligner::evaluate(const float (&R)[9]) const {
       store(value + i, where_inside(sample(current_, width_, where_inside(a), where_inside(b))));
     }
     const int at = v * width_ + 1;
+    // Sums of the row first, in registers: ww wT wI TT TI II, then for each J its products with w, T and I, then JJ.
+    F32x4 a0 = zero, a1 = zero, a2 = zero, a3 = zero, a4 = zero, a5 = zero;
     for (int i = 0; i < count; i += 4) {
       const F32x4 w = load<F32x4>(seen + i);
       const F32x4 I = load<F32x4>(value + i);
       const F32x4 T = w * load<F32x4>(previous_ + at + i);
-      sums[0][0] += w;
-      sums[0][1] += T;
-      sums[0][5] += I;
-      sums[1][1] += T * T;
-      sums[1][5] += T * I;
-      sums[5][5] += I * I;
+      a0 += w;
+      a1 += T;
+      a2 += I;
+      a3 += T * T;
+      a4 += T * I;
+      a5 += I * I;
     }
-    for (int i = 0; i < count; i += 4) {
-      const F32x4 w = load<F32x4>(seen + i);
-      const F32x4 I = load<F32x4>(value + i);
-      const F32x4 T = load<F32x4>(previous_ + at + i);
-      for (int k = 0; k < 3; ++k) {
-        const F32x4 J = w * load<F32x4>(jacobian_[k] + at + i);
-        sums[0][2 + k] += J;
-        sums[1][2 + k] += J * T;
-        sums[2 + k][5] += J * I;
+    sums[0][0] += a0;
+    sums[0][1] += a1;
+    sums[0][5] += a2;
+    sums[1][1] += a3;
+    sums[1][5] += a4;
+    sums[5][5] += a5;
+    for (int k = 0; k < 3; ++k) {
+      a0 = a1 = a2 = zero;
+      for (int i = 0; i < count; i += 4) {
+        const F32x4 J = load<F32x4>(seen + i) * load<F32x4>(jacobian_[k] + at + i);
+        a0 += J;
+        a1 += J * load<F32x4>(previous_ + at + i);
+        a2 += J * load<F32x4>(value + i);
       }
+      sums[0][2 + k] += a0;
+      sums[1][2 + k] += a1;
+      sums[2 + k][5] += a2;
     }
+    a0 = a1 = a2 = a3 = a4 = a5 = zero;
     for (int i = 0; i < count; i += 4) {
       const F32x4 w = load<F32x4>(seen + i);
       const F32x4 jx = w * load<F32x4>(jacobian_[0] + at + i);
       const F32x4 jy = w * load<F32x4>(jacobian_[1] + at + i);
       const F32x4 jz = w * load<F32x4>(jacobian_[2] + at + i);
-      sums[2][2] += jx * jx;
-      sums[2][3] += jx * jy;
-      sums[2][4] += jx * jz;
-      sums[3][3] += jy * jy;
-      sums[3][4] += jy * jz;
-      sums[4][4] += jz * jz;
+      a0 += jx * jx;
+      a1 += jx * jy;
+      a2 += jx * jz;
+      a3 += jy * jy;
+      a4 += jy * jz;
+      a5 += jz * jz;
     }
+    sums[2][2] += a0;
+    sums[2][3] += a1;
+    sums[2][4] += a2;
+    sums[3][3] += a3;
+    sums[3][4] += a4;
+    sums[4][4] += a5;
   }
   Normal out;
   for (int a = 0; a < kTerms; ++a) {
@@ -303,7 +316,7 @@ RotationEstimate RotationAligner::update(const ImageView& coarse, const CoarseCa
   if (!had_previous) return estimate;
   gradients();
 
-  const float all = static_cast<float>((width_ - 2) * (height_ - 2));
+  const float all = static_cast<float>((width_ - 2) * ((height_ - 2 + kRowStep - 1) / kRowStep));
   float R[9];
   rotation_matrix(0.0f, 0.0f, 0.0f, R);
   Normal normal = evaluate(R);

@@ -23,6 +23,7 @@ PF_INLINE void downdate_tile(const Thin& t, const Scalar* B, std::ptrdiff_t b_st
 #pragma GCC unroll 1
   for (int half = 0; half < kGroup; half += kTileRows) {
     Tile<V, kTileRows, kVectors> tile;
+    tile.prefetch(to + half * stride, stride);
     tile.zero();
     tile.accumulate(t.W + i + half, 1, t.ld, B, b_stride, t.m);
     if (t.k > 0) {

@@ -26,6 +26,16 @@ struct Tile {
     }
   }
 
+  /// Ask for the memory that the tile will be taken from when its product is done.
+  static PF_INLINE void prefetch(const Scalar* to, std::ptrdiff_t stride) {
+    constexpr int kLine = 64 / static_cast<int>(sizeof(Scalar));
+#pragma GCC unroll 8
+    for (int r = 0; r < kRows; ++r) {
+#pragma GCC unroll 8
+      for (int j = 0; j < kColumns; j += kLine) __builtin_prefetch(to + r * stride + j, 1);
+    }
+  }
+
   PF_INLINE void load(const Scalar* from, std::ptrdiff_t stride) {
 #pragma GCC unroll 8
     for (int r = 0; r < kRows; ++r) {
