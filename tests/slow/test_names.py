@@ -4,6 +4,7 @@ import concurrent.futures
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -17,12 +18,13 @@ if shutil.which("clang-tidy") is None:
 if script.cache("CMAKE_TOOLCHAIN_FILE") or script.cache("PLANEFOLD_SANITIZE"):
     script.skip("names are the same in every build; the native one without sanitizers checks them")
 
-ONLY_GCC = {"-fno-gnu-unique"}
+ONLY_GCC = {"-fno-gnu-unique", "-Winvalid-pch"}
 
 commands = []
 for entry in json.loads((script.BUILD / "compile_commands.json").read_text()):
     if "planefold_objects.dir" in entry["command"]:
-        entry["command"] = " ".join(word for word in entry["command"].split() if word not in ONLY_GCC)
+        command = re.sub(r" -include \S+", "", entry["command"])  # Clang reads no precompiled header of GCC
+        entry["command"] = " ".join(word for word in command.split() if word not in ONLY_GCC)
         commands.append(entry)
 
 
