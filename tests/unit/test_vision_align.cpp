@@ -1,6 +1,7 @@
 // Sub-pixel alignment of patches, and of whole coarse images over a rotation.
 #include "vision/align.h"
 
+#include <cstring>
 #include <limits>
 
 #include "support/bounds.h"
@@ -200,6 +201,28 @@ void test_rotation_should_be_nothing_when_the_frame_is_the_same() {
   TEST_ASSERT_FALSE(aligner.update(image.view(), camera, Vec3::Zero()).valid);
 }
 
+void test_rotation_should_not_depend_on_what_the_memory_held_when_it_was_full_of_nan() {
+  SeededRandom random(50);
+  const CoarseCamera camera{65, 65, 39.5f, 29.5f};
+  const Texture texture(&random, 20, 120);
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.03, Eigen::Vector3d(0.6, 0, 0.8)).toRotationMatrix();
+  RotationEstimate found[2];
+  for (int k = 0; k < 2; ++k) {
+    alignas(64) static std::uint8_t block[200000];
+    std::memset(block, k == 0 ? 0 : 0xff, sizeof block);
+    Arena arena(block, sizeof block);
+    RotationAligner aligner;
+    TEST_ASSERT_TRUE(aligner.layout(arena, 80, 60) && arena.ok());
+    aligner.update(view_of(texture, Eigen::Matrix3d::Identity(), 1, 0).view(), camera, Vec3::Zero());
+    found[k] = aligner.update(view_of(texture, R, 1, 0).view(), camera, Vec3::Zero());
+#if defined(__SANITIZE_ADDRESS__)
+    ASAN_UNPOISON_MEMORY_REGION(block, sizeof block);
+#endif
+  }
+  TEST_ASSERT_TRUE(found[0].valid);
+  TEST_ASSERT_TRUE(found[0].rotation == found[1].rotation);
+}
+
 void test_rotation_should_be_refused_when_images_say_nothing() {
   TestArena arena;
   RotationAligner aligner;
@@ -239,6 +262,7 @@ int main() {
   RUN_TEST(test_alignment_should_stay_in_the_image_when_the_start_is_anywhere);
   RUN_TEST(test_rotation_should_be_found_when_a_hand_turns_quickly);
   RUN_TEST(test_rotation_should_be_nothing_when_the_frame_is_the_same);
+  RUN_TEST(test_rotation_should_not_depend_on_what_the_memory_held_when_it_was_full_of_nan);
   RUN_TEST(test_rotation_should_be_refused_when_images_say_nothing);
   return UNITY_END();
 }

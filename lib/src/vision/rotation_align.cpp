@@ -313,7 +313,13 @@ RotationEstimate RotationAligner::update(const ImageView& coarse, const CoarseCa
   shrink(coarse);
   const bool had_previous = has_previous_;
   has_previous_ = true;
-  if (!had_previous) return estimate;
+  if (!had_previous) {
+    // Rows that gradients() leaves out are read past a row's end with weight zero: they must hold numbers.
+    for (float* plane : jacobian_) {
+      std::memset(plane, 0, static_cast<std::size_t>(width_ * height_) * sizeof(float));
+    }
+    return estimate;
+  }
   gradients();
 
   const float all = static_cast<float>((width_ - 2) * ((height_ - 2 + kRowStep - 1) / kRowStep));

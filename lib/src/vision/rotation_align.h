@@ -41,7 +41,7 @@ class RotationAligner {
   /// Estimates from the last image given to this one, which is then kept. `guess` is where to start from: zero, or the
   /// motion model's prediction. Not valid: no previous image, no structure, less than kLeastOverlap in common, images
   /// that do not go together (zncc below kLeastZncc), or no improvement.
-  /// Costs about 8 ns per small pixel and iteration, and 20 ns per small pixel for the blur.
+  /// Costs about as much as an iteration's number of passes over the small image plus five.
   RotationEstimate update(const ImageView& coarse, const CoarseCamera& camera, const Vec3& guess);
 
   static constexpr int kMaxWidth = 64;
