@@ -18,7 +18,8 @@ constexpr const char* kStages[] = {"pyramid", "predict", "search", "gate", "upda
 constexpr int kStageCount = PF_STAGE_MAP + 1;
 
 int64_t clock_ns(void*) {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 double quantile(std::vector<double> values, double share) {
@@ -78,7 +79,8 @@ class FrameSuite {
       return false;
     }
     const std::unique_ptr<void, void (*)(void*)> block(
-        std::aligned_alloc(memory.alignment, (memory.bytes + memory.alignment - 1) / memory.alignment * memory.alignment),
+        std::aligned_alloc(memory.alignment,
+                           (memory.bytes + memory.alignment - 1) / memory.alignment * memory.alignment),
         std::free);
     pf_slam_t* slam = nullptr;
     pf_status_t status = block ? pf_create(&config, block.get(), memory.bytes, &slam) : PF_ERROR_MEMORY;
@@ -101,7 +103,8 @@ class FrameSuite {
     double peer = -1;
     const auto run_peer = [&] {
       if (peer_.is_there() && i > 0) {
-        peer = peer_.time_us(frames.pixels[i - 1].data(), frames.pixels[i].data(), frames.camera.width, frames.camera.height);
+        peer = peer_.time_us(frames.pixels[i - 1].data(), frames.pixels[i].data(), frames.camera.width,
+                             frames.camera.height);
       }
     };
     const pf_image_t image = frames.image(i);
@@ -130,13 +133,13 @@ class FrameSuite {
 
   void tell(const Frames& frames, const pf_memory_t& memory, const Samples& samples) {
     char line[240];
-    std::snprintf(line, sizeof(line),
-                  "%dx%d, start %s, tracked %lld of %lld frames in %d passes; a frame looks for %.0f features (median), measures "
-                  "%.0f, of %.0f in the map; %.2f MiB",
-                  frames.camera.width, frames.camera.height, frames.start.c_str(), static_cast<long long>(samples.tracked),
-                  static_cast<long long>(samples.frames), options_.passes, quantile(samples.attempts, 0.5),
-                  quantile(samples.inliers, 0.5), quantile(samples.features, 0.5),
-                  static_cast<double>(memory.bytes) / 1048576.0);
+    std::snprintf(
+        line, sizeof(line),
+        "%dx%d, start %s, tracked %lld of %lld frames in %d passes; a frame looks for %.0f features (median), measures "
+        "%.0f, of %.0f in the map; %.2f MiB",
+        frames.camera.width, frames.camera.height, frames.start.c_str(), static_cast<long long>(samples.tracked),
+        static_cast<long long>(samples.frames), options_.passes, quantile(samples.attempts, 0.5),
+        quantile(samples.inliers, 0.5), quantile(samples.features, 0.5), static_cast<double>(memory.bytes) / 1048576.0);
     report_.note(frames.name, line);
     if (samples.own.empty()) return;  // the line above says that nothing was tracked
 
@@ -158,6 +161,29 @@ class FrameSuite {
       row(std::string(" ") + kStages[s], us, "frame", median);
     }
     row(" all stages", sum, "frame", median);
+    report_.note(frames.name + " slowest", slowest(samples));
+  }
+
+  /// Where the slowest twentieth of the frames spends its time.
+  static std::string slowest(const Samples& samples) {
+    const double limit = quantile(samples.own, 0.95);
+    double total = 0;
+    double stage[kStageCount] = {};
+    int count = 0;
+    for (size_t i = 0; i < samples.own.size(); ++i) {
+      if (samples.own[i] < limit) continue;
+      ++count;
+      total += samples.own[i];
+      for (int s = 0; s < kStageCount; ++s) stage[s] += samples.stage[s][i];
+    }
+    char line[80];
+    std::snprintf(line, sizeof(line), "5 %% of frames take %.2f ms on average:", 1e-3 * total / count);
+    std::string text = line;
+    for (int s = 0; s < kStageCount; ++s) {
+      std::snprintf(line, sizeof(line), " %s %.2f", kStages[s], 1e-3 * stage[s] / count);
+      text += line;
+    }
+    return text;
   }
 
   SuiteOptions options_;
@@ -167,7 +193,8 @@ class FrameSuite {
 
 int run_frame(const SuiteOptions& options) { return FrameSuite(options).run(); }
 
-const Suite frame_suite("frame", "whole frames of real sequences, beside OpenCV's optical flow on 100 points", run_frame, true);
+const Suite frame_suite("frame", "whole frames of real sequences, beside OpenCV's optical flow on 100 points",
+                        run_frame, true);
 
 }  // namespace
 }  // namespace bench

@@ -24,7 +24,8 @@ const char* pf_bench_flow_name() { return "OpenCV " CV_VERSION " calcOpticalFlow
 
 /// Microseconds of one plain call from previous to next (window 21x21, maxLevel 3, pyramids inside); corners are found before, untimed.
 /// Negative: OpenCV refused. points, tracked: how many went in and came out.
-double pf_bench_flow_us(const uint8_t* previous, const uint8_t* next, int width, int height, int* points, int* tracked) {
+double pf_bench_flow_us(const uint8_t* previous, const uint8_t* next, int width, int height, int* points,
+                        int* tracked) {
   using Clock = std::chrono::steady_clock;
   try {
     cv::setNumThreads(1);

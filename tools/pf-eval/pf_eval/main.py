@@ -49,7 +49,7 @@ TABLE = {
 def arguments(words):
     parser = argparse.ArgumentParser(prog="pf-eval", description=DESCRIPTION, epilog=NOTES,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", metavar="RUN")
+    parser.add_argument("run", metavar="RUN", nargs="?")
     parser.add_argument("--truth", metavar="FILE.tum")
     parser.add_argument("--align", choices=["none", "se3", "sim3"],
                         help="default: none where report.json says that the run started from a target, else sim3")
@@ -60,6 +60,10 @@ def arguments(words):
     parser.add_argument("--json", metavar="FILE", nargs="?", const="-", help="results as JSON, to a file or the output")
     parser.add_argument("--per-frame", metavar="FILE.csv", help="errors frame by frame")
     options = parser.parse_args(words)
+    if options.run is None and options.json not in (None, "-"):  # --json RUN
+        options.run, options.json = options.json, "-"
+    if options.run is None:
+        parser.error("which RUN?")
     if (options.truth is None) == (options.corners is None):
         parser.error("give either --truth or --corners")
     if options.corners and not options.target:
