@@ -55,7 +55,7 @@ class CovarianceSuite {
   }
 
   Contender own(const std::string& name, Problem& p, std::function<void()> work) {
-    return {name, [&p] { p.restore(); }, std::move(work)};
+    return {name, [&p] { p.restore(); }, [&p] { p.P.n = p.n; }, std::move(work)};
   }
 
   /// The full update, its downdate alone, and everything that can be compared with them, interleaved.
@@ -67,13 +67,13 @@ class CovarianceSuite {
     std::vector<Contender> all;
     all.push_back(own("update", p, [&] { p.update(kernels_, n, 0); }));
     all.push_back(own("downdate", p, [&] { kernels_.downdate(p.P, p.W.data(), m, nullptr, nullptr, 0, p.ld, n); }));
-    all.push_back({"eigen rankUpdate", [&] { eigen.restore(); }, [&] { eigen.rank_update(); }});
+    all.push_back({"eigen rankUpdate", [&] { eigen.restore(); }, [] {}, [&] { eigen.rank_update(); }});
     const std::size_t first_syrk = all.size();
     Aligned square(static_cast<std::size_t>(n) * p.ld);
     for (const Blas& blas : blas_) {
       for (char uplo : {'L', 'U'}) {
         all.push_back({blas.name + " syrk",
-                       [&square] { std::memset(square.data(), 0, square.size() * sizeof(Scalar)); },
+                       [&square] { std::memset(square.data(), 0, square.size() * sizeof(Scalar)); }, [] {},
                        [&, uplo] { blas.downdate(uplo, square.data(), p.ld, p.W.data(), m, n, p.ld); }});
       }
     }
@@ -96,7 +96,7 @@ class CovarianceSuite {
 
     const int few = std::min(options_.repetitions, n > 300 ? 3 : 7);
     const std::vector<double> slow = medians({own("update", p, [&] { p.update(kernels_, n, 0); }),
-                                              {"textbook", [&] { eigen.restore(); }, [&] { eigen.textbook(); }}},
+                                              {"textbook", [&] { eigen.restore(); }, [] {}, [&] { eigen.textbook(); }}},
                                              few);
     add("update", n, m, slow[0], "textbook", slow[1]);
     const std::vector<double> cold = medians({all[0]}, std::min(options_.repetitions, 15), true);
@@ -135,9 +135,9 @@ class CovarianceSuite {
     const std::vector<Scalar> product = S;
     Aligned X(p.W.size());
     const std::vector<double> us = medians(
-        {{"gather", [&] {}, [&] { kernels_.gather_many(p.P, p.J.data(), static_cast<int>(p.J.size()), X.data(), p.ld); }},
-         {"cholesky", [&] { S = product; }, [&] { kernels_.cholesky(S.data(), m, m); }},
-         {"solve", [&] { std::memcpy(X.data(), p.W.data(), X.size() * sizeof(Scalar)); },
+        {{"gather", [] {}, [] {}, [&] { kernels_.gather_many(p.P, p.J.data(), static_cast<int>(p.J.size()), X.data(), p.ld); }},
+         {"cholesky", [] {}, [&] { S = product; }, [&] { kernels_.cholesky(S.data(), m, m); }},
+         {"solve", [] {}, [&] { std::memcpy(X.data(), p.W.data(), X.size() * sizeof(Scalar)); },
           [&] { kernels_.solve_lower(factor.data(), m, m, X.data(), n, p.ld); }},
          own("downdate", p, [&] { kernels_.downdate(p.P, p.W.data(), m, nullptr, nullptr, 0, p.ld, n); }),
          own("update", p, [&] { p.update(kernels_, n, 0); })},

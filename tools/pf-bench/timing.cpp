@@ -16,10 +16,8 @@ std::vector<double> medians(const std::vector<Contender>& contenders, int repeti
   for (int r = 0; r < repetitions; ++r) {
     for (std::size_t c = 0; c < contenders.size(); ++c) {
       const Contender& contender = contenders[c];
-      if (!cold) {
-        contender.prepare();
-        contender.work();
-      }
+      contender.restore();
+      if (!cold) contender.work();
       contender.prepare();
       if (cold) flush_caches();
       const auto begin = Clock::now();

@@ -6,9 +6,11 @@
 
 namespace bench {
 
-/// What is measured: `prepare` (not timed) restores the operands, `work` is timed.
+/// What is measured. Not timed: `restore` puts the operands back to what they were at the beginning; `prepare`, right before the
+/// timed run, changes as little memory as it can, so that the cache stays as the untimed run before it left it.
 struct Contender {
   std::string name;
+  std::function<void()> restore;
   std::function<void()> prepare;
   std::function<void()> work;
 };

@@ -40,18 +40,24 @@ void combine(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x) 
   }
 }
 
-/// L of a block of at most eight rows, in place.
+/// L of a block of at most eight rows, in place. Column by column: what depends on a pivot waits for one root and one division.
 PF_INLINE bool cholesky_block(Scalar* S, int rows, std::ptrdiff_t lds) {
+  Scalar d[kGroup][kGroup];
   for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < i; ++j) {
-      Scalar sum = S[i * lds + j];
-      for (int k = 0; k < j; ++k) sum -= S[i * lds + k] * S[j * lds + k];
-      S[i * lds + j] = sum / S[j * lds + j];
+    for (int j = 0; j <= i; ++j) d[i][j] = S[i * lds + j];
+  }
+  for (int j = 0; j < rows; ++j) {
+    if (!(d[j][j] > 0)) return false;
+    const Scalar root = square_root(d[j][j]);
+    const Scalar inverse = 1 / root;
+    d[j][j] = root;
+    for (int i = j + 1; i < rows; ++i) d[i][j] *= inverse;
+    for (int i = j + 1; i < rows; ++i) {
+      for (int k = j + 1; k <= i; ++k) d[i][k] -= d[i][j] * d[k][j];
     }
-    Scalar pivot = S[i * lds + i];
-    for (int k = 0; k < i; ++k) pivot -= S[i * lds + k] * S[i * lds + k];
-    if (!(pivot > 0)) return false;
-    S[i * lds + i] = square_root(pivot);
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j <= i; ++j) S[i * lds + j] = d[i][j];
   }
   return true;
 }
@@ -61,11 +67,11 @@ PF_INLINE bool cholesky_block(Scalar* S, int rows, std::ptrdiff_t lds) {
 inline void cholesky_downdate(Scalar* S, int m, std::ptrdiff_t lds, int p, int width, int from,
                               int terms) {
   constexpr int kChunk = 32;
-  Scalar B[kChunk * kGroup];
-  for (int k = 0; k < terms; ++k) {
-    for (int j = 0; j < kGroup; ++j) B[k * kGroup + j] = j < width ? S[(p + j) * lds + from + k] : 0;
+  alignas(64) Scalar B[kChunk * kGroup] = {};
+  for (int k = 0; k < terms; k += kGroup) {
+    transpose_square(S + p * lds + from + k, lds, width, kGroup, B + k * kGroup, kGroup);
   }
-  Scalar square[kGroup * kGroup];
+  alignas(64) Scalar square[kGroup * kGroup];
   for_eight([&](auto v, auto count, int at) {
     for_heights(width, [&](auto height, int i) PF_LAMBDA {
       Tile<decltype(v), decltype(height)::value, decltype(count)::value> tile;
@@ -103,19 +109,15 @@ bool cholesky(Scalar* S, int m, int leading) {
     if (!cholesky_block(diagonal, width, lds)) return false;
     for (int i = p + kGroup; i < m; i += kGroup) {
       const int rows = smaller(kGroup, m - i);
-      Scalar T[kGroup * kGroup] = {};
-      for (int r = 0; r < rows; ++r) {
-        for (int c = 0; c < kGroup; ++c) T[c * kGroup + r] = S[(i + r) * lds + p + c];
-      }
+      alignas(64) Scalar T[kGroup * kGroup] = {};
+      transpose_square(S + i * lds + p, lds, rows, kGroup, T, kGroup);
       for_eight([&](auto v, auto count, int j) {
         for_heights(kGroup, [&](auto height, int at) PF_LAMBDA {
           solve_tile<decltype(v), decltype(height)::value, decltype(count)::value>(diagonal, lds, T + j,
                                                                                    kGroup, at);
         });
       });
-      for (int r = 0; r < rows; ++r) {
-        for (int c = 0; c < kGroup; ++c) S[(i + r) * lds + p + c] = T[c * kGroup + r];
-      }
+      transpose_square(T, kGroup, kGroup, rows, S + i * lds + p, lds);
     }
   }
   return true;

@@ -98,15 +98,16 @@ struct Panel {
   }
 };
 
-/// J times the source's columns j0 .. j0 + columns - 1 (a multiple of eight) into out (leading dimension ld), two rows at a time.
+/// J times the source's columns j0 .. j0 + columns - 1 (a multiple of eight), from the first-th of them on (likewise), into out
+/// (leading dimension ld), two rows at a time.
 template <class Source>
-inline void gather_strip(Source source, const SparseRows& J, Panel& panel, int j0, int columns,
-                         Scalar* out, std::ptrdiff_t ld) {
+inline void gather_strip(Source source, const SparseRows& J, Panel& panel, int j0, int first,
+                         int columns, Scalar* out, std::ptrdiff_t ld) {
   constexpr int kMost = kTileRows * kTileVectors >= 16 ? 8 : 4;
   const int width = columns_of(J);
   panel.fill(source, J, j0, columns);
   for (int a = 0; a < J.rows; a += 2) {
-    for_strips<kMost>(0, columns, [&](auto v, auto count, int j) PF_LAMBDA {
+    for_strips<kMost>(first, columns - first, [&](auto v, auto count, int j) PF_LAMBDA {
       if (a + 1 < J.rows) {
         Tile<decltype(v), 2, decltype(count)::value> tile;
         tile.zero();
@@ -130,7 +131,7 @@ void gather_many(const Triangle& P, const SparseRows* J, int count, Scalar* out,
     panel.clear();
     Scalar* to = out + j0;
     for (int i = 0; i < count; ++i) {
-      gather_strip(FromTriangle{P}, J[i], panel, j0, smaller(kStrip, all - j0), to, ld);
+      gather_strip(FromTriangle{P}, J[i], panel, j0, 0, smaller(kStrip, all - j0), to, ld);
       to += static_cast<std::ptrdiff_t>(J[i].rows) * ld;
     }
   }
@@ -151,7 +152,8 @@ void project(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S,
     const int end = smaller(a0 + kStrip, m);
     panel.clear();
     for (int i = 0, b0 = 0; i < count && b0 < end; b0 += J[i++].rows) {
-      gather_strip(FromThin{X, m, ld}, J[i], panel, a0, round_up(end - a0, kGroup), strip, kStrip);
+      const int first = b0 > a0 ? (b0 - a0) / kGroup * kGroup : 0;
+      gather_strip(FromThin{X, m, ld}, J[i], panel, a0, first, round_up(end - a0, kGroup), strip, kStrip);
       for (int r = 0; r < J[i].rows; ++r) {
         const int b = b0 + r;
         for (int a = b > a0 ? b : a0; a < end; ++a) {

@@ -27,18 +27,22 @@ PF_INLINE void multiply_rows(const Scalar* A, std::ptrdiff_t a_stride, const Sca
 ///   | P_xb | P_xx |     P_xb F^T, eight rows at a time
 void predict(Triangle& P, const Scalar* F, const Scalar* Q, int b) {
   const int columns = round_up(b, kGroup);
-  Scalar Ft[kLeading * kLeading];
-  Scalar block[kLeading * kLeading];
+  alignas(64) Scalar Ft[kLeading * kLeading];
+  alignas(64) Scalar block[kLeading * kLeading];
+  alignas(64) Scalar rows[kGroup * kLeading];
+  alignas(64) Scalar moved[kGroup * kLeading];
   for (int i = 0; i < columns; ++i) {
     for (int j = 0; j < columns; ++j) {
-      const bool inside = i < b && j < b;
-      Ft[i * kLeading + j] = inside ? F[j * b + i] : Scalar(i == j);
-      block[i * kLeading + j] = inside ? element(P, i, j) : 0;
+      Ft[i * kLeading + j] = Scalar(i == j);
+      block[i * kLeading + j] = 0;
     }
   }
+  for (int i = 0; i < b; ++i) {
+    const Scalar* row = row_of(P, i);
+    for (int j = 0; j < b; ++j) Ft[j * kLeading + i] = F[i * b + j];
+    for (int j = 0; j <= i; ++j) block[i * kLeading + j] = block[j * kLeading + i] = row[j];
+  }
 
-  Scalar rows[kGroup * kLeading];
-  Scalar moved[kGroup * kLeading];
   for (int i0 = 0; i0 < columns; i0 += kGroup) {
     for (int i = 0; i < kGroup; ++i) {
       for (int j = 0; j < columns; ++j) rows[i * kLeading + j] = Ft[j * kLeading + i0 + i];
@@ -51,24 +55,20 @@ void predict(Triangle& P, const Scalar* F, const Scalar* Q, int b) {
     }
   }
 
-  // Rows of the group that b ends in, one by one; then whole groups.
-  const int whole = smaller(columns, P.n);
-  for (int x = b; x < whole; ++x) {
-    Scalar* row = row_of(P, x);
-    for (int j = 0; j < b; ++j) {
-      Scalar sum = 0;
-      for (int k = 0; k < b; ++k) sum += row[k] * Ft[k * kLeading + j];
-      moved[j] = sum;
-    }
-    for (int j = 0; j < b; ++j) row[j] = moved[j];
-  }
-  for (int x = columns; x < P.n; x += kGroup) {
+  // The group that b ends in keeps its rows before b, and its columns from b on; then whole groups.
+  for (int x = b / kGroup * kGroup; x < P.n; x += kGroup) {
     Scalar* group = row_of(P, x);
     const std::ptrdiff_t stride = stride_of(x);
+    const bool whole = x >= columns;
     for (int i = 0; i < kGroup; ++i) {
-      for (int j = 0; j < columns; ++j) rows[i * kLeading + j] = group[i * stride + j];
+      for (int j = 0; j < columns; j += Narrow::kWidth) {
+        Narrow::store(rows + i * kLeading + j, Narrow::load(group + i * stride + j));
+      }
     }
-    multiply_rows(rows, kLeading, Ft, columns, group, stride);
+    multiply_rows(rows, kLeading, Ft, columns, whole ? group : moved, whole ? stride : kLeading);
+    for (int i = b - x; !whole && i < kGroup; ++i) {
+      for (int j = 0; j < b; ++j) group[i * stride + j] = moved[i * kLeading + j];
+    }
   }
 }
 

@@ -71,6 +71,21 @@ PF_INLINE void transpose_four(const Scalar* from, std::ptrdiff_t stride, Scalar*
   *reinterpret_cast<Four::Loose*>(to + 3 * to_stride) = __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7);
 }
 
+/// rows x columns (8 x 8 at most) become columns x rows.
+PF_INLINE void transpose_square(const Scalar* from, std::ptrdiff_t stride, int rows, int columns,
+                                Scalar* to, std::ptrdiff_t to_stride) {
+  if (rows == kGroup && columns == kGroup) {
+    for (int i = 0; i < kGroup; i += 4) {
+      transpose_four(from + i * stride, stride, to + i, to_stride);
+      transpose_four(from + i * stride + 4, stride, to + 4 * to_stride + i, to_stride);
+    }
+    return;
+  }
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) to[c * to_stride + r] = from[r * stride + c];
+  }
+}
+
 /// Rows of the triangle are multiples of eight scalars long, which may be half of a register.
 using Wide = Vector<PF_VECTOR_BYTES>;
 constexpr int kNarrowBytes = Wide::kWidth > kGroup ? PF_VECTOR_BYTES / 2 : PF_VECTOR_BYTES;
