@@ -2,6 +2,7 @@ set(PLANEFOLD_FLOAT_TESTS
     unit/test_build_mode.cpp
     jacobian/test_camera.cpp
     jacobian/test_planar_pose.cpp
+    jacobian/test_plane.cpp
     unit/test_camera.cpp
     unit/test_dark_quads.cpp
     unit/test_planar_pose.cpp
