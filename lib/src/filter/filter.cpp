@@ -81,6 +81,17 @@ void Filter::steer(const Vec3& dv_C, const Vec3& dw_C) {
   kernels_->predict(P_, turn.F, turn.Q, turn.dim);
 }
 
+void Filter::damp(Scalar factor) {
+  PF_ASSERT(state_.body_dim == Body::kMaxDim);
+  state_.body.v_W *= factor;
+  state_.body.w_C *= factor;
+  Transition shrink = {};
+  shrink.dim = Body::kMaxDim;
+  for (int i = 0; i < shrink.dim; ++i)
+    shrink.F[i * shrink.dim + i] = i < Body::kVelocity ? Scalar(1) : factor;
+  kernels_->predict(P_, shrink.F, shrink.Q, shrink.dim);
+}
+
 int Filter::take_slot(BlockKind kind, int size) {
   const int slot = state_.find_free();
   if (slot < 0 || state_.dim + size > P_.capacity) return -1;
@@ -357,11 +368,7 @@ bool Filter::finish_update(const Observation* observations, int count, const uns
   if (!(sum < Scalar(1e12))) return false;
   if (nis != nullptr) *nis = sum;
 
-  for (int i = 0; i < n; ++i) dx_[i] = Scalar(0);
-  for (int k = 0; k < m; ++k) {
-    const Scalar* w = W_ + k * ld_;
-    for (int i = 0; i < n; ++i) dx_[i] += w[i] * y_[k];
-  }
+  kernels_->combine(W_, m, n, ld_, y_, dx_);
 
   if (!keep_gauge_) {
     apply_error(state_, dx_);

@@ -1,5 +1,7 @@
 #include "slam/filter_slam.h"
 
+#include <cmath>
+
 #include "slam/consensus.h"
 
 namespace pf {
@@ -8,6 +10,9 @@ namespace {
 /// How little is known of the velocities at a start that says nothing of them.
 constexpr Scalar kStartSpeed = Scalar(0.5);  // [m/s], times the start depth where that sets the scale
 constexpr Scalar kStartRate = Scalar(0.5);   // [rad/s]
+
+constexpr Scalar kHandSeconds = Scalar(0.25);  ///< in which a speed decays while nothing is measured
+constexpr Scalar kMostTurn = Scalar(0.5);      ///< [rad] standard deviation at which it grows no more
 
 /// Of a pose that defines the world: small enough to be certain, large enough to keep P invertible.
 constexpr Scalar kDefinedSigma = Scalar(1e-5);
@@ -89,12 +94,19 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
   constexpr std::int64_t kLongest = 2000000000;
   const std::int64_t gap = t_ns - before;
   const Scalar dt = static_cast<Scalar>(static_cast<double>(gap < kLongest ? gap : kLongest) * 1e-9);
+  MotionNoise noise = settings_.motion_noise;
+  if (state_ == SlamState::kCoasting || state_ == SlamState::kLost) {
+    // A hand does not keep its speed for long, and what is known of the turn to half a radian is enough to search everywhere:
+    // without this, one second without a picture would carry the camera out of the room.
+    if (settings_.constant_velocity) filter_.damp(std::exp(-dt / kHandSeconds));
+    if (filter_.variance(Body::kTheta) > kMostTurn * kMostTurn) noise.linear = noise.angular = Scalar(0);
+  }
   Transition transition;
   if (settings_.constant_velocity) {
     filter_.steer(steering_v_C_, steering_w_C_);
-    predict_constant_velocity(filter_.body(), dt, settings_.motion_noise, &transition);
+    predict_constant_velocity(filter_.body(), dt, noise, &transition);
   } else {
-    predict_constant_position(filter_.body(), dt, settings_.motion_noise, &transition);
+    predict_constant_position(filter_.body(), dt, noise, &transition);
   }
   filter_.predict(transition);
   steering_v_C_.setZero();

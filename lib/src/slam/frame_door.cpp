@@ -14,6 +14,7 @@ constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] semi-axis from which scout
 constexpr int kLeastAgreement = 5;          ///< matches that must agree before they are believed
 constexpr int kCornerThreshold = 8;         ///< of the segment test [grey]
 constexpr float kLeastCorner = 12.0f;       ///< smaller eigenvalue of the gradients [grey^2/px^2]
+constexpr Scalar kReferenceSigma = Scalar(0.25);  ///< [px] of the first sight, which every later match is compared with
 constexpr int kCellColumns = 8, kCellRows = 6;
 constexpr int kFewNew = 4;                  ///< new features come in groups that share an anchor
 
@@ -242,8 +243,7 @@ void FilterSlam::begin_features_in_image() {
         if (!make_room(anchor < 0 ? 6 : 3)) break;
         if (anchor < 0) anchor = filter_.add_anchor();
         if (anchor < 0) return;
-        const Scalar variance = settings_.sigma_px * settings_.sigma_px;
-        const int entry = begin_feature(anchor, pixel, Mat2::Identity() * variance);
+        const int entry = begin_feature(anchor, pixel, Mat2::Identity() * (kReferenceSigma * kReferenceSigma));
         if (entry < 0) continue;
         Feature& f = features_[entry];
         f.appearance = tracker_.remember(pixel, filter_.state().body.q_WC, filter_.state().body.p_W);
