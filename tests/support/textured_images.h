@@ -50,8 +50,9 @@ struct TestImage {
   }
 
   void set(int x, int y, double grey) {
-    pixels[static_cast<std::size_t>(y * width_ + x)] =
-        static_cast<std::uint8_t>(grey < 0 ? 0 : grey > 255 ? 255 : std::lround(grey));
+    pixels[static_cast<std::size_t>(y * width_ + x)] = static_cast<std::uint8_t>(grey < 0     ? 0
+                                                                                 : grey > 255 ? 255
+                                                                                              : std::lround(grey));
   }
 
   ImageView view() const { return ImageView{pixels.data(), width_, height_, width_}; }

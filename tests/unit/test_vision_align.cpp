@@ -1,12 +1,11 @@
 // Sub-pixel alignment of patches, and of whole coarse images over a rotation.
-#include "vision/align.h"
-
 #include <cstring>
 #include <limits>
 
 #include "support/bounds.h"
 #include "support/textured_images.h"
 #include "unity.h"
+#include "vision/align.h"
 #include "vision/rotation_align.h"
 
 using namespace pf;
@@ -40,9 +39,8 @@ Outcome align_all(std::uint64_t seed, double gain, double bias, double sigma) {
   for (int k = 0; k < 8; ++k) {
     const double dx = random.uniform(-1.4, 1.4), dy = random.uniform(-1.4, 1.4);
     const TestImage before(120, 120, [&](int x, int y) { return texture.at(x, y) + sigma * random.normal(); });
-    const TestImage after(120, 120, [&](int x, int y) {
-      return gain * texture.at(x - dx, y - dy) + bias + sigma * random.normal();
-    });
+    const TestImage after(
+        120, 120, [&](int x, int y) { return gain * texture.at(x - dx, y - dy) + bias + sigma * random.normal(); });
     for (int y = 12; y < 108; y += 9) {
       for (int x = 12; x < 108; x += 9) {
         AlignTemplate pattern;
@@ -67,8 +65,9 @@ Outcome align_all(std::uint64_t seed, double gain, double bias, double sigma) {
   out.rms_grey = std::sqrt(out.rms_grey / out.converged);
   out.gain /= out.converged;
   out.nees /= out.converged;
-  std::printf("gain %g bias %g sigma %g: %d of %d converged, rms %.4f px, worst %.4f px, %.2f grey, zncc %.4f, nees %.2f\n",
-              gain, bias, sigma, out.converged, out.tried, out.rms_px, out.worst_px, out.rms_grey, out.least_zncc, out.nees);
+  std::printf(
+      "gain %g bias %g sigma %g: %d of %d converged, rms %.4f px, worst %.4f px, %.2f grey, zncc %.4f, nees %.2f\n",
+      gain, bias, sigma, out.converged, out.tried, out.rms_px, out.worst_px, out.rms_grey, out.least_zncc, out.nees);
   return out;
 }
 
@@ -84,7 +83,6 @@ void test_alignment_should_be_good_to_a_tenth_pixel_when_noise_is_two_grey_level
   TEST_ASSERT_GREATER_THAN_INT(o.tried * 97 / 100, o.converged);
   EXPECT_BELOW(0.1, o.rms_px);
   TEST_ASSERT_DOUBLE_WITHIN(0.3, 2 * std::sqrt(2.0), o.rms_grey);  // the noise of both images
-
 }
 
 void test_covariance_should_tell_the_error_when_noise_is_not_known() {
@@ -171,10 +169,10 @@ void test_rotation_should_be_found_when_a_hand_turns_quickly() {
     TestArena arena;
     RotationAligner aligner;
     TEST_ASSERT_TRUE(aligner.layout(*arena, 80, 60));
-    TEST_ASSERT_FALSE(aligner.update(view_of(texture, Eigen::Matrix3d::Identity(), 1, 0).view(), camera, Vec3::Zero()).valid);
+    TEST_ASSERT_FALSE(
+        aligner.update(view_of(texture, Eigen::Matrix3d::Identity(), 1, 0).view(), camera, Vec3::Zero()).valid);
     // A ray of the current camera, turned back by R transposed, is that of the previous one.
-    const RotationEstimate e =
-        aligner.update(view_of(texture, R.transpose(), 0.8, 25).view(), camera, Vec3::Zero());
+    const RotationEstimate e = aligner.update(view_of(texture, R.transpose(), 0.8, 25).view(), camera, Vec3::Zero());
     valid += e.valid ? 1 : 0;
     if (!e.valid) continue;
     EXPECT_BELOW(e.before, e.after);

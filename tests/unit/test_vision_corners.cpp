@@ -1,8 +1,7 @@
 // Corners: the tuned segment test and score against their plain twins, the rectangle's bounds, order and capacity.
-#include "vision/corners.h"
-
 #include "support/textured_images.h"
 #include "unity.h"
+#include "vision/corners.h"
 #include "vision/segment_test.h"
 
 using namespace pf;
@@ -98,7 +97,9 @@ void test_corners_should_sit_on_the_squares_when_a_checker_with_grey_joints_is_s
   for (const int corner_x : {20, 39}) {
     for (const int corner_y : {22, 43}) {
       int near = 0;
-      for (const Corner& c : found) near += std::fabs(c.x - static_cast<float>(corner_x)) <= 2 && std::fabs(c.y - static_cast<float>(corner_y)) <= 2;
+      for (const Corner& c : found)
+        near +=
+            std::fabs(c.x - static_cast<float>(corner_x)) <= 2 && std::fabs(c.y - static_cast<float>(corner_y)) <= 2;
       TEST_ASSERT_EQUAL_INT(1, near);
     }
   }
@@ -133,9 +134,18 @@ void test_corners_should_be_peaks_in_order_when_the_image_is_busy() {
 void test_corners_should_stay_in_the_rectangle_when_it_lies_anywhere() {
   SeededRandom random(24);
   const TestImage image = noise_image(32, 32, &random);
-  const Rect rects[] = {{0, 0, 32, 32},      {-100, -100, 1000, 1000}, {30, 30, 5, 5},  {5, 5, 1, 1},  {10, 8, 3, 17},
-                        {26, 26, 1, 1},      {12, 12, 0, 5},           {12, 12, -4, 5}, {40, 3, 9, 9}, {-9, 3, 12, 9},
-                        {2000000000, 0, 2000000000, 32}, {0, -2000000000, 32, 5}};
+  const Rect rects[] = {{0, 0, 32, 32},
+                        {-100, -100, 1000, 1000},
+                        {30, 30, 5, 5},
+                        {5, 5, 1, 1},
+                        {10, 8, 3, 17},
+                        {26, 26, 1, 1},
+                        {12, 12, 0, 5},
+                        {12, 12, -4, 5},
+                        {40, 3, 9, 9},
+                        {-9, 3, 12, 9},
+                        {2000000000, 0, 2000000000, 32},
+                        {0, -2000000000, 32, 5}};
   for (const Rect& r : rects) {
     for (const Corner& c : detect(image, r, 5, 100)) {
       TEST_ASSERT_TRUE(c.x >= static_cast<float>(r.x) && static_cast<double>(c.x) < double(r.x) + r.width);

@@ -1,6 +1,4 @@
 // Pyramid, patches and their warps, and what a frame is worth.
-#include "vision/pyramid.h"
-
 #include <limits>
 
 #include "support/bounds.h"
@@ -8,6 +6,7 @@
 #include "unity.h"
 #include "vision/blur.h"
 #include "vision/patch.h"
+#include "vision/pyramid.h"
 
 using namespace pf;
 

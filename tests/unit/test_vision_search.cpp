@@ -1,11 +1,10 @@
 // Search inside an ellipse: tuned against plain, the known place, the second peak, bounds.
-#include "vision/search.h"
-
 #include <limits>
 
 #include "support/bounds.h"
 #include "support/textured_images.h"
 #include "unity.h"
+#include "vision/search.h"
 #include "vision/search_kernels.h"
 
 using namespace pf;
@@ -64,7 +63,8 @@ SearchResult search_reference(const ImageView& image, const SearchTemplate& patt
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       if (!inside(x, y)) continue;
-      const double distance = std::hypot(x - static_cast<double>(out.position.x()), y - static_cast<double>(out.position.y()));
+      const double distance =
+          std::hypot(x - static_cast<double>(out.position.x()), y - static_cast<double>(out.position.y()));
       if (distance <= static_cast<double>(kSearchApart)) continue;
       bool peak = true;
       for (int j = -1; j <= 1; ++j) {
@@ -139,11 +139,13 @@ void test_search_should_find_the_known_place_when_gain_bias_and_noise_change() {
 }
 
 void test_second_should_be_as_good_as_the_best_when_the_texture_repeats() {
-  const TestImage stripes(80, 80, [](int x, int y) { return 128 + 50 * std::sin(x * 0.7853981) + 50 * std::sin(y * 0.7853981); });
+  const TestImage stripes(
+      80, 80, [](int x, int y) { return 128 + 50 * std::sin(x * 0.7853981) + 50 * std::sin(y * 0.7853981); });
   const SearchResult found = search(stripes.view(), template_at(stripes.view(), 40, 40), circle(40, 40, 10));
   EXPECT_NOT_BELOW(0.999f, found.score);
   EXPECT_NOT_BELOW(0.99f, found.second);
-  const TestImage blob(80, 80, [](int x, int y) { return 40 + 200 * std::exp(-0.02 * (std::pow(x - 40, 2) + std::pow(y - 40, 2))); });
+  const TestImage blob(
+      80, 80, [](int x, int y) { return 40 + 200 * std::exp(-0.02 * (std::pow(x - 40, 2) + std::pow(y - 40, 2))); });
   const SearchResult single = search(blob.view(), template_at(blob.view(), 40, 40), circle(40, 40, 4));
   TEST_ASSERT_EQUAL_INT(40, static_cast<int>(single.position.x()));
   EXPECT_BELOW(0.0f, single.second);  // the shoulder of the peak is no second one

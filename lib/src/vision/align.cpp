@@ -30,8 +30,7 @@ struct Region {
   void fill(const ImageView& image, int centre_x, int centre_y) {
     left = centre_x - kHalf - kSlack;
     top = centre_y - kHalf - kSlack;
-    const bool inside =
-        left >= 0 && top >= 0 && left + kStride <= image.width && top + kRows <= image.height;
+    const bool inside = left >= 0 && top >= 0 && left + kStride <= image.width && top + kRows <= image.height;
     for (int j = 0; j < kRows; ++j) {
       float* to = grey + j * kStride;
       if (inside) {

@@ -14,7 +14,7 @@ struct AlignTemplate {
   alignas(16) float grey[kAlignSize * kRow];
   alignas(16) float gx[kAlignSize * kRow];
   alignas(16) float gy[kAlignSize * kRow];
-  float energy = 0;              // Σ grey²
+  float energy = 0;                 // Σ grey²
   float hxx = 0, hxy = 0, hyy = 0;  // Σ g gᵀ
   float weakest = 0;                // its smaller eigenvalue
 };
@@ -25,10 +25,10 @@ bool make_align_template(const float* warped, AlignTemplate* out);
 struct AlignResult {
   bool converged = false;
   int iterations = 0;
-  Vec2 position = Vec2::Zero();  // px of the level
-  float zncc = 0;                // of window and template there, -1 .. 1
-  float rms = 0;                 // of the image less gain times template less bias, before interpolation [grey]
-  float gain = 0;                // grey of the image per grey of the template
+  Vec2 position = Vec2::Zero();     // px of the level
+  float zncc = 0;                   // of window and template there, -1 .. 1
+  float rms = 0;                    // of the image less gain times template less bias, before interpolation [grey]
+  float gain = 0;                   // grey of the image per grey of the template
   float hxx = 0, hxy = 0, hyy = 0;  // normal matrix H [grey²/px²], less what noise adds to it; positive definite
 
   /// Of the position, as far as this window's noise goes: rms² H⁻¹ [px²]. Neither a wrong warp nor the bias of bilinear

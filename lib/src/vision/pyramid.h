@@ -41,8 +41,6 @@ inline Scalar from_level(Scalar x, int level) {
   return (x + Scalar(0.5)) * static_cast<Scalar>(1 << level) - Scalar(0.5);
 }
 inline Vec2 to_level(const Vec2& x0, int level) { return Vec2(to_level(x0.x(), level), to_level(x0.y(), level)); }
-inline Vec2 from_level(const Vec2& x, int level) {
-  return Vec2(from_level(x.x(), level), from_level(x.y(), level));
-}
+inline Vec2 from_level(const Vec2& x, int level) { return Vec2(from_level(x.x(), level), from_level(x.y(), level)); }
 
 }  // namespace pf

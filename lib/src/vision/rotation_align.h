@@ -15,10 +15,10 @@ struct RotationEstimate {
   bool valid = false;
   int iterations = 0;
   Vec3 rotation = Vec3::Zero();  // ray in the current camera = Exp(rotation) * ray in the previous one [rad]
-  float before = 0;  // RMS difference of the two images, gain and bias aside, with no rotation [grey]
-  float after = 0;   // and with the estimate, over what both see
-  float zncc = 0;     // of the two images with the estimate, over what both see
-  float overlap = 0;  // share of the previous image that is still in view
+  float before = 0;              // RMS difference of the two images, gain and bias aside, with no rotation [grey]
+  float after = 0;               // and with the estimate, over what both see
+  float zncc = 0;                // of the two images with the estimate, over what both see
+  float overlap = 0;             // share of the previous image that is still in view
 };
 
 /// How far the camera has turned from one frame to the next, from two small blurred images alone: three parameters, and
