@@ -268,7 +268,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   // Frame 0 and the last one, from six directions of motion; the parallax says how far at a depth of one.
   const int count = record.features();
   const Scalar length = parallax / camera.fx;
-  Pose best_pose;
+  Pose best_pose = {Quat::Identity(), Vec3::Zero()};
   Scalar best = -1, second = -1;
   for (int guess = 0; guess < 6; ++guess) {
     Vec3 direction = Vec3::Zero();
