@@ -157,7 +157,7 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
     if (frame == 0 && options.gauge_every > 0) {
       gauge.read(slam, report.state_dim);
       gauge.keep_as_first();
-    } else if (phase == options.gauge_every - 1) {
+    } else if (phase >= 0 && phase == options.gauge_every - 1) {
       gauge.read(slam, report.state_dim);
       gauge.compare(true, summary);
     } else if (phase == 0) {
