@@ -13,6 +13,7 @@ struct Thin {
   const Scalar* G;
   int k;
   std::ptrdiff_t ld;
+  bool far;  ///< the triangle is too large for the caches near the core: ask for it early
 };
 
 /// Tile (8 rows of group q) x (columns from j):  P -= W^T W - U^T G - G^T U, the sum formed in registers from zero, so that each
@@ -23,7 +24,7 @@ PF_INLINE void downdate_tile(const Thin& t, const Scalar* B, std::ptrdiff_t b_st
 #pragma GCC unroll 1
   for (int half = 0; half < kGroup; half += kTileRows) {
     Tile<V, kTileRows, kVectors> tile;
-    tile.prefetch(to + half * stride, stride);
+    if (t.far) tile.prefetch(to + half * stride, stride);
     tile.zero();
     tile.accumulate(t.W + i + half, 1, t.ld, B, b_stride, t.m);
     if (t.k > 0) {
@@ -105,10 +106,12 @@ inline void clear_upper(const Triangle& P) {
 /// Twin: reference::downdate. A term W_i W_j counts where j < active (j <= i), so columns decide, not rows.
 void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld,
               int active) {
-  const Thin with = {W, m, U, G, k, ld};
+  constexpr std::ptrdiff_t kNear = (1 << 20) / sizeof(Scalar);
+  const int groups = (P.n + kGroup - 1) / kGroup;
+  const Thin with = {W, m, U, G, k, ld, group_offset(groups) > kNear};
   Thin without = with;
   without.m = 0;
-  const int columns = round_up(P.n, kGroup);
+  const int columns = groups * kGroup;
   if (active >= P.n) {
     downdate_columns(P, with, 0, columns);
   } else {

@@ -6,12 +6,12 @@
 #include <arm_neon.h>
 
 #define PF_VECTOR_BYTES 16
-#if defined(__aarch64__)
-#define PF_TILE_ROWS 8
-#else
 #define PF_TILE_ROWS 4
-#endif
+#if defined(__aarch64__)
+#define PF_TILE_VECTORS 5
+#else
 #define PF_TILE_VECTORS 3
+#endif
 
 namespace pf {
 namespace {

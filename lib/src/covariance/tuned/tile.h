@@ -119,6 +119,10 @@ PF_INLINE void for_strips(int first, int columns, const Work& work) {
     work(Wide{}, Count<4>{}, first + j);
     j += 4 * Wide::kWidth;
   }
+  if (kMost > 3 && j + 3 * Wide::kWidth <= columns) {
+    work(Wide{}, Count<3>{}, first + j);
+    j += 3 * Wide::kWidth;
+  }
   if (kMost > 2 && j + 2 * Wide::kWidth <= columns) {
     work(Wide{}, Count<2>{}, first + j);
     j += 2 * Wide::kWidth;
