@@ -51,7 +51,7 @@ def draw(path_png, comparison, start, title):
             axis.axhline(dof, color=style.GREY, linewidth=0.7, linestyle=":")
             axis.plot(*_breaks(t, values), color=style.VIOLET)
             axis.set_yscale("log")
-            axis.set_ylim(0.5 * low, 5 * max(high, np.nanmax(values)))
+            axis.set_ylim(0.7 * min(low, max(0.1 * low, np.nanpercentile(values, 5))), 5 * max(high, np.nanmax(values)))
             axis.set_ylabel(f"NEES, {dof} dof")
             axis.text(0.995, 0.96, f"{name}: mean {np.nanmean(values):.2f}; band holds 95 % of one frame's values",
                       transform=axis.transAxes, ha="right", va="top", fontsize=7.5, color=style.GREY)
