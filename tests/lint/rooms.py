@@ -33,3 +33,6 @@ PLATFORM_PROBES = {"cpuid.h", "sys/auxv.h", "asm/hwcap.h"}
 
 # In sanitizer builds only: red zones of the arena.
 SANITIZERS = {"sanitizer/asan_interface.h"}
+
+# Folders above the public header that may look into lib/src all the same: kernels are timed where they are.
+LOOK_INSIDE = {"tools/pf-bench"}

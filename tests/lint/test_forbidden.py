@@ -5,7 +5,7 @@ import re
 import source
 
 FORBIDDEN = [
-    (r"\bnew\b(?!\s*\()", "new allocates (placement new is fine)"),
+    (r"(?<!<)\bnew\b(?!\s*\()", "new allocates (placement new is fine)"),
     (r"(?<!=)(?<!= )\bdelete\b", "delete"),
     (r"\b(malloc|calloc|realloc|free|alloca|aligned_alloc|posix_memalign)\s*\(", "the heap, or unbounded stack"),
     (r"\b(throw|try|catch)\b", "exceptions"),
