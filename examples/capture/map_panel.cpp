@@ -62,11 +62,17 @@ void MapPanel::add(const FrameView& view) {
   path_.push_back(vec(view.pose.p_WC));
   const Window wanted = fit(view);
   // The view follows slowly: a map that jumps cannot be read.
-  const double share = has_window_ ? 0.08 : 1.0;
+  const double share = has_window_ ? 0.12 : 1.0;
   window_.right += share * (wanted.right - window_.right);
   window_.forward += share * (wanted.forward - window_.forward);
   window_.half *= std::pow(wanted.half / window_.half, share);
   has_window_ = true;
+  // The camera stays in sight, however fast the map changes.
+  const double room = 0.85 * window_.half;
+  const double right = dot(right_, path_.back());
+  const double forward = dot(forward_, path_.back());
+  window_.right = std::clamp(window_.right, right - room, right + room);
+  window_.forward = std::clamp(window_.forward, forward - room, forward + room);
 }
 
 MapPanel::Window MapPanel::fit(const FrameView& view) const {
@@ -133,7 +139,8 @@ void MapPanel::draw(const Canvas& canvas, const FrameView& view, double x, doubl
                                                          : kInverseDepth;
       const auto c = project(f.covariance, 3, right_, forward_);
       const Ellipse e = ellipse_of(c[0], c[1], c[2]);
-      canvas.colour(colour, inlier ? 0.38 : 0.22);
+      const double faint = pixels * e.a > 40.0 ? 0.5 : 1.0;
+      canvas.colour(colour, faint * (inlier ? 0.38 : 0.22));
       cairo_set_line_width(pen, 1.0);
       canvas.ellipse(at[0], at[1], std::min(pixels * e.a, 4.0 * width), pixels * e.b, -e.angle);
       canvas.colour(colour, inlier ? 1.0 : 0.75);
