@@ -33,7 +33,7 @@ inline void fill_panel(FromTriangle source, int first, int size, int j0, int col
   for (int c = 0; c < size; ++c) {
     const Scalar* row = row_of(P, first + c);
     Scalar* to = panel + c * kStrip - j0;
-    for (int j = j0; j < left; j += Narrow::kWidth) Narrow::store(to + j, Narrow::load(row + j));
+    copy_groups(to + j0, row + j0, left - j0);
     for (int j = j0 > left ? j0 : left; j < right; j += kGroup) {
       const Scalar* column = P.data + group_offset(j / kGroup) + first + c;
       for (int i = 0; i < kGroup; ++i) {
@@ -98,14 +98,11 @@ struct Panel {
   }
 };
 
-/// J times the source's columns j0 .. j0 + columns - 1 (a multiple of eight), from the first-th of them on (likewise), into out
-/// (leading dimension ld), two rows at a time.
-template <class Source>
-inline void gather_strip(Source source, const SparseRows& J, Panel& panel, int j0, int first,
-                         int columns, Scalar* out, std::ptrdiff_t ld) {
+/// J times its operand, columns first .. columns - 1 (multiples of eight), into out (leading dimension ld), two rows at a time.
+inline void multiply_panel(const SparseRows& J, const Panel& panel, int first, int columns, Scalar* out,
+                           std::ptrdiff_t ld) {
   constexpr int kMost = kTileRows * kTileVectors >= 16 ? 8 : 4;
   const int width = columns_of(J);
-  panel.fill(source, J, j0, columns);
   for (int a = 0; a < J.rows; a += 2) {
     for_strips<kMost>(first, columns - first, [&](auto v, auto count, int j) PF_LAMBDA {
       if (a + 1 < J.rows) {
@@ -130,8 +127,10 @@ void gather_many(const Triangle& P, const SparseRows* J, int count, Scalar* out,
   for (int j0 = 0; j0 < all; j0 += kStrip) {
     panel.clear();
     Scalar* to = out + j0;
+    const int columns = smaller(kStrip, all - j0);
     for (int i = 0; i < count; ++i) {
-      gather_strip(FromTriangle{P}, J[i], panel, j0, 0, smaller(kStrip, all - j0), to, ld);
+      panel.fill(FromTriangle{P}, J[i], j0, columns);
+      multiply_panel(J[i], panel, 0, columns, to, ld);
       to += static_cast<std::ptrdiff_t>(J[i].rows) * ld;
     }
   }
@@ -153,7 +152,9 @@ void project(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S,
     panel.clear();
     for (int i = 0, b0 = 0; i < count && b0 < end; b0 += J[i++].rows) {
       const int first = b0 > a0 ? (b0 - a0) / kGroup * kGroup : 0;
-      gather_strip(FromThin{X, m, ld}, J[i], panel, a0, first, round_up(end - a0, kGroup), strip, kStrip);
+      const int rows = round_up(end - a0, kGroup);
+      panel.fill(FromThin{X, m, ld}, J[i], a0, rows);
+      multiply_panel(J[i], panel, first, rows, strip, kStrip);
       for (int r = 0; r < J[i].rows; ++r) {
         const int b = b0 + r;
         for (int a = b > a0 ? b : a0; a < end; ++a) {

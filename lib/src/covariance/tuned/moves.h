@@ -24,10 +24,10 @@ void augment(Triangle& P, const SparseRows& J, const Scalar* noise) {
   for (int j0 = 0; j0 < n; j0 += kStrip) {
     const int columns = smaller(kStrip, n - j0);
     panel.clear();
-    gather_strip(FromTriangle{P}, J, panel, j0, 0, round_up(columns, kGroup), strip, kStrip);
+    panel.fill(FromTriangle{P}, J, j0, round_up(columns, kGroup));
+    multiply_panel(J, panel, 0, round_up(columns, kGroup), strip, kStrip);
     for (int a = 0; a < J.rows; ++a) {
-      Scalar* row = row_of(P, n + a) + j0;
-      for (int j = 0; j < columns; ++j) row[j] = strip[a * kStrip + j];
+      copy_groups(row_of(P, n + a) + j0, strip + a * kStrip, round_up(columns, kGroup));
     }
   }
   for (int a = 0; a < J.rows; ++a) {
@@ -50,7 +50,8 @@ void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar
   for (int j0 = 0; j0 < P.n; j0 += kStrip) {
     const int end = smaller(j0 + kStrip, P.n);
     panel.clear();
-    gather_strip(FromTriangle{P}, J, panel, j0, 0, round_up(end - j0, kGroup), strip, kStrip);
+    panel.fill(FromTriangle{P}, J, j0, round_up(end - j0, kGroup));
+    multiply_panel(J, panel, 0, round_up(end - j0, kGroup), strip, kStrip);
     for (int a = 0; a < J.rows; ++a) {
       Scalar* row = row_of(P, first + a);
       for (int j = j0; j < smaller(end, first); ++j) row[j] = strip[a * kStrip + j - j0];

@@ -61,9 +61,7 @@ void predict(Triangle& P, const Scalar* F, const Scalar* Q, int b) {
     const std::ptrdiff_t stride = stride_of(x);
     const bool whole = x >= columns;
     for (int i = 0; i < kGroup; ++i) {
-      for (int j = 0; j < columns; j += Narrow::kWidth) {
-        Narrow::store(rows + i * kLeading + j, Narrow::load(group + i * stride + j));
-      }
+      copy_groups(rows + i * kLeading, group + i * stride, columns);
     }
     multiply_rows(rows, kLeading, Ft, columns, whole ? group : moved, whole ? stride : kLeading);
     for (int i = b - x; !whole && i < kGroup; ++i) {

@@ -91,6 +91,15 @@ using Wide = Vector<PF_VECTOR_BYTES>;
 constexpr int kNarrowBytes = Wide::kWidth > kGroup ? PF_VECTOR_BYTES / 2 : PF_VECTOR_BYTES;
 using Narrow = Vector<kNarrowBytes>;
 
+/// Copy `count` scalars, a multiple of eight, in place: a library call for a few lines costs more than the copy.
+PF_INLINE void copy_groups(Scalar* to, const Scalar* from, int count) {
+  for (int j = 0; j < count; j += kGroup) {
+#pragma GCC unroll 4
+    for (int v = 0; v < kGroup; v += Narrow::kWidth) Narrow::store(to + j + v, Narrow::load(from + j + v));
+    asm("" ::: "memory");  // keeps the compiler from making the call
+  }
+}
+
 constexpr int kTileRows = PF_TILE_ROWS;
 constexpr int kTileVectors = PF_TILE_VECTORS;
 
