@@ -306,6 +306,7 @@ typedef struct pf_track {
   double predicted_px[2];
   double covariance_px[4]; /* 2x2 of the innovation: the search ellipse */
   double measured_px[2];   /* inliers, outliers and new ones */
+  double nis;              /* of inliers and outliers: normalised innovation squared, 2 degrees of freedom */
 } pf_track_t;
 
 /* What was looked for in the last frame, and what was found. */

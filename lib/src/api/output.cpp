@@ -140,6 +140,7 @@ pf_status_t pf_get_tracks(const pf_slam_t* slam, pf_track_t* tracks, size_t capa
     copy(t.predicted, 2, out.predicted_px);
     copy_matrix(t.innovation, out.covariance_px);
     copy(t.measured, 2, out.measured_px);
+    out.nis = static_cast<double>(t.nis);
   }
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
 }

@@ -204,10 +204,11 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
       o.measured = observations[i].pixel;
       o.noise = Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order;
       const Mat2 S = filter_.innovation(o) + o.noise;
-      const bool agrees = squared_distance(o.measured - o.predicted, S) < settings_.gate;
+      const Scalar nis = squared_distance(o.measured - o.predicted, S);
+      const bool agrees = nis < settings_.gate;
       tracks_[track_count_++] = {entry, feature.id, agrees ? TrackStatus::kInlier : TrackStatus::kOutlier,
                                  filter_.state().block[feature.slot].kind == BlockKind::kInverseDepth,
-                                 o.predicted, S, o.measured};
+                                 o.predicted, S, o.measured, nis};
       ++report_.matches;
       if (!agrees) {
         ++feature.failures;
@@ -240,7 +241,7 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
     if (entry < 0) continue;
     features_[entry].track = observations[i].track;
     tracks_[track_count_++] = {entry, features_[entry].id, TrackStatus::kNew, true, observations[i].pixel,
-                               Mat2::Zero(), observations[i].pixel};
+                               Mat2::Zero(), observations[i].pixel, Scalar(0)};
   }
   if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child
   return end_frame();

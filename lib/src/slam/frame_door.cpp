@@ -100,6 +100,7 @@ int FilterSlam::list_visible() {
     track.status = TrackStatus::kMissed;
     track.inverse_depth = filter_.state().block[f.slot].kind == BlockKind::kInverseDepth;
     track.measured.setZero();
+    track.nis = Scalar(0);
     track_of_[i] = track_count_++;
   }
   return count;
@@ -192,7 +193,10 @@ void FilterSlam::measure(int first, int count) {
   const bool believed = report_.inliers >= kLeastAgreement || agreed >= std::min(kLeastAgreement, features_.count());
   for (int i = first; i < first + found; ++i) {
     if (!believed) keep_[i] = 0;
-    tracks_[track_of_[i]].status = keep_[i] != 0 ? TrackStatus::kInlier : TrackStatus::kOutlier;
+    Track& track = tracks_[track_of_[i]];
+    track.status = keep_[i] != 0 ? TrackStatus::kInlier : TrackStatus::kOutlier;
+    track.nis = squared_distance(track.measured - observation_[i].predicted,
+                                 filter_.innovation_block(i - first, i - first) + observation_[i].noise);
     if (keep_[i] == 0) ++features_[entry_[i]].failures;
   }
   if (believed) take_in(first, found);
@@ -259,6 +263,7 @@ void FilterSlam::begin_features_in_image() {
         track.inverse_depth = true;
         track.predicted = track.measured = pixel;
         track.innovation.setZero();
+        track.nis = Scalar(0);
         ++in_cell[row][column];
         ++begun;
         break;

@@ -21,6 +21,7 @@ struct Track {
   Vec2 predicted;
   Mat2 innovation;
   Vec2 measured;
+  Scalar nis;  ///< normalised innovation squared of the match alone, two degrees of freedom; zero without a match
 };
 
 enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kStageCount = 8 };

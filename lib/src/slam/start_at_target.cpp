@@ -49,7 +49,7 @@ bool FilterSlam::start_in_image() {
     f.appearance = tracker_.remember(z, pose.q_WC, pose.p_WC);
     f.observations = f.attempts = 1;
     ++report_.inliers;
-    tracks_[track_count_++] = {i, f.id, TrackStatus::kInlier, false, z, Mat2::Zero(), z};
+    tracks_[track_count_++] = {i, f.id, TrackStatus::kInlier, false, z, Mat2::Zero(), z, Scalar(0)};
   }
   report_.attempts = report_.matches = report_.inliers;
   sighted_ = true;
