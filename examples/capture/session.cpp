@@ -37,14 +37,18 @@ bool Session::open(const Options& options, const Source& source, std::string& er
   set(config_.max_state_dim, options.max_state_dim);
   set(config_.max_observations, options.max_observations);
   set(config_.features_in_view, options.features_in_view);
+  if (options.max_observations < 0) {
+    config_.max_observations = std::max(config_.max_observations, config_.features_in_view);
+  }
   config_.clock_ns = steady_ns;
   config_.log = keep_line;
   config_.user = &log_;
   const char* field = "";
   const pf_status_t checked = pf_config_check(&config_, &field);
   if (checked != PF_OK) {
-    error = "configuration field '" + std::string(field != nullptr ? field : "?") + "': " + pf_status_text(checked) +
-            "; its range is in planefold.h";
+    const std::string name = field != nullptr && field[0] != '\0' ? field : "?";
+    error = "configuration field '" + name + "' is out of its range; " +
+            (name.rfind("camera", 0) == 0 ? "check the calibration" : "planefold.h says what is possible");
     code = kExitUsage;
     return false;
   }
@@ -108,8 +112,10 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   }
   pf_get_report(slam_, &view.report);
   view.has_pose = pf_get_pose(slam_, &view.pose) == PF_OK;
-  view.tracked = view.has_pose && view.report.inliers >= 8 &&
-                 (view.report.state == PF_STATE_TRACKING || view.report.state == PF_STATE_STARTING);
+  // Tracked: the library says so (in the frame of the start the target alone carries the pose), or, while the depths are not known
+  // yet, a pose from at least 8 gated inliers of this very frame.
+  view.tracked = view.has_pose && (view.status == PF_OK ||
+                                   (view.report.inliers >= 8 && view.report.state == PF_STATE_STARTING));
   size_t count = 0;
   view.tracks.resize(static_cast<size_t>(config_.max_observations + config_.max_features));
   if (pf_get_tracks(slam_, view.tracks.data(), view.tracks.size(), &count) < 0) {

@@ -18,7 +18,8 @@
  * STATUS. 0 is done. Positive: done, with something to know. Negative: refused, and nothing was changed.
  * THREADS. A context belongs to one thread at a time. Contexts are independent. There are no globals.
  * TIME. Work per call is bounded by the capacities in the config. No clock is read unless you give one.
- * STATES. Tracked means: a pose that this frame's own measurements support, by at least 8 gated inliers.
+ * STATES. Tracked means: a pose that this frame's own measurements support, by at least 8 gated inliers, or, in the frame of a
+ * start at a target, by the target.
  */
 #ifndef PLANEFOLD_PLANEFOLD_H
 #define PLANEFOLD_PLANEFOLD_H
