@@ -61,8 +61,8 @@ void MapPanel::add(const FrameView& view) {
   }
   path_.push_back(vec(view.pose.p_WC));
   const Window wanted = fit(view);
-  // The view follows slowly: a map that jumps cannot be read.
-  const double share = has_window_ ? 0.12 : 1.0;
+  // The view follows slowly, and opens faster than it closes: a map that jumps cannot be read.
+  const double share = !has_window_ ? 1.0 : wanted.half > window_.half ? 0.3 : 0.1;
   window_.right += share * (wanted.right - window_.right);
   window_.forward += share * (wanted.forward - window_.forward);
   window_.half *= std::pow(wanted.half / window_.half, share);

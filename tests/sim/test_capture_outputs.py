@@ -1,0 +1,83 @@
+"""pf-capture on a rendered scene: every file that it promises, and that they agree with each other."""
+
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from script import BIN, fail, run, skip  # noqa: E402
+
+PROGRAM = BIN / "pf-capture"
+FRAMES = 60
+NAMES = ["frames", "tracked", "lost", "resets", "start_frame", "start", "ms_per_frame", "ms_by_stage", "memory_bytes",
+         "stack_bytes", "features", "features_in_view", "state_dim", "state_dim_points_only", "planes", "nis_per_dof"]
+
+
+def rows(path):
+    return [line.split() for line in path.read_text().splitlines() if not line.startswith("#")]
+
+
+def require(condition, message):
+    if not condition:
+        fail(message)
+
+
+def capture(out, *arguments):
+    run(PROGRAM, "--source", "sim:desk", "--headless", "--quiet", "--out", out, *arguments)
+    return json.loads((out / "report.json").read_text())
+
+
+def check_files(out, report):
+    for name in NAMES:
+        require(name in report, f"report.json has no '{name}'")
+    require(report["frames"] == FRAMES, f"{report['frames']} frames in the report")
+    require(report["tracked"] >= FRAMES - 5, f"only {report['tracked']} of {FRAMES} frames were tracked")
+    require(report["lost"] == 0, "the run was lost")
+    trajectory = rows(out / "trajectory.txt")
+    require(len(trajectory) == report["tracked"], f"{len(trajectory)} poses, {report['tracked']} tracked")
+    require(all(len(row) == 8 for row in trajectory), "trajectory.txt: a row without 8 numbers")
+    require(all(float(a[0]) < float(b[0]) for a, b in zip(trajectory, trajectory[1:])), "times do not grow")
+    length = [sum(float(x) ** 2 for x in row[4:]) for row in trajectory]
+    require(all(abs(x - 1) < 1e-6 for x in length), "a quaternion without unit length")
+    require(len(rows(out / "trajectory_all.txt")) >= len(trajectory), "trajectory_all.txt is shorter")
+    require(len(rows(out / "truth.tum")) == FRAMES, "truth.tum has not one row per frame")
+    covariance = [row[0].split(",") for row in rows(out / "covariance.csv")]
+    require([row[0] for row in covariance] == [row[0] for row in trajectory], "covariance.csv has other times")
+    require(all(len(row) == 37 for row in covariance), "covariance.csv: a row without 37 numbers")
+    require(all(float(row[1 + 7 * i]) > 0 for row in covariance for i in range(6)), "a variance that is not positive")
+    ply = (out / "map.ply").read_text().split("end_header\n")
+    count = int(ply[0].split("element vertex ")[1].split()[0])
+    require(count > 20 and count == len(ply[1].splitlines()), f"map.ply: {count} points in the header")
+    for name in ("overlay_mid.png", "overlay_last.png", "calib.yaml", "tracks.csv"):
+        require((out / name).is_file(), f"{name} is missing")
+    film = out / "overlay.mp4"
+    if shutil.which("ffmpeg"):
+        require(film.stat().st_size > 10000, "overlay.mp4 is missing or empty")
+
+
+def main():
+    if not PROGRAM.is_file():
+        skip("pf-capture was not built")
+    with tempfile.TemporaryDirectory(prefix="planefold_") as name:
+        root = pathlib.Path(name)
+        report = capture(root / "a", "--start", "target", "--frames", str(FRAMES), "--tracks")
+        check_files(root / "a", report)
+        # The calibration that was written is read again, and gives the same run to the last digit.
+        capture(root / "b", "--start", "target", "--frames", str(FRAMES), "--no-film", "--calib", root / "a" / "calib.yaml")
+        for file in ("trajectory.txt", "covariance.csv", "map.ply"):
+            require((root / "a" / file).read_bytes() == (root / "b" / file).read_bytes(), f"{file} differs in a second run")
+        require(not (root / "b" / "overlay.mp4").exists(), "--no-film wrote a film")
+        # Without ffmpeg on the path there is a note, and no failure.
+        words = [PROGRAM, "--source", "sim:desk", "--headless", "--quiet", "--frames", "20", "--start", "target", "--out", root / "c"]
+        result = subprocess.run([str(word) for word in words], env={"PATH": str(root)}, text=True, capture_output=True, check=False)
+        require(result.returncode == 0 and "ffmpeg" in result.stderr, f"without ffmpeg: {result.returncode} {result.stderr}")
+        require((root / "c" / "overlay_last.png").is_file(), "without ffmpeg there is no picture")
+        withdrawn = capture(root / "d", "--start", "target", "--frames", "20", "--withdraw-target-after", "5", "--skip", "3",
+                            "--no-film")
+        require(withdrawn["withdraw_target_after"] == 5, "the withdrawal is not in the report")
+
+
+main()
