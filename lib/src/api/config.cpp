@@ -17,7 +17,7 @@ struct Range {
   { #field, low, high, offsetof(pf_config_t, field) }
 
 constexpr Range kIntegers[] = {
-    PF_FIELD(max_state_dim, 32, 2000),   PF_FIELD(max_features, 8, 1000), PF_FIELD(max_observations, 8, 200),
+    PF_FIELD(max_state_dim, 32, 2000),  PF_FIELD(max_features, 8, 1000), PF_FIELD(max_observations, 8, 200),
     PF_FIELD(features_in_view, 8, 200), PF_FIELD(border_px, 4, 64),
 };
 
@@ -80,10 +80,10 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->max_features = config.max_features;
   settings->max_observations = config.max_observations;
   settings->constant_velocity = config.motion == PF_MOTION_CONSTANT_VELOCITY;
-  settings->motion_noise.linear = static_cast<Scalar>(
-      settings->constant_velocity ? config.linear_acceleration_density : config.linear_walk);
-  settings->motion_noise.angular = static_cast<Scalar>(
-      settings->constant_velocity ? config.angular_acceleration_density : config.angular_walk);
+  settings->motion_noise.linear =
+      static_cast<Scalar>(settings->constant_velocity ? config.linear_acceleration_density : config.linear_walk);
+  settings->motion_noise.angular =
+      static_cast<Scalar>(settings->constant_velocity ? config.angular_acceleration_density : config.angular_walk);
   settings->sigma_px = static_cast<Scalar>(config.sigma_pixel);
   // chi-square with two degrees of freedom: P(d2 < gate) = 1 - exp(-gate / 2)
   settings->gate = static_cast<Scalar>(-2.0 * std::log(1.0 - config.gate_probability));

@@ -62,24 +62,42 @@ pf_status_t pf_reset(pf_slam_t* slam) {
 
 const char* pf_status_text(pf_status_t status) {
   switch (status) {
-    case PF_OK: return "done";
-    case PF_NOTE_STARTING: return "starting: there is no pose yet that known depths support";
-    case PF_NOTE_COASTING: return "coasting: too few features were found, the pose is a prediction";
-    case PF_NOTE_LOST: return "lost: the map is searched for in every frame";
-    case PF_NOTE_UNUSABLE: return "the image has no usable content; the pose coasts";
-    case PF_NOTE_TRUNCATED: return "there is more than the array holds";
-    case PF_ERROR_NULL: return "a pointer is null that must not be";
-    case PF_ERROR_CONFIG: return "a field of the config is out of its range; pf_config_check names it";
-    case PF_ERROR_VERSION: return "the config was made with another release of the header; call pf_config_default";
-    case PF_ERROR_SCALAR: return "the config was made for the other library (planefold: double, planefoldf: float)";
-    case PF_ERROR_MEMORY: return "the block is smaller than pf_memory_query says";
-    case PF_ERROR_ALIGNMENT: return "the block does not begin at a multiple of the alignment that pf_memory_query says";
-    case PF_ERROR_SIZE: return "the image does not have the size of the calibration";
-    case PF_ERROR_TIME: return "the timestamp is not after the last one";
-    case PF_ERROR_NONFINITE: return "a number is NaN or infinite";
-    case PF_ERROR_STATE: return "not possible in this state";
-    case PF_ERROR_RANGE: return "a number is outside of its domain";
-    case PF_ERROR_CONTEXT: return "not a planefold context, or its block was overwritten or moved";
+    case PF_OK:
+      return "done";
+    case PF_NOTE_STARTING:
+      return "starting: there is no pose yet that known depths support";
+    case PF_NOTE_COASTING:
+      return "coasting: too few features were found, the pose is a prediction";
+    case PF_NOTE_LOST:
+      return "lost: the map is searched for in every frame";
+    case PF_NOTE_UNUSABLE:
+      return "the image has no usable content; the pose coasts";
+    case PF_NOTE_TRUNCATED:
+      return "there is more than the array holds";
+    case PF_ERROR_NULL:
+      return "a pointer is null that must not be";
+    case PF_ERROR_CONFIG:
+      return "a field of the config is out of its range; pf_config_check names it";
+    case PF_ERROR_VERSION:
+      return "the config was made with another release of the header; call pf_config_default";
+    case PF_ERROR_SCALAR:
+      return "the config was made for the other library (planefold: double, planefoldf: float)";
+    case PF_ERROR_MEMORY:
+      return "the block is smaller than pf_memory_query says";
+    case PF_ERROR_ALIGNMENT:
+      return "the block does not begin at a multiple of the alignment that pf_memory_query says";
+    case PF_ERROR_SIZE:
+      return "the image does not have the size of the calibration";
+    case PF_ERROR_TIME:
+      return "the timestamp is not after the last one";
+    case PF_ERROR_NONFINITE:
+      return "a number is NaN or infinite";
+    case PF_ERROR_STATE:
+      return "not possible in this state";
+    case PF_ERROR_RANGE:
+      return "a number is outside of its domain";
+    case PF_ERROR_CONTEXT:
+      return "not a planefold context, or its block was overwritten or moved";
   }
   return "unknown status";
 }

@@ -37,8 +37,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
 }  // namespace pf
 
 /// Null and broken contexts are refused in one line.
-#define PF_REQUIRE_CONTEXT(slam)                       \
-  do {                                                 \
-    if ((slam) == nullptr) return PF_ERROR_NULL;       \
+#define PF_REQUIRE_CONTEXT(slam)                        \
+  do {                                                  \
+    if ((slam) == nullptr) return PF_ERROR_NULL;        \
     if (!pf::is_context(slam)) return PF_ERROR_CONTEXT; \
   } while (false)

@@ -69,7 +69,8 @@ pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
     const pf_status_t status = body_from(target->first_pose, &t.first_pose);
     if (status != PF_OK) return status;
     for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) t.first_covariance(i, j) = static_cast<Scalar>(target->first_pose.covariance[i * 6 + j]);
+      for (int j = 0; j < 6; ++j)
+        t.first_covariance(i, j) = static_cast<Scalar>(target->first_pose.covariance[i * 6 + j]);
   } else {
     return PF_ERROR_RANGE;
   }

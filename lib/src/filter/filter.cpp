@@ -87,8 +87,7 @@ void Filter::damp(Scalar factor) {
   state_.body.w_C *= factor;
   Transition shrink = {};
   shrink.dim = Body::kMaxDim;
-  for (int i = 0; i < shrink.dim; ++i)
-    shrink.F[i * shrink.dim + i] = i < Body::kVelocity ? Scalar(1) : factor;
+  for (int i = 0; i < shrink.dim; ++i) shrink.F[i * shrink.dim + i] = i < Body::kVelocity ? Scalar(1) : factor;
   kernels_->predict(P_, shrink.F, shrink.Q, shrink.dim);
 }
 

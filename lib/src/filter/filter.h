@@ -21,11 +21,11 @@ struct Observation {
   int slot = -1;
   int segments = 0;
   Segment segment[kMaxSegments];
-  Scalar h[2 * kMaxColumns];          ///< row-major 2 x columns
-  Vec2 predicted = Vec2::Zero();      ///< [px]
-  Vec2 measured = Vec2::Zero();       ///< [px]
-  Mat2 noise = Mat2::Identity();      ///< covariance of the measurement [px^2]
-  Mat2 second_order = Mat2::Zero();   ///< what the linearisation leaves out [px^2]; belongs into noise
+  Scalar h[2 * kMaxColumns];         ///< row-major 2 x columns
+  Vec2 predicted = Vec2::Zero();     ///< [px]
+  Vec2 measured = Vec2::Zero();      ///< [px]
+  Mat2 noise = Mat2::Identity();     ///< covariance of the measurement [px^2]
+  Mat2 second_order = Mat2::Zero();  ///< what the linearisation leaves out [px^2]; belongs into noise
 };
 
 struct FilterCapacity {
@@ -55,7 +55,8 @@ class Filter {
 
   // --- augment; -1 where there is no room
   int add_anchor();
-  int add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho, Scalar sigma_rho);
+  int add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho,
+                        Scalar sigma_rho);
   int add_point(const Vec3& p_W, const Mat3& covariance);
 
   // --- transform

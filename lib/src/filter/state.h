@@ -41,11 +41,11 @@ struct InverseDepth {
 
 struct Block {
   BlockKind kind = BlockKind::kNone;
-  std::int16_t first = -1;   ///< first row in the covariance
+  std::int16_t first = -1;  ///< first row in the covariance
   std::int16_t size = 0;
-  std::int16_t parent = -1;  ///< slot of the anchor
-  std::int16_t children = 0; ///< of an anchor: inverse-depth points that need it
-  Scalar value[5] = {};      ///< anchor, point: x y z. inverse depth: q_b (w x y z), rho
+  std::int16_t parent = -1;   ///< slot of the anchor
+  std::int16_t children = 0;  ///< of an anchor: inverse-depth points that need it
+  Scalar value[5] = {};       ///< anchor, point: x y z. inverse depth: q_b (w x y z), rho
 
   Vec3 xyz() const { return Vec3(value[0], value[1], value[2]); }
   void set_xyz(const Vec3& p) {
@@ -69,7 +69,7 @@ struct State {
   int body_dim = Body::kMaxDim;
   Block* block = nullptr;  ///< slots
   int slots = 0;
-  int dim = 0;             ///< rows in use, body included
+  int dim = 0;  ///< rows in use, body included
 
   /// A free slot, or -1.
   int find_free() const {

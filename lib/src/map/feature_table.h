@@ -10,16 +10,16 @@
 namespace pf {
 
 struct Feature {
-  std::uint32_t id = 0;       ///< never used twice
-  std::uint32_t track = 0;    ///< the caller's id, for features that came through the observation door
-  int slot = -1;              ///< block in the filter; -1: this entry is free
+  std::uint32_t id = 0;     ///< never used twice
+  std::uint32_t track = 0;  ///< the caller's id, for features that came through the observation door
+  int slot = -1;            ///< block in the filter; -1: this entry is free
   bool is_target = false;
-  int observations = 0;       ///< frames in which it was measured and used
-  int attempts = 0;           ///< frames in which it was looked for
-  int failures = 0;           ///< attempts since it was last measured
+  int observations = 0;  ///< frames in which it was measured and used
+  int attempts = 0;      ///< frames in which it was looked for
+  int failures = 0;      ///< attempts since it was last measured
   std::int64_t last_seen_ns = 0;
-  int appearance = -1;        ///< entry in the tracker's templates
-  int start_index = -1;       ///< in the record of a start without a target
+  int appearance = -1;   ///< entry in the tracker's templates
+  int start_index = -1;  ///< in the record of a start without a target
 };
 
 class FeatureTable {

@@ -206,9 +206,14 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
       const Mat2 S = filter_.innovation(o) + o.noise;
       const Scalar nis = squared_distance(o.measured - o.predicted, S);
       const bool agrees = nis < settings_.gate;
-      tracks_[track_count_++] = {entry, feature.id, agrees ? TrackStatus::kInlier : TrackStatus::kOutlier,
+      tracks_[track_count_++] = {entry,
+                                 feature.id,
+                                 agrees ? TrackStatus::kInlier : TrackStatus::kOutlier,
                                  filter_.state().block[feature.slot].kind == BlockKind::kInverseDepth,
-                                 o.predicted, S, o.measured, nis};
+                                 o.predicted,
+                                 S,
+                                 o.measured,
+                                 nis};
       ++report_.matches;
       if (!agrees) {
         ++feature.failures;
@@ -240,7 +245,7 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
     const int entry = begin_feature(anchor, observations[i].pixel, Mat2::Identity() * variance);
     if (entry < 0) continue;
     features_[entry].track = observations[i].track;
-    tracks_[track_count_++] = {entry, features_[entry].id, TrackStatus::kNew, true, observations[i].pixel,
+    tracks_[track_count_++] = {entry,        features_[entry].id,   TrackStatus::kNew, true, observations[i].pixel,
                                Mat2::Zero(), observations[i].pixel, Scalar(0)};
   }
   if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child

@@ -106,8 +106,8 @@ class FilterSlam {
   KnownBody known_body_;
   StartRecord record_;
   StartBundle bundle_;
-  bool recording_ = false;  ///< a start without a target is under way
-  bool depth_known_ = false;  ///< and has been solved at least once
+  bool recording_ = false;             ///< a start without a target is under way
+  bool depth_known_ = false;           ///< and has been solved at least once
   Quat base_q_WC_ = Quat::Identity();  ///< the record's frame 0 in W
   Vec3 base_p_W_ = Vec3::Zero();
   std::int64_t record_begin_ns_ = 0;
@@ -123,13 +123,13 @@ class FilterSlam {
   Vec3 steering_w_C_ = Vec3::Zero();
 
   FrameReport report_;
-  Track* tracks_ = nullptr;          ///< this frame's, the first `attempts` of them looked for
+  Track* tracks_ = nullptr;  ///< this frame's, the first `attempts` of them looked for
   int track_count_ = 0;
   Observation* observation_ = nullptr;  ///< max_observations
   int* entry_ = nullptr;                ///< feature table entry of each observation
   unsigned char* keep_ = nullptr;       ///< of each observation: taken in
   int* track_of_ = nullptr;             ///< and its track
-  int* scratch_ = nullptr;  ///< max_features
+  int* scratch_ = nullptr;              ///< max_features
   PixelObservation* inbox_ = nullptr;
 };
 

@@ -16,7 +16,7 @@ constexpr int kCornerThreshold = 8;         ///< of the segment test [grey]
 constexpr float kLeastCorner = 12.0f;       ///< smaller eigenvalue of the gradients [grey^2/px^2]
 constexpr Scalar kReferenceSigma = Scalar(0.25);  ///< [px] of the first sight, which every later match is compared with
 constexpr int kCellColumns = 8, kCellRows = 6;
-constexpr int kFewNew = 4;                  ///< new features come in groups that share an anchor
+constexpr int kFewNew = 4;  ///< new features come in groups that share an anchor
 
 }  // namespace
 
@@ -206,7 +206,9 @@ void FilterSlam::measure(int first, int count) {
 void FilterSlam::begin_features_in_image() {
   int in_cell[kCellRows][kCellColumns] = {};
   const int width = settings_.camera.width, height = settings_.camera.height;
-  const auto column_of = [&](Scalar x) { return std::clamp(static_cast<int>(x) * kCellColumns / width, 0, kCellColumns - 1); };
+  const auto column_of = [&](Scalar x) {
+    return std::clamp(static_cast<int>(x) * kCellColumns / width, 0, kCellColumns - 1);
+  };
   const auto row_of = [&](Scalar y) { return std::clamp(static_cast<int>(y) * kCellRows / height, 0, kCellRows - 1); };
   int in_view = 0;
   for (int t = 0; t < track_count_; ++t) {
@@ -272,6 +274,5 @@ void FilterSlam::begin_features_in_image() {
   }
   if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child
 }
-
 
 }  // namespace pf

@@ -8,9 +8,9 @@
 namespace pf {
 namespace {
 
-constexpr int kMinAttempts = 10;        ///< before a feature is judged
-constexpr int kMaxFailures = 12;        ///< in a row, for one that was good
-constexpr int kMaxEarlyFailures = 4;    ///< in a row, for one that was seldom seen
+constexpr int kMinAttempts = 10;      ///< before a feature is judged
+constexpr int kMaxFailures = 12;      ///< in a row, for one that was good
+constexpr int kMaxEarlyFailures = 4;  ///< in a row, for one that was seldom seen
 
 }  // namespace
 
@@ -35,9 +35,9 @@ void FilterSlam::drop_what_fails() {
     const bool in_a_row = f.failures >= (f.observations < kMinAttempts ? kMaxEarlyFailures : kMaxFailures);
     // Behind the camera's own first centre: the depth went wrong.
     const Block& block = filter_.state().block[f.slot];
-    const bool inverted = block.kind == BlockKind::kInverseDepth && block.inverse_depth().rho < Scalar(0) &&
-                          block.inverse_depth().rho * block.inverse_depth().rho >
-                              Scalar(9) * filter_.variance(block.first + 2);
+    const bool inverted =
+        block.kind == BlockKind::kInverseDepth && block.inverse_depth().rho < Scalar(0) &&
+        block.inverse_depth().rho * block.inverse_depth().rho > Scalar(9) * filter_.variance(block.first + 2);
     if ((f.failures > 0 && seldom) || in_a_row || inverted) scratch_[count++] = i;
   }
   drop(scratch_, count);
@@ -104,8 +104,8 @@ int FilterSlam::begin_feature(int anchor, const Vec2& pixel, const Mat2& noise) 
   Mat32 J_ray_pixel;
   if (!unproject(settings_.camera, pixel, &ray_C, &J_ray_pixel)) return -1;
   const Scalar rho = usual_inverse_depth();
-  const int slot = filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho,
-                                             settings_.inverse_depth_relative_sigma * rho);
+  const int slot =
+      filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, settings_.inverse_depth_relative_sigma * rho);
   if (slot < 0) return -1;
   const int entry = features_.add(slot);
   if (entry < 0) {

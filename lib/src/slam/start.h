@@ -14,8 +14,8 @@ struct Target {
   Scalar width = 0, height = 0;  ///< rectangle [m]; its centre is W's origin, x right, y down, z into the wall
   int count = 0;
   Vec3 point_W[kMaxPoints];
-  Scalar sigma_m = 0;            ///< of each coordinate of each point
-  Body first_pose;               ///< about where the camera is at first (points)
+  Scalar sigma_m = 0;  ///< of each coordinate of each point
+  Body first_pose;     ///< about where the camera is at first (points)
   Mat6 first_covariance = Mat6::Zero();
 };
 

@@ -29,8 +29,7 @@ bool FilterSlam::start_in_image() {
   }
   PoseEstimate pose;
   Vec2 pixel[Target::kMaxPoints];
-  const bool seen =
-      target_.kind == TargetKind::kRectangle ? sight_rectangle(&pose, pixel) : sight_points(&pose, pixel);
+  const bool seen = target_.kind == TargetKind::kRectangle ? sight_rectangle(&pose, pixel) : sight_points(&pose, pixel);
   if (!seen) return false;
 
   if (target_.kind == TargetKind::kRectangle) {
@@ -79,7 +78,8 @@ bool FilterSlam::sight_points(PoseEstimate* pose, Vec2* pixel) const {
   Scalar distance = 0;
   for (int i = 0; i < count; ++i) {
     Mat26 J;
-    if (!project_from_pose(camera, first.q_WC, first.p_W, target_.point_W[i], first.p_W, &predicted[i], &J)) return false;
+    if (!project_from_pose(camera, first.q_WC, first.p_W, target_.point_W[i], first.p_W, &predicted[i], &J))
+      return false;
     const Mat26 JP = J.lazyProduct(target_.first_covariance);
     const Mat2 S = JP.lazyProduct(J.transpose());
     reach[i] = std::clamp(Scalar(3) * std::sqrt(std::max(S(0, 0), S(1, 1))), Scalar(6), Scalar(60));

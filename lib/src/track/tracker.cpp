@@ -10,10 +10,10 @@
 namespace pf {
 namespace {
 
-constexpr Scalar kSearchRadius = Scalar(9);   ///< [px of the level] an ellipse that is larger is searched a level up
+constexpr Scalar kSearchRadius = Scalar(9);  ///< [px of the level] an ellipse that is larger is searched a level up
 constexpr float kLeastSearchScore = 0.6f;
-constexpr float kLeastScore = 0.8f;           ///< of the aligned window
-constexpr float kAmbiguous = 0.04f;           ///< a second peak that is nearly as high as the first is a repeated texture
+constexpr float kLeastScore = 0.8f;  ///< of the aligned window
+constexpr float kAmbiguous = 0.04f;  ///< a second peak that is nearly as high as the first is a repeated texture
 
 /// Source pixels per current pixel within which a view can still be compared with the first one.
 constexpr Scalar kLeastScale = Scalar(0.25);

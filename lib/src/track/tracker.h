@@ -14,12 +14,12 @@ namespace pf {
 /// Where a feature should be in this frame, and how it was seen first.
 struct SearchTask {
   int appearance = -1;
-  Vec2 predicted = Vec2::Zero();     ///< [px]
-  Mat2 innovation = Mat2::Identity();///< covariance of (measured - predicted) [px^2]
-  Scalar gate = 9;                   ///< chi-square bound of the ellipse
-  Vec3 p_W = Vec3::Zero();           ///< the point, about
-  Quat q_WC = Quat::Identity();      ///< camera now
-  Vec3 c_W = Vec3::Zero();           ///< its centre
+  Vec2 predicted = Vec2::Zero();       ///< [px]
+  Mat2 innovation = Mat2::Identity();  ///< covariance of (measured - predicted) [px^2]
+  Scalar gate = 9;                     ///< chi-square bound of the ellipse
+  Vec3 p_W = Vec3::Zero();             ///< the point, about
+  Quat q_WC = Quat::Identity();        ///< camera now
+  Vec3 c_W = Vec3::Zero();             ///< its centre
 };
 
 struct SearchOutcome {
@@ -28,7 +28,7 @@ struct SearchOutcome {
   Vec2 pixel = Vec2::Zero();
   Mat2 noise = Mat2::Zero();  ///< covariance of the pixel, from how well the template fits the image there [px^2]
   Scalar level_scale = 1;     ///< pixels of level 0 per pixel of the finest level that was used
-  float score = 0;         ///< zero-mean normalised correlation
+  float score = 0;            ///< zero-mean normalised correlation
 };
 
 class Tracker {

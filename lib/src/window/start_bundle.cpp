@@ -11,11 +11,11 @@ namespace {
 constexpr int kLeastFeatures = 12;
 constexpr Scalar kLeastParallax = Scalar(4);   ///< median parallax in the last frame, in standard deviations of a pixel
 constexpr Scalar kAmpleParallax = Scalar(15);  ///< likewise: two explanations are possible no more
-constexpr Scalar kSettledParallax = Scalar(30);///< likewise: more would change nothing
-constexpr Scalar kGrowth = Scalar(1.4);        ///< of the parallax from one solution to the next
-constexpr Scalar kLeastMargin = Scalar(15);          ///< between the two best explanations, in chi-square
-constexpr Scalar kPriorSigma = Scalar(0.7);          ///< of rho about 1: keeps what has no parallax finite
-constexpr Scalar kHuber = Scalar(2);                 ///< [standard deviations]
+constexpr Scalar kSettledParallax = Scalar(30);  ///< likewise: more would change nothing
+constexpr Scalar kGrowth = Scalar(1.4);          ///< of the parallax from one solution to the next
+constexpr Scalar kLeastMargin = Scalar(15);      ///< between the two best explanations, in chi-square
+constexpr Scalar kPriorSigma = Scalar(0.7);      ///< of rho about 1: keeps what has no parallax finite
+constexpr Scalar kHuber = Scalar(2);             ///< [standard deviations]
 
 /// Weighted square of a residual of r standard deviations, and its weight.
 Scalar huber(Scalar r2, Scalar* weight) {
@@ -361,7 +361,8 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
 }
 
 /// Pose of one frame against the depths as they are, by Gauss-Newton.
-bool StartBundle::locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px, Pose* pose) const {
+bool StartBundle::locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px,
+                         Pose* pose) const {
   const Scalar information = Scalar(1) / (sigma_px * sigma_px);
   for (int round = 0; round < 8; ++round) {
     Scalar H[36], b[6];

@@ -57,10 +57,10 @@ class StartRecord {
 };
 
 enum class StartOutcome {
-  kWait,      ///< not enough parallax (more than last time), or more than one explanation
-  kSolved,    ///< explained; more frames may explain it better
-  kSettled,   ///< explained, with as much parallax as it takes
-  kTooFew,    ///< too few of frame 0's features are left: begin again
+  kWait,     ///< not enough parallax (more than last time), or more than one explanation
+  kSolved,   ///< explained; more frames may explain it better
+  kSettled,  ///< explained, with as much parallax as it takes
+  kTooFew,   ///< too few of frame 0's features are left: begin again
 };
 
 /// Poses of the record's frames and inverse depths of its features.
@@ -92,14 +92,14 @@ class StartBundle {
 
   Pose pose_[kMaxCameras];
   Pose trial_pose_[kMaxCameras];
-  Scalar* rho_ = nullptr;        ///< kMaxFeatures each
+  Scalar* rho_ = nullptr;  ///< kMaxFeatures each
   Scalar* trial_rho_ = nullptr;
   Scalar* best_rho_ = nullptr;
-  Scalar* last_rho_ = nullptr;   ///< of the last solution, zero where it had none
-  Scalar last_parallax_ = 0;     ///< [px]
+  Scalar* last_rho_ = nullptr;  ///< of the last solution, zero where it had none
+  Scalar last_parallax_ = 0;    ///< [px]
   unsigned char* good_ = nullptr;
-  Scalar* W_ = nullptr;          ///< kMaxFeatures x 6 kMaxCameras: camera rows of each feature's column
-  Scalar* H_ = nullptr;          ///< 6 kMaxCameras square
+  Scalar* W_ = nullptr;  ///< kMaxFeatures x 6 kMaxCameras: camera rows of each feature's column
+  Scalar* H_ = nullptr;  ///< 6 kMaxCameras square
 };
 
 }  // namespace pf
