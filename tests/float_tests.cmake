@@ -7,4 +7,7 @@ set(PLANEFOLD_FLOAT_TESTS
     unit/test_dark_quads.cpp
     unit/test_planar_pose.cpp
     unit/test_small_geometry.cpp
+    unit/test_covariance_reference.cpp
+    unit/test_covariance_sets.cpp
+    slow/test_covariance_sets_many.cpp
 )
