@@ -12,8 +12,9 @@ constexpr int kHalf = kAlignSize / 2;
 constexpr int kRow = AlignTemplate::kRow;
 constexpr int kVectors = kRow / 4;
 constexpr float kPixels = static_cast<float>(kAlignSize * kAlignSize);
-constexpr float kSmallStep = 0.01f;      // px; the next one would be well below what noise leaves
-constexpr float kLeastContrast = 1.0f;   // grey, standard deviation
+constexpr float kSmallStep = 0.01f;     // px; the next one would be well below what noise leaves
+constexpr float kLeastContrast = 1.0f;  // grey, standard deviation
+constexpr float kLeastAspect = 2e-4f;   // weaker to both directions; below, floats cannot tell the matrix from singular
 constexpr float kLeastGradient = 0.25f;  // grey/px, root mean square in the weaker direction
 
 /// Grey levels about 128 around the start, wide enough for every place that the window may move to.
@@ -152,7 +153,8 @@ bool make_align_template(const float* warped, AlignTemplate* out) {
   out->hyy = dot(out->gy, out->gy);
   const float difference = out->hxx - out->hyy;
   out->weakest = 0.5f * (out->hxx + out->hyy - std::sqrt(difference * difference + 4.0f * out->hxy * out->hxy));
-  return out->weakest >= kLeastGradient * kLeastGradient * kPixels;
+  return out->weakest >= kLeastGradient * kLeastGradient * kPixels &&
+         out->weakest >= kLeastAspect * (out->hxx + out->hyy);
 }
 
 AlignResult align(const ImageView& image, const AlignTemplate& pattern, const Vec2& start) {

@@ -17,14 +17,12 @@ PF_ALWAYS_INLINE F32x4 sample(const float* image, int width, const F32x4& x, con
     const float* q = image + at[k % 2 * 2 + 1] + k / 2 * width;
     pair[k] = (F32x4)U64x2{load<std::uint64_t>(p), load<std::uint64_t>(q)};
   }
-  const I32x4 even = {0, 2, 4, 6};
-  const I32x4 odd = {1, 3, 5, 7};
   const F32x4 fx = x - __builtin_convertvector(ix, F32x4);
   const F32x4 fy = y - __builtin_convertvector(iy, F32x4);
-  const F32x4 left_top = __builtin_shuffle(pair[0], pair[1], even);
-  const F32x4 left_bottom = __builtin_shuffle(pair[2], pair[3], even);
-  const F32x4 top = left_top + fx * (__builtin_shuffle(pair[0], pair[1], odd) - left_top);
-  const F32x4 bottom = left_bottom + fx * (__builtin_shuffle(pair[2], pair[3], odd) - left_bottom);
+  const F32x4 left_top = even_lanes(pair[0], pair[1]);
+  const F32x4 left_bottom = even_lanes(pair[2], pair[3]);
+  const F32x4 top = left_top + fx * (odd_lanes(pair[0], pair[1]) - left_top);
+  const F32x4 bottom = left_bottom + fx * (odd_lanes(pair[2], pair[3]) - left_bottom);
   return top + fy * (bottom - top);
 }
 

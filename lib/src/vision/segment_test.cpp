@@ -8,7 +8,6 @@ namespace pf {
 namespace {
 
 constexpr int kCircle = 16;
-constexpr int kArc = 9;
 constexpr int kCircleX[kCircle] = {0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3, -3, -3, -2, -1};
 constexpr int kCircleY[kCircle] = {-3, -3, -2, -1, 0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3};
 
@@ -22,6 +21,7 @@ Offsets circle_offsets(std::ptrdiff_t stride) {
   return out;
 }
 
+/// Nine neighbours on the circle.
 bool has_arc(std::uint32_t bits) {
   const std::uint32_t ring = bits | bits << kCircle;
   const std::uint32_t two = ring & ring >> 1;

@@ -95,6 +95,22 @@ PF_ALWAYS_INLINE F32x4 smaller(const F32x4& a, const F32x4& b) {
 #endif
 }
 
+/// Lanes 0 and 2 of the one and then of the other; lanes 1 and 3.
+PF_ALWAYS_INLINE F32x4 even_lanes(const F32x4& a, const F32x4& b) {
+#if defined(__clang__)
+  return __builtin_shufflevector(a, b, 0, 2, 4, 6);
+#else
+  return __builtin_shuffle(a, b, I32x4{0, 2, 4, 6});
+#endif
+}
+PF_ALWAYS_INLINE F32x4 odd_lanes(const F32x4& a, const F32x4& b) {
+#if defined(__clang__)
+  return __builtin_shufflevector(a, b, 1, 3, 5, 7);
+#else
+  return __builtin_shuffle(a, b, I32x4{1, 3, 5, 7});
+#endif
+}
+
 PF_ALWAYS_INLINE float sum(const F32x4& v) { return (v[0] + v[2]) + (v[1] + v[3]); }
 
 }  // namespace pf
