@@ -13,24 +13,30 @@ Canvas::Canvas(double width_m, double height_m, double texel_size_m, float fill)
 
 void paint_noise(Canvas& canvas, Random& random, double amplitude, double coarse_m, int octaves, double persistence) {
   double cell = coarse_m / canvas.texel_m;
+  // Where each column lies between its two lattice points is the same for all rows.
+  std::vector<int> left(static_cast<std::size_t>(canvas.width));
+  std::vector<float> share(left.size());
   for (int o = 0; o < octaves && cell >= 1.5; ++o, cell *= 0.5, amplitude *= persistence) {
     const int w = static_cast<int>(canvas.width / cell) + 2, h = static_cast<int>(canvas.height / cell) + 2;
     std::vector<float> lattice(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
     for (float& v : lattice) v = static_cast<float>(random.uniform(-amplitude, amplitude));
+    const auto smooth = [cell](int i, int* before) {
+      const double x = i / cell;
+      *before = static_cast<int>(x);
+      const double f = x - *before;
+      return static_cast<float>(f * f * (3 - 2 * f));
+    };
+    for (std::size_t i = 0; i < left.size(); ++i) share[i] = smooth(static_cast<int>(i), &left[i]);
+    std::vector<float> row(static_cast<std::size_t>(w));
     for (int j = 0; j < canvas.height; ++j) {
-      const double y = j / cell;
-      const int y0 = static_cast<int>(y);
-      const double fy = y - y0;
-      const auto b = static_cast<float>(fy * fy * (3 - 2 * fy));
-      const float* row = &lattice[static_cast<std::size_t>(y0) * static_cast<std::size_t>(w)];
-      for (int i = 0; i < canvas.width; ++i) {
-        const double x = i / cell;
-        const int x0 = static_cast<int>(x);
-        const double fx = x - x0;
-        const auto a = static_cast<float>(fx * fx * (3 - 2 * fx));
-        const float* p = row + x0;
-        const float top = p[0] + a * (p[1] - p[0]), bottom = p[w] + a * (p[w + 1] - p[w]);
-        canvas.at(i, j) += top + b * (bottom - top);
+      int above;
+      const float b = smooth(j, &above);
+      const float* top = &lattice[static_cast<std::size_t>(above) * static_cast<std::size_t>(w)];
+      for (int k = 0; k < w; ++k) row[static_cast<std::size_t>(k)] = top[k] + b * (top[k + w] - top[k]);
+      float* out = &canvas.at(0, j);
+      for (std::size_t i = 0; i < left.size(); ++i) {
+        const float* p = &row[static_cast<std::size_t>(left[i])];
+        out[i] += p[0] + share[i] * (p[1] - p[0]);
       }
     }
   }

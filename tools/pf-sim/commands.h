@@ -8,5 +8,6 @@ namespace pfsim {
 void add_render(CLI::App& app, int& result);
 void add_room(CLI::App& app, int& result);
 void add_gee2007(CLI::App& app, int& result);
+void add_rendered(CLI::App& app, int& result);
 
 }  // namespace pfsim

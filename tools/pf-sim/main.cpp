@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   pfsim::add_render(app, result);
   pfsim::add_room(app, result);
   pfsim::add_gee2007(app, result);
+  pfsim::add_rendered(app, result);
   CLI11_PARSE(app, argc, argv);
   return result;
 }

@@ -11,7 +11,7 @@ namespace {
 
 struct Choices {
   std::string cases = "A", layout = "model", motion = "velocity", gauge = "both", json, csv;
-  int seeds = 40, frames = 0, jobs = 2, gauge_every = 10;
+  int seeds = 40, frames = 0, jobs = 2, gauge_every = 50;
   std::uint64_t first_seed = 1;
   bool plain = false;
   double fov = 0, linear = 0, angular = 0, relative_sigma = 0, start_depth = 0, linearity = 0, sigma_px = 1;

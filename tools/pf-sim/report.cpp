@@ -20,7 +20,7 @@ struct RunMean {
 };
 
 template <typename Get>
-RunMean run_mean(const Experiment& x, int frame, Get get) {
+RunMean run_mean(const Runs& x, int frame, Get get) {
   RunMean mean;
   for (int s = 0; s < x.seeds; ++s) {
     const double v = static_cast<double>(get(x.row(s, frame)));
@@ -34,10 +34,10 @@ RunMean run_mean(const Experiment& x, int frame, Get get) {
 
 /// Time mean of a normalised error, and how its run averages lie against the chi-square bounds of a run average.
 template <typename Get>
-json nees_json(const Experiment& x, int dof, Get get) {
+json nees_json(const Runs& x, int dof, Get get) {
   double sum = 0;
   int above = 0, below = 0, frames = 0;
-  for (int f = 0; f < x.bed.frames; ++f) {
+  for (int f = 0; f < x.frames; ++f) {
     const RunMean mean = run_mean(x, f, get);
     if (mean.runs == 0) continue;
     sum += mean.value;
@@ -48,15 +48,16 @@ json nees_json(const Experiment& x, int dof, Get get) {
   }
   // Each run's own time mean, for the spread that the mean over runs has by chance.
   double square = 0;
-  std::vector<double> means;
+  std::vector<double> means, all;
   for (int s = 0; s < x.seeds; ++s) {
     double total = 0;
     int count = 0;
-    for (int f = 0; f < x.bed.frames; ++f) {
+    for (int f = 0; f < x.frames; ++f) {
       const double v = static_cast<double>(get(x.row(s, f)));
       if (v >= 0 && std::isfinite(v)) {
         total += v;
         ++count;
+        all.push_back(v);
       }
     }
     if (count > 0) means.push_back(total / count);
@@ -66,6 +67,7 @@ json nees_json(const Experiment& x, int dof, Get get) {
   const double runs = std::max<double>(2, static_cast<double>(means.size()));
   return {{"mean", mean},
           {"standard_error", std::sqrt(square / (runs - 1) / runs)},
+          {"median", median(all)},
           {"median_of_runs", median(means)},
           {"above_share", above / n},
           {"below_share", below / n},
@@ -85,13 +87,14 @@ void run_one(int index, void* context) {
   const Job& job = *static_cast<Job*>(context);
   const Experiment& x = *job.experiment;
   job.summaries[index] = run_once(x.bed, x.config, x.run, x.first_seed + static_cast<std::uint64_t>(index),
-                                  job.rows + static_cast<std::size_t>(index) * static_cast<std::size_t>(x.bed.frames));
+                                  job.rows + static_cast<std::size_t>(index) * static_cast<std::size_t>(x.frames));
 }
 
 }  // namespace
 
 bool run_all(Experiment& x, int processes, const char* title) {
-  const auto seeds = static_cast<std::size_t>(x.seeds), frames = static_cast<std::size_t>(x.bed.frames);
+  x.frames = x.bed.frames;
+  const auto seeds = static_cast<std::size_t>(x.seeds), frames = static_cast<std::size_t>(x.frames);
   Job job{&x, static_cast<RunSummary*>(shared_memory(seeds * sizeof(RunSummary))),
           static_cast<FrameRow*>(shared_memory(seeds * frames * sizeof(FrameRow)))};
   if (!job.summaries || !job.rows) return false;
@@ -101,10 +104,40 @@ bool run_all(Experiment& x, int processes, const char* title) {
   return good;
 }
 
-json summarise(const Experiment& x) {
+json summarise_frames(const Runs& x) {
   std::vector<double> dims, ends, inliers;
-  double square = 0, frames = 0, nis = 0, nis_dof = 0, seconds = 0;
-  double map_square = 0, map_count = 0, map_nees = 0, pose = 0, scale = 0, scale_step = 0;
+  double square = 0, claimed = 0, frames = 0, nis = 0, nis_dof = 0;
+  for (int s = 0; s < x.seeds; ++s) {
+    for (int f = 0; f < x.frames; ++f) {
+      const FrameRow& row = x.row(s, f);
+      if (!(row.nees_position >= 0)) continue;
+      square += static_cast<double>(row.error_m) * static_cast<double>(row.error_m);
+      claimed += static_cast<double>(row.sigma_m) * static_cast<double>(row.sigma_m);
+      frames += 1;
+      nis += static_cast<double>(row.nis);
+      nis_dof += static_cast<double>(row.nis_dof);
+      dims.push_back(static_cast<double>(row.state_dim));
+      inliers.push_back(static_cast<double>(row.inliers));
+    }
+    ends.push_back(static_cast<double>(x.row(s, x.frames - 1).state_dim));
+  }
+  const json dim = {{"median", median(dims)}, {"end", median(ends)}};
+  json out;
+  out["nees_position"] = nees_json(x, 3, [](const FrameRow& r) { return r.nees_position; });
+  out["nees_pose"] = nees_json(x, 6, [](const FrameRow& r) { return r.nees_pose; });
+  out["state_dim"] = out["active_dim"] = dim;
+  out["camera_rmse_m"] = std::sqrt(square / std::max(1.0, frames));
+  out["camera_sigma_m"] = std::sqrt(claimed / std::max(1.0, frames));
+  out["nis_per_dof"] = nis / std::max(1.0, nis_dof);
+  out["inliers_median"] = median(inliers);
+  out["runs"] = x.seeds;
+  out["frames"] = x.frames;
+  out["frames_judged"] = frames;
+  return out;
+}
+
+json summarise(const Experiment& x) {
+  double seconds = 0, map_square = 0, map_count = 0, map_nees = 0, pose = 0, scale = 0, scale_step = 0;
   int lost = 0, tracked = 0;
   for (int s = 0; s < x.seeds; ++s) {
     const RunSummary& r = x.summaries[s];
@@ -117,46 +150,26 @@ json summarise(const Experiment& x) {
     pose = std::max(pose, r.gauge_pose_growth);
     scale = std::max(scale, r.gauge_scale_growth);
     scale_step = std::max(scale_step, r.gauge_scale_step_growth);
-    for (int f = 0; f < x.bed.frames; ++f) {
-      const FrameRow& row = x.row(s, f);
-      if (!(row.nees_position >= 0)) continue;
-      square += static_cast<double>(row.error_m) * static_cast<double>(row.error_m);
-      frames += 1;
-      nis += static_cast<double>(row.nis);
-      nis_dof += static_cast<double>(row.nis_dof);
-      dims.push_back(static_cast<double>(row.state_dim));
-      inliers.push_back(static_cast<double>(row.inliers));
-    }
-    ends.push_back(static_cast<double>(x.row(s, x.bed.frames - 1).state_dim));
   }
-  const json dim = {{"median", median(dims)}, {"end", median(ends)}};
-  json out;
-  out["nees_position"] = nees_json(x, 3, [](const FrameRow& r) { return r.nees_position; });
-  out["nees_pose"] = nees_json(x, 6, [](const FrameRow& r) { return r.nees_pose; });
-  out["state_dim"] = out["active_dim"] = dim;
-  out["camera_rmse_m"] = std::sqrt(square / std::max(1.0, frames));
+  json out = summarise_frames(x);
   out["map_rmse_m"] = std::sqrt(map_square / std::max(1.0, map_count));
   out["map_nees"] = map_nees / std::max(1.0, map_count);
   out["planes"] = {{"true", 0}, {"false", 0}, {"duplicate", 0}};
   out["gauge_growth"] = {
       {"translation_rotation", pose}, {"scale", scale}, {"scale_one_frame_without_births", scale_step}};
-  out["nis_per_dof"] = nis / std::max(1.0, nis_dof);
-  out["inliers_median"] = median(inliers);
-  out["tracked_share"] = tracked / (static_cast<double>(x.seeds) * x.bed.frames);
+  out["tracked_share"] = tracked / (static_cast<double>(x.seeds) * x.frames);
   out["lost_runs"] = lost;
-  out["runs"] = x.seeds;
-  out["frames"] = x.bed.frames;
-  out["frames_per_second"] = frames / std::max(1e-9, seconds);
+  out["frames_per_second"] = out["frames_judged"].get<double>() / std::max(1e-9, seconds);
   return out;
 }
 
-bool write_csv(const Experiment& x, const std::string& directory, const std::string& label) {
+bool write_csv(const Runs& x, const std::string& directory, const std::string& label) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   std::ofstream means(directory + "/" + label + ".csv"), runs(directory + "/" + label + "_runs.csv");
   means << "frame,nees_position,nees_pose,bound_low,bound_high,rmse_m,sigma_m,state_dim,inliers,runs\n";
   runs << "seed,frame,nees_position,nees_pose,error_m,sigma_m,state_dim,inliers\n";
-  for (int f = 0; f < x.bed.frames; ++f) {
+  for (int f = 0; f < x.frames; ++f) {
     const RunMean position = run_mean(x, f, [](const FrameRow& r) { return r.nees_position; });
     const double n = std::max(1, position.runs);
     means << f << ',' << position.value << ',' << run_mean(x, f, [](const FrameRow& r) { return r.nees_pose; }).value
@@ -167,7 +180,7 @@ bool write_csv(const Experiment& x, const std::string& directory, const std::str
           << run_mean(x, f, [](const FrameRow& r) { return r.inliers; }).value << ',' << position.runs << '\n';
   }
   for (int s = 0; s < x.seeds; ++s)
-    for (int f = 0; f < x.bed.frames; ++f) {
+    for (int f = 0; f < x.frames; ++f) {
       const FrameRow& r = x.row(s, f);
       runs << x.first_seed + static_cast<std::uint64_t>(s) << ',' << f << ',' << r.nees_position << ',' << r.nees_pose
            << ',' << r.error_m << ',' << r.sigma_m << ',' << r.state_dim << ',' << r.inliers << '\n';

@@ -8,21 +8,27 @@
 
 namespace pfsim {
 
-/// All runs of one case, rows frame by frame within each run.
-struct Experiment {
-  BedOptions bed;
-  pf_config_t config;
-  RunOptions run;
-  int seeds = 0;
+/// Frames of all runs, frame by frame within each run.
+struct Runs {
+  int seeds = 0, frames = 0;
   std::uint64_t first_seed = 1;
-  const RunSummary* summaries = nullptr;
   const FrameRow* rows = nullptr;
 
   const FrameRow& row(int seed, int frame) const {
-    return rows[static_cast<std::size_t>(seed) * static_cast<std::size_t>(bed.frames) +
-                static_cast<std::size_t>(frame)];
+    return rows[static_cast<std::size_t>(seed) * static_cast<std::size_t>(frames) + static_cast<std::size_t>(frame)];
   }
 };
+
+/// All runs of one case against geometric truth.
+struct Experiment : Runs {
+  BedOptions bed;
+  pf_config_t config;
+  RunOptions run;
+  const RunSummary* summaries = nullptr;
+};
+
+/// nees_position, nees_pose, camera_rmse_m, state_dim, NIS and inliers of the frames that have a valid covariance.
+nlohmann::json summarise_frames(const Runs& runs);
 
 /// Runs all seeds, in that many processes. False when one of them died.
 bool run_all(Experiment& experiment, int processes, const char* title);
@@ -31,7 +37,7 @@ bool run_all(Experiment& experiment, int processes, const char* title);
 nlohmann::json summarise(const Experiment& experiment);
 
 /// DIR/LABEL.csv: per frame the run averages and the bounds; DIR/LABEL_runs.csv: position NEES of every run.
-bool write_csv(const Experiment& experiment, const std::string& directory, const std::string& label);
+bool write_csv(const Runs& runs, const std::string& directory, const std::string& label);
 
 /// The few lines that a person reads.
 void print(const std::string& label, const nlohmann::json& numbers);

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <ctime>
-#include <memory>
 
+#include "context.h"
 #include "statistics.h"
 
 namespace pfsim {
@@ -20,25 +19,6 @@ double cpu_now() {
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
-
-/// A context in its own block.
-class Context {
- public:
-  explicit Context(const pf_config_t& config) {
-    pf_memory_t need;
-    if (pf_memory_query(&config, &need) != PF_OK) return;
-    const std::size_t bytes = (need.bytes + need.alignment - 1) / need.alignment * need.alignment;
-    block_.reset(std::aligned_alloc(need.alignment, bytes));
-    if (block_) pf_create(&config, block_.get(), bytes, &slam);
-  }
-  pf_slam_t* slam = nullptr;
-
- private:
-  struct Free {
-    void operator()(void* p) const { std::free(p); }
-  };
-  std::unique_ptr<void, Free> block_;
-};
 
 /// Watches the information about what a camera cannot observe.
 class GaugeWatch {
@@ -64,24 +44,6 @@ class GaugeWatch {
   double first_[49] = {}, before_[49] = {}, now_[49] = {};
   bool before_valid_ = false, now_valid_ = false;
 };
-
-FrameRow judge(const Bed& bed, const pf_pose_t& pose, const pf_report_t& report) {
-  FrameRow row{};
-  const auto& truth = bed.truth().pose;
-  const Vec3 theta = rotation_log(truth.R_WC * rotation_of(pose.q_WC).transposed());
-  const Vec3 p{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
-  const Vec3 e = truth.p_WC - p;
-  const double error[6] = {theta.x, theta.y, theta.z, e.x, e.y, e.z};
-  row.nees_position = static_cast<float>(normalised_error(error + 3, pose.covariance, 3, 6, 3));
-  row.nees_pose = static_cast<float>(normalised_error(error, pose.covariance, 6, 6, 0));
-  row.error_m = static_cast<float>(e.norm());
-  row.sigma_m = static_cast<float>(std::sqrt(pose.covariance[21] + pose.covariance[28] + pose.covariance[35]));
-  row.state_dim = static_cast<float>(report.state_dim);
-  row.inliers = static_cast<float>(report.inliers);
-  row.nis = static_cast<float>(report.nis);
-  row.nis_dof = static_cast<float>(report.nis_dof);
-  return row;
-}
 
 std::vector<pf_feature_t> map_of(const pf_slam_t* slam, const pf_config_t& config) {
   std::vector<pf_feature_t> features(static_cast<std::size_t>(config.max_features));
@@ -112,6 +74,23 @@ void judge_map(const Bed& bed, const std::vector<pf_feature_t>& map, RunSummary&
 }
 
 }  // namespace
+
+FrameRow judge(const pf::sim::Pose& truth, const pf_pose_t& pose, const pf_report_t& report) {
+  FrameRow row{};
+  const Vec3 theta = rotation_log(truth.R_WC * rotation_of(pose.q_WC).transposed());
+  const Vec3 p{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
+  const Vec3 e = truth.p_WC - p;
+  const double error[6] = {theta.x, theta.y, theta.z, e.x, e.y, e.z};
+  row.nees_position = static_cast<float>(normalised_error(error + 3, pose.covariance, 3, 6, 3));
+  row.nees_pose = static_cast<float>(normalised_error(error, pose.covariance, 6, 6, 0));
+  row.error_m = static_cast<float>(e.norm());
+  row.sigma_m = static_cast<float>(std::sqrt(pose.covariance[21] + pose.covariance[28] + pose.covariance[35]));
+  row.state_dim = static_cast<float>(report.state_dim);
+  row.inliers = static_cast<float>(report.inliers);
+  row.nis = static_cast<float>(report.nis);
+  row.nis_dof = static_cast<float>(report.nis_dof);
+  return row;
+}
 
 RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, const RunOptions& options,
                     std::uint64_t seed, FrameRow* rows) {
@@ -148,7 +127,7 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
       return summary;
     }
     pf_get_report(slam, &report);
-    rows[frame] = judge(bed, pose, report);
+    rows[frame] = judge(bed.truth().pose, pose, report);
     summary.lost |= status == PF_NOTE_LOST || !(rows[frame].nees_position >= 0);
     summary.frames_tracked += status == PF_OK;
     if (births > 0 || frame % 10 == 9) retire_what_is_gone(bed, map_of(slam, config));

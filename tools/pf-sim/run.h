@@ -15,6 +15,9 @@ struct FrameRow {
   float nis, nis_dof;
 };
 
+/// A frame's pose against the truth, both in the truth's own frame: theta of R_true = Exp(theta) R, then p_true - p.
+FrameRow judge(const pf::sim::Pose& truth, const pf_pose_t& pose, const pf_report_t& report);
+
 /// What one run gave besides its frames. Plain data, so that it may lie in memory shared between processes.
 struct RunSummary {
   std::int32_t done = 0;

@@ -1,0 +1,190 @@
+// pf-sim rendered: Monte Carlo runs of the whole library on rendered frames, in the truth's own frame.
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "commands.h"
+#include "rendered_run.h"
+#include "report.h"
+
+namespace pfsim {
+namespace {
+
+using nlohmann::json;
+
+struct Choices {
+  std::string scene = "desk", start = "rectangle", json_file, csv;
+  int seeds = 20, frames = 300, jobs = 2, blur = 4;
+  std::uint64_t first_seed = 1;
+  double noise = 2, exposure_s = 0.008, readout_s = 0, sigma_pixel = 0;
+};
+
+struct Job {
+  const RenderedOptions* options;
+  std::uint64_t first_seed;
+  RenderedSummary* summaries;
+  FrameRow* rows;
+};
+
+int fail(const std::string& what) {
+  std::fprintf(stderr, "pf-sim: %s\n", what.c_str());
+  return 1;
+}
+
+void run_one(int index, void* context) {
+  const Job& job = *static_cast<Job*>(context);
+  const std::size_t first = static_cast<std::size_t>(index) * static_cast<std::size_t>(job.options->sim.frames);
+  job.summaries[index] =
+      run_rendered(*job.options, job.first_seed + static_cast<std::uint64_t>(index), job.rows + first);
+}
+
+json innovations_json(const InnovationSums& s) {
+  const double n = std::max(1.0, s.count), matches = std::max(1.0, s.match_count);
+  return {{"inliers", s.count},
+          {"nis_per_dof", s.nis / (2 * n)},
+          {"lag_one", s.innovation.value()},
+          {"rms_px", std::sqrt(s.square / (2 * n))},
+          {"match_rms_px", std::sqrt(s.match_square / (2 * matches))},
+          {"match_lag_one", s.match.value()},
+          {"match_far_share", s.match_far / std::max(1.0, s.match_count + s.match_far)}};
+}
+
+json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
+  json out = summarise_frames(runs);
+  int lost_frames = 0, lost_runs = 0, tracked = 0, coasting = 0, starting = 0;
+  InnovationSums sums[kTrackKinds], all;
+  json each = json::array();
+  for (int s = 0; s < runs.seeds; ++s) {
+    const RenderedSummary& r = summaries[s];
+    lost_frames += r.lost_frames;
+    const bool lost = r.lost_frames > 0 || !r.done;
+    lost_runs += lost;
+    tracked += r.tracked_frames;
+    coasting += r.coasting_frames;
+    starting += r.starting_frames;
+    for (int k = 0; k < kTrackKinds; ++k) sums[k].add(r.innovations[k]);
+    const Runs one{1, runs.frames, runs.first_seed, &runs.row(s, 0)};
+    const json numbers = summarise_frames(one);
+    each.push_back({{"seed", runs.first_seed + static_cast<std::uint64_t>(s)},
+                    {"lost_frames", r.lost_frames},
+                    {"tracked_share", static_cast<double>(r.tracked_frames) / runs.frames},
+                    {"nees_position", numbers["nees_position"]["mean"]},
+                    {"nees_pose", numbers["nees_pose"]["mean"]},
+                    {"camera_rmse_m", numbers["camera_rmse_m"]}});
+  }
+  const double frames = static_cast<double>(runs.seeds) * runs.frames;
+  out["lost_runs"] = lost_runs;
+  out["lost_frames"] = lost_frames;
+  out["tracked_share"] = tracked / frames;
+  out["coasting_share"] = coasting / frames;
+  out["starting_share"] = starting / frames;
+  out["claimed_over_real"] = out["camera_sigma_m"].get<double>() / std::max(1e-12, out["camera_rmse_m"].get<double>());
+  for (int k = 0; k < kTrackKinds; ++k) {
+    out["innovations"][kTrackKindName[static_cast<std::size_t>(k)]] = innovations_json(sums[k]);
+    all.add(sums[k]);
+  }
+  out["innovations"]["all"] = innovations_json(all);
+  out["each_run"] = each;
+  return out;
+}
+
+void print_runs(const json& j) {
+  const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
+  for (const json& r : j["each_run"])
+    std::printf("  seed %3d: position NEES %6.2f, pose NEES %6.2f, RMSE %.4f m, tracked %5.1f %%, lost frames %d\n",
+                r["seed"].get<int>(), r["nees_position"].get<double>(), r["nees_pose"].get<double>(),
+                r["camera_rmse_m"].get<double>(), 100 * r["tracked_share"].get<double>(), r["lost_frames"].get<int>());
+  std::printf("position NEES %.3f +- %.3f, median %.3f (3 dof); pose NEES %.3f, median %.3f (6 dof)\n",
+              number("/nees_position/mean"), number("/nees_position/standard_error"), number("/nees_position/median"),
+              number("/nees_pose/mean"), number("/nees_pose/median"));
+  std::printf("camera RMSE %.4f m, claimed %.4f m, so claimed over real %.2f; state %g, %g inliers\n",
+              number("/camera_rmse_m"), number("/camera_sigma_m"), number("/claimed_over_real"),
+              number("/state_dim/median"), number("/inliers_median"));
+  std::printf("%g runs of %g frames: %g lost runs, %g lost frames, %.2f %% tracked, %.2f %% coasting\n",
+              number("/runs"), number("/frames"), number("/lost_runs"), number("/lost_frames"),
+              100 * number("/tracked_share"), 100 * number("/coasting_share"));
+  std::printf("innovations      inliers  NIS/dof  lag 1   rms px | match against truth: rms px  lag 1  far %%\n");
+  for (const char* kind : {"inverse_depth", "point", "target", "all"}) {
+    const json& i = j["innovations"][kind];
+    const auto of = [&](const char* name) { return i[name].get<double>(); };
+    std::printf("  %-14s %8.0f  %7.3f  %5.2f  %7.3f | %28.3f  %5.2f  %5.2f\n", kind, of("inliers"), of("nis_per_dof"),
+                of("lag_one"), of("rms_px"), of("match_rms_px"), of("match_lag_one"), 100 * of("match_far_share"));
+  }
+}
+
+bool prepare(const Choices& c, RenderedOptions& o) {
+  o.scene = c.scene;
+  if (pf_sim_options_default(c.scene.c_str(), &o.sim) != PF_OK) return false;
+  o.sim.frames = c.frames;
+  o.sim.noise_grey = c.noise;
+  o.sim.exposure_s = c.exposure_s;
+  o.sim.blur_samples = c.blur;
+  o.sim.readout_s = c.readout_s;
+  pf_config_default(&o.config);
+  if (c.sigma_pixel > 0) o.config.sigma_pixel = c.sigma_pixel;
+  o.config.camera = o.sim.camera;
+  o.rectangle = c.start == "rectangle";
+  return true;
+}
+
+int run(const Choices& c) {
+  if (c.start != "rectangle" && c.start != "points") return fail("the start is rectangle or points");
+  if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
+    return fail("seeds, jobs and frames must be positive");
+  RenderedOptions options;
+  if (!prepare(c, options)) return fail("no scene '" + c.scene + "'");
+  const char* field = nullptr;
+  if (pf_config_check(&options.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
+  pf_sim_t* probe = pf_sim_open(c.scene.c_str(), &options.sim);
+  pf_target_t target;
+  const bool possible = probe && pf_sim_target(probe, PF_TARGET_RECTANGLE, &target) == PF_OK;
+  pf_sim_close(probe);
+  if (!possible) return fail("an option is out of its range, or the scene has no target");
+
+  const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(c.frames);
+  Job job{&options, c.first_seed, static_cast<RenderedSummary*>(shared_memory(seeds * sizeof(RenderedSummary))),
+          static_cast<FrameRow*>(shared_memory(seeds * frames * sizeof(FrameRow)))};
+  if (!job.summaries || !job.rows) return fail("no memory");
+  if (!in_processes(c.seeds, c.jobs, "rendered", run_one, &job)) return fail("a run did not come to its end");
+  const Runs runs{c.seeds, c.frames, c.first_seed, job.rows};
+  json out = {{"experiment", "rendered"},
+              {"settings",
+               {{"scene", c.scene},
+                {"start", c.start},
+                {"first_seed", c.first_seed},
+                {"noise_grey", c.noise},
+                {"exposure_s", c.exposure_s},
+                {"blur_samples", c.blur},
+                {"readout_s", c.readout_s},
+                {"sigma_pixel", options.config.sigma_pixel}}}};
+  out["cases"][c.scene] = summarise_runs(runs, job.summaries);
+  print_runs(out["cases"][c.scene]);
+  if (!c.csv.empty() && !write_csv(runs, c.csv, "rendered_" + c.scene)) return fail("cannot write to " + c.csv);
+  if (!c.json_file.empty() && !write_json(c.json_file, out)) return fail("cannot write " + c.json_file);
+  return 0;
+}
+
+}  // namespace
+
+void add_rendered(CLI::App& app, int& result) {
+  auto c = std::make_shared<Choices>();
+  CLI::App* command = app.add_subcommand("rendered", "Honesty of the whole library on rendered frames");
+  command->add_option("--scene", c->scene, "desk room wall person exposure repeat");
+  command->add_option("--start", c->start,
+                      "rectangle: found by itself; points: its corners, about a pose from its prior");
+  command->add_option("--seeds", c->seeds, "how many runs");
+  command->add_option("--first-seed", c->first_seed, "seed of the first run");
+  command->add_option("--frames", c->frames, "of each run");
+  command->add_option("--jobs", c->jobs, "processes at a time");
+  command->add_option("--json", c->json_file, "report to write");
+  command->add_option("--csv", c->csv, "folder for per-frame tables");
+  command->add_option("--noise", c->noise, "standard deviation of a pixel [grey levels]");
+  command->add_option("--exposure", c->exposure_s, "[s]");
+  command->add_option("--blur", c->blur, "views averaged over the exposure");
+  command->add_option("--readout", c->readout_s, "rolling shutter, first to last row [s]");
+  command->add_option("--sigma-px", c->sigma_pixel, "the filter's own floor of a match's noise [px]; 0: its default");
+  command->callback([c, &result] { result = run(*c); });
+}
+
+}  // namespace pfsim
