@@ -1,0 +1,168 @@
+// Transitions of both motion models: F against central differences, the noise a covariance, two half steps one whole one.
+#include "filter/motion.h"
+#include "support/filter_cases.h"
+#include "support/numeric_jacobian.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr int kDim = Body::kMaxDim;
+using Vec12 = Eigen::Matrix<Scalar, kDim, 1>;
+using Mat12 = Eigen::Matrix<Scalar, kDim, kDim>;
+
+constexpr MotionNoise kNoise = {Scalar(0.8), Scalar(1.7)};
+constexpr Scalar kExact = kNumericJacobianIsFloat ? Scalar(1e-5) : Scalar(1e-13);
+
+Mat12 matrix(const Scalar* values, int dim) {
+  Mat12 m = Mat12::Zero();
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) m(i, j) = values[i * dim + j];
+  return m;
+}
+
+Body plus(Body body, const Vec12& e) {
+  body = moved(body, e.head<6>());
+  body.v_W += e.segment<3>(6);
+  body.w_C += e.tail<3>();
+  return body;
+}
+
+Vec12 minus(const Body& a, const Body& b) {
+  Vec12 e;
+  e.head<3>() = log_so3(a.q_WC * b.q_WC.conjugate());
+  e.segment<3>(3) = a.p_W - b.p_W;
+  e.segment<3>(6) = a.v_W - b.v_W;
+  e.tail<3>() = a.w_C - b.w_C;
+  return e;
+}
+
+void test_transition_of_constant_velocity_should_be_exact() {
+  SeededRandom random(51);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Body before = random_body(random);
+    const Scalar dt = static_cast<Scalar>(random.uniform(0.005, 1));
+    Body after = before;
+    Transition transition, unused;
+    predict_constant_velocity(after, dt, kNoise, &transition);
+    TEST_ASSERT_EQUAL_INT(kDim, transition.dim);
+    const auto moves = [&](const Vec12& e) {
+      Body body = plus(before, e);
+      predict_constant_velocity(body, dt, kNoise, &unused);
+      return minus(body, after);
+    };
+    check_jacobian<kDim, kDim>(matrix(transition.F, kDim), moves, "F");
+  }
+}
+
+void test_transition_of_constant_position_should_be_the_identity() {
+  SeededRandom random(52);
+  const Body before = random_body(random);
+  Body after = before;
+  Transition transition;
+  predict_constant_position(after, Scalar(0.1), kNoise, &transition);
+  TEST_ASSERT_EQUAL_INT(Body::kPoseDim, transition.dim);
+  TEST_ASSERT_TRUE(minus(after, before).norm() == 0);
+  for (int i = 0; i < 36; ++i) TEST_ASSERT_TRUE(transition.F[i] == (i % 7 == 0 ? Scalar(1) : Scalar(0)));
+}
+
+/// Symmetric to rounding, and positive definite, by elimination.
+void check_noise(const Transition& transition) {
+  const int n = transition.dim;
+  Dense Q = matrix(transition.Q, n).topLeftCorner(n, n).cast<double>();
+  // Scaled to a diagonal of one, so that one bound does for every power of dt.
+  const Eigen::VectorXd d = Q.diagonal().cwiseSqrt().cwiseInverse();
+  Q = d.asDiagonal() * Q * d.asDiagonal();
+  const Dense asymmetry = Q - Q.transpose();
+  TEST_ASSERT_TRUE(asymmetry.cwiseAbs().maxCoeff() < (kNumericJacobianIsFloat ? 1e-6 : 1e-15));
+  for (int j = 0; j < n; ++j) {
+    TEST_ASSERT_TRUE_MESSAGE(Q(j, j) > 1e-3, "the noise is not positive");
+    for (int i = j + 1; i < n; ++i) Q.row(i) -= Q(i, j) / Q(j, j) * Q.row(j);
+  }
+}
+
+void test_noise_should_be_symmetric_and_positive_for_short_and_long_steps() {
+  SeededRandom random(53);
+  for (const double dt : {1e-4, 0.01, 0.033, 0.5, 2.0}) {
+    Body body = random_body(random);
+    Transition transition;
+    predict_constant_velocity(body, static_cast<Scalar>(dt), kNoise, &transition);
+    check_noise(transition);
+    predict_constant_position(body, static_cast<Scalar>(dt), kNoise, &transition);
+    check_noise(transition);
+  }
+}
+
+/// P through one step of dt, or through `steps` of dt / steps.
+Mat12 through(Body* body, Scalar dt, int steps) {
+  Mat12 P = Mat12::Zero();
+  for (int i = 0; i < steps; ++i) {
+    Transition t;
+    predict_constant_velocity(*body, dt / static_cast<Scalar>(steps), kNoise, &t);
+    const Mat12 F = matrix(t.F, kDim), FP = F.lazyProduct(P);
+    P = Mat12(FP.lazyProduct(F.transpose())) + matrix(t.Q, kDim);
+  }
+  return P;
+}
+
+void test_two_half_steps_should_be_one_whole_step_when_the_camera_does_not_turn() {
+  SeededRandom random(54);
+  Body whole = random_body(random);
+  whole.w_C.setZero();
+  Body halves = whole;
+  const Mat12 P1 = through(&whole, Scalar(0.2), 1), P2 = through(&halves, Scalar(0.2), 2);
+  TEST_ASSERT_TRUE(minus(whole, halves).norm() < kExact);
+  TEST_ASSERT_TRUE((P1 - P2).cwiseAbs().maxCoeff() < kExact);
+}
+
+void test_two_half_steps_should_be_one_whole_step_to_first_order_in_the_turn() {
+  SeededRandom random(55);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Body start = random_body(random);
+    Scalar error[2];
+    for (int k = 0; k < 2; ++k) {
+      const Scalar dt = k == 0 ? Scalar(0.2) : Scalar(0.1);
+      Body whole = start, halves = start;
+      const Mat12 P1 = through(&whole, dt, 1), P2 = through(&halves, dt, 2);
+      TEST_ASSERT_TRUE(minus(whole, halves).norm() < kExact);  // the mean is exact
+      // Entries have different powers of dt: each against its own standard deviations.
+      error[k] = 0;
+      for (int i = 0; i < kDim; ++i)
+        for (int j = 0; j < kDim; ++j)
+          error[k] = std::max(error[k], std::abs(P1(i, j) - P2(i, j)) / std::sqrt(P1(i, i) * P1(j, j)));
+      TEST_ASSERT_TRUE(error[k] < start.w_C.norm() * dt);
+    }
+    // At least linear in dt: half the step, at most about half the error.
+    if (!kNumericJacobianIsFloat) TEST_ASSERT_TRUE(error[1] < Scalar(0.6) * error[0]);
+  }
+}
+
+void test_variance_should_grow_as_the_densities_say() {
+  Body body;
+  const Scalar dt = Scalar(0.25);
+  Transition t;
+  predict_constant_velocity(body, dt, kNoise, &t);
+  const Mat12 Q = matrix(t.Q, kDim);
+  const Scalar q2 = kNoise.linear * kNoise.linear, a2 = kNoise.angular * kNoise.angular;
+  TEST_ASSERT_TRUE(std::abs(Q(6, 6) - q2 * dt) < kExact && std::abs(Q(9, 9) - a2 * dt) < kExact);
+  TEST_ASSERT_TRUE(std::abs(Q(3, 3) - q2 * dt * dt * dt / 3) < kExact);
+  TEST_ASSERT_TRUE(std::abs(Q(3, 6) - q2 * dt * dt / 2) < kExact && std::abs(Q(0, 9) - a2 * dt * dt / 2) < kExact);
+  predict_constant_position(body, dt, kNoise, &t);
+  TEST_ASSERT_TRUE(std::abs(t.Q[0] - a2 * dt) < kExact && std::abs(t.Q[3 * 6 + 3] - q2 * dt) < kExact);
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_transition_of_constant_velocity_should_be_exact);
+  RUN_TEST(test_transition_of_constant_position_should_be_the_identity);
+  RUN_TEST(test_noise_should_be_symmetric_and_positive_for_short_and_long_steps);
+  RUN_TEST(test_two_half_steps_should_be_one_whole_step_when_the_camera_does_not_turn);
+  RUN_TEST(test_two_half_steps_should_be_one_whole_step_to_first_order_in_the_turn);
+  RUN_TEST(test_variance_should_grow_as_the_densities_say);
+  return UNITY_END();
+}
