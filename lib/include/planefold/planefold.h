@@ -53,10 +53,11 @@ typedef enum pf_status {
   PF_NOTE_UNUSABLE = 4,  /* taken; the image has no usable content (black, white, blurred out); pose coasts */
   PF_NOTE_TRUNCATED = 5, /* done; there was more than your array holds, *count says how many there are */
 
-  PF_ERROR_NULL = -1,      /* a pointer that must not be null is */
-  PF_ERROR_CONFIG = -2,    /* a field of the config is out of its range; pf_config_check names it */
-  PF_ERROR_VERSION = -3,   /* size or version of the structure belong to another release of this header */
-  PF_ERROR_SCALAR = -4,    /* the config was made for the other library (planefold computes in double, planefoldf in float) */
+  PF_ERROR_NULL = -1,    /* a pointer that must not be null is */
+  PF_ERROR_CONFIG = -2,  /* a field of the config is out of its range; pf_config_check names it */
+  PF_ERROR_VERSION = -3, /* size or version of the structure belong to another release of this header */
+  PF_ERROR_SCALAR =
+      -4, /* the config was made for the other library (planefold computes in double, planefoldf in float) */
   PF_ERROR_MEMORY = -5,    /* the block is smaller than pf_memory_query said */
   PF_ERROR_ALIGNMENT = -6, /* the block does not begin at a multiple of pf_memory_t.alignment */
   PF_ERROR_SIZE = -7,      /* width, height or stride of the image do not fit the calibration */
@@ -68,7 +69,7 @@ typedef enum pf_status {
 } pf_status_t;
 
 /* One line in English for a status; never null. */
-PF_API const char *pf_status_text(pf_status_t status);
+PF_API const char* pf_status_text(pf_status_t status);
 
 /* ---------------------------------------------------------------------------------------------------- camera -- */
 
@@ -76,22 +77,22 @@ typedef enum pf_camera_model {
   PF_CAMERA_PINHOLE = 1,     /* no distortion */
   PF_CAMERA_RADTAN = 2,      /* distortion = k1 k2 p1 p2 k3 (Brown-Conrady; OpenCV and ROS plumb_bob order) */
   PF_CAMERA_EQUIDISTANT = 3, /* distortion = k1 k2 k3 k4 (Kannala-Brandt; OpenCV fisheye) */
-  PF_CAMERA_DIVISION = 4     /* distortion = k [1/px^2]: r_d = r_u / sqrt(1 + 2 k r_u^2), r in pixels (Harris; MonoSLAM) */
+  PF_CAMERA_DIVISION = 4 /* distortion = k [1/px^2]: r_d = r_u / sqrt(1 + 2 k r_u^2), r in pixels (Harris; MonoSLAM) */
 } pf_camera_model_t;
 
 typedef struct pf_camera {
-  int32_t model; /* pf_camera_model_t */
-  int32_t width, height;       /* [px] 32 .. 4096 */
-  double fx, fy, cx, cy;       /* [px] */
-  double distortion[8];        /* as the model says; unused entries are zero */
+  int32_t model;         /* pf_camera_model_t */
+  int32_t width, height; /* [px] 32 .. 4096 */
+  double fx, fy, cx, cy; /* [px] */
+  double distortion[8];  /* as the model says; unused entries are zero */
 } pf_camera_t;
 
 /* Pixel of a point in C, z > 0 (equidistant: anywhere but the optical centre).
  * PF_ERROR_RANGE: behind the camera or where the model is not one to one; the pixel may lie outside of the image. */
-PF_API pf_status_t pf_camera_project(const pf_camera_t *camera, const double p_C[3], double pixel[2]);
+PF_API pf_status_t pf_camera_project(const pf_camera_t* camera, const double p_C[3], double pixel[2]);
 
 /* Unit ray in C that projects to a pixel. PF_ERROR_RANGE where the model has none. */
-PF_API pf_status_t pf_camera_unproject(const pf_camera_t *camera, const double pixel[2], double ray_C[3]);
+PF_API pf_status_t pf_camera_unproject(const pf_camera_t* camera, const double pixel[2], double ray_C[3]);
 
 /* ---------------------------------------------------------------------------------------------------- config -- */
 
@@ -127,14 +128,15 @@ typedef struct pf_config {
   int32_t max_observations; /* features measured in one frame, 8 .. 200. Default 60 */
 
   /* Motion. Densities are those of white noise: over a time dt the velocity's variance grows by density^2 dt. */
-  uint32_t motion;                    /* pf_motion_t. Default constant velocity */
+  uint32_t motion;                     /* pf_motion_t. Default constant velocity */
   double linear_acceleration_density;  /* [m/s^2/sqrt(Hz)]  > 0. Default 1 */
   double angular_acceleration_density; /* [rad/s^2/sqrt(Hz)] > 0. Default 2 */
   double linear_walk;                  /* [m/sqrt(s)]  > 0, constant position only. Default 0.1 */
   double angular_walk;                 /* [rad/sqrt(s)] > 0, constant position only. Default 0.2 */
 
   /* Measurements. */
-  double sigma_pixel;      /* [px] 0.01 .. 10. Default 0.1. Of a match in an image: what remains beside the noise that the image
+  double
+      sigma_pixel; /* [px] 0.01 .. 10. Default 0.1. Of a match in an image: what remains beside the noise that the image
                               itself shows (lens, warp, interpolation). Of an observation: all of it, where it says nothing */
   double gate_probability; /* of a true match passing the gate, 0.9 .. 0.9999. Default 0.99 */
 
@@ -144,7 +146,7 @@ typedef struct pf_config {
   uint32_t depth_from_map;             /* 0 or 1. Default 1 */
   double inverse_depth_relative_sigma; /* 0.05 .. 5. Default 2: hardly a prior, since
                                           a prior that is wrong in the same way for many features bends the scale */
-  double linearity_index;              /* below it an inverse-depth point becomes a 3-D point, 0.001 .. 1. Default 0.1 */
+  double linearity_index; /* below it an inverse-depth point becomes a 3-D point, 0.001 .. 1. Default 0.1 */
 
   /* Map. */
   int32_t features_in_view; /* features that the front end tries to keep in view, 8 .. max_observations. Default 45 */
@@ -157,16 +159,16 @@ typedef struct pf_config {
   uint32_t keep_gauge;
 
   /* Nanoseconds of any steady clock, for the cost of each stage in the report; null reads no clock. Default null */
-  int64_t (*clock_ns)(void *user);
+  int64_t (*clock_ns)(void* user);
   /* One line of plain text on what the library decided (a start, a reset, a loss); null keeps silent. Default null */
-  void (*log)(void *user, const char *line);
-  void *user; /* handed to both */
+  void (*log)(void* user, const char* line);
+  void* user; /* handed to both */
 } pf_config_t;
 
-PF_API pf_status_t pf_config_default(pf_config_t *config);
+PF_API pf_status_t pf_config_default(pf_config_t* config);
 
 /* PF_OK, or an error; *field (may be null) is then the name of the first bad field and stays valid for ever. */
-PF_API pf_status_t pf_config_check(const pf_config_t *config, const char **field);
+PF_API pf_status_t pf_config_check(const pf_config_t* config, const char** field);
 
 /* ---------------------------------------------------------------------------------------------------- memory -- */
 
@@ -176,15 +178,15 @@ typedef struct pf_memory {
   size_t stack_bytes; /* the most stack that any call uses (a tested bound) */
 } pf_memory_t;
 
-PF_API pf_status_t pf_memory_query(const pf_config_t *config, pf_memory_t *memory);
+PF_API pf_status_t pf_memory_query(const pf_config_t* config, pf_memory_t* memory);
 
 typedef struct pf_slam pf_slam_t; /* lives in your block */
 
 /* Carve the block. On an error *slam is null and the block may be reused. What the block held before has no influence. */
-PF_API pf_status_t pf_create(const pf_config_t *config, void *block, size_t bytes, pf_slam_t **slam);
+PF_API pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_slam_t** slam);
 
 /* Back to the moment after pf_create: same config, no map, no pose, any timestamp is welcome. */
-PF_API pf_status_t pf_reset(pf_slam_t *slam);
+PF_API pf_status_t pf_reset(pf_slam_t* slam);
 
 /* ---------------------------------------------------------------------------------------------------- starting -- */
 
@@ -200,8 +202,9 @@ typedef struct pf_pose {
 #define PF_TARGET_MAX_POINTS 16
 
 typedef enum pf_target_kind {
-  PF_TARGET_RECTANGLE = 1, /* a dark rectangle on a light ground, of known size, found by itself (Gee 2007, section 4) */
-  PF_TARGET_POINTS = 2     /* known points, seen from about a known pose */
+  PF_TARGET_RECTANGLE =
+      1,               /* a dark rectangle on a light ground, of known size, found by itself (Gee 2007, section 4) */
+  PF_TARGET_POINTS = 2 /* known points, seen from about a known pose */
 } pf_target_kind_t;
 
 typedef struct pf_target {
@@ -211,32 +214,32 @@ typedef struct pf_target {
   /* Points. */
   int32_t count;                            /* 4 .. PF_TARGET_MAX_POINTS */
   double points_W[PF_TARGET_MAX_POINTS][3]; /* [m] */
-  pf_pose_t first_pose;                     /* about where the camera is at first; its covariance says how sure, t_ns is unused */
+  pf_pose_t first_pose; /* about where the camera is at first; its covariance says how sure, t_ns is unused */
   /* Both. */
   double sigma_m; /* how well the target's points are known [m] > 0 */
 } pf_target_t;
 
 /* Start in front of a known target. Before the first frame only. Until the target is seen the state is starting. */
-PF_API pf_status_t pf_start_from_target(pf_slam_t *slam, const pf_target_t *target);
+PF_API pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target);
 
 /* Start from a known pose, with its covariance and velocity; velocity_covariance is 6x6 of (v_W, w_C). Before the first frame.
  * With neither start, W is the first camera and the scale is set by start_depth. */
-PF_API pf_status_t pf_start_from_pose(pf_slam_t *slam, const pf_pose_t *pose, const double velocity_covariance[36]);
+PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]);
 
 /* The target's own points are measured no more (they stay in the map as what they were). */
-PF_API pf_status_t pf_withdraw_target(pf_slam_t *slam);
+PF_API pf_status_t pf_withdraw_target(pf_slam_t* slam);
 
 /* ---------------------------------------------------------------------------------------------------- input -- */
 
 typedef struct pf_image {
-  const uint8_t *pixels; /* grey levels; read during the call only */
+  const uint8_t* pixels; /* grey levels; read during the call only */
   int32_t width, height; /* [px] those of the calibration */
   int32_t stride;        /* bytes from row to row, >= width */
   int64_t t_ns;          /* middle of the exposure, after that of every earlier frame */
 } pf_image_t;
 
 /* Track one frame. PF_OK means tracked. */
-PF_API pf_status_t pf_push_frame(pf_slam_t *slam, const pf_image_t *image);
+PF_API pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image);
 
 /* A feature that something else has found and recognised: the front door for trackers in hardware and for simulations.
  * A new id begins a feature (if the map has room for it), a known one measures it. With a target of points, the ids 0 .. count-1
@@ -247,12 +250,13 @@ typedef struct pf_observation {
   double sigma_px; /* 0: that of the config */
 } pf_observation_t;
 
-PF_API pf_status_t pf_push_observations(pf_slam_t *slam, int64_t t_ns, const pf_observation_t *observations, size_t count);
+PF_API pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations,
+                                        size_t count);
 
 /* A change of velocity that is known beforehand (a motor, a thruster, the steering of a simulation): it is added at the next
  * frame's prediction to the velocities, in camera axes: v_W += R_WC dv_C [m/s], w_C += dw_C [rad/s]. Calls add up.
  * PF_ERROR_STATE with the constant-position model, which has no velocity. */
-PF_API pf_status_t pf_push_steering(pf_slam_t *slam, const double dv_C[3], const double dw_C[3]);
+PF_API pf_status_t pf_push_steering(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]);
 
 /* ---------------------------------------------------------------------------------------------------- output -- */
 
@@ -263,16 +267,16 @@ typedef enum pf_state {
   PF_STATE_LOST = 3
 } pf_state_t;
 
-PF_API pf_status_t pf_get_state(const pf_slam_t *slam, pf_state_t *state);
+PF_API pf_status_t pf_get_state(const pf_slam_t* slam, pf_state_t* state);
 
 /* Pose at the last frame. PF_ERROR_STATE before the first one. */
-PF_API pf_status_t pf_get_pose(const pf_slam_t *slam, pf_pose_t *pose);
+PF_API pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose);
 
 /* Pose predicted to a time not before the last frame, for display; the state does not change. */
-PF_API pf_status_t pf_predict_pose(const pf_slam_t *slam, int64_t t_ns, pf_pose_t *pose);
+PF_API pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose);
 
 /* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be null). */
-PF_API pf_status_t pf_project_point(const pf_slam_t *slam, const double p_W[3], double pixel[2], double covariance[4]);
+PF_API pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double pixel[2], double covariance[4]);
 
 typedef enum pf_feature_kind {
   PF_FEATURE_INVERSE_DEPTH = 1, /* direction known, depth not yet */
@@ -280,9 +284,9 @@ typedef enum pf_feature_kind {
 } pf_feature_kind_t;
 
 typedef struct pf_feature {
-  uint32_t id;          /* never used twice */
-  uint32_t track;       /* pf_observation_t.id, for what came in through pf_push_observations; target points: their index */
-  uint32_t kind;        /* pf_feature_kind_t */
+  uint32_t id;    /* never used twice */
+  uint32_t track; /* pf_observation_t.id, for what came in through pf_push_observations; target points: their index */
+  uint32_t kind;  /* pf_feature_kind_t */
   uint32_t is_target;   /* 1 for a point of the target */
   double p_W[3];        /* [m] inverse depth: at the mean inverse depth */
   double covariance[9]; /* 3x3; inverse depth: to first order */
@@ -291,7 +295,7 @@ typedef struct pf_feature {
 } pf_feature_t;
 
 /* Copy of the map. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
-PF_API pf_status_t pf_get_features(const pf_slam_t *slam, pf_feature_t *features, size_t capacity, size_t *count);
+PF_API pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_t capacity, size_t* count);
 
 typedef enum pf_track_status {
   PF_TRACK_INLIER = 1,  /* measured and used */
@@ -311,7 +315,7 @@ typedef struct pf_track {
 } pf_track_t;
 
 /* What was looked for in the last frame, and what was found. */
-PF_API pf_status_t pf_get_tracks(const pf_slam_t *slam, pf_track_t *tracks, size_t capacity, size_t *count);
+PF_API pf_status_t pf_get_tracks(const pf_slam_t* slam, pf_track_t* tracks, size_t capacity, size_t* count);
 
 enum {
   PF_STAGE_PYRAMID = 0, /* image levels */
@@ -326,22 +330,23 @@ enum {
 typedef struct pf_report {
   int64_t t_ns;
   pf_state_t state;
-  int32_t frames;  /* frames pushed since create or reset */
+  int32_t frames; /* frames pushed since create or reset */
   int32_t attempts, matches, inliers, new_features, evicted;
   int32_t features, features_point, features_inverse_depth;
   int32_t state_dim;
-  double nis;      /* normalised innovation squared of this frame's inliers */
-  int32_t nis_dof; /* and its degrees of freedom */
-  uint32_t kernels; /* pf_kernels_t in use */
+  double nis;                       /* normalised innovation squared of this frame's inliers */
+  int32_t nis_dof;                  /* and its degrees of freedom */
+  uint32_t kernels;                 /* pf_kernels_t in use */
   int64_t stage_ns[PF_STAGE_COUNT]; /* all zero without a clock */
 } pf_report_t;
 
-PF_API pf_status_t pf_get_report(const pf_slam_t *slam, pf_report_t *report);
+PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);
 
 /* Information that the filter holds about what a camera alone cannot observe: N^T P^-1 N, 7x7, row-major, in the order
  * translation, rotation, log scale of the whole world. It must never grow without absolute data. For tests and
  * simulations: cubic in the state's dimension. scratch needs scratch_count >= state_dim * (state_dim + 8) doubles. */
-PF_API pf_status_t pf_get_gauge_information(const pf_slam_t *slam, double *scratch, size_t scratch_count, double information[49]);
+PF_API pf_status_t pf_get_gauge_information(const pf_slam_t* slam, double* scratch, size_t scratch_count,
+                                            double information[49]);
 
 #ifdef __cplusplus
 }
