@@ -1,0 +1,229 @@
+// What one camera cannot observe: shifting, turning and scaling the whole world must not be seen by any measurement, must be
+// carried by every verb of the filter, and must gain no information over a run.
+#include "filter/gauge_information.h"
+#include "support/filter_cases.h"
+#include "support/test_cameras.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr int kShiftAndTurn = 6, kAll = 7;
+
+double largest(const Dense& A) { return A.cwiseAbs().maxCoeff(); }
+
+void test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale() {
+  SeededRandom random(61);
+  for (int trial = 0; trial < 20; ++trial) {
+    TestFilter filter(true);
+    const std::vector<int> slots = fill_map(random, filter, 6, 8);
+    filter.set_P(random_covariance(random, filter.dim(), 0.1));
+    const Camera camera = test_camera_of(trial % kTestCameras);
+    const Dense N = filter.gauge();
+    for (const int slot : slots) {
+      Observation o;
+      TEST_ASSERT_TRUE(filter->predict_pixel(camera, slot, &o));
+      const Dense H = dense_rows(o, filter.dim());
+      for (int c = 0; c < kAll; ++c)
+        TEST_ASSERT_TRUE(largest(H * N.col(c)) < 1e-11 * (1 + largest(H) * largest(N.col(c))));
+    }
+  }
+}
+
+/// Gives the filter a covariance of nothing but gauge directions, N A N^T, applies a verb, and asks that it is N A N^T at the new
+/// state: M N- = N+ for what the verb does with errors, over the first `directions`.
+template <typename Verb>
+void carries(const char* name, int directions, SeededRandom& random, Verb verb) {
+  for (int trial = 0; trial < 10; ++trial) {
+    TestFilter filter(true);
+    const std::vector<int> slots = fill_map(random, filter, 4, 6);
+    const Dense A = random_covariance(random, directions, 1);
+    const Dense before = filter.gauge().leftCols(directions);
+    filter.set_P(before * A * before.transpose());
+    verb(filter, slots);
+    const Dense after = filter.gauge().leftCols(directions);
+    const Dense expected = after * A * after.transpose();
+    const double error = largest(filter.P() - expected) / largest(expected);
+    if (!(error < 1e-12)) std::printf("%s: relative error %.3g\n", name, error);
+    TEST_ASSERT_TRUE_MESSAGE(error < 1e-12, name);
+  }
+}
+
+void test_prediction_should_carry_every_direction() {
+  SeededRandom random(62);
+  const auto predict = [](TestFilter& filter, const std::vector<int>&) {
+    Transition transition;
+    predict_constant_velocity(filter->body(), Scalar(0.05), {Scalar(0), Scalar(0)}, &transition);
+    filter->predict(transition);
+  };
+  carries("predict", kAll, random, predict);
+}
+
+void test_damping_should_carry_every_direction() {
+  SeededRandom random(63);
+  carries("damp", kAll, random, [](TestFilter& filter, const std::vector<int>&) { filter->damp(Scalar(0.7)); });
+}
+
+void test_steering_should_carry_shifts_and_turns() {
+  SeededRandom random(64);  // in metres, so it does not scale with the world
+  const auto steer = [](TestFilter& filter, const std::vector<int>&) {
+    filter->steer(Vec3(Scalar(0.3), Scalar(-0.2), Scalar(0.5)), Vec3(Scalar(0.1), Scalar(0.4), Scalar(-0.2)));
+  };
+  carries("steer", kShiftAndTurn, random, steer);
+}
+
+void test_a_new_anchor_should_carry_every_direction() {
+  SeededRandom random(65);
+  carries("add_anchor", kAll, random, [](TestFilter& filter, const std::vector<int>&) { filter->add_anchor(); });
+}
+
+void test_a_new_inverse_depth_should_carry_shifts_and_turns() {
+  SeededRandom random(66);  // its depth has a prior in metres
+  const auto begin = [](TestFilter& filter, const std::vector<int>&) {
+    const Vec3 ray = Vec3(Scalar(0.2), Scalar(-0.1), 1).normalized();
+    filter->add_inverse_depth(filter->add_anchor(), ray, Mat32::Zero(), Mat2::Zero(), Scalar(0.5), Scalar(0));
+  };
+  carries("add_inverse_depth", kShiftAndTurn, random, begin);
+}
+
+void test_conversion_should_carry_every_direction() {
+  SeededRandom random(67);
+  const auto convert = [](TestFilter& filter, const std::vector<int>& slots) {
+    filter->convert_to_point(slots.back());
+    filter->convert_to_point(slots[slots.size() - 2]);
+  };
+  carries("convert_to_point", kAll, random, convert);
+  const auto convert_all = [](TestFilter& filter, const std::vector<int>& slots) {
+    for (std::size_t i = 4; i < slots.size(); ++i) filter->convert_to_point(slots[i]);  // their anchors go too
+  };
+  carries("convert_to_point of all", kAll, random, convert_all);
+}
+
+void test_removal_should_carry_every_direction() {
+  SeededRandom random(68);
+  const auto remove = [](TestFilter& filter, const std::vector<int>& slots) {
+    const int gone[3] = {slots[1], slots[4], slots[7]};
+    filter->remove(gone, 3);
+  };
+  carries("remove", kAll, random, remove);
+}
+
+/// Largest growth of the information along any gauge direction in one frame, relative to what there was, over 60 frames of a
+/// hand that moves in front of 16 points whose depths are not known at first.
+struct Growth {
+  double shift_and_turn = 0, scale = 0;
+};
+
+Growth run(bool keep_gauge, SeededRandom& random) {
+  TestFilter filter(keep_gauge);
+  const Camera camera = pinhole_camera();
+  constexpr int kPoints = 16, kFrames = 60;
+  constexpr Scalar dt = Scalar(1) / Scalar(30), sigma = Scalar(0.5);
+  Body truth;
+  truth.q_WC = random_turn(random, 0.3);
+  truth.p_W = random.normals<3>(0.5);
+  filter->body() = truth;
+  filter.set_P(Eigen::VectorXd::Constant(Body::kMaxDim, 0.01).asDiagonal());
+
+  Vec3 point[kPoints];
+  int slot[kPoints];
+  const int anchor = filter->add_anchor();
+  for (int i = 0; i < kPoints; ++i) {
+    point[i] = point_in_view(random, truth);
+    Vec2 z;
+    Vec3 ray;
+    Mat32 J;
+    TEST_ASSERT_TRUE(project(camera, truth.q_WC.conjugate() * (point[i] - truth.p_W), &z));
+    TEST_ASSERT_TRUE(unproject(camera, z + random.normals<2>(static_cast<double>(sigma)), &ray, &J));
+    slot[i] = filter->add_inverse_depth(anchor, ray, J, Mat2::Identity() * (sigma * sigma), Scalar(0.5), Scalar(0.5));
+  }
+
+  Growth growth;
+  Dense before;
+  int points = 0;
+  for (int k = 0; k < kFrames; ++k) {
+    truth.v_W = Vec3(Scalar(0.5) * std::cos(Scalar(k) / 8), Scalar(0.3) * std::sin(Scalar(k) / 11), Scalar(0.1));
+    truth.w_C = Vec3(Scalar(0.2) * std::sin(Scalar(k) / 7), Scalar(-0.2) * std::cos(Scalar(k) / 9), Scalar(0.05));
+    Transition transition;
+    predict_constant_velocity(truth, dt, {}, &transition);
+    predict_constant_velocity(filter->body(), dt, {Scalar(3), Scalar(3)}, &transition);
+    filter->predict(transition);
+    Observation o[kPoints];
+    int count = 0;
+    for (int i = 0; i < kPoints; ++i) {
+      Vec2 z;
+      if (!project(camera, truth.q_WC.conjugate() * (point[i] - truth.p_W), &z)) continue;
+      if (!filter->predict_pixel(camera, slot[i], &o[count])) continue;
+      o[count].measured = z + random.normals<2>(static_cast<double>(sigma));
+      o[count].noise = Mat2::Identity() * (sigma * sigma) + o[count].second_order;
+      ++count;
+    }
+    filter->begin_update(o, count);
+    TEST_ASSERT_TRUE(filter->finish_update(o, count, nullptr, nullptr));
+    points = 0;
+    for (int i = 0; i < kPoints; ++i) {
+      const Block& block = filter->state().block[slot[i]];
+      // Every second one is converted on the way, as soon as its depth is surely positive.
+      const Scalar rho = block.inverse_depth().rho;
+      if (block.kind == BlockKind::kInverseDepth && i % 2 == 0 && k > 20 &&
+          rho * rho > Scalar(9) * filter->variance(block.first + 2))
+        filter->convert_to_point(slot[i]);
+      points += filter->state().block[slot[i]].kind == BlockKind::kPoint ? 1 : 0;
+    }
+
+    const int n = filter.dim();
+    std::vector<double> scratch(static_cast<std::size_t>(n * (n + 8)));
+    double information[49];
+    TEST_ASSERT_TRUE(gauge_information(*filter, scratch.data(), information));
+    const Dense now = Eigen::Map<const Eigen::Matrix<double, 7, 7, Eigen::RowMajor>>(information);
+    // Where the camera is seen from a state that is far from W's origin, turns and shifts mix: compare along the axes.
+    for (int i = 0; i < kAll && k > 0; ++i) {
+      const double grown = (now(i, i) - before(i, i)) / before(i, i);
+      double& worst = i < kShiftAndTurn ? growth.shift_and_turn : growth.scale;
+      worst = std::max(worst, grown);
+    }
+    before = now;
+  }
+  TEST_ASSERT_GREATER_THAN_INT(4, points);  // the run went through conversions
+  TEST_ASSERT_TRUE((filter->state().body.p_W - truth.p_W).norm() < Scalar(0.5));
+  std::printf("largest growth in a frame: shift and turn %.3g, scale %.3g; %d points\n", growth.shift_and_turn,
+              growth.scale, points);
+  return growth;
+}
+
+void test_information_about_the_gauge_should_never_grow_when_it_is_kept() {
+  SeededRandom random(69);
+  for (int trial = 0; trial < 5; ++trial) {
+    const Growth growth = run(true, random);
+    TEST_ASSERT_TRUE(growth.shift_and_turn < 1e-9);
+    TEST_ASSERT_TRUE(growth.scale < 1e-9);
+  }
+}
+
+void test_information_about_the_gauge_should_grow_with_the_textbook_filter() {
+  SeededRandom random(70);
+  for (int trial = 0; trial < 5; ++trial) {
+    const Growth growth = run(false, random);
+    TEST_ASSERT_TRUE(growth.shift_and_turn > 1e-6);
+  }
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale);
+  RUN_TEST(test_prediction_should_carry_every_direction);
+  RUN_TEST(test_damping_should_carry_every_direction);
+  RUN_TEST(test_steering_should_carry_shifts_and_turns);
+  RUN_TEST(test_a_new_anchor_should_carry_every_direction);
+  RUN_TEST(test_a_new_inverse_depth_should_carry_shifts_and_turns);
+  RUN_TEST(test_conversion_should_carry_every_direction);
+  RUN_TEST(test_removal_should_carry_every_direction);
+  RUN_TEST(test_information_about_the_gauge_should_never_grow_when_it_is_kept);
+  RUN_TEST(test_information_about_the_gauge_should_grow_with_the_textbook_filter);
+  return UNITY_END();
+}
