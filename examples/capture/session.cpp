@@ -114,8 +114,8 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   view.has_pose = pf_get_pose(slam_, &view.pose) == PF_OK;
   // Tracked: the library says so (in the frame of the start the target alone carries the pose), or, while the depths are not known
   // yet, a pose from at least 8 gated inliers of this very frame.
-  view.tracked = view.has_pose && (view.status == PF_OK ||
-                                   (view.report.inliers >= 8 && view.report.state == PF_STATE_STARTING));
+  view.tracked =
+      view.has_pose && (view.status == PF_OK || (view.report.inliers >= 8 && view.report.state == PF_STATE_STARTING));
   size_t count = 0;
   view.tracks.resize(static_cast<size_t>(config_.max_observations + config_.max_features));
   if (pf_get_tracks(slam_, view.tracks.data(), view.tracks.size(), &count) < 0) {
