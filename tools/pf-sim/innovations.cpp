@@ -33,13 +33,22 @@ void InnovationSums::add(const InnovationSums& other) {
   match.add(other.match);
 }
 
-InnovationWatch::InnovationWatch(const pf_sim_t* sim, const pf_config_t& config, const pf_target_t& points)
+FrameDepth::FrameDepth(const pf_sim_t* sim, const pf_camera_t& camera)
     : sim_(sim),
-      camera_(config.camera),
+      width_(camera.width),
+      depth_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)) {}
+
+double FrameDepth::at(const pf_pose_t& truth, long x, long y) {
+  if (truth.t_ns != t_ns_) pf_sim_depth(sim_, &truth, depth_.data(), nullptr);
+  t_ns_ = truth.t_ns;
+  return static_cast<double>(depth_[static_cast<std::size_t>(y * width_ + x)]);
+}
+
+InnovationWatch::InnovationWatch(const pf_config_t& config, const pf_target_t& points)
+    : camera_(config.camera),
       points_(points),
       features_(static_cast<std::size_t>(config.max_features)),
-      tracks_(static_cast<std::size_t>(config.max_features + config.max_observations)),
-      depth_(static_cast<std::size_t>(config.camera.width) * static_cast<std::size_t>(config.camera.height)) {}
+      tracks_(static_cast<std::size_t>(config.max_features + config.max_observations)) {}
 
 /// The target's points are in the map from the first frame with a pose on, and their ids do not change.
 void InnovationWatch::learn_kinds(const pf_slam_t* slam) {
@@ -54,19 +63,16 @@ void InnovationWatch::learn_kinds(const pf_slam_t* slam) {
   }
 }
 
-void InnovationWatch::learn_places(const std::vector<pf_track_t>& tracks, const pf_pose_t& truth) {
-  bool cast = false;
+void InnovationWatch::learn_places(const pf_pose_t& truth, FrameDepth& depth) {
   const Pose pose{pf::sim::rotation_of(truth.q_WC), {truth.p_WC[0], truth.p_WC[1], truth.p_WC[2]}};
-  for (const pf_track_t& track : tracks) {
+  for (const pf_track_t& track : tracks_) {
     if (track.status != PF_TRACK_NEW) continue;
-    if (!cast) pf_sim_depth(sim_, &truth, depth_.data(), nullptr);
-    cast = true;
     const auto x = std::lround(track.measured_px[0]), y = std::lround(track.measured_px[1]);
     double ray[3];
     if (x < 0 || y < 0 || x >= camera_.width || y >= camera_.height ||
         pf_camera_unproject(&camera_, track.measured_px, ray) != PF_OK)
       continue;
-    const double z = static_cast<double>(depth_[static_cast<std::size_t>(y * camera_.width + x)]);
+    const double z = depth.at(truth, x, y);
     if (z > 0) place_W_[track.id] = pose.p_WC + pose.R_WC * (Vec3{ray[0], ray[1], ray[2]} * (z / ray[2]));
   }
 }
@@ -83,14 +89,14 @@ bool InnovationWatch::match_error(const pf_track_t& track, const Pose& truth, do
   return true;
 }
 
-void InnovationWatch::read(const pf_slam_t* slam, const pf_pose_t& truth) {
+void InnovationWatch::read(const pf_slam_t* slam, const pf_pose_t& truth, FrameDepth& depth) {
   ++frame_;
   learn_kinds(slam);
   std::size_t count = 0;
   tracks_.resize(tracks_.capacity());
   pf_get_tracks(slam, tracks_.data(), tracks_.size(), &count);
   tracks_.resize(std::min(count, tracks_.size()));
-  learn_places(tracks_, truth);
+  learn_places(truth, depth);
   const Pose pose{pf::sim::rotation_of(truth.q_WC), {truth.p_WC[0], truth.p_WC[1], truth.p_WC[2]}};
   for (const pf_track_t& track : tracks_) {
     // A track without an ellipse was not predicted: it started the run.

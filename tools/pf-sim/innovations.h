@@ -36,12 +36,26 @@ struct InnovationSums {
 /// A match that is further from its true place than this is one of another thing (an occluding edge) [px].
 constexpr double kMatchReach = 0.5;
 
+/// The true depth picture of a frame, made when it is first asked for.
+class FrameDepth {
+ public:
+  FrameDepth(const pf_sim_t* sim, const pf_camera_t& camera);
+  /// Along z [m]; 0 where nothing is.
+  double at(const pf_pose_t& truth, long x, long y);
+
+ private:
+  const pf_sim_t* sim_;
+  int width_;
+  std::int64_t t_ns_ = -1;
+  std::vector<float> depth_;
+};
+
 /// Reads a context's tracks after every frame. The place where a match should be is the truth's: the point of the surface
 /// that a feature's first pixel shows, or the target's corner, projected with the true pose.
 class InnovationWatch {
  public:
-  InnovationWatch(const pf_sim_t* sim, const pf_config_t& config, const pf_target_t& points);
-  void read(const pf_slam_t* slam, const pf_pose_t& truth);
+  InnovationWatch(const pf_config_t& config, const pf_target_t& points);
+  void read(const pf_slam_t* slam, const pf_pose_t& truth, FrameDepth& depth);
   const InnovationSums& sums(TrackKind kind) const { return sums_[static_cast<std::size_t>(kind)]; }
 
  private:
@@ -51,15 +65,13 @@ class InnovationWatch {
     bool match_valid = false;
   };
   void learn_kinds(const pf_slam_t* slam);
-  void learn_places(const std::vector<pf_track_t>& tracks, const pf_pose_t& truth);
+  void learn_places(const pf_pose_t& truth, FrameDepth& depth);
   bool match_error(const pf_track_t& track, const pf::sim::Pose& truth, double error[2]) const;
 
-  const pf_sim_t* sim_;
   pf_camera_t camera_;
   pf_target_t points_;
   std::vector<pf_feature_t> features_;
   std::vector<pf_track_t> tracks_;
-  std::vector<float> depth_;
   std::map<std::uint32_t, int> target_index_;       ///< of features that are points of the target
   std::map<std::uint32_t, pf::sim::Vec3> place_W_;  ///< true places
   std::map<std::uint32_t, Past> past_;

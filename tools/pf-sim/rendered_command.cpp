@@ -14,16 +14,20 @@ namespace {
 using nlohmann::json;
 
 struct Choices {
-  std::string scene = "desk", start = "rectangle", json_file, csv;
+  std::string scene = "desk", json_file, csv;
+  std::vector<std::string> starts{"rectangle"};
+  std::vector<double> sigma_pixels{0};
   int seeds = 20, frames = 300, jobs = 2, blur = 4;
   std::uint64_t first_seed = 1;
-  double noise = 2, exposure_s = 0.008, readout_s = 0, sigma_pixel = 0;
+  double noise = 2, exposure_s = 0.008, readout_s = 0;
 };
 
 struct Job {
   const RenderedOptions* options;
   std::uint64_t first_seed;
-  RenderedSummary* summaries;
+  std::size_t seeds;
+  RenderedSummary* summaries;  // seed by seed within each variant; rows likewise
+
   FrameRow* rows;
 };
 
@@ -34,9 +38,16 @@ int fail(const std::string& what) {
 
 void run_one(int index, void* context) {
   const Job& job = *static_cast<Job*>(context);
-  const std::size_t first = static_cast<std::size_t>(index) * static_cast<std::size_t>(job.options->sim.frames);
-  job.summaries[index] =
-      run_rendered(*job.options, job.first_seed + static_cast<std::uint64_t>(index), job.rows + first);
+  const std::size_t variants = job.options->variants.size(), frames = static_cast<std::size_t>(job.options->sim.frames);
+  const auto seed = static_cast<std::size_t>(index);
+  std::vector<RenderedSummary*> summaries;
+  std::vector<FrameRow*> rows;
+  for (std::size_t v = 0; v < variants; ++v) {
+    const std::size_t at = v * job.seeds + seed;
+    summaries.push_back(job.summaries + at);
+    rows.push_back(job.rows + at * frames);
+  }
+  run_rendered(*job.options, job.first_seed + seed, summaries, rows);
 }
 
 json innovations_json(const InnovationSums& s) {
@@ -98,9 +109,10 @@ void print_runs(const json& j) {
   std::printf("position NEES %.3f +- %.3f, median %.3f (3 dof); pose NEES %.3f, median %.3f (6 dof)\n",
               number("/nees_position/mean"), number("/nees_position/standard_error"), number("/nees_position/median"),
               number("/nees_pose/mean"), number("/nees_pose/median"));
-  std::printf("camera RMSE %.4f m, claimed %.4f m, so claimed over real %.2f; state %g, %g inliers\n",
-              number("/camera_rmse_m"), number("/camera_sigma_m"), number("/claimed_over_real"),
-              number("/state_dim/median"), number("/inliers_median"));
+  std::printf(
+      "camera RMSE %.4f m, claimed %.4f m, so claimed over real %.2f; state %g, %g inliers; joint NIS/dof %.3f\n",
+      number("/camera_rmse_m"), number("/camera_sigma_m"), number("/claimed_over_real"), number("/state_dim/median"),
+      number("/inliers_median"), number("/nis_per_dof"));
   std::printf("%g runs of %g frames: %g lost runs, %g lost frames, %.2f %% tracked, %.2f %% coasting\n",
               number("/runs"), number("/frames"), number("/lost_runs"), number("/lost_frames"),
               100 * number("/tracked_share"), 100 * number("/coasting_share"));
@@ -121,21 +133,43 @@ bool prepare(const Choices& c, RenderedOptions& o) {
   o.sim.exposure_s = c.exposure_s;
   o.sim.blur_samples = c.blur;
   o.sim.readout_s = c.readout_s;
-  pf_config_default(&o.config);
-  if (c.sigma_pixel > 0) o.config.sigma_pixel = c.sigma_pixel;
-  o.config.camera = o.sim.camera;
-  o.rectangle = c.start == "rectangle";
+  for (const std::string& start : c.starts)
+    for (const double sigma : c.sigma_pixels) {
+      Variant v;
+      pf_config_default(&v.config);
+      v.config.camera = o.sim.camera;
+      if (sigma > 0) v.config.sigma_pixel = sigma;
+      v.start = start == "rectangle" ? RenderedStart::kRectangle
+                : start == "points"  ? RenderedStart::kPoints
+                                     : RenderedStart::kPose;
+      o.variants.push_back(v);
+    }
   return true;
 }
 
+/// The scene's name alone where there is nothing to choose from.
+std::string label_of(const Choices& c, std::size_t variant, double sigma) {
+  std::string label = c.scene;
+  if (c.starts.size() > 1) label += "_" + c.starts[variant / c.sigma_pixels.size()];
+  if (c.sigma_pixels.size() > 1) {
+    char text[32];
+    std::snprintf(text, sizeof text, "_%g_px", sigma);
+    label += text;
+  }
+  return label;
+}
+
 int run(const Choices& c) {
-  if (c.start != "rectangle" && c.start != "points") return fail("the start is rectangle or points");
+  for (const std::string& start : c.starts)
+    if (start != "rectangle" && start != "points" && start != "pose")
+      return fail("the start is rectangle, points or pose");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
     return fail("seeds, jobs and frames must be positive");
   RenderedOptions options;
   if (!prepare(c, options)) return fail("no scene '" + c.scene + "'");
   const char* field = nullptr;
-  if (pf_config_check(&options.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
+  for (const Variant& v : options.variants)
+    if (pf_config_check(&v.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
   pf_sim_t* probe = pf_sim_open(c.scene.c_str(), &options.sim);
   pf_target_t target;
   const bool possible = probe && pf_sim_target(probe, PF_TARGET_RECTANGLE, &target) == PF_OK;
@@ -143,24 +177,31 @@ int run(const Choices& c) {
   if (!possible) return fail("an option is out of its range, or the scene has no target");
 
   const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(c.frames);
-  Job job{&options, c.first_seed, static_cast<RenderedSummary*>(shared_memory(seeds * sizeof(RenderedSummary))),
-          static_cast<FrameRow*>(shared_memory(seeds * frames * sizeof(FrameRow)))};
+  const std::size_t count = seeds * options.variants.size();
+  Job job{&options, c.first_seed, seeds, static_cast<RenderedSummary*>(shared_memory(count * sizeof(RenderedSummary))),
+          static_cast<FrameRow*>(shared_memory(count * frames * sizeof(FrameRow)))};
   if (!job.summaries || !job.rows) return fail("no memory");
   if (!in_processes(c.seeds, c.jobs, "rendered", run_one, &job)) return fail("a run did not come to its end");
-  const Runs runs{c.seeds, c.frames, c.first_seed, job.rows};
   json out = {{"experiment", "rendered"},
               {"settings",
                {{"scene", c.scene},
-                {"start", c.start},
                 {"first_seed", c.first_seed},
                 {"noise_grey", c.noise},
                 {"exposure_s", c.exposure_s},
                 {"blur_samples", c.blur},
-                {"readout_s", c.readout_s},
-                {"sigma_pixel", options.config.sigma_pixel}}}};
-  out["cases"][c.scene] = summarise_runs(runs, job.summaries);
-  print_runs(out["cases"][c.scene]);
-  if (!c.csv.empty() && !write_csv(runs, c.csv, "rendered_" + c.scene)) return fail("cannot write to " + c.csv);
+                {"readout_s", c.readout_s}}}};
+  for (std::size_t v = 0; v < options.variants.size(); ++v) {
+    const double sigma = options.variants[v].config.sigma_pixel;
+    const std::string start = c.starts[v / c.sigma_pixels.size()];
+    const std::string label = label_of(c, v, sigma);
+    const Runs runs{c.seeds, c.frames, c.first_seed, job.rows + v * seeds * frames};
+    json& numbers = out["cases"][label] = summarise_runs(runs, job.summaries + v * seeds);
+    numbers["start"] = start;
+    numbers["sigma_pixel"] = sigma;
+    std::printf("%s: start %s, sigma_pixel %g\n", label.c_str(), start.c_str(), sigma);
+    print_runs(numbers);
+    if (!c.csv.empty() && !write_csv(runs, c.csv, "rendered_" + label)) return fail("cannot write to " + c.csv);
+  }
   if (!c.json_file.empty() && !write_json(c.json_file, out)) return fail("cannot write " + c.json_file);
   return 0;
 }
@@ -171,7 +212,7 @@ void add_rendered(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("rendered", "Honesty of the whole library on rendered frames");
   command->add_option("--scene", c->scene, "desk room wall person exposure repeat");
-  command->add_option("--start", c->start,
+  command->add_option("--start", c->starts,
                       "rectangle: found by itself; points: its corners, about a pose from its prior");
   command->add_option("--seeds", c->seeds, "how many runs");
   command->add_option("--first-seed", c->first_seed, "seed of the first run");
@@ -183,7 +224,8 @@ void add_rendered(CLI::App& app, int& result) {
   command->add_option("--exposure", c->exposure_s, "[s]");
   command->add_option("--blur", c->blur, "views averaged over the exposure");
   command->add_option("--readout", c->readout_s, "rolling shutter, first to last row [s]");
-  command->add_option("--sigma-px", c->sigma_pixel, "the filter's own floor of a match's noise [px]; 0: its default");
+  command->add_option("--sigma-px", c->sigma_pixels,
+                      "one or more: the filter's own floor of a match's noise [px]; 0: its default");
   command->callback([c, &result] { result = run(*c); });
 }
 

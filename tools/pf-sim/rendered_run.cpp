@@ -14,6 +14,7 @@ using pf::sim::Pose;
 using pf::sim::Vec3;
 
 constexpr std::uint64_t kStartStream = 21;
+constexpr double kStartSpeed = 0.1, kStartRate = 0.1;  // about the truth's velocities [m/s], [rad/s]
 
 struct CloseSim {
   void operator()(pf_sim_t* sim) const { pf_sim_close(sim); }
@@ -21,61 +22,95 @@ struct CloseSim {
 
 Pose pose_of(const pf_pose_t& p) { return {pf::sim::rotation_of(p.q_WC), {p.p_WC[0], p.p_WC[1], p.p_WC[2]}}; }
 
-/// Moves the first pose away from the truth by a draw from its own covariance, which is diagonal.
-void draw_first_pose(pf_target_t& target, std::uint64_t seed) {
-  pf::sim::Random random(seed, kStartStream);
-  pf_pose_t& first = target.first_pose;
+/// Moves a pose away from the truth by a draw from its covariance, which is diagonal, and its velocities likewise.
+void draw_pose(pf_pose_t& pose, pf::sim::Random& random) {
   double e[6];
-  for (int k = 0; k < 6; ++k) e[k] = std::sqrt(first.covariance[7 * k]) * random.normal();
-  const auto q = quaternion_of(pf::sim::rotation_exp(-Vec3{e[0], e[1], e[2]}) * pose_of(first).R_WC);
-  std::copy(q.begin(), q.end(), first.q_WC);
-  for (int k = 0; k < 3; ++k) first.p_WC[k] -= e[3 + k];
+  for (int k = 0; k < 6; ++k) e[k] = std::sqrt(pose.covariance[7 * k]) * random.normal();
+  const auto q = quaternion_of(pf::sim::rotation_exp(-Vec3{e[0], e[1], e[2]}) * pose_of(pose).R_WC);
+  std::copy(q.begin(), q.end(), pose.q_WC);
+  for (int k = 0; k < 3; ++k) {
+    pose.p_WC[k] -= e[3 + k];
+    pose.v_W[k] -= kStartSpeed * random.normal();
+    pose.w_C[k] -= kStartRate * random.normal();
+  }
 }
+
+/// The target as somebody would have measured it.
+void draw_target(pf_target_t& target, pf::sim::Random& random) {
+  target.width += std::sqrt(2.0) * target.sigma_m * random.normal();
+  target.height += std::sqrt(2.0) * target.sigma_m * random.normal();
+  for (int i = 0; i < target.count; ++i)
+    for (double& x : target.points_W[i]) x += target.sigma_m * random.normal();
+}
+
+bool start(pf_slam_t* slam, RenderedStart how, const pf_sim_t* sim, std::uint64_t seed) {
+  pf_target_t target;
+  const bool rectangle = how == RenderedStart::kRectangle;
+  if (pf_sim_target(sim, rectangle ? PF_TARGET_RECTANGLE : PF_TARGET_POINTS, &target) != PF_OK) return false;
+  pf::sim::Random random(seed, kStartStream);
+  draw_target(target, random);
+  if (!rectangle) draw_pose(target.first_pose, random);
+  if (pf_start_from_target(slam, &target) != PF_OK) return false;
+  if (how != RenderedStart::kPose) return true;
+  double velocity_covariance[36] = {};
+  for (int k = 0; k < 6; ++k) velocity_covariance[7 * k] = k < 3 ? kStartSpeed * kStartSpeed : kStartRate * kStartRate;
+  return pf_start_from_pose(slam, &target.first_pose, velocity_covariance) == PF_OK;
+}
+
+/// One context on its way through the frames.
+struct Runner {
+  Runner(const pf_config_t& config, const pf_target_t& corners) : context(config), watch(config, corners) {}
+  Context context;
+  InnovationWatch watch;
+
+  void push(const pf_image_t& image, const pf_pose_t& truth, FrameDepth& depth, FrameRow& row, RenderedSummary& sums) {
+    const pf_status_t status = pf_push_frame(context.slam, &image);
+    pf_pose_t pose;
+    if (pf_get_pose(context.slam, &pose) != PF_OK) {
+      ++sums.starting_frames;
+      sums.lost_frames += status < 0;
+      return;
+    }
+    pf_report_t report;
+    pf_get_report(context.slam, &report);
+    row = judge(pose_of(truth), pose, report);
+    const bool usable = status >= 0 && status != PF_NOTE_LOST && row.nees_position >= 0;
+    sums.lost_frames += !usable;
+    sums.tracked_frames += status == PF_OK;
+    sums.coasting_frames += status == PF_NOTE_COASTING || status == PF_NOTE_UNUSABLE;
+    watch.read(context.slam, truth, depth);
+  }
+};
 
 }  // namespace
 
-RenderedSummary run_rendered(const RenderedOptions& options, std::uint64_t seed, FrameRow* rows) {
-  RenderedSummary summary;
-  for (int f = 0; f < options.sim.frames; ++f) rows[f].nees_position = rows[f].nees_pose = -1;
+void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std::vector<RenderedSummary*>& summaries,
+                  const std::vector<FrameRow*>& rows) {
+  for (FrameRow* of_variant : rows)
+    for (int f = 0; f < options.sim.frames; ++f) of_variant[f].nees_position = of_variant[f].nees_pose = -1;
   pf_sim_options_t sim_options = options.sim;
   sim_options.seed = seed;
   const std::unique_ptr<pf_sim_t, CloseSim> sim(pf_sim_open(options.scene.c_str(), &sim_options));
-  if (!sim) return summary;
-  pf_config_t config = options.config;
-  pf_sim_camera(sim.get(), &config.camera);
-  const Context context(config);
-  pf_target_t target, points;
-  if (!context.slam || pf_sim_target(sim.get(), PF_TARGET_RECTANGLE, &target) != PF_OK ||
-      pf_sim_target(sim.get(), PF_TARGET_POINTS, &points) != PF_OK)
-    return summary;
-  InnovationWatch watch(sim.get(), config, points);
-  if (!options.rectangle) {
-    target = points;
-    draw_first_pose(target, seed);
-  }
-  if (pf_start_from_target(context.slam, &target) != PF_OK) return summary;
+  pf_target_t corners;
+  if (!sim || pf_sim_target(sim.get(), PF_TARGET_POINTS, &corners) != PF_OK) return;
 
-  pf_image_t image;
-  pf_pose_t truth, pose;
-  pf_report_t report;
-  for (int frame = 0; frame < sim_options.frames && pf_sim_next(sim.get(), &image, &truth); ++frame) {
-    const pf_status_t status = pf_push_frame(context.slam, &image);
-    if (pf_get_pose(context.slam, &pose) != PF_OK) {
-      ++summary.starting_frames;
-      summary.lost_frames += status < 0;
-      continue;
-    }
-    pf_get_report(context.slam, &report);
-    rows[frame] = judge(pose_of(truth), pose, report);
-    const bool usable = status >= 0 && status != PF_NOTE_LOST && rows[frame].nees_position >= 0;
-    summary.lost_frames += !usable;
-    summary.tracked_frames += status == PF_OK;
-    summary.coasting_frames += status == PF_NOTE_COASTING || status == PF_NOTE_UNUSABLE;
-    watch.read(context.slam, truth);
+  FrameDepth depth(sim.get(), sim_options.camera);
+  std::vector<std::unique_ptr<Runner>> runners;
+  for (const Variant& variant : options.variants) {
+    runners.push_back(std::make_unique<Runner>(variant.config, corners));
+    pf_slam_t* slam = runners.back()->context.slam;
+    if (!slam || !start(slam, variant.start, sim.get(), seed)) return;
   }
-  for (int k = 0; k < kTrackKinds; ++k) summary.innovations[k] = watch.sums(static_cast<TrackKind>(k));
-  summary.done = 1;
-  return summary;
+  pf_image_t image;
+  pf_pose_t truth;
+  for (int frame = 0; frame < sim_options.frames && pf_sim_next(sim.get(), &image, &truth); ++frame)
+    for (std::size_t v = 0; v < runners.size(); ++v)
+      runners[v]->push(image, truth, depth, rows[v][frame], *summaries[v]);
+  for (std::size_t v = 0; v < runners.size(); ++v) {
+    for (int k = 0; k < kTrackKinds; ++k)
+      summaries[v]->innovations[k] = runners[v]->watch.sums(static_cast<TrackKind>(k));
+    summaries[v]->done = 1;
+  }
 }
 
 }  // namespace pfsim

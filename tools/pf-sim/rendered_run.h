@@ -1,17 +1,29 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "innovations.h"
 #include "run.h"
 
 namespace pfsim {
 
+/// How a run on rendered frames begins. What is said of the target is always drawn about the truth with its own sigma_m.
+enum class RenderedStart {
+  kRectangle,  ///< the rectangle is found in the image; the pose comes from its corners
+  kPoints,     ///< likewise its corners as points, about a first pose that is drawn from its prior
+  kPose  ///< the points, and the pose drawn from its prior is the start: all that is known is true to its covariance
+};
+
+struct Variant {
+  RenderedStart start = RenderedStart::kRectangle;
+  pf_config_t config;  ///< the camera is taken from the simulation
+};
+
 struct RenderedOptions {
   std::string scene = "desk";
-  pf_sim_options_t sim;   ///< the seed is set for each run
-  pf_config_t config;     ///< the camera is taken from sim
-  bool rectangle = true;  ///< the target finds itself; otherwise its corners, about a first pose from its prior
+  pf_sim_options_t sim;           ///< the seed is set for each run
+  std::vector<Variant> variants;  ///< all see the same frames
 };
 
 /// What one run gave besides its frames. Plain data, so that it may lie in memory shared between processes.
@@ -22,7 +34,9 @@ struct RenderedSummary {
   InnovationSums innovations[kTrackKinds];
 };
 
-/// One run, start to end. rows has sim.frames entries; nees_position is negative in those without a pose.
-RenderedSummary run_rendered(const RenderedOptions& options, std::uint64_t seed, FrameRow* rows);
+/// One run of every variant, start to end. summaries has an entry for each; rows[v] has sim.frames entries, and
+/// nees_position is negative in those without a pose.
+void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std::vector<RenderedSummary*>& summaries,
+                  const std::vector<FrameRow*>& rows);
 
 }  // namespace pfsim
