@@ -1,0 +1,131 @@
+// Predict, remove and convert against the dense formulas, on small maps.
+#include "support/filter_scene.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+/// Rows of the blocks that are left, in their order.
+std::vector<int> rows_left(const State& state, const std::vector<int>& gone_first) {
+  std::vector<int> rows;
+  for (int r = 0; r < state.dim; ++r) {
+    bool stays = true;
+    for (const int first : gone_first) stays = stays && (r < first || r >= first + 3);
+    if (stays) rows.push_back(r);
+  }
+  return rows;
+}
+
+Dense select(const Dense& P, const std::vector<int>& rows) {
+  const int n = static_cast<int>(rows.size());
+  Dense out(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) out(i, j) = P(rows[static_cast<std::size_t>(i)], rows[static_cast<std::size_t>(j)]);
+  return out;
+}
+
+void test_remove_should_leave_the_covariance_of_what_stays() {
+  SeededRandom random(89);
+  for (int trial = 0; trial < 20; ++trial) {
+    Scene scene(random, true);
+    const Dense before = scene.filter.P();
+    const int gone[3] = {scene.slots[static_cast<std::size_t>(trial % 5)], scene.slots[6], scene.slots[9]};
+    std::vector<int> first;
+    for (const int slot : gone) first.push_back(scene.filter->state().block[slot].first);
+    const Dense expected = select(before, rows_left(scene.filter->state(), first));
+    scene.filter->remove(gone, 3);
+    TEST_ASSERT_EQUAL_INT(before.rows() - 9, scene.filter.dim());
+    TEST_ASSERT_TRUE(largest(scene.filter.P() - expected) == 0);
+  }
+}
+
+void test_an_anchor_should_go_with_the_last_feature_that_needs_it() {
+  SeededRandom random(90);
+  Scene scene(random, true);
+  const State& state = scene.filter->state();
+  const int anchor = state.block[scene.slots[5]].parent;
+  std::vector<int> gone, first = {state.block[anchor].first};
+  for (std::size_t i = 5; i < scene.slots.size(); ++i) {
+    if (state.block[scene.slots[i]].parent != anchor) continue;
+    gone.push_back(scene.slots[i]);
+    first.push_back(state.block[scene.slots[i]].first);
+  }
+  const Dense expected = select(scene.filter.P(), rows_left(state, first));
+  scene.filter->remove(gone.data(), static_cast<int>(gone.size()));
+  TEST_ASSERT_TRUE(state.block[anchor].kind == BlockKind::kNone);
+  TEST_ASSERT_TRUE(largest(scene.filter.P() - expected) == 0);
+  Observation o;  // the others are where they say that they are
+  for (const int slot : scene.slots)
+    if (state.block[slot].kind != BlockKind::kNone)
+      TEST_ASSERT_TRUE(scene.filter->predict_pixel(pinhole_camera(), slot, &o));
+}
+
+void test_conversion_should_leave_the_covariance_that_its_jacobians_say() {
+  SeededRandom random(91);
+  for (int trial = 0; trial < 20; ++trial) {
+    Scene scene(random, true);
+    const State& state = scene.filter->state();
+    const int slot = scene.slots[static_cast<std::size_t>(5 + trial % 6)];
+    const Block block = state.block[slot];
+    const int anchor = state.block[block.parent].first, n = scene.filter.dim();
+    const InverseDepth d = block.inverse_depth();
+    const Mat3 R = d.q_b.toRotationMatrix();
+    Dense F = Dense::Identity(n, n);
+    F.block(block.first, block.first, 3, 2) = (R.leftCols<2>() / d.rho).cast<double>();
+    F.block(block.first, block.first + 2, 3, 1) = (-R.col(2) / (d.rho * d.rho)).cast<double>();
+    F.block(block.first, anchor, 3, 3).setIdentity();
+    const Dense expected = F * scene.filter.P() * F.transpose();
+    const Vec3 f_W = state.block[block.parent].xyz() + R.col(2) / d.rho;
+    scene.filter->convert_to_point(slot);
+    TEST_ASSERT_TRUE(state.block[slot].kind == BlockKind::kPoint);
+    TEST_ASSERT_TRUE((state.block[slot].xyz() - f_W).norm() < Scalar(1e-12));
+    TEST_ASSERT_TRUE(difference(scene.filter.P(), expected) < kExact);
+  }
+}
+
+void test_prediction_should_be_f_p_ft_plus_q() {
+  SeededRandom random(92);
+  Scene scene(random, true);
+  const int n = scene.filter.dim();
+  Transition t;
+  predict_constant_velocity(scene.filter->body(), Scalar(0.05), {1, 2}, &t);
+  Dense F = Dense::Identity(n, n), Q = Dense::Zero(n, n);
+  for (int i = 0; i < t.dim; ++i)
+    for (int j = 0; j < t.dim; ++j) {
+      F(i, j) = static_cast<double>(t.F[i * t.dim + j]);
+      Q(i, j) = static_cast<double>(t.Q[i * t.dim + j]);
+    }
+  const Dense expected = F * scene.filter.P() * F.transpose() + Q;
+  scene.filter->predict(t);
+  TEST_ASSERT_TRUE(difference(scene.filter.P(), expected) < kExact);
+}
+
+void test_a_full_filter_should_refuse_new_blocks_and_stay_as_it_is() {
+  SeededRandom random(93);
+  TestFilter filter(true, Body::kMaxDim, 32, 6);
+  int added = 0;
+  while (filter->add_point(random.normals<3>(1), Mat3::Identity()) >= 0) ++added;
+  TEST_ASSERT_EQUAL_INT(6, added);
+  TEST_ASSERT_EQUAL_INT(Body::kMaxDim + 3 * added, filter.dim());
+  const std::vector<Scalar> before = bits_of(filter);
+  TEST_ASSERT_EQUAL_INT(-1, filter->add_anchor());
+  TEST_ASSERT_EQUAL_INT(-1, filter->add_point(Vec3::Zero(), Mat3::Identity()));
+  const std::vector<Scalar> after = bits_of(filter);
+  TEST_ASSERT_EQUAL_size_t(before.size(), after.size());
+  TEST_ASSERT_EQUAL_MEMORY(before.data(), after.data(), before.size() * sizeof(Scalar));
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_remove_should_leave_the_covariance_of_what_stays);
+  RUN_TEST(test_an_anchor_should_go_with_the_last_feature_that_needs_it);
+  RUN_TEST(test_conversion_should_leave_the_covariance_that_its_jacobians_say);
+  RUN_TEST(test_prediction_should_be_f_p_ft_plus_q);
+  RUN_TEST(test_a_full_filter_should_refuse_new_blocks_and_stay_as_it_is);
+  return UNITY_END();
+}
