@@ -17,7 +17,7 @@ struct Choices {
   std::string scene = "desk", json_file, csv;
   std::vector<std::string> starts{"rectangle"};
   std::vector<double> sigma_pixels{0};
-  int seeds = 20, frames = 300, jobs = 2, blur = 4;
+  int seeds = 20, frames = 300, jobs = 2, blur = 2;
   std::uint64_t first_seed = 1;
   double noise = 2, exposure_s = 0.008, readout_s = 0;
 };
