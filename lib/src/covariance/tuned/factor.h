@@ -40,24 +40,39 @@ void combine(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x) 
   }
 }
 
-/// L of a block of at most eight rows, in place. Column by column: what depends on a pivot waits for one root and one division.
+/// L of a block of at most eight rows, in place. The symmetric square is kept whole in registers, widened by the identity, so that
+/// row j is also what is left of column j:  l_j = a_j / sqrt(a_jj),  a_i -= l_ij l_j.
 PF_INLINE bool cholesky_block(Scalar* S, int rows, std::ptrdiff_t lds) {
-  Scalar d[kGroup][kGroup];
+  constexpr int kVectors = kGroup / Narrow::kWidth;
+  alignas(64) Scalar whole[kGroup * kGroup] = {};
   for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j <= i; ++j) d[i][j] = S[i * lds + j];
+    for (int j = 0; j <= i; ++j) whole[i * kGroup + j] = whole[j * kGroup + i] = S[i * lds + j];
   }
-  for (int j = 0; j < rows; ++j) {
-    if (!(d[j][j] > 0)) return false;
-    const Scalar root = square_root(d[j][j]);
-    const Scalar inverse = 1 / root;
-    d[j][j] = root;
-    for (int i = j + 1; i < rows; ++i) d[i][j] *= inverse;
-    for (int i = j + 1; i < rows; ++i) {
-      for (int k = j + 1; k <= i; ++k) d[i][k] -= d[i][j] * d[k][j];
+  for (int i = rows; i < kGroup; ++i) whole[i * kGroup + i] = 1;
+
+  Tile<Narrow, kGroup, kVectors> a;
+  a.load(whole, kGroup);
+#pragma GCC unroll 8
+  for (int j = 0; j < kGroup; ++j) {
+    Scalar* l = whole + j * kGroup;
+#pragma GCC unroll 4
+    for (int v = 0; v < kVectors; ++v) Narrow::store(l + v * Narrow::kWidth, a.c[j][v]);
+    if (!(l[j] > 0)) return false;
+    const Narrow::Type inverse = (1 / square_root(l[j])) - Narrow::Type{};
+#pragma GCC unroll 4
+    for (int v = 0; v < kVectors; ++v) {
+      a.c[j][v] *= inverse;
+      Narrow::store(l + v * Narrow::kWidth, a.c[j][v]);
+    }
+#pragma GCC unroll 8
+    for (int i = j + 1; i < kGroup; ++i) {
+      const Narrow::Type factor = l[i] - Narrow::Type{};
+#pragma GCC unroll 4
+      for (int v = 0; v < kVectors; ++v) a.c[i][v] = minus_product(factor, a.c[j][v], a.c[i][v]);
     }
   }
   for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j <= i; ++j) S[i * lds + j] = d[i][j];
+    for (int j = 0; j <= i; ++j) S[i * lds + j] = whole[j * kGroup + i];
   }
   return true;
 }

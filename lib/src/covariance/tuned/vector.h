@@ -74,15 +74,17 @@ PF_INLINE void transpose_four(const Scalar* from, std::ptrdiff_t stride, Scalar*
 /// rows x columns (8 x 8 at most) become columns x rows.
 PF_INLINE void transpose_square(const Scalar* from, std::ptrdiff_t stride, int rows, int columns,
                                 Scalar* to, std::ptrdiff_t to_stride) {
-  if (rows == kGroup && columns == kGroup) {
-    for (int i = 0; i < kGroup; i += 4) {
-      transpose_four(from + i * stride, stride, to + i, to_stride);
-      transpose_four(from + i * stride + 4, stride, to + 4 * to_stride + i, to_stride);
+  const int whole_rows = rows / 4 * 4;
+  const int whole_columns = columns / 4 * 4;
+  for (int r = 0; r < whole_rows; r += 4) {
+    for (int c = 0; c < whole_columns; c += 4) {
+      transpose_four(from + r * stride + c, stride, to + c * to_stride + r, to_stride);
     }
-    return;
   }
   for (int r = 0; r < rows; ++r) {
-    for (int c = 0; c < columns; ++c) to[c * to_stride + r] = from[r * stride + c];
+    for (int c = r < whole_rows ? whole_columns : 0; c < columns; ++c) {
+      to[c * to_stride + r] = from[r * stride + c];
+    }
   }
 }
 
