@@ -1,0 +1,215 @@
+// The first depths from synthetic pixels of known poses and points.
+#include <algorithm>
+
+#include "support/bounds.h"
+#include "support/filter_cases.h"
+#include "support/test_cameras.h"
+#include "window/start_bundle.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr Scalar kSigma = Scalar(0.3);
+
+/// Points 1 to 3 m in front of frame 0, and a camera that moves away from it.
+struct Start {
+  TestArena arena;
+  StartRecord record;
+  StartBundle bundle;
+  Camera camera;
+  std::vector<Vec3> points;
+  std::vector<Body> truth;
+
+  Start(SeededRandom& random, const Camera& c, int count, Scalar ray_sigma = kSigma) : camera(c) {
+    TEST_ASSERT_TRUE(record.layout(*arena));
+    TEST_ASSERT_TRUE(bundle.layout(*arena));
+    record.init();
+    bundle.init();
+    for (int i = 0; i < count; ++i) {
+      const Scalar depth = static_cast<Scalar>(random.uniform(1, 3));
+      const Vec3 p(depth * static_cast<Scalar>(random.uniform(-0.35, 0.35)),
+                   depth * static_cast<Scalar>(random.uniform(-0.3, 0.3)), depth);
+      points.push_back(p);
+      Vec2 z;
+      Vec3 ray;
+      TEST_ASSERT_TRUE(project(camera, p, &z));
+      TEST_ASSERT_TRUE(unproject(camera, z + random.normals<2>(static_cast<double>(ray_sigma)), &ray));
+      TEST_ASSERT_EQUAL_INT(i, record.add_feature(ray));
+    }
+  }
+
+  /// The believed pose of a record's frame is a poor one: the turn to a degree, the place unknown.
+  void see(SeededRandom& random, const Body& body, int visible) {
+    truth.push_back(body);
+    const Quat believed = exp_so3(random.normals<3>(0.02)) * body.q_WC;
+    const int k = record.add_frame(static_cast<std::int64_t>(truth.size()) * 33000000, believed, Vec3::Zero());
+    for (int i = 0; i < visible; ++i) {
+      Vec2 z;
+      if (!project(camera, body.q_WC.conjugate() * (points[static_cast<std::size_t>(i)] - body.p_W), &z)) continue;
+      record.add_pixel(k, i, z + random.normals<2>(static_cast<double>(kSigma)));
+    }
+  }
+
+  StartOutcome solve(Scalar median_depth = 1) { return bundle.solve(camera, record, kSigma, median_depth); }
+};
+
+Body on_the_way(const Vec3& direction, Scalar metres, Scalar turn) {
+  Body body;
+  body.p_W = direction * metres;
+  body.q_WC = exp_so3(Vec3(turn * Scalar(0.5), turn, turn * Scalar(-0.3)));
+  return body;
+}
+
+struct Errors {
+  double depth_rms, depth_worst, turn, place;
+};
+
+/// The largest errors over moves in several directions with three cameras; ray_sigma is the noise of frame 0's pixels.
+Errors solve_moves(SeededRandom& random, Scalar ray_sigma) {
+  Errors largest = {};
+  const Vec3 directions[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, Vec3(1, Scalar(-0.5), Scalar(0.4)).normalized()};
+  for (int trial = 0; trial < 12; ++trial) {
+    const Vec3 direction = directions[trial % 4];
+    Start start(random, test_camera_of(trial / 4), 48, ray_sigma);
+    const Scalar step = Scalar(0.012) * Scalar(525) / start.camera.fx;  // the same parallax for all
+    StartOutcome outcome = StartOutcome::kWait;
+    for (int k = 1; k <= 25 && outcome != StartOutcome::kSettled; ++k) {
+      start.see(random, on_the_way(direction, step * Scalar(k), Scalar(0.003) * Scalar(k)), 48);
+      outcome = start.solve();
+      TEST_ASSERT_TRUE(outcome != StartOutcome::kTooFew);
+    }
+    TEST_ASSERT_TRUE_MESSAGE(outcome == StartOutcome::kSettled, "a baseline of 0.3 m at 2 m was not enough");
+
+    // Scale: the median of true distance times inverse depth.
+    std::vector<double> ratio;
+    for (int i = 0; i < 48; ++i)
+      if (start.bundle.good(i))
+        ratio.push_back(static_cast<double>(start.points[static_cast<std::size_t>(i)].norm() * start.bundle.rho(i)));
+    TEST_ASSERT_GREATER_THAN_size_t(40, ratio.size());
+    std::sort(ratio.begin(), ratio.end());
+    const double scale = ratio[ratio.size() / 2];  // units of the bundle per metre, inverted
+    double square = 0, worst = 0;
+    for (const double r : ratio) {
+      square += (r / scale - 1) * (r / scale - 1);
+      worst = std::max(worst, std::fabs(r / scale - 1));
+    }
+    const double rms = std::sqrt(square / static_cast<double>(ratio.size()));
+    const Body& last = start.truth.back();
+    const StartRecord::Frame& frame = start.record.frame(start.record.frames() - 1);
+    const double turn_error = static_cast<double>(frame.q_WC.angularDistance(last.q_WC));
+    const double place_error =
+        static_cast<double>((frame.p_W * static_cast<Scalar>(scale) - last.p_W).norm() / last.p_W.norm());
+    std::printf("frames %d, depths: rms %.4f, worst %.4f; turn %.5f rad; place %.4f of the way\n",
+                start.record.frames(), rms, worst, turn_error, place_error);
+    largest.depth_rms = std::max(largest.depth_rms, rms);
+    largest.depth_worst = std::max(largest.depth_worst, worst);
+    largest.turn = std::max(largest.turn, turn_error);
+    largest.place = std::max(largest.place, place_error);
+  }
+  return largest;
+}
+
+void test_depths_and_poses_should_be_right_up_to_scale_when_the_first_sight_is_exact() {
+  SeededRandom random(111);
+  const Errors errors = solve_moves(random, 0);
+  EXPECT_BELOW(0.03, errors.depth_rms);
+  EXPECT_BELOW(0.1, errors.depth_worst);
+  EXPECT_BELOW(0.01, errors.turn);
+  EXPECT_BELOW(0.06, errors.place);
+}
+
+/// The adjustment takes frame 0's rays as exact: their noise goes into the shared pose, and less into the depths.
+void test_depths_should_be_right_up_to_scale_when_the_first_sight_is_noisy() {
+  SeededRandom random(118);
+  const Errors errors = solve_moves(random, kSigma);
+  EXPECT_BELOW(0.04, errors.depth_rms);
+  EXPECT_BELOW(0.15, errors.depth_worst);
+}
+
+void test_median_depth_should_be_the_one_that_was_asked_for() {
+  SeededRandom random(112);
+  Start start(random, pinhole_camera(), 40);
+  for (int k = 1; k <= 20; ++k) start.see(random, on_the_way({1, 0, 0}, Scalar(0.012) * Scalar(k), 0), 40);
+  TEST_ASSERT_TRUE(start.solve(Scalar(2.5)) == StartOutcome::kSettled);
+  std::vector<double> rho;
+  for (int i = 0; i < 40; ++i)
+    if (start.bundle.good(i)) rho.push_back(static_cast<double>(start.bundle.rho(i)));
+  std::nth_element(rho.begin(), rho.begin() + static_cast<std::ptrdiff_t>(rho.size() / 2), rho.end());
+  TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1 / 2.5, rho[rho.size() / 2]);
+}
+
+void test_start_should_wait_when_the_camera_only_turns() {
+  SeededRandom random(113);
+  for (int trial = 0; trial < 5; ++trial) {
+    Start start(random, pinhole_camera(), 48);
+    for (int k = 1; k <= 30; ++k) {
+      start.see(random, on_the_way(Vec3::Zero(), 0, Scalar(0.004) * Scalar(k)), 48);
+      TEST_ASSERT_TRUE(start.solve() == StartOutcome::kWait);
+    }
+  }
+}
+
+void test_start_should_wait_when_the_camera_rests() {
+  SeededRandom random(114);
+  Start start(random, radtan_camera(), 48);
+  for (int k = 1; k <= 70; ++k) {  // longer than the record is
+    start.see(random, Body(), 48);
+    TEST_ASSERT_TRUE(start.solve() == StartOutcome::kWait);
+    TEST_ASSERT_LESS_OR_EQUAL_INT(static_cast<int>(StartRecord::kMaxFrames), start.record.frames());
+  }
+}
+
+void test_start_should_begin_again_when_too_few_of_the_first_features_are_left() {
+  SeededRandom random(115);
+  Start start(random, pinhole_camera(), 30);
+  start.see(random, on_the_way({1, 0, 0}, Scalar(0.2), 0), 30);
+  start.see(random, on_the_way({1, 0, 0}, Scalar(0.25), 0), 11);
+  TEST_ASSERT_TRUE(start.solve() == StartOutcome::kTooFew);
+}
+
+/// A sideways move in which four features drift away on their own, so many pixels a frame.
+void drift(SeededRandom& random, Start& start, Scalar drift_px) {
+  for (int k = 1; k <= 25; ++k) {
+    start.see(random, on_the_way({1, 0, 0}, Scalar(0.012) * Scalar(k), 0), 48);
+    for (int i = 0; i < 4; ++i)
+      start.record.add_pixel(k - 1, i, start.record.pixel(k - 1, i) + Vec2(0, drift_px * Scalar(k)));
+  }
+}
+
+void test_features_should_not_be_called_good_when_they_drift() {
+  SeededRandom random(116);
+  Start start(random, pinhole_camera(), 48);
+  drift(random, start, Scalar(0.16));
+  const StartOutcome outcome = start.solve();
+  TEST_ASSERT_TRUE(outcome == StartOutcome::kSolved || outcome == StartOutcome::kSettled);
+  for (int i = 0; i < 4; ++i) TEST_ASSERT_FALSE(start.bundle.good(i));
+  int good = 0;
+  for (int i = 4; i < 48; ++i) good += start.bundle.good(i) ? 1 : 0;
+  TEST_ASSERT_GREATER_THAN_INT(38, good);
+}
+
+void test_start_should_wait_when_the_pixels_have_no_common_explanation() {
+  SeededRandom random(117);
+  Start start(random, pinhole_camera(), 48);
+  drift(random, start, Scalar(1.5));
+  TEST_ASSERT_TRUE(start.solve() == StartOutcome::kWait);
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_depths_and_poses_should_be_right_up_to_scale_when_the_first_sight_is_exact);
+  RUN_TEST(test_depths_should_be_right_up_to_scale_when_the_first_sight_is_noisy);
+  RUN_TEST(test_median_depth_should_be_the_one_that_was_asked_for);
+  RUN_TEST(test_start_should_wait_when_the_camera_only_turns);
+  RUN_TEST(test_start_should_wait_when_the_camera_rests);
+  RUN_TEST(test_start_should_begin_again_when_too_few_of_the_first_features_are_left);
+  RUN_TEST(test_features_should_not_be_called_good_when_they_drift);
+  RUN_TEST(test_start_should_wait_when_the_pixels_have_no_common_explanation);
+  return UNITY_END();
+}
