@@ -13,6 +13,10 @@
 
 namespace pf::capture {
 
+constexpr int kOverlayStripHeight = 40;  ///< of the line below the picture [px]
+
+Colour state_colour(pf_state_t state);
+
 /// Draws a frame with what was looked for and found in it, the map from above, and the state.
 ///
 ///   +----------------------+-----------+

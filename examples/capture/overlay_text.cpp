@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <cmath>
+
+#include "overlay.h"
+
+namespace pf::capture {
+
+using namespace colours;
+
+Colour state_colour(pf_state_t state) {
+  switch (state) {
+    case PF_STATE_STARTING:
+      return kDim;
+    case PF_STATE_TRACKING:
+      return kPoint;
+    case PF_STATE_COASTING:
+      return kMissed;
+    default:
+      return kOutlier;
+  }
+}
+
+namespace {
+
+std::string format(const char* how, double value) {
+  char text[64];
+  std::snprintf(text, sizeof(text), how, value);
+  return text;
+}
+
+}  // namespace
+
+void Overlay::draw_numbers(const FrameView& view, double x, double y, double width) {
+  const double left = x + 14.0;
+  const double right = x + width - 14.0;
+  double row = y + 22.0;
+  const double room = image_height_ - y;
+  const double step = std::clamp((room - 16.0) / 9.0, 14.0, 22.0);
+  const double size = step < 17.0 ? 11.0 : 12.5;
+  int counts[5] = {0, 0, 0, 0, 0};
+  int points = 0;
+  for (const pf_track_t& track : view.tracks) {
+    counts[track.status <= 4 ? track.status : 0] += 1;
+    points += track.status == PF_TRACK_INLIER && track.kind == PF_FEATURE_POINT ? 1 : 0;
+  }
+  const auto put = [&](const Colour& mark, const char* name, const std::string& value) {
+    if (row > image_height_ - 4.0) {
+      return;
+    }
+    canvas_.colour(mark);
+    canvas_.dot(left + 4.0, row - 4.0, 3.6);
+    canvas_.colour(kText);
+    canvas_.text(left + 16.0, row, name, size);
+    canvas_.text(right - canvas_.text_width(value, size), row, value, size);
+    row += step;
+  };
+  put(kPoint, "measured, 3-D point", std::to_string(points));
+  put(kInverseDepth, "measured, inverse depth", std::to_string(counts[PF_TRACK_INLIER] - points));
+  put(kOutlier, "found, but disagrees", std::to_string(counts[PF_TRACK_OUTLIER]));
+  put(kMissed, "looked for, not found", std::to_string(counts[PF_TRACK_MISSED]));
+  put(kNew, "new", std::to_string(counts[PF_TRACK_NEW]));
+  const auto note = [&](const char* name, const std::string& value) {
+    if (row > image_height_ - 4.0) {
+      return;
+    }
+    canvas_.colour(kDim);
+    canvas_.text(left, row, name, size);
+    canvas_.text(right - canvas_.text_width(value, size), row, value, size);
+    row += step;
+  };
+  note("features in map / state", std::to_string(view.report.features) + " / " + std::to_string(view.report.state_dim));
+  if (view.has_pose) {
+    const double* c = view.pose.covariance;
+    const bool metric = session_.target() != nullptr;
+    const double sigma_p = std::sqrt(std::max(0.0, (c[21] + c[28] + c[35]) / 3.0));
+    const double sigma_r = std::sqrt(std::max(0.0, (c[0] + c[7] + c[14]) / 3.0));
+    note("position \xc2\xb1", metric ? format("%.1f mm", 1e3 * sigma_p) : format("%.2f %%", 1e2 * sigma_p));
+    note("rotation \xc2\xb1", format("%.2f\xc2\xb0", sigma_r * 180.0 / M_PI));
+  }
+  note("time", format("%.2f ms", view.ms));
+}
+
+void Overlay::draw_strip(const FrameView& view) {
+  const double top = image_height_;
+  const double width = canvas_.width();
+  canvas_.rectangle(0, top, width, kOverlayStripHeight, {0.045, 0.055, 0.072});
+  const std::string state = state_name(view.report.state);
+  const Colour badge = state_colour(view.report.state);
+  const double badge_width = canvas_.text_width(state, 13.0, true) + 20.0;
+  canvas_.rectangle(10.0, top + 6.0, badge_width, 20.0, badge);
+  canvas_.colour({0.03, 0.04, 0.05});
+  canvas_.text(20.0, top + 20.5, state, 13.0, true);
+  std::string text = "frame " + std::to_string(view.index + 1) + " / " + std::to_string(view.count);
+  if (view.status == PF_NOTE_UNUSABLE) {
+    text += "   image has no usable content";
+  }
+  canvas_.colour(kText);
+  canvas_.text(badge_width + 24.0, top + 20.5, text, 13.0);
+  const double used = badge_width + 24.0 + canvas_.text_width(text, 13.0);
+  const double title_width = canvas_.text_width(title_, 13.0);
+  if (used + 30.0 + title_width < width) {
+    canvas_.colour(kDim);
+    canvas_.text(width - title_width - 14.0, top + 20.5, title_, 13.0);
+  }
+  // Time line: one column per frame, in the colour of its state.
+  const double count = static_cast<double>(std::max<int64_t>(view.count, 1));
+  canvas_.rectangle(0, top + kOverlayStripHeight - 6.0, width, 6.0, kGrid);
+  for (size_t i = 0; i < time_line_.size(); ++i) {
+    const double x = width * static_cast<double>(i) / count;
+    canvas_.rectangle(x, top + kOverlayStripHeight - 6.0, std::max(1.0, width / count), 6.0, time_line_[i], 0.9);
+  }
+}
+
+}  // namespace pf::capture

@@ -1,0 +1,112 @@
+// Images of a sequence: formats, and what is damaged, cut off, missing or of the wrong size.
+#include "skip.h"
+
+#if __has_include(<planefold_platform/sequence.h>)
+
+#include "sequence_test.h"
+
+using namespace pf::test;
+
+void setUp() {}
+void tearDown() {}
+
+namespace {
+
+/// One image under a name; the reader's answer to reading it must be a refusal that names the file and says part.
+void image_refused(const Bytes& bytes, const std::string& part) {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  folder.write("times.txt", "0 0.0 a.png\n");
+  folder.write("images/a.png", bytes);
+  Opened opened("images:" + folder.path());
+  TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+  pf_image_t image{};
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_sequence_frame(opened.sequence, 0, &image, opened.message));
+  require_message(opened.message, "a.png");
+  require_message(opened.message, part);
+}
+
+}  // namespace
+
+static void test_pixels_should_become_eight_bit_grey() {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  Bytes red(3072, 0);
+  Bytes deep(2048, 0);
+  for (size_t i = 0; i < 1024; ++i) {
+    red[3 * i] = 255;
+    deep[2 * i] = 128;
+  }
+  folder.write("a.png", make_png(32, 32, 8, 2, red));
+  folder.write("b.png", make_png(32, 32, 16, 0, deep));
+  folder.write("c.pgm", make_pgm(32, 32, deep, 65535));
+  folder.write("d.jpg", make_jpeg());
+  Opened opened("images:" + folder.path());
+  TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+  TEST_ASSERT_EQUAL_UINT8(76, opened.read(0).pixels[100]);
+  TEST_ASSERT_UINT8_WITHIN(1, 128, opened.read(1).pixels[100]);
+  TEST_ASSERT_UINT8_WITHIN(1, 128, opened.read(2).pixels[100]);
+  TEST_ASSERT_UINT8_WITHIN(6, 8 * 20, opened.read(3).pixels[32 * 10 + 20]);
+}
+
+static void test_image_should_be_named_when_it_is_truncated_or_damaged() {
+  const Bytes png = grey_png(50);
+  const Bytes jpeg = make_jpeg();
+  const Bytes pgm = make_pgm(32, 32, flat(1024, 1));
+  const auto cut = [](const Bytes& bytes, size_t size) {
+    return Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+  };
+  for (size_t size : {size_t{9}, size_t{30}, png.size() / 2, png.size() - 20}) image_refused(cut(png, size), "cut off");
+  for (size_t size : {size_t{4}, size_t{100}, jpeg.size() / 2, jpeg.size() - 30})
+    image_refused(cut(jpeg, size), "cut off");
+  image_refused(cut(pgm, pgm.size() - 1), "ends after");
+  image_refused(cut(pgm, 5), "header");
+  image_refused({}, "empty");
+  image_refused(flat(500, 0), "neither PNG");
+  Bytes flipped = png;
+  flipped[60] = static_cast<uint8_t>(flipped[60] ^ 0xff);
+  image_refused(flipped, "damaged");
+}
+
+static void test_image_should_be_refused_when_its_size_is_wrong_or_huge() {
+  image_refused(make_png(16, 64, 8, 0, flat(1024, 0)), "16 x 64");
+  image_refused(make_pgm(64, 64, flat(4096, 0)), "calib.yaml");
+  image_refused(make_pgm(100000, 100000, {}), "pixels");
+  image_refused(make_pgm(0, 32, {}), "pixels");
+  image_refused(make_png(0x7fffffff, 0x7fffffff, 8, 0, {}), "damaged");
+  Bytes jpeg = make_jpeg();
+  for (size_t i = 0; i + 8 < jpeg.size(); ++i) {
+    if (jpeg[i] == 0xff && jpeg[i + 1] == 0xc0) {
+      jpeg[i + 5] = jpeg[i + 6] = jpeg[i + 7] = jpeg[i + 8] = 0xff;
+    }
+  }
+  image_refused(jpeg, "pixels");
+}
+
+static void test_image_should_be_named_when_it_is_missing() {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  folder.write("times.txt", "0 0.0 a.png\n");
+  folder.write("images/b.png", grey_png(1));
+  Opened opened("images:" + folder.path());
+  pf_image_t image{};
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_sequence_frame(opened.sequence, 0, &image, opened.message));
+  require_message(opened.message, "a.png");
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_sequence_frame(opened.sequence, 1, &image, opened.message));
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_sequence_frame(opened.sequence, -1, &image, opened.message));
+}
+
+int main() {
+  UNITY_BEGIN();
+  RUN_TEST(test_pixels_should_become_eight_bit_grey);
+  RUN_TEST(test_image_should_be_named_when_it_is_truncated_or_damaged);
+  RUN_TEST(test_image_should_be_refused_when_its_size_is_wrong_or_huge);
+  RUN_TEST(test_image_should_be_named_when_it_is_missing);
+  return UNITY_END();
+}
+
+#else
+
+int main() { SKIP_PROGRAM("this build has no platform layer"); }
+
+#endif
