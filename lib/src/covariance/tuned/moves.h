@@ -56,9 +56,13 @@ void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar
       Scalar* row = row_of(P, first + a);
       for (int j = j0; j < smaller(end, first); ++j) row[j] = strip[a * kStrip + j - j0];
     }
-    for (int j = j0 > first + size ? j0 : first + size; j < end; ++j) {
-      Scalar* row = row_of(P, j) + first;
-      for (int a = 0; a < J.rows; ++a) row[a] = strip[a * kStrip + j - j0];
+    int j = j0 > first + size ? j0 : first + size;
+    while (j < end) {
+      const std::ptrdiff_t stride = stride_of(j);
+      const int group_end = smaller(end, j / kGroup * kGroup + kGroup);
+      for (Scalar* row = row_of(P, j) + first; j < group_end; ++j, row += stride) {
+        for (int a = 0; a < J.rows; ++a) row[a] = strip[a * kStrip + j - j0];
+      }
     }
   }
   for (int a = 0; a < J.rows; ++a) {
@@ -69,19 +73,12 @@ void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar
   }
 }
 
-/// to <- from for to <= from, front to back; the two may overlap.
-PF_INLINE void move_down(Scalar* to, const Scalar* from, int count) {
-  int j = 0;
-  for (; j + Wide::kWidth <= count; j += Wide::kWidth) Wide::store(to + j, Wide::load(from + j));
-#pragma GCC unroll 1
-  for (; j < count; ++j) {
-    to[j] = from[j];
-    asm("" ::: "memory");  // stays a loop: a library call for a handful of scalars costs more
-  }
-}
-
-/// Twin: reference::remove. Rows and runs of columns only ever move towards the front, so one pass in place is enough.
+/// Twin: reference::remove. Rows and runs of columns only ever move towards the front, and a row that moves lands at least one
+/// row's length before where it was. So one pass in place is enough, and runs may be copied in whole eights: what is written too
+/// much lies before all that is still to be read, and is overwritten by the next run or row. Only the last row of the last group
+/// is copied to the element, since nothing is stored behind it.
 void remove(Triangle& P, const Segment* gone, int count) {
+  const int last = round_up(P.n, kGroup) - 1;
   int kept = count > 0 ? gone[0].first : P.n;
   for (int s = 0; s < count; ++s) {
     const int begin = gone[s].first + gone[s].size;
@@ -91,12 +88,16 @@ void remove(Triangle& P, const Segment* gone, int count) {
       Scalar* row = row_of(P, kept);
       int to = 0;
       int run = 0;
-      for (int g = 0; g <= s; ++g) {
-        move_down(row + to, from + run, gone[g].first - run);
-        to += gone[g].first - run;
-        run = gone[g].first + gone[g].size;
+      for (int g = 0; g <= s + 1; ++g) {
+        const int size = (g <= s ? gone[g].first : i + 1) - run;
+        if (i < last) {
+          copy_groups(row + to, from + run, size);
+        } else {
+          for (int j = 0; j < size; ++j) row[to + j] = from[run + j];
+        }
+        to += size;
+        if (g <= s) run = gone[g].first + gone[g].size;
       }
-      move_down(row + to, from + run, i + 1 - run);
       clear_behind(P, kept, kept + 1);
     }
   }

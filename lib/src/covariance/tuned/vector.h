@@ -93,7 +93,7 @@ using Wide = Vector<PF_VECTOR_BYTES>;
 constexpr int kNarrowBytes = Wide::kWidth > kGroup ? PF_VECTOR_BYTES / 2 : PF_VECTOR_BYTES;
 using Narrow = Vector<kNarrowBytes>;
 
-/// Copy `count` scalars, a multiple of eight, in place: a library call for a few lines costs more than the copy.
+/// Copy `count` scalars in whole eights, without a call: a library call for a few lines costs more than the copy.
 PF_INLINE void copy_groups(Scalar* to, const Scalar* from, int count) {
   for (int j = 0; j < count; j += kGroup) {
 #pragma GCC unroll 4
