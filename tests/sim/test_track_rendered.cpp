@@ -1,0 +1,135 @@
+// Scenes of a few seconds, rendered, and what the library says and knows in them.
+#include "support/rendered_run.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+using Start = RenderedRun::Start;
+
+double position_variance(const RenderedRun::Frame& f) {
+  return f.pose.covariance[21] + f.pose.covariance[28] + f.pose.covariance[35];
+}
+
+void tell(const char* what, const RenderedRun& run, std::size_t first) {
+  int tracked = 0;
+  for (std::size_t i = first; i < run.frames.size(); ++i) tracked += run.frames[i].status == PF_OK ? 1 : 0;
+  std::printf("%s: tracked %d of %zu, worst error %.4f m\n", what, tracked, run.frames.size() - first,
+              run.worst_error(first));
+}
+
+void test_desk_should_be_tracked_in_every_frame_when_it_starts_at_the_target() {
+  RenderedRun run("desk", 120, Start::kRectangle);
+  const int tracked = run.tracked_until(120);
+  tell("desk", run, 0);
+  TEST_ASSERT_EQUAL_INT(120, tracked);
+  TEST_ASSERT_TRUE(run.worst_error(0) < 0.03);
+}
+
+void test_desk_should_start_without_a_target_and_then_be_tracked() {
+  RenderedRun run("desk", 120, Start::kNone);
+  run.tracked_until(120);
+  std::size_t first = 0;
+  while (first < 120 && run.frames[first].status != PF_OK) {
+    TEST_ASSERT_EQUAL_INT(PF_NOTE_STARTING, run.frames[first].status);
+    ++first;
+  }
+  std::printf("started in frame %zu\n", first);
+  TEST_ASSERT_TRUE(first < 60);
+  for (std::size_t i = first; i < 120; ++i) TEST_ASSERT_EQUAL_INT(PF_OK, run.frames[i].status);
+}
+
+void test_tracking_should_go_on_when_the_exposure_jumps() {
+  RenderedRun run("exposure", 150, Start::kRectangle);
+  const int tracked = run.tracked_until(150);
+  tell("exposure", run, 0);
+  TEST_ASSERT_EQUAL_INT(150, tracked);
+  TEST_ASSERT_TRUE(run.worst_error(0) < 0.03);
+}
+
+void test_tracking_should_go_on_when_somebody_walks_through_the_picture() {
+  RenderedRun run("person", 150, Start::kRectangle);
+  const int tracked = run.tracked_until(150);
+  tell("person", run, 0);
+  TEST_ASSERT_GREATER_OR_EQUAL_INT(148, tracked);
+  TEST_ASSERT_TRUE(run.worst_error(0) < 0.1);
+}
+
+void test_tracking_should_go_on_when_the_texture_repeats() {
+  RenderedRun run("repeat", 120, Start::kRectangle);
+  const int tracked = run.tracked_until(120);
+  tell("repeat", run, 0);
+  TEST_ASSERT_EQUAL_INT(120, tracked);
+  TEST_ASSERT_TRUE(run.worst_error(0) < 0.04);
+}
+
+void test_black_frames_should_be_called_unusable_with_growing_covariance_and_then_tracked_through() {
+  RenderedRun run("desk", 110, Start::kRectangle);
+  TEST_ASSERT_EQUAL_INT(60, run.tracked_until(60));
+  double before = position_variance(run.frames.back());
+  for (int k = 0; k < 12; ++k) {  // 0.4 s
+    TEST_ASSERT_TRUE(run.step(0));
+    const RenderedRun::Frame& f = run.frames.back();
+    TEST_ASSERT_EQUAL_INT(PF_NOTE_UNUSABLE, f.status);
+    TEST_ASSERT_EQUAL_INT(PF_STATE_COASTING, f.state);
+    TEST_ASSERT_TRUE(position_variance(f) > before);
+    before = position_variance(f);
+  }
+  run.tracked_until(110);
+  std::size_t again = 72;
+  while (again < 110 && run.frames[again].status != PF_OK) ++again;
+  std::printf("tracked again after %zu frames\n", again - 72);
+  tell("after the dark", run, again);
+  TEST_ASSERT_TRUE(again - 72 <= 5);
+  for (std::size_t i = again; i < 110; ++i) TEST_ASSERT_EQUAL_INT(PF_OK, run.frames[i].status);
+  TEST_ASSERT_TRUE(run.worst_error(again) < 0.03);
+}
+
+void test_a_covered_lens_should_be_called_lost_and_tracking_should_resume_when_the_view_comes_back() {
+  RenderedRun run("desk", 200, Start::kRectangle);
+  TEST_ASSERT_EQUAL_INT(45, run.tracked_until(45));
+  run.tracked_until(105, 128);  // 2 s
+  bool coasted = false;
+  for (std::size_t i = 45; i < 105; ++i) {
+    TEST_ASSERT_TRUE(run.frames[i].status == PF_NOTE_UNUSABLE || run.frames[i].status == PF_NOTE_LOST);
+    coasted = coasted || run.frames[i].state == PF_STATE_COASTING;
+  }
+  TEST_ASSERT_TRUE(coasted);
+  TEST_ASSERT_EQUAL_INT(PF_NOTE_LOST, run.frames[104].status);
+  TEST_ASSERT_EQUAL_INT(PF_STATE_LOST, run.frames[104].state);
+  run.tracked_until(200);
+  std::size_t again = 105;
+  while (again < 200 && run.frames[again].status != PF_OK) ++again;
+  std::printf("tracked again after %zu frames\n", again - 105);
+  tell("after the cover", run, 105);
+  TEST_ASSERT_TRUE_MESSAGE(again < 200, "tracking did not resume");
+  TEST_ASSERT_TRUE(run.worst_error(again) < 0.05);
+}
+
+void test_pure_rotation_should_stay_starting_when_there_is_no_target() {
+  RenderedRun run("rotation", 120, Start::kNone);
+  run.tracked_until(120);
+  for (const RenderedRun::Frame& f : run.frames) {
+    TEST_ASSERT_EQUAL_INT(PF_NOTE_STARTING, f.status);
+    TEST_ASSERT_EQUAL_INT(PF_STATE_STARTING, f.state);
+    TEST_ASSERT_EQUAL_INT(0, f.report.features_point);  // no depth is claimed
+  }
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_desk_should_be_tracked_in_every_frame_when_it_starts_at_the_target);
+  RUN_TEST(test_desk_should_start_without_a_target_and_then_be_tracked);
+  RUN_TEST(test_tracking_should_go_on_when_the_exposure_jumps);
+  RUN_TEST(test_tracking_should_go_on_when_somebody_walks_through_the_picture);
+  RUN_TEST(test_tracking_should_go_on_when_the_texture_repeats);
+  RUN_TEST(test_black_frames_should_be_called_unusable_with_growing_covariance_and_then_tracked_through);
+  RUN_TEST(test_a_covered_lens_should_be_called_lost_and_tracking_should_resume_when_the_view_comes_back);
+  RUN_TEST(test_pure_rotation_should_stay_starting_when_there_is_no_target);
+  return UNITY_END();
+}

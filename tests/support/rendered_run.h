@@ -1,0 +1,111 @@
+#pragma once
+
+// The library on rendered frames: a scene, a context with its block, and what it said in each frame.
+
+#include <planefold_platform/sim.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "planefold/planefold.h"
+#include "unity.h"
+
+namespace pf {
+
+class RenderedRun {
+ public:
+  static constexpr std::uint64_t kSeed = 3;
+
+  struct Frame {
+    pf_status_t status;
+    pf_state_t state;
+    pf_pose_t pose;  ///< t_ns is -1 where there is none
+    pf_report_t report;
+    double error_m;  ///< distance from the truth (in W, where there is a target)
+  };
+
+  enum class Start { kRectangle, kNone };
+
+  RenderedRun(const char* scene, int length, Start start) {
+    std::printf("scene %s, seed %llu\n", scene, static_cast<unsigned long long>(kSeed));
+    pf_sim_options_t options;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_options_default(scene, &options));
+    options.seed = kSeed;
+    options.frames = length;
+    sim_ = pf_sim_open(scene, &options);
+    TEST_ASSERT_NOT_NULL(sim_);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
+    pf_sim_camera(sim_, &config.camera);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
+    block_ = std::aligned_alloc(need.alignment, (need.bytes + need.alignment) / need.alignment * need.alignment);
+    TEST_ASSERT_NOT_NULL(block_);
+    create();
+    if (start == Start::kRectangle) {
+      pf_target_t target;
+      TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_target(sim_, PF_TARGET_RECTANGLE, &target));
+      TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
+    }
+  }
+  RenderedRun(const RenderedRun&) = delete;
+  RenderedRun& operator=(const RenderedRun&) = delete;
+  ~RenderedRun() {
+    pf_sim_close(sim_);
+    std::free(block_);
+  }
+
+  void create() { TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block_, need.bytes, &slam)); }
+
+  bool next_image(pf_image_t* image) { return pf_sim_next(sim_, image, &truth_) == 1; }
+
+  /// The next frame goes in, under `cover` if that is not negative: then all its pixels have that grey level.
+  bool step(int cover = -1) {
+    pf_image_t image;
+    if (!next_image(&image)) return false;
+    if (cover >= 0) {
+      covered_.assign(static_cast<std::size_t>(image.stride * image.height), static_cast<std::uint8_t>(cover));
+      image.pixels = covered_.data();
+    }
+    Frame f = {};
+    f.status = pf_push_frame(slam, &image);
+    TEST_ASSERT_TRUE(f.status >= PF_OK);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_state(slam, &f.state));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(slam, &f.report));
+    if (pf_get_pose(slam, &f.pose) != PF_OK) f.pose.t_ns = -1;
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) sum += (f.pose.p_WC[i] - truth_.p_WC[i]) * (f.pose.p_WC[i] - truth_.p_WC[i]);
+    f.error_m = std::sqrt(sum);
+    frames.push_back(f);
+    return true;
+  }
+
+  /// Steps until `count` frames are done; how many of those were tracked.
+  int tracked_until(std::size_t count, int cover = -1) {
+    int tracked = 0;
+    while (frames.size() < count && step(cover)) tracked += frames.back().status == PF_OK ? 1 : 0;
+    TEST_ASSERT_EQUAL_size_t(count, frames.size());
+    return tracked;
+  }
+
+  double worst_error(std::size_t first) const {
+    double worst = 0;
+    for (std::size_t i = first; i < frames.size(); ++i)
+      if (frames[i].status == PF_OK && frames[i].error_m > worst) worst = frames[i].error_m;
+    return worst;
+  }
+
+  pf_config_t config;
+  pf_memory_t need;
+  pf_slam_t* slam = nullptr;
+  std::vector<Frame> frames;
+
+ private:
+  pf_sim_t* sim_;
+  void* block_ = nullptr;
+  pf_pose_t truth_ = {};
+  std::vector<std::uint8_t> covered_;
+};
+
+}  // namespace pf
