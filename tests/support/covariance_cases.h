@@ -27,12 +27,8 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  int integer(int low, int high) {
-    return low + static_cast<int>(bits() % static_cast<std::uint64_t>(high - low + 1));
-  }
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(bits() >> 11) * 0x1p-53;
-  }
+  int integer(int low, int high) { return low + static_cast<int>(bits() % static_cast<std::uint64_t>(high - low + 1)); }
+  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(bits() >> 11) * 0x1p-53; }
   double normal() {
     double sum = 0;
     for (int i = 0; i < 12; ++i) sum += uniform(-0.5, 0.5);
@@ -65,10 +61,7 @@ struct Thin {
   int rows, columns, ld;
   Buffer values;
   Thin(int r, int n, int shift = 0, Scalar poison = kNaN)
-      : rows(r),
-        columns(n),
-        ld(pf::padded(n)),
-        values(static_cast<std::size_t>(r) * pf::padded(n), shift, poison) {
+      : rows(r), columns(n), ld(pf::padded(n)), values(static_cast<std::size_t>(r) * pf::padded(n), shift, poison) {
     for (int i = 0; i < rows; ++i) {
       for (int j = columns; j < ld; ++j) at(i, j) = 0;
     }

@@ -41,7 +41,8 @@ inline std::vector<Scalar> random_block(Random& random, int rows, double scale) 
 
 inline Problem draw(Random& random, int largest) {
   const int n = random.integer(8, random.integer(8, largest));
-  Problem p = {n, 0, random.integer(0, 8), n, Covariance(n, n), {}, {}, Thin(8, n), Thin(8, n), {}, {}, {}, {}, {}, 0, 0, {}};
+  Problem p = {n, 0, random.integer(0, 8), n, Covariance(n, n), {}, {}, Thin(8, n), Thin(8, n), {}, {}, {}, {}, {}, 0,
+               0, {}};
   randomise(random, p.start.P);
   if (random.integer(0, 1) == 0) p.active = random.integer(0, n);
   const int measurements = random.integer(1, random.integer(1, 20));
@@ -105,8 +106,7 @@ inline double sigma_of(const SparseRows& J, int a, const Triangle& P) {
   for (int s = 0; s < J.segments; ++s) {
     for (int i = 0; i < J.segment[s].size; ++i, ++c) {
       const int at = J.segment[s].first + i;
-      sum += std::fabs(static_cast<double>(J.h[a * J.columns() + c])) *
-             std::sqrt(static_cast<double>(P(at, at)));
+      sum += std::fabs(static_cast<double>(J.h[a * J.columns() + c])) * std::sqrt(static_cast<double>(P(at, at)));
     }
   }
   return sum;
@@ -197,9 +197,7 @@ inline Trace run(const Kernels& kernels, Problem& p, Place place) {
   each([&](Triangle& P) { kernels.predict(P, p.F.data(), p.Q.data(), b); });
   each([&](Triangle& P) { kernels.augment(P, p.added, p.added_noise); });
   each([&](Triangle& P) { kernels.remove(P, p.gone.data(), static_cast<int>(p.gone.size())); });
-  each([&](Triangle& P) {
-    kernels.transform(P, p.replaced_first, p.replaced_size, p.replaced, p.added_noise);
-  });
+  each([&](Triangle& P) { kernels.transform(P, p.replaced_first, p.replaced_size, p.replaced, p.added_noise); });
   each([&](Triangle& P) { kernels.replace(P, p.replaced_first, p.replaced_size, p.replaced, nullptr); });
   return trace;
 }

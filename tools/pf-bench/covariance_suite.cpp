@@ -134,14 +134,15 @@ class CovarianceSuite {
     square();
     const std::vector<Scalar> product = S;
     Aligned X(p.W.size());
-    const std::vector<double> us = medians(
-        {{"gather", [] {}, [] {}, [&] { kernels_.gather_many(p.P, p.J.data(), static_cast<int>(p.J.size()), X.data(), p.ld); }},
-         {"cholesky", [] {}, [&] { S = product; }, [&] { kernels_.cholesky(S.data(), m, m); }},
-         {"solve", [] {}, [&] { std::memcpy(X.data(), p.W.data(), X.size() * sizeof(Scalar)); },
-          [&] { kernels_.solve_lower(factor.data(), m, m, X.data(), n, p.ld); }},
-         own("downdate", p, [&] { kernels_.downdate(p.P, p.W.data(), m, nullptr, nullptr, 0, p.ld, n); }),
-         own("update", p, [&] { p.update(kernels_, n, 0); })},
-        options_.repetitions);
+    const std::vector<double> us =
+        medians({{"gather", [] {}, [] {},
+                  [&] { kernels_.gather_many(p.P, p.J.data(), static_cast<int>(p.J.size()), X.data(), p.ld); }},
+                 {"cholesky", [] {}, [&] { S = product; }, [&] { kernels_.cholesky(S.data(), m, m); }},
+                 {"solve", [] {}, [&] { std::memcpy(X.data(), p.W.data(), X.size() * sizeof(Scalar)); },
+                  [&] { kernels_.solve_lower(factor.data(), m, m, X.data(), n, p.ld); }},
+                 own("downdate", p, [&] { kernels_.downdate(p.P, p.W.data(), m, nullptr, nullptr, 0, p.ld, n); }),
+                 own("update", p, [&] { p.update(kernels_, n, 0); })},
+                options_.repetitions);
     const double c = touched_columns(p);
     const double bytes = 1.0 * n * n * static_cast<double>(sizeof(Scalar)) / bandwidth(n);
     add("gather", n, m, us[0], "limit", 2.0 * n * m * c / peak_);
@@ -153,11 +154,10 @@ class CovarianceSuite {
 
   void considered(int n, int m) {
     Problem p(n, m);
-    const std::vector<double> us = medians({own("full", p, [&] { p.update(kernels_, n, 0); }),
-                                            own("half", p, [&] { p.update(kernels_, n / 2, 0); }),
-                                            own("transport", p, [&] { p.update(kernels_, n, 4); }),
-                                            own("both", p, [&] { p.update(kernels_, n / 2, 4); })},
-                                           options_.repetitions);
+    const std::vector<double> us = medians(
+        {own("full", p, [&] { p.update(kernels_, n, 0); }), own("half", p, [&] { p.update(kernels_, n / 2, 0); }),
+         own("transport", p, [&] { p.update(kernels_, n, 4); }), own("both", p, [&] { p.update(kernels_, n / 2, 4); })},
+        options_.repetitions);
     add("update, half considered", n, m, us[1], "update", us[0]);
     add("update, transport", n, m, us[2], "update", us[0]);
     add("update, half, transport", n, m, us[3], "update, half considered", us[1]);
@@ -188,26 +188,25 @@ class CovarianceSuite {
     for (int c = 0; c < 18; ++c) fresh.h[c] = Scalar(0.1);
     const Scalar noise[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-    const std::vector<double> us = medians(
-        {own("update", p, [&] { p.update(kernels_, n, 0); }),
-         own("predict", p, [&] { kernels_.predict(p.P, F.data(), Q.data(), kBody); }),
-         own("augment 3 rows", p, [&] { kernels_.augment(p.P, fresh, noise); }),
-         own("transform 3 to 2 rows", p,
-             [&] {
-               fold.segment[1] = {points[10], kPoint};
-               kernels_.transform(p.P, points[10], kPoint, fold, nullptr);
-             }),
-         own("fold 20 points", p,
-             [&] {
-               for (int point : points) {
-                 fold.segment[1] = {point, kPoint};
-                 kernels_.replace(p.P, point, kPoint, fold, nullptr);
-               }
-               kernels_.remove(p.P, gaps.data(), static_cast<int>(gaps.size()));
-             }),
-         own("evict 10 points", p,
-             [&] { kernels_.remove(p.P, gone.data(), static_cast<int>(gone.size())); })},
-        options_.repetitions);
+    const std::vector<double> us =
+        medians({own("update", p, [&] { p.update(kernels_, n, 0); }),
+                 own("predict", p, [&] { kernels_.predict(p.P, F.data(), Q.data(), kBody); }),
+                 own("augment 3 rows", p, [&] { kernels_.augment(p.P, fresh, noise); }),
+                 own("transform 3 to 2 rows", p,
+                     [&] {
+                       fold.segment[1] = {points[10], kPoint};
+                       kernels_.transform(p.P, points[10], kPoint, fold, nullptr);
+                     }),
+                 own("fold 20 points", p,
+                     [&] {
+                       for (int point : points) {
+                         fold.segment[1] = {point, kPoint};
+                         kernels_.replace(p.P, point, kPoint, fold, nullptr);
+                       }
+                       kernels_.remove(p.P, gaps.data(), static_cast<int>(gaps.size()));
+                     }),
+                 own("evict 10 points", p, [&] { kernels_.remove(p.P, gone.data(), static_cast<int>(gone.size())); })},
+                options_.repetitions);
     const char* names[] = {"predict", "augment 3 rows", "transform 3 to 2 rows", "fold 20 points", "evict 10 points"};
     for (int i = 0; i < 5; ++i) add(names[i], n, m, us[i + 1], "update", us[0]);
     add("predict", n, kBody, us[1], "limit", 2.0 * n * kBody * kBody / peak_);
@@ -229,7 +228,8 @@ int run_covariance(const SuiteOptions& options) {
   return CovarianceSuite(*kernels, options).run();
 }
 
-const Suite covariance_suite("covariance", "the O(n^2) kernels against limits, BLAS, Eigen and the textbook", run_covariance);
+const Suite covariance_suite("covariance", "the O(n^2) kernels against limits, BLAS, Eigen and the textbook",
+                             run_covariance);
 
 }  // namespace
 }  // namespace bench

@@ -24,8 +24,7 @@ struct EigenForms::State {
   }
 };
 
-EigenForms::EigenForms(const Problem& problem)
-    : state_(new State{problem, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {
+EigenForms::EigenForms(const Problem& problem) : state_(new State{problem, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {
   State& s = *state_;
   const int n = problem.n, m = problem.m;
   s.start = Eigen::Map<const RowMajor>(problem.dense_covariance().data(), n, n);

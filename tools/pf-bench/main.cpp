@@ -14,18 +14,22 @@ int main(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(s->name, s->description);
     sub->add_option("--json", options.json, "write the rows to this file");
     if (s->takes_sequences) {
-      sub->add_option("--source", options.sources, "images:DIR, euroc:DIR, tum:DIR or sim:NAME (default: what lies in $PLANEFOLD_DATA)");
+      sub->add_option("--source", options.sources,
+                      "images:DIR, euroc:DIR, tum:DIR or sim:NAME (default: what lies in $PLANEFOLD_DATA)");
       sub->add_option("--start", options.start,
                       "auto, target:FILE or rectangle:WxH (default: target.yaml beside the images, else auto)");
       sub->add_option("--calib", options.calibration, "calibration file (default: the one beside the images)");
-      sub->add_option("--passes", options.passes, "through every sequence")->check(CLI::Range(1, 1000))->capture_default_str();
+      sub->add_option("--passes", options.passes, "through every sequence")
+          ->check(CLI::Range(1, 1000))
+          ->capture_default_str();
       sub->add_option("--frames", options.frames, "at most N of every sequence")->check(CLI::Range(2, 100000));
     } else {
       sub->add_option("--repetitions", options.repetitions, "interleaved repetitions; medians are reported")
           ->check(CLI::Range(3, 100000))
           ->capture_default_str();
     }
-    sub->add_option("--kernels", options.kernels, "kernel set: reference, portable, avx2, avx512, neon (default: the fastest)");
+    sub->add_option("--kernels", options.kernels,
+                    "kernel set: reference, portable, avx2, avx512, neon (default: the fastest)");
     suites[sub] = s;
   }
   CLI11_PARSE(app, argc, argv);

@@ -49,7 +49,8 @@ int Report::finish() const {
   for (const auto& [key, value] : notes_) document["notes"][key] = value;
   document["rows"] = nlohmann::json::array();
   for (const Row& r : rows_) {
-    nlohmann::json row = {{"suite", r.suite}, {"name", r.name}, {"scalar", r.scalar}, {"n", r.n}, {"m", r.m}, {"us", r.us}};
+    nlohmann::json row = {{"suite", r.suite}, {"name", r.name}, {"scalar", r.scalar},
+                          {"n", r.n},         {"m", r.m},       {"us", r.us}};
     row["peer"] = r.peer.empty() ? nlohmann::json() : nlohmann::json(r.peer);
     row["ratio"] = r.peer.empty() ? nlohmann::json() : nlohmann::json(r.ratio);
     document["rows"].push_back(row);

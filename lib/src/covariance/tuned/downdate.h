@@ -19,8 +19,8 @@ struct Thin {
 /// Tile (8 rows of group q) x (columns from j):  P -= W^T W - U^T G - G^T U, the sum formed in registers from zero, so that each
 /// element of P is rounded once. B is W, or a stand-in for its columns from j (leading dimension b_stride).
 template <class V, int kVectors>
-PF_INLINE void downdate_tile(const Thin& t, const Scalar* B, std::ptrdiff_t b_stride, Scalar* to,
-                             std::ptrdiff_t stride, int i, int j) {
+PF_INLINE void downdate_tile(const Thin& t, const Scalar* B, std::ptrdiff_t b_stride, Scalar* to, std::ptrdiff_t stride,
+                             int i, int j) {
 #pragma GCC unroll 1
   for (int half = 0; half < kGroup; half += kTileRows) {
     Tile<V, kTileRows, kVectors> tile;
@@ -54,8 +54,7 @@ inline void downdate_columns(const Triangle& P, const Thin& t, int first, int la
         const int columns = smaller(kColumns, smaller(last, kGroup * (q + 1)) - j);
         Scalar* rows = P.data + group_offset(q);
         for_strips(j, columns, [&](auto v, auto count, int at) PF_LAMBDA {
-          downdate_tile<decltype(v), decltype(count)::value>(t, t.W + at, t.ld, rows + at, stride,
-                                                             q * kGroup, at);
+          downdate_tile<decltype(v), decltype(count)::value>(t, t.W + at, t.ld, rows + at, stride, q * kGroup, at);
         });
       }
     }
@@ -83,8 +82,8 @@ inline void downdate_boundary(const Triangle& P, const Thin& t, int active) {
       const std::ptrdiff_t stride = kGroup * (q + 1);
       Scalar* rows = P.data + group_offset(q);
       for_eight([&](auto v, auto count, int at) PF_LAMBDA {
-        downdate_tile<decltype(v), decltype(count)::value>(part, masked + at, kGroup, rows + j + at,
-                                                           stride, q * kGroup, j + at);
+        downdate_tile<decltype(v), decltype(count)::value>(part, masked + at, kGroup, rows + j + at, stride, q * kGroup,
+                                                           j + at);
       });
     }
   }
@@ -104,8 +103,7 @@ inline void clear_upper(const Triangle& P) {
 }
 
 /// Twin: reference::downdate. A term W_i W_j counts where j < active (j <= i), so columns decide, not rows.
-void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld,
-              int active) {
+void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int active) {
   constexpr std::ptrdiff_t kNear = (1 << 20) / sizeof(Scalar);
   const int groups = (P.n + kGroup - 1) / kGroup;
   const Thin with = {W, m, U, G, k, ld, group_offset(groups) > kNear};

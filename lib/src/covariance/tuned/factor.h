@@ -79,8 +79,7 @@ PF_INLINE bool cholesky_block(Scalar* S, int rows, std::ptrdiff_t lds) {
 
 /// Take columns from .. from + terms - 1 of L out of the panel of `width` columns that begins at p:
 ///   S_ij -= sum_k L_ik L_jk,   i >= p,  p <= j < p + width,  j <= i
-inline void cholesky_downdate(Scalar* S, int m, std::ptrdiff_t lds, int p, int width, int from,
-                              int terms) {
+inline void cholesky_downdate(Scalar* S, int m, std::ptrdiff_t lds, int p, int width, int from, int terms) {
   constexpr int kChunk = 32;
   alignas(64) Scalar B[kChunk * kGroup] = {};
   for (int k = 0; k < terms; k += kGroup) {
@@ -128,8 +127,7 @@ bool cholesky(Scalar* S, int m, int leading) {
       transpose_square(S + i * lds + p, lds, rows, kGroup, T, kGroup);
       for_eight([&](auto v, auto count, int j) {
         for_heights(kGroup, [&](auto height, int at) PF_LAMBDA {
-          solve_tile<decltype(v), decltype(height)::value, decltype(count)::value>(diagonal, lds, T + j,
-                                                                                   kGroup, at);
+          solve_tile<decltype(v), decltype(height)::value, decltype(count)::value>(diagonal, lds, T + j, kGroup, at);
         });
       });
       transpose_square(T, kGroup, kGroup, rows, S + i * lds + p, lds);

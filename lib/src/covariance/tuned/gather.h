@@ -136,9 +136,7 @@ void gather_many(const Triangle& P, const SparseRows* J, int count, Scalar* out,
   }
 }
 
-void gather(const Triangle& P, const SparseRows& J, Scalar* out, int ld) {
-  gather_many(P, &J, 1, out, ld);
-}
+void gather(const Triangle& P, const SparseRows& J, Scalar* out, int ld) { gather_many(P, &J, 1, out, ld); }
 
 /// Twin: reference::project. Rows of X are the strip's columns, so eight or more of them go at a time; of the result, J X^T, the
 /// part on and below the diagonal of S is turned round and kept.

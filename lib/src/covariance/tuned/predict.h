@@ -8,8 +8,8 @@ namespace {
 constexpr int kLeading = Kernels::kMaxLeading;
 
 /// to (8 x columns, leading dimension kLeading) = A (8 x columns, stride a_stride) B (columns x columns, leading kLeading)
-PF_INLINE void multiply_rows(const Scalar* A, std::ptrdiff_t a_stride, const Scalar* B, int columns,
-                             Scalar* to, std::ptrdiff_t stride) {
+PF_INLINE void multiply_rows(const Scalar* A, std::ptrdiff_t a_stride, const Scalar* B, int columns, Scalar* to,
+                             std::ptrdiff_t stride) {
   for_strips<2>(0, columns, [&](auto v, auto count, int j) {
     for (int i = 0; i < kGroup; i += kTileRows) {
       Tile<decltype(v), kTileRows, decltype(count)::value> tile;

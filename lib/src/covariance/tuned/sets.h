@@ -12,8 +12,7 @@
 #define PF_HAS_AVX512 1
 #elif defined(__aarch64__)
 #define PF_HAS_NEON 1
-#elif defined(__arm__) && defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'A' && \
-    defined(PLANEFOLD_SCALAR_FLOAT)
+#elif defined(__arm__) && defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'A' && defined(PLANEFOLD_SCALAR_FLOAT)
 #define PF_HAS_NEON 1  // ARMv7 has NEON for float only
 #endif
 

@@ -9,9 +9,8 @@
 namespace pf {
 namespace {
 
-constexpr Kernels kTable = {gather,    cholesky, solve_lower, downdate,    predict,
-                            augment,   transform, remove,     gather_many, replace,
-                            project,   combine};
+constexpr Kernels kTable = {gather,    cholesky, solve_lower, downdate, predict, augment,
+                            transform, remove,   gather_many, replace,  project, combine};
 
 }  // namespace
 }  // namespace pf

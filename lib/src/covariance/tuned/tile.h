@@ -66,8 +66,8 @@ struct Tile {
 
   /// c += A B over `count` terms, or c -= A B; A(r, k) = A[r a_row + k a_step], B's row k begins at B + k b_stride.
   template <bool kMinus = false>
-  PF_INLINE void accumulate(const Scalar* A, std::ptrdiff_t a_row, std::ptrdiff_t a_step,
-                            const Scalar* B, std::ptrdiff_t b_stride, int count) {
+  PF_INLINE void accumulate(const Scalar* A, std::ptrdiff_t a_row, std::ptrdiff_t a_step, const Scalar* B,
+                            std::ptrdiff_t b_stride, int count) {
     for (int k = 0; k < count; ++k) {
       Type b[kVectors];
 #pragma GCC unroll 8

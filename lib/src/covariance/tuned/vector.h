@@ -54,8 +54,7 @@ struct Vector {
 };
 
 /// Four rows of four scalars, `stride` apart, become four rows `to_stride` apart.
-PF_INLINE void transpose_four(const Scalar* from, std::ptrdiff_t stride, Scalar* to,
-                              std::ptrdiff_t to_stride) {
+PF_INLINE void transpose_four(const Scalar* from, std::ptrdiff_t stride, Scalar* to, std::ptrdiff_t to_stride) {
   typedef Register<4 * sizeof(Scalar)> Four;
   const Four::Type a = *reinterpret_cast<const Four::Loose*>(from);
   const Four::Type b = *reinterpret_cast<const Four::Loose*>(from + stride);
@@ -72,8 +71,8 @@ PF_INLINE void transpose_four(const Scalar* from, std::ptrdiff_t stride, Scalar*
 }
 
 /// rows x columns (8 x 8 at most) become columns x rows.
-PF_INLINE void transpose_square(const Scalar* from, std::ptrdiff_t stride, int rows, int columns,
-                                Scalar* to, std::ptrdiff_t to_stride) {
+PF_INLINE void transpose_square(const Scalar* from, std::ptrdiff_t stride, int rows, int columns, Scalar* to,
+                                std::ptrdiff_t to_stride) {
   const int whole_rows = rows / 4 * 4;
   const int whole_columns = columns / 4 * 4;
   for (int r = 0; r < whole_rows; r += 4) {
@@ -109,9 +108,7 @@ constexpr int round_up(int n, int to) { return (n + to - 1) / to * to; }
 
 constexpr int smaller(int a, int b) { return a < b ? a : b; }
 
-PF_INLINE std::ptrdiff_t group_offset(int q) {
-  return 32 * static_cast<std::ptrdiff_t>(q) * (q + 1);
-}
+PF_INLINE std::ptrdiff_t group_offset(int q) { return 32 * static_cast<std::ptrdiff_t>(q) * (q + 1); }
 
 /// Triangle::row, and the leading dimension of its group.
 PF_INLINE int stride_of(int i) { return kGroup * (i / kGroup + 1); }
@@ -120,9 +117,7 @@ PF_INLINE Scalar* row_of(const Triangle& P, int i) {
   return P.data + group_offset(i / kGroup) + static_cast<std::ptrdiff_t>(i % kGroup) * stride_of(i);
 }
 
-PF_INLINE Scalar& element(const Triangle& P, int i, int j) {
-  return i >= j ? row_of(P, i)[j] : row_of(P, j)[i];
-}
+PF_INLINE Scalar& element(const Triangle& P, int i, int j) { return i >= j ? row_of(P, i)[j] : row_of(P, j)[i]; }
 
 PF_INLINE int columns_of(const SparseRows& J) {
   int sum = 0;
