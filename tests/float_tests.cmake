@@ -1,6 +1,10 @@
 set(PLANEFOLD_FLOAT_TESTS
     unit/test_build_mode.cpp
     jacobian/test_camera.cpp
+    jacobian/test_inverse_depth_conversion.cpp
+    jacobian/test_motion.cpp
+    jacobian/test_observe_inverse_depth.cpp
+    jacobian/test_observe_point.cpp
     jacobian/test_planar_pose.cpp
     jacobian/test_plane.cpp
     unit/test_camera.cpp
