@@ -78,7 +78,7 @@ Pose Bed::nominal(int frame) const {
     radius = kWalkRadius;
   }
   const Vec3 radial{std::sin(angle), 0, std::cos(angle)};
-  return {look_along(radial, kDown), radial * radius};
+  return {look_along(options_.circle && options_.look_inward ? -radial : radial, kDown), radial * radius};
 }
 
 void Bed::place_target() {

@@ -17,6 +17,7 @@ enum class Layout {
 struct BedOptions {
   Layout layout = Layout::kModel;
   bool circle = false;          ///< the paper's fixed circle; otherwise motion drawn from the model, with steering
+  bool look_inward = true;      ///< on the circle: across the middle; otherwise away from it
   double circle_seconds = 180;  ///< for one loop
   double fov_deg = 80;          ///< horizontal
   int frames = 1800;

@@ -10,12 +10,12 @@ namespace pfsim {
 namespace {
 
 struct Choices {
-  std::string cases = "A", layout = "model", motion = "velocity", gauge = "both", json, csv;
+  std::string cases = "A", layout = "model", motion = "velocity", look = "inward", json, csv;
   int seeds = 40, frames = 0, jobs = 2, gauge_every = 50;
   std::uint64_t first_seed = 1;
   bool plain = false;
   double fov = 0, linear = 0, angular = 0, relative_sigma = 0, start_depth = 0, linearity = 0, sigma_px = 1;
-  double circle_seconds = 180, slant = 35, height = 0.5;
+  double circle_seconds = 180, slant = 35, height = 0;
   int depth_from_map = -1, in_view = 44, first_birth = 15, target_points = 0, max_state_dim = 0;
 };
 
@@ -36,6 +36,7 @@ Experiment prepare(const Choices& c, bool gee) {
   x.run.gauge_every = c.gauge_every;
   x.bed.layout = gee || c.layout == "room" ? Layout::kRoom : Layout::kModel;
   x.bed.circle = gee;
+  x.bed.look_inward = c.look == "inward";
   x.bed.circle_seconds = c.circle_seconds;
   x.bed.fov_deg = c.fov > 0 ? c.fov : gee ? 43 : 80;
   x.bed.frames = c.frames > 0 ? c.frames : gee ? 10800 : 1800;
@@ -44,7 +45,7 @@ Experiment prepare(const Choices& c, bool gee) {
   x.bed.target_points = c.target_points > 0 ? c.target_points : gee ? 4 : 9;
   x.bed.target_size = gee ? 0.2 : 0.25;
   x.bed.target_slant_deg = c.slant;
-  x.bed.room_half_height = c.height;
+  x.bed.room_half_height = c.height > 0 ? c.height : gee ? 1.0 : 0.5;
   if (gee) x.bed.sigma_start_v = x.bed.sigma_start_w = 0.05;
 
   pf_config_t& config = x.config;
@@ -57,7 +58,7 @@ Experiment prepare(const Choices& c, bool gee) {
   config.max_observations = 100;
   config.coast_seconds = 10;
   config.depth_from_map = x.bed.layout == Layout::kRoom;
-  config.start_depth = gee ? 1.2 : x.bed.layout == Layout::kRoom ? 1.6 : 2.0;
+  config.start_depth = gee ? (x.bed.look_inward ? 2.0 : 1.2) : x.bed.layout == Layout::kRoom ? 1.6 : 2.0;
   config.inverse_depth_relative_sigma = x.bed.layout == Layout::kRoom ? 0.5 : 0.3;
   if (c.depth_from_map >= 0) config.depth_from_map = static_cast<std::uint32_t>(c.depth_from_map);
   set_if(config.start_depth, c.start_depth);
@@ -99,6 +100,7 @@ int run(const Choices& c, bool gee) {
   if (c.cases != "A") return fail("there is no case " + c.cases + " yet; case A is points only");
   if (c.layout != "model" && c.layout != "room") return fail("the layout is model or room");
   if (c.motion != "walk" && c.motion != "velocity") return fail("the motion is walk or velocity");
+  if (c.look != "inward" && c.look != "outward") return fail("the camera looks inward or outward");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 0)
     return fail("seeds, jobs and frames must be positive");
   const std::string name = gee ? "gee2007" : "room";
@@ -168,6 +170,7 @@ void add_gee2007(CLI::App& app, int& result) {
   CLI::App* command = app.add_subcommand("gee2007", "The paper's room and circle, with and without keeping the gauge");
   add_common(command, *c);
   command->add_option("--motion", c->motion, "velocity, or walk as the paper has it");
+  command->add_option("--look", c->look, "inward, across the middle (some 20 points in view), or outward (some 5)");
   command->add_option("--seconds-per-loop", c->circle_seconds, "of the circle");
   command->callback([c, &result] { result = run(*c, true); });
 }

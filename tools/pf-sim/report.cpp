@@ -137,7 +137,7 @@ json summarise_frames(const Runs& x) {
 }
 
 json summarise(const Experiment& x) {
-  double seconds = 0, map_square = 0, map_count = 0, map_nees = 0, pose = 0, scale = 0, scale_step = 0;
+  double seconds = 0, map_square = 0, map_count = 0, map_nees = 0, pose = 0, scale = 0, scale_step = 0, beyond = -1;
   int lost = 0, tracked = 0;
   for (int s = 0; s < x.seeds; ++s) {
     const RunSummary& r = x.summaries[s];
@@ -149,14 +149,17 @@ json summarise(const Experiment& x) {
     map_nees += r.map_nees_sum;
     pose = std::max(pose, r.gauge_pose_growth);
     scale = std::max(scale, r.gauge_scale_growth);
+    beyond = std::max(beyond, r.gauge_scale_beyond_priors);
     scale_step = std::max(scale_step, r.gauge_scale_step_growth);
   }
   json out = summarise_frames(x);
   out["map_rmse_m"] = std::sqrt(map_square / std::max(1.0, map_count));
   out["map_nees"] = map_nees / std::max(1.0, map_count);
   out["planes"] = {{"true", 0}, {"false", 0}, {"duplicate", 0}};
-  out["gauge_growth"] = {
-      {"translation_rotation", pose}, {"scale", scale}, {"scale_one_frame_without_births", scale_step}};
+  out["gauge_growth"] = {{"translation_rotation", pose},
+                         {"scale", scale},
+                         {"scale_beyond_depth_priors", beyond},
+                         {"scale_one_frame_without_births", scale_step}};
   out["tracked_share"] = tracked / (static_cast<double>(x.seeds) * x.frames);
   out["lost_runs"] = lost;
   out["frames_per_second"] = out["frames_judged"].get<double>() / std::max(1e-9, seconds);
@@ -197,9 +200,11 @@ void print(const std::string& label, const json& j) {
   std::printf("  pose NEES %.3f (6 dof), NIS per dof %.3f, camera RMSE %.4f m, map RMSE %.4f m, state %g (end %g)\n",
               number("/nees_pose/mean"), number("/nis_per_dof"), number("/camera_rmse_m"), number("/map_rmse_m"),
               number("/state_dim/median"), number("/state_dim/end"));
-  std::printf("  gauge information grew: translation, rotation %.2e; scale %.2e (in one frame without births %.2e)\n",
-              number("/gauge_growth/translation_rotation"), number("/gauge_growth/scale"),
-              number("/gauge_growth/scale_one_frame_without_births"));
+  std::printf(
+      "  gauge information grew: translation, rotation %.2e; scale %.2e (less the depth priors %.2e; in "
+      "one frame without births %.2e)\n",
+      number("/gauge_growth/translation_rotation"), number("/gauge_growth/scale"),
+      number("/gauge_growth/scale_beyond_depth_priors"), number("/gauge_growth/scale_one_frame_without_births"));
   std::printf("  %g runs of %g frames, %g lost, %.1f %% tracked, %g inliers, %.0f frames a second\n", number("/runs"),
               number("/frames"), number("/lost_runs"), 100 * number("/tracked_share"), number("/inliers_median"),
               number("/frames_per_second"));

@@ -31,10 +31,12 @@ class GaugeWatch {
     now_valid_ = pf_get_gauge_information(slam, scratch_.data(), scratch_.size(), now_) == PF_OK;
   }
   void keep_as_first() { std::copy(now_, now_ + 49, first_); }
-  void compare(bool births, RunSummary& summary) const {
+  void compare(bool births, double from_priors, RunSummary& summary) const {
     if (!now_valid_) return;
     summary.gauge_pose_growth = std::max(summary.gauge_pose_growth, largest_ratio(first_, now_, 6, 7) - 1);
     summary.gauge_scale_growth = std::max(summary.gauge_scale_growth, now_[48] / first_[48] - 1);
+    summary.gauge_scale_beyond_priors =
+        std::max(summary.gauge_scale_beyond_priors, (now_[48] - from_priors) / first_[48] - 1);
     if (!births && before_valid_)
       summary.gauge_scale_step_growth = std::max(summary.gauge_scale_step_growth, now_[48] / before_[48] - 1);
   }
@@ -106,6 +108,7 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
   summary.lost = 0;
 
   GaugeWatch gauge;
+  double from_priors = 0;  // information about scale that new points came with
   pf_pose_t pose = bed.start();
   pf_report_t report{};
   for (int frame = 0; frame < bed_options.frames; ++frame) {
@@ -127,6 +130,7 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
       return summary;
     }
     pf_get_report(slam, &report);
+    from_priors += report.new_features / (config.inverse_depth_relative_sigma * config.inverse_depth_relative_sigma);
     rows[frame] = judge(bed.truth().pose, pose, report);
     summary.lost |= status == PF_NOTE_LOST || !(rows[frame].nees_position >= 0);
     summary.frames_tracked += status == PF_OK;
@@ -138,10 +142,10 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
       gauge.keep_as_first();
     } else if (phase >= 0 && phase == options.gauge_every - 1) {
       gauge.read(slam, report.state_dim);
-      gauge.compare(true, summary);
+      gauge.compare(true, from_priors, summary);
     } else if (phase == 0) {
       gauge.read(slam, report.state_dim);
-      gauge.compare(births > 0, summary);
+      gauge.compare(births > 0, from_priors, summary);
     }
   }
   judge_map(bed, map_of(slam, config), summary);

@@ -25,6 +25,8 @@ struct RunSummary {
   std::int32_t frames_tracked = 0;
   double gauge_pose_growth = 0;   ///< of the information about global translation and rotation since the first frame
   double gauge_scale_growth = 0;  ///< of that about scale, likewise; depth priors of new points are part of it
+  double gauge_scale_beyond_priors =
+      -1;  ///< likewise, less what the priors of 1/depth brought in: 1/relative_sigma^2 each
   double gauge_scale_step_growth = 0;  ///< in one frame without new points
   double map_square_sum = 0;           ///< of the distances between points of the map and the truth at the end [m^2]
   double map_count = 0;
