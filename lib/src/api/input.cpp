@@ -10,17 +10,46 @@ pf::Vec3 vec3(const double* v) {
   return pf::Vec3(static_cast<Scalar>(v[0]), static_cast<Scalar>(v[1]), static_cast<Scalar>(v[2]));
 }
 
-/// Symmetric to rounding, with positive diagonal and Cauchy-Schwarz between any two.
+/// What is further, faster or less known than this is no camera, and its square would leave the range of float.
+constexpr double kMostMetres = 1e6;  // also [m/s]
+constexpr double kMostRate = 1e4;    // [rad/s]
+constexpr double kMostVariance = 1e12;
+
+bool within(const double* v, int n, double most) {
+  for (int i = 0; i < n; ++i)
+    if (!(std::fabs(v[i]) <= most)) return false;
+  return true;
+}
+
+/// No direction with a variance below zero, to rounding: every pivot of the elimination stays at or above it. n <= 6.
+bool is_semidefinite(const double* P, int n) {
+  double L[36];
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) {
+      // of correlations, so that radians and metres weigh the same
+      double sum = P[i * n + j] / (std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]));
+      for (int k = 0; k < j; ++k) sum -= L[i * n + k] * L[j * n + k];
+      if (j == i) {
+        if (!(sum > -1e-9)) return false;
+        L[i * n + i] = sum > 1e-9 ? std::sqrt(sum) : 0.0;
+      } else {
+        L[i * n + j] = L[j * n + j] > 0.0 ? sum / L[j * n + j] : 0.0;
+      }
+    }
+  return true;
+}
+
+/// Symmetric to rounding, with positive diagonal, Cauchy-Schwarz between any two, and semidefinite.
 bool is_covariance(const double* P, int n) {
   for (int i = 0; i < n; ++i) {
-    if (!(P[i * n + i] > 0.0)) return false;
+    if (!(P[i * n + i] > 0.0 && P[i * n + i] <= kMostVariance)) return false;
     for (int j = 0; j < i; ++j) {
-      const double scale = std::sqrt(P[i * n + i] * P[j * n + j]);
+      const double scale = std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]);
       if (std::fabs(P[i * n + j] - P[j * n + i]) > 1e-9 * scale) return false;
       if (std::fabs(P[i * n + j]) > scale * (1.0 + 1e-9)) return false;
     }
   }
-  return true;
+  return is_semidefinite(P, n);
 }
 
 pf_status_t body_from(const pf_pose_t& pose, pf::Body* body) {
@@ -30,6 +59,8 @@ pf_status_t body_from(const pf_pose_t& pose, pf::Body* body) {
   const double* q = pose.q_WC;
   const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(norm2 > 0.98 && norm2 < 1.02)) return PF_ERROR_RANGE;
+  if (!within(pose.p_WC, 3, kMostMetres) || !within(pose.v_W, 3, kMostMetres) || !within(pose.w_C, 3, kMostRate))
+    return PF_ERROR_RANGE;
   if (!is_covariance(pose.covariance, 6)) return PF_ERROR_RANGE;
   body->q_WC = pf::Quat(static_cast<Scalar>(q[0]), static_cast<Scalar>(q[1]), static_cast<Scalar>(q[2]),
                         static_cast<Scalar>(q[3]));
@@ -64,6 +95,7 @@ pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
     t.count = target->count;
     for (int i = 0; i < t.count; ++i) {
       if (!pf::finite(target->points_W[i], 3)) return PF_ERROR_NONFINITE;
+      if (!within(target->points_W[i], 3, kMostMetres)) return PF_ERROR_RANGE;
       t.point_W[i] = vec3(target->points_W[i]);
     }
     const pf_status_t status = body_from(target->first_pose, &t.first_pose);
@@ -109,6 +141,7 @@ pf_status_t pf_push_steering(pf_slam_t* slam, const double dv_C[3], const double
   PF_REQUIRE_CONTEXT(slam);
   if (dv_C == nullptr || dw_C == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(dv_C, 3) || !pf::finite(dw_C, 3)) return PF_ERROR_NONFINITE;
+  if (!within(dv_C, 3, kMostMetres) || !within(dw_C, 3, kMostRate)) return PF_ERROR_RANGE;
   if (!slam->settings.constant_velocity) return PF_ERROR_STATE;
   slam->slam.push_steering(vec3(dv_C), vec3(dw_C));
   return PF_OK;
@@ -137,6 +170,7 @@ pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observa
     if (!(o.sigma_px == 0.0 || (o.sigma_px >= 0.01 && o.sigma_px <= 100.0))) return PF_ERROR_RANGE;
     if (!(std::fabs(o.pixel[0]) < 1e5 && std::fabs(o.pixel[1]) < 1e5)) return PF_ERROR_RANGE;
   }
+  if (slam->slam.takes_images_only()) return PF_ERROR_STATE;
   slam->takes_observations = true;
   pf::PixelObservation* taken = slam->slam.observation_inbox();
   const size_t most = static_cast<size_t>(slam->slam.observation_inbox_size());

@@ -1,4 +1,5 @@
 #include "api/context.h"
+#include "base/elapsed.h"
 #include "covariance/select.h"
 #include "filter/gauge_information.h"
 #include "filter/observe/inverse_depth.h"
@@ -53,7 +54,7 @@ pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose
   if (pose == nullptr) return PF_ERROR_NULL;
   if (!slam->slam.has_pose()) return PF_ERROR_STATE;
   if (t_ns < slam->slam.last_ns()) return PF_ERROR_TIME;
-  if (t_ns - slam->slam.last_ns() > INT64_C(10000000000)) return PF_ERROR_RANGE;
+  if (pf::elapsed_ns(slam->slam.last_ns(), t_ns) > INT64_C(10000000000)) return PF_ERROR_RANGE;
   pose_at(slam->slam, t_ns, pose);
   return PF_OK;
 }
