@@ -21,10 +21,10 @@ void put(Scalar* h, int stride, int column, const Eigen::Matrix<Scalar, Rows, Co
 }  // namespace
 
 bool Filter::layout(Arena& arena, const FilterCapacity& capacity) {
+  most_rows_ = capacity.state_dim;
   P_.capacity = round_to_group(capacity.state_dim);
   P_.data = arena.take<Scalar>(Triangle::size_for(P_.capacity));
-  state_.slots = capacity.features + capacity.state_dim / 3;  // features, and their anchors
-  if (state_.slots > capacity.state_dim / 3) state_.slots = capacity.state_dim / 3;
+  state_.slots = capacity.state_dim / 3;  // a block has three rows
   state_.block = arena.take<Block>(static_cast<std::size_t>(state_.slots));
   max_rows_ = 2 * capacity.observations;
   ld_ = padded(P_.capacity);
@@ -93,7 +93,7 @@ void Filter::damp(Scalar factor) {
 
 int Filter::take_slot(BlockKind kind, int size) {
   const int slot = state_.find_free();
-  if (slot < 0 || state_.dim + size > P_.capacity) return -1;
+  if (slot < 0 || state_.dim + size > most_rows_) return -1;
   Block& block = state_.block[slot];
   block = Block();
   block.kind = kind;
@@ -368,6 +368,7 @@ bool Filter::finish_update(const Observation* observations, int count, const uns
   if (nis != nullptr) *nis = sum;
 
   kernels_->combine(W_, m, n, ld_, y_, dx_);
+  if (!is_step(dx_)) return false;
 
   if (!keep_gauge_) {
     apply_error(state_, dx_);

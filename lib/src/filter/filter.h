@@ -74,8 +74,8 @@ class Filter {
   /// Gathers H P and S = H P H^T (without noise) of `count` observations. Then innovation_block is valid until the state changes.
   void begin_update(const Observation* observations, int count);
   Mat2 innovation_block(int i, int j) const;
-  /// Takes the chosen observations in (keep[i] != 0; null takes all) and moves the state. False, with nothing changed, when S
-  /// cannot be factored. *nis gets the normalised innovation squared.
+  /// Takes the chosen observations in (keep[i] != 0; null takes all) and moves the state. False, with the state and P unchanged, when
+  /// S cannot be factored or the step is no number. *nis gets the normalised innovation squared.
   bool finish_update(const Observation* observations, int count, const unsigned char* keep, Scalar* nis);
 
   Mat3 covariance3(int slot) const;
@@ -83,19 +83,25 @@ class Filter {
   Vec3 point(int slot) const;
   Scalar variance(int row) const { return P_(row, row); }
   /// Rows that are still free.
-  int room() const { return P_.capacity - state_.dim; }
+  int room() const { return most_rows_ - state_.dim; }
+
+  // --- soundness: finite, bounded, and no variance below zero
+  bool body_is_sound() const;
+  /// Likewise for a block and the anchor that it hangs on.
+  bool block_is_sound(int slot) const;
 
  private:
   void sparse(const Observation& observation, SparseRows* rows) const;
   int take_slot(BlockKind kind, int size);
   bool scale_row(SparseRows* row) const;
-  void prepare_transport();
+  bool is_step(const Scalar* dx) const;
 
   const Kernels* kernels_ = nullptr;
   bool keep_gauge_ = true;
   State state_;
   Triangle P_;
-  int max_rows_ = 0;  ///< rows of one update
+  int most_rows_ = 0;  ///< of the state; P_ has room for a few more
+  int max_rows_ = 0;   ///< rows of one update
   int ld_ = 0;
   int lds_ = 0;
   Scalar* W_ = nullptr;   ///< max_rows x ld: H P, then L^-1 H P

@@ -14,6 +14,7 @@ struct Feature {
   std::uint32_t track = 0;  ///< the caller's id, for features that came through the observation door
   int slot = -1;            ///< block in the filter; -1: this entry is free
   bool is_target = false;
+  bool asked = false;    ///< in this frame, through the observation door
   int observations = 0;  ///< frames in which it was measured and used
   int attempts = 0;      ///< frames in which it was looked for
   int failures = 0;      ///< attempts since it was last measured
@@ -30,9 +31,13 @@ class FeatureTable {
     return arena.ok();
   }
   void init() {
+    clear();
+    next_id_ = 1;
+  }
+  /// No features any more; their ids are not used again.
+  void clear() {
     for (int i = 0; i < capacity_; ++i) feature_[i] = Feature();
     count_ = 0;
-    next_id_ = 1;
   }
 
   int capacity() const { return capacity_; }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/elapsed.h"
 #include "slam/consensus.h"
 
 namespace pf {
@@ -16,6 +17,8 @@ constexpr Scalar kMostTurn = Scalar(0.5);      ///< [rad] standard deviation at 
 
 /// Of a pose that defines the world: small enough to be certain, large enough to keep P invertible.
 constexpr Scalar kDefinedSigma = Scalar(1e-5);
+
+constexpr int kHopelessUpdates = 10;  ///< that could not be made, in a row: P is no covariance any more
 
 }  // namespace
 
@@ -52,6 +55,8 @@ void FilterSlam::init(const Settings& settings) {
   has_pose_ = false;
   sighted_ = false;
   lost_ = false;
+  gave_up_ = false;
+  failed_updates_ = 0;
   last_tracked_ns_ = 0;
   steering_v_C_.setZero();
   steering_w_C_.setZero();
@@ -59,8 +64,14 @@ void FilterSlam::init(const Settings& settings) {
   track_count_ = 0;
 }
 
+bool FilterSlam::fits(const Target& target) const {
+  return target.count <= settings_.max_features &&
+         3 * target.count <= settings_.max_state_dim - filter_.state().body_dim;
+}
+
 Status FilterSlam::start_from_target(const Target& target) {
   if (used()) return Status::kState;
+  if (!fits(target)) return Status::kRange;
   target_ = target;
   return Status::kOk;
 }
@@ -84,16 +95,17 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
   const int frames = report_.frames;
   report_ = FrameReport();
   report_.t_ns = t_ns;
-  report_.frames = frames + 1;
+  report_.frames = frames;
+  count_frame(&report_.frames);
   sighted_ = false;
+  gave_up_ = false;
   track_count_ = 0;
   if (!has_pose_) return true;
 
   StageTimer timer(settings_.hooks, &report_.stage_ns[kPredict]);
   // A gap that is longer than any motion stays predictable grows the covariance no further.
-  constexpr std::int64_t kLongest = 2000000000;
-  const std::int64_t gap = t_ns - before;
-  const Scalar dt = static_cast<Scalar>(static_cast<double>(gap < kLongest ? gap : kLongest) * 1e-9);
+  const std::int64_t gap = elapsed_ns(before, t_ns);
+  const Scalar dt = static_cast<Scalar>(static_cast<double>(gap < kLongestGap ? gap : kLongestGap) * 1e-9);
   MotionNoise noise = settings_.motion_noise;
   if (state_ == SlamState::kCoasting || state_ == SlamState::kLost) {
     // A hand does not keep its speed for long, and what is known of the turn to half a radian is enough to search everywhere:
@@ -111,13 +123,33 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
   filter_.predict(transition);
   steering_v_C_.setZero();
   steering_w_C_.setZero();
+  if (!filter_.body_is_sound()) start_over();
   return true;
+}
+
+/// The estimate is no estimate any more: everything that came from it goes. What the caller said of the first pose is not true
+/// here; a target that is still there may be found again.
+void FilterSlam::start_over() {
+  filter_.init(settings_.kernels, filter_.state().body_dim, settings_.keep_gauge);
+  features_.clear();
+  tracker_.init(settings_.camera);
+  record_.init();
+  recording_ = depth_known_ = has_pose_ = sighted_ = lost_ = false;
+  failed_updates_ = 0;
+  known_body_ = KnownBody();
+  if (target_withdrawn_) target_ = Target();
+  steering_v_C_.setZero();
+  steering_w_C_.setZero();
+  state_ = SlamState::kStarting;
+  for (int t = 0; t < track_count_; ++t) tracks_[t].feature = -1;
+  gave_up_ = true;
+  settings_.hooks.say("the estimate is no longer finite: starting again without it");
 }
 
 /// What the caller is told, from how many inliers there were.
 Status FilterSlam::end_frame() {
+  if (has_pose_ && (failed_updates_ >= kHopelessUpdates || !filter_.body_is_sound())) start_over();
   if (!has_pose_) return Status::kStarting;
-  if (recording_ && report_.frames <= 1) return Status::kStarting;
   if (report_.inliers >= kMinInliers || sighted_) {
     if (lost_) settings_.hooks.say("found the map again");
     lost_ = false;
@@ -126,7 +158,8 @@ Status FilterSlam::end_frame() {
     state_ = starting ? SlamState::kStarting : SlamState::kTracking;
     return starting ? Status::kStarting : Status::kOk;
   }
-  if (!lost_ && report_.t_ns - last_tracked_ns_ > settings_.coast_ns) {
+  if (recording_ && last_tracked_ns_ == report_.t_ns) return Status::kStarting;  // has just begun
+  if (!lost_ && elapsed_ns(last_tracked_ns_, report_.t_ns) > settings_.coast_ns) {
     lost_ = true;
     settings_.hooks.say("lost: too few features were found for too long");
   }
@@ -165,14 +198,19 @@ void FilterSlam::begin_from_knowledge() {
 bool FilterSlam::take_in(int first, int count) {
   StageTimer timer(settings_.hooks, &report_.stage_ns[kUpdate]);
   Scalar nis = 0;
-  if (!filter_.finish_update(observation_ + first, count, keep_ + first, &nis)) return false;
+  if (!filter_.finish_update(observation_ + first, count, keep_ + first, &nis)) {
+    ++failed_updates_;
+    for (int i = first; i < first + count; ++i) tracks_[track_of_[i]].status = TrackStatus::kOutlier;
+    return false;
+  }
+  failed_updates_ = 0;
   report_.nis += static_cast<double>(nis);
   for (int i = first; i < first + count; ++i) {
     if (keep_[i] == 0) continue;
     report_.nis_dof += 2;
     ++report_.inliers;
     Feature& feature = features_[entry_[i]];
-    ++feature.observations;
+    count_frame(&feature.observations);
     feature.failures = 0;
     feature.last_seen_ns = report_.t_ns;
   }
@@ -180,12 +218,15 @@ bool FilterSlam::take_in(int first, int count) {
 }
 
 Status FilterSlam::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
+  if (takes_images_only()) return Status::kState;
   if (!begin_frame(t_ns)) return Status::kTime;
+  if (gave_up_) return end_frame();
   if (!has_pose_) {
     begin_from_knowledge();
     add_target_points();
   }
 
+  for (int i = 0; i < features_.capacity(); ++i) features_[i].asked = false;
   int known = 0;
   {
     StageTimer timer(settings_.hooks, &report_.stage_ns[kGate]);
@@ -194,11 +235,13 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
       if (entry < 0) continue;
       Feature& feature = features_[entry];
       if (feature.is_target && target_withdrawn_) continue;
+      if (feature.asked) continue;  // the same id again
+      feature.asked = true;
       Observation& o = observation_[known];
-      ++feature.attempts;
+      count_frame(&feature.attempts);
       ++report_.attempts;
       if (!filter_.predict_pixel(settings_.camera, feature.slot, &o)) {
-        ++feature.failures;
+        count_frame(&feature.failures);
         continue;
       }
       o.measured = observations[i].pixel;
@@ -216,10 +259,11 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
                                  nis};
       ++report_.matches;
       if (!agrees) {
-        ++feature.failures;
+        count_frame(&feature.failures);
         continue;
       }
       keep_[known] = 1;
+      track_of_[known] = track_count_ - 1;
       entry_[known++] = entry;
     }
   }
@@ -238,9 +282,7 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
   for (int i = 0; i < count; ++i) {
     if (find_track(observations[i].track) >= 0) continue;
     if (track_count_ >= settings_.max_observations + settings_.max_features) break;
-    if (!make_room(anchor < 0 ? 6 : 3)) break;
-    if (anchor < 0) anchor = filter_.add_anchor();
-    if (anchor < 0) break;
+    if (!make_room_at(&anchor)) break;
     const Scalar variance = observations[i].sigma_px * observations[i].sigma_px;
     const int entry = begin_feature(anchor, observations[i].pixel, Mat2::Identity() * variance);
     if (entry < 0) continue;
@@ -265,7 +307,7 @@ void FilterSlam::predict_pose(std::int64_t t_ns, Body* body, Mat6* covariance) c
   for (int i = 0; i < dim; ++i)
     for (int j = 0; j < dim; ++j) P[i * dim + j] = filter_.covariance()(i, j);
   if (t_ns > report_.t_ns) {
-    const Scalar dt = static_cast<Scalar>(static_cast<double>(t_ns - report_.t_ns) * 1e-9);
+    const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(report_.t_ns, t_ns)) * 1e-9);
     Transition transition;
     if (settings_.constant_velocity)
       predict_constant_velocity(*body, dt, settings_.motion_noise, &transition);

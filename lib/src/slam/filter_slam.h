@@ -31,6 +31,11 @@ class FilterSlam {
  public:
   static constexpr int kMinInliers = 8;  ///< fewer do not carry a pose
 
+  static constexpr std::int64_t kLongestGap = 2000000000;  ///< [ns] between frames, that a prediction goes over
+
+  /// Whether a start at this target can be made with these capacities.
+  bool fits(const Target& target) const;
+
   bool layout(Arena& arena, const Settings& settings);
   void init(const Settings& settings);
 
@@ -42,6 +47,8 @@ class FilterSlam {
   Status push_frame(const ImageView& image, std::int64_t t_ns);
   Status push_observations(const PixelObservation* observations, int count, std::int64_t t_ns);
 
+  /// A rectangle is found in images; there is no such thing in a list of observations.
+  bool takes_images_only() const { return target_.kind == TargetKind::kRectangle; }
   /// Where the observation door leaves what came in: as many as the map and a frame can hold together.
   PixelObservation* observation_inbox() { return inbox_; }
   int observation_inbox_size() const { return settings_.max_features + settings_.max_observations; }
@@ -68,12 +75,14 @@ class FilterSlam {
   void begin_from_knowledge();
   int find_track(std::uint32_t track) const;
   bool take_in(int first, int count);
+  void start_over();
 
   // housekeeping.cpp
   void convert_what_is_linear();
   void drop_what_fails();
   void drop(const int* entries, int count);
   bool make_room(int rows);
+  bool make_room_at(int* anchor);
   Scalar usual_inverse_depth() const;
   int begin_feature(int anchor, const Vec2& pixel, const Mat2& noise);
   void add_target_points();
@@ -118,6 +127,8 @@ class FilterSlam {
   bool has_pose_ = false;
   bool sighted_ = false;  ///< this frame's pose comes from the target
   bool lost_ = false;
+  bool gave_up_ = false;    ///< in this frame
+  int failed_updates_ = 0;  ///< in a row
   std::int64_t last_tracked_ns_ = 0;
   Vec3 steering_v_C_ = Vec3::Zero();
   Vec3 steering_w_C_ = Vec3::Zero();

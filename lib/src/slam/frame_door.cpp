@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elapsed.h"
 #include "slam/consensus.h"
 #include "slam/filter_slam.h"
 
@@ -22,6 +23,7 @@ constexpr int kFewNew = 4;  ///< new features come in groups that share an ancho
 
 Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   if (!begin_frame(t_ns)) return Status::kTime;
+  if (gave_up_) return end_frame();
   bool usable;
   {
     StageTimer timer(settings_.hooks, &report_.stage_ns[kPyramid]);
@@ -153,11 +155,11 @@ int FilterSlam::search(int first, int count) {
     task.c_W = body.p_W;
     const SearchOutcome outcome = tracker_.search(task);
     if (!outcome.comparable) continue;
-    ++f.attempts;
+    count_frame(&f.attempts);
     ++report_.attempts;
     if (!outcome.found ||
         squared_distance(outcome.pixel - observation_[i].predicted, track.innovation) > settings_.gate) {
-      ++f.failures;
+      count_frame(&f.failures);
       continue;
     }
     ++report_.matches;
@@ -197,7 +199,7 @@ void FilterSlam::measure(int first, int count) {
     track.status = keep_[i] != 0 ? TrackStatus::kInlier : TrackStatus::kOutlier;
     track.nis = squared_distance(track.measured - observation_[i].predicted,
                                  filter_.innovation_block(i - first, i - first) + observation_[i].noise);
-    if (keep_[i] == 0) ++features_[entry_[i]].failures;
+    if (keep_[i] == 0) count_frame(&features_[entry_[i]].failures);
   }
   if (believed) take_in(first, found);
 }
@@ -206,10 +208,12 @@ void FilterSlam::measure(int first, int count) {
 void FilterSlam::begin_features_in_image() {
   int in_cell[kCellRows][kCellColumns] = {};
   const int width = settings_.camera.width, height = settings_.camera.height;
-  const auto column_of = [&](Scalar x) {
-    return std::clamp(static_cast<int>(x) * kCellColumns / width, 0, kCellColumns - 1);
+  const auto cell_of = [](Scalar at, int size, int cells) {
+    const Scalar inside = std::clamp(at, Scalar(0), static_cast<Scalar>(size - 1));
+    return static_cast<int>(inside) * cells / size;
   };
-  const auto row_of = [&](Scalar y) { return std::clamp(static_cast<int>(y) * kCellRows / height, 0, kCellRows - 1); };
+  const auto column_of = [&](Scalar x) { return cell_of(x, width, kCellColumns); };
+  const auto row_of = [&](Scalar y) { return cell_of(y, height, kCellRows); };
   int in_view = 0;
   for (int t = 0; t < track_count_; ++t) {
     const Track& track = tracks_[t];
@@ -246,16 +250,13 @@ void FilterSlam::begin_features_in_image() {
           free = tracks_[t].feature < 0 || (tracks_[t].predicted - pixel).squaredNorm() > apart * apart;
         if (!free) continue;
         if (track_count_ >= settings_.max_features + settings_.max_observations) return;
-        if (!make_room(anchor < 0 ? 6 : 3)) break;
-        if (anchor < 0) anchor = filter_.add_anchor();
-        if (anchor < 0) return;
+        if (!make_room_at(&anchor)) break;
         const int entry = begin_feature(anchor, pixel, Mat2::Identity() * (kReferenceSigma * kReferenceSigma));
         if (entry < 0) continue;
         Feature& f = features_[entry];
         f.appearance = tracker_.remember(pixel, filter_.state().body.q_WC, filter_.state().body.p_W);
         if (f.appearance < 0) {
           drop(&entry, 1);
-          anchor = filter_.state().block[anchor].kind == BlockKind::kAnchor ? anchor : -1;
           continue;
         }
         Track& track = tracks_[track_count_++];

@@ -29,8 +29,13 @@ void FilterSlam::convert_what_is_linear() {
 void FilterSlam::drop_what_fails() {
   int count = 0;
   for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i) || features_[i].is_target) continue;
+    if (!features_.used(i)) continue;
     const Feature& f = features_[i];
+    if (!filter_.block_is_sound(f.slot)) {
+      scratch_[count++] = i;
+      continue;
+    }
+    if (f.is_target) continue;
     const bool seldom = f.attempts >= kMinAttempts && 2 * f.observations < f.attempts;
     const bool in_a_row = f.failures >= (f.observations < kMinAttempts ? kMaxEarlyFailures : kMaxFailures);
     // Behind the camera's own first centre: the depth went wrong.
@@ -70,6 +75,18 @@ bool FilterSlam::make_room(int rows) {
     drop(&entry, 1);
   }
   return true;
+}
+
+/// Room for one more feature on an anchor, which is made where there is none: evictions take a childless anchor along.
+bool FilterSlam::make_room_at(int* anchor) {
+  if (*anchor >= 0) {
+    if (!make_room(3)) return false;
+    if (filter_.state().block[*anchor].kind == BlockKind::kAnchor) return true;
+    *anchor = -1;
+  }
+  if (!make_room(6)) return false;
+  *anchor = filter_.add_anchor();
+  return *anchor >= 0;
 }
 
 /// Median inverse depth of what was measured in this frame, or that of the start.

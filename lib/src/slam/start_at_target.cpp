@@ -80,9 +80,14 @@ bool FilterSlam::sight_points(PoseEstimate* pose, Vec2* pixel) const {
     Mat26 J;
     if (!project_from_pose(camera, first.q_WC, first.p_W, target_.point_W[i], first.p_W, &predicted[i], &J))
       return false;
+    if (!(predicted[i].x() > 0 && predicted[i].x() < static_cast<Scalar>(camera.width) && predicted[i].y() > 0 &&
+          predicted[i].y() < static_cast<Scalar>(camera.height)))
+      return false;
     const Mat26 JP = J.lazyProduct(target_.first_covariance);
     const Mat2 S = JP.lazyProduct(J.transpose());
-    reach[i] = std::clamp(Scalar(3) * std::sqrt(std::max(S(0, 0), S(1, 1))), Scalar(6), Scalar(60));
+    const Scalar widest = std::max(S(0, 0), S(1, 1));
+    if (!(widest >= Scalar(0))) return false;
+    reach[i] = std::clamp(Scalar(3) * std::sqrt(widest), Scalar(6), Scalar(60));
     distance += (target_.point_W[i] - first.p_W).norm() / static_cast<Scalar>(count);
   }
   const Scalar sigma = pixel_sigma(camera, target_.sigma_m, distance);

@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "base/elapsed.h"
 #include "geometry/so3.h"
 #include "slam/filter_slam.h"
 
@@ -95,7 +98,8 @@ void FilterSlam::restart_from_record() {
   std::int64_t t_ns = record_begin_ns_;
   for (int k = 0; k < frames; ++k) {
     const StartRecord::Frame& frame = record_.frame(k);
-    const Scalar dt = static_cast<Scalar>(static_cast<double>(frame.t_ns - t_ns) * 1e-9);
+    const Scalar dt =
+        static_cast<Scalar>(static_cast<double>(std::min(elapsed_ns(t_ns, frame.t_ns), kLongestGap)) * 1e-9);
     t_ns = frame.t_ns;
     Body& now = filter_.body();
     const Quat q_WC = base_q_WC_ * frame.q_WC;
@@ -129,7 +133,7 @@ void FilterSlam::restart_from_record() {
   const StartRecord::Frame& a = record_.frame(from);
   const StartRecord::Frame& b = record_.frame(frames - 1);
   if (b.t_ns <= a.t_ns) return;
-  const Scalar dt = static_cast<Scalar>(static_cast<double>(b.t_ns - a.t_ns) * 1e-9);
+  const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(a.t_ns, b.t_ns)) * 1e-9);
   filter_.body().v_W = base_q_WC_ * (b.p_W - a.p_W) / dt;
   filter_.body().w_C = log_so3(a.q_WC.conjugate() * b.q_WC) / dt;
 }

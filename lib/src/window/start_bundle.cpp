@@ -263,7 +263,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
 
   Quat q_last = record.frame(last).q_WC;
   const Scalar parallax = turn(camera, record, last, &q_last);
-  if (parallax < kLeastParallax * sigma_px || parallax < kGrowth * last_parallax_) return StartOutcome::kWait;
+  if (!(parallax >= kLeastParallax * sigma_px && parallax >= kGrowth * last_parallax_)) return StartOutcome::kWait;
 
   // Frame 0 and the last one, from six directions of motion; the parallax says how far at a depth of one.
   const int count = record.features();
@@ -313,7 +313,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   for (int c = 0; c < cameras; ++c)
     for (int i = 0; i < count; ++i) pixels += record.seen(frame[c], i) ? 1 : 0;
   // Two numbers per pixel; three times what noise alone would leave means that this is no explanation.
-  if (total > Scalar(6) * static_cast<Scalar>(pixels)) return StartOutcome::kWait;
+  if (!(total <= Scalar(6) * static_cast<Scalar>(pixels))) return StartOutcome::kWait;
 
   // Depths that were in front and well enough known, and the unit of length.
   Scalar sorted[StartRecord::kMaxFeatures];
@@ -326,8 +326,10 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
       if (!record.seen(frame[c], i)) continue;
       Vec2 z;
       const Vec3 d = record.ray(i) - rho_[i] * pose_[c].p_W;
-      if (!project(camera, pose_[c].q_WC.toRotationMatrix().transpose().lazyProduct(d), &z)) worst = Scalar(1e6);
-      worst = std::max(worst, (record.pixel(frame[c], i) - z).squaredNorm());
+      if (!project(camera, pose_[c].q_WC.toRotationMatrix().transpose().lazyProduct(d), &z))
+        worst = Scalar(1e6);
+      else
+        worst = std::max(worst, (record.pixel(frame[c], i) - z).squaredNorm());
     }
     if (worst > Scalar(25) * sigma_px * sigma_px) continue;
     good_[i] = 1;

@@ -1,0 +1,45 @@
+#include <cmath>
+
+#include "filter/filter.h"
+
+/// Whether the numbers can still be a state. Written so that NaN fails every comparison.
+
+namespace pf {
+namespace {
+
+constexpr Scalar kMost = Scalar(1e9);           ///< of any entry of the state
+constexpr Scalar kMostVariance = Scalar(1e18);  ///< and of any variance
+
+bool is_value(Scalar v) { return std::abs(v) < kMost; }
+
+bool are_variances(const Triangle& P, int first, int count) {
+  for (int i = first; i < first + count; ++i)
+    if (!(P(i, i) >= Scalar(0) && P(i, i) < kMostVariance)) return false;
+  return true;
+}
+
+}  // namespace
+
+bool Filter::body_is_sound() const {
+  const Body& b = state_.body;
+  for (int i = 0; i < 3; ++i)
+    if (!is_value(b.p_W[i]) || !is_value(b.v_W[i]) || !is_value(b.w_C[i])) return false;
+  const Scalar norm2 = b.q_WC.squaredNorm();
+  return norm2 > Scalar(0.9) && norm2 < Scalar(1.1) && are_variances(P_, 0, state_.body_dim);
+}
+
+bool Filter::block_is_sound(int slot) const {
+  const Block& block = state_.block[slot];
+  for (Scalar v : block.value)
+    if (!is_value(v)) return false;
+  if (!are_variances(P_, block.first, block.size)) return false;
+  return block.parent < 0 || block_is_sound(block.parent);
+}
+
+bool Filter::is_step(const Scalar* dx) const {
+  for (int i = 0; i < state_.dim; ++i)
+    if (!is_value(dx[i])) return false;
+  return true;
+}
+
+}  // namespace pf
