@@ -47,7 +47,8 @@ extern "C" {
 typedef enum pf_status {
   PF_OK = 0,
 
-  PF_NOTE_STARTING = 1,  /* taken; there is no pose yet, or it is not yet supported by known depths */
+  PF_NOTE_STARTING = 1,  /* taken; there is no pose yet, or it is not yet supported by known depths. Also when an estimate
+                            that is no longer finite was given up: a new start follows, with a new W (the log says so) */
   PF_NOTE_COASTING = 2,  /* taken; too few measurements, the pose is a prediction with growing covariance */
   PF_NOTE_LOST = 3,      /* taken; the pose is no longer usable; the map is kept and searched for in every frame */
   PF_NOTE_UNUSABLE = 4,  /* taken; the image has no usable content (black, white, blurred out); pose coasts */
@@ -243,7 +244,8 @@ PF_API pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image);
 
 /* A feature that something else has found and recognised: the front door for trackers in hardware and for simulations.
  * A new id begins a feature (if the map has room for it), a known one measures it. With a target of points, the ids 0 .. count-1
- * are its points. A context takes frames or observations, not both. */
+ * are its points. Of an id that comes twice in a call, the first counts. PF_ERROR_STATE with a rectangle as target, which is found in
+ * images only. A context takes frames or observations, not both. */
 typedef struct pf_observation {
   uint32_t id;
   double pixel[2];
