@@ -47,7 +47,8 @@ extern "C" {
 typedef enum pf_status {
   PF_OK = 0,
 
-  PF_NOTE_STARTING = 1,  /* taken; there is no pose yet, or it is not yet supported by known depths. Also when an estimate
+  PF_NOTE_STARTING =
+      1, /* taken; there is no pose yet, or it is not yet supported by known depths. Also when an estimate
                             that is no longer finite was given up: a new start follows, with a new W (the log says so) */
   PF_NOTE_COASTING = 2,  /* taken; too few measurements, the pose is a prediction with growing covariance */
   PF_NOTE_LOST = 3,      /* taken; the pose is no longer usable; the map is kept and searched for in every frame */
