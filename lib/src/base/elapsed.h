@@ -11,7 +11,8 @@ inline std::int64_t elapsed_ns(std::int64_t from, std::int64_t to) {
 }
 
 /// A count of frames that stops far below overflow, which 60 frames a second reach in seven months.
-inline void count_frame(std::int32_t* count) {
+template <class Int>
+inline void count_frame(Int* count) {
   if (*count < 1000000000) ++*count;
 }
 
