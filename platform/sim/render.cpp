@@ -32,22 +32,42 @@ Renderer::Renderer(const pf_camera_t& camera, int samples)
       rays_(index(width_) * index(height_) * index(samples * samples)),
       centre_rays_(index(width_) * index(height_)),
       tiles_(index(tiles_x_) * index(tiles_y_)) {
-  const auto ray_at = [&](double u, double v) {
-    const double pixel[2] = {u, v};
+  // Asking the model is expensive, so it is asked at the pixels' centres only, and at one more all around the image.
+  const int lattice_width = width_ + 2;
+  std::vector<Vec3> lattice(index(lattice_width) * index(height_ + 2));
+  const auto at = [&](int i, int j) -> Vec3& { return lattice[index(j + 1) * index(lattice_width) + index(i + 1)]; };
+  const auto ask = [&](int i, int j) {
+    const double pixel[2] = {static_cast<double>(i), static_cast<double>(j)};
     double ray[3] = {0, 0, 1};
-    if (pf_camera_unproject(&camera, pixel, ray) != PF_OK) ok_ = false;
-    return Vec3{ray[0], ray[1], ray[2]};
+    const bool given = pf_camera_unproject(&camera, pixel, ray) == PF_OK;
+    at(i, j) = {ray[0], ray[1], ray[2]};
+    return given;
   };
   for (int j = 0; j < height_; ++j)
+    for (int i = 0; i < width_; ++i) ok_ = ask(i, j) && ok_;
+  // Around the image there may be no rays; the last two go on straight then.
+  for (int i = 0; i < width_; ++i) {
+    if (!ask(i, -1)) at(i, -1) = at(i, 0) * 2 - at(i, 1);
+    if (!ask(i, height_)) at(i, height_) = at(i, height_ - 1) * 2 - at(i, height_ - 2);
+  }
+  for (int j = -1; j <= height_; ++j) {
+    if (!ask(-1, j)) at(-1, j) = at(0, j) * 2 - at(1, j);
+    if (!ask(width_, j)) at(width_, j) = at(width_ - 1, j) * 2 - at(width_ - 2, j);
+  }
+  // In between, to second order from the neighbours: what is left out is of the order of (1 / (4 f))^3 radian.
+  for (int j = 0; j < height_; ++j)
     for (int i = 0; i < width_; ++i) {
-      const std::size_t at = index(j) * index(width_) + index(i);
-      centre_rays_[at] = ray_at(i, j);
-      const double angle = 0.5 * (ray_at(i + 0.5, j) - ray_at(i - 0.5, j)).norm() +
-                           0.5 * (ray_at(i, j + 0.5) - ray_at(i, j - 0.5)).norm();
+      const std::size_t pixel = index(j) * index(width_) + index(i);
+      const Vec3 c = at(i, j), dx = (at(i + 1, j) - at(i - 1, j)) * 0.5, dy = (at(i, j + 1) - at(i, j - 1)) * 0.5;
+      const Vec3 dxx = at(i + 1, j) + at(i - 1, j) - c * 2, dyy = at(i, j + 1) + at(i, j - 1) - c * 2;
+      const Vec3 dxy = (at(i + 1, j + 1) - at(i - 1, j + 1) - at(i + 1, j - 1) + at(i - 1, j - 1)) * 0.25;
+      centre_rays_[pixel] = c;
+      const double angle = 0.5 * (dx.norm() + dy.norm());
       for (int b = 0; b < samples; ++b)
         for (int a = 0; a < samples; ++a) {
-          const Vec3 r = ray_at(i + (a + 0.5) / samples - 0.5, j + (b + 0.5) / samples - 0.5);
-          rays_[at * index(samples * samples) + index(b * samples + a)] = {
+          const double x = (a + 0.5) / samples - 0.5, y = (b + 0.5) / samples - 0.5;
+          const Vec3 r = c + dx * x + dy * y + dxx * (0.5 * x * x) + dyy * (0.5 * y * y) + dxy * (x * y);
+          rays_[pixel * index(samples * samples) + index(b * samples + a)] = {
               static_cast<float>(r.x), static_cast<float>(r.y), static_cast<float>(r.z),
               static_cast<float>(angle / samples)};
         }
@@ -112,6 +132,8 @@ void Renderer::render(const Scene& scene, const std::vector<Pose>& row_poses, fl
       views[k].o[0] = static_cast<float>(o.x);
       views[k].o[1] = static_cast<float>(o.y);
       views[k].o[2] = static_cast<float>(o.z);
+      views[k].width = static_cast<float>(q.width);
+      views[k].height = static_cast<float>(q.height);
     }
   };
   if (!rolling) look_from(row_poses.front());
@@ -146,10 +168,12 @@ void Renderer::render(const Scene& scene, const std::vector<Pose>& row_poses, fl
             if (w.o[2] >= 0 || c < 1e-4f) continue;
             const float t = -w.o[2] / c;
             if (t >= best) continue;
-            const Quad& q = scene.quads[index(k)];
             const float u = w.o[0] + t * (w.R[0] * ray->x + w.R[1] * ray->y + w.R[2] * ray->z);
             const float v = w.o[1] + t * (w.R[3] * ray->x + w.R[4] * ray->y + w.R[5] * ray->z);
-            if (!inside_shape(q.shape, u, v, static_cast<float>(q.width), static_cast<float>(q.height))) continue;
+            if (u < 0 || v < 0 || u > w.width || v > w.height) continue;
+            if (scene.quads[index(k)].shape != Shape::kRectangle &&
+                !inside_shape(scene.quads[index(k)].shape, u, v, w.width, w.height))
+              continue;
             best = t;
             best_u = u;
             best_v = v;

@@ -36,6 +36,7 @@ class Renderer {
   struct View {
     float R[9];
     float o[3];
+    float width, height;
   };
 
   void cull(const Scene& scene, const Pose& pose, double extra_slack, int tile_row,

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "sim/trajectory.h"
+
+namespace pf::sim {
+
+/// The walks of the named scenes: each begins before the target at about 0.7 m, sees it obliquely, and looks around. The
+/// seed moves the way points by a few centimetres.
+Trajectory desk_path(Random& random);
+Trajectory room_path(Random& random);
+Trajectory wall_path(Random& random);
+
+}  // namespace pf::sim
