@@ -1,4 +1,4 @@
-// Sub-pixel alignment of patches, and of whole coarse images over a rotation.
+// Sub-pixel alignment of patches.
 #include <cstring>
 #include <limits>
 
@@ -6,7 +6,6 @@
 #include "support/textured_images.h"
 #include "unity.h"
 #include "vision/align.h"
-#include "vision/rotation_align.h"
 
 using namespace pf;
 
@@ -147,106 +146,6 @@ void test_alignment_should_stay_in_the_image_when_the_start_is_anywhere() {
   TEST_ASSERT_FALSE(align(image.view(), pattern, Vec2(16, Scalar(1e20))).converged);
 }
 
-// ---- rotation ----
-
-/// A texture painted on the directions; rays of the camera are turned by R before it is looked up.
-TestImage view_of(const Texture& texture, const Eigen::Matrix3d& R, double gain, double bias) {
-  return TestImage(80, 60, [&](int u, int v) {
-    const Eigen::Vector3d ray = R * Eigen::Vector3d((u - 39.5) / 65, (v - 29.5) / 65, 1);
-    return gain * texture.at(100 * ray.x() / ray.z(), 100 * ray.y() / ray.z()) + bias;
-  });
-}
-
-void test_rotation_should_be_found_when_a_hand_turns_quickly() {
-  SeededRandom random(47);
-  const CoarseCamera camera{65, 65, 39.5f, 29.5f};
-  int valid = 0;
-  double worst = 0;
-  for (int k = 0; k < 30; ++k) {
-    const Texture texture(&random, 20, 120);
-    const Eigen::Vector3d w(random.uniform(-0.07, 0.07), random.uniform(-0.07, 0.07), random.uniform(-0.1, 0.1));
-    const Eigen::Matrix3d R = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix();
-    TestArena arena;
-    RotationAligner aligner;
-    TEST_ASSERT_TRUE(aligner.layout(*arena, 80, 60));
-    TEST_ASSERT_FALSE(
-        aligner.update(view_of(texture, Eigen::Matrix3d::Identity(), 1, 0).view(), camera, Vec3::Zero()).valid);
-    // A ray of the current camera, turned back by R transposed, is that of the previous one.
-    const RotationEstimate e = aligner.update(view_of(texture, R.transpose(), 0.8, 25).view(), camera, Vec3::Zero());
-    valid += e.valid ? 1 : 0;
-    if (!e.valid) continue;
-    EXPECT_BELOW(e.before, e.after);
-    worst = std::fmax(worst, (e.rotation.cast<double>() - w).norm());
-  }
-  std::printf("rotation: %d of 30, worst %.5f rad\n", valid, worst);
-  TEST_ASSERT_GREATER_OR_EQUAL_INT(28, valid);
-  EXPECT_BELOW(0.005, worst);
-}
-
-void test_rotation_should_be_nothing_when_the_frame_is_the_same() {
-  SeededRandom random(48);
-  const Texture texture(&random, 20, 120);
-  const TestImage image = view_of(texture, Eigen::Matrix3d::Identity(), 1, 0);
-  TestArena arena;
-  RotationAligner aligner;
-  TEST_ASSERT_TRUE(aligner.layout(*arena, 80, 60));
-  const CoarseCamera camera{65, 65, 39.5f, 29.5f};
-  aligner.update(image.view(), camera, Vec3::Zero());
-  const RotationEstimate e = aligner.update(image.view(), camera, Vec3::Zero());
-  TEST_ASSERT_TRUE(e.valid);
-  EXPECT_BELOW(1e-4, static_cast<double>(e.rotation.norm()));
-  aligner.reset();
-  TEST_ASSERT_FALSE(aligner.update(image.view(), camera, Vec3::Zero()).valid);
-}
-
-void test_rotation_should_not_depend_on_what_the_memory_held_when_it_was_full_of_nan() {
-  SeededRandom random(50);
-  const CoarseCamera camera{65, 65, 39.5f, 29.5f};
-  const Texture texture(&random, 20, 120);
-  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.03, Eigen::Vector3d(0.6, 0, 0.8)).toRotationMatrix();
-  RotationEstimate found[2];
-  for (int k = 0; k < 2; ++k) {
-    alignas(64) static std::uint8_t block[200000];
-    std::memset(block, k == 0 ? 0 : 0xff, sizeof block);
-    Arena arena(block, sizeof block);
-    RotationAligner aligner;
-    TEST_ASSERT_TRUE(aligner.layout(arena, 80, 60) && arena.ok());
-    aligner.update(view_of(texture, Eigen::Matrix3d::Identity(), 1, 0).view(), camera, Vec3::Zero());
-    found[k] = aligner.update(view_of(texture, R, 1, 0).view(), camera, Vec3::Zero());
-#if defined(__SANITIZE_ADDRESS__)
-    ASAN_UNPOISON_MEMORY_REGION(block, sizeof block);
-#endif
-  }
-  TEST_ASSERT_TRUE(found[0].valid);
-  TEST_ASSERT_TRUE(found[0].rotation == found[1].rotation);
-}
-
-void test_rotation_should_be_refused_when_images_say_nothing() {
-  TestArena arena;
-  RotationAligner aligner;
-  TEST_ASSERT_TRUE(aligner.layout(*arena, 80, 60));
-  const CoarseCamera camera{65, 65, 39.5f, 29.5f};
-  const TestImage black(80, 60);
-  aligner.update(black.view(), camera, Vec3::Zero());
-  TEST_ASSERT_FALSE(aligner.update(black.view(), camera, Vec3::Zero()).valid);
-  SeededRandom random(49);
-  const Texture texture(&random, 20, 120);
-  const TestImage image = view_of(texture, Eigen::Matrix3d::Identity(), 1, 0);
-  TEST_ASSERT_FALSE(aligner.update(image.view(), camera, Vec3::Zero()).valid);
-  const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
-  TEST_ASSERT_FALSE(aligner.update(image.view(), camera, Vec3(nan, 0, 0)).valid);
-  TEST_ASSERT_FALSE(aligner.update(image.view(), CoarseCamera{0, 0, 0, 0}, Vec3::Zero()).valid);
-  TEST_ASSERT_FALSE(aligner.update(TestImage(40, 30).view(), camera, Vec3::Zero()).valid);
-  for (const int side : {1, 7, 8, 9, 32, 129, 1000}) {
-    TestArena other;
-    RotationAligner small;
-    TEST_ASSERT_TRUE(small.layout(*other, side, 32));
-    const TestImage noise = noise_image(side, 32, &random);
-    small.update(noise.view(), camera, Vec3::Zero());
-    small.update(noise.view(), camera, Vec3(Scalar(0.4), Scalar(-2), 1));
-  }
-}
-
 }  // namespace
 
 int main() {
@@ -258,9 +157,5 @@ int main() {
   RUN_TEST(test_template_should_be_refused_when_it_has_no_corner);
   RUN_TEST(test_alignment_should_stay_near_its_start_when_something_else_is_there);
   RUN_TEST(test_alignment_should_stay_in_the_image_when_the_start_is_anywhere);
-  RUN_TEST(test_rotation_should_be_found_when_a_hand_turns_quickly);
-  RUN_TEST(test_rotation_should_be_nothing_when_the_frame_is_the_same);
-  RUN_TEST(test_rotation_should_not_depend_on_what_the_memory_held_when_it_was_full_of_nan);
-  RUN_TEST(test_rotation_should_be_refused_when_images_say_nothing);
   return UNITY_END();
 }

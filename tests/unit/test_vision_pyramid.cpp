@@ -181,14 +181,6 @@ void test_frame_should_be_named_unusable_when_it_is_black_white_or_grey() {
   TEST_ASSERT_EQUAL_INT(static_cast<int>(FrameUse::kFlat), judge(120));
 }
 
-void test_difference_should_be_the_mean_of_absolute_ones_when_sizes_agree() {
-  const TestImage a(37, 5, [](int x, int) { return x; });
-  const TestImage b(37, 5, [](int x, int y) { return x + (y % 2 == 0 ? 3 : -0.4); });
-  TEST_ASSERT_FLOAT_WITHIN(1e-5f, 1.8f, frame_difference(a.view(), b.view()));
-  TEST_ASSERT_FLOAT_WITHIN(0, 0, frame_difference(a.view(), a.view()));
-  TEST_ASSERT_FLOAT_WITHIN(0, 255, frame_difference(a.view(), TestImage(36, 5).view()));
-}
-
 }  // namespace
 
 int main() {
@@ -203,6 +195,5 @@ int main() {
   RUN_TEST(test_warp_should_stay_inside_its_patch_when_any_matrix_is_tried);
   RUN_TEST(test_statistics_should_be_those_of_the_definition_when_the_image_is_noise);
   RUN_TEST(test_frame_should_be_named_unusable_when_it_is_black_white_or_grey);
-  RUN_TEST(test_difference_should_be_the_mean_of_absolute_ones_when_sizes_agree);
   return UNITY_END();
 }

@@ -33,15 +33,6 @@ RowSums sum_row(const std::uint8_t* row, const std::uint8_t* below, int width) {
   return RowSums{sum, square, gradient};
 }
 
-std::uint32_t difference_row(const std::uint8_t* a, const std::uint8_t* b, int width) {
-  std::uint32_t sum = 0;
-  for (int x = 0; x < width; ++x) {
-    const int d = a[x] - b[x];
-    sum += static_cast<std::uint32_t>(d < 0 ? -d : d);
-  }
-  return sum;
-}
-
 }  // namespace
 
 FrameStatistics frame_statistics(const ImageView& image) {
@@ -66,13 +57,6 @@ FrameStatistics frame_statistics(const ImageView& image) {
   out.gradient_energy =
       static_cast<float>(gradient) / (static_cast<float>(image.width - 1) * static_cast<float>(image.height - 1));
   return out;
-}
-
-float frame_difference(const ImageView& a, const ImageView& b) {
-  if (a.width != b.width || a.height != b.height || a.width <= 0 || a.height <= 0) return 255.0f;
-  std::uint64_t sum = 0;
-  for (int y = 0; y < a.height; ++y) sum += difference_row(a.row(y), b.row(y), a.width);
-  return static_cast<float>(sum) / (static_cast<float>(a.width) * static_cast<float>(a.height));
 }
 
 FrameUse judge_frame(const FrameStatistics& statistics) {

@@ -14,9 +14,6 @@ struct FrameStatistics {
 /// Meant for level 2 of a pyramid. Zero throughout for images below 2x2. About 0.3 ns per pixel.
 FrameStatistics frame_statistics(const ImageView& image);
 
-/// Mean absolute difference of two images of the same size [grey]; 255 when the sizes differ.
-float frame_difference(const ImageView& a, const ImageView& b);
-
 /// Whether features can be found and measured at all.
 enum class FrameUse { kUsable, kDark, kBright, kFlat };
 
