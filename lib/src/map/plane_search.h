@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/plane.h"
+
+namespace pf {
+
+/// A point that may lie on a plane nobody has found yet.
+struct PlaneCandidate {
+  Vec3 p_W;         ///< [m]
+  Mat3 covariance;  ///< of p_W itself [m²]
+};
+
+/// When points are called a plane. In the words of Gee 2007, section 3.3: l_T, d_T, d_max, lambda_T.
+struct PlaneSearchSettings {
+  int min_points = 7;                       ///< a plane has more points than this
+  Scalar distance = Scalar(0.01);           ///< of a point from its plane [m]
+  Scalar radius = 1;                        ///< of a point from the plane's origin [m]
+  Scalar normal_variance = Scalar(2.5e-5);  ///< of the points about the plane, λ0 / count [m²]
+  int trials = 100;                         ///< minimal sets that are drawn
+  Scalar chi2 = Scalar(6.63);               ///< d² < chi2 (nᵀ Σ n + normal_variance)
+};
+
+/// The most points that a found plane starts with; the others may join it later.
+inline constexpr int kMaxPlaneMembers = 64;
+
+/// One plane among the candidates, or none.
+///
+/// RANSAC with local support: the first point of a set is any, the two others lie within radius / 2 of it. A set counts
+/// its points less those in the layers on both sides of it. The best sets are refitted, and the first that passes is returned:
+///
+///   count > min_points,  λ0 / count < normal_variance,  the points span an area and not a line
+///   every point is where the plane through the *other* points says      |r| / (1 - leverage) < distance
+///   the points hang together                                             steps of at most radius / 2
+///   the plane stands out of what is around it, and chance cannot explain it    plane_chance.h
+///
+/// random        state of the generator, changed by each call; any seed
+/// members       room for kMaxPlaneMembers indices of candidates, which belong to the plane; the fit is theirs
+/// false         nothing passed; outputs untouched
+/// work          at most about trials x count steps, and no memory but some 3 kB of stack
+/// src           Gee 2007, section 3.3. There the origin's set decides; here sets far from all others do not, points that
+///               decide the plane alone are left out, and planes that clutter makes by chance are refused
+bool search_plane(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings,
+                  const Vec3& viewer_W, std::uint32_t* random, PlaneFit* fit, int* members, int* member_count);
+
+}  // namespace pf
