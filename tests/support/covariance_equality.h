@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 
+#include "covariance/select.h"
 #include "covariance_cases.h"
 #include "unity.h"
 
@@ -21,7 +22,7 @@ constexpr const char* kSetNames[] = {"auto", "reference", "portable", "avx2", "a
 
 /// What one round does, drawn once and then run on several sets.
 struct Problem {
-  int n, m, k, active;
+  int n, m, k, held_first, held_end;
   Covariance start;
   std::vector<SparseRows> J;
   std::vector<double> noise;  // sigma^2 of each row
@@ -41,10 +42,13 @@ inline std::vector<Scalar> random_block(Random& random, int rows, double scale) 
 
 inline Problem draw(Random& random, int largest) {
   const int n = random.integer(8, random.integer(8, largest));
-  Problem p = {n, 0, random.integer(0, 8), n, Covariance(n, n), {}, {}, Thin(8, n), Thin(8, n), {}, {}, {}, {}, {}, 0,
-               0, {}};
+  Problem p = {
+      n, 0, random.integer(0, 8), 0, 0, Covariance(n, n), {}, {}, Thin(8, n), Thin(8, n), {}, {}, {}, {}, {}, 0, 0, {}};
   randomise(random, p.start.P);
-  if (random.integer(0, 1) == 0) p.active = random.integer(0, n);
+  if (random.integer(0, 1) == 0) {
+    p.held_first = random.integer(0, n);
+    p.held_end = random.integer(0, 3) == 0 ? n : random.integer(0, n);
+  }
   const int measurements = random.integer(1, random.integer(1, 20));
   for (int i = 0; i < measurements; ++i) {
     p.J.push_back(random_rows(random, random.integer(0, 9) == 0 ? random.integer(1, 6) : 2, n, 3));
@@ -175,7 +179,7 @@ inline void update(const Kernels& kernels, Problem& p, Triangle& P, Place place,
 
   Covariance before(n, n);
   before.copy_from(P);
-  kernels.downdate(P, W.data(), m, p.U.data(), p.G.data(), p.k, W.ld, p.active);
+  kernels.downdate(P, W.data(), m, p.U.data(), p.G.data(), p.k, W.ld, p.held_first, p.held_end);
   trace.add(P, before.P);
 }
 

@@ -161,16 +161,18 @@ void test_downdate_should_equal_the_dense_formula_when_rows_are_considered_and_t
   for (int i = 0; i < kRounds; ++i) {
     Round r(i);
     const int n = r.P.n, m = r.random.integer(1, 25), k = r.random.integer(0, 8);
-    const int active = i % 2 == 0 ? n : r.random.integer(0, n);
+    const int held_first = r.random.integer(0, n);
+    const int held_end = i % 2 == 0 ? held_first : r.random.integer(held_first, n);
+    const int held = held_end - held_first;
     Thin W(m, n), U(k, n), G(k, n);
     W.randomise(r.random, 0.1);
     U.randomise(r.random, 0.1);
     G.randomise(r.random, 0.1);
     Dense gained = dense(W).transpose() * dense(W);
-    gained.bottomRightCorner(n - active, n - active).setZero();
+    gained.block(held_first, held_first, held, held).setZero();
     const Dense moved = dense(U).transpose() * dense(G);
     const Dense expected = dense(r.P) - gained + moved + moved.transpose();
-    kernels.downdate(r.P, W.data(), m, U.data(), G.data(), k, W.ld, active);
+    kernels.downdate(r.P, W.data(), m, U.data(), G.data(), k, W.ld, held_first, held_end);
     assert_near(expected, dense(r.P));
     assert_padding_is_finite(r.P);
   }

@@ -74,7 +74,7 @@ void Problem::restore() {
   P.n = n;
 }
 
-void Problem::update(const pf::Kernels& kernels, int active, int transport) {
+void Problem::update(const pf::Kernels& kernels, int held_first, int held_end, int transport) {
   kernels.gather_many(P, J.data(), static_cast<int>(J.size()), W.data(), ld);
   kernels.project(W.data(), ld, J.data(), static_cast<int>(J.size()), S.data(), lds);
   for (int i = 0; i < m; ++i) {
@@ -86,7 +86,7 @@ void Problem::update(const pf::Kernels& kernels, int active, int transport) {
   kernels.solve_lower(S.data(), m, lds, y.data(), 1, pf::padded(1));
   for (int i = 0; i < m; ++i) whitened[static_cast<std::size_t>(i)] = y[static_cast<std::size_t>(i) * pf::padded(1)];
   kernels.combine(W.data(), m, n, ld, whitened.data(), dx.data());
-  kernels.downdate(P, W.data(), m, U.data(), G.data(), transport, ld, active);
+  kernels.downdate(P, W.data(), m, U.data(), G.data(), transport, ld, held_first, held_end);
 }
 
 std::vector<Scalar> Problem::dense_covariance() const {

@@ -36,9 +36,9 @@ class Problem {
   /// P as it was at the beginning.
   void restore();
 
-  /// gather, innovation, Cholesky, gain, state change, downdate. considered: rows from active on keep their own covariance;
+  /// gather, innovation, Cholesky, gain, state change, downdate. Rows held_first .. held_end - 1 are considered;
   /// transport: rank of the thin symmetric term.
-  void update(const pf::Kernels& kernels, int active, int transport);
+  void update(const pf::Kernels& kernels, int held_first, int held_end, int transport);
 
   /// Textbook inputs for peers, dense and row-major.
   std::vector<Scalar> dense_covariance() const;

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "blas.h"
+#include "covariance/select.h"
 #include "covariance_problem.h"
 #include "eigen_forms.h"
 #include "limits.h"
@@ -65,8 +66,8 @@ class CovarianceSuite {
     check(p, eigen);
 
     std::vector<Contender> all;
-    all.push_back(own("update", p, [&] { p.update(kernels_, n, 0); }));
-    all.push_back(own("downdate", p, [&] { kernels_.downdate(p.P, p.W.data(), m, nullptr, nullptr, 0, p.ld, n); }));
+    all.push_back(own("update", p, [&] { p.update(kernels_, 0, 0, 0); }));
+    all.push_back(own("downdate", p, [&] { kernels_.downdate(p.P, p.W.data(), m, nullptr, nullptr, 0, p.ld, 0, 0); }));
     all.push_back({"eigen rankUpdate", [&] { eigen.restore(); }, [] {}, [&] { eigen.rank_update(); }});
     const std::size_t first_syrk = all.size();
     Aligned square(static_cast<std::size_t>(n) * p.ld);
@@ -95,7 +96,7 @@ class CovarianceSuite {
     add("update", n, m, us[0], all[2].name, us[2]);
 
     const int few = std::min(options_.repetitions, n > 300 ? 3 : 7);
-    const std::vector<double> slow = medians({own("update", p, [&] { p.update(kernels_, n, 0); }),
+    const std::vector<double> slow = medians({own("update", p, [&] { p.update(kernels_, 0, 0, 0); }),
                                               {"textbook", [&] { eigen.restore(); }, [] {}, [&] { eigen.textbook(); }}},
                                              few);
     add("update", n, m, slow[0], "textbook", slow[1]);
@@ -106,7 +107,7 @@ class CovarianceSuite {
   /// Both forms must give the same covariance before anybody is timed.
   void check(Problem& p, EigenForms& eigen) {
     p.restore();
-    p.update(kernels_, p.n, 0);
+    p.update(kernels_, 0, 0, 0);
     eigen.restore();
     eigen.rank_update();
     const double difference = eigen.difference(p.P);
@@ -119,7 +120,7 @@ class CovarianceSuite {
   /// The steps of one update, each against its own flops.
   void parts(int n, int m) {
     Problem p(n, m);
-    p.update(kernels_, n, 0);
+    p.update(kernels_, 0, 0, 0);
     const std::vector<Scalar> factor(p.S.data(), p.S.data() + p.S.size());
     std::vector<Scalar> S(factor.size());
     const auto square = [&] {
@@ -140,8 +141,8 @@ class CovarianceSuite {
                  {"cholesky", [] {}, [&] { S = product; }, [&] { kernels_.cholesky(S.data(), m, m); }},
                  {"solve", [] {}, [&] { std::memcpy(X.data(), p.W.data(), X.size() * sizeof(Scalar)); },
                   [&] { kernels_.solve_lower(factor.data(), m, m, X.data(), n, p.ld); }},
-                 own("downdate", p, [&] { kernels_.downdate(p.P, p.W.data(), m, nullptr, nullptr, 0, p.ld, n); }),
-                 own("update", p, [&] { p.update(kernels_, n, 0); })},
+                 own("downdate", p, [&] { kernels_.downdate(p.P, p.W.data(), m, nullptr, nullptr, 0, p.ld, 0, 0); }),
+                 own("update", p, [&] { p.update(kernels_, 0, 0, 0); })},
                 options_.repetitions);
     const double c = touched_columns(p);
     const double bytes = 1.0 * n * n * static_cast<double>(sizeof(Scalar)) / bandwidth(n);
@@ -154,10 +155,11 @@ class CovarianceSuite {
 
   void considered(int n, int m) {
     Problem p(n, m);
-    const std::vector<double> us = medians(
-        {own("full", p, [&] { p.update(kernels_, n, 0); }), own("half", p, [&] { p.update(kernels_, n / 2, 0); }),
-         own("transport", p, [&] { p.update(kernels_, n, 4); }), own("both", p, [&] { p.update(kernels_, n / 2, 4); })},
-        options_.repetitions);
+    const std::vector<double> us = medians({own("full", p, [&] { p.update(kernels_, 0, 0, 0); }),
+                                            own("half", p, [&] { p.update(kernels_, kBody, kBody + n / 2, 0); }),
+                                            own("transport", p, [&] { p.update(kernels_, 0, 0, 4); }),
+                                            own("both", p, [&] { p.update(kernels_, kBody, kBody + n / 2, 4); })},
+                                           options_.repetitions);
     add("update, half considered", n, m, us[1], "update", us[0]);
     add("update, transport", n, m, us[2], "update", us[0]);
     add("update, half, transport", n, m, us[3], "update, half considered", us[1]);
@@ -189,7 +191,7 @@ class CovarianceSuite {
     const Scalar noise[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
     const std::vector<double> us =
-        medians({own("update", p, [&] { p.update(kernels_, n, 0); }),
+        medians({own("update", p, [&] { p.update(kernels_, 0, 0, 0); }),
                  own("predict", p, [&] { kernels_.predict(p.P, F.data(), Q.data(), kBody); }),
                  own("augment 3 rows", p, [&] { kernels_.augment(p.P, fresh, noise); }),
                  own("transform 3 to 2 rows", p,

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "base/scalar.h"
 #include "covariance/triangle.h"
 
@@ -54,9 +52,10 @@ struct Kernels {
   void (*solve_lower)(const Scalar* L, int m, int lds, Scalar* X, int n, int ld);
 
   /// P -= W^T W (W: m x n), then, where k > 0, P += U^T G + G^T U (U, G: k x n), in one pass over the triangle.
-  /// Rows and columns from `active` on are considered (Schmidt): for i, j >= active the first term is left out; the second is
-  /// always applied. active = n is the plain update.
-  void (*downdate)(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int active);
+  /// Rows and columns held_first .. held_end - 1 are considered (Schmidt): where i and j both lie among them the first term is left
+  /// out; the second is always applied. held_end <= held_first is the plain update.
+  void (*downdate)(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int held_first,
+                   int held_end);
 
   /// Leading block of b rows moves by F (b x b, row-major), noise Q (b x b) is added:
   ///   P_bb <- F P_bb F^T + Q,  P_xb <- P_xb F^T,  b <= kMaxLeading.
@@ -89,11 +88,5 @@ struct Kernels {
 
 /// The plain twin of every tuned kernel.
 const Kernels& reference_kernels();
-
-/// The set that was asked for (pf_kernels_t; 0 is the fastest); null where this processor or build cannot run it.
-const Kernels* select_kernels(uint32_t wanted);
-
-/// pf_kernels_t of a set.
-uint32_t kernels_id(const Kernels* kernels);
 
 }  // namespace pf

@@ -1,3 +1,5 @@
+#include "covariance/select.h"
+
 #include "covariance/tuned/sets.h"
 
 namespace pf {

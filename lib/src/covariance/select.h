@@ -6,7 +6,8 @@
 
 namespace pf {
 
-/// The kernel set of a number of pf_kernels_t; 0 picks the fastest that this processor runs. Null where it cannot run it.
+/// The kernel set of a number of pf_kernels_t; 0 picks the fastest that this processor runs. Null where this processor or build
+/// cannot run it.
 const Kernels* select_kernels(std::uint32_t wanted);
 
 /// The number of a set.

@@ -372,7 +372,7 @@ bool Filter::finish_update(const Observation* observations, int count, const uns
 
   if (!keep_gauge_) {
     apply_error(state_, dx_);
-    kernels_->downdate(P_, W_, m, nullptr, nullptr, 0, ld_, n);
+    kernels_->downdate(P_, W_, m, nullptr, nullptr, 0, ld_, 0, 0);
     return true;
   }
 
@@ -421,7 +421,7 @@ bool Filter::finish_update(const Observation* observations, int count, const uns
       for (int i = 0; i < n; ++i) g[i] += half * u[i];
     }
   }
-  kernels_->downdate(P_, W_, m, U_, G_, k, ld_, n);
+  kernels_->downdate(P_, W_, m, U_, G_, k, ld_, 0, 0);
   return true;
 }
 

@@ -20,7 +20,8 @@ void gather(const Triangle& P, const SparseRows& J, Scalar* out, int ld);
 void gather_many(const Triangle& P, const SparseRows* J, int count, Scalar* out, int ld);
 bool cholesky(Scalar* S, int m, int lds);
 void solve_lower(const Scalar* L, int m, int lds, Scalar* X, int n, int ld);
-void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int active);
+void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int held_first,
+              int held_end);
 void predict(Triangle& P, const Scalar* F, const Scalar* Q, int b);
 void augment(Triangle& P, const SparseRows& J, const Scalar* noise);
 void transform(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise);

@@ -35,18 +35,18 @@ PF_INLINE void downdate_tile(const Thin& t, const Scalar* B, std::ptrdiff_t b_st
   }
 }
 
-/// Columns first .. last - 1 (multiples of eight) of every group that has them.
+/// A part of the triangle: groups of rows first_group .. last_group - 1, columns first .. last - 1 (multiples of eight) where they
+/// have them.
 ///
 ///   for blocks of kBlock groups, so that their part of W stays in the first cache
 ///     for strips of columns           P: |block row| -> -> ->
 ///       for the groups of the block
-inline void downdate_columns(const Triangle& P, const Thin& t, int first, int last) {
+inline void downdate_part(const Triangle& P, const Thin& t, int first_group, int last_group, int first, int last) {
   constexpr int kBlock = 8;
   constexpr int kColumns = kTileVectors * Wide::kWidth;
   if (t.m == 0 && t.k == 0) return;
-  const int groups = (P.n + kGroup - 1) / kGroup;
-  for (int block = first / kGroup; block < groups; block += kBlock) {
-    const int end = smaller(block + kBlock, groups);
+  for (int block = first_group; block < last_group; block += kBlock) {
+    const int end = smaller(block + kBlock, last_group);
     const int reach = smaller(last, end * kGroup);
     for (int j = first; j < reach; j += kColumns) {
       for (int q = block > j / kGroup ? block : j / kGroup; q < end; ++q) {
@@ -57,34 +57,6 @@ inline void downdate_columns(const Triangle& P, const Thin& t, int first, int la
           downdate_tile<decltype(v), decltype(count)::value>(t, t.W + at, t.ld, rows + at, stride, q * kGroup, at);
         });
       }
-    }
-  }
-}
-
-/// The eight columns that hold both active and considered rows: W with its considered columns zero, copied in chunks.
-inline void downdate_boundary(const Triangle& P, const Thin& t, int active) {
-  constexpr int kChunk = 32;
-  const int q0 = active / kGroup;
-  const int j = q0 * kGroup;
-  const int groups = (P.n + kGroup - 1) / kGroup;
-  for (int r0 = 0; r0 == 0 || r0 < t.m; r0 += kChunk) {
-    Scalar masked[kChunk * kGroup];
-    Thin part = t;
-    part.W = t.W + r0 * t.ld;
-    part.m = smaller(kChunk, t.m - r0);
-    part.k = r0 == 0 ? t.k : 0;
-    for (int r = 0; r < part.m; ++r) {
-      for (int c = 0; c < kGroup; ++c) {
-        masked[r * kGroup + c] = j + c < active ? part.W[r * t.ld + j + c] : 0;
-      }
-    }
-    for (int q = q0; q < groups; ++q) {
-      const std::ptrdiff_t stride = kGroup * (q + 1);
-      Scalar* rows = P.data + group_offset(q);
-      for_eight([&](auto v, auto count, int at) PF_LAMBDA {
-        downdate_tile<decltype(v), decltype(count)::value>(part, masked + at, kGroup, rows + j + at, stride, q * kGroup,
-                                                           j + at);
-      });
     }
   }
 }
@@ -100,25 +72,6 @@ inline void clear_upper(const Triangle& P) {
       for (int c = r + 1; c < kGroup; ++c) square[r * kGroup * (q + 1) + c] = 0;
     }
   }
-}
-
-/// Twin: reference::downdate. A term W_i W_j counts where j < active (j <= i), so columns decide, not rows.
-void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int active) {
-  constexpr std::ptrdiff_t kNear = (1 << 20) / sizeof(Scalar);
-  const int groups = (P.n + kGroup - 1) / kGroup;
-  const Thin with = {W, m, U, G, k, ld, group_offset(groups) > kNear};
-  Thin without = with;
-  without.m = 0;
-  const int columns = groups * kGroup;
-  if (active >= P.n) {
-    downdate_columns(P, with, 0, columns);
-  } else {
-    const int whole = active / kGroup * kGroup;
-    downdate_columns(P, with, 0, whole);
-    if (whole < active) downdate_boundary(P, with, active);
-    downdate_columns(P, without, round_up(active, kGroup), columns);
-  }
-  clear_upper(P);
 }
 
 }  // namespace

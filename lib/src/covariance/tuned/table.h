@@ -1,8 +1,8 @@
 #pragma once
 
-#include "covariance/tuned/downdate.h"
 #include "covariance/tuned/factor.h"
 #include "covariance/tuned/gather.h"
+#include "covariance/tuned/held.h"
 #include "covariance/tuned/moves.h"
 #include "covariance/tuned/predict.h"
 

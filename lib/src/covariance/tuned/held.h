@@ -1,0 +1,131 @@
+#pragma once
+
+#include "covariance/tuned/downdate.h"
+
+namespace pf {
+namespace {
+
+constexpr int kHeldChunk = 32;  ///< rows of W that are copied at a time
+
+/// A group of eight columns of W, of which some may be held: W = free + held, each with zeros where the other has values.
+struct SplitGroup {
+  alignas(64) Scalar free[kHeldChunk * kGroup];
+  alignas(64) Scalar held[kHeldChunk * kGroup];
+
+  /// Columns j .. j + 7 of `rows` rows of W; those of [held_first, held_end) are held.
+  PF_INLINE void copy(const Scalar* W, std::ptrdiff_t ld, int rows, int j, int held_first, int held_end) {
+    for (int r = 0; r < rows; ++r) {
+      for (int c = 0; c < kGroup; ++c) {
+        const bool is_held = j + c >= held_first && j + c < held_end;
+        const Scalar w = W[r * ld + j + c];
+        free[r * kGroup + c] = is_held ? 0 : w;
+        held[r * kGroup + c] = is_held ? w : 0;
+      }
+    }
+  }
+};
+
+/// Rows of group q, columns from j (eight):  P -= free_q^T B + held_q^T B_free - U^T G - G^T U. B has the leading dimension b_stride;
+/// what is null is left out.
+struct MixedSquare {
+  const Scalar* free;
+  std::ptrdiff_t free_stride;
+  const Scalar* B;
+  std::ptrdiff_t b_stride;
+  const Scalar* held;
+  std::ptrdiff_t held_stride;
+  const Scalar* B_free;
+};
+
+PF_INLINE void downdate_square(const Triangle& P, const Thin& t, const MixedSquare& s, int q, int j) {
+  const std::ptrdiff_t stride = kGroup * (q + 1);
+  for_eight([&](auto v, auto count, int at) PF_LAMBDA {
+#pragma GCC unroll 1
+    for (int half = 0; half < kGroup; half += kTileRows) {
+      Tile<decltype(v), kTileRows, decltype(count)::value> tile;
+      tile.zero();
+      if (s.free != nullptr) tile.accumulate(s.free + half, 1, s.free_stride, s.B + at, s.b_stride, t.m);
+      if (s.held != nullptr) tile.accumulate(s.held + half, 1, s.held_stride, s.B_free + at, kGroup, t.m);
+      if (t.k > 0) {
+        const int i = q * kGroup + half;
+        tile.template accumulate<true>(t.U + i, 1, t.ld, t.G + j + at, t.ld, t.k);
+        tile.template accumulate<true>(t.G + i, 1, t.ld, t.U + j + at, t.ld, t.k);
+      }
+      tile.subtract_from(P.data + group_offset(q) + half * stride + j + at, stride);
+    }
+  });
+}
+
+/// Squares of eight of which only some elements lie between held rows: those of the group c0 where the range begins, as columns, and
+/// of the group q1 where it ends, as rows. Either may be shared with rows that are not held; whole groups are c0 + 1 .. q1 - 1.
+///
+///   group     c0         whole    q1
+///   c0      | mixed |
+///   whole   | W B_f |  nothing  |
+///   q1      | mixed | free W    | mixed |
+inline void downdate_border(const Triangle& P, const Thin& all, int held_first, int held_end) {
+  const int c0 = held_first / kGroup;
+  const int q1 = (held_end - 1) / kGroup;
+  const bool begins_whole = held_first % kGroup == 0;
+  const bool ends_whole = held_end % kGroup == 0;
+  SplitGroup first, last;
+  for (int r0 = 0; r0 == 0 || r0 < all.m; r0 += kHeldChunk) {
+    Thin t = all;
+    t.W = all.W + r0 * all.ld;
+    t.m = smaller(kHeldChunk, all.m - r0);
+    t.k = r0 == 0 ? all.k : 0;
+    first.copy(t.W, t.ld, t.m, c0 * kGroup, held_first, held_end);
+    last.copy(t.W, t.ld, t.m, q1 * kGroup, held_first, held_end);
+    for (int q = c0; q <= q1; ++q) {
+      const bool whole_row = (q > c0 || begins_whole) && (q < q1 || ends_whole);
+      const SplitGroup& rows = q == c0 ? first : last;
+      for (int c = c0; c <= q; ++c) {
+        const bool whole_column = (c > c0 || begins_whole) && (c < q1 || ends_whole);
+        if (whole_row && whole_column) continue;
+        MixedSquare s = {
+            rows.free, kGroup, t.W + c * kGroup, t.ld, rows.held, kGroup, c == c0 ? first.free : last.free};
+        if (whole_row) {
+          s.free = nullptr;
+          s.held = t.W + q * kGroup;
+          s.held_stride = t.ld;
+        } else if (whole_column) {
+          s.held = nullptr;
+        }
+        downdate_square(P, t, s, q, c * kGroup);
+      }
+    }
+  }
+}
+
+/// Twin: reference::downdate.
+///
+///           | before | held     | behind
+///   before  |  all   |
+///   held    |  all   | U, G     |            with squares of both kinds along its border
+///   behind  |  all   | all      | all
+void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int held_first,
+              int held_end) {
+  constexpr std::ptrdiff_t kNear = (1 << 20) / sizeof(Scalar);
+  const int groups = (P.n + kGroup - 1) / kGroup;
+  const int columns = groups * kGroup;
+  const Thin with = {W, m, U, G, k, ld, group_offset(groups) > kNear};
+  if (held_end <= held_first) {
+    downdate_part(P, with, 0, groups, 0, columns);
+  } else {
+    Thin without = with;
+    without.m = 0;
+    const int end = held_end >= P.n ? columns : held_end;
+    const int q0 = held_first / kGroup;
+    const int q1 = round_up(end, kGroup) / kGroup;
+    downdate_part(P, with, 0, q0, 0, columns);
+    downdate_part(P, with, q0, q1, 0, q0 * kGroup);
+    if (held_first % kGroup != 0 || end % kGroup != 0) downdate_border(P, with, held_first, end);
+    downdate_part(P, without, round_up(held_first, kGroup) / kGroup, end / kGroup, round_up(held_first, kGroup),
+                  end / kGroup * kGroup);
+    downdate_part(P, with, q1, groups, 0, columns);
+  }
+  clear_upper(P);
+}
+
+}  // namespace
+}  // namespace pf
