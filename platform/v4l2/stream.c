@@ -1,0 +1,251 @@
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "device.h"
+#include "grey.h"
+
+/* Memory that takes longer to read than this, compared with ordinary memory, is copied once instead of being read many times. */
+static const double kSlow = 3.0;
+
+static int queue(pf_v4l2_t* camera, int32_t index) {
+  struct v4l2_buffer buffer;
+  memset(&buffer, 0, sizeof(buffer));
+  buffer.index = (uint32_t)index;
+  buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  buffer.memory = V4L2_MEMORY_MMAP;
+  return pf_v4l2_call(camera->fd, VIDIOC_QBUF, &buffer);
+}
+
+int pf_v4l2_start(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
+  const pf_v4l2_device_t* device;
+  int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  if (camera == NULL || camera->fd < 0) {
+    return pf_v4l2_refuse(message, "no camera is open");
+  }
+  device = &camera->info.device;
+  if (camera->streaming) {
+    return 0;
+  }
+  if (pf_v4l2_map(camera, message) != 0) {
+    return -1;
+  }
+  for (int32_t i = 0; i < camera->info.buffers; ++i) {
+    if (queue(camera, i) != 0) {
+      const int error = errno;
+      pf_v4l2_unmap(camera);
+      return pf_v4l2_refuse(message, "%s (%s): does not take a buffer (%s)", device->path, device->name,
+                            strerror(error));
+    }
+  }
+  if (pf_v4l2_call(camera->fd, VIDIOC_STREAMON, &type) != 0) {
+    const int error = errno;
+    pf_v4l2_unmap(camera);
+    return pf_v4l2_refuse(message, "%s (%s): does not begin to stream (%s)%s", device->path, device->name,
+                          strerror(error), error == ENOSPC ? "; the bus has no room, lower size or rate" : "");
+  }
+  camera->streaming = 1;
+  camera->has_sequence = 0;
+  return 0;
+}
+
+int pf_v4l2_stop(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
+  int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  int result;
+  if (camera == NULL || !camera->streaming) {
+    return 0;
+  }
+  result = pf_v4l2_call(camera->fd, VIDIOC_STREAMOFF, &type);
+  camera->streaming = 0;
+  pf_v4l2_unmap(camera);
+  if (result != 0 && !camera->gone) {
+    return pf_v4l2_refuse(message, "%s: does not stop to stream (%s)", camera->info.device.path, strerror(errno));
+  }
+  return 0;
+}
+
+static int depart(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
+  pf_v4l2_refuse(message, "%s (%s): is gone; was it unplugged?", camera->info.device.path, camera->info.device.name);
+  if (!camera->gone) {
+    camera->gone = 1;
+    ++camera->info.departures;
+  }
+  return PF_V4L2_GONE;
+}
+
+/* Frames that are missing in front of this one, by its number. */
+static uint32_t count_lost(pf_v4l2_t* camera, uint32_t sequence) {
+  const uint32_t step = camera->has_sequence ? sequence - camera->last_sequence : 1;
+  camera->has_sequence = 1;
+  camera->last_sequence = sequence;
+  return step > 1 && step < 0x80000000u ? step - 1 : 0;
+}
+
+static int64_t stamp(pf_v4l2_t* camera, const struct v4l2_buffer* taken, int64_t arrived_ns) {
+  const int64_t t_ns = (int64_t)taken->timestamp.tv_sec * 1000000000 + (int64_t)taken->timestamp.tv_usec * 1000;
+  if ((taken->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) != V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC || t_ns <= 0) {
+    camera->info.stamp = PF_V4L2_STAMP_ARRIVAL;
+    return arrived_ns;
+  }
+  camera->info.stamp = (taken->flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE
+                           ? PF_V4L2_STAMP_START
+                           : PF_V4L2_STAMP_END;
+  return t_ns;
+}
+
+static void decide_hand_over(pf_v4l2_t* camera, const pf_v4l2_buffer_t* buffer) {
+  const int grey = camera->info.format == PF_V4L2_GREY || camera->info.format == PF_V4L2_NV12;
+  if (!grey || camera->options.hand_over == PF_V4L2_COPIED) {
+    camera->info.direct = 0;
+  } else if (camera->options.hand_over == PF_V4L2_DIRECT) {
+    camera->info.direct = 1;
+  } else {
+    camera->info.read_slowness = pf_v4l2_read_slowness(buffer->mapped, camera->image_bytes);
+    camera->info.direct = camera->info.read_slowness < kSlow;
+  }
+}
+
+/* Grey pixels of a buffer, as an image; 0, or -1 where it cannot be decoded. */
+static int to_image(pf_v4l2_t* camera, pf_v4l2_buffer_t* buffer, uint32_t used, pf_image_t* image) {
+  const int32_t width = camera->info.width;
+  const int32_t height = camera->info.height;
+  const size_t stride = camera->bytes_per_line;
+  int result = 0;
+  image->width = width;
+  image->height = height;
+  image->stride = camera->info.direct ? (int32_t)stride : width;
+  image->pixels = camera->info.direct ? buffer->mapped : buffer->own;
+  if (camera->info.direct) {
+    return 0;
+  }
+  switch (camera->info.format) {
+    case PF_V4L2_YUYV:
+      pf_grey_from_yuyv(buffer->mapped, stride, width, height, buffer->own);
+      break;
+    case PF_V4L2_Y16:
+      pf_grey_from_y16(buffer->mapped, stride, width, height, buffer->own);
+      break;
+    case PF_V4L2_MJPEG:
+      result = pf_grey_from_jpeg(buffer->mapped, used, width, height, buffer->own);
+      break;
+    default:
+      pf_grey_from_grey(buffer->mapped, stride, width, height, buffer->own);
+      break;
+  }
+  return result;
+}
+
+/* Takes the next filled buffer, if there is one. */
+static int take(pf_v4l2_t* camera, pf_v4l2_frame_t* frame, char message[PF_V4L2_MESSAGE]) {
+  struct v4l2_buffer taken;
+  pf_v4l2_buffer_t* buffer;
+  uint32_t lost;
+  memset(&taken, 0, sizeof(taken));
+  taken.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  taken.memory = V4L2_MEMORY_MMAP;
+  if (pf_v4l2_call(camera->fd, VIDIOC_DQBUF, &taken) != 0) {
+    if (errno == EAGAIN) {
+      return PF_V4L2_NOTHING;
+    }
+    if (errno == ENODEV || errno == ENXIO) {
+      return depart(camera, message);
+    }
+    if (errno == EIO) { /* a frame that the hardware spoilt, where the driver cannot hand it over marked */
+      ++camera->info.damaged;
+      return PF_V4L2_NOTHING;
+    }
+    return pf_v4l2_refuse(message, "%s (%s): gives no frame (%s)", camera->info.device.path, camera->info.device.name,
+                          strerror(errno));
+  }
+  if (taken.index >= (uint32_t)camera->info.buffers) {
+    return pf_v4l2_refuse(message, "%s (%s): gives a buffer that nobody gave it", camera->info.device.path,
+                          camera->info.device.name);
+  }
+  buffer = &camera->buffers[taken.index];
+  frame->arrived_ns = pf_v4l2_now_ns();
+  frame->buffer = (int32_t)taken.index;
+  frame->sequence = taken.sequence;
+  lost = count_lost(camera, taken.sequence);
+  camera->info.lost += lost;
+  frame->lost_before = lost;
+  frame->image.t_ns = stamp(camera, &taken, frame->arrived_ns);
+  pf_v4l2_sync(buffer, 1);
+  if (camera->info.frames == 0) {
+    decide_hand_over(camera, buffer);
+  }
+  if ((taken.flags & V4L2_BUF_FLAG_ERROR) != 0 || taken.bytesused < camera->image_bytes ||
+      taken.bytesused > buffer->length || frame->image.t_ns <= camera->last_t_ns ||
+      to_image(camera, buffer, taken.bytesused, &frame->image) != 0) {
+    ++camera->info.damaged;
+    pf_v4l2_sync(buffer, 0);
+    if (queue(camera, frame->buffer) != 0 && errno == ENODEV) {
+      return depart(camera, message);
+    }
+    return PF_V4L2_NOTHING;
+  }
+  if (!camera->info.direct) {
+    pf_v4l2_sync(buffer, 0);
+  }
+  camera->last_t_ns = frame->image.t_ns;
+  buffer->held = 1;
+  ++camera->info.frames;
+  return PF_V4L2_FRAME;
+}
+
+int pf_v4l2_read(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char message[PF_V4L2_MESSAGE]) {
+  struct pollfd wait;
+  int ready;
+  if (camera == NULL || frame == NULL) {
+    return pf_v4l2_refuse(message, "camera or frame is null");
+  }
+  memset(frame, 0, sizeof(*frame));
+  frame->buffer = -1;
+  if (camera->gone) {
+    return depart(camera, message);
+  }
+  if (!camera->streaming) {
+    return pf_v4l2_refuse(message, "%s: does not stream; call pf_v4l2_start first", camera->info.device.path);
+  }
+  wait.fd = camera->fd;
+  wait.events = POLLIN;
+  wait.revents = 0;
+  ready = poll(&wait, 1, timeout_ms);
+  if (ready < 0) {
+    return errno == EINTR
+               ? PF_V4L2_NOTHING
+               : pf_v4l2_refuse(message, "%s: cannot be waited for (%s)", camera->info.device.path, strerror(errno));
+  }
+  if (ready == 0) {
+    return PF_V4L2_NOTHING;
+  }
+  if ((wait.revents & POLLHUP) != 0) {
+    return depart(camera, message);
+  }
+  /* POLLERR also says that every buffer is held by the caller: the driver's answer tells these apart. */
+  if ((wait.revents & POLLIN) == 0) {
+    struct v4l2_capability alive;
+    if (pf_v4l2_call(camera->fd, VIDIOC_QUERYCAP, &alive) != 0) {
+      return depart(camera, message);
+    }
+    poll(NULL, 0, timeout_ms < 5 ? timeout_ms : 5);
+    return PF_V4L2_NOTHING;
+  }
+  return take(camera, frame, message);
+}
+
+void pf_v4l2_release(pf_v4l2_t* camera, const pf_v4l2_frame_t* frame) {
+  pf_v4l2_buffer_t* buffer;
+  if (camera == NULL || frame == NULL || frame->buffer < 0 || frame->buffer >= camera->info.buffers ||
+      !camera->buffers[frame->buffer].held) {
+    return;
+  }
+  buffer = &camera->buffers[frame->buffer];
+  buffer->held = 0;
+  if (camera->info.direct) {
+    pf_v4l2_sync(buffer, 0);
+  }
+  if (!camera->gone && camera->streaming) {
+    queue(camera, frame->buffer); /* a camera that left meanwhile says so at the next read */
+  }
+}
