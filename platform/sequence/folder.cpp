@@ -1,5 +1,7 @@
 #include "folder.h"
 
+#include <planefold_platform/sequence.h>
+
 #include <cmath>
 
 #include "numbers.h"
@@ -65,6 +67,10 @@ fs::path first_file(const fs::path& folder, std::initializer_list<const char*> n
 
 void find_calibration(Folder& folder, const std::string& given, const fs::path& where,
                       std::initializer_list<const char*> names) {
+  if (given == PF_SEQUENCE_UNCALIBRATED) {
+    folder.calibration.form = "none";
+    return;
+  }
   folder.calibration_path = given.empty() ? first_file(where, names) : fs::path(given);
   if (folder.calibration_path.empty()) {
     std::string list;

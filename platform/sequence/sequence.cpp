@@ -55,6 +55,28 @@ int guarded(char message[PF_SEQUENCE_MESSAGE], const Function& function) {
   return -1;
 }
 
+/// The pixels of a frame, in sequence.image.
+void decode(pf_sequence& sequence, const pf::sequence::Frame& frame) {
+  pf::sequence::read_bytes(frame.path, kMaxImageBytes, "image", sequence.bytes);
+  char why[PF_DECODE_WHY] = "";
+  if (pf_decode_image(sequence.bytes.data(), sequence.bytes.size(), &sequence.image, why) != 0) {
+    refuse(frame.path.string() + ": " + why + "; replace or remove this image");
+  }
+}
+
+/// A camera of which only the size is known, that of the first image.
+pf_camera_t uncalibrated_camera(pf_sequence& sequence) {
+  decode(sequence, sequence.folder.frames.front());
+  pf_camera_t camera{};
+  camera.model = PF_CAMERA_PINHOLE;
+  camera.width = sequence.image.width;
+  camera.height = sequence.image.height;
+  camera.fx = camera.fy = camera.width;
+  camera.cx = 0.5 * (camera.width - 1);
+  camera.cy = 0.5 * (camera.height - 1);
+  return camera;
+}
+
 void require(const void* pointer, const char* name) {
   if (pointer == nullptr) {
     refuse(std::string(name) + " is null");
@@ -74,6 +96,9 @@ int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t*
     opened->root = opened->folder.root.string();
     opened->calibration_path = opened->folder.calibration_path.string();
     opened->truth_path = opened->folder.truth_path.string();
+    if (calibration != nullptr && std::string(calibration) == PF_SEQUENCE_UNCALIBRATED) {
+      opened->folder.calibration.camera = uncalibrated_camera(*opened);
+    }
     *sequence = opened.release();
   });
 }
@@ -112,17 +137,17 @@ int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* i
              std::to_string(folder.frames.size()));
     }
     const pf::sequence::Frame& frame = folder.frames[static_cast<size_t>(index)];
-    pf::sequence::read_bytes(frame.path, kMaxImageBytes, "image", sequence->bytes);
-    char why[PF_DECODE_WHY] = "";
-    pf_decoded_t& decoded = sequence->image;
-    if (pf_decode_image(sequence->bytes.data(), sequence->bytes.size(), &decoded, why) != 0) {
-      refuse(frame.path.string() + ": " + why + "; replace or remove this image");
-    }
+    decode(*sequence, frame);
+    const pf_decoded_t& decoded = sequence->image;
     const pf_camera_t& camera = folder.calibration.camera;
     if (decoded.width != camera.width || decoded.height != camera.height) {
-      refuse(frame.path.string() + ": is " + std::to_string(decoded.width) + " x " + std::to_string(decoded.height) +
-             " pixels, but the calibration " + sequence->calibration_path + " is for " + std::to_string(camera.width) +
-             " x " + std::to_string(camera.height) + "; use the calibration of these images");
+      const std::string expected =
+          sequence->calibration_path.empty() ? "first image" : "calibration " + sequence->calibration_path;
+      refuse(
+          frame.path.string() + ": is " + std::to_string(decoded.width) + " x " + std::to_string(decoded.height) +
+          " pixels, but the " + expected + " is for " + std::to_string(camera.width) + " x " +
+          std::to_string(camera.height) +
+          (sequence->calibration_path.empty() ? "; use images of one size" : "; use the calibration of these images"));
     }
     *image = pf_image_t{decoded.pixels, decoded.width, decoded.height, decoded.width, frame.t_ns};
   });

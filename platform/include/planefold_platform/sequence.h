@@ -23,6 +23,9 @@ extern "C" {
 
 #define PF_SEQUENCE_MESSAGE 1024 /* bytes of a message, with its terminating zero */
 
+/* As a calibration: none is read. Only the size in the camera means something then, which is that of the first image. */
+#define PF_SEQUENCE_UNCALIBRATED "uncalibrated"
+
 typedef struct pf_sequence pf_sequence_t;
 
 typedef struct pf_sequence_info {
@@ -32,7 +35,7 @@ typedef struct pf_sequence_info {
   double rate_hz;     /* as the calibration says, or else from the times */
   const char* folder; /* these five are valid until the sequence is closed; "" where there is none */
   const char* calibration_path;
-  const char* calibration_form; /* "kalibr", "euroc", "ros" or "plain" */
+  const char* calibration_form; /* "kalibr", "euroc", "ros", "plain" or "none" */
   const char* truth_path;       /* a trajectory beside the images, in the TUM format */
   const char* warning;          /* one line on what had to be assumed */
 } pf_sequence_info_t;

@@ -1,0 +1,70 @@
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <map>
+
+namespace pf::calibrate {
+
+namespace {
+
+const std::map<std::string, pf_camera_model_t> kModels = {
+    {"pinhole", PF_CAMERA_PINHOLE}, {"radtan", PF_CAMERA_RADTAN}, {"equidistant", PF_CAMERA_EQUIDISTANT}};
+
+}  // namespace
+
+bool parse_options(int argc, char** argv, Options& options, int& code) {
+  CLI::App app(
+      "Calibrate a camera from views of a printed chessboard.\n"
+      "First:  pf-calibrate --print-target target.pdf, print at 100 %, glue it onto something flat.\n"
+      "Then film it: near and far, into every corner of the picture, slanted by up to 45 degrees, held still now and "
+      "then.\n"
+      "Then:   pf-calibrate --source images:DIR --out out/calibrate, and give out/calibrate/calib.yaml to pf-capture "
+      "--calib.\n",
+      "pf-calibrate");
+  std::string board = "10x7:0.025";
+  app.add_option("--source", options.source, "images:DIR, euroc:DIR or tum:DIR; a calibration inside is not read");
+  app.add_option("--board", board, "COLUMNSxROWS:SQUARE_METRES, counted in squares")->capture_default_str();
+  app.add_option("--model", options.model, "of the lens: pinhole, radtan, or equidistant for wide ones")
+      ->transform(CLI::CheckedTransformer(kModels, CLI::ignore_case))
+      ->default_str("radtan");
+  app.add_option("--out", options.out,
+                 "folder for calib.yaml (Kalibr's form), calibration.json, corners.csv and coverage.png")
+      ->capture_default_str();
+  app.add_option("--views", options.views, "fit at most N views, the ones that differ most")
+      ->check(CLI::Range(6, 200))
+      ->capture_default_str();
+  app.add_option("--look-at", options.look_at, "search at most N frames for the board, evenly over the source")
+      ->check(CLI::Range(6, 100000))
+      ->capture_default_str();
+  app.add_option("--print-target", options.print_target, "write the board to this PDF, at true size, and end");
+  app.add_option("--page", options.page, "of the PDF: a4, a3, letter, or WIDTHxHEIGHT in millimetres")
+      ->capture_default_str();
+  app.add_flag("--quiet", options.quiet, "no progress");
+  app.set_version_flag("--version", "pf-calibrate " + std::to_string(PF_VERSION_MAJOR) + "." +
+                                        std::to_string(PF_VERSION_MINOR) + "." + std::to_string(PF_VERSION_PATCH));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& done) {
+    code = app.exit(done);
+    return false;
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "pf-calibrate: %s\n", error.what());
+    code = 2;
+    return false;
+  }
+  std::string error;
+  if (!parse_board(board, options.board, error)) {
+    std::fprintf(stderr, "pf-calibrate: %s\n", error.c_str());
+    code = 2;
+    return false;
+  }
+  if (options.source.empty() == options.print_target.empty()) {
+    std::fprintf(stderr, "pf-calibrate: give either --source or --print-target; see --help\n");
+    code = 2;
+    return false;
+  }
+  return true;
+}
+
+}  // namespace pf::calibrate

@@ -1,0 +1,26 @@
+#ifndef PLANEFOLD_CALIBRATE_OUTPUTS_H
+#define PLANEFOLD_CALIBRATE_OUTPUTS_H
+
+#include <string>
+
+#include "fit.h"
+
+namespace pf::calibrate {
+
+struct Search {
+  int64_t frames = 0, looked_at = 0;
+  std::vector<View> found;
+};
+
+/// Writes calib.yaml, calibration.json, corners.csv and coverage.png into a folder. false: error is one line.
+bool write_outputs(const std::string& folder, const Board& board, const Search& search, const Fit& fit,
+                   std::string& error);
+
+/// The picture: where corners were seen, which way and how far (50 times enlarged) they lie from the fit.
+bool draw_coverage(const std::string& path, const Fit& fit, std::string& error);
+
+const char* model_name(int32_t model);
+
+}  // namespace pf::calibrate
+
+#endif

@@ -1,0 +1,17 @@
+#ifndef PLANEFOLD_CALIBRATE_PRINT_TARGET_H
+#define PLANEFOLD_CALIBRATE_PRINT_TARGET_H
+
+#include <string>
+
+#include "board.h"
+
+namespace pf::calibrate {
+
+/// Writes the board as a PDF of true size, with a line of 100 mm to check the printer by.
+/// page  a4, a3, letter, or WIDTHxHEIGHT in millimetres; it is turned if the board fits better
+/// false: error is one line
+bool print_target(const Board& board, const std::string& page, const std::string& path, std::string& error);
+
+}  // namespace pf::calibrate
+
+#endif
