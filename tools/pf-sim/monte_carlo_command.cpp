@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "gee2007/command.h"
 #include "report.h"
 
 namespace pfsim {
@@ -167,12 +168,23 @@ void add_room(CLI::App& app, int& result) {
 
 void add_gee2007(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
-  CLI::App* command = app.add_subcommand("gee2007", "The paper's room and circle, with and without keeping the gauge");
+  CLI::App* command =
+      app.add_subcommand("gee2007", "The paper's room and circle, with its own filter or the library's");
   add_common(command, *c);
   command->add_option("--motion", c->motion, "velocity, or walk as the paper has it");
   command->add_option("--look", c->look, "inward, across the middle (some 20 points in view), or outward (some 5)");
   command->add_option("--seconds-per-loop", c->circle_seconds, "of the circle");
-  command->callback([c, &result] { result = run(*c, true); });
+  const auto paper = gee::add_paper_options(command);
+  command->callback([c, paper, command, &result] {
+    if (paper->filter == "library") {
+      result = run(*c, true);
+      return;
+    }
+    const std::string look = command->count("--look") ? c->look : "";
+    result = gee::run_paper_command(*command, *paper,
+                                    {c->cases, look, c->json, c->csv, c->seeds, c->frames, c->jobs, c->first_seed,
+                                     c->fov, c->sigma_px, c->height, c->slant, c->linearity, c->first_birth});
+  });
 }
 
 }  // namespace pfsim
