@@ -7,9 +7,11 @@ set(PLANEFOLD_FLOAT_TESTS
     jacobian/test_observe_point.cpp
     jacobian/test_planar_pose.cpp
     jacobian/test_plane.cpp
+    jacobian/test_ray_plane.cpp
     unit/test_camera.cpp
     unit/test_dark_quads.cpp
     unit/test_planar_pose.cpp
+    unit/test_plane_search.cpp
     unit/test_small_geometry.cpp
     unit/test_covariance_reference.cpp
     unit/test_covariance_sets.cpp

@@ -28,7 +28,7 @@ inline constexpr int kMaxPlaneMembers = 64;
 /// One plane among the candidates, or none.
 ///
 /// RANSAC with local support: the first point of a set is any, the two others lie within radius / 2 of it. A set counts
-/// its points less those in the layers on both sides of it. The best sets are refitted, and the first that passes is returned:
+/// its points against those in the layers beside it. The best sets are refitted, and the first that passes is returned:
 ///
 ///   count > min_points,  λ0 / count < normal_variance,  the points span an area and not a line
 ///   every point is where the plane through the *other* points says      |r| / (1 - leverage) < distance
