@@ -31,8 +31,9 @@ struct Start {
     bundle.init();
     for (int i = 0; i < count; ++i) {
       const Scalar depth = static_cast<Scalar>(random.uniform(1, 3));
-      const Vec3 p(depth * static_cast<Scalar>(random.uniform(-0.35, 0.35)),
-                   depth * static_cast<Scalar>(random.uniform(-0.3, 0.3)), depth);
+      const Scalar y = depth * static_cast<Scalar>(random.uniform(-0.3, 0.3));  // arguments have no order of their own
+      const Scalar x = depth * static_cast<Scalar>(random.uniform(-0.35, 0.35));
+      const Vec3 p(x, y, depth);
       points.push_back(p);
       Vec2 z;
       Vec3 ray;

@@ -31,6 +31,43 @@ std::vector<View> sharp_ones(const std::vector<View>& views) {
   return sharp;
 }
 
+double level_at(const cv::Mat& grey, const cv::Point2f& p) {
+  const int x = std::clamp(static_cast<int>(p.x), 0, grey.cols - 2);
+  const int y = std::clamp(static_cast<int>(p.y), 0, grey.rows - 2);
+  const double u = std::clamp(p.x - static_cast<float>(x), 0.0F, 1.0F);
+  const double v = std::clamp(p.y - static_cast<float>(y), 0.0F, 1.0F);
+  const uchar *a = grey.ptr(y) + x, *b = grey.ptr(y + 1) + x;
+  return (1 - v) * ((1 - u) * a[0] + u * a[1]) + v * ((1 - u) * b[0] + u * b[1]);
+}
+
+/// Over how many pixels an edge between two squares rises: the step over the steepest slope, the median over all edges
+/// between neighbours of a row, each read half a square to either side.
+double edge_spread(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, size_t across) {
+  std::vector<double> spreads;
+  for (size_t i = 0; i + across < corners.size(); ++i) {
+    if ((i + 1) % across == 0) {
+      continue;
+    }
+    const cv::Point2f middle = 0.5F * (corners[i] + corners[i + 1]);
+    const cv::Point2f down = corners[i + across] - corners[i];
+    const double length = std::hypot(down.x, down.y);
+    const cv::Point2f step = down * static_cast<float>(0.5 / length);  // half a pixel
+    const int half = std::max(4, static_cast<int>(length));            // in such steps: half a square
+    double steepest = 0.0;
+    for (int k = -half; k + 2 <= half; ++k) {
+      const double rise = level_at(grey, middle + static_cast<float>(k + 2) * step) -
+                          level_at(grey, middle + static_cast<float>(k) * step);
+      steepest = std::max(steepest, std::fabs(rise));
+    }
+    const double contrast = std::fabs(level_at(grey, middle + static_cast<float>(half) * step) -
+                                      level_at(grey, middle - static_cast<float>(half) * step));
+    spreads.push_back(contrast / std::max(steepest, 1.0));
+  }
+  const auto median = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
+  std::nth_element(spreads.begin(), median, spreads.end());
+  return *median;
+}
+
 }  // namespace
 
 bool find_board(const cv::Mat& grey, const Board& board, View& view) {
@@ -63,8 +100,8 @@ bool find_board(const cv::Mat& grey, const Board& board, View& view) {
   const int half = std::clamp(static_cast<int>(0.35 * nearest), 2, 12);
   const cv::TermCriteria until(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 60, 1e-4);
   cv::cornerSubPix(grey, view.corners, {half, half}, {-1, -1}, until);
-  view.blur_px = cv::estimateChessboardSharpness(grey, board.corners(), view.corners)[0];
-  return std::isfinite(view.blur_px);
+  view.blur_px = edge_spread(grey, view.corners, static_cast<size_t>(across));
+  return true;
 }
 
 std::array<double, 6> describe(const View& view, const Board& board, cv::Size image) {
