@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plane_colour.h"
+
 namespace pf::capture {
 
 namespace {
@@ -125,6 +127,20 @@ void MapPanel::draw(const Canvas& canvas, const FrameView& view, double x, doubl
                                    y + 0.5 * height - pixels * (dot(forward_, p) - window_.forward)};
     };
     draw_scale(canvas, x, y, width, height, pixels);
+    for (const PlaneView& plane : view.planes) {
+      const PlaneColour c = plane_colour(plane.id);
+      cairo_new_path(pen);
+      for (const Vec3& corner : plane.outline) {
+        const auto at = place(corner);
+        cairo_line_to(pen, at[0], at[1]);
+      }
+      cairo_close_path(pen);
+      canvas.colour({c.r, c.g, c.b}, 0.2);
+      cairo_fill_preserve(pen);
+      canvas.colour({c.r, c.g, c.b}, 0.9);
+      cairo_set_line_width(pen, 1.6);
+      cairo_stroke(pen);
+    }
     std::map<uint32_t, bool> measured;
     for (const pf_track_t& track : view.tracks) {
       measured[track.id] = track.status == PF_TRACK_INLIER;

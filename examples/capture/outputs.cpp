@@ -4,7 +4,7 @@
 #include <cinttypes>
 #include <cstring>
 
-#include "maths.h"
+#include "plane_outputs.h"
 
 namespace pf::capture {
 
@@ -27,21 +27,6 @@ void put_tum(std::FILE* file, const pf_pose_t& pose) {
 const char* track_name(uint32_t status) {
   constexpr const char* kNames[] = {"unknown", "inlier", "outlier", "missed", "new"};
   return kNames[status <= 4 ? status : 0];
-}
-
-void write_ply(std::FILE* file, const std::vector<pf_feature_t>& features) {
-  std::fprintf(file,
-               "ply\nformat ascii 1.0\ncomment points in W; green: 3-D point, blue: inverse depth, magenta: target\n"
-               "element vertex %zu\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\n"
-               "property uchar green\nproperty uchar blue\nproperty float sigma\nproperty uint id\n"
-               "property int observations\nproperty uchar inverse_depth\nend_header\n",
-               features.size());
-  for (const pf_feature_t& f : features) {
-    const bool point = f.kind == PF_FEATURE_POINT;
-    const char* colour = f.is_target != 0 ? "224 80 208" : point ? "53 208 127" : "63 160 255";
-    std::fprintf(file, "%.9g %.9g %.9g %s %.6g %u %d %d\n", f.p_W[0], f.p_W[1], f.p_W[2], colour,
-                 largest_sigma(f.covariance), f.id, f.observations, point ? 0 : 1);
-  }
 }
 
 void write_calibration(std::FILE* file, const pf_camera_t& camera) {
@@ -147,7 +132,7 @@ bool Outputs::finish(const FrameView& last, const pf_camera_t& camera, const std
   if (!error.empty()) {
     return false;
   }
-  write_ply(ply.get(), last.features);
+  write_ply(ply.get(), last.features, last.planes);
   write_calibration(calibration.get(), camera);
   std::fputs(report.c_str(), json.get());
   const File* files[] = {&trajectory_, &trajectory_all_, &covariance_, &frames_, &tracks_, &truth_,

@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "plane_view.h"
+
 namespace pf::capture {
 
 /// Everything that one frame left behind, copied out of the library: what is written down and what is drawn.
 struct FrameView {
   int64_t index = 0;  ///< of the frames of this run, from 0
-  int64_t count = 0;
+  int64_t count = 0;  ///< 0: nobody knows
   pf_image_t image{};
   std::vector<uint8_t> pixels;  ///< what image.pixels points to
   pf_status_t status = PF_OK;
@@ -23,6 +25,7 @@ struct FrameView {
   double ms = 0.0;
   std::vector<pf_track_t> tracks;
   std::vector<pf_feature_t> features;
+  std::vector<PlaneView> planes;
 };
 
 inline const char* state_name(pf_state_t state) {

@@ -1,0 +1,17 @@
+#ifndef PLANEFOLD_CAPTURE_PLANE_DRAWING_H
+#define PLANEFOLD_CAPTURE_PLANE_DRAWING_H
+
+#include "canvas.h"
+#include "plane_colour.h"
+#include "view.h"
+
+namespace pf::capture {
+
+/// Draws the planes of a frame into its picture: filled, with a grid that lies on them, outlined, and with their numbers.
+///
+/// zoom  screen pixels per image pixel
+void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t& camera, double zoom);
+
+}  // namespace pf::capture
+
+#endif

@@ -1,0 +1,77 @@
+#include "plane_outputs.h"
+
+#include <nlohmann/json.hpp>
+
+#include "plane_colour.h"
+
+namespace pf::capture {
+
+namespace {
+
+int level(double part) { return static_cast<int>(255.0 * part + 0.5); }
+
+}  // namespace
+
+void write_ply(std::FILE* file, const std::vector<pf_feature_t>& features, const std::vector<PlaneView>& planes) {
+  size_t corners = 0;
+  size_t faces = 0;
+  for (const PlaneView& plane : planes) {
+    corners += plane.outline.size() >= 3 ? plane.outline.size() : 0;
+    faces += plane.outline.size() >= 3 ? 1 : 0;
+  }
+  std::fprintf(file,
+               "ply\nformat ascii 1.0\ncomment points in W; green: 3-D point, blue: inverse depth, magenta: target\n"
+               "comment the last %zu vertices are the corners of planes, in the planes' colours, with their ids\n"
+               "element vertex %zu\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\n"
+               "property uchar green\nproperty uchar blue\nproperty float sigma\nproperty uint id\n"
+               "property int observations\nproperty uchar inverse_depth\nelement face %zu\n"
+               "property list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+               "property uint id\nend_header\n",
+               corners, features.size() + corners, faces);
+  for (const pf_feature_t& f : features) {
+    const bool depth = f.kind == PF_FEATURE_INVERSE_DEPTH;
+    const char* colour = f.is_target != 0 ? "224 80 208" : depth ? "63 160 255" : "53 208 127";
+    std::fprintf(file, "%.9g %.9g %.9g %s %.6g %u %d %d\n", f.p_W[0], f.p_W[1], f.p_W[2], colour,
+                 largest_sigma(f.covariance), f.id, f.observations, depth ? 1 : 0);
+  }
+  for (const PlaneView& plane : planes) {
+    const PlaneColour c = plane_colour(plane.id);
+    for (size_t i = 0; plane.outline.size() >= 3 && i < plane.outline.size(); ++i) {
+      const Vec3& p = plane.outline[i];
+      std::fprintf(file, "%.9g %.9g %.9g %d %d %d %.6g %u %d 0\n", p[0], p[1], p[2], level(c.r), level(c.g), level(c.b),
+                   plane.sigma, plane.id, plane.points);
+    }
+  }
+  size_t first = features.size();
+  for (const PlaneView& plane : planes) {
+    if (plane.outline.size() < 3) {
+      continue;
+    }
+    const PlaneColour c = plane_colour(plane.id);
+    std::fprintf(file, "%zu", plane.outline.size());
+    for (size_t i = 0; i < plane.outline.size(); ++i) {
+      std::fprintf(file, " %zu", first++);
+    }
+    std::fprintf(file, " %d %d %d %u\n", level(c.r), level(c.g), level(c.b), plane.id);
+  }
+}
+
+nlohmann::ordered_json planes_json(const std::vector<PlaneView>& planes) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const PlaneView& plane : planes) {
+    nlohmann::ordered_json one;
+    one["id"] = plane.id;
+    one["normal"] = plane.normal;
+    one["distance"] = plane.distance;
+    one["sigma"] = plane.sigma;
+    one["sigma_normal_deg"] = plane.sigma_normal * 57.29577951308232;
+    one["points"] = plane.points;
+    one["area_m2"] = plane.area();
+    one["orientation"] = plane.orientation;
+    one["outline"] = plane.outline;
+    all.push_back(one);
+  }
+  return all;
+}
+
+}  // namespace pf::capture
