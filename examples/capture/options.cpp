@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
@@ -25,6 +26,41 @@ CLI::Validator at_least(int64_t least) {
       "");
 }
 
+void add_camera_options(CLI::App& app, Options& options) {
+  const std::string group = "Cameras";
+  app.add_option("--record", options.record, "every frame to a new folder in EuRoC layout, for euroc:DIR")
+      ->group(group);
+  app.add_flag("--as-recorded", options.as_recorded, "of a recording, only the frames that were tracked then")
+      ->group(group);
+  app.add_flag("--every-frame", options.every_frame, "track every frame, however late, instead of the newest")
+      ->group(group);
+  app.add_flag("--realtime", options.realtime, "play a folder or scene at its own pace, as a camera would")
+      ->group(group);
+  app.add_option("--format", options.format, "any, GREY, NV12, YUYV, Y16 or MJPEG")
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--rate", options.rate_hz, "frames per second to ask the camera for")
+      ->check(CLI::Range(0.1, 10000.0))
+      ->group(group);
+  app.add_option("--exposure", options.exposure_us, "fixed time of exposure, microseconds")
+      ->check(CLI::Range(1.0, 1e6))
+      ->group(group);
+  app.add_option("--focus", options.focus, "autofocus off; the lens goes to this step, or stays (-1)")
+      ->check(at_least(-1))
+      ->group(group);
+  app.add_flag("--dma-buf", options.dma_buf, "export the camera's buffers and synchronise every access")->group(group);
+  app.add_option("--cpu", options.processor, "processor of the tracker")->check(at_least(0))->group(group);
+  app.add_option("--capture-cpu", options.capture_processor, "processor of the capture thread")
+      ->check(at_least(0))
+      ->group(group);
+  app.add_option("--priority", options.priority, "real-time priority, 1 to 98 (needs the right to it)")
+      ->check(CLI::Range(1, 98))
+      ->group(group);
+  app.add_option("--delay", options.delay_ms, "milliseconds added to every frame, as if the processor were slower")
+      ->check(CLI::Range(0.0, 10000.0))
+      ->group(group);
+}
+
 int refuse(const std::string& line) {
   std::fprintf(stderr, "pf-capture: %s\n", line.c_str());
   return kExitUsage;
@@ -33,12 +69,22 @@ int refuse(const std::string& line) {
 /// What CLI11 cannot check by itself; "" when all is well.
 std::string check(const Options& options, const std::string& backend) {
   const std::string kind = options.source.substr(0, options.source.find(':'));
-  if (kind == "v4l2" || kind == "libcamera") {
-    return "source '" + options.source + "': cameras are not available yet; use images:, euroc:, tum: or sim:";
+  if (kind == "libcamera") {
+    return "source '" + options.source + "': libcamera is not available yet; use v4l2:";
   }
   if (options.source.find(':') == std::string::npos ||
-      (kind != "images" && kind != "euroc" && kind != "tum" && kind != "sim")) {
-    return "source '" + options.source + "': write images:DIR, euroc:DIR, tum:DIR or sim:NAME";
+      (kind != "images" && kind != "euroc" && kind != "tum" && kind != "sim" && kind != "v4l2")) {
+    return "source '" + options.source + "': write v4l2:DEVICE, images:DIR, euroc:DIR, tum:DIR or sim:NAME";
+  }
+  constexpr const char* kFormats[] = {"any", "GREY", "NV12", "YUYV", "Y16", "MJPEG"};
+  if (std::find(std::begin(kFormats), std::end(kFormats), options.format) == std::end(kFormats)) {
+    return "--format " + options.format + ": write any, GREY, NV12, YUYV, Y16 or MJPEG";
+  }
+  if (options.every_frame && kind != "v4l2" && !options.realtime) {
+    return "--every-frame is for cameras and --realtime; without these every frame is tracked anyway";
+  }
+  if (options.as_recorded && kind != "euroc") {
+    return "--as-recorded is for a recording: --source euroc:DIR";
   }
   if (options.start != "auto" && options.start != "target" && options.start.rfind("target:", 0) != 0 &&
       options.start.rfind("rectangle:", 0) != 0) {
@@ -68,7 +114,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   const std::map<std::string, pf_kernels_t> kernel_names = {
       {"auto", PF_KERNELS_AUTO}, {"reference", PF_KERNELS_REFERENCE}, {"portable", PF_KERNELS_PORTABLE},
       {"avx2", PF_KERNELS_AVX2}, {"avx512", PF_KERNELS_AVX512},       {"neon", PF_KERNELS_NEON}};
-  app.add_option("--source", options.source, "images:DIR, euroc:DIR, tum:DIR or sim:NAME")->required();
+  app.add_option("--source", options.source, "v4l2:/dev/videoN, v4l2:NAME, images:DIR, euroc:DIR, tum:DIR or sim:NAME");
+  app.add_flag("--list", options.list, "name the cameras of this machine, and do nothing else");
   app.add_option("--calib", options.calibration, "calibration file (Kalibr, EuRoC, ROS camera_info or calib.yaml)");
   app.add_option("--start", options.start,
                  "auto, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
@@ -90,6 +137,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--features-in-view", options.features_in_view, "features to keep in view")->check(at_least(1));
   app.add_option("--kernels", kernels, "auto, reference, portable, avx2, avx512 or neon")->capture_default_str();
   app.add_flag("--plain-ekf", no_gauge, "the textbook filter, which is overconfident; for comparison");
+  add_camera_options(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -98,6 +146,13 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     } else {
       code = refuse(std::string(error.what()) + "; see pf-capture --help");
     }
+    return Parsed::kExit;
+  }
+  if (options.list) {
+    return Parsed::kRun;
+  }
+  if (options.source.empty()) {
+    code = refuse("--source is required; see pf-capture --help");
     return Parsed::kExit;
   }
   const auto set = kernel_names.find(kernels);

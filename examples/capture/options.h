@@ -28,6 +28,23 @@ struct Options {
   int32_t features_in_view = -1;
   pf_kernels_t kernels = PF_KERNELS_AUTO;
   bool keep_gauge = true;
+
+  // Cameras, and what is played as if it came from one.
+  std::string record;
+  std::string format = "any";
+  double rate_hz = 0.0;      ///< 0: as the calibration or the camera says
+  double exposure_us = 0.0;  ///< 0: automatic
+  int32_t focus = -2;        ///< -1: locked where it is; -2: left alone
+  int32_t processor = -1;    ///< of the tracker; negative: any
+  int32_t capture_processor = -1;
+  int32_t priority = 0;   ///< real-time priority of the tracker; capture gets one more. 0: none
+  double delay_ms = 0.0;  ///< added to every frame's tracking, to see what a slower processor would do
+  bool every_frame = false;
+  bool realtime = false;
+  bool as_recorded = false;
+  bool dma_buf = false;
+  bool list = false;
+
   bool headless = false;
   bool film = true;
   bool tracks = false;

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <string>
 
 namespace pf::capture {
 
@@ -25,10 +26,10 @@ void Progress::show(const FrameView& view) {
     return;
   }
   last_s_ = now;
-  std::fprintf(stderr, "%sframe %lld/%lld  %-8s  %3d of %3d features  %6.2f ms%s", terminal_ ? "\r" : "",
-               static_cast<long long>(view.index + 1), static_cast<long long>(view.count),
-               state_name(view.report.state), view.report.inliers, view.report.attempts, view.ms,
-               terminal_ ? "  " : "\n");
+  const std::string count = view.count > 0 ? "/" + std::to_string(view.count) : "";
+  std::fprintf(stderr, "%sframe %lld%s  %-8s  %3d of %3d features  %6.2f ms%s", terminal_ ? "\r" : "",
+               static_cast<long long>(view.index + 1), count.c_str(), state_name(view.report.state),
+               view.report.inliers, view.report.attempts, view.ms, terminal_ ? "  " : "\n");
   std::fflush(stderr);
   open_ = terminal_;
 }

@@ -1,18 +1,22 @@
 #include "run.h"
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <thread>
+#include <vector>
 
-#include "film.h"
 #include "outputs.h"
-#include "overlay.h"
 #include "progress.h"
+#include "realtime.h"
+#include "recorder.h"
 #include "session.h"
+#include "show.h"
 #include "source.h"
 #include "statistics.h"
-#include "window.h"
+#include "steady.h"
 
 namespace pf::capture {
 
@@ -43,8 +47,10 @@ class Run {
   int go();
 
  private:
-  bool step(int64_t index);
-  void show();
+  bool open(std::string& error, int& code);
+  Read step(int64_t index);
+  void track_slowly(int64_t begin_ns) const;
+  void tell_notices();
   void handle_keys();
   void save(const char* name);
   int finish();
@@ -56,16 +62,43 @@ class Run {
   Outputs outputs_;
   Statistics statistics_;
   Progress progress_;
-  std::unique_ptr<Overlay> overlay_;
-  Film film_;
-  Window window_;
+  Recorder recorder_;
+  Show show_;
   FrameView view_;
   int64_t count_ = 0;
+  bool records_itself_ = false;  ///< the source sees to it, with the frames that are passed over
   bool done_any_ = false;
   bool quit_ = false;
   bool paused_ = false;
   std::string failure_;
 };
+
+bool Run::open(std::string& error, int& code) {
+  const SourceInfo& info = source_.info();
+  if (!session_.open(options_, source_, error, code)) {
+    return false;
+  }
+  code = kExitRun;
+  if (!outputs_.open(options_.out, options_.tracks, info.knows_truth, error)) {
+    return false;
+  }
+  if (!options_.record.empty()) {
+    if (!recorder_.open(options_.record, info.camera, info.rate_hz, error)) {
+      return false;
+    }
+    records_itself_ = source_.record_to(recorder_);
+  }
+  std::vector<std::string> notes;
+  show_.open(options_, session_, "planefold   " + short_name(options_.source), outputs_.path("overlay.mp4"),
+             info.rate_hz, notes);
+  if (!place_thread(options_.processor, options_.priority)) {
+    notes.emplace_back("--cpu or --priority was refused by the system (needs root, or RLIMIT_RTPRIO)");
+  }
+  for (const std::string& line : notes) {
+    note(line);
+  }
+  return true;
+}
 
 int Run::go() {
   const SourceInfo& info = source_.info();
@@ -81,48 +114,49 @@ int Run::go() {
   count_ = options_.frames > 0 ? std::min(count_, options_.frames) : count_;
   std::string error;
   int code = kExitRun;
-  if (!session_.open(options_, source_, error, code)) {
+  if (!open(error, code)) {
     return fail(error, code);
   }
-  if (!outputs_.open(options_.out, options_.tracks, info.knows_truth, error)) {
-    return fail(error);
-  }
-  overlay_ = std::make_unique<Overlay>(session_, "planefold   " + short_name(options_.source));
-  if (options_.film &&
-      !film_.open(outputs_.path("overlay.mp4"), overlay_->width(), overlay_->height(), info.rate_hz, error)) {
-    note(error);
-  }
-  if (!options_.headless && !window_.open("planefold", overlay_->width(), overlay_->height(), error)) {
-    note(error);
-  }
-  for (int64_t index = 0; index < count_ && !quit_ && g_interrupted == 0; ++index) {
-    if (!step(index)) {
+  for (int64_t index = 0; index < count_ && !quit_ && g_interrupted == 0;) {
+    const Read read = step(index);
+    if (read == Read::kEnd || read == Read::kFailed) {
       break;
     }
+    index += read == Read::kDone ? 1 : 0;
+    tell_notices();
+    handle_keys();
   }
   return finish();
 }
 
-/// One frame. false: the run ends here, and failure_ says why.
-bool Run::step(int64_t index) {
+/// One frame. kFailed: failure_ says why.
+Read Run::step(int64_t index) {
   const int64_t at = options_.skip + index;
   pf_image_t image{};
   const Read read = source_.read(at, image, failure_);
-  if (read == Read::kEnd) {
-    return false;
-  }
-  if (read == Read::kFailed) {
+  if (read == Read::kFailed && !source_.is_live()) {
     failure_ = "frame " + std::to_string(at) + ": " + failure_;
-    return false;
   }
+  if (read != Read::kDone) {
+    return read;
+  }
+  const int64_t begin_ns = steady_ns();
   if (index == options_.withdraw_target_after) {
     session_.withdraw_target();
   }
   view_.index = index;
-  view_.count = count_;
+  view_.count = source_.info().endless && options_.frames <= 0 ? 0 : count_;
   if (!session_.push(image, view_, failure_)) {
     failure_ = "frame " + std::to_string(at) + " (" + source_.name(at) + "): " + failure_;
-    return false;
+    return Read::kFailed;
+  }
+  track_slowly(begin_ns);
+  source_.pushed();
+  if (recorder_.is_open()) {
+    recorder_.mark_tracked(image.t_ns);
+    if (!records_itself_) {
+      recorder_.add(image);
+    }
   }
   view_.pixels.resize(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
   for (int32_t y = 0; y < image.height; ++y) {
@@ -139,34 +173,38 @@ bool Run::step(int64_t index) {
   if (source_.truth(truth)) {
     outputs_.write_truth(truth);
   }
-  overlay_->add(view_);
   progress_.show(view_);
-  show();
-  handle_keys();
-  return true;
+  show_.add(view_);
+  if (view_.index == count_ / 2) {
+    save("overlay_mid.png");
+  }
+  return Read::kDone;
 }
 
-void Run::show() {
-  const bool middle = view_.index == count_ / 2;
-  if (film_.is_open() || window_.is_open() || middle) {
-    const Canvas& canvas = overlay_->draw(view_);
-    film_.add(canvas);
-    window_.show(canvas);
-    if (middle) {
-      save("overlay_mid.png");
-    }
+/// --delay: what tracking would take on a slower processor.
+void Run::track_slowly(int64_t begin_ns) const {
+  const auto until_ns = begin_ns + static_cast<int64_t>(1e6 * options_.delay_ms);
+  while (options_.delay_ms > 0.0 && steady_ns() < until_ns && g_interrupted == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+void Run::tell_notices() {
+  for (std::string line; source_.take_notice(line);) {
+    progress_.end();
+    note(line);
   }
 }
 
 void Run::save(const char* name) {
-  if (!overlay_->draw(view_).save_png(outputs_.path(name))) {
+  if (!show_.save(view_, outputs_.path(name))) {
     note(outputs_.path(name) + ": could not be written");
   }
 }
 
 void Run::handle_keys() {
   do {
-    switch (window_.poll(paused_ ? 50 : 0)) {
+    switch (show_.poll(paused_ ? 50 : 0)) {
       case Key::kPause:
         paused_ = !paused_;
         break;
@@ -207,7 +245,14 @@ std::string Run::why_nothing_was_tracked() const {
 
 int Run::finish() {
   progress_.end();
-  if (g_interrupted != 0 && failure_.empty()) {
+  tell_notices();
+  const std::string live = source_.finish();
+  std::string not_recorded;
+  if (recorder_.is_open() && !recorder_.close(&not_recorded) && failure_.empty()) {
+    failure_ = not_recorded;
+  }
+  // A camera has no end: to interrupt it is how such a run ends.
+  if (g_interrupted != 0 && failure_.empty() && !(source_.info().endless && options_.frames <= 0)) {
     failure_ =
         "interrupted after " + std::to_string(statistics_.frames()) + " of " + std::to_string(count_) + " frames";
   }
@@ -217,8 +262,8 @@ int Run::finish() {
       save("overlay_mid.png");
     }
   }
-  const bool filming = film_.is_open();
-  if (!film_.close()) {
+  const bool filming = show_.is_filming();
+  if (!show_.close_film()) {
     note("ffmpeg failed; " + outputs_.path("overlay.mp4") + " is not complete");
   }
   if (statistics_.tracked() == 0 && failure_.empty()) {
@@ -227,7 +272,7 @@ int Run::finish() {
     failure_ = why_nothing_was_tracked();
   }
   std::string error;
-  const std::string report = statistics_.to_json(session_, options_, source_.info(), failure_);
+  const std::string report = statistics_.to_json(session_, options_, source_.info(), live, failure_);
   if (!outputs_.finish(view_, session_.config().camera, report, error)) {
     return fail(error);
   }

@@ -5,17 +5,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
+
+#include "steady.h"
 
 namespace pf::capture {
 
 namespace {
 
-int64_t steady_ns(void*) {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<int64_t>(now.tv_sec) * 1000000000 + now.tv_nsec;
-}
+int64_t clock_ns(void*) { return steady_ns(); }
 
 void keep_line(void* user, const char* line) { static_cast<std::vector<std::string>*>(user)->emplace_back(line); }
 
@@ -40,7 +37,7 @@ bool Session::open(const Options& options, const Source& source, std::string& er
   if (options.max_observations < 0) {
     config_.max_observations = std::max(config_.max_observations, config_.features_in_view);
   }
-  config_.clock_ns = steady_ns;
+  config_.clock_ns = clock_ns;
   config_.log = keep_line;
   config_.user = &log_;
   const char* field = "";
@@ -103,9 +100,9 @@ bool Session::reset(std::string& error) {
 }
 
 bool Session::push(const pf_image_t& image, FrameView& view, std::string& error) {
-  const int64_t before = steady_ns(nullptr);
+  const int64_t before = steady_ns();
   view.status = pf_push_frame(slam_, &image);
-  view.ms = 1e-6 * static_cast<double>(steady_ns(nullptr) - before);
+  view.ms = 1e-6 * static_cast<double>(steady_ns() - before);
   if (view.status < 0) {
     error = std::string("the library refused it: ") + pf_status_text(view.status);
     return false;

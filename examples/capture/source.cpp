@@ -2,6 +2,15 @@
 
 #include <planefold_platform/sequence.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "camera.h"
+#include "live_source.h"
+
 namespace pf::capture {
 
 namespace {
@@ -20,23 +29,62 @@ class FolderSource : public Source {
 
   const SourceInfo& info() const override { return info_; }
 
+  /// Of a recording, only the frames that were tracked when it was made. false: error is one line.
+  bool keep_tracked(const std::string& source, std::string& error) {
+    const std::string folder = source.substr(source.find(':') + 1);
+    std::vector<int64_t> times;
+    std::vector<int64_t> kept;
+    for (const char* below : {"/mav0/cam0/tracked.csv", "/cam0/tracked.csv", "/tracked.csv"}) {
+      std::ifstream file(folder + below);
+      for (std::string line; std::getline(file, line);) {
+        if (!line.empty() && line[0] != '#') {
+          times.push_back(std::strtoll(line.c_str(), nullptr, 10));
+        }
+      }
+    }
+    if (times.empty()) {
+      error = folder + ": no tracked.csv inside that names a frame; leave --as-recorded away to track every frame";
+      return false;
+    }
+    std::sort(times.begin(), times.end());
+    for (int64_t i = 0; i < info_.count; ++i) {
+      const std::string stem = std::filesystem::path(name(i)).stem().string();  // the time, in recordings
+      if (std::binary_search(times.begin(), times.end(), std::strtoll(stem.c_str(), nullptr, 10))) {
+        kept.push_back(i);
+      }
+    }
+    if (kept.size() != times.size()) {
+      error = folder + ": tracked.csv names " + std::to_string(times.size()) + " frames, and " +
+              std::to_string(kept.size()) + " of them are there";
+      return false;
+    }
+    kept_.swap(kept);
+    info_.count = static_cast<int64_t>(kept_.size());
+    return true;
+  }
+
   Read read(int64_t index, pf_image_t& image, std::string& error) override {
     char message[PF_SEQUENCE_MESSAGE];
-    const bool done = pf_read_sequence_frame(sequence_.get(), index, &image, message) == 0;
+    const bool done = pf_read_sequence_frame(sequence_.get(), number(index), &image, message) == 0;
     error = message;
     return done ? Read::kDone : Read::kFailed;
   }
 
-  std::string name(int64_t index) const override { return pf_get_sequence_frame_path(sequence_.get(), index); }
+  std::string name(int64_t index) const override { return pf_get_sequence_frame_path(sequence_.get(), number(index)); }
 
  private:
+  int64_t number(int64_t index) const { return kept_.empty() ? index : kept_[static_cast<size_t>(index)]; }
+
+  std::vector<int64_t> kept_;
   std::unique_ptr<pf_sequence_t, void (*)(pf_sequence_t*)> sequence_;
   SourceInfo info_;
 };
 
 }  // namespace
 
-std::unique_ptr<Source> open_source(const Options& options, std::string& error) {
+namespace {
+
+std::unique_ptr<Source> open_stored(const Options& options, std::string& error) {
   if (options.source.rfind("sim:", 0) == 0) {
     return open_sim_source(options, error);
   }
@@ -47,7 +95,47 @@ std::unique_ptr<Source> open_source(const Options& options, std::string& error) 
     error = message;
     return nullptr;
   }
-  return std::make_unique<FolderSource>(sequence);
+  auto folder = std::make_unique<FolderSource>(sequence);
+  if (options.as_recorded && !folder->keep_tracked(options.source, error)) {
+    return nullptr;
+  }
+  return folder;
+}
+
+}  // namespace
+
+std::unique_ptr<Source> open_camera_source(const Options& options, std::string& error) {
+  SourceInfo info;
+  if (options.calibration.empty()) {
+    error = "source '" + options.source + "': a camera needs its calibration; give it with --calib FILE";
+    return nullptr;
+  }
+  char message[PF_SEQUENCE_MESSAGE];
+  if (pf_read_calibration(options.calibration.c_str(), &info.camera, &info.rate_hz, message) != 0) {
+    error = message;
+    return nullptr;
+  }
+  std::unique_ptr<Camera> camera = open_v4l2_camera(options, info.camera, info.rate_hz, error);
+  if (camera == nullptr) {
+    return nullptr;
+  }
+  info.endless = true;
+  info.count = int64_t{1} << 53;
+  info.device = camera->name();
+  return std::make_unique<LiveSource>(std::move(camera), options, info);
+}
+
+std::unique_ptr<Source> open_source(const Options& options, std::string& error) {
+  if (options.source.rfind("v4l2:", 0) == 0) {
+    return open_camera_source(options, error);
+  }
+  std::unique_ptr<Source> stored = open_stored(options, error);
+  if (stored == nullptr || !options.realtime) {
+    return stored;
+  }
+  SourceInfo info = stored->info();
+  info.device = options.source;
+  return std::make_unique<LiveSource>(open_paced_camera(options, std::move(stored)), options, info);
 }
 
 }  // namespace pf::capture

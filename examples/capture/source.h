@@ -11,23 +11,28 @@
 
 namespace pf::capture {
 
-enum class Read { kDone, kEnd, kFailed };
+class Recorder;
+
+enum class Read { kDone, kNothing, kEnd, kFailed };
 
 struct SourceInfo {
   pf_camera_t camera{};
-  int64_t count = 0;  ///< at most; a simulated camera that drops frames gives fewer
+  int64_t count = 0;  ///< at most; a simulated camera that drops frames gives fewer, and a camera has no end
+  bool endless = false;
   double rate_hz = 30.0;
   std::string truth_path;  ///< a trajectory that lies beside the source; "" where there is none
   std::string warning;
+  std::string device;        ///< of a camera
   bool knows_truth = false;  ///< by truth() for every frame that was read
 };
 
-/// Frames by number: a folder or a simulated scene.
+/// Frames by number: a folder, a simulated scene, or a camera, which decides itself which frame comes next.
 class Source {
  public:
   virtual ~Source() = default;
   virtual const SourceInfo& info() const = 0;
-  /// Frames are read in the order of their numbers. kFailed: error is one line. The pixels are valid until the next call.
+  /// Frames are read in the order of their numbers. kFailed: error is one line. kNothing: a camera has none yet; ask again.
+  /// The pixels are valid until the next call.
   virtual Read read(int64_t index, pf_image_t& image, std::string& error) = 0;
   /// File or name of a frame, for messages.
   virtual std::string name(int64_t index) const = 0;
@@ -35,10 +40,23 @@ class Source {
   virtual bool truth(pf_pose_t&) { return false; }
   /// The target that the source itself knows, for --start target.
   virtual bool target(pf_target_t&) const { return false; }
+
+  /// What only cameras do.
+  virtual bool is_live() const { return false; }
+  /// Every frame that comes goes to the recorder too; false: this source leaves that to its reader.
+  virtual bool record_to(Recorder&) { return false; }
+  /// The frame that was read last has been tracked: its latency ends here.
+  virtual void pushed() {}
+  /// One line that the user should know, if there is one (unplugged, back again).
+  virtual bool take_notice(std::string&) { return false; }
+  /// Ends capture. JSON for report.json, "" where there is nothing to say.
+  virtual std::string finish() { return ""; }
 };
 
 /// null: error is one line.
 std::unique_ptr<Source> open_source(const Options& options, std::string& error);
+
+std::unique_ptr<Source> open_camera_source(const Options& options, std::string& error);
 
 std::unique_ptr<Source> open_sim_source(const Options& options, std::string& error);
 

@@ -105,7 +105,7 @@ void Statistics::add(const FrameView& view) {
 }
 
 std::string Statistics::to_json(const Session& session, const Options& options, const SourceInfo& source,
-                                const std::string& ended) const {
+                                const std::string& live, const std::string& ended) const {
   constexpr const char* kStages[] = {"pyramid", "predict", "search", "gate", "update", "map"};
   Json stages = Json::object();
   for (int i = 0; i <= PF_STAGE_MAP; ++i) {
@@ -150,6 +150,9 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
                     {"sigma_pixel", config.sigma_pixel},           {"keep_gauge", config.keep_gauge}};
   json["withdraw_target_after"] = options.withdraw_target_after >= 0 ? Json(options.withdraw_target_after) : Json();
   json["truth"] = source.truth_path;
+  if (!live.empty()) {
+    json["live"] = Json::parse(live);
+  }
   json["log"] = session.log();
   json["ended_early"] = ended;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -25,8 +25,9 @@ class Statistics {
   /// Frames whose pixels all equal those of the frame before.
   int64_t frozen() const { return frozen_; }
 
+  /// live   JSON of the source's own report, or ""
   /// ended  "" or the line that says why the run ended early
-  std::string to_json(const Session& session, const Options& options, const SourceInfo& source,
+  std::string to_json(const Session& session, const Options& options, const SourceInfo& source, const std::string& live,
                       const std::string& ended) const;
   /// One line for people.
   std::string summary(const Session& session) const;

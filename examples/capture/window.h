@@ -5,10 +5,9 @@
 #include <string>
 
 #include "canvas.h"
+#include "show.h"
 
 namespace pf::capture {
-
-enum class Key { kNone, kPause, kReset, kSave, kQuit };
 
 /// A window that shows the overlay, where there is a display and SDL2 was there at build time.
 class Window {

@@ -86,7 +86,10 @@ def test_usage(root):
     expect("number", 2, ["--frames"], "--source", source, "--frames", "many")
     expect("zero frames", 2, ["--frames"], "--source", source, "--frames", "0")
     expect("source kind", 2, ["film:x", "images:"], "--source", "film:x")
-    expect("camera", 2, ["not available yet"], "--source", "v4l2:/dev/video0")
+    expect("libcamera", 2, ["not available yet", "v4l2:"], "--source", "libcamera:0")
+    expect("format", 2, ["--format", "MJPEG"], "--source", "v4l2:/dev/video0", "--format", "RGB")
+    expect("every frame of a folder", 2, ["--every-frame", "--realtime"], "--source", source, "--every-frame")
+    expect("as recorded", 2, ["--as-recorded", "euroc:"], "--source", source, "--as-recorded")
     expect("window back end", 2, ["not available yet"], "--source", source, "--backend", "window")
     expect("back end", 2, ["--backend", "filter"], "--source", source, "--backend", "magic")
     expect("start", 2, ["--start"], "--source", source, "--start", "somehow")
@@ -130,6 +133,19 @@ def test_sources(root):
     expect("calibration given", 1, ["other.yaml"], "--source", f"images:{path}", "--calib", f"{root}/other.yaml", *out)
 
 
+def test_cameras(root):
+    out = ["--out", root / "cameras"]
+    (root / "calib.yaml").write_text(CALIBRATION)
+    calib = ["--calib", root / "calib.yaml"]
+    expect("camera without calibration", 1, ["--calib"], "--source", "v4l2:/dev/video0", *out)
+    expect("no such device", 1, ["/dev/video987", "--list"], "--source", "v4l2:/dev/video987", *calib, *out)
+    expect("no camera at all", 1, ["/dev/null", "--list"], "--source", "v4l2:/dev/null", *calib, *out)
+    expect("a file for a camera", 1, ["calib.yaml", "--list"], "--source", f"v4l2:{root}/calib.yaml", *calib, *out)
+    expect("no such name", 1, ["nonesuch", "--list"], "--source", "v4l2:nonesuch", *calib, *out)
+    if capture("--list", quiet=False).returncode != 0:
+        failures.append("--list does not end with 0")
+
+
 def test_bad_images(root):
     frame = pgm(noise())
     cases = [("truncated image", frame[:-100], ["002.pgm", "ends after"]),
@@ -167,7 +183,7 @@ def main():
     if not PROGRAM.is_file():
         skip("pf-capture was not built")
     print("seed", SEED)
-    for test in (test_usage, test_sources, test_bad_images, test_useless_images):
+    for test in (test_usage, test_sources, test_cameras, test_bad_images, test_useless_images):
         with tempfile.TemporaryDirectory(prefix="planefold_") as name:
             test(pathlib.Path(name))
     if failures:

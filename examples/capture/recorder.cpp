@@ -1,0 +1,174 @@
+#include "recorder.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cinttypes>
+#include <cstring>
+
+namespace pf::capture {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_sensor(std::FILE* file, const pf_camera_t& camera, double rate_hz) {
+  constexpr const char* kNames[] = {"none", "none", "radial-tangential", "equidistant", "harris_division"};
+  constexpr int kCounts[] = {0, 0, 5, 4, 1};
+  const int model = camera.model >= 1 && camera.model <= 4 ? camera.model : 0;
+  std::fprintf(file, "sensor_type: camera\n");
+  if (rate_hz > 0.0) {
+    std::fprintf(file, "rate_hz: %.17g\n", rate_hz);
+  }
+  std::fprintf(file, "resolution: [%d, %d]\ncamera_model: pinhole\nintrinsics: [%.17g, %.17g, %.17g, %.17g]\n",
+               camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
+  std::fprintf(file, "distortion_model: %s\ndistortion_coefficients: [", kNames[model]);
+  for (int i = 0; i < kCounts[model]; ++i) {
+    std::fprintf(file, "%s%.17g", i == 0 ? "" : ", ", camera.distortion[i]);
+  }
+  std::fprintf(file, "]\n");
+}
+
+/// 8-bit grey, not compressed. false: errno says why.
+bool write_png(const fs::path& path, const uint8_t* pixels, int32_t width, int32_t height) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) {
+    return false;
+  }
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
+  bool done = false;
+  if (info != nullptr && setjmp(png_jmpbuf(png)) == 0) {
+    png_init_io(png, file);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8, PNG_COLOR_TYPE_GRAY,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_compression_level(png, 0);
+    png_set_filter(png, 0, PNG_FILTER_NONE);
+    png_write_info(png, info);
+    for (int32_t y = 0; y < height; ++y) {
+      png_write_row(png, pixels + static_cast<ptrdiff_t>(y) * width);
+    }
+    png_write_end(png, info);
+    done = true;
+  }
+  png_destroy_write_struct(&png, &info);
+  return std::fclose(file) == 0 && done;
+}
+
+}  // namespace
+
+bool Recorder::open(const std::string& folder, const pf_camera_t& camera, double rate_hz, std::string& error) {
+  camera_folder_ = fs::path(folder) / "mav0" / "cam0";
+  std::error_code failure;
+  if (fs::exists(camera_folder_ / "data.csv", failure)) {
+    error = folder + ": holds a recording already; choose another --record or remove it";
+    return false;
+  }
+  fs::create_directories(camera_folder_ / "data", failure);
+  const auto create = [&](const char* name) {
+    return std::unique_ptr<std::FILE, Close>(std::fopen((camera_folder_ / name).c_str(), "w"));
+  };
+  table_ = create("data.csv");
+  tracked_ = create("tracked.csv");
+  const auto sensor = create("sensor.yaml");
+  if (!table_ || !tracked_ || !sensor) {
+    error = folder + ": cannot be written (" + std::strerror(errno) + "); choose another --record";
+    return false;
+  }
+  std::fprintf(table_.get(), "#timestamp [ns],filename\n");
+  std::fprintf(tracked_.get(), "#timestamp [ns] of the frames that were tracked\n");
+  write_sensor(sensor.get(), camera, rate_hz);
+  if (std::fflush(sensor.get()) != 0) {
+    error = folder + ": cannot be written (" + std::strerror(errno) + ")";
+    return false;
+  }
+  thread_ = std::thread([this] { work(); });
+  return true;
+}
+
+void Recorder::add(const pf_image_t& image) {
+  Picture picture{image.t_ns, image.width, image.height, {}};
+  const size_t area = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [&] { return waiting_bytes_ < kWaitingBytes; });
+    if (!spare_.empty()) {
+      picture.pixels.swap(spare_.back());
+      spare_.pop_back();
+    }
+  }
+  picture.pixels.resize(area);
+  for (int32_t y = 0; y < image.height; ++y) {
+    std::copy_n(image.pixels + static_cast<ptrdiff_t>(y) * image.stride, image.width,
+                picture.pixels.begin() + static_cast<ptrdiff_t>(y) * image.width);
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  waiting_bytes_ += area;
+  waiting_.push_back(std::move(picture));
+  changed_.notify_all();
+}
+
+void Recorder::mark_tracked(int64_t t_ns) {
+  if (tracked_) {
+    std::fprintf(tracked_.get(), "%" PRId64 "\n", t_ns);
+  }
+}
+
+void Recorder::work() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [&] { return stop_ || !waiting_.empty(); });
+    if (waiting_.empty()) {
+      return;
+    }
+    Picture picture = std::move(waiting_.front());
+    waiting_.pop_front();
+    lock.unlock();
+    write(picture);
+    lock.lock();
+    waiting_bytes_ -= picture.pixels.size();
+    spare_.push_back(std::move(picture.pixels));
+    changed_.notify_all();
+  }
+}
+
+/// The table names a frame only after its file is complete, so that whatever ends the program leaves a readable recording.
+void Recorder::write(const Picture& picture) {
+  if (!failure_.empty()) {
+    return;
+  }
+  const std::string name = std::to_string(picture.t_ns) + ".png";
+  const fs::path path = camera_folder_ / "data" / name;
+  if (!write_png(path, picture.pixels.data(), picture.width, picture.height)) {
+    failure_ = path.string() + ": could not be written (" + std::strerror(errno) + "); is the disk full?";
+    return;
+  }
+  std::fprintf(table_.get(), "%" PRId64 ",%s\n", picture.t_ns, name.c_str());
+  std::fflush(table_.get());
+  ++frames_;
+}
+
+bool Recorder::close(std::string* error) {
+  if (thread_.joinable()) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      stop_ = true;
+      changed_.notify_all();
+    }
+    thread_.join();
+  }
+  for (const auto* file : {&table_, &tracked_}) {
+    if (*file && (std::fflush(file->get()) != 0 || std::ferror(file->get()) != 0) && failure_.empty()) {
+      failure_ = camera_folder_.string() + ": could not be written completely; is the disk full?";
+    }
+  }
+  table_.reset();
+  tracked_.reset();
+  if (error != nullptr) {
+    *error = failure_;
+  }
+  return failure_.empty();
+}
+
+}  // namespace pf::capture

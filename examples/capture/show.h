@@ -1,0 +1,45 @@
+#ifndef PLANEFOLD_CAPTURE_SHOW_H
+#define PLANEFOLD_CAPTURE_SHOW_H
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "options.h"
+#include "session.h"
+#include "view.h"
+
+namespace pf::capture {
+
+enum class Key { kNone, kPause, kReset, kSave, kQuit };
+
+/// Everything that is drawn: the overlay, its film, its window and single pictures of it. In a build without Cairo (on a board
+/// without a screen, say) nothing is.
+class Show {
+ public:
+  Show();
+  ~Show();
+  Show(const Show&) = delete;
+  Show& operator=(const Show&) = delete;
+
+  /// notes  lines on what there will not be (no ffmpeg, no display); the run goes on without
+  void open(const Options& options, const Session& session, const std::string& title, const std::string& film,
+            double rate_hz, std::vector<std::string>& notes);
+  /// Remembers the frame and, where there is a film or a window, draws it.
+  void add(const FrameView& view);
+  /// false: the picture could not be written.
+  bool save(const FrameView& view, const std::string& path);
+  /// The next key that was pressed; waits for up to wait_ms.
+  Key poll(int wait_ms);
+  bool is_filming() const;
+  /// false: the film is not complete.
+  bool close_film();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace pf::capture
+
+#endif
