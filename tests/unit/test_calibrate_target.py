@@ -1,0 +1,65 @@
+"""pf-calibrate --print-target: a PDF whose page, squares and ruler have the size that was asked for, to a thousandth of a millimetre."""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import zlib
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import script  # noqa: E402
+
+PROGRAM = script.BIN / "pf-calibrate"
+if not PROGRAM.exists():
+    script.skip("pf-calibrate is not built: it needs OpenCV's calib3d")
+if script.cache("CMAKE_TOOLCHAIN_FILE"):
+    script.skip("programs are run in native builds")
+
+MM = 25.4 / 72
+
+
+def page_and_squares(path):
+    """Page size and rectangles of a PDF [mm]."""
+    data = path.read_bytes()
+    box = re.search(rb"/MediaBox \[\s*0 0 ([\d.]+) ([\d.]+)", data)
+    streams = []
+    for start in re.finditer(rb"stream\r?\n", data):
+        try:
+            streams.append(zlib.decompressobj().decompress(data[start.end():]).decode("latin-1"))
+        except zlib.error:
+            pass
+    drawn = next(text for text in streams if " re" in text)
+    scale = float(re.search(r"([-\d.]+) 0 0 [-\d.]+ [-\d.]+ [-\d.]+ cm", drawn).group(1)) if " cm" in drawn else 1.0
+    number = r"(-?[\d.]+)"
+    rectangles = [[abs(float(v)) * abs(scale) * MM for v in match] for match in
+                  re.findall(rf"{number} {number} {number} {number} re", drawn)]
+    return [float(side) * MM for side in box.groups()], rectangles
+
+
+def near(name, actual, expected, tolerance=0.001):
+    print(f"{name}: {actual:.4f} mm, asked for {expected} mm")
+    if abs(actual - expected) > tolerance:
+        script.fail(f"{name} is {actual} mm and not {expected} mm")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    target = pathlib.Path(folder) / "target.pdf"
+    for board, page, size, squares, side in (("10x7:0.025", "a4", (297.0, 210.0), 35, 25.0),
+                                             ("7x10:0.025", "a4", (210.0, 297.0), 35, 25.0),
+                                             ("9x6:0.04", "420x297", (420.0, 297.0), 27, 40.0)):
+        script.run(PROGRAM, "--print-target", target, "--board", board, "--page", page)
+        found_size, rectangles = page_and_squares(target)
+        near("page width", found_size[0], size[0], 0.01)
+        near("page height", found_size[1], size[1], 0.01)
+        dark = [r for r in rectangles if abs(r[2] - side) < 1]
+        if len(dark) != squares:
+            script.fail(f"{len(dark)} dark squares, not {squares}")
+        for name, index in (("square width", 2), ("square height", 3)):
+            near(name, max((r[index] for r in dark), key=lambda v: abs(v - side)), side)
+        columns = sorted({round(r[0], 3) for r in dark})
+        near("columns apart", columns[-1] - columns[0], (len(columns) - 1) * side)
+
+    too_large = subprocess.run([PROGRAM, "--print-target", target, "--board", "20x7:0.025"], text=True, capture_output=True)
+    if too_large.returncode == 0 or "does not fit" not in too_large.stderr:
+        script.fail(f"a board larger than the page was not refused: {too_large.stderr}")
