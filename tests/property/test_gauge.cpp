@@ -1,7 +1,7 @@
 // What one camera cannot observe: shifting, turning and scaling the whole world must not be seen by any measurement, must be
 // carried by every verb of the filter, and must gain no information over a run.
 #include "filter/gauge_information.h"
-#include "support/filter_cases.h"
+#include "support/plane_scene.h"
 #include "support/test_cameras.h"
 
 using namespace pf;
@@ -12,8 +12,6 @@ void tearDown(void) {}
 namespace {
 
 constexpr int kShiftAndTurn = 6, kAll = 7;
-
-double largest(const Dense& A) { return A.cwiseAbs().maxCoeff(); }
 
 void test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale() {
   SeededRandom random(61);
@@ -109,6 +107,142 @@ void test_removal_should_carry_every_direction() {
     filter->remove(gone, 3);
   };
   carries("remove", kAll, random, remove);
+}
+
+/// The same for operations on planes, with the wall's points exactly on it where they are folded.
+template <typename Before, typename Verb>
+void carries_planes(const char* name, SeededRandom& random, Before before, Verb verb) {
+  for (int trial = 0; trial < 10; ++trial) {
+    PlaneScene scene(random, 0);
+    before(scene);
+    const Dense A = random_covariance(random, kAll, 1);
+    const Dense N = scene.filter.gauge();
+    scene.filter.set_P(N * A * N.transpose());
+    verb(scene);
+    const Dense after = scene.filter.gauge();
+    const Dense expected = after * A * after.transpose();
+    const double error = largest(scene.filter.P() - expected) / largest(expected);
+    if (!(error < 1e-11)) std::printf("%s: direction relative error %.3g\n", name, error);
+    TEST_ASSERT_TRUE_MESSAGE(error < 1e-11, name);
+  }
+}
+
+void nothing(PlaneScene&) {}
+void folded(PlaneScene& scene) { TEST_ASSERT_EQUAL_INT(8, scene.fold_all(PlaneScene::drop())); }
+
+void move_a_little(PlaneScene& scene, SeededRandom& random) {
+  std::vector<Scalar> dx(static_cast<std::size_t>(scene.filter.dim()));
+  for (Scalar& d : dx) d = static_cast<Scalar>(0.05 * random.normal());
+  apply_error(const_cast<State&>(scene.filter->state()), dx.data());
+}
+
+void test_operations_on_planes_should_carry_every_direction() {
+  SeededRandom random(71);
+  const auto begin = [](PlaneScene& scene) {
+    std::vector<int> wall = scene.on_wall;
+    std::vector<Vec3> points;
+    for (const int s : wall) points.push_back(scene.filter->state().block[s].xyz());
+    PlaneFit fit;
+    TEST_ASSERT_TRUE(fit_plane(points.data(), 8, Vec3::Zero(), &fit));
+    TEST_ASSERT_TRUE(scene.filter->add_plane(fit, wall.data(), 8, Scalar(0)) >= 0);
+  };
+  carries_planes("add_plane", random, nothing, begin);
+  carries_planes("fold", random, nothing, folded);
+  const auto moved = [&](PlaneScene& scene) {
+    folded(scene);
+    move_a_little(scene, random);
+  };
+  carries_planes("unfold", random, moved, [](PlaneScene& scene) { scene.filter->unfold(scene.on_wall[3], Scalar(0)); });
+  carries_planes("reanchor", random, moved, [](PlaneScene& scene) {
+    PlaneFrame to = scene.fit.frame;
+    to.R_WP = exp_so3(Vec3(Scalar(0.2), Scalar(0.1), Scalar(-0.4))).toRotationMatrix() * to.R_WP;
+    to.o_W += Vec3(Scalar(0.3), Scalar(-0.2), Scalar(0.1));
+    TEST_ASSERT_TRUE(scene.filter->reanchor(scene.plane, to));
+  });
+  const auto fix = [](PlaneScene& scene) {
+    TEST_ASSERT_TRUE(scene.filter->fix(scene.on_wall.data(), 5, FixForm::kConsider, scene.on_wall.data(), 8));
+  };
+  carries_planes("fix", random, moved, fix);
+  const auto fixed = [&](PlaneScene& scene) {
+    moved(scene);
+    fix(scene);
+    move_a_little(scene, random);
+  };
+  carries_planes("fix into a patch", random, fixed, [](PlaneScene& scene) {
+    TEST_ASSERT_TRUE(scene.filter->fix(scene.on_wall.data() + 5, 2, FixForm::kConsider, nullptr, 0));
+  });
+  carries_planes("release", random, fixed, [](PlaneScene& scene) { scene.filter->release(scene.on_wall[1]); });
+  carries_planes("unfold from a patch", random, fixed,
+                 [](PlaneScene& scene) { scene.filter->unfold(scene.on_wall[1], Scalar(0)); });
+}
+
+void test_no_pixel_of_a_plane_s_point_should_see_the_gauge() {
+  SeededRandom random(72);
+  for (int trial = 0; trial < 10; ++trial) {
+    PlaneScene scene(random, 0);
+    folded(scene);
+    TEST_ASSERT_TRUE(scene.filter->fix(scene.on_wall.data(), 5, FixForm::kConsider, scene.on_wall.data(), 8));
+    move_a_little(scene, random);
+    const Dense N = scene.filter.gauge();
+    int seen = 0;
+    for (const int slot : scene.on_wall) {
+      Observation o;
+      if (!scene.filter->predict_pixel(pinhole_camera(), slot, &o)) continue;
+      ++seen;
+      const Dense H = dense_rows(o, scene.filter.dim());
+      for (int c = 0; c < kAll; ++c)
+        TEST_ASSERT_TRUE(largest(H * N.col(c)) < 1e-11 * (1 + largest(H) * largest(N.col(c))));
+    }
+    TEST_ASSERT_GREATER_THAN_INT(4, seen);
+  }
+}
+
+/// After a fold that moves the state, and after an update of planar points with considered ones among them, the information about the
+/// gauge is what it was.
+void test_folds_and_updates_should_gain_nothing_about_the_gauge() {
+  SeededRandom random(73);
+  for (int trial = 0; trial < 10; ++trial) {
+    PlaneScene scene(random, 0.01);
+    // Tight, so that the world is a rigid one that drifts: gauge directions with little else.
+    const auto information = [&] {
+      const int n = scene.filter.dim();
+      std::vector<double> scratch(static_cast<std::size_t>(n * (n + 8)));
+      double out[49];
+      TEST_ASSERT_TRUE(gauge_information(*scene.filter, scratch.data(), out));
+      return Dense(Eigen::Map<const Eigen::Matrix<double, 7, 7, Eigen::RowMajor>>(out));
+    };
+    const Dense N = scene.filter.gauge();
+    const Dense A = random_covariance(random, kAll, 0.3);
+    scene.filter.set_P(N * A * N.transpose() + random_covariance(random, scene.filter.dim(), 0.02));
+    Dense before = information();
+    unsigned char in[Filter::kMostFolded];
+    TEST_ASSERT_EQUAL_INT(
+        8, scene.filter->fold(scene.plane, scene.on_wall.data(), 8, {Scalar(0.002), Scalar(1e6), true}, in));
+    Dense now = information();
+    for (int i = 0; i < kAll; ++i) {
+      if (!(now(i, i) < before(i, i) * (1 + 2e-3)))
+        std::printf("fold, direction %d: %.3g\n", i, now(i, i) / before(i, i) - 1);
+      (void)0;
+    }
+    TEST_ASSERT_TRUE(scene.filter->fix(scene.on_wall.data(), 5, FixForm::kConsider, scene.on_wall.data(), 8));
+    before = information();
+    std::vector<Observation> seen;
+    for (const int slot : scene.on_wall) {
+      Observation o;
+      if (!scene.filter->predict_pixel(pinhole_camera(), slot, &o)) continue;
+      o.measured = o.predicted + random.normals<2>(2);
+      o.noise = Mat2::Identity() * Scalar(0.25);
+      seen.push_back(o);
+    }
+    scene.filter->begin_update(seen.data(), static_cast<int>(seen.size()));
+    TEST_ASSERT_TRUE(scene.filter->finish_update(seen.data(), static_cast<int>(seen.size()), nullptr, nullptr));
+    now = information();
+    for (int i = 0; i < kAll; ++i) {
+      if (!(now(i, i) < before(i, i) * (1 + 1e-9)))
+        std::printf("update, direction %d: %.3g\n", i, now(i, i) / before(i, i) - 1);
+      TEST_ASSERT_TRUE(now(i, i) < before(i, i) * (1 + 1e-9));
+    }
+  }
 }
 
 /// Largest growth of the information along any gauge direction in one frame, relative to what there was, over 60 frames of a
@@ -223,6 +357,9 @@ int main(void) {
   RUN_TEST(test_a_new_inverse_depth_should_carry_shifts_and_turns);
   RUN_TEST(test_conversion_should_carry_every_direction);
   RUN_TEST(test_removal_should_carry_every_direction);
+  RUN_TEST(test_operations_on_planes_should_carry_every_direction);
+  RUN_TEST(test_no_pixel_of_a_plane_s_point_should_see_the_gauge);
+  RUN_TEST(test_folds_and_updates_should_gain_nothing_about_the_gauge);
   RUN_TEST(test_information_about_the_gauge_should_never_grow_when_it_is_kept);
   RUN_TEST(test_information_about_the_gauge_should_grow_with_the_textbook_filter);
   return UNITY_END();

@@ -61,7 +61,7 @@ inline InverseDepth moved(InverseDepth feature, const Vec3& e) {
 class TestFilter {
  public:
   explicit TestFilter(bool keep_gauge, int body_dim = Body::kMaxDim, int state_dim = 160, int features = 40) {
-    TEST_ASSERT_TRUE(filter_.layout(*arena_, {state_dim, features, 40}));
+    TEST_ASSERT_TRUE(filter_.layout(*arena_, {state_dim, features, 40, 6}));
     filter_.init(select_kernels_of_tests(), body_dim, keep_gauge);
   }
   Filter* operator->() { return &filter_; }
@@ -84,17 +84,10 @@ class TestFilter {
   /// The unobservable directions at the state as it is: n x 7, translation, turn, log scale.
   Dense gauge() const {
     const int n = dim();
-    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows(4, n);
+    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows(7, n);
     rows.setZero();
-    add_gauge_rows(filter_.state(), Scalar(1), rows.data(), rows.data() + 3 * n, n);
-    Dense N = Dense::Zero(n, 7);
-    N.block(Body::kPosition, 0, 3, 3).setIdentity();
-    for (int s = 0; s < filter_.state().slots; ++s) {
-      const Block& block = filter_.state().block[s];
-      if (block.kind == BlockKind::kAnchor || block.kind == BlockKind::kPoint)
-        N.block(block.first, 0, 3, 3).setIdentity();
-    }
-    N.rightCols(4) = rows.transpose().cast<double>();
+    add_gauge_rows(filter_.state(), Scalar(1), rows.data(), rows.data() + 3 * n, rows.data() + 6 * n, n);
+    const Dense N = rows.transpose().cast<double>();
     return N;
   }
 

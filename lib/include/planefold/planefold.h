@@ -54,6 +54,7 @@ typedef enum pf_status {
   PF_NOTE_LOST = 3,      /* taken; the pose is no longer usable; the map is kept and searched for in every frame */
   PF_NOTE_UNUSABLE = 4,  /* taken; the image has no usable content (black, white, blurred out); pose coasts */
   PF_NOTE_TRUNCATED = 5, /* done; there was more than your array holds, *count says how many there are */
+  PF_NOTE_NOTHING = 6,   /* done; there is nothing (no plane under the pixel, no plane with that id any more) */
 
   PF_ERROR_NULL = -1,    /* a pointer that must not be null is */
   PF_ERROR_CONFIG = -2,  /* a field of the config is out of its range; pf_config_check names it */
@@ -112,6 +113,19 @@ typedef enum pf_kernels {
   PF_KERNELS_NEON = 5
 } pf_kernels_t;
 
+/* How a point enters a plane. */
+typedef enum pf_fold {
+  PF_FOLD_CONDITION = 1, /* its distance from the plane is measured as zero, within the roughness; then it is dropped */
+  PF_FOLD_DROP = 2       /* its distance is dropped (Gee 2007, eq 4 and 6); for comparison */
+} pf_fold_t;
+
+/* What becomes of a folded point that is known well enough among the others of its plane. */
+typedef enum pf_fix {
+  PF_FIX_CONSIDER = 1,  /* keeps its covariance and is estimated no more (Schmidt) */
+  PF_FIX_INFLATE = 2,   /* leaves the state; its variance becomes noise of its pixels. Saves memory, costs honesty */
+  PF_FIX_ERROR_FREE = 3 /* leaves the state, as if known exactly (Gee 2007, section 3.4); for comparison */
+} pf_fix_t;
+
 typedef enum pf_scalar { PF_SCALAR_DOUBLE = 8, PF_SCALAR_FLOAT = 4 } pf_scalar_t;
 
 /* Fill with pf_config_default, then change what you know better. Only the capacities and the image size change the
@@ -128,6 +142,7 @@ typedef struct pf_config {
   int32_t max_state_dim;    /* rows of the covariance, 32 .. 2000. Memory grows with its square. Default 300 */
   int32_t max_features;     /* features in the map, 8 .. 1000. Default 100 */
   int32_t max_observations; /* features measured in one frame, 8 .. 200. Default 60 */
+  int32_t max_planes;       /* planes in the map, 1 .. 64. Default 8 */
 
   /* Motion. Densities are those of white noise: over a time dt the velocity's variance grows by density^2 dt. */
   uint32_t motion;                     /* pf_motion_t. Default constant velocity */
@@ -153,6 +168,19 @@ typedef struct pf_config {
   /* Map. */
   int32_t features_in_view; /* features that the front end tries to keep in view, 8 .. max_observations. Default 45 */
   int32_t border_px;        /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
+
+  /* Planes (lib/docs/planes.md). Names of Gee 2007, section 3, in brackets. */
+  uint32_t planes;          /* 1 finds planes and folds points into them, 0 keeps to points. Default 1 */
+  int32_t plane_min_points; /* a new plane has more points than this (l_T), 4 .. 60. Default 7 */
+  double plane_distance;    /* of a point from a new plane (d_T), 1e-5 .. 10. Default 0.01 */
+  double plane_radius;      /* of a point from a new plane's origin (d_max), 0.01 .. 1e4. Default 1.5 */
+  double plane_roughness; /* of real surfaces: standard deviation of a point from its plane, 1e-6 .. 1. Default 0.002 */
+  double fold_sigma;      /* points join planes when they are known better than this, relative to the camera (sigma_T),
+                        1e-5 .. 10. Default 0.05 */
+  double fix_sigma; /* and are fixed when they are known better than this among the points of their plane (sigma_fix),
+                        0: never .. 10. Default 0 */
+  uint32_t fold;    /* pf_fold_t. Default condition */
+  uint32_t fix;     /* pf_fix_t. Default consider */
 
   double coast_seconds; /* without tracking for longer than this, the state is lost, 0.05 .. 10. Default 1 */
 
@@ -283,7 +311,9 @@ PF_API pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], 
 
 typedef enum pf_feature_kind {
   PF_FEATURE_INVERSE_DEPTH = 1, /* direction known, depth not yet */
-  PF_FEATURE_POINT = 2
+  PF_FEATURE_POINT = 2,
+  PF_FEATURE_FOLDED = 3, /* two coordinates on a plane */
+  PF_FEATURE_FIXED = 4   /* on a plane, and estimated no more */
 } pf_feature_kind_t;
 
 typedef struct pf_feature {
@@ -291,6 +321,7 @@ typedef struct pf_feature {
   uint32_t track; /* pf_observation_t.id, for what came in through pf_push_observations; target points: their index */
   uint32_t kind;  /* pf_feature_kind_t */
   uint32_t is_target;   /* 1 for a point of the target */
+  uint32_t plane;       /* id of the plane that it is folded into, or 0 */
   double p_W[3];        /* [m] inverse depth: at the mean inverse depth */
   double covariance[9]; /* 3x3; inverse depth: to first order */
   int32_t observations; /* frames in which it was measured */
@@ -299,6 +330,52 @@ typedef struct pf_feature {
 
 /* Copy of the map. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
 PF_API pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_t capacity, size_t* count);
+
+/* Of a plane, once the direction of gravity is known (pf_set_gravity). Up and down: which way the side looks that was seen. */
+typedef enum pf_orientation {
+  PF_ORIENTATION_UNKNOWN = 0,
+  PF_ORIENTATION_HORIZONTAL_UP = 1,   /* floor, table top */
+  PF_ORIENTATION_HORIZONTAL_DOWN = 2, /* ceiling */
+  PF_ORIENTATION_VERTICAL = 3,        /* wall, front */
+  PF_ORIENTATION_OTHER = 4
+} pf_orientation_t;
+
+#define PF_OUTLINE_MAX 24
+
+typedef struct pf_plane {
+  uint32_t id;          /* never used twice */
+  uint32_t orientation; /* pf_orientation_t, within 15 degrees */
+  int32_t points;       /* folded into it, fixed ones among them */
+  int32_t fixed_points;
+  double normal_W[3]; /* unit, towards the side that was seen */
+  double distance;    /* n . p of its points */
+  double R_WP[9];     /* the plane's frame, row-major: x and y in the plane, z the normal */
+  double p_WP[3];     /* its origin, in the plane and about in the middle */
+  /* 3x3 of (alpha, beta, delta): n_true = n + alpha x_W + beta y_W, n_true . (p - p_WP) = delta.   [rad, rad, m] */
+  double covariance[9];
+  int32_t outline_count;               /* of the convex outline of its points, 0 .. PF_OUTLINE_MAX */
+  double outline_P[PF_OUTLINE_MAX][2]; /* x y in the plane's frame, counter-clockwise seen from the normal's side */
+  double area;                         /* [m^2] of the outline */
+} pf_plane_t;
+
+/* Copy of the planes. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
+PF_API pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size_t capacity, size_t* count);
+
+/* The plane that an id stands for now: itself, or the one that it was merged into. PF_NOTE_NOTHING (*now is 0) when it is gone. */
+PF_API pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* now);
+
+/* The direction of gravity in W, of any length; zero forgets it. Only pf_plane_t.orientation depends on it. */
+PF_API pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]);
+
+typedef struct pf_hit {
+  uint32_t plane; /* id */
+  double p_W[3];
+  double covariance[9]; /* 3x3, from pose and plane and what they have in common */
+  double range;         /* from the camera [m] */
+} pf_hit_t;
+
+/* Where the ray through a pixel of the last frame meets the nearest plane, inside of its outline. PF_NOTE_NOTHING when it meets none. */
+PF_API pf_status_t pf_hit_test(const pf_slam_t* slam, const double pixel[2], pf_hit_t* hit);
 
 typedef enum pf_track_status {
   PF_TRACK_INLIER = 1,  /* measured and used */
@@ -335,8 +412,11 @@ typedef struct pf_report {
   pf_state_t state;
   int32_t frames; /* frames pushed since create or reset */
   int32_t attempts, matches, inliers, new_features, evicted;
-  int32_t features, features_point, features_inverse_depth;
+  int32_t features, features_point, features_inverse_depth, features_folded, features_fixed;
+  int32_t planes;
   int32_t state_dim;
+  int32_t state_dim_held;           /* rows of the state that are considered only: without gain */
+  int32_t state_dim_points_only;    /* rows that the same map would need with 3-D points in place of folded ones */
   double nis;                       /* normalised innovation squared of this frame's inliers */
   int32_t nis_dof;                  /* and its degrees of freedom */
   uint32_t kernels;                 /* pf_kernels_t in use */

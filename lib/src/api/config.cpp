@@ -17,8 +17,9 @@ struct Range {
   { #field, low, high, offsetof(pf_config_t, field) }
 
 constexpr Range kIntegers[] = {
-    PF_FIELD(max_state_dim, 32, 2000),  PF_FIELD(max_features, 8, 1000), PF_FIELD(max_observations, 8, 200),
-    PF_FIELD(features_in_view, 8, 200), PF_FIELD(border_px, 4, 64),
+    PF_FIELD(max_state_dim, 32, 2000), PF_FIELD(max_features, 8, 1000),   PF_FIELD(max_observations, 8, 200),
+    PF_FIELD(max_planes, 1, 64),       PF_FIELD(plane_min_points, 4, 60), PF_FIELD(features_in_view, 8, 200),
+    PF_FIELD(border_px, 4, 64),
 };
 
 constexpr double kTiny = 1e-9;
@@ -32,6 +33,11 @@ constexpr Range kReals[] = {
     PF_FIELD(start_depth, 1e-4, 1e5),
     PF_FIELD(inverse_depth_relative_sigma, 0.05, 5),
     PF_FIELD(linearity_index, 0.001, 1),
+    PF_FIELD(plane_distance, 1e-5, 10),
+    PF_FIELD(plane_radius, 0.01, 1e4),
+    PF_FIELD(plane_roughness, 1e-6, 1),
+    PF_FIELD(fold_sigma, 1e-5, 10),
+    PF_FIELD(fix_sigma, 0, 10),
     PF_FIELD(coast_seconds, 0.05, 10),
 };
 
@@ -67,6 +73,9 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   if (config.motion != PF_MOTION_CONSTANT_VELOCITY && config.motion != PF_MOTION_CONSTANT_POSITION)
     return *field = "motion", Status::kConfig;
   if (config.keep_gauge > 1) return *field = "keep_gauge", Status::kConfig;
+  if (config.planes > 1) return *field = "planes", Status::kConfig;
+  if (config.fold != PF_FOLD_CONDITION && config.fold != PF_FOLD_DROP) return *field = "fold", Status::kConfig;
+  if (config.fix < PF_FIX_CONSIDER || config.fix > PF_FIX_ERROR_FREE) return *field = "fix", Status::kConfig;
   if (config.depth_from_map > 1) return *field = "depth_from_map", Status::kConfig;
 
   settings->kernels = select_kernels(config.kernels);
@@ -79,6 +88,18 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->max_state_dim = config.max_state_dim;
   settings->max_features = config.max_features;
   settings->max_observations = config.max_observations;
+  settings->max_planes = config.max_planes;
+  settings->planes = config.planes != 0;
+  settings->plane_min_points = config.plane_min_points;
+  settings->plane_distance = static_cast<Scalar>(config.plane_distance);
+  settings->plane_radius = static_cast<Scalar>(config.plane_radius);
+  settings->fold_sigma = static_cast<Scalar>(config.fold_sigma);
+  settings->fix_sigma = static_cast<Scalar>(config.fix_sigma);
+  // chi-square with one degree of freedom: 1 % of the points of a plane stay out
+  settings->fold = {static_cast<Scalar>(config.plane_roughness), Scalar(6.63), config.fold == PF_FOLD_CONDITION};
+  settings->fix = config.fix == PF_FIX_CONSIDER  ? FixForm::kConsider
+                  : config.fix == PF_FIX_INFLATE ? FixForm::kInflate
+                                                 : FixForm::kErrorFree;
   settings->constant_velocity = config.motion == PF_MOTION_CONSTANT_VELOCITY;
   settings->motion_noise.linear =
       static_cast<Scalar>(settings->constant_velocity ? config.linear_acceleration_density : config.linear_walk);
@@ -113,6 +134,16 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->max_state_dim = 300;
   config->max_features = 100;
   config->max_observations = 60;
+  config->max_planes = 8;
+  config->planes = 1;
+  config->plane_min_points = 7;
+  config->plane_distance = 0.01;
+  config->plane_radius = 1.5;
+  config->plane_roughness = 0.002;
+  config->fold_sigma = 0.05;
+  config->fix_sigma = 0;
+  config->fold = PF_FOLD_CONDITION;
+  config->fix = PF_FIX_CONSIDER;
   config->motion = PF_MOTION_CONSTANT_VELOCITY;
   config->linear_acceleration_density = 1.0;
   config->angular_acceleration_density = 2.0;

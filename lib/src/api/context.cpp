@@ -57,6 +57,7 @@ pf_status_t pf_reset(pf_slam_t* slam) {
   slam->slam.init(slam->settings);
   slam->takes_frames = false;
   slam->takes_observations = false;
+  for (double& g : slam->gravity_W) g = 0;
   return PF_OK;
 }
 
@@ -74,6 +75,8 @@ const char* pf_status_text(pf_status_t status) {
       return "the image has no usable content; the pose coasts";
     case PF_NOTE_TRUNCATED:
       return "there is more than the array holds";
+    case PF_NOTE_NOTHING:
+      return "there is nothing there";
     case PF_ERROR_NULL:
       return "a pointer is null that must not be";
     case PF_ERROR_CONFIG:

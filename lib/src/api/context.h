@@ -14,6 +14,7 @@ struct pf_slam {
   pf::FilterSlam slam;
   bool takes_frames;
   bool takes_observations;
+  double gravity_W[3];  ///< zero: not known
 };
 
 namespace pf {

@@ -1,23 +1,14 @@
 #include "api/context.h"
+#include "api/copy.h"
 #include "base/elapsed.h"
 #include "covariance/select.h"
 #include "filter/gauge_information.h"
-#include "filter/observe/inverse_depth.h"
 #include "filter/observe/point.h"
 
 namespace {
 
-template <typename Vector>
-void copy(const Vector& from, int count, double* to) {
-  for (int i = 0; i < count; ++i) to[i] = static_cast<double>(from[i]);
-}
-
-template <typename Matrix>
-void copy_matrix(const Matrix& from, double* to) {
-  const int rows = static_cast<int>(from.rows()), columns = static_cast<int>(from.cols());
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j) to[i * columns + j] = static_cast<double>(from(i, j));
-}
+using pf::copy;
+using pf::copy_matrix;
 
 void pose_at(const pf::FilterSlam& slam, int64_t t_ns, pf_pose_t* pose) {
   pf::Body body;
@@ -30,6 +21,19 @@ void pose_at(const pf::FilterSlam& slam, int64_t t_ns, pf_pose_t* pose) {
   copy(body.v_W, 3, pose->v_W);
   copy(body.w_C, 3, pose->w_C);
   copy_matrix(covariance, pose->covariance);
+}
+
+uint32_t feature_kind(pf::BlockKind kind) {
+  switch (kind) {
+    case pf::BlockKind::kPoint:
+      return PF_FEATURE_POINT;
+    case pf::BlockKind::kPlanePoint:
+      return PF_FEATURE_FOLDED;
+    case pf::BlockKind::kPatchPoint:
+      return PF_FEATURE_FIXED;
+    default:
+      return PF_FEATURE_INVERSE_DEPTH;
+  }
 }
 
 }  // namespace
@@ -86,7 +90,6 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
   if (count == nullptr || (features == nullptr && capacity > 0)) return PF_ERROR_NULL;
   const pf::FeatureTable& table = slam->slam.features();
   const pf::State& state = slam->slam.filter().state();
-  const pf::Triangle& P = slam->slam.filter().covariance();
   *count = 0;
   for (int i = 0; i < table.capacity(); ++i) {
     if (!table.used(i)) continue;
@@ -101,29 +104,10 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
     out.is_target = f.is_target ? 1 : 0;
     out.observations = f.observations;
     out.attempts = f.attempts;
-    if (block.kind == pf::BlockKind::kPoint) {
-      out.kind = PF_FEATURE_POINT;
-      copy(block.xyz(), 3, out.p_W);
-      copy_matrix(slam->slam.filter().covariance3(f.slot), out.covariance);
-      continue;
-    }
-    out.kind = PF_FEATURE_INVERSE_DEPTH;
-    const pf::Block& anchor = state.block[block.parent];
-    pf::InverseDepth d = block.inverse_depth();
-    const pf::Scalar least = pf::Scalar(1e-6);
-    if (d.rho < least) d.rho = least;
-    pf::Mat3 J;
-    copy(pf::inverse_depth_to_point(anchor.xyz(), d, &J), 3, out.p_W);
-    Eigen::Matrix<pf::Scalar, 3, 6> J6;
-    J6.leftCols<3>().setIdentity();
-    J6.rightCols<3>() = J;
-    pf::Mat6 P6;
-    for (int r = 0; r < 6; ++r)
-      for (int c = 0; c < 6; ++c)
-        P6(r, c) = P(r < 3 ? anchor.first + r : block.first + r - 3, c < 3 ? anchor.first + c : block.first + c - 3);
-    const Eigen::Matrix<pf::Scalar, 3, 6> JP = J6.lazyProduct(P6);
-    const pf::Mat3 C = JP.lazyProduct(J6.transpose());
-    copy_matrix(C, out.covariance);
+    out.kind = feature_kind(block.kind);
+    if (pf::is_planar(block.kind)) out.plane = slam->slam.planes().id_at(state.plane_of(f.slot));
+    copy(slam->slam.filter().point(f.slot), 3, out.p_W);
+    copy_matrix(slam->slam.filter().covariance3(f.slot), out.covariance);
   }
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
 }
@@ -137,7 +121,7 @@ pf_status_t pf_get_tracks(const pf_slam_t* slam, pf_track_t* tracks, size_t capa
     pf_track_t& out = tracks[i];
     out.id = t.id;
     out.status = static_cast<uint32_t>(t.status);
-    out.kind = t.inverse_depth ? PF_FEATURE_INVERSE_DEPTH : PF_FEATURE_POINT;
+    out.kind = feature_kind(t.kind);
     copy(t.predicted, 2, out.predicted_px);
     copy_matrix(t.innovation, out.covariance_px);
     copy(t.measured, 2, out.measured_px);
@@ -160,15 +144,34 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->new_features = r.new_features;
   report->evicted = r.evicted;
   const pf::FeatureTable& table = slam->slam.features();
+  const pf::State& state = slam->slam.filter().state();
+  int unfolded_rows = 0;
   for (int i = 0; i < table.capacity(); ++i) {
     if (!table.used(i)) continue;
     ++report->features;
-    if (slam->slam.filter().state().block[table[i].slot].kind == pf::BlockKind::kPoint)
-      ++report->features_point;
-    else
-      ++report->features_inverse_depth;
+    const pf::Block& block = state.block[table[i].slot];
+    switch (feature_kind(block.kind)) {
+      case PF_FEATURE_POINT:
+        ++report->features_point;
+        break;
+      case PF_FEATURE_INVERSE_DEPTH:
+        ++report->features_inverse_depth;
+        break;
+      case PF_FEATURE_FOLDED:
+        ++report->features_folded;
+        break;
+      default:
+        ++report->features_fixed;
+    }
+    if (pf::is_planar(block.kind)) unfolded_rows += 3 - block.size;
   }
-  report->state_dim = slam->slam.filter().state().dim;
+  report->planes = state.planes;
+  report->state_dim = state.dim;
+  report->state_dim_held = state.held_dim;
+  for (int s = 0; s < state.slots; ++s)
+    if (state.block[s].kind == pf::BlockKind::kPlane || state.block[s].kind == pf::BlockKind::kPatch)
+      unfolded_rows -= state.block[s].size;
+  report->state_dim_points_only = state.dim + unfolded_rows;
   report->nis = r.nis;
   report->nis_dof = r.nis_dof;
   report->kernels = pf::kernels_id(slam->settings.kernels);

@@ -10,6 +10,7 @@ enum class Status : int {
   kLost = 3,
   kUnusable = 4,
   kTruncated = 5,
+  kNothing = 6,
   kNull = -1,
   kConfig = -2,
   kVersion = -3,

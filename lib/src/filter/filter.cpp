@@ -2,21 +2,13 @@
 
 #include <cstring>
 
-#include "filter/observe/inverse_depth.h"
-#include "filter/observe/point.h"
+#include "filter/observe/world_point.h"
+#include "filter/put.h"
 
 namespace pf {
 namespace {
 
-constexpr int kGaugeRows = 4;  // three turns and the scale
-
 int round_to_group(int n) { return (n + Triangle::kGroup - 1) / Triangle::kGroup * Triangle::kGroup; }
-
-template <int Rows, int Columns>
-void put(Scalar* h, int stride, int column, const Eigen::Matrix<Scalar, Rows, Columns>& J) {
-  for (int i = 0; i < Rows; ++i)
-    for (int j = 0; j < Columns; ++j) h[i * stride + column + j] = J(i, j);
-}
 
 }  // namespace
 
@@ -24,7 +16,8 @@ bool Filter::layout(Arena& arena, const FilterCapacity& capacity) {
   most_rows_ = capacity.state_dim;
   P_.capacity = round_to_group(capacity.state_dim);
   P_.data = arena.take<Scalar>(Triangle::size_for(P_.capacity));
-  state_.slots = capacity.state_dim / 3;  // a block has three rows
+  // Features, planes with their patches, and anchors with a child each (six rows).
+  state_.slots = capacity.features + 2 * capacity.planes + capacity.state_dim / 6 + 1;
   state_.block = arena.take<Block>(static_cast<std::size_t>(state_.slots));
   max_rows_ = 2 * capacity.observations;
   ld_ = padded(P_.capacity);
@@ -37,6 +30,9 @@ bool Filter::layout(Arena& arena, const FilterCapacity& capacity) {
   dx_ = arena.take<Scalar>(ld);
   y_ = arena.take<Scalar>(static_cast<std::size_t>(max_rows_));
   gone_ = arena.take<Segment>(static_cast<std::size_t>(state_.slots));
+  order_ = arena.take<int>(ld);
+  state_.max_planes = capacity.planes;
+  state_.plane_frame = arena.take<PlaneFrame>(static_cast<std::size_t>(capacity.planes));
   return arena.ok();
 }
 
@@ -47,6 +43,9 @@ void Filter::init(const Kernels* kernels, int body_dim, bool keep_gauge) {
   state_.body = Body();
   state_.body_dim = body_dim;
   state_.dim = body_dim;
+  state_.held_dim = 0;
+  state_.planes = 0;
+  roughness_ = Scalar(0);
   P_.n = body_dim;
   std::memset(P_.data, 0, sizeof(Scalar) * Triangle::size_for(P_.capacity));
   const std::size_t ld = static_cast<std::size_t>(ld_);
@@ -181,312 +180,69 @@ void Filter::convert_to_point(int slot) {
 }
 
 void Filter::remove(const int* slots, int count) {
-  // Mark, let anchors follow their last child, then list what goes in the order of rows.
+  // Mark, let anchors and patches follow their last child, then list what goes.
   for (int i = 0; i < count; ++i) {
     Block& block = state_.block[slots[i]];
-    if (block.kind == BlockKind::kInverseDepth) --state_.block[block.parent].children;
+    PF_ASSERT(block.kind != BlockKind::kPlane || block.children == 0);
+    if (block.parent >= 0) --state_.block[block.parent].children;
+    if (block.kind == BlockKind::kPlane) --state_.planes;
     block.kind = BlockKind::kNone;
   }
   for (int s = 0; s < state_.slots; ++s) {
     Block& block = state_.block[s];
-    if (block.kind == BlockKind::kAnchor && block.children == 0) block.kind = BlockKind::kNone;
+    if ((block.kind != BlockKind::kAnchor && block.kind != BlockKind::kPatch) || block.children > 0) continue;
+    if (block.parent >= 0) --state_.block[block.parent].children;
+    block.kind = BlockKind::kNone;
   }
   int gone = 0;
   for (int s = 0; s < state_.slots; ++s) {
     Block& block = state_.block[s];
-    if (block.kind != BlockKind::kNone || block.first < 0) continue;
-    int at = gone++;
-    for (; at > 0 && gone_[at - 1].first > block.first; --at) gone_[at] = gone_[at - 1];
-    gone_[at] = {block.first, block.size};
+    if (block.kind != BlockKind::kNone) continue;
+    if (block.size > 0) list_gone(block.first, block.size, &gone);
+    block = Block();
   }
+  close_gaps(gone);
+}
+
+/// Rows that go, kept in ascending order.
+void Filter::list_gone(int first, int size, int* gone) {
+  int at = (*gone)++;
+  for (; at > 0 && gone_[at - 1].first > first; --at) gone_[at] = gone_[at - 1];
+  gone_[at] = {first, size};
+}
+
+/// Removes the listed rows in one pass; blocks behind move up.
+void Filter::close_gaps(int gone) {
   if (gone == 0) return;
   kernels_->remove(P_, gone_, gone);
   for (int s = 0; s < state_.slots; ++s) {
     Block& block = state_.block[s];
-    if (block.kind == BlockKind::kNone) {
-      block = Block();
-      continue;
-    }
+    if (block.size == 0) continue;
     int shift = 0;
     for (int g = 0; g < gone && gone_[g].first < block.first; ++g) shift += gone_[g].size;
     block.first = static_cast<std::int16_t>(block.first - shift);
   }
+  const int held_end = state_.held_end();
+  for (int g = 0; g < gone; ++g)
+    if (gone_[g].first < held_end) state_.held_dim -= gone_[g].size;
   state_.dim = P_.n;
 }
 
-bool Filter::predict_pixel(const Camera& camera, int slot, Observation* out) const {
-  const Block& block = state_.block[slot];
-  Mat26 J_body;
-  Mat23 J_anchor, J_feature;
-  out->slot = slot;
-  out->second_order.setZero();
-  out->segment[0] = {Body::kTheta, Body::kPoseDim};
-  if (block.kind == BlockKind::kPoint) {
-    if (!observe_point(camera, state_.body, block.xyz(), &out->predicted, &J_body, &J_feature)) return false;
-    out->segments = 2;
-    out->segment[1] = {block.first, 3};
-    put<2, 6>(out->h, 9, 0, J_body);
-    put<2, 3>(out->h, 9, 6, J_feature);
-    return true;
-  }
-  if (block.kind == BlockKind::kInverseDepth) {
-    const Block& anchor = state_.block[block.parent];
-    if (!observe_inverse_depth(camera, state_.body, anchor.xyz(), block.inverse_depth(), &out->predicted, &J_body,
-                               &J_anchor, &J_feature))
-      return false;
-    out->segments = 3;
-    out->segment[1] = {anchor.first, 3};
-    out->segment[2] = {block.first, 3};
-    put<2, 6>(out->h, 12, 0, J_body);
-    put<2, 3>(out->h, 12, 6, J_anchor);
-    put<2, 3>(out->h, 12, 9, J_feature);
-    // Parallax is the product of inverse depth and baseline. Where both are uncertain, what neither Jacobian shows is their
-    // product, with covariance sigma_rho^2 J P_baseline J^T (second-order term; zero first-order Jacobian at a baseline of zero).
-    const Scalar rho = block.inverse_depth().rho;
-    out->second_order.setZero();
-    if (rho > Scalar(1e-6)) {
-      const Scalar factor = P_(block.first + 2, block.first + 2) / (rho * rho);
-      Mat3 baseline;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          baseline(i, j) = P_(Body::kPosition + i, Body::kPosition + j) + P_(anchor.first + i, anchor.first + j) -
-                           P_(Body::kPosition + i, anchor.first + j) - P_(anchor.first + i, Body::kPosition + j);
-      const Mat23 JP = J_anchor.lazyProduct(baseline);
-      out->second_order = factor * JP.lazyProduct(J_anchor.transpose());
-    }
-    return true;
-  }
-  return false;
-}
-
-Mat2 Filter::innovation(const Observation& observation) const {
-  int column[Observation::kMaxColumns];
-  int c = 0;
-  for (int s = 0; s < observation.segments; ++s)
-    for (int i = 0; i < observation.segment[s].size; ++i) column[c++] = observation.segment[s].first + i;
-  const Scalar* h0 = observation.h;
-  const Scalar* h1 = observation.h + c;
-  Scalar s00 = 0, s01 = 0, s11 = 0;
-  for (int i = 0; i < c; ++i) {
-    Scalar p0 = 0, p1 = 0;  // row i of P H^T
-    for (int j = 0; j < c; ++j) {
-      const Scalar p = P_(column[i], column[j]);
-      p0 += p * h0[j];
-      p1 += p * h1[j];
-    }
-    s00 += h0[i] * p0;
-    s01 += h0[i] * p1;
-    s11 += h1[i] * p1;
-  }
-  Mat2 S;
-  S << s00, s01, s01, s11;
-  return S;
-}
-
-void Filter::sparse(const Observation& observation, SparseRows* rows) const {
-  rows->rows = 2;
-  rows->segments = observation.segments;
-  for (int s = 0; s < observation.segments; ++s) rows->segment[s] = observation.segment[s];
-  std::memcpy(rows->h, observation.h, sizeof(Scalar) * 2 * static_cast<std::size_t>(rows->columns()));
-}
-
-void Filter::begin_update(const Observation* observations, int count) {
-  PF_ASSERT(2 * count <= max_rows_);
-  SparseRows rows;
-  for (int j = 0; j < count; ++j) {
-    sparse(observations[j], &rows);
-    kernels_->gather(P_, rows, W_ + 2 * j * ld_, ld_);
-  }
-  for (int i = 0; i < count; ++i) {
-    const Observation& o = observations[i];
-    const int columns = o.segments == 2 ? 9 : 12;
-    for (int j = 0; j <= i; ++j) {
-      for (int b = 0; b < 2; ++b) {
-        const Scalar* w = W_ + (2 * j + b) * ld_;
-        Scalar s0 = 0, s1 = 0;
-        int c = 0;
-        for (int s = 0; s < o.segments; ++s) {
-          const Scalar* p = w + o.segment[s].first;
-          for (int k = 0; k < o.segment[s].size; ++k, ++c) {
-            s0 += o.h[c] * p[k];
-            s1 += o.h[columns + c] * p[k];
-          }
-        }
-        S_[(2 * i) * lds_ + 2 * j + b] = s0;
-        S_[(2 * i + 1) * lds_ + 2 * j + b] = s1;
-      }
-    }
-  }
-}
-
-Mat2 Filter::innovation_block(int i, int j) const {
-  Mat2 block;
-  if (i >= j)
-    block << S_[2 * i * lds_ + 2 * j], S_[2 * i * lds_ + 2 * j + 1], S_[(2 * i + 1) * lds_ + 2 * j],
-        S_[(2 * i + 1) * lds_ + 2 * j + 1];
-  else
-    block << S_[2 * j * lds_ + 2 * i], S_[(2 * j + 1) * lds_ + 2 * i], S_[2 * j * lds_ + 2 * i + 1],
-        S_[(2 * j + 1) * lds_ + 2 * i + 1];
-  return block;
-}
-
-bool Filter::finish_update(const Observation* observations, int count, const unsigned char* keep, Scalar* nis) {
-  const int n = state_.dim;
-  // Close the gaps that rejected observations leave in H P and S, and add the noise.
-  int m = 0;
-  for (int i = 0; i < count; ++i) {
-    if (keep != nullptr && keep[i] == 0) continue;
-    for (int a = 0; a < 2; ++a) {
-      const int from = 2 * i + a, to = m + a;
-      if (from != to) std::memcpy(W_ + to * ld_, W_ + from * ld_, sizeof(Scalar) * static_cast<std::size_t>(ld_));
-      int column = 0;
-      for (int j = 0; j <= i; ++j) {
-        if (keep != nullptr && keep[j] == 0) continue;
-        S_[to * lds_ + column] = S_[from * lds_ + 2 * j];
-        S_[to * lds_ + column + 1] = S_[from * lds_ + 2 * j + 1];
-        column += 2;
-      }
-    }
-    const Observation& o = observations[i];
-    for (int a = 0; a < 2; ++a) {
-      for (int b = 0; b <= a; ++b) S_[(m + a) * lds_ + m + b] += o.noise(a, b);
-      y_[m + a] = o.measured[a] - o.predicted[a];
-    }
-    m += 2;
-  }
-  if (m == 0) return false;
-  if (!kernels_->cholesky(S_, m, lds_)) return false;
-  kernels_->solve_lower(S_, m, lds_, W_, n, ld_);
-  Scalar sum = 0;
-  for (int i = 0; i < m; ++i) {  // y <- L^-1 y
-    Scalar v = y_[i];
-    for (int k = 0; k < i; ++k) v -= S_[i * lds_ + k] * y_[k];
-    y_[i] = v / S_[i * lds_ + i];
-    sum += y_[i] * y_[i];
-  }
-  if (!(sum < Scalar(1e12))) return false;
-  if (nis != nullptr) *nis = sum;
-
-  kernels_->combine(W_, m, n, ld_, y_, dx_);
-  if (!is_step(dx_)) return false;
-
-  if (!keep_gauge_) {
-    apply_error(state_, dx_);
-    kernels_->downdate(P_, W_, m, nullptr, nullptr, 0, ld_, 0, 0);
-    return true;
-  }
-
-  // Transport: M = I + U^T V takes the gauge directions at x- to those at x+; U holds their change, V = [E; l] picks the turn and
-  // the log scale out of an error. With P1 = P - W^T W:   M P1 M^T = P1 + U^T G + G^T U,   G = V P1 + (V P1 V^T) U / 2.
-  SparseRows l;
-  const bool has_scale = scale_row(&l);
-  std::memset(U_, 0, sizeof(Scalar) * kGaugeRows * static_cast<std::size_t>(ld_));
-  add_gauge_rows(state_, Scalar(-1), U_, U_ + 3 * ld_, ld_);
-  SparseRows E;
-  E.rows = 3;
-  E.segments = 1;
-  E.segment[0] = {Body::kTheta, 3};
-  put<3, 3>(E.h, 3, 0, Mat3::Identity());
-  kernels_->gather(P_, E, G_, ld_);
-  const int k = has_scale ? 4 : 3;
-  if (has_scale) kernels_->gather(P_, l, G_ + 3 * ld_, ld_);
-
-  apply_error(state_, dx_);
-  add_gauge_rows(state_, Scalar(1), U_, U_ + 3 * ld_, ld_);
-
-  const auto pick = [&](const Scalar* row, int which) {  // V applied to a row over the state
-    if (which < 3) return row[Body::kTheta + which];
-    Scalar v = 0;
-    int c = 0;
-    for (int s = 0; s < l.segments; ++s)
-      for (int i = 0; i < l.segment[s].size; ++i) v += l.h[c++] * row[l.segment[s].first + i];
-    return v;
-  };
-  for (int r = 0; r < k; ++r) {  // V P1 = V P - (V W^T) W
-    Scalar* g = G_ + r * ld_;
-    for (int j = 0; j < m; ++j) {
-      const Scalar* w = W_ + j * ld_;
-      const Scalar v = pick(w, r);
-      for (int i = 0; i < n; ++i) g[i] -= v * w[i];
-    }
-  }
-  Scalar VPV[kGaugeRows][kGaugeRows];
-  for (int r = 0; r < k; ++r)
-    for (int c = 0; c < k; ++c) VPV[r][c] = pick(G_ + r * ld_, c);
-  for (int r = 0; r < k; ++r) {
-    Scalar* g = G_ + r * ld_;
-    for (int c = 0; c < k; ++c) {
-      const Scalar half = (VPV[r][c] + VPV[c][r]) / Scalar(4);
-      const Scalar* u = U_ + c * ld_;
-      for (int i = 0; i < n; ++i) g[i] += half * u[i];
-    }
-  }
-  kernels_->downdate(P_, W_, m, U_, G_, k, ld_, 0, 0);
-  return true;
-}
-
-bool Filter::scale_row(SparseRows* row) const {
-  // The best known of a few log lengths: between a point and the far ones among the points, or a log inverse depth.
-  Scalar best = Scalar(0);
-  bool found = false;
-  int tried = 0;
-  for (int s = 0; s < state_.slots && tried < 12; ++s) {
-    const Block& a = state_.block[s];
-    SparseRows candidate;
-    candidate.rows = 1;
-    if (a.kind == BlockKind::kInverseDepth) {
-      const Scalar rho = a.inverse_depth().rho;
-      if (!(rho > Scalar(1e-6))) continue;
-      candidate.segments = 1;
-      candidate.segment[0] = {a.first, 3};
-      candidate.h[0] = candidate.h[1] = Scalar(0);
-      candidate.h[2] = Scalar(-1) / rho;
-      const Scalar variance = P_(a.first + 2, a.first + 2) / (rho * rho);
-      ++tried;
-      if (found && variance >= best) continue;
-      best = variance;
-      found = true;
-      *row = candidate;
-      continue;
-    }
-    if (a.kind != BlockKind::kPoint) continue;
-    int far = -1;
-    Scalar far2 = Scalar(0);
-    for (int t = 0; t < state_.slots; ++t) {
-      if (state_.block[t].kind != BlockKind::kPoint) continue;
-      const Scalar d2 = (state_.block[t].xyz() - a.xyz()).squaredNorm();
-      if (d2 > far2) {
-        far2 = d2;
-        far = t;
-      }
-    }
-    if (far < 0 || !(far2 > Scalar(1e-12))) continue;
-    ++tried;
-    const Block& b = state_.block[far];
-    const Vec3 d = a.xyz() - b.xyz();
-    candidate.segments = 2;
-    candidate.segment[0] = {a.first, 3};
-    candidate.segment[1] = {b.first, 3};
-    for (int i = 0; i < 3; ++i) {
-      candidate.h[i] = d[i] / far2;
-      candidate.h[3 + i] = -d[i] / far2;
-    }
-    Scalar variance = 0;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        variance += candidate.h[i] * candidate.h[j] *
-                    (P_(a.first + i, a.first + j) + P_(b.first + i, b.first + j) - P_(a.first + i, b.first + j) -
-                     P_(b.first + i, a.first + j));
-    if (found && variance >= best) continue;
-    best = variance;
-    found = true;
-    *row = candidate;
-  }
-  return found;
+/// New rows behind all others for a block; the caller lets its old ones go.
+void Filter::augment_block(Block* block, int size, const SparseRows& J, const Scalar* noise) {
+  block->first = static_cast<std::int16_t>(state_.dim);
+  block->size = static_cast<std::int16_t>(size);
+  kernels_->augment(P_, J, noise);
+  state_.dim = P_.n;
 }
 
 Vec3 Filter::point(int slot) const {
   const Block& block = state_.block[slot];
+  if (is_planar(block.kind)) {
+    WorldPoint at;
+    world_point(state_, slot, &at);
+    return at.p_W;
+  }
   if (block.kind != BlockKind::kInverseDepth) return block.xyz();
   constexpr Scalar kFar = Scalar(1e-3);
   const InverseDepth d = block.inverse_depth();
@@ -495,10 +251,23 @@ Vec3 Filter::point(int slot) const {
 }
 
 Mat3 Filter::covariance3(int slot) const {
-  const int first = state_.block[slot].first;
-  Mat3 C;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) C(i, j) = P_(first + i, first + j);
+  WorldPoint at;
+  Mat32 J_c;
+  Mat3 C = Mat3::Zero();
+  if (!world_point(state_, slot, &at, &J_c)) return C;
+  int column[WorldPoint::kMaxColumns];
+  int c = 0;
+  for (int s = 0; s < at.segments; ++s)
+    for (int i = 0; i < at.segment[s].size; ++i) column[c++] = at.segment[s].first + i;
+  for (int i = 0; i < c; ++i) {
+    Vec3 PJ = Vec3::Zero();  // row i of P J^T
+    for (int j = 0; j < c; ++j) PJ += P_(column[i], column[j]) * at.J.col(j);
+    C += at.J.col(i) * PJ.transpose();
+  }
+  const Block& block = state_.block[slot];
+  if (block.kind == BlockKind::kPatchPoint && block.size == 0) {
+    C += J_c * block.inside() * J_c.transpose();
+  }
   return C;
 }
 

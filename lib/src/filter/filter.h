@@ -13,31 +13,56 @@
 
 namespace pf {
 
-/// What one feature's pixel says: prediction, residual and the few columns that it touches (at most body, anchor, feature).
+/// What one feature's pixel says: prediction, residual and the few columns that it touches (at most body, plane, patch, feature).
 struct Observation {
-  static constexpr int kMaxSegments = 3;
-  static constexpr int kMaxColumns = 12;
+  static constexpr int kMaxSegments = 4;
+  static constexpr int kMaxColumns = 15;
 
   int slot = -1;
   int segments = 0;
   Segment segment[kMaxSegments];
-  Scalar h[2 * kMaxColumns];         ///< row-major 2 x columns
-  Vec2 predicted = Vec2::Zero();     ///< [px]
-  Vec2 measured = Vec2::Zero();      ///< [px]
-  Mat2 noise = Mat2::Identity();     ///< covariance of the measurement [px^2]
-  Mat2 second_order = Mat2::Zero();  ///< what the linearisation leaves out [px^2]; belongs into noise
+  Scalar h[2 * kMaxColumns];      ///< row-major 2 x columns
+  Vec2 predicted = Vec2::Zero();  ///< [px]
+  Vec2 measured = Vec2::Zero();   ///< [px]
+  Mat2 noise = Mat2::Identity();  ///< covariance of the measurement [px^2]
+  Mat2 second_order =
+      Mat2::Zero();  ///< what the linearisation leaves out, and a surface's roughness [px^2]; belongs into noise
+
+  int columns() const {
+    int sum = 0;
+    for (int s = 0; s < segments; ++s) sum += segment[s].size;
+    return sum;
+  }
+};
+
+/// How points enter a plane.
+struct FoldRule {
+  Scalar roughness = 0;   ///< of real surfaces: standard deviation of a point's distance from its plane [m]
+  Scalar gate = 0;        ///< chi-square bound of the distance, one degree of freedom
+  bool condition = true;  ///< take the distance in as a measurement of zero; else only drop it (Gee 2007, eq 4 and 6)
+};
+
+/// What becomes of a point that is known well enough in its patch.
+enum class FixForm {
+  kConsider,  ///< keeps its rows, without gain of its own (Schmidt)
+  kInflate,   ///< loses its rows; its variance stays as noise of its pixels
+  kErrorFree  ///< loses its rows and its variance (Gee 2007, section 3.4)
 };
 
 struct FilterCapacity {
   int state_dim;
   int features;
   int observations;  ///< in one update
+  int planes;
 };
 
 class Filter {
  public:
   bool layout(Arena& arena, const FilterCapacity& capacity);
   void init(const Kernels* kernels, int body_dim, bool keep_gauge);
+  /// Noise of a folded point's pixel: its surface is uneven by this much [m].
+  void set_roughness(Scalar roughness) { roughness_ = roughness; }
+  void keep_gauge(bool keep) { keep_gauge_ = keep; }
 
   const State& state() const { return state_; }
   const Triangle& covariance() const { return P_; }
@@ -59,11 +84,40 @@ class Filter {
                         Scalar sigma_rho);
   int add_point(const Vec3& p_W, const Mat3& covariance);
 
+  /// Plane through 3-D points, about the frame of their fit, with the fit's Jacobian (Gee 2007, eq 3 and 8) and the noise that points
+  /// of a rough surface leave in it. Nothing is folded yet.
+  int add_plane(const PlaneFit& fit, const int* slots, int count, Scalar roughness);
+
   // --- transform
   /// Inverse depth to 3-D point, in its slot; the anchor goes when nothing needs it.
   void convert_to_point(int slot);
 
-  // --- remove; anchors that nothing needs any more go with them, all in one pass
+  static constexpr int kMostFolded = 16;  ///< in one call
+
+  /// 3-D points, or points of another plane, become points of this one: those that pass the gate are conditioned on a distance of zero
+  /// together, then lose it. folded[i] says which. Returns how many.
+  int fold(int plane, const int* slots, int count, const FoldRule& rule, unsigned char* folded);
+  /// Distance of a feature from a plane, and its variance without roughness. False where it has no place.
+  bool distance(int plane, int slot, Scalar* d, Scalar* variance) const;
+  /// A planar feature becomes a 3-D point, sigma_normal [m] more uncertain along the plane's normal. False without room.
+  bool unfold(int slot, Scalar sigma_normal);
+  /// What is known of a plane shrinks: Q is added to the covariance of (a, b, h).
+  void inflate(int plane, const Mat3& Q);
+  /// The plane, and the points that hang on it without a patch, about another frame. False when the frame is too slanted or a patch
+  /// hangs on the plane; nothing is changed then.
+  bool reanchor(int plane, const PlaneFrame& frame);
+
+  /// Largest variance of a plane point's coordinates [m^2] against the drawing that the points of its plane make: in the patch, or
+  /// where there is none yet against the similarity that fits `group` (slots of plane points of the same plane, it among them).
+  Scalar variance_in_drawing(int slot, const int* group, int group_count) const;
+  /// Fixes plane points of one plane in its patch, which is made from `group` where there is none. False without room; then nothing changed.
+  bool fix(const int* slots, int count, FixForm form, const int* group, int group_count);
+  /// A fixed point becomes a plane point again. False without room.
+  bool release(int slot);
+  /// The patch of a plane, or -1.
+  int patch_of(int plane) const;
+
+  // --- remove; anchors and patches that nothing needs any more go with them, all in one pass
   void remove(const int* slots, int count);
 
   // --- update
@@ -78,6 +132,7 @@ class Filter {
   /// S cannot be factored or the step is no number. *nis gets the normalised innovation squared.
   bool finish_update(const Observation* observations, int count, const unsigned char* keep, Scalar* nis);
 
+  /// Covariance of a feature's place, to first order.
   Mat3 covariance3(int slot) const;
   /// A feature's place in W; an inverse depth that is not positive counts as far away.
   Vec3 point(int slot) const;
@@ -91,10 +146,30 @@ class Filter {
   bool block_is_sound(int slot) const;
 
  private:
+  static constexpr int kGaugeRows = 7;
+
   void sparse(const Observation& observation, SparseRows* rows) const;
   int take_slot(BlockKind kind, int size);
-  bool scale_row(SparseRows* row) const;
+  void list_gone(int first, int size, int* gone);
+  void close_gaps(int gone);
+  void augment_block(Block* block, int size, const SparseRows& J, const Scalar* noise);
   bool is_step(const Scalar* dx) const;
+
+  // update.cpp
+  bool apply(int m, Scalar* nis);
+
+  // transport.cpp
+  int begin_transport();
+  void finish_transport(int m, int rows);
+  bool scale_row(SparseRows* row) const;
+  Scalar variance_of(const SparseRows& row) const;
+
+  // planes.cpp
+  void distance_row(int plane, const struct WorldPoint& point, Scalar* d, SparseRows* row) const;
+
+  // patches.cpp
+  int add_patch(int plane, const int* group, int count);
+  void hold(const int* slots, int count);
 
   const Kernels* kernels_ = nullptr;
   bool keep_gauge_ = true;
@@ -104,13 +179,17 @@ class Filter {
   int max_rows_ = 0;   ///< rows of one update
   int ld_ = 0;
   int lds_ = 0;
-  Scalar* W_ = nullptr;   ///< max_rows x ld: H P, then L^-1 H P
-  Scalar* S_ = nullptr;   ///< max_rows x lds
-  Scalar* U_ = nullptr;   ///< 4 x ld: gauge rows after minus before
-  Scalar* G_ = nullptr;   ///< 4 x ld
+  Scalar* W_ = nullptr;  ///< max_rows x ld: H P, then L^-1 H P
+  Scalar* S_ = nullptr;  ///< max_rows x lds
+  Scalar* U_ = nullptr;  ///< kGaugeRows x ld: gauge rows after minus before; turn, scale, shift
+  Scalar* G_ = nullptr;  ///< kGaugeRows x ld
+  SparseRows l_;         ///< picks the log scale out of an error
+  Vec3 p_before_ = Vec3::Zero();
+  Scalar roughness_ = 0;
   Scalar* dx_ = nullptr;  ///< ld
   Scalar* y_ = nullptr;   ///< max_rows
   Segment* gone_ = nullptr;
+  int* order_ = nullptr;  ///< ld
 };
 
 }  // namespace pf

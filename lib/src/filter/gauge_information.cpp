@@ -9,37 +9,25 @@ constexpr int kDirections = 7;
 
 /// The seven directions as columns of N (n x 8, the last column unused), in double.
 void directions(const State& state, double* N) {
-  const int n = state.dim;
-  for (int i = 0; i < n * 8; ++i) N[i] = 0.0;
-  const auto three = [&](int first, const Vec3& a) {
+  for (int i = 0; i < state.dim * 8; ++i) N[i] = 0.0;
+  const auto three = [&](int first, const Vec3& a, bool shifts) {
     const double x = static_cast<double>(a.x()), y = static_cast<double>(a.y()), z = static_cast<double>(a.z());
     const double turn[3][3] = {{0, z, -y}, {-z, 0, x}, {y, -x, 0}};  // -[a]x
     for (int i = 0; i < 3; ++i) {
+      if (shifts) N[(first + i) * 8 + i] = 1.0;
       for (int j = 0; j < 3; ++j) N[(first + i) * 8 + 3 + j] = turn[i][j];
       N[(first + i) * 8 + 6] = static_cast<double>(a[i]);
     }
   };
-  const auto shift = [&](int first) {
-    for (int i = 0; i < 3; ++i) N[(first + i) * 8 + i] = 1.0;
-  };
   for (int i = 0; i < 3; ++i) N[(Body::kTheta + i) * 8 + 3 + i] = 1.0;
-  three(Body::kPosition, state.body.p_W);
-  shift(Body::kPosition);
-  if (state.body_dim > Body::kPoseDim) three(Body::kVelocity, state.body.v_W);
+  three(Body::kPosition, state.body.p_W, true);
+  if (state.body_dim > Body::kPoseDim) three(Body::kVelocity, state.body.v_W, false);
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];
-    if (block.kind == BlockKind::kPoint || block.kind == BlockKind::kAnchor) {
-      three(block.first, block.xyz());
-      shift(block.first);
-    } else if (block.kind == BlockKind::kInverseDepth) {
-      const InverseDepth d = block.inverse_depth();
-      const Mat3 R = d.q_b.toRotationMatrix();
-      for (int axis = 0; axis < 3; ++axis) {
-        N[block.first * 8 + 3 + axis] = static_cast<double>(R(axis, 1));
-        N[(block.first + 1) * 8 + 3 + axis] = -static_cast<double>(R(axis, 0));
-      }
-      N[(block.first + 2) * 8 + 6] = -static_cast<double>(d.rho);
-    }
+    if (block.size == 0) continue;
+    const GaugeRows rows = gauge_rows(state, block);
+    for (int i = 0; i < block.size; ++i)
+      for (int d = 0; d < kDirections; ++d) N[(block.first + i) * 8 + d] = static_cast<double>(rows(i, d));
   }
 }
 

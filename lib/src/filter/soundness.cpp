@@ -32,7 +32,7 @@ bool Filter::block_is_sound(int slot) const {
   const Block& block = state_.block[slot];
   for (Scalar v : block.value)
     if (!is_value(v)) return false;
-  if (!are_variances(P_, block.first, block.size)) return false;
+  if (block.size > 0 && !are_variances(P_, block.first, block.size)) return false;
   return block.parent < 0 || block_is_sound(block.parent);
 }
 

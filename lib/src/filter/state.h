@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "base/eigen.h"
 #include "covariance/kernels.h"
+#include "geometry/plane.h"
 
 /// What the filter estimates: a table of blocks. This is the only place that knows where a block lies in the covariance.
 
@@ -27,7 +29,15 @@ enum class BlockKind : std::uint8_t {
   kAnchor = 1,        ///< where the camera was when inverse-depth points began: o_W, additive
   kPoint = 2,         ///< p_W, additive
   kInverseDepth = 3,  ///< bearing from its parent anchor and inverse depth, see InverseDepth
+  kPlane = 4,         ///< (a, b, h) about its constant frame, additive, see geometry/plane.h
+  kPlanePoint = 5,    ///< folded: coordinates (u, v) in the frame of its parent plane, additive
+  kPatch = 6,         ///< where a drawing lies on its parent plane, see Patch
+  kPatchPoint =
+      7,  ///< fixed: coordinates in its parent patch, additive; considered (Schmidt), or without rows of its own
 };
+
+/// Planar features hang on a plane, directly or through a patch.
+inline bool is_planar(BlockKind kind) { return kind == BlockKind::kPlanePoint || kind == BlockKind::kPatchPoint; }
 
 /// Bearing b = R_b e_z from the anchor, with the tangent basis B = R_b [e_x e_y]; inverse depth rho along it [1/m].
 ///
@@ -39,13 +49,36 @@ struct InverseDepth {
   Scalar rho;
 };
 
+/// A drawing on a plane that shifts, turns and grows as one: what is fixed in it moves with it, and only with it.
+///
+///   (u, v) = t + exp(lambda) Rot(phi) c            c: coordinates in the patch
+///   error (e_t, e_phi, e_lambda), additive
+///
+/// Coordinates in a patch know nothing of the drift that the whole plane shares, so they can be known well.
+struct Patch {
+  Vec2 t;
+  Scalar phi, lambda;
+
+  Mat2 linear() const {
+    const Scalar c = std::exp(lambda) * std::cos(phi), s = std::exp(lambda) * std::sin(phi);
+    Mat2 M;
+    M << c, -s, s, c;
+    return M;
+  }
+};
+
 struct Block {
+  static constexpr int kMaxRows = 4;
+
   BlockKind kind = BlockKind::kNone;
   std::int16_t first = -1;  ///< first row in the covariance
   std::int16_t size = 0;
-  std::int16_t parent = -1;   ///< slot of the anchor
-  std::int16_t children = 0;  ///< of an anchor: inverse-depth points that need it
-  Scalar value[5] = {};       ///< anchor, point: x y z. inverse depth: q_b (w x y z), rho
+  std::int16_t parent = -1;   ///< slot of the anchor, plane or patch
+  std::int16_t children = 0;  ///< blocks that have this one as parent
+  std::int16_t frame = -1;    ///< of a plane: index into State::plane_frame
+  /// anchor, point: x y z. inverse depth: q_b (w x y z), rho. plane: a b h. plane point: u v. patch: t, phi, lambda.
+  /// patch point: c, and where it has no rows its covariance (xx, xy, yy)
+  Scalar value[5] = {};
 
   Vec3 xyz() const { return Vec3(value[0], value[1], value[2]); }
   void set_xyz(const Vec3& p) {
@@ -61,15 +94,46 @@ struct Block {
     value[3] = d.q_b.z();
     value[4] = d.rho;
   }
+  Vec2 uv() const { return Vec2(value[0], value[1]); }
+  void set_uv(const Vec2& uv) {
+    value[0] = uv.x();
+    value[1] = uv.y();
+  }
+  /// Covariance of a patch point's coordinates that have no rows [m^2, in the patch].
+  Mat2 inside() const {
+    Mat2 C;
+    C << value[2], value[3], value[3], value[4];
+    return C;
+  }
+  void set_inside(const Mat2& C) {
+    value[2] = C(0, 0);
+    value[3] = C(0, 1);
+    value[4] = C(1, 1);
+  }
+  Patch patch() const { return {Vec2(value[0], value[1]), value[2], value[3]}; }
+  void set_patch(const Patch& p) {
+    value[0] = p.t.x();
+    value[1] = p.t.y();
+    value[2] = p.phi;
+    value[3] = p.lambda;
+  }
 };
 
 /// Blocks live in slots that do not move; rows of the covariance follow the order of `first`.
+/// Rows: body | held (considered: covariance, but no gain of their own) | all others.
 struct State {
   Body body;
   int body_dim = Body::kMaxDim;
   Block* block = nullptr;  ///< slots
   int slots = 0;
-  int dim = 0;  ///< rows in use, body included
+  int dim = 0;       ///< rows in use, body included
+  int held_dim = 0;  ///< of them considered, behind the body
+  PlaneFrame* plane_frame = nullptr;
+  int max_planes = 0;
+  int planes = 0;
+
+  int held_end() const { return body_dim + held_dim; }
+  const PlaneFrame& frame_of(const Block& plane) const { return plane_frame[plane.frame]; }
 
   /// A free slot, or -1.
   int find_free() const {
@@ -77,17 +141,29 @@ struct State {
       if (block[i].kind == BlockKind::kNone) return i;
     return -1;
   }
+  /// Slot of the plane that a planar feature or a patch hangs on.
+  int plane_of(int slot) const {
+    while (block[slot].kind != BlockKind::kPlane) slot = block[slot].parent;
+    return slot;
+  }
 };
 
 /// x <- x [+] dx: every block moves by its part of dx (dim entries).
 void apply_error(State& state, const Scalar* dx);
 
-/// Adds sign times the unobservable directions of a bare camera at x, one row per direction, leading dimension ld:
+using GaugeRows = Eigen::Matrix<Scalar, Block::kMaxRows, 7>;
+
+/// How a block's error changes when the whole world is shifted (columns 0-2), turned (3-5) and grows by a factor of exp(s) (6).
+/// The directions that a bare camera cannot observe. Rows beyond the block's size are zero.
 ///
-///   rotation (3 x dim, into N_R): theta I;  p, o, f: -[.]x;  v: -[v]x;  bearing: B_2^T, -B_1^T;  w, rho: 0
-///   scale    (1 x dim, into N_s): p, v, o, f: as they are;  rho: -rho;  theta, w, bearing: 0
-///
-/// Translation is the same at every x (p, o, f: I), so it needs no rows.
-void add_gauge_rows(const State& state, Scalar sign, Scalar* N_R, Scalar* N_s, int ld);
+///   p, o, f:  I, -[.]x, as they are       bearing:  0, (B_2, -B_1)^T, 0        rho:  0, 0, -rho
+///   plane:  geometry/plane.h              (u, v):  first rows of R_WP^T (I, -[p]x, p), p the point on the plane
+///   patch:  what (u, v) -> k + M (u, v) does to t, and to phi and lambda the part of M that turns and grows;
+///   in the patch:  the shear that is left
+GaugeRows gauge_rows(const State& state, const Block& block);
+
+/// Adds sign times these directions at x over the whole state, one row per direction, leading dimension ld. Of the body: theta I;
+/// p, v turn; p shifts; p, v scale. N_T may be null: shifts are the same at every x but for planes.
+void add_gauge_rows(const State& state, Scalar sign, Scalar* N_T, Scalar* N_R, Scalar* N_s, int ld);
 
 }  // namespace pf

@@ -18,6 +18,7 @@ struct Feature {
   int observations = 0;  ///< frames in which it was measured and used
   int attempts = 0;      ///< frames in which it was looked for
   int failures = 0;      ///< attempts since it was last measured
+  int rejections = 0;    ///< of them, matches that did not agree
   std::int64_t last_seen_ns = 0;
   int appearance = -1;   ///< entry in the tracker's templates
   int start_index = -1;  ///< in the record of a start without a target

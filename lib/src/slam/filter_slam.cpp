@@ -23,8 +23,12 @@ constexpr int kHopelessUpdates = 10;  ///< that could not be made, in a row: P i
 }  // namespace
 
 bool FilterSlam::layout(Arena& arena, const Settings& settings) {
-  filter_.layout(arena, {settings.max_state_dim, settings.max_features, settings.max_observations});
+  filter_.layout(arena,
+                 {settings.max_state_dim, settings.max_features, settings.max_observations, settings.max_planes});
   features_.layout(arena, settings.max_features);
+  planes_.layout(arena, settings.max_planes);
+  candidate_ = arena.take<PlaneCandidate>(static_cast<std::size_t>(settings.max_features));
+  candidate_entry_ = arena.take<int>(static_cast<std::size_t>(settings.max_features));
   quad_workspace_ = take_quad_workspace(&arena, settings.camera.width, settings.camera.height);
   record_.layout(arena);
   bundle_.layout(arena);
@@ -42,8 +46,10 @@ bool FilterSlam::layout(Arena& arena, const Settings& settings) {
 
 void FilterSlam::init(const Settings& settings) {
   settings_ = settings;
-  filter_.init(settings.kernels, settings.constant_velocity ? Body::kMaxDim : Body::kPoseDim, settings.keep_gauge);
+  begin_filter();
   features_.init();
+  planes_.init();
+  random_ = 1;
   tracker_.init(settings.camera);
   target_ = Target();
   known_body_ = KnownBody();
@@ -62,6 +68,13 @@ void FilterSlam::init(const Settings& settings) {
   steering_w_C_.setZero();
   report_ = FrameReport();
   track_count_ = 0;
+}
+
+/// A filter without a map.
+void FilterSlam::begin_filter() {
+  filter_.init(settings_.kernels, settings_.constant_velocity ? Body::kMaxDim : Body::kPoseDim, settings_.keep_gauge);
+  filter_.set_roughness(settings_.fold.roughness);
+  planes_.clear();
 }
 
 bool FilterSlam::fits(const Target& target) const {
@@ -130,7 +143,7 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
 /// The estimate is no estimate any more: everything that came from it goes. What the caller said of the first pose is not true
 /// here; a target that is still there may be found again.
 void FilterSlam::start_over() {
-  filter_.init(settings_.kernels, filter_.state().body_dim, settings_.keep_gauge);
+  begin_filter();
   features_.clear();
   tracker_.init(settings_.camera);
   record_.init();
@@ -212,6 +225,7 @@ bool FilterSlam::take_in(int first, int count) {
     Feature& feature = features_[entry_[i]];
     count_frame(&feature.observations);
     feature.failures = 0;
+    feature.rejections = 0;
     feature.last_seen_ns = report_.t_ns;
   }
   return true;
@@ -252,7 +266,7 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
       tracks_[track_count_++] = {entry,
                                  feature.id,
                                  agrees ? TrackStatus::kInlier : TrackStatus::kOutlier,
-                                 filter_.state().block[feature.slot].kind == BlockKind::kInverseDepth,
+                                 filter_.state().block[feature.slot].kind,
                                  o.predicted,
                                  S,
                                  o.measured,
@@ -260,6 +274,7 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
       ++report_.matches;
       if (!agrees) {
         count_frame(&feature.failures);
+        count_frame(&feature.rejections);
         continue;
       }
       keep_[known] = 1;
@@ -277,6 +292,7 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
 
   StageTimer timer(settings_.hooks, &report_.stage_ns[kMap]);
   convert_what_is_linear();
+  tend_planes();
   drop_what_fails();
   int anchor = -1;
   for (int i = 0; i < count; ++i) {
@@ -287,8 +303,9 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
     const int entry = begin_feature(anchor, observations[i].pixel, Mat2::Identity() * variance);
     if (entry < 0) continue;
     features_[entry].track = observations[i].track;
-    tracks_[track_count_++] = {entry,        features_[entry].id,   TrackStatus::kNew, true, observations[i].pixel,
-                               Mat2::Zero(), observations[i].pixel, Scalar(0)};
+    tracks_[track_count_++] = {
+        entry,        features_[entry].id,   TrackStatus::kNew, BlockKind::kInverseDepth, observations[i].pixel,
+        Mat2::Zero(), observations[i].pixel, Scalar(0)};
   }
   if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child
   return end_frame();

@@ -6,6 +6,8 @@
 #include "base/status.h"
 #include "filter/filter.h"
 #include "map/feature_table.h"
+#include "map/plane_search.h"
+#include "map/plane_table.h"
 #include "slam/frame_report.h"
 #include "slam/settings.h"
 #include "slam/start.h"
@@ -25,6 +27,12 @@ struct PixelObservation {
   std::uint32_t track;
   Vec2 pixel;
   Scalar sigma_px;
+};
+
+/// How many features hang on a plane.
+struct PlanePoints {
+  int folded = 0;  ///< fixed ones among them
+  int fixed = 0;
 };
 
 class FilterSlam {
@@ -56,6 +64,9 @@ class FilterSlam {
   const Settings& settings() const { return settings_; }
   const Filter& filter() const { return filter_; }
   const FeatureTable& features() const { return features_; }
+  const PlaneTable& planes() const { return planes_; }
+  /// Outline of a plane (entry of the table) in the coordinates of its frame, from the points that hang on it.
+  PlanePoints outline(int plane_entry, PlaneOutline* outline) const;
   const FrameReport& report() const { return report_; }
   const Track* tracks() const { return tracks_; }
   int track_count() const { return track_count_; }
@@ -76,6 +87,7 @@ class FilterSlam {
   int find_track(std::uint32_t track) const;
   bool take_in(int first, int count);
   void start_over();
+  void begin_filter();
 
   // housekeeping.cpp
   void convert_what_is_linear();
@@ -86,6 +98,20 @@ class FilterSlam {
   Scalar usual_inverse_depth() const;
   int begin_feature(int anchor, const Vec2& pixel, const Mat2& noise);
   void add_target_points();
+
+  // planes_in_map.cpp
+  void tend_planes();
+  void unfold_misfits();
+  void fold_into(int plane_entry);
+  void fix_on(int plane_entry);
+  void discover_plane();
+  void merge_into(int plane_entry);
+  void settle_frame(int plane_entry);
+  void dissolve_weak();
+  void dissolve(int plane_entry);
+  void loosen(int plane_slot, int children);
+  bool is_candidate(int entry, Mat3* covariance) const;
+  bool same_plane(int slot, int other) const;
 
   // frame_door.cpp
   int list_visible();
@@ -109,6 +135,10 @@ class FilterSlam {
   Settings settings_;
   Filter filter_;
   FeatureTable features_;
+  PlaneTable planes_;
+  PlaneCandidate* candidate_ = nullptr;  ///< max_features
+  int* candidate_entry_ = nullptr;       ///< feature table entry of each
+  std::uint32_t random_ = 1;
   Tracker tracker_;
   Target target_;
   QuadWorkspace quad_workspace_;

@@ -54,6 +54,7 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   {
     StageTimer timer(settings_.hooks, &report_.stage_ns[kMap]);
     convert_what_is_linear();
+    tend_planes();
     drop_what_fails();
     if (recording_) record_frame();
     if (report_.inliers >= kMinInliers || sighted_ || report_.attempts == 0) begin_features_in_image();
@@ -100,7 +101,7 @@ int FilterSlam::list_visible() {
     track.feature = entry_[i];
     track.id = f.id;
     track.status = TrackStatus::kMissed;
-    track.inverse_depth = filter_.state().block[f.slot].kind == BlockKind::kInverseDepth;
+    track.kind = filter_.state().block[f.slot].kind;
     track.measured.setZero();
     track.nis = Scalar(0);
     track_of_[i] = track_count_++;
@@ -199,7 +200,10 @@ void FilterSlam::measure(int first, int count) {
     track.status = keep_[i] != 0 ? TrackStatus::kInlier : TrackStatus::kOutlier;
     track.nis = squared_distance(track.measured - observation_[i].predicted,
                                  filter_.innovation_block(i - first, i - first) + observation_[i].noise);
-    if (keep_[i] == 0) count_frame(&features_[entry_[i]].failures);
+    if (keep_[i] == 0) {
+      count_frame(&features_[entry_[i]].failures);
+      if (believed) count_frame(&features_[entry_[i]].rejections);
+    }
   }
   if (believed) take_in(first, found);
 }
@@ -263,7 +267,7 @@ void FilterSlam::begin_features_in_image() {
         track.feature = entry;
         track.id = f.id;
         track.status = TrackStatus::kNew;
-        track.inverse_depth = true;
+        track.kind = BlockKind::kInverseDepth;
         track.predicted = track.measured = pixel;
         track.innovation.setZero();
         track.nis = Scalar(0);

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "base/eigen.h"
+#include "filter/state.h"
 
 namespace pf {
 
@@ -17,7 +18,7 @@ struct Track {
   int feature;  ///< entry in the feature table; -1 once it has gone
   std::uint32_t id;
   TrackStatus status;
-  bool inverse_depth;
+  BlockKind kind;
   Vec2 predicted;
   Mat2 innovation;
   Vec2 measured;

@@ -101,12 +101,11 @@ Scalar FilterSlam::usual_inverse_depth() const {
   for (int i = 0; i < features_.capacity() && count < kMost; ++i) {
     if (!features_.used(i) || features_[i].last_seen_ns != report_.t_ns) continue;
     const Block& block = filter_.state().block[features_[i].slot];
-    Vec3 p_W = block.xyz();
     if (block.kind == BlockKind::kInverseDepth) {
-      const InverseDepth d = block.inverse_depth();
-      if (d.rho * d.rho < Scalar(9) * filter_.variance(block.first + 2)) continue;
-      p_W = filter_.state().block[block.parent].xyz() + d.q_b.toRotationMatrix().col(2) / d.rho;
+      const Scalar rho_of = block.inverse_depth().rho;
+      if (rho_of * rho_of < Scalar(9) * filter_.variance(block.first + 2)) continue;
     }
+    const Vec3 p_W = filter_.point(features_[i].slot);
     const Scalar distance = (p_W - body.p_W).norm();
     if (forward.dot(p_W - body.p_W) > Scalar(0)) rho[count++] = Scalar(1) / distance;
   }

@@ -4,6 +4,7 @@
 
 #include "base/hooks.h"
 #include "covariance/kernels.h"
+#include "filter/filter.h"
 #include "filter/motion.h"
 #include "geometry/camera.h"
 
@@ -17,6 +18,7 @@ struct Settings {
   int max_state_dim = 0;
   int max_features = 0;
   int max_observations = 0;
+  int max_planes = 0;
 
   bool constant_velocity = true;
   MotionNoise motion_noise = {};
@@ -28,6 +30,15 @@ struct Settings {
   bool depth_from_map = true;
   Scalar inverse_depth_relative_sigma = 0;
   Scalar linearity_index = 0;
+
+  bool planes = false;
+  int plane_min_points = 0;
+  Scalar plane_distance = 0;
+  Scalar plane_radius = 0;
+  Scalar fold_sigma = 0;
+  Scalar fix_sigma = 0;
+  FoldRule fold;
+  FixForm fix = FixForm::kConsider;
 
   int features_in_view = 0;
   int border_px = 0;

@@ -48,7 +48,7 @@ bool FilterSlam::start_in_image() {
     f.appearance = tracker_.remember(z, pose.q_WC, pose.p_WC);
     f.observations = f.attempts = 1;
     ++report_.inliers;
-    tracks_[track_count_++] = {i, f.id, TrackStatus::kInlier, false, z, Mat2::Zero(), z, Scalar(0)};
+    tracks_[track_count_++] = {i, f.id, TrackStatus::kInlier, BlockKind::kPoint, z, Mat2::Zero(), z, Scalar(0)};
   }
   report_.attempts = report_.matches = report_.inliers;
   sighted_ = true;

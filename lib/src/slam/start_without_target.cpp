@@ -72,7 +72,7 @@ void FilterSlam::restart_from_record() {
   Body body;
   body.q_WC = base_q_WC_;
   body.p_W = base_p_W_;
-  filter_.init(settings_.kernels, filter_.state().body_dim, settings_.keep_gauge);
+  begin_filter();
   begin_at(body, start_covariance_);
   const int anchor = filter_.add_anchor();
 

@@ -35,6 +35,17 @@ PF_INLINE void downdate_tile(const Thin& t, const Scalar* B, std::ptrdiff_t b_st
   }
 }
 
+/// What lies above the diagonal in the diagonal square of group q is zero again.
+PF_INLINE void clear_upper(const Triangle& P, int q) {
+  const std::ptrdiff_t stride = kGroup * (q + 1);
+  Scalar* square = P.data + group_offset(q) + q * kGroup;
+#pragma GCC unroll 8
+  for (int r = 0; r < kGroup; ++r) {
+#pragma GCC unroll 8
+    for (int c = r + 1; c < kGroup; ++c) square[r * stride + c] = 0;
+  }
+}
+
 /// A part of the triangle: groups of rows first_group .. last_group - 1, columns first .. last - 1 (multiples of eight) where they
 /// have them.
 ///
@@ -56,20 +67,8 @@ inline void downdate_part(const Triangle& P, const Thin& t, int first_group, int
         for_strips(j, columns, [&](auto v, auto count, int at) PF_LAMBDA {
           downdate_tile<decltype(v), decltype(count)::value>(t, t.W + at, t.ld, rows + at, stride, q * kGroup, at);
         });
+        if (j + columns == stride) clear_upper(P, q);
       }
-    }
-  }
-}
-
-/// What lies above the diagonal in the diagonal squares stays zero.
-inline void clear_upper(const Triangle& P) {
-  const int groups = (P.n + kGroup - 1) / kGroup;
-  for (int q = 0; q < groups; ++q) {
-    Scalar* square = P.data + group_offset(q) + q * kGroup;
-#pragma GCC unroll 8
-    for (int r = 0; r < kGroup; ++r) {
-#pragma GCC unroll 8
-      for (int c = r + 1; c < kGroup; ++c) square[r * kGroup * (q + 1) + c] = 0;
     }
   }
 }

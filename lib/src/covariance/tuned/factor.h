@@ -15,10 +15,13 @@ PF_INLINE void solve_tile(const Scalar* L, std::ptrdiff_t lds, Scalar* X, std::p
   tile.store(X + i * ld, ld);
 }
 
-/// Twin: reference::solve_lower. Works on whole groups of eight columns, padding included.
+/// Twin: reference::solve_lower. Works on whole groups of eight columns, padding included. Rows of a tile wait for each other, so
+/// tiles are flat: four rows at most, and as many vectors as the registers of a full tile.
 void solve_lower(const Scalar* L, int m, int lds, Scalar* X, int n, int ld) {
-  for_strips(0, round_up(n, kGroup), [&](auto v, auto count, int j) {
-    for_heights(m, [&](auto height, int i) PF_LAMBDA {
+  constexpr int kRows = smaller(4, kTileRows);
+  constexpr int kVectors = kTileRows / kRows * kTileVectors;
+  for_strips<kVectors>(0, round_up(n, kGroup), [&](auto v, auto count, int j) {
+    for_heights<kRows>(m, [&](auto height, int i) PF_LAMBDA {
       solve_tile<decltype(v), decltype(height)::value, decltype(count)::value>(L, lds, X + j, ld, i);
     });
   });

@@ -34,20 +34,21 @@ inline void fill_panel(FromTriangle source, int first, int size, int j0, int col
     const Scalar* row = row_of(P, first + c);
     Scalar* to = panel + c * kStrip - j0;
     copy_groups(to + j0, row + j0, left - j0);
-    for (int j = j0 > left ? j0 : left; j < right; j += kGroup) {
-      const Scalar* column = P.data + group_offset(j / kGroup) + first + c;
-      for (int i = 0; i < kGroup; ++i) {
-        to[j + i] = j + i <= first + c ? row[j + i] : column[i * (j + kGroup)];
-      }
-    }
+    int j = j0 > left ? j0 : left;
+    for (; j <= first + c && j < right; ++j) to[j] = row[j];
+    for (; j < right; ++j) to[j] = row_of(P, j)[first + c];
   }
   for (int j = j0 > right ? j0 : right; j < end; j += kGroup) {
     const std::ptrdiff_t stride = j + kGroup;
     const Scalar* group = P.data + group_offset(j / kGroup) + first;
     Scalar* to = panel + (j - j0);
-    for (int c = 0; c < size; c += 4) {
-      transpose_four(group + c, stride, to + c * kStrip, kStrip);
-      transpose_four(group + 4 * stride + c, stride, to + c * kStrip + 4, kStrip);
+    for (int r = 0; r < kGroup; r += Narrow::kWidth) {
+      for (int c = 0; c < size; c += 4) {
+        Narrow::Type column[4];
+        load_columns<Narrow>(group + r * stride + c, stride, column);
+#pragma GCC unroll 4
+        for (int i = 0; i < 4; ++i) Narrow::store(to + (c + i) * kStrip + r, column[i]);
+      }
     }
   }
   for (int j = P.n; j < end; ++j) {

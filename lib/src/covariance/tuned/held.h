@@ -92,6 +92,7 @@ inline void downdate_border(const Triangle& P, const Thin& all, int held_first, 
           s.held = nullptr;
         }
         downdate_square(P, t, s, q, c * kGroup);
+        if (c == q) clear_upper(P, q);
       }
     }
   }
@@ -124,7 +125,6 @@ void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar
                   end / kGroup * kGroup);
     downdate_part(P, with, q1, groups, 0, columns);
   }
-  clear_upper(P);
 }
 
 }  // namespace

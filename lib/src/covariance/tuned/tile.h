@@ -68,6 +68,7 @@ struct Tile {
   template <bool kMinus = false>
   PF_INLINE void accumulate(const Scalar* A, std::ptrdiff_t a_row, std::ptrdiff_t a_step, const Scalar* B,
                             std::ptrdiff_t b_stride, int count) {
+#pragma GCC unroll 2
     for (int k = 0; k < count; ++k) {
       Type b[kVectors];
 #pragma GCC unroll 8
@@ -142,15 +143,15 @@ PF_INLINE void for_eight(const Work& work) {
 }
 
 /// Cut `rows` into tile heights, work(Count<rows>{}, first row).
-template <class Work>
+template <int kMost = kTileRows, class Work>
 PF_INLINE void for_heights(int rows, const Work& work) {
   int i = 0;
-  for (; i + kTileRows <= rows; i += kTileRows) work(Count<kTileRows>{}, i);
-  if (kTileRows > 4 && i + 4 <= rows) {
+  for (; i + kMost <= rows; i += kMost) work(Count<kMost>{}, i);
+  if (kMost > 4 && i + 4 <= rows) {
     work(Count<4>{}, i);
     i += 4;
   }
-  if (kTileRows > 2 && i + 2 <= rows) {
+  if (kMost > 2 && i + 2 <= rows) {
     work(Count<2>{}, i);
     i += 2;
   }

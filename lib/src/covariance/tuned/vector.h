@@ -9,7 +9,7 @@
 ///   PF_VECTOR_BYTES   of a register
 ///   PF_TILE_ROWS      register tile: rows of the eight of a group (8, 4 or 2) ...
 ///   PF_TILE_VECTORS   ... times vectors across
-/// and gives plus_product(a, b, c) = c + a b and minus_product(a, b, c) = c - a b for each vector type, in one rounding where the
+/// and gives load_pieces for its registers, and plus_product(a, b, c) = c + a b and minus_product(a, b, c) = c - a b for each vector type, in one rounding where the
 /// processor has it, and square_root of a scalar.
 ///
 /// Everything in the headers of this folder lives in an unnamed namespace, once per kernel set, and calls no inline function from
@@ -91,6 +91,63 @@ PF_INLINE void transpose_square(const Scalar* from, std::ptrdiff_t stride, int r
 using Wide = Vector<PF_VECTOR_BYTES>;
 constexpr int kNarrowBytes = Wide::kWidth > kGroup ? PF_VECTOR_BYTES / 2 : PF_VECTOR_BYTES;
 using Narrow = Vector<kNarrowBytes>;
+
+/// Sixteen bytes; wider registers have an overload in the file of their set, which takes as many pieces, `stride` apart.
+template <class Type>
+PF_INLINE Type load_pieces(const Scalar* from, std::ptrdiff_t, Type) {
+  static_assert(sizeof(Type) == 16);
+  return *reinterpret_cast<const Register<16>::Loose*>(from);
+}
+
+/// Of each pair of scalars the first ones, alternating between a and b, and the second ones.
+template <int kWidth, class Type>
+PF_INLINE void unpack(const Type& a, const Type& b, Type& first, Type& second) {
+  if constexpr (kWidth == 2) {
+    first = __builtin_shufflevector(a, b, 0, 2);
+    second = __builtin_shufflevector(a, b, 1, 3);
+  } else if constexpr (kWidth == 4) {
+    first = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+    second = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  } else {
+    first = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    second = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+}
+
+/// The same for pairs of each four.
+template <int kWidth, class Type>
+PF_INLINE void unpack_pairs(const Type& a, const Type& b, Type& first, Type& second) {
+  if constexpr (kWidth == 4) {
+    first = __builtin_shufflevector(a, b, 0, 1, 4, 5);
+    second = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+  } else {
+    first = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+    second = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+}
+
+/// One vector a column for the four columns that begin at `from`, of as many rows (`stride` apart) as a vector is wide: a
+/// transposition in registers.
+template <class V>
+PF_INLINE void load_columns(const Scalar* from, std::ptrdiff_t stride, typename V::Type (&column)[4]) {
+  constexpr int kWidth = V::kWidth;
+  typename V::Type row[4], pair[4];
+  if constexpr (sizeof(Scalar) == 8) {
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+      row[i] = load_pieces(from + i / 2 * 2 + i % 2 * stride, 2 * stride, typename V::Type{});
+    }
+    unpack<kWidth>(row[0], row[1], column[0], column[1]);
+    unpack<kWidth>(row[2], row[3], column[2], column[3]);
+  } else {
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) row[i] = load_pieces(from + i * stride, 4 * stride, typename V::Type{});
+    unpack<kWidth>(row[0], row[1], pair[0], pair[1]);
+    unpack<kWidth>(row[2], row[3], pair[2], pair[3]);
+    unpack_pairs<kWidth>(pair[0], pair[2], column[0], column[2]);
+    unpack_pairs<kWidth>(pair[1], pair[3], column[1], column[3]);
+  }
+}
 
 /// Copy `count` scalars in whole eights, without a call: a library call for a few lines costs more than the copy.
 PF_INLINE void copy_groups(Scalar* to, const Scalar* from, int count) {

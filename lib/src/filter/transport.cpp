@@ -1,0 +1,189 @@
+#include <cstring>
+
+#include "filter/filter.h"
+#include "filter/observe/world_point.h"
+#include "filter/put.h"
+
+/// Keeps the covariance consistent with what a bare camera cannot observe, when an update moves the state (lib/docs/gauge.md).
+///
+///   M = I + U^T V takes the gauge directions N at x- to those at x+:  U = N(x+) - N(x-),  V N(x-) = I
+///   rows of V:  turn E_theta,  log scale l,  shift E_p + [p]x E_theta - p l         (body p at x-)
+///   with P1 = P - W^T W:   M P1 M^T = P1 + U^T G + G^T U,   G = V P1 + (V P1 V^T) U / 2
+///
+/// Shifts are the same at every x but for planes, whose distance moves by n . t: without planes they need no rows.
+
+namespace pf {
+namespace {
+
+constexpr int kTurn = 0, kScale = 3, kShift = 4;
+
+/// A row of a Jacobian times a dense row.
+Scalar dot(const SparseRows& row, const Scalar* dense) {
+  Scalar v = 0;
+  int c = 0;
+  for (int s = 0; s < row.segments; ++s)
+    for (int i = 0; i < row.segment[s].size; ++i) v += row.h[c++] * dense[row.segment[s].first + i];
+  return v;
+}
+
+/// Adds a place's part of a row: d^T J, into the segment where it is there already.
+void add_place(const WorldPoint& at, const Vec3& d, SparseRows* row) {
+  int column = 0;
+  for (int s = 0; s < at.segments; ++s) {
+    int into = 0, c = 0;
+    while (into < row->segments && row->segment[into].first != at.segment[s].first) c += row->segment[into++].size;
+    if (into == row->segments) {
+      row->segment[row->segments++] = at.segment[s];
+      for (int i = 0; i < at.segment[s].size; ++i) row->h[c + i] = Scalar(0);
+    }
+    for (int i = 0; i < at.segment[s].size; ++i) row->h[c + i] += d.dot(at.J.col(column++));
+  }
+}
+
+}  // namespace
+
+/// Before the state moves: U = -N(x-), raw rows of V P in G. Returns how many rows the transport has.
+int Filter::begin_transport() {
+  const bool has_scale = scale_row(&l_);
+  if (!has_scale) l_.segments = 0;
+  const int rows = state_.planes > 0 ? kGaugeRows : has_scale ? kShift : kScale;
+  const std::size_t bytes = sizeof(Scalar) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(ld_);
+  std::memset(U_, 0, sizeof(Scalar) * kGaugeRows * static_cast<std::size_t>(ld_));
+  std::memset(G_, 0, bytes);
+  Scalar* U_shift = rows == kGaugeRows ? U_ + kShift * ld_ : nullptr;
+  add_gauge_rows(state_, Scalar(-1), U_shift, U_, U_ + kScale * ld_, ld_);
+  SparseRows E;
+  E.rows = 3;
+  E.segments = 1;
+  put<3, 3>(E.h, 3, 0, Mat3::Identity());
+  E.segment[0] = {Body::kTheta, 3};
+  kernels_->gather(P_, E, G_, ld_);
+  if (has_scale) kernels_->gather(P_, l_, G_ + kScale * ld_, ld_);
+  if (rows == kGaugeRows) {
+    E.segment[0] = {Body::kPosition, 3};
+    kernels_->gather(P_, E, G_ + kShift * ld_, ld_);
+  }
+  p_before_ = state_.body.p_W;
+  return rows;
+}
+
+/// After it has moved: U and G as above.
+void Filter::finish_transport(int m, int rows) {
+  const int n = state_.dim;
+  Scalar* U_shift = rows == kGaugeRows ? U_ + kShift * ld_ : nullptr;
+  add_gauge_rows(state_, Scalar(1), U_shift, U_, U_ + kScale * ld_, ld_);
+  if (l_.segments == 0) std::memset(U_ + kScale * ld_, 0, sizeof(Scalar) * static_cast<std::size_t>(ld_));
+
+  const auto raw = [&](const Scalar* row, int which) {  // E_theta, l, E_p
+    if (which < kScale) return row[Body::kTheta + which];
+    return which == kScale ? dot(l_, row) : row[Body::kPosition + which - kShift];
+  };
+  for (int r = 0; r < rows;
+       ++r) {  // of P1: less (V W^T) W. V touches no held row, so held columns are as they should be.
+    Scalar* g = G_ + r * ld_;
+    for (int j = 0; j < m; ++j) {
+      const Scalar* w = W_ + j * ld_;
+      const Scalar v = raw(w, r);
+      for (int i = 0; i < n; ++i) g[i] -= v * w[i];
+    }
+  }
+  const Mat3 turn = hat(p_before_);
+  for (int a = 0; a < 3 && rows == kGaugeRows; ++a) {
+    Scalar* g = G_ + (kShift + a) * ld_;
+    for (int b = 0; b < kShift; ++b) {
+      const Scalar factor = b < kScale ? turn(a, b) : -p_before_[a];
+      const Scalar* from = G_ + b * ld_;
+      for (int i = 0; i < n; ++i) g[i] += factor * from[i];
+    }
+  }
+  const auto pick = [&](const Scalar* row, int which) {
+    if (which < kShift) return raw(row, which);
+    const int a = which - kShift;
+    Scalar v = raw(row, which) - p_before_[a] * raw(row, kScale);
+    for (int b = 0; b < 3; ++b) v += turn(a, b) * raw(row, b);
+    return v;
+  };
+  Scalar VPV[kGaugeRows][kGaugeRows];
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < rows; ++c) VPV[r][c] = pick(G_ + r * ld_, c);
+  for (int r = 0; r < rows; ++r) {
+    Scalar* g = G_ + r * ld_;
+    for (int c = 0; c < rows; ++c) {
+      const Scalar half = (VPV[r][c] + VPV[c][r]) / Scalar(4);
+      const Scalar* u = U_ + c * ld_;
+      for (int i = 0; i < n; ++i) g[i] += half * u[i];
+    }
+  }
+}
+
+/// H P H^T of one row.
+Scalar Filter::variance_of(const SparseRows& row) const {
+  int column[SparseRows::kMaxColumns];
+  int c = 0;
+  for (int s = 0; s < row.segments; ++s)
+    for (int i = 0; i < row.segment[s].size; ++i) column[c++] = row.segment[s].first + i;
+  Scalar sum = 0;
+  for (int i = 0; i < c; ++i)
+    for (int j = 0; j < c; ++j) sum += row.h[i] * row.h[j] * P_(column[i], column[j]);
+  return sum;
+}
+
+/// The best known of a few log lengths: a patch's lambda, a log inverse depth, or between a point and the one that is farthest from it.
+/// Each annihilates shifts and turns, and grows by s when the world grows by exp(s). None touches held rows.
+bool Filter::scale_row(SparseRows* row) const {
+  constexpr int kMostTried = 12;
+  Scalar best = Scalar(0);
+  bool found = false;
+  int tried = 0;
+  for (int s = 0; s < state_.slots && tried < kMostTried; ++s) {
+    const Block& a = state_.block[s];
+    SparseRows candidate;
+    candidate.rows = 1;
+    if (a.kind == BlockKind::kPatch) {
+      const GaugeRows N = gauge_rows(state_, a);
+      candidate.segments = 2;
+      candidate.segment[0] = {Body::kTheta, 3};
+      candidate.segment[1] = {a.first + 3, 1};
+      for (int i = 0; i < 3; ++i) candidate.h[i] = -N(3, 3 + i);
+      candidate.h[3] = Scalar(1);
+    } else if (a.kind == BlockKind::kInverseDepth) {
+      const Scalar rho = a.inverse_depth().rho;
+      if (!(rho > Scalar(1e-6))) continue;
+      candidate.segments = 1;
+      candidate.segment[0] = {a.first, 3};
+      candidate.h[0] = candidate.h[1] = Scalar(0);
+      candidate.h[2] = Scalar(-1) / rho;
+    } else if (a.kind == BlockKind::kPoint || a.kind == BlockKind::kPlanePoint) {
+      const Vec3 here = point(s);
+      int far = -1;
+      Scalar far2 = Scalar(1e-12);
+      for (int t = 0; t < state_.slots; ++t) {
+        if (state_.block[t].kind != BlockKind::kPoint && state_.block[t].kind != BlockKind::kPlanePoint) continue;
+        const Scalar d2 = (point(t) - here).squaredNorm();
+        if (d2 > far2) {
+          far2 = d2;
+          far = t;
+        }
+      }
+      if (far < 0) continue;
+      WorldPoint from, to;
+      world_point(state_, s, &from);
+      world_point(state_, far, &to);
+      const Vec3 d = (from.p_W - to.p_W) / far2;
+      candidate.segments = 0;
+      add_place(from, d, &candidate);
+      add_place(to, -d, &candidate);
+    } else {
+      continue;
+    }
+    ++tried;
+    const Scalar variance = variance_of(candidate);
+    if (found && variance >= best) continue;
+    best = variance;
+    found = true;
+    *row = candidate;
+  }
+  return found;
+}
+
+}  // namespace pf

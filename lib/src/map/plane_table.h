@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "map/plane_outline.h"
+
+/// What is kept about each plane beside its block in the filter.
+
+namespace pf {
+
+struct PlaneEntry {
+  std::uint32_t id = 0;  ///< never used twice
+  int slot = -1;         ///< block in the filter; -1: this entry is free
+  int age = 0;           ///< frames since it was found
+  int weak = 0;          ///< of them in a row, the last ones with too few points
+};
+
+class PlaneTable {
+ public:
+  bool layout(Arena& arena, int capacity) {
+    entry_ = arena.take<PlaneEntry>(static_cast<std::size_t>(capacity));
+    merged_ = arena.take<Merged>(static_cast<std::size_t>(capacity) * kRemembered);
+    capacity_ = capacity;
+    return arena.ok();
+  }
+  void init() {
+    clear();
+    next_id_ = 1;
+  }
+  /// No planes any more; their ids are not used again.
+  void clear() {
+    for (int i = 0; i < capacity_; ++i) entry_[i] = PlaneEntry();
+    for (int i = 0; i < capacity_ * kRemembered; ++i) merged_[i] = Merged();
+    next_merged_ = 0;
+  }
+
+  int capacity() const { return capacity_; }
+  bool used(int i) const { return entry_[i].slot >= 0; }
+  PlaneEntry& operator[](int i) { return entry_[i]; }
+  const PlaneEntry& operator[](int i) const { return entry_[i]; }
+
+  /// Entry of a new plane, or -1 when the table is full.
+  int add(int slot) {
+    for (int i = 0; i < capacity_; ++i) {
+      if (used(i)) continue;
+      entry_[i] = PlaneEntry();
+      entry_[i].slot = slot;
+      entry_[i].id = next_id_++;
+      return i;
+    }
+    return -1;
+  }
+  void remove(int i) { entry_[i] = PlaneEntry(); }
+  void remember_merge(std::uint32_t from, std::uint32_t into) {
+    merged_[next_merged_] = {from, into};
+    next_merged_ = (next_merged_ + 1) % (capacity_ * kRemembered);
+  }
+
+  /// The id of a slot's plane, or 0.
+  std::uint32_t id_at(int slot) const {
+    for (int i = 0; i < capacity_; ++i)
+      if (entry_[i].slot == slot) return entry_[i].id;
+    return 0;
+  }
+  /// The id that an id stands for now; 0 when its plane is gone, or was merged too long ago.
+  std::uint32_t find(std::uint32_t id) const {
+    for (int step = 0; step <= capacity_ * kRemembered; ++step) {
+      for (int i = 0; i < capacity_; ++i)
+        if (used(i) && entry_[i].id == id) return id;
+      std::uint32_t next = 0;
+      for (int i = 0; i < capacity_ * kRemembered; ++i)
+        if (merged_[i].from == id && id != 0) next = merged_[i].into;
+      if (next == 0) return 0;
+      id = next;
+    }
+    return 0;
+  }
+
+ private:
+  static constexpr int kRemembered = 4;  ///< merges, per plane of the capacity
+  struct Merged {
+    std::uint32_t from = 0, into = 0;
+  };
+
+  PlaneEntry* entry_ = nullptr;
+  Merged* merged_ = nullptr;
+  int capacity_ = 0;
+  int next_merged_ = 0;
+  std::uint32_t next_id_ = 1;
+};
+
+}  // namespace pf

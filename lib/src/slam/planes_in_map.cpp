@@ -1,0 +1,306 @@
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/symmetric_eigen.h"
+#include "slam/filter_slam.h"
+
+/// What happens to the planes of the map after each update: misfits out, points in, points fixed, planes found, merged, dissolved.
+/// Gee 2007, sections 3.3 and 3.4. One plane at a time is tended to in a frame, so that the work is bounded.
+
+namespace pf {
+namespace {
+
+constexpr int kConverged = 10;         ///< observations before a point is believed
+constexpr int kDiscoverEvery = 5;      ///< frames
+constexpr int kMostRejections = 4;     ///< in a row, before a folded point is taken out again
+constexpr int kLeastPoints = 4;        ///< that keep a plane alive
+constexpr int kPatience = 60;          ///< frames with fewer
+constexpr int kLeastFixed = 4;         ///< points that a patch begins with
+constexpr Scalar kSlanted = 0.05f;     ///< to its frame, above which a plane gets another one
+constexpr Scalar kSameNormal = 0.97f;  ///< cosine of the angle below which planes may be one
+
+Scalar largest_eigenvalue(const Mat3& C) {
+  Vec3 lambda;
+  Mat3 V;
+  symmetric_eigen(C, &lambda, &V);
+  return lambda(2);
+}
+
+}  // namespace
+
+void FilterSlam::tend_planes() {
+  if (!settings_.planes || (recording_ && !depth_known_)) return;
+  unfold_misfits();
+  const int turn = report_.frames % planes_.capacity();
+  for (int k = 0, tended = 0; k < planes_.capacity(); ++k) {
+    const int i = (turn + k) % planes_.capacity();
+    if (!planes_.used(i)) continue;
+    ++planes_[i].age;
+    if (tended++ > 0) continue;
+    fold_into(i);
+    settle_frame(i);
+    if (settings_.fix_sigma > Scalar(0)) fix_on(i);
+    merge_into(i);
+  }
+  dissolve_weak();
+  if (report_.frames % kDiscoverEvery == 0) discover_plane();
+}
+
+/// A 3-D point that may be folded, or vote for a plane; its covariance relative to the camera.
+bool FilterSlam::is_candidate(int entry, Mat3* covariance) const {
+  if (!features_.used(entry)) return false;
+  const Feature& f = features_[entry];
+  const Block& block = filter_.state().block[f.slot];
+  if (block.kind != BlockKind::kPoint || f.failures > 0 || (f.observations < kConverged && !f.is_target)) return false;
+  const Triangle& P = filter_.covariance();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      (*covariance)(i, j) = P(block.first + i, block.first + j) + P(Body::kPosition + i, Body::kPosition + j) -
+                            P(block.first + i, Body::kPosition + j) - P(Body::kPosition + i, block.first + j);
+  const Scalar most = settings_.fold_sigma * settings_.fold_sigma;
+  return (*covariance)(0, 0) + (*covariance)(1, 1) + (*covariance)(2, 2) < most ||
+         largest_eigenvalue(*covariance) < most;
+}
+
+/// Points that are found again and again where their plane does not put them go back to three coordinates, and the plane is less sure.
+void FilterSlam::unfold_misfits() {
+  for (int i = 0; i < features_.capacity(); ++i) {
+    if (!features_.used(i) || features_[i].rejections < kMostRejections) continue;
+    const int slot = features_[i].slot;
+    if (!is_planar(filter_.state().block[slot].kind)) continue;
+    const int plane = filter_.state().plane_of(slot);
+    const int children = filter_.state().block[plane].children;
+    if (!filter_.unfold(slot, Scalar(10) * settings_.plane_distance)) continue;
+    features_[i].rejections = 0;
+    features_[i].observations = 1;  // has to converge again before it may be folded
+    loosen(plane, children);
+  }
+}
+
+/// A plane has believed one of its points wrongly by about plane_distance: what that did to it is added to its covariance.
+void FilterSlam::loosen(int plane_slot, int children) {
+  const Scalar share = settings_.plane_distance / static_cast<Scalar>(std::max(children, 1));
+  const Scalar extent = Scalar(0.25) * settings_.plane_radius;
+  Mat3 Q = Mat3::Zero();
+  Q(0, 0) = Q(1, 1) = share * share / (extent * extent);
+  Q(2, 2) = share * share;
+  filter_.inflate(plane_slot, Q);
+}
+
+/// Points that lie on the plane join it.
+void FilterSlam::fold_into(int plane_entry) {
+  const int plane = planes_[plane_entry].slot;
+  const Block& block = filter_.state().block[plane];
+  const PlaneFrame& frame = filter_.state().frame_of(block);
+  int slots[Filter::kMostFolded];
+  int count = 0;
+  for (int i = 0; i < features_.capacity() && count < Filter::kMostFolded && count < settings_.max_observations; ++i) {
+    Mat3 covariance;
+    if (features_.used(i) && features_[i].is_target) continue;
+    if (!is_candidate(i, &covariance)) continue;
+    const int slot = features_[i].slot;
+    const Vec3 p_W = filter_.point(slot);
+    if ((p_W - frame.o_W).squaredNorm() > settings_.plane_radius * settings_.plane_radius) continue;
+    Scalar d, variance;
+    if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(3) * settings_.plane_distance) continue;
+    // Agreement means something only where the distance is known to about what it is gated with.
+    if (!filter_.distance(plane, slot, &d, &variance)) continue;
+    const Scalar most = settings_.plane_distance * settings_.plane_distance;
+    if (d * d > most * Scalar(4) || variance > most) continue;
+    slots[count++] = slot;
+  }
+  unsigned char folded[Filter::kMostFolded];
+  if (count > 0) filter_.fold(plane, slots, count, settings_.fold, folded);
+}
+
+/// Points that are known well among those of their plane are estimated no more.
+void FilterSlam::fix_on(int plane_entry) {
+  const int plane = planes_[plane_entry].slot;
+  const State& state = filter_.state();
+  int group[Filter::kMostFolded], slots[Filter::kMostFolded];
+  int group_count = 0, count = 0;
+  const bool has_patch = filter_.patch_of(plane) >= 0;
+  for (int i = 0; i < features_.capacity() && group_count < Filter::kMostFolded; ++i) {
+    if (!features_.used(i) || features_[i].failures > 0) continue;
+    const Block& block = state.block[features_[i].slot];
+    if (block.kind == BlockKind::kPlanePoint && block.parent == plane) group[group_count++] = features_[i].slot;
+  }
+  if (!has_patch && group_count < 2 * kLeastFixed) return;
+  const int most = std::min(Filter::kMostFolded, settings_.max_observations);
+  const Scalar variance = settings_.fix_sigma * settings_.fix_sigma;
+  for (int k = 0; k < group_count && count < most; ++k)
+    if (filter_.variance_in_drawing(group[k], group, group_count) < variance) slots[count++] = group[k];
+  if (count == 0 || (!has_patch && count < kLeastFixed)) return;
+  filter_.fix(slots, count, settings_.fix, group, group_count);
+}
+
+/// One plane among the points that are in none yet.
+void FilterSlam::discover_plane() {
+  if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
+  int count = 0;
+  const Scalar most = Scalar(2) * settings_.plane_distance;
+  for (int i = 0; i < features_.capacity(); ++i) {
+    if (!is_candidate(i, &candidate_[count].covariance)) continue;
+    const Vec3 p_W = filter_.point(features_[i].slot);
+    bool taken = false;
+    for (int k = 0; k < planes_.capacity() && !taken; ++k) {
+      if (!planes_.used(k)) continue;
+      const Block& plane = filter_.state().block[planes_[k].slot];
+      const PlaneFrame& frame = filter_.state().frame_of(plane);
+      taken = std::abs(plane_distance(frame, plane.xyz(), p_W)) < most &&
+              (p_W - frame.o_W).squaredNorm() < settings_.plane_radius * settings_.plane_radius;
+    }
+    if (taken) continue;
+    candidate_[count].p_W = p_W;
+    candidate_entry_[count++] = i;
+  }
+  if (count <= settings_.plane_min_points) return;
+  PlaneSearchSettings search;
+  search.min_points = settings_.plane_min_points;
+  search.distance = settings_.plane_distance;
+  search.radius = settings_.plane_radius;
+  search.normal_variance = settings_.plane_distance * settings_.plane_distance / Scalar(4);
+  PlaneFit fit;
+  int member[kMaxPlaneMembers];
+  int members = 0;
+  if (!search_plane(candidate_, count, search, filter_.state().body.p_W, &random_, &fit, member, &members)) return;
+  for (int k = 0; k < members; ++k) member[k] = features_[candidate_entry_[member[k]]].slot;
+  const int slot = filter_.add_plane(fit, member, members, settings_.fold.roughness);
+  if (slot < 0) return;
+  if (planes_.add(slot) < 0) {
+    filter_.remove(&slot, 1);
+    return;
+  }
+  settings_.hooks.say("found a plane");
+}
+
+/// Whether the points of `other` say that it is the plane in `slot`.
+bool FilterSlam::same_plane(int slot, int other) const {
+  const State& state = filter_.state();
+  const Block &a = state.block[slot], &b = state.block[other];
+  Vec3 n_a, n_b;
+  Scalar d_a, d_b;
+  plane_normal(state.frame_of(a), a.xyz(), &n_a, &d_a);
+  plane_normal(state.frame_of(b), b.xyz(), &n_b, &d_b);
+  if (n_a.dot(n_b) < kSameNormal) return false;
+  int points = 0, agree = 0, close = 0;
+  for (int i = 0; i < features_.capacity(); ++i) {
+    if (!features_.used(i)) continue;
+    const Block& block = state.block[features_[i].slot];
+    if (!is_planar(block.kind) || state.plane_of(features_[i].slot) != other) continue;
+    Scalar d, variance;
+    ++points;
+    if (!filter_.distance(slot, features_[i].slot, &d, &variance)) continue;
+    variance += settings_.fold.roughness * settings_.fold.roughness;
+    if (d * d < Scalar(9) * variance) ++agree;
+    if (std::abs(d) < Scalar(3) * settings_.plane_distance) ++close;
+  }
+  // Near as well as undecided: a plane that is hardly known agrees with anything.
+  return points >= kLeastPoints && 10 * agree >= 9 * points && 10 * close >= 9 * points;
+}
+
+/// Another plane that is the same one gives its points to this one.
+void FilterSlam::merge_into(int plane_entry) {
+  const int plane = planes_[plane_entry].slot;
+  for (int k = 0; k < planes_.capacity(); ++k) {
+    if (k == plane_entry || !planes_.used(k)) continue;
+    const int other = planes_[k].slot;
+    if (filter_.state().block[other].children > filter_.state().block[plane].children || !same_plane(plane, other))
+      continue;
+    FoldRule rule = settings_.fold;
+    rule.gate = Scalar(16);
+    for (int i = 0; i < features_.capacity(); ++i) {
+      if (!features_.used(i)) continue;
+      const int slot = features_[i].slot;
+      if (filter_.state().block[slot].kind == BlockKind::kPatchPoint && filter_.state().plane_of(slot) == other &&
+          !filter_.release(slot))
+        return;
+    }
+    int slots[Filter::kMostFolded];
+    unsigned char folded[Filter::kMostFolded];
+    int count = 0;
+    const auto give = [&] {
+      if (count > 0) filter_.fold(plane, slots, count, rule, folded);
+      count = 0;
+    };
+    for (int i = 0; i < features_.capacity(); ++i) {
+      if (!features_.used(i)) continue;
+      const Block& block = filter_.state().block[features_[i].slot];
+      if (block.kind != BlockKind::kPlanePoint || block.parent != other) continue;
+      slots[count++] = features_[i].slot;
+      if (count == std::min(Filter::kMostFolded, settings_.max_observations)) give();
+    }
+    give();
+    planes_.remember_merge(planes_[k].id, planes_[plane_entry].id);
+    dissolve(k);
+    settings_.hooks.say("merged two planes");
+    return;
+  }
+}
+
+/// A plane that has turned away from its frame, or whose points have, gets a frame in their middle.
+void FilterSlam::settle_frame(int plane_entry) {
+  const int plane = planes_[plane_entry].slot;
+  const State& state = filter_.state();
+  const Block& block = state.block[plane];
+  const Vec3 x = block.xyz();
+  const bool slanted = x(0) * x(0) + x(1) * x(1) > kSlanted * kSlanted;
+  if (!slanted || filter_.patch_of(plane) >= 0) return;
+  PlaneFrame to = state.frame_of(block);
+  Vec3 normal;
+  Scalar d;
+  plane_normal(to, x, &normal, &d);
+  to.o_W += x(2) * to.R_WP.col(2);
+  const Vec3 along = (to.R_WP.col(0) - normal * normal.dot(to.R_WP.col(0))).normalized();
+  to.R_WP.col(0) = along;
+  to.R_WP.col(1) = normal.cross(along);
+  to.R_WP.col(2) = normal;
+  filter_.reanchor(plane, to);
+}
+
+/// All points go back to three coordinates, and the plane goes.
+void FilterSlam::dissolve(int plane_entry) {
+  const int plane = planes_[plane_entry].slot;
+  for (int i = 0; i < features_.capacity(); ++i) {
+    if (!features_.used(i)) continue;
+    const int slot = features_[i].slot;
+    if (!is_planar(filter_.state().block[slot].kind) || filter_.state().plane_of(slot) != plane) continue;
+    if (!filter_.unfold(slot, settings_.plane_distance)) drop(&i, 1);
+  }
+  filter_.remove(&plane, 1);
+  planes_.remove(plane_entry);
+}
+
+PlanePoints FilterSlam::outline(int plane_entry, PlaneOutline* outline) const {
+  constexpr int kBatch = 32;
+  const State& state = filter_.state();
+  const int plane = planes_[plane_entry].slot;
+  PlanePoints points;
+  Vec2 uv[kBatch];
+  int count = 0;
+  for (int i = 0; i < features_.capacity(); ++i) {
+    if (!features_.used(i)) continue;
+    const int slot = features_[i].slot;
+    if (!is_planar(state.block[slot].kind) || state.plane_of(slot) != plane) continue;
+    ++points.folded;
+    if (state.block[slot].kind == BlockKind::kPatchPoint) ++points.fixed;
+    if (outline == nullptr) continue;
+    uv[count++] = plane_coordinates(state.frame_of(state.block[plane]), filter_.point(slot));
+    if (count < kBatch) continue;
+    extend_outline(outline, uv, count);
+    count = 0;
+  }
+  if (count > 0) extend_outline(outline, uv, count);
+  return points;
+}
+
+void FilterSlam::dissolve_weak() {
+  for (int i = 0; i < planes_.capacity(); ++i) {
+    if (!planes_.used(i)) continue;
+    const int points = outline(i, nullptr).folded;
+    planes_[i].weak = points < kLeastPoints ? planes_[i].weak + 1 : 0;
+    if (planes_[i].weak > kPatience) dissolve(i);
+  }
+}
+
+}  // namespace pf
