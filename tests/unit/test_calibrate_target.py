@@ -20,7 +20,7 @@ MM = 25.4 / 72
 
 
 def page_and_squares(path):
-    """Page size and rectangles of a PDF [mm]."""
+    """Page size, and x, y, width and height of the quadrangles of a PDF [mm]."""
     data = path.read_bytes()
     box = re.search(rb"/MediaBox \[\s*0 0 ([\d.]+) ([\d.]+)", data)
     streams = []
@@ -29,12 +29,14 @@ def page_and_squares(path):
             streams.append(zlib.decompressobj().decompress(data[start.end():]).decode("latin-1"))
         except zlib.error:
             pass
-    drawn = next(text for text in streams if " re" in text)
-    scale = float(re.search(r"([-\d.]+) 0 0 [-\d.]+ [-\d.]+ [-\d.]+ cm", drawn).group(1)) if " cm" in drawn else 1.0
     number = r"(-?[\d.]+)"
-    rectangles = [[abs(float(v)) * abs(scale) * MM for v in match] for match in
-                  re.findall(rf"{number} {number} {number} {number} re", drawn)]
-    return [float(side) * MM for side in box.groups()], rectangles
+    corner = rf"{number} {number}"
+    squares = []
+    for text in streams:
+        for match in re.findall(rf"{corner} m {corner} l {corner} l {corner} l h", text):
+            x, y = [float(v) * MM for v in match[0::2]], [float(v) * MM for v in match[1::2]]
+            squares.append((min(x), min(y), max(x) - min(x), max(y) - min(y)))
+    return [float(side) * MM for side in box.groups()], squares
 
 
 def near(name, actual, expected, tolerance=0.001):
@@ -58,7 +60,7 @@ with tempfile.TemporaryDirectory() as folder:
         for name, index in (("square width", 2), ("square height", 3)):
             near(name, max((r[index] for r in dark), key=lambda v: abs(v - side)), side)
         columns = sorted({round(r[0], 3) for r in dark})
-        near("columns apart", columns[-1] - columns[0], (len(columns) - 1) * side)
+        near("columns apart", max(columns) - min(columns), (int(board.split("x")[0]) - 1) * side)
 
     too_large = subprocess.run([PROGRAM, "--print-target", target, "--board", "20x7:0.025"], text=True, capture_output=True)
     if too_large.returncode == 0 or "does not fit" not in too_large.stderr:

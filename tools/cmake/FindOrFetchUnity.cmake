@@ -9,7 +9,7 @@ set(PLANEFOLD_DEPS_DIR ${PROJECT_SOURCE_DIR}/build/_deps CACHE PATH "Where fetch
 
 set(unity_source "")
 find_path(unity_root_dir NAMES unity.c PATHS ${UNITY_ROOT} ${PLANEFOLD_DEPS_DIR}/unity
-          PATH_SUFFIXES src NO_DEFAULT_PATH)
+          PATH_SUFFIXES src NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
 if(NOT unity_root_dir)
   find_package(unity QUIET CONFIG)
   if(NOT TARGET unity::framework)
@@ -17,7 +17,8 @@ if(NOT unity_root_dir)
                             ${PLANEFOLD_DEPS_DIR}/unity
                     RESULT_VARIABLE unity_fetch_result)
     if(unity_fetch_result EQUAL 0)
-      find_path(unity_root_dir NAMES unity.c PATHS ${PLANEFOLD_DEPS_DIR}/unity NO_DEFAULT_PATH)
+      find_path(unity_root_dir NAMES unity.c PATHS ${PLANEFOLD_DEPS_DIR}/unity NO_DEFAULT_PATH
+                NO_CMAKE_FIND_ROOT_PATH)
     endif()
   endif()
 endif()
