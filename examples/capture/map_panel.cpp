@@ -41,6 +41,11 @@ std::array<double, 3> project(const double* c, int stride, const Vec3& a, const 
   return out;
 }
 
+Colour colour_of_plane(uint32_t id) {
+  const PlaneColour c = plane_colour(id);
+  return {c.r, c.g, c.b};
+}
+
 }  // namespace
 
 void MapPanel::choose_axes(const pf_pose_t& pose) {
@@ -128,16 +133,16 @@ void MapPanel::draw(const Canvas& canvas, const FrameView& view, double x, doubl
     };
     draw_scale(canvas, x, y, width, height, pixels);
     for (const PlaneView& plane : view.planes) {
-      const PlaneColour c = plane_colour(plane.id);
+      const Colour colour = colour_of_plane(plane.id);
       cairo_new_path(pen);
       for (const Vec3& corner : plane.outline) {
         const auto at = place(corner);
         cairo_line_to(pen, at[0], at[1]);
       }
       cairo_close_path(pen);
-      canvas.colour({c.r, c.g, c.b}, 0.2);
+      canvas.colour(colour, 0.2);
       cairo_fill_preserve(pen);
-      canvas.colour({c.r, c.g, c.b}, 0.9);
+      canvas.colour(colour, 0.9);
       cairo_set_line_width(pen, 1.6);
       cairo_stroke(pen);
     }
@@ -149,10 +154,11 @@ void MapPanel::draw(const Canvas& canvas, const FrameView& view, double x, doubl
       const auto at = place(vec(f.p_W));
       const auto found = measured.find(f.id);
       const bool inlier = found != measured.end() && found->second;
-      const Colour colour = f.is_target != 0             ? kTarget
-                            : !inlier                    ? kDim
-                            : f.kind == PF_FEATURE_POINT ? kPoint
-                                                         : kInverseDepth;
+      const Colour colour = f.is_target != 0                     ? kTarget
+                            : !inlier                            ? kDim
+                            : f.plane != 0                       ? colour_of_plane(f.plane)
+                            : f.kind == PF_FEATURE_INVERSE_DEPTH ? kInverseDepth
+                                                                 : kPoint;
       const auto c = project(f.covariance, 3, right_, forward_);
       const Ellipse e = ellipse_of(c[0], c[1], c[2]);
       const double faint = pixels * e.a > 40.0 ? 0.5 : 1.0;

@@ -29,6 +29,11 @@ const char* track_name(uint32_t status) {
   return kNames[status <= 4 ? status : 0];
 }
 
+const char* kind_name(uint32_t kind) {
+  constexpr const char* kNames[] = {"unknown", "inverse_depth", "point", "folded", "fixed"};
+  return kNames[kind <= 4 ? kind : 0];
+}
+
 void write_calibration(std::FILE* file, const pf_camera_t& camera) {
   constexpr const char* kNames[] = {"none", "none", "radtan", "equidistant", "harris_division"};
   constexpr int kCounts[] = {0, 0, 5, 4, 1};
@@ -107,8 +112,8 @@ void Outputs::write(const FrameView& view) {
   if (tracks_) {
     for (const pf_track_t& t : view.tracks) {
       std::fprintf(tracks_.get(), "%" PRId64 ",%u,%s,%s,%.3f,%.3f,%.4g,%.4g,%.4g", view.index, t.id,
-                   track_name(t.status), t.kind == PF_FEATURE_POINT ? "point" : "inverse_depth", t.predicted_px[0],
-                   t.predicted_px[1], t.covariance_px[0], t.covariance_px[1], t.covariance_px[3]);
+                   track_name(t.status), kind_name(t.kind), t.predicted_px[0], t.predicted_px[1], t.covariance_px[0],
+                   t.covariance_px[1], t.covariance_px[3]);
       if (t.status == PF_TRACK_MISSED) {
         std::fprintf(tracks_.get(), ",,\n");
       } else {

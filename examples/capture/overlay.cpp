@@ -22,7 +22,7 @@ int even(double value) { return 2 * static_cast<int>(std::lround(0.5 * value)); 
 Colour track_colour(const pf_track_t& track) {
   switch (track.status) {
     case PF_TRACK_INLIER:
-      return track.kind == PF_FEATURE_POINT ? kPoint : kInverseDepth;
+      return track.kind == PF_FEATURE_INVERSE_DEPTH ? kInverseDepth : kPoint;
     case PF_TRACK_OUTLIER:
       return kOutlier;
     case PF_TRACK_MISSED:
@@ -139,6 +139,20 @@ void Overlay::draw_target() {
 
 void Overlay::draw_tracks(const FrameView& view) {
   cairo_t* pen = canvas_.pen();
+  std::map<uint32_t, uint32_t> plane_of;
+  for (const pf_feature_t& feature : view.features) {
+    if (feature.plane != 0) {
+      plane_of[feature.id] = feature.plane;
+    }
+  }
+  const auto colour_of = [&](const pf_track_t& track) {
+    const auto plane = plane_of.find(track.id);
+    if (track.status != PF_TRACK_INLIER || plane == plane_of.end()) {
+      return track_colour(track);
+    }
+    const PlaneColour c = plane_colour(plane->second);
+    return Colour{c.r, c.g, c.b};
+  };
   const auto at = [&](double pixel) { return zoom_ * (pixel + 0.5); };
   for (const pf_track_t& track : view.tracks) {
     const auto found = tails_.find(track.id);
@@ -147,13 +161,13 @@ void Overlay::draw_tracks(const FrameView& view) {
     }
     const auto& pixels = found->second.pixels;
     for (size_t i = 1; i < pixels.size(); ++i) {
-      canvas_.colour(track_colour(track), 0.65 * static_cast<double>(i) / static_cast<double>(pixels.size()));
+      canvas_.colour(colour_of(track), 0.65 * static_cast<double>(i) / static_cast<double>(pixels.size()));
       cairo_set_line_width(pen, 1.6);
       canvas_.line(at(pixels[i - 1].first), at(pixels[i - 1].second), at(pixels[i].first), at(pixels[i].second));
     }
   }
   for (const pf_track_t& track : view.tracks) {
-    const Colour colour = track_colour(track);
+    const Colour colour = colour_of(track);
     if (track.status != PF_TRACK_NEW) {
       const Ellipse e = ellipse_of(track.covariance_px[0], track.covariance_px[1], track.covariance_px[3]);
       canvas_.colour(colour, track.status == PF_TRACK_INLIER ? 0.75 : 0.9);

@@ -35,13 +35,16 @@ void Overlay::draw_numbers(const FrameView& view, double x, double y, double wid
   const double right = x + width - 14.0;
   double row = y + 22.0;
   const double room = image_height_ - y;
-  const double step = std::clamp((room - 16.0) / 9.0, 14.0, 22.0);
+  const double step = std::clamp((room - 16.0) / 11.0, 14.0, 22.0);
   const double size = step < 17.0 ? 11.0 : 12.5;
   int counts[5] = {0, 0, 0, 0, 0};
   int points = 0;
+  int planar = 0;
   for (const pf_track_t& track : view.tracks) {
     counts[track.status <= 4 ? track.status : 0] += 1;
     points += track.status == PF_TRACK_INLIER && track.kind == PF_FEATURE_POINT ? 1 : 0;
+    planar +=
+        track.status == PF_TRACK_INLIER && (track.kind == PF_FEATURE_FOLDED || track.kind == PF_FEATURE_FIXED) ? 1 : 0;
   }
   const auto put = [&](const Colour& mark, const char* name, const std::string& value) {
     if (row > image_height_ - 4.0) {
@@ -55,7 +58,8 @@ void Overlay::draw_numbers(const FrameView& view, double x, double y, double wid
     row += step;
   };
   put(kPoint, "measured, 3-D point", std::to_string(points));
-  put(kInverseDepth, "measured, inverse depth", std::to_string(counts[PF_TRACK_INLIER] - points));
+  put(kInverseDepth, "measured, inverse depth", std::to_string(counts[PF_TRACK_INLIER] - points - planar));
+  put(kPath, "measured, on a plane", std::to_string(planar));
   put(kOutlier, "found, but disagrees", std::to_string(counts[PF_TRACK_OUTLIER]));
   put(kMissed, "looked for, not found", std::to_string(counts[PF_TRACK_MISSED]));
   put(kNew, "new", std::to_string(counts[PF_TRACK_NEW]));
@@ -68,6 +72,7 @@ void Overlay::draw_numbers(const FrameView& view, double x, double y, double wid
     canvas_.text(right - canvas_.text_width(value, size), row, value, size);
     row += step;
   };
+  note("planes", std::to_string(view.planes.size()));
   note("features in map / state", std::to_string(view.report.features) + " / " + std::to_string(view.report.state_dim));
   if (view.has_pose) {
     const double* c = view.pose.covariance;

@@ -16,7 +16,7 @@ inline PlaneColour plane_colour(uint32_t id) {
   const auto part = [&](double shift) {
     const double x = std::fabs(std::fmod(hue + shift, 1.0) * 6.0 - 3.0) - 1.0;
     const double pure = x < 0.0 ? 0.0 : x > 1.0 ? 1.0 : x;
-    return 0.22 + 0.74 * pure;
+    return 0.36 + 0.62 * pure;
   };
   return {part(0.0), part(2.0 / 3.0), part(1.0 / 3.0)};
 }

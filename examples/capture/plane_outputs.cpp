@@ -66,6 +66,7 @@ nlohmann::ordered_json planes_json(const std::vector<PlaneView>& planes) {
     one["sigma"] = plane.sigma;
     one["sigma_normal_deg"] = plane.sigma_normal * 57.29577951308232;
     one["points"] = plane.points;
+    one["fixed_points"] = plane.fixed_points;
     one["area_m2"] = plane.area();
     one["orientation"] = plane.orientation;
     one["outline"] = plane.outline;

@@ -31,7 +31,60 @@ std::vector<Vec3> cut(const std::vector<Vec3>& polygon, const Vec3& side, double
   return kept;
 }
 
+PlaneView view_of(const pf_plane_t& plane) {
+  constexpr const char* kOrientations[] = {"unknown", "horizontal_up", "horizontal_down", "vertical", "other"};
+  PlaneView view;
+  view.id = plane.id;
+  view.distance = plane.distance;
+  view.points = plane.points;
+  view.fixed_points = plane.fixed_points;
+  view.orientation = kOrientations[plane.orientation <= 4 ? plane.orientation : 0];
+  for (size_t i = 0; i < 3; ++i) {
+    view.normal[i] = plane.normal_W[i];
+    view.origin[i] = plane.p_WP[i];
+    view.u[i] = plane.R_WP[3 * i];
+    view.v[i] = plane.R_WP[3 * i + 1];
+  }
+  double middle[2] = {0.0, 0.0};
+  const int count = std::clamp(plane.outline_count, 0, PF_OUTLINE_MAX);
+  for (int k = 0; k < count; ++k) {
+    const double* at = plane.outline_P[k];
+    Vec3 p;
+    for (size_t i = 0; i < 3; ++i) {
+      p[i] = view.origin[i] + at[0] * view.u[i] + at[1] * view.v[i];
+    }
+    view.outline.push_back(p);
+    middle[0] += at[0] / count;
+    middle[1] += at[1] / count;
+  }
+  // How far the plane is off along its normal at the middle: delta - alpha x - beta y.
+  const double* c = plane.covariance;
+  const double J[3] = {-middle[0], -middle[1], 1.0};
+  double variance = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      variance += J[i] * c[3 * i + k] * J[k];
+    }
+  }
+  view.sigma = std::sqrt(std::max(0.0, variance));
+  view.sigma_normal = ellipse_of(c[0], c[1], c[4]).a;
+  return view;
+}
+
 }  // namespace
+
+std::vector<PlaneView> read_planes(const pf_slam_t* slam) {
+  std::vector<PlaneView> views;
+  size_t count = 0;
+  pf_get_planes(slam, nullptr, 0, &count);
+  std::vector<pf_plane_t> planes(count);
+  if (count > 0 && pf_get_planes(slam, planes.data(), planes.size(), &count) >= 0) {
+    for (const pf_plane_t& plane : planes) {
+      views.push_back(view_of(plane));
+    }
+  }
+  return views;
+}
 
 double PlaneView::area() const {
   double twice = 0.0;

@@ -1,6 +1,8 @@
 #ifndef PLANEFOLD_CAPTURE_PLANE_VIEW_H
 #define PLANEFOLD_CAPTURE_PLANE_VIEW_H
 
+#include <planefold/planefold.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +18,7 @@ struct PlaneView {
   double sigma = 0.0;         ///< of the distance at the middle of the outline [m]
   double sigma_normal = 0.0;  ///< of the normal, along its worst direction [rad]
   int points = 0;
+  int fixed_points = 0;
   const char* orientation = "unknown";
   Vec3 origin{}, u{}, v{};    ///< a frame in the plane
   std::vector<Vec3> outline;  ///< convex, in W
@@ -23,6 +26,9 @@ struct PlaneView {
   double area() const;
   Vec3 middle() const;  ///< of the outline
 };
+
+/// The planes of the map now.
+std::vector<PlaneView> read_planes(const pf_slam_t* slam);
 
 /// Corners of an outline cut to what a camera can see of it.
 ///

@@ -125,6 +125,7 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
     count = 0;
   }
   view.features.resize(std::min(count, view.features.size()));
+  view.planes = read_planes(slam_);
   return true;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "plane_outputs.h"
+
 namespace pf::capture {
 
 namespace {
@@ -101,6 +103,7 @@ void Statistics::add(const FrameView& view) {
   }
   last_state_ = report.state;
   last_report_ = report;
+  last_planes_ = view.planes;
   ++frames_;
 }
 
@@ -134,13 +137,16 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["features"] = {{"median", quantile(inliers_, 0.5)}, {"max", largest(inliers_)}};
   json["features_in_view"] = {{"median", quantile(attempts_, 0.5)}, {"max", largest(attempts_)}};
   json["features_in_map"] = {{"points", last_report_.features_point},
-                             {"inverse_depth", last_report_.features_inverse_depth}};
+                             {"inverse_depth", last_report_.features_inverse_depth},
+                             {"folded", last_report_.features_folded},
+                             {"fixed", last_report_.features_fixed}};
   json["new_features"] = new_features_;
   json["evicted"] = evicted_;
   json["state_dim"] = {
       {"median", quantile(state_dim_, 0.5)}, {"max", largest(state_dim_)}, {"end", last_report_.state_dim}};
-  json["state_dim_points_only"] = last_report_.state_dim;
-  json["planes"] = Json::array();
+  json["state_dim_points_only"] = last_report_.state_dim_points_only;
+  json["state_dim_held"] = last_report_.state_dim_held;
+  json["planes"] = planes_json(last_planes_);
   json["nis_per_dof"] = nis_dof_ > 0 ? Json(rounded(nis_ / static_cast<double>(nis_dof_))) : Json();
   json["kernels"] = kernels_name(last_report_.kernels);
   json["scalar"] = config.scalar == PF_SCALAR_FLOAT ? "float" : "double";

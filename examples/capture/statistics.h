@@ -51,6 +51,7 @@ class Statistics {
   uint64_t last_hash_ = 0;
   pf_state_t last_state_ = PF_STATE_STARTING;
   pf_report_t last_report_{};
+  std::vector<PlaneView> last_planes_;
   std::vector<double> ms_, inliers_, attempts_, state_dim_;
   std::vector<double> stage_ms_[PF_STAGE_COUNT];
 };

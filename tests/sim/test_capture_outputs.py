@@ -30,6 +30,20 @@ def capture(out, *arguments):
     return json.loads((out / "report.json").read_text())
 
 
+def check_planes(planes, vertices, faces):
+    outlined = [plane for plane in planes if len(plane["outline"]) >= 3]
+    require(len(faces) == len(outlined), f"map.ply: {len(faces)} faces for {len(outlined)} outlines")
+    for plane, face in zip(outlined, faces):
+        require(all(key in plane for key in ("id", "normal", "distance", "sigma", "points", "area_m2")), f"a plane lacks a name: {plane}")
+        require(abs(sum(x * x for x in plane["normal"]) - 1) < 1e-6, "a normal without unit length")
+        require(plane["sigma"] > 0 and plane["area_m2"] > 0 and plane["points"] > 0, f"plane {plane}")
+        require(int(face[0]) == len(plane["outline"]) == len(face) - 5 and int(face[-1]) == plane["id"], f"face {face}")
+        for index, corner in zip(face[1:-4], plane["outline"]):
+            require(all(abs(float(a) - b) < 1e-6 for a, b in zip(vertices[int(index)], corner)), "a face's corner is not the outline's")
+            off = sum(a * b for a, b in zip(plane["normal"], corner)) - plane["distance"]
+            require(abs(off) < 1e-6, f"a corner lies {off} m off its plane")
+
+
 def check_files(out, report):
     for name in NAMES:
         require(name in report, f"report.json has no '{name}'")
@@ -50,7 +64,10 @@ def check_files(out, report):
     require(all(float(row[1 + 7 * i]) > 0 for row in covariance for i in range(6)), "a variance that is not positive")
     ply = (out / "map.ply").read_text().split("end_header\n")
     count = int(ply[0].split("element vertex ")[1].split()[0])
-    require(count > 20 and count == len(ply[1].splitlines()), f"map.ply: {count} points in the header")
+    faces = int(ply[0].split("element face ")[1].split()[0])
+    lines = ply[1].splitlines()
+    require(count > 20 and count + faces == len(lines), f"map.ply: {count} points and {faces} faces in the header")
+    check_planes(report["planes"], [line.split() for line in lines[:count]], [line.split() for line in lines[count:]])
     for name in ("overlay_mid.png", "overlay_last.png", "calib.yaml", "tracks.csv"):
         require((out / name).is_file(), f"{name} is missing")
     film = out / "overlay.mp4"

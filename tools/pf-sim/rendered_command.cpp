@@ -20,6 +20,7 @@ struct Choices {
   int seeds = 20, frames = 300, jobs = 2, blur = 2;
   std::uint64_t first_seed = 1;
   double noise = 2, exposure_s = 0.008, readout_s = 0;
+  bool no_planes = false;
 };
 
 struct Job {
@@ -97,6 +98,9 @@ json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
   }
   out["innovations"]["all"] = innovations_json(all);
   out["each_run"] = each;
+  std::vector<const PlanesVerdict*> planes;
+  for (int s = 0; s < runs.seeds; ++s) planes.push_back(&summaries[s].planes);
+  out["planes"] = planes_json(planes);
   return out;
 }
 
@@ -116,6 +120,14 @@ void print_runs(const json& j) {
   std::printf("%g runs of %g frames: %g lost runs, %g lost frames, %.2f %% tracked, %.2f %% coasting\n",
               number("/runs"), number("/frames"), number("/lost_runs"), number("/lost_frames"),
               100 * number("/tracked_share"), 100 * number("/coasting_share"));
+  std::printf(
+      "planes: %g true, %g false, %g twice; of %g surfaces seen well %g found, %g within 2 deg and 2 cm (worst %.2f "
+      "deg, "
+      "%.3f m), %g with a good outline (least covered %.2f, most overstepped %.2f)\n",
+      number("/planes/true"), number("/planes/false"), number("/planes/duplicate"), number("/planes/wanted"),
+      number("/planes/found"), number("/planes/within_2_deg_2_cm"), number("/planes/worst_normal_deg"),
+      number("/planes/worst_offset_m"), number("/planes/outlined"), number("/planes/least_covered"),
+      number("/planes/most_overstep"));
   std::printf("innovations      inliers  NIS/dof  lag 1   rms px | match against truth: rms px  lag 1  far %%\n");
   for (const char* kind : {"inverse_depth", "point", "target", "all"}) {
     const json& i = j["innovations"][kind];
@@ -139,6 +151,7 @@ bool prepare(const Choices& c, RenderedOptions& o) {
       pf_config_default(&v.config);
       v.config.camera = o.sim.camera;
       if (sigma > 0) v.config.sigma_pixel = sigma;
+      if (c.no_planes) v.config.planes = 0;
       v.start = start == "rectangle" ? RenderedStart::kRectangle
                 : start == "points"  ? RenderedStart::kPoints
                                      : RenderedStart::kPose;
@@ -224,6 +237,7 @@ void add_rendered(CLI::App& app, int& result) {
   command->add_option("--exposure", c->exposure_s, "[s]");
   command->add_option("--blur", c->blur, "views averaged over the exposure");
   command->add_option("--readout", c->readout_s, "rolling shutter, first to last row [s]");
+  command->add_flag("--no-planes", c->no_planes, "points only, for comparison");
   command->add_option("--sigma-px", c->sigma_pixels,
                       "one or more: the filter's own floor of a match's noise [px]; 0: its default");
   command->callback([c, &result] { result = run(*c); });

@@ -14,6 +14,7 @@ using pf::sim::Pose;
 using pf::sim::Vec3;
 
 constexpr std::uint64_t kStartStream = 21;
+constexpr int kLookEvery = 5;                          // frames between looks at what is in view
 constexpr double kStartSpeed = 0.1, kStartRate = 0.1;  // about the truth's velocities [m/s], [rad/s]
 
 struct CloseSim {
@@ -95,6 +96,7 @@ void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std:
   if (!sim || pf_sim_target(sim.get(), PF_TARGET_POINTS, &corners) != PF_OK) return;
 
   FrameDepth depth(sim.get(), sim_options.camera);
+  SurfaceWatch surfaces(sim.get(), sim_options.camera);
   std::vector<std::unique_ptr<Runner>> runners;
   for (const Variant& variant : options.variants) {
     runners.push_back(std::make_unique<Runner>(variant.config, corners));
@@ -103,12 +105,15 @@ void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std:
   }
   pf_image_t image;
   pf_pose_t truth;
-  for (int frame = 0; frame < sim_options.frames && pf_sim_next(sim.get(), &image, &truth); ++frame)
+  for (int frame = 0; frame < sim_options.frames && pf_sim_next(sim.get(), &image, &truth); ++frame) {
+    if (frame % kLookEvery == 0) surfaces.look(truth, kLookEvery / sim_options.rate_hz);
     for (std::size_t v = 0; v < runners.size(); ++v)
       runners[v]->push(image, truth, depth, rows[v][frame], *summaries[v]);
+  }
   for (std::size_t v = 0; v < runners.size(); ++v) {
     for (int k = 0; k < kTrackKinds; ++k)
       summaries[v]->innovations[k] = runners[v]->watch.sums(static_cast<TrackKind>(k));
+    summaries[v]->planes = surfaces.judge(runners[v]->context.slam);
     summaries[v]->done = 1;
   }
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "innovations.h"
+#include "rendered_planes.h"
 #include "run.h"
 
 namespace pfsim {
@@ -32,6 +33,7 @@ struct RenderedSummary {
   std::int32_t lost_frames = 0;  ///< also those that were refused or have no valid covariance
   std::int32_t coasting_frames = 0, tracked_frames = 0, starting_frames = 0;
   InnovationSums innovations[kTrackKinds];
+  PlanesVerdict planes;  ///< at the end of the run
 };
 
 /// One run of every variant, start to end. summaries has an entry for each; rows[v] has sim.frames entries, and
