@@ -30,10 +30,10 @@ def page_and_squares(path):
         except zlib.error:
             pass
     number = r"(-?[\d.]+)"
-    corner = rf"{number} {number}"
+    corner = rf"{number}\s+{number}"
     squares = []
     for text in streams:
-        for match in re.findall(rf"{corner} m {corner} l {corner} l {corner} l h", text):
+        for match in re.findall(rf"{corner}\s+m\s+{corner}\s+l\s+{corner}\s+l\s+{corner}\s+l\s+h", text):
             x, y = [float(v) * MM for v in match[0::2]], [float(v) * MM for v in match[1::2]]
             squares.append((min(x), min(y), max(x) - min(x), max(y) - min(y)))
     return [float(side) * MM for side in box.groups()], squares
@@ -60,7 +60,7 @@ with tempfile.TemporaryDirectory() as folder:
         for name, index in (("square width", 2), ("square height", 3)):
             near(name, max((r[index] for r in dark), key=lambda v: abs(v - side)), side)
         columns = sorted({round(r[0], 3) for r in dark})
-        near("columns apart", max(columns) - min(columns), (int(board.split("x")[0]) - 1) * side)
+        near("columns apart", max(columns) - min(columns), (int(board.split("x")[0]) - 1) * side, 0.002)
 
     too_large = subprocess.run([PROGRAM, "--print-target", target, "--board", "20x7:0.025"], text=True, capture_output=True)
     if too_large.returncode == 0 or "does not fit" not in too_large.stderr:
