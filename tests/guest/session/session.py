@@ -31,10 +31,12 @@ def quaternion(r):
 
 
 def scene(generator, features):
-    """Points of the target on the wall z = 0, and others around it."""
+    """Points of the target and others on the wall z = 0, as many on the floor, and the rest in between."""
     points = [[x, y, 0.0] for x, y in ((-0.2, -0.15), (0.2, -0.15), (0.2, 0.15), (-0.2, 0.15), (0.0, -0.15), (0.0, 0.15))]
     while len(points) < features:
-        points.append([generator.uniform(-0.75, 0.75), generator.uniform(-0.55, 0.55), generator.uniform(-0.25, 0.9)])
+        x, y, z = generator.uniform(-0.75, 0.75), generator.uniform(-0.55, 0.45), generator.uniform(-0.3, 0.7)
+        where = len(points) % 5
+        points.append([x, y, 0.0] if where < 2 else [x, 0.5, min(z, 0.0) - 0.1] if where < 4 else [x, y, -abs(z) / 2])
     return points
 
 
@@ -80,3 +82,13 @@ def furthest_apart(one, other):
 
 def furthest_from_truth(result, truth):
     return max(math.dist(row[1], place) for row, place in zip(result, truth, strict=True))
+
+
+def check_tracks(result, truth, frames, features):
+    """The run has all of its frames, tracks to the end, holds a map, and is where it should be."""
+    if len(result) != frames or result[-1][0][1] != 0 or result[-1][0][2] < features // 2:
+        raise SystemExit(f"FAIL: {len(result)} frames of {frames}, the last one says {result[-1:]}")
+    off = furthest_from_truth(result, truth)
+    print(f"the last frame has {result[-1][0][2]} features and {result[-1][0][3]} states; at most {off:.4f} m from the truth")
+    if off > 0.05:
+        raise SystemExit(f"FAIL: {off} m from the truth")
