@@ -6,11 +6,12 @@ packages_programs=(libpng-dev libjpeg62-turbo-dev libyaml-cpp-dev libcli11-dev n
   libsdl2-dev libcairo2-dev ffmpeg python3 python3-venv)
 packages_test=(libbenchmark-dev clang-format)
 
-# Without these some tests and comparisons are left out: the peers in pf-bench, the fuzzers and the checker of names,
+# Without these some tests and comparisons are left out: the peers in pf-bench, pf-calibrate, the fuzzers and the checker of names,
 # the cross builds.
-optional_peers=(libopenblas-dev libblis-dev libopencv-core-dev libopencv-imgproc-dev libopencv-video-dev)
+optional_peers=(libopenblas-dev libblis-dev libopencv-core-dev libopencv-imgproc-dev libopencv-video-dev
+  libopencv-calib3d-dev)
 optional_all=(clang clang-tidy libclang-rt-14-dev valgrind
-  g++-aarch64-linux-gnu g++-arm-linux-gnueabihf gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-user)
+  g++-aarch64-linux-gnu g++-arm-linux-gnueabihf gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-user qemu-system-arm)
 
 # missing_packages NAME...   prints those that are not installed
 missing_packages() {
