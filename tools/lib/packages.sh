@@ -10,8 +10,8 @@ packages_test=(libbenchmark-dev clang-format)
 # the cross builds.
 optional_peers=(libopenblas-dev libblis-dev libopencv-core-dev libopencv-imgproc-dev libopencv-video-dev
   libopencv-calib3d-dev)
-optional_all=(clang clang-tidy libclang-rt-14-dev valgrind
-  g++-aarch64-linux-gnu g++-arm-linux-gnueabihf gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-user qemu-system-arm)
+optional_targets=(g++-aarch64-linux-gnu gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-user qemu-system-arm)
+optional_all=(clang clang-tidy libclang-rt-14-dev valgrind g++-arm-linux-gnueabihf)
 
 # missing_packages NAME...   prints those that are not installed
 missing_packages() {
