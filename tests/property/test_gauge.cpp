@@ -111,7 +111,7 @@ void test_removal_should_carry_every_direction() {
 
 /// The same for operations on planes, with the wall's points exactly on it where they are folded.
 template <typename Before, typename Verb>
-void carries_planes(const char* name, SeededRandom& random, Before before, Verb verb) {
+void carries_planes(const char* name, SeededRandom& random, Before before, Verb verb, double most = 1e-11) {
   for (int trial = 0; trial < 10; ++trial) {
     PlaneScene scene(random, 0);
     before(scene);
@@ -122,8 +122,8 @@ void carries_planes(const char* name, SeededRandom& random, Before before, Verb 
     const Dense after = scene.filter.gauge();
     const Dense expected = after * A * after.transpose();
     const double error = largest(scene.filter.P() - expected) / largest(expected);
-    if (!(error < 1e-11)) std::printf("%s: direction relative error %.3g\n", name, error);
-    TEST_ASSERT_TRUE_MESSAGE(error < 1e-11, name);
+    if (!(error < most)) std::printf("%s: relative error %.3g\n", name, error);
+    TEST_ASSERT_TRUE_MESSAGE(error < most, name);
   }
 }
 
@@ -162,7 +162,7 @@ void test_operations_on_planes_should_carry_every_direction() {
   const auto fix = [](PlaneScene& scene) {
     TEST_ASSERT_TRUE(scene.filter->fix(scene.on_wall.data(), 5, FixForm::kConsider, scene.on_wall.data(), 8));
   };
-  carries_planes("fix", random, moved, fix);
+  carries_planes("fix", random, moved, fix, 1e-9);  // a patch has a hair of noise of its own
   const auto fixed = [&](PlaneScene& scene) {
     moved(scene);
     fix(scene);
@@ -222,7 +222,7 @@ void test_folds_and_updates_should_gain_nothing_about_the_gauge() {
     for (int i = 0; i < kAll; ++i) {
       if (!(now(i, i) < before(i, i) * (1 + 2e-3)))
         std::printf("fold, direction %d: %.3g\n", i, now(i, i) / before(i, i) - 1);
-      (void)0;
+      TEST_ASSERT_TRUE(now(i, i) < before(i, i) * (1 + 2e-3));
     }
     TEST_ASSERT_TRUE(scene.filter->fix(scene.on_wall.data(), 5, FixForm::kConsider, scene.on_wall.data(), 8));
     before = information();

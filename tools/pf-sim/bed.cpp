@@ -94,7 +94,7 @@ void Bed::place_target() {
     const double u = (k % side) / (side - 1.0) - 0.5, v = (k / side) / (side - 1.0) - 0.5;
     const Vec3 p = centre + slant * Vec3{u * options_.target_size, v * options_.target_size, 0};
     set(target_.points_W[k], p);
-    points_.push_back({p + world_.normal3() * target_.sigma_m});
+    points_.push_back({p + world_.normal3() * target_.sigma_m, false, false, -1});
   }
 }
 
@@ -114,8 +114,13 @@ void Bed::place_room() {
         p = {x, world_.uniform(-h, h), z};
       } while (!options_.circle && std::hypot(p.x, p.z) < kFreeRadius);
     }
-    points_.push_back({p});
+    points_.push_back({p, false, false, k < 100 ? k % 4 : -1});
   }
+}
+
+Vec3 Bed::wall_normal(int wall) {
+  const Vec3 normal[4] = {{0, 0, -1}, {0, 0, 1}, {-1, 0, 0}, {1, 0, 0}};
+  return normal[wall];
 }
 
 void Bed::steer(int frame, const pf_pose_t& estimate, double dv_C[3], double dw_C[3]) const {
@@ -179,7 +184,8 @@ std::vector<pf_observation_t> Bed::observe(int frame, int* births) {
       while (rho < 0.02 * rho0) rho = rho0 * (1 + config_.inverse_depth_relative_sigma * world_.normal());
       double ray[3];
       if (pf_camera_unproject(&config_.camera, pixel, ray) != PF_OK) break;
-      points_.push_back({truth_.pose.p_WC + truth_.pose.R_WC * (Vec3{ray[0], ray[1], ray[2]} * (1 / rho))});
+      points_.push_back(
+          {truth_.pose.p_WC + truth_.pose.R_WC * (Vec3{ray[0], ray[1], ray[2]} * (1 / rho)), false, false, -1});
       measure(points_.size() - 1, pixel);
     }
   }

@@ -39,6 +39,7 @@ struct WorldPoint {
   pf::sim::Vec3 p_W;
   bool begun = false;    ///< was ever observed
   bool retired = false;  ///< the filter gave it up; it does not come back
+  int wall = -1;         ///< that it lies on, 0 .. 3
 };
 
 /// One run's truth: where the camera is, what it sees, and the starting knowledge, all drawn from one seed.
@@ -55,6 +56,9 @@ class Bed {
   const double* velocity_covariance() const { return velocity_covariance_; }
   const std::vector<WorldPoint>& points() const { return points_; }
   const pf::sim::MotionState& truth() const { return truth_; }
+
+  /// Of a room's wall 0 .. 3, into the room.
+  static pf::sim::Vec3 wall_normal(int wall);
 
   /// Steering that brings the estimate towards the nominal way.
   void steer(int frame, const pf_pose_t& estimate, double dv_C[3], double dw_C[3]) const;

@@ -11,12 +11,14 @@ namespace pfsim {
 namespace {
 
 struct Choices {
-  std::string cases = "A", layout = "model", motion = "velocity", look = "inward", json, csv;
+  std::string cases = "A", layout, motion = "velocity", look = "inward", json, csv;
   int seeds = 40, frames = 0, jobs = 2, gauge_every = 50;
   std::uint64_t first_seed = 1;
   bool plain = false;
   double fov = 0, linear = 0, angular = 0, relative_sigma = 0, start_depth = 0, linearity = 0, sigma_px = 1;
   double circle_seconds = 180, slant = 35, height = 0;
+  double fold_sigma = 0, fix_sigma = -1, roughness = 0, plane_distance = 0, plane_radius = 0;
+  std::string fold = "condition", fix = "consider";
   int depth_from_map = -1, in_view = 44, first_birth = 15, target_points = 0, max_state_dim = 0;
 };
 
@@ -29,13 +31,41 @@ void set_if(double& field, double value) {
   if (value > 0) field = value;
 }
 
+/// The paper's cases (Gee 2007, section 4), by sigma_T and sigma_fix [m]; 0: points only, and never fixed.
+struct Case {
+  char name;
+  double fold_sigma, fix_sigma;
+};
+constexpr Case kCases[] = {{'A', 0, 0},        {'B', 0.02, 0},    {'C', 0.10, 0},
+                           {'D', 0.02, 0.001}, {'E', 0.10, 0.01}, {'F', 0.10, 0.001}};
+
+const Case* find_case(char name) {
+  for (const Case& one : kCases)
+    if (one.name == name) return &one;
+  return nullptr;
+}
+
+void set_case(const Choices& c, const Case& one, pf_config_t& config) {
+  config.planes = one.fold_sigma > 0;
+  config.plane_roughness = 0.001;  // these walls are flat
+  set_if(config.fold_sigma, one.fold_sigma);
+  config.fix_sigma = one.fix_sigma;
+  set_if(config.fold_sigma, c.fold_sigma);
+  if (c.fix_sigma >= 0) config.fix_sigma = c.fix_sigma;
+  set_if(config.plane_roughness, c.roughness);
+  set_if(config.plane_distance, c.plane_distance);
+  set_if(config.plane_radius, c.plane_radius);
+  config.fold = c.fold == "drop" ? PF_FOLD_DROP : PF_FOLD_CONDITION;
+  config.fix = c.fix == "inflate" ? PF_FIX_INFLATE : c.fix == "error-free" ? PF_FIX_ERROR_FREE : PF_FIX_CONSIDER;
+}
+
 /// What the two commands share: the filter's settings, and the bed from the options.
 Experiment prepare(const Choices& c, bool gee) {
   Experiment x;
   x.seeds = c.seeds;
   x.first_seed = c.first_seed;
   x.run.gauge_every = c.gauge_every;
-  x.bed.layout = gee || c.layout == "room" ? Layout::kRoom : Layout::kModel;
+  x.bed.layout = gee || c.layout != "model" ? Layout::kRoom : Layout::kModel;
   x.bed.circle = gee;
   x.bed.look_inward = c.look == "inward";
   x.bed.circle_seconds = c.circle_seconds;
@@ -60,7 +90,8 @@ Experiment prepare(const Choices& c, bool gee) {
   config.coast_seconds = 10;
   config.depth_from_map = x.bed.layout == Layout::kRoom;
   config.start_depth = gee ? (x.bed.look_inward ? 2.0 : 1.2) : x.bed.layout == Layout::kRoom ? 1.6 : 2.0;
-  config.inverse_depth_relative_sigma = x.bed.layout == Layout::kRoom ? 0.5 : 0.3;
+  if (x.bed.layout == Layout::kModel) config.inverse_depth_relative_sigma = 0.3;
+  config.max_planes = 16;
   if (c.depth_from_map >= 0) config.depth_from_map = static_cast<std::uint32_t>(c.depth_from_map);
   set_if(config.start_depth, c.start_depth);
   set_if(config.inverse_depth_relative_sigma, c.relative_sigma);
@@ -94,12 +125,28 @@ nlohmann::json describe(const Experiment& x) {
           {"inverse_depth_relative_sigma", c.inverse_depth_relative_sigma},
           {"linearity_index", c.linearity_index},
           {"max_state_dim", c.max_state_dim},
+          {"planes", c.planes},
+          {"plane_min_points", c.plane_min_points},
+          {"plane_distance", c.plane_distance},
+          {"plane_radius", c.plane_radius},
+          {"plane_roughness", c.plane_roughness},
+          {"fold_sigma", c.fold_sigma},
+          {"fix_sigma", c.fix_sigma},
+          {"fold", c.fold == PF_FOLD_DROP ? "drop" : "condition"},
+          {"fix", c.fix == PF_FIX_CONSIDER  ? "consider"
+                  : c.fix == PF_FIX_INFLATE ? "inflate"
+                                            : "error-free"},
           {"first_seed", x.first_seed}};
 }
 
 int run(const Choices& c, bool gee) {
-  if (c.cases != "A") return fail("there is no case " + c.cases + " yet; case A is points only");
-  if (c.layout != "model" && c.layout != "room") return fail("the layout is model or room");
+  for (const char name : c.cases)
+    if (!find_case(name)) return fail(std::string("there is no case ") + name + "; the cases are A to F");
+  if (c.cases.empty()) return fail("no case was given");
+  if (c.fold != "condition" && c.fold != "drop") return fail("the fold is condition or drop");
+  if (c.fix != "consider" && c.fix != "inflate" && c.fix != "error-free")
+    return fail("the form of fixing is consider, inflate or error-free");
+  if (!c.layout.empty() && c.layout != "model" && c.layout != "room") return fail("the layout is model or room");
   if (c.motion != "walk" && c.motion != "velocity") return fail("the motion is walk or velocity");
   if (c.look != "inward" && c.look != "outward") return fail("the camera looks inward or outward");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 0)
@@ -114,24 +161,37 @@ int run(const Choices& c, bool gee) {
     keep = {true};
     if (gee) keep.push_back(false);
   }
-  for (const bool keep_gauge : keep) {
-    Experiment x = prepare(c, gee);
-    x.config.keep_gauge = keep_gauge;
-    const char* field = nullptr;
-    if (pf_config_check(&x.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
-    const std::string label = keep_gauge ? "A" : "A_plain_ekf";
-    if (!run_all(x, c.jobs, (name + " " + label).c_str())) return fail("a run did not come to its end");
-    out["settings"] = describe(x);
-    out["cases"][label] = summarise(x);
-    print(name + " " + label, out["cases"][label]);
-    if (!c.csv.empty() && !write_csv(x, c.csv, name + "_" + label)) return fail("cannot write to " + c.csv);
+  for (const char letter : c.cases) {
+    for (const bool keep_gauge : keep) {
+      Experiment x = prepare(c, gee);
+      set_case(c, *find_case(letter), x.config);
+      x.config.keep_gauge = keep_gauge;
+      const char* field = nullptr;
+      if (pf_config_check(&x.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
+      const std::string label = std::string(1, letter) + (keep_gauge ? "" : "_plain_ekf");
+      if (!run_all(x, c.jobs, (name + " " + label).c_str())) return fail("a run did not come to its end");
+      out["settings"][label] = describe(x);
+      out["cases"][label] = summarise(x);
+      print(name + " " + label, out["cases"][label]);
+      if (!c.csv.empty() && !write_csv(x, c.csv, name + "_" + label)) return fail("cannot write to " + c.csv);
+    }
   }
   if (!c.json.empty() && !write_json(c.json, out)) return fail("cannot write " + c.json);
   return 0;
 }
 
 void add_common(CLI::App* command, Choices& c) {
-  command->add_option("--case", c.cases, "A: points only");
+  command->add_option(
+      "--case", c.cases,
+      "A: points only; B, C: planes, strong and weak threshold; D, E, F: strong, weak, medium with fixing; "
+      "several letters run one after the other on the same seeds");
+  command->add_option("--fold", c.fold, "condition, or drop as the paper");
+  command->add_option("--fix", c.fix, "consider, inflate, or error-free as the paper");
+  command->add_option("--fold-sigma", c.fold_sigma, "sigma_T, in place of the case's [m]");
+  command->add_option("--fix-sigma", c.fix_sigma, "sigma_fix, in place of the case's [m]; 0: never");
+  command->add_option("--roughness", c.roughness, "of the walls, as the filter has it [m]");
+  command->add_option("--plane-distance", c.plane_distance, "d_T [m]");
+  command->add_option("--plane-radius", c.plane_radius, "d_max [m]");
   command->add_option("--seeds", c.seeds, "how many runs");
   command->add_option("--first-seed", c.first_seed, "seed of the first run");
   command->add_option("--frames", c.frames, "of each run");
@@ -161,7 +221,9 @@ void add_room(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("room", "Honesty of the filter when all its models are true, or in a room");
   add_common(command, *c);
-  command->add_option("--layout", c->layout, "model: depths drawn from the prior; room: points of a 4 m room");
+  command->add_option(
+      "--layout", c->layout,
+      "room: points of a 4 m room, half of them on its walls (default); model: depths drawn from the prior, no planes");
   command->add_option("--in-view", c->in_view, "points that are kept in view (layout model)");
   command->callback([c, &result] { result = run(*c, false); });
 }

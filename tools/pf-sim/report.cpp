@@ -105,7 +105,7 @@ bool run_all(Experiment& x, int processes, const char* title) {
 }
 
 json summarise_frames(const Runs& x) {
-  std::vector<double> dims, ends, inliers;
+  std::vector<double> inliers;
   double square = 0, claimed = 0, frames = 0, nis = 0, nis_dof = 0;
   for (int s = 0; s < x.seeds; ++s) {
     for (int f = 0; f < x.frames; ++f) {
@@ -116,16 +116,25 @@ json summarise_frames(const Runs& x) {
       frames += 1;
       nis += static_cast<double>(row.nis);
       nis_dof += static_cast<double>(row.nis_dof);
-      dims.push_back(static_cast<double>(row.state_dim));
       inliers.push_back(static_cast<double>(row.inliers));
     }
-    ends.push_back(static_cast<double>(x.row(s, x.frames - 1).state_dim));
   }
-  const json dim = {{"median", median(dims)}, {"end", median(ends)}};
+  const auto dims_of = [&](auto get) {
+    std::vector<double> all, last;
+    for (int s = 0; s < x.seeds; ++s) {
+      for (int f = 0; f < x.frames; ++f)
+        if (x.row(s, f).nees_position >= 0) all.push_back(static_cast<double>(get(x.row(s, f))));
+      last.push_back(static_cast<double>(get(x.row(s, x.frames - 1))));
+    }
+    return json{{"median", median(all)}, {"end", median(last)}};
+  };
   json out;
   out["nees_position"] = nees_json(x, 3, [](const FrameRow& r) { return r.nees_position; });
   out["nees_pose"] = nees_json(x, 6, [](const FrameRow& r) { return r.nees_pose; });
-  out["state_dim"] = out["active_dim"] = dim;
+  out["state_dim"] = dims_of([](const FrameRow& r) { return r.state_dim; });
+  out["active_dim"] = dims_of([](const FrameRow& r) { return r.active_dim; });
+  out["state_dim_points_only"] = dims_of([](const FrameRow& r) { return r.points_only_dim; });
+  out["plane_points"] = dims_of([](const FrameRow& r) { return r.plane_points; });
   out["camera_rmse_m"] = std::sqrt(square / std::max(1.0, frames));
   out["camera_sigma_m"] = std::sqrt(claimed / std::max(1.0, frames));
   out["nis_per_dof"] = nis / std::max(1.0, nis_dof);
@@ -139,9 +148,25 @@ json summarise_frames(const Runs& x) {
 json summarise(const Experiment& x) {
   double seconds = 0, map_square = 0, map_count = 0, map_nees = 0, pose = 0, scale = 0, scale_step = 0, beyond = -1;
   int lost = 0, tracked = 0;
+  RunSummary sum;
   for (int s = 0; s < x.seeds; ++s) {
     const RunSummary& r = x.summaries[s];
     lost += r.lost || !r.done;
+    sum.unsound += r.unsound;
+    sum.folded_nees_sum += r.folded_nees_sum;
+    sum.folded_count += r.folded_count;
+    sum.fixed_count += r.fixed_count;
+    sum.plane_nees_sum += r.plane_nees_sum;
+    sum.planes_judged += r.planes_judged;
+    sum.planes_true += r.planes_true;
+    sum.planes_mixed += r.planes_mixed;
+    sum.planes_false += r.planes_false;
+    sum.planes_duplicate += r.planes_duplicate;
+    sum.planes_ever += r.planes_ever;
+    sum.planes_ever_true += r.planes_ever_true;
+    sum.planes_ever_false += r.planes_ever_false;
+    sum.walls_seen += r.walls_seen;
+    sum.walls_found += r.walls_found;
     tracked += r.frames_tracked;
     seconds += r.cpu_seconds;
     map_square += r.map_square_sum;
@@ -155,7 +180,20 @@ json summarise(const Experiment& x) {
   json out = summarise_frames(x);
   out["map_rmse_m"] = std::sqrt(map_square / std::max(1.0, map_count));
   out["map_nees"] = map_nees / std::max(1.0, map_count);
-  out["planes"] = {{"true", 0}, {"false", 0}, {"duplicate", 0}};
+  out["planes"] = {{"true", sum.planes_true},
+                   {"mixed", sum.planes_mixed},
+                   {"false", sum.planes_false},
+                   {"duplicate", sum.planes_duplicate},
+                   {"ever", sum.planes_ever},
+                   {"ever_true", sum.planes_ever_true},
+                   {"ever_false", sum.planes_ever_false},
+                   {"walls_seen_well", sum.walls_seen},
+                   {"walls_found", sum.walls_found},
+                   {"nees", sum.plane_nees_sum / std::max(1, sum.planes_judged)}};
+  out["folded_points"] = {{"nees", sum.folded_nees_sum / std::max(1.0, sum.folded_count)},
+                          {"per_run", sum.folded_count / x.seeds},
+                          {"fixed_per_run", sum.fixed_count / x.seeds}};
+  out["covariance_unsound"] = sum.unsound;
   out["gauge_growth"] = {{"translation_rotation", pose},
                          {"scale", scale},
                          {"scale_beyond_depth_priors", beyond},
@@ -205,6 +243,20 @@ void print(const std::string& label, const json& j) {
       "one frame without births %.2e)\n",
       number("/gauge_growth/translation_rotation"), number("/gauge_growth/scale"),
       number("/gauge_growth/scale_beyond_depth_priors"), number("/gauge_growth/scale_one_frame_without_births"));
+  if (number("/planes/ever") > 0) {
+    std::printf(
+        "  active state end %g, the same map unfolded %g; %.1f points folded, %.1f of them fixed, NEES %.2f (3 dof)\n",
+        number("/active_dim/end"), number("/state_dim_points_only/end"), number("/folded_points/per_run"),
+        number("/folded_points/fixed_per_run"), number("/folded_points/nees"));
+    std::printf(
+        "  planes at the end: %g true, %g mixed, %g false, %g twice; ever %g, true %g, false %g; %g of %g walls; NEES "
+        "%.2f\n",
+        number("/planes/true"), number("/planes/mixed"), number("/planes/false"), number("/planes/duplicate"),
+        number("/planes/ever"), number("/planes/ever_true"), number("/planes/ever_false"),
+        number("/planes/walls_found"), number("/planes/walls_seen_well"), number("/planes/nees"));
+  }
+  if (number("/covariance_unsound") > 0)
+    std::printf("  P was not positive definite at %g readings\n", number("/covariance_unsound"));
   std::printf("  %g runs of %g frames, %g lost, %.1f %% tracked, %g inliers, %.0f frames a second\n", number("/runs"),
               number("/frames"), number("/lost_runs"), 100 * number("/tracked_share"), number("/inliers_median"),
               number("/frames_per_second"));

@@ -6,6 +6,7 @@
 
 #include "context.h"
 #include "statistics.h"
+#include "wall_watch.h"
 
 namespace pfsim {
 namespace {
@@ -29,7 +30,9 @@ class GaugeWatch {
     const auto n = static_cast<std::size_t>(state_dim);
     if (scratch_.size() < n * (n + 8)) scratch_.resize(n * (n + 8));
     now_valid_ = pf_get_gauge_information(slam, scratch_.data(), scratch_.size(), now_) == PF_OK;
+    unsound_ += !now_valid_;
   }
+  int unsound() const { return unsound_; }
   void keep_as_first() { std::copy(now_, now_ + 49, first_); }
   void compare(bool births, double from_priors, RunSummary& summary) const {
     if (!now_valid_) return;
@@ -45,6 +48,7 @@ class GaugeWatch {
   std::vector<double> scratch_;
   double first_[49] = {}, before_[49] = {}, now_[49] = {};
   bool before_valid_ = false, now_valid_ = false;
+  int unsound_ = 0;
 };
 
 std::vector<pf_feature_t> map_of(const pf_slam_t* slam, const pf_config_t& config) {
@@ -66,12 +70,23 @@ void retire_what_is_gone(Bed& bed, const std::vector<pf_feature_t>& map) {
 
 void judge_map(const Bed& bed, const std::vector<pf_feature_t>& map, RunSummary& summary) {
   for (const pf_feature_t& f : map) {
-    if (f.kind != PF_FEATURE_POINT || f.is_target || f.track >= bed.points().size()) continue;
+    if (f.kind == PF_FEATURE_INVERSE_DEPTH || f.is_target || f.track >= bed.points().size()) continue;
     const Vec3 e = bed.points()[f.track].p_W - Vec3{f.p_W[0], f.p_W[1], f.p_W[2]};
     const double error[3] = {e.x, e.y, e.z};
     summary.map_square_sum += e.dot(e);
-    summary.map_nees_sum += normalised_error(error, f.covariance, 3, 3, 0);
+    const bool planar = f.kind != PF_FEATURE_POINT;
+    summary.fixed_count += f.kind == PF_FEATURE_FIXED;
+    // A folded point's covariance has what the filter knows of its plane; across it there may be next to nothing left.
+    double covariance[9];
+    std::copy(f.covariance, f.covariance + 9, covariance);
+    for (int i = 0; i < 9 && planar; i += 4) covariance[i] += 1e-8;
+    const double nees = normalised_error(error, covariance, 3, 3, 0);
+    summary.map_nees_sum += nees;
     summary.map_count += 1;
+    if (planar) {
+      summary.folded_nees_sum += nees;
+      summary.folded_count += 1;
+    }
   }
 }
 
@@ -88,6 +103,10 @@ FrameRow judge(const pf::sim::Pose& truth, const pf_pose_t& pose, const pf_repor
   row.error_m = static_cast<float>(e.norm());
   row.sigma_m = static_cast<float>(std::sqrt(pose.covariance[21] + pose.covariance[28] + pose.covariance[35]));
   row.state_dim = static_cast<float>(report.state_dim);
+  row.active_dim = static_cast<float>(report.state_dim - report.state_dim_held);
+  row.points_only_dim = static_cast<float>(report.state_dim_points_only);
+  row.plane_points = static_cast<float>(report.features_folded + report.features_fixed);
+  row.planes = static_cast<float>(report.planes);
   row.inliers = static_cast<float>(report.inliers);
   row.nis = static_cast<float>(report.nis);
   row.nis_dof = static_cast<float>(report.nis_dof);
@@ -108,6 +127,7 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
   summary.lost = 0;
 
   GaugeWatch gauge;
+  WallWatch walls(bed);
   double from_priors = 0;  // information about scale that new points came with
   pf_pose_t pose = bed.start();
   pf_report_t report{};
@@ -134,7 +154,9 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
     rows[frame] = judge(bed.truth().pose, pose, report);
     summary.lost |= status == PF_NOTE_LOST || !(rows[frame].nees_position >= 0);
     summary.frames_tracked += status == PF_OK;
-    if (births > 0 || frame % 10 == 9) retire_what_is_gone(bed, map_of(slam, config));
+    if (bed_options.layout == Layout::kModel && (births > 0 || frame % 10 == 9))
+      retire_what_is_gone(bed, map_of(slam, config));
+    if (config.planes && frame % 10 == 9) walls.look(slam, map_of(slam, config));
 
     const int phase = options.gauge_every > 0 ? frame % options.gauge_every : -1;
     if (frame == 0 && options.gauge_every > 0) {
@@ -148,7 +170,9 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
       gauge.compare(births > 0, from_priors, summary);
     }
   }
+  summary.unsound = gauge.unsound();
   judge_map(bed, map_of(slam, config), summary);
+  walls.judge(slam, map_of(slam, config), summary);
   return summary;
 }
 

@@ -12,6 +12,9 @@ struct FrameRow {
   float nees_position, nees_pose;  ///< negative: no valid covariance
   float error_m, sigma_m;          ///< of the position; sigma_m is the root of the trace
   float state_dim, inliers;
+  float active_dim;            ///< rows that carry a gain
+  float points_only_dim;       ///< what the same map would need unfolded
+  float plane_points, planes;  ///< folded or fixed, and planes in the map
   float nis, nis_dof;
 };
 
@@ -30,8 +33,16 @@ struct RunSummary {
   double gauge_scale_step_growth = 0;  ///< in one frame without new points
   double map_square_sum = 0;           ///< of the distances between points of the map and the truth at the end [m^2]
   double map_count = 0;
-  double map_nees_sum = 0;  ///< of the same points
-  double cpu_seconds = 0;   ///< in pf_push_observations
+  double map_nees_sum = 0;     ///< of the same points
+  double folded_nees_sum = 0;  ///< of folded and fixed ones among them
+  double folded_count = 0, fixed_count = 0;
+  double plane_nees_sum = 0;  ///< (alpha, beta, delta) of the planes that are true, 3 dof
+  std::int32_t planes_judged = 0;
+  std::int32_t planes_true = 0, planes_mixed = 0, planes_false = 0, planes_duplicate = 0;  ///< at the end
+  std::int32_t planes_ever = 0, planes_ever_true = 0, planes_ever_false = 0;  ///< judged when they had settled
+  std::int32_t walls_seen = 0, walls_found = 0;
+  std::int32_t unsound = 0;  ///< readings at which P was not positive definite
+  double cpu_seconds = 0;    ///< in pf_push_observations
 };
 
 struct RunOptions {

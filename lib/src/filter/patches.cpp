@@ -131,7 +131,7 @@ int Filter::add_patch(int plane, const int* group, int count) {
   SparseRows J;
   J.rows = 4;
   J.segments = 0;
-  Scalar none[16] = {};
+  Scalar noise[16] = {};
   // More points than segments: J P point by point, summed up in W_.
   const int n = state_.dim;
   std::memset(W_, 0, 4 * sizeof(Scalar) * static_cast<std::size_t>(ld_));
@@ -148,12 +148,15 @@ int Filter::add_patch(int plane, const int* group, int count) {
     const Eigen::Matrix<Scalar, 4, 2> J_k = fit.by_point(point.uv());
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j)
-        for (int c = 0; c < 2; ++c) none[4 * i + j] += W_[i * ld_ + point.first + c] * J_k(j, c);
+        for (int c = 0; c < 2; ++c) noise[4 * i + j] += W_[i * ld_ + point.first + c] * J_k(j, c);
   }
   for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < i; ++j) none[4 * i + j] = none[4 * j + i] = (none[4 * i + j] + none[4 * j + i]) / Scalar(2);
+    for (int j = 0; j < i; ++j) noise[4 * i + j] = noise[4 * j + i] = (noise[4 * i + j] + noise[4 * j + i]) / Scalar(2);
+  // A patch is a function of its points: a hair of noise of its own keeps P positive definite.
+  constexpr Scalar kOwn = Scalar(1e-10);
+  for (int i = 0; i < 4; ++i) noise[5 * i] += kOwn * noise[5 * i];
   J.segments = 0;
-  kernels_->augment(P_, J, none);
+  kernels_->augment(P_, J, noise);
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < n; ++j) P_.set(n + i, j, W_[i * ld_ + j]);
   state_.dim = P_.n;
