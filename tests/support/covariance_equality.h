@@ -32,6 +32,8 @@ struct Problem {
   Scalar added_noise[36];
   int replaced_first, replaced_size;
   std::vector<Segment> gone;
+  std::vector<Segment> folded;
+  std::vector<SparseRows> folds;
 };
 
 inline std::vector<Scalar> random_block(Random& random, int rows, double scale) {
@@ -43,7 +45,8 @@ inline std::vector<Scalar> random_block(Random& random, int rows, double scale) 
 inline Problem draw(Random& random, int largest) {
   const int n = random.integer(8, random.integer(8, largest));
   Problem p = {
-      n, 0, random.integer(0, 8), 0, 0, Covariance(n, n), {}, {}, Thin(8, n), Thin(8, n), {}, {}, {}, {}, {}, 0, 0, {}};
+      n,  0, random.integer(0, 8), 0, 0, Covariance(n, n), {}, {}, Thin(8, n), Thin(8, n), {}, {}, {}, {}, {}, 0, 0, {},
+      {}, {}};
   randomise(random, p.start.P);
   if (random.integer(0, 1) == 0) {
     p.held_first = random.integer(0, n);
@@ -73,6 +76,12 @@ inline Problem draw(Random& random, int largest) {
     const int size = std::min(random.integer(1, 7), n - at);
     p.gone.push_back({at, size});
     at += size;
+  }
+  for (int at = random.integer(0, 9); at < n; at += random.integer(0, 20)) {
+    const int size = std::min(random.integer(1, 6), n - at);
+    p.folded.push_back({at, size});
+    at += size;
+    p.folds.push_back(random_rows(random, random.integer(0, size), n, 3));
   }
   return p;
 }
@@ -201,6 +210,14 @@ inline Trace run(const Kernels& kernels, Problem& p, Place place) {
   each([&](Triangle& P) { kernels.predict(P, p.F.data(), p.Q.data(), b); });
   each([&](Triangle& P) { kernels.augment(P, p.added, p.added_noise); });
   each([&](Triangle& P) { kernels.remove(P, p.gone.data(), static_cast<int>(p.gone.size())); });
+  each([&](Triangle& P) {
+    int rows = 0;
+    for (const SparseRows& J : p.folds) rows += J.rows;
+    Thin X(rows, p.n, place.shift, place.poison);
+    Buffer S(static_cast<std::size_t>(rows) * rows, place.shift, place.poison);
+    kernels.transform_many(P, p.folded.data(), p.folds.data(), static_cast<int>(p.folds.size()), X.data(), X.ld,
+                           S.data(), rows);
+  });
   each([&](Triangle& P) { kernels.transform(P, p.replaced_first, p.replaced_size, p.replaced, p.added_noise); });
   each([&](Triangle& P) { kernels.replace(P, p.replaced_first, p.replaced_size, p.replaced, nullptr); });
   return trace;

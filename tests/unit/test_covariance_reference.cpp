@@ -278,6 +278,37 @@ void test_replace_should_leave_the_gap_for_one_removal_when_many_blocks_shrink()
   assert_near(dense(r.P), dense(other.P));
 }
 
+void test_transform_many_should_equal_the_dense_map_when_blocks_shrink_and_go() {
+  for (int i = 0; i < kRounds; ++i) {
+    Round r(i);
+    const int n = r.P.n;
+    std::vector<Segment> blocks;
+    std::vector<SparseRows> J;
+    Dense M(n, n);
+    int row = 0, rows = 0;
+    for (int at = 0; at < n;) {
+      const int kept = std::min(r.random.integer(0, 12), n - at);
+      for (int j = 0; j < kept; ++j, ++at) M.row(row++) = Dense::Identity(n, n).row(at);
+      if (at == n) break;
+      const int size = std::min(r.random.integer(1, 6), n - at);
+      blocks.push_back({at, size});
+      J.push_back(random_rows(r.random, r.random.integer(0, size), n, 3));
+      M.middleRows(row, J.back().rows) = dense(J.back(), n);
+      row += J.back().rows;
+      rows += J.back().rows;
+      at += size;
+    }
+    M.conservativeResize(row, n);
+    const Dense expected = M * dense(r.P) * M.transpose();
+    Thin X(rows, n);
+    std::vector<Scalar> S(static_cast<std::size_t>(rows) * rows);
+    kernels.transform_many(r.P, blocks.data(), J.data(), static_cast<int>(J.size()), X.data(), X.ld, S.data(), rows);
+    TEST_ASSERT_EQUAL_INT(row, r.P.n);
+    assert_near(expected, dense(r.P));
+    assert_padding_is_finite(r.P);
+  }
+}
+
 void test_remove_should_keep_the_other_rows_bit_for_bit_when_several_segments_go() {
   for (int i = 0; i < kRounds; ++i) {
     Round r(i);
@@ -319,6 +350,7 @@ int main() {
   RUN_TEST(test_augment_should_begin_a_state_when_the_triangle_is_empty);
   RUN_TEST(test_transform_should_equal_the_dense_map_when_the_block_shrinks);
   RUN_TEST(test_replace_should_leave_the_gap_for_one_removal_when_many_blocks_shrink);
+  RUN_TEST(test_transform_many_should_equal_the_dense_map_when_blocks_shrink_and_go);
   RUN_TEST(test_remove_should_keep_the_other_rows_bit_for_bit_when_several_segments_go);
   return UNITY_END();
 }

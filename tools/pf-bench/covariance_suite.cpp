@@ -158,11 +158,13 @@ class CovarianceSuite {
     const std::vector<double> us = medians({own("full", p, [&] { p.update(kernels_, 0, 0, 0); }),
                                             own("half", p, [&] { p.update(kernels_, kBody, kBody + n / 2, 0); }),
                                             own("transport", p, [&] { p.update(kernels_, 0, 0, 4); }),
-                                            own("both", p, [&] { p.update(kernels_, kBody, kBody + n / 2, 4); })},
+                                            own("both", p, [&] { p.update(kernels_, kBody, kBody + n / 2, 4); }),
+                                            own("transport of 7", p, [&] { p.update(kernels_, 0, 0, 7); })},
                                            options_.repetitions);
     add("update, half considered", n, m, us[1], "update", us[0]);
-    add("update, transport", n, m, us[2], "update", us[0]);
-    add("update, half, transport", n, m, us[3], "update, half considered", us[1]);
+    add("update, transport of 4", n, m, us[2], "update", us[0]);
+    add("update, transport of 7", n, m, us[4], "update", us[0]);
+    add("update, half, transport of 4", n, m, us[3], "update, half considered", us[1]);
   }
 
   /// What happens to the map between updates, each against one update.
@@ -177,10 +179,13 @@ class CovarianceSuite {
     fold.segment[0] = {kBody, kPoint};
     for (int c = 0; c < 12; ++c) fold.h[c] = Scalar(0.1) * Scalar(c + 1);
     std::vector<int> points;
-    std::vector<pf::Segment> gaps, gone;
+    std::vector<pf::Segment> blocks, gone;
+    std::vector<pf::SparseRows> folds;
     for (int i = 0; i < 20; ++i) {
       points.push_back(kBody + kPoint + kPoint * 4 * i);
-      gaps.push_back({points.back() + 2, 1});
+      blocks.push_back({points.back(), kPoint});
+      fold.segment[1] = blocks.back();
+      folds.push_back(fold);
       if (i % 2 == 0) gone.push_back({points.back(), kPoint});
     }
     pf::SparseRows fresh;
@@ -189,6 +194,7 @@ class CovarianceSuite {
     fresh.segment[0] = {0, 6};
     for (int c = 0; c < 18; ++c) fresh.h[c] = Scalar(0.1);
     const Scalar noise[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    Aligned X(2 * folds.size() * static_cast<std::size_t>(p.ld)), S(4 * folds.size() * folds.size());
 
     const std::vector<double> us =
         medians({own("update", p, [&] { p.update(kernels_, 0, 0, 0); }),
@@ -201,11 +207,8 @@ class CovarianceSuite {
                      }),
                  own("fold 20 points", p,
                      [&] {
-                       for (int point : points) {
-                         fold.segment[1] = {point, kPoint};
-                         kernels_.replace(p.P, point, kPoint, fold, nullptr);
-                       }
-                       kernels_.remove(p.P, gaps.data(), static_cast<int>(gaps.size()));
+                       kernels_.transform_many(p.P, blocks.data(), folds.data(), static_cast<int>(folds.size()),
+                                               X.data(), p.ld, S.data(), 2 * static_cast<int>(folds.size()));
                      }),
                  own("evict 10 points", p, [&] { kernels_.remove(p.P, gone.data(), static_cast<int>(gone.size())); })},
                 options_.repetitions);

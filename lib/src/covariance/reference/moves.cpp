@@ -88,6 +88,35 @@ void transform(Triangle& P, int first, int size, const SparseRows& J, const Scal
   if (gap.size > 0) remove(P, &gap, 1);
 }
 
+void transform_many(Triangle& P, const Segment* block, const SparseRows* J, int count, Scalar* X, int ld, Scalar* S,
+                    int lds) {
+  gather_many(P, J, count, X, ld);
+  project(X, ld, J, count, S, lds);
+  int row = 0;
+  for (int i = 0; i < count; ++i) {
+    for (int a = 0; a < J[i].rows; ++a, ++row) {
+      for (int x = 0; x < P.n; ++x) P.set(x, block[i].first + a, X[static_cast<std::ptrdiff_t>(row) * ld + x]);
+    }
+  }
+  // Between two new rows the old state is on neither side.
+  row = 0;
+  for (int i = 0; i < count; ++i) {
+    for (int a = 0; a < J[i].rows; ++a, ++row) {
+      int column = 0;
+      for (int g = 0; g <= i; ++g) {
+        for (int b = 0; b < J[g].rows; ++b, ++column) {
+          if (column > row) continue;
+          P.set(block[i].first + a, block[g].first + b, S[static_cast<std::ptrdiff_t>(row) * lds + column]);
+        }
+      }
+    }
+  }
+  for (int i = count - 1; i >= 0; --i) {
+    const Segment gap = {block[i].first + J[i].rows, block[i].size - J[i].rows};
+    if (gap.size > 0) remove(P, &gap, 1);
+  }
+}
+
 void remove(Triangle& P, const Segment* gone, int count) {
   int kept = 0;
   int row_segment = 0;

@@ -26,6 +26,8 @@ void predict(Triangle& P, const Scalar* F, const Scalar* Q, int b);
 void augment(Triangle& P, const SparseRows& J, const Scalar* noise);
 void transform(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise);
 void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise);
+void transform_many(Triangle& P, const Segment* block, const SparseRows* J, int count, Scalar* X, int ld, Scalar* S,
+                    int lds);
 void remove(Triangle& P, const Segment* gone, int count);
 void project(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S, int lds);
 void combine(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x);

@@ -53,7 +53,7 @@ PF_INLINE void clear_upper(const Triangle& P, int q) {
 ///     for strips of columns           P: |block row| -> -> ->
 ///       for the groups of the block
 inline void downdate_part(const Triangle& P, const Thin& t, int first_group, int last_group, int first, int last) {
-  constexpr int kBlock = 8;
+  constexpr int kBlock = 4;
   constexpr int kColumns = kTileVectors * Wide::kWidth;
   if (t.m == 0 && t.k == 0) return;
   for (int block = first_group; block < last_group; block += kBlock) {

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "covariance/tuned/moves.h"
+
+namespace pf {
+namespace {
+
+/// Copy `count` scalars and nothing behind them.
+PF_INLINE void copy_exactly(Scalar* to, const Scalar* from, int count) {
+  const int whole = count / kGroup * kGroup;
+  copy_groups(to, from, whole);
+  for (int j = whole; j < count; ++j) to[j] = from[j];
+}
+
+/// The new rows of all blocks, and where they come from.
+struct NewRows {
+  const Segment* block;
+  const SparseRows* J;
+  int count;
+  const Scalar* X;
+  std::ptrdiff_t ld;
+  const Scalar* S;
+  std::ptrdiff_t lds;
+
+  /// Row x, which is in no block and has `blocks` of them before it: runs between blocks as they were, new columns from X. Runs may be
+  /// copied in whole eights (`loose`) where what is written too much is overwritten later; see remove. A row that has not moved only
+  /// takes the new columns.
+  PF_INLINE void old_row(const Scalar* from, int x, int blocks, bool loose, Scalar* row) const {
+    int to = 0, run = 0;
+    const Scalar* value = X + x;
+    for (int g = 0; g <= blocks; ++g) {
+      const int size = (g < blocks ? block[g].first : x + 1) - run;
+      if (loose) {
+        copy_groups(row + to, from + run, size);
+      } else if (row != from) {
+        copy_exactly(row + to, from + run, size);
+      }
+      to += size;
+      if (g == blocks) break;
+      for (int b = 0; b < J[g].rows; ++b, value += ld) row[to++] = *value;
+      run = block[g].first + block[g].size;
+    }
+  }
+
+  /// Row a of block i, which is row r of X and S.
+  PF_INLINE void new_row(int i, int a, int r, Scalar* row) const {
+    const Scalar* from = X + r * ld;
+    const Scalar* value = S + r * lds;
+    int to = 0, run = 0;
+    for (int g = 0; g <= i; ++g) {
+      const int size = block[g].first - run;
+      copy_exactly(row + to, from + run, size);
+      to += size;
+      const int columns = g < i ? J[g].rows : a + 1;
+      for (int b = 0; b < columns; ++b) row[to++] = *value++;
+      run = block[g].first + block[g].size;
+    }
+  }
+};
+
+/// Twin: reference::transform_many. Rows only ever move towards the front, so one pass in place is enough: what a new row needs was
+/// gathered before.
+void transform_many(Triangle& P, const Segment* block, const SparseRows* J, int count, Scalar* X, int ld, Scalar* S,
+                    int lds) {
+  if (count == 0) return;
+  gather_many(P, J, count, X, ld);
+  project(X, ld, J, count, S, lds);
+
+  const NewRows rows = {block, J, count, X, ld, S, lds};
+  const int last = round_up(P.n, kGroup) - 1;
+  int kept = block[0].first;
+  int r = 0;
+  for (int i = 0; i < count; ++i) {
+    for (int a = 0; a < J[i].rows; ++a, ++r, ++kept) {
+      rows.new_row(i, a, r, row_of(P, kept));
+      clear_behind(P, kept, kept + 1);
+    }
+    const int end = i + 1 < count ? block[i + 1].first : P.n;
+    for (int x = block[i].first + block[i].size; x < end; ++x, ++kept) {
+      rows.old_row(row_of(P, x), x, i + 1, kept < x && x < last, row_of(P, kept));
+      clear_behind(P, kept, kept + 1);
+    }
+  }
+  P.n = kept;
+}
+
+}  // namespace
+}  // namespace pf
