@@ -21,6 +21,7 @@ struct Choices {
   std::uint64_t first_seed = 1;
   double noise = 2, exposure_s = 0.008, readout_s = 0;
   bool no_planes = false;
+  int max_features = 0, max_state_dim = 0, max_planes = 0;
 };
 
 struct Job {
@@ -152,6 +153,9 @@ bool prepare(const Choices& c, RenderedOptions& o) {
       v.config.camera = o.sim.camera;
       if (sigma > 0) v.config.sigma_pixel = sigma;
       if (c.no_planes) v.config.planes = 0;
+      if (c.max_features > 0) v.config.max_features = c.max_features;
+      if (c.max_state_dim > 0) v.config.max_state_dim = c.max_state_dim;
+      if (c.max_planes > 0) v.config.max_planes = c.max_planes;
       v.start = start == "rectangle" ? RenderedStart::kRectangle
                 : start == "points"  ? RenderedStart::kPoints
                                      : RenderedStart::kPose;
@@ -238,6 +242,9 @@ void add_rendered(CLI::App& app, int& result) {
   command->add_option("--blur", c->blur, "views averaged over the exposure");
   command->add_option("--readout", c->readout_s, "rolling shutter, first to last row [s]");
   command->add_flag("--no-planes", c->no_planes, "points only, for comparison");
+  command->add_option("--max-features", c->max_features, "of the map; 0: the library's default");
+  command->add_option("--max-state-dim", c->max_state_dim, "rows of the covariance, likewise");
+  command->add_option("--max-planes", c->max_planes, "likewise");
   command->add_option("--sigma-px", c->sigma_pixels,
                       "one or more: the filter's own floor of a match's noise [px]; 0: its default");
   command->callback([c, &result] { result = run(*c); });

@@ -149,8 +149,8 @@ PlanesVerdict SurfaceWatch::judge(const pf_slam_t* slam) const {
   std::vector<pf_plane_t> planes(PlanesVerdict::kMost);
   std::size_t count = 0;
   if (pf_get_planes(slam, planes.data(), planes.size(), &count) < 0) count = 0;
-  out.planes = static_cast<std::int32_t>(std::min(count, planes.size()));
-  for (int k = 0; k < out.planes; ++k) out.plane[k] = judge_one(planes[static_cast<std::size_t>(k)]);
+  for (std::size_t k = 0; k < std::min(count, planes.size()); ++k)
+    if (planes[k].outline_count >= 3) out.plane[out.planes++] = judge_one(planes[k]);  // without points it says nothing
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     SurfaceVerdict& s = out.surface[out.surfaces++];
     s.surface = static_cast<std::int32_t>(k);
