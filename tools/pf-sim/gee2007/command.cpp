@@ -69,6 +69,12 @@ std::shared_ptr<PaperChoices> add_paper_options(CLI::App* command) {
   command->add_option("--filter", p->filter, "paper: as it was published; library: the library's, with points only");
   add("--frames-per-loop", p->world.frames_per_loop, "of the circle")->capture_default_str();
   add("--nearest", p->world.nearest, "points nearer than this are not seen [m]")->capture_default_str();
+  add("--clear-radius", p->world.clear_radius, "about the middle, without points that lie on no wall [m]")
+      ->capture_default_str();
+  add("--target-distance", p->world.target_distance, "of the known square [m]")->capture_default_str();
+  add("--target-size", p->world.target_size, "its side [m]")->capture_default_str();
+  add("--target-frames", p->world.target_frames, "after so many the known square is taken away; 0: it stays")
+      ->capture_default_str();
   add("--sigma-turn", p->slam.sigma_turn, "of the random walk in one frame [rad]")->capture_default_str();
   add("--sigma-step", p->slam.sigma_step, "likewise [m]")->capture_default_str();
   add("--rho", p->slam.rho, "prior of inverse depth [1/m]")->capture_default_str();

@@ -90,20 +90,9 @@ bool choose_case(char letter, SlamOptions* options) {
   return true;
 }
 
-Moments moments_of(const World& world, int frames, int frames_per_loop) {
-  // The known square goes out of view and comes back.
-  Moments moments{frames - 1, std::min(frames_per_loop, frames - 1), frames - 1};
-  bool away = false;
-  for (int f = 0; f < frames; ++f) {
-    bool any = false;
-    for (int id = 0; id < World::kTarget; ++id) any = any || world.in_view(id, f);
-    if (away && any) {
-      moments.before = f - 1;
-      break;
-    }
-    away = away || !any;
-  }
-  return moments;
+Moments moments_of(int frames, int frames_per_loop) {
+  const int last = frames - 1;
+  return {std::min(last, frames_per_loop * 15 / 16), std::min(last, frames_per_loop * 101 / 100), last};
 }
 
 PaperSummary run_paper(const WorldOptions& world_options, const SlamOptions& slam_options, std::uint64_t seed,
@@ -122,7 +111,7 @@ PaperSummary run_paper(const WorldOptions& world_options, const SlamOptions& sla
   first.tail<3>() += draw(slam_options.sigma_start_step);
 
   Slam slam(slam_options, world.camera(), first, known, seed);
-  const Moments moments = moments_of(world, world_options.frames, world_options.frames_per_loop);
+  const Moments moments = moments_of(world_options.frames, world_options.frames_per_loop);
   std::unique_ptr<Figure1> figure;
   if (!figure_prefix.empty()) figure = std::make_unique<Figure1>(figure_prefix, world);
   PaperSummary summary;

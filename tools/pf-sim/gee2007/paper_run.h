@@ -16,7 +16,7 @@ struct PaperRow {
 
 /// Where the pictures of Figure 1 are taken.
 struct Moments {
-  int before, after, end;  ///< frames: last before anything of the start is seen again; back at the start; the last
+  int before, after, end;  ///< frames: shortly before the circle closes, shortly after, and the last
 };
 
 struct PaperSummary {
@@ -30,7 +30,7 @@ struct PaperSummary {
 /// The letters A to F as section 4 of the paper has them; false for others.
 bool choose_case(char letter, SlamOptions* options);
 
-Moments moments_of(const World& world, int frames, int frames_per_loop);
+Moments moments_of(int frames, int frames_per_loop);
 
 /// One run, start to end; rows has as many entries as there are frames. Figure 1's tables are written under
 /// figure_prefix unless it is empty.

@@ -47,7 +47,11 @@ World::World(const WorldOptions& options, std::uint64_t seed)
       const double along = layout_.uniform(-kHalf, kHalf), across = wall < 2 ? kHalf : -kHalf;
       points_.push_back({R_W_room * (wall % 2 ? Vec3(across, along, z) : Vec3(along, across, z)), wall});
     } else {
-      const double x = layout_.uniform(-inside, inside), y = layout_.uniform(-inside, inside);
+      double x = 0, y = 0;
+      do {
+        x = layout_.uniform(-inside, inside);
+        y = layout_.uniform(-inside, inside);
+      } while (std::hypot(x, y) < options_.clear_radius);
       points_.push_back({R_W_room * Vec3(x, y, z), -1});
     }
   }
@@ -66,6 +70,7 @@ Vec7 World::pose(int frame) const {
 }
 
 bool World::in_view(int id, int frame) const {
+  if (id < kTarget && options_.target_frames > 0 && frame >= options_.target_frames) return false;
   const Vec7 v = pose(frame);
   Vec2 z;
   const Vec3& p = points_[static_cast<std::size_t>(id)].p_W;

@@ -11,10 +11,12 @@ namespace pfsim::gee {
 struct WorldOptions {
   int frames = 10800, frames_per_loop = 5400;
   double fov_deg = 43, sigma_px = 1;
-  bool look_inward = false;  ///< radially across the middle; otherwise away from it, at the wall nearby
+  bool look_inward = true;   ///< radially across the middle; otherwise away from it, at the wall nearby
   bool upright = false;      ///< y of the world is the vertical, so that every wall holds the pole of eq. 5
-  double half_height = 0.5;  ///< of the points [m]
+  double half_height = 1;    ///< of the points [m]
   double nearest = 0.2;      ///< nothing nearer is seen [m]
+  int target_frames = 300;   ///< after so many the known square is taken away; 0: it stays
+  double clear_radius = 0;   ///< about the middle, without points on no wall [m]
   double target_size = 0.2;  ///< square whose four corners are known [m]
   double target_distance = 0.7, target_slant_deg = 35;
 };
