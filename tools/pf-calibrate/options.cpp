@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
+#include <vector>
 
 namespace pf::calibrate {
 
@@ -23,7 +24,8 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
       "--calib.\n",
       "pf-calibrate");
   std::string board = "10x7:0.025";
-  app.add_option("--source", options.source, "images:DIR, euroc:DIR or tum:DIR; a calibration inside is not read");
+  app.add_option("--source", options.source,
+                 "images:DIR, euroc:DIR, tum:DIR (a calibration inside is not read), or a camera: v4l2:/dev/videoN");
   app.add_option("--board", board, "COLUMNSxROWS:SQUARE_METRES, counted in squares")->capture_default_str();
   app.add_option("--model", options.model, "of the lens: pinhole, radtan, or equidistant for wide ones")
       ->transform(CLI::CheckedTransformer(kModels, CLI::ignore_case))
@@ -36,6 +38,14 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
       ->capture_default_str();
   app.add_option("--look-at", options.look_at, "search at most N frames for the board, evenly over the source")
       ->check(CLI::Range(6, 100000))
+      ->capture_default_str();
+  app.add_option("--seconds", options.seconds, "watch the camera for so long, or until Ctrl-C")
+      ->check(CLI::Range(5, 3600))
+      ->capture_default_str();
+  std::vector<int> size = {options.width, options.height};
+  app.add_option("--size", size, "of the camera's pictures: width and height, those that will be tracked")
+      ->expected(2)
+      ->check(CLI::Range(32, 4096))
       ->capture_default_str();
   app.add_option("--print-target", options.print_target, "write the board to this PDF, at true size, and end");
   app.add_option("--page", options.page, "of the PDF: a4, a3, letter, or WIDTHxHEIGHT in millimetres")
@@ -53,6 +63,8 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
     code = 2;
     return false;
   }
+  options.width = size[0];
+  options.height = size[1];
   std::string error;
   if (!parse_board(board, options.board, error)) {
     std::fprintf(stderr, "pf-calibrate: %s\n", error.c_str());

@@ -17,8 +17,10 @@ struct Options {
   std::string print_target;  ///< a file: write the target and do nothing else
   std::string page = "a4";
   pf_camera_model_t model = PF_CAMERA_RADTAN;
-  int views = 40;         ///< at most, in the fit
-  int64_t look_at = 400;  ///< frames at most, evenly over the source
+  int views = 40;                 ///< at most, in the fit
+  int64_t look_at = 400;          ///< frames at most, evenly over the source
+  int64_t seconds = 60;           ///< of a camera
+  int width = 640, height = 480;  ///< of a camera's picture
   bool quiet = false;
 };
 

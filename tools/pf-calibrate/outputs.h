@@ -4,13 +4,9 @@
 #include <string>
 
 #include "fit.h"
+#include "search.h"
 
 namespace pf::calibrate {
-
-struct Search {
-  int64_t frames = 0, looked_at = 0;
-  std::vector<View> found;
-};
 
 /// Writes calib.yaml, calibration.json, corners.csv and coverage.png into a folder. false: error is one line.
 bool write_outputs(const std::string& folder, const Board& board, const Search& search, const Fit& fit,
