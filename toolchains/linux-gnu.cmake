@@ -1,8 +1,9 @@
-# What the toolchains for Linux on ARM share: Debian's names, libraries of the target, and an emulator to run tests with.
+# What the toolchains for Linux on ARM share: Debian's names, libraries of the target, and an emulator to run tests
+# with.
 #
-# The library and its tests need the cross compiler alone. Programs need libraries for the target: toolchains/make_sysroot.sh
-# unpacks them into build/sysroot/NAME, which is used where it exists; PLANEFOLD_SYSROOT names another place, such as the
-# root of your device's image.
+# The library and its tests need the cross compiler alone. Programs need libraries for the target:
+# toolchains/make_sysroot.sh unpacks them into build/sysroot/NAME, which is used where it exists; PLANEFOLD_SYSROOT
+# names another place, such as the root of your device's image.
 set(CMAKE_C_COMPILER ${planefold_triple}-gcc)
 set(CMAKE_CXX_COMPILER ${planefold_triple}-g++)
 set(CMAKE_LINKER ${planefold_triple}-ld)

@@ -4,9 +4,9 @@
 #   toolchains/make_sysroot.sh arm64 build/sysroot/aarch64
 #   toolchains/make_sysroot.sh armhf build/sysroot/armhf
 #
-# For cross builds of the programs; the library alone needs none of it. Packages come from the machine's own mirrors through an apt
-# state in a temporary folder: no architecture is added to the machine, nothing is installed, and no root rights are needed.
-# SYSROOT_PACKAGES replaces the list of packages; what they depend on comes along.
+# For cross builds of the programs; the library alone needs none of it. Packages come from the machine's own mirrors
+# through an apt state in a temporary folder: no architecture is added to the machine, nothing is installed, and no
+# root rights are needed. SYSROOT_PACKAGES replaces the list of packages; what they depend on comes along.
 set -euo pipefail
 
 architecture=${1:?which architecture: arm64 or armhf}

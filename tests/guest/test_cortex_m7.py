@@ -1,5 +1,5 @@
-"""A recorded session with a map of 40 features on a Cortex-M7 without an operating system or heap: the same run as the float library
-here, to 1e-4 m; and what it takes of flash and RAM, against golden numbers."""
+"""A recorded session with a map of 40 features on a Cortex-M7 without an operating system or heap: the same run as the
+float library here, to 1e-4 m; and what it takes of flash and RAM."""
 
 import pathlib
 import re
@@ -26,9 +26,10 @@ with tempfile.TemporaryDirectory() as folder:
 
     script.run(cross.compiler("cortex-m7"), *cross.WARNINGS, *CPU, "-nostartfiles", "-T", cross.SESSION / "mps2_an500.ld",
                "-I", script.SOURCE / "lib" / "include", cross.SESSION / "run_session.c", cross.SESSION / "mps2_an500_io.c",
-               built / "lib" / "libplanefoldf.a", "-lm", "-lc", "-Wl,--gc-sections", "-o", folder / "firmware.elf")
-    said = script.run(cross.emulator("cortex-m7"), "-M", "mps2-an500", "-display", "none", "-serial", "none", "-monitor", "none",
-                      "-semihosting-config", "enable=on,target=native", "-kernel", folder / "firmware.elf",
+               built / "lib" / "libplanefoldf.a", "-lm", "-lc", "-Wl,--gc-sections",
+               "-o", folder / "firmware.elf")
+    said = script.run(cross.emulator("cortex-m7"), "-M", "mps2-an500", "-display", "none", "-serial", "none",
+                      "-monitor", "none", "-semihosting-config", "enable=on,target=native", "-kernel", folder / "firmware.elf",
                       cwd=folder, timeout=600)
     print(said)
     block, stack = (int(re.search(rf"{what}_bytes (\d+)", said).group(1)) for what in ("block", "stack"))

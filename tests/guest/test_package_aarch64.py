@@ -1,5 +1,6 @@
-"""tools/package aarch64: a stranger's C program of 25 lines, the one in README.md, cross-builds against the tarball with the C compiler
-and pkg-config alone and runs; pf-capture of the tarball tracks a built-in scene, and a real sequence as it is tracked here."""
+"""tools/package aarch64: a stranger's C program of 25 lines, the one in README.md, cross-builds against the tarball with
+the C compiler and pkg-config alone, and runs; pf-capture of the tarball tracks a built-in scene, and a real sequence, as
+they are tracked here."""
 
 import math
 import os
@@ -39,7 +40,7 @@ def places(path):
 
 def capture(program, out, *arguments):
     script.run(*program, *arguments, "--headless", "--no-film", "--quiet", "--out", out)
-    return places(out / "trajectory.tum")
+    return places(out / "trajectory.txt")
 
 
 def furthest_apart(one, other):

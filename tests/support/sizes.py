@@ -1,4 +1,5 @@
-"""What the library takes on a target: code, static data and the block of the three profiles; held against tests/golden/sizes.txt.
+"""What the library takes on a target: code, static data and the block of the three profiles; held against
+tests/golden/sizes.txt.
 
 With PLANEFOLD_UPDATE_GOLDEN=1 in the environment the golden numbers are rewritten instead; tools/update-golden does that.
 """
@@ -47,8 +48,8 @@ def check(target, sizes):
         golden = {key: value for key, value in golden.items() if key[0] != target}
         golden.update({(target, *key): value for key, value in sizes.items()})
         lines = [" ".join([*key, str(value)]) for key, value in sorted(golden.items())]
-        GOLDEN.write_text("# target library what bytes; within 5 % both ways, static data exactly. Rewritten by tools/update-golden.\n"
-                          + "\n".join(lines) + "\n")
+        head = "# target library what bytes; within 5 % both ways, static data exactly. tools/update-golden rewrites this.\n"
+        GOLDEN.write_text(head + "\n".join(lines) + "\n")
     problems = []
     for (library, what), value in sorted(sizes.items()):
         expected = golden.get((target, library, what))

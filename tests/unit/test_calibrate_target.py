@@ -1,4 +1,5 @@
-"""pf-calibrate --print-target: a PDF whose page, squares and ruler have the size that was asked for, to a thousandth of a millimetre."""
+"""pf-calibrate --print-target: a PDF whose page and squares have the size that was asked for, to a thousandth of a
+millimetre."""
 
 import pathlib
 import re

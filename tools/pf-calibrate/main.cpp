@@ -1,4 +1,5 @@
-// pf-calibrate --print-target FILE.pdf, then pf-calibrate --source images:DIR: a camera's calibration from views of a chessboard.
+// pf-calibrate --print-target FILE.pdf, then pf-calibrate --source images:DIR: a camera's calibration from views of a
+// chessboard.
 #include <cstdio>
 
 #include "options.h"

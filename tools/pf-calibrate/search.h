@@ -15,8 +15,8 @@ struct Search {
   std::vector<View> found;
 };
 
-/// Looks for the board: in frames that lie evenly over a recording, or in what a camera shows until the time is over or the
-/// program is interrupted. false: error is one line.
+/// Looks for the board: in frames that lie evenly over a recording, or in what a camera shows until the time is over
+/// or the program is interrupted. false: error is one line.
 bool search_source(const Options& options, Search& search, std::string& error);
 
 }  // namespace pf::calibrate

@@ -1,5 +1,5 @@
-/* device_io.h on a Cortex-M7 without an operating system: reset, floating-point unit, painted stack, and files through semihosting,
- * the debugger's own calls, which the emulator answers. */
+/* device_io.h on a Cortex-M7 without an operating system: reset, floating-point unit, painted stack, and files through
+ * semihosting, the debugger's own calls, which the emulator answers. */
 #include <stdint.h>
 #include <string.h>
 

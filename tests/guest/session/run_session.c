@@ -1,7 +1,7 @@
 /* Runs a recorded session of observations and writes where the camera was, on any machine that has a C compiler.
  *
- * The session is what session.py writes: a head, then per frame its time and its observations. The result has one record per
- * frame. All memory is static; BLOCK_BYTES is what this machine gives the library.
+ * The session is what session.py writes: a head, then per frame its time and its observations. The result has one
+ * record per frame. All memory is static; BLOCK_BYTES is what this machine gives the library.
  */
 #include <math.h>
 #include <planefold/planefold.h>
