@@ -141,6 +141,22 @@ static void test_folder_should_be_refused_when_it_cannot_be_listed() {
   fs::permissions(folder / "closed", fs::perms::owner_all);
 }
 
+static void test_images_should_open_without_a_calibration_when_that_is_asked_for() {
+  TemporaryFolder folder;
+  folder.write("images/a.pgm", make_pgm(48, 36, flat(48 * 36, 5)));
+  folder.write("images/b.pgm", make_pgm(32, 32, flat(1024, 5)));
+  open_refused("images:" + folder.path(), "no calibration inside");
+  Opened opened("images:" + folder.path(), PF_SEQUENCE_UNCALIBRATED);
+  TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+  TEST_ASSERT_EQUAL_INT32(48, opened.info.camera.width);
+  TEST_ASSERT_EQUAL_INT32(36, opened.info.camera.height);
+  TEST_ASSERT_EQUAL_STRING("none", opened.info.calibration_form);
+  TEST_ASSERT_EQUAL_UINT8(5, opened.read(0).pixels[0]);
+  pf_image_t image;
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_sequence_frame(opened.sequence, 1, &image, opened.message));
+  require_message(opened.message, "32 x 32");
+}
+
 static void test_functions_should_refuse_when_a_pointer_is_null() {
   pf_sequence_t* sequence = nullptr;
   TEST_ASSERT_EQUAL_INT(-1, pf_open_sequence(nullptr, nullptr, &sequence, nullptr));
@@ -160,6 +176,7 @@ int main() {
   RUN_TEST(test_times_should_be_refused_when_they_repeat_run_back_or_are_no_times);
   RUN_TEST(test_source_should_be_refused_when_its_folder_is_missing_or_no_folder);
   RUN_TEST(test_folder_should_be_refused_when_it_cannot_be_listed);
+  RUN_TEST(test_images_should_open_without_a_calibration_when_that_is_asked_for);
   RUN_TEST(test_functions_should_refuse_when_a_pointer_is_null);
   return UNITY_END();
 }

@@ -1,7 +1,7 @@
 # The Debian packages that building, testing and the demo need, in one place; and installing what is missing.
 # To be sourced by the commands in tools/, after common.sh.
 
-packages_build=(cmake ninja-build gcc g++ binutils libeigen3-dev pkg-config dpkg-dev)
+packages_build=(cmake ninja-build gcc g++ binutils libeigen3-dev pkg-config dpkg-dev file)
 packages_programs=(libpng-dev libjpeg62-turbo-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
   libsdl2-dev libcairo2-dev ffmpeg python3 python3-venv)
 packages_test=(libbenchmark-dev clang-format)
