@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kStride = 2;             // pixels
 constexpr double kCell = 0.05;         // [m]
-constexpr double kMatchDeg = 10;       // a plane that is further off is no estimate of the surface
-constexpr double kMatchOff = 0.1;      // likewise [m]
+constexpr double kMatchDeg = 6;        // a plane that is further off is no estimate of the surface
+constexpr double kMatchOff = 0.06;     // likewise [m]
 constexpr double kMatchOverlap = 0.3;  // of its outline must lie on what was seen of it
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
