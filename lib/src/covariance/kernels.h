@@ -18,7 +18,7 @@ struct Segment {
 /// Rows of a Jacobian that touch the same few columns: dense over the columns of its segments, in their order.
 struct SparseRows {
   static constexpr int kMaxRows = 6;
-  static constexpr int kMaxSegments = 6;
+  static constexpr int kMaxSegments = 8;
   static constexpr int kMaxColumns = 36;
 
   int rows = 0;

@@ -6,6 +6,7 @@ namespace pf {
 namespace {
 
 constexpr int kDirections = 7;
+constexpr double kTolerance = sizeof(Scalar) == 8 ? 1e-10 : 1e-4;  ///< of a pivot, relative to its variance
 
 /// The seven directions as columns of N (n x 8, the last column unused), in double.
 void directions(const State& state, double* N) {
@@ -45,17 +46,16 @@ bool gauge_information(const Filter& filter, double* scratch, double information
     for (int j = 0; j <= i; ++j) {
       double sum = L[i * n + j];
       for (int k = 0; k < j; ++k) sum -= L[i * n + k] * L[j * n + k];
-      if (j < i) {
-        L[i * n + j] = sum / L[j * n + j];
-        continue;
-      }
-      if (!(sum > 1e-14 * before)) return false;
-      L[i * n + i] = std::sqrt(sum);
+      L[i * n + j] = j < i ? (L[j * n + j] > 0 ? sum / L[j * n + j] : 0.0) : sum;
     }
+    // A row that others determine (a new anchor is the body's position) says nothing new; one below zero is no covariance.
+    const double pivot = L[i * n + i];
+    if (!(pivot > -kTolerance * before) || !(before > 0)) return false;
+    L[i * n + i] = pivot > kTolerance * before ? std::sqrt(pivot) : 0.0;
     for (int c = 0; c < kDirections; ++c) {  // N <- L^-1 N, row by row
       double sum = N[i * 8 + c];
       for (int k = 0; k < i; ++k) sum -= L[i * n + k] * N[k * 8 + c];
-      N[i * 8 + c] = sum / L[i * n + i];
+      N[i * 8 + c] = L[i * n + i] > 0 ? sum / L[i * n + i] : 0.0;
     }
   }
   for (int a = 0; a < kDirections; ++a)

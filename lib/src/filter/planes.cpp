@@ -70,17 +70,11 @@ void Filter::distance_row(int plane, const WorldPoint& at, Scalar* d, SparseRows
   row->segments = 1;
   row->segment[0] = {block.first, 3};
   for (int i = 0; i < 3; ++i) row->h[i] = J_x(i);
-  int to = 3, column = 0;
+  int column = 0;
   for (int s = 0; s < at.segments; ++s) {
-    const bool same = at.segment[s].first == block.first;
-    if (!same) row->segment[row->segments++] = at.segment[s];
-    for (int i = 0; i < at.segment[s].size; ++i) {
-      const Scalar h = J_p.transpose().dot(at.J.col(column++));
-      if (same)
-        row->h[i] += h;
-      else
-        row->h[to++] = h;
-    }
+    Scalar h[WorldPoint::kMaxColumns];
+    for (int i = 0; i < at.segment[s].size; ++i) h[i] = J_p.transpose().dot(at.J.col(column++));
+    add_segment(row, at.segment[s], h);
   }
 }
 
@@ -117,10 +111,10 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
       Scalar d;
       world_point(state_, slots[i], &at);
       distance_row(plane, at, &d, &row[m]);
-      int to = row[m].columns(), from = 0;
-      for (int s = 0; s < l.segments; ++s) {
-        row[m].segment[row[m].segments++] = l.segment[s];
-        for (int k = 0; k < l.segment[s].size; ++k) row[m].h[to++] = -d * l.h[from++];
+      for (int s = 0, from = 0; s < l.segments; ++s) {
+        Scalar h[Observation::kMaxColumns];
+        for (int k = 0; k < l.segment[s].size; ++k) h[k] = -d * l.h[from++];
+        add_segment(&row[m], l.segment[s], h);
       }
       kernels_->gather(P_, row[m], W_ + m * ld_, ld_);
       y_[m++] = -d;

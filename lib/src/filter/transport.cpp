@@ -26,17 +26,13 @@ Scalar dot(const SparseRows& row, const Scalar* dense) {
   return v;
 }
 
-/// Adds a place's part of a row: d^T J, into the segment where it is there already.
+/// Adds a place's part of a row: d^T J.
 void add_place(const WorldPoint& at, const Vec3& d, SparseRows* row) {
   int column = 0;
   for (int s = 0; s < at.segments; ++s) {
-    int into = 0, c = 0;
-    while (into < row->segments && row->segment[into].first != at.segment[s].first) c += row->segment[into++].size;
-    if (into == row->segments) {
-      row->segment[row->segments++] = at.segment[s];
-      for (int i = 0; i < at.segment[s].size; ++i) row->h[c + i] = Scalar(0);
-    }
-    for (int i = 0; i < at.segment[s].size; ++i) row->h[c + i] += d.dot(at.J.col(column++));
+    Scalar h[WorldPoint::kMaxColumns];
+    for (int i = 0; i < at.segment[s].size; ++i) h[i] = d.dot(at.J.col(column++));
+    add_segment(row, at.segment[s], h);
   }
 }
 
