@@ -41,7 +41,7 @@ with tempfile.TemporaryDirectory() as folder:
                      "usr/lib/pkgconfig/planefold.pc", "usr/lib/cmake/planefold/planefoldConfig.cmake", "usr/bin/pf-capture"):
         if not (root / expected).exists():
             script.fail(f"the package lacks {expected}")
-    script.run(root / "usr/bin/pf-capture", "--version")
+    script.run(root / "usr/bin/pf-capture", "--help")
     environment = dict(os.environ, PKG_CONFIG_LIBDIR=str(root / "usr/lib/pkgconfig"))
     flags = script.run("pkg-config", "--cflags", "--libs", "planefold", env=environment).split()
     script.run(script.c_compiler(), "-std=c99", script.SOURCE / "tests/api/outside/main.c", *flags, "-o", folder / "outside")
