@@ -13,10 +13,11 @@ from .camera import read_camera
 from .corners import compare_corners, read_target
 from .errors import compare, default_alignment
 from .files import read_run, read_tum
+from .planes import compare_planes, folding, read_planes
 
 DESCRIPTION = """Compares a run of pf-capture with ground truth.
 
-  pf-eval RUN --truth FILE.tum [--align none|se3|sim3] [--json [FILE]]
+  pf-eval RUN --truth FILE.tum [--planes FILE.json] [--align none|se3|sim3] [--json [FILE]]
   pf-eval RUN --corners FILE.csv --target FILE.yaml [--calib FILE] [--json [FILE]]
 
 RUN is an output folder of pf-capture, or a trajectory in the TUM form (timestamp tx ty tz qx qy qz qw)."""
@@ -25,7 +26,8 @@ NOTES = """Truth is taken within 10 ms of a frame: the nearest pose, or interpol
 often as the frames ("association" says which). Errors are those of evo after Umeyama alignment of positions; rpe_rmse_m is
 from frame to frame. rot_rmse_deg uses the alignment that the positions gave; rot_own_rmse_deg the best rotation for the
 rotations themselves, which says more where the path is nearly straight. NEES is given for runs in the truth's own
-frame only, so with --align none; nees_position has 3 degrees of freedom, nees_pose 6.
+frame only, so with --align none; nees_position has 3 degrees of freedom, nees_pose 6. A plane of the run is a true one when it is
+within 10 degrees and, in the middle of its outline, 10 cm of it, after the alignment of the trajectory.
 
 Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
 
@@ -42,6 +44,12 @@ TABLE = {
     "corner_rms_px": ("corner distance, RMS", "px"), "corner_max_px": ("corner distance, largest", "px"),
     "corner_median_px": ("corner distance, median", "px"), "corner_worst_frame": ("worst frame", ""),
     "corner_bias_u_px": ("mean offset, horizontal", "px"), "corner_bias_v_px": ("mean offset, vertical", "px"),
+    "planes_true": ("planes that are true ones", ""), "planes_false": ("planes that are none", ""),
+    "planes_duplicate": ("planes that are there twice", ""), "planes_missing": ("true planes not found", ""),
+    "plane_normal_median_deg": ("normal of a plane, median", "deg"), "plane_normal_max_deg": ("normal, largest", "deg"),
+    "plane_offset_median_m": ("offset of a plane, median", "m"), "plane_offset_max_m": ("offset, largest", "m"),
+    "state_dim_end": ("rows of the state at the end", ""), "state_dim_points_only": ("the same map without folding", ""),
+    "state_dim_saved": ("share of the state saved by folding", ""), "points_on_planes": ("points on planes", ""),
     "frames": ("frames compared", ""), "frames_measured": ("of frames with measured corners", ""),
 }
 
@@ -53,6 +61,7 @@ def arguments(words):
     parser.add_argument("--truth", metavar="FILE.tum")
     parser.add_argument("--align", choices=["none", "se3", "sim3"],
                         help="default: none where report.json says that the run started from a target, else sim3")
+    parser.add_argument("--planes", metavar="FILE.json", help="true planes: {\"planes\": [{\"name\", \"normal\", \"distance\"}]}")
     parser.add_argument("--corners", metavar="FILE.csv", help="frame,t,u_TL,v_TL,u_TR,v_TR,u_BR,v_BR,u_BL,v_BL")
     parser.add_argument("--target", metavar="FILE.yaml", help="the target that the run was started from")
     parser.add_argument("--calib", metavar="FILE", help="default: calib.yaml in RUN, or beside the corners")
@@ -66,6 +75,8 @@ def arguments(words):
         parser.error("which RUN?")
     if (options.truth is None) == (options.corners is None):
         parser.error("give either --truth or --corners")
+    if options.planes and not options.truth:
+        parser.error("--planes needs --truth")
     if options.corners and not options.target:
         parser.error("--corners needs --target")
     return options
@@ -83,7 +94,10 @@ def evaluate_truth(options):
             columns += [result.nees_position[:, None], result.nees_pose[:, None]]
             names += ",nees_position,nees_pose"
         write_rows(options.per_frame, names, np.hstack(columns))
-    return result.summary
+    summary = dict(result.summary, **folding(report))
+    if options.planes:
+        summary.update(compare_planes(report, read_planes(options.planes), result.scale, result.turn, result.shift))
+    return summary
 
 
 def evaluate_corners(options):
