@@ -129,6 +129,27 @@ void Outputs::write_truth(const pf_pose_t& pose) {
   }
 }
 
+bool Outputs::write_true_planes(const std::vector<std::array<double, 4>>& planes, std::string& error) const {
+  if (planes.empty()) {
+    return true;
+  }
+  const File file = create("truth_planes.json", error);
+  if (!file) {
+    return false;
+  }
+  std::fprintf(file.get(), "{\"planes\": [");
+  for (size_t i = 0; i < planes.size(); ++i) {
+    const auto& p = planes[i];
+    std::fprintf(file.get(), "%s\n  {\"name\": \"%zu\", \"normal\": [%.17g, %.17g, %.17g], \"distance\": %.17g}",
+                 i == 0 ? "" : ",", i, p[0], p[1], p[2], p[3]);
+  }
+  std::fprintf(file.get(), "\n]}\n");
+  if (std::fflush(file.get()) != 0) {
+    error = path("truth_planes.json") + ": could not be written completely; is the disk full?";
+  }
+  return error.empty();
+}
+
 bool Outputs::finish(const FrameView& last, const pf_camera_t& camera, const std::string& report, std::string& error) {
   error.clear();
   File ply = create("map.ply", error);

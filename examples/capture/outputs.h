@@ -3,10 +3,12 @@
 
 #include <planefold/planefold.h>
 
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "view.h"
 
@@ -22,6 +24,8 @@ class Outputs {
   /// frames.csv in every frame, tracks.csv.
   void write(const FrameView& view);
   void write_truth(const pf_pose_t& pose);
+  /// truth_planes.json, where the source knows them.
+  bool write_true_planes(const std::vector<std::array<double, 4>>& planes, std::string& error) const;
   /// map.ply and calib.yaml; false when a file could not be written completely.
   bool finish(const FrameView& last, const pf_camera_t& camera, const std::string& report, std::string& error);
 

@@ -79,7 +79,8 @@ bool Run::open(std::string& error, int& code) {
     return false;
   }
   code = kExitRun;
-  if (!outputs_.open(options_.out, options_.tracks, info.knows_truth, error)) {
+  if (!outputs_.open(options_.out, options_.tracks, info.knows_truth, error) ||
+      !outputs_.write_true_planes(source_.planes(), error)) {
     return false;
   }
   if (!options_.record.empty()) {

@@ -3,9 +3,11 @@
 
 #include <planefold/planefold.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "options.h"
 
@@ -40,6 +42,9 @@ class Source {
   virtual bool truth(pf_pose_t&) { return false; }
   /// The target that the source itself knows, for --start target.
   virtual bool target(pf_target_t&) const { return false; }
+
+  /// The true planes, n . p = d as (n, d), where the source knows them.
+  virtual std::vector<std::array<double, 4>> planes() const { return {}; }
 
   /// What only cameras do.
   virtual bool is_live() const { return false; }

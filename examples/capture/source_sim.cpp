@@ -45,6 +45,15 @@ class SimSource : public Source {
     return pf_sim_target(sim_.get(), PF_TARGET_RECTANGLE, &target) == PF_OK;
   }
 
+  std::vector<std::array<double, 4>> planes() const override {
+    std::vector<std::array<double, 4>> all;
+    std::array<double, 4> plane{};
+    while (pf_sim_surface(sim_.get(), static_cast<int32_t>(all.size()), plane.data(), &plane[3]) == PF_OK) {
+      all.push_back(plane);
+    }
+    return all;
+  }
+
  private:
   std::unique_ptr<pf_sim_t, void (*)(pf_sim_t*)> sim_;
   std::string scene_;
