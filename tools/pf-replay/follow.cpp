@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "context.h"
+#include "record.h"
+#include "session.h"
+#include "sim/trajectory.h"
+
+namespace replay {
+namespace {
+
+using pf::sim::Vec3;
+
+double sigma_of(const double* covariance, int size, int i) { return std::sqrt(covariance[(size + 1) * i]); }
+
+void compare_sigma(double recorded, double here, double* worst) {
+  const double difference = std::fabs(here / recorded - 1);
+  if (!(difference <= *worst)) *worst = difference;
+}
+
+void compare(const pf_pose_t& recorded, const pf_pose_t& here, Distance* d) {
+  const Vec3 turn =
+      pf::sim::rotation_log(pf::sim::rotation_of(recorded.q_WC) * pf::sim::rotation_of(here.q_WC).transposed());
+  const double theta[3] = {turn.x, turn.y, turn.z};
+  for (int i = 0; i < 3; ++i) {
+    d->rotation = std::max(d->rotation, std::fabs(theta[i]) / sigma_of(recorded.covariance, 6, i));
+    d->position =
+        std::max(d->position, std::fabs(here.p_WC[i] - recorded.p_WC[i]) / sigma_of(recorded.covariance, 6, i + 3));
+  }
+  for (int i = 0; i < 6; ++i) {
+    compare_sigma(sigma_of(recorded.covariance, 6, i), sigma_of(here.covariance, 6, i), &d->sigma);
+  }
+}
+
+void compare(const std::vector<pf_feature_t>& recorded, const std::vector<pf_feature_t>& here, Distance* d) {
+  for (const pf_feature_t& a : recorded) {
+    for (const pf_feature_t& b : here) {
+      if (a.track != b.track || a.kind != b.kind || a.kind == PF_FEATURE_INVERSE_DEPTH) continue;
+      ++d->map_points;
+      for (int i = 0; i < 3; ++i) {
+        d->map_position = std::max(d->map_position, std::fabs(a.p_W[i] - b.p_W[i]) / sigma_of(a.covariance, 3, i));
+        compare_sigma(sigma_of(a.covariance, 3, i), sigma_of(b.covariance, 3, i), &d->map_sigma);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool follow(const std::string& file, Distance* d) {
+  Tape tape(file, false);
+  int frames = 0;
+  std::uint64_t seed = 0;
+  bool planes = false;
+  if (!tape.ok() || !tape.read(frames) || !tape.read(seed) || !tape.read(planes)) return false;
+  const pfsim::BedOptions options = session_bed(frames);
+  const pf_config_t config = session_config(options, planes);
+  const pfsim::Bed bed(options, config, seed);  // for the start alone
+  const pfsim::Context context(config);
+  pf_slam_t* slam = context.slam;
+  if (slam == nullptr || pf_start_from_target(slam, &bed.target()) != PF_OK ||
+      pf_start_from_pose(slam, &bed.start(), bed.velocity_covariance()) != PF_OK) {
+    return false;
+  }
+  Frame frame;
+  double us = 0;
+  for (int i = 0; i < frames; ++i) {
+    if (!tape.read(frame)) return false;
+    if (i > 0) pf_push_steering(slam, frame.dv_C, frame.dw_C);
+    const auto begin = std::chrono::steady_clock::now();
+    const pf_status_t status =
+        pf_push_observations(slam, frame.t_ns, frame.observations.data(), frame.observations.size());
+    us += std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+    pf_report_t report;
+    pf_pose_t pose;
+    if (pf_get_report(slam, &report) != PF_OK || pf_get_pose(slam, &pose) != PF_OK) {
+      ++d->starts_again;
+      break;
+    }
+    ++d->frames;
+    d->tracked += status == PF_OK;
+    d->not_tracked += frame.tracked != 0 && status != PF_OK;
+    d->offered += frame.offered;
+    d->refused += frame.offered - static_cast<long>(frame.observations.size());
+    d->refused_again += std::max(0, frame.inliers - report.inliers);
+    d->other_map += report.features != frame.features;
+    compare(frame.pose, pose, d);
+    if (i % 1000 == 999) {
+      std::fprintf(stderr, "\r%d of %d frames: %.3f sigma, sigma off by %.2f %%, %ld refused", i + 1, frames,
+                   std::max(d->position, d->rotation), 100 * d->sigma, d->refused_again);
+    }
+  }
+  std::fprintf(stderr, "\n");
+  d->us_per_frame = us / std::max(1, d->frames);
+  std::vector<pf_feature_t> map;
+  if (d->frames == frames && !tape.read(map)) return false;
+  compare(map, map_of(slam), d);
+  return true;
+}
+
+}  // namespace replay

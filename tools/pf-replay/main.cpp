@@ -1,0 +1,61 @@
+// pf-replay record FILE, then pf-replayf follow FILE: a session of many frames, once in double and, on the observations that were
+// accepted there, once in float. Each program can do both, so that a run can also be held against itself.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "record.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"One session in double, and the same one in float"};
+  app.require_subcommand(1);
+  std::string file, json;
+  int frames = 50000;
+  std::uint64_t seed = 1;
+  bool planes = false;
+
+  CLI::App* record = app.add_subcommand("record", "run the session and write what was accepted and estimated");
+  record->add_option("file", file, "tape to write")->required();
+  record->add_option("--frames", frames, "length of the session")->capture_default_str();
+  record->add_option("--seed", seed, "of the world, the motion and the noise")->capture_default_str();
+  record->add_flag("--planes", planes, "fold points into planes");
+  CLI::App* follow = app.add_subcommand("follow", "run on the accepted observations and compare");
+  follow->add_option("file", file, "tape to read")->required();
+  follow->add_option("--json", json, "file for the result");
+  CLI11_PARSE(app, argc, argv);
+
+  if (record->parsed()) {
+    if (replay::record(file, frames, seed, planes)) return 0;
+    std::fprintf(stderr, "pf-replay: the session could not be run or '%s' not be written\n", file.c_str());
+    return 1;
+  }
+  replay::Distance d;
+  if (!replay::follow(file, &d)) {
+    std::fprintf(stderr, "pf-replay: '%s' is no tape\n", file.c_str());
+    return 1;
+  }
+  const nlohmann::ordered_json result = {{"frames", d.frames},
+                                         {"tracked", d.tracked},
+                                         {"not_tracked", d.not_tracked},
+                                         {"starts_again", d.starts_again},
+                                         {"observations", d.offered},
+                                         {"refused", d.refused},
+                                         {"refused_again", d.refused_again},
+                                         {"frames_with_another_map", d.other_map},
+                                         {"position_in_sigma", d.position},
+                                         {"rotation_in_sigma", d.rotation},
+                                         {"sigma_relative", d.sigma},
+                                         {"map_points", d.map_points},
+                                         {"map_position_in_sigma", d.map_position},
+                                         {"map_sigma_relative", d.map_sigma},
+                                         {"us_per_frame", d.us_per_frame}};
+  std::printf("%s\n", result.dump(2).c_str());
+  if (!json.empty()) {
+    std::FILE* out = std::fopen(json.c_str(), "w");
+    if (out == nullptr) return 1;
+    std::fputs(result.dump(2).c_str(), out);
+    std::fclose(out);
+  }
+  return 0;
+}

@@ -1,0 +1,49 @@
+#include "session.h"
+
+#include <algorithm>
+
+namespace replay {
+
+pfsim::BedOptions session_bed(int frames) {
+  pfsim::BedOptions bed;
+  bed.layout = pfsim::Layout::kRoom;
+  bed.frames = frames;
+  return bed;
+}
+
+pf_config_t session_config(const pfsim::BedOptions& bed, bool planes) {
+  pf_config_t config;
+  pf_config_default(&config);
+  config.camera = pfsim::Bed::camera(bed.fov_deg);
+  config.sigma_pixel = 1;
+  config.gate_probability = 0.9999;
+  config.max_features = 300;
+  config.max_state_dim = 1000;
+  config.max_observations = 100;
+  config.coast_seconds = 10;
+  config.start_depth = 1.6;
+  config.planes = planes;
+  return config;
+}
+
+bool Tape::write(const Frame& frame) {
+  return write(frame.t_ns) && write(frame.dv_C) && write(frame.dw_C) && write(frame.observations) &&
+         write(frame.tracked) && write(frame.offered) && write(frame.inliers) && write(frame.features) &&
+         write(frame.state_dim) && write(frame.pose);
+}
+
+bool Tape::read(Frame& frame) {
+  return read(frame.t_ns) && read(frame.dv_C) && read(frame.dw_C) && read(frame.observations) && read(frame.tracked) &&
+         read(frame.offered) && read(frame.inliers) && read(frame.features) && read(frame.state_dim) &&
+         read(frame.pose);
+}
+
+std::vector<pf_feature_t> map_of(const pf_slam_t* slam) {
+  std::vector<pf_feature_t> features(1000);
+  std::size_t count = 0;
+  pf_get_features(slam, features.data(), features.size(), &count);
+  features.resize(std::min(count, features.size()));
+  return features;
+}
+
+}  // namespace replay
