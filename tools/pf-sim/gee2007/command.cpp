@@ -86,6 +86,7 @@ std::shared_ptr<PaperChoices> add_paper_options(CLI::App* command) {
 }
 
 int run_paper_command(const CLI::App& command, const PaperChoices& paper, const SharedChoices& c) {
+  if (paper.filter != "paper") return fail("the filter is paper or library");
   for (const CLI::Option* option : command.get_options())
     if (option->count() > 0 && option->get_group() != kGroup && !kShared.count(option->get_name()))
       return fail(option->get_name() + " is an option of --filter library");

@@ -78,7 +78,7 @@ bool Slam::update(const std::vector<Measurement>& seen) {
   std::vector<Innovation> innovations;
   std::vector<Touch> J_m;
   for (const Measurement& measurement : seen) {
-    Vec3 m;
+    Vec3 m = Vec3::Zero();
     J_m.clear();
     if (measurement.id < static_cast<int>(known_.size())) {
       m = known_[static_cast<std::size_t>(measurement.id)];
@@ -88,7 +88,7 @@ bool Slam::update(const std::vector<Measurement>& seen) {
       m = place(found->second, &J_m);
     }
     // Eq. 2 for points, eq. 9 before it for planar ones; eq. 10 and its like for inverse depths chain the same way.
-    Vec2 z;
+    Vec2 z = Vec2::Zero();
     PointJacobians J;
     if (!project(camera_, v, m, &z, &J)) continue;
     Innovation innovation{measurement.z - z, {{0, J.J_z_v}}};

@@ -72,7 +72,7 @@ Vec7 World::pose(int frame) const {
 bool World::in_view(int id, int frame) const {
   if (id < kTarget && options_.target_frames > 0 && frame >= options_.target_frames) return false;
   const Vec7 v = pose(frame);
-  Vec2 z;
+  Vec2 z = Vec2::Zero();
   const Vec3& p = points_[static_cast<std::size_t>(id)].p_W;
   const double depth = rotation_of(v.head<4>()).col(2).dot(p - v.tail<3>());
   return depth > options_.nearest && project(camera_, v, p, &z) && camera_.sees(z);
@@ -83,7 +83,7 @@ std::vector<Measurement> World::observe(int frame) {
   const Vec7 v = pose(frame);
   for (int id = 0; id < static_cast<int>(points_.size()); ++id) {
     if (!in_view(id, frame)) continue;
-    Vec2 z;
+    Vec2 z = Vec2::Zero();
     project(camera_, v, points_[static_cast<std::size_t>(id)].p_W, &z);
     const double ex = noise_.normal(), ey = noise_.normal();
     seen.push_back({id, z + options_.sigma_px * Vec2(ex, ey)});
