@@ -35,17 +35,26 @@ double normalised_plane_error(const pf_plane_t& plane, const Vec3& normal) {
 }  // namespace
 
 WallWatch::Share WallWatch::share_of(std::uint32_t plane, const std::vector<pf_feature_t>& map) const {
-  int on[5] = {}, points = 0;
+  int on[4] = {}, points = 0;
   for (const pf_feature_t& f : map) {
     if (f.plane != plane || f.track >= bed_.points().size()) continue;
     ++points;
-    ++on[bed_.points()[f.track].wall + 1];
+    // Where walls meet, a point may well be taken for one of the other wall.
+    const Vec3& truth = bed_.points()[f.track].p_W;
+    for (int wall = 0; wall < 4; ++wall) {
+      const Vec3 n = Bed::wall_normal(wall);
+      const double normal[3] = {n.x, n.y, n.z};
+      double variance = 0;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) variance += normal[i] * f.covariance[3 * i + j] * normal[j];
+      on[wall] += std::fabs(n.dot(truth) + kWallDistance) < std::max(0.01, 3 * std::sqrt(variance));
+    }
   }
   Share share;
   share.points = points;
   for (int wall = 0; wall < 4; ++wall) {
-    if (points == 0 || on[wall + 1] <= share.share * points) continue;
-    share.share = on[wall + 1] / static_cast<double>(points);
+    if (points == 0 || on[wall] <= share.share * points) continue;
+    share.share = on[wall] / static_cast<double>(points);
     share.wall = wall;
   }
   return share;

@@ -14,6 +14,7 @@ struct PlaneEntry {
   int slot = -1;         ///< block in the filter; -1: this entry is free
   int age = 0;           ///< frames since it was found
   int weak = 0;          ///< of them in a row, the last ones with too few points
+  PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 };
 
 class PlaneTable {

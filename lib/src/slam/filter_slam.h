@@ -103,6 +103,7 @@ class FilterSlam {
   void tend_planes();
   void unfold_misfits();
   void fold_into(int plane_entry);
+  void support(int plane_entry, int slot);
   void fix_on(int plane_entry);
   void discover_plane();
   void merge_into(int plane_entry);

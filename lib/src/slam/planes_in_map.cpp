@@ -16,6 +16,7 @@ constexpr int kMostRejections = 4;     ///< in a row, before a folded point is t
 constexpr int kLeastPoints = 4;        ///< that keep a plane alive
 constexpr int kPatience = 60;          ///< frames with fewer
 constexpr int kLeastFixed = 4;         ///< points that a patch begins with
+constexpr Scalar kReach = 0.5f;        ///< beyond what is known of a plane, in roots of its area
 constexpr Scalar kSlanted = 0.05f;     ///< to its frame, above which a plane gets another one
 constexpr Scalar kSameNormal = 0.97f;  ///< cosine of the angle below which planes may be one
 
@@ -92,6 +93,7 @@ void FilterSlam::fold_into(int plane_entry) {
   const int plane = planes_[plane_entry].slot;
   const Block& block = filter_.state().block[plane];
   const PlaneFrame& frame = filter_.state().frame_of(block);
+  const Scalar reach = kReach * std::sqrt(outline_area(planes_[plane_entry].support));
   int slots[Filter::kMostFolded];
   int count = 0;
   for (int i = 0; i < features_.capacity() && count < Filter::kMostFolded && count < settings_.max_observations; ++i) {
@@ -101,6 +103,8 @@ void FilterSlam::fold_into(int plane_entry) {
     const int slot = features_[i].slot;
     const Vec3 p_W = filter_.point(slot);
     if ((p_W - frame.o_W).squaredNorm() > settings_.plane_radius * settings_.plane_radius) continue;
+    // Far from all that is known of a plane, what lies in it does so by chance.
+    if (!outline_contains(planes_[plane_entry].support, plane_coordinates(frame, p_W), reach)) continue;
     Scalar d, variance;
     if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(3) * settings_.plane_distance) continue;
     // Agreement means something only where the distance is known to about what it is gated with.
@@ -110,7 +114,16 @@ void FilterSlam::fold_into(int plane_entry) {
     slots[count++] = slot;
   }
   unsigned char folded[Filter::kMostFolded];
-  if (count > 0) filter_.fold(plane, slots, count, settings_.fold, folded);
+  if (count == 0 || filter_.fold(plane, slots, count, settings_.fold, folded) == 0) return;
+  for (int i = 0; i < count; ++i)
+    if (folded[i] != 0) support(plane_entry, slots[i]);
+}
+
+/// A point has joined: the plane is known as far as there.
+void FilterSlam::support(int plane_entry, int slot) {
+  const State& state = filter_.state();
+  const Vec2 uv = plane_coordinates(state.frame_of(state.block[planes_[plane_entry].slot]), filter_.point(slot));
+  extend_outline(&planes_[plane_entry].support, &uv, 1);
 }
 
 /// Points that are known well among those of their plane are estimated no more.
@@ -167,10 +180,12 @@ void FilterSlam::discover_plane() {
   for (int k = 0; k < members; ++k) member[k] = features_[candidate_entry_[member[k]]].slot;
   const int slot = filter_.add_plane(fit, member, members, settings_.fold.roughness);
   if (slot < 0) return;
-  if (planes_.add(slot) < 0) {
+  const int entry = planes_.add(slot);
+  if (entry < 0) {
     filter_.remove(&slot, 1);
     return;
   }
+  for (int k = 0; k < members; ++k) support(entry, member[k]);
   settings_.hooks.say("found a plane");
 }
 
@@ -221,6 +236,8 @@ void FilterSlam::merge_into(int plane_entry) {
     int count = 0;
     const auto give = [&] {
       if (count > 0) filter_.fold(plane, slots, count, rule, folded);
+      for (int i = 0; i < count; ++i)
+        if (folded[i] != 0) support(plane_entry, slots[i]);
       count = 0;
     };
     for (int i = 0; i < features_.capacity(); ++i) {
@@ -255,7 +272,10 @@ void FilterSlam::settle_frame(int plane_entry) {
   to.R_WP.col(0) = along;
   to.R_WP.col(1) = normal.cross(along);
   to.R_WP.col(2) = normal;
-  filter_.reanchor(plane, to);
+  const PlaneFrame from = state.frame_of(block);
+  if (!filter_.reanchor(plane, to)) return;
+  PlaneOutline& known = planes_[plane_entry].support;
+  for (int i = 0; i < known.count; ++i) known.uv[i] = plane_coordinates(to, plane_point(from, x, known.uv[i]));
 }
 
 /// All points go back to three coordinates, and the plane goes.
