@@ -54,7 +54,7 @@ class PacedCamera : public Camera {
     frame = next_;
     frame.image.pixels = pixels_[slot].data();
     frame.handle = static_cast<int32_t>(slot);
-    frame.arrived_ns = due_ns;
+    frame.arrived_ns = steady_ns();
     waiting_ = false;
     return CameraRead::kFrame;
   }

@@ -25,6 +25,13 @@ double quantile(std::vector<double> values, double share) {
   return std::round(1e3 * values[static_cast<size_t>(std::max(0.0, rank))]) * 1e-3;
 }
 
+nlohmann::ordered_json spread(const std::vector<double>& values) {
+  return {{"min", quantile(values, 0.0)},
+          {"median", quantile(values, 0.5)},
+          {"p95", quantile(values, 0.95)},
+          {"max", quantile(values, 1.0)}};
+}
+
 }  // namespace
 
 LiveSource::LiveSource(std::unique_ptr<Camera> camera, const Options& options, SourceInfo info)
@@ -85,6 +92,7 @@ Read LiveSource::read(int64_t, pf_image_t& image, std::string& error) {
     current_.frame.image.pixels = current_.copy.data();
   }
   image = current_.frame.image;
+  wait_ms_.push_back(1e-6 * static_cast<double>(steady_ns() - current_.frame.arrived_ns));
   return Read::kDone;
 }
 
@@ -189,7 +197,10 @@ void LiveSource::deliver(const CameraFrame& frame) {
     camera_->release(frame);
   }
   std::unique_lock<std::mutex> lock(mutex_);
-  ++captured_;
+  if (captured_++ > 0) {
+    interval_ms_.push_back(1e-6 * static_cast<double>(frame.image.t_ns - last_t_ns_));
+  }
+  last_t_ns_ = frame.image.t_ns;
   if (every_frame_) {
     changed_.wait(lock, [&] { return stop_ || waiting_bytes_ < kQueueBytes; });
     waiting_bytes_ += next.copy.size();
@@ -233,10 +244,9 @@ std::string LiveSource::finish() {
   nlohmann::ordered_json json = {{"captured", captured_},
                                  {"passed_over", passed_over_},
                                  {"every_frame", every_frame_},
-                                 {"latency_ms",
-                                  {{"median", quantile(latency_ms_, 0.5)},
-                                   {"p95", quantile(latency_ms_, 0.95)},
-                                   {"max", quantile(latency_ms_, 1.0)}}},
+                                 {"interval_ms", spread(interval_ms_)},
+                                 {"wait_ms", spread(wait_ms_)},
+                                 {"latency_ms", spread(latency_ms_)},
                                  {"frame_ms", info_.rate_hz > 0.0 ? 1e3 / info_.rate_hz : 0.0}};
   json["camera"] = nlohmann::ordered_json::parse(camera_->report());
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

@@ -70,12 +70,13 @@ class LiveSource : public Source {
   bool ended_ = false;
   std::string failure_;
   std::deque<std::string> notices_;
-  int64_t captured_ = 0, passed_over_ = 0;
+  int64_t captured_ = 0, passed_over_ = 0, last_t_ns_ = 0;
+  std::vector<double> interval_ms_;
   int outstanding_ = 0;
 
   Waiting current_;  ///< of the reading thread, as what follows
   bool has_current_ = false;
-  std::vector<double> latency_ms_;
+  std::vector<double> wait_ms_, latency_ms_;
 };
 
 }  // namespace pf::capture
