@@ -25,7 +25,7 @@ with tempfile.TemporaryDirectory() as folder:
     config = (script.BUILD / "CPackConfig.cmake").read_text()
     (folder / "CPackConfig.cmake").write_text(
         config + '\nset(CPACK_CMAKE_GENERATOR "")\nset(CPACK_INSTALL_CMAKE_PROJECTS "")\n'
-        f'set(CPACK_INSTALLED_DIRECTORIES "{folder}/tree;.")\n')
+        f'set(CPACK_INSTALLED_DIRECTORIES "{folder}/tree;usr")\n')
     for component in ("development", "programs"):
         script.run("cmake", "--install", script.BUILD, "--prefix", folder / "tree", "--component", component)
     script.run("cpack", "-G", "DEB", "--config", folder / "CPackConfig.cmake", "-B", folder / "out", cwd=folder)
