@@ -119,6 +119,35 @@ void test_outline_should_leave_points_out_when_they_are_not_finite() {
   TEST_ASSERT_TRUE(std::abs(outline_area(outline) - Scalar(0.5)) < kTiny);
 }
 
+void test_company_should_leave_one_out_when_it_lies_far_from_all_others() {
+  SeededRandom random(55);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<Vec2> points = points_in_disc(random, 8 + trial);
+    const int place = trial % static_cast<int>(points.size());
+    points.insert(points.begin() + place, Vec2(6, 1));
+    const std::vector<Vec2> before = points;
+    const int count = static_cast<int>(points.size()), kept = keep_company(points.data(), count);
+    TEST_ASSERT_TRUE(kept < count && kept >= 3 * count / 4);
+    for (int i = 0, k = 0; i < count && k < kept; ++i) {
+      const std::size_t from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(k);
+      if (before[from] == points[to]) ++k;
+      if (i + 1 == count) TEST_ASSERT_EQUAL_INT(kept, k);  // in their order
+    }
+    for (int k = 0; k < kept; ++k) TEST_ASSERT_TRUE(points[static_cast<std::size_t>(k)].x() < 5);
+  }
+}
+
+void test_company_should_keep_all_when_points_are_few_or_evenly_spread() {
+  std::vector<Vec2> grid;
+  for (int i = 0; i < 30; ++i) grid.emplace_back(static_cast<Scalar>(i % 6), static_cast<Scalar>(i / 6));
+  TEST_ASSERT_EQUAL_INT(30, keep_company(grid.data(), 30));
+  std::vector<Vec2> few = {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(90, 0)};
+  TEST_ASSERT_EQUAL_INT(5, keep_company(few.data(), 5));
+  std::vector<Vec2> same(20, Vec2(1, 1));
+  TEST_ASSERT_EQUAL_INT(20, keep_company(same.data(), 20));
+  TEST_ASSERT_EQUAL_INT(0, keep_company(few.data(), 0));
+}
+
 void test_contains_should_widen_by_the_margin_when_there_is_one() {
   const PlaneOutline square = outline_of({Vec2(0, 0), Vec2(2, 0), Vec2(2, 2), Vec2(0, 2), Vec2(1, 1)});
   TEST_ASSERT_EQUAL_INT(4, square.count);
@@ -140,6 +169,8 @@ int main() {
   RUN_TEST(test_outline_should_never_shrink_by_much_when_points_come_for_ever);
   RUN_TEST(test_outline_should_have_no_area_when_points_are_in_line_or_the_same);
   RUN_TEST(test_outline_should_leave_points_out_when_they_are_not_finite);
+  RUN_TEST(test_company_should_leave_one_out_when_it_lies_far_from_all_others);
+  RUN_TEST(test_company_should_keep_all_when_points_are_few_or_evenly_spread);
   RUN_TEST(test_contains_should_widen_by_the_margin_when_there_is_one);
   return UNITY_END();
 }

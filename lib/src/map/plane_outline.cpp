@@ -73,6 +73,34 @@ void extend_outline(PlaneOutline* outline, const Vec2* uv, int count) {
   }
 }
 
+int keep_company(Vec2* uv, int count) {
+  if (count < 6 || count > kOutlineBatch) return count;
+  Scalar second[kOutlineBatch], sorted[kOutlineBatch];
+  for (int i = 0; i < count; ++i) {
+    Scalar nearest = -1, next = -1;
+    for (int k = 0; k < count; ++k) {
+      if (k == i) continue;
+      const Scalar d = (uv[k] - uv[i]).squaredNorm();
+      if (nearest < 0 || d < nearest) {
+        next = nearest;
+        nearest = d;
+      } else if (next < 0 || d < next) {
+        next = d;
+      }
+    }
+    second[i] = next;
+    int k = i;
+    for (; k > 0 && next < sorted[k - 1]; --k) sorted[k] = sorted[k - 1];
+    sorted[k] = next;
+  }
+  const Scalar most = 9 * sorted[count / 2];
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    if (second[i] <= most) uv[kept++] = uv[i];
+  }
+  return kept;
+}
+
 Scalar turn_of(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }

@@ -17,6 +17,13 @@ struct PlaneOutline {
 /// that it never oversteps the convex hull. Any order, any number of points; those that are not finite are left out.
 void extend_outline(PlaneOutline* outline, const Vec2* uv, int count);
 
+inline constexpr int kOutlineBatch = 96;  ///< points that are held against one another
+
+/// Those of the points that have company come first, in their order; returns how many. A point is alone when the second nearest
+/// of the others is more than three times as far as it commonly is (the median). Of fewer than six, none is.
+/// count <= kOutlineBatch
+int keep_company(Vec2* uv, int count);
+
 /// Twice the signed area of a triangle: positive when a, b, c turn left.
 Scalar turn_of(const Vec2& a, const Vec2& b, const Vec2& c);
 
