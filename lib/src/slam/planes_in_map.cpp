@@ -292,7 +292,7 @@ void FilterSlam::dissolve(int plane_entry) {
 }
 
 PlanePoints FilterSlam::outline(int plane_entry, PlaneOutline* outline) const {
-  constexpr int kBatch = 32;
+  constexpr int kBatch = kOutlineBatch;
   const State& state = filter_.state();
   const int plane = planes_[plane_entry].slot;
   PlanePoints points;
@@ -307,10 +307,10 @@ PlanePoints FilterSlam::outline(int plane_entry, PlaneOutline* outline) const {
     if (outline == nullptr) continue;
     uv[count++] = plane_coordinates(state.frame_of(state.block[plane]), filter_.point(slot));
     if (count < kBatch) continue;
-    extend_outline(outline, uv, count);
+    extend_outline(outline, uv, keep_company(uv, count));
     count = 0;
   }
-  if (count > 0) extend_outline(outline, uv, count);
+  if (count > 0) extend_outline(outline, uv, keep_company(uv, count));
   return points;
 }
 
