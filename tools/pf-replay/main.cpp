@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "pf-replay: '%s' is no tape\n", file.c_str());
     return 1;
   }
-  const nlohmann::ordered_json result = {{"frames", d.frames},
+  const nlohmann::ordered_json result = {{"scalar", PF_REPLAY_SCALAR},
+                                         {"frames", d.frames},
                                          {"tracked", d.tracked},
                                          {"not_tracked", d.not_tracked},
                                          {"starts_again", d.starts_again},

@@ -1,6 +1,7 @@
 #include "record.h"
 
 #include <cmath>
+#include <unordered_map>
 #include <unordered_set>
 
 #include "context.h"
@@ -23,6 +24,7 @@ bool record(const std::string& file, int frames, std::uint64_t seed, bool planes
   Frame frame;
   frame.pose = bed.start();
   std::vector<pf_track_t> tracks(1000);
+  std::unordered_map<std::uint32_t, std::uint32_t> observation_of;  // by id of the feature
   for (int i = 0; i < frames && written; ++i) {
     if (i > 0) {
       bed.steer(i - 1, frame.pose, frame.dv_C, frame.dw_C);
@@ -41,17 +43,15 @@ bool record(const std::string& file, int frames, std::uint64_t seed, bool planes
     frame.features = report.features;
     frame.state_dim = report.state_dim;
 
+    // A feature may leave the map in the frame that refuses its measurement.
+    if (i == 0 || report.new_features > 0) {
+      for (const pf_feature_t& f : map_of(slam)) observation_of[f.id] = f.track;
+    }
     std::size_t count = 0;
     pf_get_tracks(slam, tracks.data(), tracks.size(), &count);
-    std::unordered_set<std::uint32_t> refused;  // by id of the feature
+    std::unordered_set<std::uint32_t> dropped;
     for (std::size_t k = 0; k < count && k < tracks.size(); ++k) {
-      if (tracks[k].status == PF_TRACK_OUTLIER) refused.insert(tracks[k].id);
-    }
-    std::unordered_set<std::uint32_t> dropped;  // by id of the observation
-    if (!refused.empty()) {
-      for (const pf_feature_t& f : map_of(slam)) {
-        if (refused.count(f.id) != 0) dropped.insert(f.track);
-      }
+      if (tracks[k].status == PF_TRACK_OUTLIER) dropped.insert(observation_of[tracks[k].id]);
     }
     frame.observations.clear();
     for (const pf_observation_t& o : seen) {

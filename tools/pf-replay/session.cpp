@@ -7,6 +7,8 @@ namespace replay {
 pfsim::BedOptions session_bed(int frames) {
   pfsim::BedOptions bed;
   bed.layout = pfsim::Layout::kRoom;
+  bed.circle = true;
+  bed.fov_deg = 43;
   bed.frames = frames;
   return bed;
 }
@@ -21,7 +23,7 @@ pf_config_t session_config(const pfsim::BedOptions& bed, bool planes) {
   config.max_state_dim = 1000;
   config.max_observations = 100;
   config.coast_seconds = 10;
-  config.start_depth = 1.6;
+  config.start_depth = 2;
   config.planes = planes;
   return config;
 }

@@ -9,7 +9,7 @@
 
 namespace replay {
 
-/// The session: a steered walk in a room of 200 points, for which there is room in the map.
+/// The session: loops on a circle in a room, looking across it; its 200 points all find room in the map.
 pfsim::BedOptions session_bed(int frames);
 pf_config_t session_config(const pfsim::BedOptions& bed, bool planes);
 
