@@ -111,6 +111,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   std::string kernels = "auto";
   bool no_film = false;
   bool no_gauge = false;
+  bool no_planes = false;
   const std::map<std::string, pf_kernels_t> kernel_names = {
       {"auto", PF_KERNELS_AUTO}, {"reference", PF_KERNELS_REFERENCE}, {"portable", PF_KERNELS_PORTABLE},
       {"avx2", PF_KERNELS_AVX2}, {"avx512", PF_KERNELS_AVX512},       {"neon", PF_KERNELS_NEON}};
@@ -132,10 +133,12 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--backend", backend, "filter")->capture_default_str();
   app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
   app.add_option("--max-features", options.max_features, "capacity of the map")->check(at_least(1));
+  app.add_option("--max-planes", options.max_planes, "likewise")->check(at_least(1));
   app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(at_least(1));
   app.add_option("--max-observations", options.max_observations, "features measured in one frame")->check(at_least(1));
   app.add_option("--features-in-view", options.features_in_view, "features to keep in view")->check(at_least(1));
   app.add_option("--kernels", kernels, "auto, reference, portable, avx2, avx512 or neon")->capture_default_str();
+  app.add_flag("--no-planes", no_planes, "points only");
   app.add_flag("--plain-ekf", no_gauge, "the textbook filter, which is overconfident; for comparison");
   add_camera_options(app, options);
   try {
@@ -167,6 +170,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   options.kernels = set->second;
   options.film = !no_film;
   options.keep_gauge = !no_gauge;
+  options.planes = !no_planes;
   return Parsed::kRun;
 }
 

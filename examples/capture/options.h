@@ -23,10 +23,12 @@ struct Options {
   int64_t skip = 0;
   uint64_t seed = 1;
   int32_t max_features = -1;
+  int32_t max_planes = -1;
   int32_t max_state_dim = -1;
   int32_t max_observations = -1;
   int32_t features_in_view = -1;
   pf_kernels_t kernels = PF_KERNELS_AUTO;
+  bool planes = true;
   bool keep_gauge = true;
 
   // Cameras, and what is played as if it came from one.

@@ -29,8 +29,10 @@ bool Session::open(const Options& options, const Source& source, std::string& er
   config_.camera = source.info().camera;
   config_.kernels = static_cast<uint32_t>(options.kernels);
   config_.keep_gauge = options.keep_gauge ? 1 : 0;
+  config_.planes = options.planes ? 1 : 0;
   const auto set = [](int32_t& field, int32_t value) { field = value > 0 ? value : field; };
   set(config_.max_features, options.max_features);
+  set(config_.max_planes, options.max_planes);
   set(config_.max_state_dim, options.max_state_dim);
   set(config_.max_observations, options.max_observations);
   set(config_.features_in_view, options.features_in_view);
