@@ -134,6 +134,13 @@ class Filter {
 
   /// Covariance of a feature's place, to first order.
   Mat3 covariance3(int slot) const;
+  /// The best known of a few log lengths, as a row over the state: l N = (0, 0, 1). False where there is none.
+  bool scale_row(SparseRows* row) const;
+  /// Covariance of a 3-D point against the camera's position and the world's size: of f - p - (f - p) l e. What all points share
+  /// because the world may drift or grow is not in it.
+  Mat3 relative_covariance(int slot, const SparseRows& l) const;
+  /// Standard deviation of an inverse depth against the world's size: of e_rho + rho l e.
+  Scalar relative_sigma_rho(int slot, const SparseRows& l) const;
   /// A feature's place in W; an inverse depth that is not positive counts as far away.
   Vec3 point(int slot) const;
   Scalar variance(int row) const { return P_(row, row); }
@@ -161,7 +168,6 @@ class Filter {
   // transport.cpp
   int begin_transport();
   void finish_transport(int m, int rows);
-  bool scale_row(SparseRows* row) const;
   Scalar variance_of(const SparseRows& row) const;
 
   // planes.cpp

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstring>
 
 #include "filter/filter.h"
@@ -122,6 +123,51 @@ Scalar Filter::variance_of(const SparseRows& row) const {
   for (int i = 0; i < c; ++i)
     for (int j = 0; j < c; ++j) sum += row.h[i] * row.h[j] * P_(column[i], column[j]);
   return sum;
+}
+
+Mat3 Filter::relative_covariance(int slot, const SparseRows& l) const {
+  const Block& block = state_.block[slot];
+  PF_ASSERT(block.kind == BlockKind::kPoint);
+  const Vec3 d = block.xyz() - state_.body.p_W;
+  SparseRows row[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    Scalar one[3] = {}, less[3] = {}, scaled[SparseRows::kMaxColumns];
+    one[axis] = Scalar(1);
+    less[axis] = Scalar(-1);
+    row[axis].rows = 1;
+    add_segment(&row[axis], {block.first, 3}, one);
+    add_segment(&row[axis], {Body::kPosition, 3}, less);
+    for (int s = 0, c = 0; s < l.segments; ++s) {
+      for (int i = 0; i < l.segment[s].size; ++i) scaled[i] = -d[axis] * l.h[c++];
+      add_segment(&row[axis], l.segment[s], scaled);
+    }
+  }
+  int column[SparseRows::kMaxColumns];
+  int columns = 0;
+  for (int s = 0; s < row[0].segments; ++s)
+    for (int i = 0; i < row[0].segment[s].size; ++i) column[columns++] = row[0].segment[s].first + i;
+  Mat3 C = Mat3::Zero();
+  for (int i = 0; i < columns; ++i) {
+    Vec3 PJ = Vec3::Zero();
+    for (int j = 0; j < columns; ++j) PJ += P_(column[i], column[j]) * Vec3(row[0].h[j], row[1].h[j], row[2].h[j]);
+    C += Vec3(row[0].h[i], row[1].h[i], row[2].h[i]) * PJ.transpose();
+  }
+  return C;
+}
+
+Scalar Filter::relative_sigma_rho(int slot, const SparseRows& l) const {
+  const Block& block = state_.block[slot];
+  PF_ASSERT(block.kind == BlockKind::kInverseDepth);
+  const Scalar rho = block.inverse_depth().rho;
+  const int first = block.first + 2;
+  for (int s = 0; s < l.segments; ++s)  // the row hangs on this very point: it cannot be its own measure
+    if (l.segment[s].first == block.first) return std::sqrt(P_(first, first));
+  SparseRows row = l;
+  row.rows = 1;
+  for (int c = 0; c < l.columns(); ++c) row.h[c] *= rho;
+  const Scalar one = Scalar(1);
+  add_segment(&row, {first, 1}, &one);
+  return std::sqrt(variance_of(row));
 }
 
 /// The best known of a few log lengths: a patch's lambda, a log inverse depth, or between a point and the one that is farthest from it.

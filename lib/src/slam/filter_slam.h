@@ -140,6 +140,7 @@ class FilterSlam {
   PlaneCandidate* candidate_ = nullptr;  ///< max_features
   int* candidate_entry_ = nullptr;       ///< feature table entry of each
   std::uint32_t random_ = 1;
+  SparseRows scale_;  ///< picks the log scale out of an error, where planes are tended to
   Tracker tracker_;
   Target target_;
   QuadWorkspace quad_workspace_;

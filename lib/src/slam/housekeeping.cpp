@@ -15,14 +15,19 @@ constexpr int kMaxEarlyFailures = 4;  ///< in a row, for one that was seldom see
 }  // namespace
 
 void FilterSlam::convert_what_is_linear() {
+  SparseRows l;
+  if (!filter_.scale_row(&l)) l.segments = 0;
   for (int i = 0; i < features_.capacity(); ++i) {
     if (!features_.used(i)) continue;
     const Block& block = filter_.state().block[features_[i].slot];
     if (block.kind != BlockKind::kInverseDepth) continue;
-    const Scalar sigma_rho = std::sqrt(filter_.variance(block.first + 2));
+    // A size of the world that nobody knows is the same for all, and no reason to keep a point's depth apart.
+    const Scalar sigma_rho = filter_.relative_sigma_rho(features_[i].slot, l);
     const Vec3 o_W = filter_.state().block[block.parent].xyz();
-    if (linearity_index(filter_.state().body, o_W, block.inverse_depth(), sigma_rho) < settings_.linearity_index)
+    if (linearity_index(filter_.state().body, o_W, block.inverse_depth(), sigma_rho) < settings_.linearity_index) {
       filter_.convert_to_point(features_[i].slot);
+      if (!filter_.scale_row(&l)) l.segments = 0;  // rows have moved
+    }
   }
 }
 

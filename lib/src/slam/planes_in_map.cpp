@@ -32,6 +32,7 @@ Scalar largest_eigenvalue(const Mat3& C) {
 void FilterSlam::tend_planes() {
   if (!settings_.planes || (recording_ && !depth_known_)) return;
   unfold_misfits();
+  if (!filter_.scale_row(&scale_)) scale_.segments = 0;
   const int turn = report_.frames % planes_.capacity();
   for (int k = 0, tended = 0; k < planes_.capacity(); ++k) {
     const int i = (turn + k) % planes_.capacity();
@@ -44,20 +45,18 @@ void FilterSlam::tend_planes() {
     merge_into(i);
   }
   dissolve_weak();
-  if (report_.frames % kDiscoverEvery == 0) discover_plane();
+  if (report_.frames % kDiscoverEvery != 0) return;
+  if (!filter_.scale_row(&scale_)) scale_.segments = 0;  // rows may have moved since
+  discover_plane();
 }
 
-/// A 3-D point that may be folded, or vote for a plane; its covariance relative to the camera.
+/// A 3-D point that may be folded, or vote for a plane; its covariance relative to the camera and the world's size.
 bool FilterSlam::is_candidate(int entry, Mat3* covariance) const {
   if (!features_.used(entry)) return false;
   const Feature& f = features_[entry];
   const Block& block = filter_.state().block[f.slot];
   if (block.kind != BlockKind::kPoint || f.failures > 0 || (f.observations < kConverged && !f.is_target)) return false;
-  const Triangle& P = filter_.covariance();
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      (*covariance)(i, j) = P(block.first + i, block.first + j) + P(Body::kPosition + i, Body::kPosition + j) -
-                            P(block.first + i, Body::kPosition + j) - P(Body::kPosition + i, block.first + j);
+  *covariance = filter_.relative_covariance(f.slot, scale_);
   const Scalar most = settings_.fold_sigma * settings_.fold_sigma;
   return (*covariance)(0, 0) + (*covariance)(1, 1) + (*covariance)(2, 2) < most ||
          largest_eigenvalue(*covariance) < most;
