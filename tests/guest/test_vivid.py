@@ -23,18 +23,18 @@ cp /share/pf-capture /share/feed /share/pictures.raw /tmp
 capture() {{ # NAME SECONDS ARGUMENTS...: interrupted after some seconds, as a user ends a run
   name=$1; seconds=$2; shift 2
   mkdir -p /share/$name
-  timeout -s INT $seconds nice -n 10 /tmp/pf-capture {SMALL} --out /share/$name "$@" >/share/$name/stdout 2>/share/$name/stderr && code=0 || code=$?
+  timeout -s INT $seconds /tmp/pf-capture {SMALL} --out /share/$name "$@" >/share/$name/stdout 2>/share/$name/stderr && code=0 || code=$?
   echo $code >/share/$name/code
   echo "$name: $(cut -d' ' -f1 /proc/uptime) s"
 }}
 /tmp/pf-capture --list >/share/list.txt
-# The test picture, at 30 Hz. --delay leaves the processor to the camera. Where the host is busy the emulated camera itself
-# comes late, so there are three attempts.
-CALM="--calib /share/small.yaml --rate 30 --delay 500"
+# The test picture. --delay leaves the processor to the camera. Where the host is busy the emulated camera itself comes late and
+# skips a number, so there are several attempts, the last ones at half the rate.
+CALM="--calib /share/small.yaml --delay 500"
 for format in GREY YUYV; do
-  for attempt in 1 2 3; do
-    capture $format 6 --source v4l2:/dev/video0 $CALM --format $format
-    grep -q '"lost": 0,' /share/$format/report.json && break
+  for attempt in 30:6 30:6 15:10 15:10; do
+    capture $format ${{attempt#*:}} --source v4l2:/dev/video0 $CALM --rate ${{attempt%:*}} --format $format
+    grep -A 60 '"camera": {{' /share/$format/report.json | grep -q '"lost": 0,' && break
   done
 done
 capture dmabuf 3 --source v4l2:vivid $CALM --format GREY --dma-buf
@@ -101,7 +101,7 @@ def check_streams(results):
         results.require(live["captured"] >= 120, f"{name}: only {live['captured']} frames")
         results.require(camera["lost"] == 0 and camera["damaged"] == 0, f"{name}: {camera['lost']} frames lost, "
                         f"{camera['damaged']} damaged")
-        results.require(interval["min"] > 0 and 32 < interval["median"] < 35, f"{name}: intervals {interval} ms")
+        results.require(interval["min"] > 0 and 0.9 < 1e-3 * camera["rate_hz"] * interval["median"] < 1.1, f"{name}: intervals {interval} ms")
     dmabuf = results.report("dmabuf")["live"]
     results.require(dmabuf["captured"] >= 30 and dmabuf["camera"]["damaged"] == 0, f"dma-buf: {dmabuf}")
 
