@@ -1,0 +1,38 @@
+"""pf-sim rendered on the textured room: its walls are found where they are, and nothing else is called a plane."""
+
+import json
+import pathlib
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from script import BIN, fail, run  # noqa: E402
+
+SEEDS, FIRST_SEED, FRAMES = 2, 1, 300
+
+
+def require(condition, message):
+    if not condition:
+        fail(message)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    report = pathlib.Path(folder) / "report.json"
+    run(BIN / "pf-sim", "rendered", "--scene", "room", "--seeds", SEEDS, "--first-seed", FIRST_SEED, "--frames", FRAMES,
+        "--jobs", 2, "--max-features", 300, "--max-state-dim", 800, "--max-planes", 16, "--json", report)
+    case = json.loads(report.read_text())["cases"]["room"]
+
+planes = case["planes"]
+print(f"seeds {FIRST_SEED}..{FIRST_SEED + SEEDS - 1}: " + ", ".join(f"{name} {value}" for name, value in planes.items() if name != "each_run"))
+require(case["lost_runs"] == 0, "a run was lost")
+require(len(planes["each_run"]) == SEEDS, "not the runs that were asked for")
+require(planes["wanted"] >= SEEDS, f"only {planes['wanted']} surfaces were seen well in {SEEDS} runs")
+require(planes["false"] == 0, f"{planes['false']} planes where no surface is")
+require(planes["found"] == planes["wanted"], f"{planes['found']} of {planes['wanted']} surfaces that were seen well were found")
+require(planes["within_2_deg_2_cm"] == planes["found"],
+        f"{planes['within_2_deg_2_cm']} of {planes['found']} within 2 degrees and 2 cm: worst {planes['worst_normal_deg']:.2f} degrees, "
+        f"{planes['worst_offset_m']:.3f} m")
+require(planes["most_overstep"] <= 0.2, f"an outline oversteps what was seen by {planes['most_overstep']:.2f} of it")
+for one in planes["each_run"]:
+    for plane in one["planes"]:
+        require(plane["points"] > 0 and plane["area_m2"] > 0, f"an empty plane: {plane}")
