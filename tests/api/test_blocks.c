@@ -28,7 +28,8 @@ static void test_a_block_should_be_refused_when_it_is_too_small_or_misaligned(vo
 #if defined(__GNUC__)
 __attribute__((no_sanitize_address))
 #endif
-static void copy_block(unsigned char* to, const unsigned char* from, size_t bytes) {
+static void
+copy_block(unsigned char* to, const unsigned char* from, size_t bytes) {
   const volatile unsigned char* at = from;
   for (size_t i = 0; i < bytes; ++i) to[i] = at[i];
 }
