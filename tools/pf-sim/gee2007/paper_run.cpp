@@ -92,7 +92,7 @@ bool choose_case(char letter, SlamOptions* options) {
 
 Moments moments_of(int frames, int frames_per_loop) {
   const int last = frames - 1;
-  return {std::min(last, frames_per_loop * 15 / 16), std::min(last, frames_per_loop * 101 / 100), last};
+  return {std::min(last, frames_per_loop * 7 / 9), std::min(last, frames_per_loop * 101 / 100), last};
 }
 
 PaperSummary run_paper(const WorldOptions& world_options, const SlamOptions& slam_options, std::uint64_t seed,

@@ -16,7 +16,7 @@ struct PaperRow {
 
 /// Where the pictures of Figure 1 are taken.
 struct Moments {
-  int before, after, end;  ///< frames: shortly before the circle closes, shortly after, and the last
+  int before, after, end;  ///< frames: before the start comes into view again, after it, and the last
 };
 
 struct PaperSummary {
