@@ -12,7 +12,11 @@ import venv  # noqa: E402
 venv.enter()
 import numpy as np  # noqa: E402
 
+from scipy.spatial.transform import Rotation  # noqa: E402
+
 from pf_eval import Refused  # noqa: E402
+from pf_eval.errors import compare  # noqa: E402
+from pf_eval.files import Trajectory  # noqa: E402
 from pf_eval.planes import compare_planes, folding, read_planes  # noqa: E402
 
 TRUTH = (np.array([[0.0, 0, 1], [1.0, 0, 0]]), np.array([2.0, 3.0]), ["front", "side"])
@@ -60,6 +64,21 @@ class Planes(unittest.TestCase):
         result = compare_planes({"planes": [plane(1, [0, -1, 1e-9], middle)]}, TRUTH, 2.0, turn, np.array([0.1, 0.2, 0.3]))
         self.assertEqual(result["planes"][0]["true"], "side")
         self.assertLess(result["plane_offset_max_m"], 1e-6)
+
+    def test_alignment_by_rotations_should_be_exact_when_positions_tell_little_of_a_turn(self):
+        generator = np.random.default_rng(7)
+        print("seed 7")
+        t = np.arange(40) / 30
+        p = np.stack([t, 0.01 * np.sin(9 * t), 0.01 * np.cos(7 * t)], axis=1)  # nearly a straight line
+        R = Rotation.from_rotvec(np.outer(t, [0, 0.5, 0]))
+        turn = Rotation.from_rotvec([0.3, -0.5, 0.8])
+        xyzw = [rotation.as_quat()[:, [3, 0, 1, 2]] for rotation in (R, turn.inv() * R)]
+        truth = Trajectory(t, p, xyzw[0], source="truth")
+        run = Trajectory(t, turn.inv().apply(p - [1, 2, 3]) / 2 + generator.normal(0, 0.005, p.shape), xyzw[1], source="run")
+        result = compare(run, truth, "sim3")
+        self.assertLess(np.abs(result.own_turn - turn.as_matrix()).max(), 1e-9)
+        self.assertLess(np.abs(result.own_shift - [1, 2, 3]).max(), 0.05)
+        self.assertGreater(np.abs(result.turn - turn.as_matrix()).max(), 0.01)
 
     def test_truth_should_be_read_when_it_is_a_list_or_one_plane(self):
         normals, distances, names = read_planes(self.write('{"planes": [{"name": "a", "normal": [0, 0, 2], "distance": 4}]}'))

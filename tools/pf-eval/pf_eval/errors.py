@@ -20,6 +20,7 @@ class Comparison:
     rotation_error (n,3) theta of R_true = Exp(theta) R_est, in W [rad]; covariance (n,6,6) or None after alignment
     rotations      (n,3,3) of the estimate, after alignment
     scale, turn, shift  the alignment: p_truth = scale turn p_run + shift
+    own_turn, own_shift  likewise, with the turn that fits the rotations best: the better one for directions
     summary        what pf-eval prints
     """
 
@@ -87,6 +88,11 @@ def compare(run, truth, align, own_frame=True):
 
     rate = 1.0 / np.median(np.diff(estimate.t)) if len(estimate) > 1 else 0.0
     own = off.mean().inv() * off if align != "none" else None
+    if align != "none":
+        result.own_turn = off.mean().as_matrix() @ turn
+        result.own_shift = (matched.p - result.scale * estimate.p @ result.own_turn.T).mean(axis=0)
+    else:
+        result.own_turn, result.own_shift = turn, shift
     result.summary = {
         "ate_rmse_m": _statistic(metrics.APE(metrics.PoseRelation.translation_part), pair),
         "ate_max_m": _statistic(metrics.APE(metrics.PoseRelation.translation_part), pair, "max"),

@@ -27,7 +27,7 @@ often as the frames ("association" says which). Errors are those of evo after Um
 from frame to frame. rot_rmse_deg uses the alignment that the positions gave; rot_own_rmse_deg the best rotation for the
 rotations themselves, which says more where the path is nearly straight. NEES is given for runs in the truth's own
 frame only, so with --align none; nees_position has 3 degrees of freedom, nees_pose 6. A plane of the run is a true one when it is
-within 10 degrees and, in the middle of its outline, 10 cm of it, after the alignment of the trajectory.
+within 10 degrees and, in the middle of its outline, 10 cm of it, after an alignment by the rotations of the trajectory.
 
 Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
 
@@ -96,7 +96,7 @@ def evaluate_truth(options):
         write_rows(options.per_frame, names, np.hstack(columns))
     summary = dict(result.summary, **folding(report))
     if options.planes:
-        summary.update(compare_planes(report, read_planes(options.planes), result.scale, result.turn, result.shift))
+        summary.update(compare_planes(report, read_planes(options.planes), result.scale, result.own_turn, result.own_shift))
     return summary
 
 
