@@ -37,9 +37,10 @@ apt=(apt-get -q -y -o APT::Architecture="$architecture" -o APT::Architectures::=
   -o Dir::Etc::sourcelist="$work/etc/sources.list" -o Dir::Etc::sourceparts="$work/etc/sources.list.d"
   -o Dir::Etc::preferencesparts="$work/etc/preferences.d" -o Dir::State="$work" -o Dir::State::lists="$work/lists"
   -o Dir::State::status="$work/status" -o Dir::Cache="$work/cache" -o APT::Sandbox::User=""
-  -o Dir::Cache::pkgcache="" -o Dir::Cache::srcpkgcache="")
+  -o Dir::Cache::pkgcache="" -o Dir::Cache::srcpkgcache="" -o Acquire::Retries=3)
 echo "Fetching for $architecture: $(echo $packages)"
-"${apt[@]}" update >"$work/log" 2>&1 || { tail -5 "$work/log" >&2; exit 1; }
+# A mirror may lack one list, of updates say: what the packages are fetched from decides.
+"${apt[@]}" update >"$work/log" 2>&1 || grep '^E:' "$work/log" >&2 || true
 # shellcheck disable=SC2086  # a list of words
 "${apt[@]}" install --no-install-recommends --download-only $packages >"$work/log" 2>&1 ||
   { tail -15 "$work/log" >&2; exit 1; }
