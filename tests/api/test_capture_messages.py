@@ -89,6 +89,7 @@ def test_usage(root):
     expect("libcamera", 2, ["not available yet", "v4l2:"], "--source", "libcamera:0")
     expect("format", 2, ["--format", "MJPEG"], "--source", "v4l2:/dev/video0", "--format", "RGB")
     expect("every frame of a folder", 2, ["--every-frame", "--realtime"], "--source", source, "--every-frame")
+    expect("skip of a camera", 2, ["--skip"], "--source", "v4l2:/dev/video0", "--skip", "3")
     expect("as recorded", 2, ["--as-recorded", "euroc:"], "--source", source, "--as-recorded")
     expect("window back end", 2, ["not available yet"], "--source", source, "--backend", "window")
     expect("back end", 2, ["--backend", "filter"], "--source", source, "--backend", "magic")
