@@ -238,10 +238,16 @@ void Filter::augment_block(Block* block, int size, const SparseRows& J, const Sc
 
 Vec3 Filter::point(int slot) const {
   const Block& block = state_.block[slot];
-  if (is_planar(block.kind)) {
-    WorldPoint at;
-    world_point(state_, slot, &at);
-    return at.p_W;
+  if (block.kind == BlockKind::kPlanePoint) {
+    const Block& plane = state_.block[block.parent];
+    return plane_point(state_.frame_of(plane), plane.xyz(), block.uv());
+  }
+  if (block.kind == BlockKind::kPatchPoint) {
+    const Block& patch = state_.block[block.parent];
+    const Block& plane = state_.block[patch.parent];
+    const Patch drawing = patch.patch();
+    const Vec2 uv = drawing.t + drawing.linear() * block.uv();
+    return plane_point(state_.frame_of(plane), plane.xyz(), uv);
   }
   if (block.kind != BlockKind::kInverseDepth) return block.xyz();
   constexpr Scalar kFar = Scalar(1e-3);
