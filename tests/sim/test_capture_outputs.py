@@ -32,6 +32,7 @@ def capture(out, *arguments):
 
 def check_planes(planes, vertices, faces):
     outlined = [plane for plane in planes if len(plane["outline"]) >= 3]
+    require(outlined, "no plane was found")
     require(len(faces) == len(outlined), f"map.ply: {len(faces)} faces for {len(outlined)} outlines")
     for plane, face in zip(outlined, faces):
         require(all(key in plane for key in ("id", "normal", "distance", "sigma", "points", "area_m2")), f"a plane lacks a name: {plane}")

@@ -93,7 +93,7 @@ int keep_company(Vec2* uv, int count) {
     for (; k > 0 && next < sorted[k - 1]; --k) sorted[k] = sorted[k - 1];
     sorted[k] = next;
   }
-  const Scalar most = 9 * sorted[count / 2];
+  const Scalar most = 25 * sorted[count / 2];
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     if (second[i] <= most) uv[kept++] = uv[i];

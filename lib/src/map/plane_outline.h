@@ -20,7 +20,7 @@ void extend_outline(PlaneOutline* outline, const Vec2* uv, int count);
 inline constexpr int kOutlineBatch = 96;  ///< points that are held against one another
 
 /// Those of the points that have company come first, in their order; returns how many. A point is alone when the second nearest
-/// of the others is more than three times as far as it commonly is (the median). Of fewer than six, none is.
+/// of the others is more than five times as far as it commonly is (the median). Of fewer than six, none is.
 /// count <= kOutlineBatch
 int keep_company(Vec2* uv, int count);
 
