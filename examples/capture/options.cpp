@@ -83,6 +83,9 @@ std::string check(const Options& options, const std::string& backend) {
   if (options.every_frame && kind != "v4l2" && !options.realtime) {
     return "--every-frame is for cameras and --realtime; without these every frame is tracked anyway";
   }
+  if (options.skip > 0 && kind == "v4l2") {
+    return "--skip is for folders and scenes; a camera has no frames to leave out";
+  }
   if (options.as_recorded && kind != "euroc") {
     return "--as-recorded is for a recording: --source euroc:DIR";
   }
