@@ -16,10 +16,10 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRoomHalf = 2.0;    // walls at +-2 m
 constexpr double kWallMargin = 0.1;  // points that lie on no wall keep this distance from all [m]
-constexpr double kFreeRadius = 1.0;  // no points where a steered camera walks [m]
+constexpr double kFreeRadius = 1.2;  // no points where a steered camera walks [m]
 constexpr double kNearest = 0.2;     // nothing nearer is measured [m]
 constexpr double kBorder = 4;        // nor this close to the border [px]
-constexpr double kWalkRadius = 0.5;  // of the nominal way about the middle of the room [m]
+constexpr double kWalkRadius = 0.3;  // of the nominal way about the middle of the room [m]
 constexpr double kHoldSeconds = 2;   // in front of the target
 
 const Vec3 kDown{0, 1, 0};
@@ -127,7 +127,7 @@ void Bed::steer(int frame, const pf_pose_t& estimate, double dv_C[3], double dw_
   set(dv_C, {});
   set(dw_C, {});
   if (options_.circle) return;
-  // A damped spring to the nominal way: 2 rad/s in position, 3 rad/s in rotation.
+  // A damped spring to the nominal way: 3 rad/s in position, 6 rad/s in rotation, both critically damped.
   const double dt = 1 / options_.rate_hz;
   const Pose now = nominal(frame), next = nominal(frame + 1);
   const Vec3 v_nominal = (next.p_WC - now.p_WC) * options_.rate_hz;
@@ -137,8 +137,8 @@ void Bed::steer(int frame, const pf_pose_t& estimate, double dv_C[3], double dw_
   const Vec3 v{estimate.v_W[0], estimate.v_W[1], estimate.v_W[2]};
   const Vec3 w{estimate.w_C[0], estimate.w_C[1], estimate.w_C[2]};
   const Vec3 turn_C = rotation_log(R.transposed() * now.R_WC);
-  set(dv_C, R.transposed() * ((now.p_WC - p) * 4.0 + (v_nominal - v) * 3.0) * dt);
-  set(dw_C, (turn_C * 9.0 + (w_nominal - w) * 5.0) * dt);
+  set(dv_C, R.transposed() * ((now.p_WC - p) * 9.0 + (v_nominal - v) * 6.0) * dt);
+  set(dw_C, (turn_C * 36.0 + (w_nominal - w) * 12.0) * dt);
 }
 
 void Bed::move(int frame, const double dv_C[3], const double dw_C[3]) {
