@@ -57,6 +57,15 @@ def test_room_should_report_its_numbers_and_be_the_same_twice(folder):
         fail("the per-frame table has the wrong length")
 
 
+def test_many_starts_before_a_target_should_all_succeed(folder):
+    """Half a second before the target, then points that are two to three times farther begin all at once."""
+    path = folder / "starts.json"
+    run(PF_SIM, "room", "--case", "A", "--seeds", "80", "--frames", "120", "--jobs", "2", "--json", path)
+    case = json.loads(path.read_text())["cases"]["A"]
+    if case["lost_runs"] or not case["nees_position"]["mean"] < 4 or not case["camera_rmse_m"] < 0.02:
+        fail(json.dumps(case, indent=1))
+
+
 def test_wrong_words_should_be_refused_in_one_line():
     for words in (["render", "nowhere", "--out", "x"], ["room", "--case", "Z"], ["room", "--layout", "moon"],
                   ["gee2007", "--motion", "dance"], ["room", "--sigma-px", "1000"]):
@@ -70,5 +79,6 @@ if not PF_SIM.exists():
 with tempfile.TemporaryDirectory() as name:
     test_render_should_write_the_layout_of_recorded_sequences(pathlib.Path(name))
     test_room_should_report_its_numbers_and_be_the_same_twice(pathlib.Path(name))
+    test_many_starts_before_a_target_should_all_succeed(pathlib.Path(name))
 test_wrong_words_should_be_refused_in_one_line()
 print("OK")

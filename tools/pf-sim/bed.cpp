@@ -19,7 +19,7 @@ constexpr double kWallMargin = 0.1;  // points that lie on no wall keep this dis
 constexpr double kFreeRadius = 1.2;  // no points where a steered camera walks [m]
 constexpr double kNearest = 0.2;     // nothing nearer is measured [m]
 constexpr double kBorder = 4;        // nor this close to the border [px]
-constexpr double kWalkRadius = 0.3;  // of the nominal way about the middle of the room [m]
+constexpr double kWalkRadius = 0.5;  // of the nominal way about the middle of the room [m]
 constexpr double kHoldSeconds = 2;   // in front of the target
 
 const Vec3 kDown{0, 1, 0};

@@ -158,7 +158,8 @@ typedef struct pf_config {
   double gate_probability; /* of a true match passing the gate, 0.9 .. 0.9999. Default 0.99 */
 
   /* Depth of a feature that was seen once: 1/depth = rho0 with standard deviation sigma_rho = relative_sigma * rho0.
-   * rho0 is 1 / start_depth until the map knows better, and then, with depth_from_map, the median of what is in view. */
+   * rho0 is 1 / start_depth until the map knows better, and then, with depth_from_map, the median of what is in view;
+   * where only a target is in view, half of the target's, since a target stands in front of its scene. */
   double start_depth;                  /* > 0. Default 1 */
   uint32_t depth_from_map;             /* 0 or 1. Default 1 */
   double inverse_depth_relative_sigma; /* 0.05 .. 5. Default 2: hardly a prior, since

@@ -14,6 +14,8 @@ struct PlaneEntry {
   int slot = -1;         ///< block in the filter; -1: this entry is free
   int age = 0;           ///< frames since it was found
   int weak = 0;          ///< of them in a row, the last ones with too few points
+  int most = 0;          ///< points that it ever had
+  int misfits = 0;       ///< points that were taken out again because they do not lie there
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 };
 
@@ -58,11 +60,16 @@ class PlaneTable {
     next_merged_ = (next_merged_ + 1) % (capacity_ * kRemembered);
   }
 
+  /// The entry of a slot's plane, or -1.
+  int entry_at(int slot) const {
+    for (int i = 0; i < capacity_; ++i)
+      if (used(i) && entry_[i].slot == slot) return i;
+    return -1;
+  }
   /// The id of a slot's plane, or 0.
   std::uint32_t id_at(int slot) const {
-    for (int i = 0; i < capacity_; ++i)
-      if (entry_[i].slot == slot) return entry_[i].id;
-    return 0;
+    const int entry = entry_at(slot);
+    return entry < 0 ? 0 : entry_[entry].id;
   }
   /// The id that an id stands for now; 0 when its plane is gone, or was merged too long ago.
   std::uint32_t find(std::uint32_t id) const {

@@ -11,6 +11,8 @@ namespace {
 constexpr int kMinAttempts = 10;      ///< before a feature is judged
 constexpr int kMaxFailures = 12;      ///< in a row, for one that was good
 constexpr int kMaxEarlyFailures = 4;  ///< in a row, for one that was seldom seen
+constexpr int kEnough = 8;            ///< depths make a median
+constexpr Scalar kBehindTarget = 2;   ///< how many times farther than the target the scene is taken to be
 
 }  // namespace
 
@@ -94,13 +96,19 @@ bool FilterSlam::make_room_at(int* anchor) {
   return *anchor >= 0;
 }
 
-/// Median inverse depth of what was measured in this frame, or that of the start.
+/// Median inverse depth of what was measured in this frame; where that is the target alone, of what lies behind it; or that of
+/// the start.
+///
+/// A target stands in front of the scene. Points that begin nearer than they are tempt a camera whose pose the target leaves
+/// uncertain: short depths and a turn about the target explain the first frames too, and the filter may settle there (bas-relief
+/// ambiguity). Points that begin too far only wait for parallax.
 Scalar FilterSlam::usual_inverse_depth() const {
   const Scalar start = Scalar(1) / settings_.start_depth;
   if (!settings_.depth_from_map) return start;
   constexpr int kMost = 128;
   Scalar rho[kMost];
-  int count = 0;
+  int count = 0, on_target = 0;
+  Scalar target_rho = 0;
   const Body& body = filter_.state().body;
   const Vec3 forward = body.q_WC.toRotationMatrix().col(2);
   for (int i = 0; i < features_.capacity() && count < kMost; ++i) {
@@ -112,11 +120,19 @@ Scalar FilterSlam::usual_inverse_depth() const {
     }
     const Vec3 p_W = filter_.point(features_[i].slot);
     const Scalar distance = (p_W - body.p_W).norm();
-    if (forward.dot(p_W - body.p_W) > Scalar(0)) rho[count++] = Scalar(1) / distance;
+    if (!(forward.dot(p_W - body.p_W) > Scalar(0))) continue;
+    if (features_[i].is_target) {
+      target_rho += Scalar(1) / distance;
+      ++on_target;
+    } else {
+      rho[count++] = Scalar(1) / distance;
+    }
   }
-  if (count < 8) return start;
-  std::nth_element(rho, rho + count / 2, rho + count);
-  return rho[count / 2];
+  if (count >= kEnough) {
+    std::nth_element(rho, rho + count / 2, rho + count);
+    return rho[count / 2];
+  }
+  return on_target > 0 ? target_rho / (kBehindTarget * Scalar(on_target)) : start;
 }
 
 /// A new inverse-depth feature at a pixel; its table entry, or -1.

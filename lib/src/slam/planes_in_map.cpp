@@ -13,7 +13,7 @@ namespace {
 constexpr int kConverged = 10;         ///< observations before a point is believed
 constexpr int kDiscoverEvery = 5;      ///< frames
 constexpr int kMostRejections = 4;     ///< in a row, before a folded point is taken out again
-constexpr int kLeastPoints = 4;        ///< that keep a plane alive
+constexpr int kLeastPoints = 4;        ///< that keep alive a plane that once had more than plane_min_points
 constexpr int kPatience = 60;          ///< frames with fewer
 constexpr int kLeastFixed = 4;         ///< points that a patch begins with
 constexpr Scalar kReach = 0.5f;        ///< beyond what is known of a plane, in roots of its area
@@ -50,12 +50,12 @@ void FilterSlam::tend_planes() {
   discover_plane();
 }
 
-/// A 3-D point that may be folded, or vote for a plane; its covariance relative to the camera and the world's size.
+/// A 3-D point that may be folded, or vote for a plane, which a target's points, of known places, may not; its covariance relative to the camera and the world's size.
 bool FilterSlam::is_candidate(int entry, Mat3* covariance) const {
-  if (!features_.used(entry)) return false;
+  if (!features_.used(entry) || features_[entry].is_target) return false;
   const Feature& f = features_[entry];
   const Block& block = filter_.state().block[f.slot];
-  if (block.kind != BlockKind::kPoint || f.failures > 0 || (f.observations < kConverged && !f.is_target)) return false;
+  if (block.kind != BlockKind::kPoint || f.failures > 0 || f.observations < kConverged) return false;
   *covariance = filter_.relative_covariance(f.slot, scale_);
   const Scalar most = settings_.fold_sigma * settings_.fold_sigma;
   return (*covariance)(0, 0) + (*covariance)(1, 1) + (*covariance)(2, 2) < most ||
@@ -74,6 +74,8 @@ void FilterSlam::unfold_misfits() {
     features_[i].rejections = 0;
     features_[i].observations = 1;  // has to converge again before it may be folded
     loosen(plane, children);
+    const int entry = planes_.entry_at(plane);
+    if (entry >= 0) ++planes_[entry].misfits;
   }
 }
 
@@ -87,6 +89,14 @@ void FilterSlam::loosen(int plane_slot, int children) {
   filter_.inflate(plane_slot, Q);
 }
 
+/// Near the plane, and known to be. Agreement means something only where the distance is known to about what it is gated with.
+bool FilterSlam::lies_on(int plane, int slot) const {
+  Scalar d, variance;
+  if (!filter_.distance(plane, slot, &d, &variance)) return false;
+  const Scalar most = settings_.plane_distance * settings_.plane_distance;
+  return d * d <= most * Scalar(4) && variance <= most;
+}
+
 /// Points that lie on the plane join it.
 void FilterSlam::fold_into(int plane_entry) {
   const int plane = planes_[plane_entry].slot;
@@ -97,19 +107,14 @@ void FilterSlam::fold_into(int plane_entry) {
   int count = 0;
   for (int i = 0; i < features_.capacity() && count < Filter::kMostFolded && count < settings_.max_observations; ++i) {
     Mat3 covariance;
-    if (features_.used(i) && features_[i].is_target) continue;
     if (!is_candidate(i, &covariance)) continue;
     const int slot = features_[i].slot;
     const Vec3 p_W = filter_.point(slot);
     if ((p_W - frame.o_W).squaredNorm() > settings_.plane_radius * settings_.plane_radius) continue;
     // Far from all that is known of a plane, what lies in it does so by chance.
     if (!outline_contains(planes_[plane_entry].support, plane_coordinates(frame, p_W), reach)) continue;
-    Scalar d, variance;
     if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(3) * settings_.plane_distance) continue;
-    // Agreement means something only where the distance is known to about what it is gated with.
-    if (!filter_.distance(plane, slot, &d, &variance)) continue;
-    const Scalar most = settings_.plane_distance * settings_.plane_distance;
-    if (d * d > most * Scalar(4) || variance > most) continue;
+    if (!lies_on(plane, slot)) continue;
     slots[count++] = slot;
   }
   unsigned char folded[Filter::kMostFolded];
@@ -179,7 +184,15 @@ void FilterSlam::discover_plane() {
   for (int k = 0; k < members; ++k) member[k] = features_[candidate_entry_[member[k]]].slot;
   const int slot = filter_.add_plane(fit, member, members, settings_.fold.roughness);
   if (slot < 0) return;
-  const int entry = planes_.add(slot);
+  // It has to keep, by the filter's own covariance, as many as it takes to find one.
+  int kept = 0;
+  const FoldRule& rule = settings_.fold;
+  for (int k = 0; k < members; ++k) {
+    Scalar d, variance;
+    if (!lies_on(slot, member[k]) || !filter_.distance(slot, member[k], &d, &variance)) continue;
+    kept += d * d < rule.gate * (variance + rule.roughness * rule.roughness) ? 1 : 0;
+  }
+  const int entry = kept > settings_.plane_min_points ? planes_.add(slot) : -1;
   if (entry < 0) {
     filter_.remove(&slot, 1);
     return;
@@ -313,12 +326,16 @@ PlanePoints FilterSlam::outline(int plane_entry, PlaneOutline* outline) const {
   return points;
 }
 
+/// A plane that too few points carry for a while goes, a new one also where it does not get as many as it was found with; and at
+/// once what more points have denied than still believe.
 void FilterSlam::dissolve_weak() {
   for (int i = 0; i < planes_.capacity(); ++i) {
     if (!planes_.used(i)) continue;
     const int points = outline(i, nullptr).folded;
-    planes_[i].weak = points < kLeastPoints ? planes_[i].weak + 1 : 0;
-    if (planes_[i].weak > kPatience) dissolve(i);
+    planes_[i].most = std::max(planes_[i].most, points);
+    const bool proven = planes_[i].most > settings_.plane_min_points;
+    planes_[i].weak = points < kLeastPoints || !proven ? planes_[i].weak + 1 : 0;
+    if (planes_[i].weak > kPatience || planes_[i].misfits > points) dissolve(i);
   }
 }
 
