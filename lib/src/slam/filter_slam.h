@@ -102,6 +102,7 @@ class FilterSlam {
   // planes_in_map.cpp
   void tend_planes();
   void unfold_misfits();
+  bool is_in_reach(int plane_entry, const Vec3& p_W) const;
   bool lies_on(int plane, int slot) const;
   void fold_into(int plane_entry);
   void support(int plane_entry, int slot);

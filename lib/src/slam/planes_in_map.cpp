@@ -89,6 +89,15 @@ void FilterSlam::loosen(int plane_slot, int children) {
   filter_.inflate(plane_slot, Q);
 }
 
+/// Not far from all that is known of a plane: what lies in it there does so by chance. The paper asks for a distance from the plane's
+/// origin, since it cannot tell how well far points are known beside each other; here the variance of the distance says so.
+bool FilterSlam::is_in_reach(int plane_entry, const Vec3& p_W) const {
+  const PlaneFrame& frame = filter_.state().frame_of(filter_.state().block[planes_[plane_entry].slot]);
+  const PlaneOutline& known = planes_[plane_entry].support;
+  const Scalar reach = std::min(kReach * std::sqrt(outline_area(known)), settings_.plane_radius);
+  return outline_contains(known, plane_coordinates(frame, p_W), reach);
+}
+
 /// Near the plane, and known to be. Agreement means something only where the distance is known to about what it is gated with.
 bool FilterSlam::lies_on(int plane, int slot) const {
   Scalar d, variance;
@@ -102,7 +111,6 @@ void FilterSlam::fold_into(int plane_entry) {
   const int plane = planes_[plane_entry].slot;
   const Block& block = filter_.state().block[plane];
   const PlaneFrame& frame = filter_.state().frame_of(block);
-  const Scalar reach = kReach * std::sqrt(outline_area(planes_[plane_entry].support));
   int slots[Filter::kMostFolded];
   int count = 0;
   for (int i = 0; i < features_.capacity() && count < Filter::kMostFolded && count < settings_.max_observations; ++i) {
@@ -110,9 +118,7 @@ void FilterSlam::fold_into(int plane_entry) {
     if (!is_candidate(i, &covariance)) continue;
     const int slot = features_[i].slot;
     const Vec3 p_W = filter_.point(slot);
-    if ((p_W - frame.o_W).squaredNorm() > settings_.plane_radius * settings_.plane_radius) continue;
-    // Far from all that is known of a plane, what lies in it does so by chance.
-    if (!outline_contains(planes_[plane_entry].support, plane_coordinates(frame, p_W), reach)) continue;
+    if (!is_in_reach(plane_entry, p_W)) continue;
     if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(3) * settings_.plane_distance) continue;
     if (!lies_on(plane, slot)) continue;
     slots[count++] = slot;
@@ -164,8 +170,7 @@ void FilterSlam::discover_plane() {
       if (!planes_.used(k)) continue;
       const Block& plane = filter_.state().block[planes_[k].slot];
       const PlaneFrame& frame = filter_.state().frame_of(plane);
-      taken = std::abs(plane_distance(frame, plane.xyz(), p_W)) < most &&
-              (p_W - frame.o_W).squaredNorm() < settings_.plane_radius * settings_.plane_radius;
+      taken = std::abs(plane_distance(frame, plane.xyz(), p_W)) < most && is_in_reach(k, p_W);
     }
     if (taken) continue;
     candidate_[count].p_W = p_W;
