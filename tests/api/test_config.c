@@ -61,6 +61,10 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES_REAL(inverse_depth_relative_sigma, 0.04, 5.1);
   NAMES_REAL(linearity_index, 0.0009, 1.1);
   NAMES_REAL(coast_seconds, 0.04, 10.1);
+  NAMES(imu_buffer, -1);
+  NAMES(imu_buffer, 10001);
+  NAMES_REAL(imu_gyro_range, -1, 1001);
+  NAMES_REAL(imu_accel_range, -1, 1.1e5);
 }
 
 #define NAMES_CAMERA(field, value)    \

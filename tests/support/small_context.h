@@ -76,8 +76,10 @@ typedef struct view {
   pf_state_t state;
   pf_feature_t features[30];
   pf_track_t tracks[60];
-  size_t feature_count, track_count;
-  pf_status_t status[6];
+  size_t feature_count, track_count, imu_count;
+  pf_imu_report_t imu;
+  pf_imu_sample_t imu_samples[16];
+  pf_status_t status[8];
 } view_t;
 
 static inline view_t* view_of(const pf_slam_t* of) {
@@ -89,6 +91,8 @@ static inline view_t* view_of(const pf_slam_t* of) {
   v->status[3] = pf_get_features(of, v->features, 30, &v->feature_count);
   v->status[4] = pf_get_tracks(of, v->tracks, 60, &v->track_count);
   v->status[5] = pf_predict_pose(of, STEP_NS * 1000 / 10, &v->later);
+  v->status[6] = pf_get_imu_report(of, &v->imu);
+  v->status[7] = pf_get_imu_samples(of, v->imu_samples, 16, &v->imu_count);
   return v;
 }
 

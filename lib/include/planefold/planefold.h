@@ -185,6 +185,11 @@ typedef struct pf_config {
 
   double coast_seconds; /* without tracking for longer than this, the state is lost, 0.05 .. 10. Default 1 */
 
+  /* Inertial samples (pf_push_imu). */
+  int32_t imu_buffer;     /* samples that are kept, the newest: a capacity, 0 .. 10000. Default 0 */
+  double imu_gyro_range;  /* [rad/s] what the unit can measure, 0: not known .. 1000. Default 0 */
+  double imu_accel_range; /* [m/s^2] likewise, 0 .. 1e5. Default 0 */
+
   /* 1 keeps the covariance consistent with what a camera alone cannot observe (lib/docs/gauge.md); 0 is the textbook EKF,
    * which is overconfident, for comparison. Default 1 */
   uint32_t keep_gauge;
@@ -289,6 +294,19 @@ PF_API pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_
  * frame's prediction to the velocities, in camera axes: v_W += R_WC dv_C [m/s], w_C += dw_C [rad/s]. Calls add up.
  * PF_ERROR_STATE with the constant-position model, which has no velocity. */
 PF_API pf_status_t pf_push_steering(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]);
+
+/* A sample of an inertial measurement unit, in the unit's own axes. */
+typedef struct pf_imu_sample {
+  int64_t t_ns;    /* when it was measured, on the clock of the frames */
+  double gyro[3];  /* angular velocity [rad/s], at most 1000 each */
+  double accel[3]; /* specific force [m/s^2], at most 1e5 each: 9.8 upwards when it lies still */
+} pf_imu_sample_t;
+
+/* Samples, the oldest first, each after every earlier one; those up to a frame's time belong before that frame. All or none
+ * are taken: PF_ERROR_TIME where time stands still or runs back, PF_ERROR_NONFINITE, PF_ERROR_RANGE beyond what any unit measures.
+ * THE INERTIAL MOTION MODEL DOES NOT EXIST YET: samples are checked, kept (imu_buffer of the config) and reported, and no
+ * pose depends on them. */
+PF_API pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count);
 
 /* ---------------------------------------------------------------------------------------------------- output -- */
 
@@ -425,6 +443,27 @@ typedef struct pf_report {
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);
+
+/* What came in through pf_push_imu since create or reset. */
+typedef struct pf_imu_report {
+  int64_t samples;
+  int64_t since_frame; /* of them after the last frame was pushed */
+  int64_t last_frame;  /* of them between the last frame and the one before (or the beginning) */
+  int64_t late;        /* of them with a time that is not after that of the frame pushed before them */
+  int64_t saturated;   /* of them with a number at the end of the ranges in the config */
+  int64_t gaps;        /* intervals that are more than half as long again as the usual one */
+  int64_t missing;     /* samples that would fill the gaps */
+  int64_t first_t_ns, last_t_ns, longest_ns;
+  double rate_hz; /* mean from the first sample to the last; 0 of fewer than two */
+  double usual_s; /* the usual interval, a running median; 0 of fewer than two */
+  int32_t kept;   /* in the buffer */
+  uint32_t used;  /* 1 when poses make use of the samples: 0, since the motion model does not exist yet */
+} pf_imu_report_t;
+
+PF_API pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report);
+
+/* Copy of the kept samples, the oldest first. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
+PF_API pf_status_t pf_get_imu_samples(const pf_slam_t* slam, pf_imu_sample_t* samples, size_t capacity, size_t* count);
 
 /* Information that the filter holds about what a camera alone cannot observe: N^T P^-1 N, 7x7, row-major, in the order
  * translation, rotation, log scale of the whole world. It must never grow without absolute data. For tests and

@@ -19,7 +19,7 @@ struct Range {
 constexpr Range kIntegers[] = {
     PF_FIELD(max_state_dim, 32, 2000), PF_FIELD(max_features, 8, 1000),   PF_FIELD(max_observations, 8, 200),
     PF_FIELD(max_planes, 1, 64),       PF_FIELD(plane_min_points, 4, 60), PF_FIELD(features_in_view, 8, 200),
-    PF_FIELD(border_px, 4, 64),
+    PF_FIELD(border_px, 4, 64),        PF_FIELD(imu_buffer, 0, 10000),
 };
 
 constexpr double kTiny = 1e-9;
@@ -39,6 +39,8 @@ constexpr Range kReals[] = {
     PF_FIELD(fold_sigma, 1e-5, 10),
     PF_FIELD(fix_sigma, 0, 10),
     PF_FIELD(coast_seconds, 0.05, 10),
+    PF_FIELD(imu_gyro_range, 0, 1000),
+    PF_FIELD(imu_accel_range, 0, 1e5),
 };
 
 #undef PF_FIELD
@@ -116,6 +118,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->border_px = config.border_px;
   settings->coast_ns = static_cast<std::int64_t>(config.coast_seconds * 1e9);
   settings->keep_gauge = config.keep_gauge != 0;
+  settings->imu_buffer = config.imu_buffer;
+  settings->imu_ranges = {static_cast<Scalar>(config.imu_gyro_range), static_cast<Scalar>(config.imu_accel_range)};
   settings->hooks.clock_ns = config.clock_ns;
   settings->hooks.log = config.log;
   settings->hooks.user = config.user;
@@ -159,6 +163,9 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->border_px = 8;
   config->coast_seconds = 1.0;
   config->keep_gauge = 1;
+  config->imu_buffer = 0;
+  config->imu_gyro_range = 0;
+  config->imu_accel_range = 0;
   return PF_OK;
 }
 

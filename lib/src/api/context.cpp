@@ -7,9 +7,10 @@
 namespace {
 
 /// The one layout: run over nothing to count, over the caller's block to carve.
-pf_slam* lay_out(pf::Arena& arena, const pf::Settings& settings, pf::FilterSlam* slam) {
+pf_slam* lay_out(pf::Arena& arena, const pf::Settings& settings, pf::FilterSlam* slam, pf::ImuLog* imu) {
   pf_slam* context = arena.take<pf_slam>(1);
   slam->layout(arena, settings);
+  imu->layout(arena, settings.imu_buffer);
   return context;
 }
 
@@ -22,7 +23,8 @@ pf_status_t pf_memory_query(const pf_config_t* config, pf_memory_t* memory) {
   if (status != pf::Status::kOk) return pf::to_c(status);
   pf::Arena arena;
   pf::FilterSlam slam;
-  lay_out(arena, settings, &slam);
+  pf::ImuLog imu;
+  lay_out(arena, settings, &slam, &imu);
   memory->bytes = arena.used();
   memory->alignment = pf::Arena::kAlignment;
   memory->stack_bytes = pf::kStackBudget;
@@ -40,12 +42,14 @@ pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_s
   if (reinterpret_cast<std::uintptr_t>(block) % pf::Arena::kAlignment != 0) return PF_ERROR_ALIGNMENT;
   pf::Arena arena(block, bytes);
   pf::FilterSlam laid_out;
-  pf_slam* context = lay_out(arena, settings, &laid_out);
+  pf::ImuLog imu;
+  pf_slam* context = lay_out(arena, settings, &laid_out, &imu);
   if (!arena.ok()) return PF_ERROR_MEMORY;
   new (context) pf_slam();
   context->config = copy;
   context->settings = settings;
   context->slam = laid_out;
+  context->imu = imu;
   context->self = context;
   context->magic = pf::kMagic;
   *slam = context;
@@ -55,6 +59,7 @@ pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_s
 pf_status_t pf_reset(pf_slam_t* slam) {
   PF_REQUIRE_CONTEXT(slam);
   slam->slam.init(slam->settings);
+  slam->imu.init(slam->settings.imu_buffer, slam->settings.imu_ranges);
   slam->takes_frames = false;
   slam->takes_observations = false;
   for (double& g : slam->gravity_W) g = 0;

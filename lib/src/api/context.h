@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "filter/imu_log.h"
 #include "planefold/planefold.h"
 #include "slam/filter_slam.h"
 
@@ -12,6 +13,7 @@ struct pf_slam {
   pf_config_t config;
   pf::Settings settings;
   pf::FilterSlam slam;
+  pf::ImuLog imu;
   bool takes_frames;
   bool takes_observations;
   double gravity_W[3];  ///< zero: not known

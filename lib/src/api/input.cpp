@@ -156,6 +156,7 @@ pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image) {
     return PF_ERROR_SIZE;
   if (slam->slam.used() && image->t_ns <= slam->slam.last_ns()) return PF_ERROR_TIME;
   slam->takes_frames = true;
+  slam->imu.mark_frame(image->t_ns);
   return pf::to_c(slam->slam.push_frame({image->pixels, image->width, image->height, image->stride}, image->t_ns));
 }
 
@@ -172,6 +173,7 @@ pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observa
   }
   if (slam->slam.takes_images_only()) return PF_ERROR_STATE;
   slam->takes_observations = true;
+  slam->imu.mark_frame(t_ns);
   pf::PixelObservation* taken = slam->slam.observation_inbox();
   const size_t most = static_cast<size_t>(slam->slam.observation_inbox_size());
   const size_t n = count < most ? count : most;

@@ -5,6 +5,7 @@
 #include "base/hooks.h"
 #include "covariance/kernels.h"
 #include "filter/filter.h"
+#include "filter/imu_log.h"
 #include "filter/motion.h"
 #include "geometry/camera.h"
 
@@ -44,6 +45,9 @@ struct Settings {
   int border_px = 0;
   std::int64_t coast_ns = 0;
   bool keep_gauge = true;
+
+  int imu_buffer = 0;
+  ImuRanges imu_ranges;
 
   Hooks hooks;
 };
