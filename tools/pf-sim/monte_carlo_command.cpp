@@ -92,6 +92,7 @@ Experiment prepare(const Choices& c, bool gee) {
   config.start_depth = gee ? (x.bed.look_inward ? 2.0 : 1.2) : x.bed.layout == Layout::kRoom ? 1.6 : 2.0;
   if (x.bed.layout == Layout::kModel) config.inverse_depth_relative_sigma = 0.3;
   config.max_planes = 16;
+  if (!gee) config.clock_ns = thread_clock;
   if (c.depth_from_map >= 0) config.depth_from_map = static_cast<std::uint32_t>(c.depth_from_map);
   set_if(config.start_depth, c.start_depth);
   set_if(config.inverse_depth_relative_sigma, c.relative_sigma);

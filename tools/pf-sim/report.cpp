@@ -193,6 +193,16 @@ json summarise(const Experiment& x) {
   out["folded_points"] = {{"nees", sum.folded_nees_sum / std::max(1.0, sum.folded_count)},
                           {"per_run", sum.folded_count / x.seeds},
                           {"fixed_per_run", sum.fixed_count / x.seeds}};
+  std::vector<double> update, frame;
+  for (int s = 0; s < x.seeds; ++s) {
+    if (!(x.summaries[s].cost.update_us > 0)) continue;
+    update.push_back(x.summaries[s].cost.update_us);
+    frame.push_back(x.summaries[s].cost.frame_us);
+  }
+  const double rows = out["state_dim"]["end"].get<double>();
+  out["cost"] = {{"covariance_bytes", rows * (rows + 1) / 2 * sizeof(double)},
+                 {"update_20_rows_us", update.empty() ? 0 : median(update)},
+                 {"frame_20_rows_us", frame.empty() ? 0 : median(frame)}};
   out["covariance_unsound"] = sum.unsound;
   out["gauge_growth"] = {{"translation_rotation", pose},
                          {"scale", scale},
@@ -255,6 +265,10 @@ void print(const std::string& label, const json& j) {
         number("/planes/ever"), number("/planes/ever_true"), number("/planes/ever_false"),
         number("/planes/walls_found"), number("/planes/walls_seen_well"), number("/planes/nees"));
   }
+  if (number("/cost/update_20_rows_us") > 0)
+    std::printf("  at the end: covariance %.0f kB, an update with 20 rows %.0f us, a frame with them %.0f us\n",
+                1e-3 * number("/cost/covariance_bytes"), number("/cost/update_20_rows_us"),
+                number("/cost/frame_20_rows_us"));
   if (number("/covariance_unsound") > 0)
     std::printf("  P was not positive definite at %g readings\n", number("/covariance_unsound"));
   std::printf("  %g runs of %g frames, %g lost, %.1f %% tracked, %g inliers, %.0f frames a second\n", number("/runs"),

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bed.h"
+#include "update_cost.h"
 
 namespace pfsim {
 
@@ -43,6 +44,7 @@ struct RunSummary {
   std::int32_t walls_seen = 0, walls_found = 0;
   std::int32_t unsound = 0;  ///< readings at which P was not positive definite
   double cpu_seconds = 0;    ///< in pf_push_observations
+  UpdateCost cost;           ///< after the last frame; zero without a clock
 };
 
 struct RunOptions {
