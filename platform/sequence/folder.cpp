@@ -104,6 +104,7 @@ void open_images(Folder& folder, const std::string& calibration) {
     folder.warning = root.string() + ": no times.txt; the images are taken in the order of their names at " + text;
   }
   folder.truth_path = first_file(root, {"groundtruth.tum", "groundtruth.txt"});
+  folder.imu_path = first_file(root, {"imu.csv"});
 }
 
 void open_tum(Folder& folder, const std::string& calibration) {
@@ -123,6 +124,7 @@ void open_euroc(Folder& folder, const std::string& calibration) {
       find_calibration(folder, calibration, camera, {"sensor.yaml", "calib.yaml"});
       folder.frames = read_table(camera / "data.csv", camera / "data", Times::kNanoseconds);
       folder.truth_path = first_file(folder.root, {"groundtruth.tum"});
+      folder.imu_path = first_file(camera / ".." / "imu0", {"data.csv"}).lexically_normal();
       return;
     }
   }

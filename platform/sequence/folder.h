@@ -19,6 +19,7 @@ struct Folder {
   fs::path root;
   fs::path calibration_path;
   fs::path truth_path;  ///< empty where there is none
+  fs::path imu_path;    ///< likewise
   Calibration calibration;
   std::vector<Frame> frames;
   std::string warning;

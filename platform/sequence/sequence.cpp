@@ -1,6 +1,7 @@
 /// The C functions of sequence.h: they check, call, and turn what was thrown into a message.
 #include <planefold_platform/sequence.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -11,12 +12,13 @@
 #include "calibration.h"
 #include "decode.h"
 #include "folder.h"
+#include "imu.h"
 #include "refuse.h"
 #include "target.h"
 
 struct pf_sequence {
   pf::sequence::Folder folder;
-  std::string root, calibration_path, truth_path;
+  std::string root, calibration_path, truth_path, imu_path;
   std::vector<unsigned char> bytes;
   pf_decoded_t image{};
 
@@ -96,6 +98,7 @@ int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t*
     opened->root = opened->folder.root.string();
     opened->calibration_path = opened->folder.calibration_path.string();
     opened->truth_path = opened->folder.truth_path.string();
+    opened->imu_path = opened->folder.imu_path.string();
     if (calibration != nullptr && std::string(calibration) == PF_SEQUENCE_UNCALIBRATED) {
       opened->folder.calibration.camera = uncalibrated_camera(*opened);
     }
@@ -123,6 +126,7 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
   info->calibration_path = sequence->calibration_path.c_str();
   info->calibration_form = folder.calibration.form;
   info->truth_path = sequence->truth_path.c_str();
+  info->imu_path = sequence->imu_path.c_str();
   info->warning = folder.warning.c_str();
 }
 
@@ -201,3 +205,30 @@ int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SE
     *target = pf::sequence::parse_rectangle(text);
   });
 }
+
+int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_t** samples, size_t* count,
+                 char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(text, "text");
+    require(samples, "samples");
+    require(count, "count");
+    *samples = nullptr;
+    *count = 0;
+    const auto read = pf::sequence::parse_imu(std::string_view(text, size), name != nullptr ? name : "text");
+    auto copy = std::make_unique<pf_imu_sample_t[]>(read.size());
+    std::copy(read.begin(), read.end(), copy.get());
+    *count = read.size();
+    *samples = copy.release();
+  });
+}
+
+int pf_read_imu(const char* path, pf_imu_sample_t** samples, size_t* count, char message[PF_SEQUENCE_MESSAGE]) {
+  std::string text;
+  const int done = guarded(message, [&] {
+    require(path, "path");
+    text = pf::sequence::read_text(path, pf::sequence::kMaxImuBytes, "inertial samples");
+  });
+  return done != 0 ? done : pf_parse_imu(text.data(), text.size(), path, samples, count, message);
+}
+
+void pf_free_imu(pf_imu_sample_t* samples) { delete[] samples; }

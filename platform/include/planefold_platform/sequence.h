@@ -33,11 +33,12 @@ typedef struct pf_sequence_info {
   int64_t count; /* frames */
   int64_t first_t_ns, last_t_ns;
   double rate_hz;     /* as the calibration says, or else from the times */
-  const char* folder; /* these five are valid until the sequence is closed; "" where there is none */
+  const char* folder; /* these six are valid until the sequence is closed; "" where there is none */
   const char* calibration_path;
   const char* calibration_form; /* "kalibr", "euroc", "ros", "plain" or "none" */
   const char* truth_path;       /* a trajectory beside the images, in the TUM format */
   const char* warning;          /* one line on what had to be assumed */
+  const char* imu_path;         /* inertial samples beside the images, for pf_read_imu */
 } pf_sequence_info_t;
 
 /* Sources:
@@ -45,6 +46,7 @@ typedef struct pf_sequence_info {
  *               times.txt the names are taken in natural order at the calibration's rate_hz, or 30 Hz, with a warning.
  *   euroc:DIR   mav0/cam0/data, data.csv and sensor.yaml; DIR may also be mav0 or cam0, or of the layout above.
  *   tum:DIR     rgb.txt and rgb/; the calibration is calib.yaml inside, or given.
+ * Inertial samples are looked for in imu.csv (images:) and in imu0/data.csv beside cam0 (euroc:).
  * PNG, JPEG and binary PGM; colour becomes grey, 16 bits become 8. Times must grow from frame to frame.
  * calibration  a file in one of the forms of pf_read_calibration; null: the one inside DIR */
 int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t** sequence,
@@ -80,6 +82,15 @@ int pf_read_target(const char* path, pf_target_t* target, char message[PF_SEQUEN
 
 /* "0.1832x0.1295" in metres, as a rectangle. */
 int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]);
+
+/* Inertial samples in the layout of EuRoC's imu0/data.csv: rows of time, wx, wy, wz [rad/s], ax, ay, az [m/s^2], cut by commas or
+ * blanks. Times are whole nanoseconds, or seconds with a decimal point, and must grow. *samples is to be given to pf_free_imu. */
+int pf_read_imu(const char* path, pf_imu_sample_t** samples, size_t* count, char message[PF_SEQUENCE_MESSAGE]);
+void pf_free_imu(pf_imu_sample_t* samples); /* null is welcome */
+
+/* The same from text in memory; name stands for the file in messages. */
+int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_t** samples, size_t* count,
+                 char message[PF_SEQUENCE_MESSAGE]);
 
 #ifdef __cplusplus
 }

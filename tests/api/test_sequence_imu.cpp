@@ -1,0 +1,136 @@
+// Inertial samples in files: what is read, exactly, and everything that can be wrong with them.
+#include "skip.h"
+
+#if __has_include(<planefold_platform/sequence.h>)
+
+#include <unistd.h>
+
+#include <memory>
+
+#include "sequence_test.h"
+
+using namespace pf::test;
+
+void setUp() {}
+void tearDown() {}
+
+namespace {
+
+struct Parsed {
+  explicit Parsed(const std::string& text) {
+    done = pf_parse_imu(text.data(), text.size(), "some.csv", &samples, &count, message) == 0;
+  }
+  ~Parsed() { pf_free_imu(samples); }
+  Parsed(const Parsed&) = delete;
+  Parsed& operator=(const Parsed&) = delete;
+
+  bool done = false;
+  pf_imu_sample_t* samples = nullptr;
+  size_t count = 0;
+  char message[PF_SEQUENCE_MESSAGE] = "";
+};
+
+void refused(const std::string& text, const char* part) {
+  const Parsed parsed(text);
+  TEST_ASSERT_FALSE_MESSAGE(parsed.done, text.c_str());
+  TEST_ASSERT_NULL(parsed.samples);
+  require_message(parsed.message, "some.csv");
+  require_message(parsed.message, part);
+}
+
+}  // namespace
+
+static void test_rows_should_be_read_to_the_last_digit_when_times_are_nanoseconds() {
+  const Parsed parsed(
+      "#timestamp [ns],w_RS_S_x [rad s^-1],w_y,w_z,a_x,a_y,a_z\r\n"
+      "1403636579758555392,-0.099134701513277898,0.14730578886832138,0.02722713633111154,8.1476917083333333,"
+      "-0.37592158333333331,-2.4026292499999999\r\n"
+      "\n1403636579763555584,1,2,3,4,5,6e-1\n");
+  TEST_ASSERT_TRUE_MESSAGE(parsed.done, parsed.message);
+  TEST_ASSERT_EQUAL_size_t(2, parsed.count);
+  TEST_ASSERT_EQUAL_INT64(1403636579758555392, parsed.samples[0].t_ns);
+  TEST_ASSERT_TRUE(parsed.samples[0].gyro[0] == -0.099134701513277898);
+  TEST_ASSERT_TRUE(parsed.samples[0].accel[2] == -2.4026292499999999);
+  TEST_ASSERT_EQUAL_INT64(1403636579763555584, parsed.samples[1].t_ns);
+  TEST_ASSERT_TRUE(parsed.samples[1].gyro[2] == 3.0 && parsed.samples[1].accel[0] == 4.0);
+  TEST_ASSERT_TRUE(parsed.samples[1].accel[2] == 0.6);
+}
+
+static void test_times_should_be_seconds_when_a_row_has_a_decimal_point() {
+  const Parsed parsed("#t[s]\n1,0,0,0,0,0,9.8\n1.005 0 0 0 0 0 9.8\n");
+  TEST_ASSERT_TRUE_MESSAGE(parsed.done, parsed.message);
+  TEST_ASSERT_EQUAL_INT64(1000000000, parsed.samples[0].t_ns);
+  TEST_ASSERT_EQUAL_INT64(1005000000, parsed.samples[1].t_ns);
+}
+
+static void test_rows_should_be_refused_by_line_when_they_are_wrong() {
+  const std::string good = "#\n10,0,0,0,0,0,9.8\n";
+  refused(good + "20,0,0,0,0,0\n", "line 3: expected");
+  refused(good + "20,0,0,0,0,0,0,0\n", "8 columns");
+  refused(good + "20,0,0,0,0,0,up\n", "line 3: 'up' is not a number");
+  refused(good + "20,0,0,0,0,0,1.5x\n", "'1.5x'");
+  refused(good + "20,nan,0,0,0,0,0\n", "not finite");
+  refused(good + "20,0,0,-inf,0,0,0\n", "not finite");
+  refused(good + "20,0,0,1e999,0,0,0\n", "line 3");
+  refused(good + "10,0,0,0,0,0,9.8\n", "repeats");
+  refused(good + "9,0,0,0,0,0,9.8\n", "runs back");
+  refused(good + "soon,0,0,0,0,0,9.8\n", "not a time in whole nanoseconds");
+  refused(good + "99999999999999999999,0,0,0,0,0,9.8\n", "not a time");
+  refused("0.5,0,0,0,0,0,0\nnan.,0,0,0,0,0,9.8\n", "not a time in seconds");
+  refused("# nothing\n", "no sample");
+  refused("", "no sample");
+  refused(std::string("\0\x01\xff,\n", 5), "line 1");
+}
+
+static void test_files_should_be_refused_when_they_are_missing_or_folders() {
+  const TemporaryFolder folder;
+  pf_imu_sample_t* samples = nullptr;
+  size_t count = 0;
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_imu((folder / "none.csv").c_str(), &samples, &count, message));
+  require_message(message, "none.csv");
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_imu(folder.path().c_str(), &samples, &count, message));
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_imu(nullptr, &samples, &count, message));
+  TEST_ASSERT_EQUAL_INT(-1, pf_read_imu("x", nullptr, &count, message));
+  TEST_ASSERT_NULL(samples);
+  pf_free_imu(nullptr);
+}
+
+static void test_sequences_should_name_the_samples_that_lie_beside_the_images() {
+  TemporaryFolder folder;
+  folder.write("mav0/cam0/sensor.yaml",
+               "resolution: [32, 32]\ncamera_model: pinhole\nintrinsics: [30, 30, 16, 16]\nrate_hz: 20\n"
+               "distortion_model: radial-tangential\ndistortion_coefficients: [0, 0, 0, 0]\n");
+  folder.write("mav0/cam0/data.csv", "1403636579763555584,a.png\n");
+  folder.write("mav0/cam0/data/a.png", grey_png(3));
+  {
+    const Opened without("euroc:" + folder.path());
+    TEST_ASSERT_EQUAL_STRING("", without.info.imu_path);
+  }
+  folder.write("mav0/imu0/data.csv", "1403636579758555392,0,0,0,0,0,9.8\n");
+  for (const char* below : {"", "/mav0", "/mav0/cam0"}) {
+    const Opened opened("euroc:" + folder.path() + below);
+    pf_imu_sample_t* samples = nullptr;
+    size_t count = 0;
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, pf_read_imu(opened.info.imu_path, &samples, &count, message), message);
+    TEST_ASSERT_EQUAL_size_t(1, count);
+    pf_free_imu(samples);
+  }
+}
+
+int main() {
+  UNITY_BEGIN();
+  RUN_TEST(test_rows_should_be_read_to_the_last_digit_when_times_are_nanoseconds);
+  RUN_TEST(test_times_should_be_seconds_when_a_row_has_a_decimal_point);
+  RUN_TEST(test_rows_should_be_refused_by_line_when_they_are_wrong);
+  RUN_TEST(test_files_should_be_refused_when_they_are_missing_or_folders);
+  RUN_TEST(test_sequences_should_name_the_samples_that_lie_beside_the_images);
+  return UNITY_END();
+}
+
+#else
+
+int main() { SKIP_PROGRAM("this build has no platform layer"); }
+
+#endif
