@@ -115,7 +115,7 @@ std::unique_ptr<Camera> open_v4l2_camera(const Options& options, const pf_camera
   return device;
 }
 
-int list_devices() {
+int list_v4l2_cameras() {
   pf_v4l2_device_t devices[32];
   const int count = pf_v4l2_list(devices, 32);
   bool refused = false;
@@ -135,15 +135,12 @@ int list_devices() {
                   formats.empty() ? "no format that is known here" : formats.c_str());
     }
   }
-  if (count == 0) {
-    std::printf("no camera\n");
-  }
   if (refused) {
     std::fprintf(stderr,
                  "pf-capture: note: cameras belong to the group video; as root: usermod -a -G video USER, then log in "
                  "again\n");
   }
-  return kExitDone;
+  return count;
 }
 
 #else
@@ -153,10 +150,7 @@ std::unique_ptr<Camera> open_v4l2_camera(const Options& options, const pf_camera
   return nullptr;
 }
 
-int list_devices() {
-  std::printf("no camera: this build has no V4L2\n");
-  return kExitDone;
-}
+int list_v4l2_cameras() { return 0; }
 
 #endif
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <vector>
+
 
 namespace pf::capture {
 
@@ -36,7 +38,8 @@ void add_camera_options(CLI::App& app, Options& options) {
       ->group(group);
   app.add_flag("--realtime", options.realtime, "play a folder or scene at its own pace, as a camera would")
       ->group(group);
-  app.add_option("--format", options.format, "any, GREY, NV12, YUYV, Y16 or MJPEG")
+  app.add_option("--format", options.format,
+                 "any, GREY, NV12, YUYV, Y16 or MJPEG; of libcamera also YUV420, RGB888 or BGR888")
       ->capture_default_str()
       ->group(group);
   app.add_option("--rate", options.rate_hz, "frames per second to ask the camera for")
@@ -66,24 +69,37 @@ int refuse(const std::string& line) {
   return kExitUsage;
 }
 
+std::string check_format(const std::string& format, const std::string& kind) {
+  const std::vector<std::string> by_v4l2 = {"any", "GREY", "NV12", "YUYV", "Y16", "MJPEG"};
+  const std::vector<std::string> by_libcamera = {"any", "GREY", "YUV420", "NV12", "YUYV", "RGB888", "BGR888"};
+  const std::vector<std::string>& known = kind == "libcamera" ? by_libcamera : by_v4l2;
+  if (std::find(known.begin(), known.end(), format) != known.end()) {
+    return "";
+  }
+  std::string names = known[0];
+  for (size_t i = 1; i < known.size(); ++i) {
+    names += (i + 1 < known.size() ? ", " : " or ") + known[i];
+  }
+  return "--format " + format + ": write " + names;
+}
+
 /// What CLI11 cannot check by itself; "" when all is well.
 std::string check(const Options& options, const std::string& backend) {
   const std::string kind = options.source.substr(0, options.source.find(':'));
-  if (kind == "libcamera") {
-    return "source '" + options.source + "': libcamera is not available yet; use v4l2:";
-  }
+  const bool is_camera = kind == "v4l2" || kind == "libcamera";
   if (options.source.find(':') == std::string::npos ||
-      (kind != "images" && kind != "euroc" && kind != "tum" && kind != "sim" && kind != "v4l2")) {
-    return "source '" + options.source + "': write v4l2:DEVICE, images:DIR, euroc:DIR, tum:DIR or sim:NAME";
+      (kind != "images" && kind != "euroc" && kind != "tum" && kind != "sim" && !is_camera)) {
+    return "source '" + options.source +
+           "': write v4l2:DEVICE, libcamera:NUMBER, images:DIR, euroc:DIR, tum:DIR or sim:NAME";
   }
-  constexpr const char* kFormats[] = {"any", "GREY", "NV12", "YUYV", "Y16", "MJPEG"};
-  if (std::find(std::begin(kFormats), std::end(kFormats), options.format) == std::end(kFormats)) {
-    return "--format " + options.format + ": write any, GREY, NV12, YUYV, Y16 or MJPEG";
+  std::string wrong = check_format(options.format, kind);
+  if (!wrong.empty()) {
+    return wrong;
   }
-  if (options.every_frame && kind != "v4l2" && !options.realtime) {
+  if (options.every_frame && !is_camera && !options.realtime) {
     return "--every-frame is for cameras and --realtime; without these every frame is tracked anyway";
   }
-  if (options.skip > 0 && kind == "v4l2") {
+  if (options.skip > 0 && is_camera) {
     return "--skip is for folders and scenes; a camera has no frames to leave out";
   }
   if (options.as_recorded && kind != "euroc") {
@@ -118,7 +134,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   const std::map<std::string, pf_kernels_t> kernel_names = {
       {"auto", PF_KERNELS_AUTO}, {"reference", PF_KERNELS_REFERENCE}, {"portable", PF_KERNELS_PORTABLE},
       {"avx2", PF_KERNELS_AVX2}, {"avx512", PF_KERNELS_AVX512},       {"neon", PF_KERNELS_NEON}};
-  app.add_option("--source", options.source, "v4l2:/dev/videoN, v4l2:NAME, images:DIR, euroc:DIR, tum:DIR or sim:NAME");
+  app.add_option(
+      "--source", options.source,
+      "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, images:DIR, euroc:DIR, tum:DIR or sim:NAME");
   app.add_flag("--list", options.list, "name the cameras of this machine, and do nothing else");
   app.add_option("--calib", options.calibration, "calibration file (Kalibr, EuRoC, ROS camera_info or calib.yaml)");
   app.add_option("--start", options.start,

@@ -115,7 +115,8 @@ std::unique_ptr<Source> open_camera_source(const Options& options, std::string& 
     error = message;
     return nullptr;
   }
-  std::unique_ptr<Camera> camera = open_v4l2_camera(options, info.camera, info.rate_hz, error);
+  const auto open_camera = options.source.rfind("libcamera:", 0) == 0 ? open_libcamera_camera : open_v4l2_camera;
+  std::unique_ptr<Camera> camera = open_camera(options, info.camera, info.rate_hz, error);
   if (camera == nullptr) {
     return nullptr;
   }
@@ -126,7 +127,7 @@ std::unique_ptr<Source> open_camera_source(const Options& options, std::string& 
 }
 
 std::unique_ptr<Source> open_source(const Options& options, std::string& error) {
-  if (options.source.rfind("v4l2:", 0) == 0) {
+  if (options.source.rfind("v4l2:", 0) == 0 || options.source.rfind("libcamera:", 0) == 0) {
     return open_camera_source(options, error);
   }
   std::unique_ptr<Source> stored = open_stored(options, error);
