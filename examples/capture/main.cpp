@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "camera.h"
+#include "imu.h"
 #include "options.h"
 #include "run.h"
 
@@ -16,7 +17,7 @@ int main(int argc, char** argv) {
     if (pf::capture::parse_options(argc, argv, options, code) == pf::capture::Parsed::kExit) {
       return code;
     }
-    return options.list ? pf::capture::list_devices() : pf::capture::run(options);
+    return options.list ? pf::capture::list_imus(pf::capture::list_devices()) : pf::capture::run(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "pf-capture: %s\n", error.what());
   }

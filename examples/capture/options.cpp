@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "imu.h"
 
 namespace pf::capture {
 
@@ -112,6 +113,10 @@ std::string check(const Options& options, const std::string& backend) {
   if (options.withdraw_target_after >= 0 && options.start == "auto") {
     return "--withdraw-target-after needs a target: add --start target:FILE or --start rectangle:WxH";
   }
+  const std::string wrong_imu = check_imu_options(options);
+  if (!wrong_imu.empty()) {
+    return wrong_imu;
+  }
   if (backend == "window") {
     return "--backend window is not available yet; use --backend filter";
   }
@@ -137,7 +142,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option(
       "--source", options.source,
       "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, images:DIR, euroc:DIR, tum:DIR or sim:NAME");
-  app.add_flag("--list", options.list, "name the cameras of this machine, and do nothing else");
+  app.add_flag("--list", options.list, "name the cameras and IMUs of this machine, and do nothing else");
   app.add_option("--calib", options.calibration, "calibration file (Kalibr, EuRoC, ROS camera_info or calib.yaml)");
   app.add_option("--start", options.start,
                  "auto, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
@@ -162,6 +167,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_flag("--no-planes", no_planes, "points only");
   app.add_flag("--plain-ekf", no_gauge, "the textbook filter, which is overconfident; for comparison");
   add_camera_options(app, options);
+  add_imu_options(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

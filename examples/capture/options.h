@@ -31,6 +31,10 @@ struct Options {
   bool planes = true;
   bool keep_gauge = true;
 
+  std::string imu = "auto";
+  double imu_rate_hz = 0.0;  ///< 0: as the unit has it
+  double imu_offset_s = 0.0;
+
   // Cameras, and what is played as if it came from one.
   std::string record;
   std::string format = "any";

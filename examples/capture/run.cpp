@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "imu_feed.h"
 #include "outputs.h"
 #include "progress.h"
 #include "realtime.h"
@@ -63,6 +64,7 @@ class Run {
   Statistics statistics_;
   Progress progress_;
   Recorder recorder_;
+  ImuFeed imu_;
   Show show_;
   FrameView view_;
   int64_t count_ = 0;
@@ -75,7 +77,10 @@ class Run {
 
 bool Run::open(std::string& error, int& code) {
   const SourceInfo& info = source_.info();
-  if (!session_.open(options_, source_, error, code)) {
+  if (!imu_.open(options_, info.imu_path, error)) {
+    return false;
+  }
+  if (!session_.open(options_, source_, imu_, error, code)) {
     return false;
   }
   code = kExitRun;
@@ -87,7 +92,13 @@ bool Run::open(std::string& error, int& code) {
     if (!recorder_.open(options_.record, info.camera, info.rate_hz, error)) {
       return false;
     }
+    if (!imu_.record_to(options_.record, error)) {
+      return false;
+    }
     records_itself_ = source_.record_to(recorder_);
+  }
+  if (!imu_.start(error)) {
+    return false;
   }
   std::vector<std::string> notes;
   show_.open(options_, session_, "planefold   " + short_name(options_.source), outputs_.path("overlay.mp4"),
@@ -147,6 +158,7 @@ Read Run::step(int64_t index) {
   }
   view_.index = index;
   view_.count = source_.info().endless && options_.frames <= 0 ? 0 : count_;
+  imu_.push_until(image.t_ns, session_.slam());
   if (!session_.push(image, view_, failure_)) {
     failure_ = "frame " + std::to_string(at) + " (" + source_.name(at) + "): " + failure_;
     return Read::kFailed;
@@ -191,7 +203,7 @@ void Run::track_slowly(int64_t begin_ns) const {
 }
 
 void Run::tell_notices() {
-  for (std::string line; source_.take_notice(line);) {
+  for (std::string line; source_.take_notice(line) || imu_.take_notice(line);) {
     progress_.end();
     note(line);
   }
@@ -252,6 +264,9 @@ int Run::finish() {
   if (recorder_.is_open() && !recorder_.close(&not_recorded) && failure_.empty()) {
     failure_ = not_recorded;
   }
+  if (!imu_.finish(not_recorded) && failure_.empty()) {
+    failure_ = not_recorded;
+  }
   // A camera has no end: to interrupt it is how such a run ends.
   if (g_interrupted != 0 && failure_.empty() && !(source_.info().endless && options_.frames <= 0)) {
     failure_ =
@@ -273,7 +288,8 @@ int Run::finish() {
     failure_ = why_nothing_was_tracked();
   }
   std::string error;
-  const std::string report = statistics_.to_json(session_, options_, source_.info(), live, failure_);
+  const std::string report =
+      statistics_.to_json(session_, options_, source_.info(), live, imu_.report(session_.slam()), failure_);
   if (!outputs_.finish(view_, session_.config().camera, report, error)) {
     return fail(error);
   }

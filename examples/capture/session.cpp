@@ -20,7 +20,7 @@ void keep_line(void* user, const char* line) { static_cast<std::vector<std::stri
 
 Session::~Session() { std::free(block_); }
 
-bool Session::open(const Options& options, const Source& source, std::string& error, int& code) {
+bool Session::open(const Options& options, const Source& source, const ImuFeed& imu, std::string& error, int& code) {
   code = kExitRun;
   if (pf_config_default(&config_) != PF_OK) {
     error = "the library gives no default configuration";
@@ -39,6 +39,7 @@ bool Session::open(const Options& options, const Source& source, std::string& er
   if (options.max_observations < 0) {
     config_.max_observations = std::max(config_.max_observations, config_.features_in_view);
   }
+  imu.configure(config_);
   config_.clock_ns = clock_ns;
   config_.log = keep_line;
   config_.user = &log_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "imu_feed.h"
 #include "options.h"
 #include "source.h"
 #include "view.h"
@@ -21,7 +22,7 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// false: error is one line and code the exit code.
-  bool open(const Options& options, const Source& source, std::string& error, int& code);
+  bool open(const Options& options, const Source& source, const ImuFeed& imu, std::string& error, int& code);
 
   /// Pushes a frame and copies what it left into view. false: the library refused it, and error is one line.
   /// The time of pf_push_frame alone goes to view.ms.
@@ -32,6 +33,7 @@ class Session {
   void withdraw_target() { pf_withdraw_target(slam_); }
 
   const pf_slam_t* slam() const { return slam_; }
+  pf_slam_t* slam() { return slam_; }
   const pf_config_t& config() const { return config_; }
   const pf_memory_t& memory() const { return memory_; }
   const std::string& start() const { return start_; }

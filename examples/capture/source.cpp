@@ -25,6 +25,7 @@ class FolderSource : public Source {
     info_.rate_hz = info.rate_hz;
     info_.truth_path = info.truth_path;
     info_.warning = info.warning;
+    info_.imu_path = info.imu_path;
   }
 
   const SourceInfo& info() const override { return info_; }

@@ -23,6 +23,7 @@ struct SourceInfo {
   bool endless = false;
   double rate_hz = 30.0;
   std::string truth_path;  ///< a trajectory that lies beside the source; "" where there is none
+  std::string imu_path;    ///< inertial samples that lie beside the source; likewise
   std::string warning;
   std::string device;        ///< of a camera
   bool knows_truth = false;  ///< by truth() for every frame that was read

@@ -108,7 +108,7 @@ void Statistics::add(const FrameView& view) {
 }
 
 std::string Statistics::to_json(const Session& session, const Options& options, const SourceInfo& source,
-                                const std::string& live, const std::string& ended) const {
+                                const std::string& live, const std::string& imu, const std::string& ended) const {
   constexpr const char* kStages[] = {"pyramid", "predict", "search", "gate", "update", "map"};
   Json stages = Json::object();
   for (int i = 0; i <= PF_STAGE_MAP; ++i) {
@@ -158,6 +158,9 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["truth"] = source.truth_path;
   if (!live.empty()) {
     json["live"] = Json::parse(live);
+  }
+  if (!imu.empty()) {
+    json["imu"] = Json::parse(imu);
   }
   json["log"] = session.log();
   json["ended_early"] = ended;

@@ -26,9 +26,10 @@ class Statistics {
   int64_t frozen() const { return frozen_; }
 
   /// live   JSON of the source's own report, or ""
+  /// imu    JSON of what came from the inertial unit, or ""
   /// ended  "" or the line that says why the run ended early
   std::string to_json(const Session& session, const Options& options, const SourceInfo& source, const std::string& live,
-                      const std::string& ended) const;
+                      const std::string& imu, const std::string& ended) const;
   /// One line for people.
   std::string summary(const Session& session) const;
 

@@ -1,0 +1,43 @@
+#ifndef PLANEFOLD_CAPTURE_IMU_FEED_H
+#define PLANEFOLD_CAPTURE_IMU_FEED_H
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "imu.h"
+#include "imu_recorder.h"
+
+namespace pf::capture {
+
+/// Brings the samples up to a frame's time to the library before the frame, and to the recording.
+class ImuFeed {
+ public:
+  /// false: error is one line. beside is the file that lies beside the frames, or "".
+  bool open(const Options& options, const std::string& beside, std::string& error);
+  /// For the library's config.
+  void configure(pf_config_t& config) const;
+  bool start(std::string& error) { return imu_ == nullptr || imu_->start(error); }
+  /// The same folder as the frames'. false: error is one line.
+  bool record_to(const std::string& folder, std::string& error);
+
+  /// Before the frame of this time is pushed.
+  void push_until(int64_t t_ns, pf_slam_t* slam);
+  bool take_notice(std::string& notice);
+  /// Closes the recording. false: error is one line.
+  bool finish(std::string& error) { return recorder_.close(error); }
+  /// JSON for report.json.
+  std::string report(const pf_slam_t* slam) const;
+
+ private:
+  std::unique_ptr<Imu> imu_;
+  ImuRecorder recorder_;
+  std::vector<pf_imu_sample_t> samples_;
+  std::vector<std::string> notices_;
+  double offset_s_ = 0.0;
+  int64_t frames_ = 0, pushed_ = 0, refused_ = 0;
+};
+
+}  // namespace pf::capture
+
+#endif

@@ -1,0 +1,55 @@
+#include <planefold_platform/sequence.h>
+
+#include <limits>
+
+#include "imu.h"
+
+namespace pf::capture {
+
+namespace {
+
+class ImuFile : public Imu {
+ public:
+  ImuFile(std::string path, pf_imu_sample_t* samples, size_t count, int64_t offset_ns)
+      : path_(std::move(path)), samples_(samples, pf_free_imu), count_(count), offset_ns_(offset_ns) {}
+
+  bool start(std::string&) override { return true; }
+
+  void take(int64_t until_ns, std::vector<pf_imu_sample_t>& samples) override {
+    for (; at_ < count_ && samples_.get()[at_].t_ns + offset_ns_ <= until_ns; ++at_) {
+      samples.push_back(samples_.get()[at_]);
+      samples.back().t_ns += offset_ns_;
+    }
+  }
+
+  std::string name() const override { return path_; }
+
+ private:
+  std::string path_;
+  std::unique_ptr<pf_imu_sample_t, void (*)(pf_imu_sample_t*)> samples_;
+  size_t count_;
+  int64_t offset_ns_;
+  size_t at_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Imu> open_imu_file(const std::string& path, int64_t offset_ns, std::string& error) {
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  pf_imu_sample_t* samples = nullptr;
+  size_t count = 0;
+  if (pf_read_imu(path.c_str(), &samples, &count, message) != 0) {
+    error = message;
+    return nullptr;
+  }
+  auto file = std::make_unique<ImuFile>(path, samples, count, offset_ns);
+  constexpr int64_t kMost = std::numeric_limits<int64_t>::max();
+  if ((offset_ns > 0 && samples[count - 1].t_ns > kMost - offset_ns) ||
+      (offset_ns < 0 && samples[0].t_ns < -kMost - offset_ns)) {
+    error = path + ": --imu-offset takes its times out of range";
+    return nullptr;
+  }
+  return file;
+}
+
+}  // namespace pf::capture
