@@ -13,7 +13,7 @@ architecture=${1:?which architecture: arm64 or armhf}
 target=${2:?which folder}
 # The window (SDL2) and OpenCV are left out: they bring a desktop along.
 packages=${SYSROOT_PACKAGES:-libc6-dev libstdc++-12-dev linux-libc-dev libpng-dev libjpeg62-turbo-dev libyaml-cpp-dev
-  libcairo2-dev libeigen3-dev libcli11-dev nlohmann-json3-dev}
+  libcairo2-dev libiio-dev libeigen3-dev libcli11-dev nlohmann-json3-dev}
 stamp="$architecture $(echo $packages)"
 [ "$(cat "$target/sysroot.stamp" 2>/dev/null)" != "$stamp" ] || exit 0
 

@@ -11,8 +11,8 @@ packages_test=(libbenchmark-dev clang-format)
 optional_peers=(libopenblas-dev libblis-dev libopencv-core-dev libopencv-imgproc-dev libopencv-video-dev
   libopencv-calib3d-dev)
 optional_targets=(g++-aarch64-linux-gnu gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-user qemu-system-arm)
-# Without these pf-capture has no libcamera, and its window is not tried without a screen.
-optional_devices=(libcamera-dev xvfb)
+# Without these pf-capture has no libcamera and no inertial units, and its window is not tried without a screen.
+optional_devices=(libcamera-dev libiio-dev xvfb)
 optional_all=(clang clang-tidy libclang-rt-14-dev valgrind g++-arm-linux-gnueabihf)
 
 # missing_packages NAME...   prints those that are not installed
