@@ -166,7 +166,15 @@ inline void update(const Kernels& kernels, Problem& p, Triangle& P, Place place,
       }
     }
   }
-  kernels.project(W.data(), W.ld, J.data(), static_cast<int>(J.size()), S.data(), lds);
+  kernels.project(W.data(), m, W.ld, J.data(), static_cast<int>(J.size()), S.data(), lds);
+  Buffer some(static_cast<std::size_t>(m) * lds, place.shift, place.poison);
+  const int half = static_cast<int>(J.size()) / 2;
+  kernels.project(W.data(), m, W.ld, J.data(), half, some.data(), lds);
+  for (int h = 0, c = 0; h < half; ++h) {
+    for (int a = 0; a < J[h].rows; ++a, ++c) {
+      for (int i = c; i < m; ++i) trace.add(some[static_cast<std::size_t>(i) * lds + c], 1);
+    }
+  }
   for (int i = 0; i < m; ++i) {
     for (int j = 0; j <= i; ++j) trace.add(S[static_cast<std::size_t>(i) * lds + j], 1);
     S[static_cast<std::size_t>(i) * lds + i] += static_cast<Scalar>(p.noise[i]);
@@ -185,6 +193,16 @@ inline void update(const Kernels& kernels, Problem& p, Triangle& P, Place place,
   Buffer x(n, place.shift, place.poison);
   kernels.combine(W.data(), m, n, W.ld, whitened.data(), x.data());
   for (int j = 0; j < n; ++j) trace.add(x[j], m * std::sqrt(static_cast<double>(P(j, j))));
+  const int k = std::min(m, 8);
+  Thin C(k, n, place.shift, place.poison);
+  for (int i = 0; i < k; ++i) {
+    for (int j = 0; j < C.ld; ++j) C.at(i, j) = W.at(i, j);
+  }
+  const std::vector<Scalar> A(static_cast<std::size_t>(k) * (m + 1), Scalar(0.3));
+  kernels.add_product(C.data(), k, A.data(), m + 1, W.data(), m, n, W.ld);
+  for (int i = 0; i < k; ++i) {
+    for (int j = 0; j < n; ++j) trace.add(C.at(i, j), m * std::sqrt(static_cast<double>(P(j, j))));
+  }
 
   Covariance before(n, n);
   before.copy_from(P);

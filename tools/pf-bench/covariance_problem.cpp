@@ -76,7 +76,7 @@ void Problem::restore() {
 
 void Problem::update(const pf::Kernels& kernels, int held_first, int held_end, int transport) {
   kernels.gather_many(P, J.data(), static_cast<int>(J.size()), W.data(), ld);
-  kernels.project(W.data(), ld, J.data(), static_cast<int>(J.size()), S.data(), lds);
+  kernels.project(W.data(), m, ld, J.data(), static_cast<int>(J.size()), S.data(), lds);
   for (int i = 0; i < m; ++i) {
     S.data()[static_cast<std::ptrdiff_t>(i) * lds + i] += variance;
     y[static_cast<std::size_t>(i) * pf::padded(1)] = innovation[static_cast<std::size_t>(i)];

@@ -84,12 +84,17 @@ struct Kernels {
   void (*transform_many)(Triangle& P, const Segment* block, const SparseRows* J, int count, Scalar* X, int ld,
                          Scalar* S, int lds);
 
-  /// S (lower triangle, m x m, leading dimension lds) = X J^T for X = J P (m x n, leading dimension ld) as gather_many leaves it,
-  /// with the same Jacobians: the innovation covariance before the noise is added.
-  void (*project)(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S, int lds);
+  /// S (lower triangle, leading dimension lds) = X J^T for X = J P (m x n, leading dimension ld) as gather_many leaves it, with the
+  /// same Jacobians: the innovation covariance before the noise is added. Where X has more rows than J, those are gathered from
+  /// further Jacobians, and S gets all m rows of the first columns only.
+  void (*project)(const Scalar* X, int m, int ld, const SparseRows* J, int count, Scalar* S, int lds);
 
   /// x (n) = W^T y for W (m x n, leading dimension ld): the change of the state.
   void (*combine)(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x);
+
+  /// C (k x n) += A (k x m, leading dimension lda) B (m x n); leading dimension ld of C and B, which do not overlap. Works on whole
+  /// groups of eight columns, padding included.
+  void (*add_product)(Scalar* C, int k, const Scalar* A, int lda, const Scalar* B, int m, int n, int ld);
 };
 
 /// The plain twin of every tuned kernel.

@@ -42,7 +42,8 @@ bool runs(uint32_t set) {
 
 #endif
 
-const Kernels* find(uint32_t set) {
+/// Null where this build has no such set.
+const Kernels* built(uint32_t set) {
   switch (set) {
     case kReference:
       return &reference_kernels();
@@ -50,9 +51,9 @@ const Kernels* find(uint32_t set) {
       return &portable_kernels();
 #if defined(PF_HAS_AVX2)
     case kAvx2:
-      return runs(kAvx2) ? &avx2_kernels() : nullptr;
+      return &avx2_kernels();
     case kAvx512:
-      return runs(kAvx512) ? &avx512_kernels() : nullptr;
+      return &avx512_kernels();
 #endif
 #if defined(PF_HAS_NEON)
     case kNeon:
@@ -61,6 +62,13 @@ const Kernels* find(uint32_t set) {
     default:
       return nullptr;
   }
+}
+
+const Kernels* find(uint32_t set) {
+#if defined(PF_HAS_AVX2)
+  if ((set == kAvx2 || set == kAvx512) && !runs(set)) return nullptr;
+#endif
+  return built(set);
 }
 
 }  // namespace
@@ -76,7 +84,7 @@ const Kernels* select_kernels(uint32_t wanted) {
 
 uint32_t kernels_id(const Kernels* kernels) {
   for (uint32_t set = kReference; set <= kNeon; ++set) {
-    if (kernels != nullptr && kernels == find(set)) return set;
+    if (kernels != nullptr && kernels == built(set)) return set;
   }
   return kAuto;
 }

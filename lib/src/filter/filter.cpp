@@ -31,6 +31,8 @@ bool Filter::layout(Arena& arena, const FilterCapacity& capacity) {
   y_ = arena.take<Scalar>(static_cast<std::size_t>(max_rows_));
   gone_ = arena.take<Segment>(static_cast<std::size_t>(state_.slots));
   order_ = arena.take<int>(ld);
+  place_ = arena.take<Vec3>(static_cast<std::size_t>(state_.slots));
+  place_slot_ = arena.take<int>(static_cast<std::size_t>(state_.slots));
   state_.max_planes = capacity.planes;
   state_.plane_frame = arena.take<PlaneFrame>(static_cast<std::size_t>(capacity.planes));
   return arena.ok();
@@ -211,10 +213,15 @@ void Filter::list_gone(int first, int size, int* gone) {
   gone_[at] = {first, size};
 }
 
-/// Removes the listed rows in one pass; blocks behind move up.
+/// Removes the listed rows in one pass.
 void Filter::close_gaps(int gone) {
   if (gone == 0) return;
   kernels_->remove(P_, gone_, gone);
+  move_up(gone);
+}
+
+/// Blocks behind the listed rows, which the matrix has no more, move up.
+void Filter::move_up(int gone) {
   for (int s = 0; s < state_.slots; ++s) {
     Block& block = state_.block[s];
     if (block.size == 0) continue;

@@ -159,6 +159,7 @@ class Filter {
   int take_slot(BlockKind kind, int size);
   void list_gone(int first, int size, int* gone);
   void close_gaps(int gone);
+  void move_up(int gone);
   void augment_block(Block* block, int size, const SparseRows& J, const Scalar* noise);
   bool is_step(const Scalar* dx) const;
 
@@ -171,11 +172,14 @@ class Filter {
   Scalar variance_of(const SparseRows& row) const;
 
   // planes.cpp
+  void sort_by_rows(int* slots, int count) const;
+  void transform_blocks(const int* slots, const SparseRows* J, int count);
+  bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded);
   void distance_row(int plane, const struct WorldPoint& point, Scalar* d, SparseRows* row) const;
 
   // patches.cpp
   int add_patch(int plane, const int* group, int count);
-  void hold(const int* slots, int count);
+  void hold(const int* slots, int count, int gone);
 
   const Kernels* kernels_ = nullptr;
   bool keep_gauge_ = true;
@@ -195,7 +199,9 @@ class Filter {
   Scalar* dx_ = nullptr;  ///< ld
   Scalar* y_ = nullptr;   ///< max_rows
   Segment* gone_ = nullptr;
-  int* order_ = nullptr;  ///< ld
+  int* order_ = nullptr;       ///< ld
+  Vec3* place_ = nullptr;      ///< slots; of points, scratch of scale_row
+  int* place_slot_ = nullptr;  ///< slots; whose
 };
 
 }  // namespace pf

@@ -176,79 +176,66 @@ bool Filter::fix(const int* slots, int count, FixForm form, const int* group, in
   const Block& at = state_.block[patch];
   const Patch p = at.patch();
   const Mat2 M_inverse = p.linear().inverse();
-  int gone = 0;
-  for (int i = 0; i < count; ++i) {  // c = M^-1 (uv - t),  e_c = M^-1 (e_uv - A e_patch)
-    Block& block = state_.block[slots[i]];
+  // c = M^-1 (uv - t),  e_c = M^-1 (e_uv - A e_patch): the new rows in W_, and what they are among each other in S_.
+  SparseRows J[kMostFolded];
+  for (int i = 0; i < count; ++i) {
+    const Block& block = state_.block[slots[i]];
     PF_ASSERT(block.kind == BlockKind::kPlanePoint && block.parent == plane);
-    const Vec2 d = block.uv() - p.t;
-    const Mat24 by_patch = -(M_inverse * similarity_rows(d));
-    SparseRows J;
-    J.rows = 2;
-    J.segments = 2;
-    J.segment[0] = {at.first, 4};
-    J.segment[1] = {block.first, 2};
-    put<2, 4>(J.h, 6, 0, by_patch);
-    put<2, 2>(J.h, 6, 4, M_inverse);
-    kernels_->replace(P_, block.first, 2, J, nullptr);
-    block.kind = BlockKind::kPatchPoint;
-    block.parent = static_cast<std::int16_t>(patch);
-    block.set_uv(M_inverse * d);
-    --state_.block[plane].children;
-    ++state_.block[patch].children;
-    if (form == FixForm::kConsider) continue;
-    Mat2 inside = Mat2::Zero();
-    if (form == FixForm::kInflate)
-      for (int a = 0; a < 2; ++a)
-        for (int b = 0; b < 2; ++b) inside(a, b) = P_(block.first + a, block.first + b);
-    block.set_inside(inside);
+    const Mat24 by_patch = -(M_inverse * similarity_rows(block.uv() - p.t));
+    J[i].rows = 2;
+    J[i].segments = 2;
+    J[i].segment[0] = {at.first, 4};
+    J[i].segment[1] = {block.first, 2};
+    put<2, 4>(J[i].h, 6, 0, by_patch);
+    put<2, 2>(J[i].h, 6, 4, M_inverse);
   }
-  if (form == FixForm::kConsider) {
-    hold(slots, count);
-    return true;
+  if (form != FixForm::kErrorFree) {
+    kernels_->gather_many(P_, J, count, W_, ld_);
+    kernels_->project(W_, 2 * count, ld_, J, count, S_, lds_);
   }
+  int gone = 0;
   for (int i = 0; i < count; ++i) {
     Block& block = state_.block[slots[i]];
+    block.kind = BlockKind::kPatchPoint;
+    block.parent = static_cast<std::int16_t>(patch);
+    block.set_uv(M_inverse * (block.uv() - p.t));
+    --state_.block[plane].children;
+    ++state_.block[patch].children;
     list_gone(block.first, block.size, &gone);
+    if (form == FixForm::kConsider) continue;
+    block.set_inside(form == FixForm::kInflate ? innovation_block(i, i) : Mat2(Mat2::Zero()));
     block.size = 0;
     block.first = -1;
   }
-  close_gaps(gone);
+  if (form == FixForm::kConsider)
+    hold(slots, count, gone);
+  else
+    close_gaps(gone);
   return true;
 }
 
-/// Moves rows of patch points to the end of the held range.
-void Filter::hold(const int* slots, int count) {
+/// The rows of patch points, new in W_ and S_ and listed where they were, go to the end of the held range.
+void Filter::hold(const int* slots, int count, int gone) {
   const int n = state_.dim, at = state_.held_end(), size = 2 * count;
-  int gone = 0;
-  for (int k = 0; k < count; ++k) {
-    const int first = state_.block[slots[k]].first;
-    for (int a = 0; a < 2; ++a)
-      for (int j = 0; j < n; ++j) W_[(2 * k + a) * ld_ + j] = P_(first + a, j);
-    list_gone(first, 2, &gone);
-  }
-  for (int j = 0; j < n; ++j) order_[j] = j;
-  for (int k = 0; k < count; ++k)
-    for (int a = 0; a < 2; ++a) order_[state_.block[slots[k]].first + a] = -(at + 2 * k + a) - 1;
-  for (int j = 0, stays = 0; j < n; ++j) {  // where each row goes
-    if (order_[j] < 0)
-      order_[j] = -order_[j] - 1;
+  for (int j = 0, stays = 0, g = 0; j < n; ++j) {  // where each row goes; -1: is one of those
+    if (g < gone && j >= gone_[g].first + gone_[g].size) ++g;
+    if (g < gone && j >= gone_[g].first)
+      order_[j] = -1;
     else
       order_[j] = stays < at ? stays++ : size + stays++;
   }
-  for (int k = 0; k < count; ++k) state_.block[slots[k]].size = 0;
-  close_gaps(gone);
-  open_gap(P_, at, size);
+  open_gap(P_, at, size, gone_, gone);
   for (int s = 0; s < state_.slots; ++s) {
     Block& block = state_.block[s];
-    if (block.size > 0 && block.first >= at) block.first = static_cast<std::int16_t>(block.first + size);
+    if (block.size > 0 && block.first >= at && order_[block.first] >= 0)
+      block.first = static_cast<std::int16_t>(order_[block.first]);
   }
-  for (int k = 0; k < count; ++k) {
-    Block& block = state_.block[slots[k]];
-    block.size = 2;
-    block.first = static_cast<std::int16_t>(at + 2 * k);
+  for (int k = 0; k < count; ++k) state_.block[slots[k]].first = static_cast<std::int16_t>(at + 2 * k);
+  for (int r = 0; r < size; ++r) {
+    for (int j = 0; j < n; ++j)
+      if (order_[j] >= 0) P_.set(at + r, order_[j], W_[r * ld_ + j]);
+    for (int c = 0; c <= r; ++c) P_.set(at + r, at + c, S_[r * lds_ + c]);
   }
-  for (int r = 0; r < size; ++r)
-    for (int j = 0; j < n; ++j) P_.set(at + r, order_[j], W_[r * ld_ + j]);
   state_.held_dim += size;
   state_.dim = P_.n;
 }

@@ -87,8 +87,59 @@ bool Filter::distance(int plane, int slot, Scalar* d, Scalar* variance) const {
   return true;
 }
 
+/// Slots in the order of their rows.
+void Filter::sort_by_rows(int* slots, int count) const {
+  for (int i = 1; i < count; ++i) {
+    const int slot = slots[i];
+    int at = i;
+    for (; at > 0 && state_.block[slots[at - 1]].first > state_.block[slot].first; --at) slots[at] = slots[at - 1];
+    slots[at] = slot;
+  }
+}
+
+/// The rows of these blocks, in their order, become J[i] x of the state as it is, all in one pass; blocks behind move up.
+void Filter::transform_blocks(const int* slots, const SparseRows* J, int count) {
+  Segment old[kMostFolded];
+  int gone = 0;
+  for (int i = 0; i < count; ++i) {
+    Block& block = state_.block[slots[i]];
+    old[i] = {block.first, block.size};
+    if (J[i].rows < block.size) list_gone(block.first + J[i].rows, block.size - J[i].rows, &gone);
+    block.size = static_cast<std::int16_t>(J[i].rows);
+  }
+  kernels_->transform_many(P_, old, J, count, W_, ld_, S_, lds_);
+  move_up(gone);
+}
+
+/// Takes in a distance of zero of the chosen ones together.
+bool Filter::condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded) {
+  // The distance grows with the world: H N_s = d. With l, the row that picks the log scale, d - d l . e has none of it.
+  SparseRows l;
+  if (!keep_gauge_ || !scale_row(&l)) l.segments = 0;
+  int m = 0;
+  SparseRows row[kMostFolded];
+  for (int i = 0; i < count; ++i) {
+    if (folded[i] == 0) continue;
+    WorldPoint at;
+    Scalar d;
+    world_point(state_, slots[i], &at);
+    distance_row(plane, at, &d, &row[m]);
+    for (int s = 0, from = 0; s < l.segments; ++s) {
+      Scalar h[Observation::kMaxColumns];
+      for (int k = 0; k < l.segment[s].size; ++k) h[k] = -d * l.h[from++];
+      add_segment(&row[m], l.segment[s], h);
+    }
+    y_[m++] = -d;
+  }
+  if (m == 0) return true;
+  kernels_->gather_many(P_, row, m, W_, ld_);
+  kernels_->project(W_, m, ld_, row, m, S_, lds_);
+  for (int i = 0; i < m; ++i) S_[i * lds_ + i] += noise;
+  return apply(m, nullptr);
+}
+
 int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, unsigned char* folded) {
-  PF_ASSERT(count <= kMostFolded && count <= max_rows_);
+  PF_ASSERT(count <= kMostFolded && 2 * count <= max_rows_);
   const Scalar noise = rule.roughness * rule.roughness;
   for (int i = 0; i < count; ++i) {
     Scalar d, variance;
@@ -99,70 +150,39 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
     if (!distance(plane, slots[i], &d, &variance)) continue;
     folded[i] = d * d < rule.gate * (variance + noise) ? 1 : 0;
   }
-  if (rule.condition) {
-    // The distance grows with the world: H N_s = d. With l, the row that picks the log scale, d - d l . e has none of it.
-    SparseRows l;
-    if (!keep_gauge_ || !scale_row(&l)) l.segments = 0;
-    int m = 0;
-    SparseRows row[kMostFolded];
-    for (int i = 0; i < count; ++i) {
-      if (folded[i] == 0) continue;
-      WorldPoint at;
-      Scalar d;
-      world_point(state_, slots[i], &at);
-      distance_row(plane, at, &d, &row[m]);
-      for (int s = 0, from = 0; s < l.segments; ++s) {
-        Scalar h[Observation::kMaxColumns];
-        for (int k = 0; k < l.segment[s].size; ++k) h[k] = -d * l.h[from++];
-        add_segment(&row[m], l.segment[s], h);
-      }
-      kernels_->gather(P_, row[m], W_ + m * ld_, ld_);
-      y_[m++] = -d;
-    }
-    for (int i = 0; i < m; ++i) {
-      for (int j = 0; j <= i; ++j) {
-        Scalar sum = i == j ? noise : Scalar(0);
-        int c = 0;
-        for (int s = 0; s < row[i].segments; ++s)
-          for (int k = 0; k < row[i].segment[s].size; ++k)
-            sum += row[i].h[c++] * W_[j * ld_ + row[i].segment[s].first + k];
-        S_[i * lds_ + j] = sum;
-      }
-    }
-    if (m > 0 && !apply(m, nullptr)) {
-      std::memset(folded, 0, static_cast<std::size_t>(count));
-      return 0;
-    }
+  if (rule.condition && !condition_on(plane, slots, count, noise, folded)) {
+    std::memset(folded, 0, static_cast<std::size_t>(count));
+    return 0;
   }
-  // The transform: coordinates in the plane, all gaps closed in one pass.
+  // The transform: coordinates in the plane, all in one pass.
   const PlaneFrame& frame = state_.frame_of(state_.block[plane]);
   const Mat23 axes = frame.R_WP.transpose().topRows<2>();
-  int done = 0, gone = 0;
-  for (int i = 0; i < count; ++i) {
-    if (folded[i] == 0) continue;
-    Block& block = state_.block[slots[i]];
+  int moved[kMostFolded];
+  int done = 0;
+  for (int i = 0; i < count; ++i)
+    if (folded[i] != 0) moved[done++] = slots[i];
+  if (done == 0) return 0;
+  sort_by_rows(moved, done);
+  SparseRows J[kMostFolded];
+  for (int i = 0; i < done; ++i) {
+    Block& block = state_.block[moved[i]];
     WorldPoint at;
-    world_point(state_, slots[i], &at);
-    SparseRows J;
-    J.rows = 2;
-    J.segments = at.segments;
-    for (int s = 0; s < at.segments; ++s) J.segment[s] = at.segment[s];
+    world_point(state_, moved[i], &at);
+    J[i].rows = 2;
+    J[i].segments = at.segments;
+    for (int s = 0; s < at.segments; ++s) J[i].segment[s] = at.segment[s];
     for (int c = 0; c < at.columns; ++c) {
       const Vec2 h = axes * at.J.col(c);
-      J.h[c] = h.x();
-      J.h[at.columns + c] = h.y();
+      J[i].h[c] = h.x();
+      J[i].h[at.columns + c] = h.y();
     }
-    kernels_->replace(P_, block.first, block.size, J, nullptr);
-    if (block.size > 2) list_gone(block.first + 2, block.size - 2, &gone);
     if (block.parent >= 0) --state_.block[block.parent].children;
     block.kind = BlockKind::kPlanePoint;
-    block.size = 2;
     block.parent = static_cast<std::int16_t>(plane);
     block.set_uv(plane_coordinates(frame, at.p_W));
     ++state_.block[plane].children;
-    ++done;
   }
-  close_gaps(gone);
+  transform_blocks(moved, J, done);
   return done;
 }
 
@@ -213,32 +233,45 @@ bool Filter::reanchor(int plane, const PlaneFrame& frame) {
   Vec3 x;
   Mat3 J_x;
   if (patch_of(plane) >= 0 || !reframe_plane(old, block.xyz(), frame, &x, &J_x)) return false;
-  // The points first: their new coordinates depend on the plane as it was.
+  // The points first: their new coordinates depend on the plane as it was. So it is in the last of the passes.
   const Mat23 axes = frame.R_WP.transpose().topRows<2>();
+  SparseRows J[kMostFolded];
+  int moved[kMostFolded];
+  int count = 0;
+  const int most = max_rows_ / 3 < kMostFolded ? max_rows_ / 3 : kMostFolded;
+  const auto move = [&] {
+    sort_by_rows(moved, count);
+    for (int i = 0; i < count; ++i) {
+      Block& at = state_.block[moved[i]];
+      J[i].segment[0] = {block.first, 3};
+      if (moved[i] == plane) {
+        J[i].rows = 3;
+        J[i].segments = 1;
+        put<3, 3>(J[i].h, 3, 0, J_x);
+        continue;
+      }
+      Mat3 J_p_x;
+      Mat32 J_p_uv;
+      const Vec3 p_W = plane_point(old, block.xyz(), at.uv(), &J_p_x, &J_p_uv);
+      J[i].rows = 2;
+      J[i].segments = 2;
+      J[i].segment[1] = {at.first, 2};
+      const Mat23 by_plane = axes * J_p_x;
+      const Mat2 by_uv = axes * J_p_uv;
+      put<2, 3>(J[i].h, 5, 0, by_plane);
+      put<2, 2>(J[i].h, 5, 3, by_uv);
+      at.set_uv(plane_coordinates(frame, p_W));
+    }
+    transform_blocks(moved, J, count);
+    count = 0;
+  };
   for (int s = 0; s < state_.slots; ++s) {
-    Block& point = state_.block[s];
-    if (point.kind != BlockKind::kPlanePoint || point.parent != plane) continue;
-    Mat3 J_p_x;
-    Mat32 J_p_uv;
-    const Vec3 p_W = plane_point(old, block.xyz(), point.uv(), &J_p_x, &J_p_uv);
-    SparseRows J;
-    J.rows = 2;
-    J.segments = 2;
-    J.segment[0] = {block.first, 3};
-    J.segment[1] = {point.first, 2};
-    const Mat23 by_plane = axes * J_p_x;
-    const Mat2 by_uv = axes * J_p_uv;
-    put<2, 3>(J.h, 5, 0, by_plane);
-    put<2, 2>(J.h, 5, 3, by_uv);
-    kernels_->replace(P_, point.first, 2, J, nullptr);
-    point.set_uv(plane_coordinates(frame, p_W));
+    if (state_.block[s].kind != BlockKind::kPlanePoint || state_.block[s].parent != plane) continue;
+    if (count + 1 == most) move();
+    moved[count++] = s;
   }
-  SparseRows J;
-  J.rows = 3;
-  J.segments = 1;
-  J.segment[0] = {block.first, 3};
-  put<3, 3>(J.h, 3, 0, J_x);
-  kernels_->replace(P_, block.first, 3, J, nullptr);
+  moved[count++] = plane;
+  move();
   block.set_xyz(x);
   state_.plane_frame[block.frame] = frame;
   return true;

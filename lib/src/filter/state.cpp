@@ -10,9 +10,15 @@ Vec3 part(const Scalar* dx, int first) { return Vec3(dx[first], dx[first + 1], d
 /// Columns shift, turn, scale of something that is a place in W.
 template <int Rows>
 void put_place(const Eigen::Matrix<Scalar, Rows, 3>& axes, const Vec3& p_W, GaugeRows* N) {
-  N->template block<Rows, 3>(0, 0) = axes;
-  N->template block<Rows, 3>(0, 3) = -axes * hat(p_W);
-  N->template block<Rows, 1>(0, 6) = axes * p_W;
+  for (int i = 0; i < Rows; ++i) {
+    const Vec3 axis = axes.row(i).transpose();
+    const Vec3 turn = p_W.cross(axis);  // -axisᵀ [p]x
+    for (int k = 0; k < 3; ++k) {
+      (*N)(i, k) = axis(k);
+      (*N)(i, 3 + k) = turn(k);
+    }
+    (*N)(i, 6) = axis.dot(p_W);
+  }
 }
 
 /// (u, v) of a point p of the plane; rows 0 and 1.

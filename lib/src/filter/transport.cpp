@@ -49,17 +49,16 @@ int Filter::begin_transport() {
   std::memset(G_, 0, bytes);
   Scalar* U_shift = rows == kGaugeRows ? U_ + kShift * ld_ : nullptr;
   add_gauge_rows(state_, Scalar(-1), U_shift, U_, U_ + kScale * ld_, ld_);
-  SparseRows E;
-  E.rows = 3;
-  E.segments = 1;
-  put<3, 3>(E.h, 3, 0, Mat3::Identity());
-  E.segment[0] = {Body::kTheta, 3};
-  kernels_->gather(P_, E, G_, ld_);
-  if (has_scale) kernels_->gather(P_, l_, G_ + kScale * ld_, ld_);
-  if (rows == kGaugeRows) {
-    E.segment[0] = {Body::kPosition, 3};
-    kernels_->gather(P_, E, G_ + kShift * ld_, ld_);
+  SparseRows V[3];  // E_theta, l, E_p
+  for (int i = 0; i < 3; i += 2) {
+    V[i].rows = 3;
+    V[i].segments = 1;
+    V[i].segment[0] = {i == 0 ? Body::kTheta : Body::kPosition, 3};
+    put<3, 3>(V[i].h, 3, 0, Mat3::Identity());
   }
+  V[1] = l_;
+  V[1].rows = 1;
+  kernels_->gather_many(P_, V, rows == kGaugeRows ? 3 : rows == kShift ? 2 : 1, G_, ld_);
   p_before_ = state_.body.p_W;
   return rows;
 }
@@ -75,23 +74,20 @@ void Filter::finish_transport(int m, int rows) {
     if (which < kScale) return row[Body::kTheta + which];
     return which == kScale ? dot(l_, row) : row[Body::kPosition + which - kShift];
   };
-  for (int r = 0; r < rows;
-       ++r) {  // of P1: less (V W^T) W. V touches no held row, so held columns are as they should be.
-    Scalar* g = G_ + r * ld_;
-    for (int j = 0; j < m; ++j) {
-      const Scalar* w = W_ + j * ld_;
-      const Scalar v = raw(w, r);
-      for (int i = 0; i < n; ++i) g[i] -= v * w[i];
-    }
+  // Of P1: less (V W^T) W. V touches no held row, so held columns are as they should be.
+  constexpr int kChunk = 64;
+  Scalar A[kGaugeRows * kChunk];
+  for (int first = 0; first < m; first += kChunk) {
+    const int terms = m - first < kChunk ? m - first : kChunk;
+    for (int j = 0; j < terms; ++j)
+      for (int r = 0; r < rows; ++r) A[r * kChunk + j] = -raw(W_ + (first + j) * ld_, r);
+    kernels_->add_product(G_, rows, A, kChunk, W_ + first * ld_, terms, n, ld_);
   }
   const Mat3 turn = hat(p_before_);
-  for (int a = 0; a < 3 && rows == kGaugeRows; ++a) {
-    Scalar* g = G_ + (kShift + a) * ld_;
-    for (int b = 0; b < kShift; ++b) {
-      const Scalar factor = b < kScale ? turn(a, b) : -p_before_[a];
-      const Scalar* from = G_ + b * ld_;
-      for (int i = 0; i < n; ++i) g[i] += factor * from[i];
-    }
+  if (rows == kGaugeRows) {
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < kShift; ++b) A[a * kShift + b] = b < kScale ? turn(a, b) : -p_before_[a];
+    kernels_->add_product(G_ + kShift * ld_, 3, A, kShift, G_, kShift, n, ld_);
   }
   const auto pick = [&](const Scalar* row, int which) {
     if (which < kShift) return raw(row, which);
@@ -103,14 +99,9 @@ void Filter::finish_transport(int m, int rows) {
   Scalar VPV[kGaugeRows][kGaugeRows];
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < rows; ++c) VPV[r][c] = pick(G_ + r * ld_, c);
-  for (int r = 0; r < rows; ++r) {
-    Scalar* g = G_ + r * ld_;
-    for (int c = 0; c < rows; ++c) {
-      const Scalar half = (VPV[r][c] + VPV[c][r]) / Scalar(4);
-      const Scalar* u = U_ + c * ld_;
-      for (int i = 0; i < n; ++i) g[i] += half * u[i];
-    }
-  }
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < rows; ++c) A[r * kGaugeRows + c] = (VPV[r][c] + VPV[c][r]) / Scalar(4);
+  kernels_->add_product(G_, rows, A, kGaugeRows, U_, rows, n, ld_);
 }
 
 /// H P H^T of one row.
@@ -120,8 +111,11 @@ Scalar Filter::variance_of(const SparseRows& row) const {
   for (int s = 0; s < row.segments; ++s)
     for (int i = 0; i < row.segment[s].size; ++i) column[c++] = row.segment[s].first + i;
   Scalar sum = 0;
-  for (int i = 0; i < c; ++i)
-    for (int j = 0; j < c; ++j) sum += row.h[i] * row.h[j] * P_(column[i], column[j]);
+  for (int i = 0; i < c; ++i) {
+    Scalar before = 0;
+    for (int j = 0; j < i; ++j) before += row.h[j] * P_(column[i], column[j]);
+    sum += row.h[i] * (row.h[i] * P_(column[i], column[i]) + 2 * before);
+  }
   return sum;
 }
 
@@ -147,12 +141,12 @@ Mat3 Filter::relative_covariance(int slot, const SparseRows& l) const {
   for (int s = 0; s < row[0].segments; ++s)
     for (int i = 0; i < row[0].segment[s].size; ++i) column[columns++] = row[0].segment[s].first + i;
   Mat3 C = Mat3::Zero();
-  for (int i = 0; i < columns; ++i) {
-    Vec3 PJ = Vec3::Zero();
-    for (int j = 0; j < columns; ++j) PJ += P_(column[i], column[j]) * Vec3(row[0].h[j], row[1].h[j], row[2].h[j]);
+  for (int i = 0; i < columns; ++i) {  // rows of the lower triangle, half of the diagonal; then C + C^T
+    Vec3 PJ = P_(column[i], column[i]) / 2 * Vec3(row[0].h[i], row[1].h[i], row[2].h[i]);
+    for (int j = 0; j < i; ++j) PJ += P_(column[i], column[j]) * Vec3(row[0].h[j], row[1].h[j], row[2].h[j]);
     C += Vec3(row[0].h[i], row[1].h[i], row[2].h[i]) * PJ.transpose();
   }
-  return C;
+  return C + C.transpose();
 }
 
 Scalar Filter::relative_sigma_rho(int slot, const SparseRows& l) const {
@@ -174,6 +168,7 @@ Scalar Filter::relative_sigma_rho(int slot, const SparseRows& l) const {
 /// Each annihilates shifts and turns, and grows by s when the world grows by exp(s). None touches held rows.
 bool Filter::scale_row(SparseRows* row) const {
   constexpr int kMostTried = 12;
+  int places = -1;  // of place_: the points, listed once they are asked for
   Scalar best = Scalar(0);
   bool found = false;
   int tried = 0;
@@ -196,18 +191,26 @@ bool Filter::scale_row(SparseRows* row) const {
       candidate.h[0] = candidate.h[1] = Scalar(0);
       candidate.h[2] = Scalar(-1) / rho;
     } else if (a.kind == BlockKind::kPoint || a.kind == BlockKind::kPlanePoint) {
+      if (places < 0) {
+        places = 0;
+        for (int t = 0; t < state_.slots; ++t) {
+          if (state_.block[t].kind != BlockKind::kPoint && state_.block[t].kind != BlockKind::kPlanePoint) continue;
+          place_slot_[places] = t;
+          place_[places++] = point(t);
+        }
+      }
       const Vec3 here = point(s);
       int far = -1;
       Scalar far2 = Scalar(1e-12);
-      for (int t = 0; t < state_.slots; ++t) {
-        if (state_.block[t].kind != BlockKind::kPoint && state_.block[t].kind != BlockKind::kPlanePoint) continue;
-        const Scalar d2 = (point(t) - here).squaredNorm();
+      for (int t = 0; t < places; ++t) {
+        const Scalar d2 = (place_[t] - here).squaredNorm();
         if (d2 > far2) {
           far2 = d2;
           far = t;
         }
       }
       if (far < 0) continue;
+      far = place_slot_[far];
       WorldPoint from, to;
       world_point(state_, s, &from);
       world_point(state_, far, &to);

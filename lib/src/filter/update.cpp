@@ -95,15 +95,16 @@ Mat2 Filter::innovation(const Observation& observation) const {
   const Scalar* h1 = observation.h + c;
   Scalar s00 = 0, s01 = 0, s11 = 0;
   for (int i = 0; i < c; ++i) {
-    Scalar p0 = 0, p1 = 0;  // row i of P H^T
-    for (int j = 0; j < c; ++j) {
+    Scalar p0 = 0, p1 = 0;  // row i of the lower triangle of P, without its diagonal, times H^T
+    for (int j = 0; j < i; ++j) {
       const Scalar p = P_(column[i], column[j]);
       p0 += p * h0[j];
       p1 += p * h1[j];
     }
-    s00 += h0[i] * p0;
-    s01 += h0[i] * p1;
-    s11 += h1[i] * p1;
+    const Scalar p = P_(column[i], column[i]);
+    s00 += h0[i] * (p * h0[i] + 2 * p0);
+    s01 += h0[i] * (p * h1[i] + p1) + h1[i] * p0;
+    s11 += h1[i] * (p * h1[i] + 2 * p1);
   }
   Mat2 S;
   S << s00, s01, s01, s11;
@@ -117,43 +118,30 @@ void Filter::sparse(const Observation& observation, SparseRows* rows) const {
   std::memcpy(rows->h, observation.h, sizeof(Scalar) * 2 * static_cast<std::size_t>(rows->columns()));
 }
 
+/// H P in W_ and S = H P H^T, a few observations at a time, whose rows fit the stack.
 void Filter::begin_update(const Observation* observations, int count) {
   PF_ASSERT(2 * count <= max_rows_);
-  SparseRows rows;
-  for (int j = 0; j < count; ++j) {
-    sparse(observations[j], &rows);
-    kernels_->gather(P_, rows, W_ + 2 * j * ld_, ld_);
+  SparseRows rows[kMostFolded];
+  const auto list = [&](int first) {
+    const int size = count - first < kMostFolded ? count - first : kMostFolded;
+    for (int j = 0; j < size; ++j) sparse(observations[first + j], &rows[j]);
+    return size;
+  };
+  for (int i = 0; i < count; i += kMostFolded) {
+    const int size = list(i);
+    kernels_->gather_many(P_, rows, size, W_ + 2 * i * ld_, ld_);
   }
-  for (int i = 0; i < count; ++i) {
-    const Observation& o = observations[i];
-    const int columns = o.columns();
-    for (int j = 0; j <= i; ++j) {
-      for (int b = 0; b < 2; ++b) {
-        const Scalar* w = W_ + (2 * j + b) * ld_;
-        Scalar s0 = 0, s1 = 0;
-        int c = 0;
-        for (int s = 0; s < o.segments; ++s) {
-          const Scalar* p = w + o.segment[s].first;
-          for (int k = 0; k < o.segment[s].size; ++k, ++c) {
-            s0 += o.h[c] * p[k];
-            s1 += o.h[columns + c] * p[k];
-          }
-        }
-        S_[(2 * i) * lds_ + 2 * j + b] = s0;
-        S_[(2 * i + 1) * lds_ + 2 * j + b] = s1;
-      }
-    }
+  for (int i = 0; i < count; i += kMostFolded) {
+    const int size = count > kMostFolded ? list(i) : count;
+    kernels_->project(W_ + 2 * i * ld_, 2 * (count - i), ld_, rows, size, S_ + 2 * i * (lds_ + 1), lds_);
   }
 }
 
 Mat2 Filter::innovation_block(int i, int j) const {
+  const Scalar* S = S_ + 2 * (i > j ? i : j) * lds_ + 2 * (i > j ? j : i);  // of the lower triangle
   Mat2 block;
-  if (i >= j)
-    block << S_[2 * i * lds_ + 2 * j], S_[2 * i * lds_ + 2 * j + 1], S_[(2 * i + 1) * lds_ + 2 * j],
-        S_[(2 * i + 1) * lds_ + 2 * j + 1];
-  else
-    block << S_[2 * j * lds_ + 2 * i], S_[(2 * j + 1) * lds_ + 2 * i], S_[2 * j * lds_ + 2 * i + 1],
-        S_[(2 * j + 1) * lds_ + 2 * i + 1];
+  block << S[0], i == j ? S[lds_] : S[1], S[lds_], S[lds_ + 1];
+  if (i < j) block.transposeInPlace();
   return block;
 }
 

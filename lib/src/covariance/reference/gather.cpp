@@ -39,9 +39,7 @@ void gather_many(const Triangle& P, const SparseRows* J, int count, Scalar* out,
   }
 }
 
-void project(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S, int lds) {
-  int m = 0;
-  for (int i = 0; i < count; ++i) m += J[i].rows;
+void project(const Scalar* X, int m, int ld, const SparseRows* J, int count, Scalar* S, int lds) {
   int b = 0;
   for (int i = 0; i < count; ++i) {
     const int columns = J[i].columns();
@@ -61,6 +59,17 @@ void combine(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x) 
   for (int j = 0; j < n; ++j) {
     x[j] = 0;
     for (int r = 0; r < m; ++r) x[j] += W[static_cast<std::ptrdiff_t>(r) * ld + j] * y[r];
+  }
+}
+
+void add_product(Scalar* C, int k, const Scalar* A, int lda, const Scalar* B, int m, int n, int ld) {
+  const std::ptrdiff_t stride = ld, a_stride = lda;
+  for (int i = 0; i < k; ++i) {
+    for (int j = 0; j < n; ++j) {
+      Scalar sum = 0;
+      for (int r = 0; r < m; ++r) sum += A[i * a_stride + r] * B[r * stride + j];
+      C[i * stride + j] += sum;
+    }
   }
 }
 

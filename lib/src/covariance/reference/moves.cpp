@@ -91,8 +91,10 @@ void transform(Triangle& P, int first, int size, const SparseRows& J, const Scal
 void transform_many(Triangle& P, const Segment* block, const SparseRows* J, int count, Scalar* X, int ld, Scalar* S,
                     int lds) {
   gather_many(P, J, count, X, ld);
-  project(X, ld, J, count, S, lds);
   int row = 0;
+  for (int i = 0; i < count; ++i) row += J[i].rows;
+  project(X, row, ld, J, count, S, lds);
+  row = 0;
   for (int i = 0; i < count; ++i) {
     for (int a = 0; a < J[i].rows; ++a, ++row) {
       for (int x = 0; x < P.n; ++x) P.set(x, block[i].first + a, X[static_cast<std::ptrdiff_t>(row) * ld + x]);

@@ -29,7 +29,8 @@ void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar
 void transform_many(Triangle& P, const Segment* block, const SparseRows* J, int count, Scalar* X, int ld, Scalar* S,
                     int lds);
 void remove(Triangle& P, const Segment* gone, int count);
-void project(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S, int lds);
+void project(const Scalar* X, int m, int ld, const SparseRows* J, int count, Scalar* S, int lds);
 void combine(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x);
+void add_product(Scalar* C, int k, const Scalar* A, int lda, const Scalar* B, int m, int n, int ld);
 
 }  // namespace pf::reference

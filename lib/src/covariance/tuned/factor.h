@@ -43,6 +43,19 @@ void combine(const Scalar* W, int m, int n, int ld, const Scalar* y, Scalar* x) 
   }
 }
 
+/// Twin: reference::add_product.
+void add_product(Scalar* C, int k, const Scalar* A, int lda, const Scalar* B, int m, int n, int ld) {
+  for_strips(0, round_up(n, kGroup), [&](auto v, auto count, int j) {
+    for_heights(k, [&](auto height, int i) PF_LAMBDA {
+      Tile<decltype(v), decltype(height)::value, decltype(count)::value> tile;
+      Scalar* to = C + static_cast<std::ptrdiff_t>(i) * ld + j;
+      tile.load(to, ld);
+      tile.accumulate(A + static_cast<std::ptrdiff_t>(i) * lda, lda, 1, B + j, ld, m);
+      tile.store(to, ld);
+    });
+  });
+}
+
 /// L of a block of at most eight rows, in place. The symmetric square is kept whole in registers, widened by the identity, so that
 /// row j is also what is left of column j:  l_j = a_j / sqrt(a_jj),  a_i -= l_ij l_j.
 PF_INLINE bool cholesky_block(Scalar* S, int rows, std::ptrdiff_t lds) {

@@ -141,9 +141,7 @@ void gather(const Triangle& P, const SparseRows& J, Scalar* out, int ld) { gathe
 
 /// Twin: reference::project. Rows of X are the strip's columns, so eight or more of them go at a time; of the result, J X^T, the
 /// part on and below the diagonal of S is turned round and kept.
-void project(const Scalar* X, int ld, const SparseRows* J, int count, Scalar* S, int lds) {
-  int m = 0;
-  for (int i = 0; i < count; ++i) m += J[i].rows;
+void project(const Scalar* X, int m, int ld, const SparseRows* J, int count, Scalar* S, int lds) {
   Panel panel;
   alignas(64) Scalar strip[SparseRows::kMaxRows * kStrip];
   for (int a0 = 0; a0 < m; a0 += kStrip) {

@@ -11,7 +11,7 @@ namespace pf {
 namespace {
 
 constexpr Kernels kTable = {gather, cholesky,    solve_lower, downdate,       predict, augment, transform,
-                            remove, gather_many, replace,     transform_many, project, combine};
+                            remove, gather_many, replace,     transform_many, project, combine, add_product};
 
 }  // namespace
 }  // namespace pf

@@ -64,7 +64,9 @@ void transform_many(Triangle& P, const Segment* block, const SparseRows* J, int 
                     int lds) {
   if (count == 0) return;
   gather_many(P, J, count, X, ld);
-  project(X, ld, J, count, S, lds);
+  int new_rows = 0;
+  for (int i = 0; i < count; ++i) new_rows += J[i].rows;
+  project(X, new_rows, ld, J, count, S, lds);
 
   const NewRows rows = {block, J, count, X, ld, S, lds};
   const int last = round_up(P.n, kGroup) - 1;
