@@ -51,7 +51,11 @@ Acquire::Languages "none";
 def fetch_packages():
     """Kernel and busybox, unpacked; where they cannot be had the test is skipped."""
     unpacked = CACHE / "root"
-    if (unpacked / "complete").is_file():
+    wanted = ["./boot/vmlinuz-*", "./bin/busybox", "./usr/bin/busybox"]
+    wanted += [f"./lib/modules/*/kernel/{part}/*"
+               for part in ("drivers/media", "drivers/virtio", "drivers/iio", "drivers/hid", "drivers/mfd", "fs", "net/9p")]
+    complete = unpacked / "complete"
+    if complete.is_file() and complete.read_text() == "\n".join(wanted):
         return unpacked
     work = CACHE / "apt"
     environment = isolated_apt(work)
@@ -69,8 +73,6 @@ def fetch_packages():
     apt("apt-get", "-q", "download", kernel.group(1), "busybox-static")
     shutil.rmtree(unpacked, ignore_errors=True)
     unpacked.mkdir(parents=True)
-    wanted = ["./boot/vmlinuz-*", "./bin/busybox", "./usr/bin/busybox"]
-    wanted += [f"./lib/modules/*/kernel/{part}/*" for part in ("drivers/media", "drivers/virtio", "drivers/iio", "fs", "net/9p")]
     for package in work.glob("*.deb"):
         with subprocess.Popen(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE) as archive:
             subprocess.run(["tar", "-x", "-C", unpacked, "--wildcards", *wanted], stdin=archive.stdout,
@@ -78,7 +80,7 @@ def fetch_packages():
         package.unlink()
     if not list(unpacked.glob("boot/vmlinuz-*")) or not list(unpacked.glob("**/busybox")):
         fail("the packages of kernel and busybox do not hold what they used to")
-    (unpacked / "complete").write_text(kernel.group(1) + "\n")
+    complete.write_text("\n".join(wanted))
     return unpacked
 
 
@@ -118,15 +120,19 @@ def libraries(program, sysroot):
     return found
 
 
-def cross_build(*targets, options=()):
-    """The project's programs for arm64, without what the guest lacks. Gives the folder of the programs."""
-    build = CACHE / "aarch64"
-    result = subprocess.run(["bash", SOURCE / "toolchains/make_sysroot.sh", "arm64", SYSROOT], text=True, stdout=subprocess.PIPE,
-                            stderr=subprocess.STDOUT, check=False)
+def cross_build(*targets, options=(), name="aarch64", packages=()):
+    """The project's programs for arm64, without what the guest lacks. Gives the folder of the programs.
+
+    packages  more of Debian's, which come into a sysroot of this name
+    """
+    build = CACHE / name
+    sysroot = SYSROOT.with_name(name)
+    result = subprocess.run(["bash", SOURCE / "toolchains/make_sysroot.sh", "arm64", sysroot, *packages], text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     if result.returncode != 0:
         skip(f"libraries for arm64 cannot be had here: {result.stdout.strip()[-300:]}")
     run("cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DPLANEFOLD_BUILD_TESTS=OFF",
-        f"-DCMAKE_TOOLCHAIN_FILE={SOURCE}/toolchains/aarch64.cmake", f"-DPLANEFOLD_SYSROOT={SYSROOT}",
+        f"-DCMAKE_TOOLCHAIN_FILE={SOURCE}/toolchains/aarch64.cmake", f"-DPLANEFOLD_SYSROOT={sysroot}",
         "-DPLANEFOLD_DRAWING=OFF", *options)
     run("cmake", "--build", build, "--parallel", "2", "--target", *targets)
     return build / "bin"
