@@ -16,6 +16,7 @@ struct PlaneEntry {
   int weak = 0;          ///< of them in a row, the last ones with too few points
   int most = 0;          ///< points that it ever had
   int misfits = 0;       ///< points that were taken out again because they do not lie there
+  PlaneOutline seen;     ///< of points that were on it when it was last tended to, many of them gone from the map since
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 };
 

@@ -41,6 +41,7 @@ void FilterSlam::tend_planes() {
     if (tended++ > 0) continue;
     fold_into(i);
     settle_frame(i);
+    outline(i, &planes_[i].seen);
     if (settings_.fix_sigma > Scalar(0)) fix_on(i);
     merge_into(i);
   }
@@ -75,7 +76,10 @@ void FilterSlam::unfold_misfits() {
     features_[i].observations = 1;  // has to converge again before it may be folded
     loosen(plane, children);
     const int entry = planes_.entry_at(plane);
-    if (entry >= 0) ++planes_[entry].misfits;
+    if (entry < 0) continue;
+    ++planes_[entry].misfits;
+    planes_[entry].seen.count =
+        0;  // the misfit may have been a corner of it: what is known begins again with the others
   }
 }
 
@@ -265,6 +269,13 @@ void FilterSlam::merge_into(int plane_entry) {
       if (count == std::min(Filter::kMostFolded, settings_.max_observations)) give();
     }
     give();
+    const State& state = filter_.state();
+    const Block &from = state.block[other], &to = state.block[plane];
+    for (int i = 0; i < planes_[k].seen.count; ++i) {
+      const Vec3 p_W = plane_point(state.frame_of(from), from.xyz(), planes_[k].seen.uv[i]);
+      const Vec2 uv = plane_coordinates(state.frame_of(to), p_W);
+      extend_outline(&planes_[plane_entry].seen, &uv, 1);
+    }
     planes_.remember_merge(planes_[k].id, planes_[plane_entry].id);
     dissolve(k);
     settings_.hooks.say("merged two planes");
@@ -292,7 +303,9 @@ void FilterSlam::settle_frame(int plane_entry) {
   const PlaneFrame from = state.frame_of(block);
   if (!filter_.reanchor(plane, to)) return;
   PlaneOutline& known = planes_[plane_entry].support;
+  PlaneOutline& seen = planes_[plane_entry].seen;
   for (int i = 0; i < known.count; ++i) known.uv[i] = plane_coordinates(to, plane_point(from, x, known.uv[i]));
+  for (int i = 0; i < seen.count; ++i) seen.uv[i] = plane_coordinates(to, plane_point(from, x, seen.uv[i]));
 }
 
 /// All points go back to three coordinates, and the plane goes.
@@ -308,11 +321,13 @@ void FilterSlam::dissolve(int plane_entry) {
   planes_.remove(plane_entry);
 }
 
+/// What is known of a plane: what was, and the points that are on it now, but for those that are far from all others.
 PlanePoints FilterSlam::outline(int plane_entry, PlaneOutline* outline) const {
   constexpr int kBatch = kOutlineBatch;
   const State& state = filter_.state();
   const int plane = planes_[plane_entry].slot;
   PlanePoints points;
+  if (outline != nullptr && outline != &planes_[plane_entry].seen) *outline = planes_[plane_entry].seen;
   Vec2 uv[kBatch];
   int count = 0;
   for (int i = 0; i < features_.capacity(); ++i) {
