@@ -1,0 +1,137 @@
+"""pf-capture --imu: samples of a file reach the library in order with the frames, the report counts them, a recording holds them,
+and replaying it pushes the same; the poses do not depend on them."""
+
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from script import BIN, fail, run, skip  # noqa: E402
+
+PROGRAM = BIN / "pf-capture"
+QUIET = ["--headless", "--no-film", "--quiet", "--start", "rectangle:0.20x0.14"]
+FRAMES = 40
+STEP_NS = 5_000_000
+MISSING = range(100, 110)  # samples that are left out
+SEED = 7
+
+
+def capture(out, *arguments):
+    run(PROGRAM, *QUIET, "--out", out, *arguments)
+    return json.loads((out / "report.json").read_text())
+
+
+def frame_times(out):
+    return [round(1e9 * float(line.split(",")[0])) for line in (out / "frames.csv").read_text().splitlines()[1:]]
+
+
+def recorded(folder):
+    return (folder / "mav0/imu0/data.csv").read_text()
+
+
+def rows_of(text):
+    return [[float(word) for word in line.split(",")] for line in text.splitlines() if line[0] != "#"]
+
+
+def write_samples(path, first_ns, last_ns):
+    """Samples at 200 Hz, without those of MISSING. Gives their rows."""
+    generator = random.Random(SEED)
+    count = (last_ns - first_ns) // STEP_NS + 20
+    rows = [[first_ns - 10 * STEP_NS + i * STEP_NS, *(generator.uniform(-1, 1) for _ in range(6))] for i in range(count) if i not in MISSING]
+    path.write_text("#timestamp [ns],wx,wy,wz,ax,ay,az\n" + "".join(",".join(repr(word) for word in row) + "\n" for row in rows))
+    return rows
+
+
+def expect(condition, text):
+    if not condition:
+        fail(text)
+
+
+def files_with_frames(root):
+    plain = capture(root / "plain", "--source", "sim:desk", "--frames", FRAMES)
+    expect("imu" not in plain, "a scene without samples reports an IMU")
+    times = frame_times(root / "plain")
+    rows = write_samples(root / "imu.csv", times[0], times[-1])
+    before_the_end = [row for row in rows if row[0] <= times[-1]]
+    with_imu = ["--imu", f"csv:{root}/imu.csv"]
+    imu = capture(root / "a", "--source", "sim:desk", "--frames", FRAMES, *with_imu, "--record", root / "all")["imu"]
+    print(imu)
+    expect(imu["samples"] == len(before_the_end), f"{len(before_the_end)} samples lie before the last frame")
+    expect(imu["gaps"] == 1 and imu["missing"] == len(MISSING), "the gap was not counted")
+    expect(imu["late"] == 0 and imu["refused"] == 0, "samples came after their frame, or were refused")
+    expect(abs(imu["interval_ms"]["max"] - 1e-6 * STEP_NS * (len(MISSING) + 1)) < 1e-6, "longest interval")
+    expect(imu["used"] is False and imu["saturated"] is None, "what is not known is said to be known")
+    for name in ("trajectory.txt", "covariance.csv", "map.ply"):
+        expect((root / "plain" / name).read_bytes() == (root / "a" / name).read_bytes(), f"{name} depends on samples that are not used")
+    expect(rows_of(recorded(root / "all")) == before_the_end, "the recording does not hold what was pushed")
+    return times
+
+
+def replay(root):
+    again = capture(root / "b", "--source", f"euroc:{root}/all", "--record", root / "all again")["imu"]
+    expect(recorded(root / "all again") == recorded(root / "all"), "a replay pushes other samples")
+    expect("imu0" in again["source"] and again["late"] == 0, f"source of the replay: {again}")
+    expect("imu" not in capture(root / "none", "--source", f"euroc:{root}/all", "--imu", "none", "--frames", "5"), "--imu none")
+
+
+def late_tracker(root):
+    """Frames are passed over; their samples are not."""
+    late = capture(root / "late", "--source", f"euroc:{root}/all", "--realtime", "--delay", "100", "--record", root / "some")
+    expect(late["live"]["passed_over"] >= 5, f"nothing was passed over: {late['live']}")
+    again = capture(root / "late again", "--source", f"euroc:{root}/some", "--as-recorded", "--record", root / "some again")
+    expect(recorded(root / "some again") == recorded(root / "some"), "a replay of what was tracked pushes other samples")
+    expect(late["imu"]["late"] == 0 and late["imu"]["samples"] == again["imu"]["samples"], f"{late['imu']} {again['imu']}")
+    times = frame_times(root / "late")
+    expect(late["imu"]["samples"] == sum(row[0] <= times[-1] for row in rows_of(recorded(root / "all"))), "samples of frames that were passed over are lost")
+
+
+def offset(root, times):
+    """A unit whose clock is 2 s behind: with the offset the same samples come, on the camera's clock."""
+    shifted = [[int(row[0]) - 2_000_000_000, *row[1:]] for row in rows_of(recorded(root / "all"))]
+    (root / "behind.csv").write_text("".join(",".join(repr(word) for word in row) + "\n" for row in shifted))
+    capture(root / "behind", "--source", "sim:desk", "--frames", FRAMES, "--imu", f"csv:{root}/behind.csv", "--imu-offset", "2",
+            "--record", root / "shifted")
+    expect(recorded(root / "shifted") == recorded(root / "all"), "--imu-offset")
+    ahead = subprocess.run([str(word) for word in [PROGRAM, *QUIET, "--source", "sim:desk", "--frames", FRAMES, "--out", root / "ahead",
+                                                   "--imu", f"csv:{root}/imu.csv", "--imu-offset", "1000"]],
+                           text=True, capture_output=True, check=False)
+    expect(ahead.returncode == 0 and "--imu-offset" in ahead.stderr, f"a clock that is far ahead: {ahead.stderr}")
+    expect(len(times) == FRAMES, f"{len(times)} frames")
+
+
+def refusals(root):
+    bad = root / "bad.csv"
+    for name, text, part in [("running back", "10,0,0,0,0,0,1\n9,0,0,0,0,0,1\n", "line 2"), ("not finite", "10,0,0,nan,0,0,1\n", "line 1"),
+                             ("empty", "# nothing\n", "no sample")]:
+        bad.write_text(text)
+        result = subprocess.run([str(word) for word in [PROGRAM, *QUIET, "--source", "sim:desk", "--frames", 5, "--out", root / "bad",
+                                                        "--imu", f"csv:{bad}"]], text=True, capture_output=True, check=False)
+        expect(result.returncode == 1 and "bad.csv" in result.stderr and part in result.stderr, f"{name}: {result.returncode} {result.stderr}")
+    # What no unit can have measured is refused by the library, and the rest goes on.
+    bad.write_text("".join(f"{i},0,0,{0 if i != 3 else 5000},0,0,1\n" for i in range(1, 10)))
+    report = capture(root / "absurd", "--source", "sim:desk", "--frames", "5", "--imu", f"csv:{bad}", "--imu-offset", "-1")
+    expect(report["imu"]["samples"] == 8 and report["imu"]["refused"] == 1, f"absurd: {report['imu']}")
+    for arguments, part in [(["--imu", "magic"], "csv:FILE"), (["--imu", "csv:"], "csv:FILE"), (["--imu-offset", "nan"], "--imu-offset"),
+                            (["--imu-rate", "-5"], "--imu-rate")]:
+        result = subprocess.run([str(word) for word in [PROGRAM, *QUIET, "--source", "sim:desk", *arguments]], text=True,
+                                capture_output=True, check=False)
+        expect(result.returncode == 2 and part in result.stderr, f"{arguments}: {result.returncode} {result.stderr}")
+
+
+def main():
+    if not PROGRAM.is_file():
+        skip("pf-capture was not built")
+    print("seed", SEED)
+    with tempfile.TemporaryDirectory(prefix="planefold_") as name:
+        root = pathlib.Path(name)
+        times = files_with_frames(root)
+        replay(root)
+        late_tracker(root)
+        offset(root, times)
+        refusals(root)
+
+
+main()
