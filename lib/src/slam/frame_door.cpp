@@ -152,6 +152,12 @@ int FilterSlam::search(int first, int count) {
     task.innovation = track.innovation;
     task.gate = settings_.gate;
     task.p_W = filter_.point(f.slot);
+    if (is_planar(filter_.state().block[f.slot].kind)) {
+      const State& state = filter_.state();
+      const Block& plane = state.block[state.plane_of(f.slot)];
+      Scalar d;
+      plane_normal(state.frame_of(plane), plane.xyz(), &task.normal_W, &d);
+    }
     task.q_WC = body.q_WC;
     task.c_W = body.p_W;
     const SearchOutcome outcome = tracker_.search(task);

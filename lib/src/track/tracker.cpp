@@ -70,11 +70,11 @@ void Tracker::forget(int appearance) {
   if (appearance >= 0) appearance_[appearance].used = false;
 }
 
-/// Source pixels per current pixel about the feature, for a plane that faced the camera when the feature was first seen:
-/// current pixel -> ray -> plane -> source pixel, by central differences.
+/// Source pixels per current pixel about the feature, on its surface; where that is not known, on a plane that faced the camera when
+/// the feature was first seen: current pixel -> ray -> plane -> source pixel, by central differences.
 bool Tracker::warp(const Appearance& source, const SearchTask& task, Mat2* A) const {
   constexpr Scalar kStep = 4;
-  const Vec3 normal = task.p_W - source.c_W;
+  const Vec3 normal = task.normal_W.isZero(0) ? Vec3(task.p_W - source.c_W) : task.normal_W;
   const Mat3 R_WC = task.q_WC.toRotationMatrix();
   const Mat3 R_SW = source.q_WC.toRotationMatrix().transpose();
   const Scalar height = normal.dot(task.p_W - task.c_W);

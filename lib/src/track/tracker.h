@@ -18,6 +18,7 @@ struct SearchTask {
   Mat2 innovation = Mat2::Identity();  ///< covariance of (measured - predicted) [px^2]
   Scalar gate = 9;                     ///< chi-square bound of the ellipse
   Vec3 p_W = Vec3::Zero();             ///< the point, about
+  Vec3 normal_W = Vec3::Zero();        ///< of the surface there, either sign; zero: not known
   Quat q_WC = Quat::Identity();        ///< camera now
   Vec3 c_W = Vec3::Zero();             ///< its centre
 };
