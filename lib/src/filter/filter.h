@@ -174,7 +174,7 @@ class Filter {
   // planes.cpp
   void sort_by_rows(int* slots, int count) const;
   void transform_blocks(const int* slots, const SparseRows* J, int count);
-  bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded);
+  bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded, SparseRows* row);
   void distance_row(int plane, const struct WorldPoint& point, Scalar* d, SparseRows* row) const;
 
   // patches.cpp

@@ -111,13 +111,13 @@ void Filter::transform_blocks(const int* slots, const SparseRows* J, int count) 
   move_up(gone);
 }
 
-/// Takes in a distance of zero of the chosen ones together.
-bool Filter::condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded) {
+/// Takes in a distance of zero of the chosen ones together. `row` is scratch.
+bool Filter::condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded,
+                          SparseRows* row) {
   // The distance grows with the world: H N_s = d. With l, the row that picks the log scale, d - d l . e has none of it.
   SparseRows l;
   if (!keep_gauge_ || !scale_row(&l)) l.segments = 0;
   int m = 0;
-  SparseRows row[kMostFolded];
   for (int i = 0; i < count; ++i) {
     if (folded[i] == 0) continue;
     WorldPoint at;
@@ -150,7 +150,8 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
     if (!distance(plane, slots[i], &d, &variance)) continue;
     folded[i] = d * d < rule.gate * (variance + noise) ? 1 : 0;
   }
-  if (rule.condition && !condition_on(plane, slots, count, noise, folded)) {
+  SparseRows J[kMostFolded];  // also of the distances: the stack is small
+  if (rule.condition && !condition_on(plane, slots, count, noise, folded, J)) {
     std::memset(folded, 0, static_cast<std::size_t>(count));
     return 0;
   }
@@ -163,7 +164,6 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
     if (folded[i] != 0) moved[done++] = slots[i];
   if (done == 0) return 0;
   sort_by_rows(moved, done);
-  SparseRows J[kMostFolded];
   for (int i = 0; i < done; ++i) {
     Block& block = state_.block[moved[i]];
     WorldPoint at;

@@ -21,37 +21,85 @@ void put_place(const Eigen::Matrix<Scalar, Rows, 3>& axes, const Vec3& p_W, Gaug
   }
 }
 
-/// (u, v) of a point p of the plane; rows 0 and 1.
-void put_coordinates(const PlaneFrame& frame, const Vec3& x, const Vec2& uv, GaugeRows* N) {
-  const Mat23 axes = frame.R_WP.transpose().topRows<2>();
-  put_place<2>(axes, plane_point(frame, x, uv), N);
+/// Rows of what has two coordinates in a plane or patch, which are affine in them:  N(c) = at + c_0 by_u + c_1 by_v.
+struct PlanarRows {
+  using Rows = Eigen::Matrix<Scalar, 2, 7>;
+  Rows at, by_u, by_v;
+
+  /// (u, v) of a point p of the plane: the first rows of R_WPᵀ (I, -[p]x, p).
+  void of_plane(const PlaneFrame& frame, const Vec3& x) {
+    const Vec3 normal = frame.R_WP.col(2);
+    const Vec3 p_W = frame.o_W + x(2) * normal;
+    const Vec3 p_u = frame.R_WP.col(0) + x(0) * normal, p_v = frame.R_WP.col(1) + x(1) * normal;
+    by_u.setZero();
+    by_v.setZero();
+    for (int i = 0; i < 2; ++i) {
+      const Vec3 axis = frame.R_WP.col(i);
+      put(i, axis, p_W, &at);
+      for (int k = 0; k < 3; ++k) at(i, k) = axis(k);
+      put(i, axis, p_u, &by_u);
+      put(i, axis, p_v, &by_v);
+    }
+  }
+  /// Coordinates in a patch, from the rows of its plane: what each direction does to M beside turning and growing it.
+  void of_patch(const PlanarRows& plane, const Patch& patch) {
+    const Scalar cosine = std::cos(patch.phi), sine = std::sin(patch.phi);
+    Mat2 turn;
+    turn << cosine, -sine, sine, cosine;
+    at.setZero();
+    for (int d = 0; d < 7; ++d) {
+      Mat2 M;
+      M.col(0) = plane.by_u.col(d);
+      M.col(1) = plane.by_v.col(d);
+      const Scalar lambda = (M(0, 0) + M(1, 1)) / 2, phi = (M(1, 0) - M(0, 1)) / 2;
+      M(0, 0) -= lambda;
+      M(1, 1) -= lambda;
+      M(1, 0) -= phi;
+      M(0, 1) += phi;
+      const Mat2 S = turn.transpose() * (M * turn);
+      by_u.col(d) = S.col(0);
+      by_v.col(d) = S.col(1);
+    }
+  }
+  Scalar operator()(int i, int d, const Vec2& c) const { return at(i, d) + c.x() * by_u(i, d) + c.y() * by_v(i, d); }
+
+ private:
+  static void put(int i, const Vec3& axis, const Vec3& p_W, Rows* N) {
+    const Vec3 turn = p_W.cross(axis);  // -axisᵀ [p]x
+    for (int k = 0; k < 3; ++k) (*N)(i, 3 + k) = turn(k);
+    (*N)(i, 6) = axis.dot(p_W);
+  }
+};
+
+/// Of a plane, or of a patch on one.
+void find_rows(const State& state, const Block& parent, PlanarRows* rows) {
+  const Block& plane = parent.kind == BlockKind::kPlane ? parent : state.block[parent.parent];
+  PlanarRows of_plane;
+  of_plane.of_plane(state.frame_of(plane), plane.xyz());
+  if (parent.kind == BlockKind::kPlane)
+    *rows = of_plane;
+  else
+    rows->of_patch(of_plane, parent.patch());
 }
 
-/// What each direction does to (u, v) at t, and M, by differences in the coordinates, in which it is affine.
-void put_patch(const PlaneFrame& frame, const Vec3& x, const Patch& patch, bool inside, const Vec2& c, GaugeRows* N) {
-  GaugeRows at, at_u, at_v;
-  put_coordinates(frame, x, patch.t, &at);
-  put_coordinates(frame, x, patch.t + Vec2(1, 0), &at_u);
-  put_coordinates(frame, x, patch.t + Vec2(0, 1), &at_v);
-  const Scalar cosine = std::cos(patch.phi), sine = std::sin(patch.phi);
-  Mat2 turn;
-  turn << cosine, -sine, sine, cosine;
+/// What each direction does to (u, v) at the patch, and how it turns and scales it.
+void put_patch(const PlanarRows& plane, const Patch& patch, GaugeRows* N) {
   for (int d = 0; d < 7; ++d) {
-    Mat2 M;
-    M.col(0) = (at_u.col(d) - at.col(d)).head<2>();
-    M.col(1) = (at_v.col(d) - at.col(d)).head<2>();
-    const Scalar lambda = (M(0, 0) + M(1, 1)) / 2, phi = (M(1, 0) - M(0, 1)) / 2;
-    if (!inside) {
-      N->block<2, 1>(0, d) = at.col(d).head<2>();
-      (*N)(2, d) = phi;
-      (*N)(3, d) = lambda;
-      continue;
-    }
-    M(0, 0) -= lambda;
-    M(1, 1) -= lambda;
-    M(1, 0) -= phi;
-    M(0, 1) += phi;
-    N->block<2, 1>(0, d) = turn.transpose() * (M * (turn * c));
+    for (int i = 0; i < 2; ++i) (*N)(i, d) = plane(i, d, patch.t);
+    (*N)(2, d) = (plane.by_u(1, d) - plane.by_v(0, d)) / 2;
+    (*N)(3, d) = (plane.by_u(0, d) + plane.by_v(1, d)) / 2;
+  }
+}
+
+/// (I, -[p]x, p)
+void add_point_rows(Scalar sign, int first, const Vec3& p_W, Scalar* N_T, Scalar* N_R, Scalar* N_s, int ld) {
+  const Vec3 p = sign * p_W;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    if (N_T != nullptr) N_T[i * ld + first + i] += sign;
+    N_R[j * ld + first + i] += p(k);
+    N_R[k * ld + first + i] -= p(j);
+    N_s[first + i] += p(i);
   }
 }
 
@@ -107,20 +155,18 @@ GaugeRows gauge_rows(const State& state, const Block& block) {
     case BlockKind::kPlane:
       N.topRows<3>() = plane_gauge(state.frame_of(block), block.xyz());
       break;
-    case BlockKind::kPlanePoint: {
-      const Block& plane = state.block[block.parent];
-      put_coordinates(state.frame_of(plane), plane.xyz(), block.uv(), &N);
-      break;
-    }
     case BlockKind::kPatch: {
-      const Block& plane = state.block[block.parent];
-      put_patch(state.frame_of(plane), plane.xyz(), block.patch(), false, Vec2::Zero(), &N);
+      PlanarRows rows;
+      find_rows(state, state.block[block.parent], &rows);
+      put_patch(rows, block.patch(), &N);
       break;
     }
+    case BlockKind::kPlanePoint:
     case BlockKind::kPatchPoint: {
-      const Block& patch = state.block[block.parent];
-      const Block& plane = state.block[patch.parent];
-      put_patch(state.frame_of(plane), plane.xyz(), patch.patch(), true, block.uv(), &N);
+      PlanarRows rows;
+      find_rows(state, state.block[block.parent], &rows);
+      for (int i = 0; i < 2; ++i)
+        for (int d = 0; d < 7; ++d) N(i, d) = rows(i, d, block.uv());
       break;
     }
   }
@@ -148,7 +194,28 @@ void add_gauge_rows(const State& state, Scalar sign, Scalar* N_T, Scalar* N_R, S
   }
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];
-    if (block.size > 0) add(block.first, block.size, gauge_rows(state, block));
+    if (block.kind == BlockKind::kPoint || block.kind == BlockKind::kAnchor) {
+      add_point_rows(sign, block.first, block.xyz(), N_T, N_R, N_s, ld);
+    } else if (block.size > 0 && !is_planar(block.kind)) {
+      add(block.first, block.size, gauge_rows(state, block));
+    }
+    // What hangs on a plane or patch shares the rows that its own are made of.
+    if ((block.kind != BlockKind::kPlane && block.kind != BlockKind::kPatch) || block.children == 0) continue;
+    PlanarRows rows;
+    find_rows(state, block, &rows);
+    for (int t = 0; t < state.slots; ++t) {
+      const Block& child = state.block[t];
+      if (child.parent != s || child.size == 0 || !is_planar(child.kind)) continue;
+      const Vec2 c = child.uv();
+      for (int i = 0; i < 2; ++i) {
+        const int at = child.first + i;
+        for (int axis = 0; axis < 3; ++axis) {
+          if (N_T != nullptr) N_T[axis * ld + at] += sign * rows(i, axis, c);
+          N_R[axis * ld + at] += sign * rows(i, 3 + axis, c);
+        }
+        N_s[at] += sign * rows(i, 6, c);
+      }
+    }
   }
 }
 
