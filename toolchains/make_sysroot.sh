@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Libraries of Debian for another processor, unpacked into a folder:  make_sysroot.sh ARCHITECTURE FOLDER
+# Libraries of Debian for another processor, unpacked into a folder:  make_sysroot.sh ARCHITECTURE FOLDER [PACKAGE...]
 #
 #   toolchains/make_sysroot.sh arm64 build/sysroot/aarch64
 #   toolchains/make_sysroot.sh armhf build/sysroot/armhf
 #
 # For cross builds of the programs; the library alone needs none of it. Packages come from the machine's own mirrors
 # through an apt state in a temporary folder: no architecture is added to the machine, nothing is installed, and no
-# root rights are needed. SYSROOT_PACKAGES replaces the list of packages; what they depend on comes along.
+# root rights are needed. PACKAGES come besides a list that SYSROOT_PACKAGES replaces; what they depend on comes along.
 set -euo pipefail
 
 architecture=${1:?which architecture: arm64 or armhf}
@@ -14,6 +14,7 @@ target=${2:?which folder}
 # The window (SDL2) and OpenCV are left out: they bring a desktop along.
 packages=${SYSROOT_PACKAGES:-libc6-dev libstdc++-12-dev linux-libc-dev libpng-dev libjpeg62-turbo-dev libyaml-cpp-dev
   libcairo2-dev libiio-dev libeigen3-dev libcli11-dev nlohmann-json3-dev}
+packages="$packages ${*:3}"
 stamp="$architecture $(echo $packages)"
 [ "$(cat "$target/sysroot.stamp" 2>/dev/null)" != "$stamp" ] || exit 0
 

@@ -1,0 +1,145 @@
+"""pf-capture with a camera of libcamera in an arm64 guest: vimc, a pipeline of sensor, debayer and scaler in the kernel, which
+Debian's kernel leaves out and which is therefore built here. Frames come with rising times, and show the sensor's bars."""
+
+import json
+import pathlib
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import guest  # noqa: E402
+import kernel_modules  # noqa: E402
+import png  # noqa: E402
+from guest import CACHE, SOURCE, fail  # noqa: E402
+
+NAME = "aarch64-libcamera"
+SYSROOT = SOURCE / "build" / "sysroot" / NAME
+# With the libraries of udev, which libcamera asks for the devices.
+PACKAGES = ("libcamera-dev", "libcamera-ipa", "libkmod2", "libcap2", "libselinux1", "libblkid1", "libacl1")
+TRIPLE = "aarch64-linux-gnu"
+WIDTH, HEIGHT, FRAMES = 318, 240, 60  # libcamera makes the width of this pipeline a multiple of six
+SMALL = "--headless --no-film --quiet --max-features 20 --features-in-view 12 --max-observations 16 --max-state-dim 90"
+RUN = f"""set -e
+mkdir -p /run /etc/udev/rules.d
+/lib/systemd/systemd-udevd --daemon
+. /share/modules.sh
+udevadm trigger
+udevadm settle --timeout=60
+cp /share/pf-capture /tmp
+capture() {{ # NAME SECONDS ARGUMENTS...: interrupted after some seconds where it has not ended by itself
+  name=$1; seconds=$2; shift 2
+  mkdir -p /share/$name
+  timeout -s INT $seconds /tmp/pf-capture {SMALL} --calib /share/small.yaml --out /share/$name "$@" \\
+    >/share/$name/stdout 2>/share/$name/stderr && code=0 || code=$?
+  echo $code >/share/$name/code
+  echo "$name: $(cut -d' ' -f1 /proc/uptime) s"
+}}
+LIBCAMERA_LOG_LEVELS=*:INFO /tmp/pf-capture --list >/share/list.txt 2>/share/list.stderr
+capture first 90 --source libcamera:0 --frames {FRAMES} --record /share/first/recording
+capture named 60 --source "libcamera:Sensor B" --format BGR888 --frames 10 --record /share/named/recording
+capture ended 8 --source libcamera:0
+capture absent 8 --source libcamera:9
+capture format 8 --source libcamera:0 --format YUYV
+"""
+
+
+def calibration():
+    return (f"camera_model: pinhole\nwidth: {WIDTH}\nheight: {HEIGHT}\nfx: 250\nfy: 250\ncx: {WIDTH / 2}\ncy: {HEIGHT / 2}\n"
+            "distortion_model: none\ndistortion: []\nrate_hz: 30\n")
+
+
+def udev_program(environment):
+    """udevadm, which is also the daemon, by the name that it is called with."""
+    folder = CACHE / "udev"
+    program = folder / "bin" / "udevadm"
+    if not program.is_file():
+        kernel_modules.fetch(environment, folder, "udev")
+    if not program.is_file():
+        fail("Debian's package udev does not hold bin/udevadm")
+    return program
+
+
+def files_for_guest(programs):
+    udev = udev_program(guest.isolated_apt(CACHE / "apt"))
+    modules = SYSROOT / "usr" / "lib" / TRIPLE / "libcamera"
+    inside = {"lib/systemd/systemd-udevd": udev, "bin/udevadm": udev,
+              "usr/share/libcamera/ipa/vimc/vimc.conf": SYSROOT / "usr/share/libcamera/ipa/vimc/vimc.conf"}
+    for name in ("ipa_vimc.so", "ipa_vimc.so.sign", "vimc_ipa_proxy"):
+        inside[f"usr/lib/{TRIPLE}/libcamera/{name}"] = modules / name
+    for program in (programs / "pf-capture", udev, modules / "ipa_vimc.so", modules / "vimc_ipa_proxy"):
+        inside.update({f"lib/{name}": path for name, path in guest.libraries(program, SYSROOT).items()})
+    return inside
+
+
+def bars(data):
+    """Grey levels in the middle of the sensor's eight bars, from left to right."""
+    row = data[HEIGHT // 4 * WIDTH:(HEIGHT // 4 + 1) * WIDTH]
+    return [row[(2 * i + 1) * WIDTH // 16] for i in range(8)]
+
+
+def check(share):
+    problems = []
+
+    def require(condition, text):
+        if not condition:
+            problems.append(text)
+
+    def report(name):
+        path = share / name / "report.json"
+        if not path.is_file():
+            problems.append(f"{name}: no report.json; {(share / name / 'stderr').read_text()}")
+            return {"captured": 0, "camera": {}, "interval_ms": {}}
+        live = json.loads(path.read_text())["live"]
+        print(f"{name}: code {(share / name / 'code').read_text().strip()}, live {json.dumps(live)}")
+        return live
+
+    names = (share / "list.txt").read_text()
+    print(names, end="")
+    require("libcamera:0" in names and "Sensor B" in names and "RGB888" in names, f"--list does not name the camera: {names} "
+            f"{(share / 'list.stderr').read_text()}")
+    for name, format_name, count in (("first", "RGB888", FRAMES), ("named", "BGR888", 10)):
+        live = report(name)
+        camera, interval = live["camera"], live["interval_ms"]
+        require(live["captured"] >= count, f"{name}: only {live['captured']} frames")
+        require(camera.get("format") == format_name and camera.get("damaged") == 0, f"{name}: {camera}")
+        require(camera.get("timestamps") == "sensor" and interval.get("min", 0) > 0, f"{name}: times: {camera}, {interval}")
+        recording = share / name / "recording"
+        frames = png.recording(recording) if recording.is_dir() else []
+        require(len(frames) >= count, f"{name}: only {len(frames)} frames were recorded")
+        times = [stamp for stamp, _ in frames]
+        require(all(a < b for a, b in zip(times, times[1:])), f"{name}: recorded times do not rise")
+        # White, yellow, cyan, green, magenta, red, blue, black: darker from bar to bar, where red and blue keep their places.
+        levels = [bars(data) for _, data in frames]
+        if levels:
+            print(f"{name}: bars {levels[0]}")
+        require(all(a > b + 5 for one in levels for a, b in zip(one, one[1:])), f"{name}: bars {levels[:1]}")
+    require(report("ended")["captured"] > 0, "ended: no frame before the interruption")
+    for name, words in (("absent", "no such camera"), ("format", "YUYV")):
+        text = (share / name / "stderr").read_text().strip()
+        print(f"{name}: {text}")
+        require((share / name / "code").read_text().strip() == "1" and words in text and "\n" not in text, f"{name}: {text}")
+    return problems
+
+
+def main():
+    guest.require_tools()
+    CACHE.mkdir(parents=True, exist_ok=True)
+    root = guest.fetch_packages()
+    kernel_modules.with_module(root, kernel_modules.build(root, "drivers/media/test-drivers/vimc", "vimc", CONFIG_VIDEO_VIMC="m"))
+    programs = guest.cross_build("pf-capture", name=NAME, packages=PACKAGES)
+    if "PLANEFOLD_HAVE_LIBCAMERA" not in (CACHE / NAME / "build.ninja").read_text():
+        fail("the cross build did not find libcamera in its sysroot")
+    with tempfile.TemporaryDirectory(prefix="planefold_") as name:
+        share = pathlib.Path(name) / "share"
+        share.mkdir()
+        (share / "small.yaml").write_text(calibration())
+        program = share / "pf-capture"
+        program.write_bytes((programs / "pf-capture").read_bytes())
+        program.chmod(0o755)
+        print(guest.boot(root, share, RUN, load=("vimc",), files=files_for_guest(programs), seconds=300))
+        problems = check(share)
+        if problems:
+            fail("\n  ".join([f"{len(problems)} found:", *problems]))
+
+
+main()
