@@ -51,6 +51,7 @@ int pf_iio_choose(pf_iio_t* imu, char message[PF_IIO_MESSAGE]) {
                                                        : "accelerometer");
   }
   memset(imu->part, 0, sizeof(imu->part));
+  imu->part[0].buffer.fd = imu->part[1].buffer.fd = -1;
   imu->parts = gyro == accel ? 1 : 2;
   imu->part[0].device = gyro;
   imu->part[1].device = accel;

@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 int pf_iio_refuse(char message[PF_IIO_MESSAGE], const char* form, ...) {
   if (message != NULL) {
@@ -18,18 +17,9 @@ int pf_iio_refuse(char message[PF_IIO_MESSAGE], const char* form, ...) {
   return -1;
 }
 
-static int64_t now_ns(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
-}
-
 static void let_go(pf_iio_t* imu) {
   for (int p = 0; p < imu->parts; ++p) {
-    if (imu->part[p].buffer != NULL) {
-      iio_buffer_destroy(imu->part[p].buffer);
-      imu->part[p].buffer = NULL;
-    }
+    pf_iio_buffer_close(&imu->part[p].buffer);
   }
   if (imu->context != NULL) {
     iio_context_destroy(imu->context);
@@ -131,48 +121,42 @@ static void choose_trigger(pf_iio_t* imu, const struct iio_device* device) {
 static int start_part(pf_iio_t* imu, pf_iio_part_t* part, char message[PF_IIO_MESSAGE]) {
   const pf_iio_device_t* described = part == &imu->part[0] ? &imu->info.gyro : &imu->info.accel;
   const uint32_t stamp = choose_clock(part);
-  if (part == &imu->part[0]) {
-    imu->info.stamp = stamp;
-  } else if (stamp == PF_IIO_STAMP_ARRIVAL || imu->info.stamp == PF_IIO_STAMP_ARRIVAL) {
-    imu->info.stamp = PF_IIO_STAMP_ARRIVAL;
-  } else if (stamp == PF_IIO_STAMP_CONVERTED) {
-    imu->info.stamp = stamp;
-  }
-  for (unsigned i = 0; i < iio_device_get_channels_count(part->device); ++i) {
-    iio_channel_disable(iio_device_get_channel(part->device, i));
+  const struct iio_channel* channels[PF_IIO_CHANNELS];
+  int count = 0;
+  int status;
+  if (imu->info.stamp == PF_IIO_STAMP_MONOTONIC || stamp == PF_IIO_STAMP_ARRIVAL) {
+    imu->info.stamp = stamp; /* the worse of both */
   }
   for (int kind = 0; kind < PF_IIO_KINDS; ++kind) {
     for (int i = 0; i < 3 && part->sensor[kind].axis[i] != NULL; ++i) {
-      iio_channel_enable(part->sensor[kind].axis[i]);
+      channels[count++] = part->sensor[kind].axis[i];
     }
   }
   if (part->time != NULL) {
-    iio_channel_enable(part->time);
+    channels[count++] = part->time;
   }
   choose_trigger(imu, part->device);
-  part->buffer = iio_device_create_buffer(part->device, PF_IIO_BATCH, false);
-  if (part->buffer == NULL) {
-    const int error = errno;
-    if (error == EACCES || error == EPERM) {
-      return pf_iio_refuse(message, "iio:%s (%s): this user may not read it; %s", described->name, described->id,
-                           pf_iio_permission_hint());
-    }
-    if (error == EBUSY) {
-      return pf_iio_refuse(message, "iio:%s (%s): in use by another program; stop it (iio-sensor-proxy may be the one)",
-                           described->name, described->id);
-    }
+  status = pf_iio_buffer_open(&part->buffer, part->device, channels, count);
+  if (status == -EACCES || status == -EPERM) {
+    return pf_iio_refuse(message, "iio:%s (%s): this user may not read it; %s", described->name, described->id,
+                         pf_iio_permission_hint());
+  }
+  if (status == -EBUSY) {
+    return pf_iio_refuse(message, "iio:%s (%s): in use by another program; stop it (iio-sensor-proxy may be the one)",
+                         described->name, described->id);
+  }
+  if (status != 0) {
     return pf_iio_refuse(message, "iio:%s (%s): does not stream (%s); it may need a trigger", described->name,
-                         described->id, strerror(error));
+                         described->id, strerror(-status));
   }
-  if (iio_buffer_set_blocking_mode(part->buffer, false) != 0) {
-    return pf_iio_refuse(message, "iio:%s: cannot be read without blocking", described->name);
-  }
-  part->last_read_ns = now_ns();
+  part->last_read_ns = pf_iio_clock_ns(0);
   return 0;
 }
 
 int pf_iio_start(pf_iio_t* imu, char message[PF_IIO_MESSAGE]) {
-  for (int p = 0; p < imu->parts; ++p) {
+  imu->info.stamp = PF_IIO_STAMP_MONOTONIC;
+  /* Accelerations first, so that there is one before the first rate. */
+  for (int p = imu->parts - 1; p >= 0; --p) {
     if (start_part(imu, &imu->part[p], message) != 0) {
       return -1;
     }
@@ -186,12 +170,13 @@ int pf_iio_start(pf_iio_t* imu, char message[PF_IIO_MESSAGE]) {
 
 int pf_iio_read(pf_iio_t* imu, int timeout_ms, pf_imu_sample_t* samples, int capacity, int* count,
                 char message[PF_IIO_MESSAGE]) {
-  const int64_t until_ns = now_ns() + (int64_t)timeout_ms * 1000000;
+  const int64_t until_ns = pf_iio_clock_ns(0) + (int64_t)timeout_ms * 1000000;
   *count = 0;
   if (imu->gone || imu->parts == 0) {
     return PF_IIO_GONE;
   }
   for (;;) {
+    struct pollfd wait[2];
     for (int p = 0; p < imu->parts; ++p) {
       const int fetched = pf_iio_fetch(imu, &imu->part[p]);
       if (fetched < 0) {
@@ -209,11 +194,16 @@ int pf_iio_read(pf_iio_t* imu, int timeout_ms, pf_imu_sample_t* samples, int cap
     if (*count > 0) {
       return PF_IIO_SAMPLES;
     }
-    if (now_ns() >= until_ns) {
+    if (pf_iio_clock_ns(0) >= until_ns) {
       return PF_IIO_NOTHING;
     }
-    /* Not a poll of the buffer: the kernel wakes its readers when a whole batch is there, and not at all when it leaves. */
-    (void)poll(NULL, 0, 4);
+    /* In short naps: the kernel does not wake a reader when the device leaves. */
+    for (int p = 0; p < imu->parts; ++p) {
+      wait[p].fd = imu->part[p].buffer.fd;
+      wait[p].events = POLLIN;
+      wait[p].revents = 0;
+    }
+    (void)poll(wait, (nfds_t)imu->parts, 20);
   }
 }
 

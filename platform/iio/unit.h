@@ -5,10 +5,11 @@
 #include <iio.h>
 #include <planefold_platform/iio.h>
 
+#include "buffer.h"
+
 enum { PF_IIO_GYRO = 0, PF_IIO_ACCEL = 1, PF_IIO_KINDS = 2 };
 
 #define PF_IIO_WAITING 512 /* readings of one sensor that wait for the other's */
-#define PF_IIO_BATCH 64    /* samples of a kernel buffer that are fetched at once */
 
 /* Three channels of a device, and how their numbers become a vector in the axes of the unit. */
 typedef struct pf_iio_sensor {
@@ -21,7 +22,7 @@ typedef struct pf_iio_sensor {
 typedef struct pf_iio_part {
   struct iio_device* device;
   struct iio_channel* time; /* null: there is none */
-  struct iio_buffer* buffer;
+  pf_iio_buffer_t buffer;
   int real_time; /* 1: its times are of the real-time clock */
   int64_t last_read_ns;
   pf_iio_sensor_t sensor[PF_IIO_KINDS];
@@ -63,6 +64,9 @@ int pf_iio_choose(pf_iio_t* imu, char message[PF_IIO_MESSAGE]);
 
 /* Scales, mounting matrix, range and rate of a sensor that a part has. */
 void pf_iio_read_sensor(pf_iio_t* imu, pf_iio_part_t* part, int kind);
+
+/* Nanoseconds of the monotonic clock, or of the real-time one. */
+int64_t pf_iio_clock_ns(int real_time);
 
 /* Readings of a part's buffer into the queues. Number of scans, 0 for nothing, or a negative errno. */
 int pf_iio_fetch(pf_iio_t* imu, pf_iio_part_t* part);
