@@ -89,7 +89,7 @@ typedef struct pf_libcamera_info {
   int64_t departures; /* how often the camera was unplugged */
 } pf_libcamera_info_t;
 
-/* libcamera's version, as "0.0.3". */
+/* libcamera's version, as it writes it: "v0.0.3". */
 const char* pf_libcamera_version(void);
 
 /* name: a number in the order of the list, or part of an id or model; null or empty: the first camera. */
