@@ -24,6 +24,7 @@ namespace {
 
 constexpr int kReadMs = 50;                ///< how long a stop may take to be noticed
 constexpr int kWaitMs = 40;                ///< for samples that were measured before a frame and are still on their way
+constexpr int kVain = 3;                   ///< waits for nothing, after which none is tried
 constexpr int64_t kSilentNs = 2000000000;  ///< without a sample: worth a note
 constexpr size_t kMostWaiting = 100000;    ///< samples, while nothing takes them
 
@@ -32,6 +33,11 @@ class ImuDevice : public Imu {
  public:
   ImuDevice(pf_iio_t* imu, int64_t offset_ns) : imu_(imu, pf_iio_close), offset_ns_(offset_ns) {
     pf_iio_get_info(imu, &info_);
+    const std::string gyro = info_.gyro.name;
+    const std::string accel = info_.accel.name;
+    name_ = "iio:" + (gyro == accel ? gyro : accel + "+" + gyro);
+    gyro_range_ = info_.gyro_range;
+    accel_range_ = info_.accel_range;
   }
 
   ~ImuDevice() override {
@@ -54,11 +60,13 @@ class ImuDevice : public Imu {
 
   void take(int64_t until_ns, std::vector<pf_imu_sample_t>& samples) override {
     std::unique_lock<std::mutex> lock(mutex_);
-    // Where the clocks are not the same, a sample behind the frame never comes: a unit that fails to bring one is not waited for again.
-    if (!ended_ && waited_in_vain_ < 3) {
+    // Where the clocks are not the same, a sample behind the frame never comes: no use in waiting for it at every frame.
+    waited_in_vain_ = last_t_ns_ > last_until_ns_ ? 0 : waited_in_vain_;
+    last_until_ns_ = until_ns;
+    if (!ended_ && waited_in_vain_ < kVain) {
       const bool came =
           changed_.wait_for(lock, std::chrono::milliseconds(kWaitMs), [&] { return ended_ || last_t_ns_ > until_ns; });
-      waited_in_vain_ = came ? 0 : waited_in_vain_ + 1;
+      waited_in_vain_ += came ? 0 : 1;
     }
     while (!waiting_.empty() && waiting_.front().t_ns <= until_ns) {
       samples.push_back(waiting_.front());
@@ -76,13 +84,9 @@ class ImuDevice : public Imu {
     return true;
   }
 
-  std::string name() const override {
-    const std::string gyro = info_.gyro.name;
-    return "iio:" + (gyro == info_.accel.name ? gyro : std::string(info_.accel.name) + "+" + gyro);
-  }
-
-  double gyro_range() const override { return info_.gyro_range; }
-  double accel_range() const override { return info_.accel_range; }
+  std::string name() const override { return name_; }
+  double gyro_range() const override { return gyro_range_; }
+  double accel_range() const override { return accel_range_; }
 
   std::string report() const override {
     constexpr const char* kStamps[] = {"arrival", "monotonic", "converted"};
@@ -145,7 +149,6 @@ class ImuDevice : public Imu {
       waiting_.pop_front();
     }
     last_t_ns_ = waiting_.back().t_ns;
-    waited_in_vain_ = 0;
     pf_iio_get_info(imu_.get(), &info_);
     changed_.notify_all();
   }
@@ -175,6 +178,8 @@ class ImuDevice : public Imu {
 
   std::unique_ptr<pf_iio_t, void (*)(pf_iio_t*)> imu_;
   const int64_t offset_ns_;
+  std::string name_;
+  double gyro_range_ = 0.0, accel_range_ = 0.0;
   std::thread thread_;
   std::atomic<bool> stop_{false};
 
@@ -183,7 +188,7 @@ class ImuDevice : public Imu {
   std::deque<pf_imu_sample_t> waiting_;
   std::deque<std::string> notices_;
   pf_iio_info_t info_{};
-  int64_t last_t_ns_ = INT64_MIN, overflown_ = 0;
+  int64_t last_t_ns_ = INT64_MIN, last_until_ns_ = INT64_MIN, overflown_ = 0;
   int waited_in_vain_ = 0;
   bool ended_ = false;
 };
