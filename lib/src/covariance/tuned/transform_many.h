@@ -12,6 +12,11 @@ PF_INLINE void copy_exactly(Scalar* to, const Scalar* from, int count) {
   for (int j = whole; j < count; ++j) to[j] = from[j];
 }
 
+/// What a row is made of: `size` columns as they were, from column `from` to column `to`, then `rows` new ones.
+struct Run {
+  int from, to, size, rows;
+};
+
 /// The new rows of all blocks, and where they come from.
 struct NewRows {
   const Segment* block;
@@ -21,24 +26,46 @@ struct NewRows {
   std::ptrdiff_t ld;
   const Scalar* S;
   std::ptrdiff_t lds;
+  Run run[Kernels::kMostMoved];  ///< up to each block, and its own
 
-  /// Row x, which is in no block and has `blocks` of them before it: runs between blocks as they were, new columns from X. Runs may be
-  /// copied in whole eights (`loose`) where what is written too much is overwritten later; see remove. A row that has not moved only
-  /// takes the new columns.
+  PF_INLINE void list_runs() {
+    for (int g = 0, from = 0, to = 0; g < count; ++g) {
+      run[g] = {from, to, block[g].first - from, J[g].rows};
+      from = block[g].first + block[g].size;
+      to += run[g].size + run[g].rows;
+    }
+  }
+
+  /// Row x, which is in no block and has `blocks` (one or more) of them before it: runs between blocks as they were, new columns from X.
+  /// Runs may be copied in whole eights (`loose`) where what is written too much is overwritten later; see remove. A row that has not
+  /// moved only takes the new columns.
   PF_INLINE void old_row(const Scalar* from, int x, int blocks, bool loose, Scalar* row) const {
-    int to = 0, run = 0;
     const Scalar* value = X + x;
-    for (int g = 0; g <= blocks; ++g) {
-      const int size = (g < blocks ? block[g].first : x + 1) - run;
+    const Run* const end = run + blocks;
+    for (const Run* r = run; r != end; ++r) {
+      const int size = r->size, rows = r->rows;
+      const Scalar* source = from + r->from;
+      Scalar* to = row + r->to;
       if (loose) {
-        copy_groups(row + to, from + run, size);
+        copy_groups(to, source, size);
       } else if (row != from) {
-        copy_exactly(row + to, from + run, size);
+        copy_exactly(to, source, size);
       }
       to += size;
-      if (g == blocks) break;
-      for (int b = 0; b < J[g].rows; ++b, value += ld) row[to++] = *value;
-      run = block[g].first + block[g].size;
+      if (rows == 2) {  // as most are
+        to[0] = value[0];
+        to[1] = value[ld];
+        value += 2 * ld;
+        continue;
+      }
+      for (int b = 0; b < rows; ++b, value += ld) to[b] = *value;
+    }
+    const int begin = block[blocks - 1].first + block[blocks - 1].size;
+    Scalar* to = row + end[-1].to + end[-1].size + end[-1].rows;
+    if (loose) {
+      copy_groups(to, from + begin, x + 1 - begin);
+    } else if (row != from) {
+      copy_exactly(to, from + begin, x + 1 - begin);
     }
   }
 
@@ -68,7 +95,8 @@ void transform_many(Triangle& P, const Segment* block, const SparseRows* J, int 
   for (int i = 0; i < count; ++i) new_rows += J[i].rows;
   project(X, new_rows, ld, J, count, S, lds);
 
-  const NewRows rows = {block, J, count, X, ld, S, lds};
+  NewRows rows = {block, J, count, X, ld, S, lds, {}};
+  rows.list_runs();
   const int last = round_up(P.n, kGroup) - 1;
   int kept = block[0].first;
   int r = 0;
