@@ -36,8 +36,11 @@ void compare(const pf_pose_t& recorded, const pf_pose_t& here, Distance* d) {
 void compare(const std::vector<pf_feature_t>& recorded, const std::vector<pf_feature_t>& here, Distance* d) {
   for (const pf_feature_t& a : recorded) {
     for (const pf_feature_t& b : here) {
-      if (a.track != b.track || a.kind != b.kind || a.kind == PF_FEATURE_INVERSE_DEPTH) continue;
+      if (a.track != b.track) continue;
+      d->other_kind += a.kind != b.kind;
+      if (a.kind != b.kind || a.kind == PF_FEATURE_INVERSE_DEPTH) continue;
       ++d->map_points;
+      d->folded += a.kind == PF_FEATURE_FOLDED || a.kind == PF_FEATURE_FIXED;
       for (int i = 0; i < 3; ++i) {
         d->map_position = std::max(d->map_position, std::fabs(a.p_W[i] - b.p_W[i]) / sigma_of(a.covariance, 3, i));
         compare_sigma(sigma_of(a.covariance, 3, i), sigma_of(b.covariance, 3, i), &d->map_sigma);
@@ -85,6 +88,7 @@ bool follow(const std::string& file, Distance* d) {
     d->refused += frame.offered - static_cast<long>(frame.observations.size());
     d->refused_again += std::max(0, frame.inliers - report.inliers);
     d->other_map += report.features != frame.features;
+    d->other_state += report.state_dim != frame.state_dim;
     compare(frame.pose, pose, d);
     if (i % 1000 == 999) {
       std::fprintf(stderr, "\r%d of %d frames: %.3f sigma, sigma off by %.2f %%, %ld refused", i + 1, frames,

@@ -44,10 +44,13 @@ int main(int argc, char** argv) {
                                          {"refused", d.refused},
                                          {"refused_again", d.refused_again},
                                          {"frames_with_another_map", d.other_map},
+                                         {"frames_with_another_state", d.other_state},
                                          {"position_in_sigma", d.position},
                                          {"rotation_in_sigma", d.rotation},
                                          {"sigma_relative", d.sigma},
                                          {"map_points", d.map_points},
+                                         {"map_points_folded", d.folded},
+                                         {"map_points_of_another_kind", d.other_kind},
                                          {"map_position_in_sigma", d.map_position},
                                          {"map_sigma_relative", d.map_sigma},
                                          {"us_per_frame", d.us_per_frame}};

@@ -17,12 +17,15 @@ struct Distance {
   long refused = 0;        ///< of them by the recorded run
   long refused_again = 0;  ///< measurements of the recorded run that this one did not use
   int other_map = 0;       ///< frames whose map has another number of features
+  int other_state = 0;     ///< frames whose state has another number of rows
   double position = 0;     ///< largest difference of a coordinate, in the recorded run's sigma
   double rotation = 0;
   double sigma = 0;         ///< largest relative difference of a sigma of the pose
   double map_position = 0;  ///< of points at the end, likewise
   double map_sigma = 0;
   int map_points = 0;
+  int other_kind = 0;  ///< points at the end that are folded in one run and not in the other
+  int folded = 0;      ///< points at the end that are folded in both
   double us_per_frame = 0;
 };
 
