@@ -63,6 +63,16 @@ def build(name, *targets, kind="library", **options):
     return folder
 
 
+def package(name):
+    """The tarball that tools/package makes, by the build folder of this build; made once for the tests that want it."""
+    folder = script.BUILD / "cross" / f"{name}-package"
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(script.BUILD / "cross" / f"{name}-package.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # tests run at the same time
+        said = script.run(script.SOURCE / "tools" / "package", name, "--build", folder)
+    return script.SOURCE / said.splitlines()[-1]
+
+
 def root_of(name):
     """Where the emulator finds the target's shared libraries."""
     folder = script.SOURCE / "build" / "sysroot" / name

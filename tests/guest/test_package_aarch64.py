@@ -50,8 +50,7 @@ def furthest_apart(one, other, fewest):
     return max(math.dist(one[t], other[t]) for t in one)
 
 
-said = script.run(script.SOURCE / "tools" / "package", NAME, "--build", script.BUILD / "cross" / f"{NAME}-package")
-tarball = script.SOURCE / said.splitlines()[-1]
+tarball = cross.package(NAME)
 with tempfile.TemporaryDirectory() as folder:
     folder = pathlib.Path(folder)
     with tarfile.open(tarball) as archive:
