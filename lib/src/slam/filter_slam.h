@@ -113,7 +113,8 @@ class FilterSlam {
   void dissolve_weak();
   void dissolve(int plane_entry);
   void loosen(int plane_slot, int children);
-  bool is_candidate(int entry, Mat3* covariance) const;
+  bool is_settled(int entry) const;
+  bool is_certain(int entry, Mat3* covariance) const;
   bool same_plane(int slot, int other) const;
 
   // frame_door.cpp

@@ -51,13 +51,17 @@ void FilterSlam::tend_planes() {
   discover_plane();
 }
 
-/// A 3-D point that may be folded, or vote for a plane, which a target's points, of known places, may not; its covariance relative to the camera and the world's size.
-bool FilterSlam::is_candidate(int entry, Mat3* covariance) const {
+/// A 3-D point that has settled, and is not a target's, whose place is known anyway.
+bool FilterSlam::is_settled(int entry) const {
   if (!features_.used(entry) || features_[entry].is_target) return false;
   const Feature& f = features_[entry];
-  const Block& block = filter_.state().block[f.slot];
-  if (block.kind != BlockKind::kPoint || f.failures > 0 || f.observations < kConverged) return false;
-  *covariance = filter_.relative_covariance(f.slot, scale_);
+  return filter_.state().block[f.slot].kind == BlockKind::kPoint && f.failures == 0 && f.observations >= kConverged;
+}
+
+/// Whether a settled point is known well enough to be folded, or to vote for a plane; its covariance relative to the camera and the
+/// world's size.
+bool FilterSlam::is_certain(int entry, Mat3* covariance) const {
+  *covariance = filter_.relative_covariance(features_[entry].slot, scale_);
   const Scalar most = settings_.fold_sigma * settings_.fold_sigma;
   return (*covariance)(0, 0) + (*covariance)(1, 1) + (*covariance)(2, 2) < most ||
          largest_eigenvalue(*covariance) < most;
@@ -118,13 +122,13 @@ void FilterSlam::fold_into(int plane_entry) {
   int slots[Filter::kMostFolded];
   int count = 0;
   for (int i = 0; i < features_.capacity() && count < Filter::kMostFolded && count < settings_.max_observations; ++i) {
-    Mat3 covariance;
-    if (!is_candidate(i, &covariance)) continue;
+    if (!is_settled(i)) continue;
     const int slot = features_[i].slot;
     const Vec3 p_W = filter_.point(slot);
     if (!is_in_reach(plane_entry, p_W)) continue;
     if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(3) * settings_.plane_distance) continue;
-    if (!lies_on(plane, slot)) continue;
+    Mat3 covariance;
+    if (!lies_on(plane, slot) || !is_certain(i, &covariance)) continue;
     slots[count++] = slot;
   }
   unsigned char folded[Filter::kMostFolded];
@@ -167,7 +171,7 @@ void FilterSlam::discover_plane() {
   int count = 0;
   const Scalar most = Scalar(2) * settings_.plane_distance;
   for (int i = 0; i < features_.capacity(); ++i) {
-    if (!is_candidate(i, &candidate_[count].covariance)) continue;
+    if (!is_settled(i)) continue;
     const Vec3 p_W = filter_.point(features_[i].slot);
     bool taken = false;
     for (int k = 0; k < planes_.capacity() && !taken; ++k) {
@@ -176,7 +180,7 @@ void FilterSlam::discover_plane() {
       const PlaneFrame& frame = filter_.state().frame_of(plane);
       taken = std::abs(plane_distance(frame, plane.xyz(), p_W)) < most && is_in_reach(k, p_W);
     }
-    if (taken) continue;
+    if (taken || !is_certain(i, &candidate_[count].covariance)) continue;
     candidate_[count].p_W = p_W;
     candidate_entry_[count++] = i;
   }
