@@ -1,6 +1,6 @@
 """tools/package aarch64, where it is meant for: in an arm64 guest with a camera of the kernel (vivid). pf-capture of the tarball
-sets the camera up and tracks it; a stranger's C program of 25 lines, the one in README.md, built against the tarball alone,
-then reads the camera's frames, and says the same about them as it does here."""
+sets the camera up and tracks it; a stranger's C program of 25 lines, the one in README.md in the camera's size, built against the
+tarball alone, then reads the camera's frames, and says the same about them as it does here."""
 
 import json
 import os
@@ -17,7 +17,7 @@ import guest  # noqa: E402
 import script  # noqa: E402
 
 NAME = "aarch64"
-WIDTH, HEIGHT, FRAMES = 320, 240, 30
+WIDTH, HEIGHT, FRAMES = 320, 180, 30  # a size that the camera has
 RUN = f"""set -e
 vivid="n_devs=1 node_types=0x1 num_inputs=1 input_types=0x0"
 . /share/modules.sh
@@ -41,7 +41,10 @@ def compile_program(compiler, source, target, prefix):
 
 
 def check_capture(share, problems):
-    live = json.loads((share / "capture" / "report.json").read_text())["live"]
+    report = share / "capture" / "report.json"
+    if not report.is_file():
+        script.fail("pf-capture of the tarball wrote no report.json")
+    live = json.loads(report.read_text())["live"]
     print(f"pf-capture of the tarball: {json.dumps(live)}")
     camera = live["camera"]
     if live["captured"] < 60 or camera["format"] != "GREY" or camera["damaged"] != 0 or live["interval_ms"]["min"] <= 0:
@@ -78,7 +81,7 @@ def main():
             archive.extractall(folder)
         prefix = next(folder.glob("planefold-*"))
         program = re.findall(r"^```c\n(.*?)^```$", (script.SOURCE / "README.md").read_text(), re.S | re.M)[0]
-        (folder / "track.c").write_text(program)
+        (folder / "track.c").write_text(program.replace("240", str(HEIGHT)).replace("119.5", str((HEIGHT - 1) / 2)))
         track = compile_program(cross.compiler(NAME), folder / "track.c", share / "track", prefix)
         script.install_tree(folder / "here")
         here = compile_program(script.c_compiler(), folder / "track.c", folder / "track_here", folder / "here")
@@ -86,7 +89,7 @@ def main():
         capture.write_bytes((prefix / "bin" / "pf-capture").read_bytes())
         capture.chmod(0o755)
         (share / "camera.yaml").write_text(
-            f"camera_model: pinhole\nwidth: {WIDTH}\nheight: {HEIGHT}\nfx: 280\nfy: 280\ncx: 159.5\ncy: 119.5\n"
+            f"camera_model: pinhole\nwidth: {WIDTH}\nheight: {HEIGHT}\nfx: 280\nfy: 280\ncx: 159.5\ncy: {(HEIGHT - 1) / 2}\n"
             "distortion_model: none\ndistortion: []\nrate_hz: 30\n")
         files = {}
         for binary in (capture, track):
