@@ -16,17 +16,17 @@ struct Thin {
   bool far;  ///< the triangle is too large for the caches near the core: ask for it early
 };
 
-/// Tile (8 rows of group q) x (columns from j):  P -= W^T W - U^T G - G^T U, the sum formed in registers from zero, so that each
-/// element of P is rounded once. B is W, or a stand-in for its columns from j (leading dimension b_stride).
+/// Tile (8 rows of a group from row i) x (columns from j):  P -= A^T B - U^T G - G^T U, the sum formed in registers from zero, so that
+/// each element of P is rounded once. A and B are W's columns from i and from j, or stand-ins for them.
 template <class V, int kVectors>
-PF_INLINE void downdate_tile(const Thin& t, const Scalar* B, std::ptrdiff_t b_stride, Scalar* to, std::ptrdiff_t stride,
-                             int i, int j) {
+PF_INLINE void downdate_tile(const Thin& t, const Scalar* A, std::ptrdiff_t a_stride, const Scalar* B,
+                             std::ptrdiff_t b_stride, Scalar* to, std::ptrdiff_t stride, int i, int j) {
 #pragma GCC unroll 1
   for (int half = 0; half < kGroup; half += kTileRows) {
     Tile<V, kTileRows, kVectors> tile;
     if (t.far) tile.prefetch(to + half * stride, stride);
     tile.zero();
-    tile.accumulate(t.W + i + half, 1, t.ld, B, b_stride, t.m);
+    tile.accumulate(A + half, 1, a_stride, B, b_stride, t.m);
     if (t.k > 0) {
       tile.template accumulate<true>(t.U + i + half, 1, t.ld, t.G + j, t.ld, t.k);
       tile.template accumulate<true>(t.G + i + half, 1, t.ld, t.U + j, t.ld, t.k);
@@ -65,7 +65,8 @@ inline void downdate_part(const Triangle& P, const Thin& t, int first_group, int
         const int columns = smaller(kColumns, smaller(last, kGroup * (q + 1)) - j);
         Scalar* rows = P.data + group_offset(q);
         for_strips(j, columns, [&](auto v, auto count, int at) PF_LAMBDA {
-          downdate_tile<decltype(v), decltype(count)::value>(t, t.W + at, t.ld, rows + at, stride, q * kGroup, at);
+          downdate_tile<decltype(v), decltype(count)::value>(t, t.W + q * kGroup, t.ld, t.W + at, t.ld, rows + at,
+                                                             stride, q * kGroup, at);
         });
         if (j + columns == stride) clear_upper(P, q);
       }

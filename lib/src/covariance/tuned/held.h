@@ -56,19 +56,35 @@ PF_INLINE void downdate_square(const Triangle& P, const Thin& t, const MixedSqua
   });
 }
 
-/// Squares of eight of which only some elements lie between held rows: those of the group c0 where the range begins, as columns, and
-/// of the group q1 where it ends, as rows. Either may be shared with rows that are not held; whole groups are c0 + 1 .. q1 - 1.
+/// The last columns of W up to `end`, groups of eight that are as wide as a tile, with zeros in the held ones.
+struct FreeStrip {
+  static constexpr int kColumns = round_up(kTileVectors * Wide::kWidth, kGroup);
+  alignas(64) Scalar values[kHeldChunk * kColumns];
+  int first, width;
+
+  PF_INLINE FreeStrip(int end) : first(end > kColumns ? end - kColumns : 0), width(end - first) {}
+
+  PF_INLINE void copy(const Scalar* W, std::ptrdiff_t ld, int rows, int held_first) {
+    for (int r = 0; r < rows; ++r) {
+      for (int c = 0; c < width; ++c) values[r * kColumns + c] = first + c < held_first ? W[r * ld + first + c] : 0;
+    }
+  }
+};
+
+/// Where held rows and others share groups of eight: the group c0 that the range begins in, as columns, and the group q1 that it ends
+/// in, as rows. Whole groups are c0 + 1 .. q1 - 1.
 ///
-///   group     c0         whole    q1
-///   c0      | mixed |
-///   whole   | W B_f |  nothing  |
-///   q1      | mixed | free W    | mixed |
+///   group     before   c0         whole    q1
+///   c0                | mixed |
+///   whole   | W free_c0       |  nothing  |
+///   q1                | mixed | free_q1 W | mixed |
 inline void downdate_border(const Triangle& P, const Thin& all, int held_first, int held_end) {
   const int c0 = held_first / kGroup;
   const int q1 = (held_end - 1) / kGroup;
   const bool begins_whole = held_first % kGroup == 0;
   const bool ends_whole = held_end % kGroup == 0;
   SplitGroup first, last;
+  FreeStrip strip((c0 + 1) * kGroup);
   for (int r0 = 0; r0 == 0 || r0 < all.m; r0 += kHeldChunk) {
     Thin t = all;
     t.W = all.W + r0 * all.ld;
@@ -76,25 +92,36 @@ inline void downdate_border(const Triangle& P, const Thin& all, int held_first, 
     t.k = r0 == 0 ? all.k : 0;
     first.copy(t.W, t.ld, t.m, c0 * kGroup, held_first, held_end);
     last.copy(t.W, t.ld, t.m, q1 * kGroup, held_first, held_end);
-    for (int q = c0; q <= q1; ++q) {
-      const bool whole_row = (q > c0 || begins_whole) && (q < q1 || ends_whole);
+    const auto square = [&](int q, int c) {
       const SplitGroup& rows = q == c0 ? first : last;
-      for (int c = c0; c <= q; ++c) {
-        const bool whole_column = (c > c0 || begins_whole) && (c < q1 || ends_whole);
-        if (whole_row && whole_column) continue;
-        MixedSquare s = {
-            rows.free, kGroup, t.W + c * kGroup, t.ld, rows.held, kGroup, c == c0 ? first.free : last.free};
-        if (whole_row) {
-          s.free = nullptr;
-          s.held = t.W + q * kGroup;
-          s.held_stride = t.ld;
-        } else if (whole_column) {
-          s.held = nullptr;
-        }
-        downdate_square(P, t, s, q, c * kGroup);
-        if (c == q) clear_upper(P, q);
+      downdate_square(P, t,
+                      {rows.free, kGroup, t.W + c * kGroup, t.ld, rows.held, kGroup, c == c0 ? first.free : last.free},
+                      q, c * kGroup);
+      if (c == q) clear_upper(P, q);
+    };
+    if (!begins_whole) {
+      strip.copy(t.W, t.ld, t.m, held_first);
+      for (int q = c0 + 1; q < q1 + int(ends_whole); ++q) {
+        const std::ptrdiff_t stride = kGroup * (q + 1);
+        Scalar* rows = P.data + group_offset(q);
+        for_strips(strip.first, strip.width, [&](auto v, auto count, int at) PF_LAMBDA {
+          downdate_tile<decltype(v), decltype(count)::value>(t, t.W + q * kGroup, t.ld, strip.values + at - strip.first,
+                                                             FreeStrip::kColumns, rows + at, stride, q * kGroup, at);
+        });
       }
     }
+    if (!begins_whole || (c0 == q1 && !ends_whole)) square(c0, c0);
+    if (ends_whole || c0 == q1) continue;
+    if (!begins_whole) square(q1, c0);
+    const int from = (c0 + int(!begins_whole)) * kGroup;
+    Scalar* rows = P.data + group_offset(q1);
+    for (int j = from; j < q1 * kGroup; j += FreeStrip::kColumns) {
+      for_strips(j, smaller(FreeStrip::kColumns, q1 * kGroup - j), [&](auto v, auto count, int at) PF_LAMBDA {
+        downdate_tile<decltype(v), decltype(count)::value>(t, last.free, kGroup, t.W + at, t.ld, rows + at,
+                                                           kGroup * (q1 + 1), q1 * kGroup, at);
+      });
+    }
+    square(q1, q1);
   }
 }
 
@@ -102,7 +129,7 @@ inline void downdate_border(const Triangle& P, const Thin& all, int held_first, 
 ///
 ///           | before | held     | behind
 ///   before  |  all   |
-///   held    |  all   | U, G     |            with squares of both kinds along its border
+///   held    |  all   | U, G     |            with tiles of both kinds along its border
 ///   behind  |  all   | all      | all
 void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int held_first,
               int held_end) {
@@ -118,11 +145,18 @@ void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar
     const int end = held_end >= P.n ? columns : held_end;
     const int q0 = held_first / kGroup;
     const int q1 = round_up(end, kGroup) / kGroup;
+    const int whole = round_up(held_first, kGroup) / kGroup;
+    const int whole_end = end / kGroup;
     downdate_part(P, with, 0, q0, 0, columns);
-    downdate_part(P, with, q0, q1, 0, q0 * kGroup);
+    if (whole > q0 && whole < whole_end) {  // the border takes the last columns of whole groups
+      downdate_part(P, with, q0, whole, 0, q0 * kGroup);
+      downdate_part(P, with, whole, whole_end, 0, FreeStrip((q0 + 1) * kGroup).first);
+      downdate_part(P, with, whole_end, q1, 0, q0 * kGroup);
+    } else {
+      downdate_part(P, with, q0, q1, 0, q0 * kGroup);
+    }
     if (held_first % kGroup != 0 || end % kGroup != 0) downdate_border(P, with, held_first, end);
-    downdate_part(P, without, round_up(held_first, kGroup) / kGroup, end / kGroup, round_up(held_first, kGroup),
-                  end / kGroup * kGroup);
+    downdate_part(P, without, whole, whole_end, whole * kGroup, whole_end * kGroup);
     downdate_part(P, with, q1, groups, 0, columns);
   }
 }
