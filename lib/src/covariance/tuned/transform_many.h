@@ -73,14 +73,14 @@ struct NewRows {
   PF_INLINE void new_row(int i, int a, int r, Scalar* row) const {
     const Scalar* from = X + r * ld;
     const Scalar* value = S + r * lds;
-    int to = 0, run = 0;
+    int to = 0, next = 0;
     for (int g = 0; g <= i; ++g) {
-      const int size = block[g].first - run;
-      copy_exactly(row + to, from + run, size);
+      const int size = block[g].first - next;
+      copy_exactly(row + to, from + next, size);
       to += size;
       const int columns = g < i ? J[g].rows : a + 1;
       for (int b = 0; b < columns; ++b) row[to++] = *value++;
-      run = block[g].first + block[g].size;
+      next = block[g].first + block[g].size;
     }
   }
 };
