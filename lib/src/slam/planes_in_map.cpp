@@ -41,7 +41,9 @@ void FilterSlam::tend_planes() {
     if (tended++ > 0) continue;
     fold_into(i);
     settle_frame(i);
-    outline(i, &planes_[i].seen);
+    PlaneOutline now;
+    outline(i, &now);
+    planes_[i].seen = now;
     if (settings_.fix_sigma > Scalar(0)) fix_on(i);
     merge_into(i);
   }
@@ -106,12 +108,15 @@ bool FilterSlam::is_in_reach(int plane_entry, const Vec3& p_W) const {
   return outline_contains(known, plane_coordinates(frame, p_W), reach);
 }
 
-/// Near the plane, and known to be. Agreement means something only where the distance is known to about what it is gated with.
+/// Near the plane, known to be, and in agreement with it by the gate of folding. Agreement means something only where the distance is
+/// known to about what it is gated with.
 bool FilterSlam::lies_on(int plane, int slot) const {
   Scalar d, variance;
   if (!filter_.distance(plane, slot, &d, &variance)) return false;
   const Scalar most = settings_.plane_distance * settings_.plane_distance;
-  return d * d <= most * Scalar(4) && variance <= most;
+  const FoldRule& rule = settings_.fold;
+  return d * d <= most * Scalar(4) && variance <= most &&
+         d * d < rule.gate * (variance + rule.roughness * rule.roughness);
 }
 
 /// Points that lie on the plane join it.
@@ -126,7 +131,7 @@ void FilterSlam::fold_into(int plane_entry) {
     const int slot = features_[i].slot;
     const Vec3 p_W = filter_.point(slot);
     if (!is_in_reach(plane_entry, p_W)) continue;
-    if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(3) * settings_.plane_distance) continue;
+    if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(2) * settings_.plane_distance) continue;
     Mat3 covariance;
     if (!lies_on(plane, slot) || !is_certain(i, &covariance)) continue;
     slots[count++] = slot;
@@ -199,12 +204,7 @@ void FilterSlam::discover_plane() {
   if (slot < 0) return;
   // It has to keep, by the filter's own covariance, as many as it takes to find one.
   int kept = 0;
-  const FoldRule& rule = settings_.fold;
-  for (int k = 0; k < members; ++k) {
-    Scalar d, variance;
-    if (!lies_on(slot, member[k]) || !filter_.distance(slot, member[k], &d, &variance)) continue;
-    kept += d * d < rule.gate * (variance + rule.roughness * rule.roughness) ? 1 : 0;
-  }
+  for (int k = 0; k < members; ++k) kept += lies_on(slot, member[k]) ? 1 : 0;
   const int entry = kept > settings_.plane_min_points ? planes_.add(slot) : -1;
   if (entry < 0) {
     filter_.remove(&slot, 1);
@@ -331,7 +331,7 @@ PlanePoints FilterSlam::outline(int plane_entry, PlaneOutline* outline) const {
   const State& state = filter_.state();
   const int plane = planes_[plane_entry].slot;
   PlanePoints points;
-  if (outline != nullptr && outline != &planes_[plane_entry].seen) *outline = planes_[plane_entry].seen;
+  if (outline != nullptr) *outline = planes_[plane_entry].seen;
   Vec2 uv[kBatch];
   int count = 0;
   for (int i = 0; i < features_.capacity(); ++i) {
