@@ -74,7 +74,7 @@ double grid_step(double area) {
   return power * (part >= 5.0 ? 5.0 : part >= 2.0 ? 2.0 : 1.0);
 }
 
-void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane) {
+void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane, bool metric) {
   const std::vector<Vec3> corners = pen.visible(plane.outline);
   if (corners.size() < 3) {
     return;
@@ -106,7 +106,10 @@ void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane) {
   }
   if ((x1 - x0) * (y1 - y0) > kSmallestArea) {
     char text[64];
-    std::snprintf(text, sizeof(text), "%u: %d points, %.2g m\xc2\xb2", plane.id, plane.points, area);
+    const int length = std::snprintf(text, sizeof(text), "%u: %d points", plane.id, plane.points);
+    if (metric) {
+      std::snprintf(text + length, sizeof(text) - static_cast<size_t>(length), ", %.2g m\xc2\xb2", area);
+    }
     const double width = canvas.text_width(text, 11.0, true);
     double left, top, right, bottom;
     cairo_clip_extents(cairo, &left, &top, &right, &bottom);
@@ -120,7 +123,7 @@ void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane) {
 
 }  // namespace
 
-void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t& camera, double zoom) {
+void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t& camera, double zoom, bool metric) {
   if (!view.has_pose) {
     return;
   }
@@ -138,7 +141,7 @@ void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t&
   std::sort(order.begin(), order.end(),
             [&](const PlaneView* a, const PlaneView* b) { return distance(a) > distance(b); });
   for (const PlaneView* plane : order) {
-    draw_plane(canvas, pen, *plane);
+    draw_plane(canvas, pen, *plane, metric);
   }
 }
 

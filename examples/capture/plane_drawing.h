@@ -9,8 +9,9 @@ namespace pf::capture {
 
 /// Draws the planes of a frame into its picture: filled, with a grid that lies on them, outlined, and with their numbers.
 ///
-/// zoom  screen pixels per image pixel
-void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t& camera, double zoom);
+/// zoom    screen pixels per image pixel
+/// metric  lengths of the world are metres, so that areas can be told
+void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t& camera, double zoom, bool metric);
 
 }  // namespace pf::capture
 
