@@ -1,8 +1,9 @@
-// Small Cholesky factor and four-point homography.
+// Small Cholesky factor, four-point homography, and the turn of the z axis.
 #include <cmath>
 
 #include "geometry/homography.h"
 #include "geometry/small_cholesky.h"
+#include "geometry/so3.h"
 #include "support/seeded_random.h"
 #include "unity.h"
 
@@ -82,6 +83,19 @@ void test_homography_should_refuse_when_points_are_in_line_or_change_side() {
   TEST_ASSERT_TRUE(homography_from_4(square, square, &H));
 }
 
+void test_turn_should_take_z_to_the_vector_the_shortest_way_when_it_is_of_unit_length() {
+  SeededRandom random(7);
+  constexpr Scalar kClose = kFloat ? Scalar(2e-6) : Scalar(1e-14);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3 b = random.normals<3>(1).normalized();
+    const Quat q = turn_z_to(b);
+    TEST_ASSERT_TRUE((q.toRotationMatrix().col(2) - b).norm() < kClose / (Scalar(1) + b.z()));
+    TEST_ASSERT_TRUE(q.z() == Scalar(0) && q.w() >= Scalar(0));  // no turn about z or about b
+  }
+  TEST_ASSERT_TRUE(turn_z_to(Vec3::UnitZ()).toRotationMatrix() == Mat3::Identity());
+  TEST_ASSERT_TRUE((turn_z_to(-Vec3::UnitZ()).toRotationMatrix().col(2) + Vec3::UnitZ()).norm() < kClose);
+}
+
 }  // namespace
 
 int main() {
@@ -90,5 +104,6 @@ int main() {
   RUN_TEST(test_cholesky_should_refuse_when_the_matrix_is_singular_or_not_finite);
   RUN_TEST(test_homography_should_map_the_points_when_they_are_rays_of_any_side);
   RUN_TEST(test_homography_should_refuse_when_points_are_in_line_or_change_side);
+  RUN_TEST(test_turn_should_take_z_to_the_vector_the_shortest_way_when_it_is_of_unit_length);
   return UNITY_END();
 }

@@ -42,6 +42,15 @@ inline Vec3 log_so3(const Quat& q) {
   return v * (Scalar(2) * std::atan2(n, w) / n);
 }
 
+/// Shortest turn that takes the z axis to the unit vector b: (1 + b_z, z x b), normalised. Where b is almost -z any half turn about an
+/// axis across z does; it is the one about x.
+inline Quat turn_z_to(const Vec3& b) {
+  const Scalar w = Scalar(1) + b.z();
+  Quat q = w > Scalar(1e-6) ? Quat(w, -b.y(), b.x(), Scalar(0)) : Quat(Scalar(0), Scalar(1), Scalar(0), Scalar(0));
+  q.normalize();
+  return q;
+}
+
 /// Left Jacobian: Exp(phi + d) = Exp(J_l(phi) d) Exp(phi) to first order; any angle.
 inline Mat3 left_jacobian_so3(const Vec3& phi) {
   const Scalar a2 = phi.squaredNorm();

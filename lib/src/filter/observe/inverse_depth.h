@@ -65,8 +65,7 @@ inline InverseDepth begin_inverse_depth(const Body& body, const Vec3& ray_C, con
   const Mat3 R = body.q_WC.toRotationMatrix();
   const Vec3 b = R.lazyProduct(ray_C);
   InverseDepth feature;
-  feature.q_b = Quat::FromTwoVectors(Vec3::UnitZ(), b);
-  feature.q_b.normalize();
+  feature.q_b = turn_z_to(b);
   feature.rho = rho;
   const Mat32 B = feature.q_b.toRotationMatrix().leftCols<2>();
   *J_feature_theta = -B.transpose().lazyProduct(hat(b));
