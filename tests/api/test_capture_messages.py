@@ -8,7 +8,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from script import BIN, fail, skip  # noqa: E402
+from script import BIN, fail, skip, skip_in_cross_builds  # noqa: E402
 
 PROGRAM = BIN / "pf-capture"
 WIDTH, HEIGHT = 96, 64
@@ -182,6 +182,7 @@ def test_useless_images(root):
 
 
 def main():
+    skip_in_cross_builds()
     if not PROGRAM.is_file():
         skip("pf-capture was not built")
     print("seed", SEED)

@@ -1,4 +1,4 @@
-"""Cross builds for the tests of other processors: made once in the build folder, and shared."""
+"""Cross builds for the tests of other processors: one for each, in the folder of its preset, which ./tools/test fills too."""
 
 import fcntl
 import os
@@ -49,16 +49,23 @@ def sysroot(name):
     return folder
 
 
-def build(name, *targets, kind="library", **options):
-    """Configure and build targets for a processor; the folder of that build."""
-    folder = script.BUILD / "cross" / f"{name}-{kind}"
+def build(name, *targets, programs=False):
+    """Builds targets for a processor and gives the folder of that build.
+
+    programs  among the targets are programs, which need the target's libraries: skips where they cannot be had
+    """
+    if programs:
+        sysroot(name)
+    folder = script.SOURCE / "build" / name
     folder.mkdir(parents=True, exist_ok=True)
-    settings = {"CMAKE_BUILD_TYPE": "Release", "PLANEFOLD_BUILD_TESTS": "OFF", "PLANEFOLD_BUILD_PROGRAMS": "OFF", **options}
     with open(folder / "lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # tests run at the same time
-        script.run("cmake", "-S", script.SOURCE, "-B", folder, "-G", "Ninja",
-                   f"-DCMAKE_TOOLCHAIN_FILE={script.SOURCE}/toolchains/{name}.cmake",
-                   *(f"-D{key}={value}" for key, value in settings.items()))
+        configure = ["cmake", "--preset", name]
+        if (folder / "build.ninja").exists():  # what was asked for before stays, or everything would be compiled again
+            configure = ["cmake", "-S", script.SOURCE, "-B", folder]
+        if programs or (root_of(name) / "sysroot.stamp").exists():
+            configure += ["-DPLANEFOLD_BUILD_PROGRAMS=ON", "-DPLANEFOLD_DRAWING=OFF"]
+        script.run(*configure, cwd=script.SOURCE)
         script.run("cmake", "--build", folder, "--parallel", str(os.cpu_count()), "--target", *targets)
     return folder
 

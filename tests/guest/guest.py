@@ -12,6 +12,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import cross  # noqa: E402
 from script import BIN, BUILD, SOURCE, fail, run, skip  # noqa: E402, F401
 
 CACHE = BUILD / "guest"
@@ -120,11 +121,13 @@ def libraries(program, sysroot):
     return found
 
 
-def cross_build(*targets, options=(), name="aarch64", packages=()):
-    """The project's programs for arm64, without what the guest lacks. Gives the folder of the programs.
+def cross_build(*targets):
+    """The project's programs for arm64, without what the guest lacks. Gives the folder of the programs."""
+    return cross.build("aarch64", *targets, programs=True) / "bin"
 
-    packages  more of Debian's, which come into a sysroot of this name
-    """
+
+def cross_build_with(name, packages, *targets, options=()):
+    """The same with more of Debian's packages for arm64, which come into a sysroot of this name."""
     build = CACHE / name
     sysroot = SYSROOT.with_name(name)
     result = subprocess.run(["bash", SOURCE / "toolchains/make_sysroot.sh", "arm64", sysroot, *packages], text=True,
@@ -134,7 +137,7 @@ def cross_build(*targets, options=(), name="aarch64", packages=()):
     run("cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DPLANEFOLD_BUILD_TESTS=OFF",
         f"-DCMAKE_TOOLCHAIN_FILE={SOURCE}/toolchains/aarch64.cmake", f"-DPLANEFOLD_SYSROOT={sysroot}",
         "-DPLANEFOLD_DRAWING=OFF", *options)
-    run("cmake", "--build", build, "--parallel", "2", "--target", *targets)
+    run("cmake", "--build", build, "--parallel", str(os.cpu_count()), "--target", *targets)
     return build / "bin"
 
 

@@ -128,7 +128,7 @@ def main():
     CACHE.mkdir(parents=True, exist_ok=True)
     root = guest.fetch_packages()
     kernel_modules.with_module(root, kernel_modules.build(root, "drivers/media/test-drivers/vimc", "vimc", CONFIG_VIDEO_VIMC="m"))
-    programs = guest.cross_build("pf-capture", name=NAME, packages=PACKAGES)
+    programs = guest.cross_build_with(NAME, PACKAGES, "pf-capture")
     if "PLANEFOLD_HAVE_LIBCAMERA" not in (CACHE / NAME / "build.ninja").read_text():
         fail("the cross build did not find libcamera in its sysroot")
     with tempfile.TemporaryDirectory(prefix="planefold_") as name:

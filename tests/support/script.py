@@ -44,6 +44,11 @@ def is_on(name):
     return cache(name).upper() in ("ON", "1", "TRUE", "YES")
 
 
+def skip_in_cross_builds():
+    if cache("CMAKE_TOOLCHAIN_FILE"):
+        skip("programs are run in native builds")
+
+
 def skip_unless_plain_native_build():
     """For tests of the package as it ships: not instrumented, and able to run here."""
     if cache("PLANEFOLD_SANITIZE") or is_on("PLANEFOLD_COVERAGE"):

@@ -14,8 +14,7 @@ import script  # noqa: E402
 PROGRAM = script.BIN / "pf-calibrate"
 if not PROGRAM.exists():
     script.skip("pf-calibrate is not built: it needs OpenCV's calib3d")
-if script.cache("CMAKE_TOOLCHAIN_FILE"):
-    script.skip("programs are run in native builds")
+script.skip_in_cross_builds()
 
 MM = 25.4 / 72
 

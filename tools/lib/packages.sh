@@ -13,7 +13,8 @@ optional_peers=(libopenblas-dev libblis-dev libopencv-core-dev libopencv-imgproc
 optional_targets=(g++-aarch64-linux-gnu gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-user qemu-system-arm)
 # Without these pf-capture has no libcamera and no inertial units, and its window is not tried without a screen.
 optional_devices=(libcamera-dev libiio-dev xvfb)
-optional_all=(clang clang-tidy libclang-rt-14-dev valgrind g++-arm-linux-gnueabihf)
+optional_arm=(g++-arm-linux-gnueabihf)
+optional_all=(clang clang-tidy libclang-rt-14-dev valgrind make xz-utils)
 
 # missing_packages NAME...   prints those that are not installed
 missing_packages() {
