@@ -1,6 +1,6 @@
 #pragma once
 
-// Views of a printed chessboard through a known camera: a board of 10 x 7 squares of 25 mm on white paper.
+// Views of a printed board through a known camera: 10 x 7 squares of 25 mm on white paper, a chessboard or any picture.
 
 #include <planefold/planefold.h>
 
@@ -25,6 +25,13 @@ struct BoardPose {
   Eigen::Vector3d t;
 };
 
+/// What is printed on the board's squares, in place of a chessboard: grey levels, the board's corner first.
+struct BoardPicture {
+  double pixels_per_square = 0;
+  int width = 0;
+  std::vector<uint8_t> pixels;
+};
+
 class BoardCamera {
  public:
   explicit BoardCamera(const pf_camera_t& camera) : camera_(camera) {
@@ -42,18 +49,23 @@ class BoardCamera {
   /// All of the board in the picture, with its white margin; anywhere, slanted by up to 50 degrees.
   BoardPose random_pose(SeededRandom& random) const {
     for (;;) {
-      const double slant = random.uniform(0.1, 0.87), towards = random.uniform(0, 6.283), spin = 0.3 * random.normal();
-      const Eigen::Vector3d axis(std::cos(towards), std::sin(towards), 0);
-      BoardPose pose;
-      pose.R = (Eigen::AngleAxisd(slant, axis) * Eigen::AngleAxisd(spin, Eigen::Vector3d::UnitZ())).matrix();
-      const double depth = 0.25 * camera_.fx / camera_.width * random.uniform(0.9, 2.6);
-      Vec3 ray;
-      if (!unproject(model_, Vec2(random.uniform(0, camera_.width), random.uniform(0, camera_.height)), &ray)) continue;
-      const Eigen::Vector3d middle((kBoardColumns - 2) * kBoardSquare / 2, (kBoardRows - 2) * kBoardSquare / 2, 0);
-      pose.t = ray * (depth / ray.z()) - pose.R * middle;
+      const BoardPose pose = slanted_pose(random, random.uniform(0.9, 2.6));
       if (shows_all(pose)) return pose;
     }
   }
+
+  /// Near enough for part of the board to be out of the picture, where enough of it is left; slanted as above.
+  BoardPose random_partial_pose(SeededRandom& random) const {
+    for (;;) {
+      BoardPose pose = slanted_pose(random, random.uniform(0.6, 1.5));
+      if (pose.t.z() > 0.05 && !shows_all(pose) && corners_inside(pose) >= 20) return pose;
+    }
+  }
+
+  /// The target in place of a chessboard; null: none.
+  void print(const BoardPicture* picture) { picture_ = picture; }
+  /// Something dark lies over the four corners of every picture, so far across and down [px].
+  void cover_corners(int across, int down) { covered_ = {across, down}; }
 
   /// box  side of the window that blurs [px]; 1 leaves the pixel's own area
   std::vector<uint8_t> render(const BoardPose& pose, int box, double noise_grey, SeededRandom& random) const {
@@ -73,12 +85,23 @@ class BoardCamera {
       }
     }
     for (int pass = 0; pass < 2; ++pass) grey = blurred(grey, std::max(box, 2));  // a lens that is not perfect
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const bool aside = x < covered_[0] || x >= width - covered_[0];
+        if (aside && (y < covered_[1] || y >= height - covered_[1])) grey[at(x, y)] = 40.0F * kSub * kSub;
+      }
+    }
     std::vector<uint8_t> pixels(grey.size());
     for (size_t i = 0; i < grey.size(); ++i) {
       const double level = grey[i] / (kSub * kSub) + noise_grey * random.normal();
       pixels[i] = static_cast<uint8_t>(std::clamp(level + 0.5, 0.0, 255.0));
     }
     return pixels;
+  }
+
+  /// To where the corner truly is, where every corner is known by name.
+  double squared_distance_to_named_corner(const BoardPose& pose, int corner, double x, double y) const {
+    return squared_distance(pose, corner, x, y);
   }
 
   /// To where the corner truly is. A board that is turned by half looks the same: the nearer of its two names counts.
@@ -90,9 +113,42 @@ class BoardCamera {
  private:
   static constexpr int kSub = 4;  ///< rays per pixel and direction
 
-  static double paper(double u, double v) {
+  /// With its middle somewhere in the picture; times: of a distance at which it fills about a quarter of it.
+  BoardPose slanted_pose(SeededRandom& random, double times) const {
+    for (;;) {
+      const double slant = random.uniform(0.1, 0.87), towards = random.uniform(0, 6.283), spin = 0.3 * random.normal();
+      const Eigen::Vector3d axis(std::cos(towards), std::sin(towards), 0);
+      BoardPose pose;
+      pose.R = (Eigen::AngleAxisd(slant, axis) * Eigen::AngleAxisd(spin, Eigen::Vector3d::UnitZ())).matrix();
+      const double depth = 0.25 * camera_.fx / camera_.width * times;
+      Vec3 ray;
+      if (!unproject(model_, Vec2(random.uniform(0, camera_.width), random.uniform(0, camera_.height)), &ray)) continue;
+      const Eigen::Vector3d middle((kBoardColumns - 2) * kBoardSquare / 2, (kBoardRows - 2) * kBoardSquare / 2, 0);
+      pose.t = ray * (depth / ray.z()) - pose.R * middle;
+      return pose;
+    }
+  }
+
+  int corners_inside(const BoardPose& pose) const {
+    int count = 0;
+    for (int column = 0; column < kBoardColumns - 1; ++column) {
+      for (int row = 0; row < kBoardRows - 1; ++row) {
+        bool inside;
+        project(pose, column, row, &inside);
+        count += inside ? 1 : 0;
+      }
+    }
+    return count;
+  }
+
+  double paper(double u, double v) const {
     if (u < -1 || v < -1 || u > kBoardColumns + 1 || v > kBoardRows + 1) return 90;
     const bool board = u >= 0 && v >= 0 && u < kBoardColumns && v < kBoardRows;
+    if (board && picture_ != nullptr) {
+      const auto x = static_cast<size_t>(u * picture_->pixels_per_square);
+      const auto y = static_cast<size_t>(v * picture_->pixels_per_square);
+      return 25 + 190.0 / 255 * picture_->pixels[y * static_cast<size_t>(picture_->width) + x];
+    }
     return board && (static_cast<int>(u) + static_cast<int>(v)) % 2 == 0 ? 25 : 215;
   }
 
@@ -153,6 +209,8 @@ class BoardCamera {
 
   pf_camera_t camera_;
   Camera model_;
+  const BoardPicture* picture_ = nullptr;
+  std::array<int, 2> covered_{};
   std::vector<std::array<float, 2>> rays_;  ///< x/z, y/z of every part of every pixel
 };
 

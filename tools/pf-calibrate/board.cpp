@@ -4,18 +4,15 @@
 
 namespace pf::calibrate {
 
-std::vector<cv::Point3f> Board::points() const {
-  std::vector<cv::Point3f> result;
-  for (int y = 0; y < rows - 1; ++y) {
-    for (int x = 0; x < columns - 1; ++x) {
-      result.emplace_back(static_cast<float>(x * square_m), static_cast<float>(y * square_m), 0.0F);
-    }
-  }
-  return result;
+cv::Point3f Board::point(int corner) const {
+  const int across = columns - 1;
+  return {static_cast<float>((corner % across) * square_m), static_cast<float>((corner / across) * square_m), 0.0F};
 }
 
+const char* target_name(Target target) { return target == Target::kCharuco ? "charuco" : "chessboard"; }
+
 bool parse_board(const std::string& text, Board& board, std::string& error) {
-  Board read;
+  Board read = board;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%dx%d:%lf%c", &read.columns, &read.rows, &read.square_m, &rest) != 3) {
     error = "board '" + text + "': write COLUMNSxROWS:SQUARE_METRES, counted in squares, for example 10x7:0.025";
@@ -29,8 +26,19 @@ bool parse_board(const std::string& text, Board& board, std::string& error) {
     error = "board '" + text + "': a square of 0.001 m to 1 m is possible";
     return false;
   }
+  if (read.target == Target::kCharuco && read.markers() > kMostMarkers) {
+    error = "board '" + text + "': it has " + std::to_string(read.markers()) + " markers, and there are " +
+            std::to_string(kMostMarkers) + " different ones; take fewer squares or --target chessboard";
+    return false;
+  }
   board = read;
   return true;
+}
+
+std::string board_text(const Board& board) {
+  char text[80];
+  std::snprintf(text, sizeof(text), "%dx%d:%g", board.columns, board.rows, board.square_m);
+  return text;
 }
 
 }  // namespace pf::calibrate

@@ -15,12 +15,21 @@ struct Solution {
 
 int distortion_count(pf_camera_model_t model) { return model == PF_CAMERA_PINHOLE ? 0 : 4; }
 
+std::vector<cv::Point3f> points_of(const View& view, const Board& board) {
+  std::vector<cv::Point3f> points;
+  for (int number : view.numbers) {
+    points.push_back(board.point(number));
+  }
+  return points;
+}
+
 void solve(const std::vector<View>& views, const Board& board, cv::Size image, pf_camera_model_t model, Solution& s) {
   std::vector<std::vector<cv::Point2f>> corners;
+  std::vector<std::vector<cv::Point3f>> points;
   for (const View& view : views) {
     corners.push_back(view.corners);
+    points.push_back(points_of(view, board));
   }
-  const std::vector<std::vector<cv::Point3f>> points(views.size(), board.points());
   const cv::TermCriteria until(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 200, 1e-10);
   s = {};
   if (model == PF_CAMERA_EQUIDISTANT) {
@@ -54,10 +63,11 @@ pf_camera_t camera_of(const Solution& s, cv::Size image, pf_camera_model_t model
 
 FittedView judge(const View& view, const Board& board, const Solution& s, size_t index, pf_camera_model_t model) {
   std::vector<cv::Point2f> projected;
+  const std::vector<cv::Point3f> points = points_of(view, board);
   if (model == PF_CAMERA_EQUIDISTANT) {
-    cv::fisheye::projectPoints(board.points(), projected, s.rotations[index], s.translations[index], s.K, s.distortion);
+    cv::fisheye::projectPoints(points, projected, s.rotations[index], s.translations[index], s.K, s.distortion);
   } else {
-    cv::projectPoints(board.points(), s.rotations[index], s.translations[index], s.K, s.distortion, projected);
+    cv::projectPoints(points, s.rotations[index], s.translations[index], s.K, s.distortion, projected);
   }
   FittedView fitted{view, {}, 0.0};
   double squares = 0.0;
@@ -115,7 +125,7 @@ bool fit_camera(const std::vector<View>& all, const Board& board, cv::Size image
   for (int round = 0; round < 5; ++round) {
     if (static_cast<int>(views.size()) < kFewestViews) {
       error = "only " + std::to_string(views.size()) + " usable views; at least " + std::to_string(kFewestViews) +
-              " that differ are needed: show the whole board near and far, in the corners of the picture, and slanted";
+              " that differ are needed: show the board near and far, in the corners of the picture, and slanted";
       return false;
     }
     Solution s;

@@ -1,5 +1,5 @@
 // pf-calibrate --print-target FILE.pdf, then pf-calibrate --source images:DIR: a camera's calibration from views of a
-// chessboard.
+// board of squares.
 #include <cstdio>
 
 #include "options.h"
@@ -35,9 +35,7 @@ int calibrate(const Options& options) {
     return complain(error);
   }
   if (search.found.empty()) {
-    return complain(options.source + ": the board of " + std::to_string(options.board.columns) + " x " +
-                    std::to_string(options.board.rows) + " squares is in none of " + std::to_string(search.looked_at) +
-                    " frames; all of it must be seen, with its white margin. Does --board say what was printed?");
+    return complain(why_nothing_was_found(options, search));
   }
   Fit fit;
   const std::vector<View> views = choose_views(search.found, options.board, search.image, options.views);

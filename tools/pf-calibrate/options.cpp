@@ -5,10 +5,13 @@
 #include <map>
 #include <vector>
 
+#include "markers.h"
+
 namespace pf::calibrate {
 
 namespace {
 
+const std::map<std::string, Target> kTargets = {{"charuco", Target::kCharuco}, {"chessboard", Target::kChessboard}};
 const std::map<std::string, pf_camera_model_t> kModels = {
     {"pinhole", PF_CAMERA_PINHOLE}, {"radtan", PF_CAMERA_RADTAN}, {"equidistant", PF_CAMERA_EQUIDISTANT}};
 
@@ -16,16 +19,23 @@ const std::map<std::string, pf_camera_model_t> kModels = {
 
 bool parse_options(int argc, char** argv, Options& options, int& code) {
   CLI::App app(
-      "Calibrate a camera from views of a printed chessboard.\n"
+      "Calibrate a camera from views of a printed board of squares.\n"
       "First:  pf-calibrate --print-target target.pdf, print at 100 %, glue it onto something flat.\n"
       "Then film it: near and far, into every corner of the picture, slanted by up to 45 degrees, held still now and "
       "then.\n"
+      "        Of a ChArUco board any part will do; of a chessboard all of it must be in the picture.\n"
       "Then:   pf-calibrate --source images:DIR --out out/calibrate, and give out/calibrate/calib.yaml to pf-capture "
       "--calib.\n",
       "pf-calibrate");
   std::string board = "10x7:0.025";
+  options.board.target = have_markers() ? Target::kCharuco : Target::kChessboard;
   app.add_option("--source", options.source,
                  "images:DIR, euroc:DIR, tum:DIR (a calibration inside is not read), or a camera: v4l2:/dev/videoN");
+  app.add_option("--target", options.board.target,
+                 have_markers() ? "charuco (with a marker in every white square) or chessboard"
+                                : "chessboard; this build has no charuco: it was made without OpenCV's aruco module")
+      ->transform(CLI::CheckedTransformer(kTargets, CLI::ignore_case))
+      ->default_str(target_name(options.board.target));
   app.add_option("--board", board, "COLUMNSxROWS:SQUARE_METRES, counted in squares")->capture_default_str();
   app.add_option("--model", options.model, "of the lens: pinhole, radtan, or equidistant for wide ones")
       ->transform(CLI::CheckedTransformer(kModels, CLI::ignore_case))
@@ -47,7 +57,8 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
       ->expected(2)
       ->check(CLI::Range(32, 4096))
       ->capture_default_str();
-  app.add_option("--print-target", options.print_target, "write the board to this PDF, at true size, and end");
+  app.add_option("--print-target", options.print_target,
+                 "write the board to this PDF, at true size, and end; FILE.png: a picture of 10 pixels per millimetre");
   app.add_option("--page", options.page, "of the PDF: a4, a3, letter, or WIDTHxHEIGHT in millimetres")
       ->capture_default_str();
   app.add_flag("--quiet", options.quiet, "no progress");
@@ -65,6 +76,13 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
   }
   options.width = size[0];
   options.height = size[1];
+  if (options.board.target == Target::kCharuco && !have_markers()) {
+    std::fprintf(stderr,
+                 "pf-calibrate: --target charuco: this build has no markers; install OpenCV's aruco module (Debian: "
+                 "libopencv-contrib-dev) and build again, or use --target chessboard\n");
+    code = 2;
+    return false;
+  }
   std::string error;
   if (!parse_board(board, options.board, error)) {
     std::fprintf(stderr, "pf-calibrate: %s\n", error.c_str());

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "markers.h"
+
 namespace pf::calibrate {
 
 namespace {
@@ -33,10 +35,19 @@ nlohmann::json json(const Board& board, const Search& search, const Fit& fit) {
   nlohmann::json views = nlohmann::json::array();
   std::vector<View> used;
   for (const FittedView& view : fit.views) {
-    views.push_back({{"frame", view.view.frame}, {"rms_px", view.rms_px}, {"blur_px", view.view.blur_px}});
+    views.push_back({{"frame", view.view.frame},
+                     {"corners", view.view.corners.size()},
+                     {"rms_px", view.rms_px},
+                     {"blur_px", view.view.blur_px}});
     used.push_back(view.view);
   }
-  return {{"board", {{"columns", board.columns}, {"rows", board.rows}, {"square_m", board.square_m}}},
+  nlohmann::json target = {{"columns", board.columns}, {"rows", board.rows}, {"square_m", board.square_m}};
+  if (board.target == Target::kCharuco) {
+    target["dictionary"] = dictionary_name(board);
+    target["marker_m"] = kMarkerShare * board.square_m;
+  }
+  return {{"target", target_name(board.target)},
+          {"board", target},
           {"frames", search.frames},
           {"looked_at", search.looked_at},
           {"found", search.found.size()},
@@ -60,8 +71,9 @@ std::string csv(const Fit& fit) {
   for (const FittedView& fitted : fit.views) {
     for (size_t i = 0; i < fitted.residuals.size(); ++i) {
       char line[160];
-      std::snprintf(line, sizeof(line), "%lld,%zu,%.5f,%.5f,%.5f,%.5f\n", static_cast<long long>(fitted.view.frame), i,
-                    fitted.view.corners[i].x, fitted.view.corners[i].y, fitted.residuals[i].x, fitted.residuals[i].y);
+      std::snprintf(line, sizeof(line), "%lld,%d,%.5f,%.5f,%.5f,%.5f\n", static_cast<long long>(fitted.view.frame),
+                    fitted.view.numbers[i], fitted.view.corners[i].x, fitted.view.corners[i].y, fitted.residuals[i].x,
+                    fitted.residuals[i].y);
       text += line;
     }
   }

@@ -6,11 +6,14 @@
 #include <memory>
 #include <utility>
 
+#include "markers.h"
+
 namespace pf::calibrate {
 
 namespace {
 
 constexpr double kPointsPerMm = 72.0 / 25.4;
+constexpr double kPixelsPerMm = 10.0;
 constexpr double kMarginMm = 8.0;  ///< most printers leave less than this blank
 
 struct FreeSurface {
@@ -45,10 +48,33 @@ void draw_squares(cairo_t* pen, const Board& board, double left_mm, double top_m
   cairo_fill(pen);
 }
 
+/// The dark modules of all markers as one path, so that no seams show between them.
+void draw_markers(cairo_t* pen, const Board& board, double left_mm, double top_mm) {
+  const double square_mm = 1000.0 * board.square_m, marker_mm = kMarkerShare * square_mm;
+  for (int number = 0; number < board.markers(); ++number) {
+    const cv::Mat modules = marker_modules(board, number);
+    const cv::Point square = square_of_marker(board, number);
+    const double module_mm = marker_mm / modules.cols, margin_mm = 0.5 * (square_mm - marker_mm);
+    const double x0 = left_mm + square.x * square_mm + margin_mm, y0 = top_mm + square.y * square_mm + margin_mm;
+    for (int y = 0; y < modules.rows; ++y) {
+      for (int x = 0, end = 0; x < modules.cols; x = end + 1) {
+        for (end = x; end < modules.cols && modules.at<uchar>(y, end) == 0; ++end) {
+        }
+        if (end > x) {
+          cairo_rectangle(pen, x0 + x * module_mm, y0 + y * module_mm, (end - x) * module_mm, module_mm);
+        }
+      }
+    }
+  }
+  cairo_fill(pen);
+}
+
 void draw_ruler(cairo_t* pen, const Board& board, double page_width_mm, double y_mm) {
-  char text[160];
-  std::snprintf(text, sizeof(text), "--board %dx%d:%g    print at 100 %%; this line is 100 mm long:", board.columns,
-                board.rows, board.square_m);
+  char text[200];
+  const std::string markers = board.target == Target::kCharuco ? std::string(", ") + dictionary_name(board) : "";
+  std::snprintf(text, sizeof(text),
+                "--target %s --board %s%s    print at 100 %%; this line is 100 mm long:", target_name(board.target),
+                board_text(board).c_str(), markers.c_str());
   cairo_select_font_face(pen, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(pen, 2.6);
   cairo_text_extents_t extents;
@@ -66,6 +92,46 @@ void draw_ruler(cairo_t* pen, const Board& board, double page_width_mm, double y
   cairo_move_to(pen, left, y_mm);
   cairo_line_to(pen, left + 100.0, y_mm);
   cairo_stroke(pen);
+}
+
+bool ends_with(const std::string& path, const std::string& end) {
+  return path.size() >= end.size() && path.compare(path.size() - end.size(), end.size(), end) == 0;
+}
+
+void draw_page(cairo_t* pen, const Board& board, double width_mm, double height_mm) {
+  const double left_mm = 0.5 * (width_mm - 1000.0 * board.width_m());
+  const double top_mm = 0.5 * (height_mm - 1000.0 * board.height_m());
+  cairo_set_source_rgb(pen, 0.0, 0.0, 0.0);
+  draw_squares(pen, board, left_mm, top_mm);
+  if (board.target == Target::kCharuco) {
+    draw_markers(pen, board, left_mm, top_mm);
+  }
+  draw_ruler(pen, board, width_mm, height_mm - 6.0);
+}
+
+/// cairo's own text where it failed, else null.
+const char* write_pdf(const Board& board, double width_mm, double height_mm, const std::string& path) {
+  const std::unique_ptr<cairo_surface_t, FreeSurface> surface(
+      cairo_pdf_surface_create(path.c_str(), width_mm * kPointsPerMm, height_mm * kPointsPerMm));
+  const std::unique_ptr<cairo_t, FreePen> pen(cairo_create(surface.get()));
+  cairo_scale(pen.get(), kPointsPerMm, kPointsPerMm);
+  draw_page(pen.get(), board, width_mm, height_mm);
+  cairo_show_page(pen.get());
+  cairo_surface_finish(surface.get());
+  const cairo_status_t status = cairo_surface_status(surface.get());
+  return status == CAIRO_STATUS_SUCCESS ? nullptr : cairo_status_to_string(status);
+}
+
+const char* write_png(const Board& board, double width_mm, double height_mm, const std::string& path) {
+  const std::unique_ptr<cairo_surface_t, FreeSurface> surface(cairo_image_surface_create(
+      CAIRO_FORMAT_RGB24, static_cast<int>(width_mm * kPixelsPerMm), static_cast<int>(height_mm * kPixelsPerMm)));
+  const std::unique_ptr<cairo_t, FreePen> pen(cairo_create(surface.get()));
+  cairo_set_source_rgb(pen.get(), 1.0, 1.0, 1.0);
+  cairo_paint(pen.get());
+  cairo_scale(pen.get(), kPixelsPerMm, kPixelsPerMm);
+  draw_page(pen.get(), board, width_mm, height_mm);
+  const cairo_status_t status = cairo_surface_write_to_png(surface.get(), path.c_str());
+  return status == CAIRO_STATUS_SUCCESS ? nullptr : cairo_status_to_string(status);
 }
 
 }  // namespace
@@ -90,16 +156,10 @@ bool print_target(const Board& board, const std::string& page, const std::string
     error = text;
     return false;
   }
-  const std::unique_ptr<cairo_surface_t, FreeSurface> surface(
-      cairo_pdf_surface_create(path.c_str(), width_mm * kPointsPerMm, height_mm * kPointsPerMm));
-  const std::unique_ptr<cairo_t, FreePen> pen(cairo_create(surface.get()));
-  cairo_scale(pen.get(), kPointsPerMm, kPointsPerMm);
-  draw_squares(pen.get(), board, left, top);
-  draw_ruler(pen.get(), board, width_mm, height_mm - 6.0);
-  cairo_show_page(pen.get());
-  cairo_surface_finish(surface.get());
-  if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) {
-    error = path + ": cannot be written: " + cairo_status_to_string(cairo_surface_status(surface.get()));
+  const char* failure = ends_with(path, ".png") ? write_png(board, width_mm, height_mm, path)
+                                                : write_pdf(board, width_mm, height_mm, path);
+  if (failure != nullptr) {
+    error = path + ": cannot be written: " + failure;
     return false;
   }
   return true;

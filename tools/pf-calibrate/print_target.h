@@ -7,7 +7,8 @@
 
 namespace pf::calibrate {
 
-/// Writes the board as a PDF of true size, with a line of 100 mm to check the printer by.
+/// Writes the board as a PDF of true size, with a line of 100 mm to check the printer by; a path that ends in .png
+/// becomes a picture of ten pixels per millimetre.
 /// page  a4, a3, letter, or WIDTHxHEIGHT in millimetres; it is turned if the board fits better
 /// false: error is one line
 bool print_target(const Board& board, const std::string& page, const std::string& path, std::string& error);

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "markers.h"
+
 #ifdef PLANEFOLD_HAVE_V4L2
 #include <planefold_platform/v4l2.h>
 
@@ -22,13 +24,38 @@ struct CloseSequence {
   void operator()(pf_sequence_t* sequence) const { pf_close_sequence(sequence); }
 };
 
+constexpr int64_t kLookForOthersEvery = 8;
+
+/// What else may have been printed.
+void look_for_others(const cv::Mat& grey, const Board& board, Search& search) {
+  Board other = board;
+  View view;
+  Sighting sighting;
+  if (board.target == Target::kChessboard && have_markers() && board.markers() <= kMostMarkers) {
+    other.target = Target::kCharuco;
+    search.found_other = search.found_other || find_board(grey, other, view, sighting);
+  }
+  const cv::Size squares = size_of_chessboard(grey);
+  if (squares.area() > search.other_squares.area()) {
+    search.other_squares = squares;
+  }
+}
+
 void look_at(const pf_image_t& image, const Options& options, int64_t number, Search& search) {
   const cv::Mat grey(image.height, image.width, CV_8U, const_cast<uint8_t*>(image.pixels),
                      static_cast<size_t>(image.stride));
   View view;
+  Sighting sighting;
   view.frame = number;
-  if (find_board(grey, options.board, view)) {
+  if (find_board(grey, options.board, view, sighting)) {
     search.found.push_back(view);
+  } else if (search.found.empty()) {
+    if (sighting.markers > search.best.markers) {
+      search.best = sighting;
+    }
+    if (search.looked_at_one_by_one++ % kLookForOthersEvery == 0) {
+      look_for_others(grey, options.board, search);
+    }
   }
 }
 
@@ -127,6 +154,40 @@ bool search_source(const Options& options, Search& search, std::string& error) {
   error = "this build has no cameras: it was made without V4L2";
   return false;
 #endif
+}
+
+std::string why_nothing_was_found(const Options& options, const Search& search) {
+  const auto size = [](int columns, int rows) { return std::to_string(columns) + " x " + std::to_string(rows); };
+  const Board& board = options.board;
+  const cv::Size& other = search.other_squares;
+  const std::string nothing = options.source + ": the " + target_name(board.target) + " of " +
+                              size(board.columns, board.rows) + " squares is in none of " +
+                              std::to_string(search.looked_at) + " frames";
+  const Sighting& best = search.best;
+  if (search.found_other) {
+    return nothing + ", but a charuco board is; use --target charuco";
+  }
+  if (best.highest_marker >= board.markers()) {
+    return nothing + ", but a board with markers up to number " + std::to_string(best.highest_marker) +
+           " is, and this one ends with " + std::to_string(board.markers() - 1) +
+           "; does --board say what was printed?";
+  }
+  if (best.pairs >= 4 && best.agreeing_pairs < best.pairs / 2) {
+    return nothing + ", but markers in another order are; does --board say what was printed?";
+  }
+  if (best.markers > 0) {
+    return nothing + "; at most " + std::to_string(best.markers) +
+           " markers were seen at once: show more of the board, nearer, sharper, or in better light";
+  }
+  if (other.area() > 0 && (board.target == Target::kCharuco || other != cv::Size(board.columns, board.rows))) {
+    return nothing + ", but a chessboard of " + size(other.width, other.height) +
+           " squares is; use --target chessboard --board " + std::to_string(other.width) + "x" +
+           std::to_string(other.height) + ":SQUARE_METRES";
+  }
+  if (board.target == Target::kCharuco) {
+    return nothing + "; is it sharp and near enough? A plain chessboard needs --target chessboard";
+  }
+  return nothing + "; all of it must be seen, with its white margin. Does --board say what was printed?";
 }
 
 }  // namespace pf::calibrate

@@ -13,11 +13,20 @@ struct Search {
   cv::Size image;
   int64_t frames = 0, looked_at = 0;
   std::vector<View> found;
+
+  // As long as nothing was found:
+  int64_t looked_at_one_by_one = 0;
+  Sighting best;             ///< of the frame with most markers
+  bool found_other = false;  ///< the other kind of target
+  cv::Size other_squares;    ///< a chessboard of so many squares, none: 0 x 0
 };
 
 /// Looks for the board: in frames that lie evenly over a recording, or in what a camera shows until the time is over
 /// or the program is interrupted. false: error is one line.
 bool search_source(const Options& options, Search& search, std::string& error);
+
+/// One line for a search that found nothing.
+std::string why_nothing_was_found(const Options& options, const Search& search);
 
 }  // namespace pf::calibrate
 

@@ -6,6 +6,9 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "charuco.h"
+#include "levels.h"
+
 namespace pf::calibrate {
 
 namespace {
@@ -31,46 +34,7 @@ std::vector<View> sharp_ones(const std::vector<View>& views) {
   return sharp;
 }
 
-double level_at(const cv::Mat& grey, const cv::Point2f& p) {
-  const int x = std::clamp(static_cast<int>(p.x), 0, grey.cols - 2);
-  const int y = std::clamp(static_cast<int>(p.y), 0, grey.rows - 2);
-  const double u = std::clamp(p.x - static_cast<float>(x), 0.0F, 1.0F);
-  const double v = std::clamp(p.y - static_cast<float>(y), 0.0F, 1.0F);
-  const uchar *a = grey.ptr(y) + x, *b = grey.ptr(y + 1) + x;
-  return (1 - v) * ((1 - u) * a[0] + u * a[1]) + v * ((1 - u) * b[0] + u * b[1]);
-}
-
-/// Over how many pixels an edge between two squares rises: the step over the steepest slope, the median over all edges
-/// between neighbours of a row, each read half a square to either side.
-double edge_spread(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, size_t across) {
-  std::vector<double> spreads;
-  for (size_t i = 0; i + across < corners.size(); ++i) {
-    if ((i + 1) % across == 0) {
-      continue;
-    }
-    const cv::Point2f middle = 0.5F * (corners[i] + corners[i + 1]);
-    const cv::Point2f down = corners[i + across] - corners[i];
-    const double length = std::hypot(down.x, down.y);
-    const cv::Point2f step = down * static_cast<float>(0.5 / length);  // half a pixel
-    const int half = std::max(4, static_cast<int>(length));            // in such steps: half a square
-    double steepest = 0.0;
-    for (int k = -half; k + 2 <= half; ++k) {
-      const double rise = level_at(grey, middle + static_cast<float>(k + 2) * step) -
-                          level_at(grey, middle + static_cast<float>(k) * step);
-      steepest = std::max(steepest, std::fabs(rise));
-    }
-    const double contrast = std::fabs(level_at(grey, middle + static_cast<float>(half) * step) -
-                                      level_at(grey, middle - static_cast<float>(half) * step));
-    spreads.push_back(contrast / std::max(steepest, 1.0));
-  }
-  const auto median = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
-  std::nth_element(spreads.begin(), median, spreads.end());
-  return *median;
-}
-
-}  // namespace
-
-bool find_board(const cv::Mat& grey, const Board& board, View& view) {
+bool find_chessboard(const cv::Mat& grey, const Board& board, View& view) {
   // A small copy says quickly that there is no board; most frames of a film without one end here.
   const double scale = std::min(1.0, 640.0 / grey.cols);
   cv::Mat small;
@@ -82,7 +46,9 @@ bool find_board(const cv::Mat& grey, const Board& board, View& view) {
     return false;
   }
   view.corners.clear();
+  view.numbers.clear();
   for (const cv::Point2f& p : rough) {  // centres of pixels keep their place in the picture
+    view.numbers.push_back(static_cast<int>(view.corners.size()));
     view.corners.emplace_back(static_cast<float>((p.x + 0.5) / scale - 0.5),
                               static_cast<float>((p.y + 0.5) / scale - 0.5));
   }
@@ -100,23 +66,49 @@ bool find_board(const cv::Mat& grey, const Board& board, View& view) {
   const int half = std::clamp(static_cast<int>(0.35 * nearest), 2, 12);
   const cv::TermCriteria until(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 60, 1e-4);
   cv::cornerSubPix(grey, view.corners, {half, half}, {-1, -1}, until);
-  view.blur_px = edge_spread(grey, view.corners, static_cast<size_t>(across));
+  view.blur_px = edge_spread(grey, board, view);
   return true;
 }
 
+}  // namespace
+
+bool find_board(const cv::Mat& grey, const Board& board, View& view, Sighting& found) {
+  return board.target == Target::kCharuco ? find_charuco(grey, board, view, found) : find_chessboard(grey, board, view);
+}
+
+cv::Size size_of_chessboard(const cv::Mat& grey) {
+  cv::Mat small, corners, meta;
+  const double scale = std::min(1.0, 640.0 / grey.cols);
+  cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
+  const int flags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_LARGER;
+  if (!cv::findChessboardCornersSB(small, {3, 3}, corners, flags, meta)) {
+    return {};
+  }
+  return {meta.cols + 1, meta.rows + 1};
+}
+
 std::array<double, 6> describe(const View& view, const Board& board, cv::Size image) {
-  const auto across = static_cast<size_t>(board.corners().width);
-  const cv::Point2f& a = view.corners.front();
-  const cv::Point2f& b = view.corners[across - 1];
-  const cv::Point2f& c = view.corners.back();
-  const cv::Point2f& d = view.corners[view.corners.size() - across];
-  const double top = distance(a, b), right = distance(b, c), bottom = distance(c, d), left = distance(d, a);
-  return {static_cast<double>(a.x + b.x + c.x + d.x) / (4.0 * image.width),
-          static_cast<double>(a.y + b.y + c.y + d.y) / (4.0 * image.height),
-          0.5 * std::log((top + bottom) * (left + right) / (4.0 * image.area())),
-          2.0 * std::log(left / right),
-          2.0 * std::log(top / bottom),
-          std::log((top + bottom) / (left + right))};
+  const int columns = board.columns - 1;
+  std::vector<cv::Point2f> squares;
+  float left = 1e9F, right = -1.0F, top = 1e9F, bottom = -1.0F;
+  for (int number : view.numbers) {
+    const auto x = static_cast<float>(number % columns), y = static_cast<float>(number / columns);
+    squares.emplace_back(x, y);
+    left = std::min(left, x), right = std::max(right, x);
+    top = std::min(top, y), bottom = std::max(bottom, y);
+  }
+  std::vector<cv::Point2f> ends = {{left, top}, {right, top}, {right, bottom}, {left, bottom}}, seen;
+  cv::perspectiveTransform(ends, seen, cv::findHomography(squares, view.corners));
+  const double across = right - left, down = bottom - top;
+  const double above = distance(seen[0], seen[1]) / across, below = distance(seen[2], seen[3]) / across;
+  const double at_left = distance(seen[3], seen[0]) / down, at_right = distance(seen[1], seen[2]) / down;
+  const double side = 0.25 * (above + below) * (at_left + at_right) * (columns - 1) * (board.rows - 2);
+  return {static_cast<double>(seen[0].x + seen[1].x + seen[2].x + seen[3].x) / (4.0 * image.width),
+          static_cast<double>(seen[0].y + seen[1].y + seen[2].y + seen[3].y) / (4.0 * image.height),
+          0.5 * std::log(side / image.area()),
+          2.0 * std::log(at_left / at_right),
+          2.0 * std::log(above / below),
+          std::log((above + below) / (at_left + at_right))};
 }
 
 std::array<int, kCellsAcross * kCellsDown> count_corners(const std::vector<View>& views, cv::Size image) {
@@ -144,6 +136,10 @@ std::vector<View> choose_views(const std::vector<View>& all, const Board& board,
   const std::vector<View> views = sharp_ones(all);
   std::vector<double> nearest(views.size(), 1.0);
   std::vector<bool> taken(views.size(), false);
+  std::vector<std::array<double, 6>> described;
+  for (const View& view : views) {
+    described.push_back(describe(view, board, image));
+  }
   std::vector<View> chosen;
   while (static_cast<int>(chosen.size()) < most) {
     const auto counts = count_corners(chosen, image);
@@ -170,12 +166,11 @@ std::vector<View> choose_views(const std::vector<View>& all, const Board& board,
     }
     taken[which] = true;
     chosen.push_back(views[which]);
-    const auto new_one = describe(views[which], board, image);
     for (size_t i = 0; i < views.size(); ++i) {
-      const auto other = describe(views[i], board, image);
       double squares = 0.0;
-      for (size_t k = 0; k < other.size(); ++k) {
-        squares += (other[k] - new_one[k]) * (other[k] - new_one[k]);
+      for (size_t k = 0; k < described[i].size(); ++k) {
+        const double apart = described[i][k] - described[which][k];
+        squares += apart * apart;
       }
       nearest[i] = std::min(nearest[i], std::sqrt(squares));
     }
