@@ -1,6 +1,7 @@
 #include "imu_feed.h"
 
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace pf::capture {
@@ -12,6 +13,31 @@ constexpr int32_t kKept = 256;  ///< samples that the library keeps: a quarter o
 constexpr int64_t kPatience = 30;  ///< frames without any sample before them: worth a note
 
 double rounded(double value) { return std::round(value * 1e6) / 1e6; }
+
+/// given_s: what was added to the unit's times already.
+nlohmann::ordered_json time_offset_json(const TimeOffset& offset, double given_s) {
+  nlohmann::ordered_json json;
+  json["offset_s"] = offset.known ? nlohmann::ordered_json(rounded(given_s + offset.offset_s)) : nullptr;
+  json["sigma_s"] = offset.known ? nlohmann::ordered_json(rounded(offset.sigma_s)) : nullptr;
+  json["correlation"] = rounded(offset.correlation);
+  json["intervals"] = offset.intervals;
+  json["turning_rad_s"] = rounded(offset.turning);
+  if (!offset.known) {
+    json["why_not"] = offset.why_not;
+  }
+  return json;
+}
+
+std::string time_offset_advice(const TimeOffset& offset, double given_s) {
+  if (!offset.known) {
+    return "time offset of the inertial unit: not known; " + offset.why_not;
+  }
+  char text[200];
+  std::snprintf(text, sizeof(text),
+                "time offset of the inertial unit: %.1f ms, sigma %.1f ms, correlation %.3f (--imu-offset %.4f)",
+                1e3 * (given_s + offset.offset_s), 1e3 * offset.sigma_s, offset.correlation, given_s + offset.offset_s);
+  return text;
+}
 
 }  // namespace
 
@@ -50,6 +76,7 @@ void ImuFeed::push_until(int64_t t_ns, pf_slam_t* slam) {
     const pf_status_t status = pf_push_imu(slam, &sample, 1);
     if (status >= 0) {
       recorder_.add(sample);
+      offset_.add(sample);
     } else if (refused_++ == 0) {
       notices_.push_back(imu_->name() + ": the library refused a sample: " + pf_status_text(status));
     }
@@ -65,7 +92,7 @@ bool ImuFeed::take_notice(std::string& notice) {
   return imu_ != nullptr && imu_->take_notice(notice);
 }
 
-std::string ImuFeed::report(const pf_slam_t* slam) const {
+std::string ImuFeed::report(const pf_slam_t* slam, std::string& advice) const {
   pf_imu_report_t r{};
   if (imu_ == nullptr || pf_get_imu_report(slam, &r) != PF_OK) {
     return "";
@@ -86,6 +113,9 @@ std::string ImuFeed::report(const pf_slam_t* slam) const {
   if (!(imu_->gyro_range() > 0.0) && !(imu_->accel_range() > 0.0)) {
     json["saturated"] = nullptr;  // the ranges are not known
   }
+  const TimeOffset offset = offset_.estimate();
+  json["time_offset"] = time_offset_json(offset, offset_s_);
+  advice = time_offset_advice(offset, offset_s_);
   const std::string device = imu_->report();
   if (!device.empty()) {
     json["device"] = nlohmann::ordered_json::parse(device);

@@ -7,6 +7,7 @@
 
 #include "imu.h"
 #include "imu_recorder.h"
+#include "time_offset.h"
 
 namespace pf::capture {
 
@@ -23,15 +24,18 @@ class ImuFeed {
 
   /// Before the frame of this time is pushed.
   void push_until(int64_t t_ns, pf_slam_t* slam);
+  /// After it was pushed.
+  void add_pose(const pf_pose_t& pose, bool tracked) { offset_.add_frame(pose, tracked); }
   bool take_notice(std::string& notice);
   /// Closes the recording. false: error is one line.
   bool finish(std::string& error) { return recorder_.close(error); }
-  /// JSON for report.json.
-  std::string report(const pf_slam_t* slam) const;
+  /// JSON for report.json. advice: one line on the unit's clock, or "".
+  std::string report(const pf_slam_t* slam, std::string& advice) const;
 
  private:
   std::unique_ptr<Imu> imu_;
   ImuRecorder recorder_;
+  TimeOffsetEstimator offset_;
   std::vector<pf_imu_sample_t> samples_;
   std::vector<std::string> notices_;
   double offset_s_ = 0.0;

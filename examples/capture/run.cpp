@@ -163,6 +163,7 @@ Read Run::step(int64_t index) {
     failure_ = "frame " + std::to_string(at) + " (" + source_.name(at) + "): " + failure_;
     return Read::kFailed;
   }
+  imu_.add_pose(view_.pose, view_.tracked);
   track_slowly(begin_ns);
   source_.pushed();
   if (recorder_.is_open()) {
@@ -287,14 +288,17 @@ int Run::finish() {
   } else if (failure_.empty() && statistics_.frames() > 1 && statistics_.frozen() == statistics_.frames() - 1) {
     failure_ = why_nothing_was_tracked();
   }
-  std::string error;
-  const std::string report =
-      statistics_.to_json(session_, options_, source_.info(), live, imu_.report(session_.slam()), failure_);
+  std::string error, advice;
+  const std::string imu = imu_.report(session_.slam(), advice);
+  const std::string report = statistics_.to_json(session_, options_, source_.info(), live, imu, failure_);
   if (!outputs_.finish(view_, session_.config().camera, report, error)) {
     return fail(error);
   }
   if (!failure_.empty()) {
     return fail(failure_);
+  }
+  if (!advice.empty()) {
+    std::printf("%s\n", advice.c_str());
   }
   std::printf("%s\nwritten to %s%s\n", statistics_.summary(session_).c_str(), options_.out.c_str(),
               filming ? " (overlay.mp4 is the film)" : "");
