@@ -6,8 +6,8 @@ packages_programs=(libpng-dev libjpeg62-turbo-dev libyaml-cpp-dev libcli11-dev n
   libsdl2-dev libcairo2-dev ffmpeg python3 python3-venv)
 packages_test=(libbenchmark-dev clang-format)
 
-# Without these some tests and comparisons are left out: the peers in pf-bench, pf-calibrate and its ChArUco, the fuzzers and the checker of names,
-# the cross builds.
+# Without these some tests and comparisons are left out: the peers in pf-bench, pf-calibrate and (of the last one) its
+# ChArUco, the fuzzers and the checker of names, the cross builds.
 optional_peers=(libopenblas-dev libblis-dev libopencv-core-dev libopencv-imgproc-dev libopencv-video-dev
   libopencv-calib3d-dev libopencv-contrib-dev)
 optional_targets=(g++-aarch64-linux-gnu gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-user qemu-system-arm)
