@@ -58,7 +58,7 @@ class BoardCamera {
   BoardPose random_partial_pose(SeededRandom& random) const {
     for (;;) {
       BoardPose pose = slanted_pose(random, random.uniform(0.6, 1.5));
-      if (pose.t.z() > 0.05 && !shows_all(pose) && corners_inside(pose) >= 20) return pose;
+      if (!shows_all(pose) && corners_inside(pose) >= 20) return pose;
     }
   }
 
@@ -155,7 +155,7 @@ class BoardCamera {
   Eigen::Vector2d project(const BoardPose& pose, double column, double row, bool* inside) const {
     const Eigen::Vector3d p = pose.R * Eigen::Vector3d(column * kBoardSquare, row * kBoardSquare, 0) + pose.t;
     Vec2 pixel(-1, -1);
-    *inside = p.z() > 0.05 && pf::project(model_, p, &pixel) && pixel[0] > 3 && pixel[1] > 3 &&
+    *inside = p.z() > 0.005 && pf::project(model_, p, &pixel) && pixel[0] > 3 && pixel[1] > 3 &&
               pixel[0] < camera_.width - 4 && pixel[1] < camera_.height - 4;
     return pixel;
   }

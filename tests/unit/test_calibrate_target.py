@@ -17,6 +17,7 @@ if not PROGRAM.exists():
 script.skip_in_cross_builds()
 
 MM = 25.4 / 72
+KNOWS_MARKERS = "was made without" not in script.run(PROGRAM, "--help")
 
 
 def page_and_squares(path):
@@ -47,10 +48,14 @@ def near(name, actual, expected, tolerance=0.001):
 
 with tempfile.TemporaryDirectory() as folder:
     target = pathlib.Path(folder) / "target.pdf"
-    for board, page, size, squares, side in (("10x7:0.025", "a4", (297.0, 210.0), 35, 25.0),
-                                             ("7x10:0.025", "a4", (210.0, 297.0), 35, 25.0),
-                                             ("9x6:0.04", "420x297", (420.0, 297.0), 27, 40.0)):
-        script.run(PROGRAM, "--print-target", target, "--board", board, "--page", page)
+    for kind, board, page, size, squares, side in (("chessboard", "10x7:0.025", "a4", (297.0, 210.0), 35, 25.0),
+                                                   ("charuco", "10x7:0.025", "a4", (297.0, 210.0), 35, 25.0),
+                                                   ("chessboard", "7x10:0.025", "a4", (210.0, 297.0), 35, 25.0),
+                                                   ("charuco", "9x6:0.04", "420x297", (420.0, 297.0), 27, 40.0)):
+        if kind == "charuco" and not KNOWS_MARKERS:
+            continue
+        print(kind, board)
+        script.run(PROGRAM, "--print-target", target, "--target", kind, "--board", board, "--page", page)
         found_size, rectangles = page_and_squares(target)
         near("page width", found_size[0], size[0], 0.01)
         near("page height", found_size[1], size[1], 0.01)
@@ -59,6 +64,10 @@ with tempfile.TemporaryDirectory() as folder:
             script.fail(f"{len(dark)} dark squares, not {squares}")
         for name, index in (("square width", 2), ("square height", 3)):
             near(name, max((r[index] for r in dark), key=lambda v: abs(v - side)), side)
+        # The dark rows of a marker's border are six modules wide: as wide as the marker.
+        borders = [r for r in rectangles if abs(r[2] - 0.7 * side) < 0.01]
+        if len(borders) < (2 * squares if kind == "charuco" else 0) or (kind == "chessboard" and borders):
+            script.fail(f"{len(borders)} borders of markers on a {kind}")
         columns = sorted({round(r[0], 3) for r in dark})
         near("columns apart", max(columns) - min(columns), (int(board.split("x")[0]) - 1) * side, 0.002)
 
