@@ -17,6 +17,10 @@ from script import BIN, BUILD, SOURCE, fail, run, skip  # noqa: E402, F401
 
 CACHE = BUILD / "guest"
 SYSROOT = SOURCE / "build" / "sysroot" / "aarch64"
+FULL_SYSROOT = SYSROOT.with_name("aarch64-full")
+# libcamera with the libraries of udev, which it asks for the devices; SDL2 with Mesa, which draws on the processor.
+FULL_PACKAGES = ("libcamera-dev", "libcamera-ipa", "libkmod2", "libcap2", "libselinux1", "libblkid1", "libacl1", "libsdl2-dev",
+                 "libegl1", "libegl-mesa0", "libgles2", "libgbm1", "libgl1-mesa-dri")
 BOOT_SECONDS = 60  # until the guest's script begins, on a busy machine
 
 
@@ -54,7 +58,9 @@ def fetch_packages():
     unpacked = CACHE / "root"
     wanted = ["./boot/vmlinuz-*", "./bin/busybox", "./usr/bin/busybox"]
     wanted += [f"./lib/modules/*/kernel/{part}/*"
-               for part in ("drivers/media", "drivers/virtio", "drivers/iio", "drivers/hid", "drivers/mfd", "fs", "net/9p")]
+               for part in ("drivers/media", "drivers/virtio", "drivers/iio", "drivers/hid", "drivers/mfd", "drivers/gpu/drm/virtio",
+                            "drivers/video/fbdev/core", "fs", "net/9p")]
+    wanted.append("./lib/modules/*/kernel/drivers/gpu/drm/drm*.ko")
     complete = unpacked / "complete"
     if complete.is_file() and complete.read_text() == "\n".join(wanted):
         return unpacked
@@ -126,18 +132,19 @@ def cross_build(*targets):
     return cross.build("aarch64", *targets, programs=True) / "bin"
 
 
-def cross_build_with(name, packages, *targets, options=()):
-    """The same with more of Debian's packages for arm64, which come into a sysroot of this name."""
-    build = CACHE / name
-    sysroot = SYSROOT.with_name(name)
-    result = subprocess.run(["bash", SOURCE / "toolchains/make_sysroot.sh", "arm64", sysroot, *packages], text=True,
+def cross_build_full(*targets):
+    """The same with all that a guest may have: libcamera, drawing and a window. Gives the folder of the programs."""
+    build = CACHE / FULL_SYSROOT.name
+    result = subprocess.run(["bash", SOURCE / "toolchains/make_sysroot.sh", "arm64", FULL_SYSROOT, *FULL_PACKAGES], text=True,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     if result.returncode != 0:
         skip(f"libraries for arm64 cannot be had here: {result.stdout.strip()[-300:]}")
     run("cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DPLANEFOLD_BUILD_TESTS=OFF",
-        f"-DCMAKE_TOOLCHAIN_FILE={SOURCE}/toolchains/aarch64.cmake", f"-DPLANEFOLD_SYSROOT={sysroot}",
-        "-DPLANEFOLD_DRAWING=OFF", *options)
+        f"-DCMAKE_TOOLCHAIN_FILE={SOURCE}/toolchains/aarch64.cmake", f"-DPLANEFOLD_SYSROOT={FULL_SYSROOT}")
     run("cmake", "--build", build, "--parallel", str(os.cpu_count()), "--target", *targets)
+    for have in ("PLANEFOLD_HAVE_LIBCAMERA", "PLANEFOLD_HAVE_SDL2"):
+        if have not in (build / "build.ninja").read_text():
+            fail(f"the cross build against {FULL_SYSROOT} has no {have}")
     return build / "bin"
 
 
@@ -191,11 +198,13 @@ poweroff -f
 """
 
 
-def boot(root, share, script, load=(), files=None, seconds=150):
+def boot(root, share, script, load=(), files=None, seconds=150, devices=(), memory=1024):
     """Runs a shell script in the guest, which sees the folder share as /share. Gives what it wrote; ends the test where it fails.
 
     load   kernel modules to bring along; those before a "/" entry are loaded at boot, all lie in /modules in order
     files  more files for the guest: {path without leading slash: path here}
+    devices  more arguments for QEMU
+    memory   of the guest [MB]
     """
     archive = Archive()
     busybox = next(root.glob("**/busybox"))
@@ -216,10 +225,10 @@ def boot(root, share, script, load=(), files=None, seconds=150):
     for name in ("run.status", "run.log"):
         (share / name).unlink(missing_ok=True)
     kernel = next(root.glob("boot/vmlinuz-*"))
-    words = ["qemu-system-aarch64", "-M", "virt", "-cpu", "cortex-a72", "-smp", "2", "-m", "1024", "-nographic", "-no-reboot",
+    words = ["qemu-system-aarch64", "-M", "virt", "-cpu", "cortex-a72", "-smp", "2", "-m", memory, "-nographic", "-no-reboot",
              "-accel", "tcg,thread=multi", "-net", "none", "-kernel", kernel, "-initrd", initramfs,
              "-append", "console=ttyAMA0 quiet panic=-1",
-             "-virtfs", f"local,path={share},mount_tag=share,security_model=none,multidevs=remap"]
+             "-virtfs", f"local,path={share},mount_tag=share,security_model=none,multidevs=remap", *devices]
     begin = time.monotonic()
     try:
         result = subprocess.run([str(word) for word in words], text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,

@@ -10,12 +10,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import guest  # noqa: E402
 import kernel_modules  # noqa: E402
 import png  # noqa: E402
-from guest import CACHE, SOURCE, fail  # noqa: E402
+from guest import CACHE, fail  # noqa: E402
 
-NAME = "aarch64-libcamera"
-SYSROOT = SOURCE / "build" / "sysroot" / NAME
-# With the libraries of udev, which libcamera asks for the devices.
-PACKAGES = ("libcamera-dev", "libcamera-ipa", "libkmod2", "libcap2", "libselinux1", "libblkid1", "libacl1")
+SYSROOT = guest.FULL_SYSROOT
 TRIPLE = "aarch64-linux-gnu"
 WIDTH, HEIGHT, FRAMES = 318, 240, 60  # libcamera makes the width of this pipeline a multiple of six
 # White, yellow, cyan, green, magenta, red, blue and black of three quarters of full brightness, as a weighted sum.
@@ -43,6 +40,18 @@ capture named 60 --source "libcamera:Sensor B" --format BGR888 --frames 10 --rec
 capture ended 8 --source libcamera:0
 capture absent 8 --source libcamera:9
 capture format 8 --source libcamera:0 --format YUYV
+
+# Unplugged after some frames, and plugged in again.
+plug=/sys/bus/platform/drivers/vimc
+unplug() {{ # once so many pictures were recorded in a folder
+  for i in $(seq 60); do [ $(ls $1/mav0/cam0/data 2>/dev/null | wc -l) -ge $2 ] && break; sleep 1; done
+  echo vimc.0 >$plug/unbind
+}}
+(unplug /tmp/unplugged 5; sleep 3; echo vimc.0 >$plug/bind) &
+capture unplug 45 --source libcamera:0 --frames 40 --record /tmp/unplugged
+# Unplugged for good: an interruption still ends the run.
+(unplug /tmp/gone 3) &
+capture gone 25 --source libcamera:0 --record /tmp/gone
 """
 
 
@@ -116,6 +125,14 @@ def check(share):
             print(f"{name}: bars {levels[0]}")
         require(all(abs(a - b) <= 2 for one in levels for a, b in zip(one, BARS)), f"{name}: bars {levels[:1]}, not {BARS}")
     require(report("ended")["captured"] > 0, "ended: no frame before the interruption")
+    live = report("unplug")
+    text = (share / "unplug" / "stderr").read_text()
+    require(live["camera"].get("departures") == 1 and "is gone" in text and "is back after" in text and live["captured"] >= 40,
+            f"unplugged, and the user reads: {text}; {live}")
+    live = report("gone")
+    text = (share / "gone" / "stderr").read_text()
+    require(live["camera"].get("departures") == 1 and "is gone" in text and (share / "gone" / "code").read_text().strip() in ("0", "1"),
+            f"gone for good, and the user reads: {text}; {live}")
     for name, words in (("absent", "no such camera"), ("format", "YUYV")):
         text = (share / name / "stderr").read_text().strip()
         print(f"{name}: {text}")
@@ -128,9 +145,7 @@ def main():
     CACHE.mkdir(parents=True, exist_ok=True)
     root = guest.fetch_packages()
     kernel_modules.with_module(root, kernel_modules.build(root, "drivers/media/test-drivers/vimc", "vimc", CONFIG_VIDEO_VIMC="m"))
-    programs = guest.cross_build_with(NAME, PACKAGES, "pf-capture")
-    if "PLANEFOLD_HAVE_LIBCAMERA" not in (CACHE / NAME / "build.ninja").read_text():
-        fail("the cross build did not find libcamera in its sysroot")
+    programs = guest.cross_build_full("pf-capture")
     with tempfile.TemporaryDirectory(prefix="planefold_") as name:
         share = pathlib.Path(name) / "share"
         share.mkdir()

@@ -117,7 +117,6 @@ def check_loop(results, pictures):
     results.require(len(set(seen)) >= 0.9 * PICTURES, f"only {len(set(seen))} of {PICTURES} pictures came out")
     live = results.report("live")
     results.require(live["tracked"] > 0, "nothing was tracked while it was recorded")
-    results.require((results.share / "live/code").read_text().strip() == "0", "an interrupted live run did not end with 0")
     results.report("again")
     for name in ("trajectory.txt", "covariance.csv", "map.ply"):
         first, second = ((results.share / folder / name).read_bytes() for folder in ("live", "again"))
@@ -136,6 +135,27 @@ def check_replay(results, root):
     worst = max((abs(float(a) - float(b)) for r, s in zip(there, here) for a, b in zip(r[1:4], s[1:4])), default=1.0)
     print(f"replayed there and here: {len(here)} poses, at most {worst:.3g} m apart")
     results.require(worst <= 1e-6, f"positions there and here differ by {worst:.3g} m")
+
+
+def check_interrupted(results):
+    """Files of runs that an interruption ended are complete: whole lines, as many frames as the report says, whole pictures."""
+    for name in ("GREY", "YUYV", "live", "unplug", "gone"):
+        folder = results.share / name
+        report = json.loads((folder / "report.json").read_text())
+        code = (folder / "code").read_text().strip()
+        results.require(code == ("0" if report["tracked"] > 0 else "1"), f"{name}: the interrupted run ended with {code}")
+        text = (folder / "frames.csv").read_text()
+        rows = text.splitlines()
+        results.require(text.endswith("\n") and len(rows) == report["frames"] + 1
+                        and len({row.count(",") for row in rows}) == 1, f"{name}: frames.csv has {len(rows)} lines, the last {rows[-1:]}")
+        poses = (folder / "trajectory_all.txt").read_text()
+        results.require(poses.endswith("\n") and all(len(line.split()) == 8 for line in poses.splitlines() if line[0] != "#"),
+                        f"{name}: trajectory_all.txt ends with {poses[-80:]}")
+    recorded = (results.share / "loop/mav0/cam0/data.csv").read_text()
+    files = sorted((results.share / "loop/mav0/cam0/data").iterdir())
+    names = sorted(line.split(",")[1] for line in recorded.splitlines() if line[0] != "#")
+    results.require(recorded.endswith("\n") and names == [path.name for path in files], "the recording's table and pictures differ")
+    results.require(all(path.read_bytes().endswith(b"IEND\xaeB`\x82") for path in files), "a picture of the recording is cut off")
 
 
 def check_unplug(results):
@@ -179,6 +199,7 @@ def main():
         check_streams(results)
         check_loop(results, pictures)
         check_replay(results, work)
+        check_interrupted(results)
         check_unplug(results)
         if results.problems:
             fail("\n  ".join([f"{len(results.problems)} found:", *results.problems]))
