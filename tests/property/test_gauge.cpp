@@ -62,7 +62,13 @@ void test_prediction_should_carry_every_direction() {
 
 void test_damping_should_carry_every_direction() {
   SeededRandom random(63);
-  carries("damp", kAll, random, [](TestFilter& filter, const std::vector<int>&) { filter->damp(Scalar(0.7)); });
+  const auto damp = [](TestFilter& filter, const std::vector<int>&) {
+    Transition transition;
+    damp_speed(filter->body(), Scalar(0.7), Mat6::Zero(), &transition);
+    for (Scalar& q : transition.Q) q = Scalar(0);
+    filter->predict(transition);
+  };
+  carries("damp", kAll, random, damp);
 }
 
 void test_steering_should_carry_shifts_and_turns() {

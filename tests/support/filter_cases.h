@@ -38,7 +38,7 @@ inline InverseDepth inverse_depth_of(SeededRandom& random, const Vec3& p_W, cons
   const Vec3 d = p_W - o_W;
   InverseDepth feature;
   const Vec3 roll(0, 0, static_cast<Scalar>(random.uniform(-3, 3)));
-  feature.q_b = turn_z_to(d) * exp_so3(roll);
+  feature.q_b = turn_z_to(d.normalized()) * exp_so3(roll);
   feature.q_b.normalize();
   feature.rho = Scalar(1) / d.norm();
   return feature;

@@ -103,6 +103,41 @@ void test_prediction_should_be_f_p_ft_plus_q() {
   TEST_ASSERT_TRUE(difference(scene.filter.P(), expected) < kExact);
 }
 
+/// A camera that coasts: its speed goes on, or ends at once. Both must be within what the filter expects, for a whole second.
+void test_damping_should_leave_room_for_both_when_a_speed_goes_on_and_when_it_ends() {
+  SeededRandom random(93);
+  constexpr Scalar kDt = Scalar(1.0 / 30), kFactor = Scalar(0.875);
+  for (int trial = 0; trial < 10; ++trial) {
+    TestFilter filter(true);
+    Scalar covariance[Body::kMaxDim * Body::kMaxDim] = {};
+    for (int i = 0; i < Body::kMaxDim; ++i) covariance[i * Body::kMaxDim + i] = Scalar(1e-6);
+    Body start = random_body(random);
+    start.q_WC = Quat::Identity();
+    filter->set_body(start, covariance);
+    for (int frame = 1; frame <= 30; ++frame) {
+      Mat6 P_speed;
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) P_speed(i, j) = filter->covariance()(Body::kVelocity + i, Body::kVelocity + j);
+      Transition t;
+      damp_speed(filter->body(), kFactor, P_speed, &t);
+      filter->predict(t);
+      predict_constant_velocity(filter->body(), kDt, {Scalar(0.01), Scalar(0.01)}, &t);
+      filter->predict(t);
+      const Scalar elapsed = kDt * static_cast<Scalar>(frame);
+      const Vec3 gone = filter->state().body.p_W - start.p_W;
+      const Vec3 way = start.v_W.normalized();
+      Scalar variance = 0;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          variance += way(i) * way(j) * filter->covariance()(Body::kPosition + i, Body::kPosition + j);
+      const Scalar sigma = std::sqrt(variance);
+      TEST_ASSERT_TRUE((start.v_W * elapsed - gone).norm() < 3 * sigma);
+      TEST_ASSERT_TRUE(gone.norm() < 3 * sigma);
+    }
+    TEST_ASSERT_TRUE(filter->state().body.v_W.norm() < Scalar(0.1) * start.v_W.norm());
+  }
+}
+
 void test_a_full_filter_should_refuse_new_blocks_and_stay_as_it_is() {
   SeededRandom random(93);
   TestFilter filter(true, Body::kMaxDim, 32, 6);
@@ -126,6 +161,7 @@ int main(void) {
   RUN_TEST(test_an_anchor_should_go_with_the_last_feature_that_needs_it);
   RUN_TEST(test_conversion_should_leave_the_covariance_that_its_jacobians_say);
   RUN_TEST(test_prediction_should_be_f_p_ft_plus_q);
+  RUN_TEST(test_damping_should_leave_room_for_both_when_a_speed_goes_on_and_when_it_ends);
   RUN_TEST(test_a_full_filter_should_refuse_new_blocks_and_stay_as_it_is);
   return UNITY_END();
 }

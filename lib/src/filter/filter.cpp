@@ -82,16 +82,6 @@ void Filter::steer(const Vec3& dv_C, const Vec3& dw_C) {
   kernels_->predict(P_, turn.F, turn.Q, turn.dim);
 }
 
-void Filter::damp(Scalar factor) {
-  PF_ASSERT(state_.body_dim == Body::kMaxDim);
-  state_.body.v_W *= factor;
-  state_.body.w_C *= factor;
-  Transition shrink = {};
-  shrink.dim = Body::kMaxDim;
-  for (int i = 0; i < shrink.dim; ++i) shrink.F[i * shrink.dim + i] = i < Body::kVelocity ? Scalar(1) : factor;
-  kernels_->predict(P_, shrink.F, shrink.Q, shrink.dim);
-}
-
 int Filter::take_slot(BlockKind kind, int size) {
   const int slot = state_.find_free();
   if (slot < 0 || state_.dim + size > most_rows_) return -1;

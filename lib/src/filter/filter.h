@@ -74,8 +74,6 @@ class Filter {
   // --- predict
   /// Known change of the velocities, in camera axes:  v_W += R_WC dv,  w_C += dw;  e_v -= [R_WC dv]x theta.
   void steer(const Vec3& dv_C, const Vec3& dw_C);
-  /// Velocities and their errors shrink by a factor of 0 .. 1, which turns and scales with the world as they do.
-  void damp(Scalar factor);
   void predict(const Transition& transition);
 
   // --- augment; -1 where there is no room

@@ -45,6 +45,20 @@ void predict_constant_velocity(Body& body, Scalar dt, const MotionNoise& noise, 
   set_block(transition->Q, kDim, Body::kRate, Body::kRate, b * d1 * I);
 }
 
+void damp_speed(Body& body, Scalar factor, const Mat6& P_m, Transition* transition) {
+  constexpr int kDim = Body::kMaxDim, kSpeed = Body::kVelocity;
+  clear(transition, kDim);
+  Vec6 m;
+  m << body.v_W, body.w_C;
+  for (int i = 0; i < 6; ++i) {
+    transition->F[(kSpeed + i) * kDim + kSpeed + i] = factor;
+    for (int j = 0; j < 6; ++j)
+      transition->Q[(kSpeed + i) * kDim + kSpeed + j] = (Scalar(1) - factor * factor) * (P_m(i, j) + m(i) * m(j));
+  }
+  body.v_W *= factor;
+  body.w_C *= factor;
+}
+
 void predict_constant_position(Body&, Scalar dt, const MotionNoise& noise, Transition* transition) {
   constexpr int kDim = Body::kPoseDim;
   clear(transition, kDim);

@@ -26,6 +26,13 @@ struct Transition {
 /// Turning or scaling the world before and after is the same thing, so gauge directions go to gauge directions.
 void predict_constant_velocity(Body& body, Scalar dt, const MotionNoise& noise, Transition* transition);
 
+/// Speeds m = (v, w) that shrink by a factor f of 0 .. 1 and keep their second moment: what leaves the mean becomes noise,
+///
+///   m+ = f m,   e_m+ = f e_m,   Q = (1 - f^2)(P_m + m m^T)
+///
+/// so that a speed that goes on and one that ends are both expected. P_m 6x6 is their covariance.
+void damp_speed(Body& body, Scalar factor, const Mat6& P_m, Transition* transition);
+
 /// Random walk of the pose (Gee 2007, eq 1): R+ = Exp(w_theta) R, p+ = p + w_p, with variances density^2 dt.
 /// The paper's Euler angles become a rotation vector, which is the same to first order in the noise.
 void predict_constant_position(Body& body, Scalar dt, const MotionNoise& noise, Transition* transition);

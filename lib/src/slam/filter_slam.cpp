@@ -106,6 +106,7 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
   if (used() && t_ns <= report_.t_ns) return false;
   const std::int64_t before = report_.t_ns;
   const int frames = report_.frames;
+  const bool unseen = report_.inliers == 0;
   report_ = FrameReport();
   report_.t_ns = t_ns;
   report_.frames = frames;
@@ -123,7 +124,7 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
   if (state_ == SlamState::kCoasting || state_ == SlamState::kLost) {
     // A hand does not keep its speed for long, and what is known of the turn to half a radian is enough to search everywhere:
     // without this, one second without a picture would carry the camera out of the room.
-    if (settings_.constant_velocity) filter_.damp(std::exp(-dt / kHandSeconds));
+    if (settings_.constant_velocity && unseen) damp(dt);
     if (filter_.variance(Body::kTheta) > kMostTurn * kMostTurn) noise.linear = noise.angular = Scalar(0);
   }
   Transition transition;
@@ -138,6 +139,16 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
   steering_w_C_.setZero();
   if (!filter_.body_is_sound()) start_over();
   return true;
+}
+
+/// A hand's speed decays while nothing is measured.
+void FilterSlam::damp(Scalar dt) {
+  Mat6 P_speed;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) P_speed(i, j) = filter_.covariance()(Body::kVelocity + i, Body::kVelocity + j);
+  Transition transition;
+  damp_speed(filter_.body(), std::exp(-dt / kHandSeconds), P_speed, &transition);
+  filter_.predict(transition);
 }
 
 /// The estimate is no estimate any more: everything that came from it goes. What the caller said of the first pose is not true
@@ -231,6 +242,19 @@ bool FilterSlam::take_in(int first, int count) {
   return true;
 }
 
+/// H P H^T of a predicted pixel. Adds to its second-order noise what the projection bends over the spread of the pose: with an
+/// angle of s = sqrt(lambda / f^2) the tangent leaves out about f s^2, as noise f^2 s^4 / 2. The smaller eigenvalue counts: the
+/// larger may be of the depth, in which an inverse-depth point is linear.
+Mat2 FilterSlam::expected_innovation(Observation* o) const {
+  const Mat2 S = filter_.innovation(*o);
+  const Scalar half = (S(0, 0) - S(1, 1)) / 2;
+  const Scalar lambda = (S(0, 0) + S(1, 1)) / 2 - std::sqrt(half * half + S(0, 1) * S(0, 1));
+  const Scalar bend = lambda * lambda / (2 * settings_.camera.fx * settings_.camera.fy);
+  o->second_order(0, 0) += bend;
+  o->second_order(1, 1) += bend;
+  return S;
+}
+
 Status FilterSlam::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
   if (takes_images_only()) return Status::kState;
   if (!begin_frame(t_ns)) return Status::kTime;
@@ -258,9 +282,10 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
         count_frame(&feature.failures);
         continue;
       }
+      const Mat2 spread = expected_innovation(&o);
       o.measured = observations[i].pixel;
       o.noise = Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order;
-      const Mat2 S = filter_.innovation(o) + o.noise;
+      const Mat2 S = spread + o.noise;
       const Scalar nis = squared_distance(o.measured - o.predicted, S);
       const bool agrees = nis < settings_.gate;
       tracks_[track_count_++] = {entry,

@@ -86,6 +86,7 @@ class FilterSlam {
   void begin_from_knowledge();
   int find_track(std::uint32_t track) const;
   bool take_in(int first, int count);
+  void damp(Scalar dt);
   void start_over();
   void begin_filter();
 
@@ -122,6 +123,7 @@ class FilterSlam {
   void predict_pixels(int first, int count);
   int search(int first, int count);
   void measure(int first, int count);
+  Mat2 expected_innovation(Observation* o) const;
   Scalar widest_ellipse(int count) const;
   void begin_features_in_image();
 

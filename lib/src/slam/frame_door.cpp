@@ -121,9 +121,10 @@ void FilterSlam::predict_pixels(int first, int count) {
       track.innovation.setZero();
       continue;
     }
+    const Mat2 spread = expected_innovation(&o);
     o.noise = Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order;
     track.predicted = o.predicted;
-    track.innovation = filter_.innovation(o) + o.noise;
+    track.innovation = spread + o.noise;
   }
 }
 
