@@ -1,7 +1,6 @@
-#include "camera.h"
-
 #include <cstdio>
-#include <nlohmann/json.hpp>
+
+#include "camera_device.h"
 
 #ifdef PLANEFOLD_HAVE_LIBCAMERA
 #include <planefold_platform/libcamera.h>
@@ -13,122 +12,51 @@ namespace pf::capture {
 
 namespace {
 
-class LibcameraCamera : public Camera {
- public:
-  explicit LibcameraCamera(pf_libcamera_t* camera) : camera_(camera, pf_libcamera_close) {}
+struct Libcamera {
+  using Device = pf_libcamera_t;
+  using Options = pf_libcamera_options_t;
+  using Frame = pf_libcamera_frame_t;
+  using Info = pf_libcamera_info_t;
+  static constexpr size_t kMessage = PF_LIBCAMERA_MESSAGE;
+  static constexpr uint32_t kFormats = PF_LIBCAMERA_FORMATS;
+  static constexpr int kNothing = PF_LIBCAMERA_NOTHING, kFrame = PF_LIBCAMERA_FRAME, kGone = PF_LIBCAMERA_GONE;
+  static constexpr auto options_default = pf_libcamera_options_default;
+  static constexpr auto format_name = pf_libcamera_format_name;
+  static constexpr auto open = pf_libcamera_open;
+  static constexpr auto close = pf_libcamera_close;
+  static constexpr auto start = pf_libcamera_start;
+  static constexpr auto read = pf_libcamera_read;
+  static constexpr auto release = pf_libcamera_release;
+  static constexpr auto come_back = pf_libcamera_return;
+  static constexpr auto get_info = pf_libcamera_get_info;
+  static constexpr const char* kStamps[] = {"arrival", "buffer", "sensor"};
 
-  bool start(std::string& error) override {
-    char message[PF_LIBCAMERA_MESSAGE] = "";
-    const bool done = pf_libcamera_start(camera_.get(), message) == 0;
-    error = message;
-    return done;
+  static std::string id(const Info& info) { return info.device.id; }
+  static nlohmann::ordered_json describe(const Info& info) {
+    return {{"name", info.device.model}, {"libcamera", pf_libcamera_version()}, {"format", format_name(info.format)}};
   }
-
-  CameraRead next(int timeout_ms, CameraFrame& frame, std::string& message) override {
-    char text[PF_LIBCAMERA_MESSAGE] = "";
-    pf_libcamera_frame_t taken{};
-    switch (pf_libcamera_read(camera_.get(), timeout_ms, &taken, text)) {
-      case PF_LIBCAMERA_FRAME:
-        frame = CameraFrame{};
-        frame.image = taken.image;
-        frame.arrived_ns = taken.arrived_ns;
-        frame.number = number_++;
-        frame.handle = taken.buffer;
-        return CameraRead::kFrame;
-      case PF_LIBCAMERA_NOTHING:
-        return CameraRead::kNothing;
-      case PF_LIBCAMERA_GONE:
-        message = text;
-        return CameraRead::kGone;
-      default:
-        message = text;
-        return CameraRead::kFailed;
-    }
-  }
-
-  void release(const CameraFrame& frame) override {
-    pf_libcamera_frame_t taken{};
-    taken.buffer = frame.handle;
-    pf_libcamera_release(camera_.get(), &taken);
-  }
-
-  bool come_back() override { return pf_libcamera_return(camera_.get(), nullptr) == 0; }
-
-  std::string name() const override { return info().device.id; }
-
-  std::string report() const override {
-    constexpr const char* kStamps[] = {"arrival", "buffer", "sensor"};
-    const pf_libcamera_info_t i = info();
-    const nlohmann::ordered_json json = {{"device", i.device.id},
-                                         {"name", i.device.model},
-                                         {"libcamera", pf_libcamera_version()},
-                                         {"format", pf_libcamera_format_name(i.format)},
-                                         {"stride", i.stride},
-                                         {"rate_hz", i.rate_hz},
-                                         {"exposure_s", i.exposure_s},
-                                         {"buffers", i.buffers},
-                                         {"timestamps", kStamps[i.stamp <= PF_LIBCAMERA_STAMP_SENSOR ? i.stamp : 0]},
-                                         {"direct", i.direct != 0},
-                                         {"frames", i.frames},
-                                         {"lost", i.lost},
-                                         {"damaged", i.damaged},
-                                         {"departures", i.departures}};
-    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  }
-
- private:
-  pf_libcamera_info_t info() const {
-    pf_libcamera_info_t info{};
-    pf_libcamera_get_info(camera_.get(), &info);
-    return info;
-  }
-
-  std::unique_ptr<pf_libcamera_t, void (*)(pf_libcamera_t*)> camera_;
-  int64_t number_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<Camera> open_libcamera_camera(const Options& options, const pf_camera_t& camera, double& rate_hz,
                                               std::string& error) {
-  char message[PF_LIBCAMERA_MESSAGE] = "";
-  pf_libcamera_options_t wanted{};
-  pf_libcamera_options_default(&wanted);
-  wanted.width = camera.width;
-  wanted.height = camera.height;
-  wanted.rate_hz = options.rate_hz > 0.0 ? options.rate_hz : rate_hz;
-  wanted.exposure_s = 1e-6 * options.exposure_us;
-  wanted.lock_focus = options.focus >= -1 ? 1 : 0;
   if (options.focus >= 0) {
     error =
         "--focus " + std::to_string(options.focus) + ": libcamera has no steps; --focus -1 holds the lens where it is";
     return nullptr;
   }
-  for (uint32_t f = 0; f < PF_LIBCAMERA_FORMATS; ++f) {
-    wanted.format = options.format == pf_libcamera_format_name(f) ? f : wanted.format;
-  }
-  pf_libcamera_t* opened = nullptr;
-  const std::string where = options.source.substr(options.source.find(':') + 1);
-  if (pf_libcamera_open(where.c_str(), &wanted, &opened, message) != 0) {
-    error = message;
-    return nullptr;
-  }
+  const pf_libcamera_options_t wanted = device_options<Libcamera>(options, camera, rate_hz);
   rate_hz = wanted.rate_hz;
-  return std::make_unique<LibcameraCamera>(opened);
+  return open_device<Libcamera>(options, wanted, error);
 }
 
 int list_libcamera_cameras() {
   pf_libcamera_device_t devices[32];
   const int count = pf_libcamera_list(devices, 32);
   for (int i = 0; i < count && i < 32; ++i) {
-    std::string formats;
-    for (uint32_t f = 1; f < PF_LIBCAMERA_FORMATS; ++f) {
-      if ((devices[i].formats & (1u << f)) != 0) {
-        formats += std::string(formats.empty() ? "" : " ") + pf_libcamera_format_name(f);
-      }
-    }
-    std::printf("camera  libcamera:%-9d %s (%s)  %s\n", i, devices[i].id, devices[i].model,
-                formats.empty() ? "no format that is known here" : formats.c_str());
+    const std::string formats = format_names<Libcamera>(devices[i].formats);
+    std::printf("camera  libcamera:%-9d %s (%s)  %s\n", i, devices[i].id, devices[i].model, formats.c_str());
   }
   return count;
 }

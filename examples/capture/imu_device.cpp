@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "notices.h"
 #include "steady.h"
 #endif
 
@@ -74,15 +75,7 @@ class ImuDevice : public Imu {
     }
   }
 
-  bool take_notice(std::string& notice) override {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (notices_.empty()) {
-      return false;
-    }
-    notice = notices_.front();
-    notices_.pop_front();
-    return true;
-  }
+  bool take_notice(std::string& notice) override { return notices_.take(notice); }
 
   std::string name() const override { return name_; }
   double gyro_range() const override { return gyro_range_; }
@@ -124,13 +117,13 @@ class ImuDevice : public Imu {
       } else if (read == PF_IIO_NOTHING) {
         if (!silent && steady_ns() - last_ns > kSilentNs) {
           silent = true;
-          notify(name() + ": no sample for 2 s; the unit is there, but gives nothing");
+          notices_.add(name() + ": no sample for 2 s; the unit is there, but gives nothing");
         }
       } else if (read == PF_IIO_GONE) {
         wait_for_return(message);
         last_ns = steady_ns();
       } else {
-        notify(std::string(message) + "; going on without inertial samples");
+        notices_.add(std::string(message) + "; going on without inertial samples");
         break;
       }
     }
@@ -158,22 +151,17 @@ class ImuDevice : public Imu {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       pf_iio_get_info(imu_.get(), &info_);
-      notices_.push_back(message + " Going on when it is back");
+      notices_.add(message + " Going on when it is back");
     }
     while (!stop_) {
       if (pf_iio_return(imu_.get(), nullptr) == 0) {
         char text[160];
         std::snprintf(text, sizeof(text), " is back after %.1f s", 1e-9 * static_cast<double>(steady_ns() - since_ns));
-        notify(name() + text);
+        notices_.add(name() + text);
         return;
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
-  }
-
-  void notify(const std::string& notice) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    notices_.push_back(notice);
   }
 
   std::unique_ptr<pf_iio_t, void (*)(pf_iio_t*)> imu_;
@@ -183,10 +171,10 @@ class ImuDevice : public Imu {
   std::thread thread_;
   std::atomic<bool> stop_{false};
 
+  Notices notices_;
   mutable std::mutex mutex_;  ///< of what follows
   std::condition_variable changed_;
   std::deque<pf_imu_sample_t> waiting_;
-  std::deque<std::string> notices_;
   pf_iio_info_t info_{};
   int64_t last_t_ns_ = INT64_MIN, last_until_ns_ = INT64_MIN, overflown_ = 0;
   int waited_in_vain_ = 0;

@@ -68,8 +68,8 @@ void ImuFeed::push_until(int64_t t_ns, pf_slam_t* slam) {
   imu_->take(t_ns, samples_);
   pushed_ += static_cast<int64_t>(samples_.size());
   if (++frames_ == kPatience && pushed_ == 0) {
-    notices_.push_back(imu_->name() + ": no sample before any of " + std::to_string(kPatience) +
-                       " frames; are its times on the camera's clock? (--imu-offset)");
+    notices_.add(imu_->name() + ": no sample before any of " + std::to_string(kPatience) +
+                 " frames; are its times on the camera's clock? (--imu-offset)");
   }
   // One at a time: what is wrong with one of them is no reason to do without the others.
   for (const pf_imu_sample_t& sample : samples_) {
@@ -78,18 +78,13 @@ void ImuFeed::push_until(int64_t t_ns, pf_slam_t* slam) {
       recorder_.add(sample);
       offset_.add(sample);
     } else if (refused_++ == 0) {
-      notices_.push_back(imu_->name() + ": the library refused a sample: " + pf_status_text(status));
+      notices_.add(imu_->name() + ": the library refused a sample: " + pf_status_text(status));
     }
   }
 }
 
 bool ImuFeed::take_notice(std::string& notice) {
-  if (!notices_.empty()) {
-    notice = notices_.front();
-    notices_.erase(notices_.begin());
-    return true;
-  }
-  return imu_ != nullptr && imu_->take_notice(notice);
+  return notices_.take(notice) || (imu_ != nullptr && imu_->take_notice(notice));
 }
 
 std::string ImuFeed::report(const pf_slam_t* slam, std::string& advice) const {

@@ -7,6 +7,7 @@
 
 #include "imu.h"
 #include "imu_recorder.h"
+#include "notices.h"
 #include "time_offset.h"
 
 namespace pf::capture {
@@ -37,7 +38,7 @@ class ImuFeed {
   ImuRecorder recorder_;
   TimeOffsetEstimator offset_;
   std::vector<pf_imu_sample_t> samples_;
-  std::vector<std::string> notices_;
+  Notices notices_;
   double offset_s_ = 0.0;
   int64_t frames_ = 0, pushed_ = 0, refused_ = 0;
 };

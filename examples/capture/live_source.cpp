@@ -105,25 +105,11 @@ void LiveSource::pushed() {
   latency_ms_.push_back(1e-6 * static_cast<double>(steady_ns() - current_.frame.arrived_ns));
 }
 
-bool LiveSource::take_notice(std::string& notice) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (notices_.empty()) {
-    return false;
-  }
-  notice = notices_.front();
-  notices_.pop_front();
-  return true;
-}
-
-void LiveSource::notify(const std::string& notice) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  notices_.push_back(notice);
-}
-
 /// The capture thread.
 void LiveSource::capture() {
   if (!place_thread(processor_, priority_ > 0 ? priority_ + 1 : 0)) {
-    notify("the capture thread keeps its usual place: processor or priority were refused (root, or RLIMIT_RTPRIO)");
+    notices_.add(
+        "the capture thread keeps its usual place: processor or priority were refused (root, or RLIMIT_RTPRIO)");
   }
   int64_t last_ns = steady_ns();
   bool silent = false;
@@ -140,7 +126,7 @@ void LiveSource::capture() {
       case CameraRead::kNothing:
         if (!silent && steady_ns() - last_ns > kSilentNs) {
           silent = true;
-          notify(info_.device + ": no frame for 2 s; the camera is there, but gives nothing");
+          notices_.add(info_.device + ": no frame for 2 s; the camera is there, but gives nothing");
         }
         if (captured_ == 0 && steady_ns() - last_ns > kMuteNs) {
           message = info_.device + ": not one frame in 10 s; does the camera work in another program?";
@@ -219,7 +205,7 @@ void LiveSource::deliver(const CameraFrame& frame) {
 /// false: the run was stopped meanwhile.
 bool LiveSource::wait_for_return(const std::string& message) {
   const int64_t since_ns = steady_ns();
-  notify(message + " The pose coasts; going on when it is back");
+  notices_.add(message + " The pose coasts; going on when it is back");
   while (!stop_) {
     take_back();
     bool free = false;
@@ -230,7 +216,7 @@ bool LiveSource::wait_for_return(const std::string& message) {
     if (free && camera_->come_back()) {
       char text[160];
       std::snprintf(text, sizeof(text), " is back after %.1f s", 1e-9 * static_cast<double>(steady_ns() - since_ns));
-      notify(camera_->name() + text);
+      notices_.add(camera_->name() + text);
       return true;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(kWaitMs));

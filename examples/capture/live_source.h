@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera.h"
+#include "notices.h"
 #include "recorder.h"
 #include "source.h"
 
@@ -36,7 +37,7 @@ class LiveSource : public Source {
   bool is_live() const override { return true; }
   bool record_to(Recorder& recorder) override;
   void pushed() override;
-  bool take_notice(std::string& notice) override;
+  bool take_notice(std::string& notice) override { return notices_.take(notice); }
   std::string finish() override;
 
  private:
@@ -52,7 +53,6 @@ class LiveSource : public Source {
   void deliver(const CameraFrame& frame);
   void take_back();
   bool wait_for_return(const std::string& message);
-  void notify(const std::string& notice);
 
   std::unique_ptr<Camera> camera_;
   SourceInfo info_;
@@ -69,7 +69,7 @@ class LiveSource : public Source {
   size_t waiting_bytes_ = 0;
   bool ended_ = false;
   std::string failure_;
-  std::deque<std::string> notices_;
+  Notices notices_;
   int64_t captured_ = 0, passed_over_ = 0, last_t_ns_ = 0;
   std::vector<double> interval_ms_;
   int outstanding_ = 0;

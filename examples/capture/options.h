@@ -38,6 +38,7 @@ struct Options {
   // Cameras, and what is played as if it came from one.
   std::string record;
   std::string format = "any";
+  double readout_s = -1.0;   ///< negative: as the calibration says
   double rate_hz = 0.0;      ///< 0: as the calibration or the camera says
   double exposure_us = 0.0;  ///< 0: automatic
   int32_t focus = -2;        ///< -1: locked where it is; -2: left alone

@@ -45,6 +45,9 @@ void write_calibration(std::FILE* file, const pf_camera_t& camera) {
     std::fprintf(file, "%s%.17g", i == 0 ? "" : ", ", camera.distortion[i]);
   }
   std::fprintf(file, "]\n");
+  if (camera.readout_s > 0.0) {
+    std::fprintf(file, "readout_s: %.17g\n", camera.readout_s);
+  }
 }
 
 }  // namespace

@@ -28,6 +28,9 @@ void write_sensor(std::FILE* file, const pf_camera_t& camera, double rate_hz) {
     std::fprintf(file, "%s%.17g", i == 0 ? "" : ", ", camera.distortion[i]);
   }
   std::fprintf(file, "]\n");
+  if (camera.readout_s > 0.0) {
+    std::fprintf(file, "readout_s: %.17g\n", camera.readout_s);
+  }
 }
 
 /// 8-bit grey, not compressed. false: errno says why.

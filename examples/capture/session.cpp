@@ -27,6 +27,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     return false;
   }
   config_.camera = source.info().camera;
+  if (options.readout_s >= 0.0) config_.camera.readout_s = options.readout_s;
   config_.kernels = static_cast<uint32_t>(options.kernels);
   config_.keep_gauge = options.keep_gauge ? 1 : 0;
   config_.planes = options.planes ? 1 : 0;

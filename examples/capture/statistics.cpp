@@ -68,7 +68,8 @@ Json camera_json(const pf_camera_t& camera) {
           {"fx", camera.fx},
           {"fy", camera.fy},
           {"cx", camera.cx},
-          {"cy", camera.cy}};
+          {"cy", camera.cy},
+          {"readout_s", camera.readout_s}};
 }
 
 }  // namespace
