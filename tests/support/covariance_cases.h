@@ -75,6 +75,17 @@ struct Thin {
   }
 };
 
+/// Rows from kDenseRows on keep up to three columns and are zero else, as shifts of planes are.
+inline void keep_few(Random& random, Thin& U) {
+  std::vector<bool> kept(static_cast<std::size_t>(U.columns), false);
+  for (int i = random.integer(0, 3); i > 0; --i) kept[random.integer(0, U.columns - 1)] = true;
+  for (int i = pf::Kernels::kDenseRows; i < U.rows; ++i) {
+    for (int j = 0; j < U.columns; ++j) {
+      if (!kept[j]) U.at(i, j) = 0;
+    }
+  }
+}
+
 /// A triangle over its own NaN-filled memory; what belongs to rows below n is finite, as augment leaves it.
 struct Covariance {
   Buffer values;

@@ -59,6 +59,7 @@ inline Problem draw(Random& random, int largest) {
   }
   for (int i = 0; i < p.m; ++i) p.noise.push_back(random.uniform(0.1, 1));
   p.U.randomise(random, 0.01);
+  if (random.integer(0, 3) > 0) keep_few(random, p.U);
   p.G.randomise(random, 0.01);
   const int b = random.integer(1, std::min(n, 15));
   p.F = random_block(random, b, 0.3);

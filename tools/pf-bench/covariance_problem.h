@@ -8,8 +8,9 @@ namespace bench {
 
 using pf::Scalar;
 
-constexpr int kBody = 13;  ///< rows of the body block
-constexpr int kPoint = 3;  ///< rows of a feature, and of a plane
+constexpr int kBody = 13;   ///< rows of the body block
+constexpr int kPoint = 3;   ///< rows of a feature, and of a plane
+constexpr int kPlanes = 4;  ///< whose heights the shifts of the transport move, all over the state
 
 /// Memory that begins at a multiple of 64 bytes.
 class Aligned {

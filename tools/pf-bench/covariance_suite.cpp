@@ -163,7 +163,7 @@ class CovarianceSuite {
                                            options_.repetitions);
     add("update, half considered", n, m, us[1], "update", us[0]);
     add("update, transport of 4", n, m, us[2], "update", us[0]);
-    add("update, transport of 7", n, m, us[4], "update", us[0]);
+    add("update, transport with 4 planes", n, m, us[4], "update", us[0]);
     add("update, half, transport of 4", n, m, us[3], "update, half considered", us[1]);
   }
 

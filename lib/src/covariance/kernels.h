@@ -41,6 +41,7 @@ constexpr int padded(int n) {
 
 struct Kernels {
   static constexpr int kMaxLeading = 32;
+  static constexpr int kDenseRows = 4;    ///< of U; rows behind them cost nothing where whole tiles of them are zero
   static constexpr int kMostMoved = 128;  ///< blocks in one transform_many
 
   /// out (rows x n) = J P, for rows of J that touch few columns. out has leading dimension ld.
@@ -54,7 +55,8 @@ struct Kernels {
 
   /// P -= W^T W (W: m x n), then, where k > 0, P += U^T G + G^T U (U, G: k x n), in one pass over the triangle.
   /// Rows and columns held_first .. held_end - 1 are considered (Schmidt): where i and j both lie among them the first term is left
-  /// out; the second is always applied. held_end <= held_first is the plain update.
+  /// out; the second is always applied. held_end <= held_first is the plain update. Rows of U from kDenseRows on should be zero but
+  /// for a few columns, as the shifts of planes are: tiles that they do not touch leave them out.
   void (*downdate)(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int held_first,
                    int held_end);
 

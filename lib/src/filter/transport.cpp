@@ -11,12 +11,14 @@
 ///   rows of V:  turn E_theta,  log scale l,  shift E_p + [p]x E_theta - p l         (body p at x-)
 ///   with P1 = P - W^T W:   M P1 M^T = P1 + U^T G + G^T U,   G = V P1 + (V P1 V^T) U / 2
 ///
-/// Shifts are the same at every x but for planes, whose distance moves by n . t: without planes they need no rows.
+/// Shifts are the same at every x but for planes, whose distance moves by n . t: without planes they need no rows. With them their rows
+/// of U come last, zero but for the heights of planes, and the downdate spends nothing on what is zero.
 
 namespace pf {
 namespace {
 
 constexpr int kTurn = 0, kScale = 3, kShift = 4;
+static_assert(kShift == Kernels::kDenseRows);
 
 /// A row of a Jacobian times a dense row.
 Scalar dot(const SparseRows& row, const Scalar* dense) {

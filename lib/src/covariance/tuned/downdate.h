@@ -13,14 +13,45 @@ struct Thin {
   const Scalar* G;
   int k;
   std::ptrdiff_t ld;
-  bool far;  ///< the triangle is too large for the caches near the core: ask for it early
+  const unsigned char* touched;  ///< see below
+  bool far;                      ///< the triangle is too large for the caches near the core: ask for it early
+};
+
+/// Which groups of columns hold anything in the rows of U behind the dense ones; those far behind count as if they did.
+struct Touched {
+  static constexpr int kGroups = 256;
+  unsigned char any[kGroups];
+
+  PF_INLINE void find(const Scalar* U, int k, std::ptrdiff_t ld, int groups) {
+    for (int q = 0; q < smaller(groups, kGroups); ++q) {
+      any[q] = 0;
+      for (int r = Kernels::kDenseRows; r < k; ++r) {
+        const Scalar* row = U + r * ld + q * kGroup;
+        for (int j = 0; j < kGroup; ++j) any[q] |= static_cast<unsigned char>(row[j] != 0);
+      }
+    }
+  }
+};
+
+/// How many rows of U count in groups first .. end - 1.
+PF_INLINE int depth_of(const Thin& t, int first, int end) {
+  if (t.k <= Kernels::kDenseRows || end > Touched::kGroups) return t.k;
+  unsigned char any = 0;
+  for (int q = first; q < end; ++q) any |= t.touched[q];
+  return any != 0 ? t.k : Kernels::kDenseRows;
+}
+
+/// Rows of U to take for a tile, by what it holds in the tile's rows and in its columns.
+struct Depth {
+  int rows, columns;
 };
 
 /// Tile (8 rows of a group from row i) x (columns from j):  P -= A^T B - U^T G - G^T U, the sum formed in registers from zero, so that
 /// each element of P is rounded once. A and B are W's columns from i and from j, or stand-ins for them.
 template <class V, int kVectors>
-PF_INLINE void downdate_tile(const Thin& t, const Scalar* A, std::ptrdiff_t a_stride, const Scalar* B,
-                             std::ptrdiff_t b_stride, Scalar* to, std::ptrdiff_t stride, int i, int j) {
+PF_INLINE void downdate_tile(const Thin& t, const Depth& depth, const Scalar* A, std::ptrdiff_t a_stride,
+                             const Scalar* B, std::ptrdiff_t b_stride, Scalar* to, std::ptrdiff_t stride, int i,
+                             int j) {
 #pragma GCC unroll 1
   for (int half = 0; half < kGroup; half += kTileRows) {
     Tile<V, kTileRows, kVectors> tile;
@@ -28,8 +59,8 @@ PF_INLINE void downdate_tile(const Thin& t, const Scalar* A, std::ptrdiff_t a_st
     tile.zero();
     tile.accumulate(A + half, 1, a_stride, B, b_stride, t.m);
     if (t.k > 0) {
-      tile.template accumulate<true>(t.U + i + half, 1, t.ld, t.G + j, t.ld, t.k);
-      tile.template accumulate<true>(t.G + i + half, 1, t.ld, t.U + j, t.ld, t.k);
+      tile.template accumulate<true>(t.U + i + half, 1, t.ld, t.G + j, t.ld, depth.rows);
+      tile.template accumulate<true>(t.G + i + half, 1, t.ld, t.U + j, t.ld, depth.columns);
     }
     tile.subtract_from(to + half * stride, stride);
   }
@@ -59,14 +90,17 @@ inline void downdate_part(const Triangle& P, const Thin& t, int first_group, int
   for (int block = first_group; block < last_group; block += kBlock) {
     const int end = smaller(block + kBlock, last_group);
     const int reach = smaller(last, end * kGroup);
+    int depth[kBlock];
+    for (int q = block; q < end; ++q) depth[q - block] = depth_of(t, q, q + 1);
     for (int j = first; j < reach; j += kColumns) {
+      const int depth_across = depth_of(t, j / kGroup, round_up(smaller(j + kColumns, reach), kGroup) / kGroup);
       for (int q = block > j / kGroup ? block : j / kGroup; q < end; ++q) {
         const std::ptrdiff_t stride = kGroup * (q + 1);
         const int columns = smaller(kColumns, smaller(last, kGroup * (q + 1)) - j);
         Scalar* rows = P.data + group_offset(q);
         for_strips(j, columns, [&](auto v, auto count, int at) PF_LAMBDA {
-          downdate_tile<decltype(v), decltype(count)::value>(t, t.W + q * kGroup, t.ld, t.W + at, t.ld, rows + at,
-                                                             stride, q * kGroup, at);
+          downdate_tile<decltype(v), decltype(count)::value>(t, {depth[q - block], depth_across}, t.W + q * kGroup,
+                                                             t.ld, t.W + at, t.ld, rows + at, stride, q * kGroup, at);
         });
         if (j + columns == stride) clear_upper(P, q);
       }

@@ -105,8 +105,9 @@ inline void downdate_border(const Triangle& P, const Thin& all, int held_first, 
         const std::ptrdiff_t stride = kGroup * (q + 1);
         Scalar* rows = P.data + group_offset(q);
         for_strips(strip.first, strip.width, [&](auto v, auto count, int at) PF_LAMBDA {
-          downdate_tile<decltype(v), decltype(count)::value>(t, t.W + q * kGroup, t.ld, strip.values + at - strip.first,
-                                                             FreeStrip::kColumns, rows + at, stride, q * kGroup, at);
+          downdate_tile<decltype(v), decltype(count)::value>(t, {t.k, t.k}, t.W + q * kGroup, t.ld,
+                                                             strip.values + at - strip.first, FreeStrip::kColumns,
+                                                             rows + at, stride, q * kGroup, at);
         });
       }
     }
@@ -117,7 +118,7 @@ inline void downdate_border(const Triangle& P, const Thin& all, int held_first, 
     Scalar* rows = P.data + group_offset(q1);
     for (int j = from; j < q1 * kGroup; j += FreeStrip::kColumns) {
       for_strips(j, smaller(FreeStrip::kColumns, q1 * kGroup - j), [&](auto v, auto count, int at) PF_LAMBDA {
-        downdate_tile<decltype(v), decltype(count)::value>(t, last.free, kGroup, t.W + at, t.ld, rows + at,
+        downdate_tile<decltype(v), decltype(count)::value>(t, {t.k, t.k}, last.free, kGroup, t.W + at, t.ld, rows + at,
                                                            kGroup * (q1 + 1), q1 * kGroup, at);
       });
     }
@@ -136,7 +137,9 @@ void downdate(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar
   constexpr std::ptrdiff_t kNear = (1 << 20) / sizeof(Scalar);
   const int groups = (P.n + kGroup - 1) / kGroup;
   const int columns = groups * kGroup;
-  const Thin with = {W, m, U, G, k, ld, group_offset(groups) > kNear};
+  Touched touched;
+  if (k > Kernels::kDenseRows) touched.find(U, k, ld, groups);
+  const Thin with = {W, m, U, G, k, ld, touched.any, group_offset(groups) > kNear};
   if (held_end <= held_first) {
     downdate_part(P, with, 0, groups, 0, columns);
   } else {
