@@ -21,24 +21,18 @@ struct FromThin {
 /// Rows c of the symmetric matrix, columns j0 .. j0 + columns - 1 (multiples of eight), for the `size` rows c from `first`; zero
 /// from column n on.
 ///
-///   j  | before the group of first | up to that of the last row | behind
-///      | rows as they are stored   | element by element         | columns of the triangle, transposed
+///   j  | up to the row's own             | from the group of first on
+///      | rows as they are stored, last   | columns of the triangle, transposed, first
 ///
-/// The panel has room for a multiple of four rows, which transposing fills with what follows in the same rows of the triangle.
+/// The panel has room for a multiple of four rows, which transposing fills with what follows in the same rows of the triangle: of
+/// the last group's last row, that may lie behind the matrix.
 inline void fill_panel(FromTriangle source, int first, int size, int j0, int columns, Scalar* panel) {
   const Triangle& P = source.P;
   const int end = j0 + columns;
-  const int left = smaller(end, first / kGroup * kGroup);
-  const int right = smaller(end, round_up(first + size, kGroup));
-  for (int c = 0; c < size; ++c) {
-    const Scalar* row = row_of(P, first + c);
-    Scalar* to = panel + c * kStrip - j0;
-    copy_groups(to + j0, row + j0, left - j0);
-    int j = j0 > left ? j0 : left;
-    for (; j <= first + c && j < right; ++j) to[j] = row[j];
-    for (; j < right; ++j) to[j] = row_of(P, j)[first + c];
-  }
-  for (int j = j0 > right ? j0 : right; j < end; j += kGroup) {
+  const int square = first / kGroup * kGroup;
+  const int all = round_up(P.n, kGroup);
+  const int transposed = first + round_up(size, 4) > all ? all - kGroup : all;
+  for (int j = j0 > square ? j0 : square; j < smaller(end, transposed); j += kGroup) {
     const std::ptrdiff_t stride = j + kGroup;
     const Scalar* group = P.data + group_offset(j / kGroup) + first;
     Scalar* to = panel + (j - j0);
@@ -48,6 +42,21 @@ inline void fill_panel(FromTriangle source, int first, int size, int j0, int col
         load_columns<Narrow>(group + r * stride + c, stride, column);
 #pragma GCC unroll 4
         for (int i = 0; i < 4; ++i) Narrow::store(to + (c + i) * kStrip + r, column[i]);
+      }
+    }
+  }
+  for (int j = j0 > transposed ? j0 : transposed; j < smaller(end, P.n); ++j) {
+    for (int c = 0; c < size; ++c) panel[c * kStrip + j - j0] = row_of(P, j)[first + c];
+  }
+  if (j0 < first + size) {
+    const int before = smaller(end, square);
+    for (int c = 0; c < size; ++c) {
+      const Scalar* row = row_of(P, first + c);
+      Scalar* to = panel + c * kStrip - j0;
+      copy_groups(to + j0, row + j0, before - j0);
+      for (int j = j0 > square ? j0 : square; j < smaller(end, first + c + 1); ++j) {
+        to[j] = row[j];
+        asm("" ::: "memory");
       }
     }
   }
