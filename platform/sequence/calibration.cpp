@@ -183,6 +183,15 @@ void read_plain(const Fields& fields, pf_camera_t& camera) {
   check(fields, {"width", "height", "fx", "fy", "cx", "cy", "distortion"}, camera);
 }
 
+/// From the first row to the last [s]; zero where the file says nothing of it.
+double read_readout(const Fields& fields) {
+  const double readout = fields.number_or("readout_s", 0.0);
+  if (!(readout >= 0.0 && readout <= 0.2)) {
+    fields.refuse_field("readout_s", "is " + format(readout) + "; a rolling shutter takes 0 to 0.2 s");
+  }
+  return readout;
+}
+
 double read_rate(const Fields& fields, const char* key) {
   const double rate = fields.number_or(key, 0.0);
   if (rate != 0.0 && !(rate >= 0.1 && rate <= 10000.0)) {
@@ -196,9 +205,11 @@ double read_rate(const Fields& fields, const char* key) {
 Calibration parse_calibration(const std::string& text, const std::string& file) {
   const Fields fields(text, file);
   Calibration calibration{};
+  calibration.camera.readout_s = read_readout(fields);
   if (fields.has("cam0")) {
     calibration.form = "kalibr";
     read_lists(fields.below("cam0"), "distortion_coeffs", calibration.camera);
+    calibration.camera.readout_s = read_readout(fields.below("cam0"));
   } else if (fields.has("image_width") || fields.has("camera_matrix")) {
     calibration.form = "ros";
     read_ros(fields, calibration.camera);

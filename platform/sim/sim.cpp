@@ -105,7 +105,7 @@ pf_status_t pf_sim_options_default(const char* scene, pf_sim_options_t* options)
   const std::string name = scene;
   *options = {};
   options->seed = 1;
-  options->camera = {PF_CAMERA_PINHOLE, 320, 240, 205.0, 205.0, 159.5, 119.5, {}};
+  options->camera = {PF_CAMERA_PINHOLE, 320, 240, 205.0, 205.0, 159.5, 119.5, {}, 0};
   options->rate_hz = 30;
   options->frames = name == "room" || name == "person" ? 840 : name == "wall" ? 390 : name == "rotation" ? 300 : 570;
   options->samples = 2;
@@ -157,7 +157,10 @@ pf_sim_t* pf_sim_open(const char* scene, const pf_sim_options_t* options) {
 
 void pf_sim_close(pf_sim_t* sim) { delete sim; }
 
-void pf_sim_camera(const pf_sim_t* sim, pf_camera_t* camera) { *camera = sim->options.camera; }
+void pf_sim_camera(const pf_sim_t* sim, pf_camera_t* camera) {
+  *camera = sim->options.camera;
+  camera->readout_s = sim->options.readout_s;
+}
 
 void pf_sim_rewind(pf_sim_t* sim) {
   sim->frame = 0;

@@ -89,6 +89,15 @@ static void test_check_should_name_the_number_of_the_camera_that_makes_no_sense(
   NAMES_CAMERA(cx, NAN);
   NAMES_CAMERA(cx, 1e6);
   NAMES_CAMERA(cy, -1e6);
+  NAMES_CAMERA(readout_s, -0.001);
+  NAMES_CAMERA(readout_s, 0.201);
+  NAMES_CAMERA(readout_s, NAN);
+  config.motion = PF_MOTION_CONSTANT_POSITION; /* rows cannot differ without a speed */
+  NAMES_CAMERA(readout_s, 0.03);
+  config.motion = PF_MOTION_CONSTANT_VELOCITY;
+  config.camera.readout_s = 0.03;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  config.camera.readout_s = 0;
   config.camera.distortion[0] = 0.1; /* a pinhole has none */
   names(PF_ERROR_CONFIG, "distortion");
   config.camera.model = PF_CAMERA_RADTAN;

@@ -118,6 +118,15 @@ static void test_plain_should_be_read_in_its_four_models() {
   TEST_ASSERT_EQUAL_DOUBLE(9e-06, division.distortion[0]);
 }
 
+static void test_readout_should_be_read_in_every_form() {
+  TEST_ASSERT_EQUAL_DOUBLE(0.0, read(kPlainCalibration).readout_s);
+  TEST_ASSERT_EQUAL_DOUBLE(0.02, read(with(kPlainCalibration, "rate_hz: 20", "readout_s: 0.02")).readout_s);
+  TEST_ASSERT_EQUAL_DOUBLE(0.02, read(with(kEuroc, "rate_hz: ", "readout_s: 0.02\nrate_hz: ")).readout_s);
+  TEST_ASSERT_EQUAL_DOUBLE(0.02,
+                           read(with(kRos, "image_height: 480\n", "image_height: 480\nreadout_s: 0.02\n")).readout_s);
+  TEST_ASSERT_EQUAL_DOUBLE(0.02, read(with(kKalibr, "  camera_model", "  readout_s: 0.02\n  camera_model")).readout_s);
+}
+
 static void test_plain_should_name_the_field_when_one_is_missing() {
   for (const char* field : {"width", "height", "fx", "fy", "cx", "cy", "distortion_model"}) {
     const std::string key = std::string("\n") + field + ":";
@@ -154,6 +163,9 @@ static void test_plain_should_name_the_field_when_one_is_absurd() {
       {"model: none\ndistortion: []", "model: harris_division\ndistortion: [0.1]", "'distortion'"},
       {"camera_model: pinhole", "camera_model: omni", "'camera_model'"},
       {"rate_hz: 20", "rate_hz: -5", "'rate_hz'"},
+      {"rate_hz: 20", "readout_s: 0.3", "'readout_s'"},
+      {"rate_hz: 20", "readout_s: -0.01", "'readout_s'"},
+      {"rate_hz: 20", "readout_s: soon", "'readout_s'"},
   };
   for (const auto& c : cases) {
     refused(with(kPlainCalibration, c.from, c.to), c.field);
@@ -210,6 +222,7 @@ int main() {
   RUN_TEST(test_euroc_should_be_read_with_its_rate);
   RUN_TEST(test_ros_should_be_read_in_its_three_models);
   RUN_TEST(test_plain_should_be_read_in_its_four_models);
+  RUN_TEST(test_readout_should_be_read_in_every_form);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_missing);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_absurd);
   RUN_TEST(test_other_forms_should_name_the_field_when_it_is_bad);

@@ -62,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Bytes bytes(data, size);
   pf_config_t config;
   pf_config_default(&config);
-  config.camera = {PF_CAMERA_PINHOLE, 64, 48, 50.0, 50.0, 31.5, 23.5, {}};
+  config.camera = {PF_CAMERA_PINHOLE, 64, 48, 50.0, 50.0, 31.5, 23.5, {}, 0};
   config.max_state_dim = 64;
   config.max_features = config.max_observations = config.features_in_view = 8;
   config.imu_buffer = bytes.take<uint8_t>() % 20;

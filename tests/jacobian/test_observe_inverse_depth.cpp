@@ -89,19 +89,34 @@ void test_first_bearing_jacobians_should_be_exact_with_every_camera_model() {
     Vec3 ray;
     Mat32 J_ray_z;
     TEST_ASSERT_TRUE(unproject(camera, z, &ray, &J_ray_z));
-    Mat23 J_theta;
+    Mat23 J_theta, J_c;
     Mat2 J_z;
-    const InverseDepth feature = begin_inverse_depth(body, ray, J_ray_z, Scalar(0.5), &J_theta, &J_z);
+    const Scalar rho = Scalar(0.5);
+    const Vec3 c_W = random.normals<3>(trial % 2 == 0 ? 0.0 : 0.02);  // where the ray begins, beside the anchor
+    const InverseDepth feature = begin_inverse_depth(body, ray, J_ray_z, rho, c_W, &J_theta, &J_z, &J_c);
     const Mat3 R_b = feature.q_b.toRotationMatrix();
-    TEST_ASSERT_TRUE((R_b.col(2) - body.q_WC * ray).norm() < (kNumericJacobianIsFloat ? Scalar(1e-5) : Scalar(1e-13)));
+    const auto from_anchor = [&](const Vec3& r_W, const Vec3& c, Scalar inverse) -> Vec3 {
+      return (r_W + inverse * c).normalized();
+    };
+    TEST_ASSERT_TRUE((R_b.col(2) - from_anchor(body.q_WC * ray, c_W, rho)).norm() <
+                     (kNumericJacobianIsFloat ? Scalar(1e-5) : Scalar(1e-13)));
     TEST_ASSERT_TRUE(feature.rho == Scalar(0.5));
     const auto bearing_error = [&](const Vec3& b) -> Vec2 { return R_b.leftCols<2>().transpose() * b; };
     check_jacobian<2, 3>(
-        J_theta, [&](const Vec3& e) { return bearing_error(exp_so3(e) * body.q_WC * ray); }, "J_feature_theta");
+        J_theta, [&](const Vec3& e) { return bearing_error(from_anchor(exp_so3(e) * body.q_WC * ray, c_W, rho)); },
+        "J_feature_theta");
+    check_jacobian<2, 3>(
+        J_c, [&](const Vec3& e) { return bearing_error(from_anchor(body.q_WC * ray, c_W + e, rho)); }, "J_feature_c");
+    check_jacobian<2, 1>(
+        Vec2(J_c * c_W / rho),
+        [&](const Eigen::Matrix<Scalar, 1, 1>& e) {
+          return bearing_error(from_anchor(body.q_WC * ray, c_W, rho + e(0)));
+        },
+        "J_feature_rho");
     const auto of_pixel = [&](const Vec2& e) {
       Vec3 r;
       TEST_ASSERT_TRUE(unproject(camera, z + e, &r));
-      return bearing_error(body.q_WC * r);
+      return bearing_error(from_anchor(body.q_WC * r, c_W, rho));
     };
     // Pixels are small against the focal length: a step of some pixels, held against the Jacobian per pixel.
     const Scalar unit = Scalar(100);

@@ -19,7 +19,8 @@ void test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale() {
     TestFilter filter(true);
     const std::vector<int> slots = fill_map(random, filter, 6, 8);
     filter.set_P(random_covariance(random, filter.dim(), 0.1));
-    const Camera camera = test_camera_of(trial % kTestCameras);
+    Camera camera = test_camera_of(trial % kTestCameras);
+    if (trial / kTestCameras % 2 == 1) camera.readout = Scalar(0.03);
     const Dense N = filter.gauge();
     for (const int slot : slots) {
       Observation o;
@@ -91,6 +92,12 @@ void test_a_new_inverse_depth_should_carry_shifts_and_turns() {
     filter->add_inverse_depth(filter->add_anchor(), ray, Mat32::Zero(), Mat2::Zero(), Scalar(0.5), Scalar(0));
   };
   carries("add_inverse_depth", kShiftAndTurn, random, begin);
+  const auto begin_late = [](TestFilter& filter, const std::vector<int>&) {
+    const Vec3 ray = Vec3(Scalar(0.2), Scalar(-0.1), 1).normalized();
+    filter->add_inverse_depth(filter->add_anchor(), ray, Mat32::Zero(), Mat2::Zero(), Scalar(0.5), Scalar(0),
+                              Scalar(0.01));
+  };
+  carries("add_inverse_depth of a later row", kShiftAndTurn, random, begin_late);
 }
 
 void test_conversion_should_carry_every_direction() {

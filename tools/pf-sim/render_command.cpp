@@ -34,7 +34,9 @@ void write_calibration(const fs::path& path, const pf_camera_t& camera, double r
       << "\nfy: " << camera.fy << "\ncx: " << camera.cx << "\ncy: " << camera.cy
       << "\ndistortion_model: " << names[camera.model] << "\ndistortion: [";
   for (int i = 0; i < counts[camera.model]; ++i) out << (i ? ", " : "") << camera.distortion[i];
-  out << "]\nrate_hz: " << rate_hz << "\ntimestamps: exact\n";
+  out << "]";
+  if (camera.readout_s > 0) out << "\nreadout_s: " << camera.readout_s;
+  out << "\nrate_hz: " << rate_hz << "\ntimestamps: exact\n";
 }
 
 void write_target(const fs::path& path, const pf_target_t& target) {

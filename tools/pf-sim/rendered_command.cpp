@@ -20,6 +20,7 @@ struct Choices {
   int seeds = 20, frames = 300, jobs = 2, blur = 2;
   std::uint64_t first_seed = 1;
   double noise = 2, exposure_s = 0.008, readout_s = 0;
+  bool as_global = false;
   bool no_planes = false;
   int max_features = 0, max_state_dim = 0, max_planes = 0;
 };
@@ -151,6 +152,7 @@ bool prepare(const Choices& c, RenderedOptions& o) {
       Variant v;
       pf_config_default(&v.config);
       v.config.camera = o.sim.camera;
+      v.config.camera.readout_s = c.as_global ? 0 : c.readout_s;
       if (sigma > 0) v.config.sigma_pixel = sigma;
       if (c.no_planes) v.config.planes = 0;
       if (c.max_features > 0) v.config.max_features = c.max_features;
@@ -241,6 +243,7 @@ void add_rendered(CLI::App& app, int& result) {
   command->add_option("--exposure", c->exposure_s, "[s]");
   command->add_option("--blur", c->blur, "views averaged over the exposure");
   command->add_option("--readout", c->readout_s, "rolling shutter, first to last row [s]");
+  command->add_flag("--as-global", c->as_global, "the filter knows nothing of the readout, for comparison");
   command->add_flag("--no-planes", c->no_planes, "points only, for comparison");
   command->add_option("--max-features", c->max_features, "of the map; 0: the library's default");
   command->add_option("--max-state-dim", c->max_state_dim, "rows of the covariance, likewise");

@@ -88,6 +88,8 @@ typedef struct pf_camera {
   int32_t width, height; /* [px] 32 .. 4096 */
   double fx, fy, cx, cy; /* [px] */
   double distortion[8];  /* as the model says; unused entries are zero */
+  double readout_s; /* rolling shutter: from the first row to the last [s], 0 .. 0.2; frames have the middle row's time.
+                            0: global. Only with constant velocity, for rows differ by how the camera moves */
 } pf_camera_t;
 
 /* Pixel of a point in C, z > 0 (equidistant: anywhere but the optical centre).

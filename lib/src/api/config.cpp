@@ -52,6 +52,7 @@ T field_at(const pf_config_t& config, std::size_t offset) {
   return value;
 }
 
+constexpr double kLongestReadout = 0.2;  // [s]
 constexpr std::uint32_t kScalar = sizeof(Scalar);
 
 }  // namespace
@@ -86,6 +87,9 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   const double intrinsics[4] = {c.fx, c.fy, c.cx, c.cy};
   const char* bad = make_camera(c.model, c.width, c.height, intrinsics, c.distortion, &settings->camera);
   if (bad != nullptr) return *field = bad, Status::kConfig;
+  const bool moves = config.motion == PF_MOTION_CONSTANT_VELOCITY;
+  if (!(c.readout_s >= 0 && c.readout_s <= (moves ? kLongestReadout : 0))) return *field = "readout_s", Status::kConfig;
+  settings->camera.readout = static_cast<Scalar>(c.readout_s);
 
   settings->max_state_dim = config.max_state_dim;
   settings->max_features = config.max_features;

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "filter/observe/row.h"
 #include "filter/observe/world_point.h"
 #include "filter/put.h"
 
@@ -109,22 +110,33 @@ int Filter::add_anchor() {
 }
 
 int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho,
-                              Scalar sigma_rho) {
+                              Scalar sigma_rho, Scalar tau) {
   PF_ASSERT(state_.block[anchor].kind == BlockKind::kAnchor);
   const int slot = take_slot(BlockKind::kInverseDepth, 3);
   if (slot < 0) return -1;
-  Mat23 J_theta;
+  const RowBody row = body_at_row(state_.body, state_.body_dim == Body::kMaxDim ? tau : Scalar(0));
+  const Vec3 c_W = row.body.p_W - state_.body.p_W;
+  Mat23 J_theta, J_c;
   Mat2 J_z;
-  const InverseDepth feature = begin_inverse_depth(state_.body, ray_C, J_ray_z, rho, &J_theta, &J_z);
+  const InverseDepth feature = begin_inverse_depth(row.body, ray_C, J_ray_z, rho, c_W, &J_theta, &J_z, &J_c);
   SparseRows J;
   J.rows = 3;
   J.segments = 1;
-  J.segment[0] = {Body::kTheta, 3};
-  put<2, 3>(J.h, 3, 0, J_theta);
-  J.h[6] = J.h[7] = J.h[8] = Scalar(0);
+  J.segment[0] = {Body::kTheta, row.tau == Scalar(0) ? 3 : Body::kMaxDim};
+  const int columns = J.segment[0].size;
+  for (int i = 0; i < 3 * columns; ++i) J.h[i] = Scalar(0);
+  put<2, 3>(J.h, columns, 0, J_theta);
+  if (row.tau != Scalar(0)) {
+    put<2, 3>(J.h, columns, Body::kVelocity, Mat23(row.tau * J_c));
+    put<2, 3>(J.h, columns, Body::kRate, Mat23(J_theta.lazyProduct(row.J_theta_w)));
+  }
+  // Of the pixel, and of the inverse depth, which turns the bearing too where the anchor is not where the ray begins.
   Mat3 noise = Mat3::Zero();
   const Mat2 Jn = J_z * noise_px;
-  noise.topLeftCorner<2, 2>() = Jn * J_z.transpose();
+  const Vec2 J_rho = J_c.lazyProduct(c_W) / rho;
+  noise.topLeftCorner<2, 2>() = Jn * J_z.transpose() + sigma_rho * sigma_rho * J_rho * J_rho.transpose();
+  noise.topRightCorner<2, 1>() = sigma_rho * sigma_rho * J_rho;
+  noise.bottomLeftCorner<1, 2>() = noise.topRightCorner<2, 1>().transpose();
   noise(2, 2) = sigma_rho * sigma_rho;
   Scalar raw[9];
   put<3, 3>(raw, 3, 0, noise);

@@ -16,7 +16,7 @@ namespace pf {
 /// What one feature's pixel says: prediction, residual and the few columns that it touches (at most body, plane, patch, feature).
 struct Observation {
   static constexpr int kMaxSegments = 4;
-  static constexpr int kMaxColumns = 15;
+  static constexpr int kMaxColumns = 21;
 
   int slot = -1;
   int segments = 0;
@@ -25,6 +25,7 @@ struct Observation {
   Vec2 predicted = Vec2::Zero();  ///< [px]
   Vec2 measured = Vec2::Zero();   ///< [px]
   Mat2 noise = Mat2::Identity();  ///< covariance of the measurement [px^2]
+  Scalar bend = 0;                ///< of that, what a wide pose takes off the linearisation: bend I [px^2]
   Mat2 second_order =
       Mat2::Zero();  ///< what the linearisation leaves out, and a surface's roughness [px^2]; belongs into noise
 
@@ -78,8 +79,9 @@ class Filter {
 
   // --- augment; -1 where there is no room
   int add_anchor();
+  /// tau: when the pixel's row was read out, from the frame's time [s].
   int add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho,
-                        Scalar sigma_rho);
+                        Scalar sigma_rho, Scalar tau = Scalar(0));
   int add_point(const Vec3& p_W, const Mat3& covariance);
 
   /// Plane through 3-D points, about the frame of their fit, with the fit's Jacobian (Gee 2007, eq 3 and 8) and the noise that points
@@ -160,6 +162,9 @@ class Filter {
   void move_up(int gone);
   void augment_block(Block* block, int size, const SparseRows& J, const Scalar* noise);
   bool is_step(const Scalar* dx) const;
+
+  // pixels.cpp
+  bool predict_at(const Camera& camera, const Body& body, int slot, Observation* out) const;
 
   // update.cpp
   bool apply(int m, Scalar* nis);

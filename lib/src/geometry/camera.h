@@ -22,7 +22,8 @@ struct Camera {
   int width = 0, height = 0;              ///< [px]
   Scalar fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]
   Scalar distortion[8] = {};              ///< radtan k1 k2 p1 p2 k3; equidistant k1 k2 k3 k4; division k [1/px²]
-  Scalar max_r2 = 0;  ///< domain: |m|² (pinhole, radtan), θ² (equidistant), |u|² [px²] (division)
+  Scalar readout = 0;  ///< from the first row to the last [s]; frames have the time of the middle one
+  Scalar max_r2 = 0;   ///< domain: |m|² (pinhole, radtan), θ² (equidistant), |u|² [px²] (division)
 };
 
 /// Copies the numbers, with their types, and finds the domain. Null when all is well, else the name of the first field

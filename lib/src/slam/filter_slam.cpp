@@ -12,6 +12,7 @@ namespace {
 constexpr Scalar kStartSpeed = Scalar(0.5);  // [m/s], times the start depth where that sets the scale
 constexpr Scalar kStartRate = Scalar(0.5);   // [rad/s]
 
+constexpr int kMostRounds = 3;                 ///< of one frame's pixels, where little was known of the pose
 constexpr Scalar kHandSeconds = Scalar(0.25);  ///< in which a speed decays while nothing is measured
 constexpr Scalar kMostTurn = Scalar(0.5);      ///< [rad] standard deviation at which it grows no more
 
@@ -239,6 +240,7 @@ bool FilterSlam::take_in(int first, int count) {
     feature.rejections = 0;
     feature.last_seen_ns = report_.t_ns;
   }
+  take_in_again_where_bent(first, count);
   return true;
 }
 
@@ -252,7 +254,33 @@ Mat2 FilterSlam::expected_innovation(Observation* o) const {
   const Scalar bend = lambda * lambda / (2 * settings_.camera.fx * settings_.camera.fy);
   o->second_order(0, 0) += bend;
   o->second_order(1, 1) += bend;
+  o->bend = bend;
   return S;
+}
+
+/// Pixels that were taken in with much of that noise are taken in again at the pose that they led to, with the information that the noise
+/// kept back:  R' = (R^-1 - (R + bend I)^-1)^-1 = R + R^2 / bend.
+void FilterSlam::take_in_again_where_bent(int first, int count) {
+  for (int round = 0; round < kMostRounds; ++round) {
+    bool bent = false;
+    for (int i = first; i < first + count; ++i)
+      bent = bent || (keep_[i] != 0 && 2 * observation_[i].bend > observation_[i].noise(0, 0));
+    if (!bent) return;
+    for (int i = first; i < first + count; ++i) {
+      if (keep_[i] == 0) continue;
+      Observation& o = observation_[i];
+      const Vec2 measured = o.measured;
+      const Scalar bend = std::max(o.bend, Scalar(1e-6));
+      const Mat2 R = o.noise - Mat2::Identity() * bend;
+      keep_[i] = filter_.predict_pixel(settings_.camera, o.slot, &o) ? 1 : 0;
+      if (keep_[i] == 0) continue;
+      expected_innovation(&o);
+      o.measured = measured;
+      o.noise = R + R.lazyProduct(R) / bend + Mat2::Identity() * o.bend;
+    }
+    filter_.begin_update(observation_ + first, count);
+    if (!filter_.finish_update(observation_ + first, count, keep_ + first, nullptr)) return;
+  }
 }
 
 Status FilterSlam::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {

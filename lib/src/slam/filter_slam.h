@@ -124,6 +124,7 @@ class FilterSlam {
   int search(int first, int count);
   void measure(int first, int count);
   Mat2 expected_innovation(Observation* o) const;
+  void take_in_again_where_bent(int first, int count);
   Scalar widest_ellipse(int count) const;
   void begin_features_in_image();
 
@@ -135,6 +136,8 @@ class FilterSlam {
   // start_without_target.cpp
   void begin_record();
   void record_frame();
+  Vec2 at_frame_time(int slot, const Vec2& measured) const;
+  void move_rays_to_frame_time();
   void restart_from_record();
   void release(int entry);
 

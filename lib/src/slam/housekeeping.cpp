@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "filter/observe/inverse_depth.h"
+#include "filter/observe/row.h"
 #include "slam/filter_slam.h"
 
 /// What happens to the map after each update: convert, drop, evict, begin.
@@ -142,7 +143,8 @@ int FilterSlam::begin_feature(int anchor, const Vec2& pixel, const Mat2& noise) 
   if (!unproject(settings_.camera, pixel, &ray_C, &J_ray_pixel)) return -1;
   const Scalar rho = usual_inverse_depth();
   const int slot =
-      filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, settings_.inverse_depth_relative_sigma * rho);
+      filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, settings_.inverse_depth_relative_sigma * rho,
+                                row_time(settings_.camera, pixel.y()));
   if (slot < 0) return -1;
   const int entry = features_.add(slot);
   if (entry < 0) {

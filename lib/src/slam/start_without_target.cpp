@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "filter/observe/row.h"
 #include "geometry/so3.h"
 #include "slam/filter_slam.h"
 
@@ -24,15 +25,45 @@ void FilterSlam::begin_record() {
   }
 }
 
+/// A measured pixel without what the rows' readout at other times than the frame's did to it. That is how fast the image moves
+/// there, which is known well before depths and speeds are.
+Vec2 FilterSlam::at_frame_time(int slot, const Vec2& measured) const {
+  Camera at_once = settings_.camera;
+  at_once.readout = Scalar(0);
+  Observation by_rows, still;
+  if (settings_.camera.readout == Scalar(0) || !filter_.predict_pixel(settings_.camera, slot, &by_rows) ||
+      !filter_.predict_pixel(at_once, slot, &still))
+    return measured;
+  return measured - (by_rows.predicted - still.predicted);
+}
+
+/// The same for the rays of the record's frame 0, of which nothing was known, by what moved until now.
+void FilterSlam::move_rays_to_frame_time() {
+  if (settings_.camera.readout == Scalar(0)) return;
+  const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(record_begin_ns_, report_.t_ns)) * 1e-9);
+  for (int t = 0; t < track_count_; ++t) {
+    const Track& track = tracks_[t];
+    if (track.feature < 0 || track.status != TrackStatus::kInlier) continue;
+    const int index = features_[track.feature].start_index;
+    Vec2 first;
+    Vec3 ray_C;
+    if (index < 0 || !project(settings_.camera, record_.ray(index), &first)) continue;
+    const Vec2 moved = (at_frame_time(features_[track.feature].slot, track.measured) - first) / dt;
+    if (unproject(settings_.camera, first - row_time(settings_.camera, first.y()) * moved, &ray_C))
+      record_.set_ray(index, ray_C);
+  }
+}
+
 void FilterSlam::record_frame() {
   if (record_.features() == 0 || report_.inliers < kMinInliers) return;
   const Body& body = filter_.state().body;
   const Quat q_KW = base_q_WC_.conjugate();
+  if (record_.frames() == 0) move_rays_to_frame_time();
   const int k = record_.add_frame(report_.t_ns, q_KW * body.q_WC, q_KW * (body.p_W - base_p_W_));
   for (int t = 0; t < track_count_; ++t) {
     const int entry = tracks_[t].feature;
     if (entry < 0 || tracks_[t].status != TrackStatus::kInlier || features_[entry].start_index < 0) continue;
-    record_.add_pixel(k, features_[entry].start_index, tracks_[t].measured);
+    record_.add_pixel(k, features_[entry].start_index, at_frame_time(features_[entry].slot, tracks_[t].measured));
   }
   const StartOutcome outcome = bundle_.solve(settings_.camera, record_, Tracker::kTypicalSigma, settings_.start_depth);
   switch (outcome) {

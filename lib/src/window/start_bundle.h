@@ -29,6 +29,7 @@ class StartRecord {
 
   /// Feature of frame 0, by the ray on which it was first seen; its index, or -1 when there are kMaxFeatures.
   int add_feature(const Vec3& ray);
+  void set_ray(int feature, const Vec3& ray) { ray_[feature] = ray; }
   /// A later frame, with the pose that is believed; its pixels follow. Returns its index.
   int add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);
   void add_pixel(int frame, int feature, const Vec2& pixel);

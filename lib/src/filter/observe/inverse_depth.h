@@ -55,22 +55,27 @@ inline Scalar linearity_index(const Body& body, const Vec3& o_W, const InverseDe
   return Scalar(4) * sigma_rho / (feature.rho * feature.rho) * std::abs(cosine) / d1;
 }
 
-/// State and Jacobians of a new inverse-depth point at a pixel whose unit ray in C is ray_C.
+/// State and Jacobians of a new inverse-depth point at a pixel whose unit ray in C is ray_C. The camera saw it from c = c_W beside
+/// the anchor, which is not zero where rows are read out at other times than the frame's.
 ///
-///   b = R_WC r;   e_b = B^T (-[b]x theta + R J_r_z e_z);   rho free
+///   b = (R_WC r + rho c) / |..|;   e_b = B^T (-[R_WC r]x theta + R J_r_z e_z + rho e_c + c e_rho) / |..|;   rho free
 ///
-/// J_feature_theta 2x3, J_feature_z 2x2 (both for the bearing's two rows).
+/// J_feature_theta 2x3, J_feature_z 2x2, J_feature_c 2x3 (all for the bearing's two rows); J_feature_rho = J_feature_c c / rho.
 inline InverseDepth begin_inverse_depth(const Body& body, const Vec3& ray_C, const Mat32& J_ray_z, Scalar rho,
-                                        Mat23* J_feature_theta, Mat2* J_feature_z) {
+                                        const Vec3& c_W, Mat23* J_feature_theta, Mat2* J_feature_z,
+                                        Mat23* J_feature_c) {
   const Mat3 R = body.q_WC.toRotationMatrix();
-  const Vec3 b = R.lazyProduct(ray_C);
+  const Vec3 seen = R.lazyProduct(ray_C);
+  const Vec3 from_anchor = seen + rho * c_W;
+  const Scalar length = from_anchor.norm();
   InverseDepth feature;
-  feature.q_b = turn_z_to(b);
+  feature.q_b = turn_z_to(from_anchor / length);
   feature.rho = rho;
-  const Mat32 B = feature.q_b.toRotationMatrix().leftCols<2>();
-  *J_feature_theta = -B.transpose().lazyProduct(hat(b));
+  const Mat23 Bt = feature.q_b.toRotationMatrix().leftCols<2>().transpose() / length;
+  *J_feature_theta = -Bt.lazyProduct(hat(seen));
   const Mat32 RJ = R.lazyProduct(J_ray_z);
-  *J_feature_z = B.transpose().lazyProduct(RJ);
+  *J_feature_z = Bt.lazyProduct(RJ);
+  *J_feature_c = rho * Bt;
   return feature;
 }
 
