@@ -108,7 +108,8 @@ std::unique_ptr<Source> open_stored(const Options& options, std::string& error) 
 std::unique_ptr<Source> open_camera_source(const Options& options, std::string& error) {
   SourceInfo info;
   if (options.calibration.empty()) {
-    error = "source '" + options.source + "': a camera needs its calibration; give it with --calib FILE";
+    error = "source '" + options.source +
+            "': a camera needs its calibration; give it with --calib FILE (pf-calibrate makes one)";
     return nullptr;
   }
   char message[PF_SEQUENCE_MESSAGE];

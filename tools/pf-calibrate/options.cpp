@@ -28,18 +28,19 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
       "--calib.\n",
       "pf-calibrate");
   std::string board = "10x7:0.025";
-  options.board.target = have_markers() ? Target::kCharuco : Target::kChessboard;
-  app.add_option("--source", options.source,
-                 "images:DIR, euroc:DIR, tum:DIR (a calibration inside is not read), or a camera: v4l2:/dev/videoN");
-  app.add_option("--target", options.board.target,
+  std::string target = target_name(have_markers() ? Target::kCharuco : Target::kChessboard), model = "radtan";
+  app.add_option(
+      "--source", options.source,
+      "images:DIR, euroc:DIR, tum:DIR (a calibration inside is not read), or a camera: v4l2:/dev/videoN, libcamera:0");
+  app.add_option("--target", target,
                  have_markers() ? "charuco (with a marker in every white square) or chessboard"
                                 : "chessboard; this build has no charuco: it was made without OpenCV's aruco module")
-      ->transform(CLI::CheckedTransformer(kTargets, CLI::ignore_case))
-      ->default_str(target_name(options.board.target));
+      ->check(CLI::IsMember({"charuco", "chessboard"}))
+      ->capture_default_str();
   app.add_option("--board", board, "COLUMNSxROWS:SQUARE_METRES, counted in squares")->capture_default_str();
-  app.add_option("--model", options.model, "of the lens: pinhole, radtan, or equidistant for wide ones")
-      ->transform(CLI::CheckedTransformer(kModels, CLI::ignore_case))
-      ->default_str("radtan");
+  app.add_option("--model", model, "of the lens: pinhole, radtan, or equidistant for wide ones")
+      ->check(CLI::IsMember({"pinhole", "radtan", "equidistant"}))
+      ->capture_default_str();
   app.add_option("--out", options.out,
                  "folder for calib.yaml (Kalibr's form), calibration.json, corners.csv and coverage.png")
       ->capture_default_str();
@@ -76,6 +77,8 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
   }
   options.width = size[0];
   options.height = size[1];
+  options.model = kModels.at(model);
+  options.board.target = kTargets.at(target);
   if (options.board.target == Target::kCharuco && !have_markers()) {
     std::fprintf(stderr,
                  "pf-calibrate: --target charuco: this build has no markers; install OpenCV's aruco module (Debian: "
@@ -91,6 +94,13 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
   }
   if (options.source.empty() == options.print_target.empty()) {
     std::fprintf(stderr, "pf-calibrate: give either --source or --print-target; see --help\n");
+    code = 2;
+    return false;
+  }
+  const std::string& path = options.print_target;
+  const std::string end = path.size() > 4 ? path.substr(path.size() - 4) : "";
+  if (!path.empty() && end != ".pdf" && end != ".png") {
+    std::fprintf(stderr, "pf-calibrate: --print-target %s: write a path that ends in .pdf or .png\n", path.c_str());
     code = 2;
     return false;
   }

@@ -94,9 +94,7 @@ void draw_ruler(cairo_t* pen, const Board& board, double page_width_mm, double y
   cairo_stroke(pen);
 }
 
-bool ends_with(const std::string& path, const std::string& end) {
-  return path.size() >= end.size() && path.compare(path.size() - end.size(), end.size(), end) == 0;
-}
+bool is_png(const std::string& path) { return path.size() >= 4 && path.compare(path.size() - 4, 4, ".png") == 0; }
 
 void draw_page(cairo_t* pen, const Board& board, double width_mm, double height_mm) {
   const double left_mm = 0.5 * (width_mm - 1000.0 * board.width_m());
@@ -156,10 +154,10 @@ bool print_target(const Board& board, const std::string& page, const std::string
     error = text;
     return false;
   }
-  const char* failure = ends_with(path, ".png") ? write_png(board, width_mm, height_mm, path)
-                                                : write_pdf(board, width_mm, height_mm, path);
+  const char* failure =
+      is_png(path) ? write_png(board, width_mm, height_mm, path) : write_pdf(board, width_mm, height_mm, path);
   if (failure != nullptr) {
-    error = path + ": cannot be written: " + failure;
+    error = path + ": cannot be written (" + failure + "); check the folder and the space on its disk";
     return false;
   }
   return true;

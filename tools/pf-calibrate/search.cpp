@@ -7,14 +7,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "cameras.h"
 #include "markers.h"
-
-#ifdef PLANEFOLD_HAVE_V4L2
-#include <planefold_platform/v4l2.h>
-
-#include <chrono>
-#include <csignal>
-#endif
 
 namespace pf::calibrate {
 
@@ -38,33 +32,6 @@ void look_for_others(const cv::Mat& grey, const Board& board, Search& search) {
   const cv::Size squares = size_of_chessboard(grey);
   if (squares.area() > search.other_squares.area()) {
     search.other_squares = squares;
-  }
-}
-
-void look_at(const pf_image_t& image, const Options& options, int64_t number, Search& search) {
-  const cv::Mat grey(image.height, image.width, CV_8U, const_cast<uint8_t*>(image.pixels),
-                     static_cast<size_t>(image.stride));
-  View view;
-  Sighting sighting;
-  view.frame = number;
-  if (find_board(grey, options.board, view, sighting)) {
-    search.found.push_back(view);
-  } else if (search.found.empty()) {
-    if (sighting.markers > search.best.markers) {
-      search.best = sighting;
-    }
-    if (search.looked_at_one_by_one++ % kLookForOthersEvery == 0) {
-      look_for_others(grey, options.board, search);
-    }
-  }
-}
-
-void show_progress(const Options& options, const Search& search, int64_t done, int64_t of, const char* unit) {
-  if (!options.quiet && isatty(STDERR_FILENO) != 0) {
-    std::fprintf(stderr, "\r%lld of %lld %s, board found %zu times, %.0f %% of the picture covered ",
-                 static_cast<long long>(done), static_cast<long long>(of), unit, search.found.size(),
-                 100.0 * covered_share(search.found, search.image));
-    std::fputs(done == of ? "\n" : "", stderr);
   }
 }
 
@@ -94,78 +61,49 @@ bool search_sequence(const Options& options, Search& search, std::string& error)
   return true;
 }
 
-#ifdef PLANEFOLD_HAVE_V4L2
-volatile std::sig_atomic_t interrupted = 0;
-
-struct CloseCamera {
-  void operator()(pf_v4l2_t* camera) const { pf_v4l2_close(camera); }
-};
-
-bool search_camera(const std::string& path, const Options& options, Search& search, std::string& error) {
-  char message[PF_V4L2_MESSAGE] = "";
-  pf_v4l2_options_t wanted;
-  pf_v4l2_options_default(&wanted);
-  wanted.width = options.width;
-  wanted.height = options.height;
-  wanted.lock_focus = 1;  // another focus is another camera
-  wanted.hand_over = PF_V4L2_COPIED;
-  pf_v4l2_t* opened = nullptr;
-  if (pf_v4l2_open(path.empty() ? nullptr : path.c_str(), &wanted, &opened, message) != 0) {
-    error = message;
-    return false;
-  }
-  const std::unique_ptr<pf_v4l2_t, CloseCamera> camera(opened);
-  if (pf_v4l2_start(camera.get(), message) != 0) {
-    error = message;
-    return false;
-  }
-  std::signal(SIGINT, [](int) { interrupted = 1; });
-  const auto begin = std::chrono::steady_clock::now();
-  for (int64_t seconds = 0; seconds < options.seconds && interrupted == 0;) {
-    pf_v4l2_frame_t frame;
-    const int read = pf_v4l2_read(camera.get(), 200, &frame, message);
-    if (read == PF_V4L2_FRAME) {
-      search.image = {frame.image.width, frame.image.height};
-      ++search.frames;
-      ++search.looked_at;
-      look_at(frame.image, options, frame.sequence, search);
-      pf_v4l2_release(camera.get(), &frame);
-    } else if (read != PF_V4L2_NOTHING) {
-      error = read == PF_V4L2_GONE ? "the camera was unplugged" : message;
-      return false;
-    }
-    const auto passed = std::chrono::steady_clock::now() - begin;
-    seconds = std::chrono::duration_cast<std::chrono::seconds>(passed).count();
-    show_progress(options, search, std::min(seconds, options.seconds), options.seconds, "seconds");
-  }
-  return true;
-}
-#endif
-
 }  // namespace
 
-bool search_source(const Options& options, Search& search, std::string& error) {
-  if (options.source.rfind("v4l2:", 0) != 0) {
-    return search_sequence(options, search, error);
+void look_at(const pf_image_t& image, const Options& options, int64_t number, Search& search) {
+  const cv::Mat grey(image.height, image.width, CV_8U, const_cast<uint8_t*>(image.pixels),
+                     static_cast<size_t>(image.stride));
+  View view;
+  Sighting sighting;
+  view.frame = number;
+  if (find_board(grey, options.board, view, sighting)) {
+    search.found.push_back(view);
+  } else if (search.found.empty()) {
+    if (sighting.markers > search.best.markers) {
+      search.best = sighting;
+    }
+    if (search.in_vain++ % kLookForOthersEvery == 0) {
+      look_for_others(grey, options.board, search);
+    }
   }
-#ifdef PLANEFOLD_HAVE_V4L2
-  return search_camera(options.source.substr(5), options, search, error);
-#else
-  error = "this build has no cameras: it was made without V4L2";
-  return false;
-#endif
+}
+
+void show_progress(const Options& options, const Search& search, int64_t done, int64_t of, const char* unit) {
+  if (!options.quiet && isatty(STDERR_FILENO) != 0) {
+    std::fprintf(stderr, "\r%lld of %lld %s, board found %zu times, %.0f %% of the picture covered ",
+                 static_cast<long long>(done), static_cast<long long>(of), unit, search.found.size(),
+                 100.0 * covered_share(search.found, search.image));
+    std::fputs(done == of ? "\n" : "", stderr);
+  }
+}
+
+bool search_source(const Options& options, Search& search, std::string& error) {
+  return is_camera(options.source) ? search_camera(options, search, error) : search_sequence(options, search, error);
 }
 
 std::string why_nothing_was_found(const Options& options, const Search& search) {
   const auto size = [](int columns, int rows) { return std::to_string(columns) + " x " + std::to_string(rows); };
   const Board& board = options.board;
   const cv::Size& other = search.other_squares;
-  const std::string nothing = options.source + ": the " + target_name(board.target) + " of " +
-                              size(board.columns, board.rows) + " squares is in none of " +
-                              std::to_string(search.looked_at) + " frames";
+  const std::string nothing =
+      options.source + ": the " + (board.target == Target::kCharuco ? "ChArUco board" : "chessboard") + " of " +
+      size(board.columns, board.rows) + " squares is in none of " + std::to_string(search.looked_at) + " frames";
   const Sighting& best = search.best;
   if (search.found_other) {
-    return nothing + ", but a charuco board is; use --target charuco";
+    return nothing + ", but a ChArUco board is; use --target charuco";
   }
   if (best.highest_marker >= board.markers()) {
     return nothing + ", but a board with markers up to number " + std::to_string(best.highest_marker) +
@@ -179,7 +117,7 @@ std::string why_nothing_was_found(const Options& options, const Search& search) 
     return nothing + "; at most " + std::to_string(best.markers) +
            " markers were seen at once: show more of the board, nearer, sharper, or in better light";
   }
-  if (other.area() > 0 && (board.target == Target::kCharuco || other != cv::Size(board.columns, board.rows))) {
+  if (other.area() > 0 && (board.target == Target::kCharuco || other.area() != board.columns * board.rows)) {
     return nothing + ", but a chessboard of " + size(other.width, other.height) +
            " squares is; use --target chessboard --board " + std::to_string(other.width) + "x" +
            std::to_string(other.height) + ":SQUARE_METRES";

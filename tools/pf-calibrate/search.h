@@ -15,7 +15,7 @@ struct Search {
   std::vector<View> found;
 
   // As long as nothing was found:
-  int64_t looked_at_one_by_one = 0;
+  int64_t in_vain = 0;       ///< frames
   Sighting best;             ///< of the frame with most markers
   bool found_other = false;  ///< the other kind of target
   cv::Size other_squares;    ///< a chessboard of so many squares, none: 0 x 0
@@ -24,6 +24,10 @@ struct Search {
 /// Looks for the board: in frames that lie evenly over a recording, or in what a camera shows until the time is over
 /// or the program is interrupted. false: error is one line.
 bool search_source(const Options& options, Search& search, std::string& error);
+
+/// One frame of it, and how far it is.
+void look_at(const pf_image_t& image, const Options& options, int64_t number, Search& search);
+void show_progress(const Options& options, const Search& search, int64_t done, int64_t of, const char* unit);
 
 /// One line for a search that found nothing.
 std::string why_nothing_was_found(const Options& options, const Search& search);

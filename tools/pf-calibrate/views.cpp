@@ -84,7 +84,7 @@ cv::Size size_of_chessboard(const cv::Mat& grey) {
   if (!cv::findChessboardCornersSB(small, {3, 3}, corners, flags, meta)) {
     return {};
   }
-  return {meta.cols + 1, meta.rows + 1};
+  return {std::max(meta.cols, meta.rows) + 1, std::min(meta.cols, meta.rows) + 1};
 }
 
 std::array<double, 6> describe(const View& view, const Board& board, cv::Size image) {

@@ -31,7 +31,8 @@ struct Sighting {
 /// there. false where that is not enough for a view.
 bool find_board(const cv::Mat& grey, const Board& board, View& view, Sighting& found);
 
-/// How many squares a chessboard of any size in the picture has; 0 x 0 where there is none.
+/// How many squares a chessboard of any size in the picture has, the longer side first; 0 x 0 where there
+/// is none.
 cv::Size size_of_chessboard(const cv::Mat& grey);
 
 /// Where and how the board is seen, in numbers of which each spans about one over all useful views: the centre of the
