@@ -1,6 +1,7 @@
 #include "window.h"
 
 #include <cstdlib>
+#include <cstring>
 
 #ifdef PLANEFOLD_HAVE_SDL2
 #include <SDL.h>
@@ -34,6 +35,11 @@ bool Window::open(const std::string& title, int width, int height, std::string& 
   if (SDL_Init(SDL_INIT_VIDEO) != 0) {
     why = std::string("no window: ") + SDL_GetError() + "; going on without";
     return false;
+  }
+  // Without a desktop there often is OpenGL ES alone, and SDL would take its empty functions for those of OpenGL.
+  const char* driver = SDL_GetCurrentVideoDriver();
+  if (driver != nullptr && std::strcmp(driver, "KMSDRM") == 0) {
+    SDL_SetHint(SDL_HINT_RENDER_DRIVER, "opengles2");
   }
   auto parts = std::make_unique<Parts>();
   parts->window = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, width, height,

@@ -114,6 +114,7 @@ def modules(root, *names):
 def libraries(program, sysroot):
     """Shared libraries that a program for the guest needs, with its loader."""
     folders = [sysroot / "lib/aarch64-linux-gnu", sysroot / "usr/lib/aarch64-linux-gnu", sysroot / "lib"]
+    folders.append(folders[1] / "pulseaudio")
     found, queue = {}, [program]
     while queue:
         text = subprocess.run(["readelf", "-dl", queue.pop()], text=True, capture_output=True, check=True).stdout
