@@ -8,7 +8,7 @@ namespace pf::capture {
 
 namespace {
 
-constexpr int64_t kKept_ns = 120'000'000'000;
+constexpr int64_t kKept_ns = 60'000'000'000;
 constexpr double kCoarse_s = 0.005, kFine_s = 0.001;
 constexpr double kApart_s = 0.02;       ///< what lies nearer to the best offset is part of the same peak
 constexpr int64_t kFewest = 40;         ///< intervals

@@ -37,7 +37,7 @@ class TimeOffsetEstimator {
 
   void add(const pf_imu_sample_t& sample);
   void add_frame(const pf_pose_t& pose, bool tracked);
-  /// Of the newest two minutes.
+  /// Of the newest minute.
   TimeOffset estimate() const;
 
  private:
