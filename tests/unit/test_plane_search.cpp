@@ -24,10 +24,18 @@ Vec3 at(double x, double y, double z) {
   return Vec3(static_cast<Scalar>(x), static_cast<Scalar>(y), static_cast<Scalar>(z));
 }
 
+/// Coordinates in the order in which they are drawn: from left to right in braces, as the compiler likes among arguments.
+struct Drawn {
+  double z, y, x;
+};
+
+Vec3 drawn(const Drawn& p) { return at(p.x, p.y, p.z); }
+
 /// Points of the plane z = 0 within 0.8 m of the origin, 2 mm rough.
 void add_wall(SeededRandom& random, int count, std::vector<PlaneCandidate>* points) {
   for (int i = 0; i < count; ++i) {
-    points->push_back(candidate(at(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), 0.002 * random.normal())));
+    points->push_back(
+        candidate(drawn({0.002 * random.normal(), random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)})));
   }
 }
 
@@ -51,7 +59,7 @@ void test_search_should_find_the_wall_when_clutter_stands_before_it() {
     std::vector<PlaneCandidate> points;
     add_wall(random, 14, &points);
     for (int i = 0; i < 30; ++i) {
-      points.push_back(candidate(at(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1.5))));
+      points.push_back(candidate(drawn({random.uniform(0.1, 1.5), random.uniform(-1, 1), random.uniform(-1, 1)})));
     }
     const Found found(points, PlaneSearchSettings{});
     if (!found.any) continue;
@@ -75,7 +83,7 @@ void test_search_should_find_nothing_when_there_is_only_clutter() {
   for (int trial = 0; trial < 200; ++trial) {
     std::vector<PlaneCandidate> points;
     for (int i = 0; i < 100; ++i) {
-      points.push_back(candidate(at(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))));
+      points.push_back(candidate(drawn({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)})));
     }
     found += Found(points, PlaneSearchSettings{}, static_cast<std::uint32_t>(trial)).any ? 1 : 0;
   }
@@ -93,7 +101,7 @@ void test_search_should_find_nothing_when_the_layer_is_thicker_than_the_distance
     std::vector<PlaneCandidate> points;
     for (int i = 0; i < 60; ++i) {
       points.push_back(
-          candidate(at(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), random.uniform(-0.04, 0.04))));
+          candidate(drawn({random.uniform(-0.04, 0.04), random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)})));
     }
     TEST_ASSERT_FALSE(Found(points, settings).any);
   }
@@ -104,7 +112,7 @@ void test_search_should_find_nothing_when_points_are_in_line() {
   for (int trial = 0; trial < 50; ++trial) {
     std::vector<PlaneCandidate> points;
     for (int i = 0; i < 30; ++i) {
-      points.push_back(candidate(at(random.uniform(-0.6, 0.6), 0.02 * random.normal(), 0.002 * random.normal())));
+      points.push_back(candidate(drawn({0.002 * random.normal(), 0.02 * random.normal(), random.uniform(-0.6, 0.6)})));
     }
     TEST_ASSERT_FALSE(Found(points, PlaneSearchSettings{}).any);
   }
@@ -118,7 +126,7 @@ void test_search_should_leave_a_point_out_when_it_alone_would_turn_the_plane() {
     std::vector<PlaneCandidate> points;
     for (int i = 0; i < 12; ++i) {
       points.push_back(
-          candidate(at(random.uniform(-0.12, 0.12), random.uniform(-0.12, 0.12), 0.001 * random.normal())));
+          candidate(drawn({0.001 * random.normal(), random.uniform(-0.12, 0.12), random.uniform(-0.12, 0.12)})));
     }
     points.push_back(candidate(at(0.45, 0, 0.018)));
     const Found found(points, PlaneSearchSettings{});
@@ -135,7 +143,7 @@ void test_search_should_keep_to_one_group_when_two_lie_in_the_same_plane_far_apa
   for (int i = 0; i < 24; ++i) {
     const double x = i < 14 ? -0.5 : 0.4;
     points.push_back(
-        candidate(at(x + random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15), 0.001 * random.normal())));
+        candidate(drawn({0.001 * random.normal(), random.uniform(-0.15, 0.15), x + random.uniform(-0.15, 0.15)})));
   }
   const Found found(points, PlaneSearchSettings{});
   TEST_ASSERT_TRUE(found.any);
