@@ -24,7 +24,7 @@ Vec3 at(double x, double y, double z) {
   return Vec3(static_cast<Scalar>(x), static_cast<Scalar>(y), static_cast<Scalar>(z));
 }
 
-/// Coordinates in the order in which they are drawn: from left to right in braces, as the compiler likes among arguments.
+/// Coordinates in the order in which they are drawn: left to right in braces; among arguments the compiler chooses.
 struct Drawn {
   double z, y, x;
 };
