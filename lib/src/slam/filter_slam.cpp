@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "slam/consensus.h"
 
 namespace pf {
 namespace {
@@ -12,7 +11,6 @@ namespace {
 constexpr Scalar kStartSpeed = Scalar(0.5);  // [m/s], times the start depth where that sets the scale
 constexpr Scalar kStartRate = Scalar(0.5);   // [rad/s]
 
-constexpr int kMostRounds = 3;                 ///< of one frame's pixels, where little was known of the pose
 constexpr Scalar kHandSeconds = Scalar(0.25);  ///< in which a speed decays while nothing is measured
 constexpr Scalar kMostTurn = Scalar(0.5);      ///< [rad] standard deviation at which it grows no more
 
@@ -217,157 +215,6 @@ void FilterSlam::begin_from_knowledge() {
     covariance[i * dim + i] = sigma * sigma;
   }
   begin_at(has_target ? target_.first_pose : Body(), covariance);
-}
-
-/// Takes in the kept ones of observations first .. first+count-1, which begin_update holds. False when nothing was taken in.
-bool FilterSlam::take_in(int first, int count) {
-  StageTimer timer(settings_.hooks, &report_.stage_ns[kUpdate]);
-  Scalar nis = 0;
-  if (!filter_.finish_update(observation_ + first, count, keep_ + first, &nis)) {
-    ++failed_updates_;
-    for (int i = first; i < first + count; ++i) tracks_[track_of_[i]].status = TrackStatus::kOutlier;
-    return false;
-  }
-  failed_updates_ = 0;
-  report_.nis += static_cast<double>(nis);
-  for (int i = first; i < first + count; ++i) {
-    if (keep_[i] == 0) continue;
-    report_.nis_dof += 2;
-    ++report_.inliers;
-    Feature& feature = features_[entry_[i]];
-    count_frame(&feature.observations);
-    feature.failures = 0;
-    feature.rejections = 0;
-    feature.last_seen_ns = report_.t_ns;
-  }
-  take_in_again_where_bent(first, count);
-  return true;
-}
-
-/// H P H^T of a predicted pixel. Adds to its second-order noise what the projection bends over the spread of the pose: with an
-/// angle of s = sqrt(lambda / f^2) the tangent leaves out about f s^2, as noise f^2 s^4 / 2. The smaller eigenvalue counts: the
-/// larger may be of the depth, in which an inverse-depth point is linear.
-Mat2 FilterSlam::expected_innovation(Observation* o) const {
-  const Mat2 S = filter_.innovation(*o);
-  const Scalar half = (S(0, 0) - S(1, 1)) / 2;
-  const Scalar lambda = (S(0, 0) + S(1, 1)) / 2 - std::sqrt(half * half + S(0, 1) * S(0, 1));
-  const Scalar bend = lambda * lambda / (2 * settings_.camera.fx * settings_.camera.fy);
-  o->second_order(0, 0) += bend;
-  o->second_order(1, 1) += bend;
-  o->bend = bend;
-  return S;
-}
-
-/// Pixels that were taken in with much of that noise are taken in again at the pose that they led to, with the information that the noise
-/// kept back:  R' = (R^-1 - (R + bend I)^-1)^-1 = R + R^2 / bend.
-void FilterSlam::take_in_again_where_bent(int first, int count) {
-  for (int round = 0; round < kMostRounds; ++round) {
-    bool bent = false;
-    for (int i = first; i < first + count; ++i)
-      bent = bent || (keep_[i] != 0 && 2 * observation_[i].bend > observation_[i].noise(0, 0));
-    if (!bent) return;
-    for (int i = first; i < first + count; ++i) {
-      if (keep_[i] == 0) continue;
-      Observation& o = observation_[i];
-      const Vec2 measured = o.measured;
-      const Scalar bend = std::max(o.bend, Scalar(1e-6));
-      const Mat2 R = o.noise - Mat2::Identity() * bend;
-      keep_[i] = filter_.predict_pixel(settings_.camera, o.slot, &o) ? 1 : 0;
-      if (keep_[i] == 0) continue;
-      expected_innovation(&o);
-      o.measured = measured;
-      o.noise = R + R.lazyProduct(R) / bend + Mat2::Identity() * o.bend;
-    }
-    filter_.begin_update(observation_ + first, count);
-    if (!filter_.finish_update(observation_ + first, count, keep_ + first, nullptr)) return;
-  }
-}
-
-Status FilterSlam::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
-  if (takes_images_only()) return Status::kState;
-  if (!begin_frame(t_ns)) return Status::kTime;
-  if (gave_up_) return end_frame();
-  if (!has_pose_) {
-    begin_from_knowledge();
-    add_target_points();
-  }
-
-  for (int i = 0; i < features_.capacity(); ++i) features_[i].asked = false;
-  int known = 0;
-  {
-    StageTimer timer(settings_.hooks, &report_.stage_ns[kGate]);
-    for (int i = 0; i < count && known < settings_.max_observations; ++i) {
-      const int entry = find_track(observations[i].track);
-      if (entry < 0) continue;
-      Feature& feature = features_[entry];
-      if (feature.is_target && target_withdrawn_) continue;
-      if (feature.asked) continue;  // the same id again
-      feature.asked = true;
-      Observation& o = observation_[known];
-      count_frame(&feature.attempts);
-      ++report_.attempts;
-      if (!filter_.predict_pixel(settings_.camera, feature.slot, &o)) {
-        count_frame(&feature.failures);
-        continue;
-      }
-      const Mat2 spread = expected_innovation(&o);
-      o.measured = observations[i].pixel;
-      o.noise = Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order;
-      const Mat2 S = spread + o.noise;
-      const Scalar nis = squared_distance(o.measured - o.predicted, S);
-      const bool agrees = nis < settings_.gate;
-      tracks_[track_count_++] = {entry,
-                                 feature.id,
-                                 agrees ? TrackStatus::kInlier : TrackStatus::kOutlier,
-                                 filter_.state().block[feature.slot].kind,
-                                 o.predicted,
-                                 S,
-                                 o.measured,
-                                 nis};
-      ++report_.matches;
-      if (!agrees) {
-        count_frame(&feature.failures);
-        count_frame(&feature.rejections);
-        continue;
-      }
-      keep_[known] = 1;
-      track_of_[known] = track_count_ - 1;
-      entry_[known++] = entry;
-    }
-  }
-  if (known > 0) {
-    {
-      StageTimer timer(settings_.hooks, &report_.stage_ns[kUpdate]);
-      filter_.begin_update(observation_, known);
-    }
-    take_in(0, known);
-  }
-
-  StageTimer timer(settings_.hooks, &report_.stage_ns[kMap]);
-  convert_what_is_linear();
-  tend_planes();
-  drop_what_fails();
-  int anchor = -1;
-  for (int i = 0; i < count; ++i) {
-    if (find_track(observations[i].track) >= 0) continue;
-    if (track_count_ >= settings_.max_observations + settings_.max_features) break;
-    if (!make_room_at(&anchor)) break;
-    const Scalar variance = observations[i].sigma_px * observations[i].sigma_px;
-    const int entry = begin_feature(anchor, observations[i].pixel, Mat2::Identity() * variance);
-    if (entry < 0) continue;
-    features_[entry].track = observations[i].track;
-    tracks_[track_count_++] = {
-        entry,        features_[entry].id,   TrackStatus::kNew, BlockKind::kInverseDepth, observations[i].pixel,
-        Mat2::Zero(), observations[i].pixel, Scalar(0)};
-  }
-  if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child
-  return end_frame();
-}
-
-int FilterSlam::find_track(std::uint32_t track) const {
-  for (int i = 0; i < features_.capacity(); ++i)
-    if (features_.used(i) && features_[i].track == track) return i;
-  return -1;
 }
 
 void FilterSlam::predict_pose(std::int64_t t_ns, Body* body, Mat6* covariance) const {

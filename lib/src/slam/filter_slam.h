@@ -84,8 +84,6 @@ class FilterSlam {
   Status end_frame();
   void begin_at(const Body& body, const Scalar* covariance);
   void begin_from_knowledge();
-  int find_track(std::uint32_t track) const;
-  bool take_in(int first, int count);
   void damp(Scalar dt);
   void start_over();
   void begin_filter();
@@ -108,23 +106,31 @@ class FilterSlam {
   void fold_into(int plane_entry);
   void support(int plane_entry, int slot);
   void fix_on(int plane_entry);
-  void discover_plane();
-  void merge_into(int plane_entry);
-  void settle_frame(int plane_entry);
-  void dissolve_weak();
-  void dissolve(int plane_entry);
   void loosen(int plane_slot, int children);
   bool is_settled(int entry) const;
   bool is_certain(int entry, Mat3* covariance) const;
+
+  // planes_come_and_go.cpp
+  void discover_plane();
   bool same_plane(int slot, int other) const;
+  void merge_into(int plane_entry);
+  void settle_frame(int plane_entry);
+  void dissolve(int plane_entry);
+  void dissolve_weak();
+
+  // taking_in.cpp
+  bool take_in(int first, int count);
+  Mat2 expected_innovation(Observation* o) const;
+  void take_in_again_where_bent(int first, int count);
+
+  // observation_door.cpp
+  int find_track(std::uint32_t track) const;
 
   // frame_door.cpp
   int list_visible();
   void predict_pixels(int first, int count);
   int search(int first, int count);
   void measure(int first, int count);
-  Mat2 expected_innovation(Observation* o) const;
-  void take_in_again_where_bent(int first, int count);
   Scalar widest_ellipse(int count) const;
   void begin_features_in_image();
 

@@ -4,21 +4,17 @@
 #include "geometry/symmetric_eigen.h"
 #include "slam/filter_slam.h"
 
-/// What happens to the planes of the map after each update: misfits out, points in, points fixed, planes found, merged, dissolved.
+/// What happens to the planes of the map after each update: misfits out, points in, points fixed; whole planes in planes_come_and_go.cpp.
 /// Gee 2007, sections 3.3 and 3.4. One plane at a time is tended to in a frame, so that the work is bounded.
 
 namespace pf {
 namespace {
 
-constexpr int kConverged = 10;         ///< observations before a point is believed
-constexpr int kDiscoverEvery = 5;      ///< frames
-constexpr int kMostRejections = 4;     ///< in a row, before a folded point is taken out again
-constexpr int kLeastPoints = 4;        ///< that keep alive a plane that once had more than plane_min_points
-constexpr int kPatience = 60;          ///< frames with fewer
-constexpr int kLeastFixed = 4;         ///< points that a patch begins with
-constexpr Scalar kReach = 0.5f;        ///< beyond what is known of a plane, in roots of its area
-constexpr Scalar kSlanted = 0.05f;     ///< to its frame, above which a plane gets another one
-constexpr Scalar kSameNormal = 0.97f;  ///< cosine of the angle below which planes may be one
+constexpr int kConverged = 10;      ///< observations before a point is believed
+constexpr int kDiscoverEvery = 5;   ///< frames
+constexpr int kMostRejections = 4;  ///< in a row, before a folded point is taken out again
+constexpr int kLeastFixed = 4;      ///< points that a patch begins with
+constexpr Scalar kReach = 0.5f;     ///< beyond what is known of a plane, in roots of its area
 
 Scalar largest_eigenvalue(const Mat3& C) {
   Vec3 lambda;
@@ -168,199 +164,6 @@ void FilterSlam::fix_on(int plane_entry) {
     if (filter_.variance_in_drawing(group[k], group, group_count) < variance) slots[count++] = group[k];
   if (count == 0 || (!has_patch && count < kLeastFixed)) return;
   filter_.fix(slots, count, settings_.fix, group, group_count);
-}
-
-/// One plane among the points that are in none yet.
-void FilterSlam::discover_plane() {
-  if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
-  int count = 0;
-  const Scalar most = Scalar(2) * settings_.plane_distance;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!is_settled(i)) continue;
-    const Vec3 p_W = filter_.point(features_[i].slot);
-    bool taken = false;
-    for (int k = 0; k < planes_.capacity() && !taken; ++k) {
-      if (!planes_.used(k)) continue;
-      const Block& plane = filter_.state().block[planes_[k].slot];
-      const PlaneFrame& frame = filter_.state().frame_of(plane);
-      taken = std::abs(plane_distance(frame, plane.xyz(), p_W)) < most && is_in_reach(k, p_W);
-    }
-    if (taken || !is_certain(i, &candidate_[count].covariance)) continue;
-    candidate_[count].p_W = p_W;
-    candidate_entry_[count++] = i;
-  }
-  if (count <= settings_.plane_min_points) return;
-  PlaneSearchSettings search;
-  search.min_points = settings_.plane_min_points;
-  search.distance = settings_.plane_distance;
-  search.radius = settings_.plane_radius;
-  search.normal_variance = settings_.plane_distance * settings_.plane_distance / Scalar(4);
-  PlaneFit fit;
-  int member[kMaxPlaneMembers];
-  int members = 0;
-  if (!search_plane(candidate_, count, search, filter_.state().body.p_W, &random_, &fit, member, &members)) return;
-  for (int k = 0; k < members; ++k) member[k] = features_[candidate_entry_[member[k]]].slot;
-  const int slot = filter_.add_plane(fit, member, members, settings_.fold.roughness);
-  if (slot < 0) return;
-  // It has to keep, by the filter's own covariance, as many as it takes to find one.
-  int kept = 0;
-  for (int k = 0; k < members; ++k) kept += lies_on(slot, member[k]) ? 1 : 0;
-  const int entry = kept > settings_.plane_min_points ? planes_.add(slot) : -1;
-  if (entry < 0) {
-    filter_.remove(&slot, 1);
-    return;
-  }
-  for (int k = 0; k < members; ++k) support(entry, member[k]);
-  settings_.hooks.say("found a plane");
-}
-
-/// Whether the points of `other` say that it is the plane in `slot`.
-bool FilterSlam::same_plane(int slot, int other) const {
-  const State& state = filter_.state();
-  const Block &a = state.block[slot], &b = state.block[other];
-  Vec3 n_a, n_b;
-  Scalar d_a, d_b;
-  plane_normal(state.frame_of(a), a.xyz(), &n_a, &d_a);
-  plane_normal(state.frame_of(b), b.xyz(), &n_b, &d_b);
-  if (n_a.dot(n_b) < kSameNormal) return false;
-  int points = 0, agree = 0, close = 0;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    const Block& block = state.block[features_[i].slot];
-    if (!is_planar(block.kind) || state.plane_of(features_[i].slot) != other) continue;
-    Scalar d, variance;
-    ++points;
-    if (!filter_.distance(slot, features_[i].slot, &d, &variance)) continue;
-    variance += settings_.fold.roughness * settings_.fold.roughness;
-    if (d * d < Scalar(9) * variance) ++agree;
-    if (std::abs(d) < Scalar(3) * settings_.plane_distance) ++close;
-  }
-  // Near as well as undecided: a plane that is hardly known agrees with anything.
-  return points >= kLeastPoints && 10 * agree >= 9 * points && 10 * close >= 9 * points;
-}
-
-/// Another plane that is the same one gives its points to this one.
-void FilterSlam::merge_into(int plane_entry) {
-  const int plane = planes_[plane_entry].slot;
-  for (int k = 0; k < planes_.capacity(); ++k) {
-    if (k == plane_entry || !planes_.used(k)) continue;
-    const int other = planes_[k].slot;
-    if (filter_.state().block[other].children > filter_.state().block[plane].children || !same_plane(plane, other))
-      continue;
-    FoldRule rule = settings_.fold;
-    rule.gate = Scalar(16);
-    for (int i = 0; i < features_.capacity(); ++i) {
-      if (!features_.used(i)) continue;
-      const int slot = features_[i].slot;
-      if (filter_.state().block[slot].kind == BlockKind::kPatchPoint && filter_.state().plane_of(slot) == other &&
-          !filter_.release(slot))
-        return;
-    }
-    int slots[Filter::kMostFolded];
-    unsigned char folded[Filter::kMostFolded];
-    int count = 0;
-    const auto give = [&] {
-      if (count > 0) filter_.fold(plane, slots, count, rule, folded);
-      for (int i = 0; i < count; ++i)
-        if (folded[i] != 0) support(plane_entry, slots[i]);
-      count = 0;
-    };
-    for (int i = 0; i < features_.capacity(); ++i) {
-      if (!features_.used(i)) continue;
-      const Block& block = filter_.state().block[features_[i].slot];
-      if (block.kind != BlockKind::kPlanePoint || block.parent != other) continue;
-      slots[count++] = features_[i].slot;
-      if (count == std::min(Filter::kMostFolded, settings_.max_observations)) give();
-    }
-    give();
-    const State& state = filter_.state();
-    const Block &from = state.block[other], &to = state.block[plane];
-    for (int i = 0; i < planes_[k].seen.count; ++i) {
-      const Vec3 p_W = plane_point(state.frame_of(from), from.xyz(), planes_[k].seen.uv[i]);
-      const Vec2 uv = plane_coordinates(state.frame_of(to), p_W);
-      extend_outline(&planes_[plane_entry].seen, &uv, 1);
-    }
-    planes_.remember_merge(planes_[k].id, planes_[plane_entry].id);
-    dissolve(k);
-    settings_.hooks.say("merged two planes");
-    return;
-  }
-}
-
-/// A plane that has turned away from its frame, or whose points have, gets a frame in their middle.
-void FilterSlam::settle_frame(int plane_entry) {
-  const int plane = planes_[plane_entry].slot;
-  const State& state = filter_.state();
-  const Block& block = state.block[plane];
-  const Vec3 x = block.xyz();
-  const bool slanted = x(0) * x(0) + x(1) * x(1) > kSlanted * kSlanted;
-  if (!slanted || filter_.patch_of(plane) >= 0) return;
-  PlaneFrame to = state.frame_of(block);
-  Vec3 normal;
-  Scalar d;
-  plane_normal(to, x, &normal, &d);
-  to.o_W += x(2) * to.R_WP.col(2);
-  const Vec3 along = (to.R_WP.col(0) - normal * normal.dot(to.R_WP.col(0))).normalized();
-  to.R_WP.col(0) = along;
-  to.R_WP.col(1) = normal.cross(along);
-  to.R_WP.col(2) = normal;
-  const PlaneFrame from = state.frame_of(block);
-  if (!filter_.reanchor(plane, to)) return;
-  PlaneOutline& known = planes_[plane_entry].support;
-  PlaneOutline& seen = planes_[plane_entry].seen;
-  for (int i = 0; i < known.count; ++i) known.uv[i] = plane_coordinates(to, plane_point(from, x, known.uv[i]));
-  for (int i = 0; i < seen.count; ++i) seen.uv[i] = plane_coordinates(to, plane_point(from, x, seen.uv[i]));
-}
-
-/// All points go back to three coordinates, and the plane goes.
-void FilterSlam::dissolve(int plane_entry) {
-  const int plane = planes_[plane_entry].slot;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    const int slot = features_[i].slot;
-    if (!is_planar(filter_.state().block[slot].kind) || filter_.state().plane_of(slot) != plane) continue;
-    if (!filter_.unfold(slot, settings_.plane_distance)) drop(&i, 1);
-  }
-  filter_.remove(&plane, 1);
-  planes_.remove(plane_entry);
-}
-
-/// What is known of a plane: what was, and the points that are on it now, but for those that are far from all others.
-PlanePoints FilterSlam::outline(int plane_entry, PlaneOutline* outline) const {
-  constexpr int kBatch = kOutlineBatch;
-  const State& state = filter_.state();
-  const int plane = planes_[plane_entry].slot;
-  PlanePoints points;
-  if (outline != nullptr) *outline = planes_[plane_entry].seen;
-  Vec2 uv[kBatch];
-  int count = 0;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    const int slot = features_[i].slot;
-    if (!is_planar(state.block[slot].kind) || state.plane_of(slot) != plane) continue;
-    ++points.folded;
-    if (state.block[slot].kind == BlockKind::kPatchPoint) ++points.fixed;
-    if (outline == nullptr) continue;
-    uv[count++] = plane_coordinates(state.frame_of(state.block[plane]), filter_.point(slot));
-    if (count < kBatch) continue;
-    extend_outline(outline, uv, keep_company(uv, count));
-    count = 0;
-  }
-  if (count > 0) extend_outline(outline, uv, keep_company(uv, count));
-  return points;
-}
-
-/// A plane that too few points carry for a while goes, a new one also where it does not get as many as it was found with; and at
-/// once what more points have denied than still believe.
-void FilterSlam::dissolve_weak() {
-  for (int i = 0; i < planes_.capacity(); ++i) {
-    if (!planes_.used(i)) continue;
-    const int points = outline(i, nullptr).folded;
-    planes_[i].most = std::max(planes_[i].most, points);
-    const bool proven = planes_[i].most > settings_.plane_min_points;
-    planes_[i].weak = points < kLeastPoints || !proven ? planes_[i].weak + 1 : 0;
-    if (planes_[i].weak > kPatience || planes_[i].misfits > points) dissolve(i);
-  }
 }
 
 }  // namespace pf
