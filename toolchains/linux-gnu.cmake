@@ -30,6 +30,7 @@ else()
   set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
   set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE BOTH)
   set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE BOTH)
+  set(ENV{PKG_CONFIG_LIBDIR} /usr/lib/${planefold_triple}/pkgconfig)
   set(planefold_target_root /usr/${planefold_triple})
 endif()
 
