@@ -203,9 +203,11 @@ void add_gauge_rows(const State& state, Scalar sign, Scalar* N_T, Scalar* N_R, S
     if ((block.kind != BlockKind::kPlane && block.kind != BlockKind::kPatch) || block.children == 0) continue;
     PlanarRows rows;
     find_rows(state, block, &rows);
-    for (int t = 0; t < state.slots; ++t) {
+    for (int t = 0, left = block.children; left > 0 && t < state.slots; ++t) {
       const Block& child = state.block[t];
-      if (child.parent != s || child.size == 0 || !is_planar(child.kind)) continue;
+      if (child.parent != s) continue;
+      --left;
+      if (child.size == 0 || !is_planar(child.kind)) continue;
       const Vec2 c = child.uv();
       for (int i = 0; i < 2; ++i) {
         const int at = child.first + i;

@@ -39,6 +39,17 @@ void add_place(const WorldPoint& at, const Vec3& d, SparseRows* row) {
   }
 }
 
+/// Adds sign times what a shift does to the heights of planes; all that it does to other rows is the same at every x.
+void add_height_rows(const State& state, Scalar sign, Scalar* U_shift, int ld) {
+  for (int s = 0; s < state.slots; ++s) {
+    const Block& block = state.block[s];
+    if (block.kind != BlockKind::kPlane) continue;
+    const int height = block.first + 2;
+    const Vec3 shift = plane_gauge(state.frame_of(block), block.xyz()).block<1, 3>(2, 0).transpose();
+    for (int axis = 0; axis < 3; ++axis) U_shift[axis * ld + height] += sign * shift(axis);
+  }
+}
+
 }  // namespace
 
 /// Before the state moves: U = -N(x-), raw rows of V P in G. Returns how many rows the transport has.
@@ -49,8 +60,8 @@ int Filter::begin_transport() {
   const std::size_t bytes = sizeof(Scalar) * static_cast<std::size_t>(rows) * static_cast<std::size_t>(ld_);
   std::memset(U_, 0, sizeof(Scalar) * kGaugeRows * static_cast<std::size_t>(ld_));
   std::memset(G_, 0, bytes);
-  Scalar* U_shift = rows == kGaugeRows ? U_ + kShift * ld_ : nullptr;
-  add_gauge_rows(state_, Scalar(-1), U_shift, U_, U_ + kScale * ld_, ld_);
+  add_gauge_rows(state_, Scalar(-1), nullptr, U_, U_ + kScale * ld_, ld_);
+  if (rows == kGaugeRows) add_height_rows(state_, Scalar(-1), U_ + kShift * ld_, ld_);
   SparseRows V[3];  // E_theta, l, E_p
   for (int i = 0; i < 3; i += 2) {
     V[i].rows = 3;
@@ -68,8 +79,8 @@ int Filter::begin_transport() {
 /// After it has moved: U and G as above.
 void Filter::finish_transport(int m, int rows) {
   const int n = state_.dim;
-  Scalar* U_shift = rows == kGaugeRows ? U_ + kShift * ld_ : nullptr;
-  add_gauge_rows(state_, Scalar(1), U_shift, U_, U_ + kScale * ld_, ld_);
+  add_gauge_rows(state_, Scalar(1), nullptr, U_, U_ + kScale * ld_, ld_);
+  if (rows == kGaugeRows) add_height_rows(state_, Scalar(1), U_ + kShift * ld_, ld_);
   if (l_.segments == 0) std::memset(U_ + kScale * ld_, 0, sizeof(Scalar) * static_cast<std::size_t>(ld_));
 
   const auto raw = [&](const Scalar* row, int which) {  // E_theta, l, E_p
