@@ -218,15 +218,16 @@ inline Trace run(const Kernels& kernels, Problem& p, Place place) {
     c.copy_from(p.start.P);
     update(kernels, p, c.P, place, trace);
   }
-  const auto each = [&](const std::function<void(Triangle&)>& operation) {
+  const auto each = [&](const std::function<void(Triangle&)>& operation, const Triangle& before = Triangle()) {
     Covariance c(p.n, p.n + 8, place.shift, place.poison);
     c.copy_from(p.start.P);
     operation(c.P);
-    trace.add(c.P, Triangle());
+    trace.add(c.P, before);
   };
   int b = 0;
   while (b * b < static_cast<int>(p.F.size())) ++b;
-  each([&](Triangle& P) { kernels.predict(P, p.F.data(), p.Q.data(), b); });
+  // F may take nearly all of a variance away; rows stay where they are, so that it can be held against what it was.
+  each([&](Triangle& P) { kernels.predict(P, p.F.data(), p.Q.data(), b); }, p.start.P);
   each([&](Triangle& P) { kernels.augment(P, p.added, p.added_noise); });
   each([&](Triangle& P) { kernels.remove(P, p.gone.data(), static_cast<int>(p.gone.size())); });
   each([&](Triangle& P) {
