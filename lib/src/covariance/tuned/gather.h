@@ -56,7 +56,7 @@ inline void fill_panel(FromTriangle source, int first, int size, int j0, int col
       copy_groups(to + j0, row + j0, before - j0);
       for (int j = j0 > square ? j0 : square; j < smaller(end, first + c + 1); ++j) {
         to[j] = row[j];
-        asm("" ::: "memory");
+        asm("" ::: "memory");  // keeps the compiler from making a call of it
       }
     }
   }
