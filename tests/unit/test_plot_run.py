@@ -101,6 +101,15 @@ class PlotRun(unittest.TestCase):
         self.assertEqual(inverse_depth.tolist(), [False, True, False])
         self.assertEqual(target.tolist(), [False, False, True])
 
+    def test_map_should_be_its_points_alone_when_it_has_planes_too(self):
+        head, rows = PLY.replace("vertex 3", "vertex 6").split("end_header\n")
+        head += "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uint id\nend_header\n"
+        corners = "".join(f"{k} 0 1 255 90 160 0 7 0 0\n" for k in range(3))
+        (self.path / "map.ply").write_text(head + rows + corners + "3 3 4 5 255 7\n")
+        p, sigma, _, _ = read_map(self.path / "map.ply")
+        self.assertEqual(p.shape, (3, 3))
+        np.testing.assert_allclose(sigma, [0.01, 0.5, 0.001])
+
     def test_views_should_follow_the_cameras_when_the_world_is_another(self):
         self.assertEqual(view_axes(np.eye(3)[None]), ((0, 1), (1, -1), (2, 1)))  # x right, y down, z forward
         flipped = np.diag([-1.0, -1.0, 1.0])[None]  # camera in a world with x left, y up, z away

@@ -13,13 +13,18 @@ AXES = "xyz"
 
 
 def read_map(path):
-    """(p (n,3), sigma (n), inverse_depth (n) bool, target (n) bool) of a map.ply; empty where there is none."""
+    """(p (n,3), sigma (n), inverse_depth (n) bool, target (n) bool) of the points in a map.ply, without the corners of its
+    faces, which are planes; empty where there is none."""
     if not path.exists():
         return np.zeros((0, 3)), np.zeros(0), np.zeros(0, bool), np.zeros(0, bool)
     head, _, body = _text(path).partition("end_header\n")
-    names = re.findall(r"^property \S+ (\S+)$", head, re.M)
-    rows = np.array([[float(word) for word in line.split()] for line in body.splitlines() if line.strip()])
-    rows = rows.reshape(-1, len(names))
+    of_vertices = head.partition("element vertex ")[2].partition("element ")[0]
+    count = int(of_vertices.split()[0])
+    names = re.findall(r"^property \S+ (\S+)$", of_vertices, re.M)
+    lines = [line.split() for line in body.splitlines() if line.strip()]
+    corners = {int(word) for face in lines[count:] for word in face[1:1 + int(face[0])]}
+    points = [[float(word) for word in line] for k, line in enumerate(lines[:count]) if k not in corners]
+    rows = np.array(points).reshape(-1, len(names))
     column = {name: rows[:, i] for i, name in enumerate(names)}
     p = np.stack([column["x"], column["y"], column["z"]], axis=1)
     zero = np.zeros(len(rows))
