@@ -35,6 +35,13 @@ capture() {{ # NAME SECONDS ARGUMENTS...: interrupted after some seconds, as a u
   echo $code >/share/$name/code
   echo "$name: $(cut -d' ' -f1 /proc/uptime) s"
 }}
+streaming() {{ # waits until the camera streams (its driver then has a thread of that name) and both sensors are read
+  for i in $(seq 150); do
+    sleep 0.1
+    grep -qs '^vivid-000-vid' /proc/[0-9]*/comm && [ $(cat /sys/bus/iio/devices/iio:device*/buffer0/enable | grep -c 1) -ge 2 ] && return
+  done
+  echo "the camera or the unit did not begin to stream"
+}}
 /tmp/pf-capture --list >/share/none.txt
 unit
 /tmp/pf-capture --list >/share/list.txt
@@ -50,12 +57,12 @@ capture named 4 {SMALL} --imu iio:accel_3d+gyro_3d --imu-offset 0.5
 capture nonesuch 4 {SMALL} --imu iio:nonesuch
 
 # Unplugged after some seconds, and plugged in again.
-(sleep 3; kill $unit; sleep 2; unit) &
-capture unplug 11 {SMALL} --imu iio: --record /tmp/unplugged
+(streaming; sleep 3; kill $unit; sleep 2; unit) &
+capture unplug 15 {SMALL} --imu iio: --record /tmp/unplugged
 cp -r /tmp/unplugged/mav0/imu0 /share/imu0_unplugged
 # Unplugged for good: an interruption still ends the run.
-(sleep 2; killall imu_device) &
-capture gone 5 {SMALL} --imu iio:
+(streaming; sleep 2; killall imu_device) &
+capture gone 9 {SMALL} --imu iio:
 """
 CALIBRATION = ("camera_model: pinhole\nwidth: 640\nheight: 360\nfx: 500\nfy: 500\ncx: 320\ncy: 180\ndistortion_model: none\n"
                "distortion: []\nrate_hz: 30\n")

@@ -27,6 +27,10 @@ capture() {{ # NAME SECONDS ARGUMENTS...: interrupted after some seconds, as a u
   echo $code >/share/$name/code
   echo "$name: $(cut -d' ' -f1 /proc/uptime) s"
 }}
+streaming() {{ # waits until the camera streams: its driver then has a thread of that name
+  for i in $(seq 100); do grep -qs '^vivid-000-vid' /proc/[0-9]*/comm && return; sleep 0.1; done
+  echo "the camera did not begin to stream"
+}}
 /tmp/pf-capture --list >/share/list.txt
 # The test picture. --delay leaves the processor to the camera. Where the host is busy the emulated camera itself comes late and
 # skips a number, so there are several attempts, the last ones at half the rate.
@@ -51,12 +55,12 @@ capture again 60 --source euroc:/tmp/loop --as-recorded
 capture replay 120 --source euroc:/tmp/loop --frames {PICTURES}
 
 # Unplugged after some seconds, and plugged in again.
-(sleep 3; echo vivid.0 >/sys/bus/platform/drivers/vivid/unbind; echo "unbound" >/share/unbind.txt; sleep 2
+(streaming; sleep 3; echo vivid.0 >/sys/bus/platform/drivers/vivid/unbind; echo "unbound" >/share/unbind.txt; sleep 2
  echo vivid.0 >/sys/bus/platform/drivers/vivid/bind) &
-capture unplug 11 --source v4l2:/dev/video0 $CALM --format GREY
+capture unplug 13 --source v4l2:/dev/video0 $CALM --format GREY
 # Unplugged for good: an interruption still ends the run.
-(sleep 2; echo vivid.0 >/sys/bus/platform/drivers/vivid/unbind) &
-capture gone 5 --source v4l2:/dev/video0 $CALM --format GREY
+(streaming; sleep 2; echo vivid.0 >/sys/bus/platform/drivers/vivid/unbind) &
+capture gone 7 --source v4l2:/dev/video0 $CALM --format GREY
 """
 
 
@@ -73,12 +77,15 @@ class Results:
         if not condition:
             self.problems.append(text)
 
-    def report(self, name):
+    def read(self, name):
         path = self.share / name / "report.json"
         if not path.is_file():
             stderr = self.share / name / "stderr"
             fail(f"{name}: no report.json; {stderr.read_text() if stderr.is_file() else ''}")
-        report = json.loads(path.read_text())
+        return json.loads(path.read_text())
+
+    def report(self, name):
+        report = self.read(name)
         live = report.get("live", {})
         print(f"{name}: code {(self.share / name / 'code').read_text().strip()}, {report['frames']} frames, tracked "
               f"{report['tracked']}, live {json.dumps(live)}")
@@ -141,7 +148,7 @@ def check_interrupted(results):
     """Files of runs that an interruption ended are complete: whole lines, as many frames as the report says, whole pictures."""
     for name in ("GREY", "YUYV", "live", "unplug", "gone"):
         folder = results.share / name
-        report = json.loads((folder / "report.json").read_text())
+        report = results.read(name)
         code = (folder / "code").read_text().strip()
         results.require(code == ("0" if report["tracked"] > 0 else "1"), f"{name}: the interrupted run ended with {code}")
         text = (folder / "frames.csv").read_text()
