@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "plane_error.h"
+
 namespace pfsim {
 
 using pf::sim::Vec3;
@@ -137,6 +139,8 @@ PlaneVerdict SurfaceWatch::judge_one(const pf_plane_t& plane) const {
     const double sine = n.cross(s.n).norm();
     one.normal_deg = static_cast<float>(std::atan2(sine, std::fabs(n.dot(s.n))) / kDegree);
     one.offset_m = static_cast<float>(std::fabs(s.n.dot(middle) - s.d));
+    const double side = n.dot(s.n) < 0 ? -1 : 1;
+    one.nees = static_cast<float>(normalised_plane_error(plane, s.n * side, s.d * side));
     if (one.normal_deg > static_cast<float>(kMatchDeg) || one.offset_m > static_cast<float>(kMatchOff)) continue;
     overlap(plane, s, &one);
     if (one.surface >= 0 && (best.surface < 0 || one.offset_m < best.offset_m)) best = one;

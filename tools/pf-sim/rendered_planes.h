@@ -15,7 +15,8 @@ struct PlaneVerdict {
   std::int32_t id = 0, points = 0;
   std::int32_t surface = -1;           ///< -1: no surface lies there
   float normal_deg = 0, offset_m = 0;  ///< of the plane from the surface, the offset at the middle of the outline
-  float area_m2 = 0;                   ///< of the outline
+  float nees = 0;     ///< of the plane against the surface, 3 degrees of freedom; negative: its covariance is none
+  float area_m2 = 0;  ///< of the outline
   float covered = 0,
         overstep = 0;  ///< of what was seen of the surface: inside the outline; outline beyond all that was seen
 };

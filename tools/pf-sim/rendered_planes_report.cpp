@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rendered_planes.h"
+#include "statistics.h"
 
 namespace pfsim {
 
@@ -30,6 +31,7 @@ json run_json(const PlanesVerdict& run) {
     if (p.surface >= 0) {
       one["normal_deg"] = number(p.normal_deg);
       one["offset_m"] = number(p.offset_m);
+      one["nees"] = number(p.nees);
       one["covered"] = number(p.covered);
       one["overstep"] = number(p.overstep);
     }
@@ -48,9 +50,17 @@ json run_json(const PlanesVerdict& run) {
 json planes_json(const std::vector<const PlanesVerdict*>& runs) {
   int true_planes = 0, false_planes = 0, duplicates = 0, wanted = 0, found = 0, close = 0, outlined = 0;
   double worst_normal = 0, worst_offset = 0, least_covered = 1, most_overstep = 0;
+  double nees_sum = 0;
+  std::vector<double> nees;
   json each = json::array();
   for (const PlanesVerdict* run : runs) {
-    for (int k = 0; k < run->planes; ++k) (run->plane[k].surface >= 0 ? true_planes : false_planes) += 1;
+    for (int k = 0; k < run->planes; ++k) {
+      const PlaneVerdict& p = run->plane[k];
+      (p.surface >= 0 ? true_planes : false_planes) += 1;
+      if (p.surface < 0 || p.nees < 0) continue;
+      nees.push_back(static_cast<double>(p.nees));
+      nees_sum += nees.back();
+    }
     for (int k = 0; k < run->surfaces; ++k) {
       const SurfaceVerdict& s = run->surface[k];
       duplicates += std::max(0, s.planes - 1);
@@ -77,6 +87,8 @@ json planes_json(const std::vector<const PlanesVerdict*>& runs) {
           {"found", found},
           {"within_2_deg_2_cm", close},
           {"outlined", outlined},
+          {"nees_mean", nees.empty() ? 0 : nees_sum / static_cast<double>(nees.size())},
+          {"nees_median", nees.empty() ? 0 : median(nees)},
           {"worst_normal_deg", worst_normal},
           {"worst_offset_m", worst_offset},
           {"least_covered", least_covered},

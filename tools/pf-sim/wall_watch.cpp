@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "statistics.h"
+#include "plane_error.h"
 
 namespace pfsim {
 namespace {
@@ -20,16 +20,6 @@ std::vector<pf_plane_t> planes_of(const pf_slam_t* slam) {
   pf_get_planes(slam, planes.data(), planes.size(), &count);
   planes.resize(std::min(count, planes.size()));
   return planes;
-}
-
-/// (alpha, beta, delta) of the true wall against the estimate, normalised.
-double normalised_plane_error(const pf_plane_t& plane, const Vec3& normal) {
-  const double* R = plane.R_WP;
-  const Vec3 x{R[0], R[3], R[6]}, y{R[1], R[4], R[7]}, n{plane.normal_W[0], plane.normal_W[1], plane.normal_W[2]};
-  const Vec3 p{plane.p_WP[0], plane.p_WP[1], plane.p_WP[2]};
-  const Vec3 d = normal - n;
-  const double error[3] = {x.dot(d), y.dot(d), -kWallDistance - normal.dot(p)};
-  return normalised_error(error, plane.covariance, 3, 3, 0);
 }
 
 }  // namespace
@@ -83,7 +73,7 @@ void WallWatch::judge(const pf_slam_t* slam, const std::vector<pf_feature_t>& ma
     if (share.wall < 0) continue;
     if (planes_on[share.wall]++ > 0) ++summary.planes_duplicate;
     if (share.share < 1) continue;
-    summary.plane_nees_sum += normalised_plane_error(plane, bed_.wall_normal(share.wall));
+    summary.plane_nees_sum += normalised_plane_error(plane, bed_.wall_normal(share.wall), -kWallDistance);
     ++summary.planes_judged;
   }
   for (const auto& [id, share] : worst_) {
