@@ -1,6 +1,8 @@
 #ifndef PLANEFOLD_CAPTURE_CAMERA_DEVICE_H
 #define PLANEFOLD_CAPTURE_CAMERA_DEVICE_H
 
+#include <planefold_platform/cameras.h>
+
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -8,14 +10,14 @@
 
 namespace pf::capture {
 
-/// A camera behind one of the two C interfaces, which are alike. Api names the one: its types and functions, and
+/// A camera behind one of the two C interfaces. Api is a type of cameras.h, and
 ///   id(info)        what the user calls the camera by
 ///   describe(info)  JSON of what only this interface says
 ///   kStamps         names of its kinds of timestamps
 template <class Api>
 class DeviceCamera : public Camera {
  public:
-  explicit DeviceCamera(typename Api::Device* camera) : camera_(camera, Api::close) {}
+  explicit DeviceCamera(platform::OpenCamera<Api> camera) : camera_(std::move(camera)) {}
 
   bool start(std::string& error) override {
     char message[Api::kMessage] = "";
@@ -77,7 +79,7 @@ class DeviceCamera : public Camera {
   }
 
  private:
-  std::unique_ptr<typename Api::Device, void (*)(typename Api::Device*)> camera_;
+  platform::OpenCamera<Api> camera_;
   int64_t number_ = 0;
 };
 
@@ -101,14 +103,8 @@ typename Api::Options device_options(const Options& options, const pf_camera_t& 
 template <class Api>
 std::unique_ptr<DeviceCamera<Api>> open_device(const Options& options, const typename Api::Options& wanted,
                                                std::string& error) {
-  char message[Api::kMessage] = "";
-  typename Api::Device* opened = nullptr;
-  const std::string where = options.source.substr(options.source.find(':') + 1);
-  if (Api::open(where.c_str(), &wanted, &opened, message) != 0) {
-    error = message;
-    return nullptr;
-  }
-  return std::make_unique<DeviceCamera<Api>>(opened);
+  auto camera = platform::open_camera<Api>(options.source, wanted, error);
+  return camera == nullptr ? nullptr : std::make_unique<DeviceCamera<Api>>(std::move(camera));
 }
 
 /// formats: bit 1 << f for each that a camera has.

@@ -2,33 +2,13 @@
 
 #include "camera_device.h"
 
-#ifdef PLANEFOLD_HAVE_LIBCAMERA
-#include <planefold_platform/libcamera.h>
-#endif
-
 namespace pf::capture {
 
 #ifdef PLANEFOLD_HAVE_LIBCAMERA
 
 namespace {
 
-struct Libcamera {
-  using Device = pf_libcamera_t;
-  using Options = pf_libcamera_options_t;
-  using Frame = pf_libcamera_frame_t;
-  using Info = pf_libcamera_info_t;
-  static constexpr size_t kMessage = PF_LIBCAMERA_MESSAGE;
-  static constexpr uint32_t kFormats = PF_LIBCAMERA_FORMATS;
-  static constexpr int kNothing = PF_LIBCAMERA_NOTHING, kFrame = PF_LIBCAMERA_FRAME, kGone = PF_LIBCAMERA_GONE;
-  static constexpr auto options_default = pf_libcamera_options_default;
-  static constexpr auto format_name = pf_libcamera_format_name;
-  static constexpr auto open = pf_libcamera_open;
-  static constexpr auto close = pf_libcamera_close;
-  static constexpr auto start = pf_libcamera_start;
-  static constexpr auto read = pf_libcamera_read;
-  static constexpr auto release = pf_libcamera_release;
-  static constexpr auto come_back = pf_libcamera_return;
-  static constexpr auto get_info = pf_libcamera_get_info;
+struct Libcamera : platform::Libcamera {
   static constexpr const char* kStamps[] = {"arrival", "buffer", "sensor"};
 
   static std::string id(const Info& info) { return info.device.id; }

@@ -2,33 +2,13 @@
 
 #include "camera_device.h"
 
-#ifdef PLANEFOLD_HAVE_V4L2
-#include <planefold_platform/v4l2.h>
-#endif
-
 namespace pf::capture {
 
 #ifdef PLANEFOLD_HAVE_V4L2
 
 namespace {
 
-struct V4l2 {
-  using Device = pf_v4l2_t;
-  using Options = pf_v4l2_options_t;
-  using Frame = pf_v4l2_frame_t;
-  using Info = pf_v4l2_info_t;
-  static constexpr size_t kMessage = PF_V4L2_MESSAGE;
-  static constexpr uint32_t kFormats = PF_V4L2_FORMATS;
-  static constexpr int kNothing = PF_V4L2_NOTHING, kFrame = PF_V4L2_FRAME, kGone = PF_V4L2_GONE;
-  static constexpr auto options_default = pf_v4l2_options_default;
-  static constexpr auto format_name = pf_v4l2_format_name;
-  static constexpr auto open = pf_v4l2_open;
-  static constexpr auto close = pf_v4l2_close;
-  static constexpr auto start = pf_v4l2_start;
-  static constexpr auto read = pf_v4l2_read;
-  static constexpr auto release = pf_v4l2_release;
-  static constexpr auto come_back = pf_v4l2_return;
-  static constexpr auto get_info = pf_v4l2_get_info;
+struct V4l2 : platform::V4l2 {
   static constexpr const char* kStamps[] = {"arrival", "end of exposure", "start of exposure"};
 
   static std::string id(const Info& info) { return info.device.path; }

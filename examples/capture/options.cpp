@@ -1,5 +1,7 @@
 #include "options.h"
 
+#include <planefold_platform/cameras.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -87,7 +89,7 @@ std::string check_format(const std::string& format, const std::string& kind) {
 /// What CLI11 cannot check by itself; "" when all is well.
 std::string check(const Options& options, const std::string& backend) {
   const std::string kind = options.source.substr(0, options.source.find(':'));
-  const bool is_camera = kind == "v4l2" || kind == "libcamera";
+  const bool is_camera = platform::is_camera(options.source);
   if (options.source.find(':') == std::string::npos ||
       (kind != "images" && kind != "euroc" && kind != "tum" && kind != "sim" && !is_camera)) {
     return "source '" + options.source +

@@ -1,5 +1,7 @@
 #include "outputs.h"
 
+#include <planefold_platform/sequence.h>
+
 #include <cerrno>
 #include <cinttypes>
 #include <cstring>
@@ -32,22 +34,6 @@ const char* track_name(uint32_t status) {
 const char* kind_name(uint32_t kind) {
   constexpr const char* kNames[] = {"unknown", "inverse_depth", "point", "folded", "fixed"};
   return kNames[kind <= 4 ? kind : 0];
-}
-
-void write_calibration(std::FILE* file, const pf_camera_t& camera) {
-  constexpr const char* kNames[] = {"none", "none", "radtan", "equidistant", "harris_division"};
-  constexpr int kCounts[] = {0, 0, 5, 4, 1};
-  const int model = camera.model >= 1 && camera.model <= 4 ? camera.model : 0;
-  std::fprintf(file, "camera_model: pinhole\nwidth: %d\nheight: %d\nfx: %.17g\nfy: %.17g\ncx: %.17g\ncy: %.17g\n",
-               camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
-  std::fprintf(file, "distortion_model: %s\ndistortion: [", kNames[model]);
-  for (int i = 0; i < kCounts[model]; ++i) {
-    std::fprintf(file, "%s%.17g", i == 0 ? "" : ", ", camera.distortion[i]);
-  }
-  std::fprintf(file, "]\n");
-  if (camera.readout_s > 0.0) {
-    std::fprintf(file, "readout_s: %.17g\n", camera.readout_s);
-  }
 }
 
 }  // namespace
@@ -156,20 +142,21 @@ bool Outputs::write_true_planes(const std::vector<std::array<double, 4>>& planes
 bool Outputs::finish(const FrameView& last, const pf_camera_t& camera, const std::string& report, std::string& error) {
   error.clear();
   File ply = create("map.ply", error);
-  File calibration = create("calib.yaml", error);
   File json = create("report.json", error);
   if (!error.empty()) {
     return false;
   }
   write_ply(ply.get(), last.features, last.planes);
-  write_calibration(calibration.get(), camera);
   std::fputs(report.c_str(), json.get());
-  const File* files[] = {&trajectory_, &trajectory_all_, &covariance_, &frames_, &tracks_, &truth_,
-                         &ply,         &calibration,     &json};
+  const File* files[] = {&trajectory_, &trajectory_all_, &covariance_, &frames_, &tracks_, &truth_, &ply, &json};
   for (const File* file : files) {
     if (*file && (std::fflush(file->get()) != 0 || std::ferror(file->get()) != 0)) {
       error = folder_.string() + ": could not be written completely (" + std::strerror(errno) + "); is the disk full?";
     }
+  }
+  char message[PF_SEQUENCE_MESSAGE];
+  if (pf_write_calibration(path("calib.yaml").c_str(), PF_CALIBRATION_PLAIN, &camera, 0.0, message) != 0) {
+    error = message;
   }
   return error.empty();
 }

@@ -1,5 +1,6 @@
 #include "recorder.h"
 
+#include <planefold_platform/sequence.h>
 #include <png.h>
 
 #include <algorithm>
@@ -12,26 +13,6 @@ namespace pf::capture {
 namespace {
 
 namespace fs = std::filesystem;
-
-void write_sensor(std::FILE* file, const pf_camera_t& camera, double rate_hz) {
-  constexpr const char* kNames[] = {"none", "none", "radial-tangential", "equidistant", "harris_division"};
-  constexpr int kCounts[] = {0, 0, 5, 4, 1};
-  const int model = camera.model >= 1 && camera.model <= 4 ? camera.model : 0;
-  std::fprintf(file, "sensor_type: camera\n");
-  if (rate_hz > 0.0) {
-    std::fprintf(file, "rate_hz: %.17g\n", rate_hz);
-  }
-  std::fprintf(file, "resolution: [%d, %d]\ncamera_model: pinhole\nintrinsics: [%.17g, %.17g, %.17g, %.17g]\n",
-               camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
-  std::fprintf(file, "distortion_model: %s\ndistortion_coefficients: [", kNames[model]);
-  for (int i = 0; i < kCounts[model]; ++i) {
-    std::fprintf(file, "%s%.17g", i == 0 ? "" : ", ", camera.distortion[i]);
-  }
-  std::fprintf(file, "]\n");
-  if (camera.readout_s > 0.0) {
-    std::fprintf(file, "readout_s: %.17g\n", camera.readout_s);
-  }
-}
 
 /// 8-bit grey, not compressed. false: errno says why.
 bool write_png(const fs::path& path, const uint8_t* pixels, int32_t width, int32_t height) {
@@ -74,16 +55,16 @@ bool Recorder::open(const std::string& folder, const pf_camera_t& camera, double
   };
   table_ = create("data.csv");
   tracked_ = create("tracked.csv");
-  const auto sensor = create("sensor.yaml");
-  if (!table_ || !tracked_ || !sensor) {
+  if (!table_ || !tracked_) {
     error = folder + ": cannot be written (" + std::strerror(errno) + "); choose another --record";
     return false;
   }
   std::fprintf(table_.get(), "#timestamp [ns],filename\n");
   std::fprintf(tracked_.get(), "#timestamp [ns] of the frames that were tracked\n");
-  write_sensor(sensor.get(), camera, rate_hz);
-  if (std::fflush(sensor.get()) != 0) {
-    error = folder + ": cannot be written (" + std::strerror(errno) + ")";
+  char message[PF_SEQUENCE_MESSAGE];
+  const std::string sensor = (camera_folder_ / "sensor.yaml").string();
+  if (pf_write_calibration(sensor.c_str(), PF_CALIBRATION_EUROC, &camera, rate_hz, message) != 0) {
+    error = message;
     return false;
   }
   thread_ = std::thread([this] { work(); });

@@ -1,5 +1,6 @@
 #include "source.h"
 
+#include <planefold_platform/cameras.h>
 #include <planefold_platform/sequence.h>
 
 #include <algorithm>
@@ -117,7 +118,7 @@ std::unique_ptr<Source> open_camera_source(const Options& options, std::string& 
     error = message;
     return nullptr;
   }
-  const auto open_camera = options.source.rfind("libcamera:", 0) == 0 ? open_libcamera_camera : open_v4l2_camera;
+  const auto open_camera = platform::is_libcamera(options.source) ? open_libcamera_camera : open_v4l2_camera;
   std::unique_ptr<Camera> camera = open_camera(options, info.camera, info.rate_hz, error);
   if (camera == nullptr) {
     return nullptr;
@@ -129,7 +130,7 @@ std::unique_ptr<Source> open_camera_source(const Options& options, std::string& 
 }
 
 std::unique_ptr<Source> open_source(const Options& options, std::string& error) {
-  if (options.source.rfind("v4l2:", 0) == 0 || options.source.rfind("libcamera:", 0) == 0) {
+  if (platform::is_camera(options.source)) {
     return open_camera_source(options, error);
   }
   std::unique_ptr<Source> stored = open_stored(options, error);

@@ -215,6 +215,40 @@ static void test_file_should_be_named_when_it_cannot_be_read() {
   TEST_ASSERT_EQUAL_INT(-1, pf_read_calibration("x", nullptr, nullptr, nullptr));
 }
 
+static void test_written_file_should_be_read_as_the_same_camera_in_both_forms() {
+  const TemporaryFolder folder;
+  const std::string path = folder / "written.yaml";
+  char message[PF_SEQUENCE_MESSAGE];
+  for (int k = 0; k < 8; ++k) {
+    pf_camera_t camera = read(kKalibr);
+    camera.model = static_cast<pf_camera_model_t>(PF_CAMERA_PINHOLE + k / 2);
+    camera.fx = 1000.0 / 3.0;
+    camera.readout_s = k < 4 ? 1.0 / 70.0 : 0.0;
+    const int used[] = {0, 5, 4, 1};
+    for (int i = 0; i < 5; ++i) {
+      camera.distortion[i] = i < used[k / 2] ? (k / 2 == 3 ? 1e-6 : 0.1) / (3.0 + i) : 0.0;
+    }
+    const uint32_t form = k % 2 == 0 ? PF_CALIBRATION_PLAIN : PF_CALIBRATION_EUROC;
+    const double rate_hz = k < 6 ? 100.0 / 3.0 : 0.0;
+    pf_camera_t again;
+    double rate_again_hz = -1.0;
+    TEST_ASSERT_EQUAL_INT(0, pf_write_calibration(path.c_str(), form, &camera, rate_hz, message));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, pf_read_calibration(path.c_str(), &again, &rate_again_hz, message), message);
+    TEST_ASSERT_EQUAL_INT(camera.model, again.model);
+    TEST_ASSERT_EQUAL_INT(camera.width, again.width);
+    TEST_ASSERT_EQUAL_INT(camera.height, again.height);
+    TEST_ASSERT_EQUAL_MEMORY(&camera.fx, &again.fx, sizeof(double));
+    TEST_ASSERT_EQUAL_MEMORY(&camera.cy, &again.cy, sizeof(double));
+    TEST_ASSERT_EQUAL_MEMORY(camera.distortion, again.distortion, sizeof(camera.distortion));
+    TEST_ASSERT_EQUAL_MEMORY(&camera.readout_s, &again.readout_s, sizeof(double));
+    TEST_ASSERT_EQUAL_MEMORY(&rate_hz, &rate_again_hz, sizeof(double));
+  }
+  const pf_camera_t camera = read(kKalibr);
+  TEST_ASSERT_EQUAL_INT(-1, pf_write_calibration((folder / "no/c.yaml").c_str(), 0, &camera, 0.0, message));
+  require_message(message, "no/c.yaml");
+  TEST_ASSERT_EQUAL_INT(-1, pf_write_calibration(path.c_str(), 0, nullptr, 0.0, message));
+}
+
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_kalibr_should_be_read_when_it_is_pinhole_radtan);
@@ -228,6 +262,7 @@ int main() {
   RUN_TEST(test_other_forms_should_name_the_field_when_it_is_bad);
   RUN_TEST(test_anything_else_should_be_refused_in_one_line);
   RUN_TEST(test_file_should_be_named_when_it_cannot_be_read);
+  RUN_TEST(test_written_file_should_be_read_as_the_same_camera_in_both_forms);
   return UNITY_END();
 }
 

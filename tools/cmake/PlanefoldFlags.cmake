@@ -36,3 +36,14 @@ add_library(planefold_warnings INTERFACE)
 target_compile_options(planefold_warnings INTERFACE -Wall -Wextra -Wshadow
                        $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-array-bounds>
                        $<$<BOOL:${PLANEFOLD_WERROR}>:-Werror>)
+
+# Rooms of platform/ that a program uses where they are part of the build; PLANEFOLD_HAVE_V4L2 and so on tell it which are.
+function(planefold_link_rooms program)
+  foreach(room IN LISTS ARGN)
+    if(TARGET planefold::platform_${room})
+      string(TOUPPER ${room} name)
+      target_link_libraries(${program} PRIVATE planefold::platform_${room})
+      target_compile_definitions(${program} PRIVATE PLANEFOLD_HAVE_${name})
+    endif()
+  endforeach()
+endfunction()

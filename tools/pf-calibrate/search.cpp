@@ -1,5 +1,6 @@
 #include "search.h"
 
+#include <planefold_platform/cameras.h>
 #include <planefold_platform/sequence.h>
 #include <unistd.h>
 
@@ -91,7 +92,8 @@ void show_progress(const Options& options, const Search& search, int64_t done, i
 }
 
 bool search_source(const Options& options, Search& search, std::string& error) {
-  return is_camera(options.source) ? search_camera(options, search, error) : search_sequence(options, search, error);
+  return platform::is_camera(options.source) ? search_camera(options, search, error)
+                                             : search_sequence(options, search, error);
 }
 
 std::string why_nothing_was_found(const Options& options, const Search& search) {

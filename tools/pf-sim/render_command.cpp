@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "planefold_platform/sequence.h"
 #include "planefold_platform/sim.h"
 
 namespace pfsim {
@@ -23,20 +24,6 @@ bool write_png(const std::string& path, const pf_image_t& image) {
   png.height = static_cast<png_uint_32>(image.height);
   png.format = PNG_FORMAT_GRAY;
   return png_image_write_to_file(&png, path.c_str(), 0, image.pixels, image.stride, nullptr) != 0;
-}
-
-void write_calibration(const fs::path& path, const pf_camera_t& camera, double rate_hz) {
-  const char* const names[] = {"", "none", "radtan", "equidistant", "harris_division"};
-  const int counts[] = {0, 0, 5, 4, 1};
-  std::ofstream out(path);
-  out.precision(17);
-  out << "camera_model: pinhole\nwidth: " << camera.width << "\nheight: " << camera.height << "\nfx: " << camera.fx
-      << "\nfy: " << camera.fy << "\ncx: " << camera.cx << "\ncy: " << camera.cy
-      << "\ndistortion_model: " << names[camera.model] << "\ndistortion: [";
-  for (int i = 0; i < counts[camera.model]; ++i) out << (i ? ", " : "") << camera.distortion[i];
-  out << "]";
-  if (camera.readout_s > 0) out << "\nreadout_s: " << camera.readout_s;
-  out << "\nrate_hz: " << rate_hz << "\ntimestamps: exact\n";
 }
 
 void write_target(const fs::path& path, const pf_target_t& target) {
@@ -112,7 +99,10 @@ int render(const Choices& c) {
   std::error_code error;
   fs::create_directories(out / "images", error);
   if (error) return fail("cannot create " + c.out);
-  write_calibration(out / "calib.yaml", o.camera, o.rate_hz);
+  char message[PF_SEQUENCE_MESSAGE];
+  if (pf_write_calibration((out / "calib.yaml").c_str(), PF_CALIBRATION_PLAIN, &o.camera, o.rate_hz, message) != 0) {
+    return fail(message);
+  }
   pf_target_t target;
   if (pf_sim_target(sim, PF_TARGET_RECTANGLE, &target) == PF_OK) write_target(out / "target.yaml", target);
 

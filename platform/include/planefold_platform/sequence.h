@@ -72,6 +72,13 @@ int pf_read_calibration(const char* path, pf_camera_t* camera, double* rate_hz, 
 int pf_parse_calibration(const char* text, size_t size, const char* name, pf_camera_t* camera, double* rate_hz,
                          char message[PF_SEQUENCE_MESSAGE]);
 
+typedef enum pf_calibration_form { PF_CALIBRATION_PLAIN = 0, PF_CALIBRATION_EUROC = 1 } pf_calibration_form_t;
+
+/* The plain form, or EuRoC's sensor.yaml, of which pf_read_calibration makes the same camera again, bit for bit. rate_hz is left out
+ * when it is 0. */
+int pf_write_calibration(const char* path, uint32_t form, const pf_camera_t* camera, double rate_hz,
+                         char message[PF_SEQUENCE_MESSAGE]);
+
 /* A target file:
  *   width, height [m], sigma [m] (optional, 0.0005)                                 a dark rectangle
  *   points: [[x, y, z], ..] [m], first_pose: {position: [x, y, z], quaternion_wxyz: [w, x, y, z],
