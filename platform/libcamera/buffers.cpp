@@ -63,7 +63,7 @@ void pf_libcamera::unmap() {
 }
 
 void pf_libcamera::stop() {
-  if (streaming) {
+  if (streaming && !vanished) {
     camera->stop();  // every request is completed or cancelled when it returns
   }
   streaming = false;

@@ -49,7 +49,10 @@ struct pf_libcamera {
   pf_libcamera_info_t info{};
   bool acquired = false;
   bool streaming = false;
-  bool gone = false;  ///< as the caller knows
+  bool gone = false;      ///< as the caller knows
+  bool vanished = false;  ///< gone, and libcamera does not know
+  int gone_nodes = 0;     ///< of other cameras, when the stream began
+  int64_t alive_ns = 0;   ///< when the last frame came, or the stream began
   bool has_sequence = false;
   uint32_t last_sequence = 0;
   int64_t last_t_ns = 0;

@@ -67,7 +67,11 @@ void pf_libcamera::leave() {
   if (camera != nullptr) {
     camera->requestCompleted.disconnect(this);
     camera->disconnected.disconnect(this);
-    if (acquired) {
+    if (vanished) {
+      // libcamera 0.0.3 ends the program when it stops a camera whose requests the device still holds, and also when it
+      // destroys one that was not stopped. So this one is kept for ever.
+      new std::shared_ptr<libcamera::Camera>(camera);
+    } else if (acquired) {
       camera->release();
     }
   }
@@ -123,7 +127,18 @@ int pf_libcamera_return(pf_libcamera_t* camera, char message[PF_LIBCAMERA_MESSAG
   }
   try {
     const std::string id = camera->info.device.id;
-    camera->leave();
+    std::string error;
+    if (camera->camera != nullptr) {
+      camera->leave();
+      // A manager that has not noticed that the device left would crash when it comes back.
+      camera->manager.reset();
+    }
+    if (camera->manager == nullptr) {
+      camera->manager = pf::libcamera::share_manager(error);
+    }
+    if (camera->manager == nullptr) {
+      return refuse(message, error);
+    }
     std::shared_ptr<libcamera::Camera> found = camera->manager->get(id);
     if (found == nullptr) {
       return refuse(message, id + ": is not there");
@@ -133,7 +148,7 @@ int pf_libcamera_return(pf_libcamera_t* camera, char message[PF_LIBCAMERA_MESSAG
       camera->departed = false;
       camera->completed.clear();
     }
-    std::string error;
+    camera->vanished = false;
     if (!camera->enter(std::move(found), error)) {
       camera->leave();
       return refuse(message, error);

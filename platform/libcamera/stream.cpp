@@ -10,10 +10,13 @@
 #include "camera.h"
 #include "format.h"
 #include "luma.h"
+#include "nodes.h"
 
 namespace pf::libcamera {
 
 namespace {
+
+constexpr int64_t kSilentNs = 1000000000;  ///< without a frame: worth a look whether the device is still there
 
 int64_t clock_ns(clockid_t clock) {
   timespec now{};
@@ -159,6 +162,8 @@ int pf_libcamera_start(pf_libcamera_t* camera, char message[PF_LIBCAMERA_MESSAGE
       return refuse(message, name + "does not begin to stream (" + std::strerror(-result) + ")");
     }
     camera->streaming = true;
+    camera->alive_ns = pf::libcamera::monotonic_ns();
+    camera->gone_nodes = pf::libcamera::count_gone_nodes();
     camera->has_sequence = false;
     for (Slot& slot : camera->slots) {
       const int queued = camera->camera->queueRequest(slot.request.get());
@@ -199,12 +204,17 @@ int pf_libcamera_read(pf_libcamera_t* camera, int timeout_ms, pf_libcamera_frame
     std::unique_lock<std::mutex> lock(camera->mutex);
     camera->changed.wait_for(lock, std::chrono::milliseconds(timeout_ms),
                              [&] { return camera->departed || !camera->completed.empty(); });
-    if (camera->departed) {
+    // Not every pipeline of libcamera watches for the device to leave.
+    camera->vanished = !camera->departed && camera->completed.empty() &&
+                       pf::libcamera::monotonic_ns() - camera->alive_ns > pf::libcamera::kSilentNs &&
+                       pf::libcamera::count_gone_nodes() > camera->gone_nodes;
+    if (camera->departed || camera->vanished) {
       return pf::libcamera::depart(*camera, message);
     }
     if (camera->completed.empty()) {
       return PF_LIBCAMERA_NOTHING;
     }
+    camera->alive_ns = camera->completed.front().arrived_ns;
     done = camera->completed.front();
     camera->completed.pop_front();
   }

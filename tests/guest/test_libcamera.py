@@ -1,5 +1,6 @@
 """pf-capture with a camera of libcamera in an arm64 guest: vimc, a pipeline of sensor, debayer and scaler in the kernel, which
-Debian's kernel leaves out and which is therefore built here. Frames come with rising times, and show the sensor's bars."""
+Debian's kernel leaves out and which is therefore built here. Frames come with rising times, and show the sensor's bars. The camera
+leaves while it streams, and comes back."""
 
 import json
 import pathlib
@@ -40,6 +41,18 @@ capture named 60 --source "libcamera:Sensor B" --format BGR888 --frames 10 --rec
 capture ended 8 --source libcamera:0
 capture absent 8 --source libcamera:9
 capture format 8 --source libcamera:0 --format YUYV
+
+# Unplugged after some frames, and plugged in again, twice.
+plug=/sys/bus/platform/drivers/vimc
+unplug() {{ # once so many pictures were recorded in a folder
+  for i in $(seq 60); do [ $(ls $1/mav0/cam0/data 2>/dev/null | wc -l) -ge $2 ] && break; sleep 1; done
+  echo vimc.0 >$plug/unbind
+}}
+(for pictures in 5 40; do unplug /tmp/unplugged $pictures; sleep 4; echo vimc.0 >$plug/bind; done) &
+capture unplug 60 --source libcamera:0 --frames 90 --record /tmp/unplugged
+# Unplugged for good: an interruption still ends the run.
+(unplug /tmp/gone 3) &
+capture gone 20 --source libcamera:0 --record /tmp/gone
 """
 
 
@@ -113,6 +126,16 @@ def check(share):
             print(f"{name}: bars {levels[0]}")
         require(all(abs(a - b) <= 2 for one in levels for a, b in zip(one, BARS)), f"{name}: bars {levels[:1]}, not {BARS}")
     require(report("ended")["captured"] > 0, "ended: no frame before the interruption")
+    live = report("unplug")
+    text = (share / "unplug" / "stderr").read_text()
+    print(text, end="")
+    require((share / "unplug" / "code").read_text().strip() == "0", "unplugged, and the run does not end well")
+    require(live["camera"].get("departures") == 2 and text.count("is gone") == 2 and text.count("is back after") == 2 and
+            live["captured"] >= 90, f"unplugged twice, and the user reads: {text}; {live}")
+    live = report("gone")
+    text = (share / "gone" / "stderr").read_text()
+    require(live["camera"].get("departures") == 1 and "is gone" in text and (share / "gone" / "code").read_text().strip() in ("0", "1"),
+            f"gone for good, and the user reads: {text}; {live}")
     for name, words in (("absent", "no such camera"), ("format", "YUYV")):
         text = (share / name / "stderr").read_text().strip()
         print(f"{name}: {text}")
@@ -133,7 +156,7 @@ def main():
         program = share / "pf-capture"
         program.write_bytes((programs / "pf-capture").read_bytes())
         program.chmod(0o755)
-        print(guest.boot(root, share, RUN, load=("vimc",), files=files_for_guest(programs), seconds=300))
+        print(guest.boot(root, share, RUN, load=("vimc",), files=files_for_guest(programs), seconds=420))
         problems = check(share)
         if problems:
             fail("\n  ".join([f"{len(problems)} found:", *problems]))
