@@ -139,14 +139,15 @@ bool Outputs::write_true_planes(const std::vector<std::array<double, 4>>& planes
   return error.empty();
 }
 
-bool Outputs::finish(const FrameView& last, const pf_camera_t& camera, const std::string& report, std::string& error) {
+bool Outputs::finish(const FrameView& last, const std::vector<double>& sigmas_in_map, const pf_camera_t& camera,
+                     const std::string& report, std::string& error) {
   error.clear();
   File ply = create("map.ply", error);
   File json = create("report.json", error);
   if (!error.empty()) {
     return false;
   }
-  write_ply(ply.get(), last.features, last.planes);
+  write_ply(ply.get(), last.features, sigmas_in_map, last.planes);
   std::fputs(report.c_str(), json.get());
   const File* files[] = {&trajectory_, &trajectory_all_, &covariance_, &frames_, &tracks_, &truth_, &ply, &json};
   for (const File* file : files) {

@@ -26,8 +26,9 @@ class Outputs {
   void write_truth(const pf_pose_t& pose);
   /// truth_planes.json, where the source knows them.
   bool write_true_planes(const std::vector<std::array<double, 4>>& planes, std::string& error) const;
-  /// map.ply and calib.yaml; false when a file could not be written completely.
-  bool finish(const FrameView& last, const pf_camera_t& camera, const std::string& report, std::string& error);
+  /// map.ply and calib.yaml; false when a file could not be written completely. sigmas_in_map as in write_ply.
+  bool finish(const FrameView& last, const std::vector<double>& sigmas_in_map, const pf_camera_t& camera,
+              const std::string& report, std::string& error);
 
   std::string path(const char* name) const { return (folder_ / name).string(); }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "imu_feed.h"
+#include "map_shape.h"
 #include "outputs.h"
 #include "progress.h"
 #include "realtime.h"
@@ -291,7 +292,8 @@ int Run::finish() {
   std::string error, advice;
   const std::string imu = imu_.report(session_.slam(), advice);
   const std::string report = statistics_.to_json(session_, options_, source_.info(), live, imu, failure_);
-  if (!outputs_.finish(view_, session_.config().camera, report, error)) {
+  const std::vector<double> in_map = sigmas_in_map(session_.slam(), view_.features);
+  if (!outputs_.finish(view_, in_map, session_.config().camera, report, error)) {
     return fail(error);
   }
   if (!failure_.empty()) {

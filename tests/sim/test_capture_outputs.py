@@ -45,6 +45,19 @@ def check_planes(planes, vertices, faces):
             require(abs(off) < 1e-6, f"a corner lies {off} m off its plane")
 
 
+def share_within_map(out):
+    """Median over the points of map.ply of sigma within the map over sigma in W; each of them lies between 0 and 1."""
+    header, body = (out / "map.ply").read_text().split("end_header\n")
+    names = [line.split()[-1] for line in header.partition("element face")[0].splitlines() if line.startswith("property")]
+    lines = [line.split() for line in body.splitlines()]
+    count = int(header.split("element vertex ")[1].split()[0])
+    corners = {int(word) for face in lines[count:] for word in face[1:1 + int(face[0])]}
+    columns = names.index("sigma"), names.index("sigma_in_map")
+    shares = [float(line[columns[1]]) / float(line[columns[0]]) for k, line in enumerate(lines[:count]) if k not in corners]
+    require(all(0 <= share <= 1.00001 for share in shares), f"map.ply: sigma_in_map is not within sigma: {min(shares)}, {max(shares)}")
+    return sorted(shares)[len(shares) // 2]
+
+
 def check_files(out, report):
     for name in NAMES:
         require(name in report, f"report.json has no '{name}'")
@@ -88,6 +101,11 @@ def main():
         for file in ("trajectory.txt", "covariance.csv", "map.ply"):
             require((root / "a" / file).read_bytes() == (root / "b" / file).read_bytes(), f"{file} differs in a second run")
         require(not (root / "b" / "overlay.mp4").exists(), "--no-film wrote a film")
+        # A target tells place, turn and scale; without, they are most of what is not known.
+        capture(root / "e", "--frames", str(FRAMES), "--no-film")
+        shares = share_within_map(root / "a"), share_within_map(root / "e")
+        print(f"median share of sigma that is left within the map: {shares[0]:.3f} with a target, {shares[1]:.3f} without")
+        require(shares[1] < 0.5 < shares[0], f"sigma_in_map over sigma: {shares}")
         # Without ffmpeg on the path there is a note, and no failure.
         words = [PROGRAM, "--source", "sim:desk", "--headless", "--quiet", "--frames", "20", "--start", "target", "--out", root / "c"]
         result = subprocess.run([str(word) for word in words], env={"PATH": str(root)}, text=True, capture_output=True, check=False)

@@ -95,7 +95,8 @@ class PlotRun(unittest.TestCase):
             self.assertEqual(len(err.strip().splitlines()), 1, err)
 
     def test_map_should_be_read_by_the_names_of_its_properties(self):
-        p, sigma, inverse_depth, target = read_map(self.path / "map.ply")
+        p, sigma, inverse_depth, target, in_map = read_map(self.path / "map.ply")
+        self.assertFalse(in_map)
         np.testing.assert_allclose(p[1], [-0.3, 0.1, 1.2])
         np.testing.assert_allclose(sigma, [0.01, 0.5, 0.001])
         self.assertEqual(inverse_depth.tolist(), [False, True, False])
@@ -106,9 +107,19 @@ class PlotRun(unittest.TestCase):
         head += "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uint id\nend_header\n"
         corners = "".join(f"{k} 0 1 255 90 160 0 7 0 0\n" for k in range(3))
         (self.path / "map.ply").write_text(head + rows + corners + "3 3 4 5 255 7\n")
-        p, sigma, _, _ = read_map(self.path / "map.ply")
+        p, sigma, _, _, _ = read_map(self.path / "map.ply")
         self.assertEqual(p.shape, (3, 3))
         np.testing.assert_allclose(sigma, [0.01, 0.5, 0.001])
+
+    def test_points_should_be_drawn_by_what_is_known_within_the_map_when_the_file_says_it(self):
+        head, rows = PLY.split("end_header\n")
+        head += "property float sigma_in_map\nend_header\n"
+        rows = "".join(f"{row} {sigma}\n" for row, sigma in zip(rows.splitlines(), (0.002, 0.4, 0.0005)))
+        (self.path / "map.ply").write_text(head + rows)
+        _, sigma, _, _, in_map = read_map(self.path / "map.ply")
+        self.assertTrue(in_map)
+        np.testing.assert_allclose(sigma, [0.002, 0.4, 0.0005])
+        self.assertEqual(self.plot(self.path), (0, ""))
 
     def test_views_should_follow_the_cameras_when_the_world_is_another(self):
         self.assertEqual(view_axes(np.eye(3)[None]), ((0, 1), (1, -1), (2, 1)))  # x right, y down, z forward

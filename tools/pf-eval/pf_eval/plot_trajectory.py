@@ -13,10 +13,10 @@ AXES = "xyz"
 
 
 def read_map(path):
-    """(p (n,3), sigma (n), inverse_depth (n) bool, target (n) bool) of the points in a map.ply, without the corners of its
-    faces, which are planes; empty where there is none."""
+    """(p (n,3), sigma (n), inverse_depth (n) bool, target (n) bool, in_map) of the points in a map.ply, without the corners of
+    its faces, which are planes; empty where there is none. in_map: sigma is without what the whole map shares."""
     if not path.exists():
-        return np.zeros((0, 3)), np.zeros(0), np.zeros(0, bool), np.zeros(0, bool)
+        return np.zeros((0, 3)), np.zeros(0), np.zeros(0, bool), np.zeros(0, bool), False
     head, _, body = _text(path).partition("end_header\n")
     of_vertices = head.partition("element vertex ")[2].partition("element ")[0]
     count = int(of_vertices.split()[0])
@@ -29,7 +29,8 @@ def read_map(path):
     p = np.stack([column["x"], column["y"], column["z"]], axis=1)
     zero = np.zeros(len(rows))
     target = (column.get("red", zero) == 224) & (column.get("blue", zero) == 208)
-    return p, column.get("sigma", zero), column.get("inverse_depth", zero) > 0, target
+    in_map = "sigma_in_map" in column
+    return p, column.get("sigma_in_map" if in_map else "sigma", zero), column.get("inverse_depth", zero) > 0, target, in_map
 
 
 def view_axes(rotations):
@@ -66,7 +67,7 @@ def limits(path, points, sigma):
 
 def draw(path_png, estimate, rotations, covariance, truth, map_points, unit, title):
     """estimate (n,3), rotations (n,3,3), covariance (n,3,3) or None, truth (m,3) or None, all in one frame."""
-    points, sigma, inverse_depth, target = map_points
+    points, sigma, inverse_depth, target, in_map = map_points
     right, up, forward = view_axes(rotations)
     whole = estimate if truth is None else np.vstack([estimate, truth])
     low, high = limits(whole, points, sigma)
@@ -81,11 +82,12 @@ def draw(path_png, estimate, rotations, covariance, truth, map_points, unit, tit
                   (target, style.VIOLET, 1.0, 16)]
         for kept, colour, alpha, size in groups:
             size3 = 6 * sigma[kept]  # 3 sigma to either side
-            small = size3 < 0.5 * span.max()
+            small = (size3 < 0.5 * span.max()) & ~inverse_depth[kept]
             if small.any():
                 axis.add_collection(EllipseCollection(
                     size3[small], size3[small], np.zeros(small.sum()), units="xy", offsets=points[kept][small][:, [a, b]],
-                    transOffset=axis.transData, facecolors=colour, edgecolors="none", alpha=0.06 * alpha, zorder=1))
+                    transOffset=axis.transData, facecolors=colour if in_map else "none", edgecolors=colour,
+                    linewidths=0.4, alpha=(0.2 if in_map else 0.25) * alpha, zorder=1))
             axis.scatter(points[kept, a], points[kept, b], s=size, c=colour, alpha=alpha, linewidths=0, zorder=3)
         if covariance is not None:
             step = max(1, len(estimate) // 60)
@@ -113,7 +115,7 @@ def draw(path_png, estimate, rotations, covariance, truth, map_points, unit, tit
         handles.append(Line2D([], [], color=style.INK, linewidth=2.6, alpha=0.28, label="truth"))
     handles += [Line2D([], [], marker=mark, color="none", markerfacecolor=fill, markeredgecolor=style.ORANGE, markersize=5,
                        label=label) for mark, fill, label in (("o", "white", "start"), ("s", style.ORANGE, "end"))]
-    for kept, colour, label in ((~inverse_depth & ~target, style.GREEN, "point, 3σ"),
+    for kept, colour, label in ((~inverse_depth & ~target, style.GREEN, "point, 3σ " + ("within the map" if in_map else "with the scale that all share")),
                                 (inverse_depth & ~target, style.BLUE, "depth not yet known"),
                                 (target, style.VIOLET, "target")):
         if kept.any():

@@ -48,7 +48,7 @@ def plot(options):
     title = describe(run, report, comparison)
     known_scale = default_alignment(report) == "none" or truth is not None
 
-    points, sigma, inverse_depth, target = plot_trajectory.read_map(folder / "map.ply")
+    points, sigma, inverse_depth, target, in_map = plot_trajectory.read_map(folder / "map.ply")
     p, rotations = run.p, run.rotations()
     covariance = None if run.covariance is None else run.covariance[:, 3:, 3:]
     true_path = None
@@ -60,7 +60,7 @@ def plot(options):
         inside = (truth.t >= run.t[0] - 0.05) & (truth.t <= run.t[-1] + 0.05)
         true_path = truth.p[inside]
     yield plot_trajectory.draw(out / "trajectory.png", p, rotations, covariance, true_path,
-                               (points, sigma, inverse_depth, target), "m" if known_scale else "first median depth", title)
+                               (points, sigma, inverse_depth, target, in_map), "m" if known_scale else "first median depth", title)
     start = run.t[0]
     if (folder / "frames.csv").exists():
         table = read_table(folder / "frames.csv")
