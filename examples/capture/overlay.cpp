@@ -5,6 +5,7 @@
 
 #include "maths.h"
 #include "plane_drawing.h"
+#include "rows.h"
 
 namespace pf::capture {
 
@@ -74,7 +75,7 @@ const Canvas& Overlay::draw(const FrameView& view) {
   draw_image(view.image);
   draw_planes(canvas_, view, session_.config().camera, zoom_, session_.target() != nullptr);
   if (view.has_pose) {
-    draw_target();
+    draw_target(view.pose);
   }
   draw_tracks(view);
   cairo_restore(pen);
@@ -110,7 +111,7 @@ void Overlay::draw_image(const pf_image_t& image) {
 }
 
 /// Outline of the known rectangle where the pose puts it, in short pieces because lenses bend lines.
-void Overlay::draw_target() {
+void Overlay::draw_target(const pf_pose_t& pose) {
   const pf_target_t* target = session_.target();
   if (target == nullptr || target->kind != PF_TARGET_RECTANGLE) {
     return;
@@ -122,10 +123,10 @@ void Overlay::draw_target() {
   for (int side = 0; side < 4; ++side) {
     for (int i = 0; i <= kPieces; ++i) {
       const double s = static_cast<double>(i) / kPieces;
-      const double p_W[3] = {target->width * ((1.0 - s) * kCorners[side][0] + s * kCorners[side + 1][0]),
-                             target->height * ((1.0 - s) * kCorners[side][1] + s * kCorners[side + 1][1]), 0.0};
+      const Vec3 p_W = {target->width * ((1.0 - s) * kCorners[side][0] + s * kCorners[side + 1][0]),
+                        target->height * ((1.0 - s) * kCorners[side][1] + s * kCorners[side + 1][1]), 0.0};
       double pixel[2];
-      if (pf_project_point(session_.slam(), p_W, pixel, nullptr) != PF_OK) {
+      if (!project_row(session_.config().camera, pose, to_camera(pose, p_W), pixel)) {
         cairo_new_path(pen);
         return;
       }

@@ -47,7 +47,7 @@ class Overlay {
   };
 
   void draw_image(const pf_image_t& image);
-  void draw_target();
+  void draw_target(const pf_pose_t& pose);
   void draw_tracks(const FrameView& view);
   void draw_numbers(const FrameView& view, double x, double y, double width);
   void draw_strip(const FrameView& view);

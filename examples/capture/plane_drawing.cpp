@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rows.h"
+
 namespace pf::capture {
 
 namespace {
@@ -46,9 +48,9 @@ class Pen {
       const Vec3& b = points[(e + 1) % points.size()];
       for (int i = e == 0 ? 0 : 1; i <= kPieces; ++i) {
         const double s = static_cast<double>(i) / kPieces;
-        const double p_C[3] = {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2])};
+        const Vec3 p_C = {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2])};
         double pixel[2];
-        if (pf_camera_project(&camera_, p_C, pixel) == PF_OK) {
+        if (project_row(camera_, view_.pose, p_C, pixel)) {
           cairo_line_to(canvas_.pen(), zoom_ * (pixel[0] + 0.5), zoom_ * (pixel[1] + 0.5));
         }
       }

@@ -99,8 +99,10 @@ int render(const Choices& c) {
   std::error_code error;
   fs::create_directories(out / "images", error);
   if (error) return fail("cannot create " + c.out);
+  pf_camera_t camera;
+  pf_sim_camera(sim, &camera);  // with the readout
   char message[PF_SEQUENCE_MESSAGE];
-  if (pf_write_calibration((out / "calib.yaml").c_str(), PF_CALIBRATION_PLAIN, &o.camera, o.rate_hz, message) != 0) {
+  if (pf_write_calibration((out / "calib.yaml").c_str(), PF_CALIBRATION_PLAIN, &camera, o.rate_hz, message) != 0) {
     return fail(message);
   }
   pf_target_t target;

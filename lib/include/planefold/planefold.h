@@ -327,7 +327,8 @@ PF_API pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose);
 /* Pose predicted to a time not before the last frame, for display; the state does not change. */
 PF_API pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose);
 
-/* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be null). */
+/* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be null). Of a rolling shutter it is the
+ * one at the frame's own time, which its row does not share: lib/docs/rolling_shutter.md says how to go on to that. */
 PF_API pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double pixel[2], double covariance[4]);
 
 typedef enum pf_feature_kind {
