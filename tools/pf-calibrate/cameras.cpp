@@ -66,7 +66,7 @@ bool search_camera(const Options& options, Search& search, std::string& error) {
   }
 #endif
   (void)search;
-  error = "source '" + options.source + "': this build was made without it";
+  error = "source '" + options.source + "': this build has no such cameras (libcamera: needs Debian's libcamera-dev)";
   return false;
 }
 

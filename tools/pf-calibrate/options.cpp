@@ -71,7 +71,7 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
     code = app.exit(done);
     return false;
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "pf-calibrate: %s\n", error.what());
+    std::fprintf(stderr, "pf-calibrate: %s; see pf-calibrate --help\n", error.what());
     code = 2;
     return false;
   }

@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   }
   replay::Distance d;
   if (!replay::follow(file, &d)) {
-    std::fprintf(stderr, "pf-replay: '%s' is no tape\n", file.c_str());
+    std::fprintf(stderr, "pf-replay: '%s' is no tape; pf-replay record FILE writes one\n", file.c_str());
     return 1;
   }
   const nlohmann::ordered_json result = {{"scalar", PF_REPLAY_SCALAR},

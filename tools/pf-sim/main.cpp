@@ -1,6 +1,7 @@
 // pf-sim: rendered sequences on disk, and Monte Carlo runs of the filter against geometric truth.
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 
 #include "commands.h"
 
@@ -12,6 +13,13 @@ int main(int argc, char** argv) {
   pfsim::add_room(app, result);
   pfsim::add_gee2007(app, result);
   pfsim::add_rendered(app, result);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& done) {
+    return app.exit(done);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "pf-sim: %s; see pf-sim --help, and pf-sim COMMAND --help\n", error.what());
+    return 2;
+  }
   return result;
 }

@@ -94,11 +94,13 @@ int render(const Choices& c) {
   o.repeat_probability = c.repeat;
 
   pf_sim_t* sim = pf_sim_open(c.scene.c_str(), &o);
-  if (!sim) return fail("an option is out of its range");
+  if (!sim)
+    return fail(
+        "an option is out of its range; pf-sim render --help names them, and --readout ends at one frame's time");
   const fs::path out(c.out);
   std::error_code error;
   fs::create_directories(out / "images", error);
-  if (error) return fail("cannot create " + c.out);
+  if (error) return fail(c.out + ": cannot be made (" + error.message() + "); choose another --out");
   pf_camera_t camera;
   pf_sim_camera(sim, &camera);  // with the readout
   char message[PF_SEQUENCE_MESSAGE];
