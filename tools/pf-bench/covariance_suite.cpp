@@ -227,8 +227,9 @@ class CovarianceSuite {
 int run_covariance(const SuiteOptions& options) {
   const pf::Kernels* kernels = kernels_by_name(options.kernels);
   if (kernels == nullptr) {
-    std::fprintf(stderr, "no kernel set '%s' on this processor\n", options.kernels.c_str());
-    return 1;
+    std::fprintf(stderr, "pf-bench: no kernel set '%s' on this processor; --help names them\n",
+                 options.kernels.c_str());
+    return 2;
   }
   return CovarianceSuite(*kernels, options).run();
 }

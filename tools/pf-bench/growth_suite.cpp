@@ -162,7 +162,8 @@ int run(const SuiteOptions& options) {
   for (std::uint32_t id = 0; id < 6; ++id)
     if (options.kernels == sets[id]) kernels = pf::select_kernels(id);
   if (kernels == nullptr) {
-    std::fprintf(stderr, "pf-bench: there is no kernel set '%s' here\n", options.kernels.c_str());
+    std::fprintf(stderr, "pf-bench: no kernel set '%s' on this processor; --help names them\n",
+                 options.kernels.c_str());
     return 2;
   }
   Report report(options);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 /// One function per command: adds it to the program; when it is chosen it runs and sets the exit code.
 namespace pfsim {
@@ -9,5 +10,8 @@ void add_render(CLI::App& app, int& result);
 void add_room(CLI::App& app, int& result);
 void add_gee2007(CLI::App& app, int& result);
 void add_rendered(CLI::App& app, int& result);
+
+/// What to say of a scene that is none: its name, and those that there are.
+std::string no_scene(const std::string& scene);
 
 }  // namespace pfsim

@@ -67,11 +67,7 @@ int fail(const std::string& what) {
 
 int render(const Choices& c) {
   pf_sim_options_t o;
-  if (pf_sim_options_default(c.scene.c_str(), &o) != PF_OK) {
-    std::string names;
-    for (int i = 0; pf_sim_scene_name(i); ++i) names += std::string(" ") + pf_sim_scene_name(i);
-    return fail("no scene '" + c.scene + "'; there are" + names);
-  }
+  if (pf_sim_options_default(c.scene.c_str(), &o) != PF_OK) return fail(no_scene(c.scene));
   o.seed = c.seed;
   if (!choose_camera(c.camera, o.camera)) return fail("no camera model '" + c.camera + "'");
   if (c.width > 0) {
@@ -133,6 +129,12 @@ int render(const Choices& c) {
 }
 
 }  // namespace
+
+std::string no_scene(const std::string& scene) {
+  std::string names;
+  for (int i = 0; pf_sim_scene_name(i); ++i) names += std::string(" ") + pf_sim_scene_name(i);
+  return "no scene '" + scene + "'; there are" + names;
+}
 
 void add_render(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();

@@ -186,7 +186,7 @@ int run(const Choices& c) {
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
     return fail("seeds, jobs and frames must be positive");
   RenderedOptions options;
-  if (!prepare(c, options)) return fail("no scene '" + c.scene + "'");
+  if (!prepare(c, options)) return fail(no_scene(c.scene));
   const char* field = nullptr;
   for (const Variant& v : options.variants)
     if (pf_config_check(&v.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
