@@ -225,7 +225,25 @@ static void test_a_start_should_be_refused_when_its_numbers_make_no_sense(void) 
   wrong.count = 3;
   REFUSES(PF_ERROR_RANGE, pf_start_from_target(slam, &wrong));
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
+}
+
+static void test_a_rectangle_and_a_known_pose_should_not_both_be_the_start(void) {
+  pf_pose_t pose;
+  pf_target_t target;
+  double velocity[36] = {0};
+  memset(&pose, 0, sizeof pose);
+  memset(&target, 0, sizeof target);
+  pose.q_WC[0] = 1;
+  for (int i = 0; i < 6; ++i) pose.covariance[7 * i] = velocity[7 * i] = 0.01;
+  target.kind = PF_TARGET_RECTANGLE;
+  target.width = 0.2;
+  target.height = 0.3;
+  target.sigma_m = 0.001;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
+  REFUSES(PF_ERROR_STATE, pf_start_from_pose(slam, &pose, velocity));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_pose(slam, &pose, velocity));
+  REFUSES(PF_ERROR_STATE, pf_start_from_target(slam, &target));
 }
 
 int main(void) {
@@ -238,5 +256,6 @@ int main(void) {
   RUN_TEST(test_a_context_should_take_frames_or_observations_but_not_both);
   RUN_TEST(test_a_start_should_be_refused_after_the_first_frame_and_a_pose_before_it);
   RUN_TEST(test_a_start_should_be_refused_when_its_numbers_make_no_sense);
+  RUN_TEST(test_a_rectangle_and_a_known_pose_should_not_both_be_the_start);
   return UNITY_END();
 }

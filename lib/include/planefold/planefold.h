@@ -261,6 +261,8 @@ typedef struct pf_target {
 PF_API pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target);
 
 /* Start from a known pose, with its covariance and velocity; velocity_covariance is 6x6 of (v_W, w_C). Before the first frame.
+ * PF_ERROR_STATE together with a rectangle as target, which gives the pose itself. With a target of points both may be said: the
+ * known pose then counts if the points are seen in the first frame, and their own sighting later.
  * With neither start, W is the first camera and the scale is set by start_depth. */
 PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]);
 

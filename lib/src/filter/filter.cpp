@@ -259,9 +259,8 @@ Vec3 Filter::point(int slot) const {
     return plane_point(state_.frame_of(plane), plane.xyz(), uv);
   }
   if (block.kind != BlockKind::kInverseDepth) return block.xyz();
-  constexpr Scalar kFar = Scalar(1e-3);
   const InverseDepth d = block.inverse_depth();
-  const Scalar rho = d.rho > kFar ? d.rho : kFar;
+  const Scalar rho = d.rho > kMinShownInverseDepth ? d.rho : kMinShownInverseDepth;
   return state_.block[block.parent].xyz() + d.q_b.toRotationMatrix().col(2) / rho;
 }
 
@@ -269,6 +268,16 @@ Mat3 Filter::covariance3(int slot) const {
   WorldPoint at;
   Mat32 J_c;
   Mat3 C = Mat3::Zero();
+  const Block& block = state_.block[slot];
+  if (block.kind == BlockKind::kInverseDepth && !(block.inverse_depth().rho > kMinShownInverseDepth)) {
+    const Block& anchor = state_.block[block.parent];
+    Mat6 cov;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j)
+        cov(i, j) = P_(i < 3 ? anchor.first + i : block.first + i - 3, j < 3 ? anchor.first + j : block.first + j - 3);
+    shown_place(anchor.xyz(), block.inverse_depth(), cov, &C);
+    return C;
+  }
   if (!world_point(state_, slot, &at, &J_c)) return C;
   int column[WorldPoint::kMaxColumns];
   int c = 0;
@@ -279,7 +288,6 @@ Mat3 Filter::covariance3(int slot) const {
     for (int j = 0; j < c; ++j) PJ += P_(column[i], column[j]) * at.J.col(j);
     C += at.J.col(i) * PJ.transpose();
   }
-  const Block& block = state_.block[slot];
   if (block.kind == BlockKind::kPatchPoint && block.size == 0) {
     C += J_c * block.inside() * J_c.transpose();
   }

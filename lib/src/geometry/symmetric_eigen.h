@@ -6,6 +6,13 @@
 
 namespace pf {
 
+/// Eigenvalues of a symmetric 2x2 matrix, ascending.
+inline Vec2 symmetric_eigenvalues(const Mat2& A) {
+  const Scalar mean = (A(0, 0) + A(1, 1)) / 2, half = (A(0, 0) - A(1, 1)) / 2;
+  const Scalar radius = std::sqrt(half * half + A(0, 1) * A(0, 1));
+  return Vec2(mean - radius, mean + radius);
+}
+
 /// A = V diag(λ) Vᵀ of a symmetric 3x3 matrix, by Jacobi rotations: small eigenvalues are as accurate as large ones allow.
 ///
 /// lambda  ascending

@@ -82,14 +82,14 @@ bool FilterSlam::fits(const Target& target) const {
 }
 
 Status FilterSlam::start_from_target(const Target& target) {
-  if (used()) return Status::kState;
+  if (used() || (known_body_.given && target.kind == TargetKind::kRectangle)) return Status::kState;
   if (!fits(target)) return Status::kRange;
   target_ = target;
   return Status::kOk;
 }
 
 Status FilterSlam::start_from_pose(const KnownBody& known) {
-  if (used()) return Status::kState;
+  if (used() || target_.kind == TargetKind::kRectangle) return Status::kState;
   known_body_ = known;
   known_body_.given = true;
   return Status::kOk;
@@ -113,6 +113,9 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
   sighted_ = false;
   gave_up_ = false;
   track_count_ = 0;
+  const Vec3 dv_C = steering_v_C_, dw_C = steering_w_C_;
+  steering_v_C_.setZero();
+  steering_w_C_.setZero();
   if (!has_pose_) return true;
 
   StageTimer timer(settings_.hooks, &report_.stage_ns[kPredict]);
@@ -128,14 +131,12 @@ bool FilterSlam::begin_frame(std::int64_t t_ns) {
   }
   Transition transition;
   if (settings_.constant_velocity) {
-    filter_.steer(steering_v_C_, steering_w_C_);
+    filter_.steer(dv_C, dw_C);
     predict_constant_velocity(filter_.body(), dt, noise, &transition);
   } else {
     predict_constant_position(filter_.body(), dt, noise, &transition);
   }
   filter_.predict(transition);
-  steering_v_C_.setZero();
-  steering_w_C_.setZero();
   if (!filter_.body_is_sound()) start_over();
   return true;
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "geometry/symmetric_eigen.h"
 #include "slam/consensus.h"
 #include "slam/filter_slam.h"
 
@@ -117,6 +118,7 @@ void FilterSlam::predict_pixels(int first, int count) {
     keep_[i] = 0;
     if (!filter_.predict_pixel(settings_.camera, features_[entry_[i]].slot, &o)) {
       o.slot = -1;
+      track.feature = -1;  // stands nowhere in the image
       track.predicted.setZero();
       track.innovation.setZero();
       continue;
@@ -133,7 +135,7 @@ Scalar FilterSlam::widest_ellipse(int count) const {
   Scalar widest = 0;
   for (int i = 0; i < count; ++i) {
     const Mat2& S = tracks_[track_of_[i]].innovation;
-    widest = std::max(widest, std::sqrt(settings_.gate * std::max(S(0, 0), S(1, 1))));
+    widest = std::max(widest, std::sqrt(settings_.gate * symmetric_eigenvalues(S)(1)));
   }
   return widest;
 }

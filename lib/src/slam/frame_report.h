@@ -15,7 +15,7 @@ enum class TrackStatus : int { kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4 
 
 /// One feature in one frame.
 struct Track {
-  int feature;  ///< entry in the feature table; -1 once it has gone
+  int feature;  ///< entry in the feature table; -1 once it has gone, or where it could not be predicted
   std::uint32_t id;
   TrackStatus status;
   BlockKind kind;

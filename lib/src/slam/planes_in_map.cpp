@@ -26,7 +26,8 @@ Scalar largest_eigenvalue(const Mat3& C) {
 }  // namespace
 
 void FilterSlam::tend_planes() {
-  if (!settings_.planes || (recording_ && !depth_known_)) return;
+  // While a start goes on, the filter may begin again without its planes, whose ids would then stand for nothing.
+  if (!settings_.planes || recording_) return;
   unfold_misfits();
   if (!filter_.scale_row(&scale_)) scale_.segments = 0;
   const int turn = report_.frames % planes_.capacity();

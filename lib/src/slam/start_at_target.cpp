@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "geometry/symmetric_eigen.h"
 #include "slam/filter_slam.h"
 
 /// A start in front of something known: find it, take the pose from it, and let its points be features.
@@ -39,6 +40,7 @@ bool FilterSlam::start_in_image() {
   target_.first_pose.q_WC = pose.q_WC;
   target_.first_pose.p_W = pose.p_WC;
   target_.first_covariance = pose.covariance;
+  if (report_.frames > 1) known_body_ = KnownBody();  // it was the pose of the first frame
   begin_from_knowledge();
   add_target_points();
   for (int i = 0; i < features_.capacity(); ++i) {
@@ -85,7 +87,7 @@ bool FilterSlam::sight_points(PoseEstimate* pose, Vec2* pixel) const {
       return false;
     const Mat26 JP = J.lazyProduct(target_.first_covariance);
     const Mat2 S = JP.lazyProduct(J.transpose());
-    const Scalar widest = std::max(S(0, 0), S(1, 1));
+    const Scalar widest = symmetric_eigenvalues(S)(1);
     if (!(widest >= Scalar(0))) return false;
     reach[i] = std::clamp(Scalar(3) * std::sqrt(widest), Scalar(6), Scalar(60));
     distance += (target_.point_W[i] - first.p_W).norm() / static_cast<Scalar>(count);

@@ -41,6 +41,30 @@ inline Vec3 inverse_depth_to_point(const Vec3& o_W, const InverseDepth& feature,
   return o_W + depth * R_b.col(2);
 }
 
+/// Smallest inverse depth that a place is given for [1/m]: what is farther, or not positive, is shown there.
+constexpr Scalar kMinShownInverseDepth = Scalar(1e-3);
+
+/// Place of an inverse-depth point for display, and its covariance, also where rho is not positive (then at the largest depth that
+/// is shown). cov is 6x6 of (o, e_1, e_2, e_rho).
+///
+///   f = o + b / rho',   rho' = max(rho, kMinShownInverseDepth),   C = J cov J^T + (J_rho (rho' - rho))(J_rho (rho' - rho))^T
+///
+/// The second term is the second moment of the depth about the place that is shown: a far point is never reported as a known one.
+inline Vec3 shown_place(const Vec3& o_W, const InverseDepth& feature, const Mat6& cov, Mat3* C) {
+  InverseDepth shown = feature;
+  shown.rho = feature.rho > kMinShownInverseDepth ? feature.rho : kMinShownInverseDepth;
+  Mat3 J_feature;
+  const Vec3 f_W = inverse_depth_to_point(o_W, shown, &J_feature);
+  Eigen::Matrix<Scalar, 3, 6> J;
+  J.leftCols<3>().setIdentity();
+  J.rightCols<3>() = J_feature;
+  const Eigen::Matrix<Scalar, 3, 6> J_cov = J.lazyProduct(cov);
+  const Vec3 moved = (shown.rho - feature.rho) * J_feature.col(2);
+  *C = J_cov.lazyProduct(J.transpose());
+  *C += moved * moved.transpose();
+  return f_W;
+}
+
 /// How far from linear (Gaussian) the depth is: 4 sigma_d |cos a| / d1 (Civera, Davison, Montiel 2007), where sigma_d = sigma_rho /
 /// rho^2, d1 the distance from the camera now, a the angle at the point between the first ray and the ray now.
 /// Large where rho is not well above zero.
