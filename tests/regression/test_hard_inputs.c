@@ -142,6 +142,32 @@ static void test_target_should_be_refused_when_it_does_not_fit_or_the_door_canno
   REFUSES(PF_ERROR_STATE, push(slam, 0));
 }
 
+static int refused_calls;
+static void reset_from_inside(void* user, const char* line) {
+  (void)user;
+  (void)line;
+  const double none[3] = {0, 0, 0};
+  refused_calls += pf_reset(slam) == PF_ERROR_STATE && pf_set_gravity(slam, none) == PF_ERROR_STATE;
+}
+
+static void test_a_reset_from_inside_the_log_should_be_refused(void) {
+  config.log = reset_from_inside;
+  again();
+  run(slam, 3);
+  pf_pose_t pose;
+  pf_state_t state;
+  for (int k = 3; k < 60; ++k) {
+    TEST_ASSERT_TRUE(pf_push_observations(slam, STEP_NS * (k + 1), NULL, 0) >=
+                     PF_OK); /* until it says that it is lost */
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_pose(slam, &pose));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_state(slam, &state));
+    TEST_ASSERT_NOT_EQUAL(PF_STATE_STARTING, state);
+  }
+  TEST_ASSERT_EQUAL_INT(PF_STATE_LOST, state);
+  TEST_ASSERT_GREATER_THAN_INT(0, refused_calls);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));
+}
+
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_same_id_twice_in_a_call_should_count_once);
@@ -151,5 +177,6 @@ int main(void) {
   RUN_TEST(test_filter_should_start_over_and_say_so_when_the_state_leaves_all_bounds);
   RUN_TEST(test_starts_that_no_camera_can_be_in_should_be_refused);
   RUN_TEST(test_target_should_be_refused_when_it_does_not_fit_or_the_door_cannot_show_it);
+  RUN_TEST(test_a_reset_from_inside_the_log_should_be_refused);
   return UNITY_END();
 }

@@ -66,9 +66,11 @@ typedef enum pf_status {
   PF_ERROR_SIZE = -7,      /* width, height or stride of the image do not fit the calibration */
   PF_ERROR_TIME = -8,      /* the timestamp is not after the last one */
   PF_ERROR_NONFINITE = -9, /* a number that was passed in is NaN or infinite */
-  PF_ERROR_STATE = -10,    /* not possible in this state (a start after the first frame; a pose before the start) */
-  PF_ERROR_RANGE = -11,    /* a number that was passed in is outside of its domain */
-  PF_ERROR_CONTEXT = -12   /* not a context, or one whose block was overwritten */
+  PF_ERROR_STATE =
+      -10, /* not possible in this state (a start after the first frame; a pose before the start), or a call
+                           that changes the context from inside its own log or clock */
+  PF_ERROR_RANGE = -11,  /* a number that was passed in is outside of its domain */
+  PF_ERROR_CONTEXT = -12 /* not a context, or one whose block was overwritten */
 } pf_status_t;
 
 /* One line in English for a status; never null. */
@@ -200,7 +202,7 @@ typedef struct pf_config {
   int64_t (*clock_ns)(void* user);
   /* One line of plain text on what the library decided (a start, a reset, a loss); null keeps silent. Default null */
   void (*log)(void* user, const char* line);
-  void* user; /* handed to both */
+  void* user; /* handed to both. Both may ask the context, and change nothing in it */
 } pf_config_t;
 
 PF_API pf_status_t pf_config_default(pf_config_t* config);

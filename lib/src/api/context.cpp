@@ -57,7 +57,7 @@ pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_s
 }
 
 pf_status_t pf_reset(pf_slam_t* slam) {
-  PF_REQUIRE_CONTEXT(slam);
+  PF_REQUIRE_IDLE(slam);
   slam->slam.init(slam->settings);
   slam->imu.init(slam->settings.imu_buffer, slam->settings.imu_ranges);
   slam->takes_frames = false;

@@ -16,6 +16,7 @@ struct pf_slam {
   pf::ImuLog imu;
   bool takes_frames;
   bool takes_observations;
+  bool in_call;         ///< a frame is being worked on: a callback that calls back may ask, but not change anything
   double gravity_W[3];  ///< zero: not known
 };
 
@@ -37,6 +38,18 @@ inline bool finite(const double* values, int count) {
 
 Status settings_from(const pf_config_t& config, Settings* settings, const char** field);
 
+/// Marks a context as being worked on, while callbacks of the caller may run.
+class InCall {
+ public:
+  explicit InCall(pf_slam_t* slam) : slam_(slam) { slam_->in_call = true; }
+  ~InCall() { slam_->in_call = false; }
+  InCall(const InCall&) = delete;
+  InCall& operator=(const InCall&) = delete;
+
+ private:
+  pf_slam_t* slam_;
+};
+
 }  // namespace pf
 
 /// Null and broken contexts are refused in one line.
@@ -44,4 +57,11 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   do {                                                  \
     if ((slam) == nullptr) return PF_ERROR_NULL;        \
     if (!pf::is_context(slam)) return PF_ERROR_CONTEXT; \
+  } while (false)
+
+/// Likewise for a call that changes the context: refused from inside a callback of the same context.
+#define PF_REQUIRE_IDLE(slam)                   \
+  PF_REQUIRE_CONTEXT(slam);                     \
+  do {                                          \
+    if ((slam)->in_call) return PF_ERROR_STATE; \
   } while (false)

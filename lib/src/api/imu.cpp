@@ -14,7 +14,7 @@ bool within(const double* v, double most) {
 }  // namespace
 
 pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count) {
-  PF_REQUIRE_CONTEXT(slam);
+  PF_REQUIRE_IDLE(slam);
   if (samples == nullptr && count > 0) return PF_ERROR_NULL;
   for (size_t i = 0; i < count; ++i) {
     const pf_imu_sample_t& s = samples[i];

@@ -74,7 +74,7 @@ pf_status_t body_from(const pf_pose_t& pose, pf::Body* body) {
 }  // namespace
 
 pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
-  PF_REQUIRE_CONTEXT(slam);
+  PF_REQUIRE_IDLE(slam);
   if (target == nullptr) return PF_ERROR_NULL;
   if (slam->slam.used()) return PF_ERROR_STATE;
   if (!pf::finite(&target->sigma_m, 1)) return PF_ERROR_NONFINITE;
@@ -110,7 +110,7 @@ pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
 }
 
 pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]) {
-  PF_REQUIRE_CONTEXT(slam);
+  PF_REQUIRE_IDLE(slam);
   if (pose == nullptr) return PF_ERROR_NULL;
   if (slam->slam.used()) return PF_ERROR_STATE;
   pf::KnownBody known;
@@ -132,13 +132,13 @@ pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const dou
 }
 
 pf_status_t pf_withdraw_target(pf_slam_t* slam) {
-  PF_REQUIRE_CONTEXT(slam);
+  PF_REQUIRE_IDLE(slam);
   slam->slam.withdraw_target();
   return PF_OK;
 }
 
 pf_status_t pf_push_steering(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]) {
-  PF_REQUIRE_CONTEXT(slam);
+  PF_REQUIRE_IDLE(slam);
   if (dv_C == nullptr || dw_C == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(dv_C, 3) || !pf::finite(dw_C, 3)) return PF_ERROR_NONFINITE;
   if (!within(dv_C, 3, kMostMetres) || !within(dw_C, 3, kMostRate)) return PF_ERROR_RANGE;
@@ -148,20 +148,21 @@ pf_status_t pf_push_steering(pf_slam_t* slam, const double dv_C[3], const double
 }
 
 pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image) {
-  PF_REQUIRE_CONTEXT(slam);
+  PF_REQUIRE_IDLE(slam);
   if (image == nullptr || image->pixels == nullptr) return PF_ERROR_NULL;
   if (slam->takes_observations) return PF_ERROR_STATE;
   const pf_camera_t& camera = slam->config.camera;
   if (image->width != camera.width || image->height != camera.height || image->stride < image->width)
     return PF_ERROR_SIZE;
   if (slam->slam.used() && image->t_ns <= slam->slam.last_ns()) return PF_ERROR_TIME;
+  const pf::InCall in_call(slam);
   slam->takes_frames = true;
   slam->imu.mark_frame(image->t_ns);
   return pf::to_c(slam->slam.push_frame({image->pixels, image->width, image->height, image->stride}, image->t_ns));
 }
 
 pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations, size_t count) {
-  PF_REQUIRE_CONTEXT(slam);
+  PF_REQUIRE_IDLE(slam);
   if (observations == nullptr && count > 0) return PF_ERROR_NULL;
   if (slam->takes_frames) return PF_ERROR_STATE;
   if (slam->slam.used() && t_ns <= slam->slam.last_ns()) return PF_ERROR_TIME;
@@ -172,6 +173,7 @@ pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observa
     if (!(std::fabs(o.pixel[0]) < 1e5 && std::fabs(o.pixel[1]) < 1e5)) return PF_ERROR_RANGE;
   }
   if (slam->slam.takes_images_only()) return PF_ERROR_STATE;
+  const pf::InCall in_call(slam);
   slam->takes_observations = true;
   slam->imu.mark_frame(t_ns);
   pf::PixelObservation* taken = slam->slam.observation_inbox();

@@ -104,7 +104,7 @@ pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* now) {
 }
 
 pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]) {
-  PF_REQUIRE_CONTEXT(slam);
+  PF_REQUIRE_IDLE(slam);
   if (gravity_W == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(gravity_W, 3)) return PF_ERROR_NONFINITE;
   for (int i = 0; i < 3; ++i)
