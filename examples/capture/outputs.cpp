@@ -38,7 +38,19 @@ const char* kind_name(uint32_t kind) {
 
 }  // namespace
 
+bool Outputs::claim(const std::string& name, std::string& error) const {
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  if (pf_add_output_file(folder_.c_str(), name.c_str(), message) == 0) {
+    return true;
+  }
+  error = message;
+  return false;
+}
+
 Outputs::File Outputs::create(const char* name, std::string& error) const {
+  if (!claim(name, error)) {
+    return nullptr;
+  }
   File file(std::fopen(path(name).c_str(), "w"));
   if (!file) {
     error = path(name) + ": cannot be written (" + std::strerror(errno) + "); choose another --out";
@@ -48,10 +60,9 @@ Outputs::File Outputs::create(const char* name, std::string& error) const {
 
 bool Outputs::open(const std::string& folder, bool tracks, bool truth, std::string& error) {
   folder_ = folder;
-  std::error_code failure;
-  std::filesystem::create_directories(folder_, failure);
-  if (failure || !std::filesystem::is_directory(folder_, failure)) {
-    error = folder + ": cannot be made (" + (failure ? failure.message() : "it is a file") + "); choose another --out";
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  if (pf_open_output_folder(folder.c_str(), "--out", message) != 0) {
+    error = message;
     return false;
   }
   error.clear();
@@ -156,6 +167,9 @@ bool Outputs::finish(const FrameView& last, const std::vector<double>& sigmas_in
     }
   }
   char message[PF_SEQUENCE_MESSAGE];
+  if (!claim("calib.yaml", error)) {
+    return false;
+  }
   if (pf_write_calibration(path("calib.yaml").c_str(), PF_CALIBRATION_PLAIN, &camera, 0.0, message) != 0) {
     error = message;
   }

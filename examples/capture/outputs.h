@@ -30,7 +30,9 @@ class Outputs {
   bool finish(const FrameView& last, const std::vector<double>& sigmas_in_map, const pf_camera_t& camera,
               const std::string& report, std::string& error);
 
-  std::string path(const char* name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  /// Takes the name for a file of this run that somebody else writes. false: error is one line, and the file is not to be written.
+  bool claim(const std::string& name, std::string& error) const;
 
  private:
   struct Close {

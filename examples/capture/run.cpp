@@ -54,7 +54,7 @@ class Run {
   void track_slowly(int64_t begin_ns) const;
   void tell_notices();
   void handle_keys();
-  void save(const char* name);
+  void save(const std::string& name);
   int finish();
   std::string why_nothing_was_tracked() const;
 
@@ -102,6 +102,9 @@ bool Run::open(std::string& error, int& code) {
     return false;
   }
   std::vector<std::string> notes;
+  if (options_.film && !outputs_.claim("overlay.mp4", error)) {
+    return false;
+  }
   show_.open(options_, session_, "planefold   " + short_name(options_.source), outputs_.path("overlay.mp4"),
              info.rate_hz, notes);
   if (!place_thread(options_.processor, options_.priority)) {
@@ -211,8 +214,11 @@ void Run::tell_notices() {
   }
 }
 
-void Run::save(const char* name) {
-  if (!show_.save(view_, outputs_.path(name))) {
+void Run::save(const std::string& name) {
+  std::string error;
+  if (!outputs_.claim(name, error)) {
+    note(error);
+  } else if (!show_.save(view_, outputs_.path(name))) {
     note(outputs_.path(name) + ": could not be written");
   }
 }
@@ -232,7 +238,7 @@ void Run::handle_keys() {
         break;
       }
       case Key::kSave:
-        save(("overlay_" + std::to_string(view_.index) + ".png").c_str());
+        save("overlay_" + std::to_string(view_.index) + ".png");
         break;
       case Key::kQuit:
         quit_ = true;

@@ -31,6 +31,9 @@ void warn_about(const Fit& fit, double covered) {
 int calibrate(const Options& options) {
   Search search;
   std::string error;
+  if (!check_outputs(options.out, error)) {
+    return complain(error);
+  }
   if (!search_source(options, search, error)) {
     return complain(error);
   }

@@ -1,7 +1,8 @@
 #include "outputs.h"
 
+#include <planefold_platform/sequence.h>
+
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -97,12 +98,22 @@ const char* model_name(int32_t model) {
   return model == PF_CAMERA_PINHOLE ? "none" : model == PF_CAMERA_RADTAN ? "radtan" : "equidistant";
 }
 
+bool check_outputs(const std::string& folder, std::string& error) {
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  const bool usable = pf_check_output_folder(folder.c_str(), "--out", message) == 0;
+  error = message;
+  return usable;
+}
+
 bool write_outputs(const std::string& folder, const Board& board, const Search& search, const Fit& fit,
                    std::string& error) {
-  std::error_code code;
-  std::filesystem::create_directories(folder, code);
-  if (code) {
-    error = folder + ": cannot be made: " + code.message();
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  bool mine = pf_open_output_folder(folder.c_str(), "--out", message) == 0;
+  for (const char* name : {"calib.yaml", "calibration.json", "corners.csv", "coverage.png"}) {
+    mine = mine && pf_add_output_file(folder.c_str(), name, message) == 0;
+  }
+  if (!mine) {
+    error = message;
     return false;
   }
   return write_file(folder + "/calib.yaml", yaml(fit), error) &&

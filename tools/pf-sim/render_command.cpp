@@ -94,12 +94,15 @@ int render(const Choices& c) {
     return fail(
         "an option is out of its range; pf-sim render --help names them, and --readout ends at one frame's time");
   const fs::path out(c.out);
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  if (pf_open_output_folder(c.out.c_str(), "--out", message) != 0) return fail(message);
+  for (const char* name : {"images/", "times.txt", "groundtruth.tum", "calib.yaml", "target.yaml"})
+    if (pf_add_output_file(c.out.c_str(), name, message) != 0) return fail(message);
   std::error_code error;
   fs::create_directories(out / "images", error);
   if (error) return fail(c.out + ": cannot be made (" + error.message() + "); choose another --out");
   pf_camera_t camera;
   pf_sim_camera(sim, &camera);  // with the readout
-  char message[PF_SEQUENCE_MESSAGE];
   if (pf_write_calibration((out / "calib.yaml").c_str(), PF_CALIBRATION_PLAIN, &camera, o.rate_hz, message) != 0) {
     return fail(message);
   }
@@ -114,6 +117,10 @@ int render(const Choices& c) {
   while (result == 0 && pf_sim_next(sim, &image, &truth)) {
     char name[32], line[256];
     std::snprintf(name, sizeof name, "%06d.png", count);
+    if (pf_add_output_file(c.out.c_str(), (std::string("images/") + name).c_str(), message) != 0) {
+      result = fail(message);
+      break;
+    }
     if (!write_png((out / "images" / name).string(), image)) result = fail("cannot write images to " + c.out);
     const double t = static_cast<double>(image.t_ns) * 1e-9;
     std::snprintf(line, sizeof line, "%d %.9f %s\n", count, t, name);

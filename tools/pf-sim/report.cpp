@@ -1,5 +1,7 @@
 #include "report.h"
 
+#include <planefold_platform/sequence.h>
+
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -217,6 +219,13 @@ json summarise(const Experiment& x) {
 bool write_csv(const Runs& x, const std::string& directory, const std::string& label) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  for (const char* end : {".csv", "_runs.csv"}) {
+    if (pf_add_output_file(directory.c_str(), (label + end).c_str(), message) != 0) {
+      std::fprintf(stderr, "pf-sim: %s\n", message);
+      return false;
+    }
+  }
   std::ofstream means(directory + "/" + label + ".csv"), runs(directory + "/" + label + "_runs.csv");
   means << "frame,nees_position,nees_pose,bound_low,bound_high,rmse_m,sigma_m,state_dim,inliers,runs\n";
   runs << "seed,frame,nees_position,nees_pose,error_m,sigma_m,state_dim,inliers\n";

@@ -99,6 +99,18 @@ void pf_free_imu(pf_imu_sample_t* samples); /* null is welcome */
 int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_t** samples, size_t* count,
                  char message[PF_SEQUENCE_MESSAGE]);
 
+/* A folder for what a program writes. It is made where it is missing. Its list .planefold names what was written there: where there is
+ * one, the files that it names are deleted, and no others. A folder that holds anything and has no list is refused, untouched.
+ * option  how the user names the folder, for messages: "--out" */
+int pf_open_output_folder(const char* folder, const char* option, char message[PF_SEQUENCE_MESSAGE]);
+
+/* Says beforehand whether the folder would be refused, and changes nothing. */
+int pf_check_output_folder(const char* folder, const char* option, char message[PF_SEQUENCE_MESSAGE]);
+
+/* Adds a name to the list, before the file is made: relative to the folder; with a / at its end it is a folder. Refused where such a
+ * file is there that is not on the list. */
+int pf_add_output_file(const char* folder, const char* name, char message[PF_SEQUENCE_MESSAGE]);
+
 #ifdef __cplusplus
 }
 #endif

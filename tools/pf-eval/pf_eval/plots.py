@@ -9,6 +9,7 @@ import numpy as np
 from . import Refused, plot_errors, plot_frames, plot_trajectory
 from .errors import compare, default_alignment
 from .files import read_run, read_table, read_tum
+from .output_folder import LIST, add_output_files, open_output_folder
 
 DESCRIPTION = """Draws a run of pf-capture into RUN/plots: trajectory.png (from above and from the side, with the map), frames.png
 (matches, size of the state, milliseconds and innovations over time) and, where truth is known, errors.png: with 3-sigma
@@ -40,11 +41,11 @@ def plot(options):
             print(f"plot-run: without truth: {refused}", file=sys.stderr)
             truth = None
 
-    out = pathlib.Path(options.out or folder / "plots")
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise Refused(f"{out}: cannot be made ({error.strerror})") from error
+    out = open_output_folder(options.out or folder / "plots", "--out")
+    pictures = ["trajectory.png", "frames.png", "errors.png"]
+    add_output_files(out, *pictures)
+    if not options.out and (folder / LIST).is_file():  # the next run into this folder takes them along
+        add_output_files(folder, "plots/", *[f"plots/{name}" for name in [*pictures, LIST]])
     title = describe(run, report, comparison)
     known_scale = default_alignment(report) == "none" or truth is not None
 

@@ -2,6 +2,8 @@
 
 #include "command.h"
 
+#include <planefold_platform/sequence.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <set>
@@ -111,6 +113,11 @@ int run_paper_command(const CLI::App& command, const PaperChoices& paper, const 
   if (!c.csv.empty()) {
     std::error_code error;
     std::filesystem::create_directories(c.csv, error);
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    for (const char letter : c.cases)
+      for (const char* end : {".csv", "_trajectory.csv", "_camera.csv", "_points.csv", "_planes.csv"})
+        if (pf_add_output_file(c.csv.c_str(), (std::string("gee2007_") + letter + end).c_str(), message) != 0)
+          return fail(message);
   }
   const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(job.world.frames);
   nlohmann::json out;
