@@ -105,6 +105,12 @@ std::string check(const Options& options, const std::string& backend) {
   if (options.skip > 0 && is_camera) {
     return "--skip is for folders and scenes; a camera has no frames to leave out";
   }
+  if (options.there_and_back && (is_camera || options.realtime)) {
+    return "--there-and-back is for folders and scenes, without --realtime: a camera cannot go back";
+  }
+  if (options.there_and_back && options.imu != "auto" && options.imu != "none") {
+    return "--there-and-back: inertial samples have no way back; leave --imu away";
+  }
   if (options.as_recorded && kind != "euroc") {
     return "--as-recorded is for a recording: --source euroc:DIR";
   }
@@ -155,6 +161,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->check(at_least(0));
   app.add_option("--frames", options.frames, "at most N frames")->check(at_least(1));
   app.add_option("--skip", options.skip, "leave out the first N frames")->check(at_least(0));
+  app.add_flag("--there-and-back", options.there_and_back,
+               "all frames forwards, then backwards; pf-eval --there-and-back compares the two poses of each image");
   app.add_option("--out", options.out, "folder for what is written; made when it is missing")->capture_default_str();
   app.add_flag("--headless", options.headless, "no window");
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");

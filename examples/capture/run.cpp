@@ -78,7 +78,7 @@ class Run {
 
 bool Run::open(std::string& error, int& code) {
   const SourceInfo& info = source_.info();
-  if (!imu_.open(options_, info.imu_path, error)) {
+  if (!imu_.open(options_, options_.there_and_back ? "" : info.imu_path, error)) {
     return false;
   }
   if (!session_.open(options_, source_, imu_, error, code)) {
@@ -127,7 +127,9 @@ int Run::go() {
                 kExitUsage);
   }
   count_ = info.count - options_.skip;
-  count_ = options_.frames > 0 ? std::min(count_, options_.frames) : count_;
+  if (options_.frames > 0 && !options_.there_and_back) {
+    count_ = std::min(count_, options_.frames);
+  }
   std::string error;
   int code = kExitRun;
   if (!open(error, code)) {
@@ -294,6 +296,10 @@ int Run::finish() {
     failure_ = why_nothing_was_tracked();
   } else if (failure_.empty() && statistics_.frames() > 1 && statistics_.frozen() == statistics_.frames() - 1) {
     failure_ = why_nothing_was_tracked();
+  }
+  int64_t turn_ns = 0, images = 0;
+  if (source_.turn(turn_ns, images)) {
+    statistics_.set_turn(turn_ns, images);
   }
   std::string error, advice;
   const std::string imu = imu_.report(session_.slam(), advice);

@@ -72,6 +72,8 @@ class FolderSource : public Source {
     return done ? Read::kDone : Read::kFailed;
   }
 
+  bool reads_in_any_order() const override { return true; }
+
   std::string name(int64_t index) const override { return pf_get_sequence_frame_path(sequence_.get(), number(index)); }
 
  private:
@@ -134,6 +136,9 @@ std::unique_ptr<Source> open_source(const Options& options, std::string& error) 
     return open_camera_source(options, error);
   }
   std::unique_ptr<Source> stored = open_stored(options, error);
+  if (stored != nullptr && options.there_and_back) {
+    return open_there_and_back(options, std::move(stored), error);
+  }
   if (stored == nullptr || !options.realtime) {
     return stored;
   }

@@ -47,6 +47,11 @@ class Source {
   /// The true planes, n . p = d as (n, d), where the source knows them.
   virtual std::vector<std::array<double, 4>> planes() const { return {}; }
 
+  /// Frames may be read in any order, and more than once.
+  virtual bool reads_in_any_order() const { return false; }
+  /// Where frames come there and back again: the time at which they turn, and how many images there are.
+  virtual bool turn(int64_t& /*t_ns*/, int64_t& /*images*/) const { return false; }
+
   /// What only cameras do.
   virtual bool is_live() const { return false; }
   /// Every frame that comes goes to the recorder too; false: this source leaves that to its reader.
@@ -63,6 +68,9 @@ class Source {
 std::unique_ptr<Source> open_source(const Options& options, std::string& error);
 
 std::unique_ptr<Source> open_camera_source(const Options& options, std::string& error);
+
+/// The frames of source forwards, then backwards. null: error is one line.
+std::unique_ptr<Source> open_there_and_back(const Options& options, std::unique_ptr<Source> source, std::string& error);
 
 std::unique_ptr<Source> open_sim_source(const Options& options, std::string& error);
 

@@ -157,6 +157,9 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
                     {"sigma_pixel", config.sigma_pixel},           {"keep_gauge", config.keep_gauge}};
   json["withdraw_target_after"] = options.withdraw_target_after >= 0 ? Json(options.withdraw_target_after) : Json();
   json["truth"] = source.truth_path;
+  if (turn_images_ > 0) {
+    json["there_and_back"] = {{"turn_s", 1e-9 * static_cast<double>(turn_ns_)}, {"images", turn_images_}};
+  }
   if (!live.empty()) {
     json["live"] = Json::parse(live);
   }

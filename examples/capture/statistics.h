@@ -16,6 +16,11 @@ class Statistics {
  public:
   void add(const FrameView& view);
   void add_reset() { ++resets_; }
+  /// Frames came there and back again: the time at which they turned, and how many images there are.
+  void set_turn(int64_t t_ns, int64_t images) {
+    turn_ns_ = t_ns;
+    turn_images_ = images;
+  }
 
   int64_t frames() const { return frames_; }
   int64_t tracked() const { return tracked_; }
@@ -44,6 +49,8 @@ class Statistics {
   int64_t frozen_ = 0;
   int64_t flat_ = 0;
   int64_t resets_ = 0;
+  int64_t turn_ns_ = 0;
+  int64_t turn_images_ = 0;  ///< 0: they did not turn
   int64_t start_frame_ = -1;
   int64_t evicted_ = 0;
   int64_t new_features_ = 0;

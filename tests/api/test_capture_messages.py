@@ -91,6 +91,13 @@ def test_usage(root):
     expect("format", 2, ["--format", "MJPEG"], "--source", "v4l2:/dev/video0", "--format", "RGB")
     expect("every frame of a folder", 2, ["--every-frame", "--realtime"], "--source", source, "--every-frame")
     expect("skip of a camera", 2, ["--skip"], "--source", "v4l2:/dev/video0", "--skip", "3")
+    expect("there and back of a camera", 2, ["--there-and-back", "cannot go back"], "--source", "v4l2:/dev/video0",
+           "--there-and-back")
+    expect("there and back at its pace", 2, ["--there-and-back"], "--source", source, "--there-and-back", "--realtime")
+    expect("there and back with an IMU", 2, ["--there-and-back", "--imu"], "--source", source, "--there-and-back", "--imu",
+           "csv:samples.csv")
+    expect("there and back by rows", 1, ["--there-and-back", "--readout 0"], "--source", source, "--there-and-back",
+           "--readout", "0.03", *out)
     expect("as recorded", 2, ["--as-recorded", "euroc:"], "--source", source, "--as-recorded")
     expect("window back end", 2, ["not available yet"], "--source", source, "--backend", "window")
     expect("back end", 2, ["--backend", "filter"], "--source", source, "--backend", "magic")

@@ -14,11 +14,13 @@ from .corners import compare_corners, read_target
 from .errors import compare, default_alignment
 from .files import read_run, read_tum
 from .planes import compare_planes, folding, read_planes
+from .there_and_back import compare_passes, forward
 
 DESCRIPTION = """Compares a run of pf-capture with ground truth.
 
   pf-eval RUN --truth FILE.tum [--planes FILE.json] [--align none|se3|sim3] [--json [FILE]]
   pf-eval RUN --corners FILE.csv --target FILE.yaml [--calib FILE] [--json [FILE]]
+  pf-eval RUN --there-and-back [--json [FILE]]
 
 RUN is an output folder of pf-capture, or a trajectory in the TUM form (timestamp tx ty tz qx qy qz qw)."""
 
@@ -28,6 +30,8 @@ from frame to frame. rot_rmse_deg uses the alignment that the positions gave; ro
 rotations themselves, which says more where the path is nearly straight. NEES is given for runs in the truth's own
 frame only, so with --align none; nees_position has 3 degrees of freedom, nees_pose 6. A plane of the run is a true one when it is
 within 10 degrees and, in the middle of its outline, 10 cm of it, after an alignment by the rotations of the trajectory.
+--there-and-back reads a run of pf-capture --there-and-back, where each image has two poses that should be one: their distance is
+given as a share of the path's extent, the largest distance between two places of the way there.
 
 Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
 
@@ -50,6 +54,10 @@ TABLE = {
     "plane_offset_median_m": ("offset of a plane, median", "m"), "plane_offset_max_m": ("offset, largest", "m"),
     "state_dim_end": ("rows of the state at the end", ""), "state_dim_points_only": ("the same map without folding", ""),
     "state_dim_saved": ("share of the state saved by folding", ""), "points_on_planes": ("points on planes", ""),
+    "back_distance_median": ("distance of an image's two poses, median", "of extent"),
+    "back_distance_max": ("distance of an image's two poses, largest", "of extent"),
+    "back_rotation_median_deg": ("rotation between them, median", "deg"),
+    "back_rotation_max_deg": ("rotation between them, largest", "deg"), "images": ("of images", ""),
     "frames": ("frames compared", ""), "frames_measured": ("of frames with measured corners", ""),
 }
 
@@ -65,6 +73,7 @@ def arguments(words):
     parser.add_argument("--corners", metavar="FILE.csv", help="frame,t,u_TL,v_TL,u_TR,v_TR,u_BR,v_BR,u_BL,v_BL")
     parser.add_argument("--target", metavar="FILE.yaml", help="the target that the run was started from")
     parser.add_argument("--calib", metavar="FILE", help="default: calib.yaml in RUN, or beside the corners")
+    parser.add_argument("--there-and-back", action="store_true", help="the two poses of each image; needs no truth")
     parser.add_argument("--skip-frames", metavar="N", type=int, default=0, help="leave out corners of the first N frames")
     parser.add_argument("--json", metavar="FILE", nargs="?", const="-", help="results as JSON, to a file or the output")
     parser.add_argument("--per-frame", metavar="FILE.csv", help="errors frame by frame")
@@ -73,8 +82,8 @@ def arguments(words):
         options.run, options.json = options.json, "-"
     if options.run is None:
         parser.error("which RUN?")
-    if (options.truth is None) == (options.corners is None):
-        parser.error("give either --truth or --corners")
+    if [options.truth is not None, options.corners is not None, options.there_and_back].count(True) != 1:
+        parser.error("give one of --truth, --corners and --there-and-back")
     if options.planes and not options.truth:
         parser.error("--planes needs --truth")
     if options.corners and not options.target:
@@ -85,6 +94,8 @@ def arguments(words):
 def evaluate_truth(options):
     run, report, folder = read_run(options.run)
     truth = read_tum(options.truth)
+    if pathlib.Path(options.truth).resolve() != (folder / "truth.tum").resolve():  # a scene knows the way back, too
+        run = forward(run, report)
     align = options.align or default_alignment(report)
     result = compare(run, truth, align, own_frame=report.get("start") != "auto")
     if options.per_frame:
@@ -111,6 +122,14 @@ def evaluate_corners(options):
     if options.per_frame:
         write_rows(options.per_frame, "frame,t_s,TL_px,TR_px,BR_px,BL_px", rows)
     return summary
+
+
+def evaluate(options):
+    if options.truth:
+        return evaluate_truth(options)
+    if options.corners:
+        return evaluate_corners(options)
+    return compare_passes(*read_run(options.run))
 
 
 def write(path, text):
@@ -142,7 +161,7 @@ def table(summary):
 def main(words=None):
     options = arguments(words)
     try:
-        summary = finite(evaluate_truth(options) if options.truth else evaluate_corners(options))
+        summary = finite(evaluate(options))
         text = json.dumps(summary, indent=2) + "\n"
         if options.json == "-":
             sys.stdout.write(text)
