@@ -1,0 +1,242 @@
+"""compare-runs: the command. One run decides nothing: it moves by centimetres with the frame that it starts in."""
+
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shlex
+import statistics
+import subprocess
+import sys
+
+from . import Refused
+from .camera import read_camera
+from .corners import compare_corners, read_target
+from .errors import compare
+from .files import read_run, read_tum
+from .there_and_back import compare_passes, forward
+
+SOURCE = pathlib.Path(__file__).resolve().parents[3]
+START_TIMEOUT = 3600  # [s]
+
+DESCRIPTION = """Runs one or several builds or sets of options of pf-capture on sequences from several starts (--skip 0, 1, ...),
+interleaved, and prints a table per sequence: the median over the starts, and the worst in brackets.
+
+  tools/compare-runs --out DIR [VARIANT ...] [--starts N] [--data DIR] [--only NAME]
+  tools/compare-runs --show DIR [DIR]
+
+VARIANT is "NAME=PROGRAM [options]" in one word, for example
+  now=build/release/bin/pf-capture  "no planes=build/release/bin/pf-capture --no-planes"
+Without any: now=build/release/bin/pf-capture."""
+
+NOTES = """A sequence is a folder with calib.yaml, times.txt and images/. With target.yaml it starts from that target, else with
+nothing known. groundtruth.tum gives the position error after Sim(3) alignment, target_corners.csv that of the target's corners;
+with --there-and-back among a variant's options the distance of each image's two poses is shown as well. The largest value counts
+as the worst, but for tracked frames, planes and folded points the smallest; a run that failed is worse than any, and shows as
+"none". Runs that are already in DIR, made by the same program, are not made again.
+
+Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
+
+# Column: label, factor, digits, smallest is worst.
+COLUMNS = {
+    "ate": ("ATE [mm]", 1000, 1, False), "corners": ("corners [px]", 1, 3, False),
+    "back": ("there and back [%]", 100, 2, False), "tracked": ("tracked [%]", 100, 1, True),
+    "start": ("start frame", 1, 0, False), "nis": ("NIS per dof", 1, 2, False), "planes": ("planes", 1, 0, True),
+    "folded": ("folded", 1, 0, True), "lost": ("lost", 1, 0, False), "ms": ("ms", 1, 2, False),
+}
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="compare-runs", description=DESCRIPTION, epilog=NOTES,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("variants", metavar="VARIANT", nargs="*")
+    parser.add_argument("--out", metavar="DIR", help="folder for the runs")
+    parser.add_argument("--show", metavar="DIR", nargs="+", help="print the tables of one or two such folders; runs nothing")
+    parser.add_argument("--starts", metavar="N", type=int, default=5, help="starts per sequence (default 5)")
+    parser.add_argument("--data", metavar="DIR", help="folder of the sequences (default: $PLANEFOLD_DATA, else ../shared/data)")
+    parser.add_argument("--only", metavar="NAME", action="append", help="a sequence to run, may be repeated (default: all)")
+    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="runs at a time (default 1; more make times worthless)")
+    options = parser.parse_args(words)
+    if (options.out is None) == (options.show is None):
+        parser.error("give either --out or --show")
+    if options.show and (options.variants or len(options.show) > 2):
+        parser.error("--show takes one or two folders and no variants")
+    if options.starts < 1 or options.jobs < 1:
+        parser.error("--starts and --jobs must be at least 1")
+    return options
+
+
+def read_variants(words):
+    """[(name, program, options)]"""
+    variants = []
+    for word in words or ["now=" + str(SOURCE / "build/release/bin/pf-capture")]:
+        name, equals, command = word.partition("=")
+        parts = shlex.split(command)
+        if not equals or not name or not parts:
+            raise Refused(f"'{word}': write NAME=PROGRAM, options in the same word")
+        if not os.access(parts[0], os.X_OK) or pathlib.Path(parts[0]).is_dir():
+            raise Refused(f"{parts[0]}: is no program; build pf-capture first")
+        if name in [known for known, _, _ in variants]:
+            raise Refused(f"'{name}' is there twice; give each variant its own name")
+        variants.append((name, str(pathlib.Path(parts[0]).resolve()), parts[1:]))
+    return variants
+
+
+def find_sequences(options):
+    data = options.data or os.environ.get("PLANEFOLD_DATA") or SOURCE.parent / "shared" / "data"
+    data = pathlib.Path(data)
+    found = {path.parent.name: path.parent for path in sorted(data.glob("*/calib.yaml"))
+             if (path.parent / "times.txt").exists()}
+    if not found:
+        raise Refused(f"{data}: has no sequence (a folder with calib.yaml and times.txt); name another with --data")
+    for name in options.only or []:
+        if name not in found:
+            raise Refused(f"{data / name}: is no sequence; there are {', '.join(found)}")
+    return {name: found[name] for name in options.only or found}
+
+
+def measure(folder, sequence):
+    """What one run has shown, {column: value}. None where there is nothing to compare with."""
+    run, report, folder = read_run(folder)
+    row = {
+        "ate": None, "corners": None, "back": None, "tracked": report["tracked"] / max(report["frames"], 1),
+        "start": report["start_frame"] if report["start_frame"] >= 0 else None, "nis": report["nis_per_dof"],
+        "planes": len(report["planes"]), "folded": report["features_in_map"]["folded"] + report["features_in_map"]["fixed"],
+        "lost": report["lost"], "ms": report["ms_per_frame"]["median"],
+    }
+    if (sequence / "groundtruth.tum").exists():
+        row["ate"] = compare(forward(run, report), read_tum(sequence / "groundtruth.tum"), "sim3").summary["ate_rmse_m"]
+    if (sequence / "target.yaml").exists() and (sequence / "target_corners.csv").exists():
+        target_W = read_target(sequence / "target.yaml")
+        camera = read_camera(folder / "calib.yaml")
+        row["corners"] = compare_corners(run, camera, target_W, sequence / "target_corners.csv")[0]["corner_rms_px"]
+    if report.get("there_and_back"):
+        row["back"] = compare_passes(run, report, folder)["back_distance_median"]
+    return row
+
+
+def run_one(variant, name, sequence, start, out):
+    """One run, as a row of runs.json."""
+    label, program, words = variant
+    folder = out / re.sub(r"[^A-Za-z0-9_.-]+", "_", label) / name / str(start)
+    command = [program, "--source", f"images:{sequence}", "--skip", str(start), "--headless", "--no-film", "--quiet",
+               "--out", str(folder)]
+    if (sequence / "target.yaml").exists() and "--start" not in words:
+        command += ["--start", f"target:{sequence / 'target.yaml'}"]
+    command += words
+    stamp = {"command": command, "built_ns": os.stat(program).st_mtime_ns}
+    row = {"variant": label, "sequence": name, "start": start, "failure": "", "values": {}}
+    kept = folder / "compare-runs.json"
+    if kept.exists() and json.loads(kept.read_text()) == stamp:
+        row["failure"] = (folder / "failure.txt").read_text()
+    else:
+        folder.mkdir(parents=True, exist_ok=True)
+        ended = subprocess.run(command, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False,
+                               timeout=START_TIMEOUT)
+        said = ended.stderr.strip().splitlines()
+        if ended.returncode == 2:
+            raise Refused(said[-1] if said else f"{program}: refused its command line")
+        row["failure"] = "" if ended.returncode == 0 else (said[-1] if said else f"ended with {ended.returncode}")
+        (folder / "failure.txt").write_text(row["failure"])
+        kept.write_text(json.dumps(stamp))
+    try:
+        if not row["failure"]:
+            row["values"] = measure(folder, sequence)
+    except Refused as refused:
+        row["failure"] = str(refused)
+    return row
+
+
+def run_all(options):
+    variants = read_variants(options.variants)
+    sequences = find_sequences(options)
+    out = pathlib.Path(options.out)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Refused(f"{out}: cannot be made ({error.strerror}); choose another --out") from error
+    jobs = [(variant, name, path, start) for start in range(options.starts) for name, path in sequences.items()
+            for variant in variants]
+    rows = []
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        waiting = [pool.submit(run_one, *job, out) for job in jobs]
+        try:
+            for done, future in enumerate(waiting, 1):
+                rows.append(future.result())
+                if sys.stderr.isatty():
+                    print(f"\r{done} of {len(jobs)} runs", end="", file=sys.stderr, flush=True)
+        finally:
+            for future in waiting:
+                future.cancel()
+    if sys.stderr.isatty():
+        print(file=sys.stderr)
+    (out / "runs.json").write_text(json.dumps(rows, indent=1) + "\n")
+    return rows
+
+
+def read_rows(folder, label):
+    path = pathlib.Path(folder) / "runs.json"
+    try:
+        rows = json.loads(path.read_text())
+    except (OSError, json.JSONDecodeError) as error:
+        raise Refused(f"{path}: is no result of compare-runs ({error})") from error
+    for row in rows:
+        row["variant"] = label + row["variant"]
+    return rows
+
+
+def summarise(rows, column):
+    """Median and worst of one column over runs; a run without a value is worse than any. (None, None) where no run has one."""
+    _, _, _, smallest_is_worst = COLUMNS[column]
+    worst = float("-inf") if smallest_is_worst else float("inf")
+    values = [row["values"].get(column) for row in rows]
+    if all(value is None for value in values):
+        return None, None
+    values = [worst if value is None else value for value in values]
+    return statistics.median(values), (min if smallest_is_worst else max)(values)
+
+
+def cell(rows, column):
+    _, factor, digits, _ = COLUMNS[column]
+    median, worst = summarise(rows, column)
+    if median is None:
+        return ""
+    show = lambda value: "none" if value in (float("inf"), float("-inf")) else f"{factor * value:.{digits}f}"  # noqa: E731
+    return f"{show(median)} ({show(worst)})"
+
+
+def table(rows):
+    """One table of the medians per sequence."""
+    lines = []
+    for name in dict.fromkeys(row["sequence"] for row in rows):
+        here = [row for row in rows if row["sequence"] == name]
+        starts = len({row["start"] for row in here})
+        variants = dict.fromkeys(row["variant"] for row in here)
+        of = {variant: [row for row in here if row["variant"] == variant] for variant in variants}
+        columns = [column for column in COLUMNS if any(cell(part, column) for part in of.values())]
+        cells = [[f"{name}, {starts} starts"] + [COLUMNS[column][0] for column in columns]]
+        cells += [[variant] + [cell(part, column) for column in columns] for variant, part in of.items()]
+        width = [max(len(line[k]) for line in cells) for k in range(len(cells[0]))]
+        cells.insert(1, ["-" * size for size in width])
+        lines += ["| " + " | ".join(word.ljust(size) for word, size in zip(line, width)) + " |" for line in cells] + [""]
+    for row in rows:
+        if row["failure"]:
+            lines.append(f"{row['variant']}, {row['sequence']}, start {row['start']}: {row['failure']}")
+    return "\n".join(lines).rstrip()
+
+
+def main(words=None):
+    options = arguments(words)
+    try:
+        if options.show:
+            labels = [""] if len(options.show) == 1 else [pathlib.Path(folder).name + ": " for folder in options.show]
+            rows = [row for folder, label in zip(options.show, labels) for row in read_rows(folder, label)]
+        else:
+            rows = run_all(options)
+        print(table(rows))
+    except Refused as refused:
+        print(f"compare-runs: {refused}", file=sys.stderr)
+        return 1
+    return 0
