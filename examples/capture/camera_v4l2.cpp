@@ -13,7 +13,10 @@ struct V4l2 : platform::V4l2 {
 
   static std::string id(const Info& info) { return info.device.path; }
   static nlohmann::ordered_json describe(const Info& info) {
-    return {{"name", info.device.name}, {"format", format_name(info.format)}, {"read_slowness", info.read_slowness}};
+    return {{"name", info.device.name},
+            {"format", format_name(info.format)},
+            {"read_slowness", info.read_slowness},
+            {"restarts", info.restarts}};
   }
 };
 

@@ -11,6 +11,7 @@ typedef struct pf_v4l2_buffer {
   int dma_fd;   /* -1: not exported */
   uint8_t* own; /* width * height, for what is converted or copied */
   int held;     /* by the caller */
+  int stranded; /* with nobody: the driver refused to take it back */
 } pf_v4l2_buffer_t;
 
 struct pf_v4l2 {
@@ -24,7 +25,15 @@ struct pf_v4l2 {
   uint8_t* own; /* the memory of all buffers[].own */
   int has_sequence;
   uint32_t last_sequence;
-  int64_t last_t_ns;
+  int hand_over_known;               /* info.direct is decided for this stream */
+  int64_t last_t_ns;                 /* of the last frame that was handed over */
+  int64_t last_arrived_ns;           /* when that frame came */
+  int stamps_stale;                  /* the driver's times stopped growing: those of arrival are used */
+  int64_t fault_ns;                  /* of the driver's first failure since its stream worked; 0: it works */
+  int64_t alive_ns;                  /* when a buffer last came, or the stream was last restarted */
+  int restarts;                      /* since a buffer last came */
+  int restart_refused;               /* by the driver, the last one */
+  int64_t started_ns, start_took_ns; /* from the start of the stream to its first buffer; 0: none came yet */
 };
 
 /* ioctl that goes on after a signal. */
@@ -50,6 +59,20 @@ int pf_v4l2_set_controls(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]);
 /* Maps and queues the buffers; and the reverse, which never fails. */
 int pf_v4l2_map(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]);
 void pf_v4l2_unmap(pf_v4l2_t* camera);
+
+/* Gives a buffer to the driver. 0, or -1 with errno, and then the buffer is stranded. */
+int pf_v4l2_queue(pf_v4l2_t* camera, int32_t index);
+
+/* Notes that the driver failed; pf_v4l2_recover acts on it. */
+void pf_v4l2_note_fault(pf_v4l2_t* camera);
+
+/* After a failure: queues stranded buffers again, and restarts a stream that stays silent. 0, or -1 where the camera has to be
+ * opened anew. */
+int pf_v4l2_recover(pf_v4l2_t* camera);
+
+/* Time of a frame: the driver's where it can be true, otherwise that of its arrival. It grows from frame to frame. 0, or -1 where
+ * the frame has to be dropped. */
+int pf_v4l2_stamp(pf_v4l2_t* camera, const struct v4l2_buffer* taken, int64_t arrived_ns, int64_t* t_ns);
 
 /* Tells the kernel that the processor begins or ends reading an exported buffer. */
 void pf_v4l2_sync(const pf_v4l2_buffer_t* buffer, int begin);

@@ -154,9 +154,14 @@ int pf_v4l2_negotiate(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
   {
     const uint32_t pixel_bytes = chosen == PF_V4L2_YUYV || chosen == PF_V4L2_Y16 ? 2 : 1;
     const uint32_t row = pixel_bytes * (uint32_t)options->width;
-    camera->bytes_per_line = format.fmt.pix.bytesperline > row ? format.fmt.pix.bytesperline : row;
-    camera->image_bytes =
-        chosen == PF_V4L2_MJPEG ? 4 : camera->bytes_per_line * (uint32_t)(options->height - 1) + row; /* at least */
+    const uint32_t stride = format.fmt.pix.bytesperline > row ? format.fmt.pix.bytesperline : row;
+    const uint64_t bytes = (uint64_t)stride * (uint64_t)(options->height - 1) + row; /* at least */
+    if (bytes > INT32_MAX) {
+      return pf_v4l2_refuse(message, "%s (%s): its driver says that a row has %u bytes, which cannot be true",
+                            device->path, device->name, stride);
+    }
+    camera->bytes_per_line = stride;
+    camera->image_bytes = chosen == PF_V4L2_MJPEG ? 4 : (uint32_t)bytes;
   }
   set_rate(camera);
   return 0;

@@ -9,14 +9,10 @@
 /* Memory that takes longer to read than this, compared with ordinary memory, is copied once instead of being read many times. */
 static const double kSlow = 3.0;
 
-static int queue(pf_v4l2_t* camera, int32_t index) {
-  struct v4l2_buffer buffer;
-  memset(&buffer, 0, sizeof(buffer));
-  buffer.index = (uint32_t)index;
-  buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  buffer.memory = V4L2_MEMORY_MMAP;
-  return pf_v4l2_call(camera->fd, VIDIOC_QBUF, &buffer);
-}
+enum {
+  kPauseMs = 5,  /* where waiting would return at once without a frame */
+  kFaultyMs = 50 /* longest wait for a driver that failed */
+};
 
 int pf_v4l2_start(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
   const pf_v4l2_device_t* device;
@@ -32,7 +28,7 @@ int pf_v4l2_start(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
     return -1;
   }
   for (int32_t i = 0; i < camera->info.buffers; ++i) {
-    if (queue(camera, i) != 0) {
+    if (pf_v4l2_queue(camera, i) != 0) {
       const int error = errno;
       pf_v4l2_unmap(camera);
       return pf_v4l2_refuse(message, "%s (%s): does not take a buffer (%s)", device->path, device->name,
@@ -47,6 +43,12 @@ int pf_v4l2_start(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
   }
   camera->streaming = 1;
   camera->has_sequence = 0;
+  camera->hand_over_known = 0;
+  camera->fault_ns = 0;
+  camera->restarts = 0;
+  camera->restart_refused = 0;
+  camera->started_ns = pf_v4l2_now_ns();
+  camera->start_took_ns = 0;
   return 0;
 }
 
@@ -66,7 +68,8 @@ int pf_v4l2_stop(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
 }
 
 static int depart(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
-  pf_v4l2_refuse(message, "%s (%s): is gone; was it unplugged?", camera->info.device.path, camera->info.device.name);
+  pf_v4l2_refuse(message, "%s (%s): is gone, or gives no more frames; was it unplugged?", camera->info.device.path,
+                 camera->info.device.name);
   if (!camera->gone) {
     camera->gone = 1;
     ++camera->info.departures;
@@ -80,18 +83,6 @@ static uint32_t count_lost(pf_v4l2_t* camera, uint32_t sequence) {
   camera->has_sequence = 1;
   camera->last_sequence = sequence;
   return step > 1 && step < 0x80000000u ? step - 1 : 0;
-}
-
-static int64_t stamp(pf_v4l2_t* camera, const struct v4l2_buffer* taken, int64_t arrived_ns) {
-  const int64_t t_ns = (int64_t)taken->timestamp.tv_sec * 1000000000 + (int64_t)taken->timestamp.tv_usec * 1000;
-  if ((taken->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) != V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC || t_ns <= 0) {
-    camera->info.stamp = PF_V4L2_STAMP_ARRIVAL;
-    return arrived_ns;
-  }
-  camera->info.stamp = (taken->flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE
-                           ? PF_V4L2_STAMP_START
-                           : PF_V4L2_STAMP_END;
-  return t_ns;
 }
 
 static void decide_hand_over(pf_v4l2_t* camera, const pf_v4l2_buffer_t* buffer) {
@@ -136,8 +127,15 @@ static int to_image(pf_v4l2_t* camera, pf_v4l2_buffer_t* buffer, uint32_t used, 
   return result;
 }
 
+/* Nothing came because the driver failed; the pause keeps a driver that always fails from taking the whole processor. */
+static int wait_after_fault(pf_v4l2_t* camera, int timeout_ms) {
+  pf_v4l2_note_fault(camera);
+  poll(NULL, 0, timeout_ms < kPauseMs ? timeout_ms : kPauseMs);
+  return PF_V4L2_NOTHING;
+}
+
 /* Takes the next filled buffer, if there is one. */
-static int take(pf_v4l2_t* camera, pf_v4l2_frame_t* frame, char message[PF_V4L2_MESSAGE]) {
+static int take(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char message[PF_V4L2_MESSAGE]) {
   struct v4l2_buffer taken;
   pf_v4l2_buffer_t* buffer;
   uint32_t lost;
@@ -151,46 +149,56 @@ static int take(pf_v4l2_t* camera, pf_v4l2_frame_t* frame, char message[PF_V4L2_
     if (errno == ENODEV || errno == ENXIO) {
       return depart(camera, message);
     }
-    if (errno == EIO) { /* a frame that the hardware spoilt, where the driver cannot hand it over marked */
-      ++camera->info.damaged;
-      return PF_V4L2_NOTHING;
-    }
-    return pf_v4l2_refuse(message, "%s (%s): gives no frame (%s)", camera->info.device.path, camera->info.device.name,
-                          strerror(errno));
+    camera->info.damaged += errno == EIO; /* a frame that the driver cannot hand over marked as damaged */
+    return wait_after_fault(camera, timeout_ms);
   }
-  if (taken.index >= (uint32_t)camera->info.buffers) {
-    return pf_v4l2_refuse(message, "%s (%s): gives a buffer that nobody gave it", camera->info.device.path,
-                          camera->info.device.name);
+  if (taken.index >= (uint32_t)camera->info.buffers || camera->buffers[taken.index].held) {
+    ++camera->info.damaged; /* a buffer that the driver does not have */
+    return wait_after_fault(camera, timeout_ms);
   }
   buffer = &camera->buffers[taken.index];
   frame->arrived_ns = pf_v4l2_now_ns();
+  camera->alive_ns = frame->arrived_ns;
+  camera->restarts = 0;
+  camera->restart_refused = 0;
+  if (camera->start_took_ns == 0) {
+    camera->start_took_ns = frame->arrived_ns - camera->started_ns;
+  }
   frame->buffer = (int32_t)taken.index;
   frame->sequence = taken.sequence;
   lost = count_lost(camera, taken.sequence);
   camera->info.lost += lost;
   frame->lost_before = lost;
-  frame->image.t_ns = stamp(camera, &taken, frame->arrived_ns);
   pf_v4l2_sync(buffer, 1);
-  if (camera->info.frames == 0) {
+  if (!camera->hand_over_known) {
     decide_hand_over(camera, buffer);
+    camera->hand_over_known = 1;
   }
   if ((taken.flags & V4L2_BUF_FLAG_ERROR) != 0 || taken.bytesused < camera->image_bytes ||
-      taken.bytesused > buffer->length || frame->image.t_ns <= camera->last_t_ns ||
+      taken.bytesused > buffer->length || pf_v4l2_stamp(camera, &taken, frame->arrived_ns, &frame->image.t_ns) != 0 ||
       to_image(camera, buffer, taken.bytesused, &frame->image) != 0) {
     ++camera->info.damaged;
     pf_v4l2_sync(buffer, 0);
-    if (queue(camera, frame->buffer) != 0 && errno == ENODEV) {
-      return depart(camera, message);
-    }
+    pf_v4l2_queue(camera, frame->buffer); /* what the driver refuses is tried again at the next read */
     return PF_V4L2_NOTHING;
   }
   if (!camera->info.direct) {
     pf_v4l2_sync(buffer, 0);
   }
   camera->last_t_ns = frame->image.t_ns;
+  camera->last_arrived_ns = frame->arrived_ns;
   buffer->held = 1;
   ++camera->info.frames;
   return PF_V4L2_FRAME;
+}
+
+/* What the caller sees of a frame that was not taken. */
+static int nothing(pf_v4l2_frame_t* frame, int result) {
+  if (result != PF_V4L2_FRAME) {
+    memset(frame, 0, sizeof(*frame));
+    frame->buffer = -1;
+  }
+  return result;
 }
 
 int pf_v4l2_read(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char message[PF_V4L2_MESSAGE]) {
@@ -207,14 +215,18 @@ int pf_v4l2_read(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char
   if (!camera->streaming) {
     return pf_v4l2_refuse(message, "%s: does not stream; call pf_v4l2_start first", camera->info.device.path);
   }
+  if (pf_v4l2_recover(camera) != 0) {
+    return depart(camera, message);
+  }
+  if (camera->fault_ns != 0 && timeout_ms > kFaultyMs) {
+    timeout_ms = kFaultyMs; /* so that recovering is not delayed */
+  }
   wait.fd = camera->fd;
   wait.events = POLLIN;
   wait.revents = 0;
   ready = poll(&wait, 1, timeout_ms);
   if (ready < 0) {
-    return errno == EINTR
-               ? PF_V4L2_NOTHING
-               : pf_v4l2_refuse(message, "%s: cannot be waited for (%s)", camera->info.device.path, strerror(errno));
+    return errno == EINTR ? PF_V4L2_NOTHING : wait_after_fault(camera, timeout_ms);
   }
   if (ready == 0) {
     return PF_V4L2_NOTHING;
@@ -225,13 +237,20 @@ int pf_v4l2_read(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char
   /* POLLERR also says that every buffer is held by the caller: the driver's answer tells these apart. */
   if ((wait.revents & POLLIN) == 0) {
     struct v4l2_capability alive;
+    int32_t held = 0;
     if (pf_v4l2_call(camera->fd, VIDIOC_QUERYCAP, &alive) != 0) {
       return depart(camera, message);
     }
-    poll(NULL, 0, timeout_ms < 5 ? timeout_ms : 5);
+    for (int32_t i = 0; i < camera->info.buffers; ++i) {
+      held += camera->buffers[i].held;
+    }
+    if (held < camera->info.buffers) {
+      return wait_after_fault(camera, timeout_ms);
+    }
+    poll(NULL, 0, timeout_ms < kPauseMs ? timeout_ms : kPauseMs);
     return PF_V4L2_NOTHING;
   }
-  return take(camera, frame, message);
+  return nothing(frame, take(camera, timeout_ms, frame, message));
 }
 
 void pf_v4l2_release(pf_v4l2_t* camera, const pf_v4l2_frame_t* frame) {
@@ -246,6 +265,6 @@ void pf_v4l2_release(pf_v4l2_t* camera, const pf_v4l2_frame_t* frame) {
     pf_v4l2_sync(buffer, 0);
   }
   if (!camera->gone && camera->streaming) {
-    queue(camera, frame->buffer); /* a camera that left meanwhile says so at the next read */
+    pf_v4l2_queue(camera, frame->buffer); /* a camera that left meanwhile says so at the next read */
   }
 }

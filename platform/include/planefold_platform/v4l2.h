@@ -77,9 +77,10 @@ typedef struct pf_v4l2_device {
 int pf_v4l2_list(pf_v4l2_device_t* devices, int capacity);
 
 typedef enum pf_v4l2_stamp {
-  PF_V4L2_STAMP_ARRIVAL = 0, /* taken here when the frame came, because the driver's are of no known clock */
-  PF_V4L2_STAMP_END = 1,     /* CLOCK_MONOTONIC when the frame's last pixel had been read out */
-  PF_V4L2_STAMP_START = 2    /* CLOCK_MONOTONIC when the exposure began */
+  PF_V4L2_STAMP_ARRIVAL =
+      0,                 /* taken here when the frame came, because the driver's is of another clock or does not grow */
+  PF_V4L2_STAMP_END = 1, /* CLOCK_MONOTONIC when the frame's last pixel had been read out */
+  PF_V4L2_STAMP_START = 2 /* CLOCK_MONOTONIC when the exposure began */
 } pf_v4l2_stamp_t;
 
 typedef struct pf_v4l2_info {
@@ -95,7 +96,8 @@ typedef struct pf_v4l2_info {
   int64_t frames;       /* handed over */
   int64_t lost;         /* by the numbers that the driver gives to frames */
   int64_t damaged;      /* marked so by the driver, cut short, not to be decoded, or with a time that runs back */
-  int64_t departures;   /* how often the camera was unplugged */
+  int64_t restarts;     /* how often the driver failed and the stream was started again */
+  int64_t departures;   /* how often the camera was unplugged, or gave no more frames */
 } pf_v4l2_info_t;
 
 /* null path: the first camera that has the size. A path may also be part of a camera's name. */
@@ -116,8 +118,9 @@ typedef struct pf_v4l2_frame {
 
 enum { PF_V4L2_NOTHING = 0, PF_V4L2_FRAME = 1, PF_V4L2_GONE = 2 };
 
-/* PF_V4L2_FRAME, PF_V4L2_NOTHING after timeout_ms, PF_V4L2_GONE when the camera was unplugged, or -1. A frame is valid until it
- * is released; as long as it is not, the camera has one buffer less. */
+/* PF_V4L2_FRAME, PF_V4L2_NOTHING after at most timeout_ms, PF_V4L2_GONE when the camera was unplugged or gives no more frames, or
+ * -1 where nothing streams. A driver that fails is given its buffers again, and its stream is restarted after 0.2 s without one. A
+ * frame is valid until it is released; as long as it is not, the camera has one buffer less. */
 int pf_v4l2_read(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char message[PF_V4L2_MESSAGE]);
 void pf_v4l2_release(pf_v4l2_t* camera, const pf_v4l2_frame_t* frame);
 
