@@ -142,8 +142,7 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   put<3, 3>(raw, 3, 0, noise);
   kernels_->augment(P_, J, raw);
   state_.block[slot].set_inverse_depth(feature);
-  state_.block[slot].parent = static_cast<std::int16_t>(anchor);
-  ++state_.block[anchor].children;
+  state_.adopt(anchor, slot);
   state_.dim = P_.n;
   return slot;
 }
@@ -176,10 +175,9 @@ void Filter::convert_to_point(int slot) {
   put<3, 3>(J.h, 6, 0, Mat3::Identity());
   put<3, 3>(J.h, 6, 3, J_feature);
   kernels_->transform(P_, block.first, 3, J, nullptr);
+  state_.leave_parent(slot);
   block.kind = BlockKind::kPoint;
-  block.parent = -1;
   block.set_xyz(f_W);
-  --state_.block[anchor].children;
   if (state_.block[anchor].children == 0) remove(&anchor, 1);
 }
 
@@ -188,14 +186,14 @@ void Filter::remove(const int* slots, int count) {
   for (int i = 0; i < count; ++i) {
     Block& block = state_.block[slots[i]];
     PF_ASSERT(block.kind != BlockKind::kPlane || block.children == 0);
-    if (block.parent >= 0) --state_.block[block.parent].children;
+    state_.leave_parent(slots[i]);
     if (block.kind == BlockKind::kPlane) --state_.planes;
     block.kind = BlockKind::kNone;
   }
   for (int s = 0; s < state_.slots; ++s) {
     Block& block = state_.block[s];
     if ((block.kind != BlockKind::kAnchor && block.kind != BlockKind::kPatch) || block.children > 0) continue;
-    if (block.parent >= 0) --state_.block[block.parent].children;
+    state_.leave_parent(s);
     block.kind = BlockKind::kNone;
   }
   int gone = 0;

@@ -72,6 +72,9 @@ class Filter {
   /// The whole body block becomes known as covariance says (body_dim x body_dim, row-major). Only while the map is empty.
   void set_body(const Body& body, const Scalar* covariance);
 
+  /// Which entry of the map's table a block belongs to.
+  void set_owner(int slot, int owner) { state_.set_owner(slot, owner); }
+
   // --- predict
   /// Known change of the velocities, in camera axes:  v_W += R_WC dv,  w_C += dw;  e_v -= [R_WC dv]x theta.
   void steer(const Vec3& dv_C, const Vec3& dw_C);

@@ -161,9 +161,8 @@ int Filter::add_patch(int plane, const int* group, int count) {
     for (int j = 0; j < n; ++j) P_.set(n + i, j, W_[i * ld_ + j]);
   state_.dim = P_.n;
   Block& block = state_.block[slot];
-  block.parent = static_cast<std::int16_t>(plane);
+  state_.adopt(plane, slot);
   block.set_patch({fit.middle, Scalar(0), Scalar(0)});
-  ++state_.block[plane].children;
   return slot;
 }
 
@@ -196,11 +195,10 @@ bool Filter::fix(const int* slots, int count, FixForm form, const int* group, in
   int gone = 0;
   for (int i = 0; i < count; ++i) {
     Block& block = state_.block[slots[i]];
+    state_.leave_parent(slots[i]);
+    state_.adopt(patch, slots[i]);
     block.kind = BlockKind::kPatchPoint;
-    block.parent = static_cast<std::int16_t>(patch);
     block.set_uv(M_inverse * (block.uv() - p.t));
-    --state_.block[plane].children;
-    ++state_.block[patch].children;
     list_gone(block.first, block.size, &gone);
     if (form == FixForm::kConsider) continue;
     block.set_inside(form == FixForm::kInflate ? innovation_block(i, i) : Mat2(Mat2::Zero()));
@@ -265,11 +263,10 @@ bool Filter::release(int slot) {
   int gone = 0;
   const Segment old = {block.first, block.size};
   augment_block(&block, 2, J, raw);
+  state_.leave_parent(slot);
+  state_.adopt(patch.parent, slot);
   block.kind = BlockKind::kPlanePoint;
-  block.parent = patch.parent;
   block.set_uv(uv);
-  --patch.children;
-  ++state_.block[patch.parent].children;
   if (old.size > 0) list_gone(old.first, old.size, &gone);
   close_gaps(gone);
   remove(nullptr, 0);  // a patch that nothing hangs on any more

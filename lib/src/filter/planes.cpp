@@ -176,11 +176,10 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
       J[i].h[c] = h.x();
       J[i].h[at.columns + c] = h.y();
     }
-    if (block.parent >= 0) --state_.block[block.parent].children;
+    state_.leave_parent(moved[i]);
+    state_.adopt(plane, moved[i]);
     block.kind = BlockKind::kPlanePoint;
-    block.parent = static_cast<std::int16_t>(plane);
     block.set_uv(plane_coordinates(frame, at.p_W));
-    ++state_.block[plane].children;
   }
   transform_blocks(moved, J, done);
   return done;
@@ -208,12 +207,10 @@ bool Filter::unfold(int slot, Scalar sigma_normal) {
   Scalar raw[9];
   put<3, 3>(raw, 3, 0, noise);
   const Segment old = {block.first, block.size};
-  const int parent = block.parent;
   augment_block(&block, 3, J, raw);
+  state_.leave_parent(slot);
   block.kind = BlockKind::kPoint;
-  block.parent = -1;
   block.set_xyz(at.p_W);
-  --state_.block[parent].children;
   int gone = 0;
   if (old.size > 0) list_gone(old.first, old.size, &gone);
   close_gaps(gone);

@@ -1,5 +1,6 @@
 #include "filter/state.h"
 
+#include "base/assert.h"
 #include "geometry/so3.h"
 
 namespace pf {
@@ -104,6 +105,34 @@ void add_point_rows(Scalar sign, int first, const Vec3& p_W, Scalar* N_T, Scalar
 }
 
 }  // namespace
+
+void State::adopt(int parent, int child) {
+  Block& c = block[child];
+  PF_ASSERT(c.parent < 0);
+  std::int16_t* link = &block[parent].first_child;
+  while (*link >= 0 && block[*link].owner <= c.owner) link = &block[*link].next_sibling;
+  c.parent = static_cast<std::int16_t>(parent);
+  c.next_sibling = *link;
+  *link = static_cast<std::int16_t>(child);
+  ++block[parent].children;
+}
+
+void State::leave_parent(int child) {
+  Block& c = block[child];
+  if (c.parent < 0) return;
+  std::int16_t* link = &block[c.parent].first_child;
+  while (*link != child) link = &block[*link].next_sibling;
+  *link = c.next_sibling;
+  --block[c.parent].children;
+  c.parent = c.next_sibling = -1;
+}
+
+void State::set_owner(int slot, int owner) {
+  const int parent = block[slot].parent;
+  leave_parent(slot);
+  block[slot].owner = static_cast<std::int16_t>(owner);
+  if (parent >= 0) adopt(parent, slot);
+}
 
 void apply_error(State& state, const Scalar* dx) {
   Body& body = state.body;

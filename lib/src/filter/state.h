@@ -75,7 +75,10 @@ struct Block {
   std::int16_t size = 0;
   std::int16_t parent = -1;   ///< slot of the anchor, plane or patch
   std::int16_t children = 0;  ///< blocks that have this one as parent
-  std::int16_t frame = -1;    ///< of a plane: index into State::plane_frame
+  std::int16_t owner = -1;    ///< entry of the map's table that this block belongs to; orders the children of a parent
+  std::int16_t first_child = -1;   ///< slots, by ascending owner; of equal owners the one that came first
+  std::int16_t next_sibling = -1;  ///< of the same parent
+  std::int16_t frame = -1;         ///< of a plane: index into State::plane_frame
   /// anchor, point: x y z. inverse depth: q_b (w x y z), rho. plane: a b h. plane point: u v. patch: t, phi, lambda.
   /// patch point: c, and where it has no rows its covariance (xx, xy, yy)
   Scalar value[5] = {};
@@ -145,6 +148,29 @@ struct State {
   int plane_of(int slot) const {
     while (block[slot].kind != BlockKind::kPlane) slot = block[slot].parent;
     return slot;
+  }
+
+  /// Makes a block without a parent a child of this one.
+  void adopt(int parent, int child);
+  /// Takes a block out of its parent's list; nothing where it has no parent.
+  void leave_parent(int child);
+  /// Says which entry of the map's table a block belongs to.
+  void set_owner(int slot, int owner);
+
+  /// Calls f(slot) for the features that hang on a plane, directly or through its patch, by ascending owner. f may remove the block
+  /// that it is given, unfold it or release it.
+  template <typename F>
+  void for_each_planar(int plane, F&& f) const {
+    int direct = block[plane].first_child, fixed = -1;
+    for (int c = direct; c >= 0; c = block[c].next_sibling)
+      if (block[c].kind == BlockKind::kPatch) fixed = block[c].first_child;
+    while (direct >= 0 || fixed >= 0) {
+      const bool take_direct = fixed < 0 || (direct >= 0 && block[direct].owner <= block[fixed].owner);
+      int& cursor = take_direct ? direct : fixed;
+      const int slot = cursor;
+      cursor = block[slot].next_sibling;
+      if (is_planar(block[slot].kind)) f(slot);
+    }
   }
 };
 

@@ -151,6 +151,7 @@ int FilterSlam::begin_feature(int anchor, const Vec2& pixel, const Mat2& noise) 
     filter_.remove(&slot, 1);
     return -1;
   }
+  filter_.set_owner(slot, entry);
   Feature& feature = features_[entry];
   feature.observations = feature.attempts = 1;
   feature.last_seen_ns = report_.t_ns;
@@ -165,6 +166,7 @@ void FilterSlam::add_target_points() {
     if (slot < 0) return;
     const int entry = features_.add(slot);
     if (entry < 0) return;
+    filter_.set_owner(slot, entry);
     features_[entry].is_target = true;
     features_[entry].track = static_cast<std::uint32_t>(i);
     features_[entry].last_seen_ns = report_.t_ns;

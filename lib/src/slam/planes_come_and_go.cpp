@@ -55,6 +55,7 @@ void FilterSlam::discover_plane() {
     filter_.remove(&slot, 1);
     return;
   }
+  filter_.set_owner(slot, entry);
   for (int k = 0; k < members; ++k) support(entry, member[k]);
   settings_.hooks.say("found a plane");
 }

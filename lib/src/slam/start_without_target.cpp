@@ -123,7 +123,10 @@ void FilterSlam::restart_from_record() {
     }
     const Scalar rho = bundle_.rho(f.start_index);
     f.slot = filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, kWide * rho);
-    if (f.slot < 0) release(i);
+    if (f.slot < 0)
+      release(i);
+    else
+      filter_.set_owner(f.slot, i);
   }
 
   std::int64_t t_ns = record_begin_ns_;
