@@ -29,6 +29,9 @@ if "--nonsense" in words:
     print("pf-capture: --nonsense is not known", file=sys.stderr)
     sys.exit(2)
 out = pathlib.Path(value("--out"))
+if set(path.name for path in out.glob("*")) - {{"trajectory.txt", "report.json"}}:
+    sys.exit(f"pf-capture: {{out}}: has files that are none of pf-capture's")
+out.mkdir(exist_ok=True)
 (out / "trajectory.txt").write_text("".join(f"{{k}} {{k * k}} {{k}} 0 0 0 0 1\\n" for k in range(9)))
 (out / "report.json").write_text(json.dumps({{
     "frames": 100, "tracked": 100 - 10 * skip, "lost": skip, "start_frame": 1, "nis_per_dof": 1.5, "planes": [1, 2],

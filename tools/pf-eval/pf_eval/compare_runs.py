@@ -128,19 +128,19 @@ def run_one(variant, name, sequence, start, out):
     command += words
     stamp = {"command": command, "built_ns": os.stat(program).st_mtime_ns}
     row = {"variant": label, "sequence": name, "start": start, "failure": "", "values": {}}
-    kept = folder / "compare-runs.json"
-    if kept.exists() and json.loads(kept.read_text()) == stamp:
-        row["failure"] = (folder / "failure.txt").read_text()
+    kept = folder.with_suffix(".json")  # beside it: in the folder are pf-capture's own files alone
+    known = json.loads(kept.read_text()) if kept.exists() else {}
+    if {name: known.get(name) for name in stamp} == stamp:
+        row["failure"] = known["failure"]
     else:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.parent.mkdir(parents=True, exist_ok=True)
         ended = subprocess.run(command, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False,
                                timeout=START_TIMEOUT)
         said = ended.stderr.strip().splitlines()
         if ended.returncode == 2:
             raise Refused(said[-1] if said else f"{program}: refused its command line")
         row["failure"] = "" if ended.returncode == 0 else (said[-1] if said else f"ended with {ended.returncode}")
-        (folder / "failure.txt").write_text(row["failure"])
-        kept.write_text(json.dumps(stamp))
+        kept.write_text(json.dumps(dict(stamp, failure=row["failure"])))
     try:
         if not row["failure"]:
             row["values"] = measure(folder, sequence)
