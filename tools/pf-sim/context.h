@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdlib>
+#include <cstring>
 #include <memory>
+#include <vector>
 
 #include "planefold/planefold.h"
 
@@ -13,17 +15,25 @@ class Context {
   explicit Context(const pf_config_t& config) {
     pf_memory_t need;
     if (pf_memory_query(&config, &need) != PF_OK) return;
-    const std::size_t bytes = (need.bytes + need.alignment - 1) / need.alignment * need.alignment;
-    block_.reset(std::aligned_alloc(need.alignment, bytes));
-    if (block_) pf_create(&config, block_.get(), bytes, &slam);
+    bytes_ = (need.bytes + need.alignment - 1) / need.alignment * need.alignment;
+    block_.reset(std::aligned_alloc(need.alignment, bytes_));
+    if (block_) pf_create(&config, block_.get(), bytes_, &slam);
   }
   pf_slam_t* slam = nullptr;
+
+  /// A context is nothing but its block: a copy of the bytes, put back to the same place, is the context as it was.
+  void save(std::vector<unsigned char>* bytes) const {
+    bytes->resize(bytes_);
+    std::memcpy(bytes->data(), block_.get(), bytes_);
+  }
+  void restore(const std::vector<unsigned char>& bytes) { std::memcpy(block_.get(), bytes.data(), bytes_); }
 
  private:
   struct Free {
     void operator()(void* p) const { std::free(p); }
   };
   std::unique_ptr<void, Free> block_;
+  std::size_t bytes_ = 0;
 };
 
 }  // namespace pfsim

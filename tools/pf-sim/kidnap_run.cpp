@@ -1,0 +1,323 @@
+#include "kidnap_run.h"
+
+#include <planefold_platform/sequence.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "sim/linear.h"
+#include "sim/random.h"
+#include "statistics.h"
+
+namespace pfsim {
+namespace {
+
+using pf::sim::Vec3;
+
+constexpr double kWrongDeg = 5, kWrongDepths = 0.1;
+constexpr std::uint64_t kOrderStream = 31;
+
+struct CloseSequence {
+  void operator()(pf_sequence_t* s) const { pf_close_sequence(s); }
+};
+
+Vec3 vector_of(const double p[3]) { return {p[0], p[1], p[2]}; }
+
+std::vector<pf_feature_t> map_of(const Context& context) {
+  std::size_t count = 0;
+  pf_get_features(context.slam, nullptr, 0, &count);
+  std::vector<pf_feature_t> map(count);
+  if (count > 0) pf_get_features(context.slam, map.data(), map.size(), &count);
+  return map;
+}
+
+/// Median depth of what was measured in the last frame; 0 where nothing was.
+double median_depth(const Context& context, const pf_pose_t& pose) {
+  std::size_t count = 0;
+  pf_get_tracks(context.slam, nullptr, 0, &count);
+  std::vector<pf_track_t> tracks(count);
+  if (count > 0) pf_get_tracks(context.slam, tracks.data(), tracks.size(), &count);
+  const std::vector<pf_feature_t> map = map_of(context);
+  const pf::sim::Mat3 R_CW = pf::sim::rotation_of(pose.q_WC).transposed();
+  std::vector<double> depths;
+  for (const pf_track_t& track : tracks) {
+    if (track.status != PF_TRACK_INLIER) continue;
+    for (const pf_feature_t& f : map)
+      if (f.id == track.id) depths.push_back((R_CW * (vector_of(f.p_W) - vector_of(pose.p_WC))).z);
+  }
+  return depths.empty() ? 0 : median(depths);
+}
+
+struct PoseError {
+  double normalised, deg, depths;
+};
+
+PoseError compare(const pf_pose_t& pose, const Reference::Frame& truth) {
+  double P[36], e[6];
+  for (int i = 0; i < 36; ++i) P[i] = pose.covariance[i] + truth.pose.covariance[i];
+  const Vec3 theta =
+      pf::sim::rotation_log(pf::sim::rotation_of(truth.pose.q_WC) * pf::sim::rotation_of(pose.q_WC).transposed());
+  const Vec3 p = vector_of(truth.pose.p_WC) - vector_of(pose.p_WC);
+  e[0] = theta.x, e[1] = theta.y, e[2] = theta.z, e[3] = p.x, e[4] = p.y, e[5] = p.z;
+  const double normalised = normalised_error(e, P, 6, 6, 0);
+  return {normalised < 0 ? 1e12 : normalised, theta.norm() * 57.29577951308232, p.norm() / std::max(truth.depth, 1e-9)};
+}
+
+/// A context that is shown pictures at the film's rate, and what came of it.
+class Player {
+ public:
+  Player(const Film& film, const Reference& reference, Context& context, std::int64_t t_ns)
+      : film_(film), reference_(reference), context_(context), t_ns_(t_ns) {
+    begin();
+  }
+
+  /// What is counted from now on goes there.
+  void begin(Trial* trial = nullptr) {
+    trial_ = trial;
+    if (pf_get_pose(context_.slam, &last_) != PF_OK) last_ = {};
+  }
+  std::int64_t t_ns() const { return t_ns_; }
+  void set_time(std::int64_t t_ns) { t_ns_ = t_ns; }
+
+  /// Shows a frame of the film, or black. True when the state is tracking.
+  bool show(int frame) {
+    t_ns_ += film_.interval_ns();
+    const pf_camera_t& camera = film_.camera();
+    const pf_image_t image = {film_.pixels(frame), camera.width, camera.height, camera.width, t_ns_};
+    const bool tracking = pf_push_frame(context_.slam, &image) == PF_OK;
+    pf_pose_t pose;
+    if (pf_get_pose(context_.slam, &pose) != PF_OK) return false;
+    if (trial_ != nullptr) {
+      if (tracking && frame >= 0) judge(pose, frame);
+      if (!tracking) compare_covariance(pose);
+    }
+    last_ = pose;
+    return tracking;
+  }
+
+ private:
+  void judge(const pf_pose_t& pose, int frame) {
+    const Reference::Frame& truth = reference_.frames[static_cast<std::size_t>(frame)];
+    if (!truth.tracked) return;
+    const PoseError error = compare(pose, truth);
+    ++trial_->judged;
+    trial_->worst_normalised = std::max(trial_->worst_normalised, error.normalised);
+    trial_->worst_deg = std::max(trial_->worst_deg, error.deg);
+    trial_->worst_depths = std::max(trial_->worst_depths, error.depths);
+    if (is_wrong(error.deg, error.depths))
+      trial_->wrong_normalised = std::max(trial_->wrong_normalised, error.normalised);
+  }
+
+  void compare_covariance(const pf_pose_t& pose) {
+    for (int first = 0; first < 6; first += 3) {
+      double before = 0, now = 0;
+      for (int i = first; i < first + 3; ++i) {
+        before += last_.covariance[7 * i];
+        now += pose.covariance[7 * i];
+      }
+      if (before > 0) trial_->least_growth = std::min(trial_->least_growth, std::sqrt(now / before));
+    }
+  }
+
+  const Film& film_;
+  const Reference& reference_;
+  Context& context_;
+  std::int64_t t_ns_;
+  Trial* trial_ = nullptr;
+  pf_pose_t last_{};
+};
+
+int count_in_view(const Film& film, const KidnapOptions& options, const std::vector<pf_feature_t>& map,
+                  const pf_pose_t& pose) {
+  const pf_camera_t& camera = film.camera();
+  const pf::sim::Mat3 R_CW = pf::sim::rotation_of(pose.q_WC).transposed();
+  const double border = options.config.border_px;
+  int count = 0;
+  for (const pf_feature_t& f : map) {
+    const Vec3 p = R_CW * (vector_of(f.p_W) - vector_of(pose.p_WC));
+    const double p_C[3] = {p.x, p.y, p.z};
+    double pixel[2];
+    if (p.z <= 0 || pf_camera_project(&camera, p_C, pixel) != PF_OK) continue;
+    count += pixel[0] >= border && pixel[1] >= border && pixel[0] <= camera.width - 1 - border &&
+             pixel[1] <= camera.height - 1 - border;
+  }
+  return count;
+}
+
+int count_kept(const Context& context, const std::vector<pf_feature_t>& old) {
+  const std::vector<pf_feature_t> now = map_of(context);
+  int kept = 0;
+  for (const pf_feature_t& f : old)
+    kept += std::any_of(now.begin(), now.end(), [&](const pf_feature_t& g) { return g.id == f.id; });
+  return kept;
+}
+
+int frames_in(double seconds, const Film& film) {
+  return static_cast<int>(std::lround(seconds * 1e9 / static_cast<double>(film.interval_ns())));
+}
+
+/// Frames of the film that are shown after a gap of so many frames.
+std::vector<int> shown_after(const Film& film, int start, int gap, Return then, int count) {
+  std::vector<int> shown;
+  const int n = film.frames();
+  for (int k = 0; k < count; ++k) {
+    const int frame = then == Return::kOn     ? start + 1 + gap + k
+                      : then == Return::kBack ? start - k
+                                              : (start + n / 2) % n + k;
+    if (frame < 0 || frame >= n) break;
+    shown.push_back(frame);
+  }
+  return shown;
+}
+
+}  // namespace
+
+bool is_wrong(double deg, double depths) { return deg > kWrongDeg || depths > kWrongDepths; }
+
+const std::vector<GapCase>& gap_cases() {
+  static const std::vector<GapCase> cases = [] {
+    std::vector<GapCase> all;
+    for (const double seconds : {0.3, 1.0, 2.0, 3.0}) {
+      for (const Return then : {Return::kOn, Return::kBack, Return::kElsewhere})
+        all.push_back({seconds, GapPicture::kBlack, then});
+    }
+    for (const double seconds : {0.3, 1.0, 2.0, 3.0}) all.push_back({seconds, GapPicture::kElsewhere, Return::kBack});
+    return all;
+  }();
+  return cases;
+}
+
+bool Film::open(const std::string& source, std::string* error) {
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  pf_sequence_t* opened = nullptr;
+  if (pf_open_sequence(source.c_str(), nullptr, &opened, message) != 0) {
+    *error = message;
+    return false;
+  }
+  const std::unique_ptr<pf_sequence_t, CloseSequence> sequence(opened);
+  pf_sequence_info_t info;
+  pf_get_sequence_info(opened, &info);
+  camera_ = info.camera;
+  interval_ns_ = static_cast<std::int64_t>(1e9 / info.rate_hz);
+  const std::size_t size = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
+  pixels_.reserve(size * static_cast<std::size_t>(info.count + 1));
+  for (std::int64_t i = 0; i < info.count; ++i) {
+    pf_image_t image;
+    if (pf_read_sequence_frame(opened, i, &image, message) != 0) {
+      *error = message;
+      return false;
+    }
+    times_ns_.push_back(image.t_ns);
+    for (int row = 0; row < image.height; ++row) {
+      const std::uint8_t* from = image.pixels + static_cast<std::ptrdiff_t>(row) * image.stride;
+      pixels_.insert(pixels_.end(), from, from + image.width);
+    }
+  }
+  pixels_.resize(pixels_.size() + size, 0);
+  return true;
+}
+
+const std::uint8_t* Film::pixels(int frame) const {
+  const std::size_t size = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
+  return pixels_.data() + size * static_cast<std::size_t>(frame < 0 ? frames() : frame);
+}
+
+bool play_reference(const Film& film, const KidnapOptions& options, Context& context, Reference* reference) {
+  if (options.has_target && pf_start_from_target(context.slam, &options.target) != PF_OK) return false;
+  for (int i = 0; i < film.frames(); ++i) {
+    const pf_camera_t& camera = film.camera();
+    const pf_image_t image = {film.pixels(i), camera.width, camera.height, camera.width, film.t_ns(i)};
+    Reference::Frame frame;
+    const pf_status_t status = pf_push_frame(context.slam, &image);
+    frame.tracked = status == PF_OK && pf_get_pose(context.slam, &frame.pose) == PF_OK;
+    if (frame.tracked) frame.depth = median_depth(context, frame.pose);
+    frame.tracked = frame.tracked && frame.depth > 0;
+    reference->frames.push_back(frame);
+    if (i % options.every != 0 || !frame.tracked) continue;
+    Reference::Start start;
+    start.frame = i;
+    context.save(&start.block);
+    start.map = map_of(context);
+    reference->starts.push_back(std::move(start));
+  }
+  return true;
+}
+
+void play_trials(const Film& film, const KidnapOptions& options, const Reference& reference, int start,
+                 Context& context, Trial* trials, Survival* survival) {
+  const Reference::Start& from = reference.starts[static_cast<std::size_t>(start)];
+  const std::vector<GapCase>& cases = gap_cases();
+  const int follow = frames_in(options.follow_s, film);
+  Player player(film, reference, context, film.t_ns(from.frame));
+
+  const auto play_one = [&](const GapCase& what, int gap, Trial* trial) {
+    const std::vector<int> shown = shown_after(film, from.frame, gap, what.then, follow);
+    if (static_cast<int>(shown.size()) < follow) return;
+    trial->done = 1;
+    trial->old_ids = static_cast<std::int32_t>(from.map.size());
+    const Reference::Frame& first = reference.frames[static_cast<std::size_t>(shown[0])];
+    if (first.tracked) trial->old_in_view = count_in_view(film, options, from.map, first.pose);
+    for (int k = 0; k < follow; ++k)
+      if (player.show(shown[static_cast<std::size_t>(k)]) && trial->tracked_after < 0) trial->tracked_after = k;
+    trial->kept_ids = count_kept(context, from.map);
+  };
+
+  // Black gaps of growing length share their beginning.
+  context.restore(from.block);
+  std::vector<unsigned char> dark = from.block;
+  std::int64_t t_ns = film.t_ns(from.frame);
+  int shown = 0;
+  Trial in_the_dark;
+  const auto wait_until = [&](int gap) {
+    context.restore(dark);
+    player.set_time(t_ns);
+    player.begin(&in_the_dark);
+    for (; shown < gap; ++shown) player.show(-1);
+    context.save(&dark);
+    t_ns = player.t_ns();
+  };
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    if (cases[c].picture != GapPicture::kBlack) continue;
+    const int gap = frames_in(cases[c].seconds, film);
+    wait_until(gap);
+    trials[c].least_growth = in_the_dark.least_growth;
+    player.begin(&trials[c]);
+    play_one(cases[c], gap, &trials[c]);
+  }
+  wait_until(frames_in(options.survive_s, film));
+  survival->done = 1;
+  survival->old_ids = static_cast<std::int32_t>(from.map.size());
+  survival->kept_ids = count_kept(context, from.map);
+
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    if (cases[c].picture != GapPicture::kElsewhere) continue;
+    const int gap = frames_in(cases[c].seconds, film);
+    context.restore(from.block);
+    player.set_time(film.t_ns(from.frame));
+    player.begin(&trials[c]);
+    const std::vector<int> elsewhere = shown_after(film, from.frame, 0, Return::kElsewhere, gap);
+    if (static_cast<int>(elsewhere.size()) < gap) continue;
+    for (const int frame : elsewhere) player.show(frame);
+    play_one(cases[c], gap, &trials[c]);
+  }
+}
+
+RandomOrder play_random(const Film& film, const KidnapOptions& options, const Reference& reference, int start,
+                        std::uint64_t seed, Context& context) {
+  const Reference::Start& from = reference.starts[static_cast<std::size_t>(start)];
+  context.restore(from.block);
+  Player player(film, reference, context, film.t_ns(from.frame));
+  pf::sim::Random random(seed, kOrderStream);
+  RandomOrder result;
+  for (; result.frames < options.random_frames; ++result.frames) {
+    Trial frame;
+    player.begin(&frame);
+    if (!player.show(random.below(film.frames()))) continue;
+    ++result.tracking;
+    result.right += frame.judged > 0 && !is_wrong(frame.worst_deg, frame.worst_depths);
+  }
+  return result;
+}
+
+}  // namespace pfsim

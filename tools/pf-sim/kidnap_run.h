@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "context.h"
+#include "planefold/planefold.h"
+
+namespace pfsim {
+
+/// Real frames in memory, so that they can be shown in any order.
+class Film {
+ public:
+  /// Reads all frames of a source of platform_sequence. False, with one line that says why, when that is not possible.
+  bool open(const std::string& source, std::string* error);
+
+  const pf_camera_t& camera() const { return camera_; }
+  int frames() const { return static_cast<int>(times_ns_.size()); }
+  std::int64_t t_ns(int frame) const { return times_ns_[static_cast<std::size_t>(frame)]; }
+  std::int64_t interval_ns() const { return interval_ns_; }
+  /// Picture of a frame; black for -1.
+  const std::uint8_t* pixels(int frame) const;
+
+ private:
+  pf_camera_t camera_{};
+  std::vector<std::int64_t> times_ns_;
+  std::vector<std::uint8_t> pixels_;  // behind the frames, a black one
+  std::int64_t interval_ns_ = 0;
+};
+
+/// What is shown while the camera does not see what it should.
+enum class GapPicture : std::int32_t { kBlack, kElsewhere };
+
+/// What it sees after that: the film goes on after as many frames as the gap has replaced; it runs backwards from where it stopped; it
+/// goes on half of the film away.
+enum class Return : std::int32_t { kOn, kBack, kElsewhere };
+
+struct GapCase {
+  double seconds;
+  GapPicture picture;
+  Return then;
+};
+
+/// All that is tried at one frame.
+const std::vector<GapCase>& gap_cases();
+
+struct KidnapOptions {
+  pf_config_t config;
+  bool has_target = false;
+  pf_target_t target;
+  int every = 8;            ///< frames between the frames at which trials begin
+  double follow_s = 1.5;    ///< after the gap
+  double survive_s = 10;    ///< without a picture, after which ids are counted
+  int random_frames = 700;  ///< in one run in random order
+  int random_runs = 4;
+  std::uint64_t seed = 1;
+};
+
+/// The film without a gap: the truth of the trials.
+struct Reference {
+  struct Frame {
+    bool tracked = false;
+    pf_pose_t pose{};
+    double depth = 0;  ///< median, along the axis, of what was measured
+  };
+  struct Start {
+    int frame;
+    std::vector<unsigned char> block;
+    std::vector<pf_feature_t> map;
+  };
+  std::vector<Frame> frames;
+  std::vector<Start> starts;
+};
+
+/// One gap. Plain data, so that it may lie in memory shared between processes.
+struct Trial {
+  std::int32_t done = 0;
+  std::int32_t old_in_view = 0;     ///< features of the old map that the truth has in the first picture after the gap
+  std::int32_t tracked_after = -1;  ///< frames after the gap until the state is tracking in the old map; -1: never
+  std::int32_t judged = 0;          ///< frames in state tracking, in the old map, where the truth is known
+  double worst_normalised = 0;      ///< of them: e^T (P + P_truth)^-1 e, 6 dof
+  double worst_deg = 0, worst_depths = 0;  ///< of them: rotation; position over the median depth
+  double wrong_normalised = 0;  ///< largest normalised error of the frames that are wrong by 5 degrees or 10 % of depth
+  double least_growth = 1;      ///< least ratio of successive standard deviations of the pose while coasting or lost
+  std::int32_t old_ids = 0, kept_ids = 0;  ///< of the map when the gap began, and of them at the end of the trial
+};
+
+struct Survival {
+  std::int32_t done = 0, old_ids = 0, kept_ids = 0;
+};
+
+struct RandomOrder {
+  std::int32_t frames = 0, tracking = 0, right = 0;  ///< right: within 5 degrees and 10 % of depth of the truth
+};
+
+bool is_wrong(double deg, double depths);
+
+/// Plays the film once and keeps the context where trials begin.
+bool play_reference(const Film& film, const KidnapOptions& options, Context& context, Reference* reference);
+
+/// All cases at one start; trials has as many entries as gap_cases(). Those that the film is too short for are not done.
+void play_trials(const Film& film, const KidnapOptions& options, const Reference& reference, int start,
+                 Context& context, Trial* trials, Survival* survival);
+
+/// Frames in random order after a start of the reference.
+RandomOrder play_random(const Film& film, const KidnapOptions& options, const Reference& reference, int start,
+                        std::uint64_t seed, Context& context);
+
+}  // namespace pfsim
