@@ -1,0 +1,243 @@
+// Writes a digest of every public value after each frame. The linker hands the programs' calls to here (--wrap), so that any
+// program becomes one that writes digests, without a change to it; PLANEFOLD_DIGEST names the file, and without it nothing is done.
+//
+// One line a frame: the frames since create or reset, then one hash per kind of value. Values are hashed as numbers in the
+// order of this file and not as structures, so that names and layouts may change. The file is appended to in whole lines.
+
+#include <fcntl.h>
+#include <planefold/planefold.h>
+#include <unistd.h>
+
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+extern "C" {
+pf_status_t __real_pf_create(const pf_config_t* config, void* block, size_t bytes, pf_slam_t** slam);
+pf_status_t __wrap_pf_create(const pf_config_t* config, void* block, size_t bytes, pf_slam_t** slam);
+pf_status_t __real_pf_push_frame(pf_slam_t* slam, const pf_image_t* image);
+pf_status_t __wrap_pf_push_frame(pf_slam_t* slam, const pf_image_t* image);
+pf_status_t __real_pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations,
+                                        size_t count);
+pf_status_t __wrap_pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations,
+                                        size_t count);
+}
+
+namespace {
+
+constexpr int kFormat = 1;  // grows when what is hashed changes: files of different formats cannot be compared
+constexpr int kGaugeEvery = 100;
+
+enum Kind { kState, kPose, kPredicted, kFeatures, kPlanes, kMatches, kReport, kHits, kImu, kGauge, kKinds };
+constexpr const char* kNames[kKinds] = {"state",   "pose",   "predicted", "features", "planes",
+                                        "matches", "report", "hits",      "imu",      "gauge"};
+
+/// FNV-1a over whole numbers; all zeros are one number, and so are all NaN.
+class Hash {
+ public:
+  Hash& operator<<(double value) {
+    std::uint64_t bits = 0x7ff8000000000000U;
+    value += 0.0;  // -0 becomes 0
+    if (!std::isnan(value)) std::memcpy(&bits, &value, sizeof bits);
+    hash_ = (hash_ ^ bits) * 0x100000001b3U;
+    hash_ ^= hash_ >> 29;
+    if (values != nullptr) values->push_back(value);
+    return *this;
+  }
+  template <std::size_t n>
+  Hash& operator<<(const double (&array)[n]) {
+    for (const double value : array) *this << value;
+    return *this;
+  }
+  std::uint64_t value() const { return hash_; }
+  std::vector<double>* values = nullptr;
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325U;
+};
+
+void add(Hash& h, const pf_pose_t& p) {
+  h << static_cast<double>(p.t_ns) << p.q_WC << p.p_WC << p.covariance << p.v_W << p.w_C;
+}
+
+void add(Hash& h, const pf_feature_t& f) {
+  h << f.id << f.track << f.kind << f.is_target << f.plane << f.p_W << f.covariance << f.observations << f.attempts;
+}
+
+void add(Hash& h, const pf_plane_t& p) {
+  h << p.id << p.orientation << p.points << p.fixed_points << p.normal_W << p.distance << p.R_WP << p.p_WP
+    << p.covariance << p.outline_count;
+  for (int i = 0; i < p.outline_count; ++i) h << p.outline_P[i];
+  h << p.area;
+}
+
+void add(Hash& h, const pf_track_t& t) {
+  h << t.id << t.status << t.kind << t.predicted_px << t.covariance_px << t.measured_px << t.nis;
+}
+
+void add(Hash& h, const pf_report_t& r) {  // without the cost of stages
+  h << static_cast<double>(r.t_ns) << r.state << r.frames << r.attempts << r.matches << r.inliers << r.new_features
+    << r.evicted << r.features << r.features_point << r.features_inverse_depth << r.features_folded << r.features_fixed
+    << r.planes << r.state_dim << r.state_dim_held << r.state_dim_points_only << r.nis << r.nis_dof << r.kernels;
+}
+
+void add(Hash& h, const pf_imu_report_t& r) {
+  const std::int64_t counts[] = {r.samples, r.since_frame, r.last_frame, r.late,      r.saturated,
+                                 r.gaps,    r.missing,     r.first_t_ns, r.last_t_ns, r.longest_ns};
+  for (const std::int64_t count : counts) h << static_cast<double>(count);
+  h << r.rate_hz << r.usual_s << r.kept << r.used;
+}
+
+void add(Hash& h, const pf_imu_sample_t& s) { h << static_cast<double>(s.t_ns) << s.gyro << s.accel; }
+
+/// Everything that a getter copies into an array.
+template <class T>
+void add_all(Hash& h, const pf_slam_t* slam, pf_status_t (*get)(const pf_slam_t*, T*, std::size_t, std::size_t*)) {
+  std::vector<T> items(256);
+  std::size_t count = 0;
+  pf_status_t status = get(slam, items.data(), items.size(), &count);
+  if (status == PF_NOTE_TRUNCATED) {
+    items.resize(count);
+    status = get(slam, items.data(), items.size(), &count);
+  }
+  h << status << static_cast<double>(count);
+  for (std::size_t i = 0; status >= 0 && i < count; ++i) add(h, items[i]);
+}
+
+void add_predictions(Hash& h, const pf_slam_t* slam, std::int64_t t_ns) {
+  for (const std::int64_t ahead_ns : {0, 20000000}) {
+    pf_pose_t pose{};
+    const pf_status_t status = pf_predict_pose(slam, t_ns + ahead_ns, &pose);
+    h << status;
+    if (status >= 0) add(h, pose);
+  }
+  for (const double x : {-0.3, 0.1, 0.4}) {
+    const double p_W[3] = {x, 0.2 - x, 1.5};
+    double pixel[2] = {}, covariance[4] = {};
+    const pf_status_t status = pf_project_point(slam, p_W, pixel, covariance);
+    h << status;
+    if (status >= 0) h << pixel << covariance;
+  }
+}
+
+void add_hits(Hash& h, const pf_slam_t* slam, const pf_camera_t& camera) {
+  for (const double v : {0.25, 0.5, 0.75}) {
+    for (const double u : {0.2, 0.4, 0.6, 0.8}) {
+      const double pixel[2] = {u * camera.width, v * camera.height};
+      pf_hit_t hit{};
+      const pf_status_t status = pf_hit_test(slam, pixel, &hit);
+      h << status;
+      if (status == PF_OK) h << hit.plane << hit.p_W << hit.covariance << hit.range;
+    }
+  }
+}
+
+void add_gauge(Hash& h, const pf_slam_t* slam, int state_dim) {
+  const auto n = static_cast<std::size_t>(state_dim);
+  std::vector<double> scratch(n * (n + 8));
+  double information[49] = {};
+  h << pf_get_gauge_information(slam, scratch.data(), scratch.size(), information) << information;
+}
+
+std::map<const pf_slam_t*, pf_camera_t>& cameras() {
+  static std::map<const pf_slam_t*, pf_camera_t> all;
+  return all;
+}
+
+/// A file that is appended to; each process opens it anew. Without a name nothing is written.
+class Output {
+ public:
+  explicit Output(const char* variable) {
+    const char* name = std::getenv(variable);
+    if (name == nullptr) return;
+    file_ = open(name, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    if (file_ < 0) give_up(name);
+  }
+  explicit operator bool() const { return file_ >= 0; }
+  bool is_empty() const { return lseek(file_, 0, SEEK_END) == 0; }
+  void write(const void* bytes, std::size_t size) const {
+    if (::write(file_, bytes, size) != static_cast<ssize_t>(size)) give_up("the digest");
+  }
+
+ private:
+  [[noreturn]] static void give_up(const char* name) {
+    std::perror(name);
+    std::_Exit(1);
+  }
+  int file_ = -1;
+};
+
+void write_digest(const pf_slam_t* slam, pf_status_t pushed) {
+  static const Output hashes("PLANEFOLD_DIGEST"), numbers("PLANEFOLD_DIGEST_VALUES");
+  if (!hashes) return;
+
+  Hash h[kKinds];
+  std::vector<double> values[kKinds];
+  for (int k = 0; k < kKinds; ++k) h[k].values = numbers ? &values[k] : nullptr;
+  pf_state_t state{};
+  h[kState] << pushed << pf_get_state(slam, &state) << state;
+  pf_report_t report{};
+  h[kReport] << pf_get_report(slam, &report);
+  add(h[kReport], report);
+  pf_pose_t pose{};
+  const pf_status_t has_pose = pf_get_pose(slam, &pose);
+  h[kPose] << has_pose;
+  if (has_pose >= 0) add(h[kPose], pose);
+  add_predictions(h[kPredicted], slam, report.t_ns);
+  add_all(h[kFeatures], slam, pf_get_features);
+  add_all(h[kPlanes], slam, pf_get_planes);
+  add_all(h[kMatches], slam, pf_get_tracks);
+  add_hits(h[kHits], slam, cameras()[slam]);
+  pf_imu_report_t imu{};
+  h[kImu] << pf_get_imu_report(slam, &imu);
+  add(h[kImu], imu);
+  add_all(h[kImu], slam, pf_get_imu_samples);
+  if (report.frames % kGaugeEvery == 0) add_gauge(h[kGauge], slam, report.state_dim);
+
+  std::string line;
+  if (hashes.is_empty()) {
+    line = "format " + std::to_string(kFormat) + "\nframe";
+    for (const char* name : kNames) line += std::string(" ") + name;
+    line += "\n";
+  }
+  line += std::to_string(report.frames);
+  for (const Hash& hash : h) {
+    char text[24];
+    std::snprintf(text, sizeof text, " %016" PRIx64, hash.value());
+    line += text;
+  }
+  line += "\n";
+  hashes.write(line.data(), line.size());
+  for (const std::vector<double>& of_kind : values) {
+    if (!numbers) break;
+    const auto count = static_cast<double>(of_kind.size());
+    numbers.write(&count, sizeof count);
+    numbers.write(of_kind.data(), of_kind.size() * sizeof(double));
+  }
+}
+
+}  // namespace
+
+pf_status_t __wrap_pf_create(const pf_config_t* config, void* block, size_t bytes, pf_slam_t** slam) {
+  const pf_status_t status = __real_pf_create(config, block, bytes, slam);
+  if (status >= 0) cameras()[*slam] = config->camera;
+  return status;
+}
+
+pf_status_t __wrap_pf_push_frame(pf_slam_t* slam, const pf_image_t* image) {
+  const pf_status_t status = __real_pf_push_frame(slam, image);
+  write_digest(slam, status);
+  return status;
+}
+
+pf_status_t __wrap_pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations,
+                                        size_t count) {
+  const pf_status_t status = __real_pf_push_observations(slam, t_ns, observations, count);
+  write_digest(slam, status);
+  return status;
+}
