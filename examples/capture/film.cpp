@@ -36,12 +36,14 @@ bool Film::open(const std::string& path, int width, int height, double rate_hz, 
     return false;
   }
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  const std::string rate = std::to_string(std::clamp(rate_hz, 1.0, 240.0));
-  std::vector<std::string> words = {program,    "-loglevel", "error",      "-nostdin",    "-y",      "-f",
-                                    "rawvideo", "-pix_fmt",  "bgr0",       "-video_size", size,      "-framerate",
-                                    rate,       "-i",        "pipe:0",     "-c:v",        "libx264", "-preset",
-                                    "veryfast", "-crf",      "20",         "-threads",    "2",       "-pix_fmt",
-                                    "yuv420p",  "-movflags", "+faststart", "file:" + path};
+  const double frames_per_second = std::clamp(rate_hz, 1.0, 240.0);
+  const std::string rate = std::to_string(frames_per_second);
+  const std::string second = std::to_string(static_cast<int>(frames_per_second + 0.5));
+  std::vector<std::string> words = {program, "-loglevel", "error", "-nostdin", "-y"};
+  words.insert(words.end(), {"-f", "rawvideo", "-pix_fmt", "bgr0", "-video_size", size, "-framerate", rate});
+  words.insert(words.end(), {"-i", "pipe:0", "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-g", second});
+  words.insert(words.end(), {"-threads", "2", "-pix_fmt", "yuv420p", "-flush_packets", "1"});
+  words.insert(words.end(), {"-movflags", "+frag_keyframe+empty_moov+default_base_moof", "file:" + path});
   std::vector<char*> arguments;
   for (std::string& word : words) {
     arguments.push_back(word.data());
@@ -54,6 +56,7 @@ bool Film::open(const std::string& path, int width, int height, double rate_hz, 
   }
   child_ = fork();
   if (child_ == 0) {
+    setsid();
     dup2(ends[0], STDIN_FILENO);
     execv(arguments[0], arguments.data());
     _exit(127);

@@ -11,6 +11,9 @@
 namespace pf::capture {
 
 /// Pictures to an MP4 file, through the program ffmpeg, which gets raw frames by a pipe.
+///
+/// The file is in fragments of about a second, each of which plays without those after it. ffmpeg is in a session of its own, so that
+/// what ends this program by its terminal or process group leaves it the time to finish the file.
 class Film {
  public:
   Film() = default;
@@ -24,6 +27,8 @@ class Film {
   /// false when ffmpeg failed somewhere on the way.
   bool close();
   bool is_open() const { return pipe_ != nullptr; }
+  /// ffmpeg ended early: nothing more is added.
+  bool has_failed() const { return failed_; }
 
  private:
   std::FILE* pipe_ = nullptr;

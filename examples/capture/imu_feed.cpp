@@ -81,6 +81,7 @@ void ImuFeed::push_until(int64_t t_ns, pf_slam_t* slam) {
       notices_.add(imu_->name() + ": the library refused a sample: " + pf_status_text(status));
     }
   }
+  recorder_.write(failure_);
 }
 
 bool ImuFeed::take_notice(std::string& notice) {

@@ -28,6 +28,11 @@ class ImuFeed {
   /// After it was pushed.
   void add_pose(const pf_pose_t& pose, bool tracked) { offset_.add_frame(pose, tracked); }
   bool take_notice(std::string& notice);
+  /// true: samples could not be recorded, and error is one line.
+  bool failed(std::string& error) const {
+    error = failure_.empty() ? error : failure_;
+    return !failure_.empty();
+  }
   /// Closes the recording. false: error is one line.
   bool finish(std::string& error) { return recorder_.close(error); }
   /// JSON for report.json. advice: one line on the unit's clock, or "".
@@ -39,6 +44,7 @@ class ImuFeed {
   TimeOffsetEstimator offset_;
   std::vector<pf_imu_sample_t> samples_;
   Notices notices_;
+  std::string failure_;  ///< of the recording
   double offset_s_ = 0.0;
   int64_t frames_ = 0, pushed_ = 0, refused_ = 0;
 };

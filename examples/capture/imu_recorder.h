@@ -3,9 +3,9 @@
 
 #include <planefold/planefold.h>
 
-#include <cstdio>
-#include <memory>
 #include <string>
+
+#include "text_file.h"
 
 namespace pf::capture {
 
@@ -15,15 +15,13 @@ class ImuRecorder {
   /// false: error is one line.
   bool open(const std::string& folder, std::string& error);
   void add(const pf_imu_sample_t& sample);
+  /// The samples that were added since, to the file. false: error is one line.
+  bool write(std::string& error) { return file_.write_rows(error); }
   /// false: not everything could be written, and error is one line.
   bool close(std::string& error);
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::string path_;
-  std::unique_ptr<std::FILE, Close> file_;
+  TextFile file_;
 };
 
 }  // namespace pf::capture

@@ -16,20 +16,13 @@ constexpr int kWaitMs = 50;                ///< how long a stop may take to be n
 constexpr int64_t kSilentNs = 2000000000;  ///< without a frame: worth a note
 constexpr int64_t kMuteNs = 10000000000;   ///< without the very first frame: no use in waiting
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  std::sort(values.begin(), values.end());
-  const double rank = std::ceil(share * static_cast<double>(values.size())) - 1.0;
-  return std::round(1e3 * values[static_cast<size_t>(std::max(0.0, rank))]) * 1e-3;
-}
+double rounded(double value) { return std::round(1e3 * value) * 1e-3; }
 
-nlohmann::ordered_json spread(const std::vector<double>& values) {
-  return {{"min", quantile(values, 0.0)},
-          {"median", quantile(values, 0.5)},
-          {"p95", quantile(values, 0.95)},
-          {"max", quantile(values, 1.0)}};
+nlohmann::ordered_json spread(const Histogram& values) {
+  return {{"min", rounded(values.smallest())},
+          {"median", rounded(values.quantile(0.5))},
+          {"p95", rounded(values.quantile(0.95))},
+          {"max", rounded(values.largest())}};
 }
 
 }  // namespace
@@ -92,7 +85,7 @@ Read LiveSource::read(int64_t, pf_image_t& image, std::string& error) {
     current_.frame.image.pixels = current_.copy.data();
   }
   image = current_.frame.image;
-  wait_ms_.push_back(1e-6 * static_cast<double>(steady_ns() - current_.frame.arrived_ns));
+  wait_ms_.add(1e-6 * static_cast<double>(steady_ns() - current_.frame.arrived_ns));
   return Read::kDone;
 }
 
@@ -101,9 +94,7 @@ bool LiveSource::truth(pf_pose_t& pose) {
   return current_.frame.has_truth;
 }
 
-void LiveSource::pushed() {
-  latency_ms_.push_back(1e-6 * static_cast<double>(steady_ns() - current_.frame.arrived_ns));
-}
+void LiveSource::pushed() { latency_ms_.add(1e-6 * static_cast<double>(steady_ns() - current_.frame.arrived_ns)); }
 
 /// The capture thread.
 void LiveSource::capture() {
@@ -184,7 +175,7 @@ void LiveSource::deliver(const CameraFrame& frame) {
   }
   std::unique_lock<std::mutex> lock(mutex_);
   if (captured_++ > 0) {
-    interval_ms_.push_back(1e-6 * static_cast<double>(frame.image.t_ns - last_t_ns_));
+    interval_ms_.add(1e-6 * static_cast<double>(frame.image.t_ns - last_t_ns_));
   }
   last_t_ns_ = frame.image.t_ns;
   if (every_frame_) {
@@ -224,16 +215,21 @@ bool LiveSource::wait_for_return(const std::string& message) {
   return false;
 }
 
+std::string LiveSource::report() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const nlohmann::ordered_json json = {{"captured", captured_},
+                                       {"passed_over", passed_over_},
+                                       {"every_frame", every_frame_},
+                                       {"interval_ms", spread(interval_ms_)},
+                                       {"wait_ms", spread(wait_ms_)},
+                                       {"latency_ms", spread(latency_ms_)},
+                                       {"frame_ms", info_.rate_hz > 0.0 ? 1e3 / info_.rate_hz : 0.0}};
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 std::string LiveSource::finish() {
   stop();
-  const std::lock_guard<std::mutex> lock(mutex_);
-  nlohmann::ordered_json json = {{"captured", captured_},
-                                 {"passed_over", passed_over_},
-                                 {"every_frame", every_frame_},
-                                 {"interval_ms", spread(interval_ms_)},
-                                 {"wait_ms", spread(wait_ms_)},
-                                 {"latency_ms", spread(latency_ms_)},
-                                 {"frame_ms", info_.rate_hz > 0.0 ? 1e3 / info_.rate_hz : 0.0}};
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(report());
   json["camera"] = nlohmann::ordered_json::parse(camera_->report());
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

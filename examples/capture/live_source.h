@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera.h"
+#include "histogram.h"
 #include "notices.h"
 #include "recorder.h"
 #include "source.h"
@@ -38,6 +39,7 @@ class LiveSource : public Source {
   bool record_to(Recorder& recorder) override;
   void pushed() override;
   bool take_notice(std::string& notice) override { return notices_.take(notice); }
+  std::string report() override;
   std::string finish() override;
 
  private:
@@ -71,12 +73,12 @@ class LiveSource : public Source {
   std::string failure_;
   Notices notices_;
   int64_t captured_ = 0, passed_over_ = 0, last_t_ns_ = 0;
-  std::vector<double> interval_ms_;
+  Histogram interval_ms_;
   int outstanding_ = 0;
 
   Waiting current_;  ///< of the reading thread, as what follows
   bool has_current_ = false;
-  std::vector<double> wait_ms_, latency_ms_;
+  Histogram wait_ms_, latency_ms_;
 };
 
 }  // namespace pf::capture

@@ -59,6 +59,8 @@ void MapPanel::choose_axes(const pf_pose_t& pose) {
 void MapPanel::add(const FrameView& view) {
   if (!view.has_pose) {
     path_.clear();
+    since_ = 0;
+    stride_ = 1;
     has_axes_ = false;
     has_window_ = false;
     return;
@@ -66,7 +68,7 @@ void MapPanel::add(const FrameView& view) {
   if (!has_axes_) {
     choose_axes(view.pose);
   }
-  path_.push_back(vec(view.pose.p_WC));
+  remember(vec(view.pose.p_WC));
   const Window wanted = fit(view);
   // The view follows slowly, and opens faster than it closes: a map that jumps cannot be read.
   const double share = !has_window_ ? 1.0 : wanted.half > window_.half ? 0.3 : 0.1;
@@ -80,6 +82,24 @@ void MapPanel::add(const FrameView& view) {
   const double forward = dot(forward_, path_.back());
   window_.right = std::clamp(window_.right, right - room, right + room);
   window_.forward = std::clamp(window_.forward, forward - room, forward + room);
+}
+
+/// Every second place of a long path is forgotten, and then every second one passed over.
+void MapPanel::remember(const Vec3& place) {
+  if (path_.size() >= kMaxPath) {
+    for (size_t i = 0; i < kMaxPath / 2; ++i) {
+      path_[i] = path_[2 * i];
+    }
+    path_.resize(kMaxPath / 2);
+    stride_ *= 2;
+  }
+  // The last place is always the newest; it stays where it is stride_ frames after the one before.
+  if (since_ == 0 || path_.empty()) {
+    path_.push_back(place);
+  } else {
+    path_.back() = place;
+  }
+  since_ = (since_ + 1) % stride_;
 }
 
 MapPanel::Window MapPanel::fit(const FrameView& view) const {

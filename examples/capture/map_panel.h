@@ -28,6 +28,9 @@ class MapPanel {
     double right = 0.0, forward = 0.0, half = 1.0;  ///< what the panel shows: centre and half side, in W
   };
 
+  static constexpr size_t kMaxPath = 8192;
+
+  void remember(const Vec3& place);
   void choose_axes(const pf_pose_t& pose);
   Window fit(const FrameView& view) const;
   void draw_scale(const Canvas& canvas, double x, double y, double width, double height, double pixels_per_unit) const;
@@ -37,7 +40,8 @@ class MapPanel {
   const Session& session_;
   bool has_axes_ = false;
   Vec3 right_{}, forward_{};
-  std::vector<Vec3> path_;
+  std::vector<Vec3> path_;  ///< every stride_-th place, and the newest
+  int64_t stride_ = 1, since_ = 0;
   Window window_;
   bool has_window_ = false;
 };

@@ -164,6 +164,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_flag("--there-and-back", options.there_and_back,
                "all frames forwards, then backwards; pf-eval --there-and-back compares the two poses of each image");
   app.add_option("--out", options.out, "folder for what is written; made when it is missing")->capture_default_str();
+  app.add_option("--report-every", options.report_every_s, "seconds between refreshed report.json and map.ply")
+      ->check(CLI::Range(0.01, 1e9))
+      ->capture_default_str();
   app.add_flag("--headless", options.headless, "no window");
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
   app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame");

@@ -53,6 +53,7 @@ struct Options {
   bool dma_buf = false;
   bool list = false;
 
+  double report_every_s = 60.0;
   bool headless = false;
   bool film = true;
   bool tracks = false;

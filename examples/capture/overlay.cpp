@@ -14,6 +14,15 @@ namespace {
 using namespace colours;
 
 constexpr size_t kTailFrames = 15;
+constexpr size_t kMaxColumns = 4096;  ///< of the time line
+
+/// Tracking, starting, coasting, lost.
+bool is_worse(pf_state_t a, pf_state_t b) {
+  const auto rank = [](pf_state_t state) {
+    return state == PF_STATE_TRACKING ? 0 : state == PF_STATE_STARTING ? 1 : state == PF_STATE_COASTING ? 2 : 3;
+  };
+  return rank(a) < rank(b);
+}
 constexpr double kGate = 3.035;  ///< sqrt of the chi-squared bound 9.21 of two degrees of freedom at 0.99
 
 double zoom_of(const pf_camera_t& camera) { return camera.width <= 480 ? 2.0 : 1.0; }
@@ -62,8 +71,25 @@ void Overlay::add(const FrameView& view) {
   for (auto it = tails_.begin(); it != tails_.end();) {
     it = it->second.last_frame != view.index ? tails_.erase(it) : std::next(it);
   }
-  time_line_.push_back(state_colour(view.report.state));
+  remember_state(view.report.state);
   map_.add(view);
+}
+
+/// Columns of twice as many frames, where there are more of them than a picture has pixels.
+void Overlay::remember_state(pf_state_t state) {
+  if (frames_ % column_frames_ == 0) {
+    if (time_line_.size() == kMaxColumns) {
+      for (size_t i = 0; i < kMaxColumns / 2; ++i) {
+        time_line_[i] = std::max(time_line_[2 * i], time_line_[2 * i + 1], is_worse);
+      }
+      time_line_.resize(kMaxColumns / 2);
+      column_frames_ *= 2;
+    }
+    time_line_.push_back(state);
+  } else {
+    time_line_.back() = std::max(time_line_.back(), state, is_worse);
+  }
+  ++frames_;
 }
 
 const Canvas& Overlay::draw(const FrameView& view) {

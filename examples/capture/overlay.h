@@ -51,6 +51,8 @@ class Overlay {
   void draw_tracks(const FrameView& view);
   void draw_numbers(const FrameView& view, double x, double y, double width);
   void draw_strip(const FrameView& view);
+  void draw_time_line(const FrameView& view);
+  void remember_state(pf_state_t state);
 
   const Session& session_;
   std::string title_;
@@ -59,7 +61,9 @@ class Overlay {
   Canvas canvas_;
   MapPanel map_;
   std::map<uint32_t, Tail> tails_;
-  std::vector<Colour> time_line_;
+  std::vector<pf_state_t> time_line_;  ///< the worst state of column_frames_ frames each
+  int64_t column_frames_ = 1;
+  int64_t frames_ = 0;
   std::vector<unsigned char> grey_;  ///< the frame as BGRX
 };
 

@@ -95,7 +95,8 @@ void Overlay::draw_strip(const FrameView& view) {
   canvas_.rectangle(10.0, top + 6.0, badge_width, 20.0, badge);
   canvas_.colour({0.03, 0.04, 0.05});
   canvas_.text(20.0, top + 20.5, state, 13.0, true);
-  std::string text = "frame " + std::to_string(view.index + 1) + " / " + std::to_string(view.count);
+  std::string text =
+      "frame " + std::to_string(view.index + 1) + (view.count > 0 ? " / " + std::to_string(view.count) : "");
   if (view.status == PF_NOTE_UNUSABLE) {
     text += "   image has no usable content";
   }
@@ -107,12 +108,19 @@ void Overlay::draw_strip(const FrameView& view) {
     canvas_.colour(kDim);
     canvas_.text(width - title_width - 14.0, top + 20.5, title_, 13.0);
   }
-  // Time line: one column per frame, in the colour of its state.
-  const double count = static_cast<double>(std::max<int64_t>(view.count, 1));
-  canvas_.rectangle(0, top + kOverlayStripHeight - 6.0, width, 6.0, kGrid);
+  draw_time_line(view);
+}
+
+/// From left to right the frames so far, in the colours of their states; the width is all frames that there will be, where that is known.
+void Overlay::draw_time_line(const FrameView& view) {
+  const double top = image_height_ + kOverlayStripHeight - 6.0;
+  const double width = canvas_.width();
+  const double count = static_cast<double>(view.count > 0 ? view.count : std::max<int64_t>(frames_, 1));
+  const double column = width * static_cast<double>(column_frames_) / count;
+  canvas_.rectangle(0, top, width, 6.0, kGrid);
   for (size_t i = 0; i < time_line_.size(); ++i) {
-    const double x = width * static_cast<double>(i) / count;
-    canvas_.rectangle(x, top + kOverlayStripHeight - 6.0, std::max(1.0, width / count), 6.0, time_line_[i], 0.9);
+    canvas_.rectangle(column * static_cast<double>(i), top, std::max(1.0, column), 6.0, state_colour(time_line_[i]),
+                      0.9);
   }
 }
 

@@ -49,18 +49,17 @@ bool Recorder::open(const std::string& folder, const pf_camera_t& camera, double
     error = folder + ": holds a recording already; choose another --record or remove it";
     return false;
   }
+  if (fs::exists(folder, failure) && (!fs::is_directory(folder, failure) || !fs::is_empty(folder, failure))) {
+    error = folder + ": is not empty, and a recording needs a folder of its own; choose another --record";
+    return false;
+  }
   fs::create_directories(camera_folder_ / "data", failure);
-  const auto create = [&](const char* name) {
-    return std::unique_ptr<std::FILE, Close>(std::fopen((camera_folder_ / name).c_str(), "w"));
-  };
-  table_ = create("data.csv");
-  tracked_ = create("tracked.csv");
-  if (!table_ || !tracked_) {
+  if (!table_.create(camera_folder_ / "data.csv") || !tracked_.create(camera_folder_ / "tracked.csv")) {
     error = folder + ": cannot be written (" + std::strerror(errno) + "); choose another --record";
     return false;
   }
-  std::fprintf(table_.get(), "#timestamp [ns],filename\n");
-  std::fprintf(tracked_.get(), "#timestamp [ns] of the frames that were tracked\n");
+  table_.rows() = "#timestamp [ns],filename\n";
+  tracked_.rows() = "#timestamp [ns] of the frames that were tracked\n";
   char message[PF_SEQUENCE_MESSAGE];
   const std::string sensor = (camera_folder_ / "sensor.yaml").string();
   if (pf_write_calibration(sensor.c_str(), PF_CALIBRATION_EUROC, &camera, rate_hz, message) != 0) {
@@ -94,9 +93,18 @@ void Recorder::add(const pf_image_t& image) {
 }
 
 void Recorder::mark_tracked(int64_t t_ns) {
-  if (tracked_) {
-    std::fprintf(tracked_.get(), "%" PRId64 "\n", t_ns);
+  std::string error;
+  append(tracked_.rows(), "%" PRId64 "\n", t_ns);
+  if (!tracked_.write_rows(error)) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    failure_ = failure_.empty() ? error : failure_;
   }
+}
+
+bool Recorder::failed(std::string& error) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  error = failure_.empty() ? error : failure_;
+  return !failure_.empty();
 }
 
 void Recorder::work() {
@@ -119,18 +127,24 @@ void Recorder::work() {
 
 /// The table names a frame only after its file is complete, so that whatever ends the program leaves a readable recording.
 void Recorder::write(const Picture& picture) {
-  if (!failure_.empty()) {
+  std::string error;
+  if (failed(error)) {
     return;
   }
   const std::string name = std::to_string(picture.t_ns) + ".png";
   const fs::path path = camera_folder_ / "data" / name;
-  if (!write_png(path, picture.pixels.data(), picture.width, picture.height)) {
-    failure_ = path.string() + ": could not be written (" + std::strerror(errno) + "); is the disk full?";
-    return;
+  bool written = write_png(path, picture.pixels.data(), picture.width, picture.height);
+  if (!written) {
+    error = path.string() + ": could not be written (" + std::strerror(errno) + "); is the disk full?";
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  } else {
+    append(table_.rows(), "%" PRId64 ",%s\n", picture.t_ns, name.c_str());
+    written = table_.write_rows(error);
   }
-  std::fprintf(table_.get(), "%" PRId64 ",%s\n", picture.t_ns, name.c_str());
-  std::fflush(table_.get());
-  ++frames_;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  failure_ = written ? failure_ : error;
+  frames_ += written ? 1 : 0;
 }
 
 bool Recorder::close(std::string* error) {
@@ -142,13 +156,10 @@ bool Recorder::close(std::string* error) {
     }
     thread_.join();
   }
-  for (const auto* file : {&table_, &tracked_}) {
-    if (*file && (std::fflush(file->get()) != 0 || std::ferror(file->get()) != 0) && failure_.empty()) {
-      failure_ = camera_folder_.string() + ": could not be written completely; is the disk full?";
-    }
+  for (TextFile* file : {&table_, &tracked_}) {
+    file->write_rows(failure_);
+    file->close();
   }
-  table_.reset();
-  tracked_.reset();
   if (error != nullptr) {
     *error = failure_;
   }

@@ -4,14 +4,14 @@
 #include <planefold/planefold.h>
 
 #include <condition_variable>
-#include <cstdio>
 #include <deque>
 #include <filesystem>
-#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "text_file.h"
 
 namespace pf::capture {
 
@@ -33,6 +33,8 @@ class Recorder {
   /// Copies the frame and comes back; waits only where the disk is behind by kWaitingBytes.
   void add(const pf_image_t& image);
   void mark_tracked(int64_t t_ns);
+  /// true: something could not be written, and error is one line. What follows is not recorded any more.
+  bool failed(std::string& error);
   /// Writes what waits and closes the files. false: not everything could be written, and error is one line.
   bool close(std::string* error = nullptr);
   int64_t frames() const { return frames_; }
@@ -43,16 +45,13 @@ class Recorder {
     int32_t width, height;
     std::vector<uint8_t> pixels;
   };
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   static constexpr size_t kWaitingBytes = size_t{256} << 20;
 
   void work();
   void write(const Picture& picture);
 
   std::filesystem::path camera_folder_;
-  std::unique_ptr<std::FILE, Close> table_, tracked_;
+  TextFile table_, tracked_;
   std::thread thread_;
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -60,8 +59,8 @@ class Recorder {
   std::vector<std::vector<uint8_t>> spare_;  // under mutex_
   size_t waiting_bytes_ = 0;                 // under mutex_
   bool stop_ = false;                        // under mutex_
-  std::string failure_;                      // of the thread, until it is joined
-  int64_t frames_ = 0;                       // likewise
+  std::string failure_;                      // under mutex_
+  int64_t frames_ = 0;                       // of the thread, until it is joined
 };
 
 }  // namespace pf::capture

@@ -27,6 +27,9 @@ namespace {
 volatile std::sig_atomic_t g_interrupted = 0;
 void on_interrupt(int) { g_interrupted = 1; }
 
+/// What report.json says of a run that has not ended: it stays so where the program is killed.
+constexpr const char* kRunning = "still running when this was written, or killed since";
+
 int fail(const std::string& line, int code = kExitRun) {
   std::fprintf(stderr, "pf-capture: %s\n", line.c_str());
   return code;
@@ -55,6 +58,8 @@ class Run {
   void tell_notices();
   void handle_keys();
   void save(const std::string& name);
+  bool write_down(std::string& error);
+  bool refresh_report();
   int finish();
   std::string why_nothing_was_tracked() const;
 
@@ -73,6 +78,8 @@ class Run {
   bool done_any_ = false;
   bool quit_ = false;
   bool paused_ = false;
+  bool told_film_failed_ = false;
+  int64_t reported_ns_ = 0;  ///< when report.json was written
   std::string failure_;
 };
 
@@ -85,7 +92,7 @@ bool Run::open(std::string& error, int& code) {
     return false;
   }
   code = kExitRun;
-  if (!outputs_.open(options_.out, options_.tracks, info.knows_truth, error) ||
+  if (!outputs_.open(options_.out, options_.tracks, info.knows_truth, session_.config().camera, error) ||
       !outputs_.write_true_planes(source_.planes(), error)) {
     return false;
   }
@@ -101,10 +108,10 @@ bool Run::open(std::string& error, int& code) {
   if (!imu_.start(error)) {
     return false;
   }
-  std::vector<std::string> notes;
   if (options_.film && !outputs_.claim("overlay.mp4", error)) {
     return false;
   }
+  std::vector<std::string> notes;
   show_.open(options_, session_, "planefold   " + short_name(options_.source), outputs_.path("overlay.mp4"),
              info.rate_hz, notes);
   if (!place_thread(options_.processor, options_.priority)) {
@@ -135,6 +142,7 @@ int Run::go() {
   if (!open(error, code)) {
     return fail(error, code);
   }
+  reported_ns_ = steady_ns();
   for (int64_t index = 0; index < count_ && !quit_ && g_interrupted == 0;) {
     const Read read = step(index);
     if (read == Read::kEnd || read == Read::kFailed) {
@@ -143,6 +151,9 @@ int Run::go() {
     index += read == Read::kDone ? 1 : 0;
     tell_notices();
     handle_keys();
+    if (!refresh_report()) {
+      break;
+    }
   }
   return finish();
 }
@@ -188,10 +199,8 @@ Read Run::step(int64_t index) {
   view_.image.pixels = view_.pixels.data();
   done_any_ = true;
   statistics_.add(view_);
-  outputs_.write(view_);
-  pf_pose_t truth{};
-  if (source_.truth(truth)) {
-    outputs_.write_truth(truth);
+  if (!write_down(failure_)) {
+    return Read::kFailed;
   }
   progress_.show(view_);
   show_.add(view_);
@@ -199,6 +208,32 @@ Read Run::step(int64_t index) {
     save("overlay_mid.png");
   }
   return Read::kDone;
+}
+
+/// A disk that is full ends the run at once: its files are whole up to the frame before.
+bool Run::write_down(std::string& error) {
+  pf_pose_t truth{};
+  const bool has_truth = source_.truth(truth);
+  if (!outputs_.write(view_, has_truth ? &truth : nullptr, error)) {
+    return false;
+  }
+  return !recorder_.failed(error) && !imu_.failed(error);
+}
+
+/// Puts report.json and map.ply in the place of those of a minute ago. false: failure_ says why they could not be written.
+bool Run::refresh_report() {
+  if (done_any_ && show_.has_film_failed() && !told_film_failed_) {
+    told_film_failed_ = true;
+    progress_.end();
+    note("ffmpeg failed, and " + outputs_.path("overlay.mp4") + " ends here; is the disk full?");
+  }
+  if (!done_any_ || static_cast<double>(steady_ns() - reported_ns_) < 1e9 * options_.report_every_s) {
+    return true;
+  }
+  const std::string report = statistics_.to_json(session_, options_, source_.info(), source_.report(), "", kRunning);
+  const bool written = outputs_.write_state(view_, {}, report, failure_);
+  reported_ns_ = steady_ns();
+  return written;
 }
 
 /// --delay: what tracking would take on a slower processor.
@@ -289,7 +324,7 @@ int Run::finish() {
     }
   }
   const bool filming = show_.is_filming();
-  if (!show_.close_film()) {
+  if (!show_.close_film() && !told_film_failed_) {
     note("ffmpeg failed; " + outputs_.path("overlay.mp4") + " is not complete");
   }
   if (statistics_.tracked() == 0 && failure_.empty()) {
@@ -305,8 +340,8 @@ int Run::finish() {
   const std::string imu = imu_.report(session_.slam(), advice);
   const std::string report = statistics_.to_json(session_, options_, source_.info(), live, imu, failure_);
   const std::vector<double> in_map = sigmas_in_map(session_.slam(), view_.features);
-  if (!outputs_.finish(view_, in_map, session_.config().camera, report, error)) {
-    return fail(error);
+  if (!outputs_.write_state(view_, in_map, report, error)) {
+    return fail(failure_.empty() ? error : failure_);
   }
   if (!failure_.empty()) {
     return fail(failure_);
@@ -324,6 +359,9 @@ int Run::finish() {
 int run(const Options& options) {
   // ffmpeg may end early: writing to it must then fail, not end this program.
   std::signal(SIGPIPE, SIG_IGN);
+  // A file that may not grow any more is an error to tell of.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGHUP, on_interrupt);
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   std::string error;

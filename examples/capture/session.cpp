@@ -14,7 +14,17 @@ namespace {
 
 int64_t clock_ns(void*) { return steady_ns(); }
 
-void keep_line(void* user, const char* line) { static_cast<std::vector<std::string>*>(user)->emplace_back(line); }
+constexpr size_t kMaxLines = 400;
+
+/// The first and the last lines of a long run; those between them are left out.
+void keep_line(void* user, const char* line) {
+  auto& lines = *static_cast<std::vector<std::string>*>(user);
+  if (lines.size() >= kMaxLines) {
+    lines.erase(lines.begin() + kMaxLines / 2);
+    lines[kMaxLines / 2 - 1] = "(lines are left out here)";
+  }
+  lines.emplace_back(line);
+}
 
 }  // namespace
 

@@ -45,6 +45,8 @@ Key Show::poll(int wait_ms) { return parts_->window.poll(wait_ms); }
 
 bool Show::is_filming() const { return parts_->film.is_open(); }
 
+bool Show::has_film_failed() const { return parts_->film.has_failed(); }
+
 bool Show::close_film() { return parts_->film.close(); }
 
 }  // namespace pf::capture

@@ -32,6 +32,8 @@ class Show {
   /// The next key that was pressed; waits for up to wait_ms.
   Key poll(int wait_ms);
   bool is_filming() const;
+  /// The film ended early, on a full disk say.
+  bool has_film_failed() const;
   /// false: the film is not complete.
   bool close_film();
 

@@ -18,6 +18,7 @@ void Show::add(const FrameView&) {}
 bool Show::save(const FrameView&, const std::string&) { return true; }
 Key Show::poll(int) { return Key::kNone; }
 bool Show::is_filming() const { return false; }
+bool Show::has_film_failed() const { return false; }
 bool Show::close_film() { return true; }
 
 }  // namespace pf::capture

@@ -60,6 +60,8 @@ class Source {
   virtual void pushed() {}
   /// One line that the user should know, if there is one (unplugged, back again).
   virtual bool take_notice(std::string&) { return false; }
+  /// JSON for the report.json of a run that goes on, without what the capture thread knows alone; "" where there is nothing to say.
+  virtual std::string report() { return ""; }
   /// Ends capture. JSON for report.json, "" where there is nothing to say.
   virtual std::string finish() { return ""; }
 };

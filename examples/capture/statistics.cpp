@@ -12,21 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Nearest-rank quantile; 0 of nothing.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  const double rank = std::ceil(share * static_cast<double>(values.size())) - 1.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max(0.0, rank));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-double largest(const std::vector<double>& values) {
-  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
-}
-
 double rounded(double value) { return std::round(value * 1e5) / 1e5; }
 
 uint64_t hash(const std::vector<uint8_t>& bytes) {
@@ -83,9 +68,9 @@ void Statistics::add(const FrameView& view) {
   if (view.tracked) {
     ++tracked_;
     start_frame_ = start_frame_ < 0 ? view.index : start_frame_;
-    inliers_.push_back(report.inliers);
-    attempts_.push_back(report.attempts);
-    state_dim_.push_back(report.state_dim);
+    inliers_.add(report.inliers);
+    attempts_.add(report.attempts);
+    state_dim_.add(report.state_dim);
   }
   starting_ += report.state == PF_STATE_STARTING ? 1 : 0;
   coasting_ += report.state == PF_STATE_COASTING ? 1 : 0;
@@ -98,9 +83,9 @@ void Statistics::add(const FrameView& view) {
     nis_ += report.nis;
     nis_dof_ += report.nis_dof;
   }
-  ms_.push_back(view.ms);
+  ms_.add(view.ms);
   for (int i = 0; i < PF_STAGE_COUNT; ++i) {
-    stage_ms_[i].push_back(1e-6 * static_cast<double>(report.stage_ns[i]));
+    stage_ms_[i].add(1e-6 * static_cast<double>(report.stage_ns[i]));
   }
   last_state_ = report.state;
   last_report_ = report;
@@ -113,7 +98,7 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   constexpr const char* kStages[] = {"pyramid", "predict", "search", "gate", "update", "map"};
   Json stages = Json::object();
   for (int i = 0; i <= PF_STAGE_MAP; ++i) {
-    stages[kStages[i]] = rounded(quantile(stage_ms_[i], 0.5));
+    stages[kStages[i]] = rounded(stage_ms_[i].quantile(0.5));
   }
   const pf_config_t& config = session.config();
   Json json;
@@ -131,12 +116,12 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["flat"] = flat_;
   json["frozen"] = frozen_;
   json["ms_per_frame"] = {
-      {"median", rounded(quantile(ms_, 0.5))}, {"p95", rounded(quantile(ms_, 0.95))}, {"max", rounded(largest(ms_))}};
+      {"median", rounded(ms_.quantile(0.5))}, {"p95", rounded(ms_.quantile(0.95))}, {"max", rounded(ms_.largest())}};
   json["ms_by_stage"] = stages;
   json["memory_bytes"] = session.memory().bytes;
   json["stack_bytes"] = session.memory().stack_bytes;
-  json["features"] = {{"median", quantile(inliers_, 0.5)}, {"max", largest(inliers_)}};
-  json["features_in_view"] = {{"median", quantile(attempts_, 0.5)}, {"max", largest(attempts_)}};
+  json["features"] = {{"median", inliers_.quantile(0.5)}, {"max", inliers_.largest()}};
+  json["features_in_view"] = {{"median", attempts_.quantile(0.5)}, {"max", attempts_.largest()}};
   json["features_in_map"] = {{"points", last_report_.features_point},
                              {"inverse_depth", last_report_.features_inverse_depth},
                              {"folded", last_report_.features_folded},
@@ -144,7 +129,7 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["new_features"] = new_features_;
   json["evicted"] = evicted_;
   json["state_dim"] = {
-      {"median", quantile(state_dim_, 0.5)}, {"max", largest(state_dim_)}, {"end", last_report_.state_dim}};
+      {"median", state_dim_.quantile(0.5)}, {"max", state_dim_.largest()}, {"end", last_report_.state_dim}};
   json["state_dim_points_only"] = last_report_.state_dim_points_only;
   json["state_dim_held"] = last_report_.state_dim_held;
   json["planes"] = planes_json(last_planes_);
@@ -177,7 +162,7 @@ std::string Statistics::summary(const Session& session) const {
                 "tracked %lld of %lld frames (lost %lld), median %.0f features measured per frame, %.2f ms per frame "
                 "(p95 %.2f), %.2f MiB",
                 static_cast<long long>(tracked_), static_cast<long long>(frames_), static_cast<long long>(lost_),
-                quantile(inliers_, 0.5), quantile(ms_, 0.5), quantile(ms_, 0.95),
+                inliers_.quantile(0.5), ms_.quantile(0.5), ms_.quantile(0.95),
                 static_cast<double>(session.memory().bytes) / 1048576.0);
   return text;
 }

@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "histogram.h"
 #include "session.h"
 #include "view.h"
 
 namespace pf::capture {
 
-/// Counts over a run; becomes report.json.
+/// Counts over a run, in memory that does not grow with its length; becomes report.json.
 class Statistics {
  public:
   void add(const FrameView& view);
@@ -60,8 +61,9 @@ class Statistics {
   pf_state_t last_state_ = PF_STATE_STARTING;
   pf_report_t last_report_{};
   std::vector<PlaneView> last_planes_;
-  std::vector<double> ms_, inliers_, attempts_, state_dim_;
-  std::vector<double> stage_ms_[PF_STAGE_COUNT];
+  Histogram ms_;
+  CountHistogram inliers_, attempts_, state_dim_;
+  Histogram stage_ms_[PF_STAGE_COUNT];
 };
 
 }  // namespace pf::capture
