@@ -7,11 +7,18 @@
 namespace {
 
 /// The one layout: run over nothing to count, over the caller's block to carve.
-pf_slam* lay_out(pf::Arena& arena, const pf::Settings& settings, pf::FilterSlam* slam, pf::ImuLog* imu) {
-  pf_slam* context = arena.take<pf_slam>(1);
+void lay_out(pf::Arena& arena, const pf::Settings& settings, pf::FilterSlam* slam, pf::ImuLog* imu) {
   slam->layout(arena, settings);
   imu->layout(arena, settings.imu_buffer);
-  return context;
+}
+
+std::size_t bytes_needed(const pf::Settings& settings) {
+  pf::Arena arena;
+  arena.take<pf_slam>(1);
+  pf::FilterSlam slam;
+  pf::ImuLog imu;
+  lay_out(arena, settings, &slam, &imu);
+  return arena.used();
 }
 
 }  // namespace
@@ -21,11 +28,7 @@ pf_status_t pf_memory_query(const pf_config_t* config, pf_memory_t* memory) {
   pf::Settings settings;
   const pf::Status status = pf::settings_from(*config, &settings, nullptr);
   if (status != pf::Status::kOk) return pf::to_c(status);
-  pf::Arena arena;
-  pf::FilterSlam slam;
-  pf::ImuLog imu;
-  lay_out(arena, settings, &slam, &imu);
-  memory->bytes = arena.used();
+  memory->bytes = bytes_needed(settings);
   memory->alignment = pf::Arena::kAlignment;
   memory->stack_bytes = pf::kStackBudget;
   return PF_OK;
@@ -40,16 +43,12 @@ pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_s
   const pf::Status status = pf::settings_from(copy, &settings, nullptr);
   if (status != pf::Status::kOk) return pf::to_c(status);
   if (reinterpret_cast<std::uintptr_t>(block) % pf::Arena::kAlignment != 0) return PF_ERROR_ALIGNMENT;
+  if (bytes < bytes_needed(settings)) return PF_ERROR_MEMORY;
   pf::Arena arena(block, bytes);
-  pf::FilterSlam laid_out;
-  pf::ImuLog imu;
-  pf_slam* context = lay_out(arena, settings, &laid_out, &imu);
-  if (!arena.ok()) return PF_ERROR_MEMORY;
-  new (context) pf_slam();
+  pf_slam* context = new (arena.take<pf_slam>(1)) pf_slam();
+  lay_out(arena, settings, &context->slam, &context->imu);
   context->config = copy;
   context->settings = settings;
-  context->slam = laid_out;
-  context->imu = imu;
   context->self = context;
   context->magic = pf::kMagic;
   *slam = context;

@@ -117,7 +117,7 @@ pf_status_t pf_get_tracks(const pf_slam_t* slam, pf_track_t* tracks, size_t capa
   if (count == nullptr || (tracks == nullptr && capacity > 0)) return PF_ERROR_NULL;
   *count = static_cast<size_t>(slam->slam.track_count());
   for (size_t i = 0; i < *count && i < capacity; ++i) {
-    const pf::Track& t = slam->slam.tracks()[i];
+    const pf::Match& t = slam->slam.tracks()[i];
     pf_track_t& out = tracks[i];
     out.id = t.id;
     out.status = static_cast<uint32_t>(t.status);

@@ -5,12 +5,13 @@
 #include "base/arena.h"
 #include "base/status.h"
 #include "filter/filter.h"
-#include "map/feature_table.h"
+#include "map/map.h"
 #include "map/plane_search.h"
-#include "map/plane_table.h"
-#include "slam/frame_report.h"
+#include "slam/body_motion.h"
+#include "slam/frame.h"
 #include "slam/settings.h"
 #include "slam/start.h"
+#include "slam/tracking_state.h"
 #include "track/quad_refine.h"
 #include "track/tracker.h"
 #include "window/start_bundle.h"
@@ -37,9 +38,9 @@ struct PlanePoints {
 
 class FilterSlam {
  public:
-  static constexpr int kMinInliers = 8;  ///< fewer do not carry a pose
-
-  static constexpr std::int64_t kLongestGap = 2000000000;  ///< [ns] between frames, that a prediction goes over
+  FilterSlam() = default;
+  FilterSlam(const FilterSlam&) = delete;  // its parts refer to each other
+  FilterSlam& operator=(const FilterSlam&) = delete;
 
   /// Whether a start at this target can be made with these capacities.
   bool fits(const Target& target) const;
@@ -49,8 +50,8 @@ class FilterSlam {
 
   Status start_from_target(const Target& target);
   Status start_from_pose(const KnownBody& known);
-  void withdraw_target() { target_withdrawn_ = true; }
-  void push_steering(const Vec3& dv_C, const Vec3& dw_C);
+  void withdraw_target() { map_.target_withdrawn = true; }
+  void push_steering(const Vec3& dv_C, const Vec3& dw_C) { motion_.push_steering(dv_C, dw_C); }
 
   Status push_frame(const ImageView& image, std::int64_t t_ns);
   Status push_observations(const PixelObservation* observations, int count, std::int64_t t_ns);
@@ -63,20 +64,22 @@ class FilterSlam {
 
   const Settings& settings() const { return settings_; }
   const Filter& filter() const { return filter_; }
-  const FeatureTable& features() const { return features_; }
-  const PlaneTable& planes() const { return planes_; }
+  const FeatureTable& features() const { return map_.features; }
+  const PlaneTable& planes() const { return map_.planes; }
   /// Outline of a plane (entry of the table) in the coordinates of its frame, from the points that hang on it.
   PlanePoints outline(int plane_entry, PlaneOutline* outline) const;
-  const FrameReport& report() const { return report_; }
-  const Track* tracks() const { return tracks_; }
-  int track_count() const { return track_count_; }
-  SlamState state() const { return state_; }
-  bool has_pose() const { return has_pose_; }
-  bool used() const { return report_.frames > 0; }
-  std::int64_t last_ns() const { return report_.t_ns; }
+  const FrameReport& report() const { return frame_.report; }
+  const Match* tracks() const { return frame_.matches(); }
+  int track_count() const { return frame_.match_count(); }
+  SlamState state() const { return tracking_.state(); }
+  bool has_pose() const { return tracking_.has_pose(); }
+  bool used() const { return frame_.report.frames > 0; }
+  std::int64_t last_ns() const { return frame_.report.t_ns; }
 
   /// Body and pose covariance (6x6) predicted to a later time.
-  void predict_pose(std::int64_t t_ns, Body* body, Mat6* covariance) const;
+  void predict_pose(std::int64_t t_ns, Body* body, Mat6* covariance) const {
+    motion_.predict_pose(last_ns(), t_ns, body, covariance);
+  }
 
  private:
   // filter_slam.cpp
@@ -84,7 +87,6 @@ class FilterSlam {
   Status end_frame();
   void begin_at(const Body& body, const Scalar* covariance);
   void begin_from_knowledge();
-  void damp(Scalar dt);
   void start_over();
   void begin_filter();
 
@@ -149,8 +151,10 @@ class FilterSlam {
 
   Settings settings_;
   Filter filter_;
-  FeatureTable features_;
-  PlaneTable planes_;
+  Map map_;
+  Frame frame_;
+  TrackingState tracking_;
+  BodyMotion motion_{settings_, filter_};
   PlaneCandidate* candidate_ = nullptr;  ///< max_features
   int* candidate_entry_ = nullptr;       ///< feature table entry of each
   std::uint32_t random_ = 1;
@@ -161,32 +165,16 @@ class FilterSlam {
   KnownBody known_body_;
   StartRecord record_;
   StartBundle bundle_;
-  bool recording_ = false;             ///< a start without a target is under way
-  bool depth_known_ = false;           ///< and has been solved at least once
+  StartProgress start_;
   Quat base_q_WC_ = Quat::Identity();  ///< the record's frame 0 in W
   Vec3 base_p_W_ = Vec3::Zero();
   std::int64_t record_begin_ns_ = 0;
   Scalar start_covariance_[Body::kMaxDim * Body::kMaxDim] = {};  ///< of the body at the first frame
-  bool target_withdrawn_ = false;
-
-  SlamState state_ = SlamState::kStarting;
-  bool has_pose_ = false;
-  bool sighted_ = false;  ///< this frame's pose comes from the target
-  bool lost_ = false;
-  bool gave_up_ = false;    ///< in this frame
-  int failed_updates_ = 0;  ///< in a row
-  std::int64_t last_tracked_ns_ = 0;
-  Vec3 steering_v_C_ = Vec3::Zero();
-  Vec3 steering_w_C_ = Vec3::Zero();
-
-  FrameReport report_;
-  Track* tracks_ = nullptr;  ///< this frame's, the first `attempts` of them looked for
-  int track_count_ = 0;
-  Observation* observation_ = nullptr;  ///< max_observations
-  int* entry_ = nullptr;                ///< feature table entry of each observation
-  unsigned char* keep_ = nullptr;       ///< of each observation: taken in
-  int* track_of_ = nullptr;             ///< and its track
-  int* scratch_ = nullptr;              ///< max_features
+  Observation* observation_ = nullptr;                           ///< max_observations
+  int* entry_ = nullptr;                                         ///< feature table entry of each observation
+  unsigned char* keep_ = nullptr;                                ///< of each observation: taken in
+  int* track_of_ = nullptr;                                      ///< and its track
+  int* scratch_ = nullptr;                                       ///< max_features
   PixelObservation* inbox_ = nullptr;
 };
 

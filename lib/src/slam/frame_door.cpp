@@ -24,10 +24,10 @@ constexpr int kFewNew = 4;  ///< new features come in groups that share an ancho
 
 Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   if (!begin_frame(t_ns)) return Status::kTime;
-  if (gave_up_) return end_frame();
+  if (tracking_.gave_up()) return end_frame();
   bool usable;
   {
-    StageTimer timer(settings_.hooks, &report_.stage_ns[kPyramid]);
+    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPyramid]);
     usable = tracker_.begin_frame(image);
   }
   if (!usable) {
@@ -35,31 +35,31 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
     return status == Status::kLost || status == Status::kStarting ? status : Status::kUnusable;
   }
 
-  if (!has_pose_) {
+  if (!tracking_.has_pose()) {
     if (!start_in_image()) return end_frame();
   } else {
     const int count = list_visible();
     {
-      StageTimer timer(settings_.hooks, &report_.stage_ns[kPredict]);
+      StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
       predict_pixels(0, count);
     }
     const int scouts = widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
     if (scouts > 0) {
       measure(0, scouts);
-      StageTimer timer(settings_.hooks, &report_.stage_ns[kPredict]);
+      StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
       predict_pixels(scouts, count - scouts);
     }
     measure(scouts, count - scouts);
   }
 
   {
-    StageTimer timer(settings_.hooks, &report_.stage_ns[kMap]);
+    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     convert_what_is_linear();
     tend_planes();
     drop_what_fails();
-    if (recording_) record_frame();
-    if (report_.inliers >= kMinInliers || sighted_ || report_.attempts == 0) begin_features_in_image();
-    if (recording_ && record_.features() == 0) begin_record();
+    if (start_.recording) record_frame();
+    if (tracking_.carried(frame_.report) || frame_.report.attempts == 0) begin_features_in_image();
+    if (start_.recording && record_.features() == 0) begin_record();
   }
   return end_frame();
 }
@@ -67,10 +67,10 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
 /// Features that should be in the image go into observation_ and entry_, the most reliable first. Returns how many.
 int FilterSlam::list_visible() {
   int count = 0;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    const Feature& f = features_[i];
-    if (f.is_target && target_withdrawn_) continue;
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i)) continue;
+    const Feature& f = map_.features[i];
+    if (f.is_target && map_.target_withdrawn) continue;
     if (f.appearance < 0) continue;
     Observation o;
     if (!filter_.predict_pixel(settings_.camera, f.slot, &o)) continue;
@@ -81,7 +81,7 @@ int FilterSlam::list_visible() {
       continue;
     // Insertion by success rate, so that a full list keeps the best and the scouts are good ones.
     const auto rate = [&](int entry) {
-      const Feature& g = features_[entry];
+      const Feature& g = map_.features[entry];
       const int rated = std::min(g.observations, 20);
       return static_cast<float>(rated) * static_cast<float>(g.observations + 1) / static_cast<float>(g.attempts + 1);
     };
@@ -97,15 +97,9 @@ int FilterSlam::list_visible() {
     entry_[at] = i;
   }
   for (int i = 0; i < count; ++i) {
-    const Feature& f = features_[entry_[i]];
-    Track& track = tracks_[track_count_];
-    track.feature = entry_[i];
-    track.id = f.id;
-    track.status = TrackStatus::kMissed;
-    track.kind = filter_.state().block[f.slot].kind;
-    track.measured.setZero();
-    track.nis = Scalar(0);
-    track_of_[i] = track_count_++;
+    const Feature& f = map_.features[entry_[i]];
+    track_of_[i] = frame_.add({entry_[i], f.id, MatchStatus::kMissed, filter_.state().block[f.slot].kind, Vec2::Zero(),
+                               Mat2::Zero(), Vec2::Zero(), Scalar(0)});
   }
   return count;
 }
@@ -114,19 +108,19 @@ int FilterSlam::list_visible() {
 void FilterSlam::predict_pixels(int first, int count) {
   for (int i = first; i < first + count; ++i) {
     Observation& o = observation_[i];
-    Track& track = tracks_[track_of_[i]];
+    Match& match = frame_.match(track_of_[i]);
     keep_[i] = 0;
-    if (!filter_.predict_pixel(settings_.camera, features_[entry_[i]].slot, &o)) {
+    if (!filter_.predict_pixel(settings_.camera, map_.features[entry_[i]].slot, &o)) {
       o.slot = -1;
-      track.feature = -1;  // stands nowhere in the image
-      track.predicted.setZero();
-      track.innovation.setZero();
+      match.feature = -1;  // stands nowhere in the image
+      match.predicted.setZero();
+      match.innovation.setZero();
       continue;
     }
     const Mat2 spread = expected_innovation(&o);
     o.noise = Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order;
-    track.predicted = o.predicted;
-    track.innovation = spread + o.noise;
+    match.predicted = o.predicted;
+    match.innovation = spread + o.noise;
   }
 }
 
@@ -134,7 +128,7 @@ void FilterSlam::predict_pixels(int first, int count) {
 Scalar FilterSlam::widest_ellipse(int count) const {
   Scalar widest = 0;
   for (int i = 0; i < count; ++i) {
-    const Mat2& S = tracks_[track_of_[i]].innovation;
+    const Mat2& S = frame_.match(track_of_[i]).innovation;
     widest = std::max(widest, std::sqrt(settings_.gate * symmetric_eigenvalues(S)(1)));
   }
   return widest;
@@ -142,17 +136,17 @@ Scalar FilterSlam::widest_ellipse(int count) const {
 
 /// Looks for listed features; those that are found move to the front of their range. Returns how many.
 int FilterSlam::search(int first, int count) {
-  StageTimer timer(settings_.hooks, &report_.stage_ns[kSearch]);
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   int found = first;
   const Body& body = filter_.state().body;
   for (int i = first; i < first + count; ++i) {
     if (observation_[i].slot < 0) continue;
-    Feature& f = features_[entry_[i]];
-    Track& track = tracks_[track_of_[i]];
+    Feature& f = map_.features[entry_[i]];
+    Match& match = frame_.match(track_of_[i]);
     SearchTask task;
     task.appearance = f.appearance;
     task.predicted = observation_[i].predicted;
-    task.innovation = track.innovation;
+    task.innovation = match.innovation;
     task.gate = settings_.gate;
     task.p_W = filter_.point(f.slot);
     if (is_planar(filter_.state().block[f.slot].kind)) {
@@ -166,15 +160,15 @@ int FilterSlam::search(int first, int count) {
     const SearchOutcome outcome = tracker_.search(task);
     if (!outcome.comparable) continue;
     count_frame(&f.attempts);
-    ++report_.attempts;
+    ++frame_.report.attempts;
     if (!outcome.found ||
-        squared_distance(outcome.pixel - observation_[i].predicted, track.innovation) > settings_.gate) {
+        squared_distance(outcome.pixel - observation_[i].predicted, match.innovation) > settings_.gate) {
       count_frame(&f.failures);
       continue;
     }
-    ++report_.matches;
-    track.measured = outcome.pixel;
-    track.status = TrackStatus::kOutlier;  // until it agrees
+    ++frame_.report.matches;
+    match.measured = outcome.pixel;
+    match.status = MatchStatus::kOutlier;  // until it agrees
     observation_[i].measured = outcome.pixel;
     const Scalar floor = settings_.sigma_px * outcome.level_scale;
     observation_[i].noise = Mat2::Identity() * (floor * floor) + outcome.noise + observation_[i].second_order;
@@ -193,25 +187,26 @@ void FilterSlam::measure(int first, int count) {
   const int found = search(first, count);
   if (found == 0) return;
   {
-    StageTimer timer(settings_.hooks, &report_.stage_ns[kUpdate]);
+    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
     filter_.begin_update(observation_ + first, found);
   }
   int agreed;
   {
-    StageTimer timer(settings_.hooks, &report_.stage_ns[kGate]);
+    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
     agreed = agree(filter_, observation_ + first, found, settings_.gate, keep_ + first);
   }
   // With inliers from an earlier range the gate alone is evidence enough.
-  const bool believed = report_.inliers >= kLeastAgreement || agreed >= std::min(kLeastAgreement, features_.count());
+  const bool believed =
+      frame_.report.inliers >= kLeastAgreement || agreed >= std::min(kLeastAgreement, map_.features.count());
   for (int i = first; i < first + found; ++i) {
     if (!believed) keep_[i] = 0;
-    Track& track = tracks_[track_of_[i]];
-    track.status = keep_[i] != 0 ? TrackStatus::kInlier : TrackStatus::kOutlier;
-    track.nis = squared_distance(track.measured - observation_[i].predicted,
+    Match& match = frame_.match(track_of_[i]);
+    match.status = keep_[i] != 0 ? MatchStatus::kInlier : MatchStatus::kOutlier;
+    match.nis = squared_distance(match.measured - observation_[i].predicted,
                                  filter_.innovation_block(i - first, i - first) + observation_[i].noise);
     if (keep_[i] == 0) {
-      count_frame(&features_[entry_[i]].failures);
-      if (believed) count_frame(&features_[entry_[i]].rejections);
+      count_frame(&map_.features[entry_[i]].failures);
+      if (believed) count_frame(&map_.features[entry_[i]].rejections);
     }
   }
   if (believed) take_in(first, found);
@@ -228,11 +223,11 @@ void FilterSlam::begin_features_in_image() {
   const auto column_of = [&](Scalar x) { return cell_of(x, width, kCellColumns); };
   const auto row_of = [&](Scalar y) { return cell_of(y, height, kCellRows); };
   int in_view = 0;
-  for (int t = 0; t < track_count_; ++t) {
-    const Track& track = tracks_[t];
-    if (track.feature < 0) continue;
-    ++in_cell[row_of(track.predicted.y())][column_of(track.predicted.x())];
-    if (track.status == TrackStatus::kInlier) ++in_view;
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const Match& match = frame_.match(t);
+    if (match.feature < 0) continue;
+    ++in_cell[row_of(match.predicted.y())][column_of(match.predicted.x())];
+    if (match.status == MatchStatus::kInlier) ++in_view;
   }
   const int wanted = settings_.features_in_view - in_view;
   if (wanted < kFewNew) return;
@@ -244,7 +239,7 @@ void FilterSlam::begin_features_in_image() {
   for (int most = 0; most < 3 && begun < wanted; ++most) {
     for (int cell = 0; cell < kCellRows * kCellColumns && begun < wanted; ++cell) {
       // Steps through the cells so that neighbours do not follow each other.
-      const int k = (cell * 19 + report_.frames) % (kCellRows * kCellColumns);
+      const int k = (cell * 19 + frame_.report.frames) % (kCellRows * kCellColumns);
       const int row = k / kCellColumns, column = k % kCellColumns;
       if (in_cell[row][column] != most) continue;
       Rect rect;
@@ -259,27 +254,20 @@ void FilterSlam::begin_features_in_image() {
         if (corner[c].score < kLeastCorner) break;
         const Vec2 pixel(static_cast<Scalar>(corner[c].x), static_cast<Scalar>(corner[c].y));
         bool free = true;
-        for (int t = 0; t < track_count_ && free; ++t)
-          free = tracks_[t].feature < 0 || (tracks_[t].predicted - pixel).squaredNorm() > apart * apart;
+        for (int t = 0; t < frame_.match_count() && free; ++t)
+          free = frame_.match(t).feature < 0 || (frame_.match(t).predicted - pixel).squaredNorm() > apart * apart;
         if (!free) continue;
-        if (track_count_ >= settings_.max_features + settings_.max_observations) return;
+        if (frame_.full()) return;
         if (!make_room_at(&anchor)) break;
         const int entry = begin_feature(anchor, pixel, Mat2::Identity() * (kReferenceSigma * kReferenceSigma));
         if (entry < 0) continue;
-        Feature& f = features_[entry];
+        Feature& f = map_.features[entry];
         f.appearance = tracker_.remember(pixel, filter_.state().body.q_WC, filter_.state().body.p_W);
         if (f.appearance < 0) {
           drop(&entry, 1);
           continue;
         }
-        Track& track = tracks_[track_count_++];
-        track.feature = entry;
-        track.id = f.id;
-        track.status = TrackStatus::kNew;
-        track.kind = BlockKind::kInverseDepth;
-        track.predicted = track.measured = pixel;
-        track.innovation.setZero();
-        track.nis = Scalar(0);
+        frame_.add({entry, f.id, MatchStatus::kNew, BlockKind::kInverseDepth, pixel, Mat2::Zero(), pixel, Scalar(0)});
         ++in_cell[row][column];
         ++begun;
         break;

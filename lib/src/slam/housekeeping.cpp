@@ -20,15 +20,15 @@ constexpr Scalar kBehindTarget = 2;   ///< how many times farther than the targe
 void FilterSlam::convert_what_is_linear() {
   SparseRows l;
   if (!filter_.scale_row(&l)) l.segments = 0;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    const Block& block = filter_.state().block[features_[i].slot];
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i)) continue;
+    const Block& block = filter_.state().block[map_.features[i].slot];
     if (block.kind != BlockKind::kInverseDepth) continue;
     // A size of the world that nobody knows is the same for all, and no reason to keep a point's depth apart.
-    const Scalar sigma_rho = filter_.relative_sigma_rho(features_[i].slot, l);
+    const Scalar sigma_rho = filter_.relative_sigma_rho(map_.features[i].slot, l);
     const Vec3 o_W = filter_.state().block[block.parent].xyz();
     if (linearity_index(filter_.state().body, o_W, block.inverse_depth(), sigma_rho) < settings_.linearity_index) {
-      filter_.convert_to_point(features_[i].slot);
+      filter_.convert_to_point(map_.features[i].slot);
       if (!filter_.scale_row(&l)) l.segments = 0;  // rows have moved
     }
   }
@@ -36,9 +36,9 @@ void FilterSlam::convert_what_is_linear() {
 
 void FilterSlam::drop_what_fails() {
   int count = 0;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    const Feature& f = features_[i];
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i)) continue;
+    const Feature& f = map_.features[i];
     if (!filter_.block_is_sound(f.slot)) {
       scratch_[count++] = i;
       continue;
@@ -64,21 +64,21 @@ void FilterSlam::drop(const int* entries, int count) {
     const int size = std::min(kChunk, count - begin);
     for (int k = 0; k < size; ++k) {
       const int entry = entries[begin + k];
-      slots[k] = features_[entry].slot;
-      tracker_.forget(features_[entry].appearance);
-      for (int t = 0; t < track_count_; ++t)
-        if (tracks_[t].feature == entry) tracks_[t].feature = -1;
-      features_.remove(entry);
+      slots[k] = map_.features[entry].slot;
+      tracker_.forget(map_.features[entry].appearance);
+      frame_.forget(entry);
+      map_.features.remove(entry);
     }
     filter_.remove(slots, size);
   }
-  report_.evicted += count;
+  frame_.report.evicted += count;
 }
 
 /// Room for that many rows and one more feature, by eviction of what was not seen in this frame. False when there is none.
 bool FilterSlam::make_room(int rows) {
-  while (features_.count() >= features_.capacity() || filter_.room() < rows || filter_.state().find_free() < 0) {
-    const int entry = features_.least_useful(report_.t_ns);
+  while (map_.features.count() >= map_.features.capacity() || filter_.room() < rows ||
+         filter_.state().find_free() < 0) {
+    const int entry = map_.features.least_useful(frame_.report.t_ns);
     if (entry < 0) return false;
     drop(&entry, 1);
   }
@@ -112,17 +112,17 @@ Scalar FilterSlam::usual_inverse_depth() const {
   Scalar target_rho = 0;
   const Body& body = filter_.state().body;
   const Vec3 forward = body.q_WC.toRotationMatrix().col(2);
-  for (int i = 0; i < features_.capacity() && count < kMost; ++i) {
-    if (!features_.used(i) || features_[i].last_seen_ns != report_.t_ns) continue;
-    const Block& block = filter_.state().block[features_[i].slot];
+  for (int i = 0; i < map_.features.capacity() && count < kMost; ++i) {
+    if (!map_.features.used(i) || map_.features[i].last_seen_ns != frame_.report.t_ns) continue;
+    const Block& block = filter_.state().block[map_.features[i].slot];
     if (block.kind == BlockKind::kInverseDepth) {
       const Scalar rho_of = block.inverse_depth().rho;
       if (rho_of * rho_of < Scalar(9) * filter_.variance(block.first + 2)) continue;
     }
-    const Vec3 p_W = filter_.point(features_[i].slot);
+    const Vec3 p_W = filter_.point(map_.features[i].slot);
     const Scalar distance = (p_W - body.p_W).norm();
     if (!(forward.dot(p_W - body.p_W) > Scalar(0))) continue;
-    if (features_[i].is_target) {
+    if (map_.features[i].is_target) {
       target_rho += Scalar(1) / distance;
       ++on_target;
     } else {
@@ -146,16 +146,16 @@ int FilterSlam::begin_feature(int anchor, const Vec2& pixel, const Mat2& noise) 
       filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, settings_.inverse_depth_relative_sigma * rho,
                                 row_time(settings_.camera, pixel.y()));
   if (slot < 0) return -1;
-  const int entry = features_.add(slot);
+  const int entry = map_.features.add(slot);
   if (entry < 0) {
     filter_.remove(&slot, 1);
     return -1;
   }
   filter_.set_owner(slot, entry);
-  Feature& feature = features_[entry];
+  Feature& feature = map_.features[entry];
   feature.observations = feature.attempts = 1;
-  feature.last_seen_ns = report_.t_ns;
-  ++report_.new_features;
+  feature.last_seen_ns = frame_.report.t_ns;
+  ++frame_.report.new_features;
   return entry;
 }
 
@@ -164,12 +164,12 @@ void FilterSlam::add_target_points() {
   for (int i = 0; i < target_.count; ++i) {
     const int slot = filter_.add_point(target_.point_W[i], Mat3::Identity() * (target_.sigma_m * target_.sigma_m));
     if (slot < 0) return;
-    const int entry = features_.add(slot);
+    const int entry = map_.features.add(slot);
     if (entry < 0) return;
     filter_.set_owner(slot, entry);
-    features_[entry].is_target = true;
-    features_[entry].track = static_cast<std::uint32_t>(i);
-    features_[entry].last_seen_ns = report_.t_ns;
+    map_.features[entry].is_target = true;
+    map_.features[entry].track = static_cast<std::uint32_t>(i);
+    map_.features[entry].last_seen_ns = frame_.report.t_ns;
   }
 }
 

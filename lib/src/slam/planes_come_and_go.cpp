@@ -20,13 +20,13 @@ void FilterSlam::discover_plane() {
   if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
   int count = 0;
   const Scalar most = Scalar(2) * settings_.plane_distance;
-  for (int i = 0; i < features_.capacity(); ++i) {
+  for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!is_settled(i)) continue;
-    const Vec3 p_W = filter_.point(features_[i].slot);
+    const Vec3 p_W = filter_.point(map_.features[i].slot);
     bool taken = false;
-    for (int k = 0; k < planes_.capacity() && !taken; ++k) {
-      if (!planes_.used(k)) continue;
-      const Block& plane = filter_.state().block[planes_[k].slot];
+    for (int k = 0; k < map_.planes.capacity() && !taken; ++k) {
+      if (!map_.planes.used(k)) continue;
+      const Block& plane = filter_.state().block[map_.planes[k].slot];
       const PlaneFrame& frame = filter_.state().frame_of(plane);
       taken = std::abs(plane_distance(frame, plane.xyz(), p_W)) < most && is_in_reach(k, p_W);
     }
@@ -44,13 +44,13 @@ void FilterSlam::discover_plane() {
   int member[kMaxPlaneMembers];
   int members = 0;
   if (!search_plane(candidate_, count, search, filter_.state().body.p_W, &random_, &fit, member, &members)) return;
-  for (int k = 0; k < members; ++k) member[k] = features_[candidate_entry_[member[k]]].slot;
+  for (int k = 0; k < members; ++k) member[k] = map_.features[candidate_entry_[member[k]]].slot;
   const int slot = filter_.add_plane(fit, member, members, settings_.fold.roughness);
   if (slot < 0) return;
   // It has to keep, by the filter's own covariance, as many as it takes to find one.
   int kept = 0;
   for (int k = 0; k < members; ++k) kept += lies_on(slot, member[k]) ? 1 : 0;
-  const int entry = kept > settings_.plane_min_points ? planes_.add(slot) : -1;
+  const int entry = kept > settings_.plane_min_points ? map_.planes.add(slot) : -1;
   if (entry < 0) {
     filter_.remove(&slot, 1);
     return;
@@ -70,13 +70,13 @@ bool FilterSlam::same_plane(int slot, int other) const {
   plane_normal(state.frame_of(b), b.xyz(), &n_b, &d_b);
   if (n_a.dot(n_b) < kSameNormal) return false;
   int points = 0, agree = 0, close = 0;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    const Block& block = state.block[features_[i].slot];
-    if (!is_planar(block.kind) || state.plane_of(features_[i].slot) != other) continue;
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i)) continue;
+    const Block& block = state.block[map_.features[i].slot];
+    if (!is_planar(block.kind) || state.plane_of(map_.features[i].slot) != other) continue;
     Scalar d, variance;
     ++points;
-    if (!filter_.distance(slot, features_[i].slot, &d, &variance)) continue;
+    if (!filter_.distance(slot, map_.features[i].slot, &d, &variance)) continue;
     variance += settings_.fold.roughness * settings_.fold.roughness;
     if (d * d < Scalar(9) * variance) ++agree;
     if (std::abs(d) < Scalar(3) * settings_.plane_distance) ++close;
@@ -87,17 +87,17 @@ bool FilterSlam::same_plane(int slot, int other) const {
 
 /// Another plane that is the same one gives its points to this one.
 void FilterSlam::merge_into(int plane_entry) {
-  const int plane = planes_[plane_entry].slot;
-  for (int k = 0; k < planes_.capacity(); ++k) {
-    if (k == plane_entry || !planes_.used(k)) continue;
-    const int other = planes_[k].slot;
+  const int plane = map_.planes[plane_entry].slot;
+  for (int k = 0; k < map_.planes.capacity(); ++k) {
+    if (k == plane_entry || !map_.planes.used(k)) continue;
+    const int other = map_.planes[k].slot;
     if (filter_.state().block[other].children > filter_.state().block[plane].children || !same_plane(plane, other))
       continue;
     FoldRule rule = settings_.fold;
     rule.gate = Scalar(16);
-    for (int i = 0; i < features_.capacity(); ++i) {
-      if (!features_.used(i)) continue;
-      const int slot = features_[i].slot;
+    for (int i = 0; i < map_.features.capacity(); ++i) {
+      if (!map_.features.used(i)) continue;
+      const int slot = map_.features[i].slot;
       if (filter_.state().block[slot].kind == BlockKind::kPatchPoint && filter_.state().plane_of(slot) == other &&
           !filter_.release(slot))
         return;
@@ -111,22 +111,22 @@ void FilterSlam::merge_into(int plane_entry) {
         if (folded[i] != 0) support(plane_entry, slots[i]);
       count = 0;
     };
-    for (int i = 0; i < features_.capacity(); ++i) {
-      if (!features_.used(i)) continue;
-      const Block& block = filter_.state().block[features_[i].slot];
+    for (int i = 0; i < map_.features.capacity(); ++i) {
+      if (!map_.features.used(i)) continue;
+      const Block& block = filter_.state().block[map_.features[i].slot];
       if (block.kind != BlockKind::kPlanePoint || block.parent != other) continue;
-      slots[count++] = features_[i].slot;
+      slots[count++] = map_.features[i].slot;
       if (count == std::min(Filter::kMostFolded, settings_.max_observations)) give();
     }
     give();
     const State& state = filter_.state();
     const Block &from = state.block[other], &to = state.block[plane];
-    for (int i = 0; i < planes_[k].seen.count; ++i) {
-      const Vec3 p_W = plane_point(state.frame_of(from), from.xyz(), planes_[k].seen.uv[i]);
+    for (int i = 0; i < map_.planes[k].seen.count; ++i) {
+      const Vec3 p_W = plane_point(state.frame_of(from), from.xyz(), map_.planes[k].seen.uv[i]);
       const Vec2 uv = plane_coordinates(state.frame_of(to), p_W);
-      extend_outline(&planes_[plane_entry].seen, &uv, 1);
+      extend_outline(&map_.planes[plane_entry].seen, &uv, 1);
     }
-    planes_.remember_merge(planes_[k].id, planes_[plane_entry].id);
+    map_.planes.remember_merge(map_.planes[k].id, map_.planes[plane_entry].id);
     dissolve(k);
     settings_.hooks.say("merged two planes");
     return;
@@ -135,7 +135,7 @@ void FilterSlam::merge_into(int plane_entry) {
 
 /// A plane that has turned away from its frame, or whose points have, gets a frame in their middle.
 void FilterSlam::settle_frame(int plane_entry) {
-  const int plane = planes_[plane_entry].slot;
+  const int plane = map_.planes[plane_entry].slot;
   const State& state = filter_.state();
   const Block& block = state.block[plane];
   const Vec3 x = block.xyz();
@@ -152,37 +152,37 @@ void FilterSlam::settle_frame(int plane_entry) {
   to.R_WP.col(2) = normal;
   const PlaneFrame from = state.frame_of(block);
   if (!filter_.reanchor(plane, to)) return;
-  PlaneOutline& known = planes_[plane_entry].support;
-  PlaneOutline& seen = planes_[plane_entry].seen;
+  PlaneOutline& known = map_.planes[plane_entry].support;
+  PlaneOutline& seen = map_.planes[plane_entry].seen;
   for (int i = 0; i < known.count; ++i) known.uv[i] = plane_coordinates(to, plane_point(from, x, known.uv[i]));
   for (int i = 0; i < seen.count; ++i) seen.uv[i] = plane_coordinates(to, plane_point(from, x, seen.uv[i]));
 }
 
 /// All points go back to three coordinates, and the plane goes.
 void FilterSlam::dissolve(int plane_entry) {
-  const int plane = planes_[plane_entry].slot;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    const int slot = features_[i].slot;
+  const int plane = map_.planes[plane_entry].slot;
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i)) continue;
+    const int slot = map_.features[i].slot;
     if (!is_planar(filter_.state().block[slot].kind) || filter_.state().plane_of(slot) != plane) continue;
     if (!filter_.unfold(slot, settings_.plane_distance)) drop(&i, 1);
   }
   filter_.remove(&plane, 1);
-  planes_.remove(plane_entry);
+  map_.planes.remove(plane_entry);
 }
 
 /// What is known of a plane: what was, and the points that are on it now, but for those that are far from all others.
 PlanePoints FilterSlam::outline(int plane_entry, PlaneOutline* outline) const {
   constexpr int kBatch = kOutlineBatch;
   const State& state = filter_.state();
-  const int plane = planes_[plane_entry].slot;
+  const int plane = map_.planes[plane_entry].slot;
   PlanePoints points;
-  if (outline != nullptr) *outline = planes_[plane_entry].seen;
+  if (outline != nullptr) *outline = map_.planes[plane_entry].seen;
   Vec2 uv[kBatch];
   int count = 0;
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    const int slot = features_[i].slot;
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i)) continue;
+    const int slot = map_.features[i].slot;
     if (!is_planar(state.block[slot].kind) || state.plane_of(slot) != plane) continue;
     ++points.folded;
     if (state.block[slot].kind == BlockKind::kPatchPoint) ++points.fixed;
@@ -199,13 +199,13 @@ PlanePoints FilterSlam::outline(int plane_entry, PlaneOutline* outline) const {
 /// A plane that too few points carry for a while goes, a new one also where it does not get as many as it was found with; and at
 /// once what more points have denied than still believe.
 void FilterSlam::dissolve_weak() {
-  for (int i = 0; i < planes_.capacity(); ++i) {
-    if (!planes_.used(i)) continue;
+  for (int i = 0; i < map_.planes.capacity(); ++i) {
+    if (!map_.planes.used(i)) continue;
     const int points = outline(i, nullptr).folded;
-    planes_[i].most = std::max(planes_[i].most, points);
-    const bool proven = planes_[i].most > settings_.plane_min_points;
-    planes_[i].weak = points < kLeastPoints || !proven ? planes_[i].weak + 1 : 0;
-    if (planes_[i].weak > kPatience || planes_[i].misfits > points) dissolve(i);
+    map_.planes[i].most = std::max(map_.planes[i].most, points);
+    const bool proven = map_.planes[i].most > settings_.plane_min_points;
+    map_.planes[i].weak = points < kLeastPoints || !proven ? map_.planes[i].weak + 1 : 0;
+    if (map_.planes[i].weak > kPatience || map_.planes[i].misfits > points) dissolve(i);
   }
 }
 

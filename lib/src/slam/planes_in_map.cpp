@@ -27,40 +27,40 @@ Scalar largest_eigenvalue(const Mat3& C) {
 
 void FilterSlam::tend_planes() {
   // While a start goes on, the filter may begin again without its planes, whose ids would then stand for nothing.
-  if (!settings_.planes || recording_) return;
+  if (!settings_.planes || start_.recording) return;
   unfold_misfits();
   if (!filter_.scale_row(&scale_)) scale_.segments = 0;
-  const int turn = report_.frames % planes_.capacity();
-  for (int k = 0, tended = 0; k < planes_.capacity(); ++k) {
-    const int i = (turn + k) % planes_.capacity();
-    if (!planes_.used(i)) continue;
-    ++planes_[i].age;
+  const int turn = frame_.report.frames % map_.planes.capacity();
+  for (int k = 0, tended = 0; k < map_.planes.capacity(); ++k) {
+    const int i = (turn + k) % map_.planes.capacity();
+    if (!map_.planes.used(i)) continue;
+    ++map_.planes[i].age;
     if (tended++ > 0) continue;
     fold_into(i);
     settle_frame(i);
     PlaneOutline now;
     outline(i, &now);
-    planes_[i].seen = now;
+    map_.planes[i].seen = now;
     if (settings_.fix_sigma > Scalar(0)) fix_on(i);
     merge_into(i);
   }
   dissolve_weak();
-  if (report_.frames % kDiscoverEvery != 0) return;
+  if (frame_.report.frames % kDiscoverEvery != 0) return;
   if (!filter_.scale_row(&scale_)) scale_.segments = 0;  // rows may have moved since
   discover_plane();
 }
 
 /// A 3-D point that has settled, and is not a target's, whose place is known anyway.
 bool FilterSlam::is_settled(int entry) const {
-  if (!features_.used(entry) || features_[entry].is_target) return false;
-  const Feature& f = features_[entry];
+  if (!map_.features.used(entry) || map_.features[entry].is_target) return false;
+  const Feature& f = map_.features[entry];
   return filter_.state().block[f.slot].kind == BlockKind::kPoint && f.failures == 0 && f.observations >= kConverged;
 }
 
 /// Whether a settled point is known well enough to be folded, or to vote for a plane; its covariance relative to the camera and the
 /// world's size.
 bool FilterSlam::is_certain(int entry, Mat3* covariance) const {
-  *covariance = filter_.relative_covariance(features_[entry].slot, scale_);
+  *covariance = filter_.relative_covariance(map_.features[entry].slot, scale_);
   const Scalar most = settings_.fold_sigma * settings_.fold_sigma;
   return (*covariance)(0, 0) + (*covariance)(1, 1) + (*covariance)(2, 2) < most ||
          largest_eigenvalue(*covariance) < most;
@@ -68,20 +68,20 @@ bool FilterSlam::is_certain(int entry, Mat3* covariance) const {
 
 /// Points that are found again and again where their plane does not put them go back to three coordinates, and the plane is less sure.
 void FilterSlam::unfold_misfits() {
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i) || features_[i].rejections < kMostRejections) continue;
-    const int slot = features_[i].slot;
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i) || map_.features[i].rejections < kMostRejections) continue;
+    const int slot = map_.features[i].slot;
     if (!is_planar(filter_.state().block[slot].kind)) continue;
     const int plane = filter_.state().plane_of(slot);
     const int children = filter_.state().block[plane].children;
     if (!filter_.unfold(slot, Scalar(10) * settings_.plane_distance)) continue;
-    features_[i].rejections = 0;
-    features_[i].observations = 1;  // has to converge again before it may be folded
+    map_.features[i].rejections = 0;
+    map_.features[i].observations = 1;  // has to converge again before it may be folded
     loosen(plane, children);
-    const int entry = planes_.entry_at(plane);
+    const int entry = map_.planes.entry_at(plane);
     if (entry < 0) continue;
-    ++planes_[entry].misfits;
-    planes_[entry].seen.count =
+    ++map_.planes[entry].misfits;
+    map_.planes[entry].seen.count =
         0;  // the misfit may have been a corner of it: what is known begins again with the others
   }
 }
@@ -99,8 +99,8 @@ void FilterSlam::loosen(int plane_slot, int children) {
 /// Not far from all that is known of a plane: what lies in it there does so by chance. The paper asks for a distance from the plane's
 /// origin, since it cannot tell how well far points are known beside each other; here the variance of the distance says so.
 bool FilterSlam::is_in_reach(int plane_entry, const Vec3& p_W) const {
-  const PlaneFrame& frame = filter_.state().frame_of(filter_.state().block[planes_[plane_entry].slot]);
-  const PlaneOutline& known = planes_[plane_entry].support;
+  const PlaneFrame& frame = filter_.state().frame_of(filter_.state().block[map_.planes[plane_entry].slot]);
+  const PlaneOutline& known = map_.planes[plane_entry].support;
   const Scalar reach = std::min(kReach * std::sqrt(outline_area(known)), settings_.plane_radius);
   return outline_contains(known, plane_coordinates(frame, p_W), reach);
 }
@@ -118,14 +118,15 @@ bool FilterSlam::lies_on(int plane, int slot) const {
 
 /// Points that lie on the plane join it.
 void FilterSlam::fold_into(int plane_entry) {
-  const int plane = planes_[plane_entry].slot;
+  const int plane = map_.planes[plane_entry].slot;
   const Block& block = filter_.state().block[plane];
   const PlaneFrame& frame = filter_.state().frame_of(block);
   int slots[Filter::kMostFolded];
   int count = 0;
-  for (int i = 0; i < features_.capacity() && count < Filter::kMostFolded && count < settings_.max_observations; ++i) {
+  for (int i = 0; i < map_.features.capacity() && count < Filter::kMostFolded && count < settings_.max_observations;
+       ++i) {
     if (!is_settled(i)) continue;
-    const int slot = features_[i].slot;
+    const int slot = map_.features[i].slot;
     const Vec3 p_W = filter_.point(slot);
     if (!is_in_reach(plane_entry, p_W)) continue;
     if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(2) * settings_.plane_distance) continue;
@@ -142,21 +143,21 @@ void FilterSlam::fold_into(int plane_entry) {
 /// A point has joined: the plane is known as far as there.
 void FilterSlam::support(int plane_entry, int slot) {
   const State& state = filter_.state();
-  const Vec2 uv = plane_coordinates(state.frame_of(state.block[planes_[plane_entry].slot]), filter_.point(slot));
-  extend_outline(&planes_[plane_entry].support, &uv, 1);
+  const Vec2 uv = plane_coordinates(state.frame_of(state.block[map_.planes[plane_entry].slot]), filter_.point(slot));
+  extend_outline(&map_.planes[plane_entry].support, &uv, 1);
 }
 
 /// Points that are known well among those of their plane are estimated no more.
 void FilterSlam::fix_on(int plane_entry) {
-  const int plane = planes_[plane_entry].slot;
+  const int plane = map_.planes[plane_entry].slot;
   const State& state = filter_.state();
   int group[Filter::kMostFolded], slots[Filter::kMostFolded];
   int group_count = 0, count = 0;
   const bool has_patch = filter_.patch_of(plane) >= 0;
-  for (int i = 0; i < features_.capacity() && group_count < Filter::kMostFolded; ++i) {
-    if (!features_.used(i) || features_[i].failures > 0) continue;
-    const Block& block = state.block[features_[i].slot];
-    if (block.kind == BlockKind::kPlanePoint && block.parent == plane) group[group_count++] = features_[i].slot;
+  for (int i = 0; i < map_.features.capacity() && group_count < Filter::kMostFolded; ++i) {
+    if (!map_.features.used(i) || map_.features[i].failures > 0) continue;
+    const Block& block = state.block[map_.features[i].slot];
+    if (block.kind == BlockKind::kPlanePoint && block.parent == plane) group[group_count++] = map_.features[i].slot;
   }
   if (!has_patch && group_count < 2 * kLeastFixed) return;
   const int most = std::min(Filter::kMostFolded, settings_.max_observations);

@@ -25,7 +25,7 @@ Scalar pixel_sigma(const Camera& camera, Scalar sigma_m, Scalar distance) {
 bool FilterSlam::start_in_image() {
   if (target_.kind == TargetKind::kNone) {
     begin_from_knowledge();
-    recording_ = !known_body_.given;
+    start_.recording = !known_body_.given;
     return true;
   }
   PoseEstimate pose;
@@ -40,20 +40,20 @@ bool FilterSlam::start_in_image() {
   target_.first_pose.q_WC = pose.q_WC;
   target_.first_pose.p_W = pose.p_WC;
   target_.first_covariance = pose.covariance;
-  if (report_.frames > 1) known_body_ = KnownBody();  // it was the pose of the first frame
+  if (frame_.report.frames > 1) known_body_ = KnownBody();  // it was the pose of the first frame
   begin_from_knowledge();
   add_target_points();
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i) || !features_[i].is_target) continue;
-    Feature& f = features_[i];
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i) || !map_.features[i].is_target) continue;
+    Feature& f = map_.features[i];
     const Vec2 z = pixel[f.track];
     f.appearance = tracker_.remember(z, pose.q_WC, pose.p_WC);
     f.observations = f.attempts = 1;
-    ++report_.inliers;
-    tracks_[track_count_++] = {i, f.id, TrackStatus::kInlier, BlockKind::kPoint, z, Mat2::Zero(), z, Scalar(0)};
+    ++frame_.report.inliers;
+    frame_.add({i, f.id, MatchStatus::kInlier, BlockKind::kPoint, z, Mat2::Zero(), z, Scalar(0)});
   }
-  report_.attempts = report_.matches = report_.inliers;
-  sighted_ = true;
+  frame_.report.attempts = frame_.report.matches = frame_.report.inliers;
+  tracking_.sight();
   settings_.hooks.say("started at the target");
   return true;
 }

@@ -16,12 +16,12 @@ void FilterSlam::begin_record() {
   bundle_.init();
   base_q_WC_ = filter_.state().body.q_WC;
   base_p_W_ = filter_.state().body.p_W;
-  record_begin_ns_ = report_.t_ns;
-  for (int t = 0; t < track_count_; ++t) {
-    if (tracks_[t].status != TrackStatus::kNew || tracks_[t].feature < 0) continue;
+  record_begin_ns_ = frame_.report.t_ns;
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    if (frame_.match(t).status != MatchStatus::kNew || frame_.match(t).feature < 0) continue;
     Vec3 ray_C;
-    if (!unproject(settings_.camera, tracks_[t].measured, &ray_C)) continue;
-    features_[tracks_[t].feature].start_index = record_.add_feature(ray_C);
+    if (!unproject(settings_.camera, frame_.match(t).measured, &ray_C)) continue;
+    map_.features[frame_.match(t).feature].start_index = record_.add_feature(ray_C);
   }
 }
 
@@ -40,30 +40,31 @@ Vec2 FilterSlam::at_frame_time(int slot, const Vec2& measured) const {
 /// The same for the rays of the record's frame 0, of which nothing was known, by what moved until now.
 void FilterSlam::move_rays_to_frame_time() {
   if (settings_.camera.readout == Scalar(0)) return;
-  const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(record_begin_ns_, report_.t_ns)) * 1e-9);
-  for (int t = 0; t < track_count_; ++t) {
-    const Track& track = tracks_[t];
-    if (track.feature < 0 || track.status != TrackStatus::kInlier) continue;
-    const int index = features_[track.feature].start_index;
+  const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(record_begin_ns_, frame_.report.t_ns)) * 1e-9);
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const Match& match = frame_.match(t);
+    if (match.feature < 0 || match.status != MatchStatus::kInlier) continue;
+    const int index = map_.features[match.feature].start_index;
     Vec2 first;
     Vec3 ray_C;
     if (index < 0 || !project(settings_.camera, record_.ray(index), &first)) continue;
-    const Vec2 moved = (at_frame_time(features_[track.feature].slot, track.measured) - first) / dt;
+    const Vec2 moved = (at_frame_time(map_.features[match.feature].slot, match.measured) - first) / dt;
     if (unproject(settings_.camera, first - row_time(settings_.camera, first.y()) * moved, &ray_C))
       record_.set_ray(index, ray_C);
   }
 }
 
 void FilterSlam::record_frame() {
-  if (record_.features() == 0 || report_.inliers < kMinInliers) return;
+  if (record_.features() == 0 || frame_.report.inliers < TrackingState::kMinInliers) return;
   const Body& body = filter_.state().body;
   const Quat q_KW = base_q_WC_.conjugate();
   if (record_.frames() == 0) move_rays_to_frame_time();
-  const int k = record_.add_frame(report_.t_ns, q_KW * body.q_WC, q_KW * (body.p_W - base_p_W_));
-  for (int t = 0; t < track_count_; ++t) {
-    const int entry = tracks_[t].feature;
-    if (entry < 0 || tracks_[t].status != TrackStatus::kInlier || features_[entry].start_index < 0) continue;
-    record_.add_pixel(k, features_[entry].start_index, at_frame_time(features_[entry].slot, tracks_[t].measured));
+  const int k = record_.add_frame(frame_.report.t_ns, q_KW * body.q_WC, q_KW * (body.p_W - base_p_W_));
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const int entry = frame_.match(t).feature;
+    if (entry < 0 || frame_.match(t).status != MatchStatus::kInlier || map_.features[entry].start_index < 0) continue;
+    record_.add_pixel(k, map_.features[entry].start_index,
+                      at_frame_time(map_.features[entry].slot, frame_.match(t).measured));
   }
   const StartOutcome outcome = bundle_.solve(settings_.camera, record_, Tracker::kTypicalSigma, settings_.start_depth);
   switch (outcome) {
@@ -72,16 +73,16 @@ void FilterSlam::record_frame() {
     case StartOutcome::kSolved:
     case StartOutcome::kSettled:
       restart_from_record();
-      if (!depth_known_) settings_.hooks.say("started without a target: the first depths are known");
-      depth_known_ = true;
-      recording_ = outcome != StartOutcome::kSettled;
+      if (!start_.depth_known) settings_.hooks.say("started without a target: the first depths are known");
+      start_.depth_known = true;
+      start_.recording = outcome != StartOutcome::kSettled;
       break;
     case StartOutcome::kTooFew:
-      recording_ = !depth_known_;
-      if (depth_known_) break;
+      start_.recording = !start_.depth_known;
+      if (start_.depth_known) break;
       // Nothing but rotation so far, or too little in view: the world stays, the first frame is now this one.
-      for (int i = 0; i < features_.capacity(); ++i)
-        if (features_.used(i)) scratch_[0] = i, drop(scratch_, 1);
+      for (int i = 0; i < map_.features.capacity(); ++i)
+        if (map_.features.used(i)) scratch_[0] = i, drop(scratch_, 1);
       record_.init();
       break;
   }
@@ -89,10 +90,9 @@ void FilterSlam::record_frame() {
 
 /// A table entry goes, and its appearance; its block in the filter is gone already.
 void FilterSlam::release(int entry) {
-  tracker_.forget(features_[entry].appearance);
-  for (int t = 0; t < track_count_; ++t)
-    if (tracks_[t].feature == entry) tracks_[t].feature = -1;
-  features_.remove(entry);
+  tracker_.forget(map_.features[entry].appearance);
+  frame_.forget(entry);
+  map_.features.remove(entry);
 }
 
 /// The filter begins again at the record's frame 0 with the bundle's depths as prior means, wide, and goes through the recorded
@@ -109,9 +109,9 @@ void FilterSlam::restart_from_record() {
 
   constexpr Scalar kWide = Scalar(0.5);
   const Mat2 noise = Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma);
-  for (int i = 0; i < features_.capacity(); ++i) {
-    if (!features_.used(i)) continue;
-    Feature& f = features_[i];
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i)) continue;
+    Feature& f = map_.features[i];
     Vec3 ray_C;
     Mat32 J_ray_pixel;
     Vec2 pixel;
@@ -132,8 +132,8 @@ void FilterSlam::restart_from_record() {
   std::int64_t t_ns = record_begin_ns_;
   for (int k = 0; k < frames; ++k) {
     const StartRecord::Frame& frame = record_.frame(k);
-    const Scalar dt =
-        static_cast<Scalar>(static_cast<double>(std::min(elapsed_ns(t_ns, frame.t_ns), kLongestGap)) * 1e-9);
+    const Scalar dt = static_cast<Scalar>(
+        static_cast<double>(std::min(elapsed_ns(t_ns, frame.t_ns), BodyMotion::kLongestGap)) * 1e-9);
     t_ns = frame.t_ns;
     Body& now = filter_.body();
     const Quat q_WC = base_q_WC_ * frame.q_WC;
@@ -141,18 +141,15 @@ void FilterSlam::restart_from_record() {
     now.v_W = (p_W - now.p_W) / dt;
     now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
     Transition transition;
-    if (settings_.constant_velocity)
-      predict_constant_velocity(now, dt, settings_.motion_noise, &transition);
-    else
-      predict_constant_position(now, dt, settings_.motion_noise, &transition);
+    motion_.predict(now, dt, settings_.motion_noise, &transition);
     now.q_WC = q_WC;
     now.p_W = p_W;
     filter_.predict(transition);
     int count = 0;
-    for (int i = 0; i < features_.capacity() && count < settings_.max_observations; ++i) {
-      if (!features_.used(i) || !record_.seen(k, features_[i].start_index)) continue;
+    for (int i = 0; i < map_.features.capacity() && count < settings_.max_observations; ++i) {
+      if (!map_.features.used(i) || !record_.seen(k, map_.features[i].start_index)) continue;
       Observation& o = observation_[count];
-      if (!filter_.predict_pixel(settings_.camera, features_[i].slot, &o)) continue;
+      if (!filter_.predict_pixel(settings_.camera, map_.features[i].slot, &o)) continue;
       o.measured = o.predicted;
       o.noise = noise;
       ++count;

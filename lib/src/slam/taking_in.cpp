@@ -15,24 +15,24 @@ constexpr int kMostRounds = 3;  ///< of one frame's pixels, where little was kno
 
 /// Takes in the kept ones of observations first .. first+count-1, which begin_update holds. False when nothing was taken in.
 bool FilterSlam::take_in(int first, int count) {
-  StageTimer timer(settings_.hooks, &report_.stage_ns[kUpdate]);
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
   Scalar nis = 0;
   if (!filter_.finish_update(observation_ + first, count, keep_ + first, &nis)) {
-    ++failed_updates_;
-    for (int i = first; i < first + count; ++i) tracks_[track_of_[i]].status = TrackStatus::kOutlier;
+    tracking_.count_update(false);
+    for (int i = first; i < first + count; ++i) frame_.match(track_of_[i]).status = MatchStatus::kOutlier;
     return false;
   }
-  failed_updates_ = 0;
-  report_.nis += static_cast<double>(nis);
+  tracking_.count_update(true);
+  frame_.report.nis += static_cast<double>(nis);
   for (int i = first; i < first + count; ++i) {
     if (keep_[i] == 0) continue;
-    report_.nis_dof += 2;
-    ++report_.inliers;
-    Feature& feature = features_[entry_[i]];
+    frame_.report.nis_dof += 2;
+    ++frame_.report.inliers;
+    Feature& feature = map_.features[entry_[i]];
     count_frame(&feature.observations);
     feature.failures = 0;
     feature.rejections = 0;
-    feature.last_seen_ns = report_.t_ns;
+    feature.last_seen_ns = frame_.report.t_ns;
   }
   take_in_again_where_bent(first, count);
   return true;

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "base/eigen.h"
+#include "base/elapsed.h"
+#include "filter/state.h"
+
+/// What one frame has shown so far: its report and its matches, as the caller may read them.
+
+namespace pf {
+
+/// With the numbers of pf_track_status_t.
+enum class MatchStatus : int { kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4 };
+
+/// One feature in one frame.
+struct Match {
+  int feature;  ///< entry in the feature table; -1 once it has gone, or where it could not be predicted
+  std::uint32_t id;
+  MatchStatus status;
+  BlockKind kind;
+  Vec2 predicted;
+  Mat2 innovation;
+  Vec2 measured;
+  Scalar nis;  ///< normalised innovation squared of the match alone, two degrees of freedom; zero without a match
+};
+
+enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kStageCount = 8 };
+
+struct FrameReport {
+  std::int64_t t_ns = 0;
+  int frames = 0;
+  int attempts = 0, matches = 0, inliers = 0, new_features = 0, evicted = 0;
+  double nis = 0;
+  int nis_dof = 0;
+  std::int64_t stage_ns[kStageCount] = {};
+};
+
+class Frame {
+ public:
+  FrameReport report;
+
+  bool layout(Arena& arena, int capacity) {
+    match_ = arena.take<Match>(static_cast<std::size_t>(capacity));
+    capacity_ = capacity;
+    return arena.ok();
+  }
+  void init() {
+    report = FrameReport();
+    count_ = 0;
+  }
+  /// The next frame, of which nothing is known but its time and its number.
+  void begin(std::int64_t t_ns) {
+    const int frames = report.frames;
+    report = FrameReport();
+    report.t_ns = t_ns;
+    report.frames = frames;
+    count_frame(&report.frames);
+    count_ = 0;
+  }
+
+  int match_count() const { return count_; }
+  bool full() const { return count_ >= capacity_; }
+  Match& match(int i) { return match_[i]; }
+  const Match& match(int i) const { return match_[i]; }
+  const Match* matches() const { return match_; }
+  /// Index of the new match. Only while not full.
+  int add(const Match& match) {
+    match_[count_] = match;
+    return count_++;
+  }
+  /// The feature of this table entry has gone; its matches stay as what they were.
+  void forget(int feature) {
+    for (int i = 0; i < count_; ++i)
+      if (match_[i].feature == feature) match_[i].feature = -1;
+  }
+  void forget_all() {
+    for (int i = 0; i < count_; ++i) match_[i].feature = -1;
+  }
+
+ private:
+  Match* match_ = nullptr;
+  int capacity_ = 0;
+  int count_ = 0;
+};
+
+}  // namespace pf
