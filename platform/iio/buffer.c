@@ -24,6 +24,15 @@ int64_t pf_iio_decode(const struct iio_data_format* format, const unsigned char*
   return (int64_t)value;
 }
 
+/* open that goes on after a signal. */
+static int open_again(const char* path, int flags) {
+  int fd;
+  do {
+    fd = open(path, flags);
+  } while (fd < 0 && errno == EINTR);
+  return fd;
+}
+
 /* A file below the device in sysfs. 0, or a negative errno. */
 static int write_file(const char* device, const char* name, const char* text) {
   char path[256];
@@ -31,11 +40,13 @@ static int write_file(const char* device, const char* name, const char* text) {
   ssize_t written;
   int error;
   snprintf(path, sizeof(path), "/sys/bus/iio/devices/%s/%s", device, name);
-  fd = open(path, O_WRONLY | O_CLOEXEC);
+  fd = open_again(path, O_WRONLY | O_CLOEXEC);
   if (fd < 0) {
     return -errno;
   }
-  written = write(fd, text, strlen(text));
+  do {
+    written = write(fd, text, strlen(text));
+  } while (written < 0 && errno == EINTR);
   error = errno;
   close(fd);
   return written < 0 ? -error : 0;
@@ -122,7 +133,7 @@ int pf_iio_buffer_open(pf_iio_buffer_t* buffer, const struct iio_device* device,
     return status;
   }
   snprintf(path, sizeof(path), "/dev/%s", buffer->device);
-  buffer->fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  buffer->fd = open_again(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (buffer->fd < 0) {
     return -errno;
   }

@@ -7,6 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { kNapMs = 20 };
+
+/* A unit that is there and gives nothing is opened anew no more often than this. */
+static const int64_t kReturnPauseNs = 200000000;
+
 int pf_iio_refuse(char message[PF_IIO_MESSAGE], const char* form, ...) {
   if (message != NULL) {
     va_list arguments;
@@ -17,10 +22,14 @@ int pf_iio_refuse(char message[PF_IIO_MESSAGE], const char* form, ...) {
   return -1;
 }
 
-static void let_go(pf_iio_t* imu) {
+static void stop(pf_iio_t* imu) {
   for (int p = 0; p < imu->parts; ++p) {
     pf_iio_buffer_close(&imu->part[p].buffer);
   }
+}
+
+static void let_go(pf_iio_t* imu) {
+  stop(imu);
   if (imu->context != NULL) {
     iio_context_destroy(imu->context);
     imu->context = NULL;
@@ -149,15 +158,19 @@ static int start_part(pf_iio_t* imu, pf_iio_part_t* part, char message[PF_IIO_ME
     return pf_iio_refuse(message, "iio:%s (%s): does not stream (%s); it may need a trigger", described->name,
                          described->id, strerror(-status));
   }
-  part->last_read_ns = pf_iio_clock_ns(0);
+  part->started_ns = part->last_read_ns = part->last_kept_ns = pf_iio_clock_ns(0);
+  part->last_t_ns = imu->has_last ? imu->last_t_ns : 0;
+  part->times_stale = 0;
   return 0;
 }
 
 int pf_iio_start(pf_iio_t* imu, char message[PF_IIO_MESSAGE]) {
+  stop(imu); /* where it streams already */
   imu->info.stamp = PF_IIO_STAMP_MONOTONIC;
   /* Accelerations first, so that there is one before the first rate. */
   for (int p = imu->parts - 1; p >= 0; --p) {
     if (start_part(imu, &imu->part[p], message) != 0) {
+      stop(imu);
       return -1;
     }
   }
@@ -165,7 +178,18 @@ int pf_iio_start(pf_iio_t* imu, char message[PF_IIO_MESSAGE]) {
     imu->queue[kind].begin = imu->queue[kind].count = 0;
   }
   imu->gone = 0;
+  imu->started_ns = pf_iio_clock_ns(0);
+  imu->samples_at_start = imu->info.samples;
   return 0;
+}
+
+/* Whatever the driver's error is, the cure is the same: the unit is opened anew. */
+static int depart(pf_iio_t* imu, int part, int error, char message[PF_IIO_MESSAGE]) {
+  imu->gone = 1;
+  ++imu->info.departures;
+  pf_iio_refuse(message, "iio:%s is gone, or gives no more samples (%s).",
+                part == 0 ? imu->info.gyro.name : imu->info.accel.name, strerror(error));
+  return PF_IIO_GONE;
 }
 
 int pf_iio_read(pf_iio_t* imu, int timeout_ms, pf_imu_sample_t* samples, int capacity, int* count,
@@ -180,14 +204,7 @@ int pf_iio_read(pf_iio_t* imu, int timeout_ms, pf_imu_sample_t* samples, int cap
     for (int p = 0; p < imu->parts; ++p) {
       const int fetched = pf_iio_fetch(imu, &imu->part[p]);
       if (fetched < 0) {
-        const pf_iio_device_t* described = p == 0 ? &imu->info.gyro : &imu->info.accel;
-        if (fetched != -ENODEV && fetched != -EIO && fetched != -EBADF && fetched != -ENXIO) {
-          return pf_iio_refuse(message, "iio:%s: reading failed (%s)", described->name, strerror(-fetched));
-        }
-        imu->gone = 1;
-        ++imu->info.departures;
-        pf_iio_refuse(message, "iio:%s is gone (%s).", described->name, strerror(-fetched));
-        return PF_IIO_GONE;
+        return depart(imu, p, -fetched, message);
       }
     }
     *count = pf_iio_join(imu, samples, capacity);
@@ -203,12 +220,22 @@ int pf_iio_read(pf_iio_t* imu, int timeout_ms, pf_imu_sample_t* samples, int cap
       wait[p].events = POLLIN;
       wait[p].revents = 0;
     }
-    (void)poll(wait, (nfds_t)imu->parts, 20);
+    if (poll(wait, (nfds_t)imu->parts, kNapMs) < 0 && errno != EINTR) {
+      poll(NULL, 0, kNapMs); /* a wait that fails at once must not take the whole processor */
+    }
+    for (int p = 0; p < imu->parts; ++p) {
+      if ((wait[p].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) {
+        return depart(imu, p, EIO, message);
+      }
+    }
   }
 }
 
 int pf_iio_return(pf_iio_t* imu, char message[PF_IIO_MESSAGE]) {
   const pf_iio_info_t before = imu->info;
+  if (imu->info.samples == imu->samples_at_start && pf_iio_clock_ns(0) - imu->started_ns < kReturnPauseNs) {
+    return pf_iio_refuse(message, "iio:%s: gave nothing since it was opened; it will be tried again", imu->name);
+  }
   let_go(imu);
   imu->gone = 1;
   if (find_unit(imu, message) != 0 || pf_iio_start(imu, message) != 0) {

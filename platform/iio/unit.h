@@ -24,7 +24,10 @@ typedef struct pf_iio_part {
   struct iio_channel* time; /* null: there is none */
   pf_iio_buffer_t buffer;
   int real_time; /* 1: its times are of the real-time clock */
-  int64_t last_read_ns;
+  int64_t started_ns, last_read_ns;
+  int64_t last_t_ns;    /* of the last scan that was kept */
+  int64_t last_kept_ns; /* when that scan was read */
+  int times_stale;      /* its times stopped growing: those of arrival are used */
   pf_iio_sensor_t sensor[PF_IIO_KINDS];
 } pf_iio_part_t;
 
@@ -48,6 +51,8 @@ struct pf_iio {
   pf_iio_info_t info;
   int64_t last_t_ns;
   int has_last;
+  int64_t started_ns;
+  int64_t samples_at_start;
   int gone;
 };
 
@@ -68,7 +73,7 @@ void pf_iio_read_sensor(pf_iio_t* imu, pf_iio_part_t* part, int kind);
 /* Nanoseconds of the monotonic clock, or of the real-time one. */
 int64_t pf_iio_clock_ns(int real_time);
 
-/* Readings of a part's buffer into the queues. Number of scans, 0 for nothing, or a negative errno. */
+/* Readings of a part's buffer into the queues, with times that grow and are not ahead of the clock. Number of scans, 0 for nothing, or a negative errno. */
 int pf_iio_fetch(pf_iio_t* imu, pf_iio_part_t* part);
 
 /* Puts waiting readings together. Number of samples. */

@@ -51,7 +51,7 @@ typedef struct pf_iio_info {
   uint32_t stamp;                       /* pf_iio_stamp_t, the least of both */
   int64_t samples;                      /* handed over */
   int64_t dropped;                      /* with a time that did not grow, or for lack of the other sensor's */
-  int64_t departures;                   /* how often the unit was unplugged */
+  int64_t departures;                   /* how often the unit was unplugged, or its driver failed */
 } pf_iio_info_t;
 
 /* name     part of the name, or the id, of a device with both sensors, or that two devices have in common; or ACCEL+GYRO
@@ -64,7 +64,8 @@ int pf_iio_start(pf_iio_t* imu, char message[PF_IIO_MESSAGE]);
 
 enum { PF_IIO_NOTHING = 0, PF_IIO_SAMPLES = 1, PF_IIO_GONE = 2 };
 
-/* PF_IIO_SAMPLES, PF_IIO_NOTHING after timeout_ms, PF_IIO_GONE when the unit was unplugged, or -1. capacity is at least 1. */
+/* PF_IIO_SAMPLES, PF_IIO_NOTHING after timeout_ms, or PF_IIO_GONE when the unit was unplugged or its driver failed. capacity is at
+ * least 1. */
 int pf_iio_read(pf_iio_t* imu, int timeout_ms, pf_imu_sample_t* samples, int capacity, int* count,
                 char message[PF_IIO_MESSAGE]);
 
