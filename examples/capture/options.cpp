@@ -105,6 +105,12 @@ std::string check(const Options& options, const std::string& backend) {
   if (options.skip > 0 && is_camera) {
     return "--skip is for folders and scenes; a camera has no frames to leave out";
   }
+  if (options.loop > 0 && (is_camera || options.realtime || options.there_and_back || options.as_recorded)) {
+    return "--loop is for folders and scenes, without --realtime, --there-and-back and --as-recorded";
+  }
+  if (options.loop > 0 && options.imu != "auto" && options.imu != "none") {
+    return "--loop: inertial samples have no second lap; leave --imu away";
+  }
   if (options.there_and_back && (is_camera || options.realtime)) {
     return "--there-and-back is for folders and scenes, without --realtime: a camera cannot go back";
   }
@@ -161,6 +167,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->check(at_least(0));
   app.add_option("--frames", options.frames, "at most N frames")->check(at_least(1));
   app.add_option("--skip", options.skip, "leave out the first N frames")->check(at_least(0));
+  app.add_option("--loop", options.loop,
+                 "the first N images there and back, again and again, from memory: for runs of a day")
+      ->check(at_least(2));
   app.add_flag("--there-and-back", options.there_and_back,
                "all frames forwards, then backwards; pf-eval --there-and-back compares the two poses of each image");
   app.add_option("--out", options.out, "folder for what is written; made when it is missing")->capture_default_str();

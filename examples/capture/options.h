@@ -49,6 +49,7 @@ struct Options {
   bool every_frame = false;
   bool realtime = false;
   bool as_recorded = false;
+  int64_t loop = -1;  ///< images of a lap; negative: no laps
   bool there_and_back = false;
   bool dma_buf = false;
   bool list = false;

@@ -85,7 +85,7 @@ class Run {
 
 bool Run::open(std::string& error, int& code) {
   const SourceInfo& info = source_.info();
-  if (!imu_.open(options_, options_.there_and_back ? "" : info.imu_path, error)) {
+  if (!imu_.open(options_, options_.there_and_back || options_.loop > 0 ? "" : info.imu_path, error)) {
     return false;
   }
   if (!session_.open(options_, source_, imu_, error, code)) {

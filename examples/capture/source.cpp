@@ -136,6 +136,9 @@ std::unique_ptr<Source> open_source(const Options& options, std::string& error) 
     return open_camera_source(options, error);
   }
   std::unique_ptr<Source> stored = open_stored(options, error);
+  if (stored != nullptr && options.loop > 0) {
+    return open_loop(options, std::move(stored), error);
+  }
   if (stored != nullptr && options.there_and_back) {
     return open_there_and_back(options, std::move(stored), error);
   }

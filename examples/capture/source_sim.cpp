@@ -80,7 +80,7 @@ std::unique_ptr<Source> open_sim_source(const Options& options, std::string& err
     return nullptr;
   }
   sim_options.seed = options.seed;
-  if (options.frames > 0) {
+  if (options.frames > 0 && options.loop < 0) {
     sim_options.frames = static_cast<int32_t>(std::min<int64_t>(options.skip + options.frames, 1000000));
   }
   if (!options.calibration.empty()) {

@@ -91,6 +91,9 @@ def test_usage(root):
     expect("format", 2, ["--format", "MJPEG"], "--source", "v4l2:/dev/video0", "--format", "RGB")
     expect("every frame of a folder", 2, ["--every-frame", "--realtime"], "--source", source, "--every-frame")
     expect("skip of a camera", 2, ["--skip"], "--source", "v4l2:/dev/video0", "--skip", "3")
+    expect("laps of a camera", 2, ["--loop"], "--source", "v4l2:/dev/video0", "--loop", "10")
+    expect("laps of one image", 2, ["--loop"], "--source", source, "--loop", "1")
+    expect("laps with an IMU", 2, ["--loop", "--imu"], "--source", source, "--loop", "10", "--imu", "csv:x")
     expect("there and back of a camera", 2, ["--there-and-back", "cannot go back"], "--source", "v4l2:/dev/video0",
            "--there-and-back")
     expect("there and back at its pace", 2, ["--there-and-back"], "--source", source, "--there-and-back", "--realtime")
