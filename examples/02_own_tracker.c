@@ -37,8 +37,8 @@ int main(void) {
   config.camera.fx = config.camera.fy = 500.0;
   config.camera.cx = 319.5;
   config.camera.cy = 239.5;
-  config.sigma_pixel = 0.5;
-  config.start_depth = 2.0; /* metres: about what the points are away */
+  config.measurement.sigma_px = 0.5;
+  config.first_depth.depth = 2.0; /* metres: about what the points are away */
 
   if (pf_memory_query(&config, &need) != PF_OK) {
     return 1;

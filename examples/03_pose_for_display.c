@@ -42,7 +42,7 @@ int main(void) {
   config.camera.fx = config.camera.fy = 500.0;
   config.camera.cx = 319.5;
   config.camera.cy = 239.5;
-  config.sigma_pixel = 0.5;
+  config.measurement.sigma_px = 0.5;
   if (pf_memory_query(&config, &need) != PF_OK) {
     return 1;
   }
@@ -56,7 +56,7 @@ int main(void) {
    * and 3 degrees. With a target of points, the observations 0 .. count-1 are its points. */
   target.kind = PF_TARGET_POINTS;
   target.count = POINTS;
-  target.sigma_m = 0.0005;
+  target.sigma = 0.0005;
   for (i = 0; i < POINTS; ++i) {
     target.points_W[i][0] = 0.35 * cos(6.2831853 * i / POINTS);
     target.points_W[i][1] = 0.25 * sin(6.2831853 * i / POINTS);

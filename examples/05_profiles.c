@@ -34,11 +34,11 @@ static void fill_in(const profile_t* profile, pf_config_t* config) {
   config->camera.fx = config->camera.fy = 0.8 * profile->width;
   config->camera.cx = 0.5 * (profile->width - 1);
   config->camera.cy = 0.5 * (profile->height - 1);
-  config->max_features = profile->max_features;
-  config->max_state_dim = profile->max_state_dim;
-  config->max_observations = profile->max_observations;
-  config->max_planes = profile->max_planes;
-  config->features_in_view = profile->max_observations;
+  config->capacity.max_features = profile->max_features;
+  config->capacity.max_state_dim = profile->max_state_dim;
+  config->capacity.max_observations = profile->max_observations;
+  config->capacity.max_planes = profile->max_planes;
+  config->map.features_in_view = profile->max_observations;
 }
 
 int main(void) {

@@ -50,9 +50,9 @@ bool ImuFeed::open(const Options& options, const std::string& beside, std::strin
 
 void ImuFeed::configure(pf_config_t& config) const {
   if (imu_ != nullptr) {
-    config.imu_buffer = kKept;
-    config.imu_gyro_range = imu_->gyro_range();
-    config.imu_accel_range = imu_->accel_range();
+    config.capacity.max_imu_samples = kKept;
+    config.imu.gyro_range = imu_->gyro_range();
+    config.imu.accel_range = imu_->accel_range();
   }
 }
 
@@ -99,7 +99,7 @@ std::string ImuFeed::report(const pf_slam_t* slam, std::string& advice) const {
       {"samples", r.samples},
       {"rate_hz", rounded(r.rate_hz)},
       {"interval_ms",
-       {{"usual", rounded(1e3 * r.usual_s)}, {"max", rounded(1e-6 * static_cast<double>(r.longest_ns))}}},
+       {{"usual", rounded(1e3 * r.median_s)}, {"max", rounded(1e-6 * static_cast<double>(r.longest_ns))}}},
       {"gaps", r.gaps},
       {"missing", r.missing},
       {"saturated", r.saturated},

@@ -167,8 +167,8 @@ void MapPanel::draw(const Canvas& canvas, const FrameView& view, double x, doubl
       cairo_stroke(pen);
     }
     std::map<uint32_t, bool> measured;
-    for (const pf_track_t& track : view.tracks) {
-      measured[track.id] = track.status == PF_TRACK_INLIER;
+    for (const pf_match_t& track : view.tracks) {
+      measured[track.id] = track.status == PF_MATCH_INLIER;
     }
     for (const pf_feature_t& f : view.features) {
       const auto at = place(vec(f.p_W));

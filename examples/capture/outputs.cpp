@@ -26,14 +26,14 @@ void put_tum(std::string& rows, const pf_pose_t& pose) {
   append(rows, " %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", p[0], p[1], p[2], q[1], q[2], q[3], q[0]);
 }
 
-const char* track_name(uint32_t status) {
+const char* match_name(int32_t status) {
   constexpr const char* kNames[] = {"unknown", "inlier", "outlier", "missed", "new"};
-  return kNames[status <= 4 ? status : 0];
+  return kNames[status >= 0 && status <= 4 ? status : 0];
 }
 
-const char* kind_name(uint32_t kind) {
+const char* kind_name(int32_t kind) {
   constexpr const char* kNames[] = {"unknown", "inverse_depth", "point", "folded", "fixed"};
-  return kNames[kind <= 4 ? kind : 0];
+  return kNames[kind >= 0 && kind <= 4 ? kind : 0];
 }
 
 }  // namespace
@@ -111,11 +111,11 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, std::string& 
   }
   if (tracks_.is_open()) {
     std::string& tracks = tracks_.rows();
-    for (const pf_track_t& t : view.tracks) {
-      append(tracks, "%" PRId64 ",%u,%s,%s,%.3f,%.3f,%.4g,%.4g,%.4g", view.index, t.id, track_name(t.status),
+    for (const pf_match_t& t : view.tracks) {
+      append(tracks, "%" PRId64 ",%u,%s,%s,%.3f,%.3f,%.4g,%.4g,%.4g", view.index, t.id, match_name(t.status),
              kind_name(t.kind), t.predicted_px[0], t.predicted_px[1], t.covariance_px[0], t.covariance_px[1],
              t.covariance_px[3]);
-      if (t.status == PF_TRACK_MISSED) {
+      if (t.status == PF_MATCH_MISSED) {
         tracks += ",,\n";
       } else {
         append(tracks, ",%.3f,%.3f\n", t.measured_px[0], t.measured_px[1]);

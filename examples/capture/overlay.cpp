@@ -17,8 +17,8 @@ constexpr size_t kTailFrames = 15;
 constexpr size_t kMaxColumns = 4096;  ///< of the time line
 
 /// Tracking, starting, coasting, lost.
-bool is_worse(pf_state_t a, pf_state_t b) {
-  const auto rank = [](pf_state_t state) {
+bool is_worse(int32_t a, int32_t b) {
+  const auto rank = [](int32_t state) {
     return state == PF_STATE_TRACKING ? 0 : state == PF_STATE_STARTING ? 1 : state == PF_STATE_COASTING ? 2 : 3;
   };
   return rank(a) < rank(b);
@@ -29,13 +29,13 @@ double zoom_of(const pf_camera_t& camera) { return camera.width <= 480 ? 2.0 : 1
 
 int even(double value) { return 2 * static_cast<int>(std::lround(0.5 * value)); }
 
-Colour track_colour(const pf_track_t& track) {
+Colour track_colour(const pf_match_t& track) {
   switch (track.status) {
-    case PF_TRACK_INLIER:
+    case PF_MATCH_INLIER:
       return track.kind == PF_FEATURE_INVERSE_DEPTH ? kInverseDepth : kPoint;
-    case PF_TRACK_OUTLIER:
+    case PF_MATCH_OUTLIER:
       return kOutlier;
-    case PF_TRACK_MISSED:
+    case PF_MATCH_MISSED:
       return kMissed;
     default:
       return kNew;
@@ -55,8 +55,8 @@ Overlay::Overlay(const Session& session, const std::string& title)
       map_(session) {}
 
 void Overlay::add(const FrameView& view) {
-  for (const pf_track_t& track : view.tracks) {
-    if (track.status == PF_TRACK_INLIER || track.status == PF_TRACK_NEW) {
+  for (const pf_match_t& track : view.tracks) {
+    if (track.status == PF_MATCH_INLIER || track.status == PF_MATCH_NEW) {
       Tail& tail = tails_[track.id];
       if (tail.last_frame + 1 != view.index) {
         tail.pixels.clear();
@@ -76,7 +76,7 @@ void Overlay::add(const FrameView& view) {
 }
 
 /// Columns of twice as many frames, where there are more of them than a picture has pixels.
-void Overlay::remember_state(pf_state_t state) {
+void Overlay::remember_state(int32_t state) {
   if (frames_ % column_frames_ == 0) {
     if (time_line_.size() == kMaxColumns) {
       for (size_t i = 0; i < kMaxColumns / 2; ++i) {
@@ -172,16 +172,16 @@ void Overlay::draw_tracks(const FrameView& view) {
       plane_of[feature.id] = feature.plane;
     }
   }
-  const auto colour_of = [&](const pf_track_t& track) {
+  const auto colour_of = [&](const pf_match_t& track) {
     const auto plane = plane_of.find(track.id);
-    if (track.status != PF_TRACK_INLIER || plane == plane_of.end()) {
+    if (track.status != PF_MATCH_INLIER || plane == plane_of.end()) {
       return track_colour(track);
     }
     const PlaneColour c = plane_colour(plane->second);
     return Colour{c.r, c.g, c.b};
   };
   const auto at = [&](double pixel) { return zoom_ * (pixel + 0.5); };
-  for (const pf_track_t& track : view.tracks) {
+  for (const pf_match_t& track : view.tracks) {
     const auto found = tails_.find(track.id);
     if (found == tails_.end()) {
       continue;
@@ -193,25 +193,25 @@ void Overlay::draw_tracks(const FrameView& view) {
       canvas_.line(at(pixels[i - 1].first), at(pixels[i - 1].second), at(pixels[i].first), at(pixels[i].second));
     }
   }
-  for (const pf_track_t& track : view.tracks) {
+  for (const pf_match_t& track : view.tracks) {
     const Colour colour = colour_of(track);
-    if (track.status != PF_TRACK_NEW) {
+    if (track.status != PF_MATCH_NEW) {
       const Ellipse e = ellipse_of(track.covariance_px[0], track.covariance_px[1], track.covariance_px[3]);
-      canvas_.colour(colour, track.status == PF_TRACK_INLIER ? 0.75 : 0.9);
+      canvas_.colour(colour, track.status == PF_MATCH_INLIER ? 0.75 : 0.9);
       cairo_set_line_width(pen, 1.1);
       canvas_.ellipse(at(track.predicted_px[0]), at(track.predicted_px[1]), zoom_ * kGate * e.a, zoom_ * kGate * e.b,
                       e.angle);
     }
-    const double x = at(track.status == PF_TRACK_MISSED ? track.predicted_px[0] : track.measured_px[0]);
-    const double y = at(track.status == PF_TRACK_MISSED ? track.predicted_px[1] : track.measured_px[1]);
+    const double x = at(track.status == PF_MATCH_MISSED ? track.predicted_px[0] : track.measured_px[0]);
+    const double y = at(track.status == PF_MATCH_MISSED ? track.predicted_px[1] : track.measured_px[1]);
     canvas_.colour(colour);
     cairo_set_line_width(pen, 1.4);
-    if (track.status == PF_TRACK_INLIER) {
+    if (track.status == PF_MATCH_INLIER) {
       canvas_.dot(x, y, 2.4);
-    } else if (track.status == PF_TRACK_NEW) {
+    } else if (track.status == PF_MATCH_NEW) {
       cairo_rectangle(pen, x - 4.0, y - 4.0, 8.0, 8.0);
       cairo_stroke(pen);
-    } else if (track.status == PF_TRACK_OUTLIER) {
+    } else if (track.status == PF_MATCH_OUTLIER) {
       canvas_.line(x - 3.5, y - 3.5, x + 3.5, y + 3.5);
       canvas_.line(x - 3.5, y + 3.5, x + 3.5, y - 3.5);
     } else {

@@ -15,7 +15,7 @@ namespace pf::capture {
 
 constexpr int kOverlayStripHeight = 40;  ///< of the line below the picture [px]
 
-Colour state_colour(pf_state_t state);
+Colour state_colour(int32_t state);
 
 /// Draws a frame with what was looked for and found in it, the map from above, and the state.
 ///
@@ -52,7 +52,7 @@ class Overlay {
   void draw_numbers(const FrameView& view, double x, double y, double width);
   void draw_strip(const FrameView& view);
   void draw_time_line(const FrameView& view);
-  void remember_state(pf_state_t state);
+  void remember_state(int32_t state);
 
   const Session& session_;
   std::string title_;
@@ -61,7 +61,7 @@ class Overlay {
   Canvas canvas_;
   MapPanel map_;
   std::map<uint32_t, Tail> tails_;
-  std::vector<pf_state_t> time_line_;  ///< the worst state of column_frames_ frames each
+  std::vector<int32_t> time_line_;  ///< the worst state of column_frames_ frames each
   int64_t column_frames_ = 1;
   int64_t frames_ = 0;
   std::vector<unsigned char> grey_;  ///< the frame as BGRX

@@ -7,7 +7,7 @@ namespace pf::capture {
 
 using namespace colours;
 
-Colour state_colour(pf_state_t state) {
+Colour state_colour(int32_t state) {
   switch (state) {
     case PF_STATE_STARTING:
       return kDim;
@@ -40,11 +40,11 @@ void Overlay::draw_numbers(const FrameView& view, double x, double y, double wid
   int counts[5] = {0, 0, 0, 0, 0};
   int points = 0;
   int planar = 0;
-  for (const pf_track_t& track : view.tracks) {
+  for (const pf_match_t& track : view.tracks) {
     counts[track.status <= 4 ? track.status : 0] += 1;
-    points += track.status == PF_TRACK_INLIER && track.kind == PF_FEATURE_POINT ? 1 : 0;
+    points += track.status == PF_MATCH_INLIER && track.kind == PF_FEATURE_POINT ? 1 : 0;
     planar +=
-        track.status == PF_TRACK_INLIER && (track.kind == PF_FEATURE_FOLDED || track.kind == PF_FEATURE_FIXED) ? 1 : 0;
+        track.status == PF_MATCH_INLIER && (track.kind == PF_FEATURE_FOLDED || track.kind == PF_FEATURE_FIXED) ? 1 : 0;
   }
   const auto put = [&](const Colour& mark, const char* name, const std::string& value) {
     if (row > image_height_ - 4.0) {
@@ -58,11 +58,11 @@ void Overlay::draw_numbers(const FrameView& view, double x, double y, double wid
     row += step;
   };
   put(kPoint, "measured, 3-D point", std::to_string(points));
-  put(kInverseDepth, "measured, inverse depth", std::to_string(counts[PF_TRACK_INLIER] - points - planar));
+  put(kInverseDepth, "measured, inverse depth", std::to_string(counts[PF_MATCH_INLIER] - points - planar));
   put(kPath, "measured, on a plane", std::to_string(planar));
-  put(kOutlier, "found, but disagrees", std::to_string(counts[PF_TRACK_OUTLIER]));
-  put(kMissed, "looked for, not found", std::to_string(counts[PF_TRACK_MISSED]));
-  put(kNew, "new", std::to_string(counts[PF_TRACK_NEW]));
+  put(kOutlier, "found, but disagrees", std::to_string(counts[PF_MATCH_OUTLIER]));
+  put(kMissed, "looked for, not found", std::to_string(counts[PF_MATCH_MISSED]));
+  put(kNew, "new", std::to_string(counts[PF_MATCH_NEW]));
   const auto note = [&](const char* name, const std::string& value) {
     if (row > image_height_ - 4.0) {
       return;

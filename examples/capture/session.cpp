@@ -38,17 +38,17 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   }
   config_.camera = source.info().camera;
   if (options.readout_s >= 0.0) config_.camera.readout_s = options.readout_s;
-  config_.kernels = static_cast<uint32_t>(options.kernels);
+  config_.kernels = options.kernels;
   config_.keep_gauge = options.keep_gauge ? 1 : 0;
-  config_.planes = options.planes ? 1 : 0;
+  config_.plane.enabled = options.planes ? 1 : 0;
   const auto set = [](int32_t& field, int32_t value) { field = value > 0 ? value : field; };
-  set(config_.max_features, options.max_features);
-  set(config_.max_planes, options.max_planes);
-  set(config_.max_state_dim, options.max_state_dim);
-  set(config_.max_observations, options.max_observations);
-  set(config_.features_in_view, options.features_in_view);
+  set(config_.capacity.max_features, options.max_features);
+  set(config_.capacity.max_planes, options.max_planes);
+  set(config_.capacity.max_state_dim, options.max_state_dim);
+  set(config_.capacity.max_observations, options.max_observations);
+  set(config_.map.features_in_view, options.features_in_view);
   if (options.max_observations < 0) {
-    config_.max_observations = std::max(config_.max_observations, config_.features_in_view);
+    config_.capacity.max_observations = std::max(config_.capacity.max_observations, config_.map.features_in_view);
   }
   imu.configure(config_);
   config_.clock_ns = clock_ns;
@@ -128,13 +128,13 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   view.tracked =
       view.has_pose && (view.status == PF_OK || (view.report.inliers >= 8 && view.report.state == PF_STATE_STARTING));
   size_t count = 0;
-  view.tracks.resize(static_cast<size_t>(config_.max_observations + config_.max_features));
-  if (pf_get_tracks(slam_, view.tracks.data(), view.tracks.size(), &count) < 0) {
+  view.tracks.resize(static_cast<size_t>(config_.capacity.max_observations + config_.capacity.max_features));
+  if (pf_get_matches(slam_, view.tracks.data(), view.tracks.size(), &count) < 0) {
     count = 0;
   }
   view.tracks.resize(std::min(count, view.tracks.size()));
   count = 0;
-  view.features.resize(static_cast<size_t>(config_.max_features));
+  view.features.resize(static_cast<size_t>(config_.capacity.max_features));
   if (pf_get_features(slam_, view.features.data(), view.features.size(), &count) < 0) {
     count = 0;
   }

@@ -40,9 +40,9 @@ bool is_flat(const std::vector<uint8_t>& pixels) {
   return level(false) - level(true) < 4;
 }
 
-const char* kernels_name(uint32_t kernels) {
+const char* kernels_name(int32_t kernels) {
   constexpr const char* kNames[] = {"auto", "reference", "portable", "avx2", "avx512", "neon"};
-  return kernels < 6 ? kNames[kernels] : "unknown";
+  return kernels >= 0 && kernels < 6 ? kNames[kernels] : "unknown";
 }
 
 Json camera_json(const pf_camera_t& camera) {
@@ -137,9 +137,10 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["kernels"] = kernels_name(last_report_.kernels);
   json["scalar"] = config.scalar == PF_SCALAR_FLOAT ? "float" : "double";
   json["camera"] = camera_json(config.camera);
-  json["config"] = {{"max_state_dim", config.max_state_dim},       {"max_features", config.max_features},
-                    {"max_observations", config.max_observations}, {"features_in_view", config.features_in_view},
-                    {"sigma_pixel", config.sigma_pixel},           {"keep_gauge", config.keep_gauge}};
+  json["config"] = {
+      {"max_state_dim", config.capacity.max_state_dim},       {"max_features", config.capacity.max_features},
+      {"max_observations", config.capacity.max_observations}, {"features_in_view", config.map.features_in_view},
+      {"sigma_pixel", config.measurement.sigma_px},           {"keep_gauge", config.keep_gauge}};
   json["withdraw_target_after"] = options.withdraw_target_after >= 0 ? Json(options.withdraw_target_after) : Json();
   json["truth"] = source.truth_path;
   if (turn_images_ > 0) {

@@ -58,7 +58,7 @@ class Statistics {
   double nis_ = 0.0;
   int64_t nis_dof_ = 0;
   uint64_t last_hash_ = 0;
-  pf_state_t last_state_ = PF_STATE_STARTING;
+  int32_t last_state_ = PF_STATE_STARTING;
   pf_report_t last_report_{};
   std::vector<PlaneView> last_planes_;
   Histogram ms_;

@@ -23,12 +23,12 @@ struct FrameView {
   bool tracked = false;  ///< at least 8 inliers in this frame, and a pose that comes from them
   pf_pose_t pose{};
   double ms = 0.0;
-  std::vector<pf_track_t> tracks;
+  std::vector<pf_match_t> tracks;
   std::vector<pf_feature_t> features;
   std::vector<PlaneView> planes;
 };
 
-inline const char* state_name(pf_state_t state) {
+inline const char* state_name(int32_t state) {
   switch (state) {
     case PF_STATE_STARTING:
       return "starting";

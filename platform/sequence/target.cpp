@@ -32,7 +32,7 @@ pf_target_t rectangle_of(double width, double height, double sigma) {
   target.kind = PF_TARGET_RECTANGLE;
   target.width = width;
   target.height = height;
-  target.sigma_m = sigma;
+  target.sigma = sigma;
   target.first_pose.q_WC[0] = 1.0;
   return target;
 }
@@ -123,11 +123,11 @@ pf_target_t parse_target(const std::string& text, const std::string& file) {
   } else if (fields.has("width") || fields.has("height")) {
     target.width = positive(fields, "width", fields.number("width"), kLargest);
     target.height = positive(fields, "height", fields.number("height"), kLargest);
-    target.sigma_m = kRectangleSigma;
+    target.sigma = kRectangleSigma;
   } else {
     refuse(file + ": is no target; it needs width and height [m] of a dark rectangle, or points and first_pose");
   }
-  target.sigma_m = positive(fields, "sigma", fields.number_or("sigma", target.sigma_m), 1.0);
+  target.sigma = positive(fields, "sigma", fields.number_or("sigma", target.sigma), 1.0);
   return target;
 }
 

@@ -207,7 +207,7 @@ pf_status_t pf_sim_target(const pf_sim_t* sim, uint32_t kind, pf_target_t* targe
   target->kind = kind;
   target->width = sim->scene.target_width;
   target->height = sim->scene.target_height;
-  target->sigma_m = 0.0005;
+  target->sigma = 0.0005;
   if (kind == PF_TARGET_RECTANGLE) return PF_OK;
   target->count = 4;
   for (int k = 0; k < 4; ++k) {

@@ -18,7 +18,7 @@ static void test_a_block_should_be_refused_when_it_is_too_small_or_misaligned(vo
     TEST_ASSERT_EQUAL_INT(PF_ERROR_ALIGNMENT, pf_create(&config, block + shift, need.bytes, &other));
     TEST_ASSERT_NULL(other);
   }
-  config.sigma_pixel = -1;
+  config.measurement.sigma_px = -1;
   other = slam;
   TEST_ASSERT_EQUAL_INT(PF_ERROR_CONFIG, pf_create(&config, block, need.bytes, &other));
   TEST_ASSERT_NULL(other);
@@ -94,7 +94,7 @@ static void test_frames_should_give_the_same_result_when_the_block_held_garbage(
 
 static void test_getters_should_tell_how_many_there_are_when_the_array_is_short(void) {
   pf_feature_t features[POINTS];
-  pf_track_t tracks[4];
+  pf_match_t tracks[4];
   size_t count = 0;
   run(slam, 3);
   TEST_ASSERT_EQUAL_INT(PF_NOTE_TRUNCATED, pf_get_features(slam, features, 4, &count));
@@ -102,7 +102,7 @@ static void test_getters_should_tell_how_many_there_are_when_the_array_is_short(
   TEST_ASSERT_EQUAL_INT(PF_NOTE_TRUNCATED, pf_get_features(slam, NULL, 0, &count));
   TEST_ASSERT_EQUAL_size_t(POINTS, count);
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_features(slam, features, POINTS, &count));
-  TEST_ASSERT_EQUAL_INT(PF_NOTE_TRUNCATED, pf_get_tracks(slam, tracks, 4, &count));
+  TEST_ASSERT_EQUAL_INT(PF_NOTE_TRUNCATED, pf_get_matches(slam, tracks, 4, &count));
   TEST_ASSERT_EQUAL_size_t(POINTS, count);
 }
 

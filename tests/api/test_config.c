@@ -36,84 +36,110 @@ static void test_check_should_say_nothing_when_the_config_is_good(void) {
 }
 
 static void test_check_should_name_the_field_that_is_out_of_range(void) {
-  NAMES(max_state_dim, 31);
-  NAMES(max_state_dim, 2001);
-  NAMES(max_features, 7);
-  NAMES(max_features, 1001);
-  NAMES(max_observations, 7);
-  NAMES(max_observations, 201);
-  NAMES(features_in_view, 7);
-  NAMES(features_in_view, 31); /* more than max_observations */
-  NAMES(border_px, 3);
-  NAMES(border_px, 65);
-  NAMES(motion, 0);
-  NAMES(motion, 3);
+  NAMES(capacity.max_state_dim, 31);
+  NAMES(capacity.max_state_dim, 2001);
+  NAMES(capacity.max_features, 7);
+  NAMES(capacity.max_features, 1001);
+  NAMES(capacity.max_observations, 7);
+  NAMES(capacity.max_observations, 201);
+  NAMES(map.features_in_view, 7);
+  NAMES(map.features_in_view, 31); /* more than max_observations */
+  NAMES(map.border_px, 3);
+  NAMES(map.border_px, 65);
+  NAMES(motion.model, 0);
+  NAMES(motion.model, 3);
   NAMES(keep_gauge, 2);
-  NAMES(depth_from_map, 2);
+  NAMES(keep_gauge, -1);
+  NAMES(first_depth.from_map, 2);
+  NAMES(first_depth.from_map, -1);
+  NAMES(plane.enabled, 2);
+  NAMES(plane.enabled, -1);
+  NAMES(plane.fold, 0);
+  NAMES(plane.fold, 3);
+  NAMES(plane.fix, 0);
+  NAMES(plane.fix, 4);
+  NAMES(plane.min_points, 3);
+  NAMES(plane.min_points, 61);
+  NAMES(capacity.max_planes, 0);
+  NAMES(capacity.max_planes, 65);
+  NAMES(kernels, -1);
   NAMES(kernels, 99);
-  NAMES_REAL(linear_acceleration_density, 0, 1e5);
-  NAMES_REAL(angular_acceleration_density, 0, 1e5);
-  NAMES_REAL(linear_walk, -1, 1e5);
-  NAMES_REAL(angular_walk, -1, 1e5);
-  NAMES_REAL(sigma_pixel, 0.009, 10.1);
-  NAMES_REAL(gate_probability, 0.89, 1);
-  NAMES_REAL(start_depth, 0, 1e9);
-  NAMES_REAL(inverse_depth_relative_sigma, 0.04, 5.1);
-  NAMES_REAL(linearity_index, 0.0009, 1.1);
-  NAMES_REAL(coast_seconds, 0.04, 10.1);
-  NAMES(imu_buffer, -1);
-  NAMES(imu_buffer, 10001);
-  NAMES_REAL(imu_gyro_range, -1, 1001);
-  NAMES_REAL(imu_accel_range, -1, 1.1e5);
+  NAMES_REAL(motion.linear_acceleration_density, 0, 1e5);
+  NAMES_REAL(motion.angular_acceleration_density, 0, 1e5);
+  NAMES_REAL(motion.linear_walk, -1, 1e5);
+  NAMES_REAL(motion.angular_walk, -1, 1e5);
+  NAMES_REAL(measurement.sigma_px, 0.009, 10.1);
+  NAMES_REAL(measurement.gate_probability, 0.89, 1);
+  NAMES_REAL(first_depth.depth, 0, 1e9);
+  NAMES_REAL(first_depth.relative_sigma, 0.04, 5.1);
+  NAMES_REAL(first_depth.linearity_index, 0.0009, 1.1);
+  NAMES_REAL(motion.coast_s, 0.04, 10.1);
+  NAMES_REAL(plane.max_distance, 0, 10.1);
+  NAMES_REAL(plane.max_radius, 0.009, 1.1e4);
+  NAMES_REAL(plane.roughness, 0, 1.1);
+  NAMES_REAL(plane.fold_sigma, 0, 10.1);
+  NAMES_REAL(plane.fix_sigma, -1, 10.1);
+  NAMES(capacity.max_imu_samples, -1);
+  NAMES(capacity.max_imu_samples, 10001);
+  NAMES_REAL(imu.gyro_range, -1, 1001);
+  NAMES_REAL(imu.accel_range, -1, 1.1e5);
 }
 
-#define NAMES_CAMERA(field, value)    \
-  do {                                \
-    const pf_config_t good_ = config; \
-    config.camera.field = value;      \
-    names(PF_ERROR_CONFIG, #field);   \
-    config = good_;                   \
-  } while (0)
-
 static void test_check_should_name_the_number_of_the_camera_that_makes_no_sense(void) {
-  NAMES_CAMERA(model, 0);
-  NAMES_CAMERA(model, 5);
-  NAMES_CAMERA(width, 31);
-  NAMES_CAMERA(width, 4097);
-  NAMES_CAMERA(height, 31);
-  NAMES_CAMERA(height, 4097);
-  NAMES_CAMERA(fx, 0);
-  NAMES_CAMERA(fx, NAN);
-  NAMES_CAMERA(fy, -100);
-  NAMES_CAMERA(fy, INFINITY);
-  NAMES_CAMERA(cx, NAN);
-  NAMES_CAMERA(cx, 1e6);
-  NAMES_CAMERA(cy, -1e6);
-  NAMES_CAMERA(readout_s, -0.001);
-  NAMES_CAMERA(readout_s, 0.201);
-  NAMES_CAMERA(readout_s, NAN);
-  config.motion = PF_MOTION_CONSTANT_POSITION; /* rows cannot differ without a speed */
-  NAMES_CAMERA(readout_s, 0.03);
-  config.motion = PF_MOTION_CONSTANT_VELOCITY;
+  NAMES(camera.model, 0);
+  NAMES(camera.model, 5);
+  NAMES(camera.width, 31);
+  NAMES(camera.width, 4097);
+  NAMES(camera.height, 31);
+  NAMES(camera.height, 4097);
+  NAMES(camera.fx, 0);
+  NAMES(camera.fx, NAN);
+  NAMES(camera.fy, -100);
+  NAMES(camera.fy, INFINITY);
+  NAMES(camera.cx, NAN);
+  NAMES(camera.cx, 1e6);
+  NAMES(camera.cy, -1e6);
+  NAMES(camera.readout_s, -0.001);
+  NAMES(camera.readout_s, 0.201);
+  NAMES(camera.readout_s, NAN);
+  config.motion.model = PF_MOTION_CONSTANT_POSITION; /* rows cannot differ without a speed */
+  NAMES(camera.readout_s, 0.03);
+  config.motion.model = PF_MOTION_CONSTANT_VELOCITY;
   config.camera.readout_s = 0.03;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
   config.camera.readout_s = 0;
   config.camera.distortion[0] = 0.1; /* a pinhole has none */
-  names(PF_ERROR_CONFIG, "distortion");
+  names(PF_ERROR_CONFIG, "camera.distortion");
   config.camera.model = PF_CAMERA_RADTAN;
   config.camera.distortion[0] = NAN;
-  names(PF_ERROR_CONFIG, "distortion");
+  names(PF_ERROR_CONFIG, "camera.distortion");
 }
 
 static void test_check_should_tell_another_release_or_library_by_size_version_and_scalar(void) {
   config.size -= 8;
   names(PF_ERROR_VERSION, "size");
   config.size += 8;
-  config.version += 1;
-  names(PF_ERROR_VERSION, "version");
-  config.version -= 1;
   config.scalar = config.scalar == PF_SCALAR_DOUBLE ? PF_SCALAR_FLOAT : PF_SCALAR_DOUBLE;
   names(PF_ERROR_SCALAR, "scalar");
+}
+
+static void test_a_patch_release_should_be_accepted_and_another_minor_or_major_refused(void) {
+  const uint32_t minor = (uint32_t)1 << 8, major = (uint32_t)1 << 16;
+  config.version = PF_VERSION ^ 7u;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
+  config.version = PF_VERSION + minor;
+  names(PF_ERROR_VERSION, "version");
+  config.version = PF_VERSION + major;
+  names(PF_ERROR_VERSION, "version");
+  config.version = 0;
+  names(PF_ERROR_VERSION, "version");
+}
+
+static void test_version_should_be_that_of_the_library_and_of_a_new_config(void) {
+  pf_config_default(&config);
+  TEST_ASSERT_EQUAL_HEX32(PF_VERSION, pf_version());
+  TEST_ASSERT_EQUAL_HEX32(pf_version(), config.version);
 }
 
 static void test_every_status_should_have_a_line_of_text(void) {
@@ -132,6 +158,8 @@ int main(void) {
   RUN_TEST(test_check_should_name_the_field_that_is_out_of_range);
   RUN_TEST(test_check_should_name_the_number_of_the_camera_that_makes_no_sense);
   RUN_TEST(test_check_should_tell_another_release_or_library_by_size_version_and_scalar);
+  RUN_TEST(test_a_patch_release_should_be_accepted_and_another_minor_or_major_refused);
+  RUN_TEST(test_version_should_be_that_of_the_library_and_of_a_new_config);
   RUN_TEST(test_every_status_should_have_a_line_of_text);
   return UNITY_END();
 }

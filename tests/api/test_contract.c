@@ -42,7 +42,7 @@ static void test_every_call_should_refuse_null(void) {
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_withdraw_target(NULL));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_push_frame(NULL, &image));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_push_observations(NULL, 1, NULL, 0));
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_push_steering(NULL, three, three));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_push_control(NULL, three, three));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_push_imu(NULL, NULL, 0));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_imu_report(NULL, &imu));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_imu_samples(NULL, &sample, 1, &count));
@@ -51,7 +51,7 @@ static void test_every_call_should_refuse_null(void) {
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_predict_pose(NULL, 1, &pose));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_project_point(NULL, three, out, NULL));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_features(NULL, NULL, 0, &count));
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_tracks(NULL, NULL, 0, &count));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_matches(NULL, NULL, 0, &count));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_report(NULL, &report));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_gauge_information(NULL, scratch, 8, out));
   REFUSES(PF_ERROR_NULL, pf_start_from_target(slam, NULL));
@@ -61,8 +61,8 @@ static void test_every_call_should_refuse_null(void) {
   REFUSES(PF_ERROR_NULL, pf_push_frame(slam, NULL));
   REFUSES(PF_ERROR_NULL, pf_push_frame(slam, &image));
   REFUSES(PF_ERROR_NULL, pf_push_observations(slam, STEP_NS * 90, NULL, 3));
-  REFUSES(PF_ERROR_NULL, pf_push_steering(slam, NULL, three));
-  REFUSES(PF_ERROR_NULL, pf_push_steering(slam, three, NULL));
+  REFUSES(PF_ERROR_NULL, pf_push_control(slam, NULL, three));
+  REFUSES(PF_ERROR_NULL, pf_push_control(slam, three, NULL));
   REFUSES(PF_ERROR_NULL, pf_push_imu(slam, NULL, 1));
   REFUSES(PF_ERROR_NULL, pf_get_imu_report(slam, NULL));
   REFUSES(PF_ERROR_NULL, pf_get_imu_samples(slam, NULL, 1, &count));
@@ -74,7 +74,7 @@ static void test_every_call_should_refuse_null(void) {
   REFUSES(PF_ERROR_NULL, pf_project_point(slam, three, NULL, NULL));
   REFUSES(PF_ERROR_NULL, pf_get_features(slam, NULL, 0, NULL));
   REFUSES(PF_ERROR_NULL, pf_get_features(slam, NULL, 3, &count));
-  REFUSES(PF_ERROR_NULL, pf_get_tracks(slam, NULL, 0, NULL));
+  REFUSES(PF_ERROR_NULL, pf_get_matches(slam, NULL, 0, NULL));
   REFUSES(PF_ERROR_NULL, pf_get_report(slam, NULL));
   REFUSES(PF_ERROR_NULL, pf_get_gauge_information(slam, NULL, 8, out));
   REFUSES(PF_ERROR_NULL, pf_get_gauge_information(slam, scratch, 8, NULL));
@@ -88,8 +88,8 @@ static void test_non_finite_numbers_should_be_refused_and_change_nothing(void) {
     const double three[3] = {0, bad[b], 1}, zero[3] = {0, 0, 0};
     double out[3];
     pf_observation_t observations[POINTS];
-    REFUSES(PF_ERROR_NONFINITE, pf_push_steering(slam, three, zero));
-    REFUSES(PF_ERROR_NONFINITE, pf_push_steering(slam, zero, three));
+    REFUSES(PF_ERROR_NONFINITE, pf_push_control(slam, three, zero));
+    REFUSES(PF_ERROR_NONFINITE, pf_push_control(slam, zero, three));
     REFUSES(PF_ERROR_NONFINITE, pf_project_point(slam, three, out, NULL));
     TEST_ASSERT_EQUAL_INT(PF_ERROR_NONFINITE, pf_camera_project(&config.camera, three, out));
     TEST_ASSERT_EQUAL_INT(PF_ERROR_NONFINITE, pf_camera_unproject(&config.camera, three, out));
@@ -170,7 +170,7 @@ static void test_a_start_should_be_refused_after_the_first_frame_and_a_pose_befo
   target.kind = PF_TARGET_RECTANGLE;
   target.width = 0.2;
   target.height = 0.3;
-  target.sigma_m = 0.001;
+  target.sigma = 0.001;
   REFUSES(PF_ERROR_STATE, pf_get_pose(slam, &pose));
   REFUSES(PF_ERROR_STATE, pf_predict_pose(slam, 1, &pose));
   REFUSES(PF_ERROR_STATE, pf_project_point(slam, ahead, out, NULL));
@@ -193,7 +193,7 @@ static void test_a_start_should_be_refused_when_its_numbers_make_no_sense(void) 
   target.kind = PF_TARGET_RECTANGLE;
   target.width = 0.2;
   target.height = 0.3;
-  target.sigma_m = 0.001;
+  target.sigma = 0.001;
 
   bad = pose;
   bad.q_WC[0] = 0.5;
@@ -218,7 +218,7 @@ static void test_a_start_should_be_refused_when_its_numbers_make_no_sense(void) 
   wrong.height = NAN;
   REFUSES(PF_ERROR_NONFINITE, pf_start_from_target(slam, &wrong));
   wrong = target;
-  wrong.sigma_m = -1;
+  wrong.sigma = -1;
   REFUSES(PF_ERROR_RANGE, pf_start_from_target(slam, &wrong));
   wrong = target;
   wrong.kind = PF_TARGET_POINTS;
@@ -238,7 +238,7 @@ static void test_a_rectangle_and_a_known_pose_should_not_both_be_the_start(void)
   target.kind = PF_TARGET_RECTANGLE;
   target.width = 0.2;
   target.height = 0.3;
-  target.sigma_m = 0.001;
+  target.sigma = 0.001;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
   REFUSES(PF_ERROR_STATE, pf_start_from_pose(slam, &pose, velocity));
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));

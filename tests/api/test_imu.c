@@ -18,9 +18,9 @@ static pf_imu_sample_t at(int64_t t_ns) {
 
 /* The context of setUp with a buffer and known ranges. */
 static void use_buffer(void) {
-  config.imu_buffer = KEPT;
-  config.imu_gyro_range = 10;
-  config.imu_accel_range = 40;
+  config.capacity.max_imu_samples = KEPT;
+  config.imu.gyro_range = 10;
+  config.imu.accel_range = 40;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
   free_block(block);
   block = new_block(need.bytes, 0x55);
@@ -109,7 +109,7 @@ static void test_samples_should_be_counted_when_none_are_kept(void) {
   TEST_ASSERT_EQUAL_INT64(20, report_of().samples);
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_imu_samples(slam, NULL, 0, &count));
   TEST_ASSERT_EQUAL_size_t(0, count);
-  config.imu_buffer = 1000;
+  config.capacity.max_imu_samples = 1000;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &with));
   TEST_ASSERT_GREATER_OR_EQUAL_size_t(without.bytes + 1000 * (8 + 6 * sizeof(float)), with.bytes);
 }
@@ -121,7 +121,7 @@ static void test_the_report_should_tell_rate_and_gaps(void) {
   push_samples(2 * IMU_NS, IMU_NS, 99);
   report = report_of();
   TEST_ASSERT_DOUBLE_WITHIN(1e-6, 200, report.rate_hz);
-  TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.005, report.usual_s);
+  TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.005, report.median_s);
   TEST_ASSERT_EQUAL_INT64(0, report.gaps);
   push_samples(104 * IMU_NS, IMU_NS, 10); /* 101, 102 and 103 are not there */
   push_samples(1114 * IMU_NS, IMU_NS, 1); /* and a thousand more */
@@ -131,7 +131,7 @@ static void test_the_report_should_tell_rate_and_gaps(void) {
   TEST_ASSERT_EQUAL_INT64(1001 * IMU_NS, report.longest_ns);
   TEST_ASSERT_EQUAL_INT64(IMU_NS, report.first_t_ns);
   TEST_ASSERT_EQUAL_INT64(1114 * IMU_NS, report.last_t_ns);
-  TEST_ASSERT_DOUBLE_WITHIN(0.001, 0.005, report.usual_s);
+  TEST_ASSERT_DOUBLE_WITHIN(0.001, 0.005, report.median_s);
   TEST_ASSERT_EQUAL_UINT32(0, report.used);
 }
 

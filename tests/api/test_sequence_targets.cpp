@@ -55,11 +55,11 @@ static void test_rectangle_should_be_read_from_a_file_and_from_text() {
   TEST_ASSERT_EQUAL_INT(0, read("width: 0.21\nheight: 0.148\nsigma: 0.001\n", &target, message));
   TEST_ASSERT_EQUAL_INT(PF_TARGET_RECTANGLE, target.kind);
   TEST_ASSERT_EQUAL_DOUBLE(0.21, target.width);
-  TEST_ASSERT_EQUAL_DOUBLE(0.001, target.sigma_m);
+  TEST_ASSERT_EQUAL_DOUBLE(0.001, target.sigma);
   TEST_ASSERT_EQUAL_INT(0, pf_parse_rectangle("0.1832x0.1295", &target, message));
   TEST_ASSERT_EQUAL_DOUBLE(0.1832, target.width);
   TEST_ASSERT_EQUAL_DOUBLE(0.1295, target.height);
-  TEST_ASSERT_TRUE(target.sigma_m > 0.0);
+  TEST_ASSERT_TRUE(target.sigma > 0.0);
   for (const char* text : {"", "x", "0.1x", "0.1", "-1x2", "0x1", "nanx1", "1xinf", "1x2x3", "2000x1"}) {
     TEST_ASSERT_EQUAL_INT_MESSAGE(-1, pf_parse_rectangle(text, &target, message), text);
     require_message(message, "rectangle:");
@@ -77,7 +77,7 @@ static void test_points_should_be_read_with_their_first_pose() {
   TEST_ASSERT_EQUAL_DOUBLE(-0.6, target.first_pose.p_WC[2]);
   TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.01, target.first_pose.covariance[0]);
   TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.0009, target.first_pose.covariance[35]);
-  TEST_ASSERT_EQUAL_DOUBLE(0.002, target.sigma_m);
+  TEST_ASSERT_EQUAL_DOUBLE(0.002, target.sigma);
 }
 
 static void test_scenelib_camera_should_be_turned_to_right_down_forward() {

@@ -90,13 +90,13 @@ pf_status_t step(pf_slam_t* slam, Bytes& bytes, int64_t& t_ns, std::vector<uint8
       double point[3], pixel[2], covariance[4];
       pf_pose_t pose;
       pf_feature_t features[4];
-      pf_track_t tracks[4];
+      pf_match_t tracks[4];
       size_t count = 0;
       bytes.take(point, sizeof(point));
       pf_project_point(slam, point, pixel, covariance);
       pf_predict_pose(slam, bytes.take<int64_t>(), &pose);
       pf_get_features(slam, features, 4, &count);
-      pf_get_tracks(slam, tracks, 4, &count);
+      pf_get_matches(slam, tracks, 4, &count);
       return what & 64 ? pf_withdraw_target(slam) : PF_OK;
     }
   }
@@ -109,10 +109,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   pf_config_t config;
   pf_config_default(&config);
   config.camera = {PF_CAMERA_PINHOLE, kWidth, kHeight, 60.0, 60.0, 39.5, 31.5, {}, 0};
-  config.max_state_dim = 64;
-  config.max_features = 12;
-  config.max_observations = 10;
-  config.features_in_view = 8;
+  config.capacity.max_state_dim = 64;
+  config.capacity.max_features = 12;
+  config.capacity.max_observations = 10;
+  config.map.features_in_view = 8;
   pf_memory_t need;
   require(pf_memory_query(&config, &need) == PF_OK, "the config is right");
   void* block = nullptr;

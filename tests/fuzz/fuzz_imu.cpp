@@ -31,7 +31,7 @@ void check_kept(const pf_slam_t* slam, size_t capacity) {
   require(static_cast<size_t>(report.kept) == count && report.samples >= report.kept, "counts agree");
   require(report.gaps >= 0 && report.missing >= report.gaps && report.late >= 0 && report.longest_ns >= 0,
           "counts are counts");
-  require(std::isfinite(report.rate_hz) && report.rate_hz >= 0 && report.usual_s >= 0, "rates are rates");
+  require(std::isfinite(report.rate_hz) && report.rate_hz >= 0 && report.median_s >= 0, "rates are rates");
 }
 
 void push(pf_slam_t* slam, Bytes& bytes, int64_t& t_ns) {
@@ -63,11 +63,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   pf_config_t config;
   pf_config_default(&config);
   config.camera = {PF_CAMERA_PINHOLE, 64, 48, 50.0, 50.0, 31.5, 23.5, {}, 0};
-  config.max_state_dim = 64;
-  config.max_features = config.max_observations = config.features_in_view = 8;
-  config.imu_buffer = bytes.take<uint8_t>() % 20;
-  config.imu_gyro_range = bytes.take<uint8_t>();
-  config.imu_accel_range = bytes.take<uint8_t>();
+  config.capacity.max_state_dim = 64;
+  config.capacity.max_features = config.capacity.max_observations = config.map.features_in_view = 8;
+  config.capacity.max_imu_samples = bytes.take<uint8_t>() % 20;
+  config.imu.gyro_range = bytes.take<uint8_t>();
+  config.imu.accel_range = bytes.take<uint8_t>();
   pf_memory_t need;
   require(pf_memory_query(&config, &need) == PF_OK, "the config is right");
   void* block = nullptr;
@@ -86,7 +86,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     } else {
       push(slam, bytes, t_ns);
     }
-    check_kept(slam, static_cast<size_t>(config.imu_buffer));
+    check_kept(slam, static_cast<size_t>(config.capacity.max_imu_samples));
   }
   std::free(block);
   return 0;

@@ -21,9 +21,9 @@ std::size_t bytes_of(int width, int height, int state_dim, int features, int obs
   pf_config_t config;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
   config.camera = {PF_CAMERA_PINHOLE, width, height, 0.8 * width, 0.8 * width, 0.5 * width, 0.5 * height, {}, 0};
-  if (state_dim > 0) config.max_state_dim = state_dim;
-  if (features > 0) config.max_features = features;
-  if (observations > 0) config.max_observations = config.features_in_view = observations;
+  if (state_dim > 0) config.capacity.max_state_dim = state_dim;
+  if (features > 0) config.capacity.max_features = features;
+  if (observations > 0) config.capacity.max_observations = config.map.features_in_view = observations;
   pf_memory_t memory;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &memory));
   return memory.bytes;
@@ -66,11 +66,11 @@ void test_memory_should_depend_on_capacities_and_image_size_alone() {
   config.camera = {PF_CAMERA_PINHOLE, 640, 480, 512, 512, 320, 240, {}, 0};
   pf_memory_t first, second;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &first));
-  config.sigma_pixel = 1;
-  config.coast_seconds = 5;
+  config.measurement.sigma_px = 1;
+  config.motion.coast_s = 5;
   config.keep_gauge = 0;
-  config.motion = PF_MOTION_CONSTANT_POSITION;
-  config.features_in_view = 20;
+  config.motion.model = PF_MOTION_CONSTANT_POSITION;
+  config.map.features_in_view = 20;
   config.camera.fx = config.camera.fy = 400;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &second));
   TEST_ASSERT_EQUAL_size_t(first.bytes, second.bytes);

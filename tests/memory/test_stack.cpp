@@ -38,7 +38,7 @@ void check_run(const char* scene, RenderedRun::Start start) {
   pf_pose_t pose;
   pf_report_t report;
   std::vector<pf_feature_t> features(100);
-  std::vector<pf_track_t> tracks(200);
+  std::vector<pf_match_t> tracks(200);
   std::size_t count;
   const double ahead[3] = {0, 0, 0};
   double pixel[2], covariance[4];
@@ -51,7 +51,7 @@ void check_run(const char* scene, RenderedRun::Start start) {
   TEST_ASSERT_LESS_OR_EQUAL_size_t(
       most, metered("pf_get_features", [&] { pf_get_features(run.slam, features.data(), features.size(), &count); }));
   TEST_ASSERT_LESS_OR_EQUAL_size_t(
-      most, metered("pf_get_tracks", [&] { pf_get_tracks(run.slam, tracks.data(), tracks.size(), &count); }));
+      most, metered("pf_get_matches", [&] { pf_get_matches(run.slam, tracks.data(), tracks.size(), &count); }));
   std::vector<double> scratch(static_cast<std::size_t>(300 * 308));
   double information[49];
   TEST_ASSERT_LESS_OR_EQUAL_size_t(most, metered("pf_get_gauge_information", [&] {

@@ -43,7 +43,7 @@ static void test_same_id_twice_in_a_call_should_count_once(void) {
 static void test_pixel_without_a_ray_should_not_leave_a_feature_without_an_anchor_when_the_map_is_full(void) {
   config.camera.model = PF_CAMERA_DIVISION;
   config.camera.distortion[0] = 1e-5;
-  config.max_state_dim = 48;
+  config.capacity.max_state_dim = 48;
   again();
   pf_observation_t observations[POINTS];
   for (int k = 0; k < 12; ++k) {
@@ -59,7 +59,7 @@ static void test_pixel_without_a_ray_should_not_leave_a_feature_without_an_ancho
 }
 
 static void test_rows_of_the_state_should_not_exceed_what_the_config_says(void) {
-  config.max_state_dim = 49;
+  config.capacity.max_state_dim = 49;
   again();
   run(slam, 5);
   pf_report_t report;
@@ -90,7 +90,7 @@ static void test_filter_should_start_over_and_say_so_when_the_state_leaves_all_b
   const double push_v[3] = {1e6, 0, 0}, turn[3] = {0, 0, 0};
   int64_t t_ns = STEP_NS * 4;
   for (int k = 0; k < 2000 && log_lines == 0; ++k, t_ns += INT64_C(2000000000)) {
-    for (int i = 0; i < 5; ++i) TEST_ASSERT_EQUAL_INT(PF_OK, pf_push_steering(slam, push_v, turn));
+    for (int i = 0; i < 5; ++i) TEST_ASSERT_EQUAL_INT(PF_OK, pf_push_control(slam, push_v, turn));
     status = pf_push_observations(slam, t_ns, NULL, 0);
     if (pf_get_pose(slam, &pose) == PF_OK) TEST_ASSERT_TRUE(isfinite(pose.p_WC[0]));
     if (log_lines == 1 && status == PF_NOTE_LOST) log_lines = 0; /* being lost is said too */
@@ -118,7 +118,7 @@ static void test_starts_that_no_camera_can_be_in_should_be_refused(void) {
   bad.covariance[8] = bad.covariance[13] = -0.9e-4;
   REFUSES(PF_ERROR_RANGE, pf_start_from_pose(slam, &bad, velocity));
   const double huge[3] = {1e300, 0, 0}, none[3] = {0, 0, 0};
-  REFUSES(PF_ERROR_RANGE, pf_push_steering(slam, huge, none));
+  REFUSES(PF_ERROR_RANGE, pf_push_control(slam, huge, none));
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_pose(slam, &good, velocity));
 }
 
@@ -127,13 +127,13 @@ static void test_target_should_be_refused_when_it_does_not_fit_or_the_door_canno
   double velocity[36];
   memset(&target, 0, sizeof target);
   target.kind = PF_TARGET_POINTS;
-  target.sigma_m = 0.001;
+  target.sigma = 0.001;
   target.first_pose = certain_pose(velocity);
   target.count = PF_TARGET_MAX_POINTS;
   for (int i = 0; i < target.count; ++i) target.points_W[i][2] = 1; /* all in one place */
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
   run(slam, 5);
-  config.max_state_dim = 32;
+  config.capacity.max_state_dim = 32;
   again();
   REFUSES(PF_ERROR_RANGE, pf_start_from_target(slam, &target));
   target.kind = PF_TARGET_RECTANGLE;

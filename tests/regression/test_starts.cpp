@@ -10,7 +10,7 @@ static void test_control_input_before_the_first_pose_should_have_no_effect() {
   for (int pushed = 0; pushed < 2; ++pushed) {
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));
     const double dv_C[3] = {pushed * 5.0, 0, 0}, dw_C[3] = {0, pushed * 2.0, 0};
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_push_steering(slam, dv_C, dw_C));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_push_control(slam, dv_C, dw_C));
     run(slam, 3);
     pf_pose_t pose;
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_pose(slam, &pose));

@@ -35,10 +35,10 @@ void setUp(void) {
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
   const pf_camera_t camera = {PF_CAMERA_PINHOLE, WIDTH, HEIGHT, 130, 130, 79.5, 59.5, {0}, 0};
   config.camera = camera;
-  config.max_state_dim = 120;
-  config.max_features = 30;
-  config.max_observations = 30;
-  config.features_in_view = 20;
+  config.capacity.max_state_dim = 120;
+  config.capacity.max_features = 30;
+  config.capacity.max_observations = 30;
+  config.map.features_in_view = 20;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
   block = new_block(need.bytes, 0);
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block, need.bytes, &slam));
@@ -75,7 +75,7 @@ typedef struct view {
   pf_report_t report;
   pf_state_t state;
   pf_feature_t features[30];
-  pf_track_t tracks[60];
+  pf_match_t tracks[60];
   size_t feature_count, track_count, imu_count;
   pf_imu_report_t imu;
   pf_imu_sample_t imu_samples[16];
@@ -89,7 +89,7 @@ static inline view_t* view_of(const pf_slam_t* of) {
   v->status[1] = pf_get_report(of, &v->report);
   v->status[2] = pf_get_state(of, &v->state);
   v->status[3] = pf_get_features(of, v->features, 30, &v->feature_count);
-  v->status[4] = pf_get_tracks(of, v->tracks, 60, &v->track_count);
+  v->status[4] = pf_get_matches(of, v->tracks, 60, &v->track_count);
   v->status[5] = pf_predict_pose(of, STEP_NS * 1000 / 10, &v->later);
   v->status[6] = pf_get_imu_report(of, &v->imu);
   v->status[7] = pf_get_imu_samples(of, v->imu_samples, 16, &v->imu_count);

@@ -66,7 +66,8 @@ void add(Hash& h, const pf_pose_t& p) {
 }
 
 void add(Hash& h, const pf_feature_t& f) {
-  h << f.id << f.track << f.kind << f.is_target << f.plane << f.p_W << f.covariance << f.observations << f.attempts;
+  h << f.id << f.external_id << f.kind << f.is_target << f.plane << f.p_W << f.covariance << f.observations
+    << f.attempts;
 }
 
 void add(Hash& h, const pf_plane_t& p) {
@@ -76,7 +77,7 @@ void add(Hash& h, const pf_plane_t& p) {
   h << p.area;
 }
 
-void add(Hash& h, const pf_track_t& t) {
+void add(Hash& h, const pf_match_t& t) {
   h << t.id << t.status << t.kind << t.predicted_px << t.covariance_px << t.measured_px << t.nis;
 }
 
@@ -90,7 +91,7 @@ void add(Hash& h, const pf_imu_report_t& r) {
   const std::int64_t counts[] = {r.samples, r.since_frame, r.last_frame, r.late,      r.saturated,
                                  r.gaps,    r.missing,     r.first_t_ns, r.last_t_ns, r.longest_ns};
   for (const std::int64_t count : counts) h << static_cast<double>(count);
-  h << r.rate_hz << r.usual_s << r.kept << r.used;
+  h << r.rate_hz << r.median_s << r.kept << r.used;
 }
 
 void add(Hash& h, const pf_imu_sample_t& s) { h << static_cast<double>(s.t_ns) << s.gyro << s.accel; }
@@ -191,7 +192,7 @@ void write_digest(const pf_slam_t* slam, pf_status_t pushed) {
   add_predictions(h[kPredicted], slam, report.t_ns);
   add_all(h[kFeatures], slam, pf_get_features);
   add_all(h[kPlanes], slam, pf_get_planes);
-  add_all(h[kMatches], slam, pf_get_tracks);
+  add_all(h[kMatches], slam, pf_get_matches);
   add_hits(h[kHits], slam, cameras()[slam]);
   pf_imu_report_t imu{};
   h[kImu] << pf_get_imu_report(slam, &imu);

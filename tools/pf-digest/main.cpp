@@ -23,7 +23,7 @@ pf_config_t config_for(const pf_camera_t& camera) {
   pf_config_t config;
   pf_config_default(&config);
   config.camera = camera;
-  config.imu_buffer = 100;
+  config.capacity.max_imu_samples = 100;
   return config;
 }
 

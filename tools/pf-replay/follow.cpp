@@ -36,7 +36,7 @@ void compare(const pf_pose_t& recorded, const pf_pose_t& here, Distance* d) {
 void compare(const std::vector<pf_feature_t>& recorded, const std::vector<pf_feature_t>& here, Distance* d) {
   for (const pf_feature_t& a : recorded) {
     for (const pf_feature_t& b : here) {
-      if (a.track != b.track) continue;
+      if (a.external_id != b.external_id) continue;
       d->other_kind += a.kind != b.kind;
       if (a.kind != b.kind || a.kind == PF_FEATURE_INVERSE_DEPTH) continue;
       ++d->map_points;
@@ -70,7 +70,7 @@ bool follow(const std::string& file, Distance* d) {
   double us = 0;
   for (int i = 0; i < frames; ++i) {
     if (!tape.read(frame)) return false;
-    if (i > 0) pf_push_steering(slam, frame.dv_C, frame.dw_C);
+    if (i > 0) pf_push_control(slam, frame.dv_C, frame.dw_C);
     const auto begin = std::chrono::steady_clock::now();
     const pf_status_t status =
         pf_push_observations(slam, frame.t_ns, frame.observations.data(), frame.observations.size());

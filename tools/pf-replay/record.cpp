@@ -23,12 +23,12 @@ bool record(const std::string& file, int frames, std::uint64_t seed, bool planes
   bool written = tape.write(frames) && tape.write(seed) && tape.write(planes);
   Frame frame;
   frame.pose = bed.start();
-  std::vector<pf_track_t> tracks(1000);
+  std::vector<pf_match_t> tracks(1000);
   std::unordered_map<std::uint32_t, std::uint32_t> observation_of;  // by id of the feature
   for (int i = 0; i < frames && written; ++i) {
     if (i > 0) {
       bed.steer(i - 1, frame.pose, frame.dv_C, frame.dw_C);
-      pf_push_steering(slam, frame.dv_C, frame.dw_C);
+      pf_push_control(slam, frame.dv_C, frame.dw_C);
       bed.move(i, frame.dv_C, frame.dw_C);
     }
     int births = 0;
@@ -45,13 +45,13 @@ bool record(const std::string& file, int frames, std::uint64_t seed, bool planes
 
     // A feature may leave the map in the frame that refuses its measurement.
     if (i == 0 || report.new_features > 0) {
-      for (const pf_feature_t& f : map_of(slam)) observation_of[f.id] = f.track;
+      for (const pf_feature_t& f : map_of(slam)) observation_of[f.id] = f.external_id;
     }
     std::size_t count = 0;
-    pf_get_tracks(slam, tracks.data(), tracks.size(), &count);
+    pf_get_matches(slam, tracks.data(), tracks.size(), &count);
     std::unordered_set<std::uint32_t> dropped;
     for (std::size_t k = 0; k < count && k < tracks.size(); ++k) {
-      if (tracks[k].status == PF_TRACK_OUTLIER) dropped.insert(observation_of[tracks[k].id]);
+      if (tracks[k].status == PF_MATCH_OUTLIER) dropped.insert(observation_of[tracks[k].id]);
     }
     frame.observations.clear();
     for (const pf_observation_t& o : seen) {

@@ -17,14 +17,14 @@ pf_config_t session_config(const pfsim::BedOptions& bed, bool planes) {
   pf_config_t config;
   pf_config_default(&config);
   config.camera = pfsim::Bed::camera(bed.fov_deg);
-  config.sigma_pixel = 1;
-  config.gate_probability = 0.9999;
-  config.max_features = 300;
-  config.max_state_dim = 1000;
-  config.max_observations = 100;
-  config.coast_seconds = 10;
-  config.start_depth = 2;
-  config.planes = planes;
+  config.measurement.sigma_px = 1;
+  config.measurement.gate_probability = 0.9999;
+  config.capacity.max_features = 300;
+  config.capacity.max_state_dim = 1000;
+  config.capacity.max_observations = 100;
+  config.motion.coast_s = 10;
+  config.first_depth.depth = 2;
+  config.plane.enabled = planes;
   return config;
 }
 

@@ -84,7 +84,7 @@ Pose Bed::nominal(int frame) const {
 void Bed::place_target() {
   target_.kind = PF_TARGET_POINTS;
   target_.count = options_.target_points;
-  target_.sigma_m = 0.001;
+  target_.sigma = 0.001;
   target_.first_pose = start_;
   const Pose from = nominal(0);
   const int side = static_cast<int>(std::ceil(std::sqrt(options_.target_points)));
@@ -94,7 +94,7 @@ void Bed::place_target() {
     const double u = (k % side) / (side - 1.0) - 0.5, v = (k / side) / (side - 1.0) - 0.5;
     const Vec3 p = centre + slant * Vec3{u * options_.target_size, v * options_.target_size, 0};
     set(target_.points_W[k], p);
-    points_.push_back({p + world_.normal3() * target_.sigma_m, false, false, -1});
+    points_.push_back({p + world_.normal3() * target_.sigma, false, false, -1});
   }
 }
 
@@ -146,8 +146,8 @@ void Bed::move(int frame, const double dv_C[3], const double dw_C[3]) {
     truth_.pose = nominal(frame);
     return;
   }
-  draw_motion(truth_, motion_, 1 / options_.rate_hz, config_.linear_acceleration_density,
-              config_.angular_acceleration_density, {dv_C[0], dv_C[1], dv_C[2]}, {dw_C[0], dw_C[1], dw_C[2]});
+  draw_motion(truth_, motion_, 1 / options_.rate_hz, config_.motion.linear_acceleration_density,
+              config_.motion.angular_acceleration_density, {dv_C[0], dv_C[1], dv_C[2]}, {dw_C[0], dw_C[1], dw_C[2]});
 }
 
 bool Bed::in_view(const Vec3& p_W, double pixel[2]) const {
@@ -164,9 +164,10 @@ std::vector<pf_observation_t> Bed::observe(int frame, int* births) {
   const bool may_begin = frame >= options_.first_birth;
   const auto measure = [&](std::size_t id, const double pixel[2]) {
     const double noise[2] = {noise_.normal(), noise_.normal()};
-    seen.push_back({static_cast<std::uint32_t>(id),
-                    {pixel[0] + config_.sigma_pixel * noise[0], pixel[1] + config_.sigma_pixel * noise[1]},
-                    0});
+    seen.push_back(
+        {static_cast<std::uint32_t>(id),
+         {pixel[0] + config_.measurement.sigma_px * noise[0], pixel[1] + config_.measurement.sigma_px * noise[1]},
+         0});
     if (!points_[id].begun && id >= static_cast<std::size_t>(target_.count)) ++*births;
     points_[id].begun = true;
   };
@@ -180,8 +181,8 @@ std::vector<pf_observation_t> Bed::observe(int frame, int* births) {
       pixel[0] = world_.uniform(kBorder, config_.camera.width - 1 - kBorder);
       pixel[1] = world_.uniform(kBorder, config_.camera.height - 1 - kBorder);
       double rho = 0;
-      const double rho0 = 1 / config_.start_depth;
-      while (rho < 0.02 * rho0) rho = rho0 * (1 + config_.inverse_depth_relative_sigma * world_.normal());
+      const double rho0 = 1 / config_.first_depth.depth;
+      while (rho < 0.02 * rho0) rho = rho0 * (1 + config_.first_depth.relative_sigma * world_.normal());
       double ray[3];
       if (pf_camera_unproject(&config_.camera, pixel, ray) != PF_OK) break;
       points_.push_back(

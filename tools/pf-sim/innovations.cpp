@@ -47,8 +47,8 @@ double FrameDepth::at(const pf_pose_t& truth, long x, long y) {
 InnovationWatch::InnovationWatch(const pf_config_t& config, const pf_target_t& points)
     : camera_(config.camera),
       points_(points),
-      features_(static_cast<std::size_t>(config.max_features)),
-      tracks_(static_cast<std::size_t>(config.max_features + config.max_observations)) {}
+      features_(static_cast<std::size_t>(config.capacity.max_features)),
+      tracks_(static_cast<std::size_t>(config.capacity.max_features + config.capacity.max_observations)) {}
 
 /// The target's points are in the map from the first frame with a pose on, and their ids do not change.
 void InnovationWatch::learn_kinds(const pf_slam_t* slam) {
@@ -56,7 +56,7 @@ void InnovationWatch::learn_kinds(const pf_slam_t* slam) {
   std::size_t count = 0;
   pf_get_features(slam, features_.data(), features_.size(), &count);
   for (std::size_t i = 0; i < std::min(count, features_.size()); ++i)
-    if (features_[i].is_target) target_index_[features_[i].id] = static_cast<int>(features_[i].track);
+    if (features_[i].is_target) target_index_[features_[i].id] = static_cast<int>(features_[i].external_id);
   for (const auto& [id, index] : target_index_) {
     const double* p = points_.points_W[index];
     place_W_[id] = {p[0], p[1], p[2]};
@@ -65,8 +65,8 @@ void InnovationWatch::learn_kinds(const pf_slam_t* slam) {
 
 void InnovationWatch::learn_places(const pf_pose_t& truth, FrameDepth& depth) {
   const Pose pose{pf::sim::rotation_of(truth.q_WC), {truth.p_WC[0], truth.p_WC[1], truth.p_WC[2]}};
-  for (const pf_track_t& track : tracks_) {
-    if (track.status != PF_TRACK_NEW) continue;
+  for (const pf_match_t& track : tracks_) {
+    if (track.status != PF_MATCH_NEW) continue;
     const auto x = std::lround(track.measured_px[0]), y = std::lround(track.measured_px[1]);
     double ray[3];
     if (x < 0 || y < 0 || x >= camera_.width || y >= camera_.height ||
@@ -77,7 +77,7 @@ void InnovationWatch::learn_places(const pf_pose_t& truth, FrameDepth& depth) {
   }
 }
 
-bool InnovationWatch::match_error(const pf_track_t& track, const Pose& truth, double error[2]) const {
+bool InnovationWatch::match_error(const pf_match_t& track, const Pose& truth, double error[2]) const {
   const auto place = place_W_.find(track.id);
   if (place == place_W_.end()) return false;
   const Vec3 p = truth.R_WC.transposed() * (place->second - truth.p_WC);
@@ -94,13 +94,13 @@ void InnovationWatch::read(const pf_slam_t* slam, const pf_pose_t& truth, FrameD
   learn_kinds(slam);
   std::size_t count = 0;
   tracks_.resize(tracks_.capacity());
-  pf_get_tracks(slam, tracks_.data(), tracks_.size(), &count);
+  pf_get_matches(slam, tracks_.data(), tracks_.size(), &count);
   tracks_.resize(std::min(count, tracks_.size()));
   learn_places(truth, depth);
   const Pose pose{pf::sim::rotation_of(truth.q_WC), {truth.p_WC[0], truth.p_WC[1], truth.p_WC[2]}};
-  for (const pf_track_t& track : tracks_) {
+  for (const pf_match_t& track : tracks_) {
     // A track without an ellipse was not predicted: it started the run.
-    if (track.status != PF_TRACK_INLIER || !(track.covariance_px[0] > 0)) continue;
+    if (track.status != PF_MATCH_INLIER || !(track.covariance_px[0] > 0)) continue;
     const bool target = target_index_.count(track.id) > 0;
     const TrackKind kind = target                                   ? TrackKind::kTarget
                            : track.kind == PF_FEATURE_INVERSE_DEPTH ? TrackKind::kInverseDepth

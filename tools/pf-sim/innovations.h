@@ -66,12 +66,12 @@ class InnovationWatch {
   };
   void learn_kinds(const pf_slam_t* slam);
   void learn_places(const pf_pose_t& truth, FrameDepth& depth);
-  bool match_error(const pf_track_t& track, const pf::sim::Pose& truth, double error[2]) const;
+  bool match_error(const pf_match_t& track, const pf::sim::Pose& truth, double error[2]) const;
 
   pf_camera_t camera_;
   pf_target_t points_;
   std::vector<pf_feature_t> features_;
-  std::vector<pf_track_t> tracks_;
+  std::vector<pf_match_t> tracks_;
   std::map<std::uint32_t, int> target_index_;       ///< of features that are points of the target
   std::map<std::uint32_t, pf::sim::Vec3> place_W_;  ///< true places
   std::map<std::uint32_t, Past> past_;

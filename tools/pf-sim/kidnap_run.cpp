@@ -35,14 +35,14 @@ std::vector<pf_feature_t> map_of(const Context& context) {
 /// Median depth of what was measured in the last frame; 0 where nothing was.
 double median_depth(const Context& context, const pf_pose_t& pose) {
   std::size_t count = 0;
-  pf_get_tracks(context.slam, nullptr, 0, &count);
-  std::vector<pf_track_t> tracks(count);
-  if (count > 0) pf_get_tracks(context.slam, tracks.data(), tracks.size(), &count);
+  pf_get_matches(context.slam, nullptr, 0, &count);
+  std::vector<pf_match_t> tracks(count);
+  if (count > 0) pf_get_matches(context.slam, tracks.data(), tracks.size(), &count);
   const std::vector<pf_feature_t> map = map_of(context);
   const pf::sim::Mat3 R_CW = pf::sim::rotation_of(pose.q_WC).transposed();
   std::vector<double> depths;
-  for (const pf_track_t& track : tracks) {
-    if (track.status != PF_TRACK_INLIER) continue;
+  for (const pf_match_t& track : tracks) {
+    if (track.status != PF_MATCH_INLIER) continue;
     for (const pf_feature_t& f : map)
       if (f.id == track.id) depths.push_back((R_CW * (vector_of(f.p_W) - vector_of(pose.p_WC))).z);
   }
@@ -132,7 +132,7 @@ int count_in_view(const Film& film, const KidnapOptions& options, const std::vec
                   const pf_pose_t& pose) {
   const pf_camera_t& camera = film.camera();
   const pf::sim::Mat3 R_CW = pf::sim::rotation_of(pose.q_WC).transposed();
-  const double border = options.config.border_px;
+  const double border = options.config.map.border_px;
   int count = 0;
   for (const pf_feature_t& f : map) {
     const Vec3 p = R_CW * (vector_of(f.p_W) - vector_of(pose.p_WC));

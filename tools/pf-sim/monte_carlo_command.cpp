@@ -46,17 +46,17 @@ const Case* find_case(char name) {
 }
 
 void set_case(const Choices& c, const Case& one, pf_config_t& config) {
-  config.planes = one.fold_sigma > 0;
-  config.plane_roughness = 0.001;  // these walls are flat
-  set_if(config.fold_sigma, one.fold_sigma);
-  config.fix_sigma = one.fix_sigma;
-  set_if(config.fold_sigma, c.fold_sigma);
-  if (c.fix_sigma >= 0) config.fix_sigma = c.fix_sigma;
-  set_if(config.plane_roughness, c.roughness);
-  set_if(config.plane_distance, c.plane_distance);
-  set_if(config.plane_radius, c.plane_radius);
-  config.fold = c.fold == "drop" ? PF_FOLD_DROP : PF_FOLD_CONDITION;
-  config.fix = c.fix == "inflate" ? PF_FIX_INFLATE : c.fix == "error-free" ? PF_FIX_ERROR_FREE : PF_FIX_CONSIDER;
+  config.plane.enabled = one.fold_sigma > 0;
+  config.plane.roughness = 0.001;  // these walls are flat
+  set_if(config.plane.fold_sigma, one.fold_sigma);
+  config.plane.fix_sigma = one.fix_sigma;
+  set_if(config.plane.fold_sigma, c.fold_sigma);
+  if (c.fix_sigma >= 0) config.plane.fix_sigma = c.fix_sigma;
+  set_if(config.plane.roughness, c.roughness);
+  set_if(config.plane.max_distance, c.plane_distance);
+  set_if(config.plane.max_radius, c.plane_radius);
+  config.plane.fold = c.fold == "drop" ? PF_FOLD_DROP : PF_FOLD_CONDITION;
+  config.plane.fix = c.fix == "inflate" ? PF_FIX_INFLATE : c.fix == "error-free" ? PF_FIX_ERROR_FREE : PF_FIX_CONSIDER;
 }
 
 /// What the two commands share: the filter's settings, and the bed from the options.
@@ -82,61 +82,61 @@ Experiment prepare(const Choices& c, bool gee) {
   pf_config_t& config = x.config;
   pf_config_default(&config);
   config.camera = Bed::camera(x.bed.fov_deg);
-  config.sigma_pixel = c.sigma_px;
-  config.gate_probability = 0.9999;  // association is perfect: nothing true should be cut off
-  config.max_features = 300;
-  config.max_state_dim = c.max_state_dim > 0 ? c.max_state_dim : 1000;
-  config.max_observations = 100;
-  config.coast_seconds = 10;
-  config.depth_from_map = x.bed.layout == Layout::kRoom;
-  config.start_depth = gee ? (x.bed.look_inward ? 2.0 : 1.2) : x.bed.layout == Layout::kRoom ? 1.6 : 2.0;
-  if (x.bed.layout == Layout::kModel) config.inverse_depth_relative_sigma = 0.3;
-  config.max_planes = 16;
+  config.measurement.sigma_px = c.sigma_px;
+  config.measurement.gate_probability = 0.9999;  // association is perfect: nothing true should be cut off
+  config.capacity.max_features = 300;
+  config.capacity.max_state_dim = c.max_state_dim > 0 ? c.max_state_dim : 1000;
+  config.capacity.max_observations = 100;
+  config.motion.coast_s = 10;
+  config.first_depth.from_map = x.bed.layout == Layout::kRoom;
+  config.first_depth.depth = gee ? (x.bed.look_inward ? 2.0 : 1.2) : x.bed.layout == Layout::kRoom ? 1.6 : 2.0;
+  if (x.bed.layout == Layout::kModel) config.first_depth.relative_sigma = 0.3;
+  config.capacity.max_planes = 16;
   if (!gee) config.clock_ns = thread_clock;
-  if (c.depth_from_map >= 0) config.depth_from_map = static_cast<std::uint32_t>(c.depth_from_map);
-  set_if(config.start_depth, c.start_depth);
-  set_if(config.inverse_depth_relative_sigma, c.relative_sigma);
-  set_if(config.linearity_index, c.linearity);
+  if (c.depth_from_map >= 0) config.first_depth.from_map = c.depth_from_map;
+  set_if(config.first_depth.depth, c.start_depth);
+  set_if(config.first_depth.relative_sigma, c.relative_sigma);
+  set_if(config.first_depth.linearity_index, c.linearity);
   if (gee) {
-    config.motion = c.motion == "walk" ? PF_MOTION_CONSTANT_POSITION : PF_MOTION_CONSTANT_VELOCITY;
+    config.motion.model = c.motion == "walk" ? PF_MOTION_CONSTANT_POSITION : PF_MOTION_CONSTANT_VELOCITY;
     // The circle's own speed, as the steps of a walk: v sqrt(dt); and its small accelerations, generously.
     const double speed = 2 * 3.14159265358979 / x.bed.circle_seconds, dt = 1 / x.bed.rate_hz;
-    config.linear_walk = config.angular_walk = speed * std::sqrt(dt);
-    config.linear_acceleration_density = config.angular_acceleration_density = 0.02;
-    set_if(config.linear_walk, c.linear);
-    set_if(config.angular_walk, c.angular);
+    config.motion.linear_walk = config.motion.angular_walk = speed * std::sqrt(dt);
+    config.motion.linear_acceleration_density = config.motion.angular_acceleration_density = 0.02;
+    set_if(config.motion.linear_walk, c.linear);
+    set_if(config.motion.angular_walk, c.angular);
   }
-  set_if(config.linear_acceleration_density, c.linear);
-  set_if(config.angular_acceleration_density, c.angular);
+  set_if(config.motion.linear_acceleration_density, c.linear);
+  set_if(config.motion.angular_acceleration_density, c.angular);
   return x;
 }
 
 nlohmann::json describe(const Experiment& x) {
   const pf_config_t& c = x.config;
   return {{"layout", x.bed.layout == Layout::kRoom ? "room" : "model"},
-          {"motion", c.motion == PF_MOTION_CONSTANT_POSITION ? "walk" : "velocity"},
+          {"motion", c.motion.model == PF_MOTION_CONSTANT_POSITION ? "walk" : "velocity"},
           {"fov_deg", x.bed.fov_deg},
-          {"sigma_pixel", c.sigma_pixel},
-          {"linear_acceleration_density", c.linear_acceleration_density},
-          {"angular_acceleration_density", c.angular_acceleration_density},
-          {"linear_walk", c.linear_walk},
-          {"angular_walk", c.angular_walk},
-          {"start_depth", c.start_depth},
-          {"depth_from_map", c.depth_from_map},
-          {"inverse_depth_relative_sigma", c.inverse_depth_relative_sigma},
-          {"linearity_index", c.linearity_index},
-          {"max_state_dim", c.max_state_dim},
-          {"planes", c.planes},
-          {"plane_min_points", c.plane_min_points},
-          {"plane_distance", c.plane_distance},
-          {"plane_radius", c.plane_radius},
-          {"plane_roughness", c.plane_roughness},
-          {"fold_sigma", c.fold_sigma},
-          {"fix_sigma", c.fix_sigma},
-          {"fold", c.fold == PF_FOLD_DROP ? "drop" : "condition"},
-          {"fix", c.fix == PF_FIX_CONSIDER  ? "consider"
-                  : c.fix == PF_FIX_INFLATE ? "inflate"
-                                            : "error-free"},
+          {"sigma_pixel", c.measurement.sigma_px},
+          {"linear_acceleration_density", c.motion.linear_acceleration_density},
+          {"angular_acceleration_density", c.motion.angular_acceleration_density},
+          {"linear_walk", c.motion.linear_walk},
+          {"angular_walk", c.motion.angular_walk},
+          {"start_depth", c.first_depth.depth},
+          {"depth_from_map", c.first_depth.from_map},
+          {"inverse_depth_relative_sigma", c.first_depth.relative_sigma},
+          {"linearity_index", c.first_depth.linearity_index},
+          {"max_state_dim", c.capacity.max_state_dim},
+          {"planes", c.plane.enabled},
+          {"plane_min_points", c.plane.min_points},
+          {"plane_distance", c.plane.max_distance},
+          {"plane_radius", c.plane.max_radius},
+          {"plane_roughness", c.plane.roughness},
+          {"fold_sigma", c.plane.fold_sigma},
+          {"fix_sigma", c.plane.fix_sigma},
+          {"fold", c.plane.fold == PF_FOLD_DROP ? "drop" : "condition"},
+          {"fix", c.plane.fix == PF_FIX_CONSIDER  ? "consider"
+                  : c.plane.fix == PF_FIX_INFLATE ? "inflate"
+                                                  : "error-free"},
           {"first_seed", x.first_seed}};
 }
 

@@ -29,7 +29,7 @@ bool write_png(const std::string& path, const pf_image_t& image) {
 void write_target(const fs::path& path, const pf_target_t& target) {
   std::ofstream out(path);
   out << "# dark rectangle on a white ground; world: its centre, x right, y down, z into the wall; m\n"
-      << "width: " << target.width << "\nheight: " << target.height << "\nsigma: " << target.sigma_m << "\n";
+      << "width: " << target.width << "\nheight: " << target.height << "\nsigma: " << target.sigma << "\n";
 }
 
 bool choose_camera(const std::string& model, pf_camera_t& camera) {

@@ -154,11 +154,11 @@ bool prepare(const Choices& c, RenderedOptions& o) {
       pf_config_default(&v.config);
       v.config.camera = o.sim.camera;
       v.config.camera.readout_s = c.as_global ? 0 : c.readout_s;
-      if (sigma > 0) v.config.sigma_pixel = sigma;
-      if (c.no_planes) v.config.planes = 0;
-      if (c.max_features > 0) v.config.max_features = c.max_features;
-      if (c.max_state_dim > 0) v.config.max_state_dim = c.max_state_dim;
-      if (c.max_planes > 0) v.config.max_planes = c.max_planes;
+      if (sigma > 0) v.config.measurement.sigma_px = sigma;
+      if (c.no_planes) v.config.plane.enabled = 0;
+      if (c.max_features > 0) v.config.capacity.max_features = c.max_features;
+      if (c.max_state_dim > 0) v.config.capacity.max_state_dim = c.max_state_dim;
+      if (c.max_planes > 0) v.config.capacity.max_planes = c.max_planes;
       v.start = start == "rectangle" ? RenderedStart::kRectangle
                 : start == "points"  ? RenderedStart::kPoints
                                      : RenderedStart::kPose;
@@ -211,7 +211,7 @@ int run(const Choices& c) {
                 {"blur_samples", c.blur},
                 {"readout_s", c.readout_s}}}};
   for (std::size_t v = 0; v < options.variants.size(); ++v) {
-    const double sigma = options.variants[v].config.sigma_pixel;
+    const double sigma = options.variants[v].config.measurement.sigma_px;
     const std::string start = c.starts[v / c.sigma_pixels.size()];
     const std::string label = label_of(c, v, sigma);
     const Runs runs{c.seeds, c.frames, c.first_seed, job.rows + v * seeds * frames};

@@ -38,10 +38,10 @@ void draw_pose(pf_pose_t& pose, pf::sim::Random& random) {
 
 /// The target as somebody would have measured it.
 void draw_target(pf_target_t& target, pf::sim::Random& random) {
-  target.width += std::sqrt(2.0) * target.sigma_m * random.normal();
-  target.height += std::sqrt(2.0) * target.sigma_m * random.normal();
+  target.width += std::sqrt(2.0) * target.sigma * random.normal();
+  target.height += std::sqrt(2.0) * target.sigma * random.normal();
   for (int i = 0; i < target.count; ++i)
-    for (double& x : target.points_W[i]) x += target.sigma_m * random.normal();
+    for (double& x : target.points_W[i]) x += target.sigma * random.normal();
 }
 
 bool start(pf_slam_t* slam, RenderedStart how, const pf_sim_t* sim, std::uint64_t seed) {

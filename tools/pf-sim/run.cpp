@@ -47,7 +47,7 @@ class GaugeWatch {
 };
 
 std::vector<pf_feature_t> map_of(const pf_slam_t* slam, const pf_config_t& config) {
-  std::vector<pf_feature_t> features(static_cast<std::size_t>(config.max_features));
+  std::vector<pf_feature_t> features(static_cast<std::size_t>(config.capacity.max_features));
   std::size_t count = 0;
   pf_get_features(slam, features.data(), features.size(), &count);
   features.resize(std::min(count, features.size()));
@@ -58,15 +58,15 @@ std::vector<pf_feature_t> map_of(const pf_slam_t* slam, const pf_config_t& confi
 void retire_what_is_gone(Bed& bed, const std::vector<pf_feature_t>& map) {
   std::vector<bool> there(bed.points().size(), false);
   for (const pf_feature_t& f : map)
-    if (f.track < there.size()) there[f.track] = true;
+    if (f.external_id < there.size()) there[f.external_id] = true;
   for (std::size_t id = 0; id < there.size(); ++id)
     if (bed.points()[id].begun && !there[id]) bed.retire(static_cast<std::uint32_t>(id));
 }
 
 void judge_map(const Bed& bed, const std::vector<pf_feature_t>& map, RunSummary& summary) {
   for (const pf_feature_t& f : map) {
-    if (f.kind == PF_FEATURE_INVERSE_DEPTH || f.is_target || f.track >= bed.points().size()) continue;
-    const Vec3 e = bed.points()[f.track].p_W - Vec3{f.p_W[0], f.p_W[1], f.p_W[2]};
+    if (f.kind == PF_FEATURE_INVERSE_DEPTH || f.is_target || f.external_id >= bed.points().size()) continue;
+    const Vec3 e = bed.points()[f.external_id].p_W - Vec3{f.p_W[0], f.p_W[1], f.p_W[2]};
     const double error[3] = {e.x, e.y, e.z};
     summary.map_square_sum += e.dot(e);
     const bool planar = f.kind != PF_FEATURE_POINT;
@@ -130,7 +130,7 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
     if (frame > 0) {
       double dv_C[3], dw_C[3];
       bed.steer(frame - 1, pose, dv_C, dw_C);
-      if (config.motion == PF_MOTION_CONSTANT_VELOCITY) pf_push_steering(slam, dv_C, dw_C);
+      if (config.motion.model == PF_MOTION_CONSTANT_VELOCITY) pf_push_control(slam, dv_C, dw_C);
       bed.move(frame, dv_C, dw_C);
     }
     int births = 0;
@@ -145,13 +145,13 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
       return summary;
     }
     pf_get_report(slam, &report);
-    from_priors += report.new_features / (config.inverse_depth_relative_sigma * config.inverse_depth_relative_sigma);
+    from_priors += report.new_features / (config.first_depth.relative_sigma * config.first_depth.relative_sigma);
     rows[frame] = judge(bed.truth().pose, pose, report);
     summary.lost |= status == PF_NOTE_LOST || !(rows[frame].nees_position >= 0);
     summary.frames_tracked += status == PF_OK;
     if (bed_options.layout == Layout::kModel && (births > 0 || frame % 10 == 9))
       retire_what_is_gone(bed, map_of(slam, config));
-    if (config.planes && frame % 10 == 9) walls.look(slam, map_of(slam, config));
+    if (config.plane.enabled && frame % 10 == 9) walls.look(slam, map_of(slam, config));
 
     const int phase = options.gauge_every > 0 ? frame % options.gauge_every : -1;
     if (frame == 0 && options.gauge_every > 0) {

@@ -21,7 +21,7 @@ UpdateCost cost_of_20_rows(Bed& bed, pf_slam_t* slam, pf_pose_t pose, int frame,
   for (int k = 0; k < kFrames; ++k, ++frame) {
     double dv_C[3], dw_C[3];
     bed.steer(frame - 1, pose, dv_C, dw_C);
-    pf_push_steering(slam, dv_C, dw_C);
+    pf_push_control(slam, dv_C, dw_C);
     bed.move(frame, dv_C, dw_C);
     int births = 0;
     const auto seen = bed.observe(frame, &births);

@@ -27,10 +27,10 @@ std::vector<pf_plane_t> planes_of(const pf_slam_t* slam) {
 WallWatch::Share WallWatch::share_of(std::uint32_t plane, const std::vector<pf_feature_t>& map) const {
   int on[4] = {}, points = 0;
   for (const pf_feature_t& f : map) {
-    if (f.plane != plane || f.track >= bed_.points().size()) continue;
+    if (f.plane != plane || f.external_id >= bed_.points().size()) continue;
     ++points;
     // Where walls meet, a point may well be taken for one of the other wall.
-    const Vec3& truth = bed_.points()[f.track].p_W;
+    const Vec3& truth = bed_.points()[f.external_id].p_W;
     for (int wall = 0; wall < 4; ++wall) {
       const Vec3 n = Bed::wall_normal(wall);
       const double normal[3] = {n.x, n.y, n.z};
@@ -84,8 +84,8 @@ void WallWatch::judge(const pf_slam_t* slam, const std::vector<pf_feature_t>& ma
   for (int wall = 0; wall < 4; ++wall) {
     int points = 0;
     for (const pf_feature_t& f : map)
-      points += f.track < bed_.points().size() && bed_.points()[f.track].wall == wall && f.observations >= 20 &&
-                f.kind != PF_FEATURE_INVERSE_DEPTH;
+      points += f.external_id < bed_.points().size() && bed_.points()[f.external_id].wall == wall &&
+                f.observations >= 20 && f.kind != PF_FEATURE_INVERSE_DEPTH;
     if (points < kSeenWell) continue;
     ++summary.walls_seen;
     summary.walls_found += planes_on[wall] > 0;

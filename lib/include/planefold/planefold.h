@@ -2,24 +2,29 @@
  *
  *   pf_config_t config;
  *   pf_config_default(&config);              every field gets a value that works
- *   config.camera = ...;                     the one thing that only you know
+ *   config.camera = ...;                     the calibration, which only you know
  *   pf_memory_query(&config, &need);         how many bytes
- *   pf_create(&config, block, bytes, &slam); carves your block; nothing is allocated, ever
+ *   pf_create(&config, block, bytes, &slam); uses your block; nothing is allocated, ever
  *   pf_push_frame(slam, &image);             once per frame
- *   pf_get_pose(slam, &pose);                where the camera is, and how sure that is
+ *   pf_get_pose(slam, &pose);                where the camera is, with its covariance
  *
  * There is no destroy: forget the block when you are done. pf_reset() starts over in the same block.
  *
- * FRAMES. W is the world, C the camera (x right, y down, z forward, in metres or, where nothing told the scale, in
- * units of the median depth of the first frame). p_W = R_WC p_C + p_WC. Pixels: (0, 0) is the centre of the top-left one.
+ * FRAMES. W is the world, C the camera (x right, y down, z forward). p_W = R_WC p_C + p_WC. Pixels: (0, 0) is the
+ * centre of the top-left one. Quaternions are (w, x, y, z), of unit length.
+ * LENGTHS are in one unit throughout, written [m]. It is the unit of the target or of the start pose: give those in
+ * metres. After a start with neither, no length is known: the unit is then the one in which the features of the
+ * first frame have a median depth of first_depth.depth (default 1).
  * ERRORS of a pose are (theta, p): R_true = Exp(theta) R, p_true = p + e, both in W. Covariances are row-major.
- * Quaternions are (w, x, y, z), of unit length.
+ * UNITS. SI and radians. Times, pixels and angles in other units say so in the name (_s, _ns, _px).
+ * TYPES. In a structure, kinds and switches are int32_t, and the comment names the enum; a switch is 0 or 1. Ids are
+ * uint32_t.
  *
  * STATUS. 0 is done. Positive: done, with something to know. Negative: refused, and nothing was changed.
  * THREADS. A context belongs to one thread at a time. Contexts are independent. There are no globals.
  * TIME. Work per call is bounded by the capacities in the config. No clock is read unless you give one.
- * STATES. Tracked means: a pose that this frame's own measurements support, by at least 8 gated inliers, or, in the frame of a
- * start at a target, by the target.
+ * STATES. Tracking means: a pose that this frame's own measurements support, by at least 8 gated inliers, or, in the
+ * frame of a start at a target, by the target.
  */
 #ifndef PLANEFOLD_PLANEFOLD_H
 #define PLANEFOLD_PLANEFOLD_H
@@ -42,33 +47,36 @@ extern "C" {
 #define PF_VERSION_PATCH 0
 #define PF_VERSION ((PF_VERSION_MAJOR << 16) | (PF_VERSION_MINOR << 8) | PF_VERSION_PATCH)
 
+/* PF_VERSION of the library that is linked, which may be another patch release than this header's. Patch releases of
+ * one minor version fit together; any other difference is PF_ERROR_VERSION. */
+PF_API uint32_t pf_version(void);
+
 /* ---------------------------------------------------------------------------------------------------- status -- */
 
 typedef enum pf_status {
   PF_OK = 0,
 
-  PF_NOTE_STARTING =
-      1, /* taken; there is no pose yet, or it is not yet supported by known depths. Also when an estimate
-                            that is no longer finite was given up: a new start follows, with a new W (the log says so) */
+  /* Taken. There is no pose yet, or known depths do not support it yet. Also after an estimate that was no longer
+   * finite was given up: a new start follows, with a new W (the log says so). */
+  PF_NOTE_STARTING = 1,
   PF_NOTE_COASTING = 2,  /* taken; too few measurements, the pose is a prediction with growing covariance */
   PF_NOTE_LOST = 3,      /* taken; the pose is no longer usable; the map is kept and searched for in every frame */
   PF_NOTE_UNUSABLE = 4,  /* taken; the image has no usable content (black, white, blurred out); pose coasts */
   PF_NOTE_TRUNCATED = 5, /* done; there was more than your array holds, *count says how many there are */
   PF_NOTE_NOTHING = 6,   /* done; there is nothing (no plane under the pixel, no plane with that id any more) */
 
-  PF_ERROR_NULL = -1,    /* a pointer that must not be null is */
-  PF_ERROR_CONFIG = -2,  /* a field of the config is out of its range; pf_config_check names it */
-  PF_ERROR_VERSION = -3, /* size or version of the structure belong to another release of this header */
-  PF_ERROR_SCALAR =
-      -4, /* the config was made for the other library (planefold computes in double, planefoldf in float) */
+  PF_ERROR_NULL = -1,      /* a pointer that must not be null is null */
+  PF_ERROR_CONFIG = -2,    /* a field of the config is out of its range; pf_config_check names it */
+  PF_ERROR_VERSION = -3,   /* the structure's size or version belongs to another release of this header */
+  PF_ERROR_SCALAR = -4,    /* the config was made for the other library (planefold: double, planefoldf: float) */
   PF_ERROR_MEMORY = -5,    /* the block is smaller than pf_memory_query said */
   PF_ERROR_ALIGNMENT = -6, /* the block does not begin at a multiple of pf_memory_t.alignment */
   PF_ERROR_SIZE = -7,      /* width, height or stride of the image do not fit the calibration */
   PF_ERROR_TIME = -8,      /* the timestamp is not after the last one */
   PF_ERROR_NONFINITE = -9, /* a number that was passed in is NaN or infinite */
-  PF_ERROR_STATE =
-      -10, /* not possible in this state (a start after the first frame; a pose before the start), or a call
-                           that changes the context from inside its own log or clock */
+  /* Not possible in this state (a start after the first frame; a pose before the start), or a call that changes the
+   * context from inside its own log or clock. */
+  PF_ERROR_STATE = -10,
   PF_ERROR_RANGE = -11,  /* a number that was passed in is outside of its domain */
   PF_ERROR_CONTEXT = -12 /* not a context, or one whose block was overwritten */
 } pf_status_t;
@@ -90,8 +98,9 @@ typedef struct pf_camera {
   int32_t width, height; /* [px] 32 .. 4096 */
   double fx, fy, cx, cy; /* [px] */
   double distortion[8];  /* as the model says; unused entries are zero */
-  double readout_s; /* rolling shutter: from the first row to the last [s], 0 .. 0.2; frames have the middle row's time.
-                            0: global. Only with constant velocity, for rows differ by how the camera moves */
+  /* Rolling shutter: from the first row to the last, 0 .. 0.2; 0 is a global shutter. A frame has the time of its
+   * middle row. Needs constant velocity: rows differ by how the camera moves. */
+  double readout_s;
 } pf_camera_t;
 
 /* Pixel of a point in C, z > 0 (equidistant: anywhere but the optical centre).
@@ -103,10 +112,10 @@ PF_API pf_status_t pf_camera_unproject(const pf_camera_t* camera, const double p
 
 /* ---------------------------------------------------------------------------------------------------- config -- */
 
-typedef enum pf_motion {
+typedef enum pf_motion_model {
   PF_MOTION_CONSTANT_VELOCITY = 1, /* white accelerations; the default */
   PF_MOTION_CONSTANT_POSITION = 2  /* random walk of the pose (Gee 2007, eq 1); for reproducing that paper */
-} pf_motion_t;
+} pf_motion_model_t;
 
 typedef enum pf_kernels {
   PF_KERNELS_AUTO = 0, /* the fastest that this processor runs */
@@ -132,89 +141,107 @@ typedef enum pf_fix {
 
 typedef enum pf_scalar { PF_SCALAR_DOUBLE = 8, PF_SCALAR_FLOAT = 4 } pf_scalar_t;
 
-/* Fill with pf_config_default, then change what you know better. Only the capacities and the image size change the
- * memory. Lengths are in metres or, with no target, in units of the median depth of the first frame. */
+/* Fill with pf_config_default, then change what you know better. pf_config_check names a bad field as it is written
+ * here: "capacity.max_state_dim". */
 typedef struct pf_config {
   uint32_t size;    /* sizeof(pf_config_t), set by pf_config_default */
   uint32_t version; /* PF_VERSION, set by pf_config_default */
-  uint32_t scalar;  /* pf_scalar_t of the library that filled this in */
-  uint32_t kernels; /* pf_kernels_t; a set that this processor cannot run is PF_ERROR_CONFIG. Default auto */
+  int32_t scalar;   /* pf_scalar_t of the library that filled this in */
+  int32_t kernels;  /* pf_kernels_t; a set that this processor cannot run is PF_ERROR_CONFIG. Default auto */
 
   pf_camera_t camera; /* no default: the calibration of your camera */
 
-  /* Capacities. */
-  int32_t max_state_dim;    /* rows of the covariance, 32 .. 2000. Memory grows with its square. Default 300 */
-  int32_t max_features;     /* features in the map, 8 .. 1000. Default 100 */
-  int32_t max_observations; /* features measured in one frame, 8 .. 200. Default 60 */
-  int32_t max_planes;       /* planes in the map, 1 .. 64. Default 8 */
+  /* The only fields, beside the image size, that change the memory. */
+  struct {
+    int32_t max_state_dim;    /* rows of the covariance, 32 .. 2000. Memory grows with its square. Default 300 */
+    int32_t max_features;     /* features in the map, 8 .. 1000. Default 100 */
+    int32_t max_observations; /* features measured in one frame, 8 .. 200. Default 60 */
+    int32_t max_planes;       /* planes in the map, 1 .. 64. Default 8 */
+    int32_t max_imu_samples;  /* inertial samples that are kept, the newest, 0 .. 10000. Default 0 */
+  } capacity;
 
-  /* Motion. Densities are those of white noise: over a time dt the velocity's variance grows by density^2 dt. */
-  uint32_t motion;                     /* pf_motion_t. Default constant velocity */
-  double linear_acceleration_density;  /* [m/s^2/sqrt(Hz)]  > 0. Default 1 */
-  double angular_acceleration_density; /* [rad/s^2/sqrt(Hz)] > 0. Default 2 */
-  double linear_walk;                  /* [m/sqrt(s)]  > 0, constant position only. Default 0.1 */
-  double angular_walk;                 /* [rad/sqrt(s)] > 0, constant position only. Default 0.2 */
+  /* How the camera may move between frames. Densities are those of white noise: over a time dt the velocity's
+   * variance grows by density^2 dt. */
+  struct {
+    int32_t model;                       /* pf_motion_model_t. Default constant velocity */
+    double linear_acceleration_density;  /* [m/s^2/sqrt(Hz)] > 0. Default 1 */
+    double angular_acceleration_density; /* [rad/s^2/sqrt(Hz)] > 0. Default 2 */
+    double linear_walk;                  /* [m/sqrt(s)] > 0, constant position only. Default 0.1 */
+    double angular_walk;                 /* [rad/sqrt(s)] > 0, constant position only. Default 0.2 */
+    double coast_s;                      /* after this time without tracking the state is lost, 0.05 .. 10. Default 1 */
+  } motion;
 
-  /* Measurements. */
-  double
-      sigma_pixel; /* [px] 0.01 .. 10. Default 0.1. Of a match in an image: what remains beside the noise that the image
-                              itself shows (lens, warp, interpolation). Of an observation: all of it, where it says nothing */
-  double gate_probability; /* of a true match passing the gate, 0.9 .. 0.9999. Default 0.99 */
+  struct {
+    /* Of a match in an image: additional standard deviation (lens, warp, interpolation) on top of the image noise.
+     * Of an observation that gives no sigma_px: its standard deviation. 0.01 .. 10. Default 0.1 */
+    double sigma_px;
+    double gate_probability; /* that a true match passes the gate, 0.9 .. 0.9999. Default 0.99 */
+  } measurement;
 
-  /* Depth of a feature that was seen once: 1/depth = rho0 with standard deviation sigma_rho = relative_sigma * rho0.
-   * rho0 is 1 / start_depth until the map knows better, and then, with depth_from_map, the median of what is in view;
-   * where only a target is in view, half of the target's, since a target stands in front of its scene. */
-  double start_depth;                  /* > 0. Default 1 */
-  uint32_t depth_from_map;             /* 0 or 1. Default 1 */
-  double inverse_depth_relative_sigma; /* 0.05 .. 5. Default 2: hardly a prior, since
-                                          a prior that is wrong in the same way for many features bends the scale */
-  double linearity_index; /* below it an inverse-depth point becomes a 3-D point, 0.001 .. 1. Default 0.1 */
+  /* Depth of a feature that was seen once: rho = 1/depth has mean rho0 and standard deviation relative_sigma * rho0. */
+  struct {
+    /* rho0 is 1/depth until the map knows better. > 0. Default 1. After a start with neither target nor pose it is
+     * also the unit of length, see LENGTHS. */
+    double depth;
+    /* 1: rho0 becomes the median of what is in view; where only a target is in view, half of the target's, since a
+     * target stands in front of its scene. 0: it stays 1/depth. Default 1 */
+    int32_t from_map;
+    /* 0.05 .. 5. Default 2: hardly a prior. A prior that is wrong in the same way for many features bends the scale. */
+    double relative_sigma;
+    /* An inverse-depth point whose index of linearity is below this becomes a 3-D point, 0.001 .. 1. Default 0.1 */
+    double linearity_index;
+  } first_depth;
 
-  /* Map. */
-  int32_t features_in_view; /* features that the front end tries to keep in view, 8 .. max_observations. Default 45 */
-  int32_t border_px;        /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
+  struct {
+    int32_t features_in_view; /* features to keep in view, 8 .. capacity.max_observations. Default 45 */
+    int32_t border_px;        /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
+  } map;
 
-  /* Planes (lib/docs/planes.md). Names of Gee 2007, section 3, in brackets. */
-  uint32_t planes;          /* 1 finds planes and folds points into them, 0 keeps to points. Default 1 */
-  int32_t plane_min_points; /* a new plane has more points than this (l_T), 4 .. 60. Default 7 */
-  double plane_distance;    /* of a point from a new plane (d_T), 1e-5 .. 10. Default 0.01 */
-  double plane_radius;      /* of a point from a new plane's origin (d_max), 0.01 .. 1e4. Default 1.5 */
-  double plane_roughness; /* of real surfaces: standard deviation of a point from its plane, 1e-6 .. 1. Default 0.002 */
-  double fold_sigma;      /* points join planes when they are known better than this, relative to the camera (sigma_T),
-                        1e-5 .. 10. Default 0.05 */
-  double fix_sigma; /* and are fixed when they are known better than this among the points of their plane (sigma_fix),
-                        0: never .. 10. Default 0 */
-  uint32_t fold;    /* pf_fold_t. Default condition */
-  uint32_t fix;     /* pf_fix_t. Default consider */
+  /* Finding planes and folding points into them (lib/docs/planes.md). Names of Gee 2007, section 3, in brackets. */
+  struct {
+    int32_t enabled;     /* 1: finds planes and folds points into them. 0: points only. Default 1 */
+    int32_t min_points;  /* a new plane has more points than this (l_T), 4 .. 60. Default 7 */
+    double max_distance; /* [m] of a point from a new plane (d_T), 1e-5 .. 10. Default 0.01 */
+    double max_radius;   /* [m] of a point from a new plane's origin (d_max), 0.01 .. 1e4. Default 1.5 */
+    double roughness; /* [m] of real surfaces: standard deviation of a point from its plane, 1e-6 .. 1. Default 0.002 */
+    /* [m] A point can be folded when its standard deviation relative to the camera is below this (sigma_T), 1e-5 .. 10.
+     * Default 0.05 */
+    double fold_sigma;
+    /* [m] A folded point is fixed when its standard deviation among the points of its plane is below this (sigma_fix),
+     * 0 (never) .. 10. Default 0 */
+    double fix_sigma;
+    int32_t fold; /* pf_fold_t. Default condition */
+    int32_t fix;  /* pf_fix_t. Default consider */
+  } plane;
 
-  double coast_seconds; /* without tracking for longer than this, the state is lost, 0.05 .. 10. Default 1 */
+  /* What the inertial unit of pf_push_imu can measure. */
+  struct {
+    double gyro_range;  /* [rad/s] 0 (not known) .. 1000. Default 0 */
+    double accel_range; /* [m/s^2] 0 (not known) .. 1e5. Default 0 */
+  } imu;
 
-  /* Inertial samples (pf_push_imu). */
-  int32_t imu_buffer;     /* samples that are kept, the newest: a capacity, 0 .. 10000. Default 0 */
-  double imu_gyro_range;  /* [rad/s] what the unit can measure, 0: not known .. 1000. Default 0 */
-  double imu_accel_range; /* [m/s^2] likewise, 0 .. 1e5. Default 0 */
-
-  /* 1 keeps the covariance consistent with what a camera alone cannot observe (lib/docs/gauge.md); 0 is the textbook EKF,
-   * which is overconfident, for comparison. Default 1 */
-  uint32_t keep_gauge;
+  /* 1: keeps the covariance consistent with what a camera alone cannot observe (lib/docs/gauge.md). 0: the textbook
+   * EKF, which is overconfident, for comparison. Default 1 */
+  int32_t keep_gauge;
 
   /* Nanoseconds of any steady clock, for the cost of each stage in the report; null reads no clock. Default null */
   int64_t (*clock_ns)(void* user);
-  /* One line of plain text on what the library decided (a start, a reset, a loss); null keeps silent. Default null */
+  /* One line of plain text on what the library decided (a start, a reset, a loss); null: no log. Default null */
   void (*log)(void* user, const char* line);
-  void* user; /* handed to both. Both may ask the context, and change nothing in it */
+  void* user; /* handed to both. Both may call what only asks (const pf_slam_t*); what changes is PF_ERROR_STATE */
 } pf_config_t;
 
 PF_API pf_status_t pf_config_default(pf_config_t* config);
 
-/* PF_OK, or an error; *field (may be null) is then the name of the first bad field and stays valid for ever. */
+/* PF_OK, or an error; *field (may be null) then points to the name of the first bad field, a constant string, else
+ * it is null. */
 PF_API pf_status_t pf_config_check(const pf_config_t* config, const char** field);
 
 /* ---------------------------------------------------------------------------------------------------- memory -- */
 
 typedef struct pf_memory {
-  size_t bytes;       /* the block must have at least these */
-  size_t alignment;   /* and begin at a multiple of this */
+  size_t bytes;       /* that the block must have at least */
+  size_t alignment;   /* the block must begin at a multiple of this */
   size_t stack_bytes; /* the most stack that any call uses (a tested bound) */
 } pf_memory_t;
 
@@ -222,10 +249,11 @@ PF_API pf_status_t pf_memory_query(const pf_config_t* config, pf_memory_t* memor
 
 typedef struct pf_slam pf_slam_t; /* lives in your block */
 
-/* Carve the block. On an error *slam is null and the block may be reused. What the block held before has no influence. */
+/* Makes a context in the block. On an error *slam is null and the block may be reused. What the block held before
+ * does not matter. */
 PF_API pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_slam_t** slam);
 
-/* Back to the moment after pf_create: same config, no map, no pose, any timestamp is welcome. */
+/* Back to the moment after pf_create: same config, no map, no pose, and any timestamp may come next. */
 PF_API pf_status_t pf_reset(pf_slam_t* slam);
 
 /* ---------------------------------------------------------------------------------------------------- starting -- */
@@ -242,33 +270,33 @@ typedef struct pf_pose {
 #define PF_TARGET_MAX_POINTS 16
 
 typedef enum pf_target_kind {
-  PF_TARGET_RECTANGLE =
-      1,               /* a dark rectangle on a light ground, of known size, found by itself (Gee 2007, section 4) */
+  /* A dark rectangle of known size on a light ground, found in the image (Gee 2007, section 4). */
+  PF_TARGET_RECTANGLE = 1,
   PF_TARGET_POINTS = 2 /* known points, seen from about a known pose */
 } pf_target_kind_t;
 
 typedef struct pf_target {
-  uint32_t kind; /* pf_target_kind_t */
+  int32_t kind; /* pf_target_kind_t */
   /* Rectangle: W is its centre, x right and y down as seen upright, z into the wall. */
   double width, height; /* [m] > 0, of the outer edge of the dark area */
   /* Points. */
   int32_t count;                            /* 4 .. PF_TARGET_MAX_POINTS */
   double points_W[PF_TARGET_MAX_POINTS][3]; /* [m] */
-  pf_pose_t first_pose; /* about where the camera is at first; its covariance says how sure, t_ns is unused */
+  pf_pose_t first_pose; /* about where the camera is at first, with its covariance; t_ns is unused */
   /* Both. */
-  double sigma_m; /* how well the target's points are known [m] > 0 */
+  double sigma; /* [m] > 0, standard deviation of the target's points */
 } pf_target_t;
 
 /* Start in front of a known target. Before the first frame only. Until the target is seen the state is starting. */
 PF_API pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target);
 
-/* Start from a known pose, with its covariance and velocity; velocity_covariance is 6x6 of (v_W, w_C). Before the first frame.
- * PF_ERROR_STATE together with a rectangle as target, which gives the pose itself. With a target of points both may be said: the
- * known pose then counts if the points are seen in the first frame, and their own sighting later.
- * With neither start, W is the first camera and the scale is set by start_depth. */
+/* Start from a known pose, with its covariance and velocity; velocity_covariance is 6x6 of (v_W, w_C). Before the
+ * first frame. PF_ERROR_STATE together with a rectangle as target, which gives the pose itself. With a target of points
+ * both may be given: the known pose then counts if the points are seen in the first frame, and their own sighting
+ * later. With neither start, W is the first camera. */
 PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]);
 
-/* The target's own points are measured no more (they stay in the map as what they were). */
+/* Stops measuring the target's own points; they stay in the map. */
 PF_API pf_status_t pf_withdraw_target(pf_slam_t* slam);
 
 /* ---------------------------------------------------------------------------------------------------- input -- */
@@ -283,23 +311,23 @@ typedef struct pf_image {
 /* Track one frame. PF_OK means tracked. */
 PF_API pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image);
 
-/* A feature that something else has found and recognised: the front door for trackers in hardware and for simulations.
- * A new id begins a feature (if the map has room for it), a known one measures it. With a target of points, the ids 0 .. count-1
- * are its points. Of an id that comes twice in a call, the first counts. PF_ERROR_STATE with a rectangle as target, which is found in
- * images only. A context takes frames or observations, not both. */
+/* A feature that something else has found and recognised: for trackers in hardware and for simulations. A new id
+ * begins a feature (if the map has room for it), a known one measures it. With a target of points, the ids 0 ..
+ * count-1 are its points. Of an id that comes twice in a call, the first counts. PF_ERROR_STATE with a rectangle as
+ * target, which is found in images only. A context takes frames or observations, not both. */
 typedef struct pf_observation {
   uint32_t id;
   double pixel[2];
-  double sigma_px; /* 0: that of the config */
+  double sigma_px; /* 0: measurement.sigma_px of the config */
 } pf_observation_t;
 
 PF_API pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations,
                                         size_t count);
 
-/* A change of velocity that is known beforehand (a motor, a thruster, the steering of a simulation): it is added at the next
- * frame's prediction to the velocities, in camera axes: v_W += R_WC dv_C [m/s], w_C += dw_C [rad/s]. Calls add up.
+/* Control input: a change of velocity that is known beforehand (a motor, a thruster, a simulation). The next frame's
+ * prediction adds it to the velocities, in camera axes: v_W += R_WC dv_C [m/s], w_C += dw_C [rad/s]. Calls add up.
  * PF_ERROR_STATE with the constant-position model, which has no velocity. */
-PF_API pf_status_t pf_push_steering(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]);
+PF_API pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]);
 
 /* A sample of an inertial measurement unit, in the unit's own axes. */
 typedef struct pf_imu_sample {
@@ -308,10 +336,10 @@ typedef struct pf_imu_sample {
   double accel[3]; /* specific force [m/s^2], at most 1e5 each: 9.8 upwards when it lies still */
 } pf_imu_sample_t;
 
-/* Samples, the oldest first, each after every earlier one; those up to a frame's time belong before that frame. All or none
- * are taken: PF_ERROR_TIME where time stands still or runs back, PF_ERROR_NONFINITE, PF_ERROR_RANGE beyond what any unit measures.
- * THE INERTIAL MOTION MODEL DOES NOT EXIST YET: samples are checked, kept (imu_buffer of the config) and reported, and no
- * pose depends on them. */
+/* Samples, the oldest first, each after every earlier one; those up to a frame's time belong before that frame. All
+ * or none are taken: PF_ERROR_TIME where a time is not after the one before, PF_ERROR_NONFINITE, PF_ERROR_RANGE
+ * beyond what any unit measures. THE INERTIAL MOTION MODEL DOES NOT EXIST YET: samples are checked, kept
+ * (capacity.max_imu_samples) and reported, and no pose depends on them. */
 PF_API pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count);
 
 /* ---------------------------------------------------------------------------------------------------- output -- */
@@ -331,8 +359,9 @@ PF_API pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose);
 /* Pose predicted to a time not before the last frame, for display; the state does not change. */
 PF_API pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose);
 
-/* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be null). Of a rolling shutter it is the
- * one at the frame's own time, which its row does not share: lib/docs/rolling_shutter.md says how to go on to that. */
+/* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be null). Of a
+ * rolling shutter it is the one at the frame's own time, which its row does not share: lib/docs/rolling_shutter.md
+ * says how to go on to that. */
 PF_API pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double pixel[2], double covariance[4]);
 
 typedef enum pf_feature_kind {
@@ -343,10 +372,10 @@ typedef enum pf_feature_kind {
 } pf_feature_kind_t;
 
 typedef struct pf_feature {
-  uint32_t id;    /* never used twice */
-  uint32_t track; /* pf_observation_t.id, for what came in through pf_push_observations; target points: their index */
-  uint32_t kind;  /* pf_feature_kind_t */
-  uint32_t is_target;   /* 1 for a point of the target */
+  uint32_t id;          /* never used twice */
+  uint32_t external_id; /* pf_observation_t.id; of a point of the target: its index. 0 of what an image began */
+  int32_t kind;         /* pf_feature_kind_t */
+  int32_t is_target;    /* 1 for a point of the target */
   uint32_t plane;       /* id of the plane that it is folded into, or 0 */
   double p_W[3];        /* [m] inverse depth: at the mean inverse depth */
   double covariance[9]; /* 3x3; inverse depth: to first order */
@@ -357,7 +386,8 @@ typedef struct pf_feature {
 /* Copy of the map. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
 PF_API pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_t capacity, size_t* count);
 
-/* Of a plane, once the direction of gravity is known (pf_set_gravity). Up and down: which way the side looks that was seen. */
+/* Of a plane, once the direction of gravity is known (pf_set_gravity). Up and down: which way the side looks that
+ * was seen. */
 typedef enum pf_orientation {
   PF_ORIENTATION_UNKNOWN = 0,
   PF_ORIENTATION_HORIZONTAL_UP = 1,   /* floor, table top */
@@ -369,9 +399,9 @@ typedef enum pf_orientation {
 #define PF_OUTLINE_MAX 24
 
 typedef struct pf_plane {
-  uint32_t id;          /* never used twice */
-  uint32_t orientation; /* pf_orientation_t, within 15 degrees */
-  int32_t points;       /* folded into it, fixed ones among them */
+  uint32_t id;         /* never used twice */
+  int32_t orientation; /* pf_orientation_t, within 15 degrees */
+  int32_t points;      /* folded into it, fixed ones among them */
   int32_t fixed_points;
   double normal_W[3]; /* unit, towards the side that was seen */
   double distance;    /* n . p of its points */
@@ -387,8 +417,9 @@ typedef struct pf_plane {
 /* Copy of the planes. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
 PF_API pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size_t capacity, size_t* count);
 
-/* The plane that an id stands for now: itself, or the one that it was merged into. PF_NOTE_NOTHING (*now is 0) when it is gone. */
-PF_API pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* now);
+/* The plane that an id stands for now: itself, or the one that it was merged into. PF_NOTE_NOTHING (*current_id is
+ * 0) when it is gone. */
+PF_API pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* current_id);
 
 /* The direction of gravity in W, of any length; zero forgets it. Only pf_plane_t.orientation depends on it. */
 PF_API pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]);
@@ -400,34 +431,36 @@ typedef struct pf_hit {
   double range;         /* from the camera [m] */
 } pf_hit_t;
 
-/* Where the ray through a pixel of the last frame meets the nearest plane, inside of its outline. PF_NOTE_NOTHING when it meets none. */
+/* Where the ray through a pixel of the last frame meets the nearest plane, inside of its outline. PF_NOTE_NOTHING
+ * when it meets none. */
 PF_API pf_status_t pf_hit_test(const pf_slam_t* slam, const double pixel[2], pf_hit_t* hit);
 
-typedef enum pf_track_status {
-  PF_TRACK_INLIER = 1,  /* measured and used */
-  PF_TRACK_OUTLIER = 2, /* found, but it does not agree with the others */
-  PF_TRACK_MISSED = 3,  /* looked for in the ellipse and not found */
-  PF_TRACK_NEW = 4      /* began in this frame */
-} pf_track_status_t;
+typedef enum pf_match_status {
+  PF_MATCH_INLIER = 1,  /* measured and used */
+  PF_MATCH_OUTLIER = 2, /* found, but not consistent with the others */
+  PF_MATCH_MISSED = 3,  /* looked for in the ellipse and not found */
+  PF_MATCH_NEW = 4      /* a feature that began in this frame */
+} pf_match_status_t;
 
-typedef struct pf_track {
-  uint32_t id;
-  uint32_t status; /* pf_track_status_t */
-  uint32_t kind;   /* pf_feature_kind_t */
+typedef struct pf_match {
+  uint32_t id;    /* of the feature */
+  int32_t status; /* pf_match_status_t */
+  int32_t kind;   /* pf_feature_kind_t */
   double predicted_px[2];
   double covariance_px[4]; /* 2x2 of the innovation: the search ellipse */
   double measured_px[2];   /* inliers, outliers and new ones */
   double nis;              /* of inliers and outliers: normalised innovation squared, 2 degrees of freedom */
-} pf_track_t;
+} pf_match_t;
 
-/* What was looked for in the last frame, and what was found. */
-PF_API pf_status_t pf_get_tracks(const pf_slam_t* slam, pf_track_t* tracks, size_t capacity, size_t* count);
+/* What was looked for in the last frame, and what was found. *count is how many there are; PF_NOTE_TRUNCATED if
+ * capacity was smaller. */
+PF_API pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t capacity, size_t* count);
 
 enum {
   PF_STAGE_PYRAMID = 0, /* image levels */
   PF_STAGE_PREDICT = 1, /* motion, predicted pixels, innovation covariance */
   PF_STAGE_SEARCH = 2,  /* warps, search, sub-pixel refinement */
-  PF_STAGE_GATE = 3,    /* agreement between matches */
+  PF_STAGE_GATE = 3,    /* inliers and outliers among the matches */
   PF_STAGE_UPDATE = 4,  /* covariance and state */
   PF_STAGE_MAP = 5,     /* conversion, eviction, corners, new features */
   PF_STAGE_COUNT = 8
@@ -435,7 +468,7 @@ enum {
 
 typedef struct pf_report {
   int64_t t_ns;
-  pf_state_t state;
+  int32_t state;  /* pf_state_t */
   int32_t frames; /* frames pushed since create or reset */
   int32_t attempts, matches, inliers, new_features, evicted;
   int32_t features, features_point, features_inverse_depth, features_folded, features_fixed;
@@ -445,7 +478,7 @@ typedef struct pf_report {
   int32_t state_dim_points_only;    /* rows that the same map would need with 3-D points in place of folded ones */
   double nis;                       /* normalised innovation squared of this frame's inliers */
   int32_t nis_dof;                  /* and its degrees of freedom */
-  uint32_t kernels;                 /* pf_kernels_t in use */
+  int32_t kernels;                  /* pf_kernels_t in use */
   int64_t stage_ns[PF_STAGE_COUNT]; /* all zero without a clock */
 } pf_report_t;
 
@@ -458,18 +491,20 @@ typedef struct pf_imu_report {
   int64_t last_frame;  /* of them between the last frame and the one before (or the beginning) */
   int64_t late;        /* of them with a time that is not after that of the frame pushed before them */
   int64_t saturated;   /* of them with a number at the end of the ranges in the config */
-  int64_t gaps;        /* intervals that are more than half as long again as the usual one */
+  int64_t gaps;        /* intervals longer than 1.5 medians */
   int64_t missing;     /* samples that would fill the gaps */
-  int64_t first_t_ns, last_t_ns, longest_ns;
-  double rate_hz; /* mean from the first sample to the last; 0 of fewer than two */
-  double usual_s; /* the usual interval, a running median; 0 of fewer than two */
-  int32_t kept;   /* in the buffer */
-  uint32_t used;  /* 1 when poses make use of the samples: 0, since the motion model does not exist yet */
+  int64_t first_t_ns, last_t_ns;
+  int64_t longest_ns; /* interval */
+  double rate_hz;     /* mean from the first sample to the last; 0 of fewer than two */
+  double median_s;    /* interval, a running median; 0 of fewer than two */
+  int32_t kept;       /* samples in the buffer */
+  int32_t used;       /* 1 when poses make use of the samples: 0, since the motion model does not exist yet */
 } pf_imu_report_t;
 
 PF_API pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report);
 
-/* Copy of the kept samples, the oldest first. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
+/* Copy of the kept samples, the oldest first. *count is how many there are; PF_NOTE_TRUNCATED if capacity was
+ * smaller. */
 PF_API pf_status_t pf_get_imu_samples(const pf_slam_t* slam, pf_imu_sample_t* samples, size_t capacity, size_t* count);
 
 /* Information that the filter holds about what a camera alone cannot observe: N^T P^-1 N, 7x7, row-major, in the order

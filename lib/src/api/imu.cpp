@@ -50,7 +50,7 @@ pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report) {
   report->last_t_ns = c.last_ns;
   report->longest_ns = c.longest_ns;
   report->rate_hz = slam->imu.rate_hz();
-  report->usual_s = 1e-9 * static_cast<double>(c.usual_ns);
+  report->median_s = 1e-9 * static_cast<double>(c.usual_ns);
   report->kept = slam->imu.held();
   return PF_OK;
 }

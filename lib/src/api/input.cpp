@@ -77,10 +77,10 @@ pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
   PF_REQUIRE_IDLE(slam);
   if (target == nullptr) return PF_ERROR_NULL;
   if (slam->slam.used()) return PF_ERROR_STATE;
-  if (!pf::finite(&target->sigma_m, 1)) return PF_ERROR_NONFINITE;
-  if (!(target->sigma_m > 0.0 && target->sigma_m < 1e3)) return PF_ERROR_RANGE;
+  if (!pf::finite(&target->sigma, 1)) return PF_ERROR_NONFINITE;
+  if (!(target->sigma > 0.0 && target->sigma < 1e3)) return PF_ERROR_RANGE;
   pf::Target t;
-  t.sigma_m = static_cast<Scalar>(target->sigma_m);
+  t.sigma_m = static_cast<Scalar>(target->sigma);
   if (target->kind == PF_TARGET_RECTANGLE) {
     const double size[2] = {target->width, target->height};
     if (!pf::finite(size, 2)) return PF_ERROR_NONFINITE;
@@ -137,7 +137,7 @@ pf_status_t pf_withdraw_target(pf_slam_t* slam) {
   return PF_OK;
 }
 
-pf_status_t pf_push_steering(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]) {
+pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]) {
   PF_REQUIRE_IDLE(slam);
   if (dv_C == nullptr || dw_C == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(dv_C, 3) || !pf::finite(dw_C, 3)) return PF_ERROR_NONFINITE;

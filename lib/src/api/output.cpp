@@ -23,7 +23,7 @@ void pose_at(const pf::FilterSlam& slam, int64_t t_ns, pf_pose_t* pose) {
   copy_matrix(covariance, pose->covariance);
 }
 
-uint32_t feature_kind(pf::BlockKind kind) {
+int32_t feature_kind(pf::BlockKind kind) {
   switch (kind) {
     case pf::BlockKind::kPoint:
       return PF_FEATURE_POINT;
@@ -100,7 +100,7 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
     pf_feature_t& out = features[at];
     out = pf_feature_t();
     out.id = f.id;
-    out.track = f.track;
+    out.external_id = f.track;
     out.is_target = f.is_target ? 1 : 0;
     out.observations = f.observations;
     out.attempts = f.attempts;
@@ -112,15 +112,15 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
 }
 
-pf_status_t pf_get_tracks(const pf_slam_t* slam, pf_track_t* tracks, size_t capacity, size_t* count) {
+pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t capacity, size_t* count) {
   PF_REQUIRE_CONTEXT(slam);
-  if (count == nullptr || (tracks == nullptr && capacity > 0)) return PF_ERROR_NULL;
+  if (count == nullptr || (matches == nullptr && capacity > 0)) return PF_ERROR_NULL;
   *count = static_cast<size_t>(slam->slam.track_count());
   for (size_t i = 0; i < *count && i < capacity; ++i) {
     const pf::Match& t = slam->slam.tracks()[i];
-    pf_track_t& out = tracks[i];
+    pf_match_t& out = matches[i];
     out.id = t.id;
-    out.status = static_cast<uint32_t>(t.status);
+    out.status = static_cast<int32_t>(t.status);
     out.kind = feature_kind(t.kind);
     copy(t.predicted, 2, out.predicted_px);
     copy_matrix(t.innovation, out.covariance_px);
@@ -136,7 +136,7 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   const pf::FrameReport& r = slam->slam.report();
   *report = pf_report_t();
   report->t_ns = r.t_ns;
-  report->state = static_cast<pf_state_t>(slam->slam.state());
+  report->state = static_cast<int32_t>(slam->slam.state());
   report->frames = r.frames;
   report->attempts = r.attempts;
   report->matches = r.matches;
@@ -174,7 +174,7 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->state_dim_points_only = state.dim + unfolded_rows;
   report->nis = r.nis;
   report->nis_dof = r.nis_dof;
-  report->kernels = pf::kernels_id(slam->settings.kernels);
+  report->kernels = static_cast<int32_t>(pf::kernels_id(slam->settings.kernels));
   for (int i = 0; i < PF_STAGE_COUNT; ++i) report->stage_ns[i] = r.stage_ns[i];
   return PF_OK;
 }

@@ -38,7 +38,7 @@ PlaneNow plane_now(const pf::State& state, const pf::Block& block) {
   return now;
 }
 
-uint32_t orientation_of(const Vec3& normal, const double gravity_W[3]) {
+int32_t orientation_of(const Vec3& normal, const double gravity_W[3]) {
   const Vec3 g(static_cast<Scalar>(gravity_W[0]), static_cast<Scalar>(gravity_W[1]), static_cast<Scalar>(gravity_W[2]));
   const Scalar length = g.norm();
   if (!(length > Scalar(0))) return PF_ORIENTATION_UNKNOWN;
@@ -96,11 +96,11 @@ pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size_t capa
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
 }
 
-pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* now) {
+pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* current_id) {
   PF_REQUIRE_CONTEXT(slam);
-  if (now == nullptr) return PF_ERROR_NULL;
-  *now = slam->slam.planes().find(id);
-  return *now == 0 ? PF_NOTE_NOTHING : PF_OK;
+  if (current_id == nullptr) return PF_ERROR_NULL;
+  *current_id = slam->slam.planes().find(id);
+  return *current_id == 0 ? PF_NOTE_NOTHING : PF_OK;
 }
 
 pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]) {

@@ -94,20 +94,20 @@ void init_camera(Camera* camera) {
 }
 
 const char* check_camera(const Camera& c) {
-  if (c.model < 1 || c.model > 4) return "model";
-  if (c.width < 32 || c.width > 4096) return "width";
-  if (c.height < 32 || c.height > 4096) return "height";
+  if (c.model < 1 || c.model > 4) return "camera.model";
+  if (c.width < 32 || c.width > 4096) return "camera.width";
+  if (c.height < 32 || c.height > 4096) return "camera.height";
   const Scalar w = static_cast<Scalar>(c.width), h = static_cast<Scalar>(c.height);
-  if (!is_between(c.fx, w / 10, w * 20)) return "fx";
-  if (!is_between(c.fy, h / 10, h * 20)) return "fy";
-  if (!is_between(c.cx, -w, 2 * w)) return "cx";
-  if (!is_between(c.cy, -h, 2 * h)) return "cy";
+  if (!is_between(c.fx, w / 10, w * 20)) return "camera.fx";
+  if (!is_between(c.fy, h / 10, h * 20)) return "camera.fy";
+  if (!is_between(c.cx, -w, 2 * w)) return "camera.cx";
+  if (!is_between(c.cy, -h, 2 * h)) return "camera.cy";
   constexpr int kUsed[5] = {0, 0, 5, 4, 1};
   for (int i = 0; i < 8; ++i) {
-    if (!std::isfinite(c.distortion[i])) return "distortion";
-    if (i >= kUsed[c.model] && c.distortion[i] != 0) return "distortion";
+    if (!std::isfinite(c.distortion[i])) return "camera.distortion";
+    if (i >= kUsed[c.model] && c.distortion[i] != 0) return "camera.distortion";
   }
-  if (!std::isfinite(c.max_r2) || !inner_half_is_one_to_one(c)) return "distortion";
+  if (!std::isfinite(c.max_r2) || !inner_half_is_one_to_one(c)) return "camera.distortion";
   return nullptr;
 }
 

@@ -11,7 +11,7 @@
 
 namespace pf {
 
-/// With the numbers of pf_track_status_t.
+/// With the numbers of pf_match_status_t.
 enum class MatchStatus : int { kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4 };
 
 /// One feature in one frame.

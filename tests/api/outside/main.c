@@ -37,6 +37,9 @@ int main(void) {
   if (pf_get_state(slam, &state) != PF_OK || state != PF_STATE_STARTING) {
     return 5;
   }
+  if (pf_version() != PF_VERSION) {
+    return 6;
+  }
   printf("planefold %d.%d.%d scalar %u bytes %lu\n", PF_VERSION_MAJOR, PF_VERSION_MINOR, PF_VERSION_PATCH,
          (unsigned)config.scalar, (unsigned long)memory.bytes);
   free(block);

@@ -78,7 +78,7 @@ static pf_status_t start(pf_slam_t* slam) {
     target.first_pose.covariance[7 * i] = head.sigma_rad * head.sigma_rad;
     target.first_pose.covariance[7 * (i + 3)] = head.sigma_m * head.sigma_m;
   }
-  target.sigma_m = 0.001;
+  target.sigma = 0.001;
   return pf_start_from_target(slam, &target);
 }
 
@@ -134,10 +134,10 @@ int main(int argc, char** argv) {
   config.camera.fy = head.fy;
   config.camera.cx = head.cx;
   config.camera.cy = head.cy;
-  config.max_features = head.max_features;
-  config.max_state_dim = head.max_state_dim;
-  config.max_observations = config.features_in_view = head.max_observations;
-  config.sigma_pixel = head.sigma_pixel;
+  config.capacity.max_features = head.max_features;
+  config.capacity.max_state_dim = head.max_state_dim;
+  config.capacity.max_observations = config.map.features_in_view = head.max_observations;
+  config.measurement.sigma_px = head.sigma_pixel;
   status = pf_memory_query(&config, &need);
   if (status != PF_OK) return fail("pf_memory_query", status);
   status = pf_create(&config, block, sizeof(block), &slam);
