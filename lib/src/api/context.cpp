@@ -7,17 +7,11 @@
 namespace {
 
 /// The one layout: run over nothing to count, over the caller's block to carve.
-void lay_out(pf::Arena& arena, const pf::Settings& settings, pf::FilterSlam* slam, pf::ImuLog* imu) {
-  slam->layout(arena, settings);
-  imu->layout(arena, settings.imu_buffer);
-}
-
 std::size_t bytes_needed(const pf::Settings& settings) {
   pf::Arena arena;
   arena.take<pf_slam>(1);
-  pf::FilterSlam slam;
-  pf::ImuLog imu;
-  lay_out(arena, settings, &slam, &imu);
+  pf::Session session;
+  session.layout(arena, settings);
   return arena.used();
 }
 
@@ -46,9 +40,8 @@ pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_s
   if (bytes < bytes_needed(settings)) return PF_ERROR_MEMORY;
   pf::Arena arena(block, bytes);
   pf_slam* context = new (arena.take<pf_slam>(1)) pf_slam();
-  lay_out(arena, settings, &context->slam, &context->imu);
+  context->session.layout(arena, settings);
   context->config = copy;
-  context->settings = settings;
   context->self = context;
   context->magic = pf::kMagic;
   *slam = context;
@@ -57,11 +50,7 @@ pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_s
 
 pf_status_t pf_reset(pf_slam_t* slam) {
   PF_REQUIRE_IDLE(slam);
-  slam->slam.init(slam->settings);
-  slam->imu.init(slam->settings.imu_buffer, slam->settings.imu_ranges);
-  slam->takes_frames = false;
-  slam->takes_observations = false;
-  for (double& g : slam->gravity_W) g = 0;
+  slam->session.init();
   return PF_OK;
 }
 

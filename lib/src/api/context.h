@@ -1,9 +1,8 @@
 #pragma once
 
 #include "base/status.h"
-#include "filter/imu_log.h"
 #include "planefold/planefold.h"
-#include "slam/filter_slam.h"
+#include "slam/session.h"
 
 /// The one door between C and C++: what a pf_slam_t is.
 
@@ -11,13 +10,8 @@ struct pf_slam {
   std::uint64_t magic;
   pf_slam* self;  ///< a block that was copied or moved is no context
   pf_config_t config;
-  pf::Settings settings;
-  pf::FilterSlam slam;
-  pf::ImuLog imu;
-  bool takes_frames;
-  bool takes_observations;
-  bool in_call;         ///< a frame is being worked on: a callback that calls back may ask, but not change anything
-  double gravity_W[3];  ///< zero: not known
+  pf::Session session;
+  bool in_call;  ///< a frame is being worked on: a callback that calls back may ask, but not change anything
 };
 
 namespace pf {

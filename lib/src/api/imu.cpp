@@ -16,12 +16,12 @@ bool within(const double* v, double most) {
 pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count) {
   PF_REQUIRE_IDLE(slam);
   if (samples == nullptr && count > 0) return PF_ERROR_NULL;
+  const pf::ImuLog& imu = slam->session.imu();
   for (size_t i = 0; i < count; ++i) {
     const pf_imu_sample_t& s = samples[i];
     if (!pf::finite(s.gyro, 3) || !pf::finite(s.accel, 3)) return PF_ERROR_NONFINITE;
     if (!within(s.gyro, kMostGyro) || !within(s.accel, kMostAccel)) return PF_ERROR_RANGE;
-    if (i > 0 ? s.t_ns <= samples[i - 1].t_ns : slam->imu.any() && s.t_ns <= slam->imu.counts().last_ns)
-      return PF_ERROR_TIME;
+    if (i > 0 ? s.t_ns <= samples[i - 1].t_ns : imu.any() && s.t_ns <= imu.counts().last_ns) return PF_ERROR_TIME;
   }
   for (size_t i = 0; i < count; ++i) {
     pf::ImuSample sample = {samples[i].t_ns, {}, {}};
@@ -29,7 +29,7 @@ pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t 
       sample.gyro[k] = static_cast<pf::Scalar>(samples[i].gyro[k]);
       sample.accel[k] = static_cast<pf::Scalar>(samples[i].accel[k]);
     }
-    slam->imu.add(sample);
+    slam->session.push_imu(sample);
   }
   return PF_OK;
 }
@@ -37,7 +37,7 @@ pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t 
 pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report) {
   PF_REQUIRE_CONTEXT(slam);
   if (report == nullptr) return PF_ERROR_NULL;
-  const pf::ImuCounts& c = slam->imu.counts();
+  const pf::ImuCounts& c = slam->session.imu().counts();
   *report = pf_imu_report_t();
   report->samples = c.samples;
   report->since_frame = c.since_frame;
@@ -49,19 +49,19 @@ pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report) {
   report->first_t_ns = c.first_ns;
   report->last_t_ns = c.last_ns;
   report->longest_ns = c.longest_ns;
-  report->rate_hz = slam->imu.rate_hz();
+  report->rate_hz = slam->session.imu().rate_hz();
   report->median_s = 1e-9 * static_cast<double>(c.usual_ns);
-  report->kept = slam->imu.held();
+  report->kept = slam->session.imu().held();
   return PF_OK;
 }
 
 pf_status_t pf_get_imu_samples(const pf_slam_t* slam, pf_imu_sample_t* samples, size_t capacity, size_t* count) {
   PF_REQUIRE_CONTEXT(slam);
   if (count == nullptr || (samples == nullptr && capacity > 0)) return PF_ERROR_NULL;
-  *count = static_cast<size_t>(slam->imu.held());
+  *count = static_cast<size_t>(slam->session.imu().held());
   const size_t n = *count < capacity ? *count : capacity;
   for (size_t i = 0; i < n; ++i) {
-    const pf::ImuSample& s = slam->imu[static_cast<int>(i)];
+    const pf::ImuSample& s = slam->session.imu()[static_cast<int>(i)];
     samples[i].t_ns = s.t_ns;
     for (int k = 0; k < 3; ++k) {
       samples[i].gyro[k] = static_cast<double>(s.gyro[k]);

@@ -76,7 +76,7 @@ pf_status_t body_from(const pf_pose_t& pose, pf::Body* body) {
 pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
   PF_REQUIRE_IDLE(slam);
   if (target == nullptr) return PF_ERROR_NULL;
-  if (slam->slam.used()) return PF_ERROR_STATE;
+  if (slam->session.view().used()) return PF_ERROR_STATE;
   if (!pf::finite(&target->sigma, 1)) return PF_ERROR_NONFINITE;
   if (!(target->sigma > 0.0 && target->sigma < 1e3)) return PF_ERROR_RANGE;
   pf::Target t;
@@ -106,17 +106,17 @@ pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
   } else {
     return PF_ERROR_RANGE;
   }
-  return pf::to_c(slam->slam.start_from_target(t));
+  return pf::to_c(slam->session.start_from_target(t));
 }
 
 pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]) {
   PF_REQUIRE_IDLE(slam);
   if (pose == nullptr) return PF_ERROR_NULL;
-  if (slam->slam.used()) return PF_ERROR_STATE;
+  if (slam->session.view().used()) return PF_ERROR_STATE;
   pf::KnownBody known;
   const pf_status_t status = body_from(*pose, &known.body);
   if (status != PF_OK) return status;
-  const bool moves = slam->settings.constant_velocity;
+  const bool moves = slam->session.settings().constant_velocity;
   const int dim = moves ? pf::Body::kMaxDim : pf::Body::kPoseDim;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) known.covariance[i * dim + j] = static_cast<Scalar>(pose->covariance[i * 6 + j]);
@@ -128,12 +128,12 @@ pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const dou
       for (int j = 0; j < 6; ++j)
         known.covariance[(6 + i) * dim + 6 + j] = static_cast<Scalar>(velocity_covariance[i * 6 + j]);
   }
-  return pf::to_c(slam->slam.start_from_pose(known));
+  return pf::to_c(slam->session.start_from_pose(known));
 }
 
 pf_status_t pf_withdraw_target(pf_slam_t* slam) {
   PF_REQUIRE_IDLE(slam);
-  slam->slam.withdraw_target();
+  slam->session.withdraw_target();
   return PF_OK;
 }
 
@@ -142,48 +142,44 @@ pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double 
   if (dv_C == nullptr || dw_C == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(dv_C, 3) || !pf::finite(dw_C, 3)) return PF_ERROR_NONFINITE;
   if (!within(dv_C, 3, kMostMetres) || !within(dw_C, 3, kMostRate)) return PF_ERROR_RANGE;
-  if (!slam->settings.constant_velocity) return PF_ERROR_STATE;
-  slam->slam.push_steering(vec3(dv_C), vec3(dw_C));
+  if (!slam->session.settings().constant_velocity) return PF_ERROR_STATE;
+  slam->session.push_control(vec3(dv_C), vec3(dw_C));
   return PF_OK;
 }
 
 pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image) {
   PF_REQUIRE_IDLE(slam);
   if (image == nullptr || image->pixels == nullptr) return PF_ERROR_NULL;
-  if (slam->takes_observations) return PF_ERROR_STATE;
+  if (!slam->session.takes_images()) return PF_ERROR_STATE;
   const pf_camera_t& camera = slam->config.camera;
   if (image->width != camera.width || image->height != camera.height || image->stride < image->width)
     return PF_ERROR_SIZE;
-  if (slam->slam.used() && image->t_ns <= slam->slam.last_ns()) return PF_ERROR_TIME;
+  if (!slam->session.is_next(image->t_ns)) return PF_ERROR_TIME;
   const pf::InCall in_call(slam);
-  slam->takes_frames = true;
-  slam->imu.mark_frame(image->t_ns);
-  return pf::to_c(slam->slam.push_frame({image->pixels, image->width, image->height, image->stride}, image->t_ns));
+  return pf::to_c(slam->session.push_frame({image->pixels, image->width, image->height, image->stride}, image->t_ns));
 }
 
 pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations, size_t count) {
   PF_REQUIRE_IDLE(slam);
   if (observations == nullptr && count > 0) return PF_ERROR_NULL;
-  if (slam->takes_frames) return PF_ERROR_STATE;
-  if (slam->slam.used() && t_ns <= slam->slam.last_ns()) return PF_ERROR_TIME;
+  if (!slam->session.takes_observations()) return PF_ERROR_STATE;
+  if (!slam->session.is_next(t_ns)) return PF_ERROR_TIME;
   for (size_t i = 0; i < count; ++i) {
     const pf_observation_t& o = observations[i];
     if (!pf::finite(o.pixel, 2) || !pf::finite(&o.sigma_px, 1)) return PF_ERROR_NONFINITE;
     if (!(o.sigma_px == 0.0 || (o.sigma_px >= 0.01 && o.sigma_px <= 100.0))) return PF_ERROR_RANGE;
     if (!(std::fabs(o.pixel[0]) < 1e5 && std::fabs(o.pixel[1]) < 1e5)) return PF_ERROR_RANGE;
   }
-  if (slam->slam.takes_images_only()) return PF_ERROR_STATE;
+  if (slam->session.needs_images()) return PF_ERROR_STATE;
   const pf::InCall in_call(slam);
-  slam->takes_observations = true;
-  slam->imu.mark_frame(t_ns);
-  pf::PixelObservation* taken = slam->slam.observation_inbox();
-  const size_t most = static_cast<size_t>(slam->slam.observation_inbox_size());
+  pf::PixelObservation* taken = slam->session.inbox();
+  const size_t most = static_cast<size_t>(slam->session.inbox_size());
   const size_t n = count < most ? count : most;
   for (size_t i = 0; i < n; ++i) {
     const pf_observation_t& o = observations[i];
-    taken[i].track = o.id;
+    taken[i].external_id = o.id;
     taken[i].pixel = pf::Vec2(static_cast<Scalar>(o.pixel[0]), static_cast<Scalar>(o.pixel[1]));
-    taken[i].sigma_px = o.sigma_px > 0.0 ? static_cast<Scalar>(o.sigma_px) : slam->settings.sigma_px;
+    taken[i].sigma_px = o.sigma_px > 0.0 ? static_cast<Scalar>(o.sigma_px) : slam->session.settings().sigma_px;
   }
-  return pf::to_c(slam->slam.push_observations(taken, static_cast<int>(n), t_ns));
+  return pf::to_c(slam->session.push_observations(static_cast<int>(n), t_ns));
 }

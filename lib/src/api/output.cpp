@@ -2,18 +2,16 @@
 #include "api/copy.h"
 #include "base/elapsed.h"
 #include "covariance/select.h"
-#include "filter/gauge_information.h"
-#include "filter/observe/point.h"
 
 namespace {
 
 using pf::copy;
 using pf::copy_matrix;
 
-void pose_at(const pf::FilterSlam& slam, int64_t t_ns, pf_pose_t* pose) {
+void pose_at(const pf::View& view, int64_t t_ns, pf_pose_t* pose) {
   pf::Body body;
   pf::Mat6 covariance;
-  slam.predict_pose(t_ns, &body, &covariance);
+  view.pose_at(t_ns, &body, &covariance);
   pose->t_ns = t_ns;
   pose->q_WC[0] = static_cast<double>(body.q_WC.w());
   copy(body.q_WC.vec(), 3, pose->q_WC + 1);
@@ -41,25 +39,26 @@ int32_t feature_kind(pf::BlockKind kind) {
 pf_status_t pf_get_state(const pf_slam_t* slam, pf_state_t* state) {
   PF_REQUIRE_CONTEXT(slam);
   if (state == nullptr) return PF_ERROR_NULL;
-  *state = static_cast<pf_state_t>(slam->slam.state());
+  *state = static_cast<pf_state_t>(slam->session.view().state());
   return PF_OK;
 }
 
 pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose) {
   PF_REQUIRE_CONTEXT(slam);
   if (pose == nullptr) return PF_ERROR_NULL;
-  if (!slam->slam.has_pose()) return PF_ERROR_STATE;
-  pose_at(slam->slam, slam->slam.last_ns(), pose);
+  const pf::View view = slam->session.view();
+  if (!view.has_pose()) return PF_ERROR_STATE;
+  pose_at(view, view.last_ns(), pose);
   return PF_OK;
 }
 
 pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose) {
   PF_REQUIRE_CONTEXT(slam);
   if (pose == nullptr) return PF_ERROR_NULL;
-  if (!slam->slam.has_pose()) return PF_ERROR_STATE;
-  if (t_ns < slam->slam.last_ns()) return PF_ERROR_TIME;
-  if (pf::elapsed_ns(slam->slam.last_ns(), t_ns) > INT64_C(10000000000)) return PF_ERROR_RANGE;
-  pose_at(slam->slam, t_ns, pose);
+  if (!slam->session.view().has_pose()) return PF_ERROR_STATE;
+  if (t_ns < slam->session.view().last_ns()) return PF_ERROR_TIME;
+  if (pf::elapsed_ns(slam->session.view().last_ns(), t_ns) > INT64_C(10000000000)) return PF_ERROR_RANGE;
+  pose_at(slam->session.view(), t_ns, pose);
   return PF_OK;
 }
 
@@ -67,47 +66,37 @@ pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double 
   PF_REQUIRE_CONTEXT(slam);
   if (p_W == nullptr || pixel == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(p_W, 3)) return PF_ERROR_NONFINITE;
-  if (!slam->slam.has_pose()) return PF_ERROR_STATE;
+  if (!slam->session.view().has_pose()) return PF_ERROR_STATE;
   pf::Vec2 z;
-  pf::Mat26 J_body;
-  pf::Mat23 J_point;
+  pf::Mat2 C;
   const pf::Vec3 p(static_cast<pf::Scalar>(p_W[0]), static_cast<pf::Scalar>(p_W[1]), static_cast<pf::Scalar>(p_W[2]));
-  if (!pf::observe_point(slam->settings.camera, slam->slam.filter().state().body, p, &z, &J_body, &J_point))
-    return PF_ERROR_RANGE;
+  if (!slam->session.view().project(p, &z, covariance != nullptr ? &C : nullptr)) return PF_ERROR_RANGE;
   copy(z, 2, pixel);
-  if (covariance == nullptr) return PF_OK;
-  pf::Body body;
-  pf::Mat6 P;
-  slam->slam.predict_pose(slam->slam.last_ns(), &body, &P);
-  const pf::Mat26 JP = J_body.lazyProduct(P);
-  const pf::Mat2 C = JP.lazyProduct(J_body.transpose());
-  copy_matrix(C, covariance);
+  if (covariance != nullptr) copy_matrix(C, covariance);
   return PF_OK;
 }
 
 pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_t capacity, size_t* count) {
   PF_REQUIRE_CONTEXT(slam);
   if (count == nullptr || (features == nullptr && capacity > 0)) return PF_ERROR_NULL;
-  const pf::FeatureTable& table = slam->slam.features();
-  const pf::State& state = slam->slam.filter().state();
+  const pf::View view = slam->session.view();
   *count = 0;
-  for (int i = 0; i < table.capacity(); ++i) {
-    if (!table.used(i)) continue;
+  for (int i = 0; i < view.feature_capacity(); ++i) {
+    if (!view.has_feature(i)) continue;
     const size_t at = (*count)++;
     if (at >= capacity) continue;
-    const pf::Feature& f = table[i];
-    const pf::Block& block = state.block[f.slot];
+    const pf::FeatureView f = view.feature(i);
     pf_feature_t& out = features[at];
     out = pf_feature_t();
     out.id = f.id;
-    out.external_id = f.track;
+    out.external_id = f.external_id;
     out.is_target = f.is_target ? 1 : 0;
     out.observations = f.observations;
     out.attempts = f.attempts;
-    out.kind = feature_kind(block.kind);
-    if (pf::is_planar(block.kind)) out.plane = slam->slam.planes().id_at(state.plane_of(f.slot));
-    copy(slam->slam.filter().point(f.slot), 3, out.p_W);
-    copy_matrix(slam->slam.filter().covariance3(f.slot), out.covariance);
+    out.kind = feature_kind(f.kind);
+    out.plane = f.plane;
+    copy(f.p_W, 3, out.p_W);
+    copy_matrix(f.covariance, out.covariance);
   }
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
 }
@@ -115,9 +104,9 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
 pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t capacity, size_t* count) {
   PF_REQUIRE_CONTEXT(slam);
   if (count == nullptr || (matches == nullptr && capacity > 0)) return PF_ERROR_NULL;
-  *count = static_cast<size_t>(slam->slam.track_count());
+  *count = static_cast<size_t>(slam->session.view().match_count());
   for (size_t i = 0; i < *count && i < capacity; ++i) {
-    const pf::Match& t = slam->slam.tracks()[i];
+    const pf::Match& t = slam->session.view().match(static_cast<int>(i));
     pf_match_t& out = matches[i];
     out.id = t.id;
     out.status = static_cast<int32_t>(t.status);
@@ -133,48 +122,30 @@ pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t ca
 pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   PF_REQUIRE_CONTEXT(slam);
   if (report == nullptr) return PF_ERROR_NULL;
-  const pf::FrameReport& r = slam->slam.report();
+  const pf::View view = slam->session.view();
+  const pf::FrameReport& r = view.report();
+  const pf::MapCounts map = view.counts();
   *report = pf_report_t();
   report->t_ns = r.t_ns;
-  report->state = static_cast<int32_t>(slam->slam.state());
+  report->state = static_cast<int32_t>(view.state());
   report->frames = r.frames;
   report->attempts = r.attempts;
   report->matches = r.matches;
   report->inliers = r.inliers;
   report->new_features = r.new_features;
   report->evicted = r.evicted;
-  const pf::FeatureTable& table = slam->slam.features();
-  const pf::State& state = slam->slam.filter().state();
-  int unfolded_rows = 0;
-  for (int i = 0; i < table.capacity(); ++i) {
-    if (!table.used(i)) continue;
-    ++report->features;
-    const pf::Block& block = state.block[table[i].slot];
-    switch (feature_kind(block.kind)) {
-      case PF_FEATURE_POINT:
-        ++report->features_point;
-        break;
-      case PF_FEATURE_INVERSE_DEPTH:
-        ++report->features_inverse_depth;
-        break;
-      case PF_FEATURE_FOLDED:
-        ++report->features_folded;
-        break;
-      default:
-        ++report->features_fixed;
-    }
-    if (pf::is_planar(block.kind)) unfolded_rows += 3 - block.size;
-  }
-  report->planes = state.planes;
-  report->state_dim = state.dim;
-  report->state_dim_held = state.held_dim;
-  for (int s = 0; s < state.slots; ++s)
-    if (state.block[s].kind == pf::BlockKind::kPlane || state.block[s].kind == pf::BlockKind::kPatch)
-      unfolded_rows -= state.block[s].size;
-  report->state_dim_points_only = state.dim + unfolded_rows;
+  report->features = map.features;
+  report->features_point = map.points;
+  report->features_inverse_depth = map.inverse_depths;
+  report->features_folded = map.folded;
+  report->features_fixed = map.fixed;
+  report->planes = map.planes;
+  report->state_dim = map.state_dim;
+  report->state_dim_held = map.state_dim_held;
+  report->state_dim_points_only = map.state_dim_points_only;
   report->nis = r.nis;
   report->nis_dof = r.nis_dof;
-  report->kernels = static_cast<int32_t>(pf::kernels_id(slam->settings.kernels));
+  report->kernels = static_cast<int32_t>(pf::kernels_id(slam->session.settings().kernels));
   for (int i = 0; i < PF_STAGE_COUNT; ++i) report->stage_ns[i] = r.stage_ns[i];
   return PF_OK;
 }
@@ -183,8 +154,8 @@ pf_status_t pf_get_gauge_information(const pf_slam_t* slam, double* scratch, siz
                                      double information[49]) {
   PF_REQUIRE_CONTEXT(slam);
   if (scratch == nullptr || information == nullptr) return PF_ERROR_NULL;
-  if (!slam->slam.has_pose()) return PF_ERROR_STATE;
-  const size_t n = static_cast<size_t>(slam->slam.filter().state().dim);
+  if (!slam->session.view().has_pose()) return PF_ERROR_STATE;
+  const size_t n = static_cast<size_t>(slam->session.view().state_dim());
   if (scratch_count < n * (n + 8)) return PF_ERROR_MEMORY;
-  return pf::gauge_information(slam->slam.filter(), scratch, information) ? PF_OK : PF_ERROR_RANGE;
+  return slam->session.view().gauge_information(scratch, information) ? PF_OK : PF_ERROR_RANGE;
 }

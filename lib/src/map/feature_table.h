@@ -10,18 +10,17 @@
 namespace pf {
 
 struct Feature {
-  std::uint32_t id = 0;     ///< never used twice
-  std::uint32_t track = 0;  ///< the caller's id, for features that came through the observation door
-  int slot = -1;            ///< block in the filter; -1: this entry is free
+  std::uint32_t id = 0;  ///< never used twice
+  std::uint32_t external_id =
+      0;          ///< the caller's id, for features that came as observations; of a target the index of the point
+  int slot = -1;  ///< block in the filter; -1: this entry is free
   bool is_target = false;
-  bool asked = false;    ///< in this frame, through the observation door
+  bool has_appearance = false;
   int observations = 0;  ///< frames in which it was measured and used
   int attempts = 0;      ///< frames in which it was looked for
   int failures = 0;      ///< attempts since it was last measured
   int rejections = 0;    ///< of them, matches that did not agree
   std::int64_t last_seen_ns = 0;
-  int appearance = -1;   ///< entry in the tracker's templates
-  int start_index = -1;  ///< in the record of a start without a target
 };
 
 class FeatureTable {

@@ -2,19 +2,23 @@
 
 #include "map/feature_table.h"
 #include "map/plane_table.h"
+#include "vision/appearance.h"
 
-/// The map beside the filter: what is kept about features and planes, as plain tables behind one handle.
+/// The map beside the filter: features, how they looked, and planes, as plain tables behind one handle. Rows hold no pointers.
 
 namespace pf {
 
-struct Map {
+class Map {
+ public:
   FeatureTable features;
   PlaneTable planes;
-  bool target_withdrawn = false;  ///< the target's points are measured no more
+  bool target_withdrawn = false;  ///< the target's points are no longer measured
 
   bool layout(Arena& arena, int max_features, int max_planes) {
     features.layout(arena, max_features);
     planes.layout(arena, max_planes);
+    appearance_ = arena.take<Appearance>(static_cast<std::size_t>(max_features));
+    first_view_ = arena.take<CameraView>(static_cast<std::size_t>(max_features));
     return arena.ok();
   }
   void init() {
@@ -22,6 +26,17 @@ struct Map {
     planes.init();
     target_withdrawn = false;
   }
+
+  /// How a feature looked at first. Valid where the feature `has_appearance`.
+  Appearance& appearance(int feature) { return appearance_[feature]; }
+  const Appearance& appearance(int feature) const { return appearance_[feature]; }
+  /// The camera that saw it then: a constant in W, which does not follow when the map moves.
+  CameraView& first_view(int feature) { return first_view_[feature]; }
+  const CameraView& first_view(int feature) const { return first_view_[feature]; }
+
+ private:
+  Appearance* appearance_ = nullptr;  ///< of each row of the feature table
+  CameraView* first_view_ = nullptr;  ///< likewise
 };
 
 }  // namespace pf

@@ -17,7 +17,7 @@ class BodyMotion {
 
   void init() { data_ = Data(); }
   /// Known change of the velocities in camera axes, until the next frame.
-  void push_steering(const Vec3& dv_C, const Vec3& dw_C) {
+  void push_control(const Vec3& dv_C, const Vec3& dw_C) {
     data_.dv_C += dv_C;
     data_.dw_C += dw_C;
   }

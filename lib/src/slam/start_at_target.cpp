@@ -1,10 +1,9 @@
+#include "slam/start_at_target.h"
+
 #include <algorithm>
 #include <limits>
 
 #include "geometry/symmetric_eigen.h"
-#include "slam/filter_slam.h"
-
-/// A start in front of something known: find it, take the pose from it, and let its points be features.
 
 namespace pf {
 namespace {
@@ -21,64 +20,71 @@ Scalar pixel_sigma(const Camera& camera, Scalar sigma_m, Scalar distance) {
 
 }  // namespace
 
-/// The pose at the first frame, in one of the ways that the caller chose. False: not yet.
-bool FilterSlam::start_in_image() {
-  if (target_.kind == TargetKind::kNone) {
-    begin_from_knowledge();
-    start_.recording = !known_body_.given;
-    return true;
-  }
-  PoseEstimate pose;
-  Vec2 pixel[Target::kMaxPoints];
-  const bool seen = target_.kind == TargetKind::kRectangle ? sight_rectangle(&pose, pixel) : sight_points(&pose, pixel);
-  if (!seen) return false;
+bool StartAtTarget::layout(Arena& arena, int width, int height) {
+  quad_workspace_ = take_quad_workspace(&arena, width, height);
+  return arena.ok();
+}
 
-  if (target_.kind == TargetKind::kRectangle) {
+bool StartAtTarget::find(const Camera& camera, const Tracker& tracker, TargetSighting* sighting) {
+  const bool is_rectangle = target_.kind == TargetKind::kRectangle;
+  if (!(is_rectangle ? find_rectangle(camera, tracker, sighting) : find_points(camera, tracker, sighting)))
+    return false;
+  if (is_rectangle) {
     target_.count = 4;
     rectangle_points(target_.width, target_.height, target_.point_W);
   }
-  target_.first_pose.q_WC = pose.q_WC;
-  target_.first_pose.p_W = pose.p_WC;
-  target_.first_covariance = pose.covariance;
-  if (frame_.report.frames > 1) known_body_ = KnownBody();  // it was the pose of the first frame
-  begin_from_knowledge();
-  add_target_points();
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i) || !map_.features[i].is_target) continue;
-    Feature& f = map_.features[i];
-    const Vec2 z = pixel[f.track];
-    f.appearance = tracker_.remember(z, pose.q_WC, pose.p_WC);
-    f.observations = f.attempts = 1;
-    ++frame_.report.inliers;
-    frame_.add({i, f.id, MatchStatus::kInlier, BlockKind::kPoint, z, Mat2::Zero(), z, Scalar(0)});
-  }
-  frame_.report.attempts = frame_.report.matches = frame_.report.inliers;
-  tracking_.sight();
-  settings_.hooks.say("started at the target");
+  target_.first_pose.q_WC = sighting->pose.q_WC;
+  target_.first_pose.p_W = sighting->pose.p_WC;
+  target_.first_covariance = sighting->pose.covariance;
   return true;
 }
 
-bool FilterSlam::sight_rectangle(PoseEstimate* pose, Vec2* pixel) const {
-  RectangleSighting sighting;
-  const Camera& camera = settings_.camera;
-  if (!find_dark_rectangle(tracker_.image(), camera, target_.width, target_.height, kCornerSigma, quad_workspace_,
-                           &sighting))
+bool StartAtTarget::find_rectangle(const Camera& camera, const Tracker& tracker, TargetSighting* sighting) const {
+  RectangleSighting found;
+  if (!find_dark_rectangle(tracker.image(), camera, target_.width, target_.height, kCornerSigma, quad_workspace_,
+                           &found))
     return false;
-  std::copy(sighting.quad.corners, sighting.quad.corners + 4, pixel);
-  const Scalar sigma = pixel_sigma(camera, target_.sigma_m, sighting.pose.p_WC.norm());
-  return rectangle_pose(camera, target_.width, target_.height, pixel, sigma, pose);
+  std::copy(found.quad.corners, found.quad.corners + 4, sighting->pixel);
+  const Scalar sigma = pixel_sigma(camera, target_.sigma_m, found.pose.p_WC.norm());
+  return rectangle_pose(camera, target_.width, target_.height, sighting->pixel, sigma, &sighting->pose);
 }
 
 /// Known points near where the first pose puts them: the corners of a dark quadrilateral when there are four that match one,
 /// otherwise the strongest image corners. All points must be there.
-bool FilterSlam::sight_points(PoseEstimate* pose, Vec2* pixel) const {
-  const Camera& camera = settings_.camera;
-  const int count = target_.count;
-  const Body& first = target_.first_pose;
+bool StartAtTarget::find_points(const Camera& camera, const Tracker& tracker, TargetSighting* sighting) const {
   Vec2 predicted[Target::kMaxPoints];
-  Scalar reach[Target::kMaxPoints];  // [px]
-  Scalar distance = 0;
-  for (int i = 0; i < count; ++i) {
+  Scalar reach[Target::kMaxPoints];
+  Scalar distance;
+  if (!predict_points(camera, predicted, reach, &distance)) return false;
+  const Scalar sigma = pixel_sigma(camera, target_.sigma_m, distance);
+
+  Vec2 z[Target::kMaxPoints];
+  if (target_.count == 4) {
+    Quad quad[kQuads];
+    const int quads = find_dark_quads(tracker.image(), quad_workspace_, quad, kQuads);
+    for (int k = 0; k < quads; ++k) {
+      if (!refine_quad(tracker.image(), camera, &quad[k])) continue;
+      if (match_quad(quad[k], predicted, reach, z) && fit(camera, z, sigma, sighting)) return true;
+    }
+  }
+  for (int i = 0; i < target_.count; ++i) {
+    Rect roi;
+    roi.x = static_cast<int>(predicted[i].x() - reach[i]);
+    roi.y = static_cast<int>(predicted[i].y() - reach[i]);
+    roi.width = roi.height = static_cast<int>(Scalar(2) * reach[i]) + 1;
+    Corner corner;
+    if (tracker.corners(roi, 8, &corner, 1) != 1) return false;
+    z[i] = Vec2(static_cast<Scalar>(corner.x), static_cast<Scalar>(corner.y));
+  }
+  return fit(camera, z, sigma, sighting);
+}
+
+/// Where the first pose puts the points, how far from there they are looked for [px], and how far away they are [m]. False when one is
+/// not in the image.
+bool StartAtTarget::predict_points(const Camera& camera, Vec2* predicted, Scalar* reach, Scalar* distance) const {
+  const Body& first = target_.first_pose;
+  *distance = 0;
+  for (int i = 0; i < target_.count; ++i) {
     Mat26 J;
     if (!project_from_pose(camera, first.q_WC, first.p_W, target_.point_W[i], first.p_W, &predicted[i], &J))
       return false;
@@ -90,59 +96,41 @@ bool FilterSlam::sight_points(PoseEstimate* pose, Vec2* pixel) const {
     const Scalar widest = symmetric_eigenvalues(S)(1);
     if (!(widest >= Scalar(0))) return false;
     reach[i] = std::clamp(Scalar(3) * std::sqrt(widest), Scalar(6), Scalar(60));
-    distance += (target_.point_W[i] - first.p_W).norm() / static_cast<Scalar>(count);
+    *distance += (target_.point_W[i] - first.p_W).norm() / static_cast<Scalar>(target_.count);
   }
-  const Scalar sigma = pixel_sigma(camera, target_.sigma_m, distance);
+  return true;
+}
 
-  const auto try_pixels = [&](const Vec2* z) {
-    PoseEstimate estimate;
-    estimate.q_WC = first.q_WC;
-    estimate.p_WC = first.p_W;
-    if (!refine_pose(camera, target_.point_W, z, count, sigma, &estimate)) return false;
-    if (estimate.rms_px > kMostRms) return false;
-    *pose = estimate;
-    std::copy(z, z + count, pixel);
-    return true;
-  };
-
-  if (count == 4) {
-    Quad quad[kQuads];
-    const int quads = find_dark_quads(tracker_.image(), quad_workspace_, quad, kQuads);
-    for (int k = 0; k < quads; ++k) {
-      if (!refine_quad(tracker_.image(), camera, &quad[k])) continue;
-      Vec2 z[4];
-      bool taken[4] = {};
-      bool all = true;
-      for (int i = 0; i < 4 && all; ++i) {
-        int nearest = -1;
-        Scalar best = reach[i] * reach[i];
-        for (int c = 0; c < 4; ++c) {
-          const Scalar d2 = (quad[k].corners[c] - predicted[i]).squaredNorm();
-          if (!taken[c] && d2 < best) {
-            best = d2;
-            nearest = c;
-          }
-        }
-        all = nearest >= 0;
-        if (!all) break;
-        taken[nearest] = true;
-        z[i] = quad[k].corners[nearest];
+/// The corner of a quadrilateral for each of four points; false where one has none within its reach.
+bool StartAtTarget::match_quad(const Quad& quad, const Vec2* predicted, const Scalar* reach, Vec2* z) const {
+  bool taken[4] = {};
+  for (int i = 0; i < 4; ++i) {
+    int nearest = -1;
+    Scalar best = reach[i] * reach[i];
+    for (int c = 0; c < 4; ++c) {
+      const Scalar d2 = (quad.corners[c] - predicted[i]).squaredNorm();
+      if (!taken[c] && d2 < best) {
+        best = d2;
+        nearest = c;
       }
-      if (all && try_pixels(z)) return true;
     }
+    if (nearest < 0) return false;
+    taken[nearest] = true;
+    z[i] = quad.corners[nearest];
   }
+  return true;
+}
 
-  Vec2 z[Target::kMaxPoints];
-  for (int i = 0; i < count; ++i) {
-    Rect roi;
-    roi.x = static_cast<int>(predicted[i].x() - reach[i]);
-    roi.y = static_cast<int>(predicted[i].y() - reach[i]);
-    roi.width = roi.height = static_cast<int>(Scalar(2) * reach[i]) + 1;
-    Corner corner;
-    if (tracker_.corners(roi, 8, &corner, 1) != 1) return false;
-    z[i] = Vec2(static_cast<Scalar>(corner.x), static_cast<Scalar>(corner.y));
-  }
-  return try_pixels(z);
+/// The pose that explains these pixels of the points. False where none does.
+bool StartAtTarget::fit(const Camera& camera, const Vec2* z, Scalar sigma_px, TargetSighting* sighting) const {
+  PoseEstimate estimate;
+  estimate.q_WC = target_.first_pose.q_WC;
+  estimate.p_WC = target_.first_pose.p_W;
+  if (!refine_pose(camera, target_.point_W, z, target_.count, sigma_px, &estimate)) return false;
+  if (estimate.rms_px > kMostRms) return false;
+  sighting->pose = estimate;
+  std::copy(z, z + target_.count, sighting->pixel);
+  return true;
 }
 
 }  // namespace pf

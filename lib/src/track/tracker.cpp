@@ -33,17 +33,10 @@ Mat2 inverse2(const Mat2& S) {
 
 }  // namespace
 
-bool Tracker::layout(Arena& arena, int width, int height, int max_features) {
+bool Tracker::layout(Arena& arena, int width, int height) {
   pyramid_.layout(arena, width, height, kLevels);
   corner_workspace_.layout(arena, width);
-  appearance_ = arena.take<Appearance>(static_cast<std::size_t>(max_features));
-  capacity_ = max_features;
   return arena.ok();
-}
-
-void Tracker::init(const Camera& camera) {
-  camera_ = camera;
-  for (int i = 0; i < capacity_; ++i) appearance_[i].used = false;
 }
 
 bool Tracker::begin_frame(const ImageView& image) {
@@ -52,27 +45,14 @@ bool Tracker::begin_frame(const ImageView& image) {
   return judge_frame(frame_statistics(pyramid_.level[level])) == FrameUse::kUsable;
 }
 
-int Tracker::remember(const Vec2& pixel, const Quat& q_WC, const Vec3& c_W) {
-  for (int i = 0; i < capacity_; ++i) {
-    Appearance& a = appearance_[i];
-    if (a.used) continue;
-    if (!extract_source(pyramid_, pixel, &a.patch)) return -1;
-    a.used = true;
-    a.pixel = pixel;
-    a.q_WC = q_WC;
-    a.c_W = c_W;
-    return i;
-  }
-  return -1;
-}
-
-void Tracker::forget(int appearance) {
-  if (appearance >= 0) appearance_[appearance].used = false;
+bool Tracker::remember(const Vec2& pixel, Appearance* appearance) const {
+  return extract_source(pyramid_, pixel, &appearance->patch);
 }
 
 /// Source pixels per current pixel about the feature, on its surface; where that is not known, on a plane that faced the camera when
 /// the feature was first seen: current pixel -> ray -> plane -> source pixel, by central differences.
-bool Tracker::warp(const Appearance& source, const SearchTask& task, Mat2* A) const {
+bool Tracker::warp(const SearchTask& task, Mat2* A) const {
+  const CameraView& source = task.first_view;
   constexpr Scalar kStep = 4;
   const Vec3 normal = task.normal_W.isZero(0) ? Vec3(task.p_W - source.c_W) : task.normal_W;
   const Mat3 R_WC = task.q_WC.toRotationMatrix();
@@ -97,10 +77,10 @@ bool Tracker::warp(const Appearance& source, const SearchTask& task, Mat2* A) co
 
 SearchOutcome Tracker::search(const SearchTask& task) const {
   SearchOutcome outcome;
-  if (task.appearance < 0) return outcome;
-  const Appearance& source = appearance_[task.appearance];
+  if (task.appearance == nullptr) return outcome;
+  const SourcePatch& patch = task.appearance->patch;
   Mat2 A;
-  if (!warp(source, task, &A)) return outcome;
+  if (!warp(task, &A)) return outcome;
   const Scalar scale = std::sqrt(std::abs(A.determinant()));
   if (!(scale > kLeastScale && scale < kMostScale)) return outcome;
   outcome.comparable = true;
@@ -112,10 +92,10 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
   while (level + 1 < pyramid_.levels && radius > kSearchRadius * static_cast<Scalar>(1 << level)) ++level;
 
   float warped[kWarpSize * kWarpSize];
-  if (!warp_template(source.patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
+  if (!warp_template(patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
     // The patch does not reach so far at a coarse level: search the largest part at the finest one.
     level = finest;
-    if (!warp_template(source.patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
+    if (!warp_template(patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
       outcome.comparable = false;
       return outcome;
     }
@@ -141,7 +121,7 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
     aligned = align(pyramid_.level[level], fine, position);
     if (aligned.converged) position = aligned.position;
     if (level == finest) break;
-    if (!warp_template(source.patch, A * static_cast<Scalar>(1 << (level - 1)), kWarpSize, warped)) return outcome;
+    if (!warp_template(patch, A * static_cast<Scalar>(1 << (level - 1)), kWarpSize, warped)) return outcome;
     position = Vec2((position.x() + Scalar(0.25)) * Scalar(2), (position.y() + Scalar(0.25)) * Scalar(2));
   }
   if (!aligned.converged || aligned.zncc < kLeastScore) return outcome;

@@ -2,9 +2,9 @@
 
 #include "base/arena.h"
 #include "geometry/camera.h"
+#include "vision/appearance.h"
 #include "vision/corners.h"
 #include "vision/image.h"
-#include "vision/patch.h"
 #include "vision/pyramid.h"
 
 /// From images to pixels: it is told where to look for which feature and how sure that is, and says where it found it.
@@ -13,7 +13,8 @@ namespace pf {
 
 /// Where a feature should be in this frame, and how it was seen first.
 struct SearchTask {
-  int appearance = -1;
+  const Appearance* appearance = nullptr;
+  CameraView first_view;               ///< that the appearance was taken from
   Vec2 predicted = Vec2::Zero();       ///< [px]
   Mat2 innovation = Mat2::Identity();  ///< covariance of (measured - predicted) [px^2]
   Scalar gate = 9;                     ///< chi-square bound of the ellipse
@@ -37,15 +38,14 @@ class Tracker {
   static constexpr int kLevels = 4;
   static constexpr Scalar kTypicalSigma = Scalar(0.6);  ///< [px] of a match, before the image has said how good it is
 
-  bool layout(Arena& arena, int width, int height, int max_features);
-  void init(const Camera& camera);
+  bool layout(Arena& arena, int width, int height);
+  void init(const Camera& camera) { camera_ = camera; }
 
   /// Takes in a frame. False when there is nothing in it to track by: black, white, blurred out.
   bool begin_frame(const ImageView& image);
 
-  /// Keeps what is around a pixel of this frame as a feature's appearance; -1 when it is too near to the border or all are in use.
-  int remember(const Vec2& pixel, const Quat& q_WC, const Vec3& c_W);
-  void forget(int appearance);
+  /// Copies what is around a pixel of this frame. False, appearance untouched, when it is too near to the border.
+  bool remember(const Vec2& pixel, Appearance* appearance) const;
 
   SearchOutcome search(const SearchTask& task) const;
 
@@ -56,20 +56,11 @@ class Tracker {
   ImageView image() const { return pyramid_.level[0]; }
 
  private:
-  struct Appearance {
-    bool used;
-    Quat q_WC;
-    Vec3 c_W;
-    Vec2 pixel;
-    SourcePatch patch;
-  };
-  bool warp(const Appearance& source, const SearchTask& task, Mat2* A) const;
+  bool warp(const SearchTask& task, Mat2* A) const;
 
   Camera camera_;
   Pyramid pyramid_;
   CornerWorkspace corner_workspace_;
-  Appearance* appearance_ = nullptr;
-  int capacity_ = 0;
 };
 
 }  // namespace pf

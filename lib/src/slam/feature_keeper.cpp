@@ -1,10 +1,10 @@
+#include "slam/feature_keeper.h"
+
 #include <algorithm>
 
+#include "base/elapsed.h"
 #include "filter/observe/inverse_depth.h"
 #include "filter/observe/row.h"
-#include "slam/filter_slam.h"
-
-/// What happens to the map after each update: convert, drop, evict, begin.
 
 namespace pf {
 namespace {
@@ -17,7 +17,12 @@ constexpr Scalar kBehindTarget = 2;   ///< how many times farther than the targe
 
 }  // namespace
 
-void FilterSlam::convert_what_is_linear() {
+bool FeatureKeeper::layout(Arena& arena, int max_features) {
+  scratch_ = arena.take<int>(static_cast<std::size_t>(max_features));
+  return arena.ok();
+}
+
+void FeatureKeeper::convert_linear() {
   SparseRows l;
   if (!filter_.scale_row(&l)) l.segments = 0;
   for (int i = 0; i < map_.features.capacity(); ++i) {
@@ -34,7 +39,7 @@ void FilterSlam::convert_what_is_linear() {
   }
 }
 
-void FilterSlam::drop_what_fails() {
+void FeatureKeeper::drop_failing() {
   int count = 0;
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!map_.features.used(i)) continue;
@@ -56,8 +61,8 @@ void FilterSlam::drop_what_fails() {
   drop(scratch_, count);
 }
 
-/// Table entries, their blocks and their appearance go, in one pass over the covariance.
-void FilterSlam::drop(const int* entries, int count) {
+/// Table entries and their blocks go, in one pass over the covariance.
+void FeatureKeeper::drop(const int* entries, int count) {
   constexpr int kChunk = 32;
   int slots[kChunk];
   for (int begin = 0; begin < count; begin += kChunk) {
@@ -65,7 +70,6 @@ void FilterSlam::drop(const int* entries, int count) {
     for (int k = 0; k < size; ++k) {
       const int entry = entries[begin + k];
       slots[k] = map_.features[entry].slot;
-      tracker_.forget(map_.features[entry].appearance);
       frame_.forget(entry);
       map_.features.remove(entry);
     }
@@ -74,8 +78,18 @@ void FilterSlam::drop(const int* entries, int count) {
   frame_.report.evicted += count;
 }
 
+void FeatureKeeper::drop_all() {
+  for (int i = 0; i < map_.features.capacity(); ++i)
+    if (map_.features.used(i)) drop(&i, 1);
+}
+
+void FeatureKeeper::release(int entry) {
+  frame_.forget(entry);
+  map_.features.remove(entry);
+}
+
 /// Room for that many rows and one more feature, by eviction of what was not seen in this frame. False when there is none.
-bool FilterSlam::make_room(int rows) {
+bool FeatureKeeper::make_room(int rows) {
   while (map_.features.count() >= map_.features.capacity() || filter_.room() < rows ||
          filter_.state().find_free() < 0) {
     const int entry = map_.features.least_useful(frame_.report.t_ns);
@@ -85,8 +99,7 @@ bool FilterSlam::make_room(int rows) {
   return true;
 }
 
-/// Room for one more feature on an anchor, which is made where there is none: evictions take a childless anchor along.
-bool FilterSlam::make_room_at(int* anchor) {
+bool FeatureKeeper::make_room_at(int* anchor) {
   if (*anchor >= 0) {
     if (!make_room(3)) return false;
     if (filter_.state().block[*anchor].kind == BlockKind::kAnchor) return true;
@@ -103,7 +116,7 @@ bool FilterSlam::make_room_at(int* anchor) {
 /// A target stands in front of the scene. Points that begin nearer than they are tempt a camera whose pose the target leaves
 /// uncertain: short depths and a turn about the target explain the first frames too, and the filter may settle there (bas-relief
 /// ambiguity). Points that begin too far only wait for parallax.
-Scalar FilterSlam::usual_inverse_depth() const {
+Scalar FeatureKeeper::median_inverse_depth() const {
   const Scalar start = Scalar(1) / settings_.start_depth;
   if (!settings_.depth_from_map) return start;
   constexpr int kMost = 128;
@@ -136,12 +149,11 @@ Scalar FilterSlam::usual_inverse_depth() const {
   return on_target > 0 ? target_rho / (kBehindTarget * Scalar(on_target)) : start;
 }
 
-/// A new inverse-depth feature at a pixel; its table entry, or -1.
-int FilterSlam::begin_feature(int anchor, const Vec2& pixel, const Mat2& noise) {
+int FeatureKeeper::begin(int anchor, const Vec2& pixel, const Mat2& noise) {
   Vec3 ray_C;
   Mat32 J_ray_pixel;
   if (!unproject(settings_.camera, pixel, &ray_C, &J_ray_pixel)) return -1;
-  const Scalar rho = usual_inverse_depth();
+  const Scalar rho = median_inverse_depth();
   const int slot =
       filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, settings_.inverse_depth_relative_sigma * rho,
                                 row_time(settings_.camera, pixel.y()));
@@ -159,16 +171,15 @@ int FilterSlam::begin_feature(int anchor, const Vec2& pixel, const Mat2& noise) 
   return entry;
 }
 
-/// The target's points enter the state with their own uncertainty.
-void FilterSlam::add_target_points() {
-  for (int i = 0; i < target_.count; ++i) {
-    const int slot = filter_.add_point(target_.point_W[i], Mat3::Identity() * (target_.sigma_m * target_.sigma_m));
+void FeatureKeeper::add_target_points(const Target& target) {
+  for (int i = 0; i < target.count; ++i) {
+    const int slot = filter_.add_point(target.point_W[i], Mat3::Identity() * (target.sigma_m * target.sigma_m));
     if (slot < 0) return;
     const int entry = map_.features.add(slot);
     if (entry < 0) return;
     filter_.set_owner(slot, entry);
     map_.features[entry].is_target = true;
-    map_.features[entry].track = static_cast<std::uint32_t>(i);
+    map_.features[entry].external_id = static_cast<std::uint32_t>(i);
     map_.features[entry].last_seen_ns = frame_.report.t_ns;
   }
 }

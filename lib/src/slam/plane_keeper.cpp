@@ -1,11 +1,11 @@
+#include "slam/plane_keeper.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/symmetric_eigen.h"
-#include "slam/filter_slam.h"
 
-/// What happens to the planes of the map after each update: misfits out, points in, points fixed; whole planes in planes_come_and_go.cpp.
-/// Gee 2007, sections 3.3 and 3.4. One plane at a time is tended to in a frame, so that the work is bounded.
+/// Points of planes: misfits out, points in, points fixed. Whole planes: plane_lifecycle.cpp. Gee 2007, sections 3.3 and 3.4.
 
 namespace pf {
 namespace {
@@ -25,9 +25,13 @@ Scalar largest_eigenvalue(const Mat3& C) {
 
 }  // namespace
 
-void FilterSlam::tend_planes() {
-  // While a start goes on, the filter may begin again without its planes, whose ids would then stand for nothing.
-  if (!settings_.planes || start_.recording) return;
+bool PlaneKeeper::layout(Arena& arena, int max_features) {
+  candidate_ = arena.take<PlaneCandidate>(static_cast<std::size_t>(max_features));
+  candidate_entry_ = arena.take<int>(static_cast<std::size_t>(max_features));
+  return arena.ok();
+}
+
+void PlaneKeeper::tend() {
   unfold_misfits();
   if (!filter_.scale_row(&scale_)) scale_.segments = 0;
   const int turn = frame_.report.frames % map_.planes.capacity();
@@ -39,7 +43,7 @@ void FilterSlam::tend_planes() {
     fold_into(i);
     settle_frame(i);
     PlaneOutline now;
-    outline(i, &now);
+    outline_plane(filter_, map_, i, &now);
     map_.planes[i].seen = now;
     if (settings_.fix_sigma > Scalar(0)) fix_on(i);
     merge_into(i);
@@ -47,11 +51,11 @@ void FilterSlam::tend_planes() {
   dissolve_weak();
   if (frame_.report.frames % kDiscoverEvery != 0) return;
   if (!filter_.scale_row(&scale_)) scale_.segments = 0;  // rows may have moved since
-  discover_plane();
+  discover();
 }
 
 /// A 3-D point that has settled, and is not a target's, whose place is known anyway.
-bool FilterSlam::is_settled(int entry) const {
+bool PlaneKeeper::is_settled(int entry) const {
   if (!map_.features.used(entry) || map_.features[entry].is_target) return false;
   const Feature& f = map_.features[entry];
   return filter_.state().block[f.slot].kind == BlockKind::kPoint && f.failures == 0 && f.observations >= kConverged;
@@ -59,7 +63,7 @@ bool FilterSlam::is_settled(int entry) const {
 
 /// Whether a settled point is known well enough to be folded, or to vote for a plane; its covariance relative to the camera and the
 /// world's size.
-bool FilterSlam::is_certain(int entry, Mat3* covariance) const {
+bool PlaneKeeper::is_certain(int entry, Mat3* covariance) const {
   *covariance = filter_.relative_covariance(map_.features[entry].slot, scale_);
   const Scalar most = settings_.fold_sigma * settings_.fold_sigma;
   return (*covariance)(0, 0) + (*covariance)(1, 1) + (*covariance)(2, 2) < most ||
@@ -67,7 +71,7 @@ bool FilterSlam::is_certain(int entry, Mat3* covariance) const {
 }
 
 /// Points that are found again and again where their plane does not put them go back to three coordinates, and the plane is less sure.
-void FilterSlam::unfold_misfits() {
+void PlaneKeeper::unfold_misfits() {
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!map_.features.used(i) || map_.features[i].rejections < kMostRejections) continue;
     const int slot = map_.features[i].slot;
@@ -77,7 +81,7 @@ void FilterSlam::unfold_misfits() {
     if (!filter_.unfold(slot, Scalar(10) * settings_.plane_distance)) continue;
     map_.features[i].rejections = 0;
     map_.features[i].observations = 1;  // has to converge again before it may be folded
-    loosen(plane, children);
+    inflate(plane, children);
     const int entry = map_.planes.entry_at(plane);
     if (entry < 0) continue;
     ++map_.planes[entry].misfits;
@@ -87,7 +91,7 @@ void FilterSlam::unfold_misfits() {
 }
 
 /// A plane has believed one of its points wrongly by about plane_distance: what that did to it is added to its covariance.
-void FilterSlam::loosen(int plane_slot, int children) {
+void PlaneKeeper::inflate(int plane_slot, int children) {
   const Scalar share = settings_.plane_distance / static_cast<Scalar>(std::max(children, 1));
   const Scalar extent = Scalar(0.25) * settings_.plane_radius;
   Mat3 Q = Mat3::Zero();
@@ -98,7 +102,7 @@ void FilterSlam::loosen(int plane_slot, int children) {
 
 /// Not far from all that is known of a plane: what lies in it there does so by chance. The paper asks for a distance from the plane's
 /// origin, since it cannot tell how well far points are known beside each other; here the variance of the distance says so.
-bool FilterSlam::is_in_reach(int plane_entry, const Vec3& p_W) const {
+bool PlaneKeeper::is_in_reach(int plane_entry, const Vec3& p_W) const {
   const PlaneFrame& frame = filter_.state().frame_of(filter_.state().block[map_.planes[plane_entry].slot]);
   const PlaneOutline& known = map_.planes[plane_entry].support;
   const Scalar reach = std::min(kReach * std::sqrt(outline_area(known)), settings_.plane_radius);
@@ -107,7 +111,7 @@ bool FilterSlam::is_in_reach(int plane_entry, const Vec3& p_W) const {
 
 /// Near the plane, known to be, and in agreement with it by the gate of folding. Agreement means something only where the distance is
 /// known to about what it is gated with.
-bool FilterSlam::lies_on(int plane, int slot) const {
+bool PlaneKeeper::lies_on(int plane, int slot) const {
   Scalar d, variance;
   if (!filter_.distance(plane, slot, &d, &variance)) return false;
   const Scalar most = settings_.plane_distance * settings_.plane_distance;
@@ -117,7 +121,7 @@ bool FilterSlam::lies_on(int plane, int slot) const {
 }
 
 /// Points that lie on the plane join it.
-void FilterSlam::fold_into(int plane_entry) {
+void PlaneKeeper::fold_into(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   const Block& block = filter_.state().block[plane];
   const PlaneFrame& frame = filter_.state().frame_of(block);
@@ -141,24 +145,24 @@ void FilterSlam::fold_into(int plane_entry) {
 }
 
 /// A point has joined: the plane is known as far as there.
-void FilterSlam::support(int plane_entry, int slot) {
+void PlaneKeeper::support(int plane_entry, int slot) {
   const State& state = filter_.state();
   const Vec2 uv = plane_coordinates(state.frame_of(state.block[map_.planes[plane_entry].slot]), filter_.point(slot));
   extend_outline(&map_.planes[plane_entry].support, &uv, 1);
 }
 
 /// Points that are known well among those of their plane are estimated no more.
-void FilterSlam::fix_on(int plane_entry) {
+void PlaneKeeper::fix_on(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   const State& state = filter_.state();
   int group[Filter::kMostFolded], slots[Filter::kMostFolded];
   int group_count = 0, count = 0;
   const bool has_patch = filter_.patch_of(plane) >= 0;
-  for (int i = 0; i < map_.features.capacity() && group_count < Filter::kMostFolded; ++i) {
-    if (!map_.features.used(i) || map_.features[i].failures > 0) continue;
-    const Block& block = state.block[map_.features[i].slot];
-    if (block.kind == BlockKind::kPlanePoint && block.parent == plane) group[group_count++] = map_.features[i].slot;
-  }
+  state.for_each_planar(plane, [&](int slot) {
+    const Block& block = state.block[slot];
+    if (group_count == Filter::kMostFolded || map_.features[block.owner].failures > 0) return;
+    if (block.kind == BlockKind::kPlanePoint) group[group_count++] = slot;
+  });
   if (!has_patch && group_count < 2 * kLeastFixed) return;
   const int most = std::min(Filter::kMostFolded, settings_.max_observations);
   const Scalar variance = settings_.fix_sigma * settings_.fix_sigma;

@@ -1,10 +1,9 @@
+#include "slam/pixel_update.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "slam/filter_slam.h"
-
-/// What is expected of pixels, and what happens to the map when they are taken in.
 
 namespace pf {
 namespace {
@@ -13,22 +12,34 @@ constexpr int kMostRounds = 3;  ///< of one frame's pixels, where little was kno
 
 }  // namespace
 
-/// Takes in the kept ones of observations first .. first+count-1, which begin_update holds. False when nothing was taken in.
-bool FilterSlam::take_in(int first, int count) {
+bool PixelUpdate::layout(Arena& arena, int max_observations) {
+  const std::size_t count = static_cast<std::size_t>(max_observations);
+  candidate_ = arena.take<Candidate>(count);
+  observation_ = arena.take<Observation>(count);
+  keep_ = arena.take<unsigned char>(count);
+  return arena.ok();
+}
+
+void PixelUpdate::begin(int first, int count) {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
+  filter_.begin_update(observation_ + first, count);
+}
+
+bool PixelUpdate::take_in(int first, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
   Scalar nis = 0;
-  if (!filter_.finish_update(observation_ + first, count, keep_ + first, &nis)) {
-    tracking_.count_update(false);
-    for (int i = first; i < first + count; ++i) frame_.match(track_of_[i]).status = MatchStatus::kOutlier;
+  const bool done = filter_.finish_update(observation_ + first, count, keep_ + first, &nis);
+  tracking_.count_update(done);
+  if (!done) {
+    for (int i = first; i < first + count; ++i) frame_.match(candidate_[i].match).status = MatchStatus::kOutlier;
     return false;
   }
-  tracking_.count_update(true);
   frame_.report.nis += static_cast<double>(nis);
   for (int i = first; i < first + count; ++i) {
     if (keep_[i] == 0) continue;
     frame_.report.nis_dof += 2;
     ++frame_.report.inliers;
-    Feature& feature = map_.features[entry_[i]];
+    Feature& feature = map_.features[candidate_[i].feature];
     count_frame(&feature.observations);
     feature.failures = 0;
     feature.rejections = 0;
@@ -38,10 +49,9 @@ bool FilterSlam::take_in(int first, int count) {
   return true;
 }
 
-/// H P H^T of a predicted pixel. Adds to its second-order noise what the projection bends over the spread of the pose: with an
-/// angle of s = sqrt(lambda / f^2) the tangent leaves out about f s^2, as noise f^2 s^4 / 2. The smaller eigenvalue counts: the
-/// larger may be of the depth, in which an inverse-depth point is linear.
-Mat2 FilterSlam::expected_innovation(Observation* o) const {
+/// With an angle of s = sqrt(lambda / f^2) the tangent leaves out about f s^2, as noise f^2 s^4 / 2. The smaller eigenvalue counts:
+/// the larger may be of the depth, in which an inverse-depth point is linear.
+Mat2 PixelUpdate::expected_innovation(Observation* o) const {
   const Mat2 S = filter_.innovation(*o);
   const Scalar half = (S(0, 0) - S(1, 1)) / 2;
   const Scalar lambda = (S(0, 0) + S(1, 1)) / 2 - std::sqrt(half * half + S(0, 1) * S(0, 1));
@@ -54,7 +64,7 @@ Mat2 FilterSlam::expected_innovation(Observation* o) const {
 
 /// Pixels that were taken in with much of that noise are taken in again at the pose that they led to, with the information that the noise
 /// kept back:  R' = (R^-1 - (R + bend I)^-1)^-1 = R + R^2 / bend.
-void FilterSlam::take_in_again_where_bent(int first, int count) {
+void PixelUpdate::take_in_again_where_bent(int first, int count) {
   for (int round = 0; round < kMostRounds; ++round) {
     bool bent = false;
     for (int i = first; i < first + count; ++i)

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slam/filter_slam.h"
+#include "slam/plane_keeper.h"
 
-/// Whole planes of the map: found, merged, given another frame, outlined, dissolved. Gee 2007, section 3.3.
+/// Whole planes: found, merged, given another frame, outlined, dissolved. Gee 2007, section 3.3.
 
 namespace pf {
 namespace {
@@ -15,9 +15,8 @@ constexpr Scalar kSameNormal = 0.97f;  ///< cosine of the angle below which plan
 
 }  // namespace
 
-/// One plane among the points that are in none yet.
-void FilterSlam::discover_plane() {
-  if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
+/// Settled points that are known well and lie on no plane yet become candidates. Returns how many.
+int PlaneKeeper::list_candidates() {
   int count = 0;
   const Scalar most = Scalar(2) * settings_.plane_distance;
   for (int i = 0; i < map_.features.capacity(); ++i) {
@@ -34,6 +33,13 @@ void FilterSlam::discover_plane() {
     candidate_[count].p_W = p_W;
     candidate_entry_[count++] = i;
   }
+  return count;
+}
+
+/// One plane among the points that are in none yet.
+void PlaneKeeper::discover() {
+  if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
+  const int count = list_candidates();
   if (count <= settings_.plane_min_points) return;
   PlaneSearchSettings search;
   search.min_points = settings_.plane_min_points;
@@ -43,7 +49,7 @@ void FilterSlam::discover_plane() {
   PlaneFit fit;
   int member[kMaxPlaneMembers];
   int members = 0;
-  if (!search_plane(candidate_, count, search, filter_.state().body.p_W, &random_, &fit, member, &members)) return;
+  if (!search_plane(candidate_, count, search, filter_.state().body.p_W, &data_.random, &fit, member, &members)) return;
   for (int k = 0; k < members; ++k) member[k] = map_.features[candidate_entry_[member[k]]].slot;
   const int slot = filter_.add_plane(fit, member, members, settings_.fold.roughness);
   if (slot < 0) return;
@@ -61,7 +67,7 @@ void FilterSlam::discover_plane() {
 }
 
 /// Whether the points of `other` say that it is the plane in `slot`.
-bool FilterSlam::same_plane(int slot, int other) const {
+bool PlaneKeeper::same_plane(int slot, int other) const {
   const State& state = filter_.state();
   const Block &a = state.block[slot], &b = state.block[other];
   Vec3 n_a, n_b;
@@ -70,55 +76,27 @@ bool FilterSlam::same_plane(int slot, int other) const {
   plane_normal(state.frame_of(b), b.xyz(), &n_b, &d_b);
   if (n_a.dot(n_b) < kSameNormal) return false;
   int points = 0, agree = 0, close = 0;
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i)) continue;
-    const Block& block = state.block[map_.features[i].slot];
-    if (!is_planar(block.kind) || state.plane_of(map_.features[i].slot) != other) continue;
+  state.for_each_planar(other, [&](int point) {
     Scalar d, variance;
     ++points;
-    if (!filter_.distance(slot, map_.features[i].slot, &d, &variance)) continue;
+    if (!filter_.distance(slot, point, &d, &variance)) return;
     variance += settings_.fold.roughness * settings_.fold.roughness;
     if (d * d < Scalar(9) * variance) ++agree;
     if (std::abs(d) < Scalar(3) * settings_.plane_distance) ++close;
-  }
+  });
   // Near as well as undecided: a plane that is hardly known agrees with anything.
   return points >= kLeastPoints && 10 * agree >= 9 * points && 10 * close >= 9 * points;
 }
 
 /// Another plane that is the same one gives its points to this one.
-void FilterSlam::merge_into(int plane_entry) {
+void PlaneKeeper::merge_into(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   for (int k = 0; k < map_.planes.capacity(); ++k) {
     if (k == plane_entry || !map_.planes.used(k)) continue;
     const int other = map_.planes[k].slot;
     if (filter_.state().block[other].children > filter_.state().block[plane].children || !same_plane(plane, other))
       continue;
-    FoldRule rule = settings_.fold;
-    rule.gate = Scalar(16);
-    for (int i = 0; i < map_.features.capacity(); ++i) {
-      if (!map_.features.used(i)) continue;
-      const int slot = map_.features[i].slot;
-      if (filter_.state().block[slot].kind == BlockKind::kPatchPoint && filter_.state().plane_of(slot) == other &&
-          !filter_.release(slot))
-        return;
-    }
-    int slots[Filter::kMostFolded];
-    unsigned char folded[Filter::kMostFolded];
-    int count = 0;
-    const auto give = [&] {
-      if (count > 0) filter_.fold(plane, slots, count, rule, folded);
-      for (int i = 0; i < count; ++i)
-        if (folded[i] != 0) support(plane_entry, slots[i]);
-      count = 0;
-    };
-    for (int i = 0; i < map_.features.capacity(); ++i) {
-      if (!map_.features.used(i)) continue;
-      const Block& block = filter_.state().block[map_.features[i].slot];
-      if (block.kind != BlockKind::kPlanePoint || block.parent != other) continue;
-      slots[count++] = map_.features[i].slot;
-      if (count == std::min(Filter::kMostFolded, settings_.max_observations)) give();
-    }
-    give();
+    if (!give_points(k, plane_entry)) return;
     const State& state = filter_.state();
     const Block &from = state.block[other], &to = state.block[plane];
     for (int i = 0; i < map_.planes[k].seen.count; ++i) {
@@ -133,8 +111,36 @@ void FilterSlam::merge_into(int plane_entry) {
   }
 }
 
+/// Points of a plane are folded into another one, as far as they agree with it. False where one could not be released first.
+bool PlaneKeeper::give_points(int from_entry, int to_entry) {
+  const int other = map_.planes[from_entry].slot, plane = map_.planes[to_entry].slot;
+  FoldRule rule = settings_.fold;
+  rule.gate = Scalar(16);
+  bool released = true;
+  filter_.state().for_each_planar(other, [&](int slot) {
+    if (filter_.state().block[slot].kind == BlockKind::kPatchPoint) released = released && filter_.release(slot);
+  });
+  if (!released) return false;
+  int slots[Filter::kMostFolded];
+  unsigned char folded[Filter::kMostFolded];
+  int count = 0;
+  const auto give = [&] {
+    if (count > 0) filter_.fold(plane, slots, count, rule, folded);
+    for (int i = 0; i < count; ++i)
+      if (folded[i] != 0) support(to_entry, slots[i]);
+    count = 0;
+  };
+  filter_.state().for_each_planar(other, [&](int slot) {
+    if (filter_.state().block[slot].kind != BlockKind::kPlanePoint) return;
+    slots[count++] = slot;
+    if (count == std::min(Filter::kMostFolded, settings_.max_observations)) give();
+  });
+  give();
+  return true;
+}
+
 /// A plane that has turned away from its frame, or whose points have, gets a frame in their middle.
-void FilterSlam::settle_frame(int plane_entry) {
+void PlaneKeeper::settle_frame(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   const State& state = filter_.state();
   const Block& block = state.block[plane];
@@ -159,49 +165,43 @@ void FilterSlam::settle_frame(int plane_entry) {
 }
 
 /// All points go back to three coordinates, and the plane goes.
-void FilterSlam::dissolve(int plane_entry) {
+void PlaneKeeper::dissolve(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i)) continue;
-    const int slot = map_.features[i].slot;
-    if (!is_planar(filter_.state().block[slot].kind) || filter_.state().plane_of(slot) != plane) continue;
-    if (!filter_.unfold(slot, settings_.plane_distance)) drop(&i, 1);
-  }
+  filter_.state().for_each_planar(plane, [&](int slot) {
+    const int feature = filter_.state().block[slot].owner;
+    if (!filter_.unfold(slot, settings_.plane_distance)) features_.drop(&feature, 1);
+  });
   filter_.remove(&plane, 1);
   map_.planes.remove(plane_entry);
 }
 
-/// What is known of a plane: what was, and the points that are on it now, but for those that are far from all others.
-PlanePoints FilterSlam::outline(int plane_entry, PlaneOutline* outline) const {
+PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry, PlaneOutline* outline) {
   constexpr int kBatch = kOutlineBatch;
-  const State& state = filter_.state();
-  const int plane = map_.planes[plane_entry].slot;
+  const State& state = filter.state();
+  const int plane = map.planes[plane_entry].slot;
   PlanePoints points;
-  if (outline != nullptr) *outline = map_.planes[plane_entry].seen;
+  if (outline != nullptr) *outline = map.planes[plane_entry].seen;
   Vec2 uv[kBatch];
   int count = 0;
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i)) continue;
-    const int slot = map_.features[i].slot;
-    if (!is_planar(state.block[slot].kind) || state.plane_of(slot) != plane) continue;
+  state.for_each_planar(plane, [&](int slot) {
     ++points.folded;
     if (state.block[slot].kind == BlockKind::kPatchPoint) ++points.fixed;
-    if (outline == nullptr) continue;
-    uv[count++] = plane_coordinates(state.frame_of(state.block[plane]), filter_.point(slot));
-    if (count < kBatch) continue;
+    if (outline == nullptr) return;
+    uv[count++] = plane_coordinates(state.frame_of(state.block[plane]), filter.point(slot));
+    if (count < kBatch) return;
     extend_outline(outline, uv, keep_company(uv, count));
     count = 0;
-  }
+  });
   if (count > 0) extend_outline(outline, uv, keep_company(uv, count));
   return points;
 }
 
 /// A plane that too few points carry for a while goes, a new one also where it does not get as many as it was found with; and at
 /// once what more points have denied than still believe.
-void FilterSlam::dissolve_weak() {
+void PlaneKeeper::dissolve_weak() {
   for (int i = 0; i < map_.planes.capacity(); ++i) {
     if (!map_.planes.used(i)) continue;
-    const int points = outline(i, nullptr).folded;
+    const int points = outline_plane(filter_, map_, i, nullptr).folded;
     map_.planes[i].most = std::max(map_.planes[i].most, points);
     const bool proven = map_.planes[i].most > settings_.plane_min_points;
     map_.planes[i].weak = points < kLeastPoints || !proven ? map_.planes[i].weak + 1 : 0;

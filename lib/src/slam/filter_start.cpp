@@ -1,0 +1,267 @@
+#include "slam/filter_start.h"
+
+#include <algorithm>
+
+#include "base/elapsed.h"
+#include "geometry/so3.h"
+
+namespace pf {
+namespace {
+
+/// How little is known of the velocities at a start that says nothing of them.
+constexpr Scalar kStartSpeed = Scalar(0.5);  // [m/s], times the start depth where that sets the scale
+constexpr Scalar kStartRate = Scalar(0.5);   // [rad/s]
+
+/// Of a pose that defines the world: small enough to be certain, large enough to keep P invertible.
+constexpr Scalar kDefinedSigma = Scalar(1e-5);
+
+constexpr Scalar kWideDepth =
+    Scalar(0.5);  ///< of a depth that the record explains: relative sigma with which the filter begins again
+
+}  // namespace
+
+bool FilterStart::layout(Arena& arena, int width, int height) {
+  target_.layout(arena, width, height);
+  without_.layout(arena);
+  return arena.ok();
+}
+
+void FilterStart::init() {
+  data_ = Data();
+  target_.init();
+  without_.init();
+  clear_filter();
+}
+
+void FilterStart::clear_filter() {
+  parts_.filter.init(settings_.kernels, settings_.constant_velocity ? Body::kMaxDim : Body::kPoseDim,
+                     settings_.keep_gauge);
+  parts_.filter.set_roughness(settings_.fold.roughness);
+  parts_.map.planes.clear();
+}
+
+void FilterStart::start_over() {
+  clear_filter();
+  without_.init();
+  data_.known = KnownBody();
+  if (parts_.map.target_withdrawn) target_.init();
+}
+
+bool FilterStart::fits(const Target& target) const {
+  return target.count <= settings_.max_features &&
+         3 * target.count <= settings_.max_state_dim - parts_.filter.state().body_dim;
+}
+
+Status FilterStart::use_target(const Target& target) {
+  if (data_.known.given && target.kind == TargetKind::kRectangle) return Status::kState;
+  if (!fits(target)) return Status::kRange;
+  target_.set_target(target);
+  return Status::kOk;
+}
+
+Status FilterStart::use_pose(const KnownBody& known) {
+  if (takes_images_only()) return Status::kState;
+  data_.known = known;
+  data_.known.given = true;
+  return Status::kOk;
+}
+
+void FilterStart::begin_at(const Body& body, const Scalar* covariance) {
+  parts_.filter.set_body(body, covariance);
+  parts_.tracking.begin_pose(parts_.frame.report.t_ns);
+}
+
+/// The pose before the first measurement: what was said to be known, or the world's own definition.
+void FilterStart::begin_from_knowledge() {
+  if (data_.known.given) {
+    begin_at(data_.known.body, data_.known.covariance);
+    return;
+  }
+  const int dim = parts_.filter.state().body_dim;
+  Scalar* covariance = data_.covariance;
+  for (Scalar& c : data_.covariance) c = Scalar(0);
+  const bool has_target = target_.has_target();
+  const Target& target = target_.target();
+  for (int i = 0; i < Body::kPoseDim; ++i)
+    for (int j = 0; j < Body::kPoseDim; ++j)
+      covariance[i * dim + j] =
+          has_target ? target.first_covariance(i, j) : (i == j ? kDefinedSigma * kDefinedSigma : Scalar(0));
+  for (int i = Body::kPoseDim; i < dim; ++i) {
+    const Scalar sigma = i < Body::kRate ? kStartSpeed * (has_target ? Scalar(1) : settings_.start_depth) : kStartRate;
+    covariance[i * dim + i] = sigma * sigma;
+  }
+  begin_at(has_target ? target.first_pose : Body(), covariance);
+}
+
+void FilterStart::begin_with_observations() {
+  begin_from_knowledge();
+  parts_.features.add_target_points(target_.target());
+}
+
+bool FilterStart::begin_in_image() {
+  if (!target_.has_target()) {
+    begin_from_knowledge();
+    if (!data_.known.given) without_.begin();
+    return true;
+  }
+  TargetSighting sighting;
+  if (!target_.find(settings_.camera, parts_.images.tracker(), &sighting)) return false;
+
+  FrameReport& report = parts_.frame.report;
+  if (report.frames > 1) data_.known = KnownBody();  // it was the pose of the first frame
+  begin_from_knowledge();
+  parts_.features.add_target_points(target_.target());
+  for (int i = 0; i < parts_.map.features.capacity(); ++i) {
+    if (!parts_.map.features.used(i) || !parts_.map.features[i].is_target) continue;
+    Feature& f = parts_.map.features[i];
+    const Vec2 z = sighting.pixel[f.external_id];
+    parts_.images.remember(i, z, {sighting.pose.q_WC, sighting.pose.p_WC});
+    f.observations = f.attempts = 1;
+    ++report.inliers;
+    parts_.frame.add({i, f.id, MatchStatus::kInlier, BlockKind::kPoint, z, Mat2::Zero(), z, Scalar(0)});
+  }
+  report.attempts = report.matches = report.inliers;
+  parts_.tracking.sight();
+  settings_.hooks.say("started at the target");
+  return true;
+}
+
+void FilterStart::begin_record() {
+  if (!progress().recording || !without_.empty()) return;
+  const Body& body = parts_.filter.state().body;
+  without_.begin_record(body.q_WC, body.p_W, parts_.frame.report.t_ns);
+  for (int t = 0; t < parts_.frame.match_count(); ++t) {
+    const Match& match = parts_.frame.match(t);
+    Vec3 ray_C;
+    if (match.status != MatchStatus::kNew || match.feature < 0) continue;
+    if (unproject(settings_.camera, match.measured, &ray_C)) without_.add_feature(match.id, ray_C);
+  }
+}
+
+/// A measured pixel without what the rows' readout at other times than the frame's did to it. That is how fast the image moves
+/// there, which is known well before depths and speeds are.
+Vec2 FilterStart::at_frame_time(int slot, const Vec2& measured) const {
+  Camera at_once = settings_.camera;
+  at_once.readout = Scalar(0);
+  Observation by_rows, still;
+  if (settings_.camera.readout == Scalar(0) || !parts_.filter.predict_pixel(settings_.camera, slot, &by_rows) ||
+      !parts_.filter.predict_pixel(at_once, slot, &still))
+    return measured;
+  return measured - (by_rows.predicted - still.predicted);
+}
+
+void FilterStart::record_frame() {
+  if (!progress().recording || without_.empty() || parts_.frame.report.inliers < TrackingState::kMinInliers) return;
+  const Body& body = parts_.filter.state().body;
+  without_.begin_frame(body.q_WC, body.p_W, parts_.frame.report.t_ns);
+  for (int t = 0; t < parts_.frame.match_count(); ++t) {
+    const Match& match = parts_.frame.match(t);
+    if (match.feature < 0 || match.status != MatchStatus::kInlier) continue;
+    without_.add_pixel(settings_.camera, match.id,
+                       at_frame_time(parts_.map.features[match.feature].slot, match.measured));
+  }
+  const bool first = !progress().depth_known;
+  switch (without_.solve(settings_.camera, Tracker::kTypicalSigma, settings_.start_depth)) {
+    case StartOutcome::kWait:
+      break;
+    case StartOutcome::kSolved:
+    case StartOutcome::kSettled:
+      restart_from_record();
+      if (first) settings_.hooks.say("started without a target: the first depths are known");
+      break;
+    case StartOutcome::kTooFew:
+      // Nothing but rotation so far, or too little in view: the world stays, the first frame is now this one.
+      if (first) parts_.features.drop_all();
+      break;
+  }
+}
+
+/// The filter begins again at the record's frame 0 with the bundle's depths as prior means, wide, and goes through the recorded
+/// frames with every linearisation at the bundle's poses and with residuals of zero: that moves no mean, and leaves the
+/// covariance that the recorded pixels support.
+void FilterStart::restart_from_record() {
+  Body body;
+  body.q_WC = without_.base_q_WC();
+  body.p_W = without_.base_p_W();
+  clear_filter();
+  begin_at(body, data_.covariance);
+  restart_features();
+  std::int64_t before_ns = without_.begin_ns();
+  for (int k = 0; k < without_.record().frames(); ++k) {
+    restart_frame(k, before_ns);
+    before_ns = without_.record().frame(k).t_ns;
+  }
+  if (settings_.constant_velocity) restart_velocities();
+}
+
+/// Features of the record begin with its depths; the others go.
+void FilterStart::restart_features() {
+  Filter& filter = parts_.filter;
+  const int anchor = filter.add_anchor();
+  const Mat2 noise = Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma);
+  for (int i = 0; i < parts_.map.features.capacity(); ++i) {
+    if (!parts_.map.features.used(i)) continue;
+    Feature& f = parts_.map.features[i];
+    const int index = without_.index_of(f.id);
+    Vec3 ray_C;
+    Mat32 J_ray_pixel;
+    Vec2 pixel;
+    if (index < 0 || !without_.bundle().good(index) ||
+        !project(settings_.camera, without_.record().ray(index), &pixel) ||
+        !unproject(settings_.camera, pixel, &ray_C, &J_ray_pixel)) {
+      parts_.features.release(i);
+      continue;
+    }
+    const Scalar rho = without_.bundle().rho(index);
+    f.slot = filter.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, kWideDepth * rho);
+    if (f.slot < 0)
+      parts_.features.release(i);
+    else
+      filter.set_owner(f.slot, i);
+  }
+}
+
+/// The body moves to frame k of the record, and its pixels are taken in with residuals of zero.
+void FilterStart::restart_frame(int k, std::int64_t before_ns) {
+  Filter& filter = parts_.filter;
+  const StartRecord& record = without_.record();
+  const StartRecord::Frame& frame = record.frame(k);
+  const Scalar dt = static_cast<Scalar>(
+      static_cast<double>(std::min(elapsed_ns(before_ns, frame.t_ns), BodyMotion::kLongestGap)) * 1e-9);
+  Body& now = filter.body();
+  const Quat q_WC = without_.base_q_WC() * frame.q_WC;
+  const Vec3 p_W = without_.base_p_W() + without_.base_q_WC() * frame.p_W;
+  now.v_W = (p_W - now.p_W) / dt;
+  now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
+  Transition transition;
+  motion_.predict(now, dt, settings_.motion_noise, &transition);
+  now.q_WC = q_WC;
+  now.p_W = p_W;
+  filter.predict(transition);
+  int count = 0;
+  for (int i = 0; i < parts_.map.features.capacity() && count < settings_.max_observations; ++i) {
+    if (!parts_.map.features.used(i) || !record.seen(k, without_.index_of(parts_.map.features[i].id))) continue;
+    Observation& o = parts_.update.observation(count);
+    if (!filter.predict_pixel(settings_.camera, parts_.map.features[i].slot, &o)) continue;
+    o.measured = o.predicted;
+    o.noise = Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma);
+    ++count;
+  }
+  if (count == 0) return;
+  filter.begin_update(parts_.update.observations(), count);
+  filter.finish_update(parts_.update.observations(), count, nullptr, nullptr);
+}
+
+/// Velocities over the last few frames of the record, against the noise of single poses.
+void FilterStart::restart_velocities() {
+  const StartRecord& record = without_.record();
+  const int frames = record.frames();
+  const StartRecord::Frame& a = record.frame(frames > 4 ? frames - 4 : 0);
+  const StartRecord::Frame& b = record.frame(frames - 1);
+  if (b.t_ns <= a.t_ns) return;
+  const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(a.t_ns, b.t_ns)) * 1e-9);
+  parts_.filter.body().v_W = without_.base_q_WC() * (b.p_W - a.p_W) / dt;
+  parts_.filter.body().w_C = log_so3(a.q_WC.conjugate() * b.q_WC) / dt;
+}
+
+}  // namespace pf

@@ -1,0 +1,110 @@
+#include "slam/frame_loop.h"
+
+#include "base/elapsed.h"
+
+namespace pf {
+
+bool FrameLoop::layout(Arena& arena) {
+  const Settings& settings = settings_;
+  filter_.layout(arena,
+                 {settings.max_state_dim, settings.max_features, settings.max_observations, settings.max_planes});
+  frame_.layout(arena, settings.max_features + settings.max_observations);
+  update_.layout(arena, settings.max_observations);
+  features_.layout(arena, settings.max_features);
+  planes_.layout(arena, settings.max_features);
+  images_.layout(arena, settings.camera.width, settings.camera.height);
+  observations_.layout(arena, settings.max_features, settings.max_observations);
+  start_.layout(arena, settings.camera.width, settings.camera.height);
+  return arena.ok();
+}
+
+void FrameLoop::init() {
+  frame_.init();
+  tracking_.init();
+  motion_.init();
+  planes_.init();
+  images_.init(settings_.camera);
+  start_.init();
+}
+
+Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
+  if (!begin_frame(t_ns)) return Status::kTime;
+  if (tracking_.gave_up()) return end_frame();
+  bool usable;
+  {
+    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPyramid]);
+    usable = images_.begin_frame(image);
+  }
+  if (!usable) {
+    const Status status = end_frame();
+    return status == Status::kLost || status == Status::kStarting ? status : Status::kUnusable;
+  }
+  if (tracking_.has_pose())
+    images_.measure();
+  else if (!start_.begin_in_image())
+    return end_frame();
+  {
+    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
+    tend_map();
+    start_.record_frame();
+    if (tracking_.carried(frame_.report) || frame_.report.attempts == 0) images_.begin_features();
+    start_.begin_record();
+  }
+  return end_frame();
+}
+
+Status FrameLoop::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
+  if (start_.takes_images_only()) return Status::kState;
+  if (!begin_frame(t_ns)) return Status::kTime;
+  if (tracking_.gave_up()) return end_frame();
+  if (!tracking_.has_pose()) start_.begin_with_observations();
+  observations_.measure(observations, count);
+  {
+    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
+    tend_map();
+    observations_.begin_features(observations, count);
+  }
+  return end_frame();
+}
+
+/// Starts the report and moves the body to the new time. False for a time that does not rise.
+bool FrameLoop::begin_frame(std::int64_t t_ns) {
+  const std::int64_t before_ns = frame_.report.t_ns;
+  if (frame_.report.frames > 0 && t_ns <= before_ns) return false;
+  const bool unseen = frame_.report.inliers == 0;
+  frame_.begin(t_ns);
+  tracking_.begin_frame();
+  if (!tracking_.has_pose()) {
+    motion_.init();  // what was pushed was for this frame
+    return true;
+  }
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
+  motion_.advance(elapsed_ns(before_ns, t_ns), tracking_.adrift(), unseen);
+  if (!filter_.body_is_sound()) start_over();
+  return true;
+}
+
+void FrameLoop::tend_map() {
+  features_.convert_linear();
+  // While a start goes on, the filter may begin again without its planes, whose ids would then stand for nothing.
+  if (!start_.progress().recording) planes_.tend();
+  features_.drop_failing();
+}
+
+/// What the caller is told.
+Status FrameLoop::end_frame() {
+  if (tracking_.has_pose() && (tracking_.hopeless() || !filter_.body_is_sound())) start_over();
+  return tracking_.conclude(frame_.report, start_.progress(), settings_.coast_ns, settings_.hooks);
+}
+
+/// The estimate is no estimate any more: everything that came from it goes.
+void FrameLoop::start_over() {
+  start_.start_over();
+  map_.features.clear();
+  motion_.init();
+  tracking_.give_up();
+  frame_.forget_all();
+  settings_.hooks.say("the estimate is no longer finite: starting again without it");
+}
+
+}  // namespace pf

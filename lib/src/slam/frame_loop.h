@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "base/status.h"
+#include "filter/filter.h"
+#include "map/map.h"
+#include "slam/body_motion.h"
+#include "slam/feature_keeper.h"
+#include "slam/filter_start.h"
+#include "slam/frame.h"
+#include "slam/image_front_end.h"
+#include "slam/observation_front_end.h"
+#include "slam/pixel_update.h"
+#include "slam/plane_keeper.h"
+#include "slam/settings.h"
+#include "slam/tracking_state.h"
+
+/// The order of work of one frame with the filter as back end (Gee 2007), and nothing else:
+///
+///   predict -> where to look -> search -> agreement -> update -> (what is left: again) -> housekeeping -> new features
+///
+/// Its parts refer to each other: it is made where it stays.
+
+namespace pf {
+
+class FrameLoop {
+ public:
+  FrameLoop(const Settings& settings, Map& map) : settings_(settings), map_(map) {}
+  FrameLoop(const FrameLoop&) = delete;
+  FrameLoop& operator=(const FrameLoop&) = delete;
+
+  bool layout(Arena& arena);
+  void init();
+
+  Status push_frame(const ImageView& image, std::int64_t t_ns);
+  Status push_observations(const PixelObservation* observations, int count, std::int64_t t_ns);
+
+  FilterStart& start() { return start_; }
+  BodyMotion& motion() { return motion_; }
+  ObservationFrontEnd& observations() { return observations_; }
+
+  const FilterStart& start() const { return start_; }
+  const BodyMotion& motion() const { return motion_; }
+  const Filter& filter() const { return filter_; }
+  const Frame& frame() const { return frame_; }
+  const TrackingState& tracking() const { return tracking_; }
+
+ private:
+  bool begin_frame(std::int64_t t_ns);
+  Status end_frame();
+  void tend_map();
+  void start_over();
+
+  const Settings& settings_;
+  Map& map_;
+  Filter filter_;
+  Frame frame_;
+  TrackingState tracking_;
+  BodyMotion motion_{settings_, filter_};
+  PixelUpdate update_{settings_, filter_, map_, frame_, tracking_};
+  FeatureKeeper features_{settings_, filter_, map_, frame_};
+  PlaneKeeper planes_{settings_, filter_, map_, frame_, features_};
+  ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_};
+  ObservationFrontEnd observations_{settings_, filter_, map_, frame_, features_, update_};
+  FilterStart start_{settings_, motion_, {filter_, map_, frame_, tracking_, features_, images_, update_}};
+};
+
+}  // namespace pf

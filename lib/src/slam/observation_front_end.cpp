@@ -1,0 +1,81 @@
+#include "slam/observation_front_end.h"
+
+#include "base/elapsed.h"
+#include "slam/consensus.h"
+
+namespace pf {
+
+bool ObservationFrontEnd::layout(Arena& arena, int max_features, int max_observations) {
+  asked_ = arena.take<bool>(static_cast<std::size_t>(max_features));
+  inbox_ = arena.take<PixelObservation>(static_cast<std::size_t>(max_features + max_observations));
+  return arena.ok();
+}
+
+void ObservationFrontEnd::measure(const PixelObservation* observations, int count) {
+  const int known = gate(observations, count);
+  if (known == 0) return;
+  update_.begin(0, known);
+  update_.take_in(0, known);
+}
+
+/// Observations of the map's features become matches; those that agree with their prediction become candidates. Returns how many.
+int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
+  for (int i = 0; i < map_.features.capacity(); ++i) asked_[i] = false;
+  int known = 0;
+  for (int i = 0; i < count && known < settings_.max_observations; ++i) {
+    const int entry = find(observations[i].external_id);
+    if (entry < 0) continue;
+    Feature& feature = map_.features[entry];
+    if (feature.is_target && map_.target_withdrawn) continue;
+    if (asked_[entry]) continue;  // the same id again
+    asked_[entry] = true;
+    Observation& o = update_.observation(known);
+    count_frame(&feature.attempts);
+    ++frame_.report.attempts;
+    if (!filter_.predict_pixel(settings_.camera, feature.slot, &o)) {
+      count_frame(&feature.failures);
+      continue;
+    }
+    const Mat2 spread = update_.expected_innovation(&o);
+    o.measured = observations[i].pixel;
+    o.noise = Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order;
+    const Mat2 S = spread + o.noise;
+    const Scalar nis = squared_distance(o.measured - o.predicted, S);
+    const bool agrees = nis < settings_.gate;
+    const int match = frame_.add({entry, feature.id, agrees ? MatchStatus::kInlier : MatchStatus::kOutlier,
+                                  filter_.state().block[feature.slot].kind, o.predicted, S, o.measured, nis});
+    ++frame_.report.matches;
+    if (!agrees) {
+      count_frame(&feature.failures);
+      count_frame(&feature.rejections);
+      continue;
+    }
+    update_.keep()[known] = 1;
+    update_.candidate(known++) = {entry, match};
+  }
+  return known;
+}
+
+void ObservationFrontEnd::begin_features(const PixelObservation* observations, int count) {
+  int anchor = -1;
+  for (int i = 0; i < count; ++i) {
+    const PixelObservation& o = observations[i];
+    if (find(o.external_id) >= 0) continue;
+    if (frame_.full() || !features_.make_room_at(&anchor)) break;
+    const int entry = features_.begin(anchor, o.pixel, Mat2::Identity() * (o.sigma_px * o.sigma_px));
+    if (entry < 0) continue;
+    map_.features[entry].external_id = o.external_id;
+    frame_.add({entry, map_.features[entry].id, MatchStatus::kNew, BlockKind::kInverseDepth, o.pixel, Mat2::Zero(),
+                o.pixel, Scalar(0)});
+  }
+  if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child
+}
+
+int ObservationFrontEnd::find(std::uint32_t external_id) const {
+  for (int i = 0; i < map_.features.capacity(); ++i)
+    if (map_.features.used(i) && map_.features[i].external_id == external_id) return i;
+  return -1;
+}
+
+}  // namespace pf

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+
+#include "filter/filter.h"
+#include "map/map.h"
+#include "slam/feature_keeper.h"
+#include "slam/frame.h"
+#include "slam/pixel_update.h"
+#include "slam/settings.h"
+
+/// Measures a frame of pixels that the caller has matched: which features they are, whether they agree, and new features.
+
+namespace pf {
+
+struct PixelObservation {
+  std::uint32_t external_id;
+  Vec2 pixel;
+  Scalar sigma_px;
+};
+
+class ObservationFrontEnd {
+ public:
+  ObservationFrontEnd(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features,
+                      PixelUpdate& update)
+      : settings_(settings), filter_(filter), map_(map), frame_(frame), features_(features), update_(update) {}
+
+  bool layout(Arena& arena, int max_features, int max_observations);
+
+  /// Where the observations of a frame are left: as many as the map and a frame can hold together.
+  PixelObservation* inbox() { return inbox_; }
+  int inbox_size() const { return settings_.max_features + settings_.max_observations; }
+
+  /// Takes what belongs to the map's features into the filter.
+  void measure(const PixelObservation* observations, int count);
+  /// What belongs to none becomes new features.
+  void begin_features(const PixelObservation* observations, int count);
+
+ private:
+  int gate(const PixelObservation* observations, int count);
+  int find(std::uint32_t external_id) const;
+
+  const Settings& settings_;
+  Filter& filter_;
+  Map& map_;
+  Frame& frame_;
+  FeatureKeeper& features_;
+  PixelUpdate& update_;
+  bool* asked_ = nullptr;  ///< max_features: in this frame
+  PixelObservation* inbox_ = nullptr;
+};
+
+}  // namespace pf

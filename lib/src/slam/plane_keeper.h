@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+
+#include "filter/filter.h"
+#include "map/map.h"
+#include "map/plane_search.h"
+#include "slam/feature_keeper.h"
+#include "slam/frame.h"
+#include "slam/settings.h"
+
+/// Keeps the planes of the map: misfits out, points in, points fixed; planes found, merged and dissolved. Gee 2007, section 3.
+
+namespace pf {
+
+/// How many features hang on a plane.
+struct PlanePoints {
+  int folded = 0;  ///< fixed ones among them
+  int fixed = 0;
+};
+
+/// Outline of a plane (entry of the table) in the coordinates of its frame: what is known of it, and the points that are on it now,
+/// but for those that are far from all others. outline may be null.
+PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry, PlaneOutline* outline);
+
+class PlaneKeeper {
+ public:
+  PlaneKeeper(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features)
+      : settings_(settings), filter_(filter), map_(map), frame_(frame), features_(features) {}
+
+  bool layout(Arena& arena, int max_features);
+  void init() { data_ = Data(); }
+
+  /// The work of one frame. One plane at a time is tended to, so that the work is bounded.
+  void tend();
+
+ private:
+  /// What is kept between frames.
+  struct Data {
+    std::uint32_t random = 1;
+  };
+
+  // plane_keeper.cpp: points of planes
+  void unfold_misfits();
+  void inflate(int plane_slot, int children);
+  bool is_in_reach(int plane_entry, const Vec3& p_W) const;
+  bool lies_on(int plane, int slot) const;
+  void fold_into(int plane_entry);
+  void support(int plane_entry, int slot);
+  void fix_on(int plane_entry);
+  bool is_settled(int entry) const;
+  bool is_certain(int entry, Mat3* covariance) const;
+
+  // plane_lifecycle.cpp: whole planes
+  int list_candidates();
+  void discover();
+  bool same_plane(int slot, int other) const;
+  void merge_into(int plane_entry);
+  bool give_points(int from_entry, int to_entry);
+  void settle_frame(int plane_entry);
+  void dissolve(int plane_entry);
+  void dissolve_weak();
+
+  const Settings& settings_;
+  Filter& filter_;
+  Map& map_;
+  Frame& frame_;
+  FeatureKeeper& features_;
+  Data data_;
+  PlaneCandidate* candidate_ = nullptr;  ///< max_features
+  int* candidate_entry_ = nullptr;       ///< feature table entry of each
+  SparseRows scale_;                     ///< scratch: picks the log scale out of an error
+};
+
+}  // namespace pf

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "base/status.h"
+#include "filter/imu_log.h"
+#include "map/map.h"
+#include "slam/frame_loop.h"
+#include "slam/settings.h"
+#include "slam/view.h"
+
+/// What the functions of the API act on: what comes in, how to start, and the back end that does the work.
+
+namespace pf {
+
+/// What kind of frames a session takes: those that it was given first.
+enum class FrameKind { kUndecided, kImages, kObservations };
+
+class Session {
+ public:
+  Session() = default;
+  Session(const Session&) = delete;  // its back end refers to it
+  Session& operator=(const Session&) = delete;
+
+  /// Over an arena without a block, this counts only.
+  bool layout(Arena& arena, const Settings& settings);
+  /// As after the layout: nothing has come in yet.
+  void init();
+
+  // --- how to start; before the first frame
+  Status start_from_target(const Target& target);
+  Status start_from_pose(const KnownBody& known);
+  void withdraw_target() { map_.target_withdrawn = true; }
+
+  // --- what comes in
+  bool takes_images() const { return data_.kind != FrameKind::kObservations; }
+  bool takes_observations() const { return data_.kind != FrameKind::kImages; }
+  /// The start needs images: there is no such thing as a rectangle in a list of observations.
+  bool needs_images() const { return filter_->start().takes_images_only(); }
+  /// Whether a frame of this time may come next.
+  bool is_next(std::int64_t t_ns) const { return !view().used() || t_ns > view().last_ns(); }
+
+  Status push_frame(const ImageView& image, std::int64_t t_ns);
+  /// Where the observations of the next frame are written, as many as inbox_size().
+  PixelObservation* inbox() { return filter_->observations().inbox(); }
+  int inbox_size() const { return settings_.max_features + settings_.max_observations; }
+  /// The first `count` of the inbox.
+  Status push_observations(int count, std::int64_t t_ns);
+  /// Known change of the velocities in camera axes, until the next frame.
+  void push_control(const Vec3& dv_C, const Vec3& dw_C) { filter_->motion().push_control(dv_C, dw_C); }
+  void push_imu(const ImuSample& sample) { imu_.add(sample); }
+  void set_gravity(const Vec3& gravity_W) { data_.gravity_W = gravity_W; }
+
+  // --- what can be read
+  View view() const { return View(settings_, map_, *filter_); }
+  const Settings& settings() const { return settings_; }
+  const ImuLog& imu() const { return imu_; }
+  /// Zero: not known.
+  const Vec3& gravity_W() const { return data_.gravity_W; }
+
+ private:
+  /// What is kept between frames.
+  struct Data {
+    FrameKind kind = FrameKind::kUndecided;
+    Vec3 gravity_W = Vec3::Zero();
+  };
+
+  Settings settings_;
+  Map map_;
+  ImuLog imu_;
+  Data data_;
+  FrameLoop* filter_ = nullptr;  ///< the back end; another one is a pointer beside this, and one of them is null
+};
+
+}  // namespace pf

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "base/arena.h"
+#include "slam/start.h"
+#include "track/quad_refine.h"
+#include "track/tracker.h"
+
+/// A start in front of something known: finds the target in an image, and from it the camera's pose. Knows no filter.
+
+namespace pf {
+
+/// A target as an image shows it.
+struct TargetSighting {
+  PoseEstimate pose;
+  Vec2 pixel[Target::kMaxPoints];  ///< of each point of the target
+};
+
+class StartAtTarget {
+ public:
+  bool layout(Arena& arena, int width, int height);
+  void init() { target_ = Target(); }
+
+  void set_target(const Target& target) { target_ = target; }
+  const Target& target() const { return target_; }
+  bool has_target() const { return target_.kind != TargetKind::kNone; }
+
+  /// Looks for the target; from the first time on its points and its first pose are the ones that were found. False: not there.
+  bool find(const Camera& camera, const Tracker& tracker, TargetSighting* sighting);
+
+ private:
+  bool find_rectangle(const Camera& camera, const Tracker& tracker, TargetSighting* sighting) const;
+  bool find_points(const Camera& camera, const Tracker& tracker, TargetSighting* sighting) const;
+  bool predict_points(const Camera& camera, Vec2* predicted, Scalar* reach, Scalar* distance) const;
+  bool match_quad(const Quad& quad, const Vec2* predicted, const Scalar* reach, Vec2* z) const;
+  bool fit(const Camera& camera, const Vec2* z, Scalar sigma_px, TargetSighting* sighting) const;
+
+  Target target_;  ///< kept between frames
+  QuadWorkspace quad_workspace_;
+};
+
+}  // namespace pf

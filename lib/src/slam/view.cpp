@@ -1,0 +1,89 @@
+#include "slam/view.h"
+
+#include "filter/gauge_information.h"
+#include "filter/observe/point.h"
+#include "slam/frame_loop.h"
+
+namespace pf {
+
+const Filter& View::filter() const { return loop_.filter(); }
+bool View::used() const { return report().frames > 0; }
+std::int64_t View::last_ns() const { return report().t_ns; }
+SlamState View::state() const { return loop_.tracking().state(); }
+bool View::has_pose() const { return loop_.tracking().has_pose(); }
+const FrameReport& View::report() const { return loop_.frame().report; }
+int View::match_count() const { return loop_.frame().match_count(); }
+const Match& View::match(int i) const { return loop_.frame().match(i); }
+int View::state_dim() const { return filter().state().dim; }
+
+void View::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
+  loop_.motion().predict_pose(last_ns(), t_ns, body, covariance);
+}
+
+bool View::project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const {
+  Mat26 J_body;
+  Mat23 J_point;
+  if (!observe_point(settings_.camera, filter().state().body, p_W, pixel, &J_body, &J_point)) return false;
+  if (covariance == nullptr) return true;
+  Body body;
+  Mat6 P;
+  pose_at(last_ns(), &body, &P);
+  const Mat26 JP = J_body.lazyProduct(P);
+  *covariance = JP.lazyProduct(J_body.transpose());
+  return true;
+}
+
+bool View::gauge_information(double* scratch, double* information) const {
+  return pf::gauge_information(filter(), scratch, information);
+}
+
+FeatureView View::feature(int i) const {
+  const Feature& f = map_.features[i];
+  const State& state = filter().state();
+  FeatureView out;
+  out.id = f.id;
+  out.external_id = f.external_id;
+  out.is_target = f.is_target;
+  out.observations = f.observations;
+  out.attempts = f.attempts;
+  out.kind = state.block[f.slot].kind;
+  out.plane = is_planar(out.kind) ? map_.planes.id_at(state.plane_of(f.slot)) : 0;
+  out.p_W = filter().point(f.slot);
+  out.covariance = filter().covariance3(f.slot);
+  return out;
+}
+
+MapCounts View::counts() const {
+  const State& state = filter().state();
+  MapCounts counts;
+  int unfolded_rows = 0;
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i)) continue;
+    ++counts.features;
+    const Block& block = state.block[map_.features[i].slot];
+    switch (block.kind) {
+      case BlockKind::kPoint:
+        ++counts.points;
+        break;
+      case BlockKind::kPlanePoint:
+        ++counts.folded;
+        break;
+      case BlockKind::kPatchPoint:
+        ++counts.fixed;
+        break;
+      default:
+        ++counts.inverse_depths;
+    }
+    if (is_planar(block.kind)) unfolded_rows += 3 - block.size;
+  }
+  for (int s = 0; s < state.slots; ++s)
+    if (state.block[s].kind == BlockKind::kPlane || state.block[s].kind == BlockKind::kPatch)
+      unfolded_rows -= state.block[s].size;
+  counts.planes = state.planes;
+  counts.state_dim = state.dim;
+  counts.state_dim_held = state.held_dim;
+  counts.state_dim_points_only = state.dim + unfolded_rows;
+  return counts;
+}
+
+}  // namespace pf
