@@ -87,7 +87,7 @@ bool FrameLoop::begin_frame(std::int64_t t_ns) {
 void FrameLoop::tend_map() {
   features_.convert_linear();
   // While a start goes on, the filter may begin again without its planes, whose ids would then stand for nothing.
-  if (!start_.progress().recording) planes_.tend();
+  if (settings_.planes && !start_.progress().recording) planes_.tend();
   features_.drop_failing();
 }
 
