@@ -44,10 +44,10 @@ void setUp(void) {
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
   const pf_camera_t camera = {PF_CAMERA_PINHOLE, 640, 480, 400, 400, 319.5, 239.5, {0}, 0};
   config.camera = camera;
-  config.sigma_pixel = SIGMA_PX;
-  config.max_observations = MAX_POINTS;
-  config.start_depth = 2;
-  config.plane_roughness = 1e-4; /* these walls are flat */
+  config.measurement.sigma_px = SIGMA_PX;
+  config.capacity.max_observations = MAX_POINTS;
+  config.first_depth.depth = 2;
+  config.plane.roughness = 1e-4; /* these walls are flat */
   config.log = on_log;
   random_state = 7;
   merges = 0;
@@ -84,7 +84,7 @@ static void create(void) {
   memcpy(target.points_W, points_W, TARGET_POINTS * sizeof *points_W);
   target.first_pose.q_WC[0] = 1;
   for (int i = 0; i < 6; ++i) target.first_pose.covariance[7 * i] = 1e-4;
-  target.sigma_m = 0.001;
+  target.sigma = 0.001;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
 }
 
@@ -270,7 +270,7 @@ static void test_find_plane_should_follow_ids_when_planes_are_merged(void) {
   /* Two parts of one wall, too far apart to be found as one plane. */
   add_target();
   for (int i = 0; i < 40; ++i) add_point((i % 2 ? 0.75 : -1.35) + 0.6 * uniform(), -0.8 + 1.6 * uniform(), 2.0);
-  config.plane_radius = 1.0;
+  config.plane.max_radius = 1.0;
   create();
   uint32_t ids[16];
   int known = 0;
