@@ -61,7 +61,9 @@ class PacedCamera : public Camera {
 
   void release(const CameraFrame& frame) override { held_[static_cast<size_t>(frame.handle)] = false; }
   std::string name() const override { return source_->name(at_ - 1); }
-  std::string report() const override { return "{\"lost\": " + std::to_string(lost_) + "}"; }
+  std::string report() const override {
+    return "{\"lost\": " + std::to_string(lost_) + ", \"damaged\": " + std::to_string(damaged_) + "}";
+  }
   bool target(pf_target_t& target) const override { return source_->target(target); }
 
  private:
@@ -69,11 +71,17 @@ class PacedCamera : public Camera {
 
   /// Reads ahead, so that reading and rendering do not delay the frame.
   CameraRead load(std::string& message) {
-    if (at_ >= end_) {
-      return CameraRead::kEnd;
-    }
     pf_image_t image{};
-    const Read read = source_->read(at_, image, message);
+    Read read = Read::kUnusable;
+    while (read == Read::kUnusable) {
+      if (at_ >= end_) {
+        message.clear();
+        return CameraRead::kEnd;
+      }
+      read = source_->read(at_, image, message);
+      at_ += read == Read::kUnusable ? 1 : 0;
+      damaged_ += read == Read::kUnusable ? 1 : 0;
+    }
     if (read != Read::kDone) {
       message = "frame " + std::to_string(at_) + ": " + message;
       return read == Read::kEnd ? CameraRead::kEnd : CameraRead::kFailed;
@@ -94,7 +102,7 @@ class PacedCamera : public Camera {
 
   std::unique_ptr<Source> source_;
   int64_t at_, end_;
-  int64_t begin_ns_ = 0, first_t_ns_ = 0, lost_ = 0;
+  int64_t begin_ns_ = 0, first_t_ns_ = 0, lost_ = 0, damaged_ = 0;
   bool waiting_ = false;
   CameraFrame next_;
   std::vector<uint8_t> loaded_;

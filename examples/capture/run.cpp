@@ -78,6 +78,8 @@ class Run {
   bool done_any_ = false;
   bool quit_ = false;
   bool paused_ = false;
+  bool withdrawn_ = false;  ///< the target
+  bool saved_mid_ = false;
   bool told_film_failed_ = false;
   int64_t reported_ns_ = 0;  ///< when report.json was written
   std::string failure_;
@@ -148,7 +150,7 @@ int Run::go() {
     if (read == Read::kEnd || read == Read::kFailed) {
       break;
     }
-    index += read == Read::kDone ? 1 : 0;
+    index += read == Read::kDone || read == Read::kUnusable ? 1 : 0;
     tell_notices();
     handle_keys();
     if (!refresh_report()) {
@@ -163,6 +165,11 @@ Read Run::step(int64_t index) {
   const int64_t at = options_.skip + index;
   pf_image_t image{};
   const Read read = source_.read(at, image, failure_);
+  if (read == Read::kUnusable) {
+    statistics_.add_unreadable("frame " + std::to_string(at) + ": " + failure_);
+    failure_.clear();
+    return read;
+  }
   if (read == Read::kFailed && !source_.is_live()) {
     failure_ = "frame " + std::to_string(at) + ": " + failure_;
   }
@@ -170,8 +177,9 @@ Read Run::step(int64_t index) {
     return read;
   }
   const int64_t begin_ns = steady_ns();
-  if (index == options_.withdraw_target_after) {
+  if (options_.withdraw_target_after >= 0 && index >= options_.withdraw_target_after && !withdrawn_) {
     session_.withdraw_target();
+    withdrawn_ = true;
   }
   view_.index = index;
   view_.count = source_.info().endless && options_.frames <= 0 ? 0 : count_;
@@ -204,7 +212,8 @@ Read Run::step(int64_t index) {
   }
   progress_.show(view_);
   show_.add(view_);
-  if (view_.index == count_ / 2) {
+  if (view_.index >= count_ / 2 && !saved_mid_) {
+    saved_mid_ = true;
     save("overlay_mid.png");
   }
   return Read::kDone;
@@ -288,6 +297,9 @@ void Run::handle_keys() {
 
 std::string Run::why_nothing_was_tracked() const {
   const std::string frames = std::to_string(statistics_.frames());
+  if (statistics_.frames() == 0 && statistics_.unreadable() > 0) {
+    return "none of the images can be used; " + statistics_.unreadable_line();
+  }
   if (statistics_.unusable() == statistics_.frames()) {
     return "none of the " + frames + " frames has usable content (black, white or blurred out); look at the images";
   }
@@ -304,6 +316,9 @@ std::string Run::why_nothing_was_tracked() const {
 int Run::finish() {
   progress_.end();
   tell_notices();
+  if (statistics_.unreadable() > 0) {
+    note(statistics_.unreadable_line());
+  }
   const std::string live = source_.finish();
   std::string not_recorded;
   if (recorder_.is_open() && !recorder_.close(&not_recorded) && failure_.empty()) {
@@ -319,7 +334,7 @@ int Run::finish() {
   }
   if (done_any_) {
     save("overlay_last.png");
-    if (view_.index < count_ / 2) {
+    if (!saved_mid_) {
       save("overlay_mid.png");
     }
   }

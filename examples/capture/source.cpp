@@ -67,9 +67,9 @@ class FolderSource : public Source {
 
   Read read(int64_t index, pf_image_t& image, std::string& error) override {
     char message[PF_SEQUENCE_MESSAGE];
-    const bool done = pf_read_sequence_frame(sequence_.get(), number(index), &image, message) == 0;
+    const int result = pf_read_sequence_frame(sequence_.get(), number(index), &image, message);
     error = message;
-    return done ? Read::kDone : Read::kFailed;
+    return result == 0 ? Read::kDone : result == PF_SEQUENCE_UNUSABLE_IMAGE ? Read::kUnusable : Read::kFailed;
   }
 
   bool reads_in_any_order() const override { return true; }

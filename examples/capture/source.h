@@ -15,7 +15,7 @@ namespace pf::capture {
 
 class Recorder;
 
-enum class Read { kDone, kNothing, kEnd, kFailed };
+enum class Read { kDone, kNothing, kUnusable, kEnd, kFailed };
 
 struct SourceInfo {
   pf_camera_t camera{};
@@ -34,7 +34,8 @@ class Source {
  public:
   virtual ~Source() = default;
   virtual const SourceInfo& info() const = 0;
-  /// Frames are read in the order of their numbers. kFailed: error is one line. kNothing: a camera has none yet; ask again.
+  /// Frames are read in the order of their numbers. kFailed: error is one line. kUnusable: this frame alone cannot be
+  /// read, and error is one line. kNothing: a camera has none yet; ask again.
   /// The pixels are valid until the next call.
   virtual Read read(int64_t index, pf_image_t& image, std::string& error) = 0;
   /// File or name of a frame, for messages.

@@ -30,7 +30,7 @@ class ThereAndBack : public Source {
         return read;
       }
       if (read != Read::kEnd || frames_.empty()) {
-        return read;
+        return read == Read::kUnusable ? Read::kFailed : read;  // each image is needed twice
       }
       count_ = static_cast<int64_t>(frames_.size());  // the source had fewer than it said
     }

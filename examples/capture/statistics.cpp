@@ -93,6 +93,26 @@ void Statistics::add(const FrameView& view) {
   ++frames_;
 }
 
+void Statistics::add_unreadable(const std::string& why) {
+  constexpr size_t kNamed = 20;
+  ++unreadable_;
+  if (unreadable_lines_.size() < kNamed) {
+    unreadable_lines_.push_back(why);
+  }
+}
+
+std::string Statistics::unreadable_line() const {
+  if (unreadable_ == 0) {
+    return "";
+  }
+  std::string line = std::to_string(unreadable_) + (unreadable_ == 1 ? " image was" : " images were") +
+                     " left out: " + unreadable_lines_[0];
+  if (unreadable_ > 1) {
+    line += "; report.json names them";
+  }
+  return line;
+}
+
 std::string Statistics::to_json(const Session& session, const Options& options, const SourceInfo& source,
                                 const std::string& live, const std::string& imu, const std::string& ended) const {
   constexpr const char* kStages[] = {"pyramid", "predict", "search", "gate", "update", "map"};
@@ -112,7 +132,8 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["start"] = session.start();
   json["starting"] = starting_;
   json["coasting"] = coasting_;
-  json["unusable"] = unusable_;
+  json["unusable"] = unusable_ + unreadable_;
+  json["unreadable"] = unreadable_lines_;
   json["flat"] = flat_;
   json["frozen"] = frozen_;
   json["ms_per_frame"] = {

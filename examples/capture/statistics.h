@@ -17,6 +17,8 @@ class Statistics {
  public:
   void add(const FrameView& view);
   void add_reset() { ++resets_; }
+  /// An image that could not be read; why names it.
+  void add_unreadable(const std::string& why);
   /// Frames came there and back again: the time at which they turned, and how many images there are.
   void set_turn(int64_t t_ns, int64_t images) {
     turn_ns_ = t_ns;
@@ -27,6 +29,9 @@ class Statistics {
   int64_t tracked() const { return tracked_; }
   /// Frames that the library could not use, or that are one flat grey.
   int64_t unusable() const { return std::max(unusable_, flat_); }
+  /// Images that could not be read; the first of them with what is wrong with each, and "" where there are none.
+  int64_t unreadable() const { return unreadable_; }
+  std::string unreadable_line() const;
   int64_t start_frame() const { return start_frame_; }
   /// Frames whose pixels all equal those of the frame before.
   int64_t frozen() const { return frozen_; }
@@ -47,6 +52,8 @@ class Statistics {
   int64_t lost_ = 0;
   int64_t losses_ = 0;
   int64_t unusable_ = 0;
+  int64_t unreadable_ = 0;
+  std::vector<std::string> unreadable_lines_;  ///< of the first of them
   int64_t frozen_ = 0;
   int64_t flat_ = 0;
   int64_t resets_ = 0;

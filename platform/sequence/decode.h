@@ -18,6 +18,7 @@ typedef struct pf_decoded {
   uint8_t* scratch;
   size_t pixels_capacity, scratch_capacity;
   int32_t width, height;
+  int32_t channels, bits; /* as the file has them: 1 grey or 3 colour; 8 or 16 for each */
 } pf_decoded_t;
 
 /* By the first bytes: PNG, JPEG or binary PGM. 0, or -1 with the reason in why; the buffers stay valid either way. */

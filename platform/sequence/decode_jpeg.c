@@ -13,6 +13,8 @@
 typedef struct errors {
   struct jpeg_error_mgr manager; /* first: libjpeg hands back this address */
   jmp_buf back;
+  const uint8_t* bytes;
+  size_t size;
   char* why;
 } errors_t;
 
@@ -24,12 +26,36 @@ static void on_error(j_common_ptr info) {
   longjmp(errors->back, 1);
 }
 
-/* libjpeg fills up what is missing with grey and only warns; half an image would be tracked. */
-static void on_message(j_common_ptr info, int level) {
-  const int code = info->err->msg_code;
-  if (level < 0 && (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE)) {
-    on_error(info);
+/* Bytes of one value right before the end of the image: some cameras fill up to a whole number of words so. */
+static int is_padding(const uint8_t* bytes, size_t size, int count) {
+  size_t end = size, i;
+  while (end >= 2 && !(bytes[end - 2] == 0xff && bytes[end - 1] == JPEG_EOI)) {
+    --end;
   }
+  if (count < 1 || end < 2 || (size_t)count > end - 2) {
+    return 0;
+  }
+  for (i = end - 2 - (size_t)count; i < end - 3; ++i) {
+    if (bytes[i] != bytes[end - 3]) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+/* libjpeg only warns of data that cannot be right, fills up what is missing with grey, and goes on: half an image would be tracked. So
+ * what it warns of is refused, but for padding, and for a field that has no part in the pixels. */
+static void on_message(j_common_ptr info, int level) {
+  const struct jpeg_error_mgr* error = info->err;
+  errors_t* errors = (errors_t*)info->err;
+  if (level >= 0 || error->msg_code == JWRN_JFIF_MAJOR) {
+    return;
+  }
+  if (error->msg_code == JWRN_EXTRANEOUS_DATA && error->msg_parm.i[1] == JPEG_EOI &&
+      is_padding(errors->bytes, errors->size, error->msg_parm.i[0])) {
+    return;
+  }
+  on_error(info);
 }
 
 static int decode(struct jpeg_decompress_struct* info, errors_t* errors, const uint8_t* bytes, size_t size,
@@ -44,6 +70,8 @@ static int decode(struct jpeg_decompress_struct* info, errors_t* errors, const u
   if (pf_decode_reserve(image, info->image_width, info->image_height, 0, errors->why) != 0) {
     return -1;
   }
+  image->channels = info->num_components == 1 ? 1 : 3;
+  image->bits = 8;
   jpeg_start_decompress(info);
   while (info->output_scanline < info->output_height) {
     JSAMPROW row = image->pixels + (size_t)info->output_scanline * (size_t)image->width;
@@ -61,6 +89,8 @@ int pf_decode_jpeg(const uint8_t* bytes, size_t size, pf_decoded_t* image, char 
   info.err = jpeg_std_error(&errors.manager);
   errors.manager.error_exit = on_error;
   errors.manager.emit_message = on_message;
+  errors.bytes = bytes;
+  errors.size = size;
   errors.why = why;
   result = decode(&info, &errors, bytes, size, image);
   jpeg_destroy_decompress(&info);

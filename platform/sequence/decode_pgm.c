@@ -36,6 +36,8 @@ int pf_decode_pgm(const uint8_t* bytes, size_t size, pf_decoded_t* image, char w
     return -1;
   }
   depth = top > 255 ? 2 : 1;
+  image->channels = 1;
+  image->bits = (int32_t)(8 * depth);
   area = (size_t)width * (size_t)height;
   if (size - at < area * depth) {
     snprintf(why, PF_DECODE_WHY, "ends after %zu of its %zu bytes of pixels", size - at, area * depth);

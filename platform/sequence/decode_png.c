@@ -59,6 +59,7 @@ static int decode(png_structp png, png_infop info, reader_t* reader, pf_decoded_
   png_read_info(png, info);
   width = png_get_image_width(png, info);
   height = png_get_image_height(png, info);
+  image->bits = png_get_bit_depth(png, info) == 16 ? 16 : 8;
   png_set_scale_16(png);
   png_set_expand(png);
   png_set_strip_alpha(png);
@@ -71,6 +72,7 @@ static int decode(png_structp png, png_infop info, reader_t* reader, pf_decoded_
   if (pf_decode_reserve(image, width, height, channels, reader->why) != 0) {
     return -1;
   }
+  image->channels = (int32_t)channels;
   for (y = 0; y < height; ++y) {
     reader->rows[y] = image->scratch + (size_t)y * width * channels;
   }

@@ -2,7 +2,12 @@
 
 #include <planefold_platform/sequence.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
 
 #include "numbers.h"
 #include "refuse.h"
@@ -82,6 +87,75 @@ void find_calibration(Folder& folder, const std::string& given, const fs::path& 
   folder.calibration = read_calibration(folder.calibration_path.string());
 }
 
+/// "frame-000012.color.png" to "frame-#.color.png" and the digits "000012 ".
+std::string kind_of(const std::string& name, std::string& digits) {
+  std::string kind;
+  digits.clear();
+  for (const char c : name) {
+    if (c < '0' || c > '9') {
+      kind += c;
+      digits += digits.empty() || digits.back() == ' ' ? "" : " ";
+    } else {
+      kind += kind.empty() || kind.back() != '#' ? "#" : "";
+      digits += c;
+    }
+  }
+  return kind;
+}
+
+bool is_of_light(const std::string& kind) {
+  std::string lower(kind);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const char* word : {"color", "colour", "rgb", "gray", "grey"}) {
+    if (lower.find(word) != std::string::npos) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Of images that lie side by side under the same numbers, those of one kind. The others are named in the folder's warning; where it
+/// cannot be told which are meant, all are refused.
+std::vector<std::string> one_kind(const fs::path& images, const std::vector<std::string>& names, std::string& warning) {
+  std::map<std::string, std::set<std::string>> kinds;
+  std::string digits;
+  for (const std::string& name : names) {
+    const std::string kind = kind_of(name, digits);
+    kinds[kind].insert(digits);
+  }
+  std::set<std::string> side_by_side;
+  for (auto a = kinds.begin(); a != kinds.end(); ++a) {
+    for (auto b = std::next(a); b != kinds.end(); ++b) {
+      const bool share = std::any_of(a->second.begin(), a->second.end(), [&](const std::string& number) {
+        return !number.empty() && b->second.count(number) > 0;
+      });
+      if (share) {
+        side_by_side.insert({a->first, b->first});
+      }
+    }
+  }
+  if (side_by_side.empty()) {
+    return names;
+  }
+  std::string chosen, all;
+  size_t of_light = 0;
+  for (const std::string& kind : side_by_side) {
+    all += (all.empty() ? "" : ", ") + kind;
+    of_light += is_of_light(kind) ? 1 : 0;
+    chosen = is_of_light(kind) ? kind : chosen;
+  }
+  if (of_light != 1) {
+    refuse(images.string() + ": images of several kinds lie side by side (" + all +
+           "); keep one kind in a folder, or name the images in times.txt");
+  }
+  std::vector<std::string> kept;
+  std::copy_if(names.begin(), names.end(), std::back_inserter(kept),
+               [&](const std::string& name) { return kind_of(name, digits) == chosen; });
+  warning = "; of " + all + " those of " + chosen + " are taken";
+  return kept;
+}
+
 void open_images(Folder& folder, const std::string& calibration) {
   const fs::path& root = folder.root;
   find_calibration(folder, calibration, root,
@@ -92,7 +166,8 @@ void open_images(Folder& folder, const std::string& calibration) {
     folder.frames = read_table(times, images, Times::kSeconds);
   } else {
     const double rate = folder.calibration.rate_hz > 0.0 ? folder.calibration.rate_hz : 30.0;
-    for (const std::string& name : list_images(images)) {
+    std::string choice;
+    for (const std::string& name : one_kind(images, list_images(images), choice)) {
       const double t = static_cast<double>(folder.frames.size()) / rate;
       folder.frames.push_back({static_cast<int64_t>(std::llround(t * 1e9)), images / name});
     }
@@ -101,7 +176,8 @@ void open_images(Folder& folder, const std::string& calibration) {
     }
     char text[64];
     std::snprintf(text, sizeof(text), "%g frames per second", rate);
-    folder.warning = root.string() + ": no times.txt; the images are taken in the order of their names at " + text;
+    folder.warning =
+        root.string() + ": no times.txt; the images are taken in the order of their names at " + text + choice;
   }
   folder.truth_path = first_file(root, {"groundtruth.tum", "groundtruth.txt"});
   folder.imu_path = first_file(root, {"imu.csv"});

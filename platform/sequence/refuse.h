@@ -13,6 +13,12 @@ class ReadError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// One image that cannot be used while others may: missing, empty, damaged.
+class ImageError : public ReadError {
+ public:
+  using ReadError::ReadError;
+};
+
 [[noreturn]] inline void refuse(const std::string& line) { throw ReadError(line); }
 
 }  // namespace pf::sequence

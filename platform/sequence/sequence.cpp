@@ -21,6 +21,8 @@ struct pf_sequence {
   std::string root, calibration_path, truth_path, imu_path;
   std::vector<unsigned char> bytes;
   pf_decoded_t image{};
+  std::string first_name;  ///< of the first image that was decoded, "" before
+  int32_t first_channels = 0, first_bits = 0;
 
   pf_sequence() = default;
   pf_sequence(const pf_sequence&) = delete;
@@ -49,6 +51,9 @@ int guarded(char message[PF_SEQUENCE_MESSAGE], const Function& function) {
     return 0;
   } catch (const std::bad_alloc&) {
     put(message, "not enough memory to read this");
+  } catch (const pf::sequence::ImageError& error) {
+    put(message, error.what());
+    return PF_SEQUENCE_UNUSABLE_IMAGE;
   } catch (const std::exception& error) {
     put(message, error.what());
   } catch (...) {
@@ -59,16 +64,51 @@ int guarded(char message[PF_SEQUENCE_MESSAGE], const Function& function) {
 
 /// The pixels of a frame, in sequence.image.
 void decode(pf_sequence& sequence, const pf::sequence::Frame& frame) {
-  pf::sequence::read_bytes(frame.path, kMaxImageBytes, "image", sequence.bytes);
+  try {
+    pf::sequence::read_bytes(frame.path, kMaxImageBytes, "image", sequence.bytes);
+  } catch (const pf::sequence::ReadError& error) {
+    throw pf::sequence::ImageError(error.what());
+  }
   char why[PF_DECODE_WHY] = "";
   if (pf_decode_image(sequence.bytes.data(), sequence.bytes.size(), &sequence.image, why) != 0) {
-    refuse(frame.path.string() + ": " + why + "; replace or remove this image");
+    throw pf::sequence::ImageError(frame.path.string() + ": " + why + "; replace or remove this image");
   }
 }
 
-/// A camera of which only the size is known, that of the first image.
+std::string type_name(int32_t channels, int32_t bits) {
+  return std::string(channels == 1 ? "grey" : "colour") + " of " + std::to_string(bits) + " bits";
+}
+
+/// Images of another type belong to another sequence: depth beside colour, say.
+void require_type(pf_sequence& sequence, const pf::sequence::Frame& frame) {
+  const pf_decoded_t& image = sequence.image;
+  if (sequence.first_name.empty()) {
+    sequence.first_name = frame.path.filename().string();
+    sequence.first_channels = image.channels;
+    sequence.first_bits = image.bits;
+  }
+  if (image.channels != sequence.first_channels || image.bits != sequence.first_bits) {
+    refuse(frame.path.string() + ": is " + type_name(image.channels, image.bits) + ", but " + sequence.first_name +
+           " is " + type_name(sequence.first_channels, sequence.first_bits) +
+           "; use images of one kind (times.txt can name them)");
+  }
+}
+
+/// A camera of which only the size is known, that of the first image that can be used.
 pf_camera_t uncalibrated_camera(pf_sequence& sequence) {
-  decode(sequence, sequence.folder.frames.front());
+  std::string first_error;
+  for (const pf::sequence::Frame& frame : sequence.folder.frames) {
+    try {
+      decode(sequence, frame);
+      first_error.clear();
+      break;
+    } catch (const pf::sequence::ImageError& error) {
+      first_error = first_error.empty() ? error.what() : first_error;
+    }
+  }
+  if (!first_error.empty()) {
+    refuse(first_error);
+  }
   pf_camera_t camera{};
   camera.model = PF_CAMERA_PINHOLE;
   camera.width = sequence.image.width;
@@ -142,6 +182,7 @@ int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* i
     }
     const pf::sequence::Frame& frame = folder.frames[static_cast<size_t>(index)];
     decode(*sequence, frame);
+    require_type(*sequence, frame);
     const pf_decoded_t& decoded = sequence->image;
     const pf_camera_t& camera = folder.calibration.camera;
     if (decoded.width != camera.width || decoded.height != camera.height) {

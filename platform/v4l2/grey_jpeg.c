@@ -17,16 +17,42 @@
 typedef struct errors {
   struct jpeg_error_mgr manager; /* first: libjpeg hands back this address */
   jmp_buf back;
+  const uint8_t* bytes;
+  size_t size;
 } errors_t;
 
 static void on_error(j_common_ptr info) { longjmp(((errors_t*)info->err)->back, 1); }
 
-/* libjpeg fills up what is missing with grey and only warns; half an image would be tracked. */
-static void on_message(j_common_ptr info, int level) {
-  const int code = info->err->msg_code;
-  if (level < 0 && (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE)) {
-    on_error(info);
+/* Bytes of one value right before the end of the image: some cameras fill up to a whole number of words so. */
+static int is_padding(const uint8_t* bytes, size_t size, int count) {
+  size_t end = size, i;
+  while (end >= 2 && !(bytes[end - 2] == 0xff && bytes[end - 1] == JPEG_EOI)) {
+    --end;
   }
+  if (count < 1 || end < 2 || (size_t)count > end - 2) {
+    return 0;
+  }
+  for (i = end - 2 - (size_t)count; i < end - 3; ++i) {
+    if (bytes[i] != bytes[end - 3]) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+/* libjpeg only warns of data that cannot be right, fills up what is missing with grey, and goes on: half an image would be tracked. So
+ * what it warns of is refused, but for padding, and for a field that has no part in the pixels. */
+static void on_message(j_common_ptr info, int level) {
+  const struct jpeg_error_mgr* error = info->err;
+  errors_t* errors = (errors_t*)info->err;
+  if (level >= 0 || error->msg_code == JWRN_JFIF_MAJOR) {
+    return;
+  }
+  if (error->msg_code == JWRN_EXTRANEOUS_DATA && error->msg_parm.i[1] == JPEG_EOI &&
+      is_padding(errors->bytes, errors->size, error->msg_parm.i[0])) {
+    return;
+  }
+  on_error(info);
 }
 
 static int decode(struct jpeg_decompress_struct* info, errors_t* errors, const uint8_t* in, size_t bytes, int32_t width,
@@ -62,6 +88,8 @@ int pf_grey_from_jpeg(const uint8_t* in, size_t bytes, int32_t width, int32_t he
   info.err = jpeg_std_error(&errors.manager);
   errors.manager.error_exit = on_error;
   errors.manager.emit_message = on_message;
+  errors.bytes = in;
+  errors.size = bytes;
   result = decode(&info, &errors, in, bytes, width, height, out);
   jpeg_destroy_decompress(&info);
   return result;

@@ -158,21 +158,60 @@ def test_cameras(root):
         failures.append("--list does not end with 0")
 
 
-def test_bad_images(root):
-    frame = pgm(noise())
-    cases = [("truncated image", frame[:-100], ["002.pgm", "ends after"]),
-             ("wrong size", pgm([0] * 64 * 64, 64, 64), ["002.pgm", "64 x 64"]),
-             ("empty image", b"", ["002.pgm", "0 bytes"]),
-             ("no image at all", b"hello, world", ["002.pgm", "neither PNG"])]
+def test_unusable_images(root):
+    """One of them does not end a run: it is left out, counted and named."""
+    frame, other = pgm(noise()), pgm(list(reversed(noise())))
+    cases = [("truncated image", frame[:-100], "ends after"), ("empty image", b"", "0 bytes"), ("no image at all", b"hello, world", "neither PNG"),
+             ("missing image", None, "no such image")]
+    for name, bad, why in cases:
+        path = folder(root, name, [frame, other, bad if bad is not None else frame, frame])
+        if bad is None:
+            (path / "images" / "002.pgm").unlink()
+        out = root / (name + " out")
+        result = capture("--source", f"images:{path}", "--out", out)
+        named = [line for line in result.stderr.splitlines() if "left out" in line]
+        if result.returncode != 0 or len(named) != 1 or not all(part in named[0] for part in ("frame 2", "002.pgm", why, "1 image was")):
+            failures.append(f"{name}: code {result.returncode}, {result.stderr}")
+        report = expect_complete_files(name, out)
+        if report["frames"] != 3 or report["unusable"] != 1 or "002.pgm" not in report["unreadable"][0]:
+            failures.append(f"{name}: the report says {report['frames']} frames, {report['unusable']} unusable, {report['unreadable']}")
+        if not (out / "overlay_last.png").is_file():
+            failures.append(f"{name}: no picture of the last frame")
+    path = folder(root, "none usable", [b"", b"x"])
+    expect("none usable", 1, ["none of the images can be used", "2 images were", "000.pgm"], "--source", f"images:{path}", "--out", root / "none")
+
+
+def test_wrong_images(root):
+    """Images of another size or type are no damage but a mistake."""
+    frame, other = pgm(noise()), pgm(list(reversed(noise())))
+    cases = [("wrong size", pgm([0] * 64 * 64, 64, 64), ["002.pgm", "64 x 64"]),
+             ("wrong type", f"P5\n{WIDTH} {HEIGHT}\n65535\n".encode() + bytes(2 * WIDTH * HEIGHT), ["002.pgm", "16 bits", "000.pgm"])]
     for name, bad, parts in cases:
-        path = folder(root, name, [frame, pgm(reversed(noise())), bad, frame])
+        path = folder(root, name, [frame, other, bad, frame])
         out = root / (name + " out")
         expect(name, 1, ["frame 2", *parts], "--source", f"images:{path}", "--out", out)
         report = expect_complete_files(name, out)
         if report["frames"] != 2 or "002.pgm" not in report["ended_early"]:
             failures.append(f"{name}: the report says {report['frames']} frames, '{report['ended_early']}'")
-        if not (out / "overlay_last.png").is_file():
-            failures.append(f"{name}: no picture of the last frame")
+
+
+def test_kinds_side_by_side(root):
+    """Colour and depth in one folder were read in turns."""
+    frame, depth = pgm(noise()), pgm([7] * WIDTH * HEIGHT)
+    path = folder(root, "7-Scenes", [])
+    (path / "times.txt").unlink()
+    for i in range(4):
+        (path / "images" / f"frame-{i:06d}.color.pgm").write_bytes(frame)
+        (path / "images" / f"frame-{i:06d}.depth.pgm").write_bytes(depth)
+        (path / "images" / f"frame-{i:06d}.pose.txt").write_text("1 0 0 0\n")
+    out = root / "7-Scenes out"
+    result = capture("--source", f"images:{path}", "--out", out)
+    if json.loads((out / "report.json").read_text())["frames"] != 4 or "frame-#.color.pgm are taken" not in result.stderr:
+        failures.append(f"colour and depth side by side: {result.stderr}")
+    for i in range(4):
+        (path / "images" / f"frame-{i:06d}.color.pgm").rename(path / "images" / f"frame-{i:06d}.b.pgm")
+    expect("two kinds without a word for either", 1, ["side by side", "frame-#.b.pgm", "frame-#.depth.pgm"], "--source", f"images:{path}",
+           "--out", root / "kinds")
 
 
 def test_useless_images(root):
@@ -196,7 +235,7 @@ def main():
     if not PROGRAM.is_file():
         skip("pf-capture was not built")
     print("seed", SEED)
-    for test in (test_usage, test_sources, test_cameras, test_bad_images, test_useless_images):
+    for test in (test_usage, test_sources, test_cameras, test_unusable_images, test_wrong_images, test_kinds_side_by_side, test_useless_images):
         with tempfile.TemporaryDirectory(prefix="planefold_") as name:
             test(pathlib.Path(name))
     if failures:

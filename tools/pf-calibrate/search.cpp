@@ -52,7 +52,12 @@ bool search_sequence(const Options& options, Search& search, std::string& error)
   for (int64_t k = 0; k < search.looked_at; ++k) {
     const int64_t number = search.looked_at > 1 ? k * (info.count - 1) / (search.looked_at - 1) : 0;
     pf_image_t image;
-    if (pf_read_sequence_frame(sequence.get(), number, &image, message) != 0) {
+    const int result = pf_read_sequence_frame(sequence.get(), number, &image, message);
+    if (result == PF_SEQUENCE_UNUSABLE_IMAGE) {
+      std::fprintf(stderr, "pf-calibrate: note: left out: %s\n", message);
+      continue;
+    }
+    if (result != 0) {
       error = message;
       return false;
     }

@@ -9,7 +9,7 @@
  *   pf_close_sequence(sequence);
  *
  * Every function that can fail returns 0, or -1 with one line of plain text in message that names the file, says what is
- * wrong with it and what to do. Files are not trusted: whatever they hold, the answer is one of the two.
+ * wrong with it and what to do (pf_read_sequence_frame knows one more value). Files are not trusted: whatever they hold, the answer is one of the two.
  * This is the desktop side: it uses the heap and the file system. A sequence belongs to one thread at a time.
  */
 #ifndef PLANEFOLD_PLATFORM_SEQUENCE_H
@@ -43,7 +43,8 @@ typedef struct pf_sequence_info {
 
 /* Sources:
  *   images:DIR  images/ (or the images themselves), times.txt (index seconds name, or seconds name), calib.yaml. Without
- *               times.txt the names are taken in natural order at the calibration's rate_hz, or 30 Hz, with a warning.
+ *               times.txt the names are taken in natural order at the calibration's rate_hz, or 30 Hz, with a warning. Where images of
+ *               several kinds lie side by side (frame-000000.color.png, frame-000000.depth.png), those in colour or grey are taken.
  *   euroc:DIR   mav0/cam0/data, data.csv and sensor.yaml; DIR may also be mav0 or cam0, or of the layout above.
  *   tum:DIR     rgb.txt and rgb/; the calibration is calib.yaml inside, or given.
  * Inertial samples are looked for in imu.csv (images:) and in imu0/data.csv beside cam0 (euroc:).
@@ -54,8 +55,12 @@ int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t*
 void pf_close_sequence(pf_sequence_t* sequence); /* null is welcome */
 void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* info);
 
+/* What pf_read_sequence_frame returns where this image alone cannot be used: it is missing, empty or damaged. The next may be read. */
+#define PF_SEQUENCE_UNUSABLE_IMAGE (-2)
+
 /* Frame number index of 0 .. count-1. The pixels are valid until the next call with this sequence. An image of another
- * size than the calibration's is an error. */
+ * size than the calibration's is an error, and so is one of another type than the first that was read (grey or colour, 8 or 16 bits). A
+ * JPEG of which libjpeg warns counts as damaged. */
 int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,
                            char message[PF_SEQUENCE_MESSAGE]);
 
