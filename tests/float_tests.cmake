@@ -1,6 +1,7 @@
 set(PLANEFOLD_FLOAT_TESTS
     unit/test_build_mode.cpp
     jacobian/test_camera.cpp
+    regression/test_absurd_cameras.c
     jacobian/test_inverse_depth_conversion.cpp
     jacobian/test_motion.cpp
     jacobian/test_observe_inverse_depth.cpp

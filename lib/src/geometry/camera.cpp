@@ -14,6 +14,9 @@ constexpr Scalar kMostDepth = std::numeric_limits<Scalar>::max();
 
 CameraModel model_of(const Camera& camera) { return static_cast<CameraModel>(camera.model); }
 
+/// False where a model that the checks let pass overflows far from its axis.
+bool is_finite(const Vec2& v) { return std::isfinite(v.x()) && std::isfinite(v.y()); }
+
 /// Distorted position of m, relative to the principal point, in units of the focal length.
 /// False outside the domain.
 bool distort_flat(const Camera& c, const Vec2& m, Vec2* out, Mat2* J) {
@@ -61,7 +64,9 @@ bool project_equidistant(const Camera& c, const Vec3& p, Vec2* pixel, Mat23* J) 
   const Scalar along = slope * z / rho2;
   const Scalar across = on_axis ? along : theta_d / r;
   const Scalar ex = on_axis ? 0 : p.x() / r, ey = on_axis ? 0 : p.y() / r;
-  *pixel = Vec2(c.fx * across * p.x() + c.cx, c.fy * across * p.y() + c.cy);
+  const Vec2 z_px(c.fx * across * p.x() + c.cx, c.fy * across * p.y() + c.cy);
+  if (!is_finite(z_px)) return false;
+  *pixel = z_px;
   if (J != nullptr) {
     const Scalar d = along - across, dz = -slope * r / rho2;
     *J << c.fx * (across + ex * ex * d), c.fx * ex * ey * d, c.fx * ex * dz,  //
@@ -174,7 +179,9 @@ bool project(const Camera& c, const Vec3& p_C, Vec2* pixel, Mat23* J_pixel_p) {
   Vec2 d;
   Mat2 J;
   if (!distort_flat(c, m, &d, J_pixel_p != nullptr ? &J : nullptr)) return false;
-  *pixel = Vec2(c.fx * d.x() + c.cx, c.fy * d.y() + c.cy);
+  const Vec2 z_px(c.fx * d.x() + c.cx, c.fy * d.y() + c.cy);
+  if (!is_finite(z_px)) return false;
+  *pixel = z_px;
   if (J_pixel_p != nullptr) {
     J.row(0) *= c.fx * w;
     J.row(1) *= c.fy * w;
@@ -207,6 +214,7 @@ bool unproject(const Camera& c, const Vec2& pixel, Vec3* ray_C, Mat32* J_ray_pix
       J_ray_target = J_ray_m * J_m_target;
     }
   }
+  if (!(std::abs(ray.squaredNorm() - 1) < Scalar(0.01))) return false;  // overflown on the way
   *ray_C = ray;
   if (J_ray_pixel != nullptr) {
     J_ray_pixel->col(0) = J_ray_target.col(0) / c.fx;

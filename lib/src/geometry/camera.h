@@ -39,7 +39,8 @@ void init_camera(Camera* camera);
 const char* check_camera(const Camera& camera);
 
 /// Pixel of a point in C, and its Jacobian (2x3, [px/m]; null to skip).
-/// False outside the domain (z <= 0 for all but equidistant); outputs untouched. The pixel may lie outside the image.
+/// False outside the domain (z <= 0 for all but equidistant) and where the pixel is not finite; outputs untouched. The pixel may
+/// lie outside the image.
 bool project(const Camera& camera, const Vec3& p_C, Vec2* pixel, Mat23* J_pixel_p = nullptr);
 
 /// Unit ray in C that projects to a pixel, and its Jacobian (3x2, [1/px]; null to skip).
