@@ -30,6 +30,24 @@ constexpr Model kModels[] = {
     {"division", PF_CAMERA_DIVISION, 1, 1},
 };
 
+const Fields::Known kKalibr{
+    {"camera_model", "distortion_coeffs", "distortion_model", "intrinsics", "resolution", "rate_hz", "readout_s"},
+    {"rostopic", "cam_overlaps", "T_cn_cnm1", "T_cam_imu", "timeshift_cam_imu", "T_BS", "sensor_type", "comment"}};
+const Fields::Known kKalibrChain{{"cam0", "readout_s"}, {"cam1", "cam2", "cam3", "cam4", "cam5", "cam6", "cam7"}};
+const Fields::Known kEuroc{
+    {"camera_model", "distortion_coefficients", "distortion_model", "intrinsics", "resolution", "rate_hz", "readout_s"},
+    {"sensor_type", "comment", "T_BS"}};
+const Fields::Known kRos{
+    {"image_width", "image_height", "camera_matrix", "distortion_model", "distortion_coefficients", "readout_s"},
+    {"camera_name", "rectification_matrix", "projection_matrix"}};
+/// Those that are not used belong to other sensors of the same device.
+const Fields::Known kPlain{{"camera_model", "width", "height", "fx", "fy", "cx", "cy", "distortion_model", "distortion",
+                            "rate_hz", "readout_s"},
+                           {"comment", "timestamps", "T_imu_cam", "imu_rate_hz", "gyro_noise_density",
+                            "gyro_random_walk", "accel_noise_density", "accel_random_walk", "gravity", "depth_fx",
+                            "depth_fy", "depth_cx", "depth_cy", "depth_scale_to_m"},
+                           true};
+
 std::string format(double value) {
   char text[32];
   std::snprintf(text, sizeof(text), "%g", value);
@@ -207,19 +225,26 @@ Calibration parse_calibration(const std::string& text, const std::string& file) 
   Calibration calibration{};
   calibration.camera.readout_s = read_readout(fields);
   if (fields.has("cam0")) {
+    const Fields cam0 = fields.below("cam0");
     calibration.form = "kalibr";
-    read_lists(fields.below("cam0"), "distortion_coeffs", calibration.camera);
-    calibration.camera.readout_s = read_readout(fields.below("cam0"));
+    const std::string above = fields.check_keys(kKalibrChain);
+    calibration.warning = cam0.check_keys(kKalibr);
+    calibration.warning = calibration.warning.empty() ? above : calibration.warning;
+    read_lists(cam0, "distortion_coeffs", calibration.camera);
+    calibration.camera.readout_s = std::max(calibration.camera.readout_s, read_readout(cam0));
   } else if (fields.has("image_width") || fields.has("camera_matrix")) {
     calibration.form = "ros";
+    calibration.warning = fields.check_keys(kRos);
     read_ros(fields, calibration.camera);
   } else if (fields.has("intrinsics") || fields.has("resolution")) {
     const bool kalibr = fields.has("distortion_coeffs");
     calibration.form = kalibr ? "kalibr" : "euroc";
+    calibration.warning = fields.check_keys(kalibr ? kKalibr : kEuroc);
     read_lists(fields, kalibr ? "distortion_coeffs" : "distortion_coefficients", calibration.camera);
     calibration.rate_hz = read_rate(fields, "rate_hz");
   } else {
     calibration.form = "plain";
+    calibration.warning = fields.check_keys(kPlain);
     read_plain(fields, calibration.camera);
     calibration.rate_hz = read_rate(fields, "rate_hz");
   }

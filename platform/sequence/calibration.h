@@ -9,8 +9,9 @@ namespace pf::sequence {
 
 struct Calibration {
   pf_camera_t camera;
-  double rate_hz;    ///< 0 where the file does not say it
-  const char* form;  ///< "kalibr", "euroc", "ros" or "plain"
+  double rate_hz;       ///< 0 where the file does not say it
+  const char* form;     ///< "kalibr", "euroc", "ros" or "plain"
+  std::string warning;  ///< one line on fields that were ignored, or empty
 };
 
 /// One of the forms of pf_read_calibration, checked: every number finite and possible for a camera of that size. Throws

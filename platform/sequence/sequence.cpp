@@ -137,6 +137,9 @@ int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t*
     opened->folder = pf::sequence::open_folder(source, calibration != nullptr ? calibration : "");
     opened->root = opened->folder.root.string();
     opened->calibration_path = opened->folder.calibration_path.string();
+    if (opened->folder.warning.empty()) {
+      opened->folder.warning = opened->folder.calibration.warning;
+    }
     opened->truth_path = opened->folder.truth_path.string();
     opened->imu_path = opened->folder.imu_path.string();
     if (calibration != nullptr && std::string(calibration) == PF_SEQUENCE_UNCALIBRATED) {
@@ -216,6 +219,7 @@ int pf_parse_calibration(const char* text, size_t size, const char* name, pf_cam
     if (rate_hz != nullptr) {
       *rate_hz = calibration.rate_hz;
     }
+    put(message, calibration.warning.c_str());
   });
 }
 
@@ -228,6 +232,7 @@ int pf_read_calibration(const char* path, pf_camera_t* camera, double* rate_hz, 
     if (rate_hz != nullptr) {
       *rate_hz = calibration.rate_hz;
     }
+    put(message, calibration.warning.c_str());
   });
 }
 

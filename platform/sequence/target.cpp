@@ -112,15 +112,23 @@ pf_target_t parse_target(const std::string& text, const std::string& file) {
   const Fields fields(text, file);
   pf_target_t target = rectangle_of(0.0, 0.0, kPointSigma);
   if (fields.has("features")) {
+    fields.check_keys(
+        {{"features", "start_camera_position", "start_camera_quat_wxyz", "sigma", "sigma_position", "sigma_rotation"},
+         {},
+         true});
     target.kind = PF_TARGET_POINTS;
     set_points(fields, "features", target);
     set_first_pose(fields, "start_camera_position", "start_camera_quat_wxyz", target);
     turn_scenelib_camera(target.first_pose.q_WC);
   } else if (fields.has("points")) {
     target.kind = PF_TARGET_POINTS;
+    const char* pose = fields.has("T_WC") ? "T_WC" : "first_pose";
+    fields.check_keys({{"points", pose, "sigma"}, {"comment"}, true});
+    fields.below(pose).check_keys({{"position", "quaternion_wxyz", "sigma_position", "sigma_rotation"}, {}, true});
     set_points(fields, "points", target);
-    set_first_pose(fields.below(fields.has("T_WC") ? "T_WC" : "first_pose"), "position", "quaternion_wxyz", target);
+    set_first_pose(fields.below(pose), "position", "quaternion_wxyz", target);
   } else if (fields.has("width") || fields.has("height")) {
+    fields.check_keys({{"width", "height", "sigma"}, {"comment"}, true});
     target.width = positive(fields, "width", fields.number("width"), kLargest);
     target.height = positive(fields, "height", fields.number("height"), kLargest);
     target.sigma = kRectangleSigma;

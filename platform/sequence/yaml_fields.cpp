@@ -1,5 +1,6 @@
 #include "yaml_fields.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
@@ -43,6 +44,41 @@ std::string one_line(std::string text) {
   return text.size() > 200 ? text.substr(0, 200) + ".." : text;
 }
 
+/// Letters to insert, remove or change until a becomes b.
+size_t edits(const std::string& a, const std::string& b) {
+  std::vector<size_t> row(b.size() + 1);
+  for (size_t j = 0; j <= b.size(); ++j) {
+    row[j] = j;
+  }
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
+    }
+  }
+  return row[b.size()];
+}
+
+/// Unlikeness of a key to one that is read: 0 for readout or readout_ms and readout_s, Fx and fx; 1 for heigth and height. More than
+/// kMisspelled: another word.
+constexpr size_t kMisspelled = 2;
+size_t unlikeness(const std::string& found, const std::string& known) {
+  std::string lower = found.substr(0, 64);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const size_t unit = known.rfind('_');
+  if (unit != std::string::npos && known.size() - unit <= 3 && lower.compare(0, unit, known, 0, unit) == 0) {
+    return 0;
+  }
+  return edits(lower, known) + (known.size() < 4 ? 1 : 0);
+}
+
+bool contains(const std::vector<std::string>& list, const std::string& word) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
+
 }  // namespace
 
 Fields::Fields(const std::string& text, const std::string& file) : file_(file) {
@@ -61,6 +97,40 @@ Fields::Fields(const std::string& text, const std::string& file) : file_(file) {
 
 void Fields::refuse_field(const std::string& key, const std::string& why) const {
   refuse(file_ + ": field '" + prefix_ + key + "' " + one_line(why));
+}
+
+std::string Fields::check_keys(const Known& known) const {
+  std::vector<std::string> found;
+  std::string ignored;
+  for (const auto& entry : node_) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : std::string("?");
+    const bool read = contains(known.read, key);
+    if (contains(found, key)) {
+      if (read || known.ours) {
+        refuse_field(key, "is there twice; remove the wrong one");
+      }
+      continue;
+    }
+    found.push_back(key);
+    if (read || contains(known.unused, key)) {
+      continue;
+    }
+    const auto nearest = std::min_element(known.read.begin(), known.read.end(), [&](const auto& a, const auto& b) {
+      return unlikeness(key, a) < unlikeness(key, b);
+    });
+    if (nearest != known.read.end() && unlikeness(key, *nearest) <= kMisspelled) {
+      refuse_field(key, "is not known; is '" + prefix_ + *nearest + "' meant?");
+    }
+    if (known.ours) {
+      std::string names;
+      for (const std::string& name : known.read) {
+        names += (names.empty() ? "'" : ", '") + name + "'";
+      }
+      refuse_field(key, "is not known here; correct or remove it. Known are " + names);
+    }
+    ignored += (ignored.empty() ? "'" : ", '") + prefix_ + key + "'";
+  }
+  return ignored.empty() ? ignored : file_ + ": ignored, because not known here: " + one_line(ignored);
 }
 
 YAML::Node Fields::at(const std::string& key) const {

@@ -31,6 +31,15 @@ class Fields {
   /// A list of lists of finite numbers.
   std::vector<std::vector<double>> rows(const std::string& key, size_t limit, size_t columns) const;
 
+  /// What the map may hold: the keys that are read, and others that are known and not used here.
+  struct Known {
+    std::vector<std::string> read, unused;
+    bool ours = false;  ///< a form of this project, in which any other key is a mistake
+  };
+  /// Refuses a key that is read and stands there twice, one that looks like a misspelling of one that is read and, in a form of ours,
+  /// any that is not known. Returns one line on what else is ignored, or nothing.
+  std::string check_keys(const Known& known) const;
+
   [[noreturn]] void refuse_field(const std::string& key, const std::string& why) const;
 
  private:

@@ -215,6 +215,39 @@ static void test_file_should_be_named_when_it_cannot_be_read() {
   TEST_ASSERT_EQUAL_INT(-1, pf_read_calibration("x", nullptr, nullptr, nullptr));
 }
 
+static void test_field_should_be_refused_when_it_is_there_twice_or_misspelled() {
+  const std::string plain = kPlainCalibration;
+  refused(plain + "fx: 300\n", "'fx'");
+  refused(plain + "readout: 0.03\n", "'readout_s'");
+  refused(plain + "readout_ms: 30\n", "'readout_s'");
+  refused(plain + "ratehz: 30\n", "'rate_hz'");
+  refused(plain + "Fx: 300\n", "'fx'");
+  refused(plain + "my_own: 1\n", "'my_own'");
+  refused(std::string(kKalibr) + "readout: 0.03\n", "'readout_s'");
+  refused(with(kKalibr, "  rostopic", "  readout: 0.03\n  rostopic"), "'cam0.readout_s'");
+  refused(std::string(kEuroc) + "intrinsics: [458.654, 457.296, 367.215, 248.375]\n", "'intrinsics'");
+  refused(std::string(kEuroc) + "readout: 0.03\n", "'readout_s'");
+  refused(std::string(kRos) + "image_width: 640\n", "'image_width'");
+  refused(std::string(kRos) + "readot_s: 0.02\n", "'readout_s'");
+}
+
+static void test_field_should_give_a_warning_when_another_form_has_it_and_nobody_knows_it() {
+  const auto warning = [](const std::string& text) {
+    pf_camera_t camera;
+    char message[PF_SEQUENCE_MESSAGE] = "x";
+    TEST_ASSERT_EQUAL_INT_MESSAGE(
+        0, pf_parse_calibration(text.data(), text.size(), "c.yaml", &camera, nullptr, message), message);
+    return std::string(message);
+  };
+  TEST_ASSERT_EQUAL_STRING("", warning(kKalibr).c_str());
+  TEST_ASSERT_EQUAL_STRING("", warning(kEuroc).c_str());
+  TEST_ASSERT_EQUAL_STRING("", warning(kRos).c_str());
+  TEST_ASSERT_EQUAL_STRING("", warning(std::string(kPlainCalibration) + "comment: on my desk\n").c_str());
+  require_message(warning(std::string(kEuroc) + "lens: 8 mm\nlens: 8 mm\n").c_str(), "'lens'");
+  require_message(warning(with(kKalibr, "  rostopic", "  lens: 8 mm\n  rostopic")).c_str(), "'cam0.lens'");
+  require_message(warning(std::string(kRos) + "lens: 8 mm\n").c_str(), "c.yaml");
+}
+
 static void test_written_file_should_be_read_as_the_same_camera_in_both_forms() {
   const TemporaryFolder folder;
   const std::string path = folder / "written.yaml";
@@ -262,6 +295,8 @@ int main() {
   RUN_TEST(test_other_forms_should_name_the_field_when_it_is_bad);
   RUN_TEST(test_anything_else_should_be_refused_in_one_line);
   RUN_TEST(test_file_should_be_named_when_it_cannot_be_read);
+  RUN_TEST(test_field_should_be_refused_when_it_is_there_twice_or_misspelled);
+  RUN_TEST(test_field_should_give_a_warning_when_another_form_has_it_and_nobody_knows_it);
   RUN_TEST(test_written_file_should_be_read_as_the_same_camera_in_both_forms);
   return UNITY_END();
 }

@@ -119,12 +119,22 @@ static void test_target_should_be_refused_when_a_number_is_nan_or_absurd() {
   refused("colour: red\n", "red", "blue", "no target");
 }
 
+static void test_target_should_be_refused_when_a_field_is_there_twice_or_misspelled() {
+  refused("width: 0.2\nheight: 0.1\n", "height: 0.1\n", "height: 0.1\nheight: 0.2\n", "'height'");
+  refused("width: 0.2\nheight: 0.1\n", "height: 0.1\n", "height: 0.1\nsigm: 0.1\n", "'sigma'");
+  refused("width: 0.2\nheight: 0.1\n", "height: 0.1\n", "height: 0.1\ndepth: 0.1\n", "'depth'");
+  refused(kPoints, "sigma_rotation: 0.1", "sigma_rotaton: 0.1", "first_pose.sigma_rotation");
+  refused(kPoints, "sigma_rotation: 0.1", "sigma_rotation: 0.1\n  sigma_rotation: 0.2", "first_pose.sigma_rotation");
+  refused(kSceneLib, "features", "sigmas: 1\nfeatures", "'sigma'");
+}
+
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_rectangle_should_be_read_from_a_file_and_from_text);
   RUN_TEST(test_points_should_be_read_with_their_first_pose);
   RUN_TEST(test_scenelib_camera_should_be_turned_to_right_down_forward);
   RUN_TEST(test_target_should_be_refused_when_a_number_is_nan_or_absurd);
+  RUN_TEST(test_target_should_be_refused_when_a_field_is_there_twice_or_misspelled);
   return UNITY_END();
 }
 

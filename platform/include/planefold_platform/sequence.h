@@ -70,7 +70,9 @@ const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t in
 /* A calibration file: Kalibr camchain (cam0), EuRoC sensor.yaml, ROS camera_info, or the plain form
  *   camera_model: pinhole / width / height / fx / fy / cx / cy /
  *   distortion_model: none | radtan | equidistant | harris_division / distortion: [..] / rate_hz (optional)
- * Each may have readout_s, of a rolling shutter [s]. rate_hz (may be null) is 0 where the file does not say it. */
+ * Each may have readout_s, of a rolling shutter [s]. rate_hz (may be null) is 0 where the file does not say it. A field that is there
+ * twice or looks like a misspelled one is refused, and so is an unknown one of the plain form; with 0, message is a line on what else was
+ * ignored, or empty. */
 int pf_read_calibration(const char* path, pf_camera_t* camera, double* rate_hz, char message[PF_SEQUENCE_MESSAGE]);
 
 /* The same from text in memory; name stands for the file in messages. */
