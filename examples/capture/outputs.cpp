@@ -82,7 +82,7 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, const pf_
   trajectory_.rows() = "# T_WC of the tracked frames: timestamp tx ty tz qx qy qz qw\n";
   trajectory_all_.rows() = "# T_WC of every frame with a pose, coasting ones too: timestamp tx ty tz qx qy qz qw\n";
   covariance_.rows() = "# rows of trajectory.txt: timestamp, 6x6 of (theta, p) in W, row-major [rad, m]\n";
-  frames_.rows() = "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof\n";
+  frames_.rows() = "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof,tracked\n";
   tracks_.rows() = "frame,id,status,kind,predicted_u,predicted_v,s_uu,s_uv,s_vv,measured_u,measured_v\n";
   truth_.rows() = "# true T_WC: timestamp tx ty tz qx qy qz qw\n";
   return true;
@@ -92,8 +92,8 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, std::string& 
   const pf_report_t& report = view.report;
   std::string& frames = frames_.rows();
   put_seconds(frames, view.image.t_ns);
-  append(frames, ",%s,%d,%d,%d,%d,%d,%.4f,%.6g,%d\n", state_name(report.state), report.attempts, report.matches,
-         report.inliers, report.features, report.state_dim, view.ms, report.nis, report.nis_dof);
+  append(frames, ",%s,%d,%d,%d,%d,%d,%.4f,%.6g,%d,%d\n", state_name(report.state), report.attempts, report.matches,
+         report.inliers, report.features, report.state_dim, view.ms, report.nis, report.nis_dof, view.tracked ? 1 : 0);
   if (view.has_pose) {
     put_tum(trajectory_all_.rows(), view.pose);
   }

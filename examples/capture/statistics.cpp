@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "plane_outputs.h"
@@ -72,9 +73,10 @@ void Statistics::add(const FrameView& view) {
     attempts_.add(report.attempts);
     state_dim_.add(report.state_dim);
   }
-  starting_ += report.state == PF_STATE_STARTING ? 1 : 0;
-  coasting_ += report.state == PF_STATE_COASTING ? 1 : 0;
-  lost_ += report.state == PF_STATE_LOST ? 1 : 0;
+  const bool untracked = !view.tracked;  // the first frames of a start may be tracked already
+  starting_ += untracked && report.state == PF_STATE_STARTING ? 1 : 0;
+  lost_ += untracked && report.state == PF_STATE_LOST ? 1 : 0;
+  coasting_ += untracked && report.state != PF_STATE_STARTING && report.state != PF_STATE_LOST ? 1 : 0;
   losses_ += report.state == PF_STATE_LOST && last_state_ != PF_STATE_LOST ? 1 : 0;
   unusable_ += view.status == PF_NOTE_UNUSABLE ? 1 : 0;
   evicted_ += report.evicted;
@@ -126,12 +128,11 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["frames"] = frames_;
   json["tracked"] = tracked_;
   json["lost"] = lost_;
+  json["frames_by_state"] = {{"tracked", tracked_}, {"starting", starting_}, {"coasting", coasting_}, {"lost", lost_}};
   json["losses"] = losses_;
   json["resets"] = resets_;
   json["start_frame"] = start_frame_;
   json["start"] = session.start();
-  json["starting"] = starting_;
-  json["coasting"] = coasting_;
   json["unusable"] = unusable_ + unreadable_;
   json["unreadable"] = unreadable_lines_;
   json["flat"] = flat_;
@@ -163,7 +164,8 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
       {"max_observations", config.capacity.max_observations}, {"features_in_view", config.map.features_in_view},
       {"sigma_pixel", config.measurement.sigma_px},           {"keep_gauge", config.keep_gauge}};
   json["withdraw_target_after"] = options.withdraw_target_after >= 0 ? Json(options.withdraw_target_after) : Json();
-  json["truth"] = source.truth_path;
+  json["truth"] =
+      source.truth_path.empty() ? "" : std::filesystem::absolute(source.truth_path).lexically_normal().string();
   if (turn_images_ > 0) {
     json["there_and_back"] = {{"turn_s", 1e-9 * static_cast<double>(turn_ns_)}, {"images", turn_images_}};
   }

@@ -200,6 +200,9 @@ void open_euroc(Folder& folder, const std::string& calibration) {
       find_calibration(folder, calibration, camera, {"sensor.yaml", "calib.yaml"});
       folder.frames = read_table(camera / "data.csv", camera / "data", Times::kNanoseconds);
       folder.truth_path = first_file(folder.root, {"groundtruth.tum"});
+      if (folder.truth_path.empty()) {
+        folder.truth_path = first_file(camera / ".." / "state_groundtruth_estimate0", {"data.csv"}).lexically_normal();
+      }
       folder.imu_path = first_file(camera / ".." / "imu0", {"data.csv"}).lexically_normal();
       return;
     }

@@ -67,9 +67,11 @@ static void test_euroc_should_open_from_any_of_its_folders() {
                "#timestamp [ns],filename\r\n1403636579763555584,a.png\r\n1403636579813555456,b.png\r\n");
   folder.write("mav0/cam0/data/a.png", grey_png(3));
   folder.write("mav0/cam0/data/b.png", grey_png(4));
+  folder.write("mav0/state_groundtruth_estimate0/data.csv", "0,0,0,0,1,0,0,0\n");
   for (const char* below : {"", "/mav0", "/mav0/cam0"}) {
     Opened opened("euroc:" + folder.path() + below);
     TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+    TEST_ASSERT_EQUAL_STRING((folder / "mav0/state_groundtruth_estimate0/data.csv").c_str(), opened.info.truth_path);
     TEST_ASSERT_EQUAL_INT64(1403636579813555456, opened.read(1).t_ns);
     TEST_ASSERT_EQUAL_STRING("euroc", opened.info.calibration_form);
   }

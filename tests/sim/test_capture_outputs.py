@@ -64,6 +64,10 @@ def check_files(out, report):
     require(report["frames"] == FRAMES, f"{report['frames']} frames in the report")
     require(report["tracked"] >= FRAMES - 5, f"only {report['tracked']} of {FRAMES} frames were tracked")
     require(report["lost"] == 0, "the run was lost")
+    states = report["frames_by_state"]
+    require(sum(states.values()) == report["frames"], f"the states {states} are not {report['frames']} frames")
+    table = [row[0].split(",") for row in rows(out / "frames.csv")[1:]]
+    require(states["tracked"] == report["tracked"] == sum(int(row[-1]) for row in table), f"frames.csv has another count than {states}")
     trajectory = rows(out / "trajectory.txt")
     require(len(trajectory) == report["tracked"], f"{len(trajectory)} poses, {report['tracked']} tracked")
     require(all(len(row) == 8 for row in trajectory), "trajectory.txt: a row without 8 numbers")

@@ -84,6 +84,19 @@ class Alignment(unittest.TestCase):
         self.assertAlmostEqual(result["ate_rmse_m"], 0.01 * np.sqrt(3), delta=0.0005)
         self.assertAlmostEqual(result["rpe_rmse_m"], 0.01 * np.sqrt(6), delta=0.001)
 
+    def test_rotation_should_be_judged_by_itself_when_the_path_is_nearly_straight(self):
+        """A millimetre of noise across a straight path turned the whole run by tens of degrees about it."""
+        truth = curve()
+        truth.p = np.stack([0.5 * truth.t, 1e-4 * np.sin(truth.t), 0 * truth.t], axis=1)
+        run = moved(truth, 1.0, Rotation.identity(), [0, 0, 0])
+        run.p = run.p + self.generator.normal(0, 0.002, run.p.shape)
+        run.q = wxyz(Rotation.from_rotvec(self.generator.normal(0, np.radians(0.2), (200, 3))) * Rotation.from_quat(run.q[:, [1, 2, 3, 0]]))
+        result = compare(run, truth, "sim3").summary
+        self.assertTrue(result["alignment_degenerate"])
+        self.assertAlmostEqual(result["rot_rmse_deg"], 0.2 * np.sqrt(3), delta=0.03)
+        self.assertGreater(result["rot_by_positions_rmse_deg"], 3 * result["rot_rmse_deg"])
+        self.assertFalse(compare(moved(curve(), 1.0, self.turn, [0, 0, 1]), curve(), "sim3").summary["alignment_degenerate"])
+
     def test_alignment_should_be_refused_when_the_path_stands_still(self):
         still = curve()
         still.p = np.zeros_like(still.p)
@@ -192,6 +205,53 @@ class Command(unittest.TestCase):
         _, out, _ = self.pf_eval(self.path, "--truth", self.path / "truth.tum", "--json", self.path / "eval.json")
         self.assertIn("position error, RMS", out)
         self.assertIn("ate_rmse_m", json.loads((self.path / "eval.json").read_text()))
+
+    def test_truth_should_be_found_when_the_report_names_it(self):
+        code, _, err = self.pf_eval(self.path)  # truth.tum of a scene
+        self.assertEqual(code, 0, err)
+        (self.path / "truth.tum").rename(self.path / "elsewhere.tum")
+        (self.path / "report.json").write_text(json.dumps({"truth": str(self.path / "elsewhere.tum"), "start": "auto"}))
+        code, out, err = self.pf_eval(self.path, "--json")
+        self.assertEqual(code, 0, err)
+        self.assertEqual(json.loads(out)["pairs"], 200)
+        for truth, part in (("", "names no truth"), (str(self.path / "gone.tum"), "gone.tum")):
+            (self.path / "report.json").write_text(json.dumps({"truth": truth}))
+            code, _, err = self.pf_eval(self.path)
+            self.assertEqual(code, 1)
+            self.assertIn(part, err)
+
+    def test_body_poses_should_become_camera_poses_when_truth_is_eurocs(self):
+        R_BC = Rotation.from_euler("xyz", [80, 10, -30], degrees=True)
+        T_BC = np.eye(4)
+        T_BC[:3, :3], T_BC[:3, 3] = R_BC.as_matrix(), [0.3, -0.4, 0.5]
+        camera = curve()
+        R_WC = Rotation.from_quat(camera.q[:, [1, 2, 3, 0]])
+        R_WB = R_WC * R_BC.inv()
+        p_WB = camera.p - R_WB.apply(T_BC[:3, 3])
+        mav0 = self.path / "mav0"
+        (mav0 / "state_groundtruth_estimate0").mkdir(parents=True)
+        (mav0 / "cam0").mkdir()
+        table = mav0 / "state_groundtruth_estimate0" / "data.csv"
+        rows = [f"{round(1e9 * t)},{','.join(f'{x:.12f}' for x in [*p, *q])},0,0,0" for t, p, q in zip(camera.t, p_WB, wxyz(R_WB))]
+        table.write_text("#timestamp [ns],p_RS_R_x,p_RS_R_y,p_RS_R_z,q_RS_w,q_RS_x,q_RS_y,q_RS_z,v,v,v\n" + "\n".join(rows) + "\n")
+        code, _, err = self.pf_eval(self.path, "--truth", table)
+        self.assertEqual(code, 1)
+        self.assertIn("poses of the body", err)
+        data = ", ".join(f"{x:.12f}" for x in T_BC.ravel())
+        (mav0 / "cam0" / "sensor.yaml").write_text(f"sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: [{data}]\n")
+        kalibr = self.path / "camchain.yaml"
+        kalibr.write_text("cam0:\n  T_cam_imu:\n" + "".join(f"  - {list(map(float, row))}\n" for row in np.linalg.inv(T_BC)))
+        for words in ([], ["--calib", kalibr]):
+            code, out, err = self.pf_eval(self.path, "--truth", table, "--align", "none", "--json", *words)
+            self.assertEqual(code, 0, err)
+            result = json.loads(out)
+            self.assertLess(result["ate_rmse_m"], 1e-6)
+            self.assertLess(result["rot_rmse_deg"], 1e-4)
+            self.assertIn("camera, from the body's poses", result["frame"])
+        (mav0 / "cam0" / "sensor.yaml").write_text("sensor_type: camera\n")
+        code, _, err = self.pf_eval(self.path, "--truth", table)
+        self.assertEqual(code, 1)
+        self.assertIn("T_BS", err)
 
     def test_mistakes_should_get_one_line_and_a_failing_exit(self):
         (self.path / "words.tum").write_text("0 a b c d e f g\n")

@@ -22,9 +22,10 @@ def main():
     if not report:
         sys.exit(f"{run}/report.json is missing")
 
-    frames = report["frames"] - report.get("start_frame", 0)
-    lost = f", lost {report['lost']}" if report.get("lost") else ", never lost"
-    print(f"Camera: tracked {report['tracked']} of {frames} frames of {source}{lost}; "
+    states = report["frames_by_state"]
+    others = [f"{count} {name}" for name, count in states.items() if count and name != "tracked"]
+    print(f"Camera: tracked {states['tracked']} of {report['frames']} frames of {source}"
+          f"{' (' + ', '.join(others) + ')' if others else ''}{'' if states['lost'] else ', never lost'}; "
           f"{report['ms_per_frame']['median']:.2f} ms a frame, {report['ms_per_frame']['p95']:.2f} ms at the 95th percentile.")
 
     planes = len(report.get("planes", []))

@@ -36,7 +36,7 @@ typedef struct pf_sequence_info {
   const char* folder; /* these six are valid until the sequence is closed; "" where there is none */
   const char* calibration_path;
   const char* calibration_form; /* "kalibr", "euroc", "ros", "plain" or "none" */
-  const char* truth_path;       /* a trajectory beside the images, in the TUM format */
+  const char* truth_path;       /* a trajectory beside the images: TUM, or EuRoC's data.csv of the body */
   const char* warning;          /* one line on what had to be assumed */
   const char* imu_path;         /* inertial samples beside the images, for pf_read_imu */
 } pf_sequence_info_t;

@@ -43,6 +43,12 @@ def default_alignment(report):
     return "none" if start.startswith(("target", "rectangle", "points", "pose")) else "sim3"
 
 
+def is_degenerate(p, position_error):
+    """The path is so straight that its second axis drowns in the errors: the rotation about the first is then not known."""
+    across = np.linalg.svd(p - p.mean(axis=0), compute_uv=False)[1] / np.sqrt(len(p))
+    return bool(across < 5 * np.sqrt(np.mean(np.sum(position_error ** 2, axis=1))))
+
+
 def _evo(trajectory):
     return PoseTrajectory3D(positions_xyz=trajectory.p.copy(), orientations_quat_wxyz=trajectory.q.copy(),
                             timestamps=trajectory.t.copy())
@@ -82,12 +88,14 @@ def compare(run, truth, align, own_frame=True):
     result.rotations = np.array([pose[:3, :3] for pose in aligned.poses_se3])
     result.position_error = matched.p - aligned.positions_xyz
     off = Rotation.from_matrix(np.einsum("nij,nkj->nik", matched.rotations(), result.rotations))
-    result.rotation_error = off.as_rotvec()
+    # Where the run chose its own frame, the rotation between the frames is the one that fits the rotations best: what the positions
+    # give is not defined about a straight path.
+    own = off if align == "none" else off * off.mean().inv()
+    result.rotation_error = own.as_rotvec()
     result.covariance = estimate.covariance if align == "none" else None
     result.align = align
 
     rate = 1.0 / np.median(np.diff(estimate.t)) if len(estimate) > 1 else 0.0
-    own = off.mean().inv() * off if align != "none" else None
     if align != "none":
         result.own_turn = off.mean().as_matrix() @ turn
         result.own_shift = (matched.p - result.scale * estimate.p @ result.own_turn.T).mean(axis=0)
@@ -98,9 +106,10 @@ def compare(run, truth, align, own_frame=True):
         "ate_max_m": _statistic(metrics.APE(metrics.PoseRelation.translation_part), pair, "max"),
         "rpe_rmse_m": _rpe(pair, 1),
         "rpe_1s_rmse_m": _rpe(copy.deepcopy(pair), max(1, round(rate))),
-        "rot_rmse_deg": _statistic(rotation, pair),
-        "rot_max_deg": float(np.degrees(np.linalg.norm(result.rotation_error, axis=1).max())),
-        "rot_own_rmse_deg": None if own is None else float(np.degrees(np.sqrt(np.mean(own.magnitude() ** 2)))),
+        "rot_rmse_deg": float(np.degrees(np.sqrt(np.mean(own.magnitude() ** 2)))),
+        "rot_max_deg": float(np.degrees(own.magnitude().max())),
+        "rot_by_positions_rmse_deg": None if align == "none" else _statistic(rotation, pair),
+        "alignment_degenerate": None if align == "none" else is_degenerate(matched.p, result.position_error),
         "pairs": len(estimate),
         "poses": len(run),
         "scale": result.scale,

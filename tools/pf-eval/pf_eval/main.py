@@ -12,13 +12,14 @@ from . import Refused
 from .camera import read_camera
 from .corners import compare_corners, read_target
 from .errors import compare, default_alignment
-from .files import read_run, read_tum
+from .files import read_run
 from .planes import compare_planes, folding, read_planes
 from .there_and_back import compare_passes, forward
+from .truth import named_truth, read_truth
 
 DESCRIPTION = """Compares a run of pf-capture with ground truth.
 
-  pf-eval RUN --truth FILE.tum [--planes FILE.json] [--align none|se3|sim3] [--json [FILE]]
+  pf-eval RUN [--truth FILE] [--planes FILE.json] [--align none|se3|sim3] [--json [FILE]]
   pf-eval RUN --corners FILE.csv --target FILE.yaml [--calib FILE] [--json [FILE]]
   pf-eval RUN --there-and-back [--json [FILE]]
 
@@ -26,8 +27,10 @@ RUN is an output folder of pf-capture, or a trajectory in the TUM form (timestam
 
 NOTES = """Truth is taken within 10 ms of a frame: the nearest pose, or interpolated where truth comes at least 1.5 times as
 often as the frames ("association" says which). Errors are those of evo after Umeyama alignment of positions; rpe_rmse_m is
-from frame to frame. rot_rmse_deg uses the alignment that the positions gave; rot_own_rmse_deg the best rotation for the
-rotations themselves, which says more where the path is nearly straight. NEES is given for runs in the truth's own
+from frame to frame. After an alignment rot_rmse_deg and rot_max_deg are what is left by the rotation that fits the rotations best;
+rot_by_positions_rmse_deg uses the one that the positions gave, which is not known about a nearly straight path
+(alignment_degenerate; a note says so). Truth is of the camera; EuRoC's data.csv is of the body, and T_BS of the camera's sensor.yaml is
+applied ("frame" says which was compared). Without --truth the one that report.json names is taken. NEES is given for runs in the truth's own
 frame only, so with --align none; nees_position has 3 degrees of freedom, nees_pose 6. A plane of the run is a true one when it is
 within 10 degrees and, in the middle of its outline, 10 cm of it, after an alignment by the rotations of the trajectory.
 --there-and-back reads a run of pf-capture --there-and-back, where each image has two poses that should be one: their distance is
@@ -39,7 +42,8 @@ TABLE = {
     "ate_rmse_m": ("position error, RMS", "m"), "ate_max_m": ("position error, largest", "m"),
     "rpe_rmse_m": ("position error frame to frame, RMS", "m"), "rpe_1s_rmse_m": ("position error over 1 s, RMS", "m"),
     "rot_rmse_deg": ("rotation error, RMS", "deg"), "rot_max_deg": ("rotation error, largest", "deg"),
-    "rot_own_rmse_deg": ("rotation error, rotations aligned by themselves", "deg"),
+    "rot_by_positions_rmse_deg": ("rotation error, aligned by the positions", "deg"),
+    "alignment_degenerate": ("path too straight to align its rotation", ""), "frame": ("frame compared", ""),
     "pairs": ("frames compared", ""), "poses": ("of tracked frames", ""), "scale": ("scale found", ""),
     "path_m": ("true path", "m"), "align": ("alignment", ""), "association": ("truth taken", ""),
     "nees_position": ("NEES position, mean (3 is honest)", ""), "nees_pose": ("NEES pose, mean (6 is honest)", ""),
@@ -66,13 +70,14 @@ def arguments(words):
     parser = argparse.ArgumentParser(prog="pf-eval", description=DESCRIPTION, epilog=NOTES,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", metavar="RUN", nargs="?")
-    parser.add_argument("--truth", metavar="FILE.tum")
+    parser.add_argument("--truth", metavar="FILE", help="TUM form, or EuRoC's state_groundtruth_estimate0/data.csv; default: report.json names it")
     parser.add_argument("--align", choices=["none", "se3", "sim3"],
                         help="default: none where report.json says that the run started from a target, else sim3")
     parser.add_argument("--planes", metavar="FILE.json", help="true planes: {\"planes\": [{\"name\", \"normal\", \"distance\"}]}")
     parser.add_argument("--corners", metavar="FILE.csv", help="frame,t,u_TL,v_TL,u_TR,v_TR,u_BR,v_BR,u_BL,v_BL")
     parser.add_argument("--target", metavar="FILE.yaml", help="the target that the run was started from")
-    parser.add_argument("--calib", metavar="FILE", help="default: calib.yaml in RUN, or beside the corners")
+    parser.add_argument("--calib", metavar="FILE", help="of --corners: default calib.yaml in RUN, or beside the corners; of a body's truth: "
+                        "default cam0/sensor.yaml beside it")
     parser.add_argument("--there-and-back", action="store_true", help="the two poses of each image; needs no truth")
     parser.add_argument("--skip-frames", metavar="N", type=int, default=0, help="leave out corners of the first N frames")
     parser.add_argument("--json", metavar="FILE", nargs="?", const="-", help="results as JSON, to a file or the output")
@@ -82,10 +87,10 @@ def arguments(words):
         options.run, options.json = options.json, "-"
     if options.run is None:
         parser.error("which RUN?")
-    if [options.truth is not None, options.corners is not None, options.there_and_back].count(True) != 1:
+    if [options.truth is not None, options.corners is not None, options.there_and_back].count(True) > 1:
         parser.error("give one of --truth, --corners and --there-and-back")
-    if options.planes and not options.truth:
-        parser.error("--planes needs --truth")
+    if options.planes and (options.corners or options.there_and_back):
+        parser.error("--planes needs a truth")
     if options.corners and not options.target:
         parser.error("--corners needs --target")
     return options
@@ -93,8 +98,9 @@ def arguments(words):
 
 def evaluate_truth(options):
     run, report, folder = read_run(options.run)
-    truth = read_tum(options.truth)
-    if pathlib.Path(options.truth).resolve() != (folder / "truth.tum").resolve():  # a scene knows the way back, too
+    truth_path = options.truth or named_truth(report, folder)
+    truth, frame = read_truth(truth_path, options.calib)
+    if pathlib.Path(truth_path).resolve() != (folder / "truth.tum").resolve():  # a scene knows the way back, too
         run = forward(run, report)
     align = options.align or default_alignment(report)
     result = compare(run, truth, align, own_frame=report.get("start") != "auto")
@@ -105,7 +111,10 @@ def evaluate_truth(options):
             columns += [result.nees_position[:, None], result.nees_pose[:, None]]
             names += ",nees_position,nees_pose"
         write_rows(options.per_frame, names, np.hstack(columns))
-    summary = dict(result.summary, **folding(report))
+    summary = dict(result.summary, frame=frame, **folding(report))
+    if result.summary["alignment_degenerate"]:
+        print("pf-eval: note: the path is nearly straight, so the rotation of the alignment about it is not known; rot_rmse_deg is "
+              "aligned by the rotations", file=sys.stderr)
     if options.planes:
         summary.update(compare_planes(report, read_planes(options.planes), result.scale, result.own_turn, result.own_shift))
     return summary
@@ -125,11 +134,11 @@ def evaluate_corners(options):
 
 
 def evaluate(options):
-    if options.truth:
-        return evaluate_truth(options)
+    if options.there_and_back:
+        return compare_passes(*read_run(options.run))
     if options.corners:
         return evaluate_corners(options)
-    return compare_passes(*read_run(options.run))
+    return evaluate_truth(options)
 
 
 def write(path, text):

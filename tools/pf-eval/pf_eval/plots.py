@@ -8,8 +8,9 @@ import numpy as np
 
 from . import Refused, plot_errors, plot_frames, plot_trajectory
 from .errors import compare, default_alignment
-from .files import read_run, read_table, read_tum
+from .files import read_run, read_table
 from .output_folder import LIST, add_output_files, open_output_folder
+from .truth import read_truth
 
 DESCRIPTION = """Draws a run of pf-capture into RUN/plots: trajectory.png (from above and from the side, with the map), frames.png
 (matches, size of the state, milliseconds and innovations over time) and, where truth is known, errors.png: with 3-sigma
@@ -30,7 +31,7 @@ def plot(options):
     run, report, folder = read_run(options.run)
     truth_path = options.truth or (folder / "truth.tum" if (folder / "truth.tum").exists() else None)
     align = options.align or default_alignment(report)
-    truth = read_tum(truth_path) if truth_path else None
+    truth = read_truth(truth_path)[0] if truth_path else None
     comparison = None
     if truth:
         try:
