@@ -101,6 +101,7 @@ bool undistort_theta(const Camera& c, Scalar theta_d, Scalar* theta, Scalar* slo
 bool unproject_equidistant(const Camera& c, const Vec2& m, Vec3* ray, Mat32* J_ray_m) {
   const Scalar theta_d = m.norm();
   Scalar theta, slope;
+  if (!std::isfinite(theta_d)) return false;
   if (!undistort_theta(c, theta_d, &theta, &slope)) return false;
   const bool on_axis = !(theta_d > std::numeric_limits<Scalar>::min());
   const Vec2 e = on_axis ? Vec2(0, 0) : Vec2(m / theta_d);
@@ -214,7 +215,7 @@ bool unproject(const Camera& c, const Vec2& pixel, Vec3* ray_C, Mat32* J_ray_pix
       J_ray_target = J_ray_m * J_m_target;
     }
   }
-  if (!(std::abs(ray.squaredNorm() - 1) < Scalar(0.01))) return false;  // overflown on the way
+  if (!(std::abs(ray.squaredNorm() - 1) < Scalar(1e-5))) return false;  // something overflowed
   *ray_C = ray;
   if (J_ray_pixel != nullptr) {
     J_ray_pixel->col(0) = J_ray_target.col(0) / c.fx;
