@@ -229,7 +229,7 @@ static void test_hit_test_should_give_place_and_sigma_of_the_wall_under_a_pixel(
   for (int v = 20; v < 480; v += 20) {
     for (int u = 20; u < 640; u += 20) {
       const double at[2] = {u, v};
-      double truth[3];
+      double truth[3] = {0, 0, 0};
       const wall_t* wall = true_hit(at, truth);
       const pf_status_t status = pf_hit_test(slam, at, &hit);
       if (status == PF_NOTE_NOTHING) continue; /* outside of the outlines */
