@@ -8,10 +8,15 @@ jobs_default() {
   nproc 2>/dev/null || echo 2
 }
 
-# configure PRESET [-D...]   quiet unless it fails
+# configure PRESET [-D...]   quiet unless it fails; compiles through ccache where that is installed
 configure() {
   local preset=$1 log
   shift
+  if command -v ccache >/dev/null; then
+    # Precompiled headers are what they are made from.
+    export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros,include_file_mtime,include_file_ctime}
+    set -- -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"
+  fi
   log=build/$preset.configure.log
   mkdir -p build
   if ! cmake --preset "$preset" "$@" >"$log" 2>&1; then
