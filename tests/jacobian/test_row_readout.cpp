@@ -25,9 +25,9 @@ Camera rolling_camera(int trial) {
   return camera;
 }
 
-Observation seen(TestFilter& filter, const Camera& camera, const Body& body, int slot) {
+PixelMeasurement seen(TestFilter& filter, const Camera& camera, const Body& body, int slot) {
   filter->body() = body;
-  Observation o;
+  PixelMeasurement o;
   TEST_ASSERT_TRUE(filter->predict_pixel(camera, slot, &o));
   return o;
 }
@@ -57,7 +57,7 @@ void test_jacobians_should_be_exact_by_pose_speeds_and_point() {
     const Body body = random_body(random);
     const Vec3 p_W = point_in_view(random, body);
     const int slot = filter->add_point(p_W, Mat3::Identity());
-    const Dense H = dense_rows(seen(filter, camera, body, slot), filter.dim());
+    const Dense H = dense_rows(*filter, seen(filter, camera, body, slot).H);
     const Eigen::Matrix<Scalar, 2, 12> J_body = H.leftCols<12>().cast<Scalar>();
     const Mat23 J_point = H.rightCols<3>().cast<Scalar>();
     // The row is found in two turns, which leaves its square: a few thousandths.
@@ -81,8 +81,8 @@ void test_speeds_should_not_matter_to_a_camera_that_reads_out_at_once() {
   TestFilter filter(true);
   const Body body = random_body(random);
   const int slot = filter->add_point(point_in_view(random, body), Mat3::Identity());
-  const Observation o = seen(filter, camera, body, slot);
-  TEST_ASSERT_EQUAL_INT(9, o.columns());
+  const PixelMeasurement o = seen(filter, camera, body, slot);
+  TEST_ASSERT_EQUAL_INT(9, o.H.columns());
 }
 
 }  // namespace

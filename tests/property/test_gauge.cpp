@@ -23,9 +23,9 @@ void test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale() {
     if (trial / kTestCameras % 2 == 1) camera.readout = Scalar(0.03);
     const Dense N = filter.gauge();
     for (const int slot : slots) {
-      Observation o;
+      PixelMeasurement o;
       TEST_ASSERT_TRUE(filter->predict_pixel(camera, slot, &o));
-      const Dense H = dense_rows(o, filter.dim());
+      const Dense H = dense_rows(*filter, o.H);
       for (int c = 0; c < kAll; ++c)
         TEST_ASSERT_TRUE(largest(H * N.col(c)) < 1e-11 * (1 + largest(H) * largest(N.col(c))));
     }
@@ -146,7 +146,7 @@ void folded(PlaneScene& scene) { TEST_ASSERT_EQUAL_INT(8, scene.fold_all(PlaneSc
 void move_a_little(PlaneScene& scene, SeededRandom& random) {
   std::vector<Scalar> dx(static_cast<std::size_t>(scene.filter.dim()));
   for (Scalar& d : dx) d = static_cast<Scalar>(0.05 * random.normal());
-  apply_error(const_cast<State&>(scene.filter->state()), dx.data());
+  scene.filter.move(dx.data());
 }
 
 void test_operations_on_planes_should_carry_every_direction() {
@@ -199,10 +199,10 @@ void test_no_pixel_of_a_plane_s_point_should_see_the_gauge() {
     const Dense N = scene.filter.gauge();
     int seen = 0;
     for (const int slot : scene.on_wall) {
-      Observation o;
+      PixelMeasurement o;
       if (!scene.filter->predict_pixel(pinhole_camera(), slot, &o)) continue;
       ++seen;
-      const Dense H = dense_rows(o, scene.filter.dim());
+      const Dense H = dense_rows(*scene.filter, o.H);
       for (int c = 0; c < kAll; ++c)
         TEST_ASSERT_TRUE(largest(H * N.col(c)) < 1e-11 * (1 + largest(H) * largest(N.col(c))));
     }
@@ -239,12 +239,12 @@ void test_folds_and_updates_should_gain_nothing_about_the_gauge() {
     }
     TEST_ASSERT_TRUE(scene.filter->fix(scene.on_wall.data(), 5, FixForm::kConsider, scene.on_wall.data(), 8));
     before = information();
-    std::vector<Observation> seen;
+    std::vector<PixelMeasurement> seen;
     for (const int slot : scene.on_wall) {
-      Observation o;
+      PixelMeasurement o;
       if (!scene.filter->predict_pixel(pinhole_camera(), slot, &o)) continue;
       o.measured = o.predicted + random.normals<2>(2);
-      o.noise = Mat2::Identity() * Scalar(0.25);
+      o.set_noise(Mat2::Identity() * Scalar(0.25));
       seen.push_back(o);
     }
     scene.filter->begin_update(seen.data(), static_cast<int>(seen.size()));
@@ -298,14 +298,14 @@ Growth run(bool keep_gauge, SeededRandom& random) {
     predict_constant_velocity(truth, dt, {}, &transition);
     predict_constant_velocity(filter->body(), dt, {Scalar(3), Scalar(3)}, &transition);
     filter->predict(transition);
-    Observation o[kPoints];
+    PixelMeasurement o[kPoints];
     int count = 0;
     for (int i = 0; i < kPoints; ++i) {
       Vec2 z;
       if (!project(camera, truth.q_WC.conjugate() * (point[i] - truth.p_W), &z)) continue;
       if (!filter->predict_pixel(camera, slot[i], &o[count])) continue;
       o[count].measured = z + random.normals<2>(static_cast<double>(sigma));
-      o[count].noise = Mat2::Identity() * (sigma * sigma) + o[count].second_order;
+      o[count].set_noise(Mat2::Identity() * (sigma * sigma) + o[count].second_order);
       ++count;
     }
     filter->begin_update(o, count);
@@ -316,7 +316,7 @@ Growth run(bool keep_gauge, SeededRandom& random) {
       // Every second one is converted on the way, as soon as its depth is surely positive.
       const Scalar rho = block.inverse_depth().rho;
       if (block.kind == BlockKind::kInverseDepth && i % 2 == 0 && k > 20 &&
-          rho * rho > Scalar(9) * filter->variance(block.first + 2))
+          rho * rho > Scalar(9) * filter->block_variance(slot[i], 2))
         filter->convert_to_point(slot[i]);
       points += filter->state().block[slot[i]].kind == BlockKind::kPoint ? 1 : 0;
     }

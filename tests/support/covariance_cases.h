@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "covariance/kernels.h"
+#include "covariance/stored_rows.h"
 
 namespace covariance_cases {
 
@@ -123,8 +124,8 @@ inline void randomise(Random& random, pf::Triangle& P) {
 }
 
 /// `rows` rows that touch up to `segments` random disjoint runs of the state, unordered; often the body first.
-inline pf::SparseRows random_rows(Random& random, int rows, int n, int segments) {
-  pf::SparseRows J;
+inline pf::StoredRows random_rows(Random& random, int rows, int n, int segments) {
+  pf::StoredRows J;
   J.rows = rows;
   std::vector<bool> taken(n, false);
   int columns = 0;
@@ -142,6 +143,11 @@ inline pf::SparseRows random_rows(Random& random, int rows, int n, int segments)
   }
   for (int i = 0; i < rows * columns; ++i) J.h[i] = static_cast<Scalar>(random.normal());
   return J;
+}
+
+/// What a kernel takes.
+inline std::vector<pf::SparseRows> views(const std::vector<pf::StoredRows>& J) {
+  return std::vector<pf::SparseRows>(J.begin(), J.end());
 }
 
 /// Largest |A_ij - B_ij| / sqrt(variance_i variance_j).

@@ -15,6 +15,7 @@ namespace covariance_cases {
 using pf::Kernels;
 using pf::Segment;
 using pf::SparseRows;
+using pf::StoredRows;
 using pf::Triangle;
 
 constexpr double kTolerance = kFloat ? 1e-5 : 1e-12;
@@ -24,16 +25,16 @@ constexpr const char* kSetNames[] = {"auto", "reference", "portable", "avx2", "a
 struct Problem {
   int n, m, k, held_first, held_end;
   Covariance start;
-  std::vector<SparseRows> J;
+  std::vector<StoredRows> J;
   std::vector<double> noise;  // sigma^2 of each row
   Thin U, G;
   std::vector<Scalar> F, Q;
-  SparseRows added, replaced;
-  Scalar added_noise[36];
+  StoredRows added, replaced;
+  Scalar added_noise[SparseRows::kMaxRows * SparseRows::kMaxRows];
   int replaced_first, replaced_size;
   std::vector<Segment> gone;
   std::vector<Segment> folded;
-  std::vector<SparseRows> folds;
+  std::vector<StoredRows> folds;
 };
 
 inline std::vector<Scalar> random_block(Random& random, int rows, double scale) {
@@ -54,7 +55,7 @@ inline Problem draw(Random& random, int largest) {
   }
   const int measurements = random.integer(1, random.integer(1, 20));
   for (int i = 0; i < measurements; ++i) {
-    p.J.push_back(random_rows(random, random.integer(0, 9) == 0 ? random.integer(1, 6) : 2, n, 3));
+    p.J.push_back(random_rows(random, random.integer(0, 9) == 0 ? random.integer(1, SparseRows::kMaxRows) : 2, n, 3));
     p.m += p.J.back().rows;
   }
   for (int i = 0; i < p.m; ++i) p.noise.push_back(random.uniform(0.1, 1));
@@ -68,8 +69,8 @@ inline Problem draw(Random& random, int largest) {
     p.F[i * b + i] += 1;
     for (int j = 0; j < i; ++j) p.Q[i * b + j] = p.Q[j * b + i];
   }
-  p.added = random_rows(random, random.integer(1, 6), n, 4);
-  for (int i = 0; i < 36; ++i) p.added_noise[i] = static_cast<Scalar>(random.uniform(0, 1));
+  p.added = random_rows(random, random.integer(1, SparseRows::kMaxRows), n, 4);
+  for (Scalar& q : p.added_noise) q = static_cast<Scalar>(random.uniform(0, 1));
   p.replaced_size = random.integer(1, 6);
   p.replaced_first = random.integer(0, n - p.replaced_size);
   p.replaced = random_rows(random, random.integer(1, p.replaced_size), n, 4);
@@ -135,10 +136,10 @@ struct Place {
 inline void update(const Kernels& kernels, Problem& p, Triangle& P, Place place, Trace& trace) {
   const int n = p.n, m = p.m;
   Thin W(m, n, place.shift, place.poison), other(m, n, place.shift, place.poison);
-  kernels.gather_many(P, p.J.data(), static_cast<int>(p.J.size()), W.data(), W.ld);
+  kernels.gather_many(P, views(p.J).data(), static_cast<int>(p.J.size()), W.data(), W.ld);
   std::vector<double> sigma;
   int row = 0;
-  for (const SparseRows& J : p.J) {
+  for (const StoredRows& J : p.J) {
     kernels.gather(P, J, &other.at(row, 0), other.ld);
     for (int a = 0; a < J.rows; ++a, ++row) {
       sigma.push_back(sigma_of(J, a, P));
@@ -157,9 +158,9 @@ inline void update(const Kernels& kernels, Problem& p, Triangle& P, Place place,
     for (int j = 0; j < n; ++j) W.at(i, j) = static_cast<Scalar>(static_cast<double>(W.at(i, j)) / sigma[i]);
   }
   // With rows of W and of J divided by sigma, S has the noise on top of a matrix of that size.
-  std::vector<SparseRows> J = p.J;
+  std::vector<StoredRows> J = p.J;
   int b = 0;
-  for (SparseRows& rows : J) {
+  for (StoredRows& rows : J) {
     for (int a = 0; a < rows.rows; ++a, ++b) {
       for (int c = 0; c < rows.columns(); ++c) {
         Scalar& h = rows.h[a * rows.columns() + c];
@@ -167,10 +168,10 @@ inline void update(const Kernels& kernels, Problem& p, Triangle& P, Place place,
       }
     }
   }
-  kernels.project(W.data(), m, W.ld, J.data(), static_cast<int>(J.size()), S.data(), lds);
+  kernels.project(W.data(), m, W.ld, views(J).data(), static_cast<int>(J.size()), S.data(), lds);
   Buffer some(static_cast<std::size_t>(m) * lds, place.shift, place.poison);
   const int half = static_cast<int>(J.size()) / 2;
-  kernels.project(W.data(), m, W.ld, J.data(), half, some.data(), lds);
+  kernels.project(W.data(), m, W.ld, views(J).data(), half, some.data(), lds);
   for (int h = 0, c = 0; h < half; ++h) {
     for (int a = 0; a < J[h].rows; ++a, ++c) {
       for (int i = c; i < m; ++i) trace.add(some[static_cast<std::size_t>(i) * lds + c], 1);
@@ -219,7 +220,7 @@ inline Trace run(const Kernels& kernels, Problem& p, Place place) {
     update(kernels, p, c.P, place, trace);
   }
   const auto each = [&](const std::function<void(Triangle&)>& operation, const Triangle& before = Triangle()) {
-    Covariance c(p.n, p.n + 8, place.shift, place.poison);
+    Covariance c(p.n, p.n + SparseRows::kMaxRows, place.shift, place.poison);
     c.copy_from(p.start.P);
     operation(c.P);
     trace.add(c.P, before);
@@ -232,10 +233,10 @@ inline Trace run(const Kernels& kernels, Problem& p, Place place) {
   each([&](Triangle& P) { kernels.remove(P, p.gone.data(), static_cast<int>(p.gone.size())); });
   each([&](Triangle& P) {
     int rows = 0;
-    for (const SparseRows& J : p.folds) rows += J.rows;
+    for (const StoredRows& J : p.folds) rows += J.rows;
     Thin X(rows, p.n, place.shift, place.poison);
     Buffer S(static_cast<std::size_t>(rows) * rows, place.shift, place.poison);
-    kernels.transform_many(P, p.folded.data(), p.folds.data(), static_cast<int>(p.folds.size()), X.data(), X.ld,
+    kernels.transform_many(P, p.folded.data(), views(p.folds).data(), static_cast<int>(p.folds.size()), X.data(), X.ld,
                            S.data(), rows);
   });
   each([&](Triangle& P) { kernels.transform(P, p.replaced_first, p.replaced_size, p.replaced, p.added_noise); });

@@ -66,7 +66,13 @@ class TestFilter {
   }
   Filter* operator->() { return &filter_; }
   Filter& operator*() { return filter_; }
-  int dim() const { return filter_.state().dim; }
+  const Filter& operator*() const { return filter_; }
+  int dim() const { return filter_.dim(); }
+  int held_dim() const { return filter_.blocks().held_dim(); }
+  /// First row of a block in the covariance.
+  int first(int slot) const { return filter_.first_row(slot); }
+  /// Moves the state by an error, and the covariance not at all.
+  void move(const Scalar* dx) { apply_error(const_cast<State&>(filter_.state()), filter_.blocks(), dx); }
 
   /// The whole covariance, dense.
   Dense P() const {
@@ -86,7 +92,8 @@ class TestFilter {
     const int n = dim();
     Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows(7, n);
     rows.setZero();
-    add_gauge_rows(filter_.state(), Scalar(1), rows.data(), rows.data() + 3 * n, rows.data() + 6 * n, n);
+    add_gauge_rows(filter_.state(), filter_.blocks(), Scalar(1), rows.data(), rows.data() + 3 * n, rows.data() + 6 * n,
+                   n);
     const Dense N = rows.transpose().cast<double>();
     return N;
   }
@@ -98,17 +105,13 @@ class TestFilter {
   Filter filter_;
 };
 
-/// Rows of one observation over the whole state.
-inline Dense dense_rows(const Observation& o, int n) {
-  int columns = 0;
-  for (int s = 0; s < o.segments; ++s) columns += o.segment[s].size;
-  Dense H = Dense::Zero(2, n);
-  for (int a = 0; a < 2; ++a) {
-    int c = 0;
-    for (int s = 0; s < o.segments; ++s)
-      for (int i = 0; i < o.segment[s].size; ++i, ++c)
-        H(a, o.segment[s].first + i) = static_cast<double>(o.h[a * columns + c]);
-  }
+/// Rows of one measurement over the whole state.
+inline Dense dense_rows(const Filter& filter, const Rows& rows) {
+  Dense H = Dense::Zero(rows.rows, filter.dim());
+  int column[SparseRows::kMaxColumns];
+  const int columns = filter.blocks().columns(rows, column);
+  for (int a = 0; a < rows.rows; ++a)
+    for (int c = 0; c < columns; ++c) H(a, column[c]) = static_cast<double>(rows.h[a * columns + c]);
   return H;
 }
 

@@ -23,18 +23,20 @@ inline double difference(const Dense& A, const Dense& B) {
 struct Scene {
   TestFilter filter;
   std::vector<int> slots;
-  std::vector<Observation> observations;
+  std::vector<PixelMeasurement> observations;
 
   Scene(SeededRandom& random, bool keep_gauge) : filter(keep_gauge) {
     slots = fill_map(random, filter, 5, 6);
     filter.set_P(random_covariance(random, filter.dim(), 0.02));
     for (const int slot : slots) {
-      Observation o;
+      PixelMeasurement o;
       TEST_ASSERT_TRUE(filter->predict_pixel(pinhole_camera(), slot, &o));
       o.measured = o.predicted + random.normals<2>(3);
       const double a = random.uniform(0.3, 1), b = random.uniform(0.3, 1);
-      o.noise << static_cast<Scalar>(a), static_cast<Scalar>(0.2 * a * b), static_cast<Scalar>(0.2 * a * b),
+      Mat2 R;
+      R << static_cast<Scalar>(a), static_cast<Scalar>(0.2 * a * b), static_cast<Scalar>(0.2 * a * b),
           static_cast<Scalar>(b);
+      o.set_noise(R);
       observations.push_back(o);
     }
   }

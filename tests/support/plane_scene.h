@@ -56,13 +56,14 @@ struct PlaneScene {
 
 /// What every row of the state says, in coordinates whose differences are errors: all blocks but bearings and the body's turn, which
 /// no operation on planes changes, and which are left at zero.
-inline Eigen::VectorXd coordinates(const State& state) {
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(state.dim);
+inline Eigen::VectorXd coordinates(const TestFilter& filter) {
+  const State& state = (*filter).state();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(filter.dim());
   for (int i = 0; i < 3; ++i) x(Body::kPosition + i) = static_cast<double>(state.body.p_W[i]);
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];
     if (block.kind == BlockKind::kNone || block.kind == BlockKind::kInverseDepth) continue;
-    for (int i = 0; i < block.size; ++i) x(block.first + i) = static_cast<double>(block.value[i]);
+    for (int i = 0; i < block.size; ++i) x(filter.first(s) + i) = static_cast<double>(block.value[i]);
   }
   return x;
 }

@@ -16,7 +16,7 @@ constexpr Scalar kGate = Scalar(9.2103);  // 99 % with two degrees of freedom
 /// inside of their own search ellipse.
 struct Matches {
   TestFilter filter{true};
-  Observation observation[kMatches];
+  PixelMeasurement observation[kMatches];
   bool is_wrong[kMatches];
 
   Matches(SeededRandom& random, int wrong) {
@@ -34,13 +34,13 @@ struct Matches {
     truth.q_WC = truth.q_WC * exp_so3(random.normals<3>(1).cwiseProduct(sigma));
     truth.p_W += random.normals<3>(1e-3);
     for (int i = 0; i < kMatches; ++i) {
-      Observation& o = observation[i];
+      PixelMeasurement& o = observation[i];
       TEST_ASSERT_TRUE(filter->predict_pixel(camera, slots[static_cast<std::size_t>(i)], &o));
-      o.noise = Mat2::Identity() * Scalar(0.25);
+      o.set_noise(Mat2::Identity() * Scalar(0.25));
       Mat26 J_body;
       Mat23 J_point;
       Vec2 z;
-      const Vec3 f_W = filter->state().block[o.slot].xyz();
+      const Vec3 f_W = filter->state().block[o.block].xyz();
       TEST_ASSERT_TRUE(project(camera, truth.q_WC.conjugate() * (f_W - truth.p_W), &z));
       is_wrong[i] = (i * 7 + 3) % kMatches < wrong;
       o.measured = is_wrong[i] ? chance(random, o) : Vec2(z + random.normals<2>(0.5));
@@ -48,8 +48,8 @@ struct Matches {
     filter->begin_update(observation, kMatches);
   }
 
-  Vec2 chance(SeededRandom& random, const Observation& o) {
-    const Mat2 S = filter->innovation(o) + o.noise;
+  Vec2 chance(SeededRandom& random, const PixelMeasurement& o) {
+    const Mat2 S = filter->innovation(o) + o.R_gate;
     for (;;) {
       const Scalar size = Scalar(3.1) * std::sqrt(std::max(S(0, 0), S(1, 1)));
       const Vec2 r(size * static_cast<Scalar>(random.uniform(-1, 1)),

@@ -11,10 +11,12 @@ using covariance_cases::Covariance;
 using covariance_cases::kFloat;
 using covariance_cases::Random;
 using covariance_cases::Thin;
+using covariance_cases::views;
 using Dense = Eigen::MatrixXd;
 using pf::Scalar;
 using pf::Segment;
 using pf::SparseRows;
+using pf::StoredRows;
 using pf::Triangle;
 
 constexpr std::uint64_t kSeed = 4;
@@ -105,7 +107,7 @@ void test_triangle_should_address_every_element_once_when_packed() {
 void test_gather_should_equal_the_dense_product_when_blocks_are_random() {
   for (int i = 0; i < kRounds; ++i) {
     Round r(i);
-    const SparseRows J = random_rows(r.random, r.random.integer(1, 6), r.P.n, 4);
+    const StoredRows J = random_rows(r.random, r.random.integer(1, SparseRows::kMaxRows), r.P.n, 4);
     Thin out(J.rows, r.P.n);
     kernels.gather(r.P, J, out.data(), out.ld);
     assert_near(dense(J, r.P.n) * dense(r.P), dense(out));
@@ -114,9 +116,9 @@ void test_gather_should_equal_the_dense_product_when_blocks_are_random() {
 
 void test_gather_many_should_stack_the_single_gathers_when_given_a_list() {
   Round r(0);
-  const SparseRows J[2] = {random_rows(r.random, 2, r.P.n, 3), random_rows(r.random, 3, r.P.n, 3)};
+  const std::vector<StoredRows> J = {random_rows(r.random, 2, r.P.n, 3), random_rows(r.random, 3, r.P.n, 3)};
   Thin out(5, r.P.n);
-  kernels.gather_many(r.P, J, 2, out.data(), out.ld);
+  kernels.gather_many(r.P, views(J).data(), 2, out.data(), out.ld);
   Dense H(5, r.P.n);
   H << dense(J[0], r.P.n), dense(J[1], r.P.n);
   assert_near(H * dense(r.P), dense(out));
@@ -199,8 +201,8 @@ void test_predict_should_equal_the_dense_formula_when_the_leading_block_moves() 
 void test_augment_should_append_the_dense_product_when_n_is_no_multiple_of_eight() {
   for (int i = 0; i < kRounds; ++i) {
     Round r(i);
-    const int n = r.P.n, rows = r.random.integer(1, 6);
-    const SparseRows J = random_rows(r.random, rows, n, 3);
+    const int n = r.P.n, rows = r.random.integer(1, SparseRows::kMaxRows);
+    const StoredRows J = random_rows(r.random, rows, n, 3);
     const Dense A = random_square(r.random, rows);
     const Dense noise = A * A.transpose();
     Dense whole(n + rows, n);
@@ -241,7 +243,7 @@ void test_transform_should_equal_the_dense_map_when_the_block_shrinks() {
     Round r(i);
     const int n = r.P.n, size = r.random.integer(1, 6), rows = r.random.integer(1, size);
     const int first = r.random.integer(0, n - size);
-    SparseRows J = random_rows(r.random, rows, n, 3);
+    StoredRows J = random_rows(r.random, rows, n, 3);
     if (i % 2 == 0) {
       J.segments = 1;
       J.segment[0] = {first, size};
@@ -262,12 +264,12 @@ void test_replace_should_leave_the_gap_for_one_removal_when_many_blocks_shrink()
   Round r(0, 40, 60);
   Covariance other(r.P.n, 96);
   other.copy_from(r.P);
-  SparseRows J[2];
+  StoredRows J[2];
   for (int i = 0; i < 2; ++i) J[i] = random_rows(r.random, 2, r.P.n, 2);
   kernels.transform(r.P, 30, 3, J[1], nullptr);
-  const SparseRows& second = J[0];
+  const StoredRows& second = J[0];
   // The second map's columns are those before the gap, so that both ways mean the same states.
-  SparseRows low = second;
+  StoredRows low = second;
   low.segments = 1;
   low.segment[0] = {0, second.columns() > 20 ? 20 : second.columns()};
   kernels.transform(r.P, 21, 3, low, nullptr);
@@ -284,7 +286,7 @@ void test_transform_many_should_equal_the_dense_map_when_blocks_shrink_and_go() 
     Round r(i);
     const int n = r.P.n;
     std::vector<Segment> blocks;
-    std::vector<SparseRows> J;
+    std::vector<StoredRows> J;
     Dense M(n, n);
     int row = 0, rows = 0;
     for (int at = 0; at < n;) {
@@ -303,7 +305,8 @@ void test_transform_many_should_equal_the_dense_map_when_blocks_shrink_and_go() 
     const Dense expected = M * dense(r.P) * M.transpose();
     Thin X(rows, n);
     std::vector<Scalar> S(static_cast<std::size_t>(rows) * rows);
-    kernels.transform_many(r.P, blocks.data(), J.data(), static_cast<int>(J.size()), X.data(), X.ld, S.data(), rows);
+    kernels.transform_many(r.P, blocks.data(), views(J).data(), static_cast<int>(J.size()), X.data(), X.ld, S.data(),
+                           rows);
     TEST_ASSERT_EQUAL_INT(row, r.P.n);
     assert_near(expected, dense(r.P));
     assert_padding_is_finite(r.P);

@@ -9,9 +9,9 @@ void tearDown(void) {}
 namespace {
 
 /// Rows of the blocks that are left, in their order.
-std::vector<int> rows_left(const State& state, const std::vector<int>& gone_first) {
+std::vector<int> rows_left(int dim, const std::vector<int>& gone_first) {
   std::vector<int> rows;
-  for (int r = 0; r < state.dim; ++r) {
+  for (int r = 0; r < dim; ++r) {
     bool stays = true;
     for (const int first : gone_first) stays = stays && (r < first || r >= first + 3);
     if (stays) rows.push_back(r);
@@ -34,8 +34,8 @@ void test_remove_should_leave_the_covariance_of_what_stays() {
     const Dense before = scene.filter.P();
     const int gone[3] = {scene.slots[static_cast<std::size_t>(trial % 5)], scene.slots[6], scene.slots[9]};
     std::vector<int> first;
-    for (const int slot : gone) first.push_back(scene.filter->state().block[slot].first);
-    const Dense expected = select(before, rows_left(scene.filter->state(), first));
+    for (const int slot : gone) first.push_back(scene.filter.first(slot));
+    const Dense expected = select(before, rows_left(scene.filter.dim(), first));
     scene.filter->remove(gone, 3);
     TEST_ASSERT_EQUAL_INT(before.rows() - 9, scene.filter.dim());
     TEST_ASSERT_TRUE(largest(scene.filter.P() - expected) == 0);
@@ -47,17 +47,17 @@ void test_an_anchor_should_go_with_the_last_feature_that_needs_it() {
   Scene scene(random, true);
   const State& state = scene.filter->state();
   const int anchor = state.block[scene.slots[5]].parent;
-  std::vector<int> gone, first = {state.block[anchor].first};
+  std::vector<int> gone, first = {scene.filter.first(anchor)};
   for (std::size_t i = 5; i < scene.slots.size(); ++i) {
     if (state.block[scene.slots[i]].parent != anchor) continue;
     gone.push_back(scene.slots[i]);
-    first.push_back(state.block[scene.slots[i]].first);
+    first.push_back(scene.filter.first(scene.slots[i]));
   }
-  const Dense expected = select(scene.filter.P(), rows_left(state, first));
+  const Dense expected = select(scene.filter.P(), rows_left(scene.filter.dim(), first));
   scene.filter->remove(gone.data(), static_cast<int>(gone.size()));
   TEST_ASSERT_TRUE(state.block[anchor].kind == BlockKind::kNone);
   TEST_ASSERT_TRUE(largest(scene.filter.P() - expected) == 0);
-  Observation o;  // the others are where they say that they are
+  PixelMeasurement o;  // the others are where they say that they are
   for (const int slot : scene.slots)
     if (state.block[slot].kind != BlockKind::kNone)
       TEST_ASSERT_TRUE(scene.filter->predict_pixel(pinhole_camera(), slot, &o));
@@ -70,13 +70,13 @@ void test_conversion_should_leave_the_covariance_that_its_jacobians_say() {
     const State& state = scene.filter->state();
     const int slot = scene.slots[static_cast<std::size_t>(5 + trial % 6)];
     const Block block = state.block[slot];
-    const int anchor = state.block[block.parent].first, n = scene.filter.dim();
+    const int anchor = scene.filter.first(block.parent), first = scene.filter.first(slot), n = scene.filter.dim();
     const InverseDepth d = block.inverse_depth();
     const Mat3 R = d.q_b.toRotationMatrix();
     Dense F = Dense::Identity(n, n);
-    F.block(block.first, block.first, 3, 2) = (R.leftCols<2>() / d.rho).cast<double>();
-    F.block(block.first, block.first + 2, 3, 1) = (-R.col(2) / (d.rho * d.rho)).cast<double>();
-    F.block(block.first, anchor, 3, 3).setIdentity();
+    F.block(first, first, 3, 2) = (R.leftCols<2>() / d.rho).cast<double>();
+    F.block(first, first + 2, 3, 1) = (-R.col(2) / (d.rho * d.rho)).cast<double>();
+    F.block(first, anchor, 3, 3).setIdentity();
     const Dense expected = F * scene.filter.P() * F.transpose();
     const Vec3 f_W = state.block[block.parent].xyz() + R.col(2) / d.rho;
     scene.filter->convert_to_point(slot);

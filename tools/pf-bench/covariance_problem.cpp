@@ -49,7 +49,7 @@ Problem::Problem(int rows, int measured)
 
   const int points = (n - kBody - kPoint) / kPoint;
   for (int i = 0; i < m / 2; ++i) {
-    SparseRows rows_of_point;
+    pf::StoredRows rows_of_point;
     rows_of_point.rows = 2;
     const int point = kBody + kPoint + kPoint * (i * points / (m / 2));
     rows_of_point.segment[rows_of_point.segments++] = {0, kBody};
@@ -58,8 +58,9 @@ Problem::Problem(int rows, int measured)
     for (int c = 0; c < 2 * rows_of_point.columns(); ++c) {
       rows_of_point.h[c] = static_cast<Scalar>(normal(random));
     }
-    J.push_back(rows_of_point);
+    stored.push_back(rows_of_point);
   }
+  J.assign(stored.begin(), stored.end());
   for (Scalar& r : innovation) r = static_cast<Scalar>(normal(random));
   for (int k = 0; k < 8; ++k) {
     for (int j = 0; j < n; ++j) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "covariance/kernels.h"
+#include "covariance/stored_rows.h"
 
 namespace bench {
 
@@ -48,7 +49,8 @@ class Problem {
   int n, m, ld, lds;
   Aligned start, values, W, U, G, S;
   pf::Triangle P;
-  std::vector<pf::SparseRows> J;
+  std::vector<pf::StoredRows> stored;
+  std::vector<pf::SparseRows> J;  ///< views of what is stored
   std::vector<Scalar> innovation, y, whitened, dx;
   Scalar variance;  ///< of each row's noise
 };

@@ -173,22 +173,23 @@ class CovarianceSuite {
     std::vector<Scalar> F(kBody * kBody, Scalar(0.01)), Q(kBody * kBody, Scalar(0.001));
     for (int i = 0; i < kBody; ++i) F[i * kBody + i] = 1;
 
-    pf::SparseRows fold;
+    pf::StoredRows fold;
     fold.rows = 2;
     fold.segments = 2;
     fold.segment[0] = {kBody, kPoint};
     for (int c = 0; c < 12; ++c) fold.h[c] = Scalar(0.1) * Scalar(c + 1);
     std::vector<int> points;
     std::vector<pf::Segment> blocks, gone;
-    std::vector<pf::SparseRows> folds;
+    std::vector<pf::StoredRows> stored;
     for (int i = 0; i < 20; ++i) {
       points.push_back(kBody + kPoint + kPoint * 4 * i);
       blocks.push_back({points.back(), kPoint});
       fold.segment[1] = blocks.back();
-      folds.push_back(fold);
+      stored.push_back(fold);
       if (i % 2 == 0) gone.push_back({points.back(), kPoint});
     }
-    pf::SparseRows fresh;
+    const std::vector<pf::SparseRows> folds(stored.begin(), stored.end());
+    pf::StoredRows fresh;
     fresh.rows = kPoint;
     fresh.segments = 1;
     fresh.segment[0] = {0, 6};

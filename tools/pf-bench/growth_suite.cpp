@@ -50,8 +50,8 @@ class Room {
     if (form == Form::kInflated) fix(pf::FixForm::kInflate);
   }
 
-  int rows() const { return filter_.state().dim; }
-  int held() const { return filter_.state().held_dim; }
+  int rows() const { return filter_.dim(); }
+  int held() const { return filter_.blocks().held_dim(); }
 
   void update() {
     filter_.begin_update(seen_, count_);
@@ -75,13 +75,13 @@ class Room {
   void look() {
     count_ = 0;
     for (const int slot : slots_) {
-      pf::Observation o;
+      pf::PixelMeasurement o;
       if (!filter_.predict_pixel(camera_, slot, &o)) continue;
       if (o.predicted.x() < 8 || o.predicted.y() < 8 || o.predicted.x() > 311 || o.predicted.y() > 231) continue;
       ellipses_ += filter_.innovation(o);
       if (count_ == kSeen) continue;
       o.measured = o.predicted;
-      o.noise = pf::Mat2::Identity() + o.second_order;
+      o.set_noise(pf::Mat2::Identity() + o.second_order);
       seen_[count_++] = o;
     }
   }
@@ -137,7 +137,7 @@ class Room {
   pf::Filter filter_;
   pf::Camera camera_;
   std::vector<int> slots_;
-  pf::Observation seen_[kSeen];
+  pf::PixelMeasurement seen_[kSeen];
   int count_ = 0;
   pf::Mat2 ellipses_ = pf::Mat2::Zero();  ///< their sum, so that none is left out by the compiler
 };

@@ -15,16 +15,17 @@ struct Segment {
   int size;
 };
 
-/// Rows of a Jacobian that touch the same few columns: dense over the columns of its segments, in their order.
+/// Rows of a Jacobian that touch the same few columns: dense over the columns of its segments, in their order. A view: whoever makes
+/// it keeps what it points to.
 struct SparseRows {
-  static constexpr int kMaxRows = 6;
+  static constexpr int kMaxRows = 10;
   static constexpr int kMaxSegments = 8;
-  static constexpr int kMaxColumns = 36;
+  static constexpr int kMaxColumns = 48;
 
   int rows = 0;
   int segments = 0;
-  Segment segment[kMaxSegments];
-  Scalar h[kMaxRows * kMaxColumns];  ///< row-major, rows x columns()
+  const Segment* segment = nullptr;
+  const Scalar* h = nullptr;  ///< row-major, rows x columns()
 
   int columns() const {
     int sum = 0;

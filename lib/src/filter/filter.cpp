@@ -1,72 +1,42 @@
 #include "filter/filter.h"
 
-#include <cstring>
-
 #include "filter/observe/row.h"
 #include "filter/observe/world_point.h"
-#include "filter/put.h"
 
 namespace pf {
-namespace {
-
-int round_to_group(int n) { return (n + Triangle::kGroup - 1) / Triangle::kGroup * Triangle::kGroup; }
-
-}  // namespace
 
 bool Filter::layout(Arena& arena, const FilterCapacity& capacity) {
-  most_rows_ = capacity.state_dim;
-  P_.capacity = round_to_group(capacity.state_dim);
-  P_.data = arena.take<Scalar>(Triangle::size_for(P_.capacity));
   // Features, planes with their patches, and anchors with a child each (six rows).
   state_.slots = capacity.features + 2 * capacity.planes + capacity.state_dim / 6 + 1;
-  state_.block = arena.take<Block>(static_cast<std::size_t>(state_.slots));
-  max_rows_ = 2 * capacity.observations;
-  ld_ = padded(P_.capacity);
-  lds_ = padded(max_rows_);
-  const std::size_t ld = static_cast<std::size_t>(ld_);
-  W_ = arena.take<Scalar>(static_cast<std::size_t>(max_rows_) * ld);
-  S_ = arena.take<Scalar>(static_cast<std::size_t>(max_rows_) * static_cast<std::size_t>(lds_));
-  U_ = arena.take<Scalar>(kGaugeRows * ld);
-  G_ = arena.take<Scalar>(kGaugeRows * ld);
-  dx_ = arena.take<Scalar>(ld);
-  y_ = arena.take<Scalar>(static_cast<std::size_t>(max_rows_));
-  gone_ = arena.take<Segment>(static_cast<std::size_t>(state_.slots));
-  order_ = arena.take<int>(ld);
-  place_ = arena.take<Vec3>(static_cast<std::size_t>(state_.slots));
-  place_slot_ = arena.take<int>(static_cast<std::size_t>(state_.slots));
+  const std::size_t slots = static_cast<std::size_t>(state_.slots);
+  state_.block = arena.take<Block>(slots);
   state_.max_planes = capacity.planes;
   state_.plane_frame = arena.take<PlaneFrame>(static_cast<std::size_t>(capacity.planes));
+  blocks_.layout(arena, {capacity.state_dim, state_.slots, 2 * capacity.observations});
+  transport_.layout(arena, blocks_.ld());
+  view_ = arena.take<Measurement>(static_cast<std::size_t>(capacity.observations));
+  place_ = arena.take<Vec3>(slots);
+  place_slot_ = arena.take<int>(slots);
   return arena.ok();
 }
 
 void Filter::init(const Kernels* kernels, int body_dim, bool keep_gauge) {
-  kernels_ = kernels;
   keep_gauge_ = keep_gauge;
   for (int s = 0; s < state_.slots; ++s) state_.block[s] = Block();
   state_.body = Body();
   state_.body_dim = body_dim;
-  state_.dim = body_dim;
-  state_.held_dim = 0;
   state_.planes = 0;
   roughness_ = Scalar(0);
-  P_.n = body_dim;
-  std::memset(P_.data, 0, sizeof(Scalar) * Triangle::size_for(P_.capacity));
-  const std::size_t ld = static_cast<std::size_t>(ld_);
-  std::memset(W_, 0, sizeof(Scalar) * static_cast<std::size_t>(max_rows_) * ld);
-  std::memset(U_, 0, sizeof(Scalar) * kGaugeRows * ld);
-  std::memset(G_, 0, sizeof(Scalar) * kGaugeRows * ld);
+  blocks_.init(kernels, body_dim);
+  transport_.init();
 }
 
 void Filter::set_body(const Body& body, const Scalar* covariance) {
-  PF_ASSERT(state_.dim == state_.body_dim);
   state_.body = body;
-  for (int i = 0; i < state_.body_dim; ++i)
-    for (int j = 0; j <= i; ++j) P_.set(i, j, covariance[i * state_.body_dim + j]);
+  blocks_.set_leading(covariance);
 }
 
-void Filter::predict(const Transition& transition) {
-  kernels_->predict(P_, transition.F, transition.Q, transition.dim);
-}
+void Filter::predict(const Transition& transition) { blocks_.predict(transition.F, transition.Q, transition.dim); }
 
 void Filter::steer(const Vec3& dv_C, const Vec3& dw_C) {
   PF_ASSERT(state_.body_dim == Body::kMaxDim);
@@ -80,16 +50,15 @@ void Filter::steer(const Vec3& dv_C, const Vec3& dw_C) {
   const Mat3 J = -hat(dv_W);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) turn.F[(Body::kVelocity + i) * turn.dim + Body::kTheta + j] = J(i, j);
-  kernels_->predict(P_, turn.F, turn.Q, turn.dim);
+  blocks_.predict(turn.F, turn.Q, turn.dim);
 }
 
 int Filter::take_slot(BlockKind kind, int size) {
   const int slot = state_.find_free();
-  if (slot < 0 || state_.dim + size > most_rows_) return -1;
+  if (slot < 0 || size > room()) return -1;
   Block& block = state_.block[slot];
   block = Block();
   block.kind = kind;
-  block.first = static_cast<std::int16_t>(state_.dim);
   block.size = static_cast<std::int16_t>(size);
   return slot;
 }
@@ -97,15 +66,13 @@ int Filter::take_slot(BlockKind kind, int size) {
 int Filter::add_anchor() {
   const int slot = take_slot(BlockKind::kAnchor, 3);
   if (slot < 0) return -1;
-  SparseRows J;  // o = p
-  J.rows = 3;
-  J.segments = 1;
-  J.segment[0] = {Body::kPosition, 3};
+  RowsOf<3, 3, 1> J;  // o = p
+  J.parts = 1;
+  J.part[0] = Part::body(Body::kPosition, 3);
   put<3, 3>(J.h, 3, 0, Mat3::Identity());
   const Scalar none[9] = {};
-  kernels_->augment(P_, J, none);
+  blocks_.augment(slot, J, none);
   state_.block[slot].set_xyz(state_.body.p_W);
-  state_.dim = P_.n;
   return slot;
 }
 
@@ -119,11 +86,10 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   Mat23 J_theta, J_c;
   Mat2 J_z;
   const InverseDepth feature = begin_inverse_depth(row.body, ray_C, J_ray_z, rho, c_W, &J_theta, &J_z, &J_c);
-  SparseRows J;
-  J.rows = 3;
-  J.segments = 1;
-  J.segment[0] = {Body::kTheta, row.tau == Scalar(0) ? 3 : Body::kMaxDim};
-  const int columns = J.segment[0].size;
+  const int columns = row.tau == Scalar(0) ? 3 : Body::kMaxDim;
+  RowsOf<3, Body::kMaxDim, 1> J;
+  J.parts = 1;
+  J.part[0] = Part::body(Body::kTheta, columns);
   for (int i = 0; i < 3 * columns; ++i) J.h[i] = Scalar(0);
   put<2, 3>(J.h, columns, 0, J_theta);
   if (row.tau != Scalar(0)) {
@@ -140,24 +106,21 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   noise(2, 2) = sigma_rho * sigma_rho;
   Scalar raw[9];
   put<3, 3>(raw, 3, 0, noise);
-  kernels_->augment(P_, J, raw);
+  blocks_.augment(slot, J, raw);
   state_.block[slot].set_inverse_depth(feature);
   state_.adopt(anchor, slot);
-  state_.dim = P_.n;
   return slot;
 }
 
 int Filter::add_point(const Vec3& p_W, const Mat3& covariance) {
   const int slot = take_slot(BlockKind::kPoint, 3);
   if (slot < 0) return -1;
-  SparseRows J;
-  J.rows = 3;
-  J.segments = 0;
+  Rows known;  // depends on nothing
+  known.rows = 3;
   Scalar raw[9];
   put<3, 3>(raw, 3, 0, covariance);
-  kernels_->augment(P_, J, raw);
+  blocks_.augment(slot, known, raw);
   state_.block[slot].set_xyz(p_W);
-  state_.dim = P_.n;
   return slot;
 }
 
@@ -167,14 +130,13 @@ void Filter::convert_to_point(int slot) {
   const int anchor = block.parent;
   Mat3 J_feature;
   const Vec3 f_W = inverse_depth_to_point(state_.block[anchor].xyz(), block.inverse_depth(), &J_feature);
-  SparseRows J;  // f = o + b / rho
-  J.rows = 3;
-  J.segments = 2;
-  J.segment[0] = {state_.block[anchor].first, 3};
-  J.segment[1] = {block.first, 3};
+  RowsOf<3, 6, 2> J;  // f = o + b / rho
+  J.parts = 2;
+  J.part[0] = Part::of(anchor, 0, 3);
+  J.part[1] = Part::of(slot, 0, 3);
   put<3, 3>(J.h, 6, 0, Mat3::Identity());
   put<3, 3>(J.h, 6, 3, J_feature);
-  kernels_->transform(P_, block.first, 3, J, nullptr);
+  blocks_.transform(slot, J);
   state_.leave_parent(slot);
   block.kind = BlockKind::kPoint;
   block.set_xyz(f_W);
@@ -200,47 +162,10 @@ void Filter::remove(const int* slots, int count) {
   for (int s = 0; s < state_.slots; ++s) {
     Block& block = state_.block[s];
     if (block.kind != BlockKind::kNone) continue;
-    if (block.size > 0) list_gone(block.first, block.size, &gone);
+    if (block.size > 0) place_slot_[gone++] = s;
     block = Block();
   }
-  close_gaps(gone);
-}
-
-/// Rows that go, kept in ascending order.
-void Filter::list_gone(int first, int size, int* gone) {
-  int at = (*gone)++;
-  for (; at > 0 && gone_[at - 1].first > first; --at) gone_[at] = gone_[at - 1];
-  gone_[at] = {first, size};
-}
-
-/// Removes the listed rows in one pass.
-void Filter::close_gaps(int gone) {
-  if (gone == 0) return;
-  kernels_->remove(P_, gone_, gone);
-  move_up(gone);
-}
-
-/// Blocks behind the listed rows, which the matrix has no more, move up.
-void Filter::move_up(int gone) {
-  for (int s = 0; s < state_.slots; ++s) {
-    Block& block = state_.block[s];
-    if (block.size == 0) continue;
-    int shift = 0;
-    for (int g = 0; g < gone && gone_[g].first < block.first; ++g) shift += gone_[g].size;
-    block.first = static_cast<std::int16_t>(block.first - shift);
-  }
-  const int held_end = state_.held_end();
-  for (int g = 0; g < gone; ++g)
-    if (gone_[g].first < held_end) state_.held_dim -= gone_[g].size;
-  state_.dim = P_.n;
-}
-
-/// New rows behind all others for a block; the caller lets its old ones go.
-void Filter::augment_block(Block* block, int size, const SparseRows& J, const Scalar* noise) {
-  block->first = static_cast<std::int16_t>(state_.dim);
-  block->size = static_cast<std::int16_t>(size);
-  kernels_->augment(P_, J, noise);
-  state_.dim = P_.n;
+  blocks_.remove(place_slot_, gone);
 }
 
 Vec3 Filter::point(int slot) const {
@@ -268,22 +193,20 @@ Mat3 Filter::covariance3(int slot) const {
   Mat3 C = Mat3::Zero();
   const Block& block = state_.block[slot];
   if (block.kind == BlockKind::kInverseDepth && !(block.inverse_depth().rho > kMinShownInverseDepth)) {
-    const Block& anchor = state_.block[block.parent];
+    const int first[2] = {first_row(block.parent), first_row(slot)};
     Mat6 cov;
     for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j)
-        cov(i, j) = P_(i < 3 ? anchor.first + i : block.first + i - 3, j < 3 ? anchor.first + j : block.first + j - 3);
-    shown_place(anchor.xyz(), block.inverse_depth(), cov, &C);
+      for (int j = 0; j < 6; ++j) cov(i, j) = covariance()(first[i / 3] + i % 3, first[j / 3] + j % 3);
+    shown_place(state_.block[block.parent].xyz(), block.inverse_depth(), cov, &C);
     return C;
   }
   if (!world_point(state_, slot, &at, &J_c)) return C;
-  int column[WorldPoint::kMaxColumns];
-  int c = 0;
-  for (int s = 0; s < at.segments; ++s)
-    for (int i = 0; i < at.segment[s].size; ++i) column[c++] = at.segment[s].first + i;
+  int column[WorldPoint::kMaxColumns], c = 0;
+  for (int p = 0; p < at.parts; ++p)
+    for (int i = 0; i < at.part[p].size; ++i) column[c++] = blocks_.row(at.part[p]) + i;
   for (int i = 0; i < c; ++i) {
     Vec3 PJ = Vec3::Zero();  // row i of P J^T
-    for (int j = 0; j < c; ++j) PJ += P_(column[i], column[j]) * at.J.col(j);
+    for (int j = 0; j < c; ++j) PJ += covariance()(column[i], column[j]) * at.J.col(j);
     C += at.J.col(i) * PJ.transpose();
   }
   if (block.kind == BlockKind::kPatchPoint && block.size == 0) {

@@ -3,38 +3,15 @@
 #include <cstddef>
 
 #include "base/arena.h"
-#include "covariance/kernels.h"
+#include "filter/block_filter.h"
 #include "filter/motion.h"
 #include "filter/state.h"
+#include "filter/transport.h"
 #include "geometry/camera.h"
 
-/// The extended Kalman filter: five verbs (predict, augment, transform, remove, update) over one block table and one triangle.
-/// Gee 2007, section 3.1.
+/// The extended Kalman filter: holds the state and the covariance, and alone changes them together. Gee 2007, section 3.1.
 
 namespace pf {
-
-/// What one feature's pixel says: prediction, residual and the few columns that it touches (at most body, plane, patch, feature).
-struct Observation {
-  static constexpr int kMaxSegments = 4;
-  static constexpr int kMaxColumns = 21;
-
-  int slot = -1;
-  int segments = 0;
-  Segment segment[kMaxSegments];
-  Scalar h[2 * kMaxColumns];      ///< row-major 2 x columns
-  Vec2 predicted = Vec2::Zero();  ///< [px]
-  Vec2 measured = Vec2::Zero();   ///< [px]
-  Mat2 noise = Mat2::Identity();  ///< covariance of the measurement [px^2]
-  Scalar bend = 0;                ///< of that, what a wide pose takes off the linearisation: bend I [px^2]
-  Mat2 second_order =
-      Mat2::Zero();  ///< what the linearisation leaves out, and a surface's roughness [px^2]; belongs into noise
-
-  int columns() const {
-    int sum = 0;
-    for (int s = 0; s < segments; ++s) sum += segment[s].size;
-    return sum;
-  }
-};
 
 /// How points enter a plane.
 struct FoldRule {
@@ -66,7 +43,8 @@ class Filter {
   void keep_gauge(bool keep) { keep_gauge_ = keep; }
 
   const State& state() const { return state_; }
-  const Triangle& covariance() const { return P_; }
+  const BlockFilter& blocks() const { return blocks_; }
+  const Triangle& covariance() const { return blocks_.P(); }
   Body& body() { return state_.body; }
 
   /// The whole body block becomes known as covariance says (body_dim x body_dim, row-major). Only while the map is empty.
@@ -95,7 +73,7 @@ class Filter {
   /// Inverse depth to 3-D point, in its slot; the anchor goes when nothing needs it.
   void convert_to_point(int slot);
 
-  static constexpr int kMostFolded = 16;  ///< in one call
+  static constexpr int kMostFolded = BlockFilter::kBatch;  ///< in one call
 
   /// 3-D points, or points of another plane, become points of this one: those that pass the gate are conditioned on a distance of zero
   /// together, then lose it. folded[i] says which. Returns how many.
@@ -125,30 +103,39 @@ class Filter {
 
   // --- update
   /// Prediction, Jacobian and columns of a feature's pixel; false when it does not project.
-  bool predict_pixel(const Camera& camera, int slot, Observation* out) const;
-  /// H P H^T of one observation, without noise.
-  Mat2 innovation(const Observation& observation) const;
-  /// Gathers H P and S = H P H^T (without noise) of `count` observations. Then innovation_block is valid until the state changes.
-  void begin_update(const Observation* observations, int count);
-  Mat2 innovation_block(int i, int j) const;
-  /// Takes the chosen observations in (keep[i] != 0; null takes all) and moves the state. False, with the state and P unchanged, when
-  /// S cannot be factored or the step is no number. *nis gets the normalised innovation squared.
-  bool finish_update(const Observation* observations, int count, const unsigned char* keep, Scalar* nis);
+  bool predict_pixel(const Camera& camera, int slot, PixelMeasurement* out) const;
+  /// H P H^T of one pixel, without noise.
+  Mat2 innovation(const PixelMeasurement& pixel) const;
+  /// Gathers H P and S = H P H^T (without noise) of measurements. Then innovation_block is valid until the state changes.
+  void begin_update(const Measurement* z, int count) { blocks_.project(z, count); }
+  void begin_update(const PixelMeasurement* z, int count) { begin_update(views_of(z, count), count); }
+  Mat2 innovation_block(int i, int j) const { return blocks_.innovation2(i, j); }
+  /// Takes the chosen measurements in (keep[i] != 0; null takes all) and moves the state. False, with the state and P unchanged, when
+  /// S cannot be factored or the step is no number. *nis (may be null) gets the normalised innovation squared.
+  bool finish_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
+  bool finish_update(const PixelMeasurement* z, int count, const unsigned char* keep, Scalar* nis) {
+    return finish_update(views_of(z, count), count, keep, nis);
+  }
 
   /// Covariance of a feature's place, to first order.
   Mat3 covariance3(int slot) const;
-  /// The best known of a few log lengths, as a row over the state: l N = (0, 0, 1). False where there is none.
-  bool scale_row(SparseRows* row) const;
+  /// The best known of a few log lengths, as a row over the state: l N = (0, 0, 1). False, and no parts, where there is none.
+  bool scale_row(ScaleRow* row) const;
   /// Covariance of a 3-D point against the camera's position and the world's size: of f - p - (f - p) l e. What all points share
   /// because the world may drift or grow is not in it.
-  Mat3 relative_covariance(int slot, const SparseRows& l) const;
+  Mat3 relative_covariance(int slot, const ScaleRow& l) const;
   /// Standard deviation of an inverse depth against the world's size: of e_rho + rho l e.
-  Scalar relative_sigma_rho(int slot, const SparseRows& l) const;
+  Scalar relative_sigma_rho(int slot, const ScaleRow& l) const;
   /// A feature's place in W; an inverse depth that is not positive counts as far away.
   Vec3 point(int slot) const;
-  Scalar variance(int row) const { return P_(row, row); }
+  /// First row of a block in the covariance.
+  int first_row(int slot) const { return blocks_.first(slot); }
+  Scalar variance(int row) const { return covariance()(row, row); }
+  /// Variance of one row of a block.
+  Scalar block_variance(int slot, int offset) const { return variance(first_row(slot) + offset); }
+  int dim() const { return blocks_.dim(); }
   /// Rows that are still free.
-  int room() const { return most_rows_ - state_.dim; }
+  int room() const { return blocks_.room(); }
 
   // --- soundness: finite, bounded, and no variance below zero
   bool body_is_sound() const;
@@ -156,58 +143,28 @@ class Filter {
   bool block_is_sound(int slot) const;
 
  private:
-  static constexpr int kGaugeRows = 7;
-
-  void sparse(const Observation& observation, SparseRows* rows) const;
   int take_slot(BlockKind kind, int size);
-  void list_gone(int first, int size, int* gone);
-  void close_gaps(int gone);
-  void move_up(int gone);
-  void augment_block(Block* block, int size, const SparseRows& J, const Scalar* noise);
+  const Measurement* views_of(const PixelMeasurement* z, int count);
   bool is_step(const Scalar* dx) const;
 
   // pixels.cpp
-  bool predict_at(const Camera& camera, const Body& body, int slot, Observation* out) const;
-
-  // update.cpp
-  bool apply(int m, Scalar* nis);
-
-  // transport.cpp
-  int begin_transport();
-  void finish_transport(int m, int rows);
-  Scalar variance_of(const SparseRows& row) const;
+  bool predict_at(const Camera& camera, const Body& body, int slot, PixelMeasurement* out) const;
 
   // planes.cpp
-  void sort_by_rows(int* slots, int count) const;
-  void transform_blocks(const int* slots, const SparseRows* J, int count);
-  bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded, SparseRows* row);
-  void distance_row(int plane, const struct WorldPoint& point, Scalar* d, SparseRows* row) const;
+  bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded);
+  void predict_distance(int plane, const struct WorldPoint& at, DistanceMeasurement* out) const;
 
   // patches.cpp
   int add_patch(int plane, const int* group, int count);
-  void hold(const int* slots, int count, int gone);
 
-  const Kernels* kernels_ = nullptr;
-  bool keep_gauge_ = true;
   State state_;
-  Triangle P_;
-  int most_rows_ = 0;  ///< of the state; P_ has room for a few more
-  int max_rows_ = 0;   ///< rows of one update
-  int ld_ = 0;
-  int lds_ = 0;
-  Scalar* W_ = nullptr;  ///< max_rows x ld: H P, then L^-1 H P
-  Scalar* S_ = nullptr;  ///< max_rows x lds
-  Scalar* U_ = nullptr;  ///< kGaugeRows x ld: gauge rows after minus before; turn, scale, shift
-  Scalar* G_ = nullptr;  ///< kGaugeRows x ld
-  SparseRows l_;         ///< picks the log scale out of an error
-  Vec3 p_before_ = Vec3::Zero();
+  BlockFilter blocks_;
+  Transport transport_;
+  bool keep_gauge_ = true;
   Scalar roughness_ = 0;
-  Scalar* dx_ = nullptr;  ///< ld
-  Scalar* y_ = nullptr;   ///< max_rows
-  Segment* gone_ = nullptr;
-  int* order_ = nullptr;       ///< ld
-  Vec3* place_ = nullptr;      ///< slots; of points, scratch of scale_row
-  int* place_slot_ = nullptr;  ///< slots; whose
+  Measurement* view_ = nullptr;  ///< observations; of pixels
+  Vec3* place_ = nullptr;        ///< slots; of points, scratch of scale_row
+  int* place_slot_ = nullptr;    ///< slots; whose
 };
 
 }  // namespace pf

@@ -9,8 +9,8 @@ constexpr int kDirections = 7;
 constexpr double kTolerance = sizeof(Scalar) == 8 ? 1e-10 : 1e-4;  ///< of a pivot, relative to its variance
 
 /// The seven directions as columns of N (n x 8, the last column unused), in double.
-void directions(const State& state, double* N) {
-  for (int i = 0; i < state.dim * 8; ++i) N[i] = 0.0;
+void directions(const State& state, const BlockFilter& blocks, double* N) {
+  for (int i = 0; i < blocks.dim() * 8; ++i) N[i] = 0.0;
   const auto three = [&](int first, const Vec3& a, bool shifts) {
     const double x = static_cast<double>(a.x()), y = static_cast<double>(a.y()), z = static_cast<double>(a.z());
     const double turn[3][3] = {{0, z, -y}, {-z, 0, x}, {y, -x, 0}};  // -[a]x
@@ -28,19 +28,19 @@ void directions(const State& state, double* N) {
     if (block.size == 0) continue;
     const GaugeRows rows = gauge_rows(state, block);
     for (int i = 0; i < block.size; ++i)
-      for (int d = 0; d < kDirections; ++d) N[(block.first + i) * 8 + d] = static_cast<double>(rows(i, d));
+      for (int d = 0; d < kDirections; ++d) N[(blocks.first(s) + i) * 8 + d] = static_cast<double>(rows(i, d));
   }
 }
 
 }  // namespace
 
 bool gauge_information(const Filter& filter, double* scratch, double information[49]) {
-  const int n = filter.state().dim;
+  const int n = filter.dim();
   double* L = scratch;
   double* N = scratch + static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j <= i; ++j) L[i * n + j] = static_cast<double>(filter.covariance()(i, j));
-  directions(filter.state(), N);
+  directions(filter.state(), filter.blocks(), N);
   for (int i = 0; i < n; ++i) {
     const double before = L[i * n + i];
     for (int j = 0; j <= i; ++j) {

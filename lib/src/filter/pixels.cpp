@@ -4,7 +4,6 @@
 #include "filter/observe/point.h"
 #include "filter/observe/row.h"
 #include "filter/observe/world_point.h"
-#include "filter/put.h"
 
 /// Pixels: what is expected of them.
 
@@ -24,18 +23,18 @@ Mat2 planar_noise(const State& state, const Block& block, const Mat23& J_z_p, co
   return noise;
 }
 
-/// An observation from the body of a row: Jacobians by the speeds too, and the row's own dependence on the pixel.
+/// A pixel from the body of a row: Jacobians by the speeds too, and the row's own dependence on the pixel.
 ///
 ///   dz = H_row dx + z' k dz_y      k seconds per pixel, z' what the row's motion does to the pixel [px/s]
-Observation with_speeds(const Observation& at_row, const RowBody& row, Scalar k) {
-  const int columns = at_row.columns(), wide = columns + Body::kMaxDim - Body::kPoseDim;
-  Observation o = at_row;
-  o.segment[0].size = Body::kMaxDim;
+PixelMeasurement with_speeds(const PixelMeasurement& at_row, const RowBody& row, Scalar k) {
+  const int columns = at_row.H.columns(), wide = columns + Body::kMaxDim - Body::kPoseDim;
+  PixelMeasurement o = at_row;
+  o.H.part[0].size = Body::kMaxDim;
   Mat2 M = Mat2::Identity();
   Vec2 drift;
   for (int a = 0; a < 2; ++a) {
-    const Scalar* from = at_row.h + a * columns;
-    Scalar* to = o.h + a * wide;
+    const Scalar* from = at_row.H.h + a * columns;
+    Scalar* to = o.H.h + a * wide;
     const Vec3 J_theta(from[0], from[1], from[2]), J_p(from[3], from[4], from[5]);
     const Vec3 J_w = row.J_theta_w.transpose().lazyProduct(J_theta), J_v = row.tau * J_p;
     for (int c = 0; c < 6; ++c) to[c] = from[c];
@@ -50,9 +49,9 @@ Observation with_speeds(const Observation& at_row, const RowBody& row, Scalar k)
   M(0, 1) = k * drift.x() / own;
   M(1, 1) = Scalar(1) / own;
   for (int c = 0; c < wide; ++c) {
-    const Vec2 h = M * Vec2(o.h[c], o.h[wide + c]);
-    o.h[c] = h.x();
-    o.h[wide + c] = h.y();
+    const Vec2 h = M * Vec2(o.H.h[c], o.H.h[wide + c]);
+    o.H.h[c] = h.x();
+    o.H.h[wide + c] = h.y();
   }
   return o;
 }
@@ -60,20 +59,20 @@ Observation with_speeds(const Observation& at_row, const RowBody& row, Scalar k)
 }  // namespace
 
 /// The pixel as a camera at `body` sees it.
-bool Filter::predict_at(const Camera& camera, const Body& body, int slot, Observation* out) const {
+bool Filter::predict_at(const Camera& camera, const Body& body, int slot, PixelMeasurement* out) const {
   const Block& block = state_.block[slot];
   Mat26 J_body;
   Mat23 J_anchor, J_feature;
-  out->slot = slot;
+  out->block = slot;
   out->second_order.setZero();
   out->bend = Scalar(0);
-  out->segment[0] = {Body::kTheta, Body::kPoseDim};
+  out->H.part[0] = Part::body(Body::kTheta, Body::kPoseDim);
   if (block.kind == BlockKind::kPoint) {
     if (!observe_point(camera, body, block.xyz(), &out->predicted, &J_body, &J_feature)) return false;
-    out->segments = 2;
-    out->segment[1] = {block.first, 3};
-    put<2, 6>(out->h, 9, 0, J_body);
-    put<2, 3>(out->h, 9, 6, J_feature);
+    out->H.parts = 2;
+    out->H.part[1] = Part::of(slot, 0, 3);
+    put<2, 6>(out->H.h, 9, 0, J_body);
+    put<2, 3>(out->H.h, 9, 6, J_feature);
     return true;
   }
   if (is_planar(block.kind)) {  // Gee 2007, eq 9 and 10
@@ -82,13 +81,13 @@ bool Filter::predict_at(const Camera& camera, const Body& body, int slot, Observ
     world_point(state_, slot, &at, &J_p_c);
     if (!observe_point(camera, body, at.p_W, &out->predicted, &J_body, &J_feature)) return false;
     const int columns = 6 + at.columns;
-    out->segments = 1 + at.segments;
-    for (int s = 0; s < at.segments; ++s) out->segment[1 + s] = at.segment[s];
-    put<2, 6>(out->h, columns, 0, J_body);
+    out->H.parts = 1 + at.parts;
+    for (int p = 0; p < at.parts; ++p) out->H.part[1 + p] = at.part[p];
+    put<2, 6>(out->H.h, columns, 0, J_body);
     for (int c = 0; c < at.columns; ++c) {
       const Vec2 h = J_feature * at.J.col(c);
-      out->h[6 + c] = h.x();
-      out->h[columns + 6 + c] = h.y();
+      out->H.h[6 + c] = h.x();
+      out->H.h[columns + 6 + c] = h.y();
     }
     out->second_order = planar_noise(state_, block, J_feature, J_p_c, roughness_);
     return true;
@@ -98,22 +97,24 @@ bool Filter::predict_at(const Camera& camera, const Body& body, int slot, Observ
     if (!observe_inverse_depth(camera, body, anchor.xyz(), block.inverse_depth(), &out->predicted, &J_body, &J_anchor,
                                &J_feature))
       return false;
-    out->segments = 3;
-    out->segment[1] = {anchor.first, 3};
-    out->segment[2] = {block.first, 3};
-    put<2, 6>(out->h, 12, 0, J_body);
-    put<2, 3>(out->h, 12, 6, J_anchor);
-    put<2, 3>(out->h, 12, 9, J_feature);
+    out->H.parts = 3;
+    out->H.part[1] = Part::of(block.parent, 0, 3);
+    out->H.part[2] = Part::of(slot, 0, 3);
+    put<2, 6>(out->H.h, 12, 0, J_body);
+    put<2, 3>(out->H.h, 12, 6, J_anchor);
+    put<2, 3>(out->H.h, 12, 9, J_feature);
     // Parallax is the product of inverse depth and baseline. Where both are uncertain, what neither Jacobian shows is their
     // product, with covariance sigma_rho^2 J P_baseline J^T (second-order term; zero first-order Jacobian at a baseline of zero).
     const Scalar rho = block.inverse_depth().rho;
     if (rho > Scalar(1e-6)) {
-      const Scalar factor = P_(block.first + 2, block.first + 2) / (rho * rho);
+      const Triangle& P = covariance();
+      const int from = first_row(block.parent);
+      const Scalar factor = block_variance(slot, 2) / (rho * rho);
       Mat3 baseline;
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
-          baseline(i, j) = P_(Body::kPosition + i, Body::kPosition + j) + P_(anchor.first + i, anchor.first + j) -
-                           P_(Body::kPosition + i, anchor.first + j) - P_(anchor.first + i, Body::kPosition + j);
+          baseline(i, j) = P(Body::kPosition + i, Body::kPosition + j) + P(from + i, from + j) -
+                           P(Body::kPosition + i, from + j) - P(from + i, Body::kPosition + j);
       const Mat23 JP = J_anchor.lazyProduct(baseline);
       out->second_order = factor * JP.lazyProduct(J_anchor.transpose());
     }
@@ -122,7 +123,7 @@ bool Filter::predict_at(const Camera& camera, const Body& body, int slot, Observ
   return false;
 }
 
-bool Filter::predict_pixel(const Camera& camera, int slot, Observation* out) const {
+bool Filter::predict_pixel(const Camera& camera, int slot, PixelMeasurement* out) const {
   if (!predict_at(camera, state_.body, slot, out)) return false;
   if (camera.readout == Scalar(0) || state_.body_dim != Body::kMaxDim) return true;
   // Where the pixel is says when it was read out, which says where it is: the camera moves little in that time.
@@ -135,22 +136,21 @@ bool Filter::predict_pixel(const Camera& camera, int slot, Observation* out) con
   return true;
 }
 
-Mat2 Filter::innovation(const Observation& observation) const {
-  int column[Observation::kMaxColumns];
-  int c = 0;
-  for (int s = 0; s < observation.segments; ++s)
-    for (int i = 0; i < observation.segment[s].size; ++i) column[c++] = observation.segment[s].first + i;
-  const Scalar* h0 = observation.h;
-  const Scalar* h1 = observation.h + c;
+Mat2 Filter::innovation(const PixelMeasurement& pixel) const {
+  const Triangle& P = covariance();
+  int column[SparseRows::kMaxColumns];
+  const int c = blocks_.columns(pixel.H, column);
+  const Scalar* h0 = pixel.H.h;
+  const Scalar* h1 = pixel.H.h + c;
   Scalar s00 = 0, s01 = 0, s11 = 0;
   for (int i = 0; i < c; ++i) {
     Scalar p0 = 0, p1 = 0;  // row i of the lower triangle of P, without its diagonal, times H^T
     for (int j = 0; j < i; ++j) {
-      const Scalar p = P_(column[i], column[j]);
+      const Scalar p = P(column[i], column[j]);
       p0 += p * h0[j];
       p1 += p * h1[j];
     }
-    const Scalar p = P_(column[i], column[i]);
+    const Scalar p = P(column[i], column[i]);
     s00 += h0[i] * (p * h0[i] + 2 * p0);
     s01 += h0[i] * (p * h1[i] + p1) + h1[i] * p0;
     s11 += h1[i] * (p * h1[i] + 2 * p1);

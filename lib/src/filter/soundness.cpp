@@ -25,19 +25,19 @@ bool Filter::body_is_sound() const {
   for (int i = 0; i < 3; ++i)
     if (!is_value(b.p_W[i]) || !is_value(b.v_W[i]) || !is_value(b.w_C[i])) return false;
   const Scalar norm2 = b.q_WC.squaredNorm();
-  return norm2 > Scalar(0.9) && norm2 < Scalar(1.1) && are_variances(P_, 0, state_.body_dim);
+  return norm2 > Scalar(0.9) && norm2 < Scalar(1.1) && are_variances(covariance(), 0, state_.body_dim);
 }
 
 bool Filter::block_is_sound(int slot) const {
   const Block& block = state_.block[slot];
   for (Scalar v : block.value)
     if (!is_value(v)) return false;
-  if (block.size > 0 && !are_variances(P_, block.first, block.size)) return false;
+  if (block.size > 0 && !are_variances(covariance(), first_row(slot), block.size)) return false;
   return block.parent < 0 || block_is_sound(block.parent);
 }
 
 bool Filter::is_step(const Scalar* dx) const {
-  for (int i = 0; i < state_.dim; ++i)
+  for (int i = 0; i < blocks_.dim(); ++i)
     if (!is_value(dx[i])) return false;
   return true;
 }

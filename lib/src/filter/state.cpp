@@ -1,6 +1,7 @@
 #include "filter/state.h"
 
 #include "base/assert.h"
+#include "filter/block_filter.h"
 #include "geometry/so3.h"
 
 namespace pf {
@@ -134,7 +135,7 @@ void State::set_owner(int slot, int owner) {
   if (parent >= 0) adopt(parent, slot);
 }
 
-void apply_error(State& state, const Scalar* dx) {
+void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
   Body& body = state.body;
   body.q_WC = exp_so3(part(dx, Body::kTheta)) * body.q_WC;
   body.q_WC.normalize();
@@ -151,7 +152,7 @@ void apply_error(State& state, const Scalar* dx) {
       case BlockKind::kInverseDepth: {
         InverseDepth d = block.inverse_depth();
         const Mat3 R = d.q_b.toRotationMatrix();
-        const Vec3 e = part(dx, block.first);
+        const Vec3 e = part(dx, blocks.first(s));
         d.q_b = exp_so3(R.col(1) * e.x() - R.col(0) * e.y()) * d.q_b;
         d.q_b.normalize();
         d.rho += e.z();
@@ -159,7 +160,7 @@ void apply_error(State& state, const Scalar* dx) {
         break;
       }
       default:
-        for (int i = 0; i < block.size; ++i) block.value[i] += dx[block.first + i];
+        for (int i = 0; i < block.size; ++i) block.value[i] += dx[blocks.first(s) + i];
     }
   }
 }
@@ -202,7 +203,8 @@ GaugeRows gauge_rows(const State& state, const Block& block) {
   return N;
 }
 
-void add_gauge_rows(const State& state, Scalar sign, Scalar* N_T, Scalar* N_R, Scalar* N_s, int ld) {
+void add_gauge_rows(const State& state, const BlockFilter& blocks, Scalar sign, Scalar* N_T, Scalar* N_R, Scalar* N_s,
+                    int ld) {
   const auto add = [&](int first, int size, const GaugeRows& N) {
     for (int i = 0; i < size; ++i) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -224,22 +226,20 @@ void add_gauge_rows(const State& state, Scalar sign, Scalar* N_T, Scalar* N_R, S
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];
     if (block.kind == BlockKind::kPoint || block.kind == BlockKind::kAnchor) {
-      add_point_rows(sign, block.first, block.xyz(), N_T, N_R, N_s, ld);
+      add_point_rows(sign, blocks.first(s), block.xyz(), N_T, N_R, N_s, ld);
     } else if (block.size > 0 && !is_planar(block.kind)) {
-      add(block.first, block.size, gauge_rows(state, block));
+      add(blocks.first(s), block.size, gauge_rows(state, block));
     }
     // What hangs on a plane or patch shares the rows that its own are made of.
     if ((block.kind != BlockKind::kPlane && block.kind != BlockKind::kPatch) || block.children == 0) continue;
     PlanarRows rows;
     find_rows(state, block, &rows);
-    for (int t = 0, left = block.children; left > 0 && t < state.slots; ++t) {
+    for (int t = block.first_child; t >= 0; t = state.block[t].next_sibling) {
       const Block& child = state.block[t];
-      if (child.parent != s) continue;
-      --left;
       if (child.size == 0 || !is_planar(child.kind)) continue;
       const Vec2 c = child.uv();
       for (int i = 0; i < 2; ++i) {
-        const int at = child.first + i;
+        const int at = blocks.first(t) + i;
         for (int axis = 0; axis < 3; ++axis) {
           if (N_T != nullptr) N_T[axis * ld + at] += sign * rows(i, axis, c);
           N_R[axis * ld + at] += sign * rows(i, 3 + axis, c);

@@ -4,10 +4,9 @@
 #include <cstdint>
 
 #include "base/eigen.h"
-#include "covariance/kernels.h"
 #include "geometry/plane.h"
 
-/// What the filter estimates: a table of blocks. This is the only place that knows where a block lies in the covariance.
+/// What the filter estimates: kinds and values of blocks, and how they hang on each other. Where their rows lie, BlockFilter knows.
 
 namespace pf {
 
@@ -71,8 +70,7 @@ struct Block {
   static constexpr int kMaxRows = 4;
 
   BlockKind kind = BlockKind::kNone;
-  std::int16_t first = -1;  ///< first row in the covariance
-  std::int16_t size = 0;
+  std::int16_t size = 0;      ///< rows that it has: those of its kind, or none
   std::int16_t parent = -1;   ///< slot of the anchor, plane or patch
   std::int16_t children = 0;  ///< blocks that have this one as parent
   std::int16_t owner = -1;    ///< entry of the map's table that this block belongs to; orders the children of a parent
@@ -122,20 +120,18 @@ struct Block {
   }
 };
 
-/// Blocks live in slots that do not move; rows of the covariance follow the order of `first`.
-/// Rows: body | held (considered: covariance, but no gain of their own) | all others.
+class BlockFilter;
+
+/// Blocks live in slots that do not move.
 struct State {
   Body body;
   int body_dim = Body::kMaxDim;
   Block* block = nullptr;  ///< slots
   int slots = 0;
-  int dim = 0;       ///< rows in use, body included
-  int held_dim = 0;  ///< of them considered, behind the body
   PlaneFrame* plane_frame = nullptr;
   int max_planes = 0;
   int planes = 0;
 
-  int held_end() const { return body_dim + held_dim; }
   const PlaneFrame& frame_of(const Block& plane) const { return plane_frame[plane.frame]; }
 
   /// A free slot, or -1.
@@ -174,8 +170,8 @@ struct State {
   }
 };
 
-/// x <- x [+] dx: every block moves by its part of dx (dim entries).
-void apply_error(State& state, const Scalar* dx);
+/// x <- x [+] dx: every block moves by its rows of dx.
+void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx);
 
 using GaugeRows = Eigen::Matrix<Scalar, Block::kMaxRows, 7>;
 
@@ -190,6 +186,7 @@ GaugeRows gauge_rows(const State& state, const Block& block);
 
 /// Adds sign times these directions at x over the whole state, one row per direction, leading dimension ld. Of the body: theta I;
 /// p, v turn; p shifts; p, v scale. N_T may be null: shifts are the same at every x but for planes.
-void add_gauge_rows(const State& state, Scalar sign, Scalar* N_T, Scalar* N_R, Scalar* N_s, int ld);
+void add_gauge_rows(const State& state, const BlockFilter& blocks, Scalar sign, Scalar* N_T, Scalar* N_R, Scalar* N_s,
+                    int ld);
 
 }  // namespace pf

@@ -10,7 +10,7 @@ namespace pf {
 ///   after match i:   r_j|i = r_j - S_ji S_ii^-1 r_i,   S_j|i = S_jj - S_ji S_ii^-1 S_ij;   j agrees when r^T S_j|i^-1 r < gate
 ///
 /// begin_update must hold the same observations. keep gets 1 for those that agree with the best hypothesis. Returns how many.
-int agree(const Filter& filter, const Observation* observations, int count, Scalar gate, unsigned char* keep);
+int agree(const Filter& filter, const PixelMeasurement* observations, int count, Scalar gate, unsigned char* keep);
 
 /// r^T S^-1 r of one observation with covariance S [px^2]; huge where S is not positive.
 Scalar squared_distance(const Vec2& r, const Mat2& S);

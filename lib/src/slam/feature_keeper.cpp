@@ -23,8 +23,8 @@ bool FeatureKeeper::layout(Arena& arena, int max_features) {
 }
 
 void FeatureKeeper::convert_linear() {
-  SparseRows l;
-  if (!filter_.scale_row(&l)) l.segments = 0;
+  ScaleRow l;
+  filter_.scale_row(&l);
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!map_.features.used(i)) continue;
     const Block& block = filter_.state().block[map_.features[i].slot];
@@ -34,7 +34,7 @@ void FeatureKeeper::convert_linear() {
     const Vec3 o_W = filter_.state().block[block.parent].xyz();
     if (linearity_index(filter_.state().body, o_W, block.inverse_depth(), sigma_rho) < settings_.linearity_index) {
       filter_.convert_to_point(map_.features[i].slot);
-      if (!filter_.scale_row(&l)) l.segments = 0;  // rows have moved
+      filter_.scale_row(&l);  // it may have been one of its points
     }
   }
 }
@@ -55,7 +55,7 @@ void FeatureKeeper::drop_failing() {
     const Block& block = filter_.state().block[f.slot];
     const bool inverted =
         block.kind == BlockKind::kInverseDepth && block.inverse_depth().rho < Scalar(0) &&
-        block.inverse_depth().rho * block.inverse_depth().rho > Scalar(9) * filter_.variance(block.first + 2);
+        block.inverse_depth().rho * block.inverse_depth().rho > Scalar(9) * filter_.block_variance(f.slot, 2);
     if ((f.failures > 0 && seldom) || in_a_row || inverted) scratch_[count++] = i;
   }
   drop(scratch_, count);
@@ -130,7 +130,7 @@ Scalar FeatureKeeper::median_inverse_depth() const {
     const Block& block = filter_.state().block[map_.features[i].slot];
     if (block.kind == BlockKind::kInverseDepth) {
       const Scalar rho_of = block.inverse_depth().rho;
-      if (rho_of * rho_of < Scalar(9) * filter_.variance(block.first + 2)) continue;
+      if (rho_of * rho_of < Scalar(9) * filter_.block_variance(map_.features[i].slot, 2)) continue;
     }
     const Vec3 p_W = filter_.point(map_.features[i].slot);
     const Scalar distance = (p_W - body.p_W).norm();

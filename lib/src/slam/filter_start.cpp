@@ -143,7 +143,7 @@ void FilterStart::begin_record() {
 Vec2 FilterStart::at_frame_time(int slot, const Vec2& measured) const {
   Camera at_once = settings_.camera;
   at_once.readout = Scalar(0);
-  Observation by_rows, still;
+  PixelMeasurement by_rows, still;
   if (settings_.camera.readout == Scalar(0) || !parts_.filter.predict_pixel(settings_.camera, slot, &by_rows) ||
       !parts_.filter.predict_pixel(at_once, slot, &still))
     return measured;
@@ -241,10 +241,10 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   int count = 0;
   for (int i = 0; i < parts_.map.features.capacity() && count < settings_.max_observations; ++i) {
     if (!parts_.map.features.used(i) || !record.seen(k, without_.index_of(parts_.map.features[i].id))) continue;
-    Observation& o = parts_.update.observation(count);
+    PixelMeasurement& o = parts_.update.observation(count);
     if (!filter.predict_pixel(settings_.camera, parts_.map.features[i].slot, &o)) continue;
     o.measured = o.predicted;
-    o.noise = Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma);
+    o.set_noise(Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma));
     ++count;
   }
   if (count == 0) return;

@@ -44,7 +44,7 @@ bool ImageFrontEnd::remember(int feature, const Vec2& pixel, const CameraView& v
 bool ImageFrontEnd::is_visible(int feature) const {
   const Feature& f = map_.features[feature];
   if ((f.is_target && map_.target_withdrawn) || !f.has_appearance) return false;
-  Observation o;
+  PixelMeasurement o;
   if (!filter_.predict_pixel(settings_.camera, f.slot, &o)) return false;
   const Scalar margin = static_cast<Scalar>(settings_.border_px);
   return !(o.predicted.x() < margin || o.predicted.y() < margin ||
@@ -88,20 +88,20 @@ int ImageFrontEnd::list_visible() {
 void ImageFrontEnd::predict_pixels(int first, int count) {
   for (int i = first; i < first + count; ++i) {
     const Candidate& candidate = update_.candidate(i);
-    Observation& o = update_.observation(i);
+    PixelMeasurement& o = update_.observation(i);
     Match& match = frame_.match(candidate.match);
     update_.keep()[i] = 0;
     if (!filter_.predict_pixel(settings_.camera, map_.features[candidate.feature].slot, &o)) {
-      o.slot = -1;
+      o.block = -1;
       match.feature = -1;  // stands nowhere in the image
       match.predicted.setZero();
       match.innovation.setZero();
       continue;
     }
     const Mat2 spread = update_.expected_innovation(&o);
-    o.noise = Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order;
+    o.set_noise(Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order);
     match.predicted = o.predicted;
-    match.innovation = spread + o.noise;
+    match.innovation = spread + o.R_gate;
   }
 }
 
@@ -142,8 +142,8 @@ int ImageFrontEnd::search(int first, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   int found = first;
   for (int i = first; i < first + count; ++i) {
-    Observation& o = update_.observation(i);
-    if (o.slot < 0) continue;
+    PixelMeasurement& o = update_.observation(i);
+    if (o.block < 0) continue;
     Feature& f = map_.features[update_.candidate(i).feature];
     Match& match = frame_.match(update_.candidate(i).match);
     const SearchOutcome outcome = tracker_.search(task_of(i));
@@ -159,7 +159,7 @@ int ImageFrontEnd::search(int first, int count) {
     match.status = MatchStatus::kOutlier;  // until it agrees
     o.measured = outcome.pixel;
     const Scalar floor = settings_.sigma_px * outcome.level_scale;
-    o.noise = Mat2::Identity() * (floor * floor) + outcome.noise + o.second_order;
+    o.set_noise(Mat2::Identity() * (floor * floor) + outcome.noise + o.second_order);
     if (found != i) update_.move(i, found);
     ++found;
   }
@@ -181,12 +181,12 @@ void ImageFrontEnd::measure_range(int first, int count) {
   const bool believed =
       frame_.report.inliers >= kLeastAgreement || agreed >= std::min(kLeastAgreement, map_.features.count());
   for (int i = first; i < first + found; ++i) {
-    const Observation& o = update_.observation(i);
+    const PixelMeasurement& o = update_.observation(i);
     if (!believed) keep[i] = 0;
     Match& match = frame_.match(update_.candidate(i).match);
     match.status = keep[i] != 0 ? MatchStatus::kInlier : MatchStatus::kOutlier;
     match.nis =
-        squared_distance(match.measured - o.predicted, filter_.innovation_block(i - first, i - first) + o.noise);
+        squared_distance(match.measured - o.predicted, filter_.innovation_block(i - first, i - first) + o.R_gate);
     if (keep[i] == 0) {
       Feature& f = map_.features[update_.candidate(i).feature];
       count_frame(&f.failures);

@@ -30,7 +30,7 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
     if (feature.is_target && map_.target_withdrawn) continue;
     if (asked_[entry]) continue;  // the same id again
     asked_[entry] = true;
-    Observation& o = update_.observation(known);
+    PixelMeasurement& o = update_.observation(known);
     count_frame(&feature.attempts);
     ++frame_.report.attempts;
     if (!filter_.predict_pixel(settings_.camera, feature.slot, &o)) {
@@ -39,8 +39,8 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
     }
     const Mat2 spread = update_.expected_innovation(&o);
     o.measured = observations[i].pixel;
-    o.noise = Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order;
-    const Mat2 S = spread + o.noise;
+    o.set_noise(Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order);
+    const Mat2 S = spread + o.R_gate;
     const Scalar nis = squared_distance(o.measured - o.predicted, S);
     const bool agrees = nis < settings_.gate;
     const int match = frame_.add({entry, feature.id, agrees ? MatchStatus::kInlier : MatchStatus::kOutlier,

@@ -15,7 +15,7 @@ constexpr int kMostRounds = 3;  ///< of one frame's pixels, where little was kno
 bool PixelUpdate::layout(Arena& arena, int max_observations) {
   const std::size_t count = static_cast<std::size_t>(max_observations);
   candidate_ = arena.take<Candidate>(count);
-  observation_ = arena.take<Observation>(count);
+  observation_ = arena.take<PixelMeasurement>(count);
   keep_ = arena.take<unsigned char>(count);
   return arena.ok();
 }
@@ -51,7 +51,7 @@ bool PixelUpdate::take_in(int first, int count) {
 
 /// With an angle of s = sqrt(lambda / f^2) the tangent leaves out about f s^2, as noise f^2 s^4 / 2. The smaller eigenvalue counts:
 /// the larger may be of the depth, in which an inverse-depth point is linear.
-Mat2 PixelUpdate::expected_innovation(Observation* o) const {
+Mat2 PixelUpdate::expected_innovation(PixelMeasurement* o) const {
   const Mat2 S = filter_.innovation(*o);
   const Scalar half = (S(0, 0) - S(1, 1)) / 2;
   const Scalar lambda = (S(0, 0) + S(1, 1)) / 2 - std::sqrt(half * half + S(0, 1) * S(0, 1));
@@ -68,19 +68,19 @@ void PixelUpdate::take_in_again_where_bent(int first, int count) {
   for (int round = 0; round < kMostRounds; ++round) {
     bool bent = false;
     for (int i = first; i < first + count; ++i)
-      bent = bent || (keep_[i] != 0 && 2 * observation_[i].bend > observation_[i].noise(0, 0));
+      bent = bent || (keep_[i] != 0 && 2 * observation_[i].bend > observation_[i].R_update(0, 0));
     if (!bent) return;
     for (int i = first; i < first + count; ++i) {
       if (keep_[i] == 0) continue;
-      Observation& o = observation_[i];
+      PixelMeasurement& o = observation_[i];
       const Vec2 measured = o.measured;
       const Scalar bend = std::max(o.bend, Scalar(1e-6));
-      const Mat2 R = o.noise - Mat2::Identity() * bend;
-      keep_[i] = filter_.predict_pixel(settings_.camera, o.slot, &o) ? 1 : 0;
+      const Mat2 R = o.R_update - Mat2::Identity() * bend;
+      keep_[i] = filter_.predict_pixel(settings_.camera, o.block, &o) ? 1 : 0;
       if (keep_[i] == 0) continue;
       expected_innovation(&o);
       o.measured = measured;
-      o.noise = R + R.lazyProduct(R) / bend + Mat2::Identity() * o.bend;
+      o.set_noise(R + R.lazyProduct(R) / bend + Mat2::Identity() * o.bend);
     }
     filter_.begin_update(observation_ + first, count);
     if (!filter_.finish_update(observation_ + first, count, keep_ + first, nullptr)) return;

@@ -26,8 +26,8 @@ class PixelUpdate {
   /// max_observations each. What is kept is taken in.
   Candidate& candidate(int i) { return candidate_[i]; }
   const Candidate& candidate(int i) const { return candidate_[i]; }
-  Observation& observation(int i) { return observation_[i]; }
-  const Observation* observations() const { return observation_; }
+  PixelMeasurement& observation(int i) { return observation_[i]; }
+  const PixelMeasurement* observations() const { return observation_; }
   unsigned char* keep() { return keep_; }
 
   /// A candidate and its observation move to another index.
@@ -37,7 +37,7 @@ class PixelUpdate {
   }
 
   /// H P H^T of a predicted pixel; adds to its second-order noise what the projection bends over the spread of the pose.
-  Mat2 expected_innovation(Observation* o) const;
+  Mat2 expected_innovation(PixelMeasurement* o) const;
   /// Gathers H P H^T of `count` observations from `first` on.
   void begin(int first, int count);
   /// Takes in the kept ones of those that begin() gathered. False when nothing was taken in.
@@ -52,7 +52,7 @@ class PixelUpdate {
   Frame& frame_;
   TrackingState& tracking_;
   Candidate* candidate_ = nullptr;
-  Observation* observation_ = nullptr;
+  PixelMeasurement* observation_ = nullptr;
   unsigned char* keep_ = nullptr;
 };
 

@@ -33,7 +33,7 @@ bool PlaneKeeper::layout(Arena& arena, int max_features) {
 
 void PlaneKeeper::tend() {
   unfold_misfits();
-  if (!filter_.scale_row(&scale_)) scale_.segments = 0;
+  filter_.scale_row(&scale_);
   const int turn = frame_.report.frames % map_.planes.capacity();
   for (int k = 0, tended = 0; k < map_.planes.capacity(); ++k) {
     const int i = (turn + k) % map_.planes.capacity();
@@ -50,7 +50,7 @@ void PlaneKeeper::tend() {
   }
   dissolve_weak();
   if (frame_.report.frames % kDiscoverEvery != 0) return;
-  if (!filter_.scale_row(&scale_)) scale_.segments = 0;  // rows may have moved since
+  filter_.scale_row(&scale_);  // its points may be gone or planar since
   discover();
 }
 

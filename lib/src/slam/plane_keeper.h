@@ -69,7 +69,7 @@ class PlaneKeeper {
   Data data_;
   PlaneCandidate* candidate_ = nullptr;  ///< max_features
   int* candidate_entry_ = nullptr;       ///< feature table entry of each
-  SparseRows scale_;                     ///< scratch: picks the log scale out of an error
+  ScaleRow scale_;                       ///< scratch: picks the log scale out of an error
 };
 
 }  // namespace pf

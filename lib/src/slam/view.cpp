@@ -14,7 +14,7 @@ bool View::has_pose() const { return loop_.tracking().has_pose(); }
 const FrameReport& View::report() const { return loop_.frame().report; }
 int View::match_count() const { return loop_.frame().match_count(); }
 const Match& View::match(int i) const { return loop_.frame().match(i); }
-int View::state_dim() const { return filter().state().dim; }
+int View::state_dim() const { return filter().dim(); }
 
 void View::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
   loop_.motion().predict_pose(last_ns(), t_ns, body, covariance);
@@ -80,9 +80,9 @@ MapCounts View::counts() const {
     if (state.block[s].kind == BlockKind::kPlane || state.block[s].kind == BlockKind::kPatch)
       unfolded_rows -= state.block[s].size;
   counts.planes = state.planes;
-  counts.state_dim = state.dim;
-  counts.state_dim_held = state.held_dim;
-  counts.state_dim_points_only = state.dim + unfolded_rows;
+  counts.state_dim = filter().dim();
+  counts.state_dim_held = filter().blocks().held_dim();
+  counts.state_dim_points_only = filter().dim() + unfolded_rows;
   return counts;
 }
 

@@ -25,9 +25,10 @@ PlaneView View::plane(int i) const {
   J_out_x.row(0) = out.R_WP.col(0).transpose() * J_n_x;
   J_out_x.row(1) = out.R_WP.col(1).transpose() * J_n_x;
   J_out_x.row(2) << 0, 0, out.normal_W.dot(frame.R_WP.col(2));
+  const int first = filter().first_row(map_.planes[i].slot);
   Mat3 P;
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) P(r, c) = filter().covariance()(block.first + r, block.first + c);
+    for (int c = 0; c < 3; ++c) P(r, c) = filter().covariance()(first + r, first + c);
   out.covariance = J_out_x * P * J_out_x.transpose();
   PlaneOutline outline;
   const PlanePoints points = outline_plane(filter(), map_, i, &outline);
@@ -61,7 +62,7 @@ bool View::hit(const Vec2& pixel, HitView* hit) const {
     if (!outline_contains(outline, plane_coordinates(frame, at))) continue;
     if (hit->plane != 0 && range >= hit->range) continue;
     J[0] = -J_direction * hat(direction);
-    const int first[3] = {Body::kTheta, Body::kPosition, block.first};
+    const int first[3] = {Body::kTheta, Body::kPosition, filter().first_row(map_.planes[i].slot)};
     Mat3 C = Mat3::Zero();
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "filter/observe/inverse_depth.h"
+#include "filter/rows.h"
 #include "filter/state.h"
 
 namespace pf {
@@ -9,20 +10,20 @@ namespace pf {
 ///
 ///   point f;   inverse depth o + b / rho;   plane point p(x, u, v);   patch point p(x, t + M c)       src Gee 2007 (9)
 ///
-/// J is 3 x columns over the segments in their order.
+/// J is 3 x columns over the parts in their order.
 struct WorldPoint {
-  static constexpr int kMaxSegments = 3;
+  static constexpr int kMaxParts = 3;
   static constexpr int kMaxColumns = 9;
 
   Vec3 p_W = Vec3::Zero();
-  int segments = 0;
+  int parts = 0;
   int columns = 0;
-  Segment segment[kMaxSegments];
+  Part part[kMaxParts];
   Eigen::Matrix<Scalar, 3, kMaxColumns> J;
 
   template <int Size>
-  void append(const Block& block, const Eigen::Matrix<Scalar, 3, Size>& J_block) {
-    segment[segments++] = {block.first, Size};
+  void append(int block, const Eigen::Matrix<Scalar, 3, Size>& J_block) {
+    part[parts++] = Part::of(block, 0, Size);
     J.block<3, Size>(0, columns) = J_block;
     columns += Size;
   }
@@ -41,11 +42,11 @@ inline Vec2 patch_to_plane(const Patch& patch, const Vec2& c, Mat2* J_uv_turn, M
 /// are in J only where they have rows.
 inline bool world_point(const State& state, int slot, WorldPoint* out, Mat32* J_p_c = nullptr) {
   const Block& block = state.block[slot];
-  out->segments = out->columns = 0;
+  out->parts = out->columns = 0;
   switch (block.kind) {
     case BlockKind::kPoint:
       out->p_W = block.xyz();
-      out->append<3>(block, Mat3::Identity());
+      out->append<3>(slot, Mat3::Identity());
       return true;
     case BlockKind::kInverseDepth: {
       const InverseDepth d = block.inverse_depth();
@@ -53,8 +54,8 @@ inline bool world_point(const State& state, int slot, WorldPoint* out, Mat32* J_
       const Block& anchor = state.block[block.parent];
       Mat3 J_feature;
       out->p_W = inverse_depth_to_point(anchor.xyz(), d, &J_feature);
-      out->append<3>(anchor, Mat3::Identity());
-      out->append<3>(block, J_feature);
+      out->append<3>(block.parent, Mat3::Identity());
+      out->append<3>(slot, J_feature);
       return true;
     }
     case BlockKind::kPlanePoint: {
@@ -62,8 +63,8 @@ inline bool world_point(const State& state, int slot, WorldPoint* out, Mat32* J_
       Mat3 J_x;
       Mat32 J_uv;
       out->p_W = plane_point(state.frame_of(plane), plane.xyz(), block.uv(), &J_x, &J_uv);
-      out->append<3>(plane, J_x);
-      out->append<2>(block, J_uv);
+      out->append<3>(block.parent, J_x);
+      out->append<2>(slot, J_uv);
       return true;
     }
     case BlockKind::kPatchPoint: {
@@ -74,13 +75,13 @@ inline bool world_point(const State& state, int slot, WorldPoint* out, Mat32* J_
       Mat3 J_x;
       Mat32 J_uv;
       out->p_W = plane_point(state.frame_of(plane), plane.xyz(), uv, &J_x, &J_uv);
-      out->append<3>(plane, J_x);
+      out->append<3>(patch.parent, J_x);
       Eigen::Matrix<Scalar, 3, 4> J_patch;
       J_patch.leftCols<2>() = J_uv;
       J_patch.rightCols<2>() = J_uv * J_turn;
-      out->append<4>(patch, J_patch);
+      out->append<4>(block.parent, J_patch);
       const Mat32 J_c = J_uv * M;
-      if (block.size > 0) out->append<2>(block, J_c);
+      if (block.size > 0) out->append<2>(slot, J_c);
       if (J_p_c != nullptr) *J_p_c = J_c;
       return true;
     }

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstddef>
+
+#include "base/arena.h"
+#include "covariance/kernels.h"
+#include "filter/measurement.h"
+
+namespace pf {
+
+/// Owns the covariance P and where each block's rows lie in it. It knows sizes and rows, no kinds and no values; nothing else writes P.
+///
+///   rows:  leading block (the body) | held (considered: covariance, but no gain of their own) | all others
+class BlockFilter {
+ public:
+  static constexpr int kBatch = 16;  ///< blocks in one transform or hold
+  struct Capacity {
+    int dim;     ///< rows of the state
+    int blocks;  ///< that can have rows
+    int rows;    ///< of one update
+  };
+
+  bool layout(Arena& arena, const Capacity& capacity);
+  void init(const Kernels* kernels, int leading_dim);
+
+  const Kernels& kernels() const { return *kernels_; }
+  const Triangle& P() const { return P_; }
+  int dim() const { return P_.n; }
+  int leading_dim() const { return leading_dim_; }
+  int held_dim() const { return held_dim_; }
+  int held_end() const { return leading_dim_ + held_dim_; }
+  int room() const { return max_dim_ - P_.n; }
+  int max_rows() const { return max_rows_; }
+  int ld() const { return ld_; }  ///< of thin matrices over the state
+
+  int first(int block) const { return block == kBodyBlock ? 0 : at_[block].first; }
+  int size(int block) const { return block == kBodyBlock ? leading_dim_ : at_[block].size; }
+  int row(const Part& part) const { return first(part.block) + part.offset; }
+
+  // --- moves of the covariance
+  /// The leading block becomes known as covariance says (row-major). Only while there is no other block.
+  void set_leading(const Scalar* covariance);
+  /// The first `rows` rows move by F, noise Q is added (both rows x rows, row-major).
+  void predict(const Scalar* F, const Scalar* Q, int rows);
+  /// New rows J x + noise for a block, behind all others; those that it has go.
+  void augment(int block, const Rows& J, const Scalar* Q);
+  /// Likewise with the sum of `count` Jacobians that together touch more blocks than rows can: J(k) -> Rows of `rows` rows over one part.
+  /// The noise becomes Q plus own times the variance.
+  template <typename Jacobian>
+  void augment_dense(int block, int rows, int count, Jacobian&& J, Scalar* Q, Scalar own) {
+    dense_begin(rows);
+    for (int k = 0; k < count; ++k) dense_add(J(k));
+    for (int k = 0; k < count; ++k) dense_square(J(k), Q);
+    dense_end(block, rows, Q, own);
+  }
+  /// A block's rows become J x.
+  void transform(int block, const Rows& J);
+  /// Likewise for many blocks (at most kBatch), all of them from the state as it is, in one pass; they are left in the order of their rows.
+  void transform(int* blocks, Rows* J, int count);
+  /// Rows of blocks become what `project` holds of as many measurements, and go to the end of the held range.
+  void hold(const int* blocks, int count);
+  /// Rows of blocks go, in one pass; blocks without rows are passed over.
+  void remove(const int* blocks, int count);
+  /// Adds Q (size x size, row-major) to the covariance of a part.
+  void inflate(const Part& part, const Scalar* Q);
+
+  // --- update
+  /// H P and S = H P H^T (without noise) of measurements, valid until the state changes.
+  void project(const Measurement* z, int count);
+  /// S of measurement i against j, of both heights, row-major.
+  void innovation(int i, int j, Scalar* S) const;
+  Mat2 innovation2(int i, int j) const;  ///< of two pixels
+  /// dx = P H^T (S + R)^-1 r of the projected measurements that are kept (null: all); zero for held rows. Null when S + R cannot be
+  /// factored or nothing is kept; P is as it was then. *nis gets r^T (S + R)^-1 r.
+  const Scalar* gain(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
+  /// Rows of L^-1 H P that the gain left, S + R = L L^T.
+  const Scalar* whitened(int row) const { return W_ + row * ld_; }
+  int gained_rows() const { return gained_; }
+  /// P -= W^T W, then P += U^T G + G^T U (both rows x ld()).
+  void downdate(const Scalar* U, const Scalar* G, int rows);
+
+  /// out = J P for Jacobians one below the other (leading dimension ld()).
+  void gather(const Rows* J, int count, Scalar* out) const;
+  /// J P J^T of a single row.
+  Scalar variance(const Rows& row) const;
+  /// Columns of the state that rows touch, in their order. Returns how many.
+  int columns(const Rows& J, int* column) const;
+
+ private:
+  struct Located;  ///< rows as the kernels read them
+
+  void locate(const Rows& J, Located* out) const;
+  void dense_begin(int rows);
+  void dense_add(const Rows& J);
+  void dense_square(const Rows& J, Scalar* Q) const;
+  void dense_end(int block, int rows, Scalar* Q, Scalar own);
+  void list_gone(int first, int size, int* gone);
+  void close_gaps(int gone);
+  void move_up(int gone);
+
+  const Kernels* kernels_ = nullptr;
+  Triangle P_;
+  Segment* at_ = nullptr;  ///< of each block; size 0: no rows
+  int blocks_ = 0;
+  int leading_dim_ = 0, held_dim_ = 0;
+  int max_dim_ = 0;   ///< of the state; P_ has room for a few more
+  int max_rows_ = 0;  ///< of one update
+  int ld_ = 0, lds_ = 0;
+  int gained_ = 0;
+  Scalar* W_ = nullptr;  ///< max_rows x ld: H P, then L^-1 H P
+  Scalar* S_ = nullptr;  ///< max_rows x lds
+  Scalar *dx_ = nullptr, *y_ = nullptr;
+  Segment* gone_ = nullptr;
+  int *order_ = nullptr, *row_ = nullptr;  ///< where rows go; where a measurement's rows begin
+};
+
+}  // namespace pf

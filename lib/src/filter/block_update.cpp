@@ -1,0 +1,123 @@
+#include <cstring>
+
+#include "filter/located.h"
+
+/// The update of the covariance: projection, gain, downdate.
+
+namespace pf {
+
+int BlockFilter::columns(const Rows& J, int* column) const {
+  int c = 0;
+  for (int p = 0; p < J.parts; ++p)
+    for (int i = 0; i < J.part[p].size; ++i) column[c++] = row(J.part[p]) + i;
+  return c;
+}
+
+void BlockFilter::gather(const Rows* J, int count, Scalar* out) const {
+  Located located[kBatch];
+  SparseRows rows[kBatch];
+  PF_ASSERT(count <= kBatch);
+  for (int i = 0; i < count; ++i) {
+    locate(J[i], &located[i]);
+    rows[i] = located[i].rows;
+  }
+  kernels_->gather_many(P_, rows, count, out, ld_);
+}
+
+Scalar BlockFilter::variance(const Rows& row) const {
+  int column[SparseRows::kMaxColumns];
+  const int c = columns(row, column);
+  Scalar sum = 0;
+  for (int i = 0; i < c; ++i) {
+    Scalar before = 0;
+    for (int j = 0; j < i; ++j) before += row.h[j] * P_(column[i], column[j]);
+    sum += row.h[i] * (row.h[i] * P_(column[i], column[i]) + 2 * before);
+  }
+  return sum;
+}
+
+/// A few measurements at a time, whose rows fit the stack.
+void BlockFilter::project(const Measurement* z, int count) {
+  row_[0] = 0;
+  for (int i = 0; i < count; ++i) row_[i + 1] = row_[i] + z[i].rows();
+  const int m = row_[count];
+  PF_ASSERT(m <= max_rows_);
+  Located located[kBatch];
+  SparseRows rows[kBatch];
+  const auto list = [&](int first) {
+    const int size = count - first < kBatch ? count - first : kBatch;
+    for (int j = 0; j < size; ++j) {
+      locate(z[first + j].H, &located[j]);
+      rows[j] = located[j].rows;
+    }
+    return size;
+  };
+  for (int i = 0; i < count; i += kBatch) {
+    const int size = list(i);
+    kernels_->gather_many(P_, rows, size, W_ + row_[i] * ld_, ld_);
+  }
+  for (int i = 0; i < count; i += kBatch) {
+    const int size = count > kBatch ? list(i) : count;
+    const int first = row_[i];
+    kernels_->project(W_ + first * ld_, m - first, ld_, rows, size, S_ + first * (lds_ + 1), lds_);
+  }
+}
+
+void BlockFilter::innovation(int i, int j, Scalar* S) const {
+  const int rows = row_[i + 1] - row_[i], columns = row_[j + 1] - row_[j];
+  for (int a = 0; a < rows; ++a)
+    for (int b = 0; b < columns; ++b) {
+      const int r = row_[i] + a, c = row_[j] + b;
+      S[a * columns + b] = r >= c ? S_[r * lds_ + c] : S_[c * lds_ + r];
+    }
+}
+
+Mat2 BlockFilter::innovation2(int i, int j) const {
+  const Scalar* S = S_ + row_[i > j ? i : j] * lds_ + row_[i > j ? j : i];  // of the lower triangle
+  Mat2 block;
+  block << S[0], i == j ? S[lds_] : S[1], S[lds_], S[lds_ + 1];
+  if (i < j) block.transposeInPlace();
+  return block;
+}
+
+const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned char* keep, Scalar* nis) {
+  // Close the gaps that rejected measurements leave in H P and S, and add the noise.
+  int m = 0;
+  for (int i = 0; i < count; ++i) {
+    if (keep != nullptr && keep[i] == 0) continue;
+    const int rows = z[i].rows();
+    for (int a = 0; a < rows; ++a) {
+      const int from = row_[i] + a, to = m + a;
+      if (from != to) std::memcpy(W_ + to * ld_, W_ + from * ld_, sizeof(Scalar) * static_cast<std::size_t>(ld_));
+      int column = 0;
+      for (int j = 0; j <= i; ++j) {
+        if (keep != nullptr && keep[j] == 0) continue;
+        for (int c = row_[j]; c < row_[j + 1]; ++c) S_[to * lds_ + column++] = S_[from * lds_ + c];
+      }
+      for (int b = 0; b <= a; ++b) S_[to * lds_ + m + b] += z[i].R_update[a + b * rows];
+      y_[to] = z[i].measured[a] - z[i].predicted[a];
+    }
+    m += rows;
+  }
+  gained_ = m;
+  if (m == 0 || !kernels_->cholesky(S_, m, lds_)) return nullptr;
+  kernels_->solve_lower(S_, m, lds_, W_, P_.n, ld_);
+  Scalar sum = 0;
+  for (int i = 0; i < m; ++i) {  // y <- L^-1 y
+    Scalar v = y_[i];
+    for (int k = 0; k < i; ++k) v -= S_[i * lds_ + k] * y_[k];
+    y_[i] = v / S_[i * lds_ + i];
+    sum += y_[i] * y_[i];
+  }
+  if (!(sum < Scalar(1e12))) return nullptr;
+  *nis = sum;
+  kernels_->combine(W_, m, P_.n, ld_, y_, dx_);
+  for (int i = leading_dim_; i < held_end(); ++i) dx_[i] = Scalar(0);
+  return dx_;
+}
+
+void BlockFilter::downdate(const Scalar* U, const Scalar* G, int rows) {
+  kernels_->downdate(P_, W_, gained_, U, G, rows, ld_, leading_dim_, held_end());
+}
+
+}  // namespace pf

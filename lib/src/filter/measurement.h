@@ -1,0 +1,48 @@
+#pragma once
+
+#include "filter/rows.h"
+
+/// What the filter is told: a few rows with what was measured, what was predicted, and the noise of both.
+
+namespace pf {
+
+/// One measurement of any height: 1 for a distance, 2 for a pixel, 8 for a homography. A view of storage of its own height.
+struct Measurement {
+  int block = -1;  ///< that it is of, so that it can be predicted again
+  Rows H;
+  const Scalar* measured = nullptr;   ///< H.rows entries
+  const Scalar* predicted = nullptr;  ///< likewise
+  const Scalar* R_gate = nullptr;     ///< H.rows x H.rows; what it is gated with
+  const Scalar* R_update = nullptr;   ///< likewise; what it is taken in with
+
+  int rows() const { return H.rows; }
+};
+
+/// Storage of a measurement.
+template <int kRows, int kMaxColumns, int kMaxParts>
+struct MeasurementOf {
+  using Vector = Eigen::Matrix<Scalar, kRows, 1>;
+  using Matrix = Eigen::Matrix<Scalar, kRows, kRows>;
+
+  int block = -1;  ///< that it is of
+  RowsOf<kRows, kMaxColumns, kMaxParts> H;
+  Vector predicted = Vector::Zero();
+  Vector measured = Vector::Zero();
+  Matrix R_gate = Matrix::Identity();
+  Matrix R_update = Matrix::Identity();
+
+  void set_noise(const Matrix& R) { R_gate = R_update = R; }
+  Measurement view() const { return {block, H, measured.data(), predicted.data(), R_gate.data(), R_update.data()}; }
+};
+
+/// A feature's pixel [px], over body, plane, point group and feature at most.
+struct PixelMeasurement : MeasurementOf<2, 21, 4> {
+  Scalar bend = 0;  ///< of the noise, what a wide pose takes off the linearisation: bend I [px^2]
+  Mat2 second_order =
+      Mat2::Zero();  ///< what the linearisation leaves out, and a surface's roughness [px^2]; belongs into the noise
+};
+
+/// Distance of a feature from a plane [m], over plane, feature and the row of the scale.
+using DistanceMeasurement = MeasurementOf<1, 24, 8>;
+
+}  // namespace pf

@@ -1,0 +1,130 @@
+#include <cmath>
+
+#include "filter/filter.h"
+#include "filter/observe/world_point.h"
+
+/// The row that picks the world's log scale out of an error, and what is known against it.
+
+namespace pf {
+namespace {
+
+/// Adds a place's part of a row: d^T J.
+void add_place(const WorldPoint& at, const Vec3& d, ScaleRow* row) {
+  int column = 0;
+  for (int p = 0; p < at.parts; ++p) {
+    Scalar h[WorldPoint::kMaxColumns];
+    for (int i = 0; i < at.part[p].size; ++i) h[i] = d.dot(at.J.col(column++));
+    add_part(row, at.part[p], h);
+  }
+}
+
+}  // namespace
+
+Mat3 Filter::relative_covariance(int slot, const ScaleRow& l) const {
+  const Block& block = state_.block[slot];
+  PF_ASSERT(block.kind == BlockKind::kPoint);
+  const Vec3 d = block.xyz() - state_.body.p_W;
+  RowsOf<1, 18, 6> row[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    Scalar one[3] = {}, less[3] = {}, scaled[12];
+    one[axis] = Scalar(1);
+    less[axis] = Scalar(-1);
+    add_part(&row[axis], Part::of(slot, 0, 3), one);
+    add_part(&row[axis], Part::body(Body::kPosition, 3), less);
+    for (int p = 0, c = 0; p < l.parts; ++p) {
+      for (int i = 0; i < l.part[p].size; ++i) scaled[i] = -d[axis] * l.h[c++];
+      add_part(&row[axis], l.part[p], scaled);
+    }
+  }
+  int column[18];
+  const int columns = blocks_.columns(row[0], column);
+  const Triangle& P = covariance();
+  Mat3 C = Mat3::Zero();
+  for (int i = 0; i < columns; ++i) {  // rows of the lower triangle, half of the diagonal; then C + C^T
+    Vec3 PJ = P(column[i], column[i]) / 2 * Vec3(row[0].h[i], row[1].h[i], row[2].h[i]);
+    for (int j = 0; j < i; ++j) PJ += P(column[i], column[j]) * Vec3(row[0].h[j], row[1].h[j], row[2].h[j]);
+    C += Vec3(row[0].h[i], row[1].h[i], row[2].h[i]) * PJ.transpose();
+  }
+  return C + C.transpose();
+}
+
+Scalar Filter::relative_sigma_rho(int slot, const ScaleRow& l) const {
+  const Block& block = state_.block[slot];
+  PF_ASSERT(block.kind == BlockKind::kInverseDepth);
+  const Scalar rho = block.inverse_depth().rho;
+  for (int p = 0; p < l.parts; ++p)  // the row hangs on this very point: it cannot be its own measure
+    if (l.part[p].block == slot) return std::sqrt(block_variance(slot, 2));
+  ScaleRow row = l;
+  for (int c = 0; c < l.columns(); ++c) row.h[c] *= rho;
+  const Scalar one = Scalar(1);
+  add_part(&row, Part::of(slot, 2, 1), &one);
+  return std::sqrt(blocks_.variance(row));
+}
+
+/// The best known of a few log lengths: a patch's lambda, a log inverse depth, or between a point and the one that is farthest from it.
+/// Each annihilates shifts and turns, and grows by s when the world grows by exp(s). None touches held rows.
+bool Filter::scale_row(ScaleRow* row) const {
+  constexpr int kMostTried = 12;
+  int places = -1;  // of place_: the points, listed once they are asked for
+  Scalar best = Scalar(0);
+  bool found = false;
+  int tried = 0;
+  for (int s = 0; s < state_.slots && tried < kMostTried; ++s) {
+    const Block& a = state_.block[s];
+    ScaleRow candidate;
+    if (a.kind == BlockKind::kPatch) {
+      const GaugeRows N = gauge_rows(state_, a);
+      candidate.parts = 2;
+      candidate.part[0] = Part::body(Body::kTheta, 3);
+      candidate.part[1] = Part::of(s, 3, 1);
+      for (int i = 0; i < 3; ++i) candidate.h[i] = -N(3, 3 + i);
+      candidate.h[3] = Scalar(1);
+    } else if (a.kind == BlockKind::kInverseDepth) {
+      const Scalar rho = a.inverse_depth().rho;
+      if (!(rho > Scalar(1e-6))) continue;
+      candidate.parts = 1;
+      candidate.part[0] = Part::of(s, 0, 3);
+      candidate.h[0] = candidate.h[1] = Scalar(0);
+      candidate.h[2] = Scalar(-1) / rho;
+    } else if (a.kind == BlockKind::kPoint || a.kind == BlockKind::kPlanePoint) {
+      if (places < 0) {
+        places = 0;
+        for (int t = 0; t < state_.slots; ++t) {
+          if (state_.block[t].kind != BlockKind::kPoint && state_.block[t].kind != BlockKind::kPlanePoint) continue;
+          place_slot_[places] = t;
+          place_[places++] = point(t);
+        }
+      }
+      const Vec3 here = point(s);
+      int far = -1;
+      Scalar far2 = Scalar(1e-12);
+      for (int t = 0; t < places; ++t) {
+        const Scalar d2 = (place_[t] - here).squaredNorm();
+        if (d2 > far2) {
+          far2 = d2;
+          far = t;
+        }
+      }
+      if (far < 0) continue;
+      far = place_slot_[far];
+      WorldPoint from, to;
+      world_point(state_, s, &from);
+      world_point(state_, far, &to);
+      const Vec3 d = (from.p_W - to.p_W) / far2;
+      add_place(from, d, &candidate);
+      add_place(to, -d, &candidate);
+    } else {
+      continue;
+    }
+    ++tried;
+    const Scalar variance = blocks_.variance(candidate);
+    if (found && variance >= best) continue;
+    best = variance;
+    found = true;
+    *row = candidate;
+  }
+  if (!found) row->parts = 0;
+  return found;
+}
+
+}  // namespace pf
