@@ -34,7 +34,7 @@ PlaneOutline outline_of(const std::vector<Vec2>& points) {
 void assert_convex(const PlaneOutline& outline) {
   for (int i = 0; i < outline.count; ++i) {
     const Vec2 &a = outline.uv[i], &b = outline.uv[(i + 1) % outline.count], &c = outline.uv[(i + 2) % outline.count];
-    TEST_ASSERT_TRUE(turn_of(a, b, c) > -kTiny);
+    TEST_ASSERT_TRUE(twice_area(a, b, c) > -kTiny);
   }
 }
 
@@ -119,14 +119,14 @@ void test_outline_should_leave_points_out_when_they_are_not_finite() {
   TEST_ASSERT_TRUE(std::abs(outline_area(outline) - Scalar(0.5)) < kTiny);
 }
 
-void test_company_should_leave_one_out_when_it_lies_far_from_all_others() {
+void test_isolated_point_should_be_rejected_when_it_lies_far_from_all_others() {
   SeededRandom random(55);
   for (int trial = 0; trial < 50; ++trial) {
     std::vector<Vec2> points = points_in_disc(random, 8 + trial);
     const int place = trial % static_cast<int>(points.size());
     points.insert(points.begin() + place, Vec2(6, 1));
     const std::vector<Vec2> before = points;
-    const int count = static_cast<int>(points.size()), kept = keep_company(points.data(), count);
+    const int count = static_cast<int>(points.size()), kept = reject_isolated(points.data(), count);
     TEST_ASSERT_TRUE(kept < count && kept >= 3 * count / 4);
     for (int i = 0, k = 0; i < count && k < kept; ++i) {
       const std::size_t from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(k);
@@ -137,15 +137,15 @@ void test_company_should_leave_one_out_when_it_lies_far_from_all_others() {
   }
 }
 
-void test_company_should_keep_all_when_points_are_few_or_evenly_spread() {
+void test_no_point_should_be_rejected_when_they_are_few_or_evenly_spread() {
   std::vector<Vec2> grid;
   for (int i = 0; i < 30; ++i) grid.emplace_back(static_cast<Scalar>(i % 6), static_cast<Scalar>(i / 6));
-  TEST_ASSERT_EQUAL_INT(30, keep_company(grid.data(), 30));
+  TEST_ASSERT_EQUAL_INT(30, reject_isolated(grid.data(), 30));
   std::vector<Vec2> few = {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(90, 0)};
-  TEST_ASSERT_EQUAL_INT(5, keep_company(few.data(), 5));
+  TEST_ASSERT_EQUAL_INT(5, reject_isolated(few.data(), 5));
   std::vector<Vec2> same(20, Vec2(1, 1));
-  TEST_ASSERT_EQUAL_INT(20, keep_company(same.data(), 20));
-  TEST_ASSERT_EQUAL_INT(0, keep_company(few.data(), 0));
+  TEST_ASSERT_EQUAL_INT(20, reject_isolated(same.data(), 20));
+  TEST_ASSERT_EQUAL_INT(0, reject_isolated(few.data(), 0));
 }
 
 void test_contains_should_widen_by_the_margin_when_there_is_one() {
@@ -169,8 +169,8 @@ int main() {
   RUN_TEST(test_outline_should_never_shrink_by_much_when_points_come_for_ever);
   RUN_TEST(test_outline_should_have_no_area_when_points_are_in_line_or_the_same);
   RUN_TEST(test_outline_should_leave_points_out_when_they_are_not_finite);
-  RUN_TEST(test_company_should_leave_one_out_when_it_lies_far_from_all_others);
-  RUN_TEST(test_company_should_keep_all_when_points_are_few_or_evenly_spread);
+  RUN_TEST(test_isolated_point_should_be_rejected_when_it_lies_far_from_all_others);
+  RUN_TEST(test_no_point_should_be_rejected_when_they_are_few_or_evenly_spread);
   RUN_TEST(test_contains_should_widen_by_the_margin_when_there_is_one);
   return UNITY_END();
 }

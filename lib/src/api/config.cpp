@@ -129,7 +129,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->linearity_index = static_cast<Scalar>(config.first_depth.linearity_index);
   settings->features_in_view = config.map.features_in_view;
   settings->border_px = config.map.border_px;
-  settings->coast_ns = static_cast<std::int64_t>(config.motion.coast_s * 1e9);
+  settings->max_coast_ns = static_cast<std::int64_t>(config.motion.coast_s * 1e9);
   settings->keep_gauge = config.keep_gauge != 0;
   settings->imu_buffer = config.capacity.max_imu_samples;
   settings->imu_ranges = {static_cast<Scalar>(config.imu.gyro_range), static_cast<Scalar>(config.imu.accel_range)};

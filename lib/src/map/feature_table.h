@@ -63,7 +63,7 @@ class FeatureTable {
     --count_;
   }
 
-  /// The entry that is missed least: not of the target, not seen since `not_since_ns`, longest unseen; -1 where there is none.
+  /// The entry that is missed least: not of the target, not seen since `not_since_ns`, longest nothing_measured; -1 where there is none.
   int least_useful(std::int64_t not_since_ns) const {
     int worst = -1;
     for (int i = 0; i < capacity_; ++i) {

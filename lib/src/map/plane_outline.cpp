@@ -27,7 +27,7 @@ int hull_of(const Vec2* points, int count, Vec2* hull) {
     for (int i = 0; i < count; ++i) {
       const Vec2& p = points[side == 0 ? i : count - 1 - i];
       if (side == 1 && i == 0) continue;
-      while (size - base >= (side == 0 ? 2 : 1) && !(turn_of(hull[size - 2], hull[size - 1], p) > 0)) {
+      while (size - base >= (side == 0 ? 2 : 1) && !(twice_area(hull[size - 2], hull[size - 1], p) > 0)) {
         --size;
       }
       hull[size++] = p;
@@ -41,7 +41,7 @@ int cheapest_vertex(const Vec2* hull, int size) {
   int cheapest = 0;
   Scalar least = 0;
   for (int i = 0; i < size; ++i) {
-    const Scalar loss = turn_of(hull[(i + size - 1) % size], hull[i], hull[(i + 1) % size]);
+    const Scalar loss = twice_area(hull[(i + size - 1) % size], hull[i], hull[(i + 1) % size]);
     if (i == 0 || loss < least) {
       least = loss;
       cheapest = i;
@@ -73,7 +73,7 @@ void extend_outline(PlaneOutline* outline, const Vec2* uv, int count) {
   }
 }
 
-int keep_company(Vec2* uv, int count) {
+int reject_isolated(Vec2* uv, int count) {
   if (count < 6 || count > kOutlineBatch) return count;
   Scalar second[kOutlineBatch], sorted[kOutlineBatch];
   for (int i = 0; i < count; ++i) {
@@ -93,21 +93,21 @@ int keep_company(Vec2* uv, int count) {
     for (; k > 0 && next < sorted[k - 1]; --k) sorted[k] = sorted[k - 1];
     sorted[k] = next;
   }
-  const Scalar most = 25 * sorted[count / 2];
+  const Scalar limit = 25 * sorted[count / 2];
   int kept = 0;
   for (int i = 0; i < count; ++i) {
-    if (second[i] <= most) uv[kept++] = uv[i];
+    if (second[i] <= limit) uv[kept++] = uv[i];
   }
   return kept;
 }
 
-Scalar turn_of(const Vec2& a, const Vec2& b, const Vec2& c) {
+Scalar twice_area(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
 Scalar outline_area(const PlaneOutline& outline) {
   Scalar twice = 0;
-  for (int i = 2; i < outline.count; ++i) twice += turn_of(outline.uv[0], outline.uv[i - 1], outline.uv[i]);
+  for (int i = 2; i < outline.count; ++i) twice += twice_area(outline.uv[0], outline.uv[i - 1], outline.uv[i]);
   return twice / 2;
 }
 
@@ -115,7 +115,7 @@ bool outline_contains(const PlaneOutline& outline, const Vec2& uv, Scalar margin
   if (outline.count < 3) return false;
   for (int i = 0; i < outline.count; ++i) {
     const Vec2 &a = outline.uv[i], &b = outline.uv[(i + 1) % outline.count];
-    if (!(turn_of(a, b, uv) >= -margin * (b - a).norm())) return false;
+    if (!(twice_area(a, b, uv) >= -margin * (b - a).norm())) return false;
   }
   return true;
 }

@@ -22,10 +22,10 @@ inline constexpr int kOutlineBatch = 96;  ///< points that are held against one 
 /// Those of the points that have company come first, in their order; returns how many. A point is alone when the second nearest
 /// of the others is more than five times as far as it commonly is (the median). Of fewer than six, none is.
 /// count <= kOutlineBatch
-int keep_company(Vec2* uv, int count);
+int reject_isolated(Vec2* uv, int count);
 
 /// Twice the signed area of a triangle: positive when a, b, c turn left.
-Scalar turn_of(const Vec2& a, const Vec2& b, const Vec2& c);
+Scalar twice_area(const Vec2& a, const Vec2& b, const Vec2& c);
 
 /// [m²]
 Scalar outline_area(const PlaneOutline& outline);

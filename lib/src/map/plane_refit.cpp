@@ -40,7 +40,7 @@ bool PlaneRefit::run(const PlaneHypothesis& hypothesis) {
     if (!refit()) return false;
   }
   keep_connected();
-  return refit() && leave_out_the_lonely() && passes();
+  return refit() && reject_high_leverage() && passes();
 }
 
 /// Members: near the plane and near its origin; of more than kMaxPlaneMembers, those nearest to it.
@@ -117,7 +117,7 @@ void PlaneRefit::keep_connected() {
 
 /// A point far outside of the others turns the plane towards itself and then lies on it. So each must lie where the
 /// plane through the others passes: the residual without it is r / (1 - leverage), leverage = 1/n + u²/λ1 + v²/λ2.
-bool PlaneRefit::leave_out_the_lonely() {
+bool PlaneRefit::reject_high_leverage() {
   for (;;) {
     int worst = -1;
     Scalar most = settings_.distance;

@@ -43,7 +43,7 @@ class PlaneRefit {
   int farthest(const Vec3& o_W) const;
   bool refit();
   void keep_connected();
-  bool leave_out_the_lonely();
+  bool reject_high_leverage();
   bool passes() const;
 
   const PlaneCandidate* candidates_;

@@ -14,8 +14,8 @@ struct PlaneEntry {
   int slot = -1;         ///< block in the filter; -1: this entry is free
   int age = 0;           ///< frames since it was found
   int weak = 0;          ///< of them in a row, the last ones with too few points
-  int most = 0;          ///< points that it ever had
-  int misfits = 0;       ///< points that were taken out again because they do not lie there
+  int max_points = 0;    ///< points that it ever had
+  int outliers = 0;      ///< points that were taken out again because they do not lie there
   PlaneOutline seen;     ///< of points that were on it when it was last tended to, many of them gone from the map since
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 };
@@ -24,7 +24,7 @@ class PlaneTable {
  public:
   bool layout(Arena& arena, int capacity) {
     entry_ = arena.take<PlaneEntry>(static_cast<std::size_t>(capacity));
-    merged_ = arena.take<Merged>(static_cast<std::size_t>(capacity) * kRemembered);
+    merged_ = arena.take<Merged>(static_cast<std::size_t>(capacity) * kMergesPerPlane);
     capacity_ = capacity;
     return arena.ok();
   }
@@ -35,7 +35,7 @@ class PlaneTable {
   /// No planes any more; their ids are not used again.
   void clear() {
     for (int i = 0; i < capacity_; ++i) entry_[i] = PlaneEntry();
-    for (int i = 0; i < capacity_ * kRemembered; ++i) merged_[i] = Merged();
+    for (int i = 0; i < capacity_ * kMergesPerPlane; ++i) merged_[i] = Merged();
     next_merged_ = 0;
   }
 
@@ -58,7 +58,7 @@ class PlaneTable {
   void remove(int i) { entry_[i] = PlaneEntry(); }
   void remember_merge(std::uint32_t from, std::uint32_t into) {
     merged_[next_merged_] = {from, into};
-    next_merged_ = (next_merged_ + 1) % (capacity_ * kRemembered);
+    next_merged_ = (next_merged_ + 1) % (capacity_ * kMergesPerPlane);
   }
 
   /// The entry of a slot's plane, or -1.
@@ -74,11 +74,11 @@ class PlaneTable {
   }
   /// The id that an id stands for now; 0 when its plane is gone, or was merged too long ago.
   std::uint32_t find(std::uint32_t id) const {
-    for (int step = 0; step <= capacity_ * kRemembered; ++step) {
+    for (int step = 0; step <= capacity_ * kMergesPerPlane; ++step) {
       for (int i = 0; i < capacity_; ++i)
         if (used(i) && entry_[i].id == id) return id;
       std::uint32_t next = 0;
-      for (int i = 0; i < capacity_ * kRemembered; ++i)
+      for (int i = 0; i < capacity_ * kMergesPerPlane; ++i)
         if (merged_[i].from == id && id != 0) next = merged_[i].into;
       if (next == 0) return 0;
       id = next;
@@ -87,7 +87,7 @@ class PlaneTable {
   }
 
  private:
-  static constexpr int kRemembered = 4;  ///< merges, per plane of the capacity
+  static constexpr int kMergesPerPlane = 4;  ///< merges, per plane of the capacity
   struct Merged {
     std::uint32_t from = 0, into = 0;
   };

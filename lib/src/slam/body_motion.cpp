@@ -7,20 +7,21 @@
 namespace pf {
 namespace {
 
-constexpr Scalar kHandSeconds = Scalar(0.25);  ///< in which a speed decays while nothing is measured
-constexpr Scalar kMostTurn = Scalar(0.5);      ///< [rad] standard deviation at which it grows no more
+constexpr Scalar kSpeedDecay = Scalar(0.25);       ///< in which a speed decays while nothing is measured
+constexpr Scalar kMaxRotationSigma = Scalar(0.5);  ///< [rad] standard deviation at which it grows no more
 
 }  // namespace
 
-void BodyMotion::advance(std::int64_t gap_ns, bool adrift, bool unseen) {
+void BodyMotion::advance(std::int64_t gap_ns, bool coasting_or_lost, bool nothing_measured) {
   // A gap that is longer than any motion stays predictable grows the covariance no further.
-  const Scalar dt = static_cast<Scalar>(static_cast<double>(gap_ns < kLongestGap ? gap_ns : kLongestGap) * 1e-9);
+  const Scalar dt = static_cast<Scalar>(static_cast<double>(gap_ns < kMaxGapNs ? gap_ns : kMaxGapNs) * 1e-9);
   MotionNoise noise = settings_.motion_noise;
-  if (adrift) {
+  if (coasting_or_lost) {
     // A hand does not keep its speed for long, and what is known of the turn to half a radian is enough to search everywhere:
     // without this, one second without a picture would carry the camera out of the room.
-    if (settings_.constant_velocity && unseen) damp(dt);
-    if (filter_.variance(Body::kTheta) > kMostTurn * kMostTurn) noise.linear = noise.angular = Scalar(0);
+    if (settings_.constant_velocity && nothing_measured) damp(dt);
+    if (filter_.variance(Body::kTheta) > kMaxRotationSigma * kMaxRotationSigma)
+      noise.linear = noise.angular = Scalar(0);
   }
   Transition transition;
   if (settings_.constant_velocity) filter_.steer(data_.dv_C, data_.dw_C);
@@ -42,7 +43,7 @@ void BodyMotion::damp(Scalar dt) {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) P_speed(i, j) = filter_.covariance()(Body::kVelocity + i, Body::kVelocity + j);
   Transition transition;
-  damp_speed(filter_.body(), std::exp(-dt / kHandSeconds), P_speed, &transition);
+  damp_speed(filter_.body(), std::exp(-dt / kSpeedDecay), P_speed, &transition);
   filter_.predict(transition);
 }
 

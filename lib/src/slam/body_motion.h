@@ -13,7 +13,7 @@ class BodyMotion {
  public:
   BodyMotion(const Settings& settings, Filter& filter) : settings_(settings), filter_(filter) {}
 
-  static constexpr std::int64_t kLongestGap = 2000000000;  ///< [ns] between frames, that a prediction goes over
+  static constexpr std::int64_t kMaxGapNs = 2000000000;  ///< [ns] between frames, that a prediction goes over
 
   void init() { data_ = Data(); }
   /// Known change of the velocities in camera axes, until the next frame.
@@ -22,8 +22,8 @@ class BodyMotion {
     data_.dw_C += dw_C;
   }
 
-  /// The filter's body moves on by this time. adrift: by prediction alone; unseen: nothing was measured in the last frame.
-  void advance(std::int64_t gap_ns, bool adrift, bool unseen);
+  /// The filter's body moves on by this time. coasting_or_lost: by prediction alone; nothing_measured: nothing was measured in the last frame.
+  void advance(std::int64_t gap_ns, bool coasting_or_lost, bool nothing_measured);
   /// Moves a body by the configured model, with its Jacobian and noise.
   void predict(Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
   /// Body and pose covariance (6x6) at t_ns, predicted where that is after now_ns.

@@ -12,7 +12,7 @@ namespace {
 constexpr int kMinAttempts = 10;      ///< before a feature is judged
 constexpr int kMaxFailures = 12;      ///< in a row, for one that was good
 constexpr int kMaxEarlyFailures = 4;  ///< in a row, for one that was seldom seen
-constexpr int kEnough = 8;            ///< depths make a median
+constexpr int kMinDepths = 8;         ///< depths make a median
 constexpr Scalar kBehindTarget = 2;   ///< how many times farther than the target the scene is taken to be
 
 }  // namespace
@@ -142,14 +142,14 @@ Scalar FeatureKeeper::median_inverse_depth() const {
       rho[count++] = Scalar(1) / distance;
     }
   }
-  if (count >= kEnough) {
+  if (count >= kMinDepths) {
     std::nth_element(rho, rho + count / 2, rho + count);
     return rho[count / 2];
   }
   return on_target > 0 ? target_rho / (kBehindTarget * Scalar(on_target)) : start;
 }
 
-int FeatureKeeper::begin(int anchor, const Vec2& pixel, const Mat2& noise) {
+int FeatureKeeper::add(int anchor, const Vec2& pixel, const Mat2& noise) {
   Vec3 ray_C;
   Mat32 J_ray_pixel;
   if (!unproject(settings_.camera, pixel, &ray_C, &J_ray_pixel)) return -1;

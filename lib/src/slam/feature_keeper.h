@@ -29,7 +29,7 @@ class FeatureKeeper {
   /// Room for one more feature on an anchor, which is made where there is none: evictions take a childless anchor along.
   bool make_room_at(int* anchor);
   /// A new inverse-depth feature at a pixel; its table entry, or -1.
-  int begin(int anchor, const Vec2& pixel, const Mat2& noise);
+  int add(int anchor, const Vec2& pixel, const Mat2& noise);
   /// The target's points enter the state with their own uncertainty.
   void add_target_points(const Target& target);
 

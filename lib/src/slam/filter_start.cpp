@@ -66,15 +66,15 @@ Status FilterStart::use_pose(const KnownBody& known) {
   return Status::kOk;
 }
 
-void FilterStart::begin_at(const Body& body, const Scalar* covariance) {
+void FilterStart::set_body(const Body& body, const Scalar* covariance) {
   parts_.filter.set_body(body, covariance);
-  parts_.tracking.begin_pose(parts_.frame.report.t_ns);
+  parts_.tracking.set_has_pose(parts_.frame.report.t_ns);
 }
 
 /// The pose before the first measurement: what was said to be known, or the world's own definition.
-void FilterStart::begin_from_knowledge() {
+void FilterStart::set_known_pose() {
   if (data_.known.given) {
-    begin_at(data_.known.body, data_.known.covariance);
+    set_body(data_.known.body, data_.known.covariance);
     return;
   }
   const int dim = parts_.filter.state().body_dim;
@@ -90,17 +90,17 @@ void FilterStart::begin_from_knowledge() {
     const Scalar sigma = i < Body::kRate ? kStartSpeed * (has_target ? Scalar(1) : settings_.start_depth) : kStartRate;
     covariance[i * dim + i] = sigma * sigma;
   }
-  begin_at(has_target ? target.first_pose : Body(), covariance);
+  set_body(has_target ? target.first_pose : Body(), covariance);
 }
 
-void FilterStart::begin_with_observations() {
-  begin_from_knowledge();
+void FilterStart::start_with_observations() {
+  set_known_pose();
   parts_.features.add_target_points(target_.target());
 }
 
-bool FilterStart::begin_in_image() {
+bool FilterStart::start_in_image() {
   if (!target_.has_target()) {
-    begin_from_knowledge();
+    set_known_pose();
     if (!data_.known.given) without_.begin();
     return true;
   }
@@ -109,7 +109,7 @@ bool FilterStart::begin_in_image() {
 
   FrameReport& report = parts_.frame.report;
   if (report.frames > 1) data_.known = KnownBody();  // it was the pose of the first frame
-  begin_from_knowledge();
+  set_known_pose();
   parts_.features.add_target_points(target_.target());
   for (int i = 0; i < parts_.map.features.capacity(); ++i) {
     if (!parts_.map.features.used(i) || !parts_.map.features[i].is_target) continue;
@@ -121,7 +121,7 @@ bool FilterStart::begin_in_image() {
     parts_.frame.add({i, f.id, MatchStatus::kInlier, BlockKind::kPoint, z, Mat2::Zero(), z, Scalar(0)});
   }
   report.attempts = report.matches = report.inliers;
-  parts_.tracking.sight();
+  parts_.tracking.set_from_target();
   settings_.hooks.say("started at the target");
   return true;
 }
@@ -184,7 +184,7 @@ void FilterStart::restart_from_record() {
   body.q_WC = without_.base_q_WC();
   body.p_W = without_.base_p_W();
   clear_filter();
-  begin_at(body, data_.covariance);
+  set_body(body, data_.covariance);
   restart_features();
   std::int64_t before_ns = without_.begin_ns();
   for (int k = 0; k < without_.record().frames(); ++k) {
@@ -227,7 +227,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   const StartRecord& record = without_.record();
   const StartRecord::Frame& frame = record.frame(k);
   const Scalar dt = static_cast<Scalar>(
-      static_cast<double>(std::min(elapsed_ns(before_ns, frame.t_ns), BodyMotion::kLongestGap)) * 1e-9);
+      static_cast<double>(std::min(elapsed_ns(before_ns, frame.t_ns), BodyMotion::kMaxGapNs)) * 1e-9);
   Body& now = filter.body();
   const Quat q_WC = without_.base_q_WC() * frame.q_WC;
   const Vec3 p_W = without_.base_p_W() + without_.base_q_WC() * frame.p_W;

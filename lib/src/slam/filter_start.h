@@ -50,18 +50,18 @@ class FilterStart {
   bool takes_images_only() const { return target_.target().kind == TargetKind::kRectangle; }
 
   /// The pose at the first frame. False: not yet.
-  bool begin_in_image();
-  void begin_with_observations();
+  bool start_in_image();
+  void start_with_observations();
   const StartProgress& progress() const { return without_.progress(); }
 
   /// Of a start without a target that is under way: the frame's pixels are recorded, and the filter begins again when they explain more.
   void record_frame();
-  /// The features that this frame has begun become those of a record that has none.
+  /// The features that this frame has added become those of a record that has none.
   void begin_record();
 
  private:
-  void begin_at(const Body& body, const Scalar* covariance);
-  void begin_from_knowledge();
+  void set_body(const Body& body, const Scalar* covariance);
+  void set_known_pose();
   Vec2 at_frame_time(int slot, const Vec2& measured) const;
   void restart_from_record();
   void restart_features();

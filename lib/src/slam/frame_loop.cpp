@@ -29,7 +29,7 @@ void FrameLoop::init() {
 
 Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   if (!begin_frame(t_ns)) return Status::kTime;
-  if (tracking_.gave_up()) return end_frame();
+  if (tracking_.started_over()) return end_frame();
   bool usable;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPyramid]);
@@ -41,13 +41,13 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   }
   if (tracking_.has_pose())
     images_.measure();
-  else if (!start_.begin_in_image())
+  else if (!start_.start_in_image())
     return end_frame();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
-    tend_map();
+    maintain_map();
     start_.record_frame();
-    if (tracking_.carried(frame_.report) || frame_.report.attempts == 0) images_.begin_features();
+    if (tracking_.is_tracked(frame_.report) || frame_.report.attempts == 0) images_.add_features();
     start_.begin_record();
   }
   return end_frame();
@@ -56,13 +56,13 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
 Status FrameLoop::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
   if (start_.takes_images_only()) return Status::kState;
   if (!begin_frame(t_ns)) return Status::kTime;
-  if (tracking_.gave_up()) return end_frame();
-  if (!tracking_.has_pose()) start_.begin_with_observations();
+  if (tracking_.started_over()) return end_frame();
+  if (!tracking_.has_pose()) start_.start_with_observations();
   observations_.measure(observations, count);
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
-    tend_map();
-    observations_.begin_features(observations, count);
+    maintain_map();
+    observations_.add_features(observations, count);
   }
   return end_frame();
 }
@@ -71,7 +71,7 @@ Status FrameLoop::push_observations(const PixelObservation* observations, int co
 bool FrameLoop::begin_frame(std::int64_t t_ns) {
   const std::int64_t before_ns = frame_.report.t_ns;
   if (frame_.report.frames > 0 && t_ns <= before_ns) return false;
-  const bool unseen = frame_.report.inliers == 0;
+  const bool nothing_measured = frame_.report.inliers == 0;
   frame_.begin(t_ns);
   tracking_.begin_frame();
   if (!tracking_.has_pose()) {
@@ -79,22 +79,22 @@ bool FrameLoop::begin_frame(std::int64_t t_ns) {
     return true;
   }
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
-  motion_.advance(elapsed_ns(before_ns, t_ns), tracking_.adrift(), unseen);
+  motion_.advance(elapsed_ns(before_ns, t_ns), tracking_.coasting_or_lost(), nothing_measured);
   if (!filter_.body_is_sound()) start_over();
   return true;
 }
 
-void FrameLoop::tend_map() {
+void FrameLoop::maintain_map() {
   features_.convert_linear();
   // While a start goes on, the filter may begin again without its planes, whose ids would then stand for nothing.
-  if (settings_.planes && !start_.progress().recording) planes_.tend();
+  if (settings_.planes && !start_.progress().recording) planes_.maintain();
   features_.drop_failing();
 }
 
 /// What the caller is told.
 Status FrameLoop::end_frame() {
-  if (tracking_.has_pose() && (tracking_.hopeless() || !filter_.body_is_sound())) start_over();
-  return tracking_.conclude(frame_.report, start_.progress(), settings_.coast_ns, settings_.hooks);
+  if (tracking_.has_pose() && (tracking_.updates_fail() || !filter_.body_is_sound())) start_over();
+  return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
 }
 
 /// The estimate is no estimate any more: everything that came from it goes.
@@ -102,7 +102,7 @@ void FrameLoop::start_over() {
   start_.start_over();
   map_.features.clear();
   motion_.init();
-  tracking_.give_up();
+  tracking_.start_over();
   frame_.forget_all();
   settings_.hooks.say("the estimate is no longer finite: starting again without it");
 }

@@ -50,7 +50,7 @@ class FrameLoop {
  private:
   bool begin_frame(std::int64_t t_ns);
   Status end_frame();
-  void tend_map();
+  void maintain_map();
   void start_over();
 
   const Settings& settings_;

@@ -8,10 +8,10 @@ namespace pf {
 namespace {
 
 constexpr int kCornerThreshold = 8;               ///< of the segment test [grey]
-constexpr float kLeastCorner = 12.0f;             ///< smaller eigenvalue of the gradients [grey^2/px^2]
+constexpr float kMinCornerScore = 12.0f;          ///< smaller eigenvalue of the gradients [grey^2/px^2]
 constexpr Scalar kReferenceSigma = Scalar(0.25);  ///< [px] of the first sight, which every later match is compared with
 constexpr int kCellColumns = 8, kCellRows = 6, kCells = kCellRows * kCellColumns;
-constexpr int kFewNew = 4;  ///< new features come in groups that share an anchor
+constexpr int kMinNewFeatures = 4;  ///< new features come in groups that share an anchor
 
 int cell_along(Scalar at, int size, int cells) {
   const Scalar inside = std::clamp(at, Scalar(0), static_cast<Scalar>(size - 1));
@@ -20,7 +20,7 @@ int cell_along(Scalar at, int size, int cells) {
 
 }  // namespace
 
-void ImageFrontEnd::begin_features() {
+void ImageFrontEnd::add_features() {
   int in_cell[kCells] = {};
   const int width = settings_.camera.width, height = settings_.camera.height;
   int in_view = 0;
@@ -32,41 +32,41 @@ void ImageFrontEnd::begin_features() {
     if (match.status == MatchStatus::kInlier) ++in_view;
   }
   const int wanted = settings_.features_in_view - in_view;
-  if (wanted < kFewNew) return;
+  if (wanted < kMinNewFeatures) return;
 
   const int border = std::max(settings_.border_px, 10);
-  int anchor = -1, begun = 0;
+  int anchor = -1, added = 0;
   // Emptiest cells first; each pass admits cells with one feature more.
-  for (int most = 0; most < 3 && begun < wanted; ++most) {
-    for (int cell = 0; cell < kCells && begun < wanted; ++cell) {
+  for (int level = 0; level < 3 && added < wanted; ++level) {
+    for (int cell = 0; cell < kCells && added < wanted; ++cell) {
       // Steps through the cells so that neighbours do not follow each other.
       const int k = (cell * 19 + frame_.report.frames) % kCells;
       const int row = k / kCellColumns, column = k % kCellColumns;
-      if (in_cell[k] != most) continue;
+      if (in_cell[k] != level) continue;
       Rect rect;
       rect.x = std::max(column * width / kCellColumns, border);
       rect.y = std::max(row * height / kCellRows, border);
       rect.width = std::min((column + 1) * width / kCellColumns, width - border) - rect.x;
       rect.height = std::min((row + 1) * height / kCellRows, height - border) - rect.y;
-      if (!begin_in(rect, &anchor)) continue;
+      if (!add_in(rect, &anchor)) continue;
       ++in_cell[k];
-      ++begun;
+      ++added;
     }
   }
   if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child
 }
 
 /// A new feature at the best corner of this part of the image that is not near another feature. False where there is none, or no room.
-bool ImageFrontEnd::begin_in(const Rect& rect, int* anchor) {
+bool ImageFrontEnd::add_in(const Rect& rect, int* anchor) {
   constexpr int kCorners = 8;
   Corner corner[kCorners];
   const int corners = tracker_.corners(rect, kCornerThreshold, corner, kCorners);
   for (int c = 0; c < corners; ++c) {
-    if (corner[c].score < kLeastCorner) return false;
+    if (corner[c].score < kMinCornerScore) return false;
     const Vec2 pixel(static_cast<Scalar>(corner[c].x), static_cast<Scalar>(corner[c].y));
     if (!is_free(pixel)) continue;
     if (frame_.full() || !features_.make_room_at(anchor)) return false;
-    const int entry = features_.begin(*anchor, pixel, Mat2::Identity() * (kReferenceSigma * kReferenceSigma));
+    const int entry = features_.add(*anchor, pixel, Mat2::Identity() * (kReferenceSigma * kReferenceSigma));
     if (entry < 0) continue;
     const Body& body = filter_.state().body;
     if (!remember(entry, pixel, {body.q_WC, body.p_W})) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kScouts = 12;                 ///< features that are searched first when little is known of the motion
 constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] semi-axis from which scouts go first
-constexpr int kLeastAgreement = 5;          ///< matches that must agree before they are believed
+constexpr int kMinAgreement = 5;            ///< matches that must agree before they are believed
 
 }  // namespace
 
@@ -179,7 +179,7 @@ void ImageFrontEnd::measure_range(int first, int count) {
   }
   // With inliers from an earlier range the gate alone is evidence enough.
   const bool believed =
-      frame_.report.inliers >= kLeastAgreement || agreed >= std::min(kLeastAgreement, map_.features.count());
+      frame_.report.inliers >= kMinAgreement || agreed >= std::min(kMinAgreement, map_.features.count());
   for (int i = first; i < first + found; ++i) {
     const PixelMeasurement& o = update_.observation(i);
     if (!believed) keep[i] = 0;
@@ -193,7 +193,7 @@ void ImageFrontEnd::measure_range(int first, int count) {
       if (believed) count_frame(&f.rejections);
     }
   }
-  if (believed) update_.take_in(first, found);
+  if (believed) update_.apply(first, found);
 }
 
 }  // namespace pf

@@ -26,7 +26,7 @@ class ImageFrontEnd {
   /// Finds the map's features in the image and takes them into the filter.
   void measure();
   /// New features in the emptiest cells of the image, until enough are in view.
-  void begin_features();
+  void add_features();
   /// Keeps how a feature looks at this pixel of the image. False when it is too near to the border.
   bool remember(int feature, const Vec2& pixel, const CameraView& view);
 
@@ -44,7 +44,7 @@ class ImageFrontEnd {
 
   // image_corners.cpp
   bool is_free(const Vec2& pixel) const;
-  bool begin_in(const Rect& rect, int* anchor);
+  bool add_in(const Rect& rect, int* anchor);
 
   const Settings& settings_;
   Filter& filter_;

@@ -6,7 +6,7 @@
 namespace pf {
 
 bool ObservationFrontEnd::layout(Arena& arena, int max_features, int max_observations) {
-  asked_ = arena.take<bool>(static_cast<std::size_t>(max_features));
+  seen_ = arena.take<bool>(static_cast<std::size_t>(max_features));
   inbox_ = arena.take<PixelObservation>(static_cast<std::size_t>(max_features + max_observations));
   return arena.ok();
 }
@@ -15,21 +15,21 @@ void ObservationFrontEnd::measure(const PixelObservation* observations, int coun
   const int known = gate(observations, count);
   if (known == 0) return;
   update_.begin(0, known);
-  update_.take_in(0, known);
+  update_.apply(0, known);
 }
 
 /// Observations of the map's features become matches; those that agree with their prediction become candidates. Returns how many.
 int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
-  for (int i = 0; i < map_.features.capacity(); ++i) asked_[i] = false;
+  for (int i = 0; i < map_.features.capacity(); ++i) seen_[i] = false;
   int known = 0;
   for (int i = 0; i < count && known < settings_.max_observations; ++i) {
     const int entry = find(observations[i].external_id);
     if (entry < 0) continue;
     Feature& feature = map_.features[entry];
     if (feature.is_target && map_.target_withdrawn) continue;
-    if (asked_[entry]) continue;  // the same id again
-    asked_[entry] = true;
+    if (seen_[entry]) continue;  // the same id again
+    seen_[entry] = true;
     PixelMeasurement& o = update_.observation(known);
     count_frame(&feature.attempts);
     ++frame_.report.attempts;
@@ -57,13 +57,13 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
   return known;
 }
 
-void ObservationFrontEnd::begin_features(const PixelObservation* observations, int count) {
+void ObservationFrontEnd::add_features(const PixelObservation* observations, int count) {
   int anchor = -1;
   for (int i = 0; i < count; ++i) {
     const PixelObservation& o = observations[i];
     if (find(o.external_id) >= 0) continue;
     if (frame_.full() || !features_.make_room_at(&anchor)) break;
-    const int entry = features_.begin(anchor, o.pixel, Mat2::Identity() * (o.sigma_px * o.sigma_px));
+    const int entry = features_.add(anchor, o.pixel, Mat2::Identity() * (o.sigma_px * o.sigma_px));
     if (entry < 0) continue;
     map_.features[entry].external_id = o.external_id;
     frame_.add({entry, map_.features[entry].id, MatchStatus::kNew, BlockKind::kInverseDepth, o.pixel, Mat2::Zero(),

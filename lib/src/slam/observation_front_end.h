@@ -34,7 +34,7 @@ class ObservationFrontEnd {
   /// Takes what belongs to the map's features into the filter.
   void measure(const PixelObservation* observations, int count);
   /// What belongs to none becomes new features.
-  void begin_features(const PixelObservation* observations, int count);
+  void add_features(const PixelObservation* observations, int count);
 
  private:
   int gate(const PixelObservation* observations, int count);
@@ -46,7 +46,7 @@ class ObservationFrontEnd {
   Frame& frame_;
   FeatureKeeper& features_;
   PixelUpdate& update_;
-  bool* asked_ = nullptr;  ///< max_features: in this frame
+  bool* seen_ = nullptr;  ///< max_features: in this frame
   PixelObservation* inbox_ = nullptr;
 };
 

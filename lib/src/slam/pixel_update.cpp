@@ -8,7 +8,7 @@
 namespace pf {
 namespace {
 
-constexpr int kMostRounds = 3;  ///< of one frame's pixels, where little was known of the pose
+constexpr int kMaxRounds = 3;  ///< of one frame's pixels, where little was known of the pose
 
 }  // namespace
 
@@ -25,11 +25,11 @@ void PixelUpdate::begin(int first, int count) {
   filter_.begin_update(observation_ + first, count);
 }
 
-bool PixelUpdate::take_in(int first, int count) {
+bool PixelUpdate::apply(int first, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
   Scalar nis = 0;
   const bool done = filter_.finish_update(observation_ + first, count, keep_ + first, &nis);
-  tracking_.count_update(done);
+  tracking_.note_update(done);
   if (!done) {
     for (int i = first; i < first + count; ++i) frame_.match(candidate_[i].match).status = MatchStatus::kOutlier;
     return false;
@@ -45,7 +45,7 @@ bool PixelUpdate::take_in(int first, int count) {
     feature.rejections = 0;
     feature.last_seen_ns = frame_.report.t_ns;
   }
-  take_in_again_where_bent(first, count);
+  relinearise_update(first, count);
   return true;
 }
 
@@ -64,8 +64,8 @@ Mat2 PixelUpdate::expected_innovation(PixelMeasurement* o) const {
 
 /// Pixels that were taken in with much of that noise are taken in again at the pose that they led to, with the information that the noise
 /// kept back:  R' = (R^-1 - (R + bend I)^-1)^-1 = R + R^2 / bend.
-void PixelUpdate::take_in_again_where_bent(int first, int count) {
-  for (int round = 0; round < kMostRounds; ++round) {
+void PixelUpdate::relinearise_update(int first, int count) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     bool bent = false;
     for (int i = first; i < first + count; ++i)
       bent = bent || (keep_[i] != 0 && 2 * observation_[i].bend > observation_[i].R_update(0, 0));

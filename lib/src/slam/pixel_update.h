@@ -41,10 +41,10 @@ class PixelUpdate {
   /// Gathers H P H^T of `count` observations from `first` on.
   void begin(int first, int count);
   /// Takes in the kept ones of those that begin() gathered. False when nothing was taken in.
-  bool take_in(int first, int count);
+  bool apply(int first, int count);
 
  private:
-  void take_in_again_where_bent(int first, int count);
+  void relinearise_update(int first, int count);
 
   const Settings& settings_;
   Filter& filter_;

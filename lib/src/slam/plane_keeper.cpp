@@ -5,16 +5,16 @@
 
 #include "geometry/symmetric_eigen.h"
 
-/// Points of planes: misfits out, points in, points fixed. Whole planes: plane_lifecycle.cpp. Gee 2007, sections 3.3 and 3.4.
+/// Points of planes: outliers out, points in, points fixed. Whole planes: plane_lifecycle.cpp. Gee 2007, sections 3.3 and 3.4.
 
 namespace pf {
 namespace {
 
-constexpr int kConverged = 10;      ///< observations before a point is believed
-constexpr int kDiscoverEvery = 5;   ///< frames
-constexpr int kMostRejections = 4;  ///< in a row, before a folded point is taken out again
-constexpr int kLeastFixed = 4;      ///< points that a patch begins with
-constexpr Scalar kReach = 0.5f;     ///< beyond what is known of a plane, in roots of its area
+constexpr int kConverged = 10;     ///< observations before a point is believed
+constexpr int kDiscoverEvery = 5;  ///< frames
+constexpr int kMaxRejections = 4;  ///< in a row, before a folded point is taken out again
+constexpr int kMinFixed = 4;       ///< points that a patch begins with
+constexpr Scalar kReach = 0.5f;    ///< beyond what is known of a plane, in roots of its area
 
 Scalar largest_eigenvalue(const Mat3& C) {
   Vec3 lambda;
@@ -31,15 +31,15 @@ bool PlaneKeeper::layout(Arena& arena, int max_features) {
   return arena.ok();
 }
 
-void PlaneKeeper::tend() {
-  unfold_misfits();
+void PlaneKeeper::maintain() {
+  unfold_outliers();
   filter_.scale_row(&scale_);
   const int turn = frame_.report.frames % map_.planes.capacity();
-  for (int k = 0, tended = 0; k < map_.planes.capacity(); ++k) {
+  for (int k = 0, maintained = 0; k < map_.planes.capacity(); ++k) {
     const int i = (turn + k) % map_.planes.capacity();
     if (!map_.planes.used(i)) continue;
     ++map_.planes[i].age;
-    if (tended++ > 0) continue;
+    if (maintained++ > 0) continue;
     fold_into(i);
     settle_frame(i);
     PlaneOutline now;
@@ -65,15 +65,15 @@ bool PlaneKeeper::is_settled(int entry) const {
 /// world's size.
 bool PlaneKeeper::is_certain(int entry, Mat3* covariance) const {
   *covariance = filter_.relative_covariance(map_.features[entry].slot, scale_);
-  const Scalar most = settings_.fold_sigma * settings_.fold_sigma;
-  return (*covariance)(0, 0) + (*covariance)(1, 1) + (*covariance)(2, 2) < most ||
-         largest_eigenvalue(*covariance) < most;
+  const Scalar limit = settings_.fold_sigma * settings_.fold_sigma;
+  return (*covariance)(0, 0) + (*covariance)(1, 1) + (*covariance)(2, 2) < limit ||
+         largest_eigenvalue(*covariance) < limit;
 }
 
 /// Points that are found again and again where their plane does not put them go back to three coordinates, and the plane is less sure.
-void PlaneKeeper::unfold_misfits() {
+void PlaneKeeper::unfold_outliers() {
   for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i) || map_.features[i].rejections < kMostRejections) continue;
+    if (!map_.features.used(i) || map_.features[i].rejections < kMaxRejections) continue;
     const int slot = map_.features[i].slot;
     if (!is_planar(filter_.state().block[slot].kind)) continue;
     const int plane = filter_.state().plane_of(slot);
@@ -84,7 +84,7 @@ void PlaneKeeper::unfold_misfits() {
     inflate(plane, children);
     const int entry = map_.planes.entry_at(plane);
     if (entry < 0) continue;
-    ++map_.planes[entry].misfits;
+    ++map_.planes[entry].outliers;
     map_.planes[entry].seen.count =
         0;  // the misfit may have been a corner of it: what is known begins again with the others
   }
@@ -114,9 +114,9 @@ bool PlaneKeeper::is_in_reach(int plane_entry, const Vec3& p_W) const {
 bool PlaneKeeper::lies_on(int plane, int slot) const {
   Scalar d, variance;
   if (!filter_.distance(plane, slot, &d, &variance)) return false;
-  const Scalar most = settings_.plane_distance * settings_.plane_distance;
+  const Scalar limit = settings_.plane_distance * settings_.plane_distance;
   const FoldRule& rule = settings_.fold;
-  return d * d <= most * Scalar(4) && variance <= most &&
+  return d * d <= limit * Scalar(4) && variance <= limit &&
          d * d < rule.gate * (variance + rule.roughness * rule.roughness);
 }
 
@@ -163,12 +163,12 @@ void PlaneKeeper::fix_on(int plane_entry) {
     if (group_count == Filter::kMostFolded || map_.features[block.owner].failures > 0) return;
     if (block.kind == BlockKind::kPlanePoint) group[group_count++] = slot;
   });
-  if (!has_patch && group_count < 2 * kLeastFixed) return;
-  const int most = std::min(Filter::kMostFolded, settings_.max_observations);
+  if (!has_patch && group_count < 2 * kMinFixed) return;
+  const int limit = std::min(Filter::kMostFolded, settings_.max_observations);
   const Scalar variance = settings_.fix_sigma * settings_.fix_sigma;
-  for (int k = 0; k < group_count && count < most; ++k)
+  for (int k = 0; k < group_count && count < limit; ++k)
     if (filter_.variance_in_drawing(group[k], group, group_count) < variance) slots[count++] = group[k];
-  if (count == 0 || (!has_patch && count < kLeastFixed)) return;
+  if (count == 0 || (!has_patch && count < kMinFixed)) return;
   filter_.fix(slots, count, settings_.fix, group, group_count);
 }
 

@@ -9,7 +9,7 @@
 #include "slam/frame.h"
 #include "slam/settings.h"
 
-/// Keeps the planes of the map: misfits out, points in, points fixed; planes found, merged and dissolved. Gee 2007, section 3.
+/// Keeps the planes of the map: outliers out, points in, points fixed; planes found, merged and dissolved. Gee 2007, section 3.
 
 namespace pf {
 
@@ -31,8 +31,8 @@ class PlaneKeeper {
   bool layout(Arena& arena, int max_features);
   void init() { data_ = Data(); }
 
-  /// The work of one frame. One plane at a time is tended to, so that the work is bounded.
-  void tend();
+  /// The work of one frame. One plane at a time is maintained to, so that the work is bounded.
+  void maintain();
 
  private:
   /// What is kept between frames.
@@ -41,7 +41,7 @@ class PlaneKeeper {
   };
 
   // plane_keeper.cpp: points of planes
-  void unfold_misfits();
+  void unfold_outliers();
   void inflate(int plane_slot, int children);
   bool is_in_reach(int plane_entry, const Vec3& p_W) const;
   bool lies_on(int plane, int slot) const;

@@ -8,17 +8,17 @@
 namespace pf {
 namespace {
 
-constexpr int kLeastPoints = 4;        ///< that keep alive a plane that once had more than plane_min_points
-constexpr int kPatience = 60;          ///< frames with fewer
-constexpr Scalar kSlanted = 0.05f;     ///< to its frame, above which a plane gets another one
-constexpr Scalar kSameNormal = 0.97f;  ///< cosine of the angle below which planes may be one
+constexpr int kMinPoints = 4;               ///< that keep alive a plane that once had more than plane_min_points
+constexpr int kMaxWeakFrames = 60;          ///< frames with fewer
+constexpr Scalar kMaxSlant = 0.05f;         ///< to its frame, above which a plane gets another one
+constexpr Scalar kMinNormalCosine = 0.97f;  ///< cosine of the angle below which planes may be one
 
 }  // namespace
 
 /// Settled points that are known well and lie on no plane yet become candidates. Returns how many.
 int PlaneKeeper::list_candidates() {
   int count = 0;
-  const Scalar most = Scalar(2) * settings_.plane_distance;
+  const Scalar limit = Scalar(2) * settings_.plane_distance;
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!is_settled(i)) continue;
     const Vec3 p_W = filter_.point(map_.features[i].slot);
@@ -27,7 +27,7 @@ int PlaneKeeper::list_candidates() {
       if (!map_.planes.used(k)) continue;
       const Block& plane = filter_.state().block[map_.planes[k].slot];
       const PlaneFrame& frame = filter_.state().frame_of(plane);
-      taken = std::abs(plane_distance(frame, plane.xyz(), p_W)) < most && is_in_reach(k, p_W);
+      taken = std::abs(plane_distance(frame, plane.xyz(), p_W)) < limit && is_in_reach(k, p_W);
     }
     if (taken || !is_certain(i, &candidate_[count].covariance)) continue;
     candidate_[count].p_W = p_W;
@@ -74,7 +74,7 @@ bool PlaneKeeper::same_plane(int slot, int other) const {
   Scalar d_a, d_b;
   plane_normal(state.frame_of(a), a.xyz(), &n_a, &d_a);
   plane_normal(state.frame_of(b), b.xyz(), &n_b, &d_b);
-  if (n_a.dot(n_b) < kSameNormal) return false;
+  if (n_a.dot(n_b) < kMinNormalCosine) return false;
   int points = 0, agree = 0, close = 0;
   state.for_each_planar(other, [&](int point) {
     Scalar d, variance;
@@ -85,7 +85,7 @@ bool PlaneKeeper::same_plane(int slot, int other) const {
     if (std::abs(d) < Scalar(3) * settings_.plane_distance) ++close;
   });
   // Near as well as undecided: a plane that is hardly known agrees with anything.
-  return points >= kLeastPoints && 10 * agree >= 9 * points && 10 * close >= 9 * points;
+  return points >= kMinPoints && 10 * agree >= 9 * points && 10 * close >= 9 * points;
 }
 
 /// Another plane that is the same one gives its points to this one.
@@ -145,7 +145,7 @@ void PlaneKeeper::settle_frame(int plane_entry) {
   const State& state = filter_.state();
   const Block& block = state.block[plane];
   const Vec3 x = block.xyz();
-  const bool slanted = x(0) * x(0) + x(1) * x(1) > kSlanted * kSlanted;
+  const bool slanted = x(0) * x(0) + x(1) * x(1) > kMaxSlant * kMaxSlant;
   if (!slanted || filter_.patch_of(plane) >= 0) return;
   PlaneFrame to = state.frame_of(block);
   Vec3 normal;
@@ -189,10 +189,10 @@ PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry,
     if (outline == nullptr) return;
     uv[count++] = plane_coordinates(state.frame_of(state.block[plane]), filter.point(slot));
     if (count < kBatch) return;
-    extend_outline(outline, uv, keep_company(uv, count));
+    extend_outline(outline, uv, reject_isolated(uv, count));
     count = 0;
   });
-  if (count > 0) extend_outline(outline, uv, keep_company(uv, count));
+  if (count > 0) extend_outline(outline, uv, reject_isolated(uv, count));
   return points;
 }
 
@@ -202,10 +202,10 @@ void PlaneKeeper::dissolve_weak() {
   for (int i = 0; i < map_.planes.capacity(); ++i) {
     if (!map_.planes.used(i)) continue;
     const int points = outline_plane(filter_, map_, i, nullptr).folded;
-    map_.planes[i].most = std::max(map_.planes[i].most, points);
-    const bool proven = map_.planes[i].most > settings_.plane_min_points;
-    map_.planes[i].weak = points < kLeastPoints || !proven ? map_.planes[i].weak + 1 : 0;
-    if (map_.planes[i].weak > kPatience || map_.planes[i].misfits > points) dissolve(i);
+    map_.planes[i].max_points = std::max(map_.planes[i].max_points, points);
+    const bool proven = map_.planes[i].max_points > settings_.plane_min_points;
+    map_.planes[i].weak = points < kMinPoints || !proven ? map_.planes[i].weak + 1 : 0;
+    if (map_.planes[i].weak > kMaxWeakFrames || map_.planes[i].outliers > points) dissolve(i);
   }
 }
 

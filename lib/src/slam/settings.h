@@ -43,7 +43,7 @@ struct Settings {
 
   int features_in_view = 0;
   int border_px = 0;
-  std::int64_t coast_ns = 0;
+  std::int64_t max_coast_ns = 0;
   bool keep_gauge = true;
 
   int imu_buffer = 0;

@@ -9,8 +9,8 @@ namespace pf {
 namespace {
 
 constexpr Scalar kCornerSigma = Scalar(0.25);  ///< [px] of a corner that is found as the meeting of two lines
-constexpr Scalar kMostRms = Scalar(2);         ///< [px] of known points against the pose that explains them best
-constexpr int kQuads = 8;
+constexpr Scalar kMaxRmsPx = Scalar(2);        ///< [px] of known points against the pose that explains them best
+constexpr int kMaxQuads = 8;
 
 /// Uncertainty of the target's points seen as uncertainty of the pixels, since the pose is fitted as if they were exact.
 Scalar pixel_sigma(const Camera& camera, Scalar sigma_m, Scalar distance) {
@@ -60,8 +60,8 @@ bool StartAtTarget::find_points(const Camera& camera, const Tracker& tracker, Ta
 
   Vec2 z[Target::kMaxPoints];
   if (target_.count == 4) {
-    Quad quad[kQuads];
-    const int quads = find_dark_quads(tracker.image(), quad_workspace_, quad, kQuads);
+    Quad quad[kMaxQuads];
+    const int quads = find_dark_quads(tracker.image(), quad_workspace_, quad, kMaxQuads);
     for (int k = 0; k < quads; ++k) {
       if (!refine_quad(tracker.image(), camera, &quad[k])) continue;
       if (match_quad(quad[k], predicted, reach, z) && fit(camera, z, sigma, sighting)) return true;
@@ -127,7 +127,7 @@ bool StartAtTarget::fit(const Camera& camera, const Vec2* z, Scalar sigma_px, Ta
   estimate.q_WC = target_.first_pose.q_WC;
   estimate.p_WC = target_.first_pose.p_W;
   if (!refine_pose(camera, target_.point_W, z, target_.count, sigma_px, &estimate)) return false;
-  if (estimate.rms_px > kMostRms) return false;
+  if (estimate.rms_px > kMaxRmsPx) return false;
   sighting->pose = estimate;
   std::copy(z, z + target_.count, sighting->pixel);
   return true;

@@ -4,19 +4,19 @@
 
 namespace pf {
 
-Status TrackingState::conclude(const FrameReport& report, const StartProgress& start, std::int64_t coast_ns,
+Status TrackingState::conclude(const FrameReport& report, const StartProgress& start, std::int64_t max_coast_ns,
                                const Hooks& hooks) {
   Data& d = data_;
   if (!d.has_pose) return Status::kStarting;
-  if (carried(report)) {
+  if (is_tracked(report)) {
     if (d.lost) hooks.say("found the map again");
     d.lost = false;
     d.last_tracked_ns = report.t_ns;
     d.state = start.pending() ? SlamState::kStarting : SlamState::kTracking;
     return start.pending() ? Status::kStarting : Status::kOk;
   }
-  if (start.recording && d.last_tracked_ns == report.t_ns) return Status::kStarting;  // has just begun
-  if (!d.lost && elapsed_ns(d.last_tracked_ns, report.t_ns) > coast_ns) {
+  if (start.recording && d.last_tracked_ns == report.t_ns) return Status::kStarting;  // has just added
+  if (!d.lost && elapsed_ns(d.last_tracked_ns, report.t_ns) > max_coast_ns) {
     d.lost = true;
     hooks.say("lost: too few features were found for too long");
   }

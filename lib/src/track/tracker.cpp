@@ -11,13 +11,13 @@ namespace pf {
 namespace {
 
 constexpr Scalar kSearchRadius = Scalar(9);  ///< [px of the level] an ellipse that is larger is searched a level up
-constexpr float kLeastSearchScore = 0.6f;
-constexpr float kLeastScore = 0.8f;  ///< of the aligned window
-constexpr float kAmbiguous = 0.04f;  ///< a second peak that is nearly as high as the first is a repeated texture
+constexpr float kMinSearchScore = 0.6f;
+constexpr float kMinScore = 0.8f;      ///< of the aligned window
+constexpr float kMinPeakLead = 0.04f;  ///< a second peak that is nearly as high as the first is a repeated texture
 
 /// Source pixels per current pixel within which a view can still be compared with the first one.
-constexpr Scalar kLeastScale = Scalar(0.25);
-constexpr Scalar kMostScale = Scalar(3.2);
+constexpr Scalar kMinScale = Scalar(0.25);
+constexpr Scalar kMaxScale = Scalar(3.2);
 
 Scalar largest_eigenvalue(const Mat2& S) {
   const Scalar mean = (S(0, 0) + S(1, 1)) / Scalar(2);
@@ -82,7 +82,7 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
   Mat2 A;
   if (!warp(task, &A)) return outcome;
   const Scalar scale = std::sqrt(std::abs(A.determinant()));
-  if (!(scale > kLeastScale && scale < kMostScale)) return outcome;
+  if (!(scale > kMinScale && scale < kMaxScale)) return outcome;
   outcome.comparable = true;
 
   int finest = 0;  // where the source is at least about as sharp as the current image
@@ -111,7 +111,7 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
   ellipse.inverse_covariance = inverse2(S);
   ellipse.gate = task.gate;
   const SearchResult found = pf::search(pyramid_.level[level], pattern, ellipse);
-  if (found.score < kLeastSearchScore || found.second > found.score - kAmbiguous) return outcome;
+  if (found.score < kMinSearchScore || found.second > found.score - kMinPeakLead) return outcome;
 
   Vec2 position = found.position;
   AlignResult aligned;
@@ -124,7 +124,7 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
     if (!warp_template(patch, A * static_cast<Scalar>(1 << (level - 1)), kWarpSize, warped)) return outcome;
     position = Vec2((position.x() + Scalar(0.25)) * Scalar(2), (position.y() + Scalar(0.25)) * Scalar(2));
   }
-  if (!aligned.converged || aligned.zncc < kLeastScore) return outcome;
+  if (!aligned.converged || aligned.zncc < kMinScore) return outcome;
   outcome.found = true;
   outcome.pixel = from_level(position, finest);
   outcome.level_scale = static_cast<Scalar>(1 << finest);
