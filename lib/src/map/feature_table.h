@@ -5,21 +5,20 @@
 #include "base/arena.h"
 #include "base/eigen.h"
 
-/// What is kept about each feature beside its block in the filter.
+/// Table of features: what is kept about each beside its block in the filter.
 
 namespace pf {
 
 struct Feature {
-  std::uint32_t id = 0;  ///< never used twice
-  std::uint32_t external_id =
-      0;          ///< the caller's id, for features that came as observations; of a target the index of the point
-  int slot = -1;  ///< block in the filter; -1: this entry is free
+  std::uint32_t id = 0;           ///< never used twice
+  std::uint32_t external_id = 0;  ///< the caller's id of an observed feature; of the target, the index of the point
+  int slot = -1;                  ///< block in the filter; -1: this entry is free
   bool is_target = false;
   bool has_appearance = false;
-  int observations = 0;  ///< frames in which it was measured and used
-  int attempts = 0;      ///< frames in which it was looked for
-  int failures = 0;      ///< attempts since it was last measured
-  int rejections = 0;    ///< of them, matches that did not agree
+  int observations = 0;  ///< frames in which it was an inlier
+  int attempts = 0;      ///< frames in which it was searched for
+  int failures = 0;      ///< attempts since it was last an inlier
+  int rejections = 0;    ///< of these failures, matches that were outliers
   std::int64_t last_seen_ns = 0;
 };
 
@@ -34,7 +33,7 @@ class FeatureTable {
     clear();
     next_id_ = 1;
   }
-  /// No features any more; their ids are not used again.
+  /// Removes all features. Their ids are not used again.
   void clear() {
     for (int i = 0; i < capacity_; ++i) feature_[i] = Feature();
     count_ = 0;
@@ -63,7 +62,7 @@ class FeatureTable {
     --count_;
   }
 
-  /// The entry that is missed least: not of the target, not seen since `not_since_ns`, longest nothing_measured; -1 where there is none.
+  /// The feature to evict first: longest unseen, not of the target and not seen since this time; -1 if there is none.
   int least_useful(std::int64_t not_since_ns) const {
     int worst = -1;
     for (int i = 0; i < capacity_; ++i) {

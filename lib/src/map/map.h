@@ -4,7 +4,8 @@
 #include "map/plane_table.h"
 #include "vision/appearance.h"
 
-/// The map beside the filter: features, how they looked, and planes, as plain tables behind one handle. Rows hold no pointers.
+/// The map beside the filter: features, their appearances, and planes, as plain tables behind one handle. Rows hold no pointers, so
+/// that they can be copied and written to a file.
 
 namespace pf {
 
@@ -27,10 +28,10 @@ class Map {
     target_withdrawn = false;
   }
 
-  /// How a feature looked at first. Valid where the feature `has_appearance`.
+  /// How a feature looked when it was first seen. Valid if the feature `has_appearance`.
   Appearance& appearance(int feature) { return appearance_[feature]; }
   const Appearance& appearance(int feature) const { return appearance_[feature]; }
-  /// The camera that saw it then: a constant in W, which does not follow when the map moves.
+  /// The camera that saw it then: a constant in W that does not follow when the map moves.
   CameraView& first_view(int feature) { return first_view_[feature]; }
   const CameraView& first_view(int feature) const { return first_view_[feature]; }
 

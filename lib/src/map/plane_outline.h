@@ -13,18 +13,18 @@ struct PlaneOutline {
   Vec2 uv[kMaxOutline];
 };
 
-/// The outline grows until it holds the points. Beyond kMaxOutline vertices, the one whose loss costs least area goes, so
-/// that it never oversteps the convex hull. Any order, any number of points; those that are not finite are left out.
+/// Extends the outline until it contains the points. Beyond kMaxOutline vertices, removes the one that costs the least area, so that
+/// the outline never leaves the convex hull. Points in any order and number; those that are not finite are ignored.
 void extend_outline(PlaneOutline* outline, const Vec2* uv, int count);
 
-inline constexpr int kOutlineBatch = 96;  ///< points that are held against one another
+inline constexpr int kOutlineBatch = 96;  ///< points that reject_isolated compares
 
-/// Those of the points that have company come first, in their order; returns how many. A point is alone when the second nearest
-/// of the others is more than five times as far as it commonly is (the median). Of fewer than six, none is.
+/// Moves isolated points out of the list, keeping the order of the others; returns how many remain. A point is isolated if its second
+/// nearest neighbour is more than five times as far as the median of that distance. Of fewer than six points, none is.
 /// count <= kOutlineBatch
 int reject_isolated(Vec2* uv, int count);
 
-/// Twice the signed area of a triangle: positive when a, b, c turn left.
+/// Twice the signed area of a triangle: positive if a, b, c are counter-clockwise.
 Scalar twice_area(const Vec2& a, const Vec2& b, const Vec2& c);
 
 /// [m²]

@@ -115,8 +115,8 @@ void PlaneRefit::keep_connected() {
   member_count_ = kept;
 }
 
-/// A point far outside of the others turns the plane towards itself and then lies on it. So each must lie where the
-/// plane through the others passes: the residual without it is r / (1 - leverage), leverage = 1/n + u²/λ1 + v²/λ2.
+/// A point far from the others has high leverage: it rotates the plane towards itself and then lies on it. So each point must lie on the
+/// plane through the others: the residual without it is r / (1 - leverage), leverage = 1/n + u²/λ1 + v²/λ2.
 bool PlaneRefit::reject_high_leverage() {
   for (;;) {
     int worst = -1;

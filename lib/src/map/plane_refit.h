@@ -7,7 +7,7 @@ namespace pf {
 /// The layers beside a plane reach this many times as far as its own points may.
 inline constexpr int kPlaneLayer = 4;
 
-/// A plane that three points suggest.
+/// A plane through three points.
 struct PlaneHypothesis {
   Vec3 o_W = Vec3::Zero();
   Vec3 n_W = Vec3::UnitZ();
@@ -25,13 +25,13 @@ struct PlaneLayers {
 PlaneLayers count_layers(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings,
                          const Vec3& o_W, const Vec3& n_W);
 
-/// From a suggestion to a plane with its points, or to none.
+/// Refits a hypothesis to a plane with its members, or rejects it.
 class PlaneRefit {
  public:
   PlaneRefit(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings, const Vec3& viewer_W)
       : candidates_(candidates), count_(count), settings_(settings), viewer_W_(viewer_W) {}
 
-  /// Fits and collects in turn, leaves out what does not belong, and judges the rest. False when it is no plane.
+  /// Fits and collects in turn, rejects points of high leverage, and tests the rest. False if it is no plane.
   bool run(const PlaneHypothesis& hypothesis);
 
   const PlaneFit& fit() const { return fit_; }

@@ -6,7 +6,7 @@
 
 namespace pf {
 
-/// A point that may lie on a plane nobody has found yet.
+/// A point that may lie on a plane that has not been found yet.
 struct PlaneCandidate {
   Vec3 p_W;         ///< [m]
   Mat3 covariance;  ///< of p_W itself [m²]
@@ -22,7 +22,7 @@ struct PlaneSearchSettings {
   Scalar chi2 = Scalar(6.63);               ///< d² < chi2 (nᵀ Σ n + normal_variance)
 };
 
-/// The most points that a found plane starts with; the others may join it later.
+/// Largest number of points that a new plane starts with; others are folded later.
 inline constexpr int kMaxPlaneMembers = 64;
 
 /// One plane among the candidates, or none.

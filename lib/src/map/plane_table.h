@@ -5,7 +5,7 @@
 #include "base/arena.h"
 #include "map/plane_outline.h"
 
-/// What is kept about each plane beside its block in the filter.
+/// Table of planes: what is kept about each beside its block in the filter.
 
 namespace pf {
 
@@ -13,9 +13,9 @@ struct PlaneEntry {
   std::uint32_t id = 0;  ///< never used twice
   int slot = -1;         ///< block in the filter; -1: this entry is free
   int age = 0;           ///< frames since it was found
-  int weak = 0;          ///< of them in a row, the last ones with too few points
-  int max_points = 0;    ///< points that it ever had
-  int outliers = 0;      ///< points that were taken out again because they do not lie there
+  int weak = 0;          ///< of these, the last ones in a row with too few points
+  int max_points = 0;    ///< most points that it had at one time
+  int outliers = 0;      ///< points that were unfolded because they do not lie on it
   PlaneOutline seen;     ///< of points that were on it when it was last tended to, many of them gone from the map since
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 };
@@ -32,7 +32,7 @@ class PlaneTable {
     clear();
     next_id_ = 1;
   }
-  /// No planes any more; their ids are not used again.
+  /// Removes all planes. Their ids are not used again.
   void clear() {
     for (int i = 0; i < capacity_; ++i) entry_[i] = PlaneEntry();
     for (int i = 0; i < capacity_ * kMergesPerPlane; ++i) merged_[i] = Merged();
@@ -61,18 +61,18 @@ class PlaneTable {
     next_merged_ = (next_merged_ + 1) % (capacity_ * kMergesPerPlane);
   }
 
-  /// The entry of a slot's plane, or -1.
+  /// Entry of the plane in this block, or -1.
   int entry_at(int slot) const {
     for (int i = 0; i < capacity_; ++i)
       if (used(i) && entry_[i].slot == slot) return i;
     return -1;
   }
-  /// The id of a slot's plane, or 0.
+  /// Id of the plane in this block, or 0.
   std::uint32_t id_at(int slot) const {
     const int entry = entry_at(slot);
     return entry < 0 ? 0 : entry_[entry].id;
   }
-  /// The id that an id stands for now; 0 when its plane is gone, or was merged too long ago.
+  /// Current id of a plane that may have been merged; 0 if it is gone, or its merge is no longer remembered.
   std::uint32_t find(std::uint32_t id) const {
     for (int step = 0; step <= capacity_ * kMergesPerPlane; ++step) {
       for (int i = 0; i < capacity_; ++i)

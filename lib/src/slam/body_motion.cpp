@@ -7,18 +7,19 @@
 namespace pf {
 namespace {
 
-constexpr Scalar kSpeedDecay = Scalar(0.25);       ///< in which a speed decays while nothing is measured
-constexpr Scalar kMaxRotationSigma = Scalar(0.5);  ///< [rad] standard deviation at which it grows no more
+constexpr Scalar kSpeedDecay = Scalar(0.25);  ///< [s] time constant of a speed that is not measured
+constexpr Scalar kMaxRotationSigma =
+    Scalar(0.5);  ///< [rad] beyond this standard deviation the covariance stops growing
 
 }  // namespace
 
 void BodyMotion::advance(std::int64_t gap_ns, bool coasting_or_lost, bool nothing_measured) {
-  // A gap that is longer than any motion stays predictable grows the covariance no further.
+  // After kMaxGapNs no motion is predictable, and the covariance grows no further.
   const Scalar dt = static_cast<Scalar>(static_cast<double>(gap_ns < kMaxGapNs ? gap_ns : kMaxGapNs) * 1e-9);
   MotionNoise noise = settings_.motion_noise;
   if (coasting_or_lost) {
-    // A hand does not keep its speed for long, and what is known of the turn to half a radian is enough to search everywhere:
-    // without this, one second without a picture would carry the camera out of the room.
+    // A hand does not keep its speed for long, and half a radian of rotation uncertainty already means searching everywhere.
+    // Without these limits, one second without an image would predict the camera out of the room.
     if (settings_.constant_velocity && nothing_measured) damp(dt);
     if (filter_.variance(Body::kTheta) > kMaxRotationSigma * kMaxRotationSigma)
       noise.linear = noise.angular = Scalar(0);
@@ -37,7 +38,7 @@ void BodyMotion::predict(Body& body, Scalar dt, const MotionNoise& noise, Transi
     predict_constant_position(body, dt, noise, transition);
 }
 
-/// A hand's speed decays while nothing is measured.
+/// Lets the speed decay while nothing is measured.
 void BodyMotion::damp(Scalar dt) {
   Mat6 P_speed;
   for (int i = 0; i < 6; ++i)

@@ -5,7 +5,7 @@
 #include "filter/filter.h"
 #include "slam/settings.h"
 
-/// Moves the body to the time of a frame, and predicts it for later times.
+/// Predicts the body: to the time of each frame in the filter, and to later times for display.
 
 namespace pf {
 
@@ -13,7 +13,7 @@ class BodyMotion {
  public:
   BodyMotion(const Settings& settings, Filter& filter) : settings_(settings), filter_(filter) {}
 
-  static constexpr std::int64_t kMaxGapNs = 2000000000;  ///< [ns] between frames, that a prediction goes over
+  static constexpr std::int64_t kMaxGapNs = 2000000000;  ///< [ns] longest time between frames that a prediction covers
 
   void init() { data_ = Data(); }
   /// Known change of the velocities in camera axes, until the next frame.
@@ -22,11 +22,11 @@ class BodyMotion {
     data_.dw_C += dw_C;
   }
 
-  /// The filter's body moves on by this time. coasting_or_lost: by prediction alone; nothing_measured: nothing was measured in the last frame.
+  /// Predicts the filter's body over this gap. coasting_or_lost: the tracking state; nothing_measured: the last frame had no inlier.
   void advance(std::int64_t gap_ns, bool coasting_or_lost, bool nothing_measured);
-  /// Moves a body by the configured model, with its Jacobian and noise.
+  /// Moves a body by the configured motion model. The transition gets its Jacobian and noise.
   void predict(Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
-  /// Body and pose covariance (6x6) at t_ns, predicted where that is after now_ns.
+  /// Body and pose covariance (6x6) at t_ns; predicted if t_ns is after now_ns.
   void predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const;
 
  private:

@@ -10,10 +10,10 @@ namespace pf {
 namespace {
 
 constexpr int kMinAttempts = 10;      ///< before a feature is judged
-constexpr int kMaxFailures = 12;      ///< in a row, for one that was good
-constexpr int kMaxEarlyFailures = 4;  ///< in a row, for one that was seldom seen
-constexpr int kMinDepths = 8;         ///< depths make a median
-constexpr Scalar kBehindTarget = 2;   ///< how many times farther than the target the scene is taken to be
+constexpr int kMaxFailures = 12;      ///< in a row, of a feature that was measured often
+constexpr int kMaxEarlyFailures = 4;  ///< in a row, of a feature with fewer than kMinAttempts measurements
+constexpr int kMinDepths = 8;         ///< for a median
+constexpr Scalar kBehindTarget = 2;   ///< assumed depth of the scene, in depths of the target
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void FeatureKeeper::convert_linear() {
     if (!map_.features.used(i)) continue;
     const Block& block = filter_.state().block[map_.features[i].slot];
     if (block.kind != BlockKind::kInverseDepth) continue;
-    // A size of the world that nobody knows is the same for all, and no reason to keep a point's depth apart.
+    // The unknown global scale is common to all points, so it must not delay conversion.
     const Scalar sigma_rho = filter_.relative_sigma_rho(map_.features[i].slot, l);
     const Vec3 o_W = filter_.state().block[block.parent].xyz();
     if (linearity_index(filter_.state().body, o_W, block.inverse_depth(), sigma_rho) < settings_.linearity_index) {
@@ -51,7 +51,7 @@ void FeatureKeeper::drop_failing() {
     if (f.is_target) continue;
     const bool seldom = f.attempts >= kMinAttempts && 2 * f.observations < f.attempts;
     const bool in_a_row = f.failures >= (f.observations < kMinAttempts ? kMaxEarlyFailures : kMaxFailures);
-    // Behind the camera's own first centre: the depth went wrong.
+    // A depth that is negative by three sigma is wrong.
     const Block& block = filter_.state().block[f.slot];
     const bool inverted =
         block.kind == BlockKind::kInverseDepth && block.inverse_depth().rho < Scalar(0) &&
@@ -61,7 +61,7 @@ void FeatureKeeper::drop_failing() {
   drop(scratch_, count);
 }
 
-/// Table entries and their blocks go, in one pass over the covariance.
+/// Removes table entries and their blocks, kChunk at a time in one pass over the covariance.
 void FeatureKeeper::drop(const int* entries, int count) {
   constexpr int kChunk = 32;
   int slots[kChunk];
@@ -88,7 +88,7 @@ void FeatureKeeper::release(int entry) {
   map_.features.remove(entry);
 }
 
-/// Room for that many rows and one more feature, by eviction of what was not seen in this frame. False when there is none.
+/// Makes room for this many rows and one more feature by evicting features that were not seen in this frame. False: not enough of them.
 bool FeatureKeeper::make_room(int rows) {
   while (map_.features.count() >= map_.features.capacity() || filter_.room() < rows ||
          filter_.state().find_free() < 0) {
@@ -110,12 +110,12 @@ bool FeatureKeeper::make_room_at(int* anchor) {
   return *anchor >= 0;
 }
 
-/// Median inverse depth of what was measured in this frame; where that is the target alone, of what lies behind it; or that of
-/// the start.
+/// Inverse depth for a new feature: the median of what was measured in this frame; if that is the target alone, that of a scene
+/// kBehindTarget times as far; otherwise that of the start.
 ///
-/// A target stands in front of the scene. Points that begin nearer than they are tempt a camera whose pose the target leaves
-/// uncertain: short depths and a turn about the target explain the first frames too, and the filter may settle there (bas-relief
-/// ambiguity). Points that begin too far only wait for parallax.
+/// A target stands in front of the scene. Features that are initialised too near are dangerous while the target leaves the pose
+/// uncertain: short depths with a rotation about the target explain the first frames too, and the filter may converge to that
+/// (bas-relief ambiguity). Features that are initialised too far only wait for parallax.
 Scalar FeatureKeeper::median_inverse_depth() const {
   const Scalar start = Scalar(1) / settings_.start_depth;
   if (!settings_.depth_from_map) return start;

@@ -6,7 +6,7 @@
 #include "slam/settings.h"
 #include "slam/start.h"
 
-/// Keeps the features of the map: begins, converts, drops and evicts them, each together with its block in the filter.
+/// Keeps the features of the map: adds, converts, drops and evicts them, each together with its block in the filter.
 
 namespace pf {
 
@@ -17,20 +17,20 @@ class FeatureKeeper {
 
   bool layout(Arena& arena, int max_features);
 
-  /// Inverse depths that have become linear become 3-D points.
+  /// Converts inverse depths whose linearity index is small enough to 3-D points.
   void convert_linear();
-  /// Features go that fail too often, whose depth is negative, or whose numbers are unsound.
+  /// Drops features that fail too often, lie behind their first camera, or whose values are not finite and bounded.
   void drop_failing();
   void drop(const int* entries, int count);
   void drop_all();
-  /// A table entry goes whose block in the filter is gone already.
+  /// Removes a table entry whose block is no longer in the filter.
   void release(int entry);
 
-  /// Room for one more feature on an anchor, which is made where there is none: evictions take a childless anchor along.
+  /// Makes room for one more feature on *anchor, and a new anchor if *anchor is -1 or was removed by an eviction. False: no room.
   bool make_room_at(int* anchor);
-  /// A new inverse-depth feature at a pixel; its table entry, or -1.
+  /// Adds an inverse-depth feature at a pixel. Returns its table entry, or -1.
   int add(int anchor, const Vec2& pixel, const Mat2& noise);
-  /// The target's points enter the state with their own uncertainty.
+  /// Adds the target's points to the state with their own uncertainty.
   void add_target_points(const Target& target);
 
  private:

@@ -8,15 +8,15 @@
 namespace pf {
 namespace {
 
-/// How little is known of the velocities at a start that says nothing of them.
-constexpr Scalar kStartSpeed = Scalar(0.5);  // [m/s], times the start depth where that sets the scale
+/// Standard deviations of the velocities at a start that gives none.
+constexpr Scalar kStartSpeed = Scalar(0.5);  // [m/s]; times the start depth if that defines the unit of length
 constexpr Scalar kStartRate = Scalar(0.5);   // [rad/s]
 
-/// Of a pose that defines the world: small enough to be certain, large enough to keep P invertible.
+/// Standard deviation of a pose that defines the world [rad, m]: small enough to be certain, large enough to keep P invertible.
 constexpr Scalar kDefinedSigma = Scalar(1e-5);
 
 constexpr Scalar kWideDepth =
-    Scalar(0.5);  ///< of a depth that the record explains: relative sigma with which the filter begins again
+    Scalar(0.5);  ///< relative standard deviation of the depths with which the filter restarts
 
 }  // namespace
 
@@ -71,7 +71,7 @@ void FilterStart::set_body(const Body& body, const Scalar* covariance) {
   parts_.tracking.set_has_pose(parts_.frame.report.t_ns);
 }
 
-/// The pose before the first measurement: what was said to be known, or the world's own definition.
+/// The pose before the first measurement: the one that the caller gave, or the one that defines the world.
 void FilterStart::set_known_pose() {
   if (data_.known.given) {
     set_body(data_.known.body, data_.known.covariance);
@@ -138,8 +138,8 @@ void FilterStart::begin_record() {
   }
 }
 
-/// A measured pixel without what the rows' readout at other times than the frame's did to it. That is how fast the image moves
-/// there, which is known well before depths and speeds are.
+/// A measured pixel, corrected to the frame's time for the readout of its row. The correction is the image's motion there, which is
+/// known long before depths and speeds are.
 Vec2 FilterStart::at_frame_time(int slot, const Vec2& measured) const {
   Camera at_once = settings_.camera;
   at_once.readout = Scalar(0);
@@ -170,15 +170,15 @@ void FilterStart::record_frame() {
       if (first) settings_.hooks.say("started without a target: the first depths are known");
       break;
     case StartOutcome::kTooFew:
-      // Nothing but rotation so far, or too little in view: the world stays, the first frame is now this one.
+      // Only rotation so far, or too few features in view: the world stays, and the record begins again with this frame.
       if (first) parts_.features.drop_all();
       break;
   }
 }
 
-/// The filter begins again at the record's frame 0 with the bundle's depths as prior means, wide, and goes through the recorded
-/// frames with every linearisation at the bundle's poses and with residuals of zero: that moves no mean, and leaves the
-/// covariance that the recorded pixels support.
+/// Restarts the filter at the record's frame 0 with the bundle's depths as wide priors, and repeats the recorded frames with every
+/// linearisation at the bundle's poses and with residuals of zero. That moves no mean, and leaves the covariance that the recorded
+/// pixels support.
 void FilterStart::restart_from_record() {
   Body body;
   body.q_WC = without_.base_q_WC();
@@ -194,7 +194,7 @@ void FilterStart::restart_from_record() {
   if (settings_.constant_velocity) restart_velocities();
 }
 
-/// Features of the record begin with its depths; the others go.
+/// Adds the record's features to the filter with its depths; removes all others.
 void FilterStart::restart_features() {
   Filter& filter = parts_.filter;
   const int anchor = filter.add_anchor();
@@ -221,7 +221,7 @@ void FilterStart::restart_features() {
   }
 }
 
-/// The body moves to frame k of the record, and its pixels are taken in with residuals of zero.
+/// Moves the body to frame k of the record, and updates with its pixels and residuals of zero.
 void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   Filter& filter = parts_.filter;
   const StartRecord& record = without_.record();
@@ -252,7 +252,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   filter.finish_update(parts_.update.observations(), count, nullptr, nullptr);
 }
 
-/// Velocities over the last few frames of the record, against the noise of single poses.
+/// Sets the velocities from the last few frames of the record; several, because single poses are noisy.
 void FilterStart::restart_velocities() {
   const StartRecord& record = without_.record();
   const int frames = record.frames();

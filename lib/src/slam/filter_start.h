@@ -36,27 +36,27 @@ class FilterStart {
 
   bool layout(Arena& arena, int width, int height);
   void init();
-  /// A filter without a map, of which nothing is known.
+  /// Empties the filter, and with it the table of planes.
   void clear_filter();
-  /// Everything that came from the estimate goes, and what the caller said of the first pose, which is not true here. A target that is
-  /// still there may be found again.
+  /// Clears everything that came from the estimate, and the first pose that the caller gave, which does not hold here. A target that
+  /// was not withdrawn is kept and may be found again.
   void start_over();
 
-  /// Whether a start at this target can be made with these capacities.
+  /// Whether the target's points fit into the capacities.
   bool fits(const Target& target) const;
   Status use_target(const Target& target);
   Status use_pose(const KnownBody& known);
-  /// A rectangle is found in images; there is no such thing in a list of observations.
+  /// A rectangle can only be found in an image, not in a list of observations.
   bool takes_images_only() const { return target_.target().kind == TargetKind::kRectangle; }
 
-  /// The pose at the first frame. False: not yet.
+  /// Sets the pose of the first frame. False: not possible in this frame.
   bool start_in_image();
   void start_with_observations();
   const StartProgress& progress() const { return without_.progress(); }
 
-  /// Of a start without a target that is under way: the frame's pixels are recorded, and the filter begins again when they explain more.
+  /// While a start without a target is under way: records the frame's pixels, and restarts the filter when the record gives better depths.
   void record_frame();
-  /// The features that this frame has added become those of a record that has none.
+  /// Begins an empty record with the features that this frame has added.
   void begin_record();
 
  private:

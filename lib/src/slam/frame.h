@@ -7,7 +7,7 @@
 #include "base/elapsed.h"
 #include "filter/state.h"
 
-/// What one frame has shown so far: its report and its matches, as the caller may read them.
+/// Results of the current frame: its report and its matches, as the caller reads them.
 
 namespace pf {
 
@@ -16,7 +16,7 @@ enum class MatchStatus : int { kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4 
 
 /// One feature in one frame.
 struct Match {
-  int feature;  ///< entry in the feature table; -1 once it has gone, or where it could not be predicted
+  int feature;  ///< entry in the feature table; -1 once it has left the map, or if it could not be predicted
   std::uint32_t id;
   MatchStatus status;
   BlockKind kind;
@@ -50,7 +50,7 @@ class Frame {
     report = FrameReport();
     count_ = 0;
   }
-  /// The next frame, of which nothing is known but its time and its number.
+  /// Begins the next frame: an empty report with its time and its number, and no matches.
   void begin(std::int64_t t_ns) {
     const int frames = report.frames;
     report = FrameReport();
@@ -70,7 +70,7 @@ class Frame {
     match_[count_] = match;
     return count_++;
   }
-  /// The feature of this table entry has gone; its matches stay as what they were.
+  /// Detaches the matches of a feature that has left the map. They stay readable.
   void forget(int feature) {
     for (int i = 0; i < count_; ++i)
       if (match_[i].feature == feature) match_[i].feature = -1;

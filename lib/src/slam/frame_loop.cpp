@@ -67,7 +67,7 @@ Status FrameLoop::push_observations(const PixelObservation* observations, int co
   return end_frame();
 }
 
-/// Starts the report and moves the body to the new time. False for a time that does not rise.
+/// Begins the report and predicts the body to the new time. False if the time is not after the last one.
 bool FrameLoop::begin_frame(std::int64_t t_ns) {
   const std::int64_t before_ns = frame_.report.t_ns;
   if (frame_.report.frames > 0 && t_ns <= before_ns) return false;
@@ -75,7 +75,7 @@ bool FrameLoop::begin_frame(std::int64_t t_ns) {
   frame_.begin(t_ns);
   tracking_.begin_frame();
   if (!tracking_.has_pose()) {
-    motion_.init();  // what was pushed was for this frame
+    motion_.init();  // control input is for one frame only
     return true;
   }
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
@@ -86,18 +86,18 @@ bool FrameLoop::begin_frame(std::int64_t t_ns) {
 
 void FrameLoop::maintain_map() {
   features_.convert_linear();
-  // While a start goes on, the filter may begin again without its planes, whose ids would then stand for nothing.
+  // During a start the filter may restart without planes; ids of planes found before would then name nothing.
   if (settings_.planes && !start_.progress().recording) planes_.maintain();
   features_.drop_failing();
 }
 
-/// What the caller is told.
+/// Returns the status of the frame.
 Status FrameLoop::end_frame() {
   if (tracking_.has_pose() && (tracking_.updates_fail() || !filter_.body_is_sound())) start_over();
   return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
 }
 
-/// The estimate is no estimate any more: everything that came from it goes.
+/// The estimate is not finite or P is no covariance: clears everything that came from it.
 void FrameLoop::start_over() {
   start_.start_over();
   map_.features.clear();

@@ -19,9 +19,9 @@
 
 /// The order of work of one frame with the filter as back end (Gee 2007), and nothing else:
 ///
-///   predict -> where to look -> search -> agreement -> update -> (what is left: again) -> housekeeping -> new features
+///   predict -> where to look -> search -> consensus -> update -> (remaining candidates: again) -> map -> new features
 ///
-/// Its parts refer to each other: it is made where it stays.
+/// Its parts refer to each other, so it is constructed in place and never copied.
 
 namespace pf {
 

@@ -7,11 +7,12 @@
 namespace pf {
 namespace {
 
-constexpr int kCornerThreshold = 8;               ///< of the segment test [grey]
-constexpr float kMinCornerScore = 12.0f;          ///< smaller eigenvalue of the gradients [grey^2/px^2]
-constexpr Scalar kReferenceSigma = Scalar(0.25);  ///< [px] of the first sight, which every later match is compared with
+constexpr int kCornerThreshold = 8;       ///< [grey] of the segment test
+constexpr float kMinCornerScore = 12.0f;  ///< smaller eigenvalue of the gradients [grey^2/px^2]
+constexpr Scalar kReferenceSigma =
+    Scalar(0.25);  ///< [px] noise of the first pixel, which every later match is compared with
 constexpr int kCellColumns = 8, kCellRows = 6, kCells = kCellRows * kCellColumns;
-constexpr int kMinNewFeatures = 4;  ///< new features come in groups that share an anchor
+constexpr int kMinNewFeatures = 4;  ///< in one frame; new features share an anchor
 
 int cell_along(Scalar at, int size, int cells) {
   const Scalar inside = std::clamp(at, Scalar(0), static_cast<Scalar>(size - 1));
@@ -36,10 +37,10 @@ void ImageFrontEnd::add_features() {
 
   const int border = std::max(settings_.border_px, 10);
   int anchor = -1, added = 0;
-  // Emptiest cells first; each pass admits cells with one feature more.
+  // Emptiest cells first: pass `level` takes cells that hold that many features.
   for (int level = 0; level < 3 && added < wanted; ++level) {
     for (int cell = 0; cell < kCells && added < wanted; ++cell) {
-      // Steps through the cells so that neighbours do not follow each other.
+      // This order visits no neighbours one after the other.
       const int k = (cell * 19 + frame_.report.frames) % kCells;
       const int row = k / kCellColumns, column = k % kCellColumns;
       if (in_cell[k] != level) continue;
@@ -53,10 +54,10 @@ void ImageFrontEnd::add_features() {
       ++added;
     }
   }
-  if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child
+  if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children
 }
 
-/// A new feature at the best corner of this part of the image that is not near another feature. False where there is none, or no room.
+/// Adds a feature at the best corner of this rectangle that is not near another feature. False: no such corner, or no room.
 bool ImageFrontEnd::add_in(const Rect& rect, int* anchor) {
   constexpr int kCorners = 8;
   Corner corner[kCorners];
@@ -80,7 +81,7 @@ bool ImageFrontEnd::add_in(const Rect& rect, int* anchor) {
   return false;
 }
 
-/// No feature of this frame is near.
+/// Whether no feature of this frame is near the pixel.
 bool ImageFrontEnd::is_free(const Vec2& pixel) const {
   const Scalar apart = static_cast<Scalar>(std::max(8, settings_.camera.width / 40));
   for (int t = 0; t < frame_.match_count(); ++t) {

@@ -10,9 +10,9 @@
 namespace pf {
 namespace {
 
-constexpr int kScouts = 12;                 ///< features that are searched first when little is known of the motion
-constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] semi-axis from which scouts go first
-constexpr int kMinAgreement = 5;            ///< matches that must agree before they are believed
+constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
+constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
+constexpr int kMinAgreement = 5;            ///< inliers that a consensus needs
 
 }  // namespace
 
@@ -40,7 +40,7 @@ bool ImageFrontEnd::remember(int feature, const Vec2& pixel, const CameraView& v
   return f.has_appearance;
 }
 
-/// A feature that can be searched and should be inside of the image.
+/// Whether a feature can be searched for and is predicted inside of the image.
 bool ImageFrontEnd::is_visible(int feature) const {
   const Feature& f = map_.features[feature];
   if ((f.is_target && map_.target_withdrawn) || !f.has_appearance) return false;
@@ -52,7 +52,7 @@ bool ImageFrontEnd::is_visible(int feature) const {
            o.predicted.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
 }
 
-/// Features that should be in the image become candidates and matches, the most reliable first. Returns how many.
+/// Lists visible features as candidates and matches, the most reliable first. Returns how many.
 int ImageFrontEnd::list_visible() {
   const auto rate = [&](int feature) {
     const Feature& f = map_.features[feature];
@@ -62,7 +62,7 @@ int ImageFrontEnd::list_visible() {
   int count = 0;
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!map_.features.used(i) || !is_visible(i)) continue;
-    // Insertion by success rate, so that a full list keeps the best and the scouts are good ones.
+    // Sorted by success rate, so that a full list keeps the best and the scouts are the best.
     const float mine = rate(i);
     int at = count;
     if (count == settings_.max_observations) {
@@ -84,7 +84,7 @@ int ImageFrontEnd::list_visible() {
   return count;
 }
 
-/// Where to look, and the ellipse, for candidates.
+/// Predicts pixel and search ellipse of candidates.
 void ImageFrontEnd::predict_pixels(int first, int count) {
   for (int i = first; i < first + count; ++i) {
     const Candidate& candidate = update_.candidate(i);
@@ -93,7 +93,7 @@ void ImageFrontEnd::predict_pixels(int first, int count) {
     update_.keep()[i] = 0;
     if (!filter_.predict_pixel(settings_.camera, map_.features[candidate.feature].slot, &o)) {
       o.block = -1;
-      match.feature = -1;  // stands nowhere in the image
+      match.feature = -1;  // has no place in the image
       match.predicted.setZero();
       match.innovation.setZero();
       continue;
@@ -115,7 +115,7 @@ Scalar ImageFrontEnd::widest_ellipse(int count) const {
   return widest;
 }
 
-/// What the tracker has to know to look for a candidate.
+/// What the tracker needs to search for a candidate.
 SearchTask ImageFrontEnd::task_of(int i) const {
   const Candidate& candidate = update_.candidate(i);
   const int slot = map_.features[candidate.feature].slot;
@@ -137,7 +137,7 @@ SearchTask ImageFrontEnd::task_of(int i) const {
   return task;
 }
 
-/// Looks for candidates; those that are found move to the front of their range. Returns how many.
+/// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
 int ImageFrontEnd::search(int first, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   int found = first;
@@ -156,7 +156,7 @@ int ImageFrontEnd::search(int first, int count) {
     }
     ++frame_.report.matches;
     match.measured = outcome.pixel;
-    match.status = MatchStatus::kOutlier;  // until it agrees
+    match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
     o.measured = outcome.pixel;
     const Scalar floor = settings_.sigma_px * outcome.level_scale;
     o.set_noise(Mat2::Identity() * (floor * floor) + outcome.noise + o.second_order);
@@ -166,7 +166,7 @@ int ImageFrontEnd::search(int first, int count) {
   return found - first;
 }
 
-/// Search, agreement and update of a range of candidates.
+/// Searches for a range of candidates, finds their consensus, and updates the filter.
 void ImageFrontEnd::measure_range(int first, int count) {
   const int found = search(first, count);
   if (found == 0) return;
@@ -177,7 +177,7 @@ void ImageFrontEnd::measure_range(int first, int count) {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
     agreed = agree(filter_, update_.observations() + first, found, settings_.gate, keep + first);
   }
-  // With inliers from an earlier range the gate alone is evidence enough.
+  // If an earlier range has given inliers, a smaller consensus is accepted.
   const bool believed =
       frame_.report.inliers >= kMinAgreement || agreed >= std::min(kMinAgreement, map_.features.count());
   for (int i = first; i < first + found; ++i) {

@@ -8,7 +8,7 @@
 #include "slam/settings.h"
 #include "track/tracker.h"
 
-/// Measures an image: which features should be in it, where, what is found there, and new features at corners.
+/// Measures an image: predicts which features are in it and where, finds them, updates the filter, and adds features at corners.
 
 namespace pf {
 
@@ -21,13 +21,13 @@ class ImageFrontEnd {
   bool layout(Arena& arena, int width, int height);
   void init(const Camera& camera) { tracker_.init(camera); }
 
-  /// Takes in a frame. False when there is nothing in it to track by.
+  /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image) { return tracker_.begin_frame(image); }
-  /// Finds the map's features in the image and takes them into the filter.
+  /// Finds the map's features in the image and updates the filter with them.
   void measure();
-  /// New features in the emptiest cells of the image, until enough are in view.
+  /// Adds features in the emptiest cells of the image until enough are in view.
   void add_features();
-  /// Keeps how a feature looks at this pixel of the image. False when it is too near to the border.
+  /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
   bool remember(int feature, const Vec2& pixel, const CameraView& view);
 
   const Tracker& tracker() const { return tracker_; }

@@ -18,7 +18,7 @@ void ObservationFrontEnd::measure(const PixelObservation* observations, int coun
   update_.apply(0, known);
 }
 
-/// Observations of the map's features become matches; those that agree with their prediction become candidates. Returns how many.
+/// Lists observations of the map's features as matches, and those inside of their gate as candidates. Returns how many candidates.
 int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int i = 0; i < map_.features.capacity(); ++i) seen_[i] = false;
@@ -69,7 +69,7 @@ void ObservationFrontEnd::add_features(const PixelObservation* observations, int
     frame_.add({entry, map_.features[entry].id, MatchStatus::kNew, BlockKind::kInverseDepth, o.pixel, Mat2::Zero(),
                 o.pixel, Scalar(0)});
   }
-  if (anchor >= 0) filter_.remove(nullptr, 0);  // an anchor that got no child
+  if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children
 }
 
 int ObservationFrontEnd::find(std::uint32_t external_id) const {

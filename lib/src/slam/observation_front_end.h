@@ -9,7 +9,7 @@
 #include "slam/pixel_update.h"
 #include "slam/settings.h"
 
-/// Measures a frame of pixels that the caller has matched: which features they are, whether they agree, and new features.
+/// Measures a frame of pixels that the caller has matched: gates them, updates the filter, and adds features for unknown ids.
 
 namespace pf {
 
@@ -27,13 +27,13 @@ class ObservationFrontEnd {
 
   bool layout(Arena& arena, int max_features, int max_observations);
 
-  /// Where the observations of a frame are left: as many as the map and a frame can hold together.
+  /// Where the observations of a frame are written; holds as many as the map and a frame together.
   PixelObservation* inbox() { return inbox_; }
   int inbox_size() const { return settings_.max_features + settings_.max_observations; }
 
-  /// Takes what belongs to the map's features into the filter.
+  /// Updates the filter with observations of the map's features.
   void measure(const PixelObservation* observations, int count);
-  /// What belongs to none becomes new features.
+  /// Adds features for observations with unknown ids.
   void add_features(const PixelObservation* observations, int count);
 
  private:
@@ -46,7 +46,7 @@ class ObservationFrontEnd {
   Frame& frame_;
   FeatureKeeper& features_;
   PixelUpdate& update_;
-  bool* seen_ = nullptr;  ///< max_features: in this frame
+  bool* seen_ = nullptr;  ///< max_features: observed in this frame
   PixelObservation* inbox_ = nullptr;
 };
 

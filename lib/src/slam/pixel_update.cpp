@@ -8,7 +8,7 @@
 namespace pf {
 namespace {
 
-constexpr int kMaxRounds = 3;  ///< of one frame's pixels, where little was known of the pose
+constexpr int kMaxRounds = 3;  ///< of relinearisation
 
 }  // namespace
 
@@ -49,8 +49,8 @@ bool PixelUpdate::apply(int first, int count) {
   return true;
 }
 
-/// With an angle of s = sqrt(lambda / f^2) the tangent leaves out about f s^2, as noise f^2 s^4 / 2. The smaller eigenvalue counts:
-/// the larger may be of the depth, in which an inverse-depth point is linear.
+/// Over an angle of s = sqrt(lambda / f^2) the linearisation neglects about f s^2 pixels; as noise, f^2 s^4 / 2. lambda is the smaller
+/// eigenvalue: the larger one may come from depth, in which an inverse-depth point is linear.
 Mat2 PixelUpdate::expected_innovation(PixelMeasurement* o) const {
   const Mat2 S = filter_.innovation(*o);
   const Scalar half = (S(0, 0) - S(1, 1)) / 2;
@@ -62,8 +62,8 @@ Mat2 PixelUpdate::expected_innovation(PixelMeasurement* o) const {
   return S;
 }
 
-/// Pixels that were taken in with much of that noise are taken in again at the pose that they led to, with the information that the noise
-/// kept back:  R' = (R^-1 - (R + bend I)^-1)^-1 = R + R^2 / bend.
+/// If second-order noise was large in the update, linearises the same pixels again at the updated pose and updates with the information
+/// that this noise had withheld:  R' = (R^-1 - (R + bend I)^-1)^-1 = R + R^2 / bend.
 void PixelUpdate::relinearise_update(int first, int count) {
   for (int round = 0; round < kMaxRounds; ++round) {
     bool bent = false;

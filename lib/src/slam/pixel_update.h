@@ -6,11 +6,11 @@
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
 
-/// Takes a frame's pixels into the filter: what is expected of them, the update, and its second round.
+/// Updates the filter with a frame's pixels: expected innovations, the update, and its relinearisation.
 
 namespace pf {
 
-/// A feature that this frame measures. Its prediction and pixel are the observation of the same index.
+/// A feature that this frame measures. The observation of the same index holds its prediction and its pixel.
 struct Candidate {
   int feature;  ///< entry of the feature table
   int match;    ///< index in the frame's matches
@@ -23,24 +23,24 @@ class PixelUpdate {
 
   bool layout(Arena& arena, int max_observations);
 
-  /// max_observations each. What is kept is taken in.
+  /// max_observations each. The update uses those with keep != 0.
   Candidate& candidate(int i) { return candidate_[i]; }
   const Candidate& candidate(int i) const { return candidate_[i]; }
   PixelMeasurement& observation(int i) { return observation_[i]; }
   const PixelMeasurement* observations() const { return observation_; }
   unsigned char* keep() { return keep_; }
 
-  /// A candidate and its observation move to another index.
+  /// Copies a candidate and its observation to another index.
   void move(int from, int to) {
     candidate_[to] = candidate_[from];
     observation_[to] = observation_[from];
   }
 
-  /// H P H^T of a predicted pixel; adds to its second-order noise what the projection bends over the spread of the pose.
+  /// H P H^T of a predicted pixel. Adds the projection's second-order error over the pose uncertainty to the pixel's second_order noise.
   Mat2 expected_innovation(PixelMeasurement* o) const;
-  /// Gathers H P H^T of `count` observations from `first` on.
+  /// Computes H P H^T of `count` observations from `first` on.
   void begin(int first, int count);
-  /// Takes in the kept ones of those that begin() gathered. False when nothing was taken in.
+  /// Updates with the kept ones of the range that begin() got. False if the update could not be made; then nothing has changed.
   bool apply(int first, int count);
 
  private:

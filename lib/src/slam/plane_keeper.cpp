@@ -5,16 +5,16 @@
 
 #include "geometry/symmetric_eigen.h"
 
-/// Points of planes: outliers out, points in, points fixed. Whole planes: plane_lifecycle.cpp. Gee 2007, sections 3.3 and 3.4.
+/// Points of planes: unfold, fold, fix. Whole planes are in plane_lifecycle.cpp. Gee 2007, sections 3.3 and 3.4.
 
 namespace pf {
 namespace {
 
-constexpr int kConverged = 10;     ///< observations before a point is believed
+constexpr int kConverged = 10;     ///< observations before a point may be folded
 constexpr int kDiscoverEvery = 5;  ///< frames
-constexpr int kMaxRejections = 4;  ///< in a row, before a folded point is taken out again
-constexpr int kMinFixed = 4;       ///< points that a patch begins with
-constexpr Scalar kReach = 0.5f;    ///< beyond what is known of a plane, in roots of its area
+constexpr int kMaxRejections = 4;  ///< in a row, before a folded point is unfolded
+constexpr int kMinFixed = 4;       ///< points that a patch needs
+constexpr Scalar kReach = 0.5f;    ///< beyond the outline of a plane, in square roots of its area
 
 Scalar largest_eigenvalue(const Mat3& C) {
   Vec3 lambda;
@@ -54,15 +54,15 @@ void PlaneKeeper::maintain() {
   discover();
 }
 
-/// A 3-D point that has settled, and is not a target's, whose place is known anyway.
+/// Whether a feature is a converged 3-D point. Points of the target are not folded: their place is known.
 bool PlaneKeeper::is_settled(int entry) const {
   if (!map_.features.used(entry) || map_.features[entry].is_target) return false;
   const Feature& f = map_.features[entry];
   return filter_.state().block[f.slot].kind == BlockKind::kPoint && f.failures == 0 && f.observations >= kConverged;
 }
 
-/// Whether a settled point is known well enough to be folded, or to vote for a plane; its covariance relative to the camera and the
-/// world's size.
+/// Whether a converged point is known well enough to be folded or to support a new plane. The covariance is relative to the camera and to
+/// the global scale.
 bool PlaneKeeper::is_certain(int entry, Mat3* covariance) const {
   *covariance = filter_.relative_covariance(map_.features[entry].slot, scale_);
   const Scalar limit = settings_.fold_sigma * settings_.fold_sigma;
@@ -70,7 +70,7 @@ bool PlaneKeeper::is_certain(int entry, Mat3* covariance) const {
          largest_eigenvalue(*covariance) < limit;
 }
 
-/// Points that are found again and again where their plane does not put them go back to three coordinates, and the plane is less sure.
+/// Unfolds points that were matched kMaxRejections times in a row outside of their gate, and inflates their plane.
 void PlaneKeeper::unfold_outliers() {
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!map_.features.used(i) || map_.features[i].rejections < kMaxRejections) continue;
@@ -86,11 +86,11 @@ void PlaneKeeper::unfold_outliers() {
     if (entry < 0) continue;
     ++map_.planes[entry].outliers;
     map_.planes[entry].seen.count =
-        0;  // the misfit may have been a corner of it: what is known begins again with the others
+        0;  // the outlier may have been a vertex; the outline starts again from the other points
   }
 }
 
-/// A plane has believed one of its points wrongly by about plane_distance: what that did to it is added to its covariance.
+/// Adds to the covariance of a plane what one point that was wrong by about plane_distance has done to it.
 void PlaneKeeper::inflate(int plane_slot, int children) {
   const Scalar share = settings_.plane_distance / static_cast<Scalar>(std::max(children, 1));
   const Scalar extent = Scalar(0.25) * settings_.plane_radius;
@@ -100,8 +100,8 @@ void PlaneKeeper::inflate(int plane_slot, int children) {
   filter_.inflate(plane_slot, Q);
 }
 
-/// Not far from all that is known of a plane: what lies in it there does so by chance. The paper asks for a distance from the plane's
-/// origin, since it cannot tell how well far points are known beside each other; here the variance of the distance says so.
+/// Whether a point is near the known part of a plane; far from it, a point lies in the plane by chance. The paper limits the distance
+/// from the plane's origin instead, since it has no variance for the distance of far points; here there is one.
 bool PlaneKeeper::is_in_reach(int plane_entry, const Vec3& p_W) const {
   const PlaneFrame& frame = filter_.state().frame_of(filter_.state().block[map_.planes[plane_entry].slot]);
   const PlaneOutline& known = map_.planes[plane_entry].support;
@@ -109,8 +109,8 @@ bool PlaneKeeper::is_in_reach(int plane_entry, const Vec3& p_W) const {
   return outline_contains(known, plane_coordinates(frame, p_W), reach);
 }
 
-/// Near the plane, known to be, and in agreement with it by the gate of folding. Agreement means something only where the distance is
-/// known to about what it is gated with.
+/// Whether a point is near the plane, its distance is known, and it passes the gate of folding. A passed gate means little if the
+/// variance of the distance is large, so that is bounded by plane_distance.
 bool PlaneKeeper::lies_on(int plane, int slot) const {
   Scalar d, variance;
   if (!filter_.distance(plane, slot, &d, &variance)) return false;
@@ -120,7 +120,7 @@ bool PlaneKeeper::lies_on(int plane, int slot) const {
          d * d < rule.gate * (variance + rule.roughness * rule.roughness);
 }
 
-/// Points that lie on the plane join it.
+/// Folds points that lie on the plane.
 void PlaneKeeper::fold_into(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   const Block& block = filter_.state().block[plane];
@@ -144,14 +144,14 @@ void PlaneKeeper::fold_into(int plane_entry) {
     if (folded[i] != 0) support(plane_entry, slots[i]);
 }
 
-/// A point has joined: the plane is known as far as there.
+/// Extends a plane's support to a point that has been folded.
 void PlaneKeeper::support(int plane_entry, int slot) {
   const State& state = filter_.state();
   const Vec2 uv = plane_coordinates(state.frame_of(state.block[map_.planes[plane_entry].slot]), filter_.point(slot));
   extend_outline(&map_.planes[plane_entry].support, &uv, 1);
 }
 
-/// Points that are known well among those of their plane are estimated no more.
+/// Fixes points that are known well relative to the other points of their plane.
 void PlaneKeeper::fix_on(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   const State& state = filter_.state();

@@ -9,7 +9,7 @@
 #include "slam/frame.h"
 #include "slam/settings.h"
 
-/// Keeps the planes of the map: outliers out, points in, points fixed; planes found, merged and dissolved. Gee 2007, section 3.
+/// Keeps the planes of the map: unfolds outliers, folds and fixes points; discovers, merges and dissolves planes. Gee 2007, section 3.
 
 namespace pf {
 
@@ -19,8 +19,8 @@ struct PlanePoints {
   int fixed = 0;
 };
 
-/// Outline of a plane (entry of the table) in the coordinates of its frame: what is known of it, and the points that are on it now,
-/// but for those that are far from all others. outline may be null.
+/// Outline of a plane (entry of the table) in the coordinates of its frame: the part that was seen before, extended by the points that
+/// are on it now, without isolated ones. outline may be null.
 PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry, PlaneOutline* outline);
 
 class PlaneKeeper {
@@ -31,7 +31,7 @@ class PlaneKeeper {
   bool layout(Arena& arena, int max_features);
   void init() { data_ = Data(); }
 
-  /// The work of one frame. One plane at a time is maintained to, so that the work is bounded.
+  /// The work of one frame. Folds, fixes and merges one plane per frame, in turn, so that the work is bounded.
   void maintain();
 
  private:

@@ -3,19 +3,19 @@
 
 #include "slam/plane_keeper.h"
 
-/// Whole planes: found, merged, given another frame, outlined, dissolved. Gee 2007, section 3.3.
+/// Whole planes: discover, merge, change the frame, outline, dissolve. Gee 2007, section 3.3.
 
 namespace pf {
 namespace {
 
-constexpr int kMinPoints = 4;               ///< that keep alive a plane that once had more than plane_min_points
-constexpr int kMaxWeakFrames = 60;          ///< frames with fewer
-constexpr Scalar kMaxSlant = 0.05f;         ///< to its frame, above which a plane gets another one
-constexpr Scalar kMinNormalCosine = 0.97f;  ///< cosine of the angle below which planes may be one
+constexpr int kMinPoints = 4;               ///< of a plane that once had more than plane_min_points
+constexpr int kMaxWeakFrames = 60;          ///< in a row
+constexpr Scalar kMaxSlant = 0.05f;         ///< of a plane against its frame, above which it gets another frame
+constexpr Scalar kMinNormalCosine = 0.97f;  ///< cosine of the largest angle between planes that are merged
 
 }  // namespace
 
-/// Settled points that are known well and lie on no plane yet become candidates. Returns how many.
+/// Lists converged, well known points that lie on no plane yet. Returns how many.
 int PlaneKeeper::list_candidates() {
   int count = 0;
   const Scalar limit = Scalar(2) * settings_.plane_distance;
@@ -36,7 +36,7 @@ int PlaneKeeper::list_candidates() {
   return count;
 }
 
-/// One plane among the points that are in none yet.
+/// Looks for one new plane among these points.
 void PlaneKeeper::discover() {
   if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
   const int count = list_candidates();
@@ -53,7 +53,7 @@ void PlaneKeeper::discover() {
   for (int k = 0; k < members; ++k) member[k] = map_.features[candidate_entry_[member[k]]].slot;
   const int slot = filter_.add_plane(fit, member, members, settings_.fold.roughness);
   if (slot < 0) return;
-  // It has to keep, by the filter's own covariance, as many as it takes to find one.
+  // By the filter's own covariance, enough members must lie on it.
   int kept = 0;
   for (int k = 0; k < members; ++k) kept += lies_on(slot, member[k]) ? 1 : 0;
   const int entry = kept > settings_.plane_min_points ? map_.planes.add(slot) : -1;
@@ -66,7 +66,7 @@ void PlaneKeeper::discover() {
   settings_.hooks.say("found a plane");
 }
 
-/// Whether the points of `other` say that it is the plane in `slot`.
+/// Whether the points of plane `other` lie on plane `slot`.
 bool PlaneKeeper::same_plane(int slot, int other) const {
   const State& state = filter_.state();
   const Block &a = state.block[slot], &b = state.block[other];
@@ -84,11 +84,11 @@ bool PlaneKeeper::same_plane(int slot, int other) const {
     if (d * d < Scalar(9) * variance) ++agree;
     if (std::abs(d) < Scalar(3) * settings_.plane_distance) ++close;
   });
-  // Near as well as undecided: a plane that is hardly known agrees with anything.
+  // Both tests: every point passes the gate of a plane that is hardly known.
   return points >= kMinPoints && 10 * agree >= 9 * points && 10 * close >= 9 * points;
 }
 
-/// Another plane that is the same one gives its points to this one.
+/// Merges one other plane that is the same into this one.
 void PlaneKeeper::merge_into(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   for (int k = 0; k < map_.planes.capacity(); ++k) {
@@ -111,7 +111,7 @@ void PlaneKeeper::merge_into(int plane_entry) {
   }
 }
 
-/// Points of a plane are folded into another one, as far as they agree with it. False where one could not be released first.
+/// Folds the points of one plane into another, as far as they pass the gate. False if a fixed point could not be released first.
 bool PlaneKeeper::give_points(int from_entry, int to_entry) {
   const int other = map_.planes[from_entry].slot, plane = map_.planes[to_entry].slot;
   FoldRule rule = settings_.fold;
@@ -139,7 +139,7 @@ bool PlaneKeeper::give_points(int from_entry, int to_entry) {
   return true;
 }
 
-/// A plane that has turned away from its frame, or whose points have, gets a frame in their middle.
+/// Gives a plane that has rotated away from its frame a new frame, parallel to the plane.
 void PlaneKeeper::settle_frame(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   const State& state = filter_.state();
@@ -164,7 +164,7 @@ void PlaneKeeper::settle_frame(int plane_entry) {
   for (int i = 0; i < seen.count; ++i) seen.uv[i] = plane_coordinates(to, plane_point(from, x, seen.uv[i]));
 }
 
-/// All points go back to three coordinates, and the plane goes.
+/// Unfolds all points of a plane and removes it.
 void PlaneKeeper::dissolve(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   filter_.state().for_each_planar(plane, [&](int slot) {
@@ -196,8 +196,8 @@ PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry,
   return points;
 }
 
-/// A plane that too few points carry for a while goes, a new one also where it does not get as many as it was found with; and at
-/// once what more points have denied than still believe.
+/// Dissolves a plane that has too few points for kMaxWeakFrames; likewise a new one that never gets more than plane_min_points. Dissolves
+/// at once a plane with more outliers so far than points.
 void PlaneKeeper::dissolve_weak() {
   for (int i = 0; i < map_.planes.capacity(); ++i) {
     if (!map_.planes.used(i)) continue;

@@ -10,11 +10,11 @@
 #include "slam/settings.h"
 #include "slam/view.h"
 
-/// What the functions of the API act on: what comes in, how to start, and the back end that does the work.
+/// What the API calls act on: input, choice of the start, and the back end that does the work.
 
 namespace pf {
 
-/// What kind of frames a session takes: those that it was given first.
+/// Kind of frames that a session accepts: the kind of its first frame.
 enum class FrameKind { kUndecided, kImages, kObservations };
 
 class Session {
@@ -23,9 +23,9 @@ class Session {
   Session(const Session&) = delete;  // its back end refers to it
   Session& operator=(const Session&) = delete;
 
-  /// Over an arena without a block, this counts only.
+  /// With an arena that has no block, only counts.
   bool layout(Arena& arena, const Settings& settings);
-  /// As after the layout: nothing has come in yet.
+  /// Starts from nothing. Needs a layout in a block.
   void init();
 
   // --- how to start; before the first frame
@@ -36,7 +36,7 @@ class Session {
   // --- what comes in
   bool takes_images() const { return data_.kind != FrameKind::kObservations; }
   bool takes_observations() const { return data_.kind != FrameKind::kImages; }
-  /// The start needs images: there is no such thing as a rectangle in a list of observations.
+  /// The start that was chosen needs images.
   bool needs_images() const { return filter_->start().takes_images_only(); }
   /// Whether a frame of this time may come next.
   bool is_next(std::int64_t t_ns) const { return !view().used() || t_ns > view().last_ns(); }
@@ -70,7 +70,8 @@ class Session {
   Map map_;
   ImuLog imu_;
   Data data_;
-  FrameLoop* filter_ = nullptr;  ///< the back end; another one is a pointer beside this, and one of them is null
+  FrameLoop* filter_ =
+      nullptr;  ///< the back end; a second one becomes a pointer beside this one, and one of the two is null
 };
 
 }  // namespace pf

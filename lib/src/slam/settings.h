@@ -11,7 +11,7 @@
 
 namespace pf {
 
-/// The config, checked and in the library's own types.
+/// The config after it was checked, in the library's own types.
 struct Settings {
   Camera camera;
   const Kernels* kernels = nullptr;

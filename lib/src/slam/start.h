@@ -6,7 +6,7 @@ namespace pf {
 
 enum class TargetKind : int { kNone = 0, kRectangle = 1, kPoints = 2 };
 
-/// Something known that the camera sees first.
+/// A known object that the camera sees first.
 struct Target {
   static constexpr int kMaxPoints = 16;
 
@@ -15,7 +15,7 @@ struct Target {
   int count = 0;
   Vec3 point_W[kMaxPoints];
   Scalar sigma_m = 0;  ///< of each coordinate of each point
-  Body first_pose;     ///< about where the camera is at first (points)
+  Body first_pose;     ///< approximate pose of the first camera (points)
   Mat6 first_covariance = Mat6::Zero();
 };
 

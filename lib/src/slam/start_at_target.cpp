@@ -8,11 +8,12 @@
 namespace pf {
 namespace {
 
-constexpr Scalar kCornerSigma = Scalar(0.25);  ///< [px] of a corner that is found as the meeting of two lines
-constexpr Scalar kMaxRmsPx = Scalar(2);        ///< [px] of known points against the pose that explains them best
+constexpr Scalar kCornerSigma = Scalar(0.25);  ///< [px] of a corner that is found as the intersection of two lines
+constexpr Scalar kMaxRmsPx = Scalar(2);        ///< of the reprojection errors of known points
 constexpr int kMaxQuads = 8;
 
-/// Uncertainty of the target's points seen as uncertainty of the pixels, since the pose is fitted as if they were exact.
+/// Standard deviation of a corner's pixel, including the uncertainty of the target's point, since the pose is fitted as if the points
+/// were exact.
 Scalar pixel_sigma(const Camera& camera, Scalar sigma_m, Scalar distance) {
   const Scalar of_points = camera.fx * sigma_m / distance;
   return std::sqrt(kCornerSigma * kCornerSigma + of_points * of_points);
@@ -49,8 +50,8 @@ bool StartAtTarget::find_rectangle(const Camera& camera, const Tracker& tracker,
   return rectangle_pose(camera, target_.width, target_.height, sighting->pixel, sigma, &sighting->pose);
 }
 
-/// Known points near where the first pose puts them: the corners of a dark quadrilateral when there are four that match one,
-/// otherwise the strongest image corners. All points must be there.
+/// Finds known points near their prediction from the first pose: as the corners of a dark quadrilateral if there are four that match
+/// one, otherwise as the strongest image corners. All points must be found.
 bool StartAtTarget::find_points(const Camera& camera, const Tracker& tracker, TargetSighting* sighting) const {
   Vec2 predicted[Target::kMaxPoints];
   Scalar reach[Target::kMaxPoints];
@@ -79,8 +80,7 @@ bool StartAtTarget::find_points(const Camera& camera, const Tracker& tracker, Ta
   return fit(camera, z, sigma, sighting);
 }
 
-/// Where the first pose puts the points, how far from there they are looked for [px], and how far away they are [m]. False when one is
-/// not in the image.
+/// Predicts the points from the first pose: pixels, search radii [px], and their mean distance [m]. False if one is outside of the image.
 bool StartAtTarget::predict_points(const Camera& camera, Vec2* predicted, Scalar* reach, Scalar* distance) const {
   const Body& first = target_.first_pose;
   *distance = 0;
@@ -101,7 +101,7 @@ bool StartAtTarget::predict_points(const Camera& camera, Vec2* predicted, Scalar
   return true;
 }
 
-/// The corner of a quadrilateral for each of four points; false where one has none within its reach.
+/// Assigns a corner of the quadrilateral to each of four points. False if a point has none within its search radius.
 bool StartAtTarget::match_quad(const Quad& quad, const Vec2* predicted, const Scalar* reach, Vec2* z) const {
   bool taken[4] = {};
   for (int i = 0; i < 4; ++i) {
@@ -121,7 +121,7 @@ bool StartAtTarget::match_quad(const Quad& quad, const Vec2* predicted, const Sc
   return true;
 }
 
-/// The pose that explains these pixels of the points. False where none does.
+/// Fits the pose to these pixels of the points. False if the fit fails or its error is large.
 bool StartAtTarget::fit(const Camera& camera, const Vec2* z, Scalar sigma_px, TargetSighting* sighting) const {
   PoseEstimate estimate;
   estimate.q_WC = target_.first_pose.q_WC;

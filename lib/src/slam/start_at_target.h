@@ -5,7 +5,7 @@
 #include "track/quad_refine.h"
 #include "track/tracker.h"
 
-/// A start in front of something known: finds the target in an image, and from it the camera's pose. Knows no filter.
+/// Start at a known target: finds it in an image and computes the camera's pose from it. Knows no filter.
 
 namespace pf {
 
@@ -24,7 +24,7 @@ class StartAtTarget {
   const Target& target() const { return target_; }
   bool has_target() const { return target_.kind != TargetKind::kNone; }
 
-  /// Looks for the target; from the first time on its points and its first pose are the ones that were found. False: not there.
+  /// Finds the target in the image, and keeps the pose that was found as the target's first pose. False: not found.
   bool find(const Camera& camera, const Tracker& tracker, TargetSighting* sighting);
 
  private:

@@ -43,8 +43,8 @@ void StartWithoutTarget::add_pixel(const Camera& camera, std::uint32_t id, const
   record_.add_pixel(data_.frame, index, pixel);
 }
 
-/// A ray of the record's first frame as if it had been read out at the frame's time. Nothing was known of the motion then; now it is how
-/// far the pixel has moved since.
+/// Corrects a ray of the record's first frame to the frame's time. The motion was unknown then; it is how far the pixel has moved
+/// since.
 void StartWithoutTarget::move_ray(const Camera& camera, int index, const Vec2& pixel) {
   const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(data_.begin_ns, data_.t_ns)) * 1e-9);
   Vec2 first;

@@ -6,28 +6,28 @@
 #include "slam/tracking_state.h"
 #include "window/start_bundle.h"
 
-/// A start with nothing known: the pixels of the first frames are recorded until a bundle adjustment can explain them in one way only.
-/// Knows no filter: what it records is given to it, and what it explains is read from it.
+/// Start with nothing known: records the pixels of the first frames until a bundle adjustment has a unique solution for them.
+/// Knows no filter: it is given poses and pixels, and its solution is read from it.
 
 namespace pf {
 
 class StartWithoutTarget {
  public:
   bool layout(Arena& arena);
-  /// None is under way.
+  /// No start is under way.
   void init();
-  /// One is under way from now on.
+  /// Begins a start.
   void begin() { data_.progress.recording = true; }
   const StartProgress& progress() const { return data_.progress; }
 
-  /// The record begins with this frame, whose camera is its world.
+  /// Begins the record with this frame. Its camera is the record's frame of reference.
   void begin_record(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns);
-  /// A feature of the first frame, by the ray on which it was seen there.
+  /// Adds a feature of the first frame, by its ray there.
   void add_feature(std::uint32_t id, const Vec3& ray_C);
-  /// A later frame, with the pose in W that is believed; its pixels follow, as if all were read out at the frame's time.
+  /// Adds a later frame with its estimated pose in W. Its pixels follow, corrected to the frame's time.
   void begin_frame(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns);
   void add_pixel(const Camera& camera, std::uint32_t id, const Vec2& pixel);
-  /// Explains the record where it can. Afterwards a record that holds too few features is empty.
+  /// Tries to solve the record. kTooFew empties it, unless depths are known already; then the start is over.
   StartOutcome solve(const Camera& camera, Scalar sigma_px, Scalar median_depth);
 
   bool empty() const { return record_.features() == 0; }
@@ -41,7 +41,7 @@ class StartWithoutTarget {
   std::int64_t begin_ns() const { return data_.begin_ns; }
 
  private:
-  /// What is kept between frames, beside the record and the last explanation.
+  /// What is kept between frames, beside the record and the last solution.
   struct Data {
     StartProgress progress;
     Quat base_q_WC = Quat::Identity();
@@ -49,7 +49,7 @@ class StartWithoutTarget {
     std::int64_t begin_ns = 0;
     int frame = 0;           ///< that pixels are added to
     std::int64_t t_ns = 0;   ///< its time
-    bool is_second = false;  ///< it is the first after the record's own
+    bool is_second = false;  ///< it is the first one after the record's first frame
     std::uint32_t id[StartRecord::kMaxFeatures] = {};
   };
 

@@ -6,29 +6,29 @@
 #include "base/status.h"
 #include "slam/frame.h"
 
-/// Whether the camera is tracked: starting, tracking, coasting or lost, and what the caller is told.
+/// State of the tracking (starting, tracking, coasting, lost), and the status that a frame returns.
 
 namespace pf {
 
 /// With the numbers of pf_state_t.
 enum class SlamState : int { kStarting = 0, kTracking = 1, kCoasting = 2, kLost = 3 };
 
-/// How far a start without a target has come; none is under way where `recording` is false.
+/// Progress of a start without a target. No start is under way if `recording` is false.
 struct StartProgress {
   bool recording = false;
   bool depth_known = false;
 
-  /// No depth has been solved yet: there is no map to speak of.
+  /// No depth has been solved yet, so the map has no scale and no reliable depths.
   bool pending() const { return recording && !depth_known; }
 };
 
 class TrackingState {
  public:
-  static constexpr int kMinInliers = 8;  ///< fewer do not carry a pose
+  static constexpr int kMinInliers = 8;  ///< of a frame that counts as tracked
 
   void init() { data_ = Data(); }
   void begin_frame() { data_.from_target = data_.started_over = false; }
-  /// There is a pose from now on.
+  /// The filter has a pose from this time on.
   void set_has_pose(std::int64_t t_ns) {
     data_.has_pose = true;
     data_.last_tracked_ns = t_ns;
@@ -36,26 +36,26 @@ class TrackingState {
   /// This frame's pose comes from the target.
   void set_from_target() { data_.from_target = true; }
   void note_update(bool done) { data_.failed_updates = done ? 0 : data_.failed_updates + 1; }
-  /// The estimate is no estimate any more: nothing but a new start follows in this frame.
+  /// The estimate was discarded in this frame.
   void start_over() {
     data_ = Data();
     data_.started_over = true;
   }
-  /// What the caller is told at the end of a frame.
+  /// Decides the state at the end of a frame. Returns the status of the frame.
   Status conclude(const FrameReport& report, const StartProgress& start, std::int64_t max_coast_ns, const Hooks& hooks);
 
   SlamState state() const { return data_.state; }
   bool has_pose() const { return data_.has_pose; }
   bool started_over() const { return data_.started_over; }
-  /// P is no covariance any more.
+  /// So many updates have failed that P is no valid covariance.
   bool updates_fail() const { return data_.failed_updates >= kMaxFailedUpdates; }
-  /// The body moves by prediction alone.
+  /// The pose is a prediction.
   bool coasting_or_lost() const { return data_.state == SlamState::kCoasting || data_.state == SlamState::kLost; }
-  /// This frame carries its pose.
+  /// This frame's measurements support its pose.
   bool is_tracked(const FrameReport& report) const { return report.inliers >= kMinInliers || data_.from_target; }
 
  private:
-  static constexpr int kMaxFailedUpdates = 10;  ///< that could not be made, in a row
+  static constexpr int kMaxFailedUpdates = 10;  ///< in a row
 
   struct Data {
     SlamState state = SlamState::kStarting;

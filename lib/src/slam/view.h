@@ -8,15 +8,14 @@
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
 
-/// All that can be read from a session: state, pose, features, planes, matches, report. It changes nothing, and it alone knows which
-/// back end is asked.
+/// Read-only view of a session: state, pose, features, planes, matches, report. Only this class knows which back end it reads.
 
 namespace pf {
 
 class FrameLoop;
 class Filter;
 
-/// A feature as it is now.
+/// Current estimate of a feature.
 struct FeatureView {
   std::uint32_t id, external_id;
   bool is_target;
@@ -27,7 +26,7 @@ struct FeatureView {
   Mat3 covariance;
 };
 
-/// A plane as it is now, in a frame P that has it as third axis.
+/// Current estimate of a plane. The third axis of its frame P is the normal.
 struct PlaneView {
   std::uint32_t id;
   int points, fixed_points;
@@ -39,7 +38,7 @@ struct PlaneView {
   PlaneOutline outline;  ///< in P
 };
 
-/// Where a ray meets a plane.
+/// Intersection of a ray with a plane.
 struct HitView {
   std::uint32_t plane = 0;
   Scalar range = 0;
@@ -47,12 +46,12 @@ struct HitView {
   Mat3 covariance = Mat3::Zero();
 };
 
-/// What the map holds, by kind.
+/// Numbers of features by kind, of planes and of rows.
 struct MapCounts {
   int features = 0, points = 0, inverse_depths = 0, folded = 0, fixed = 0;
   int planes = 0;
   int state_dim = 0, state_dim_held = 0;
-  int state_dim_points_only = 0;  ///< what the same map would need without planes
+  int state_dim_points_only = 0;  ///< rows of the same map without planes
 };
 
 class View {
@@ -66,7 +65,7 @@ class View {
   bool has_pose() const;
   /// Body and pose covariance (6x6) at the last frame, or predicted to a later time.
   void pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const;
-  /// Pixel of a known point, and its covariance where that is not null. False where it does not project.
+  /// Projects a known point; covariance may be null. False if the point does not project.
   bool project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const;
   const FrameReport& report() const;
   int match_count() const;
@@ -76,18 +75,18 @@ class View {
   /// scratch: state_dim * (state_dim + 8)
   bool gauge_information(double* scratch, double* information) const;
 
-  /// Entries of the tables, some of them free.
+  /// Rows of the tables; some are free.
   int feature_capacity() const { return map_.features.capacity(); }
   bool has_feature(int i) const { return map_.features.used(i); }
   FeatureView feature(int i) const;
   int plane_capacity() const { return map_.planes.capacity(); }
   bool has_plane(int i) const { return map_.planes.used(i); }
-  /// The id that a plane's id stands for now; 0 when it is gone.
+  /// Current id of the plane that once had this id; 0 if there is none.
   std::uint32_t find_plane(std::uint32_t id) const { return map_.planes.find(id); }
 
   // view_planes.cpp
   PlaneView plane(int i) const;
-  /// The nearest plane that the ray of a pixel meets within its outline; plane 0 where there is none. False: the pixel has no ray.
+  /// Nearest plane whose outline the ray of a pixel hits; plane 0 if there is none. False if the pixel has no ray.
   bool hit(const Vec2& pixel, HitView* hit) const;
 
  private:

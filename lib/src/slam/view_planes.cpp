@@ -3,7 +3,7 @@
 #include "slam/frame_loop.h"
 #include "slam/view.h"
 
-/// Planes as a session shows them, and where rays meet them.
+/// Planes of the view, and intersections of rays with them.
 
 namespace pf {
 

@@ -10,12 +10,12 @@
 namespace pf {
 namespace {
 
-constexpr Scalar kSearchRadius = Scalar(9);  ///< [px of the level] an ellipse that is larger is searched a level up
+constexpr Scalar kSearchRadius = Scalar(9);  ///< [px of the level] a larger ellipse is searched one level up
 constexpr float kMinSearchScore = 0.6f;
 constexpr float kMinScore = 0.8f;      ///< of the aligned window
-constexpr float kMinPeakLead = 0.04f;  ///< a second peak that is nearly as high as the first is a repeated texture
+constexpr float kMinPeakLead = 0.04f;  ///< of the first peak over the second; less means repeated texture
 
-/// Source pixels per current pixel within which a view can still be compared with the first one.
+/// Range of source pixels per current pixel within which a view can be compared with the first one.
 constexpr Scalar kMinScale = Scalar(0.25);
 constexpr Scalar kMaxScale = Scalar(3.2);
 
@@ -49,8 +49,8 @@ bool Tracker::remember(const Vec2& pixel, Appearance* appearance) const {
   return extract_source(pyramid_, pixel, &appearance->patch);
 }
 
-/// Source pixels per current pixel about the feature, on its surface; where that is not known, on a plane that faced the camera when
-/// the feature was first seen: current pixel -> ray -> plane -> source pixel, by central differences.
+/// Source pixels per current pixel at the feature, on its surface; if that is not known, on a plane that faced the first camera:
+/// current pixel -> ray -> plane -> source pixel, by central differences.
 bool Tracker::warp(const SearchTask& task, Mat2* A) const {
   const CameraView& source = task.first_view;
   constexpr Scalar kStep = 4;
@@ -85,7 +85,7 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
   if (!(scale > kMinScale && scale < kMaxScale)) return outcome;
   outcome.comparable = true;
 
-  int finest = 0;  // where the source is at least about as sharp as the current image
+  int finest = 0;  // finest level at which the source is at least about as sharp as the current image
   while (finest + 1 < pyramid_.levels && scale * static_cast<Scalar>(1 << finest) < Scalar(0.6)) ++finest;
   int level = finest;
   const Scalar radius = std::sqrt(task.gate * largest_eigenvalue(task.innovation));
@@ -93,7 +93,7 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
 
   float warped[kWarpSize * kWarpSize];
   if (!warp_template(patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
-    // The patch does not reach so far at a coarse level: search the largest part at the finest one.
+    // The source patch is too small for this level: search at the finest one, as far as that reaches.
     level = finest;
     if (!warp_template(patch, A * static_cast<Scalar>(1 << level), kWarpSize, warped)) {
       outcome.comparable = false;

@@ -7,25 +7,26 @@
 #include "vision/image.h"
 #include "vision/pyramid.h"
 
-/// From images to pixels: it is told where to look for which feature and how sure that is, and says where it found it.
+/// Finds features in images, given where each is expected and with which covariance. Knows no filter and keeps no features.
 
 namespace pf {
 
-/// Where a feature should be in this frame, and how it was seen first.
+/// Where a feature is expected in this frame, and how it was seen first.
 struct SearchTask {
   const Appearance* appearance = nullptr;
   CameraView first_view;               ///< that the appearance was taken from
   Vec2 predicted = Vec2::Zero();       ///< [px]
   Mat2 innovation = Mat2::Identity();  ///< covariance of (measured - predicted) [px^2]
   Scalar gate = 9;                     ///< chi-square bound of the ellipse
-  Vec3 p_W = Vec3::Zero();             ///< the point, about
-  Vec3 normal_W = Vec3::Zero();        ///< of the surface there, either sign; zero: not known
-  Quat q_WC = Quat::Identity();        ///< camera now
+  Vec3 p_W = Vec3::Zero();             ///< estimate of the point
+  Vec3 normal_W = Vec3::Zero();        ///< of the surface, either sign; zero: not known
+  Quat q_WC = Quat::Identity();        ///< current camera
   Vec3 c_W = Vec3::Zero();             ///< its centre
 };
 
 struct SearchOutcome {
-  bool comparable = false;  ///< this view can be compared with the first one: not finding it means something
+  bool comparable =
+      false;  ///< this view can be compared with the first one, so that not finding it counts as a failure
   bool found = false;
   Vec2 pixel = Vec2::Zero();
   Mat2 noise = Mat2::Zero();  ///< covariance of the pixel, from how well the template fits the image there [px^2]
@@ -41,10 +42,10 @@ class Tracker {
   bool layout(Arena& arena, int width, int height);
   void init(const Camera& camera) { camera_ = camera; }
 
-  /// Takes in a frame. False when there is nothing in it to track by: black, white, blurred out.
+  /// Builds the pyramid of an image. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);
 
-  /// Copies what is around a pixel of this frame. False, appearance untouched, when it is too near to the border.
+  /// Copies the surroundings of a pixel of this image. False, appearance untouched, if the pixel is too near to the border.
   bool remember(const Vec2& pixel, Appearance* appearance) const;
 
   SearchOutcome search(const SearchTask& task) const;
