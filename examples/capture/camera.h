@@ -39,20 +39,13 @@ class Camera {
   virtual bool target(pf_target_t&) const { return false; }
 };
 
-/// null: error is one line. camera is that of --calib; rate_hz becomes what the device grants.
-std::unique_ptr<Camera> open_v4l2_camera(const Options& options, const pf_camera_t& camera, double& rate_hz,
-                                         std::string& error);
-
-/// Likewise. The rate that libcamera grants is known with the first frames only: rate_hz becomes what was asked for.
-std::unique_ptr<Camera> open_libcamera_camera(const Options& options, const pf_camera_t& camera, double& rate_hz,
-                                              std::string& error);
+/// A camera of this machine. null: error is one line. camera is that of --calib; rate_hz becomes what the device grants, or what was asked
+/// for where that is known with the first frames only.
+std::unique_ptr<Camera> open_device_camera(const Options& options, const pf_camera_t& camera, double& rate_hz,
+                                           std::string& error);
 
 /// A folder or a scene, played at the pace of its own timestamps.
 std::unique_ptr<Camera> open_paced_camera(const Options& options, std::unique_ptr<Source> source);
-
-/// Print a line for each camera; return how many.
-int list_v4l2_cameras();
-int list_libcamera_cameras();
 
 /// Prints the cameras and IMUs of this machine; returns the exit code.
 int list_devices();

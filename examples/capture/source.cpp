@@ -121,8 +121,7 @@ std::unique_ptr<Source> open_camera_source(const Options& options, std::string& 
     return nullptr;
   }
   info.warning = message;
-  const auto open_camera = platform::is_libcamera(options.source) ? open_libcamera_camera : open_v4l2_camera;
-  std::unique_ptr<Camera> camera = open_camera(options, info.camera, info.rate_hz, error);
+  std::unique_ptr<Camera> camera = open_device_camera(options, info.camera, info.rate_hz, error);
   if (camera == nullptr) {
     return nullptr;
   }

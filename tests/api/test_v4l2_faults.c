@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <linux/dma-buf.h>
 #include <linux/videodev2.h>
+#include <planefold_platform/camera_source.h>
 #include <planefold_platform/v4l2.h>
 #include <poll.h>
 #include <stdarg.h>
@@ -655,11 +656,57 @@ static void test_open_should_refuse_a_row_longer_than_any_memory(void) {
   expect_nothing_left("a refused camera");
 }
 
+static void test_camera_source_should_hand_on_frames_faults_and_what_is_known(void) {
+  pf_camera_source_options_t options;
+  pf_camera_source_t camera;
+  pf_camera_source_frame_t frame;
+  pf_camera_source_info_t info;
+  char message[PF_CAMERA_SOURCE_MESSAGE] = "";
+  pf_camera_source_options_default(&options);
+  options.width = kWidth;
+  options.height = kHeight;
+  options.format = "MJPG";
+  begin(7);
+  TEST_ASSERT_EQUAL_INT(-1, pf_v4l2_open_source("/dev/video7", &options, &camera, message));
+  TEST_ASSERT_NOT_NULL(strstr(message, "MJPG"));
+  TEST_ASSERT_NULL(camera.context);
+  options.format = "GREY";
+  TEST_ASSERT_EQUAL_INT_MESSAGE(0, pf_v4l2_open_source("/dev/video7", &options, &camera, message), message);
+  TEST_ASSERT_EQUAL_INT(0, camera.start(camera.context, message));
+  for (int k = 1; k <= 5; ++k) {
+    TEST_ASSERT_EQUAL_INT(PF_CAMERA_SOURCE_FRAME, camera.read(camera.context, 100, &frame, message));
+    TEST_ASSERT_EQUAL_INT(kWidth, frame.image.width);
+    TEST_ASSERT_EQUAL_UINT8(k, frame.image.pixels[0]);
+    camera.release(camera.context, &frame);
+  }
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_SOURCE_NOTHING, camera.read(camera.context, 1, &frame, message));
+  TEST_ASSERT_EQUAL_INT(-1, frame.buffer);
+  fake.fault_count = 1;
+  fake.faults[0].kind = kUnplugged;
+  fake.faults[0].begin_ns = fake.now_ns;
+  fake.faults[0].end_ns = fake.now_ns + FAKE_SECOND;
+  fake.faults[0].at_call = -1;
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_SOURCE_GONE, camera.read(camera.context, 100, &frame, message));
+  TEST_ASSERT_EQUAL_INT(-1, camera.come_back(camera.context, message));
+  pass(FAKE_SECOND);
+  TEST_ASSERT_EQUAL_INT(0, camera.come_back(camera.context, message));
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_SOURCE_FRAME, camera.read(camera.context, 100, &frame, message));
+  camera.get_info(camera.context, &info);
+  TEST_ASSERT_EQUAL_STRING("v4l2", info.interface);
+  TEST_ASSERT_EQUAL_STRING("GREY", info.format);
+  TEST_ASSERT_EQUAL_STRING("/dev/video7", info.id);
+  TEST_ASSERT_EQUAL_STRING("end of exposure", info.timestamps);
+  TEST_ASSERT_TRUE(info.frames == 6 && info.departures == 1);
+  camera.close(camera.context);
+  expect_nothing_left("a source");
+}
+
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_camera_should_go_on_when_one_stamp_lies_an_hour_ahead);
   RUN_TEST(test_camera_should_go_on_when_stamps_stay_an_hour_ahead_or_behind);
   RUN_TEST(test_camera_should_go_on_when_buffers_were_refused);
+  RUN_TEST(test_camera_source_should_hand_on_frames_faults_and_what_is_known);
   RUN_TEST(test_open_should_refuse_a_row_longer_than_any_memory);
   RUN_TEST(test_camera_should_go_on_when_its_driver_fails_in_any_order);
   return UNITY_END();

@@ -1,91 +1,88 @@
-/* The two C interfaces to cameras as C++ types of one shape, for code that serves either:
+/* Which sources of a program's command line are cameras, and opening one of them.
  *
- *   template <class Api> void watch(const std::string& source) {
- *     typename Api::Options options{};
- *     Api::options_default(&options);
- *     auto camera = pf::platform::open_camera<Api>(source, options, error);
- *     Api::start(camera.get(), message);
- *   }
- *
- * V4l2 and Libcamera are there where PLANEFOLD_HAVE_V4L2 and PLANEFOLD_HAVE_LIBCAMERA are defined.
+ * V4L2 and libcamera are there where PLANEFOLD_HAVE_V4L2 and PLANEFOLD_HAVE_LIBCAMERA are defined.
  */
 #ifndef PLANEFOLD_PLATFORM_CAMERAS_H
 #define PLANEFOLD_PLATFORM_CAMERAS_H
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
+#include <planefold_platform/camera_source.h>
+
 #include <string>
 
-#ifdef PLANEFOLD_HAVE_V4L2
-#include <planefold_platform/v4l2.h>
-#endif
-#ifdef PLANEFOLD_HAVE_LIBCAMERA
-#include <planefold_platform/libcamera.h>
-#endif
-
 namespace pf::platform {
-
-#ifdef PLANEFOLD_HAVE_V4L2
-struct V4l2 {
-  using Device = pf_v4l2_t;
-  using Options = pf_v4l2_options_t;
-  using Frame = pf_v4l2_frame_t;
-  using Info = pf_v4l2_info_t;
-  static constexpr size_t kMessage = PF_V4L2_MESSAGE;
-  static constexpr uint32_t kFormats = PF_V4L2_FORMATS;
-  static constexpr int kNothing = PF_V4L2_NOTHING, kFrame = PF_V4L2_FRAME, kGone = PF_V4L2_GONE;
-  static constexpr auto options_default = pf_v4l2_options_default;
-  static constexpr auto format_name = pf_v4l2_format_name;
-  static constexpr auto open = pf_v4l2_open;
-  static constexpr auto close = pf_v4l2_close;
-  static constexpr auto start = pf_v4l2_start;
-  static constexpr auto read = pf_v4l2_read;
-  static constexpr auto release = pf_v4l2_release;
-  static constexpr auto come_back = pf_v4l2_return;
-  static constexpr auto get_info = pf_v4l2_get_info;
-};
-#endif
-
-#ifdef PLANEFOLD_HAVE_LIBCAMERA
-struct Libcamera {
-  using Device = pf_libcamera_t;
-  using Options = pf_libcamera_options_t;
-  using Frame = pf_libcamera_frame_t;
-  using Info = pf_libcamera_info_t;
-  static constexpr size_t kMessage = PF_LIBCAMERA_MESSAGE;
-  static constexpr uint32_t kFormats = PF_LIBCAMERA_FORMATS;
-  static constexpr int kNothing = PF_LIBCAMERA_NOTHING, kFrame = PF_LIBCAMERA_FRAME, kGone = PF_LIBCAMERA_GONE;
-  static constexpr auto options_default = pf_libcamera_options_default;
-  static constexpr auto format_name = pf_libcamera_format_name;
-  static constexpr auto open = pf_libcamera_open;
-  static constexpr auto close = pf_libcamera_close;
-  static constexpr auto start = pf_libcamera_start;
-  static constexpr auto read = pf_libcamera_read;
-  static constexpr auto release = pf_libcamera_release;
-  static constexpr auto come_back = pf_libcamera_return;
-  static constexpr auto get_info = pf_libcamera_get_info;
-};
-#endif
 
 /// What a source names by its beginning, whether this build has it or not.
 inline bool is_v4l2(const std::string& source) { return source.rfind("v4l2:", 0) == 0; }
 inline bool is_libcamera(const std::string& source) { return source.rfind("libcamera:", 0) == 0; }
 inline bool is_camera(const std::string& source) { return is_v4l2(source) || is_libcamera(source); }
 
-template <class Api>
-using OpenCamera = std::unique_ptr<typename Api::Device, void (*)(typename Api::Device*)>;
-
-/// The camera behind the colon of a source. null: error is one line.
-template <class Api>
-OpenCamera<Api> open_camera(const std::string& source, const typename Api::Options& options, std::string& error) {
-  char message[Api::kMessage] = "";
-  typename Api::Device* opened = nullptr;
-  if (Api::open(source.c_str() + source.find(':') + 1, &options, &opened, message) != 0) {
-    error = message;
+/// A camera that closes itself.
+class CameraSource {
+ public:
+  CameraSource() = default;
+  CameraSource(CameraSource&& other) noexcept : source_(other.source_) { other.source_ = {}; }
+  CameraSource(const CameraSource&) = delete;
+  CameraSource& operator=(const CameraSource&) = delete;
+  CameraSource& operator=(CameraSource&&) = delete;
+  ~CameraSource() {
+    if (source_.close != nullptr) {
+      source_.close(source_.context);
+    }
   }
-  return {opened, Api::close};
-}
+
+  /// The camera behind the colon of a source. false: error is one line.
+  bool open(const std::string& source, const pf_camera_source_options_t& options, std::string& error) {
+    int (*open_source)(const char*, const pf_camera_source_options_t*, pf_camera_source_t*, char*) = nullptr;
+#ifdef PLANEFOLD_HAVE_V4L2
+    open_source = is_v4l2(source) ? pf_v4l2_open_source : open_source;
+#endif
+#ifdef PLANEFOLD_HAVE_LIBCAMERA
+    open_source = is_libcamera(source) ? pf_libcamera_open_source : open_source;
+#endif
+    if (open_source == nullptr) {
+      error = "source '" + source + "': this build has no " +
+              (is_libcamera(source) ? "libcamera (Debian: libcamera-dev); use v4l2:" : "V4L2");
+      return false;
+    }
+    char message[PF_CAMERA_SOURCE_MESSAGE] = "";
+    const bool opened = open_source(source.c_str() + source.find(':') + 1, &options, &source_, message) == 0;
+    error = message;
+    return opened;
+  }
+
+  bool start(std::string& error) const {
+    char message[PF_CAMERA_SOURCE_MESSAGE] = "";
+    const bool started = source_.start(source_.context, message) == 0;
+    error = message;
+    return started;
+  }
+
+  /// As pf_camera_source_t.read; message is written where the result is neither a frame nor nothing.
+  int read(int timeout_ms, pf_camera_source_frame_t& frame, std::string& message) const {
+    char text[PF_CAMERA_SOURCE_MESSAGE] = "";
+    const int result = source_.read(source_.context, timeout_ms, &frame, text);
+    if (result != PF_CAMERA_SOURCE_FRAME && result != PF_CAMERA_SOURCE_NOTHING) {
+      message = text;
+    }
+    return result;
+  }
+
+  void release(const pf_camera_source_frame_t& frame) const { source_.release(source_.context, &frame); }
+
+  bool come_back() const {
+    char message[PF_CAMERA_SOURCE_MESSAGE] = "";
+    return source_.come_back(source_.context, message) == 0;
+  }
+
+  pf_camera_source_info_t info() const {
+    pf_camera_source_info_t info{};
+    source_.get_info(source_.context, &info);
+    return info;
+  }
+
+ private:
+  pf_camera_source_t source_{};
+};
 
 }  // namespace pf::platform
 
