@@ -16,47 +16,16 @@ constexpr Scalar kGrowth = Scalar(1.4);          ///< of the parallax from one s
 constexpr Scalar kLeastMargin = Scalar(15);      ///< between the two best explanations, in chi-square
 constexpr Scalar kPriorSigma = Scalar(0.7);      ///< of rho about 1: keeps what has no parallax finite
 constexpr Scalar kHuber = Scalar(2);             ///< [standard deviations]
-
-/// Weighted square of a residual of r standard deviations, and its weight.
-Scalar huber(Scalar r2, Scalar* weight) {
-  if (r2 <= kHuber * kHuber) {
-    *weight = Scalar(1);
-    return r2;
-  }
-  const Scalar r = std::sqrt(r2);
-  *weight = kHuber / r;
-  return Scalar(2) * kHuber * r - kHuber * kHuber;
-}
-
-/// In-place Cholesky of the lower triangle and solve; n <= 6 kMaxCameras. False when not positive.
-bool solve_in_place(Scalar* H, int n, int ld, Scalar* b) {
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      Scalar sum = H[i * ld + j];
-      for (int k = 0; k < j; ++k) sum -= H[i * ld + k] * H[j * ld + k];
-      if (i == j) {
-        if (!(sum > Scalar(0))) return false;
-        H[i * ld + i] = std::sqrt(sum);
-      } else {
-        H[i * ld + j] = sum / H[j * ld + j];
-      }
-    }
-    for (int k = 0; k < i; ++k) b[i] -= H[i * ld + k] * b[k];
-    b[i] /= H[i * ld + i];
-  }
-  for (int i = n - 1; i >= 0; --i) {
-    for (int k = i + 1; k < n; ++k) b[i] -= H[k * ld + i] * b[k];
-    b[i] /= H[i * ld + i];
-  }
-  return true;
-}
+constexpr Scalar kBehindWeight = Scalar(10);     ///< of the prior, in addition, where rho < 0
+constexpr Scalar kNoPixelPenalty =
+    Scalar(100);  ///< of a seen feature that does not project, in squared standard deviations
 
 }  // namespace
 
 bool StartRecord::layout(Arena& arena) {
   frame_ = arena.take<Frame>(kMaxFrames);
   ray_ = arena.take<Vec3>(kMaxFeatures);
-  pixel_ = arena.take<Pixel>(kMaxFrames * kMaxFeatures);
+  pixel_ = arena.take<BundlePixel>(kMaxFrames * kMaxFeatures);
   return arena.ok();
 }
 
@@ -87,7 +56,7 @@ int StartRecord::add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W)
 }
 
 void StartRecord::add_pixel(int frame, int feature, const Vec2& pixel) {
-  Pixel& p = pixel_[frame * kMaxFeatures + feature];
+  BundlePixel& p = pixel_[frame * kMaxFeatures + feature];
   p.x = static_cast<float>(pixel.x());
   p.y = static_cast<float>(pixel.y());
   p.seen = true;
@@ -95,13 +64,10 @@ void StartRecord::add_pixel(int frame, int feature, const Vec2& pixel) {
 
 bool StartBundle::layout(Arena& arena) {
   rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
-  trial_rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
   best_rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
   last_rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
   good_ = arena.take<unsigned char>(StartRecord::kMaxFeatures);
-  W_ = arena.take<Scalar>(StartRecord::kMaxFeatures * 6 * kMaxCameras);
-  H_ = arena.take<Scalar>(6 * kMaxCameras * 6 * kMaxCameras);
-  return arena.ok();
+  return adjuster_.layout(arena, 1 + kMaxCameras, kMaxCameras, StartRecord::kMaxFeatures);
 }
 
 void StartBundle::init() {
@@ -117,18 +83,17 @@ Scalar StartBundle::turn(const Camera& camera, const StartRecord& record, int fr
   for (int round = 0; round < 8; ++round) {
     Mat3 H = Mat3::Identity() * Scalar(1e-6);
     Vec3 g = Vec3::Zero();
-    const Mat3 R_CW = q_WC->toRotationMatrix().transpose();
+    const Mat3 R_WC = q_WC->toRotationMatrix();
     count = 0;
     for (int i = 0; i < record.features(); ++i) {
       if (!record.seen(frame, i)) continue;
       Vec2 z;
-      Mat23 J_z_C;
-      if (!project(camera, R_CW.lazyProduct(record.ray(i)), &z, &J_z_C)) continue;
+      Mat26 J_z_C;
+      if (!project_bearing(camera, R_WC, record.ray(i), Vec3::Zero(), Scalar(0), &z, &J_z_C)) continue;
       const Vec2 r = record.pixel(frame, i) - z;
       left[count++] = r.norm();
       const Scalar w = Scalar(1) / (Scalar(1) + r.squaredNorm() / (scale * scale));
-      const Mat23 J_z_W = J_z_C.lazyProduct(R_CW);
-      const Mat23 J = J_z_W.lazyProduct(hat(record.ray(i)));
+      const Mat23 J = J_z_C.leftCols<3>();
       H += w * J.transpose().lazyProduct(J);
       g += w * J.transpose().lazyProduct(r);
     }
@@ -142,116 +107,16 @@ Scalar StartBundle::turn(const Camera& camera, const StartRecord& record, int fr
   return left[count / 2];
 }
 
-/// Robust cost of pose_ and rho_, in squared standard deviations, the prior on rho included.
-Scalar StartBundle::cost(const Camera& camera, const StartRecord& record, const int* frame, int cameras,
-                         Scalar sigma_px) const {
-  Scalar sum = 0, weight;
-  for (int c = 0; c < cameras; ++c) {
-    const Mat3 R_CW = pose_[c].q_WC.toRotationMatrix().transpose();
-    for (int i = 0; i < record.features(); ++i) {
-      if (!record.seen(frame[c], i)) continue;
-      Vec2 z;
-      if (!project(camera, R_CW.lazyProduct(record.ray(i) - rho_[i] * pose_[c].p_W), &z)) {
-        sum += Scalar(100);
-        continue;
-      }
-      sum += huber((record.pixel(frame[c], i) - z).squaredNorm() / (sigma_px * sigma_px), &weight);
-    }
-  }
-  for (int i = 0; i < record.features(); ++i) {
-    const Scalar e = (rho_[i] - Scalar(1)) / kPriorSigma;
-    sum += e * e;
-    if (rho_[i] < Scalar(0)) sum += Scalar(10) * e * e;
-  }
-  return sum;
-}
-
-/// Levenberg-Marquardt on the poses of `frame` and all rho, each rho eliminated by its own scalar (Schur complement).
-///
-///   d = r - rho p,   z = pi(R^T d):   dz/d(theta) = J [d]x,   dz/dp = -rho J,   dz/drho = -J p       J = dpi/dd_C R^T
+/// Adjusts the poses of `frame` (pose_[1] and on) and all rho; returns the robust cost.
 Scalar StartBundle::adjust(const Camera& camera, const StartRecord& record, const int* frame, int cameras, int rounds,
                            Scalar sigma_px) {
-  const int n = 6 * cameras;
-  constexpr int kLd = 6 * kMaxCameras;
-  Scalar before = cost(camera, record, frame, cameras, sigma_px);
-  Scalar damping = Scalar(1e-3);
-  const Scalar information = Scalar(1) / (sigma_px * sigma_px);
-  Scalar b[kLd], h_rho[StartRecord::kMaxFeatures], g_rho[StartRecord::kMaxFeatures];
-  for (int round = 0; round < rounds; ++round) {
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j <= i; ++j) H_[i * kLd + j] = Scalar(0);
-      b[i] = Scalar(0);
-    }
-    for (int i = 0; i < record.features(); ++i) {
-      Scalar* w_i = W_ + i * kLd;
-      for (int j = 0; j < n; ++j) w_i[j] = Scalar(0);
-      const Scalar prior = Scalar(1) / (kPriorSigma * kPriorSigma) * (rho_[i] < Scalar(0) ? Scalar(11) : Scalar(1));
-      h_rho[i] = prior;
-      g_rho[i] = prior * (Scalar(1) - rho_[i]);
-      for (int c = 0; c < cameras; ++c) {
-        if (!record.seen(frame[c], i)) continue;
-        const Mat3 R_CW = pose_[c].q_WC.toRotationMatrix().transpose();
-        const Vec3 d = record.ray(i) - rho_[i] * pose_[c].p_W;
-        Vec2 z;
-        Mat23 J_z_C;
-        if (!project(camera, R_CW.lazyProduct(d), &z, &J_z_C)) continue;
-        const Mat23 J_z_W = J_z_C.lazyProduct(R_CW);
-        Mat26 J;
-        J.leftCols<3>() = J_z_W.lazyProduct(hat(d));
-        J.rightCols<3>() = -rho_[i] * J_z_W;
-        const Vec2 J_rho = -J_z_W.lazyProduct(pose_[c].p_W);
-        const Vec2 r = record.pixel(frame[c], i) - z;
-        Scalar weight;
-        huber(r.squaredNorm() * information, &weight);
-        weight *= information;
-        for (int a = 0; a < 6; ++a) {
-          for (int e = 0; e <= a; ++e)
-            H_[(6 * c + a) * kLd + 6 * c + e] += weight * (J(0, a) * J(0, e) + J(1, a) * J(1, e));
-          b[6 * c + a] += weight * (J(0, a) * r.x() + J(1, a) * r.y());
-          w_i[6 * c + a] += weight * (J(0, a) * J_rho.x() + J(1, a) * J_rho.y());
-        }
-        h_rho[i] += weight * J_rho.squaredNorm();
-        g_rho[i] += weight * J_rho.dot(r);
-      }
-      h_rho[i] *= Scalar(1) + damping;
-      for (int a = 0; a < n; ++a) {
-        const Scalar t = w_i[a] / h_rho[i];
-        for (int e = 0; e <= a; ++e) H_[a * kLd + e] -= t * w_i[e];
-        b[a] -= t * g_rho[i];
-      }
-    }
-    for (int a = 0; a < n; ++a) H_[a * kLd + a] += damping * std::abs(H_[a * kLd + a]) + Scalar(1e-9);
-    for (int c = 0; c < cameras; ++c) trial_pose_[c] = pose_[c];
-    for (int i = 0; i < record.features(); ++i) trial_rho_[i] = rho_[i];
-    bool better = false;
-    Scalar after = before;
-    if (solve_in_place(H_, n, kLd, b)) {
-      for (int c = 0; c < cameras; ++c) {
-        pose_[c].q_WC = exp_so3(Vec3(b[6 * c], b[6 * c + 1], b[6 * c + 2])) * pose_[c].q_WC;
-        pose_[c].q_WC.normalize();
-        pose_[c].p_W += Vec3(b[6 * c + 3], b[6 * c + 4], b[6 * c + 5]);
-      }
-      for (int i = 0; i < record.features(); ++i) {
-        Scalar g = g_rho[i];
-        for (int a = 0; a < n; ++a) g -= W_[i * kLd + a] * b[a];
-        rho_[i] += g / h_rho[i];
-      }
-      after = cost(camera, record, frame, cameras, sigma_px);
-      better = after < before;
-    }
-    if (better) {
-      const bool done = before - after < Scalar(1e-4) * before;
-      before = after;
-      damping = std::max(damping / Scalar(5), Scalar(1e-6));
-      if (done) break;
-    } else {
-      for (int c = 0; c < cameras; ++c) pose_[c] = trial_pose_[c];
-      for (int i = 0; i < record.features(); ++i) rho_[i] = trial_rho_[i];
-      damping *= Scalar(8);
-      if (damping > Scalar(1e4)) break;
-    }
+  pose_[0] = {Quat::Identity(), Vec3::Zero(), false, nullptr};
+  for (int c = 0; c < cameras; ++c) {
+    pose_[1 + c].free = true;
+    pose_[1 + c].pixel = record.pixels(frame[c]);
   }
-  return before;
+  const AdjustOptions options = {sigma_px, kHuber, Scalar(1), kPriorSigma, kBehindWeight, kNoPixelPenalty, rounds};
+  return adjuster_.adjust(camera, options, {pose_, 1 + cameras, record.rays(), nullptr, rho_, record.features()});
 }
 
 StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth) {
@@ -268,17 +133,17 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   // Frame 0 and the last one, from six directions of motion; the parallax says how far at a depth of one.
   const int count = record.features();
   const Scalar length = parallax / camera.fx;
-  Pose best_pose = {Quat::Identity(), Vec3::Zero()};
+  BundlePose best_pose = {Quat::Identity(), Vec3::Zero(), true, nullptr};
   Scalar best = -1, second = -1;
   for (int guess = 0; guess < 6; ++guess) {
     Vec3 direction = Vec3::Zero();
     direction[guess / 2] = guess % 2 == 0 ? Scalar(1) : Scalar(-1);
-    pose_[0].q_WC = q_last;
-    pose_[0].p_W = direction * length * Scalar(2);
+    pose_[1].q_WC = q_last;
+    pose_[1].p_W = direction * length * Scalar(2);
     for (int i = 0; i < count; ++i) rho_[i] = Scalar(1);
     const Scalar c = adjust(camera, record, &last, 1, 25, sigma_px);
     if (best >= Scalar(0)) {
-      const Scalar cosine = pose_[0].p_W.dot(best_pose.p_W) / (pose_[0].p_W.norm() * best_pose.p_W.norm());
+      const Scalar cosine = pose_[1].p_W.dot(best_pose.p_W) / (pose_[1].p_W.norm() * best_pose.p_W.norm());
       if (cosine > Scalar(0.9)) {  // the same explanation again
         if (c >= best) continue;
       } else if (c >= best) {
@@ -289,7 +154,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
       }
     }
     best = c;
-    best_pose = pose_[0];
+    best_pose = pose_[1];
     std::copy(rho_, rho_ + count, best_rho_);
   }
   // Two explanations that fit about as well (a scene and its inside-out twin) need more parallax, unless there is plenty.
@@ -301,12 +166,12 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   int frame[kMaxCameras] = {};
   int cameras = std::min(static_cast<int>(kMaxCameras), record.frames());
   for (int c = 0; c < cameras; ++c) frame[c] = last - c * (last + 1) / cameras;
-  pose_[0] = best_pose;
+  pose_[1] = best_pose;
   for (int c = 1; c < cameras; ++c) {
-    pose_[c].q_WC = record.frame(frame[c]).q_WC;
-    turn(camera, record, frame[c], &pose_[c].q_WC);
-    pose_[c].p_W = best_pose.p_W * (static_cast<Scalar>(frame[c] + 1) / static_cast<Scalar>(last + 1));
-    if (!locate(camera, record, frame[c], sigma_px, &pose_[c])) return StartOutcome::kWait;
+    pose_[1 + c].q_WC = record.frame(frame[c]).q_WC;
+    turn(camera, record, frame[c], &pose_[1 + c].q_WC);
+    pose_[1 + c].p_W = best_pose.p_W * (static_cast<Scalar>(frame[c] + 1) / static_cast<Scalar>(last + 1));
+    if (!locate(camera, record, frame[c], sigma_px, &pose_[1 + c])) return StartOutcome::kWait;
   }
   const Scalar total = adjust(camera, record, frame, cameras, 30, sigma_px);
   int pixels = 0;
@@ -325,8 +190,8 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
     for (int c = 0; c < cameras; ++c) {
       if (!record.seen(frame[c], i)) continue;
       Vec2 z;
-      const Vec3 d = record.ray(i) - rho_[i] * pose_[c].p_W;
-      if (!project(camera, pose_[c].q_WC.toRotationMatrix().transpose().lazyProduct(d), &z))
+      const BundlePose& pose = pose_[1 + c];
+      if (!project_bearing(camera, pose.q_WC.toRotationMatrix(), record.ray(i), -pose.p_W, rho_[i], &z))
         worst = Scalar(1e6);
       else
         worst = std::max(worst, (record.pixel(frame[c], i) - z).squaredNorm());
@@ -349,7 +214,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
     int nearest = 0;
     for (int c = 1; c < cameras; ++c)
       if (std::abs(frame[c] - k) < std::abs(frame[nearest] - k)) nearest = c;
-    Pose pose = pose_[nearest];
+    BundlePose pose = pose_[1 + nearest];
     if (frame[nearest] != k && !locate(camera, record, k, sigma_px, &pose)) return StartOutcome::kWait;
     record.frame(k).q_WC = pose.q_WC;
     record.frame(k).p_W = pose.p_W / unit;
@@ -364,26 +229,21 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
 
 /// Pose of one frame against the depths as they are, by Gauss-Newton.
 bool StartBundle::locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px,
-                         Pose* pose) const {
+                         BundlePose* pose) const {
   const Scalar information = Scalar(1) / (sigma_px * sigma_px);
   for (int round = 0; round < 8; ++round) {
     Scalar H[36], b[6];
     std::fill(H, H + 36, Scalar(0));
     std::fill(b, b + 6, Scalar(0));
-    const Mat3 R_CW = pose->q_WC.toRotationMatrix().transpose();
+    const Mat3 R_WC = pose->q_WC.toRotationMatrix();
     for (int i = 0; i < record.features(); ++i) {
       if (!record.seen(frame, i)) continue;
-      const Vec3 d = record.ray(i) - rho_[i] * pose->p_W;
       Vec2 z;
-      Mat23 J_z_C;
-      if (!project(camera, R_CW.lazyProduct(d), &z, &J_z_C)) continue;
-      const Mat23 J_z_W = J_z_C.lazyProduct(R_CW);
       Mat26 J;
-      J.leftCols<3>() = J_z_W.lazyProduct(hat(d));
-      J.rightCols<3>() = -rho_[i] * J_z_W;
+      if (!project_bearing(camera, R_WC, record.ray(i), -pose->p_W, rho_[i], &z, &J)) continue;
       const Vec2 r = record.pixel(frame, i) - z;
       Scalar weight;
-      huber(r.squaredNorm() * information, &weight);
+      huber_cost(r.squaredNorm() * information, kHuber, &weight);
       for (int a = 0; a < 6; ++a) {
         for (int e = 0; e <= a; ++e) H[a * 6 + e] += weight * (J(0, a) * J(0, e) + J(1, a) * J(1, e));
         b[a] += weight * (J(0, a) * r.x() + J(1, a) * r.y());

@@ -2,6 +2,7 @@
 
 #include "base/arena.h"
 #include "geometry/camera.h"
+#include "window/adjust.h"
 
 /// The first depths, when nothing is known beforehand: a bundle adjustment over the first frames, from several first guesses.
 ///
@@ -39,20 +40,15 @@ class StartRecord {
   Frame& frame(int k) { return frame_[k]; }
   const Frame& frame(int k) const { return frame_[k]; }
   const Vec3& ray(int i) const { return ray_[i]; }
-  bool seen(int k, int i) const { return pixel_[k * kMaxFeatures + i].seen; }
-  Vec2 pixel(int k, int i) const {
-    const Pixel& p = pixel_[k * kMaxFeatures + i];
-    return Vec2(static_cast<Scalar>(p.x), static_cast<Scalar>(p.y));
-  }
+  const Vec3* rays() const { return ray_; }
+  const BundlePixel* pixels(int k) const { return pixel_ + k * kMaxFeatures; }  ///< by feature
+  bool seen(int k, int i) const { return pixels(k)[i].seen; }
+  Vec2 pixel(int k, int i) const { return pixels(k)[i].pixel(); }
 
  private:
-  struct Pixel {
-    float x, y;
-    bool seen;
-  };
   Frame* frame_ = nullptr;  ///< frame 0 itself is not stored: its pose is the identity
   Vec3* ray_ = nullptr;
-  Pixel* pixel_ = nullptr;
+  BundlePixel* pixel_ = nullptr;
   int frames_ = 0;
   int features_ = 0;
 };
@@ -80,27 +76,18 @@ class StartBundle {
  private:
   static constexpr int kMaxCameras = 8;  ///< of the adjustment
 
-  struct Pose {
-    Quat q_WC;
-    Vec3 p_W;
-  };
-
   Scalar turn(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const;
   Scalar adjust(const Camera& camera, const StartRecord& record, const int* frame, int cameras, int rounds,
                 Scalar sigma_px);
-  Scalar cost(const Camera& camera, const StartRecord& record, const int* frame, int cameras, Scalar sigma_px) const;
-  bool locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px, Pose* pose) const;
+  bool locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px, BundlePose* pose) const;
 
-  Pose pose_[kMaxCameras];
-  Pose trial_pose_[kMaxCameras];
-  Scalar* rho_ = nullptr;  ///< kMaxFeatures each
-  Scalar* trial_rho_ = nullptr;
+  BundleAdjuster adjuster_;
+  BundlePose pose_[1 + kMaxCameras];  ///< frame 0, which is fixed and hosts every feature, and the cameras
+  Scalar* rho_ = nullptr;             ///< kMaxFeatures each
   Scalar* best_rho_ = nullptr;
   Scalar* last_rho_ = nullptr;  ///< of the last solution, zero where it had none
   Scalar last_parallax_ = 0;    ///< [px]
   unsigned char* good_ = nullptr;
-  Scalar* W_ = nullptr;  ///< kMaxFeatures x 6 kMaxCameras: camera rows of each feature's column
-  Scalar* H_ = nullptr;  ///< 6 kMaxCameras square
 };
 
 }  // namespace pf
