@@ -1,5 +1,6 @@
 set(PLANEFOLD_FLOAT_TESTS
     unit/test_build_mode.cpp
+    jacobian/test_bundle_projection.cpp
     jacobian/test_camera.cpp
     regression/test_absurd_cameras.c
     jacobian/test_inverse_depth_conversion.cpp
@@ -9,6 +10,7 @@ set(PLANEFOLD_FLOAT_TESTS
     jacobian/test_planar_pose.cpp
     jacobian/test_plane.cpp
     jacobian/test_ray_plane.cpp
+    unit/test_bundle_adjust.cpp
     unit/test_camera.cpp
     unit/test_dark_quads.cpp
     unit/test_planar_pose.cpp
