@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <vector>
@@ -15,7 +16,7 @@ namespace pf::capture {
 namespace {
 
 constexpr const char* kFooter =
-    "In the window: space pauses, r resets, s saves the picture, q quits.\n"
+    "In the window: space pauses, r resets, s saves the picture, q quits; a click or tap shows which plane it hits.\n"
     "Writes into --out: report.json, trajectory.txt (TUM), covariance.csv, trajectory_all.txt, frames.csv, map.ply,\n"
     "calib.yaml, overlay.mp4, overlay_mid.png, overlay_last.png, and truth.tum where the source knows it.\n"
     "Exit code: 0 done, 1 the run failed, ended early or tracked nothing, 2 the command line is wrong.";
@@ -86,6 +87,34 @@ std::string check_format(const std::string& format, const std::string& kind) {
   return "--format " + format + ": write " + names;
 }
 
+std::string read_gravity(const std::vector<double>& numbers, Options& options) {
+  if (numbers.empty()) {
+    return "";
+  }
+  double length = 0.0;
+  for (size_t i = 0; i < 3; ++i) {
+    options.gravity_W[i] = numbers[i];
+    length += numbers[i] * numbers[i];
+  }
+  options.has_gravity = length > 0.0 && std::isfinite(length);
+  return options.has_gravity ? "" : "--gravity needs a direction: three finite numbers that are not all 0, as in 0,1,0";
+}
+
+std::string read_taps(const std::vector<std::string>& texts, Options& options) {
+  for (const std::string& text : texts) {
+    long long frame = -1;
+    Options::Tap tap{};
+    char rest = '\0';
+    if (std::sscanf(text.c_str(), "%lld,%lf,%lf%c", &frame, &tap.pixel[0], &tap.pixel[1], &rest) != 3 || frame < 0 ||
+        !std::isfinite(tap.pixel[0]) || !std::isfinite(tap.pixel[1])) {
+      return "--tap " + text + ": write FRAME,U,V, as in 120,160.5,90";
+    }
+    tap.frame = frame;
+    options.taps.push_back(tap);
+  }
+  return "";
+}
+
 /// What CLI11 cannot check by itself; "" when all is well.
 std::string check(const Options& options, const std::string& backend) {
   const std::string kind = options.source.substr(0, options.source.find(':'));
@@ -147,6 +176,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.footer(kFooter);
   std::string backend = "filter";
   std::string kernels = "auto";
+  std::vector<double> gravity;
+  std::vector<std::string> taps;
   bool no_film = false;
   bool no_gauge = false;
   bool no_planes = false;
@@ -176,6 +207,13 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--report-every", options.report_every_s, "seconds between refreshed report.json and map.ply")
       ->check(CLI::Range(0.01, 1e9))
       ->capture_default_str();
+  app.add_option("--gravity", gravity, "X,Y,Z in W, of any length: planes are called horizontal or vertical")
+      ->delimiter(',')
+      ->expected(3);
+  app.add_option("--tap", taps,
+                 "FRAME,U,V: as a click on that pixel of frame FRAME of the run; may come again and again")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_flag("--headless", options.headless, "no window");
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
   app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame");
@@ -214,6 +252,12 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   if (wrong.empty() && set == kernel_names.end()) {
     wrong = "--kernels " + kernels + ": write auto, reference, portable, avx2, avx512 or neon";
   }
+  if (!wrong.empty()) {
+    code = refuse(wrong);
+    return Parsed::kExit;
+  }
+  wrong = read_gravity(gravity, options);
+  wrong = wrong.empty() ? read_taps(taps, options) : wrong;
   if (!wrong.empty()) {
     code = refuse(wrong);
     return Parsed::kExit;

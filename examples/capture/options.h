@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace pf::capture {
 
@@ -55,6 +56,13 @@ struct Options {
   bool list = false;
 
   double report_every_s = 60.0;
+  bool has_gravity = false;
+  double gravity_W[3] = {0.0, 0.0, 0.0};
+  struct Tap {
+    int64_t frame;
+    double pixel[2];
+  };
+  std::vector<Tap> taps;  ///< as if the user had clicked
   bool headless = false;
   bool film = true;
   bool tracks = false;

@@ -104,11 +104,42 @@ const Canvas& Overlay::draw(const FrameView& view) {
     draw_target(view.pose);
   }
   draw_tracks(view);
+  draw_hits(view);
   cairo_restore(pen);
   map_.draw(canvas_, view, image_width_, 0, panel_width_, panel_width_);
   draw_numbers(view, image_width_, panel_width_, panel_width_);
   draw_strip(view);
   return canvas_;
+}
+
+bool Overlay::pixel_at(const double place[2], double pixel[2]) const {
+  const pf_camera_t& camera = session_.config().camera;
+  pixel[0] = place[0] / zoom_ - 0.5;
+  pixel[1] = place[1] / zoom_ - 0.5;
+  return pixel[0] >= -0.5 && pixel[1] >= -0.5 && pixel[0] < camera.width - 0.5 && pixel[1] < camera.height - 0.5;
+}
+
+/// What was pointed at: a cross where it is now, and what it was.
+void Overlay::draw_hits(const FrameView& view) {
+  for (const Hit& hit : view.hits) {
+    double pixel[2];
+    const Vec3 p_C = to_camera(view.pose, {hit.at.p_W[0], hit.at.p_W[1], hit.at.p_W[2]});
+    if (!view.has_pose || p_C[2] <= 0.0 || !project_row(session_.config().camera, view.pose, p_C, pixel)) {
+      continue;
+    }
+    const double x = zoom_ * (pixel[0] + 0.5);
+    const double y = zoom_ * (pixel[1] + 0.5);
+    canvas_.colour(kPath);
+    cairo_set_line_width(canvas_.pen(), 2.0);
+    canvas_.line(x - 9.0, y, x + 9.0, y);
+    canvas_.line(x, y - 9.0, x, y + 9.0);
+    const std::string text = describe(hit, session_.target() != nullptr);
+    const double width = canvas_.text_width(text, 11.0, true);
+    const double left = std::clamp(x + 12.0, 2.0, std::max(2.0, image_width_ - width - 4.0));
+    canvas_.rectangle(left - 3.0, y - 20.0, width + 6.0, 15.0, kGround, 0.7);
+    canvas_.colour(kPath);
+    canvas_.text(left, y - 9.0, text, 11.0, true);
+  }
 }
 
 void Overlay::draw_image(const pf_image_t& image) {

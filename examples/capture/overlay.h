@@ -37,6 +37,9 @@ class Overlay {
   /// Draws the frame that was added last.
   const Canvas& draw(const FrameView& view);
 
+  /// Pixel of the frame at a place of the picture. false: the place is outside of the frame.
+  bool pixel_at(const double place[2], double pixel[2]) const;
+
   int width() const { return canvas_.width(); }
   int height() const { return canvas_.height(); }
 
@@ -49,6 +52,7 @@ class Overlay {
   void draw_image(const pf_image_t& image);
   void draw_target(const pf_pose_t& pose);
   void draw_tracks(const FrameView& view);
+  void draw_hits(const FrameView& view);
   void draw_numbers(const FrameView& view, double x, double y, double width);
   void draw_strip(const FrameView& view);
   void draw_time_line(const FrameView& view);

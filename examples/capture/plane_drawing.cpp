@@ -112,14 +112,19 @@ void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane, bo
     if (metric) {
       std::snprintf(text + length, sizeof(text) - static_cast<size_t>(length), ", %.2g m\xc2\xb2", area);
     }
-    const double width = canvas.text_width(text, 11.0, true);
+    std::string words(text);
+    if (std::string(plane.orientation) != "unknown") {
+      words += std::string(", ") + plane.orientation;
+      std::replace(words.begin(), words.end(), '_', ' ');
+    }
+    const double width = canvas.text_width(words, 11.0, true);
     double left, top, right, bottom;
     cairo_clip_extents(cairo, &left, &top, &right, &bottom);
     const double x = std::clamp(0.5 * (x0 + x1 - width), left + 4.0, std::max(left + 4.0, right - width - 4.0));
     const double y = std::clamp(0.5 * (y0 + y1), top + 14.0, std::max(top + 14.0, bottom - 6.0));
     canvas.rectangle(x - 3.0, y - 11.0, width + 6.0, 15.0, colours::kGround, 0.6);
     canvas.colour(colour);
-    canvas.text(x, y, text, 11.0, true);
+    canvas.text(x, y, words, 11.0, true);
   }
 }
 

@@ -19,6 +19,7 @@
 #include "source.h"
 #include "statistics.h"
 #include "steady.h"
+#include "text_file.h"
 
 namespace pf::capture {
 
@@ -57,6 +58,7 @@ class Run {
   void track_slowly(int64_t begin_ns) const;
   void tell_notices();
   void handle_keys();
+  void point_at(const double pixel[2]);
   void save(const std::string& name);
   bool write_down(std::string& error);
   bool refresh_report();
@@ -189,6 +191,12 @@ Read Run::step(int64_t index) {
     return Read::kFailed;
   }
   imu_.add_pose(view_.pose, view_.tracked);
+  follow_planes(session_.slam(), view_.hits);
+  for (const Options::Tap& tap : options_.taps) {
+    if (tap.frame == index) {
+      point_at(tap.pixel);
+    }
+  }
   track_slowly(begin_ns);
   source_.pushed();
   if (recorder_.is_open()) {
@@ -289,10 +297,38 @@ void Run::handle_keys() {
       case Key::kQuit:
         quit_ = true;
         break;
+      case Key::kClick: {
+        double pixel[2];
+        if (done_any_ && show_.clicked_pixel(pixel)) {
+          point_at(pixel);
+          show_.redraw(view_);
+        }
+        break;
+      }
       case Key::kNone:
         break;
     }
   } while (paused_ && !quit_ && g_interrupted == 0);
+}
+
+/// Which plane is there, where, and how sure that is. The last few stay in the pictures.
+void Run::point_at(const double pixel[2]) {
+  constexpr size_t kShown = 12;
+  Hit hit;
+  std::string line;
+  progress_.end();
+  append(line, "pixel %.1f, %.1f of frame %lld: ", pixel[0], pixel[1], static_cast<long long>(view_.index));
+  if (!cast_ray(session_.slam(), view_.index, view_.pose, pixel, hit)) {
+    note(line + "no plane is there");
+    return;
+  }
+  append(line, "%s, at %.4g %.4g %.4g", describe(hit, session_.target() != nullptr).c_str(), hit.at.p_W[0],
+         hit.at.p_W[1], hit.at.p_W[2]);
+  note(line);
+  if (view_.hits.size() == kShown) {
+    view_.hits.erase(view_.hits.begin());
+  }
+  view_.hits.push_back(hit);
 }
 
 std::string Run::why_nothing_was_tracked() const {

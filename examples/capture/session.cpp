@@ -36,6 +36,8 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     error = "the library gives no default configuration";
     return false;
   }
+  has_gravity_ = options.has_gravity;
+  std::copy_n(options.gravity_W, 3, gravity_W_);
   config_.camera = source.info().camera;
   if (options.readout_s >= 0.0) config_.camera.readout_s = options.readout_s;
   config_.kernels = options.kernels;
@@ -94,6 +96,10 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
 }
 
 bool Session::begin(std::string& error) {
+  if (has_gravity_ && pf_set_gravity(slam_, gravity_W_) < PF_OK) {
+    error = "--gravity: the library refused this direction";
+    return false;
+  }
   if (has_target_) {
     const pf_status_t status = pf_start_from_target(slam_, &target_);
     if (status < 0) {

@@ -49,6 +49,8 @@ class Session {
   pf_memory_t memory_{};
   pf_target_t target_{};
   bool has_target_ = false;
+  bool has_gravity_ = false;
+  double gravity_W_[3] = {0.0, 0.0, 0.0};
   std::string start_;
   std::vector<std::string> log_;
 };

@@ -39,9 +39,17 @@ void Show::add(const FrameView& view) {
   }
 }
 
+void Show::redraw(const FrameView& view) { parts_->window.show(parts_->overlay.draw(view)); }
+
 bool Show::save(const FrameView& view, const std::string& path) { return parts_->overlay.draw(view).save_png(path); }
 
 Key Show::poll(int wait_ms) { return parts_->window.poll(wait_ms); }
+
+bool Show::clicked_pixel(double pixel[2]) const {
+  double place[2];
+  parts_->window.clicked_place(place);
+  return parts_->overlay.pixel_at(place, pixel);
+}
 
 bool Show::is_filming() const { return parts_->film.is_open(); }
 

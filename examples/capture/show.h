@@ -11,7 +11,7 @@
 
 namespace pf::capture {
 
-enum class Key { kNone, kPause, kReset, kSave, kQuit };
+enum class Key { kNone, kPause, kReset, kSave, kQuit, kClick };
 
 /// Everything that is drawn: the overlay, its film, its window and single pictures of it. In a build without Cairo (on a board
 /// without a screen, say) nothing is.
@@ -27,10 +27,14 @@ class Show {
             double rate_hz, std::vector<std::string>& notes);
   /// Remembers the frame and, where there is a film or a window, draws it.
   void add(const FrameView& view);
+  /// Shows the frame that was added last again, with what was pointed at since.
+  void redraw(const FrameView& view);
   /// false: the picture could not be written.
   bool save(const FrameView& view, const std::string& path);
   /// The next key that was pressed; waits for up to wait_ms.
   Key poll(int wait_ms);
+  /// Where the last kClick was, as a pixel of the frame. false: outside of it.
+  bool clicked_pixel(double pixel[2]) const;
   bool is_filming() const;
   /// The film ended early, on a full disk say.
   bool has_film_failed() const;

@@ -15,8 +15,10 @@ void Show::open(const Options& options, const Session&, const std::string&, cons
 }
 
 void Show::add(const FrameView&) {}
+void Show::redraw(const FrameView&) {}
 bool Show::save(const FrameView&, const std::string&) { return true; }
 Key Show::poll(int) { return Key::kNone; }
+bool Show::clicked_pixel(double*) const { return false; }
 bool Show::is_filming() const { return false; }
 bool Show::has_film_failed() const { return false; }
 bool Show::close_film() { return true; }

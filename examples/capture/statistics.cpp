@@ -92,6 +92,7 @@ void Statistics::add(const FrameView& view) {
   last_state_ = report.state;
   last_report_ = report;
   last_planes_ = view.planes;
+  last_hits_ = view.hits;
   ++frames_;
 }
 
@@ -155,6 +156,8 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["state_dim_points_only"] = last_report_.state_dim_points_only;
   json["state_dim_held"] = last_report_.state_dim_held;
   json["planes"] = planes_json(last_planes_);
+  json["hits"] = hits_json(last_hits_);
+  json["gravity"] = options.has_gravity ? Json(options.gravity_W) : Json();
   json["nis_per_dof"] = nis_dof_ > 0 ? Json(rounded(nis_ / static_cast<double>(nis_dof_))) : Json();
   json["kernels"] = kernels_name(last_report_.kernels);
   json["scalar"] = config.scalar == PF_SCALAR_FLOAT ? "float" : "double";

@@ -68,6 +68,7 @@ class Statistics {
   int32_t last_state_ = PF_STATE_STARTING;
   pf_report_t last_report_{};
   std::vector<PlaneView> last_planes_;
+  std::vector<Hit> last_hits_;
   Histogram ms_;
   CountHistogram inliers_, attempts_, state_dim_;
   Histogram stage_ms_[PF_STAGE_COUNT];

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hits.h"
 #include "plane_view.h"
 
 namespace pf::capture {
@@ -26,6 +27,7 @@ struct FrameView {
   std::vector<pf_match_t> tracks;
   std::vector<pf_feature_t> features;
   std::vector<PlaneView> planes;
+  std::vector<Hit> hits;  ///< what the user pointed at so far
 };
 
 inline const char* state_name(int32_t state) {

@@ -74,6 +74,12 @@ Key Window::poll(int wait_ms) {
     if (event.type == SDL_QUIT) {
       return Key::kQuit;
     }
+    // A tap comes as a click of the left button. The renderer's logical size makes these places of the picture.
+    if (event.type == SDL_MOUSEBUTTONDOWN && event.button.button == SDL_BUTTON_LEFT) {
+      click_[0] = event.button.x;
+      click_[1] = event.button.y;
+      return Key::kClick;
+    }
     if (event.type == SDL_KEYDOWN) {
       switch (event.key.keysym.sym) {
         case SDLK_SPACE:

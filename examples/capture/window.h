@@ -20,10 +20,16 @@ class Window {
   void show(const Canvas& canvas);
   /// Next key that was pressed; waits for up to wait_ms.
   Key poll(int wait_ms);
+  /// Where the last click or tap was, in the picture that is shown [px].
+  void clicked_place(double place[2]) const {
+    place[0] = click_[0];
+    place[1] = click_[1];
+  }
 
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
+  double click_[2] = {-1.0, -1.0};
 };
 
 }  // namespace pf::capture

@@ -3,6 +3,8 @@
 Each screenshot is taken while the next frame is tracked; what is asked of it says tests/support/window_picture.py. Run by hand
 with a path, the last screenshot is written there as PNG (see lib/docs/capture.md)."""
 
+import ctypes
+import json
 import os
 import pathlib
 import select
@@ -51,6 +53,44 @@ def watch(program, pixels):
     return shots
 
 
+def click(number, x, y):
+    """A click on the screen, by the X server's test extension. false: its library is not there."""
+    try:
+        x11, xtest = ctypes.CDLL("libX11.so.6"), ctypes.CDLL("libXtst.so.6")
+    except OSError:
+        return False
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    display = ctypes.c_void_p(x11.XOpenDisplay(f":{number}".encode()))
+    xtest.XTestFakeMotionEvent(display, -1, int(x), int(y), 0)
+    for pressed in (1, 0):
+        xtest.XTestFakeButtonEvent(display, 1, pressed, 0)
+    x11.XSync(display, 0)
+    x11.XCloseDisplay(display)
+    return True
+
+
+def check_click(program, number, folder, environment):
+    """A click on the desk says which plane it is."""
+    command = [program, "--source", "sim:desk", "--start", "target", "--frames", 170, "--delay", 60, "--no-film", "--quiet", "--out", folder / "click"]
+    with subprocess.Popen([str(word) for word in command], env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        table, clicked = folder / "click" / "frames.csv", 0
+        while running.poll() is None:
+            time.sleep(0.1)
+            if table.exists() and table.read_text().count("\n") > 125 + 8 * clicked and clicked < 3:
+                screen = window_picture.Screen.from_xwd((folder / "Xvfb_screen0").read_bytes())
+                if screen.find_window():
+                    if not click(number, screen.left + window_picture.ZOOM * 150, screen.top + window_picture.ZOOM * 215):
+                        print("no click: there is no libXtst")
+                        running.terminate()
+                        return
+                    clicked += 1
+        said = running.stderr.read()
+    hits = json.loads((folder / "click" / "report.json").read_text())["hits"]
+    print(said)
+    if not hits or abs(hits[0]["pixel"][0] - 149.5) > 1 or abs(hits[0]["pixel"][1] - 214.5) > 1:
+        fail(f"{clicked} clicks on the desk: {hits}")
+
+
 def main():
     program = BIN / "pf-capture"
     if not program.is_file():
@@ -68,6 +108,8 @@ def main():
                                   stderr=subprocess.PIPE) as running:
                 shots = watch(running, folder / "Xvfb_screen0")
                 said = running.stdout.read() + running.stderr.read()
+            if "built without SDL2" not in said and "draws nothing" not in said:
+                check_click(program, number, folder, environment)
         finally:
             server.terminate()
             server.wait()
