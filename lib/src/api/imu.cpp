@@ -4,11 +4,11 @@
 
 namespace {
 
-constexpr double kMostGyro = 1000.0;  // [rad/s]
-constexpr double kMostAccel = 1e5;    // [m/s^2]
+constexpr double kMaxGyro = 1000.0;  // [rad/s]
+constexpr double kMaxAccel = 1e5;    // [m/s^2]
 
-bool within(const double* v, double most) {
-  return std::fabs(v[0]) <= most && std::fabs(v[1]) <= most && std::fabs(v[2]) <= most;
+bool within(const double* v, double max) {
+  return std::fabs(v[0]) <= max && std::fabs(v[1]) <= max && std::fabs(v[2]) <= max;
 }
 
 }  // namespace
@@ -20,7 +20,7 @@ pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t 
   for (size_t i = 0; i < count; ++i) {
     const pf_imu_sample_t& s = samples[i];
     if (!pf::finite(s.gyro, 3) || !pf::finite(s.accel, 3)) return PF_ERROR_NONFINITE;
-    if (!within(s.gyro, kMostGyro) || !within(s.accel, kMostAccel)) return PF_ERROR_RANGE;
+    if (!within(s.gyro, kMaxGyro) || !within(s.accel, kMaxAccel)) return PF_ERROR_RANGE;
     if (i > 0 ? s.t_ns <= samples[i - 1].t_ns : imu.any() && s.t_ns <= imu.counts().last_ns) return PF_ERROR_TIME;
   }
   for (size_t i = 0; i < count; ++i) {
@@ -50,7 +50,7 @@ pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report) {
   report->last_t_ns = c.last_ns;
   report->longest_ns = c.longest_ns;
   report->rate_hz = slam->session.imu().rate_hz();
-  report->median_s = 1e-9 * static_cast<double>(c.usual_ns);
+  report->median_s = 1e-9 * static_cast<double>(c.median_ns);
   report->kept = slam->session.imu().held();
   return PF_OK;
 }

@@ -11,13 +11,13 @@ pf::Vec3 vec3(const double* v) {
 }
 
 /// What is further, faster or less known than this is no camera, and its square would leave the range of float.
-constexpr double kMostMetres = 1e6;  // also [m/s]
-constexpr double kMostRate = 1e4;    // [rad/s]
-constexpr double kMostVariance = 1e12;
+constexpr double kMaxMetres = 1e6;  // also [m/s]
+constexpr double kMaxRate = 1e4;    // [rad/s]
+constexpr double kMaxVariance = 1e12;
 
-bool within(const double* v, int n, double most) {
+bool within(const double* v, int n, double max) {
   for (int i = 0; i < n; ++i)
-    if (!(std::fabs(v[i]) <= most)) return false;
+    if (!(std::fabs(v[i]) <= max)) return false;
   return true;
 }
 
@@ -42,7 +42,7 @@ bool is_semidefinite(const double* P, int n) {
 /// Symmetric to rounding, with positive diagonal, Cauchy-Schwarz between any two, and semidefinite.
 bool is_covariance(const double* P, int n) {
   for (int i = 0; i < n; ++i) {
-    if (!(P[i * n + i] > 0.0 && P[i * n + i] <= kMostVariance)) return false;
+    if (!(P[i * n + i] > 0.0 && P[i * n + i] <= kMaxVariance)) return false;
     for (int j = 0; j < i; ++j) {
       const double scale = std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]);
       if (std::fabs(P[i * n + j] - P[j * n + i]) > 1e-9 * scale) return false;
@@ -59,7 +59,7 @@ pf_status_t body_from(const pf_pose_t& pose, pf::Body* body) {
   const double* q = pose.q_WC;
   const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(norm2 > 0.98 && norm2 < 1.02)) return PF_ERROR_RANGE;
-  if (!within(pose.p_WC, 3, kMostMetres) || !within(pose.v_W, 3, kMostMetres) || !within(pose.w_C, 3, kMostRate))
+  if (!within(pose.p_WC, 3, kMaxMetres) || !within(pose.v_W, 3, kMaxMetres) || !within(pose.w_C, 3, kMaxRate))
     return PF_ERROR_RANGE;
   if (!is_covariance(pose.covariance, 6)) return PF_ERROR_RANGE;
   body->q_WC = pf::Quat(static_cast<Scalar>(q[0]), static_cast<Scalar>(q[1]), static_cast<Scalar>(q[2]),
@@ -95,7 +95,7 @@ pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
     t.count = target->count;
     for (int i = 0; i < t.count; ++i) {
       if (!pf::finite(target->points_W[i], 3)) return PF_ERROR_NONFINITE;
-      if (!within(target->points_W[i], 3, kMostMetres)) return PF_ERROR_RANGE;
+      if (!within(target->points_W[i], 3, kMaxMetres)) return PF_ERROR_RANGE;
       t.point_W[i] = vec3(target->points_W[i]);
     }
     const pf_status_t status = body_from(target->first_pose, &t.first_pose);
@@ -141,7 +141,7 @@ pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double 
   PF_REQUIRE_IDLE(slam);
   if (dv_C == nullptr || dw_C == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(dv_C, 3) || !pf::finite(dw_C, 3)) return PF_ERROR_NONFINITE;
-  if (!within(dv_C, 3, kMostMetres) || !within(dw_C, 3, kMostRate)) return PF_ERROR_RANGE;
+  if (!within(dv_C, 3, kMaxMetres) || !within(dw_C, 3, kMaxRate)) return PF_ERROR_RANGE;
   if (!slam->session.settings().constant_velocity) return PF_ERROR_STATE;
   slam->session.push_control(vec3(dv_C), vec3(dw_C));
   return PF_OK;

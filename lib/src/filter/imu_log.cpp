@@ -10,7 +10,7 @@ namespace {
 /// A unit whose largest number is reached says no more than "at least this"; filters behind the converter round a little down.
 constexpr Scalar kSaturation = Scalar(0.995);
 
-constexpr std::int64_t kAdaptSteps = 16;  ///< the usual interval moves by this fraction of itself towards each new one
+constexpr std::int64_t kAdaptSteps = 16;  ///< the median interval moves by this fraction of itself towards each new one
 
 bool reaches(const Scalar* values, Scalar range) {
   if (!(range > Scalar(0))) return false;
@@ -52,23 +52,23 @@ void ImuLog::add(const ImuSample& sample) {
   }
 }
 
-/// The usual interval is a running median: it goes up or down by a small part of itself, so that a gap of any length
+/// The median interval is a running median: it goes up or down by a small part of itself, so that a gap of any length
 /// moves it no further than a late sample does.
 void ImuLog::time_interval(std::int64_t interval_ns) {
   if (interval_ns > counts_.longest_ns) counts_.longest_ns = interval_ns;
-  std::int64_t& usual = counts_.usual_ns;
-  if (usual == 0) {
-    usual = interval_ns;
+  std::int64_t& median = counts_.median_ns;
+  if (median == 0) {
+    median = interval_ns;
     return;
   }
-  const std::int64_t late_by = interval_ns - usual;
-  if (late_by > usual / 2) {
+  const std::int64_t late_by = interval_ns - median;
+  if (late_by > median / 2) {
     ++counts_.gaps;
-    const std::int64_t missing = late_by / usual + (late_by % usual > usual / 2 ? 1 : 0);
+    const std::int64_t missing = late_by / median + (late_by % median > median / 2 ? 1 : 0);
     if (counts_.missing < INT64_MAX / 4) counts_.missing += missing < INT64_MAX / 4 ? missing : INT64_MAX / 4;
   }
-  const std::int64_t most = usual / kAdaptSteps > 0 ? usual / kAdaptSteps : 1;
-  usual += late_by > most ? most : late_by < -most ? -most : late_by;
+  const std::int64_t most = median / kAdaptSteps > 0 ? median / kAdaptSteps : 1;
+  median += late_by > most ? most : late_by < -most ? -most : late_by;
 }
 
 void ImuLog::mark_frame(std::int64_t t_ns) {

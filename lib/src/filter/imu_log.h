@@ -28,7 +28,7 @@ struct ImuCounts {
   std::int64_t last_interval = 0;  ///< samples between the last two frames
   std::int64_t late = 0;           ///< samples that are not after the last frame
   std::int64_t gaps = 0, missing = 0, saturated = 0;
-  std::int64_t first_ns = 0, last_ns = 0, usual_ns = 0, longest_ns = 0;
+  std::int64_t first_ns = 0, last_ns = 0, median_ns = 0, longest_ns = 0;
 };
 
 class ImuLog {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
 constexpr Scalar kMinDepth = Scalar(1e-9);
-constexpr Scalar kMostDepth = std::numeric_limits<Scalar>::max();
+constexpr Scalar kMaxDepth = std::numeric_limits<Scalar>::max();
 
 CameraModel model_of(const Camera& camera) { return static_cast<CameraModel>(camera.model); }
 
@@ -55,7 +55,7 @@ bool distort_flat(const Camera& c, const Vec2& m, Vec2* out, Mat2* J) {
 bool project_equidistant(const Camera& c, const Vec3& p, Vec2* pixel, Mat23* J) {
   const Scalar r = std::hypot(p.x(), p.y()), z = p.z();
   const Scalar rho2 = r * r + z * z;
-  if (!(rho2 > kMinDepth * kMinDepth && rho2 <= kMostDepth)) return false;
+  if (!(rho2 > kMinDepth * kMinDepth && rho2 <= kMaxDepth)) return false;
   const Scalar theta = std::atan2(r, z);
   if (!(theta * theta <= c.max_r2)) return false;
   Scalar slope;
@@ -174,7 +174,7 @@ bool undistort_flat(const Camera& c, const Vec2& target, Vec2* m, Mat2* J) {
 
 bool project(const Camera& c, const Vec3& p_C, Vec2* pixel, Mat23* J_pixel_p) {
   if (model_of(c) == CameraModel::kEquidistant) return project_equidistant(c, p_C, pixel, J_pixel_p);
-  if (!(p_C.z() > kMinDepth && p_C.z() <= kMostDepth)) return false;
+  if (!(p_C.z() > kMinDepth && p_C.z() <= kMaxDepth)) return false;
   const Scalar w = 1 / p_C.z();
   const Vec2 m(p_C.x() * w, p_C.y() * w);
   Vec2 d;

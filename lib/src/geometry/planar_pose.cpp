@@ -10,7 +10,7 @@
 namespace pf {
 namespace {
 
-constexpr Scalar kMost = std::numeric_limits<Scalar>::max();
+constexpr Scalar kMaxScalar = std::numeric_limits<Scalar>::max();
 
 /// Rotation nearest in spirit to [a b a x b]: the two directions are turned away from each other alike.
 /// False when they are almost parallel.
@@ -176,7 +176,7 @@ bool rectangle_pose(const Camera& camera, Scalar width, Scalar height, const Vec
                     PoseEstimate* best, Scalar* second_rms) {
   // In units of the rectangle, so that the plane's points and the rays are of a size.
   const Scalar unit = (width + height) / 2;
-  if (!(width > 0) || !(height > 0) || !(unit <= kMost)) return false;
+  if (!(width > 0) || !(height > 0) || !(unit <= kMaxScalar)) return false;
   Vec3 points_W[4], plane[4], rays[4];
   rectangle_points(width, height, points_W);
   for (int i = 0; i < 4; ++i) {
@@ -203,7 +203,7 @@ bool rectangle_pose(const Camera& camera, Scalar width, Scalar height, const Vec
     second_ok = first_ok && second_ok;
   }
   if (second_ok) widen(second, 4, sigma_px, &first);
-  if (second_rms != nullptr) *second_rms = second_ok ? second.rms_px : kMost;
+  if (second_rms != nullptr) *second_rms = second_ok ? second.rms_px : kMaxScalar;
   *best = first;
   return true;
 }

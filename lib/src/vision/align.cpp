@@ -12,10 +12,10 @@ constexpr int kHalf = kAlignSize / 2;
 constexpr int kRow = AlignTemplate::kRow;
 constexpr int kVectors = kRow / 4;
 constexpr float kPixels = static_cast<float>(kAlignSize * kAlignSize);
-constexpr float kSmallStep = 0.01f;     // px; the next one would be well below what noise leaves
-constexpr float kLeastContrast = 1.0f;  // grey, standard deviation
-constexpr float kLeastAspect = 2e-4f;   // weaker to both directions; below, floats cannot tell the matrix from singular
-constexpr float kLeastGradient = 0.25f;  // grey/px, root mean square in the weaker direction
+constexpr float kSmallStep = 0.01f;    // px; the next one would be well below what noise leaves
+constexpr float kMinContrast = 1.0f;   // grey, standard deviation
+constexpr float kMinAspect = 2e-4f;    // weaker to both directions; below, floats cannot tell the matrix from singular
+constexpr float kMinGradient = 0.25f;  // grey/px, root mean square in the weaker direction
 
 /// Grey levels about 128 around the start, wide enough for every place that the window may move to.
 struct Region {
@@ -145,7 +145,7 @@ bool make_align_template(const float* warped, AlignTemplate* out) {
   const float mean = dot(out->grey, ones) / kPixels;
   for (int at = 0; at < kAlignSize * kRow; ++at) out->grey[at] -= mean * ones[at];
   out->energy = dot(out->grey, out->grey);
-  if (!(out->energy >= kLeastContrast * kLeastContrast * kPixels)) return false;
+  if (!(out->energy >= kMinContrast * kMinContrast * kPixels)) return false;
   project(out->grey, ones, out->energy, out->gx);
   project(out->grey, ones, out->energy, out->gy);
   out->hxx = dot(out->gx, out->gx);
@@ -153,8 +153,7 @@ bool make_align_template(const float* warped, AlignTemplate* out) {
   out->hyy = dot(out->gy, out->gy);
   const float difference = out->hxx - out->hyy;
   out->weakest = 0.5f * (out->hxx + out->hyy - std::sqrt(difference * difference + 4.0f * out->hxy * out->hxy));
-  return out->weakest >= kLeastGradient * kLeastGradient * kPixels &&
-         out->weakest >= kLeastAspect * (out->hxx + out->hyy);
+  return out->weakest >= kMinGradient * kMinGradient * kPixels && out->weakest >= kMinAspect * (out->hxx + out->hyy);
 }
 
 AlignResult align(const ImageView& image, const AlignTemplate& pattern, const Vec2& start) {

@@ -8,8 +8,8 @@ namespace pf {
 
 namespace {
 
-constexpr float kLeastDeviation = 3.0f;  // grey
-constexpr float kLeastGradient = 0.5f;   // grey²
+constexpr float kMinDeviation = 3.0f;  // grey
+constexpr float kMinGradient = 0.5f;   // grey²
 constexpr float kDark = 8.0f;
 constexpr float kBright = 247.0f;
 
@@ -60,7 +60,7 @@ FrameStatistics frame_statistics(const ImageView& image) {
 }
 
 FrameUse judge_frame(const FrameStatistics& statistics) {
-  if (statistics.deviation >= kLeastDeviation && statistics.gradient_energy >= kLeastGradient) {
+  if (statistics.deviation >= kMinDeviation && statistics.gradient_energy >= kMinGradient) {
     return FrameUse::kUsable;
   }
   if (statistics.mean < kDark) return FrameUse::kDark;

@@ -8,12 +8,12 @@
 namespace pf {
 namespace {
 
-constexpr int kLeastFeatures = 12;
-constexpr Scalar kLeastParallax = Scalar(4);   ///< median parallax in the last frame, in standard deviations of a pixel
+constexpr int kMinFeatures = 12;
+constexpr Scalar kMinParallax = Scalar(4);     ///< median parallax in the last frame, in standard deviations of a pixel
 constexpr Scalar kAmpleParallax = Scalar(15);  ///< likewise: two explanations are possible no more
 constexpr Scalar kSettledParallax = Scalar(30);  ///< likewise: more would change nothing
 constexpr Scalar kGrowth = Scalar(1.4);          ///< of the parallax from one solution to the next
-constexpr Scalar kLeastMargin = Scalar(15);      ///< between the two best explanations, in chi-square
+constexpr Scalar kMinMargin = Scalar(15);        ///< between the two best explanations, in chi-square
 constexpr Scalar kPriorSigma = Scalar(0.7);      ///< of rho about 1: keeps what has no parallax finite
 constexpr Scalar kHuber = Scalar(2);             ///< [standard deviations]
 constexpr Scalar kBehindWeight = Scalar(10);     ///< of the prior, in addition, where rho < 0
@@ -76,7 +76,7 @@ void StartBundle::init() {
 }
 
 /// The turn alone that explains a frame best (robustly); returns the median of what is left, the parallax [px].
-Scalar StartBundle::turn(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const {
+Scalar StartBundle::fit_rotation(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const {
   Scalar left[StartRecord::kMaxFeatures];
   Scalar scale = Scalar(20);  // [px] tightens as the turn is found
   int count = 0;
@@ -124,11 +124,11 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   if (last < 0) return StartOutcome::kWait;
   int left = 0;
   for (int i = 0; i < record.features(); ++i) left += record.seen(last, i) ? 1 : 0;
-  if (left < kLeastFeatures) return StartOutcome::kTooFew;
+  if (left < kMinFeatures) return StartOutcome::kTooFew;
 
   Quat q_last = record.frame(last).q_WC;
-  const Scalar parallax = turn(camera, record, last, &q_last);
-  if (!(parallax >= kLeastParallax * sigma_px && parallax >= kGrowth * last_parallax_)) return StartOutcome::kWait;
+  const Scalar parallax = fit_rotation(camera, record, last, &q_last);
+  if (!(parallax >= kMinParallax * sigma_px && parallax >= kGrowth * last_parallax_)) return StartOutcome::kWait;
 
   // Frame 0 and the last one, from six directions of motion; the parallax says how far at a depth of one.
   const int count = record.features();
@@ -158,7 +158,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
     std::copy(rho_, rho_ + count, best_rho_);
   }
   // Two explanations that fit about as well (a scene and its inside-out twin) need more parallax, unless there is plenty.
-  if (second >= Scalar(0) && second - best < kLeastMargin && parallax < kAmpleParallax * sigma_px)
+  if (second >= Scalar(0) && second - best < kMinMargin && parallax < kAmpleParallax * sigma_px)
     return StartOutcome::kWait;
 
   // Everything together: the last frame and others spread over the record.
@@ -169,7 +169,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   pose_[1] = best_pose;
   for (int c = 1; c < cameras; ++c) {
     pose_[1 + c].q_WC = record.frame(frame[c]).q_WC;
-    turn(camera, record, frame[c], &pose_[1 + c].q_WC);
+    fit_rotation(camera, record, frame[c], &pose_[1 + c].q_WC);
     pose_[1 + c].p_W = best_pose.p_W * (static_cast<Scalar>(frame[c] + 1) / static_cast<Scalar>(last + 1));
     if (!locate(camera, record, frame[c], sigma_px, &pose_[1 + c])) return StartOutcome::kWait;
   }
@@ -200,13 +200,13 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
     good_[i] = 1;
     sorted[good++] = rho_[i];
   }
-  if (good < kLeastFeatures) return StartOutcome::kWait;
+  if (good < kMinFeatures) return StartOutcome::kWait;
   std::nth_element(sorted, sorted + good / 2, sorted + good);
   Scalar unit = Scalar(1) / (sorted[good / 2] * median_depth);
   int common = 0;
   for (int i = 0; i < count; ++i)
     if (good_[i] != 0 && last_rho_[i] > Scalar(0)) sorted[common++] = last_rho_[i] / rho_[i];
-  if (common >= kLeastFeatures) {
+  if (common >= kMinFeatures) {
     std::nth_element(sorted, sorted + common / 2, sorted + common);
     unit = sorted[common / 2];
   }

@@ -76,7 +76,7 @@ class StartBundle {
  private:
   static constexpr int kMaxCameras = 8;  ///< of the adjustment
 
-  Scalar turn(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const;
+  Scalar fit_rotation(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const;
   Scalar adjust(const Camera& camera, const StartRecord& record, const int* frame, int cameras, int rounds,
                 Scalar sigma_px);
   bool locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px, BundlePose* pose) const;
