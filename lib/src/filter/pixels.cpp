@@ -5,7 +5,7 @@
 #include "filter/observe/row.h"
 #include "filter/observe/world_point.h"
 
-/// Pixels: what is expected of them.
+/// Pixels: what is expected of them, each at the pose of its own row (lib/docs/rolling_shutter.md).
 
 namespace pf {
 namespace {

@@ -4,6 +4,8 @@
 
 #include "geometry/plane.h"
 
+/// Looks for planes among points that lie on none yet: lib/docs/plane_search.md.
+
 namespace pf {
 
 /// A point that may lie on a plane that has not been found yet.

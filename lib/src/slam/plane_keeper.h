@@ -9,7 +9,8 @@
 #include "slam/frame.h"
 #include "slam/settings.h"
 
-/// Keeps the planes of the map: unfolds outliers, folds and fixes points; discovers, merges and dissolves planes. Gee 2007, section 3.
+/// Keeps the planes of the map: unfolds outliers, folds and fixes points; discovers, merges and dissolves planes. Gee 2007, section 3
+/// (lib/docs/planes.md).
 
 namespace pf {
 

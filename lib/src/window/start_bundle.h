@@ -4,7 +4,7 @@
 #include "geometry/camera.h"
 #include "window/adjust.h"
 
-/// The first depths, when nothing is known beforehand: a bundle adjustment over the first frames, from several first guesses.
+/// The first depths, when nothing is known beforehand: a bundle adjustment over the first frames, from several first guesses (lib/docs/starting.md).
 ///
 /// A filter that starts with a camera that has not moved cannot know that parallax is the product of depth and motion: with a
 /// baseline of zero the derivative by depth is zero, and a scene turned inside out fits as well at first. So the pixels of the

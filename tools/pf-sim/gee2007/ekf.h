@@ -5,6 +5,8 @@
 
 #include "algebra.h"
 
+/// The filter of the paper's experiment: lib/docs/gee2007.md.
+
 namespace pfsim::gee {
 
 /// A derivative with respect to one block of the state; its columns are as many as the block has numbers.

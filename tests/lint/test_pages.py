@@ -1,0 +1,35 @@
+"""Pages and code find each other: links lead somewhere, pages that comments name exist, and every page that describes code links to a file
+that names the page."""
+
+import re
+
+import source
+
+DOCS = source.ROOT / "lib/docs"
+# Pages about the project as a whole, which no file implements.
+OVERVIEW = {"architecture.md", "notation.md", "results.md", "devices.md", "where_to_change.md"}
+problems = []
+
+for page in [*sorted(DOCS.rglob("*.md")), source.ROOT / "README.md"]:
+    for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", page.read_text()):
+        if not re.match(r"[a-z]+:", target) and not (page.parent / target).exists():
+            problems.append(f"{source.name(page)} links to {target}, which does not exist")
+
+code = {path: path.read_text() for path in source.files("lib", "platform", "examples", "tools", "tests", suffixes=(".c", ".cpp", ".h", ".py", ".sh"))}
+for path, text in code.items():
+    for name in re.findall(r"\blib/docs/([\w/]+\.md)", text):
+        if not (DOCS / name).is_file():
+            problems.append(f"{source.name(path)} names lib/docs/{name}, which does not exist")
+
+for page in sorted(DOCS.glob("*.md")):
+    if page.name in OVERVIEW:
+        continue
+    text = page.read_text()
+    linked = [(DOCS / target).resolve() for target in re.findall(r"\]\((\.\./[^)#\s]+)\)", text)]
+    files = [path for path in linked if path.is_file() and path.suffix in (".c", ".cpp", ".h")]
+    if not files:
+        problems.append(f"lib/docs/{page.name} links to no source file that does what it describes")
+    elif not any(f"lib/docs/{page.name}" in path.read_text() for path in files):
+        names = ", ".join(source.name(path) for path in files)
+        problems.append(f"lib/docs/{page.name}: none of the files that it links to names it ({names})")
+source.report(problems)

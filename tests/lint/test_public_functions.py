@@ -1,0 +1,26 @@
+"""Every public function of the header is called by at least one test, and by at least one program or example."""
+
+import re
+
+import source
+
+HEADER = source.ROOT / "lib/include/planefold/planefold.h"
+functions = re.findall(r"\bPF_API\b[^;(]*?\b(pf_\w+)\s*\(", source.code(HEADER.read_text()))
+if len(functions) < 20:
+    source.script.fail(f"the header declares {len(functions)} functions: this test no longer reads it")
+
+
+def called(paths):
+    names = set()
+    for path in paths:
+        names |= set(re.findall(r"\b(pf_\w+)\s*\(", source.code(path.read_text())))
+        names |= set(re.findall(r"[(,]\s*&?(pf_get_\w+)\s*[,)]", source.code(path.read_text())))  # handed over to be called
+    return names
+
+
+tests = called(path for path in source.files("tests", suffixes=(".c", ".cpp", ".h")) if path.parts[-2] not in ("fuzz", "guest"))
+# pf-digest calls everything, for comparison: nobody learns from it what a function is for.
+programs = called(path for path in source.files("examples", "tools") if path.parent.name != "pf-digest")
+problems = [f"{name} is called by no test" for name in functions if name not in tests]
+problems += [f"{name} is called by no program and no example" for name in functions if name not in programs]
+source.report(problems)
