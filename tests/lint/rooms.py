@@ -36,3 +36,20 @@ SANITIZERS = {"sanitizer/asan_interface.h"}
 
 # Folders above the public header that may look into lib/src all the same: kernels are timed where they are.
 LOOK_INSIDE = {"tools/pf-bench"}
+
+# Inside rooms: headers that only these files may include themselves. A name that ends in * stands for all that begin so.
+ONLY_FOR = {
+    # The API reads and drives a session; which back end works behind it is the session's and the view's affair.
+    "slam/frame_loop.h": ["slam/frame_loop.cpp", "slam/session*", "slam/view*"],
+    "slam/session.h": ["slam/session.cpp", "api/*"],
+    # Starts and the state that the caller sees know no filter; nor do the frame's results.
+    "filter/filter.h": ["filter/*", "slam/body_motion*", "slam/consensus*", "slam/feature_keeper*", "slam/filter_start*", "slam/frame_loop*",
+                        "slam/image_front_end*", "slam/observation_front_end*", "slam/pixel_update*", "slam/plane_*", "slam/settings.h"],
+    "slam/plane_keeper.h": ["slam/plane_*", "slam/frame_loop*", "slam/view*"],
+    "slam/image_front_end.h": ["slam/image_*", "slam/filter_start*", "slam/frame_loop*"],
+    "slam/observation_front_end.h": ["slam/observation_front_end.cpp", "slam/frame_loop*"],
+    "slam/filter_start.h": ["slam/filter_start.cpp", "slam/frame_loop*"],
+}
+
+# Rooms whose files have at most so many lines.
+MAX_LINES = {"slam": 300, "filter": 300}

@@ -1,5 +1,6 @@
 """Every #include goes down the arrows of lib/docs/architecture.md."""
 
+import fnmatch
 import re
 
 import rooms
@@ -14,7 +15,8 @@ def complain(path, number, why):
 
 
 def library(path):
-    room = path.relative_to(LIB).parts[0]
+    inside = path.relative_to(LIB).as_posix()
+    room = inside.split("/")[0]
     if room not in rooms.LIBRARY:
         complain(path, 1, f"{room} is no room of the house; see tests/lint/rooms.py")
         return
@@ -31,6 +33,8 @@ def library(path):
                 complain(path, number, f'"{what}" is not a path from lib/src')
             elif other != room and other not in rooms.LIBRARY[room]:
                 complain(path, number, f"{room} may not include {other}")
+            elif what in rooms.ONLY_FOR and not any(fnmatch.fnmatch(inside, allowed) for allowed in rooms.ONLY_FOR[what]):
+                complain(path, number, f"{inside} may not include {what}; see ONLY_FOR in tests/lint/rooms.py")
         elif what not in rooms.STANDARD and what not in rooms.FOR_ONE_PROCESSOR and what not in rooms.PLATFORM_PROBES \
                 and what not in rooms.SANITIZERS:
             complain(path, number, f"<{what}> is not among the standard headers that the library may use")
@@ -47,8 +51,16 @@ def closure(path, seen=None):
     return seen
 
 
+for what in rooms.ONLY_FOR:
+    if not (LIB / what).is_file():
+        problems.append(f"tests/lint/rooms.py: ONLY_FOR names {what}, which does not exist")
+
 for path in source.files("lib/src"):
     library(path)
+    room = path.relative_to(LIB).parts[0]
+    lines = path.read_text().count("\n")
+    if lines > rooms.MAX_LINES.get(room, lines):
+        complain(path, lines, f"a file of {room} has at most {rooms.MAX_LINES[room]} lines: one job each")
     if re.search(r"_(avx2|avx512|neon)\.cpp$", path.name):
         for reached in sorted(closure(path)):
             for number, bracket, what in source.includes(reached):
