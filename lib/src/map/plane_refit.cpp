@@ -4,15 +4,12 @@
 #include <cmath>
 
 #include "map/plane_chance.h"
+#include "map/tuning.h"
 
 namespace pf {
 namespace {
 
-constexpr int kSurroundings = 20;  // chance is judged against a layer this many times as thick
-constexpr Scalar kContrast = 5;    // a plane is at least this many times as dense as either layer beside it
-constexpr Scalar kLogFalsePlanes = Scalar(-4.6);  // ln 0.01
-constexpr Scalar kMinWidth = 3;                   // the narrow side of the points' spread, in distances
-constexpr Scalar kMinAspect = Scalar(0.02);       // λ1 / λ2
+using namespace tuning::plane_search;
 
 }  // namespace
 

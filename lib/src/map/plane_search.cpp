@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "map/plane_refit.h"
+#include "map/tuning.h"
 
 namespace pf {
 namespace {
 
-constexpr int kKept = 4;  // hypotheses that are refitted
+using namespace tuning::plane_search;
 
 /// xorshift32. A state of zero, which it would never leave, becomes another.
 std::uint32_t next_random(std::uint32_t* state) {

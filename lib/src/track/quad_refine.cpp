@@ -2,18 +2,16 @@
 
 #include <cmath>
 
+#include "track/tuning.h"
+
 namespace pf {
 namespace {
 
+using namespace tuning::quad_refine;
+
 constexpr int kMaxPlaces = 40;
 constexpr int kPasses = 2;
-constexpr Scalar kReach = 5;                  ///< across a side, each way [px]
-constexpr Scalar kStep = Scalar(0.5);         ///< [px]
-constexpr int kProfile = 2 * 10 + 1;          ///< samples across: 2 kReach / kStep + 1
-constexpr Scalar kRobust = Scalar(0.4);       ///< residual that counts half [px]
-constexpr Scalar kMaxRms = Scalar(1.0);       ///< [px]
-constexpr Scalar kMaxMove = 4;                ///< [px]
-constexpr Scalar kMinFrontal = Scalar(0.34);  ///< cosine of 70 degrees
+constexpr int kProfile = static_cast<int>(2 * kReach / kStep) + 1;  ///< samples across
 
 /// Grey level between pixels. False near the border.
 bool sample(const ImageView& image, const Vec2& p, Scalar* value) {

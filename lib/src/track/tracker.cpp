@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "geometry/so3.h"
+#include "track/tuning.h"
 #include "vision/align.h"
 #include "vision/blur.h"
 #include "vision/search.h"
@@ -10,14 +11,7 @@
 namespace pf {
 namespace {
 
-constexpr Scalar kSearchRadius = Scalar(9);  ///< [px of the level] a larger ellipse is searched one level up
-constexpr float kMinSearchScore = 0.6f;
-constexpr float kMinScore = 0.8f;      ///< of the aligned window
-constexpr float kMinPeakLead = 0.04f;  ///< of the first peak over the second; less means repeated texture
-
-/// Range of source pixels per current pixel within which a view can be compared with the first one.
-constexpr Scalar kMinScale = Scalar(0.25);
-constexpr Scalar kMaxScale = Scalar(3.2);
+using namespace tuning::match;
 
 Scalar largest_eigenvalue(const Mat2& S) {
   const Scalar mean = (S(0, 0) + S(1, 1)) / Scalar(2);

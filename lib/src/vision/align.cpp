@@ -3,19 +3,18 @@
 #include <cmath>
 
 #include "vision/simd.h"
+#include "vision/tuning.h"
 
 namespace pf {
 
 namespace {
 
+using namespace tuning::align;
+
 constexpr int kHalf = kAlignSize / 2;
 constexpr int kRow = AlignTemplate::kRow;
 constexpr int kVectors = kRow / 4;
 constexpr float kPixels = static_cast<float>(kAlignSize * kAlignSize);
-constexpr float kSmallStep = 0.01f;    // px; the next one would be well below what noise leaves
-constexpr float kMinContrast = 1.0f;   // grey, standard deviation
-constexpr float kMinAspect = 2e-4f;    // weaker to both directions; below, floats cannot tell the matrix from singular
-constexpr float kMinGradient = 0.25f;  // grey/px, root mean square in the weaker direction
 
 /// Grey levels about 128 around the start, wide enough for every place that the window may move to.
 struct Region {
@@ -180,7 +179,7 @@ AlignResult align(const ImageView& image, const AlignTemplate& pattern, const Ve
     const Sums s = evaluate(region, pattern, x - origin_x, y - origin_y);
     const float gain = s.tv / pattern.energy;
     const float energy = s.vv - s.v * s.v / kPixels;
-    if (!(gain > 0.02f) || !(energy > 0.0f)) return result;
+    if (!(gain > kMinGain) || !(energy > 0.0f)) return result;
     const float bx = s.xv / gain;
     const float by = s.yv / gain;
     const float step_x = -(pattern.hyy * bx - pattern.hxy * by) / det;

@@ -3,15 +3,13 @@
 #include <cmath>
 
 #include "vision/simd.h"
+#include "vision/tuning.h"
 
 namespace pf {
 
 namespace {
 
-constexpr float kMinDeviation = 3.0f;  // grey
-constexpr float kMinGradient = 0.5f;   // grey²
-constexpr float kDark = 8.0f;
-constexpr float kBright = 247.0f;
+using namespace tuning::frame_use;
 
 /// Sums over one row: of the pixels, their squares, and the squared differences. `below` may be the row itself.
 struct RowSums {

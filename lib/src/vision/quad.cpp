@@ -3,16 +3,14 @@
 #include <cmath>
 
 #include "vision/quad_corners.h"
+#include "vision/tuning.h"
 
 namespace pf {
 namespace {
 
+using namespace tuning::quad;
+
 constexpr int kLevels = 7;
-constexpr int kMinRange = 30;               ///< darkest to lightest part of a usable image [grey levels]
-constexpr Scalar kMinContrast = 25;         ///< across every side [grey levels]
-constexpr Scalar kMinArea = Scalar(0.002);  ///< of the image
-constexpr Scalar kSameCorners = 4;          ///< mean distance of the corners of one and the same quadrilateral [px]
-constexpr int kBorder = 3;                  ///< [px] that outlines keep clear of
 
 /// Grey levels below which 0.1 % and 99.9 % of the pixels are, from every second row: the smallest quadrilateral is twice
 /// that.

@@ -2,13 +2,12 @@
 
 #include <cmath>
 
+#include "vision/tuning.h"
+
 namespace pf {
 namespace {
 
-constexpr Scalar kMinSide = 8;                ///< [px]
-constexpr Scalar kMinSine = Scalar(0.25);     ///< of the angle at a corner
-constexpr Scalar kMaxBulge = Scalar(0.06);    ///< of a side, in parts of its length
-constexpr Scalar kMaxAreaGap = Scalar(0.12);  ///< between outline and corners, in parts of the area
+using namespace tuning::quad;
 
 Vec2 at(const Contour& contour, int i) {
   return Vec2(static_cast<Scalar>(contour.points[i].x), static_cast<Scalar>(contour.points[i].y));

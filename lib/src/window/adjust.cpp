@@ -4,17 +4,12 @@
 #include <cmath>
 
 #include "geometry/so3.h"
+#include "window/tuning.h"
 
 namespace pf {
 namespace {
 
-constexpr Scalar kFirstDamping = Scalar(1e-3);
-constexpr Scalar kMinDamping = Scalar(1e-6);
-constexpr Scalar kMaxDamping = Scalar(1e4);
-constexpr Scalar kDampingDown = Scalar(5);        ///< after a step that lowers the cost
-constexpr Scalar kDampingUp = Scalar(8);          ///< after one that does not
-constexpr Scalar kSmallGain = Scalar(1e-4);       ///< of the cost: the end
-constexpr Scalar kRegularisation = Scalar(1e-9);  ///< on the diagonal of S
+using namespace tuning::adjust;
 
 /// A = L Lᵀ in place.
 bool factor_in_place(Scalar* A, int n, int ld) {

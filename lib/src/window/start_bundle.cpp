@@ -4,21 +4,12 @@
 #include <cmath>
 
 #include "geometry/so3.h"
+#include "window/tuning.h"
 
 namespace pf {
 namespace {
 
-constexpr int kMinFeatures = 12;
-constexpr Scalar kMinParallax = Scalar(4);     ///< median parallax in the last frame, in standard deviations of a pixel
-constexpr Scalar kAmpleParallax = Scalar(15);  ///< likewise: two explanations are possible no more
-constexpr Scalar kSettledParallax = Scalar(30);  ///< likewise: more would change nothing
-constexpr Scalar kGrowth = Scalar(1.4);          ///< of the parallax from one solution to the next
-constexpr Scalar kMinMargin = Scalar(15);        ///< between the two best explanations, in chi-square
-constexpr Scalar kPriorSigma = Scalar(0.7);      ///< of rho about 1: keeps what has no parallax finite
-constexpr Scalar kHuber = Scalar(2);             ///< [standard deviations]
-constexpr Scalar kBehindWeight = Scalar(10);     ///< of the prior, in addition, where rho < 0
-constexpr Scalar kNoPixelPenalty =
-    Scalar(100);  ///< of a seen feature that does not project, in squared standard deviations
+using namespace tuning::start;
 
 }  // namespace
 
@@ -78,9 +69,9 @@ void StartBundle::init() {
 /// The turn alone that explains a frame best (robustly); returns the median of what is left, the parallax [px].
 Scalar StartBundle::fit_rotation(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const {
   Scalar left[StartRecord::kMaxFeatures];
-  Scalar scale = Scalar(20);  // [px] tightens as the turn is found
+  Scalar scale = kFirstRotationScale;  // tightens as the rotation is found
   int count = 0;
-  for (int round = 0; round < 8; ++round) {
+  for (int round = 0; round < kPoseRounds; ++round) {
     Mat3 H = Mat3::Identity() * Scalar(1e-6);
     Vec3 g = Vec3::Zero();
     const Mat3 R_WC = q_WC->toRotationMatrix();
@@ -141,10 +132,10 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
     pose_[1].q_WC = q_last;
     pose_[1].p_W = direction * length * Scalar(2);
     for (int i = 0; i < count; ++i) rho_[i] = Scalar(1);
-    const Scalar c = adjust(camera, record, &last, 1, 25, sigma_px);
+    const Scalar c = adjust(camera, record, &last, 1, kGuessRounds, sigma_px);
     if (best >= Scalar(0)) {
       const Scalar cosine = pose_[1].p_W.dot(best_pose.p_W) / (pose_[1].p_W.norm() * best_pose.p_W.norm());
-      if (cosine > Scalar(0.9)) {  // the same explanation again
+      if (cosine > kSameDirection) {  // the same explanation again
         if (c >= best) continue;
       } else if (c >= best) {
         if (second < Scalar(0) || c < second) second = c;
@@ -173,19 +164,19 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
     pose_[1 + c].p_W = best_pose.p_W * (static_cast<Scalar>(frame[c] + 1) / static_cast<Scalar>(last + 1));
     if (!locate(camera, record, frame[c], sigma_px, &pose_[1 + c])) return StartOutcome::kWait;
   }
-  const Scalar total = adjust(camera, record, frame, cameras, 30, sigma_px);
+  const Scalar total = adjust(camera, record, frame, cameras, kRounds, sigma_px);
   int pixels = 0;
   for (int c = 0; c < cameras; ++c)
     for (int i = 0; i < count; ++i) pixels += record.seen(frame[c], i) ? 1 : 0;
   // Two numbers per pixel; three times what noise alone would leave means that this is no explanation.
-  if (!(total <= Scalar(6) * static_cast<Scalar>(pixels))) return StartOutcome::kWait;
+  if (!(total <= kMaxCost * static_cast<Scalar>(pixels))) return StartOutcome::kWait;
 
   // Depths that were in front and well enough known, and the unit of length.
   Scalar sorted[StartRecord::kMaxFeatures];
   int good = 0;
   for (int i = 0; i < count; ++i) {
     good_[i] = 0;
-    if (!record.seen(last, i) || !(rho_[i] > Scalar(0.02))) continue;
+    if (!record.seen(last, i) || !(rho_[i] > kMinGoodRho)) continue;
     Scalar worst = 0;
     for (int c = 0; c < cameras; ++c) {
       if (!record.seen(frame[c], i)) continue;
@@ -196,7 +187,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
       else
         worst = std::max(worst, (record.pixel(frame[c], i) - z).squaredNorm());
     }
-    if (worst > Scalar(25) * sigma_px * sigma_px) continue;
+    if (worst > kMaxGoodResidual * kMaxGoodResidual * sigma_px * sigma_px) continue;
     good_[i] = 1;
     sorted[good++] = rho_[i];
   }
@@ -231,7 +222,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
 bool StartBundle::locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px,
                          BundlePose* pose) const {
   const Scalar information = Scalar(1) / (sigma_px * sigma_px);
-  for (int round = 0; round < 8; ++round) {
+  for (int round = 0; round < kPoseRounds; ++round) {
     Scalar H[36], b[6];
     std::fill(H, H + 36, Scalar(0));
     std::fill(b, b + 6, Scalar(0));

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "base/scalar.h"
+
+/// Tuned numbers of tracking: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no
+/// sweep has measured has no figure here.
+
+namespace pf::tuning {
+
+/// Search and alignment of a feature.
+namespace match {
+inline constexpr Scalar kSearchRadius = Scalar(9);  ///< [px of the level]; a larger ellipse is searched one level up
+inline constexpr float kMinSearchScore = 0.6f;      ///< normalised correlation of the peak
+inline constexpr float kMinScore = 0.8f;            ///< normalised correlation of the aligned window
+inline constexpr float kMinPeakLead = 0.04f;        ///< of the first peak over the second; less means repeated texture
+inline constexpr Scalar kMinScale =
+    Scalar(0.25);  ///< source pixels per current pixel with which a view can be compared, from
+inline constexpr Scalar kMaxScale = Scalar(3.2);  ///< to
+}  // namespace match
+
+/// Sub-pixel sides of a quadrilateral.
+namespace quad_refine {
+inline constexpr Scalar kReach = 5;                  ///< across a side, each way [px]
+inline constexpr Scalar kStep = Scalar(0.5);         ///< between samples [px]
+inline constexpr Scalar kRobust = Scalar(0.4);       ///< residual that counts half [px]
+inline constexpr Scalar kMaxRms = Scalar(1.0);       ///< of a side [px]
+inline constexpr Scalar kMaxMove = 4;                ///< of a corner [px]
+inline constexpr Scalar kMinFrontal = Scalar(0.34);  ///< cosine between the view and the normal: 70 degrees
+}  // namespace quad_refine
+
+}  // namespace pf::tuning

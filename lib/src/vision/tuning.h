@@ -1,0 +1,41 @@
+#pragma once
+
+#include "base/scalar.h"
+
+/// Tuned numbers of vision: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no sweep
+/// has measured has no figure here.
+
+namespace pf::tuning {
+
+/// Sub-pixel alignment of a window.
+namespace align {
+inline constexpr float kSmallStep = 0.01f;   ///< [px]; the next step would be well below what noise leaves
+inline constexpr float kMinContrast = 1.0f;  ///< standard deviation of the window [grey levels]
+inline constexpr float kMinAspect =
+    2e-4f;  ///< of the gradients' eigenvalues, weaker to sum; below, floats see a singular matrix
+inline constexpr float kMinGradient = 0.25f;  ///< root mean square in the weaker direction [grey levels/px]
+inline constexpr float kMinGain = 0.02f;      ///< of the image against the template
+}  // namespace align
+
+/// Whether an image has content.
+namespace frame_use {
+inline constexpr float kMinDeviation = 3.0f;  ///< standard deviation of the image [grey levels]
+inline constexpr float kMinGradient = 0.5f;   ///< mean square gradient [squared grey levels]
+inline constexpr float kDark = 8.0f;          ///< mean of a black image [grey levels]
+inline constexpr float kBright = 247.0f;      ///< mean of a white image [grey levels]
+}  // namespace frame_use
+
+/// Dark quadrilaterals.
+namespace quad {
+inline constexpr int kMinRange = 30;               ///< darkest to lightest part of a usable image [grey levels]
+inline constexpr Scalar kMinContrast = 25;         ///< across every side [grey levels]
+inline constexpr Scalar kMinArea = Scalar(0.002);  ///< of the image's area
+inline constexpr Scalar kSameCorners = 4;  ///< mean distance of the corners of one and the same quadrilateral [px]
+inline constexpr int kBorder = 3;          ///< [px] that outlines keep clear of
+inline constexpr Scalar kMinSide = 8;      ///< [px]
+inline constexpr Scalar kMinSine = Scalar(0.25);     ///< of the angle at a corner
+inline constexpr Scalar kMaxBulge = Scalar(0.06);    ///< of a side, in parts of its length
+inline constexpr Scalar kMaxAreaGap = Scalar(0.12);  ///< between outline and corners, in parts of the area
+}  // namespace quad
+
+}  // namespace pf::tuning

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "base/scalar.h"
+
+/// Tuned numbers of the window: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no
+/// sweep has measured has no figure here.
+
+namespace pf::tuning {
+
+/// Levenberg-Marquardt of the bundle adjuster.
+namespace adjust {
+inline constexpr Scalar kFirstDamping = Scalar(1e-3);    ///< relative, of the first round
+inline constexpr Scalar kMinDamping = Scalar(1e-6);      ///< relative
+inline constexpr Scalar kMaxDamping = Scalar(1e4);       ///< relative; more means that no step helps
+inline constexpr Scalar kDampingDown = Scalar(5);        ///< divisor after a step that lowers the cost
+inline constexpr Scalar kDampingUp = Scalar(8);          ///< factor after one that does not
+inline constexpr Scalar kSmallGain = Scalar(1e-4);       ///< of the cost; a smaller one ends the adjustment
+inline constexpr Scalar kRegularisation = Scalar(1e-9);  ///< on the diagonal of S [1/rad², 1/m²]
+}  // namespace adjust
+
+/// The start without a target.
+namespace start {
+inline constexpr int kMinFeatures = 12;                 ///< of frame 0 that are still seen
+inline constexpr Scalar kMinParallax = Scalar(4);       ///< median in the last frame [standard deviations of a pixel]
+inline constexpr Scalar kAmpleParallax = Scalar(15);    ///< likewise; from here on the best explanation is taken
+inline constexpr Scalar kSettledParallax = Scalar(30);  ///< likewise; from here on the record ends
+inline constexpr Scalar kGrowth = Scalar(1.4);          ///< of the parallax from one solution to the next
+inline constexpr Scalar kMinMargin = Scalar(15);        ///< between the two best explanations [chi-square]
+inline constexpr Scalar kSameDirection = Scalar(0.9);   ///< cosine between two motions that are one explanation
+inline constexpr Scalar kMaxCost = Scalar(6);        ///< per pixel [squared standard deviations]; noise alone leaves 2
+inline constexpr Scalar kPriorSigma = Scalar(0.7);   ///< of rho about 1: keeps what has no parallax finite
+inline constexpr Scalar kBehindWeight = Scalar(10);  ///< of the prior, in addition, where rho < 0
+inline constexpr Scalar kNoPixelPenalty = Scalar(100);     ///< of a seen feature that does not project [chi-square]
+inline constexpr Scalar kHuber = Scalar(2);                ///< [standard deviations of a pixel]
+inline constexpr Scalar kFirstRotationScale = Scalar(20);  ///< residual that counts half at first [px]
+inline constexpr Scalar kMinGoodRho = Scalar(0.02);        ///< of a feature that is trusted, about a median of 1
+inline constexpr Scalar kMaxGoodResidual = Scalar(5);  ///< likewise, in every camera [standard deviations of a pixel]
+inline constexpr int kGuessRounds = 25;                ///< of the adjustment from each direction of motion
+inline constexpr int kRounds = 30;                     ///< of the adjustment of all cameras
+inline constexpr int kPoseRounds = 8;                  ///< of a rotation or a pose alone
+}  // namespace start
+
+}  // namespace pf::tuning
