@@ -14,7 +14,8 @@ optional_targets=(g++-aarch64-linux-gnu gcc-arm-none-eabi libstdc++-arm-none-eab
 # Without these pf-capture has no libcamera and no inertial units, and its window is not tried without a screen.
 optional_devices=(libcamera-dev libiio-dev xvfb)
 optional_arm=(g++-arm-linux-gnueabihf)
-optional_all=(clang clang-tidy libclang-rt-14-dev valgrind make xz-utils)
+optional_fuzz=(clang libclang-rt-14-dev llvm)
+optional_all=("${optional_fuzz[@]}" clang-tidy valgrind make xz-utils)
 
 # missing_packages NAME...   prints those that are not installed
 missing_packages() {

@@ -1,0 +1,624 @@
+// The whole contract: a config that is right, then calls in any order, most of which mean something and some of which are hostile. Every
+// status is one that the header names, what is refused or only asks leaves the block as it was, nothing is written outside of the block, and
+// what comes out is finite, with covariances that are covariances.
+#include <planefold/planefold.h>
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "bytes.h"
+
+namespace {
+
+#ifdef PLANEFOLD_FUZZ_FLOAT
+constexpr double kSmallestEigenvalue = -2e-3;  ///< of a correlation matrix, which rounding may bring below zero
+#else
+constexpr double kSmallestEigenvalue = -1e-7;
+#endif
+constexpr size_t kMaxBlock = size_t{8} << 20;
+constexpr size_t kPage = 4096;
+
+/// Memory that ends, or begins, at a page that nobody may touch.
+class Guarded {
+ public:
+  Guarded(size_t bytes, size_t alignment, bool at_end) : bytes_((bytes + alignment - 1) / alignment * alignment) {
+    const size_t pages = (bytes_ + kPage - 1) / kPage;
+    all_ = (pages + 2) * kPage;
+    map_ = static_cast<uint8_t*>(mmap(nullptr, all_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    require(map_ != MAP_FAILED && mprotect(map_ + kPage, pages * kPage, PROT_READ | PROT_WRITE) == 0, "memory");
+    begin_ = map_ + kPage + (at_end ? pages * kPage - bytes_ : 0);
+  }
+  Guarded(const Guarded&) = delete;
+  Guarded& operator=(const Guarded&) = delete;
+  ~Guarded() { munmap(map_, all_); }
+  uint8_t* begin() const { return begin_; }
+
+  /// Red zones of the arena are read too, so that no sanitizer may look.
+  __attribute__((no_sanitize("address", "undefined"))) uint64_t hash() const {
+    using Word = uint64_t __attribute__((may_alias));
+    const auto* words = static_cast<const volatile Word*>(static_cast<const volatile void*>(begin_));
+    uint64_t h = 1469598103934665603u;
+    for (size_t i = 0; i < bytes_ / sizeof(Word); ++i) {
+      h = (h ^ words[i]) * 1099511628211u;
+      h ^= h >> 29;
+    }
+    return h;
+  }
+
+ private:
+  size_t bytes_, all_;
+  uint8_t *map_, *begin_;
+};
+
+bool finite(const double* values, int count) {
+  return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
+}
+
+/// Smallest eigenvalue of the correlations of a covariance, by Jacobi rotations.
+double smallest_eigenvalue(const double* covariance, int n) {
+  double A[36], scale[6];
+  for (int i = 0; i < n; ++i) scale[i] = covariance[i * n + i] > 0 ? 1 / std::sqrt(covariance[i * n + i]) : 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      A[i * n + j] = (covariance[i * n + j] + covariance[j * n + i]) / 2 * scale[i] * scale[j];
+  for (int sweep = 0; sweep < 30; ++sweep) {
+    for (int p = 0; p < n; ++p) {
+      for (int q = p + 1; q < n; ++q) {
+        const double a = A[p * n + q];
+        if (std::fabs(a) < 1e-300) continue;
+        const double theta = (A[q * n + q] - A[p * n + p]) / (2 * a);
+        const double t = (theta >= 0 ? 1 : -1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
+        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+        for (int k = 0; k < n; ++k) {
+          const double x = A[k * n + p], y = A[k * n + q];
+          A[k * n + p] = c * x - s * y;
+          A[k * n + q] = s * x + c * y;
+        }
+        for (int k = 0; k < n; ++k) {
+          const double x = A[p * n + k], y = A[q * n + k];
+          A[p * n + k] = c * x - s * y;
+          A[q * n + k] = s * x + c * y;
+        }
+      }
+    }
+  }
+  double smallest = A[0];
+  for (int i = 1; i < n; ++i) smallest = std::min(smallest, A[i * n + i]);
+  return smallest;
+}
+
+/// Whether covariances are asked to be positive semidefinite, and not only finite. With the forms that are there for comparison (fold drop,
+/// fix inflate or error-free, no gauge), and with motion densities above 10, P is known to lose it in double, too.
+bool must_be_positive = true;
+
+void require_covariance(const double* covariance, int n, const char* of) {
+  require(finite(covariance, n * n), of);
+  if (!must_be_positive) return;
+  for (int i = 0; i < n; ++i) require(covariance[i * n + i] >= 0, of);
+  const double smallest = smallest_eigenvalue(covariance, n);
+  if (smallest < kSmallestEigenvalue) std::fprintf(stderr, "smallest eigenvalue %g\n", smallest);
+  require(smallest >= kSmallestEigenvalue, of);
+}
+
+void require_pose(const pf_pose_t& pose) {
+  require(finite(pose.p_WC, 3) && finite(pose.v_W, 3) && finite(pose.w_C, 3) && finite(pose.q_WC, 4),
+          "a pose is finite");
+  double norm = 0;
+  for (double q : pose.q_WC) norm += q * q;
+  require(std::fabs(norm - 1) < 1e-4, "a quaternion has length 1");
+  require_covariance(pose.covariance, 6, "a pose has a covariance");
+}
+
+/// A number that no program should pass, or one that it might.
+double hostile(Bytes& bytes) {
+  static const double values[] = {NAN,      INFINITY, -INFINITY, 0.0,  -0.0, 5e-324, DBL_MIN, DBL_MAX,
+                                  -DBL_MAX, 1e-30,    1e30,      -1.0, 1e-9, 1e5,    0.1,     1.0};
+  const uint8_t which = bytes.take<uint8_t>();
+  return which < 240 ? values[which % 16] : bytes.take<double>();
+}
+
+int64_t hostile_time(Bytes& bytes, int64_t t_ns) {
+  switch (bytes.take<uint8_t>() % 8) {
+    case 0:
+      return INT64_MIN;
+    case 1:
+      return INT64_MAX;
+    case 2:
+      return 0;
+    case 3:
+      return t_ns;
+    case 4:
+      return t_ns > INT64_MIN ? t_ns - 1 : t_ns;
+    case 5:
+      return t_ns < INT64_MAX ? t_ns + 1 : t_ns;
+    default:
+      return bytes.take<int64_t>();
+  }
+}
+
+/// -1 .. 1
+double unit(Bytes& bytes) { return bytes.take<int8_t>() / 128.0; }
+
+double between(Bytes& bytes, double low, double high) {
+  return low * std::pow(high / low, bytes.take<uint8_t>() / 255.0);
+}
+
+/// A config within its ranges; for every second one, near what people use.
+pf_config_t config_from(Bytes& bytes) {
+  pf_config_t config;
+  pf_config_default(&config);
+  const uint8_t what = bytes.take<uint8_t>();
+  const int width = 48 + bytes.take<uint8_t>() % 80, height = 40 + bytes.take<uint8_t>() % 64;
+  const double f = width * between(bytes, 0.5, 2.0);
+  config.camera = {PF_CAMERA_PINHOLE, width, height, f, f, (width - 1) / 2.0, (height - 1) / 2.0, {}, 0};
+  if ((what & 1) != 0) {
+    config.camera.model = 2 + bytes.take<uint8_t>() % 3;
+    config.camera.distortion[0] = unit(bytes) * (config.camera.model == PF_CAMERA_DIVISION ? 1e-6 : 0.05);
+  }
+  if ((what & 2) != 0) config.camera.readout_s = between(bytes, 1e-4, 0.2);
+  config.capacity.max_state_dim = 40 + bytes.take<uint8_t>();
+  config.capacity.max_features = 8 + bytes.take<uint8_t>() % 80;
+  config.capacity.max_observations = 8 + bytes.take<uint8_t>() % 60;
+  config.capacity.max_planes = 1 + bytes.take<uint8_t>() % 4;
+  config.capacity.max_imu_samples = bytes.take<uint8_t>() % 16;
+  config.map.features_in_view = config.capacity.max_observations;
+  config.plane.min_points = 4 + bytes.take<uint8_t>() % 5;
+  config.plane.max_distance = between(bytes, 0.005, 0.05);
+  config.plane.fold_sigma = between(bytes, 0.02, 0.3);
+  config.plane.fix_sigma = (what & 4) != 0 ? between(bytes, 5e-4, 0.05) : 0.0;
+  const uint8_t forms = bytes.take<uint8_t>();
+  if (forms >= 192) {
+    config.plane.fix = 1 + forms % 3;
+    config.plane.fold = 1 + forms / 3 % 2;
+    config.keep_gauge = forms / 6 % 2;
+  }
+  config.kernels = bytes.take<uint8_t>() % 3;
+  if ((what & 16) != 0) {
+    config.motion.linear_acceleration_density = between(bytes, 1e-3, 1e2);
+    config.motion.angular_acceleration_density = between(bytes, 1e-3, 1e2);
+    config.measurement.sigma_px = between(bytes, 0.01, 10);
+    config.first_depth.depth = between(bytes, 1e-2, 1e2);
+    config.first_depth.relative_sigma = between(bytes, 0.05, 5);
+    config.first_depth.from_map = bytes.take<uint8_t>() % 2;
+    config.motion.coast_s = between(bytes, 0.05, 10);
+  }
+  if ((what & 32) != 0 && config.camera.readout_s == 0) config.motion.model = PF_MOTION_CONSTANT_POSITION;
+  return config;
+}
+
+/// A context with guard pages about its block and its image, what was pushed, and a world to observe.
+class Run {
+ public:
+  explicit Run(Bytes& bytes) : bytes_(bytes), config_(config_from(bytes)) {
+    const char* field = nullptr;
+    usable_ = status(pf_config_check(&config_, &field)) == PF_OK;
+    require(usable_ == (field == nullptr), "a bad config names a field");
+    require((status(pf_memory_query(&config_, &need_)) == PF_OK) == usable_, "query and check agree");
+    usable_ = usable_ && need_.bytes <= kMaxBlock;
+    must_be_positive =
+        config_.plane.fold == PF_FOLD_CONDITION && config_.plane.fix == PF_FIX_CONSIDER &&
+        std::fmax(config_.motion.linear_acceleration_density, config_.motion.angular_acceleration_density) <= 10 &&
+        config_.keep_gauge == 1;
+  }
+
+  bool usable() const { return usable_; }
+
+  void play() {
+    const uint8_t how = bytes_.take<uint8_t>();
+    Guarded block(need_.bytes, need_.alignment, (how & 1) != 0);
+    block_ = &block;
+    std::memset(block.begin(), how, need_.bytes);
+    require(status(pf_create(&config_, block.begin(), need_.bytes - 1, &slam_)) == PF_ERROR_MEMORY && slam_ == nullptr,
+            "a block that is too small is refused");
+    require(status(pf_create(&config_, block.begin(), need_.bytes, &slam_)) == PF_OK,
+            "a checked config makes a context");
+    stride_ = config_.camera.width + (how >> 4);
+    Guarded pixels(static_cast<size_t>(stride_) * static_cast<size_t>(config_.camera.height - 1) +
+                       static_cast<size_t>(config_.camera.width),
+                   1, (how & 2) != 0);
+    pixels_ = pixels.begin();
+    observes_ = (how & 4) != 0;
+    t_ns_ = (how & 8) != 0 ? bytes_.take<int64_t>() : 0;
+    for (double& v : velocity_) v = unit(bytes_) * 0.05;
+    if (bytes_.take<uint8_t>() % 4 == 0) changing([&] { return start_from_target(); });
+    if (bytes_.take<uint8_t>() % 4 == 0) changing([&] { return start_from_pose(); });
+    for (int steps = 0; steps < 120 && !bytes_.empty(); ++steps) step();
+  }
+
+ private:
+  static pf_status_t status(pf_status_t value) {
+    require(value >= PF_ERROR_CONTEXT && value <= PF_NOTE_NOTHING, "a status is one that the header names");
+    return value;
+  }
+
+  /// A call that may change the context. What it refuses leaves the block as it was.
+  template <class Call>
+  pf_status_t changing(const Call& call) {
+    const uint64_t before = block_->hash();
+    const pf_status_t result = status(call());
+    if (result < PF_OK) require(block_->hash() == before, "what is refused changes nothing");
+    if (result >= PF_OK) look();
+    return result;
+  }
+
+  /// A call that only asks.
+  template <class Call>
+  void asking(const Call& call) {
+    const uint64_t before = block_->hash();
+    call();
+    require(block_->hash() == before, "a call that asks changes nothing");
+  }
+
+  void step() {
+    const uint8_t what = bytes_.take<uint8_t>();
+    if (what < 160) {
+      next_frame();
+      return;
+    }
+    switch (what % 12) {
+      case 0:
+        changing([&] { return hostile_frame(); });
+        break;
+      case 1:
+        changing([&] { return hostile_observations(); });
+        break;
+      case 2:
+        changing([&] { return imu(); });
+        break;
+      case 3: {
+        double dv[3], dw[3];
+        for (int i = 0; i < 3; ++i) dv[i] = what < 200 ? unit(bytes_) * 0.02 : hostile(bytes_);
+        for (int i = 0; i < 3; ++i) dw[i] = what < 200 ? unit(bytes_) * 0.02 : hostile(bytes_);
+        changing([&] { return pf_push_control(slam_, dv, dw); });
+        break;
+      }
+      case 4: {
+        const double gravity[3] = {hostile(bytes_), hostile(bytes_), hostile(bytes_)};
+        changing([&] { return pf_set_gravity(slam_, gravity); });
+        break;
+      }
+      case 5:
+        changing([&] { return pf_withdraw_target(slam_); });
+        break;
+      case 6:
+        if (bytes_.take<uint8_t>() % 8 == 0) {
+          require(changing([&] { return pf_reset(slam_); }) == PF_OK, "reset");
+          pushed_ = false;
+        }
+        break;
+      case 7:
+        for (double& v : velocity_) v = unit(bytes_) * 0.05;
+        break;
+      case 8:
+        pattern_ = bytes_.take<uint8_t>();
+        break;
+      case 9:  // too late, but for a context without a frame
+        changing([&] { return bytes_.take<uint8_t>() % 2 == 0 ? start_from_target() : start_from_pose(); });
+        break;
+      case 10:
+        asking([&] { ask(); });
+        break;
+      default:
+        asking([&] { ask_camera(); });
+        break;
+    }
+  }
+
+  void taken(int64_t t_ns) {
+    t_ns_ = last_t_ns_ = t_ns;
+    pushed_ = true;
+  }
+
+  void next_frame() {
+    const uint8_t how = bytes_.take<uint8_t>();
+    int64_t dt = how < 224 ? 33333333 : int64_t{1} << (how % 40);
+    dt = t_ns_ > INT64_MAX - dt ? INT64_MAX - t_ns_ : dt;
+    t_ns_ += dt;
+    const bool late = pushed_ && t_ns_ <= last_t_ns_;
+    for (int i = 0; i < 3; ++i) position_[i] += velocity_[i];
+    if (how % 32 == 31) position_[0] += 1;  // a jump
+    pf_status_t result = PF_OK;
+    if (observes_) {
+      const std::vector<pf_observation_t> seen = observe(how);
+      result = changing([&] { return pf_push_observations(slam_, t_ns_, seen.data(), seen.size()); });
+      require(result >= PF_OK || late || result == PF_ERROR_STATE, "observations that are right are taken");
+    } else {
+      paint();
+      const pf_image_t image = {pixels_, config_.camera.width, config_.camera.height, stride_, t_ns_};
+      result = changing([&] { return pf_push_frame(slam_, &image); });
+      require(result >= PF_OK || late || result == PF_ERROR_STATE, "a frame that is right is taken");
+    }
+    if (late) require(result < PF_OK, "a time that stands still is refused");
+    if (result >= PF_OK) taken(t_ns_);
+    if (result >= PF_OK) {
+      pf_state_t state;
+      require(pf_get_state(slam_, &state) == PF_OK, "a state");
+      require(result != PF_OK || state == PF_STATE_TRACKING, "PF_OK is tracking");
+      require(result != PF_NOTE_STARTING || state == PF_STATE_STARTING, "starting is starting");
+      require(result != PF_NOTE_COASTING || state == PF_STATE_COASTING, "coasting is coasting");
+      require(result != PF_NOTE_LOST || state == PF_STATE_LOST, "lost is lost");
+    }
+  }
+
+  /// A wall of blocks whose grey levels are hashed from their place, and a nearer one before it, both seen by the moving camera.
+  void paint() const {
+    const double u = position_[0] * 40, v = position_[1] * 40, scale = 1 + 0.2 * std::sin(position_[2]);
+    for (int y = 0; y < config_.camera.height; ++y) {
+      for (int x = 0; x < config_.camera.width; ++x) {
+        int X = static_cast<int>(std::floor(x * scale + u)) + 4096,
+            Y = static_cast<int>(std::floor(y * scale + v)) + 4096;
+        if ((X / 32 + Y / 32) % 3 == 0) {
+          X = static_cast<int>(std::floor(x + u / 2)) + 9000;
+          Y = static_cast<int>(std::floor(y + v / 2)) + 9000;
+        }
+        uint32_t h = static_cast<uint32_t>(X / 3) * 2654435761u ^ static_cast<uint32_t>(Y / 3) * 40503u;
+        h = (h ^ h >> 15) * 2246822519u;
+        uint8_t grey = static_cast<uint8_t>(h >> 24);
+        if (pattern_ % 8 == 1) grey = static_cast<uint8_t>(pattern_);
+        if (pattern_ % 8 == 2) grey = (x / 6 + y / 6) % 2 == 0 ? 230 : 20;
+        if (pattern_ % 8 == 3) grey = x > 12 && y > 10 && x < 36 && y < 30 ? 15 : 220;
+        pixels_[y * stride_ + x] = grey;
+      }
+    }
+  }
+
+  std::vector<pf_observation_t> observe(uint8_t how) {
+    std::vector<pf_observation_t> seen;
+    const uint32_t points = 20 + pattern_ % 40;
+    for (uint32_t i = 0; i < points; ++i) {
+      const uint32_t h = (i + 1) * 2654435761u;
+      const double z = (pattern_ & 64) != 0 ? 2.0 : 1.0 + (h >> 24) / 100.0;
+      const double p_C[3] = {(h % 997) / 400.0 - 1.25 - position_[0], (h / 997 % 997) / 500.0 - 1 - position_[1],
+                             z - position_[2]};
+      pf_observation_t o = {i, {}, 0.0};
+      if (pf_camera_project(&config_.camera, p_C, o.pixel) != PF_OK) continue;
+      if (o.pixel[0] < 0 || o.pixel[1] < 0 || o.pixel[0] > config_.camera.width - 1 ||
+          o.pixel[1] > config_.camera.height - 1)
+        continue;
+      noise_ = noise_ * 6364136223846793005u + 1442695040888963407u;
+      for (int k = 0; k < 2; ++k)
+        o.pixel[k] +=
+            config_.measurement.sigma_px * (static_cast<double>(noise_ >> (20 + 20 * k) & 0xfffff) / 0x80000 - 1);
+      if (how % 16 == 15 && i % 7 == 0) o.pixel[0] += 20;  // a false match
+      seen.push_back(o);
+    }
+    return seen;
+  }
+
+  pf_status_t hostile_frame() {
+    pf_image_t image = {pixels_, config_.camera.width, config_.camera.height, stride_, hostile_time(bytes_, t_ns_)};
+    switch (bytes_.take<uint8_t>() % 6) {
+      case 0:
+        image.width += 1 + bytes_.take<uint8_t>();
+        break;
+      case 1:
+        image.height = -image.height;
+        break;
+      case 2:
+        image.stride = bytes_.take<int32_t>() % image.width;
+        break;
+      case 3:
+        image.pixels = nullptr;
+        break;
+      default:
+        break;
+    }
+    const pf_status_t result = pf_push_frame(slam_, &image);
+    if (result >= PF_OK) {
+      require(image.pixels != nullptr && image.width == config_.camera.width && image.stride >= image.width,
+              "a frame fits");
+      require(!pushed_ || image.t_ns > last_t_ns_, "time grows");
+      taken(image.t_ns);
+    }
+    return result;
+  }
+
+  pf_status_t hostile_observations() {
+    pf_observation_t o[3];
+    bool good = true;
+    for (pf_observation_t& each : o) {
+      each = {bytes_.take<uint32_t>(), {hostile(bytes_), hostile(bytes_)}, hostile(bytes_)};
+      good = good && finite(each.pixel, 2) && std::isfinite(each.sigma_px);
+    }
+    const int64_t t_ns = hostile_time(bytes_, t_ns_);
+    const pf_status_t result = pf_push_observations(slam_, t_ns, o, 3);
+    if (result >= PF_OK) {
+      require(good && (!pushed_ || t_ns > last_t_ns_), "observations are finite, and time grows");
+      taken(t_ns);
+    }
+    return result;
+  }
+
+  pf_status_t imu() {
+    pf_imu_sample_t samples[3];
+    for (pf_imu_sample_t& sample : samples) {
+      sample.t_ns = imu_t_ns_ = bytes_.take<uint8_t>() % 16 == 0  ? hostile_time(bytes_, imu_t_ns_)
+                                : imu_t_ns_ < INT64_MAX - 5000000 ? imu_t_ns_ + 5000000
+                                                                  : imu_t_ns_;
+      for (double& v : sample.gyro) v = unit(bytes_) * 10;
+      for (double& v : sample.accel) v = bytes_.take<uint8_t>() == 0 ? hostile(bytes_) : 9.8;
+    }
+    return pf_push_imu(slam_, samples, 3);
+  }
+
+  pf_status_t start_from_target() {
+    pf_target_t target;
+    std::memset(static_cast<void*>(&target), 0, sizeof(target));
+    const uint8_t how = bytes_.take<uint8_t>();
+    target.kind = how % 16 == 0 ? bytes_.take<int8_t>() : 1 + how % 2;
+    target.width = 0.2;
+    target.height = how % 32 == 1 ? hostile(bytes_) : 0.15;
+    target.sigma = how % 32 == 2 ? hostile(bytes_) : 1e-3;
+    target.count = how % 32 == 3 ? bytes_.take<int8_t>() : 4 + how % 13;
+    for (int i = 0; i < PF_TARGET_MAX_POINTS; ++i) {  // the first points of observe()
+      const uint32_t h = (static_cast<uint32_t>(i) + 1) * 2654435761u;
+      target.points_W[i][0] = how % 32 == 5 ? hostile(bytes_) : (h % 997) / 400.0 - 1.25;
+      target.points_W[i][1] = (h / 997 % 997) / 500.0 - 1;
+      target.points_W[i][2] = (pattern_ & 64) != 0 ? 2.0 : 1.0 + (h >> 24) / 100.0;
+    }
+    target.first_pose.q_WC[0] = 1;
+    for (int i = 0; i < 6; ++i) target.first_pose.covariance[7 * i] = how % 32 == 7 ? hostile(bytes_) : 1e-3;
+    return pf_start_from_target(slam_, &target);
+  }
+
+  pf_status_t start_from_pose() {
+    pf_pose_t pose;
+    std::memset(static_cast<void*>(&pose), 0, sizeof(pose));
+    double velocity_covariance[36] = {};
+    const uint8_t how = bytes_.take<uint8_t>();
+    pose.q_WC[0] = how % 16 == 1 ? hostile(bytes_) : 1;
+    for (int i = 0; i < 3; ++i) pose.p_WC[i] = how % 16 == 2 ? hostile(bytes_) : unit(bytes_);
+    for (int i = 0; i < 3; ++i) pose.v_W[i] = how % 16 == 3 ? hostile(bytes_) : unit(bytes_);
+    for (int i = 0; i < 6; ++i) pose.covariance[7 * i] = how % 16 == 4 ? hostile(bytes_) : between(bytes_, 1e-9, 1);
+    for (int i = 0; i < 6; ++i) velocity_covariance[7 * i] = how % 16 == 5 ? hostile(bytes_) : between(bytes_, 1e-6, 1);
+    if (how % 16 == 6) pose.covariance[bytes_.take<uint8_t>() % 36] = hostile(bytes_);
+    return pf_start_from_pose(slam_, &pose, how % 16 == 7 ? nullptr : velocity_covariance);
+  }
+
+  /// What every context shows, whatever it went through.
+  void look() {
+    pf_report_t report;
+    pf_state_t state = PF_STATE_STARTING;
+    pf_pose_t pose;
+    require(pf_get_report(slam_, &report) == PF_OK && pf_get_state(slam_, &state) == PF_OK, "a report and a state");
+    require(report.state == static_cast<int32_t>(state), "state and report agree");
+    require(report.features <= config_.capacity.max_features && report.planes <= config_.capacity.max_planes &&
+                report.state_dim <= config_.capacity.max_state_dim,
+            "the map keeps to its capacity");
+    require(report.attempts >= report.matches && report.matches >= report.inliers &&
+                report.features == report.features_point + report.features_inverse_depth + report.features_folded +
+                                       report.features_fixed,
+            "the report's numbers add up");
+    require(std::isfinite(report.nis) && report.nis >= 0, "the NIS is a number");
+    const pf_status_t posed = status(pf_get_pose(slam_, &pose));
+    require(posed == PF_OK || posed == PF_ERROR_STATE, "a pose, or none yet");
+    if (posed == PF_OK) require_pose(pose);
+    look_at_map(report);
+  }
+
+  void look_at_map(const pf_report_t& report) const {
+    std::vector<pf_feature_t> features(static_cast<size_t>(config_.capacity.max_features));
+    std::vector<pf_match_t> matches(features.size() + static_cast<size_t>(config_.capacity.max_observations));
+    std::vector<pf_plane_t> planes(static_cast<size_t>(config_.capacity.max_planes));
+    size_t count = 0;
+    require(pf_get_features(slam_, features.data(), features.size(), &count) == PF_OK &&
+                count == static_cast<size_t>(report.features),
+            "every feature is given");
+    for (size_t i = 0; i < count; ++i) {
+      require(finite(features[i].p_W, 3), "a feature is finite");
+      require_covariance(features[i].covariance, 3, "a feature has a covariance");
+    }
+    require(pf_get_matches(slam_, matches.data(), matches.size(), &count) == PF_OK, "every match is given");
+    for (size_t i = 0; i < count; ++i) {
+      require(finite(matches[i].predicted_px, 2) && finite(matches[i].measured_px, 2) && std::isfinite(matches[i].nis),
+              "a match is finite");
+      require_covariance(matches[i].covariance_px, 2, "a match has a covariance");
+    }
+    require(pf_get_planes(slam_, planes.data(), planes.size(), &count) == PF_OK &&
+                count == static_cast<size_t>(report.planes),
+            "every plane is given");
+    for (size_t i = 0; i < count; ++i) {
+      const pf_plane_t& plane = planes[i];
+      const double* n = plane.normal_W;
+      require(std::fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-4, "a normal has length 1");
+      require(finite(plane.p_WP, 3) && finite(plane.R_WP, 9) && std::isfinite(plane.distance + plane.area),
+              "a plane is finite");
+      require(plane.outline_count >= 0 && plane.outline_count <= PF_OUTLINE_MAX, "an outline fits");
+      require_covariance(plane.covariance, 3, "a plane has a covariance");
+      uint32_t current = 0;
+      require(pf_find_plane(slam_, plane.id, &current) == PF_OK && current == plane.id, "a plane is found by its id");
+    }
+  }
+
+  void ask() {
+    const uint8_t what = bytes_.take<uint8_t>();
+    const bool hostile_input = what >= 192;
+    pf_pose_t pose;
+    pf_hit_t hit;
+    double point[3], pixel[2], covariance[4];
+    for (double& v : point) v = hostile_input ? hostile(bytes_) : 2 * unit(bytes_);
+    switch (what % 5) {
+      case 0:
+        pixel[0] = hostile_input ? hostile(bytes_) : bytes_.take<uint8_t>() % config_.camera.width;
+        pixel[1] = hostile_input ? hostile(bytes_) : bytes_.take<uint8_t>() % config_.camera.height;
+        if (status(pf_hit_test(slam_, pixel, &hit)) == PF_OK) {
+          require(finite(hit.p_W, 3) && std::isfinite(hit.range) && hit.range > 0, "a hit is finite");
+          require_covariance(hit.covariance, 3, "a hit has a covariance");
+        }
+        break;
+      case 1: {
+        const int64_t ahead = hostile_input                  ? hostile_time(bytes_, t_ns_)
+                              : t_ns_ < INT64_MAX - 50000000 ? t_ns_ + 50000000
+                                                             : t_ns_;
+        if (status(pf_predict_pose(slam_, ahead, &pose)) == PF_OK) require_pose(pose);
+        break;
+      }
+      case 2:
+        if (status(pf_project_point(slam_, point, pixel, covariance)) == PF_OK) {
+          require(finite(pixel, 2), "a projected point is finite");
+          require_covariance(covariance, 2, "a projected point has a covariance");
+        }
+        break;
+      case 3: {
+        pf_report_t report;
+        pf_get_report(slam_, &report);
+        const size_t count = static_cast<size_t>(report.state_dim) * (static_cast<size_t>(report.state_dim) + 8);
+        std::vector<double> scratch(count + 1);
+        double information[49];
+        if (report.state_dim < 150 &&
+            status(pf_get_gauge_information(slam_, scratch.data(), count, information)) == PF_OK)
+          require(finite(information, 49), "gauge information is finite");
+        break;
+      }
+      default: {
+        pf_imu_report_t report;
+        uint32_t current = 0;
+        require(pf_get_imu_report(slam_, &report) == PF_OK && report.kept <= config_.capacity.max_imu_samples,
+                "samples");
+        status(pf_find_plane(slam_, bytes_.take<uint32_t>(), &current));
+        break;
+      }
+    }
+  }
+
+  void ask_camera() {
+    pf_camera_t camera = config_.camera;
+    double point[3], pixel[2], ray[3];
+    if (bytes_.take<uint8_t>() % 2 == 0) {
+      camera.model = bytes_.take<uint8_t>() % 6;
+      for (double& k : camera.distortion) k = bytes_.take<uint8_t>() % 4 == 0 ? hostile(bytes_) : 0.0;
+    }
+    for (double& v : point) v = bytes_.take<uint8_t>() % 4 == 0 ? hostile(bytes_) : unit(bytes_);
+    if (status(pf_camera_project(&camera, point, pixel)) == PF_OK) require(finite(pixel, 2), "a pixel is finite");
+    for (double& v : pixel) v = bytes_.take<uint8_t>() % 4 == 0 ? hostile(bytes_) : bytes_.take<uint8_t>();
+    if (status(pf_camera_unproject(&camera, pixel, ray)) == PF_OK)
+      require(std::fabs(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2] - 1) < 1e-3, "a ray has length 1");
+  }
+
+  Bytes& bytes_;
+  pf_config_t config_;
+  pf_memory_t need_{};
+  bool usable_ = false;
+  const Guarded* block_ = nullptr;
+  pf_slam_t* slam_ = nullptr;
+  uint8_t* pixels_ = nullptr;
+  int32_t stride_ = 0;
+  bool observes_ = false, pushed_ = false;
+  int64_t t_ns_ = 0, last_t_ns_ = 0, imu_t_ns_ = 0;
+  double position_[3] = {}, velocity_[3] = {};
+  uint8_t pattern_ = 0;
+  uint64_t noise_ = 1;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  Bytes bytes(data, size);
+  Run run(bytes);
+  if (run.usable()) run.play();
+  return 0;
+}
