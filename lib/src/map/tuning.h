@@ -10,9 +10,8 @@ namespace pf::tuning::plane_search {
 inline constexpr int kKept = 4;           ///< hypotheses that are refitted
 inline constexpr int kSurroundings = 20;  ///< chance is judged against a layer this many times as thick
 inline constexpr Scalar kContrast = 5;    ///< density of a plane against either layer beside it, at least
-inline constexpr Scalar kLogFalsePlanes =
-    Scalar(-4.6);                                   ///< logarithm of the false planes that chance may give: ln 0.01
-inline constexpr Scalar kMinWidth = 3;              ///< narrow side of the points' spread, in plane.max_distance
-inline constexpr Scalar kMinAspect = Scalar(0.02);  ///< of the points' spread, middle to largest eigenvalue
+inline constexpr Scalar kLogFalsePlanes = Scalar(-4.6);  ///< ln of the planes that chance may give: ln 0.01
+inline constexpr Scalar kMinWidth = 3;                   ///< narrow side of the points' spread, in plane.max_distance
+inline constexpr Scalar kMinAspect = Scalar(0.02);       ///< of the points' spread, middle to largest eigenvalue
 
 }  // namespace pf::tuning::plane_search
