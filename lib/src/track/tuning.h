@@ -13,9 +13,8 @@ inline constexpr Scalar kSearchRadius = Scalar(9);  ///< [px of the level]; a la
 inline constexpr float kMinSearchScore = 0.6f;      ///< normalised correlation of the peak
 inline constexpr float kMinScore = 0.8f;            ///< normalised correlation of the aligned window
 inline constexpr float kMinPeakLead = 0.04f;        ///< of the first peak over the second; less means repeated texture
-inline constexpr Scalar kMinScale =
-    Scalar(0.25);  ///< source pixels per current pixel with which a view can be compared, from
-inline constexpr Scalar kMaxScale = Scalar(3.2);  ///< to
+inline constexpr Scalar kMinScale = Scalar(0.25);   ///< source pixels per current pixel of views that compare, from
+inline constexpr Scalar kMaxScale = Scalar(3.2);    ///< to
 }  // namespace match
 
 /// Sub-pixel sides of a quadrilateral.

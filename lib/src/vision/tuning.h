@@ -9,10 +9,9 @@ namespace pf::tuning {
 
 /// Sub-pixel alignment of a window.
 namespace align {
-inline constexpr float kSmallStep = 0.01f;   ///< [px]; the next step would be well below what noise leaves
-inline constexpr float kMinContrast = 1.0f;  ///< standard deviation of the window [grey levels]
-inline constexpr float kMinAspect =
-    2e-4f;  ///< of the gradients' eigenvalues, weaker to sum; below, floats see a singular matrix
+inline constexpr float kSmallStep = 0.01f;    ///< [px]; the next step would be well below what noise leaves
+inline constexpr float kMinContrast = 1.0f;   ///< standard deviation of the window [grey levels]
+inline constexpr float kMinAspect = 2e-4f;    ///< weaker eigenvalue to both; below, floats see a singular matrix
 inline constexpr float kMinGradient = 0.25f;  ///< root mean square in the weaker direction [grey levels/px]
 inline constexpr float kMinGain = 0.02f;      ///< of the image against the template
 }  // namespace align
