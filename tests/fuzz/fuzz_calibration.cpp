@@ -1,4 +1,5 @@
 // The calibration reader: whatever the text holds, the answer is a calibration with finite numbers, or one line.
+#include <planefold/planefold.h>
 #include <planefold_platform/sequence.h>
 
 #include <cmath>

@@ -1,5 +1,4 @@
 // Target files: whatever the text, a target that a context accepts or one line that names the file.
-#include <planefold/planefold.h>
 #include <planefold_platform/sequence.h>
 
 #include <cmath>
