@@ -6,7 +6,7 @@
 
 namespace {
 
-/// The one layout: run over nothing to count, over the caller's block to carve.
+/// Layout of a context: over an empty arena to count the bytes, over the caller's block to place the parts.
 std::size_t bytes_needed(const pf::Settings& settings) {
   pf::Arena arena;
   arena.take<pf_slam>(1);

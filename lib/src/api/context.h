@@ -4,14 +4,14 @@
 #include "planefold/planefold.h"
 #include "slam/session.h"
 
-/// The one door between C and C++: what a pf_slam_t is.
+/// What a pf_slam_t is, and the checks that every call begins with.
 
 struct pf_slam {
   std::uint64_t magic;
-  pf_slam* self;  ///< a block that was copied or moved is no context
+  pf_slam* self;  ///< own address: tells a block that was copied or moved
   pf_config_t config;
   pf::Session session;
-  bool in_call;  ///< a frame is being worked on: a callback that calls back may ask, but not change anything
+  bool in_call;  ///< a frame is being processed: calls from its callbacks that change the context are refused
 };
 
 namespace pf {
@@ -32,7 +32,7 @@ inline bool finite(const double* values, int count) {
 
 Status settings_from(const pf_config_t& config, Settings* settings, const char** field);
 
-/// Marks a context as being worked on, while callbacks of the caller may run.
+/// Marks a context as busy while the caller's callbacks may run.
 class InCall {
  public:
   explicit InCall(pf_slam_t* slam) : slam_(slam) { slam_->in_call = true; }
@@ -46,14 +46,14 @@ class InCall {
 
 }  // namespace pf
 
-/// Null and broken contexts are refused in one line.
+/// Returns an error from the calling function when the context is null or broken.
 #define PF_REQUIRE_CONTEXT(slam)                        \
   do {                                                  \
     if ((slam) == nullptr) return PF_ERROR_NULL;        \
     if (!pf::is_context(slam)) return PF_ERROR_CONTEXT; \
   } while (false)
 
-/// Likewise for a call that changes the context: refused from inside a callback of the same context.
+/// Likewise, for a call that changes the context: also refused from inside a callback of the same context.
 #define PF_REQUIRE_IDLE(slam)                   \
   PF_REQUIRE_CONTEXT(slam);                     \
   do {                                          \

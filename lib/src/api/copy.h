@@ -2,7 +2,7 @@
 
 namespace pf {
 
-/// Numbers of the library into the caller's doubles.
+/// Copies the library's numbers into the caller's doubles.
 template <typename Vector>
 void copy(const Vector& from, int count, double* to) {
   for (int i = 0; i < count; ++i) to[i] = static_cast<double>(from[i]);

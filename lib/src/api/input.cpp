@@ -10,7 +10,7 @@ pf::Vec3 vec3(const double* v) {
   return pf::Vec3(static_cast<Scalar>(v[0]), static_cast<Scalar>(v[1]), static_cast<Scalar>(v[2]));
 }
 
-/// What is further, faster or less known than this is no camera, and its square would leave the range of float.
+/// Larger distances, speeds and variances are refused: their squares would leave the range of float.
 constexpr double kMaxMetres = 1e6;  // also [m/s]
 constexpr double kMaxRate = 1e4;    // [rad/s]
 constexpr double kMaxVariance = 1e12;
@@ -21,12 +21,12 @@ bool within(const double* v, int n, double max) {
   return true;
 }
 
-/// No direction with a variance below zero, to rounding: every pivot of the elimination stays at or above it. n <= 6.
+/// Positive semidefinite to rounding: no pivot of the Cholesky factorisation is negative. n <= 6.
 bool is_semidefinite(const double* P, int n) {
   double L[36];
   for (int i = 0; i < n; ++i)
     for (int j = 0; j <= i; ++j) {
-      // of correlations, so that radians and metres weigh the same
+      // correlations, so that radians and metres have the same weight
       double sum = P[i * n + j] / (std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]));
       for (int k = 0; k < j; ++k) sum -= L[i * n + k] * L[j * n + k];
       if (j == i) {

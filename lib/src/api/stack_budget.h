@@ -4,7 +4,7 @@
 
 namespace pf {
 
-/// The most stack that any call uses [bytes]; a test measures it.
+/// Maximum stack of any call [bytes]; a test measures it.
 constexpr std::size_t kStackBudget = 64 * 1024;
 
 }  // namespace pf

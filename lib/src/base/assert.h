@@ -1,6 +1,7 @@
 #pragma once
 
-/// Programming errors stop at once in debug builds and cost nothing in release builds. Never for untrusted input.
+/// Checks for programming errors: they trap in debug builds and cost nothing in release builds. Never for untrusted
+/// input.
 #if defined(NDEBUG)
 #define PF_ASSERT(condition) ((void)0)
 #else

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The one way into Eigen: small fixed sizes only, its assertions are ours, and it never allocates.
+/// The only include of Eigen: small fixed sizes, our assertions, no allocation.
 
 #include "base/assert.h"
 #include "base/scalar.h"

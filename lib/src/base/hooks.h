@@ -4,7 +4,7 @@
 
 namespace pf {
 
-/// What the caller lends: a clock and a place for lines of text. Both may be missing.
+/// The caller's functions: a clock and a log for lines of text. Either may be null.
 struct Hooks {
   std::int64_t (*clock_ns)(void* user) = nullptr;
   void (*log)(void* user, const char* line) = nullptr;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Scalar kMaxScalar = std::numeric_limits<Scalar>::max();
 
-/// Rotation nearest in spirit to [a b a x b]: the two directions are turned away from each other alike.
+/// Rotation nearest to [a b a x b]: both directions are rotated by the same angle until they are perpendicular.
 /// False when they are almost parallel.
 bool rotation_from_two(const Vec3& a, const Vec3& b, Mat3* R) {
   const Vec3 z = a.cross(b);
@@ -34,7 +34,7 @@ bool decompose(const Mat3& H, Mat3* R_CW, Vec3* t_CW) {
   return true;
 }
 
-/// The other plane that looks alike: its points mirrored at the line of sight to the origin.
+/// The second solution: the plane's points mirrored at the line of sight to the origin.
 Mat3 mirrored(const Mat3& R_CW, const Vec3& t_CW) {
   const Vec3 d = t_CW.normalized();
   Mat3 M = R_CW - 2 * d * (d.transpose() * R_CW).eval();
@@ -92,14 +92,14 @@ Mat6 about_camera(const Mat6& P, const Vec3& arm) {
   return TP.lazyProduct(T.transpose());
 }
 
-/// Both estimates are the same pose, as far as this precision goes.
+/// Whether both estimates are the same pose to working precision.
 bool is_same(const PoseEstimate& a, const PoseEstimate& b) {
   const Scalar distance = a.p_WC.norm();
   return (a.p_WC - b.p_WC).norm() < Scalar(1e-3) * distance &&
          log_so3(a.q_WC * b.q_WC.conjugate()).norm() < Scalar(1e-3);
 }
 
-/// Adds what the other solution means for the uncertainty of the best one.
+/// Widens the best solution's covariance by the likelihood of the other one.
 void widen(const PoseEstimate& other, int count, Scalar sigma_px, PoseEstimate* best) {
   const Scalar values = static_cast<Scalar>(2 * count), s2 = sigma_px * sigma_px;
   const Scalar excess = values * (other.rms_px * other.rms_px - best->rms_px * best->rms_px) / s2;
@@ -174,7 +174,7 @@ void rectangle_points(Scalar width, Scalar height, Vec3 points_W[4]) {
 
 bool rectangle_pose(const Camera& camera, Scalar width, Scalar height, const Vec2 corners[4], Scalar sigma_px,
                     PoseEstimate* best, Scalar* second_rms) {
-  // In units of the rectangle, so that the plane's points and the rays are of a size.
+  // In units of the rectangle, so that the plane's points and the rays have similar magnitudes.
   const Scalar unit = (width + height) / 2;
   if (!(width > 0) || !(height > 0) || !(unit <= kMaxScalar)) return false;
   Vec3 points_W[4], plane[4], rays[4];
@@ -191,7 +191,7 @@ bool rectangle_pose(const Camera& camera, Scalar width, Scalar height, const Vec
   PoseEstimate first = pose_of(R_CW, t_CW), second = pose_of(mirrored(R_CW, t_CW), t_CW);
   bool first_ok = refine_pose(camera, points_W, corners, 4, sigma_px, &first);
   bool second_ok = refine_pose(camera, points_W, corners, 4, sigma_px, &second);
-  // Seen from behind, the corners would run the other way round: not a pose in front of the wall.
+  // From behind, the corners would be in the opposite order: reject a pose behind the wall.
   first_ok = first_ok && first.p_WC.z() < 0;
   second_ok = second_ok && second.p_WC.z() < 0;
   if (!first_ok && !second_ok) return false;

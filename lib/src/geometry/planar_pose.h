@@ -39,7 +39,7 @@ void rectangle_points(Scalar width, Scalar height, Vec3 points_W[4]);
 
 /// Pose of a camera that sees a rectangle, from the four corners alone, in the order of rectangle_points.
 ///
-/// A plane seen from afar has two poses that look alike, with the normals mirrored at the line of sight. Both are
+/// A distant plane has two solutions that fit almost equally, with the normals mirrored at the line of sight. Both are
 /// refined; the better is returned. Where the other explains the corners nearly as well, its distance widens the
 /// covariance by the share that its likelihood gives it: P = (1 - w) P₁ + w (P₂ + d dᵀ).
 ///

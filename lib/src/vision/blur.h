@@ -14,7 +14,7 @@ struct FrameStatistics {
 /// Meant for level 2 of a pyramid. Zero throughout for images below 2x2. About 0.3 ns per pixel.
 FrameStatistics frame_statistics(const ImageView& image);
 
-/// Whether features can be found and measured at all.
+/// Whether features can be found and measured in a frame.
 enum class FrameUse { kUsable, kDark, kBright, kFlat };
 
 /// Black, white, or nothing but noise and blur, judged on level 2, where a wall's own texture or a lamp in a dark room

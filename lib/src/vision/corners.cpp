@@ -19,7 +19,7 @@ bool CornerWorkspace::layout(Arena& arena, int image_width) {
 
 namespace {
 
-/// The best few of many: a heap with the worst on top.
+/// Keeps the best `capacity` corners: a heap with the worst on top.
 class BestCorners {
  public:
   BestCorners(Corner* out, int capacity) : heap_(out), capacity_(capacity) {}
@@ -64,7 +64,7 @@ class BestCorners {
   int count_ = 0;
 };
 
-/// Strictly above its neighbours to come and not below those before, so that of two equal ones one is left.
+/// Greater than its later neighbours and not less than its earlier ones, so that exactly one of two equal ones is kept.
 bool is_peak(const float* above, const float* here, const float* below, int i) {
   const float s = here[i];
   return s >= above[i - 1] && s >= above[i] && s >= above[i + 1] && s >= here[i - 1] && s > here[i + 1] &&

@@ -11,7 +11,7 @@ struct Corner {
   float score = 0;  // min_eigenvalue there
 };
 
-/// Corners lie at least so far from the image's edge: what the score of a 7x7 window reads.
+/// Minimum distance of a corner from the image's edge [px], which the score of a 7x7 window needs.
 constexpr int kCornerBorder = 5;
 
 /// Scratch for detect_corners: three rows of scores and of candidates, about 18 bytes per column.
@@ -27,7 +27,7 @@ struct CornerWorkspace {
 /// darker than the centre by more than `threshold`), scored with min_eigenvalue, and only where no pixel of the 3x3
 /// around has a higher score.
 ///
-/// roi         clipped to the image less kCornerBorder; any is welcome
+/// roi         any; it is clipped to the image less kCornerBorder
 /// threshold   grey levels, clamped to 1 .. 254
 /// out         the best `capacity` of them, best first
 /// returns how many

@@ -5,7 +5,7 @@
 
 namespace pf {
 
-/// Grey levels that somebody else owns. Pixel (0, 0) is the centre of the top-left one.
+/// A view of grey levels that somebody else owns. Pixel (0, 0) is the centre of the top-left one.
 ///
 /// stride   bytes from row to row, >= width
 struct ImageView {
@@ -36,7 +36,7 @@ struct Rect {
   bool empty() const { return width <= 0 || height <= 0; }
 };
 
-/// What of a rectangle lies at least `margin` inside the image. Any rectangle is welcome.
+/// The part of a rectangle that lies at least `margin` inside the image. Takes any rectangle.
 inline Rect clip(const Rect& rect, const ImageView& image, int margin) {
   const auto low = [margin](int begin) { return begin > margin ? begin : margin; };
   const auto high = [margin](int begin, int length, int limit) {

@@ -9,7 +9,7 @@ namespace pf {
 constexpr int kAlignSize = 11;
 constexpr int kWarpSize = kAlignSize + 2;
 
-/// What is kept of the image around a feature, to make templates for other views: pixels of level 0, and pixels of
+/// The stored image around a feature, from which templates for other views are made: pixels of level 0, and pixels of
 /// level 1 over twice the width for views from further away. What would lie outside of the image repeats its edge and is
 /// never handed out. A plain copy: no pointers.
 struct SourcePatch {
@@ -32,7 +32,7 @@ bool extract_source(const Pyramid& pyramid, const Vec2& pixel, SourcePatch* patc
 /// A      2x2, px of source level 0 per px of the current image's search level
 /// size   side of the template, 1 .. SourcePatch::kSize
 /// out    size * size grey levels, row by row
-/// Where A steps over more than about 1.6 px, level 1 of the source is read, so that what is fine does not alias.
+/// Where A steps over more than about 1.6 px, level 1 of the source is read, to avoid aliasing.
 /// False, out untouched: A is not finite, or the template would leave the patch or the image that it came from.
 /// Costs about 2 ns per pixel of the template.
 bool warp_template(const SourcePatch& patch, const Mat2& A_source_current, int size, float* out);

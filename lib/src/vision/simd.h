@@ -30,7 +30,7 @@ typedef std::int16_t I16x4 __attribute__((vector_size(8)));
 typedef std::int32_t I32x4 __attribute__((vector_size(16)));
 typedef std::uint64_t U64x2 __attribute__((vector_size(16)));
 
-/// No alignment is asked of the address.
+/// The address need not be aligned.
 template <typename V>
 PF_ALWAYS_INLINE V load(const void* from) {
   V out;

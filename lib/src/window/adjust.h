@@ -3,7 +3,7 @@
 #include "base/arena.h"
 #include "geometry/camera.h"
 
-/// A small bundle adjustment: poses, and points by their bearing and inverse depth in a host pose.
+/// A small bundle adjustment: poses, and points by their bearing and inverse depth in a host pose (lib/docs/starting.md).
 
 namespace pf {
 
@@ -22,8 +22,8 @@ struct BundlePose {
   const BundlePixel* pixel;  ///< by point; null: this pose is a host only
 };
 
-/// What is adjusted; a view of the caller's arrays. Something must hold position, rotation and scale: fixed poses, or the prior on
-/// the inverse depths.
+/// What is adjusted; a view of the caller's arrays. Something must hold position, rotation and scale: fixed poses, or
+/// the prior on the inverse depths.
 struct Bundle {
   BundlePose* pose;
   int poses;
@@ -69,7 +69,8 @@ class BundleAdjuster {
   /// Adjusts free poses and all rho; returns the robust cost, the prior included. Bounded by max_rounds.
   Scalar adjust(const Camera& camera, const AdjustOptions& options, const Bundle& bundle);
 
-  /// One step from where the bundle is, without taking it: (theta, p) of each free pose in order, and the step of each rho.
+  /// One step from where the bundle is, without taking it: (theta, p) of each free pose in order, and the step of each
+  /// rho.
   ///
   ///   | H_pp  W  | dx   |b|      damping:  D' = D (1 + damping);  S = H_pp - W D'⁻¹ Wᵀ;  S_ii += damping |S_ii| + 1e-9
   ///   | Wᵀ    D  | drho |g|      S dx = b - W D'⁻¹ g,   drho = D'⁻¹ (g - Wᵀ dx)
@@ -79,8 +80,8 @@ class BundleAdjuster {
   const Scalar* pose_step() const { return b_; }
   Scalar rho_step(int point) const;
 
-  /// Covariance of (theta, p) of the last free pose, the points and the other free poses marginalised. False when something that
-  /// is adjusted is not determined.
+  /// Covariance of (theta, p) of the last free pose, the points and the other free poses marginalised. False when
+  /// something that is adjusted is not determined.
   bool last_pose_covariance(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, Mat6* covariance);
 
  private:

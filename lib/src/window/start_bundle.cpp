@@ -66,7 +66,7 @@ void StartBundle::init() {
   last_parallax_ = Scalar(0);
 }
 
-/// The turn alone that explains a frame best (robustly); returns the median of what is left, the parallax [px].
+/// Robust fit of a rotation alone to a frame's pixels; returns the median residual, which is the parallax [px].
 Scalar StartBundle::fit_rotation(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const {
   Scalar left[StartRecord::kMaxFeatures];
   Scalar scale = kFirstRotationScale;  // tightens as the rotation is found
@@ -121,7 +121,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   const Scalar parallax = fit_rotation(camera, record, last, &q_last);
   if (!(parallax >= kMinParallax * sigma_px && parallax >= kGrowth * last_parallax_)) return StartOutcome::kWait;
 
-  // Frame 0 and the last one, from six directions of motion; the parallax says how far at a depth of one.
+  // Adjust frame 0 and the last frame from six directions of motion; the parallax gives the distance at a depth of one.
   const int count = record.features();
   const Scalar length = parallax / camera.fx;
   BundlePose best_pose = {Quat::Identity(), Vec3::Zero(), true, nullptr};
@@ -148,11 +148,11 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
     best_pose = pose_[1];
     std::copy(rho_, rho_ + count, best_rho_);
   }
-  // Two explanations that fit about as well (a scene and its inside-out twin) need more parallax, unless there is plenty.
+  // Two solutions that fit about equally well (a scene and its inverted twin): wait for parallax up to kAmpleParallax.
   if (second >= Scalar(0) && second - best < kMinMargin && parallax < kAmpleParallax * sigma_px)
     return StartOutcome::kWait;
 
-  // Everything together: the last frame and others spread over the record.
+  // Adjust the last frame together with others spread over the record.
   std::copy(best_rho_, best_rho_ + count, rho_);
   int frame[kMaxCameras] = {};
   int cameras = std::min(static_cast<int>(kMaxCameras), record.frames());
@@ -168,10 +168,10 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   int pixels = 0;
   for (int c = 0; c < cameras; ++c)
     for (int i = 0; i < count; ++i) pixels += record.seen(frame[c], i) ? 1 : 0;
-  // Two numbers per pixel; three times what noise alone would leave means that this is no explanation.
+  // A pixel has two numbers, so noise alone leaves a cost of 2; at three times that the solution is rejected.
   if (!(total <= kMaxCost * static_cast<Scalar>(pixels))) return StartOutcome::kWait;
 
-  // Depths that were in front and well enough known, and the unit of length.
+  // Select the depths that can be trusted, and set the unit of length.
   Scalar sorted[StartRecord::kMaxFeatures];
   int good = 0;
   for (int i = 0; i < count; ++i) {
@@ -218,7 +218,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   return parallax > kSettledParallax * sigma_px ? StartOutcome::kSettled : StartOutcome::kSolved;
 }
 
-/// Pose of one frame against the depths as they are, by Gauss-Newton.
+/// Pose of one frame with the depths held fixed, by Gauss-Newton.
 bool StartBundle::locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px,
                          BundlePose* pose) const {
   const Scalar information = Scalar(1) / (sigma_px * sigma_px);

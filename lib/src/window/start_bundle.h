@@ -4,16 +4,17 @@
 #include "geometry/camera.h"
 #include "window/adjust.h"
 
-/// The first depths, when nothing is known beforehand: a bundle adjustment over the first frames, from several first guesses (lib/docs/starting.md).
+/// The first depths, when nothing is known beforehand: a bundle adjustment over the first frames, from several first
+/// guesses (lib/docs/starting.md).
 ///
-/// A filter that starts with a camera that has not moved cannot know that parallax is the product of depth and motion: with a
-/// baseline of zero the derivative by depth is zero, and a scene turned inside out fits as well at first. So the pixels of the
-/// first frames are kept until there is enough parallax, and then explained at once.
+/// Before the camera has moved, a filter cannot estimate depth: at a baseline of zero the derivative of a pixel by
+/// depth is zero, and the inverted scene fits equally well at first. So the pixels of the first frames are recorded
+/// until there is enough parallax, and then adjusted together.
 
 namespace pf {
 
-/// Pixels of up to kMaxFeatures features, all first seen in frame 0, over up to kMaxFrames frames. When full, every second frame
-/// goes, so that a camera that rests does not fill it.
+/// Pixels of up to kMaxFeatures features, all first seen in frame 0, over up to kMaxFrames frames. When full, every
+/// second frame is dropped, so that a resting camera does not fill it.
 class StartRecord {
  public:
   static constexpr int kMaxFrames = 32;
@@ -31,7 +32,7 @@ class StartRecord {
   /// Feature of frame 0, by the ray on which it was first seen; its index, or -1 when there are kMaxFeatures.
   int add_feature(const Vec3& ray);
   void set_ray(int feature, const Vec3& ray) { ray_[feature] = ray; }
-  /// A later frame, with the pose that is believed; its pixels follow. Returns its index.
+  /// Adds a later frame with its estimated pose; add_pixel adds its pixels. Returns its index.
   int add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);
   void add_pixel(int frame, int feature, const Vec2& pixel);
 
@@ -54,10 +55,10 @@ class StartRecord {
 };
 
 enum class StartOutcome {
-  kWait,     ///< not enough parallax (more than last time), or more than one explanation
-  kSolved,   ///< explained; more frames may explain it better
-  kSettled,  ///< explained, with as much parallax as it takes
-  kTooFew,   ///< too few of frame 0's features are left: begin again
+  kWait,     ///< not enough parallax (more than last time), or more than one solution
+  kSolved,   ///< solved; more frames may improve it
+  kSettled,  ///< solved, with enough parallax to stop
+  kTooFew,   ///< too few of frame 0's features are left: start again
 };
 
 /// Poses of the record's frames and inverse depths of its features.
@@ -66,8 +67,9 @@ class StartBundle {
   bool layout(Arena& arena);
   void init();
 
-  /// On kSolved and kSettled the record's frames hold the poses (W is frame 0's camera), rho() the inverse depths and good() which
-  /// features are to be trusted. The unit of length makes the median depth `median_depth` the first time, and stays.
+  /// On kSolved and kSettled the record's frames hold the poses (W is frame 0's camera), rho() the inverse depths and
+  /// good() which features can be trusted. The first solution sets the unit of length so that the median depth is
+  /// `median_depth`; later ones keep it.
   StartOutcome solve(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth);
 
   Scalar rho(int feature) const { return rho_[feature]; }
