@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <planefold_platform/cameras.h>
+#include <planefold_platform/version.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -172,6 +173,9 @@ std::string check(const Options& options, const std::string& backend) {
 }  // namespace
 
 Parsed parse_options(int argc, char** argv, Options& options, int& code) {
+  for (int i = 0; i < argc; ++i) {
+    options.command += std::string(i == 0 ? "" : " ") + argv[i];
+  }
   CLI::App app{"Tracks the camera through a sequence of images and builds a map of points."};
   app.footer(kFooter);
   std::string backend = "filter";
@@ -184,6 +188,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   const std::map<std::string, pf_kernels_t> kernel_names = {
       {"auto", PF_KERNELS_AUTO}, {"reference", PF_KERNELS_REFERENCE}, {"portable", PF_KERNELS_PORTABLE},
       {"avx2", PF_KERNELS_AVX2}, {"avx512", PF_KERNELS_AVX512},       {"neon", PF_KERNELS_NEON}};
+  app.set_version_flag("--version", "pf-capture " PF_VERSION_TEXT);
   app.add_option(
       "--source", options.source,
       "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, images:DIR, euroc:DIR, tum:DIR or sim:NAME");

@@ -15,6 +15,7 @@ constexpr int kExitUsage = 2;  ///< the command line is wrong
 
 /// What the command line asks for. Negative numbers mean that the library's default is kept.
 struct Options {
+  std::string command;  ///< the whole command line
   std::string source;
   std::string calibration;
   std::string start = "auto";

@@ -31,6 +31,27 @@ std::vector<Vec3> cut(const std::vector<Vec3>& polygon, const Vec3& side, double
   return kept;
 }
 
+constexpr double kShortestEdge = 1e-3;  ///< of an outline: a millimetre, where the scale is known
+
+/// Leaves out corners that are closer to their neighbour than kShortestEdge: viewers take such edges for damage. An outline that is
+/// itself so small stays as it is.
+std::vector<Vec3> without_short_edges(const std::vector<Vec3>& outline) {
+  std::vector<Vec3> kept;
+  const auto is_short = [](const Vec3& a, const Vec3& b) {
+    const Vec3 d = minus(a, b);
+    return dot(d, d) < kShortestEdge * kShortestEdge;
+  };
+  for (const Vec3& corner : outline) {
+    if (kept.empty() || !is_short(corner, kept.back())) {
+      kept.push_back(corner);
+    }
+  }
+  while (kept.size() > 1 && is_short(kept.front(), kept.back())) {
+    kept.pop_back();
+  }
+  return kept.size() >= 3 ? kept : outline;
+}
+
 PlaneView view_of(const pf_plane_t& plane) {
   constexpr const char* kOrientations[] = {"unknown", "horizontal_up", "horizontal_down", "vertical", "other"};
   PlaneView view;
@@ -57,6 +78,7 @@ PlaneView view_of(const pf_plane_t& plane) {
     middle[0] += at[0] / count;
     middle[1] += at[1] / count;
   }
+  view.outline = without_short_edges(view.outline);
   // How far the plane is off along its normal at the middle: delta - alpha x - beta y.
   const double* c = plane.covariance;
   const double J[3] = {-middle[0], -middle[1], 1.0};

@@ -1,9 +1,13 @@
 #include "statistics.h"
 
+#include <sys/utsname.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "plane_outputs.h"
 
@@ -39,6 +43,23 @@ bool is_flat(const std::vector<uint8_t>& pixels) {
     return at;
   };
   return level(false) - level(true) < 4;
+}
+
+/// What the system calls it, and how many of them there are: "model name" on x86, "Model" of a board, or the architecture.
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string name;
+  for (std::string line; std::getline(file, line);) {
+    const size_t colon = line.find(':');
+    if (colon != std::string::npos && (line.rfind("model name", 0) == 0 || line.rfind("Model", 0) == 0)) {
+      name = line.substr(std::min(line.size(), colon + 2));
+    }
+  }
+  utsname system{};
+  if (name.empty() && uname(&system) == 0) {
+    name = system.machine;
+  }
+  return name + " x " + std::to_string(std::thread::hardware_concurrency());
 }
 
 const char* kernels_name(int32_t kernels) {
@@ -125,6 +146,11 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   }
   const pf_config_t& config = session.config();
   Json json;
+  const uint32_t version = pf_version();
+  json["version"] =
+      std::to_string(version >> 16) + "." + std::to_string((version >> 8) & 255) + "." + std::to_string(version & 255);
+  json["command"] = options.command;
+  json["processor"] = processor_name();
   json["source"] = options.source;
   json["frames"] = frames_;
   json["tracked"] = tracked_;

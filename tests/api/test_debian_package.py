@@ -38,7 +38,7 @@ with tempfile.TemporaryDirectory() as folder:
     root = folder / "root"
     script.run("dpkg-deb", "-x", package, root)
     for expected in ("usr/include/planefold/planefold.h", "usr/lib/libplanefold.a", "usr/lib/libplanefoldf.a",
-                     "usr/lib/pkgconfig/planefold.pc", "usr/lib/cmake/planefold/planefoldConfig.cmake", "usr/bin/pf-capture"):
+                     "usr/lib/pkgconfig/planefold.pc", "usr/lib/cmake/planefold/planefoldConfig.cmake", "usr/bin/pf-capture", "usr/share/doc/planefold/copyright"):
         if not (root / expected).exists():
             script.fail(f"the package lacks {expected}")
     script.run(root / "usr/bin/pf-capture", "--help")

@@ -39,6 +39,8 @@ def check_planes(planes, vertices, faces):
         require(abs(sum(x * x for x in plane["normal"]) - 1) < 1e-6, "a normal without unit length")
         require(plane["sigma"] > 0 and plane["area_m2"] > 0 and plane["points"] > 0, f"plane {plane}")
         require(int(face[0]) == len(plane["outline"]) == len(face) - 5 and int(face[-1]) == plane["id"], f"face {face}")
+        edges = [sum((a - b) ** 2 for a, b in zip(*pair)) ** 0.5 for pair in zip(plane["outline"], plane["outline"][1:] + plane["outline"][:1])]
+        require(min(edges) >= 0.001, f"an edge of {min(edges)} m")
         for index, corner in zip(face[1:-4], plane["outline"]):
             require(all(abs(float(a) - b) < 1e-6 for a, b in zip(vertices[int(index)], corner)), "a face's corner is not the outline's")
             off = sum(a * b for a, b in zip(plane["normal"], corner)) - plane["distance"]

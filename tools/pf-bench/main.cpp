@@ -3,11 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "planefold_platform/version.h"
 #include "suite.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Measure kernels and whole frames against their limits and peers, single-threaded.");
   app.require_subcommand(1);
+  app.set_version_flag("--version", "pf-bench " PF_VERSION_TEXT);
   bench::SuiteOptions options;
   std::map<const CLI::App*, const bench::Suite*> suites;
   for (const bench::Suite* s = bench::Suite::first(); s != nullptr; s = s->next) {

@@ -1,5 +1,7 @@
 #include "options.h"
 
+#include <planefold_platform/version.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
@@ -29,6 +31,7 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
       "pf-calibrate");
   std::string board = "10x7:0.025";
   std::string target = target_name(have_markers() ? Target::kCharuco : Target::kChessboard), model = "radtan";
+  app.set_version_flag("--version", "pf-calibrate " PF_VERSION_TEXT);
   app.add_option(
       "--source", options.source,
       "images:DIR, euroc:DIR, tum:DIR (a calibration inside is not read), or a camera: v4l2:/dev/videoN, libcamera:0");

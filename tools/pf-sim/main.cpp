@@ -4,10 +4,12 @@
 #include <cstdio>
 
 #include "commands.h"
+#include "planefold_platform/version.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"Simulations: rendered sequences, and Monte Carlo runs against exact truth"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", "pf-sim " PF_VERSION_TEXT);
   int result = 0;
   pfsim::add_render(app, result);
   pfsim::add_room(app, result);
