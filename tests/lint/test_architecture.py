@@ -36,5 +36,6 @@ line = re.search(r"> platform/ +([\w ]+)", drawing)
 compare("the drawing's platform/", set(line.group(1).split()) if line else set(), platform)
 
 groups = {path.parent.name for path in (source.ROOT / "tests").glob("*/test_*.*") if path.suffix in (".c", ".cpp", ".py", ".sh")}
+groups |= {path.parent.name for path in (source.ROOT / "tests").glob("*/fuzz_*.cpp")}
 compare("the table of tests", table("folder and label"), groups)
 source.report(problems)
