@@ -59,14 +59,14 @@ struct Matches {
   }
 };
 
-void test_agree_should_reject_wrong_matches_when_three_in_ten_are_wrong() {
+void test_consensus_should_reject_wrong_matches_when_three_in_ten_are_wrong() {
   SeededRandom random(101);
   constexpr int kTrials = 50, kWrong = 9;
   int wrong_kept = 0, right_kept = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
     Matches m(random, kWrong);
     unsigned char keep[kMatches];
-    const int agreed = agree(*m.filter, m.observation, kMatches, kGate, keep);
+    const int agreed = find_inliers(*m.filter, m.observation, kMatches, kGate, keep);
     int kept = 0;
     for (int i = 0; i < kMatches; ++i) {
       kept += keep[i];
@@ -81,25 +81,25 @@ void test_agree_should_reject_wrong_matches_when_three_in_ten_are_wrong() {
   TEST_ASSERT_TRUE(wrong_share < 0.05);
 }
 
-void test_agree_should_keep_as_many_as_the_gate_says_when_all_are_right() {
+void test_consensus_should_keep_as_many_as_the_gate_says_when_all_are_right() {
   SeededRandom random(102);
   int kept = 0;
   constexpr int kTrials = 50;
   for (int trial = 0; trial < kTrials; ++trial) {
     Matches m(random, 0);
     unsigned char keep[kMatches];
-    kept += agree(*m.filter, m.observation, kMatches, kGate, keep);
+    kept += find_inliers(*m.filter, m.observation, kMatches, kGate, keep);
   }
   std::printf("kept: %.4f\n", kept / double(kTrials * kMatches));
   TEST_ASSERT_TRUE(kept >= 0.985 * kTrials * kMatches);
 }
 
-void test_agree_should_find_few_when_all_matches_are_random() {
+void test_consensus_should_find_few_when_all_matches_are_random() {
   SeededRandom random(103);
   for (int trial = 0; trial < 50; ++trial) {
     Matches m(random, kMatches);
     unsigned char keep[kMatches];
-    const int agreed = agree(*m.filter, m.observation, kMatches, kGate, keep);
+    const int agreed = find_inliers(*m.filter, m.observation, kMatches, kGate, keep);
     TEST_ASSERT_GREATER_OR_EQUAL_INT(1, agreed);  // the hypothesis agrees with itself
     TEST_ASSERT_LESS_OR_EQUAL_INT(6, agreed);
   }
@@ -122,9 +122,9 @@ void test_squared_distance_should_be_that_of_the_inverse_covariance() {
 
 int main(void) {
   UNITY_BEGIN();
-  RUN_TEST(test_agree_should_reject_wrong_matches_when_three_in_ten_are_wrong);
-  RUN_TEST(test_agree_should_keep_as_many_as_the_gate_says_when_all_are_right);
-  RUN_TEST(test_agree_should_find_few_when_all_matches_are_random);
+  RUN_TEST(test_consensus_should_reject_wrong_matches_when_three_in_ten_are_wrong);
+  RUN_TEST(test_consensus_should_keep_as_many_as_the_gate_says_when_all_are_right);
+  RUN_TEST(test_consensus_should_find_few_when_all_matches_are_random);
   RUN_TEST(test_squared_distance_should_be_that_of_the_inverse_covariance);
   return UNITY_END();
 }

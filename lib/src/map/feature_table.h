@@ -76,10 +76,10 @@ class FeatureTable {
  private:
   /// How proven a feature is: 0 hardly ever measured again, 1 not yet, and then one more each time that it was measured twice as often.
   static int proof(const Feature& feature) {
-    constexpr int kAgain = 3, kProven = 10, kMost = 80;  // frames
+    constexpr int kAgain = 3, kProven = 10, kMaxProof = 80;  // frames
     if (feature.observations < kProven) return feature.observations < kAgain ? 0 : 1;
     int proof = 2;
-    for (int frames = 2 * kProven; frames <= kMost && feature.observations >= frames; frames *= 2) ++proof;
+    for (int frames = 2 * kProven; frames <= kMaxProof && feature.observations >= frames; frames *= 2) ++proof;
     return proof;
   }
   static bool is_less_useful(const Feature& a, const Feature& b) {

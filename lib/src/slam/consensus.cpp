@@ -18,8 +18,9 @@ Scalar squared_distance(const Vec2& r, const Mat2& S) {
   return (r.x() * (S(1, 1) * r.x() - S(0, 1) * r.y()) + r.y() * (S(0, 0) * r.y() - S(1, 0) * r.x())) / det;
 }
 
-int agree(const Filter& filter, const PixelMeasurement* observations, int count, Scalar gate, unsigned char* keep) {
-  int best = -1, best_votes = 0;
+int find_inliers(const Filter& filter, const PixelMeasurement* observations, int count, Scalar gate,
+                 unsigned char* keep) {
+  int best = -1, best_inliers = 0;
   Scalar best_sum = 0;
   for (int pass = 0; pass < 2; ++pass) {
     for (int i = 0; i < count; ++i) {
@@ -28,29 +29,29 @@ int agree(const Filter& filter, const PixelMeasurement* observations, int count,
       const Mat2 Sii_inverse = inverse2(Sii);
       const Vec2 ri = observations[i].measured - observations[i].predicted;
       const Vec2 a = Sii_inverse * ri;
-      int votes = 0;
+      int inliers = 0;
       Scalar sum = 0;
       for (int j = 0; j < count; ++j) {
-        bool agrees = true;
+        bool is_inlier = true;
         if (j != i) {
           const Mat2 Sji = filter.innovation_block(j, i);
           const Vec2 r = observations[j].measured - observations[j].predicted - Sji * a;
           const Mat2 S = filter.innovation_block(j, j) + observations[j].R_gate - Sji * Sii_inverse * Sji.transpose();
           const Scalar d2 = squared_distance(r, S);
-          agrees = d2 < gate;
-          if (agrees) sum += d2;
+          is_inlier = d2 < gate;
+          if (is_inlier) sum += d2;
         }
-        if (agrees) ++votes;
-        if (pass == 1) keep[j] = agrees ? 1 : 0;
+        if (is_inlier) ++inliers;
+        if (pass == 1) keep[j] = is_inlier ? 1 : 0;
       }
-      if (pass == 0 && (votes > best_votes || (votes == best_votes && sum < best_sum))) {
+      if (pass == 0 && (inliers > best_inliers || (inliers == best_inliers && sum < best_sum))) {
         best = i;
-        best_votes = votes;
+        best_inliers = inliers;
         best_sum = sum;
       }
     }
   }
-  return best_votes;
+  return best_inliers;
 }
 
 }  // namespace pf

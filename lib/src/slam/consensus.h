@@ -4,13 +4,14 @@
 
 namespace pf {
 
-/// Keeps the matches that agree with one of them (one-point RANSAC; Civera, Grasa, Davison, Montiel 2010), without chance: every
-/// match is tried as the hypothesis, since with the joint S = H P H^T + R a trial needs 2x2 blocks only.
+/// Finds the largest set of matches that are consistent with one of them (one-point RANSAC; Civera, Grasa, Davison, Montiel 2010). Not
+/// random: every match is tried as the hypothesis, since with the joint S = H P H^T + R a trial needs 2x2 blocks only.
 ///
-///   after match i:   r_j|i = r_j - S_ji S_ii^-1 r_i,   S_j|i = S_jj - S_ji S_ii^-1 S_ij;   j agrees when r^T S_j|i^-1 r < gate
+///   after match i:   r_j|i = r_j - S_ji S_ii^-1 r_i,   S_j|i = S_jj - S_ji S_ii^-1 S_ij;   j is an inlier if r^T S_j|i^-1 r < gate
 ///
-/// begin_update must hold the same observations. keep gets 1 for those that agree with the best hypothesis. Returns how many.
-int agree(const Filter& filter, const PixelMeasurement* observations, int count, Scalar gate, unsigned char* keep);
+/// begin_update must hold the same observations. keep gets 1 for the inliers of the best hypothesis. Returns how many.
+int find_inliers(const Filter& filter, const PixelMeasurement* observations, int count, Scalar gate,
+                 unsigned char* keep);
 
 /// r^T S^-1 r of one observation with covariance S [px^2]; huge where S is not positive.
 Scalar squared_distance(const Vec2& r, const Mat2& S);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
 constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
-constexpr int kMinAgreement = 5;            ///< inliers that a consensus needs
+constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs
 
 }  // namespace
 
@@ -172,17 +172,17 @@ void ImageFrontEnd::measure_range(int first, int count) {
   if (found == 0) return;
   update_.begin(first, found);
   unsigned char* keep = update_.keep();
-  int agreed;
+  int inliers;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
-    agreed = agree(filter_, update_.observations() + first, found, settings_.gate, keep + first);
+    inliers = find_inliers(filter_, update_.observations() + first, found, settings_.gate, keep + first);
   }
   // If an earlier range has given inliers, a smaller consensus is accepted.
-  const bool believed =
-      frame_.report.inliers >= kMinAgreement || agreed >= std::min(kMinAgreement, map_.features.count());
+  const bool accepted =
+      frame_.report.inliers >= kMinConsensus || inliers >= std::min(kMinConsensus, map_.features.count());
   for (int i = first; i < first + found; ++i) {
     const PixelMeasurement& o = update_.observation(i);
-    if (!believed) keep[i] = 0;
+    if (!accepted) keep[i] = 0;
     Match& match = frame_.match(update_.candidate(i).match);
     match.status = keep[i] != 0 ? MatchStatus::kInlier : MatchStatus::kOutlier;
     match.nis =
@@ -190,10 +190,10 @@ void ImageFrontEnd::measure_range(int first, int count) {
     if (keep[i] == 0) {
       Feature& f = map_.features[update_.candidate(i).feature];
       count_frame(&f.failures);
-      if (believed) count_frame(&f.rejections);
+      if (accepted) count_frame(&f.rejections);
     }
   }
-  if (believed) update_.apply(first, found);
+  if (accepted) update_.apply(first, found);
 }
 
 }  // namespace pf

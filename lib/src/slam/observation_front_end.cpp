@@ -42,11 +42,11 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
     o.set_noise(Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order);
     const Mat2 S = spread + o.R_gate;
     const Scalar nis = squared_distance(o.measured - o.predicted, S);
-    const bool agrees = nis < settings_.gate;
-    const int match = frame_.add({entry, feature.id, agrees ? MatchStatus::kInlier : MatchStatus::kOutlier,
+    const bool is_inlier = nis < settings_.gate;
+    const int match = frame_.add({entry, feature.id, is_inlier ? MatchStatus::kInlier : MatchStatus::kOutlier,
                                   filter_.state().block[feature.slot].kind, o.predicted, S, o.measured, nis});
     ++frame_.report.matches;
-    if (!agrees) {
+    if (!is_inlier) {
       count_frame(&feature.failures);
       count_frame(&feature.rejections);
       continue;

@@ -75,17 +75,17 @@ bool PlaneKeeper::same_plane(int slot, int other) const {
   plane_normal(state.frame_of(a), a.xyz(), &n_a, &d_a);
   plane_normal(state.frame_of(b), b.xyz(), &n_b, &d_b);
   if (n_a.dot(n_b) < kMinNormalCosine) return false;
-  int points = 0, agree = 0, close = 0;
+  int points = 0, inliers = 0, close = 0;
   state.for_each_planar(other, [&](int point) {
     Scalar d, variance;
     ++points;
     if (!filter_.distance(slot, point, &d, &variance)) return;
     variance += settings_.fold.roughness * settings_.fold.roughness;
-    if (d * d < Scalar(9) * variance) ++agree;
+    if (d * d < Scalar(9) * variance) ++inliers;
     if (std::abs(d) < Scalar(3) * settings_.plane_distance) ++close;
   });
   // Both tests: every point passes the gate of a plane that is hardly known.
-  return points >= kMinPoints && 10 * agree >= 9 * points && 10 * close >= 9 * points;
+  return points >= kMinPoints && 10 * inliers >= 9 * points && 10 * close >= 9 * points;
 }
 
 /// Merges one other plane that is the same into this one.
