@@ -5,6 +5,6 @@
 namespace pf {
 
 /// Maximum stack of any call [bytes]; a test measures it.
-constexpr std::size_t kStackBudget = 64 * 1024;
+constexpr std::size_t kStackBudget = 48 * 1024;
 
 }  // namespace pf
