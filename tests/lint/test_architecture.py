@@ -35,7 +35,7 @@ compare("the drawing", drawn, set(rooms.LIBRARY))
 line = re.search(r"> platform/ +([\w ]+)", drawing)
 compare("the drawing's platform/", set(line.group(1).split()) if line else set(), platform)
 
-groups = {path.parent.name for path in (source.ROOT / "tests").glob("*/test_*.*") if path.suffix in (".c", ".cpp", ".py", ".sh")}
+groups = {path.parent.name for path in (source.ROOT / "tests").glob("*/*_*.*") if path.name.startswith(("test_", "fuzz_")) and path.suffix in (".c", ".cpp", ".py", ".sh")}
 groups |= {path.parent.name for path in (source.ROOT / "tests").glob("*/fuzz_*.cpp")}
 compare("the table of tests", table("folder and label"), groups)
 source.report(problems)
