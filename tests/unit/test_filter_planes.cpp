@@ -211,7 +211,7 @@ void test_released_points_should_have_the_covariance_that_they_had() {
     TEST_ASSERT_TRUE(scene.filter->release(scene.on_wall[static_cast<std::size_t>(i)]));
   TEST_ASSERT_EQUAL_INT(dim, scene.filter.dim());
   TEST_ASSERT_EQUAL_INT(0, scene.filter.held_dim());
-  TEST_ASSERT_EQUAL_INT(-1, scene.filter->patch_of(scene.plane));
+  TEST_ASSERT_EQUAL_INT(-1, scene.filter->group_of(scene.plane));
   TEST_ASSERT_TRUE(difference(pick(), before) < kExact);
 }
 
@@ -224,10 +224,10 @@ void test_variance_in_a_drawing_should_be_that_of_the_fixed_point() {
     const double half = (C(0, 0) + C(1, 1)) / 2, apart = (C(0, 0) - C(1, 1)) / 2;
     return half + std::hypot(apart, C(0, 1));
   };
-  const double first = static_cast<double>(scene.filter->variance_in_drawing(slots[1], slots, 8));
+  const double first = static_cast<double>(scene.filter->variance_in_group(slots[1], slots, 8));
   TEST_ASSERT_TRUE(scene.filter->fix(slots + 1, 1, FixForm::kConsider, slots, 8));
   TEST_ASSERT_TRUE(std::fabs(first - largest_of(slots[1])) < 1e-9 * first);
-  const double second = static_cast<double>(scene.filter->variance_in_drawing(slots[4], slots, 8));
+  const double second = static_cast<double>(scene.filter->variance_in_group(slots[4], slots, 8));
   TEST_ASSERT_TRUE(scene.filter->fix(slots + 4, 1, FixForm::kConsider, slots, 8));
   TEST_ASSERT_TRUE(std::fabs(second - largest_of(slots[4])) < 1e-9 * second);
 }

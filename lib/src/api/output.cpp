@@ -22,12 +22,12 @@ void pose_at(const pf::View& view, int64_t t_ns, pf_pose_t* pose) {
 }
 
 int32_t feature_kind(pf::BlockKind kind) {
-  switch (kind) {
-    case pf::BlockKind::kPoint:
+  switch (pf::info(kind).form) {
+    case pf::FeatureForm::kPoint:
       return PF_FEATURE_POINT;
-    case pf::BlockKind::kPlanePoint:
+    case pf::FeatureForm::kFolded:
       return PF_FEATURE_FOLDED;
-    case pf::BlockKind::kPatchPoint:
+    case pf::FeatureForm::kFixed:
       return PF_FEATURE_FIXED;
     default:
       return PF_FEATURE_INVERSE_DEPTH;

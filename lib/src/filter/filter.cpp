@@ -1,7 +1,8 @@
 #include "filter/filter.h"
 
+#include "filter/model/kinds.h"
+#include "filter/observe/inverse_depth.h"
 #include "filter/observe/row.h"
-#include "filter/observe/world_point.h"
 
 namespace pf {
 
@@ -53,8 +54,8 @@ void Filter::steer(const Vec3& dv_C, const Vec3& dw_C) {
   blocks_.predict(turn.F, turn.Q, turn.dim);
 }
 
-int Filter::take_slot(BlockKind kind, int size) {
-  const int slot = state_.find_free();
+int Filter::take_slot(BlockKind kind) {
+  const int slot = state_.find_free(), size = info(kind).rows;
   if (slot < 0 || size > room()) return -1;
   Block& block = state_.block[slot];
   block = Block();
@@ -64,7 +65,7 @@ int Filter::take_slot(BlockKind kind, int size) {
 }
 
 int Filter::add_anchor() {
-  const int slot = take_slot(BlockKind::kAnchor, 3);
+  const int slot = take_slot(BlockKind::kAnchor);
   if (slot < 0) return -1;
   RowsOf<3, 3, 1> J;  // o = p
   J.parts = 1;
@@ -79,7 +80,7 @@ int Filter::add_anchor() {
 int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho,
                               Scalar sigma_rho, Scalar tau) {
   PF_ASSERT(state_.block[anchor].kind == BlockKind::kAnchor);
-  const int slot = take_slot(BlockKind::kInverseDepth, 3);
+  const int slot = take_slot(BlockKind::kInverseDepth);
   if (slot < 0) return -1;
   const RowBody row = body_at_row(state_.body, state_.body_dim == Body::kMaxDim ? tau : Scalar(0));
   const Vec3 c_W = row.body.p_W - state_.body.p_W;
@@ -113,7 +114,7 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
 }
 
 int Filter::add_point(const Vec3& p_W, const Mat3& covariance) {
-  const int slot = take_slot(BlockKind::kPoint, 3);
+  const int slot = take_slot(BlockKind::kPoint);
   if (slot < 0) return -1;
   Rows known;  // depends on nothing
   known.rows = 3;
@@ -144,7 +145,7 @@ void Filter::convert_to_point(int slot) {
 }
 
 void Filter::remove(const int* slots, int count) {
-  // Mark, let anchors and patches follow their last child, then list what goes.
+  // Mark, let anchors and point groups follow their last child, then list what goes.
   for (int i = 0; i < count; ++i) {
     Block& block = state_.block[slots[i]];
     PF_ASSERT(block.kind != BlockKind::kPlane || block.children == 0);
@@ -154,7 +155,7 @@ void Filter::remove(const int* slots, int count) {
   }
   for (int s = 0; s < state_.slots; ++s) {
     Block& block = state_.block[s];
-    if ((block.kind != BlockKind::kAnchor && block.kind != BlockKind::kPatch) || block.children > 0) continue;
+    if (!info(block.kind).dies_childless || block.children > 0) continue;
     state_.leave_parent(s);
     block.kind = BlockKind::kNone;
   }
@@ -169,27 +170,16 @@ void Filter::remove(const int* slots, int count) {
 }
 
 Vec3 Filter::point(int slot) const {
-  const Block& block = state_.block[slot];
-  if (block.kind == BlockKind::kPlanePoint) {
-    const Block& plane = state_.block[block.parent];
-    return plane_point(state_.frame_of(plane), plane.xyz(), block.uv());
-  }
-  if (block.kind == BlockKind::kPatchPoint) {
-    const Block& patch = state_.block[block.parent];
-    const Block& plane = state_.block[patch.parent];
-    const Patch drawing = patch.patch();
-    const Vec2 uv = drawing.t + drawing.linear() * block.uv();
-    return plane_point(state_.frame_of(plane), plane.xyz(), uv);
-  }
-  if (block.kind != BlockKind::kInverseDepth) return block.xyz();
-  const InverseDepth d = block.inverse_depth();
-  const Scalar rho = d.rho > kMinShownInverseDepth ? d.rho : kMinShownInverseDepth;
-  return state_.block[block.parent].xyz() + d.q_b.toRotationMatrix().col(2) / rho;
+  Vec3 p_W = state_.block[slot].xyz();
+  visit(state_.block[slot].kind, [&](auto kind) {
+    using K = decltype(kind);
+    if constexpr (K::kHasPlace) p_W = K::point(state_, state_.block[slot]);
+  });
+  return p_W;
 }
 
 Mat3 Filter::covariance3(int slot) const {
-  WorldPoint at;
-  Mat32 J_c;
+  Place at;
   Mat3 C = Mat3::Zero();
   const Block& block = state_.block[slot];
   if (block.kind == BlockKind::kInverseDepth && !(block.inverse_depth().rho > kMinShownInverseDepth)) {
@@ -200,18 +190,16 @@ Mat3 Filter::covariance3(int slot) const {
     shown_place(state_.block[block.parent].xyz(), block.inverse_depth(), cov, &C);
     return C;
   }
-  if (!world_point(state_, slot, &at, &J_c)) return C;
-  int column[WorldPoint::kMaxColumns], c = 0;
+  if (!find_point(state_, slot, &at)) return C;
+  int column[Place::kMaxColumns], c = 0;
   for (int p = 0; p < at.parts; ++p)
     for (int i = 0; i < at.part[p].size; ++i) column[c++] = blocks_.row(at.part[p]) + i;
   for (int i = 0; i < c; ++i) {
     Vec3 PJ = Vec3::Zero();  // row i of P J^T
-    for (int j = 0; j < c; ++j) PJ += covariance()(column[i], column[j]) * at.J.col(j);
-    C += at.J.col(i) * PJ.transpose();
+    for (int j = 0; j < c; ++j) PJ += covariance()(column[i], column[j]) * at.J_o.col(j);
+    C += at.J_o.col(i) * PJ.transpose();
   }
-  if (block.kind == BlockKind::kPatchPoint && block.size == 0) {
-    C += J_c * block.inside() * J_c.transpose();
-  }
+  if (!at.has_rows) C += at.J_own * block.inside() * at.J_own.transpose();
   return C;
 }
 

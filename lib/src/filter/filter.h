@@ -90,13 +90,13 @@ class Filter {
 
   /// Largest variance of a plane point's coordinates [m^2] against the drawing that the points of its plane make: in the patch, or
   /// where there is none yet against the similarity that fits `group` (slots of plane points of the same plane, it among them).
-  Scalar variance_in_drawing(int slot, const int* group, int group_count) const;
+  Scalar variance_in_group(int slot, const int* group, int group_count) const;
   /// Fixes plane points of one plane in its patch, which is made from `group` where there is none. False without room; then nothing changed.
   bool fix(const int* slots, int count, FixForm form, const int* group, int group_count);
   /// A fixed point becomes a plane point again. False without room.
   bool release(int slot);
   /// The patch of a plane, or -1.
-  int patch_of(int plane) const;
+  int group_of(int plane) const;
 
   // --- remove; anchors and patches that nothing needs any more go with them, all in one pass
   void remove(const int* slots, int count);
@@ -143,19 +143,20 @@ class Filter {
   bool block_is_sound(int slot) const;
 
  private:
-  int take_slot(BlockKind kind, int size);
+  int take_slot(BlockKind kind);
   const Measurement* views_of(const PixelMeasurement* z, int count);
   bool is_step(const Scalar* dx) const;
 
   // pixels.cpp
+  Mat2 parallax_noise(int slot, Scalar rho, const Mat23& J_z_anchor) const;
   bool predict_at(const Camera& camera, const Body& body, int slot, PixelMeasurement* out) const;
 
   // planes.cpp
   bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded);
-  void predict_distance(int plane, const struct WorldPoint& at, DistanceMeasurement* out) const;
+  void predict_distance(int plane, const struct Place& at, DistanceMeasurement* out) const;
 
-  // patches.cpp
-  int add_patch(int plane, const int* group, int count);
+  // point_groups.cpp
+  int add_group(int plane, const int* group, int count);
 
   State state_;
   BlockFilter blocks_;

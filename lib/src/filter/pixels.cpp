@@ -1,9 +1,10 @@
 #include <algorithm>
 
 #include "filter/filter.h"
+#include "filter/model/kinds.h"
+#include "filter/observe/inverse_depth.h"
 #include "filter/observe/point.h"
 #include "filter/observe/row.h"
-#include "filter/observe/world_point.h"
 
 /// Pixels: what is expected of them, each at the pose of its own row (lib/docs/rolling_shutter.md).
 
@@ -11,13 +12,11 @@ namespace pf {
 namespace {
 
 /// What a planar feature's pixel owes to the roughness of its surface and to coordinates that have no rows.
-Mat2 planar_noise(const State& state, const Block& block, const Mat23& J_z_p, const Mat32& J_p_c, Scalar roughness) {
-  const Block* plane = &state.block[block.parent];
-  if (plane->kind == BlockKind::kPatch) plane = &state.block[plane->parent];
-  const Vec2 rough = roughness * (J_z_p * state.frame_of(*plane).R_WP.col(2));
+Mat2 planar_noise(const State& state, const Block& block, const Place& at, const Mat23& J_z_p, Scalar roughness) {
+  const Vec2 rough = roughness * (J_z_p * state.frame_of(state.block[at.plane]).R_WP.col(2));
   Mat2 noise = rough * rough.transpose();
-  if (block.kind == BlockKind::kPatchPoint && block.size == 0) {
-    const Mat2 J = J_z_p * J_p_c;
+  if (!at.has_rows) {
+    const Mat2 J = J_z_p * at.J_own;
     noise += J * block.inside() * J.transpose();
   }
   return noise;
@@ -58,69 +57,53 @@ PixelMeasurement with_speeds(const PixelMeasurement& at_row, const RowBody& row,
 
 }  // namespace
 
+/// Parallax is the product of inverse depth and baseline. Where both are uncertain, what neither Jacobian shows is their product, with
+/// covariance sigma_rho^2 J P_baseline J^T (second-order term; zero first-order Jacobian at a baseline of zero).
+Mat2 Filter::parallax_noise(int slot, Scalar rho, const Mat23& J_z_anchor) const {
+  if (!(rho > Scalar(1e-6))) return Mat2::Zero();
+  const Triangle& P = covariance();
+  const int from = first_row(state_.block[slot].parent);
+  const Scalar factor = block_variance(slot, 2) / (rho * rho);
+  Mat3 baseline;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      baseline(i, j) = P(Body::kPosition + i, Body::kPosition + j) + P(from + i, from + j) -
+                       P(Body::kPosition + i, from + j) - P(from + i, Body::kPosition + j);
+  const Mat23 JP = J_z_anchor.lazyProduct(baseline);
+  return factor * JP.lazyProduct(J_z_anchor.transpose());
+}
+
 /// The pixel as a camera at `body` sees it.
 bool Filter::predict_at(const Camera& camera, const Body& body, int slot, PixelMeasurement* out) const {
   const Block& block = state_.block[slot];
+  Place at;
   Mat26 J_body;
-  Mat23 J_anchor, J_feature;
+  Mat23 J_o, J_feature;
+  if (!find_place(state_, slot, &at)) return false;
   out->block = slot;
   out->second_order.setZero();
   out->bend = Scalar(0);
-  out->H.part[0] = Part::body(Body::kTheta, Body::kPoseDim);
-  if (block.kind == BlockKind::kPoint) {
-    if (!observe_point(camera, body, block.xyz(), &out->predicted, &J_body, &J_feature)) return false;
-    out->H.parts = 2;
-    out->H.part[1] = Part::of(slot, 0, 3);
-    put<2, 6>(out->H.h, 9, 0, J_body);
-    put<2, 3>(out->H.h, 9, 6, J_feature);
-    return true;
-  }
-  if (is_planar(block.kind)) {  // Gee 2007, eq 9 and 10
-    WorldPoint at;
-    Mat32 J_p_c = Mat32::Zero();
-    world_point(state_, slot, &at, &J_p_c);
-    if (!observe_point(camera, body, at.p_W, &out->predicted, &J_body, &J_feature)) return false;
-    const int columns = 6 + at.columns;
-    out->H.parts = 1 + at.parts;
-    for (int p = 0; p < at.parts; ++p) out->H.part[1 + p] = at.part[p];
-    put<2, 6>(out->H.h, columns, 0, J_body);
+  const int columns = Body::kPoseDim + at.columns;
+  if (at.w_column < 0) {  // Gee 2007, eq 2, 9 and 10
+    if (!observe_point(camera, body, at.o, &out->predicted, &J_body, &J_o)) return false;
     for (int c = 0; c < at.columns; ++c) {
-      const Vec2 h = J_feature * at.J.col(c);
+      const Vec2 h = J_o * at.J_o.col(c);
       out->H.h[6 + c] = h.x();
       out->H.h[columns + 6 + c] = h.y();
     }
-    out->second_order = planar_noise(state_, block, J_feature, J_p_c, roughness_);
-    return true;
-  }
-  if (block.kind == BlockKind::kInverseDepth) {
-    const Block& anchor = state_.block[block.parent];
-    if (!observe_inverse_depth(camera, body, anchor.xyz(), block.inverse_depth(), &out->predicted, &J_body, &J_anchor,
-                               &J_feature))
+    if (at.plane >= 0) out->second_order = planar_noise(state_, block, at, J_o, roughness_);
+  } else {
+    if (!observe_inverse_depth(camera, body, at.o, block.inverse_depth(), &out->predicted, &J_body, &J_o, &J_feature))
       return false;
-    out->H.parts = 3;
-    out->H.part[1] = Part::of(block.parent, 0, 3);
-    out->H.part[2] = Part::of(slot, 0, 3);
-    put<2, 6>(out->H.h, 12, 0, J_body);
-    put<2, 3>(out->H.h, 12, 6, J_anchor);
-    put<2, 3>(out->H.h, 12, 9, J_feature);
-    // Parallax is the product of inverse depth and baseline. Where both are uncertain, what neither Jacobian shows is their
-    // product, with covariance sigma_rho^2 J P_baseline J^T (second-order term; zero first-order Jacobian at a baseline of zero).
-    const Scalar rho = block.inverse_depth().rho;
-    if (rho > Scalar(1e-6)) {
-      const Triangle& P = covariance();
-      const int from = first_row(block.parent);
-      const Scalar factor = block_variance(slot, 2) / (rho * rho);
-      Mat3 baseline;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          baseline(i, j) = P(Body::kPosition + i, Body::kPosition + j) + P(from + i, from + j) -
-                           P(Body::kPosition + i, from + j) - P(from + i, Body::kPosition + j);
-      const Mat23 JP = J_anchor.lazyProduct(baseline);
-      out->second_order = factor * JP.lazyProduct(J_anchor.transpose());
-    }
-    return true;
+    put<2, 3>(out->H.h, columns, 6, J_o);
+    put<2, 3>(out->H.h, columns, 9, J_feature);
+    out->second_order = parallax_noise(slot, at.w, J_o);
   }
-  return false;
+  put<2, 6>(out->H.h, columns, 0, J_body);
+  out->H.parts = 1 + at.parts;
+  out->H.part[0] = Part::body(Body::kTheta, Body::kPoseDim);
+  for (int p = 0; p < at.parts; ++p) out->H.part[1 + p] = at.part[p];
+  return true;
 }
 
 bool Filter::predict_pixel(const Camera& camera, int slot, PixelMeasurement* out) const {

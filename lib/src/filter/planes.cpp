@@ -1,7 +1,7 @@
 #include <cstring>
 
 #include "filter/filter.h"
-#include "filter/observe/world_point.h"
+#include "filter/model/kinds.h"
 
 /// Planes in the state: begun, points folded into them and out of them, moved to another frame.
 
@@ -9,7 +9,7 @@ namespace pf {
 
 int Filter::add_plane(const PlaneFit& fit, const int* slots, int count, Scalar roughness) {
   if (state_.planes >= state_.max_planes || blocks_.max_rows() < 6) return -1;
-  const int slot = take_slot(BlockKind::kPlane, 3);
+  const int slot = take_slot(BlockKind::kPlane);
   if (slot < 0) return -1;
   Mat3 noise = Mat3::Zero();
   for (int k = 0; k < count; ++k) {
@@ -44,25 +44,25 @@ int Filter::add_plane(const PlaneFit& fit, const int* slots, int count, Scalar r
 }
 
 /// d = n . p - d_W of a place, and its row over plane and place.
-void Filter::predict_distance(int plane, const WorldPoint& at, DistanceMeasurement* out) const {
+void Filter::predict_distance(int plane, const Place& at, DistanceMeasurement* out) const {
   const Block& block = state_.block[plane];
   Mat13 J_x, J_p;
-  out->predicted(0) = plane_distance(state_.frame_of(block), block.xyz(), at.p_W, &J_x, &J_p);
+  out->predicted(0) = plane_distance(state_.frame_of(block), block.xyz(), at.o, &J_x, &J_p);
   out->measured(0) = Scalar(0);
   out->H.parts = 1;
   out->H.part[0] = Part::of(plane, 0, 3);
   for (int i = 0; i < 3; ++i) out->H.h[i] = J_x(i);
   int column = 0;
   for (int p = 0; p < at.parts; ++p) {
-    Scalar h[WorldPoint::kMaxColumns];
-    for (int i = 0; i < at.part[p].size; ++i) h[i] = J_p.transpose().dot(at.J.col(column++));
+    Scalar h[Place::kMaxColumns];
+    for (int i = 0; i < at.part[p].size; ++i) h[i] = J_p.transpose().dot(at.J_o.col(column++));
     add_part(&out->H, at.part[p], h);
   }
 }
 
 bool Filter::distance(int plane, int slot, Scalar* d, Scalar* variance) const {
-  WorldPoint at;
-  if (!world_point(state_, slot, &at)) return false;
+  Place at;
+  if (!find_point(state_, slot, &at)) return false;
   DistanceMeasurement z;
   predict_distance(plane, at, &z);
   *d = z.predicted(0);
@@ -80,8 +80,8 @@ bool Filter::condition_on(int plane, const int* slots, int count, Scalar noise, 
   int m = 0;
   for (int i = 0; i < count; ++i) {
     if (folded[i] == 0) continue;
-    WorldPoint at;
-    world_point(state_, slots[i], &at);
+    Place at;
+    find_point(state_, slots[i], &at);
     predict_distance(plane, at, &z[m]);
     const Scalar d = z[m].predicted(0);
     for (int p = 0, from = 0; p < l.parts; ++p) {
@@ -117,18 +117,18 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
   // The transform: coordinates in the plane, all in one pass.
   const PlaneFrame& frame = state_.frame_of(state_.block[plane]);
   const Mat23 axes = frame.R_WP.transpose().topRows<2>();
-  RowsOf<2, WorldPoint::kMaxColumns, WorldPoint::kMaxParts> J[kMostFolded];
+  RowsOf<2, Place::kMaxColumns, Place::kMaxParts> J[kMostFolded];
   Rows rows[kMostFolded];
   int moved[kMostFolded];
   int done = 0;
   for (int i = 0; i < count; ++i) {
     if (folded[i] == 0) continue;
-    WorldPoint at;
-    world_point(state_, slots[i], &at);
+    Place at;
+    find_point(state_, slots[i], &at);
     J[done].parts = at.parts;
     for (int p = 0; p < at.parts; ++p) J[done].part[p] = at.part[p];
     for (int c = 0; c < at.columns; ++c) {
-      const Vec2 h = axes * at.J.col(c);
+      const Vec2 h = axes * at.J_o.col(c);
       J[done].h[c] = h.x();
       J[done].h[at.columns + c] = h.y();
     }
@@ -139,7 +139,7 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
     state_.adopt(plane, slots[i]);
     block.kind = BlockKind::kPlanePoint;
     block.size = 2;
-    block.set_uv(plane_coordinates(frame, at.p_W));
+    block.set_uv(plane_coordinates(frame, at.o));
   }
   if (done > 0) blocks_.transform(moved, rows, done);
   return done;
@@ -149,27 +149,26 @@ bool Filter::unfold(int slot, Scalar sigma_normal) {
   Block& block = state_.block[slot];
   PF_ASSERT(is_planar(block.kind));
   if (room() < 3) return false;
-  WorldPoint at;
-  Mat32 J_p_c = Mat32::Zero();
-  world_point(state_, slot, &at, &J_p_c);
-  RowsOf<3, WorldPoint::kMaxColumns, WorldPoint::kMaxParts> J;
+  Place at;
+  find_point(state_, slot, &at);
+  RowsOf<3, Place::kMaxColumns, Place::kMaxParts> J;
   J.parts = at.parts;
   for (int p = 0; p < at.parts; ++p) J.part[p] = at.part[p];
   for (int c = 0; c < at.columns; ++c)
-    for (int i = 0; i < 3; ++i) J.h[i * at.columns + c] = at.J(i, c);
-  const Block& plane = state_.block[state_.plane_of(slot)];
+    for (int i = 0; i < 3; ++i) J.h[i * at.columns + c] = at.J_o(i, c);
+  const Block& plane = state_.block[at.plane];
   Vec3 normal;
   Scalar d;
   plane_normal(state_.frame_of(plane), plane.xyz(), &normal, &d);
   Mat3 noise = sigma_normal * sigma_normal * normal * normal.transpose();
-  if (block.kind == BlockKind::kPatchPoint && block.size == 0) noise += J_p_c * block.inside() * J_p_c.transpose();
+  if (!at.has_rows) noise += at.J_own * block.inside() * at.J_own.transpose();
   Scalar raw[9];
   put<3, 3>(raw, 3, 0, noise);
   blocks_.augment(slot, J, raw);
   state_.leave_parent(slot);
   block.kind = BlockKind::kPoint;
   block.size = 3;
-  block.set_xyz(at.p_W);
+  block.set_xyz(at.o);
   remove(nullptr, 0);  // a patch that nothing hangs on any more
   return true;
 }
@@ -185,7 +184,7 @@ bool Filter::reanchor(int plane, const PlaneFrame& frame) {
   const PlaneFrame old = state_.frame_of(block);
   Vec3 x;
   Mat3 J_x;
-  if (patch_of(plane) >= 0 || !reframe_plane(old, block.xyz(), frame, &x, &J_x)) return false;
+  if (group_of(plane) >= 0 || !reframe_plane(old, block.xyz(), frame, &x, &J_x)) return false;
   // The points first: their new coordinates depend on the plane as it was. So it is in the last of the passes.
   const Mat23 axes = frame.R_WP.transpose().topRows<2>();
   RowsOf<2, 5, 2> J[kMostFolded];

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "filter/filter.h"
-#include "filter/observe/world_point.h"
+#include "filter/model/kinds.h"
 
 /// The row that picks the world's log scale out of an error, and what is known against it.
 
@@ -9,11 +9,11 @@ namespace pf {
 namespace {
 
 /// Adds a place's part of a row: d^T J.
-void add_place(const WorldPoint& at, const Vec3& d, ScaleRow* row) {
+void add_place(const Place& at, const Vec3& d, ScaleRow* row) {
   int column = 0;
   for (int p = 0; p < at.parts; ++p) {
-    Scalar h[WorldPoint::kMaxColumns];
-    for (int i = 0; i < at.part[p].size; ++i) h[i] = d.dot(at.J.col(column++));
+    Scalar h[Place::kMaxColumns];
+    for (int i = 0; i < at.part[p].size; ++i) h[i] = d.dot(at.J_o.col(column++));
     add_part(row, at.part[p], h);
   }
 }
@@ -61,7 +61,7 @@ Scalar Filter::relative_sigma_rho(int slot, const ScaleRow& l) const {
   return std::sqrt(blocks_.variance(row));
 }
 
-/// The best known of a few log lengths: a patch's lambda, a log inverse depth, or between a point and the one that is farthest from it.
+/// The best known of a few log lengths: a point group's lambda, a log inverse depth, or between a point and the one that is farthest from it.
 /// Each annihilates shifts and turns, and grows by s when the world grows by exp(s). None touches held rows.
 bool Filter::scale_row(ScaleRow* row) const {
   constexpr int kMostTried = 12;
@@ -72,25 +72,17 @@ bool Filter::scale_row(ScaleRow* row) const {
   for (int s = 0; s < state_.slots && tried < kMostTried; ++s) {
     const Block& a = state_.block[s];
     ScaleRow candidate;
-    if (a.kind == BlockKind::kPatch) {
-      const GaugeRows N = gauge_rows(state_, a);
-      candidate.parts = 2;
-      candidate.part[0] = Part::body(Body::kTheta, 3);
-      candidate.part[1] = Part::of(s, 3, 1);
-      for (int i = 0; i < 3; ++i) candidate.h[i] = -N(3, 3 + i);
-      candidate.h[3] = Scalar(1);
-    } else if (a.kind == BlockKind::kInverseDepth) {
-      const Scalar rho = a.inverse_depth().rho;
-      if (!(rho > Scalar(1e-6))) continue;
-      candidate.parts = 1;
-      candidate.part[0] = Part::of(s, 0, 3);
-      candidate.h[0] = candidate.h[1] = Scalar(0);
-      candidate.h[2] = Scalar(-1) / rho;
-    } else if (a.kind == BlockKind::kPoint || a.kind == BlockKind::kPlanePoint) {
+    const ScaleSource source = info(a.kind).scale;
+    if (source == ScaleSource::kNone) continue;
+    if (source == ScaleSource::kOwnRow) {
+      bool has = false;
+      visit(a.kind, [&](auto kind) { has = decltype(kind)::scale_row(state_, s, &candidate); });
+      if (!has) continue;
+    } else {
       if (places < 0) {
         places = 0;
         for (int t = 0; t < state_.slots; ++t) {
-          if (state_.block[t].kind != BlockKind::kPoint && state_.block[t].kind != BlockKind::kPlanePoint) continue;
+          if (info(state_.block[t].kind).scale != ScaleSource::kDistance) continue;
           place_slot_[places] = t;
           place_[places++] = point(t);
         }
@@ -107,14 +99,12 @@ bool Filter::scale_row(ScaleRow* row) const {
       }
       if (far < 0) continue;
       far = place_slot_[far];
-      WorldPoint from, to;
-      world_point(state_, s, &from);
-      world_point(state_, far, &to);
-      const Vec3 d = (from.p_W - to.p_W) / far2;
+      Place from, to;
+      find_point(state_, s, &from);
+      find_point(state_, far, &to);
+      const Vec3 d = (from.o - to.o) / far2;
       add_place(from, d, &candidate);
       add_place(to, -d, &candidate);
-    } else {
-      continue;
     }
     ++tried;
     const Scalar variance = blocks_.variance(candidate);

@@ -30,8 +30,8 @@ bool Filter::body_is_sound() const {
 
 bool Filter::block_is_sound(int slot) const {
   const Block& block = state_.block[slot];
-  for (Scalar v : block.value)
-    if (!is_value(v)) return false;
+  for (int i = 0; i < info(block.kind).values; ++i)
+    if (!is_value(block.value[i])) return false;
   if (block.size > 0 && !are_variances(covariance(), first_row(slot), block.size)) return false;
   return block.parent < 0 || block_is_sound(block.parent);
 }

@@ -157,7 +157,7 @@ void PlaneKeeper::fix_on(int plane_entry) {
   const State& state = filter_.state();
   int group[Filter::kMostFolded], slots[Filter::kMostFolded];
   int group_count = 0, count = 0;
-  const bool has_patch = filter_.patch_of(plane) >= 0;
+  const bool has_patch = filter_.group_of(plane) >= 0;
   state.for_each_planar(plane, [&](int slot) {
     const Block& block = state.block[slot];
     if (group_count == Filter::kMostFolded || map_.features[block.owner].failures > 0) return;
@@ -167,7 +167,7 @@ void PlaneKeeper::fix_on(int plane_entry) {
   const int limit = std::min(Filter::kMostFolded, settings_.max_observations);
   const Scalar variance = settings_.fix_sigma * settings_.fix_sigma;
   for (int k = 0; k < group_count && count < limit; ++k)
-    if (filter_.variance_in_drawing(group[k], group, group_count) < variance) slots[count++] = group[k];
+    if (filter_.variance_in_group(group[k], group, group_count) < variance) slots[count++] = group[k];
   if (count == 0 || (!has_patch && count < kMinFixed)) return;
   filter_.fix(slots, count, settings_.fix, group, group_count);
 }

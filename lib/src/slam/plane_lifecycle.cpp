@@ -118,7 +118,7 @@ bool PlaneKeeper::give_points(int from_entry, int to_entry) {
   rule.gate = Scalar(16);
   bool released = true;
   filter_.state().for_each_planar(other, [&](int slot) {
-    if (filter_.state().block[slot].kind == BlockKind::kPatchPoint) released = released && filter_.release(slot);
+    if (filter_.state().block[slot].kind == BlockKind::kGroupedPoint) released = released && filter_.release(slot);
   });
   if (!released) return false;
   int slots[Filter::kMostFolded];
@@ -146,7 +146,7 @@ void PlaneKeeper::settle_frame(int plane_entry) {
   const Block& block = state.block[plane];
   const Vec3 x = block.xyz();
   const bool slanted = x(0) * x(0) + x(1) * x(1) > kMaxSlant * kMaxSlant;
-  if (!slanted || filter_.patch_of(plane) >= 0) return;
+  if (!slanted || filter_.group_of(plane) >= 0) return;
   PlaneFrame to = state.frame_of(block);
   Vec3 normal;
   Scalar d;
@@ -185,7 +185,7 @@ PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry,
   int count = 0;
   state.for_each_planar(plane, [&](int slot) {
     ++points.folded;
-    if (state.block[slot].kind == BlockKind::kPatchPoint) ++points.fixed;
+    if (state.block[slot].kind == BlockKind::kGroupedPoint) ++points.fixed;
     if (outline == nullptr) return;
     uv[count++] = plane_coordinates(state.frame_of(state.block[plane]), filter.point(slot));
     if (count < kBatch) return;

@@ -61,14 +61,14 @@ MapCounts View::counts() const {
     if (!map_.features.used(i)) continue;
     ++counts.features;
     const Block& block = state.block[map_.features[i].slot];
-    switch (block.kind) {
-      case BlockKind::kPoint:
+    switch (info(block.kind).form) {
+      case FeatureForm::kPoint:
         ++counts.points;
         break;
-      case BlockKind::kPlanePoint:
+      case FeatureForm::kFolded:
         ++counts.folded;
         break;
-      case BlockKind::kPatchPoint:
+      case FeatureForm::kFixed:
         ++counts.fixed;
         break;
       default:
@@ -77,8 +77,7 @@ MapCounts View::counts() const {
     if (is_planar(block.kind)) unfolded_rows += 3 - block.size;
   }
   for (int s = 0; s < state.slots; ++s)
-    if (state.block[s].kind == BlockKind::kPlane || state.block[s].kind == BlockKind::kPatch)
-      unfolded_rows -= state.block[s].size;
+    if (info(state.block[s].kind).carries_points) unfolded_rows -= state.block[s].size;
   counts.planes = state.planes;
   counts.state_dim = filter().dim();
   counts.state_dim_held = filter().blocks().held_dim();

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "filter/filter.h"
-#include "filter/observe/world_point.h"
+#include "filter/model/kinds.h"
 
 /// Fixed points. What is known well of a point on a plane is not where it is, for that carries the whole map's drift, but how it lies
 /// among the other points of its plane. So these are fixed in a patch, a drawing that moves as one and stays in the state.
@@ -65,24 +65,24 @@ Scalar largest_eigenvalue(const Mat2& C) {
 
 }  // namespace
 
-int Filter::patch_of(int plane) const {
+int Filter::group_of(int plane) const {
   for (int s = 0; s < state_.slots; ++s)
-    if (state_.block[s].kind == BlockKind::kPatch && state_.block[s].parent == plane) return s;
+    if (state_.block[s].kind == BlockKind::kPointGroup && state_.block[s].parent == plane) return s;
   return -1;
 }
 
-Scalar Filter::variance_in_drawing(int slot, const int* group, int group_count) const {
+Scalar Filter::variance_in_group(int slot, const int* group, int group_count) const {
   const Block& block = state_.block[slot];
   PF_ASSERT(block.kind == BlockKind::kPlanePoint && group_count <= kMostFolded);
   // Coordinates in the drawing: e_c = M^-1 (e_uv - A e_patch); without a patch, e_patch = sum J_k e_uv_k and M = I.
   int column[2 * kMostFolded + 2];
   Mat2 part[kMostFolded + 1];
   int parts = 0;
-  const int patch = patch_of(block.parent);
+  const int patch = group_of(block.parent);
   Mat2 C = Mat2::Zero();
   if (patch >= 0) {
     const Block& at = state_.block[patch];
-    const Patch p = at.patch();
+    const PointGroup p = at.group();
     const Mat24 A = similarity_rows(block.uv() - p.t);
     part[0] = Mat2::Identity();
     part[1] = -A.leftCols<2>();
@@ -120,10 +120,10 @@ Scalar Filter::variance_in_drawing(int slot, const int* group, int group_count) 
 }
 
 /// A patch about the middle of a group of plane points, that moves as they do.
-int Filter::add_patch(int plane, const int* group, int count) {
+int Filter::add_group(int plane, const int* group, int count) {
   GroupFit fit;
   if (room() < 4 || !fit.fit(state_, group, count)) return -1;
-  const int slot = take_slot(BlockKind::kPatch, 4);
+  const int slot = take_slot(BlockKind::kPointGroup);
   if (slot < 0) return -1;
   Scalar noise[16] = {};
   RowsOf<4, 2, 1> J;
@@ -138,18 +138,18 @@ int Filter::add_patch(int plane, const int* group, int count) {
   blocks_.augment_dense(slot, 4, count, by_point, noise, kOwn);
   Block& block = state_.block[slot];
   state_.adopt(plane, slot);
-  block.set_patch({fit.middle, Scalar(0), Scalar(0)});
+  block.set_group({fit.middle, Scalar(0), Scalar(0)});
   return slot;
 }
 
 bool Filter::fix(const int* slots, int count, FixForm form, const int* group, int group_count) {
   PF_ASSERT(count <= kMostFolded && 2 * count <= blocks_.max_rows() && blocks_.max_rows() >= 8);
   const int plane = state_.block[slots[0]].parent;
-  int patch = patch_of(plane);
-  if (patch < 0) patch = add_patch(plane, group, group_count);
+  int patch = group_of(plane);
+  if (patch < 0) patch = add_group(plane, group, group_count);
   if (patch < 0) return false;
   const Block& at = state_.block[patch];
-  const Patch p = at.patch();
+  const PointGroup p = at.group();
   const Mat2 M_inverse = p.linear().inverse();
   // c = M^-1 (uv - t),  e_c = M^-1 (e_uv - A e_patch)
   RowsOf<2, 6, 2> J[kMostFolded];
@@ -170,7 +170,7 @@ bool Filter::fix(const int* slots, int count, FixForm form, const int* group, in
     Block& block = state_.block[slots[i]];
     state_.leave_parent(slots[i]);
     state_.adopt(patch, slots[i]);
-    block.kind = BlockKind::kPatchPoint;
+    block.kind = BlockKind::kGroupedPoint;
     block.set_uv(M_inverse * (block.uv() - p.t));
     if (form == FixForm::kConsider) continue;
     block.set_inside(form == FixForm::kInflate ? blocks_.innovation2(i, i) : Mat2(Mat2::Zero()));
@@ -185,11 +185,11 @@ bool Filter::fix(const int* slots, int count, FixForm form, const int* group, in
 
 bool Filter::release(int slot) {
   Block& block = state_.block[slot];
-  PF_ASSERT(block.kind == BlockKind::kPatchPoint);
+  PF_ASSERT(block.kind == BlockKind::kGroupedPoint);
   if (room() < 2) return false;
   Block& patch = state_.block[block.parent];
   Mat2 J_turn, M;
-  const Vec2 uv = patch_to_plane(patch.patch(), block.uv(), &J_turn, &M);
+  const Vec2 uv = model::group_to_plane(patch.group(), block.uv(), &J_turn, &M);
   RowsOf<2, 6, 2> J;
   J.parts = block.size > 0 ? 2 : 1;
   J.part[0] = Part::of(block.parent, 0, 4);

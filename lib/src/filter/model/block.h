@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "base/eigen.h"
+#include "filter/rows.h"
+#include "geometry/plane.h"
+
+/// A block of the state: its kind, its values, and how it hangs on other blocks.
+
+namespace pf {
+
+/// What a block stands for; each kind is a file of this folder, and kinds.h lists them.
+enum class BlockKind : std::uint8_t {
+  kNone = 0,
+  kAnchor = 1,
+  kPoint = 2,
+  kInverseDepth = 3,
+  kPlane = 4,
+  kPlanePoint = 5,
+  kPointGroup = 6,
+  kGroupedPoint = 7,
+};
+
+/// What a feature is to the caller of the library.
+enum class FeatureForm : std::uint8_t { kNone, kPoint, kInverseDepth, kFolded, kFixed };
+
+/// Where a kind's log length comes from, which picks the world's scale out of an error.
+enum class ScaleSource : std::uint8_t {
+  kNone,
+  kOwnRow,   ///< its own: the kind has scale_row()
+  kDistance  ///< the distance to another block of such a kind
+};
+
+/// What the filter needs to know of a kind without its values.
+struct KindInfo {
+  int rows = 0;    ///< in the covariance
+  int values = 0;  ///< in Block::value
+  FeatureForm form = FeatureForm::kNone;
+  ScaleSource scale = ScaleSource::kNone;
+  bool planar = false;          ///< hangs on a plane, directly or through a point group
+  bool dies_childless = false;  ///< goes with its last child
+  bool carries_points = false;  ///< no feature, but rows that features share
+};
+
+/// Bearing b = R_b e_z from the anchor, with the tangent basis B = R_b [e_x e_y]; inverse depth rho along it [1/m].
+///
+///   p_W = o_W + b / rho,   error (e_1, e_2, e_rho):  b_true = Exp(B_2 e_1 - B_1 e_2) b = b + B e,   rho_true = rho + e_rho
+///
+/// No angles, so no pole; the basis is carried along with b.
+struct InverseDepth {
+  Quat q_b;
+  Scalar rho;
+};
+
+/// Points of a plane that are translated, rotated and scaled as one: what is fixed in the group moves with it, and only with it.
+///
+///   (u, v) = t + exp(lambda) Rot(phi) c            c: coordinates in the group
+///   error (e_t, e_phi, e_lambda), additive
+///
+/// Coordinates in a group know nothing of the drift that the whole plane shares, so they can be known well.
+struct PointGroup {
+  Vec2 t;
+  Scalar phi, lambda;
+
+  Mat2 linear() const {
+    const Scalar c = std::exp(lambda) * std::cos(phi), s = std::exp(lambda) * std::sin(phi);
+    Mat2 M;
+    M << c, -s, s, c;
+    return M;
+  }
+};
+
+struct Block {
+  static constexpr int kMaxRows = 10;    ///< a lens has as many
+  static constexpr int kMaxValues = 10;  ///< a reference camera has seven, a lens ten
+
+  BlockKind kind = BlockKind::kNone;
+  std::int16_t size = 0;      ///< rows that it has: those of its kind, or none
+  std::int16_t parent = -1;   ///< slot of the anchor, plane or point group
+  std::int16_t children = 0;  ///< blocks that have this one as parent
+  std::int16_t owner = -1;    ///< entry of the map's table that this block belongs to; orders the children of a parent
+  std::int16_t first_child = -1;   ///< slots, by ascending owner; of equal owners the one that came first
+  std::int16_t next_sibling = -1;  ///< of the same parent
+  std::int16_t frame = -1;         ///< of a plane: index into State::plane_frame
+  Scalar value[kMaxValues] = {};   ///< what they are, the kind's file says
+
+  Vec3 xyz() const { return Vec3(value[0], value[1], value[2]); }
+  void set_xyz(const Vec3& p) {
+    value[0] = p.x();
+    value[1] = p.y();
+    value[2] = p.z();
+  }
+  InverseDepth inverse_depth() const { return {Quat(value[0], value[1], value[2], value[3]), value[4]}; }
+  void set_inverse_depth(const InverseDepth& d) {
+    value[0] = d.q_b.w();
+    value[1] = d.q_b.x();
+    value[2] = d.q_b.y();
+    value[3] = d.q_b.z();
+    value[4] = d.rho;
+  }
+  Vec2 uv() const { return Vec2(value[0], value[1]); }
+  void set_uv(const Vec2& uv) {
+    value[0] = uv.x();
+    value[1] = uv.y();
+  }
+  /// Covariance of a grouped point's coordinates that have no rows [m^2, in the group].
+  Mat2 inside() const {
+    Mat2 C;
+    C << value[2], value[3], value[3], value[4];
+    return C;
+  }
+  void set_inside(const Mat2& C) {
+    value[2] = C(0, 0);
+    value[3] = C(0, 1);
+    value[4] = C(1, 1);
+  }
+  PointGroup group() const { return {Vec2(value[0], value[1]), value[2], value[3]}; }
+  void set_group(const PointGroup& g) {
+    value[0] = g.t.x();
+    value[1] = g.t.y();
+    value[2] = g.phi;
+    value[3] = g.lambda;
+  }
+};
+
+}  // namespace pf

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "filter/model/block.h"
+#include "geometry/so3.h"
+
+namespace pf {
+
+/// How an error changes when the whole world is translated (columns 0-2), rotated (3-5) and scaled by exp(s) (6): the directions that a
+/// bare camera cannot observe. They keep their columns, whatever is observable.
+namespace gauge {
+inline constexpr int kTranslation = 0, kRotation = 3, kScale = 6, kDirections = 7;
+}  // namespace gauge
+
+template <int kRows>
+using GaugeRowsOf = Eigen::Matrix<Scalar, kRows, gauge::kDirections>;
+using GaugeRows = GaugeRowsOf<Block::kMaxRows>;
+
+/// Columns translation, rotation, scale of axes of a place in W:  (I, -[p]x, p) along each axis.
+template <int kRows, typename Rows>
+void put_place(const Eigen::Matrix<Scalar, kRows, 3>& axes, const Vec3& p_W, Rows* N) {
+  for (int i = 0; i < kRows; ++i) {
+    const Vec3 axis = axes.row(i).transpose();
+    const Vec3 turn = p_W.cross(axis);  // -axisᵀ [p]x
+    for (int k = 0; k < 3; ++k) {
+      (*N)(i, k) = axis(k);
+      (*N)(i, 3 + k) = turn(k);
+    }
+    (*N)(i, 6) = axis.dot(p_W);
+  }
+}
+
+/// Where gauge rows over the whole state are added up, one dense row per direction; sign times each.
+struct GaugeSum {
+  Scalar sign;
+  Scalar* N_T;  ///< null where translations are left out
+  Scalar* N_R;
+  Scalar* N_s;
+  int ld;
+
+  template <typename Rows>
+  void add(int first, int size, const Rows& N) const {
+    for (int i = 0; i < size; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (N_T != nullptr) N_T[axis * ld + first + i] += sign * N(i, axis);
+        N_R[axis * ld + first + i] += sign * N(i, 3 + axis);
+      }
+      N_s[first + i] += sign * N(i, 6);
+    }
+  }
+  /// Of a point in W: I, -[p]x, p.
+  void add_point(int first, const Vec3& p_W) const {
+    const Vec3 p = sign * p_W;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      if (N_T != nullptr) N_T[i * ld + first + i] += sign;
+      N_R[j * ld + first + i] += p(k);
+      N_R[k * ld + first + i] -= p(j);
+      N_s[first + i] += p(i);
+    }
+  }
+};
+
+}  // namespace pf

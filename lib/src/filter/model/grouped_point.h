@@ -1,0 +1,57 @@
+#pragma once
+
+#include "filter/model/point_group.h"
+
+namespace pf::model {
+
+/// What (u, v) = t + M c depends on: t by I, phi and lambda by the columns of J_uv_turn, c by M.
+inline Vec2 group_to_plane(const PointGroup& group, const Vec2& c, Mat2* J_uv_turn, Mat2* M) {
+  *M = group.linear();
+  const Vec2 d = *M * c;
+  J_uv_turn->col(0) = Vec2(-d.y(), d.x());
+  J_uv_turn->col(1) = d;
+  return group.t + d;
+}
+
+/// A fixed point: coordinates c in its parent group, additive; considered (Schmidt), or without rows of its own.
+/// value: c, and where it has no rows its covariance (xx, xy, yy)
+struct GroupedPoint : Kind {
+  static constexpr BlockKind kKind = BlockKind::kGroupedPoint;
+  static constexpr KindInfo kInfo{2, 5, FeatureForm::kFixed, ScaleSource::kNone, true, false, false};
+  static constexpr bool kHasPlace = true;
+
+  static void place(const State& state, int slot, Place* out) {
+    const Block& block = state.block[slot];
+    const Block& group = state.block[block.parent];
+    const Block& plane = state.block[group.parent];
+    Mat2 J_turn, M;
+    const Vec2 uv = group_to_plane(group.group(), block.uv(), &J_turn, &M);
+    Mat3 J_x;
+    Mat32 J_uv;
+    out->o = plane_point(state.frame_of(plane), plane.xyz(), uv, &J_x, &J_uv);
+    out->append<3>(group.parent, J_x);
+    Eigen::Matrix<Scalar, 3, 4> J_group;
+    J_group.leftCols<2>() = J_uv;
+    J_group.rightCols<2>() = J_uv * J_turn;
+    out->append<4>(block.parent, J_group);
+    out->J_own = J_uv * M;
+    out->has_rows = block.size > 0;
+    if (out->has_rows) out->append<2>(slot, out->J_own);
+    out->plane = group.parent;
+  }
+  static Vec3 point(const State& state, const Block& block) {
+    const Block& parent = state.block[block.parent];
+    const Block& plane = state.block[parent.parent];
+    const PointGroup group = parent.group();
+    const Vec2 uv = group.t + group.linear() * block.uv();
+    return plane_point(state.frame_of(plane), plane.xyz(), uv);
+  }
+  static void gauge(const State& state, const Block& block, GaugeRows* N) {
+    PlanarRows rows;
+    Group::share(state, state.block[block.parent], &rows);
+    for (int i = 0; i < 2; ++i)
+      for (int d = 0; d < gauge::kDirections; ++d) (*N)(i, d) = rows(i, d, block.uv());
+  }
+};
+
+}  // namespace pf::model

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "filter/model/gauge.h"
+#include "filter/model/place.h"
+#include "filter/state.h"
+
+namespace pf::model {
+
+/// What a kind does where its file says nothing else. A kind has kKind and kInfo, and what it does otherwise:
+///
+///   retract    x [+] e of its values, e over its rows
+///   add_gauge  its gauge rows over the whole state; planar kinds get theirs with their parent's
+///   gauge      its gauge rows alone
+///   place      where it is; only with kHasPlace
+///   scale_row  the row that picks the log scale; only with ScaleSource::kOwnRow
+struct Kind {
+  static constexpr bool kHasPlace = false;
+  static constexpr bool kSharesGauge = false;  ///< children have gauge rows that are made of its own
+
+  static void retract(Block* block, const Scalar* e) {
+    for (int i = 0; i < block->size; ++i) block->value[i] += e[i];
+  }
+  static void place(const State&, int, Place*) {}
+  static bool scale_row(const State&, int, ScaleRow*) { return false; }
+};
+
+}  // namespace pf::model

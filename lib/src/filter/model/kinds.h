@@ -1,0 +1,58 @@
+#pragma once
+
+#include "filter/model/anchor.h"
+#include "filter/model/grouped_point.h"
+#include "filter/model/inverse_depth.h"
+#include "filter/model/plane.h"
+#include "filter/model/plane_point.h"
+#include "filter/model/point.h"
+#include "filter/model/point_group.h"
+
+namespace pf {
+
+/// The kinds that there are. A new one is its file, its line here and its name in BlockKind.
+#define PF_KINDS(X)           \
+  X(model::Anchor)            \
+  X(model::Point)             \
+  X(model::InverseDepthPoint) \
+  X(model::Plane)             \
+  X(model::PlanePoint)        \
+  X(model::Group)             \
+  X(model::GroupedPoint)
+
+/// Calls f with an object of the kind's type; with none, does nothing.
+template <typename F>
+inline void visit(BlockKind kind, F&& f) {
+  switch (kind) {
+#define PF_CASE(Type) \
+  case Type::kKind:   \
+    f(Type());        \
+    break;
+    PF_KINDS(PF_CASE)
+#undef PF_CASE
+    case BlockKind::kNone:
+      break;
+  }
+}
+
+#define PF_FITS(Type) static_assert(Type::kInfo.rows <= Block::kMaxRows && Type::kInfo.values <= Block::kMaxValues);
+PF_KINDS(PF_FITS)
+#undef PF_FITS
+
+/// Where a block is; false where its kind has no place, or an inverse depth is not positive.
+inline bool find_place(const State& state, int slot, Place* out) {
+  bool has = false;
+  visit(state.block[slot].kind, [&](auto kind) {
+    using K = decltype(kind);
+    has = K::kHasPlace;
+    if constexpr (K::kHasPlace) K::place(state, slot, out);
+  });
+  return has;
+}
+
+/// The same as a point of W.
+inline bool find_point(const State& state, int slot, Place* out) {
+  return find_place(state, slot, out) && out->resolve();
+}
+
+}  // namespace pf

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "filter/model/plane.h"
+
+namespace pf::model {
+
+/// Where a group of fixed points lies on its parent plane, see PointGroup. value: t, phi, lambda
+struct Group : Kind {
+  static constexpr BlockKind kKind = BlockKind::kPointGroup;
+  static constexpr KindInfo kInfo{4, 4, FeatureForm::kNone, ScaleSource::kOwnRow, false, true, true};
+  static constexpr bool kSharesGauge = true;
+
+  /// What each direction does to (u, v) = t, and how it rotates and scales the coordinates about it.
+  template <typename Rows>
+  static void rows(const State& state, const Block& block, Rows* N) {
+    PlanarRows plane;
+    Plane::share(state, state.block[block.parent], &plane);
+    const Vec2 t = block.group().t;
+    for (int d = 0; d < gauge::kDirections; ++d) {
+      for (int i = 0; i < 2; ++i) (*N)(i, d) = plane(i, d, t);
+      (*N)(2, d) = (plane.by_u(1, d) - plane.by_v(0, d)) / 2;
+      (*N)(3, d) = (plane.by_u(0, d) + plane.by_v(1, d)) / 2;
+    }
+  }
+  static void gauge(const State& state, const Block& block, GaugeRows* N) { rows(state, block, N); }
+  static void add_gauge(const State& state, const Block& block, int first, const GaugeSum& sum) {
+    GaugeRowsOf<4> N;
+    rows(state, block, &N);
+    sum.add(first, 4, N);
+  }
+  /// Of coordinates in it: the shear that is left.
+  static void share(const State& state, const Block& block, PlanarRows* rows) {
+    PlanarRows plane;
+    Plane::share(state, state.block[block.parent], &plane);
+    rows->of_group(plane, block.group());
+  }
+  /// e_lambda, less what a rotation of the world does to it.
+  static bool scale_row(const State& state, int slot, ScaleRow* row) {
+    GaugeRowsOf<4> N;
+    rows(state, state.block[slot], &N);
+    row->parts = 2;
+    row->part[0] = Part::body(Body::kTheta, 3);
+    row->part[1] = Part::of(slot, 3, 1);
+    for (int i = 0; i < 3; ++i) row->h[i] = -N(3, 3 + i);
+    row->h[3] = Scalar(1);
+    return true;
+  }
+};
+
+}  // namespace pf::model
