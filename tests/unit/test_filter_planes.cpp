@@ -334,6 +334,24 @@ void test_considered_points_should_keep_their_values_in_an_update() {
   TEST_ASSERT_TRUE(difference(plain.filter.P(), schmidt) < kExact);
 }
 
+/// What a wrong plane has taught is taken back along P_xp P_pp^-1, from the camera and all else, and nothing becomes more certain.
+void test_forgetting_through_a_plane_should_reach_what_it_has_taught() {
+  SeededRandom random(31);
+  PlaneScene scene(random, 0.001);
+  scene.fold_all(PlaneScene::drop());
+  const Dense P = scene.filter.P();
+  const int p = scene.filter.first(scene.plane);
+  const Vec3 sigma(Scalar(0.02), Scalar(0.03), Scalar(0.01));
+  scene.filter->forget_through(scene.plane, sigma);
+  const Dense G = P.middleCols(p, 3) * P.block(p, p, 3, 3).inverse();
+  const Eigen::Vector3d s = sigma.cast<double>();
+  const Dense expected = P + G * s.cwiseProduct(s).asDiagonal() * G.transpose();
+  const Dense after = scene.filter.P();
+  TEST_ASSERT_TRUE((after - expected).cwiseAbs().maxCoeff() <
+                   (sizeof(Scalar) == 8 ? 1e-9 : 2e-3) * expected.cwiseAbs().maxCoeff());
+  TEST_ASSERT_TRUE(after(Body::kPosition, Body::kPosition) > P(Body::kPosition, Body::kPosition));
+}
+
 }  // namespace
 
 int main(void) {
@@ -346,6 +364,7 @@ int main(void) {
   RUN_TEST(test_fixed_points_should_lie_where_they_were);
   RUN_TEST(test_released_points_should_have_the_covariance_that_they_had);
   RUN_TEST(test_variance_in_a_drawing_should_be_that_of_the_fixed_point);
+  RUN_TEST(test_forgetting_through_a_plane_should_reach_what_it_has_taught);
   RUN_TEST(test_conditioning_should_be_the_dense_update_with_distances_of_zero);
   RUN_TEST(test_the_gate_should_keep_out_what_lies_beside);
   RUN_TEST(test_considered_points_should_keep_their_values_in_an_update);

@@ -63,6 +63,9 @@ class BlockFilter {
   void remove(const int* blocks, int count);
   /// Adds Q (size x size, row-major) to the covariance of a part.
   void inflate(const Part& part, const Scalar* Q);
+  /// Likewise diag(sigma^2) to a part of three rows, and to all other rows what they owe to that part:
+  ///   P += G diag(sigma^2) G^T,   G = P_xp P_pp^-1, which is the identity on the part's own rows.
+  void inflate_through(const Part& part, const Vec3& sigma);
 
   // --- update
   /// H P and S = H P H^T (without noise) of measurements, valid until the state changes.

@@ -84,6 +84,9 @@ class Filter {
   bool unfold(int slot, Scalar sigma_normal);
   /// What is known of a plane shrinks: Q is added to the covariance of (a, b, h).
   void inflate(int plane, const Mat3& Q);
+  /// A plane was wrong by about sigma of (a, b, h): that much is added to its own covariance, and to that of the camera and of all else
+  /// what they have learnt from it.
+  void forget_through(int plane, const Vec3& sigma) { blocks_.inflate_through(Part::of(plane, 0, 3), sigma); }
   /// The plane, and the points that hang on it without a patch, about another frame. False when the frame is too slanted or a patch
   /// hangs on the plane; nothing is changed then.
   bool reanchor(int plane, const PlaneFrame& frame);

@@ -92,12 +92,14 @@ void PlaneKeeper::unfold_outliers() {
 
 /// Adds to the covariance of a plane what one point that was wrong by about plane_distance has done to it.
 void PlaneKeeper::inflate(int plane_slot, int children) {
-  const Scalar share = settings_.plane_distance / static_cast<Scalar>(std::max(children, 1));
+  const Vec3 sigma = doubt() / static_cast<Scalar>(std::max(children, 1));
+  filter_.inflate(plane_slot, sigma.cwiseProduct(sigma).asDiagonal());
+}
+
+/// Standard deviation of (a, b, h) of a plane whose points were wrong by about plane_distance.
+Vec3 PlaneKeeper::doubt() const {
   const Scalar extent = Scalar(0.25) * settings_.plane_radius;
-  Mat3 Q = Mat3::Zero();
-  Q(0, 0) = Q(1, 1) = share * share / (extent * extent);
-  Q(2, 2) = share * share;
-  filter_.inflate(plane_slot, Q);
+  return Vec3(settings_.plane_distance / extent, settings_.plane_distance / extent, settings_.plane_distance);
 }
 
 /// Whether a point is near the known part of a plane; far from it, a point lies in the plane by chance. The paper limits the distance

@@ -44,6 +44,7 @@ class PlaneKeeper {
   // plane_keeper.cpp: points of planes
   void unfold_outliers();
   void inflate(int plane_slot, int children);
+  Vec3 doubt() const;
   bool is_in_reach(int plane_entry, const Vec3& p_W) const;
   bool lies_on(int plane, int slot) const;
   void fold_into(int plane_entry);

@@ -205,7 +205,10 @@ void PlaneKeeper::dissolve_weak() {
     map_.planes[i].max_points = std::max(map_.planes[i].max_points, points);
     const bool proven = map_.planes[i].max_points > settings_.plane_min_points;
     map_.planes[i].weak = points < kMinPoints || !proven ? map_.planes[i].weak + 1 : 0;
-    if (map_.planes[i].weak > kMaxWeakFrames || map_.planes[i].outliers > points) dissolve(i);
+    const bool denied = map_.planes[i].outliers > points;
+    if (!denied && map_.planes[i].weak <= kMaxWeakFrames) continue;
+    if (denied || !proven) filter_.forget_through(map_.planes[i].slot, doubt());
+    dissolve(i);
   }
 }
 
