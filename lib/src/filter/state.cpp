@@ -6,12 +6,9 @@
 
 namespace pf {
 
-const KindInfo& info(BlockKind kind) {
-  static constexpr KindInfo kNone{};
-  const KindInfo* found = &kNone;
-  visit(kind, [&](auto type) { found = &decltype(type)::kInfo; });
-  return *found;
-}
+#define PF_INFO(Type) , Type::kInfo
+const KindInfo kKindInfo[kBlockKinds] = {KindInfo() PF_KINDS(PF_INFO)};
+#undef PF_INFO
 
 void State::adopt(int parent, int child) {
   Block& c = block[child];

@@ -23,7 +23,8 @@ struct Body {
 class BlockFilter;
 
 /// What the kinds say of themselves (kinds.h), for who need not know them.
-const KindInfo& info(BlockKind kind);
+extern const KindInfo kKindInfo[kBlockKinds];
+inline const KindInfo& info(BlockKind kind) { return kKindInfo[static_cast<int>(kind)]; }
 /// Planar features hang on a plane, directly or through a point group.
 inline bool is_planar(BlockKind kind) { return info(kind).planar; }
 

@@ -22,6 +22,7 @@ enum class BlockKind : std::uint8_t {
   kPointGroup = 6,
   kGroupedPoint = 7,
 };
+inline constexpr int kBlockKinds = 8;
 
 /// What a feature is to the caller of the library.
 enum class FeatureForm : std::uint8_t { kNone, kPoint, kInverseDepth, kFolded, kFixed };

@@ -35,6 +35,17 @@ inline void visit(BlockKind kind, F&& f) {
   }
 }
 
+/// Listed in the order of BlockKind, which kKindInfo is indexed with.
+constexpr bool kinds_are_in_order() {
+  int next = 1;
+  bool in_order = true;
+#define PF_IN_ORDER(Type) in_order = in_order && static_cast<int>(Type::kKind) == next++;
+  PF_KINDS(PF_IN_ORDER)
+#undef PF_IN_ORDER
+  return in_order && next == kBlockKinds;
+}
+static_assert(kinds_are_in_order());
+
 #define PF_FITS(Type) static_assert(Type::kInfo.rows <= Block::kMaxRows && Type::kInfo.values <= Block::kMaxValues);
 PF_KINDS(PF_FITS)
 #undef PF_FITS
