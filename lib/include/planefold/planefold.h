@@ -169,8 +169,6 @@ typedef struct pf_config {
     double linear_walk;                  /* [m/sqrt(s)] > 0, constant position only. Default 0.1 */
     double angular_walk;                 /* [rad/sqrt(s)] > 0, constant position only. Default 0.2 */
     double coast_s;                      /* after this time without tracking the state is lost, 0.05 .. 10. Default 1 */
-    double restart_s;                    /* lost for this long, counting usable images only: the map is discarded and a new one begins,
-                                            with a new W and map_id; 0: never .. 1e4. Default 3 */
   } motion;
 
   struct {
@@ -268,7 +266,6 @@ typedef struct pf_pose {
   double covariance[36]; /* 6x6 of (theta, p) [rad, m] */
   double v_W[3];         /* velocity [m/s]; zero with the constant-position model */
   double w_C[3];         /* angular velocity [rad/s], in C; likewise */
-  uint32_t map_id;       /* of the map that W belongs to; never used twice. Ignored in a pose that you pass in */
 } pf_pose_t;
 
 #define PF_TARGET_MAX_POINTS 16

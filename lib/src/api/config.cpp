@@ -47,7 +47,6 @@ constexpr Range kReals[] = {
     PF_FIELD(plane.fold_sigma, 1e-5, 10),
     PF_FIELD(plane.fix_sigma, 0, 10),
     PF_FIELD(motion.coast_s, 0.05, 10),
-    PF_FIELD(motion.restart_s, 0, 1e4),
     PF_FIELD(imu.gyro_range, 0, 1000),
     PF_FIELD(imu.accel_range, 0, 1e5),
 };
@@ -131,7 +130,6 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->features_in_view = config.map.features_in_view;
   settings->border_px = config.map.border_px;
   settings->max_coast_ns = static_cast<std::int64_t>(config.motion.coast_s * 1e9);
-  settings->restart_ns = static_cast<std::int64_t>(config.motion.restart_s * 1e9);
   settings->keep_gauge = config.keep_gauge != 0;
   settings->imu_buffer = config.capacity.max_imu_samples;
   settings->imu_ranges = {static_cast<Scalar>(config.imu.gyro_range), static_cast<Scalar>(config.imu.accel_range)};
@@ -179,7 +177,6 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->map.features_in_view = 45;
   config->map.border_px = 8;
   config->motion.coast_s = 1.0;
-  config->motion.restart_s = 3.0;
   config->keep_gauge = 1;
   config->capacity.max_imu_samples = 0;
   config->imu.gyro_range = 0;

@@ -13,7 +13,6 @@ void pose_at(const pf::View& view, int64_t t_ns, pf_pose_t* pose) {
   pf::Mat6 covariance;
   view.pose_at(t_ns, &body, &covariance);
   pose->t_ns = t_ns;
-  pose->map_id = view.map_id();
   pose->q_WC[0] = static_cast<double>(body.q_WC.w());
   copy(body.q_WC.vec(), 3, pose->q_WC + 1);
   copy(body.p_W, 3, pose->p_WC);

@@ -15,7 +15,6 @@
 #include "slam/observation_front_end.h"
 #include "slam/pixel_update.h"
 #include "slam/plane_keeper.h"
-#include "slam/relocaliser.h"
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
 
@@ -53,10 +52,8 @@ class FrameLoop {
  private:
   bool begin_frame(std::int64_t t_ns);
   Status end_frame();
-  void maintain_map(bool supported);
+  void maintain_map();
   void start_over();
-  void begin_new_map();
-  void clear_estimate();
 
   const Settings& settings_;
   Map& map_;
@@ -69,12 +66,8 @@ class FrameLoop {
   FeatureKeeper features_{settings_, filter_, map_, frame_};
   PlaneKeeper planes_{settings_, filter_, map_, frame_, features_};
   ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_, noise_};
-  Relocaliser relocaliser_{settings_, filter_, map_, frame_, images_, update_};
   ObservationFrontEnd observations_{settings_, filter_, map_, frame_, features_, update_};
   FilterStart start_{settings_, motion_, {filter_, map_, frame_, tracking_, features_, images_, update_}};
-  std::int64_t since_last_ns_ = 0;  ///< from the frame before this one
-  bool image_usable_ = false;       ///< this frame is an image that shows something to track
-  Scalar median_depth_ = 1;         ///< of the inliers of the last tracked frame
 };
 
 }  // namespace pf

@@ -5,30 +5,21 @@
 
 #include "base/elapsed.h"
 #include "geometry/symmetric_eigen.h"
-#include "slam/agreement.h"
 #include "slam/consensus.h"
-#include "slam/tracking_state.h"
 
 namespace pf {
 namespace {
 
-constexpr int kScouts = 12;                    ///< candidates that are measured first when the pose is uncertain
-constexpr Scalar kWideEllipse = Scalar(6);     ///< [px] largest semi-axis above which scouts are measured first
-constexpr int kMinAgreement = 5;               ///< inliers that a consensus needs during a start
-constexpr Scalar kMaxLogFalse = Scalar(-6.9);  ///< ln 0.001: expected number of such consensuses by chance in a frame
-constexpr int kTriples = 8;                    ///< of inliers, with which that number is computed
+constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
+constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
+constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs
 constexpr int kSettled = 5;  ///< measurements of a feature; before, much of its residual is its own uncertain position
 
 }  // namespace
 
-bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observations) {
-  searched_px2_ = arena.take<Scalar>(static_cast<std::size_t>(max_observations));
-  return tracker_.layout(arena, width, height);
-}
+bool ImageFrontEnd::layout(Arena& arena, int width, int height) { return tracker_.layout(arena, width, height); }
 
-/// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
-/// anything is used.
-void ImageFrontEnd::measure(bool start_pending) {
+void ImageFrontEnd::measure() {
   const int count = list_visible();
   listed_ = count;
   {
@@ -36,22 +27,12 @@ void ImageFrontEnd::measure(bool start_pending) {
     predict_pixels(0, count);
   }
   const int scouts = widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
-  int found = search(0, scouts > 0 ? scouts : count);
   if (scouts > 0) {
-    const bool scouted = update_with_consensus(0, found, start_pending);
-    if (scouted) {
-      StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
-      predict_pixels(scouts, count - scouts);
-    }
-    const int more = search(scouts, count - scouts);
-    if (scouted) {
-      update_with_consensus(scouts, more, start_pending);
-      return;
-    }
-    for (int k = 0; k < more; ++k, ++found)
-      if (found != scouts + k) update_.swap(found, scouts + k);
+    measure_range(0, scouts);
+    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
+    predict_pixels(scouts, count - scouts);
   }
-  update_with_consensus(0, found, start_pending);
+  measure_range(scouts, count - scouts);
 }
 
 bool ImageFrontEnd::remember(int feature, const Vec2& pixel, const CameraView& view) {
@@ -73,6 +54,7 @@ bool ImageFrontEnd::is_visible(int feature) const {
            o.predicted.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
 }
 
+/// Lists visible features as candidates and matches, the most reliable first. Returns how many.
 int ImageFrontEnd::list_visible() {
   const auto rate = [&](int feature) {
     const Feature& f = map_.features[feature];
@@ -104,6 +86,7 @@ int ImageFrontEnd::list_visible() {
   return count;
 }
 
+/// Predicts pixel and search ellipse of candidates.
 void ImageFrontEnd::predict_pixels(int first, int count) {
   for (int i = first; i < first + count; ++i) {
     const Candidate& candidate = update_.candidate(i);
@@ -156,18 +139,23 @@ SearchTask ImageFrontEnd::task_of(int i) const {
   return task;
 }
 
+/// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
 int ImageFrontEnd::search(int first, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   int found = first;
   for (int i = first; i < first + count; ++i) {
     PixelMeasurement& o = update_.observation(i);
     if (o.block < 0) continue;
+    Feature& f = map_.features[update_.candidate(i).feature];
     Match& match = frame_.match(update_.candidate(i).match);
     const SearchOutcome outcome = tracker_.search(task_of(i));
     if (!outcome.comparable) continue;
-    match.searched = true;
+    count_frame(&f.attempts);
     ++frame_.report.attempts;
-    if (!outcome.found || squared_distance(outcome.pixel - o.predicted, match.innovation) > settings_.gate) continue;
+    if (!outcome.found || squared_distance(outcome.pixel - o.predicted, match.innovation) > settings_.gate) {
+      count_frame(&f.failures);
+      continue;
+    }
     ++frame_.report.matches;
     match.measured = outcome.pixel;
     match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
@@ -176,34 +164,26 @@ int ImageFrontEnd::search(int first, int count) {
     update_.candidate(i).noise = noise;
     o.R_gate = noise + o.second_order;
     o.R_update = noise_.correlation_frames() * noise + o.second_order;
-    if (found != i) update_.swap(found, i);
+    if (found != i) update_.move(i, found);
     ++found;
   }
   return found - first;
 }
 
-/// Finds the consensus of matches and updates the filter with it. False if it may be chance; nothing is used then.
-bool ImageFrontEnd::update_with_consensus(int first, int found, bool start_pending) {
-  if (found == 0) return false;
+/// Searches for a range of candidates, finds their consensus, and updates the filter.
+void ImageFrontEnd::measure_range(int first, int count) {
+  const int found = search(first, count);
+  if (found == 0) return;
   update_.begin(first, found);
   unsigned char* keep = update_.keep();
-  bool accepted;
+  int inliers;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
-    const PixelMeasurement* observations = update_.observations() + first;
-    const int inliers = find_inliers(filter_, observations, found, settings_.gate, keep + first);
-    // If an earlier range has given inliers, any consensus is accepted.
-    if (frame_.report.inliers > 0) {
-      accepted = true;
-    } else if (start_pending) {
-      accepted = inliers >= std::min(kMinAgreement, map_.features.count());
-    } else {
-      for (int i = 0; i < found; ++i) searched_px2_[i] = searched_area(first + i);
-      const Agreement agreement = find_agreement(filter_, observations, searched_px2_, found, frame_.report.attempts,
-                                                 settings_.gate, kTriples, keep + first, nullptr);
-      accepted = inliers >= TrackingState::kMinInliers && agreement.log_false < kMaxLogFalse;
-    }
+    inliers = find_inliers(filter_, update_.observations() + first, found, settings_.gate, keep + first);
   }
+  // If an earlier range has given inliers, a smaller consensus is accepted.
+  const bool accepted =
+      frame_.report.inliers >= kMinConsensus || inliers >= std::min(kMinConsensus, map_.features.count());
   for (int i = first; i < first + found; ++i) {
     const PixelMeasurement& o = update_.observation(i);
     if (!accepted) keep[i] = 0;
@@ -211,8 +191,18 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, bool start_pendi
     match.status = keep[i] != 0 ? MatchStatus::kInlier : MatchStatus::kOutlier;
     match.nis =
         squared_distance(match.measured - o.predicted, filter_.innovation_block(i - first, i - first) + o.R_gate);
+    if (keep[i] == 0) {
+      Feature& f = map_.features[update_.candidate(i).feature];
+      count_frame(&f.failures);
+      if (accepted) count_frame(&f.rejections);
+    }
   }
-  return accepted && update_.apply(first, found);
+  if (!accepted || !update_.apply(first, found, nullptr)) return;
+  // Each by itself, with the noise of the gate: that of the update allows for errors that come again in later frames.
+  for (int i = first; i < first + found; ++i) {
+    const Match& match = frame_.match(update_.candidate(i).match);
+    if (match.status == MatchStatus::kInlier) frame_.report.nis += static_cast<double>(match.nis);
+  }
 }
 
 void ImageFrontEnd::learn_noise() {
@@ -227,13 +217,6 @@ void ImageFrontEnd::learn_noise() {
                  &f.residuals);
   }
   noise_.end_frame();
-}
-
-Scalar ImageFrontEnd::searched_area(int i) const {
-  const Mat2& S = frame_.match(update_.candidate(i).match).innovation;
-  const Scalar det = S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
-  const Scalar all = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
-  return std::min(all, Scalar(3.14159265) * settings_.gate * std::sqrt(std::max(det, Scalar(0))));
 }
 
 }  // namespace pf

@@ -25,14 +25,13 @@ class ImageFrontEnd {
         update_(update),
         noise_(noise) {}
 
-  bool layout(Arena& arena, int width, int height, int max_observations);
+  bool layout(Arena& arena, int width, int height);
   void init(const Camera& camera) { tracker_.init(camera); }
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image) { return tracker_.begin_frame(image); }
   /// Finds the map's features in the image and updates the filter with them.
-  /// start_pending: no depth is known yet, so that the test against chance says nothing.
-  void measure(bool start_pending);
+  void measure();
   /// Updates the noise model with the inliers' residuals after measure().
   void learn_noise();
   /// Adds features in the emptiest cells of the image until enough are in view.
@@ -42,22 +41,15 @@ class ImageFrontEnd {
 
   const Tracker& tracker() const { return tracker_; }
 
-  // --- steps of a search
-  /// Lists visible features as candidates and matches, the most reliable first. Returns how many.
-  int list_visible();
-  /// Predicts pixel and search ellipse of candidates.
-  void predict_pixels(int first, int count);
-  /// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
-  int search(int first, int count);
-  /// Area of a candidate's search ellipse [px^2], at most that of the image.
-  Scalar searched_area(int i) const;
-
  private:
   // image_front_end.cpp
+  int list_visible();
   bool is_visible(int feature) const;
+  void predict_pixels(int first, int count);
   Scalar widest_ellipse(int count) const;
   SearchTask task_of(int i) const;
-  bool update_with_consensus(int first, int found, bool start_pending);
+  int search(int first, int count);
+  void measure_range(int first, int count);
 
   // image_corners.cpp
   bool is_free(const Vec2& pixel) const;
@@ -72,7 +64,6 @@ class ImageFrontEnd {
   NoiseModel& noise_;
   Tracker tracker_;
   int listed_ = 0;  ///< candidates of this frame
-  Scalar* searched_px2_ = nullptr;  ///< max_observations
 };
 
 }  // namespace pf

@@ -25,7 +25,7 @@ void PixelUpdate::begin(int first, int count) {
   filter_.begin_update(observation_ + first, count);
 }
 
-bool PixelUpdate::apply(int first, int count, bool together) {
+bool PixelUpdate::apply(int first, int count, double* nis) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
   Scalar sum = 0;
   const bool done = filter_.finish_update(observation_ + first, count, keep_ + first, &sum);
@@ -34,10 +34,9 @@ bool PixelUpdate::apply(int first, int count, bool together) {
     for (int i = first; i < first + count; ++i) frame_.match(candidate_[i].match).status = MatchStatus::kOutlier;
     return false;
   }
-  if (together) frame_.report.nis += static_cast<double>(sum);
+  if (nis != nullptr) *nis += static_cast<double>(sum);
   for (int i = first; i < first + count; ++i) {
     if (keep_[i] == 0) continue;
-    if (!together) frame_.report.nis += static_cast<double>(frame_.match(candidate_[i].match).nis);
     frame_.report.nis_dof += 2;
     ++frame_.report.inliers;
     Feature& feature = map_.features[candidate_[i].feature];

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <utility>
-
 #include "filter/filter.h"
 #include "map/map.h"
 #include "slam/frame.h"
@@ -33,10 +31,10 @@ class PixelUpdate {
   const PixelMeasurement* observations() const { return observation_; }
   unsigned char* keep() { return keep_; }
 
-  /// Exchanges two candidates and their observations.
-  void swap(int a, int b) {
-    std::swap(candidate_[a], candidate_[b]);
-    std::swap(observation_[a], observation_[b]);
+  /// Copies a candidate and its observation to another index.
+  void move(int from, int to) {
+    candidate_[to] = candidate_[from];
+    observation_[to] = observation_[from];
   }
 
   /// H P H^T of a predicted pixel. Adds the projection's second-order error over the pose uncertainty to the pixel's second_order noise.
@@ -44,9 +42,8 @@ class PixelUpdate {
   /// Computes H P H^T of `count` observations from `first` on.
   void begin(int first, int count);
   /// Updates with the kept ones of the range that begin() got. False if the update could not be made; then nothing has changed.
-  /// Adds to the report's NIS that of all together where `together`; else of each by itself, with the noise of the gate: that of the
-  /// update allows for errors that come again in later frames.
-  bool apply(int first, int count, bool together = false);
+  /// Adds their normalised innovation squared to *nis where it is not null.
+  bool apply(int first, int count, double* nis);
 
  private:
   void relinearise_update(int first, int count);
