@@ -9,12 +9,6 @@
 
 namespace pf {
 
-/// Running mean of a feature's normalised residuals, for their correlation in time.
-struct ResidualTrace {
-  float mean[2] = {0, 0};
-  int frame = 0;  ///< number of the last frame with a residual; 0: none yet
-};
-
 struct Feature {
   std::uint32_t id = 0;           ///< never used twice
   std::uint32_t external_id = 0;  ///< the caller's id of an observed feature; of the target, the index of the point
@@ -26,7 +20,6 @@ struct Feature {
   int failures = 0;      ///< attempts since it was last an inlier
   int rejections = 0;    ///< of these failures, matches that were outliers
   std::int64_t last_seen_ns = 0;
-  ResidualTrace residuals;
 };
 
 class FeatureTable {

@@ -24,7 +24,6 @@ void FrameLoop::init() {
   motion_.init();
   planes_.init();
   images_.init(settings_.camera);
-  noise_.init(settings_.sigma_px);
   start_.init();
 }
 
@@ -46,8 +45,6 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     return end_frame();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
-    // While the map starts, residuals are those of a coarse map.
-    if (tracking_.state() == SlamState::kTracking && !start_.progress().recording) images_.learn_noise();
     maintain_map();
     start_.record_frame();
     if (tracking_.is_tracked(frame_.report) || frame_.report.attempts == 0) images_.add_features();

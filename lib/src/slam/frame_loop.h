@@ -11,7 +11,6 @@
 #include "slam/filter_start.h"
 #include "slam/frame.h"
 #include "slam/image_front_end.h"
-#include "slam/noise_model.h"
 #include "slam/observation_front_end.h"
 #include "slam/pixel_update.h"
 #include "slam/plane_keeper.h"
@@ -47,7 +46,6 @@ class FrameLoop {
   const Filter& filter() const { return filter_; }
   const Frame& frame() const { return frame_; }
   const TrackingState& tracking() const { return tracking_; }
-  const NoiseModel& noise() const { return noise_; }
 
  private:
   bool begin_frame(std::int64_t t_ns);
@@ -59,13 +57,12 @@ class FrameLoop {
   Map& map_;
   Filter filter_;
   Frame frame_;
-  NoiseModel noise_;
   TrackingState tracking_;
   BodyMotion motion_{settings_, filter_};
   PixelUpdate update_{settings_, filter_, map_, frame_, tracking_};
   FeatureKeeper features_{settings_, filter_, map_, frame_};
   PlaneKeeper planes_{settings_, filter_, map_, frame_, features_};
-  ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_, noise_};
+  ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_};
   ObservationFrontEnd observations_{settings_, filter_, map_, frame_, features_, update_};
   FilterStart start_{settings_, motion_, {filter_, map_, frame_, tracking_, features_, images_, update_}};
 };

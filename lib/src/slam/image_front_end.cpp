@@ -13,7 +13,6 @@ namespace {
 constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
 constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs
-constexpr int kSettled = 5;  ///< measurements of a feature; before, much of its residual is its own uncertain position
 
 }  // namespace
 
@@ -21,7 +20,6 @@ bool ImageFrontEnd::layout(Arena& arena, int width, int height) { return tracker
 
 void ImageFrontEnd::measure() {
   const int count = list_visible();
-  listed_ = count;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
     predict_pixels(0, count);
@@ -101,7 +99,7 @@ void ImageFrontEnd::predict_pixels(int first, int count) {
       continue;
     }
     const Mat2 spread = update_.expected_innovation(&o);
-    o.set_noise(NoiseModel::search() + o.second_order);
+    o.set_noise(Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order);
     match.predicted = o.predicted;
     match.innovation = spread + o.R_gate;
   }
@@ -160,10 +158,8 @@ int ImageFrontEnd::search(int first, int count) {
     match.measured = outcome.pixel;
     match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
     o.measured = outcome.pixel;
-    const Mat2 noise = noise_.match(outcome.noise, outcome.level_scale);
-    update_.candidate(i).noise = noise;
-    o.R_gate = noise + o.second_order;
-    o.R_update = noise_.correlation_frames() * noise + o.second_order;
+    const Scalar floor = settings_.sigma_px * outcome.level_scale;
+    o.set_noise(Mat2::Identity() * (floor * floor) + outcome.noise + o.second_order);
     if (found != i) update_.move(i, found);
     ++found;
   }
@@ -197,26 +193,7 @@ void ImageFrontEnd::measure_range(int first, int count) {
       if (accepted) count_frame(&f.rejections);
     }
   }
-  if (!accepted || !update_.apply(first, found, nullptr)) return;
-  // Each by itself, with the noise of the gate: that of the update allows for errors that come again in later frames.
-  for (int i = first; i < first + found; ++i) {
-    const Match& match = frame_.match(update_.candidate(i).match);
-    if (match.status == MatchStatus::kInlier) frame_.report.nis += static_cast<double>(match.nis);
-  }
-}
-
-void ImageFrontEnd::learn_noise() {
-  for (int i = 0; i < listed_; ++i) {
-    const Candidate& candidate = update_.candidate(i);
-    if (update_.keep()[i] == 0 || frame_.match(candidate.match).status != MatchStatus::kInlier) continue;
-    Feature& f = map_.features[candidate.feature];
-    PixelMeasurement now;
-    if (f.observations < kSettled || !filter_.predict_pixel(settings_.camera, f.slot, &now)) continue;
-    const Scalar leverage = filter_.innovation(now).trace() / (noise_.correlation_frames() * candidate.noise.trace());
-    noise_.learn(frame_.report.frames, update_.observation(i).measured - now.predicted, candidate.noise, leverage,
-                 &f.residuals);
-  }
-  noise_.end_frame();
+  if (accepted) update_.apply(first, found);
 }
 
 }  // namespace pf

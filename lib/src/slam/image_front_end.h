@@ -4,7 +4,6 @@
 #include "map/map.h"
 #include "slam/feature_keeper.h"
 #include "slam/frame.h"
-#include "slam/noise_model.h"
 #include "slam/pixel_update.h"
 #include "slam/settings.h"
 #include "track/tracker.h"
@@ -16,14 +15,8 @@ namespace pf {
 class ImageFrontEnd {
  public:
   ImageFrontEnd(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features,
-                PixelUpdate& update, NoiseModel& noise)
-      : settings_(settings),
-        filter_(filter),
-        map_(map),
-        frame_(frame),
-        features_(features),
-        update_(update),
-        noise_(noise) {}
+                PixelUpdate& update)
+      : settings_(settings), filter_(filter), map_(map), frame_(frame), features_(features), update_(update) {}
 
   bool layout(Arena& arena, int width, int height);
   void init(const Camera& camera) { tracker_.init(camera); }
@@ -32,8 +25,6 @@ class ImageFrontEnd {
   bool begin_frame(const ImageView& image) { return tracker_.begin_frame(image); }
   /// Finds the map's features in the image and updates the filter with them.
   void measure();
-  /// Updates the noise model with the inliers' residuals after measure().
-  void learn_noise();
   /// Adds features in the emptiest cells of the image until enough are in view.
   void add_features();
   /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
@@ -61,9 +52,7 @@ class ImageFrontEnd {
   Frame& frame_;
   FeatureKeeper& features_;
   PixelUpdate& update_;
-  NoiseModel& noise_;
   Tracker tracker_;
-  int listed_ = 0;  ///< candidates of this frame
 };
 
 }  // namespace pf

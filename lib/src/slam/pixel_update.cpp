@@ -25,16 +25,16 @@ void PixelUpdate::begin(int first, int count) {
   filter_.begin_update(observation_ + first, count);
 }
 
-bool PixelUpdate::apply(int first, int count, double* nis) {
+bool PixelUpdate::apply(int first, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
-  Scalar sum = 0;
-  const bool done = filter_.finish_update(observation_ + first, count, keep_ + first, &sum);
+  Scalar nis = 0;
+  const bool done = filter_.finish_update(observation_ + first, count, keep_ + first, &nis);
   tracking_.note_update(done);
   if (!done) {
     for (int i = first; i < first + count; ++i) frame_.match(candidate_[i].match).status = MatchStatus::kOutlier;
     return false;
   }
-  if (nis != nullptr) *nis += static_cast<double>(sum);
+  frame_.report.nis += static_cast<double>(nis);
   for (int i = first; i < first + count; ++i) {
     if (keep_[i] == 0) continue;
     frame_.report.nis_dof += 2;

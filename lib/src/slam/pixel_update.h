@@ -12,9 +12,8 @@ namespace pf {
 
 /// A feature that this frame measures. The observation of the same index holds its prediction and its pixel.
 struct Candidate {
-  int feature;                ///< entry of the feature table
-  int match;                  ///< index in the frame's matches
-  Mat2 noise = Mat2::Zero();  ///< of a match in an image by itself, NoiseModel::match
+  int feature;  ///< entry of the feature table
+  int match;    ///< index in the frame's matches
 };
 
 class PixelUpdate {
@@ -42,8 +41,7 @@ class PixelUpdate {
   /// Computes H P H^T of `count` observations from `first` on.
   void begin(int first, int count);
   /// Updates with the kept ones of the range that begin() got. False if the update could not be made; then nothing has changed.
-  /// Adds their normalised innovation squared to *nis where it is not null.
-  bool apply(int first, int count, double* nis);
+  bool apply(int first, int count);
 
  private:
   void relinearise_update(int first, int count);

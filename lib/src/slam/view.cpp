@@ -12,7 +12,6 @@ std::int64_t View::last_ns() const { return report().t_ns; }
 SlamState View::state() const { return loop_.tracking().state(); }
 bool View::has_pose() const { return loop_.tracking().has_pose(); }
 const FrameReport& View::report() const { return loop_.frame().report; }
-const NoiseModel& View::noise() const { return loop_.noise(); }
 int View::match_count() const { return loop_.frame().match_count(); }
 const Match& View::match(int i) const { return loop_.frame().match(i); }
 int View::state_dim() const { return filter().dim(); }
