@@ -162,20 +162,20 @@ const char* check_with(void (*change)(Camera*)) {
 void test_check_should_name_the_field_when_a_calibration_makes_no_sense() {
   static const Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
   TEST_ASSERT_NULL(check_with([](Camera*) {}));
-  TEST_ASSERT_EQUAL_STRING("model", check_with([](Camera* c) { c->model = 0; }));
-  TEST_ASSERT_EQUAL_STRING("model", check_with([](Camera* c) { c->model = 5; }));
-  TEST_ASSERT_EQUAL_STRING("width", check_with([](Camera* c) { c->width = 31; }));
-  TEST_ASSERT_EQUAL_STRING("height", check_with([](Camera* c) { c->height = 4097; }));
-  TEST_ASSERT_EQUAL_STRING("fx", check_with([](Camera* c) { c->fx = -458; }));
-  TEST_ASSERT_EQUAL_STRING("fx", check_with([](Camera* c) { c->fx = nan; }));
-  TEST_ASSERT_EQUAL_STRING("fy", check_with([](Camera* c) { c->fy = Scalar(1e9); }));
-  TEST_ASSERT_EQUAL_STRING("cx", check_with([](Camera* c) { c->cx = -1000; }));
-  TEST_ASSERT_EQUAL_STRING("cy", check_with([](Camera* c) { c->cy = nan; }));
-  TEST_ASSERT_EQUAL_STRING("distortion", check_with([](Camera* c) { c->distortion[1] = nan; }));
-  TEST_ASSERT_EQUAL_STRING("distortion", check_with([](Camera* c) { c->distortion[5] = 1; }));
-  TEST_ASSERT_EQUAL_STRING("distortion", check_with([](Camera* c) { c->distortion[0] = -9; }));
-  TEST_ASSERT_EQUAL_STRING("distortion", check_with([](Camera* c) { c->model = 1; }));
-  TEST_ASSERT_EQUAL_STRING("distortion", check_with([](Camera* c) {
+  TEST_ASSERT_EQUAL_STRING("camera.model", check_with([](Camera* c) { c->model = 0; }));
+  TEST_ASSERT_EQUAL_STRING("camera.model", check_with([](Camera* c) { c->model = 5; }));
+  TEST_ASSERT_EQUAL_STRING("camera.width", check_with([](Camera* c) { c->width = 31; }));
+  TEST_ASSERT_EQUAL_STRING("camera.height", check_with([](Camera* c) { c->height = 4097; }));
+  TEST_ASSERT_EQUAL_STRING("camera.fx", check_with([](Camera* c) { c->fx = -458; }));
+  TEST_ASSERT_EQUAL_STRING("camera.fx", check_with([](Camera* c) { c->fx = nan; }));
+  TEST_ASSERT_EQUAL_STRING("camera.fy", check_with([](Camera* c) { c->fy = Scalar(1e9); }));
+  TEST_ASSERT_EQUAL_STRING("camera.cx", check_with([](Camera* c) { c->cx = -1000; }));
+  TEST_ASSERT_EQUAL_STRING("camera.cy", check_with([](Camera* c) { c->cy = nan; }));
+  TEST_ASSERT_EQUAL_STRING("camera.distortion", check_with([](Camera* c) { c->distortion[1] = nan; }));
+  TEST_ASSERT_EQUAL_STRING("camera.distortion", check_with([](Camera* c) { c->distortion[5] = 1; }));
+  TEST_ASSERT_EQUAL_STRING("camera.distortion", check_with([](Camera* c) { c->distortion[0] = -9; }));
+  TEST_ASSERT_EQUAL_STRING("camera.distortion", check_with([](Camera* c) { c->model = 1; }));
+  TEST_ASSERT_EQUAL_STRING("camera.distortion", check_with([](Camera* c) {
                              *c = division_camera();
                              c->distortion[0] = Scalar(9e-4);
                            }));
