@@ -352,6 +352,37 @@ void test_forgetting_through_a_plane_should_reach_what_it_has_taught() {
   TEST_ASSERT_TRUE(after(Body::kPosition, Body::kPosition) > P(Body::kPosition, Body::kPosition));
 }
 
+/// The scale may hang on two points of two planes, which fills its row; an inverse depth against it needs room for one column more.
+void test_sigma_of_an_inverse_depth_should_have_room_for_the_longest_row_of_the_scale() {
+  SeededRandom random(37);
+  PlaneScene scene(random, 0.001);
+  scene.fold_all(PlaneScene::drop());
+  scene.add_second(PlaneScene::drop());
+  const int slots[4] = {scene.plane, scene.on_wall[0], scene.other_plane, scene.second_wall[0]};
+  int slot = -1;
+  for (const int s : scene.far_off)
+    if (scene.filter->state().block[s].kind == BlockKind::kInverseDepth) slot = s;
+  TEST_ASSERT_TRUE(slot >= 0);
+  const Scalar rho = scene.filter->state().block[slot].inverse_depth().rho;
+  ScaleRow l;
+  Eigen::VectorXd row = Eigen::VectorXd::Zero(scene.filter.dim());
+  int c = 0;
+  for (const int at : slots) {
+    const int size = scene.filter->state().block[at].size;
+    Scalar h[3];
+    for (int k = 0; k < size; ++k, ++c) {
+      h[k] = static_cast<Scalar>(random.normal());
+      row(scene.filter.first(at) + k) = static_cast<double>(rho * h[k]);
+    }
+    add_part(&l, Part::of(at, 0, size), h);
+  }
+  TEST_ASSERT_EQUAL_INT(4, l.parts);
+  row(scene.filter.first(slot) + 2) = 1;
+  const double expected = std::sqrt(row.dot(scene.filter.P() * row));
+  const double sigma = static_cast<double>(scene.filter->relative_sigma_rho(slot, l));
+  TEST_ASSERT_TRUE(std::abs(sigma - expected) < (sizeof(Scalar) == 8 ? 1e-9 : 1e-3) * expected);
+}
+
 }  // namespace
 
 int main(void) {
@@ -365,6 +396,7 @@ int main(void) {
   RUN_TEST(test_released_points_should_have_the_covariance_that_they_had);
   RUN_TEST(test_variance_in_a_drawing_should_be_that_of_the_fixed_point);
   RUN_TEST(test_forgetting_through_a_plane_should_reach_what_it_has_taught);
+  RUN_TEST(test_sigma_of_an_inverse_depth_should_have_room_for_the_longest_row_of_the_scale);
   RUN_TEST(test_conditioning_should_be_the_dense_update_with_distances_of_zero);
   RUN_TEST(test_the_gate_should_keep_out_what_lies_beside);
   RUN_TEST(test_considered_points_should_keep_their_values_in_an_update);

@@ -54,8 +54,12 @@ Scalar Filter::relative_sigma_rho(int slot, const ScaleRow& l) const {
   const Scalar rho = block.inverse_depth().rho;
   for (int p = 0; p < l.parts; ++p)  // the row hangs on this very point: it cannot be its own measure
     if (l.part[p].block == slot) return std::sqrt(block_variance(slot, 2));
-  ScaleRow row = l;
-  for (int c = 0; c < l.columns(); ++c) row.h[c] *= rho;
+  RowsOf<1, 13, 5> row;  // those of l, and rho
+  for (int p = 0, c = 0; p < l.parts; ++p) {
+    Scalar scaled[12];
+    for (int i = 0; i < l.part[p].size; ++i) scaled[i] = rho * l.h[c++];
+    add_part(&row, l.part[p], scaled);
+  }
   const Scalar one = Scalar(1);
   add_part(&row, Part::of(slot, 2, 1), &one);
   return std::sqrt(blocks_.variance(row));
