@@ -36,7 +36,8 @@ def add_output_files(path, *names):
     """Adds names to the folder's list, before the files are made."""
     path = pathlib.Path(path)
     for name in names:
-        if not name.endswith("/") and (path / name).exists() and pathlib.PurePosixPath(name) not in _names(path):
+        at = pathlib.PurePosixPath(name)
+        if not name.endswith("/") and at.name != LIST and (path / at).exists() and at not in _names(path):
             raise Refused(f"{path / name}: is there already, and no earlier run wrote it; move it away")
     with open(path / LIST, "a") as file:
         file.writelines(name + "\n" for name in names)
