@@ -22,9 +22,9 @@ vivid="n_devs=2 node_types=0x1,0x101 num_inputs=1,1 input_types=0x0,0x3 num_outp
 cp /share/pf-capture /share/feed /share/pictures.raw /tmp
 capture() {{ # NAME SECONDS ARGUMENTS...: interrupted after some seconds, as a user ends a run
   name=$1; seconds=$2; shift 2
-  mkdir -p /share/$name
-  timeout -s INT $seconds /tmp/pf-capture {SMALL} --out /share/$name "$@" >/share/$name/stdout 2>/share/$name/stderr && code=0 || code=$?
-  echo $code >/share/$name/code
+  mkdir -p /share/$name.log
+  timeout -s INT $seconds /tmp/pf-capture {SMALL} --out /share/$name "$@" >/share/$name.log/stdout 2>/share/$name.log/stderr && code=0 || code=$?
+  echo $code >/share/$name.log/code
   echo "$name: $(cut -d' ' -f1 /proc/uptime) s"
 }}
 streaming() {{ # waits until the camera streams: its driver then has a thread of that name
@@ -80,19 +80,19 @@ class Results:
     def read(self, name):
         path = self.share / name / "report.json"
         if not path.is_file():
-            stderr = self.share / name / "stderr"
+            stderr = self.share / f"{name}.log" / "stderr"
             fail(f"{name}: no report.json; {stderr.read_text() if stderr.is_file() else ''}")
         return json.loads(path.read_text())
 
     def report(self, name):
         report = self.read(name)
         live = report.get("live", {})
-        print(f"{name}: code {(self.share / name / 'code').read_text().strip()}, {report['frames']} frames, tracked "
+        print(f"{name}: code {(self.share / (name + '.log') / 'code').read_text().strip()}, {report['frames']} frames, tracked "
               f"{report['tracked']}, live {json.dumps(live)}")
         return report
 
     def stderr(self, name):
-        return (self.share / name / "stderr").read_text()
+        return (self.share / f"{name}.log" / "stderr").read_text()
 
 
 def check_streams(results):
@@ -149,7 +149,7 @@ def check_interrupted(results):
     for name in ("GREY", "YUYV", "live", "unplug", "gone"):
         folder = results.share / name
         report = results.read(name)
-        code = (folder / "code").read_text().strip()
+        code = (results.share / f"{name}.log" / "code").read_text().strip()
         results.require(code == ("0" if report["tracked"] > 0 else "1"), f"{name}: the interrupted run ended with {code}")
         text = (folder / "frames.csv").read_text()
         rows = text.splitlines()
