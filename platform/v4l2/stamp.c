@@ -30,7 +30,9 @@ int pf_v4l2_stamp(pf_v4l2_t* camera, const struct v4l2_buffer* taken, int64_t ar
       }
       camera->stamps_stale = 1;
     }
-    *t_ns = by_arrival(camera, arrived_ns);
+    /* A little ahead, the frame was stamped after the clock was read: still the driver's clock. */
+    const int just_now = driver_ns > arrived_ns && driver_ns - arrived_ns < kPatienceNs;
+    *t_ns = just_now ? arrived_ns : by_arrival(camera, arrived_ns);
   }
   return *t_ns > camera->last_t_ns ? 0 : -1;
 }
