@@ -4,35 +4,43 @@
  * believed. */
 static const int64_t kPatienceNs = 250000000;
 
+/* A driver may stamp a frame with the end of the readout that is still to come, or a little after the clock was read. */
+static const int64_t kAheadNs = 100000000;
+
 static int64_t by_arrival(pf_v4l2_t* camera, int64_t arrived_ns) {
   camera->info.stamp = PF_V4L2_STAMP_ARRIVAL;
   return arrived_ns;
 }
 
-int pf_v4l2_stamp(pf_v4l2_t* camera, const struct v4l2_buffer* taken, int64_t arrived_ns, int64_t* t_ns) {
+/* The driver's time in nanoseconds, or 0 where it is of another clock: far ahead of ours, or before its beginning. */
+static int64_t driver_time(const struct v4l2_buffer* taken, int64_t arrived_ns) {
   const int64_t seconds = (int64_t)taken->timestamp.tv_sec;
-  const int64_t arrived_s = arrived_ns / 1000000000;
-  const int monotonic = (taken->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
-  /* What lies ahead of the clock, or before its beginning, is of another clock. */
-  const int possible = monotonic && seconds >= 0 && seconds <= arrived_s;
-  const int64_t driver_ns = possible ? seconds * 1000000000 + (int64_t)taken->timestamp.tv_usec * 1000 : 0;
-  if (driver_ns > camera->last_t_ns && driver_ns <= arrived_ns) {
+  const int64_t latest_ns = arrived_ns + kAheadNs;
+  int64_t driver_ns;
+  if ((taken->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) != V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC || seconds < 0 ||
+      seconds > latest_ns / 1000000000) {
+    return 0;
+  }
+  driver_ns = seconds * 1000000000 + (int64_t)taken->timestamp.tv_usec * 1000;
+  return driver_ns > 0 && driver_ns <= latest_ns ? driver_ns : 0;
+}
+
+int pf_v4l2_stamp(pf_v4l2_t* camera, const struct v4l2_buffer* taken, int64_t arrived_ns, int64_t* t_ns) {
+  const int64_t driver_ns = driver_time(taken, arrived_ns);
+  if (driver_ns > camera->last_t_ns) {
     camera->stamps_stale = 0;
     camera->info.stamp = (taken->flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE
                              ? PF_V4L2_STAMP_START
                              : PF_V4L2_STAMP_END;
     *t_ns = driver_ns;
   } else {
-    const int backward = driver_ns > 0 && driver_ns <= arrived_ns;
-    if (backward && !camera->stamps_stale) {
+    if (driver_ns > 0 && !camera->stamps_stale) {
       if (arrived_ns - camera->last_arrived_ns < kPatienceNs) {
         return -1;
       }
       camera->stamps_stale = 1;
     }
-    /* A little ahead, the frame was stamped after the clock was read: still the driver's clock. */
-    const int just_now = driver_ns > arrived_ns && driver_ns - arrived_ns < kPatienceNs;
-    *t_ns = just_now ? arrived_ns : by_arrival(camera, arrived_ns);
+    *t_ns = by_arrival(camera, arrived_ns);
   }
   return *t_ns > camera->last_t_ns ? 0 : -1;
 }
