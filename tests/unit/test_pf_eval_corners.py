@@ -11,6 +11,7 @@ import venv  # noqa: E402
 venv.enter()
 import numpy as np  # noqa: E402
 
+from pf_eval import Refused  # noqa: E402
 from pf_eval.camera import Camera, read_camera  # noqa: E402
 from pf_eval.corners import compare_corners, read_target  # noqa: E402
 from pf_eval.files import Trajectory  # noqa: E402
@@ -91,10 +92,19 @@ class Corners(unittest.TestCase):
         (self.path / "ros.yaml").write_text("image_width: 752\nimage_height: 480\ndistortion_model: plumb_bob\n"
                                             "camera_matrix: {rows: 3, cols: 3, data: [458.6, 0, 367.2, 0, 457.2, 248.3, 0, 0, 1]}\n"
                                             "distortion_coefficients: {data: [-0.28, 0.07, 0.0002, 0.00002, 0]}\n")
+        for name, prefix in (("orb_slam3", "Camera1"), ("orb_slam", "Camera")):
+            numbers = {"fx": 458.6, "fy": 457.2, "cx": 367.2, "cy": 248.3, "k1": -0.28, "k2": 0.07, "p1": 0.0002, "p2": 0.00002}
+            (self.path / f"{name}.yaml").write_text("%YAML:1.0\nCamera.width: 752\nCamera.height: 480\n" +
+                                                    "".join(f"{prefix}.{key}: {value}\n" for key, value in numbers.items()))
         pixels = [read_camera(self.path / f"{form}.yaml").project([[0.3, 0.2, 1.0]])
-                  for form in ("plain", "euroc", "kalibr", "ros")]
+                  for form in ("plain", "euroc", "kalibr", "ros", "orb_slam3", "orb_slam")]
         for other in pixels[1:]:
             np.testing.assert_array_equal(other, pixels[0])
+
+    def test_unknown_layout_should_be_refused_with_the_known_ones(self):
+        (self.path / "other.yaml").write_text("lens: 8 mm\n")
+        with self.assertRaisesRegex(Refused, "other.yaml.*Kalibr.*EuRoC.*ROS.*ORB-SLAM3"):
+            read_camera(self.path / "other.yaml")
 
 
 if __name__ == "__main__":

@@ -59,10 +59,28 @@ def _model(path, name):
         raise Refused(f"{path}: distortion_model {name} is none of {', '.join(sorted(m for m in MODELS if m))}") from error
 
 
+ORB_SLAM_MODELS = {"PinHole": ("radtan", ("k1", "k2", "p1", "p2", "k3")), "KannalaBrandt8": ("equidistant", ("k1", "k2", "k3", "k4")),
+                   "Rectified": ("none", ())}
+
+
+def _orb_slam(path, fields, prefix):
+    """Settings of ORB-SLAM3 (prefix Camera1.) or ORB-SLAM (prefix Camera.)."""
+    kind = fields.get("Camera.type", "PinHole")
+    if kind not in ORB_SLAM_MODELS:
+        raise Refused(f"{path}: Camera.type {kind} is none of {', '.join(ORB_SLAM_MODELS)}")
+    model, names = ORB_SLAM_MODELS[kind]
+    return Camera(model, int(fields["Camera.width"]), int(fields["Camera.height"]),
+                  [float(fields[prefix + name]) for name in ("fx", "fy", "cx", "cy")],
+                  [float(fields.get(prefix + name, 0.0)) for name in names])
+
+
 def read_camera(path):
-    """The plain form, Kalibr's camchain (cam0), EuRoC's sensor.yaml, or ROS camera_info."""
+    """The plain form, Kalibr's camchain (cam0), EuRoC's sensor.yaml, ROS camera_info, or settings of ORB-SLAM3 or ORB-SLAM."""
     fields = read_yaml(path)
     try:
+        for prefix in ("Camera1.", "Camera."):
+            if prefix + "fx" in fields:
+                return _orb_slam(path, fields, prefix)
         if "cam0" in fields:
             fields = fields["cam0"]
         if "fx" in fields:
@@ -76,7 +94,8 @@ def read_camera(path):
             intrinsics, size = fields["intrinsics"], fields["resolution"]
             distortion = fields.get("distortion_coefficients", fields.get("distortion_coeffs"))
         else:
-            raise Refused(f"{path}: is no calibration (no fx, intrinsics or camera_matrix)")
+            raise Refused(f"{path}: is a calibration of no known layout; known are the plain form (fx), Kalibr's camchain (cam0), EuRoC's "
+                          "sensor.yaml (intrinsics), ROS camera_info (camera_matrix), ORB-SLAM3 (Camera1.fx) and ORB-SLAM (Camera.fx)")
         return Camera(_model(path, fields.get("distortion_model")), int(size[0]), int(size[1]),
                       [float(value) for value in intrinsics], [float(value) for value in distortion or []])
     except (KeyError, TypeError, ValueError, IndexError) as error:
