@@ -1,6 +1,5 @@
 """pf-eval: the command."""
 
-import argparse
 import json
 import math
 import pathlib
@@ -13,30 +12,10 @@ from .camera import read_camera
 from .corners import compare_corners, read_target
 from .errors import compare, default_alignment
 from .files import read_run
+from .options import arguments
 from .planes import compare_planes, folding, read_planes
 from .there_and_back import compare_passes, forward
 from .truth import named_truth, read_truth
-
-DESCRIPTION = """Compares a run of pf-capture with ground truth.
-
-  pf-eval RUN [--truth FILE] [--planes FILE.json] [--align none|se3|sim3] [--json [FILE]]
-  pf-eval RUN --corners FILE.csv --target FILE.yaml [--calib FILE] [--json [FILE]]
-  pf-eval RUN --there-and-back [--json [FILE]]
-
-RUN is an output folder of pf-capture, or a trajectory in the TUM form (timestamp tx ty tz qx qy qz qw)."""
-
-NOTES = """Truth is taken within 10 ms of a frame: the nearest pose, or interpolated where truth comes at least 1.5 times as
-often as the frames ("association" says which). Errors are those of evo after Umeyama alignment of positions; rpe_rmse_m is
-from frame to frame. After an alignment rot_rmse_deg and rot_max_deg are what is left by the rotation that fits the rotations best;
-rot_by_positions_rmse_deg uses the one that the positions gave, which is not known about a nearly straight path
-(alignment_degenerate; a note says so). Truth is of the camera; EuRoC's data.csv is of the body, and T_BS of the camera's sensor.yaml is
-applied ("frame" says which was compared). Without --truth the one that report.json names is taken. NEES is given for runs in the truth's own
-frame only, so with --align none; nees_position has 3 degrees of freedom, nees_pose 6. A plane of the run is a true one when it is
-within 10 degrees and, in the middle of its outline, 10 cm of it, after an alignment by the rotations of the trajectory.
---there-and-back reads a run of pf-capture --there-and-back, where each image has two poses that should be one: their distance is
-given as a share of the path's extent, the largest distance between two places of the way there.
-
-Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
 
 TABLE = {
     "ate_rmse_m": ("position error, RMS", "m"), "ate_max_m": ("position error, largest", "m"),
@@ -64,36 +43,6 @@ TABLE = {
     "back_rotation_max_deg": ("rotation between them, largest", "deg"), "images": ("of images", ""),
     "frames": ("frames compared", ""), "frames_measured": ("of frames with measured corners", ""),
 }
-
-
-def arguments(words):
-    parser = argparse.ArgumentParser(prog="pf-eval", description=DESCRIPTION, epilog=NOTES,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", metavar="RUN", nargs="?")
-    parser.add_argument("--truth", metavar="FILE", help="TUM form, or EuRoC's state_groundtruth_estimate0/data.csv; default: report.json names it")
-    parser.add_argument("--align", choices=["none", "se3", "sim3"],
-                        help="default: none where report.json says that the run started from a target, else sim3")
-    parser.add_argument("--planes", metavar="FILE.json", help="true planes: {\"planes\": [{\"name\", \"normal\", \"distance\"}]}")
-    parser.add_argument("--corners", metavar="FILE.csv", help="frame,t,u_TL,v_TL,u_TR,v_TR,u_BR,v_BR,u_BL,v_BL")
-    parser.add_argument("--target", metavar="FILE.yaml", help="the target that the run was started from")
-    parser.add_argument("--calib", metavar="FILE", help="of --corners: default calib.yaml in RUN, or beside the corners; of a body's truth: "
-                        "default cam0/sensor.yaml beside it")
-    parser.add_argument("--there-and-back", action="store_true", help="the two poses of each image; needs no truth")
-    parser.add_argument("--skip-frames", metavar="N", type=int, default=0, help="leave out corners of the first N frames")
-    parser.add_argument("--json", metavar="FILE", nargs="?", const="-", help="results as JSON, to a file or the output")
-    parser.add_argument("--per-frame", metavar="FILE.csv", help="errors frame by frame")
-    options = parser.parse_args(words)
-    if options.run is None and options.json not in (None, "-"):  # --json RUN
-        options.run, options.json = options.json, "-"
-    if options.run is None:
-        parser.error("which RUN?")
-    if [options.truth is not None, options.corners is not None, options.there_and_back].count(True) > 1:
-        parser.error("give one of --truth, --corners and --there-and-back")
-    if options.planes and (options.corners or options.there_and_back):
-        parser.error("--planes needs a truth")
-    if options.corners and not options.target:
-        parser.error("--corners needs --target")
-    return options
 
 
 def evaluate_truth(options):
