@@ -30,9 +30,9 @@ unit() {{
 }}
 capture() {{ # NAME SECONDS ARGUMENTS...: interrupted after some seconds, as a user ends a run
   name=$1; seconds=$2; shift 2
-  mkdir -p /share/$name
-  timeout -s INT $seconds /tmp/pf-capture --out /share/$name "$@" >/share/$name/stdout 2>/share/$name/stderr && code=0 || code=$?
-  echo $code >/share/$name/code
+  mkdir -p /share/$name.log
+  timeout -s INT $seconds /tmp/pf-capture --out /share/$name "$@" >/share/$name.log/stdout 2>/share/$name.log/stderr && code=0 || code=$?
+  echo $code >/share/$name.log/code
   echo "$name: $(cut -d' ' -f1 /proc/uptime) s"
 }}
 streaming() {{ # waits until the camera streams (its driver then has a thread of that name) and both sensors are read
@@ -82,9 +82,9 @@ class Results:
     def report(self, name):
         path = self.share / name / "report.json"
         if not path.is_file():
-            fail(f"{name}: no report.json; {self.text(name + '/stderr')}")
+            fail(f"{name}: no report.json; {self.text(name + '.log/stderr')}")
         report = json.loads(path.read_text())
-        print(f"{name}: code {self.text(name + '/code').strip()}, {report['frames']} frames, imu {json.dumps(report.get('imu'))}")
+        print(f"{name}: code {self.text(name + '.log/code').strip()}, {report['frames']} frames, imu {json.dumps(report.get('imu'))}")
         return report
 
     def samples(self, name):
@@ -102,8 +102,8 @@ def check_list(results):
     line = results.text("nobody.txt")
     results.require(results.text("nobody.code").strip() == "1" and "may not read it" in line and "udev rule" in line,
                     f"--imu for a user without rights: {line}")
-    line = results.text("nonesuch/stderr")
-    results.require(results.text("nonesuch/code").strip() == "1" and "nonesuch" in line and "--list" in line, f"no such unit: {line}")
+    line = results.text("nonesuch.log/stderr")
+    results.require(results.text("nonesuch.log/code").strip() == "1" and "nonesuch" in line and "--list" in line, f"no such unit: {line}")
 
 
 def check_values(results, name, samples):
@@ -130,7 +130,7 @@ def check_stream(results):
     results.require(all(b == a + 1 for a, b in zip(numbers, numbers[1:])), "samples are missing or out of order")
     results.require(device["timestamps"] == "monotonic" and device["dropped"] <= 2, f"device: {device}")
     for name in ("stream", "named"):
-        others = [line for line in results.text(f"{name}/stderr").splitlines() if not line.startswith("pf-capture: ")]
+        others = [line for line in results.text(f"{name}.log/stderr").splitlines() if not line.startswith("pf-capture: ")]
         results.require(not others, f"{name}: {others}")
     results.require(0.4 < imu["rate_hz"] / RATE_HZ < 1.1 and device["gyro_rate_hz"] == RATE_HZ, f"rate: {imu}")
     results.require(imu["saturated"] == 0 and imu["refused"] == 0 and not imu["used"], f"imu: {imu}")
@@ -144,7 +144,7 @@ def check_stream(results):
 
 
 def check_unplug(results):
-    imu, text = results.report("unplug")["imu"], results.text("unplug/stderr")
+    imu, text = results.report("unplug")["imu"], results.text("unplug.log/stderr")
     times = [t for t, _ in results.samples("imu0_unplugged")]
     gaps = [b - a for a, b in zip(times, times[1:])]
     results.require(imu["device"]["departures"] == 1 and "is gone" in text and "is back after" in text,
@@ -152,7 +152,7 @@ def check_unplug(results):
     results.require(max(gaps, default=0) > 1.9e9 and gaps.index(max(gaps)) + 10 < len(gaps), f"no samples after the unit came back: {gaps}")
     results.require(min(gaps, default=0) > 0 and imu["gaps"] >= 1 and imu["interval_ms"]["max"] > 1900, f"gaps: {imu}")
     gone = results.report("gone")
-    results.require(gone["imu"]["device"]["departures"] == 1 and "is gone" in results.text("gone/stderr"), "gone for good: not noticed")
+    results.require(gone["imu"]["device"]["departures"] == 1 and "is gone" in results.text("gone.log/stderr"), "gone for good: not noticed")
     results.require(gone["frames"] > 10, f"gone for good: {gone['frames']} frames only")
 
 

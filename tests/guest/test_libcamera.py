@@ -29,15 +29,15 @@ udevadm settle --timeout=60
 cp /share/pf-capture /tmp
 capture() {{ # NAME SECONDS ARGUMENTS...: interrupted after some seconds where it has not ended by itself
   name=$1; seconds=$2; shift 2
-  mkdir -p /share/$name
+  mkdir -p /share/$name.log
   timeout -s INT $seconds /tmp/pf-capture {SMALL} --calib /share/small.yaml --out /share/$name "$@" \\
-    >/share/$name/stdout 2>/share/$name/stderr && code=0 || code=$?
-  echo $code >/share/$name/code
+    >/share/$name.log/stdout 2>/share/$name.log/stderr && code=0 || code=$?
+  echo $code >/share/$name.log/code
   echo "$name: $(cut -d' ' -f1 /proc/uptime) s"
 }}
 LIBCAMERA_LOG_LEVELS=*:INFO /tmp/pf-capture --list >/share/list.txt 2>/share/list.stderr
-capture first 90 --source libcamera:0 --frames {FRAMES} --record /share/first/recording
-capture named 60 --source "libcamera:Sensor B" --format BGR888 --frames 10 --record /share/named/recording
+capture first 90 --source libcamera:0 --frames {FRAMES} --record /share/first.recording
+capture named 60 --source "libcamera:Sensor B" --format BGR888 --frames 10 --record /share/named.recording
 capture ended 8 --source libcamera:0
 capture absent 8 --source libcamera:9
 capture format 8 --source libcamera:0 --format YUYV
@@ -100,10 +100,10 @@ def check(share):
     def report(name):
         path = share / name / "report.json"
         if not path.is_file():
-            problems.append(f"{name}: no report.json; {(share / name / 'stderr').read_text()}")
+            problems.append(f"{name}: no report.json; {(share / f'{name}.log' / 'stderr').read_text()}")
             return {"captured": 0, "camera": {}, "interval_ms": {}}
         live = json.loads(path.read_text())["live"]
-        print(f"{name}: code {(share / name / 'code').read_text().strip()}, live {json.dumps(live)}")
+        print(f"{name}: code {(share / f'{name}.log' / 'code').read_text().strip()}, live {json.dumps(live)}")
         return live
 
     names = (share / "list.txt").read_text()
@@ -116,7 +116,7 @@ def check(share):
         require(live["captured"] >= count, f"{name}: only {live['captured']} frames")
         require(camera.get("format") == format_name and camera.get("damaged") == 0, f"{name}: {camera}")
         require(camera.get("timestamps") == "sensor" and interval.get("min", 0) > 0, f"{name}: times: {camera}, {interval}")
-        recording = share / name / "recording"
+        recording = share / f"{name}.recording"
         frames = png.recording(recording) if recording.is_dir() else []
         require(len(frames) >= count, f"{name}: only {len(frames)} frames were recorded")
         times = [stamp for stamp, _ in frames]
@@ -127,19 +127,19 @@ def check(share):
         require(all(abs(a - b) <= 2 for one in levels for a, b in zip(one, BARS)), f"{name}: bars {levels[:1]}, not {BARS}")
     require(report("ended")["captured"] > 0, "ended: no frame before the interruption")
     live = report("unplug")
-    text = (share / "unplug" / "stderr").read_text()
+    text = (share / "unplug.log" / "stderr").read_text()
     print(text, end="")
-    require((share / "unplug" / "code").read_text().strip() == "0", "unplugged, and the run does not end well")
+    require((share / "unplug.log" / "code").read_text().strip() == "0", "unplugged, and the run does not end well")
     require(live["camera"].get("departures") == 2 and text.count("is gone") == 2 and text.count("is back after") == 2 and
             live["captured"] >= 90, f"unplugged twice, and the user reads: {text}; {live}")
     live = report("gone")
-    text = (share / "gone" / "stderr").read_text()
-    require(live["camera"].get("departures") == 1 and "is gone" in text and (share / "gone" / "code").read_text().strip() in ("0", "1"),
+    text = (share / "gone.log" / "stderr").read_text()
+    require(live["camera"].get("departures") == 1 and "is gone" in text and (share / "gone.log" / "code").read_text().strip() in ("0", "1"),
             f"gone for good, and the user reads: {text}; {live}")
     for name, words in (("absent", "no such camera"), ("format", "YUYV")):
-        text = (share / name / "stderr").read_text().strip()
+        text = (share / f"{name}.log" / "stderr").read_text().strip()
         print(f"{name}: {text}")
-        require((share / name / "code").read_text().strip() == "1" and words in text and "\n" not in text, f"{name}: {text}")
+        require((share / f"{name}.log" / "code").read_text().strip() == "1" and words in text and "\n" not in text, f"{name}: {text}")
     return problems
 
 

@@ -30,7 +30,6 @@ RUN = f"""set -e
 . /share/modules.sh
 ls -l /dev/dri
 cp /share/pf-capture /tmp
-mkdir -p /share/out
 export SDL_VIDEODRIVER=kmsdrm XDG_RUNTIME_DIR=/tmp
 /tmp/pf-capture --source sim:desk --start target --frames {FRAMES} --delay {DELAY_MS} --tracks --no-film --quiet --out /share/out
 """
