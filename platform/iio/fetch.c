@@ -30,8 +30,6 @@ static void put(pf_iio_t* imu, int kind, const pf_iio_part_t* part, int scan, in
   }
 }
 
-/* Scans whose time does not grow are dropped for so long; a clock that stands still or was set back is then no longer believed. */
-static const int64_t kPatienceNs = 250000000;
 static const int64_t kSlackNs = 1000000000;
 
 /* Time of a scan: the driver's where it can be true, otherwise that of its arrival. 0, or -1 where the scan has to be dropped. */
@@ -39,25 +37,12 @@ static int time_of(pf_iio_part_t* part, int scan, int64_t arrived_ns, int64_t no
   const int64_t clock_ns = part->real_time ? real_ns : now_ns;
   const int64_t number = part->time != NULL ? pf_iio_buffer_number(&part->buffer, scan, part->time) : -1;
   /* A time that lies ahead of the clock, or before the stream, is of another clock. */
-  const int64_t shifted_ns = number > 0 && number <= clock_ns ? number + (now_ns - clock_ns) : -1;
-  const int64_t driver_ns = shifted_ns >= part->started_ns - kSlackNs ? shifted_ns : -1;
-  if (driver_ns > part->last_t_ns) {
-    part->times_stale = 0;
-    *t_ns = driver_ns;
-  } else {
-    if (driver_ns > 0 && !part->times_stale) {
-      if (now_ns - part->last_kept_ns < kPatienceNs) {
-        return -1;
-      }
-      part->times_stale = 1;
-    }
-    *t_ns = arrived_ns;
-  }
-  if (*t_ns <= part->last_t_ns) {
+  const int64_t shifted_ns = number > 0 && number <= clock_ns ? number + (now_ns - clock_ns) : 0;
+  const int64_t driver_ns = shifted_ns >= part->started_ns - kSlackNs ? shifted_ns : 0;
+  if (pf_choose_stamp(&part->stamps, driver_ns, arrived_ns, now_ns, t_ns) == PF_STAMP_DROP) {
     return -1;
   }
-  part->last_t_ns = *t_ns;
-  part->last_kept_ns = now_ns;
+  pf_keep_stamp(&part->stamps, *t_ns, now_ns);
   return 0;
 }
 

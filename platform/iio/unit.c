@@ -158,9 +158,9 @@ static int start_part(pf_iio_t* imu, pf_iio_part_t* part, char message[PF_IIO_ME
     return pf_iio_refuse(message, "iio:%s (%s): does not stream (%s); it may need a trigger", described->name,
                          described->id, strerror(-status));
   }
-  part->started_ns = part->last_read_ns = part->last_kept_ns = pf_iio_clock_ns(0);
-  part->last_t_ns = imu->has_last ? imu->last_t_ns : 0;
-  part->times_stale = 0;
+  part->started_ns = part->last_read_ns = pf_iio_clock_ns(0);
+  memset(&part->stamps, 0, sizeof(part->stamps));
+  pf_keep_stamp(&part->stamps, imu->has_last ? imu->last_t_ns : 0, part->started_ns);
   return 0;
 }
 

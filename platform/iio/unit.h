@@ -4,6 +4,7 @@
 
 #include <iio.h>
 #include <planefold_platform/iio.h>
+#include <planefold_platform/stamps.h>
 
 #include "buffer.h"
 
@@ -25,9 +26,7 @@ typedef struct pf_iio_part {
   pf_iio_buffer_t buffer;
   int real_time; /* 1: its times are of the real-time clock */
   int64_t started_ns, last_read_ns;
-  int64_t last_t_ns;    /* of the last scan that was kept */
-  int64_t last_kept_ns; /* when that scan was read */
-  int times_stale;      /* its times stopped growing: those of arrival are used */
+  pf_stamps_t stamps; /* of the scans that were kept */
   pf_iio_sensor_t sensor[PF_IIO_KINDS];
 } pf_iio_part_t;
 

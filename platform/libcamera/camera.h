@@ -3,6 +3,7 @@
 
 #include <libcamera/libcamera.h>
 #include <planefold_platform/libcamera.h>
+#include <planefold_platform/stamps.h>
 
 #include <condition_variable>
 #include <deque>
@@ -55,7 +56,7 @@ struct pf_libcamera {
   int64_t alive_ns = 0;   ///< when the last frame came, or the stream began
   bool has_sequence = false;
   uint32_t last_sequence = 0;
-  int64_t last_t_ns = 0;
+  pf_stamps_t stamps{};
 
   std::mutex mutex;  ///< over what libcamera's thread touches: the next two
   std::condition_variable changed;

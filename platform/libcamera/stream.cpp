@@ -34,23 +34,25 @@ void synchronise(const Slot& slot, bool begin) {
   } while (result != 0 && (errno == EINTR || errno == EAGAIN));
 }
 
-/// When a frame was taken, of CLOCK_MONOTONIC.
+/// When a frame was taken, of CLOCK_MONOTONIC. false: the frame has to be dropped.
 ///
 /// SensorTimestamp is documented as CLOCK_BOOTTIME, which runs on while the machine sleeps; most pipelines hand on the kernel's
 /// monotonic time all the same. A time that lies ahead of the monotonic clock can only be the former.
-int64_t time_of(::libcamera::Request& request, const ::libcamera::FrameMetadata& buffer, int64_t arrived_ns,
-                uint32_t& stamp) {
+bool time_of(::libcamera::Request& request, const ::libcamera::FrameMetadata& buffer, int64_t arrived_ns,
+             pf_stamps_t& stamps, uint32_t& stamp, int64_t& t_ns) {
   const auto sensor = request.metadata().get(::libcamera::controls::SensorTimestamp);
-  int64_t t_ns = sensor ? *sensor : static_cast<int64_t>(buffer.timestamp);
-  stamp = sensor ? PF_LIBCAMERA_STAMP_SENSOR : PF_LIBCAMERA_STAMP_BUFFER;
-  if (t_ns > arrived_ns) {
-    t_ns -= clock_ns(CLOCK_BOOTTIME) - clock_ns(CLOCK_MONOTONIC);
+  int64_t device_ns = sensor ? *sensor : static_cast<int64_t>(buffer.timestamp);
+  if (device_ns > arrived_ns + PF_STAMP_AHEAD_NS) {
+    device_ns -= clock_ns(CLOCK_BOOTTIME) - clock_ns(CLOCK_MONOTONIC);
   }
-  if (t_ns <= 0 || t_ns > arrived_ns) {
+  const pf_stamp_choice_t choice =
+      pf_choose_stamp(&stamps, pf_possible_stamp(device_ns, arrived_ns), arrived_ns, arrived_ns, &t_ns);
+  if (choice == PF_STAMP_ARRIVAL) {
     stamp = PF_LIBCAMERA_STAMP_ARRIVAL;
-    return arrived_ns;
+  } else if (choice == PF_STAMP_DEVICE) {
+    stamp = sensor ? PF_LIBCAMERA_STAMP_SENSOR : PF_LIBCAMERA_STAMP_BUFFER;
   }
-  return t_ns;
+  return choice != PF_STAMP_DROP;
 }
 
 /// Frames that are missing in front of this one, by its number.
@@ -87,9 +89,9 @@ bool take(pf_libcamera& camera, const Completed& done, pf_libcamera_frame_t& fra
   frame.lost_before = count_lost(camera, buffer.sequence);
   frame.buffer = static_cast<int32_t>(done.slot);
   info.lost += frame.lost_before;
-  frame.image.t_ns = time_of(*slot.request, buffer, done.arrived_ns, info.stamp);
   if (buffer.status != ::libcamera::FrameMetadata::FrameSuccess || buffer.planes().empty() ||
-      buffer.planes()[0].bytesused < bytes || frame.image.t_ns <= camera.last_t_ns) {
+      buffer.planes()[0].bytesused < bytes ||
+      !time_of(*slot.request, buffer, done.arrived_ns, camera.stamps, info.stamp, frame.image.t_ns)) {
     return false;
   }
   ::libcamera::ControlList& metadata = slot.request->metadata();
@@ -110,7 +112,7 @@ bool take(pf_libcamera& camera, const Completed& done, pf_libcamera_frame_t& fra
     frame.image.pixels = slot.grey.data();
     frame.image.stride = info.width;
   }
-  camera.last_t_ns = frame.image.t_ns;
+  pf_keep_stamp(&camera.stamps, frame.image.t_ns, frame.arrived_ns);
   slot.held = true;
   ++info.frames;
   return true;

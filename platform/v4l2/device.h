@@ -3,6 +3,7 @@
 #define PLANEFOLD_PLATFORM_V4L2_DEVICE_H
 
 #include <linux/videodev2.h>
+#include <planefold_platform/stamps.h>
 #include <planefold_platform/v4l2.h>
 
 typedef struct pf_v4l2_buffer {
@@ -26,9 +27,7 @@ struct pf_v4l2 {
   int has_sequence;
   uint32_t last_sequence;
   int hand_over_known;               /* info.direct is decided for this stream */
-  int64_t last_t_ns;                 /* of the last frame that was handed over */
-  int64_t last_arrived_ns;           /* when that frame came */
-  int stamps_stale;                  /* the driver's times stopped growing: those of arrival are used */
+  pf_stamps_t stamps;                /* of the frames that were handed over */
   int64_t fault_ns;                  /* of the driver's first failure since its stream worked; 0: it works */
   int64_t alive_ns;                  /* when a buffer last came, or the stream was last restarted */
   int restarts;                      /* since a buffer last came */

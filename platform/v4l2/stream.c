@@ -185,8 +185,7 @@ static int take(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char 
   if (!camera->info.direct) {
     pf_v4l2_sync(buffer, 0);
   }
-  camera->last_t_ns = frame->image.t_ns;
-  camera->last_arrived_ns = frame->arrived_ns;
+  pf_keep_stamp(&camera->stamps, frame->image.t_ns, frame->arrived_ns);
   buffer->held = 1;
   ++camera->info.frames;
   return PF_V4L2_FRAME;
