@@ -193,7 +193,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       "--source", options.source,
       "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, images:DIR, euroc:DIR, tum:DIR or sim:NAME");
   app.add_flag("--list", options.list, "name the cameras and IMUs of this machine, and do nothing else");
-  app.add_option("--calib", options.calibration, "calibration file (Kalibr, EuRoC, ROS camera_info or calib.yaml)");
+  app.add_option("--calib", options.calibration,
+                 "calibration file (Kalibr, EuRoC, ROS camera_info, ORB-SLAM3, KITTI or calib.yaml)");
   app.add_option("--readout", options.readout_s, "rolling shutter: seconds from the first row to the last; 0: global")
       ->check(CLI::Range(0.0, 0.2));
   app.add_option("--start", options.start,

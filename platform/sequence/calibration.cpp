@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "file.h"
+#include "numbers.h"
 #include "refuse.h"
 #include "yaml_fields.h"
 
@@ -40,6 +41,32 @@ const Fields::Known kEuroc{
 const Fields::Known kRos{
     {"image_width", "image_height", "camera_matrix", "distortion_model", "distortion_coefficients", "readout_s"},
     {"camera_name", "rectification_matrix", "projection_matrix"}};
+/// Files of ORB-SLAM hold the settings of the whole program.
+const std::vector<std::string> kOrbSlamSettings{"Camera.bf",
+                                                "Camera.RGB",
+                                                "Camera.newWidth",
+                                                "Camera.newHeight",
+                                                "Camera.imageScale",
+                                                "Camera2.*",
+                                                "Camera1.overlapping*",
+                                                "Camera2.overlapping*",
+                                                "Tlr",
+                                                "T_c1_c2",
+                                                "Tbc",
+                                                "ThDepth",
+                                                "DepthMapFactor",
+                                                "thFarPoints",
+                                                "Stereo.*",
+                                                "RGBD.*",
+                                                "IMU.*",
+                                                "ORBextractor.*",
+                                                "Viewer.*",
+                                                "System.*",
+                                                "File.version",
+                                                "LEFT.*",
+                                                "RIGHT.*",
+                                                "loopClosing"};
+const Fields::Known kKitti{{"P0", "readout_s"}, {"P1", "P2", "P3", "Tr", "Tr*"}};
 /// Those that are not used belong to other sensors of the same device.
 const Fields::Known kPlain{{"camera_model", "width", "height", "fx", "fy", "cx", "cy", "distortion_model", "distortion",
                             "rate_hz", "readout_s"},
@@ -47,6 +74,14 @@ const Fields::Known kPlain{{"camera_model", "width", "height", "fx", "fy", "cx",
                             "gyro_random_walk", "accel_noise_density", "accel_random_walk", "gravity", "depth_fx",
                             "depth_fy", "depth_cx", "depth_cy", "depth_scale_to_m"},
                            true};
+
+/// What the message about an unknown layout offers.
+constexpr const char* kLayouts =
+    "Kalibr's camchain (cam0:), EuRoC's sensor.yaml (intrinsics:, resolution:), ROS camera_info and OpenCV "
+    "(camera_matrix:), "
+    "ORB-SLAM3 (Camera1.fx:) and ORB-SLAM (Camera.fx:), KITTI's calib.txt (P0:), and the plain form (width, height, "
+    "fx, fy, cx, cy, "
+    "distortion_model)";
 
 std::string format(double value) {
   char text[32];
@@ -218,9 +253,75 @@ double read_rate(const Fields& fields, const char* key) {
   return rate;
 }
 
+/// Files of ORB-SLAM3 (prefix Camera1.) and of its predecessors (prefix Camera.).
+void read_orb_slam(const Fields& fields, const std::string& prefix, ImageSize images, Calibration& calibration) {
+  const std::string type = fields.text_or("Camera.type", "PinHole");
+  if (type != "PinHole" && type != "KannalaBrandt8" && type != "Rectified") {
+    fields.refuse_field("Camera.type", "is '" + type + "'; known are PinHole, KannalaBrandt8 and Rectified");
+  }
+  const bool fisheye = type == "KannalaBrandt8";
+  std::vector<std::string> names{"k1", "k2", "p1", "p2", "k3"};
+  if (fisheye) {
+    names = {"k1", "k2", "k3", "k4"};
+  } else if (type == "Rectified") {
+    names.clear();
+  }
+  Fields::Known known{{"Camera.type", "Camera.width", "Camera.height", "Camera.fps", "readout_s"}, kOrbSlamSettings};
+  for (const char* name : {"fx", "fy", "cx", "cy"}) {
+    known.read.push_back(prefix + name);
+  }
+  std::vector<double> coefficients;
+  for (const std::string& name : names) {
+    known.read.push_back(prefix + name);
+    coefficients.push_back(fisheye ? fields.number(prefix + name) : fields.number_or(prefix + name, 0.0));
+  }
+  calibration.warning = fields.check_keys(known);
+  calibration.rate_hz = read_rate(fields, "Camera.fps");
+  pf_camera_t& camera = calibration.camera;
+  const bool has_size = fields.has("Camera.width") || fields.has("Camera.height");
+  camera.width = has_size ? fields.integer("Camera.width") : images.width;
+  camera.height = has_size ? fields.integer("Camera.height") : images.height;
+  const std::string fx = prefix + "fx", fy = prefix + "fy", cx = prefix + "cx", cy = prefix + "cy", k1 = prefix + "k1";
+  set_intrinsics(camera, fields.number(fx), fields.number(fy), fields.number(cx), fields.number(cy));
+  set_distortion(fields, "Camera.type", k1, fisheye ? "equidistant" : "radtan", coefficients, camera);
+  if (has_size || images.width > 0) {
+    check(fields, {"Camera.width", "Camera.height", fx.c_str(), fy.c_str(), cx.c_str(), cy.c_str(), k1.c_str()},
+          camera);
+  }
+}
+
+/// calib.txt of KITTI's odometry sequences, of which P0 is the projection matrix of the left grey camera; rectified images.
+void read_kitti(const Fields& fields, ImageSize images, pf_camera_t& camera) {
+  std::vector<double> p;
+  const std::string text = fields.text("P0");
+  for (const Row& row : split_rows(text)) {
+    for (const std::string_view word : row.words) {
+      double value = 0.0;
+      if (!parse_double(word, value) || !std::isfinite(value)) {
+        fields.refuse_field("P0", "holds '" + std::string(word) + "', which is not a finite number");
+      }
+      p.push_back(value);
+    }
+  }
+  if (p.size() != 12) {
+    fields.refuse_field("P0", "has " + std::to_string(p.size()) + " numbers; a projection matrix has 12");
+  }
+  if (p[1] != 0.0 || p[3] != 0.0 || p[4] != 0.0 || p[7] != 0.0 || p[8] != 0.0 || p[9] != 0.0 || p[10] != 1.0 ||
+      p[11] != 0.0) {
+    fields.refuse_field("P0", "must have the form fx 0 cx 0, 0 fy cy 0, 0 0 1 0 (no skew, no offset)");
+  }
+  camera.model = PF_CAMERA_PINHOLE;
+  camera.width = images.width;
+  camera.height = images.height;
+  set_intrinsics(camera, p[0], p[5], p[2], p[6]);
+  if (images.width > 0) {
+    check(fields, {"P0", "P0", "P0", "P0", "P0", "P0", "P0"}, camera);
+  }
+}
+
 }  // namespace
 
-Calibration parse_calibration(const std::string& text, const std::string& file) {
+Calibration parse_calibration(const std::string& text, const std::string& file, ImageSize images) {
   const Fields fields(text, file);
   Calibration calibration{};
   calibration.camera.readout_s = read_readout(fields);
@@ -242,17 +343,38 @@ Calibration parse_calibration(const std::string& text, const std::string& file) 
     calibration.warning = fields.check_keys(kalibr ? kKalibr : kEuroc);
     read_lists(fields, kalibr ? "distortion_coeffs" : "distortion_coefficients", calibration.camera);
     calibration.rate_hz = read_rate(fields, "rate_hz");
-  } else {
+  } else if (fields.has_any({"Camera1.fx", "Camera1.fy"})) {
+    calibration.form = "orb-slam3";
+    read_orb_slam(fields, "Camera1.", images, calibration);
+  } else if (fields.has_any({"Camera.fx", "Camera.fy"})) {
+    calibration.form = "orb-slam";
+    read_orb_slam(fields, "Camera.", images, calibration);
+  } else if (fields.has("P0")) {
+    calibration.form = "kitti";
+    calibration.warning = fields.check_keys(kKitti);
+    read_kitti(fields, images, calibration.camera);
+  } else if (fields.has_any({"width", "height", "fx", "fy", "cx", "cy", "camera_model", "distortion_model"})) {
     calibration.form = "plain";
     calibration.warning = fields.check_keys(kPlain);
     read_plain(fields, calibration.camera);
     calibration.rate_hz = read_rate(fields, "rate_hz");
+  } else {
+    refuse(file + ": is a calibration of no known layout; known are " + kLayouts);
   }
   return calibration;
 }
 
-Calibration read_calibration(const std::string& path) {
-  return parse_calibration(read_text(path, kMaxYamlBytes, "calibration"), path);
+Calibration read_calibration(const std::string& path, ImageSize images) {
+  return parse_calibration(read_text(path, kMaxYamlBytes, "calibration"), path, images);
+}
+
+void require_image_size(const Calibration& calibration, const std::string& file) {
+  if (calibration.camera.width == 0) {
+    refuse(file +
+           ": does not say the size of the images, which is known only where it is read with a folder of images; " +
+           (calibration.form == std::string("kitti") ? "write its numbers into a calib.yaml with width and height"
+                                                     : "add Camera.width and Camera.height"));
+  }
 }
 
 }  // namespace pf::sequence

@@ -34,12 +34,25 @@ fs::path inside(const fs::path& folder, const fs::path& table, const Row& row, s
   return folder / relative;
 }
 
-/// Rows of "time name" or "index time name" to frames; times must grow.
-std::vector<Frame> read_table(const fs::path& table, const fs::path& images, Times times) {
-  const std::string text = read_text(table, kMaxTableBytes, "times");
+/// Appends a frame; times must grow.
+/// where  for messages: file and line
+void append(std::vector<Frame>& frames, const std::string& where, std::string_view time, int64_t t_ns, fs::path path) {
+  if (!frames.empty() && t_ns <= frames.back().t_ns) {
+    refuse(where + "the time " + std::string(time) + (t_ns == frames.back().t_ns ? " repeats" : " runs back") +
+           "; times must grow from frame to frame");
+  }
+  frames.push_back({t_ns, std::move(path)});
+}
+
+std::string line_of(const fs::path& table, const Row& row) {
+  return table.string() + " line " + std::to_string(row.number) + ": ";
+}
+
+/// Rows of "time name" or "index time name" to frames.
+std::vector<Frame> read_table(const fs::path& table, const std::string& text, const fs::path& images, Times times) {
   std::vector<Frame> frames;
   for (const Row& row : split_rows(text)) {
-    const std::string where = table.string() + " line " + std::to_string(row.number) + ": ";
+    const std::string where = line_of(table, row);
     if (row.words.size() < 2) {
       refuse(where + "expected a time and an image name, found '" + std::string(row.words[0]) + "'");
     }
@@ -49,14 +62,47 @@ std::vector<Frame> read_table(const fs::path& table, const fs::path& images, Tim
       refuse(where + "'" + std::string(row.words[at]) + "' is not a time in " +
              (times == Times::kSeconds ? "seconds" : "whole nanoseconds"));
     }
-    if (!frames.empty() && t_ns <= frames.back().t_ns) {
-      refuse(where + "the time " + std::string(row.words[at]) +
-             (t_ns == frames.back().t_ns ? " repeats" : " runs back") + "; times must grow from frame to frame");
-    }
-    frames.push_back({t_ns, inside(images, table, row, row.words[at + 1])});
+    append(frames, where, row.words[at], t_ns, inside(images, table, row, row.words[at + 1]));
   }
   if (frames.empty()) {
     refuse(table.string() + ": lists no frame");
+  }
+  return frames;
+}
+
+std::vector<Frame> read_table(const fs::path& table, const fs::path& images, Times times) {
+  return read_table(table, read_text(table, kMaxTableBytes, "times"), images, times);
+}
+
+/// KITTI's times.txt holds seconds alone, as 1.036224e-01.
+bool has_times_alone(const std::string& text) {
+  const std::vector<Row> rows = split_rows(text);
+  double first = 0.0;
+  return !rows.empty() && parse_double(rows[0].words[0], first) &&
+         std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.words.size() == 1; });
+}
+
+/// Seconds, one a row, to frames.
+/// names  images in their order, as many as there are times
+std::vector<Frame> read_times_alone(const fs::path& table, const std::string& text, const fs::path& images,
+                                    const std::vector<std::string>& names) {
+  const std::vector<Row> rows = split_rows(text);
+  if (rows.size() != names.size()) {
+    refuse(table.string() + ": has " + std::to_string(rows.size()) + " times for " + std::to_string(names.size()) +
+           " images in " + images.string() + "; without names in it there must be as many of both");
+  }
+  std::vector<Frame> frames;
+  for (const Row& row : rows) {
+    const std::string_view word = row.words[0];
+    int64_t t_ns = 0;
+    double seconds = 0.0;
+    if (!parse_seconds(word, t_ns)) {
+      if (!parse_double(word, seconds) || !(std::fabs(seconds) < 9e9)) {
+        refuse(line_of(table, row) + "'" + std::string(word) + "' is not a time in seconds");
+      }
+      t_ns = std::llround(1e9 * seconds);
+    }
+    append(frames, line_of(table, row), word, t_ns, images / names[frames.size()]);
   }
   return frames;
 }
@@ -159,11 +205,21 @@ std::vector<std::string> one_kind(const fs::path& images, const std::vector<std:
 void open_images(Folder& folder, const std::string& calibration) {
   const fs::path& root = folder.root;
   find_calibration(folder, calibration, root,
-                   {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml"});
-  const fs::path images = is_folder(root / "images") ? root / "images" : root;
+                   {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml", "calib.txt"});
+  fs::path images = root;
+  for (const char* below : {"image_0", "images"}) {
+    images = is_folder(root / below) ? root / below : images;
+  }
   const fs::path times = root / "times.txt";
   if (is_file(times)) {
-    folder.frames = read_table(times, images, Times::kSeconds);
+    const std::string text = read_text(times, kMaxTableBytes, "times");
+    if (has_times_alone(text)) {
+      std::string choice;
+      folder.frames = read_times_alone(times, text, images, one_kind(images, list_images(images), choice));
+      folder.warning = choice.empty() ? "" : times.string() + ": names no images" + choice;
+    } else {
+      folder.frames = read_table(times, text, images, Times::kSeconds);
+    }
   } else {
     const double rate = folder.calibration.rate_hz > 0.0 ? folder.calibration.rate_hz : 30.0;
     std::string choice;

@@ -94,8 +94,8 @@ void require_type(pf_sequence& sequence, const pf::sequence::Frame& frame) {
   }
 }
 
-/// A camera of which only the size is known, that of the first image that can be used.
-pf_camera_t uncalibrated_camera(pf_sequence& sequence) {
+/// Size of the first image that can be used.
+pf::sequence::ImageSize size_of_images(pf_sequence& sequence) {
   std::string first_error;
   for (const pf::sequence::Frame& frame : sequence.folder.frames) {
     try {
@@ -109,10 +109,15 @@ pf_camera_t uncalibrated_camera(pf_sequence& sequence) {
   if (!first_error.empty()) {
     refuse(first_error);
   }
+  return {sequence.image.width, sequence.image.height};
+}
+
+/// A camera of which only the size is known.
+pf_camera_t uncalibrated_camera(pf::sequence::ImageSize size) {
   pf_camera_t camera{};
   camera.model = PF_CAMERA_PINHOLE;
-  camera.width = sequence.image.width;
-  camera.height = sequence.image.height;
+  camera.width = size.width;
+  camera.height = size.height;
   camera.fx = camera.fy = camera.width;
   camera.cx = 0.5 * (camera.width - 1);
   camera.cy = 0.5 * (camera.height - 1);
@@ -137,13 +142,15 @@ int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t*
     opened->folder = pf::sequence::open_folder(source, calibration != nullptr ? calibration : "");
     opened->root = opened->folder.root.string();
     opened->calibration_path = opened->folder.calibration_path.string();
-    if (opened->folder.warning.empty()) {
-      opened->folder.warning = opened->folder.calibration.warning;
-    }
     opened->truth_path = opened->folder.truth_path.string();
     opened->imu_path = opened->folder.imu_path.string();
     if (calibration != nullptr && std::string(calibration) == PF_SEQUENCE_UNCALIBRATED) {
-      opened->folder.calibration.camera = uncalibrated_camera(*opened);
+      opened->folder.calibration.camera = uncalibrated_camera(size_of_images(*opened));
+    } else if (opened->folder.calibration.camera.width == 0) {
+      opened->folder.calibration = pf::sequence::read_calibration(opened->calibration_path, size_of_images(*opened));
+    }
+    if (opened->folder.warning.empty()) {
+      opened->folder.warning = opened->folder.calibration.warning;
     }
     *sequence = opened.release();
   });
@@ -215,6 +222,7 @@ int pf_parse_calibration(const char* text, size_t size, const char* name, pf_cam
     require(camera, "camera");
     const auto calibration =
         pf::sequence::parse_calibration(std::string(text, size), name != nullptr ? name : "calibration");
+    pf::sequence::require_image_size(calibration, name != nullptr ? name : "calibration");
     *camera = calibration.camera;
     if (rate_hz != nullptr) {
       *rate_hz = calibration.rate_hz;
@@ -228,6 +236,7 @@ int pf_read_calibration(const char* path, pf_camera_t* camera, double* rate_hz, 
     require(path, "path");
     require(camera, "camera");
     const auto calibration = pf::sequence::read_calibration(path);
+    pf::sequence::require_image_size(calibration, path);
     *camera = calibration.camera;
     if (rate_hz != nullptr) {
       *rate_hz = calibration.rate_hz;

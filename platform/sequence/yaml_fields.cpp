@@ -75,8 +75,35 @@ size_t unlikeness(const std::string& found, const std::string& known) {
   return edits(lower, known) + (known.size() < 4 ? 1 : 0);
 }
 
+/// Text of OpenCV's FileStorage, which begins with %YAML:1.0, as YAML: there "name:2" is a field, and files of ORB-SLAM2 have such.
+std::string from_opencv(const std::string& text) {
+  if (text.compare(0, 6, "%YAML:") != 0) {
+    return text;
+  }
+  std::string yaml;
+  bool in_name = true;  // since the line began, only letters that names have
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    yaml += c;
+    if (c == ':' && in_name && i > 0 && i + 1 < text.size() && text[i - 1] != '\n' &&
+        std::isspace(static_cast<unsigned char>(text[i + 1])) == 0) {
+      yaml += ' ';
+    }
+    in_name = c == '\n' ||
+              (in_name && (c == ' ' || c == '_' || c == '.' || std::isalnum(static_cast<unsigned char>(c)) != 0));
+  }
+  return yaml;
+}
+
 bool contains(const std::vector<std::string>& list, const std::string& word) {
   return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+bool matches(const std::vector<std::string>& patterns, const std::string& word) {
+  return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
+    return pattern.back() == '*' ? word.compare(0, pattern.size() - 1, pattern, 0, pattern.size() - 1) == 0
+                                 : word == pattern;
+  });
 }
 
 }  // namespace
@@ -86,7 +113,7 @@ Fields::Fields(const std::string& text, const std::string& file) : file_(file) {
     refuse(file + ": is not a YAML file of the expected kind (too large, too deep, or binary)");
   }
   try {
-    node_ = YAML::Load(text);
+    node_ = YAML::Load(from_opencv(text));
   } catch (const YAML::Exception& error) {
     refuse(file + ": is not valid YAML: " + one_line(error.what()));
   }
@@ -112,7 +139,7 @@ std::string Fields::check_keys(const Known& known) const {
       continue;
     }
     found.push_back(key);
-    if (read || contains(known.unused, key)) {
+    if (read || matches(known.unused, key)) {
       continue;
     }
     const auto nearest = std::min_element(known.read.begin(), known.read.end(), [&](const auto& a, const auto& b) {
@@ -149,6 +176,10 @@ YAML::Node Fields::at(const std::string& key) const {
 bool Fields::has(const std::string& key) const {
   const YAML::Node found = static_cast<const YAML::Node&>(node_)[key];
   return found.IsDefined() && !found.IsNull();
+}
+
+bool Fields::has_any(const std::vector<std::string>& keys) const {
+  return std::any_of(keys.begin(), keys.end(), [&](const std::string& key) { return has(key); });
 }
 
 Fields Fields::below(const std::string& key) const {

@@ -19,6 +19,7 @@ class Fields {
   Fields(const std::string& text, const std::string& file);
 
   bool has(const std::string& key) const;
+  bool has_any(const std::vector<std::string>& keys) const;
   /// The map below a key; its fields are named "key.field" in messages.
   Fields below(const std::string& key) const;
   std::string text(const std::string& key) const;
@@ -31,7 +32,8 @@ class Fields {
   /// A list of lists of finite numbers.
   std::vector<std::vector<double>> rows(const std::string& key, size_t limit, size_t columns) const;
 
-  /// What the map may hold: the keys that are read, and others that are known and not used here.
+  /// What the map may hold: the keys that are read, and others that are known and not used here; of these, one that ends in * stands
+  /// for all that begin so.
   struct Known {
     std::vector<std::string> read, unused;
     bool ours = false;  ///< a form of this project, in which any other key is a mistake

@@ -30,6 +30,29 @@ const char* const kRos =
     "cols: 5\n"
     "  data: [0.1, -0.2, 0.001, 0.002, 0.05]\n";
 
+const char* const kOrbSlam3 =
+    "%YAML:1.0\n\n#----\n# Camera Parameters\n#----\nFile.version: \"1.0\"\n\nCamera.type: \"PinHole\"\n\n"
+    "Camera1.fx: 458.654\nCamera1.fy: 457.296\nCamera1.cx: 367.215\nCamera1.cy: 248.375\n"
+    "Camera1.k1: -0.28340811\nCamera1.k2: 0.07395907\nCamera1.p1: 0.00019359\nCamera1.p2: 1.76187114e-05\n"
+    "Camera2.fx: 457.587\nCamera.width: 752\nCamera.height: 480\nCamera.newWidth: 600\nCamera.newHeight: 350\n"
+    "Camera.fps: 20\nCamera.RGB: 1\nStereo.ThDepth: 60.0\nStereo.T_c1_c2: !!opencv-matrix\n  rows: 4\n  cols: 4\n"
+    "  dt: f\n  data: [1.0,0,0,0.1,\n         0,1.0,0,0,\n         0,0,1.0,0,\n         0,0,0,1.000000000000000]\n"
+    "IMU.NoiseGyro: 1.7e-04\nORBextractor.nFeatures: 1200\nViewer.KeyFrameSize: 0.05\nSystem.thFarPoints: 20.0\n";
+const char* const kOrbSlam =
+    "%YAML:1.0\n---\nCamera.fx: 517.306408\nCamera.fy: 516.469215\nCamera.cx: 318.643040\nCamera.cy: 255.313989\n"
+    "Camera.k1: 0.262383\nCamera.k2: -0.953104\nCamera.p1: -0.005358\nCamera.p2: 0.002628\nCamera.k3: 1.163314\n"
+    "Camera.width: 640\nCamera.height: 480\nCamera.fps: 30.0\nCamera.bf: 40.0\nCamera.RGB: 1\nThDepth: 40.0\n"
+    "DepthMapFactor: 5000.0\nORBextractor.nLevels: 8\nViewer.PointSize:2\n";
+const char* const kKitti =
+    "P0: 7.188560000000e+02 0.000000000000e+00 6.071928000000e+02 0.000000000000e+00 0.000000000000e+00 "
+    "7.188560000000e+02 "
+    "1.852157000000e+02 0.000000000000e+00 0.000000000000e+00 0.000000000000e+00 1.000000000000e+00 "
+    "0.000000000000e+00\n"
+    "P1: 7.188560000000e+02 0 6.071928000000e+02 -3.861448000000e+02 0 7.188560000000e+02 1.852157000000e+02 0 0 0 1 "
+    "0\n"
+    "Tr: 4.27e-04 -9.99e-01 -8.08e-03 -1.19e-02 -7.21e-03 8.08e-03 -9.99e-01 -5.40e-02 9.99e-01 4.85e-04 -7.20e-03 "
+    "-0.29\n";
+
 pf_camera_t read(const std::string& text) {
   pf_camera_t camera;
   char message[PF_SEQUENCE_MESSAGE];
@@ -116,6 +139,71 @@ static void test_plain_should_be_read_in_its_four_models() {
   const pf_camera_t division = model("harris_division", "[9e-06]");
   TEST_ASSERT_EQUAL_INT(PF_CAMERA_DIVISION, division.model);
   TEST_ASSERT_EQUAL_DOUBLE(9e-06, division.distortion[0]);
+}
+
+static void test_orb_slam3_should_be_read_in_its_three_models() {
+  pf_camera_t c;
+  double rate = 0.0;
+  char message[PF_SEQUENCE_MESSAGE] = "x";
+  const int done = pf_parse_calibration(kOrbSlam3, std::strlen(kOrbSlam3), "EuRoC.yaml", &c, &rate, message);
+  TEST_ASSERT_EQUAL_INT_MESSAGE(0, done, message);
+  TEST_ASSERT_EQUAL_STRING("", message);
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_RADTAN, c.model);
+  TEST_ASSERT_EQUAL_INT(752, c.width);
+  TEST_ASSERT_EQUAL_INT(480, c.height);
+  TEST_ASSERT_EQUAL_DOUBLE(458.654, c.fx);
+  TEST_ASSERT_EQUAL_DOUBLE(248.375, c.cy);
+  TEST_ASSERT_EQUAL_DOUBLE(0.07395907, c.distortion[1]);
+  TEST_ASSERT_EQUAL_DOUBLE(1.76187114e-05, c.distortion[3]);
+  TEST_ASSERT_EQUAL_DOUBLE(0.0, c.distortion[4]);
+  TEST_ASSERT_EQUAL_DOUBLE(20.0, rate);
+  const std::string fisheye = with(with(with(kOrbSlam3, "PinHole", "KannalaBrandt8"), "Camera1.p1:", "Camera1.k3:"),
+                                   "Camera1.p2:", "Camera1.k4:");
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_EQUIDISTANT, read(fisheye).model);
+  TEST_ASSERT_EQUAL_DOUBLE(0.00019359, read(fisheye).distortion[2]);
+  const std::string rectified =
+      "Camera.type: Rectified\nCamera1.fx: 400\nCamera1.fy: 400\nCamera1.cx: 320\nCamera1.cy: 240\n"
+      "Camera.width: 640\nCamera.height: 480\n";
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_PINHOLE, read(rectified).model);
+}
+
+static void test_orb_slam_of_before_should_be_read() {
+  const pf_camera_t c = read(kOrbSlam);
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_RADTAN, c.model);
+  TEST_ASSERT_EQUAL_DOUBLE(516.469215, c.fy);
+  TEST_ASSERT_EQUAL_DOUBLE(0.002628, c.distortion[3]);
+  TEST_ASSERT_EQUAL_DOUBLE(1.163314, c.distortion[4]);
+}
+
+static void test_orb_slam_should_name_the_field_when_it_is_bad() {
+  refused(with(kOrbSlam3, "Camera1.cy: 248.375\n", ""), "'Camera1.cy'");
+  refused(with(kOrbSlam3, "458.654", "0"), "'Camera1.fx'");
+  refused(with(kOrbSlam3, "Camera.height: 480\n", ""), "'Camera.height'");
+  refused(with(kOrbSlam3, "Camera1.k1:", "Camera1.k7:"), "'Camera1.k7'");
+  refused(with(kOrbSlam3, "PinHole", "Omni"), "'Camera.type'");
+  refused(with(kOrbSlam3, "PinHole", "KannalaBrandt8"), "'Camera1.k3'");
+  refused(with(kOrbSlam3, "Camera1.p1: 0.00019359", "Camera1.p1: .nan"), "'Camera1.p1'");
+  refused(std::string(kOrbSlam) + "Camera.fx: 500\n", "'Camera.fx'");
+  refused(with(with(kOrbSlam, "Camera.width: 640\n", ""), "Camera.height: 480\n", ""), "Camera.width");
+}
+
+static void test_kitti_should_be_read_with_images_only_and_name_what_is_bad() {
+  // Alone it does not say how large the images are.
+  refused(kKitti, "size of the images");
+  refused(with(kKitti, "P0: 7.188560000000e+02 ", "P0: "), "'P0'");
+  refused(with(kKitti, "P0: 7.188560000000e+02 0.", "P0: 7.188560000000e+02 3."), "'P0'");
+  refused(with(kKitti, "P0: 7.188560000000e+02", "P0: fx"), "'P0'");
+  refused(with(kKitti, "P0: 7.188560000000e+02", "P0: nan"), "'P0'");
+  refused("P0: [1, 2]\n", "'P0'");
+}
+
+static void test_layout_should_be_refused_with_the_list_of_known_ones_when_nobody_knows_it() {
+  for (const char* text : {"calib_time: 09-Jan-2012 13:57:47\nS_00: 1.392e+03 5.12e+02\n", "lens: 8 mm\n",
+                           "cameras:\n- camera: {label: left}\n", "value0: {intrinsics: []}\n"}) {
+    for (const char* layout : {"Kalibr", "EuRoC", "ROS", "ORB-SLAM3", "KITTI", "plain"}) {
+      refused(text, layout);
+    }
+  }
 }
 
 static void test_readout_should_be_read_in_every_form() {
@@ -289,6 +377,11 @@ int main() {
   RUN_TEST(test_euroc_should_be_read_with_its_rate);
   RUN_TEST(test_ros_should_be_read_in_its_three_models);
   RUN_TEST(test_plain_should_be_read_in_its_four_models);
+  RUN_TEST(test_orb_slam3_should_be_read_in_its_three_models);
+  RUN_TEST(test_orb_slam_of_before_should_be_read);
+  RUN_TEST(test_orb_slam_should_name_the_field_when_it_is_bad);
+  RUN_TEST(test_kitti_should_be_read_with_images_only_and_name_what_is_bad);
+  RUN_TEST(test_layout_should_be_refused_with_the_list_of_known_ones_when_nobody_knows_it);
   RUN_TEST(test_readout_should_be_read_in_every_form);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_missing);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_absurd);

@@ -77,6 +77,35 @@ static void test_euroc_should_open_from_any_of_its_folders() {
   }
 }
 
+static void test_kitti_should_open_with_the_size_of_its_images() {
+  TemporaryFolder folder;
+  folder.write("calib.txt", "P0: 30.5 0 15.25 0 0 31 16 0 0 0 1 0\nP1: 30.5 0 15.25 -16 0 31 16 0 0 0 1 0\n");
+  folder.write("times.txt", "0.000000e+00\n1.036224e-01\n2.072484e-01\n");
+  for (int i = 0; i < 3; ++i) {
+    folder.write("image_0/00000" + std::to_string(i) + ".png", grey_png(static_cast<uint8_t>(i)));
+    folder.write("image_1/00000" + std::to_string(i) + ".png", grey_png(9));
+  }
+  Opened opened("images:" + folder.path());
+  TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+  TEST_ASSERT_EQUAL_STRING("", opened.info.warning);
+  TEST_ASSERT_EQUAL_STRING("kitti", opened.info.calibration_form);
+  TEST_ASSERT_EQUAL_INT64(3, opened.info.count);
+  TEST_ASSERT_EQUAL_INT(32, opened.info.camera.width);
+  TEST_ASSERT_EQUAL_INT(32, opened.info.camera.height);
+  TEST_ASSERT_EQUAL_DOUBLE(31.0, opened.info.camera.fy);
+  TEST_ASSERT_EQUAL_INT64(207248400, opened.read(2).t_ns);
+  TEST_ASSERT_EQUAL_UINT8(2, opened.read(2).pixels[0]);
+  folder.write("times.txt", "0.000000e+00\n1.036224e-01\n");
+  open_refused("images:" + folder.path(), "2 times for 3 images");
+  folder.write("times.txt", "0.000000e+00\n1.036224e-01\n1.036224e-01\n");
+  open_refused("images:" + folder.path(), "line 3: the time 1.036224e-01 repeats");
+  folder.write("times.txt", "0.000000e+00\n1.036224e-01\ninf\n");
+  open_refused("images:" + folder.path(), "line 3");
+  folder.write("times.txt", "0.000000e+00\n1.036224e-01\n2.072484e-01\n");
+  folder.write("calib.txt", "P0: 30.5 0 15.25 0 0 31 99 0 0 0 1 0\n");
+  open_refused("images:" + folder.path(), "'P0'");
+}
+
 static void test_tum_should_open_with_a_calibration_that_is_given() {
   TemporaryFolder folder;
   folder.write("rgb.txt", "# color images\n1305031102.175304 rgb/1305031102.175304.png\n");
@@ -174,6 +203,7 @@ int main() {
   RUN_TEST(test_images_folder_should_give_frames_with_exact_times);
   RUN_TEST(test_images_folder_should_warn_and_use_the_rate_when_it_has_no_times);
   RUN_TEST(test_euroc_should_open_from_any_of_its_folders);
+  RUN_TEST(test_kitti_should_open_with_the_size_of_its_images);
   RUN_TEST(test_tum_should_open_with_a_calibration_that_is_given);
   RUN_TEST(test_times_should_be_refused_when_they_repeat_run_back_or_are_no_times);
   RUN_TEST(test_source_should_be_refused_when_its_folder_is_missing_or_no_folder);

@@ -35,14 +35,15 @@ typedef struct pf_sequence_info {
   double rate_hz;     /* as the calibration says, or else from the times */
   const char* folder; /* these six are valid until the sequence is closed; "" where there is none */
   const char* calibration_path;
-  const char* calibration_form; /* "kalibr", "euroc", "ros", "plain" or "none" */
+  const char* calibration_form; /* "kalibr", "euroc", "ros", "orb-slam3", "orb-slam", "kitti", "plain" or "none" */
   const char* truth_path;       /* a trajectory beside the images: TUM, or EuRoC's data.csv of the body */
   const char* warning;          /* one line on what had to be assumed */
   const char* imu_path;         /* inertial samples beside the images, for pf_read_imu */
 } pf_sequence_info_t;
 
 /* Sources:
- *   images:DIR  images/ (or the images themselves), times.txt (index seconds name, or seconds name), calib.yaml. Without
+ *   images:DIR  images/ (or image_0/, or the images themselves), times.txt (index seconds name, seconds name, or seconds alone in
+ *               the order of the images' names), calib.yaml or KITTI's calib.txt. Without
  *               times.txt the names are taken in natural order at the calibration's rate_hz, or 30 Hz, with a warning. Where images of
  *               several kinds lie side by side (frame-000000.color.png, frame-000000.depth.png), those in colour or grey are taken.
  *   euroc:DIR   mav0/cam0/data, data.csv and sensor.yaml; DIR may also be mav0 or cam0, or of the layout above.
@@ -67,9 +68,12 @@ int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* i
 /* File of a frame, for messages. */
 const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t index);
 
-/* A calibration file: Kalibr camchain (cam0), EuRoC sensor.yaml, ROS camera_info, or the plain form
+/* A calibration file: Kalibr camchain (cam0), EuRoC sensor.yaml, ROS camera_info, settings of ORB-SLAM3 (Camera1.) or ORB-SLAM
+ * (Camera.), KITTI calib.txt (P0), or the plain form
  *   camera_model: pinhole / width / height / fx / fy / cx / cy /
  *   distortion_model: none | radtan | equidistant | harris_division / distortion: [..] / rate_hz (optional)
+ * KITTI's file does not say the size of the images, and those of ORB-SLAM not always: such a file is read by pf_open_sequence only,
+ * which takes the size of the first image.
  * Each may have readout_s, of a rolling shutter [s]. rate_hz (may be null) is 0 where the file does not say it. A field that is there
  * twice or looks like a misspelled one is refused, and so is an unknown one of the plain form; with 0, message is a line on what else was
  * ignored, or empty. */
