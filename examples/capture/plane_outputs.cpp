@@ -28,14 +28,18 @@ std::string to_ply(const std::vector<pf_feature_t>& features, const std::vector<
          "comment the last %zu vertices are the corners of planes, in the planes' colours, with their ids\n"
          "element vertex %zu\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\n"
          "property uchar green\nproperty uchar blue\nproperty float sigma\nproperty uint id\n"
-         "property int observations\nproperty uchar inverse_depth\n%selement face %zu\n"
-         "property list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
-         "property uint id\nend_header\n",
+         "property int observations\nproperty uchar inverse_depth\n%s",
          corners, features.size() + corners,
          in_map ? "comment the next is sigma without the place, turn and scale that the whole map shares\n"
                   "property float sigma_in_map\n"
-                : "",
-         faces);
+                : "");
+  if (faces > 0) {  // trimesh fails on an element of which there is none
+    append(text,
+           "element face %zu\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\n"
+           "property uchar blue\nproperty uint id\n",
+           faces);
+  }
+  append(text, "end_header\n");
   for (size_t i = 0; i < features.size(); ++i) {
     const pf_feature_t& f = features[i];
     const bool depth = f.kind == PF_FEATURE_INVERSE_DEPTH;
