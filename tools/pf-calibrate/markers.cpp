@@ -1,6 +1,8 @@
 #include "markers.h"
 
-#ifdef PLANEFOLD_HAVE_ARUCO
+#if defined(PLANEFOLD_ARUCO_OF_OBJDETECT)
+#include <opencv2/objdetect/aruco_detector.hpp>
+#elif defined(PLANEFOLD_HAVE_ARUCO)
 #include <opencv2/aruco.hpp>
 #endif
 
@@ -55,12 +57,37 @@ int marker_in_square(const Board& board, int column, int row) {
 
 #ifdef PLANEFOLD_HAVE_ARUCO
 
+namespace {
+
+/// OpenCV 4.7 took the markers over from its contributed modules, with another interface.
+#ifdef PLANEFOLD_ARUCO_OF_OBJDETECT
+cv::aruco::Dictionary opencv_dictionary(const Board& board) {
+  return cv::aruco::getPredefinedDictionary(dictionary_of(board).number);
+}
+
+void detect(const cv::Mat& grey, const Board& board, std::vector<std::vector<cv::Point2f>>& corners,
+            std::vector<int>& numbers) {
+  cv::aruco::ArucoDetector(opencv_dictionary(board)).detectMarkers(grey, corners, numbers);
+}
+#else
+cv::aruco::Dictionary opencv_dictionary(const Board& board) {
+  return *cv::aruco::Dictionary::get(dictionary_of(board).number);
+}
+
+void detect(const cv::Mat& grey, const Board& board, std::vector<std::vector<cv::Point2f>>& corners,
+            std::vector<int>& numbers) {
+  cv::aruco::detectMarkers(grey, cv::aruco::Dictionary::get(dictionary_of(board).number), corners, numbers);
+}
+#endif
+
+}  // namespace
+
 bool have_markers() { return true; }
 
 std::vector<Marker> find_markers(const cv::Mat& grey, const Board& board) {
   std::vector<std::vector<cv::Point2f>> corners;
   std::vector<int> numbers;
-  cv::aruco::detectMarkers(grey, cv::aruco::Dictionary::get(dictionary_of(board).number), corners, numbers);
+  detect(grey, board, corners, numbers);
   std::vector<Marker> markers;
   for (size_t i = 0; i < numbers.size(); ++i) {
     markers.push_back({numbers[i], {corners[i][0], corners[i][1], corners[i][2], corners[i][3]}});
@@ -69,9 +96,8 @@ std::vector<Marker> find_markers(const cv::Mat& grey, const Board& board) {
 }
 
 cv::Mat marker_modules(const Board& board, int number) {
-  const cv::Ptr<cv::aruco::Dictionary> dictionary = cv::aruco::Dictionary::get(dictionary_of(board).number);
-  const cv::Mat bits =
-      cv::aruco::Dictionary::getBitsFromByteList(dictionary->bytesList.rowRange(number, number + 1), 4);
+  const cv::Mat bytes = opencv_dictionary(board).bytesList.rowRange(number, number + 1);
+  const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(bytes, 4);
   cv::Mat modules = cv::Mat::zeros(6, 6, CV_8U);
   bits.copyTo(modules(cv::Rect(1, 1, 4, 4)));
   return modules;
