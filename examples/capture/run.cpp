@@ -339,7 +339,7 @@ std::string Run::why_nothing_was_tracked() const {
   if (statistics_.unusable() == statistics_.frames()) {
     return "none of the " + frames + " frames has usable content (black, white or blurred out); look at the images";
   }
-  if (statistics_.frames() > 1 && statistics_.frozen() == statistics_.frames() - 1) {
+  if (statistics_.frames() > 1 && statistics_.duplicates() == statistics_.frames() - 1) {
     return "all " + frames + " frames are the same picture; is the camera frozen?";
   }
   if (session_.target() != nullptr) {
@@ -380,7 +380,7 @@ int Run::finish() {
   }
   if (statistics_.tracked() == 0 && failure_.empty()) {
     failure_ = why_nothing_was_tracked();
-  } else if (failure_.empty() && statistics_.frames() > 1 && statistics_.frozen() == statistics_.frames() - 1) {
+  } else if (failure_.empty() && statistics_.frames() > 1 && statistics_.duplicates() == statistics_.frames() - 1) {
     failure_ = why_nothing_was_tracked();
   }
   int64_t turn_ns = 0, images = 0;

@@ -19,14 +19,6 @@ using Json = nlohmann::ordered_json;
 
 double rounded(double value) { return std::round(value * 1e5) / 1e5; }
 
-uint64_t hash(const std::vector<uint8_t>& bytes) {
-  uint64_t value = 1469598103934665603u;  // FNV-1a
-  for (uint8_t byte : bytes) {
-    value = (value ^ byte) * 1099511628211u;
-  }
-  return value;
-}
-
 /// Fewer than four grey levels between the darkest and the brightest hundredth.
 bool is_flat(const std::vector<uint8_t>& pixels) {
   size_t counts[256] = {};
@@ -83,9 +75,7 @@ Json camera_json(const pf_camera_t& camera) {
 
 void Statistics::add(const FrameView& view) {
   const pf_report_t& report = view.report;
-  const uint64_t pixels = hash(view.pixels);
-  frozen_ += frames_ > 0 && pixels == last_hash_ ? 1 : 0;
-  last_hash_ = pixels;
+  duplicates_ += report.duplicates > last_report_.duplicates ? 1 : 0;  // the library counts anew after a reset
   flat_ += is_flat(view.pixels) ? 1 : 0;
   if (view.tracked) {
     ++tracked_;
@@ -163,7 +153,7 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["unusable"] = unusable_ + unreadable_;
   json["unreadable"] = unreadable_lines_;
   json["flat"] = flat_;
-  json["frozen"] = frozen_;
+  json["duplicates"] = duplicates_;
   json["ms_per_frame"] = {
       {"median", rounded(ms_.quantile(0.5))}, {"p95", rounded(ms_.quantile(0.95))}, {"max", rounded(ms_.largest())}};
   json["ms_by_stage"] = stages;

@@ -34,7 +34,7 @@ class Statistics {
   std::string unreadable_line() const;
   int64_t start_frame() const { return start_frame_; }
   /// Frames whose pixels all equal those of the frame before.
-  int64_t frozen() const { return frozen_; }
+  int64_t duplicates() const { return duplicates_; }
 
   /// live   JSON of the source's own report, or ""
   /// imu    JSON of what came from the inertial unit, or ""
@@ -54,7 +54,7 @@ class Statistics {
   int64_t unusable_ = 0;
   int64_t unreadable_ = 0;
   std::vector<std::string> unreadable_lines_;  ///< of the first of them
-  int64_t frozen_ = 0;
+  int64_t duplicates_ = 0;
   int64_t flat_ = 0;
   int64_t resets_ = 0;
   int64_t turn_ns_ = 0;
@@ -64,7 +64,6 @@ class Statistics {
   int64_t new_features_ = 0;
   double nis_ = 0.0;
   int64_t nis_dof_ = 0;
-  uint64_t last_hash_ = 0;
   int32_t last_state_ = PF_STATE_STARTING;
   pf_report_t last_report_{};
   std::vector<PlaneView> last_planes_;

@@ -109,6 +109,52 @@ void test_a_covered_lens_should_be_called_lost_and_tracking_should_resume_when_t
   TEST_ASSERT_TRUE(run.worst_error(again) < 0.05);
 }
 
+void test_a_repeated_image_should_repeat_pose_and_status_and_the_next_one_should_be_tracked() {
+  RenderedRun run("desk", 100, Start::kRectangle);
+  TEST_ASSERT_EQUAL_INT(60, run.tracked_until(60));
+  for (int k = 0; k < 20; ++k) {
+    TEST_ASSERT_TRUE(run.step());
+    TEST_ASSERT_EQUAL_INT(PF_OK, run.frames.back().status);
+    const RenderedRun::Frame before = run.frames.back();
+    TEST_ASSERT_TRUE(run.freeze());
+    const RenderedRun::Frame& f = run.frames.back();
+    TEST_ASSERT_EQUAL_INT(PF_OK, f.status);
+    TEST_ASSERT_EQUAL_INT(PF_STATE_TRACKING, f.state);
+    TEST_ASSERT_EQUAL_INT64(k + 1, f.report.duplicates);
+    TEST_ASSERT_TRUE(f.pose.t_ns == f.report.t_ns && f.pose.t_ns > before.pose.t_ns);
+    TEST_ASSERT_EQUAL_MEMORY(before.pose.p_WC, f.pose.p_WC, sizeof(f.pose.p_WC));
+    TEST_ASSERT_EQUAL_MEMORY(before.pose.covariance, f.pose.covariance, sizeof(f.pose.covariance));
+    TEST_ASSERT_EQUAL_INT(0, f.report.attempts);
+  }
+}
+
+void test_a_frozen_camera_should_coast_after_coast_s_with_growing_covariance_and_be_found_again() {
+  RenderedRun run("desk", 180, Start::kRectangle);
+  TEST_ASSERT_EQUAL_INT(60, run.tracked_until(60));
+  const int64_t last_ns = run.frames.back().pose.t_ns;
+  double before = 0;
+  bool coasted = false;
+  while (run.frames.size() < 100) {  // 1.3 s; coast_s is 1
+    TEST_ASSERT_TRUE(run.freeze());
+    const RenderedRun::Frame& f = run.frames.back();
+    const bool long_frozen = f.pose.t_ns - last_ns > 1000000000;
+    TEST_ASSERT_EQUAL_INT(long_frozen ? PF_NOTE_UNUSABLE : PF_OK, f.status);
+    if (long_frozen) {
+      TEST_ASSERT_EQUAL_INT(PF_STATE_COASTING, f.state);
+      TEST_ASSERT_TRUE(position_variance(f) > before);
+      coasted = true;
+    }
+    before = position_variance(f);
+  }
+  TEST_ASSERT_TRUE(coasted);
+  run.tracked_until(180);
+  std::size_t again = 100;
+  while (again < 180 && run.frames[again].status != PF_OK) ++again;
+  std::printf("tracked again after %zu frames\n", again - 100);
+  TEST_ASSERT_TRUE(again < 130);
+  TEST_ASSERT_TRUE(run.worst_error(again) < 0.05);
+}
+
 void test_pure_rotation_should_stay_starting_when_there_is_no_target() {
   RenderedRun run("rotation", 120, Start::kNone);
   run.tracked_until(120);
@@ -130,6 +176,8 @@ int main(void) {
   RUN_TEST(test_tracking_should_go_on_when_the_texture_repeats);
   RUN_TEST(test_black_frames_should_be_called_unusable_with_growing_covariance_and_then_tracked_through);
   RUN_TEST(test_a_covered_lens_should_be_called_lost_and_tracking_should_resume_when_the_view_comes_back);
+  RUN_TEST(test_a_repeated_image_should_repeat_pose_and_status_and_the_next_one_should_be_tracked);
+  RUN_TEST(test_a_frozen_camera_should_coast_after_coast_s_with_growing_covariance_and_be_found_again);
   RUN_TEST(test_pure_rotation_should_stay_starting_when_there_is_no_target);
   return UNITY_END();
 }

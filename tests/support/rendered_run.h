@@ -64,20 +64,21 @@ class RenderedRun {
   bool step(int cover = -1) {
     pf_image_t image;
     if (!next_image(&image)) return false;
+    seen_.assign(image.pixels, image.pixels + image.stride * image.height);
     if (cover >= 0) {
       covered_.assign(static_cast<std::size_t>(image.stride * image.height), static_cast<std::uint8_t>(cover));
       image.pixels = covered_.data();
     }
-    Frame f = {};
-    f.status = pf_push_frame(slam, &image);
-    TEST_ASSERT_TRUE(f.status >= PF_OK);
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_state(slam, &f.state));
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(slam, &f.report));
-    if (pf_get_pose(slam, &f.pose) != PF_OK) f.pose.t_ns = -1;
-    double sum = 0;
-    for (int i = 0; i < 3; ++i) sum += (f.pose.p_WC[i] - truth_.p_WC[i]) * (f.pose.p_WC[i] - truth_.p_WC[i]);
-    f.error_m = std::sqrt(sum);
-    frames.push_back(f);
+    push(image);
+    return true;
+  }
+
+  /// The time of the next frame with the picture of the last one: a driver that repeats, or a frozen camera.
+  bool freeze() {
+    pf_image_t image;
+    if (!next_image(&image)) return false;
+    image.pixels = seen_.data();
+    push(image);
     return true;
   }
 
@@ -102,10 +103,23 @@ class RenderedRun {
   std::vector<Frame> frames;
 
  private:
+  void push(const pf_image_t& image) {
+    Frame f = {};
+    f.status = pf_push_frame(slam, &image);
+    TEST_ASSERT_TRUE(f.status >= PF_OK);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_state(slam, &f.state));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(slam, &f.report));
+    if (pf_get_pose(slam, &f.pose) != PF_OK) f.pose.t_ns = -1;
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) sum += (f.pose.p_WC[i] - truth_.p_WC[i]) * (f.pose.p_WC[i] - truth_.p_WC[i]);
+    f.error_m = std::sqrt(sum);
+    frames.push_back(f);
+  }
+
   pf_sim_t* sim_;
   void* block_ = nullptr;
   pf_pose_t truth_ = {};
-  std::vector<std::uint8_t> covered_;
+  std::vector<std::uint8_t> covered_, seen_;
 };
 
 }  // namespace pf

@@ -61,7 +61,7 @@ typedef enum pf_status {
   PF_NOTE_STARTING = 1,
   PF_NOTE_COASTING = 2,  /* taken; too few measurements, the pose is a prediction with growing covariance */
   PF_NOTE_LOST = 3,      /* taken; the pose is no longer usable; the map is kept and searched for in every frame */
-  PF_NOTE_UNUSABLE = 4,  /* taken; the image has no usable content (black, white, blurred out); pose coasts */
+  PF_NOTE_UNUSABLE = 4,  /* taken; the image shows nothing usable (black, white, blurred, frozen); pose coasts */
   PF_NOTE_TRUNCATED = 5, /* done; there was more than your array holds, *count says how many there are */
   PF_NOTE_NOTHING = 6,   /* done; there is nothing (no plane under the pixel, no plane with that id any more) */
 
@@ -308,7 +308,9 @@ typedef struct pf_image {
   int64_t t_ns;          /* middle of the exposure, after that of every earlier frame */
 } pf_image_t;
 
-/* Track one frame. PF_OK means tracked. */
+/* Track one frame. PF_OK means tracked. An image that is byte for byte the one before repeats that one's pose and
+ * status under its own time and is counted; nothing is measured, and the next prediction begins at the image's first
+ * time. A camera that is frozen for longer than motion.coast_s coasts. */
 PF_API pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image);
 
 /* A feature that something else has found and recognised: for trackers in hardware and for simulations. A new id
@@ -479,6 +481,7 @@ typedef struct pf_report {
   double nis;                       /* normalised innovation squared of this frame's inliers */
   int32_t nis_dof;                  /* and its degrees of freedom */
   int32_t kernels;                  /* pf_kernels_t in use */
+  int64_t duplicates;               /* of `frames`: images that were byte for byte the one before, see pf_push_frame */
   int64_t stage_ns[PF_STAGE_COUNT]; /* all zero without a clock */
 } pf_report_t;
 

@@ -145,6 +145,7 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->state_dim_points_only = map.state_dim_points_only;
   report->nis = r.nis;
   report->nis_dof = r.nis_dof;
+  report->duplicates = r.duplicates;
   report->kernels = static_cast<int32_t>(pf::kernels_id(slam->session.settings().kernels));
   for (int i = 0; i < PF_STAGE_COUNT; ++i) report->stage_ns[i] = r.stage_ns[i];
   return PF_OK;

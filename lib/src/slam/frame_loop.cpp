@@ -21,6 +21,8 @@ bool FrameLoop::layout(Arena& arena) {
 void FrameLoop::init() {
   frame_.init();
   tracking_.init();
+  frozen_.init();
+  filter_ns_ = 0;
   motion_.init();
   planes_.init();
   images_.init(settings_.camera);
@@ -28,10 +30,15 @@ void FrameLoop::init() {
 }
 
 Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
-  if (!begin_frame(t_ns)) return Status::kTime;
+  if (!is_next(t_ns)) return Status::kTime;
+  const bool duplicate = frozen_.is_duplicate(image, t_ns);
+  if (duplicate) count_frame(&frame_.report.duplicates);
+  if (duplicate && !tracking_.coasting_or_lost() && frozen_.frozen_ns(t_ns) <= settings_.max_coast_ns)
+    return repeat_frame(t_ns);
+  begin_frame(t_ns);
   if (tracking_.started_over()) return end_frame();
-  bool usable;
-  {
+  bool usable = !duplicate;  // where a frozen camera is now, nobody knows
+  if (usable) {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPyramid]);
     usable = images_.begin_frame(image);
   }
@@ -55,7 +62,8 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
 
 Status FrameLoop::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
   if (start_.takes_images_only()) return Status::kState;
-  if (!begin_frame(t_ns)) return Status::kTime;
+  if (!is_next(t_ns)) return Status::kTime;
+  begin_frame(t_ns);
   if (tracking_.started_over()) return end_frame();
   if (!tracking_.has_pose()) start_.start_with_observations();
   observations_.measure(observations, count);
@@ -67,21 +75,27 @@ Status FrameLoop::push_observations(const PixelObservation* observations, int co
   return end_frame();
 }
 
-/// Begins the report and predicts the body to the new time. False if the time is not after the last one.
-bool FrameLoop::begin_frame(std::int64_t t_ns) {
-  const std::int64_t before_ns = frame_.report.t_ns;
-  if (frame_.report.frames > 0 && t_ns <= before_ns) return false;
+/// The last pose and status again, under a new time. The next prediction begins where this one did not go on.
+Status FrameLoop::repeat_frame(std::int64_t t_ns) {
+  frame_.begin(t_ns);
+  tracking_.repeat(t_ns);
+  return tracking_.state() == SlamState::kTracking ? Status::kOk : Status::kStarting;
+}
+
+/// Begins the report and predicts the body to the new time.
+void FrameLoop::begin_frame(std::int64_t t_ns) {
+  const std::int64_t before_ns = filter_ns_;
+  filter_ns_ = t_ns;
   const bool nothing_measured = frame_.report.inliers == 0;
   frame_.begin(t_ns);
   tracking_.begin_frame();
   if (!tracking_.has_pose()) {
     motion_.init();  // control input is for one frame only
-    return true;
+    return;
   }
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
   motion_.advance(elapsed_ns(before_ns, t_ns), tracking_.coasting_or_lost(), nothing_measured);
   if (!filter_.body_is_sound()) start_over();
-  return true;
 }
 
 void FrameLoop::maintain_map() {

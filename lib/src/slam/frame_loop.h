@@ -10,6 +10,7 @@
 #include "slam/feature_keeper.h"
 #include "slam/filter_start.h"
 #include "slam/frame.h"
+#include "slam/frozen_camera.h"
 #include "slam/image_front_end.h"
 #include "slam/observation_front_end.h"
 #include "slam/pixel_update.h"
@@ -46,9 +47,13 @@ class FrameLoop {
   const Filter& filter() const { return filter_; }
   const Frame& frame() const { return frame_; }
   const TrackingState& tracking() const { return tracking_; }
+  /// Time that the filter's body was predicted to: that of the last frame, or of the one that it repeats.
+  std::int64_t filter_ns() const { return filter_ns_; }
 
  private:
-  bool begin_frame(std::int64_t t_ns);
+  bool is_next(std::int64_t t_ns) const { return frame_.report.frames == 0 || t_ns > frame_.report.t_ns; }
+  void begin_frame(std::int64_t t_ns);
+  Status repeat_frame(std::int64_t t_ns);
   Status end_frame();
   void maintain_map();
   void start_over();
@@ -58,6 +63,7 @@ class FrameLoop {
   Filter filter_;
   Frame frame_;
   TrackingState tracking_;
+  FrozenCamera frozen_;
   BodyMotion motion_{settings_, filter_};
   PixelUpdate update_{settings_, filter_, map_, frame_, tracking_};
   FeatureKeeper features_{settings_, filter_, map_, frame_};
@@ -65,6 +71,7 @@ class FrameLoop {
   ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_};
   ObservationFrontEnd observations_{settings_, filter_, map_, frame_, features_, update_};
   FilterStart start_{settings_, motion_, {filter_, map_, frame_, tracking_, features_, images_, update_}};
+  std::int64_t filter_ns_ = 0;
 };
 
 }  // namespace pf

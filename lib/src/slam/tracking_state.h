@@ -35,6 +35,8 @@ class TrackingState {
   }
   /// This frame's pose comes from the target.
   void set_from_target() { data_.from_target = true; }
+  /// The frame repeats the one before.
+  void repeat(std::int64_t t_ns) { data_.last_tracked_ns = t_ns; }
   void note_update(bool done) { data_.failed_updates = done ? 0 : data_.failed_updates + 1; }
   /// The estimate was discarded in this frame.
   void start_over() {

@@ -17,7 +17,8 @@ const Match& View::match(int i) const { return loop_.frame().match(i); }
 int View::state_dim() const { return filter().dim(); }
 
 void View::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
-  loop_.motion().predict_pose(last_ns(), t_ns, body, covariance);
+  // Of a frame that repeats the one before, the pose is that one's.
+  loop_.motion().predict_pose(t_ns > last_ns() ? loop_.filter_ns() : t_ns, t_ns, body, covariance);
 }
 
 bool View::project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const {

@@ -55,7 +55,7 @@ def arguments(words):
     parser.add_argument("--out", metavar="DIR", help="folder for the runs")
     parser.add_argument("--show", metavar="DIR", nargs="+", help="print the tables of one or two such folders; runs nothing")
     parser.add_argument("--starts", metavar="N", type=int, default=5, help="starts per sequence (default 5)")
-    parser.add_argument("--data", metavar="DIR", help="folder of the sequences (default: $PLANEFOLD_DATA, else ../shared/data)")
+    parser.add_argument("--data", metavar="DIR", help="folder of the sequences (default: $PLANEFOLD_DATA)")
     parser.add_argument("--only", metavar="NAME", action="append", help="a sequence to run, may be repeated (default: all)")
     parser.add_argument("--jobs", metavar="N", type=int, default=1, help="runs at a time (default 1; more make times worthless)")
     options = parser.parse_args(words)
@@ -85,7 +85,9 @@ def read_variants(words):
 
 
 def find_sequences(options):
-    data = options.data or os.environ.get("PLANEFOLD_DATA") or SOURCE.parent / "shared" / "data"
+    data = options.data or os.environ.get("PLANEFOLD_DATA")
+    if not data:
+        raise Refused("no sequences: give --data DIR or set PLANEFOLD_DATA")
     data = pathlib.Path(data)
     found = {path.parent.name: path.parent for path in sorted(data.glob("*/calib.yaml"))
              if (path.parent / "times.txt").exists()}
