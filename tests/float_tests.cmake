@@ -3,6 +3,7 @@ set(PLANEFOLD_FLOAT_TESTS
     jacobian/test_bundle_projection.cpp
     jacobian/test_camera.cpp
     regression/test_absurd_cameras.c
+    regression/test_unequal_covariances.c
     jacobian/test_inverse_depth_conversion.cpp
     jacobian/test_motion.cpp
     jacobian/test_observe_inverse_depth.cpp

@@ -16,4 +16,9 @@ int find_inliers(const Filter& filter, const PixelMeasurement* observations, int
 /// r^T S^-1 r of one observation with covariance S [px^2]; huge where S is not positive.
 Scalar squared_distance(const Vec2& r, const Mat2& S);
 
+/// Whether an innovation covariance S = H P H^T + R is one: finite and positive definite. It is not where H P H^T is a difference of
+/// numbers so large that rounding exceeds R: a position far from the map's origin with a variance of 1e6 and a point close to the camera,
+/// which shares nearly all of it. Such a pixel cannot be measured.
+bool is_covariance(const Mat2& S);
+
 }  // namespace pf

@@ -91,17 +91,20 @@ void ImageFrontEnd::predict_pixels(int first, int count) {
     PixelMeasurement& o = update_.observation(i);
     Match& match = frame_.match(candidate.match);
     update_.keep()[i] = 0;
-    if (!filter_.predict_pixel(settings_.camera, map_.features[candidate.feature].slot, &o)) {
+    bool has_place = filter_.predict_pixel(settings_.camera, map_.features[candidate.feature].slot, &o);
+    if (has_place) {
+      const Mat2 spread = update_.expected_innovation(&o);
+      o.set_noise(Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order);
+      match.predicted = o.predicted;
+      match.innovation = spread + o.R_gate;
+      has_place = is_covariance(match.innovation);
+    }
+    if (!has_place) {
       o.block = -1;
-      match.feature = -1;  // has no place in the image
+      match.feature = -1;
       match.predicted.setZero();
       match.innovation.setZero();
-      continue;
     }
-    const Mat2 spread = update_.expected_innovation(&o);
-    o.set_noise(Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order);
-    match.predicted = o.predicted;
-    match.innovation = spread + o.R_gate;
   }
 }
 

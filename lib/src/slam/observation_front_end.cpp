@@ -41,6 +41,10 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
     o.measured = observations[i].pixel;
     o.set_noise(Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order);
     const Mat2 S = spread + o.R_gate;
+    if (!is_covariance(S)) {
+      count_frame(&feature.failures);
+      continue;
+    }
     const Scalar nis = squared_distance(o.measured - o.predicted, S);
     const bool is_inlier = nis < settings_.gate;
     const int match = frame_.add({entry, feature.id, is_inlier ? MatchStatus::kInlier : MatchStatus::kOutlier,
