@@ -7,6 +7,8 @@ set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS python3) # pf-eval
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-venv, ffmpeg") # pf-eval's environment, pf-capture's film
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 # One package: the library is static, so that those who have its header have all of it.
 set(CPACK_DEB_COMPONENT_INSTALL OFF)

@@ -6,15 +6,24 @@ import subprocess
 import sys
 
 
+def folder_of(source):
+    """Where the environment of the project at source lies: in its build folder, or in the user's cache where it is installed."""
+    if (source / "CMakeLists.txt").exists():
+        return source / "build" / "venv"
+    cache = os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache"
+    return pathlib.Path(cache) / "planefold" / "venv"
+
+
 def enter(source):
-    """Returns inside build/venv of the project at source; makes the environment where it is missing, with a progress line."""
+    """Returns inside the environment; makes it where it is missing, with a progress line."""
     source = pathlib.Path(source)
-    venv = source / "build" / "venv"
+    venv = folder_of(source)
     inside = venv.exists() and os.path.samefile(sys.prefix, venv)
     if inside or os.environ.get("PLANEFOLD_VENV_ENTERED"):
         os.environ.pop("PLANEFOLD_VENV_ENTERED", None)
         return
-    made = subprocess.run(["bash", "-c", ". tools/lib/venv.sh && venv_python"], cwd=source, stdout=subprocess.PIPE, text=True)
+    made = subprocess.run(["bash", "-c", '. tools/lib/venv.sh && venv_python "$1"', "bash", venv], cwd=source, stdout=subprocess.PIPE,
+                          text=True)
     if made.returncode != 0:
         sys.exit(f"{pathlib.Path(sys.argv[0]).name}: needs evo and matplotlib, and their Python environment could not be made")
     python = made.stdout.strip()

@@ -1,13 +1,13 @@
-# A Python with what plots and evaluation need, in build/venv, made on first use. To be sourced after common.sh.
+# A Python with what plots and evaluation need, made on first use. To be sourced after common.sh.
 
-# venv_python   prints the path of the interpreter; progress goes to stderr
+# venv_python [FOLDER]   prints the path of the interpreter; progress goes to stderr. Without a name the folder is build/venv
 venv_python() {
-  local venv=build/venv requirements=tools/requirements.txt stamp
+  local venv=${1:-$PWD/build/venv} requirements=tools/requirements.txt stamp
   stamp=$venv/installed-$(sha256sum "$requirements" | cut -c1-16)
-  mkdir -p build
+  mkdir -p "$(dirname "$venv")"
   (
     # Programs that start at the same time wait for the one that makes it.
-    exec 9>build/venv.lock
+    exec 9>"$venv.lock"
     ! command -v flock >/dev/null || flock 9
     [ ! -e "$stamp" ] || exit 0
     echo "Making the Python environment for plots in $venv (once; downloads about 150 MB)" >&2
@@ -19,5 +19,5 @@ venv_python() {
     fi
     touch "$stamp"
   ) || return 1
-  echo "$PWD/$venv/bin/python"
+  echo "$venv/bin/python"
 }

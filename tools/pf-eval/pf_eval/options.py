@@ -40,6 +40,7 @@ def arguments(words):
     parser.add_argument("--skip-frames", metavar="N", type=int, default=0, help="leave out corners of the first N frames")
     parser.add_argument("--json", metavar="FILE", nargs="?", const="-", help="results as JSON, to a file or the output")
     parser.add_argument("--per-frame", metavar="FILE.csv", help="errors frame by frame")
+    parser.add_argument("--version", action="store_true", help="say the version, and do nothing else")  # the program in bin/ does
     options = parser.parse_args(words)
     if options.run is None and options.json not in (None, "-"):  # --json RUN
         options.run, options.json = options.json, "-"
