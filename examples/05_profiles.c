@@ -18,12 +18,13 @@ typedef struct profile {
   int32_t max_state_dim;    /* 13 of the camera, 3 for a point, 6 for one of unknown depth */
   int32_t max_observations; /* measured in one frame */
   int32_t max_planes;
+  int32_t max_kept_views; /* to find the map again from elsewhere */
 } profile_t;
 
 static const profile_t profiles[] = {
-    {"tiny", 320, 240, 30, 120, 20, 4},
-    {"handheld", 320, 240, 60, 260, 40, 8},
-    {"room", 640, 480, 200, 700, 60, 16},
+    {"tiny", 320, 240, 30, 120, 20, 4, 0},
+    {"handheld", 320, 240, 60, 260, 40, 8, 24},
+    {"room", 640, 480, 200, 700, 60, 16, 60},
 };
 
 static void fill_in(const profile_t* profile, pf_config_t* config) {
@@ -38,6 +39,7 @@ static void fill_in(const profile_t* profile, pf_config_t* config) {
   config->capacity.max_state_dim = profile->max_state_dim;
   config->capacity.max_observations = profile->max_observations;
   config->capacity.max_planes = profile->max_planes;
+  config->capacity.max_kept_views = profile->max_kept_views;
   config->map.features_in_view = profile->max_observations;
 }
 

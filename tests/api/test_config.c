@@ -74,11 +74,14 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES_REAL(first_depth.relative_sigma, 0.04, 5.1);
   NAMES_REAL(first_depth.linearity_index, 0.0009, 1.1);
   NAMES_REAL(motion.coast_s, 0.04, 10.1);
+  NAMES_REAL(motion.restart_s, -1, 1.1e4);
   NAMES_REAL(plane.max_distance, 0, 10.1);
   NAMES_REAL(plane.max_radius, 0.009, 1.1e4);
   NAMES_REAL(plane.roughness, 0, 1.1);
   NAMES_REAL(plane.fold_sigma, 0, 10.1);
   NAMES_REAL(plane.fix_sigma, -1, 10.1);
+  NAMES(capacity.max_kept_views, -1);
+  NAMES(capacity.max_kept_views, 201);
   NAMES(capacity.max_imu_samples, -1);
   NAMES(capacity.max_imu_samples, 10001);
   NAMES_REAL(imu.gyro_range, -1, 1001);

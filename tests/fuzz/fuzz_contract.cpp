@@ -166,6 +166,7 @@ pf_config_t config_from(Bytes& bytes) {
   config.capacity.max_observations = 8 + bytes.take<uint8_t>() % 60;
   config.capacity.max_planes = 1 + bytes.take<uint8_t>() % 4;
   config.capacity.max_imu_samples = bytes.take<uint8_t>() % 16;
+  config.capacity.max_kept_views = config.capacity.max_imu_samples % 4;
   config.map.features_in_view = config.capacity.max_observations;
   config.plane.min_points = 4 + bytes.take<uint8_t>() % 5;
   config.plane.max_distance = between(bytes, 0.005, 0.05);
@@ -186,6 +187,7 @@ pf_config_t config_from(Bytes& bytes) {
     config.first_depth.relative_sigma = between(bytes, 0.05, 5);
     config.first_depth.from_map = bytes.take<uint8_t>() % 2;
     config.motion.coast_s = between(bytes, 0.05, 10);
+    config.motion.restart_s = 10 - config.motion.coast_s;
   }
   if ((what & 32) != 0 && config.camera.readout_s == 0) config.motion.model = PF_MOTION_CONSTANT_POSITION;
   return config;

@@ -68,6 +68,7 @@ void test_memory_should_depend_on_capacities_and_image_size_alone() {
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &first));
   config.measurement.sigma_px = 1;
   config.motion.coast_s = 5;
+  config.motion.restart_s = 0;
   config.keep_gauge = 0;
   config.motion.model = PF_MOTION_CONSTANT_POSITION;
   config.map.features_in_view = 20;

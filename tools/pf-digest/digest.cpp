@@ -30,7 +30,7 @@ pf_status_t __wrap_pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_
 
 namespace {
 
-constexpr int kFormat = 1;  // grows when what is hashed changes: files of different formats cannot be compared
+constexpr int kFormat = 2;  // grows when what is hashed changes: files of different formats cannot be compared
 constexpr int kGaugeEvery = 100;
 
 enum Kind { kState, kPose, kPredicted, kFeatures, kPlanes, kMatches, kReport, kHits, kImu, kGauge, kKinds };
@@ -62,16 +62,16 @@ class Hash {
 };
 
 void add(Hash& h, const pf_pose_t& p) {
-  h << static_cast<double>(p.t_ns) << p.q_WC << p.p_WC << p.covariance << p.v_W << p.w_C;
+  h << static_cast<double>(p.t_ns) << p.q_WC << p.p_WC << p.covariance << p.v_W << p.w_C << p.map_id;
 }
 
 void add(Hash& h, const pf_feature_t& f) {
-  h << f.id << f.external_id << f.kind << f.is_target << f.plane << f.p_W << f.covariance << f.observations
+  h << f.id << f.external_id << f.kind << f.is_target << f.plane << f.map_id << f.p_W << f.covariance << f.observations
     << f.attempts;
 }
 
 void add(Hash& h, const pf_plane_t& p) {
-  h << p.id << p.orientation << p.points << p.fixed_points << p.normal_W << p.distance << p.R_WP << p.p_WP
+  h << p.id << p.orientation << p.points << p.fixed_points << p.map_id << p.normal_W << p.distance << p.R_WP << p.p_WP
     << p.covariance << p.outline_count;
   for (int i = 0; i < p.outline_count; ++i) h << p.outline_P[i];
   h << p.area;
@@ -84,7 +84,8 @@ void add(Hash& h, const pf_match_t& t) {
 void add(Hash& h, const pf_report_t& r) {  // without the cost of stages
   h << static_cast<double>(r.t_ns) << r.state << r.frames << r.attempts << r.matches << r.inliers << r.new_features
     << r.evicted << r.features << r.features_point << r.features_inverse_depth << r.features_folded << r.features_fixed
-    << r.planes << r.state_dim << r.state_dim_held << r.state_dim_points_only << r.nis << r.nis_dof << r.kernels;
+    << r.planes << r.state_dim << r.state_dim_held << r.state_dim_points_only << r.map_id << r.kept_views << r.nis
+    << r.nis_dof << r.kernels;
 }
 
 void add(Hash& h, const pf_imu_report_t& r) {

@@ -143,22 +143,24 @@ json summarise(const Job& job) {
     kept_ids += job.survivals[s].kept_ids;
   }
   out["ids_kept_without_pictures"] = old_ids > 0 ? kept_ids / old_ids : 1.0;
-  int frames = 0, tracking = 0, right = 0;
+  int frames = 0, tracking = 0, in_map = 0, right = 0;
   for (int r = 0; r < job.options->random_runs && starts > 0; ++r) {
     frames += job.random[r].frames;
     tracking += job.random[r].tracking;
+    in_map += job.random[r].in_map;
     right += job.random[r].right;
   }
   out["random_order"] = {{"frames", frames},
                          {"tracking", tracking},
+                         {"in_the_old_map", in_map},
                          {"right", right},
                          {"tracking_share", frames > 0 ? static_cast<double>(tracking) / frames : 0.0}};
   std::printf("after a black second with %d old features in view: %d of %d found within %g s\n", kManyInView,
               second.found, second.in_view, kFoundWithin_s);
   std::printf("ids kept over %g s without a picture: %.1f %%\n", job.options->survive_s,
               100 * out["ids_kept_without_pictures"].get<double>());
-  std::printf("random order: %d of %d frames tracking (%.2f %%), %d of them where they should be\n", tracking, frames,
-              frames > 0 ? 100.0 * tracking / frames : 0.0, right);
+  std::printf("random order: %d of %d frames tracking (%.2f %%), %d of them in the old map, %d where they should be\n",
+              tracking, frames, frames > 0 ? 100.0 * tracking / frames : 0.0, in_map, right);
   return out;
 }
 

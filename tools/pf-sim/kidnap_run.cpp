@@ -77,6 +77,8 @@ class Player {
     trial_ = trial;
     if (pf_get_pose(context_.slam, &last_) != PF_OK) last_ = {};
   }
+  /// Poses count in the map of now only: another one has a world of its own.
+  void stay_in_map() { map_id_ = last_.map_id; }
   std::int64_t t_ns() const { return t_ns_; }
   void set_time(std::int64_t t_ns) { t_ns_ = t_ns; }
 
@@ -85,12 +87,13 @@ class Player {
     t_ns_ += film_.interval_ns();
     const pf_camera_t& camera = film_.camera();
     const pf_image_t image = {film_.pixels(frame), camera.width, camera.height, camera.width, t_ns_};
-    const bool tracking = pf_push_frame(context_.slam, &image) == PF_OK;
+    const pf_status_t status = pf_push_frame(context_.slam, &image);
     pf_pose_t pose;
     if (pf_get_pose(context_.slam, &pose) != PF_OK) return false;
+    const bool tracking = status == PF_OK && pose.map_id == map_id_;
     if (trial_ != nullptr) {
       if (tracking && frame >= 0) judge(pose, frame);
-      if (!tracking) compare_covariance(pose);
+      if (status != PF_OK && pose.map_id == map_id_) compare_covariance(pose);
     }
     last_ = pose;
     return tracking;
@@ -126,6 +129,7 @@ class Player {
   std::int64_t t_ns_;
   Trial* trial_ = nullptr;
   pf_pose_t last_{};
+  std::uint32_t map_id_ = 0;
 };
 
 int count_in_view(const Film& film, const KidnapOptions& options, const std::vector<pf_feature_t>& map,
@@ -263,6 +267,9 @@ void play_trials(const Film& film, const KidnapOptions& options, const Reference
     trial->kept_ids = count_kept(context, from.map);
   };
 
+  context.restore(from.block);
+  player.begin();
+  player.stay_in_map();
   // Black gaps of growing length share their beginning.
   context.restore(from.block);
   std::vector<unsigned char> dark = from.block;
@@ -308,14 +315,18 @@ RandomOrder play_random(const Film& film, const KidnapOptions& options, const Re
   const Reference::Start& from = reference.starts[static_cast<std::size_t>(start)];
   context.restore(from.block);
   Player player(film, reference, context, film.t_ns(from.frame));
+  player.stay_in_map();
   pf::sim::Random random(seed, kOrderStream);
   RandomOrder result;
   for (; result.frames < options.random_frames; ++result.frames) {
     Trial frame;
     player.begin(&frame);
-    if (!player.show(random.below(film.frames()))) continue;
-    ++result.tracking;
-    result.right += frame.judged > 0 && !is_wrong(frame.worst_deg, frame.worst_depths);
+    const bool in_map = player.show(random.below(film.frames()));
+    pf_state_t state;
+    pf_get_state(context.slam, &state);
+    result.tracking += state == PF_STATE_TRACKING;
+    result.in_map += in_map;
+    result.right += in_map && frame.judged > 0 && !is_wrong(frame.worst_deg, frame.worst_depths);
   }
   return result;
 }

@@ -92,7 +92,8 @@ struct Survival {
 };
 
 struct RandomOrder {
-  std::int32_t frames = 0, tracking = 0, right = 0;  ///< right: within 5 degrees and 10 % of depth of the truth
+  std::int32_t frames = 0, tracking = 0, in_map = 0;  ///< in_map: tracking in the map of the beginning
+  std::int32_t right = 0;  ///< of those right: within 5 degrees and 10 % of depth of the truth
 };
 
 bool is_wrong(double deg, double depths);

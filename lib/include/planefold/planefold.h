@@ -23,8 +23,12 @@
  * STATUS. 0 is done. Positive: done, with something to know. Negative: refused, and nothing was changed.
  * THREADS. A context belongs to one thread at a time. Contexts are independent. There are no globals.
  * TIME. Work per call is bounded by the capacities in the config. No clock is read unless you give one.
- * STATES. Tracking means: a pose that this frame's own measurements support, by at least 8 gated inliers, or, in the
- * frame of a start at a target, by the target.
+ * STATES. Tracking means: a pose in this map that this frame's own measurements support, by at least 8 gated inliers
+ * that are consistent beyond chance, or, in the frame of a start at a target, by the target; rotation sigma below 20
+ * degrees and position sigma below half the median depth, both against the points in view. Otherwise the pose coasts,
+ * and nothing is added to the map until it was found again; after motion.coast_s it is lost.
+ * MAPS. There is one map at a time, with a map_id. If it is lost for motion.restart_s of usable images, it is
+ * discarded and a new one begins: a new map_id, a new W, and, without a target in view, a new unit of length.
  */
 #ifndef PLANEFOLD_PLANEFOLD_H
 #define PLANEFOLD_PLANEFOLD_H
@@ -57,10 +61,10 @@ typedef enum pf_status {
   PF_OK = 0,
 
   /* Taken. There is no pose yet, or known depths do not support it yet. Also after an estimate that was no longer
-   * finite was given up: a new start follows, with a new W (the log says so). */
+   * finite was given up, and when a new map begins: a new start follows, with a new W (the log says so). */
   PF_NOTE_STARTING = 1,
   PF_NOTE_COASTING = 2,  /* taken; too few measurements, the pose is a prediction with growing covariance */
-  PF_NOTE_LOST = 3,      /* taken; the pose is no longer usable; the map is kept and searched for in every frame */
+  PF_NOTE_LOST = 3,      /* taken; the pose is no longer usable; the map is searched for in every frame (MAPS) */
   PF_NOTE_UNUSABLE = 4,  /* taken; the image shows nothing usable (black, white, blurred, frozen); pose coasts */
   PF_NOTE_TRUNCATED = 5, /* done; there was more than your array holds, *count says how many there are */
   PF_NOTE_NOTHING = 6,   /* done; there is nothing (no plane under the pixel, no plane with that id any more) */
@@ -158,6 +162,9 @@ typedef struct pf_config {
     int32_t max_observations; /* features measured in one frame, 8 .. 200. Default 60 */
     int32_t max_planes;       /* planes in the map, 1 .. 64. Default 8 */
     int32_t max_imu_samples;  /* inertial samples that are kept, the newest, 0 .. 10000. Default 0 */
+    /* Views (thumbnails of tracked frames with their poses) by which a lost camera recognises where it is, 0 .. 200, of
+     * about 1.3 kB each. 0: it searches about its last pose only. Default 24 */
+    int32_t max_kept_views;
   } capacity;
 
   /* How the camera may move between frames. Densities are those of white noise: over a time dt the velocity's
@@ -169,6 +176,9 @@ typedef struct pf_config {
     double linear_walk;                  /* [m/sqrt(s)] > 0, constant position only. Default 0.1 */
     double angular_walk;                 /* [rad/sqrt(s)] > 0, constant position only. Default 0.2 */
     double coast_s;                      /* after this time without tracking the state is lost, 0.05 .. 10. Default 1 */
+    /* After this time of usable images without finding the map again, counted from when the state was lost, the map is
+     * discarded and a new one begins; 0: never. 0 .. 1e4. Default 3 */
+    double restart_s;
   } motion;
 
   struct {
@@ -265,6 +275,8 @@ typedef struct pf_pose {
   double covariance[36]; /* 6x6 of (theta, p) [rad, m] */
   double v_W[3];         /* velocity [m/s]; zero with the constant-position model */
   double w_C[3];         /* angular velocity [rad/s], in C; likewise */
+  uint32_t map_id;       /* of the map that W belongs to; never used twice. Ignored in a pose that you pass in */
+  uint32_t reserved;     /* 0 */
 } pf_pose_t;
 
 #define PF_TARGET_MAX_POINTS 16
@@ -379,6 +391,7 @@ typedef struct pf_feature {
   int32_t kind;         /* pf_feature_kind_t */
   int32_t is_target;    /* 1 for a point of the target */
   uint32_t plane;       /* id of the plane that it is folded into, or 0 */
+  uint32_t map_id;      /* as in pf_pose_t */
   double p_W[3];        /* [m] inverse depth: at the mean inverse depth */
   double covariance[9]; /* 3x3; inverse depth: to first order */
   int32_t observations; /* frames in which it was measured */
@@ -405,13 +418,14 @@ typedef struct pf_plane {
   int32_t orientation; /* pf_orientation_t, within 15 degrees */
   int32_t points;      /* folded into it, fixed ones among them */
   int32_t fixed_points;
-  double normal_W[3]; /* unit, towards the side that was seen */
-  double distance;    /* n . p of its points */
-  double R_WP[9];     /* the plane's frame, row-major: x and y in the plane, z the normal */
-  double p_WP[3];     /* its origin, in the plane and about in the middle */
+  uint32_t map_id;       /* as in pf_pose_t */
+  int32_t outline_count; /* of the convex outline of its points, 0 .. PF_OUTLINE_MAX */
+  double normal_W[3];    /* unit, towards the side that was seen */
+  double distance;       /* n . p of its points */
+  double R_WP[9];        /* the plane's frame, row-major: x and y in the plane, z the normal */
+  double p_WP[3];        /* its origin, in the plane and about in the middle */
   /* 3x3 of (alpha, beta, delta): n_true = n + alpha x_W + beta y_W, n_true . (p - p_WP) = delta.   [rad, rad, m] */
   double covariance[9];
-  int32_t outline_count;               /* of the convex outline of its points, 0 .. PF_OUTLINE_MAX */
   double outline_P[PF_OUTLINE_MAX][2]; /* x y in the plane's frame, counter-clockwise seen from the normal's side */
   double area;                         /* [m^2] of the outline */
 } pf_plane_t;
@@ -423,7 +437,8 @@ PF_API pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size
  * 0) when it is gone. */
 PF_API pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* current_id);
 
-/* The direction of gravity in W, of any length; zero forgets it. Only pf_plane_t.orientation depends on it. */
+/* The direction of gravity in W, of any length; zero forgets it, and so does a new map. Only pf_plane_t.orientation
+ * depends on it. */
 PF_API pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]);
 
 typedef struct pf_hit {
@@ -478,6 +493,8 @@ typedef struct pf_report {
   int32_t state_dim;
   int32_t state_dim_held;           /* rows of the state that are considered only: without gain */
   int32_t state_dim_points_only;    /* rows that the same map would need with 3-D points in place of folded ones */
+  uint32_t map_id;                  /* as in pf_pose_t; of the first map 1, and one more for each new one */
+  int32_t kept_views;               /* of capacity.max_kept_views */
   double nis;                       /* normalised innovation squared of this frame's inliers */
   int32_t nis_dof;                  /* and its degrees of freedom */
   int32_t kernels;                  /* pf_kernels_t in use */

@@ -24,6 +24,7 @@ constexpr Range kIntegers[] = {
     PF_FIELD(capacity.max_features, 8, 1000),
     PF_FIELD(capacity.max_observations, 8, 200),
     PF_FIELD(capacity.max_planes, 1, 64),
+    PF_FIELD(capacity.max_kept_views, 0, 200),
     PF_FIELD(plane.min_points, 4, 60),
     PF_FIELD(map.features_in_view, 8, 200),
     PF_FIELD(map.border_px, 4, 64),
@@ -47,6 +48,7 @@ constexpr Range kReals[] = {
     PF_FIELD(plane.fold_sigma, 1e-5, 10),
     PF_FIELD(plane.fix_sigma, 0, 10),
     PF_FIELD(motion.coast_s, 0.05, 10),
+    PF_FIELD(motion.restart_s, 0, 1e4),
     PF_FIELD(imu.gyro_range, 0, 1000),
     PF_FIELD(imu.accel_range, 0, 1e5),
 };
@@ -104,6 +106,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->max_features = config.capacity.max_features;
   settings->max_observations = config.capacity.max_observations;
   settings->max_planes = config.capacity.max_planes;
+  settings->max_kept_views = config.capacity.max_kept_views;
   settings->planes = config.plane.enabled != 0;
   settings->plane_min_points = config.plane.min_points;
   settings->plane_distance = static_cast<Scalar>(config.plane.max_distance);
@@ -130,6 +133,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->features_in_view = config.map.features_in_view;
   settings->border_px = config.map.border_px;
   settings->max_coast_ns = static_cast<std::int64_t>(config.motion.coast_s * 1e9);
+  settings->restart_ns = static_cast<std::int64_t>(config.motion.restart_s * 1e9);
   settings->keep_gauge = config.keep_gauge != 0;
   settings->imu_buffer = config.capacity.max_imu_samples;
   settings->imu_ranges = {static_cast<Scalar>(config.imu.gyro_range), static_cast<Scalar>(config.imu.accel_range)};
@@ -154,6 +158,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->capacity.max_features = 100;
   config->capacity.max_observations = 60;
   config->capacity.max_planes = 8;
+  config->capacity.max_kept_views = 24;
   config->plane.enabled = 1;
   config->plane.min_points = 7;
   config->plane.max_distance = 0.01;
@@ -177,6 +182,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->map.features_in_view = 45;
   config->map.border_px = 8;
   config->motion.coast_s = 1.0;
+  config->motion.restart_s = 3.0;
   config->keep_gauge = 1;
   config->capacity.max_imu_samples = 0;
   config->imu.gyro_range = 0;

@@ -13,6 +13,8 @@ void pose_at(const pf::View& view, int64_t t_ns, pf_pose_t* pose) {
   pf::Mat6 covariance;
   view.pose_at(t_ns, &body, &covariance);
   pose->t_ns = t_ns;
+  pose->map_id = view.map_id();
+  pose->reserved = 0;
   pose->q_WC[0] = static_cast<double>(body.q_WC.w());
   copy(body.q_WC.vec(), 3, pose->q_WC + 1);
   copy(body.p_W, 3, pose->p_WC);
@@ -95,6 +97,7 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
     out.attempts = f.attempts;
     out.kind = feature_kind(f.kind);
     out.plane = f.plane;
+    out.map_id = view.map_id();
     copy(f.p_W, 3, out.p_W);
     copy_matrix(f.covariance, out.covariance);
   }
@@ -143,6 +146,8 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->state_dim = map.state_dim;
   report->state_dim_held = map.state_dim_held;
   report->state_dim_points_only = map.state_dim_points_only;
+  report->map_id = view.map_id();
+  report->kept_views = view.kept_views();
   report->nis = r.nis;
   report->nis_dof = r.nis_dof;
   report->duplicates = r.duplicates;

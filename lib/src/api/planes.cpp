@@ -19,12 +19,13 @@ int32_t orientation_of(const Vec3& normal, const Vec3& g) {
   return std::abs(up) < kSin15 ? PF_ORIENTATION_VERTICAL : PF_ORIENTATION_OTHER;
 }
 
-void describe(const pf::PlaneView& plane, const Vec3& gravity_W, pf_plane_t* out) {
+void describe(const pf::PlaneView& plane, std::uint32_t map_id, const Vec3& gravity_W, pf_plane_t* out) {
   *out = pf_plane_t();
   out->id = plane.id;
   out->orientation = orientation_of(plane.normal_W, gravity_W);
   out->points = plane.points;
   out->fixed_points = plane.fixed_points;
+  out->map_id = map_id;
   pf::copy(plane.normal_W, 3, out->normal_W);
   out->distance = static_cast<double>(plane.distance);
   pf::copy_matrix(plane.R_WP, out->R_WP);
@@ -44,7 +45,7 @@ pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size_t capa
   const pf::View view = slam->session.view();
   for (int i = 0; i < view.plane_capacity(); ++i) {
     if (!view.has_plane(i)) continue;
-    if (*count < capacity) describe(view.plane(i), slam->session.gravity_W(), &planes[*count]);
+    if (*count < capacity) describe(view.plane(i), view.map_id(), slam->session.gravity_W(), &planes[*count]);
     ++*count;
   }
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;

@@ -9,7 +9,10 @@ namespace {
 
 constexpr Scalar kSpeedDecay = Scalar(0.25);  ///< [s] time constant of a speed that is not measured
 constexpr Scalar kMaxRotationSigma =
-    Scalar(0.5);  ///< [rad] beyond this standard deviation the covariance stops growing
+    Scalar(0.5);                              ///< [rad] of an axis, beyond which angular accelerations add no noise
+constexpr Scalar kMaxSpeedSigma = Scalar(1);  ///< [m/s] of an axis, likewise for linear accelerations
+constexpr Scalar kAnyRotation = Scalar(1.8);  ///< [rad] uniform over a full rotation: the covariance stops growing
+constexpr Scalar kAnyPosition = Scalar(100);  ///< [m] likewise
 
 }  // namespace
 
@@ -18,11 +21,13 @@ void BodyMotion::advance(std::int64_t gap_ns, bool coasting_or_lost, bool nothin
   const Scalar dt = static_cast<Scalar>(static_cast<double>(gap_ns < kMaxGapNs ? gap_ns : kMaxGapNs) * 1e-9);
   MotionNoise noise = settings_.motion_noise;
   if (coasting_or_lost) {
-    // A hand does not keep its speed for long, and half a radian of rotation uncertainty already means searching everywhere.
-    // Without these limits, one second without an image would predict the camera out of the room.
+    // A hand does not keep its speed for long, and half a radian of rotation uncertainty already means searching everywhere. Without
+    // these limits, one second without an image would predict the camera out of the room. The position keeps growing with the speed.
     if (settings_.constant_velocity && nothing_measured) damp(dt);
-    if (filter_.variance(Body::kTheta) > kMaxRotationSigma * kMaxRotationSigma)
-      noise.linear = noise.angular = Scalar(0);
+    if (filter_.variance(Body::kTheta) > kMaxRotationSigma * kMaxRotationSigma) noise.angular = Scalar(0);
+    const int linear = settings_.constant_velocity ? Body::kVelocity : Body::kPosition;
+    const Scalar most = settings_.constant_velocity ? kMaxSpeedSigma : kAnyPosition;
+    if (filter_.variance(linear) > most * most) noise.linear = Scalar(0);
   }
   Transition transition;
   if (settings_.constant_velocity) filter_.steer(data_.dv_C, data_.dw_C);
@@ -43,6 +48,12 @@ void BodyMotion::damp(Scalar dt) {
   Mat6 P_speed;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) P_speed(i, j) = filter_.covariance()(Body::kVelocity + i, Body::kVelocity + j);
+  // Beyond any position and any rotation the speeds decay without noise that keeps them up.
+  const bool any_rotation = filter_.variance(Body::kTheta) > kAnyRotation * kAnyRotation;
+  const bool any_position = filter_.variance(Body::kPosition) > kAnyPosition * kAnyPosition;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      if ((any_position && (i < 3 || j < 3)) || (any_rotation && (i >= 3 || j >= 3))) P_speed(i, j) = Scalar(0);
   Transition transition;
   damp_speed(filter_.body(), std::exp(-dt / kSpeedDecay), P_speed, &transition);
   filter_.predict(transition);

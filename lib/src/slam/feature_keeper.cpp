@@ -39,7 +39,19 @@ void FeatureKeeper::convert_linear() {
   }
 }
 
-void FeatureKeeper::drop_failing() {
+void FeatureKeeper::count_searches() {
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const Match& match = frame_.match(t);
+    if (match.feature < 0 || !match.searched) continue;
+    Feature& f = map_.features[match.feature];
+    count_frame(&f.attempts);
+    if (match.status == MatchStatus::kInlier) continue;
+    count_frame(&f.failures);
+    if (match.status == MatchStatus::kOutlier) count_frame(&f.rejections);
+  }
+}
+
+void FeatureKeeper::drop_failing(bool is_tracked) {
   int count = 0;
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!map_.features.used(i)) continue;
@@ -48,7 +60,7 @@ void FeatureKeeper::drop_failing() {
       scratch_[count++] = i;
       continue;
     }
-    if (f.is_target) continue;
+    if (f.is_target || !is_tracked) continue;
     const bool seldom = f.attempts >= kMinAttempts && 2 * f.observations < f.attempts;
     const bool in_a_row = f.failures >= (f.observations < kMinAttempts ? kMaxEarlyFailures : kMaxFailures);
     // A depth that is negative by three sigma is wrong.

@@ -72,7 +72,7 @@ void FilterStart::set_body(const Body& body, const Scalar* covariance) {
 }
 
 /// The pose before the first measurement: the one that the caller gave, or the one that defines the world.
-void FilterStart::set_known_pose() {
+void FilterStart::set_known_pose(bool at_target) {
   if (data_.known.given) {
     set_body(data_.known.body, data_.known.covariance);
     return;
@@ -80,36 +80,36 @@ void FilterStart::set_known_pose() {
   const int dim = parts_.filter.state().body_dim;
   Scalar* covariance = data_.covariance;
   for (Scalar& c : data_.covariance) c = Scalar(0);
-  const bool has_target = target_.has_target();
   const Target& target = target_.target();
   for (int i = 0; i < Body::kPoseDim; ++i)
     for (int j = 0; j < Body::kPoseDim; ++j)
       covariance[i * dim + j] =
-          has_target ? target.first_covariance(i, j) : (i == j ? kDefinedSigma * kDefinedSigma : Scalar(0));
+          at_target ? target.first_covariance(i, j) : (i == j ? kDefinedSigma * kDefinedSigma : Scalar(0));
   for (int i = Body::kPoseDim; i < dim; ++i) {
-    const Scalar sigma = i < Body::kRate ? kStartSpeed * (has_target ? Scalar(1) : settings_.start_depth) : kStartRate;
+    const Scalar sigma = i < Body::kRate ? kStartSpeed * (at_target ? Scalar(1) : settings_.start_depth) : kStartRate;
     covariance[i * dim + i] = sigma * sigma;
   }
-  set_body(has_target ? target.first_pose : Body(), covariance);
+  set_body(at_target ? target.first_pose : Body(), covariance);
 }
 
 void FilterStart::start_with_observations() {
-  set_known_pose();
+  set_known_pose(target_.has_target());
   parts_.features.add_target_points(target_.target());
 }
 
 bool FilterStart::start_in_image() {
-  if (!target_.has_target()) {
-    set_known_pose();
+  TargetSighting sighting;
+  const bool seen = target_.has_target() && target_.find(settings_.camera, parts_.images.tracker(), &sighting);
+  if (!seen) {
+    if (target_.has_target() && !parts_.tracking.may_skip_target()) return false;
+    set_known_pose(false);
     if (!data_.known.given) without_.begin();
     return true;
   }
-  TargetSighting sighting;
-  if (!target_.find(settings_.camera, parts_.images.tracker(), &sighting)) return false;
 
   FrameReport& report = parts_.frame.report;
   if (report.frames > 1) data_.known = KnownBody();  // it was the pose of the first frame
-  set_known_pose();
+  set_known_pose(true);
   parts_.features.add_target_points(target_.target());
   for (int i = 0; i < parts_.map.features.capacity(); ++i) {
     if (!parts_.map.features.used(i) || !parts_.map.features[i].is_target) continue;

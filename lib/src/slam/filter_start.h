@@ -61,7 +61,7 @@ class FilterStart {
 
  private:
   void set_body(const Body& body, const Scalar* covariance);
-  void set_known_pose();
+  void set_known_pose(bool at_target);
   Vec2 at_frame_time(int slot, const Vec2& measured) const;
   void restart_from_record();
   void restart_features();

@@ -24,6 +24,7 @@ struct Match {
   Mat2 innovation;
   Vec2 measured;
   Scalar nis;  ///< normalised innovation squared of the match alone, two degrees of freedom; zero without a match
+  bool searched = false;  ///< the image was compared with its appearance
 };
 
 enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kStageCount = 8 };

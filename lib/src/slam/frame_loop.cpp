@@ -1,6 +1,9 @@
 #include "slam/frame_loop.h"
 
+#include <algorithm>
+
 #include "base/elapsed.h"
+#include "slam/usable_pose.h"
 
 namespace pf {
 
@@ -12,7 +15,8 @@ bool FrameLoop::layout(Arena& arena) {
   update_.layout(arena, settings.max_observations);
   features_.layout(arena, settings.max_features);
   planes_.layout(arena, settings.max_features);
-  images_.layout(arena, settings.camera.width, settings.camera.height);
+  images_.layout(arena, settings.camera.width, settings.camera.height, settings.max_observations);
+  relocaliser_.layout(arena, settings.max_observations, settings.max_kept_views);
   observations_.layout(arena, settings.max_features, settings.max_observations);
   start_.layout(arena, settings.camera.width, settings.camera.height);
   return arena.ok();
@@ -26,6 +30,10 @@ void FrameLoop::init() {
   motion_.init();
   planes_.init();
   images_.init(settings_.camera);
+  relocaliser_.init();
+  since_last_ns_ = 0;
+  image_usable_ = false;
+  median_depth_ = 1;
   start_.init();
 }
 
@@ -46,15 +54,28 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     const Status status = end_frame();
     return status == Status::kLost || status == Status::kStarting ? status : Status::kUnusable;
   }
-  if (tracking_.has_pose())
-    images_.measure();
-  else if (!start_.start_in_image())
-    return end_frame();
+  image_usable_ = true;
+  relocaliser_.begin_frame();
+  tracking_.note_usable_image(since_last_ns_);
+  if (tracking_.needs_new_map(settings_.restart_ns)) begin_new_map();
+  const bool first = !tracking_.has_pose();
+  if (first) {
+    if (!start_.start_in_image()) return end_frame();
+  } else if (tracking_.is_relocalising(start_.progress())) {
+    relocaliser_.recover(since_last_ns_);
+  } else {
+    relocaliser_.clear_proposals();
+    images_.measure(start_.progress().pending());
+  }
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
-    maintain_map();
+    const bool supported = tracking_.is_tracked(frame_.report) || start_.progress().pending();
+    if (supported) features_.count_searches();
+    maintain_map(supported);
     start_.record_frame();
-    if (tracking_.is_tracked(frame_.report) || frame_.report.attempts == 0) images_.add_features();
+    // A frame that does not support its pose adds features only to a map that has none to lose.
+    const bool empty = first || start_.progress().pending() || map_.features.count() == 0;
+    if (tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0)) images_.add_features();
     start_.begin_record();
   }
   return end_frame();
@@ -69,7 +90,7 @@ Status FrameLoop::push_observations(const PixelObservation* observations, int co
   observations_.measure(observations, count);
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
-    maintain_map();
+    maintain_map(true);
     observations_.add_features(observations, count);
   }
   return end_frame();
@@ -86,6 +107,8 @@ Status FrameLoop::repeat_frame(std::int64_t t_ns) {
 void FrameLoop::begin_frame(std::int64_t t_ns) {
   const std::int64_t before_ns = filter_ns_;
   filter_ns_ = t_ns;
+  since_last_ns_ = frame_.report.frames > 0 ? std::min(elapsed_ns(before_ns, t_ns), BodyMotion::kMaxGapNs) : 0;
+  image_usable_ = false;
   const bool nothing_measured = frame_.report.inliers == 0;
   frame_.begin(t_ns);
   tracking_.begin_frame();
@@ -98,27 +121,50 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
   if (!filter_.body_is_sound()) start_over();
 }
 
-void FrameLoop::maintain_map() {
+/// If the frame does not support its pose, nothing is decided about the map.
+void FrameLoop::maintain_map(bool supported) {
+  if (!supported) {
+    features_.drop_failing(false);
+    return;
+  }
   features_.convert_linear();
   // During a start the filter may restart without planes; ids of planes found before would then name nothing.
   if (settings_.planes && !start_.progress().recording) planes_.maintain();
-  features_.drop_failing();
+  features_.drop_failing(true);
 }
 
 /// Returns the status of the frame.
 Status FrameLoop::end_frame() {
   if (tracking_.has_pose() && (tracking_.updates_fail() || !filter_.body_is_sound())) start_over();
+  if (tracking_.is_tracked(frame_.report) && !start_.progress().pending()) {
+    if (!is_pose_usable(filter_, map_, frame_, &median_depth_))
+      tracking_.set_unusable();
+    else if (image_usable_)
+      relocaliser_.remember_view(median_depth_);
+  }
   return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
 }
 
 /// The estimate is not finite or P is no covariance: clears everything that came from it.
 void FrameLoop::start_over() {
+  clear_estimate();
+  tracking_.start_over();
+  settings_.hooks.say("the estimate is no longer finite: starting again without it");
+}
+
+/// The map was not found again for too long, although the images were usable: a new one begins with this frame.
+void FrameLoop::begin_new_map() {
+  clear_estimate();
+  tracking_.begin_map();
+  settings_.hooks.say("not found again for too long: the old map is discarded, a new map begins");
+}
+
+void FrameLoop::clear_estimate() {
   start_.start_over();
   map_.features.clear();
   motion_.init();
-  tracking_.start_over();
+  relocaliser_.init();
   frame_.forget_all();
-  settings_.hooks.say("the estimate is no longer finite: starting again without it");
 }
 
 }  // namespace pf

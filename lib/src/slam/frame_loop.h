@@ -15,6 +15,7 @@
 #include "slam/observation_front_end.h"
 #include "slam/pixel_update.h"
 #include "slam/plane_keeper.h"
+#include "slam/relocaliser.h"
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
 
@@ -47,6 +48,7 @@ class FrameLoop {
   const Filter& filter() const { return filter_; }
   const Frame& frame() const { return frame_; }
   const TrackingState& tracking() const { return tracking_; }
+  const Relocaliser& relocaliser() const { return relocaliser_; }
   /// Time that the filter's body was predicted to: that of the last frame, or of the one that it repeats.
   std::int64_t filter_ns() const { return filter_ns_; }
 
@@ -55,8 +57,10 @@ class FrameLoop {
   void begin_frame(std::int64_t t_ns);
   Status repeat_frame(std::int64_t t_ns);
   Status end_frame();
-  void maintain_map();
+  void maintain_map(bool supported);
   void start_over();
+  void begin_new_map();
+  void clear_estimate();
 
   const Settings& settings_;
   Map& map_;
@@ -69,9 +73,13 @@ class FrameLoop {
   FeatureKeeper features_{settings_, filter_, map_, frame_};
   PlaneKeeper planes_{settings_, filter_, map_, frame_, features_};
   ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_};
+  Relocaliser relocaliser_{settings_, filter_, map_, frame_, images_, update_};
   ObservationFrontEnd observations_{settings_, filter_, map_, frame_, features_, update_};
   FilterStart start_{settings_, motion_, {filter_, map_, frame_, tracking_, features_, images_, update_}};
   std::int64_t filter_ns_ = 0;
+  std::int64_t since_last_ns_ = 0;  ///< from the frame before this one
+  bool image_usable_ = false;       ///< this frame is an image that shows something to track
+  Scalar median_depth_ = 1;         ///< of the inliers of the last tracked frame
 };
 
 }  // namespace pf

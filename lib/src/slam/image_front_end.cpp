@@ -6,31 +6,49 @@
 #include "base/elapsed.h"
 #include "geometry/symmetric_eigen.h"
 #include "slam/consensus.h"
+#include "slam/tracking_state.h"
+#include "slam/triple_consensus.h"
+#include "slam/tuning.h"
 
 namespace pf {
 namespace {
 
 constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
 constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
-constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs
+constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
 
 }  // namespace
 
-bool ImageFrontEnd::layout(Arena& arena, int width, int height) { return tracker_.layout(arena, width, height); }
+bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observations) {
+  searched_px2_ = arena.take<Scalar>(static_cast<std::size_t>(max_observations));
+  return tracker_.layout(arena, width, height);
+}
 
-void ImageFrontEnd::measure() {
+/// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
+/// anything is used.
+void ImageFrontEnd::measure(bool start_pending) {
   const int count = list_visible();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
     predict_pixels(0, count);
   }
   const int scouts = widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
+  int found = search(0, scouts > 0 ? scouts : count);
   if (scouts > 0) {
-    measure_range(0, scouts);
-    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
-    predict_pixels(scouts, count - scouts);
+    const bool scouted = update_with_consensus(0, found, start_pending);
+    if (scouted) {
+      StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
+      predict_pixels(scouts, count - scouts);
+    }
+    const int more = search(scouts, count - scouts);
+    if (scouted) {
+      update_with_consensus(scouts, more, start_pending);
+      return;
+    }
+    for (int k = 0; k < more; ++k, ++found)
+      if (found != scouts + k) update_.swap(found, scouts + k);
   }
-  measure_range(scouts, count - scouts);
+  update_with_consensus(0, found, start_pending);
 }
 
 bool ImageFrontEnd::remember(int feature, const Vec2& pixel, const CameraView& view) {
@@ -52,7 +70,6 @@ bool ImageFrontEnd::is_visible(int feature) const {
            o.predicted.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
 }
 
-/// Lists visible features as candidates and matches, the most reliable first. Returns how many.
 int ImageFrontEnd::list_visible() {
   const auto rate = [&](int feature) {
     const Feature& f = map_.features[feature];
@@ -84,7 +101,6 @@ int ImageFrontEnd::list_visible() {
   return count;
 }
 
-/// Predicts pixel and search ellipse of candidates.
 void ImageFrontEnd::predict_pixels(int first, int count) {
   for (int i = first; i < first + count; ++i) {
     const Candidate& candidate = update_.candidate(i);
@@ -140,49 +156,53 @@ SearchTask ImageFrontEnd::task_of(int i) const {
   return task;
 }
 
-/// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
 int ImageFrontEnd::search(int first, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   int found = first;
   for (int i = first; i < first + count; ++i) {
     PixelMeasurement& o = update_.observation(i);
     if (o.block < 0) continue;
-    Feature& f = map_.features[update_.candidate(i).feature];
     Match& match = frame_.match(update_.candidate(i).match);
     const SearchOutcome outcome = tracker_.search(task_of(i));
     if (!outcome.comparable) continue;
-    count_frame(&f.attempts);
+    match.searched = true;
     ++frame_.report.attempts;
-    if (!outcome.found || squared_distance(outcome.pixel - o.predicted, match.innovation) > settings_.gate) {
-      count_frame(&f.failures);
-      continue;
-    }
+    if (!outcome.found || squared_distance(outcome.pixel - o.predicted, match.innovation) > settings_.gate) continue;
     ++frame_.report.matches;
     match.measured = outcome.pixel;
     match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
     o.measured = outcome.pixel;
     const Scalar floor = settings_.sigma_px * outcome.level_scale;
     o.set_noise(Mat2::Identity() * (floor * floor) + outcome.noise + o.second_order);
-    if (found != i) update_.move(i, found);
+    if (found != i) update_.swap(found, i);
     ++found;
   }
   return found - first;
 }
 
-/// Searches for a range of candidates, finds their consensus, and updates the filter.
-void ImageFrontEnd::measure_range(int first, int count) {
-  const int found = search(first, count);
-  if (found == 0) return;
+/// Finds the consensus of matches and updates the filter with it. False if it may be chance; nothing is used then.
+bool ImageFrontEnd::update_with_consensus(int first, int found, bool start_pending) {
+  if (found == 0) return false;
   update_.begin(first, found);
   unsigned char* keep = update_.keep();
-  int inliers;
+  bool accepted;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
-    inliers = find_inliers(filter_, update_.observations() + first, found, settings_.gate, keep + first);
+    const PixelMeasurement* observations = update_.observations() + first;
+    const int inliers = find_inliers(filter_, observations, found, settings_.gate, keep + first);
+    // If an earlier range has given inliers, any consensus is accepted.
+    if (frame_.report.inliers > 0) {
+      accepted = true;
+    } else if (start_pending) {
+      accepted = inliers >= std::min(kMinConsensus, map_.features.count());
+    } else {
+      for (int i = 0; i < found; ++i) searched_px2_[i] = searched_area(first + i);
+      const TripleConsensus consensus =
+          find_triple_consensus(filter_, observations, searched_px2_, found, frame_.report.attempts, settings_.gate,
+                                tuning::tracking::kTriples, keep + first, nullptr);
+      accepted = inliers >= TrackingState::kMinInliers && consensus.log_false < tuning::tracking::kMaxLogFalse;
+    }
   }
-  // If an earlier range has given inliers, a smaller consensus is accepted.
-  const bool accepted =
-      frame_.report.inliers >= kMinConsensus || inliers >= std::min(kMinConsensus, map_.features.count());
   for (int i = first; i < first + found; ++i) {
     const PixelMeasurement& o = update_.observation(i);
     if (!accepted) keep[i] = 0;
@@ -190,13 +210,15 @@ void ImageFrontEnd::measure_range(int first, int count) {
     match.status = keep[i] != 0 ? MatchStatus::kInlier : MatchStatus::kOutlier;
     match.nis =
         squared_distance(match.measured - o.predicted, filter_.innovation_block(i - first, i - first) + o.R_gate);
-    if (keep[i] == 0) {
-      Feature& f = map_.features[update_.candidate(i).feature];
-      count_frame(&f.failures);
-      if (accepted) count_frame(&f.rejections);
-    }
   }
-  if (accepted) update_.apply(first, found);
+  return accepted && update_.apply(first, found);
+}
+
+Scalar ImageFrontEnd::searched_area(int i) const {
+  const Mat2& S = frame_.match(update_.candidate(i).match).innovation;
+  const Scalar det = S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
+  const Scalar all = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
+  return std::min(all, Scalar(3.14159265) * settings_.gate * std::sqrt(std::max(det, Scalar(0))));
 }
 
 }  // namespace pf

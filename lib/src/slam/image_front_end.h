@@ -18,13 +18,14 @@ class ImageFrontEnd {
                 PixelUpdate& update)
       : settings_(settings), filter_(filter), map_(map), frame_(frame), features_(features), update_(update) {}
 
-  bool layout(Arena& arena, int width, int height);
+  bool layout(Arena& arena, int width, int height, int max_observations);
   void init(const Camera& camera) { tracker_.init(camera); }
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image) { return tracker_.begin_frame(image); }
   /// Finds the map's features in the image and updates the filter with them.
-  void measure();
+  /// start_pending: no depth is known yet, so that the test against chance says nothing.
+  void measure(bool start_pending);
   /// Adds features in the emptiest cells of the image until enough are in view.
   void add_features();
   /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
@@ -32,15 +33,22 @@ class ImageFrontEnd {
 
   const Tracker& tracker() const { return tracker_; }
 
+  // --- steps of a search
+  /// Lists visible features as candidates and matches, the most reliable first. Returns how many.
+  int list_visible();
+  /// Predicts pixel and search ellipse of candidates.
+  void predict_pixels(int first, int count);
+  /// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
+  int search(int first, int count);
+  /// Area of a candidate's search ellipse [px^2], at most that of the image.
+  Scalar searched_area(int i) const;
+
  private:
   // image_front_end.cpp
-  int list_visible();
   bool is_visible(int feature) const;
-  void predict_pixels(int first, int count);
   Scalar widest_ellipse(int count) const;
   SearchTask task_of(int i) const;
-  int search(int first, int count);
-  void measure_range(int first, int count);
+  bool update_with_consensus(int first, int found, bool start_pending);
 
   // image_corners.cpp
   bool is_free(const Vec2& pixel) const;
@@ -53,6 +61,7 @@ class ImageFrontEnd {
   FeatureKeeper& features_;
   PixelUpdate& update_;
   Tracker tracker_;
+  Scalar* searched_px2_ = nullptr;  ///< max_observations
 };
 
 }  // namespace pf

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "filter/filter.h"
 #include "map/map.h"
 #include "slam/frame.h"
@@ -30,10 +32,10 @@ class PixelUpdate {
   const PixelMeasurement* observations() const { return observation_; }
   unsigned char* keep() { return keep_; }
 
-  /// Copies a candidate and its observation to another index.
-  void move(int from, int to) {
-    candidate_[to] = candidate_[from];
-    observation_[to] = observation_[from];
+  /// Exchanges two candidates and their observations.
+  void swap(int a, int b) {
+    std::swap(candidate_[a], candidate_[b]);
+    std::swap(observation_[a], observation_[b]);
   }
 
   /// H P H^T of a predicted pixel. Adds the projection's second-order error over the pose uncertainty to the pixel's second_order noise.

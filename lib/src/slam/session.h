@@ -50,20 +50,21 @@ class Session {
   /// Known change of the velocities in camera axes, until the next frame.
   void push_control(const Vec3& dv_C, const Vec3& dw_C) { filter_->motion().push_control(dv_C, dw_C); }
   void push_imu(const ImuSample& sample) { imu_.add(sample); }
-  void set_gravity(const Vec3& gravity_W) { data_.gravity_W = gravity_W; }
+  void set_gravity(const Vec3& gravity_W) { data_.gravity_W = gravity_W, data_.gravity_map = view().map_id(); }
 
   // --- what can be read
   View view() const { return View(settings_, map_, *filter_); }
   const Settings& settings() const { return settings_; }
   const ImuLog& imu() const { return imu_; }
-  /// Zero: not known.
-  const Vec3& gravity_W() const { return data_.gravity_W; }
+  /// In the W of the current map. Zero: not known.
+  Vec3 gravity_W() const { return data_.gravity_map == view().map_id() ? data_.gravity_W : Vec3::Zero(); }
 
  private:
   /// What is kept between frames.
   struct Data {
     FrameKind kind = FrameKind::kUndecided;
     Vec3 gravity_W = Vec3::Zero();
+    std::uint32_t gravity_map = 0;  ///< id of the map in whose W it was given
   };
 
   Settings settings_;

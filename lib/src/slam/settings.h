@@ -20,6 +20,7 @@ struct Settings {
   int max_features = 0;
   int max_observations = 0;
   int max_planes = 0;
+  int max_kept_views = 0;
 
   bool constant_velocity = true;
   MotionNoise motion_noise = {};
@@ -44,6 +45,7 @@ struct Settings {
   int features_in_view = 0;
   int border_px = 0;
   std::int64_t max_coast_ns = 0;
+  std::int64_t restart_ns = 0;  ///< of usable images while lost, after which a new map begins; 0: never
   bool keep_gauge = true;
 
   int imu_buffer = 0;

@@ -27,7 +27,9 @@ class TrackingState {
   static constexpr int kMinInliers = 8;  ///< of a frame that counts as tracked
 
   void init() { data_ = Data(); }
-  void begin_frame() { data_.from_target = data_.started_over = false; }
+  void begin_frame() { data_.from_target = data_.started_over = data_.unusable = false; }
+  /// This frame shows something to track; dt_ns since the frame before.
+  void note_usable_image(std::int64_t dt_ns) { data_.usable_ns += data_.lost ? dt_ns : 0; }
   /// The filter has a pose from this time on.
   void set_has_pose(std::int64_t t_ns) {
     data_.has_pose = true;
@@ -40,9 +42,19 @@ class TrackingState {
   void note_update(bool done) { data_.failed_updates = done ? 0 : data_.failed_updates + 1; }
   /// The estimate was discarded in this frame.
   void start_over() {
-    data_ = Data();
+    begin_map();
+    data_.may_skip_target = false;
     data_.started_over = true;
   }
+  /// The old map was discarded because it was not found again. The new one need not begin at a target.
+  void begin_map() {
+    const std::uint32_t map_id = data_.map_id + (data_.was_tracked ? 1 : 0);
+    data_ = Data();
+    data_.map_id = map_id;
+    data_.may_skip_target = true;
+  }
+  /// This frame's pose is measured, but too uncertain to use.
+  void set_unusable() { data_.unusable = true; }
   /// Decides the state at the end of a frame. Returns the status of the frame.
   Status conclude(const FrameReport& report, const StartProgress& start, std::int64_t max_coast_ns, const Hooks& hooks);
 
@@ -54,7 +66,17 @@ class TrackingState {
   /// The pose is a prediction.
   bool coasting_or_lost() const { return data_.state == SlamState::kCoasting || data_.state == SlamState::kLost; }
   /// This frame's measurements support its pose.
-  bool is_tracked(const FrameReport& report) const { return report.inliers >= kMinInliers || data_.from_target; }
+  bool is_tracked(const FrameReport& report) const {
+    return (report.inliers >= kMinInliers || data_.from_target) && !data_.unusable;
+  }
+  /// The last frame did not support its pose: the map has to be found again before anything is measured.
+  bool is_relocalising(const StartProgress& start) const { return coasting_or_lost() && !start.pending(); }
+  bool needs_new_map(std::int64_t restart_ns) const {
+    return restart_ns > 0 && data_.lost && data_.usable_ns >= restart_ns;
+  }
+  /// Id of the current map; never used twice.
+  std::uint32_t map_id() const { return data_.map_id; }
+  bool may_skip_target() const { return data_.may_skip_target; }
 
  private:
   static constexpr int kMaxFailedUpdates = 10;  ///< in a row
@@ -64,8 +86,13 @@ class TrackingState {
     bool has_pose = false;
     bool from_target = false;  ///< this frame's pose comes from the target
     bool lost = false;
-    bool started_over = false;  ///< in this frame
-    int failed_updates = 0;     ///< in a row
+    bool unusable = false;  ///< this frame's pose
+    bool may_skip_target = false;
+    bool was_tracked = false;  ///< in this map
+    std::uint32_t map_id = 1;
+    std::int64_t usable_ns = 0;  ///< of usable images while lost
+    bool started_over = false;   ///< in this frame
+    int failed_updates = 0;      ///< in a row
     std::int64_t last_tracked_ns = 0;
   };
   Data data_;

@@ -10,6 +10,8 @@ const Filter& View::filter() const { return loop_.filter(); }
 bool View::used() const { return report().frames > 0; }
 std::int64_t View::last_ns() const { return report().t_ns; }
 SlamState View::state() const { return loop_.tracking().state(); }
+std::uint32_t View::map_id() const { return loop_.tracking().map_id(); }
+int View::kept_views() const { return loop_.relocaliser().kept_views(); }
 bool View::has_pose() const { return loop_.tracking().has_pose(); }
 const FrameReport& View::report() const { return loop_.frame().report; }
 int View::match_count() const { return loop_.frame().match_count(); }

@@ -63,6 +63,8 @@ class View {
   std::int64_t last_ns() const;
   SlamState state() const;
   bool has_pose() const;
+  std::uint32_t map_id() const;
+  int kept_views() const;
   /// Body and pose covariance (6x6) at the last frame, or predicted to a later time.
   void pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const;
   /// Projects a known point; covariance may be null. False if the point does not project.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "base/scalar.h"
 
 /// Tuned numbers of tracking: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no
@@ -16,6 +18,13 @@ inline constexpr float kMinPeakLead = 0.04f;        ///< of the first peak over 
 inline constexpr Scalar kMinScale = Scalar(0.25);   ///< source pixels per current pixel of views that compare, from
 inline constexpr Scalar kMaxScale = Scalar(3.2);    ///< to
 }  // namespace match
+
+/// Thumbnails of tracked frames.
+namespace view_memory {
+inline constexpr int kMaxShift = 8;        ///< [px of the thumbnail] to each side, within which views are compared
+inline constexpr float kKnownView = 0.8f;  ///< correlation above which a view is kept already
+inline constexpr std::int64_t kMinVariance = 1;  ///< [grey levels^2] of a thumbnail that can be recognised
+}  // namespace view_memory
 
 /// Sub-pixel sides of a quadrilateral.
 namespace quad_refine {

@@ -1,0 +1,117 @@
+#include "slam/pose_proposal.h"
+
+#include <algorithm>
+
+#include "filter/observe/point.h"
+#include "geometry/small_cholesky.h"
+#include "geometry/so3.h"
+
+namespace pf {
+namespace {
+
+constexpr int kTrials = 120;
+constexpr int kSteps = 6;         // of Gauss-Newton
+constexpr int kRefits = 3;        // to all inliers
+constexpr int kMaxMatches = 200;  // capacity.max_observations at most
+
+struct Problem {
+  const Camera& camera;
+  const Body& prior;
+  const Mat6& information;
+  const Vec3* f_W;
+  const Vec2* pixel;
+  Scalar weight;
+
+  /// False if a point is not in front of the camera or the matches do not determine a pose.
+  bool fit(const short* index, int count, Body* pose) const {
+    for (int step = 0; step < kSteps; ++step) {
+      Vec6 e;
+      e << log_so3(pose->q_WC * prior.q_WC.conjugate()), pose->p_W - prior.p_W;
+      Mat6 A = information;
+      Vec6 b = -information.lazyProduct(e);
+      for (int k = 0; k < count; ++k) {
+        Vec2 z;
+        Mat26 J;
+        Mat23 J_f;
+        if (!observe_point(camera, *pose, f_W[index[k]], &z, &J, &J_f)) return false;
+        A += weight * J.transpose().lazyProduct(J);
+        b += weight * J.transpose().lazyProduct(pixel[index[k]] - z);
+      }
+      SmallCholesky<6> cholesky;
+      if (!cholesky.factor(A)) return false;
+      const Vec6 d = cholesky.solve<1>(b);
+      const Vec3 theta = d.head<3>();
+      if (!(theta.squaredNorm() < Scalar(10))) return false;
+      pose->q_WC = (exp_so3(theta) * pose->q_WC).normalized();
+      pose->p_W += d.tail<3>();
+      if (d.squaredNorm() < Scalar(1e-10)) break;
+    }
+    return true;
+  }
+
+  /// Cost of all matches, each at most that of three sigma.
+  Scalar judge(const Body& pose, int count, short* index, int* inliers) const {
+    Scalar cost = 0;
+    *inliers = 0;
+    for (int i = 0; i < count; ++i) {
+      Vec2 z;
+      Mat26 J;
+      Mat23 J_f;
+      Scalar d2 = 9;
+      if (observe_point(camera, pose, f_W[i], &z, &J, &J_f)) d2 = std::min(d2, weight * (pixel[i] - z).squaredNorm());
+      cost += d2;
+      if (d2 < 9) index[(*inliers)++] = static_cast<short>(i);
+    }
+    return cost;
+  }
+};
+
+}  // namespace
+
+int propose_pose(const Camera& camera, const Mat6& P, const Vec3* f_W, const Vec2* pixel, int count, Scalar sigma_px,
+                 Body* pose) {
+  count = std::min(count, kMaxMatches);
+  if (count < 4) return 0;
+  const Body prior = *pose;
+  Mat6 information = Mat6::Zero();
+  SmallCholesky<6> cholesky;
+  if (cholesky.factor(P)) information = cholesky.solve<6>(Mat6::Identity());
+  const Problem problem{camera, prior, information, f_W, pixel, Scalar(1) / (sigma_px * sigma_px)};
+  short index[kMaxMatches];
+  int inliers = 0;
+  Scalar best = problem.judge(prior, count, index, &inliers);
+  std::uint32_t random = 7;
+  const auto draw = [&] {
+    random = random * 1664525u + 1013904223u;
+    return static_cast<short>((random >> 8) % static_cast<std::uint32_t>(count));
+  };
+  for (int trial = 0; trial < kTrials; ++trial) {
+    short three[3];
+    three[0] = draw();
+    do three[1] = draw();
+    while (three[1] == three[0]);
+    do three[2] = draw();
+    while (three[2] == three[0] || three[2] == three[1]);
+    Body body = prior;
+    if (!problem.fit(three, 3, &body)) continue;
+    const Scalar cost = problem.judge(body, count, index, &inliers);
+    if (cost >= best) continue;
+    best = cost;
+    pose->q_WC = body.q_WC;
+    pose->p_W = body.p_W;
+  }
+  problem.judge(*pose, count, index, &inliers);
+  for (int refit = 0; refit < kRefits && inliers >= 4; ++refit) {
+    Body body = *pose;
+    if (!problem.fit(index, inliers, &body)) break;
+    const Scalar cost = problem.judge(body, count, index, &inliers);
+    if (cost >= best) break;
+    best = cost;
+    pose->q_WC = body.q_WC;
+    pose->p_W = body.p_W;
+  }
+  problem.judge(*pose, count, index, &inliers);
+  return inliers;
+}
+
+}  // namespace pf

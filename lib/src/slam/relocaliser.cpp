@@ -1,0 +1,276 @@
+#include "slam/relocaliser.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/elapsed.h"
+#include "geometry/so3.h"
+#include "slam/consensus.h"
+#include "slam/pose_proposal.h"
+#include "slam/tracking_state.h"
+#include "slam/tuning.h"
+
+namespace pf {
+
+using namespace tuning::relocaliser;
+
+namespace {
+
+/// Jacobian by (theta, p), which are the first six columns of a pixel's rows.
+Mat26 pose_columns(const PixelMeasurement& o) {
+  const int columns = o.H.columns();
+  Mat26 J;
+  for (int a = 0; a < 2; ++a)
+    for (int c = 0; c < 6; ++c) J(a, c) = o.H.h[a * columns + c];
+  return J;
+}
+
+}  // namespace
+
+bool Relocaliser::layout(Arena& arena, int max_observations, int max_kept_views) {
+  const std::size_t count = static_cast<std::size_t>(max_observations);
+  views_.layout(arena, max_kept_views);
+  searched_px2_ = arena.take<Scalar>(count);
+  point_W_ = arena.take<Vec3>(count);
+  pixel_ = arena.take<Vec2>(count);
+  return arena.ok();
+}
+
+void Relocaliser::init() {
+  data_ = Data();
+  views_.init();
+}
+
+void Relocaliser::remember_view(Scalar median_depth) {
+  data_.depth = median_depth;
+  views_.keep_if_new(filter_.state().body.q_WC, filter_.state().body.p_W);
+}
+
+void Relocaliser::recover(std::int64_t dt_ns) {
+  const SearchPose about = choose_search_pose();
+  const bool anywhere = about.given || !is_prediction_narrow();
+  const Body estimate = filter_.state().body;
+  set_pose(about.body);
+  int count = images_.list_visible();
+  images_.predict_pixels(0, count);
+  if (anywhere) count = keep_placed(about, count);
+  const int found = images_.search(0, count);
+  set_pose(estimate);
+  if (anywhere)
+    recover_anywhere(about, found, dt_ns);
+  else
+    recover_nearby(found);
+}
+
+/// The prediction is good enough for a linear consensus.
+bool Relocaliser::is_prediction_narrow() const {
+  Scalar variance = 0;
+  for (int i = 0; i < 3; ++i) variance += filter_.variance(Body::kTheta + i);
+  return variance < kNearbySigma * kNearbySigma;
+}
+
+/// About the last frame's proposal; where the rotation is hardly known, about a kept view that looks like this image; otherwise about the
+/// prediction.
+Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
+  SearchPose about;
+  about.body = filter_.state().body;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) about.P(i, j) = filter_.covariance()(std::max(i, j), std::min(i, j));
+  Scalar rotation = kAboutProposal, position = kAboutProposal;
+  if (data_.proposal.frames > 0) {
+    about.body.q_WC = data_.proposal.q_WC;
+    about.body.p_W = data_.proposal.p_W;
+    position *= data_.proposal.depth;
+  } else {
+    if (is_prediction_narrow()) return about;
+    const Recognition place = views_.recognise(settings_.camera);
+    if (place.score < kMinRecognition) return about;
+    about.body.q_WC = place.q_WC;
+    about.body.p_W = place.p_W;
+    rotation = kAboutView;
+    position = kAboutView * data_.depth;
+  }
+  about.given = true;
+  about.P.setZero();
+  for (int i = 0; i < 3; ++i) {
+    about.P(i, i) = rotation * rotation;
+    about.P(3 + i, 3 + i) = position * position;
+  }
+  return about;
+}
+
+void Relocaliser::set_pose(const Body& pose) {
+  filter_.body().q_WC = pose.q_WC;
+  filter_.body().p_W = pose.p_W;
+}
+
+/// After a short gap: a consensus about the prediction, in which features of unknown depth count as well.
+void Relocaliser::recover_nearby(int found) {
+  const int before = data_.frames_nearby;
+  data_.frames_nearby = 0;
+  if (found < TrackingState::kMinInliers) return;
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
+  for (int i = 0; i < found; ++i) searched_px2_[i] = images_.searched_area(i);
+  update_.begin(0, found);
+  const int inliers = find_inliers(filter_, update_.observations(), found, settings_.gate, update_.keep());
+  const TripleConsensus consensus =
+      find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
+                            settings_.gate, kTriples, update_.keep(), nullptr);
+  if (!is_beyond_chance({inliers, consensus.log_false}, found)) return;
+  if (before + 1 < kFramesNearby) {
+    data_.frames_nearby = before + 1;
+    return;
+  }
+  mark_matches(found);
+  update_.apply(0, found);
+}
+
+/// Proposes a pose from the matches of a search about another pose, and tests it in the filter's own covariance.
+void Relocaliser::recover_anywhere(const SearchPose& about, int found, std::int64_t dt_ns) {
+  const int before = data_.proposal.frames;
+  data_.proposal.frames = 0;
+  if (found < TrackingState::kMinInliers) return;
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
+  for (int i = 0; i < found; ++i) {
+    point_W_[i] = filter_.point(map_.features[update_.candidate(i).feature].slot);
+    pixel_[i] = update_.observation(i).measured;
+    searched_px2_[i] = images_.searched_area(i);
+  }
+  Body pose = about.body;
+  const Scalar sigma = std::max(Scalar(1), kProposalPixels * static_cast<Scalar>(settings_.camera.width));
+  if (propose_pose(settings_.camera, about.P, point_W_, pixel_, found, sigma, &pose) < TrackingState::kMinInliers)
+    return;
+  found = linearise_at(pose, found);
+  if (found < TrackingState::kMinInliers) return;
+  update_.begin(0, found);
+  const TripleConsensus consensus =
+      find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
+                            settings_.gate, kTriples, nullptr, update_.keep());
+  if (!is_beyond_chance(consensus, found)) return;
+  const Scalar depth = median_depth(pose, found);
+  const bool follows = before > 0 && depth > 0 && follows_last_proposal(pose, depth, dt_ns);
+  data_.proposal = {follows ? before + 1 : 1, pose.q_WC, pose.p_W, depth};
+  if (data_.proposal.frames < kFramesAnywhere) return;
+  mark_matches(found);
+  update_.apply(0, found);
+  data_.proposal.frames = 0;
+}
+
+/// Keeps the candidates that can tell where the camera is, and sets the search ellipses about a given pose. Returns how many.
+int Relocaliser::keep_placed(const SearchPose& about, int count) {
+  int placed = 0;
+  for (int i = 0; i < count; ++i) {
+    if (update_.observation(i).block < 0) continue;
+    const int slot = map_.features[update_.candidate(i).feature].slot;
+    const Block& block = filter_.state().block[slot];
+    if (block.kind == BlockKind::kInverseDepth) {
+      const Scalar rho = block.inverse_depth().rho;
+      if (!(rho > 0) || filter_.block_variance(slot, 2) > kMaxDepthSigma * kMaxDepthSigma * rho * rho) continue;
+    }
+    if (i != placed) update_.swap(placed, i);
+    if (about.given) {
+      const Mat26 J = pose_columns(update_.observation(placed));
+      frame_.match(update_.candidate(placed).match).innovation =
+          J.lazyProduct(about.P).lazyProduct(J.transpose()) + Mat2::Identity() * (kMapSigma * kMapSigma);
+    }
+    ++placed;
+  }
+  return placed;
+}
+
+/// Predictions and Jacobians of the matches at a pose far from the estimate, for an update of the estimate:
+///
+///   z = h(x_0) + H (x [-] x_0),   so that the prediction at the estimate is h(x_0) + H (x^ [-] x_0)
+///
+/// Moves the matches that can be seen from there to the front and returns how many they are.
+int Relocaliser::linearise_at(const Body& pose, int found) {
+  const Body estimate = filter_.state().body;
+  Vec6 e;
+  e << log_so3(estimate.q_WC * pose.q_WC.conjugate()), estimate.p_W - pose.p_W;
+  set_pose(pose);
+  int seen = 0;
+  for (int i = 0; i < found; ++i) {
+    PixelMeasurement& o = update_.observation(i);
+    const Vec2 measured = o.measured;
+    const Mat2 R = o.R_gate - o.second_order;
+    const int slot = o.block;
+    if (!filter_.predict_pixel(settings_.camera, slot, &o)) continue;
+    o.predicted += pose_columns(o).lazyProduct(e);
+    o.measured = measured;
+    // The product of an uncertain baseline and an uncertain depth is gone where the baseline is proposed.
+    o.set_noise(is_planar(filter_.state().block[slot].kind) ? Mat2(R + o.second_order) : R);
+    if (seen != i) {
+      update_.swap(seen, i);
+      std::swap(searched_px2_[seen], searched_px2_[i]);
+    }
+    ++seen;
+  }
+  set_pose(estimate);
+  return seen;
+}
+
+/// Whether inliers are enough, far beyond chance, and not in one corner of the image.
+bool Relocaliser::is_beyond_chance(const TripleConsensus& consensus, int found) const {
+  return consensus.inliers >= TrackingState::kMinInliers && consensus.log_false < kMaxLogFalse && is_spread(found);
+}
+
+/// Whether the camera can have moved here from the last frame's proposal.
+bool Relocaliser::follows_last_proposal(const Body& pose, Scalar depth, std::int64_t dt_ns) const {
+  const Scalar dt = static_cast<Scalar>(static_cast<double>(dt_ns) * 1e-9);
+  const Body& body = filter_.state().body;
+  Scalar max_rotation = kProposalRotation, max_shift = kProposalShift * depth;
+  if (settings_.constant_velocity) {
+    Scalar v = 0, w = 0;
+    for (int i = 0; i < 3; ++i) {
+      v += filter_.variance(Body::kVelocity + i);
+      w += filter_.variance(Body::kRate + i);
+    }
+    max_rotation += (kMotionGate * std::min(std::sqrt(w), kMaxRateSigma) + body.w_C.norm()) * dt;
+    max_shift += (kMotionGate * std::min(std::sqrt(v), kMaxSpeedSigma * depth) + body.v_W.norm()) * dt;
+  } else {
+    max_rotation += kMotionGate * settings_.motion_noise.angular * std::sqrt(3 * dt);
+    max_shift += kMotionGate * settings_.motion_noise.linear * std::sqrt(3 * dt);
+  }
+  return log_so3(pose.q_WC * data_.proposal.q_WC.conjugate()).norm() < max_rotation &&
+         (pose.p_W - data_.proposal.p_W).norm() < max_shift;
+}
+
+/// Whether inliers are in enough cells of the image.
+bool Relocaliser::is_spread(int found) const {
+  bool filled[kRows][kColumns] = {};
+  int cells = 0;
+  for (int i = 0; i < found; ++i) {
+    if (update_.keep()[i] == 0) continue;
+    const Vec2& z = update_.observation(i).measured;
+    const int column = std::clamp(static_cast<int>(z.x()) * kColumns / settings_.camera.width, 0, kColumns - 1);
+    const int row = std::clamp(static_cast<int>(z.y()) * kRows / settings_.camera.height, 0, kRows - 1);
+    cells += filled[row][column] ? 0 : 1;
+    filled[row][column] = true;
+  }
+  return cells >= kMinCells;
+}
+
+/// Of the inliers, seen from a pose; 0 without any.
+Scalar Relocaliser::median_depth(const Body& pose, int found) const {
+  constexpr int kMaxMatches = 200;  // capacity.max_observations at most
+  Scalar depth[kMaxMatches];
+  int count = 0;
+  const Vec3 forward = pose.q_WC.toRotationMatrix().col(2);
+  for (int i = 0; i < found && count < kMaxMatches; ++i)
+    if (update_.keep()[i] != 0)
+      depth[count++] = forward.dot(filter_.point(map_.features[update_.candidate(i).feature].slot) - pose.p_W);
+  if (count == 0) return 0;
+  std::nth_element(depth, depth + count / 2, depth + count);
+  return depth[count / 2];
+}
+
+void Relocaliser::mark_matches(int found) {
+  for (int i = 0; i < found; ++i) {
+    Match& match = frame_.match(update_.candidate(i).match);
+    match.status = update_.keep()[i] != 0 ? MatchStatus::kInlier : MatchStatus::kOutlier;
+    match.nis = squared_distance(match.measured - update_.observation(i).predicted,
+                                 filter_.innovation_block(i, i) + update_.observation(i).R_gate);
+  }
+}
+
+}  // namespace pf

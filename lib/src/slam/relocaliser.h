@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "filter/filter.h"
+#include "map/map.h"
+#include "slam/frame.h"
+#include "slam/image_front_end.h"
+#include "slam/pixel_update.h"
+#include "slam/settings.h"
+#include "slam/triple_consensus.h"
+#include "track/view_memory.h"
+
+/// Finds the map again after frames that did not support the pose. Updates the filter only after frames in a row were consistent with the
+/// map, and with each other, far beyond chance. See lib/docs/states.md.
+
+namespace pf {
+
+class Relocaliser {
+ public:
+  Relocaliser(const Settings& settings, Filter& filter, Map& map, Frame& frame, ImageFrontEnd& images,
+              PixelUpdate& update)
+      : settings_(settings), filter_(filter), map_(map), frame_(frame), images_(images), update_(update) {}
+
+  bool layout(Arena& arena, int max_observations, int max_kept_views);
+  void init();
+
+  /// Makes the thumbnail of a usable image.
+  void begin_frame() { views_.set_image(images_.tracker().pyramid()); }
+  /// Keeps the view of a tracked frame, and how far away its features are.
+  void remember_view(Scalar median_depth);
+  /// The map is tracked: forgets what earlier frames proposed.
+  void clear_proposals() { data_ = {Proposal(), 0, data_.depth}; }
+  /// Searches where the pose may be. dt_ns: since the frame before.
+  void recover(std::int64_t dt_ns);
+
+  int kept_views() const { return views_.count(); }
+
+ private:
+  /// Pose that the last frame's matches proposed.
+  struct Proposal {
+    int frames = 0;  ///< in a row that are consistent with it
+    Quat q_WC = Quat::Identity();
+    Vec3 p_W = Vec3::Zero();
+    Scalar depth = 1;  ///< median, of its inliers
+  };
+
+  /// Where to search, instead of about the prediction.
+  struct SearchPose {
+    bool given = false;
+    Body body;
+    Mat6 P = Mat6::Zero();  ///< of (theta, p)
+  };
+
+  /// What is kept between frames.
+  struct Data {
+    Proposal proposal;
+    int frames_nearby = 0;  ///< in a row with a consensus about the prediction
+    Scalar depth = 1;       ///< median, of the last tracked frame
+  };
+
+  bool is_prediction_narrow() const;
+  SearchPose choose_search_pose() const;
+  void recover_nearby(int found);
+  void recover_anywhere(const SearchPose& about, int found, std::int64_t dt_ns);
+  void set_pose(const Body& pose);
+  int keep_placed(const SearchPose& about, int count);
+  int linearise_at(const Body& pose, int found);
+  bool is_beyond_chance(const TripleConsensus& consensus, int found) const;
+  bool follows_last_proposal(const Body& pose, Scalar depth, std::int64_t dt_ns) const;
+  bool is_spread(int found) const;
+  Scalar median_depth(const Body& pose, int found) const;
+  void mark_matches(int found);
+
+  const Settings& settings_;
+  Filter& filter_;
+  Map& map_;
+  Frame& frame_;
+  ImageFrontEnd& images_;
+  PixelUpdate& update_;
+  ViewMemory views_;
+  Data data_;
+  Scalar* searched_px2_ = nullptr;  ///< max_observations each
+  Vec3* point_W_ = nullptr;
+  Vec2* pixel_ = nullptr;
+};
+
+}  // namespace pf

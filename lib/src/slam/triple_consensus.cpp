@@ -1,0 +1,92 @@
+#include "slam/triple_consensus.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/small_cholesky.h"
+#include "map/plane_chance.h"
+#include "slam/consensus.h"
+#include "slam/tuning.h"
+
+namespace pf {
+namespace {
+
+constexpr int kMaxMatches = 200;               // capacity.max_observations at most
+constexpr Scalar kGateOfThree = Scalar(22.5);  // chi-square of six degrees of freedom, 0.999
+
+Scalar ellipse_area(const Mat2& S, Scalar gate) {
+  const Scalar det = S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
+  return Scalar(3.14159265) * gate * std::sqrt(std::max(det, Scalar(0)));
+}
+
+}  // namespace
+
+TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement* matches, const Scalar* searched_px2,
+                                      int found, int attempts, Scalar gate, int triples, const unsigned char* among,
+                                      unsigned char* keep) {
+  using namespace tuning::chance;
+  TripleConsensus best;
+  short pool[kMaxMatches];
+  int size = 0;
+  found = std::min(found, kMaxMatches);
+  for (int i = 0; i < found; ++i)
+    if (among == nullptr || among[i] != 0) pool[size++] = static_cast<short>(i);
+  if (size < 4) {
+    if (keep != nullptr) std::fill(keep, keep + found, static_cast<unsigned char>(0));
+    return best;
+  }
+  std::uint32_t random = 1;
+  const auto draw = [&] {
+    random = random * 1664525u + 1013904223u;
+    return static_cast<int>(pool[(random >> 8) % static_cast<std::uint32_t>(size)]);
+  };
+  bool any = false;
+  for (int trial = 0; trial < triples; ++trial) {
+    int three[3];
+    three[0] = draw();
+    do three[1] = draw();
+    while (three[1] == three[0]);
+    do three[2] = draw();
+    while (three[2] == three[0] || three[2] == three[1]);
+    Mat6 S_T;
+    Vec6 r_T;
+    for (int a = 0; a < 3; ++a) {
+      const PixelMeasurement& o = matches[three[a]];
+      r_T.segment<2>(2 * a) = o.measured - o.predicted;
+      for (int b = 0; b < 3; ++b) S_T.block<2, 2>(2 * a, 2 * b) = filter.innovation_block(three[a], three[b]);
+      S_T.block<2, 2>(2 * a, 2 * a) += o.R_gate;
+    }
+    SmallCholesky<6> cholesky;
+    if (!cholesky.factor(S_T)) continue;
+    const Vec6 a_T = cholesky.solve<1>(r_T);
+    if (!(r_T.dot(a_T) < kGateOfThree)) continue;
+    int inliers = 3;
+    Scalar share = 0;
+    unsigned char is_inlier[kMaxMatches] = {};
+    for (int j = 0; j < found; ++j) {
+      if (j == three[0] || j == three[1] || j == three[2]) {
+        is_inlier[j] = 1;
+        continue;
+      }
+      Eigen::Matrix<Scalar, 6, 2> S_Tj;
+      for (int a = 0; a < 3; ++a) S_Tj.block<2, 2>(2 * a, 0) = filter.innovation_block(three[a], j);
+      const Eigen::Matrix<Scalar, 6, 2> X = cholesky.solve<2>(S_Tj);
+      const Vec2 r = matches[j].measured - matches[j].predicted - S_Tj.transpose().lazyProduct(a_T);
+      const Mat2 S = filter.innovation_block(j, j) + matches[j].R_gate - S_Tj.transpose().lazyProduct(X);
+      share += kMaxFindShare * std::min(Scalar(1), ellipse_area(S, gate) / std::max(searched_px2[j], kMinArea));
+      is_inlier[j] = squared_distance(r, S) < gate ? 1 : 0;
+      inliers += is_inlier[j];
+    }
+    share = std::clamp(share / static_cast<Scalar>(std::max(1, found - 3)), Scalar(1e-6), Scalar(0.99));
+    const Scalar log_false = log_false_planes(inliers, std::max(attempts, found), share, found);
+    if (any && log_false >= best.log_false) continue;
+    any = true;
+    best.inliers = inliers;
+    best.log_false = log_false;
+    if (keep != nullptr) std::copy(is_inlier, is_inlier + found, keep);
+  }
+  if (!any && keep != nullptr) std::fill(keep, keep + found, static_cast<unsigned char>(0));
+  return best;
+}
+
+}  // namespace pf

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "filter/filter.h"
+#include "map/map.h"
+#include "slam/frame.h"
+
+/// Whether a measured pose is known well enough to be used. See lib/docs/states.md.
+
+namespace pf {
+
+/// Variances of a pose, summed over the three axes.
+struct PoseSpread {
+  Scalar rotation = 0;  ///< [rad^2]
+  Scalar position = 0;  ///< [m^2]
+};
+
+/// Spread of the pose against the best known of these points, without what moves all of them and the camera together (translation,
+/// rotation, scale). False with fewer than three points.
+bool spread_against_points(const Filter& filter, const int* slots, int count, PoseSpread* spread);
+
+/// True if rotation sigma is below 20 degrees and position sigma below half the median depth of this frame's inliers: in the world; or
+/// where the world has drifted, as that of a bare camera does, against those inliers. False without inliers.
+/// median_depth gets that of the inliers.
+bool is_pose_usable(const Filter& filter, const Map& map, const Frame& frame, Scalar* median_depth);
+
+}  // namespace pf

@@ -1,0 +1,260 @@
+// Frames that do not support the pose: another place, no picture, and a view that comes back. Rendered, at 320x240.
+#include <planefold_platform/sim.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "planefold/planefold.h"
+#include "unity.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr std::uint64_t kSeed = 11;
+constexpr std::int64_t kFrameNs = 33333333;
+constexpr int kPixels = 320 * 240;
+constexpr int kSecond = 30;  // frames
+
+using Picture = std::vector<std::uint8_t>;
+
+/// The first pictures of a scene, all of which have one camera. The target stands on the desk only.
+class Film {
+ public:
+  Film(const char* scene, int frames, std::uint64_t seed = kSeed) {
+    pf_sim_options_t options;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_options_default(scene, &options));
+    options.camera = {PF_CAMERA_PINHOLE, 320, 240, 260, 260, 159.5, 119.5, {}, 0};
+    options.seed = seed;
+    options.target = std::strcmp(scene, "desk") == 0;
+    options.frames = frames;
+    pf_sim_t* sim = pf_sim_open(scene, &options);
+    TEST_ASSERT_NOT_NULL(sim);
+    pf_sim_camera(sim, &camera);
+    if (options.target) TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_target(sim, PF_TARGET_RECTANGLE, &target));
+    pf_image_t image;
+    pf_pose_t pose;
+    while (pf_sim_next(sim, &image, &pose) == 1) {
+      picture.emplace_back(image.pixels, image.pixels + kPixels);
+      truth.push_back(pose);
+    }
+    pf_sim_close(sim);
+    TEST_ASSERT_EQUAL_size_t(static_cast<std::size_t>(frames), picture.size());
+  }
+
+  pf_camera_t camera;
+  pf_target_t target = {};
+  std::vector<Picture> picture;
+  std::vector<pf_pose_t> truth;
+};
+
+const Film& desk() {
+  static const Film film("desk", 4 * kSecond);
+  return film;
+}
+
+const Film& room() {
+  static const Film film("room", 8 * kSecond);
+  return film;
+}
+
+/// A context that has tracked the first seconds of the desk, and what it says to further pictures.
+class Run {
+ public:
+  explicit Run(double restart_s, int max_kept_views = 24) {
+    std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
+    pf_config_t config;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
+    config.camera = desk().camera;
+    config.motion.restart_s = restart_s;
+    config.capacity.max_kept_views = max_kept_views;
+    pf_memory_t need;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
+    block_ = std::aligned_alloc(need.alignment, (need.bytes + need.alignment) / need.alignment * need.alignment);
+    TEST_ASSERT_NOT_NULL(block_);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block_, need.bytes, &slam));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &desk().target));
+    for (int i = 0; i < 3 * kSecond; ++i)
+      TEST_ASSERT_EQUAL_INT(PF_OK, show(desk().picture[static_cast<std::size_t>(i)]));
+  }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+  ~Run() { std::free(block_); }
+
+  pf_status_t show(const Picture& picture) {
+    t_ns_ += kFrameNs;
+    const pf_image_t image = {picture.data(), 320, 240, 320, t_ns_};
+    const pf_status_t status = pf_push_frame(slam, &image);
+    TEST_ASSERT_TRUE(status >= PF_OK);
+    if (pf_get_pose(slam, &pose) != PF_OK) pose.t_ns = -1;
+    return status;
+  }
+  pf_status_t show_black() { return show(Picture(kPixels, 0)); }
+
+  std::vector<std::uint32_t> ids() const {
+    std::vector<pf_feature_t> features(200);
+    std::size_t count = 0;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_features(slam, features.data(), features.size(), &count));
+    std::vector<std::uint32_t> all;
+    for (std::size_t i = 0; i < count; ++i) all.push_back(features[i].id);
+    return all;
+  }
+
+  pf_slam_t* slam = nullptr;
+  pf_pose_t pose{};
+
+ private:
+  void* block_ = nullptr;
+  std::int64_t t_ns_ = 0;
+};
+
+double kept_share(const std::vector<std::uint32_t>& before, const std::vector<std::uint32_t>& now) {
+  int kept = 0;
+  for (const std::uint32_t id : before) kept += std::find(now.begin(), now.end(), id) != now.end() ? 1 : 0;
+  return static_cast<double>(kept) / static_cast<double>(before.size());
+}
+
+double distance(const pf_pose_t& a, const pf_pose_t& b) {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) sum += (a.p_WC[i] - b.p_WC[i]) * (a.p_WC[i] - b.p_WC[i]);
+  return std::sqrt(sum);
+}
+
+void test_another_place_after_a_blackout_should_never_be_called_tracked() {
+  for (const int black : {6, kSecond / 2, kSecond, 2 * kSecond}) {
+    Run run(0);
+    for (int i = 0; i < black; ++i) run.show_black();
+    int tracked = 0;
+    for (int i = 0; i < 4 * kSecond; ++i)
+      tracked += run.show(room().picture[static_cast<std::size_t>(i)]) == PF_OK ? 1 : 0;
+    std::printf("%d black frames: tracked %d of %d of another place\n", black, tracked, 4 * kSecond);
+    TEST_ASSERT_EQUAL_INT(0, tracked);
+  }
+}
+
+/// A wall in which half a second without a picture once ended in 98 of 120 frames with PF_OK.
+void test_a_wall_after_half_a_second_without_a_picture_should_never_be_called_tracked() {
+  const Film wall("wall", 8 * kSecond, 20);
+  Run run(0);
+  for (int i = 0; i < kSecond / 2; ++i) run.show_black();
+  int tracked = 0;
+  for (std::size_t i = 4 * kSecond; i < wall.picture.size(); ++i) tracked += run.show(wall.picture[i]) == PF_OK ? 1 : 0;
+  TEST_ASSERT_EQUAL_INT(0, tracked);
+}
+
+void test_another_place_without_a_blackout_should_never_be_called_tracked() {
+  Run run(0);
+  int tracked = 0;
+  for (int i = 0; i < 8 * kSecond; ++i)
+    tracked += run.show(room().picture[static_cast<std::size_t>(i)]) == PF_OK ? 1 : 0;
+  TEST_ASSERT_EQUAL_INT(0, tracked);
+}
+
+void test_covariance_should_never_shrink_while_coasting_or_lost() {
+  Run run(0);
+  pf_pose_t before = run.pose;
+  for (int i = 0; i < 10 * kSecond; ++i) {
+    const bool black = i < 2 * kSecond;
+    const pf_status_t status =
+        black ? run.show_black() : run.show(room().picture[static_cast<std::size_t>(i - 2 * kSecond)]);
+    TEST_ASSERT_NOT_EQUAL(PF_OK, status);
+    for (int k = 0; k < 6; ++k) TEST_ASSERT_TRUE(run.pose.covariance[7 * k] >= before.covariance[7 * k]);
+    before = run.pose;
+  }
+  // A hand of 1 m/s may be anywhere in the room by then.
+  TEST_ASSERT_TRUE(before.covariance[21] + before.covariance[28] + before.covariance[35] > 1);
+}
+
+void test_ids_should_survive_ten_seconds_without_pictures_and_eight_of_another_place() {
+  Run run(0);
+  const std::vector<std::uint32_t> before = run.ids();
+  for (int i = 0; i < 10 * kSecond; ++i) run.show_black();
+  TEST_ASSERT_EQUAL_DOUBLE(1, kept_share(before, run.ids()));
+  for (const Picture& picture : room().picture) run.show(picture);
+  TEST_ASSERT_EQUAL_DOUBLE(1, kept_share(before, run.ids()));
+}
+
+void test_the_map_should_be_found_again_where_it_was_left() {
+  for (const int away : {0, 5 * kSecond}) {
+    Run run(0);
+    for (int i = 0; i < kSecond; ++i) run.show_black();
+    for (int i = 0; i < away; ++i) run.show(room().picture[static_cast<std::size_t>(i)]);
+    int frames = 0;
+    std::size_t at = 3 * kSecond;
+    while (frames < kSecond && run.show(desk().picture[at++]) != PF_OK) ++frames;
+    std::printf("found after %d frames, %.4f m off\n", frames, distance(run.pose, desk().truth[at - 1]));
+    TEST_ASSERT_LESS_THAN_INT(kSecond, frames);
+    TEST_ASSERT_TRUE(distance(run.pose, desk().truth[at - 1]) < 0.03);
+    TEST_ASSERT_EQUAL_UINT32(1, run.pose.map_id);
+    for (; at < desk().picture.size(); ++at) TEST_ASSERT_EQUAL_INT(PF_OK, run.show(desk().picture[at]));
+  }
+}
+
+void test_a_new_map_should_begin_with_a_new_id_after_restart_s_of_usable_pictures() {
+  Run run(2);
+  const std::vector<std::uint32_t> before = run.ids();
+  TEST_ASSERT_EQUAL_UINT32(1, run.pose.map_id);
+  for (int i = 0; i < 10 * kSecond; ++i) run.show_black();  // no picture is no reason for a new map
+  TEST_ASSERT_EQUAL_UINT32(1, run.pose.map_id);
+  int begun = -1;
+  for (int i = 0; i < static_cast<int>(room().picture.size()); ++i) {
+    run.show(room().picture[static_cast<std::size_t>(i)]);
+    if (begun < 0 && run.pose.map_id == 2) begun = i;
+  }
+  std::printf("a new map after %d frames\n", begun);
+  TEST_ASSERT_INT_WITHIN(2, 2 * kSecond, begun);
+  TEST_ASSERT_EQUAL_UINT32(2, run.pose.map_id);
+  TEST_ASSERT_EQUAL_DOUBLE(0, kept_share(before, run.ids()));
+  pf_report_t report;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(run.slam, &report));
+  TEST_ASSERT_EQUAL_UINT32(2, report.map_id);
+  TEST_ASSERT_EQUAL_INT32(PF_STATE_TRACKING, report.state);
+  pf_feature_t feature;
+  std::size_t count;
+  TEST_ASSERT_EQUAL_INT(PF_NOTE_TRUNCATED, pf_get_features(run.slam, &feature, 1, &count));
+  TEST_ASSERT_EQUAL_UINT32(2, feature.map_id);
+}
+
+void test_no_new_map_should_begin_when_restart_s_is_zero() {
+  Run run(0);
+  for (const Picture& picture : room().picture) run.show(picture);
+  TEST_ASSERT_EQUAL_UINT32(1, run.pose.map_id);
+  pf_state_t state;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_state(run.slam, &state));
+  TEST_ASSERT_EQUAL_INT(PF_STATE_LOST, state);
+}
+
+void test_a_short_gap_should_be_recovered_without_kept_views() {
+  Run run(0, 0);
+  for (int i = 0; i < 6; ++i) run.show_black();
+  int frames = 0;
+  std::size_t at = 3 * kSecond;
+  while (frames < kSecond && run.show(desk().picture[at++]) != PF_OK) ++frames;
+  std::printf("found after %d frames\n", frames);
+  TEST_ASSERT_LESS_THAN_INT(6, frames);
+  pf_report_t report;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(run.slam, &report));
+  TEST_ASSERT_EQUAL_INT32(0, report.kept_views);
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_another_place_after_a_blackout_should_never_be_called_tracked);
+  RUN_TEST(test_a_wall_after_half_a_second_without_a_picture_should_never_be_called_tracked);
+  RUN_TEST(test_another_place_without_a_blackout_should_never_be_called_tracked);
+  RUN_TEST(test_covariance_should_never_shrink_while_coasting_or_lost);
+  RUN_TEST(test_ids_should_survive_ten_seconds_without_pictures_and_eight_of_another_place);
+  RUN_TEST(test_the_map_should_be_found_again_where_it_was_left);
+  RUN_TEST(test_a_new_map_should_begin_with_a_new_id_after_restart_s_of_usable_pictures);
+  RUN_TEST(test_no_new_map_should_begin_when_restart_s_is_zero);
+  RUN_TEST(test_a_short_gap_should_be_recovered_without_kept_views);
+  return UNITY_END();
+}

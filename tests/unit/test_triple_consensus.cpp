@@ -1,0 +1,125 @@
+// Consensus over triples: right matches are far beyond chance, matches at random places in the searched areas are not.
+#include "slam/consensus.h"
+#include "slam/triple_consensus.h"
+#include "support/filter_scene.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr int kMatches = 30, kTriples = 40;
+constexpr Scalar kGate = Scalar(9.2103);       // 99 % with two degrees of freedom
+constexpr Scalar kFoundAgain = Scalar(-13.8);  // ln 1e-6, as the relocaliser asks for
+constexpr Scalar kFramesPlace = Scalar(-6.9);  // ln 1e-3, as a tracked frame needs
+
+/// A known map, a camera whose pose is hardly known, and matches of which every one beyond the first `right` is at a random place in its own
+/// search ellipse.
+struct Matches {
+  TestFilter filter{true};
+  PixelMeasurement match[kMatches];
+  Scalar searched_px2[kMatches];
+
+  Matches(SeededRandom& random, int right) {
+    const std::vector<int> slots = fill_map(random, filter, kMatches, 0);
+    Dense P = Dense::Identity(filter.dim(), filter.dim()) * 1e-8;
+    P.block(Body::kTheta, Body::kTheta, 3, 3) = Dense::Identity(3, 3) * (0.03 * 0.03);
+    P.block(Body::kPosition, Body::kPosition, 3, 3) = Dense::Identity(3, 3) * (0.03 * 0.03);
+    filter.set_P(P);
+    const Camera camera = pinhole_camera();
+    Body truth = filter->state().body;
+    truth.q_WC = exp_so3(random.normals<3>(0.03)) * truth.q_WC;
+    truth.p_W += random.normals<3>(0.03);
+    for (int i = 0; i < kMatches; ++i) {
+      PixelMeasurement& o = match[i];
+      TEST_ASSERT_TRUE(filter->predict_pixel(camera, slots[static_cast<std::size_t>(i)], &o));
+      // Second-order errors of a rotation of 0.03 rad are about half a pixel.
+      o.set_noise(Mat2::Identity());
+      const Mat2 S = filter->innovation(o) + o.R_gate;
+      searched_px2[i] = Scalar(3.14159265) * kGate * std::sqrt(S.determinant());
+      Vec2 z;
+      TEST_ASSERT_TRUE(project(
+          camera, truth.q_WC.conjugate() * (filter->point(slots[static_cast<std::size_t>(i)]) - truth.p_W), &z));
+      o.measured = i < right ? Vec2(z + random.normals<2>(0.5)) : anywhere(random, o, S);
+    }
+    filter->begin_update(match, kMatches);
+  }
+
+  static Vec2 anywhere(SeededRandom& random, const PixelMeasurement& o, const Mat2& S) {
+    for (;;) {
+      const Scalar size = Scalar(3.1) * std::sqrt(std::max(S(0, 0), S(1, 1)));
+      const Vec2 r(size * static_cast<Scalar>(random.uniform(-1, 1)),
+                   size * static_cast<Scalar>(random.uniform(-1, 1)));
+      if (squared_distance(r, S) < kGate) return o.predicted + r;
+    }
+  }
+
+  TripleConsensus find(int found, int attempts, unsigned char* keep) const {
+    return find_triple_consensus(*filter, match, searched_px2, found, attempts, kGate, kTriples, nullptr, keep);
+  }
+};
+
+void test_right_matches_should_be_far_beyond_chance_also_when_half_are_wrong() {
+  SeededRandom random(111);
+  int far = 0, right_kept = 0, wrong_kept = 0;
+  constexpr int kTrials = 40, kRight = kMatches / 2;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Matches m(random, kRight);
+    unsigned char keep[kMatches];
+    const TripleConsensus consensus = m.find(kMatches, kMatches, keep);
+    far += consensus.log_false < kFoundAgain && consensus.inliers >= 8 ? 1 : 0;
+    int kept = 0;
+    for (int i = 0; i < kMatches; ++i) {
+      kept += keep[i];
+      (i < kRight ? right_kept : wrong_kept) += keep[i];
+    }
+    TEST_ASSERT_EQUAL_INT(kept, consensus.inliers);
+  }
+  std::printf("beyond chance %d of %d, kept %d of %d right and %d of %d wrong\n", far, kTrials, right_kept,
+              kTrials * kRight, wrong_kept, kTrials * (kMatches - kRight));
+  TEST_ASSERT_GREATER_OR_EQUAL_INT(kTrials - 1, far);
+  TEST_ASSERT_TRUE(right_kept > 0.9 * kTrials * kRight);
+  TEST_ASSERT_TRUE(wrong_kept < 0.05 * kTrials * (kMatches - kRight));
+}
+
+void test_random_matches_should_not_be_beyond_chance() {
+  SeededRandom random(112);
+  Scalar smallest = 1000;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Matches m(random, 0);
+    smallest = std::min(smallest, m.find(kMatches, kMatches, nullptr).log_false);
+  }
+  std::printf("smallest ln NFA of 200: %.2f\n", static_cast<double>(smallest));
+  TEST_ASSERT_TRUE(smallest > kFramesPlace);
+}
+
+void test_the_same_inliers_should_say_less_when_more_was_searched_in_vain() {
+  SeededRandom random(113);
+  const Matches m(random, 20);
+  const Scalar few = m.find(kMatches, kMatches, nullptr).log_false;
+  const Scalar many = m.find(kMatches, 4 * kMatches, nullptr).log_false;
+  TEST_ASSERT_TRUE(many > few + 1);
+}
+
+void test_fewer_than_four_matches_should_say_nothing() {
+  SeededRandom random(114);
+  const Matches m(random, kMatches);
+  unsigned char keep[3] = {1, 1, 1};
+  const TripleConsensus consensus = m.find(3, 3, keep);
+  TEST_ASSERT_EQUAL_INT(0, consensus.inliers);
+  TEST_ASSERT_TRUE(consensus.log_false == 0);
+  for (const unsigned char k : keep) TEST_ASSERT_EQUAL_INT(0, k);
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_right_matches_should_be_far_beyond_chance_also_when_half_are_wrong);
+  RUN_TEST(test_random_matches_should_not_be_beyond_chance);
+  RUN_TEST(test_the_same_inliers_should_say_less_when_more_was_searched_in_vain);
+  RUN_TEST(test_fewer_than_four_matches_should_say_nothing);
+  return UNITY_END();
+}
