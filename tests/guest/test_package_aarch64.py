@@ -7,6 +7,7 @@ import os
 import pathlib
 import random
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -24,6 +25,24 @@ root = cross.sysroot(NAME)
 HERE = script.BIN / "pf-capture"
 if not HERE.exists():
     script.skip("pf-capture is not built")
+
+
+def c_library_alone(root, program, folder):
+    """A root for the emulator that holds the C library of Debian 12 and nothing else, which is all that the program may need; no
+    version of it that is later than Debian 12's."""
+    said = script.run(cross.compiler(NAME, "readelf"), "-dV", program)
+    needed = set(re.findall(r"NEEDED.*\[(.*)\]", said))
+    if not needed <= {"libc.so.6", "libm.so.6", "ld-linux-aarch64.so.1"}:
+        script.fail(f"pf-capture of the tarball needs {sorted(needed)}; devices have the C library for certain, and no more")
+    latest = max(tuple(map(int, version.split("."))) for version in re.findall(r"GLIBC_([\d.]+)", said))
+    print(f"pf-capture of the tarball needs {', '.join(sorted(needed))} of glibc {'.'.join(map(str, latest))}")
+    if latest > (2, 36):
+        script.fail("pf-capture of the tarball does not start on Debian 12, whose glibc is 2.36")
+    (folder / "lib").mkdir(parents=True)
+    for name in ("libc.so.6", "libm.so.6", "ld-linux-aarch64.so.1"):
+        found = next(path for path in (root / "lib/aarch64-linux-gnu" / name, root / "lib" / name) if path.exists())
+        shutil.copy(found.resolve(), folder / "lib" / name)
+    return folder
 
 
 def film(width, height, frames):
@@ -70,7 +89,7 @@ with tempfile.TemporaryDirectory() as folder:
         if ran.returncode != 0 or len(ran.stdout.splitlines()) != 5:
             script.fail(f"the program of README.md, with {package}, ended with {ran.returncode}")
 
-    there = [cross.emulator(NAME), "-L", root, prefix / "bin" / "pf-capture"]
+    there = [cross.emulator(NAME), "-L", c_library_alone(root, prefix / "bin" / "pf-capture", folder / "alone"), prefix / "bin" / "pf-capture"]
     script.run(*there, "--help")
     data = os.environ.get("PLANEFOLD_DATA")
     desk = pathlib.Path(data or "/nonexistent") / "monoslam_desk_a"
