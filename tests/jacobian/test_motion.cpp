@@ -45,14 +45,28 @@ void test_transition_of_constant_velocity_should_be_exact() {
   for (int trial = 0; trial < 50; ++trial) {
     const Body before = random_body(random);
     const Scalar dt = static_cast<Scalar>(random.uniform(0.005, 1));
-    Body after = before;
-    Transition transition, unused;
-    predict_constant_velocity(after, dt, kNoise, &transition);
+    Transition transition, moved_transition;
+    predict_constant_velocity(before, dt, kNoise, &transition);
+    const Body& after = transition.mean;
     TEST_ASSERT_EQUAL_INT(kDim, transition.dim);
     const auto moves = [&](const Vec12& e) {
-      Body body = plus(before, e);
-      predict_constant_velocity(body, dt, kNoise, &unused);
-      return minus(body, after);
+      predict_constant_velocity(plus(before, e), dt, kNoise, &moved_transition);
+      return minus(moved_transition.mean, after);
+    };
+    check_jacobian<kDim, kDim>(matrix(transition.F, kDim), moves, "F");
+  }
+}
+
+void test_transition_of_a_known_change_of_velocity_should_be_exact() {
+  SeededRandom random(56);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Body before = random_body(random);
+    const Vec3 dv_C = random.normals<3>(0.5), dw_C = random.normals<3>(0.5);
+    Transition transition, moved_transition;
+    change_velocity(before, dv_C, dw_C, &transition);
+    const auto moves = [&](const Vec12& e) {
+      change_velocity(plus(before, e), dv_C, dw_C, &moved_transition);
+      return minus(moved_transition.mean, transition.mean);
     };
     check_jacobian<kDim, kDim>(matrix(transition.F, kDim), moves, "F");
   }
@@ -61,11 +75,10 @@ void test_transition_of_constant_velocity_should_be_exact() {
 void test_transition_of_constant_position_should_be_the_identity() {
   SeededRandom random(52);
   const Body before = random_body(random);
-  Body after = before;
   Transition transition;
-  predict_constant_position(after, Scalar(0.1), kNoise, &transition);
+  predict_constant_position(before, Scalar(0.1), kNoise, &transition);
   TEST_ASSERT_EQUAL_INT(Body::kPoseDim, transition.dim);
-  TEST_ASSERT_TRUE(minus(after, before).norm() == 0);
+  TEST_ASSERT_TRUE(minus(transition.mean, before).norm() == 0);
   for (int i = 0; i < 36; ++i) TEST_ASSERT_TRUE(transition.F[i] == (i % 7 == 0 ? Scalar(1) : Scalar(0)));
 }
 
@@ -102,6 +115,7 @@ Mat12 through(Body* body, Scalar dt, int steps) {
   for (int i = 0; i < steps; ++i) {
     Transition t;
     predict_constant_velocity(*body, dt / static_cast<Scalar>(steps), kNoise, &t);
+    *body = t.mean;
     const Mat12 F = matrix(t.F, kDim), FP = F.lazyProduct(P);
     P = Mat12(FP.lazyProduct(F.transpose())) + matrix(t.Q, kDim);
   }
@@ -159,6 +173,7 @@ void test_variance_should_grow_as_the_densities_say() {
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_transition_of_constant_velocity_should_be_exact);
+  RUN_TEST(test_transition_of_a_known_change_of_velocity_should_be_exact);
   RUN_TEST(test_transition_of_constant_position_should_be_the_identity);
   RUN_TEST(test_noise_should_be_symmetric_and_positive_for_short_and_long_steps);
   RUN_TEST(test_two_half_steps_should_be_one_whole_step_when_the_camera_does_not_turn);

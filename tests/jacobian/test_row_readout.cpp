@@ -26,7 +26,7 @@ Camera rolling_camera(int trial) {
 }
 
 PixelMeasurement seen(TestFilter& filter, const Camera& camera, const Body& body, int slot) {
-  filter->body() = body;
+  filter->set_mean(body);
   PixelMeasurement o;
   TEST_ASSERT_TRUE(filter->predict_pixel(camera, slot, &o));
   return o;

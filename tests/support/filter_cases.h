@@ -126,20 +126,20 @@ inline Dense random_covariance(SeededRandom& random, int n, double sigma) {
 /// Map of `points` 3-D points and `inverse` inverse-depth ones on two anchors, all in view of a random body. Slots of the features.
 inline std::vector<int> fill_map(SeededRandom& random, TestFilter& filter, int points, int inverse) {
   const Body body = random_body(random);
-  filter->body() = body;
+  filter->set_mean(body);
   std::vector<int> slots;
   for (int i = 0; i < points; ++i) slots.push_back(filter->add_point(point_in_view(random, body), Mat3::Identity()));
   for (int k = 0; k < 2 && inverse > 0; ++k) {
     Body begun = body;
     begun.p_W += random.normals<3>(0.2);
-    filter->body() = begun;
+    filter->set_mean(begun);
     const int anchor = filter->add_anchor();
     for (int i = k; i < inverse; i += 2) {
       const Vec3 d = point_in_view(random, body) - begun.p_W;
       slots.push_back(filter->add_inverse_depth(anchor, begun.q_WC.conjugate() * d.normalized(), Mat32::Zero(),
                                                 Mat2::Zero(), Scalar(1) / d.norm(), Scalar(1)));
     }
-    filter->body() = body;
+    filter->set_mean(body);
   }
   return slots;
 }

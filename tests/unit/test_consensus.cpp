@@ -23,14 +23,14 @@ struct Matches {
     const std::vector<int> slots = fill_map(random, filter, kMatches, 0);
     // With the roll known, one match fixes the turn, and what agrees by chance is a small part of an ellipse.
     const Vec3 sigma(Scalar(0.02), Scalar(0.02), Scalar(0.001));
-    const Mat3 R_WC = filter->body().q_WC.toRotationMatrix();
+    const Mat3 R_WC = filter->state().body.q_WC.toRotationMatrix();
     const Mat3 turned = R_WC * sigma.cwiseAbs2().asDiagonal() * R_WC.transpose();
     Dense P = Dense::Identity(filter.dim(), filter.dim()) * 1e-8;
     P.block(Body::kTheta, Body::kTheta, 3, 3) = turned.cast<double>();
     P.block(Body::kPosition, Body::kPosition, 3, 3) *= 100;
     filter.set_P(P);
     const Camera camera = pinhole_camera();
-    Body truth = filter->body();
+    Body truth = filter->state().body;
     truth.q_WC = truth.q_WC * exp_so3(random.normals<3>(1).cwiseProduct(sigma));
     truth.p_W += random.normals<3>(1e-3);
     for (int i = 0; i < kMatches; ++i) {

@@ -91,7 +91,7 @@ void test_prediction_should_be_f_p_ft_plus_q() {
   Scene scene(random, true);
   const int n = scene.filter.dim();
   Transition t;
-  predict_constant_velocity(scene.filter->body(), Scalar(0.05), {1, 2}, &t);
+  predict_constant_velocity(scene.filter->state().body, Scalar(0.05), {1, 2}, &t);
   Dense F = Dense::Identity(n, n), Q = Dense::Zero(n, n);
   for (int i = 0; i < t.dim; ++i)
     for (int j = 0; j < t.dim; ++j) {
@@ -119,9 +119,9 @@ void test_damping_should_leave_room_for_both_when_a_speed_goes_on_and_when_it_en
       for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j) P_speed(i, j) = filter->covariance()(Body::kVelocity + i, Body::kVelocity + j);
       Transition t;
-      damp_speed(filter->body(), kFactor, P_speed, &t);
+      damp_speed(filter->state().body, kFactor, P_speed, &t);
       filter->predict(t);
-      predict_constant_velocity(filter->body(), kDt, {Scalar(0.01), Scalar(0.01)}, &t);
+      predict_constant_velocity(filter->state().body, kDt, {Scalar(0.01), Scalar(0.01)}, &t);
       filter->predict(t);
       const Scalar elapsed = kDt * static_cast<Scalar>(frame);
       const Vec3 gone = filter->state().body.p_W - start.p_W;

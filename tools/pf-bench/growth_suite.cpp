@@ -61,11 +61,10 @@ class Room {
   /// Motion, the pixel of every feature of the map, the ellipses of those in view, and the update.
   void frame() {
     pf::Transition transition;
-    pf::Body still = filter_.body();
+    pf::Body still = filter_.state().body;
     still.v_W.setZero();
     still.w_C.setZero();
-    filter_.body() = still;
-    pf::predict_constant_velocity(filter_.body(), Scalar(1) / 30, {Scalar(1), Scalar(2)}, &transition);
+    pf::predict_constant_velocity(still, Scalar(1) / 30, {Scalar(1), Scalar(2)}, &transition);
     filter_.predict(transition);
     look();
     update();

@@ -37,21 +37,9 @@ void Filter::set_body(const Body& body, const Scalar* covariance) {
   blocks_.set_leading(covariance);
 }
 
-void Filter::predict(const Transition& transition) { blocks_.predict(transition.F, transition.Q, transition.dim); }
-
-void Filter::steer(const Vec3& dv_C, const Vec3& dw_C) {
-  PF_ASSERT(state_.body_dim == Body::kMaxDim);
-  const Vec3 dv_W = state_.body.q_WC * dv_C;
-  state_.body.v_W += dv_W;
-  state_.body.w_C += dw_C;
-  if (dv_W.squaredNorm() == Scalar(0)) return;
-  Transition turn = {};
-  turn.dim = Body::kMaxDim;
-  for (int i = 0; i < turn.dim; ++i) turn.F[i * turn.dim + i] = Scalar(1);
-  const Mat3 J = -hat(dv_W);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) turn.F[(Body::kVelocity + i) * turn.dim + Body::kTheta + j] = J(i, j);
-  blocks_.predict(turn.F, turn.Q, turn.dim);
+void Filter::predict(const Transition& transition) {
+  state_.body = transition.mean;
+  blocks_.predict(transition.F, transition.Q, transition.dim);
 }
 
 int Filter::take_slot(BlockKind kind) {

@@ -45,7 +45,8 @@ class Filter {
   const State& state() const { return state_; }
   const BlockFilter& blocks() const { return blocks_; }
   const Triangle& covariance() const { return blocks_.P(); }
-  Body& body() { return state_.body; }
+  /// Sets the mean of the body and leaves its covariance, where the mean comes from elsewhere (a restart).
+  void set_mean(const Body& body) { state_.body = body; }
 
   /// The whole body block becomes known as covariance says (body_dim x body_dim, row-major). Only while the map is empty.
   void set_body(const Body& body, const Scalar* covariance);
@@ -54,8 +55,7 @@ class Filter {
   void set_owner(int slot, int owner) { state_.set_owner(slot, owner); }
 
   // --- predict
-  /// Known change of the velocities, in camera axes:  v_W += R_WC dv,  w_C += dw;  e_v -= [R_WC dv]x theta.
-  void steer(const Vec3& dv_C, const Vec3& dw_C);
+  /// Moves the body to the transition's mean, and P by its F and Q.
   void predict(const Transition& transition);
 
   // --- augment; -1 where there is no room

@@ -5,7 +5,8 @@
 namespace pf {
 namespace {
 
-void clear(Transition* t, int dim) {
+void clear(Transition* t, const Body& body, int dim) {
+  t->mean = body;
   t->dim = dim;
   for (int i = 0; i < dim * dim; ++i) t->F[i] = t->Q[i] = Scalar(0);
   for (int i = 0; i < dim; ++i) t->F[i * dim + i] = Scalar(1);
@@ -18,15 +19,15 @@ void set_block(Scalar* matrix, int dim, int row, int column, const Mat3& value) 
 
 }  // namespace
 
-void predict_constant_velocity(Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) {
+void predict_constant_velocity(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) {
   const Vec3 turn = body.w_C * dt;
   const Mat3 J = body.q_WC.toRotationMatrix().lazyProduct(left_jacobian_so3(turn));
-  body.q_WC = body.q_WC * exp_so3(turn);
-  body.q_WC.normalize();
-  body.p_W += body.v_W * dt;
-
   constexpr int kDim = Body::kMaxDim;
-  clear(transition, kDim);
+  clear(transition, body, kDim);
+  Body& mean = transition->mean;
+  mean.q_WC = body.q_WC * exp_so3(turn);
+  mean.q_WC.normalize();
+  mean.p_W += body.v_W * dt;
   const Mat3 I = Mat3::Identity();
   set_block(transition->F, kDim, Body::kTheta, Body::kRate, dt * J);
   set_block(transition->F, kDim, Body::kPosition, Body::kVelocity, dt * I);
@@ -45,9 +46,18 @@ void predict_constant_velocity(Body& body, Scalar dt, const MotionNoise& noise, 
   set_block(transition->Q, kDim, Body::kRate, Body::kRate, b * d1 * I);
 }
 
-void damp_speed(Body& body, Scalar factor, const Mat6& P_m, Transition* transition) {
+void change_velocity(const Body& body, const Vec3& dv_C, const Vec3& dw_C, Transition* transition) {
+  constexpr int kDim = Body::kMaxDim;
+  clear(transition, body, kDim);
+  const Vec3 dv_W = body.q_WC * dv_C;
+  transition->mean.v_W += dv_W;
+  transition->mean.w_C += dw_C;
+  set_block(transition->F, kDim, Body::kVelocity, Body::kTheta, -hat(dv_W));
+}
+
+void damp_speed(const Body& body, Scalar factor, const Mat6& P_m, Transition* transition) {
   constexpr int kDim = Body::kMaxDim, kSpeed = Body::kVelocity;
-  clear(transition, kDim);
+  clear(transition, body, kDim);
   Vec6 m;
   m << body.v_W, body.w_C;
   for (int i = 0; i < 6; ++i) {
@@ -55,13 +65,13 @@ void damp_speed(Body& body, Scalar factor, const Mat6& P_m, Transition* transiti
     for (int j = 0; j < 6; ++j)
       transition->Q[(kSpeed + i) * kDim + kSpeed + j] = (Scalar(1) - factor * factor) * (P_m(i, j) + m(i) * m(j));
   }
-  body.v_W *= factor;
-  body.w_C *= factor;
+  transition->mean.v_W *= factor;
+  transition->mean.w_C *= factor;
 }
 
-void predict_constant_position(Body&, Scalar dt, const MotionNoise& noise, Transition* transition) {
+void predict_constant_position(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) {
   constexpr int kDim = Body::kPoseDim;
-  clear(transition, kDim);
+  clear(transition, body, kDim);
   const Mat3 I = Mat3::Identity();
   set_block(transition->Q, kDim, Body::kTheta, Body::kTheta, noise.angular * noise.angular * dt * I);
   set_block(transition->Q, kDim, Body::kPosition, Body::kPosition, noise.linear * noise.linear * dt * I);

@@ -30,13 +30,16 @@ void BodyMotion::advance(std::int64_t gap_ns, bool coasting_or_lost, bool nothin
     if (filter_.variance(linear) > most * most) noise.linear = Scalar(0);
   }
   Transition transition;
-  if (settings_.constant_velocity) filter_.steer(data_.dv_C, data_.dw_C);
-  predict(filter_.body(), dt, noise, &transition);
+  if (settings_.constant_velocity && data_.given) {
+    change_velocity(filter_.state().body, data_.dv_C, data_.dw_C, &transition);
+    filter_.predict(transition);
+  }
+  predict(filter_.state().body, dt, noise, &transition);
   filter_.predict(transition);
   data_ = Data();
 }
 
-void BodyMotion::predict(Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const {
+void BodyMotion::predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const {
   if (settings_.constant_velocity)
     predict_constant_velocity(body, dt, noise, transition);
   else
@@ -55,7 +58,7 @@ void BodyMotion::damp(Scalar dt) {
     for (int j = 0; j < 6; ++j)
       if ((any_position && (i < 3 || j < 3)) || (any_rotation && (i >= 3 || j >= 3))) P_speed(i, j) = Scalar(0);
   Transition transition;
-  damp_speed(filter_.body(), std::exp(-dt / kSpeedDecay), P_speed, &transition);
+  damp_speed(filter_.state().body, std::exp(-dt / kSpeedDecay), P_speed, &transition);
   filter_.predict(transition);
 }
 
@@ -69,6 +72,7 @@ void BodyMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body
     const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(now_ns, t_ns)) * 1e-9);
     Transition transition;
     predict(*body, dt, settings_.motion_noise, &transition);
+    *body = transition.mean;
     Scalar FP[Body::kMaxDim * Body::kMaxDim];
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j) {

@@ -18,20 +18,22 @@ class BodyMotion {
   void init() { data_ = Data(); }
   /// Known change of the velocities in camera axes, until the next frame.
   void push_control(const Vec3& dv_C, const Vec3& dw_C) {
+    data_.given = true;
     data_.dv_C += dv_C;
     data_.dw_C += dw_C;
   }
 
   /// Predicts the filter's body over this gap. coasting_or_lost: the tracking state; nothing_measured: the last frame had no inlier.
   void advance(std::int64_t gap_ns, bool coasting_or_lost, bool nothing_measured);
-  /// Moves a body by the configured motion model. The transition gets its Jacobian and noise.
-  void predict(Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
+  /// What the configured motion model says of a body after dt [s].
+  void predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
   /// Body and pose covariance (6x6) at t_ns; predicted if t_ns is after now_ns.
   void predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const;
 
  private:
   /// What is kept between frames.
   struct Data {
+    bool given = false;
     Vec3 dv_C = Vec3::Zero();
     Vec3 dw_C = Vec3::Zero();
   };

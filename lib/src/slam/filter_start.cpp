@@ -228,15 +228,15 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   const StartRecord::Frame& frame = record.frame(k);
   const Scalar dt = static_cast<Scalar>(
       static_cast<double>(std::min(elapsed_ns(before_ns, frame.t_ns), BodyMotion::kMaxGapNs)) * 1e-9);
-  Body& now = filter.body();
+  Body now = filter.state().body;
   const Quat q_WC = without_.base_q_WC() * frame.q_WC;
   const Vec3 p_W = without_.base_p_W() + without_.base_q_WC() * frame.p_W;
   now.v_W = (p_W - now.p_W) / dt;
   now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
   Transition transition;
   motion_.predict(now, dt, settings_.motion_noise, &transition);
-  now.q_WC = q_WC;
-  now.p_W = p_W;
+  transition.mean.q_WC = q_WC;
+  transition.mean.p_W = p_W;
   filter.predict(transition);
   int count = 0;
   for (int i = 0; i < parts_.map.features.capacity() && count < settings_.max_observations; ++i) {
@@ -260,8 +260,10 @@ void FilterStart::restart_velocities() {
   const StartRecord::Frame& b = record.frame(frames - 1);
   if (b.t_ns <= a.t_ns) return;
   const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(a.t_ns, b.t_ns)) * 1e-9);
-  parts_.filter.body().v_W = without_.base_q_WC() * (b.p_W - a.p_W) / dt;
-  parts_.filter.body().w_C = log_so3(a.q_WC.conjugate() * b.q_WC) / dt;
+  Body now = parts_.filter.state().body;
+  now.v_W = without_.base_q_WC() * (b.p_W - a.p_W) / dt;
+  now.w_C = log_so3(a.q_WC.conjugate() * b.q_WC) / dt;
+  parts_.filter.set_mean(now);
 }
 
 }  // namespace pf

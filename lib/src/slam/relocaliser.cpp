@@ -100,8 +100,10 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
 }
 
 void Relocaliser::set_pose(const Body& pose) {
-  filter_.body().q_WC = pose.q_WC;
-  filter_.body().p_W = pose.p_W;
+  Body body = filter_.state().body;
+  body.q_WC = pose.q_WC;
+  body.p_W = pose.p_W;
+  filter_.set_mean(body);
 }
 
 /// After a short gap: a consensus about the prediction, in which features of unknown depth count as well.
