@@ -10,7 +10,7 @@ void tearDown(void) {}
 
 namespace {
 
-constexpr int kDim = Body::kMaxDim;
+constexpr int kDim = kBodyRows;
 using Vec12 = Eigen::Matrix<Scalar, kDim, 1>;
 using Mat12 = Eigen::Matrix<Scalar, kDim, kDim>;
 
@@ -46,11 +46,11 @@ void test_transition_of_constant_velocity_should_be_exact() {
     const Body before = random_body(random);
     const Scalar dt = static_cast<Scalar>(random.uniform(0.005, 1));
     Transition transition, moved_transition;
-    predict_constant_velocity(before, dt, kNoise, &transition);
+    predict_constant_velocity(before, BodyLayout::with_constant_velocity(), dt, kNoise, &transition);
     const Body& after = transition.mean;
     TEST_ASSERT_EQUAL_INT(kDim, transition.dim);
     const auto moves = [&](const Vec12& e) {
-      predict_constant_velocity(plus(before, e), dt, kNoise, &moved_transition);
+      predict_constant_velocity(plus(before, e), BodyLayout::with_constant_velocity(), dt, kNoise, &moved_transition);
       return minus(moved_transition.mean, after);
     };
     check_jacobian<kDim, kDim>(matrix(transition.F, kDim), moves, "F");
@@ -63,9 +63,9 @@ void test_transition_of_a_known_change_of_velocity_should_be_exact() {
     const Body before = random_body(random);
     const Vec3 dv_C = random.normals<3>(0.5), dw_C = random.normals<3>(0.5);
     Transition transition, moved_transition;
-    change_velocity(before, dv_C, dw_C, &transition);
+    change_velocity(before, BodyLayout::with_constant_velocity(), dv_C, dw_C, &transition);
     const auto moves = [&](const Vec12& e) {
-      change_velocity(plus(before, e), dv_C, dw_C, &moved_transition);
+      change_velocity(plus(before, e), BodyLayout::with_constant_velocity(), dv_C, dw_C, &moved_transition);
       return minus(moved_transition.mean, transition.mean);
     };
     check_jacobian<kDim, kDim>(matrix(transition.F, kDim), moves, "F");
@@ -76,7 +76,7 @@ void test_transition_of_constant_position_should_be_the_identity() {
   SeededRandom random(52);
   const Body before = random_body(random);
   Transition transition;
-  predict_constant_position(before, Scalar(0.1), kNoise, &transition);
+  predict_constant_position(before, BodyLayout::with_constant_position(), Scalar(0.1), kNoise, &transition);
   TEST_ASSERT_EQUAL_INT(Body::kPoseDim, transition.dim);
   TEST_ASSERT_TRUE(minus(transition.mean, before).norm() == 0);
   for (int i = 0; i < 36; ++i) TEST_ASSERT_TRUE(transition.F[i] == (i % 7 == 0 ? Scalar(1) : Scalar(0)));
@@ -102,9 +102,9 @@ void test_noise_should_be_symmetric_and_positive_for_short_and_long_steps() {
   for (const double dt : {1e-4, 0.01, 0.033, 0.5, 2.0}) {
     Body body = random_body(random);
     Transition transition;
-    predict_constant_velocity(body, static_cast<Scalar>(dt), kNoise, &transition);
+    predict_constant_velocity(body, BodyLayout::with_constant_velocity(), static_cast<Scalar>(dt), kNoise, &transition);
     check_noise(transition);
-    predict_constant_position(body, static_cast<Scalar>(dt), kNoise, &transition);
+    predict_constant_position(body, BodyLayout::with_constant_position(), static_cast<Scalar>(dt), kNoise, &transition);
     check_noise(transition);
   }
 }
@@ -114,7 +114,7 @@ Mat12 through(Body* body, Scalar dt, int steps) {
   Mat12 P = Mat12::Zero();
   for (int i = 0; i < steps; ++i) {
     Transition t;
-    predict_constant_velocity(*body, dt / static_cast<Scalar>(steps), kNoise, &t);
+    predict_constant_velocity(*body, BodyLayout::with_constant_velocity(), dt / static_cast<Scalar>(steps), kNoise, &t);
     *body = t.mean;
     const Mat12 F = matrix(t.F, kDim), FP = F.lazyProduct(P);
     P = Mat12(FP.lazyProduct(F.transpose())) + matrix(t.Q, kDim);
@@ -158,13 +158,13 @@ void test_variance_should_grow_as_the_densities_say() {
   Body body;
   const Scalar dt = Scalar(0.25);
   Transition t;
-  predict_constant_velocity(body, dt, kNoise, &t);
+  predict_constant_velocity(body, BodyLayout::with_constant_velocity(), dt, kNoise, &t);
   const Mat12 Q = matrix(t.Q, kDim);
   const Scalar q2 = kNoise.linear * kNoise.linear, a2 = kNoise.angular * kNoise.angular;
   TEST_ASSERT_TRUE(std::abs(Q(6, 6) - q2 * dt) < kExact && std::abs(Q(9, 9) - a2 * dt) < kExact);
   TEST_ASSERT_TRUE(std::abs(Q(3, 3) - q2 * dt * dt * dt / 3) < kExact);
   TEST_ASSERT_TRUE(std::abs(Q(3, 6) - q2 * dt * dt / 2) < kExact && std::abs(Q(0, 9) - a2 * dt * dt / 2) < kExact);
-  predict_constant_position(body, dt, kNoise, &t);
+  predict_constant_position(body, BodyLayout::with_constant_position(), dt, kNoise, &t);
   TEST_ASSERT_TRUE(std::abs(t.Q[0] - a2 * dt) < kExact && std::abs(t.Q[3 * 6 + 3] - q2 * dt) < kExact);
 }
 

@@ -55,7 +55,8 @@ void test_prediction_should_carry_every_direction() {
   SeededRandom random(62);
   const auto predict = [](TestFilter& filter, const std::vector<int>&) {
     Transition transition;
-    predict_constant_velocity(filter->state().body, Scalar(0.05), {Scalar(0), Scalar(0)}, &transition);
+    predict_constant_velocity(filter->state().body, BodyLayout::with_constant_velocity(), Scalar(0.05),
+                              {Scalar(0), Scalar(0)}, &transition);
     filter->predict(transition);
   };
   carries("predict", kAll, random, predict);
@@ -65,7 +66,7 @@ void test_damping_should_carry_every_direction() {
   SeededRandom random(63);
   const auto damp = [](TestFilter& filter, const std::vector<int>&) {
     Transition transition;
-    damp_speed(filter->state().body, Scalar(0.7), Mat6::Zero(), &transition);
+    damp_speed(filter->state().body, BodyLayout::with_constant_velocity(), Scalar(0.7), Mat6::Zero(), &transition);
     for (Scalar& q : transition.Q) q = Scalar(0);
     filter->predict(transition);
   };
@@ -76,8 +77,9 @@ void test_steering_should_carry_shifts_and_turns() {
   SeededRandom random(64);  // in metres, so it does not scale with the world
   const auto steer = [](TestFilter& filter, const std::vector<int>&) {
     Transition transition;
-    change_velocity(filter->state().body, Vec3(Scalar(0.3), Scalar(-0.2), Scalar(0.5)),
-                    Vec3(Scalar(0.1), Scalar(0.4), Scalar(-0.2)), &transition);
+    change_velocity(filter->state().body, BodyLayout::with_constant_velocity(),
+                    Vec3(Scalar(0.3), Scalar(-0.2), Scalar(0.5)), Vec3(Scalar(0.1), Scalar(0.4), Scalar(-0.2)),
+                    &transition);
     filter->predict(transition);
   };
   carries("steer", kShiftAndTurn, random, steer);
@@ -276,7 +278,7 @@ Growth run(bool keep_gauge, SeededRandom& random) {
   truth.q_WC = random_turn(random, 0.3);
   truth.p_W = random.normals<3>(0.5);
   filter->set_mean(truth);
-  filter.set_P(Eigen::VectorXd::Constant(Body::kMaxDim, 0.01).asDiagonal());
+  filter.set_P(Eigen::VectorXd::Constant(kBodyRows, 0.01).asDiagonal());
 
   Vec3 point[kPoints];
   int slot[kPoints];
@@ -298,9 +300,10 @@ Growth run(bool keep_gauge, SeededRandom& random) {
     truth.v_W = Vec3(Scalar(0.5) * std::cos(Scalar(k) / 8), Scalar(0.3) * std::sin(Scalar(k) / 11), Scalar(0.1));
     truth.w_C = Vec3(Scalar(0.2) * std::sin(Scalar(k) / 7), Scalar(-0.2) * std::cos(Scalar(k) / 9), Scalar(0.05));
     Transition transition;
-    predict_constant_velocity(truth, dt, {}, &transition);
+    predict_constant_velocity(truth, BodyLayout::with_constant_velocity(), dt, {}, &transition);
     truth = transition.mean;
-    predict_constant_velocity(filter->state().body, dt, {Scalar(3), Scalar(3)}, &transition);
+    predict_constant_velocity(filter->state().body, BodyLayout::with_constant_velocity(), dt, {Scalar(3), Scalar(3)},
+                              &transition);
     filter->predict(transition);
     PixelMeasurement o[kPoints];
     int count = 0;

@@ -58,11 +58,15 @@ inline InverseDepth moved(InverseDepth feature, const Vec3& e) {
   return feature;
 }
 
+/// Rows of the constant-velocity body.
+inline constexpr int kBodyRows = 12, kVelocityRow = 6, kAngularVelocityRow = 9;
+
 class TestFilter {
  public:
-  explicit TestFilter(bool keep_gauge, int body_dim = Body::kMaxDim, int state_dim = 160, int features = 40) {
+  explicit TestFilter(bool keep_gauge, const BodyLayout& layout = BodyLayout::with_constant_velocity(),
+                      int state_dim = 160, int features = 40) {
     TEST_ASSERT_TRUE(filter_.layout(*arena_, {state_dim, features, 40, 6}));
-    filter_.init(select_kernels_of_tests(), body_dim, keep_gauge);
+    filter_.init(select_kernels_of_tests(), layout, keep_gauge);
   }
   Filter* operator->() { return &filter_; }
   Filter& operator*() { return filter_; }

@@ -91,7 +91,7 @@ void test_prediction_should_be_f_p_ft_plus_q() {
   Scene scene(random, true);
   const int n = scene.filter.dim();
   Transition t;
-  predict_constant_velocity(scene.filter->state().body, Scalar(0.05), {1, 2}, &t);
+  predict_constant_velocity(scene.filter->state().body, BodyLayout::with_constant_velocity(), Scalar(0.05), {1, 2}, &t);
   Dense F = Dense::Identity(n, n), Q = Dense::Zero(n, n);
   for (int i = 0; i < t.dim; ++i)
     for (int j = 0; j < t.dim; ++j) {
@@ -109,19 +109,20 @@ void test_damping_should_leave_room_for_both_when_a_speed_goes_on_and_when_it_en
   constexpr Scalar kDt = Scalar(1.0 / 30), kFactor = Scalar(0.875);
   for (int trial = 0; trial < 10; ++trial) {
     TestFilter filter(true);
-    Scalar covariance[Body::kMaxDim * Body::kMaxDim] = {};
-    for (int i = 0; i < Body::kMaxDim; ++i) covariance[i * Body::kMaxDim + i] = Scalar(1e-6);
+    Scalar covariance[kBodyRows * kBodyRows] = {};
+    for (int i = 0; i < kBodyRows; ++i) covariance[i * kBodyRows + i] = Scalar(1e-6);
     Body start = random_body(random);
     start.q_WC = Quat::Identity();
     filter->set_body(start, covariance);
     for (int frame = 1; frame <= 30; ++frame) {
       Mat6 P_speed;
       for (int i = 0; i < 6; ++i)
-        for (int j = 0; j < 6; ++j) P_speed(i, j) = filter->covariance()(Body::kVelocity + i, Body::kVelocity + j);
+        for (int j = 0; j < 6; ++j) P_speed(i, j) = filter->covariance()(kVelocityRow + i, kVelocityRow + j);
       Transition t;
-      damp_speed(filter->state().body, kFactor, P_speed, &t);
+      damp_speed(filter->state().body, BodyLayout::with_constant_velocity(), kFactor, P_speed, &t);
       filter->predict(t);
-      predict_constant_velocity(filter->state().body, kDt, {Scalar(0.01), Scalar(0.01)}, &t);
+      predict_constant_velocity(filter->state().body, BodyLayout::with_constant_velocity(), kDt,
+                                {Scalar(0.01), Scalar(0.01)}, &t);
       filter->predict(t);
       const Scalar elapsed = kDt * static_cast<Scalar>(frame);
       const Vec3 gone = filter->state().body.p_W - start.p_W;
@@ -140,11 +141,11 @@ void test_damping_should_leave_room_for_both_when_a_speed_goes_on_and_when_it_en
 
 void test_a_full_filter_should_refuse_new_blocks_and_stay_as_it_is() {
   SeededRandom random(93);
-  TestFilter filter(true, Body::kMaxDim, 32, 6);
+  TestFilter filter(true, BodyLayout::with_constant_velocity(), 32, 6);
   int added = 0;
   while (filter->add_point(random.normals<3>(1), Mat3::Identity()) >= 0) ++added;
   TEST_ASSERT_EQUAL_INT(6, added);
-  TEST_ASSERT_EQUAL_INT(Body::kMaxDim + 3 * added, filter.dim());
+  TEST_ASSERT_EQUAL_INT(kBodyRows + 3 * added, filter.dim());
   const std::vector<Scalar> before = bits_of(filter);
   TEST_ASSERT_EQUAL_INT(-1, filter->add_anchor());
   TEST_ASSERT_EQUAL_INT(-1, filter->add_point(Vec3::Zero(), Mat3::Identity()));

@@ -42,7 +42,7 @@ void require_linear(const char* name, Make make, Operation operation, double noi
     F.col(j) = (moved[0] - moved[1]) / (2 * step);
   }
   // What coordinates() leaves out stays what it was, wherever its rows went.
-  for (int i = 0; i < Body::kMaxDim; ++i) {
+  for (int i = 0; i < kBodyRows; ++i) {
     F.row(i).setZero();
     F(i, i) = 1;
   }
@@ -187,7 +187,7 @@ void test_released_points_should_have_the_covariance_that_they_had() {
   PlaneScene& scene = *made;
   const auto rows_of = [&](const std::vector<int>& slots) {
     std::vector<int> rows;
-    for (int i = 0; i < Body::kMaxDim; ++i) rows.push_back(i);
+    for (int i = 0; i < kBodyRows; ++i) rows.push_back(i);
     rows.push_back(scene.filter.first(scene.plane));
     for (const int s : slots)
       for (int i = 0; i < scene.filter->state().block[s].size; ++i) rows.push_back(scene.filter.first(s) + i);
@@ -310,7 +310,7 @@ void test_considered_points_should_keep_their_values_in_an_update() {
   const Dense P = scene.filter.P();
   const Dense S = H * P * H.transpose() + Dense::Identity(m, m);
   Dense K = P * H.transpose() * S.inverse();
-  K.middleRows(Body::kMaxDim, scene.filter.held_dim()).setZero();
+  K.middleRows(kBodyRows, scene.filter.held_dim()).setZero();
   const Dense I = Dense::Identity(n, n);
   const Dense schmidt = (I - K * H) * P * (I - K * H).transpose() + K * K.transpose();
   const Eigen::VectorXd before = coordinates(scene.filter);
@@ -318,11 +318,11 @@ void test_considered_points_should_keep_their_values_in_an_update() {
   TestFilter& filter = scene.filter;
   TEST_ASSERT_TRUE(filter->finish_update(seen.data(), static_cast<int>(seen.size()), nullptr, nullptr));
   const Eigen::VectorXd after = coordinates(filter);
-  for (int i = Body::kMaxDim; i < filter->blocks().held_end(); ++i) TEST_ASSERT_EQUAL_DOUBLE(before(i), after(i));
+  for (int i = kBodyRows; i < filter->blocks().held_end(); ++i) TEST_ASSERT_EQUAL_DOUBLE(before(i), after(i));
   // The gauge's transport comes on top, of second order here: without it the filter is the dense one.
-  Dense held = filter.P().block(Body::kMaxDim, Body::kMaxDim, scene.filter.held_dim(), scene.filter.held_dim());
-  TEST_ASSERT_TRUE(difference(held, schmidt.block(Body::kMaxDim, Body::kMaxDim, scene.filter.held_dim(),
-                                                  scene.filter.held_dim())) < 0.05);
+  Dense held = filter.P().block(kBodyRows, kBodyRows, scene.filter.held_dim(), scene.filter.held_dim());
+  TEST_ASSERT_TRUE(
+      difference(held, schmidt.block(kBodyRows, kBodyRows, scene.filter.held_dim(), scene.filter.held_dim())) < 0.05);
 
   const auto plain_made = folded_scene(kSeed + 10);
   PlaneScene& plain = *plain_made;

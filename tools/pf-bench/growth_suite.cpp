@@ -25,11 +25,14 @@ enum class Form { kPoints, kFolded, kConsidered, kInflated };
 constexpr Form kForms[] = {Form::kPoints, Form::kFolded, Form::kConsidered, Form::kInflated};
 constexpr const char* kNames[] = {"unfolded", "folded", "fixed, considered", "fixed, inflated"};
 
+const pf::BodyLayout kLayout = pf::BodyLayout::with_constant_velocity();
+constexpr int kBodyRows = 12;
+
 /// A filter in the middle of a room of 4 m with its points spread evenly over four walls.
 class Room {
  public:
   Room(int points, Form form, const pf::Kernels* kernels) : points_(points) {
-    const pf::FilterCapacity capacity = {pf::Body::kMaxDim + 3 * points + 8 * kWalls, points, 20, kWalls};
+    const pf::FilterCapacity capacity = {kBodyRows + 3 * points + 8 * kWalls, points, 20, kWalls};
     pf::Arena counting;
     pf::Filter none;
     none.layout(counting, capacity);
@@ -38,9 +41,9 @@ class Room {
     pf::Arena arena(memory_.data() + (pf::Arena::kAlignment - at % pf::Arena::kAlignment) % pf::Arena::kAlignment,
                     counting.used());
     filter_.layout(arena, capacity);
-    filter_.init(kernels, pf::Body::kMaxDim, true);
-    Scalar covariance[pf::Body::kMaxDim * pf::Body::kMaxDim] = {};
-    for (int i = 0; i < pf::Body::kMaxDim; ++i) covariance[i * (pf::Body::kMaxDim + 1)] = Scalar(1e-4);
+    filter_.init(kernels, kLayout, true);
+    Scalar covariance[kBodyRows * kBodyRows] = {};
+    for (int i = 0; i < kBodyRows; ++i) covariance[i * (kBodyRows + 1)] = Scalar(1e-4);
     filter_.set_body(pf::Body(), covariance);
     const double intrinsics[4] = {190, 190, 159.5, 119.5}, none_distorted[8] = {};
     pf::make_camera(1, 320, 240, intrinsics, none_distorted, &camera_);
@@ -64,7 +67,7 @@ class Room {
     pf::Body still = filter_.state().body;
     still.v_W.setZero();
     still.w_C.setZero();
-    pf::predict_constant_velocity(still, Scalar(1) / 30, {Scalar(1), Scalar(2)}, &transition);
+    pf::predict_constant_velocity(still, kLayout, Scalar(1) / 30, {Scalar(1), Scalar(2)}, &transition);
     filter_.predict(transition);
     look();
     update();

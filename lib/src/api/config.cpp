@@ -119,6 +119,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
                   : config.plane.fix == PF_FIX_INFLATE ? FixForm::kInflate
                                                        : FixForm::kErrorFree;
   settings->constant_velocity = config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
+  settings->body =
+      settings->constant_velocity ? BodyLayout::with_constant_velocity() : BodyLayout::with_constant_position();
   settings->motion_noise.linear = static_cast<Scalar>(
       settings->constant_velocity ? config.motion.linear_acceleration_density : config.motion.linear_walk);
   settings->motion_noise.angular = static_cast<Scalar>(

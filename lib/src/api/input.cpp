@@ -116,17 +116,19 @@ pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const dou
   pf::KnownBody known;
   const pf_status_t status = body_from(*pose, &known.body);
   if (status != PF_OK) return status;
-  const bool moves = slam->session.settings().constant_velocity;
-  const int dim = moves ? pf::Body::kMaxDim : pf::Body::kPoseDim;
+  const pf::BodyLayout& layout = slam->session.settings().body;
+  const bool moves = layout.has(pf::BodyPart::kVelocity);
+  const int dim = layout.dynamic_rows();
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) known.covariance[i * dim + j] = static_cast<Scalar>(pose->covariance[i * 6 + j]);
   if (moves) {
     if (velocity_covariance == nullptr) return PF_ERROR_NULL;
     if (!pf::finite(velocity_covariance, 36)) return PF_ERROR_NONFINITE;
     if (!is_covariance(velocity_covariance, 6)) return PF_ERROR_RANGE;
+    const int first = layout.row(pf::BodyPart::kVelocity);  // the angular velocity follows
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j)
-        known.covariance[(6 + i) * dim + 6 + j] = static_cast<Scalar>(velocity_covariance[i * 6 + j]);
+        known.covariance[(first + i) * dim + first + j] = static_cast<Scalar>(velocity_covariance[i * 6 + j]);
   }
   return pf::to_c(slam->session.start_from_pose(known));
 }

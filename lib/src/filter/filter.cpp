@@ -21,14 +21,14 @@ bool Filter::layout(Arena& arena, const FilterCapacity& capacity) {
   return arena.ok();
 }
 
-void Filter::init(const Kernels* kernels, int body_dim, bool keep_gauge) {
+void Filter::init(const Kernels* kernels, const BodyLayout& layout, bool keep_gauge) {
   keep_gauge_ = keep_gauge;
   for (int s = 0; s < state_.slots; ++s) state_.block[s] = Block();
   state_.body = Body();
-  state_.body_dim = body_dim;
+  state_.layout = layout;
   state_.planes = 0;
   roughness_ = Scalar(0);
-  blocks_.init(kernels, body_dim);
+  blocks_.init(kernels, layout.dynamic_rows());
   transport_.init();
 }
 
@@ -70,20 +70,20 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   PF_ASSERT(state_.block[anchor].kind == BlockKind::kAnchor);
   const int slot = take_slot(BlockKind::kInverseDepth);
   if (slot < 0) return -1;
-  const RowBody row = body_at_row(state_.body, state_.body_dim == Body::kMaxDim ? tau : Scalar(0));
+  const RowBody row = body_at_row(state_.body, state_.layout.has(BodyPart::kVelocity) ? tau : Scalar(0));
   const Vec3 c_W = row.body.p_W - state_.body.p_W;
   Mat23 J_theta, J_c;
   Mat2 J_z;
   const InverseDepth feature = begin_inverse_depth(row.body, ray_C, J_ray_z, rho, c_W, &J_theta, &J_z, &J_c);
-  const int columns = row.tau == Scalar(0) ? 3 : Body::kMaxDim;
-  RowsOf<3, Body::kMaxDim, 1> J;
+  const int columns = row.tau == Scalar(0) ? 3 : state_.layout.dynamic_rows();
+  RowsOf<3, BodyLayout::kMaxDynamicRows, 1> J;
   J.parts = 1;
   J.part[0] = Part::body(Body::kTheta, columns);
   for (int i = 0; i < 3 * columns; ++i) J.h[i] = Scalar(0);
   put<2, 3>(J.h, columns, 0, J_theta);
   if (row.tau != Scalar(0)) {
-    put<2, 3>(J.h, columns, Body::kVelocity, Mat23(row.tau * J_c));
-    put<2, 3>(J.h, columns, Body::kRate, Mat23(J_theta.lazyProduct(row.J_theta_w)));
+    put<2, 3>(J.h, columns, state_.layout.row(BodyPart::kVelocity), Mat23(row.tau * J_c));
+    put<2, 3>(J.h, columns, state_.layout.row(BodyPart::kAngularVelocity), Mat23(J_theta.lazyProduct(row.J_theta_w)));
   }
   // Of the pixel, and of the inverse depth, which turns the bearing too where the anchor is not where the ray begins.
   Mat3 noise = Mat3::Zero();

@@ -37,7 +37,7 @@ struct FilterCapacity {
 class Filter {
  public:
   bool layout(Arena& arena, const FilterCapacity& capacity);
-  void init(const Kernels* kernels, int body_dim, bool keep_gauge);
+  void init(const Kernels* kernels, const BodyLayout& layout, bool keep_gauge);
   /// Noise of a folded point's pixel: its surface is uneven by this much [m].
   void set_roughness(Scalar roughness) { roughness_ = roughness; }
   void keep_gauge(bool keep) { keep_gauge_ = keep; }
@@ -48,7 +48,7 @@ class Filter {
   /// Sets the mean of the body and leaves its covariance, where the mean comes from elsewhere (a restart).
   void set_mean(const Body& body) { state_.body = body; }
 
-  /// The whole body block becomes known as covariance says (body_dim x body_dim, row-major). Only while the map is empty.
+  /// The whole body block becomes known as covariance says (over its rows, row-major). Only while the map is empty.
   void set_body(const Body& body, const Scalar* covariance);
 
   /// Which entry of the map's table a block belongs to.

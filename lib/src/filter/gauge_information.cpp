@@ -22,7 +22,7 @@ void directions(const State& state, const BlockFilter& blocks, double* N) {
   };
   for (int i = 0; i < 3; ++i) N[(Body::kTheta + i) * 8 + 3 + i] = 1.0;
   three(Body::kPosition, state.body.p_W, true);
-  if (state.body_dim > Body::kPoseDim) three(Body::kVelocity, state.body.v_W, false);
+  if (state.layout.has(BodyPart::kVelocity)) three(state.layout.row(BodyPart::kVelocity), state.body.v_W, false);
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];
     if (block.size == 0) continue;

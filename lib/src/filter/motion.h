@@ -11,12 +11,12 @@ struct MotionNoise {
 };
 
 /// What a motion model says: the body afterwards, the transition of its error and the noise that it gains, row-major, leading dimension
-/// dim.
+/// dim: the rows of the parts that move.
 struct Transition {
   Body mean;
   int dim;
-  Scalar F[Body::kMaxDim * Body::kMaxDim];
-  Scalar Q[Body::kMaxDim * Body::kMaxDim];
+  Scalar F[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
+  Scalar Q[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
 };
 
 /// Constant velocity with white accelerations over dt > 0 [s].
@@ -26,22 +26,25 @@ struct Transition {
 ///   Q: velocity q^2 dt I, position q^2 dt^3/3 I, between them q^2 dt^2/2 I; likewise for the rotation, through J
 ///
 /// Turning or scaling the world before and after is the same thing, so gauge directions go to gauge directions.
-void predict_constant_velocity(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition);
+void predict_constant_velocity(const Body& body, const BodyLayout& layout, Scalar dt, const MotionNoise& noise,
+                               Transition* transition);
 
 /// Known change of the velocities, in camera axes:
 ///
 ///   v_W+ = v_W + R dv,   w_C+ = w_C + dw,   e_v+ = e_v - [R dv]x theta
-void change_velocity(const Body& body, const Vec3& dv_C, const Vec3& dw_C, Transition* transition);
+void change_velocity(const Body& body, const BodyLayout& layout, const Vec3& dv_C, const Vec3& dw_C,
+                     Transition* transition);
 
 /// Speeds m = (v, w) that shrink by a factor f of 0 .. 1 and keep their second moment: what leaves the mean becomes noise,
 ///
 ///   m+ = f m,   e_m+ = f e_m,   Q = (1 - f^2)(P_m + m m^T)
 ///
 /// so that a speed that goes on and one that ends are both expected. P_m 6x6 is their covariance.
-void damp_speed(const Body& body, Scalar factor, const Mat6& P_m, Transition* transition);
+void damp_speed(const Body& body, const BodyLayout& layout, Scalar factor, const Mat6& P_m, Transition* transition);
 
 /// Random walk of the pose (Gee 2007, eq 1): R+ = Exp(w_theta) R, p+ = p + w_p, with variances density^2 dt.
 /// The paper's Euler angles become a rotation vector, which is the same to first order in the noise.
-void predict_constant_position(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition);
+void predict_constant_position(const Body& body, const BodyLayout& layout, Scalar dt, const MotionNoise& noise,
+                               Transition* transition);
 
 }  // namespace pf

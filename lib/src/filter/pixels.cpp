@@ -25,10 +25,11 @@ Mat2 planar_noise(const State& state, const Block& block, const Place& at, const
 /// A pixel from the body of a row: Jacobians by the speeds too, and the row's own dependence on the pixel.
 ///
 ///   dz = H_row dx + z' k dz_y      k seconds per pixel, z' what the row's motion does to the pixel [px/s]
-PixelMeasurement with_speeds(const PixelMeasurement& at_row, const RowBody& row, Scalar k) {
-  const int columns = at_row.H.columns(), wide = columns + Body::kMaxDim - Body::kPoseDim;
+PixelMeasurement with_speeds(const PixelMeasurement& at_row, const BodyLayout& layout, const RowBody& row, Scalar k) {
+  const int velocity = layout.row(BodyPart::kVelocity), rate = layout.row(BodyPart::kAngularVelocity);
+  const int columns = at_row.H.columns(), wide = columns + 6;
   PixelMeasurement o = at_row;
-  o.H.part[0].size = Body::kMaxDim;
+  o.H.part[0].size = 12;
   Mat2 M = Mat2::Identity();
   Vec2 drift;
   for (int a = 0; a < 2; ++a) {
@@ -38,8 +39,8 @@ PixelMeasurement with_speeds(const PixelMeasurement& at_row, const RowBody& row,
     const Vec3 J_w = row.J_theta_w.transpose().lazyProduct(J_theta), J_v = row.tau * J_p;
     for (int c = 0; c < 6; ++c) to[c] = from[c];
     for (int c = 0; c < 3; ++c) {
-      to[Body::kVelocity + c] = J_v(c);
-      to[Body::kRate + c] = J_w(c);
+      to[velocity + c] = J_v(c);
+      to[rate + c] = J_w(c);
     }
     for (int c = 6; c < columns; ++c) to[c + 6] = from[c];
     drift(a) = J_theta.dot(row.body.q_WC * row.body.w_C) + J_p.dot(row.body.v_W);
@@ -108,14 +109,14 @@ bool Filter::predict_at(const Camera& camera, const Body& body, int slot, PixelM
 
 bool Filter::predict_pixel(const Camera& camera, int slot, PixelMeasurement* out) const {
   if (!predict_at(camera, state_.body, slot, out)) return false;
-  if (camera.readout == Scalar(0) || state_.body_dim != Body::kMaxDim) return true;
+  if (camera.readout == Scalar(0) || !state_.layout.has(BodyPart::kVelocity)) return true;
   // Where the pixel is says when it was read out, which says where it is: the camera moves little in that time.
   RowBody row;
   for (int turn = 0; turn < 2; ++turn) {
     row = body_at_row(state_.body, row_time(camera, out->predicted.y()));
     if (!predict_at(camera, row.body, slot, out)) return false;
   }
-  *out = with_speeds(*out, row, camera.readout / static_cast<Scalar>(camera.height));
+  *out = with_speeds(*out, state_.layout, row, camera.readout / static_cast<Scalar>(camera.height));
   return true;
 }
 

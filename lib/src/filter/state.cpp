@@ -44,10 +44,9 @@ void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
   body.q_WC = exp_so3(three(Body::kTheta)) * body.q_WC;
   body.q_WC.normalize();
   body.p_W += three(Body::kPosition);
-  if (state.body_dim > Body::kPoseDim) {
-    body.v_W += three(Body::kVelocity);
-    body.w_C += three(Body::kRate);
-  }
+  const BodyLayout& layout = state.layout;
+  if (layout.has(BodyPart::kVelocity)) body.v_W += three(layout.row(BodyPart::kVelocity));
+  if (layout.has(BodyPart::kAngularVelocity)) body.w_C += three(layout.row(BodyPart::kAngularVelocity));
   for (int s = 0; s < state.slots; ++s) {
     Block& block = state.block[s];
     visit(block.kind, [&](auto kind) { decltype(kind)::retract(&block, dx + blocks.first(s)); });
@@ -89,10 +88,10 @@ void add_gauge_rows(const State& state, const BlockFilter& blocks, Scalar sign, 
   GaugeRowsOf<3> N = GaugeRowsOf<3>::Zero();
   put_place<3>(Mat3::Identity(), state.body.p_W, &N);
   sum.add(Body::kPosition, 3, N);
-  if (state.body_dim > Body::kPoseDim) {
+  if (state.layout.has(BodyPart::kVelocity)) {
     put_place<3>(Mat3::Identity(), state.body.v_W, &N);
     N.leftCols<3>().setZero();
-    sum.add(Body::kVelocity, 3, N);
+    sum.add(state.layout.row(BodyPart::kVelocity), 3, N);
   }
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];

@@ -1,24 +1,12 @@
 #pragma once
 
 #include "filter/model/block.h"
+#include "filter/model/body.h"
 #include "filter/model/gauge.h"
 
 /// What the filter estimates: kinds and values of blocks, and how they hang on each other. Where their rows lie, BlockFilter knows.
 
 namespace pf {
-
-/// Pose and velocity of the camera. Error, in this order: theta (3), p (3), and with the constant-velocity model v (3), w (3).
-///
-///   R_true = Exp(theta) R_WC,   p_true = p + e_p,   v_true = v + e_v,   w_true = w + e_w
-struct Body {
-  static constexpr int kTheta = 0, kPosition = 3, kVelocity = 6, kRate = 9;
-  static constexpr int kPoseDim = 6, kMaxDim = 12;
-
-  Quat q_WC = Quat::Identity();
-  Vec3 p_W = Vec3::Zero();  ///< [m]
-  Vec3 v_W = Vec3::Zero();  ///< [m/s]
-  Vec3 w_C = Vec3::Zero();  ///< [rad/s]
-};
 
 class BlockFilter;
 
@@ -31,7 +19,7 @@ inline bool is_planar(BlockKind kind) { return info(kind).planar; }
 /// Blocks live in slots that do not move.
 struct State {
   Body body;
-  int body_dim = Body::kMaxDim;
+  BodyLayout layout;
   Block* block = nullptr;  ///< slots
   int slots = 0;
   PlaneFrame* plane_frame = nullptr;

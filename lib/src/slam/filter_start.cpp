@@ -34,8 +34,7 @@ void FilterStart::init() {
 }
 
 void FilterStart::clear_filter() {
-  parts_.filter.init(settings_.kernels, settings_.constant_velocity ? Body::kMaxDim : Body::kPoseDim,
-                     settings_.keep_gauge);
+  parts_.filter.init(settings_.kernels, settings_.body, settings_.keep_gauge);
   parts_.filter.set_roughness(settings_.fold.roughness);
   parts_.map.planes.clear();
 }
@@ -49,7 +48,7 @@ void FilterStart::start_over() {
 
 bool FilterStart::fits(const Target& target) const {
   return target.count <= settings_.max_features &&
-         3 * target.count <= settings_.max_state_dim - parts_.filter.state().body_dim;
+         3 * target.count <= settings_.max_state_dim - settings_.body.dynamic_rows();
 }
 
 Status FilterStart::use_target(const Target& target) {
@@ -77,7 +76,8 @@ void FilterStart::set_known_pose(bool at_target) {
     set_body(data_.known.body, data_.known.covariance);
     return;
   }
-  const int dim = parts_.filter.state().body_dim;
+  const BodyLayout& layout = settings_.body;
+  const int dim = layout.dynamic_rows();
   Scalar* covariance = data_.covariance;
   for (Scalar& c : data_.covariance) c = Scalar(0);
   const Target& target = target_.target();
@@ -85,10 +85,12 @@ void FilterStart::set_known_pose(bool at_target) {
     for (int j = 0; j < Body::kPoseDim; ++j)
       covariance[i * dim + j] =
           at_target ? target.first_covariance(i, j) : (i == j ? kDefinedSigma * kDefinedSigma : Scalar(0));
-  for (int i = Body::kPoseDim; i < dim; ++i) {
-    const Scalar sigma = i < Body::kRate ? kStartSpeed * (at_target ? Scalar(1) : settings_.start_depth) : kStartRate;
-    covariance[i * dim + i] = sigma * sigma;
-  }
+  const auto set_sigma = [&](BodyPart part, Scalar sigma) {
+    if (!layout.has(part)) return;
+    for (int i = layout.row(part); i < layout.row(part) + 3; ++i) covariance[i * dim + i] = sigma * sigma;
+  };
+  set_sigma(BodyPart::kVelocity, kStartSpeed * (at_target ? Scalar(1) : settings_.start_depth));
+  set_sigma(BodyPart::kAngularVelocity, kStartRate);
   set_body(at_target ? target.first_pose : Body(), covariance);
 }
 

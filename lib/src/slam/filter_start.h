@@ -71,7 +71,8 @@ class FilterStart {
   /// What is kept between frames.
   struct Data {
     KnownBody known;
-    Scalar covariance[Body::kMaxDim * Body::kMaxDim] = {};  ///< of the body at the first frame
+    Scalar covariance[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows] =
+        {};  ///< of the body at the first frame
   };
 
   const Settings& settings_;

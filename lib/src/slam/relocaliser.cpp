@@ -224,8 +224,8 @@ bool Relocaliser::follows_last_proposal(const Body& pose, Scalar depth, std::int
   if (settings_.constant_velocity) {
     Scalar v = 0, w = 0;
     for (int i = 0; i < 3; ++i) {
-      v += filter_.variance(Body::kVelocity + i);
-      w += filter_.variance(Body::kRate + i);
+      v += filter_.variance(settings_.body.row(BodyPart::kVelocity) + i);
+      w += filter_.variance(settings_.body.row(BodyPart::kAngularVelocity) + i);
     }
     max_rotation += (kMotionGate * std::min(std::sqrt(w), kMaxRateSigma) + body.w_C.norm()) * dt;
     max_shift += (kMotionGate * std::min(std::sqrt(v), kMaxSpeedSigma * depth) + body.v_W.norm()) * dt;

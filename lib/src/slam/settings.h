@@ -23,6 +23,7 @@ struct Settings {
   int max_kept_views = 0;
 
   bool constant_velocity = true;
+  BodyLayout body;
   MotionNoise motion_noise = {};
 
   Scalar sigma_px = 0;

@@ -19,11 +19,11 @@ struct Target {
   Mat6 first_covariance = Mat6::Zero();
 };
 
-/// A known body at the first frame, with its covariance (body_dim x body_dim, row-major).
+/// A known body at the first frame, with its covariance (over the rows of its layout, row-major).
 struct KnownBody {
   bool given = false;
   Body body;
-  Scalar covariance[Body::kMaxDim * Body::kMaxDim] = {};
+  Scalar covariance[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows] = {};
 };
 
 }  // namespace pf

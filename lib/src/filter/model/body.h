@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/eigen.h"
+
+/// The leading block of the state: the body that carries the camera, made of optional parts.
+
+namespace pf {
+
+/// In the order of their rows: what moves first, since F and Q of a motion model cover only that.
+enum class BodyPart : std::uint8_t {
+  kPose,            ///< theta, p
+  kVelocity,        ///< v
+  kAngularVelocity  ///< w
+};
+
+/// Which parts a body has, and where their rows lie. The pose is always there, and first.
+class BodyLayout {
+ public:
+  static constexpr int kMaxDynamicRows = 12;
+
+  static BodyLayout with_constant_position() { return BodyLayout(); }
+  static BodyLayout with_constant_velocity() {
+    BodyLayout layout;
+    layout.add(BodyPart::kVelocity, 3);
+    layout.add(BodyPart::kAngularVelocity, 3);
+    return layout;
+  }
+
+  bool has(BodyPart part) const { return row_[index(part)] >= 0; }
+  /// First row of a part that it has.
+  int row(BodyPart part) const { return row_[index(part)]; }
+  /// Rows of the parts that move.
+  int dynamic_rows() const { return dynamic_rows_; }
+
+ private:
+  static constexpr int kParts = 3;
+  static constexpr int index(BodyPart part) { return static_cast<int>(part); }
+
+  void add(BodyPart part, int rows) {
+    row_[index(part)] = static_cast<std::int8_t>(dynamic_rows_);
+    dynamic_rows_ = static_cast<std::int8_t>(dynamic_rows_ + rows);
+  }
+
+  std::int8_t row_[kParts] = {0, -1, -1};
+  std::int8_t dynamic_rows_ = 6;
+};
+
+/// Pose and velocities of the camera. Error: of the pose theta (3), p (3); of velocity and angular velocity v (3) and w (3).
+///
+///   R_true = Exp(theta) R_WC,   p_true = p + e_p,   v_true = v + e_v,   w_true = w + e_w
+///
+/// Parts that its layout lacks are zero and stay so.
+struct Body {
+  static constexpr int kTheta = 0, kPosition = 3, kPoseDim = 6;  ///< rows of the pose
+
+  Quat q_WC = Quat::Identity();
+  Vec3 p_W = Vec3::Zero();  ///< [m]
+  Vec3 v_W = Vec3::Zero();  ///< [m/s]
+  Vec3 w_C = Vec3::Zero();  ///< [rad/s]
+};
+
+}  // namespace pf
