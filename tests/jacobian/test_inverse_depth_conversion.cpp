@@ -34,11 +34,11 @@ void test_linearity_index_should_fall_as_the_depth_becomes_known_and_the_view_tu
   const Vec3 o_W = Vec3::Zero(), p_W(0, 0, 2);
   const InverseDepth feature = inverse_depth_of(random, p_W, o_W);
   // At the first view: 4 sigma_d / d with sigma_d = sigma_rho d^2.
-  const Scalar index = linearity_index(body, o_W, feature, Scalar(0.01));
+  const Scalar index = linearity_index(body.p_W, o_W, feature, Scalar(0.01));
   TEST_ASSERT_TRUE(std::abs(index - Scalar(0.08)) < Scalar(1e-5));
-  TEST_ASSERT_TRUE(linearity_index(body, o_W, feature, Scalar(0.005)) < index);
+  TEST_ASSERT_TRUE(linearity_index(body.p_W, o_W, feature, Scalar(0.005)) < index);
   body.p_W = Vec3(2, 0, 2);  // at a right angle to the first ray
-  TEST_ASSERT_TRUE(linearity_index(body, o_W, feature, Scalar(0.01)) < Scalar(1e-5));
+  TEST_ASSERT_TRUE(linearity_index(body.p_W, o_W, feature, Scalar(0.01)) < Scalar(1e-5));
 }
 
 void test_linearity_index_should_never_allow_a_depth_that_may_be_infinite() {
@@ -46,11 +46,11 @@ void test_linearity_index_should_never_allow_a_depth_that_may_be_infinite() {
   const Body body;
   const Vec3 o_W = Vec3::Zero();
   InverseDepth feature = inverse_depth_of(random, Vec3(0, 0, 2), o_W);
-  TEST_ASSERT_TRUE(linearity_index(body, o_W, feature, Scalar(0.3)) > Scalar(1e5));
+  TEST_ASSERT_TRUE(linearity_index(body.p_W, o_W, feature, Scalar(0.3)) > Scalar(1e5));
   feature.rho = 0;
-  TEST_ASSERT_TRUE(linearity_index(body, o_W, feature, Scalar(0)) > Scalar(1e5));
+  TEST_ASSERT_TRUE(linearity_index(body.p_W, o_W, feature, Scalar(0)) > Scalar(1e5));
   feature.rho = Scalar(-0.5);
-  TEST_ASSERT_TRUE(linearity_index(body, o_W, feature, Scalar(0.01)) > Scalar(1e5));
+  TEST_ASSERT_TRUE(linearity_index(body.p_W, o_W, feature, Scalar(0.01)) > Scalar(1e5));
 }
 
 }  // namespace

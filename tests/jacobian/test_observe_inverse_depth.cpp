@@ -31,7 +31,7 @@ Vec2 pixel(const Camera& camera, const Body& body, const Vec3& o_W, const Invers
   Vec2 z = Vec2::Zero();
   Mat26 J_body;
   Mat23 J_anchor, J_feature;
-  TEST_ASSERT_TRUE(observe_inverse_depth(camera, body, o_W, feature, &z, &J_body, &J_anchor, &J_feature));
+  TEST_ASSERT_TRUE(observe_inverse_depth(camera, camera_at(body), o_W, feature, &z, &J_body, &J_anchor, &J_feature));
   return z;
 }
 
@@ -39,7 +39,8 @@ void check(const Case& c) {
   Vec2 z;
   Mat26 J_z_body;
   Mat23 J_z_anchor, J_z_feature;
-  TEST_ASSERT_TRUE(observe_inverse_depth(c.camera, c.body, c.o_W, c.feature, &z, &J_z_body, &J_z_anchor, &J_z_feature));
+  TEST_ASSERT_TRUE(
+      observe_inverse_depth(c.camera, camera_at(c.body), c.o_W, c.feature, &z, &J_z_body, &J_z_anchor, &J_z_feature));
   const Scalar unit = Scalar(0.5);
   check_jacobian<2, 6>(
       J_z_body, [&](const Vec6& e) { return pixel(c.camera, moved(c.body, e), c.o_W, c.feature); }, "J_z_body", unit);
@@ -93,7 +94,7 @@ void test_first_bearing_jacobians_should_be_exact_with_every_camera_model() {
     Mat2 J_z;
     const Scalar rho = Scalar(0.5);
     const Vec3 c_W = random.normals<3>(trial % 2 == 0 ? 0.0 : 0.02);  // where the ray begins, beside the anchor
-    const InverseDepth feature = begin_inverse_depth(body, ray, J_ray_z, rho, c_W, &J_theta, &J_z, &J_c);
+    const InverseDepth feature = begin_inverse_depth(camera_at(body), ray, J_ray_z, rho, c_W, &J_theta, &J_z, &J_c);
     const Mat3 R_b = feature.q_b.toRotationMatrix();
     const auto from_anchor = [&](const Vec3& r_W, const Vec3& c, Scalar inverse) -> Vec3 {
       return (r_W + inverse * c).normalized();

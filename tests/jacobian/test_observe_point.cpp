@@ -20,12 +20,12 @@ void test_point_jacobians_should_be_exact_with_every_camera_model() {
     Vec2 z;
     Mat26 J_z_body;
     Mat23 J_z_point;
-    TEST_ASSERT_TRUE(observe_point(camera, body, f_W, &z, &J_z_body, &J_z_point));
+    TEST_ASSERT_TRUE(observe_point(camera, camera_at(body), f_W, &z, &J_z_body, &J_z_point));
     const auto pixel = [&](const Body& b, const Vec3& f) {
       Vec2 out = Vec2::Zero();
       Mat26 Jb;
       Mat23 Jf;
-      TEST_ASSERT_TRUE(observe_point(camera, b, f, &out, &Jb, &Jf));
+      TEST_ASSERT_TRUE(observe_point(camera, camera_at(b), f, &out, &Jb, &Jf));
       return out;
     };
     check_jacobian<2, 6>(
@@ -44,7 +44,7 @@ void test_point_should_project_where_the_camera_says() {
     Vec2 z, expected;
     Mat26 J_z_body;
     Mat23 J_z_point;
-    TEST_ASSERT_TRUE(observe_point(camera, body, f_W, &z, &J_z_body, &J_z_point));
+    TEST_ASSERT_TRUE(observe_point(camera, camera_at(body), f_W, &z, &J_z_body, &J_z_point));
     TEST_ASSERT_TRUE(project(camera, body.q_WC.conjugate() * (f_W - body.p_W), &expected));
     TEST_ASSERT_TRUE((z - expected).norm() < (kNumericJacobianIsFloat ? Scalar(1e-2) : Scalar(1e-10)));
   }
@@ -57,9 +57,9 @@ void test_point_should_be_refused_when_it_lies_behind_the_camera() {
   Vec2 z;
   Mat26 J_z_body;
   Mat23 J_z_point;
-  TEST_ASSERT_FALSE(observe_point(pinhole_camera(), body, behind, &z, &J_z_body, &J_z_point));
-  TEST_ASSERT_FALSE(observe_point(radtan_camera(), body, behind, &z, &J_z_body, &J_z_point));
-  TEST_ASSERT_FALSE(observe_point(division_camera(), body, behind, &z, &J_z_body, &J_z_point));
+  TEST_ASSERT_FALSE(observe_point(pinhole_camera(), camera_at(body), behind, &z, &J_z_body, &J_z_point));
+  TEST_ASSERT_FALSE(observe_point(radtan_camera(), camera_at(body), behind, &z, &J_z_body, &J_z_point));
+  TEST_ASSERT_FALSE(observe_point(division_camera(), camera_at(body), behind, &z, &J_z_body, &J_z_point));
 }
 
 }  // namespace

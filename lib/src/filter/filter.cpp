@@ -1,8 +1,8 @@
 #include "filter/filter.h"
 
+#include "filter/camera_at.h"
 #include "filter/model/kinds.h"
 #include "filter/observe/inverse_depth.h"
-#include "filter/observe/row.h"
 
 namespace pf {
 
@@ -61,7 +61,7 @@ int Filter::add_anchor() {
   put<3, 3>(J.h, 3, 0, Mat3::Identity());
   const Scalar none[9] = {};
   blocks_.augment(slot, J, none);
-  state_.block[slot].set_xyz(state_.body.p_W);
+  state_.block[slot].set_xyz(camera_at(state_, Scalar(0)).p_W);
   return slot;
 }
 
@@ -70,20 +70,21 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   PF_ASSERT(state_.block[anchor].kind == BlockKind::kAnchor);
   const int slot = take_slot(BlockKind::kInverseDepth);
   if (slot < 0) return -1;
-  const RowBody row = body_at_row(state_.body, state_.layout.has(BodyPart::kVelocity) ? tau : Scalar(0));
-  const Vec3 c_W = row.body.p_W - state_.body.p_W;
+  CameraAt camera = camera_at(state_, tau);
+  camera.q_WC.normalize();  // the bearing keeps what its length is off
+  const Vec3 c_W = camera.p_W - camera_at(state_, Scalar(0)).p_W;
   Mat23 J_theta, J_c;
   Mat2 J_z;
-  const InverseDepth feature = begin_inverse_depth(row.body, ray_C, J_ray_z, rho, c_W, &J_theta, &J_z, &J_c);
-  const int columns = row.tau == Scalar(0) ? 3 : state_.layout.dynamic_rows();
-  RowsOf<3, BodyLayout::kMaxDynamicRows, 1> J;
+  const InverseDepth feature = begin_inverse_depth(camera, ray_C, J_ray_z, rho, c_W, &J_theta, &J_z, &J_c);
+  RowsOf<3, CameraAt::kMaxColumns, 1> J;  // the anchor takes part in what the position does
   J.parts = 1;
-  J.part[0] = Part::body(Body::kTheta, columns);
+  J.part[0] = camera.tau == Scalar(0) ? Part::body(Body::kTheta, 3) : camera.part();
+  const int columns = J.part[0].size;
   for (int i = 0; i < 3 * columns; ++i) J.h[i] = Scalar(0);
   put<2, 3>(J.h, columns, 0, J_theta);
-  if (row.tau != Scalar(0)) {
-    put<2, 3>(J.h, columns, state_.layout.row(BodyPart::kVelocity), Mat23(row.tau * J_c));
-    put<2, 3>(J.h, columns, state_.layout.row(BodyPart::kAngularVelocity), Mat23(J_theta.lazyProduct(row.J_theta_w)));
+  if (camera.tau != Scalar(0)) {
+    put<2, 3>(J.h, columns, camera.velocity_row, Mat23(camera.tau * J_c));
+    put<2, 3>(J.h, columns, camera.rate_row, Mat23(J_theta.lazyProduct(camera.J_theta_w)));
   }
   // Of the pixel, and of the inverse depth, which turns the bearing too where the anchor is not where the ray begins.
   Mat3 noise = Mat3::Zero();

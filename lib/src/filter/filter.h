@@ -106,7 +106,7 @@ class Filter {
 
   // --- update
   /// Prediction, Jacobian and columns of a feature's pixel; false when it does not project.
-  bool predict_pixel(const Camera& camera, int slot, PixelMeasurement* out) const;
+  bool predict_pixel(const Camera& lens, int slot, PixelMeasurement* out) const;
   /// H P H^T of one pixel, without noise.
   Mat2 innovation(const PixelMeasurement& pixel) const;
   /// Gathers H P and S = H P H^T (without noise) of measurements. Then innovation_block is valid until the state changes.
@@ -152,7 +152,8 @@ class Filter {
 
   // pixels.cpp
   Mat2 parallax_noise(int slot, Scalar rho, const Mat23& J_z_anchor) const;
-  bool predict_at(const Camera& camera, const Body& body, int slot, PixelMeasurement* out) const;
+  bool predict_at(const Camera& lens, const struct CameraAt& camera, int slot, PixelMeasurement* out,
+                  Mat26* J_camera) const;
 
   // planes.cpp
   bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded);

@@ -4,7 +4,6 @@
 #include "filter/model/kinds.h"
 #include "filter/observe/inverse_depth.h"
 #include "filter/observe/point.h"
-#include "filter/observe/row.h"
 
 /// Pixels: what is expected of them, each at the pose of its own row (lib/docs/rolling_shutter.md).
 
@@ -22,38 +21,25 @@ Mat2 planar_noise(const State& state, const Block& block, const Place& at, const
   return noise;
 }
 
-/// A pixel from the body of a row: Jacobians by the speeds too, and the row's own dependence on the pixel.
+/// A row's time depends on the pixel itself:
 ///
 ///   dz = H_row dx + z' k dz_y      k seconds per pixel, z' what the row's motion does to the pixel [px/s]
-PixelMeasurement with_speeds(const PixelMeasurement& at_row, const BodyLayout& layout, const RowBody& row, Scalar k) {
-  const int velocity = layout.row(BodyPart::kVelocity), rate = layout.row(BodyPart::kAngularVelocity);
-  const int columns = at_row.H.columns(), wide = columns + 6;
-  PixelMeasurement o = at_row;
-  o.H.part[0].size = 12;
+void follow_row(const CameraAt& camera, const Mat26& J_camera, Scalar k, PixelMeasurement* out) {
   Mat2 M = Mat2::Identity();
   Vec2 drift;
   for (int a = 0; a < 2; ++a) {
-    const Scalar* from = at_row.H.h + a * columns;
-    Scalar* to = o.H.h + a * wide;
-    const Vec3 J_theta(from[0], from[1], from[2]), J_p(from[3], from[4], from[5]);
-    const Vec3 J_w = row.J_theta_w.transpose().lazyProduct(J_theta), J_v = row.tau * J_p;
-    for (int c = 0; c < 6; ++c) to[c] = from[c];
-    for (int c = 0; c < 3; ++c) {
-      to[velocity + c] = J_v(c);
-      to[rate + c] = J_w(c);
-    }
-    for (int c = 6; c < columns; ++c) to[c + 6] = from[c];
-    drift(a) = J_theta.dot(row.body.q_WC * row.body.w_C) + J_p.dot(row.body.v_W);
+    const Vec3 J_theta = J_camera.block<1, 3>(a, 0).transpose(), J_p = J_camera.block<1, 3>(a, 3).transpose();
+    drift(a) = J_theta.dot(camera.q_WC * camera.w_C) + J_p.dot(camera.v_W);
   }
   const Scalar own = std::max(Scalar(1) - k * drift.y(), Scalar(0.1));
   M(0, 1) = k * drift.x() / own;
   M(1, 1) = Scalar(1) / own;
-  for (int c = 0; c < wide; ++c) {
-    const Vec2 h = M * Vec2(o.H.h[c], o.H.h[wide + c]);
-    o.H.h[c] = h.x();
-    o.H.h[wide + c] = h.y();
+  const int columns = out->H.columns();
+  for (int c = 0; c < columns; ++c) {
+    const Vec2 h = M * Vec2(out->H.h[c], out->H.h[columns + c]);
+    out->H.h[c] = h.x();
+    out->H.h[columns + c] = h.y();
   }
-  return o;
 }
 
 }  // namespace
@@ -74,49 +60,50 @@ Mat2 Filter::parallax_noise(int slot, Scalar rho, const Mat23& J_z_anchor) const
   return factor * JP.lazyProduct(J_z_anchor.transpose());
 }
 
-/// The pixel as a camera at `body` sees it.
-bool Filter::predict_at(const Camera& camera, const Body& body, int slot, PixelMeasurement* out) const {
+/// The pixel as a camera sees it that is read out at once. J_camera is by its (theta, p).
+bool Filter::predict_at(const Camera& lens, const CameraAt& camera, int slot, PixelMeasurement* out,
+                        Mat26* J_camera) const {
   const Block& block = state_.block[slot];
   Place at;
-  Mat26 J_body;
   Mat23 J_o, J_feature;
   if (!find_place(state_, slot, &at)) return false;
   out->block = slot;
   out->second_order.setZero();
   out->bend = Scalar(0);
-  const int columns = Body::kPoseDim + at.columns;
+  const int first = camera.columns(), columns = first + at.columns;
   if (at.w_column < 0) {  // Gee 2007, eq 2, 9 and 10
-    if (!observe_point(camera, body, at.o, &out->predicted, &J_body, &J_o)) return false;
+    if (!observe_point(lens, camera, at.o, &out->predicted, J_camera, &J_o)) return false;
     for (int c = 0; c < at.columns; ++c) {
       const Vec2 h = J_o * at.J_o.col(c);
-      out->H.h[6 + c] = h.x();
-      out->H.h[columns + 6 + c] = h.y();
+      out->H.h[first + c] = h.x();
+      out->H.h[columns + first + c] = h.y();
     }
     if (at.plane >= 0) out->second_order = planar_noise(state_, block, at, J_o, roughness_);
   } else {
-    if (!observe_inverse_depth(camera, body, at.o, block.inverse_depth(), &out->predicted, &J_body, &J_o, &J_feature))
+    if (!observe_inverse_depth(lens, camera, at.o, block.inverse_depth(), &out->predicted, J_camera, &J_o, &J_feature))
       return false;
-    put<2, 3>(out->H.h, columns, 6, J_o);
-    put<2, 3>(out->H.h, columns, 9, J_feature);
+    put<2, 3>(out->H.h, columns, first, J_o);
+    put<2, 3>(out->H.h, columns, first + 3, J_feature);
     out->second_order = parallax_noise(slot, at.w, J_o);
   }
-  put<2, 6>(out->H.h, columns, 0, J_body);
+  camera.chain(*J_camera, out->H.h, columns);
   out->H.parts = 1 + at.parts;
-  out->H.part[0] = Part::body(Body::kTheta, Body::kPoseDim);
+  out->H.part[0] = camera.part();
   for (int p = 0; p < at.parts; ++p) out->H.part[1 + p] = at.part[p];
   return true;
 }
 
-bool Filter::predict_pixel(const Camera& camera, int slot, PixelMeasurement* out) const {
-  if (!predict_at(camera, state_.body, slot, out)) return false;
-  if (camera.readout == Scalar(0) || !state_.layout.has(BodyPart::kVelocity)) return true;
+bool Filter::predict_pixel(const Camera& lens, int slot, PixelMeasurement* out) const {
+  Mat26 J_camera;
+  if (!predict_at(lens, camera_at(state_, Scalar(0)), slot, out, &J_camera)) return false;
+  if (lens.readout == Scalar(0) || !state_.layout.has(BodyPart::kVelocity)) return true;
   // Where the pixel is says when it was read out, which says where it is: the camera moves little in that time.
-  RowBody row;
-  for (int turn = 0; turn < 2; ++turn) {
-    row = body_at_row(state_.body, row_time(camera, out->predicted.y()));
-    if (!predict_at(camera, row.body, slot, out)) return false;
+  CameraAt camera;
+  for (int round = 0; round < 2; ++round) {
+    camera = camera_at(state_, row_time(lens, out->predicted.y()));
+    if (!predict_at(lens, camera, slot, out, &J_camera)) return false;
   }
-  *out = with_speeds(*out, state_.layout, row, camera.readout / static_cast<Scalar>(camera.height));
+  follow_row(camera, J_camera, lens.readout / static_cast<Scalar>(lens.height), out);
   return true;
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "filter/camera_at.h"
 #include "filter/observe/inverse_depth.h"
-#include "filter/observe/row.h"
 
 namespace pf {
 namespace {
@@ -25,6 +25,7 @@ bool FeatureKeeper::layout(Arena& arena, int max_features) {
 void FeatureKeeper::convert_linear() {
   ScaleRow l;
   filter_.scale_row(&l);
+  const Vec3 c_W = camera_at(filter_.state(), Scalar(0)).p_W;
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!map_.features.used(i)) continue;
     const Block& block = filter_.state().block[map_.features[i].slot];
@@ -32,7 +33,7 @@ void FeatureKeeper::convert_linear() {
     // The unknown global scale is common to all points, so it must not delay conversion.
     const Scalar sigma_rho = filter_.relative_sigma_rho(map_.features[i].slot, l);
     const Vec3 o_W = filter_.state().block[block.parent].xyz();
-    if (linearity_index(filter_.state().body, o_W, block.inverse_depth(), sigma_rho) < settings_.linearity_index) {
+    if (linearity_index(c_W, o_W, block.inverse_depth(), sigma_rho) < settings_.linearity_index) {
       filter_.convert_to_point(map_.features[i].slot);
       filter_.scale_row(&l);  // it may have been one of its points
     }
@@ -135,8 +136,8 @@ Scalar FeatureKeeper::median_inverse_depth() const {
   Scalar rho[kMost];
   int count = 0, on_target = 0;
   Scalar target_rho = 0;
-  const Body& body = filter_.state().body;
-  const Vec3 forward = body.q_WC.toRotationMatrix().col(2);
+  const CameraAt camera = camera_at(filter_.state(), Scalar(0));
+  const Vec3 forward = camera.q_WC.toRotationMatrix().col(2);
   for (int i = 0; i < map_.features.capacity() && count < kMost; ++i) {
     if (!map_.features.used(i) || map_.features[i].last_seen_ns != frame_.report.t_ns) continue;
     const Block& block = filter_.state().block[map_.features[i].slot];
@@ -145,8 +146,8 @@ Scalar FeatureKeeper::median_inverse_depth() const {
       if (rho_of * rho_of < Scalar(9) * filter_.block_variance(map_.features[i].slot, 2)) continue;
     }
     const Vec3 p_W = filter_.point(map_.features[i].slot);
-    const Scalar distance = (p_W - body.p_W).norm();
-    if (!(forward.dot(p_W - body.p_W) > Scalar(0))) continue;
+    const Scalar distance = (p_W - camera.p_W).norm();
+    if (!(forward.dot(p_W - camera.p_W) > Scalar(0))) continue;
     if (map_.features[i].is_target) {
       target_rho += Scalar(1) / distance;
       ++on_target;

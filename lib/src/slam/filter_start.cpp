@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "filter/camera_at.h"
 #include "geometry/so3.h"
 
 namespace pf {
@@ -130,8 +131,8 @@ bool FilterStart::start_in_image() {
 
 void FilterStart::begin_record() {
   if (!progress().recording || !without_.empty()) return;
-  const Body& body = parts_.filter.state().body;
-  without_.begin_record(body.q_WC, body.p_W, parts_.frame.report.t_ns);
+  const CameraAt camera = camera_at(parts_.filter.state(), Scalar(0));
+  without_.begin_record(camera.q_WC, camera.p_W, parts_.frame.report.t_ns);
   for (int t = 0; t < parts_.frame.match_count(); ++t) {
     const Match& match = parts_.frame.match(t);
     Vec3 ray_C;
@@ -154,8 +155,8 @@ Vec2 FilterStart::at_frame_time(int slot, const Vec2& measured) const {
 
 void FilterStart::record_frame() {
   if (!progress().recording || without_.empty() || parts_.frame.report.inliers < TrackingState::kMinInliers) return;
-  const Body& body = parts_.filter.state().body;
-  without_.begin_frame(body.q_WC, body.p_W, parts_.frame.report.t_ns);
+  const CameraAt camera = camera_at(parts_.filter.state(), Scalar(0));
+  without_.begin_frame(camera.q_WC, camera.p_W, parts_.frame.report.t_ns);
   for (int t = 0; t < parts_.frame.match_count(); ++t) {
     const Match& match = parts_.frame.match(t);
     if (match.feature < 0 || match.status != MatchStatus::kInlier) continue;

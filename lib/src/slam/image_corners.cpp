@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "filter/camera_at.h"
 #include "slam/image_front_end.h"
 
 /// New features at corners of the image.
@@ -69,8 +70,8 @@ bool ImageFrontEnd::add_in(const Rect& rect, int* anchor) {
     if (frame_.full() || !features_.make_room_at(anchor)) return false;
     const int entry = features_.add(*anchor, pixel, Mat2::Identity() * (kReferenceSigma * kReferenceSigma));
     if (entry < 0) continue;
-    const Body& body = filter_.state().body;
-    if (!remember(entry, pixel, {body.q_WC, body.p_W})) {
+    const CameraAt camera = camera_at(filter_.state(), Scalar(0));
+    if (!remember(entry, pixel, {camera.q_WC, camera.p_W})) {
       features_.drop(&entry, 1);
       continue;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "filter/camera_at.h"
 #include "geometry/symmetric_eigen.h"
 #include "slam/consensus.h"
 #include "slam/tracking_state.h"
@@ -151,8 +152,9 @@ SearchTask ImageFrontEnd::task_of(int i) const {
     Scalar d;
     plane_normal(state.frame_of(plane), plane.xyz(), &task.normal_W, &d);
   }
-  task.q_WC = state.body.q_WC;
-  task.c_W = state.body.p_W;
+  const CameraAt camera = camera_at(state, Scalar(0));
+  task.q_WC = camera.q_WC;
+  task.c_W = camera.p_W;
   return task;
 }
 

@@ -29,11 +29,12 @@ struct Problem {
       e << log_so3(pose->q_WC * prior.q_WC.conjugate()), pose->p_W - prior.p_W;
       Mat6 A = information;
       Vec6 b = -information.lazyProduct(e);
+      const CameraAt at = camera_at(*pose);
       for (int k = 0; k < count; ++k) {
         Vec2 z;
         Mat26 J;
         Mat23 J_f;
-        if (!observe_point(camera, *pose, f_W[index[k]], &z, &J, &J_f)) return false;
+        if (!observe_point(camera, at, f_W[index[k]], &z, &J, &J_f)) return false;
         A += weight * J.transpose().lazyProduct(J);
         b += weight * J.transpose().lazyProduct(pixel[index[k]] - z);
       }
@@ -51,6 +52,7 @@ struct Problem {
 
   /// Cost of all matches, each at most that of three sigma.
   Scalar judge(const Body& pose, int count, short* index, int* inliers) const {
+    const CameraAt at = camera_at(pose);
     Scalar cost = 0;
     *inliers = 0;
     for (int i = 0; i < count; ++i) {
@@ -58,7 +60,7 @@ struct Problem {
       Mat26 J;
       Mat23 J_f;
       Scalar d2 = 9;
-      if (observe_point(camera, pose, f_W[i], &z, &J, &J_f)) d2 = std::min(d2, weight * (pixel[i] - z).squaredNorm());
+      if (observe_point(camera, at, f_W[i], &z, &J, &J_f)) d2 = std::min(d2, weight * (pixel[i] - z).squaredNorm());
       cost += d2;
       if (d2 < 9) index[(*inliers)++] = static_cast<short>(i);
     }

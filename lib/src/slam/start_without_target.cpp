@@ -1,7 +1,7 @@
 #include "slam/start_without_target.h"
 
 #include "base/elapsed.h"
-#include "filter/observe/row.h"
+#include "filter/camera_at.h"
 
 namespace pf {
 

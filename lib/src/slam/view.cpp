@@ -24,15 +24,16 @@ void View::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
 }
 
 bool View::project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const {
-  Mat26 J_body;
+  Mat26 J_camera;
   Mat23 J_point;
-  if (!observe_point(settings_.camera, filter().state().body, p_W, pixel, &J_body, &J_point)) return false;
+  if (!observe_point(settings_.camera, camera_at(filter().state(), Scalar(0)), p_W, pixel, &J_camera, &J_point))
+    return false;
   if (covariance == nullptr) return true;
   Body body;
   Mat6 P;
   pose_at(last_ns(), &body, &P);
-  const Mat26 JP = J_body.lazyProduct(P);
-  *covariance = JP.lazyProduct(J_body.transpose());
+  const Mat26 JP = J_camera.lazyProduct(P);
+  *covariance = JP.lazyProduct(J_camera.transpose());
   return true;
 }
 

@@ -1,3 +1,4 @@
+#include "filter/camera_at.h"
 #include "geometry/ray_plane.h"
 #include "geometry/so3.h"
 #include "slam/frame_loop.h"
@@ -46,7 +47,8 @@ bool View::hit(const Vec2& pixel, HitView* hit) const {
   Vec3 ray_C;
   if (!unproject(settings_.camera, pixel, &ray_C)) return false;
   const State& state = filter().state();
-  const Vec3 direction = state.body.q_WC * ray_C;
+  const CameraAt camera = camera_at(state, Scalar(0));
+  const Vec3 direction = camera.q_WC * ray_C;
   *hit = HitView();
   for (int i = 0; i < map_.planes.capacity(); ++i) {
     if (!map_.planes.used(i)) continue;
@@ -55,8 +57,8 @@ bool View::hit(const Vec2& pixel, HitView* hit) const {
     Vec3 at;
     Mat3 J[3];  // by the rotation, the position, the plane
     Mat3 J_direction;
-    if (!intersect_ray_plane(frame, block.xyz(), state.body.p_W, direction, &at, &J[1], &J_direction, &J[2])) continue;
-    const Scalar range = (at - state.body.p_W).norm();
+    if (!intersect_ray_plane(frame, block.xyz(), camera.p_W, direction, &at, &J[1], &J_direction, &J[2])) continue;
+    const Scalar range = (at - camera.p_W).norm();
     PlaneOutline outline;
     outline_plane(filter(), map_, i, &outline);
     if (!outline_contains(outline, plane_coordinates(frame, at))) continue;

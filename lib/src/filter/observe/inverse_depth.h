@@ -1,8 +1,6 @@
 #pragma once
 
-#include "filter/state.h"
-#include "geometry/camera.h"
-#include "geometry/so3.h"
+#include "filter/camera_at.h"
 
 namespace pf {
 
@@ -11,20 +9,21 @@ namespace pf {
 ///   d_W = rho (o_W - p_WC) + b,   z = pi(R_WC^T d_W)            in front of the camera
 ///   dd_W: theta [d]x (through R^T),   p -rho I,   o rho I,   e_b B,   e_rho o - p
 ///
-/// J_z_body 2x6 of (theta, p), J_z_anchor 2x3, J_z_feature 2x3 of (e_1, e_2, e_rho).
+/// J_z_camera 2x6 of (theta, p), J_z_anchor 2x3, J_z_feature 2x3 of (e_1, e_2, e_rho).
 /// False when the point does not project; outputs are then undefined.
 /// src Montiel, Civera, Davison 2006; the bearing is a unit vector with a tangent basis in place of two angles.
-inline bool observe_inverse_depth(const Camera& camera, const Body& body, const Vec3& o_W, const InverseDepth& feature,
-                                  Vec2* z, Mat26* J_z_body, Mat23* J_z_anchor, Mat23* J_z_feature) {
-  const Mat3 R_CW = body.q_WC.toRotationMatrix().transpose();
+inline bool observe_inverse_depth(const Camera& lens, const CameraAt& camera, const Vec3& o_W,
+                                  const InverseDepth& feature, Vec2* z, Mat26* J_z_camera, Mat23* J_z_anchor,
+                                  Mat23* J_z_feature) {
+  const Mat3 R_CW = camera.q_WC.toRotationMatrix().transpose();
   const Mat3 R_b = feature.q_b.toRotationMatrix();
-  const Vec3 baseline = o_W - body.p_W;
+  const Vec3 baseline = o_W - camera.p_W;
   const Vec3 d_W = feature.rho * baseline + R_b.col(2);
   Mat23 J_z_C;
-  if (!project(camera, R_CW.lazyProduct(d_W), z, &J_z_C)) return false;
+  if (!project(lens, R_CW.lazyProduct(d_W), z, &J_z_C)) return false;
   const Mat23 J_z_W = J_z_C.lazyProduct(R_CW);
-  J_z_body->leftCols<3>() = J_z_W.lazyProduct(hat(d_W));
-  J_z_body->rightCols<3>() = -feature.rho * J_z_W;
+  J_z_camera->leftCols<3>() = J_z_W.lazyProduct(hat(d_W));
+  J_z_camera->rightCols<3>() = -feature.rho * J_z_W;
   *J_z_anchor = feature.rho * J_z_W;
   J_z_feature->leftCols<2>() = J_z_W.lazyProduct(R_b.leftCols<2>());
   J_z_feature->col(2) = J_z_W.lazyProduct(baseline);
@@ -66,13 +65,13 @@ inline Vec3 shown_place(const Vec3& o_W, const InverseDepth& feature, const Mat6
 }
 
 /// How far from linear (Gaussian) the depth is: 4 sigma_d |cos a| / d1 (Civera, Davison, Montiel 2007), where sigma_d = sigma_rho /
-/// rho^2, d1 the distance from the camera now, a the angle at the point between the first ray and the ray now.
+/// rho^2, d1 the distance from the camera now at c_W, a the angle at the point between the first ray and the ray now.
 /// Large where rho is not well above zero.
-inline Scalar linearity_index(const Body& body, const Vec3& o_W, const InverseDepth& feature, Scalar sigma_rho) {
+inline Scalar linearity_index(const Vec3& c_W, const Vec3& o_W, const InverseDepth& feature, Scalar sigma_rho) {
   constexpr Scalar kNever = Scalar(1e6);
   if (feature.rho <= Scalar(2) * sigma_rho || feature.rho <= Scalar(1e-6)) return kNever;
   const Vec3 b = feature.q_b.toRotationMatrix().col(2);
-  const Vec3 ray = o_W + b / feature.rho - body.p_W;
+  const Vec3 ray = o_W + b / feature.rho - c_W;
   const Scalar d1 = ray.norm();
   if (d1 <= Scalar(1e-9)) return kNever;
   const Scalar cosine = b.dot(ray) / d1;
@@ -85,10 +84,10 @@ inline Scalar linearity_index(const Body& body, const Vec3& o_W, const InverseDe
 ///   b = (R_WC r + rho c) / |..|;   e_b = B^T (-[R_WC r]x theta + R J_r_z e_z + rho e_c + c e_rho) / |..|;   rho free
 ///
 /// J_feature_theta 2x3, J_feature_z 2x2, J_feature_c 2x3 (all for the bearing's two rows); J_feature_rho = J_feature_c c / rho.
-inline InverseDepth begin_inverse_depth(const Body& body, const Vec3& ray_C, const Mat32& J_ray_z, Scalar rho,
+inline InverseDepth begin_inverse_depth(const CameraAt& camera, const Vec3& ray_C, const Mat32& J_ray_z, Scalar rho,
                                         const Vec3& c_W, Mat23* J_feature_theta, Mat2* J_feature_z,
                                         Mat23* J_feature_c) {
-  const Mat3 R = body.q_WC.toRotationMatrix();
+  const Mat3 R = camera.q_WC.toRotationMatrix();
   const Vec3 seen = R.lazyProduct(ray_C);
   const Vec3 from_anchor = seen + rho * c_W;
   const Scalar length = from_anchor.norm();

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <algorithm>
+
+#include "filter/state.h"
+#include "geometry/camera.h"
+#include "geometry/so3.h"
+
+namespace pf {
+
+/// The camera as a link between the body and what it sees: where it is tau seconds from the frame's time, how it moves there, and how its
+/// error follows from the parts of the body.
+///
+///   R_tau = R Exp(w tau),  p_tau = p + v tau
+///   theta_tau = theta + R J_l(w tau) tau e_w,  e_p_tau = e_p + tau e_v
+///
+/// Of the pose the Jacobian is the identity, and of the velocities zero at tau = 0; neither is stored or multiplied.
+struct CameraAt {
+  static constexpr int kMaxColumns = 12;
+
+  Scalar tau = 0;  ///< 0 also where the body has no velocities
+  Quat q_WC = Quat::Identity();
+  Vec3 p_W = Vec3::Zero();
+  Vec3 v_W = Vec3::Zero();
+  Vec3 w_C = Vec3::Zero();
+  Mat3 J_theta_w;  ///< R J_l(w tau) tau; only where tau is not 0
+  int velocity_row = 0, rate_row = 0;
+
+  /// Rows of the body that its error depends on, from the first one on.
+  int columns() const { return tau == Scalar(0) ? Body::kPoseDim : rate_row + 3; }
+  Part part() const { return Part::body(0, columns()); }
+
+  /// J over (theta, p) of this camera, by its rows of `kRows` values, becomes J over the rows of the body; h is row-major.
+  template <int kRows>
+  void chain(const Eigen::Matrix<Scalar, kRows, 6>& J, Scalar* h, int stride) const {
+    put<kRows, 6>(h, stride, 0, J);
+    if (tau == Scalar(0)) return;
+    for (int a = 0; a < kRows; ++a) {
+      const Vec3 J_theta = J.template block<1, 3>(a, 0).transpose(), J_p = J.template block<1, 3>(a, 3).transpose();
+      const Vec3 J_w = J_theta_w.transpose().lazyProduct(J_theta), J_v = tau * J_p;
+      for (int c = 0; c < 3; ++c) {
+        h[a * stride + velocity_row + c] = J_v(c);
+        h[a * stride + rate_row + c] = J_w(c);
+      }
+    }
+  }
+};
+
+/// The camera of the body at the frame's time.
+inline CameraAt camera_at(const Body& body) {
+  CameraAt camera;
+  camera.q_WC = body.q_WC;
+  camera.p_W = body.p_W;
+  camera.v_W = body.v_W;
+  camera.w_C = body.w_C;
+  return camera;
+}
+
+/// The camera tau seconds from the frame's time; at the frame's time where the body has no velocities.
+inline CameraAt camera_at(const State& state, Scalar tau) {
+  const Body& body = state.body;
+  CameraAt camera = camera_at(body);
+  if (tau == Scalar(0) || !state.layout.has(BodyPart::kVelocity)) return camera;
+  camera.tau = tau;
+  camera.velocity_row = state.layout.row(BodyPart::kVelocity);
+  camera.rate_row = state.layout.row(BodyPart::kAngularVelocity);
+  const Vec3 turn = body.w_C * tau;
+  camera.q_WC = body.q_WC * exp_so3(turn);
+  camera.q_WC.normalize();
+  camera.p_W = body.p_W + body.v_W * tau;
+  camera.J_theta_w = tau * body.q_WC.toRotationMatrix().lazyProduct(left_jacobian_so3(turn));
+  return camera;
+}
+
+/// When a row is read out, from the frame's time, which is that of the middle of the image [s]. What lies far outside of the image
+/// is taken to be just outside of it.
+inline Scalar row_time(const Camera& camera, Scalar y) {
+  const Scalar part = (y + Scalar(0.5)) / static_cast<Scalar>(camera.height) - Scalar(0.5);
+  return camera.readout * std::clamp(part, Scalar(-1), Scalar(1));
+}
+
+}  // namespace pf
