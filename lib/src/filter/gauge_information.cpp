@@ -5,30 +5,22 @@
 namespace pf {
 namespace {
 
-constexpr int kDirections = 7;
+using gauge::kDirections;
 constexpr double kTolerance = sizeof(Scalar) == 8 ? 1e-10 : 1e-4;  ///< of a pivot, relative to its variance
 
 /// The seven directions as columns of N (n x 8, the last column unused), in double.
 void directions(const State& state, const BlockFilter& blocks, double* N) {
   for (int i = 0; i < blocks.dim() * 8; ++i) N[i] = 0.0;
-  const auto three = [&](int first, const Vec3& a, bool shifts) {
-    const double x = static_cast<double>(a.x()), y = static_cast<double>(a.y()), z = static_cast<double>(a.z());
-    const double turn[3][3] = {{0, z, -y}, {-z, 0, x}, {y, -x, 0}};  // -[a]x
-    for (int i = 0; i < 3; ++i) {
-      if (shifts) N[(first + i) * 8 + i] = 1.0;
-      for (int j = 0; j < 3; ++j) N[(first + i) * 8 + 3 + j] = turn[i][j];
-      N[(first + i) * 8 + 6] = static_cast<double>(a[i]);
-    }
+  const auto put_rows = [&](int first, int size, const auto& rows) {
+    for (int i = 0; i < size; ++i)
+      for (int d = 0; d < kDirections; ++d) N[(first + i) * 8 + d] = static_cast<double>(rows(i, d));
   };
-  for (int i = 0; i < 3; ++i) N[(Body::kTheta + i) * 8 + 3 + i] = 1.0;
-  three(Body::kPosition, state.body.p_W, true);
-  if (state.layout.has(BodyPart::kVelocity)) three(state.layout.row(BodyPart::kVelocity), state.body.v_W, false);
+  for_each_body_gauge(state.body, state.layout,
+                      [&](int first, const GaugeRowsOf<3>& rows) { put_rows(first, 3, rows); });
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];
     if (block.size == 0) continue;
-    const GaugeRows rows = gauge_rows(state, block);
-    for (int i = 0; i < block.size; ++i)
-      for (int d = 0; d < kDirections; ++d) N[(blocks.first(s) + i) * 8 + d] = static_cast<double>(rows(i, d));
+    put_rows(blocks.first(s), block.size, gauge_rows(state, block));
   }
 }
 

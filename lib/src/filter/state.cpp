@@ -84,15 +84,7 @@ void add_children(const State& state, const BlockFilter& blocks, int parent, con
 void add_gauge_rows(const State& state, const BlockFilter& blocks, Scalar sign, Scalar* N_T, Scalar* N_R, Scalar* N_s,
                     int ld) {
   const GaugeSum sum = {sign, N_T, N_R, N_s, ld};
-  for (int axis = 0; axis < 3; ++axis) N_R[axis * ld + Body::kTheta + axis] += sign;
-  GaugeRowsOf<3> N = GaugeRowsOf<3>::Zero();
-  put_place<3>(Mat3::Identity(), state.body.p_W, &N);
-  sum.add(Body::kPosition, 3, N);
-  if (state.layout.has(BodyPart::kVelocity)) {
-    put_place<3>(Mat3::Identity(), state.body.v_W, &N);
-    N.leftCols<3>().setZero();
-    sum.add(state.layout.row(BodyPart::kVelocity), 3, N);
-  }
+  for_each_body_gauge(state.body, state.layout, [&](int first, const GaugeRowsOf<3>& N) { sum.add(first, 3, N); });
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];
     visit(block.kind, [&](auto kind) {

@@ -70,8 +70,8 @@ void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx);
 /// Gauge rows of a block (model/gauge.h). Rows beyond the block's size are zero.
 GaugeRows gauge_rows(const State& state, const Block& block);
 
-/// Adds sign times these directions at x over the whole state, one row per direction, leading dimension ld. Of the body: theta I;
-/// p, v turn; p shifts; p, v scale. N_T may be null: shifts are the same at every x but for planes.
+/// Adds sign times these directions at x over the whole state, one row per direction, leading dimension ld.
+/// N_T may be null: shifts are the same at every x but for planes.
 void add_gauge_rows(const State& state, const BlockFilter& blocks, Scalar sign, Scalar* N_T, Scalar* N_R, Scalar* N_s,
                     int ld);
 

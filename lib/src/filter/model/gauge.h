@@ -1,6 +1,7 @@
 #pragma once
 
 #include "filter/model/block.h"
+#include "filter/model/body.h"
 #include "geometry/so3.h"
 
 namespace pf {
@@ -27,6 +28,21 @@ void put_place(const Eigen::Matrix<Scalar, kRows, 3>& axes, const Vec3& p_W, Row
     }
     (*N)(i, 6) = axis.dot(p_W);
   }
+}
+
+/// The body's gauge rows: calls f(first row, GaugeRowsOf<3>) for each of its parts that has any. Velocities in W rotate and scale but are
+/// not translated; angular velocities, in camera axes, do nothing.
+template <typename F>
+void for_each_body_gauge(const Body& body, const BodyLayout& layout, F&& f) {
+  GaugeRowsOf<3> N = GaugeRowsOf<3>::Zero();
+  N.template block<3, 3>(0, gauge::kRotation).setIdentity();
+  f(Body::kTheta, N);
+  put_place<3>(Mat3::Identity(), body.p_W, &N);
+  f(Body::kPosition, N);
+  if (!layout.has(BodyPart::kVelocity)) return;
+  put_place<3>(Mat3::Identity(), body.v_W, &N);
+  N.template leftCols<3>().setZero();
+  f(layout.row(BodyPart::kVelocity), N);
 }
 
 /// Where gauge rows over the whole state are added up, one dense row per direction; sign times each.
