@@ -180,11 +180,14 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.footer(kFooter);
   std::string backend = "filter";
   std::string kernels = "auto";
+  std::string lens = "exact";
   std::vector<double> gravity;
   std::vector<std::string> taps;
   bool no_film = false;
   bool no_gauge = false;
   bool no_planes = false;
+  const std::map<std::string, pf_camera_estimate_t> lens_names = {
+      {"exact", PF_CAMERA_EXACT}, {"consider", PF_CAMERA_CONSIDER}, {"estimate", PF_CAMERA_ESTIMATE}};
   const std::map<std::string, pf_kernels_t> kernel_names = {
       {"auto", PF_KERNELS_AUTO}, {"reference", PF_KERNELS_REFERENCE}, {"portable", PF_KERNELS_PORTABLE},
       {"avx2", PF_KERNELS_AVX2}, {"avx512", PF_KERNELS_AVX512},       {"neon", PF_KERNELS_NEON}};
@@ -232,6 +235,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--max-observations", options.max_observations, "features measured in one frame")->check(at_least(1));
   app.add_option("--features-in-view", options.features_in_view, "features to keep in view")->check(at_least(1));
   app.add_option("--kernels", kernels, "auto, reference, portable, avx2, avx512 or neon")->capture_default_str();
+  app.add_option("--lens", lens,
+                 "exact, consider or estimate: what to make of errors of the calibration, by its sigma fields")
+      ->capture_default_str();
   app.add_flag("--no-planes", no_planes, "points only");
   app.add_flag("--plain-ekf", no_gauge, "the textbook filter, which is overconfident; for comparison");
   add_camera_options(app, options);
@@ -258,6 +264,10 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   if (wrong.empty() && set == kernel_names.end()) {
     wrong = "--kernels " + kernels + ": write auto, reference, portable, avx2, avx512 or neon";
   }
+  const auto estimate = lens_names.find(lens);
+  if (wrong.empty() && estimate == lens_names.end()) {
+    wrong = "--lens " + lens + ": write exact, consider or estimate";
+  }
   if (!wrong.empty()) {
     code = refuse(wrong);
     return Parsed::kExit;
@@ -269,6 +279,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     return Parsed::kExit;
   }
   options.kernels = set->second;
+  options.lens = estimate->second;
   options.film = !no_film;
   options.keep_gauge = !no_gauge;
   options.planes = !no_planes;

@@ -31,6 +31,7 @@ struct Options {
   int32_t features_in_view = -1;
   pf_kernels_t kernels = PF_KERNELS_AUTO;
   bool planes = true;
+  pf_camera_estimate_t lens = PF_CAMERA_EXACT;
   bool keep_gauge = true;
 
   std::string imu = "auto";

@@ -40,6 +40,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   std::copy_n(options.gravity_W, 3, gravity_W_);
   config_.camera = source.info().camera;
   if (options.readout_s >= 0.0) config_.camera.readout_s = options.readout_s;
+  config_.camera.estimate = options.lens;
   config_.kernels = options.kernels;
   config_.keep_gauge = options.keep_gauge ? 1 : 0;
   config_.plane.enabled = options.planes ? 1 : 0;

@@ -71,6 +71,25 @@ Json camera_json(const pf_camera_t& camera) {
           {"readout_s", camera.readout_s}};
 }
 
+/// The calibration as the filter knows it at the end, with standard deviations; null where it was taken as exact.
+Json lens_json(const pf_slam_t* slam) {
+  pf_camera_t camera{};
+  double covariance[100];
+  if (pf_get_camera(slam, &camera, covariance) != PF_OK || camera.estimate == PF_CAMERA_EXACT) {
+    return nullptr;
+  }
+  Json json = camera_json(camera);
+  json["estimate"] = camera.estimate == PF_CAMERA_ESTIMATE ? "estimate" : "consider";
+  json["distortion"] = std::vector<double>(camera.distortion, camera.distortion + 5);
+  const auto sigma = [&](int i) { return std::sqrt(covariance[11 * i]); };
+  json["sigma"] = {{"fx", sigma(0)},
+                   {"fy", sigma(1)},
+                   {"cx", sigma(2)},
+                   {"cy", sigma(3)},
+                   {"distortion", {sigma(4), sigma(5), sigma(6), sigma(7), sigma(8)}}};
+  return json;
+}
+
 }  // namespace
 
 void Statistics::add(const FrameView& view) {
@@ -178,6 +197,7 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["kernels"] = kernels_name(last_report_.kernels);
   json["scalar"] = config.scalar == PF_SCALAR_FLOAT ? "float" : "double";
   json["camera"] = camera_json(config.camera);
+  json["lens"] = lens_json(session.slam());
   json["config"] = {
       {"max_state_dim", config.capacity.max_state_dim},       {"max_features", config.capacity.max_features},
       {"max_observations", config.capacity.max_observations}, {"features_in_view", config.map.features_in_view},

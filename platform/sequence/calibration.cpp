@@ -32,15 +32,19 @@ constexpr Model kModels[] = {
 };
 
 const Fields::Known kKalibr{
-    {"camera_model", "distortion_coeffs", "distortion_model", "intrinsics", "resolution", "rate_hz", "readout_s"},
+    {"camera_model", "distortion_coeffs", "distortion_model", "intrinsics", "resolution", "rate_hz", "readout_s",
+     "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
     {"rostopic", "cam_overlaps", "T_cn_cnm1", "T_cam_imu", "timeshift_cam_imu", "T_BS", "sensor_type", "comment"}};
-const Fields::Known kKalibrChain{{"cam0", "readout_s"}, {"cam1", "cam2", "cam3", "cam4", "cam5", "cam6", "cam7"}};
+const Fields::Known kKalibrChain{
+    {"cam0", "readout_s", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
+    {"cam1", "cam2", "cam3", "cam4", "cam5", "cam6", "cam7"}};
 const Fields::Known kEuroc{
-    {"camera_model", "distortion_coefficients", "distortion_model", "intrinsics", "resolution", "rate_hz", "readout_s"},
+    {"camera_model", "distortion_coefficients", "distortion_model", "intrinsics", "resolution", "rate_hz", "readout_s",
+     "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
     {"sensor_type", "comment", "T_BS"}};
-const Fields::Known kRos{
-    {"image_width", "image_height", "camera_matrix", "distortion_model", "distortion_coefficients", "readout_s"},
-    {"camera_name", "rectification_matrix", "projection_matrix"}};
+const Fields::Known kRos{{"image_width", "image_height", "camera_matrix", "distortion_model", "distortion_coefficients",
+                          "readout_s", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
+                         {"camera_name", "rectification_matrix", "projection_matrix"}};
 /// Files of ORB-SLAM hold the settings of the whole program.
 const std::vector<std::string> kOrbSlamSettings{"Camera.bf",
                                                 "Camera.RGB",
@@ -66,14 +70,16 @@ const std::vector<std::string> kOrbSlamSettings{"Camera.bf",
                                                 "LEFT.*",
                                                 "RIGHT.*",
                                                 "loopClosing"};
-const Fields::Known kKitti{{"P0", "readout_s"}, {"P1", "P2", "P3", "Tr", "Tr*"}};
+const Fields::Known kKitti{{"P0", "readout_s", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
+                           {"P1", "P2", "P3", "Tr", "Tr*"}};
 /// Those that are not used belong to other sensors of the same device.
-const Fields::Known kPlain{{"camera_model", "width", "height", "fx", "fy", "cx", "cy", "distortion_model", "distortion",
-                            "rate_hz", "readout_s"},
-                           {"comment", "timestamps", "T_imu_cam", "imu_rate_hz", "gyro_noise_density",
-                            "gyro_random_walk", "accel_noise_density", "accel_random_walk", "gravity", "depth_fx",
-                            "depth_fy", "depth_cx", "depth_cy", "depth_scale_to_m"},
-                           true};
+const Fields::Known kPlain{
+    {"camera_model", "width", "height", "fx", "fy", "cx", "cy", "distortion_model", "distortion", "rate_hz",
+     "readout_s", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
+    {"comment", "timestamps", "T_imu_cam", "imu_rate_hz", "gyro_noise_density", "gyro_random_walk",
+     "accel_noise_density", "accel_random_walk", "gravity", "depth_fx", "depth_fy", "depth_cx", "depth_cy",
+     "depth_scale_to_m"},
+    true};
 
 /// What the message about an unknown layout offers.
 constexpr const char* kLayouts =
@@ -245,6 +251,39 @@ double read_readout(const Fields& fields) {
   return readout;
 }
 
+/// How well the numbers are known. Where the file says nothing, what is typical: focal lengths within 1 %, one against the other within
+/// 0.1 %, the centre within 1 % of the width; distortion as exact, or, where none is named, k1 within 0.05.
+void read_sigmas(const Fields& fields, pf_camera_t& camera) {
+  const auto sigma = [&](const char* key, double otherwise, double lowest, double highest) {
+    const double value = fields.number_or(key, otherwise);
+    if (!(value >= lowest && value <= highest)) {
+      fields.refuse_field(key, "is " + format(value) + "; a standard deviation of " + format(lowest) + " to " +
+                                   format(highest) + " is possible");
+    }
+    return value;
+  };
+  camera.sigma_focal = sigma("sigma_focal", 0.01, 1e-5, 0.2);
+  camera.sigma_aspect = sigma("sigma_aspect", 0.001, 1e-6, 0.2);
+  camera.sigma_centre_px = sigma("sigma_centre_px", camera.width > 0 ? 0.01 * camera.width : 1.0, 1e-3, 1e3);
+  const size_t most = camera.model == PF_CAMERA_RADTAN ? 5 : camera.model == PF_CAMERA_EQUIDISTANT ? 4 : 1;
+  if (!fields.has("sigma_distortion")) {
+    camera.sigma_distortion[0] = camera.model == PF_CAMERA_PINHOLE ? 0.05 : 0.0;
+    return;
+  }
+  const std::vector<double> values = fields.numbers("sigma_distortion", 8);
+  if (values.size() > most) {
+    fields.refuse_field("sigma_distortion", "has " + std::to_string(values.size()) + " numbers; this distortion has " +
+                                                std::to_string(most));
+  }
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] >= 0.0 && values[i] <= 1.0)) {
+      fields.refuse_field("sigma_distortion",
+                          "has " + format(values[i]) + "; standard deviations of 0 (exact) to 1 are possible");
+    }
+    camera.sigma_distortion[i] = values[i];
+  }
+}
+
 double read_rate(const Fields& fields, const char* key) {
   const double rate = fields.number_or(key, 0.0);
   if (rate != 0.0 && !(rate >= 0.1 && rate <= 10000.0)) {
@@ -266,7 +305,9 @@ void read_orb_slam(const Fields& fields, const std::string& prefix, ImageSize im
   } else if (type == "Rectified") {
     names.clear();
   }
-  Fields::Known known{{"Camera.type", "Camera.width", "Camera.height", "Camera.fps", "readout_s"}, kOrbSlamSettings};
+  Fields::Known known{{"Camera.type", "Camera.width", "Camera.height", "Camera.fps", "readout_s", "sigma_focal",
+                       "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
+                      kOrbSlamSettings};
   for (const char* name : {"fx", "fy", "cx", "cy"}) {
     known.read.push_back(prefix + name);
   }
@@ -361,6 +402,7 @@ Calibration parse_calibration(const std::string& text, const std::string& file, 
   } else {
     refuse(file + ": is a calibration of no known layout; known are " + kLayouts);
   }
+  read_sigmas(fields, calibration.camera);
   return calibration;
 }
 

@@ -28,6 +28,15 @@ void write(std::FILE* file, uint32_t form, const pf_camera_t& camera, double rat
   if (camera.readout_s > 0.0) {
     std::fprintf(file, "readout_s: %.17g\n", camera.readout_s);
   }
+  if (camera.sigma_focal > 0.0) {
+    std::fprintf(file, "sigma_focal: %.17g\nsigma_aspect: %.17g\nsigma_centre_px: %.17g\nsigma_distortion: [",
+                 camera.sigma_focal, camera.sigma_aspect, camera.sigma_centre_px);
+    const int sigmas = model == PF_CAMERA_PINHOLE ? 1 : kCounts[model];
+    for (int i = 0; i < sigmas; ++i) {
+      std::fprintf(file, "%s%.17g", i == 0 ? "" : ", ", camera.sigma_distortion[i]);
+    }
+    std::fprintf(file, "]\n");
+  }
   if (rate_hz > 0.0) {
     std::fprintf(file, "rate_hz: %.17g\n", rate_hz);
   }

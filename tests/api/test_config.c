@@ -118,6 +118,34 @@ static void test_check_should_name_the_number_of_the_camera_that_makes_no_sense(
   names(PF_ERROR_CONFIG, "camera.distortion");
 }
 
+static void test_check_should_name_the_sigma_of_the_camera_that_makes_no_sense(void) {
+  NAMES(camera.estimate, -1);
+  NAMES(camera.estimate, 3);
+  config.camera.sigma_focal = config.camera.sigma_aspect = config.camera.sigma_centre_px = -1;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL)); /* nobody asks for them */
+  for (int32_t estimate = PF_CAMERA_CONSIDER; estimate <= PF_CAMERA_ESTIMATE; ++estimate) {
+    config.camera.estimate = estimate;
+    config.camera.sigma_focal = 0.01;
+    config.camera.sigma_aspect = 0.001;
+    config.camera.sigma_centre_px = 3.2;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+    NAMES_REAL(camera.sigma_focal, 0, 0.3);
+    NAMES(camera.sigma_focal, -0.01);
+    NAMES_REAL(camera.sigma_aspect, 0, 0.3);
+    NAMES_REAL(camera.sigma_centre_px, 0, 1001);
+    const double bad[] = {-0.01, 1.1, NAN, INFINITY};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
+      config.camera.sigma_distortion[0] = bad[i];
+      names(PF_ERROR_CONFIG, "camera.sigma_distortion");
+    }
+    config.camera.sigma_distortion[0] = 0.05; /* of a pinhole: k1 */
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+    config.camera.sigma_distortion[1] = 0.05; /* which has no other */
+    names(PF_ERROR_CONFIG, "camera.sigma_distortion");
+    config.camera.sigma_distortion[0] = config.camera.sigma_distortion[1] = 0;
+  }
+}
+
 static void test_check_should_tell_another_release_or_library_by_size_version_and_scalar(void) {
   config.size -= 8;
   names(PF_ERROR_VERSION, "size");
@@ -160,6 +188,7 @@ int main(void) {
   RUN_TEST(test_check_should_say_nothing_when_the_config_is_good);
   RUN_TEST(test_check_should_name_the_field_that_is_out_of_range);
   RUN_TEST(test_check_should_name_the_number_of_the_camera_that_makes_no_sense);
+  RUN_TEST(test_check_should_name_the_sigma_of_the_camera_that_makes_no_sense);
   RUN_TEST(test_check_should_tell_another_release_or_library_by_size_version_and_scalar);
   RUN_TEST(test_a_patch_release_should_be_accepted_and_another_minor_or_major_refused);
   RUN_TEST(test_version_should_be_that_of_the_library_and_of_a_new_config);

@@ -222,6 +222,26 @@ static void test_plain_should_name_the_field_when_one_is_missing() {
   }
 }
 
+static void test_sigmas_should_be_read_in_every_form_and_be_typical_where_the_file_says_nothing() {
+  const pf_camera_t typical = read(kPlainCalibration);
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_EXACT, typical.estimate);
+  TEST_ASSERT_EQUAL_DOUBLE(0.01, typical.sigma_focal);
+  TEST_ASSERT_EQUAL_DOUBLE(0.001, typical.sigma_aspect);
+  TEST_ASSERT_EQUAL_DOUBLE(0.01 * typical.width, typical.sigma_centre_px);
+  TEST_ASSERT_EQUAL_DOUBLE(0.05, typical.sigma_distortion[0]);  // none is named
+  TEST_ASSERT_EQUAL_DOUBLE(0.0, read(kEuroc).sigma_distortion[0]);
+  const std::string sigmas = "sigma_focal: 0.002\nsigma_aspect: 0.0003\nsigma_centre_px: 1.5\nsigma_distortion: [";
+  const auto require = [](const pf_camera_t& camera, double k1, double k2) {
+    TEST_ASSERT_EQUAL_DOUBLE(0.002, camera.sigma_focal);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0003, camera.sigma_aspect);
+    TEST_ASSERT_EQUAL_DOUBLE(1.5, camera.sigma_centre_px);
+    TEST_ASSERT_EQUAL_DOUBLE(k1, camera.sigma_distortion[0]);
+    TEST_ASSERT_EQUAL_DOUBLE(k2, camera.sigma_distortion[1]);
+  };
+  require(read(kPlainCalibration + ("\n" + sigmas + "0.02]\n")), 0.02, 0.0);
+  for (const char* form : {kEuroc, kRos, kKalibr}) require(read(form + ("\n" + sigmas + "0.02, 0.01]\n")), 0.02, 0.01);
+}
+
 static void test_plain_should_name_the_field_when_one_is_absurd() {
   const struct {
     const char *from, *to, *field;
@@ -254,6 +274,16 @@ static void test_plain_should_name_the_field_when_one_is_absurd() {
       {"rate_hz: 20", "readout_s: 0.3", "'readout_s'"},
       {"rate_hz: 20", "readout_s: -0.01", "'readout_s'"},
       {"rate_hz: 20", "readout_s: soon", "'readout_s'"},
+      {"rate_hz: 20", "sigma_focal: -0.01", "'sigma_focal'"},
+      {"rate_hz: 20", "sigma_focal: 0", "'sigma_focal'"},
+      {"rate_hz: 20", "sigma_focal: .nan", "'sigma_focal'"},
+      {"rate_hz: 20", "sigma_aspect: 1", "'sigma_aspect'"},
+      {"rate_hz: 20", "sigma_centre_px: 0", "'sigma_centre_px'"},
+      {"rate_hz: 20", "sigma_centre_px: wide", "'sigma_centre_px'"},
+      {"rate_hz: 20", "sigma_distortion: [-0.05]", "'sigma_distortion'"},
+      {"rate_hz: 20", "sigma_distortion: [.nan]", "'sigma_distortion'"},
+      {"rate_hz: 20", "sigma_distortion: [0.05, 0.05]", "'sigma_distortion'"},
+      {"rate_hz: 20", "sigma_distortion: 0.05", "'sigma_distortion'"},
   };
   for (const auto& c : cases) {
     refused(with(kPlainCalibration, c.from, c.to), c.field);
@@ -384,6 +414,7 @@ int main() {
   RUN_TEST(test_layout_should_be_refused_with_the_list_of_known_ones_when_nobody_knows_it);
   RUN_TEST(test_readout_should_be_read_in_every_form);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_missing);
+  RUN_TEST(test_sigmas_should_be_read_in_every_form_and_be_typical_where_the_file_says_nothing);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_absurd);
   RUN_TEST(test_other_forms_should_name_the_field_when_it_is_bad);
   RUN_TEST(test_anything_else_should_be_refused_in_one_line);

@@ -158,22 +158,74 @@ void check_recovers(const pf_camera_t& truth, const char* model, double noise_gr
 }
 
 void test_calibrate_should_recover_focal_lengths_and_noise_with_radial_and_tangential_distortion() {
-  check_recovers({PF_CAMERA_RADTAN, 640, 480, 503.2, 498.7, 326.1, 235.4, {-0.28, 0.08, 0.0004, -0.0003}, 0}, "radtan",
-                 4, false);
+  check_recovers({PF_CAMERA_RADTAN,
+                  640,
+                  480,
+                  503.2,
+                  498.7,
+                  326.1,
+                  235.4,
+                  {-0.28, 0.08, 0.0004, -0.0003},
+                  0,
+                  PF_CAMERA_EXACT,
+                  0,
+                  0,
+                  0,
+                  {}},
+                 "radtan", 4, false);
 }
 
 void test_calibrate_should_recover_focal_lengths_and_noise_of_a_wide_lens() {
-  check_recovers({PF_CAMERA_EQUIDISTANT, 640, 480, 261.3, 260.6, 317.4, 243.8, {-0.012, 0.006, -0.004, 0.001}, 0},
+  check_recovers({PF_CAMERA_EQUIDISTANT,
+                  640,
+                  480,
+                  261.3,
+                  260.6,
+                  317.4,
+                  243.8,
+                  {-0.012, 0.006, -0.004, 0.001},
+                  0,
+                  PF_CAMERA_EXACT,
+                  0,
+                  0,
+                  0,
+                  {}},
                  "equidistant", 4, false);
 }
 
 void test_calibrate_should_do_with_parts_of_a_charuco_board() {
-  check_recovers({PF_CAMERA_RADTAN, 640, 480, 503.2, 498.7, 326.1, 235.4, {-0.28, 0.08, 0.0004, -0.0003}, 0}, "radtan",
-                 4, true);
+  check_recovers({PF_CAMERA_RADTAN,
+                  640,
+                  480,
+                  503.2,
+                  498.7,
+                  326.1,
+                  235.4,
+                  {-0.28, 0.08, 0.0004, -0.0003},
+                  0,
+                  PF_CAMERA_EXACT,
+                  0,
+                  0,
+                  0,
+                  {}},
+                 "radtan", 4, true);
 }
 
 void test_calibrate_should_do_with_parts_of_a_charuco_board_through_a_wide_lens() {
-  check_recovers({PF_CAMERA_EQUIDISTANT, 640, 480, 261.3, 260.6, 317.4, 243.8, {-0.012, 0.006, -0.004, 0.001}, 0},
+  check_recovers({PF_CAMERA_EQUIDISTANT,
+                  640,
+                  480,
+                  261.3,
+                  260.6,
+                  317.4,
+                  243.8,
+                  {-0.012, 0.006, -0.004, 0.001},
+                  0,
+                  PF_CAMERA_EXACT,
+                  0,
+                  0,
+                  0,
+                  {}},
                  "equidistant", 4, true);
 }
 

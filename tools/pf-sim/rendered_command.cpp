@@ -21,6 +21,8 @@ struct Choices {
   std::uint64_t first_seed = 1;
   double noise = 2, exposure_s = 0.008, readout_s = 0;
   bool as_global = false;
+  std::vector<std::string> lenses{"right"};
+  double focal_error = 0, k1 = 0;
   bool no_planes = false;
   int max_features = 0, max_state_dim = 0, max_planes = 0;
 };
@@ -64,6 +66,25 @@ json innovations_json(const InnovationSums& s) {
           {"match_far_share", s.match_far / std::max(1.0, s.match_count + s.match_far)}};
 }
 
+/// Of fx, fy, cx, cy and k1 at the end: root mean square of the errors, of the standard deviations, and the largest ratio of both in any
+/// run. Null where the lens was taken as exact.
+json lens_json(int seeds, const RenderedSummary* summaries) {
+  if (seeds < 1 || summaries[0].lens_sigma[0] <= 0) return nullptr;
+  constexpr const char* kNames[5] = {"fx", "fy", "cx", "cy", "k1"};
+  json out;
+  for (int i = 0; i < 5; ++i) {
+    double error = 0, sigma = 0, worst = 0;
+    for (int s = 0; s < seeds; ++s) {
+      const double e = summaries[s].lens_error[i], d = summaries[s].lens_sigma[i];
+      error += e * e / seeds;
+      sigma += d * d / seeds;
+      worst = std::max(worst, std::fabs(e) / std::max(d, 1e-300));
+    }
+    out[kNames[i]] = {{"rmse", std::sqrt(error)}, {"sigma", std::sqrt(sigma)}, {"worst_ratio", worst}};
+  }
+  return out;
+}
+
 json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
   json out = summarise_frames(runs);
   int lost_frames = 0, lost_runs = 0, tracked = 0, coasting = 0, starting = 0;
@@ -85,7 +106,9 @@ json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
                     {"tracked_share", static_cast<double>(r.tracked_frames) / runs.frames},
                     {"nees_position", numbers["nees_position"]["mean"]},
                     {"nees_pose", numbers["nees_pose"]["mean"]},
-                    {"camera_rmse_m", numbers["camera_rmse_m"]}});
+                    {"camera_rmse_m", numbers["camera_rmse_m"]},
+                    {"lens_error", r.lens_error},
+                    {"lens_sigma", r.lens_sigma}});
   }
   const double frames = static_cast<double>(runs.seeds) * runs.frames;
   out["lost_runs"] = lost_runs;
@@ -100,6 +123,7 @@ json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
   }
   out["innovations"]["all"] = innovations_json(all);
   out["each_run"] = each;
+  out["lens"] = lens_json(runs.seeds, summaries);
   std::vector<const PlanesVerdict*> planes;
   for (int s = 0; s < runs.seeds; ++s) planes.push_back(&summaries[s].planes);
   out["planes"] = planes_json(planes);
@@ -132,12 +156,29 @@ void print_runs(const json& j) {
       number("/planes/within_2_deg_2_cm"), number("/planes/worst_normal_deg"), number("/planes/worst_offset_m"),
       number("/planes/outlined"), number("/planes/least_covered"), number("/planes/most_overstep"));
   std::printf("innovations      inliers  NIS/dof  lag 1   rms px | match against truth: rms px  lag 1  far %%\n");
+  if (!j["lens"].is_null())
+    for (const char* name : {"fx", "fy", "cx", "cy", "k1"}) {
+      const json& l = j["lens"][name];
+      std::printf("lens %s: error %.4g, claimed %.4g, worst error over sigma %.2f\n", name, l["rmse"].get<double>(),
+                  l["sigma"].get<double>(), l["worst_ratio"].get<double>());
+    }
   for (const char* kind : {"inverse_depth", "point", "target", "all"}) {
     const json& i = j["innovations"][kind];
     const auto of = [&](const char* name) { return i[name].get<double>(); };
     std::printf("  %-14s %8.0f  %7.3f  %5.2f  %7.3f | %28.3f  %5.2f  %5.2f\n", kind, of("inliers"), of("nis_per_dof"),
                 of("lag_one"), of("rms_px"), of("match_rms_px"), of("match_lag_one"), 100 * of("match_far_share"));
   }
+}
+
+/// What a filter is told of a camera when its calibration is wrong: the focal length, and nothing of the distortion.
+pf_camera_t wrong_camera(const pf_camera_t& truth, double focal_error, const std::string& lens) {
+  pf_camera_t camera = truth;
+  camera.model = PF_CAMERA_PINHOLE;
+  camera.distortion[0] = 0;
+  camera.fx *= 1 + focal_error;
+  camera.fy *= 1 + focal_error;
+  camera.estimate = lens == "estimate" ? PF_CAMERA_ESTIMATE : lens == "consider" ? PF_CAMERA_CONSIDER : PF_CAMERA_EXACT;
+  return camera;
 }
 
 bool prepare(const Choices& c, RenderedOptions& o) {
@@ -148,29 +189,37 @@ bool prepare(const Choices& c, RenderedOptions& o) {
   o.sim.exposure_s = c.exposure_s;
   o.sim.blur_samples = c.blur;
   o.sim.readout_s = c.readout_s;
+  if (c.k1 != 0) {
+    o.sim.camera.model = PF_CAMERA_RADTAN;
+    o.sim.camera.distortion[0] = c.k1;
+  }
   for (const std::string& start : c.starts)
-    for (const double sigma : c.sigma_pixels) {
-      Variant v;
-      pf_config_default(&v.config);
-      v.config.camera = o.sim.camera;
-      v.config.camera.readout_s = c.as_global ? 0 : c.readout_s;
-      if (sigma > 0) v.config.measurement.sigma_px = sigma;
-      if (c.no_planes) v.config.plane.enabled = 0;
-      if (c.max_features > 0) v.config.capacity.max_features = c.max_features;
-      if (c.max_state_dim > 0) v.config.capacity.max_state_dim = c.max_state_dim;
-      if (c.max_planes > 0) v.config.capacity.max_planes = c.max_planes;
-      v.start = start == "rectangle" ? RenderedStart::kRectangle
-                : start == "points"  ? RenderedStart::kPoints
-                                     : RenderedStart::kPose;
-      o.variants.push_back(v);
-    }
+    for (const std::string& lens : c.lenses)
+      for (const double sigma : c.sigma_pixels) {
+        Variant v;
+        pf_config_default(&v.config);
+        v.lens = lens;
+        v.config.camera = lens == "right" ? o.sim.camera : wrong_camera(o.sim.camera, c.focal_error, lens);
+        v.config.camera.readout_s = c.as_global ? 0 : c.readout_s;
+        if (sigma > 0) v.config.measurement.sigma_px = sigma;
+        if (c.no_planes) v.config.plane.enabled = 0;
+        if (c.max_features > 0) v.config.capacity.max_features = c.max_features;
+        if (c.max_state_dim > 0) v.config.capacity.max_state_dim = c.max_state_dim;
+        if (c.max_planes > 0) v.config.capacity.max_planes = c.max_planes;
+        v.start = start == "rectangle" ? RenderedStart::kRectangle
+                  : start == "points"  ? RenderedStart::kPoints
+                                       : RenderedStart::kPose;
+        o.variants.push_back(v);
+      }
   return true;
 }
 
 /// The scene's name alone where there is nothing to choose from.
-std::string label_of(const Choices& c, std::size_t variant, double sigma) {
+std::string label_of(const Choices& c, const Variant& variant, const std::string& start) {
   std::string label = c.scene;
-  if (c.starts.size() > 1) label += "_" + c.starts[variant / c.sigma_pixels.size()];
+  const double sigma = variant.config.measurement.sigma_px;
+  if (c.starts.size() > 1) label += "_" + start;
+  if (c.lenses.size() > 1) label += "_" + variant.lens;
   if (c.sigma_pixels.size() > 1) {
     char text[32];
     std::snprintf(text, sizeof text, "_%g_px", sigma);
@@ -183,6 +232,9 @@ int run(const Choices& c) {
   for (const std::string& start : c.starts)
     if (start != "rectangle" && start != "points" && start != "pose")
       return fail("the start is rectangle, points or pose");
+  for (const std::string& lens : c.lenses)
+    if (lens != "right" && lens != "exact" && lens != "consider" && lens != "estimate")
+      return fail("the lens is right, exact, consider or estimate");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
     return fail("seeds, jobs and frames must be positive");
   RenderedOptions options;
@@ -209,11 +261,13 @@ int run(const Choices& c) {
                 {"noise_grey", c.noise},
                 {"exposure_s", c.exposure_s},
                 {"blur_samples", c.blur},
-                {"readout_s", c.readout_s}}}};
+                {"readout_s", c.readout_s},
+                {"focal_error", c.focal_error},
+                {"k1", c.k1}}}};
   for (std::size_t v = 0; v < options.variants.size(); ++v) {
     const double sigma = options.variants[v].config.measurement.sigma_px;
-    const std::string start = c.starts[v / c.sigma_pixels.size()];
-    const std::string label = label_of(c, v, sigma);
+    const std::string start = c.starts[v / (c.sigma_pixels.size() * c.lenses.size())];
+    const std::string label = label_of(c, options.variants[v], start);
     const Runs runs{c.seeds, c.frames, c.first_seed, job.rows + v * seeds * frames};
     json& numbers = out["cases"][label] = summarise_runs(runs, job.summaries + v * seeds);
     numbers["start"] = start;
@@ -245,6 +299,11 @@ void add_rendered(CLI::App& app, int& result) {
   command->add_option("--blur", c->blur, "views averaged over the exposure");
   command->add_option("--readout", c->readout_s, "rolling shutter, first to last row [s]");
   command->add_flag("--as-global", c->as_global, "the filter knows nothing of the readout, for comparison");
+  command->add_option(
+      "--lens", c->lenses,
+      "one or more: right, or with a wrong calibration that the filter takes as exact, considers or estimates");
+  command->add_option("--focal-error", c->focal_error, "of a wrong calibration, relative");
+  command->add_option("--k1", c->k1, "radial distortion of the camera, which a wrong calibration does not name");
   command->add_flag("--no-planes", c->no_planes, "points only, for comparison");
   command->add_option("--max-features", c->max_features, "of the map; 0: the library's default");
   command->add_option("--max-state-dim", c->max_state_dim, "rows of the covariance, likewise");

@@ -83,6 +83,18 @@ struct Runner {
   }
 };
 
+void read_lens(const pf_slam_t* slam, const pf_camera_t& truth, RenderedSummary* summary) {
+  pf_camera_t camera{};
+  double covariance[100];
+  if (pf_get_camera(slam, &camera, covariance) != PF_OK) return;
+  const double known[5] = {camera.fx, camera.fy, camera.cx, camera.cy, camera.distortion[0]};
+  const double right[5] = {truth.fx, truth.fy, truth.cx, truth.cy, truth.distortion[0]};
+  for (int i = 0; i < 5; ++i) {
+    summary->lens_error[i] = known[i] - right[i];
+    summary->lens_sigma[i] = std::sqrt(covariance[11 * i]);
+  }
+}
+
 }  // namespace
 
 void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std::vector<RenderedSummary*>& summaries,
@@ -113,6 +125,7 @@ void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std:
   for (std::size_t v = 0; v < runners.size(); ++v) {
     for (int k = 0; k < kTrackKinds; ++k)
       summaries[v]->innovations[k] = runners[v]->watch.sums(static_cast<TrackKind>(k));
+    read_lens(runners[v]->context.slam, sim_options.camera, summaries[v]);
     summaries[v]->planes = surfaces.judge(runners[v]->context.slam);
     summaries[v]->done = 1;
   }

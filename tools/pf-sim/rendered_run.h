@@ -17,8 +17,9 @@ enum class RenderedStart {
 };
 
 struct Variant {
+  std::string lens = "right";  ///< for its label
   RenderedStart start = RenderedStart::kRectangle;
-  pf_config_t config;  ///< the camera is taken from the simulation
+  pf_config_t config;
 };
 
 struct RenderedOptions {
@@ -34,6 +35,8 @@ struct RenderedSummary {
   std::int32_t coasting_frames = 0, tracked_frames = 0, starting_frames = 0;
   InnovationSums innovations[kTrackKinds];
   PlanesVerdict planes;  ///< at the end of the run
+  double lens_error[5] = {},
+         lens_sigma[5] = {};  ///< of fx, fy, cx, cy and k1 at the end; no sigma where the filter took them as exact
 };
 
 /// One run of every variant, start to end. summaries has an entry for each; rows[v] has sim.frames entries, and

@@ -97,6 +97,13 @@ typedef enum pf_camera_model {
   PF_CAMERA_DIVISION = 4 /* distortion = k [1/px^2]: r_d = r_u / sqrt(1 + 2 k r_u^2), r in pixels (Harris; MonoSLAM) */
 } pf_camera_model_t;
 
+/* What the filter makes of the numbers of a calibration (lib/docs/lens.md). */
+typedef enum pf_camera_estimate {
+  PF_CAMERA_EXACT = 0,    /* takes them as exact; the default */
+  PF_CAMERA_CONSIDER = 1, /* allows for their errors in every covariance, and does not correct them (Schmidt) */
+  PF_CAMERA_ESTIMATE = 2  /* estimates them with pose and map */
+} pf_camera_estimate_t;
+
 typedef struct pf_camera {
   int32_t model;         /* pf_camera_model_t */
   int32_t width, height; /* [px] 32 .. 4096 */
@@ -105,6 +112,16 @@ typedef struct pf_camera {
   /* Rolling shutter: from the first row to the last, 0 .. 0.2; 0 is a global shutter. A frame has the time of its
    * middle row. Needs constant velocity: rows differ by how the camera moves. */
   double readout_s;
+
+  /* What a context makes of the numbers above, and how uncertain they are. Each uncertain one is a row of the state,
+   * up to nine: count them in capacity.max_state_dim. Only read where estimate is not PF_CAMERA_EXACT. */
+  int32_t estimate;       /* pf_camera_estimate_t */
+  double sigma_focal;     /* of fx and fy together, relative: 1e-5 .. 0.2. Typical 0.01 */
+  double sigma_aspect;    /* of fx against fy, relative: 1e-6 .. 0.2. Typical 0.001 */
+  double sigma_centre_px; /* of cx and of cy, 0.001 .. 1000. Typical 0.01 of the width */
+  /* Of each entry of distortion, 0 (exact) .. 1. A pinhole whose first one is not zero is a radial-tangential camera
+   * with an uncertain k1. Typical 0.05 where no distortion was calibrated. */
+  double sigma_distortion[8];
 } pf_camera_t;
 
 /* Pixel of a point in C, z > 0 (equidistant: anywhere but the optical centre).
@@ -482,6 +499,10 @@ enum {
   PF_STAGE_MAP = 5,     /* conversion, eviction, corners, new features */
   PF_STAGE_COUNT = 8
 };
+
+/* The calibration as it is known now, and the covariance of its numbers (may be null): 10x10, row-major, of (fx, fy, cx,
+ * cy, distortion[0] .. distortion[4], readout_s); zero in the rows of what is exact. */
+PF_API pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, double covariance[100]);
 
 typedef struct pf_report {
   int64_t t_ns;

@@ -53,8 +53,6 @@ constexpr Range kReals[] = {
     PF_FIELD(imu.accel_range, 0, 1e5),
 };
 
-#undef PF_FIELD
-
 template <typename T>
 T field_at(const pf_config_t& config, std::size_t offset) {
   T value;
@@ -62,8 +60,40 @@ T field_at(const pf_config_t& config, std::size_t offset) {
   return value;
 }
 
+constexpr Range kLens[] = {
+    PF_FIELD(camera.sigma_focal, 1e-5, 0.2),
+    PF_FIELD(camera.sigma_aspect, 1e-6, 0.2),
+    PF_FIELD(camera.sigma_centre_px, 1e-3, 1e3),
+};
+
+#undef PF_FIELD
+
 constexpr double kLongestReadout = 0.2;  // [s]
 constexpr std::int32_t kScalar = sizeof(Scalar);
+
+/// What is uncertain of the camera. Null, or the name of the first field that makes no sense.
+const char* lens_from(const pf_camera_t& c, const pf_config_t& config, Settings* settings) {
+  if (c.estimate < PF_CAMERA_EXACT || c.estimate > PF_CAMERA_ESTIMATE) return "camera.estimate";
+  settings->lens = LensPrior();
+  if (c.estimate == PF_CAMERA_EXACT) return nullptr;
+  for (const Range& r : kLens) {
+    const double value = field_at<double>(config, r.offset);
+    if (!(value >= r.low && value <= r.high)) return r.name;
+  }
+  constexpr int kUsed[5] = {0, 1, 5, 4, 1};  // a pinhole may get k1
+  LensSigmas sigmas;
+  for (int i = 0; i < 8; ++i) {
+    const double sigma = c.sigma_distortion[i];
+    if (!(sigma >= 0 && sigma <= 1) || (i >= kUsed[c.model] && sigma != 0)) return "camera.sigma_distortion";
+    if (i < 5) sigmas.distortion[i] = static_cast<Scalar>(sigma);
+  }
+  sigmas.focal = static_cast<Scalar>(c.sigma_focal);
+  sigmas.aspect = static_cast<Scalar>(c.sigma_aspect);
+  sigmas.centre = static_cast<Scalar>(c.sigma_centre_px);
+  settings->lens = make_lens_prior(sigmas, &settings->camera);
+  settings->body.add_constant(BodyPart::kLens, settings->lens.rows.count, c.estimate == PF_CAMERA_CONSIDER);
+  return nullptr;
+}
 
 }  // namespace
 
@@ -101,6 +131,9 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   if (!(c.readout_s >= 0 && c.readout_s <= (moves ? kLongestReadout : 0)))
     return *field = "camera.readout_s", Status::kConfig;
   settings->camera.readout = static_cast<Scalar>(c.readout_s);
+  settings->body = moves ? BodyLayout::with_constant_velocity() : BodyLayout::with_constant_position();
+  bad = lens_from(c, config, settings);
+  if (bad != nullptr) return *field = bad, Status::kConfig;
 
   settings->max_state_dim = config.capacity.max_state_dim;
   settings->max_features = config.capacity.max_features;
@@ -119,8 +152,6 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
                   : config.plane.fix == PF_FIX_INFLATE ? FixForm::kInflate
                                                        : FixForm::kErrorFree;
   settings->constant_velocity = config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
-  settings->body =
-      settings->constant_velocity ? BodyLayout::with_constant_velocity() : BodyLayout::with_constant_position();
   settings->motion_noise.linear = static_cast<Scalar>(
       settings->constant_velocity ? config.motion.linear_acceleration_density : config.motion.linear_walk);
   settings->motion_noise.angular = static_cast<Scalar>(

@@ -122,6 +122,27 @@ pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t ca
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
 }
 
+pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, double covariance[100]) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (camera == nullptr) return PF_ERROR_NULL;
+  pf::Scalar C[pf::kLensParameters][pf::kLensParameters];
+  const pf::Camera& lens = slam->session.view().lens(C);
+  *camera = slam->config.camera;
+  camera->model = lens.model;
+  if (camera->estimate != PF_CAMERA_EXACT) {
+    camera->fx = static_cast<double>(lens.fx);
+    camera->fy = static_cast<double>(lens.fy);
+    camera->cx = static_cast<double>(lens.cx);
+    camera->cy = static_cast<double>(lens.cy);
+    for (int i = 0; i < 8; ++i) camera->distortion[i] = static_cast<double>(lens.distortion[i]);
+  }
+  if (covariance == nullptr) return PF_OK;
+  for (int i = 0; i < 10; ++i)
+    for (int j = 0; j < 10; ++j)
+      covariance[10 * i + j] = i < pf::kLensParameters && j < pf::kLensParameters ? static_cast<double>(C[i][j]) : 0.0;
+  return PF_OK;
+}
+
 pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   PF_REQUIRE_CONTEXT(slam);
   if (report == nullptr) return PF_ERROR_NULL;

@@ -34,19 +34,51 @@ bool BlockFilter::layout(Arena& arena, const Capacity& capacity) {
   return arena.ok();
 }
 
-void BlockFilter::init(const Kernels* kernels, int leading_dim) {
+void BlockFilter::init(const Kernels* kernels, int leading_dim, int considered) {
   kernels_ = kernels;
-  leading_dim_ = P_.n = leading_dim;
-  held_dim_ = gained_ = 0;
+  leading_dim_ = leading_dim;
+  held_dim_ = considered_ = considered;
+  P_.n = leading_dim + considered;
+  gained_ = 0;
   for (int b = 0; b < blocks_; ++b) at_[b] = {-1, 0};
   std::memset(P_.data, 0, sizeof(Scalar) * Triangle::size_for(P_.capacity));
   std::memset(W_, 0, sizeof(Scalar) * static_cast<std::size_t>(max_rows_) * static_cast<std::size_t>(ld_));
 }
 
-void BlockFilter::set_leading(const Scalar* covariance) {
-  PF_ASSERT(P_.n == leading_dim_);
-  for (int i = 0; i < leading_dim_; ++i)
-    for (int j = 0; j <= i; ++j) P_.set(i, j, covariance[i * leading_dim_ + j]);
+void BlockFilter::set_leading(const Scalar* covariance, int rows, const Scalar* J) {
+  PF_ASSERT(P_.n == held_end() && rows <= leading_dim_);
+  const int others = P_.n - rows;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j <= i; ++j) P_.set(i, j, covariance[i * rows + j]);
+  for (int i = 0; i < rows; ++i)
+    for (int k = 0; k < others; ++k) {
+      Scalar JP = 0;
+      for (int l = 0; J != nullptr && l < others; ++l) JP += J[i * others + l] * P_(rows + l, rows + k);
+      P_.set(rows + k, i, JP);
+    }
+  for (int i = 0; J != nullptr && i < rows; ++i)
+    for (int j = 0; j <= i; ++j) {
+      Scalar sum = P_(i, j);
+      for (int k = 0; k < others; ++k) sum += P_(rows + k, i) * J[j * others + k];
+      P_.set(i, j, sum);
+    }
+}
+
+void BlockFilter::consider_last(int rows) {
+  const int more = rows - considered_;
+  PF_ASSERT(more <= leading_dim_);
+  leading_dim_ -= more;
+  held_dim_ += more;
+  considered_ = rows;
+}
+
+void BlockFilter::set_constants(int first, const Scalar* covariance) {
+  PF_ASSERT(P_.n == held_end());
+  const int size = P_.n - first;
+  for (int i = 0; i < size; ++i) {
+    for (int j = 0; j < first; ++j) P_.set(first + i, j, Scalar(0));
+    for (int j = 0; j <= i; ++j) P_.set(first + i, first + j, covariance[i * size + j]);
+  }
 }
 
 void BlockFilter::predict(const Scalar* F, const Scalar* Q, int rows) {

@@ -11,6 +11,8 @@ namespace pf {
 /// Owns the covariance P and where each block's rows lie in it. It knows sizes and rows, no kinds and no values; nothing else writes P.
 ///
 ///   rows:  leading block (the body) | held (considered: covariance, but no gain of their own) | all others
+///
+/// The body's own considered rows are the first of the held ones.
 class BlockFilter {
  public:
   static constexpr int kBatch = 16;  ///< blocks in one transform or hold
@@ -21,7 +23,8 @@ class BlockFilter {
   };
 
   bool layout(Arena& arena, const Capacity& capacity);
-  void init(const Kernels* kernels, int leading_dim);
+  /// The leading block has so many rows that are estimated, and behind them considered ones.
+  void init(const Kernels* kernels, int leading_dim, int considered);
 
   const Kernels& kernels() const { return *kernels_; }
   const Triangle& P() const { return P_; }
@@ -38,8 +41,13 @@ class BlockFilter {
   int row(const Part& part) const { return first(part.block) + part.offset; }
 
   // --- moves of the covariance
-  /// The leading block becomes known as covariance says (row-major). Only while there is no other block.
-  void set_leading(const Scalar* covariance);
+  /// The first `rows` rows of the leading block become known as covariance says (rows x rows, row-major), and as the rows behind them do
+  /// with Jacobian J (rows x the others, row-major; null: independent):  C + J P_o J^T,  J P_o. Only while there is no other block.
+  void set_leading(const Scalar* covariance, int rows, const Scalar* J);
+  /// So many of the leading block's last rows are considered from now on, and those before them estimated.
+  void consider_last(int rows);
+  /// Covariance of the leading block's rows from `first` on (row-major), independent of those before. Likewise.
+  void set_constants(int first, const Scalar* covariance);
   /// The first `rows` rows move by F, noise Q is added (both rows x rows, row-major).
   void predict(const Scalar* F, const Scalar* Q, int rows);
   /// New rows J x + noise for a block, behind all others; those that it has go.
@@ -106,8 +114,9 @@ class BlockFilter {
   Segment* at_ = nullptr;  ///< of each block; size 0: no rows
   int blocks_ = 0;
   int leading_dim_ = 0, held_dim_ = 0;
-  int max_dim_ = 0;   ///< of the state; P_ has room for a few more
-  int max_rows_ = 0;  ///< of one update
+  int considered_ = 0;  ///< of the held rows: those of the leading block
+  int max_dim_ = 0;     ///< of the state; P_ has room for a few more
+  int max_rows_ = 0;    ///< of one update
   int ld_ = 0, lds_ = 0;
   int gained_ = 0;
   Scalar* W_ = nullptr;  ///< max_rows x ld: H P, then L^-1 H P

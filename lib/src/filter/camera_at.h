@@ -72,6 +72,12 @@ inline CameraAt camera_at(const State& state, Scalar tau) {
   return camera;
 }
 
+/// Writes a Jacobian by all parameters of the lens into its rows' columns, from `first` on; h is row-major.
+inline void put_lens(const LensJacobian& J, const LensRows& rows, int first, int stride, Scalar* h) {
+  for (int i = 0; i < rows.count; ++i)
+    for (int a = 0; a < 2; ++a) h[a * stride + first + i] = J(a, rows.parameter[i]);
+}
+
 /// When a row is read out, from the frame's time, which is that of the middle of the image [s]. What lies far outside of the image
 /// is taken to be just outside of it.
 inline Scalar row_time(const Camera& camera, Scalar y) {

@@ -26,15 +26,28 @@ void Filter::init(const Kernels* kernels, const BodyLayout& layout, bool keep_ga
   for (int s = 0; s < state_.slots; ++s) state_.block[s] = Block();
   state_.body = Body();
   state_.layout = layout;
+  state_.lens = Camera();
+  state_.lens_rows = LensRows();
   state_.planes = 0;
   roughness_ = Scalar(0);
-  blocks_.init(kernels, layout.dynamic_rows());
+  blocks_.init(kernels, layout.rows() - layout.considered_rows(), layout.considered_rows());
   transport_.init();
 }
 
-void Filter::set_body(const Body& body, const Scalar* covariance) {
+void Filter::set_lens(const Camera& camera, const LensPrior& prior) {
+  state_.lens = camera;
+  state_.lens_rows = prior.rows;
+  PF_ASSERT(state_.layout.rows() - state_.layout.dynamic_rows() == prior.rows.count);
+  if (prior.rows.count > 0) blocks_.set_constants(state_.layout.row(BodyPart::kLens), prior.covariance);
+}
+
+void Filter::consider_lens(bool only_considered) {
+  blocks_.consider_last(only_considered ? state_.lens_rows.count : state_.layout.considered_rows());
+}
+
+void Filter::set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens) {
   state_.body = body;
-  blocks_.set_leading(covariance);
+  blocks_.set_leading(covariance, state_.layout.dynamic_rows(), J_lens);
 }
 
 void Filter::predict(const Transition& transition) {
@@ -76,15 +89,20 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   Mat23 J_theta, J_c;
   Mat2 J_z;
   const InverseDepth feature = begin_inverse_depth(camera, ray_C, J_ray_z, rho, c_W, &J_theta, &J_z, &J_c);
-  RowsOf<3, CameraAt::kMaxColumns, 1> J;  // the anchor takes part in what the position does
-  J.parts = 1;
+  RowsOf<3, CameraAt::kMaxColumns + kLensParameters, 2> J;  // the anchor takes part in what the position does
+  const int lens = state_.lens_rows.count;
+  J.parts = lens > 0 ? 2 : 1;
   J.part[0] = camera.tau == Scalar(0) ? Part::body(Body::kTheta, 3) : camera.part();
-  const int columns = J.part[0].size;
+  const int columns = J.part[0].size + lens;
   for (int i = 0; i < 3 * columns; ++i) J.h[i] = Scalar(0);
   put<2, 3>(J.h, columns, 0, J_theta);
   if (camera.tau != Scalar(0)) {
     put<2, 3>(J.h, columns, camera.velocity_row, Mat23(camera.tau * J_c));
     put<2, 3>(J.h, columns, camera.rate_row, Mat23(J_theta.lazyProduct(camera.J_theta_w)));
+  }
+  if (lens > 0) {  // the ray of a given pixel: J_z_lens e + J_z_ray e_ray = 0
+    J.part[1] = Part::body(state_.layout.row(BodyPart::kLens), lens);
+    put_lens(-J_z * lens_jacobian(state_.lens, ray_C), state_.lens_rows, J.part[0].size, columns, J.h);
   }
   // Of the pixel, and of the inverse depth, which turns the bearing too where the anchor is not where the ray begins.
   Mat3 noise = Mat3::Zero();

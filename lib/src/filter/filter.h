@@ -48,8 +48,16 @@ class Filter {
   /// Sets the mean of the body and leaves its covariance, where the mean comes from elsewhere (a restart).
   void set_mean(const Body& body) { state_.body = body; }
 
-  /// The whole body block becomes known as covariance says (over its rows, row-major). Only while the map is empty.
-  void set_body(const Body& body, const Scalar* covariance);
+  /// The calibration, and where the layout has a lens its prior. Before anything is added.
+  void set_lens(const Camera& camera, const LensPrior& prior);
+  /// Whether updates leave the lens as it is and allow for its error, whatever the layout says of it.
+  void consider_lens(bool only_considered);
+  /// The calibration as it is known now.
+  const Camera& lens() const { return state_.lens; }
+
+  /// The parts of the body that move become known as covariance says (over their rows, row-major), and with J_lens (null: not) as the lens
+  /// does. Only while the map is empty.
+  void set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens = nullptr);
 
   /// Which entry of the map's table a block belongs to.
   void set_owner(int slot, int owner) { state_.set_owner(slot, owner); }

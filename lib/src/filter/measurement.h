@@ -35,8 +35,8 @@ struct MeasurementOf {
   Measurement view() const { return {block, H, measured.data(), predicted.data(), R_gate.data(), R_update.data()}; }
 };
 
-/// A feature's pixel [px], over body, plane, point group and feature at most.
-struct PixelMeasurement : MeasurementOf<2, 21, 4> {
+/// A feature's pixel [px], over body, lens, plane, point group and feature at most.
+struct PixelMeasurement : MeasurementOf<2, 30, 5> {
   Scalar bend = 0;  ///< of the noise, what a wide pose takes off the linearisation: bend I [px^2]
   Mat2 second_order =
       Mat2::Zero();  ///< what the linearisation leaves out, and a surface's roughness [px^2]; belongs into the noise

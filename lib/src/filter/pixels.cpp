@@ -70,7 +70,7 @@ bool Filter::predict_at(const Camera& lens, const CameraAt& camera, int slot, Pi
   out->block = slot;
   out->second_order.setZero();
   out->bend = Scalar(0);
-  const int first = camera.columns(), columns = first + at.columns;
+  const int lens_rows = state_.lens_rows.count, first = camera.columns() + lens_rows, columns = first + at.columns;
   if (at.w_column < 0) {  // Gee 2007, eq 2, 9 and 10
     if (!observe_point(lens, camera, at.o, &out->predicted, J_camera, &J_o)) return false;
     for (int c = 0; c < at.columns; ++c) {
@@ -87,9 +87,14 @@ bool Filter::predict_at(const Camera& lens, const CameraAt& camera, int slot, Pi
     out->second_order = parallax_noise(slot, at.w, J_o);
   }
   camera.chain(*J_camera, out->H.h, columns);
-  out->H.parts = 1 + at.parts;
-  out->H.part[0] = camera.part();
-  for (int p = 0; p < at.parts; ++p) out->H.part[1 + p] = at.part[p];
+  out->H.parts = 0;
+  out->H.part[out->H.parts++] = camera.part();
+  if (lens_rows > 0) {
+    const Vec3 d_W = at.w * (at.o - camera.p_W) + at.b;
+    put_lens(lens_jacobian(lens, camera.q_WC.conjugate() * d_W), state_.lens_rows, camera.columns(), columns, out->H.h);
+    out->H.part[out->H.parts++] = Part::body(state_.layout.row(BodyPart::kLens), lens_rows);
+  }
+  for (int p = 0; p < at.parts; ++p) out->H.part[out->H.parts++] = at.part[p];
   return true;
 }
 

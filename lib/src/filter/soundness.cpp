@@ -25,7 +25,8 @@ bool Filter::body_is_sound() const {
   for (int i = 0; i < 3; ++i)
     if (!is_value(b.p_W[i]) || !is_value(b.v_W[i]) || !is_value(b.w_C[i])) return false;
   const Scalar norm2 = b.q_WC.squaredNorm();
-  return norm2 > Scalar(0.9) && norm2 < Scalar(1.1) && are_variances(covariance(), 0, blocks_.leading_dim());
+  return norm2 > Scalar(0.9) && norm2 < Scalar(1.1) && are_variances(covariance(), 0, state_.layout.rows()) &&
+         (state_.lens_rows.count == 0 || check_camera(state_.lens) == nullptr);
 }
 
 bool Filter::block_is_sound(int slot) const {

@@ -47,6 +47,8 @@ void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
   const BodyLayout& layout = state.layout;
   if (layout.has(BodyPart::kVelocity)) body.v_W += three(layout.row(BodyPart::kVelocity));
   if (layout.has(BodyPart::kAngularVelocity)) body.w_C += three(layout.row(BodyPart::kAngularVelocity));
+  if (layout.has(BodyPart::kLens) && layout.considered_rows() == 0)
+    move_lens(state.lens_rows, dx + layout.row(BodyPart::kLens), &state.lens);
   for (int s = 0; s < state.slots; ++s) {
     Block& block = state.block[s];
     visit(block.kind, [&](auto kind) { decltype(kind)::retract(&block, dx + blocks.first(s)); });

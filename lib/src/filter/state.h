@@ -3,6 +3,7 @@
 #include "filter/model/block.h"
 #include "filter/model/body.h"
 #include "filter/model/gauge.h"
+#include "geometry/lens.h"
 
 /// What the filter estimates: kinds and values of blocks, and how they hang on each other. Where their rows lie, BlockFilter knows.
 
@@ -20,6 +21,8 @@ inline bool is_planar(BlockKind kind) { return info(kind).planar; }
 struct State {
   Body body;
   BodyLayout layout;
+  Camera lens;             ///< calibration as it is known now
+  LensRows lens_rows;      ///< of BodyPart::kLens
   Block* block = nullptr;  ///< slots
   int slots = 0;
   PlaneFrame* plane_frame = nullptr;

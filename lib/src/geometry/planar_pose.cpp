@@ -84,11 +84,16 @@ PoseEstimate moved(const PoseEstimate& pose, const Vec3& pivot, const Vec6& step
   return out;
 }
 
-/// Covariance of the error about the pivot, as one about the camera: e = e_pivot + θ x (p - pivot).
-Mat6 about_camera(const Mat6& P, const Vec3& arm) {
+/// An error about the pivot as one about the camera: e = e_pivot + θ x (p - pivot).
+Mat6 to_camera(const Vec3& arm) {
   Mat6 T = Mat6::Identity();
   T.block<3, 3>(3, 0) = -hat(arm);
-  const Mat6 TP = T.lazyProduct(P);
+  return T;
+}
+
+/// Covariance of the error about the pivot, as one about the camera.
+Mat6 about_camera(const Mat6& P, const Vec3& arm) {
+  const Mat6 T = to_camera(arm), TP = T.lazyProduct(P);
   return TP.lazyProduct(T.transpose());
 }
 
@@ -161,6 +166,28 @@ bool refine_pose(const Camera& camera, const Vec3* points_W, const Vec2* pixels,
   pose.covariance = about_camera(sigma_px * sigma_px * factored.inverse(), pose.p_WC - pivot);
   pose.rms_px = std::sqrt(cost / static_cast<Scalar>(2 * count));
   *inout = pose;
+  return true;
+}
+
+bool pose_by_lens(const Camera& camera, const Vec3* points_W, int count, const PoseEstimate& pose, const LensRows& rows,
+                  Scalar* J_pose_lens) {
+  Vec3 pivot = Vec3::Zero();
+  for (int i = 0; i < count; ++i) pivot += points_W[i] / static_cast<Scalar>(count);
+  Mat6 A = Mat6::Zero();
+  Eigen::Matrix<Scalar, 6, kLensParameters> B = Eigen::Matrix<Scalar, 6, kLensParameters>::Zero();
+  for (int i = 0; i < count; ++i) {
+    Vec2 pixel;
+    Mat26 J;
+    if (!project_from_pose(camera, pose.q_WC, pose.p_WC, points_W[i], pivot, &pixel, &J)) return false;
+    A += J.transpose().lazyProduct(J);
+    B += J.transpose().lazyProduct(lens_jacobian(camera, pose.q_WC.conjugate() * (points_W[i] - pose.p_WC)));
+  }
+  SmallCholesky<6> factored;
+  if (!factored.factor(A)) return false;
+  const Eigen::Matrix<Scalar, 6, kLensParameters> J =
+      -to_camera(pose.p_WC - pivot).lazyProduct(factored.solve<kLensParameters>(B));
+  for (int a = 0; a < 6; ++a)
+    for (int i = 0; i < rows.count; ++i) J_pose_lens[a * rows.count + i] = J(a, rows.parameter[i]);
   return true;
 }
 

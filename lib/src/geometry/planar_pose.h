@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/eigen.h"
-#include "geometry/camera.h"
+#include "geometry/lens.h"
 
 namespace pf {
 
@@ -32,6 +32,13 @@ bool project_from_pose(const Camera& camera, const Quat& q_WC, const Vec3& p_WC,
 /// false when a point cannot be seen or the points do not fix a pose; inout untouched
 bool refine_pose(const Camera& camera, const Vec3* points_W, const Vec2* pixels, int count, Scalar sigma_px,
                  PoseEstimate* inout);
+
+/// What an error of the lens does to a pose that was fitted to these points:  J_pose_lens = -(JᵀJ)⁻¹ Jᵀ J_pixel_lens, J by the pose.
+///
+/// J_pose_lens  6 x rows.count, row-major
+/// false when the points do not fix a pose; output untouched
+bool pose_by_lens(const Camera& camera, const Vec3* points_W, int count, const PoseEstimate& pose, const LensRows& rows,
+                  Scalar* J_pose_lens);
 
 /// Corners of a rectangle in its own world: the centre is the origin, x right and y down as seen upright, z into the
 /// wall; top left, top right, bottom right, bottom left.

@@ -165,11 +165,11 @@ Scalar FeatureKeeper::median_inverse_depth() const {
 int FeatureKeeper::add(int anchor, const Vec2& pixel, const Mat2& noise) {
   Vec3 ray_C;
   Mat32 J_ray_pixel;
-  if (!unproject(settings_.camera, pixel, &ray_C, &J_ray_pixel)) return -1;
+  if (!unproject(filter_.lens(), pixel, &ray_C, &J_ray_pixel)) return -1;
   const Scalar rho = median_inverse_depth();
   const int slot =
       filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, settings_.inverse_depth_relative_sigma * rho,
-                                row_time(settings_.camera, pixel.y()));
+                                row_time(filter_.lens(), pixel.y()));
   if (slot < 0) return -1;
   const int entry = map_.features.add(slot);
   if (entry < 0) {

@@ -36,6 +36,7 @@ void FilterStart::init() {
 
 void FilterStart::clear_filter() {
   parts_.filter.init(settings_.kernels, settings_.body, settings_.keep_gauge);
+  parts_.filter.set_lens(settings_.camera, settings_.lens);
   parts_.filter.set_roughness(settings_.fold.roughness);
   parts_.map.planes.clear();
 }
@@ -48,8 +49,7 @@ void FilterStart::start_over() {
 }
 
 bool FilterStart::fits(const Target& target) const {
-  return target.count <= settings_.max_features &&
-         3 * target.count <= settings_.max_state_dim - settings_.body.dynamic_rows();
+  return target.count <= settings_.max_features && 3 * target.count <= settings_.max_state_dim - settings_.body.rows();
 }
 
 Status FilterStart::use_target(const Target& target) {
@@ -66,13 +66,13 @@ Status FilterStart::use_pose(const KnownBody& known) {
   return Status::kOk;
 }
 
-void FilterStart::set_body(const Body& body, const Scalar* covariance) {
-  parts_.filter.set_body(body, covariance);
+void FilterStart::set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens) {
+  parts_.filter.set_body(body, covariance, J_lens);
   parts_.tracking.set_has_pose(parts_.frame.report.t_ns);
 }
 
 /// The pose before the first measurement: the one that the caller gave, or the one that defines the world.
-void FilterStart::set_known_pose(bool at_target) {
+void FilterStart::set_known_pose(bool at_target, const TargetSighting* sighting) {
   if (data_.known.given) {
     set_body(data_.known.body, data_.known.covariance);
     return;
@@ -92,7 +92,12 @@ void FilterStart::set_known_pose(bool at_target) {
   };
   set_sigma(BodyPart::kVelocity, kStartSpeed * (at_target ? Scalar(1) : settings_.start_depth));
   set_sigma(BodyPart::kAngularVelocity, kStartRate);
-  set_body(at_target ? target.first_pose : Body(), covariance);
+  // A pose that was fitted to pixels is wrong where the lens is: rows of the pose, and none of the velocities.
+  Scalar J_lens[BodyLayout::kMaxDynamicRows * kLensParameters] = {};
+  const LensRows& rows = parts_.filter.state().lens_rows;
+  const bool by_lens = sighting != nullptr && rows.count > 0 &&
+                       pose_by_lens(settings_.camera, target.point_W, target.count, sighting->pose, rows, J_lens);
+  set_body(at_target ? target.first_pose : Body(), covariance, by_lens ? J_lens : nullptr);
 }
 
 void FilterStart::start_with_observations() {
@@ -112,7 +117,7 @@ bool FilterStart::start_in_image() {
 
   FrameReport& report = parts_.frame.report;
   if (report.frames > 1) data_.known = KnownBody();  // it was the pose of the first frame
-  set_known_pose(true);
+  set_known_pose(true, &sighting);
   parts_.features.add_target_points(target_.target());
   for (int i = 0; i < parts_.map.features.capacity(); ++i) {
     if (!parts_.map.features.used(i) || !parts_.map.features[i].is_target) continue;
@@ -144,10 +149,11 @@ void FilterStart::begin_record() {
 /// A measured pixel, corrected to the frame's time for the readout of its row. The correction is the image's motion there, which is
 /// known long before depths and speeds are.
 Vec2 FilterStart::at_frame_time(int slot, const Vec2& measured) const {
-  Camera at_once = settings_.camera;
+  const Camera& lens = parts_.filter.lens();
+  Camera at_once = lens;
   at_once.readout = Scalar(0);
   PixelMeasurement by_rows, still;
-  if (settings_.camera.readout == Scalar(0) || !parts_.filter.predict_pixel(settings_.camera, slot, &by_rows) ||
+  if (lens.readout == Scalar(0) || !parts_.filter.predict_pixel(lens, slot, &by_rows) ||
       !parts_.filter.predict_pixel(at_once, slot, &still))
     return measured;
   return measured - (by_rows.predicted - still.predicted);
@@ -188,12 +194,15 @@ void FilterStart::restart_from_record() {
   body.p_W = without_.base_p_W();
   clear_filter();
   set_body(body, data_.covariance);
+  // The bundle's solution holds for the calibration as it was given, so residuals of zero say nothing about it.
+  parts_.filter.consider_lens(true);
   restart_features();
   std::int64_t before_ns = without_.begin_ns();
   for (int k = 0; k < without_.record().frames(); ++k) {
     restart_frame(k, before_ns);
     before_ns = without_.record().frame(k).t_ns;
   }
+  parts_.filter.consider_lens(false);
   if (settings_.constant_velocity) restart_velocities();
 }
 
@@ -209,9 +218,8 @@ void FilterStart::restart_features() {
     Vec3 ray_C;
     Mat32 J_ray_pixel;
     Vec2 pixel;
-    if (index < 0 || !without_.bundle().good(index) ||
-        !project(settings_.camera, without_.record().ray(index), &pixel) ||
-        !unproject(settings_.camera, pixel, &ray_C, &J_ray_pixel)) {
+    if (index < 0 || !without_.bundle().good(index) || !project(filter.lens(), without_.record().ray(index), &pixel) ||
+        !unproject(filter.lens(), pixel, &ray_C, &J_ray_pixel)) {
       parts_.features.release(i);
       continue;
     }
@@ -245,7 +253,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   for (int i = 0; i < parts_.map.features.capacity() && count < settings_.max_observations; ++i) {
     if (!parts_.map.features.used(i) || !record.seen(k, without_.index_of(parts_.map.features[i].id))) continue;
     PixelMeasurement& o = parts_.update.observation(count);
-    if (!filter.predict_pixel(settings_.camera, parts_.map.features[i].slot, &o)) continue;
+    if (!filter.predict_pixel(filter.lens(), parts_.map.features[i].slot, &o)) continue;
     o.measured = o.predicted;
     o.set_noise(Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma));
     ++count;

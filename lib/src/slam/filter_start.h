@@ -60,8 +60,8 @@ class FilterStart {
   void begin_record();
 
  private:
-  void set_body(const Body& body, const Scalar* covariance);
-  void set_known_pose(bool at_target);
+  void set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens = nullptr);
+  void set_known_pose(bool at_target, const TargetSighting* sighting = nullptr);
   Vec2 at_frame_time(int slot, const Vec2& measured) const;
   void restart_from_record();
   void restart_features();

@@ -64,7 +64,7 @@ bool ImageFrontEnd::is_visible(int feature) const {
   const Feature& f = map_.features[feature];
   if ((f.is_target && map_.target_withdrawn) || !f.has_appearance) return false;
   PixelMeasurement o;
-  if (!filter_.predict_pixel(settings_.camera, f.slot, &o)) return false;
+  if (!filter_.predict_pixel(filter_.lens(), f.slot, &o)) return false;
   const Scalar margin = static_cast<Scalar>(settings_.border_px);
   return !(o.predicted.x() < margin || o.predicted.y() < margin ||
            o.predicted.x() > static_cast<Scalar>(settings_.camera.width - 1) - margin ||
@@ -108,7 +108,7 @@ void ImageFrontEnd::predict_pixels(int first, int count) {
     PixelMeasurement& o = update_.observation(i);
     Match& match = frame_.match(candidate.match);
     update_.keep()[i] = 0;
-    bool has_place = filter_.predict_pixel(settings_.camera, map_.features[candidate.feature].slot, &o);
+    bool has_place = filter_.predict_pixel(filter_.lens(), map_.features[candidate.feature].slot, &o);
     if (has_place) {
       const Mat2 spread = update_.expected_innovation(&o);
       o.set_noise(Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order);

@@ -33,7 +33,7 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
     PixelMeasurement& o = update_.observation(known);
     count_frame(&feature.attempts);
     ++frame_.report.attempts;
-    if (!filter_.predict_pixel(settings_.camera, feature.slot, &o)) {
+    if (!filter_.predict_pixel(filter_.lens(), feature.slot, &o)) {
       count_frame(&feature.failures);
       continue;
     }

@@ -55,7 +55,7 @@ Mat2 PixelUpdate::expected_innovation(PixelMeasurement* o) const {
   const Mat2 S = filter_.innovation(*o);
   const Scalar half = (S(0, 0) - S(1, 1)) / 2;
   const Scalar lambda = (S(0, 0) + S(1, 1)) / 2 - std::sqrt(half * half + S(0, 1) * S(0, 1));
-  const Scalar bend = lambda * lambda / (2 * settings_.camera.fx * settings_.camera.fy);
+  const Scalar bend = lambda * lambda / (2 * filter_.lens().fx * filter_.lens().fy);
   o->second_order(0, 0) += bend;
   o->second_order(1, 1) += bend;
   o->bend = bend;
@@ -76,7 +76,7 @@ void PixelUpdate::relinearise_update(int first, int count) {
       const Vec2 measured = o.measured;
       const Scalar bend = std::max(o.bend, Scalar(1e-6));
       const Mat2 R = o.R_update - Mat2::Identity() * bend;
-      keep_[i] = filter_.predict_pixel(settings_.camera, o.block, &o) ? 1 : 0;
+      keep_[i] = filter_.predict_pixel(filter_.lens(), o.block, &o) ? 1 : 0;
       if (keep_[i] == 0) continue;
       expected_innovation(&o);
       o.measured = measured;

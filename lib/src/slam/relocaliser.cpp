@@ -83,7 +83,7 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
     position *= data_.proposal.depth;
   } else {
     if (is_prediction_narrow()) return about;
-    const Recognition place = views_.recognise(settings_.camera);
+    const Recognition place = views_.recognise(filter_.lens());
     if (place.score < kMinRecognition) return about;
     about.body.q_WC = place.q_WC;
     about.body.p_W = place.p_W;
@@ -140,8 +140,7 @@ void Relocaliser::recover_anywhere(const SearchPose& about, int found, std::int6
   }
   Body pose = about.body;
   const Scalar sigma = std::max(Scalar(1), kProposalPixels * static_cast<Scalar>(settings_.camera.width));
-  if (propose_pose(settings_.camera, about.P, point_W_, pixel_, found, sigma, &pose) < TrackingState::kMinInliers)
-    return;
+  if (propose_pose(filter_.lens(), about.P, point_W_, pixel_, found, sigma, &pose) < TrackingState::kMinInliers) return;
   found = linearise_at(pose, found);
   if (found < TrackingState::kMinInliers) return;
   update_.begin(0, found);
@@ -196,7 +195,7 @@ int Relocaliser::linearise_at(const Body& pose, int found) {
     const Vec2 measured = o.measured;
     const Mat2 R = o.R_gate - o.second_order;
     const int slot = o.block;
-    if (!filter_.predict_pixel(settings_.camera, slot, &o)) continue;
+    if (!filter_.predict_pixel(filter_.lens(), slot, &o)) continue;
     o.predicted += pose_columns(o).lazyProduct(e);
     o.measured = measured;
     // The product of an uncertain baseline and an uncertain depth is gone where the baseline is proposed.

@@ -7,13 +7,14 @@
 #include "filter/filter.h"
 #include "filter/imu_log.h"
 #include "filter/motion.h"
-#include "geometry/camera.h"
+#include "geometry/lens.h"
 
 namespace pf {
 
 /// The config after it was checked, in the library's own types.
 struct Settings {
   Camera camera;
+  LensPrior lens;  ///< what is uncertain of it; no rows where it is taken as exact
   const Kernels* kernels = nullptr;
 
   int max_state_dim = 0;

@@ -23,17 +23,44 @@ void View::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
   loop_.motion().predict_pose(t_ns > last_ns() ? loop_.filter_ns() : t_ns, t_ns, body, covariance);
 }
 
+const Camera& View::lens(Scalar covariance[kLensParameters][kLensParameters]) const {
+  const State& state = filter().state();
+  const LensRows& rows = state.lens_rows;
+  for (int i = 0; i < kLensParameters; ++i)
+    for (int j = 0; j < kLensParameters; ++j) covariance[i][j] = Scalar(0);
+  const int first = state.layout.row(BodyPart::kLens);
+  for (int i = 0; i < rows.count; ++i)
+    for (int j = 0; j < rows.count; ++j)
+      covariance[rows.parameter[i]][rows.parameter[j]] = filter().covariance()(first + i, first + j);
+  return state.lens;
+}
+
 bool View::project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const {
+  const State& state = filter().state();
+  const CameraAt camera = camera_at(state, Scalar(0));
   Mat26 J_camera;
   Mat23 J_point;
-  if (!observe_point(settings_.camera, camera_at(filter().state(), Scalar(0)), p_W, pixel, &J_camera, &J_point))
-    return false;
+  if (!observe_point(state.lens, camera, p_W, pixel, &J_camera, &J_point)) return false;
   if (covariance == nullptr) return true;
   Body body;
   Mat6 P;
   pose_at(last_ns(), &body, &P);
   const Mat26 JP = J_camera.lazyProduct(P);
   *covariance = JP.lazyProduct(J_camera.transpose());
+  const int lens_rows = state.lens_rows.count;
+  if (lens_rows == 0) return true;
+  Scalar h[2 * kLensParameters];
+  put_lens(lens_jacobian(state.lens, camera.q_WC.conjugate() * (p_W - camera.p_W)), state.lens_rows, 0, lens_rows, h);
+  const int first = state.layout.row(BodyPart::kLens);
+  for (int i = 0; i < lens_rows; ++i) {
+    const Vec2 by_i(h[i], h[lens_rows + i]);
+    for (int j = 0; j < lens_rows; ++j)
+      *covariance += filter().covariance()(first + i, first + j) * by_i * Vec2(h[j], h[lens_rows + j]).transpose();
+    for (int j = 0; j < Body::kPoseDim; ++j) {
+      const Mat2 cross = filter().covariance()(first + i, j) * by_i * J_camera.col(j).transpose();
+      *covariance += cross + cross.transpose();
+    }
+  }
   return true;
 }
 

@@ -65,6 +65,8 @@ class View {
   bool has_pose() const;
   std::uint32_t map_id() const;
   int kept_views() const;
+  /// The calibration as it is known now, and the covariance of its parameters; zero where they are exact.
+  const Camera& lens(Scalar covariance[kLensParameters][kLensParameters]) const;
   /// Body and pose covariance (6x6) at the last frame, or predicted to a later time.
   void pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const;
   /// Projects a known point; covariance may be null. False if the point does not project.

@@ -44,8 +44,10 @@ PlaneView View::plane(int i) const {
 }
 
 bool View::hit(const Vec2& pixel, HitView* hit) const {
+  const Camera& lens = filter().lens();
   Vec3 ray_C;
-  if (!unproject(settings_.camera, pixel, &ray_C)) return false;
+  Mat32 J_ray_pixel;
+  if (!unproject(lens, pixel, &ray_C, &J_ray_pixel)) return false;
   const State& state = filter().state();
   const CameraAt camera = camera_at(state, Scalar(0));
   const Vec3 direction = camera.q_WC * ray_C;
@@ -73,6 +75,19 @@ bool View::hit(const Vec2& pixel, HitView* hit) const {
           for (int c = 0; c < 3; ++c) P(r, c) = filter().covariance()(first[a] + r, first[b] + c);
         C += J[a] * P * J[b].transpose();
       }
+    const Mat3 J_ray = J_direction * camera.q_WC.toRotationMatrix();
+    const Eigen::Matrix<Scalar, 3, kLensParameters> J_lens =
+        J_ray.lazyProduct(ray_lens_jacobian(lens, ray_C, J_ray_pixel));
+    const int lens_rows = state.lens_rows.count, lens_first = state.layout.row(BodyPart::kLens);
+    for (int k = 0; k < lens_rows; ++k) {
+      const Vec3 J_k = J_lens.col(state.lens_rows.parameter[k]);
+      Vec3 P_k = Vec3::Zero();  // of the hit with this parameter
+      for (int l = 0; l < lens_rows; ++l)
+        P_k += filter().covariance()(lens_first + k, lens_first + l) / 2 * J_lens.col(state.lens_rows.parameter[l]);
+      for (int a = 0; a < 3; ++a)
+        for (int r = 0; r < 3; ++r) P_k += filter().covariance()(lens_first + k, first[a] + r) * J[a].col(r);
+      C += J_k * P_k.transpose() + P_k * J_k.transpose();
+    }
     *hit = {map_.planes[i].id, range, at, C};
   }
   return true;

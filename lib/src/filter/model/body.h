@@ -8,11 +8,12 @@
 
 namespace pf {
 
-/// In the order of their rows: what moves first, since F and Q of a motion model cover only that.
+/// In the order of their rows: what moves first, since F and Q of a motion model cover only that; constants behind it.
 enum class BodyPart : std::uint8_t {
-  kPose,            ///< theta, p
-  kVelocity,        ///< v
-  kAngularVelocity  ///< w
+  kPose,             ///< theta, p
+  kVelocity,         ///< v
+  kAngularVelocity,  ///< w
+  kLens              ///< numbers of the calibration (geometry/lens.h)
 };
 
 /// Which parts a body has, and where their rows lie. The pose is always there, and first.
@@ -28,14 +29,25 @@ class BodyLayout {
     return layout;
   }
 
+  /// Adds a part that does not move. Considered: it keeps its covariance and is not estimated (Schmidt); such parts come last, so that
+  /// all considered rows of the state lie together.
+  void add_constant(BodyPart part, int rows, bool considered) {
+    row_[index(part)] = static_cast<std::int8_t>(this->rows());
+    constant_rows_ = static_cast<std::int8_t>(constant_rows_ + rows);
+    if (considered) considered_rows_ = static_cast<std::int8_t>(considered_rows_ + rows);
+  }
+
   bool has(BodyPart part) const { return row_[index(part)] >= 0; }
   /// First row of a part that it has.
   int row(BodyPart part) const { return row_[index(part)]; }
   /// Rows of the parts that move.
   int dynamic_rows() const { return dynamic_rows_; }
+  int rows() const { return dynamic_rows_ + constant_rows_; }
+  /// Of them, the last ones.
+  int considered_rows() const { return considered_rows_; }
 
  private:
-  static constexpr int kParts = 3;
+  static constexpr int kParts = 4;
   static constexpr int index(BodyPart part) { return static_cast<int>(part); }
 
   void add(BodyPart part, int rows) {
@@ -43,8 +55,8 @@ class BodyLayout {
     dynamic_rows_ = static_cast<std::int8_t>(dynamic_rows_ + rows);
   }
 
-  std::int8_t row_[kParts] = {0, -1, -1};
-  std::int8_t dynamic_rows_ = 6;
+  std::int8_t row_[kParts] = {0, -1, -1, -1};
+  std::int8_t dynamic_rows_ = 6, constant_rows_ = 0, considered_rows_ = 0;
 };
 
 /// Pose and velocities of the camera. Error: of the pose theta (3), p (3); of velocity and angular velocity v (3) and w (3).

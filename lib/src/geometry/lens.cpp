@@ -1,0 +1,85 @@
+#include "geometry/lens.h"
+
+#include <cmath>
+#include <limits>
+
+namespace pf {
+namespace {
+
+Scalar* parameter_of(Camera* camera, int index) {
+  Scalar* const intrinsics[4] = {&camera->fx, &camera->fy, &camera->cx, &camera->cy};
+  return index < 4 ? intrinsics[index] : &camera->distortion[index - 4];
+}
+
+void put_radtan(const Camera& c, const Vec2& m, LensJacobian* J) {
+  const Scalar x = m.x(), y = m.y(), r2 = m.squaredNorm();
+  const Vec2 by[5] = {m * r2, m * r2 * r2, Vec2(2 * x * y, r2 + 2 * y * y), Vec2(r2 + 2 * x * x, 2 * x * y),
+                      m * r2 * r2 * r2};
+  for (int i = 0; i < 5; ++i) J->col(4 + i) = Vec2(c.fx * by[i].x(), c.fy * by[i].y());
+}
+
+}  // namespace
+
+LensJacobian lens_jacobian(const Camera& c, const Vec3& p_C) {
+  LensJacobian J = LensJacobian::Zero();
+  J(0, 2) = J(1, 3) = Scalar(1);
+  if (static_cast<CameraModel>(c.model) == CameraModel::kEquidistant) {
+    const Scalar r = std::hypot(p_C.x(), p_C.y());
+    const Scalar theta = std::atan2(r, p_C.z());
+    const bool on_axis = !(r > std::numeric_limits<Scalar>::min());
+    const Vec2 e = on_axis ? Vec2(0, 0) : Vec2(p_C.x() / r, p_C.y() / r);
+    Scalar theta_d = theta, power = theta;
+    for (int i = 0; i < 4; ++i) {
+      power *= theta * theta;
+      theta_d += c.distortion[i] * power;
+      J.col(4 + i) = Vec2(c.fx * e.x() * power, c.fy * e.y() * power);
+    }
+    J(0, 0) = e.x() * theta_d;
+    J(1, 1) = e.y() * theta_d;
+    return J;
+  }
+  const Vec2 m(p_C.x() / p_C.z(), p_C.y() / p_C.z());
+  Vec2 pixel;
+  if (!project(c, p_C, &pixel)) return J;
+  J(0, 0) = (pixel.x() - c.cx) / c.fx;
+  J(1, 1) = (pixel.y() - c.cy) / c.fy;
+  if (static_cast<CameraModel>(c.model) == CameraModel::kRadtan) put_radtan(c, m, &J);
+  if (static_cast<CameraModel>(c.model) == CameraModel::kDivision) {
+    const Vec2 u(c.fx * m.x(), c.fy * m.y());
+    const Scalar k = c.distortion[0], s = 1 / std::sqrt(1 + 2 * k * u.squaredNorm()), s3 = s * s * s;
+    J.col(4) = -u.squaredNorm() * s3 * u;
+    J.col(0) += -2 * k * s3 * c.fx * m.x() * m.x() * u;
+    J.col(1) += -2 * k * s3 * c.fy * m.y() * m.y() * u;
+  }
+  return J;
+}
+
+LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera) {
+  if (static_cast<CameraModel>(camera->model) == CameraModel::kPinhole && sigmas.distortion[0] > Scalar(0)) {
+    camera->model = static_cast<int>(CameraModel::kRadtan);
+    init_camera(camera);
+  }
+  LensPrior prior;
+  Scalar sigma[kLensParameters] = {0, 0, sigmas.centre, sigmas.centre};
+  for (int i = 0; i < 5; ++i) sigma[4 + i] = sigmas.distortion[i];
+  const Scalar common = sigmas.focal * sigmas.focal, between = sigmas.aspect * sigmas.aspect / 4;
+  sigma[0] = camera->fx * std::sqrt(common + between);
+  sigma[1] = camera->fy * std::sqrt(common + between);
+  for (int i = 0; i < kLensParameters; ++i)
+    if (sigma[i] > Scalar(0)) prior.rows.parameter[prior.rows.count++] = static_cast<std::int8_t>(i);
+  for (int a = 0; a < prior.rows.count; ++a)
+    for (int b = 0; b < prior.rows.count; ++b) {
+      const int i = prior.rows.parameter[a], j = prior.rows.parameter[b];
+      Scalar covariance = i == j ? sigma[i] * sigma[i] : Scalar(0);
+      if (i + j == 1) covariance = camera->fx * camera->fy * (common - between);  // fx with fy
+      prior.covariance[a * prior.rows.count + b] = covariance;
+    }
+  return prior;
+}
+
+void move_lens(const LensRows& rows, const Scalar* e, Camera* camera) {
+  for (int i = 0; i < rows.count; ++i) *parameter_of(camera, rows.parameter[i]) += e[i];
+  init_camera(camera);
+}
+
+}  // namespace pf

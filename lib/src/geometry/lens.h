@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/camera.h"
+
+/// The numbers of a calibration as something uncertain (lib/docs/lens.md).
+
+namespace pf {
+
+inline constexpr int kLensParameters = 9;  ///< fx fy cx cy, distortion[0 .. 4]
+
+using LensJacobian = Eigen::Matrix<Scalar, 2, kLensParameters>;
+
+/// Derivative of a point's pixel with respect to all of a camera's parameters, [px] each by its unit; those that the model lacks are zero.
+/// The point must project.
+///
+///   pixel = (fx m'x + cx, fy m'y + cy):   by fx (m'x, 0), by cx (1, 0), by k  (fx dm'x/dk, fy dm'y/dk)
+///   radtan       dm'/dk1 = m r²,  k2 m r⁴,  p1 (2 mx my, r² + 2 my²),  p2 (r² + 2 mx², 2 mx my),  k3 m r⁶
+///   equidistant  dm'/dki = m θ^(2i+1) / r
+///   division     m' = s m, s = 1 / sqrt(1 + 2 k |u|²), u = (fx mx, fy my):  ds/dk = -|u|² s³,  ds/dfx = -2 k s³ fx mx²,  ds/dfy likewise
+LensJacobian lens_jacobian(const Camera& camera, const Vec3& p_C);
+
+/// Of the unit ray of a given pixel, from its derivative by the pixel:  J_ray_lens = -J_ray_pixel J_pixel_lens.
+inline Eigen::Matrix<Scalar, 3, kLensParameters> ray_lens_jacobian(const Camera& camera, const Vec3& ray_C,
+                                                                   const Mat32& J_ray_pixel) {
+  return -J_ray_pixel.lazyProduct(lens_jacobian(camera, ray_C));
+}
+
+/// Which parameters are uncertain, one row each.
+struct LensRows {
+  int count = 0;                                ///< 0: the calibration is exact
+  std::int8_t parameter[kLensParameters] = {};  ///< of each row, ascending
+};
+
+/// And how much they are.
+struct LensPrior {
+  LensRows rows;
+  Scalar covariance[kLensParameters * kLensParameters] = {};  ///< rows x rows, row-major
+};
+
+/// Standard deviations that a calibration states.
+///
+///   e_fx = fx (e_focal + e_aspect / 2),   e_fy = fy (e_focal - e_aspect / 2)
+struct LensSigmas {
+  Scalar focal = 0;           ///< common to fx and fy, relative
+  Scalar aspect = 0;          ///< of fx against fy, relative
+  Scalar centre = 0;          ///< of cx and of cy [px]
+  Scalar distortion[5] = {};  ///< 0: exact, and no row
+};
+
+/// The prior of a camera. A pinhole whose first distortion coefficient is uncertain becomes a radial-tangential camera without distortion.
+LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera);
+
+/// Moves a camera's parameters by an error over these rows, and finds its domain anew.
+void move_lens(const LensRows& rows, const Scalar* e, Camera* camera);
+
+}  // namespace pf

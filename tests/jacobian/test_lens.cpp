@@ -1,0 +1,198 @@
+// Jacobians by the numbers of the calibration: of a pixel, of a ray, of a predicted pixel, of a new bearing, and of a pose that was
+// fitted to known points; for every camera model.
+#include "geometry/lens.h"
+#include "geometry/planar_pose.h"
+#include "support/filter_cases.h"
+#include "support/numeric_jacobian.h"
+#include "support/test_cameras.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+using Parameters = Eigen::Matrix<Scalar, kLensParameters, 1>;
+
+/// Every parameter that the model has, with sigmas that make a unit step of the scaled parameters a small one.
+LensPrior prior_of(Camera* camera) {
+  LensSigmas sigmas;
+  sigmas.focal = Scalar(0.01);
+  sigmas.aspect = Scalar(0.001);
+  sigmas.centre = Scalar(2);
+  const CameraModel model = static_cast<CameraModel>(camera->model);
+  const int count = model == CameraModel::kRadtan ? 5 : model == CameraModel::kEquidistant ? 4 : 1;
+  for (int i = 0; i < count; ++i) sigmas.distortion[i] = model == CameraModel::kDivision ? Scalar(1e-7) : Scalar(0.01);
+  return make_lens_prior(sigmas, camera);
+}
+
+Parameters sigmas_of(const LensPrior& prior) {
+  Parameters sigma = Parameters::Zero();
+  for (int i = 0; i < prior.rows.count; ++i)
+    sigma(prior.rows.parameter[i]) = std::sqrt(prior.covariance[i * (prior.rows.count + 1)]);
+  return sigma;
+}
+
+/// The camera with its parameters moved by e sigmas.
+Camera with(const Camera& camera, const LensPrior& prior, const Parameters& e) {
+  const Parameters sigma = sigmas_of(prior);
+  Scalar step[kLensParameters];
+  for (int i = 0; i < prior.rows.count; ++i) step[i] = e(prior.rows.parameter[i]) * sigma(prior.rows.parameter[i]);
+  Camera out = camera;
+  move_lens(prior.rows, step, &out);
+  return out;
+}
+
+/// Columns by parameters in units of their sigmas.
+template <int kRows>
+Eigen::Matrix<Scalar, kRows, kLensParameters> scaled(const Eigen::Matrix<Scalar, kRows, kLensParameters>& J,
+                                                     const LensPrior& prior) {
+  return J * sigmas_of(prior).asDiagonal();
+}
+
+constexpr Scalar kTolerance = kNumericJacobianIsFloat ? Scalar(2e-3) : Scalar(1e-7);
+
+void test_pixel_and_ray_should_have_exact_jacobians_by_the_lens() {
+  SeededRandom random(471);
+  for (int trial = 0; trial < 80; ++trial) {
+    Camera camera = test_camera_of(trial % kTestCameras);
+    const LensPrior prior = prior_of(&camera);
+    const Vec3 p_C(static_cast<Scalar>(random.uniform(-0.5, 0.5)), static_cast<Scalar>(random.uniform(-0.5, 0.5)), 1);
+    const auto pixel = [&](const Parameters& e) {
+      Vec2 z;
+      TEST_ASSERT_TRUE(project(with(camera, prior, e), p_C, &z));
+      return z;
+    };
+    check_jacobian<2, kLensParameters>(scaled<2>(lens_jacobian(camera, p_C), prior), pixel, "J_pixel_lens", 1,
+                                       kTolerance);
+    Vec2 z;
+    Vec3 ray;
+    Mat32 J_ray_pixel;
+    TEST_ASSERT_TRUE(project(camera, p_C, &z));
+    TEST_ASSERT_TRUE(unproject(camera, z, &ray, &J_ray_pixel));
+    const auto ray_of = [&](const Parameters& e) {
+      Vec3 r;
+      TEST_ASSERT_TRUE(unproject(with(camera, prior, e), z, &r));
+      return r;
+    };
+    check_jacobian<3, kLensParameters>(scaled<3>(ray_lens_jacobian(camera, ray, J_ray_pixel), prior), ray_of,
+                                       "J_ray_lens", 1, kTolerance);
+  }
+}
+
+BodyLayout layout_of(const LensPrior& prior) {
+  BodyLayout layout = BodyLayout::with_constant_velocity();
+  layout.add_constant(BodyPart::kLens, prior.rows.count, false);
+  return layout;
+}
+
+/// Lens columns of a dense Jacobian over the state, as columns by all parameters.
+Eigen::Matrix<Scalar, 2, kLensParameters> lens_columns(const Dense& H, const LensPrior& prior, int first) {
+  Eigen::Matrix<Scalar, 2, kLensParameters> J = Eigen::Matrix<Scalar, 2, kLensParameters>::Zero();
+  for (int i = 0; i < prior.rows.count; ++i) J.col(prior.rows.parameter[i]) = H.col(first + i).cast<Scalar>();
+  return J;
+}
+
+void test_predicted_pixels_should_have_exact_jacobians_by_the_lens() {
+  SeededRandom random(472);
+  for (int trial = 0; trial < 40; ++trial) {
+    Camera camera = test_camera_of(trial % kTestCameras);
+    camera.readout = trial % 2 == 0 ? Scalar(0) : Scalar(0.03);
+    const LensPrior prior = prior_of(&camera);
+    const BodyLayout layout = layout_of(prior);
+    TestFilter filter(true, layout);
+    filter->set_lens(camera, prior);
+    for (const int slot : fill_map(random, filter, 2, 2)) {
+      const auto predicted = [&](const Parameters& e) {
+        PixelMeasurement o;
+        TEST_ASSERT_TRUE(filter->predict_pixel(with(camera, prior, e), slot, &o));
+        return o.predicted;
+      };
+      PixelMeasurement o;
+      TEST_ASSERT_TRUE(filter->predict_pixel(camera, slot, &o));
+      const Dense H = dense_rows(*filter, o.H);
+      check_jacobian<2, kLensParameters>(scaled<2>(lens_columns(H, prior, layout.row(BodyPart::kLens)), prior),
+                                         predicted, "J_z_lens", 1,
+                                         camera.readout > Scalar(0) ? Scalar(4e-3) : kTolerance);
+    }
+  }
+}
+
+/// A new bearing's covariance with the lens is J times the prior.
+void test_new_bearings_should_have_exact_jacobians_by_the_lens() {
+  SeededRandom random(473);
+  for (int trial = 0; trial < 40; ++trial) {
+    Camera camera = test_camera_of(trial % kTestCameras);
+    const LensPrior prior = prior_of(&camera);
+    const BodyLayout layout = layout_of(prior);
+    TestFilter filter(true, layout);
+    filter->set_lens(camera, prior);
+    const Body body = random_body(random);
+    filter->set_mean(body);
+    Vec2 z;
+    TEST_ASSERT_TRUE(project(camera, body.q_WC.conjugate() * (point_in_view(random, body) - body.p_W), &z));
+    const auto ray_of = [&](const Camera& c) {
+      Vec3 ray;
+      TEST_ASSERT_TRUE(unproject(c, z, &ray));
+      return ray;
+    };
+    Vec3 ray;
+    Mat32 J_ray_z;
+    TEST_ASSERT_TRUE(unproject(camera, z, &ray, &J_ray_z));
+    const int anchor = filter->add_anchor();
+    const int slot = filter->add_inverse_depth(anchor, ray, J_ray_z, Mat2::Identity(), Scalar(0.5), Scalar(0.1));
+    const Mat3 R_b = filter->state().block[slot].inverse_depth().q_b.toRotationMatrix();
+    const auto bearing_error = [&](const Parameters& e) -> Vec2 {
+      return R_b.leftCols<2>().transpose() * (body.q_WC * ray_of(with(camera, prior, e)));
+    };
+    const int first = layout.row(BodyPart::kLens), count = prior.rows.count;
+    const Dense P = filter.P();
+    const Dense J = P.block(filter.first(slot), first, 2, count) * P.block(first, first, count, count).inverse();
+    check_jacobian<2, kLensParameters>(scaled<2>(lens_columns(J, prior, 0), prior), bearing_error, "J_bearing_lens", 1,
+                                       kNumericJacobianIsFloat ? Scalar(4e-3) : Scalar(1e-7));
+  }
+}
+
+void test_poses_from_known_points_should_have_exact_jacobians_by_the_lens() {
+  SeededRandom random(474);
+  for (int trial = 0; trial < 12; ++trial) {
+    Camera camera = test_camera_of(trial % kTestCameras);
+    const LensPrior prior = prior_of(&camera);
+    PoseEstimate truth;
+    truth.q_WC = random_turn(random, 0.2);
+    truth.p_WC = Vec3(Scalar(0.1), Scalar(-0.2), -2) + random.normals<3>(0.1);
+    Vec3 corners[4];
+    Vec2 z[4];
+    rectangle_points(Scalar(0.8), Scalar(0.6), corners);
+    corners[3].z() = Scalar(0.3);  // not in a plane, so that the pose is firm
+    for (int i = 0; i < 4; ++i)
+      TEST_ASSERT_TRUE(project(camera, truth.q_WC.conjugate() * (corners[i] - truth.p_WC), &z[i]));
+    Scalar raw[6 * kLensParameters];
+    TEST_ASSERT_TRUE(pose_by_lens(camera, corners, 4, truth, prior.rows, raw));
+    Eigen::Matrix<Scalar, 6, kLensParameters> J = Eigen::Matrix<Scalar, 6, kLensParameters>::Zero();
+    for (int a = 0; a < 6; ++a)
+      for (int i = 0; i < prior.rows.count; ++i) J(a, prior.rows.parameter[i]) = raw[a * prior.rows.count + i];
+    const auto fitted = [&](const Parameters& e) {
+      PoseEstimate pose = truth;
+      TEST_ASSERT_TRUE(refine_pose(with(camera, prior, e), corners, z, 4, Scalar(0.25), &pose));
+      Vec6 error;
+      error << log_so3(pose.q_WC * truth.q_WC.conjugate()), pose.p_WC - truth.p_WC;
+      return error;
+    };
+    // Gauss-Newton leaves out the curvature times the residuals of a lens that does not fit, which is of second order here.
+    check_jacobian<6, kLensParameters>(scaled<6>(J, prior), fitted, "J_pose_lens", 1,
+                                       kNumericJacobianIsFloat ? Scalar(2e-2) : Scalar(1e-6));
+  }
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_pixel_and_ray_should_have_exact_jacobians_by_the_lens);
+  RUN_TEST(test_predicted_pixels_should_have_exact_jacobians_by_the_lens);
+  RUN_TEST(test_new_bearings_should_have_exact_jacobians_by_the_lens);
+  RUN_TEST(test_poses_from_known_points_should_have_exact_jacobians_by_the_lens);
+  return UNITY_END();
+}
