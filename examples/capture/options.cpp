@@ -181,6 +181,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   std::string backend = "filter";
   std::string kernels = "auto";
   std::string lens = "exact";
+  std::string timestamps;
   std::vector<double> gravity;
   std::vector<std::string> taps;
   bool no_film = false;
@@ -234,6 +235,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(at_least(1));
   app.add_option("--max-observations", options.max_observations, "features measured in one frame")->check(at_least(1));
   app.add_option("--features-in-view", options.features_in_view, "features to keep in view")->check(at_least(1));
+  app.add_option("--timestamps", timestamps,
+                 "times of frames: real (measured) or nominal (counted); as the calibration says")
+      ->type_name("KIND");
   app.add_option("--kernels", kernels, "auto, reference, portable, avx2, avx512 or neon")->capture_default_str();
   app.add_option("--lens", lens,
                  "exact, consider or estimate: what to make of errors of the calibration, by its sigma fields")
@@ -259,8 +263,14 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     code = refuse("--source is required; see pf-capture --help");
     return Parsed::kExit;
   }
+  if (!timestamps.empty()) {
+    options.timestamps = timestamps == "nominal" ? PF_TIMESTAMPS_NOMINAL : PF_TIMESTAMPS_REAL;
+  }
   const auto set = kernel_names.find(kernels);
   std::string wrong = check(options, backend);
+  if (wrong.empty() && !timestamps.empty() && timestamps != "real" && timestamps != "nominal") {
+    wrong = "--timestamps " + timestamps + ": write real or nominal";
+  }
   if (wrong.empty() && set == kernel_names.end()) {
     wrong = "--kernels " + kernels + ": write auto, reference, portable, avx2, avx512 or neon";
   }

@@ -42,6 +42,7 @@ struct Options {
   std::string record;
   std::string format = "any";
   double readout_s = -1.0;   ///< negative: as the calibration says
+  int32_t timestamps = -1;   ///< pf_timestamps_t; negative: as the calibration says
   double rate_hz = 0.0;      ///< 0: as the calibration or the camera says
   double exposure_us = 0.0;  ///< 0: automatic
   int32_t focus = -2;        ///< -1: locked where it is; -2: left alone

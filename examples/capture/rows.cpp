@@ -12,7 +12,8 @@ bool project_row(const pf_camera_t& camera, const pf_pose_t& pose, const Vec3& p
   for (size_t i = 0; i < 3; ++i) {
     v_C[i] = dot(rotation_column(pose.q_WC, static_cast<int>(i)), v_W);
   }
-  for (int turn = 0; turn < 3 && camera.readout_s > 0.0; ++turn) {
+  const bool has_rows = camera.readout_s > 0.0 && camera.timestamps == PF_TIMESTAMPS_REAL;
+  for (int turn = 0; turn < 3 && has_rows; ++turn) {
     const double tau = camera.readout_s * ((pixel[1] + 0.5) / camera.height - 0.5);
     Vec3 p;
     for (size_t i = 0; i < 3; ++i) {

@@ -41,6 +41,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   config_.camera = source.info().camera;
   if (options.readout_s >= 0.0) config_.camera.readout_s = options.readout_s;
   config_.camera.estimate = options.lens;
+  if (options.timestamps >= 0) config_.camera.timestamps = options.timestamps;
   config_.kernels = options.kernels;
   config_.keep_gauge = options.keep_gauge ? 1 : 0;
   config_.plane.enabled = options.planes ? 1 : 0;

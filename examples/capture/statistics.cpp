@@ -68,7 +68,8 @@ Json camera_json(const pf_camera_t& camera) {
           {"fy", camera.fy},
           {"cx", camera.cx},
           {"cy", camera.cy},
-          {"readout_s", camera.readout_s}};
+          {"readout_s", camera.readout_s},
+          {"timestamps", camera.timestamps == PF_TIMESTAMPS_NOMINAL ? "nominal" : "real"}};
 }
 
 /// The calibration as the filter knows it at the end, with standard deviations; null where it was taken as exact.

@@ -36,15 +36,16 @@ const Fields::Known kKalibr{
      "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
     {"rostopic", "cam_overlaps", "T_cn_cnm1", "T_cam_imu", "timeshift_cam_imu", "T_BS", "sensor_type", "comment"}};
 const Fields::Known kKalibrChain{
-    {"cam0", "readout_s", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
+    {"cam0", "readout_s", "timestamps", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
     {"cam1", "cam2", "cam3", "cam4", "cam5", "cam6", "cam7"}};
 const Fields::Known kEuroc{
     {"camera_model", "distortion_coefficients", "distortion_model", "intrinsics", "resolution", "rate_hz", "readout_s",
-     "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
+     "timestamps", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
     {"sensor_type", "comment", "T_BS"}};
-const Fields::Known kRos{{"image_width", "image_height", "camera_matrix", "distortion_model", "distortion_coefficients",
-                          "readout_s", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
-                         {"camera_name", "rectification_matrix", "projection_matrix"}};
+const Fields::Known kRos{
+    {"image_width", "image_height", "camera_matrix", "distortion_model", "distortion_coefficients", "readout_s",
+     "timestamps", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
+    {"camera_name", "rectification_matrix", "projection_matrix"}};
 /// Files of ORB-SLAM hold the settings of the whole program.
 const std::vector<std::string> kOrbSlamSettings{"Camera.bf",
                                                 "Camera.RGB",
@@ -75,10 +76,9 @@ const Fields::Known kKitti{{"P0", "readout_s", "sigma_focal", "sigma_aspect", "s
 /// Those that are not used belong to other sensors of the same device.
 const Fields::Known kPlain{
     {"camera_model", "width", "height", "fx", "fy", "cx", "cy", "distortion_model", "distortion", "rate_hz",
-     "readout_s", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
-    {"comment", "timestamps", "T_imu_cam", "imu_rate_hz", "gyro_noise_density", "gyro_random_walk",
-     "accel_noise_density", "accel_random_walk", "gravity", "depth_fx", "depth_fy", "depth_cx", "depth_cy",
-     "depth_scale_to_m"},
+     "readout_s", "timestamps", "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
+    {"comment", "T_imu_cam", "imu_rate_hz", "gyro_noise_density", "gyro_random_walk", "accel_noise_density",
+     "accel_random_walk", "gravity", "depth_fx", "depth_fy", "depth_cx", "depth_cy", "depth_scale_to_m"},
     true};
 
 /// What the message about an unknown layout offers.
@@ -284,6 +284,15 @@ void read_sigmas(const Fields& fields, pf_camera_t& camera) {
   }
 }
 
+/// Whether the times of frames were measured; they count as measured where the file says nothing of it.
+pf_timestamps_t read_timestamps(const Fields& fields) {
+  const std::string name = fields.text_or("timestamps", "real");
+  if (name != "real" && name != "nominal") {
+    fields.refuse_field("timestamps", "is '" + name + "'; known are real (measured) and nominal (counted)");
+  }
+  return name == "nominal" ? PF_TIMESTAMPS_NOMINAL : PF_TIMESTAMPS_REAL;
+}
+
 double read_rate(const Fields& fields, const char* key) {
   const double rate = fields.number_or(key, 0.0);
   if (rate != 0.0 && !(rate >= 0.1 && rate <= 10000.0)) {
@@ -305,8 +314,8 @@ void read_orb_slam(const Fields& fields, const std::string& prefix, ImageSize im
   } else if (type == "Rectified") {
     names.clear();
   }
-  Fields::Known known{{"Camera.type", "Camera.width", "Camera.height", "Camera.fps", "readout_s", "sigma_focal",
-                       "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
+  Fields::Known known{{"Camera.type", "Camera.width", "Camera.height", "Camera.fps", "readout_s", "timestamps",
+                       "sigma_focal", "sigma_aspect", "sigma_centre_px", "sigma_distortion"},
                       kOrbSlamSettings};
   for (const char* name : {"fx", "fy", "cx", "cy"}) {
     known.read.push_back(prefix + name);
@@ -366,6 +375,7 @@ Calibration parse_calibration(const std::string& text, const std::string& file, 
   const Fields fields(text, file);
   Calibration calibration{};
   calibration.camera.readout_s = read_readout(fields);
+  calibration.camera.timestamps = read_timestamps(fields);
   if (fields.has("cam0")) {
     const Fields cam0 = fields.below("cam0");
     calibration.form = "kalibr";
@@ -374,6 +384,7 @@ Calibration parse_calibration(const std::string& text, const std::string& file, 
     calibration.warning = calibration.warning.empty() ? above : calibration.warning;
     read_lists(cam0, "distortion_coeffs", calibration.camera);
     calibration.camera.readout_s = std::max(calibration.camera.readout_s, read_readout(cam0));
+    calibration.camera.timestamps = std::max<int32_t>(calibration.camera.timestamps, read_timestamps(cam0));
   } else if (fields.has("image_width") || fields.has("camera_matrix")) {
     calibration.form = "ros";
     calibration.warning = fields.check_keys(kRos);

@@ -37,6 +37,9 @@ void write(std::FILE* file, uint32_t form, const pf_camera_t& camera, double rat
     }
     std::fprintf(file, "]\n");
   }
+  if (camera.timestamps == PF_TIMESTAMPS_NOMINAL) {
+    std::fprintf(file, "timestamps: nominal\n");
+  }
   if (rate_hz > 0.0) {
     std::fprintf(file, "rate_hz: %.17g\n", rate_hz);
   }

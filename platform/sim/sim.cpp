@@ -105,8 +105,8 @@ pf_status_t pf_sim_options_default(const char* scene, pf_sim_options_t* options)
   const std::string name = scene;
   *options = {};
   options->seed = 1;
-  options->camera = {PF_CAMERA_PINHOLE, 320,  240,   205.0, 205.0, 159.5, 119.5, {}, 0,
-                     PF_CAMERA_EXACT,   0.01, 0.001, 3.2,   {0.05}};
+  options->camera = {PF_CAMERA_PINHOLE,  320,  240,   205.0, 205.0, 159.5, 119.5, {}, 0, PF_CAMERA_EXACT,
+                     PF_TIMESTAMPS_REAL, 0.01, 0.001, 3.2,   {0.05}};
   options->rate_hz = 30;
   options->frames = name == "room" || name == "person" ? 840 : name == "wall" ? 390 : name == "rotation" ? 300 : 570;
   options->samples = 2;

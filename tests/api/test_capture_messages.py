@@ -111,6 +111,7 @@ def test_usage(root):
     expect("rectangle", 2, ["rectangle:", "metres"], "--source", source, "--start", "rectangle:big", *out)
     expect("withdrawn", 2, ["--withdraw-target-after"], "--source", source, "--withdraw-target-after", "5")
     expect("lens", 2, ["--lens", "exact, consider or estimate"], "--source", source, "--lens", "free", *out)
+    expect("timestamps", 2, ["--timestamps", "real or nominal"], "--source", source, "--timestamps", "counted", *out)
     expect("kernels", 2, ["--kernels"], "--source", source, "--kernels", "fast", *out)
     expect("capacity", 2, ["max_features"], "--source", source, "--max-features", "100000", *out)
     expect("skip", 2, ["--skip", "2 frames"], "--source", source, "--skip", "2", *out)

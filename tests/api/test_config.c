@@ -105,6 +105,13 @@ static void test_check_should_name_the_number_of_the_camera_that_makes_no_sense(
   NAMES(camera.readout_s, -0.001);
   NAMES(camera.readout_s, 0.201);
   NAMES(camera.readout_s, NAN);
+  NAMES(camera.timestamps, -1);
+  NAMES(camera.timestamps, 2);
+  config.camera.timestamps = PF_TIMESTAMPS_NOMINAL;
+  config.camera.readout_s = 0.03; /* counts as 0 */
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  config.camera.timestamps = PF_TIMESTAMPS_REAL;
+  config.camera.readout_s = 0;
   config.motion.model = PF_MOTION_CONSTANT_POSITION; /* rows cannot differ without a speed */
   NAMES(camera.readout_s, 0.03);
   config.motion.model = PF_MOTION_CONSTANT_VELOCITY;

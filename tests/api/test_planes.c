@@ -42,8 +42,8 @@ static void on_log(void* user, const char* line) {
 
 void setUp(void) {
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
-  const pf_camera_t camera = {PF_CAMERA_PINHOLE, 640, 480, 400, 400, 319.5, 239.5, {0}, 0,
-                              PF_CAMERA_EXACT,   0,   0,   0,   {0}};
+  const pf_camera_t camera = {PF_CAMERA_PINHOLE,  640, 480, 400, 400, 319.5, 239.5, {0}, 0, PF_CAMERA_EXACT,
+                              PF_TIMESTAMPS_REAL, 0,   0,   0,   {0}};
   config.camera = camera;
   config.measurement.sigma_px = SIGMA_PX;
   config.capacity.max_observations = MAX_POINTS;

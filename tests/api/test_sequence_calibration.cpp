@@ -215,6 +215,19 @@ static void test_readout_should_be_read_in_every_form() {
   TEST_ASSERT_EQUAL_DOUBLE(0.02, read(with(kKalibr, "  camera_model", "  readout_s: 0.02\n  camera_model")).readout_s);
 }
 
+static void test_timestamps_should_be_read_in_every_form_and_are_real_where_nothing_is_said() {
+  TEST_ASSERT_EQUAL_INT(PF_TIMESTAMPS_REAL, read(kPlainCalibration).timestamps);
+  const std::string said = "timestamps: nominal\n";
+  for (const char* calibration : {kPlainCalibration, kEuroc, kRos, kKalibr}) {
+    TEST_ASSERT_EQUAL_INT(PF_TIMESTAMPS_NOMINAL, read((calibration + said).c_str()).timestamps);
+    TEST_ASSERT_EQUAL_INT(PF_TIMESTAMPS_REAL,
+                          read((calibration + std::string("timestamps: real\n")).c_str()).timestamps);
+    refused(calibration + std::string("timestamps: counted\n"), "'timestamps'");
+  }
+  TEST_ASSERT_EQUAL_INT(PF_TIMESTAMPS_NOMINAL,
+                        read(with(kKalibr, "  camera_model", "  timestamps: nominal\n  camera_model")).timestamps);
+}
+
 static void test_plain_should_name_the_field_when_one_is_missing() {
   for (const char* field : {"width", "height", "fx", "fy", "cx", "cy", "distortion_model"}) {
     const std::string key = std::string("\n") + field + ":";
@@ -375,6 +388,7 @@ static void test_written_file_should_be_read_as_the_same_camera_in_both_forms() 
     camera.model = static_cast<pf_camera_model_t>(PF_CAMERA_PINHOLE + k / 2);
     camera.fx = 1000.0 / 3.0;
     camera.readout_s = k < 4 ? 1.0 / 70.0 : 0.0;
+    camera.timestamps = k < 6 ? PF_TIMESTAMPS_NOMINAL : PF_TIMESTAMPS_REAL;
     const int used[] = {0, 5, 4, 1};
     for (int i = 0; i < 5; ++i) {
       camera.distortion[i] = i < used[k / 2] ? (k / 2 == 3 ? 1e-6 : 0.1) / (3.0 + i) : 0.0;
@@ -388,6 +402,7 @@ static void test_written_file_should_be_read_as_the_same_camera_in_both_forms() 
     TEST_ASSERT_EQUAL_INT(camera.model, again.model);
     TEST_ASSERT_EQUAL_INT(camera.width, again.width);
     TEST_ASSERT_EQUAL_INT(camera.height, again.height);
+    TEST_ASSERT_EQUAL_INT(camera.timestamps, again.timestamps);
     TEST_ASSERT_EQUAL_MEMORY(&camera.fx, &again.fx, sizeof(double));
     TEST_ASSERT_EQUAL_MEMORY(&camera.cy, &again.cy, sizeof(double));
     TEST_ASSERT_EQUAL_MEMORY(camera.distortion, again.distortion, sizeof(camera.distortion));
@@ -413,6 +428,7 @@ int main() {
   RUN_TEST(test_kitti_should_be_read_with_images_only_and_name_what_is_bad);
   RUN_TEST(test_layout_should_be_refused_with_the_list_of_known_ones_when_nobody_knows_it);
   RUN_TEST(test_readout_should_be_read_in_every_form);
+  RUN_TEST(test_timestamps_should_be_read_in_every_form_and_are_real_where_nothing_is_said);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_missing);
   RUN_TEST(test_sigmas_should_be_read_in_every_form_and_be_typical_where_the_file_says_nothing);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_absurd);

@@ -10,7 +10,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Bytes bytes(data, size);
   pf_config_t config;
   require(pf_config_default(&config) == PF_OK, "the default config is given");
-  config.camera = {PF_CAMERA_PINHOLE, 64, 48, 50.0, 50.0, 31.5, 23.5, {}, 0, PF_CAMERA_EXACT, 0, 0, 0, {}};
+  config.camera = {PF_CAMERA_PINHOLE,  64, 48, 50.0, 50.0, 31.5, 23.5, {}, 0, PF_CAMERA_EXACT,
+                   PF_TIMESTAMPS_REAL, 0,  0,  0,    {}};
   if (bytes.take<uint8_t>() % 8 == 0) {
     bytes.take(&config, sizeof(config));
   } else {

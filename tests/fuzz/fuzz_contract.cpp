@@ -155,8 +155,9 @@ pf_config_t config_from(Bytes& bytes) {
   const uint8_t what = bytes.take<uint8_t>();
   const int width = 48 + bytes.take<uint8_t>() % 80, height = 40 + bytes.take<uint8_t>() % 64;
   const double f = width * between(bytes, 0.5, 2.0);
-  config.camera = {PF_CAMERA_PINHOLE, width, height, f, f, (width - 1) / 2.0, (height - 1) / 2.0, {}, 0,
-                   PF_CAMERA_EXACT,   0,     0,      0, {}};
+  config.camera = {
+      PF_CAMERA_PINHOLE,  width, height, f, f, (width - 1) / 2.0, (height - 1) / 2.0, {}, 0, PF_CAMERA_EXACT,
+      PF_TIMESTAMPS_REAL, 0,     0,      0, {}};
   if ((what & 1) != 0) {
     config.camera.model = 2 + bytes.take<uint8_t>() % 3;
     config.camera.distortion[0] = unit(bytes) * (config.camera.model == PF_CAMERA_DIVISION ? 1e-6 : 0.05);

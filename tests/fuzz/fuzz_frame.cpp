@@ -108,7 +108,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Bytes bytes(data, size);
   pf_config_t config;
   pf_config_default(&config);
-  config.camera = {PF_CAMERA_PINHOLE, kWidth, kHeight, 60.0, 60.0, 39.5, 31.5, {}, 0, PF_CAMERA_EXACT, 0, 0, 0, {}};
+  config.camera = {PF_CAMERA_PINHOLE,  kWidth, kHeight, 60.0, 60.0, 39.5, 31.5, {}, 0, PF_CAMERA_EXACT,
+                   PF_TIMESTAMPS_REAL, 0,      0,       0,    {}};
   config.capacity.max_state_dim = 64;
   config.capacity.max_features = 12;
   config.capacity.max_observations = 10;

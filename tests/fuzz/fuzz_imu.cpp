@@ -62,7 +62,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Bytes bytes(data, size);
   pf_config_t config;
   pf_config_default(&config);
-  config.camera = {PF_CAMERA_PINHOLE, 64, 48, 50.0, 50.0, 31.5, 23.5, {}, 0, PF_CAMERA_EXACT, 0, 0, 0, {}};
+  config.camera = {PF_CAMERA_PINHOLE,  64, 48, 50.0, 50.0, 31.5, 23.5, {}, 0, PF_CAMERA_EXACT,
+                   PF_TIMESTAMPS_REAL, 0,  0,  0,    {}};
   config.capacity.max_state_dim = 64;
   config.capacity.max_features = config.capacity.max_observations = config.map.features_in_view = 8;
   config.capacity.max_imu_samples = bytes.take<uint8_t>() % 20;

@@ -20,8 +20,9 @@ constexpr double kBand = 0.03;
 std::size_t bytes_of(int width, int height, int state_dim, int features, int observations) {
   pf_config_t config;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
-  config.camera = {PF_CAMERA_PINHOLE, width, height, 0.8 * width, 0.8 * width, 0.5 * width, 0.5 * height, {}, 0,
-                   PF_CAMERA_EXACT,   0,     0,      0,           {}};
+  config.camera = {
+      PF_CAMERA_PINHOLE,  width, height, 0.8 * width, 0.8 * width, 0.5 * width, 0.5 * height, {}, 0, PF_CAMERA_EXACT,
+      PF_TIMESTAMPS_REAL, 0,     0,      0,           {}};
   if (state_dim > 0) config.capacity.max_state_dim = state_dim;
   if (features > 0) config.capacity.max_features = features;
   if (observations > 0) config.capacity.max_observations = config.map.features_in_view = observations;
@@ -64,7 +65,8 @@ void test_default_config_should_need_at_most_two_mebibytes_at_640x480() {
 void test_memory_should_depend_on_capacities_and_image_size_alone() {
   pf_config_t config;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
-  config.camera = {PF_CAMERA_PINHOLE, 640, 480, 512, 512, 320, 240, {}, 0, PF_CAMERA_EXACT, 0, 0, 0, {}};
+  config.camera = {PF_CAMERA_PINHOLE,  640, 480, 512, 512, 320, 240, {}, 0, PF_CAMERA_EXACT,
+                   PF_TIMESTAMPS_REAL, 0,   0,   0,   {}};
   pf_memory_t first, second;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &first));
   config.measurement.sigma_px = 1;

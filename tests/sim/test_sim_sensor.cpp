@@ -133,7 +133,8 @@ void test_faults_should_drop_and_repeat_frames_as_often_as_told() {
   pf_sim_options_t options;
   pf_sim_options_default("wall", &options);
   options.seed = kSeed;
-  options.camera = {PF_CAMERA_PINHOLE, 32, 32, 20, 20, 15.5, 15.5, {}, 0, PF_CAMERA_EXACT, 0, 0, 0, {}};
+  options.camera = {PF_CAMERA_PINHOLE,  32, 32, 20, 20, 15.5, 15.5, {}, 0, PF_CAMERA_EXACT,
+                    PF_TIMESTAMPS_REAL, 0,  0,  0,  {}};
   options.samples = 1;
   options.frames = 600;
   options.drop_probability = 0.2;

@@ -1,4 +1,6 @@
 // Scenes of a few seconds, rendered, and what the library says and knows in them.
+#include <cstring>
+
 #include "support/rendered_run.h"
 
 using namespace pf;
@@ -155,6 +157,24 @@ void test_a_frozen_camera_should_coast_after_coast_s_with_growing_covariance_and
   TEST_ASSERT_TRUE(run.worst_error(again) < 0.05);
 }
 
+void count_line(void* user, const char* line) {
+  std::printf("%s\n", line);
+  *static_cast<int*>(user) += std::strstr(line, "nominal timestamps") != nullptr ? 1 : 0;
+}
+
+void test_rows_should_have_no_times_of_their_own_when_timestamps_are_nominal() {
+  RenderedRun global("desk", 40, Start::kNone), rows("desk", 40, Start::kNone);
+  int lines = 0;
+  rows.config.camera.readout_s = 0.03;
+  rows.config.camera.timestamps = PF_TIMESTAMPS_NOMINAL;
+  rows.config.log = count_line;
+  rows.config.user = &lines;
+  rows.create();
+  TEST_ASSERT_EQUAL_INT(1, lines);
+  TEST_ASSERT_EQUAL_INT(global.tracked_until(40), rows.tracked_until(40));
+  TEST_ASSERT_EQUAL_MEMORY(&global.frames.back().pose, &rows.frames.back().pose, sizeof(pf_pose_t));
+}
+
 void test_pure_rotation_should_stay_starting_when_there_is_no_target() {
   RenderedRun run("rotation", 120, Start::kNone);
   run.tracked_until(120);
@@ -178,6 +198,7 @@ int main(void) {
   RUN_TEST(test_a_covered_lens_should_be_called_lost_and_tracking_should_resume_when_the_view_comes_back);
   RUN_TEST(test_a_repeated_image_should_repeat_pose_and_status_and_the_next_one_should_be_tracked);
   RUN_TEST(test_a_frozen_camera_should_coast_after_coast_s_with_growing_covariance_and_be_found_again);
+  RUN_TEST(test_rows_should_have_no_times_of_their_own_when_timestamps_are_nominal);
   RUN_TEST(test_pure_rotation_should_stay_starting_when_there_is_no_target);
   return UNITY_END();
 }

@@ -33,8 +33,8 @@ static inline void free_block(unsigned char* at) { free(at - at[-1]); }
 
 void setUp(void) {
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
-  const pf_camera_t camera = {PF_CAMERA_PINHOLE, WIDTH, HEIGHT, 130, 130, 79.5, 59.5, {0}, 0,
-                              PF_CAMERA_EXACT,   0,     0,      0,   {0}};
+  const pf_camera_t camera = {PF_CAMERA_PINHOLE,  WIDTH, HEIGHT, 130, 130, 79.5, 59.5, {0}, 0, PF_CAMERA_EXACT,
+                              PF_TIMESTAMPS_REAL, 0,     0,      0,   {0}};
   config.camera = camera;
   config.capacity.max_state_dim = 120;
   config.capacity.max_features = 30;

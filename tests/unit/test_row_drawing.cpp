@@ -15,8 +15,9 @@ namespace {
 constexpr int kTrials = 200;
 
 struct Case {
-  pf_camera_t camera{PF_CAMERA_RADTAN, 640, 480, 500, 510, 320, 240, {-0.1, 0.02, 1e-4, -1e-4, 0}, 0.03,
-                     PF_CAMERA_EXACT,  0,   0,   0,   {}};
+  pf_camera_t camera{
+      PF_CAMERA_RADTAN,   640, 480, 500, 510, 320, 240, {-0.1, 0.02, 1e-4, -1e-4, 0}, 0.03, PF_CAMERA_EXACT,
+      PF_TIMESTAMPS_REAL, 0,   0,   0,   {}};
   pf_pose_t pose{};
   capture::Vec3 p_C{};
 

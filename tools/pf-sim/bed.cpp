@@ -34,7 +34,7 @@ void set(double out[3], const Vec3& v) {
 
 pf_camera_t Bed::camera(double fov_deg) {
   const double f = 160.0 / std::tan(fov_deg * kPi / 360);
-  return {PF_CAMERA_PINHOLE, 320, 240, f, f, 159.5, 119.5, {}, 0, PF_CAMERA_EXACT, 0, 0, 0, {}};
+  return {PF_CAMERA_PINHOLE, 320, 240, f, f, 159.5, 119.5, {}, 0, PF_CAMERA_EXACT, PF_TIMESTAMPS_REAL, 0, 0, 0, {}};
 }
 
 Bed::Bed(const BedOptions& options, const pf_config_t& config, std::uint64_t seed)

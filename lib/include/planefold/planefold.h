@@ -103,6 +103,11 @@ typedef enum pf_camera_estimate {
   PF_CAMERA_CONSIDER = 1, /* allows for their errors in every covariance, and does not correct them (Schmidt) */
   PF_CAMERA_ESTIMATE = 2  /* estimates them with pose and map */
 } pf_camera_estimate_t;
+/* Where the times of frames come from. */
+typedef enum pf_timestamps {
+  PF_TIMESTAMPS_REAL = 0,   /* measured: when each image was exposed */
+  PF_TIMESTAMPS_NOMINAL = 1 /* counted: frame number over rate, as in many recordings, which know no lost frames */
+} pf_timestamps_t;
 
 typedef struct pf_camera {
   int32_t model;         /* pf_camera_model_t */
@@ -115,7 +120,10 @@ typedef struct pf_camera {
 
   /* What a context makes of the numbers above, and how uncertain they are. Each uncertain one is a row of the state,
    * up to nine: count them in capacity.max_state_dim. Only read where estimate is not PF_CAMERA_EXACT. */
-  int32_t estimate;       /* pf_camera_estimate_t */
+  int32_t estimate; /* pf_camera_estimate_t */
+  /* pf_timestamps_t. With nominal ones readout_s counts as 0, since the rows hang on a velocity that such times do not
+   * give; the log says so. */
+  int32_t timestamps;
   double sigma_focal;     /* of fx and fy together, relative: 1e-5 .. 0.2. Typical 0.01 */
   double sigma_aspect;    /* of fx against fy, relative: 1e-6 .. 0.2. Typical 0.001 */
   double sigma_centre_px; /* of cx and of cy, 0.001 .. 1000. Typical 0.01 of the width */

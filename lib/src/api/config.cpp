@@ -134,6 +134,11 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->body = moves ? BodyLayout::with_constant_velocity() : BodyLayout::with_constant_position();
   bad = lens_from(c, config, settings);
   if (bad != nullptr) return *field = bad, Status::kConfig;
+  if (c.timestamps != PF_TIMESTAMPS_REAL && c.timestamps != PF_TIMESTAMPS_NOMINAL)
+    return *field = "camera.timestamps", Status::kConfig;
+  const bool nominal = c.timestamps == PF_TIMESTAMPS_NOMINAL;
+  settings->camera.readout = nominal ? Scalar(0) : static_cast<Scalar>(c.readout_s);
+  settings->readout_ignored = nominal && c.readout_s > 0;
 
   settings->max_state_dim = config.capacity.max_state_dim;
   settings->max_features = config.capacity.max_features;

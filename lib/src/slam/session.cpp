@@ -19,6 +19,8 @@ void Session::init() {
   map_.init();
   imu_.init(settings_.imu_buffer, settings_.imu_ranges);
   filter_->init();
+  if (settings_.readout_ignored)
+    settings_.hooks.say("nominal timestamps give rows no time of their own: the rolling shutter counts as global");
 }
 
 Status Session::start_from_target(const Target& target) {

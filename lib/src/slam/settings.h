@@ -26,6 +26,7 @@ struct Settings {
   bool constant_velocity = true;
   BodyLayout body;
   MotionNoise motion_noise = {};
+  bool readout_ignored = false;  ///< the camera has a rolling shutter, but no times for its rows
 
   Scalar sigma_px = 0;
   Scalar gate = 0;  ///< chi-square bound with two degrees of freedom

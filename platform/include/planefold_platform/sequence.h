@@ -76,7 +76,9 @@ const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t in
  * which takes the size of the first image.
  * Each may have readout_s, of a rolling shutter [s], and say how well its numbers are known (pf_camera_t): sigma_focal, sigma_aspect,
  * sigma_centre_px, sigma_distortion: [..]; where one is missing, a typical value is filled in: 0.01, 0.001, 1 % of the width, and for
- * distortion zeros, or 0.05 where the file names none. rate_hz (may be null) is 0 where the file does not say it. A field that is there
+ * distortion zeros, or 0.05 where the file names none.
+ * rate_hz (may be null) is 0 where the file does not say it. A field that is there
+ * Each may have readout_s, of a rolling shutter [s], and timestamps: real | nominal (pf_timestamps_t; real). rate_hz (may be null) is 0 where the file does not say it. A field that is there
  * twice or looks like a misspelled one is refused, and so is an unknown one of the plain form; with 0, message is a line on what else was
  * ignored, or empty. */
 int pf_read_calibration(const char* path, pf_camera_t* camera, double* rate_hz, char message[PF_SEQUENCE_MESSAGE]);
