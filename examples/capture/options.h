@@ -10,7 +10,8 @@
 namespace pf::capture {
 
 constexpr int kExitDone = 0;
-constexpr int kExitRun = 1;    ///< the run could not begin, or ended early, or tracked nothing
+constexpr int kExitRun =
+    1;  ///< the run could not begin, ended early, tracked nothing, or was lost at the end or most of the time
 constexpr int kExitUsage = 2;  ///< the command line is wrong
 
 /// What the command line asks for. Negative numbers mean that the library's default is kept.

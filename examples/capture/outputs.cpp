@@ -47,7 +47,7 @@ bool Outputs::claim(const std::string& name, std::string& error) const {
   return false;
 }
 
-bool Outputs::create(TextFile& file, const char* name, std::string& error) const {
+bool Outputs::create(TextFile& file, const std::string& name, std::string& error) const {
   if (!claim(name, error)) {
     return false;
   }
@@ -65,8 +65,7 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, const pf_
     error = message;
     return false;
   }
-  if (!create(trajectory_, "trajectory.txt", error) || !create(trajectory_all_, "trajectory_all.txt", error) ||
-      !create(covariance_, "covariance.csv", error) || !create(frames_, "frames.csv", error) ||
+  if (!open_map(1, error) || !create(frames_, "frames.csv", error) ||
       (tracks && !create(tracks_, "tracks.csv", error)) || (truth && !create(truth_, "truth.tum", error))) {
     return false;
   }
@@ -79,17 +78,32 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, const pf_
     error = message;
     return false;
   }
-  trajectory_.rows() = "# T_WC of the tracked frames: timestamp tx ty tz qx qy qz qw\n";
-  trajectory_all_.rows() = "# T_WC of every frame with a pose, coasting ones too: timestamp tx ty tz qx qy qz qw\n";
-  covariance_.rows() = "# rows of trajectory.txt: timestamp, 6x6 of (theta, p) in W, row-major [rad, m]\n";
   frames_.rows() = "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof,tracked\n";
   tracks_.rows() = "frame,id,status,kind,predicted_u,predicted_v,s_uu,s_uv,s_vv,measured_u,measured_v\n";
   truth_.rows() = "# true T_WC: timestamp tx ty tz qx qy qz qw\n";
   return true;
 }
 
+/// Opens the files of poses in the world of a map, in place of those of the map before.
+bool Outputs::open_map(int map, std::string& error) {
+  const std::string end = map == 1 ? "" : "_" + std::to_string(map);
+  if (!create(trajectory_, "trajectory" + end + ".txt", error) ||
+      !create(trajectory_all_, "trajectory_all" + end + ".txt", error) ||
+      !create(covariance_, "covariance" + end + ".csv", error)) {
+    return false;
+  }
+  trajectory_.rows() = "# T_WC of the tracked frames: timestamp tx ty tz qx qy qz qw\n";
+  trajectory_all_.rows() = "# T_WC of every frame with a pose, coasting ones too: timestamp tx ty tz qx qy qz qw\n";
+  covariance_.rows() = "# rows of trajectory" + end + ".txt: timestamp, 6x6 of (theta, p) in W, row-major [rad, m]\n";
+  map_ = map;
+  return true;
+}
+
 bool Outputs::write(const FrameView& view, const pf_pose_t* truth, std::string& error) {
   const pf_report_t& report = view.report;
+  if (view.map != map_ && !open_map(view.map, error)) {
+    return false;
+  }
   std::string& frames = frames_.rows();
   put_seconds(frames, view.image.t_ns);
   append(frames, ",%s,%d,%d,%d,%d,%d,%.4f,%.6g,%d,%d\n", state_name(report.state), report.attempts, report.matches,

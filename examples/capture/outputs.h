@@ -20,7 +20,8 @@ class Outputs {
   /// Makes the folder, opens the files and writes calib.yaml. false: error is one line.
   bool open(const std::string& folder, bool tracks, bool truth, const pf_camera_t& camera, std::string& error);
 
-  /// trajectory.txt and covariance.csv where the frame was tracked, trajectory_all.txt wherever there is a pose,
+  /// trajectory.txt and covariance.csv where the frame was tracked, trajectory_all.txt wherever there is a pose; of the second map
+  /// trajectory_2.txt and so on, since each map has a world of its own;
   /// frames.csv in every frame, tracks.csv; truth.tum where truth is not null. false: error is one line (the disk is full, say).
   bool write(const FrameView& view, const pf_pose_t* truth, std::string& error);
   /// truth_planes.json, where the source knows them.
@@ -34,10 +35,12 @@ class Outputs {
   bool claim(const std::string& name, std::string& error) const;
 
  private:
-  bool create(TextFile& file, const char* name, std::string& error) const;
+  bool create(TextFile& file, const std::string& name, std::string& error) const;
+  bool open_map(int map, std::string& error);
 
   std::filesystem::path folder_;
   TextFile trajectory_, trajectory_all_, covariance_, frames_, tracks_, truth_;
+  int map_ = 0;  ///< whose files are open
 };
 
 }  // namespace pf::capture

@@ -383,6 +383,7 @@ int Run::finish() {
   } else if (failure_.empty() && statistics_.frames() > 1 && statistics_.duplicates() == statistics_.frames() - 1) {
     failure_ = why_nothing_was_tracked();
   }
+  const std::string lost = failure_.empty() ? statistics_.lost_line() : "";
   int64_t turn_ns = 0, images = 0;
   if (source_.turn(turn_ns, images)) {
     statistics_.set_turn(turn_ns, images);
@@ -402,7 +403,7 @@ int Run::finish() {
   }
   std::printf("%s\nwritten to %s%s\n", statistics_.summary(session_).c_str(), options_.out.c_str(),
               filming ? " (overlay.mp4 is the film)" : "");
-  return kExitDone;
+  return lost.empty() ? kExitDone : fail(lost);
 }
 
 }  // namespace

@@ -118,7 +118,19 @@ bool Session::reset(std::string& error) {
     error = std::string("reset: ") + pf_status_text(status);
     return false;
   }
+  was_reset_ = true;
   return begin(error);
+}
+
+/// Numbers the maps of the run across resets, after which the library counts from 1 again.
+void Session::count_map(const FrameView& view) {
+  if (was_reset_ || view.report.map_id != map_id_) {
+    map_ += map_tracked_ ? 1 : 0;
+    map_tracked_ = false;
+  }
+  was_reset_ = false;
+  map_id_ = view.report.map_id;
+  map_tracked_ = map_tracked_ || view.tracked;
 }
 
 bool Session::push(const pf_image_t& image, FrameView& view, std::string& error) {
@@ -135,6 +147,8 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   // yet, a pose from at least 8 gated inliers of this very frame.
   view.tracked =
       view.has_pose && (view.status == PF_OK || (view.report.inliers >= 8 && view.report.state == PF_STATE_STARTING));
+  count_map(view);
+  view.map = map_;
   size_t count = 0;
   view.tracks.resize(static_cast<size_t>(config_.capacity.max_observations + config_.capacity.max_features));
   if (pf_get_matches(slam_, view.tracks.data(), view.tracks.size(), &count) < 0) {

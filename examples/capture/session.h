@@ -42,6 +42,7 @@ class Session {
 
  private:
   bool begin(std::string& error);
+  void count_map(const FrameView& view);
 
   void* block_ = nullptr;
   pf_slam_t* slam_ = nullptr;
@@ -53,6 +54,10 @@ class Session {
   double gravity_W_[3] = {0.0, 0.0, 0.0};
   std::string start_;
   std::vector<std::string> log_;
+  int map_ = 1;               ///< of the run
+  uint32_t map_id_ = 1;       ///< the library's, since the last reset
+  bool map_tracked_ = false;  ///< some frame in this map was tracked
+  bool was_reset_ = false;    ///< since the last frame
 };
 
 }  // namespace pf::capture

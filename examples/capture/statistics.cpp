@@ -99,6 +99,11 @@ void Statistics::add(const FrameView& view) {
   flat_ += is_flat(view.pixels) ? 1 : 0;
   if (view.tracked) {
     ++tracked_;
+    last_tracked_ = view.index;
+    if (maps_.empty() || maps_.back().map != view.map) {
+      maps_.push_back({view.map, view.index, 0});
+    }
+    ++maps_.back().tracked;
     start_frame_ = start_frame_ < 0 ? view.index : start_frame_;
     inliers_.add(report.inliers);
     attempts_.add(report.attempts);
@@ -147,6 +152,18 @@ std::string Statistics::unreadable_line() const {
   return line;
 }
 
+std::string Statistics::lost_line() const {
+  const std::string counts = std::to_string(lost_) + " of " + std::to_string(frames_) + " frames";
+  if (2 * lost_ > frames_) {
+    return "the camera was lost most of the time, in " + counts + "; frames.csv says where";
+  }
+  if (tracked_ > 0 && last_state_ == PF_STATE_LOST) {
+    return "the camera was lost at the end: frame " + std::to_string(last_tracked_) +
+           " is the last that was tracked; frames.csv says where";
+  }
+  return "";
+}
+
 std::string Statistics::to_json(const Session& session, const Options& options, const SourceInfo& source,
                                 const std::string& live, const std::string& imu, const std::string& ended) const {
   constexpr const char* kStages[] = {"pyramid", "predict", "search", "gate", "update", "map"};
@@ -166,6 +183,14 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["tracked"] = tracked_;
   json["lost"] = lost_;
   json["frames_by_state"] = {{"tracked", tracked_}, {"starting", starting_}, {"coasting", coasting_}, {"lost", lost_}};
+  json["maps"] = Json::array();
+  for (const MapCount& map : maps_) {
+    const std::string end = map.map == 1 ? "" : "_" + std::to_string(map.map);
+    json["maps"].push_back({{"map", map.map},
+                            {"trajectory", "trajectory" + end + ".txt"},
+                            {"start_frame", map.start_frame},
+                            {"tracked", map.tracked}});
+  }
   json["losses"] = losses_;
   json["resets"] = resets_;
   json["start_frame"] = start_frame_;

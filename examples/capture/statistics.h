@@ -33,6 +33,8 @@ class Statistics {
   int64_t unreadable() const { return unreadable_; }
   std::string unreadable_line() const;
   int64_t start_frame() const { return start_frame_; }
+  /// "" or a line that says that the camera was lost at the end, or most of the time.
+  std::string lost_line() const;
   /// Frames whose pixels all equal those of the frame before.
   int64_t duplicates() const { return duplicates_; }
 
@@ -60,6 +62,12 @@ class Statistics {
   int64_t turn_ns_ = 0;
   int64_t turn_images_ = 0;  ///< 0: they did not turn
   int64_t start_frame_ = -1;
+  int64_t last_tracked_ = -1;  ///< frame
+  struct MapCount {
+    int map;
+    int64_t start_frame, tracked;
+  };
+  std::vector<MapCount> maps_;  ///< in which something was tracked; at most one per restart_s or reset
   int64_t evicted_ = 0;
   int64_t new_features_ = 0;
   double nis_ = 0.0;

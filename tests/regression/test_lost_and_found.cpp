@@ -203,22 +203,26 @@ void test_a_new_map_should_begin_with_a_new_id_after_restart_s_of_usable_picture
   for (int i = 0; i < 10 * kSecond; ++i) run.show_black();  // no picture is no reason for a new map
   TEST_ASSERT_EQUAL_UINT32(1, run.pose.map_id);
   int begun = -1;
+  std::uint32_t last_id = 1;
   for (int i = 0; i < static_cast<int>(room().picture.size()); ++i) {
     run.show(room().picture[static_cast<std::size_t>(i)]);
-    if (begun < 0 && run.pose.map_id == 2) begun = i;
+    if (begun < 0 && run.pose.map_id > 1) begun = i;
+    // An id belongs to one W: a start that is lost before any depth is known takes its id along.
+    TEST_ASSERT_TRUE(run.pose.t_ns < 0 || run.pose.map_id >= last_id);
+    if (run.pose.t_ns >= 0) last_id = run.pose.map_id;
   }
   std::printf("a new map after %d frames\n", begun);
   TEST_ASSERT_INT_WITHIN(2, 2 * kSecond, begun);
-  TEST_ASSERT_EQUAL_UINT32(2, run.pose.map_id);
+  TEST_ASSERT_GREATER_THAN_UINT32(1, run.pose.map_id);
   TEST_ASSERT_EQUAL_DOUBLE(0, kept_share(before, run.ids()));
   pf_report_t report;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(run.slam, &report));
-  TEST_ASSERT_EQUAL_UINT32(2, report.map_id);
+  TEST_ASSERT_EQUAL_UINT32(run.pose.map_id, report.map_id);
   TEST_ASSERT_EQUAL_INT32(PF_STATE_TRACKING, report.state);
   pf_feature_t feature;
   std::size_t count;
   TEST_ASSERT_EQUAL_INT(PF_NOTE_TRUNCATED, pf_get_features(run.slam, &feature, 1, &count));
-  TEST_ASSERT_EQUAL_UINT32(2, feature.map_id);
+  TEST_ASSERT_EQUAL_UINT32(run.pose.map_id, feature.map_id);
 }
 
 void test_no_new_map_should_begin_when_restart_s_is_zero() {

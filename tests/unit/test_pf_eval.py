@@ -220,6 +220,28 @@ class Command(unittest.TestCase):
             self.assertEqual(code, 1)
             self.assertIn(part, err)
 
+    def test_each_map_should_be_aligned_by_itself_and_only_the_largest_count_as_tracked(self):
+        turn = Rotation.from_euler("xyz", [30, 40, 50], degrees=True)
+        rows = []
+        for number, first, last, scale in ((1, 0, 60, 0.5), (2, 70, 180, 3.0), (3, 190, 192, 1.0)):
+            name = "trajectory.txt" if number == 1 else f"trajectory_{number}.txt"
+            part = curve().select(np.arange(first, last))
+            write_tum(self.path / name, moved(part, scale, turn if number == 2 else Rotation.identity(), [number, 0.0, 0.0]))
+            rows.append({"map": number, "trajectory": name, "start_frame": first, "tracked": last - first})
+        (self.path / "report.json").write_text(json.dumps({"truth": str(self.path / "truth.tum"), "start": "auto", "maps": rows}))
+        write_tum(self.path / "truth.tum", curve())
+        code, out, err = self.pf_eval(self.path, "--json")
+        self.assertEqual(code, 0, err)
+        result = json.loads(out)
+        self.assertEqual((result["poses"], result["frames_in_other_maps"]), (110, 62))
+        self.assertLess(result["ate_rmse_m"], 1e-6)
+        self.assertAlmostEqual(result["scale"], 1 / 3, places=6)
+        self.assertEqual([entry["map"] for entry in result["maps"]], [1, 2, 3])
+        for entry, scale in zip(result["maps"][:2], (2.0, 1 / 3)):
+            self.assertLess(entry["ate_rmse_m"], 1e-6)
+            self.assertAlmostEqual(entry["scale"], scale, places=6)
+        self.assertIn("needs at least 3", result["maps"][2]["not_compared"])
+
     def test_body_poses_should_become_camera_poses_when_truth_is_eurocs(self):
         R_BC = Rotation.from_euler("xyz", [80, 10, -30], degrees=True)
         T_BC = np.eye(4)

@@ -12,7 +12,6 @@ Status TrackingState::conclude(const FrameReport& report, const StartProgress& s
     if (d.lost) hooks.say("found the map again");
     d.lost = false;
     d.usable_ns = 0;
-    d.was_tracked = d.was_tracked || !start.pending();
     d.last_tracked_ns = report.t_ns;
     d.state = start.pending() ? SlamState::kStarting : SlamState::kTracking;
     return start.pending() ? Status::kStarting : Status::kOk;

@@ -46,9 +46,10 @@ class TrackingState {
     data_.may_skip_target = false;
     data_.started_over = true;
   }
-  /// The old map was discarded because it was not found again. The new one need not begin at a target.
+  /// The old map was discarded because it was not found again. The new one need not begin at a target. A W in which there was a pose keeps
+  /// its id.
   void begin_map() {
-    const std::uint32_t map_id = data_.map_id + (data_.was_tracked ? 1 : 0);
+    const std::uint32_t map_id = data_.map_id + (data_.has_pose ? 1 : 0);
     data_ = Data();
     data_.map_id = map_id;
     data_.may_skip_target = true;
@@ -88,7 +89,6 @@ class TrackingState {
     bool lost = false;
     bool unusable = false;  ///< this frame's pose
     bool may_skip_target = false;
-    bool was_tracked = false;  ///< in this map
     std::uint32_t map_id = 1;
     std::int64_t usable_ns = 0;  ///< of usable images while lost
     bool started_over = false;   ///< in this frame

@@ -82,7 +82,8 @@ def read_tum(path):
 
 
 def read_run(run):
-    """(trajectory with covariance where there is one, report or {}, folder) of a run's folder or trajectory file."""
+    """(trajectory with covariance where there is one, report or {}, folder) of a run's folder or trajectory file. Of a run with several
+    maps the trajectory in the map with the most tracked frames: poses in the others have another world."""
     run = pathlib.Path(run)
     if not run.exists():
         raise Refused(f"{run}: there is no such file or folder")
@@ -90,16 +91,31 @@ def read_run(run):
         return read_tum(run), {}, run.parent
     if not (run / "trajectory.txt").exists():
         raise Refused(f"{run}: has no trajectory.txt, so it is no output folder of pf-capture")
-    trajectory = read_tum(run / "trajectory.txt")
-    if (run / "covariance.csv").exists():
-        rows = read_numbers(run / "covariance.csv", 37, ",")
+    report = read_report(run)
+    maps = list_maps(report)
+    name = max(maps, key=lambda entry: entry["tracked"])["trajectory"] if maps else "trajectory.txt"
+    return read_map(run, name), report, run
+
+
+def list_maps(report):
+    """The maps of a run in which something was tracked; empty where report.json names none."""
+    return report.get("maps", [])
+
+
+def read_map(run, name):
+    """The trajectory of one map, with its covariance where there is one."""
+    run = pathlib.Path(run)
+    trajectory = read_tum(run / name)
+    table = run / name.replace("trajectory", "covariance").replace(".txt", ".csv")
+    if table.exists():
+        rows = read_numbers(table, 37, ",")
         order = np.argsort(rows[:, 0], kind="stable")
         rows = rows[order]
         found = np.clip(np.searchsorted(rows[:, 0], trajectory.t - 5e-7), 0, len(rows) - 1)
         if (np.abs(rows[found, 0] - trajectory.t) > 1e-6).any():
-            raise Refused(f"{run}/covariance.csv: has not the times of trajectory.txt")
+            raise Refused(f"{table}: has not the times of {name}")
         trajectory.covariance = rows[found, 1:].reshape(-1, 6, 6)
-    return trajectory, read_report(run), run
+    return trajectory
 
 
 def read_report(run):

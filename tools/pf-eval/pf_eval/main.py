@@ -11,7 +11,7 @@ from . import Refused
 from .camera import read_camera
 from .corners import compare_corners, read_target
 from .errors import compare, default_alignment
-from .files import read_run
+from .files import list_maps, read_map, read_run
 from .options import arguments
 from .planes import compare_planes, folding, read_planes
 from .there_and_back import compare_passes, forward
@@ -41,8 +41,28 @@ TABLE = {
     "back_distance_max": ("distance of an image's two poses, largest", "of extent"),
     "back_rotation_median_deg": ("rotation between them, median", "deg"),
     "back_rotation_max_deg": ("rotation between them, largest", "deg"), "images": ("of images", ""),
+    "frames_in_other_maps": ("tracked in other maps, counted as untracked", ""),
     "frames": ("frames compared", ""), "frames_measured": ("of frames with measured corners", ""),
 }
+
+
+def compare_maps(report, folder, truth, align):
+    """Each map of a run by itself, aligned by itself; nothing where there is one map only. The frames of all but the largest map count as
+    untracked."""
+    maps = list_maps(report)
+    if len(maps) < 2:
+        return {}
+    rows = []
+    for entry in maps:
+        row = {"map": entry["map"], "tracked": entry["tracked"]}
+        try:
+            found = compare(read_map(folder, entry["trajectory"]), truth, align, own_frame=False).summary
+            row.update({name: found[name] for name in ("pairs", "ate_rmse_m", "scale")})
+        except Refused as refused:
+            row["not_compared"] = str(refused)
+        rows.append(row)
+    tracked = [entry["tracked"] for entry in maps]
+    return {"maps": rows, "frames_in_other_maps": sum(tracked) - max(tracked)}
 
 
 def evaluate_truth(options):
@@ -64,6 +84,7 @@ def evaluate_truth(options):
     if result.summary["alignment_degenerate"]:
         print("pf-eval: note: the path is nearly straight, so the rotation of the alignment about it is not known; rot_rmse_deg is "
               "aligned by the rotations", file=sys.stderr)
+    summary.update(compare_maps(report, folder, truth, align))
     if options.planes:
         summary.update(compare_planes(report, read_planes(options.planes), result.scale, result.own_turn, result.own_shift))
     return summary
