@@ -95,10 +95,8 @@ struct FrameOfScene {
     map.init();
     frame.init();
     for (const int slot : scene.slots) {
-      Match match{};
-      match.feature = map.features.add(slot);
-      match.status = MatchStatus::kInlier;
-      frame.add(match);
+      frame.add({map.features.add(slot), 0, MatchStatus::kInlier, BlockKind::kPoint, Vec2::Zero(), Mat2::Zero(),
+                 Vec2::Zero(), Scalar(0)});
     }
   }
 };

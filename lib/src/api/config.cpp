@@ -130,7 +130,6 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   const bool moves = config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
   if (!(c.readout_s >= 0 && c.readout_s <= (moves ? kLongestReadout : 0)))
     return *field = "camera.readout_s", Status::kConfig;
-  settings->camera.readout = static_cast<Scalar>(c.readout_s);
   settings->body = moves ? BodyLayout::with_constant_velocity() : BodyLayout::with_constant_position();
   bad = lens_from(c, config, settings);
   if (bad != nullptr) return *field = bad, Status::kConfig;
