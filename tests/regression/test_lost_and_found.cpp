@@ -30,7 +30,8 @@ class Film {
   Film(const char* scene, int frames, std::uint64_t seed = kSeed) {
     pf_sim_options_t options;
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_options_default(scene, &options));
-    options.camera = {PF_CAMERA_PINHOLE, 320, 240, 260, 260, 159.5, 119.5, {}, 0, PF_CAMERA_EXACT, 0, 0, 0, {}};
+    options.camera = {PF_CAMERA_PINHOLE,  320, 240, 260, 260, 159.5, 119.5, {}, 0, PF_CAMERA_EXACT,
+                      PF_TIMESTAMPS_REAL, 0,   0,   0,   {}};
     options.seed = seed;
     options.target = std::strcmp(scene, "desk") == 0;
     options.frames = frames;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kSeed = 5;
 
 pf_camera_t camera_of(int model) {
-  pf_camera_t c{model, 320, 240, 205, 203, 158.3, 121.2, {}, 0};
+  pf_camera_t c{model, 320, 240, 205, 203, 158.3, 121.2, {}, 0, PF_CAMERA_EXACT, PF_TIMESTAMPS_REAL, 0, 0, 0, {}};
   const double radtan[5] = {-0.20, 0.04, 0.0004, -0.0003, 0}, equidistant[4] = {-0.01, 0.004, -0.003, 0.0006};
   if (model == PF_CAMERA_RADTAN) std::memcpy(c.distortion, radtan, sizeof radtan);
   if (model == PF_CAMERA_EQUIDISTANT) std::memcpy(c.distortion, equidistant, sizeof equidistant);
