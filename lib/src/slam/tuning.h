@@ -28,7 +28,7 @@ inline constexpr Scalar kMaxPositionSigma = Scalar(0.5);    ///< in median depth
 /// Finding the map again.
 namespace relocaliser {
 inline constexpr Scalar kMaxLogFalse = Scalar(-13.8);  ///< ln 1e-6 consensuses as good that chance gives per frame
-inline constexpr int kTriples = 40;
+inline constexpr int kTriples = 40;                    ///< of inliers, with which that number is computed
 inline constexpr int kFramesNearby = 2;    ///< in a row with a consensus about the prediction, after a short gap
 inline constexpr int kFramesAnywhere = 3;  ///< in a row that agree; in random order one in 20 shows a neighbour
 inline constexpr Scalar kNearbySigma = Scalar(0.1);  ///< [rad] rotation sigma of a prediction that is searched linearly

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "base/scalar.h"
 
 /// Tuned numbers of tracking: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no
@@ -23,7 +21,7 @@ inline constexpr Scalar kMaxScale = Scalar(3.2);    ///< to
 namespace view_memory {
 inline constexpr int kMaxShift = 8;        ///< [px of the thumbnail] to each side, within which views are compared
 inline constexpr float kKnownView = 0.8f;  ///< correlation above which a view is kept already
-inline constexpr std::int64_t kMinVariance = 1;  ///< [grey levels^2] of a thumbnail that can be recognised
+inline constexpr int kMinVariance = 1;     ///< [grey levels^2] of a thumbnail that can be recognised
 }  // namespace view_memory
 
 /// Sub-pixel sides of a quadrilateral.
