@@ -34,8 +34,6 @@ void FrameLoop::init() {
   since_last_ns_ = 0;
   image_usable_ = false;
   median_depth_ = 1;
-  noise_.init(settings_.sigma_px);
-  warned_of_noise_ = false;
   start_.init();
 }
 
@@ -73,8 +71,6 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     const bool supported = tracking_.is_tracked(frame_.report) || start_.progress().pending();
     if (supported) features_.count_searches();
-    // While the map starts, residuals are those of a coarse map.
-    if (supported && tracking_.state() == SlamState::kTracking && !start_.progress().recording) learn_noise();
     maintain_map(supported);
     start_.record_frame();
     // A frame that does not support its pose adds features only to a map that has none to lose.
@@ -123,15 +119,6 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
   motion_.advance(elapsed_ns(before_ns, t_ns), tracking_.coasting_or_lost(), nothing_measured);
   if (!filter_.body_is_sound()) start_over();
-}
-
-void FrameLoop::learn_noise() {
-  images_.learn_noise();
-  if (warned_of_noise_ || !noise_.is_implausible()) return;
-  warned_of_noise_ = true;
-  settings_.hooks.say(
-      "matches are 3 times as far off as their noise explains: check the calibration, the readout time and the "
-      "timestamps");
 }
 
 /// If the frame does not support its pose, nothing is decided about the map.

@@ -12,7 +12,6 @@
 #include "slam/frame.h"
 #include "slam/frozen_camera.h"
 #include "slam/image_front_end.h"
-#include "slam/noise_model.h"
 #include "slam/observation_front_end.h"
 #include "slam/pixel_update.h"
 #include "slam/plane_keeper.h"
@@ -52,14 +51,12 @@ class FrameLoop {
   const Relocaliser& relocaliser() const { return relocaliser_; }
   /// Time that the filter's body was predicted to: that of the last frame, or of the one that it repeats.
   std::int64_t filter_ns() const { return filter_ns_; }
-  const NoiseModel& noise() const { return noise_; }
 
  private:
   bool is_next(std::int64_t t_ns) const { return frame_.report.frames == 0 || t_ns > frame_.report.t_ns; }
   void begin_frame(std::int64_t t_ns);
   Status repeat_frame(std::int64_t t_ns);
   Status end_frame();
-  void learn_noise();
   void maintain_map(bool supported);
   void start_over();
   void begin_new_map();
@@ -69,14 +66,13 @@ class FrameLoop {
   Map& map_;
   Filter filter_;
   Frame frame_;
-  NoiseModel noise_;
   TrackingState tracking_;
   FrozenCamera frozen_;
   BodyMotion motion_{settings_, filter_};
   PixelUpdate update_{settings_, filter_, map_, frame_, tracking_};
   FeatureKeeper features_{settings_, filter_, map_, frame_};
   PlaneKeeper planes_{settings_, filter_, map_, frame_, features_};
-  ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_, noise_};
+  ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_};
   Relocaliser relocaliser_{settings_, filter_, map_, frame_, images_, update_};
   ObservationFrontEnd observations_{settings_, filter_, map_, frame_, features_, update_};
   FilterStart start_{settings_, motion_, {filter_, map_, frame_, tracking_, features_, images_, update_}};
@@ -84,7 +80,6 @@ class FrameLoop {
   std::int64_t since_last_ns_ = 0;  ///< from the frame before this one
   bool image_usable_ = false;       ///< this frame is an image that shows something to track
   Scalar median_depth_ = 1;         ///< of the inliers of the last tracked frame
-  bool warned_of_noise_ = false;
 };
 
 }  // namespace pf

@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kCornerThreshold = 8;       ///< [grey] of the segment test
 constexpr float kMinCornerScore = 12.0f;  ///< smaller eigenvalue of the gradients [grey^2/px^2]
+constexpr Scalar kReferenceSigma =
+    Scalar(0.25);  ///< [px] noise of the first pixel, which every later match is compared with
 constexpr int kCellColumns = 8, kCellRows = 6, kCells = kCellRows * kCellColumns;
 constexpr int kMinNewFeatures = 4;  ///< in one frame; new features share an anchor
 
@@ -66,7 +68,7 @@ bool ImageFrontEnd::add_in(const Rect& rect, int* anchor) {
     const Vec2 pixel(static_cast<Scalar>(corner[c].x), static_cast<Scalar>(corner[c].y));
     if (!is_free(pixel)) continue;
     if (frame_.full() || !features_.make_room_at(anchor)) return false;
-    const int entry = features_.add(*anchor, pixel, NoiseModel::reference());
+    const int entry = features_.add(*anchor, pixel, Mat2::Identity() * (kReferenceSigma * kReferenceSigma));
     if (entry < 0) continue;
     const CameraAt camera = camera_at(filter_.state(), Scalar(0));
     if (!remember(entry, pixel, {camera.q_WC, camera.p_W})) {

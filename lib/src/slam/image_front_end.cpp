@@ -17,7 +17,6 @@ namespace {
 constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
 constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
-constexpr int kSettled = 5;  ///< measurements of a feature; before, much of its residual is its own uncertain position
 
 }  // namespace
 
@@ -30,7 +29,6 @@ bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observat
 /// anything is used.
 void ImageFrontEnd::measure(bool start_pending) {
   const int count = list_visible();
-  listed_ = count;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
     predict_pixels(0, count);
@@ -113,7 +111,7 @@ void ImageFrontEnd::predict_pixels(int first, int count) {
     bool has_place = filter_.predict_pixel(filter_.lens(), map_.features[candidate.feature].slot, &o);
     if (has_place) {
       const Mat2 spread = update_.expected_innovation(&o);
-      o.set_noise(NoiseModel::search() + o.second_order);
+      o.set_noise(Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order);
       match.predicted = o.predicted;
       match.innovation = spread + o.R_gate;
       has_place = is_covariance(match.innovation);
@@ -176,12 +174,8 @@ int ImageFrontEnd::search(int first, int count) {
     match.measured = outcome.pixel;
     match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
     o.measured = outcome.pixel;
-    const Mat2 noise = noise_.match(outcome.noise, outcome.level_scale);
-    update_.candidate(i).noise = noise;
-    o.R_gate = noise + o.second_order;
-    o.R_update =
-        (is_averaged(map_.features[update_.candidate(i).feature]) ? noise_.correlation_frames() : Scalar(1)) * noise +
-        o.second_order;
+    const Scalar floor = settings_.sigma_px * outcome.level_scale;
+    o.set_noise(Mat2::Identity() * (floor * floor) + outcome.noise + o.second_order);
     if (found != i) update_.swap(found, i);
     ++found;
   }
@@ -194,7 +188,6 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, bool start_pendi
   update_.begin(first, found);
   unsigned char* keep = update_.keep();
   bool accepted;
-  double nis = 0;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
     const PixelMeasurement* observations = update_.observations() + first;
@@ -211,7 +204,6 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, bool start_pendi
                                 tuning::tracking::kTriples, keep + first, nullptr);
       accepted = inliers >= TrackingState::kMinInliers && consensus.log_false < tuning::tracking::kMaxLogFalse;
     }
-    if (accepted) nis = update_.reject_contradicted(first, found);
   }
   for (int i = first; i < first + found; ++i) {
     const PixelMeasurement& o = update_.observation(i);
@@ -221,10 +213,7 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, bool start_pendi
     match.nis =
         squared_distance(match.measured - o.predicted, filter_.innovation_block(i - first, i - first) + o.R_gate);
   }
-  // Jointly, with the noise of the gate: that of the update allows for errors that come again in later frames.
-  if (!accepted || !update_.apply(first, found, nullptr)) return false;
-  frame_.report.nis += nis;
-  return true;
+  return accepted && update_.apply(first, found);
 }
 
 Scalar ImageFrontEnd::searched_area(int i) const {
@@ -232,28 +221,6 @@ Scalar ImageFrontEnd::searched_area(int i) const {
   const Scalar det = S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
   const Scalar all = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
   return std::min(all, Scalar(3.14159265) * settings_.gate * std::sqrt(std::max(det, Scalar(0))));
-}
-
-/// Whether a feature's matches add up to coordinates that are averaged over frames, so that errors which stay with the feature count. The
-/// target's coordinates are given, and an inverse depth has been seen from about its first view only, which its matches are compared with.
-bool ImageFrontEnd::is_averaged(const Feature& f) const {
-  return !f.is_target && filter_.state().block[f.slot].kind != BlockKind::kInverseDepth;
-}
-
-void ImageFrontEnd::learn_noise() {
-  for (int i = 0; i < listed_; ++i) {
-    const Candidate& candidate = update_.candidate(i);
-    if (update_.keep()[i] == 0 || frame_.match(candidate.match).status != MatchStatus::kInlier) continue;
-    Feature& f = map_.features[candidate.feature];
-    PixelMeasurement now;
-    if (f.observations < kSettled || !filter_.predict_pixel(settings_.camera, f.slot, &now)) continue;
-    const bool averaged = is_averaged(f);
-    const Scalar correlation = averaged ? noise_.correlation_frames() : Scalar(1);
-    const Scalar leverage = filter_.innovation(now).trace() / (correlation * candidate.noise.trace());
-    noise_.learn(frame_.report.frames, update_.observation(i).measured - now.predicted, candidate.noise, leverage,
-                 averaged ? &f.residuals : nullptr);
-  }
-  noise_.end_frame();
 }
 
 }  // namespace pf

@@ -4,7 +4,6 @@
 #include "map/map.h"
 #include "slam/feature_keeper.h"
 #include "slam/frame.h"
-#include "slam/noise_model.h"
 #include "slam/pixel_update.h"
 #include "slam/settings.h"
 #include "track/tracker.h"
@@ -16,14 +15,8 @@ namespace pf {
 class ImageFrontEnd {
  public:
   ImageFrontEnd(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features,
-                PixelUpdate& update, NoiseModel& noise)
-      : settings_(settings),
-        filter_(filter),
-        map_(map),
-        frame_(frame),
-        features_(features),
-        update_(update),
-        noise_(noise) {}
+                PixelUpdate& update)
+      : settings_(settings), filter_(filter), map_(map), frame_(frame), features_(features), update_(update) {}
 
   bool layout(Arena& arena, int width, int height, int max_observations);
   void init(const Camera& camera) { tracker_.init(camera); }
@@ -33,8 +26,6 @@ class ImageFrontEnd {
   /// Finds the map's features in the image and updates the filter with them.
   /// start_pending: no depth is known yet, so that the test against chance says nothing.
   void measure(bool start_pending);
-  /// Updates the noise model with the inliers' residuals after measure().
-  void learn_noise();
   /// Adds features in the emptiest cells of the image until enough are in view.
   void add_features();
   /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
@@ -58,7 +49,6 @@ class ImageFrontEnd {
   Scalar widest_ellipse(int count) const;
   SearchTask task_of(int i) const;
   bool update_with_consensus(int first, int found, bool start_pending);
-  bool is_averaged(const Feature& f) const;
 
   // image_corners.cpp
   bool is_free(const Vec2& pixel) const;
@@ -70,10 +60,8 @@ class ImageFrontEnd {
   Frame& frame_;
   FeatureKeeper& features_;
   PixelUpdate& update_;
-  NoiseModel& noise_;
   Tracker tracker_;
   Scalar* searched_px2_ = nullptr;  ///< max_observations
-  int listed_ = 0;                  ///< candidates of this frame
 };
 
 }  // namespace pf

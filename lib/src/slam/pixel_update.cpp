@@ -9,9 +9,6 @@ namespace pf {
 namespace {
 
 constexpr int kMaxRounds = 3;  ///< of relinearisation
-/// Of the gate of one match against all the others, in gates. With dozens of tests a frame, one that rejects a right match in 1 of 100
-/// would reject one in every other frame: (1/100)^1.5 = 1/1000.
-constexpr Scalar kOthersGate = Scalar(1.5);
 
 }  // namespace
 
@@ -20,7 +17,6 @@ bool PixelUpdate::layout(Arena& arena, int max_observations) {
   candidate_ = arena.take<Candidate>(count);
   observation_ = arena.take<PixelMeasurement>(count);
   keep_ = arena.take<unsigned char>(count);
-  others_.layout(arena, max_observations);
   return arena.ok();
 }
 
@@ -29,22 +25,16 @@ void PixelUpdate::begin(int first, int count) {
   filter_.begin_update(observation_ + first, count);
 }
 
-double PixelUpdate::reject_contradicted(int first, int count) {
-  Scalar nis = 0;
-  others_.reject(filter_, observation_ + first, count, kOthersGate * settings_.gate, keep_ + first, &nis);
-  return static_cast<double>(nis);
-}
-
-bool PixelUpdate::apply(int first, int count, double* nis) {
+bool PixelUpdate::apply(int first, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
-  Scalar sum = 0;
-  const bool done = filter_.finish_update(observation_ + first, count, keep_ + first, &sum);
+  Scalar nis = 0;
+  const bool done = filter_.finish_update(observation_ + first, count, keep_ + first, &nis);
   tracking_.note_update(done);
   if (!done) {
     for (int i = first; i < first + count; ++i) frame_.match(candidate_[i].match).status = MatchStatus::kOutlier;
     return false;
   }
-  if (nis != nullptr) *nis += static_cast<double>(sum);
+  frame_.report.nis += static_cast<double>(nis);
   for (int i = first; i < first + count; ++i) {
     if (keep_[i] == 0) continue;
     frame_.report.nis_dof += 2;
