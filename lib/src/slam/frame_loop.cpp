@@ -59,13 +59,14 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   tracking_.note_usable_image(since_last_ns_);
   if (tracking_.needs_new_map(settings_.restart_ns)) begin_new_map();
   const bool first = !tracking_.has_pose();
+  const bool young = start_.progress().pending() || map_is_young();
   if (first) {
     if (!start_.start_in_image()) return end_frame();
-  } else if (tracking_.is_relocalising(start_.progress())) {
+  } else if (tracking_.is_relocalising(start_.progress()) && !young) {
     relocaliser_.recover(since_last_ns_);
   } else {
     relocaliser_.clear_proposals();
-    images_.measure(start_.progress().pending());
+    images_.measure(young);
   }
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
@@ -119,6 +120,15 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
   motion_.advance(elapsed_ns(before_ns, t_ns), tracking_.coasting_or_lost(), nothing_measured);
   if (!filter_.body_is_sound()) start_over();
+}
+
+/// Whether fewer features have a depth of their own than a tracked frame needs: of a match along a ray whose depth is open, chance
+/// cannot be told from a consensus.
+bool FrameLoop::map_is_young() const {
+  int known = 0;
+  for (int i = 0; i < map_.features.capacity() && known < TrackingState::kMinInliers; ++i)
+    known += map_.features.used(i) && filter_.state().block[map_.features[i].slot].kind != BlockKind::kInverseDepth;
+  return known < TrackingState::kMinInliers;
 }
 
 /// If the frame does not support its pose, nothing is decided about the map.

@@ -57,6 +57,7 @@ class FrameLoop {
   void begin_frame(std::int64_t t_ns);
   Status repeat_frame(std::int64_t t_ns);
   Status end_frame();
+  bool map_is_young() const;
   void maintain_map(bool supported);
   void start_over();
   void begin_new_map();
