@@ -5,6 +5,7 @@
 #include "filter/observe/point.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
+#include "slam/random_triples.h"
 
 namespace pf {
 namespace {
@@ -82,18 +83,11 @@ int propose_pose(const Camera& camera, const Mat6& P, const Vec3* f_W, const Vec
   short index[kMaxMatches];
   int inliers = 0;
   Scalar best = problem.judge(prior, count, index, &inliers);
-  std::uint32_t random = 7;
-  const auto draw = [&] {
-    random = random * 1664525u + 1013904223u;
-    return static_cast<short>((random >> 8) % static_cast<std::uint32_t>(count));
-  };
+  RandomTriples random(count, 7);
   for (int trial = 0; trial < kTrials; ++trial) {
-    short three[3];
-    three[0] = draw();
-    do three[1] = draw();
-    while (three[1] == three[0]);
-    do three[2] = draw();
-    while (three[2] == three[0] || three[2] == three[1]);
+    int drawn[3];
+    random.draw(drawn);
+    const short three[3] = {static_cast<short>(drawn[0]), static_cast<short>(drawn[1]), static_cast<short>(drawn[2])};
     Body body = prior;
     if (!problem.fit(three, 3, &body)) continue;
     const Scalar cost = problem.judge(body, count, index, &inliers);

@@ -6,6 +6,7 @@
 #include "geometry/small_cholesky.h"
 #include "map/plane_chance.h"
 #include "slam/consensus.h"
+#include "slam/random_triples.h"
 #include "slam/tuning.h"
 
 namespace pf {
@@ -35,19 +36,12 @@ TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasureme
     if (keep != nullptr) std::fill(keep, keep + found, static_cast<unsigned char>(0));
     return best;
   }
-  std::uint32_t random = 1;
-  const auto draw = [&] {
-    random = random * 1664525u + 1013904223u;
-    return static_cast<int>(pool[(random >> 8) % static_cast<std::uint32_t>(size)]);
-  };
+  RandomTriples random(size, 1);
   bool any = false;
   for (int trial = 0; trial < triples; ++trial) {
     int three[3];
-    three[0] = draw();
-    do three[1] = draw();
-    while (three[1] == three[0]);
-    do three[2] = draw();
-    while (three[2] == three[0] || three[2] == three[1]);
+    random.draw(three);
+    for (int& index : three) index = pool[index];
     Mat6 S_T;
     Vec6 r_T;
     for (int a = 0; a < 3; ++a) {
