@@ -43,11 +43,7 @@ class RenderedRun {
     block_ = std::aligned_alloc(need.alignment, (need.bytes + need.alignment) / need.alignment * need.alignment);
     TEST_ASSERT_NOT_NULL(block_);
     create();
-    if (start == Start::kRectangle) {
-      pf_target_t target;
-      TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_target(sim_, PF_TARGET_RECTANGLE, &target));
-      TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
-    }
+    if (start == Start::kRectangle) start_at_rectangle();
   }
   RenderedRun(const RenderedRun&) = delete;
   RenderedRun& operator=(const RenderedRun&) = delete;
@@ -57,6 +53,12 @@ class RenderedRun {
   }
 
   void create() { TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block_, need.bytes, &slam)); }
+
+  void start_at_rectangle() {
+    pf_target_t target;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_target(sim_, PF_TARGET_RECTANGLE, &target));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
+  }
 
   bool next_image(pf_image_t* image) { return pf_sim_next(sim_, image, &truth_) == 1; }
 
