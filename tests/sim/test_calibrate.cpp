@@ -8,6 +8,7 @@
 #include <planefold_platform/sequence.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +16,7 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "board_views.h"
 #include "image_files.h"
@@ -157,79 +159,37 @@ void check_recovers(const pf_camera_t& truth, const char* model, double noise_gr
   TEST_ASSERT_LESS_THAN_INT_MESSAGE(kSharpViews, corners.last_frame, "a blurred view was used");
 }
 
+pf_camera_t camera_of(pf_camera_model_t model, double fx, double fy, double cx, double cy,
+                      const std::vector<double>& distortion) {
+  pf_camera_t camera = {};
+  camera.model = model;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = fx;
+  camera.fy = fy;
+  camera.cx = cx;
+  camera.cy = cy;
+  std::copy(distortion.begin(), distortion.end(), camera.distortion);
+  return camera;
+}
+
 void test_calibrate_should_recover_focal_lengths_and_noise_with_radial_and_tangential_distortion() {
-  check_recovers({PF_CAMERA_RADTAN,
-                  640,
-                  480,
-                  503.2,
-                  498.7,
-                  326.1,
-                  235.4,
-                  {-0.28, 0.08, 0.0004, -0.0003},
-                  0,
-                  PF_CAMERA_EXACT,
-                  PF_TIMESTAMPS_REAL,
-                  0,
-                  0,
-                  0,
-                  {}},
-                 "radtan", 4, false);
+  check_recovers(camera_of(PF_CAMERA_RADTAN, 503.2, 498.7, 326.1, 235.4, {-0.28, 0.08, 0.0004, -0.0003}), "radtan", 4,
+                 false);
 }
 
 void test_calibrate_should_recover_focal_lengths_and_noise_of_a_wide_lens() {
-  check_recovers({PF_CAMERA_EQUIDISTANT,
-                  640,
-                  480,
-                  261.3,
-                  260.6,
-                  317.4,
-                  243.8,
-                  {-0.012, 0.006, -0.004, 0.001},
-                  0,
-                  PF_CAMERA_EXACT,
-                  PF_TIMESTAMPS_REAL,
-                  0,
-                  0,
-                  0,
-                  {}},
+  check_recovers(camera_of(PF_CAMERA_EQUIDISTANT, 261.3, 260.6, 317.4, 243.8, {-0.012, 0.006, -0.004, 0.001}),
                  "equidistant", 4, false);
 }
 
 void test_calibrate_should_do_with_parts_of_a_charuco_board() {
-  check_recovers({PF_CAMERA_RADTAN,
-                  640,
-                  480,
-                  503.2,
-                  498.7,
-                  326.1,
-                  235.4,
-                  {-0.28, 0.08, 0.0004, -0.0003},
-                  0,
-                  PF_CAMERA_EXACT,
-                  PF_TIMESTAMPS_REAL,
-                  0,
-                  0,
-                  0,
-                  {}},
-                 "radtan", 4, true);
+  check_recovers(camera_of(PF_CAMERA_RADTAN, 503.2, 498.7, 326.1, 235.4, {-0.28, 0.08, 0.0004, -0.0003}), "radtan", 4,
+                 true);
 }
 
 void test_calibrate_should_do_with_parts_of_a_charuco_board_through_a_wide_lens() {
-  check_recovers({PF_CAMERA_EQUIDISTANT,
-                  640,
-                  480,
-                  261.3,
-                  260.6,
-                  317.4,
-                  243.8,
-                  {-0.012, 0.006, -0.004, 0.001},
-                  0,
-                  PF_CAMERA_EXACT,
-                  PF_TIMESTAMPS_REAL,
-                  0,
-                  0,
-                  0,
-                  {}},
+  check_recovers(camera_of(PF_CAMERA_EQUIDISTANT, 261.3, 260.6, 317.4, 243.8, {-0.012, 0.006, -0.004, 0.001}),
                  "equidistant", 4, true);
 }
 
