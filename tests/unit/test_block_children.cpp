@@ -16,8 +16,9 @@ void check_lists(const State& state) {
     if (state.block[s].kind == BlockKind::kNone) continue;
     std::vector<int> found, listed;
     for (int t = 0; t < state.slots; ++t)
-      if (state.block[t].kind != BlockKind::kNone && state.block[t].parent == s) found.push_back(t);
-    for (int c = state.block[s].first_child; c >= 0; c = state.block[c].next_sibling) listed.push_back(c);
+      if (state.block[t].kind != BlockKind::kNone && (state.block[t].parent == s || state.block[t].second_parent == s))
+        found.push_back(t);
+    for (int c = state.block[s].first_child; c >= 0; c = state.next_child(s, c)) listed.push_back(c);
     TEST_ASSERT_EQUAL_size_t(found.size(), listed.size());
     TEST_ASSERT_EQUAL_INT(state.block[s].children, static_cast<int>(listed.size()));
     for (std::size_t i = 1; i < listed.size(); ++i)
@@ -119,12 +120,44 @@ void test_every_feature_should_be_visited_when_each_is_unfolded_on_the_way() {
   check_lists(scene.filter->state());
 }
 
+/// Points of a plane, some of which depend on a second block; their two lists are in the order of owners, whatever comes first.
+void test_a_block_should_stand_in_the_lists_of_both_its_parents() {
+  SeededRandom random(404);
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<Block> blocks(16);
+    State state;
+    state.block = blocks.data();
+    state.slots = 16;
+    for (int s = 0; s < 14; ++s) {
+      blocks[static_cast<std::size_t>(s)].kind = s < 2 ? BlockKind::kPlane : BlockKind::kPlanePoint;
+      blocks[static_cast<std::size_t>(s)].owner = static_cast<std::int16_t>(random.uniform(0, 6));
+    }
+    for (int s = 2; s < 14; ++s) {
+      if (s % 3 != 0) state.adopt(s % 2, s);
+      if (s % 4 != 0) state.adopt_as_second(1 - s % 2, s);
+    }
+    check_lists(state);
+    for (int s = 2; s < 14; s += 3) state.set_owner(s, static_cast<int>(random.uniform(0, 6)));
+    check_lists(state);
+    for (int s = 2; s < 14; ++s) {
+      const int second = state.block[s].second_parent;
+      if (s % 5 == 0) state.leave_second_parent(s);
+      if (s % 5 == 1) {
+        state.leave_parent(s);
+        TEST_ASSERT_EQUAL_INT(second, state.block[s].second_parent);
+      }
+      check_lists(state);
+    }
+  }
+}
+
 }  // namespace
 
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_lists_should_be_what_a_search_finds_after_every_operation);
   RUN_TEST(test_lists_of_anchors_should_follow_owners_that_are_set_later);
+  RUN_TEST(test_a_block_should_stand_in_the_lists_of_both_its_parents);
   RUN_TEST(test_every_feature_should_be_visited_when_each_is_unfolded_on_the_way);
   return UNITY_END();
 }

@@ -157,6 +157,7 @@ void Filter::remove(const int* slots, int count) {
     Block& block = state_.block[slots[i]];
     PF_ASSERT(block.kind != BlockKind::kPlane || block.children == 0);
     state_.leave_parent(slots[i]);
+    state_.leave_second_parent(slots[i]);
     if (block.kind == BlockKind::kPlane) --state_.planes;
     block.kind = BlockKind::kNone;
   }
@@ -164,6 +165,7 @@ void Filter::remove(const int* slots, int count) {
     Block& block = state_.block[s];
     if (!info(block.kind).dies_childless || block.children > 0) continue;
     state_.leave_parent(s);
+    state_.leave_second_parent(s);
     block.kind = BlockKind::kNone;
   }
   int gone = 0;

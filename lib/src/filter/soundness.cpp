@@ -34,7 +34,8 @@ bool Filter::block_is_sound(int slot) const {
   for (int i = 0; i < info(block.kind).values; ++i)
     if (!is_value(block.value[i])) return false;
   if (block.size > 0 && !are_variances(covariance(), first_row(slot), block.size)) return false;
-  return block.parent < 0 || block_is_sound(block.parent);
+  return (block.parent < 0 || block_is_sound(block.parent)) &&
+         (block.second_parent < 0 || block_is_sound(block.second_parent));
 }
 
 bool Filter::is_step(const Scalar* dx) const {

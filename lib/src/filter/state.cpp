@@ -10,32 +10,63 @@ namespace pf {
 const KindInfo kKindInfo[kBlockKinds] = {KindInfo() PF_KINDS(PF_INFO)};
 #undef PF_INFO
 
-void State::adopt(int parent, int child) {
+std::int16_t* State::next_link(int parent, int child) {
   Block& c = block[child];
-  PF_ASSERT(c.parent < 0);
+  return c.parent == parent ? &c.next_sibling : &c.next_of_second;
+}
+
+/// Into the list of a block that it has as a parent already.
+void State::insert(int parent, int child) {
   std::int16_t* link = &block[parent].first_child;
-  while (*link >= 0 && block[*link].owner <= c.owner) link = &block[*link].next_sibling;
-  c.parent = static_cast<std::int16_t>(parent);
-  c.next_sibling = *link;
+  while (*link >= 0 && block[*link].owner <= block[child].owner) link = next_link(parent, *link);
+  *next_link(parent, child) = *link;
   *link = static_cast<std::int16_t>(child);
   ++block[parent].children;
+}
+
+void State::take_out(int parent, int child) {
+  std::int16_t* link = &block[parent].first_child;
+  while (*link != child) link = next_link(parent, *link);
+  *link = *next_link(parent, child);
+  *next_link(parent, child) = -1;
+  --block[parent].children;
+}
+
+void State::adopt(int parent, int child) {
+  Block& c = block[child];
+  PF_ASSERT(c.parent < 0 && c.second_parent != parent);
+  c.parent = static_cast<std::int16_t>(parent);
+  insert(parent, child);
+}
+
+void State::adopt_as_second(int parent, int child) {
+  Block& c = block[child];
+  PF_ASSERT(c.second_parent < 0 && c.parent != parent);
+  c.second_parent = static_cast<std::int16_t>(parent);
+  insert(parent, child);
 }
 
 void State::leave_parent(int child) {
   Block& c = block[child];
   if (c.parent < 0) return;
-  std::int16_t* link = &block[c.parent].first_child;
-  while (*link != child) link = &block[*link].next_sibling;
-  *link = c.next_sibling;
-  --block[c.parent].children;
-  c.parent = c.next_sibling = -1;
+  take_out(c.parent, child);
+  c.parent = -1;
+}
+
+void State::leave_second_parent(int child) {
+  Block& c = block[child];
+  if (c.second_parent < 0) return;
+  take_out(c.second_parent, child);
+  c.second_parent = -1;
 }
 
 void State::set_owner(int slot, int owner) {
-  const int parent = block[slot].parent;
+  const int parent = block[slot].parent, second = block[slot].second_parent;
   leave_parent(slot);
+  leave_second_parent(slot);
   block[slot].owner = static_cast<std::int16_t>(owner);
   if (parent >= 0) adopt(parent, slot);
+  if (second >= 0) adopt_as_second(second, slot);
 }
 
 void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
@@ -66,7 +97,7 @@ namespace {
 /// What hangs on a plane or point group shares the rows that its own are made of.
 void add_children(const State& state, const BlockFilter& blocks, int parent, const model::PlanarRows& rows,
                   const GaugeSum& sum) {
-  for (int t = state.block[parent].first_child; t >= 0; t = state.block[t].next_sibling) {
+  for (int t = state.block[parent].first_child; t >= 0; t = state.next_child(parent, t)) {
     const Block& child = state.block[t];
     if (child.size == 0 || !is_planar(child.kind)) continue;
     const Vec2 c = child.uv();

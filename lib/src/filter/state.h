@@ -45,8 +45,15 @@ struct State {
 
   /// Makes a block without a parent a child of this one.
   void adopt(int parent, int child);
-  /// Takes a block out of its parent's list; nothing where it has no parent.
+  /// Likewise one without a second parent.
+  void adopt_as_second(int parent, int child);
+  /// Takes a block out of its parent's list; nothing where it has no parent. Its second parent stays.
   void leave_parent(int child);
+  void leave_second_parent(int child);
+  /// The child of the same parent behind this one, or -1.
+  int next_child(int parent, int child) const {
+    return block[child].parent == parent ? block[child].next_sibling : block[child].next_of_second;
+  }
   /// Says which entry of the map's table a block belongs to.
   void set_owner(int slot, int owner);
 
@@ -54,17 +61,25 @@ struct State {
   /// that it is given, unfold it or release it.
   template <typename F>
   void for_each_planar(int plane, F&& f) const {
-    int direct = block[plane].first_child, fixed = -1;
-    for (int c = direct; c >= 0; c = block[c].next_sibling)
-      if (block[c].kind == BlockKind::kPointGroup) fixed = block[c].first_child;
+    int direct = block[plane].first_child, group = -1, fixed = -1;
+    for (int c = direct; c >= 0; c = next_child(plane, c))
+      if (block[c].kind == BlockKind::kPointGroup) {
+        group = c;
+        fixed = block[c].first_child;
+      }
     while (direct >= 0 || fixed >= 0) {
       const bool take_direct = fixed < 0 || (direct >= 0 && block[direct].owner <= block[fixed].owner);
       int& cursor = take_direct ? direct : fixed;
       const int slot = cursor;
-      cursor = block[slot].next_sibling;
+      cursor = next_child(take_direct ? plane : group, slot);
       if (is_planar(block[slot].kind)) f(slot);
     }
   }
+
+ private:
+  std::int16_t* next_link(int parent, int child);
+  void insert(int parent, int child);
+  void take_out(int parent, int child);
 };
 
 /// x <- x [+] dx: every block moves by its rows of dx.

@@ -78,14 +78,16 @@ struct Block {
   static constexpr int kMaxValues = 10;  ///< a reference camera has seven, a lens ten
 
   BlockKind kind = BlockKind::kNone;
-  std::int16_t size = 0;      ///< rows that it has: those of its kind, or none
-  std::int16_t parent = -1;   ///< slot of the anchor, plane or point group
-  std::int16_t children = 0;  ///< blocks that have this one as parent
-  std::int16_t owner = -1;    ///< entry of the map's table that this block belongs to; orders the children of a parent
-  std::int16_t first_child = -1;   ///< slots, by ascending owner; of equal owners the one that came first
-  std::int16_t next_sibling = -1;  ///< of the same parent
-  std::int16_t frame = -1;         ///< of a plane: index into State::plane_frame
-  Scalar value[kMaxValues] = {};   ///< what they are, the kind's file says
+  std::int16_t size = 0;            ///< rows that it has: those of its kind, or none
+  std::int16_t parent = -1;         ///< slot of the block that its coordinates are in: an anchor, plane or point group
+  std::int16_t second_parent = -1;  ///< slot of another block that its place depends on
+  std::int16_t children = 0;        ///< blocks that have this one as a parent
+  std::int16_t owner = -1;  ///< entry of the map's table that this block belongs to; orders the children of a parent
+  std::int16_t first_child = -1;     ///< slots, by ascending owner; of equal owners the one that came first
+  std::int16_t next_sibling = -1;    ///< in the list of its parent
+  std::int16_t next_of_second = -1;  ///< in the list of its second parent
+  std::int16_t frame = -1;           ///< of a plane: index into State::plane_frame
+  Scalar value[kMaxValues] = {};     ///< what they are, the kind's file says
 
   Vec3 xyz() const { return Vec3(value[0], value[1], value[2]); }
   void set_xyz(const Vec3& p) {
