@@ -13,6 +13,14 @@ namespace {
 
 constexpr int kShiftAndTurn = 6, kAll = 7;
 
+/// N^T P^-1 N of a scene, 7 x 7.
+Dense information_of(const TestFilter& filter) {
+  std::vector<double> scratch(static_cast<std::size_t>(filter.dim() * (filter.dim() + 8)));
+  double out[49];
+  TEST_ASSERT_TRUE(gauge_information(*filter, scratch.data(), out));
+  return Eigen::Map<const Eigen::Matrix<double, 7, 7, Eigen::RowMajor>>(out);
+}
+
 void test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale() {
   SeededRandom random(61);
   for (int trial = 0; trial < 20; ++trial) {
@@ -222,28 +230,21 @@ void test_folds_and_updates_should_gain_nothing_about_the_gauge() {
   for (int trial = 0; trial < 10; ++trial) {
     PlaneScene scene(random, 0.01);
     // Tight, so that the world is a rigid one that drifts: gauge directions with little else.
-    const auto information = [&] {
-      const int n = scene.filter.dim();
-      std::vector<double> scratch(static_cast<std::size_t>(n * (n + 8)));
-      double out[49];
-      TEST_ASSERT_TRUE(gauge_information(*scene.filter, scratch.data(), out));
-      return Dense(Eigen::Map<const Eigen::Matrix<double, 7, 7, Eigen::RowMajor>>(out));
-    };
     const Dense N = scene.filter.gauge();
     const Dense A = random_covariance(random, kAll, 0.3);
     scene.filter.set_P(N * A * N.transpose() + random_covariance(random, scene.filter.dim(), 0.02));
-    Dense before = information();
+    Dense before = information_of(scene.filter);
     unsigned char in[Filter::kMostFolded];
     TEST_ASSERT_EQUAL_INT(
         8, scene.filter->fold(scene.plane, scene.on_wall.data(), 8, {Scalar(0.002), Scalar(1e6), true}, in));
-    Dense now = information();
+    Dense now = information_of(scene.filter);
     for (int i = 0; i < kAll; ++i) {
       if (!(now(i, i) < before(i, i) * (1 + 2e-3)))
         std::printf("fold, direction %d: %.3g\n", i, now(i, i) / before(i, i) - 1);
       TEST_ASSERT_TRUE(now(i, i) < before(i, i) * (1 + 2e-3));
     }
     TEST_ASSERT_TRUE(scene.filter->fix(scene.on_wall.data(), 5, FixForm::kConsider, scene.on_wall.data(), 8));
-    before = information();
+    before = information_of(scene.filter);
     std::vector<PixelMeasurement> seen;
     for (const int slot : scene.on_wall) {
       PixelMeasurement o;
@@ -254,7 +255,7 @@ void test_folds_and_updates_should_gain_nothing_about_the_gauge() {
     }
     scene.filter->begin_update(seen.data(), static_cast<int>(seen.size()));
     TEST_ASSERT_TRUE(scene.filter->finish_update(seen.data(), static_cast<int>(seen.size()), nullptr, nullptr));
-    now = information();
+    now = information_of(scene.filter);
     for (int i = 0; i < kAll; ++i) {
       if (!(now(i, i) < before(i, i) * (1 + 1e-9)))
         std::printf("update, direction %d: %.3g\n", i, now(i, i) / before(i, i) - 1);
@@ -328,11 +329,7 @@ Growth run(bool keep_gauge, SeededRandom& random) {
       points += filter->state().block[slot[i]].kind == BlockKind::kPoint ? 1 : 0;
     }
 
-    const int n = filter.dim();
-    std::vector<double> scratch(static_cast<std::size_t>(n * (n + 8)));
-    double information[49];
-    TEST_ASSERT_TRUE(gauge_information(*filter, scratch.data(), information));
-    const Dense now = Eigen::Map<const Eigen::Matrix<double, 7, 7, Eigen::RowMajor>>(information);
+    const Dense now = information_of(filter);
     // Where the camera is seen from a state that is far from W's origin, turns and shifts mix: compare along the axes.
     for (int i = 0; i < kAll && k > 0; ++i) {
       const double grown = (now(i, i) - before(i, i)) / before(i, i);
@@ -346,6 +343,39 @@ Growth run(bool keep_gauge, SeededRandom& random) {
   std::printf("largest growth in a frame: shift and turn %.3g, scale %.3g; %d points\n", growth.shift_and_turn,
               growth.scale, points);
   return growth;
+}
+
+/// A model that measures the scale says so in one place: its direction is zero in the rows and in the information, nothing picks a log
+/// scale, and updates still gain nothing about the other six.
+void test_a_direction_that_is_observable_should_be_zero_and_leave_the_others() {
+  SeededRandom random(74);
+  for (int trial = 0; trial < 10; ++trial) {
+    PlaneScene scene(random, 0.01);
+    const Dense N = scene.filter.gauge();
+    scene.filter.set_P(N * random_covariance(random, kAll, 0.3) * N.transpose() +
+                       random_covariance(random, scene.filter.dim(), 0.02));
+    const Dense all = information_of(scene.filter);
+    scene.filter.set_unobservable(gauge::kMetric);
+    TEST_ASSERT_TRUE(largest(scene.filter.gauge().leftCols(kShiftAndTurn) - N.leftCols(kShiftAndTurn)) == 0);
+    TEST_ASSERT_TRUE(largest(scene.filter.gauge().col(gauge::kScale)) == 0);
+    const Dense before = information_of(scene.filter);
+    TEST_ASSERT_TRUE(largest(before.topLeftCorner(6, 6) - all.topLeftCorner(6, 6)) == 0);
+    TEST_ASSERT_TRUE(largest(before.row(gauge::kScale)) == 0 && largest(before.col(gauge::kScale)) == 0);
+    ScaleRow l;
+    TEST_ASSERT_FALSE(scene.filter->scale_row(&l));
+    std::vector<PixelMeasurement> seen;
+    for (const int slot : scene.on_wall) {
+      PixelMeasurement o;
+      if (!scene.filter->predict_pixel(pinhole_camera(), slot, &o)) continue;
+      o.measured = o.predicted + random.normals<2>(2);
+      o.set_noise(Mat2::Identity() * Scalar(0.25));
+      seen.push_back(o);
+    }
+    scene.filter->begin_update(seen.data(), static_cast<int>(seen.size()));
+    TEST_ASSERT_TRUE(scene.filter->finish_update(seen.data(), static_cast<int>(seen.size()), nullptr, nullptr));
+    const Dense now = information_of(scene.filter);
+    for (int i = 0; i < kShiftAndTurn; ++i) TEST_ASSERT_TRUE(now(i, i) < before(i, i) * (1 + 1e-9));
+  }
 }
 
 void test_information_about_the_gauge_should_never_grow_when_it_is_kept() {
@@ -380,6 +410,7 @@ int main(void) {
   RUN_TEST(test_operations_on_planes_should_carry_every_direction);
   RUN_TEST(test_no_pixel_of_a_plane_s_point_should_see_the_gauge);
   RUN_TEST(test_folds_and_updates_should_gain_nothing_about_the_gauge);
+  RUN_TEST(test_a_direction_that_is_observable_should_be_zero_and_leave_the_others);
   RUN_TEST(test_information_about_the_gauge_should_never_grow_when_it_is_kept);
   RUN_TEST(test_information_about_the_gauge_should_grow_with_the_textbook_filter);
   return UNITY_END();

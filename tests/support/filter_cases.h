@@ -77,6 +77,7 @@ class TestFilter {
   int first(int slot) const { return filter_.first_row(slot); }
   /// Moves the state by an error, and the covariance not at all.
   void move(const Scalar* dx) { apply_error(const_cast<State&>(filter_.state()), filter_.blocks(), dx); }
+  void set_unobservable(gauge::Set set) { const_cast<State&>(filter_.state()).unobservable = set; }
 
   /// The whole covariance, dense.
   Dense P() const {

@@ -26,6 +26,7 @@ void Filter::init(const Kernels* kernels, const BodyLayout& layout, bool keep_ga
   for (int s = 0; s < state_.slots; ++s) state_.block[s] = Block();
   state_.body = Body();
   state_.layout = layout;
+  state_.unobservable = gauge::kBareCamera;
   state_.lens = Camera();
   state_.lens_rows = LensRows();
   state_.planes = 0;

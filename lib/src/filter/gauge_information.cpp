@@ -8,12 +8,13 @@ namespace {
 using gauge::kDirections;
 constexpr double kTolerance = sizeof(Scalar) == 8 ? 1e-10 : 1e-4;  ///< of a pivot, relative to its variance
 
-/// The seven directions as columns of N (n x 8, the last column unused), in double.
+/// The directions as columns of N (n x 8, the last column unused), in double; zero where they are observable.
 void directions(const State& state, const BlockFilter& blocks, double* N) {
   for (int i = 0; i < blocks.dim() * 8; ++i) N[i] = 0.0;
   const auto put_rows = [&](int first, int size, const auto& rows) {
     for (int i = 0; i < size; ++i)
-      for (int d = 0; d < kDirections; ++d) N[(first + i) * 8 + d] = static_cast<double>(rows(i, d));
+      for (int d = 0; d < kDirections; ++d)
+        if (gauge::contains(state.unobservable, d)) N[(first + i) * 8 + d] = static_cast<double>(rows(i, d));
   };
   for_each_body_gauge(state.body, state.layout,
                       [&](int first, const GaugeRowsOf<3>& rows) { put_rows(first, 3, rows); });

@@ -4,8 +4,8 @@
 
 namespace pf {
 
-/// N^T P^-1 N for the seven unobservable directions of a bare camera (translation, turn, log scale), by a dense Cholesky in double.
-/// scratch: n (n + 8). Rows that others determine are left out. False when P is not positive semidefinite, within rounding.
+/// N^T P^-1 N for the directions of State::unobservable (translation, rotation, log scale; zero for the others), by a dense Cholesky
+/// in double. scratch: n (n + 8). Rows that others determine are left out. False when P is not positive semidefinite, within rounding.
 bool gauge_information(const Filter& filter, double* scratch, double information[49]);
 
 }  // namespace pf

@@ -66,8 +66,11 @@ Scalar Filter::relative_sigma_rho(int slot, const ScaleRow& l) const {
 }
 
 /// The best known of a few log lengths: a point group's lambda, a log inverse depth, or between a point and the one that is farthest from it.
-/// Each annihilates shifts and turns, and grows by s when the world grows by exp(s). None touches held rows.
+/// Each annihilates shifts and turns, and grows by s when the world grows by exp(s). None touches held rows. There is none where the
+/// scale is observable.
 bool Filter::scale_row(ScaleRow* row) const {
+  row->parts = 0;
+  if (!gauge::contains(state_.unobservable, gauge::kScale)) return false;
   constexpr int kMostTried = 12;
   int places = -1;  // of place_: the points, listed once they are asked for
   Scalar best = Scalar(0);
@@ -117,7 +120,6 @@ bool Filter::scale_row(ScaleRow* row) const {
     found = true;
     *row = candidate;
   }
-  if (!found) row->parts = 0;
   return found;
 }
 

@@ -1,5 +1,7 @@
 #include "filter/state.h"
 
+#include <algorithm>
+
 #include "base/assert.h"
 #include "filter/block_filter.h"
 #include "filter/model/kinds.h"
@@ -130,6 +132,11 @@ void add_gauge_rows(const State& state, const BlockFilter& blocks, Scalar sign, 
         add_children(state, blocks, s, rows, sum);
       }
     });
+  }
+  for (int d = 0; d < gauge::kDirections; ++d) {
+    if (gauge::contains(state.unobservable, d) || (d < gauge::kRotation && N_T == nullptr)) continue;
+    Scalar* row = d < gauge::kRotation ? N_T + d * ld : d < gauge::kScale ? N_R + (d - gauge::kRotation) * ld : N_s;
+    std::fill(row, row + blocks.dim(), Scalar(0));
   }
 }
 

@@ -21,9 +21,10 @@ inline bool is_planar(BlockKind kind) { return info(kind).planar; }
 struct State {
   Body body;
   BodyLayout layout;
-  Camera lens;             ///< calibration as it is known now
-  LensRows lens_rows;      ///< of BodyPart::kLens
-  Block* block = nullptr;  ///< slots
+  gauge::Set unobservable = gauge::kBareCamera;  ///< directions about which no measurement says anything
+  Camera lens;                                   ///< calibration as it is known now
+  LensRows lens_rows;                            ///< of BodyPart::kLens
+  Block* block = nullptr;                        ///< slots
   int slots = 0;
   PlaneFrame* plane_frame = nullptr;
   int max_planes = 0;
@@ -85,11 +86,11 @@ struct State {
 /// x <- x [+] dx: every block moves by its rows of dx.
 void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx);
 
-/// Gauge rows of a block (model/gauge.h). Rows beyond the block's size are zero.
+/// Gauge rows of a block (model/gauge.h), for every direction. Rows beyond the block's size are zero.
 GaugeRows gauge_rows(const State& state, const Block& block);
 
-/// Adds sign times these directions at x over the whole state, one row per direction, leading dimension ld.
-/// N_T may be null: shifts are the same at every x but for planes.
+/// Adds sign times the gauge rows at x over the whole state to one row per direction, leading dimension ld. Rows of directions that
+/// are observable become zero. N_T may be null: translations are the same at every x but for planes.
 void add_gauge_rows(const State& state, const BlockFilter& blocks, Scalar sign, Scalar* N_T, Scalar* N_R, Scalar* N_s,
                     int ld);
 

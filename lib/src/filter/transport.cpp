@@ -28,7 +28,9 @@ void add_height_rows(const State& state, const BlockFilter& blocks, Scalar sign,
     if (block.kind != BlockKind::kPlane) continue;
     const int height = blocks.first(s) + 2;
     const Vec3 shift = plane_gauge(state.frame_of(block), block.xyz()).block<1, 3>(2, 0).transpose();
-    for (int axis = 0; axis < 3; ++axis) U_shift[axis * ld + height] += sign * shift(axis);
+    for (int axis = 0; axis < 3; ++axis)
+      if (gauge::contains(state.unobservable, gauge::kTranslation + axis))
+        U_shift[axis * ld + height] += sign * shift(axis);
   }
 }
 

@@ -1,15 +1,24 @@
 #pragma once
 
+#include <cstdint>
+
 #include "filter/model/block.h"
 #include "filter/model/body.h"
 #include "geometry/so3.h"
 
 namespace pf {
 
-/// How an error changes when the whole world is translated (columns 0-2), rotated (3-5) and scaled by exp(s) (6): the directions that a
-/// bare camera cannot observe. They keep their columns, whatever is observable.
+/// How an error changes when the whole world is translated (columns 0-2), rotated (3-5) and scaled by exp(s) (6). A model cannot
+/// observe some of these directions. They keep their columns, whatever is observable.
 namespace gauge {
 inline constexpr int kTranslation = 0, kRotation = 3, kScale = 6, kDirections = 7;
+
+/// A bit for each direction that a model cannot observe; State keeps that of its own.
+using Set = std::uint8_t;
+inline constexpr Set kBareCamera = 0x7f;  ///< all of them
+inline constexpr Set kMetric = 0x3f;      ///< all but the scale, which an accelerometer measures
+
+constexpr bool contains(Set set, int direction) { return (set >> direction & 1) != 0; }
 }  // namespace gauge
 
 template <int kRows>
