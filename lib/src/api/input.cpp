@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "api/context.h"
+#include "geometry/small_cholesky.h"
 
 namespace {
 
@@ -21,22 +22,12 @@ bool within(const double* v, int n, double max) {
   return true;
 }
 
-/// Positive semidefinite to rounding: no pivot of the Cholesky factorisation is negative. n <= 6.
+/// Positive semidefinite to rounding. n <= 6.
 bool is_semidefinite(const double* P, int n) {
-  double L[36];
+  double C[36];  // correlations, so that radians and metres have the same weight
   for (int i = 0; i < n; ++i)
-    for (int j = 0; j <= i; ++j) {
-      // correlations, so that radians and metres have the same weight
-      double sum = P[i * n + j] / (std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]));
-      for (int k = 0; k < j; ++k) sum -= L[i * n + k] * L[j * n + k];
-      if (j == i) {
-        if (!(sum > -1e-9)) return false;
-        L[i * n + i] = sum > 1e-9 ? std::sqrt(sum) : 0.0;
-      } else {
-        L[i * n + j] = L[j * n + j] > 0.0 ? sum / L[j * n + j] : 0.0;
-      }
-    }
-  return true;
+    for (int j = 0; j <= i; ++j) C[i * n + j] = P[i * n + j] / (std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]));
+  return pf::factor_semidefinite(C, n, 1e-9);
 }
 
 /// Symmetric to rounding, with positive diagonal, Cauchy-Schwarz between any two, and semidefinite.

@@ -92,8 +92,11 @@ class BlockFilter {
 
   /// out = J P for Jacobians one below the other (leading dimension ld()).
   void gather(const Rows* J, int count, Scalar* out) const;
-  /// J P J^T of a single row.
-  Scalar variance(const Rows& row) const;
+  /// J P J^T of a few rows, from the entries of P that they touch.
+  template <int kRows>
+  Eigen::Matrix<Scalar, kRows, kRows> covariance_of(const Rows& J) const;
+  /// Of a single row.
+  Scalar variance(const Rows& row) const { return covariance_of<1>(row)(0, 0); }
   /// Columns of the state that rows touch, in their order. Returns how many.
   int columns(const Rows& J, int* column) const;
 
@@ -125,5 +128,33 @@ class BlockFilter {
   Segment* gone_ = nullptr;
   int *order_ = nullptr, *row_ = nullptr;  ///< where rows go; where a measurement's rows begin
 };
+
+/// From the lower triangle of P:  S_rs = sum_i h_ri (P_ii h_si + p_s) + h_si p_r,   p_s = sum_{j<i} P_ij h_sj
+template <int kRows>
+Eigen::Matrix<Scalar, kRows, kRows> BlockFilter::covariance_of(const Rows& J) const {
+  PF_ASSERT(J.rows == kRows);
+  int column[SparseRows::kMaxColumns];
+  const int count = columns(J, column);
+  Eigen::Matrix<Scalar, kRows, kRows> S = Eigen::Matrix<Scalar, kRows, kRows>::Zero();
+  for (int i = 0; i < count; ++i) {
+    Scalar before[kRows] = {};
+    for (int j = 0; j < i; ++j) {
+      const Scalar p = P_(column[i], column[j]);
+      for (int r = 0; r < kRows; ++r) before[r] += p * J.h[r * count + j];
+    }
+    const Scalar p = P_(column[i], column[i]);
+    for (int r = 0; r < kRows; ++r) {
+      const Scalar h_r = J.h[r * count + i];
+      S(r, r) += h_r * (p * h_r + 2 * before[r]);
+      for (int s = r + 1; s < kRows; ++s) {
+        const Scalar h_s = J.h[s * count + i];
+        S(r, s) += h_r * (p * h_s + before[s]) + h_s * before[r];
+      }
+    }
+  }
+  for (int r = 0; r < kRows; ++r)
+    for (int s = 0; s < r; ++s) S(r, s) = S(s, r);
+  return S;
+}
 
 }  // namespace pf

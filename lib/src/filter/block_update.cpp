@@ -24,18 +24,6 @@ void BlockFilter::gather(const Rows* J, int count, Scalar* out) const {
   kernels_->gather_many(P_, rows, count, out, ld_);
 }
 
-Scalar BlockFilter::variance(const Rows& row) const {
-  int column[SparseRows::kMaxColumns];
-  const int c = columns(row, column);
-  Scalar sum = 0;
-  for (int i = 0; i < c; ++i) {
-    Scalar before = 0;
-    for (int j = 0; j < i; ++j) before += row.h[j] * P_(column[i], column[j]);
-    sum += row.h[i] * (row.h[i] * P_(column[i], column[i]) + 2 * before);
-  }
-  return sum;
-}
-
 /// A few measurements at a time, whose rows fit the stack.
 void BlockFilter::project(const Measurement* z, int count) {
   row_[0] = 0;

@@ -116,7 +116,7 @@ class Filter {
   /// Prediction, Jacobian and columns of a feature's pixel; false when it does not project.
   bool predict_pixel(const Camera& lens, int slot, PixelMeasurement* out) const;
   /// H P H^T of one pixel, without noise.
-  Mat2 innovation(const PixelMeasurement& pixel) const;
+  Mat2 innovation(const PixelMeasurement& pixel) const { return blocks_.covariance_of<2>(pixel.H); }
   /// Gathers H P and S = H P H^T (without noise) of measurements. Then innovation_block is valid until the state changes.
   void begin_update(const Measurement* z, int count) { blocks_.project(z, count); }
   void begin_update(const PixelMeasurement* z, int count) { begin_update(views_of(z, count), count); }

@@ -1,6 +1,6 @@
 #include "filter/gauge_information.h"
 
-#include <cmath>
+#include "geometry/small_cholesky.h"
 
 namespace pf {
 namespace {
@@ -34,17 +34,9 @@ bool gauge_information(const Filter& filter, double* scratch, double information
   for (int i = 0; i < n; ++i)
     for (int j = 0; j <= i; ++j) L[i * n + j] = static_cast<double>(filter.covariance()(i, j));
   directions(filter.state(), filter.blocks(), N);
+  // A row that others determine (a new anchor is the body's position) says nothing new; one below zero is no covariance.
+  if (!factor_semidefinite(L, n, kTolerance)) return false;
   for (int i = 0; i < n; ++i) {
-    const double before = L[i * n + i];
-    for (int j = 0; j <= i; ++j) {
-      double sum = L[i * n + j];
-      for (int k = 0; k < j; ++k) sum -= L[i * n + k] * L[j * n + k];
-      L[i * n + j] = j < i ? (L[j * n + j] > 0 ? sum / L[j * n + j] : 0.0) : sum;
-    }
-    // A row that others determine (a new anchor is the body's position) says nothing new; one below zero is no covariance.
-    const double pivot = L[i * n + i];
-    if (!(pivot > -kTolerance * before) || !(before > 0)) return false;
-    L[i * n + i] = pivot > kTolerance * before ? std::sqrt(pivot) : 0.0;
     for (int c = 0; c < kDirections; ++c) {  // N <- L^-1 N, row by row
       double sum = N[i * 8 + c];
       for (int k = 0; k < i; ++k) sum -= L[i * n + k] * N[k * 8 + c];

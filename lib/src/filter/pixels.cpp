@@ -112,28 +112,4 @@ bool Filter::predict_pixel(const Camera& lens, int slot, PixelMeasurement* out) 
   return true;
 }
 
-Mat2 Filter::innovation(const PixelMeasurement& pixel) const {
-  const Triangle& P = covariance();
-  int column[SparseRows::kMaxColumns];
-  const int c = blocks_.columns(pixel.H, column);
-  const Scalar* h0 = pixel.H.h;
-  const Scalar* h1 = pixel.H.h + c;
-  Scalar s00 = 0, s01 = 0, s11 = 0;
-  for (int i = 0; i < c; ++i) {
-    Scalar p0 = 0, p1 = 0;  // row i of the lower triangle of P, without its diagonal, times H^T
-    for (int j = 0; j < i; ++j) {
-      const Scalar p = P(column[i], column[j]);
-      p0 += p * h0[j];
-      p1 += p * h1[j];
-    }
-    const Scalar p = P(column[i], column[i]);
-    s00 += h0[i] * (p * h0[i] + 2 * p0);
-    s01 += h0[i] * (p * h1[i] + p1) + h1[i] * p0;
-    s11 += h1[i] * (p * h1[i] + 2 * p1);
-  }
-  Mat2 S;
-  S << s00, s01, s01, s11;
-  return S;
-}
-
 }  // namespace pf

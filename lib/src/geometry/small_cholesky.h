@@ -5,12 +5,15 @@
 
 #include "base/eigen.h"
 
+/// Cholesky factorisations A = L Lᵀ of small symmetric matrices, without a heap: scaled, of a size known at run time, and of a
+/// semidefinite matrix. Only the lower triangle of A is read. Those of the state's size are kernels (covariance/kernels.h).
+
 namespace pf {
 
 /// A = L Lᵀ of a small symmetric positive definite matrix, for right sides of any fixed width, without a heap.
 ///
 /// A is scaled to a unit diagonal first, so that rows in different units are judged alike:
-/// A = D U D, D² = diag(A), U = L Lᵀ.  Only the lower triangle of A is read.
+/// A = D U D, D² = diag(A), U = L Lᵀ.
 template <int N>
 class SmallCholesky {
  public:
@@ -72,5 +75,52 @@ class SmallCholesky {
   Matrix L_ = Matrix::Zero();
   Eigen::Matrix<Scalar, N, 1> scale_;
 };
+
+/// A = L Lᵀ in place (n x n, leading dimension ld), unscaled. False where a pivot is not positive; A is lost then.
+inline bool factor_cholesky(Scalar* A, int n, int ld) {
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      Scalar sum = A[i * ld + j];
+      for (int k = 0; k < j; ++k) sum -= A[i * ld + k] * A[j * ld + k];
+      if (i == j) {
+        if (!(sum > Scalar(0))) return false;
+        A[i * ld + i] = std::sqrt(sum);
+      } else {
+        A[i * ld + j] = sum / A[j * ld + j];
+      }
+    }
+  }
+  return true;
+}
+
+/// A⁻¹ b in place of b, with the factor that factor_cholesky leaves.
+inline void solve_cholesky(const Scalar* L, int n, int ld, Scalar* b) {
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < i; ++k) b[i] -= L[i * ld + k] * b[k];
+    b[i] /= L[i * ld + i];
+  }
+  for (int i = n - 1; i >= 0; --i) {
+    for (int k = i + 1; k < n; ++k) b[i] -= L[k * ld + i] * b[k];
+    b[i] /= L[i * ld + i];
+  }
+}
+
+/// A = L Lᵀ in place of a matrix (n x n, row-major) that may be singular: where the rows before determine a row, its pivot and what the
+/// rows behind it owe to it become zero. False where a pivot is below zero by more than `tolerance` times its diagonal entry, or that
+/// entry is not positive.
+inline bool factor_semidefinite(double* A, int n, double tolerance) {
+  for (int i = 0; i < n; ++i) {
+    const double before = A[i * n + i];
+    for (int j = 0; j <= i; ++j) {
+      double sum = A[i * n + j];
+      for (int k = 0; k < j; ++k) sum -= A[i * n + k] * A[j * n + k];
+      A[i * n + j] = j < i ? (A[j * n + j] > 0 ? sum / A[j * n + j] : 0.0) : sum;
+    }
+    const double pivot = A[i * n + i];
+    if (!(pivot > -tolerance * before) || !(before > 0)) return false;
+    A[i * n + i] = pivot > tolerance * before ? std::sqrt(pivot) : 0.0;
+  }
+  return true;
+}
 
 }  // namespace pf

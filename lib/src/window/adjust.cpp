@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
 #include "window/tuning.h"
 
@@ -11,39 +12,9 @@ namespace {
 
 using namespace tuning::adjust;
 
-/// A = L Lᵀ in place.
-bool factor_in_place(Scalar* A, int n, int ld) {
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      Scalar sum = A[i * ld + j];
-      for (int k = 0; k < j; ++k) sum -= A[i * ld + k] * A[j * ld + k];
-      if (i == j) {
-        if (!(sum > Scalar(0))) return false;
-        A[i * ld + i] = std::sqrt(sum);
-      } else {
-        A[i * ld + j] = sum / A[j * ld + j];
-      }
-    }
-  }
-  return true;
-}
-
 int host_of(const Bundle& bundle, int point) { return bundle.host == nullptr ? 0 : bundle.host[point]; }
 
 }  // namespace
-
-bool solve_in_place(Scalar* A, int n, int ld, Scalar* b) {
-  if (!factor_in_place(A, n, ld)) return false;
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < i; ++k) b[i] -= A[i * ld + k] * b[k];
-    b[i] /= A[i * ld + i];
-  }
-  for (int i = n - 1; i >= 0; --i) {
-    for (int k = i + 1; k < n; ++k) b[i] -= A[k * ld + i] * b[k];
-    b[i] /= A[i * ld + i];
-  }
-  return true;
-}
 
 Scalar huber_cost(Scalar r2, Scalar huber, Scalar* weight) {
   if (r2 <= huber * huber) {
@@ -196,7 +167,9 @@ void BundleAdjuster::linearise(const Camera& camera, const AdjustOptions& option
 bool BundleAdjuster::step(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, Scalar damping) {
   linearise(camera, options, bundle, damping);
   for (int a = 0; a < columns_; ++a) H_[a * ld_ + a] += damping * std::abs(H_[a * ld_ + a]) + kRegularisation;
-  return solve_in_place(H_, columns_, ld_, b_);
+  if (!factor_cholesky(H_, columns_, ld_)) return false;
+  solve_cholesky(H_, columns_, ld_, b_);
+  return true;
 }
 
 Scalar BundleAdjuster::adjust(const Camera& camera, const AdjustOptions& options, const Bundle& bundle) {
@@ -239,20 +212,13 @@ Scalar BundleAdjuster::adjust(const Camera& camera, const AdjustOptions& options
 bool BundleAdjuster::last_pose_covariance(const Camera& camera, const AdjustOptions& options, const Bundle& bundle,
                                           Mat6* covariance) {
   linearise(camera, options, bundle, Scalar(0));
-  if (columns_ == 0 || !factor_in_place(H_, columns_, ld_)) return false;
+  if (columns_ == 0 || !factor_cholesky(H_, columns_, ld_)) return false;
   const Scalar* L = H_ + (columns_ - 6) * (ld_ + 1);
   for (int c = 0; c < 6; ++c) {
-    Scalar x[6];
-    for (int i = 0; i < 6; ++i) {
-      x[i] = i == c ? Scalar(1) : Scalar(0);
-      for (int k = 0; k < i; ++k) x[i] -= L[i * ld_ + k] * x[k];
-      x[i] /= L[i * ld_ + i];
-    }
-    for (int i = 5; i >= 0; --i) {
-      for (int k = i + 1; k < 6; ++k) x[i] -= L[k * ld_ + i] * x[k];
-      x[i] /= L[i * ld_ + i];
-      (*covariance)(i, c) = x[i];
-    }
+    Vec6 x = Vec6::Zero();
+    x(c) = Scalar(1);
+    solve_cholesky(L, 6, ld_, x.data());
+    covariance->col(c) = x;
   }
   return true;
 }

@@ -58,9 +58,6 @@ bool project_bearing(const Camera& camera, const Mat3& R_WC, const Vec3& ray_W, 
 /// Huber's cost of a squared residual r2, in squared standard deviations, and the weight of its linearisation.
 Scalar huber_cost(Scalar r2, Scalar huber, Scalar* weight);
 
-/// A = L Lᵀ in place (lower triangle, row stride ld) and A x = b, b becomes x. False when A is not positive definite.
-bool solve_in_place(Scalar* A, int n, int ld, Scalar* b);
-
 /// Levenberg-Marquardt with the points eliminated one by one, in storage from the arena.
 class BundleAdjuster {
  public:

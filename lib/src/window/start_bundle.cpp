@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
 #include "window/tuning.h"
 
@@ -241,7 +242,8 @@ bool StartBundle::locate(const Camera& camera, const StartRecord& record, int fr
       }
     }
     for (int a = 0; a < 6; ++a) H[a * 6 + a] += Scalar(1e-6);
-    if (!solve_in_place(H, 6, 6, b)) return false;
+    if (!factor_cholesky(H, 6, 6)) return false;
+    solve_cholesky(H, 6, 6, b);
     pose->q_WC = exp_so3(Vec3(b[0], b[1], b[2])) * pose->q_WC;
     pose->q_WC.normalize();
     pose->p_W += Vec3(b[3], b[4], b[5]);
