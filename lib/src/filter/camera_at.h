@@ -73,9 +73,11 @@ inline CameraAt camera_at(const State& state, Scalar tau) {
 }
 
 /// Writes a Jacobian by all parameters of the lens into its rows' columns, from `first` on; h is row-major.
-inline void put_lens(const LensJacobian& J, const LensRows& rows, int first, int stride, Scalar* h) {
+template <int kRows>
+inline void put_lens(const Eigen::Matrix<Scalar, kRows, kLensParameters>& J, const LensRows& rows, int first,
+                     int stride, Scalar* h) {
   for (int i = 0; i < rows.count; ++i)
-    for (int a = 0; a < 2; ++a) h[a * stride + first + i] = J(a, rows.parameter[i]);
+    for (int a = 0; a < kRows; ++a) h[a * stride + first + i] = J(a, rows.parameter[i]);
 }
 
 /// When a row is read out, from the frame's time, which is that of the middle of the image [s]. What lies far outside of the image

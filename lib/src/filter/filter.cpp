@@ -103,7 +103,7 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   }
   if (lens > 0) {  // the ray of a given pixel: J_z_lens e + J_z_ray e_ray = 0
     J.part[1] = Part::body(state_.layout.row(BodyPart::kLens), lens);
-    put_lens(-J_z * lens_jacobian(state_.lens, ray_C), state_.lens_rows, J.part[0].size, columns, J.h);
+    put_lens<2>(-J_z * lens_jacobian(state_.lens, ray_C), state_.lens_rows, J.part[0].size, columns, J.h);
   }
   // Of the pixel, and of the inverse depth, which turns the bearing too where the anchor is not where the ray begins.
   Mat3 noise = Mat3::Zero();
@@ -201,14 +201,7 @@ Mat3 Filter::covariance3(int slot) const {
     return C;
   }
   if (!find_point(state_, slot, &at)) return C;
-  int column[Place::kMaxColumns], c = 0;
-  for (int p = 0; p < at.parts; ++p)
-    for (int i = 0; i < at.part[p].size; ++i) column[c++] = blocks_.row(at.part[p]) + i;
-  for (int i = 0; i < c; ++i) {
-    Vec3 PJ = Vec3::Zero();  // row i of P J^T
-    for (int j = 0; j < c; ++j) PJ += covariance()(column[i], column[j]) * at.J_o.col(j);
-    C += at.J_o.col(i) * PJ.transpose();
-  }
+  C = blocks_.covariance_of<3>(at.rows<3>(Mat3::Identity()));
   if (!at.has_rows) C += at.J_own * block.inside() * at.J_own.transpose();
   return C;
 }

@@ -125,13 +125,7 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
     if (folded[i] == 0) continue;
     Place at;
     find_point(state_, slots[i], &at);
-    J[done].parts = at.parts;
-    for (int p = 0; p < at.parts; ++p) J[done].part[p] = at.part[p];
-    for (int c = 0; c < at.columns; ++c) {
-      const Vec2 h = axes * at.J_o.col(c);
-      J[done].h[c] = h.x();
-      J[done].h[at.columns + c] = h.y();
-    }
+    J[done] = at.rows<2>(axes);
     rows[done] = J[done];
     moved[done++] = slots[i];
     Block& block = state_.block[slots[i]];
@@ -151,11 +145,6 @@ bool Filter::unfold(int slot, Scalar sigma_normal) {
   if (room() < 3) return false;
   Place at;
   find_point(state_, slot, &at);
-  RowsOf<3, Place::kMaxColumns, Place::kMaxParts> J;
-  J.parts = at.parts;
-  for (int p = 0; p < at.parts; ++p) J.part[p] = at.part[p];
-  for (int c = 0; c < at.columns; ++c)
-    for (int i = 0; i < 3; ++i) J.h[i * at.columns + c] = at.J_o(i, c);
   const Block& plane = state_.block[at.plane];
   Vec3 normal;
   Scalar d;
@@ -164,7 +153,7 @@ bool Filter::unfold(int slot, Scalar sigma_normal) {
   if (!at.has_rows) noise += at.J_own * block.inside() * at.J_own.transpose();
   Scalar raw[9];
   put<3, 3>(raw, 3, 0, noise);
-  blocks_.augment(slot, J, raw);
+  blocks_.augment(slot, at.rows<3>(Mat3::Identity()), raw);
   state_.leave_parent(slot);
   block.kind = BlockKind::kPoint;
   block.size = 3;

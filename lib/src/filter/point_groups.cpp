@@ -75,48 +75,30 @@ Scalar Filter::variance_in_group(int slot, const int* group, int group_count) co
   const Block& block = state_.block[slot];
   PF_ASSERT(block.kind == BlockKind::kPlanePoint && group_count <= kMostFolded);
   // Coordinates in the drawing: e_c = M^-1 (e_uv - A e_patch); without a patch, e_patch = sum J_k e_uv_k and M = I.
-  int column[2 * kMostFolded + 2];
-  Mat2 part[kMostFolded + 1];
-  int parts = 0;
   const int patch = group_of(block.parent);
-  Mat2 C = Mat2::Zero();
   if (patch >= 0) {
-    const Block& at = state_.block[patch];
-    const PointGroup p = at.group();
-    const Mat24 A = similarity_rows(block.uv() - p.t);
-    part[0] = Mat2::Identity();
-    part[1] = -A.leftCols<2>();
-    part[2] = -A.rightCols<2>();
-    const int first[3] = {first_row(slot), first_row(patch), first_row(patch) + 2};
-    for (; parts < 3; ++parts) {
-      column[2 * parts] = first[parts];
-      column[2 * parts + 1] = first[parts] + 1;
-    }
+    const PointGroup p = state_.block[patch].group();
     const Scalar shrink = std::exp(-p.lambda);
-    for (int i = 0; i < 3; ++i) part[i] *= shrink;
-  } else {
-    GroupFit fit;
-    if (!fit.fit(state_, group, group_count)) return Scalar(1e12);
-    const Mat24 A = similarity_rows(block.uv() - fit.middle);
-    for (; parts < group_count; ++parts) {
-      const Block& other = state_.block[group[parts]];
-      part[parts] = -(A * fit.by_point(other.uv()));
-      if (group[parts] == slot) part[parts] += Mat2::Identity();
-      column[2 * parts] = first_row(group[parts]);
-      column[2 * parts + 1] = first_row(group[parts]) + 1;
-    }
+    RowsOf<2, 6, 2> J;
+    J.parts = 2;
+    J.part[0] = Part::of(slot, 0, 2);
+    J.part[1] = Part::of(patch, 0, 4);
+    put<2, 2>(J.h, 6, 0, shrink * Mat2::Identity());
+    put<2, 4>(J.h, 6, 2, -shrink * similarity_rows(block.uv() - p.t));
+    return largest_eigenvalue(blocks_.covariance_of<2>(J));
   }
-  for (int i = 0; i < parts; ++i) {
-    Mat2 PJ = Mat2::Zero();  // rows of part i times P J^T
-    for (int j = 0; j < parts; ++j) {
-      Mat2 P_ij;
-      for (int a = 0; a < 2; ++a)
-        for (int b = 0; b < 2; ++b) P_ij(a, b) = covariance()(column[2 * i + a], column[2 * j + b]);
-      PJ += P_ij * part[j].transpose();
-    }
-    C += part[i] * PJ;
+  GroupFit fit;
+  if (!fit.fit(state_, group, group_count)) return Scalar(1e12);
+  const Mat24 A = similarity_rows(block.uv() - fit.middle);
+  RowsOf<2, 2 * kMostFolded, kMostFolded> J;
+  J.parts = group_count;
+  for (int k = 0; k < group_count; ++k) {
+    Mat2 by_point = -(A * fit.by_point(state_.block[group[k]].uv()));
+    if (group[k] == slot) by_point += Mat2::Identity();
+    J.part[k] = Part::of(group[k], 0, 2);
+    put<2, 2>(J.h, 2 * group_count, 2 * k, by_point);
   }
-  return largest_eigenvalue(C);
+  return largest_eigenvalue(blocks_.covariance_of<2>(J));
 }
 
 /// A patch about the middle of a group of plane points, that moves as they do.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "filter/filter.h"
@@ -36,16 +37,10 @@ Mat3 Filter::relative_covariance(int slot, const ScaleRow& l) const {
       add_part(&row[axis], l.part[p], scaled);
     }
   }
-  int column[18];
-  const int columns = blocks_.columns(row[0], column);
-  const Triangle& P = covariance();
-  Mat3 C = Mat3::Zero();
-  for (int i = 0; i < columns; ++i) {  // rows of the lower triangle, half of the diagonal; then C + C^T
-    Vec3 PJ = P(column[i], column[i]) / 2 * Vec3(row[0].h[i], row[1].h[i], row[2].h[i]);
-    for (int j = 0; j < i; ++j) PJ += P(column[i], column[j]) * Vec3(row[0].h[j], row[1].h[j], row[2].h[j]);
-    C += Vec3(row[0].h[i], row[1].h[i], row[2].h[i]) * PJ.transpose();
-  }
-  return C + C.transpose();
+  const int columns = row[0].columns();
+  Scalar h[3 * 18];
+  for (int axis = 0; axis < 3; ++axis) std::copy(row[axis].h, row[axis].h + columns, h + axis * columns);
+  return blocks_.covariance_of<3>({3, row[0].parts, row[0].part, h});
 }
 
 Scalar Filter::relative_sigma_rho(int slot, const ScaleRow& l) const {

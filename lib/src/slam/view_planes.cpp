@@ -26,11 +26,11 @@ PlaneView View::plane(int i) const {
   J_out_x.row(0) = out.R_WP.col(0).transpose() * J_n_x;
   J_out_x.row(1) = out.R_WP.col(1).transpose() * J_n_x;
   J_out_x.row(2) << 0, 0, out.normal_W.dot(frame.R_WP.col(2));
-  const int first = filter().first_row(map_.planes[i].slot);
-  Mat3 P;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) P(r, c) = filter().covariance()(first + r, first + c);
-  out.covariance = J_out_x * P * J_out_x.transpose();
+  RowsOf<3, 3, 1> J;
+  J.parts = 1;
+  J.part[0] = Part::of(map_.planes[i].slot, 0, 3);
+  put<3, 3>(J.h, 3, 0, J_out_x);
+  out.covariance = filter().blocks().covariance_of<3>(J);
   PlaneOutline outline;
   const PlanePoints points = outline_plane(filter(), map_, i, &outline);
   out.points = points.folded;
@@ -57,38 +57,28 @@ bool View::hit(const Vec2& pixel, HitView* hit) const {
     const Block& block = state.block[map_.planes[i].slot];
     const PlaneFrame& frame = state.frame_of(block);
     Vec3 at;
-    Mat3 J[3];  // by the rotation, the position, the plane
-    Mat3 J_direction;
-    if (!intersect_ray_plane(frame, block.xyz(), camera.p_W, direction, &at, &J[1], &J_direction, &J[2])) continue;
+    Mat3 J_position, J_direction, J_plane;
+    if (!intersect_ray_plane(frame, block.xyz(), camera.p_W, direction, &at, &J_position, &J_direction, &J_plane))
+      continue;
     const Scalar range = (at - camera.p_W).norm();
     PlaneOutline outline;
     outline_plane(filter(), map_, i, &outline);
     if (!outline_contains(outline, plane_coordinates(frame, at))) continue;
     if (hit->plane != 0 && range >= hit->range) continue;
-    J[0] = -J_direction * hat(direction);
-    const int first[3] = {Body::kTheta, Body::kPosition, filter().first_row(map_.planes[i].slot)};
-    Mat3 C = Mat3::Zero();
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) {
-        Mat3 P;
-        for (int r = 0; r < 3; ++r)
-          for (int c = 0; c < 3; ++c) P(r, c) = filter().covariance()(first[a] + r, first[b] + c);
-        C += J[a] * P * J[b].transpose();
-      }
-    const Mat3 J_ray = J_direction * camera.q_WC.toRotationMatrix();
-    const Eigen::Matrix<Scalar, 3, kLensParameters> J_lens =
-        J_ray.lazyProduct(ray_lens_jacobian(lens, ray_C, J_ray_pixel));
-    const int lens_rows = state.lens_rows.count, lens_first = state.layout.row(BodyPart::kLens);
-    for (int k = 0; k < lens_rows; ++k) {
-      const Vec3 J_k = J_lens.col(state.lens_rows.parameter[k]);
-      Vec3 P_k = Vec3::Zero();  // of the hit with this parameter
-      for (int l = 0; l < lens_rows; ++l)
-        P_k += filter().covariance()(lens_first + k, lens_first + l) / 2 * J_lens.col(state.lens_rows.parameter[l]);
-      for (int a = 0; a < 3; ++a)
-        for (int r = 0; r < 3; ++r) P_k += filter().covariance()(lens_first + k, first[a] + r) * J[a].col(r);
-      C += J_k * P_k.transpose() + P_k * J_k.transpose();
+    RowsOf<3, 9 + kLensParameters, 3> J;  // by the camera's pose, the plane, the lens
+    const int lens_rows = state.lens_rows.count, columns = 9 + lens_rows;
+    J.parts = lens_rows > 0 ? 3 : 2;
+    J.part[0] = Part::body(0, Body::kPoseDim);
+    J.part[1] = Part::of(map_.planes[i].slot, 0, 3);
+    put<3, 3>(J.h, columns, Body::kTheta, -J_direction * hat(direction));
+    put<3, 3>(J.h, columns, Body::kPosition, J_position);
+    put<3, 3>(J.h, columns, 6, J_plane);
+    if (lens_rows > 0) {
+      J.part[2] = Part::body(state.layout.row(BodyPart::kLens), lens_rows);
+      const Mat3 J_ray = J_direction * camera.q_WC.toRotationMatrix();
+      put_lens<3>(J_ray.lazyProduct(ray_lens_jacobian(lens, ray_C, J_ray_pixel)), state.lens_rows, 9, columns, J.h);
     }
-    *hit = {map_.planes[i].id, range, at, C};
+    *hit = {map_.planes[i].id, range, at, filter().blocks().covariance_of<3>(J)};
   }
   return true;
 }

@@ -33,6 +33,19 @@ struct Place {
     columns += kSize;
   }
 
+  /// Rows of axes o: J_out_o J_o over its parts. Only of a point (w = 1).
+  template <int kRows>
+  RowsOf<kRows, kMaxColumns, kMaxParts> rows(const Eigen::Matrix<Scalar, kRows, 3>& J_out_o) const {
+    RowsOf<kRows, kMaxColumns, kMaxParts> J;
+    J.parts = parts;
+    for (int p = 0; p < parts; ++p) J.part[p] = part[p];
+    for (int c = 0; c < columns; ++c) {
+      const Eigen::Matrix<Scalar, kRows, 1> h = J_out_o * J_o.col(c);
+      for (int r = 0; r < kRows; ++r) J.h[r * columns + c] = h(r);
+    }
+    return J;
+  }
+
   /// Makes it a point o of W (w = 1, b = 0):  o + b / w. False where there is none; it is as it was then.
   bool resolve() {
     if (w_column < 0) return true;
