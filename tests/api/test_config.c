@@ -185,7 +185,7 @@ static void test_every_status_should_have_a_line_of_text(void) {
     const char* text = pf_status_text((pf_status_t)status);
     TEST_ASSERT_NOT_NULL(text);
     TEST_ASSERT_NULL(strchr(text, '\n'));
-    if (status >= PF_ERROR_CONTEXT && status <= PF_NOTE_TRUNCATED)
+    if (status >= PF_ERROR_FULL && status <= PF_NOTE_TRUNCATED)
       TEST_ASSERT_TRUE(strcmp(text, pf_status_text((pf_status_t)100)) != 0);
   }
 }

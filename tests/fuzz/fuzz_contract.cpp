@@ -238,7 +238,7 @@ class Run {
 
  private:
   static pf_status_t status(pf_status_t value) {
-    require(value >= PF_ERROR_CONTEXT && value <= PF_NOTE_NOTHING, "a status is one that the header names");
+    require(value >= PF_ERROR_FULL && value <= PF_NOTE_NOTHING, "a status is one that the header names");
     return value;
   }
 
@@ -289,7 +289,7 @@ class Run {
         break;
       }
       case 5:
-        changing([&] { return pf_withdraw_target(slam_); });
+        changing([&] { return bytes_.take<uint8_t>() % 4 != 0 ? pf_mark_pose(slam_) : pf_withdraw_target(slam_); });
         break;
       case 6:
         if (bytes_.take<uint8_t>() % 8 == 0) {
@@ -587,6 +587,10 @@ class Run {
         require(pf_get_imu_report(slam_, &report) == PF_OK && report.kept <= config_.capacity.max_imu_samples,
                 "samples");
         status(pf_find_plane(slam_, bytes_.take<uint32_t>(), &current));
+        pf_motion_t motion;
+        if (status(pf_get_motion_since_mark(slam_, &motion)) == PF_OK)
+          require(finite(motion.q_KC, 4) && finite(motion.p_KC, 3) && finite(motion.covariance, 36),
+                  "a motion is finite");
         break;
       }
     }

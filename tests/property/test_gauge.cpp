@@ -40,6 +40,16 @@ void test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale() {
   }
 }
 
+/// A reference camera somewhere else than the camera is, that stays.
+int add_camera(SeededRandom& random, TestFilter& filter) {
+  const Body body = filter->state().body;
+  filter->set_mean(random_body(random));
+  const int camera = filter->add_reference_camera();
+  filter->pin(camera);
+  filter->set_mean(body);
+  return camera;
+}
+
 /// Gives the filter a covariance of nothing but gauge directions, N A N^T, applies a verb, and asks that it is N A N^T at the new
 /// state: M N- = N+ for what the verb does with errors, over the first `directions`.
 template <typename Verb>
@@ -47,6 +57,7 @@ void carries(const char* name, int directions, SeededRandom& random, Verb verb) 
   for (int trial = 0; trial < 10; ++trial) {
     TestFilter filter(true);
     const std::vector<int> slots = fill_map(random, filter, 4, 6);
+    add_camera(random, filter);
     const Dense A = random_covariance(random, directions, 1);
     const Dense before = filter.gauge().leftCols(directions);
     filter.set_P(before * A * before.transpose());
@@ -98,6 +109,41 @@ void test_a_new_anchor_should_carry_every_direction() {
   carries("add_anchor", kAll, random, [](TestFilter& filter, const std::vector<int>&) { filter->add_anchor(); });
 }
 
+void test_a_new_reference_camera_should_carry_every_direction() {
+  SeededRandom random(76);
+  const auto begin = [](TestFilter& filter, const std::vector<int>&) { filter->add_reference_camera(); };
+  carries("add_reference_camera", kAll, random, begin);
+  const auto end = [](TestFilter& filter, const std::vector<int>&) {
+    const int camera = filter->add_reference_camera();
+    filter->pin(camera);
+    filter->unpin(camera);
+  };
+  carries("unpin", kAll, random, end);
+}
+
+/// The motion since a reference camera is not seen by shifts and turns of the world, and grows with the world.
+void test_the_motion_since_a_camera_should_know_nothing_of_the_gauge_but_the_scale() {
+  SeededRandom random(75);
+  for (int trial = 0; trial < 10; ++trial) {
+    TestFilter filter(true);
+    fill_map(random, filter, 4, 6);
+    const int camera = add_camera(random, filter);
+    Quat q_KC;
+    Vec3 p_KC;
+    Mat6 covariance;
+    const Dense N = filter.gauge();
+    const Dense A = random_covariance(random, kShiftAndTurn, 1);
+    filter.set_P(N.leftCols(kShiftAndTurn) * A * N.leftCols(kShiftAndTurn).transpose());
+    filter->motion_since(camera, &q_KC, &p_KC, &covariance);
+    TEST_ASSERT_TRUE(largest(covariance.cast<double>()) < 1e-12 * largest(filter.P()));
+    filter.set_P(N.col(kAll - 1) * N.col(kAll - 1).transpose());
+    filter->motion_since(camera, &q_KC, &p_KC, &covariance);
+    Dense expected = Dense::Zero(6, 6);
+    expected.bottomRightCorner(3, 3) = (p_KC * p_KC.transpose()).cast<double>();
+    TEST_ASSERT_TRUE(largest(covariance.cast<double>() - expected) < 1e-12 * largest(filter.P()));
+  }
+}
+
 void test_a_new_inverse_depth_should_carry_shifts_and_turns() {
   SeededRandom random(66);  // its depth has a prior in metres
   const auto begin = [](TestFilter& filter, const std::vector<int>&) {
@@ -141,6 +187,7 @@ void carries_planes(const char* name, SeededRandom& random, Before before, Verb 
   for (int trial = 0; trial < 10; ++trial) {
     PlaneScene scene(random, 0);
     before(scene);
+    add_camera(random, scene.filter);
     const Dense A = random_covariance(random, kAll, 1);
     const Dense N = scene.filter.gauge();
     scene.filter.set_P(N * A * N.transpose());
@@ -298,6 +345,7 @@ Growth run(bool keep_gauge, SeededRandom& random) {
   Dense before;
   int points = 0;
   for (int k = 0; k < kFrames; ++k) {
+    if (k == kFrames / 4) filter->pin(filter->add_reference_camera());  // a mark
     truth.v_W = Vec3(Scalar(0.5) * std::cos(Scalar(k) / 8), Scalar(0.3) * std::sin(Scalar(k) / 11), Scalar(0.1));
     truth.w_C = Vec3(Scalar(0.2) * std::sin(Scalar(k) / 7), Scalar(-0.2) * std::cos(Scalar(k) / 9), Scalar(0.05));
     Transition transition;
@@ -404,6 +452,8 @@ int main(void) {
   RUN_TEST(test_damping_should_carry_every_direction);
   RUN_TEST(test_steering_should_carry_shifts_and_turns);
   RUN_TEST(test_a_new_anchor_should_carry_every_direction);
+  RUN_TEST(test_a_new_reference_camera_should_carry_every_direction);
+  RUN_TEST(test_the_motion_since_a_camera_should_know_nothing_of_the_gauge_but_the_scale);
   RUN_TEST(test_a_new_inverse_depth_should_carry_shifts_and_turns);
   RUN_TEST(test_conversion_should_carry_every_direction);
   RUN_TEST(test_removal_should_carry_every_direction);

@@ -12,7 +12,7 @@ namespace {
 
 struct Choices {
   std::string cases = "A", layout, motion = "velocity", look = "inward", json, csv;
-  int seeds = 40, frames = 0, jobs = 2, gauge_every = 50;
+  int seeds = 40, frames = 0, jobs = 2, gauge_every = 50, relative = 0;
   std::uint64_t first_seed = 1;
   bool plain = false;
   double fov = 0, linear = 0, angular = 0, relative_sigma = 0, start_depth = 0, linearity = 0, sigma_px = 1;
@@ -65,6 +65,7 @@ Experiment prepare(const Choices& c, bool gee) {
   x.seeds = c.seeds;
   x.first_seed = c.first_seed;
   x.run.gauge_every = c.gauge_every;
+  x.run.motion_frames = c.relative;
   x.bed.layout = gee || c.layout != "model" ? Layout::kRoom : Layout::kModel;
   x.bed.circle = gee;
   x.bed.look_inward = c.look == "inward";
@@ -137,6 +138,7 @@ nlohmann::json describe(const Experiment& x) {
           {"fix", c.plane.fix == PF_FIX_CONSIDER  ? "consider"
                   : c.plane.fix == PF_FIX_INFLATE ? "inflate"
                                                   : "error-free"},
+          {"relative", x.run.motion_frames},
           {"first_seed", x.first_seed}};
 }
 
@@ -152,6 +154,7 @@ int run(const Choices& c, bool gee) {
   if (c.look != "inward" && c.look != "outward") return fail("the camera looks inward or outward");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 0)
     return fail("seeds, jobs and frames must be positive");
+  if (c.relative < 0) return fail("--relative is a number of frames, or 0");
   const std::string name = gee ? "gee2007" : "room";
   nlohmann::json out;
   out["experiment"] = name;
@@ -201,6 +204,7 @@ void add_common(CLI::App* command, Choices& c) {
   command->add_option("--csv", c.csv, "folder for per-frame tables");
   command->add_flag("--plain-ekf", c.plain, "the textbook filter, which does not keep the gauge");
   command->add_option("--gauge-every", c.gauge_every, "frames between readings of the gauge information, 0: never");
+  command->add_option("--relative", c.relative, "frames of a window over which the motion is judged, 0: none");
   command->add_option("--fov", c.fov, "horizontal field of view [deg]");
   command->add_option("--sigma-px", c.sigma_px, "measurement noise [px]");
   command->add_option("--linear-density", c.linear, "white acceleration [m/s^2/sqrt(Hz)], or walk [m/sqrt(s)]");

@@ -17,7 +17,7 @@ struct Choices {
   std::string scene = "desk", json_file, csv;
   std::vector<std::string> starts{"rectangle"};
   std::vector<double> sigma_pixels{0};
-  int seeds = 20, frames = 300, jobs = 2, blur = 2;
+  int seeds = 20, frames = 300, jobs = 2, blur = 2, relative = 0;
   std::uint64_t first_seed = 1;
   double noise = 2, exposure_s = 0.008, readout_s = 0;
   bool as_global = false;
@@ -107,6 +107,7 @@ json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
                     {"nees_position", numbers["nees_position"]["mean"]},
                     {"nees_pose", numbers["nees_pose"]["mean"]},
                     {"camera_rmse_m", numbers["camera_rmse_m"]},
+                    {"motion", numbers["motion"]},
                     {"lens_error", r.lens_error},
                     {"lens_sigma", r.lens_sigma}});
   }
@@ -143,6 +144,7 @@ void print_runs(const json& j) {
       "camera RMSE %.4f m, claimed %.4f m, so claimed over real %.2f; state %g, %g inliers; joint NIS/dof %.3f\n",
       number("/camera_rmse_m"), number("/camera_sigma_m"), number("/claimed_over_real"), number("/state_dim/median"),
       number("/inliers_median"), number("/nis_per_dof"));
+  print_motion(j["motion"]);
   std::printf("%g runs of %g frames: %g lost runs, %g lost frames, %.2f %% tracked, %.2f %% coasting\n",
               number("/runs"), number("/frames"), number("/lost_runs"), number("/lost_frames"),
               100 * number("/tracked_share"), 100 * number("/coasting_share"));
@@ -183,6 +185,7 @@ pf_camera_t wrong_camera(const pf_camera_t& truth, double focal_error, const std
 
 bool prepare(const Choices& c, RenderedOptions& o) {
   o.scene = c.scene;
+  o.motion_frames = c.relative;
   if (pf_sim_options_default(c.scene.c_str(), &o.sim) != PF_OK) return false;
   o.sim.frames = c.frames;
   o.sim.noise_grey = c.noise;
@@ -237,6 +240,7 @@ int run(const Choices& c) {
       return fail("the lens is right, exact, consider or estimate");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
     return fail("seeds, jobs and frames must be positive");
+  if (c.relative < 0) return fail("--relative is a number of frames, or 0");
   RenderedOptions options;
   if (!prepare(c, options)) return fail(no_scene(c.scene));
   const char* field = nullptr;
@@ -262,6 +266,7 @@ int run(const Choices& c) {
                 {"exposure_s", c.exposure_s},
                 {"blur_samples", c.blur},
                 {"readout_s", c.readout_s},
+                {"relative", c.relative},
                 {"focal_error", c.focal_error},
                 {"k1", c.k1}}}};
   for (std::size_t v = 0; v < options.variants.size(); ++v) {
@@ -304,6 +309,7 @@ void add_rendered(CLI::App& app, int& result) {
       "one or more: right, or with a wrong calibration that the filter takes as exact, considers or estimates");
   command->add_option("--focal-error", c->focal_error, "of a wrong calibration, relative");
   command->add_option("--k1", c->k1, "radial distortion of the camera, which a wrong calibration does not name");
+  command->add_option("--relative", c->relative, "frames of a window over which the motion is judged, 0: none");
   command->add_flag("--no-planes", c->no_planes, "points only, for comparison");
   command->add_option("--max-features", c->max_features, "of the map; 0: the library's default");
   command->add_option("--max-state-dim", c->max_state_dim, "rows of the covariance, likewise");

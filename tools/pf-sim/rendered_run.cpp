@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "context.h"
+#include "motion_watch.h"
 #include "sim/random.h"
 
 namespace pfsim {
@@ -60,9 +61,11 @@ bool start(pf_slam_t* slam, RenderedStart how, const pf_sim_t* sim, std::uint64_
 
 /// One context on its way through the frames.
 struct Runner {
-  Runner(const pf_config_t& config, const pf_target_t& corners) : context(config), watch(config, corners) {}
+  Runner(const pf_config_t& config, const pf_target_t& corners, int motion_frames)
+      : context(config), watch(config, corners), motion(motion_frames) {}
   Context context;
   InnovationWatch watch;
+  MotionWatch motion;
 
   void push(const pf_image_t& image, const pf_pose_t& truth, FrameDepth& depth, FrameRow& row, RenderedSummary& sums) {
     const pf_status_t status = pf_push_frame(context.slam, &image);
@@ -75,6 +78,7 @@ struct Runner {
     pf_report_t report;
     pf_get_report(context.slam, &report);
     row = judge(pose_of(truth), pose, report);
+    motion.look(context.slam, status, pose_of(truth), row);
     const bool usable = status >= 0 && status != PF_NOTE_LOST && row.nees_position >= 0;
     sums.lost_frames += !usable;
     sums.tracked_frames += status == PF_OK;
@@ -100,7 +104,8 @@ void read_lens(const pf_slam_t* slam, const pf_camera_t& truth, RenderedSummary*
 void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std::vector<RenderedSummary*>& summaries,
                   const std::vector<FrameRow*>& rows) {
   for (FrameRow* of_variant : rows)
-    for (int f = 0; f < options.sim.frames; ++f) of_variant[f].nees_position = of_variant[f].nees_pose = -1;
+    for (int f = 0; f < options.sim.frames; ++f)
+      of_variant[f].nees_position = of_variant[f].nees_pose = of_variant[f].nees_motion = -1;
   pf_sim_options_t sim_options = options.sim;
   sim_options.seed = seed;
   const std::unique_ptr<pf_sim_t, CloseSim> sim(pf_sim_open(options.scene.c_str(), &sim_options));
@@ -111,7 +116,7 @@ void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std:
   SurfaceWatch surfaces(sim.get(), sim_options.camera);
   std::vector<std::unique_ptr<Runner>> runners;
   for (const Variant& variant : options.variants) {
-    runners.push_back(std::make_unique<Runner>(variant.config, corners));
+    runners.push_back(std::make_unique<Runner>(variant.config, corners, options.motion_frames));
     pf_slam_t* slam = runners.back()->context.slam;
     if (!slam || !start(slam, variant.start, sim.get(), seed)) return;
   }

@@ -26,6 +26,7 @@ struct RenderedOptions {
   std::string scene = "desk";
   pf_sim_options_t sim;           ///< the seed is set for each run
   std::vector<Variant> variants;  ///< all see the same frames
+  int motion_frames = 0;          ///< of a window over which the motion is judged, 0: none
 };
 
 /// What one run gave besides its frames. Plain data, so that it may lie in memory shared between processes.

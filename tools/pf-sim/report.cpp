@@ -79,6 +79,31 @@ json nees_json(const Runs& x, int dof, Get get) {
           {"dof", dof}};
 }
 
+/// Of windows that do not overlap: NEES of the motion per degree of freedom, and the bounds between which it lies with probability 95 %
+/// where the windows' errors are independent. Null without windows.
+json motion_json(const Runs& x) {
+  double sum = 0, rotation = 0, translation = 0;
+  std::vector<double> all;
+  for (int s = 0; s < x.seeds; ++s)
+    for (int f = 0; f < x.frames; ++f) {
+      const FrameRow& row = x.row(s, f);
+      if (!(row.nees_position >= 0 && row.nees_motion >= 0)) continue;
+      all.push_back(static_cast<double>(row.nees_motion) / 6);
+      sum += static_cast<double>(row.nees_motion);
+      rotation += static_cast<double>(row.nees_motion_rotation);
+      translation += static_cast<double>(row.nees_motion_translation);
+    }
+  const double n = static_cast<double>(all.size());
+  if (all.empty()) return nullptr;
+  return {{"windows", n},
+          {"nees_per_dof", sum / (6 * n)},
+          {"nees_per_dof_median", median(all)},
+          {"rotation_nees_per_dof", rotation / (3 * n)},
+          {"translation_nees_per_dof", translation / (3 * n)},
+          {"bound_low", chi_square_quantile(0.025, 6 * n) / (6 * n)},
+          {"bound_high", chi_square_quantile(0.975, 6 * n) / (6 * n)}};
+}
+
 struct Job {
   const Experiment* experiment;
   RunSummary* summaries;
@@ -133,6 +158,7 @@ json summarise_frames(const Runs& x) {
   json out;
   out["nees_position"] = nees_json(x, 3, [](const FrameRow& r) { return r.nees_position; });
   out["nees_pose"] = nees_json(x, 6, [](const FrameRow& r) { return r.nees_pose; });
+  out["motion"] = motion_json(x);
   out["state_dim"] = dims_of([](const FrameRow& r) { return r.state_dim; });
   out["active_dim"] = dims_of([](const FrameRow& r) { return r.active_dim; });
   out["state_dim_points_only"] = dims_of([](const FrameRow& r) { return r.points_only_dim; });
@@ -248,6 +274,16 @@ bool write_csv(const Runs& x, const std::string& directory, const std::string& l
   return means.good() && runs.good();
 }
 
+void print_motion(const json& motion) {
+  if (motion.is_null()) return;
+  const auto of = [&](const char* name) { return motion[name].get<double>(); };
+  std::printf(
+      "  motion: NEES per dof %.3f, median %.3f (0.89); rotation %.3f, translation %.3f; %g windows, bounds %.3f "
+      "%.3f\n",
+      of("nees_per_dof"), of("nees_per_dof_median"), of("rotation_nees_per_dof"), of("translation_nees_per_dof"),
+      of("windows"), of("bound_low"), of("bound_high"));
+}
+
 void print(const std::string& label, const json& j) {
   const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
   std::printf("%s: position NEES %.3f +- %.3f (3 dof; run averages inside %.1f %%, above %.1f %%, bounds %.2f %.2f)\n",
@@ -257,6 +293,7 @@ void print(const std::string& label, const json& j) {
   std::printf("  pose NEES %.3f (6 dof), NIS per dof %.3f, camera RMSE %.4f m, map RMSE %.4f m, state %g (end %g)\n",
               number("/nees_pose/mean"), number("/nis_per_dof"), number("/camera_rmse_m"), number("/map_rmse_m"),
               number("/state_dim/median"), number("/state_dim/end"));
+  print_motion(j["motion"]);
   std::printf(
       "  gauge information grew: translation, rotation %.2e; scale %.2e (less the depth priors %.2e; in "
       "one frame without births %.2e)\n",

@@ -39,6 +39,9 @@ nlohmann::json summarise(const Experiment& experiment);
 /// DIR/LABEL.csv: per frame the run averages and the bounds; DIR/LABEL_runs.csv: position NEES of every run.
 bool write_csv(const Runs& runs, const std::string& directory, const std::string& label);
 
+/// One line on summarise_frames()'s "motion"; nothing where there are no windows.
+void print_motion(const nlohmann::json& motion);
+
 /// The few lines that a person reads.
 void print(const std::string& label, const nlohmann::json& numbers);
 

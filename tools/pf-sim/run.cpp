@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "context.h"
+#include "motion_watch.h"
 #include "statistics.h"
 #include "wall_watch.h"
 
@@ -105,6 +106,7 @@ FrameRow judge(const pf::sim::Pose& truth, const pf_pose_t& pose, const pf_repor
   row.inliers = static_cast<float>(report.inliers);
   row.nis = static_cast<float>(report.nis);
   row.nis_dof = static_cast<float>(report.nis_dof);
+  row.nees_motion = row.nees_motion_rotation = row.nees_motion_translation = -1;
   return row;
 }
 
@@ -123,6 +125,7 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
 
   GaugeWatch gauge;
   WallWatch walls(bed);
+  MotionWatch motion(options.motion_frames);
   double from_priors = 0;  // information about scale that new points came with
   pf_pose_t pose = bed.start();
   pf_report_t report{};
@@ -147,6 +150,7 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
     pf_get_report(slam, &report);
     from_priors += report.new_features / (config.first_depth.relative_sigma * config.first_depth.relative_sigma);
     rows[frame] = judge(bed.truth().pose, pose, report);
+    motion.look(slam, status, bed.truth().pose, rows[frame]);
     summary.lost |= status == PF_NOTE_LOST || !(rows[frame].nees_position >= 0);
     summary.frames_tracked += status == PF_OK;
     if (bed_options.layout == Layout::kModel && (births > 0 || frame % 10 == 9))

@@ -17,6 +17,8 @@ struct FrameRow {
   float points_only_dim;       ///< what the same map would need unfolded
   float plane_points, planes;  ///< folded or fixed, and planes in the map
   float nis, nis_dof;
+  float nees_motion;  ///< over the window that ends here, 6 dof; negative where none does
+  float nees_motion_rotation, nees_motion_translation;  ///< likewise, 3 dof each
 };
 
 /// A frame's pose against the truth, both in the truth's own frame: theta of R_true = Exp(theta) R, then p_true - p.
@@ -48,7 +50,8 @@ struct RunSummary {
 };
 
 struct RunOptions {
-  int gauge_every = 10;  ///< frames between readings of the gauge information, 0: never
+  int gauge_every = 10;   ///< frames between readings of the gauge information, 0: never
+  int motion_frames = 0;  ///< of a window over which the motion is judged, 0: none
 };
 
 /// One run, start to end. rows has as many entries as the bed has frames.

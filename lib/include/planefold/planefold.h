@@ -67,7 +67,7 @@ typedef enum pf_status {
   PF_NOTE_LOST = 3,      /* taken; the pose is no longer usable; the map is searched for in every frame (MAPS) */
   PF_NOTE_UNUSABLE = 4,  /* taken; the image shows nothing usable (black, white, blurred, frozen); pose coasts */
   PF_NOTE_TRUNCATED = 5, /* done; there was more than your array holds, *count says how many there are */
-  PF_NOTE_NOTHING = 6,   /* done; there is nothing (no plane under the pixel, no plane with that id any more) */
+  PF_NOTE_NOTHING = 6,   /* done; there is nothing (no plane under the pixel or with that id any more, no mark) */
 
   PF_ERROR_NULL = -1,      /* a pointer that must not be null is null */
   PF_ERROR_CONFIG = -2,    /* a field of the config is out of its range; pf_config_check names it */
@@ -81,8 +81,9 @@ typedef enum pf_status {
   /* Not possible in this state (a start after the first frame; a pose before the start), or a call that changes the
    * context from inside its own log or clock. */
   PF_ERROR_STATE = -10,
-  PF_ERROR_RANGE = -11,  /* a number that was passed in is outside of its domain */
-  PF_ERROR_CONTEXT = -12 /* not a context, or one whose block was overwritten */
+  PF_ERROR_RANGE = -11,   /* a number that was passed in is outside of its domain */
+  PF_ERROR_CONTEXT = -12, /* not a context, or one whose block was overwritten */
+  PF_ERROR_FULL = -13     /* the state has no room for it, see capacity.max_state_dim */
 } pf_status_t;
 
 /* One line in English for a status; never null. */
@@ -397,6 +398,29 @@ PF_API pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose);
 
 /* Pose predicted to a time not before the last frame, for display; the state does not change. */
 PF_API pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose);
+
+/* How the camera moved between two frames of one map. Unlike the pose in W, which drifts as a whole, this is as good as
+ * the measurements in between: for odometry, and to check how honest the covariance is over short times. */
+typedef struct pf_motion {
+  int64_t mark_t_ns; /* of the frame whose pose was marked: K is the camera there */
+  int64_t t_ns;      /* of the last frame: C is the camera there */
+  double q_KC[4];    /* w x y z */
+  double p_KC[3];    /* of C in K [m]; in the map's own unit where no length is known, see LENGTHS */
+  /* 6x6 of (theta, p) [rad, m], both in K: R_true = Exp(theta) R_KC, p_true = p_KC + e. From all that both poses have in
+   * common; zero in the frame of the mark. */
+  double covariance[36];
+  uint32_t map_id;   /* as in pf_pose_t */
+  uint32_t reserved; /* 0 */
+} pf_motion_t;
+
+/* Marks the pose of the last frame, whatever the state: a copy of the camera becomes part of the state. There is one mark;
+ * a new one replaces it. It goes with its map: with a new map_id, after pf_reset, and when a start without a target begins
+ * its map again with better depths. It takes six rows of the state (capacity.max_state_dim). While tracking, features that
+ * were not seen in the last frame are evicted for them. PF_ERROR_STATE before the first pose, PF_ERROR_FULL without room. */
+PF_API pf_status_t pf_mark_pose(pf_slam_t* slam);
+
+/* Motion from the mark to the last frame. PF_NOTE_NOTHING, and *motion is as it was, when there is no mark. */
+PF_API pf_status_t pf_get_motion_since_mark(const pf_slam_t* slam, pf_motion_t* motion);
 
 /* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be null). Of a
  * rolling shutter it is the one at the frame's own time, which its row does not share: lib/docs/rolling_shutter.md

@@ -94,6 +94,8 @@ const char* pf_status_text(pf_status_t status) {
       return "a number is outside of its domain";
     case PF_ERROR_CONTEXT:
       return "not a planefold context, or its block was overwritten or moved";
+    case PF_ERROR_FULL:
+      return "the state has no room for more rows";
   }
   return "unknown status";
 }

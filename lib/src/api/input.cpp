@@ -130,6 +130,11 @@ pf_status_t pf_withdraw_target(pf_slam_t* slam) {
   return PF_OK;
 }
 
+pf_status_t pf_mark_pose(pf_slam_t* slam) {
+  PF_REQUIRE_IDLE(slam);
+  return pf::to_c(slam->session.mark_pose());
+}
+
 pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]) {
   PF_REQUIRE_IDLE(slam);
   if (dv_C == nullptr || dw_C == nullptr) return PF_ERROR_NULL;

@@ -8,6 +8,12 @@ namespace {
 using pf::copy;
 using pf::copy_matrix;
 
+/// (w, x, y, z)
+void copy_quaternion(const pf::Quat& from, double* to) {
+  to[0] = static_cast<double>(from.w());
+  copy(from.vec(), 3, to + 1);
+}
+
 void pose_at(const pf::View& view, int64_t t_ns, pf_pose_t* pose) {
   pf::Body body;
   pf::Mat6 covariance;
@@ -15,8 +21,7 @@ void pose_at(const pf::View& view, int64_t t_ns, pf_pose_t* pose) {
   pose->t_ns = t_ns;
   pose->map_id = view.map_id();
   pose->reserved = 0;
-  pose->q_WC[0] = static_cast<double>(body.q_WC.w());
-  copy(body.q_WC.vec(), 3, pose->q_WC + 1);
+  copy_quaternion(body.q_WC, pose->q_WC);
   copy(body.p_W, 3, pose->p_WC);
   copy(body.v_W, 3, pose->v_W);
   copy(body.w_C, 3, pose->w_C);
@@ -61,6 +66,22 @@ pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose
   if (t_ns < slam->session.view().last_ns()) return PF_ERROR_TIME;
   if (pf::elapsed_ns(slam->session.view().last_ns(), t_ns) > INT64_C(10000000000)) return PF_ERROR_RANGE;
   pose_at(slam->session.view(), t_ns, pose);
+  return PF_OK;
+}
+
+pf_status_t pf_get_motion_since_mark(const pf_slam_t* slam, pf_motion_t* motion) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (motion == nullptr) return PF_ERROR_NULL;
+  const pf::View view = slam->session.view();
+  pf::MotionView since;
+  if (!view.motion_since_mark(&since)) return PF_NOTE_NOTHING;
+  motion->mark_t_ns = since.mark_ns;
+  motion->t_ns = view.last_ns();
+  copy_quaternion(since.q_KC, motion->q_KC);
+  copy(since.p_KC, 3, motion->p_KC);
+  copy_matrix(since.covariance, motion->covariance);
+  motion->map_id = view.map_id();
+  motion->reserved = 0;
   return PF_OK;
 }
 

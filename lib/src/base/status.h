@@ -23,6 +23,7 @@ enum class Status : int {
   kState = -10,
   kRange = -11,
   kContext = -12,
+  kFull = -13,
 };
 
 }  // namespace pf

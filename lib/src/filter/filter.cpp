@@ -7,7 +7,7 @@
 namespace pf {
 
 bool Filter::layout(Arena& arena, const FilterCapacity& capacity) {
-  // Features, planes with their patches, and anchors with a child each (six rows).
+  // Features, planes with their patches, and anchors with a child each or reference cameras (six rows).
   state_.slots = capacity.features + 2 * capacity.planes + capacity.state_dim / 6 + 1;
   const std::size_t slots = static_cast<std::size_t>(state_.slots);
   state_.block = arena.take<Block>(slots);
@@ -149,11 +149,11 @@ void Filter::convert_to_point(int slot) {
   state_.leave_parent(slot);
   block.kind = BlockKind::kPoint;
   block.set_xyz(f_W);
-  if (state_.block[anchor].children == 0) remove(&anchor, 1);
+  if (state_.block[anchor].children == 0 && state_.block[anchor].pins == 0) remove(&anchor, 1);
 }
 
 void Filter::remove(const int* slots, int count) {
-  // Mark, let anchors and point groups follow their last child, then list what goes.
+  // Mark, let what dies childless follow its last child, then list what goes.
   for (int i = 0; i < count; ++i) {
     Block& block = state_.block[slots[i]];
     PF_ASSERT(block.kind != BlockKind::kPlane || block.children == 0);
@@ -164,7 +164,7 @@ void Filter::remove(const int* slots, int count) {
   }
   for (int s = 0; s < state_.slots; ++s) {
     Block& block = state_.block[s];
-    if (!info(block.kind).dies_childless || block.children > 0) continue;
+    if (!info(block.kind).dies_childless || block.children > 0 || block.pins > 0) continue;
     state_.leave_parent(s);
     state_.leave_second_parent(s);
     block.kind = BlockKind::kNone;

@@ -68,6 +68,8 @@ class Filter {
 
   // --- augment; -1 where there is no room
   int add_anchor();
+  /// A copy of the camera at the frame's time, with its full correlation.
+  int add_reference_camera();
   /// tau: when the pixel's row was read out, from the frame's time [s].
   int add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho,
                         Scalar sigma_rho, Scalar tau = Scalar(0));
@@ -109,8 +111,12 @@ class Filter {
   /// The patch of a plane, or -1.
   int group_of(int plane) const;
 
-  // --- remove; anchors and patches that nothing needs any more go with them, all in one pass
+  // --- remove; anchors, patches and reference cameras that nothing needs any more go with them, all in one pass
   void remove(const int* slots, int count);
+  /// Something outside of the state needs this block, which then stays without children.
+  void pin(int slot) { ++state_.block[slot].pins; }
+  /// It does not need it any more; the block goes where nothing else needs it.
+  void unpin(int slot);
 
   // --- update
   /// Prediction, Jacobian and columns of a feature's pixel; false when it does not project.
@@ -128,6 +134,8 @@ class Filter {
     return finish_update(views_of(z, count), count, keep, nis);
   }
 
+  /// Pose (q_KC, p_KC) of the camera in the frame of a reference camera K, and the covariance of its (theta, p), in K (relative_pose.h).
+  void motion_since(int camera, Quat* q_KC, Vec3* p_KC, Mat6* covariance) const;
   /// Covariance of a feature's place, to first order.
   Mat3 covariance3(int slot) const;
   /// The best known of a few log lengths, as a row over the state: l N = (0, 0, 1). False, and no parts, where there is none.

@@ -62,11 +62,15 @@ class FeatureTable {
     --count_;
   }
 
+  /// Whether a feature may be evicted: not one of the target, nor one that was seen since this time.
+  bool may_evict(int i, std::int64_t not_since_ns) const {
+    return used(i) && !feature_[i].is_target && feature_[i].last_seen_ns < not_since_ns;
+  }
   /// The feature to evict first: longest unseen, not of the target and not seen since this time; -1 if there is none.
   int least_useful(std::int64_t not_since_ns) const {
     int worst = -1;
     for (int i = 0; i < capacity_; ++i) {
-      if (!used(i) || feature_[i].is_target || feature_[i].last_seen_ns >= not_since_ns) continue;
+      if (!may_evict(i, not_since_ns)) continue;
       if (worst < 0 || feature_[i].last_seen_ns < feature_[worst].last_seen_ns) worst = i;
     }
     return worst;

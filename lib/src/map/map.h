@@ -9,10 +9,17 @@
 
 namespace pf {
 
+/// The pose that the caller marked.
+struct Mark {
+  int camera = -1;        ///< slot of its reference camera, which it pins; -1: there is none
+  std::int64_t t_ns = 0;  ///< of the frame
+};
+
 class Map {
  public:
   FeatureTable features;
   PlaneTable planes;
+  Mark mark;
   bool target_withdrawn = false;  ///< the target's points are no longer measured
 
   bool layout(Arena& arena, int max_features, int max_planes) {
@@ -25,6 +32,7 @@ class Map {
   void init() {
     features.init();
     planes.init();
+    mark = Mark();
     target_withdrawn = false;
   }
 

@@ -112,6 +112,18 @@ bool FeatureKeeper::make_room(int rows) {
   return true;
 }
 
+bool FeatureKeeper::make_rows(int rows, std::int64_t not_since_ns) {
+  int free = filter_.room();
+  for (int i = 0; i < map_.features.capacity(); ++i)
+    if (map_.features.may_evict(i, not_since_ns)) free += filter_.state().block[map_.features[i].slot].size;
+  if (free < rows) return false;
+  while (filter_.room() < rows) {
+    const int entry = map_.features.least_useful(not_since_ns);
+    drop(&entry, 1);
+  }
+  return true;
+}
+
 bool FeatureKeeper::make_room_at(int* anchor) {
   if (*anchor >= 0) {
     if (!make_room(3)) return false;

@@ -29,6 +29,9 @@ class FeatureKeeper {
   /// Removes a table entry whose block is no longer in the filter.
   void release(int entry);
 
+  /// Makes so many rows free by evicting features that were not seen since this time. False: not enough of them; nothing has changed
+  /// then.
+  bool make_rows(int rows, std::int64_t not_since_ns);
   /// Makes room for one more feature on *anchor, and a new anchor if *anchor is -1 or was removed by an eviction. False: no room.
   bool make_room_at(int* anchor);
   /// Adds an inverse-depth feature at a pixel. Returns its table entry, or -1.

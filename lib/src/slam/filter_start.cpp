@@ -39,6 +39,7 @@ void FilterStart::clear_filter() {
   parts_.filter.set_lens(settings_.camera, settings_.lens);
   parts_.filter.set_roughness(settings_.fold.roughness);
   parts_.map.planes.clear();
+  parts_.map.mark = Mark();
 }
 
 void FilterStart::start_over() {

@@ -97,6 +97,12 @@ Status FrameLoop::push_observations(const PixelObservation* observations, int co
   return end_frame();
 }
 
+Status FrameLoop::mark_pose() {
+  if (!tracking_.has_pose()) return Status::kState;
+  // A frame that does not support its pose changes nothing in the map.
+  return mark_.set(frame_.report.t_ns, tracking_.state() == SlamState::kTracking, filter_ns_);
+}
+
 /// The last pose and status again, under a new time. The next prediction begins where this one did not go on.
 Status FrameLoop::repeat_frame(std::int64_t t_ns) {
   frame_.begin(t_ns);
@@ -133,6 +139,7 @@ bool FrameLoop::map_is_young() const {
 
 /// If the frame does not support its pose, nothing is decided about the map.
 void FrameLoop::maintain_map(bool supported) {
+  mark_.drop_unsound();
   if (!supported) {
     features_.drop_failing(false);
     return;

@@ -15,6 +15,7 @@
 #include "slam/observation_front_end.h"
 #include "slam/pixel_update.h"
 #include "slam/plane_keeper.h"
+#include "slam/pose_mark.h"
 #include "slam/relocaliser.h"
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
@@ -38,6 +39,8 @@ class FrameLoop {
 
   Status push_frame(const ImageView& image, std::int64_t t_ns);
   Status push_observations(const PixelObservation* observations, int count, std::int64_t t_ns);
+  /// Marks the pose of the last frame. kState: there is none; kFull: there is no room for it.
+  Status mark_pose();
 
   FilterStart& start() { return start_; }
   BodyMotion& motion() { return motion_; }
@@ -72,6 +75,7 @@ class FrameLoop {
   BodyMotion motion_{settings_, filter_};
   PixelUpdate update_{settings_, filter_, map_, frame_, tracking_};
   FeatureKeeper features_{settings_, filter_, map_, frame_};
+  PoseMark mark_{filter_, map_, features_};
   PlaneKeeper planes_{settings_, filter_, map_, frame_, features_};
   ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_};
   Relocaliser relocaliser_{settings_, filter_, map_, frame_, images_, update_};

@@ -49,6 +49,7 @@ class Session {
   Status push_observations(int count, std::int64_t t_ns);
   /// Known change of the velocities in camera axes, until the next frame.
   void push_control(const Vec3& dv_C, const Vec3& dw_C) { filter_->motion().push_control(dv_C, dw_C); }
+  Status mark_pose() { return filter_->mark_pose(); }
   void push_imu(const ImuSample& sample) { imu_.add(sample); }
   void set_gravity(const Vec3& gravity_W) { data_.gravity_W = gravity_W, data_.gravity_map = view().map_id(); }
 

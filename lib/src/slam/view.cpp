@@ -23,6 +23,13 @@ void View::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
   loop_.motion().predict_pose(t_ns > last_ns() ? loop_.filter_ns() : t_ns, t_ns, body, covariance);
 }
 
+bool View::motion_since_mark(MotionView* out) const {
+  if (map_.mark.camera < 0) return false;
+  out->mark_ns = map_.mark.t_ns;
+  filter().motion_since(map_.mark.camera, &out->q_KC, &out->p_KC, &out->covariance);
+  return true;
+}
+
 const Camera& View::lens(Scalar covariance[kLensParameters][kLensParameters]) const {
   const State& state = filter().state();
   const LensRows& rows = state.lens_rows;

@@ -38,6 +38,14 @@ struct PlaneView {
   PlaneOutline outline;  ///< in P
 };
 
+/// Motion of the camera from the mark to the last frame: its pose now in the frame K of the camera then.
+struct MotionView {
+  std::int64_t mark_ns;
+  Quat q_KC;
+  Vec3 p_KC;
+  Mat6 covariance;  ///< of (theta, p) in K
+};
+
 /// Intersection of a ray with a plane.
 struct HitView {
   std::uint32_t plane = 0;
@@ -69,6 +77,8 @@ class View {
   const Camera& lens(Scalar covariance[kLensParameters][kLensParameters]) const;
   /// Body and pose covariance (6x6) at the last frame, or predicted to a later time.
   void pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const;
+  /// False if there is no mark in this map.
+  bool motion_since_mark(MotionView* out) const;
   /// Projects a known point; covariance may be null. False if the point does not project.
   bool project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const;
   const FrameReport& report() const;

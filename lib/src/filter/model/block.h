@@ -21,8 +21,9 @@ enum class BlockKind : std::uint8_t {
   kPlanePoint = 5,
   kPointGroup = 6,
   kGroupedPoint = 7,
+  kReferenceCamera = 8,
 };
-inline constexpr int kBlockKinds = 8;
+inline constexpr int kBlockKinds = 9;
 
 /// What a feature is to the caller of the library.
 enum class FeatureForm : std::uint8_t { kNone, kPoint, kInverseDepth, kFolded, kFixed };
@@ -41,7 +42,7 @@ struct KindInfo {
   FeatureForm form = FeatureForm::kNone;
   ScaleSource scale = ScaleSource::kNone;
   bool planar = false;          ///< hangs on a plane, directly or through a point group
-  bool dies_childless = false;  ///< goes with its last child
+  bool dies_childless = false;  ///< goes with its last child, unless it is pinned
   bool carries_points = false;  ///< no feature, but rows that features share
 };
 
@@ -78,6 +79,7 @@ struct Block {
   static constexpr int kMaxValues = 10;  ///< a reference camera has seven, a lens ten
 
   BlockKind kind = BlockKind::kNone;
+  std::uint8_t pins = 0;            ///< uses from outside of the state, such as a mark; while there are any, it stays
   std::int16_t size = 0;            ///< rows that it has: those of its kind, or none
   std::int16_t parent = -1;         ///< slot of the block that its coordinates are in: an anchor, plane or point group
   std::int16_t second_parent = -1;  ///< slot of another block that its place depends on

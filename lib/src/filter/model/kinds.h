@@ -7,6 +7,7 @@
 #include "filter/model/plane_point.h"
 #include "filter/model/point.h"
 #include "filter/model/point_group.h"
+#include "filter/model/reference_camera.h"
 
 namespace pf {
 
@@ -18,7 +19,8 @@ namespace pf {
   X(model::Plane)             \
   X(model::PlanePoint)        \
   X(model::Group)             \
-  X(model::GroupedPoint)
+  X(model::GroupedPoint)      \
+  X(model::ReferenceCamera)
 
 /// Calls f with an object of the kind's type; with none, does nothing.
 template <typename F>

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "filter/model/kind.h"
+
+namespace pf::model {
+
+/// A copy of the camera at the time of a frame: the pose that a mark stands for, or in which image patches and points begin.
+/// value: q_WC (w x y z), p_WC
+///
+///   R_true = Exp(theta) R_WC,   p_true = p_WC + e_p         as the body's pose
+struct ReferenceCamera : Kind {
+  static constexpr BlockKind kKind = BlockKind::kReferenceCamera;
+  static constexpr KindInfo kInfo{6, 7, FeatureForm::kNone, ScaleSource::kNone, false, true, false};
+
+  static Quat q_WC(const Block& block) { return Quat(block.value[0], block.value[1], block.value[2], block.value[3]); }
+  static Vec3 p_WC(const Block& block) { return Vec3(block.value[4], block.value[5], block.value[6]); }
+  static void set(Block* block, const Quat& q_WC, const Vec3& p_WC) {
+    block->value[0] = q_WC.w();
+    for (int i = 0; i < 3; ++i) {
+      block->value[1 + i] = q_WC.vec()(i);
+      block->value[4 + i] = p_WC(i);
+    }
+  }
+
+  static void retract(Block* block, const Scalar* e) {
+    Quat q = exp_so3(Vec3(e[0], e[1], e[2])) * q_WC(*block);
+    q.normalize();
+    set(block, q, p_WC(*block) + Vec3(e[3], e[4], e[5]));
+  }
+  template <typename Rows>
+  static void rows(const Block& block, Rows* N) {
+    GaugeRowsOf<3> position;
+    put_place<3>(Mat3::Identity(), p_WC(block), &position);
+    N->template block<3, 3>(0, gauge::kRotation).setIdentity();
+    N->template middleRows<3>(3) = position;
+  }
+  static void gauge(const State&, const Block& block, GaugeRows* N) { rows(block, N); }
+  static void add_gauge(const State&, const Block& block, int first, const GaugeSum& sum) {
+    GaugeRowsOf<6> N = GaugeRowsOf<6>::Zero();
+    rows(block, &N);
+    sum.add(first, 6, N);
+  }
+};
+
+}  // namespace pf::model
