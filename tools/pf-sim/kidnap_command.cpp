@@ -64,6 +64,17 @@ std::string label_of(const GapCase& c) {
   return text;
 }
 
+json trial_report(const GapCase& gap, int frame, const Trial& t) {
+  return {{"case", label_of(gap)},
+          {"frame", frame},
+          {"tracked_after_frames", t.tracked_after},
+          {"worst_frame", t.worst_frame},
+          {"worst_deg", t.worst_deg},
+          {"worst_depths", t.worst_depths},
+          {"worst_normalised", t.worst_normalised},
+          {"least_covariance_growth", t.least_growth}};
+}
+
 /// Counts over trials.
 struct Tally {
   int trials = 0, tracking_again = 0, beyond = 0, wrong = 0, wrong_and_beyond = 0, shrinks = 0, in_view = 0, found = 0;
@@ -117,7 +128,7 @@ json summarise(const Job& job) {
   const double interval_s = static_cast<double>(job.film->interval_ns()) * 1e-9;
   const std::vector<GapCase>& cases = gap_cases();
   const std::size_t starts = job.reference->starts.size();
-  json out;
+  json out, doubtful = json::array();
   Tally all, second;
   std::printf("%-20s %6s %8s %7s %8s %6s %6s %8s %6s %6s %12s\n", "gap", "trials", "tracking", "after s", "5 sigma",
               "wrong", "both", "shrinks", "least", "ids %", "found in 1 s");
@@ -127,6 +138,8 @@ json summarise(const Job& job) {
       const Trial& trial = job.trials[s * cases.size() + c];
       tally.add(trial, interval_s);
       all.add(trial, interval_s);
+      if (is_wrong(trial.worst_deg, trial.worst_depths) || trial.least_growth < 1 - kRounding)
+        doubtful.push_back(trial_report(cases[c], job.reference->starts[s].frame, trial));
       if (cases[c].picture == GapPicture::kBlack && cases[c].seconds == 1.0) second.add(trial, interval_s);
     }
     const std::string label = label_of(cases[c]);
@@ -134,6 +147,7 @@ json summarise(const Job& job) {
     print_row(label, out["cases"][label]);
   }
   out["all"] = all.report();
+  out["wrong_or_shrinking"] = doubtful;
   print_row("all", out["all"]);
   out["after_a_black_second"] = {{"many_in_view", second.in_view}, {"found_within_1_s", second.found}};
 
@@ -191,10 +205,13 @@ int run(const Choices& c) {
   Reference reference;
   if (!context.slam || !play_reference(film, options, context, &reference))
     return fail("the target has more points than the map has room for, or there is no memory");
-  int tracked = 0;
-  for (const Reference::Frame& frame : reference.frames) tracked += frame.tracked;
-  std::printf("%s: %d frames, %d of them tracked without a gap; gaps at %zu of them\n", c.source.c_str(), film.frames(),
-              tracked, reference.starts.size());
+  int tracked = 0, truths = 0;
+  for (const Reference::Frame& frame : reference.frames) {
+    tracked += frame.tracked;
+    truths += frame.is_truth;
+  }
+  std::printf("%s: %d frames, %d of them tracked without a gap, %d well enough to judge by; gaps at %zu of them\n",
+              c.source.c_str(), film.frames(), tracked, truths, reference.starts.size());
 
   const std::size_t starts = reference.starts.size();
   const std::size_t random_runs = starts > 0 ? static_cast<std::size_t>(options.random_runs) : 0;
@@ -209,7 +226,7 @@ int run(const Choices& c) {
   json out = summarise(job);
   out["experiment"] = "kidnap";
   out["settings"] = {{"source", c.source}, {"start", c.start}, {"every", c.every}, {"seed", c.seed}};
-  out["reference"] = {{"frames", film.frames()}, {"tracked", tracked}, {"starts", starts}};
+  out["reference"] = {{"frames", film.frames()}, {"tracked", tracked}, {"judged_by", truths}, {"starts", starts}};
   if (!c.json_file.empty() && !write_json(c.json_file, out)) return fail("cannot write " + c.json_file, 1);
   return 0;
 }

@@ -16,6 +16,9 @@ namespace {
 using pf::sim::Vec3;
 
 constexpr double kWrongDeg = 5, kWrongDepths = 0.1;
+constexpr double kDegrees = 57.29577951308232;  // in a radian
+constexpr double kTruthShare =
+    0.2;  // of these bounds, that the reference's own sigmas may reach where it serves as truth
 constexpr std::uint64_t kOrderStream = 31;
 
 struct CloseSequence {
@@ -49,6 +52,17 @@ double median_depth(const Context& context, const pf_pose_t& pose) {
   return depths.empty() ? 0 : median(depths);
 }
 
+/// Whether the reference knows this pose well enough to call another one wrong.
+bool is_truth(const Reference::Frame& frame) {
+  double rotation = 0, position = 0;
+  for (int i = 0; i < 3; ++i) {
+    rotation += frame.pose.covariance[7 * i];
+    position += frame.pose.covariance[7 * (3 + i)];
+  }
+  return std::sqrt(rotation) * kDegrees < kTruthShare * kWrongDeg &&
+         std::sqrt(position) < kTruthShare * kWrongDepths * frame.depth;
+}
+
 struct PoseError {
   double normalised, deg, depths;
 };
@@ -61,7 +75,7 @@ PoseError compare(const pf_pose_t& pose, const Reference::Frame& truth) {
   const Vec3 p = vector_of(truth.pose.p_WC) - vector_of(pose.p_WC);
   e[0] = theta.x, e[1] = theta.y, e[2] = theta.z, e[3] = p.x, e[4] = p.y, e[5] = p.z;
   const double normalised = normalised_error(e, P, 6, 6, 0);
-  return {normalised < 0 ? 1e12 : normalised, theta.norm() * 57.29577951308232, p.norm() / std::max(truth.depth, 1e-9)};
+  return {normalised < 0 ? 1e12 : normalised, theta.norm() * kDegrees, p.norm() / std::max(truth.depth, 1e-9)};
 }
 
 /// A context that is shown pictures at the film's rate, and what came of it.
@@ -102,10 +116,11 @@ class Player {
  private:
   void judge(const pf_pose_t& pose, int frame) {
     const Reference::Frame& truth = reference_.frames[static_cast<std::size_t>(frame)];
-    if (!truth.tracked) return;
+    if (!truth.is_truth) return;
     const PoseError error = compare(pose, truth);
     ++trial_->judged;
     trial_->worst_normalised = std::max(trial_->worst_normalised, error.normalised);
+    if (error.deg > trial_->worst_deg) trial_->worst_frame = frame;
     trial_->worst_deg = std::max(trial_->worst_deg, error.deg);
     trial_->worst_depths = std::max(trial_->worst_depths, error.depths);
     if (is_wrong(error.deg, error.depths))
@@ -237,6 +252,7 @@ bool play_reference(const Film& film, const KidnapOptions& options, Context& con
     frame.tracked = status == PF_OK && pf_get_pose(context.slam, &frame.pose) == PF_OK;
     if (frame.tracked) frame.depth = median_depth(context, frame.pose);
     frame.tracked = frame.tracked && frame.depth > 0;
+    frame.is_truth = frame.tracked && is_truth(frame);
     reference->frames.push_back(frame);
     if (i % options.every != 0 || !frame.tracked) continue;
     Reference::Start start;

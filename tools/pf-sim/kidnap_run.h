@@ -62,6 +62,7 @@ struct KidnapOptions {
 struct Reference {
   struct Frame {
     bool tracked = false;
+    bool is_truth = false;  ///< known well enough to call another pose wrong
     pf_pose_t pose{};
     double depth = 0;  ///< median, along the axis, of what was measured
   };
@@ -82,6 +83,7 @@ struct Trial {
   std::int32_t judged = 0;          ///< frames in state tracking, in the old map, where the truth is known
   double worst_normalised = 0;      ///< of them: e^T (P + P_truth)^-1 e, 6 dof
   double worst_deg = 0, worst_depths = 0;  ///< of them: rotation; position over the median depth
+  std::int32_t worst_frame = -1;           ///< of the film, where the rotation is worst
   double wrong_normalised = 0;  ///< largest normalised error of the frames that are wrong by 5 degrees or 10 % of depth
   double least_growth = 1;      ///< least ratio of successive standard deviations of the pose while coasting or lost
   std::int32_t old_ids = 0, kept_ids = 0;  ///< of the map when the gap began, and of them at the end of the trial
