@@ -65,10 +65,10 @@ const Film& room() {
   return film;
 }
 
-/// A context that has tracked the first seconds of the desk, and what it says to further pictures.
+/// A context that has tracked the beginning of the desk, and what it says to further pictures.
 class Run {
  public:
-  explicit Run(double restart_s, int max_kept_views = 24) {
+  explicit Run(double restart_s, int max_kept_views = 24, int tracked = 3 * kSecond) {
     std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
     pf_config_t config;
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
@@ -81,8 +81,7 @@ class Run {
     TEST_ASSERT_NOT_NULL(block_);
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block_, need.bytes, &slam));
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &desk().target));
-    for (int i = 0; i < 3 * kSecond; ++i)
-      TEST_ASSERT_EQUAL_INT(PF_OK, show(desk().picture[static_cast<std::size_t>(i)]));
+    for (int i = 0; i < tracked; ++i) TEST_ASSERT_EQUAL_INT(PF_OK, show(desk().picture[static_cast<std::size_t>(i)]));
   }
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
@@ -155,6 +154,25 @@ void test_another_place_without_a_blackout_should_never_be_called_tracked() {
   for (int i = 0; i < 8 * kSecond; ++i)
     tracked += run.show(room().picture[static_cast<std::size_t>(i)]) == PF_OK ? 1 : 0;
   TEST_ASSERT_EQUAL_INT(0, tracked);
+}
+
+/// Hardly a depth is known yet, and five matches along open rays agree nearly anywhere.
+void test_another_place_should_teach_a_map_of_a_few_frames_nothing() {
+  const Film wall("wall", 4 * kSecond, 20);
+  for (const Film* place : {&room(), &wall}) {
+    for (const int frames : {2, 5, 8, 15}) {
+      for (const int black : {0, kSecond}) {
+        Run run(0, 24, frames);
+        for (int i = 0; i < black; ++i) run.show_black();
+        pf_pose_t before = run.pose;
+        for (std::size_t i = 0; i < 2 * kSecond; ++i) {
+          TEST_ASSERT_NOT_EQUAL(PF_OK, run.show(place->picture[2 * i]));
+          for (int k = 0; k < 6; ++k) TEST_ASSERT_TRUE(run.pose.covariance[7 * k] >= before.covariance[7 * k]);
+          before = run.pose;
+        }
+      }
+    }
+  }
 }
 
 void test_covariance_should_never_shrink_while_coasting_or_lost() {
@@ -255,6 +273,7 @@ int main(void) {
   RUN_TEST(test_another_place_after_a_blackout_should_never_be_called_tracked);
   RUN_TEST(test_a_wall_after_half_a_second_without_a_picture_should_never_be_called_tracked);
   RUN_TEST(test_another_place_without_a_blackout_should_never_be_called_tracked);
+  RUN_TEST(test_another_place_should_teach_a_map_of_a_few_frames_nothing);
   RUN_TEST(test_covariance_should_never_shrink_while_coasting_or_lost);
   RUN_TEST(test_ids_should_survive_ten_seconds_without_pictures_and_eight_of_another_place);
   RUN_TEST(test_the_map_should_be_found_again_where_it_was_left);

@@ -167,7 +167,7 @@ void test_a_map_of_a_dozen_features_should_be_tracked_from_the_target_on() {
   run.start_at_rectangle();
   const int tracked = run.tracked_until(60);
   tell("a dozen features", run, 0);
-  TEST_ASSERT_GREATER_OR_EQUAL_INT(58, tracked);  // 59 were; one frame has 7 inliers, one fewer than a pose asks for
+  TEST_ASSERT_EQUAL_INT(60, tracked);
 }
 
 void count_line(void* user, const char* line) {

@@ -161,7 +161,7 @@ Vec2 FilterStart::at_frame_time(int slot, const Vec2& measured) const {
 }
 
 void FilterStart::record_frame() {
-  if (!progress().recording || without_.empty() || parts_.frame.report.inliers < TrackingState::kMinInliers) return;
+  if (!progress().recording || without_.empty() || parts_.frame.report.inliers < settings_.min_inliers) return;
   const CameraAt camera = camera_at(parts_.filter.state(), Scalar(0));
   without_.begin_frame(camera.q_WC, camera.p_W, parts_.frame.report.t_ns);
   for (int t = 0; t < parts_.frame.match_count(); ++t) {

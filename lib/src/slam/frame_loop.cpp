@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "slam/tuning.h"
 #include "slam/usable_pose.h"
 
 namespace pf {
@@ -59,14 +60,14 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   tracking_.note_usable_image(since_last_ns_);
   if (tracking_.needs_new_map(settings_.restart_ns)) begin_new_map();
   const bool first = !tracking_.has_pose();
-  const bool young = start_.progress().pending() || map_is_young();
+  const ConsensusRule rule = consensus_rule(t_ns);
   if (first) {
     if (!start_.start_in_image()) return end_frame();
-  } else if (tracking_.is_relocalising(start_.progress()) && !young) {
+  } else if (tracking_.is_relocalising(start_.progress()) && rule == ConsensusRule::kBeyondChance) {
     relocaliser_.recover(since_last_ns_);
   } else {
     relocaliser_.clear_proposals();
-    images_.measure(young);
+    images_.measure(rule);
   }
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
@@ -128,13 +129,16 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
   if (!filter_.body_is_sound()) start_over();
 }
 
-/// Whether fewer features have a depth of their own than a tracked frame needs: of a match along a ray whose depth is open, chance
-/// cannot be told from a consensus.
-bool FrameLoop::map_is_young() const {
+/// A match along a ray whose depth is open passes nearly everywhere, so chance cannot be computed while fewer features have a depth of
+/// their own than a tracked frame needs. A map as young as that is tracked from frame to frame, and not found again after a gap.
+ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
+  if (start_.progress().pending()) return ConsensusRule::kStart;
+  const double gap_s = static_cast<double>(elapsed_ns(tracking_.last_tracked_ns(), t_ns)) * 1e-9;
+  if (gap_s > static_cast<double>(tuning::tracking::kMaxYoungGap)) return ConsensusRule::kBeyondChance;
   int known = 0;
-  for (int i = 0; i < map_.features.capacity() && known < TrackingState::kMinInliers; ++i)
+  for (int i = 0; i < map_.features.capacity() && known < settings_.min_inliers; ++i)
     known += map_.features.used(i) && filter_.state().block[map_.features[i].slot].kind != BlockKind::kInverseDepth;
-  return known < TrackingState::kMinInliers;
+  return known < settings_.min_inliers ? ConsensusRule::kMostAgree : ConsensusRule::kBeyondChance;
 }
 
 /// If the frame does not support its pose, nothing is decided about the map.

@@ -60,7 +60,7 @@ class FrameLoop {
   void begin_frame(std::int64_t t_ns);
   Status repeat_frame(std::int64_t t_ns);
   Status end_frame();
-  bool map_is_young() const;
+  ConsensusRule consensus_rule(std::int64_t t_ns) const;
   void maintain_map(bool supported);
   void start_over();
   void begin_new_map();
@@ -70,7 +70,7 @@ class FrameLoop {
   Map& map_;
   Filter filter_;
   Frame frame_;
-  TrackingState tracking_;
+  TrackingState tracking_{settings_};
   FrozenCamera frozen_;
   BodyMotion motion_{settings_, filter_};
   PixelUpdate update_{settings_, filter_, map_, frame_, tracking_};

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
 constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
-constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs in a young map
+constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
 
 }  // namespace
 
@@ -27,7 +27,7 @@ bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observat
 
 /// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
 /// anything is used.
-void ImageFrontEnd::measure(bool young_map) {
+void ImageFrontEnd::measure(ConsensusRule rule) {
   const int count = list_visible();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
@@ -36,20 +36,20 @@ void ImageFrontEnd::measure(bool young_map) {
   const int scouts = widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
   int found = search(0, scouts > 0 ? scouts : count);
   if (scouts > 0) {
-    const bool scouted = update_with_consensus(0, found, young_map);
+    const bool scouted = update_with_consensus(0, found, rule);
     if (scouted) {
       StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
       predict_pixels(scouts, count - scouts);
     }
     const int more = search(scouts, count - scouts);
     if (scouted) {
-      update_with_consensus(scouts, more, young_map);
+      update_with_consensus(scouts, more, rule);
       return;
     }
     for (int k = 0; k < more; ++k, ++found)
       if (found != scouts + k) update_.swap(found, scouts + k);
   }
-  update_with_consensus(0, found, young_map);
+  update_with_consensus(0, found, rule);
 }
 
 bool ImageFrontEnd::remember(int feature, const Vec2& pixel, const CameraView& view) {
@@ -183,7 +183,7 @@ int ImageFrontEnd::search(int first, int count) {
 }
 
 /// Finds the consensus of matches and updates the filter with it. False if it may be chance; nothing is used then.
-bool ImageFrontEnd::update_with_consensus(int first, int found, bool young_map) {
+bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule rule) {
   if (found == 0) return false;
   update_.begin(first, found);
   unsigned char* keep = update_.keep();
@@ -195,14 +195,16 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, bool young_map) 
     // If an earlier range has given inliers, any consensus is accepted.
     if (frame_.report.inliers > 0) {
       accepted = true;
-    } else if (young_map) {
+    } else if (rule == ConsensusRule::kStart) {
       accepted = inliers >= std::min(kMinConsensus, map_.features.count());
+    } else if (rule == ConsensusRule::kMostAgree) {
+      accepted = inliers >= settings_.min_inliers && 2 * inliers >= frame_.report.attempts;
     } else {
       for (int i = 0; i < found; ++i) searched_px2_[i] = searched_area(first + i);
       const TripleConsensus consensus =
           find_triple_consensus(filter_, observations, searched_px2_, found, frame_.report.attempts, settings_.gate,
                                 tuning::tracking::kTriples, keep + first, nullptr);
-      accepted = inliers >= TrackingState::kMinInliers && consensus.log_false < tuning::tracking::kMaxLogFalse;
+      accepted = inliers >= settings_.min_inliers && consensus.log_false < tuning::tracking::kMaxLogFalse;
     }
   }
   for (int i = first; i < first + found; ++i) {

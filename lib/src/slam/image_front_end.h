@@ -12,6 +12,13 @@
 
 namespace pf {
 
+/// When a frame's consensus is believed.
+enum class ConsensusRule {
+  kStart,         ///< five agree: there is no map yet that could be spoilt
+  kMostAgree,     ///< at least eight, and half of what was searched for: the map is too young to compute chance
+  kBeyondChance,  ///< at least eight, far more than chance would give
+};
+
 class ImageFrontEnd {
  public:
   ImageFrontEnd(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features,
@@ -24,8 +31,7 @@ class ImageFrontEnd {
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image) { return tracker_.begin_frame(image); }
   /// Finds the map's features in the image and updates the filter with them.
-  /// young_map: hardly a depth is known yet, so that the test against chance says nothing.
-  void measure(bool young_map);
+  void measure(ConsensusRule rule);
   /// Adds features in the emptiest cells of the image until enough are in view.
   void add_features();
   /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
@@ -48,7 +54,7 @@ class ImageFrontEnd {
   bool is_visible(int feature) const;
   Scalar widest_ellipse(int count) const;
   SearchTask task_of(int i) const;
-  bool update_with_consensus(int first, int found, bool young_map);
+  bool update_with_consensus(int first, int found, ConsensusRule rule);
 
   // image_corners.cpp
   bool is_free(const Vec2& pixel) const;

@@ -110,7 +110,7 @@ void Relocaliser::set_pose(const Body& pose) {
 void Relocaliser::recover_nearby(int found) {
   const int before = data_.frames_nearby;
   data_.frames_nearby = 0;
-  if (found < TrackingState::kMinInliers) return;
+  if (found < settings_.min_inliers) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int i = 0; i < found; ++i) searched_px2_[i] = images_.searched_area(i);
   update_.begin(0, found);
@@ -131,7 +131,7 @@ void Relocaliser::recover_nearby(int found) {
 void Relocaliser::recover_anywhere(const SearchPose& about, int found, std::int64_t dt_ns) {
   const int before = data_.proposal.frames;
   data_.proposal.frames = 0;
-  if (found < TrackingState::kMinInliers) return;
+  if (found < settings_.min_inliers) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int i = 0; i < found; ++i) {
     point_W_[i] = filter_.point(map_.features[update_.candidate(i).feature].slot);
@@ -140,9 +140,9 @@ void Relocaliser::recover_anywhere(const SearchPose& about, int found, std::int6
   }
   Body pose = about.body;
   const Scalar sigma = std::max(Scalar(1), kProposalPixels * static_cast<Scalar>(settings_.camera.width));
-  if (propose_pose(filter_.lens(), about.P, point_W_, pixel_, found, sigma, &pose) < TrackingState::kMinInliers) return;
+  if (propose_pose(filter_.lens(), about.P, point_W_, pixel_, found, sigma, &pose) < settings_.min_inliers) return;
   found = linearise_at(pose, found);
-  if (found < TrackingState::kMinInliers) return;
+  if (found < settings_.min_inliers) return;
   update_.begin(0, found);
   const TripleConsensus consensus =
       find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
@@ -212,7 +212,7 @@ int Relocaliser::linearise_at(const Body& pose, int found) {
 
 /// Whether inliers are enough, far beyond chance, and not in one corner of the image.
 bool Relocaliser::is_beyond_chance(const TripleConsensus& consensus, int found) const {
-  return consensus.inliers >= TrackingState::kMinInliers && consensus.log_false < kMaxLogFalse && is_spread(found);
+  return consensus.inliers >= settings_.min_inliers && consensus.log_false < kMaxLogFalse && is_spread(found);
 }
 
 /// Whether the camera can have moved here from the last frame's proposal.

@@ -46,6 +46,7 @@ struct Settings {
   FixForm fix = FixForm::kConsider;
 
   int features_in_view = 0;
+  int min_inliers = 0;  ///< of a frame that counts as tracked
   int border_px = 0;
   std::int64_t max_coast_ns = 0;
   std::int64_t restart_ns = 0;  ///< of usable images while lost, after which a new map begins; 0: never

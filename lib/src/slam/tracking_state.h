@@ -5,6 +5,7 @@
 #include "base/hooks.h"
 #include "base/status.h"
 #include "slam/frame.h"
+#include "slam/settings.h"
 
 /// State of the tracking (starting, tracking, coasting, lost), and the status that a frame returns.
 
@@ -24,7 +25,7 @@ struct StartProgress {
 
 class TrackingState {
  public:
-  static constexpr int kMinInliers = 8;  ///< of a frame that counts as tracked
+  explicit TrackingState(const Settings& settings) : settings_(settings) {}
 
   void init() { data_ = Data(); }
   void begin_frame() { data_.from_target = data_.started_over = data_.unusable = false; }
@@ -68,7 +69,7 @@ class TrackingState {
   bool coasting_or_lost() const { return data_.state == SlamState::kCoasting || data_.state == SlamState::kLost; }
   /// This frame's measurements support its pose.
   bool is_tracked(const FrameReport& report) const {
-    return (report.inliers >= kMinInliers || data_.from_target) && !data_.unusable;
+    return (report.inliers >= settings_.min_inliers || data_.from_target) && !data_.unusable;
   }
   /// The last frame did not support its pose: the map has to be found again before anything is measured.
   bool is_relocalising(const StartProgress& start) const { return coasting_or_lost() && !start.pending(); }
@@ -77,9 +78,12 @@ class TrackingState {
   }
   /// Id of the current map; never used twice.
   std::uint32_t map_id() const { return data_.map_id; }
+  /// Time of the last frame that supported its pose.
+  std::int64_t last_tracked_ns() const { return data_.last_tracked_ns; }
   bool may_skip_target() const { return data_.may_skip_target; }
 
  private:
+  const Settings& settings_;
   static constexpr int kMaxFailedUpdates = 10;  ///< in a row
 
   struct Data {

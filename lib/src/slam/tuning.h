@@ -15,8 +15,11 @@ inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in s
 
 /// A frame while tracking.
 namespace tracking {
+inline constexpr int kMinInliers = 8;       ///< of a tracked frame, or half of map.features_in_view if that is less
+inline constexpr int kMinInliersOfFew = 5;  ///< and never fewer than that
 inline constexpr Scalar kMaxLogFalse = Scalar(-6.9);  ///< ln 0.001 consensuses as good that chance gives per frame
 inline constexpr int kTriples = 8;                    ///< of inliers, with which that number is computed
+inline constexpr Scalar kMaxYoungGap = Scalar(0.2);   ///< [s] untracked, after which a young map is no longer followed
 }  // namespace tracking
 
 /// Whether a pose can be used.
