@@ -215,6 +215,10 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->check(at_least(2));
   app.add_flag("--there-and-back", options.there_and_back,
                "all frames forwards, then backwards; pf-eval --there-and-back compares the two poses of each image");
+  app.add_option(
+         "--relative", options.relative,
+         "write the motion over every N frames with its covariance (relative.csv); with truth, how honest it is")
+      ->check(at_least(1));
   app.add_option("--out", options.out, "folder for what is written; made when it is missing")->capture_default_str();
   app.add_option("--report-every", options.report_every_s, "seconds between refreshed report.json and map.ply")
       ->check(CLI::Range(0.01, 1e9))

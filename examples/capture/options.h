@@ -24,6 +24,7 @@ struct Options {
   int64_t withdraw_target_after = -1;
   int64_t frames = -1;
   int64_t skip = 0;
+  int64_t relative = 0;  ///< frames of a window over which the motion is written, 0: none
   uint64_t seed = 1;
   int32_t max_features = -1;
   int32_t max_planes = -1;

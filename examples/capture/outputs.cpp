@@ -26,6 +26,29 @@ void put_tum(std::string& rows, const pf_pose_t& pose) {
   append(rows, " %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", p[0], p[1], p[2], q[1], q[2], q[3], q[0]);
 }
 
+/// T_KC over a window, 6x6 of (theta, p) in K; the last two fields are empty without truth.
+void put_window(std::string& rows, const MotionWindow& window) {
+  const pf_motion_t& motion = window.motion;
+  put_seconds(rows, motion.mark_t_ns);
+  rows += ',';
+  put_seconds(rows, motion.t_ns);
+  append(rows, ",%d", window.map);
+  for (const double value : motion.q_KC) {
+    append(rows, ",%.9g", value);
+  }
+  for (const double value : motion.p_KC) {
+    append(rows, ",%.9g", value);
+  }
+  for (const double value : motion.covariance) {
+    append(rows, ",%.9g", value);
+  }
+  if (window.nees >= 0.0) {
+    append(rows, ",%.6g,%" PRId64 "\n", window.nees, window.nees_dof);
+  } else {
+    rows += ",,\n";
+  }
+}
+
 const char* match_name(int32_t status) {
   constexpr const char* kNames[] = {"unknown", "inlier", "outlier", "missed", "new"};
   return kNames[status >= 0 && status <= 4 ? status : 0];
@@ -58,7 +81,8 @@ bool Outputs::create(TextFile& file, const std::string& name, std::string& error
   return true;
 }
 
-bool Outputs::open(const std::string& folder, bool tracks, bool truth, const pf_camera_t& camera, std::string& error) {
+bool Outputs::open(const std::string& folder, bool tracks, bool truth, bool relative, const pf_camera_t& camera,
+                   std::string& error) {
   folder_ = folder;
   char message[PF_SEQUENCE_MESSAGE] = "";
   if (pf_open_output_folder(folder.c_str(), "--out", message) != 0) {
@@ -66,7 +90,8 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, const pf_
     return false;
   }
   if (!open_map(1, error) || !create(frames_, "frames.csv", error) ||
-      (tracks && !create(tracks_, "tracks.csv", error)) || (truth && !create(truth_, "truth.tum", error))) {
+      (tracks && !create(tracks_, "tracks.csv", error)) || (truth && !create(truth_, "truth.tum", error)) ||
+      (relative && !create(relative_, "relative.csv", error))) {
     return false;
   }
   for (const char* name : {"calib.yaml", "map.ply", "map.ply.part", "report.json", "report.json.part"}) {
@@ -80,6 +105,11 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, const pf_
   }
   frames_.rows() = "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof,tracked\n";
   tracks_.rows() = "frame,id,status,kind,predicted_u,predicted_v,s_uu,s_uv,s_vv,measured_u,measured_v\n";
+  relative_.rows() = "mark_t_s,t_s,map,qw,qx,qy,qz,px,py,pz";
+  for (int i = 0; i < 36; ++i) {
+    append(relative_.rows(), ",c%d%d", i / 6, i % 6);
+  }
+  relative_.rows() += ",nees,nees_dof\n";
   truth_.rows() = "# true T_WC: timestamp tx ty tz qx qy qz qw\n";
   return true;
 }
@@ -99,7 +129,7 @@ bool Outputs::open_map(int map, std::string& error) {
   return true;
 }
 
-bool Outputs::write(const FrameView& view, const pf_pose_t* truth, std::string& error) {
+bool Outputs::write(const FrameView& view, const pf_pose_t* truth, const MotionWindow* window, std::string& error) {
   const pf_report_t& report = view.report;
   if (view.map != map_ && !open_map(view.map, error)) {
     return false;
@@ -123,6 +153,9 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, std::string& 
   if (truth != nullptr) {
     put_tum(truth_.rows(), *truth);
   }
+  if (window != nullptr) {
+    put_window(relative_.rows(), *window);
+  }
   if (tracks_.is_open()) {
     std::string& tracks = tracks_.rows();
     for (const pf_match_t& t : view.tracks) {
@@ -138,7 +171,7 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, std::string& 
   }
   bool written = true;
   // The covariance before the trajectory, so that whatever ends the program leaves one for every pose.
-  for (TextFile* file : {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &truth_, &frames_}) {
+  for (TextFile* file : {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &truth_, &relative_, &frames_}) {
     written = file->write_rows(error) && written;
   }
   return written;

@@ -14,6 +14,7 @@
 #include "progress.h"
 #include "realtime.h"
 #include "recorder.h"
+#include "relative_motion.h"
 #include "session.h"
 #include "show.h"
 #include "source.h"
@@ -70,6 +71,7 @@ class Run {
   Session session_;
   Outputs outputs_;
   Statistics statistics_;
+  RelativeMotion relative_;
   Progress progress_;
   Recorder recorder_;
   ImuFeed imu_;
@@ -96,7 +98,9 @@ bool Run::open(std::string& error, int& code) {
     return false;
   }
   code = kExitRun;
-  if (!outputs_.open(options_.out, options_.tracks, info.knows_truth, session_.config().camera, error) ||
+  relative_.open(options_.relative, session_.target() != nullptr);
+  if (!outputs_.open(options_.out, options_.tracks, info.knows_truth, options_.relative > 0, session_.config().camera,
+                     error) ||
       !outputs_.write_true_planes(source_.planes(), error)) {
     return false;
   }
@@ -231,7 +235,9 @@ Read Run::step(int64_t index) {
 bool Run::write_down(std::string& error) {
   pf_pose_t truth{};
   const bool has_truth = source_.truth(truth);
-  if (!outputs_.write(view_, has_truth ? &truth : nullptr, error)) {
+  const pf_pose_t* true_pose = has_truth ? &truth : nullptr;
+  const bool window = relative_.add(session_.slam(), view_, true_pose);
+  if (!outputs_.write(view_, true_pose, window ? &relative_.window() : nullptr, error)) {
     return false;
   }
   return !recorder_.failed(error) && !imu_.failed(error);
@@ -247,7 +253,8 @@ bool Run::refresh_report() {
   if (!done_any_ || static_cast<double>(steady_ns() - reported_ns_) < 1e9 * options_.report_every_s) {
     return true;
   }
-  const std::string report = statistics_.to_json(session_, options_, source_.info(), source_.report(), "", kRunning);
+  const std::string report =
+      statistics_.to_json(session_, options_, source_.info(), relative_, source_.report(), "", kRunning);
   const bool written = outputs_.write_state(view_, {}, report, failure_);
   reported_ns_ = steady_ns();
   return written;
@@ -390,7 +397,7 @@ int Run::finish() {
   }
   std::string error, advice;
   const std::string imu = imu_.report(session_.slam(), advice);
-  const std::string report = statistics_.to_json(session_, options_, source_.info(), live, imu, failure_);
+  const std::string report = statistics_.to_json(session_, options_, source_.info(), relative_, live, imu, failure_);
   const std::vector<double> in_map = sigmas_in_map(session_.slam(), view_.features);
   if (!outputs_.write_state(view_, in_map, report, error)) {
     return fail(failure_.empty() ? error : failure_);

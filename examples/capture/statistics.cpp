@@ -165,7 +165,8 @@ std::string Statistics::lost_line() const {
 }
 
 std::string Statistics::to_json(const Session& session, const Options& options, const SourceInfo& source,
-                                const std::string& live, const std::string& imu, const std::string& ended) const {
+                                const RelativeMotion& relative, const std::string& live, const std::string& imu,
+                                const std::string& ended) const {
   constexpr const char* kStages[] = {"pyramid", "predict", "search", "gate", "update", "map"};
   Json stages = Json::object();
   for (int i = 0; i <= PF_STAGE_MAP; ++i) {
@@ -233,6 +234,14 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
       source.truth_path.empty() ? "" : std::filesystem::absolute(source.truth_path).lexically_normal().string();
   if (turn_images_ > 0) {
     json["there_and_back"] = {{"turn_s", 1e-9 * static_cast<double>(turn_ns_)}, {"images", turn_images_}};
+  }
+  if (relative.frames() > 0) {
+    json["relative"] = {
+        {"frames", relative.frames()},
+        {"windows", relative.windows()},
+        {"untracked", relative.untracked()},
+        {"without_room", relative.without_room()},
+        {"nees_per_dof", relative.nees_per_dof() >= 0.0 ? Json(rounded(relative.nees_per_dof())) : Json()}};
   }
   if (!live.empty()) {
     json["live"] = Json::parse(live);

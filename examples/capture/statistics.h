@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "histogram.h"
+#include "relative_motion.h"
 #include "session.h"
 #include "view.h"
 
@@ -41,8 +42,9 @@ class Statistics {
   /// live   JSON of the source's own report, or ""
   /// imu    JSON of what came from the inertial unit, or ""
   /// ended  "" or the line that says why the run ended early
-  std::string to_json(const Session& session, const Options& options, const SourceInfo& source, const std::string& live,
-                      const std::string& imu, const std::string& ended) const;
+  std::string to_json(const Session& session, const Options& options, const SourceInfo& source,
+                      const RelativeMotion& relative, const std::string& live, const std::string& imu,
+                      const std::string& ended) const;
   /// One line for people.
   std::string summary(const Session& session) const;
 

@@ -12,6 +12,14 @@
 
 namespace pf::capture {
 
+/// The motion of the camera over one window of frames.
+struct MotionWindow {
+  pf_motion_t motion{};
+  int map = 1;           ///< of the run, as in FrameView
+  double nees = -1.0;    ///< against the truth; negative where there is none
+  int64_t nees_dof = 0;  ///< its degrees of freedom
+};
+
 /// Everything that one frame left behind, copied out of the library: what is written down and what is drawn.
 struct FrameView {
   int64_t index = 0;  ///< of the frames of this run, from 0

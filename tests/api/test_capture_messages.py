@@ -85,6 +85,7 @@ def test_usage(root):
     expect("unknown option", 2, ["--nonsense"], "--source", source, "--nonsense", "1")
     expect("number", 2, ["--frames"], "--source", source, "--frames", "many")
     expect("zero frames", 2, ["--frames"], "--source", source, "--frames", "0")
+    expect("windows of no frames", 2, ["--relative"], "--source", source, "--relative", "0")
     expect("source kind", 2, ["film:x", "images:"], "--source", "film:x")
     expect("libcamera without calibration", 1, ["libcamera:0", "--calib"], "--source", "libcamera:0")
     expect("format of libcamera", 2, ["--format", "RGB888"], "--source", "libcamera:0", "--format", "MJPEG")

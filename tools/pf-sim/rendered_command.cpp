@@ -23,6 +23,7 @@ struct Choices {
   bool as_global = false;
   std::vector<std::string> lenses{"right"};
   double focal_error = 0, k1 = 0;
+  bool draw_lens = false;
   bool no_planes = false;
   int max_features = 0, max_state_dim = 0, max_planes = 0;
 };
@@ -186,6 +187,7 @@ pf_camera_t wrong_camera(const pf_camera_t& truth, double focal_error, const std
 bool prepare(const Choices& c, RenderedOptions& o) {
   o.scene = c.scene;
   o.motion_frames = c.relative;
+  o.draw_lens = c.draw_lens;
   if (pf_sim_options_default(c.scene.c_str(), &o.sim) != PF_OK) return false;
   o.sim.frames = c.frames;
   o.sim.noise_grey = c.noise;
@@ -241,6 +243,8 @@ int run(const Choices& c) {
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
     return fail("seeds, jobs and frames must be positive");
   if (c.relative < 0) return fail("--relative is a number of frames, or 0");
+  if (c.draw_lens && (c.focal_error != 0 || c.k1 != 0 || c.as_global || c.readout_s != 0))
+    return fail("--draw-lens draws the whole lens: leave --focal-error, --k1, --readout and --as-global away");
   RenderedOptions options;
   if (!prepare(c, options)) return fail(no_scene(c.scene));
   const char* field = nullptr;
@@ -267,6 +271,7 @@ int run(const Choices& c) {
                 {"blur_samples", c.blur},
                 {"readout_s", c.readout_s},
                 {"relative", c.relative},
+                {"draw_lens", c.draw_lens},
                 {"focal_error", c.focal_error},
                 {"k1", c.k1}}}};
   for (std::size_t v = 0; v < options.variants.size(); ++v) {
@@ -308,6 +313,9 @@ void add_rendered(CLI::App& app, int& result) {
       "--lens", c->lenses,
       "one or more: right, or with a wrong calibration that the filter takes as exact, considers or estimates");
   command->add_option("--focal-error", c->focal_error, "of a wrong calibration, relative");
+  command->add_flag("--draw-lens", c->draw_lens,
+                    "each run's true lens is drawn from the prior (1 %, centre 1 % of the width, k1 0.05), which only "
+                    "lens right is told");
   command->add_option("--k1", c->k1, "radial distortion of the camera, which a wrong calibration does not name");
   command->add_option("--relative", c->relative, "frames of a window over which the motion is judged, 0: none");
   command->add_flag("--no-planes", c->no_planes, "points only, for comparison");

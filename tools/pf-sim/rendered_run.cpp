@@ -14,7 +14,7 @@ namespace {
 using pf::sim::Pose;
 using pf::sim::Vec3;
 
-constexpr std::uint64_t kStartStream = 21;
+constexpr std::uint64_t kStartStream = 21, kLensStream = 22;
 constexpr int kLookEvery = 5;                          // frames between looks at what is in view
 constexpr double kStartSpeed = 0.1, kStartRate = 0.1;  // about the truth's velocities [m/s], [rad/s]
 
@@ -35,6 +35,20 @@ void draw_pose(pf_pose_t& pose, pf::sim::Random& random) {
     pose.v_W[k] -= kStartSpeed * random.normal();
     pose.w_C[k] -= kStartRate * random.normal();
   }
+}
+
+/// A camera whose calibration is the prior's mean: its focal lengths, centre and k1 are drawn about that.
+pf_camera_t draw_lens(const pf_camera_t& prior, std::uint64_t seed) {
+  pf::sim::Random random(seed, kLensStream);
+  pf_camera_t camera = prior;
+  const double focal = prior.sigma_focal * random.normal(), aspect = prior.sigma_aspect * random.normal();
+  camera.model = PF_CAMERA_RADTAN;
+  camera.fx *= 1 + focal + aspect / 2;
+  camera.fy *= 1 + focal - aspect / 2;
+  camera.cx += prior.sigma_centre_px * random.normal();
+  camera.cy += prior.sigma_centre_px * random.normal();
+  camera.distortion[0] += prior.sigma_distortion[0] * random.normal();
+  return camera;
 }
 
 /// The target as somebody would have measured it.
@@ -108,6 +122,7 @@ void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std:
       of_variant[f].nees_position = of_variant[f].nees_pose = of_variant[f].nees_motion = -1;
   pf_sim_options_t sim_options = options.sim;
   sim_options.seed = seed;
+  if (options.draw_lens) sim_options.camera = draw_lens(sim_options.camera, seed);
   const std::unique_ptr<pf_sim_t, CloseSim> sim(pf_sim_open(options.scene.c_str(), &sim_options));
   pf_target_t corners;
   if (!sim || pf_sim_target(sim.get(), PF_TARGET_POINTS, &corners) != PF_OK) return;
@@ -115,7 +130,8 @@ void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std:
   FrameDepth depth(sim.get(), sim_options.camera);
   SurfaceWatch surfaces(sim.get(), sim_options.camera);
   std::vector<std::unique_ptr<Runner>> runners;
-  for (const Variant& variant : options.variants) {
+  for (Variant variant : options.variants) {
+    if (options.draw_lens && variant.lens == "right") variant.config.camera = sim_options.camera;
     runners.push_back(std::make_unique<Runner>(variant.config, corners, options.motion_frames));
     pf_slam_t* slam = runners.back()->context.slam;
     if (!slam || !start(slam, variant.start, sim.get(), seed)) return;

@@ -27,6 +27,8 @@ struct RenderedOptions {
   pf_sim_options_t sim;           ///< the seed is set for each run
   std::vector<Variant> variants;  ///< all see the same frames
   int motion_frames = 0;          ///< of a window over which the motion is judged, 0: none
+  bool draw_lens =
+      false;  ///< each run's true lens is drawn from the prior of sim.camera, which only the variant "right" is told
 };
 
 /// What one run gave besides its frames. Plain data, so that it may lie in memory shared between processes.

@@ -14,6 +14,7 @@ from .errors import compare, default_alignment
 from .files import list_maps, read_map, read_run
 from .options import arguments
 from .planes import compare_planes, folding, read_planes
+from .relative import compare_motions
 from .there_and_back import compare_passes, forward
 from .truth import named_truth, read_truth
 
@@ -37,6 +38,11 @@ TABLE = {
     "plane_offset_median_m": ("offset of a plane, median", "m"), "plane_offset_max_m": ("offset, largest", "m"),
     "state_dim_end": ("rows of the state at the end", ""), "state_dim_points_only": ("the same map without folding", ""),
     "state_dim_saved": ("share of the state saved by folding", ""), "points_on_planes": ("points on planes", ""),
+    "motion_nees_per_dof": ("NEES of a motion per degree of freedom (1 is honest)", ""),
+    "motion_nees_per_dof_median": ("likewise, median (0.9 is honest)", ""),
+    "motion_rotation_nees_per_dof": ("likewise, of its rotation", ""),
+    "motion_nees_per_dof_one_scale": ("likewise, with one scale for each map", ""),
+    "motions": ("motions compared", ""), "motions_without_truth": ("motions without truth", ""),
     "back_distance_median": ("distance of an image's two poses, median", "of extent"),
     "back_distance_max": ("distance of an image's two poses, largest", "of extent"),
     "back_rotation_median_deg": ("rotation between them, median", "deg"),
@@ -106,6 +112,10 @@ def evaluate_corners(options):
 def evaluate(options):
     if options.there_and_back:
         return compare_passes(*read_run(options.run))
+    if options.relative:
+        run, report, folder = read_run(options.run)
+        truth_path = options.truth or named_truth(report, folder)
+        return compare_motions(folder, report, read_truth(truth_path, options.calib)[0], options.align or default_alignment(report))
     if options.corners:
         return evaluate_corners(options)
     return evaluate_truth(options)

@@ -7,6 +7,7 @@ DESCRIPTION = """Compares a run of pf-capture with ground truth.
   pf-eval RUN [--truth FILE] [--planes FILE.json] [--align none|se3|sim3] [--json [FILE]]
   pf-eval RUN --corners FILE.csv --target FILE.yaml [--calib FILE] [--json [FILE]]
   pf-eval RUN --there-and-back [--json [FILE]]
+  pf-eval RUN --relative [--truth FILE] [--align none|sim3] [--json [FILE]]
 
 RUN is an output folder of pf-capture, or a trajectory in the TUM form (timestamp tx ty tz qx qy qz qw)."""
 
@@ -20,6 +21,9 @@ frame only, so with --align none; nees_position has 3 degrees of freedom, nees_p
 within 10 degrees and, in the middle of its outline, 10 cm of it, after an alignment by the rotations of the trajectory.
 --there-and-back reads a run of pf-capture --there-and-back, where each image has two poses that should be one: their distance is
 given as a share of the path's extent, the largest distance between two places of the way there.
+--relative reads a run of pf-capture --relative N: the NEES of its motions over N frames against the truth, per degree of freedom
+(1 is honest). No alignment of frames is needed. With --align none a motion has 6 degrees of freedom. With sim3 it has 5, since the
+scale of each is free; with one scale for each map (one_scale) all of a map's motions have 6 each less one.
 
 Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
 
@@ -37,6 +41,7 @@ def arguments(words):
     parser.add_argument("--calib", metavar="FILE", help="of --corners: default calib.yaml in RUN, or beside the corners; of a body's truth: "
                         "default cam0/sensor.yaml beside it")
     parser.add_argument("--there-and-back", action="store_true", help="the two poses of each image; needs no truth")
+    parser.add_argument("--relative", action="store_true", help="the motions of relative.csv against the truth")
     parser.add_argument("--skip-frames", metavar="N", type=int, default=0, help="leave out corners of the first N frames")
     parser.add_argument("--json", metavar="FILE", nargs="?", const="-", help="results as JSON, to a file or the output")
     parser.add_argument("--per-frame", metavar="FILE.csv", help="errors frame by frame")
@@ -46,6 +51,8 @@ def arguments(words):
         options.run, options.json = options.json, "-"
     if options.run is None:
         parser.error("which RUN?")
+    if options.relative and (options.corners or options.there_and_back or options.planes or options.align == "se3"):
+        parser.error("--relative goes with --truth and --align none or sim3")
     if [options.truth is not None, options.corners is not None, options.there_and_back].count(True) > 1:
         parser.error("give one of --truth, --corners and --there-and-back")
     if options.planes and (options.corners or options.there_and_back):
