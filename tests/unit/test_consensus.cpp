@@ -1,4 +1,6 @@
 // One-point consensus: right matches agree with each other, wrong ones do not, whoever comes first.
+#include <algorithm>
+
 #include "slam/consensus.h"
 #include "support/filter_scene.h"
 
@@ -105,6 +107,70 @@ void test_consensus_should_find_few_when_all_matches_are_random() {
   }
 }
 
+/// Measurements of `kRows` rows over the body, of which the last `wrong` are 20 standard deviations off; what find_inliers says of them
+/// is what dense matrices say.
+template <int kRows>
+void check_height(SeededRandom& random, Scalar gate) {
+  constexpr int kCount = 9, kWrong = 3;
+  using Observation = MeasurementOf<kRows, 6, 1>;
+  for (int trial = 0; trial < 20; ++trial) {
+    TestFilter filter(true);
+    fill_map(random, filter, 4, 0);
+    filter.set_P(random_covariance(random, filter.dim(), 0.1));
+    const Dense P = filter.P();
+    const Dense L = P.llt().matrixL();
+    Dense e = Dense::Zero(filter.dim(), 1);
+    for (int i = 0; i < filter.dim(); ++i) e(i) = random.normal();
+    e = L * e;
+    Observation z[kCount];
+    Measurement view[kCount];
+    std::vector<Dense> H;
+    for (int i = 0; i < kCount; ++i) {
+      z[i].H.parts = 1;
+      z[i].H.part[0] = Part::body(0, 6);
+      for (int k = 0; k < kRows * 6; ++k) z[i].H.h[k] = static_cast<Scalar>(random.normal());
+      z[i].set_noise(Observation::Matrix::Identity() * Scalar(1e-4));
+      H.push_back(dense_rows(*filter, z[i].H));
+      const Dense right = H.back() * e;
+      for (int k = 0; k < kRows; ++k)
+        z[i].measured(k) = static_cast<Scalar>(right(k) + 0.01 * random.normal() + (i < kCount - kWrong ? 0 : 0.2));
+      view[i] = z[i].view();
+    }
+    filter->begin_update(view, kCount);
+    unsigned char keep[kCount];
+    const int found = find_inliers(*filter, z, kCount, gate, keep);
+    // The same with dense matrices: the best hypothesis, and whom it takes.
+    int best = 0;
+    std::vector<std::vector<bool>> taken;
+    for (int i = 0; i < kCount; ++i) {
+      const Dense R = Dense::Identity(kRows, kRows) * 1e-4;
+      const Dense S_ii = H[i] * P * H[i].transpose() + R;
+      int inliers = 0;
+      taken.emplace_back();
+      for (int j = 0; j < kCount; ++j) {
+        const Dense S_ji = H[j] * P * H[i].transpose();
+        const Dense r = z[j].measured.template cast<double>() -
+                        S_ji * S_ii.ldlt().solve(Dense(z[i].measured.template cast<double>()));
+        const Dense S = H[j] * P * H[j].transpose() + R - S_ji * S_ii.ldlt().solve(Dense(S_ji.transpose()));
+        taken.back().push_back(i == j || (r.transpose() * S.ldlt().solve(r))(0, 0) < static_cast<double>(gate));
+        inliers += taken.back().back();
+      }
+      best = std::max(best, inliers);
+    }
+    TEST_ASSERT_EQUAL_INT(best, found);
+    const std::vector<bool> kept(keep, keep + kCount);
+    TEST_ASSERT_TRUE(std::find(taken.begin(), taken.end(), kept) != taken.end());
+    if (kRows == 8)
+      for (int i = 0; i < kCount; ++i) TEST_ASSERT_EQUAL_INT(i < kCount - kWrong, keep[i]);
+  }
+}
+
+void test_consensus_should_take_measurements_of_one_and_of_eight_rows() {
+  SeededRandom random(105);
+  check_height<1>(random, Scalar(6.635));
+  check_height<8>(random, Scalar(26.12));  // 99.9 % with eight degrees of freedom
+}
+
 void test_squared_distance_should_be_that_of_the_inverse_covariance() {
   SeededRandom random(104);
   for (int trial = 0; trial < 50; ++trial) {
@@ -125,6 +191,7 @@ int main(void) {
   RUN_TEST(test_consensus_should_reject_wrong_matches_when_three_in_ten_are_wrong);
   RUN_TEST(test_consensus_should_keep_as_many_as_the_gate_says_when_all_are_right);
   RUN_TEST(test_consensus_should_find_few_when_all_matches_are_random);
+  RUN_TEST(test_consensus_should_take_measurements_of_one_and_of_eight_rows);
   RUN_TEST(test_squared_distance_should_be_that_of_the_inverse_covariance);
   return UNITY_END();
 }

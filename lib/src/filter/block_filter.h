@@ -81,6 +81,14 @@ class BlockFilter {
   /// S of measurement i against j, of both heights, row-major.
   void innovation(int i, int j, Scalar* S) const;
   Mat2 innovation2(int i, int j) const;  ///< of two pixels
+  /// Of two measurements of kRows rows.
+  template <int kRows>
+  Eigen::Matrix<Scalar, kRows, kRows> innovation_of(int i, int j) const {
+    if constexpr (kRows == 2) return innovation2(i, j);
+    Scalar S[kRows * kRows];
+    innovation(i, j, S);
+    return Eigen::Map<const Eigen::Matrix<Scalar, kRows, kRows>>(S).transpose();
+  }
   /// dx = P H^T (S + R)^-1 r of the projected measurements that are kept (null: all); zero for held rows. Null when S + R cannot be
   /// factored or nothing is kept; P is as it was then. *nis gets r^T (S + R)^-1 r.
   const Scalar* gain(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);

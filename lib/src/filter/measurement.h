@@ -21,6 +21,7 @@ struct Measurement {
 /// Storage of a measurement.
 template <int kRows, int kMaxColumns, int kMaxParts>
 struct MeasurementOf {
+  static constexpr int kHeight = kRows;
   using Vector = Eigen::Matrix<Scalar, kRows, 1>;
   using Matrix = Eigen::Matrix<Scalar, kRows, kRows>;
 
