@@ -5,6 +5,11 @@
 /// The update of the covariance: projection, gain, downdate.
 
 namespace pf {
+namespace {
+
+constexpr Scalar kMaxNis = Scalar(1e12);  ///< a sum of squares that is larger is no number any more
+
+}  // namespace
 
 int BlockFilter::columns(const Rows& J, int* column) const {
   int c = 0;
@@ -97,7 +102,7 @@ const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned 
     y_[i] = v / S_[i * lds_ + i];
     sum += y_[i] * y_[i];
   }
-  if (!(sum < Scalar(1e12))) return nullptr;
+  if (!(sum < kMaxNis)) return nullptr;
   *nis = sum;
   kernels_->combine(W_, m, P_.n, ld_, y_, dx_);
   for (int i = leading_dim_; i < held_end(); ++i) dx_[i] = Scalar(0);

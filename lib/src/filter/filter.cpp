@@ -192,7 +192,7 @@ Mat3 Filter::covariance3(int slot) const {
   Place at;
   Mat3 C = Mat3::Zero();
   const Block& block = state_.block[slot];
-  if (block.kind == BlockKind::kInverseDepth && !(block.inverse_depth().rho > kMinShownInverseDepth)) {
+  if (block.kind == BlockKind::kInverseDepth && !(block.inverse_depth().rho > tuning::inverse_depth::kMinShownRho)) {
     const int first[2] = {first_row(block.parent), first_row(slot)};
     Mat6 cov;
     for (int i = 0; i < 6; ++i)

@@ -3,14 +3,12 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "filter/tuning.h"
 
 namespace pf {
 namespace {
 
-/// A unit whose largest number is reached says no more than "at least this"; filters behind the converter round a little down.
-constexpr Scalar kSaturation = Scalar(0.995);
-
-constexpr std::int64_t kAdaptSteps = 16;  ///< the median interval moves by this fraction of itself towards each new one
+using namespace tuning::imu;
 
 bool reaches(const Scalar* values, Scalar range) {
   if (!(range > Scalar(0))) return false;
@@ -80,8 +78,7 @@ void ImuLog::mark_frame(std::int64_t t_ns) {
 
 double ImuLog::rate_hz() const {
   if (counts_.samples < 2) return 0.0;
-  return static_cast<double>(counts_.samples - 1) /
-         (1e-9 * static_cast<double>(elapsed_ns(counts_.first_ns, counts_.last_ns)));
+  return static_cast<double>(counts_.samples - 1) / seconds(elapsed_ns(counts_.first_ns, counts_.last_ns));
 }
 
 }  // namespace pf

@@ -4,6 +4,7 @@
 #include "filter/model/kinds.h"
 #include "filter/observe/inverse_depth.h"
 #include "filter/observe/point.h"
+#include "filter/tuning.h"
 
 /// Pixels: what is expected of them, each at the pose of its own row (lib/docs/rolling_shutter.md).
 
@@ -31,7 +32,7 @@ void follow_row(const CameraAt& camera, const Mat26& J_camera, Scalar k, PixelMe
     const Vec3 J_theta = J_camera.block<1, 3>(a, 0).transpose(), J_p = J_camera.block<1, 3>(a, 3).transpose();
     drift(a) = J_theta.dot(camera.q_WC * camera.w_C) + J_p.dot(camera.v_W);
   }
-  const Scalar own = std::max(Scalar(1) - k * drift.y(), Scalar(0.1));
+  const Scalar own = std::max(Scalar(1) - k * drift.y(), tuning::pixel::kMinRowRate);
   M(0, 1) = k * drift.x() / own;
   M(1, 1) = Scalar(1) / own;
   const int columns = out->H.columns();
@@ -47,7 +48,7 @@ void follow_row(const CameraAt& camera, const Mat26& J_camera, Scalar k, PixelMe
 /// Parallax is the product of inverse depth and baseline. Where both are uncertain, what neither Jacobian shows is their product, with
 /// covariance sigma_rho^2 J P_baseline J^T (second-order term; zero first-order Jacobian at a baseline of zero).
 Mat2 Filter::parallax_noise(int slot, Scalar rho, const Mat23& J_z_anchor) const {
-  if (!(rho > Scalar(1e-6))) return Mat2::Zero();
+  if (!(rho > tuning::inverse_depth::kMinRho)) return Mat2::Zero();
   const Triangle& P = covariance();
   const int from = first_row(state_.block[slot].parent);
   const Scalar factor = block_variance(slot, 2) / (rho * rho);

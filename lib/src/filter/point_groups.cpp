@@ -2,12 +2,17 @@
 
 #include "filter/filter.h"
 #include "filter/model/kinds.h"
+#include "filter/tuning.h"
 
 /// Fixed points. What is known well of a point on a plane is not where it is, for that carries the whole map's drift, but how it lies
 /// among the other points of its plane. So these are fixed in a patch, a drawing that moves as one and stays in the state.
 
 namespace pf {
 namespace {
+
+using namespace tuning::point_group;
+
+constexpr Scalar kUnknown = Scalar(1e12);  ///< variance where there is no drawing yet
 
 using Mat24 = Eigen::Matrix<Scalar, 2, 4>;
 
@@ -44,7 +49,7 @@ struct GroupFit {
       D += d * d.transpose();
     }
     const Scalar trace = D(0, 0) + D(1, 1), det = D(0, 0) * D(1, 1) - D(0, 1) * D(0, 1);
-    if (count < 4 || !(det > Scalar(0.01) * trace * trace)) return false;
+    if (count < 4 || !(det > kMinSpread * trace * trace)) return false;
     D_inverse << D(1, 1) / det, -D(0, 1) / det, -D(0, 1) / det, D(0, 0) / det;
     return true;
   }
@@ -88,7 +93,7 @@ Scalar Filter::variance_in_group(int slot, const int* group, int group_count) co
     return largest_eigenvalue(blocks_.covariance_of<2>(J));
   }
   GroupFit fit;
-  if (!fit.fit(state_, group, group_count)) return Scalar(1e12);
+  if (!fit.fit(state_, group, group_count)) return kUnknown;
   const Mat24 A = similarity_rows(block.uv() - fit.middle);
   RowsOf<2, 2 * kMostFolded, kMostFolded> J;
   J.parts = group_count;
@@ -116,8 +121,7 @@ int Filter::add_group(int plane, const int* group, int count) {
     return J.view();
   };
   // A patch is a function of its points: a hair of noise of its own keeps P positive definite.
-  constexpr Scalar kOwn = Scalar(1e-10);
-  blocks_.augment_dense(slot, 4, count, by_point, noise, kOwn);
+  blocks_.augment_dense(slot, 4, count, by_point, noise, kOwnNoise);
   Block& block = state_.block[slot];
   state_.adopt(plane, slot);
   block.set_group({fit.middle, Scalar(0), Scalar(0)});

@@ -3,11 +3,14 @@
 
 #include "filter/filter.h"
 #include "filter/model/kinds.h"
+#include "filter/tuning.h"
 
 /// The row that picks the world's log scale out of an error, and what is known against it.
 
 namespace pf {
 namespace {
+
+constexpr Scalar kMinDistance2 = Scalar(1e-12);  ///< [m^2] between two points whose distance is a length
 
 /// Adds a place's part of a row: d^T J.
 void add_place(const Place& at, const Vec3& d, ScaleRow* row) {
@@ -60,18 +63,17 @@ Scalar Filter::relative_sigma_rho(int slot, const ScaleRow& l) const {
   return std::sqrt(blocks_.variance(row));
 }
 
-/// The best known of a few log lengths: a point group's lambda, a log inverse depth, or between a point and the one that is farthest from it.
-/// Each annihilates shifts and turns, and grows by s when the world grows by exp(s). None touches held rows. There is none where the
-/// scale is observable.
+/// The best known of a few log lengths: a point group's lambda, a log inverse depth, or between a point and the one that is farthest
+/// from it. Each annihilates shifts and turns, and grows by s when the world grows by exp(s). None touches held rows. There is none
+/// where the scale is observable.
 bool Filter::scale_row(ScaleRow* row) const {
   row->parts = 0;
   if (!gauge::contains(state_.unobservable, gauge::kScale)) return false;
-  constexpr int kMostTried = 12;
   int places = -1;  // of place_: the points, listed once they are asked for
   Scalar best = Scalar(0);
   bool found = false;
   int tried = 0;
-  for (int s = 0; s < state_.slots && tried < kMostTried; ++s) {
+  for (int s = 0; s < state_.slots && tried < tuning::scale::kMaxTried; ++s) {
     const Block& a = state_.block[s];
     ScaleRow candidate;
     const ScaleSource source = info(a.kind).scale;
@@ -91,7 +93,7 @@ bool Filter::scale_row(ScaleRow* row) const {
       }
       const Vec3 here = point(s);
       int far = -1;
-      Scalar far2 = Scalar(1e-12);
+      Scalar far2 = kMinDistance2;
       for (int t = 0; t < places; ++t) {
         const Scalar d2 = (place_[t] - here).squaredNorm();
         if (d2 > far2) {

@@ -7,14 +7,15 @@
 namespace pf {
 namespace {
 
-constexpr Scalar kMost = Scalar(1e9);           ///< of any entry of the state
-constexpr Scalar kMostVariance = Scalar(1e18);  ///< and of any variance
+constexpr Scalar kMaxValue = Scalar(1e9);                           ///< of any entry of the state
+constexpr Scalar kMaxVariance = Scalar(1e18);                       ///< and of any variance
+constexpr Scalar kMinNorm2 = Scalar(0.9), kMaxNorm2 = Scalar(1.1);  ///< of a quaternion
 
-bool is_value(Scalar v) { return std::abs(v) < kMost; }
+bool is_value(Scalar v) { return std::abs(v) < kMaxValue; }
 
 bool are_variances(const Triangle& P, int first, int count) {
   for (int i = first; i < first + count; ++i)
-    if (!(P(i, i) >= Scalar(0) && P(i, i) < kMostVariance)) return false;
+    if (!(P(i, i) >= Scalar(0) && P(i, i) < kMaxVariance)) return false;
   return true;
 }
 
@@ -25,7 +26,7 @@ bool Filter::body_is_sound() const {
   for (int i = 0; i < 3; ++i)
     if (!is_value(b.p_W[i]) || !is_value(b.v_W[i]) || !is_value(b.w_C[i])) return false;
   const Scalar norm2 = b.q_WC.squaredNorm();
-  return norm2 > Scalar(0.9) && norm2 < Scalar(1.1) && are_variances(covariance(), 0, state_.layout.rows()) &&
+  return norm2 > kMinNorm2 && norm2 < kMaxNorm2 && are_variances(covariance(), 0, state_.layout.rows()) &&
          (state_.lens_rows.count == 0 || check_camera(state_.lens) == nullptr);
 }
 

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace pf {
+namespace {
+
+constexpr Scalar kNegligible = Scalar(1e-6);  ///< of a sum; terms below it are left out
+
+}  // namespace
 
 Scalar log_false_planes(int on, int near, Scalar share, int around) {
   if (on < 4) return 0;
@@ -13,7 +18,7 @@ Scalar log_false_planes(int on, int near, Scalar share, int around) {
   for (int i = 1; i <= k; ++i) first += std::log(share * static_cast<Scalar>(n - k + i) / static_cast<Scalar>(i));
   first += static_cast<Scalar>(n - k) * std::log(1 - share);
   Scalar term = 1, sum = 1;
-  for (int i = k; i < n && term > Scalar(1e-6) * sum; ++i) {
+  for (int i = k; i < n && term > kNegligible * sum; ++i) {
     term *= static_cast<Scalar>(n - i) / static_cast<Scalar>(i + 1) * share / (1 - share);
     sum += term;
   }

@@ -11,6 +11,8 @@ namespace {
 
 using namespace tuning::plane_search;
 
+constexpr Scalar kMinRest = Scalar(1e-3);  ///< of 1 - leverage: below it the point alone holds the plane
+
 }  // namespace
 
 PlaneLayers count_layers(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings,
@@ -123,7 +125,7 @@ bool PlaneRefit::reject_high_leverage() {
       const Scalar leverage =
           1 / static_cast<Scalar>(fit_.count) + q.x() * q.x() / fit_.lambda(1) + q.y() * q.y() / fit_.lambda(2);
       const Scalar rest = 1 - leverage;
-      const Scalar without = rest > Scalar(1e-3) ? std::abs(q.z()) / rest : 2 * settings_.distance;
+      const Scalar without = rest > kMinRest ? std::abs(q.z()) / rest : 2 * settings_.distance;
       if (without > most) {
         most = without;
         worst = k;

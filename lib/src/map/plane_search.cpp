@@ -44,7 +44,7 @@ bool draw_set(const PlaneCandidate* candidates, int count, const PlaneSearchSett
   const Vec3 n = u.cross(v);
   const Scalar longest = std::max(std::max(u.norm(), v.norm()), (u - v).norm()), size = n.norm();
   // Height of the triangle over its longest side: enough to fix a plane, against the points' own distances and its length.
-  if (!(size > std::max(2 * settings.distance, Scalar(0.15) * longest) * longest)) return false;
+  if (!(size > std::max(2 * settings.distance, kMinHeight * longest) * longest)) return false;
   hypothesis->n_W = n / size;
   hypothesis->o_W = p + (u + v) / 3;
   return true;
@@ -59,7 +59,7 @@ int score_of(const PlaneLayers& layers) {
 void keep_best(const PlaneHypothesis& made, const PlaneSearchSettings& settings, PlaneHypothesis* kept) {
   int place = -1;
   for (int i = 0; i < kKept && place < 0; ++i) {
-    const bool same = kept[i].score > 0 && std::abs(kept[i].n_W.dot(made.n_W)) > Scalar(0.98) &&
+    const bool same = kept[i].score > 0 && std::abs(kept[i].n_W.dot(made.n_W)) > kSameNormal &&
                       std::abs(kept[i].n_W.dot(made.o_W - kept[i].o_W)) < kPlaneLayer * settings.distance &&
                       (made.o_W - kept[i].o_W).norm() < settings.radius;
     if (same) place = i;

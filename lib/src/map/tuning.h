@@ -13,5 +13,7 @@ inline constexpr Scalar kContrast = 5;    ///< density of a plane against either
 inline constexpr Scalar kLogFalsePlanes = Scalar(-4.6);  ///< ln of the planes that chance may give: ln 0.01
 inline constexpr Scalar kMinWidth = 3;                   ///< narrow side of the points' spread, in plane.max_distance
 inline constexpr Scalar kMinAspect = Scalar(0.02);       ///< of the points' spread, middle to largest eigenvalue
+inline constexpr Scalar kMinHeight = Scalar(0.15);       ///< of a triangle of points over its longest side
+inline constexpr Scalar kSameNormal = Scalar(0.98);      ///< cosine between hypotheses of one plane
 
 }  // namespace pf::tuning::plane_search

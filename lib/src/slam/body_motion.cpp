@@ -3,22 +3,17 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "slam/tuning.h"
 
 namespace pf {
 namespace {
 
-constexpr Scalar kSpeedDecay = Scalar(0.25);  ///< [s] time constant of a speed that is not measured
-constexpr Scalar kMaxRotationSigma =
-    Scalar(0.5);                              ///< [rad] of an axis, beyond which angular accelerations add no noise
-constexpr Scalar kMaxSpeedSigma = Scalar(1);  ///< [m/s] of an axis, likewise for linear accelerations
-constexpr Scalar kAnyRotation = Scalar(1.8);  ///< [rad] uniform over a full rotation: the covariance stops growing
-constexpr Scalar kAnyPosition = Scalar(100);  ///< [m] likewise
+using namespace tuning::body_motion;
 
 }  // namespace
-
 void BodyMotion::advance(std::int64_t gap_ns, bool coasting_or_lost, bool nothing_measured) {
   // After kMaxGapNs no motion is predictable, and the covariance grows no further.
-  const Scalar dt = static_cast<Scalar>(static_cast<double>(gap_ns < kMaxGapNs ? gap_ns : kMaxGapNs) * 1e-9);
+  const Scalar dt = static_cast<Scalar>(seconds(gap_ns < kMaxGapNs ? gap_ns : kMaxGapNs));
   MotionNoise noise = settings_.motion_noise;
   if (coasting_or_lost) {
     // A hand does not keep its speed for long, and half a radian of rotation uncertainty already means searching everywhere. Without
@@ -70,7 +65,7 @@ void BodyMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body
   for (int i = 0; i < dim; ++i)
     for (int j = 0; j < dim; ++j) P[i * dim + j] = filter_.covariance()(i, j);
   if (t_ns > now_ns) {
-    const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(now_ns, t_ns)) * 1e-9);
+    const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(now_ns, t_ns)));
     Transition transition;
     predict(*body, dt, settings_.motion_noise, &transition);
     *body = transition.mean;

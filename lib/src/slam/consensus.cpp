@@ -1,5 +1,6 @@
 #include "slam/consensus.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pf {
@@ -13,6 +14,12 @@ Scalar squared_distance(const Vec2& r, const Mat2& S) {
 bool is_covariance(const Mat2& S) {
   return std::isfinite(S(0, 0)) && std::isfinite(S(1, 1)) && S(0, 0) > Scalar(0) &&
          S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0) > Scalar(0);
+}
+
+Scalar ellipse_area(const Mat2& S, Scalar gate) {
+  constexpr Scalar kPi = Scalar(3.14159265);
+  const Scalar det = S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
+  return kPi * gate * std::sqrt(std::max(det, Scalar(0)));
 }
 
 }  // namespace pf

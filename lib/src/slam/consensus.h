@@ -20,6 +20,9 @@ Scalar squared_distance(const Vec2& r, const Mat2& S);
 /// which shares nearly all of it. Such a pixel cannot be measured.
 bool is_covariance(const Mat2& S);
 
+/// Of the ellipse r^T S^-1 r < gate [px^2].
+Scalar ellipse_area(const Mat2& S, Scalar gate);
+
 /// S^-1 of an innovation covariance, and r^T S^-1 r with it; in closed form for a pixel.
 template <int kRows>
 struct InnovationSolver {

@@ -5,18 +5,14 @@
 #include "base/elapsed.h"
 #include "filter/camera_at.h"
 #include "filter/observe/inverse_depth.h"
+#include "slam/tuning.h"
 
 namespace pf {
 namespace {
 
-constexpr int kMinAttempts = 10;      ///< before a feature is judged
-constexpr int kMaxFailures = 12;      ///< in a row, of a feature that was measured often
-constexpr int kMaxEarlyFailures = 4;  ///< in a row, of a feature with fewer than kMinAttempts measurements
-constexpr int kMinDepths = 8;         ///< for a median
-constexpr Scalar kBehindTarget = 2;   ///< assumed depth of the scene, in depths of the target
+using namespace tuning::feature_keeper;
 
 }  // namespace
-
 bool FeatureKeeper::layout(Arena& arena, int max_features) {
   scratch_ = arena.take<int>(static_cast<std::size_t>(max_features));
   return arena.ok();
@@ -68,7 +64,7 @@ void FeatureKeeper::drop_failing(bool is_tracked) {
     const Block& block = filter_.state().block[f.slot];
     const bool inverted =
         block.kind == BlockKind::kInverseDepth && block.inverse_depth().rho < Scalar(0) &&
-        block.inverse_depth().rho * block.inverse_depth().rho > Scalar(9) * filter_.block_variance(f.slot, 2);
+        block.inverse_depth().rho * block.inverse_depth().rho > kSureSign * filter_.block_variance(f.slot, 2);
     if ((f.failures > 0 && seldom) || in_a_row || inverted) scratch_[count++] = i;
   }
   drop(scratch_, count);
@@ -155,7 +151,7 @@ Scalar FeatureKeeper::median_inverse_depth() const {
     const Block& block = filter_.state().block[map_.features[i].slot];
     if (block.kind == BlockKind::kInverseDepth) {
       const Scalar rho_of = block.inverse_depth().rho;
-      if (rho_of * rho_of < Scalar(9) * filter_.block_variance(map_.features[i].slot, 2)) continue;
+      if (rho_of * rho_of < kSureSign * filter_.block_variance(map_.features[i].slot, 2)) continue;
     }
     const Vec3 p_W = filter_.point(map_.features[i].slot);
     const Scalar distance = (p_W - camera.p_W).norm();

@@ -5,22 +5,14 @@
 #include "base/elapsed.h"
 #include "filter/camera_at.h"
 #include "geometry/so3.h"
+#include "slam/tuning.h"
 
 namespace pf {
 namespace {
 
-/// Standard deviations of the velocities at a start that gives none.
-constexpr Scalar kStartSpeed = Scalar(0.5);  // [m/s]; times the start depth if that defines the unit of length
-constexpr Scalar kStartRate = Scalar(0.5);   // [rad/s]
-
-/// Standard deviation of a pose that defines the world [rad, m]: small enough to be certain, large enough to keep P invertible.
-constexpr Scalar kDefinedSigma = Scalar(1e-5);
-
-constexpr Scalar kWideDepth =
-    Scalar(0.5);  ///< relative standard deviation of the depths with which the filter restarts
+using namespace tuning::filter_start;
 
 }  // namespace
-
 bool FilterStart::layout(Arena& arena, int width, int height) {
   target_.layout(arena, width, height);
   without_.layout(arena);
@@ -238,8 +230,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   Filter& filter = parts_.filter;
   const StartRecord& record = without_.record();
   const StartRecord::Frame& frame = record.frame(k);
-  const Scalar dt = static_cast<Scalar>(
-      static_cast<double>(std::min(elapsed_ns(before_ns, frame.t_ns), BodyMotion::kMaxGapNs)) * 1e-9);
+  const Scalar dt = static_cast<Scalar>(seconds(std::min(elapsed_ns(before_ns, frame.t_ns), BodyMotion::kMaxGapNs)));
   Body now = filter.state().body;
   const Quat q_WC = without_.base_q_WC() * frame.q_WC;
   const Vec3 p_W = without_.base_p_W() + without_.base_q_WC() * frame.p_W;
@@ -271,7 +262,7 @@ void FilterStart::restart_velocities() {
   const StartRecord::Frame& a = record.frame(frames > 4 ? frames - 4 : 0);
   const StartRecord::Frame& b = record.frame(frames - 1);
   if (b.t_ns <= a.t_ns) return;
-  const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(a.t_ns, b.t_ns)) * 1e-9);
+  const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(a.t_ns, b.t_ns)));
   Body now = parts_.filter.state().body;
   now.v_W = without_.base_q_WC() * (b.p_W - a.p_W) / dt;
   now.w_C = log_so3(a.q_WC.conjugate() * b.q_WC) / dt;

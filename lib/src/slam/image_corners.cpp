@@ -2,18 +2,18 @@
 
 #include "filter/camera_at.h"
 #include "slam/image_front_end.h"
+#include "slam/tuning.h"
 
 /// New features at corners of the image.
 
 namespace pf {
 namespace {
 
-constexpr int kCornerThreshold = 8;       ///< [grey] of the segment test
-constexpr float kMinCornerScore = 12.0f;  ///< smaller eigenvalue of the gradients [grey^2/px^2]
+using namespace tuning::image_corners;
+
 constexpr Scalar kReferenceSigma =
     Scalar(0.25);  ///< [px] noise of the first pixel, which every later match is compared with
 constexpr int kCellColumns = 8, kCellRows = 6, kCells = kCellRows * kCellColumns;
-constexpr int kMinNewFeatures = 4;  ///< in one frame; new features share an anchor
 
 int cell_along(Scalar at, int size, int cells) {
   const Scalar inside = std::clamp(at, Scalar(0), static_cast<Scalar>(size - 1));

@@ -14,9 +14,7 @@
 namespace pf {
 namespace {
 
-constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
-constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
-constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
+using namespace tuning::image_front_end;
 
 }  // namespace
 
@@ -220,9 +218,8 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
 
 Scalar ImageFrontEnd::searched_area(int i) const {
   const Mat2& S = frame_.match(update_.candidate(i).match).innovation;
-  const Scalar det = S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
   const Scalar all = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
-  return std::min(all, Scalar(3.14159265) * settings_.gate * std::sqrt(std::max(det, Scalar(0))));
+  return std::min(all, ellipse_area(S, settings_.gate));
 }
 
 }  // namespace pf

@@ -8,7 +8,8 @@
 namespace pf {
 namespace {
 
-constexpr int kMaxRounds = 3;  ///< of relinearisation
+constexpr int kMaxRounds = 3;              ///< of relinearisation
+constexpr Scalar kMinBend = Scalar(1e-6);  ///< [px^2] that R^2 is divided by
 
 }  // namespace
 
@@ -74,7 +75,7 @@ void PixelUpdate::relinearise_update(int first, int count) {
       if (keep_[i] == 0) continue;
       PixelMeasurement& o = observation_[i];
       const Vec2 measured = o.measured;
-      const Scalar bend = std::max(o.bend, Scalar(1e-6));
+      const Scalar bend = std::max(o.bend, kMinBend);
       const Mat2 R = o.R_update - Mat2::Identity() * bend;
       keep_[i] = filter_.predict_pixel(filter_.lens(), o.block, &o) ? 1 : 0;
       if (keep_[i] == 0) continue;

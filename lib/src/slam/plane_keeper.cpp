@@ -4,17 +4,14 @@
 #include <cmath>
 
 #include "geometry/symmetric_eigen.h"
+#include "slam/tuning.h"
 
 /// Points of planes: unfold, fold, fix. Whole planes are in plane_lifecycle.cpp. Gee 2007, sections 3.3 and 3.4.
 
 namespace pf {
 namespace {
 
-constexpr int kConverged = 10;     ///< observations before a point may be folded
-constexpr int kDiscoverEvery = 5;  ///< frames
-constexpr int kMaxRejections = 4;  ///< in a row, before a folded point is unfolded
-constexpr int kMinFixed = 4;       ///< points that a patch needs
-constexpr Scalar kReach = 0.5f;    ///< beyond the outline of a plane, in square roots of its area
+using namespace tuning::plane_keeper;
 
 Scalar largest_eigenvalue(const Mat3& C) {
   Vec3 lambda;
@@ -78,7 +75,7 @@ void PlaneKeeper::unfold_outliers() {
     if (!is_planar(filter_.state().block[slot].kind)) continue;
     const int plane = filter_.state().plane_of(slot);
     const int children = filter_.state().block[plane].children;
-    if (!filter_.unfold(slot, Scalar(10) * settings_.plane_distance)) continue;
+    if (!filter_.unfold(slot, kUnfoldSigma * settings_.plane_distance)) continue;
     map_.features[i].rejections = 0;
     map_.features[i].observations = 1;  // has to converge again before it may be folded
     inflate(plane, children);

@@ -2,19 +2,16 @@
 #include <cmath>
 
 #include "slam/plane_keeper.h"
+#include "slam/tuning.h"
 
 /// Whole planes: discover, merge, change the frame, outline, dissolve. Gee 2007, section 3.3.
 
 namespace pf {
 namespace {
 
-constexpr int kMinPoints = 4;               ///< of a plane that once had more than plane_min_points
-constexpr int kMaxWeakFrames = 60;          ///< in a row
-constexpr Scalar kMaxSlant = 0.05f;         ///< of a plane against its frame, above which it gets another frame
-constexpr Scalar kMinNormalCosine = 0.97f;  ///< cosine of the largest angle between planes that are merged
+using namespace tuning::plane_lifecycle;
 
 }  // namespace
-
 /// Lists converged, well known points that lie on no plane yet. Returns how many.
 int PlaneKeeper::list_candidates() {
   int count = 0;
@@ -81,7 +78,7 @@ bool PlaneKeeper::same_plane(int slot, int other) const {
     ++points;
     if (!filter_.distance(slot, point, &d, &variance)) return;
     variance += settings_.fold.roughness * settings_.fold.roughness;
-    if (d * d < Scalar(9) * variance) ++inliers;
+    if (d * d < kSamePlaneGate * variance) ++inliers;
     if (std::abs(d) < Scalar(3) * settings_.plane_distance) ++close;
   });
   // Both tests: every point passes the gate of a plane that is hardly known.
@@ -115,7 +112,7 @@ void PlaneKeeper::merge_into(int plane_entry) {
 bool PlaneKeeper::give_points(int from_entry, int to_entry) {
   const int other = map_.planes[from_entry].slot, plane = map_.planes[to_entry].slot;
   FoldRule rule = settings_.fold;
-  rule.gate = Scalar(16);
+  rule.gate = kMergeGate;
   bool released = true;
   filter_.state().for_each_planar(other, [&](int slot) {
     if (filter_.state().block[slot].kind == BlockKind::kGroupedPoint) released = released && filter_.release(slot);

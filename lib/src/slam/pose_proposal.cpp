@@ -6,13 +6,13 @@
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
 #include "slam/random_triples.h"
+#include "slam/tuning.h"
 
 namespace pf {
 namespace {
 
-constexpr int kTrials = 120;
-constexpr int kSteps = 6;         // of Gauss-Newton
-constexpr int kRefits = 3;        // to all inliers
+using namespace tuning::pose_proposal;
+
 constexpr int kMaxMatches = 200;  // capacity.max_observations at most
 
 struct Problem {
@@ -43,10 +43,10 @@ struct Problem {
       if (!cholesky.factor(A)) return false;
       const Vec6 d = cholesky.solve<1>(b);
       const Vec3 theta = d.head<3>();
-      if (!(theta.squaredNorm() < Scalar(10))) return false;
+      if (!(theta.squaredNorm() < kMaxStep2)) return false;
       pose->q_WC = (exp_so3(theta) * pose->q_WC).normalized();
       pose->p_W += d.tail<3>();
-      if (d.squaredNorm() < Scalar(1e-10)) break;
+      if (d.squaredNorm() < kSmallStep2) break;
     }
     return true;
   }

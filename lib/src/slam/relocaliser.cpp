@@ -217,7 +217,7 @@ bool Relocaliser::is_beyond_chance(const TripleConsensus& consensus, int found) 
 
 /// Whether the camera can have moved here from the last frame's proposal.
 bool Relocaliser::follows_last_proposal(const Body& pose, Scalar depth, std::int64_t dt_ns) const {
-  const Scalar dt = static_cast<Scalar>(static_cast<double>(dt_ns) * 1e-9);
+  const Scalar dt = static_cast<Scalar>(seconds(dt_ns));
   const Body& body = filter_.state().body;
   Scalar max_rotation = kProposalRotation, max_shift = kProposalShift * depth;
   if (settings_.constant_velocity) {

@@ -4,12 +4,13 @@
 #include <limits>
 
 #include "geometry/symmetric_eigen.h"
+#include "slam/tuning.h"
 
 namespace pf {
 namespace {
 
-constexpr Scalar kCornerSigma = Scalar(0.25);  ///< [px] of a corner that is found as the intersection of two lines
-constexpr Scalar kMaxRmsPx = Scalar(2);        ///< of the reprojection errors of known points
+using namespace tuning::start_at_target;
+
 constexpr int kMaxQuads = 8;
 
 /// Standard deviation of a corner's pixel, including the uncertainty of the target's point, since the pose is fitted as if the points
@@ -95,7 +96,7 @@ bool StartAtTarget::predict_points(const Camera& camera, Vec2* predicted, Scalar
     const Mat2 S = JP.lazyProduct(J.transpose());
     const Scalar widest = symmetric_eigenvalues(S)(1);
     if (!(widest >= Scalar(0))) return false;
-    reach[i] = std::clamp(Scalar(3) * std::sqrt(widest), Scalar(6), Scalar(60));
+    reach[i] = std::clamp(Scalar(3) * std::sqrt(widest), kMinReach, kMaxReach);
     *distance += (target_.point_W[i] - first.p_W).norm() / static_cast<Scalar>(target_.count);
   }
   return true;

@@ -46,7 +46,7 @@ void StartWithoutTarget::add_pixel(const Camera& camera, std::uint32_t id, const
 /// Corrects a ray of the record's first frame to the frame's time. The motion was unknown then; it is how far the pixel has moved
 /// since.
 void StartWithoutTarget::move_ray(const Camera& camera, int index, const Vec2& pixel) {
-  const Scalar dt = static_cast<Scalar>(static_cast<double>(elapsed_ns(data_.begin_ns, data_.t_ns)) * 1e-9);
+  const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(data_.begin_ns, data_.t_ns)));
   Vec2 first;
   Vec3 ray_C;
   if (!project(camera, record_.ray(index), &first)) return;

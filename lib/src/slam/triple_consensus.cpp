@@ -12,13 +12,7 @@
 namespace pf {
 namespace {
 
-constexpr int kMaxMatches = 200;               // capacity.max_observations at most
-constexpr Scalar kGateOfThree = Scalar(22.5);  // chi-square of six degrees of freedom, 0.999
-
-Scalar ellipse_area(const Mat2& S, Scalar gate) {
-  const Scalar det = S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
-  return Scalar(3.14159265) * gate * std::sqrt(std::max(det, Scalar(0)));
-}
+constexpr int kMaxMatches = 200;  // capacity.max_observations at most
 
 }  // namespace
 
@@ -71,7 +65,7 @@ TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasureme
       is_inlier[j] = squared_distance(r, S) < gate ? 1 : 0;
       inliers += is_inlier[j];
     }
-    share = std::clamp(share / static_cast<Scalar>(std::max(1, found - 3)), Scalar(1e-6), Scalar(0.99));
+    share = std::clamp(share / static_cast<Scalar>(std::max(1, found - 3)), kMinShare, kMaxShare);
     const Scalar log_false = log_false_planes(inliers, std::max(attempts, found), share, found);
     if (any && log_false >= best.log_false) continue;
     any = true;

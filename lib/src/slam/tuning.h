@@ -2,7 +2,7 @@
 
 #include "base/scalar.h"
 
-/// Tuned numbers of the tracking states: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no
+/// Tuned numbers of the back end: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no
 /// sweep has measured has no figure here.
 
 namespace pf::tuning {
@@ -11,6 +11,9 @@ namespace pf::tuning {
 namespace chance {
 inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that find something; found: 0.04 .. 0.24
 inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in small ellipses, times kMaxFindShare
+inline constexpr Scalar kMinShare = Scalar(1e-6);      ///< of a search that chance lets agree, at least
+inline constexpr Scalar kMaxShare = Scalar(0.99);      ///< likewise, at most
+inline constexpr Scalar kGateOfThree = Scalar(22.5);   ///< chi-square of six degrees of freedom, 0.999
 }  // namespace chance
 
 /// A frame while tracking.
@@ -50,5 +53,83 @@ inline constexpr Scalar kMotionGate = Scalar(3);            ///< sigmas of the v
 inline constexpr Scalar kMaxRateSigma = Scalar(1);          ///< [rad/s] of a hand
 inline constexpr Scalar kMaxSpeedSigma = Scalar(0.5);       ///< [depths/s] of a hand
 }  // namespace relocaliser
+
+/// How far a body that nothing measures may be predicted.
+namespace body_motion {
+inline constexpr Scalar kSpeedDecay = Scalar(0.25);       ///< [s] time constant of a speed that is not measured
+inline constexpr Scalar kMaxRotationSigma = Scalar(0.5);  ///< [rad] of an axis; beyond, angular noise is left out
+inline constexpr Scalar kMaxSpeedSigma = Scalar(1);       ///< [m/s] of an axis; beyond, linear noise is left out
+inline constexpr Scalar kAnyRotation = Scalar(1.8);       ///< [rad] uniform over a full rotation: the most that grows
+inline constexpr Scalar kAnyPosition = Scalar(100);       ///< [m] likewise
+}  // namespace body_motion
+
+/// Features that fail, and the depth of new ones.
+namespace feature_keeper {
+inline constexpr int kMinAttempts = 10;         ///< before a feature is judged
+inline constexpr int kMaxFailures = 12;         ///< in a row, of a feature that was measured often
+inline constexpr int kMaxEarlyFailures = 4;     ///< in a row, of a feature with fewer than kMinAttempts measurements
+inline constexpr int kMinDepths = 8;            ///< for a median
+inline constexpr Scalar kBehindTarget = 2;      ///< assumed depth of the scene, in depths of the target
+inline constexpr Scalar kSureSign = Scalar(9);  ///< chi-square of an inverse depth, above which its sign is certain
+}  // namespace feature_keeper
+
+/// What a start assumes.
+namespace filter_start {
+inline constexpr Scalar kStartSpeed = Scalar(0.5);     ///< [m/s] sigma, or in start depths where these are the unit
+inline constexpr Scalar kStartRate = Scalar(0.5);      ///< [rad/s] sigma
+inline constexpr Scalar kDefinedSigma = Scalar(1e-5);  ///< [rad, m] of a pose that defines the world
+inline constexpr Scalar kWideDepth = Scalar(0.5);      ///< relative sigma of the depths with which the filter restarts
+}  // namespace filter_start
+
+/// New features.
+namespace image_corners {
+inline constexpr int kCornerThreshold = 8;       ///< [grey levels] of the segment test
+inline constexpr float kMinCornerScore = 12.0f;  ///< smaller eigenvalue of the gradients [grey levels^2/px^2]
+inline constexpr int kMinNewFeatures = 4;        ///< in one frame; new features share an anchor
+}  // namespace image_corners
+
+/// The order in which features are searched.
+namespace image_front_end {
+inline constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
+inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
+inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
+}  // namespace image_front_end
+
+/// Points of planes.
+namespace plane_keeper {
+inline constexpr int kConverged = 10;               ///< observations before a point may be folded
+inline constexpr int kDiscoverEvery = 5;            ///< frames
+inline constexpr int kMaxRejections = 4;            ///< in a row, before a folded point is unfolded
+inline constexpr int kMinFixed = 4;                 ///< points that a point group needs
+inline constexpr Scalar kReach = 0.5f;              ///< beyond the outline of a plane, in square roots of its area
+inline constexpr Scalar kUnfoldSigma = Scalar(10);  ///< of an unfolded point along the normal, in plane.max_distance
+}  // namespace plane_keeper
+
+/// Whole planes.
+namespace plane_lifecycle {
+inline constexpr int kMinPoints = 4;               ///< of a plane that once had more than plane.min_points
+inline constexpr int kMaxWeakFrames = 60;          ///< in a row, before a plane without enough points is dissolved
+inline constexpr Scalar kMaxSlant = 0.05f;         ///< of a plane against its frame, above which it gets another frame
+inline constexpr Scalar kMinNormalCosine = 0.97f;  ///< cosine of the largest angle between planes that are merged
+inline constexpr Scalar kSamePlaneGate = Scalar(9);  ///< chi-square of a point of one plane against the other
+inline constexpr Scalar kMergeGate = Scalar(16);  ///< chi-square of a point that moves to a plane merged with its own
+}  // namespace plane_lifecycle
+
+/// Poses from triples of matches.
+namespace pose_proposal {
+inline constexpr int kTrials = 120;                   ///< triples
+inline constexpr int kSteps = 6;                      ///< of Gauss-Newton
+inline constexpr int kRefits = 3;                     ///< to all inliers
+inline constexpr Scalar kMaxStep2 = Scalar(10);       ///< [rad^2] squared rotation of a step; a larger one has diverged
+inline constexpr Scalar kSmallStep2 = Scalar(1e-10);  ///< [rad^2, m^2] squared step that ends the fit
+}  // namespace pose_proposal
+
+/// Starting at known points.
+namespace start_at_target {
+inline constexpr Scalar kCornerSigma = Scalar(0.25);  ///< [px] of a corner: the intersection of two lines
+inline constexpr Scalar kMaxRmsPx = Scalar(2);        ///< [px] of the reprojection errors of known points
+inline constexpr Scalar kMinReach = Scalar(6);        ///< [px] search radius of a known point, at least
+inline constexpr Scalar kMaxReach = Scalar(60);       ///< [px] likewise, at most
+}  // namespace start_at_target
 
 }  // namespace pf::tuning

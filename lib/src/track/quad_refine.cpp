@@ -11,6 +11,7 @@ using namespace tuning::quad_refine;
 
 constexpr int kMaxPlaces = 40;
 constexpr int kPasses = 2;
+constexpr Scalar kMinDeterminant = Scalar(1e-7);  ///< of the 2x2 normal equations, by their first entry squared
 constexpr int kProfile = static_cast<int>(2 * kReach / kStep) + 1;  ///< samples across
 
 /// Grey level between pixels. False near the border.
@@ -43,7 +44,7 @@ bool find_rise(const ImageView& image, const Vec2& p, const Vec2& outwards, Scal
   Scalar rise = 0, moment = 0;
   const auto add = [&](int i) {
     const Scalar slope = grey[i + 1] - grey[i - 1];
-    if (!(slope > Scalar(0.08) * most)) return false;
+    if (!(slope > kMinSlope * most)) return false;
     rise += slope;
     moment += slope * (static_cast<Scalar>(i) * kStep - kReach);
     return true;
@@ -69,15 +70,14 @@ bool collect(const ImageView& image, const Camera& camera, const Vec3& a, const 
   const Scalar length = (pb - pa).norm();
   const int places = length > 2 * kMaxPlaces ? kMaxPlaces : static_cast<int>(length / 2);
   // Near a corner the other side is in the way.
-  const Scalar margin = Scalar(3.5) / length > Scalar(0.08) ? Scalar(3.5) / length : Scalar(0.08);
-  if (places < 4 || margin > Scalar(0.4)) return false;
+  const Scalar margin = kCornerMargin / length > kMinMargin ? kCornerMargin / length : kMinMargin;
+  if (places < 4 || margin > kMaxMargin) return false;
   side->count = 0;
   for (int i = 0; i < places; ++i) {
     const Scalar t = margin + (1 - 2 * margin) * static_cast<Scalar>(i) / static_cast<Scalar>(places - 1);
     Vec2 p, ahead;
     if (!project(camera, Vec3((1 - t) * a + t * b), &p)) continue;
-    const Scalar dt = Scalar(0.02);
-    if (!project(camera, Vec3((1 - t - dt) * a + (t + dt) * b), &ahead)) continue;
+    if (!project(camera, Vec3((1 - t - kAhead) * a + (t + kAhead) * b), &ahead)) continue;
     const Vec2 along = (ahead - p).normalized();
     const Vec2 outwards(along.y(), -along.x());
     Scalar offset;
@@ -106,7 +106,7 @@ bool fit_plane(const Side& side, const Vec3& a, const Vec3& b, Scalar robust, Ve
       b1 -= w * v * r;
     }
     const Scalar det = A00 * A11 - A01 * A01;
-    if (!(det > Scalar(1e-7) * A00 * A00)) return false;
+    if (!(det > kMinDeterminant * A00 * A00)) return false;
     const Scalar x = (A11 * b0 - A01 * b1) / det, y = (A00 * b1 - A01 * b0) / det;
     n = (n + x * middle + y * along).normalized();
   }
@@ -148,7 +148,7 @@ bool refine_quad(const ImageView& image, const Camera& camera, Quad* quad) {
     for (int i = 0; i < 4; ++i) {
       const Vec3 meet = normals[(i + 3) & 3].cross(normals[i]);
       const Scalar size = meet.norm();
-      if (!(size > Scalar(0.05))) return false;
+      if (!(size > kMinMeeting)) return false;
       rays[i] = meet.dot(rays[i]) > 0 ? Vec3(meet / size) : Vec3(meet / -size);
     }
   }
@@ -175,7 +175,7 @@ bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar wi
     if (!refine_quad(image, camera, &found.quad)) continue;
     if (!rectangle_pose(camera, width, height, found.quad.corners, sigma_px, &found.pose, &found.second_rms_px))
       continue;
-    const Scalar misfit = found.pose.rms_px / (Scalar(1.5) * sigma_px + Scalar(0.003) * diagonal(found.quad));
+    const Scalar misfit = found.pose.rms_px / (kMisfitSigmas * sigma_px + kMisfitShare * diagonal(found.quad));
     const Scalar frontal = -found.pose.p_WC.z() / found.pose.p_WC.norm();  // cosine of the slant
     if (!(misfit < 1) || !(frontal > kMinFrontal)) continue;
     const Scalar score = quads[i].contrast * quads[i].area * frontal * frontal * (1 - misfit * misfit / 2);

@@ -80,7 +80,7 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
   outcome.comparable = true;
 
   int finest = 0;  // finest level at which the source is at least about as sharp as the current image
-  while (finest + 1 < pyramid_.levels && scale * static_cast<Scalar>(1 << finest) < Scalar(0.6)) ++finest;
+  while (finest + 1 < pyramid_.levels && scale * static_cast<Scalar>(1 << finest) < kMinSharpness) ++finest;
   int level = finest;
   const Scalar radius = std::sqrt(task.gate * largest_eigenvalue(task.innovation));
   while (level + 1 < pyramid_.levels && radius > kSearchRadius * static_cast<Scalar>(1 << level)) ++level;
@@ -100,8 +100,8 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
   ellipse.centre = to_level(task.predicted, level);
   const Scalar factor = static_cast<Scalar>(1 << level);
   Mat2 S = task.innovation / (factor * factor);
-  S(0, 0) += Scalar(0.1);
-  S(1, 1) += Scalar(0.1);
+  S(0, 0) += kSearchFloor;
+  S(1, 1) += kSearchFloor;
   ellipse.inverse_covariance = inverse2(S);
   ellipse.gate = task.gate;
   const SearchResult found = pf::search(pyramid_.level[level], pattern, ellipse);

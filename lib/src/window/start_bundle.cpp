@@ -12,6 +12,8 @@ namespace {
 
 using namespace tuning::start;
 
+constexpr Scalar kBehindCamera = Scalar(1e6);  ///< [px^2] error of what does not project: larger than any other
+
 }  // namespace
 
 bool StartRecord::layout(Arena& arena) {
@@ -73,7 +75,7 @@ Scalar StartBundle::fit_rotation(const Camera& camera, const StartRecord& record
   Scalar scale = kFirstRotationScale;  // tightens as the rotation is found
   int count = 0;
   for (int round = 0; round < kPoseRounds; ++round) {
-    Mat3 H = Mat3::Identity() * Scalar(1e-6);
+    Mat3 H = Mat3::Identity() * kStepRegularisation;
     Vec3 g = Vec3::Zero();
     const Mat3 R_WC = q_WC->toRotationMatrix();
     count = 0;
@@ -184,7 +186,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
       Vec2 z;
       const BundlePose& pose = pose_[1 + c];
       if (!project_bearing(camera, pose.q_WC.toRotationMatrix(), record.ray(i), -pose.p_W, rho_[i], &z))
-        worst = Scalar(1e6);
+        worst = kBehindCamera;
       else
         worst = std::max(worst, (record.pixel(frame[c], i) - z).squaredNorm());
     }
@@ -241,7 +243,7 @@ bool StartBundle::locate(const Camera& camera, const StartRecord& record, int fr
         b[a] += weight * (J(0, a) * r.x() + J(1, a) * r.y());
       }
     }
-    for (int a = 0; a < 6; ++a) H[a * 6 + a] += Scalar(1e-6);
+    for (int a = 0; a < 6; ++a) H[a * 6 + a] += kStepRegularisation;
     if (!factor_cholesky(H, 6, 6)) return false;
     solve_cholesky(H, 6, 6, b);
     pose->q_WC = exp_so3(Vec3(b[0], b[1], b[2])) * pose->q_WC;

@@ -38,6 +38,7 @@ inline constexpr Scalar kMaxGoodResidual = Scalar(5);  ///< likewise, in every c
 inline constexpr int kGuessRounds = 25;                ///< of the adjustment from each direction of motion
 inline constexpr int kRounds = 30;                     ///< of the adjustment of all cameras
 inline constexpr int kPoseRounds = 8;                  ///< of a rotation or a pose alone
+inline constexpr Scalar kStepRegularisation = Scalar(1e-6);  ///< likewise, on the diagonal [1/rad², 1/m²]
 }  // namespace start
 
 }  // namespace pf::tuning

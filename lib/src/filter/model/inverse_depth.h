@@ -36,7 +36,7 @@ struct InverseDepthPoint : Kind {
   }
   static Vec3 point(const State& state, const Block& block) {
     const InverseDepth d = block.inverse_depth();
-    const Scalar rho = d.rho > kMinShownInverseDepth ? d.rho : kMinShownInverseDepth;
+    const Scalar rho = d.rho > tuning::inverse_depth::kMinShownRho ? d.rho : tuning::inverse_depth::kMinShownRho;
     return state.block[block.parent].xyz() + d.q_b.toRotationMatrix().col(2) / rho;
   }
   /// Translation and scale leave the bearing; rotation about B_2, -B_1; rho shrinks as the world grows.
@@ -57,7 +57,7 @@ struct InverseDepthPoint : Kind {
   /// -e_rho / rho
   static bool scale_row(const State& state, int slot, ScaleRow* row) {
     const Scalar rho = state.block[slot].inverse_depth().rho;
-    if (!(rho > Scalar(1e-6))) return false;
+    if (!(rho > tuning::inverse_depth::kMinRho)) return false;
     row->parts = 1;
     row->part[0] = Part::of(slot, 0, 3);
     row->h[0] = row->h[1] = Scalar(0);

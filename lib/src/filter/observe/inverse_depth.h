@@ -1,6 +1,7 @@
 #pragma once
 
 #include "filter/camera_at.h"
+#include "filter/tuning.h"
 
 namespace pf {
 
@@ -40,18 +41,15 @@ inline Vec3 inverse_depth_to_point(const Vec3& o_W, const InverseDepth& feature,
   return o_W + depth * R_b.col(2);
 }
 
-/// Smallest inverse depth that a place is given for [1/m]: what is farther, or not positive, is shown there.
-constexpr Scalar kMinShownInverseDepth = Scalar(1e-3);
-
 /// Place of an inverse-depth point for display, and its covariance, also where rho is not positive (then at the largest depth that
 /// is shown). cov is 6x6 of (o, e_1, e_2, e_rho).
 ///
-///   f = o + b / rho',   rho' = max(rho, kMinShownInverseDepth),   C = J cov J^T + (J_rho (rho' - rho))(J_rho (rho' - rho))^T
+///   f = o + b / rho',   rho' = max(rho, kMinShownRho),   C = J cov J^T + (J_rho (rho' - rho))(J_rho (rho' - rho))^T
 ///
 /// The second term is the second moment of the depth about the place that is shown: a far point is never reported as a known one.
 inline Vec3 shown_place(const Vec3& o_W, const InverseDepth& feature, const Mat6& cov, Mat3* C) {
   InverseDepth shown = feature;
-  shown.rho = feature.rho > kMinShownInverseDepth ? feature.rho : kMinShownInverseDepth;
+  shown.rho = feature.rho > tuning::inverse_depth::kMinShownRho ? feature.rho : tuning::inverse_depth::kMinShownRho;
   Mat3 J_feature;
   const Vec3 f_W = inverse_depth_to_point(o_W, shown, &J_feature);
   Eigen::Matrix<Scalar, 3, 6> J;
@@ -68,12 +66,13 @@ inline Vec3 shown_place(const Vec3& o_W, const InverseDepth& feature, const Mat6
 /// rho^2, d1 the distance from the camera now at c_W, a the angle at the point between the first ray and the ray now.
 /// Large where rho is not well above zero.
 inline Scalar linearity_index(const Vec3& c_W, const Vec3& o_W, const InverseDepth& feature, Scalar sigma_rho) {
-  constexpr Scalar kNever = Scalar(1e6);
-  if (feature.rho <= Scalar(2) * sigma_rho || feature.rho <= Scalar(1e-6)) return kNever;
+  using namespace tuning::inverse_depth;
+  constexpr Scalar kMinDistance = Scalar(1e-9);  // [m]
+  if (feature.rho <= Scalar(2) * sigma_rho || feature.rho <= kMinRho) return kNever;
   const Vec3 b = feature.q_b.toRotationMatrix().col(2);
   const Vec3 ray = o_W + b / feature.rho - c_W;
   const Scalar d1 = ray.norm();
-  if (d1 <= Scalar(1e-9)) return kNever;
+  if (d1 <= kMinDistance) return kNever;
   const Scalar cosine = b.dot(ray) / d1;
   return Scalar(4) * sigma_rho / (feature.rho * feature.rho) * std::abs(cosine) / d1;
 }
