@@ -72,7 +72,8 @@ void pf_iio_read_sensor(pf_iio_t* imu, pf_iio_part_t* part, int kind);
 /* Nanoseconds of the monotonic clock, or of the real-time one. */
 int64_t pf_iio_clock_ns(int real_time);
 
-/* Readings of a part's buffer into the queues, with times that grow and are not ahead of the clock. Number of scans, 0 for nothing, or a negative errno. */
+/* Readings of a part's buffer into the queues, with times that grow and are not ahead of the clock. Number of scans, 0 for nothing, or a
+ * negative errno. */
 int pf_iio_fetch(pf_iio_t* imu, pf_iio_part_t* part);
 
 /* Puts waiting readings together. Number of samples. */

@@ -86,7 +86,8 @@ static void test_image_should_be_named_when_it_is_truncated_or_damaged() {
   image_refused(flipped, "damaged");
 }
 
-/// Each bit of the compressed data is flipped in turn. libjpeg gives up on 183 of 360, and warns of 24 more; of the others it knows nothing.
+/// Each bit of the compressed data is flipped in turn. libjpeg gives up on 183 of 360, and warns of 24 more; of the others it knows
+/// nothing.
 static void test_jpeg_should_be_refused_when_libjpeg_warns_of_it() {
   TemporaryFolder folder;
   folder.write("calib.yaml", kPlainCalibration);

@@ -1,6 +1,6 @@
 // The whole contract: a config that is right, then calls in any order, most of which mean something and some of which are hostile. Every
-// status is one that the header names, what is refused or only asks leaves the block as it was, nothing is written outside of the block, and
-// what comes out is finite, with covariances that are covariances.
+// status is one that the header names, what is refused or only asks leaves the block as it was, nothing is written outside of the
+// block, and what comes out is finite, with covariances that are covariances.
 #include <planefold/planefold.h>
 #include <sys/mman.h>
 

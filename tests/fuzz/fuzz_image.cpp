@@ -1,4 +1,5 @@
-// Image decoders: whatever the bytes, a picture of the size that they say or one line on what is wrong. Buffers are kept from one to the next.
+// Image decoders: whatever the bytes, a picture of the size that they say or one line on what is wrong. Buffers are kept from one to the
+// next.
 #include <cstring>
 #include <memory>
 #include <vector>

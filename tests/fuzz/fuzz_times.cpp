@@ -1,5 +1,5 @@
-// Tables of images: times.txt, TUM's rgb.txt or EuRoC's data.csv. Whatever the text, frames in order that stay inside of their folder, or one
-// line that says what is wrong.
+// Tables of images: times.txt, TUM's rgb.txt or EuRoC's data.csv. Whatever the text, frames in order that stay inside of their folder,
+// or one line that says what is wrong.
 #include <planefold_platform/sequence.h>
 
 #include <cstring>

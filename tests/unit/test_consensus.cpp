@@ -14,8 +14,8 @@ namespace {
 constexpr int kMatches = 30;
 constexpr Scalar kGate = Scalar(9.2103);  // 99 % with two degrees of freedom
 
-/// A known map, a camera whose direction is hardly known (its place and its roll are), and matches of which the first `wrong` (then shuffled) are random pixels
-/// inside of their own search ellipse.
+/// A known map, a camera whose direction is hardly known (its place and its roll are), and matches of which the first `wrong` (then
+/// shuffled) are random pixels inside of their own search ellipse.
 struct Matches {
   TestFilter filter{true};
   PixelMeasurement observation[kMatches];

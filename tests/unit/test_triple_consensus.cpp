@@ -15,8 +15,8 @@ constexpr Scalar kGate = Scalar(9.2103);       // 99 % with two degrees of freed
 constexpr Scalar kFoundAgain = Scalar(-13.8);  // ln 1e-6, as the relocaliser asks for
 constexpr Scalar kFramesPlace = Scalar(-6.9);  // ln 1e-3, as a tracked frame needs
 
-/// A known map, a camera whose pose is hardly known, and matches of which every one beyond the first `right` is at a random place in its own
-/// search ellipse.
+/// A known map, a camera whose pose is hardly known, and matches of which every one beyond the first `right` is at a random place in
+/// its own search ellipse.
 struct Matches {
   TestFilter filter{true};
   PixelMeasurement match[kMatches];

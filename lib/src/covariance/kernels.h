@@ -83,9 +83,9 @@ struct Kernels {
   /// gaps of many replaces in one pass.
   void (*replace)(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise);
 
-  /// transform for many blocks (ascending, disjoint, at most kMostMoved) in one pass: block[i] becomes the J[i].rows <= block[i].size new rows J[i] x, all
-  /// of them from the state as it was, and the gaps close. J[i].rows may be 0, which removes. With r the sum of the rows, X (r x n,
-  /// leading dimension ld) and S (r x r, leading dimension lds) are scratch.
+  /// transform for many blocks (ascending, disjoint, at most kMostMoved) in one pass: block[i] becomes the J[i].rows <=
+  /// block[i].size new rows J[i] x, all of them from the state as it was, and the gaps close. J[i].rows may be 0, which removes.
+  /// With r the sum of the rows, X (r x n, leading dimension ld) and S (r x r, leading dimension lds) are scratch.
   void (*transform_many)(Triangle& P, const Segment* block, const SparseRows* J, int count, Scalar* X, int ld,
                          Scalar* S, int lds);
 

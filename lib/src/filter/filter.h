@@ -104,7 +104,8 @@ class Filter {
   /// Largest variance of a plane point's coordinates [m^2] against the drawing that the points of its plane make: in the patch, or
   /// where there is none yet against the similarity that fits `group` (slots of plane points of the same plane, it among them).
   Scalar variance_in_group(int slot, const int* group, int group_count) const;
-  /// Fixes plane points of one plane in its patch, which is made from `group` where there is none. False without room; then nothing changed.
+  /// Fixes plane points of one plane in its patch, which is made from `group` where there is none. False without room; then nothing
+  /// changed.
   bool fix(const int* slots, int count, FixForm form, const int* group, int group_count);
   /// A fixed point becomes a plane point again. False without room.
   bool release(int slot);

@@ -18,7 +18,8 @@ using LensJacobian = Eigen::Matrix<Scalar, 2, kLensParameters>;
 ///   pixel = (fx m'x + cx, fy m'y + cy):   by fx (m'x, 0), by cx (1, 0), by k  (fx dm'x/dk, fy dm'y/dk)
 ///   radtan       dm'/dk1 = m r²,  k2 m r⁴,  p1 (2 mx my, r² + 2 my²),  p2 (r² + 2 mx², 2 mx my),  k3 m r⁶
 ///   equidistant  dm'/dki = m θ^(2i+1) / r
-///   division     m' = s m, s = 1 / sqrt(1 + 2 k |u|²), u = (fx mx, fy my):  ds/dk = -|u|² s³,  ds/dfx = -2 k s³ fx mx²,  ds/dfy likewise
+///   division     m' = s m, s = 1 / sqrt(1 + 2 k |u|²), u = (fx mx, fy my):  ds/dk = -|u|² s³,
+///                ds/dfx = -2 k s³ fx mx²,  ds/dfy likewise
 LensJacobian lens_jacobian(const Camera& camera, const Vec3& p_C);
 
 /// Of the unit ray of a given pixel, from its derivative by the pixel:  J_ray_lens = -J_ray_pixel J_pixel_lens.

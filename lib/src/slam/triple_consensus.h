@@ -11,8 +11,8 @@ struct TripleConsensus {
   Scalar log_false = 0;  ///< ln of the expected number of consensuses as good as this one among random matches
 };
 
-/// Three matches fix a pose. Counts the other matches that lie where the joint covariance of all pixels, given the three, predicts them, and
-/// compares that number with what random matches within the searched areas would give:
+/// Three matches fix a pose. Counts the other matches that lie where the joint covariance of all pixels, given the three, predicts
+/// them, and compares that number with what random matches within the searched areas would give:
 ///
 ///   r_j|T = r_j - S_jT S_T^-1 r_T,   S_j|T = S_jj - S_jT S_T^-1 S_Tj,   p_j = q area(S_j|T) / searched area of j
 ///   NFA = C(found, 3) P(X >= inliers - 3),   X ~ Binomial(attempts - 3, mean of p_j),   q = tuning::chance::kMaxFindShare

@@ -9,8 +9,8 @@
  *   pf_close_sequence(sequence);
  *
  * Every function that can fail returns 0, or -1 with one line of plain text in message that names the file, says what is
- * wrong with it and what to do (pf_read_sequence_frame knows one more value). Files are not trusted: whatever they hold, the answer is one of the two.
- * This is the desktop side: it uses the heap and the file system. A sequence belongs to one thread at a time.
+ * wrong with it and what to do (pf_read_sequence_frame knows one more value). Files are not trusted: whatever they hold, the answer is
+ * one of the two. This is the desktop side: it uses the heap and the file system. A sequence belongs to one thread at a time.
  */
 #ifndef PLANEFOLD_PLATFORM_SEQUENCE_H
 #define PLANEFOLD_PLATFORM_SEQUENCE_H
@@ -74,13 +74,11 @@ const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t in
  *   distortion_model: none | radtan | equidistant | harris_division / distortion: [..] / rate_hz (optional)
  * KITTI's file does not say the size of the images, and those of ORB-SLAM not always: such a file is read by pf_open_sequence only,
  * which takes the size of the first image.
- * Each may have readout_s, of a rolling shutter [s], and say how well its numbers are known (pf_camera_t): sigma_focal, sigma_aspect,
- * sigma_centre_px, sigma_distortion: [..]; where one is missing, a typical value is filled in: 0.01, 0.001, 1 % of the width, and for
- * distortion zeros, or 0.05 where the file names none.
- * rate_hz (may be null) is 0 where the file does not say it. A field that is there
- * Each may have readout_s, of a rolling shutter [s], and timestamps: real | nominal (pf_timestamps_t; real). rate_hz (may be null) is 0 where the file does not say it. A field that is there
- * twice or looks like a misspelled one is refused, and so is an unknown one of the plain form; with 0, message is a line on what else was
- * ignored, or empty. */
+ * Each may have readout_s, of a rolling shutter [s], timestamps: real | nominal (pf_timestamps_t; real), and say how well its numbers
+ * are known (pf_camera_t): sigma_focal, sigma_aspect, sigma_centre_px, sigma_distortion: [..]; where one is missing, a typical value
+ * is filled in: 0.01, 0.001, 1 % of the width, and for distortion zeros, or 0.05 where the file names none. rate_hz (may be null) is 0
+ * where the file does not say it. A field that is there twice or looks like a misspelled one is refused, and so is an unknown one of
+ * the plain form; with 0, message is a line on what else was ignored, or empty. */
 int pf_read_calibration(const char* path, pf_camera_t* camera, double* rate_hz, char message[PF_SEQUENCE_MESSAGE]);
 
 /* The same from text in memory; name stands for the file in messages. */

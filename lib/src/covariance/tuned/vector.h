@@ -9,8 +9,8 @@
 ///   PF_VECTOR_BYTES   of a register
 ///   PF_TILE_ROWS      register tile: rows of the eight of a group (8, 4 or 2) ...
 ///   PF_TILE_VECTORS   ... times vectors across
-/// and gives load_pieces for its registers, and plus_product(a, b, c) = c + a b and minus_product(a, b, c) = c - a b for each vector type, in one rounding where the
-/// processor has it, and square_root of a scalar.
+/// and gives load_pieces for its registers, and plus_product(a, b, c) = c + a b and minus_product(a, b, c) = c - a b for each vector
+/// type, in one rounding where the processor has it, and square_root of a scalar.
 ///
 /// Everything in the headers of this folder lives in an unnamed namespace, once per kernel set, and calls no inline function from
 /// elsewhere: the linker can never hand code for one processor to another. So rows are addressed by row_of and not by Triangle's
