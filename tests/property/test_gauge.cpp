@@ -281,7 +281,7 @@ void test_folds_and_updates_should_gain_nothing_about_the_gauge() {
     const Dense A = random_covariance(random, kAll, 0.3);
     scene.filter.set_P(N * A * N.transpose() + random_covariance(random, scene.filter.dim(), 0.02));
     Dense before = information_of(scene.filter);
-    unsigned char in[Filter::kMostFolded];
+    unsigned char in[Filter::kMaxFolded];
     TEST_ASSERT_EQUAL_INT(
         8, scene.filter->fold(scene.plane, scene.on_wall.data(), 8, {Scalar(0.002), Scalar(1e6), true}, in));
     Dense now = information_of(scene.filter);

@@ -39,7 +39,7 @@ struct PlaneScene {
 
   static FoldRule drop() { return {Scalar(1e-3), Scalar(1e12), false}; }
   int fold_all(const FoldRule& rule) {
-    unsigned char folded[Filter::kMostFolded];
+    unsigned char folded[Filter::kMaxFolded];
     return filter->fold(plane, on_wall.data(), static_cast<int>(on_wall.size()), rule, folded);
   }
   /// A second plane through the points of the second wall, with points folded into it.
@@ -49,7 +49,7 @@ struct PlaneScene {
     PlaneFit second;
     TEST_ASSERT_TRUE(fit_plane(points.data(), 5, filter->state().body.p_W, &second));
     other_plane = filter->add_plane(second, second_wall.data(), 5, Scalar(0));
-    unsigned char folded[Filter::kMostFolded];
+    unsigned char folded[Filter::kMaxFolded];
     TEST_ASSERT_EQUAL_INT(5, filter->fold(other_plane, second_wall.data(), 5, rule, folded));
   }
 };

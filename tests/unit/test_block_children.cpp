@@ -82,7 +82,7 @@ void test_lists_should_be_what_a_search_finds_after_every_operation() {
     TEST_ASSERT_TRUE(scene.filter->unfold(wall[(trial + 1) % 4], Scalar(0)));
     TEST_ASSERT_TRUE(scene.filter->unfold(wall[6], Scalar(0)));
     scene.check();
-    unsigned char folded[Filter::kMostFolded];
+    unsigned char folded[Filter::kMaxFolded];
     scene.filter->fold(scene.plane, scene.second_wall.data(), 5, PlaneScene::drop(), folded);
     scene.filter->remove(&scene.other_plane, 1);
     scene.other_plane = -1;

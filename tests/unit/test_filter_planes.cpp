@@ -145,7 +145,7 @@ void test_a_merge_should_move_the_other_plane_s_points() {
     return made;
   };
   require_linear("merge", make, [](PlaneScene& scene) {
-    unsigned char folded[Filter::kMostFolded];
+    unsigned char folded[Filter::kMaxFolded];
     TEST_ASSERT_EQUAL_INT(5, scene.filter->fold(scene.plane, scene.second_wall.data(), 5, PlaneScene::drop(), folded));
     scene.filter->remove(&scene.other_plane, 1);
   });
@@ -258,7 +258,7 @@ void test_conditioning_should_be_the_dense_update_with_distances_of_zero() {
   const int other = scene.filter.first(scene.beside[0]);
   const Vec3 beside_before = state.block[scene.beside[0]].xyz();
   const int first = scene.filter.first(scene.plane);
-  unsigned char folded[Filter::kMostFolded];
+  unsigned char folded[Filter::kMaxFolded];
   TEST_ASSERT_EQUAL_INT(
       8, scene.filter->fold(scene.plane, scene.on_wall.data(), m, {Scalar(0.002), Scalar(1e12), true}, folded));
   TEST_ASSERT_TRUE(
@@ -280,7 +280,7 @@ void test_the_gate_should_keep_out_what_lies_beside() {
   scene.spread(random, 0.01);
   std::vector<int> both = scene.on_wall;
   both.insert(both.end(), scene.beside.begin(), scene.beside.end());
-  unsigned char folded[Filter::kMostFolded];
+  unsigned char folded[Filter::kMaxFolded];
   const int count = static_cast<int>(both.size());
   TEST_ASSERT_EQUAL_INT(8,
                         scene.filter->fold(scene.plane, both.data(), count, {Scalar(0.002), Scalar(9), true}, folded));

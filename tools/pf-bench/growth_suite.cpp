@@ -113,9 +113,9 @@ class Room {
       pf::PlaneFit fit;
       if (!pf::fit_plane(places.data(), per_wall, Vec3::Zero(), &fit)) continue;
       const int plane = filter_.add_plane(fit, first, per_wall, Scalar(0.001));
-      for (int k = 0; k < per_wall; k += pf::Filter::kMostFolded) {
-        unsigned char folded[pf::Filter::kMostFolded];
-        const int count = std::min(pf::Filter::kMostFolded, per_wall - k);
+      for (int k = 0; k < per_wall; k += pf::Filter::kMaxFolded) {
+        unsigned char folded[pf::Filter::kMaxFolded];
+        const int count = std::min(pf::Filter::kMaxFolded, per_wall - k);
         filter_.fold(plane, first + k, count, {Scalar(0.001), Scalar(1e9), false}, folded);
       }
     }
@@ -126,11 +126,11 @@ class Room {
     for (int wall = 0; wall < kWalls; ++wall) {
       const int* first = slots_.data() + wall * per_wall;
       // A patch begins with points all over the wall.
-      int group[pf::Filter::kMostFolded];
-      const int group_count = std::min(pf::Filter::kMostFolded, per_wall);
+      int group[pf::Filter::kMaxFolded];
+      const int group_count = std::min(pf::Filter::kMaxFolded, per_wall);
       for (int k = 0; k < group_count; ++k) group[k] = first[k * per_wall / group_count];
-      for (int k = 0; k < per_wall; k += pf::Filter::kMostFolded)
-        filter_.fix(first + k, std::min(pf::Filter::kMostFolded, per_wall - k), form, group, group_count);
+      for (int k = 0; k < per_wall; k += pf::Filter::kMaxFolded)
+        filter_.fix(first + k, std::min(pf::Filter::kMaxFolded, per_wall - k), form, group, group_count);
     }
   }
 

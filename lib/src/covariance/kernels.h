@@ -43,8 +43,8 @@ constexpr int padded(int n) {
 
 struct Kernels {
   static constexpr int kMaxLeading = 32;
-  static constexpr int kDenseRows = 4;    ///< of U; rows behind them cost nothing where whole tiles of them are zero
-  static constexpr int kMostMoved = 128;  ///< blocks in one transform_many
+  static constexpr int kDenseRows = 4;   ///< of U; rows behind them cost nothing where whole tiles of them are zero
+  static constexpr int kMaxMoved = 128;  ///< blocks in one transform_many
 
   /// out (rows x n) = J P, for rows of J that touch few columns. out has leading dimension ld.
   void (*gather)(const Triangle& P, const SparseRows& J, Scalar* out, int ld);
@@ -58,7 +58,7 @@ struct Kernels {
   /// P -= W^T W (W: m x n), then, where k > 0, P += U^T G + G^T U (U, G: k x n), in one pass over the triangle.
   /// Rows and columns held_first .. held_end - 1 are considered (Schmidt): where i and j both lie among them the first term is left
   /// out; the second is always applied. held_end <= held_first is the plain update. Rows of U from kDenseRows on should be zero but
-  /// for a few columns, as the shifts of planes are: tiles that they do not touch leave them out.
+  /// for a few columns, as the translations of planes are: tiles that they do not touch leave them out.
   void (*downdate)(Triangle& P, const Scalar* W, int m, const Scalar* U, const Scalar* G, int k, int ld, int held_first,
                    int held_end);
 
@@ -83,7 +83,7 @@ struct Kernels {
   /// gaps of many replaces in one pass.
   void (*replace)(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise);
 
-  /// transform for many blocks (ascending, disjoint, at most kMostMoved) in one pass: block[i] becomes the J[i].rows <=
+  /// transform for many blocks (ascending, disjoint, at most kMaxMoved) in one pass: block[i] becomes the J[i].rows <=
   /// block[i].size new rows J[i] x, all of them from the state as it was, and the gaps close. J[i].rows may be 0, which removes.
   /// With r the sum of the rows, X (r x n, leading dimension ld) and S (r x r, leading dimension lds) are scratch.
   void (*transform_many)(Triangle& P, const Segment* block, const SparseRows* J, int count, Scalar* X, int ld,

@@ -260,9 +260,9 @@ void BlockFilter::close_gaps(int gone) {
 void BlockFilter::move_up(int gone) {
   for (int b = 0; b < blocks_; ++b) {
     if (at_[b].size == 0) continue;
-    int shift = 0;
-    for (int g = 0; g < gone && gone_[g].first < at_[b].first; ++g) shift += gone_[g].size;
-    at_[b].first -= shift;
+    int moved_up = 0;
+    for (int g = 0; g < gone && gone_[g].first < at_[b].first; ++g) moved_up += gone_[g].size;
+    at_[b].first -= moved_up;
   }
   const int end = held_end();
   for (int g = 0; g < gone; ++g)

@@ -64,11 +64,11 @@ inline CameraAt camera_at(const State& state, Scalar tau) {
   camera.tau = tau;
   camera.velocity_row = state.layout.row(BodyPart::kVelocity);
   camera.rate_row = state.layout.row(BodyPart::kAngularVelocity);
-  const Vec3 turn = body.w_C * tau;
-  camera.q_WC = body.q_WC * exp_so3(turn);
+  const Vec3 rotation = body.w_C * tau;
+  camera.q_WC = body.q_WC * exp_so3(rotation);
   camera.q_WC.normalize();
   camera.p_W = body.p_W + body.v_W * tau;
-  camera.J_theta_w = tau * body.q_WC.toRotationMatrix().lazyProduct(left_jacobian_so3(turn));
+  camera.J_theta_w = tau * body.q_WC.toRotationMatrix().lazyProduct(left_jacobian_so3(rotation));
   return camera;
 }
 

@@ -7,7 +7,7 @@
 namespace pf {
 
 bool Filter::layout(Arena& arena, const FilterCapacity& capacity) {
-  // Features, planes with their patches, and anchors with a child each or reference cameras (six rows).
+  // Features, planes with their point groups, and anchors with a child each or reference cameras (six rows).
   state_.slots = capacity.features + 2 * capacity.planes + capacity.state_dim / 6 + 1;
   const std::size_t slots = static_cast<std::size_t>(state_.slots);
   state_.block = arena.take<Block>(slots);
@@ -105,7 +105,7 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
     J.part[1] = Part::body(state_.layout.row(BodyPart::kLens), lens);
     put_lens<2>(-J_z * lens_jacobian(state_.lens, ray_C), state_.lens_rows, J.part[0].size, columns, J.h);
   }
-  // Of the pixel, and of the inverse depth, which turns the bearing too where the anchor is not where the ray begins.
+  // Of the pixel, and of the inverse depth, which rotates the bearing too where the anchor is not where the ray begins.
   Mat3 noise = Mat3::Zero();
   const Mat2 Jn = J_z * noise_px;
   const Vec2 J_rho = J_c.lazyProduct(c_W) / rho;

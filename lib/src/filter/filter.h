@@ -20,7 +20,7 @@ struct FoldRule {
   bool condition = true;  ///< take the distance in as a measurement of zero; else only drop it (Gee 2007, eq 4 and 6)
 };
 
-/// What becomes of a point that is known well enough in its patch.
+/// What becomes of a point that is known well enough in its point group.
 enum class FixForm {
   kConsider,  ///< keeps its rows, without gain of its own (Schmidt)
   kInflate,   ///< loses its rows; its variance stays as noise of its pixels
@@ -83,7 +83,7 @@ class Filter {
   /// Inverse depth to 3-D point, in its slot; the anchor goes when nothing needs it.
   void convert_to_point(int slot);
 
-  static constexpr int kMostFolded = BlockFilter::kBatch;  ///< in one call
+  static constexpr int kMaxFolded = BlockFilter::kBatch;  ///< in one call
 
   /// 3-D points, or points of another plane, become points of this one: those that pass the gate are conditioned on a distance of zero
   /// together, then lose it. folded[i] says which. Returns how many.
@@ -97,22 +97,22 @@ class Filter {
   /// A plane was wrong by about sigma of (a, b, h): that much is added to its own covariance, and to that of the camera and of all else
   /// what they have learnt from it.
   void forget_through(int plane, const Vec3& sigma) { blocks_.inflate_through(Part::of(plane, 0, 3), sigma); }
-  /// The plane, and the points that hang on it without a patch, about another frame. False when the frame is too slanted or a patch
+  /// The plane, and the points that hang on it directly, about another frame. False when the frame is too slanted or a point group
   /// hangs on the plane; nothing is changed then.
   bool reanchor(int plane, const PlaneFrame& frame);
 
-  /// Largest variance of a plane point's coordinates [m^2] against the drawing that the points of its plane make: in the patch, or
-  /// where there is none yet against the similarity that fits `group` (slots of plane points of the same plane, it among them).
-  Scalar variance_in_group(int slot, const int* group, int group_count) const;
-  /// Fixes plane points of one plane in its patch, which is made from `group` where there is none. False without room; then nothing
-  /// changed.
-  bool fix(const int* slots, int count, FixForm form, const int* group, int group_count);
+  /// Largest variance of a plane point's coordinates [m^2] against the other points of its plane: in the point group, or
+  /// where there is none yet against the similarity that fits `members` (slots of plane points of the same plane, it among them).
+  Scalar variance_in_group(int slot, const int* members, int num_members) const;
+  /// Fixes plane points of one plane in its point group, which is made from `members` where there is none. False without room; then
+  /// nothing changed.
+  bool fix(const int* slots, int count, FixForm form, const int* members, int num_members);
   /// A fixed point becomes a plane point again. False without room.
   bool release(int slot);
-  /// The patch of a plane, or -1.
+  /// The point group of a plane, or -1.
   int group_of(int plane) const;
 
-  // --- remove; anchors, patches and reference cameras that nothing needs any more go with them, all in one pass
+  // --- remove; anchors, point groups and reference cameras that nothing needs any more go with them, all in one pass
   void remove(const int* slots, int count);
   /// Something outside of the state needs this block, which then stays without children.
   void pin(int slot) { ++state_.block[slot].pins; }
@@ -142,7 +142,7 @@ class Filter {
   /// The best known of a few log lengths, as a row over the state: l N = (0, 0, 1). False, and no parts, where there is none.
   bool scale_row(ScaleRow* row) const;
   /// Covariance of a 3-D point against the camera's position and the world's size: of f - p - (f - p) l e. What all points share
-  /// because the world may drift or grow is not in it.
+  /// because the world may drift or change its scale is not in it.
   Mat3 relative_covariance(int slot, const ScaleRow& l) const;
   /// Standard deviation of an inverse depth against the world's size: of e_rho + rho l e.
   Scalar relative_sigma_rho(int slot, const ScaleRow& l) const;
@@ -177,7 +177,7 @@ class Filter {
   void predict_distance(int plane, const struct Place& at, DistanceMeasurement* out) const;
 
   // point_groups.cpp
-  int add_group(int plane, const int* group, int count);
+  int add_group(int plane, const int* members, int count);
 
   State state_;
   BlockFilter blocks_;

@@ -65,8 +65,8 @@ void ImuLog::time_interval(std::int64_t interval_ns) {
     const std::int64_t missing = late_by / median + (late_by % median > median / 2 ? 1 : 0);
     if (counts_.missing < INT64_MAX / 4) counts_.missing += missing < INT64_MAX / 4 ? missing : INT64_MAX / 4;
   }
-  const std::int64_t most = median / kAdaptSteps > 0 ? median / kAdaptSteps : 1;
-  median += late_by > most ? most : late_by < -most ? -most : late_by;
+  const std::int64_t max_step = median / kAdaptSteps > 0 ? median / kAdaptSteps : 1;
+  median += late_by > max_step ? max_step : late_by < -max_step ? -max_step : late_by;
 }
 
 void ImuLog::mark_frame(std::int64_t t_ns) {

@@ -22,13 +22,13 @@ void set_block(Scalar* matrix, int dim, int row, int column, const Mat3& value) 
 
 void predict_constant_velocity(const Body& body, const BodyLayout& layout, Scalar dt, const MotionNoise& noise,
                                Transition* transition) {
-  const Vec3 turn = body.w_C * dt;
-  const Mat3 J = body.q_WC.toRotationMatrix().lazyProduct(left_jacobian_so3(turn));
+  const Vec3 rotation = body.w_C * dt;
+  const Mat3 J = body.q_WC.toRotationMatrix().lazyProduct(left_jacobian_so3(rotation));
   clear(transition, body, layout);
   const int dim = transition->dim, velocity = layout.row(BodyPart::kVelocity);
   const int rate = layout.row(BodyPart::kAngularVelocity);
   Body& mean = transition->mean;
-  mean.q_WC = body.q_WC * exp_so3(turn);
+  mean.q_WC = body.q_WC * exp_so3(rotation);
   mean.q_WC.normalize();
   mean.p_W += body.v_W * dt;
   const Mat3 I = Mat3::Identity();

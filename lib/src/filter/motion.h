@@ -25,7 +25,7 @@ struct Transition {
 ///   theta+ = theta + J dt e_w,  e_p+ = e_p + dt e_v        J = R J_l(w dt)
 ///   Q: velocity q^2 dt I, position q^2 dt^3/3 I, between them q^2 dt^2/2 I; likewise for the rotation, through J
 ///
-/// Turning or scaling the world before and after is the same thing, so gauge directions go to gauge directions.
+/// Rotating or scaling the world before or after is the same, so gauge directions go to gauge directions.
 void predict_constant_velocity(const Body& body, const BodyLayout& layout, Scalar dt, const MotionNoise& noise,
                                Transition* transition);
 

@@ -72,11 +72,11 @@ bool Filter::distance(int plane, int slot, Scalar* d, Scalar* variance) const {
 
 /// Takes in a distance of zero of the chosen ones together.
 bool Filter::condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded) {
-  // The distance grows with the world: H N_s = d. With l, the row that picks the log scale, d - d l . e has none of it.
+  // The distance scales with the world: H N_s = d. With l, the row that picks the log scale, d - d l . e has none of it.
   ScaleRow l;
   if (!keep_gauge_ || !scale_row(&l)) l.parts = 0;
-  DistanceMeasurement z[kMostFolded];
-  Measurement view[kMostFolded];
+  DistanceMeasurement z[kMaxFolded];
+  Measurement view[kMaxFolded];
   int m = 0;
   for (int i = 0; i < count; ++i) {
     if (folded[i] == 0) continue;
@@ -99,7 +99,7 @@ bool Filter::condition_on(int plane, const int* slots, int count, Scalar noise, 
 }
 
 int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, unsigned char* folded) {
-  PF_ASSERT(count <= kMostFolded && 2 * count <= blocks_.max_rows());
+  PF_ASSERT(count <= kMaxFolded && 2 * count <= blocks_.max_rows());
   const Scalar noise = rule.roughness * rule.roughness;
   for (int i = 0; i < count; ++i) {
     Scalar d, variance;
@@ -117,9 +117,9 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
   // The transform: coordinates in the plane, all in one pass.
   const PlaneFrame& frame = state_.frame_of(state_.block[plane]);
   const Mat23 axes = frame.R_WP.transpose().topRows<2>();
-  RowsOf<2, Place::kMaxColumns, Place::kMaxParts> J[kMostFolded];
-  Rows rows[kMostFolded];
-  int moved[kMostFolded];
+  RowsOf<2, Place::kMaxColumns, Place::kMaxParts> J[kMaxFolded];
+  Rows rows[kMaxFolded];
+  int moved[kMaxFolded];
   int done = 0;
   for (int i = 0; i < count; ++i) {
     if (folded[i] == 0) continue;
@@ -158,7 +158,7 @@ bool Filter::unfold(int slot, Scalar sigma_normal) {
   block.kind = BlockKind::kPoint;
   block.size = 3;
   block.set_xyz(at.o);
-  remove(nullptr, 0);  // a patch that nothing hangs on any more
+  remove(nullptr, 0);  // a point group that nothing hangs on any more
   return true;
 }
 
@@ -176,12 +176,12 @@ bool Filter::reanchor(int plane, const PlaneFrame& frame) {
   if (group_of(plane) >= 0 || !reframe_plane(old, block.xyz(), frame, &x, &J_x)) return false;
   // The points first: their new coordinates depend on the plane as it was. So it is in the last of the passes.
   const Mat23 axes = frame.R_WP.transpose().topRows<2>();
-  RowsOf<2, 5, 2> J[kMostFolded];
+  RowsOf<2, 5, 2> J[kMaxFolded];
   RowsOf<3, 3, 1> J_plane;
-  Rows rows[kMostFolded];
-  int moved[kMostFolded];
+  Rows rows[kMaxFolded];
+  int moved[kMaxFolded];
   int count = 0;
-  const int most = blocks_.max_rows() / 3 < kMostFolded ? blocks_.max_rows() / 3 : kMostFolded;
+  const int max_moved = blocks_.max_rows() / 3 < kMaxFolded ? blocks_.max_rows() / 3 : kMaxFolded;
   const auto move = [&] {
     for (int i = 0; i < count; ++i) {
       if (moved[i] == plane) {
@@ -210,7 +210,7 @@ bool Filter::reanchor(int plane, const PlaneFrame& frame) {
   };
   for (int s = 0; s < state_.slots; ++s) {
     if (state_.block[s].kind != BlockKind::kPlanePoint || state_.block[s].parent != plane) continue;
-    if (count + 1 == most) move();
+    if (count + 1 == max_moved) move();
     moved[count++] = s;
   }
   moved[count++] = plane;

@@ -64,8 +64,8 @@ Scalar Filter::relative_sigma_rho(int slot, const ScaleRow& l) const {
 }
 
 /// The best known of a few log lengths: a point group's lambda, a log inverse depth, or between a point and the one that is farthest
-/// from it. Each annihilates shifts and turns, and grows by s when the world grows by exp(s). None touches held rows. There is none
-/// where the scale is observable.
+/// from it. Each annihilates translations and rotations, and grows by s when the world is scaled by exp(s). None touches held rows.
+/// There is none where the scale is observable.
 bool Filter::scale_row(ScaleRow* row) const {
   row->parts = 0;
   if (!gauge::contains(state_.unobservable, gauge::kScale)) return false;

@@ -7,8 +7,8 @@
 namespace pf {
 namespace {
 
-constexpr int kTurn = 0, kScale = 3, kShift = 4;
-static_assert(kShift == Kernels::kDenseRows);
+constexpr int kRotation = 0, kScale = 3, kTranslation = 4;
+static_assert(kTranslation == Kernels::kDenseRows);
 
 /// A row of a Jacobian times a dense row.
 Scalar dot(const BlockFilter& blocks, const ScaleRow& row, const Scalar* dense) {
@@ -21,16 +21,16 @@ Scalar dot(const BlockFilter& blocks, const ScaleRow& row, const Scalar* dense) 
   return v;
 }
 
-/// Adds sign times what a shift does to the heights of planes; all that it does to other rows is the same at every x.
-void add_height_rows(const State& state, const BlockFilter& blocks, Scalar sign, Scalar* U_shift, int ld) {
+/// Adds sign times what a translation does to the heights of planes; all that it does to other rows is the same at every x.
+void add_height_rows(const State& state, const BlockFilter& blocks, Scalar sign, Scalar* U_translation, int ld) {
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];
     if (block.kind != BlockKind::kPlane) continue;
     const int height = blocks.first(s) + 2;
-    const Vec3 shift = plane_gauge(state.frame_of(block), block.xyz()).block<1, 3>(2, 0).transpose();
+    const Vec3 translation = plane_gauge(state.frame_of(block), block.xyz()).block<1, 3>(2, 0).transpose();
     for (int axis = 0; axis < 3; ++axis)
       if (gauge::contains(state.unobservable, gauge::kTranslation + axis))
-        U_shift[axis * ld + height] += sign * shift(axis);
+        U_translation[axis * ld + height] += sign * translation(axis);
   }
 }
 
@@ -53,16 +53,16 @@ void Transport::init() {
 
 void Transport::begin(const State& state, const BlockFilter& blocks, const ScaleRow& l) {
   l_ = l;
-  rows_ = state.planes > 0 ? kMaxRows : l_.parts > 0 ? kShift : kScale;
+  rows_ = state.planes > 0 ? kMaxRows : l_.parts > 0 ? kTranslation : kScale;
   const std::size_t row_bytes = sizeof(Scalar) * static_cast<std::size_t>(ld_);
   std::memset(U_, 0, kMaxRows * row_bytes);
   std::memset(G_, 0, static_cast<std::size_t>(rows_) * row_bytes);
   add_gauge_rows(state, blocks, Scalar(-1), nullptr, U_, U_ + kScale * ld_, ld_);
-  if (rows_ == kMaxRows) add_height_rows(state, blocks, Scalar(-1), U_ + kShift * ld_, ld_);
+  if (rows_ == kMaxRows) add_height_rows(state, blocks, Scalar(-1), U_ + kTranslation * ld_, ld_);
   const Scalar identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const Part rotation = Part::body(Body::kTheta, 3), position = Part::body(Body::kPosition, 3);
   const Rows V[3] = {{3, 1, &rotation, identity}, l_.view(), {3, 1, &position, identity}};
-  blocks.gather(V, rows_ == kMaxRows ? 3 : rows_ == kShift ? 2 : 1, G_);
+  blocks.gather(V, rows_ == kMaxRows ? 3 : rows_ == kTranslation ? 2 : 1, G_);
   p_before_ = state.body.p_W;
 }
 
@@ -70,12 +70,12 @@ void Transport::finish(const State& state, const BlockFilter& blocks) {
   const int n = blocks.dim(), m = blocks.gained_rows(), rows = rows_;
   const Kernels& kernels = blocks.kernels();
   add_gauge_rows(state, blocks, Scalar(1), nullptr, U_, U_ + kScale * ld_, ld_);
-  if (rows == kMaxRows) add_height_rows(state, blocks, Scalar(1), U_ + kShift * ld_, ld_);
+  if (rows == kMaxRows) add_height_rows(state, blocks, Scalar(1), U_ + kTranslation * ld_, ld_);
   if (l_.parts == 0) std::memset(U_ + kScale * ld_, 0, sizeof(Scalar) * static_cast<std::size_t>(ld_));
 
   const auto raw = [&](const Scalar* row, int which) {  // E_theta, l, E_p
     if (which < kScale) return row[Body::kTheta + which];
-    return which == kScale ? dot(blocks, l_, row) : row[Body::kPosition + which - kShift];
+    return which == kScale ? dot(blocks, l_, row) : row[Body::kPosition + which - kTranslation];
   };
   // Of P1: less (V W^T) W. V touches no held row, so held columns are as they should be.
   constexpr int kChunk = 64;
@@ -86,17 +86,17 @@ void Transport::finish(const State& state, const BlockFilter& blocks) {
       for (int r = 0; r < rows; ++r) A[r * kChunk + j] = -raw(blocks.whitened(first + j), r);
     kernels.add_product(G_, rows, A, kChunk, blocks.whitened(first), terms, n, ld_);
   }
-  const Mat3 turn = hat(p_before_);
+  const Mat3 p_hat = hat(p_before_);
   if (rows == kMaxRows) {
     for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < kShift; ++b) A[a * kShift + b] = b < kScale ? turn(a, b) : -p_before_[a];
-    kernels.add_product(G_ + kShift * ld_, 3, A, kShift, G_, kShift, n, ld_);
+      for (int b = 0; b < kTranslation; ++b) A[a * kTranslation + b] = b < kScale ? p_hat(a, b) : -p_before_[a];
+    kernels.add_product(G_ + kTranslation * ld_, 3, A, kTranslation, G_, kTranslation, n, ld_);
   }
   const auto pick = [&](const Scalar* row, int which) {
-    if (which < kShift) return raw(row, which);
-    const int a = which - kShift;
+    if (which < kTranslation) return raw(row, which);
+    const int a = which - kTranslation;
     Scalar v = raw(row, which) - p_before_[a] * raw(row, kScale);
-    for (int b = 0; b < 3; ++b) v += turn(a, b) * raw(row, b);
+    for (int b = 0; b < 3; ++b) v += p_hat(a, b) * raw(row, b);
     return v;
   };
   Scalar VPV[kMaxRows][kMaxRows];

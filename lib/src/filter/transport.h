@@ -8,11 +8,11 @@ namespace pf {
 /// Keeps the covariance consistent with what a bare camera cannot observe, when an update moves the state (lib/docs/gauge.md).
 ///
 ///   M = I + U^T V takes the gauge directions N at x- to those at x+:  U = N(x+) - N(x-),  V N(x-) = I
-///   rows of V:  turn E_theta,  log scale l,  shift E_p + [p]x E_theta - p l         (body p at x-)
+///   rows of V:  rotation E_theta,  log scale l,  translation E_p + [p]x E_theta - p l         (body p at x-)
 ///   with P1 = P - W^T W:   M P1 M^T = P1 + U^T G + G^T U,   G = V P1 + (V P1 V^T) U / 2
 ///
-/// Shifts are the same at every x but for planes, whose distance moves by n . t: without planes they need no rows. With them their rows
-/// of U come last, zero but for the heights of planes, and the downdate spends nothing on what is zero.
+/// Translations are the same at every x but for planes, whose distance moves by n . t: without planes they need no rows. With them
+/// their rows of U come last, zero but for the heights of planes, and the downdate spends nothing on what is zero.
 class Transport {
  public:
   bool layout(Arena& arena, int ld);
@@ -34,7 +34,7 @@ class Transport {
 
   int ld_ = 0;
   int rows_ = 0;
-  Scalar* U_ = nullptr;  ///< kMaxRows x ld: gauge rows after minus before; turn, scale, shift
+  Scalar* U_ = nullptr;  ///< kMaxRows x ld: gauge rows after minus before; rotation, scale, translation
   Scalar* G_ = nullptr;  ///< kMaxRows x ld
   ScaleRow l_;
   Vec3 p_before_ = Vec3::Zero();

@@ -124,9 +124,9 @@ void PlaneKeeper::fold_into(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   const Block& block = filter_.state().block[plane];
   const PlaneFrame& frame = filter_.state().frame_of(block);
-  int slots[Filter::kMostFolded];
+  int slots[Filter::kMaxFolded];
   int count = 0;
-  for (int i = 0; i < map_.features.capacity() && count < Filter::kMostFolded && count < settings_.max_observations;
+  for (int i = 0; i < map_.features.capacity() && count < Filter::kMaxFolded && count < settings_.max_observations;
        ++i) {
     if (!is_settled(i)) continue;
     const int slot = map_.features[i].slot;
@@ -137,7 +137,7 @@ void PlaneKeeper::fold_into(int plane_entry) {
     if (!lies_on(plane, slot) || !is_certain(i, &covariance)) continue;
     slots[count++] = slot;
   }
-  unsigned char folded[Filter::kMostFolded];
+  unsigned char folded[Filter::kMaxFolded];
   if (count == 0 || filter_.fold(plane, slots, count, settings_.fold, folded) == 0) return;
   for (int i = 0; i < count; ++i)
     if (folded[i] != 0) support(plane_entry, slots[i]);
@@ -154,16 +154,16 @@ void PlaneKeeper::support(int plane_entry, int slot) {
 void PlaneKeeper::fix_on(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   const State& state = filter_.state();
-  int group[Filter::kMostFolded], slots[Filter::kMostFolded];
+  int group[Filter::kMaxFolded], slots[Filter::kMaxFolded];
   int group_count = 0, count = 0;
   const bool has_patch = filter_.group_of(plane) >= 0;
   state.for_each_planar(plane, [&](int slot) {
     const Block& block = state.block[slot];
-    if (group_count == Filter::kMostFolded || map_.features[block.owner].failures > 0) return;
+    if (group_count == Filter::kMaxFolded || map_.features[block.owner].failures > 0) return;
     if (block.kind == BlockKind::kPlanePoint) group[group_count++] = slot;
   });
   if (!has_patch && group_count < 2 * kMinFixed) return;
-  const int limit = std::min(Filter::kMostFolded, settings_.max_observations);
+  const int limit = std::min(Filter::kMaxFolded, settings_.max_observations);
   const Scalar variance = settings_.fix_sigma * settings_.fix_sigma;
   for (int k = 0; k < group_count && count < limit; ++k)
     if (filter_.variance_in_group(group[k], group, group_count) < variance) slots[count++] = group[k];

@@ -118,8 +118,8 @@ bool PlaneKeeper::give_points(int from_entry, int to_entry) {
     if (filter_.state().block[slot].kind == BlockKind::kGroupedPoint) released = released && filter_.release(slot);
   });
   if (!released) return false;
-  int slots[Filter::kMostFolded];
-  unsigned char folded[Filter::kMostFolded];
+  int slots[Filter::kMaxFolded];
+  unsigned char folded[Filter::kMaxFolded];
   int count = 0;
   const auto give = [&] {
     if (count > 0) filter_.fold(plane, slots, count, rule, folded);
@@ -130,7 +130,7 @@ bool PlaneKeeper::give_points(int from_entry, int to_entry) {
   filter_.state().for_each_planar(other, [&](int slot) {
     if (filter_.state().block[slot].kind != BlockKind::kPlanePoint) return;
     slots[count++] = slot;
-    if (count == std::min(Filter::kMostFolded, settings_.max_observations)) give();
+    if (count == std::min(Filter::kMaxFolded, settings_.max_observations)) give();
   });
   give();
   return true;

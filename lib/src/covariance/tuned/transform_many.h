@@ -26,7 +26,7 @@ struct NewRows {
   std::ptrdiff_t ld;
   const Scalar* S;
   std::ptrdiff_t lds;
-  Run run[Kernels::kMostMoved];  ///< up to each block, and its own
+  Run run[Kernels::kMaxMoved];  ///< up to each block, and its own
 
   PF_INLINE void list_runs() {
     for (int g = 0, from = 0, to = 0; g < count; ++g) {

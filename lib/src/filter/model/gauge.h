@@ -30,10 +30,10 @@ template <int kRows, typename Rows>
 void put_place(const Eigen::Matrix<Scalar, kRows, 3>& axes, const Vec3& p_W, Rows* N) {
   for (int i = 0; i < kRows; ++i) {
     const Vec3 axis = axes.row(i).transpose();
-    const Vec3 turn = p_W.cross(axis);  // -axisᵀ [p]x
+    const Vec3 moment = p_W.cross(axis);  // -axisᵀ [p]x
     for (int k = 0; k < 3; ++k) {
       (*N)(i, k) = axis(k);
-      (*N)(i, 3 + k) = turn(k);
+      (*N)(i, 3 + k) = moment(k);
     }
     (*N)(i, 6) = axis.dot(p_W);
   }

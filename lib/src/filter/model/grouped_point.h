@@ -4,12 +4,12 @@
 
 namespace pf::model {
 
-/// What (u, v) = t + M c depends on: t by I, phi and lambda by the columns of J_uv_turn, c by M.
-inline Vec2 group_to_plane(const PointGroup& group, const Vec2& c, Mat2* J_uv_turn, Mat2* M) {
+/// What (u, v) = t + M c depends on: t by I, phi and lambda by the columns of J_uv_rotation, c by M.
+inline Vec2 group_to_plane(const PointGroup& group, const Vec2& c, Mat2* J_uv_rotation, Mat2* M) {
   *M = group.linear();
   const Vec2 d = *M * c;
-  J_uv_turn->col(0) = Vec2(-d.y(), d.x());
-  J_uv_turn->col(1) = d;
+  J_uv_rotation->col(0) = Vec2(-d.y(), d.x());
+  J_uv_rotation->col(1) = d;
   return group.t + d;
 }
 
@@ -24,15 +24,15 @@ struct GroupedPoint : Kind {
     const Block& block = state.block[slot];
     const Block& group = state.block[block.parent];
     const Block& plane = state.block[group.parent];
-    Mat2 J_turn, M;
-    const Vec2 uv = group_to_plane(group.group(), block.uv(), &J_turn, &M);
+    Mat2 J_rotation, M;
+    const Vec2 uv = group_to_plane(group.group(), block.uv(), &J_rotation, &M);
     Mat3 J_x;
     Mat32 J_uv;
     out->o = plane_point(state.frame_of(plane), plane.xyz(), uv, &J_x, &J_uv);
     out->append<3>(group.parent, J_x);
     Eigen::Matrix<Scalar, 3, 4> J_group;
     J_group.leftCols<2>() = J_uv;
-    J_group.rightCols<2>() = J_uv * J_turn;
+    J_group.rightCols<2>() = J_uv * J_rotation;
     out->append<4>(block.parent, J_group);
     out->J_own = J_uv * M;
     out->has_rows = block.size > 0;

@@ -39,7 +39,7 @@ struct InverseDepthPoint : Kind {
     const Scalar rho = d.rho > tuning::inverse_depth::kMinShownRho ? d.rho : tuning::inverse_depth::kMinShownRho;
     return state.block[block.parent].xyz() + d.q_b.toRotationMatrix().col(2) / rho;
   }
-  /// Translation and scale leave the bearing; rotation about B_2, -B_1; rho shrinks as the world grows.
+  /// Translation and scale leave the bearing; rotation about B_2, -B_1; rho goes with the inverse scale.
   template <typename Rows>
   static void rows(const Block& block, Rows* N) {
     const InverseDepth d = block.inverse_depth();

@@ -27,8 +27,8 @@ struct PlanarRows {
   /// Coordinates in a group, from the rows of its plane: what each direction does to M beside rotating and scaling it.
   void of_group(const PlanarRows& plane, const PointGroup& group) {
     const Scalar cosine = std::cos(group.phi), sine = std::sin(group.phi);
-    Mat2 turn;
-    turn << cosine, -sine, sine, cosine;
+    Mat2 R;
+    R << cosine, -sine, sine, cosine;
     at.setZero();
     for (int d = 0; d < gauge::kDirections; ++d) {
       Mat2 M;
@@ -39,7 +39,7 @@ struct PlanarRows {
       M(1, 1) -= lambda;
       M(1, 0) -= phi;
       M(0, 1) += phi;
-      const Mat2 S = turn.transpose() * (M * turn);
+      const Mat2 S = R.transpose() * (M * R);
       by_u.col(d) = S.col(0);
       by_v.col(d) = S.col(1);
     }
@@ -48,8 +48,8 @@ struct PlanarRows {
 
  private:
   static void put(int i, const Vec3& axis, const Vec3& p_W, Rows* N) {
-    const Vec3 turn = p_W.cross(axis);  // -axisᵀ [p]x
-    for (int k = 0; k < 3; ++k) (*N)(i, 3 + k) = turn(k);
+    const Vec3 moment = p_W.cross(axis);  // -axisᵀ [p]x
+    for (int k = 0; k < 3; ++k) (*N)(i, 3 + k) = moment(k);
     (*N)(i, 6) = axis.dot(p_W);
   }
 };
