@@ -27,14 +27,11 @@ void FrameLoop::init() {
   frame_.init();
   tracking_.init();
   frozen_.init();
-  filter_ns_ = 0;
+  data_ = Data();
   motion_.init();
   planes_.init();
   images_.init(settings_.camera);
   relocaliser_.init();
-  since_last_ns_ = 0;
-  image_usable_ = false;
-  median_depth_ = 1;
   start_.init();
 }
 
@@ -55,16 +52,16 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     const Status status = end_frame();
     return status == Status::kLost || status == Status::kStarting ? status : Status::kUnusable;
   }
-  image_usable_ = true;
+  data_.image_usable = true;
   relocaliser_.begin_frame();
-  tracking_.note_usable_image(since_last_ns_);
+  tracking_.note_usable_image(data_.since_last_ns);
   if (tracking_.needs_new_map(settings_.restart_ns)) begin_new_map();
   const bool first = !tracking_.has_pose();
   const ConsensusRule rule = consensus_rule(t_ns);
   if (first) {
     if (!start_.start_in_image()) return end_frame();
   } else if (tracking_.is_relocalising(start_.progress()) && rule == ConsensusRule::kBeyondChance) {
-    relocaliser_.recover(since_last_ns_);
+    relocaliser_.recover(data_.since_last_ns);
   } else {
     relocaliser_.clear_proposals();
     images_.measure(rule);
@@ -101,7 +98,7 @@ Status FrameLoop::push_observations(const PixelObservation* observations, int co
 Status FrameLoop::mark_pose() {
   if (!tracking_.has_pose()) return Status::kState;
   // A frame that does not support its pose changes nothing in the map.
-  return mark_.set(frame_.report.t_ns, tracking_.state() == SlamState::kTracking, filter_ns_);
+  return mark_.set(frame_.report.t_ns, tracking_.state() == SlamState::kTracking, data_.filter_ns);
 }
 
 /// The last pose and status again, under a new time. The next prediction begins where this one did not go on.
@@ -113,10 +110,10 @@ Status FrameLoop::repeat_frame(std::int64_t t_ns) {
 
 /// Begins the report and predicts the body to the new time.
 void FrameLoop::begin_frame(std::int64_t t_ns) {
-  const std::int64_t before_ns = filter_ns_;
-  filter_ns_ = t_ns;
-  since_last_ns_ = frame_.report.frames > 0 ? std::min(elapsed_ns(before_ns, t_ns), BodyMotion::kMaxGapNs) : 0;
-  image_usable_ = false;
+  const std::int64_t before_ns = data_.filter_ns;
+  data_.filter_ns = t_ns;
+  data_.since_last_ns = frame_.report.frames > 0 ? std::min(elapsed_ns(before_ns, t_ns), BodyMotion::kMaxGapNs) : 0;
+  data_.image_usable = false;
   const bool nothing_measured = frame_.report.inliers == 0;
   frame_.begin(t_ns);
   tracking_.begin_frame();
@@ -133,7 +130,7 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
 /// their own than a tracked frame needs. A map as young as that is tracked from frame to frame, and not found again after a gap.
 ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
   if (start_.progress().pending()) return ConsensusRule::kStart;
-  const double gap_s = static_cast<double>(elapsed_ns(tracking_.last_tracked_ns(), t_ns)) * 1e-9;
+  const double gap_s = seconds(elapsed_ns(tracking_.last_tracked_ns(), t_ns));
   if (gap_s > static_cast<double>(tuning::tracking::kMaxYoungGap)) return ConsensusRule::kBeyondChance;
   int known = 0;
   for (int i = 0; i < map_.features.capacity() && known < settings_.min_inliers; ++i)
@@ -158,10 +155,10 @@ void FrameLoop::maintain_map(bool supported) {
 Status FrameLoop::end_frame() {
   if (tracking_.has_pose() && (tracking_.updates_fail() || !filter_.body_is_sound())) start_over();
   if (tracking_.is_tracked(frame_.report) && !start_.progress().pending()) {
-    if (!is_pose_usable(filter_, map_, frame_, &median_depth_))
+    if (!is_pose_usable(filter_, map_, frame_, &data_.median_depth))
       tracking_.set_unusable();
-    else if (image_usable_)
-      relocaliser_.remember_view(median_depth_);
+    else if (data_.image_usable)
+      relocaliser_.remember_view(data_.median_depth);
   }
   return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
 }

@@ -53,9 +53,16 @@ class FrameLoop {
   const TrackingState& tracking() const { return tracking_; }
   const Relocaliser& relocaliser() const { return relocaliser_; }
   /// Time that the filter's body was predicted to: that of the last frame, or of the one that it repeats.
-  std::int64_t filter_ns() const { return filter_ns_; }
+  std::int64_t filter_ns() const { return data_.filter_ns; }
 
  private:
+  struct Data {
+    std::int64_t filter_ns = 0;
+    std::int64_t since_last_ns = 0;  ///< from the frame before this one
+    bool image_usable = false;       ///< this frame is an image that shows something to track
+    Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
+  };
+
   bool is_next(std::int64_t t_ns) const { return frame_.report.frames == 0 || t_ns > frame_.report.t_ns; }
   void begin_frame(std::int64_t t_ns);
   Status repeat_frame(std::int64_t t_ns);
@@ -81,10 +88,7 @@ class FrameLoop {
   Relocaliser relocaliser_{settings_, filter_, map_, frame_, images_, update_};
   ObservationFrontEnd observations_{settings_, filter_, map_, frame_, features_, update_};
   FilterStart start_{settings_, motion_, {filter_, map_, frame_, tracking_, features_, images_, update_}};
-  std::int64_t filter_ns_ = 0;
-  std::int64_t since_last_ns_ = 0;  ///< from the frame before this one
-  bool image_usable_ = false;       ///< this frame is an image that shows something to track
-  Scalar median_depth_ = 1;         ///< of the inliers of the last tracked frame
+  Data data_;
 };
 
 }  // namespace pf
