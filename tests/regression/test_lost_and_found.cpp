@@ -202,6 +202,8 @@ void test_ids_should_survive_ten_seconds_without_pictures_and_eight_of_another_p
 void test_the_map_should_be_found_again_where_it_was_left() {
   for (const int away : {0, 5 * kSecond}) {
     Run run(0);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_mark_pose(run.slam));
+    const double before = distance(run.pose, desk().truth[3 * kSecond - 1]);
     for (int i = 0; i < kSecond; ++i) run.show_black();
     for (int i = 0; i < away; ++i) run.show(room().picture[static_cast<std::size_t>(i)]);
     int frames = 0;
@@ -211,6 +213,10 @@ void test_the_map_should_be_found_again_where_it_was_left() {
     TEST_ASSERT_LESS_THAN_INT(kSecond, frames);
     TEST_ASSERT_TRUE(distance(run.pose, desk().truth[at - 1]) < 0.03);
     TEST_ASSERT_EQUAL_UINT32(1, run.pose.map_id);
+    pf_motion_t motion;  // the mark is where it was
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_motion_since_mark(run.slam, &motion));
+    TEST_ASSERT_DOUBLE_WITHIN(0.03 + before, distance(desk().truth[at - 1], desk().truth[3 * kSecond - 1]),
+                              std::hypot(motion.p_KC[0], motion.p_KC[1], motion.p_KC[2]));
     for (; at < desk().picture.size(); ++at) TEST_ASSERT_EQUAL_INT(PF_OK, run.show(desk().picture[at]));
   }
 }
@@ -219,8 +225,11 @@ void test_a_new_map_should_begin_with_a_new_id_after_restart_s_of_usable_picture
   Run run(2);
   const std::vector<std::uint32_t> before = run.ids();
   TEST_ASSERT_EQUAL_UINT32(1, run.pose.map_id);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_mark_pose(run.slam));
+  pf_motion_t motion;
   for (int i = 0; i < 10 * kSecond; ++i) run.show_black();  // no picture is no reason for a new map
   TEST_ASSERT_EQUAL_UINT32(1, run.pose.map_id);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_motion_since_mark(run.slam, &motion));
   int begun = -1;
   std::uint32_t last_id = 1;
   for (int i = 0; i < static_cast<int>(room().picture.size()); ++i) {
@@ -230,6 +239,7 @@ void test_a_new_map_should_begin_with_a_new_id_after_restart_s_of_usable_picture
     TEST_ASSERT_TRUE(run.pose.t_ns < 0 || run.pose.map_id >= last_id);
     if (run.pose.t_ns >= 0) last_id = run.pose.map_id;
   }
+  TEST_ASSERT_EQUAL_INT(PF_NOTE_NOTHING, pf_get_motion_since_mark(run.slam, &motion));  // the mark went with its map
   std::printf("a new map after %d frames\n", begun);
   TEST_ASSERT_INT_WITHIN(2, 2 * kSecond, begun);
   TEST_ASSERT_GREATER_THAN_UINT32(1, run.pose.map_id);
