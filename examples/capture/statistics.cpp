@@ -117,7 +117,7 @@ void Statistics::add(const FrameView& view) {
   unusable_ += view.status == PF_NOTE_UNUSABLE ? 1 : 0;
   evicted_ += report.evicted;
   new_features_ += report.new_features;
-  if (report.nis_dof > 0) {
+  if (report.nis_dof > 0 && report.state == PF_STATE_TRACKING) {
     nis_ += report.nis;
     nis_dof_ += report.nis_dof;
   }
@@ -221,6 +221,9 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["hits"] = hits_json(last_hits_);
   json["gravity"] = options.has_gravity ? Json(options.gravity_W) : Json();
   json["nis_per_dof"] = nis_dof_ > 0 ? Json(rounded(nis_ / static_cast<double>(nis_dof_))) : Json();
+  json["sigma_gate_px"] = rounded(last_report_.sigma_gate_px);
+  json["sigma_info_px"] = rounded(last_report_.sigma_info_px);
+  json["correlation_frames"] = rounded(last_report_.correlation_frames);
   json["kernels"] = kernels_name(last_report_.kernels);
   json["scalar"] = config.scalar == PF_SCALAR_FLOAT ? "float" : "double";
   json["camera"] = camera_json(config.camera);

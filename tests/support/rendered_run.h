@@ -39,9 +39,6 @@ class RenderedRun {
     TEST_ASSERT_NOT_NULL(sim_);
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
     pf_sim_camera(sim_, &config.camera);
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
-    block_ = std::aligned_alloc(need.alignment, (need.bytes + need.alignment) / need.alignment * need.alignment);
-    TEST_ASSERT_NOT_NULL(block_);
     create();
     if (start == Start::kRectangle) start_at_rectangle();
   }
@@ -52,7 +49,14 @@ class RenderedRun {
     std::free(block_);
   }
 
-  void create() { TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block_, need.bytes, &slam)); }
+  /// A context as config says, in a block of its own.
+  void create() {
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
+    std::free(block_);
+    block_ = std::aligned_alloc(need.alignment, (need.bytes + need.alignment) / need.alignment * need.alignment);
+    TEST_ASSERT_NOT_NULL(block_);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block_, need.bytes, &slam));
+  }
 
   void start_at_rectangle() {
     pf_target_t target;

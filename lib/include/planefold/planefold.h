@@ -208,7 +208,8 @@ typedef struct pf_config {
   } motion;
 
   struct {
-    /* Of a match in an image: additional standard deviation (lens, warp, interpolation) on top of the image noise.
+    /* Of a match in an image: least standard deviation (lens, warp, interpolation) on top of the image noise; both are
+     * scaled up together where the residuals are larger. The prior of sigma_gate_px in the report.
      * Of an observation that gives no sigma_px: its standard deviation. 0.01 .. 10. Default 0.1 */
     double sigma_px;
     double gate_probability; /* that a true match passes the gate, 0.9 .. 0.9999. Default 0.99 */
@@ -548,11 +549,16 @@ typedef struct pf_report {
   int32_t state_dim_points_only;    /* rows that the same map would need with 3-D points in place of folded ones */
   uint32_t map_id;                  /* as in pf_pose_t; of the first map 1, and one more for each new one */
   int32_t kept_views;               /* of capacity.max_kept_views */
-  double nis;                       /* normalised innovation squared of this frame's inliers */
+  double nis;                       /* normalised innovation squared of this frame's inliers, jointly; of matches in
+                                       images with the noise that one match has by itself */
   int32_t nis_dof;                  /* and its degrees of freedom */
   int32_t kernels;                  /* pf_kernels_t in use */
   int64_t duplicates;               /* of `frames`: images that were byte for byte the one before, see pf_push_frame */
   int64_t stage_ns[PF_STAGE_COUNT]; /* all zero without a clock */
+  /* Noise of matches in images, as estimated so far (lib/docs/noise.md): of one match by itself, root mean square over
+   * recent inliers [px]; of what it adds to those of other frames, sigma_gate_px * sqrt(correlation_frames) [px]; and for
+   * how many frames an error stays with its feature. Pushed observations have the sigma_px that they state. */
+  double sigma_gate_px, sigma_info_px, correlation_frames;
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

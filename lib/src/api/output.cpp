@@ -193,6 +193,9 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->nis = r.nis;
   report->nis_dof = r.nis_dof;
   report->duplicates = r.duplicates;
+  report->sigma_gate_px = static_cast<double>(view.noise().sigma_gate());
+  report->sigma_info_px = static_cast<double>(view.noise().sigma_info());
+  report->correlation_frames = static_cast<double>(view.noise().correlation_frames());
   report->kernels = static_cast<int32_t>(pf::kernels_id(slam->session.settings().kernels));
   for (int i = 0; i < PF_STAGE_COUNT; ++i) report->stage_ns[i] = r.stage_ns[i];
   return PF_OK;

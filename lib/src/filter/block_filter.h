@@ -89,6 +89,8 @@ class BlockFilter {
     innovation(i, j, S);
     return Eigen::Map<const Eigen::Matrix<Scalar, kRows, kRows>>(S).transpose();
   }
+  /// Scratch of i + 1 numbers above the diagonal of S, 0 <= i < max_rows - 1: the caller's between project() and gain().
+  Scalar* scratch_row(int i) { return S_ + (max_rows_ - 2 - i) * lds_ + (max_rows_ - 1 - i); }
   /// dx = P H^T (S + R)^-1 r of the projected measurements that are kept (null: all); zero for held rows. Null when S + R cannot be
   /// factored or nothing is kept; P is as it was then. *nis gets r^T (S + R)^-1 r.
   const Scalar* gain(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);

@@ -128,6 +128,8 @@ class Filter {
   void begin_update(const Measurement* z, int count) { blocks_.project(z, count); }
   void begin_update(const PixelMeasurement* z, int count) { begin_update(views_of(z, count), count); }
   Mat2 innovation_block(int i, int j) const { return blocks_.innovation2(i, j); }
+  /// Scratch of i + 1 numbers for all but the last row of S: the caller's between begin_update and finish_update.
+  Scalar* scratch_row(int i) { return blocks_.scratch_row(i); }
   /// Takes the chosen measurements in (keep[i] != 0; null takes all) and moves the state. False, with the state and P unchanged, when
   /// S cannot be factored or the step is no number. *nis (may be null) gets the normalised innovation squared.
   bool finish_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);

@@ -9,6 +9,12 @@
 
 namespace pf {
 
+/// Running mean of a feature's normalised residuals, for their correlation in time.
+struct ResidualTrace {
+  float mean[2] = {0, 0};
+  int frame = 0;  ///< number of the last frame with a residual; 0: none yet
+};
+
 struct Feature {
   std::uint32_t id = 0;           ///< never used twice
   std::uint32_t external_id = 0;  ///< the caller's id of an observed feature; of the target, the index of the point
@@ -20,6 +26,7 @@ struct Feature {
   int failures = 0;      ///< attempts since it was last an inlier
   int rejections = 0;    ///< of these failures, matches that were outliers
   std::int64_t last_seen_ns = 0;
+  ResidualTrace residuals;
 };
 
 class FeatureTable {
@@ -66,17 +73,30 @@ class FeatureTable {
   bool may_evict(int i, std::int64_t not_since_ns) const {
     return used(i) && !feature_[i].is_target && feature_[i].last_seen_ns < not_since_ns;
   }
-  /// The feature to evict first: longest unseen, not of the target and not seen since this time; -1 if there is none.
+  /// The feature to evict first: the least proven, among equals the longest unseen; -1 if there is none. Most new features are never
+  /// measured again, and must not evict those that may come back into view.
   int least_useful(std::int64_t not_since_ns) const {
     int worst = -1;
     for (int i = 0; i < capacity_; ++i) {
       if (!may_evict(i, not_since_ns)) continue;
-      if (worst < 0 || feature_[i].last_seen_ns < feature_[worst].last_seen_ns) worst = i;
+      if (worst < 0 || is_less_useful(feature_[i], feature_[worst])) worst = i;
     }
     return worst;
   }
 
  private:
+  /// How proven a feature is: 0 hardly ever measured again, 1 not yet, and then one more each time that it was measured twice as often.
+  static int proof(const Feature& feature) {
+    constexpr int kAgain = 3, kProven = 10, kMaxProof = 80;  // frames
+    if (feature.observations < kProven) return feature.observations < kAgain ? 0 : 1;
+    int proof = 2;
+    for (int frames = 2 * kProven; frames <= kMaxProof && feature.observations >= frames; frames *= 2) ++proof;
+    return proof;
+  }
+  static bool is_less_useful(const Feature& a, const Feature& b) {
+    return proof(a) != proof(b) ? proof(a) < proof(b) : a.last_seen_ns < b.last_seen_ns;
+  }
+
   Feature* feature_ = nullptr;
   int capacity_ = 0;
   int count_ = 0;

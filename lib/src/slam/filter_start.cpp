@@ -163,7 +163,7 @@ void FilterStart::record_frame() {
                        at_frame_time(parts_.map.features[match.feature].slot, match.measured));
   }
   const bool first = !progress().depth_known;
-  switch (without_.solve(settings_.camera, Tracker::kTypicalSigma, settings_.start_depth)) {
+  switch (without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth)) {
     case StartOutcome::kWait:
       break;
     case StartOutcome::kSolved:
@@ -203,7 +203,7 @@ void FilterStart::restart_from_record() {
 void FilterStart::restart_features() {
   Filter& filter = parts_.filter;
   const int anchor = filter.add_anchor();
-  const Mat2 noise = Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma);
+  const Mat2 noise = NoiseModel::search();
   for (int i = 0; i < parts_.map.features.capacity(); ++i) {
     if (!parts_.map.features.used(i)) continue;
     Feature& f = parts_.map.features[i];
@@ -247,7 +247,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
     PixelMeasurement& o = parts_.update.observation(count);
     if (!filter.predict_pixel(filter.lens(), parts_.map.features[i].slot, &o)) continue;
     o.measured = o.predicted;
-    o.set_noise(Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma));
+    o.set_noise(NoiseModel::search());
     ++count;
   }
   if (count == 0) return;

@@ -32,6 +32,7 @@ void FrameLoop::init() {
   planes_.init();
   images_.init(settings_.camera);
   relocaliser_.init();
+  noise_.init(settings_.sigma_px);
   start_.init();
 }
 
@@ -70,6 +71,8 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     const bool supported = tracking_.is_tracked(frame_.report) || start_.progress().pending();
     if (supported) features_.count_searches();
+    // While the map starts, residuals are those of a coarse map.
+    if (supported && tracking_.state() == SlamState::kTracking && !start_.progress().recording) learn_noise();
     maintain_map(supported);
     start_.record_frame();
     // A frame that does not support its pose adds features only to a map that has none to lose.
@@ -136,6 +139,15 @@ ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
   for (int i = 0; i < map_.features.capacity() && known < settings_.min_inliers; ++i)
     known += map_.features.used(i) && filter_.state().block[map_.features[i].slot].kind != BlockKind::kInverseDepth;
   return known < settings_.min_inliers ? ConsensusRule::kMostAgree : ConsensusRule::kBeyondChance;
+}
+
+void FrameLoop::learn_noise() {
+  images_.learn_noise();
+  if (data_.warned_of_noise || !noise_.is_implausible()) return;
+  data_.warned_of_noise = true;
+  settings_.hooks.say(
+      "matches are 3 times as far off as their noise explains: check the calibration, the readout time and the "
+      "timestamps");
 }
 
 /// If the frame does not support its pose, nothing is decided about the map.

@@ -12,6 +12,7 @@
 #include "slam/frame.h"
 #include "slam/frozen_camera.h"
 #include "slam/image_front_end.h"
+#include "slam/noise_model.h"
 #include "slam/observation_front_end.h"
 #include "slam/pixel_update.h"
 #include "slam/plane_keeper.h"
@@ -54,6 +55,7 @@ class FrameLoop {
   const Relocaliser& relocaliser() const { return relocaliser_; }
   /// Time that the filter's body was predicted to: that of the last frame, or of the one that it repeats.
   std::int64_t filter_ns() const { return data_.filter_ns; }
+  const NoiseModel& noise() const { return noise_; }
 
  private:
   struct Data {
@@ -61,6 +63,7 @@ class FrameLoop {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     bool image_usable = false;       ///< this frame is an image that shows something to track
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
+    bool warned_of_noise = false;
   };
 
   bool is_next(std::int64_t t_ns) const { return frame_.report.frames == 0 || t_ns > frame_.report.t_ns; }
@@ -68,6 +71,7 @@ class FrameLoop {
   Status repeat_frame(std::int64_t t_ns);
   Status end_frame();
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
+  void learn_noise();
   void maintain_map(bool supported);
   void start_over();
   void begin_new_map();
@@ -77,6 +81,7 @@ class FrameLoop {
   Map& map_;
   Filter filter_;
   Frame frame_;
+  NoiseModel noise_;
   TrackingState tracking_{settings_};
   FrozenCamera frozen_;
   BodyMotion motion_{settings_, filter_};
@@ -84,7 +89,7 @@ class FrameLoop {
   FeatureKeeper features_{settings_, filter_, map_, frame_};
   PoseMark mark_{filter_, map_, features_};
   PlaneKeeper planes_{settings_, filter_, map_, frame_, features_};
-  ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_};
+  ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_, noise_};
   Relocaliser relocaliser_{settings_, filter_, map_, frame_, images_, update_};
   ObservationFrontEnd observations_{settings_, filter_, map_, frame_, features_, update_};
   FilterStart start_{settings_, motion_, {filter_, map_, frame_, tracking_, features_, images_, update_}};

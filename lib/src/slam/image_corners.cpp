@@ -11,8 +11,6 @@ namespace {
 
 using namespace tuning::image_corners;
 
-constexpr Scalar kReferenceSigma =
-    Scalar(0.25);  ///< [px] noise of the first pixel, which every later match is compared with
 constexpr int kCellColumns = 8, kCellRows = 6, kCells = kCellRows * kCellColumns;
 
 int cell_along(Scalar at, int size, int cells) {
@@ -68,7 +66,7 @@ bool ImageFrontEnd::add_in(const Rect& rect, int* anchor) {
     const Vec2 pixel(static_cast<Scalar>(corner[c].x), static_cast<Scalar>(corner[c].y));
     if (!is_free(pixel)) continue;
     if (frame_.full() || !features_.make_room_at(anchor)) return false;
-    const int entry = features_.add(*anchor, pixel, Mat2::Identity() * (kReferenceSigma * kReferenceSigma));
+    const int entry = features_.add(*anchor, pixel, NoiseModel::reference());
     if (entry < 0) continue;
     const CameraAt camera = camera_at(filter_.state(), Scalar(0));
     if (!remember(entry, pixel, {camera.q_WC, camera.p_W})) {

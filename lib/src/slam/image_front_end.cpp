@@ -27,6 +27,7 @@ bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observat
 /// anything is used.
 void ImageFrontEnd::measure(ConsensusRule rule) {
   const int count = list_visible();
+  listed_ = count;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
     predict_pixels(0, count);
@@ -109,7 +110,7 @@ void ImageFrontEnd::predict_pixels(int first, int count) {
     bool has_place = filter_.predict_pixel(filter_.lens(), map_.features[candidate.feature].slot, &o);
     if (has_place) {
       const Mat2 spread = update_.expected_innovation(&o);
-      o.set_noise(Mat2::Identity() * (Tracker::kTypicalSigma * Tracker::kTypicalSigma) + o.second_order);
+      o.set_noise(NoiseModel::search() + o.second_order);
       match.predicted = o.predicted;
       match.innovation = spread + o.R_gate;
       has_place = is_covariance(match.innovation);
@@ -172,8 +173,12 @@ int ImageFrontEnd::search(int first, int count) {
     match.measured = outcome.pixel;
     match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
     o.measured = outcome.pixel;
-    const Scalar floor = settings_.sigma_px * outcome.level_scale;
-    o.set_noise(Mat2::Identity() * (floor * floor) + outcome.noise + o.second_order);
+    const Mat2 noise = noise_.match(outcome.noise, outcome.level_scale);
+    update_.candidate(i).noise = noise;
+    o.R_gate = noise + o.second_order;
+    o.R_update =
+        (is_averaged(map_.features[update_.candidate(i).feature]) ? noise_.correlation_frames() : Scalar(1)) * noise +
+        o.second_order;
     if (found != i) update_.swap(found, i);
     ++found;
   }
@@ -186,6 +191,7 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
   update_.begin(first, found);
   unsigned char* keep = update_.keep();
   bool accepted;
+  double nis = 0;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
     const PixelMeasurement* observations = update_.observations() + first;
@@ -204,6 +210,7 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
                                 tuning::tracking::kTriples, keep + first, nullptr);
       accepted = inliers >= settings_.min_inliers && consensus.log_false < tuning::tracking::kMaxLogFalse;
     }
+    if (accepted) nis = update_.reject_contradicted(first, found);
   }
   for (int i = first; i < first + found; ++i) {
     const PixelMeasurement& o = update_.observation(i);
@@ -213,13 +220,38 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
     match.nis =
         squared_distance(match.measured - o.predicted, filter_.innovation_block(i - first, i - first) + o.R_gate);
   }
-  return accepted && update_.apply(first, found);
+  // Jointly, with the noise of the gate: that of the update allows for errors that come again in later frames.
+  if (!accepted || !update_.apply(first, found, nullptr)) return false;
+  frame_.report.nis += nis;
+  return true;
 }
 
 Scalar ImageFrontEnd::searched_area(int i) const {
   const Mat2& S = frame_.match(update_.candidate(i).match).innovation;
   const Scalar all = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
   return std::min(all, ellipse_area(S, settings_.gate));
+}
+
+/// Whether a feature's matches add up to coordinates that are averaged over frames, so that errors which stay with the feature count. The
+/// target's coordinates are given, and an inverse depth has been seen from about its first view only, which its matches are compared with.
+bool ImageFrontEnd::is_averaged(const Feature& f) const {
+  return !f.is_target && filter_.state().block[f.slot].kind != BlockKind::kInverseDepth;
+}
+
+void ImageFrontEnd::learn_noise() {
+  for (int i = 0; i < listed_; ++i) {
+    const Candidate& candidate = update_.candidate(i);
+    if (update_.keep()[i] == 0 || frame_.match(candidate.match).status != MatchStatus::kInlier) continue;
+    Feature& f = map_.features[candidate.feature];
+    PixelMeasurement now;
+    if (f.observations < kSettled || !filter_.predict_pixel(filter_.lens(), f.slot, &now)) continue;
+    const bool averaged = is_averaged(f);
+    const Scalar correlation = averaged ? noise_.correlation_frames() : Scalar(1);
+    const Scalar leverage = filter_.innovation(now).trace() / (correlation * candidate.noise.trace());
+    noise_.learn(frame_.report.frames, update_.observation(i).measured - now.predicted, candidate.noise, leverage,
+                 averaged ? &f.residuals : nullptr);
+  }
+  noise_.end_frame();
 }
 
 }  // namespace pf

@@ -4,6 +4,7 @@
 #include "map/map.h"
 #include "slam/feature_keeper.h"
 #include "slam/frame.h"
+#include "slam/noise_model.h"
 #include "slam/pixel_update.h"
 #include "slam/settings.h"
 #include "track/tracker.h"
@@ -22,8 +23,14 @@ enum class ConsensusRule {
 class ImageFrontEnd {
  public:
   ImageFrontEnd(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features,
-                PixelUpdate& update)
-      : settings_(settings), filter_(filter), map_(map), frame_(frame), features_(features), update_(update) {}
+                PixelUpdate& update, NoiseModel& noise)
+      : settings_(settings),
+        filter_(filter),
+        map_(map),
+        frame_(frame),
+        features_(features),
+        update_(update),
+        noise_(noise) {}
 
   bool layout(Arena& arena, int width, int height, int max_observations);
   void init(const Camera& camera) { tracker_.init(camera); }
@@ -32,6 +39,8 @@ class ImageFrontEnd {
   bool begin_frame(const ImageView& image) { return tracker_.begin_frame(image); }
   /// Finds the map's features in the image and updates the filter with them.
   void measure(ConsensusRule rule);
+  /// Updates the noise model with the inliers' residuals after measure().
+  void learn_noise();
   /// Adds features in the emptiest cells of the image until enough are in view.
   void add_features();
   /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
@@ -55,6 +64,7 @@ class ImageFrontEnd {
   Scalar widest_ellipse(int count) const;
   SearchTask task_of(int i) const;
   bool update_with_consensus(int first, int found, ConsensusRule rule);
+  bool is_averaged(const Feature& f) const;
 
   // image_corners.cpp
   bool is_free(const Vec2& pixel) const;
@@ -66,8 +76,10 @@ class ImageFrontEnd {
   Frame& frame_;
   FeatureKeeper& features_;
   PixelUpdate& update_;
+  NoiseModel& noise_;
   Tracker tracker_;
   Scalar* searched_px2_ = nullptr;  ///< max_observations
+  int listed_ = 0;                  ///< candidates of this frame
 };
 
 }  // namespace pf

@@ -15,7 +15,7 @@ void ObservationFrontEnd::measure(const PixelObservation* observations, int coun
   const int known = gate(observations, count);
   if (known == 0) return;
   update_.begin(0, known);
-  update_.apply(0, known);
+  update_.apply(0, known, &frame_.report.nis);
 }
 
 /// Lists observations of the map's features as matches, and those inside of their gate as candidates. Returns how many candidates.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "slam/tuning.h"
 
 namespace pf {
 namespace {
@@ -18,6 +19,7 @@ bool PixelUpdate::layout(Arena& arena, int max_observations) {
   candidate_ = arena.take<Candidate>(count);
   observation_ = arena.take<PixelMeasurement>(count);
   keep_ = arena.take<unsigned char>(count);
+  others_.layout(arena, max_observations);
   return arena.ok();
 }
 
@@ -26,16 +28,23 @@ void PixelUpdate::begin(int first, int count) {
   filter_.begin_update(observation_ + first, count);
 }
 
-bool PixelUpdate::apply(int first, int count) {
-  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
+double PixelUpdate::reject_contradicted(int first, int count) {
   Scalar nis = 0;
-  const bool done = filter_.finish_update(observation_ + first, count, keep_ + first, &nis);
+  others_.reject(filter_, observation_ + first, count, tuning::pixel_update::kOthersGate * settings_.gate,
+                 keep_ + first, &nis);
+  return static_cast<double>(nis);
+}
+
+bool PixelUpdate::apply(int first, int count, double* nis) {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
+  Scalar sum = 0;
+  const bool done = filter_.finish_update(observation_ + first, count, keep_ + first, &sum);
   tracking_.note_update(done);
   if (!done) {
     for (int i = first; i < first + count; ++i) frame_.match(candidate_[i].match).status = MatchStatus::kOutlier;
     return false;
   }
-  frame_.report.nis += static_cast<double>(nis);
+  if (nis != nullptr) *nis += static_cast<double>(sum);
   for (int i = first; i < first + count; ++i) {
     if (keep_[i] == 0) continue;
     frame_.report.nis_dof += 2;

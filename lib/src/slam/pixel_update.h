@@ -5,6 +5,7 @@
 #include "filter/filter.h"
 #include "map/map.h"
 #include "slam/frame.h"
+#include "slam/leave_one_out.h"
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
 
@@ -14,8 +15,9 @@ namespace pf {
 
 /// A feature that this frame measures. The observation of the same index holds its prediction and its pixel.
 struct Candidate {
-  int feature;  ///< entry of the feature table
-  int match;    ///< index in the frame's matches
+  int feature;                ///< entry of the feature table
+  int match;                  ///< index in the frame's matches
+  Mat2 noise = Mat2::Zero();  ///< of a match in an image by itself, NoiseModel::match
 };
 
 class PixelUpdate {
@@ -42,8 +44,12 @@ class PixelUpdate {
   Mat2 expected_innovation(PixelMeasurement* o) const;
   /// Computes H P H^T of `count` observations from `first` on.
   void begin(int first, int count);
+  /// Stops keeping matches of the range that begin() got which all the other kept ones contradict. Returns the normalised innovation
+  /// squared of those that stay, jointly, with R_gate.
+  double reject_contradicted(int first, int count);
   /// Updates with the kept ones of the range that begin() got. False if the update could not be made; then nothing has changed.
-  bool apply(int first, int count);
+  /// Adds their normalised innovation squared to *nis where it is not null.
+  bool apply(int first, int count, double* nis);
 
  private:
   void relinearise_update(int first, int count);
@@ -56,6 +62,7 @@ class PixelUpdate {
   Candidate* candidate_ = nullptr;
   PixelMeasurement* observation_ = nullptr;
   unsigned char* keep_ = nullptr;
+  LeaveOneOut others_;
 };
 
 }  // namespace pf

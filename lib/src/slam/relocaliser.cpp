@@ -124,7 +124,7 @@ void Relocaliser::recover_nearby(int found) {
     return;
   }
   mark_matches(found);
-  update_.apply(0, found);
+  update_.apply(0, found, &frame_.report.nis);
 }
 
 /// Proposes a pose from the matches of a search about another pose, and tests it in the filter's own covariance.
@@ -153,7 +153,7 @@ void Relocaliser::recover_anywhere(const SearchPose& about, int found, std::int6
   data_.proposal = {follows ? before + 1 : 1, pose.q_WC, pose.p_W, depth};
   if (data_.proposal.frames < kFramesAnywhere) return;
   mark_matches(found);
-  update_.apply(0, found);
+  update_.apply(0, found, &frame_.report.nis);
   data_.proposal.frames = 0;
 }
 

@@ -93,7 +93,33 @@ namespace image_front_end {
 inline constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
+inline constexpr int kSettled = 5;  ///< measurements of a feature whose residuals are those of its matches
 }  // namespace image_front_end
+
+/// Matches that enter the update.
+namespace pixel_update {
+inline constexpr Scalar kOthersGate = Scalar(1.5);  ///< gates, of one match against all others: (1/100)^1.5 is 1/1000
+}  // namespace pixel_update
+
+/// The noise of matches in images (lib/docs/noise.md).
+namespace noise {
+inline constexpr Scalar kReferenceSigma = Scalar(0.25);  ///< [px] of the first view, which later ones are compared with
+inline constexpr Scalar kSearchSigma = Scalar(0.6);      ///< [px] of a match before the image says how good it is
+inline constexpr Scalar kPriorFrames = Scalar(8);        ///< tau before anything has been seen
+inline constexpr Scalar kPriorPairs = Scalar(300);       ///< that the prior of tau is worth, in pairs of residuals
+inline constexpr Scalar kMinFrames = Scalar(1);          ///< of tau
+inline constexpr Scalar kMaxFrames = Scalar(30);         ///< of tau
+inline constexpr Scalar kMemory = Scalar(15) / 16;       ///< lambda of a feature's running mean, per frame
+inline constexpr Scalar kFade = Scalar(0.995);           ///< of the pooled sums, per frame
+inline constexpr Scalar kGain = Scalar(0.05);            ///< of the scale, per frame with kEnough matches
+inline constexpr Scalar kEnough = Scalar(20);            ///< matches
+inline constexpr Scalar kClip = Scalar(4);               ///< of a square whose mean is one
+inline constexpr Scalar kMinScale = Scalar(1);           ///< g; the prior: a constant error does not show in residuals
+inline constexpr Scalar kMaxScale = Scalar(10);          ///< g
+inline constexpr Scalar kMaxPlausible = Scalar(3);       ///< g, beyond which noise alone cannot be the reason
+inline constexpr Scalar kMaxLeverage = Scalar(0.5);      ///< of a match that is learnt from
+inline constexpr Scalar kMaxResidual = Scalar(3);        ///< [sigma] per axis, in correlations
+}  // namespace noise
 
 /// Points of planes.
 namespace plane_keeper {

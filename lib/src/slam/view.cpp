@@ -14,6 +14,7 @@ std::uint32_t View::map_id() const { return loop_.tracking().map_id(); }
 int View::kept_views() const { return loop_.relocaliser().kept_views(); }
 bool View::has_pose() const { return loop_.tracking().has_pose(); }
 const FrameReport& View::report() const { return loop_.frame().report; }
+const NoiseModel& View::noise() const { return loop_.noise(); }
 int View::match_count() const { return loop_.frame().match_count(); }
 const Match& View::match(int i) const { return loop_.frame().match(i); }
 int View::state_dim() const { return filter().dim(); }

@@ -5,6 +5,7 @@
 #include "filter/state.h"
 #include "map/map.h"
 #include "slam/frame.h"
+#include "slam/noise_model.h"
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
 
@@ -82,6 +83,7 @@ class View {
   /// Projects a known point; covariance may be null. False if the point does not project.
   bool project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const;
   const FrameReport& report() const;
+  const NoiseModel& noise() const;
   int match_count() const;
   const Match& match(int i) const;
   MapCounts counts() const;

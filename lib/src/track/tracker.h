@@ -37,7 +37,6 @@ struct SearchOutcome {
 class Tracker {
  public:
   static constexpr int kLevels = 4;
-  static constexpr Scalar kTypicalSigma = Scalar(0.6);  ///< [px] of a match, before the image has said how good it is
 
   bool layout(Arena& arena, int width, int height);
   void init(const Camera& camera) { camera_ = camera; }

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "base/arena.h"
+#include "filter/filter.h"
+
+namespace pf {
+
+/// Tests each match against all the others together, and rejects those that the others contradict (data snooping; Baarda 1968).
+///
+/// A consensus compares matches with one hypothesis, which does not fix the whole pose: the ellipse of a young feature stays wide, since
+/// its depth is unknown. All the others together leave it its epipolar line only. With S = H P H^T + R_gate of the kept matches,
+/// G = S^-1 and g = G r, match i lies at
+///
+///   e_i = G_ii^-1 g_i,   cov e_i = G_ii^-1,   d_i^2 = g_i^T G_ii^-1 g_i
+///
+/// from where the others predict it. The match with the largest d^2 is rejected while that is above the gate, one at a time, since a
+/// wrong match makes right ones look wrong:
+///
+///   G <- G - G_:i G_ii^-1 G_i:,   g <- g - G_:i G_ii^-1 g_i
+///
+/// Derivation and measurements: lib/docs/noise.md
+class LeaveOneOut {
+ public:
+  bool layout(Arena& arena, int max_observations);
+
+  /// Clears keep of the matches that it rejects. Between begin_update with the same observations, max_observations at most as in the
+  /// filter, and finish_update. nis: r^T S^-1 r of those that stay.
+  /// False if S is not positive definite; then keep and nis are untouched.
+  bool reject(Filter& filter, const PixelMeasurement* observations, int count, Scalar gate, unsigned char* keep,
+              Scalar* nis);
+
+ private:
+  /// Row i of G, i + 1 numbers. All but the last lie in the filter's scratch.
+  Scalar* row(int i) { return i + 1 < max_rows_ ? filter_->scratch_row(i) : last_row_; }
+  void fill(const PixelMeasurement* observations);
+  bool factor();
+  void invert_factor();
+  void diagonal_of_inverse();
+  void complete_inverse();
+  int find_worst(Scalar gate) const;
+  Scalar remove(int worst);
+
+  int max_rows_ = 0;  ///< 2 max_observations
+  Filter* filter_ = nullptr;
+  Scalar* last_row_ = nullptr;  ///< of G: S, then its factor L, then L^-1, then G; lower triangles
+  Scalar* g_ = nullptr;         ///< r, then L^-1 r, then g
+  Scalar* spare_ = nullptr;     ///< 2 x max_rows
+  Mat2* diagonal_ = nullptr;    ///< G_ii, max_observations
+  int* index_ = nullptr;        ///< of the kept matches; -1 once rejected
+  int kept_ = 0;
+};
+
+}  // namespace pf
