@@ -124,7 +124,7 @@ class BoardCamera {
       Vec3 ray;
       if (!unproject(model_, Vec2(random.uniform(0, camera_.width), random.uniform(0, camera_.height)), &ray)) continue;
       const Eigen::Vector3d middle((kBoardColumns - 2) * kBoardSquare / 2, (kBoardRows - 2) * kBoardSquare / 2, 0);
-      pose.t = ray * (depth / ray.z()) - pose.R * middle;
+      pose.t = ray.cast<double>() * (depth / static_cast<double>(ray.z())) - pose.R * middle;
       return pose;
     }
   }
@@ -155,9 +155,9 @@ class BoardCamera {
   Eigen::Vector2d project(const BoardPose& pose, double column, double row, bool* inside) const {
     const Eigen::Vector3d p = pose.R * Eigen::Vector3d(column * kBoardSquare, row * kBoardSquare, 0) + pose.t;
     Vec2 pixel(-1, -1);
-    *inside = p.z() > 0.005 && pf::project(model_, p, &pixel) && pixel[0] > 3 && pixel[1] > 3 &&
+    *inside = p.z() > 0.005 && pf::project(model_, p.cast<Scalar>(), &pixel) && pixel[0] > 3 && pixel[1] > 3 &&
               pixel[0] < camera_.width - 4 && pixel[1] < camera_.height - 4;
-    return pixel;
+    return pixel.cast<double>();
   }
 
   bool shows_all(const BoardPose& pose) const {
