@@ -38,7 +38,13 @@ pf_camera_t Bed::camera(double fov_deg) {
 }
 
 Bed::Bed(const BedOptions& options, const pf_config_t& config, std::uint64_t seed)
-    : options_(options), config_(config), world_(seed, 11), motion_(seed, 12), noise_(seed, 13), start_draw_(seed, 14) {
+    : options_(options),
+      config_(config),
+      lens_(config.camera),
+      world_(seed, 11),
+      motion_(seed, 12),
+      noise_(seed, 13),
+      start_draw_(seed, 14) {
   // Either the truth is drawn about the mean or the mean about a fixed truth: the error has the same distribution.
   const double sigma_theta = options.sigma_start_deg * kPi / 180;
   const Vec3 theta = start_draw_.normal3() * sigma_theta, e = start_draw_.normal3() * options.sigma_start_m;
@@ -61,8 +67,20 @@ Bed::Bed(const BedOptions& options, const pf_config_t& config, std::uint64_t see
     velocity_covariance_[7 * i] =
         i < 3 ? options.sigma_start_v * options.sigma_start_v : options.sigma_start_w * options.sigma_start_w;
   }
+  if (options.draw_lens) draw_lens(seed);
   place_target();
   if (options.layout == Layout::kRoom) place_room();
+}
+
+void Bed::draw_lens(std::uint64_t seed) {
+  pf::sim::Random random(seed, 15);
+  const double focal = lens_.sigma_focal * random.normal(), aspect = lens_.sigma_aspect * random.normal();
+  lens_.fx *= 1 + focal + aspect / 2;
+  lens_.fy *= 1 + focal - aspect / 2;
+  lens_.cx += lens_.sigma_centre_px * random.normal();
+  lens_.cy += lens_.sigma_centre_px * random.normal();
+  lens_.distortion[0] += lens_.sigma_distortion[0] * random.normal();
+  if (lens_.distortion[0] != 0) lens_.model = PF_CAMERA_RADTAN;
 }
 
 Pose Bed::nominal(int frame) const {
@@ -153,9 +171,8 @@ void Bed::move(int frame, const double dv_C[3], const double dw_C[3]) {
 bool Bed::in_view(const Vec3& p_W, double pixel[2]) const {
   const Vec3 p_C = truth_.pose.R_WC.transposed() * (p_W - truth_.pose.p_WC);
   const double p[3] = {p_C.x, p_C.y, p_C.z};
-  return p_C.z > 0 && p_C.norm() > kNearest && pf_camera_project(&config_.camera, p, pixel) == PF_OK &&
-         pixel[0] >= kBorder && pixel[1] >= kBorder && pixel[0] <= config_.camera.width - 1 - kBorder &&
-         pixel[1] <= config_.camera.height - 1 - kBorder;
+  return p_C.z > 0 && p_C.norm() > kNearest && pf_camera_project(&lens_, p, pixel) == PF_OK && pixel[0] >= kBorder &&
+         pixel[1] >= kBorder && pixel[0] <= lens_.width - 1 - kBorder && pixel[1] <= lens_.height - 1 - kBorder;
 }
 
 std::vector<pf_observation_t> Bed::observe(int frame, int* births) {
@@ -178,13 +195,13 @@ std::vector<pf_observation_t> Bed::observe(int frame, int* births) {
   }
   if (options_.layout == Layout::kModel && may_begin) {
     while (static_cast<int>(seen.size()) < options_.points_in_view) {
-      pixel[0] = world_.uniform(kBorder, config_.camera.width - 1 - kBorder);
-      pixel[1] = world_.uniform(kBorder, config_.camera.height - 1 - kBorder);
+      pixel[0] = world_.uniform(kBorder, lens_.width - 1 - kBorder);
+      pixel[1] = world_.uniform(kBorder, lens_.height - 1 - kBorder);
       double rho = 0;
       const double rho0 = 1 / config_.first_depth.depth;
       while (rho < 0.02 * rho0) rho = rho0 * (1 + config_.first_depth.relative_sigma * world_.normal());
       double ray[3];
-      if (pf_camera_unproject(&config_.camera, pixel, ray) != PF_OK) break;
+      if (pf_camera_unproject(&lens_, pixel, ray) != PF_OK) break;
       points_.push_back(
           {truth_.pose.p_WC + truth_.pose.R_WC * (Vec3{ray[0], ray[1], ray[2]} * (1 / rho)), false, false, -1});
       measure(points_.size() - 1, pixel);

@@ -32,6 +32,8 @@ struct BedOptions {
   double sigma_start_v = 0.1, sigma_start_w = 0.1;  ///< [m/s], [rad/s]
   double room_half_height = 0.5;                    ///< of the points [m]
   double steer_seconds = 45;                        ///< for one turn of the nominal view
+  bool draw_lens =
+      false;  ///< the true camera is drawn from the standard deviations that the filter's calibration states
 };
 
 /// A point of the world. Points are told to the filter by their index here.
@@ -56,6 +58,8 @@ class Bed {
   const double* velocity_covariance() const { return velocity_covariance_; }
   const std::vector<WorldPoint>& points() const { return points_; }
   const pf::sim::MotionState& truth() const { return truth_; }
+  /// The true camera.
+  const pf_camera_t& lens() const { return lens_; }
 
   /// Of a room's wall 0 .. 3, into the room.
   static pf::sim::Vec3 wall_normal(int wall);
@@ -74,12 +78,14 @@ class Bed {
 
  private:
   pf::sim::Pose nominal(int frame) const;
+  void draw_lens(std::uint64_t seed);
   void place_target();
   void place_room();
   bool in_view(const pf::sim::Vec3& p_W, double pixel[2]) const;
 
   BedOptions options_;
   pf_config_t config_;
+  pf_camera_t lens_;
   pf::sim::Random world_, motion_, noise_, start_draw_;
   pf::sim::MotionState truth_;
   pf_target_t target_{};

@@ -17,8 +17,8 @@ struct Choices {
   bool plain = false;
   double fov = 0, linear = 0, angular = 0, relative_sigma = 0, start_depth = 0, linearity = 0, sigma_px = 1;
   double circle_seconds = 180, slant = 35, height = 0;
-  double fold_sigma = 0, fix_sigma = -1, roughness = 0, plane_distance = 0, plane_radius = 0;
-  std::string fold = "condition", fix = "consider";
+  double lens_scale = 1, fold_sigma = 0, fix_sigma = -1, roughness = 0, plane_distance = 0, plane_radius = 0;
+  std::string fold = "condition", fix = "consider", lens;
   int depth_from_map = -1, in_view = 44, first_birth = 15, target_points = 0, max_state_dim = 0;
 };
 
@@ -83,6 +83,16 @@ Experiment prepare(const Choices& c, bool gee) {
   pf_config_t& config = x.config;
   pf_config_default(&config);
   config.camera = Bed::camera(x.bed.fov_deg);
+  if (!c.lens.empty()) {  // drawn anew for each run
+    x.bed.draw_lens = true;
+    config.camera.estimate = c.lens == "estimate"   ? PF_CAMERA_ESTIMATE
+                             : c.lens == "consider" ? PF_CAMERA_CONSIDER
+                                                    : PF_CAMERA_EXACT;
+    config.camera.sigma_focal = 0.01 * c.lens_scale;
+    config.camera.sigma_aspect = 0.001 * c.lens_scale;
+    config.camera.sigma_centre_px = c.lens_scale * 0.01 * config.camera.width;
+    config.camera.sigma_distortion[0] = 0.05 * c.lens_scale;
+  }
   config.measurement.sigma_px = c.sigma_px;
   config.measurement.gate_probability = 0.9999;  // association is perfect: nothing true should be cut off
   config.capacity.max_features = 300;
@@ -150,6 +160,9 @@ int run(const Choices& c, bool gee) {
   if (c.fix != "consider" && c.fix != "inflate" && c.fix != "error-free")
     return fail("the form of fixing is consider, inflate or error-free");
   if (!c.layout.empty() && c.layout != "model" && c.layout != "room") return fail("the layout is model or room");
+  if (!c.lens.empty() && c.lens != "exact" && c.lens != "consider" && c.lens != "estimate")
+    return fail("the lens is exact, consider or estimate");
+  if (!(c.lens_scale > 0 && c.lens_scale <= 2)) return fail("the scale of the lens's deviations lies in (0, 2]");
   if (c.motion != "walk" && c.motion != "velocity") return fail("the motion is walk or velocity");
   if (c.look != "inward" && c.look != "outward") return fail("the camera looks inward or outward");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 0)
@@ -207,6 +220,11 @@ void add_common(CLI::App* command, Choices& c) {
   command->add_option("--relative", c.relative, "frames of a window over which the motion is judged, 0: none");
   command->add_option("--fov", c.fov, "horizontal field of view [deg]");
   command->add_option("--sigma-px", c.sigma_px, "measurement noise [px]");
+  command->add_option(
+      "--lens", c.lens,
+      "the true camera is drawn for each run: 1 % in focal length and centre, 0.05 in k1; the filter's is "
+      "taken as exact, consider or estimate");
+  command->add_option("--lens-scale", c.lens_scale, "times those standard deviations");
   command->add_option("--linear-density", c.linear, "white acceleration [m/s^2/sqrt(Hz)], or walk [m/sqrt(s)]");
   command->add_option("--angular-density", c.angular, "likewise [rad/s^2/sqrt(Hz)], [rad/sqrt(s)]");
   command->add_option("--relative-sigma", c.relative_sigma, "of the prior of inverse depth");

@@ -174,13 +174,15 @@ json summarise_frames(const Runs& x) {
 }
 
 json summarise(const Experiment& x) {
-  double seconds = 0, map_square = 0, map_count = 0, map_nees = 0, pose = 0, scale = 0, scale_step = 0, beyond = -1;
+  double seconds = 0, map_square = 0, map_count = 0, map_nees = 0, pose = 0, scale = 0, scale_step = 0, beyond = -1,
+         lens_nees = 0;
   int lost = 0, tracked = 0;
   RunSummary sum;
   for (int s = 0; s < x.seeds; ++s) {
     const RunSummary& r = x.summaries[s];
     lost += r.lost || !r.done;
     sum.unsound += r.unsound;
+    lens_nees += r.lens_nees;
     sum.folded_nees_sum += r.folded_nees_sum;
     sum.folded_count += r.folded_count;
     sum.fixed_count += r.fixed_count;
@@ -208,6 +210,7 @@ json summarise(const Experiment& x) {
   json out = summarise_frames(x);
   out["map_rmse_m"] = std::sqrt(map_square / std::max(1.0, map_count));
   out["map_nees"] = map_nees / std::max(1.0, map_count);
+  if (lens_nees > 0) out["lens_nees"] = lens_nees / x.seeds;
   out["planes"] = {{"true", sum.planes_true},
                    {"mixed", sum.planes_mixed},
                    {"false", sum.planes_false},

@@ -86,6 +86,17 @@ void judge_map(const Bed& bed, const std::vector<pf_feature_t>& map, RunSummary&
   }
 }
 
+/// Of the calibration as it is known now; negative where it is exact.
+double judge_lens(const pf_slam_t* slam, const pf_camera_t& truth) {
+  constexpr int kRows = 5;
+  pf_camera_t camera;
+  double covariance[100];
+  if (pf_get_camera(slam, &camera, covariance) != PF_OK || !(covariance[0] > 0)) return -1;
+  const double error[kRows] = {truth.fx - camera.fx, truth.fy - camera.fy, truth.cx - camera.cx, truth.cy - camera.cy,
+                               truth.distortion[0] - camera.distortion[0]};
+  return normalised_error(error, covariance, kRows, 10, 0);
+}
+
 }  // namespace
 
 FrameRow judge(const pf::sim::Pose& truth, const pf_pose_t& pose, const pf_report_t& report) {
@@ -171,6 +182,7 @@ RunSummary run_once(const BedOptions& bed_options, const pf_config_t& config, co
   }
   summary.unsound = gauge.unsound();
   judge_map(bed, map_of(slam, config), summary);
+  summary.lens_nees = judge_lens(slam, bed.lens());
   walls.judge(slam, map_of(slam, config), summary);
   if (config.clock_ns != nullptr && !bed_options.circle)
     summary.cost = cost_of_20_rows(bed, slam, pose, bed_options.frames, bed_options.rate_hz);

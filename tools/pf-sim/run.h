@@ -44,6 +44,7 @@ struct RunSummary {
   std::int32_t planes_true = 0, planes_mixed = 0, planes_false = 0, planes_duplicate = 0;  ///< at the end
   std::int32_t planes_ever = 0, planes_ever_true = 0, planes_ever_false = 0;  ///< judged when they had settled
   std::int32_t walls_seen = 0, walls_found = 0;
+  double lens_nees = -1;     ///< of fx, fy, cx, cy, k1 at the end, 5 dof; negative where the lens is exact
   std::int32_t unsound = 0;  ///< readings at which P was not positive definite
   double cpu_seconds = 0;    ///< in pf_push_observations
   UpdateCost cost;           ///< after the last frame; zero without a clock
