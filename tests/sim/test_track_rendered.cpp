@@ -157,17 +157,37 @@ void test_a_frozen_camera_should_coast_after_coast_s_with_growing_covariance_and
   TEST_ASSERT_TRUE(run.worst_error(again) < 0.05);
 }
 
-void test_a_map_of_a_dozen_features_should_be_tracked_from_the_target_on() {
-  RenderedRun run("desk", 60, Start::kNone);
+/// For a device with little memory: the capacities of a dozen features in view.
+void make_small(RenderedRun& run) {
   run.config.capacity.max_features = 20;
   run.config.capacity.max_observations = 16;
   run.config.capacity.max_state_dim = 90;
   run.config.map.features_in_view = 12;
   run.create();
   run.start_at_rectangle();
+}
+
+void test_a_map_of_a_dozen_features_should_be_tracked_from_the_target_on() {
+  RenderedRun run("desk", 60, Start::kNone);
+  make_small(run);
   const int tracked = run.tracked_until(60);
   tell("a dozen features", run, 0);
   TEST_ASSERT_EQUAL_INT(60, tracked);
+}
+
+/// The next frame after a tracked one comes later than a young map is followed through a gap.
+void test_a_map_of_a_dozen_features_should_be_tracked_at_four_frames_a_second() {
+  RenderedRun run("desk", 120, Start::kNone);
+  make_small(run);
+  int tracked = 0;
+  for (int i = 0; i < 15; ++i) {
+    TEST_ASSERT_TRUE(run.step());
+    tracked += run.frames.back().status == PF_OK ? 1 : 0;
+    pf_image_t skipped;
+    for (int k = 0; k < 7; ++k) run.next_image(&skipped);
+  }
+  tell("a dozen features, 3.75 frames/s", run, 0);
+  TEST_ASSERT_EQUAL_INT(15, tracked);
 }
 
 void count_line(void* user, const char* line) {
@@ -212,6 +232,7 @@ int main(void) {
   RUN_TEST(test_a_repeated_image_should_repeat_pose_and_status_and_the_next_one_should_be_tracked);
   RUN_TEST(test_a_frozen_camera_should_coast_after_coast_s_with_growing_covariance_and_be_found_again);
   RUN_TEST(test_a_map_of_a_dozen_features_should_be_tracked_from_the_target_on);
+  RUN_TEST(test_a_map_of_a_dozen_features_should_be_tracked_at_four_frames_a_second);
   RUN_TEST(test_rows_should_have_no_times_of_their_own_when_timestamps_are_nominal);
   RUN_TEST(test_pure_rotation_should_stay_starting_when_there_is_no_target);
   return UNITY_END();

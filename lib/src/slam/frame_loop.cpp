@@ -134,7 +134,8 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
 ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
   if (start_.progress().pending()) return ConsensusRule::kStart;
   const double gap_s = seconds(elapsed_ns(tracking_.last_tracked_ns(), t_ns));
-  if (gap_s > static_cast<double>(tuning::tracking::kMaxYoungGap)) return ConsensusRule::kBeyondChance;
+  if (tracking_.is_relocalising(start_.progress()) && gap_s > static_cast<double>(tuning::tracking::kMaxYoungGap))
+    return ConsensusRule::kBeyondChance;
   int known = 0;
   for (int i = 0; i < map_.features.capacity() && known < settings_.min_inliers; ++i)
     known += map_.features.used(i) && filter_.state().block[map_.features[i].slot].kind != BlockKind::kInverseDepth;
