@@ -28,11 +28,11 @@ def main():
           f"{' (' + ', '.join(others) + ')' if others else ''}{'' if states['lost'] else ', never lost'}; "
           f"{report['ms_per_frame']['median']:.2f} ms a frame, {report['ms_per_frame']['p95']:.2f} ms at the 95th percentile.")
 
-    planes = len(report.get("planes", []))
-    print(f"Map:    {report['features']['median']:.0f} features ({report['features']['max']:.0f} at most)"
-          + (f" and {planes} planes" if planes else "")
-          + f", {report['state_dim']['max']:.0f} numbers with their full covariance, "
-          f"in a block of {report['memory_bytes'] / 2**20:.2f} MiB that never grows.")
+    planes, in_map = len(report.get("planes", [])), report["features_in_map"]
+    print(f"Map:    {sum(in_map.values())} features at the end"
+          + (f", {in_map['folded'] + in_map['fixed']} of them folded into {planes} planes" if planes else "")
+          + f"; {report['features']['median']:.0f} were measured in a frame. The state had {report['state_dim']['max']:.0f} rows at most, "
+          f"with their full covariance, in a block of {report['memory_bytes'] / 2**20:.2f} MiB that never grows.")
 
     files = [name for name in ("overlay.mp4", "trajectory.png", "trajectory.tum", "map.ply") if (run / name).exists()]
     others = len([entry for entry in run.iterdir() if entry.is_file()]) - len(files)
