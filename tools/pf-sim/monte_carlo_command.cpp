@@ -161,8 +161,8 @@ int run(const Choices& c, bool gee) {
     return fail("the form of fixing is consider, inflate or error-free");
   if (!c.layout.empty() && c.layout != "model" && c.layout != "room") return fail("the layout is model or room");
   if (!c.lens.empty() && c.lens != "exact" && c.lens != "consider" && c.lens != "estimate")
-    return fail("the lens is exact, consider or estimate");
-  if (!(c.lens_scale > 0 && c.lens_scale <= 2)) return fail("the scale of the lens's deviations lies in (0, 2]");
+    return fail("--lens " + c.lens + ": write exact, consider or estimate");
+  if (!(c.lens_scale > 0 && c.lens_scale <= 2)) return fail("--lens-scale must be above 0 and at most 2");
   if (c.motion != "walk" && c.motion != "velocity") return fail("the motion is walk or velocity");
   if (c.look != "inward" && c.look != "outward") return fail("the camera looks inward or outward");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 0)
