@@ -270,6 +270,20 @@ void test_no_pixel_of_a_plane_s_point_should_see_the_gauge() {
   }
 }
 
+/// An update with noisy pixels of the wall's points.
+void update_with_wall(PlaneScene& scene, SeededRandom& random) {
+  std::vector<PixelMeasurement> seen;
+  for (const int slot : scene.on_wall) {
+    PixelMeasurement o;
+    if (!scene.filter->predict_pixel(pinhole_camera(), slot, &o)) continue;
+    o.measured = o.predicted + random.normals<2>(2);
+    o.set_noise(Mat2::Identity() * Scalar(0.25));
+    seen.push_back(o);
+  }
+  scene.filter->begin_update(seen.data(), static_cast<int>(seen.size()));
+  TEST_ASSERT_TRUE(scene.filter->finish_update(seen.data(), static_cast<int>(seen.size()), nullptr, nullptr));
+}
+
 /// After a fold that moves the state, and after an update of planar points with considered ones among them, the information about the
 /// gauge is what it was.
 void test_folds_and_updates_should_gain_nothing_about_the_gauge() {
@@ -292,16 +306,7 @@ void test_folds_and_updates_should_gain_nothing_about_the_gauge() {
     }
     TEST_ASSERT_TRUE(scene.filter->fix(scene.on_wall.data(), 5, FixForm::kConsider, scene.on_wall.data(), 8));
     before = information_of(scene.filter);
-    std::vector<PixelMeasurement> seen;
-    for (const int slot : scene.on_wall) {
-      PixelMeasurement o;
-      if (!scene.filter->predict_pixel(pinhole_camera(), slot, &o)) continue;
-      o.measured = o.predicted + random.normals<2>(2);
-      o.set_noise(Mat2::Identity() * Scalar(0.25));
-      seen.push_back(o);
-    }
-    scene.filter->begin_update(seen.data(), static_cast<int>(seen.size()));
-    TEST_ASSERT_TRUE(scene.filter->finish_update(seen.data(), static_cast<int>(seen.size()), nullptr, nullptr));
+    update_with_wall(scene, random);
     now = information_of(scene.filter);
     for (int i = 0; i < kAll; ++i) {
       if (!(now(i, i) < before(i, i) * (1 + 1e-9)))
@@ -411,16 +416,7 @@ void test_a_direction_that_is_observable_should_be_zero_and_leave_the_others() {
     TEST_ASSERT_TRUE(largest(before.row(gauge::kScale)) == 0 && largest(before.col(gauge::kScale)) == 0);
     ScaleRow l;
     TEST_ASSERT_FALSE(scene.filter->scale_row(&l));
-    std::vector<PixelMeasurement> seen;
-    for (const int slot : scene.on_wall) {
-      PixelMeasurement o;
-      if (!scene.filter->predict_pixel(pinhole_camera(), slot, &o)) continue;
-      o.measured = o.predicted + random.normals<2>(2);
-      o.set_noise(Mat2::Identity() * Scalar(0.25));
-      seen.push_back(o);
-    }
-    scene.filter->begin_update(seen.data(), static_cast<int>(seen.size()));
-    TEST_ASSERT_TRUE(scene.filter->finish_update(seen.data(), static_cast<int>(seen.size()), nullptr, nullptr));
+    update_with_wall(scene, random);
     const Dense now = information_of(scene.filter);
     for (int i = 0; i < kShiftAndTurn; ++i) TEST_ASSERT_TRUE(now(i, i) < before(i, i) * (1 + 1e-9));
   }
