@@ -103,7 +103,9 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, bool rela
     error = message;
     return false;
   }
-  frames_.rows() = "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof,tracked\n";
+  frames_.rows() =
+      "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof,planes,folded,fixed,rows_points_only,"
+      "tracked\n";
   tracks_.rows() = "frame,id,status,kind,predicted_u,predicted_v,s_uu,s_uv,s_vv,measured_u,measured_v\n";
   relative_.rows() = "mark_t_s,t_s,map,qw,qx,qy,qz,px,py,pz";
   for (int i = 0; i < 36; ++i) {
@@ -136,8 +138,10 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, const MotionW
   }
   std::string& frames = frames_.rows();
   put_seconds(frames, view.image.t_ns);
-  append(frames, ",%s,%d,%d,%d,%d,%d,%.4f,%.6g,%d,%d\n", state_name(report.state), report.attempts, report.matches,
-         report.inliers, report.features, report.state_dim, view.ms, report.nis, report.nis_dof, view.tracked ? 1 : 0);
+  append(frames, ",%s,%d,%d,%d,%d,%d,%.4f,%.6g,%d,%d,%d,%d,%d,%d\n", state_name(report.state), report.attempts,
+         report.matches, report.inliers, report.features, report.state_dim, view.ms, report.nis, report.nis_dof,
+         report.planes, report.features_folded, report.features_fixed, report.state_dim_points_only,
+         view.tracked ? 1 : 0);
   if (view.has_pose) {
     put_tum(trajectory_all_.rows(), view.pose);
   }

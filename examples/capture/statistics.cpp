@@ -17,6 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int64_t kFoldingFrom = 60;  ///< frame: a map needs that long to have planes
+
 double rounded(double value) { return std::round(value * 1e5) / 1e5; }
 
 /// Fewer than four grey levels between the darkest and the brightest hundredth.
@@ -108,6 +110,7 @@ void Statistics::add(const FrameView& view) {
     inliers_.add(report.inliers);
     attempts_.add(report.attempts);
     state_dim_.add(report.state_dim);
+    add_folding(view);
   }
   const bool untracked = !view.tracked;  // the first frames of a start may be tracked already
   starting_ += untracked && report.state == PF_STATE_STARTING ? 1 : 0;
@@ -130,6 +133,21 @@ void Statistics::add(const FrameView& view) {
   last_planes_ = view.planes;
   last_hits_ = view.hits;
   ++frames_;
+}
+
+void Statistics::add_folding(const FrameView& view) {
+  const pf_report_t& report = view.report;
+  const int32_t folded = report.features_folded + report.features_fixed;
+  folding_.first_plane = folding_.first_plane < 0 && report.planes > 0 ? view.index : folding_.first_plane;
+  if (view.index < kFoldingFrom || report.features == 0 || report.state_dim_points_only == 0) {
+    return;
+  }
+  ++folding_.frames;
+  folding_.frames_plane += report.planes > 0 ? 1 : 0;
+  folding_.share_folded += static_cast<double>(folded) / report.features;
+  folding_.share_saved += 1.0 - static_cast<double>(report.state_dim) / report.state_dim_points_only;
+  planes_.add(report.planes);
+  folded_.add(folded);
 }
 
 void Statistics::add_unreadable(const std::string& why) {
@@ -172,6 +190,9 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   for (int i = 0; i <= PF_STAGE_MAP; ++i) {
     stages[kStages[i]] = rounded(stage_ms_[i].quantile(0.5));
   }
+  const auto mean_of = [&](double sum) {
+    return folding_.frames > 0 ? Json(rounded(sum / static_cast<double>(folding_.frames))) : Json();
+  };
   const pf_config_t& config = session.config();
   Json json;
   const uint32_t version = pf_version();
@@ -216,6 +237,14 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["state_dim"] = {
       {"median", state_dim_.quantile(0.5)}, {"max", state_dim_.largest()}, {"end", last_report_.state_dim}};
   json["state_dim_points_only"] = last_report_.state_dim_points_only;
+  json["folding"] = {{"from_frame", kFoldingFrom},
+                     {"frames", folding_.frames},
+                     {"first_plane", folding_.first_plane >= 0 ? Json(folding_.first_plane) : Json()},
+                     {"planes_median", planes_.quantile(0.5)},
+                     {"folded_median", folded_.quantile(0.5)},
+                     {"frames_with_plane", mean_of(static_cast<double>(folding_.frames_plane))},
+                     {"share_folded", mean_of(folding_.share_folded)},
+                     {"share_rows_saved", mean_of(folding_.share_saved)}};
   json["state_dim_held"] = last_report_.state_dim_held;
   json["planes"] = planes_json(last_planes_);
   json["hits"] = hits_json(last_hits_);

@@ -49,6 +49,7 @@ class Statistics {
   std::string summary(const Session& session) const;
 
  private:
+  void add_folding(const FrameView& view);
   int64_t frames_ = 0;
   int64_t tracked_ = 0;
   int64_t starting_ = 0;
@@ -69,6 +70,14 @@ class Statistics {
     int map;
     int64_t start_frame, tracked;
   };
+  struct FoldingCount {
+    int64_t first_plane = -1;   ///< first tracked frame with a plane
+    int64_t frames = 0;         ///< tracked, from kFoldingFrom on
+    int64_t frames_plane = 0;   ///< of these, with a plane
+    double share_folded = 0.0;  ///< sum over them: folded and fixed among the features of the map
+    double share_saved = 0.0;   ///< sum over them: rows that folding saves among those of points only
+  };
+  FoldingCount folding_;
   std::vector<MapCount> maps_;  ///< in which something was tracked; at most one per restart_s or reset
   int64_t evicted_ = 0;
   int64_t new_features_ = 0;
@@ -79,7 +88,7 @@ class Statistics {
   std::vector<PlaneView> last_planes_;
   std::vector<Hit> last_hits_;
   Histogram ms_;
-  CountHistogram inliers_, attempts_, state_dim_;
+  CountHistogram inliers_, attempts_, state_dim_, planes_, folded_;
   Histogram stage_ms_[PF_STAGE_COUNT];
 };
 

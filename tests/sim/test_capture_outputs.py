@@ -11,9 +11,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, fail, run, skip  # noqa: E402
 
 PROGRAM = BIN / "pf-capture"
-FRAMES = 60
+FRAMES = 75
 NAMES = ["frames", "tracked", "lost", "resets", "start_frame", "start", "ms_per_frame", "ms_by_stage", "memory_bytes",
-         "stack_bytes", "features", "features_in_view", "state_dim", "state_dim_points_only", "planes", "nis_per_dof"]
+         "stack_bytes", "features", "features_in_view", "state_dim", "state_dim_points_only", "folding", "planes",
+         "nis_per_dof"]
 
 
 def rows(path):
@@ -60,6 +61,22 @@ def share_within_map(out):
     return sorted(shares)[len(shares) // 2]
 
 
+def check_folding(table, report):
+    """report.json says what the rows of frames.csv add up to."""
+    head = "t_s state attempts matches inliers features state_dim ms nis nis_dof planes folded fixed rows_points_only tracked".split()
+    table = [dict(zip(head, row)) for row in table]
+    require(int(table[-1]["folded"]) == report["features_in_map"]["folded"] and int(table[-1]["planes"]) == len(report["planes"])
+            and int(table[-1]["rows_points_only"]) == report["state_dim_points_only"], f"the last row is {table[-1]}")
+    folding = report["folding"]
+    counted = [row for row in table[folding["from_frame"]:] if row["tracked"] == "1"]
+    shares = [(int(row["folded"]) + int(row["fixed"])) / int(row["features"]) for row in counted]
+    saved = [1 - int(row["state_dim"]) / int(row["rows_points_only"]) for row in counted]
+    require(folding["frames"] == len(counted) > 0, f"{len(counted)} frames are to be counted, not {folding['frames']}")
+    for name, values in (("share_folded", shares), ("share_rows_saved", saved)):
+        mean = sum(values) / len(values)
+        require(abs(folding[name] - mean) < 1e-4, f"{name} is {folding[name]}, and {mean} in frames.csv")
+
+
 def check_files(out, report):
     for name in NAMES:
         require(name in report, f"report.json has no '{name}'")
@@ -70,6 +87,7 @@ def check_files(out, report):
     require(sum(states.values()) == report["frames"], f"the states {states} are not {report['frames']} frames")
     table = [row[0].split(",") for row in rows(out / "frames.csv")[1:]]
     require(states["tracked"] == report["tracked"] == sum(int(row[-1]) for row in table), f"frames.csv has another count than {states}")
+    check_folding(table, report)
     trajectory = rows(out / "trajectory.txt")
     require(len(trajectory) == report["tracked"], f"{len(trajectory)} poses, {report['tracked']} tracked")
     require(all(len(row) == 8 for row in trajectory), "trajectory.txt: a row without 8 numbers")

@@ -35,7 +35,8 @@ out.mkdir(exist_ok=True)
 (out / "trajectory.txt").write_text("".join(f"{{k}} {{k * k}} {{k}} 0 0 0 0 1\\n" for k in range(9)))
 (out / "report.json").write_text(json.dumps({{
     "frames": 100, "tracked": 100 - 10 * skip, "lost": skip, "start_frame": 1, "nis_per_dof": 1.5, "planes": [1, 2],
-    "features_in_map": {{"folded": 5, "fixed": 1}}, "ms_per_frame": {{"median": 0.5}}}}))
+    "features_in_map": {{"folded": 5, "fixed": 1}},
+    "folding": {{"share_folded": 0.1 * (5 - skip), "frames_with_plane": 1.0, "share_rows_saved": 0.05}}, "ms_per_frame": {{"median": 0.5}}}}))
 """
 
 
@@ -68,6 +69,7 @@ class CompareRuns(unittest.TestCase):
         self.assertIn("80.0 (60.0)", out)  # tracked: the smallest is the worst
         self.assertIn("2 (4)", out)        # lost: the largest
         self.assertIn("6 (6)", out)        # folded and fixed
+        self.assertIn("30.0 (10.0)", out)  # share folded: the smallest is the worst
         self.assertIn("0.0 (0.0)", out)    # ATE: twice as large a world is the same one
         self.assertIn("desk, 5 starts", out)
 

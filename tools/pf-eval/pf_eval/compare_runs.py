@@ -34,7 +34,8 @@ Without any: now=build/release/bin/pf-capture."""
 NOTES = """A sequence is a folder with calib.yaml, times.txt and images/. With target.yaml it starts from that target, else with
 nothing known. groundtruth.tum gives the position error after Sim(3) alignment, target_corners.csv that of the target's corners;
 with --there-and-back among a variant's options the distance of each image's two poses is shown as well. The largest value counts
-as the worst, but for tracked frames, planes and folded points the smallest; a run that failed is worse than any, and shows as
+as the worst, but for tracked frames, planes and folding the smallest; "share folded", "frames with a plane" and "rows saved" are
+means over tracked frames from frame 60 on; a run that failed is worse than any, and shows as
 "none". Runs that are already in DIR, made by the same program, are not made again.
 
 Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
@@ -44,7 +45,9 @@ COLUMNS = {
     "ate": ("ATE [mm]", 1000, 1, False), "corners": ("corners [px]", 1, 3, False),
     "back": ("there and back [%]", 100, 2, False), "tracked": ("tracked [%]", 100, 1, True),
     "start": ("start frame", 1, 0, False), "nis": ("NIS per dof", 1, 2, False), "planes": ("planes", 1, 0, True),
-    "folded": ("folded", 1, 0, True), "lost": ("lost", 1, 0, False), "ms": ("ms", 1, 2, False),
+    "folded": ("folded", 1, 0, True), "in_view": ("searched", 1, 0, True), "share": ("share folded [%]", 100, 1, True),
+    "with_plane": ("frames with a plane [%]", 100, 0, True), "saved": ("rows saved [%]", 100, 1, True),
+    "lost": ("lost", 1, 0, False), "ms": ("ms", 1, 2, False),
 }
 
 
@@ -108,6 +111,10 @@ def measure(folder, sequence):
         "planes": len(report["planes"]), "folded": report["features_in_map"]["folded"] + report["features_in_map"]["fixed"],
         "lost": report["lost"], "ms": report["ms_per_frame"]["median"],
     }
+    folding = report.get("folding") or {}
+    row["share"], row["with_plane"] = folding.get("share_folded"), folding.get("frames_with_plane")
+    row["saved"] = folding.get("share_rows_saved")
+    row["in_view"] = report.get("features_in_view", {}).get("median")
     if (sequence / "groundtruth.tum").exists():
         row["ate"] = compare(forward(run, report), read_tum(sequence / "groundtruth.tum"), "sim3").summary["ate_rmse_m"]
     if (sequence / "target.yaml").exists() and (sequence / "target_corners.csv").exists():

@@ -39,6 +39,9 @@ def draw(path_png, table, title):
 
     size.plot(t, table["state_dim"], color=style.BLUE, label="numbers in the state")
     size.plot(t, table["features"], color=style.GREEN, label="features in the map")
+    if "folded" in table:
+        size.plot(t, table["folded"] + table["fixed"], color=style.VIOLET, label="of these, folded")
+        size.plot(t, table["rows_points_only"], color=style.BLUE, linewidth=0.8, linestyle=":", label="numbers without planes")
     size.set_title("Size of the map")
     size.set_ylim(bottom=0)
     legend(size, size.get_legend_handles_labels()[0])
