@@ -179,6 +179,26 @@ void test_eigenvectors_should_rebuild_the_matrix_when_it_is_symmetric() {
   }
 }
 
+/// A wall's prior is stated at its own centre, in rotations of the normal and the distance there; the state has (a, b, h). The numbers of a
+/// plane that is off by e, by its points.
+void test_a_wall_s_prior_should_become_that_of_the_plane_s_block() {
+  SeededRandom random(37);
+  for (int trial = 0; trial < 20; ++trial) {
+    const PlaneFrame frame = random_frame(random);
+    const auto block_of = [&](const Vec3& e) {
+      const Mat3& R = frame.R_WP;
+      const Vec3 n = (R.col(2) + e(0) * R.col(0) + e(1) * R.col(1)).normalized();
+      // p = o + R (u, v, z) with n' . (p - o) = delta
+      const auto height = [&](Scalar u, Scalar v) {
+        return (e(2) - n.dot(u * R.col(0) + v * R.col(1))) / n.dot(R.col(2));
+      };
+      const Scalar h = height(0, 0);
+      return Vec3(height(1, 0) - h, height(0, 1) - h, h);
+    };
+    check_jacobian<3, 3>(plane_error_jacobian(), block_of, "J_x_e");
+  }
+}
+
 }  // namespace
 
 int main() {
@@ -188,6 +208,7 @@ int main() {
   RUN_TEST(test_reframed_plane_should_be_the_same_plane_when_the_frame_is_another);
   RUN_TEST(test_fit_jacobian_should_be_exact_when_points_lie_near_a_plane);
   RUN_TEST(test_fit_should_be_refused_when_points_are_few_or_in_line);
+  RUN_TEST(test_a_wall_s_prior_should_become_that_of_the_plane_s_block);
   RUN_TEST(test_eigenvectors_should_rebuild_the_matrix_when_it_is_symmetric);
   return UNITY_END();
 }

@@ -68,7 +68,7 @@ const Film& room() {
 /// A context that has tracked the beginning of the desk, and what it says to further pictures.
 class Run {
  public:
-  explicit Run(double restart_s, int max_kept_views = 24, int tracked = 3 * kSecond) {
+  explicit Run(double restart_s, int max_kept_views = 24, int tracked = 3 * kSecond, bool with_wall = false) {
     std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
     pf_config_t config;
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
@@ -80,7 +80,10 @@ class Run {
     block_ = std::aligned_alloc(need.alignment, (need.bytes + need.alignment) / need.alignment * need.alignment);
     TEST_ASSERT_NOT_NULL(block_);
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block_, need.bytes, &slam));
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &desk().target));
+    pf_target_t target = desk().target;
+    target.q_WT[0] = with_wall ? 1 : 0;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
+    if (with_wall) add_wall_of_target();
     for (int i = 0; i < tracked; ++i) TEST_ASSERT_EQUAL_INT(PF_OK, show(desk().picture[static_cast<std::size_t>(i)]));
   }
   Run(const Run&) = delete;
@@ -108,8 +111,22 @@ class Run {
 
   pf_slam_t* slam = nullptr;
   pf_pose_t pose{};
+  std::uint32_t wall = 0;
 
  private:
+  /// The side of the box that carries the target: z = 0, seen from -z.
+  void add_wall_of_target() {
+    pf_plane_prior_t prior = {};
+    prior.R_WP[0] = 1;
+    prior.R_WP[4] = prior.R_WP[8] = -1;
+    prior.covariance[0] = prior.covariance[4] = 1e-3;
+    prior.covariance[8] = 1e-4;
+    prior.outline_count = 4;
+    const double corner[4][2] = {{-0.2, -0.15}, {0.2, -0.15}, {0.2, 0.15}, {-0.2, 0.15}};
+    std::copy(&corner[0][0], &corner[0][0] + 8, &prior.outline_P[0][0]);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &prior, &wall));
+  }
+
   void* block_ = nullptr;
   std::int64_t t_ns_ = 0;
 };
@@ -263,6 +280,28 @@ void test_no_new_map_should_begin_when_restart_s_is_zero() {
   TEST_ASSERT_EQUAL_INT(PF_STATE_LOST, state);
 }
 
+/// W is the plan's as long as the map has a wall of it: another map would begin somewhere else.
+void test_no_new_map_should_begin_as_long_as_a_wall_is_known() {
+  Run run(2, 24, 3 * kSecond, true);
+  for (const Picture& picture : room().picture) run.show(picture);
+  TEST_ASSERT_EQUAL_UINT32(1, run.pose.map_id);
+  pf_state_t state;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_state(run.slam, &state));
+  TEST_ASSERT_EQUAL_INT(PF_STATE_LOST, state);
+  int frames = 0;
+  for (std::size_t at = 3 * kSecond; frames < kSecond && run.show(desk().picture[at]) != PF_OK; ++at) ++frames;
+  std::printf("found after %d frames\n", frames);
+  TEST_ASSERT_LESS_THAN_INT(kSecond, frames);
+  TEST_ASSERT_EQUAL_UINT32(1, run.pose.map_id);
+  pf_plane_t planes[16];
+  std::size_t count = 0;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_planes(run.slam, planes, 16, &count));
+  const pf_plane_t* wall = std::find_if(planes, planes + count, [&](const pf_plane_t& p) { return p.id == run.wall; });
+  TEST_ASSERT_TRUE(wall != planes + count);
+  TEST_ASSERT_EQUAL_INT(1, wall->known);
+  TEST_ASSERT_EQUAL_INT(0, wall->doubted);
+}
+
 void test_a_short_gap_should_be_recovered_without_kept_views() {
   Run run(0, 0);
   for (int i = 0; i < 6; ++i) run.show_black();
@@ -289,6 +328,7 @@ int main(void) {
   RUN_TEST(test_the_map_should_be_found_again_where_it_was_left);
   RUN_TEST(test_a_new_map_should_begin_with_a_new_id_after_restart_s_of_usable_pictures);
   RUN_TEST(test_no_new_map_should_begin_when_restart_s_is_zero);
+  RUN_TEST(test_no_new_map_should_begin_as_long_as_a_wall_is_known);
   RUN_TEST(test_a_short_gap_should_be_recovered_without_kept_views);
   return UNITY_END();
 }

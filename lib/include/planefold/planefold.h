@@ -28,7 +28,8 @@
  * degrees and position sigma below half the median depth, both against the points in view. Otherwise the pose coasts,
  * and nothing is added to the map until it was found again; after motion.coast_s it is lost.
  * MAPS. There is one map at a time, with a map_id. If it is lost for motion.restart_s of usable images, it is
- * discarded and a new one begins: a new map_id, a new W, and, without a target in view, a new unit of length.
+ * discarded and a new one begins: a new map_id, a new W, and, without a target in view, a new unit of length. With
+ * walls (pf_add_plane_prior) it is searched for until it is found.
  */
 #ifndef PLANEFOLD_PLANEFOLD_H
 #define PLANEFOLD_PLANEFOLD_H
@@ -83,7 +84,7 @@ typedef enum pf_status {
   PF_ERROR_STATE = -10,
   PF_ERROR_RANGE = -11,   /* a number that was passed in is outside of its domain */
   PF_ERROR_CONTEXT = -12, /* not a context, or one whose block was overwritten */
-  PF_ERROR_FULL = -13     /* the state has no room for it, see capacity.max_state_dim */
+  PF_ERROR_FULL = -13     /* there is no room for it, see capacity.max_state_dim and capacity.max_planes */
 } pf_status_t;
 
 /* One line in English for a status; never null. */
@@ -316,8 +317,10 @@ typedef enum pf_target_kind {
 
 typedef struct pf_target {
   int32_t kind; /* pf_target_kind_t */
-  /* Rectangle: W is its centre, x right and y down as seen upright, z into the wall. */
+  /* Rectangle: its frame T is at its centre, x right and y down as seen upright, z into the wall. */
   double width, height; /* [m] > 0, of the outer edge of the dark area */
+  /* Rectangle: where that frame is in W, p_W = R_WT p_T + p_WT, q_WT w x y z. All zero: it is W. */
+  double q_WT[4], p_WT[3];
   /* Points. */
   int32_t count;                            /* 4 .. PF_TARGET_MAX_POINTS */
   double points_W[PF_TARGET_MAX_POINTS][3]; /* [m] */
@@ -337,6 +340,37 @@ PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, co
 
 /* Stops measuring the target's own points; they stay in the map. */
 PF_API pf_status_t pf_withdraw_target(pf_slam_t* slam);
+
+/* ---------------------------------------------------------------------------------------------------- walls -- */
+
+#define PF_OUTLINE_MAX 24
+
+/* A wall: a plane that is known beforehand, from a building plan, with how uncertain it is (lib/docs/walls.md). Fields
+ * as in pf_plane_t. */
+typedef struct pf_plane_prior {
+  double R_WP[9]; /* the plane's frame, row-major: x and y in the plane, z towards the side that can be seen */
+  double p_WP[3]; /* its origin: the wall's own centre, inside of the outline [m] */
+  /* 3x3 of (alpha, beta, delta) at that origin: n_true = n + alpha x_W + beta y_W, n_true . (p - p_WP) = delta.
+   * Positive on the diagonal.   [rad, rad, m] */
+  double covariance[9];
+  int32_t outline_count; /* 3 .. PF_OUTLINE_MAX */
+  /* x y in the plane's frame, counter-clockwise seen from the z side, convex: every vertex is a corner */
+  double outline_P[PF_OUTLINE_MAX][2];
+  double roughness;   /* [m] as plane.roughness of the config, 1e-6 .. 1; 0: that one */
+  uint32_t two_sided; /* 1: can be seen from both sides, 0: only from the z side */
+  uint32_t reserved;  /* 0 */
+} pf_plane_prior_t;
+
+/* Adds a wall to the map, before the first frame or later; *id is that of a pf_plane_t. It takes three rows of the
+ * state (capacity.max_state_dim), for which features that were not seen in the last frame are evicted while tracking.
+ * Points that lie on it fold into it, and planes that are found merge into it. It is refined by what is seen, and never
+ * dissolved. Where what is seen contradicts it, it is doubted: it takes no points then. As long as there are walls no
+ * new map begins after a loss; pf_reset drops them, and so does an estimate that is no longer finite.
+ * PF_ERROR_STATE where the place of W is not known to you: before pf_start_from_pose, or pf_start_from_target with points or
+ * with a place, and in a map that began after that start's; with plane.enabled 0. PF_ERROR_FULL: more planes than
+ * capacity.max_planes, or no rows. PF_ERROR_RANGE: R_WP is no rotation, covariance has a negative eigenvalue or a zero
+ * on its diagonal, or the outline is not convex, crosses itself, is not counter-clockwise or does not hold the origin. */
+PF_API pf_status_t pf_add_plane_prior(pf_slam_t* slam, const pf_plane_prior_t* prior, uint32_t* id);
 
 /* ---------------------------------------------------------------------------------------------------- input -- */
 
@@ -461,15 +495,15 @@ typedef enum pf_orientation {
   PF_ORIENTATION_OTHER = 4
 } pf_orientation_t;
 
-#define PF_OUTLINE_MAX 24
-
 typedef struct pf_plane {
   uint32_t id;         /* never used twice */
   int32_t orientation; /* pf_orientation_t, within 15 degrees */
   int32_t points;      /* folded into it, fixed ones among them */
   int32_t fixed_points;
   uint32_t map_id;       /* as in pf_pose_t */
-  int32_t outline_count; /* of the convex outline of its points, 0 .. PF_OUTLINE_MAX */
+  int32_t outline_count; /* of the convex outline of its points, 0 .. PF_OUTLINE_MAX; of a wall, with the plan's */
+  int32_t known;         /* 1: a wall, see pf_add_plane_prior */
+  int32_t doubted;       /* 1: a wall, and the gate refuses what should be on it */
   double normal_W[3];    /* unit, towards the side that was seen */
   double distance;       /* n . p of its points */
   double R_WP[9];        /* the plane's frame, row-major: x and y in the plane, z the normal */

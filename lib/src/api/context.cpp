@@ -95,7 +95,7 @@ const char* pf_status_text(pf_status_t status) {
     case PF_ERROR_CONTEXT:
       return "not a planefold context, or its block was overwritten or moved";
     case PF_ERROR_FULL:
-      return "the state has no room for more rows";
+      return "there is no room for more rows of the state, or for more planes";
   }
   return "unknown status";
 }

@@ -1,61 +1,45 @@
 #include <cmath>
 
+#include "api/checks.h"
 #include "api/context.h"
-#include "geometry/small_cholesky.h"
 
 namespace {
 
+using pf::is_covariance;
+using pf::kMaxMetres;
+using pf::kMaxRate;
 using pf::Scalar;
+using pf::vec3;
+using pf::within;
 
-pf::Vec3 vec3(const double* v) {
-  return pf::Vec3(static_cast<Scalar>(v[0]), static_cast<Scalar>(v[1]), static_cast<Scalar>(v[2]));
-}
-
-/// Larger distances, speeds and variances are refused: their squares would leave the range of float.
-constexpr double kMaxMetres = 1e6;  // also [m/s]
-constexpr double kMaxRate = 1e4;    // [rad/s]
-constexpr double kMaxVariance = 1e12;
-
-bool within(const double* v, int n, double max) {
-  for (int i = 0; i < n; ++i)
-    if (!(std::fabs(v[i]) <= max)) return false;
+/// Unit length, within what is typed by hand; normalised.
+bool quaternion_from(const double* q, pf::Quat* out) {
+  const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  if (!(norm2 > 0.98 && norm2 < 1.02)) return false;
+  *out = pf::Quat(static_cast<Scalar>(q[0]), static_cast<Scalar>(q[1]), static_cast<Scalar>(q[2]),
+                  static_cast<Scalar>(q[3]));
+  out->normalize();
   return true;
 }
 
-/// Positive semidefinite to rounding. n <= 6.
-bool is_semidefinite(const double* P, int n) {
-  double C[36];  // correlations, so that radians and metres have the same weight
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j <= i; ++j) C[i * n + j] = P[i * n + j] / (std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]));
-  return pf::factor_semidefinite(C, n, 1e-9);
-}
-
-/// Symmetric to rounding, with positive diagonal, Cauchy-Schwarz between any two, and semidefinite.
-bool is_covariance(const double* P, int n) {
-  for (int i = 0; i < n; ++i) {
-    if (!(P[i * n + i] > 0.0 && P[i * n + i] <= kMaxVariance)) return false;
-    for (int j = 0; j < i; ++j) {
-      const double scale = std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]);
-      if (std::fabs(P[i * n + j] - P[j * n + i]) > 1e-9 * scale) return false;
-      if (std::fabs(P[i * n + j]) > scale * (1.0 + 1e-9)) return false;
-    }
-  }
-  return is_semidefinite(P, n);
+/// Where a rectangle is in W; all zero: W is the rectangle's frame.
+pf_status_t place_from(const pf_target_t& target, pf::Target* out) {
+  if (!pf::finite(target.q_WT, 4) || !pf::finite(target.p_WT, 3)) return PF_ERROR_NONFINITE;
+  if (within(target.q_WT, 4, 0.0) && within(target.p_WT, 3, 0.0)) return PF_OK;
+  if (!quaternion_from(target.q_WT, &out->q_WT) || !within(target.p_WT, 3, kMaxMetres)) return PF_ERROR_RANGE;
+  out->p_WT = vec3(target.p_WT);
+  out->has_place = true;
+  return PF_OK;
 }
 
 pf_status_t body_from(const pf_pose_t& pose, pf::Body* body) {
   if (!pf::finite(pose.q_WC, 4) || !pf::finite(pose.p_WC, 3) || !pf::finite(pose.covariance, 36) ||
       !pf::finite(pose.v_W, 3) || !pf::finite(pose.w_C, 3))
     return PF_ERROR_NONFINITE;
-  const double* q = pose.q_WC;
-  const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  if (!(norm2 > 0.98 && norm2 < 1.02)) return PF_ERROR_RANGE;
   if (!within(pose.p_WC, 3, kMaxMetres) || !within(pose.v_W, 3, kMaxMetres) || !within(pose.w_C, 3, kMaxRate))
     return PF_ERROR_RANGE;
   if (!is_covariance(pose.covariance, 6)) return PF_ERROR_RANGE;
-  body->q_WC = pf::Quat(static_cast<Scalar>(q[0]), static_cast<Scalar>(q[1]), static_cast<Scalar>(q[2]),
-                        static_cast<Scalar>(q[3]));
-  body->q_WC.normalize();
+  if (!quaternion_from(pose.q_WC, &body->q_WC)) return PF_ERROR_RANGE;
   body->p_W = vec3(pose.p_WC);
   body->v_W = vec3(pose.v_W);
   body->w_C = vec3(pose.w_C);
@@ -80,6 +64,8 @@ pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
     t.kind = pf::TargetKind::kRectangle;
     t.width = static_cast<Scalar>(target->width);
     t.height = static_cast<Scalar>(target->height);
+    const pf_status_t status = place_from(*target, &t);
+    if (status != PF_OK) return status;
   } else if (target->kind == PF_TARGET_POINTS) {
     if (target->count < 4 || target->count > PF_TARGET_MAX_POINTS) return PF_ERROR_RANGE;
     t.kind = pf::TargetKind::kPoints;

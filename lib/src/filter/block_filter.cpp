@@ -46,14 +46,14 @@ void BlockFilter::init(const Kernels* kernels, int leading_dim, int considered) 
 }
 
 void BlockFilter::set_leading(const Scalar* covariance, int rows, const Scalar* J) {
-  PF_ASSERT(P_.n == held_end() && rows <= leading_dim_);
-  const int others = P_.n - rows;
+  PF_ASSERT(rows <= leading_dim_);
+  const int others = held_end() - rows;
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j <= i; ++j) P_.set(i, j, covariance[i * rows + j]);
   for (int i = 0; i < rows; ++i)
-    for (int k = 0; k < others; ++k) {
+    for (int k = 0; k < P_.n - rows; ++k) {
       Scalar JP = 0;
-      for (int l = 0; J != nullptr && l < others; ++l) JP += J[i * others + l] * P_(rows + l, rows + k);
+      for (int l = 0; J != nullptr && k < others && l < others; ++l) JP += J[i * others + l] * P_(rows + l, rows + k);
       P_.set(rows + k, i, JP);
     }
   for (int i = 0; J != nullptr && i < rows; ++i)

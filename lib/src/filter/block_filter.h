@@ -42,7 +42,8 @@ class BlockFilter {
 
   // --- moves of the covariance
   /// The first `rows` rows of the leading block become known as covariance says (rows x rows, row-major), and as the rows behind them do
-  /// with Jacobian J (rows x the others, row-major; null: independent):  C + J P_o J^T,  J P_o. Only while there is no other block.
+  /// with Jacobian J (rows x the others, row-major; null: independent):  C + J P_o J^T,  J P_o. Other blocks, which must be
+  /// independent of the leading one, stay so.
   void set_leading(const Scalar* covariance, int rows, const Scalar* J);
   /// So many of the leading block's last rows are considered from now on, and those before them estimated.
   void consider_last(int rows);

@@ -13,6 +13,7 @@ bool Filter::layout(Arena& arena, const FilterCapacity& capacity) {
   state_.block = arena.take<Block>(slots);
   state_.max_planes = capacity.planes;
   state_.plane_frame = arena.take<PlaneFrame>(static_cast<std::size_t>(capacity.planes));
+  state_.plane_roughness = arena.take<Scalar>(static_cast<std::size_t>(capacity.planes));
   blocks_.layout(arena, {capacity.state_dim, state_.slots, 2 * capacity.observations});
   transport_.layout(arena, blocks_.ld());
   view_ = arena.take<Measurement>(static_cast<std::size_t>(capacity.observations));

@@ -38,7 +38,7 @@ class Filter {
  public:
   bool layout(Arena& arena, const FilterCapacity& capacity);
   void init(const Kernels* kernels, const BodyLayout& layout, bool keep_gauge);
-  /// Noise of a folded point's pixel: its surface is uneven by this much [m].
+  /// Noise of a folded point's pixel: surfaces of planes added from now on are uneven by this much [m].
   void set_roughness(Scalar roughness) { roughness_ = roughness; }
   void keep_gauge(bool keep) { keep_gauge_ = keep; }
 
@@ -56,7 +56,7 @@ class Filter {
   const Camera& lens() const { return state_.lens; }
 
   /// The parts of the body that move become known as covariance says (over their rows, row-major), and with J_lens (null: not) as the lens
-  /// does. Only while the map is empty.
+  /// does. Only while nothing in the map depends on the body.
   void set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens = nullptr);
 
   /// Which entry of the map's table a block belongs to.
@@ -78,6 +78,8 @@ class Filter {
   /// Plane through 3-D points, about the frame of their fit, with the fit's Jacobian (Gee 2007, eq 3 and 8) and the noise that points
   /// of a rough surface leave in it. Nothing is folded yet.
   int add_plane(const PlaneFit& fit, const int* slots, int count, Scalar roughness);
+  /// Plane known beforehand, independent of all else. covariance is of (a, b, h) about the frame; roughness is of its surface [m].
+  int add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Scalar roughness);
 
   // --- transform
   /// Inverse depth to 3-D point, in its slot; the anchor goes when nothing needs it.
@@ -90,8 +92,13 @@ class Filter {
   int fold(int plane, const int* slots, int count, const FoldRule& rule, unsigned char* folded);
   /// Distance of a feature from a plane, and its variance without roughness. False where it has no place.
   bool distance(int plane, int slot, Scalar* d, Scalar* variance) const;
+  /// Variance of the distance of an exactly known point from a plane.
+  Scalar plane_variance(int plane, const Vec3& p_W) const;
   /// A planar feature becomes a 3-D point, sigma_normal [m] more uncertain along the plane's normal. False without room.
   bool unfold(int slot, Scalar sigma_normal);
+  /// Gathers S = H P H^T (without noise) of the distances of features from a plane, measured as zero. Then innovation_of<1> of blocks()
+  /// is valid until the state changes. Every feature must have a place.
+  void begin_distances(int plane, const int* slots, int count, Scalar noise, DistanceMeasurement* z);
   /// What is known of a plane shrinks: Q is added to the covariance of (a, b, h).
   void inflate(int plane, const Mat3& Q);
   /// A plane was wrong by about sigma of (a, b, h): that much is added to its own covariance, and to that of the camera and of all else
@@ -175,6 +182,7 @@ class Filter {
                   Mat26* J_camera) const;
 
   // planes.cpp
+  void place_plane(int slot, const PlaneFrame& frame, Scalar roughness);
   bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded);
   void predict_distance(int plane, const struct Place& at, DistanceMeasurement* out) const;
 

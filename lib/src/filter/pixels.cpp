@@ -79,7 +79,8 @@ bool Filter::predict_at(const Camera& lens, const CameraAt& camera, int slot, Pi
       out->H.h[first + c] = h.x();
       out->H.h[columns + first + c] = h.y();
     }
-    if (at.plane >= 0) out->second_order = planar_noise(state_, block, at, J_o, roughness_);
+    if (at.plane >= 0)
+      out->second_order = planar_noise(state_, block, at, J_o, state_.roughness_of(state_.block[at.plane]));
   } else {
     if (!observe_inverse_depth(lens, camera, at.o, block.inverse_depth(), &out->predicted, J_camera, &J_o, &J_feature))
       return false;

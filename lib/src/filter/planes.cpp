@@ -28,19 +28,38 @@ int Filter::add_plane(const PlaneFit& fit, const int* slots, int count, Scalar r
   };
   blocks_.augment_dense(slot, 3, count, by_point, raw, Scalar(0));
 
+  place_plane(slot, fit.frame, roughness_);
+  return slot;
+}
+
+int Filter::add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Scalar roughness) {
+  if (state_.planes >= state_.max_planes) return -1;
+  const int slot = take_slot(BlockKind::kPlane);
+  if (slot < 0) return -1;
+  Rows known;  // depends on nothing
+  known.rows = 3;
+  Scalar raw[9];
+  put<3, 3>(raw, 3, 0, covariance);
+  blocks_.augment(slot, known, raw);
+  place_plane(slot, frame, roughness);
+  return slot;
+}
+
+/// Puts a new plane's block at a = b = h = 0 of its frame.
+void Filter::place_plane(int slot, const PlaneFrame& frame, Scalar roughness) {
   Block& block = state_.block[slot];
   block.set_xyz(Vec3::Zero());
-  for (int frame = 0; frame < state_.max_planes; ++frame) {
+  block.frame = -1;
+  for (int f = 0; f < state_.max_planes && block.frame < 0; ++f) {
     bool free = true;
     for (int s = 0; s < state_.slots; ++s)
-      if (state_.block[s].kind == BlockKind::kPlane && state_.block[s].frame == frame) free = false;
-    if (!free) continue;
-    block.frame = static_cast<std::int16_t>(frame);
-    break;
+      if (s != slot && state_.block[s].kind == BlockKind::kPlane && state_.block[s].frame == f) free = false;
+    if (free) block.frame = static_cast<std::int16_t>(f);
   }
-  state_.plane_frame[block.frame] = fit.frame;
+  PF_ASSERT(block.frame >= 0);
+  state_.plane_frame[block.frame] = frame;
+  state_.plane_roughness[block.frame] = roughness;
   ++state_.planes;
-  return slot;
 }
 
 /// d = n . p - d_W of a place, and its row over plane and place.
@@ -70,31 +89,50 @@ bool Filter::distance(int plane, int slot, Scalar* d, Scalar* variance) const {
   return true;
 }
 
-/// Takes in a distance of zero of the chosen ones together.
-bool Filter::condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded) {
+Scalar Filter::plane_variance(int plane, const Vec3& p_W) const {
+  const Block& block = state_.block[plane];
+  Mat13 J_x;
+  plane_distance(state_.frame_of(block), block.xyz(), p_W, &J_x);
+  RowsOf<1, 3, 1> J;
+  J.parts = 1;
+  J.part[0] = Part::of(plane, 0, 3);
+  put<1, 3>(J.h, 3, 0, J_x);
+  return blocks_.variance(J);
+}
+
+void Filter::begin_distances(int plane, const int* slots, int count, Scalar noise, DistanceMeasurement* z) {
+  PF_ASSERT(count <= kMaxFolded);
   // The distance scales with the world: H N_s = d. With l, the row that picks the log scale, d - d l . e has none of it.
   ScaleRow l;
   if (!keep_gauge_ || !scale_row(&l)) l.parts = 0;
-  DistanceMeasurement z[kMaxFolded];
   Measurement view[kMaxFolded];
-  int m = 0;
   for (int i = 0; i < count; ++i) {
-    if (folded[i] == 0) continue;
     Place at;
     find_point(state_, slots[i], &at);
-    predict_distance(plane, at, &z[m]);
-    const Scalar d = z[m].predicted(0);
+    predict_distance(plane, at, &z[i]);
+    const Scalar d = z[i].predicted(0);
     for (int p = 0, from = 0; p < l.parts; ++p) {
       Scalar h[12];
       for (int k = 0; k < l.part[p].size; ++k) h[k] = -d * l.h[from++];
-      add_part(&z[m].H, l.part[p], h);
+      add_part(&z[i].H, l.part[p], h);
     }
-    z[m].set_noise(DistanceMeasurement::Matrix::Constant(noise));
-    view[m] = z[m].view();
-    ++m;
+    z[i].set_noise(DistanceMeasurement::Matrix::Constant(noise));
+    view[i] = z[i].view();
   }
+  begin_update(view, count);
+}
+
+/// Takes in a distance of zero of the chosen ones together.
+bool Filter::condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded) {
+  int chosen[kMaxFolded];
+  int m = 0;
+  for (int i = 0; i < count; ++i)
+    if (folded[i] != 0) chosen[m++] = slots[i];
   if (m == 0) return true;
-  begin_update(view, m);
+  DistanceMeasurement z[kMaxFolded];
+  Measurement view[kMaxFolded];
+  begin_distances(plane, chosen, m, noise, z);
+  for (int i = 0; i < m; ++i) view[i] = z[i].view();
   return finish_update(view, m, nullptr, nullptr);
 }
 
@@ -114,10 +152,11 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
     std::memset(folded, 0, static_cast<std::size_t>(count));
     return 0;
   }
-  // The transform: coordinates in the plane, all in one pass.
+  // The transform: coordinates in the plane, all in one pass. The point goes from p to q in the plane, and rotates with the world from
+  // then on as q does:  (u, v) = axes p,  J_uv_theta = axes ([p]x - [q]x). The paper's fold knows nothing of that.
   const PlaneFrame& frame = state_.frame_of(state_.block[plane]);
   const Mat23 axes = frame.R_WP.transpose().topRows<2>();
-  RowsOf<2, Place::kMaxColumns, Place::kMaxParts> J[kMaxFolded];
+  RowsOf<2, Place::kMaxColumns + 3, Place::kMaxParts + 1> J[kMaxFolded];
   Rows rows[kMaxFolded];
   int moved[kMaxFolded];
   int done = 0;
@@ -125,7 +164,15 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
     if (folded[i] == 0) continue;
     Place at;
     find_point(state_, slots[i], &at);
-    J[done] = at.rows<2>(axes);
+    const Vec2 uv = plane_coordinates(frame, at.o);
+    const Vec3 dropped = plane_point(frame, state_.block[plane].xyz(), uv) - at.o;
+    const Mat23 J_theta = keep_gauge_ && rule.condition ? Mat23(-axes * hat(dropped)) : Mat23(Mat23::Zero());
+    const int columns = at.columns + 3;
+    J[done].parts = at.parts + 1;
+    J[done].part[0] = Part::body(Body::kTheta, 3);
+    put<2, 3>(J[done].h, columns, 0, J_theta);
+    for (int part = 0; part < at.parts; ++part) J[done].part[part + 1] = at.part[part];
+    for (int c = 0; c < at.columns; ++c) put<2, 1>(J[done].h, columns, 3 + c, Vec2(axes * at.J_o.col(c)));
     rows[done] = J[done];
     moved[done++] = slots[i];
     Block& block = state_.block[slots[i]];
@@ -133,7 +180,7 @@ int Filter::fold(int plane, const int* slots, int count, const FoldRule& rule, u
     state_.adopt(plane, slots[i]);
     block.kind = BlockKind::kPlanePoint;
     block.size = 2;
-    block.set_uv(plane_coordinates(frame, at.o));
+    block.set_uv(uv);
   }
   if (done > 0) blocks_.transform(moved, rows, done);
   return done;

@@ -27,10 +27,12 @@ struct State {
   Block* block = nullptr;                        ///< slots
   int slots = 0;
   PlaneFrame* plane_frame = nullptr;
+  Scalar* plane_roughness = nullptr;  ///< [m] standard deviation of points from each plane, as plane_frame
   int max_planes = 0;
   int planes = 0;
 
   const PlaneFrame& frame_of(const Block& plane) const { return plane_frame[plane.frame]; }
+  Scalar roughness_of(const Block& plane) const { return plane_roughness[plane.frame]; }
 
   /// A free slot, or -1.
   int find_free() const {

@@ -67,6 +67,8 @@ Mat37 plane_gauge(const PlaneFrame& frame, const Vec3& x) {
   return G;
 }
 
+Mat3 plane_error_jacobian() { return Vec3(-1, -1, 1).asDiagonal(); }
+
 bool reframe_plane(const PlaneFrame& from, const Vec3& x, const PlaneFrame& to, Vec3* x_new, Mat3* J_new_old) {
   // Not normalised: m · (p_W - foot) = 0.
   const Vec3 m = to.R_WP.transpose() * (from.R_WP * Vec3(-x(0), -x(1), 1));

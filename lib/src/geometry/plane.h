@@ -41,6 +41,11 @@ Scalar plane_distance(const PlaneFrame& frame, const Vec3& x, const Vec3& p_W, M
 /// δa = mᵀ A (1, 0, a),  δb = mᵀ A (0, 1, b),  δh = mᵀ (A (0, 0, h) + c).
 Mat37 plane_gauge(const PlaneFrame& frame, const Vec3& x);
 
+/// J_x_e 3x3 of a plane that lies in its frame (a = b = h = 0):  e = (α, β, δ),  n' = n + α e1 + β e2,  n' · (p - o) = δ.
+///
+///   (a, b, h) = (-α, -β, δ) to first order, for the frame's own origin o
+Mat3 plane_error_jacobian();
+
 /// The same plane about another frame, and J_new_old 3x3 (null to skip).
 /// False when it is slanted by more than about 80 degrees to the new frame; outputs untouched.
 bool reframe_plane(const PlaneFrame& from, const Vec3& x, const PlaneFrame& to, Vec3* x_new, Mat3* J_new_old = nullptr);

@@ -3,11 +3,21 @@
 #include <cstdint>
 
 #include "base/arena.h"
+#include "geometry/plane.h"
 #include "map/plane_outline.h"
 
 /// Table of planes: what is kept about each beside its block in the filter.
 
 namespace pf {
+
+/// A wall: a plane known beforehand, with how uncertain it is.
+struct PlanePrior {
+  PlaneFrame frame;                ///< third axis towards the side that can be seen, origin at the wall's own centre
+  Mat3 covariance = Mat3::Zero();  ///< of (alpha, beta, delta) at that origin, see plane_error_jacobian
+  PlaneOutline outline;            ///< in that frame
+  Scalar roughness = 0;            ///< [m] 0: that of the settings
+  bool two_sided = false;          ///< can be seen from both sides
+};
 
 struct PlaneEntry {
   std::uint32_t id = 0;  ///< never used twice
@@ -17,6 +27,11 @@ struct PlaneEntry {
   int max_points = 0;    ///< most points that it had at one time
   int outliers = 0;      ///< points that were unfolded because they do not lie on it
   PlaneOutline seen;     ///< of points that were on it when it was last tended to, many of them gone from the map since
+  bool known = false;    ///< a wall: known beforehand, and never dissolved
+  bool doubted = false;  ///< a wall that the gate refuses what should be on it; it takes no points
+  bool two_sided = false;
+  Scalar roughness = 0;  ///< [m] of its surface
+  PlaneOutline plan;     ///< of a wall, as it was given
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 };
 
@@ -56,6 +71,11 @@ class PlaneTable {
     return -1;
   }
   void remove(int i) { entry_[i] = PlaneEntry(); }
+  bool has_known() const {
+    for (int i = 0; i < capacity_; ++i)
+      if (used(i) && entry_[i].known) return true;
+    return false;
+  }
   void remember_merge(std::uint32_t from, std::uint32_t into) {
     merged_[next_merged_] = {from, into};
     next_merged_ = (next_merged_ + 1) % (capacity_ * kMergesPerPlane);

@@ -5,6 +5,7 @@
 #include "base/elapsed.h"
 #include "filter/camera_at.h"
 #include "filter/observe/inverse_depth.h"
+#include "slam/plane_walls.h"
 #include "slam/tuning.h"
 
 namespace pf {
@@ -170,11 +171,18 @@ Scalar FeatureKeeper::median_inverse_depth() const {
   return on_target > 0 ? target_rho / (kBehindTarget * Scalar(on_target)) : start;
 }
 
+/// Inverse depth of the wall that a unit ray meets first, or 0.
+Scalar FeatureKeeper::wall_inverse_depth(const Vec3& ray_C) const {
+  const CameraAt camera = camera_at(filter_.state(), Scalar(0));
+  Scalar range;
+  return first_wall(filter_, map_, camera.p_W, camera.q_WC * ray_C, &range) >= 0 ? Scalar(1) / range : Scalar(0);
+}
+
 int FeatureKeeper::add(int anchor, const Vec2& pixel, const Mat2& noise) {
   Vec3 ray_C;
   Mat32 J_ray_pixel;
   if (!unproject(filter_.lens(), pixel, &ray_C, &J_ray_pixel)) return -1;
-  const Scalar rho = median_inverse_depth();
+  const Scalar of_wall = wall_inverse_depth(ray_C), rho = of_wall > Scalar(0) ? of_wall : median_inverse_depth();
   const int slot =
       filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, settings_.inverse_depth_relative_sigma * rho,
                                 row_time(filter_.lens(), pixel.y()));

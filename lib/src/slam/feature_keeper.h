@@ -42,6 +42,7 @@ class FeatureKeeper {
  private:
   bool make_room(int rows);
   Scalar median_inverse_depth() const;
+  Scalar wall_inverse_depth(const Vec3& ray_C) const;
 
   const Settings& settings_;
   Filter& filter_;

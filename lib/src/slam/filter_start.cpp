@@ -38,17 +38,21 @@ void FilterStart::start_over() {
   clear_filter();
   without_.init();
   data_.known = KnownBody();
+  data_.has_place = false;
   if (parts_.map.target_withdrawn) target_.init();
 }
 
 bool FilterStart::fits(const Target& target) const {
-  return target.count <= settings_.max_features && 3 * target.count <= settings_.max_state_dim - settings_.body.rows();
+  return target.count <= settings_.max_features && 3 * target.count <= parts_.filter.room();
 }
 
 Status FilterStart::use_target(const Target& target) {
   if (data_.known.given && target.kind == TargetKind::kRectangle) return Status::kState;
   if (!fits(target)) return Status::kRange;
+  const bool has_place = target.kind == TargetKind::kPoints || target.has_place;
+  if (!has_place && parts_.map.planes.has_known()) return Status::kState;  // they would be in another W
   target_.set_target(target);
+  data_.has_place = has_place || data_.known.given;
   return Status::kOk;
 }
 
@@ -56,7 +60,14 @@ Status FilterStart::use_pose(const KnownBody& known) {
   if (takes_images_only()) return Status::kState;
   data_.known = known;
   data_.known.given = true;
+  data_.has_place = true;
   return Status::kOk;
+}
+
+int FilterStart::target_rows() const {
+  constexpr int kCorners = 4;
+  const Target& target = target_.target();
+  return 3 * (target.kind == TargetKind::kRectangle ? kCorners : target.count);
 }
 
 void FilterStart::set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens) {

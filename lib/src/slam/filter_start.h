@@ -46,6 +46,10 @@ class FilterStart {
   bool fits(const Target& target) const;
   Status use_target(const Target& target);
   Status use_pose(const KnownBody& known);
+  /// W is one that the caller knows, so that the place of other things can be said in it.
+  bool has_place() const { return data_.has_place; }
+  /// Rows of the state that the target's points will take.
+  int target_rows() const;
   /// A rectangle can only be found in an image, not in a list of observations.
   bool takes_images_only() const { return target_.target().kind == TargetKind::kRectangle; }
 
@@ -71,6 +75,7 @@ class FilterStart {
   /// What is kept between frames.
   struct Data {
     KnownBody known;
+    bool has_place = false;  ///< the caller said where in W the start is
     Scalar covariance[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows] =
         {};  ///< of the body at the first frame
   };

@@ -56,7 +56,8 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   data_.image_usable = true;
   relocaliser_.begin_frame();
   tracking_.note_usable_image(data_.since_last_ns);
-  if (tracking_.needs_new_map(settings_.restart_ns)) begin_new_map();
+  // W is the plan's as long as there are walls: a new map would begin somewhere else.
+  if (tracking_.needs_new_map(settings_.restart_ns) && !map_.planes.has_known()) begin_new_map();
   const bool first = !tracking_.has_pose();
   const ConsensusRule rule = consensus_rule(t_ns);
   if (first) {
@@ -102,6 +103,12 @@ Status FrameLoop::mark_pose() {
   if (!tracking_.has_pose()) return Status::kState;
   // A frame that does not support its pose changes nothing in the map.
   return mark_.set(frame_.report.t_ns, tracking_.state() == SlamState::kTracking, data_.filter_ns);
+}
+
+Status FrameLoop::add_wall(const PlanePrior& prior, std::uint32_t* id) {
+  if (!settings_.planes || !start_.has_place()) return Status::kState;
+  const int reserved = tracking_.has_pose() ? 0 : start_.target_rows();
+  return planes_.add_wall(prior, reserved, tracking_.state() == SlamState::kTracking, data_.filter_ns, id);
 }
 
 /// The last pose and status again, under a new time. The next prediction begins where this one did not go on.

@@ -43,6 +43,9 @@ class FrameLoop {
   /// Marks the pose of the last frame. kState: there is none; kFull: there is no room for it.
   Status mark_pose();
 
+  /// Adds a wall. kState: planes are off, or W is not the plan's; kFull: there is no room for it.
+  Status add_wall(const PlanePrior& prior, std::uint32_t* id);
+
   FilterStart& start() { return start_; }
   BodyMotion& motion() { return motion_; }
   ObservationFrontEnd& observations() { return observations_; }

@@ -38,6 +38,12 @@ void PlaneKeeper::maintain() {
     ++map_.planes[i].age;
     if (maintained++ > 0) continue;
     fold_into(i);
+    if (map_.planes[i].known) {
+      filter_.scale_row(&scale_);  // its points may be planar since
+      fold_by_consensus(i);
+      filter_.scale_row(&scale_);
+      judge_wall(i);
+    }
     settle_frame(i);
     PlaneOutline now;
     outline_plane(filter_, map_, i, &now);
@@ -82,8 +88,8 @@ void PlaneKeeper::unfold_outliers() {
     const int entry = map_.planes.entry_at(plane);
     if (entry < 0) continue;
     ++map_.planes[entry].outliers;
-    map_.planes[entry].seen.count =
-        0;  // the outlier may have been a vertex; the outline starts again from the other points
+    // The outlier may have been a vertex: the outline starts again from the other points, or from the plan.
+    map_.planes[entry].seen = map_.planes[entry].plan;
   }
 }
 
@@ -102,6 +108,7 @@ Vec3 PlaneKeeper::doubt() const {
 /// Whether a point is near the known part of a plane; far from it, a point lies in the plane by chance. The paper limits the distance
 /// from the plane's origin instead, since it has no variance for the distance of far points; here there is one.
 bool PlaneKeeper::is_in_reach(int plane_entry, const Vec3& p_W) const {
+  if (map_.planes[plane_entry].known) return is_before_wall(plane_entry, p_W);
   const PlaneFrame& frame = filter_.state().frame_of(filter_.state().block[map_.planes[plane_entry].slot]);
   const PlaneOutline& known = map_.planes[plane_entry].support;
   const Scalar reach = std::min(kReach * std::sqrt(outline_area(known)), settings_.plane_radius);
@@ -113,17 +120,23 @@ bool PlaneKeeper::is_in_reach(int plane_entry, const Vec3& p_W) const {
 bool PlaneKeeper::lies_on(int plane, int slot) const {
   Scalar d, variance;
   if (!filter_.distance(plane, slot, &d, &variance)) return false;
+  const int entry = map_.planes.entry_at(plane);
+  const FoldRule rule = entry < 0 ? settings_.fold : fold_rule(entry);
   const Scalar limit = settings_.plane_distance * settings_.plane_distance;
-  const FoldRule& rule = settings_.fold;
-  return d * d <= limit * Scalar(4) && variance <= limit &&
-         d * d < rule.gate * (variance + rule.roughness * rule.roughness);
+  const Scalar noise = rule.roughness * rule.roughness;
+  const Scalar near = entry >= 0 && map_.planes[entry].known ? limit + noise : limit;
+  return d * d <= near * Scalar(4) && variance <= limit && d * d < rule.gate * (variance + noise);
 }
 
 /// Folds points that lie on the plane.
 void PlaneKeeper::fold_into(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
+  const PlaneEntry& entry = map_.planes[plane_entry];
+  if (entry.doubted) return;
   const Block& block = filter_.state().block[plane];
   const PlaneFrame& frame = filter_.state().frame_of(block);
+  const FoldRule rule = fold_rule(plane_entry);
+  const Scalar near = settings_.plane_distance + (entry.known ? rule.roughness : Scalar(0));
   int slots[Filter::kMaxFolded];
   int count = 0;
   for (int i = 0; i < map_.features.capacity() && count < Filter::kMaxFolded && count < settings_.max_observations;
@@ -132,13 +145,13 @@ void PlaneKeeper::fold_into(int plane_entry) {
     const int slot = map_.features[i].slot;
     const Vec3 p_W = filter_.point(slot);
     if (!is_in_reach(plane_entry, p_W)) continue;
-    if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(2) * settings_.plane_distance) continue;
+    if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(2) * near) continue;
     Mat3 covariance;
     if (!lies_on(plane, slot) || !is_certain(i, &covariance)) continue;
     slots[count++] = slot;
   }
   unsigned char folded[Filter::kMaxFolded];
-  if (count == 0 || filter_.fold(plane, slots, count, settings_.fold, folded) == 0) return;
+  if (count == 0 || filter_.fold(plane, slots, count, rule, folded) == 0) return;
   for (int i = 0; i < count; ++i)
     if (folded[i] != 0) support(plane_entry, slots[i]);
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "base/status.h"
 #include "filter/filter.h"
 #include "map/map.h"
 #include "map/plane_search.h"
@@ -31,6 +32,11 @@ class PlaneKeeper {
 
   bool layout(Arena& arena, int max_features);
   void init() { data_ = Data(); }
+
+  /// Adds a wall; so many rows stay free beside it. Rows are made free by evicting features that were not seen since not_since_ns, where
+  /// features may go. kFull: no room for it; nothing has changed then.
+  Status add_wall(const PlanePrior& prior, int reserved_rows, bool may_evict, std::int64_t not_since_ns,
+                  std::uint32_t* id);
 
   /// The work of one frame. Folds, fixes and merges one plane per frame, in turn, so that the work is bounded.
   void maintain();
@@ -62,6 +68,16 @@ class PlaneKeeper {
   void settle_frame(int plane_entry);
   void dissolve(int plane_entry);
   void dissolve_weak();
+
+  // plane_walls.cpp: planes known beforehand
+  FoldRule fold_rule(int plane_entry) const;
+  bool is_before_wall(int plane_entry, const Vec3& p_W) const;
+  int list_before_wall(int plane_entry, int* slots, int capacity);
+  bool may_set_scale(int plane_entry) const;
+  unsigned find_wall_consensus(int plane_entry, const int* slots, int count, int* size);
+  void fold_by_consensus(int plane_entry);
+  void judge_wall(int plane_entry);
+  void doubt_wall(int plane_entry, Scalar off);
 
   const Settings& settings_;
   Filter& filter_;

@@ -63,23 +63,30 @@ void PlaneKeeper::discover() {
   settings_.hooks.say("found a plane");
 }
 
-/// Whether the points of plane `other` lie on plane `slot`.
+/// Whether the points of plane `other` lie on plane `slot`. A wall may be far from where the plan has it, by its own variance.
 bool PlaneKeeper::same_plane(int slot, int other) const {
   const State& state = filter_.state();
+  const int entry = map_.planes.entry_at(slot);
+  const bool known = map_.planes[entry].known;
+  const FoldRule rule = fold_rule(entry);
   const Block &a = state.block[slot], &b = state.block[other];
   Vec3 n_a, n_b;
   Scalar d_a, d_b;
   plane_normal(state.frame_of(a), a.xyz(), &n_a, &d_a);
   plane_normal(state.frame_of(b), b.xyz(), &n_b, &d_b);
-  if (n_a.dot(n_b) < kMinNormalCosine) return false;
+  const Scalar cosine = map_.planes[entry].two_sided ? std::abs(n_a.dot(n_b)) : n_a.dot(n_b);
+  if (cosine < kMinNormalCosine) return false;
   int points = 0, inliers = 0, close = 0;
   state.for_each_planar(other, [&](int point) {
     Scalar d, variance;
     ++points;
     if (!filter_.distance(slot, point, &d, &variance)) return;
-    variance += settings_.fold.roughness * settings_.fold.roughness;
+    variance += rule.roughness * rule.roughness;
     if (d * d < kSamePlaneGate * variance) ++inliers;
-    if (std::abs(d) < Scalar(3) * settings_.plane_distance) ++close;
+    Scalar near = settings_.plane_distance * settings_.plane_distance;
+    if (known) near += filter_.plane_variance(slot, filter_.point(point)) + rule.roughness * rule.roughness;
+    if (known && !is_before_wall(entry, filter_.point(point))) return;
+    if (d * d < kSamePlaneGate * near) ++close;
   });
   // Both tests: every point passes the gate of a plane that is hardly known.
   return points >= kMinPoints && 10 * inliers >= 9 * points && 10 * close >= 9 * points;
@@ -88,11 +95,14 @@ bool PlaneKeeper::same_plane(int slot, int other) const {
 /// Merges one other plane that is the same into this one.
 void PlaneKeeper::merge_into(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
+  const bool known = map_.planes[plane_entry].known;
+  if (map_.planes[plane_entry].doubted) return;
   for (int k = 0; k < map_.planes.capacity(); ++k) {
-    if (k == plane_entry || !map_.planes.used(k)) continue;
+    if (k == plane_entry || !map_.planes.used(k) || map_.planes[k].known) continue;
     const int other = map_.planes[k].slot;
-    if (filter_.state().block[other].children > filter_.state().block[plane].children || !same_plane(plane, other))
-      continue;
+    // A wall takes the other plane in, however few points it has.
+    const bool smaller = filter_.state().block[other].children > filter_.state().block[plane].children;
+    if ((smaller && !known) || !same_plane(plane, other)) continue;
     if (!give_points(k, plane_entry)) return;
     const State& state = filter_.state();
     const Block &from = state.block[other], &to = state.block[plane];
@@ -111,7 +121,7 @@ void PlaneKeeper::merge_into(int plane_entry) {
 /// Folds the points of one plane into another, as far as they pass the gate. False if a fixed point could not be released first.
 bool PlaneKeeper::give_points(int from_entry, int to_entry) {
   const int other = map_.planes[from_entry].slot, plane = map_.planes[to_entry].slot;
-  FoldRule rule = settings_.fold;
+  FoldRule rule = fold_rule(to_entry);
   rule.gate = kMergeGate;
   bool released = true;
   filter_.state().for_each_planar(other, [&](int slot) {
@@ -157,8 +167,10 @@ void PlaneKeeper::settle_frame(int plane_entry) {
   if (!filter_.reanchor(plane, to)) return;
   PlaneOutline& known = map_.planes[plane_entry].support;
   PlaneOutline& seen = map_.planes[plane_entry].seen;
-  for (int i = 0; i < known.count; ++i) known.uv[i] = plane_coordinates(to, plane_point(from, x, known.uv[i]));
-  for (int i = 0; i < seen.count; ++i) seen.uv[i] = plane_coordinates(to, plane_point(from, x, seen.uv[i]));
+  PlaneOutline& plan = map_.planes[plane_entry].plan;
+  for (PlaneOutline* outline : {&known, &seen, &plan})
+    for (int i = 0; i < outline->count; ++i)
+      outline->uv[i] = plane_coordinates(to, plane_point(from, x, outline->uv[i]));
 }
 
 /// Unfolds all points of a plane and removes it.
@@ -194,10 +206,10 @@ PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry,
 }
 
 /// Dissolves a plane that has too few points for kMaxWeakFrames; likewise a new one that never gets more than plane_min_points. Dissolves
-/// at once a plane with more outliers so far than points.
+/// at once a plane with more outliers so far than points. Walls stay.
 void PlaneKeeper::dissolve_weak() {
   for (int i = 0; i < map_.planes.capacity(); ++i) {
-    if (!map_.planes.used(i)) continue;
+    if (!map_.planes.used(i) || map_.planes[i].known) continue;
     const int points = outline_plane(filter_, map_, i, nullptr).folded;
     map_.planes[i].max_points = std::max(map_.planes[i].max_points, points);
     const bool proven = map_.planes[i].max_points > settings_.plane_min_points;

@@ -31,6 +31,7 @@ class Session {
   // --- how to start; before the first frame
   Status start_from_target(const Target& target);
   Status start_from_pose(const KnownBody& known);
+  Status add_wall(const PlanePrior& prior, std::uint32_t* id) { return filter_->add_wall(prior, id); }
   void withdraw_target() { map_.target_withdrawn = true; }
 
   // --- what comes in

@@ -11,7 +11,10 @@ struct Target {
   static constexpr int kMaxPoints = 16;
 
   TargetKind kind = TargetKind::kNone;
-  Scalar width = 0, height = 0;  ///< rectangle [m]; its centre is W's origin, x right, y down, z into the wall
+  Scalar width = 0, height = 0;  ///< rectangle [m]; T is its centre, x right, y down, z into the wall
+  bool has_place = false;        ///< of a rectangle: T_WT is known; else T is W
+  Quat q_WT = Quat::Identity();
+  Vec3 p_WT = Vec3::Zero();
   int count = 0;
   Vec3 point_W[kMaxPoints];
   Scalar sigma_m = 0;  ///< of each coordinate of each point

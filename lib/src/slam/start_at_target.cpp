@@ -34,11 +34,25 @@ bool StartAtTarget::find(const Camera& camera, const Tracker& tracker, TargetSig
   if (is_rectangle) {
     target_.count = 4;
     rectangle_points(target_.width, target_.height, target_.point_W);
+    if (target_.has_place) put_in_place(sighting);
   }
   target_.first_pose.q_WC = sighting->pose.q_WC;
   target_.first_pose.p_W = sighting->pose.p_WC;
   target_.first_covariance = sighting->pose.covariance;
   return true;
+}
+
+/// The points and the pose, found with the rectangle as world, in W:  T_WC = T_WT T_TC,  (theta, p)_W = R_WT (theta, p)_T.
+void StartAtTarget::put_in_place(TargetSighting* sighting) {
+  const Mat3 R = target_.q_WT.toRotationMatrix();
+  for (int i = 0; i < target_.count; ++i) target_.point_W[i] = target_.p_WT + R * target_.point_W[i];
+  PoseEstimate& pose = sighting->pose;
+  pose.q_WC = target_.q_WT * pose.q_WC;
+  pose.p_WC = target_.p_WT + R * pose.p_WC;
+  Mat6 J = Mat6::Zero();
+  J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = R;
+  const Mat6 JC = J.lazyProduct(pose.covariance);
+  pose.covariance = JC.lazyProduct(J.transpose());
 }
 
 bool StartAtTarget::find_rectangle(const Camera& camera, const Tracker& tracker, TargetSighting* sighting) const {

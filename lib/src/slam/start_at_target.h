@@ -28,6 +28,7 @@ class StartAtTarget {
   bool find(const Camera& camera, const Tracker& tracker, TargetSighting* sighting);
 
  private:
+  void put_in_place(TargetSighting* sighting);
   bool find_rectangle(const Camera& camera, const Tracker& tracker, TargetSighting* sighting) const;
   bool find_points(const Camera& camera, const Tracker& tracker, TargetSighting* sighting) const;
   bool predict_points(const Camera& camera, Vec2* predicted, Scalar* reach, Scalar* distance) const;

@@ -131,6 +131,17 @@ inline constexpr Scalar kReach = 0.5f;              ///< beyond the outline of a
 inline constexpr Scalar kUnfoldSigma = Scalar(10);  ///< of an unfolded point along the normal, in plane.max_distance
 }  // namespace plane_keeper
 
+/// Planes known beforehand.
+namespace plane_walls {
+inline constexpr int kMaxOthers = 64;                 ///< walls: the largest capacity.max_planes
+inline constexpr Scalar kKnownScale = Scalar(0.05);   ///< sigma of the log scale, below which any wall may take points
+inline constexpr int kTrials = 60;                    ///< triples of points
+inline constexpr Scalar kTripleGate = Scalar(11.34);  ///< chi-square of three degrees of freedom, 0.99
+inline constexpr Scalar kRefusedGate = Scalar(16);    ///< chi-square of a point that does not lie on a wall
+inline constexpr int kMinRefused = 8;                 ///< points, before a wall is doubted or believed again
+inline constexpr int kRefusedShare = 4;  ///< refused points for each on the wall, above which it is doubted
+}  // namespace plane_walls
+
 /// Whole planes.
 namespace plane_lifecycle {
 inline constexpr int kMinPoints = 4;               ///< of a plane that once had more than plane.min_points

@@ -31,6 +31,7 @@ struct FeatureView {
 struct PlaneView {
   std::uint32_t id;
   int points, fixed_points;
+  bool known, doubted;  ///< a wall, and one that its points contradict
   Vec3 normal_W;
   Scalar distance;
   Mat3 R_WP;

@@ -15,6 +15,8 @@ PlaneView View::plane(int i) const {
   const Vec3 x = block.xyz();
   PlaneView out;
   out.id = map_.planes[i].id;
+  out.known = map_.planes[i].known;
+  out.doubted = map_.planes[i].doubted;
   Mat3 J_n_x;
   plane_normal(frame, x, &out.normal_W, &out.distance, &J_n_x);
   const Vec3 e1 = frame.R_WP.col(0);

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cmath>
+
+#include "base/eigen.h"
+#include "geometry/small_cholesky.h"
+
+/// Checks of numbers that the caller passed in.
+
+namespace pf {
+
+inline Vec3 vec3(const double* v) {
+  return Vec3(static_cast<Scalar>(v[0]), static_cast<Scalar>(v[1]), static_cast<Scalar>(v[2]));
+}
+
+/// Larger distances, speeds and variances are refused: their squares would leave the range of float.
+inline constexpr double kMaxMetres = 1e6;  // also [m/s]
+inline constexpr double kMaxRate = 1e4;    // [rad/s]
+inline constexpr double kMaxVariance = 1e12;
+
+inline bool within(const double* v, int n, double max) {
+  for (int i = 0; i < n; ++i)
+    if (!(std::fabs(v[i]) <= max)) return false;
+  return true;
+}
+
+/// Positive semidefinite to rounding. n <= 6.
+inline bool is_semidefinite(const double* P, int n) {
+  double C[36];  // correlations, so that radians and metres have the same weight
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) C[i * n + j] = P[i * n + j] / (std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]));
+  return factor_semidefinite(C, n, 1e-9);
+}
+
+/// Symmetric to rounding, with positive diagonal, Cauchy-Schwarz between any two, and semidefinite.
+inline bool is_covariance(const double* P, int n) {
+  for (int i = 0; i < n; ++i) {
+    if (!(P[i * n + i] > 0.0 && P[i * n + i] <= kMaxVariance)) return false;
+    for (int j = 0; j < i; ++j) {
+      const double scale = std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]);
+      if (std::fabs(P[i * n + j] - P[j * n + i]) > 1e-9 * scale) return false;
+      if (std::fabs(P[i * n + j]) > scale * (1.0 + 1e-9)) return false;
+    }
+  }
+  return is_semidefinite(P, n);
+}
+
+}  // namespace pf

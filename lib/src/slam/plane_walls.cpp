@@ -1,0 +1,250 @@
+#include "slam/plane_walls.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filter/camera_at.h"
+#include "geometry/ray_plane.h"
+#include "geometry/small_cholesky.h"
+#include "slam/plane_keeper.h"
+#include "slam/tuning.h"
+
+/// Planes known beforehand: how they enter the map, what is folded into them, and when they are doubted. Servant 2008, section 2.2
+/// (lib/docs/walls.md).
+
+namespace pf {
+namespace {
+
+using namespace tuning::plane_walls;
+
+/// A number below limit; changes the generator's state.
+int draw(std::uint32_t* state, int limit) {
+  *state = *state * 1664525u + 1013904223u;
+  return static_cast<int>((*state >> 16) % static_cast<std::uint32_t>(limit));
+}
+
+}  // namespace
+
+bool meets_wall(const Filter& filter, const Map& map, int plane_entry, const Vec3& origin_W, const Vec3& direction_W,
+                Scalar* range) {
+  const PlaneEntry& wall = map.planes[plane_entry];
+  const State& state = filter.state();
+  const Block& block = state.block[wall.slot];
+  const PlaneFrame& frame = state.frame_of(block);
+  Vec3 hit_W;
+  if (!wall.two_sided && !(plane_distance(frame, block.xyz(), origin_W) > Scalar(0))) return false;
+  if (!intersect_ray_plane(frame, block.xyz(), origin_W, direction_W, &hit_W)) return false;
+  if (!outline_contains(wall.support, plane_coordinates(frame, hit_W))) return false;
+  *range = (hit_W - origin_W).norm() / direction_W.norm();
+  return true;
+}
+
+int first_wall(const Filter& filter, const Map& map, const Vec3& origin_W, const Vec3& direction_W, Scalar* range) {
+  int first = -1;
+  for (int k = 0; k < map.planes.capacity(); ++k) {
+    Scalar at = 0;
+    if (!map.planes.used(k) || !map.planes[k].known || map.planes[k].doubted) continue;
+    if (!meets_wall(filter, map, k, origin_W, direction_W, &at) || (first >= 0 && at >= *range)) continue;
+    first = k;
+    *range = at;
+  }
+  return first;
+}
+
+Status PlaneKeeper::add_wall(const PlanePrior& prior, int reserved_rows, bool may_evict, std::int64_t not_since_ns,
+                             std::uint32_t* id) {
+  constexpr int kRows = 3;
+  if (filter_.state().planes >= filter_.state().max_planes) return Status::kFull;
+  if (filter_.room() < kRows + reserved_rows &&
+      !(may_evict && features_.make_rows(kRows + reserved_rows, not_since_ns)))
+    return Status::kFull;
+  const Mat3 J = plane_error_jacobian();
+  const Mat3 covariance = J.lazyProduct(prior.covariance).lazyProduct(J.transpose());
+  const Scalar roughness = prior.roughness > Scalar(0) ? prior.roughness : settings_.fold.roughness;
+  const int slot = filter_.add_known_plane(prior.frame, covariance, roughness);
+  if (slot < 0) return Status::kFull;
+  const int entry = map_.planes.add(slot);  // the table has as many rows as the filter has planes
+  filter_.set_owner(slot, entry);
+  PlaneEntry& wall = map_.planes[entry];
+  wall.known = true;
+  wall.two_sided = prior.two_sided;
+  wall.roughness = roughness;
+  wall.plan = wall.seen = wall.support = prior.outline;
+  *id = wall.id;
+  return Status::kOk;
+}
+
+FoldRule PlaneKeeper::fold_rule(int plane_entry) const {
+  FoldRule rule = settings_.fold;
+  if (map_.planes[plane_entry].known) rule.roughness = map_.planes[plane_entry].roughness;
+  return rule;
+}
+
+/// Whether the camera sees a point inside the wall's outline, with no other wall between them. Where the point is along its ray does not
+/// matter: the plan says what should be there.
+bool PlaneKeeper::is_before_wall(int plane_entry, const Vec3& p_W) const {
+  const Vec3 c_W = camera_at(filter_.state(), Scalar(0)).p_W;
+  Scalar range = 0, nearest = 0;
+  if (!meets_wall(filter_, map_, plane_entry, c_W, p_W - c_W, &range)) return false;
+  const int first = first_wall(filter_, map_, c_W, p_W - c_W, &nearest);
+  return first < 0 || first == plane_entry || range <= nearest;
+}
+
+/// Converged points before the wall that are known well enough, in random order. Returns how many.
+int PlaneKeeper::list_before_wall(int plane_entry, int* slots, int capacity) {
+  const int features = map_.features.capacity();
+  const int from = draw(&data_.random, features);
+  int count = 0;
+  for (int k = 0; k < features && count < capacity; ++k) {
+    const int i = (from + k) % features;
+    Mat3 covariance;
+    if (!is_settled(i) || !is_before_wall(plane_entry, filter_.point(map_.features[i].slot))) continue;
+    if (is_certain(i, &covariance)) slots[count++] = map_.features[i].slot;
+  }
+  return count;
+}
+
+/// Whether the world's scale is known, or this wall has as many points before it as any other. As long as the scale is not
+/// known, points before a wall that is not there agree with it as well as with one that is, only in a world of another size; so the wall
+/// that most points are before decides.
+bool PlaneKeeper::may_set_scale(int plane_entry) const {
+  if (scale_.parts > 0 && filter_.blocks().variance(scale_) < kKnownScale * kKnownScale) return true;
+  const Vec3 c_W = camera_at(filter_.state(), Scalar(0)).p_W;
+  int before_this = 0, before_other[kMaxOthers] = {};
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!is_settled(i)) continue;
+    Scalar range = 0;
+    const int first = first_wall(filter_, map_, c_W, filter_.point(map_.features[i].slot) - c_W, &range);
+    if (first == plane_entry)
+      ++before_this;
+    else if (first >= 0)
+      ++before_other[first];
+  }
+  for (const int other : before_other)
+    if (other > before_this) return false;
+  return true;
+}
+
+/// The largest set of these points (a bit each) that agree with each other, and with the wall's prior, that they lie on it. A wall that
+/// may be tilted, and a world whose scale is hardly known, leave every single point's distance uncertain; given three of the points, those
+/// of the others are known.
+///
+///   after a triple t:   r_j|t = r_j - S_jt S_tt^-1 r_t,   S_j|t = S_jj - S_jt S_tt^-1 S_tj
+unsigned PlaneKeeper::find_wall_consensus(int plane_entry, const int* slots, int count, int* size) {
+  const FoldRule rule = fold_rule(plane_entry);
+  const Scalar noise = rule.roughness * rule.roughness;
+  const Scalar max_variance = settings_.plane_distance * settings_.plane_distance + noise;
+  DistanceMeasurement z[Filter::kMaxFolded];
+  filter_.begin_distances(map_.planes[plane_entry].slot, slots, count, noise, z);
+  const auto S = [&](int i, int j) {
+    return filter_.blocks().innovation_of<1>(i, j)(0, 0) + (i == j ? noise : Scalar(0));
+  };
+  unsigned best = 0;
+  *size = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    int t[3];
+    for (int& member : t) member = draw(&data_.random, count);
+    if (t[0] == t[1] || t[0] == t[2] || t[1] == t[2]) continue;
+    Mat3 S_tt;
+    Vec3 r_t;
+    for (int a = 0; a < 3; ++a) {
+      r_t(a) = -z[t[a]].predicted(0);
+      for (int b = 0; b < 3; ++b) S_tt(a, b) = S(t[a], t[b]);
+    }
+    SmallCholesky<3> cholesky;
+    if (!cholesky.factor(S_tt)) continue;
+    const Vec3 weighted = cholesky.solve<1>(r_t);
+    if (!(r_t.dot(weighted) < kTripleGate)) continue;
+    unsigned inliers = 0;
+    int found = 0;
+    for (int j = 0; j < count; ++j) {
+      bool is_inlier = j == t[0] || j == t[1] || j == t[2];
+      if (!is_inlier) {
+        const Vec3 S_jt(S(j, t[0]), S(j, t[1]), S(j, t[2]));
+        const Scalar r = -z[j].predicted(0) - S_jt.dot(weighted);
+        const Scalar variance = S(j, j) - S_jt.dot(cholesky.solve<1>(S_jt));
+        is_inlier = variance <= max_variance && r * r < rule.gate * variance;
+      }
+      if (!is_inlier) continue;
+      inliers |= 1u << j;
+      ++found;
+    }
+    if (found <= *size) continue;
+    *size = found;
+    best = inliers;
+  }
+  return best;
+}
+
+/// Folds points onto a wall that none of them alone is known to lie on.
+void PlaneKeeper::fold_by_consensus(int plane_entry) {
+  int slots[Filter::kMaxFolded], chosen[Filter::kMaxFolded];
+  const int limit = std::min(Filter::kMaxFolded, settings_.max_observations);
+  if (map_.planes[plane_entry].doubted || !may_set_scale(plane_entry)) return;
+  const int count = list_before_wall(plane_entry, slots, limit);
+  if (count <= settings_.plane_min_points) return;
+  int size;
+  const unsigned consensus = find_wall_consensus(plane_entry, slots, count, &size);
+  if (size <= settings_.plane_min_points || 2 * size < count) return;
+  size = 0;
+  for (int j = 0; j < count; ++j)
+    if ((consensus >> j & 1u) != 0) chosen[size++] = slots[j];
+  unsigned char folded[Filter::kMaxFolded];
+  if (filter_.fold(map_.planes[plane_entry].slot, chosen, size, fold_rule(plane_entry), folded) == 0) return;
+  for (int j = 0; j < size; ++j)
+    if (folded[j] != 0) support(plane_entry, chosen[j]);
+}
+
+/// Counts what is seen inside of the wall's outline: points that lie on it, and points that the gate refuses. Doubts the wall where far
+/// more are refused; believes a doubted one again when most of them lie on it.
+void PlaneKeeper::judge_wall(int plane_entry) {
+  PlaneEntry& wall = map_.planes[plane_entry];
+  const State& state = filter_.state();
+  const FoldRule rule = fold_rule(plane_entry);
+  const Scalar noise = rule.roughness * rule.roughness;
+  int on_it = outline_plane(filter_, map_, plane_entry, nullptr).folded, refused = 0;
+  Scalar off = 0;
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    Scalar d, variance;
+    Mat3 covariance;
+    if (!map_.features.used(i) || map_.features[i].failures > 0) continue;
+    const int slot = map_.features[i].slot;
+    // A point of another plane is known well enough, and is no less on that one than here.
+    const bool elsewhere = is_planar(state.block[slot].kind) && state.plane_of(slot) != wall.slot;
+    if (!elsewhere && !(is_settled(i) && is_certain(i, &covariance))) continue;
+    if (!is_before_wall(plane_entry, filter_.point(slot))) continue;
+    if (!filter_.distance(wall.slot, slot, &d, &variance)) continue;
+    if (d * d > kRefusedGate * (variance + noise)) {
+      ++refused;
+      off += d * d;
+    } else if (d * d < rule.gate * (variance + noise)) {
+      ++on_it;
+    }
+  }
+  const bool denied = wall.outliers >= kMinRefused && wall.outliers > on_it;
+  if (!wall.doubted && (denied || (refused >= kMinRefused && refused > kRefusedShare * on_it))) {
+    doubt_wall(plane_entry, refused > 0 ? std::sqrt(off / static_cast<Scalar>(refused)) : Scalar(0));
+  } else if (wall.doubted && on_it >= kMinRefused && on_it > refused) {
+    wall.doubted = false;
+    wall.outliers = 0;
+    settings_.hooks.say("points lie on a wall of the plan that was doubted: it counts again");
+  }
+}
+
+/// Takes back what a wall that is off by this much has taught, and gives its points a place of their own again.
+void PlaneKeeper::doubt_wall(int plane_entry, Scalar off) {
+  PlaneEntry& wall = map_.planes[plane_entry];
+  const int plane = wall.slot;
+  const Vec3 sigma(doubt().x(), doubt().y(), std::max(doubt().z(), off));
+  if (filter_.state().block[plane].children > 0) filter_.forget_through(plane, sigma);
+  filter_.state().for_each_planar(plane, [&](int slot) {
+    const int feature = filter_.state().block[slot].owner;
+    if (!filter_.unfold(slot, settings_.plane_distance)) features_.drop(&feature, 1);
+  });
+  wall.doubted = true;
+  wall.outliers = 0;
+  wall.seen = wall.support = wall.plan;
+  settings_.hooks.say("a wall of the plan is not where it should be: it is doubted, and takes no points");
+}
+
+}  // namespace pf
