@@ -153,10 +153,10 @@ std::string check(const Options& options, const std::string& backend) {
     return "--as-recorded is for a recording: --source euroc:DIR";
   }
   if (options.start != "auto" && options.start != "target" && options.start.rfind("target:", 0) != 0 &&
-      options.start.rfind("rectangle:", 0) != 0) {
-    return "--start " + options.start + ": write auto, target:FILE or rectangle:WxH (metres)";
+      options.start.rfind("rectangle:", 0) != 0 && options.start.rfind("pose:", 0) != 0) {
+    return "--start " + options.start + ": write auto, pose:FILE, target:FILE or rectangle:WxH (metres)";
   }
-  if (options.withdraw_target_after >= 0 && options.start == "auto") {
+  if (options.withdraw_target_after >= 0 && (options.start == "auto" || options.start.rfind("pose:", 0) == 0)) {
     return "--withdraw-target-after needs a target: add --start target:FILE or --start rectangle:WxH";
   }
   const std::string wrong_imu = check_imu_options(options);
@@ -204,8 +204,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--readout", options.readout_s, "rolling shutter: seconds from the first row to the last; 0: global")
       ->check(CLI::Range(0.0, 0.2));
   app.add_option("--start", options.start,
-                 "auto, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
+                 "auto, pose:FILE, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
       ->capture_default_str();
+  app.add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start (JSON)");
   app.add_option("--withdraw-target-after", options.withdraw_target_after, "measure the target no more after N frames")
       ->check(at_least(0));
   app.add_option("--frames", options.frames, "at most N frames")->check(at_least(1));

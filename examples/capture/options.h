@@ -20,6 +20,7 @@ struct Options {
   std::string source;
   std::string calibration;
   std::string start = "auto";
+  std::string walls;  ///< file of a plan; "": none
   std::string out = "out/capture";
   int64_t withdraw_target_after = -1;
   int64_t frames = -1;

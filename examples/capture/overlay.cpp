@@ -99,7 +99,7 @@ const Canvas& Overlay::draw(const FrameView& view) {
   cairo_rectangle(pen, 0, 0, image_width_, image_height_);
   cairo_clip(pen);
   draw_image(view.image);
-  draw_planes(canvas_, view, session_.config().camera, zoom_, session_.target() != nullptr);
+  draw_planes(canvas_, view, session_.config().camera, zoom_, session_.is_metric(), session_.plan().outlines());
   if (view.has_pose) {
     draw_target(view.pose);
   }

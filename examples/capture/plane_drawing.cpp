@@ -12,6 +12,9 @@ namespace {
 constexpr int kPieces = 8;            // of each edge: lenses bend lines
 constexpr double kMostReach = 4.0;    // tangent of the widest angle that is drawn
 constexpr double kSmallestArea = 60;  // of a drawing that still gets its number [px²]
+constexpr double kPlaneWidth = 1.8;   // of outlines [px]
+constexpr double kWallWidth = 3.0;    // of a wall, where it is now
+constexpr double kPlanWidth = 1.0;    // of a wall, where the plan has it
 
 /// Where a plane is drawn.
 class Pen {
@@ -90,7 +93,7 @@ void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane, bo
   double x0, y0, x1, y1;
   cairo_path_extents(cairo, &x0, &y0, &x1, &y1);
   canvas.colour(colour, 0.95);
-  cairo_set_line_width(cairo, 1.8);
+  cairo_set_line_width(cairo, plane.known ? kWallWidth : kPlaneWidth);
   cairo_stroke(cairo);
   const double area = plane.area();
   if (area > 0.0) {
@@ -113,6 +116,7 @@ void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane, bo
       std::snprintf(text + length, sizeof(text) - static_cast<size_t>(length), ", %.2g m\xc2\xb2", area);
     }
     std::string words(text);
+    if (plane.known) words = (plane.doubted ? "doubted wall " : "wall ") + words;
     if (std::string(plane.orientation) != "unknown") {
       words += std::string(", ") + plane.orientation;
       std::replace(words.begin(), words.end(), '_', ' ');
@@ -130,7 +134,8 @@ void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane, bo
 
 }  // namespace
 
-void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t& camera, double zoom, bool metric) {
+void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t& camera, double zoom, bool metric,
+                 const std::vector<std::vector<Vec3>>& plan) {
   if (!view.has_pose) {
     return;
   }
@@ -149,6 +154,14 @@ void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t&
             [&](const PlaneView* a, const PlaneView* b) { return distance(a) > distance(b); });
   for (const PlaneView* plane : order) {
     draw_plane(canvas, pen, *plane, metric);
+  }
+  for (const std::vector<Vec3>& wall : plan) {
+    const std::vector<Vec3> corners = pen.visible(wall);
+    if (corners.size() < 3) continue;
+    pen.path(corners, true);
+    canvas.colour(colours::kText, 0.8);
+    cairo_set_line_width(canvas.pen(), kPlanWidth);
+    cairo_stroke(canvas.pen());
   }
 }
 

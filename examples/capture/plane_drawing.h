@@ -11,7 +11,9 @@ namespace pf::capture {
 ///
 /// zoom    screen pixels per image pixel
 /// metric  lengths of the world are metres, so that areas can be told
-void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t& camera, double zoom, bool metric);
+/// plan    corners of walls as a plan has them, in thin lines; the walls themselves, where they are now, get thick ones
+void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t& camera, double zoom, bool metric,
+                 const std::vector<std::vector<Vec3>>& plan);
 
 }  // namespace pf::capture
 

@@ -12,6 +12,10 @@ namespace pf::capture {
 
 namespace {
 
+/// Of a start from a pose: what a hand does [m/s, rad/s].
+constexpr double kSpeedSigma = 0.5;
+constexpr double kRateSigma = 0.5;
+
 int64_t clock_ns(void*) { return steady_ns(); }
 
 constexpr size_t kMaxLines = 400;
@@ -51,6 +55,13 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   set(config_.capacity.max_state_dim, options.max_state_dim);
   set(config_.capacity.max_observations, options.max_observations);
   set(config_.map.features_in_view, options.features_in_view);
+  if (!plan_.open(options.walls, error)) {
+    code = kExitUsage;
+    return false;
+  }
+  if (options.max_planes < 0) {  // room for all walls, and for as many found planes as without
+    config_.capacity.max_planes = std::min(64, config_.capacity.max_planes + plan_.count());
+  }
   if (options.max_observations < 0) {
     config_.capacity.max_observations = std::max(config_.capacity.max_observations, config_.map.features_in_view);
   }
@@ -74,11 +85,13 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   } else if (options.start.rfind("rectangle:", 0) == 0) {
     has_target_ = pf_parse_rectangle(options.start.c_str() + 10, &target_, message) == 0;
     code = has_target_ ? code : kExitUsage;
+  } else if (options.start.rfind("pose:", 0) == 0) {
+    has_pose_ = pf_read_first_pose(options.start.c_str() + 5, &pose_, message) == 0;
   } else if (options.start == "target") {
     has_target_ = source.target(target_);
     std::snprintf(message, sizeof(message), "--start target: this source knows no target; write target:FILE");
   }
-  if (!has_target_ && options.start != "auto") {
+  if (!has_target_ && !has_pose_ && options.start != "auto") {
     error = message;
     return false;
   }
@@ -94,7 +107,11 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     error = std::string("the library could not be set up: ") + pf_status_text(status);
     return false;
   }
-  return begin(error);
+  if (!begin(error)) {
+    code = plan_.empty() ? code : kExitUsage;
+    return false;
+  }
+  return true;
 }
 
 bool Session::begin(std::string& error) {
@@ -109,7 +126,19 @@ bool Session::begin(std::string& error) {
       return false;
     }
   }
-  return true;
+  if (has_pose_) {
+    double velocity_covariance[36] = {};
+    for (size_t i = 0; i < 3; ++i) {
+      velocity_covariance[7 * i] = kSpeedSigma * kSpeedSigma;
+      velocity_covariance[7 * (i + 3)] = kRateSigma * kRateSigma;
+    }
+    const pf_status_t status = pf_start_from_pose(slam_, &pose_, velocity_covariance);
+    if (status < 0) {
+      error = "--start " + start_ + ": the pose was refused: " + pf_status_text(status);
+      return false;
+    }
+  }
+  return plan_.add_to(slam_, error);
 }
 
 bool Session::reset(std::string& error) {

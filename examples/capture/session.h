@@ -8,6 +8,7 @@
 
 #include "imu_feed.h"
 #include "options.h"
+#include "plan.h"
 #include "source.h"
 #include "view.h"
 
@@ -38,6 +39,9 @@ class Session {
   const pf_memory_t& memory() const { return memory_; }
   const std::string& start() const { return start_; }
   const pf_target_t* target() const { return has_target_ ? &target_ : nullptr; }
+  /// Lengths of the world are metres: the start says so.
+  bool is_metric() const { return has_target_ || has_pose_; }
+  const Plan& plan() const { return plan_; }
   const std::vector<std::string>& log() const { return log_; }
 
  private:
@@ -50,6 +54,9 @@ class Session {
   pf_memory_t memory_{};
   pf_target_t target_{};
   bool has_target_ = false;
+  pf_pose_t pose_{};  ///< of the first frame
+  bool has_pose_ = false;
+  Plan plan_;
   bool has_gravity_ = false;
   double gravity_W_[3] = {0.0, 0.0, 0.0};
   std::string start_;

@@ -247,6 +247,7 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
                      {"share_rows_saved", mean_of(folding_.share_saved)}};
   json["state_dim_held"] = last_report_.state_dim_held;
   json["planes"] = planes_json(last_planes_);
+  json["walls"] = session.plan().to_json(session.slam());
   json["hits"] = hits_json(last_hits_);
   json["gravity"] = options.has_gravity ? Json(options.gravity_W) : Json();
   json["nis_per_dof"] = nis_dof_ > 0 ? Json(rounded(nis_ / static_cast<double>(nis_dof_))) : Json();

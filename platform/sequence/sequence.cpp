@@ -253,6 +253,14 @@ int pf_read_target(const char* path, pf_target_t* target, char message[PF_SEQUEN
   });
 }
 
+int pf_read_first_pose(const char* path, pf_pose_t* pose, char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(path, "path");
+    require(pose, "pose");
+    *pose = pf::sequence::read_first_pose(path);
+  });
+}
+
 int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]) {
   return guarded(message, [&] {
     require(text, "text");

@@ -1,6 +1,8 @@
 #include "target.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "file.h"
 #include "numbers.h"
@@ -17,6 +19,7 @@ constexpr double kRectangleSigma = 0.0005;
 constexpr double kPointSigma = 0.001;
 constexpr double kFirstPositionSigma = 0.02;
 constexpr double kFirstRotationSigma = 0.05;
+constexpr double kFirstPoseDegrees = 3.0;
 
 double positive(const Fields& fields, const char* key, double value, double largest) {
   if (!(value > 0.0) || value > largest) {
@@ -59,22 +62,26 @@ void set_points(const Fields& fields, const char* key, pf_target_t& target) {
   }
 }
 
-void set_first_pose(const Fields& fields, const char* position_key, const char* quaternion_key, pf_target_t& target) {
-  const std::vector<double> position = fields.numbers(position_key, 3);
-  const std::vector<double> q = fields.numbers(quaternion_key, 4);
-  if (position.size() != 3) {
-    fields.refuse_field(position_key, "must be three numbers [m]");
-  }
+void set_quaternion(const Fields& fields, const char* key, double q_out[4]) {
+  const std::vector<double> q = fields.numbers(key, 4);
   if (q.size() != 4) {
-    fields.refuse_field(quaternion_key, "must be four numbers: w, x, y, z");
+    fields.refuse_field(key, "must be four numbers: w, x, y, z");
   }
   const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (!(std::fabs(norm - 1.0) < 0.01)) {
-    fields.refuse_field(quaternion_key, "must have length 1");
+    fields.refuse_field(key, "must have length 1");
   }
   for (size_t i = 0; i < 4; ++i) {
-    target.first_pose.q_WC[i] = q[i] / norm;
+    q_out[i] = q[i] / norm;
   }
+}
+
+void set_first_pose(const Fields& fields, const char* position_key, const char* quaternion_key, pf_target_t& target) {
+  const std::vector<double> position = fields.numbers(position_key, 3);
+  if (position.size() != 3) {
+    fields.refuse_field(position_key, "must be three numbers [m]");
+  }
+  set_quaternion(fields, quaternion_key, target.first_pose.q_WC);
   for (size_t i = 0; i < 3; ++i) {
     if (std::fabs(position[i]) > kLargest) {
       fields.refuse_field(position_key, "is farther than 1000 m from the origin; the unit is the metre");
@@ -88,6 +95,24 @@ void set_first_pose(const Fields& fields, const char* position_key, const char* 
   for (size_t i = 0; i < 3; ++i) {
     target.first_pose.covariance[7 * i] = sigma_rotation * sigma_rotation;
     target.first_pose.covariance[7 * (i + 3)] = sigma_position * sigma_position;
+  }
+}
+
+/// Where a rectangle is in W; nothing where the file does not say it.
+void set_place(const Fields& fields, pf_target_t& target) {
+  if (!fields.has("q_WT") && !fields.has("p_WT")) {
+    return;
+  }
+  set_quaternion(fields, "q_WT", target.q_WT);
+  const std::vector<double> p = fields.numbers("p_WT", 3);
+  if (p.size() != 3) {
+    fields.refuse_field("p_WT", "must be three numbers [m]");
+  }
+  for (size_t i = 0; i < 3; ++i) {
+    if (std::fabs(p[i]) > kLargest) {
+      fields.refuse_field("p_WT", "is farther than 1000 m from the origin; the unit is the metre");
+    }
+    target.p_WT[i] = p[i];
   }
 }
 
@@ -128,7 +153,8 @@ pf_target_t parse_target(const std::string& text, const std::string& file) {
     set_points(fields, "points", target);
     set_first_pose(fields.below(pose), "position", "quaternion_wxyz", target);
   } else if (fields.has("width") || fields.has("height")) {
-    fields.check_keys({{"width", "height", "sigma"}, {"comment"}, true});
+    fields.check_keys({{"width", "height", "sigma", "q_WT", "p_WT"}, {"comment"}, true});
+    set_place(fields, target);
     target.width = positive(fields, "width", fields.number("width"), kLargest);
     target.height = positive(fields, "height", fields.number("height"), kLargest);
     target.sigma = kRectangleSigma;
@@ -141,6 +167,71 @@ pf_target_t parse_target(const std::string& text, const std::string& file) {
 
 pf_target_t read_target(const std::string& path) {
   return parse_target(read_text(path, kMaxYamlBytes, "target"), path);
+}
+
+pf_pose_t parse_first_pose(const std::string& text, const std::string& file) {
+  std::vector<double> number;
+  for (size_t begin = 0, lines = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line = text.substr(begin, end - begin);
+    begin = end + 1;
+    const size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#') {
+      continue;
+    }
+    if (++lines > 1) {
+      refuse(file + ": has more than one pose; the pose of the first frame is wanted, alone");
+    }
+    for (size_t from = first; from != std::string::npos;) {
+      const size_t to = std::min(line.find_first_of(" \t\r", from), line.size());
+      double value = 0.0;
+      if (!parse_double(line.substr(from, to - from), value) || !std::isfinite(value)) {
+        refuse(file + ": number " + std::to_string(number.size() + 1) + " of the pose is not a finite number");
+      }
+      number.push_back(value);
+      from = line.find_first_not_of(" \t\r", to);
+    }
+  }
+  if (number.size() != 8 && number.size() != 10) {
+    refuse(file +
+           ": a pose is one line: seconds x y z qx qy qz qw, and behind it sigma_position_m and sigma_rotation_deg or "
+           "neither");
+  }
+  pf_pose_t pose{};
+  double norm = 0.0;
+  for (size_t i = 4; i < 8; ++i) {
+    norm += number[i] * number[i];
+  }
+  norm = std::sqrt(norm);
+  if (!(std::fabs(norm - 1.0) < 0.01)) {
+    refuse(file + ": the quaternion qx qy qz qw must have length 1");
+  }
+  pose.q_WC[0] = number[7] / norm;
+  for (size_t i = 0; i < 3; ++i) {
+    pose.q_WC[1 + i] = number[4 + i] / norm;
+    pose.p_WC[i] = number[1 + i];
+    if (std::fabs(pose.p_WC[i]) > 1e5) {
+      refuse(file + ": the position is farther than 100 km from the origin; the unit is the metre");
+    }
+  }
+  constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  const double sigma_position = number.size() == 10 ? number[8] : kFirstPositionSigma;
+  const double sigma_rotation = kDegree * (number.size() == 10 ? number[9] : kFirstPoseDegrees);
+  if (!(sigma_position > 0.0 && sigma_position <= kLargest)) {
+    refuse(file + ": sigma_position_m must be more than 0 and at most 1000");
+  }
+  if (!(sigma_rotation > 0.0 && sigma_rotation <= 180.0 * kDegree)) {
+    refuse(file + ": sigma_rotation_deg must be more than 0 and at most 180");
+  }
+  for (size_t i = 0; i < 3; ++i) {
+    pose.covariance[7 * i] = sigma_rotation * sigma_rotation;
+    pose.covariance[7 * (i + 3)] = sigma_position * sigma_position;
+  }
+  return pose;
+}
+
+pf_pose_t read_first_pose(const std::string& path) {
+  return parse_first_pose(read_text(path, kMaxYamlBytes, "pose"), path);
 }
 
 pf_target_t parse_rectangle(const std::string& text) {

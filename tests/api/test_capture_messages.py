@@ -110,6 +110,14 @@ def test_usage(root):
     expect("back end", 2, ["--backend", "filter"], "--source", source, "--backend", "magic")
     expect("start", 2, ["--start"], "--source", source, "--start", "somehow")
     expect("rectangle", 2, ["rectangle:", "metres"], "--source", source, "--start", "rectangle:big", *out)
+    expect("half a pose", 1, ["half.tum", "one line"], "--source", source, "--start", f"pose:{written(root, 'half.tum', '0 1 2 3')}", *out)
+    expect("a long quaternion", 1, ["long.tum", "length 1"], "--source", source, "--start",
+           f"pose:{written(root, 'long.tum', '0 0 0 0 1 1 1 1')}", *out)
+    expect("a pose that is no number", 1, ["nan.tum", "number 3"], "--source", source, "--start",
+           f"pose:{written(root, 'nan.tum', '0 0 nan 0 0 0 0 1')}", *out)
+    expect("two poses", 1, ["two.tum", "more than one"], "--source", source, "--start",
+           f"pose:{written(root, 'two.tum', '0 0 0 0 0 0 0 1' + chr(10) + '1 0 0 0 0 0 0 1')}", *out)
+    expect("no pose", 1, ["none.tum"], "--source", source, "--start", f"pose:{root}/none.tum", *out)
     expect("withdrawn", 2, ["--withdraw-target-after"], "--source", source, "--withdraw-target-after", "5")
     expect("lens", 2, ["--lens", "exact, consider or estimate"], "--source", source, "--lens", "free", *out)
     expect("timestamps", 2, ["--timestamps", "real or nominal"], "--source", source, "--timestamps", "counted", *out)
@@ -118,6 +126,33 @@ def test_usage(root):
     expect("skip", 2, ["--skip", "2 frames"], "--source", source, "--skip", "2", *out)
     if capture("--help", quiet=False).returncode != 0:
         failures.append("--help does not end with 0")
+
+
+def written(root, name, text):
+    (root / name).write_text(text)
+    return root / name
+
+
+def test_walls(root):
+    source = f"images:{folder(root, 'good', [pgm(noise())] * 2)}"
+    out = ["--out", root / "walls"]
+    start = ["--start", f"pose:{written(root, 'pose.tum', '# as written by hand' + chr(10) + '0 0 0 0 0 0 0 1 0.01 1')}"]
+    wall = {"name": "north", "from": [0, 4], "to": [6, 4], "base": 0, "height": 3, "seen_from": "right", "sigma_rotation_deg": 2,
+            "sigma_vertical_deg": 1, "sigma_offset_m": 0.1}
+
+    def refuse(name, code, parts, walls, *arguments, start=start):
+        path = written(root, "plan.json", walls if isinstance(walls, str) else json.dumps({"planefold_walls": 1, "walls": walls}))
+        expect(name, code, ["--walls", *parts], "--source", source, "--walls", path, *out, *start, *arguments)
+
+    refuse("a field is missing", 2, ["plan.json", "wall 'north'", "'height'", "missing"], [{k: v for k, v in wall.items() if k != "height"}])
+    refuse("a height of NaN", 2, ["plan.json", "wall 'north'", "'height'"], [wall | {"height": float("nan")}])
+    refuse("a wall of no length", 2, ["plan.json", "wall 'north'", "'to'", "no length"], [wall | {"to": [0, 4]}])
+    refuse("10,000 walls", 2, ["plan.json", "'walls'", "10000", "64"], [wall | {"name": f"wall {i}"} for i in range(10000)])
+    refuse("no JSON", 2, ["plan.json"], "walls:")
+    refuse("walls without a start in their frame", 2, ["--start pose:FILE", "q_WT"], [wall], start=[])
+    refuse("walls without planes", 2, ["needs planes"], [wall], "--no-planes")
+    refuse("too few planes", 2, ["'south'", "--max-planes"], [wall, wall | {"name": "south"}], "--max-planes", "1")
+    expect("no such plan", 2, ["--walls", "none.json"], "--source", source, "--walls", root / "none.json", *start, *out)
 
 
 def test_sources(root):
@@ -241,7 +276,7 @@ def main():
     if not PROGRAM.is_file():
         skip("pf-capture was not built")
     print("seed", SEED)
-    for test in (test_usage, test_sources, test_cameras, test_unusable_images, test_wrong_images, test_kinds_side_by_side, test_useless_images):
+    for test in (test_usage, test_walls, test_sources, test_cameras, test_unusable_images, test_wrong_images, test_kinds_side_by_side, test_useless_images):
         with tempfile.TemporaryDirectory(prefix="planefold_") as name:
             test(pathlib.Path(name))
     if failures:

@@ -93,12 +93,19 @@ int pf_write_calibration(const char* path, uint32_t form, const pf_camera_t* cam
                          char message[PF_SEQUENCE_MESSAGE]);
 
 /* A target file:
- *   width, height [m], sigma [m] (optional, 0.0005)                                 a dark rectangle
+ *   width, height [m], sigma [m] (optional, 0.0005), and where it is in W:
+ *     q_WT: [w, x, y, z], p_WT: [x, y, z] [m] (both or neither)                     a dark rectangle
  *   points: [[x, y, z], ..] [m], first_pose: {position: [x, y, z], quaternion_wxyz: [w, x, y, z],
  *     sigma_position [m] (optional, 0.02), sigma_rotation [rad] (optional, 0.05)}, sigma [m] (optional, 0.001)
  *     (T_WC is welcome as another name of first_pose)                               known points
  *   features, start_camera_position, start_camera_quat_wxyz, sigma (optional)       known points in SceneLib's form */
 int pf_read_target(const char* path, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]);
+
+/* The pose of the first frame, from one line of a TUM trajectory with its sigmas behind it:
+ *   seconds x y z qx qy qz qw [sigma_position_m sigma_rotation_deg]
+ * in metres; the sigmas are of each axis, 0.02 m and 3 degrees where there are none. Empty lines and such that begin with # are passed
+ * over. t_ns is 0, and velocities are zero. */
+int pf_read_first_pose(const char* path, pf_pose_t* pose, char message[PF_SEQUENCE_MESSAGE]);
 
 /* "0.1832x0.1295" in metres, as a rectangle. */
 int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]);

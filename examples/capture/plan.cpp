@@ -1,0 +1,104 @@
+#include "plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace pf::capture {
+
+namespace {
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+
+double rounded(double value) { return std::round(1e6 * value) / 1e6; }
+
+/// Angle between the normals of the plan and of the map [deg].
+double rotation_deg(const pf_plane_prior_t& prior, const pf_plane_t& plane) {
+  const Vec3 a = {prior.R_WP[2], prior.R_WP[5], prior.R_WP[8]};
+  const Vec3 b = {plane.normal_W[0], plane.normal_W[1], plane.normal_W[2]};
+  const Vec3 c = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  return kDegrees * std::atan2(std::sqrt(dot(c, c)), dot(a, b));
+}
+
+/// How far the plane now is from the wall's own centre in the plan, along its normal [m].
+double offset_m(const pf_plane_prior_t& prior, const pf_plane_t& plane) {
+  double at = -plane.distance;
+  for (size_t i = 0; i < 3; ++i) at += plane.normal_W[i] * prior.p_WP[i];
+  return -at;
+}
+
+}  // namespace
+
+bool Plan::open(const std::string& path, std::string& error) {
+  if (path.empty()) return true;
+  char message[PF_WALLS_MESSAGE] = "";
+  const auto read = std::make_unique<pf_walls_t>();
+  if (pf_read_walls(path.c_str(), read.get(), message) != 0) {
+    error = std::string("--walls ") + message;
+    return false;
+  }
+  walls_ = *read;
+  return true;
+}
+
+bool Plan::add_to(pf_slam_t* slam, std::string& error) {
+  id_.assign(static_cast<size_t>(walls_.count), 0);
+  for (int32_t i = 0; i < walls_.count; ++i) {
+    const pf_status_t status = pf_add_plane_prior(slam, &walls_.wall[i].prior, &id_[static_cast<size_t>(i)]);
+    if (status >= PF_OK) continue;
+    error = std::string("--walls: wall '") + walls_.wall[i].name + "' was refused: " + pf_status_text(status);
+    if (status == PF_ERROR_STATE)
+      error =
+          "--walls needs planes, and a start in the plan's frame: --start pose:FILE, or target:FILE with points or "
+          "with q_WT and p_WT";
+    if (status == PF_ERROR_FULL) error += "; raise --max-planes or --max-state-dim";
+    return false;
+  }
+  if (walls_.has_up == 0) return true;
+  const double gravity_W[3] = {-walls_.up_W[0], -walls_.up_W[1], -walls_.up_W[2]};
+  return pf_set_gravity(slam, gravity_W) >= PF_OK;
+}
+
+nlohmann::ordered_json Plan::to_json(const pf_slam_t* slam) const {
+  auto json = nlohmann::ordered_json::array();
+  std::vector<pf_plane_t> planes(64);
+  size_t count = 0;
+  if (pf_get_planes(slam, planes.data(), planes.size(), &count) < PF_OK) count = 0;
+  planes.resize(std::min(count, planes.size()));
+  for (size_t i = 0; i < id_.size(); ++i) {
+    const pf_wall_t& wall = walls_.wall[i];
+    const auto is_it = [&](const pf_plane_t& plane) { return plane.id == id_[i]; };
+    const auto plane = std::find_if(planes.begin(), planes.end(), is_it);
+    nlohmann::ordered_json row = {{"name", wall.name}, {"id", id_[i]}};
+    if (plane == planes.end()) {  // the estimate was given up, and the plan's frame with it
+      row["gone"] = true;
+      json.push_back(row);
+      continue;
+    }
+    row["doubted"] = plane->doubted != 0;
+    row["points"] = plane->points;
+    row["rotation_deg"] = rounded(rotation_deg(wall.prior, *plane));
+    row["offset_m"] = rounded(offset_m(wall.prior, *plane));
+    row["sigma_deg"] = rounded(kDegrees * std::sqrt(std::max(plane->covariance[0], plane->covariance[4])));
+    row["sigma_m"] = rounded(std::sqrt(plane->covariance[8]));
+    json.push_back(row);
+  }
+  return json;
+}
+
+std::vector<std::vector<Vec3>> Plan::outlines() const {
+  std::vector<std::vector<Vec3>> outlines;
+  for (int32_t i = 0; i < walls_.count; ++i) {
+    const pf_plane_prior_t& prior = walls_.wall[i].prior;
+    std::vector<Vec3>& outline = outlines.emplace_back();
+    for (int32_t k = 0; k < prior.outline_count; ++k) {
+      Vec3& p = outline.emplace_back();
+      for (size_t j = 0; j < 3; ++j)
+        p[j] =
+            prior.p_WP[j] + prior.R_WP[3 * j] * prior.outline_P[k][0] + prior.R_WP[3 * j + 1] * prior.outline_P[k][1];
+    }
+  }
+  return outlines;
+}
+
+}  // namespace pf::capture
