@@ -197,20 +197,17 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
     const PixelMeasurement* observations = update_.observations() + first;
     const int inliers = find_inliers(filter_, observations, found, settings_.gate, keep + first);
     // If an earlier range has given inliers, any consensus is accepted.
-    if (frame_.report.inliers > 0) {
-      accepted = true;
-    } else if (rule == ConsensusRule::kStart) {
-      accepted = inliers >= std::min(kMinConsensus, map_.features.count());
-    } else if (rule == ConsensusRule::kMostAgree) {
-      accepted = inliers >= settings_.min_inliers && 2 * inliers >= frame_.report.attempts;
-    } else {
-      for (int i = 0; i < found; ++i) searched_px2_[i] = searched_area(first + i);
-      const TripleConsensus consensus =
-          find_triple_consensus(filter_, observations, searched_px2_, found, frame_.report.attempts, settings_.gate,
-                                tuning::tracking::kTriples, keep + first, nullptr);
-      accepted = inliers >= settings_.min_inliers && consensus.log_false < tuning::tracking::kMaxLogFalse;
+    int least = 1;
+    accepted = inliers > 0;
+    if (frame_.report.inliers == 0 && rule == ConsensusRule::kStart) {
+      least = std::min(kMinConsensus, map_.features.count());
+    } else if (frame_.report.inliers == 0) {
+      least = settings_.min_inliers;
+      accepted = inliers >= least && (rule == ConsensusRule::kMostAgree ? 2 * inliers >= frame_.report.attempts
+                                                                        : is_beyond_chance(first, found));
     }
-    if (accepted) nis = update_.reject_contradicted(first, found);
+    // A match that all the others contradict supports nothing.
+    if (accepted) accepted = update_.reject_contradicted(first, found, &nis) >= least;
   }
   for (int i = first; i < first + found; ++i) {
     const PixelMeasurement& o = update_.observation(i);
@@ -224,6 +221,15 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
   if (!accepted || !update_.apply(first, found, nullptr)) return false;
   frame_.report.nis += nis;
   return true;
+}
+
+/// Whether chance would hardly let as many matches agree as keep says.
+bool ImageFrontEnd::is_beyond_chance(int first, int found) {
+  for (int i = 0; i < found; ++i) searched_px2_[i] = searched_area(first + i);
+  const TripleConsensus consensus =
+      find_triple_consensus(filter_, update_.observations() + first, searched_px2_, found, frame_.report.attempts,
+                            settings_.gate, tuning::tracking::kTriples, update_.keep() + first, nullptr);
+  return consensus.log_false < tuning::tracking::kMaxLogFalse;
 }
 
 Scalar ImageFrontEnd::searched_area(int i) const {

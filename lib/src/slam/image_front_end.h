@@ -55,6 +55,7 @@ class ImageFrontEnd {
   void predict_pixels(int first, int count);
   /// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
   int search(int first, int count);
+  bool is_beyond_chance(int first, int found);
   /// Area of a candidate's search ellipse [px^2], at most that of the image.
   Scalar searched_area(int i) const;
 

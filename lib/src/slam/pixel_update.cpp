@@ -28,11 +28,12 @@ void PixelUpdate::begin(int first, int count) {
   filter_.begin_update(observation_ + first, count);
 }
 
-double PixelUpdate::reject_contradicted(int first, int count) {
-  Scalar nis = 0;
+int PixelUpdate::reject_contradicted(int first, int count, double* nis) {
+  Scalar sum = 0;
   others_.reject(filter_, observation_ + first, count, tuning::pixel_update::kOthersGate * settings_.gate,
-                 keep_ + first, &nis);
-  return static_cast<double>(nis);
+                 keep_ + first, &sum);
+  *nis = static_cast<double>(sum);
+  return static_cast<int>(std::count(keep_ + first, keep_ + first + count, static_cast<unsigned char>(1)));
 }
 
 bool PixelUpdate::apply(int first, int count, double* nis) {

@@ -44,9 +44,9 @@ class PixelUpdate {
   Mat2 expected_innovation(PixelMeasurement* o) const;
   /// Computes H P H^T of `count` observations from `first` on.
   void begin(int first, int count);
-  /// Stops keeping matches of the range that begin() got which all the other kept ones contradict. Returns the normalised innovation
-  /// squared of those that stay, jointly, with R_gate.
-  double reject_contradicted(int first, int count);
+  /// Stops keeping matches of the range that begin() got which all the other kept ones contradict. Returns how many stay. *nis: their
+  /// normalised innovation squared, jointly, with R_gate.
+  int reject_contradicted(int first, int count, double* nis);
   /// Updates with the kept ones of the range that begin() got. False if the update could not be made; then nothing has changed.
   /// Adds their normalised innovation squared to *nis where it is not null.
   bool apply(int first, int count, double* nis);
