@@ -1,10 +1,7 @@
 #include "kidnap_run.h"
 
-#include <planefold_platform/sequence.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "sim/linear.h"
 #include "sim/random.h"
@@ -20,10 +17,6 @@ constexpr double kDegrees = 57.29577951308232;  // in a radian
 constexpr double kTruthShare =
     0.2;  // of these bounds, that the reference's own sigmas may reach where it serves as truth
 constexpr std::uint64_t kOrderStream = 31;
-
-struct CloseSequence {
-  void operator()(pf_sequence_t* s) const { pf_close_sequence(s); }
-};
 
 Vec3 vector_of(const double p[3]) { return {p[0], p[1], p[2]}; }
 
@@ -205,41 +198,6 @@ const std::vector<GapCase>& gap_cases() {
     return all;
   }();
   return cases;
-}
-
-bool Film::open(const std::string& source, std::string* error) {
-  char message[PF_SEQUENCE_MESSAGE] = "";
-  pf_sequence_t* opened = nullptr;
-  if (pf_open_sequence(source.c_str(), nullptr, &opened, message) != 0) {
-    *error = message;
-    return false;
-  }
-  const std::unique_ptr<pf_sequence_t, CloseSequence> sequence(opened);
-  pf_sequence_info_t info;
-  pf_get_sequence_info(opened, &info);
-  camera_ = info.camera;
-  interval_ns_ = static_cast<std::int64_t>(1e9 / info.rate_hz);
-  const std::size_t size = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
-  pixels_.reserve(size * static_cast<std::size_t>(info.count + 1));
-  for (std::int64_t i = 0; i < info.count; ++i) {
-    pf_image_t image;
-    if (pf_read_sequence_frame(opened, i, &image, message) != 0) {
-      *error = message;
-      return false;
-    }
-    times_ns_.push_back(image.t_ns);
-    for (int row = 0; row < image.height; ++row) {
-      const std::uint8_t* from = image.pixels + static_cast<std::ptrdiff_t>(row) * image.stride;
-      pixels_.insert(pixels_.end(), from, from + image.width);
-    }
-  }
-  pixels_.resize(pixels_.size() + size, 0);
-  return true;
-}
-
-const std::uint8_t* Film::pixels(int frame) const {
-  const std::size_t size = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
-  return pixels_.data() + size * static_cast<std::size_t>(frame < 0 ? frames() : frame);
 }
 
 bool play_reference(const Film& film, const KidnapOptions& options, Context& context, Reference* reference) {
