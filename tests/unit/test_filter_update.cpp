@@ -8,13 +8,14 @@ void tearDown(void) {}
 
 namespace {
 
-/// What the textbook makes of the kept observations: dx = K y and (I - K H) P (I - K H)^T + K R K^T.
+/// What the textbook makes of the kept observations: dx = K y and (I - K H) P (I - K H)^T + K R K^T. Only the first `estimated` rows of K
+/// are used, where that is not 0 (Schmidt).
 struct Textbook {
   Eigen::VectorXd dx;
   Dense P;
   double nis;
 
-  Textbook(const Scene& scene, const unsigned char* keep) {
+  Textbook(const Scene& scene, const unsigned char* keep, int estimated = 0) {
     const int n = scene.filter.dim();
     std::vector<int> taken;
     for (int i = 0; i < scene.count(); ++i)
@@ -30,7 +31,8 @@ struct Textbook {
     }
     const Dense before = scene.filter.P();
     const Dense S_inverse = (H * before * H.transpose() + R).inverse();
-    const Dense K = before * H.transpose() * S_inverse;
+    Dense K = before * H.transpose() * S_inverse;
+    if (estimated > 0) K.bottomRows(n - estimated).setZero();
     const Dense A = Dense::Identity(n, n) - K * H;
     dx = K * y;
     P = A * before * A.transpose() + K * R * K.transpose();
@@ -63,8 +65,8 @@ void check_state(const State& before, const TestFilter& filter, const std::vecto
   }
 }
 
-void check_update(Scene& scene, const unsigned char* keep, bool textbook_covariance) {
-  const Textbook expected(scene, keep);
+void check_update(Scene& scene, const unsigned char* keep, bool textbook_covariance, int estimated = 0) {
+  const Textbook expected(scene, keep, estimated);
   const State before = scene.filter->state();
   const std::vector<Block> blocks(before.block, before.block + before.slots);
   scene.filter->begin_update(scene.observations.data(), scene.count());
@@ -94,6 +96,28 @@ void test_update_should_be_the_textbook_ekf_of_what_is_kept_when_some_is_rejecte
   }
 }
 
+void test_update_should_be_schmidts_when_only_motion_is_estimated() {
+  SeededRandom random(87);
+  for (int trial = 0; trial < 20; ++trial) {
+    Scene scene(random, false);
+    const Dense before = scene.filter.P();
+    const int moving = scene.filter->state().layout.dynamic_rows(), others = scene.filter.dim() - moving;
+    scene.filter->estimate_motion_only(true);
+    check_update(scene, nullptr, true, moving);
+    TEST_ASSERT_TRUE(
+        difference(scene.filter.P().bottomRightCorner(others, others), before.bottomRightCorner(others, others)) == 0);
+    scene.filter->estimate_motion_only(false);
+    for (PixelMeasurement& o : scene.observations) {
+      const Vec2 measured = o.measured;
+      const Mat2 noise = o.R_update;
+      TEST_ASSERT_TRUE(scene.filter->predict_pixel(pinhole_camera(), o.block, &o));
+      o.measured = measured;
+      o.set_noise(noise);
+    }
+    check_update(scene, nullptr, true);
+  }
+}
+
 void test_update_should_move_the_mean_like_the_textbook_when_the_gauge_is_kept() {
   SeededRandom random(83);
   for (int trial = 0; trial < 20; ++trial) {
@@ -107,7 +131,9 @@ void test_update_should_only_move_the_gauge_of_the_textbook_covariance_when_it_i
   SeededRandom random(84);
   for (int trial = 0; trial < 20; ++trial) {
     Scene scene(random, true);
-    const Textbook expected(scene, nullptr);
+    const bool only_motion = trial % 2 == 1;
+    const Textbook expected(scene, nullptr, only_motion ? scene.filter->state().layout.dynamic_rows() : 0);
+    scene.filter->estimate_motion_only(only_motion);
     const Dense before = scene.filter.gauge();
     scene.filter->begin_update(scene.observations.data(), scene.count());
     TEST_ASSERT_TRUE(scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr));
@@ -185,6 +211,7 @@ int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_update_should_be_the_textbook_ekf_when_all_is_taken_in);
   RUN_TEST(test_update_should_be_the_textbook_ekf_of_what_is_kept_when_some_is_rejected);
+  RUN_TEST(test_update_should_be_schmidts_when_only_motion_is_estimated);
   RUN_TEST(test_update_should_move_the_mean_like_the_textbook_when_the_gauge_is_kept);
   RUN_TEST(test_update_should_only_move_the_gauge_of_the_textbook_covariance_when_it_is_kept);
   RUN_TEST(test_joint_innovation_should_be_h_p_ht_in_any_order);

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   pfsim::add_gee2007(app, result);
   pfsim::add_rendered(app, result);
   pfsim::add_kidnap(app, result);
+  pfsim::add_rest(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {

@@ -45,6 +45,12 @@ class BlockFilter {
   /// with Jacobian J (rows x the others, row-major; null: independent):  C + J P_o J^T,  J P_o. Other blocks, which must be
   /// independent of the leading one, stay so.
   void set_leading(const Scalar* covariance, int rows, const Scalar* J);
+  /// Updates estimate the first `rows` rows and consider all others, until the next call. 0: those that are not held, as after init().
+  void estimate_only(int rows) { only_ = rows; }
+  /// What updates consider: rows from the first of these to before the second.
+  int considered_begin() const { return only_ > 0 && only_ < leading_dim_ ? only_ : leading_dim_; }
+  int considered_end() const { return only_ > 0 ? P_.n : held_end(); }
+
   /// So many of the leading block's last rows are considered from now on, and those before them estimated.
   void consider_last(int rows);
   /// Covariance of the leading block's rows from `first` on (row-major), independent of those before. Likewise.
@@ -92,7 +98,7 @@ class BlockFilter {
   }
   /// Scratch of i + 1 numbers above the diagonal of S, 0 <= i < max_rows - 1: the caller's between project() and gain().
   Scalar* scratch_row(int i) { return S_ + (max_rows_ - 2 - i) * lds_ + (max_rows_ - 1 - i); }
-  /// dx = P H^T (S + R)^-1 r of the projected measurements that are kept (null: all); zero for held rows. Null when S + R cannot be
+  /// dx = P H^T (S + R)^-1 r of the projected measurements that are kept (null: all); zero for considered rows. Null when S + R cannot be
   /// factored or nothing is kept; P is as it was then. *nis gets r^T (S + R)^-1 r.
   const Scalar* gain(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
   /// Rows of L^-1 H P that the gain left, S + R = L L^T.
@@ -129,6 +135,7 @@ class BlockFilter {
   int blocks_ = 0;
   int leading_dim_ = 0, held_dim_ = 0;
   int considered_ = 0;  ///< of the held rows: those of the leading block
+  int only_ = 0;        ///< estimate_only()
   int max_dim_ = 0;     ///< of the state; P_ has room for a few more
   int max_rows_ = 0;    ///< of one update
   int ld_ = 0, lds_ = 0;

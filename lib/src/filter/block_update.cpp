@@ -105,12 +105,12 @@ const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned 
   if (!(sum < kMaxNis)) return nullptr;
   *nis = sum;
   kernels_->combine(W_, m, P_.n, ld_, y_, dx_);
-  for (int i = leading_dim_; i < held_end(); ++i) dx_[i] = Scalar(0);
+  for (int i = considered_begin(); i < considered_end(); ++i) dx_[i] = Scalar(0);
   return dx_;
 }
 
 void BlockFilter::downdate(const Scalar* U, const Scalar* G, int rows) {
-  kernels_->downdate(P_, W_, gained_, U, G, rows, ld_, leading_dim_, held_end());
+  kernels_->downdate(P_, W_, gained_, U, G, rows, ld_, considered_begin(), considered_end());
 }
 
 }  // namespace pf

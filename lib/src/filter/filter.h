@@ -52,6 +52,8 @@ class Filter {
   void set_lens(const Camera& camera, const LensPrior& prior);
   /// Whether updates leave the lens as it is and allow for its error, whatever the layout says of it.
   void consider_lens(bool only_considered);
+  /// Updates estimate what moves, the body without its constants, and consider the map and the lens (Schmidt), until the next call.
+  void estimate_motion_only(bool only) { blocks_.estimate_only(only ? state_.layout.dynamic_rows() : 0); }
   /// The calibration as it is known now.
   const Camera& lens() const { return state_.lens; }
 

@@ -10,13 +10,14 @@ namespace {
 constexpr int kRotation = 0, kScale = 3, kTranslation = 4;
 static_assert(kTranslation == Kernels::kDenseRows);
 
-/// A row of a Jacobian times a dense row.
-Scalar dot(const BlockFilter& blocks, const ScaleRow& row, const Scalar* dense) {
+/// A row of a Jacobian times a dense row, of which columns before `begin` count as zero.
+Scalar dot(const BlockFilter& blocks, const ScaleRow& row, const Scalar* dense, int begin = 0) {
   Scalar v = 0;
   int c = 0;
   for (int p = 0; p < row.parts; ++p) {
     const int first = blocks.row(row.part[p]);
-    for (int i = 0; i < row.part[p].size; ++i) v += row.h[c++] * dense[first + i];
+    for (int i = 0; i < row.part[p].size; ++i, ++c)
+      if (first + i >= begin) v += row.h[c] * dense[first + i];
   }
   return v;
 }
@@ -77,7 +78,7 @@ void Transport::finish(const State& state, const BlockFilter& blocks) {
     if (which < kScale) return row[Body::kTheta + which];
     return which == kScale ? dot(blocks, l_, row) : row[Body::kPosition + which - kTranslation];
   };
-  // Of P1: less (V W^T) W. V touches no held row, so held columns are as they should be.
+  // Of P1: less (V W^T) W, as long as V touches no considered row. Only l may, in an update that considers all of the map.
   constexpr int kChunk = 64;
   Scalar A[kMaxRows * kChunk];
   for (int first = 0; first < m; first += kChunk) {
@@ -86,6 +87,7 @@ void Transport::finish(const State& state, const BlockFilter& blocks) {
       for (int r = 0; r < rows; ++r) A[r * kChunk + j] = -raw(blocks.whitened(first + j), r);
     kernels.add_product(G_, rows, A, kChunk, blocks.whitened(first), terms, n, ld_);
   }
+  add_considered(blocks);
   const Mat3 p_hat = hat(p_before_);
   if (rows == kMaxRows) {
     for (int a = 0; a < 3; ++a)
@@ -105,6 +107,18 @@ void Transport::finish(const State& state, const BlockFilter& blocks) {
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < rows; ++c) A[r * kMaxRows + c] = (VPV[r][c] + VPV[c][r]) / Scalar(4);
   kernels.add_product(G_, rows, A, kMaxRows, U_, rows, n, ld_);
+}
+
+/// P1 takes nothing from P between considered rows c: G_l there is less (l_e W_e^T) W_c only, with the other rows e.
+void Transport::add_considered(const BlockFilter& blocks) {
+  if (blocks.considered_end() <= blocks.held_end() || rows_ < kTranslation) return;
+  const int begin = blocks.considered_begin(), end = blocks.considered_end();
+  Scalar* const G_l = G_ + kScale * ld_;
+  for (int j = 0; j < blocks.gained_rows(); ++j) {
+    const Scalar* const W_j = blocks.whitened(j);
+    const Scalar l_W = dot(blocks, l_, W_j, begin);
+    for (int c = begin; c < end; ++c) G_l[c] += l_W * W_j[c];
+  }
 }
 
 }  // namespace pf

@@ -30,6 +30,8 @@ class Transport {
   int rows() const { return rows_; }
 
  private:
+  void add_considered(const BlockFilter& blocks);
+
   static constexpr int kMaxRows = 7;
 
   int ld_ = 0;

@@ -66,7 +66,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     relocaliser_.recover(data_.since_last_ns);
   } else {
     relocaliser_.clear_proposals();
-    images_.measure(rule);
+    images_.measure(rule, data_.median_depth);
   }
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
@@ -180,6 +180,10 @@ Status FrameLoop::end_frame() {
     else if (data_.image_usable)
       relocaliser_.remember_view(data_.median_depth);
   }
+  if (tracking_.is_tracked(frame_.report) && !start_.progress().recording)
+    images_.note_view(data_.median_depth);
+  else
+    images_.forget_view();
   return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
 }
 

@@ -23,9 +23,17 @@ bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observat
   return tracker_.layout(arena, width, height);
 }
 
+void ImageFrontEnd::measure(ConsensusRule rule, Scalar median_depth) {
+  is_learnt_ = rule != ConsensusRule::kStart && same_view_.is_learnt(filter_.state().body, median_depth,
+                                                                     settings_.camera.fx, noise_.correlation_frames());
+  filter_.estimate_motion_only(is_learnt_);
+  measure_visible(rule);
+  filter_.estimate_motion_only(false);
+}
+
 /// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
 /// anything is used.
-void ImageFrontEnd::measure(ConsensusRule rule) {
+void ImageFrontEnd::measure_visible(ConsensusRule rule) {
   const int count = list_visible();
   listed_ = count;
   {
@@ -245,6 +253,7 @@ bool ImageFrontEnd::is_averaged(const Feature& f) const {
 }
 
 void ImageFrontEnd::learn_noise() {
+  if (is_learnt_) return;  // the same errors once more
   for (int i = 0; i < listed_; ++i) {
     const Candidate& candidate = update_.candidate(i);
     if (update_.keep()[i] == 0 || frame_.match(candidate.match).status != MatchStatus::kInlier) continue;

@@ -6,6 +6,7 @@
 #include "slam/frame.h"
 #include "slam/noise_model.h"
 #include "slam/pixel_update.h"
+#include "slam/same_view.h"
 #include "slam/settings.h"
 #include "track/tracker.h"
 
@@ -33,12 +34,19 @@ class ImageFrontEnd {
         noise_(noise) {}
 
   bool layout(Arena& arena, int width, int height, int max_observations);
-  void init(const Camera& camera) { tracker_.init(camera); }
+  void init(const Camera& camera) {
+    tracker_.init(camera);
+    same_view_.init();
+  }
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image) { return tracker_.begin_frame(image); }
   /// Finds the map's features in the image and updates the filter with them.
-  void measure(ConsensusRule rule);
+  /// median_depth: of the last tracked frame's inliers.
+  void measure(ConsensusRule rule, Scalar median_depth);
+  /// Where the camera is after a tracked frame. SameView
+  void note_view(Scalar median_depth) { same_view_.note(filter_.state().body, median_depth, settings_.camera.fx); }
+  void forget_view() { same_view_.forget(); }
   /// Updates the noise model with the inliers' residuals after measure().
   void learn_noise();
   /// Adds features in the emptiest cells of the image until enough are in view.
@@ -60,6 +68,7 @@ class ImageFrontEnd {
   Scalar searched_area(int i) const;
 
  private:
+  void measure_visible(ConsensusRule rule);
   // image_front_end.cpp
   bool is_visible(int feature) const;
   Scalar widest_ellipse(int count) const;
@@ -78,6 +87,8 @@ class ImageFrontEnd {
   FeatureKeeper& features_;
   PixelUpdate& update_;
   NoiseModel& noise_;
+  SameView same_view_;
+  bool is_learnt_ = false;  ///< the map has learnt from this frame's view already
   Tracker tracker_;
   Scalar* searched_px2_ = nullptr;  ///< max_observations
   int listed_ = 0;                  ///< candidates of this frame

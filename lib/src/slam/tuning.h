@@ -101,6 +101,11 @@ namespace pixel_update {
 inline constexpr Scalar kOthersGate = Scalar(1.5);  ///< gates, of one match against all others: (1/100)^1.5 is 1/1000
 }  // namespace pixel_update
 
+/// A camera at rest.
+namespace same_view {
+inline constexpr Scalar kMaxMotionPx = Scalar(2);  ///< [px] of points at the median depth: errors come again within it
+}  // namespace same_view
+
 /// The noise of matches in images (lib/docs/noise.md).
 namespace noise {
 inline constexpr Scalar kReferenceSigma = Scalar(0.25);  ///< [px] of the first view, which later ones are compared with

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "filter/model/body.h"
+
+/// Whether a frame shows what the map has learnt from already: lib/docs/noise.md, "At rest".
+
+namespace pf {
+
+/// What is wrong with a match (lens, warp, first view) hangs on the view, and comes again in every frame of a camera at rest. So a view
+/// counts as often as it takes to be worth one independent measurement, tau frames; in those after them the map is considered and not
+/// estimated (Schmidt), until the camera sees something else.
+class SameView {
+ public:
+  void init() { data_ = Data(); }
+
+  /// Whether the camera at this pose, predicted for a frame, has been in its view for `enough` tracked frames.
+  bool is_learnt(const Body& body, Scalar median_depth, Scalar focal_px, Scalar enough) const {
+    return static_cast<Scalar>(data_.frames) >= enough && !has_moved(body, median_depth, focal_px);
+  }
+  /// After a tracked frame.
+  void note(const Body& body, Scalar median_depth, Scalar focal_px);
+  /// After any other.
+  void forget() { data_.frames = 0; }
+
+ private:
+  struct Data {
+    Quat q_WC = Quat::Identity();  ///< of the first frame of the view
+    Vec3 p_W = Vec3::Zero();
+    int frames = 0;  ///< in the view; 0: there is none
+  };
+
+  bool has_moved(const Body& body, Scalar median_depth, Scalar focal_px) const;
+
+  Data data_;
+};
+
+}  // namespace pf
