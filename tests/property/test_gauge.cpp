@@ -221,6 +221,17 @@ void test_operations_on_planes_should_carry_every_direction() {
   };
   carries_planes("add_plane", random, nothing, begin);
   carries_planes("fold", random, nothing, folded);
+  const auto begin_on = [](Scalar tau) {
+    return [tau](PlaneScene& scene) {
+      const State& state = scene.filter->state();
+      const Vec3 to_W = scene.fit.frame.o_W - state.body.p_W;
+      const Vec3 ray_C = (state.body.q_WC.conjugate() * to_W).normalized();
+      TEST_ASSERT_TRUE(scene.filter->add_plane_point(scene.plane, ray_C, Mat32::Zero(), Mat2::Zero(), tau) >= 0);
+    };
+  };
+  const auto slanted = [&](PlaneScene& scene) { move_a_little(scene, random); };
+  carries_planes("add_plane_point", random, slanted, begin_on(Scalar(0)));
+  carries_planes("add_plane_point of a later row", random, slanted, begin_on(Scalar(0.01)));
   const auto moved = [&](PlaneScene& scene) {
     folded(scene);
     move_a_little(scene, random);

@@ -76,6 +76,8 @@ class Filter {
   int add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho,
                         Scalar sigma_rho, Scalar tau = Scalar(0));
   int add_point(const Vec3& p_W, const Mat3& covariance);
+  /// A point of a plane, where the ray of a pixel meets it. -1 too where the ray does not meet it.
+  int add_plane_point(int plane, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar tau = Scalar(0));
 
   /// Plane through 3-D points, about the frame of their fit, with the fit's Jacobian (Gee 2007, eq 3 and 8) and the noise that points
   /// of a rough surface leave in it. Nothing is folded yet.

@@ -21,10 +21,11 @@ struct Feature {
   int slot = -1;                  ///< block in the filter; -1: this entry is free
   bool is_target = false;
   bool has_appearance = false;
-  int observations = 0;  ///< frames in which it was an inlier
-  int attempts = 0;      ///< frames in which it was searched for
-  int failures = 0;      ///< attempts since it was last an inlier
-  int rejections = 0;    ///< of these failures, matches that were outliers
+  bool on_trial = false;  ///< began on a plane, which nothing but its place in the image says yet
+  int observations = 0;   ///< frames in which it was an inlier
+  int attempts = 0;       ///< frames in which it was searched for
+  int failures = 0;       ///< attempts since it was last an inlier
+  int rejections = 0;     ///< of these failures, matches that were outliers
   std::int64_t last_seen_ns = 0;
   ResidualTrace residuals;
 };

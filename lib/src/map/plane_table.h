@@ -33,6 +33,15 @@ struct PlaneEntry {
   Scalar roughness = 0;  ///< [m] of its surface
   PlaneOutline plan;     ///< of a wall, as it was given
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
+
+  static constexpr int kOutlierShare = 4;  ///< one in so many
+  /// Whether points that nothing else is known of may begin on it: it was found, has had enough points for kProvenAge frames, and most
+  /// kept to it.
+  bool is_proven(int min_points) const {
+    constexpr int kProvenAge = 10;
+    return !known && age >= kProvenAge && weak == 0 && max_points > min_points &&
+           kOutlierShare * outliers <= max_points;
+  }
 };
 
 class PlaneTable {

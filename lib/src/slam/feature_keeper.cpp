@@ -5,6 +5,7 @@
 #include "base/elapsed.h"
 #include "filter/camera_at.h"
 #include "filter/observe/inverse_depth.h"
+#include "geometry/ray_plane.h"
 #include "slam/plane_walls.h"
 #include "slam/tuning.h"
 
@@ -186,7 +187,43 @@ int FeatureKeeper::add(int anchor, const Vec2& pixel, const Mat2& noise) {
   const int slot =
       filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, settings_.inverse_depth_relative_sigma * rho,
                                 row_time(filter_.lens(), pixel.y()));
-  if (slot < 0) return -1;
+  return slot < 0 ? -1 : add_entry(slot);
+}
+
+int FeatureKeeper::plane_at(const Vec2& pixel) const {
+  Vec3 ray_C;
+  if (!settings_.planes || !unproject(filter_.lens(), pixel, &ray_C)) return -1;
+  const CameraAt camera = camera_at(filter_.state(), row_time(filter_.lens(), pixel.y()));
+  const Vec3 ray_W = camera.q_WC * ray_C;
+  int nearest = -1;
+  Scalar range2 = 0;
+  for (int i = 0; i < map_.planes.capacity(); ++i) {
+    if (!map_.planes.used(i) || !map_.planes[i].is_proven(settings_.plane_min_points)) continue;
+    const Block& block = filter_.state().block[map_.planes[i].slot];
+    const PlaneFrame& frame = filter_.state().frame_of(block);
+    Vec3 at;
+    if (!intersect_ray_plane(frame, block.xyz(), camera.p_W, ray_W, &at)) continue;
+    if (!outline_contains(map_.planes[i].seen, plane_coordinates(frame, at))) continue;
+    const Scalar to2 = (at - camera.p_W).squaredNorm();
+    if (nearest >= 0 && to2 >= range2) continue;
+    nearest = map_.planes[i].slot;
+    range2 = to2;
+  }
+  return nearest;
+}
+
+int FeatureKeeper::add_on_plane(int plane, const Vec2& pixel, const Mat2& noise) {
+  Vec3 ray_C;
+  Mat32 J_ray_pixel;
+  if (!unproject(filter_.lens(), pixel, &ray_C, &J_ray_pixel)) return -1;
+  const int slot = filter_.add_plane_point(plane, ray_C, J_ray_pixel, noise, row_time(filter_.lens(), pixel.y()));
+  const int entry = slot < 0 ? -1 : add_entry(slot);
+  if (entry >= 0) map_.features[entry].on_trial = true;
+  return entry;
+}
+
+/// The table's entry of a new block, which goes where the table has no room.
+int FeatureKeeper::add_entry(int slot) {
   const int entry = map_.features.add(slot);
   if (entry < 0) {
     filter_.remove(&slot, 1);

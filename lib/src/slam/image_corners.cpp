@@ -65,16 +65,19 @@ bool ImageFrontEnd::add_in(const Rect& rect, int* anchor) {
     if (corner[c].score < kMinCornerScore) return false;
     const Vec2 pixel(static_cast<Scalar>(corner[c].x), static_cast<Scalar>(corner[c].y));
     if (!is_free(pixel)) continue;
-    if (frame_.full() || !features_.make_room_at(anchor)) return false;
-    const int entry = features_.add(*anchor, pixel, NoiseModel::reference());
+    if (frame_.full()) return false;
+    const int plane = features_.plane_at(pixel);
+    if (!(plane >= 0 ? features_.make_room_on_plane() : features_.make_room_at(anchor))) return false;
+    const int entry = plane >= 0 ? features_.add_on_plane(plane, pixel, NoiseModel::reference())
+                                 : features_.add(*anchor, pixel, NoiseModel::reference());
     if (entry < 0) continue;
     const CameraAt camera = camera_at(filter_.state(), Scalar(0));
     if (!remember(entry, pixel, {camera.q_WC, camera.p_W})) {
       features_.drop(&entry, 1);
       continue;
     }
-    frame_.add({entry, map_.features[entry].id, MatchStatus::kNew, BlockKind::kInverseDepth, pixel, Mat2::Zero(), pixel,
-                Scalar(0)});
+    frame_.add({entry, map_.features[entry].id, MatchStatus::kNew,
+                filter_.state().block[map_.features[entry].slot].kind, pixel, Mat2::Zero(), pixel, Scalar(0)});
     return true;
   }
   return false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filter/camera_at.h"
 #include "geometry/symmetric_eigen.h"
 #include "slam/tuning.h"
 
@@ -29,6 +30,7 @@ bool PlaneKeeper::layout(Arena& arena, int max_features) {
 }
 
 void PlaneKeeper::maintain() {
+  judge_trials();
   unfold_outliers();
   filter_.scale_row(&scale_);
   const int turn = frame_.report.frames % map_.planes.capacity();
@@ -71,6 +73,36 @@ bool PlaneKeeper::is_certain(int entry, Mat3* covariance) const {
   const Scalar limit = settings_.fold_sigma * settings_.fold_sigma;
   return (*covariance)(0, 0) + (*covariance)(1, 1) + (*covariance)(2, 2) < limit ||
          largest_eigenvalue(*covariance) < limit;
+}
+
+/// Whether the pixels of a feature would show by now that it is kTrialDepth nearer or farther than the plane on which it began.
+bool PlaneKeeper::is_told_apart(int entry) const {
+  const Vec3 p_W = filter_.point(map_.features[entry].slot), first_W = map_.first_view(entry).c_W;
+  const CameraAt camera = camera_at(filter_.state(), Scalar(0));
+  const auto pixel = [&](Scalar depth, Vec2* at) {
+    const Vec3 moved_W = first_W + depth * (p_W - first_W);
+    return project(filter_.lens(), Vec3(camera.q_WC.conjugate() * (moved_W - camera.p_W)), at);
+  };
+  Vec2 here, nearer, farther;
+  if (!pixel(1, &here) || !pixel(1 - kTrialDepth, &nearer) || !pixel(1 + kTrialDepth, &farther)) return false;
+  const Scalar apart = std::min((nearer - here).squaredNorm(), (farther - here).squaredNorm());
+  return apart > kTrialPixels * kTrialPixels;
+}
+
+/// Features that began on a plane: believes those that were found there kTrialMatches times and from where another depth would show; drops
+/// those that were found elsewhere kTrialRejections times in a row. Their pixels are then free for a feature of open depth.
+void PlaneKeeper::judge_trials() {
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    if (!map_.features.used(i) || !map_.features[i].on_trial) continue;
+    Feature& f = map_.features[i];
+    if (f.rejections >= kTrialRejections) {
+      features_.drop(&i, 1);
+    } else if (f.failures == 0 && f.observations > kTrialMatches && is_told_apart(i)) {
+      f.on_trial = false;
+      const int entry = map_.planes.entry_at(filter_.state().plane_of(f.slot));
+      if (entry >= 0) support(entry, f.slot);
+    }
+  }
 }
 
 /// Unfolds points that were matched kMaxRejections times in a row outside of their gate, and inflates their plane.
@@ -173,6 +205,7 @@ void PlaneKeeper::fix_on(int plane_entry) {
   state.for_each_planar(plane, [&](int slot) {
     const Block& block = state.block[slot];
     if (group_count == Filter::kMaxFolded || map_.features[block.owner].failures > 0) return;
+    if (map_.features[block.owner].on_trial) return;
     if (block.kind == BlockKind::kPlanePoint) group[group_count++] = slot;
   });
   if (!has_patch && group_count < 2 * kMinFixed) return;

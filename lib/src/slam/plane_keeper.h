@@ -19,6 +19,7 @@ namespace pf {
 struct PlanePoints {
   int folded = 0;  ///< fixed ones among them
   int fixed = 0;
+  int on_trial = 0;  ///< of the folded ones, those that began on the plane and have not been believed yet
 };
 
 /// Outline of a plane (entry of the table) in the coordinates of its frame: the part that was seen before, extended by the points that
@@ -48,6 +49,8 @@ class PlaneKeeper {
   };
 
   // plane_keeper.cpp: points of planes
+  void judge_trials();
+  bool is_told_apart(int entry) const;
   void unfold_outliers();
   void inflate(int plane_slot, int children);
   Vec3 doubt() const;

@@ -79,6 +79,7 @@ bool PlaneKeeper::same_plane(int slot, int other) const {
   int points = 0, inliers = 0, close = 0;
   state.for_each_planar(other, [&](int point) {
     Scalar d, variance;
+    if (map_.features[state.block[point].owner].on_trial) return;
     ++points;
     if (!filter_.distance(slot, point, &d, &variance)) return;
     variance += rule.roughness * rule.roughness;
@@ -178,7 +179,7 @@ void PlaneKeeper::dissolve(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   filter_.state().for_each_planar(plane, [&](int slot) {
     const int feature = filter_.state().block[slot].owner;
-    if (!filter_.unfold(slot, settings_.plane_distance)) features_.drop(&feature, 1);
+    if (map_.features[feature].on_trial || !filter_.unfold(slot, settings_.plane_distance)) features_.drop(&feature, 1);
   });
   filter_.remove(&plane, 1);
   map_.planes.remove(plane_entry);
@@ -195,6 +196,7 @@ PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry,
   state.for_each_planar(plane, [&](int slot) {
     ++points.folded;
     if (state.block[slot].kind == BlockKind::kGroupedPoint) ++points.fixed;
+    if (map.features[state.block[slot].owner].on_trial) ++points.on_trial;
     if (outline == nullptr) return;
     uv[count++] = plane_coordinates(state.frame_of(state.block[plane]), filter.point(slot));
     if (count < kBatch) return;
@@ -210,7 +212,8 @@ PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry,
 void PlaneKeeper::dissolve_weak() {
   for (int i = 0; i < map_.planes.capacity(); ++i) {
     if (!map_.planes.used(i) || map_.planes[i].known) continue;
-    const int points = outline_plane(filter_, map_, i, nullptr).folded;
+    const PlanePoints on = outline_plane(filter_, map_, i, nullptr);
+    const int points = on.folded - on.on_trial;
     map_.planes[i].max_points = std::max(map_.planes[i].max_points, points);
     const bool proven = map_.planes[i].max_points > settings_.plane_min_points;
     map_.planes[i].weak = points < kMinPoints || !proven ? map_.planes[i].weak + 1 : 0;
