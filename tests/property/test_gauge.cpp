@@ -327,6 +327,23 @@ void test_folds_and_updates_should_gain_nothing_about_the_gauge() {
   }
 }
 
+/// A point that begins before a wall has nothing of its own but how far it is off.
+void test_a_new_point_before_a_wall_should_carry_every_direction() {
+  SeededRandom random(78);
+  for (const Scalar tau : {Scalar(0), Scalar(0.01)}) {
+    const auto begin = [tau](PlaneScene& scene) {
+      const State& state = scene.filter->state();
+      const Vec3 to_W = scene.fit.frame.o_W - state.body.p_W;
+      const Vec3 ray_C = (state.body.q_WC.conjugate() * to_W).normalized();
+      const int anchor = scene.filter->add_anchor();
+      TEST_ASSERT_TRUE(
+          scene.filter->add_before_plane(anchor, scene.plane, ray_C, Mat32::Zero(), Mat2::Zero(), 0, tau) >= 0);
+    };
+    carries_planes(
+        "add_before_plane", random, [&](PlaneScene& scene) { move_a_little(scene, random); }, begin);
+  }
+}
+
 /// A wall that is known beforehand says where the world is, when it enters: N_w^T C^-1 N_w of its own rows, and nothing later.
 void test_a_known_wall_should_bring_its_own_information_once() {
   SeededRandom random(77);
@@ -496,6 +513,7 @@ int main(void) {
   RUN_TEST(test_operations_on_planes_should_carry_every_direction);
   RUN_TEST(test_no_pixel_of_a_plane_s_point_should_see_the_gauge);
   RUN_TEST(test_folds_and_updates_should_gain_nothing_about_the_gauge);
+  RUN_TEST(test_a_new_point_before_a_wall_should_carry_every_direction);
   RUN_TEST(test_a_known_wall_should_bring_its_own_information_once);
   RUN_TEST(test_a_direction_that_is_observable_should_be_zero_and_leave_the_others);
   RUN_TEST(test_information_about_the_gauge_should_never_grow_when_it_is_kept);

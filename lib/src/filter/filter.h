@@ -75,6 +75,10 @@ class Filter {
   /// tau: when the pixel's row was read out, from the frame's time [s].
   int add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho,
                         Scalar sigma_rho, Scalar tau = Scalar(0));
+  /// The same where the pixel's ray meets a plane, as far from the camera as that is (with all that this depends on), and independently
+  /// relative_sigma of that nearer or farther. -1 too where the ray does not meet it.
+  int add_before_plane(int anchor, int plane, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px,
+                       Scalar relative_sigma, Scalar tau = Scalar(0));
   int add_point(const Vec3& p_W, const Mat3& covariance);
   /// A point of a plane, where the ray of a pixel meets it. -1 too where the ray does not meet it.
   int add_plane_point(int plane, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar tau = Scalar(0));

@@ -172,21 +172,24 @@ Scalar FeatureKeeper::median_inverse_depth() const {
   return on_target > 0 ? target_rho / (kBehindTarget * Scalar(on_target)) : start;
 }
 
-/// Inverse depth of the wall that a unit ray meets first, or 0.
-Scalar FeatureKeeper::wall_inverse_depth(const Vec3& ray_C) const {
-  const CameraAt camera = camera_at(filter_.state(), Scalar(0));
-  Scalar range;
-  return first_wall(filter_, map_, camera.p_W, camera.q_WC * ray_C, &range) >= 0 ? Scalar(1) / range : Scalar(0);
-}
-
+/// A point begins before the wall that its ray meets, since the plan says that something is there; a wall is no better known for that.
 int FeatureKeeper::add(int anchor, const Vec2& pixel, const Mat2& noise) {
   Vec3 ray_C;
   Mat32 J_ray_pixel;
   if (!unproject(filter_.lens(), pixel, &ray_C, &J_ray_pixel)) return -1;
-  const Scalar of_wall = wall_inverse_depth(ray_C), rho = of_wall > Scalar(0) ? of_wall : median_inverse_depth();
-  const int slot =
-      filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, settings_.inverse_depth_relative_sigma * rho,
-                                row_time(filter_.lens(), pixel.y()));
+  const Scalar tau = row_time(filter_.lens(), pixel.y());
+  const CameraAt camera = camera_at(filter_.state(), tau);
+  Scalar range;
+  const int wall = first_wall(filter_, map_, camera.p_W, camera.q_WC * ray_C, &range);
+  int slot = -1;
+  if (wall >= 0)
+    slot = filter_.add_before_plane(anchor, map_.planes[wall].slot, ray_C, J_ray_pixel, noise,
+                                    tuning::plane_walls::kOffWall, tau);
+  if (slot < 0) {
+    const Scalar rho = median_inverse_depth();
+    slot = filter_.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho,
+                                     settings_.inverse_depth_relative_sigma * rho, tau);
+  }
   return slot < 0 ? -1 : add_entry(slot);
 }
 

@@ -49,7 +49,6 @@ class FeatureKeeper {
   bool make_room(int rows);
   int add_entry(int slot);
   Scalar median_inverse_depth() const;
-  Scalar wall_inverse_depth(const Vec3& ray_C) const;
 
   const Settings& settings_;
   Filter& filter_;
