@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   pfsim::add_rendered(app, result);
   pfsim::add_kidnap(app, result);
   pfsim::add_rest(app, result);
+  pfsim::add_box(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {

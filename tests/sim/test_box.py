@@ -1,0 +1,40 @@
+"""pf-sim box --geometric: a wrong plan is refined, taken as exact it misleads, and a wall that is not there is doubted."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from script import BIN, fail, run, skip, skip_in_cross_builds  # noqa: E402
+
+SEEDS = 2
+
+
+def main():
+    skip_in_cross_builds()
+    if not (BIN / "pf-sim").is_file():
+        skip("pf-sim was not built")
+    refused = subprocess.run([BIN / "pf-sim", "box"], text=True, stderr=subprocess.PIPE, check=False)
+    if refused.returncode != 2 or "--geometric" not in refused.stderr:
+        fail(f"pf-sim box without --geometric: {refused.returncode}, {refused.stderr}")
+    with tempfile.TemporaryDirectory(prefix="planefold_") as name:
+        file = pathlib.Path(name) / "box.json"
+        run(BIN / "pf-sim", "box", "--geometric", "--seeds", SEEDS, "--jobs", 2, "--json", file, "--cases", "refined", "exact", "absent")
+        cases = json.loads(file.read_text())["cases"]
+    refined, exact, absent = cases["refined"], cases["exact"], cases["absent"]
+    rmse = [case["rmse_m"]["worst"] for case in (refined, exact, absent)]
+    walls = refined["walls"]
+    if not (rmse[0] < 0.025 and rmse[1] > 4 * rmse[0] and rmse[2] < 1.3 * rmse[0]):
+        fail(f"camera RMSE refined, exact, absent: {rmse}")
+    if not (walls["plan_angle_deg"] > 2 and walls["angle_deg"] < 0.5 and walls["count"] == 4 * SEEDS and walls["doubted"] == 0):
+        fail(f"walls: {walls}")
+    if not 2 < refined["nees_pose"]["mean"] < 12:  # of two runs a perfect filter has 2.2 to 11.7 at any frame
+        fail(f"pose NEES {refined['nees_pose']['mean']}")
+    wrong = absent["wrong_wall"]
+    if wrong["doubted_runs"] != SEEDS or not wrong["seen_before_s"]["worst"] < 2:
+        fail(f"the wall that is not there: {wrong}")
+
+
+main()

@@ -1,0 +1,232 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <memory>
+
+#include "box_run.h"
+#include "commands.h"
+#include "report.h"
+#include "statistics.h"
+
+namespace pfsim {
+namespace {
+
+using nlohmann::json;
+
+struct Case {
+  const char* name;
+  Plan plan;
+};
+
+constexpr double kDepth =
+    1.6;  // of the sides when they are first seen, roughly: what a point without a wall begins with [m]
+
+const Case kCases[] = {{"refined", Plan::kRefined}, {"exact", Plan::kExact},     {"points", Plan::kNone},
+                       {"absent", Plan::kAbsent},   {"shifted", Plan::kShifted}, {"missing", Plan::kMissing}};
+
+struct Choices {
+  std::vector<std::string> cases = {"refined", "exact", "points"};
+  int seeds = 10;
+  std::uint64_t first_seed = 1;
+  int jobs = 1;
+  double sigma_px = 0.5, fov_deg = 56;
+  bool geometric = false;
+  BoxOptions box;
+  std::string json_file, csv;
+};
+
+struct Job {
+  const Choices* choices;
+  pf_config_t config;
+  std::vector<Plan> plans;
+  BoxSummary* summaries;
+  FrameRow* rows;
+};
+
+int fail(const std::string& what) {
+  std::fprintf(stderr, "pf-sim box: %s\n", what.c_str());
+  return 2;
+}
+
+void run_one(int index, void* context) {
+  const Job& job = *static_cast<Job*>(context);
+  const int seeds = job.choices->seeds;
+  job.summaries[index] =
+      run_box(job.choices->box, job.config, job.plans[static_cast<std::size_t>(index / seeds)],
+              job.choices->first_seed + static_cast<std::uint64_t>(index % seeds),
+              job.rows + static_cast<std::size_t>(index) * static_cast<std::size_t>(job.choices->box.frames));
+}
+
+pf_config_t config_of(const Choices& c) {
+  pf_config_t config;
+  pf_config_default(&config);
+  const double f = 320 / std::tan(c.fov_deg * 3.14159265358979323846 / 360);
+  config.camera = {PF_CAMERA_PINHOLE,  640, 480, f, f, 319.5, 239.5, {}, 0, PF_CAMERA_EXACT,
+                   PF_TIMESTAMPS_REAL, 0,   0,   0, {}};
+  config.measurement.sigma_px = c.sigma_px;
+  config.first_depth.depth = kDepth;
+  config.capacity.max_features = kBoxSides * c.box.points_on_side;
+  config.capacity.max_observations = std::min(200, config.capacity.max_features);
+  config.capacity.max_state_dim = 60 + 6 * config.capacity.max_features;
+  return config;
+}
+
+/// Root mean square of the positions' errors of each run.
+std::vector<double> rmse_of(const Runs& runs) {
+  std::vector<double> all;
+  for (int s = 0; s < runs.seeds; ++s) {
+    double square = 0, count = 0;
+    for (int f = 0; f < runs.frames; ++f) {
+      const FrameRow& row = runs.row(s, f);
+      if (!(row.nees_position >= 0)) continue;
+      square += static_cast<double>(row.error_m) * static_cast<double>(row.error_m);
+      count += 1;
+    }
+    all.push_back(std::sqrt(square / std::max(1.0, count)));
+  }
+  return all;
+}
+
+json of_seeds(const std::vector<double>& values) {
+  return {{"median", median(values)}, {"worst", *std::max_element(values.begin(), values.end())}, {"seeds", values}};
+}
+
+json walls_json(const BoxSummary* summaries, int seeds) {
+  double plan_deg = 0, plan_m = 0, end_deg = 0, end_m = 0, nees = 0, points = 0, worst_deg = 0;
+  int count = 0, doubted = 0;
+  for (int s = 0; s < seeds; ++s)
+    for (int k = 0; k < summaries[s].walls; ++k, ++count) {
+      const BoxSummary& r = summaries[s];
+      plan_deg += r.plan_deg[k];
+      plan_m += r.plan_m[k];
+      end_deg += r.end_deg[k];
+      end_m += r.end_m[k];
+      worst_deg = std::max(worst_deg, r.end_deg[k]);
+      nees += r.end_nees[k];
+      points += r.points[k];
+      doubted += k == 0 ? r.doubted : 0;
+    }
+  if (count == 0) return nullptr;
+  return {{"count", count},
+          {"plan_angle_deg", plan_deg / count},
+          {"plan_offset_m", plan_m / count},
+          {"angle_deg", end_deg / count},
+          {"worst_angle_deg", worst_deg},
+          {"offset_m", end_m / count},
+          {"nees", nees / count},
+          {"points", points / count},
+          {"doubted", doubted}};
+}
+
+json summarise_case(const Runs& runs, const BoxSummary* summaries, Plan plan) {
+  json out = summarise_frames(runs);
+  std::vector<double> worst, seen;
+  int tracked = 0, doubted = 0, most_points = 0;
+  for (int s = 0; s < runs.seeds; ++s) {
+    worst.push_back(summaries[s].worst_m);
+    tracked += summaries[s].tracked_frames;
+    doubted += summaries[s].wrong_seen_s >= 0;
+    if (summaries[s].wrong_seen_s >= 0) seen.push_back(summaries[s].wrong_seen_s);
+    most_points = std::max(most_points, summaries[s].wrong_points);
+  }
+  out["rmse_m"] = of_seeds(rmse_of(runs));
+  out["largest_error_m"] = of_seeds(worst);
+  out["tracked_share"] = tracked / (static_cast<double>(runs.seeds) * runs.frames);
+  out["walls"] = walls_json(summaries, runs.seeds);
+  if (Box::wrong_wall(plan) >= 0)
+    out["wrong_wall"] = {{"doubted_runs", doubted},
+                         {"seen_before_s", seen.empty() ? json() : of_seeds(seen)},
+                         {"most_points", most_points}};
+  return out;
+}
+
+void print_case(const char* name, const json& j) {
+  const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
+  std::printf(
+      "%s: camera RMSE %.2f cm in the median seed, %.2f in the worst; largest error %.2f, %.2f cm; %.1f %% tracked\n",
+      name, 100 * number("/rmse_m/median"), 100 * number("/rmse_m/worst"), 100 * number("/largest_error_m/median"),
+      100 * number("/largest_error_m/worst"), 100 * number("/tracked_share"));
+  std::printf("  pose NEES %.2f (6 dof; bounds of the run average %.2f %.2f, inside %.1f %% of the frames), state %g\n",
+              number("/nees_pose/mean"), number("/nees_pose/bound_low"), number("/nees_pose/bound_high"),
+              100 * number("/nees_pose/inside_share"), number("/state_dim/median"));
+  if (!j["walls"].is_null())
+    std::printf(
+        "  walls: %.2f deg, %.1f mm in the plan; %.2f deg (worst %.2f), %.1f mm at the end, NEES %.1f (3 dof), %.1f "
+        "points, %g doubted\n",
+        number("/walls/plan_angle_deg"), 1e3 * number("/walls/plan_offset_m"), number("/walls/angle_deg"),
+        number("/walls/worst_angle_deg"), 1e3 * number("/walls/offset_m"), number("/walls/nees"),
+        number("/walls/points"), number("/walls/doubted"));
+  if (!j.contains("wrong_wall")) return;
+  std::printf("  the wrong wall: doubted in %g of %g runs", number("/wrong_wall/doubted_runs"), number("/runs"));
+  if (!j["wrong_wall"]["seen_before_s"].is_null())
+    std::printf(", after %.2f s of view (worst %.2f)", number("/wrong_wall/seen_before_s/median"),
+                number("/wrong_wall/seen_before_s/worst"));
+  std::printf("; it had at most %g points\n", number("/wrong_wall/most_points"));
+}
+
+int run(const Choices& c) {
+  if (!c.geometric) return fail("only --geometric: without pictures, points of the posters in exact pixels plus noise");
+  if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.box.frames < 1 || c.box.frames > 100000)
+    return fail("seeds, jobs and frames must be positive");
+  Job job{&c, config_of(c), {}, nullptr, nullptr};
+  for (const std::string& name : c.cases) {
+    const auto* found =
+        std::find_if(std::begin(kCases), std::end(kCases), [&](const Case& x) { return name == x.name; });
+    if (found == std::end(kCases))
+      return fail("no case " + name + "; they are refined exact points absent shifted missing");
+    job.plans.push_back(found->plan);
+  }
+  const char* field = nullptr;
+  if (pf_config_check(&job.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
+  const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(c.box.frames);
+  const std::size_t count = seeds * job.plans.size();
+  job.summaries = static_cast<BoxSummary*>(shared_memory(count * sizeof(BoxSummary)));
+  job.rows = static_cast<FrameRow*>(shared_memory(count * frames * sizeof(FrameRow)));
+  if (!job.summaries || !job.rows) return fail("no memory");
+  if (!in_processes(static_cast<int>(count), c.jobs, "box", run_one, &job))
+    return fail("a run did not come to its end");
+  json out = {{"experiment", "box"},
+              {"settings",
+               {{"first_seed", c.first_seed},
+                {"frames", c.box.frames},
+                {"points_on_side", c.box.points_on_side},
+                {"max_angle_deg", c.box.max_angle_deg},
+                {"sigma_offset_m", c.box.sigma_offset},
+                {"sigma_px", c.sigma_px},
+                {"fov_deg", c.fov_deg}}}};
+  for (std::size_t k = 0; k < job.plans.size(); ++k) {
+    const Runs runs{c.seeds, c.box.frames, c.first_seed, job.rows + k * seeds * frames};
+    json& numbers = out["cases"][c.cases[k]] = summarise_case(runs, job.summaries + k * seeds, job.plans[k]);
+    print_case(c.cases[k].c_str(), numbers);
+    if (!c.csv.empty() && !write_csv(runs, c.csv, "box_" + c.cases[k])) return fail("cannot write to " + c.csv);
+  }
+  if (!c.json_file.empty() && !write_json(c.json_file, out)) return fail("cannot write " + c.json_file);
+  return 0;
+}
+
+}  // namespace
+
+void add_box(CLI::App& app, int& result) {
+  auto c = std::make_shared<Choices>();
+  CLI::App* command = app.add_subcommand("box", "A box with posters and a wrong plan of its sides, circled by hand");
+  command->add_flag("--geometric", c->geometric, "points of the posters and no pictures");
+  command->add_option("--cases", c->cases,
+                      "one or more: refined, exact, points; absent, shifted (a wrong wall) and missing (without it)");
+  command->add_option("--seeds", c->seeds, "how many runs of each case");
+  command->add_option("--first-seed", c->first_seed, "seed of the first run");
+  command->add_option("--frames", c->box.frames, "of each run");
+  command->add_option("--rate", c->box.rate_hz, "frames per second");
+  command->add_option("--loop", c->box.loop_seconds, "once around [s]");
+  command->add_option("--points", c->box.points_on_side, "on each side");
+  command->add_option("--angle", c->box.max_angle_deg, "of the plan's normals: largest error [deg]");
+  command->add_option("--offset", c->box.sigma_offset, "of the plan's walls: standard deviation [m]");
+  command->add_option("--sigma-px", c->sigma_px, "noise of a pixel");
+  command->add_option("--fov", c->fov_deg, "horizontal, of a camera of 640 x 480 [deg]");
+  command->add_option("--jobs", c->jobs, "processes at a time");
+  command->add_option("--json", c->json_file, "report to write");
+  command->add_option("--csv", c->csv, "folder for per-frame tables");
+  command->callback([c, &result] { result = run(*c); });
+}
+
+}  // namespace pfsim

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "box.h"
+#include "run.h"
+
+namespace pfsim {
+
+/// What one run gave besides its frames. Plain data, so that it may lie in memory shared between processes.
+struct BoxSummary {
+  std::int32_t done = 0;
+  std::int32_t tracked_frames = 0;
+  std::int32_t walls = 0;  ///< judged: those that are where the plan has them, roughly
+  double plan_deg[kBoxSides] = {},
+         plan_m[kBoxSides] = {};  ///< errors of the plan: angle of the normal, and at the true centre
+  double end_deg[kBoxSides] = {}, end_m[kBoxSides] = {};  ///< of the same walls at the end
+  double end_nees[kBoxSides] = {};                        ///< likewise, 3 dof; negative: no valid covariance
+  std::int32_t points[kBoxSides] = {};                    ///< on them at the end
+  std::int32_t doubted = 0;                               ///< walls at the end, of those judged
+  double wrong_seen_s = -1;       ///< how long the wrong wall was in view before it was doubted; -1: it was not
+  std::int32_t wrong_points = 0;  ///< most points that ever were on it
+  double worst_m = 0;             ///< largest position error
+};
+
+/// One run with one plan, start to end. rows has as many entries as the box has frames; nees_position is negative in those without a pose.
+BoxSummary run_box(const BoxOptions& options, const pf_config_t& config, Plan plan, std::uint64_t seed, FrameRow* rows);
+
+}  // namespace pfsim
