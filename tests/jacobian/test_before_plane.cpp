@@ -102,8 +102,8 @@ void test_a_new_point_should_lie_where_the_ray_meets_the_wall() {
   }
 }
 
-/// Its covariance with the state is J P, held against central differences over every row of the state; its own has the noise of the pixel and
-/// of the depth besides.
+/// Its covariance with the state is J P, held against central differences over every row of the state; its own has the noise of the pixel
+/// and of the depth besides.
 void test_a_new_point_should_have_an_exact_jacobian_over_the_state_and_its_noise() {
   SeededRandom random(492);
   constexpr double step = 1e-5;
@@ -119,7 +119,7 @@ void test_a_new_point_should_have_an_exact_jacobian_over_the_state_and_its_noise
     Dense J(3, n), unit = Dense::Ones(1, n);
     for (int i = 0; i < view.prior.rows.count; ++i)
       unit(0, state.layout.row(BodyPart::kLens) + i) =
-          static_cast<double>(std::sqrt(view.prior.covariance[i * (view.prior.rows.count + 1)]));
+          1e3 * static_cast<double>(std::sqrt(view.prior.covariance[i * (view.prior.rows.count + 1)]));
     for (int row = 0; row < n; ++row) {
       Eigen::Vector3d moved[2];
       std::vector<Scalar> dx(static_cast<std::size_t>(n), Scalar(0));

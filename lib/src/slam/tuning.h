@@ -142,11 +142,10 @@ inline constexpr Scalar kUnfoldSigma = Scalar(10);   ///< of an unfolded point a
 
 /// Planes known beforehand.
 namespace plane_walls {
-inline constexpr int kMaxOthers = 64;                ///< walls: the largest capacity.max_planes
-inline constexpr Scalar kKnownScale = Scalar(0.05);  ///< sigma of the log scale, below which any wall may take points
-inline constexpr Scalar kOffWall =
-    Scalar(0.5);                    ///< sigma of a new point's depth, relative to that of the wall behind it
-inline constexpr int kTrials = 60;  ///< triples of points
+inline constexpr int kMaxOthers = 64;                 ///< walls: the largest capacity.max_planes
+inline constexpr Scalar kKnownScale = Scalar(0.05);   ///< sigma of the log scale, below which any wall may take points
+inline constexpr Scalar kOffWall = Scalar(0.5);       ///< sigma of a new point relative to the depth of its wall
+inline constexpr int kTrials = 60;                    ///< triples of points
 inline constexpr Scalar kTripleGate = Scalar(11.34);  ///< chi-square of three degrees of freedom, 0.99
 inline constexpr Scalar kRefusedGate = Scalar(16);    ///< chi-square of a point that does not lie on a wall
 inline constexpr int kMinRefused = 8;                 ///< points, before a wall is doubted or believed again
