@@ -50,7 +50,7 @@ ONLY_FOR = {
     "slam/image_front_end.h": ["slam/image_*", "slam/filter_start*", "slam/frame_loop*", "slam/relocaliser*"],
     "slam/relocaliser.h": ["slam/relocaliser.cpp", "slam/frame_loop*"],
     "slam/observation_front_end.h": ["slam/observation_front_end.cpp", "slam/frame_loop*"],
-    "slam/filter_start.h": ["slam/filter_start.cpp", "slam/frame_loop*"],
+    "slam/filter_start.h": ["slam/filter_start*", "slam/frame_loop*"],
 }
 
 # Rooms whose files have at most so many lines.

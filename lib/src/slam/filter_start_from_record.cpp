@@ -1,0 +1,105 @@
+#include <algorithm>
+
+#include "base/elapsed.h"
+#include "geometry/so3.h"
+#include "slam/filter_start.h"
+#include "slam/tuning.h"
+
+/// FilterStart: the filter begins again from the record of a start.
+
+namespace pf {
+
+using namespace tuning::filter_start;
+
+/// Restarts the filter at the record's frame 0 with the bundle's depths as wide priors, and repeats the recorded frames with every
+/// linearisation at the bundle's poses and with residuals of zero. That moves no mean, and leaves the covariance that the recorded
+/// pixels support.
+void FilterStart::restart_from_record() {
+  Body body;
+  body.q_WC = without_.base_q_WC();
+  body.p_W = without_.base_p_W();
+  clear_filter();
+  set_body(body, data_.covariance);
+  // The bundle's solution holds for the calibration as it was given, so residuals of zero say nothing about it.
+  parts_.filter.consider_lens(true);
+  restart_features();
+  std::int64_t before_ns = without_.begin_ns();
+  for (int k = 0; k < without_.record().frames(); ++k) {
+    restart_frame(k, before_ns);
+    before_ns = without_.record().frame(k).t_ns;
+  }
+  parts_.filter.consider_lens(false);
+  if (settings_.constant_velocity) restart_velocities();
+}
+
+/// Adds the record's features to the filter with its depths; removes all others.
+void FilterStart::restart_features() {
+  Filter& filter = parts_.filter;
+  const int anchor = filter.add_anchor();
+  const Mat2 noise = NoiseModel::search();
+  for (int i = 0; i < parts_.map.features.capacity(); ++i) {
+    if (!parts_.map.features.used(i)) continue;
+    Feature& f = parts_.map.features[i];
+    const int index = without_.index_of(f.id);
+    Vec3 ray_C;
+    Mat32 J_ray_pixel;
+    Vec2 pixel;
+    if (index < 0 || !without_.bundle().good(index) || !project(filter.lens(), without_.record().ray(index), &pixel) ||
+        !unproject(filter.lens(), pixel, &ray_C, &J_ray_pixel)) {
+      parts_.features.release(i);
+      continue;
+    }
+    const Scalar rho = without_.bundle().rho(index);
+    f.slot = filter.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, kWideDepth * rho);
+    if (f.slot < 0)
+      parts_.features.release(i);
+    else
+      filter.set_owner(f.slot, i);
+  }
+}
+
+/// Moves the body to frame k of the record, and updates with its pixels and residuals of zero.
+void FilterStart::restart_frame(int k, std::int64_t before_ns) {
+  Filter& filter = parts_.filter;
+  const StartRecord& record = without_.record();
+  const StartRecord::Frame& frame = record.frame(k);
+  const Scalar dt = static_cast<Scalar>(seconds(std::min(elapsed_ns(before_ns, frame.t_ns), BodyMotion::kMaxGapNs)));
+  Body now = filter.state().body;
+  const Quat q_WC = without_.base_q_WC() * frame.q_WC;
+  const Vec3 p_W = without_.base_p_W() + without_.base_q_WC() * frame.p_W;
+  now.v_W = (p_W - now.p_W) / dt;
+  now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
+  Transition transition;
+  motion_.predict(now, dt, settings_.motion_noise, &transition);
+  transition.mean.q_WC = q_WC;
+  transition.mean.p_W = p_W;
+  filter.predict(transition);
+  int count = 0;
+  for (int i = 0; i < parts_.map.features.capacity() && count < settings_.max_observations; ++i) {
+    if (!parts_.map.features.used(i) || !record.seen(k, without_.index_of(parts_.map.features[i].id))) continue;
+    PixelMeasurement& o = parts_.update.observation(count);
+    if (!filter.predict_pixel(filter.lens(), parts_.map.features[i].slot, &o)) continue;
+    o.measured = o.predicted;
+    o.set_noise(NoiseModel::search());
+    ++count;
+  }
+  if (count == 0) return;
+  filter.begin_update(parts_.update.observations(), count);
+  filter.finish_update(parts_.update.observations(), count, nullptr, nullptr);
+}
+
+/// Sets the velocities from the last few frames of the record; several, because single poses are noisy.
+void FilterStart::restart_velocities() {
+  const StartRecord& record = without_.record();
+  const int frames = record.frames();
+  const StartRecord::Frame& a = record.frame(frames > 4 ? frames - 4 : 0);
+  const StartRecord::Frame& b = record.frame(frames - 1);
+  if (b.t_ns <= a.t_ns) return;
+  const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(a.t_ns, b.t_ns)));
+  Body now = parts_.filter.state().body;
+  now.v_W = without_.base_q_WC() * (b.p_W - a.p_W) / dt;
+  now.w_C = log_so3(a.q_WC.conjugate() * b.q_WC) / dt;
+  parts_.filter.set_mean(now);
+}
+
+}  // namespace pf
