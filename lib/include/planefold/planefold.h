@@ -333,9 +333,11 @@ typedef struct pf_target {
 PF_API pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target);
 
 /* Start from a known pose, with its covariance and velocity; velocity_covariance is 6x6 of (v_W, w_C). Before the
- * first frame. PF_ERROR_STATE together with a rectangle as target, which gives the pose itself. With a target of points
- * both may be given: the known pose then counts if the points are seen in the first frame, and their own sighting
- * later. With neither start, W is the first camera. */
+ * first frame. In images the state is starting until the first frames have told the depths, unless walls or a speed
+ * above twice its sigma tell them; the scale is that of first_depth where nothing else says it. PF_ERROR_STATE together
+ * with a rectangle as target, which gives the pose itself. With a target of points both may be given: the known pose
+ * then counts if the points are seen in the first frame, and their own sighting later. With neither start, W is the
+ * first camera. */
 PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]);
 
 /* Stops measuring the target's own points; they stay in the map. */

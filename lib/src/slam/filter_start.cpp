@@ -1,5 +1,7 @@
 #include "slam/filter_start.h"
 
+#include <algorithm>
+
 #include "filter/camera_at.h"
 #include "slam/tuning.h"
 
@@ -69,6 +71,40 @@ void FilterStart::set_body(const Body& body, const Scalar* covariance, const Sca
   parts_.tracking.set_has_pose(parts_.frame.report.t_ns);
 }
 
+/// Variances of velocities that nothing is known of.
+void FilterStart::set_start_velocities(Scalar speed) {
+  const BodyLayout& layout = settings_.body;
+  const int dim = layout.dynamic_rows();
+  const auto set_sigma = [&](BodyPart part, Scalar sigma) {
+    if (!layout.has(part)) return;
+    for (int i = layout.row(part); i < layout.row(part) + 3; ++i) data_.covariance[i * dim + i] = sigma * sigma;
+  };
+  set_sigma(BodyPart::kVelocity, speed);
+  set_sigma(BodyPart::kAngularVelocity, kStartRate);
+}
+
+/// Covariance of the body from which a record begins at a pose that the caller knew: that of the pose now; of velocities nothing, since
+/// those of the record take their place.
+void FilterStart::note_covariance() {
+  const int dim = settings_.body.dynamic_rows();
+  const auto& P = parts_.filter.covariance();
+  for (Scalar& c : data_.covariance) c = Scalar(0);
+  for (int i = 0; i < Body::kPoseDim; ++i)
+    for (int j = 0; j < Body::kPoseDim; ++j) data_.covariance[i * dim + j] = P(std::max(i, j), std::min(i, j));
+  set_start_velocities(kStartSpeed * settings_.start_depth);
+}
+
+/// Depths come from a record of the first frames, unless walls or a known speed of the first pose tell them.
+bool FilterStart::needs_record() const {
+  if (!data_.known.given) return true;
+  if (parts_.map.planes.has_known()) return false;
+  if (!settings_.body.has(BodyPart::kVelocity)) return true;
+  const int dim = settings_.body.dynamic_rows(), first = settings_.body.row(BodyPart::kVelocity);
+  Scalar variance = 0;
+  for (int i = first; i < first + 3; ++i) variance += data_.known.covariance[i * dim + i];
+  return data_.known.body.v_W.squaredNorm() < kKnownSpeed * kKnownSpeed * variance;
+}
+
 /// The pose before the first measurement: the one that the caller gave, or the one that defines the world.
 void FilterStart::set_known_pose(bool at_target, const TargetSighting* sighting) {
   if (data_.known.given) {
@@ -84,12 +120,7 @@ void FilterStart::set_known_pose(bool at_target, const TargetSighting* sighting)
     for (int j = 0; j < Body::kPoseDim; ++j)
       covariance[i * dim + j] =
           at_target ? target.first_covariance(i, j) : (i == j ? kDefinedSigma * kDefinedSigma : Scalar(0));
-  const auto set_sigma = [&](BodyPart part, Scalar sigma) {
-    if (!layout.has(part)) return;
-    for (int i = layout.row(part); i < layout.row(part) + 3; ++i) covariance[i * dim + i] = sigma * sigma;
-  };
-  set_sigma(BodyPart::kVelocity, kStartSpeed * (at_target ? Scalar(1) : settings_.start_depth));
-  set_sigma(BodyPart::kAngularVelocity, kStartRate);
+  set_start_velocities(kStartSpeed * (at_target ? Scalar(1) : settings_.start_depth));
   // A pose that was fitted to pixels is wrong where the lens is: rows of the pose, and none of the velocities.
   Scalar J_lens[BodyLayout::kMaxDynamicRows * kLensParameters] = {};
   const LensRows& rows = parts_.filter.state().lens_rows;
@@ -109,7 +140,7 @@ bool FilterStart::start_in_image() {
   if (!seen) {
     if (target_.has_target() && !parts_.tracking.may_skip_target()) return false;
     set_known_pose(false);
-    if (!data_.known.given) without_.begin();
+    if (needs_record()) without_.begin();
     return true;
   }
 
@@ -134,6 +165,7 @@ bool FilterStart::start_in_image() {
 
 void FilterStart::begin_record() {
   if (!progress().recording || !without_.empty()) return;
+  if (data_.known.given) note_covariance();
   const CameraAt camera = camera_at(parts_.filter.state(), Scalar(0));
   without_.begin_record(camera.q_WC, camera.p_W, parts_.frame.report.t_ns);
   for (int t = 0; t < parts_.frame.match_count(); ++t) {

@@ -62,9 +62,14 @@ class FilterStart {
   void record_frame();
   /// Begins an empty record with the features that this frame has added.
   void begin_record();
+  /// Ends a record, where something else tells the depths from now on.
+  void end_record() { without_.init(); }
 
  private:
   void set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens = nullptr);
+  bool needs_record() const;
+  void set_start_velocities(Scalar speed);
+  void note_covariance();
   void set_known_pose(bool at_target, const TargetSighting* sighting = nullptr);
   Vec2 at_frame_time(int slot, const Vec2& measured) const;
   void restart_from_record();

@@ -108,7 +108,10 @@ Status FrameLoop::mark_pose() {
 Status FrameLoop::add_wall(const PlanePrior& prior, std::uint32_t* id) {
   if (!settings_.planes || !start_.has_place()) return Status::kState;
   const int reserved = tracking_.has_pose() ? 0 : start_.target_rows();
-  return planes_.add_wall(prior, reserved, tracking_.state() == SlamState::kTracking, data_.filter_ns, id);
+  const Status status =
+      planes_.add_wall(prior, reserved, tracking_.state() == SlamState::kTracking, data_.filter_ns, id);
+  if (status == Status::kOk) start_.end_record();
+  return status;
 }
 
 /// The last pose and status again, under a new time. The next prediction begins where this one did not go on.

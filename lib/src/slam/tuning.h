@@ -77,6 +77,7 @@ inline constexpr Scalar kSureSign = Scalar(9);  ///< chi-square of an inverse de
 namespace filter_start {
 inline constexpr Scalar kStartSpeed = Scalar(0.5);     ///< [m/s] sigma, or in start depths where these are the unit
 inline constexpr Scalar kStartRate = Scalar(0.5);      ///< [rad/s] sigma
+inline constexpr Scalar kKnownSpeed = Scalar(2);       ///< sigmas of a given speed above which it tells the scale
 inline constexpr Scalar kDefinedSigma = Scalar(1e-5);  ///< [rad, m] of a pose that defines the world
 inline constexpr Scalar kWideDepth = Scalar(0.5);      ///< relative sigma of the depths with which the filter restarts
 }  // namespace filter_start
