@@ -48,4 +48,24 @@ const std::uint8_t* Film::pixels(int frame) const {
   return pixels_.data() + size * static_cast<std::size_t>(frame < 0 ? frames() : frame);
 }
 
+bool read_start(const std::string& start, bool* has_target, pf_target_t* target, std::string* error) {
+  *has_target = start.rfind("target:", 0) == 0;
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  if (*has_target && pf_read_target(start.c_str() + 7, target, message) != 0) {
+    *error = message;
+    return false;
+  }
+  *error = "--start " + start + ": write auto or target:FILE";
+  return *has_target || start == "auto";
+}
+
+bool config_for(const Film& film, pf_config_t* config, std::string* error) {
+  pf_config_default(config);
+  config->camera = film.camera();
+  const char* field = nullptr;
+  if (pf_config_check(config, &field) == PF_OK) return true;
+  *error = std::string("the calibration cannot be used: ") + field + " is out of its range";
+  return false;
+}
+
 }  // namespace pfsim

@@ -28,4 +28,10 @@ class Film {
   std::int64_t interval_ns_ = 0;
 };
 
+/// What --start says: auto, or target:FILE. False, with one line that says why, where it says something else.
+bool read_start(const std::string& start, bool* has_target, pf_target_t* target, std::string* error);
+
+/// The default config with the film's camera. False, likewise, where its calibration cannot be used.
+bool config_for(const Film& film, pf_config_t* config, std::string* error);
+
 }  // namespace pfsim

@@ -1,7 +1,5 @@
 // pf-sim kidnap: the library on real frames that end, go black, are another place's, or come in random order.
 
-#include <planefold_platform/sequence.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -186,21 +184,10 @@ int run(const Choices& c) {
   options.random_frames = c.random_frames;
   options.random_runs = c.random_runs;
   options.seed = c.seed;
-  char message[PF_SEQUENCE_MESSAGE] = "";
-  if (c.start.rfind("target:", 0) == 0) {
-    options.has_target = true;
-    if (pf_read_target(c.start.c_str() + 7, &options.target, message) != 0) return fail(message);
-  } else if (c.start != "auto") {
-    return fail("--start " + c.start + ": write auto or target:FILE");
-  }
   Film film;
   std::string error;
-  if (!film.open(c.source, &error)) return fail(error);
-  pf_config_default(&options.config);
-  options.config.camera = film.camera();
-  const char* field = nullptr;
-  if (pf_config_check(&options.config, &field) != PF_OK)
-    return fail(std::string("the calibration cannot be used: ") + field + " is out of its range");
+  if (!read_start(c.start, &options.has_target, &options.target, &error)) return fail(error);
+  if (!film.open(c.source, &error) || !config_for(film, &options.config, &error)) return fail(error);
   Context context(options.config);
   Reference reference;
   if (!context.slam || !play_reference(film, options, context, &reference))

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/linear.h"
+#include "pose_difference.h"
 #include "sim/random.h"
 #include "statistics.h"
 
@@ -61,14 +61,11 @@ struct PoseError {
 };
 
 PoseError compare(const pf_pose_t& pose, const Reference::Frame& truth) {
-  double P[36], e[6];
+  double P[36];
   for (int i = 0; i < 36; ++i) P[i] = pose.covariance[i] + truth.pose.covariance[i];
-  const Vec3 theta =
-      pf::sim::rotation_log(pf::sim::rotation_of(truth.pose.q_WC) * pf::sim::rotation_of(pose.q_WC).transposed());
-  const Vec3 p = vector_of(truth.pose.p_WC) - vector_of(pose.p_WC);
-  e[0] = theta.x, e[1] = theta.y, e[2] = theta.z, e[3] = p.x, e[4] = p.y, e[5] = p.z;
-  const double normalised = normalised_error(e, P, 6, 6, 0);
-  return {normalised < 0 ? 1e12 : normalised, theta.norm() * kDegrees, p.norm() / std::max(truth.depth, 1e-9)};
+  const PoseDifference off = pose_difference(pose, truth.pose);
+  const double normalised = normalised_error(off.e, P, 6, 6, 0);
+  return {normalised < 0 ? 1e12 : normalised, off.rad * kDegrees, off.m / std::max(truth.depth, 1e-9)};
 }
 
 /// A context that is shown pictures at the film's rate, and what came of it.

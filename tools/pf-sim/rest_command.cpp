@@ -1,7 +1,5 @@
 // pf-sim rest: the camera stops on real frames and stands still: the same picture with fresh noise. The pose should stay.
 
-#include <planefold_platform/sequence.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,9 +8,9 @@
 #include "commands.h"
 #include "context.h"
 #include "film.h"
+#include "pose_difference.h"
 #include "report.h"
 #include "run.h"
-#include "sim/linear.h"
 #include "sim/random.h"
 #include "statistics.h"
 
@@ -20,10 +18,10 @@ namespace pfsim {
 namespace {
 
 using nlohmann::json;
-using pf::sim::Vec3;
 
 constexpr double kDegrees = 57.29577951308232;  // in a radian
 constexpr std::uint64_t kNoiseStream = 41;
+constexpr double kMaxSeconds = 86400;
 
 struct Choices {
   std::string source, start = "auto", json_file;
@@ -58,16 +56,6 @@ int fail(const std::string& what, int code = 2) {
   return code;
 }
 
-struct Difference {
-  double e[6], rad, m;
-};
-
-Difference difference(const pf_pose_t& a, const pf_pose_t& b) {
-  const Vec3 theta = pf::sim::rotation_log(pf::sim::rotation_of(b.q_WC) * pf::sim::rotation_of(a.q_WC).transposed());
-  const Vec3 p = {b.p_WC[0] - a.p_WC[0], b.p_WC[1] - a.p_WC[1], b.p_WC[2] - a.p_WC[2]};
-  return {{theta.x, theta.y, theta.z, p.x, p.y, p.z}, theta.norm(), p.norm()};
-}
-
 /// Square root of the trace of a pose's covariance, of its rotation (first = 0) or position (3).
 double sigma(const pf_pose_t& pose, int first) {
   double sum = 0;
@@ -76,7 +64,7 @@ double sigma(const pf_pose_t& pose, int first) {
 }
 
 void compare(const pf_pose_t& stop, const pf_pose_t& before, const pf_pose_t& now, Stop* out) {
-  const Difference drift = difference(stop, now), step = difference(before, now);
+  const PoseDifference drift = pose_difference(stop, now), step = pose_difference(before, now);
   double P[36];
   for (int i = 0; i < 36; ++i) P[i] = stop.covariance[i] + now.covariance[i];
   out->worst_deg = std::max(out->worst_deg, drift.rad * kDegrees);
@@ -93,7 +81,7 @@ void run_one(int index, void* context) {
   const int at = job.choices->at[static_cast<std::size_t>(index)];
   Stop* const out = job.stops + index;
   Context slam(*job.config);
-  if (job.target != nullptr) pf_start_from_target(slam.slam, job.target);
+  if (slam.slam == nullptr || (job.target != nullptr && pf_start_from_target(slam.slam, job.target) != PF_OK)) return;
   const pf_camera_t& camera = film.camera();
   pf_status_t status = PF_ERROR_STATE;
   for (int i = 0; i <= at; ++i) {
@@ -150,27 +138,20 @@ json report_of(int at, const Stop& s) {
 std::vector<int> places(const Film& film) { return {film.frames() / 4, film.frames() / 2, 3 * film.frames() / 4}; }
 
 int run(Choices c) {
-  if (!(c.seconds > 0) || !(c.noise >= 0) || c.jobs < 1)
-    return fail("--seconds and --jobs must be positive, --noise must not be negative");
+  if (!(c.seconds > 0 && c.seconds <= kMaxSeconds) || !(c.noise >= 0 && c.noise <= 255) || c.jobs < 1)
+    return fail("--seconds must be above 0 and at most 86400, --noise 0 to 255, --jobs positive");
   pf_target_t target;
-  char message[PF_SEQUENCE_MESSAGE] = "";
-  const bool has_target = c.start.rfind("target:", 0) == 0;
-  if (has_target && pf_read_target(c.start.c_str() + 7, &target, message) != 0) return fail(message);
-  if (!has_target && c.start != "auto") return fail("--start " + c.start + ": write auto or target:FILE");
+  pf_config_t config;
+  bool has_target = false;
   Film film;
   std::string error;
-  if (!film.open(c.source, &error)) return fail(error);
+  if (!read_start(c.start, &has_target, &target, &error)) return fail(error);
+  if (!film.open(c.source, &error) || !config_for(film, &config, &error)) return fail(error);
   if (c.at.empty()) c.at = places(film);
   for (const int frame : c.at)
     if (frame < 0 || frame >= film.frames())
       return fail("--at " + std::to_string(frame) + ": the source has frames 0 to " +
                   std::to_string(film.frames() - 1));
-  pf_config_t config;
-  pf_config_default(&config);
-  config.camera = film.camera();
-  const char* field = nullptr;
-  if (pf_config_check(&config, &field) != PF_OK)
-    return fail(std::string("the calibration cannot be used: ") + field + " is out of its range");
 
   Job job{&film, &c, &config, has_target ? &target : nullptr, nullptr};
   job.stops = static_cast<Stop*>(shared_memory(c.at.size() * sizeof(Stop)));
