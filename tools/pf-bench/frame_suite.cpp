@@ -198,7 +198,7 @@ class FrameSuite {
 int run_frame(const SuiteOptions& options) { return FrameSuite(options).run(); }
 
 const Suite frame_suite("frame", "whole frames of real sequences, beside OpenCV's optical flow on 100 points",
-                        run_frame, true);
+                        run_frame, Suite::kSequences);
 
 }  // namespace
 }  // namespace bench

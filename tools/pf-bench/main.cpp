@@ -15,7 +15,10 @@ int main(int argc, char** argv) {
   for (const bench::Suite* s = bench::Suite::first(); s != nullptr; s = s->next) {
     CLI::App* sub = app.add_subcommand(s->name, s->description);
     sub->add_option("--json", options.json, "write the rows to this file");
-    if (s->takes_sequences) {
+    if (s->input == bench::Suite::kSeeds) {
+      sub->add_option("--seeds", options.seeds, "runs of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
+      sub->add_option("--frames", options.frames, "at most N of every run")->check(CLI::Range(2, 100000));
+    } else if (s->input == bench::Suite::kSequences) {
       sub->add_option("--source", options.sources,
                       "images:DIR, euroc:DIR, tum:DIR or sim:NAME (default: what lies in $PLANEFOLD_DATA)");
       sub->add_option("--start", options.start,

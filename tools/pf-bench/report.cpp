@@ -15,8 +15,8 @@ const Suite*& head() {
 
 }  // namespace
 
-Suite::Suite(const char* suite_name, const char* what, int (*entry)(const SuiteOptions&), bool on_sequences)
-    : name(suite_name), description(what), run(entry), takes_sequences(on_sequences), next(head()) {
+Suite::Suite(const char* suite_name, const char* what, int (*entry)(const SuiteOptions&), Input takes_input)
+    : name(suite_name), description(what), run(entry), input(takes_input), next(head()) {
   head() = this;
 }
 
@@ -34,6 +34,7 @@ void Report::add(const Row& row) {
   } else {
     std::printf("  %-24s %6.2f\n", row.peer.c_str(), row.ratio);
   }
+  for (const auto& [name, value] : row.figures) std::printf("%34s %-24s %10.4f\n", "", name.c_str(), value);
   std::fflush(stdout);
   rows_.push_back(row);
 }
@@ -53,6 +54,7 @@ int Report::finish() const {
                           {"n", r.n},         {"m", r.m},       {"us", r.us}};
     row["peer"] = r.peer.empty() ? nlohmann::json() : nlohmann::json(r.peer);
     row["ratio"] = r.peer.empty() ? nlohmann::json() : nlohmann::json(r.ratio);
+    for (const auto& [name, value] : r.figures) row[name] = value;
     document["rows"].push_back(row);
   }
   std::ofstream file(options_.json);

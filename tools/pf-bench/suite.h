@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace bench {
@@ -13,6 +14,7 @@ struct Row {
   double us = 0;
   std::string peer;
   double ratio = 0;
+  std::vector<std::pair<std::string, double>> figures = {};  ///< what else was measured, by name
 };
 
 struct SuiteOptions {
@@ -24,6 +26,7 @@ struct SuiteOptions {
   std::vector<std::string> sources;
   std::string start, calibration;
   int passes = 3;       ///< through every sequence
+  int seeds = 10;       ///< of suites that draw what they run on
   int frames = 100000;  ///< at most, of every sequence
 };
 
@@ -43,13 +46,14 @@ class Report {
 
 /// A suite is one file named *_suite.cpp with one of these at namespace scope; main finds it by itself.
 struct Suite {
-  Suite(const char* suite_name, const char* what, int (*entry)(const SuiteOptions&), bool on_sequences = false);
+  enum Input { kNone, kSequences, kSeeds };  ///< what it runs on, besides what it makes for itself
+  Suite(const char* suite_name, const char* what, int (*entry)(const SuiteOptions&), Input takes_input = kNone);
   static const Suite* first();
 
   const char* name;
   const char* description;
   int (*run)(const SuiteOptions&);
-  bool takes_sequences;
+  Input input;
   const Suite* next;
 };
 

@@ -44,4 +44,25 @@ inline constexpr Scalar kMisfitSigmas = Scalar(1.5);   ///< of a rectangle's cor
 inline constexpr Scalar kMisfitShare = Scalar(0.003);  ///< likewise in addition, in its diagonals
 }  // namespace quad_refine
 
+/// Alignment of patches on planes.
+namespace align_plane {
+inline constexpr int kMaxCoarseSamples = 1200;  ///< of a coarse level; above, every other pixel
+inline constexpr int kCoarseIterations = 3;     ///< on each level but the finest
+inline constexpr int kShiftIterations = 2;      ///< before them
+inline constexpr float kCutOff = 4.685f;        ///< of the weights [standard deviations]; 95 % as good as least squares
+inline constexpr float kMinSigma = 0.5f;        ///< of residuals [grey levels]
+inline constexpr float kSmallStep = 0.03f;      ///< of a corner on the finest level [px]
+inline constexpr float kLastStep = 0.15f;       ///< likewise of the last iteration that there may be
+inline constexpr float kCoarseStep = 0.15f;     ///< likewise on the other levels [px of the level]
+inline constexpr float kMaxStep = 0.5f;         ///< of a corner in one iteration [sides of the patch]
+inline constexpr float kNoWay = 1e6f;           ///< of a corner, where it is no number [half sides]
+inline constexpr float kMinGain = 0.05f;        ///< of the image against the patch
+inline constexpr float kMaxGradientNoise = 0.75f;  ///< share of the gradients' squares that is taken as noise
+inline constexpr float kMinCorrelation = 0.85f;    ///< of what has weight
+inline constexpr float kMinWeight = 0.33f;         ///< of the samples, those that have weight
+inline constexpr float kMinAspect = 0.4f;          ///< smaller to larger stretch of the patch: a slant of 66 degrees
+inline constexpr float kMinStretch = 0.3f;         ///< larger stretch of the patch, image against reference
+inline constexpr float kMaxStretch = 3.0f;         ///< likewise
+}  // namespace align_plane
+
 }  // namespace pf::tuning

@@ -16,6 +16,17 @@ inline constexpr float kMinGradient = 0.25f;  ///< root mean square in the weake
 inline constexpr float kMinGain = 0.02f;      ///< of the image against the template
 }  // namespace align
 
+/// Patches on planes.
+namespace plane_patch {
+inline constexpr float kMinGradient = 1.0f;  ///< root mean square in the weaker direction of a patch [grey levels/px]
+inline constexpr float kDark = 1.0f;         ///< [grey levels]; what is darker may be cut off
+inline constexpr float kBright = 254.0f;     ///< [grey levels]; what is brighter may be cut off
+inline constexpr float kOtherLight =
+    0.8f;  ///< of the residuals without it, those with a new light that it takes for it
+inline constexpr float kMinFitting = 0.33f;  ///< of the samples, those that the residuals' scale is of
+inline constexpr float kMaxPerDepth = 1e3f;  ///< inverse depth of a ray in the image, against the patch's middle
+}  // namespace plane_patch
+
 /// Whether an image has content.
 namespace frame_use {
 inline constexpr float kMinDeviation = 3.0f;  ///< standard deviation of the image [grey levels]
