@@ -21,8 +21,7 @@ namespace plane_patch {
 inline constexpr float kMinGradient = 1.0f;  ///< root mean square in the weaker direction of a patch [grey levels/px]
 inline constexpr float kDark = 1.0f;         ///< [grey levels]; what is darker may be cut off
 inline constexpr float kBright = 254.0f;     ///< [grey levels]; what is brighter may be cut off
-inline constexpr float kOtherLight =
-    0.8f;  ///< of the residuals without it, those with a new light that it takes for it
+inline constexpr float kOtherLight = 0.8f;   ///< residuals in a new light, of those in the old, that it is taken for
 inline constexpr float kMinFitting = 0.33f;  ///< of the samples, those that the residuals' scale is of
 inline constexpr float kMaxPerDepth = 1e3f;  ///< inverse depth of a ray in the image, against the patch's middle
 }  // namespace plane_patch
