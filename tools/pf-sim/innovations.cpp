@@ -36,13 +36,18 @@ void InnovationSums::add(const InnovationSums& other) {
 FrameDepth::FrameDepth(const pf_sim_t* sim, const pf_camera_t& camera)
     : sim_(sim),
       width_(camera.width),
-      depth_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)) {}
+      depth_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)),
+      surface_(depth_.size()) {}
 
-double FrameDepth::at(const pf_pose_t& truth, long x, long y) {
-  if (truth.t_ns != t_ns_) pf_sim_depth(sim_, &truth, depth_.data(), nullptr);
+std::size_t FrameDepth::look(const pf_pose_t& truth, long x, long y) {
+  if (truth.t_ns != t_ns_) pf_sim_depth(sim_, &truth, depth_.data(), surface_.data());
   t_ns_ = truth.t_ns;
-  return static_cast<double>(depth_[static_cast<std::size_t>(y * width_ + x)]);
+  return static_cast<std::size_t>(y * width_ + x);
 }
+
+double FrameDepth::at(const pf_pose_t& truth, long x, long y) { return static_cast<double>(depth_[look(truth, x, y)]); }
+
+std::int32_t FrameDepth::surface_at(const pf_pose_t& truth, long x, long y) { return surface_[look(truth, x, y)]; }
 
 InnovationWatch::InnovationWatch(const pf_config_t& config, const pf_target_t& points)
     : camera_(config.camera),

@@ -36,18 +36,23 @@ struct InnovationSums {
 /// A match that is further from its true place than this is one of another thing (an occluding edge) [px].
 constexpr double kMatchReach = 0.5;
 
-/// The true depth picture of a frame, made when it is first asked for.
+/// What a frame truly shows, made when it is first asked for.
 class FrameDepth {
  public:
   FrameDepth(const pf_sim_t* sim, const pf_camera_t& camera);
   /// Along z [m]; 0 where nothing is.
   double at(const pf_pose_t& truth, long x, long y);
+  /// Number of the surface; -1 where nothing is.
+  std::int32_t surface_at(const pf_pose_t& truth, long x, long y);
 
  private:
   const pf_sim_t* sim_;
   int width_;
   std::int64_t t_ns_ = -1;
   std::vector<float> depth_;
+  std::vector<std::int32_t> surface_;
+
+  std::size_t look(const pf_pose_t& truth, long x, long y);
 };
 
 /// Reads a context's tracks after every frame. The place where a match should be is the truth's: the point of the surface

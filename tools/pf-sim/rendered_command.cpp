@@ -90,9 +90,11 @@ json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
   json out = summarise_frames(runs);
   int lost_frames = 0, lost_runs = 0, tracked = 0, coasting = 0, starting = 0;
   InnovationSums sums[kTrackKinds], all;
+  FoldSums folds;
   json each = json::array();
   for (int s = 0; s < runs.seeds; ++s) {
     const RenderedSummary& r = summaries[s];
+    folds.add(r.folds);
     lost_frames += r.lost_frames;
     const bool lost = r.lost_frames > 0 || !r.done;
     lost_runs += lost;
@@ -109,6 +111,7 @@ json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
                     {"nees_pose", numbers["nees_pose"]["mean"]},
                     {"camera_rmse_m", numbers["camera_rmse_m"]},
                     {"motion", numbers["motion"]},
+                    {"folds", folds_json(r.folds)},
                     {"lens_error", r.lens_error},
                     {"lens_sigma", r.lens_sigma}});
   }
@@ -129,6 +132,7 @@ json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
   std::vector<const PlanesVerdict*> planes;
   for (int s = 0; s < runs.seeds; ++s) planes.push_back(&summaries[s].planes);
   out["planes"] = planes_json(planes);
+  out["folds"] = folds_json(folds);
   return out;
 }
 
@@ -158,6 +162,12 @@ void print_runs(const json& j) {
       number("/planes/duplicate"), number("/planes/wanted"), number("/planes/found"),
       number("/planes/within_2_deg_2_cm"), number("/planes/worst_normal_deg"), number("/planes/worst_offset_m"),
       number("/planes/outlined"), number("/planes/least_covered"), number("/planes/most_overstep"));
+  std::printf(
+      "points: %g were with %d of their surface for %d frames, %.1f %% of them folded into it by then (%g still "
+      "without "
+      "depth, %g of no plane, %g waiting); %.2f %% of those on planes are on a wrong one\n",
+      number("/folds/due"), kTogether, kTogetherFrames, 100 * number("/folds/share"), number("/folds/young"),
+      number("/folds/missing"), number("/folds/waiting"), 100 * number("/folds/wrong_share"));
   std::printf("innovations      inliers  NIS/dof  lag 1   rms px | match against truth: rms px  lag 1  far %%\n");
   if (!j["lens"].is_null())
     for (const char* name : {"fx", "fy", "cx", "cy", "k1"}) {

@@ -75,10 +75,11 @@ bool start(pf_slam_t* slam, RenderedStart how, const pf_sim_t* sim, std::uint64_
 
 /// One context on its way through the frames.
 struct Runner {
-  Runner(const pf_config_t& config, const pf_target_t& corners, int motion_frames)
-      : context(config), watch(config, corners), motion(motion_frames) {}
+  Runner(const pf_sim_t* sim, const pf_config_t& config, const pf_target_t& corners, int motion_frames)
+      : context(config), watch(config, corners), folds(sim, config), motion(motion_frames) {}
   Context context;
   InnovationWatch watch;
+  FoldWatch folds;
   MotionWatch motion;
 
   void push(const pf_image_t& image, const pf_pose_t& truth, FrameDepth& depth, FrameRow& row, RenderedSummary& sums) {
@@ -98,6 +99,7 @@ struct Runner {
     sums.tracked_frames += status == PF_OK;
     sums.coasting_frames += status == PF_NOTE_COASTING || status == PF_NOTE_UNUSABLE;
     watch.read(context.slam, truth, depth);
+    folds.read(context.slam, truth, depth);
   }
 };
 
@@ -132,7 +134,7 @@ void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std:
   std::vector<std::unique_ptr<Runner>> runners;
   for (Variant variant : options.variants) {
     if (options.draw_lens && variant.lens == "right") variant.config.camera = sim_options.camera;
-    runners.push_back(std::make_unique<Runner>(variant.config, corners, options.motion_frames));
+    runners.push_back(std::make_unique<Runner>(sim.get(), variant.config, corners, options.motion_frames));
     pf_slam_t* slam = runners.back()->context.slam;
     if (!slam || !start(slam, variant.start, sim.get(), seed)) return;
   }
@@ -146,6 +148,7 @@ void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std:
   for (std::size_t v = 0; v < runners.size(); ++v) {
     for (int k = 0; k < kTrackKinds; ++k)
       summaries[v]->innovations[k] = runners[v]->watch.sums(static_cast<TrackKind>(k));
+    summaries[v]->folds = runners[v]->folds.sums();
     read_lens(runners[v]->context.slam, sim_options.camera, summaries[v]);
     summaries[v]->planes = surfaces.judge(runners[v]->context.slam);
     summaries[v]->done = 1;

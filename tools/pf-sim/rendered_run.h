@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "fold_watch.h"
 #include "innovations.h"
 #include "rendered_planes.h"
 #include "run.h"
@@ -38,6 +39,7 @@ struct RenderedSummary {
   std::int32_t coasting_frames = 0, tracked_frames = 0, starting_frames = 0;
   InnovationSums innovations[kTrackKinds];
   PlanesVerdict planes;  ///< at the end of the run
+  FoldSums folds;
   double lens_error[5] = {},
          lens_sigma[5] = {};  ///< of fx, fy, cx, cy and k1 at the end; no sigma where the filter took them as exact
 };
