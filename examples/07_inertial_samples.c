@@ -1,8 +1,9 @@
 /* Inertial samples: hand them over as they come, and see what arrived.
  *
  * Samples belong before the frame whose time they reach up to. The library keeps the newest ones in a buffer of the size that
- * the config asks for and reports their rate, gaps and ends of range, so that wiring and clocks can be checked. No pose depends on
- * them yet. Here a unit at 200 Hz lies still, loses five samples, and hits the end of its range once.
+ * the config asks for and reports their rate, gaps and ends of range, so that wiring and clocks can be checked. Poses
+ * depend on them with PF_MOTION_INERTIAL only (08_inertial.c). Here a unit at 200 Hz lies still, loses five samples, and
+ * hits the end of its range once.
  */
 #include <planefold/planefold.h>
 #include <stdio.h>

@@ -6,7 +6,8 @@
 namespace pf::capture {
 
 void add_imu_options(CLI::App& app, Options& options) {
-  const std::string group = "Inertial samples (checked, reported and recorded; no pose depends on them yet)";
+  const std::string group =
+      "Inertial samples (checked, reported and recorded; no pose of this program depends on them yet)";
   app.add_option("--imu", options.imu, "auto (a file beside the frames), none, csv:FILE, iio:NAME or iio:ACCEL+GYRO")
       ->capture_default_str()
       ->group(group);

@@ -88,6 +88,40 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES_REAL(imu.accel_range, -1, 1.1e5);
 }
 
+static void test_check_should_name_what_the_inertial_model_lacks(void) {
+  config.motion.model = PF_MOTION_INERTIAL;
+  names(PF_ERROR_CONFIG, "capacity.max_imu_samples");
+  config.capacity.max_imu_samples = 63;
+  names(PF_ERROR_CONFIG, "capacity.max_imu_samples");
+  config.capacity.max_imu_samples = 64;
+  names(PF_ERROR_CONFIG, "imu.gyro_density"); /* no default fits a unit */
+  config.imu.gyro_density = 2e-4;
+  names(PF_ERROR_CONFIG, "imu.accel_density");
+  config.imu.accel_density = 2e-3;
+  names(PF_ERROR_CONFIG, "imu.gyro_walk");
+  config.imu.gyro_walk = 2e-5;
+  names(PF_ERROR_CONFIG, "imu.accel_walk");
+  config.imu.accel_walk = 3e-3;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  NAMES_REAL(imu.gyro_density, 0, 1.1);
+  NAMES_REAL(imu.accel_density, -1, 10.1);
+  NAMES_REAL(imu.gyro_walk, 0, 1.1);
+  NAMES_REAL(imu.accel_walk, 0, 10.1);
+  NAMES_REAL(imu.delay_s, -0.51, 0.51);
+  NAMES_REAL(imu.gravity, 8.9, 11.1);
+  config.imu.p_BC[1] = 11;
+  names(PF_ERROR_CONFIG, "imu.p_BC");
+  config.imu.p_BC[1] = NAN;
+  names(PF_ERROR_CONFIG, "imu.p_BC");
+  config.imu.p_BC[1] = 0;
+  config.imu.q_BC[0] = 0.9; /* no rotation */
+  names(PF_ERROR_CONFIG, "imu.q_BC");
+  config.imu.q_BC[0] = NAN;
+  names(PF_ERROR_CONFIG, "imu.q_BC");
+  config.motion.model = PF_MOTION_CONSTANT_VELOCITY; /* which reads none of it */
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+}
+
 static void test_check_should_name_the_number_of_the_camera_that_makes_no_sense(void) {
   NAMES(camera.model, 0);
   NAMES(camera.model, 5);
@@ -194,6 +228,7 @@ int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_check_should_say_nothing_when_the_config_is_good);
   RUN_TEST(test_check_should_name_the_field_that_is_out_of_range);
+  RUN_TEST(test_check_should_name_what_the_inertial_model_lacks);
   RUN_TEST(test_check_should_name_the_number_of_the_camera_that_makes_no_sense);
   RUN_TEST(test_check_should_name_the_sigma_of_the_camera_that_makes_no_sense);
   RUN_TEST(test_check_should_tell_another_release_or_library_by_size_version_and_scalar);

@@ -13,6 +13,7 @@ static void test_every_call_should_refuse_null(void) {
   pf_state_t state;
   pf_report_t report;
   pf_imu_report_t imu;
+  pf_inertial_t inertial;
   pf_imu_sample_t sample;
   pf_image_t image = {pixels, WIDTH, HEIGHT, WIDTH, 1};
   pf_target_t target;
@@ -46,6 +47,7 @@ static void test_every_call_should_refuse_null(void) {
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_push_imu(NULL, NULL, 0));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_imu_report(NULL, &imu));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_imu_samples(NULL, &sample, 1, &count));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_inertial(NULL, &inertial));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_state(NULL, &state));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_pose(NULL, &pose));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_predict_pose(NULL, 1, &pose));
@@ -65,6 +67,7 @@ static void test_every_call_should_refuse_null(void) {
   REFUSES(PF_ERROR_NULL, pf_push_control(slam, three, NULL));
   REFUSES(PF_ERROR_NULL, pf_push_imu(slam, NULL, 1));
   REFUSES(PF_ERROR_NULL, pf_get_imu_report(slam, NULL));
+  REFUSES(PF_ERROR_NULL, pf_get_inertial(slam, NULL));
   REFUSES(PF_ERROR_NULL, pf_get_imu_samples(slam, NULL, 1, &count));
   REFUSES(PF_ERROR_NULL, pf_get_imu_samples(slam, &sample, 1, NULL));
   REFUSES(PF_ERROR_NULL, pf_get_state(slam, NULL));

@@ -1,4 +1,4 @@
-/* Inertial samples at the door: what is refused, what is counted, what is kept, and that no pose depends on them. */
+/* Inertial samples at the door: what is refused, what is counted, what is kept, and which poses depend on them. */
 #include <math.h>
 #include <planefold/planefold.h>
 #include <string.h>
@@ -200,6 +200,76 @@ static void test_poses_should_be_the_same_with_and_without_samples(void) {
   TEST_ASSERT_EQUAL_MEMORY(features[0], features[1], count[0] * sizeof(pf_feature_t));
 }
 
+/* A context that moves by its samples. */
+static void use_inertial_model(void) {
+  config.motion.model = PF_MOTION_INERTIAL;
+  config.capacity.max_imu_samples = 400;
+  config.imu.gyro_density = 2e-4;
+  config.imu.accel_density = 2e-3;
+  config.imu.gyro_walk = 2e-5;
+  config.imu.accel_walk = 3e-3;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
+  free_block(block);
+  block = new_block(need.bytes, 0x55);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block, need.bytes, &slam));
+}
+
+/* Frames of a camera that stands still, with samples of `still` up to each. */
+static void stand_still(int frames) {
+  pf_observation_t seen[POINTS];
+  int64_t sample_ns = 0;
+  for (int k = 0; k < frames; ++k) {
+    for (; sample_ns <= STEP_NS * k; sample_ns += IMU_NS) push_samples(sample_ns, 1, 1);
+    TEST_ASSERT_TRUE(pf_push_observations(slam, STEP_NS * k, seen, observe(0, seen)) >= PF_OK);
+  }
+}
+
+static void test_a_second_at_rest_should_tell_gravity_and_the_gyro_s_bias(void) {
+  pf_inertial_t inertial;
+  double up = 0, force = 0;
+  memset(&inertial, 0x55, sizeof inertial);
+  use_inertial_model();
+  REFUSES(PF_ERROR_STATE, pf_push_control(slam, still.accel, still.gyro));
+  TEST_ASSERT_EQUAL_INT(PF_NOTE_NOTHING, pf_get_inertial(slam, &inertial));
+  TEST_ASSERT_EQUAL_UINT32(0x55555555, inertial.metric);
+  TEST_ASSERT_EQUAL_INT32(0, report_of().used);
+  stand_still(20);
+  TEST_ASSERT_EQUAL_INT32(1, report_of().used);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_inertial(slam, &inertial));
+  TEST_ASSERT_EQUAL_UINT32(0, inertial.metric);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));
+  stand_still(40);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_inertial(slam, &inertial));
+  TEST_ASSERT_EQUAL_UINT32(1, inertial.metric);
+  TEST_ASSERT_EQUAL_UINT32(1, inertial.map_id);
+  for (int i = 0; i < 3; ++i) {
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, still.gyro[i], inertial.gyro_bias[i]);
+    TEST_ASSERT_TRUE(inertial.covariance[9 * i] > 0);
+    up -= inertial.gravity_W[i] * still.accel[i]; /* W is the first camera, whose axes are the unit's */
+    force += still.accel[i] * still.accel[i];
+  }
+  TEST_ASSERT_DOUBLE_WITHIN(1e-2, 9.81 * sqrt(force), up);
+}
+
+static void test_poses_should_go_on_with_the_samples_when_no_frame_shows_anything(void) {
+  pf_pose_t before, after, predicted;
+  use_inertial_model();
+  stand_still(40);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_pose(slam, &before));
+  /* a turn of 0.5 rad/s about y for 10 samples, which nothing but the gyro sees */
+  for (int i = 1; i <= 10; ++i) {
+    pf_imu_sample_t sample = at(39 * STEP_NS + IMU_NS * i);
+    sample.gyro[1] += 0.5;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_push_imu(slam, &sample, 1));
+  }
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_predict_pose(slam, 39 * STEP_NS + 10 * IMU_NS, &predicted));
+  TEST_ASSERT_EQUAL_INT(PF_NOTE_COASTING, pf_push_observations(slam, 39 * STEP_NS + 10 * IMU_NS, NULL, 0));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_pose(slam, &after));
+  TEST_ASSERT_DOUBLE_WITHIN(2e-3, 0.5 * 0.5 * 0.05, after.q_WC[2] - before.q_WC[2]);
+  TEST_ASSERT_DOUBLE_WITHIN(1e-12, predicted.q_WC[2], after.q_WC[2]);
+  TEST_ASSERT_TRUE(after.covariance[0] > before.covariance[0]);
+}
+
 static void test_reset_should_forget_the_samples(void) {
   size_t count = 1;
   use_buffer();
@@ -224,6 +294,8 @@ int main(void) {
   RUN_TEST(test_samples_should_be_counted_between_frames);
   RUN_TEST(test_extreme_times_should_neither_overflow_nor_stop_what_follows);
   RUN_TEST(test_poses_should_be_the_same_with_and_without_samples);
+  RUN_TEST(test_a_second_at_rest_should_tell_gravity_and_the_gyro_s_bias);
+  RUN_TEST(test_poses_should_go_on_with_the_samples_when_no_frame_shows_anything);
   RUN_TEST(test_reset_should_forget_the_samples);
   return UNITY_END();
 }

@@ -192,6 +192,16 @@ pf_config_t config_from(Bytes& bytes) {
     config.motion.restart_s = 10 - config.motion.coast_s;
   }
   if ((what & 32) != 0 && config.camera.readout_s == 0) config.motion.model = PF_MOTION_CONSTANT_POSITION;
+  if ((what & 64) != 0) {
+    config.motion.model = PF_MOTION_INERTIAL;
+    config.capacity.max_imu_samples = 64 + bytes.take<uint8_t>() % 64;
+    config.imu.gyro_density = between(bytes, 1e-5, 0.1);
+    config.imu.accel_density = between(bytes, 1e-4, 1);
+    config.imu.gyro_walk = between(bytes, 1e-6, 0.1);
+    config.imu.accel_walk = between(bytes, 1e-5, 1);
+    config.imu.p_BC[0] = unit(bytes);
+    config.imu.delay_s = 0.5 * unit(bytes);
+  }
   return config;
 }
 
@@ -587,6 +597,11 @@ class Run {
         require(pf_get_imu_report(slam_, &report) == PF_OK && report.kept <= config_.capacity.max_imu_samples,
                 "samples");
         status(pf_find_plane(slam_, bytes_.take<uint32_t>(), &current));
+        pf_inertial_t inertial;
+        if (status(pf_get_inertial(slam_, &inertial)) == PF_OK)
+          require(finite(inertial.gravity_W, 3) && finite(inertial.gyro_bias, 3) && finite(inertial.accel_bias, 3) &&
+                      finite(inertial.covariance, 64),
+                  "what is known of the unit is finite");
         pf_motion_t motion;
         if (status(pf_get_motion_since_mark(slam_, &motion)) == PF_OK)
           require(finite(motion.q_KC, 4) && finite(motion.p_KC, 3) && finite(motion.covariance, 36),

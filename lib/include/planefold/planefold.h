@@ -145,7 +145,10 @@ PF_API pf_status_t pf_camera_unproject(const pf_camera_t* camera, const double p
 
 typedef enum pf_motion_model {
   PF_MOTION_CONSTANT_VELOCITY = 1, /* white accelerations; the default */
-  PF_MOTION_CONSTANT_POSITION = 2  /* random walk of the pose (Gee 2007, eq 1); for reproducing that paper */
+  PF_MOTION_CONSTANT_POSITION = 2, /* random walk of the pose (Gee 2007, eq 1); for reproducing that paper */
+  /* By the samples of pf_push_imu (lib/docs/inertial.md). Wants imu and capacity.max_imu_samples >= 64: as many as come in
+   * the longest time between frames that is to be bridged. */
+  PF_MOTION_INERTIAL = 4
 } pf_motion_model_t;
 
 typedef enum pf_kernels {
@@ -171,6 +174,24 @@ typedef enum pf_fix {
 } pf_fix_t;
 
 typedef enum pf_scalar { PF_SCALAR_DOUBLE = 8, PF_SCALAR_FLOAT = 4 } pf_scalar_t;
+
+/* The inertial unit of pf_push_imu. Its own axes are B. */
+typedef struct pf_imu_model {
+  double gyro_range;  /* that it can measure [rad/s], 0 (not known) .. 1000. Default 0 */
+  double accel_range; /* [m/s^2] 0 (not known) .. 1e5. Default 0 */
+
+  /* Only read with PF_MOTION_INERTIAL. Noise as Kalibr and EuRoC state it; no default fits a unit, and 0 is refused. */
+  double gyro_density;  /* white noise [rad/s/sqrt(Hz)], up to 1 */
+  double accel_density; /* likewise [m/s^2/sqrt(Hz)], up to 10 */
+  double gyro_walk;     /* of its bias [rad/s^2/sqrt(Hz)], up to 1 */
+  double accel_walk;    /* likewise [m/s^3/sqrt(Hz)], up to 10 */
+  /* Mounting, p_B = R_BC p_C + p_BC: EuRoC's T_BS of the camera, the inverse of Kalibr's T_cam_imu. Taken as exact. Default:
+   * axes and origin of the camera. */
+  double q_BC[4]; /* w x y z */
+  double p_BC[3]; /* [m] */
+  double delay_s; /* t_frame = t_sample + delay, -0.5 .. 0.5. Taken as exact. Default 0 */
+  double gravity; /* [m/s^2] 9 .. 11. Default 9.81 */
+} pf_imu_model_t;
 
 /* Fill with pf_config_default, then change what you know better. pf_config_check names a bad field as it is written
  * here: "capacity.max_state_dim". */
@@ -252,11 +273,7 @@ typedef struct pf_config {
     int32_t fix;  /* pf_fix_t. Default consider */
   } plane;
 
-  /* What the inertial unit of pf_push_imu can measure. */
-  struct {
-    double gyro_range;  /* [rad/s] 0 (not known) .. 1000. Default 0 */
-    double accel_range; /* [m/s^2] 0 (not known) .. 1e5. Default 0 */
-  } imu;
+  pf_imu_model_t imu;
 
   /* 1: keeps the covariance consistent with what a camera alone cannot observe (lib/docs/gauge.md). 0: the textbook
    * EKF, which is overconfident, for comparison. Default 1 */
@@ -403,7 +420,7 @@ PF_API pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_
 
 /* Control input: a change of velocity that is known beforehand (a motor, a thruster, a simulation). The next frame's
  * prediction adds it to the velocities, in camera axes: v_W += R_WC dv_C [m/s], w_C += dw_C [rad/s]. Calls add up.
- * PF_ERROR_STATE with the constant-position model, which has no velocity. */
+ * PF_ERROR_STATE with the other motion models. */
 PF_API pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]);
 
 /* A sample of an inertial measurement unit, in the unit's own axes. */
@@ -415,8 +432,8 @@ typedef struct pf_imu_sample {
 
 /* Samples, the oldest first, each after every earlier one; those up to a frame's time belong before that frame. All
  * or none are taken: PF_ERROR_TIME where a time is not after the one before, PF_ERROR_NONFINITE, PF_ERROR_RANGE
- * beyond what any unit measures. THE INERTIAL MOTION MODEL DOES NOT EXIST YET: samples are checked, kept
- * (capacity.max_imu_samples) and reported, and no pose depends on them. */
+ * beyond what any unit measures. They are kept (capacity.max_imu_samples) and reported; poses depend on them with
+ * PF_MOTION_INERTIAL only. */
 PF_API pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count);
 
 /* ---------------------------------------------------------------------------------------------------- output -- */
@@ -487,7 +504,7 @@ typedef struct pf_feature {
 /* Copy of the map. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
 PF_API pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_t capacity, size_t* count);
 
-/* Of a plane, once the direction of gravity is known (pf_set_gravity). Up and down: which way the side looks that
+/* Of a plane, once the direction of gravity is known (pf_set_gravity, pf_get_inertial). Up and down: which way the side looks that
  * was seen. */
 typedef enum pf_orientation {
   PF_ORIENTATION_UNKNOWN = 0,
@@ -524,7 +541,7 @@ PF_API pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size
 PF_API pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* current_id);
 
 /* The direction of gravity in W, of any length; zero forgets it, and so does a new map. Only pf_plane_t.orientation
- * depends on it. */
+ * depends on it. With PF_MOTION_INERTIAL gravity is known without it (pf_get_inertial), and this goes before that. */
 PF_API pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]);
 
 typedef struct pf_hit {
@@ -566,6 +583,7 @@ enum {
   PF_STAGE_GATE = 3,    /* inliers and outliers among the matches */
   PF_STAGE_UPDATE = 4,  /* covariance and state */
   PF_STAGE_MAP = 5,     /* conversion, eviction, corners, new features */
+  PF_STAGE_IMU = 6,     /* samples, in place of the motion in PF_STAGE_PREDICT */
   PF_STAGE_COUNT = 8
 };
 
@@ -613,10 +631,28 @@ typedef struct pf_imu_report {
   double rate_hz;     /* mean from the first sample to the last; 0 of fewer than two */
   double median_s;    /* interval, a running median; 0 of fewer than two */
   int32_t kept;       /* samples in the buffer */
-  int32_t used;       /* 1 when poses make use of the samples: 0, since the motion model does not exist yet */
+  int32_t used;       /* 1 when poses hang on the samples: PF_MOTION_INERTIAL, and samples have come */
 } pf_imu_report_t;
 
 PF_API pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report);
+
+/* What is known of the inertial unit and of gravity, at the last frame. */
+typedef struct pf_inertial {
+  double gravity_W[3];  /* [m/s^2] */
+  double gyro_bias[3];  /* [rad/s] in B */
+  double accel_bias[3]; /* [m/s^2] in B */
+  /* Row-major 8x8 of (g, gyro bias, accelerometer bias), g two angles about the axes below [rad]:
+   * gravity_true = Exp(g1 axis1 + g2 axis2) gravity_W. */
+  double covariance[64];
+  double gravity_axes_W[2][3]; /* unit, across gravity and each other */
+  /* 1: the samples tell lengths, which are metres; 0: gravity is not known yet, and only the gyro is used. It becomes 1 when
+   * the camera has been at rest for a second. A map of unknown scale that is younger than 15 s begins anew then. */
+  uint32_t metric;
+  uint32_t map_id; /* as in pf_pose_t */
+} pf_inertial_t;
+
+/* PF_NOTE_NOTHING, and *inertial is as it was, before the start and without PF_MOTION_INERTIAL. */
+PF_API pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial);
 
 /* Copy of the kept samples, the oldest first. *count is how many there are; PF_NOTE_TRUNCATED if capacity was
  * smaller. */

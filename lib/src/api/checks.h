@@ -24,6 +24,16 @@ inline bool within(const double* v, int n, double max) {
   return true;
 }
 
+/// Unit length, within what is typed by hand; normalised.
+inline bool quaternion_from(const double* q, Quat* out) {
+  const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  if (!(norm2 > 0.98 && norm2 < 1.02)) return false;
+  *out =
+      Quat(static_cast<Scalar>(q[0]), static_cast<Scalar>(q[1]), static_cast<Scalar>(q[2]), static_cast<Scalar>(q[3]));
+  out->normalize();
+  return true;
+}
+
 /// Positive semidefinite to rounding. n <= 6.
 inline bool is_semidefinite(const double* P, int n) {
   double C[36];  // correlations, so that radians and metres have the same weight

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "api/checks.h"
 #include "api/context.h"
 #include "covariance/select.h"
 #include "slam/tuning.h"
@@ -68,8 +69,15 @@ constexpr Range kLens[] = {
     PF_FIELD(camera.sigma_centre_px, 1e-3, 1e3),
 };
 
+constexpr Range kUnit[] = {
+    PF_FIELD(imu.gyro_density, kTiny, 1), PF_FIELD(imu.accel_density, kTiny, 10), PF_FIELD(imu.gyro_walk, kTiny, 1),
+    PF_FIELD(imu.accel_walk, kTiny, 10),  PF_FIELD(imu.delay_s, -0.5, 0.5),       PF_FIELD(imu.gravity, 9, 11),
+};
+
 #undef PF_FIELD
 
+constexpr int kMinImuSamples = 64;       // with the inertial motion model
+constexpr double kMaxLever = 10;         // [m] between unit and camera
 constexpr double kLongestReadout = 0.2;  // [s]
 constexpr std::int32_t kScalar = sizeof(Scalar);
 
@@ -97,6 +105,44 @@ const char* lens_from(const pf_camera_t& c, const pf_config_t& config, Settings*
   return nullptr;
 }
 
+/// The inertial unit. Null, or the name of the first field that makes no sense.
+const char* unit_from(const pf_config_t& config, ImuUnit* unit) {
+  if (config.motion.model != PF_MOTION_INERTIAL) return nullptr;
+  if (config.capacity.max_imu_samples < kMinImuSamples) return "capacity.max_imu_samples";
+  for (const Range& r : kUnit) {
+    const double value = field_at<double>(config, r.offset);
+    if (!(value >= r.low && value <= r.high)) return r.name;
+  }
+  const pf_imu_model_t& imu = config.imu;
+  Quat q_BC;
+  if (!quaternion_from(imu.q_BC, &q_BC)) return "imu.q_BC";
+  if (!within(imu.p_BC, 3, kMaxLever)) return "imu.p_BC";
+  unit->noise = {static_cast<Scalar>(imu.gyro_density), static_cast<Scalar>(imu.accel_density),
+                 static_cast<Scalar>(imu.gyro_walk), static_cast<Scalar>(imu.accel_walk)};
+  unit->mounting.R_CB = q_BC.conjugate().toRotationMatrix();
+  unit->mounting.p_C = -(unit->mounting.R_CB * vec3(imu.p_BC));
+  unit->delay_ns = static_cast<std::int64_t>(imu.delay_s * 1e9);
+  unit->gravity = static_cast<Scalar>(imu.gravity);
+  return nullptr;
+}
+
+/// The motion model and what it needs. Null, or the name of the first field that makes no sense.
+const char* motion_from(const pf_config_t& config, Settings* settings) {
+  const bool moves = config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
+  settings->constant_velocity = moves;
+  settings->inertial = config.motion.model == PF_MOTION_INERTIAL;
+  if (!moves && !settings->inertial && config.motion.model != PF_MOTION_CONSTANT_POSITION) return "motion.model";
+  settings->body = moves                ? BodyLayout::with_constant_velocity()
+                   : settings->inertial ? BodyLayout::with_inertial_unit()
+                                        : BodyLayout::with_constant_position();
+  const bool walks = !settings->body.has(BodyPart::kVelocity);
+  settings->motion_noise.linear =
+      static_cast<Scalar>(walks ? config.motion.linear_walk : config.motion.linear_acceleration_density);
+  settings->motion_noise.angular =
+      static_cast<Scalar>(walks ? config.motion.angular_walk : config.motion.angular_acceleration_density);
+  return unit_from(config, &settings->unit);
+}
+
 }  // namespace
 
 Status settings_from(const pf_config_t& config, Settings* settings, const char** field) {
@@ -116,8 +162,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   }
   if (config.map.features_in_view > config.capacity.max_observations)
     return *field = "map.features_in_view", Status::kConfig;
-  if (config.motion.model != PF_MOTION_CONSTANT_VELOCITY && config.motion.model != PF_MOTION_CONSTANT_POSITION)
-    return *field = "motion.model", Status::kConfig;
+  *field = motion_from(config, settings);
+  if (*field != nullptr) return Status::kConfig;
   if (config.plane.fold != PF_FOLD_CONDITION && config.plane.fold != PF_FOLD_DROP)
     return *field = "plane.fold", Status::kConfig;
   if (config.plane.fix < PF_FIX_CONSIDER || config.plane.fix > PF_FIX_ERROR_FREE)
@@ -129,10 +175,9 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   const double intrinsics[4] = {c.fx, c.fy, c.cx, c.cy};
   const char* bad = make_camera(c.model, c.width, c.height, intrinsics, c.distortion, &settings->camera);
   if (bad != nullptr) return *field = bad, Status::kConfig;
-  const bool moves = config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
+  const bool moves = settings->body.has(BodyPart::kVelocity);
   if (!(c.readout_s >= 0 && c.readout_s <= (moves ? kLongestReadout : 0)))
     return *field = "camera.readout_s", Status::kConfig;
-  settings->body = moves ? BodyLayout::with_constant_velocity() : BodyLayout::with_constant_position();
   bad = lens_from(c, config, settings);
   if (bad != nullptr) return *field = bad, Status::kConfig;
   if (c.timestamps != PF_TIMESTAMPS_REAL && c.timestamps != PF_TIMESTAMPS_NOMINAL)
@@ -157,11 +202,6 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->fix = config.plane.fix == PF_FIX_CONSIDER  ? FixForm::kConsider
                   : config.plane.fix == PF_FIX_INFLATE ? FixForm::kInflate
                                                        : FixForm::kErrorFree;
-  settings->constant_velocity = config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
-  settings->motion_noise.linear = static_cast<Scalar>(
-      settings->constant_velocity ? config.motion.linear_acceleration_density : config.motion.linear_walk);
-  settings->motion_noise.angular = static_cast<Scalar>(
-      settings->constant_velocity ? config.motion.angular_acceleration_density : config.motion.angular_walk);
   settings->sigma_px = static_cast<Scalar>(config.measurement.sigma_px);
   // chi-square with two degrees of freedom: P(d2 < gate) = 1 - exp(-gate / 2)
   settings->gate = static_cast<Scalar>(-2.0 * std::log(1.0 - config.measurement.gate_probability));
@@ -228,6 +268,8 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->capacity.max_imu_samples = 0;
   config->imu.gyro_range = 0;
   config->imu.accel_range = 0;
+  config->imu.q_BC[0] = 1;
+  config->imu.gravity = 9.81;
   return PF_OK;
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "api/context.h"
+#include "api/copy.h"
 
 namespace {
 
@@ -52,6 +53,25 @@ pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report) {
   report->rate_hz = slam->session.imu().rate_hz();
   report->median_s = 1e-9 * static_cast<double>(c.median_ns);
   report->kept = slam->session.imu().held();
+  report->used = slam->session.settings().inertial && slam->session.imu().any() ? 1 : 0;
+  return PF_OK;
+}
+
+pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (inertial == nullptr) return PF_ERROR_NULL;
+  const pf::View view = slam->session.view();
+  pf::InertialView unit;
+  if (!view.inertial(&unit)) return PF_NOTE_NOTHING;
+  *inertial = pf_inertial_t();
+  pf::copy(unit.gravity_W, 3, inertial->gravity_W);
+  pf::copy(unit.gyro_bias, 3, inertial->gyro_bias);
+  pf::copy(unit.accel_bias, 3, inertial->accel_bias);
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j) inertial->covariance[8 * i + j] = static_cast<double>(unit.covariance[i][j]);
+  for (int k = 0; k < 2; ++k) pf::copy(unit.axis_W[k], 3, inertial->gravity_axes_W[k]);
+  inertial->metric = unit.metric ? 1 : 0;
+  inertial->map_id = view.map_id();
   return PF_OK;
 }
 

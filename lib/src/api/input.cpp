@@ -8,19 +8,10 @@ namespace {
 using pf::is_covariance;
 using pf::kMaxMetres;
 using pf::kMaxRate;
+using pf::quaternion_from;
 using pf::Scalar;
 using pf::vec3;
 using pf::within;
-
-/// Unit length, within what is typed by hand; normalised.
-bool quaternion_from(const double* q, pf::Quat* out) {
-  const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  if (!(norm2 > 0.98 && norm2 < 1.02)) return false;
-  *out = pf::Quat(static_cast<Scalar>(q[0]), static_cast<Scalar>(q[1]), static_cast<Scalar>(q[2]),
-                  static_cast<Scalar>(q[3]));
-  out->normalize();
-  return true;
-}
 
 /// Where a rectangle is in W; all zero: W is the rectangle's frame.
 pf_status_t place_from(const pf_target_t& target, pf::Target* out) {
@@ -95,7 +86,7 @@ pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const dou
   if (status != PF_OK) return status;
   const pf::BodyLayout& layout = slam->session.settings().body;
   const bool moves = layout.has(pf::BodyPart::kVelocity);
-  const int dim = layout.dynamic_rows();
+  const int dim = layout.known_rows();
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) known.covariance[i * dim + j] = static_cast<Scalar>(pose->covariance[i * 6 + j]);
   if (moves) {

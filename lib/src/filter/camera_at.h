@@ -15,6 +15,11 @@ namespace pf {
 ///   theta_tau = theta + R J_l(w tau) tau e_w,  e_p_tau = e_p + tau e_v
 ///
 /// Of the pose the Jacobian is the identity, and of the velocities zero at tau = 0; neither is stored or multiplied.
+///
+/// With an inertial unit w = R_CB (gyro - bias), so that e_w = -R_CB e_b stands in the rows of the bias; and the state's velocity v_B is
+/// that of the unit's origin, at m in C (lib/docs/inertial.md):
+///
+///   v = v_B - R (w x m),   e_v = e_v_B + [R (w x m)]x theta + R [m]x e_w
 struct CameraAt {
   static constexpr int kMaxColumns = 12;
 
@@ -23,8 +28,10 @@ struct CameraAt {
   Vec3 p_W = Vec3::Zero();
   Vec3 v_W = Vec3::Zero();
   Vec3 w_C = Vec3::Zero();
-  Mat3 J_theta_w;  ///< R J_l(w tau) tau; only where tau is not 0
-  int velocity_row = 0, rate_row = 0;
+  Mat3 J_theta_w;                      ///< R J_l(w tau) tau, by the rows at rate_row; only where tau is not 0
+  bool beside = false;                 ///< the state's velocity is that of another point; the two below only then
+  Mat3 J_p_theta, J_p_w;               ///< of p_tau, beside the identity and tau
+  int velocity_row = 0, rate_row = 0;  ///< of the velocity; of the angular velocity, or of the bias that it hangs on
 
   /// Rows of the body that its error depends on, from the first one on.
   int columns() const { return tau == Scalar(0) ? Body::kPoseDim : rate_row + 3; }
@@ -37,7 +44,13 @@ struct CameraAt {
     if (tau == Scalar(0)) return;
     for (int a = 0; a < kRows; ++a) {
       const Vec3 J_theta = J.template block<1, 3>(a, 0).transpose(), J_p = J.template block<1, 3>(a, 3).transpose();
-      const Vec3 J_w = J_theta_w.transpose().lazyProduct(J_theta), J_v = tau * J_p;
+      Vec3 J_w = J_theta_w.transpose().lazyProduct(J_theta);
+      const Vec3 J_v = tau * J_p;
+      if (beside) {
+        J_w += J_p_w.transpose().lazyProduct(J_p);
+        const Vec3 more = J_p_theta.transpose().lazyProduct(J_p);
+        for (int c = 0; c < 3; ++c) h[a * stride + Body::kTheta + c] += more(c);
+      }
       for (int c = 0; c < 3; ++c) {
         h[a * stride + velocity_row + c] = J_v(c);
         h[a * stride + rate_row + c] = J_w(c);
@@ -56,19 +69,37 @@ inline CameraAt camera_at(const Body& body) {
   return camera;
 }
 
+/// Velocity of the camera where the body's is that of the inertial unit.
+inline Vec3 camera_velocity(const Body& body, const Mounting& mounting) {
+  return body.v_W - body.q_WC * body.w_C.cross(mounting.p_C);
+}
+
+/// What follows from the unit's place and axes, for a camera tau seconds from the frame's time.
+inline void put_unit(const Body& body, const Mounting& mounting, CameraAt* camera) {
+  const Mat3 R = body.q_WC.toRotationMatrix();
+  camera->beside = true;
+  const Mat3 J_theta_w = camera->J_theta_w;
+  camera->J_theta_w = -J_theta_w.lazyProduct(mounting.R_CB);
+  camera->J_p_theta = camera->tau * hat(body.v_W - camera->v_W);
+  camera->J_p_w = -camera->tau * R.lazyProduct(hat(mounting.p_C)).lazyProduct(mounting.R_CB);
+}
+
 /// The camera tau seconds from the frame's time; at the frame's time where the body has no velocities.
 inline CameraAt camera_at(const State& state, Scalar tau) {
   const Body& body = state.body;
   CameraAt camera = camera_at(body);
+  const bool has_unit = state.layout.has(BodyPart::kGyroBias);
+  if (has_unit) camera.v_W = camera_velocity(body, state.mounting);
   if (tau == Scalar(0) || !state.layout.has(BodyPart::kVelocity)) return camera;
   camera.tau = tau;
   camera.velocity_row = state.layout.row(BodyPart::kVelocity);
-  camera.rate_row = state.layout.row(BodyPart::kAngularVelocity);
+  camera.rate_row = state.layout.row(has_unit ? BodyPart::kGyroBias : BodyPart::kAngularVelocity);
   const Vec3 rotation = body.w_C * tau;
   camera.q_WC = body.q_WC * exp_so3(rotation);
   camera.q_WC.normalize();
-  camera.p_W = body.p_W + body.v_W * tau;
+  camera.p_W = body.p_W + camera.v_W * tau;
   camera.J_theta_w = tau * body.q_WC.toRotationMatrix().lazyProduct(left_jacobian_so3(rotation));
+  if (has_unit) put_unit(body, state.mounting, &camera);
   return camera;
 }
 

@@ -28,6 +28,8 @@ void Filter::init(const Kernels* kernels, const BodyLayout& layout, bool keep_ga
   state_.body = Body();
   state_.layout = layout;
   state_.unobservable = gauge::kBareCamera;
+  state_.metric = false;
+  state_.mounting = Mounting();
   state_.lens = Camera();
   state_.lens_rows = LensRows();
   state_.planes = 0;
@@ -41,6 +43,11 @@ void Filter::set_lens(const Camera& camera, const LensPrior& prior) {
   state_.lens_rows = prior.rows;
   PF_ASSERT(state_.layout.rows() - state_.layout.dynamic_rows() == prior.rows.count);
   if (prior.rows.count > 0) blocks_.set_constants(state_.layout.row(BodyPart::kLens), prior.covariance);
+}
+
+void Filter::set_metric() {
+  PF_ASSERT(state_.layout.has(BodyPart::kGravity));
+  state_.metric = true;
 }
 
 void Filter::consider_lens(bool only_considered) {
@@ -101,6 +108,10 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   if (camera.tau != Scalar(0)) {
     put<2, 3>(J.h, columns, camera.velocity_row, Mat23(camera.tau * J_c));
     put<2, 3>(J.h, columns, camera.rate_row, Mat23(J_theta.lazyProduct(camera.J_theta_w)));
+    if (camera.beside) {
+      put<2, 3>(J.h, columns, 0, Mat23(J_theta + J_c * camera.J_p_theta));
+      put<2, 3>(J.h, columns, camera.rate_row, Mat23(J_theta * camera.J_theta_w + J_c * camera.J_p_w));
+    }
   }
   if (lens > 0) {  // the ray of a given pixel: J_z_lens e + J_z_ray e_ray = 0
     J.part[1] = Part::body(state_.layout.row(BodyPart::kLens), lens);

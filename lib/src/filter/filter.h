@@ -50,6 +50,11 @@ class Filter {
 
   /// The calibration, and where the layout has a lens its prior. Before anything is added.
   void set_lens(const Camera& camera, const LensPrior& prior);
+  /// Where the inertial unit is. Before anything is added.
+  void set_mounting(const Mounting& mounting) { state_.mounting = mounting; }
+  /// From now on the samples of the inertial unit tell the scale.
+  void set_metric();
+  bool is_metric() const { return state_.metric; }
   /// Whether updates leave the lens as it is and allow for its error, whatever the layout says of it.
   void consider_lens(bool only_considered);
   /// Updates estimate what moves, the body without its constants, and consider the map and the lens (Schmidt), until the next call.

@@ -16,8 +16,8 @@ void directions(const State& state, const BlockFilter& blocks, double* N) {
       for (int d = 0; d < kDirections; ++d)
         if (gauge::contains(state.unobservable, d)) N[(first + i) * 8 + d] = static_cast<double>(rows(i, d));
   };
-  for_each_body_gauge(state.body, state.layout,
-                      [&](int first, const GaugeRowsOf<3>& rows) { put_rows(first, 3, rows); });
+  for_each_body_gauge(state.body, state.layout, state.mounting,
+                      [&](int first, int size, const GaugeRowsOf<3>& rows) { put_rows(first, size, rows); });
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];
     if (block.size == 0) continue;

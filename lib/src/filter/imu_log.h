@@ -6,8 +6,7 @@
 #include "base/scalar.h"
 
 /// Samples of an inertial measurement unit as they come in: the newest in a ring, all of them counted.
-///
-/// The inertial motion model does not exist yet. What it will read is here already, checked and in order.
+/// imu_path.h integrates them.
 
 namespace pf {
 

@@ -24,7 +24,9 @@ bool are_variances(const Triangle& P, int first, int count) {
 bool Filter::body_is_sound() const {
   const Body& b = state_.body;
   for (int i = 0; i < 3; ++i)
-    if (!is_value(b.p_W[i]) || !is_value(b.v_W[i]) || !is_value(b.w_C[i])) return false;
+    if (!is_value(b.p_W[i]) || !is_value(b.v_W[i]) || !is_value(b.w_C[i]) || !is_value(b.gyro_bias[i]) ||
+        !is_value(b.accel_bias[i]))
+      return false;
   const Scalar norm2 = b.q_WC.squaredNorm();
   return norm2 > kMinNorm2 && norm2 < kMaxNorm2 && are_variances(covariance(), 0, state_.layout.rows()) &&
          (state_.lens_rows.count == 0 || check_camera(state_.lens) == nullptr);

@@ -80,6 +80,15 @@ void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
   const BodyLayout& layout = state.layout;
   if (layout.has(BodyPart::kVelocity)) body.v_W += three(layout.row(BodyPart::kVelocity));
   if (layout.has(BodyPart::kAngularVelocity)) body.w_C += three(layout.row(BodyPart::kAngularVelocity));
+  if (layout.has(BodyPart::kGyroBias)) {
+    const Vec3 e_g = three(layout.row(BodyPart::kGyroBias));
+    const int gravity = layout.row(BodyPart::kGravity);
+    body.gyro_bias += e_g;
+    body.w_C -= state.mounting.R_CB * e_g;  // what the samples say, less the bias
+    body.accel_bias += three(layout.row(BodyPart::kAccelBias));
+    body.q_WG = body.q_WG * exp_so3(Vec3(dx[gravity], dx[gravity + 1], Scalar(0)));
+    body.q_WG.normalize();
+  }
   if (layout.has(BodyPart::kLens) && layout.considered_rows() == 0)
     move_lens(state.lens_rows, dx + layout.row(BodyPart::kLens), &state.lens);
   for (int s = 0; s < state.slots; ++s) {
@@ -119,7 +128,8 @@ void add_children(const State& state, const BlockFilter& blocks, int parent, con
 void add_gauge_rows(const State& state, const BlockFilter& blocks, Scalar sign, Scalar* N_T, Scalar* N_R, Scalar* N_s,
                     int ld) {
   const GaugeSum sum = {sign, N_T, N_R, N_s, ld};
-  for_each_body_gauge(state.body, state.layout, [&](int first, const GaugeRowsOf<3>& N) { sum.add(first, 3, N); });
+  for_each_body_gauge(state.body, state.layout, state.mounting,
+                      [&](int first, int rows, const GaugeRowsOf<3>& N) { sum.add(first, rows, N); });
   for (int s = 0; s < state.slots; ++s) {
     const Block& block = state.block[s];
     visit(block.kind, [&](auto kind) {

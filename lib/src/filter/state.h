@@ -22,6 +22,8 @@ struct State {
   Body body;
   BodyLayout layout;
   gauge::Set unobservable = gauge::kBareCamera;  ///< directions about which no measurement says anything
+  bool metric = false;                           ///< samples of the inertial unit tell lengths and gravity
+  Mounting mounting;                             ///< of the inertial unit
   Camera lens;                                   ///< calibration as it is known now
   LensRows lens_rows;                            ///< of BodyPart::kLens
   Block* block = nullptr;                        ///< slots

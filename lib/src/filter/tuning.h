@@ -33,6 +33,10 @@ inline constexpr int kMaxTried = 12;  ///< log lengths, the best known of which 
 /// Inertial samples.
 namespace imu {
 inline constexpr Scalar kSaturation = Scalar(0.995);  ///< of the range: a sample that reaches it says "at least this"
+inline constexpr Scalar kMaxGap = Scalar(1.5);        ///< median intervals, above which samples are missing
+inline constexpr Scalar kMaxHold = Scalar(1.5);  ///< median intervals behind the last sample, before the body coasts
+inline constexpr Scalar kMaxCoast = Scalar(2);   ///< [s] without samples that a prediction covers
+inline constexpr Scalar kBridge = Scalar(12);    ///< of a bridge: the integral of a random walk's, dt^3/12
 inline constexpr int kAdaptSteps = 16;  ///< the median interval moves by this fraction of itself towards each new one
 }  // namespace imu
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "filter/inertial_motion.h"
 #include "slam/tuning.h"
 
 namespace pf {
@@ -10,31 +11,79 @@ namespace {
 
 using namespace tuning::body_motion;
 
+/// After kMaxGapNs no motion is predictable, and the covariance grows no further.
+Scalar predicted_seconds(std::int64_t before_ns, std::int64_t t_ns) {
+  const std::int64_t gap_ns = elapsed_ns(before_ns, t_ns);
+  return static_cast<Scalar>(seconds(gap_ns < BodyMotion::kMaxGapNs ? gap_ns : BodyMotion::kMaxGapNs));
+}
+
+/// The time of a frame on the clock of the samples.
+std::int64_t on_unit_clock(std::int64_t t_ns, std::int64_t delay_ns) {
+  std::int64_t shifted;
+  return __builtin_sub_overflow(t_ns, delay_ns, &shifted) ? t_ns : shifted;
+}
+
 }  // namespace
-void BodyMotion::advance(std::int64_t gap_ns, bool coasting_or_lost, bool nothing_measured) {
-  // After kMaxGapNs no motion is predictable, and the covariance grows no further.
-  const Scalar dt = static_cast<Scalar>(seconds(gap_ns < kMaxGapNs ? gap_ns : kMaxGapNs));
+
+void BodyMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured) {
   MotionNoise noise = settings_.motion_noise;
   if (coasting_or_lost) {
     // A hand does not keep its speed for long, and half a radian of rotation uncertainty already means searching everywhere. Without
     // these limits, one second without an image would predict the camera out of the room. The position keeps growing with the speed.
-    if (settings_.constant_velocity && nothing_measured) damp(dt);
-    if (filter_.variance(Body::kTheta) > kMaxRotationSigma * kMaxRotationSigma) noise.angular = Scalar(0);
-    const int linear = settings_.constant_velocity ? settings_.body.row(BodyPart::kVelocity) : Body::kPosition;
-    const Scalar most = settings_.constant_velocity ? kMaxSpeedSigma : kAnyPosition;
-    if (filter_.variance(linear) > most * most) noise.linear = Scalar(0);
+    if (settings_.constant_velocity && nothing_measured) damp(predicted_seconds(before_ns, t_ns));
+    noise = limited_noise();
   }
   Transition transition;
   if (settings_.constant_velocity && data_.given) {
     change_velocity(filter_.state().body, settings_.body, data_.dv_C, data_.dw_C, &transition);
     filter_.predict(transition);
   }
-  predict(filter_.state().body, dt, noise, &transition);
+  predict(filter_.state().body, before_ns, t_ns, noise, &transition);
   filter_.predict(transition);
   data_ = Data();
 }
 
-void BodyMotion::predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const {
+/// The noise of the model, without what would make wide covariances wider.
+MotionNoise BodyMotion::limited_noise() const {
+  MotionNoise noise = settings_.motion_noise;
+  const bool has_velocity = settings_.body.has(BodyPart::kVelocity);
+  if (filter_.variance(Body::kTheta) > kMaxRotationSigma * kMaxRotationSigma) noise.angular = Scalar(0);
+  const int linear = has_velocity ? settings_.body.row(BodyPart::kVelocity) : Body::kPosition;
+  const Scalar most = has_velocity ? kMaxSpeedSigma : kAnyPosition;
+  if (filter_.variance(linear) > most * most) noise.linear = Scalar(0);
+  return noise;
+}
+
+void BodyMotion::predict(const Body& body, std::int64_t before_ns, std::int64_t t_ns, const MotionNoise& noise,
+                         Transition* transition) const {
+  if (settings_.inertial)
+    predict_by_samples(body, before_ns, t_ns, noise, transition);
+  else
+    predict_after(body, predicted_seconds(before_ns, t_ns), noise, transition);
+}
+
+void BodyMotion::predict_by_samples(const Body& body, std::int64_t before_ns, std::int64_t t_ns,
+                                    const MotionNoise& noise, Transition* transition) const {
+  const ImuUnit& unit = settings_.unit;
+  const Mounting& mounting = filter_.state().mounting;
+  const Quat q_BW = Quat(Mat3(body.q_WC.toRotationMatrix() * mounting.R_CB)).conjugate();
+  Coasting coasting;
+  coasting.w_B = mounting.R_CB.transpose() * body.w_C;
+  coasting.f_B = q_BW * (-unit.gravity * body.gravity_W());
+  coasting.noise = noise;
+  Preintegral samples(unit.noise, body.gyro_bias, body.accel_bias);
+  ImuReading now;
+  integrate_samples(imu_, on_unit_clock(before_ns, unit.delay_ns), on_unit_clock(t_ns, unit.delay_ns), coasting,
+                    &samples, &now);
+  if (filter_.is_metric())
+    predict_inertial(body, settings_.body, mounting, samples, unit.gravity, transition);
+  else
+    predict_rotation_only(body, settings_.body, mounting, samples, noise.linear, transition);
+  transition->mean.w_C = mounting.R_CB * (now.gyro - body.gyro_bias);
+}
+
+/// What a model without samples says of a body after dt [s].
+void BodyMotion::predict_after(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const {
   if (settings_.constant_velocity)
     predict_constant_velocity(body, settings_.body, dt, noise, transition);
   else
@@ -65,9 +114,11 @@ void BodyMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body
   for (int i = 0; i < dim; ++i)
     for (int j = 0; j < dim; ++j) P[i * dim + j] = filter_.covariance()(i, j);
   if (t_ns > now_ns) {
-    const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(now_ns, t_ns)));
     Transition transition;
-    predict(*body, dt, settings_.motion_noise, &transition);
+    if (settings_.inertial)
+      predict_by_samples(*body, now_ns, t_ns, settings_.motion_noise, &transition);
+    else
+      predict_after(*body, static_cast<Scalar>(seconds(elapsed_ns(now_ns, t_ns))), settings_.motion_noise, &transition);
     *body = transition.mean;
     Scalar FP[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
     for (int i = 0; i < dim; ++i)

@@ -11,7 +11,8 @@ namespace pf {
 
 class BodyMotion {
  public:
-  BodyMotion(const Settings& settings, Filter& filter) : settings_(settings), filter_(filter) {}
+  BodyMotion(const Settings& settings, Filter& filter, const ImuLog& imu)
+      : settings_(settings), filter_(filter), imu_(imu) {}
 
   static constexpr std::int64_t kMaxGapNs = 2000000000;  ///< [ns] longest time between frames that a prediction covers
 
@@ -23,10 +24,12 @@ class BodyMotion {
     data_.dw_C += dw_C;
   }
 
-  /// Predicts the filter's body over this gap. coasting_or_lost: the tracking state; nothing_measured: the last frame had no inlier.
-  void advance(std::int64_t gap_ns, bool coasting_or_lost, bool nothing_measured);
-  /// What the configured motion model says of a body after dt [s].
-  void predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
+  /// Predicts the filter's body from one frame's time to the next. coasting_or_lost: the tracking state; nothing_measured: the last frame
+  /// had no inlier.
+  void advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured);
+  /// What the configured motion model says of a body between two frames' times.
+  void predict(const Body& body, std::int64_t before_ns, std::int64_t t_ns, const MotionNoise& noise,
+               Transition* transition) const;
   /// Body and pose covariance (6x6) at t_ns; predicted if t_ns is after now_ns.
   void predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const;
 
@@ -38,10 +41,15 @@ class BodyMotion {
     Vec3 dw_C = Vec3::Zero();
   };
 
+  void predict_by_samples(const Body& body, std::int64_t before_ns, std::int64_t t_ns, const MotionNoise& noise,
+                          Transition* transition) const;
+  void predict_after(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
+  MotionNoise limited_noise() const;
   void damp(Scalar dt);
 
   const Settings& settings_;
   Filter& filter_;
+  const ImuLog& imu_;
   Data data_;
 };
 

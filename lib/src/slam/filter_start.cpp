@@ -25,6 +25,8 @@ void FilterStart::init() {
 void FilterStart::clear_filter() {
   parts_.filter.init(settings_.kernels, settings_.body, settings_.keep_gauge);
   parts_.filter.set_lens(settings_.camera, settings_.lens);
+  // Where the scale is not known, neither is the unit's place in it.
+  parts_.filter.set_mounting({settings_.unit.mounting.R_CB, Vec3::Zero()});
   parts_.filter.set_roughness(settings_.fold.roughness);
   parts_.map.planes.clear();
   parts_.map.mark = Mark();
@@ -66,15 +68,31 @@ int FilterStart::target_rows() const {
   return 3 * (target.kind == TargetKind::kRectangle ? kCorners : target.count);
 }
 
-void FilterStart::set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens) {
-  parts_.filter.set_body(body, covariance, J_lens);
+/// known: covariance over the known rows of the layout. Of an inertial unit nothing is known yet.
+void FilterStart::set_body(const Body& body, const Scalar* known, const Scalar* J_lens) {
+  using namespace tuning::inertial;
+  Scalar all[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
+  if (settings_.inertial) {
+    const BodyLayout& layout = settings_.body;
+    const int dim = layout.dynamic_rows(), stride = layout.known_rows(), moving = layout.row(BodyPart::kGyroBias);
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) all[i * dim + j] = i < moving && j < moving ? known[i * stride + j] : Scalar(0);
+    const auto set_sigma = [&](BodyPart part, int rows, Scalar sigma) {
+      for (int i = layout.row(part); i < layout.row(part) + rows; ++i) all[i * dim + i] = sigma * sigma;
+    };
+    set_sigma(BodyPart::kGyroBias, 3, kGyroBias);
+    set_sigma(BodyPart::kAccelBias, 3, kAccelBias);
+    set_sigma(BodyPart::kGravity, 2, kGravity);
+    known = all;
+  }
+  parts_.filter.set_body(body, known, J_lens);
   parts_.tracking.set_has_pose(parts_.frame.report.t_ns);
 }
 
 /// Variances of velocities that nothing is known of.
 void FilterStart::set_start_velocities(Scalar speed) {
   const BodyLayout& layout = settings_.body;
-  const int dim = layout.dynamic_rows();
+  const int dim = layout.known_rows();
   const auto set_sigma = [&](BodyPart part, Scalar sigma) {
     if (!layout.has(part)) return;
     for (int i = layout.row(part); i < layout.row(part) + 3; ++i) data_.covariance[i * dim + i] = sigma * sigma;
@@ -86,7 +104,7 @@ void FilterStart::set_start_velocities(Scalar speed) {
 /// Covariance of the body from which a record begins at a pose that the caller knew: that of the pose now; of velocities nothing, since
 /// those of the record take their place.
 void FilterStart::note_covariance() {
-  const int dim = settings_.body.dynamic_rows();
+  const int dim = settings_.body.known_rows();
   const auto& P = parts_.filter.covariance();
   for (Scalar& c : data_.covariance) c = Scalar(0);
   for (int i = 0; i < Body::kPoseDim; ++i)
@@ -99,7 +117,7 @@ bool FilterStart::needs_record() const {
   if (!data_.known.given) return true;
   if (parts_.map.planes.has_known()) return false;
   if (!settings_.body.has(BodyPart::kVelocity)) return true;
-  const int dim = settings_.body.dynamic_rows(), first = settings_.body.row(BodyPart::kVelocity);
+  const int dim = settings_.body.known_rows(), first = settings_.body.row(BodyPart::kVelocity);
   Scalar variance = 0;
   for (int i = first; i < first + 3; ++i) variance += data_.known.covariance[i * dim + i];
   return data_.known.body.v_W.squaredNorm() < kKnownSpeed * kKnownSpeed * variance;
@@ -107,12 +125,14 @@ bool FilterStart::needs_record() const {
 
 /// The pose before the first measurement: the one that the caller gave, or the one that defines the world.
 void FilterStart::set_known_pose(bool at_target, const TargetSighting* sighting) {
+  data_.knows_scale = at_target || !needs_record();
+  data_.begin_ns = parts_.frame.report.t_ns;
   if (data_.known.given) {
     set_body(data_.known.body, data_.known.covariance);
     return;
   }
   const BodyLayout& layout = settings_.body;
-  const int dim = layout.dynamic_rows();
+  const int dim = layout.known_rows();
   Scalar* covariance = data_.covariance;
   for (Scalar& c : data_.covariance) c = Scalar(0);
   const Target& target = target_.target();

@@ -2,6 +2,7 @@
 
 #include "base/status.h"
 #include "filter/filter.h"
+#include "filter/inertial_motion.h"
 #include "map/map.h"
 #include "slam/body_motion.h"
 #include "slam/feature_keeper.h"
@@ -62,11 +63,15 @@ class FilterStart {
   void record_frame();
   /// Begins an empty record with the features that this frame has added.
   void begin_record();
+  /// The camera has been at rest since begin_ns. The first time that samples can tell the scale from here on: true, and gravity and biases
+  /// are known. A map whose scale is unknown begins anew with this frame.
+  bool use_rest(const RestReading& rest, std::int64_t begin_ns);
   /// Ends a record, where something else tells the depths from now on.
   void end_record() { without_.init(); }
 
  private:
-  void set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens = nullptr);
+  void set_body(const Body& body, const Scalar* known, const Scalar* J_lens = nullptr);
+  bool may_begin_anew(std::int64_t begin_ns) const;
   bool needs_record() const;
   void set_start_velocities(Scalar speed);
   void note_covariance();
@@ -80,9 +85,10 @@ class FilterStart {
   /// What is kept between frames.
   struct Data {
     KnownBody known;
-    bool has_place = false;  ///< the caller said where in W the start is
-    Scalar covariance[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows] =
-        {};  ///< of the body at the first frame
+    bool has_place = false;     ///< the caller said where in W the start is
+    bool knows_scale = false;   ///< a target, walls or a known speed tell it
+    std::int64_t begin_ns = 0;  ///< when the body got its first pose
+    Scalar covariance[BodyLayout::kVelocityRows * BodyLayout::kVelocityRows] = {};  ///< of the body at the first frame
   };
 
   const Settings& settings_;

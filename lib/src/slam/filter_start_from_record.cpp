@@ -29,7 +29,7 @@ void FilterStart::restart_from_record() {
     before_ns = without_.record().frame(k).t_ns;
   }
   parts_.filter.consider_lens(false);
-  if (settings_.constant_velocity) restart_velocities();
+  if (settings_.body.has(BodyPart::kVelocity)) restart_velocities();
 }
 
 /// Adds the record's features to the filter with its depths; removes all others.
@@ -70,7 +70,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   now.v_W = (p_W - now.p_W) / dt;
   now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
   Transition transition;
-  motion_.predict(now, dt, settings_.motion_noise, &transition);
+  motion_.predict(now, before_ns, frame.t_ns, settings_.motion_noise, &transition);
   transition.mean.q_WC = q_WC;
   transition.mean.p_W = p_W;
   filter.predict(transition);

@@ -19,6 +19,7 @@ bool FrameLoop::layout(Arena& arena) {
   images_.layout(arena, settings.camera.width, settings.camera.height, settings.max_observations);
   relocaliser_.layout(arena, settings.max_observations, settings.max_kept_views);
   observations_.layout(arena, settings.max_features, settings.max_observations);
+  rest_.layout(arena);
   start_.layout(arena, settings.camera.width, settings.camera.height);
   return arena.ok();
 }
@@ -29,6 +30,7 @@ void FrameLoop::init() {
   frozen_.init();
   data_ = Data();
   motion_.init();
+  rest_.init();
   planes_.init();
   images_.init(settings_.camera);
   relocaliser_.init();
@@ -76,9 +78,11 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     if (supported && tracking_.state() == SlamState::kTracking && !start_.progress().recording) learn_noise();
     maintain_map(supported);
     start_.record_frame();
+    const bool begins_anew = look_for_rest() && map_.features.count() == 0;
     // A frame that does not support its pose adds features only to a map that has none to lose.
     const bool empty = first || start_.progress().pending() || map_.features.count() == 0;
-    if (tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0)) images_.add_features();
+    if (tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0) || begins_anew)
+      images_.add_features();
     start_.begin_record();
   }
   return end_frame();
@@ -94,6 +98,7 @@ Status FrameLoop::push_observations(const PixelObservation* observations, int co
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     maintain_map(true);
+    look_for_rest();
     observations_.add_features(observations, count);
   }
   return end_frame();
@@ -134,8 +139,8 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
     motion_.init();  // control input is for one frame only
     return;
   }
-  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
-  motion_.advance(elapsed_ns(before_ns, t_ns), tracking_.coasting_or_lost(), nothing_measured);
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[settings_.inertial ? kImu : kPredict]);
+  motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
   if (!filter_.body_is_sound()) start_over();
 }
 
@@ -150,6 +155,16 @@ ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
   for (int i = 0; i < map_.features.capacity() && known < settings_.min_inliers; ++i)
     known += map_.features.used(i) && filter_.state().block[map_.features[i].slot].kind != BlockKind::kInverseDepth;
   return known < settings_.min_inliers ? ConsensusRule::kMostAgree : ConsensusRule::kBeyondChance;
+}
+
+/// True where this frame is the first one whose samples tell the scale.
+bool FrameLoop::look_for_rest() {
+  if (!settings_.inertial || !tracking_.has_pose()) return false;
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kImu]);
+  RestReading rest;
+  if (!rest_.note(tracking_.is_tracked(frame_.report), &rest) || !start_.use_rest(rest, rest_.begin_ns())) return false;
+  if (map_.features.count() == 0) relocaliser_.init();
+  return true;
 }
 
 void FrameLoop::learn_noise() {
@@ -208,6 +223,7 @@ void FrameLoop::clear_estimate() {
   start_.start_over();
   map_.features.clear();
   motion_.init();
+  rest_.init();
   relocaliser_.init();
   frame_.forget_all();
 }

@@ -18,6 +18,7 @@
 #include "slam/plane_keeper.h"
 #include "slam/pose_mark.h"
 #include "slam/relocaliser.h"
+#include "slam/rest_detector.h"
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
 
@@ -31,7 +32,7 @@ namespace pf {
 
 class FrameLoop {
  public:
-  FrameLoop(const Settings& settings, Map& map) : settings_(settings), map_(map) {}
+  FrameLoop(const Settings& settings, Map& map, const ImuLog& imu) : settings_(settings), map_(map), imu_(imu) {}
   FrameLoop(const FrameLoop&) = delete;
   FrameLoop& operator=(const FrameLoop&) = delete;
 
@@ -74,6 +75,7 @@ class FrameLoop {
   Status repeat_frame(std::int64_t t_ns);
   Status end_frame();
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
+  bool look_for_rest();
   void learn_noise();
   void maintain_map(bool supported);
   void start_over();
@@ -82,12 +84,14 @@ class FrameLoop {
 
   const Settings& settings_;
   Map& map_;
+  const ImuLog& imu_;
   Filter filter_;
   Frame frame_;
   NoiseModel noise_;
   TrackingState tracking_{settings_};
   FrozenCamera frozen_;
-  BodyMotion motion_{settings_, filter_};
+  BodyMotion motion_{settings_, filter_, imu_};
+  RestDetector rest_{settings_, frame_, imu_};
   PixelUpdate update_{settings_, filter_, map_, frame_, tracking_};
   FeatureKeeper features_{settings_, filter_, map_, frame_};
   PoseMark mark_{filter_, map_, features_};

@@ -220,11 +220,12 @@ bool Relocaliser::follows_last_proposal(const Body& pose, Scalar depth, std::int
   const Scalar dt = static_cast<Scalar>(seconds(dt_ns));
   const Body& body = filter_.state().body;
   Scalar max_rotation = kProposalRotation, max_shift = kProposalShift * depth;
-  if (settings_.constant_velocity) {
+  if (settings_.body.has(BodyPart::kVelocity)) {
+    const int rate = settings_.body.row(settings_.inertial ? BodyPart::kGyroBias : BodyPart::kAngularVelocity);
     Scalar v = 0, w = 0;
     for (int i = 0; i < 3; ++i) {
       v += filter_.variance(settings_.body.row(BodyPart::kVelocity) + i);
-      w += filter_.variance(settings_.body.row(BodyPart::kAngularVelocity) + i);
+      w += filter_.variance(rate + i);
     }
     max_rotation += (kMotionGate * std::min(std::sqrt(w), kMaxRateSigma) + body.w_C.norm()) * dt;
     max_shift += (kMotionGate * std::min(std::sqrt(v), kMaxSpeedSigma * depth) + body.v_W.norm()) * dt;

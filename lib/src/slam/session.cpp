@@ -9,8 +9,8 @@ bool Session::layout(Arena& arena, const Settings& settings) {
   map_.layout(arena, settings.max_features, settings.max_planes);
   imu_.layout(arena, settings.imu_buffer);
   FrameLoop* place = arena.take<FrameLoop>(1);
-  if (place == nullptr) return FrameLoop(settings_, map_).layout(arena);
-  filter_ = new (place) FrameLoop(settings_, map_);
+  if (place == nullptr) return FrameLoop(settings_, map_, imu_).layout(arena);
+  filter_ = new (place) FrameLoop(settings_, map_, imu_);
   return filter_->layout(arena);
 }
 
@@ -29,6 +29,12 @@ Status Session::start_from_target(const Target& target) {
 
 Status Session::start_from_pose(const KnownBody& known) {
   return view().used() ? Status::kState : filter_->start().use_pose(known);
+}
+
+Vec3 Session::gravity_W() const {
+  if (data_.gravity_map == view().map_id() && data_.gravity_W.squaredNorm() > Scalar(0)) return data_.gravity_W;
+  InertialView unit;
+  return view().inertial(&unit) && unit.metric ? unit.gravity_W : Vec3::Zero();
 }
 
 Status Session::push_frame(const ImageView& image, std::int64_t t_ns) {

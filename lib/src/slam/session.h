@@ -58,8 +58,8 @@ class Session {
   View view() const { return View(settings_, map_, *filter_); }
   const Settings& settings() const { return settings_; }
   const ImuLog& imu() const { return imu_; }
-  /// In the W of the current map. Zero: not known.
-  Vec3 gravity_W() const { return data_.gravity_map == view().map_id() ? data_.gravity_W : Vec3::Zero(); }
+  /// In the W of the current map: what the caller said, or else what the samples say. Zero: not known.
+  Vec3 gravity_W() const;
 
  private:
   /// What is kept between frames.

@@ -6,6 +6,7 @@
 #include "covariance/kernels.h"
 #include "filter/filter.h"
 #include "filter/imu_log.h"
+#include "filter/imu_path.h"
 #include "filter/motion.h"
 #include "geometry/lens.h"
 
@@ -24,6 +25,8 @@ struct Settings {
   int max_kept_views = 0;
 
   bool constant_velocity = true;
+  bool inertial = false;  ///< the samples of an inertial unit move the body; else one of the other two models
+  ImuUnit unit;
   BodyLayout body;
   MotionNoise motion_noise = {};
   bool readout_ignored = false;  ///< the camera has a rolling shutter, but no times for its rows

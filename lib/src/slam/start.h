@@ -22,11 +22,11 @@ struct Target {
   Mat6 first_covariance = Mat6::Zero();
 };
 
-/// A known body at the first frame, with its covariance (over the rows of its layout, row-major).
+/// A known body at the first frame, with its covariance (over the known rows of its layout, row-major).
 struct KnownBody {
   bool given = false;
   Body body;
-  Scalar covariance[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows] = {};
+  Scalar covariance[BodyLayout::kVelocityRows * BodyLayout::kVelocityRows] = {};
 };
 
 }  // namespace pf

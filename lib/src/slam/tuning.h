@@ -63,6 +63,26 @@ inline constexpr Scalar kAnyRotation = Scalar(1.8);       ///< [rad] uniform ove
 inline constexpr Scalar kAnyPosition = Scalar(100);       ///< [m] likewise
 }  // namespace body_motion
 
+/// An inertial unit before anything is known of it.
+namespace inertial {
+inline constexpr Scalar kGyroBias = Scalar(0.1);   ///< [rad/s] sigma of each axis
+inline constexpr Scalar kAccelBias = Scalar(0.2);  ///< [m/s^2] sigma of each axis
+inline constexpr Scalar kGravity = Scalar(1);      ///< [rad] sigma of its direction: nothing is known
+inline constexpr Scalar kYoungMap = Scalar(15);    ///< [s] age of a map of unknown scale that gives way to a metric one
+}  // namespace inertial
+
+/// Standing still.
+namespace rest {
+inline constexpr Scalar kTime = Scalar(1);             ///< [s] at rest before it counts
+inline constexpr int kMinSamples = 20;                 ///< in that time
+inline constexpr Scalar kMaxScatter = Scalar(2);       ///< standard deviations that the densities allow
+inline constexpr Scalar kMaxGyroBias = Scalar(0.3);    ///< [rad/s] that a gyro at rest may show
+inline constexpr Scalar kMaxGravityError = Scalar(1);  ///< [m/s^2] of the mean specific force
+inline constexpr Scalar kMaxMotionPx = Scalar(1);      ///< [px] of the picture as a whole, root mean square
+inline constexpr int kMinPixels = 8;                   ///< features by which that is judged
+inline constexpr Scalar kSpeed = Scalar(0.01);         ///< [m/s] sigma of the velocity of a camera at rest
+}  // namespace rest
+
 /// Features that fail, and the depth of new ones.
 namespace feature_keeper {
 inline constexpr int kMinAttempts = 10;         ///< before a feature is judged

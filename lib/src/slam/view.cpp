@@ -1,5 +1,7 @@
 #include "slam/view.h"
 
+#include <algorithm>
+
 #include "filter/gauge_information.h"
 #include "filter/observe/point.h"
 #include "slam/frame_loop.h"
@@ -22,6 +24,23 @@ int View::state_dim() const { return filter().dim(); }
 void View::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
   // Of a frame that repeats the one before, the pose is that one's.
   loop_.motion().predict_pose(t_ns > last_ns() ? loop_.filter_ns() : t_ns, t_ns, body, covariance);
+  if (settings_.inertial) body->v_W = camera_velocity(*body, filter().state().mounting);
+}
+
+bool View::inertial(InertialView* out) const {
+  if (!settings_.inertial || !has_pose()) return false;
+  const Body& body = filter().state().body;
+  const int gravity = settings_.body.row(BodyPart::kGravity), gyro = settings_.body.row(BodyPart::kGyroBias);
+  out->gravity_W = settings_.unit.gravity * body.gravity_W();
+  out->gyro_bias = body.gyro_bias;
+  out->accel_bias = body.accel_bias;
+  for (int k = 0; k < 2; ++k) out->axis_W[k] = body.q_WG.toRotationMatrix().col(k);
+  const auto row = [&](int i) { return i < 2 ? gravity + i : gyro + i - 2; };  // the accelerometer's bias follows
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j)
+      out->covariance[i][j] = filter().covariance()(std::max(row(i), row(j)), std::min(row(i), row(j)));
+  out->metric = filter().is_metric();
+  return true;
 }
 
 bool View::motion_since_mark(MotionView* out) const {

@@ -56,6 +56,14 @@ struct HitView {
   Mat3 covariance = Mat3::Zero();
 };
 
+/// What is known of the inertial unit and of gravity.
+struct InertialView {
+  Vec3 gravity_W, gyro_bias, accel_bias;
+  Vec3 axis_W[2];           ///< about which gravity's error rotates it
+  Scalar covariance[8][8];  ///< of (gravity, gyro bias, accelerometer bias)
+  bool metric;
+};
+
 /// Numbers of features by kind, of planes and of rows.
 struct MapCounts {
   int features = 0, points = 0, inverse_depths = 0, folded = 0, fixed = 0;
@@ -79,6 +87,8 @@ class View {
   const Camera& lens(Scalar covariance[kLensParameters][kLensParameters]) const;
   /// Body and pose covariance (6x6) at the last frame, or predicted to a later time.
   void pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const;
+  /// False without the inertial motion model, or without a pose.
+  bool inertial(InertialView* out) const;
   /// False if there is no mark in this map.
   bool motion_since_mark(MotionView* out) const;
   /// Projects a known point; covariance may be null. False if the point does not project.

@@ -11,21 +11,36 @@ namespace pf {
 /// In the order of their rows: what moves first, since F and Q of a motion model cover only that; constants behind it.
 enum class BodyPart : std::uint8_t {
   kPose,             ///< theta, p
-  kVelocity,         ///< v
+  kVelocity,         ///< v; of the inertial unit where there is one
   kAngularVelocity,  ///< w
+  kGyroBias,         ///< of the inertial unit, in its axes
+  kAccelBias,        ///< likewise
+  kGravity,          ///< its direction in W, two rows
   kLens              ///< numbers of the calibration (geometry/lens.h)
 };
 
 /// Which parts a body has, and where their rows lie. The pose is always there, and first.
 class BodyLayout {
  public:
-  static constexpr int kMaxDynamicRows = 12;
+  static constexpr int kMaxDynamicRows = 17;
+  static constexpr int kVelocityRows =
+      12;  ///< pose, velocity and angular velocity: the most that a caller knows at the start
 
   static BodyLayout with_constant_position() { return BodyLayout(); }
   static BodyLayout with_constant_velocity() {
     BodyLayout layout;
     layout.add(BodyPart::kVelocity, 3);
     layout.add(BodyPart::kAngularVelocity, 3);
+    return layout;
+  }
+
+  /// The angular velocity is no state: it is that of the samples less their bias (lib/docs/inertial.md).
+  static BodyLayout with_inertial_unit() {
+    BodyLayout layout;
+    layout.add(BodyPart::kVelocity, 3);
+    layout.add(BodyPart::kGyroBias, 3);
+    layout.add(BodyPart::kAccelBias, 3);
+    layout.add(BodyPart::kGravity, 2);
     return layout;
   }
 
@@ -42,12 +57,14 @@ class BodyLayout {
   int row(BodyPart part) const { return row_[index(part)]; }
   /// Rows of the parts that move.
   int dynamic_rows() const { return dynamic_rows_; }
+  /// Rows of what a caller can know at the start: pose, velocity and angular velocity.
+  int known_rows() const { return dynamic_rows_ < kVelocityRows ? dynamic_rows_ : kVelocityRows; }
   int rows() const { return dynamic_rows_ + constant_rows_; }
   /// Of them, the last ones.
   int considered_rows() const { return considered_rows_; }
 
  private:
-  static constexpr int kParts = 4;
+  static constexpr int kParts = 7;
   static constexpr int index(BodyPart part) { return static_cast<int>(part); }
 
   void add(BodyPart part, int rows) {
@@ -55,7 +72,7 @@ class BodyLayout {
     dynamic_rows_ = static_cast<std::int8_t>(dynamic_rows_ + rows);
   }
 
-  std::int8_t row_[kParts] = {0, -1, -1, -1};
+  std::int8_t row_[kParts] = {0, -1, -1, -1, -1, -1, -1};
   std::int8_t dynamic_rows_ = 6, constant_rows_ = 0, considered_rows_ = 0;
 };
 
@@ -63,14 +80,28 @@ class BodyLayout {
 ///
 ///   R_true = Exp(theta) R_WC,   p_true = p + e_p,   v_true = v + e_v,   w_true = w + e_w
 ///
-/// Parts that its layout lacks are zero and stay so.
+/// With an inertial unit: biases b_true = b + e_b, and gravity's direction R_WG e_z,
+///
+///   R_WG_true = Exp(R_WG (d_1, d_2, 0)) R_WG
+///
+/// and v is the velocity of the unit's origin. Parts that its layout lacks are zero and stay so.
 struct Body {
   static constexpr int kTheta = 0, kPosition = 3, kPoseDim = 6;  ///< rows of the pose
 
   Quat q_WC = Quat::Identity();
-  Vec3 p_W = Vec3::Zero();  ///< [m]
-  Vec3 v_W = Vec3::Zero();  ///< [m/s]
-  Vec3 w_C = Vec3::Zero();  ///< [rad/s]
+  Vec3 p_W = Vec3::Zero();         ///< [m]
+  Vec3 v_W = Vec3::Zero();         ///< [m/s]
+  Vec3 w_C = Vec3::Zero();         ///< [rad/s]; with an inertial unit no state, but what its samples say at the frame
+  Vec3 gyro_bias = Vec3::Zero();   ///< [rad/s], in the unit's axes
+  Vec3 accel_bias = Vec3::Zero();  ///< [m/s^2], likewise
+  Quat q_WG = Quat::Identity();    ///< z is where gravity points
+  Vec3 gravity_W() const { return q_WG.toRotationMatrix().col(2); }
+};
+
+/// Where the inertial unit B is on the camera: known, and no part of the state.
+struct Mounting {
+  Mat3 R_CB = Mat3::Identity();
+  Vec3 p_C = Vec3::Zero();  ///< its origin in C [m]
 };
 
 }  // namespace pf

@@ -16,7 +16,7 @@ inline constexpr int kTranslation = 0, kRotation = 3, kScale = 6, kDirections = 
 /// A bit for each direction that a model cannot observe; State keeps that of its own.
 using Set = std::uint8_t;
 inline constexpr Set kBareCamera = 0x7f;  ///< all of them
-inline constexpr Set kMetric = 0x3f;      ///< all but the scale, which an accelerometer measures
+inline constexpr Set kMetric = 0x3f;      ///< all but the scale
 
 constexpr bool contains(Set set, int direction) { return (set >> direction & 1) != 0; }
 }  // namespace gauge
@@ -39,19 +39,26 @@ void put_place(const Eigen::Matrix<Scalar, kRows, 3>& axes, const Vec3& p_W, Row
   }
 }
 
-/// The body's gauge rows: calls f(first row, GaugeRowsOf<3>) for each of its parts that has any. Velocities in W rotate and scale but are
-/// not translated; angular velocities, in camera axes, do nothing.
+/// The body's gauge rows: calls f(first row, rows, GaugeRowsOf<3>) for each of its parts that has any. Velocities in W rotate and scale but
+/// are not translated; angular velocities and biases, in axes of the body, do nothing. Gravity rotates with the world, about all axes but
+/// its own. An inertial unit rotates with the world, and keeps its distance from the camera when the world is scaled: of its velocity that
+/// part scales which is the camera's.
 template <typename F>
-void for_each_body_gauge(const Body& body, const BodyLayout& layout, F&& f) {
+void for_each_body_gauge(const Body& body, const BodyLayout& layout, const Mounting& mounting, F&& f) {
   GaugeRowsOf<3> N = GaugeRowsOf<3>::Zero();
   N.template block<3, 3>(0, gauge::kRotation).setIdentity();
-  f(Body::kTheta, N);
+  f(Body::kTheta, 3, N);
   put_place<3>(Mat3::Identity(), body.p_W, &N);
-  f(Body::kPosition, N);
+  f(Body::kPosition, 3, N);
   if (!layout.has(BodyPart::kVelocity)) return;
   put_place<3>(Mat3::Identity(), body.v_W, &N);
   N.template leftCols<3>().setZero();
-  f(layout.row(BodyPart::kVelocity), N);
+  if (layout.has(BodyPart::kGravity)) N.col(gauge::kScale) -= body.q_WC * body.w_C.cross(mounting.p_C);
+  f(layout.row(BodyPart::kVelocity), 3, N);
+  if (!layout.has(BodyPart::kGravity)) return;
+  N.setZero();
+  N.template block<2, 3>(0, gauge::kRotation) = body.q_WG.toRotationMatrix().leftCols<2>().transpose();
+  f(layout.row(BodyPart::kGravity), 2, N);
 }
 
 /// Where gauge rows over the whole state are added up, one dense row per direction; sign times each.

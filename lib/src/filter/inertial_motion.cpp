@@ -1,0 +1,162 @@
+#include "filter/inertial_motion.h"
+
+#include "geometry/so3.h"
+
+namespace pf {
+namespace {
+
+using Mat32 = Eigen::Matrix<Scalar, 3, 2>;
+using Mat36 = Eigen::Matrix<Scalar, 3, 6>;
+
+/// Rows of the layout.
+struct PartRows {
+  explicit PartRows(const BodyLayout& layout)
+      : dim(layout.dynamic_rows()),
+        velocity(layout.row(BodyPart::kVelocity)),
+        gyro(layout.row(BodyPart::kGyroBias)),
+        accel(layout.row(BodyPart::kAccelBias)),
+        gravity(layout.row(BodyPart::kGravity)) {}
+  int dim, velocity, gyro, accel, gravity;
+};
+
+void clear(Transition* t, const Body& body, int dim) {
+  t->mean = body;
+  t->dim = dim;
+  for (int i = 0; i < dim * dim; ++i) t->F[i] = t->Q[i] = Scalar(0);
+  for (int i = 0; i < dim; ++i) t->F[i * dim + i] = Scalar(1);
+}
+
+template <int kColumns>
+void set_block(Scalar* matrix, int dim, int row, int column, const Eigen::Matrix<Scalar, 3, kColumns>& value) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < kColumns; ++j) matrix[(row + i) * dim + column + j] = value(i, j);
+}
+
+/// Q = J S J^T, where J takes (phi, v, p) to (theta, p, v) by R and m_W, and biases to biases.
+void set_noise(const Preintegral::Covariance& S, const Mat3& R, const Mat3& m_hat, const PartRows& rows,
+               Transition* transition) {
+  using Rows = Preintegral;
+  Preintegral::Covariance J = Preintegral::Covariance::Identity();
+  J.block<3, 3>(Rows::kPhi, Rows::kPhi) = R;
+  J.block<3, 3>(Rows::kVelocity, Rows::kVelocity) = R;
+  J.block<3, 3>(Rows::kPosition, Rows::kPosition) = R;
+  J.block<3, 3>(Rows::kPosition, Rows::kPhi) = m_hat.lazyProduct(R);
+  const Preintegral::Covariance JS = J.lazyProduct(S);
+  const Preintegral::Covariance Q = JS.lazyProduct(J.transpose());
+  const int to[Rows::kRows / 3] = {Body::kTheta, rows.velocity, Body::kPosition, rows.gyro, rows.accel};
+  for (int a = 0; a < Rows::kRows / 3; ++a)
+    for (int b = 0; b < Rows::kRows / 3; ++b)
+      set_block<3>(transition->Q, rows.dim, to[a], to[b], Mat3(Q.block<3, 3>(3 * a, 3 * b)));
+}
+
+/// Pose and velocity of the mean, from where the unit goes.
+void set_mean(const Mounting& mounting, const Mat3& R, const Preintegral& samples, const Vec3& p_B, const Vec3& v,
+              Transition* transition, Vec3* m_W) {
+  const Mat3 R_WC = (R * samples.R()) * mounting.R_CB.transpose();
+  *m_W = R_WC * mounting.p_C;
+  transition->mean.q_WC = Quat(R_WC);
+  transition->mean.q_WC.normalize();
+  transition->mean.p_W = p_B - *m_W;
+  transition->mean.v_W = v;
+}
+
+}  // namespace
+
+void predict_inertial(const Body& body, const BodyLayout& layout, const Mounting& mounting, const Preintegral& samples,
+                      Scalar gravity, Transition* transition) {
+  const PartRows rows(layout);
+  clear(transition, body, rows.dim);
+  const Scalar T = samples.dt(), T2 = T * T / 2;
+  const Mat3 R = body.q_WC.toRotationMatrix() * mounting.R_CB, R_WG = body.q_WG.toRotationMatrix();
+  const Vec3 g_W = gravity * R_WG.col(2), dv_W = R * samples.v(), dp_W = R * samples.p();
+  const Vec3 m_before = body.q_WC * mounting.p_C;
+  Vec3 m_after;
+  set_mean(mounting, R, samples, body.p_W + m_before + body.v_W * T + g_W * T2 + dp_W, body.v_W + g_W * T + dv_W,
+           transition, &m_after);
+
+  const Mat3 m_hat = hat(m_after);
+  const auto& D = samples.by_bias();
+  const Mat36 phi = R.lazyProduct(D.topRows<3>()), by_v = R.lazyProduct(D.middleRows<3>(3));
+  const Mat36 by_p = R.lazyProduct(D.bottomRows<3>()) + m_hat.lazyProduct(phi);
+  Mat32 E;
+  E << -gravity * R_WG.col(1), gravity * R_WG.col(0);
+  Scalar* F = transition->F;
+  set_block<6>(F, rows.dim, Body::kTheta, rows.gyro, phi);  // the accelerometer's bias follows
+  set_block<3>(F, rows.dim, rows.velocity, Body::kTheta, -hat(dv_W));
+  set_block<6>(F, rows.dim, rows.velocity, rows.gyro, by_v);
+  set_block<2>(F, rows.dim, rows.velocity, rows.gravity, T * E);
+  set_block<3>(F, rows.dim, Body::kPosition, Body::kTheta, hat(m_after - m_before - dp_W));
+  set_block<3>(F, rows.dim, Body::kPosition, rows.velocity, T * Mat3::Identity());
+  set_block<6>(F, rows.dim, Body::kPosition, rows.gyro, by_p);
+  set_block<2>(F, rows.dim, Body::kPosition, rows.gravity, T2 * E);
+  set_noise(samples.covariance(), R, m_hat, rows, transition);
+}
+
+void predict_rotation_only(const Body& body, const BodyLayout& layout, const Mounting& mounting,
+                           const Preintegral& samples, Scalar linear_density, Transition* transition) {
+  const PartRows rows(layout);
+  clear(transition, body, rows.dim);
+  const Scalar T = samples.dt(), a = linear_density * linear_density;
+  const Mat3 R = body.q_WC.toRotationMatrix() * mounting.R_CB;
+  const Vec3 m_before = body.q_WC * mounting.p_C;
+  Vec3 m_after;
+  set_mean(mounting, R, samples, body.p_W + m_before + body.v_W * T, body.v_W, transition, &m_after);
+
+  const Mat3 m_hat = hat(m_after);
+  const Mat3 phi = R.lazyProduct(samples.by_bias().topLeftCorner<3, 3>());
+  set_block<3>(transition->F, rows.dim, Body::kTheta, rows.gyro, phi);
+  set_block<3>(transition->F, rows.dim, Body::kPosition, Body::kTheta, hat(m_after - m_before));
+  set_block<3>(transition->F, rows.dim, Body::kPosition, rows.velocity, T * Mat3::Identity());
+  set_block<3>(transition->F, rows.dim, Body::kPosition, rows.gyro, m_hat.lazyProduct(phi));
+  Preintegral::Covariance S = samples.covariance();
+  S.middleRows<6>(Preintegral::kVelocity).setZero();
+  S.middleCols<6>(Preintegral::kVelocity).setZero();
+  for (int i = 0; i < 3; ++i) {
+    const int v = Preintegral::kVelocity + i, p = Preintegral::kPosition + i;
+    S(v, v) = a * T;
+    S(p, p) = a * T * T * T / 3;
+    S(v, p) = S(p, v) = a * T * T / 2;
+  }
+  set_noise(S, R, m_hat, rows, transition);
+}
+
+void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& mounting, const RestReading& rest,
+                   Transition* transition) {
+  const PartRows rows(layout);
+  clear(transition, body, rows.dim);
+  Body& mean = transition->mean;
+  Scalar *F = transition->F, *Q = transition->Q;
+  const Mat3 R = body.q_WC.toRotationMatrix() * mounting.R_CB;
+  const Scalar length = rest.accel.norm();
+  const Vec3 f_B = rest.accel / length, u = -(R * f_B);
+  mean.v_W.setZero();
+  mean.w_C.setZero();
+  mean.gyro_bias = rest.gyro;
+  mean.accel_bias = (length - rest.gravity) * f_B;
+  mean.q_WG = turn_z_to(u);
+
+  for (int i = rows.velocity; i < rows.dim; ++i)  // velocity, biases and gravity begin anew
+    for (int j = 0; j < rows.dim; ++j) F[i * rows.dim + j] = Scalar(0);
+  const Mat3 along = f_B * f_B.transpose(), across = Mat3::Identity() - along;
+  const Mat3 open = rest.sigma_accel_bias * rest.sigma_accel_bias * across;
+  const Scalar noise = rest.sigma_accel * rest.sigma_accel;
+  const Eigen::Matrix<Scalar, 2, 3> E_t = mean.q_WG.toRotationMatrix().leftCols<2>().transpose();
+  const Eigen::Matrix<Scalar, 2, 3> K = E_t * hat(u) * R / rest.gravity;  // d by e_b and n
+  const Mat3 Q_accel = open + noise * along;
+  const Eigen::Matrix<Scalar, 2, 3> Q_cross = K * open;
+  const Mat2 Q_gravity = Q_cross * K.transpose() + noise * K * K.transpose();
+  for (int i = 0; i < 3; ++i) {
+    Q[(rows.velocity + i) * rows.dim + rows.velocity + i] = rest.sigma_speed * rest.sigma_speed;
+    Q[(rows.gyro + i) * rows.dim + rows.gyro + i] = rest.sigma_gyro * rest.sigma_gyro;
+    for (int j = 0; j < 3; ++j) Q[(rows.accel + i) * rows.dim + rows.accel + j] = Q_accel(i, j);
+    for (int j = 0; j < 2; ++j) {
+      F[(rows.gravity + j) * rows.dim + Body::kTheta + i] = E_t(j, i);
+      Q[(rows.gravity + j) * rows.dim + rows.accel + i] = Q_cross(j, i);
+      Q[(rows.accel + i) * rows.dim + rows.gravity + j] = Q_cross(j, i);
+    }
+  }
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) Q[(rows.gravity + i) * rows.dim + rows.gravity + j] = Q_gravity(i, j);
+}
+
+}  // namespace pf

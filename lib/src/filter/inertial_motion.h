@@ -1,0 +1,46 @@
+#pragma once
+
+#include "filter/motion.h"
+#include "filter/preintegral.h"
+
+/// The inertial motion model: how a body moves by the samples of its inertial unit (lib/docs/inertial.md).
+
+namespace pf {
+
+/// With R = R_WB, the unit's origin at m in C, m_W = R_WC m, and g_W = gravity times R_WG e_z:
+///
+///   R+ = R dR,   v+ = v + g_W T + R dv,   p_B+ = p_B + v T + g_W T^2 / 2 + R dp,   p_B = p_C + m_W
+///
+///   theta+ = theta + R e_phi
+///   e_v+   = e_v - [R dv]x theta + R e_dv + T E d                          E = gravity (-R_WG e_y, R_WG e_x)
+///   e_p+   = e_p + ([m_W+]x - [m_W]x - [R dp]x) theta + T e_v + R e_dp + [m_W+]x R e_phi + T^2/2 E d
+///
+/// gravity [m/s^2]. The mean's w_C is left as it is.
+void predict_inertial(const Body& body, const BodyLayout& layout, const Mounting& mounting, const Preintegral& samples,
+                      Scalar gravity, Transition* transition);
+
+/// While the scale or gravity are not known: rotation from the gyro, translation with white accelerations.
+void predict_rotation_only(const Body& body, const BodyLayout& layout, const Mounting& mounting,
+                           const Preintegral& samples, Scalar linear_density, Transition* transition);
+
+/// What a second at rest says. Readings are means over it.
+struct RestReading {
+  Vec3 gyro = Vec3::Zero();   ///< [rad/s]
+  Vec3 accel = Vec3::Zero();  ///< [m/s^2]
+  Scalar sigma_gyro = 0;      ///< of each axis of the mean
+  Scalar sigma_accel = 0;
+  Scalar sigma_speed = 0;       ///< [m/s] at which it may still have moved
+  Scalar sigma_accel_bias = 0;  ///< [m/s^2] of a bias that nothing else is known of
+  Scalar gravity = 0;           ///< [m/s^2]
+};
+
+/// The gyro's bias is its reading, the velocity zero. Gravity and the accelerometer's bias become known together: with u = -R a / |a| in W,
+///
+///   g_W + R (b_a + n) = -R a:   b_a = (|a| - gravity) a / |a|,   gravity's direction is u
+///   d = E^T (u x R (e_b + n)) / gravity + E^T theta                        E = (R_WG e_x, R_WG e_y)
+///
+/// so that of e_b the two rows across gravity stay open, and hang together with d, and the one along it is n.
+void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& mounting, const RestReading& rest,
+                   Transition* transition);
+
+}  // namespace pf

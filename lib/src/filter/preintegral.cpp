@@ -1,0 +1,85 @@
+#include "filter/preintegral.h"
+
+#include "geometry/so3.h"
+
+namespace pf {
+
+/// S <- F S F^T, and the Jacobian by the biases that were there at the beginning.
+void Preintegral::move_errors(const Covariance& F) {
+  const Covariance FS = F.lazyProduct(S_);
+  S_ = FS.lazyProduct(F.transpose());
+  const ByBias moved = F.topLeftCorner<9, 9>().lazyProduct(D_);
+  D_ = moved + F.topRightCorner<9, 6>();
+}
+
+/// With G = -dt R J_l(w dt) and  V = -dt ([R a_0]x + [R+ a_1]x) / 2:
+///
+///          phi      v      p    b_g       b_a
+///   phi |  I                    G                            |
+///   v   |  V        I           V_g       -dt (R + R+) / 2   |   V_g = -dt [R+ a_1]x G / 2
+///   p   |  dt V/2   dt I   I    dt V_g/2  dt/2 of the above  |
+///
+/// White noise of a reading does in the step what a bias does.
+void Preintegral::add(Scalar dt, const ImuReading& from, const ImuReading& to, Scalar gyro_more, Scalar accel_more) {
+  const Vec3 turn = ((from.gyro + to.gyro) / 2 - gyro_bias_) * dt;
+  const Mat3 R_1 = R_ * exp_so3(turn).toRotationMatrix();
+  const Vec3 a_0 = R_ * (from.accel - accel_bias_), a_1 = R_1 * (to.accel - accel_bias_);
+  const Vec3 a = (a_0 + a_1) / 2;
+  const Scalar half = dt / 2;
+
+  const Mat3 G = -dt * R_.lazyProduct(left_jacobian_so3(turn));
+  const Mat3 V = -half * hat(a_0 + a_1), V_g = -half * hat(a_1).lazyProduct(G), V_a = -half * (R_ + R_1);
+  Covariance F = Covariance::Identity();
+  F.block<3, 3>(kPhi, kGyroBias) = G;
+  F.block<3, 3>(kVelocity, kPhi) = V;
+  F.block<3, 3>(kVelocity, kGyroBias) = V_g;
+  F.block<3, 3>(kVelocity, kAccelBias) = V_a;
+  F.block<3, 3>(kPosition, kPhi) = half * V;
+  F.block<3, 3>(kPosition, kVelocity) = dt * Mat3::Identity();
+  F.block<3, 3>(kPosition, kGyroBias) = half * V_g;
+  F.block<3, 3>(kPosition, kAccelBias) = half * V_a;
+  move_errors(F);
+
+  Eigen::Matrix<Scalar, 9, 6> B;
+  B << G, Mat3::Zero(), V_g, V_a, half * V_g, half * V_a;
+  const Scalar gyro = (noise_.gyro_density * noise_.gyro_density + gyro_more) / dt;
+  const Scalar accel = (noise_.accel_density * noise_.accel_density + accel_more) / dt;
+  Eigen::Matrix<Scalar, 9, 6> BQ = B;
+  BQ.leftCols<3>() *= gyro;
+  BQ.rightCols<3>() *= accel;
+  S_.topLeftCorner<9, 9>() += BQ.lazyProduct(B.transpose());
+  for (int i = 0; i < 3; ++i) {
+    S_(kGyroBias + i, kGyroBias + i) += noise_.gyro_walk * noise_.gyro_walk * dt;
+    S_(kAccelBias + i, kAccelBias + i) += noise_.accel_walk * noise_.accel_walk * dt;
+  }
+  p_ += v_ * dt + a * (dt * half);
+  v_ += a * dt;
+  R_ = R_1;
+  dt_ += dt;
+}
+
+void Preintegral::coast(Scalar dt, const Vec3& w_B, const Vec3& f_B, Scalar angular_density, Scalar linear_density) {
+  const Vec3 turn = w_B * dt;
+  const Mat3 G = -dt * R_.lazyProduct(left_jacobian_so3(turn));
+  Covariance F = Covariance::Identity();
+  F.block<3, 3>(kPhi, kGyroBias) = G;
+  F.block<3, 3>(kPosition, kVelocity) = dt * Mat3::Identity();
+  move_errors(F);
+  const Scalar b = angular_density * angular_density, a = linear_density * linear_density;
+  const Scalar d2 = dt * dt / 2, d3 = dt * dt * dt / 3;
+  for (int i = 0; i < 3; ++i) {
+    S_(kPhi + i, kPhi + i) += b * d3;
+    S_(kVelocity + i, kVelocity + i) += a * dt;
+    S_(kPosition + i, kPosition + i) += a * d3;
+    S_(kVelocity + i, kPosition + i) += a * d2;
+    S_(kPosition + i, kVelocity + i) += a * d2;
+    S_(kGyroBias + i, kGyroBias + i) += noise_.gyro_walk * noise_.gyro_walk * dt;
+    S_(kAccelBias + i, kAccelBias + i) += noise_.accel_walk * noise_.accel_walk * dt;
+  }
+  p_ += v_ * dt + f_B * (dt * dt / 2);
+  v_ += f_B * dt;
+  R_ = R_ * exp_so3(turn).toRotationMatrix();
+  dt_ += dt;
+}
+
+}  // namespace pf

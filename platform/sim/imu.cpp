@@ -1,0 +1,64 @@
+#include "sim/imu.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pf::sim {
+namespace {
+
+enum Stream : std::uint64_t { kNoiseStream = 61, kWalkStream = 62 };
+constexpr double kStep = 2e-4;  // of central differences [s]
+
+/// Pose of the unit: its axes and its origin in W.
+Pose unit_of(const ImuOptions& o, const Pose& camera) {
+  const Mat3 R_CB = o.R_BC.transposed();
+  return {camera.R_WC * R_CB, camera.p_WC - camera.R_WC * (R_CB * o.p_BC)};
+}
+
+}  // namespace
+
+void true_reading(const ImuOptions& o, const Trajectory& path, double t, Vec3& gyro, Vec3& accel) {
+  const Pose a = unit_of(o, path(t - kStep)), now = unit_of(o, path(t)), b = unit_of(o, path(t + kStep));
+  gyro = rotation_log(a.R_WC.transposed() * b.R_WC) * (0.5 / kStep);
+  const Vec3 acceleration = (a.p_WC + b.p_WC - now.p_WC * 2) * (1 / (kStep * kStep));
+  accel = now.R_WC.transposed() * (acceleration - o.gravity_W);
+}
+
+ImuSensor::ImuSensor(const ImuOptions& options, Trajectory path)
+    : options_(options),
+      path_(std::move(path)),
+      noise_(options.seed, kNoiseStream),
+      walk_(options.seed, kWalkStream),
+      gyro_bias_(options.gyro_bias),
+      accel_bias_(options.accel_bias) {}
+
+std::int64_t ImuSensor::next_ns() const {
+  return static_cast<std::int64_t>(std::llround(static_cast<double>(count_) * 1e9 / options_.rate_hz));
+}
+
+pf_imu_sample_t ImuSensor::next() {
+  const std::int64_t t_ns = next_ns();
+  Vec3 gyro, accel;
+  true_reading(options_, path_, static_cast<double>(t_ns) * 1e-9, gyro, accel);
+  const double root = std::sqrt(options_.rate_hz);
+  if (count_ > 0) {
+    gyro_bias_ += walk_.normal3() * (options_.gyro_walk / root);
+    accel_bias_ += walk_.normal3() * (options_.accel_walk / root);
+  }
+  gyro += gyro_bias_ + noise_.normal3() * (options_.gyro_density * root);
+  accel += accel_bias_ + noise_.normal3() * (options_.accel_density * root);
+  ++count_;
+  return {t_ns - static_cast<std::int64_t>(std::llround(options_.delay_s * 1e9)),
+          {gyro.x, gyro.y, gyro.z},
+          {accel.x, accel.y, accel.z}};
+}
+
+Trajectory after_rest(Trajectory base, double rest_s, double ramp_s) {
+  return [base = std::move(base), rest_s, ramp_s](double t) {
+    const double u = std::clamp((t - rest_s) / ramp_s, 0.0, 1.0);
+    const double ramped = ramp_s * (u * u * u - u * u * u * u / 2);  // the speed is 3 u^2 - 2 u^3 of its own
+    return base(ramped + std::max(0.0, t - rest_s - ramp_s));
+  };
+}
+
+}  // namespace pf::sim

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+
+#include "planefold/planefold.h"
+#include "sim/trajectory.h"
+
+namespace pf::sim {
+
+/// A simulated inertial unit: how it is mounted, and what is wrong with it.
+struct ImuOptions {
+  double rate_hz = 200;
+  double gyro_density = 1.7e-4, accel_density = 2e-3;  ///< [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)]
+  double gyro_walk = 2e-5, accel_walk = 3e-3;          ///< [rad/s^2/sqrt(Hz)], [m/s^3/sqrt(Hz)]
+  Vec3 gyro_bias, accel_bias;                          ///< at time 0 [rad/s], [m/s^2]
+  Mat3 R_BC;                                           ///< p_B = R_BC p_C + p_BC
+  Vec3 p_BC;                                           ///< [m]
+  Vec3 gravity_W{0, 9.81, 0};                          ///< [m/s^2]
+  double delay_s = 0;  ///< a sample's own time stamp is so much before the frames' clock
+  std::uint64_t seed = 1;
+};
+
+/// Samples of a unit that is carried along a camera's path, from its derivatives: one after the other, with white noise of
+/// density x sqrt(rate) and biases that walk. The draws hang on the seed and on nothing else.
+class ImuSensor {
+ public:
+  ImuSensor(const ImuOptions& options, Trajectory path);
+
+  /// Time of the next sample on the clock of the frames [ns].
+  std::int64_t next_ns() const;
+  pf_imu_sample_t next();
+  /// Biases of the sample that came last.
+  const Vec3& gyro_bias() const { return gyro_bias_; }
+  const Vec3& accel_bias() const { return accel_bias_; }
+
+ private:
+  ImuOptions options_;
+  Trajectory path_;
+  Random noise_, walk_;
+  Vec3 gyro_bias_, accel_bias_;
+  std::int64_t count_ = 0;
+};
+
+/// What a unit without noise and biases measures at a time: angular velocity and specific force in its axes.
+void true_reading(const ImuOptions& options, const Trajectory& path, double t, Vec3& gyro, Vec3& accel);
+
+/// The same path behind a rest: it stands still at its beginning for rest_s, then gets to its own speed over ramp_s.
+Trajectory after_rest(Trajectory base, double rest_s, double ramp_s);
+
+}  // namespace pf::sim

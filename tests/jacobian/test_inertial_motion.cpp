@@ -1,0 +1,180 @@
+// The inertial motion model: preintegrated samples by the biases, a frame's transition by every row of the body, the begin at rest,
+// and the pixels of a rolling shutter whose rows hang on the gyro. All against central differences.
+#include "filter/inertial_motion.h"
+#include "filter/observe/point.h"
+#include "support/filter_cases.h"
+#include "support/inertial_cases.h"
+#include "support/numeric_jacobian.h"
+#include "support/test_cameras.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+using Vec9 = Eigen::Matrix<Scalar, 9, 1>;
+
+Vec9 values_of(const Preintegral& sum, const Mat3& R_at) {
+  Vec9 e;
+  e << log_so3(Quat(Mat3(sum.R() * R_at.transpose()))), sum.v(), sum.p();
+  return e;
+}
+
+void test_preintegral_should_be_exact_by_the_biases() {
+  SeededRandom random(301);
+  for (int trial = 0; trial < 10; ++trial) {
+    const Body body = random_inertial_body(random);
+    const std::vector<ImuReading> readings = random_readings(random, 8);
+    const Preintegral sum = preintegral_of(readings, body);
+    const auto moves = [&](const Vec6& e) {
+      Body other = body;
+      other.gyro_bias += e.head<3>();
+      other.accel_bias += e.tail<3>();
+      return values_of(preintegral_of(readings, other), sum.R());
+    };
+    check_jacobian<9, 6>(sum.by_bias(), moves, "by_bias");
+  }
+}
+
+/// White noise of samples: its covariance against that of many draws.
+void test_preintegral_s_covariance_should_be_that_of_noisy_samples() {
+  SeededRandom random(302);
+  const Body body = random_inertial_body(random);
+  const std::vector<ImuReading> readings = random_readings(random, 40);
+  const Preintegral sum = preintegral_of(readings, body);
+  constexpr int kDraws = 3000;
+  Eigen::Matrix<double, 9, 9> C = Eigen::Matrix<double, 9, 9>::Zero();
+  for (int k = 0; k < kDraws; ++k) {
+    std::vector<ImuReading> noisy = readings;
+    for (ImuReading& r : noisy) {
+      r.gyro += random.normals<3>(static_cast<double>(kUnitNoise.gyro_density) / std::sqrt(kSampleInterval));
+      r.accel += random.normals<3>(static_cast<double>(kUnitNoise.accel_density) / std::sqrt(kSampleInterval));
+    }
+    const Vec9 off = values_of(preintegral_of(noisy, body), sum.R()) - values_of(sum, sum.R());
+    const Eigen::Matrix<double, 9, 1> e = off.cast<double>();
+    C += e * e.transpose() / kDraws;
+  }
+  for (int i = 0; i < 9; ++i) {
+    const double ratio = C(i, i) / static_cast<double>(sum.covariance()(i, i));
+    if (!(ratio > 0.85 && ratio < 1.15)) std::printf("row %d: drawn by stated variance %.3f\n", i, ratio);
+    TEST_ASSERT_TRUE(ratio > 0.85 && ratio < 1.15);
+  }
+}
+
+template <typename Predict>
+void check_transition(SeededRandom& random, const char* name, Predict predict) {
+  for (int trial = 0; trial < 10; ++trial) {
+    const Body body = random_inertial_body(random);
+    const Mounting mounting = random_mounting(random);
+    const std::vector<ImuReading> readings = random_readings(random, 7);
+    Transition transition, other;
+    predict(body, mounting, readings, &transition);
+    TEST_ASSERT_EQUAL_INT(kInertialRows, transition.dim);
+    const auto moves = [&](const Vec17& e) {
+      predict(moved_inertial(body, e), mounting, readings, &other);
+      return inertial_difference(other.mean, transition.mean);
+    };
+    check_jacobian<kInertialRows, kInertialRows>(matrix17(transition.F), moves, name, Scalar(1),
+                                                 kNumericJacobianTolerance * 4);
+  }
+}
+
+void test_transition_of_the_inertial_model_should_be_exact() {
+  SeededRandom random(303);
+  const auto predict = [](const Body& body, const Mounting& mounting, const std::vector<ImuReading>& readings,
+                          Transition* transition) {
+    predict_inertial(body, BodyLayout::with_inertial_unit(), mounting, preintegral_of(readings, body), Scalar(9.81),
+                     transition);
+  };
+  check_transition(random, "F", predict);
+}
+
+void test_transition_without_gravity_should_be_exact() {
+  SeededRandom random(304);
+  const auto predict = [](const Body& body, const Mounting& mounting, const std::vector<ImuReading>& readings,
+                          Transition* transition) {
+    predict_rotation_only(body, BodyLayout::with_inertial_unit(), mounting, preintegral_of(readings, body), Scalar(1),
+                          transition);
+  };
+  check_transition(random, "F without gravity", predict);
+}
+
+/// The truth of a body at rest drawn from what begin_at_rest says: its readings are those that were given.
+void test_begin_at_rest_should_hang_gravity_and_the_accelerometer_s_bias_together() {
+  SeededRandom random(305);
+  for (int trial = 0; trial < 10; ++trial) {
+    const Body before = random_inertial_body(random);
+    const Mounting mounting = random_mounting(random);
+    RestReading rest;
+    rest.gyro = random.normals<3>(0.02);
+    rest.accel = random.normals<3>(5);
+    rest.accel *= Scalar(9.7) / rest.accel.norm();
+    rest.sigma_gyro = Scalar(1e-4);
+    rest.sigma_accel = Scalar(1e-3);
+    rest.sigma_speed = Scalar(0.01);
+    rest.sigma_accel_bias = Scalar(0.1);
+    rest.gravity = Scalar(9.81);
+    Transition transition;
+    begin_at_rest(before, BodyLayout::with_inertial_unit(), mounting, rest, &transition);
+    const Body& body = transition.mean;
+    // The mean explains the reading; and so does every error of the covariance, to first order.
+    const auto reading = [&](const Vec17& e) -> Vec3 {
+      const Body true_body = moved_inertial(body, e);
+      const Mat3 R_WB = true_body.q_WC.toRotationMatrix() * mounting.R_CB;
+      return R_WB.transpose() * (-rest.gravity * true_body.gravity_W()) + true_body.accel_bias;
+    };
+    TEST_ASSERT_TRUE((reading(Vec17::Zero()) - rest.accel).norm() < Scalar(1e-5));
+    const Eigen::Matrix<Scalar, 3, kInertialRows> J = numeric_jacobian<3, kInertialRows>(reading, kNumericJacobianStep);
+    // Of the pose before: 1e-2 rad, 1 m. Through F and Q.
+    Mat17 P = Mat17::Zero();
+    for (int i = 0; i < 6; ++i) P(i, i) = Scalar(1e-4);
+    const Mat17 F = matrix17(transition.F);
+    const Mat17 now = F * P * F.transpose() + matrix17(transition.Q);
+    const Mat3 of_reading = J * now * J.transpose();
+    const Scalar expected = rest.sigma_accel * rest.sigma_accel;
+    TEST_ASSERT_TRUE((of_reading - Mat3::Identity() * expected).cwiseAbs().maxCoeff() <
+                     (kNumericJacobianIsFloat ? Scalar(1e-4) : Scalar(0.01) * expected));
+  }
+}
+
+/// Pixels of a rolling shutter, by every row of a body with a unit beside the camera.
+void test_pixels_of_late_rows_should_be_exact_by_every_row_of_the_body() {
+  SeededRandom random(306);
+  for (int trial = 0; trial < 20; ++trial) {
+    Camera camera = test_camera_of(trial % kTestCameras);
+    camera.readout = Scalar(0.03);
+    TestFilter filter(true, BodyLayout::with_inertial_unit());
+    const Mounting mounting = random_mounting(random);
+    filter->set_mounting(mounting);
+    const Body body = random_inertial_body(random);
+    const int slot = filter->add_point(point_in_view(random, body), Mat3::Identity());
+    const auto seen = [&](const Vec17& e) -> Vec2 {
+      Body other = moved_inertial(body, e);
+      other.w_C -= mounting.R_CB * e.segment<3>(9);
+      filter->set_mean(other);
+      PixelMeasurement o;
+      TEST_ASSERT_TRUE(filter->predict_pixel(camera, slot, &o));
+      return o.predicted;
+    };
+    filter->set_mean(body);
+    PixelMeasurement o;
+    TEST_ASSERT_TRUE(filter->predict_pixel(camera, slot, &o));
+    const Eigen::Matrix<Scalar, 2, kInertialRows> J = dense_rows(*filter, o.H).leftCols<kInertialRows>().cast<Scalar>();
+    check_jacobian<2, kInertialRows>(J, seen, "J_z_body", Scalar(0.5), Scalar(4e-3));
+  }
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_preintegral_should_be_exact_by_the_biases);
+  RUN_TEST(test_preintegral_s_covariance_should_be_that_of_noisy_samples);
+  RUN_TEST(test_transition_of_the_inertial_model_should_be_exact);
+  RUN_TEST(test_transition_without_gravity_should_be_exact);
+  RUN_TEST(test_begin_at_rest_should_hang_gravity_and_the_accelerometer_s_bias_together);
+  RUN_TEST(test_pixels_of_late_rows_should_be_exact_by_every_row_of_the_body);
+  return UNITY_END();
+}

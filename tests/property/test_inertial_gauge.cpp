@@ -1,0 +1,158 @@
+// With an inertial unit the whole world can still be shifted, and turned with gravity, without any measurement or sample seeing it. Pixels
+// see no change of scale either; samples do.
+#include "filter/gauge_information.h"
+#include "support/filter_scene.h"
+#include "support/inertial_cases.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr int kShiftAndTurn = 6, kAll = 7;
+
+/// A filter with a small map, seen by a body with a unit beside its camera.
+struct InertialScene {
+  TestFilter filter{true, BodyLayout::with_inertial_unit()};
+  Mounting mounting;
+  std::vector<int> slots;
+
+  explicit InertialScene(SeededRandom& random, bool beside = true) : mounting(random_mounting(random)) {
+    if (!beside) mounting.p_C.setZero();
+    filter->set_mounting(mounting);
+    slots = fill_map(random, filter, 5, 6);
+    Body body = random_inertial_body(random);
+    body.q_WC = filter->state().body.q_WC;  // the map stays in view
+    body.p_W = filter->state().body.p_W;
+    filter->set_mean(body);
+  }
+};
+
+void test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale() {
+  SeededRandom random(311);
+  for (int trial = 0; trial < 10; ++trial) {
+    InertialScene scene(random);
+    scene.filter.set_P(random_covariance(random, scene.filter.dim(), 0.1));
+    Camera camera = test_camera_of(trial % kTestCameras);
+    camera.readout = Scalar(trial % 2) * Scalar(0.03);
+    const Dense N = scene.filter.gauge();
+    for (const int slot : scene.slots) {
+      PixelMeasurement o;
+      TEST_ASSERT_TRUE(scene.filter->predict_pixel(camera, slot, &o));
+      const Dense H = dense_rows(*scene.filter, o.H);
+      for (int c = 0; c < kAll; ++c)
+        TEST_ASSERT_TRUE(largest(H * N.col(c)) < 1e-11 * (1 + largest(H) * largest(N.col(c))));
+    }
+  }
+}
+
+/// A covariance of nothing but gauge directions, N A N^T, is N A N^T at the new state, without the noise of the step.
+template <typename Step>
+void carries(const char* name, int directions, bool beside, SeededRandom& random, Step step) {
+  for (int trial = 0; trial < 10; ++trial) {
+    InertialScene scene(random, beside);
+    const Dense A = random_covariance(random, directions, 1);
+    const Dense before = scene.filter.gauge().leftCols(directions);
+    scene.filter.set_P(before * A * before.transpose());
+    Transition transition;
+    step(scene, &transition);
+    for (Scalar& q : transition.Q) q = Scalar(0);
+    scene.filter->predict(transition);
+    const Dense after = scene.filter.gauge().leftCols(directions);
+    const Dense expected = after * A * after.transpose();
+    const double error = largest(scene.filter.P() - expected) / largest(expected);
+    if (!(error < 1e-12)) std::printf("%s: relative error %.3g\n", name, error);
+    TEST_ASSERT_TRUE_MESSAGE(error < 1e-12, name);
+  }
+}
+
+void test_samples_should_carry_shifts_and_turns() {
+  SeededRandom random(312);
+  carries("predict_inertial", kShiftAndTurn, true, random, [&](InertialScene& scene, Transition* transition) {
+    const Body& body = scene.filter->state().body;
+    predict_inertial(body, BodyLayout::with_inertial_unit(), scene.mounting,
+                     preintegral_of(random_readings(random, 8), body), Scalar(9.81), transition);
+  });
+}
+
+void test_samples_should_see_the_scale() {
+  SeededRandom random(313);
+  InertialScene scene(random);
+  const Dense before = scene.filter.gauge().col(6);
+  scene.filter.set_P(before * before.transpose());
+  Transition transition;
+  const Body& body = scene.filter->state().body;
+  predict_inertial(body, BodyLayout::with_inertial_unit(), scene.mounting,
+                   preintegral_of(random_readings(random, 8), body), Scalar(9.81), &transition);
+  scene.filter->predict(transition);
+  const Dense after = scene.filter.gauge().col(6);
+  TEST_ASSERT_TRUE(largest(scene.filter.P() - after * after.transpose()) > 1e-3);
+}
+
+void test_samples_of_the_gyro_alone_should_carry_every_direction() {
+  SeededRandom random(314);
+  carries("predict_rotation_only", kAll, false, random, [&](InertialScene& scene, Transition* transition) {
+    const Body& body = scene.filter->state().body;
+    predict_rotation_only(body, BodyLayout::with_inertial_unit(), scene.mounting,
+                          preintegral_of(random_readings(random, 8), body), Scalar(1), transition);
+  });
+}
+
+void test_a_rest_should_carry_shifts_and_turns() {
+  SeededRandom random(315);
+  carries("begin_at_rest", kShiftAndTurn, true, random, [&](InertialScene& scene, Transition* transition) {
+    RestReading rest;
+    rest.accel = random.normals<3>(1) + Vec3(0, Scalar(-9.81), 0);
+    rest.gravity = Scalar(9.81);
+    begin_at_rest(scene.filter->state().body, BodyLayout::with_inertial_unit(), scene.mounting, rest, transition);
+  });
+}
+
+double information_growth(bool keep_gauge) {
+  SeededRandom random(316);
+  double growth = 0;
+  for (int trial = 0; trial < 10; ++trial) {
+    InertialScene scene(random);
+    scene.filter->keep_gauge(keep_gauge);
+    const Dense N = scene.filter.gauge();
+    const Dense A = random_covariance(random, kAll, 0.3);
+    scene.filter.set_P(N * A * N.transpose() + random_covariance(random, scene.filter.dim(), 0.02));
+    std::vector<double> scratch(static_cast<std::size_t>(scene.filter.dim() * (scene.filter.dim() + 8)));
+    double before[49], now[49];
+    TEST_ASSERT_TRUE(gauge_information(*scene.filter, scratch.data(), before));
+    std::vector<PixelMeasurement> seen;
+    for (const int slot : scene.slots) {
+      PixelMeasurement o;
+      TEST_ASSERT_TRUE(scene.filter->predict_pixel(pinhole_camera(), slot, &o));
+      o.measured = o.predicted + random.normals<2>(3);
+      o.set_noise(Mat2::Identity());
+      seen.push_back(o);
+      if (seen.size() == 6) break;
+    }
+    scene.filter->begin_update(seen.data(), static_cast<int>(seen.size()));
+    TEST_ASSERT_TRUE(scene.filter->finish_update(seen.data(), static_cast<int>(seen.size()), nullptr, nullptr));
+    TEST_ASSERT_TRUE(gauge_information(*scene.filter, scratch.data(), now));
+    for (int i = 0; i < kAll; ++i) growth = std::max(growth, now[8 * i] / before[8 * i] - 1);
+  }
+  return growth;
+}
+
+void test_pixels_should_gain_nothing_about_the_gauge() {
+  TEST_ASSERT_TRUE(information_growth(true) < 1e-9);
+  TEST_ASSERT_TRUE(information_growth(false) > 1e-3);
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale);
+  RUN_TEST(test_samples_should_carry_shifts_and_turns);
+  RUN_TEST(test_samples_should_see_the_scale);
+  RUN_TEST(test_samples_of_the_gyro_alone_should_carry_every_direction);
+  RUN_TEST(test_a_rest_should_carry_shifts_and_turns);
+  RUN_TEST(test_pixels_should_gain_nothing_about_the_gauge);
+  return UNITY_END();
+}

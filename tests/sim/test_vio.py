@@ -1,0 +1,49 @@
+"""pf-sim vio: from rest, with nothing known but the unit's noise, lengths are metres and covariances honest; a covered lens loses nothing;
+without the unit the same walk has no metres."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from script import BIN, fail, run  # noqa: E402
+
+SEEDS = 4
+
+
+def require(condition, message):
+    if not condition:
+        fail(message)
+
+
+def report(folder, *options):
+    path = folder / "vio.json"
+    text = run(BIN / "pf-sim", "vio", "--seeds", str(SEEDS), "--json", path, *options)
+    print(text)
+    return json.loads(path.read_text()), text
+
+
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    vio, text = report(folder, "--seconds", "20")
+    require("verdict: " in text.splitlines()[-1], "the last line is no verdict")
+    require(vio["starts"] == {"tried": SEEDS, "accepted": SEEDS}, f"starts: {vio['starts']}")
+    require(vio["lost_runs"] == 0 and vio["tracked_share"] > 0.99, "a walk was not tracked throughout")
+    # Four runs of 20 s: run averages scatter by 30 %, and the first second of motion is above.
+    require(3.5 < vio["nees_pose"]["mean"] < 12, f"pose NEES {vio['nees_pose']['mean']}, 6 expected")
+    require(vio["nees_gravity"] < 6 and vio["nees_gyro_bias"] < 9 and vio["nees_accel_bias"] < 9, "NEES of gravity or biases")
+    require(vio["gauge_growth"] < 1e-9, f"information about six directions grew by {vio['gauge_growth']}")
+    require(vio["scale_error"]["max"] < 0.02, f"scale off by {vio['scale_error']['max']}")
+
+    dark, _ = report(folder, "--seconds", "12", "--blackout-at", "7", "--blackout", "1")
+    require(dark["lost_runs"] == 0, "lost behind a covered lens")
+    require(dark["frames_until_tracked_again"]["runs"] == SEEDS, "not tracked again")
+    require(dark["frames_until_tracked_again"]["max"] <= 2, "tracked again too late")
+
+    without, _ = report(folder, "--seconds", "12", "--no-imu")
+    require(without["starts"]["accepted"] == 0 and not without["verdict"], "metres without a unit")
+
+    bad = subprocess.run([BIN / "pf-sim", "vio", "--seeds", "0"], capture_output=True, text=True)
+    require(bad.returncode == 2 and len(bad.stderr.splitlines()) == 1, f"{bad.returncode}: {bad.stderr}")

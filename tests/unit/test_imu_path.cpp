@@ -1,0 +1,111 @@
+// Samples between two times: ends between samples, samples that are late, missing or not there at all.
+#include "filter/imu_path.h"
+#include "geometry/so3.h"
+#include "support/textured_images.h"
+#include "unity.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr std::int64_t kIntervalNs = 5000000;
+const Vec3 kRate(Scalar(0.3), Scalar(-0.8), Scalar(0.5)), kForce(Scalar(1), Scalar(-9), Scalar(2));
+constexpr ImuNoise kNoise = {Scalar(2e-4), Scalar(2e-3), Scalar(2e-5), Scalar(3e-3)};
+constexpr Scalar kNear = sizeof(Scalar) == 8 ? Scalar(1e-9) : Scalar(1e-4);
+
+struct Path {
+  TestArena arena;
+  ImuLog log;
+  Coasting coasting;
+  Preintegral sum{kNoise, Vec3::Zero(), Vec3::Zero()};
+  ImuReading end;
+
+  Path() {
+    log.layout(*arena, 200);
+    log.init(200, {});
+    coasting.noise = {Scalar(1), Scalar(2)};
+  }
+  /// A sample at so many intervals, of a unit whose rate grows by `growth` of itself a second.
+  void add(int k, Scalar growth = 0) {
+    const Scalar factor = 1 + growth * static_cast<Scalar>(k) * Scalar(0.005);
+    const Vec3 rate = factor * kRate;
+    log.add({k * kIntervalNs, {rate.x(), rate.y(), rate.z()}, {kForce.x(), kForce.y(), kForce.z()}});
+  }
+  Scalar integrate(std::int64_t from_ns, std::int64_t to_ns) {
+    return integrate_samples(log, from_ns, to_ns, coasting, &sum, &end);
+  }
+};
+
+void test_ends_between_samples_should_be_on_the_line_between_them() {
+  Path path;
+  for (int k = 0; k < 40; ++k) path.add(k, Scalar(2));
+  TEST_ASSERT_TRUE(path.integrate(21500000, 57200000) == Scalar(0));
+  const Scalar a = Scalar(0.0215), b = Scalar(0.0572);
+  TEST_ASSERT_TRUE(std::abs(path.sum.dt() - (b - a)) < kNear);
+  // All rotations are about one axis: the angle is the integral of 1 + 2 t.
+  const Vec3 turn = log_so3(Quat(path.sum.R()));
+  TEST_ASSERT_TRUE((turn - kRate * ((b - a) + (b * b - a * a))).norm() < kNear);
+  TEST_ASSERT_TRUE((path.end.gyro - kRate * (1 + 2 * b)).norm() < Scalar(10) * kNear);
+}
+
+void test_a_frame_behind_the_last_sample_should_go_on_along_the_last_two() {
+  Path path;
+  for (int k = 0; k < 40; ++k) path.add(k, Scalar(2));
+  const std::int64_t to_ns = 39 * kIntervalNs + 4000000;
+  TEST_ASSERT_TRUE(path.integrate(20 * kIntervalNs, to_ns) == Scalar(0));
+  const Scalar b = Scalar(0.199);
+  TEST_ASSERT_TRUE((path.end.gyro - kRate * (1 + 2 * b)).norm() < Scalar(10) * kNear);
+}
+
+void test_a_frame_far_behind_the_last_sample_should_coast() {
+  Path path, there;
+  for (int k = 0; k < 40; ++k) path.add(k);
+  for (int k = 0; k < 80; ++k) there.add(k);
+  const std::int64_t to_ns = 39 * kIntervalNs + 50000000;
+  const Scalar coasted = path.integrate(20 * kIntervalNs, to_ns);
+  TEST_ASSERT_TRUE(std::abs(coasted - Scalar(0.0425)) < Scalar(1e-6));
+  TEST_ASSERT_TRUE(there.integrate(20 * kIntervalNs, to_ns) == Scalar(0));
+  // The rate goes on, and is far less certain.
+  TEST_ASSERT_TRUE((path.sum.R() - there.sum.R()).norm() < Scalar(1e-4));
+  TEST_ASSERT_TRUE(path.sum.covariance()(0, 0) > 100 * there.sum.covariance()(0, 0));
+}
+
+void test_missing_samples_should_be_bridged_with_more_noise() {
+  Path whole, gap;
+  for (int k = 0; k < 40; ++k) {
+    whole.add(k);
+    if (k < 20 || k >= 28) gap.add(k);
+  }
+  TEST_ASSERT_TRUE(whole.integrate(10 * kIntervalNs, 35 * kIntervalNs) == Scalar(0));
+  TEST_ASSERT_TRUE(gap.integrate(10 * kIntervalNs, 35 * kIntervalNs) == Scalar(0));
+  TEST_ASSERT_TRUE((whole.sum.R() - gap.sum.R()).norm() < Scalar(1e-4));
+  for (int i = 0; i < 9; ++i) TEST_ASSERT_TRUE(gap.sum.covariance()(i, i) > 2 * whole.sum.covariance()(i, i));
+}
+
+void test_without_samples_all_time_should_be_coasted_and_a_jump_of_the_clock_should_end() {
+  Path path;
+  TEST_ASSERT_TRUE(std::abs(path.integrate(0, 100000000) - Scalar(0.1)) < kNear);
+  const std::int64_t far[2] = {INT64_MAX, INT64_MIN + 1};
+  for (const std::int64_t t_ns : far) {
+    Path jump;
+    for (int k = 0; k < 10; ++k) jump.add(k);
+    const std::int64_t from_ns = t_ns > 0 ? 0 : t_ns, to_ns = t_ns > 0 ? t_ns : 0;
+    TEST_ASSERT_TRUE(jump.integrate(from_ns, to_ns) <= Scalar(2));
+    TEST_ASSERT_TRUE(jump.sum.covariance().allFinite());
+  }
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_ends_between_samples_should_be_on_the_line_between_them);
+  RUN_TEST(test_a_frame_behind_the_last_sample_should_go_on_along_the_last_two);
+  RUN_TEST(test_a_frame_far_behind_the_last_sample_should_coast);
+  RUN_TEST(test_missing_samples_should_be_bridged_with_more_noise);
+  RUN_TEST(test_without_samples_all_time_should_be_coasted_and_a_jump_of_the_clock_should_end);
+  return UNITY_END();
+}

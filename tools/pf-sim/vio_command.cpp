@@ -1,0 +1,236 @@
+// pf-sim vio: a hand-held walk with an inertial unit, from rest and with nothing else known, against geometric truth.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "commands.h"
+#include "report.h"
+#include "statistics.h"
+#include "vio_run.h"
+
+namespace pfsim {
+namespace {
+
+using nlohmann::json;
+
+struct Choices {
+  VioOptions vio;
+  int seeds = 20, jobs = 2;
+  std::uint64_t first_seed = 1;
+  bool no_imu = false;
+  double noise_scale = 1;
+  std::string json_file, csv;
+};
+
+struct Job {
+  const Choices* choices;
+  FrameRow* rows;
+  VioSummary* summaries;
+};
+
+int fail(const std::string& what, int code = 2) {
+  std::fprintf(stderr, "pf-sim vio: %s\n", what.c_str());
+  return code;
+}
+
+void run_one(int index, void* context) {
+  const Job& job = *static_cast<Job*>(context);
+  const auto frames = static_cast<std::size_t>(vio_frames(job.choices->vio));
+  job.summaries[index] = run_vio(job.choices->vio, job.choices->first_seed + static_cast<std::uint64_t>(index),
+                                 job.rows + static_cast<std::size_t>(index) * frames);
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return -1;
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
+}
+
+json of_all(const VioSummary* s, int seeds, double VioSummary::*field) {
+  std::vector<double> values;
+  for (int i = 0; i < seeds; ++i)
+    if (s[i].*field >= 0) values.push_back(s[i].*field);
+  return {{"median", quantile(values, 0.5)}, {"p95", quantile(values, 0.95)}, {"max", quantile(values, 1)}};
+}
+
+/// Share of the run averages of the pose NEES above the 97.5 % bound, by frame.
+double share_above(const Choices& c, const FrameRow* rows) {
+  const int frames = vio_frames(c.vio);
+  int above = 0, judged = 0;
+  for (int f = 0; f < frames; ++f) {
+    double sum = 0;
+    int n = 0;
+    for (int s = 0; s < c.seeds; ++s) {
+      const float nees =
+          rows[static_cast<std::size_t>(s) * static_cast<std::size_t>(frames) + static_cast<std::size_t>(f)].nees_pose;
+      if (!(nees >= 0)) continue;
+      sum += nees;
+      ++n;
+    }
+    if (n == 0) continue;
+    ++judged;
+    above += sum > chi_square_quantile(0.975, 6.0 * n);
+  }
+  return judged > 0 ? static_cast<double>(above) / judged : -1;
+}
+
+json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) {
+  Runs runs;
+  runs.seeds = c.seeds;
+  runs.frames = vio_frames(c.vio);
+  runs.first_seed = c.first_seed;
+  runs.rows = rows;
+  json out = summarise_frames(runs);
+  double gravity = 0, gyro = 0, accel = 0, frames = 0, growth = 0, imu = 0, whole = 0;
+  std::vector<double> drift, again;
+  int lost = 0, started = 0, refused = 0;
+  double tracked = 0;
+  for (int i = 0; i < c.seeds; ++i) {
+    gravity += s[i].nees_gravity;
+    gyro += s[i].nees_gyro_bias;
+    accel += s[i].nees_accel_bias;
+    frames += s[i].unit_frames;
+    growth = std::max(growth, s[i].gauge_growth);
+    imu += s[i].imu_seconds;
+    whole += s[i].frame_seconds;
+    drift.push_back(s[i].end_error_m / s[i].path_m);
+    lost += s[i].lost;
+    refused += s[i].refused;
+    started += s[i].metric_frame >= 0;
+    tracked += s[i].frames_tracked;
+    if (s[i].tracked_again_frame >= 0) again.push_back(s[i].tracked_again_frame - s[i].dark_end_frame + 1);
+  }
+  frames = std::max(1.0, frames);
+  out["nees_pose"]["above_share"] = share_above(c, rows);
+  out["nees_gravity"] = gravity / frames;
+  out["nees_gyro_bias"] = gyro / frames;
+  out["nees_accel_bias"] = accel / frames;
+  out["drift_share"] = {{"median", quantile(drift, 0.5)}, {"p95", quantile(drift, 0.95)}};
+  out["path_m"] = of_all(s, c.seeds, &VioSummary::path_m);
+  out["scale_error_5s"] = of_all(s, c.seeds, &VioSummary::scale_error_5s);
+  out["scale_error"] = of_all(s, c.seeds, &VioSummary::scale_error_end);
+  out["worst_sigmas"] = of_all(s, c.seeds, &VioSummary::worst_sigmas);
+  out["gauge_growth"] = growth;
+  out["starts"] = {{"tried", c.seeds}, {"accepted", started}};
+  out["lost_runs"] = lost;
+  out["refused"] = refused;
+  out["tracked_share"] = tracked / (static_cast<double>(c.seeds) * runs.frames);
+  out["imu_us_per_frame"] = 1e6 * imu / (static_cast<double>(c.seeds) * runs.frames);
+  out["imu_share_of_frame"] = whole > 0 ? imu / whole : 0;
+  if (c.vio.blackout_s > 0)
+    out["frames_until_tracked_again"] = {
+        {"median", quantile(again, 0.5)}, {"max", quantile(again, 1)}, {"runs", again.size()}};
+  return out;
+}
+
+void print_vio(const json& j, bool with_imu) {
+  const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
+  std::printf("vio: pose NEES %.2f (6 dof, %.1f %% of frames above their bound), position %.2f (3 dof)\n",
+              number("/nees_pose/mean"), 100 * number("/nees_pose/above_share"), number("/nees_position/mean"));
+  if (with_imu)
+    std::printf("  NEES of gravity %.2f (2), gyro bias %.2f (3), accelerometer bias %.2f (3); gauge grew %.1e\n",
+                number("/nees_gravity"), number("/nees_gyro_bias"), number("/nees_accel_bias"),
+                number("/gauge_growth"));
+  std::printf(
+      "  drift %.3f %% of %.1f m (95 %%: %.3f %%); scale off by %.2f %% after 5 s (95 %%: %.2f), %.2f %% at the end\n",
+      100 * number("/drift_share/median"), number("/path_m/median"), 100 * number("/drift_share/p95"),
+      100 * number("/scale_error_5s/median"), 100 * number("/scale_error_5s/p95"), 100 * number("/scale_error/median"));
+  std::printf(
+      "  error at most %.1f of its sigma (median of runs %.1f); %g lost, %.1f %% tracked; samples %.0f us a frame\n",
+      number("/worst_sigmas/max"), number("/worst_sigmas/median"), number("/lost_runs"), 100 * number("/tracked_share"),
+      number("/imu_us_per_frame"));
+  if (j.contains("frames_until_tracked_again"))
+    std::printf("  tracked again in frame %g with light (at most %g), in %g runs\n",
+                number("/frames_until_tracked_again/median"), number("/frames_until_tracked_again/max"),
+                number("/frames_until_tracked_again/runs"));
+}
+
+/// Bounds that the simulated unit should meet: lib/docs/inertial.md.
+bool verdict(const Choices& c, const json& j) {
+  const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
+  const double nees = number("/nees_pose/mean");
+  const bool honest = nees >= 4.6 && nees <= 7.6 && number("/nees_pose/above_share") <= 0.1;
+  const bool scaled = number("/scale_error_5s/p95") >= 0 && number("/scale_error_5s/p95") < 0.01;
+  const bool stays = number("/drift_share/median") < 0.003;
+  const bool all = number("/lost_runs") == 0 && number("/starts/accepted") == c.seeds;
+  std::printf("verdict: %s (pose NEES %s, scale %s, drift %s, starts %s)\n",
+              honest && scaled && stays && all ? "yes" : "no", honest ? "yes" : "no", scaled ? "yes" : "no",
+              stays ? "yes" : "no", all ? "yes" : "no");
+  return honest && scaled && stays && all;
+}
+
+int run(Choices c) {
+  const VioOptions& o = c.vio;
+  if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || !(o.seconds > 1 && o.seconds <= 3600) || o.points < 50 ||
+      !(o.rate_hz >= 1 && o.rate_hz <= 200) || !(o.imu.rate_hz >= 20 && o.imu.rate_hz <= 2000) || !(o.rest_s >= 0) ||
+      !(c.noise_scale > 0))
+    return fail("an option is out of its range");
+  c.vio.use_imu = !c.no_imu;
+  for (double* density :
+       {&c.vio.imu.gyro_density, &c.vio.imu.accel_density, &c.vio.imu.gyro_walk, &c.vio.imu.accel_walk})
+    *density *= c.noise_scale;
+  const auto frames = static_cast<std::size_t>(vio_frames(o)), seeds = static_cast<std::size_t>(c.seeds);
+  Job job{&c, static_cast<FrameRow*>(shared_memory(seeds * frames * sizeof(FrameRow))),
+          static_cast<VioSummary*>(shared_memory(seeds * sizeof(VioSummary)))};
+  if (job.rows == nullptr || job.summaries == nullptr) return fail("no memory", 1);
+  if (!in_processes(c.seeds, c.jobs, "vio", run_one, &job)) return fail("a run did not come to its end", 1);
+  for (int i = 0; i < c.seeds; ++i)
+    if (job.summaries[i].done == 0) return fail("the library refused the config", 1);
+  json out = summarise_vio(c, job.rows, job.summaries);
+  out["experiment"] = "vio";
+  out["settings"] = {{"seconds", o.seconds},
+                     {"rate_hz", o.rate_hz},
+                     {"imu_rate_hz", o.imu.rate_hz},
+                     {"noise_scale", c.noise_scale},
+                     {"rest_s", o.rest_s},
+                     {"sigma_px", o.sigma_px},
+                     {"rendered", o.rendered},
+                     {"delay_s", o.imu.delay_s},
+                     {"imu", c.vio.use_imu},
+                     {"first_seed", c.first_seed},
+                     {"blackout_at_s", o.blackout_at_s},
+                     {"blackout_s", o.blackout_s}};
+  print_vio(out, c.vio.use_imu);
+  out["verdict"] = c.vio.use_imu && verdict(c, out);
+  Runs runs;
+  runs.seeds = c.seeds;
+  runs.frames = static_cast<int>(frames);
+  runs.first_seed = c.first_seed;
+  runs.rows = job.rows;
+  if (!c.csv.empty() && !write_csv(runs, c.csv, "vio")) return fail("cannot write to " + c.csv, 1);
+  if (!c.json_file.empty() && !write_json(c.json_file, out)) return fail("cannot write " + c.json_file, 1);
+  return 0;
+}
+
+}  // namespace
+
+void add_vio(CLI::App& app, int& result) {
+  auto c = std::make_shared<Choices>();
+  // As on a hand: beside the camera, other axes.
+  c->vio.imu.R_BC = pf::sim::rotation_exp({0.02, -0.03, 1.55});
+  c->vio.imu.p_BC = {0.05, -0.02, 0.03};
+  CLI::App* command =
+      app.add_subcommand("vio", "A hand-held walk with an inertial unit, from rest: honesty, scale and drift");
+  command->add_option("--seeds", c->seeds, "how many runs");
+  command->add_option("--first-seed", c->first_seed, "seed of the first run");
+  command->add_option("--seconds", c->vio.seconds, "of each run");
+  command->add_option("--rate", c->vio.rate_hz, "frames a second");
+  command->add_option("--imu-rate", c->vio.imu.rate_hz, "samples a second");
+  command->add_option("--noise-scale", c->noise_scale, "times the noise of EuRoC's unit, of truth and filter");
+  command->add_option("--delay", c->vio.imu.delay_s, "of frames against samples, known [s]");
+  command->add_option("--rest", c->vio.rest_s, "at the beginning [s]");
+  command->add_option("--sigma-px", c->vio.sigma_px, "measurement noise [px]");
+  command->add_option("--points", c->vio.points, "of the room");
+  command->add_option("--blackout-at", c->vio.blackout_at_s, "when the lens is covered [s]");
+  command->add_option("--blackout", c->vio.blackout_s, "for how long [s]; 0: never");
+  command->add_flag("--rendered", c->vio.rendered, "pictures of the room of 4 m, in place of points");
+  command->add_flag("--no-imu", c->no_imu, "the same walk with the constant-velocity model, up to scale");
+  command->add_option("--jobs", c->jobs, "processes at a time");
+  command->add_option("--json", c->json_file, "report to write");
+  command->add_option("--csv", c->csv, "folder for per-frame tables");
+  command->callback([c, &result] { result = run(*c); });
+}
+
+}  // namespace pfsim

@@ -1,0 +1,246 @@
+#include "vio_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "context.h"
+#include "statistics.h"
+#include "update_cost.h"
+#include "vio_world.h"
+
+namespace pfsim {
+namespace {
+
+using pf::sim::Pose;
+using pf::sim::Random;
+using pf::sim::Vec3;
+
+constexpr int kGaugeEvery = 50;    // frames
+constexpr double kScaleAfter = 5;  // [s] of motion, when the scale is judged first
+
+pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
+  pf_config_t config;
+  pf_config_default(&config);
+  config.camera = camera;
+  config.capacity.max_imu_samples = 2000;
+  config.clock_ns = thread_clock;
+  if (!o.rendered) {
+    config.measurement.sigma_px = o.sigma_px;
+    config.measurement.gate_probability = 0.9999;  // association is perfect: nothing true should be cut off
+    config.capacity.max_features = 120;
+    config.capacity.max_state_dim = 420;
+    config.first_depth.depth = 2;
+    config.plane.enabled = 0;
+  }
+  if (!o.use_imu) return config;
+  config.motion.model = PF_MOTION_INERTIAL;
+  config.imu.gyro_density = o.imu.gyro_density;
+  config.imu.accel_density = o.imu.accel_density;
+  config.imu.gyro_walk = o.imu.gyro_walk;
+  config.imu.accel_walk = o.imu.accel_walk;
+  const auto q = pf::sim::quaternion_of(o.imu.R_BC);
+  std::copy(q.begin(), q.end(), config.imu.q_BC);
+  config.imu.p_BC[0] = o.imu.p_BC.x;
+  config.imu.p_BC[1] = o.imu.p_BC.y;
+  config.imu.p_BC[2] = o.imu.p_BC.z;
+  config.imu.delay_s = o.imu.delay_s;
+  config.imu.gravity = o.imu.gravity_W.norm();
+  return config;
+}
+
+/// One run, frame by frame. W of the library is the first camera, so truth is told in that.
+class Run {
+ public:
+  Run(const VioOptions& options, std::uint64_t seed, FrameRow* rows, VioSummary* summary)
+      : o_(options),
+        rows_(rows),
+        out_(*summary),
+        world_(options.rendered ? VioWorld(seed, options.rest_s)
+                                : VioWorld(seed, options.points, options.seconds, options.rest_s)),
+        noise_(seed, 53),
+        sensor_(unit(options, seed), world_.path()),
+        context_(config_of(options, world_.camera())),
+        first_(world_.path()(0)) {}
+
+  void go() {
+    if (context_.slam == nullptr) return;
+    out_.done = 1;
+    const int frames = vio_frames(o_);
+    for (int k = 0; k < frames; ++k)
+      if (!frame(k)) return;
+    out_.scale_error_end = scale_error();
+  }
+
+ private:
+  static pf::sim::ImuOptions unit(const VioOptions& o, std::uint64_t seed) {
+    pf::sim::ImuOptions imu = o.imu;
+    Random bias(seed, 54);
+    imu.gyro_bias = bias.normal3() * o.sigma_gyro_bias;
+    imu.accel_bias = bias.normal3() * o.sigma_accel_bias;
+    imu.seed = seed;
+    return imu;
+  }
+
+  Pose truth_at(double t) const {
+    const Pose now = world_.path()(t);
+    const pf::sim::Mat3 R = first_.R_WC.transposed();
+    return {R * now.R_WC, R * (now.p_WC - first_.p_WC)};
+  }
+
+  bool is_dark(double t) const {
+    return o_.blackout_s > 0 && t >= o_.blackout_at_s && t < o_.blackout_at_s + o_.blackout_s;
+  }
+
+  /// Samples up to a frame's time, on their own clock.
+  void push_samples(std::int64_t t_ns) {
+    std::vector<pf_imu_sample_t> samples;
+    while (sensor_.next_ns() <= t_ns) samples.push_back(sensor_.next());
+    if (!o_.use_imu || samples.empty()) return;
+    out_.refused += pf_push_imu(context_.slam, samples.data(), samples.size()) != PF_OK;
+  }
+
+  pf_status_t push_points(const Pose& pose, std::int64_t t_ns, bool dark) {
+    auto seen = world_.observe(pose, o_.sigma_px, noise_);
+    if (dark) seen.clear();
+    return pf_push_observations(context_.slam, t_ns, seen.data(), seen.size());
+  }
+
+  pf_status_t push_picture(const Pose& pose, std::int64_t t_ns, bool dark) {
+    if (!world_.draw(pose, o_.noise_grey, noise_, &grey_)) return PF_ERROR_STATE;
+    if (dark) std::fill(grey_.begin(), grey_.end(), static_cast<std::uint8_t>(0));
+    const pf_camera_t& camera = world_.camera();
+    const pf_image_t image = {grey_.data(), camera.width, camera.height, camera.width, t_ns};
+    return pf_push_frame(context_.slam, &image);
+  }
+
+  bool frame(int k) {
+    const auto t_ns = static_cast<std::int64_t>(std::llround(k * 1e9 / o_.rate_hz));
+    const double t = static_cast<double>(t_ns) * 1e-9;
+    push_samples(t_ns);
+    const Pose sim_pose = world_.path()(t), truth = truth_at(t);
+    const bool dark = is_dark(t);
+    const pf_status_t status = o_.rendered ? push_picture(sim_pose, t_ns, dark) : push_points(sim_pose, t_ns, dark);
+    pf_pose_t pose;
+    pf_report_t report;
+    FrameRow& row = rows_[k];
+    row.nees_position = row.nees_pose = -1;
+    if (status < 0 || pf_get_pose(context_.slam, &pose) != PF_OK) {
+      ++out_.refused;
+      return false;
+    }
+    pf_get_report(context_.slam, &report);
+    out_.lost |= status == PF_NOTE_LOST;
+    out_.frames_tracked += status == PF_OK;
+    out_.imu_seconds += 1e-9 * static_cast<double>(report.stage_ns[PF_STAGE_IMU]);
+    for (const std::int64_t ns : report.stage_ns) out_.frame_seconds += 1e-9 * static_cast<double>(ns);
+    note_blackout(k, dark, status);
+    const bool judged = note_unit(k, report);
+    if (judged || !o_.use_imu) {
+      row = judge(truth, pose, report);
+      if (row.sigma_m > 0 && row.error_m > 1e-4F)
+        out_.worst_sigmas = std::max(out_.worst_sigmas, static_cast<double>(row.error_m / row.sigma_m));
+    }
+    if (judged) {
+      const Vec3 p{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
+      along_ += p.dot(truth.p_WC);
+      squares_ += truth.p_WC.dot(truth.p_WC);
+    }
+    if (k > 0) out_.path_m += (truth.p_WC - last_.p_WC).norm();
+    last_ = truth;
+    const Vec3 e = truth.p_WC - Vec3{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
+    out_.end_error_m = e.norm();
+    if (out_.scale_error_5s < 0 && t >= o_.rest_s + kScaleAfter) out_.scale_error_5s = scale_error();
+    return true;
+  }
+
+  void note_blackout(int k, bool dark, pf_status_t status) {
+    if (dark) out_.dark_end_frame = k + 1;
+    if (out_.dark_end_frame > 0 && !dark && out_.tracked_again_frame < 0 && status == PF_OK)
+      out_.tracked_again_frame = k;
+  }
+
+  /// Biases and gravity against the truth; true once lengths are in metres.
+  bool note_unit(int k, const pf_report_t& report) {
+    pf_inertial_t unit;
+    if (pf_get_inertial(context_.slam, &unit) != PF_OK || unit.metric == 0) return false;
+    if (out_.metric_frame < 0) out_.metric_frame = k;
+    const Vec3 g = (first_.R_WC.transposed() * o_.imu.gravity_W).unit();
+    const Vec3 estimate = Vec3{unit.gravity_W[0], unit.gravity_W[1], unit.gravity_W[2]}.unit();
+    const Vec3 turn = estimate.cross(g);
+    double e[8];
+    for (int i = 0; i < 2; ++i)
+      e[i] = turn.dot({unit.gravity_axes_W[i][0], unit.gravity_axes_W[i][1], unit.gravity_axes_W[i][2]});
+    const Vec3 g_bias = sensor_.gyro_bias(), a_bias = sensor_.accel_bias();
+    const double truth[6] = {g_bias.x, g_bias.y, g_bias.z, a_bias.x, a_bias.y, a_bias.z};
+    for (int i = 0; i < 3; ++i) {
+      e[2 + i] = truth[i] - unit.gyro_bias[i];
+      e[5 + i] = truth[3 + i] - unit.accel_bias[i];
+    }
+    ++out_.unit_frames;
+    out_.nees_gravity += normalised_error(e, unit.covariance, 2, 8, 0);
+    out_.nees_gyro_bias += normalised_error(e + 2, unit.covariance, 3, 8, 2);
+    out_.nees_accel_bias += normalised_error(e + 5, unit.covariance, 3, 8, 5);
+    if (k % kGaugeEvery == 0) note_gauge(report.state_dim);
+    return true;
+  }
+
+  void note_gauge(int state_dim) {
+    const auto n = static_cast<std::size_t>(state_dim);
+    scratch_.resize(std::max(scratch_.size(), n * (n + 8)));
+    double now[49];
+    if (pf_get_gauge_information(context_.slam, scratch_.data(), scratch_.size(), now) != PF_OK) return;
+    if (has_gauge_)
+      out_.gauge_growth = std::max(out_.gauge_growth, largest_ratio(gauge_, now, 6, 7) - 1);
+    else
+      std::copy(now, now + 49, gauge_);
+    has_gauge_ = true;
+  }
+
+  /// Relative error of the distances from the camera to the points that are known, with its sign; the median.
+  double scale_error() const {
+    if (o_.rendered)
+      return squares_ > 0 ? std::fabs(along_ / squares_ - 1) : -1;  // of the way, since it knows no points
+    std::vector<pf_feature_t> features(200);
+    std::size_t count = 0;
+    pf_get_features(context_.slam, features.data(), features.size(), &count);
+    pf_pose_t pose;
+    if (pf_get_pose(context_.slam, &pose) != PF_OK) return -1;
+    const Vec3 p{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < std::min(count, features.size()); ++i) {
+      const pf_feature_t& f = features[i];
+      if (f.kind != PF_FEATURE_POINT) continue;
+      const Vec3 point = first_.R_WC.transposed() * (world_.points()[f.external_id] - first_.p_WC);
+      errors.push_back((Vec3{f.p_W[0], f.p_W[1], f.p_W[2]} - p).norm() / (point - last_.p_WC).norm() - 1);
+    }
+    return errors.size() < 5 ? -1 : std::fabs(median(errors));
+  }
+
+  const VioOptions& o_;
+  FrameRow* const rows_;
+  VioSummary& out_;
+  const VioWorld world_;
+  Random noise_;
+  pf::sim::ImuSensor sensor_;
+  const Context context_;
+  const Pose first_;
+  Pose last_;
+  std::vector<double> scratch_;
+  std::vector<std::uint8_t> grey_;
+  double along_ = 0, squares_ = 0;  ///< of positions, the estimated ones along the true ones
+  double gauge_[49] = {};
+  bool has_gauge_ = false;
+};
+
+}  // namespace
+
+int vio_frames(const VioOptions& options) { return static_cast<int>(options.seconds * options.rate_hz); }
+
+VioSummary run_vio(const VioOptions& options, std::uint64_t seed, FrameRow* rows) {
+  VioSummary summary;
+  Run(options, seed, rows, &summary).go();
+  return summary;
+}
+
+}  // namespace pfsim

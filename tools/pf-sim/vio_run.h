@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+#include "run.h"
+#include "sim/imu.h"
+
+namespace pfsim {
+
+/// A hand-held walk through a room with an inertial unit: nothing is known beforehand but the unit's noise.
+struct VioOptions {
+  double seconds = 60, rate_hz = 30;
+  double rest_s = 2;         ///< at the beginning
+  double blackout_at_s = 0;  ///< no frame shows anything from here on ..
+  double blackout_s = 0;     ///< .. for this long
+  double sigma_px = 0.5;
+  double sigma_gyro_bias = 0.02;  ///< from which a run's biases are drawn [rad/s]
+  double sigma_accel_bias = 0.1;  ///< [m/s^2]
+  int points = 300;
+  bool use_imu = true;
+  bool rendered = false;    ///< pictures of the room of 4 m, in place of points
+  double noise_grey = 2;    ///< of the pictures
+  pf::sim::ImuOptions imu;  ///< noise, rate and mounting
+};
+
+/// What one run gave besides its frames. Plain data, so that it may lie in memory shared between processes.
+struct VioSummary {
+  std::int32_t done = 0, frames_tracked = 0, lost = 0, refused = 0;
+  std::int32_t metric_frame = -1;  ///< from which on the samples told the scale
+  double path_m = 0, end_error_m = 0;
+  double scale_error_5s =
+      -1;  ///< relative, of distances to points, 5 s after the camera began to move; negative: unknown
+  double scale_error_end = -1;
+  double nees_gravity = 0, nees_gyro_bias = 0, nees_accel_bias = 0;  ///< sums over frames
+  std::int32_t unit_frames = 0;
+  double gauge_growth = 0;                    ///< of the information about the six directions
+  double worst_sigmas = 0;                    ///< largest position error in its own sigma
+  double imu_seconds = 0, frame_seconds = 0;  ///< in all frames
+  std::int32_t dark_end_frame = -1, tracked_again_frame = -1;
+};
+
+/// One run. rows has as many entries as the run has frames.
+VioSummary run_vio(const VioOptions& options, std::uint64_t seed, FrameRow* rows);
+int vio_frames(const VioOptions& options);
+
+}  // namespace pfsim

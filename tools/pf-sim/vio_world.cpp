@@ -1,0 +1,112 @@
+#include "vio_world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/imu.h"
+
+namespace pfsim {
+namespace {
+
+using pf::sim::Pose;
+using pf::sim::Random;
+using pf::sim::Vec3;
+
+constexpr double kHalfX = 3, kHalfY = 1.3, kHalfZ = 4;  // of the room [m]
+constexpr double kWalkX = 1.6, kWalkZ = 2.6;            // of the ellipse that the walk follows [m]
+constexpr double kInterval = 1.2;                       // between way points [s]
+constexpr double kStep = 0.6;                           // from one to the next [m]
+constexpr double kShakeM = 0.004, kShakeRad = 0.012;    // of the hand
+constexpr double kRamp = 0.5;                           // from rest to the walk's speed [s]
+constexpr double kBorder = 4;                           // nothing is measured this close to the border [px]
+constexpr double kNearest = 0.3;                        // nor nearer [m]
+
+/// Points on the walls, the floor and the ceiling, and every third one inside.
+Vec3 place(Random& random, int k) {
+  const double u = random.uniform(-1, 1), v = random.uniform(-1, 1);
+  const double side = k % 2 == 0 ? 1 : -1;
+  if (k % 3 == 2) {
+    Vec3 p;
+    do {
+      p = {kHalfX * random.uniform(-1, 1), kHalfY * random.uniform(-1, 1), kHalfZ * random.uniform(-1, 1)};
+    } while (std::hypot(p.x / kWalkX, p.z / kWalkZ) < 1.35 && std::hypot(p.x / kWalkX, p.z / kWalkZ) > 0.65);
+    return p;
+  }
+  if (k % 5 == 0) return {kHalfX * u, kHalfY * side, kHalfZ * v};
+  return k % 4 < 2 ? Vec3{kHalfX * side, kHalfY * u, kHalfZ * v} : Vec3{kHalfX * u, kHalfY * v, kHalfZ * side};
+}
+
+pf_camera_t camera_of_points() {
+  const double f = 320 / std::tan(40 * 3.14159265358979 / 180);  // 80 degrees
+  return {PF_CAMERA_PINHOLE, 640, 480, f, f, 319.5, 239.5, {}, 0, PF_CAMERA_EXACT, PF_TIMESTAMPS_REAL, 0, 0, 0, {}};
+}
+
+}  // namespace
+
+VioWorld::VioWorld(std::uint64_t seed, int points, double seconds, double rest_s) : camera_(camera_of_points()) {
+  Random world(seed, 51), way(seed, 52);
+  for (int k = 0; k < points; ++k) points_.push_back(place(world, k));
+  // Round and round an ellipse, looking ahead and about, up and down.
+  std::vector<pf::sim::Waypoint> waypoints;
+  double angle = way.uniform(0, 6.283);
+  for (double t = 0; t < seconds + 4 * kInterval; t += kInterval) {
+    const Vec3 eye = {kWalkX * std::sin(angle), 0, kWalkZ * std::cos(angle)};
+    const Vec3 ahead = {kWalkX * std::cos(angle), 0, -kWalkZ * std::sin(angle)};
+    const Vec3 at = eye + ahead.unit() * 2.5 + Vec3{way.normal(), 0.5 * way.normal(), way.normal()};
+    waypoints.push_back({eye + way.normal3() * 0.12, at});
+    angle += kStep / ahead.norm() * way.uniform(0.6, 1.4);
+  }
+  path_ = pf::sim::after_rest(pf::sim::shaken(pf::sim::spline(waypoints, kInterval), way, kShakeM, kShakeRad), rest_s,
+                              kRamp);
+}
+
+VioWorld::VioWorld(std::uint64_t seed, double rest_s) {
+  pf_sim_options_t options;
+  pf_sim_options_default("room", &options);
+  options.seed = seed;
+  room_.reset(pf_sim_open("room", &options), pf_sim_close);
+  pf_sim_camera(room_.get(), &camera_);
+  const auto base = [room = room_](double t) {
+    pf_pose_t pose;
+    pf_sim_pose_at(room.get(), static_cast<std::int64_t>(std::llround(t * 1e9)), &pose);
+    return Pose{pf::sim::rotation_of(pose.q_WC), {pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]}};
+  };
+  path_ = pf::sim::after_rest(base, rest_s, kRamp);
+}
+
+bool VioWorld::draw(const Pose& pose, double noise_grey, Random& noise, std::vector<std::uint8_t>* grey) const {
+  if (room_ == nullptr) return false;
+  pf_pose_t view = {};
+  const auto q = pf::sim::quaternion_of(pose.R_WC);
+  std::copy(q.begin(), q.end(), view.q_WC);
+  view.p_WC[0] = pose.p_WC.x;
+  view.p_WC[1] = pose.p_WC.y;
+  view.p_WC[2] = pose.p_WC.z;
+  pf_image_t image;
+  if (pf_sim_render(room_.get(), &view, &image) != PF_OK) return false;
+  grey->resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  for (std::size_t i = 0; i < grey->size(); ++i) {
+    const double value = image.pixels[i] + noise_grey * noise.normal();
+    (*grey)[i] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+  }
+  return true;
+}
+
+std::vector<pf_observation_t> VioWorld::observe(const Pose& pose, double sigma_px, Random& noise) const {
+  const pf_camera_t& lens = camera_;
+  std::vector<pf_observation_t> seen;
+  for (std::size_t id = 0; id < points_.size(); ++id) {
+    const Vec3 p_C = pose.R_WC.transposed() * (points_[id] - pose.p_WC);
+    const double p[3] = {p_C.x, p_C.y, p_C.z};
+    double pixel[2];
+    if (p_C.z < kNearest || pf_camera_project(&lens, p, pixel) != PF_OK || pixel[0] < kBorder || pixel[1] < kBorder ||
+        pixel[0] > lens.width - 1 - kBorder || pixel[1] > lens.height - 1 - kBorder)
+      continue;
+    const double e[2] = {noise.normal(), noise.normal()};
+    seen.push_back(
+        {static_cast<std::uint32_t>(id), {pixel[0] + sigma_px * e[0], pixel[1] + sigma_px * e[1]}, sigma_px});
+  }
+  return seen;
+}
+
+}  // namespace pfsim

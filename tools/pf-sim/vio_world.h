@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "planefold_platform/sim.h"
+#include "sim/trajectory.h"
+
+namespace pfsim {
+
+/// Points of a room, and a walk through it. W has y down.
+class VioWorld {
+ public:
+  VioWorld(std::uint64_t seed, int points, double seconds, double rest_s);
+  /// The rendered room, and the walk that belongs to it.
+  VioWorld(std::uint64_t seed, double rest_s);
+
+  const pf_camera_t& camera() const { return camera_; }
+  const pf::sim::Trajectory& path() const { return path_; }
+  const std::vector<pf::sim::Vec3>& points() const { return points_; }
+  /// Pixels with noise of the points that a camera sees.
+  std::vector<pf_observation_t> observe(const pf::sim::Pose& pose, double sigma_px, pf::sim::Random& noise) const;
+  /// The picture that a camera sees, in `grey`. False where nothing is rendered.
+  bool draw(const pf::sim::Pose& pose, double noise_grey, pf::sim::Random& noise,
+            std::vector<std::uint8_t>* grey) const;
+
+ private:
+  pf_camera_t camera_;
+  std::shared_ptr<pf_sim_t> room_;
+  pf::sim::Trajectory path_;
+  std::vector<pf::sim::Vec3> points_;
+};
+
+}  // namespace pfsim
