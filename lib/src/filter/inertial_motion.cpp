@@ -41,8 +41,7 @@ void set_noise(const Preintegral::Covariance& S, const Mat3& R, const Mat3& m_ha
   J.block<3, 3>(Rows::kVelocity, Rows::kVelocity) = R;
   J.block<3, 3>(Rows::kPosition, Rows::kPosition) = R;
   J.block<3, 3>(Rows::kPosition, Rows::kPhi) = m_hat.lazyProduct(R);
-  const Preintegral::Covariance JS = J.lazyProduct(S);
-  const Preintegral::Covariance Q = JS.lazyProduct(J.transpose());
+  const Preintegral::Covariance Q = Preintegral::transformed(J, S);
   const int to[Rows::kRows / 3] = {Body::kTheta, rows.velocity, Body::kPosition, rows.gyro, rows.accel};
   for (int a = 0; a < Rows::kRows / 3; ++a)
     for (int b = 0; b < Rows::kRows / 3; ++b)

@@ -4,12 +4,25 @@
 
 namespace pf {
 
+__attribute__((noinline)) Preintegral::Covariance Preintegral::transformed(const Covariance& J, const Covariance& S) {
+  Covariance JS = Covariance::Zero(), out = Covariance::Zero();
+  for (int j = 0; j < kRows; ++j)
+    for (int k = 0; k < kRows; ++k)
+      for (int i = 0; i < kRows; ++i) JS(i, j) += J(i, k) * S(k, j);
+  for (int j = 0; j < kRows; ++j)
+    for (int k = 0; k < kRows; ++k)
+      for (int i = 0; i < kRows; ++i) out(i, j) += JS(i, k) * J(j, k);
+  return out;
+}
+
 /// S <- F S F^T, and the Jacobian by the biases that were there at the beginning.
 void Preintegral::move_errors(const Covariance& F) {
-  const Covariance FS = F.lazyProduct(S_);
-  S_ = FS.lazyProduct(F.transpose());
-  const ByBias moved = F.topLeftCorner<9, 9>().lazyProduct(D_);
-  D_ = moved + F.topRightCorner<9, 6>();
+  S_ = transformed(F, S_);
+  ByBias moved = F.topRightCorner<9, 6>();
+  for (int j = 0; j < 6; ++j)
+    for (int k = 0; k < 9; ++k)
+      for (int i = 0; i < 9; ++i) moved(i, j) += F(i, k) * D_(k, j);
+  D_ = moved;
 }
 
 /// With G = -dt R J_l(w dt) and  V = -dt ([R a_0]x + [R+ a_1]x) / 2:
@@ -44,10 +57,9 @@ void Preintegral::add(Scalar dt, const ImuReading& from, const ImuReading& to, S
   B << G, Mat3::Zero(), V_g, V_a, half * V_g, half * V_a;
   const Scalar gyro = (noise_.gyro_density * noise_.gyro_density + gyro_more) / dt;
   const Scalar accel = (noise_.accel_density * noise_.accel_density + accel_more) / dt;
-  Eigen::Matrix<Scalar, 9, 6> BQ = B;
-  BQ.leftCols<3>() *= gyro;
-  BQ.rightCols<3>() *= accel;
-  S_.topLeftCorner<9, 9>() += BQ.lazyProduct(B.transpose());
+  for (int k = 0; k < 6; ++k)
+    for (int j = 0; j < 9; ++j)
+      for (int i = 0; i < 9; ++i) S_(i, j) += (k < 3 ? gyro : accel) * B(i, k) * B(j, k);
   for (int i = 0; i < 3; ++i) {
     S_(kGyroBias + i, kGyroBias + i) += noise_.gyro_walk * noise_.gyro_walk * dt;
     S_(kAccelBias + i, kAccelBias + i) += noise_.accel_walk * noise_.accel_walk * dt;

@@ -31,6 +31,9 @@ class Preintegral {
   Preintegral(const ImuNoise& noise, const Vec3& gyro_bias, const Vec3& accel_bias)
       : noise_(noise), gyro_bias_(gyro_bias), accel_bias_(accel_bias) {}
 
+  /// J S J^T, in loops that stay loops: unrolled, each use is some 10 kB of code.
+  static Covariance transformed(const Covariance& J, const Covariance& S);
+
   /// From one reading to the next, dt > 0 [s] later, by the mid-point rule:
   ///
   ///   R+ = R Exp((g_0 + g_1)/2 dt - b_g dt),   a = (R (a_0 - b_a) + R+ (a_1 - b_a)) / 2
