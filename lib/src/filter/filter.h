@@ -77,6 +77,8 @@ class Filter {
   int add_anchor();
   /// A copy of the camera at the frame's time, with its full correlation.
   int add_reference_camera();
+  /// Patch whose corners a reference camera has seen with this covariance [px^2]; it lives no longer than that camera.
+  int add_patch(int camera, const PatchMeasurement::Matrix& covariance);
   /// tau: when the pixel's row was read out, from the frame's time [s].
   int add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho,
                         Scalar sigma_rho, Scalar tau = Scalar(0));
@@ -142,6 +144,9 @@ class Filter {
   // --- update
   /// Prediction, Jacobian and columns of a feature's pixel; false when it does not project.
   bool predict_pixel(const Camera& lens, int slot, PixelMeasurement* out) const;
+  /// Where the corners of a patch are, which lies on a plane and whose corners were at these pixels of its reference camera: prediction,
+  /// Jacobian and columns. False where one of them does not project.
+  bool predict_patch(const Camera& lens, int patch, int plane, const Vec2* reference_px, PatchMeasurement* out) const;
   /// H P H^T of one pixel, without noise.
   Mat2 innovation(const PixelMeasurement& pixel) const { return blocks_.covariance_of<2>(pixel.H); }
   /// Gathers H P and S = H P H^T (without noise) of measurements. Then innovation_block is valid until the state changes.

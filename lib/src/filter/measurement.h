@@ -43,6 +43,9 @@ struct PixelMeasurement : MeasurementOf<2, 30, 5> {
       Mat2::Zero();  ///< what the linearisation leaves out, and a surface's roughness [px^2]; belongs into the noise
 };
 
+/// Corners of a patch on a plane [px], x and y of each, over body, reference camera, plane, patch and lens: a homography.
+using PatchMeasurement = MeasurementOf<8, 38, 5>;
+
 /// Distance of a feature from a plane [m], over plane, feature and the row of the scale.
 using DistanceMeasurement = MeasurementOf<1, 24, 8>;
 

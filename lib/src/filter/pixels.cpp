@@ -1,9 +1,8 @@
-#include <algorithm>
-
 #include "filter/filter.h"
 #include "filter/model/kinds.h"
 #include "filter/observe/inverse_depth.h"
 #include "filter/observe/point.h"
+#include "filter/row_follow.h"
 #include "filter/tuning.h"
 
 /// Pixels: what is expected of them, each at the pose of its own row (lib/docs/rolling_shutter.md).
@@ -22,19 +21,9 @@ Mat2 planar_noise(const State& state, const Block& block, const Place& at, const
   return noise;
 }
 
-/// A row's time depends on the pixel itself:
-///
-///   dz = H_row dx + z' k dz_y      k seconds per pixel, z' what the row's motion does to the pixel [px/s]
+/// The pixel's rows allow for what its place says about its row.
 void follow_row(const CameraAt& camera, const Mat26& J_camera, Scalar k, PixelMeasurement* out) {
-  Mat2 M = Mat2::Identity();
-  Vec2 drift;
-  for (int a = 0; a < 2; ++a) {
-    const Vec3 J_theta = J_camera.block<1, 3>(a, 0).transpose(), J_p = J_camera.block<1, 3>(a, 3).transpose();
-    drift(a) = J_theta.dot(camera.q_WC * camera.w_C) + J_p.dot(camera.v_W);
-  }
-  const Scalar own = std::max(Scalar(1) - k * drift.y(), tuning::pixel::kMinRowRate);
-  M(0, 1) = k * drift.x() / own;
-  M(1, 1) = Scalar(1) / own;
+  const Mat2 M = row_follow(camera, J_camera, k);
   const int columns = out->H.columns();
   for (int c = 0; c < columns; ++c) {
     const Vec2 h = M * Vec2(out->H.h[c], out->H.h[columns + c]);

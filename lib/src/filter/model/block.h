@@ -22,8 +22,9 @@ enum class BlockKind : std::uint8_t {
   kPointGroup = 6,
   kGroupedPoint = 7,
   kReferenceCamera = 8,
+  kPatchCorners = 9,
 };
-inline constexpr int kBlockKinds = 9;
+inline constexpr int kBlockKinds = 10;
 
 /// What a feature is to the caller of the library.
 enum class FeatureForm : std::uint8_t { kNone, kPoint, kInverseDepth, kFolded, kFixed };

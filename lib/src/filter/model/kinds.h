@@ -3,6 +3,7 @@
 #include "filter/model/anchor.h"
 #include "filter/model/grouped_point.h"
 #include "filter/model/inverse_depth.h"
+#include "filter/model/patch_corners.h"
 #include "filter/model/plane.h"
 #include "filter/model/plane_point.h"
 #include "filter/model/point.h"
@@ -20,7 +21,8 @@ namespace pf {
   X(model::PlanePoint)        \
   X(model::Group)             \
   X(model::GroupedPoint)      \
-  X(model::ReferenceCamera)
+  X(model::ReferenceCamera)   \
+  X(model::PatchCorners)
 
 /// Calls f with an object of the kind's type; with none, does nothing.
 template <typename F>
