@@ -32,6 +32,7 @@ struct Bench {
     settings.unit.noise = {Scalar(2e-4), Scalar(2e-3), Scalar(2e-5), Scalar(3e-3)};
     settings.unit.gravity = Scalar(9.81);
     detector.layout(*arena);
+    detector.init();
     frame.layout(*arena, 40);
     frame.init();
     log.layout(*arena, 400);

@@ -18,12 +18,14 @@ class RestDetector {
       : settings_(settings), frame_(frame), imu_(imu) {}
 
   void layout(Arena& arena);
-  void init() { data_ = Data(); }
+  void init() {
+    if (data_ != nullptr) *data_ = Data();
+  }
   /// After a frame. seen: its measurements support its pose. True when the camera has been at rest for a second up to this frame; then
   /// *rest is what the samples said in that time, and the next second begins.
   bool note(bool seen, RestReading* rest);
   /// When the last second at rest began, in the time of frames.
-  std::int64_t begin_ns() const { return data_.rest_begin_ns; }
+  std::int64_t begin_ns() const { return data_->rest_begin_ns; }
 
  private:
   static constexpr int kMaxPixels = 60;
@@ -54,8 +56,8 @@ class RestDetector {
   const Settings& settings_;
   const Frame& frame_;
   const ImuLog& imu_;
-  Seen* seen_ = nullptr;  ///< kMaxPixels; null without the inertial motion model
-  Data data_;
+  Seen* seen_ = nullptr;  ///< kMaxPixels; null without the inertial motion model, which needs no room then
+  Data* data_ = nullptr;  ///< likewise
 };
 
 }  // namespace pf
