@@ -171,6 +171,7 @@ double corner_error2(const HomographyOptions& o, const HomographyFrames& f, cons
 /// One tracker with one trouble, over all seeds.
 struct Outcome {
   std::vector<double> rmse, us, nees;
+  double square_sum = 0;  ///< over the frames of this seed [px^2]
   int lost = 0;
 };
 
@@ -249,7 +250,7 @@ class HomographySuite {
     HomographyFrames frames(what, trouble, seed);
     const std::vector<std::uint8_t> first = frames.draw(0);
     std::vector<Homography> H(trackers_.size(), frames.truth(0));
-    std::vector<double> sum(trackers_.size(), 0);
+    for (Outcome& outcome : outcomes) outcome.square_sum = 0;
     for (const auto& tracker : trackers_) tracker->begin(what, frames, first.data());
     for (int frame = 1; frame < what.frames; ++frame) {
       const std::vector<std::uint8_t>& image = frames.draw(frame);
@@ -260,13 +261,12 @@ class HomographySuite {
           error2 = kLostPx * kLostPx;
           ++outcomes[t].lost;
         }
-        sum[t] += error2;
+        outcomes[t].square_sum += error2;
         outcomes[t].us.push_back(found.us);
         if (found.nees >= 0) outcomes[t].nees.push_back(found.nees);
       }
     }
-    for (std::size_t t = 0; t < trackers_.size(); ++t)
-      outcomes[t].rmse.push_back(std::sqrt(sum[t] / (what.frames - 1)));
+    for (Outcome& outcome : outcomes) outcome.rmse.push_back(std::sqrt(outcome.square_sum / (what.frames - 1)));
   }
 
   SuiteOptions options_;
