@@ -20,4 +20,7 @@ set(PLANEFOLD_FLOAT_TESTS
     unit/test_covariance_reference.cpp
     unit/test_covariance_sets.cpp
     slow/test_covariance_sets_many.cpp
+    property/test_slow_walk.cpp
+    property/test_covariance_repair.cpp
+    slow/test_slow_walks.cpp
 )

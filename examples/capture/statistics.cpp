@@ -98,6 +98,7 @@ Json lens_json(const pf_slam_t* slam) {
 void Statistics::add(const FrameView& view) {
   const pf_report_t& report = view.report;
   duplicates_ += report.duplicates > last_report_.duplicates ? 1 : 0;  // the library counts anew after a reset
+  repairs_ += report.covariance_repairs > last_report_.covariance_repairs ? 1 : 0;  // likewise
   flat_ += is_flat(view.pixels) ? 1 : 0;
   if (view.tracked) {
     ++tracked_;
@@ -221,6 +222,7 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["unreadable"] = unreadable_lines_;
   json["flat"] = flat_;
   json["duplicates"] = duplicates_;
+  json["covariance_repairs"] = repairs_;
   json["ms_per_frame"] = {
       {"median", rounded(ms_.quantile(0.5))}, {"p95", rounded(ms_.quantile(0.95))}, {"max", rounded(ms_.largest())}};
   json["ms_by_stage"] = stages;

@@ -60,6 +60,7 @@ class Statistics {
   int64_t unreadable_ = 0;
   std::vector<std::string> unreadable_lines_;  ///< of the first of them
   int64_t duplicates_ = 0;
+  int64_t repairs_ = 0;  ///< frames in which the covariance had to be repaired
   int64_t flat_ = 0;
   int64_t resets_ = 0;
   int64_t turn_ns_ = 0;

@@ -14,11 +14,7 @@
 
 namespace {
 
-#ifdef PLANEFOLD_FUZZ_FLOAT
-constexpr double kSmallestEigenvalue = -2e-3;  ///< of a correlation matrix, which rounding may bring below zero
-#else
-constexpr double kSmallestEigenvalue = -1e-7;
-#endif
+constexpr double kSmallestEigenvalue = -1e-7;  ///< of a correlation matrix, which rounding may bring below zero
 constexpr size_t kMaxBlock = size_t{8} << 20;
 constexpr size_t kPage = 4096;
 
@@ -91,14 +87,8 @@ double smallest_eigenvalue(const double* covariance, int n) {
   return smallest;
 }
 
-/// Whether covariances are asked to be positive semidefinite, and not only finite: in double always. Float cannot hold the ratio of what is
-/// predicted to what is measured at motion densities above 10 (0.4 rad per frame against 2e-4 rad is 5e6 as variances, and 1/epsilon
-/// is 8e6), and P is known to lose it with the forms that are there for comparison (fold drop, fix inflate or error-free, no gauge).
-bool must_be_positive = true;
-
 void require_covariance(const double* covariance, int n, const char* of) {
   require(finite(covariance, n * n), of);
-  if (!must_be_positive) return;
   for (int i = 0; i < n; ++i) require(covariance[i * n + i] >= 0, of);
   const double smallest = smallest_eigenvalue(covariance, n);
   if (smallest < kSmallestEigenvalue) std::fprintf(stderr, "smallest eigenvalue %g\n", smallest);
@@ -214,12 +204,6 @@ class Run {
     require(usable_ == (field == nullptr), "a bad config names a field");
     require((status(pf_memory_query(&config_, &need_)) == PF_OK) == usable_, "query and check agree");
     usable_ = usable_ && need_.bytes <= kMaxBlock;
-#ifdef PLANEFOLD_FUZZ_FLOAT
-    must_be_positive =
-        config_.plane.fold == PF_FOLD_CONDITION && config_.plane.fix == PF_FIX_CONSIDER &&
-        std::fmax(config_.motion.linear_acceleration_density, config_.motion.angular_acceleration_density) <= 10 &&
-        config_.keep_gauge == 1;
-#endif
   }
 
   bool usable() const { return usable_; }

@@ -613,6 +613,10 @@ typedef struct pf_report {
    * recent inliers [px]; of what it adds to those of other frames, sigma_gate_px * sqrt(correlation_frames) [px]; and for
    * how many frames an error stays with its feature. Pushed observations have the sigma_px that they state. */
   double sigma_gate_px, sigma_info_px, correlation_frames;
+  /* Of `frames`: those at whose end a part of the estimate's covariance was not positive semidefinite, beyond rounding,
+   * and its variances were raised until it was (lib/docs/float.md). 0 is normal; where it grows, the poses deserve less
+   * trust than their covariances say. */
+  int64_t covariance_repairs;
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

@@ -42,6 +42,19 @@ inline bool is_semidefinite(const double* P, int n) {
   return factor_semidefinite(C, n, 1e-9);
 }
 
+/// Likewise to a given rounding, where rows of what is exactly known are zero.
+inline bool is_semidefinite_or_zero(const double* P, int n, double rounding) {
+  double C[36];
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const double scale = std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]);
+      C[i * n + j] = scale > 0.0 ? P[i * n + j] / scale : 0.0;
+    }
+    C[i * n + i] = 1.0;
+  }
+  return factor_semidefinite(C, n, rounding);
+}
+
 /// Symmetric to rounding, with positive diagonal, Cauchy-Schwarz between any two, and semidefinite.
 inline bool is_covariance(const double* P, int n) {
   for (int i = 0; i < n; ++i) {

@@ -6,7 +6,7 @@
 namespace {
 
 using pf::copy;
-using pf::copy_matrix;
+using pf::copy_covariance;
 
 /// (w, x, y, z)
 void copy_quaternion(const pf::Quat& from, double* to) {
@@ -25,7 +25,7 @@ void pose_at(const pf::View& view, int64_t t_ns, pf_pose_t* pose) {
   copy(body.p_W, 3, pose->p_WC);
   copy(body.v_W, 3, pose->v_W);
   copy(body.w_C, 3, pose->w_C);
-  copy_matrix(covariance, pose->covariance);
+  copy_covariance(covariance, pose->covariance);
 }
 
 int32_t feature_kind(pf::BlockKind kind) {
@@ -79,7 +79,7 @@ pf_status_t pf_get_motion_since_mark(const pf_slam_t* slam, pf_motion_t* motion)
   motion->t_ns = view.last_ns();
   copy_quaternion(since.q_KC, motion->q_KC);
   copy(since.p_KC, 3, motion->p_KC);
-  copy_matrix(since.covariance, motion->covariance);
+  copy_covariance(since.covariance, motion->covariance);
   motion->map_id = view.map_id();
   motion->reserved = 0;
   return PF_OK;
@@ -95,7 +95,7 @@ pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double 
   const pf::Vec3 p(static_cast<pf::Scalar>(p_W[0]), static_cast<pf::Scalar>(p_W[1]), static_cast<pf::Scalar>(p_W[2]));
   if (!slam->session.view().project(p, &z, covariance != nullptr ? &C : nullptr)) return PF_ERROR_RANGE;
   copy(z, 2, pixel);
-  if (covariance != nullptr) copy_matrix(C, covariance);
+  if (covariance != nullptr) copy_covariance(C, covariance);
   return PF_OK;
 }
 
@@ -120,7 +120,7 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
     out.plane = f.plane;
     out.map_id = view.map_id();
     copy(f.p_W, 3, out.p_W);
-    copy_matrix(f.covariance, out.covariance);
+    copy_covariance(f.covariance, out.covariance);
   }
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
 }
@@ -136,7 +136,7 @@ pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t ca
     out.status = static_cast<int32_t>(t.status);
     out.kind = feature_kind(t.kind);
     copy(t.predicted, 2, out.predicted_px);
-    copy_matrix(t.innovation, out.covariance_px);
+    copy_covariance(t.innovation, out.covariance_px);
     copy(t.measured, 2, out.measured_px);
     out.nis = static_cast<double>(t.nis);
   }
@@ -193,6 +193,7 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->nis = r.nis;
   report->nis_dof = r.nis_dof;
   report->duplicates = r.duplicates;
+  report->covariance_repairs = r.repairs;
   report->sigma_gate_px = static_cast<double>(view.noise().sigma_gate());
   report->sigma_info_px = static_cast<double>(view.noise().sigma_info());
   report->correlation_frames = static_cast<double>(view.noise().correlation_frames());

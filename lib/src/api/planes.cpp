@@ -30,7 +30,7 @@ void describe(const pf::PlaneView& plane, std::uint32_t map_id, const Vec3& grav
   out->distance = static_cast<double>(plane.distance);
   pf::copy_matrix(plane.R_WP, out->R_WP);
   pf::copy(plane.p_WP, 3, out->p_WP);
-  pf::copy_matrix(plane.covariance, out->covariance);
+  pf::copy_covariance(plane.covariance, out->covariance);
   out->known = plane.known ? 1 : 0;
   out->doubted = plane.doubted ? 1 : 0;
   out->outline_count = plane.outline.count;
@@ -84,6 +84,6 @@ pf_status_t pf_hit_test(const pf_slam_t* slam, const double pixel[2], pf_hit_t* 
   hit->plane = found.plane;
   hit->range = static_cast<double>(found.range);
   pf::copy(found.p_W, 3, hit->p_W);
-  pf::copy_matrix(found.covariance, hit->covariance);
+  pf::copy_covariance(found.covariance, hit->covariance);
   return PF_OK;
 }

@@ -120,6 +120,24 @@ void BlockFilter::dense_square(const Rows& J, Scalar* Q) const {
       for (int c = 0; c < columns; ++c) Q[i * J.rows + j] += W_[i * ld_ + first + c] * J.h[j * columns + c];
 }
 
+Scalar BlockFilter::dense_dot(const Rows& J) const {
+  Scalar sum = 0;
+  for (int p = 0, c = 0; p < J.parts; ++p)
+    for (int i = 0; i < J.part[p].size; ++i) sum += J.h[c++] * W_[row(J.part[p]) + i];
+  return sum;
+}
+
+/// P - N a^T - a N^T + factor N N^T, with a = P l^T in the first row of W: U = N, G = factor / 2 N - a.
+void BlockFilter::take_out_dense(const Scalar* N, Scalar factor) {
+  Scalar* const a = W_;
+  for (int i = 0; i < ld_; ++i) a[i] = factor / 2 * N[i] - a[i];
+  add_shared(N, a, 1);
+}
+
+void BlockFilter::add_shared(const Scalar* U, const Scalar* G, int rows) {
+  kernels_->downdate(P_, W_, 0, U, G, rows, ld_, 0, 0);
+}
+
 void BlockFilter::dense_end(int block, int rows, Scalar* Q, Scalar own) {
   PF_ASSERT(rows <= room() && at_[block].size == 0);
   for (int i = 0; i < rows; ++i)

@@ -82,6 +82,33 @@ class BlockFilter {
   ///   P += G diag(sigma^2) G^T,   G = P_xp P_pp^-1, which is the identity on the part's own rows.
   void inflate_through(const Part& part, const Vec3& sigma);
 
+  /// P += U^T G + G^T U (both rows x ld()).
+  void add_shared(const Scalar* U, const Scalar* G, int rows);
+  /// P <- (I - N l) P (I - N l)^T + left N N^T, with N (ld() numbers) and l the sum of the rows of those k < count for which
+  /// J(k, &row) is true, l N = 1. Returns l P l^T as it was.
+  template <typename Jacobian>
+  Scalar take_out(const Scalar* N, Scalar left, int count, Jacobian&& J) {
+    ScaleRow row;
+    dense_begin(1);
+    for (int k = 0; k < count; ++k)
+      if (J(k, &row)) dense_add(row);
+    Scalar variance = 0;
+    for (int k = 0; k < count; ++k)
+      if (J(k, &row)) variance += dense_dot(row);
+    take_out_dense(N, variance + left);
+    return variance;
+  }
+
+  // --- soundness
+  /// Variances grow by this share of themselves.
+  void grow(Scalar share) {
+    for (int i = 0; i < P_.n; ++i) P_.set(i, i, (Scalar(1) + share) * P_(i, i));
+  }
+  enum class Repair { kNone, kDone, kImpossible };
+  /// Checks a sample of P, another one for each turn: the leading rows with some of the others. Where it is not positive semidefinite,
+  /// beyond rounding, the variances of its rows grow until it is. Needs neither project() nor gain() kept.
+  Repair repair(int turn);
+
   // --- update
   /// H P and S = H P H^T (without noise) of measurements, valid until the state changes.
   void project(const Measurement* z, int count);
@@ -124,6 +151,8 @@ class BlockFilter {
   void dense_begin(int rows);
   void dense_add(const Rows& J);
   void dense_square(const Rows& J, Scalar* Q) const;
+  Scalar dense_dot(const Rows& J) const;
+  void take_out_dense(const Scalar* N, Scalar factor);
   void dense_end(int block, int rows, Scalar* Q, Scalar own);
   void list_gone(int first, int size, int* gone);
   void close_gaps(int gone);

@@ -34,6 +34,8 @@ void Filter::init(const Kernels* kernels, const BodyLayout& layout, bool keep_ga
   state_.lens_rows = LensRows();
   state_.planes = 0;
   roughness_ = Scalar(0);
+  apart_.clear();
+  gauge_is_told_ = false;
   blocks_.init(kernels, layout.rows() - layout.considered_rows(), layout.considered_rows());
   transport_.init();
 }
@@ -52,11 +54,6 @@ void Filter::set_metric() {
 
 void Filter::consider_lens(bool only_considered) {
   blocks_.consider_last(only_considered ? state_.lens_rows.count : state_.layout.considered_rows());
-}
-
-void Filter::set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens) {
-  state_.body = body;
-  blocks_.set_leading(covariance, state_.layout.dynamic_rows(), J_lens);
 }
 
 void Filter::predict(const Transition& transition) {
@@ -134,6 +131,7 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
 }
 
 int Filter::add_point(const Vec3& p_W, const Mat3& covariance) {
+  tell_gauge();
   const int slot = take_slot(BlockKind::kPoint);
   if (slot < 0) return -1;
   Rows known;  // depends on nothing
@@ -209,11 +207,17 @@ Mat3 Filter::covariance3(int slot) const {
     Mat6 cov;
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) cov(i, j) = covariance()(first[i / 3] + i % 3, first[j / 3] + j % 3);
+    if (apart_.any()) {
+      const Part part[2] = {Part::of(block.parent, 0, 3), Part::of(slot, 0, 3)};
+      Scalar identity[36];
+      put<6, 6>(identity, 6, 0, Mat6::Identity());
+      cov += apart_.covariance_of<6>(state_, {6, 2, part, identity});
+    }
     shown_place(state_.block[block.parent].xyz(), block.inverse_depth(), cov, &C);
     return C;
   }
   if (!find_point(state_, slot, &at)) return C;
-  C = blocks_.covariance_of<3>(at.rows<3>(Mat3::Identity()));
+  C = covariance_of<3>(at.rows<3>(Mat3::Identity()));
   if (!at.has_rows) C += at.J_own * block.inside() * at.J_own.transpose();
   return C;
 }

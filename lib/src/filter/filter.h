@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "filter/block_filter.h"
+#include "filter/gauge_prior.h"
 #include "filter/motion.h"
 #include "filter/state.h"
 #include "filter/transport.h"
@@ -44,7 +45,21 @@ class Filter {
 
   const State& state() const { return state_; }
   const BlockFilter& blocks() const { return blocks_; }
+  /// P, which is the covariance of the state but for what apart() holds.
   const Triangle& covariance() const { return blocks_.P(); }
+  /// Covariance of gauge directions that is not in P.
+  const GaugePrior& apart() const { return apart_; }
+  /// J C J^T of a few rows and the whole covariance C.
+  template <int kRows>
+  Eigen::Matrix<Scalar, kRows, kRows> covariance_of(const Rows& J) const {
+    Eigen::Matrix<Scalar, kRows, kRows> C = blocks_.covariance_of<kRows>(J);
+    if (apart_.any()) C += apart_.covariance_of<kRows>(state_, J);
+    return C;
+  }
+  /// Of a single row.
+  Scalar variance_of(const Rows& row) const { return covariance_of<1>(row)(0, 0); }
+  /// Of the first rows of the body (rows x rows, row-major).
+  void body_covariance(int rows, Scalar* out) const;
   /// Sets the mean of the body and leaves its covariance, where the mean comes from elsewhere (a restart).
   void set_mean(const Body& body) { state_.body = body; }
 
@@ -65,6 +80,9 @@ class Filter {
   /// The parts of the body that move become known as covariance says (over their rows, row-major), and with J_lens (null: not) as the lens
   /// does. Only while nothing in the map depends on the body.
   void set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens = nullptr);
+
+  /// From now on something tells the place or the scale of W. What is apart goes into P, and stays there.
+  void tell_gauge();
 
   /// Which entry of the map's table a block belongs to.
   void set_owner(int slot, int owner) { state_.set_owner(slot, owner); }
@@ -185,6 +203,8 @@ class Filter {
   int room() const { return blocks_.room(); }
 
   // --- soundness: finite, bounded, and no variance below zero
+  /// Checks a part of P, another one for each turn, and repairs it where it is no covariance.
+  BlockFilter::Repair repair(int turn) { return blocks_.repair(turn); }
   bool body_is_sound() const;
   /// Likewise for a block and the anchor that it hangs on.
   bool block_is_sound(int slot) const;
@@ -199,6 +219,14 @@ class Filter {
   bool predict_at(const Camera& lens, const struct CameraAt& camera, int slot, PixelMeasurement* out,
                   Mat26* J_camera) const;
 
+  // scale_row.cpp
+  bool scale_candidate(int slot, int* places, ScaleRow* row) const;
+
+  // apart.cpp
+  bool keeps_apart() const;
+  void end_update_apart(const ScaleRow& l);
+  void take_scale_apart();
+
   // planes.cpp
   void place_plane(int slot, const PlaneFrame& frame, Scalar roughness);
   bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded);
@@ -210,7 +238,9 @@ class Filter {
   State state_;
   BlockFilter blocks_;
   Transport transport_;
+  GaugePrior apart_;
   bool keep_gauge_ = true;
+  bool gauge_is_told_ = false;  ///< tell_gauge()
   Scalar roughness_ = 0;
   Measurement* view_ = nullptr;  ///< observations; of pixels
   Vec3* place_ = nullptr;        ///< slots; of points, scratch of scale_row

@@ -1,5 +1,8 @@
 #include "filter/gauge_information.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "geometry/small_cholesky.h"
 
 namespace pf {
@@ -23,6 +26,32 @@ void directions(const State& state, const BlockFilter& blocks, double* N) {
     if (block.size == 0) continue;
     put_rows(blocks.first(s), block.size, gauge_rows(state, block));
   }
+}
+
+/// Where V is apart from the P of A = N^T P^-1 N:  N^T (P + N V N^T)^-1 N = (I + A V)^-1 A, by elimination with pivots.
+void add_apart(const GaugePrior::Matrix& V, double* A) {
+  constexpr int n = kDirections;
+  double M[n][2 * n];
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      double sum = i == j ? 1 : 0;
+      for (int k = 0; k < n; ++k) sum += A[i * n + k] * static_cast<double>(V(k, j));
+      M[i][j] = sum;
+      M[i][n + j] = A[i * n + j];
+    }
+  for (int k = 0; k < n; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < n; ++i)
+      if (std::fabs(M[i][k]) > std::fabs(M[pivot][k])) pivot = i;
+    std::swap_ranges(M[k], M[k] + 2 * n, M[pivot]);
+    for (int i = 0; i < n; ++i) {
+      if (i == k) continue;
+      const double factor = M[i][k] / M[k][k];
+      for (int j = k; j < 2 * n; ++j) M[i][j] -= factor * M[k][j];
+    }
+  }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) A[i * n + j] = (M[i][n + j] / M[i][i] + M[j][n + i] / M[j][j]) / 2;
 }
 
 }  // namespace
@@ -49,6 +78,7 @@ bool gauge_information(const Filter& filter, double* scratch, double information
       for (int i = 0; i < n; ++i) sum += N[i * 8 + a] * N[i * 8 + b];
       information[a * kDirections + b] = sum;
     }
+  if (filter.apart().any()) add_apart(filter.apart().V(), information);
   return true;
 }
 

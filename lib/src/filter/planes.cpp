@@ -34,6 +34,7 @@ int Filter::add_plane(const PlaneFit& fit, const int* slots, int count, Scalar r
 
 int Filter::add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Scalar roughness) {
   if (state_.planes >= state_.max_planes) return -1;
+  tell_gauge();
   const int slot = take_slot(BlockKind::kPlane);
   if (slot < 0) return -1;
   Rows known;  // depends on nothing
@@ -85,7 +86,7 @@ bool Filter::distance(int plane, int slot, Scalar* d, Scalar* variance) const {
   DistanceMeasurement z;
   predict_distance(plane, at, &z);
   *d = z.predicted(0);
-  *variance = blocks_.variance(z.H);
+  *variance = variance_of(z.H);
   return true;
 }
 
@@ -97,7 +98,7 @@ Scalar Filter::plane_variance(int plane, const Vec3& p_W) const {
   J.parts = 1;
   J.part[0] = Part::of(plane, 0, 3);
   put<1, 3>(J.h, 3, 0, J_x);
-  return blocks_.variance(J);
+  return variance_of(J);
 }
 
 void Filter::begin_distances(int plane, const int* slots, int count, Scalar noise, DistanceMeasurement* z) {

@@ -63,53 +63,58 @@ Scalar Filter::relative_sigma_rho(int slot, const ScaleRow& l) const {
   return std::sqrt(blocks_.variance(row));
 }
 
-/// The best known of a few log lengths: a point group's lambda, a log inverse depth, or between a point and the one that is farthest
-/// from it. Each annihilates translations and rotations, and grows by s when the world is scaled by exp(s). None touches held rows.
-/// There is none where the scale is observable.
+/// A log length that one block gives: a point group's lambda, a log inverse depth, or the distance between a point and the one that is
+/// farthest from it. It annihilates translations and rotations, and grows by s when the world is scaled by exp(s). It touches no held
+/// rows. *places: how many points are listed in place_; -1: not yet.
+bool Filter::scale_candidate(int slot, int* places, ScaleRow* row) const {
+  const Block& block = state_.block[slot];
+  const ScaleSource source = info(block.kind).scale;
+  row->parts = 0;
+  if (source == ScaleSource::kNone) return false;
+  if (source == ScaleSource::kOwnRow) {
+    bool has = false;
+    visit(block.kind, [&](auto kind) { has = decltype(kind)::scale_row(state_, slot, row); });
+    return has;
+  }
+  if (*places < 0) {
+    *places = 0;
+    for (int t = 0; t < state_.slots; ++t) {
+      if (info(state_.block[t].kind).scale != ScaleSource::kDistance) continue;
+      place_slot_[*places] = t;
+      place_[(*places)++] = point(t);
+    }
+  }
+  const Vec3 here = point(slot);
+  int far = -1;
+  Scalar far2 = kMinDistance2;
+  for (int t = 0; t < *places; ++t) {
+    const Scalar d2 = (place_[t] - here).squaredNorm();
+    if (d2 > far2) {
+      far2 = d2;
+      far = t;
+    }
+  }
+  if (far < 0) return false;
+  Place from, to;
+  find_point(state_, slot, &from);
+  find_point(state_, place_slot_[far], &to);
+  const Vec3 d = (from.o - to.o) / far2;
+  add_place(from, d, row);
+  add_place(to, -d, row);
+  return true;
+}
+
+/// The best known of a few log lengths. There is none where the scale is observable.
 bool Filter::scale_row(ScaleRow* row) const {
   row->parts = 0;
   if (!gauge::contains(state_.unobservable, gauge::kScale)) return false;
-  int places = -1;  // of place_: the points, listed once they are asked for
+  int places = -1;
   Scalar best = Scalar(0);
   bool found = false;
   int tried = 0;
   for (int s = 0; s < state_.slots && tried < tuning::scale::kMaxTried; ++s) {
-    const Block& a = state_.block[s];
     ScaleRow candidate;
-    const ScaleSource source = info(a.kind).scale;
-    if (source == ScaleSource::kNone) continue;
-    if (source == ScaleSource::kOwnRow) {
-      bool has = false;
-      visit(a.kind, [&](auto kind) { has = decltype(kind)::scale_row(state_, s, &candidate); });
-      if (!has) continue;
-    } else {
-      if (places < 0) {
-        places = 0;
-        for (int t = 0; t < state_.slots; ++t) {
-          if (info(state_.block[t].kind).scale != ScaleSource::kDistance) continue;
-          place_slot_[places] = t;
-          place_[places++] = point(t);
-        }
-      }
-      const Vec3 here = point(s);
-      int far = -1;
-      Scalar far2 = kMinDistance2;
-      for (int t = 0; t < places; ++t) {
-        const Scalar d2 = (place_[t] - here).squaredNorm();
-        if (d2 > far2) {
-          far2 = d2;
-          far = t;
-        }
-      }
-      if (far < 0) continue;
-      far = place_slot_[far];
-      Place from, to;
-      find_point(state_, s, &from);
-      find_point(state_, far, &to);
-      const Vec3 d = (from.o - to.o) / far2;
-      add_place(from, d, &candidate);
-      add_place(to, -d, &candidate);
-    }
+    if (!scale_candidate(s, &places, &candidate)) continue;
     ++tried;
     const Scalar variance = blocks_.variance(candidate);
     if (found && variance >= best) continue;

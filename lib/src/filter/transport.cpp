@@ -67,6 +67,25 @@ void Transport::begin(const State& state, const BlockFilter& blocks, const Scale
   p_before_ = state.body.p_W;
 }
 
+const Scalar* Transport::scale_direction(const State& state, const BlockFilter& blocks) {
+  std::memset(U_, 0, sizeof(Scalar) * static_cast<std::size_t>(kMaxRows) * static_cast<std::size_t>(ld_));
+  add_gauge_rows(state, blocks, Scalar(1), nullptr, U_, U_ + kScale * ld_, ld_);
+  return U_ + kScale * ld_;
+}
+
+void Transport::spread(const State& state, const BlockFilter& blocks, const GaugePrior::Matrix& V) {
+  constexpr int kDirection[kMaxRows] = {3, 4, 5, gauge::kScale, 0, 1, 2};  // of the rows of U
+  const std::size_t bytes = sizeof(Scalar) * static_cast<std::size_t>(kMaxRows) * static_cast<std::size_t>(ld_);
+  rows_ = kMaxRows;
+  std::memset(U_, 0, bytes);
+  std::memset(G_, 0, bytes);
+  add_gauge_rows(state, blocks, Scalar(1), U_ + kTranslation * ld_, U_, U_ + kScale * ld_, ld_);
+  Scalar half[kMaxRows * kMaxRows];
+  for (int r = 0; r < kMaxRows; ++r)
+    for (int c = 0; c < kMaxRows; ++c) half[r * kMaxRows + c] = V(kDirection[r], kDirection[c]) / Scalar(2);
+  blocks.kernels().add_product(G_, kMaxRows, half, kMaxRows, U_, kMaxRows, blocks.dim(), ld_);
+}
+
 void Transport::finish(const State& state, const BlockFilter& blocks) {
   const int n = blocks.dim(), m = blocks.gained_rows(), rows = rows_;
   const Kernels& kernels = blocks.kernels();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "filter/block_filter.h"
+#include "filter/gauge_prior.h"
 #include "filter/state.h"
 
 namespace pf {
@@ -22,6 +23,10 @@ class Transport {
   void begin(const State& state, const BlockFilter& blocks, const ScaleRow& l);
   /// After it has moved, while the gain is there: U and G as above.
   void finish(const State& state, const BlockFilter& blocks);
+  /// The log scale's direction N_s at the state as it is (ld numbers), until the next update.
+  const Scalar* scale_direction(const State& state, const BlockFilter& blocks);
+  /// For P + N V N^T, over the directions of gauge.h: U = N and G = V N / 2, as rows() says.
+  void spread(const State& state, const BlockFilter& blocks, const GaugePrior::Matrix& V);
   /// No transport in this update.
   void skip() { rows_ = 0; }
 

@@ -30,6 +30,24 @@ namespace scale {
 inline constexpr int kMaxTried = 12;  ///< log lengths, the best known of which is taken
 }  // namespace scale
 
+/// What is kept apart from P (lib/docs/float.md). Smallest eigenvalue of correlations, 6 walks of 1,500 and 5,000 frames.
+namespace apart {
+inline constexpr Scalar kMaxScaleVariance = Scalar(4e-4);     ///< of the log scale in P; beyond it the scale leaves P
+inline constexpr Scalar kLeftScaleVariance = Scalar(2.5e-6);  ///< that stays in P. With 0 -2e-4, with 1e-4 -2e-5
+inline constexpr Scalar kGrowth = Scalar(6e-9);        ///< of a variance, by update and root of rows. With 2e-9 -1e-5
+inline constexpr Scalar kMinPoseSigma = Scalar(1e-3);  ///< [rad, m] of a given pose, below which it stays in P
+inline constexpr Scalar kLeftSigma = Scalar(1e-5);     ///< [rad, m] of a given pose, that stays in P in any case
+}  // namespace apart
+
+/// Whether P is a covariance.
+namespace soundness {
+inline constexpr Scalar kRounding = Scalar(1e-6);       ///< that an eigenvalue of correlations may be below 0
+inline constexpr Scalar kRoundingFloat = Scalar(5e-5);  ///< likewise in float
+inline constexpr int kSample = 48;                      ///< rows of P that are checked in a frame
+inline constexpr Scalar kStep = Scalar(4);              ///< factor by which a repair grows until it is enough
+inline constexpr Scalar kMaxRepair = Scalar(64);  ///< of a variance; more than the rows of a sample is never needed
+}  // namespace soundness
+
 /// Inertial samples.
 namespace imu {
 inline constexpr Scalar kSaturation = Scalar(0.995);  ///< of the range: a sample that reaches it says "at least this"

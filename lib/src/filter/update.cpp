@@ -16,14 +16,15 @@ bool Filter::finish_update(const Measurement* z, int count, const unsigned char*
   if (nis != nullptr) *nis = sum;
   if (!is_step(dx)) return false;
   transport_.skip();
+  ScaleRow l;
   if (keep_gauge_) {
-    ScaleRow l;
     scale_row(&l);
     transport_.begin(state_, blocks_, l);
   }
   apply_error(state_, blocks_, dx);
   if (keep_gauge_) transport_.finish(state_, blocks_);
   blocks_.downdate(transport_.U(), transport_.G(), transport_.rows());
+  if (keeps_apart()) end_update_apart(l);
   return true;
 }
 

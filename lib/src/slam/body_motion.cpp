@@ -36,6 +36,7 @@ void BodyMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coastin
   Transition transition;
   if (settings_.constant_velocity && data_.given) {
     change_velocity(filter_.state().body, settings_.body, data_.dv_C, data_.dw_C, &transition);
+    filter_.tell_gauge();  // a speed in metres
     filter_.predict(transition);
   }
   predict(filter_.state().body, before_ns, t_ns, noise, &transition);
@@ -111,8 +112,7 @@ void BodyMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body
   *body = filter_.state().body;
   const int dim = settings_.body.dynamic_rows();
   Scalar P[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
-  for (int i = 0; i < dim; ++i)
-    for (int j = 0; j < dim; ++j) P[i * dim + j] = filter_.covariance()(i, j);
+  filter_.body_covariance(dim, P);
   if (t_ns > now_ns) {
     Transition transition;
     if (settings_.inertial)

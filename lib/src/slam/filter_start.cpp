@@ -105,10 +105,11 @@ void FilterStart::set_start_velocities(Scalar speed) {
 /// those of the record take their place.
 void FilterStart::note_covariance() {
   const int dim = settings_.body.known_rows();
-  const auto& P = parts_.filter.covariance();
+  Scalar P[Body::kPoseDim * Body::kPoseDim];
+  parts_.filter.body_covariance(Body::kPoseDim, P);
   for (Scalar& c : data_.covariance) c = Scalar(0);
   for (int i = 0; i < Body::kPoseDim; ++i)
-    for (int j = 0; j < Body::kPoseDim; ++j) data_.covariance[i * dim + j] = P(std::max(i, j), std::min(i, j));
+    for (int j = 0; j < Body::kPoseDim; ++j) data_.covariance[i * dim + j] = P[i * Body::kPoseDim + j];
   set_start_velocities(kStartSpeed * settings_.start_depth);
 }
 

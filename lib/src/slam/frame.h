@@ -33,6 +33,7 @@ struct FrameReport {
   std::int64_t t_ns = 0;
   int frames = 0;
   int duplicates = 0;  ///< images since the beginning that were the one before
+  int repairs = 0;     ///< frames since the beginning in which P had to be repaired
   int attempts = 0, matches = 0, inliers = 0, new_features = 0, evicted = 0;
   double nis = 0;
   int nis_dof = 0;
@@ -55,11 +56,12 @@ class Frame {
   /// Begins the next frame: an empty report with its time and its number, and no matches.
   void begin(std::int64_t t_ns) {
     const int frames = report.frames;
-    const int duplicates = report.duplicates;
+    const int duplicates = report.duplicates, repairs = report.repairs;
     report = FrameReport();
     report.t_ns = t_ns;
     report.frames = frames;
     report.duplicates = duplicates;
+    report.repairs = repairs;
     count_frame(&report.frames);
     count_ = 0;
   }

@@ -191,7 +191,8 @@ void FrameLoop::maintain_map(bool supported) {
 
 /// Returns the status of the frame.
 Status FrameLoop::end_frame() {
-  if (tracking_.has_pose() && (tracking_.updates_fail() || !filter_.body_is_sound())) start_over();
+  if (tracking_.has_pose() && (tracking_.updates_fail() || !repair_covariance() || !filter_.body_is_sound()))
+    start_over();
   if (tracking_.is_tracked(frame_.report) && !start_.progress().pending()) {
     if (!is_pose_usable(filter_, map_, frame_, &data_.median_depth))
       tracking_.set_unusable();
@@ -203,6 +204,13 @@ Status FrameLoop::end_frame() {
   else
     images_.forget_view();
   return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
+}
+
+/// False where P is no covariance and nothing helps.
+bool FrameLoop::repair_covariance() {
+  const BlockFilter::Repair repair = filter_.repair(frame_.report.frames);
+  if (repair == BlockFilter::Repair::kDone) count_frame(&frame_.report.repairs);
+  return repair != BlockFilter::Repair::kImpossible;
 }
 
 /// The estimate is not finite or P is no covariance: clears everything that came from it.

@@ -77,6 +77,7 @@ class FrameLoop {
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
   bool look_for_rest();
   void learn_noise();
+  bool repair_covariance();
   void maintain_map(bool supported);
   void start_over();
   void begin_new_map();

@@ -108,7 +108,7 @@ int PlaneKeeper::list_before_wall(int plane_entry, int* slots, int capacity) {
 /// known, points before a wall that is not there agree with it as well as with one that is, only in a world of another size; so the wall
 /// that most points are before decides.
 bool PlaneKeeper::may_set_scale(int plane_entry) const {
-  if (scale_.parts > 0 && filter_.blocks().variance(scale_) < kKnownScale * kKnownScale) return true;
+  if (scale_.parts > 0 && filter_.variance_of(scale_) < kKnownScale * kKnownScale) return true;
   const Vec3 c_W = camera_at(filter_.state(), Scalar(0)).p_W;
   int before_this = 0, before_other[kMaxOthers] = {};
   for (int i = 0; i < map_.features.capacity(); ++i) {

@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <cmath>
+
+#include "filter/filter.h"
+#include "filter/tuning.h"
+
+/// What is kept apart from P in float, and how it comes there and back (lib/docs/float.md).
+
+namespace pf {
+
+using namespace tuning::apart;
+
+/// Whether nothing tells the place or the scale of W, as an inertial unit would, so that what is not known of them may be kept apart.
+bool Filter::keeps_apart() const {
+  return GaugePrior::kInUse && keep_gauge_ && !gauge_is_told_ && state_.unobservable == gauge::kBareCamera &&
+         !state_.layout.has(BodyPart::kGravity);
+}
+
+void Filter::set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens) {
+  const int rows = state_.layout.dynamic_rows();
+  state_.body = body;
+  apart_.clear();
+  if (body.v_W != Vec3::Zero()) tell_gauge();
+  Scalar largest = 0;
+  for (int i = 0; i < Body::kPoseDim; ++i) largest = std::max(largest, covariance[i * rows + i]);
+  if (!keeps_apart() || J_lens != nullptr || largest < kMinPoseSigma * kMinPoseSigma) {
+    blocks_.set_leading(covariance, rows, J_lens);
+    return;
+  }
+  apart_.set_pose(state_, covariance, rows);
+  Scalar left[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
+  std::copy(covariance, covariance + rows * rows, left);
+  for (int i = 0; i < Body::kPoseDim; ++i)
+    for (int j = 0; j < Body::kPoseDim; ++j) left[i * rows + j] = i == j ? kLeftSigma * kLeftSigma : Scalar(0);
+  blocks_.set_leading(left, rows, nullptr);
+}
+
+void Filter::body_covariance(int rows, Scalar* out) const {
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < rows; ++j) out[i * rows + j] = covariance()(i, j);
+  if (apart_.any()) apart_.add_leading(state_, rows, out);
+}
+
+void Filter::tell_gauge() {
+  gauge_is_told_ = true;
+  if (!apart_.any()) return;
+  transport_.spread(state_, blocks_, apart_.V());
+  blocks_.add_shared(transport_.U(), transport_.G(), transport_.rows());
+  apart_.clear();
+}
+
+/// After an update: the diagonal gets back what rounding may have taken from it, and the scale leaves P where l, the best known log
+/// length, says that it is known too little.
+void Filter::end_update_apart(const ScaleRow& l) {
+  blocks_.grow(kGrowth * std::sqrt(static_cast<Scalar>(blocks_.dim())));
+  if (l.parts > 0 && blocks_.variance(l) > kMaxScaleVariance) take_scale_apart();
+}
+
+/// The log scale of all that has one, weighted by how well each is known:  l = sum l_k / v_k / sum 1 / v_k,  v_k = l_k P l_k^T.
+///
+///   P <- (I - N_s l) P (I - N_s l)^T,   V_ss += l P l^T
+///
+/// What does not change with the scale has J N_s = 0, and keeps its J P J^T. Left out is the covariance of l with such things, which is
+/// zero where all that P knows of the scale are independent priors of depths.
+void Filter::take_scale_apart() {
+  int places = -1;
+  Scalar total = 0;
+  ScaleRow row;
+  for (int s = 0; s < state_.slots; ++s) {
+    if (!scale_candidate(s, &places, &row)) continue;
+    const Scalar variance = blocks_.variance(row);
+    if (variance > Scalar(0)) total += Scalar(1) / variance;
+  }
+  if (!(total > Scalar(0))) return;
+  const auto weighted = [&](int slot, ScaleRow* l) {
+    if (!scale_candidate(slot, &places, l)) return false;
+    const Scalar variance = blocks_.variance(*l);
+    if (!(variance > Scalar(0))) return false;
+    for (int i = 0; i < l->columns(); ++i) l->h[i] /= variance * total;
+    return true;
+  };
+  apart_.add_scale(
+      blocks_.take_out(transport_.scale_direction(state_, blocks_), kLeftScaleVariance, state_.slots, weighted));
+}
+
+}  // namespace pf

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "filter/block_filter.h"
+#include "filter/state.h"
+
+namespace pf {
+
+/// Covariance of gauge directions that is kept apart from P (lib/docs/float.md):
+///
+///   covariance of the state = P + N V N^T     N(x): gauge rows of the state (model/gauge.h); V: 7x7, translation, rotation, log scale
+///
+/// No pixel says anything about these directions (H N = 0), so updates leave V as it is, and N(x) follows the state as the transport of P
+/// does. P then holds only what is shared by few rows, which float can tell from zero.
+class GaugePrior {
+ public:
+  /// Double can hold all of it in P.
+  static constexpr bool kInUse = sizeof(Scalar) == sizeof(float);
+  using Matrix = Eigen::Matrix<Scalar, gauge::kDirections, gauge::kDirections>;
+
+  bool any() const { return any_; }
+  const Matrix& V() const { return V_; }
+  void clear();
+  /// The log scale is less known by this variance, independently of all else.
+  void add_scale(Scalar variance);
+  /// Pose of the body (theta, p; row-major with leading dimension ld), which nothing else depends on yet: all of it becomes an error of W.
+  void set_pose(const State& state, const Scalar* covariance, int ld);
+
+  /// Adds N V N^T over the first `rows` rows of the body (rows x rows, row-major).
+  void add_leading(const State& state, int rows, Scalar* covariance) const;
+  /// J N V N^T J^T
+  template <int kRows>
+  Eigen::Matrix<Scalar, kRows, kRows> covariance_of(const State& state, const Rows& J) const {
+    Eigen::Matrix<Scalar, kRows, gauge::kDirections> JN;
+    PF_ASSERT(J.rows == kRows);
+    project(state, J, JN.data());
+    const Eigen::Matrix<Scalar, kRows, gauge::kDirections> JNV = JN.lazyProduct(V_);
+    return JNV.lazyProduct(JN.transpose());
+  }
+
+ private:
+  /// J N, column-major.
+  static void project(const State& state, const Rows& J, Scalar* JN);
+
+  Matrix V_ = Matrix::Zero();
+  bool any_ = false;
+};
+
+}  // namespace pf
