@@ -12,7 +12,7 @@
 namespace pf {
 
 /// With the numbers of pf_match_status_t.
-enum class MatchStatus : int { kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4 };
+enum class MatchStatus : std::uint8_t { kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4 };
 
 /// One feature in one frame.
 struct Match {
