@@ -163,10 +163,14 @@ bool verdict(const Choices& c, const json& j) {
 
 int run(Choices c) {
   const VioOptions& o = c.vio;
-  if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || !(o.seconds > 1 && o.seconds <= 3600) || o.points < 50 ||
-      !(o.rate_hz >= 1 && o.rate_hz <= 200) || !(o.imu.rate_hz >= 20 && o.imu.rate_hz <= 2000) || !(o.rest_s >= 0) ||
-      !(c.noise_scale > 0))
-    return fail("an option is out of its range");
+  if (c.seeds < 1 || c.seeds > 10000) return fail("--seeds is 1 to 10000");
+  if (c.jobs < 1) return fail("--jobs is 1 or more");
+  if (!(o.seconds > 1 && o.seconds <= 3600)) return fail("--seconds is above 1 and at most 3600");
+  if (o.points < 50) return fail("--points is 50 or more");
+  if (!(o.rate_hz >= 1 && o.rate_hz <= 200)) return fail("--rate is 1 to 200 frames a second");
+  if (!(o.imu.rate_hz >= 20 && o.imu.rate_hz <= 2000)) return fail("--imu-rate is 20 to 2000 samples a second");
+  if (!(o.rest_s >= 0)) return fail("--rest is 0 seconds or more");
+  if (!(c.noise_scale > 0)) return fail("--noise-scale is above 0");
   c.vio.use_imu = !c.no_imu;
   for (double* density :
        {&c.vio.imu.gyro_density, &c.vio.imu.accel_density, &c.vio.imu.gyro_walk, &c.vio.imu.accel_walk})
