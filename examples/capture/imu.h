@@ -13,6 +13,7 @@
 namespace CLI {
 class App;
 }
+struct pf_sim;
 
 namespace pf::capture {
 
@@ -30,6 +31,8 @@ class Imu {
   /// What can be measured [rad/s], [m/s^2]; 0: not known.
   virtual double gyro_range() const { return 0.0; }
   virtual double accel_range() const { return 0.0; }
+  /// Noise and mounting, where the unit itself knows them; null: it does not.
+  virtual const pf_imu_model_t* model() const { return nullptr; }
   /// JSON for report.json, "" where there is nothing to say.
   virtual std::string report() const { return ""; }
 };
@@ -40,8 +43,13 @@ std::unique_ptr<Imu> open_imu_file(const std::string& path, int64_t offset_ns, s
 /// A unit of this machine through the kernel's IIO. rate_hz 0: as it is.
 std::unique_ptr<Imu> open_imu_device(const std::string& name, double rate_hz, int64_t offset_ns, std::string& error);
 
+/// A unit in a simulated scene.
+std::unique_ptr<Imu> open_imu_sim(const pf_sim* scene, uint64_t seed, int64_t offset_ns);
+
+class Source;
 /// What --imu asks for; with "auto", beside is the file that lies beside the frames ("": none). null with an empty error: no IMU.
-std::unique_ptr<Imu> open_imu(const Options& options, const std::string& beside, std::string& error);
+std::unique_ptr<Imu> open_imu(const Options& options, const Source& source, const std::string& beside,
+                              std::string& error);
 
 void add_imu_options(CLI::App& app, Options& options);
 /// "" when all is well.

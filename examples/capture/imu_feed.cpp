@@ -1,5 +1,7 @@
 #include "imu_feed.h"
 
+#include <planefold_platform/sequence.h>
+
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -8,7 +10,8 @@ namespace pf::capture {
 
 namespace {
 
-constexpr int32_t kKept = 256;  ///< samples that the library keeps: a quarter of a second of a fast unit
+constexpr int32_t kKept = 256;         ///< samples that the library keeps: a quarter of a second of a fast unit
+constexpr int32_t kKeptToMove = 2000;  ///< likewise where poses depend on them: two seconds
 
 constexpr int64_t kPatience = 30;  ///< frames without any sample before them: worth a note
 
@@ -28,6 +31,32 @@ nlohmann::ordered_json time_offset_json(const TimeOffset& offset, double given_s
   return json;
 }
 
+/// Gravity and biases as they are known at the last frame, each with its standard deviations.
+void add_inertial(const pf_slam_t* slam, int64_t metric_frame, const pf_imu_model_t& model,
+                  nlohmann::ordered_json& json) {
+  pf_inertial_t known{};
+  const bool any = pf_get_inertial(slam, &known) == PF_OK && known.metric != 0;
+  json["start"] = metric_frame >= 0 ? "rest" : "none";
+  json["start_frame"] = metric_frame >= 0 ? nlohmann::ordered_json(metric_frame) : nullptr;
+  json["metric"] = any;
+  const auto with_sigma = [&](const double* values, int count, int first, int sigmas) {
+    nlohmann::ordered_json part = {{"value", nlohmann::ordered_json::array()},
+                                   {"sigma", nlohmann::ordered_json::array()}};
+    for (int i = 0; i < count; ++i) {
+      part["value"].push_back(rounded(values[i]));
+    }
+    for (int i = first; i < first + sigmas; ++i) {
+      part["sigma"].push_back(rounded(std::sqrt(known.covariance[9 * i])));
+    }
+    return any ? part : nlohmann::ordered_json();
+  };
+  json["gravity_W"] = with_sigma(known.gravity_W, 3, 0, 2);  // of its direction, about two axes [rad]
+  json["gyro_bias"] = with_sigma(known.gyro_bias, 3, 2, 3);
+  json["accel_bias"] = with_sigma(known.accel_bias, 3, 5, 3);
+  json["mount"] = {{"q_BC", model.q_BC}, {"p_BC", model.p_BC}};
+  json["delay_s"] = rounded(model.delay_s);
+}
+
 std::string time_offset_advice(const TimeOffset& offset, double given_s) {
   if (!offset.known) {
     return "time offset of the inertial unit: not known; " + offset.why_not;
@@ -41,18 +70,62 @@ std::string time_offset_advice(const TimeOffset& offset, double given_s) {
 
 }  // namespace
 
-bool ImuFeed::open(const Options& options, const std::string& beside, std::string& error) {
+bool ImuFeed::open(const Options& options, const Source& source, const std::string& beside, std::string& error,
+                   int& code) {
   error.clear();
-  imu_ = open_imu(options, beside, error);
+  imu_ = open_imu(options, source, beside, error);
   offset_s_ = options.imu_offset_s;
+  if (!error.empty() || !options.inertial) {
+    return error.empty();
+  }
+  if (imu_ != nullptr && imu_->model() != nullptr) {
+    model_ = *imu_->model();
+    inertial_ = true;
+  } else if (!options.imu_noise.empty()) {
+    code = kExitUsage;
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    if (imu_ == nullptr) {
+      error = "--imu-noise: there are no inertial samples beside these frames; add --imu";
+    } else if (pf_read_imu_noise(options.imu_noise.c_str(), &model_, message) != 0) {
+      error = std::string("--imu-noise ") + message;
+    } else {
+      if (message[0] != '\0') {
+        notices_.add(message);
+      }
+      if (pf_read_imu_mount(options.imu_mount.c_str(), &model_, message) != 0) {
+        error = std::string("--imu-mount ") + message;
+      }
+    }
+    inertial_ = error.empty();
+  } else if (imu_ != nullptr) {
+    notices_.add(
+        imu_->name() +
+        ": its noise is not known, so poses do not depend on it; add --imu-noise FILE and --imu-mount FILE, or "
+        "--no-inertial");
+  }
   return error.empty();
 }
 
 void ImuFeed::configure(pf_config_t& config) const {
-  if (imu_ != nullptr) {
-    config.capacity.max_imu_samples = kKept;
-    config.imu.gyro_range = imu_->gyro_range();
-    config.imu.accel_range = imu_->accel_range();
+  if (imu_ == nullptr) {
+    return;
+  }
+  if (inertial_) {
+    config.motion.model = PF_MOTION_INERTIAL;
+    const double gravity = config.imu.gravity;
+    config.imu = model_;
+    config.imu.gravity = model_.gravity > 0.0 ? model_.gravity : gravity;
+  }
+  config.capacity.max_imu_samples = inertial_ ? kKeptToMove : kKept;
+  config.imu.gyro_range = imu_->gyro_range();
+  config.imu.accel_range = imu_->accel_range();
+}
+
+void ImuFeed::add_frame(int64_t index, const pf_slam_t* slam, const pf_pose_t& pose, bool tracked) {
+  offset_.add_frame(pose, tracked);
+  pf_inertial_t known{};
+  if (inertial_ && metric_frame_ < 0 && pf_get_inertial(slam, &known) == PF_OK && known.metric != 0) {
+    metric_frame_ = index;
   }
 }
 
@@ -108,6 +181,9 @@ std::string ImuFeed::report(const pf_slam_t* slam, std::string& advice) const {
       {"offset_s", offset_s_}};
   if (!(imu_->gyro_range() > 0.0) && !(imu_->accel_range() > 0.0)) {
     json["saturated"] = nullptr;  // the ranges are not known
+  }
+  if (inertial_) {
+    add_inertial(slam, metric_frame_, model_, json);
   }
   const TimeOffset offset = offset_.estimate();
   json["time_offset"] = time_offset_json(offset, offset_s_);

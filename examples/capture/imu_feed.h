@@ -15,8 +15,8 @@ namespace pf::capture {
 /// Brings the samples up to a frame's time to the library before the frame, and to the recording.
 class ImuFeed {
  public:
-  /// false: error is one line. beside is the file that lies beside the frames, or "".
-  bool open(const Options& options, const std::string& beside, std::string& error);
+  /// false: error is one line and code the exit code. beside is the file that lies beside the frames, or "".
+  bool open(const Options& options, const Source& source, const std::string& beside, std::string& error, int& code);
   /// For the library's config.
   void configure(pf_config_t& config) const;
   bool start(std::string& error) { return imu_ == nullptr || imu_->start(error); }
@@ -25,8 +25,8 @@ class ImuFeed {
 
   /// Before the frame of this time is pushed.
   void push_until(int64_t t_ns, pf_slam_t* slam);
-  /// After it was pushed.
-  void add_pose(const pf_pose_t& pose, bool tracked) { offset_.add_frame(pose, tracked); }
+  /// After it was pushed, as frame number `index` of the run.
+  void add_frame(int64_t index, const pf_slam_t* slam, const pf_pose_t& pose, bool tracked);
   bool take_notice(std::string& notice);
   /// true: samples could not be recorded, and error is one line.
   bool failed(std::string& error) const {
@@ -35,6 +35,8 @@ class ImuFeed {
   }
   /// Closes the recording. false: error is one line.
   bool finish(std::string& error) { return recorder_.close(error); }
+  /// Poses depend on the samples.
+  bool is_inertial() const { return inertial_; }
   /// JSON for report.json. advice: one line on the unit's clock, or "".
   std::string report(const pf_slam_t* slam, std::string& advice) const;
 
@@ -45,6 +47,9 @@ class ImuFeed {
   std::vector<pf_imu_sample_t> samples_;
   Notices notices_;
   std::string failure_;  ///< of the recording
+  pf_imu_model_t model_{};
+  bool inertial_ = false;
+  int64_t metric_frame_ = -1;  ///< the first one whose lengths the samples tell
   double offset_s_ = 0.0;
   int64_t frames_ = 0, pushed_ = 0, refused_ = 0;
 };

@@ -2,13 +2,14 @@
 #include <cmath>
 
 #include "imu.h"
+#include "source.h"
 
 namespace pf::capture {
 
 void add_imu_options(CLI::App& app, Options& options) {
-  const std::string group =
-      "Inertial samples (checked, reported and recorded; no pose of this program depends on them yet)";
-  app.add_option("--imu", options.imu, "auto (a file beside the frames), none, csv:FILE, iio:NAME or iio:ACCEL+GYRO")
+  const std::string group = "Inertial samples (poses depend on them where --imu-noise says how good they are)";
+  app.add_option("--imu", options.imu,
+                 "auto (a file beside the frames), none, csv:FILE, iio:NAME, iio:ACCEL+GYRO or sim (of a sim: source)")
       ->capture_default_str()
       ->group(group);
   app.add_option("--imu-rate", options.imu_rate_hz, "samples per second to ask an iio: unit for")
@@ -19,19 +20,44 @@ void add_imu_options(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(CLI::Range(-1e6, 1e6))
       ->group(group);
+  app.add_option("--imu-noise", options.imu_noise, "noise densities: Kalibr's imu.yaml or EuRoC's imu0/sensor.yaml")
+      ->group(group);
+  app.add_option("--imu-mount", options.imu_mount,
+                 "where the unit is: T_BS (EuRoC's cam0/sensor.yaml), T_cam_imu (Kalibr's camchain) or T_imu_cam")
+      ->group(group);
+  app.add_flag("!--no-inertial", options.inertial, "count and record the samples; poses do not depend on them")
+      ->group(group);
 }
 
 std::string check_imu_options(const Options& options) {
   const std::string& imu = options.imu;
   const bool named = (imu.rfind("csv:", 0) == 0 && imu.size() > 4) || imu.rfind("iio:", 0) == 0;
-  if (!named && imu != "auto" && imu != "none") {
-    return "--imu " + imu + ": write auto, none, csv:FILE, iio:NAME or iio:ACCEL+GYRO";
+  if (!named && imu != "auto" && imu != "none" && imu != "sim") {
+    return "--imu " + imu + ": write auto, none, csv:FILE, iio:NAME, iio:ACCEL+GYRO or sim";
+  }
+  if (imu == "sim" && (!options.imu_noise.empty() || !options.imu_mount.empty())) {
+    return "--imu sim: noise and mounting of the simulated unit are known; leave --imu-noise and --imu-mount away";
+  }
+  if (imu == "none" && (!options.imu_noise.empty() || !options.imu_mount.empty())) {
+    return "--imu none: there are no samples; leave --imu-noise and --imu-mount away";
+  }
+  if (options.imu_noise.empty() && !options.imu_mount.empty() && options.inertial) {
+    return "--imu-mount: poses depend on the samples only where their noise is known; add --imu-noise FILE";
+  }
+  if (options.imu_mount.empty() && !options.imu_noise.empty() && options.inertial) {
+    return "--imu-noise: where the unit is mounted is not known; add --imu-mount FILE (T_BS, T_cam_imu or T_imu_cam)";
   }
   return std::isfinite(options.imu_offset_s) ? "" : "--imu-offset: not a finite number of seconds";
 }
 
-std::unique_ptr<Imu> open_imu(const Options& options, const std::string& beside, std::string& error) {
+std::unique_ptr<Imu> open_imu(const Options& options, const Source& source, const std::string& beside,
+                              std::string& error) {
   const auto offset_ns = static_cast<int64_t>(std::llround(1e9 * options.imu_offset_s));
+  if (options.imu == "sim") {
+    std::unique_ptr<Imu> imu = source.imu(offset_ns);
+    error = imu != nullptr ? error : "--imu sim: this source has no simulated unit";
+    return imu;
+  }
   if (options.imu.rfind("csv:", 0) == 0) {
     return open_imu_file(options.imu.substr(4), offset_ns, error);
   }

@@ -253,7 +253,7 @@ void MapPanel::draw_scale(const Canvas& canvas, double x, double y, double width
     canvas.line(x, gy, x + width, gy);
   }
   char text[48];
-  std::snprintf(text, sizeof(text), session_.target() != nullptr ? "%g m" : "%g first depths", length);
+  std::snprintf(text, sizeof(text), session_.is_metric() ? "%g m" : "%g first depths", length);
   canvas.colour(kDim);
   cairo_set_line_width(canvas.pen(), 2.0);
   canvas.line(x + 12.0, y + height - 12.0, x + 12.0 + pixels, y + height - 12.0);

@@ -137,6 +137,12 @@ std::string check(const Options& options, const std::string& backend) {
   if (options.skip > 0 && is_camera) {
     return "--skip is for folders and scenes; a camera has no frames to leave out";
   }
+  if (options.sim_rest_s > 0.0 && kind != "sim") {
+    return "--rest is for sim: sources";
+  }
+  if (options.imu == "sim" && (kind != "sim" || options.realtime)) {
+    return "--imu sim is for sim: sources, without --realtime";
+  }
   if (options.loop > 0 && (is_camera || options.realtime || options.there_and_back || options.as_recorded)) {
     return "--loop is for folders and scenes, without --realtime, --there-and-back and --as-recorded";
   }
@@ -237,6 +243,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_flag("--quiet", options.quiet, "no progress line");
   app.add_option("--backend", backend, "filter")->capture_default_str();
   app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
+  app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
+      ->check(CLI::Range(0.0, 1000.0));
   app.add_option("--max-features", options.max_features, "capacity of the map")->check(at_least(1));
   app.add_option("--max-planes", options.max_planes, "likewise")->check(at_least(1));
   app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(at_least(1));

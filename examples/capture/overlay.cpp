@@ -133,7 +133,7 @@ void Overlay::draw_hits(const FrameView& view) {
     cairo_set_line_width(canvas_.pen(), 2.0);
     canvas_.line(x - 9.0, y, x + 9.0, y);
     canvas_.line(x, y - 9.0, x, y + 9.0);
-    const std::string text = describe(hit, session_.target() != nullptr);
+    const std::string text = describe(hit, session_.is_metric());
     const double width = canvas_.text_width(text, 11.0, true);
     const double left = std::clamp(x + 12.0, 2.0, std::max(2.0, image_width_ - width - 4.0));
     canvas_.rectangle(left - 3.0, y - 20.0, width + 6.0, 15.0, kGround, 0.7);

@@ -76,7 +76,7 @@ void Overlay::draw_numbers(const FrameView& view, double x, double y, double wid
   note("features in map / state", std::to_string(view.report.features) + " / " + std::to_string(view.report.state_dim));
   if (view.has_pose) {
     const double* c = view.pose.covariance;
-    const bool metric = session_.target() != nullptr;
+    const bool metric = session_.is_metric();
     const double sigma_p = std::sqrt(std::max(0.0, (c[21] + c[28] + c[35]) / 3.0));
     const double sigma_r = std::sqrt(std::max(0.0, (c[0] + c[7] + c[14]) / 3.0));
     note("position \xc2\xb1", metric ? format("%.1f mm", 1e3 * sigma_p) : format("%.2f %%", 1e2 * sigma_p));

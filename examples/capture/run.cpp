@@ -91,7 +91,7 @@ class Run {
 
 bool Run::open(std::string& error, int& code) {
   const SourceInfo& info = source_.info();
-  if (!imu_.open(options_, options_.there_and_back || options_.loop > 0 ? "" : info.imu_path, error)) {
+  if (!imu_.open(options_, source_, options_.there_and_back || options_.loop > 0 ? "" : info.imu_path, error, code)) {
     return false;
   }
   if (!session_.open(options_, source_, imu_, error, code)) {
@@ -194,7 +194,7 @@ Read Run::step(int64_t index) {
     failure_ = "frame " + std::to_string(at) + " (" + source_.name(at) + "): " + failure_;
     return Read::kFailed;
   }
-  imu_.add_pose(view_.pose, view_.tracked);
+  imu_.add_frame(index, session_.slam(), view_.pose, view_.tracked);
   follow_planes(session_.slam(), view_.hits);
   for (const Options::Tap& tap : options_.taps) {
     if (tap.frame == index) {
@@ -329,8 +329,8 @@ void Run::point_at(const double pixel[2]) {
     note(line + "no plane is there");
     return;
   }
-  append(line, "%s, at %.4g %.4g %.4g", describe(hit, session_.target() != nullptr).c_str(), hit.at.p_W[0],
-         hit.at.p_W[1], hit.at.p_W[2]);
+  append(line, "%s, at %.4g %.4g %.4g", describe(hit, session_.is_metric()).c_str(), hit.at.p_W[0], hit.at.p_W[1],
+         hit.at.p_W[2]);
   note(line);
   if (view_.hits.size() == kShown) {
     view_.hits.erase(view_.hits.begin());

@@ -114,6 +114,11 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   return true;
 }
 
+bool Session::is_metric() const {
+  pf_inertial_t known{};
+  return has_target_ || has_pose_ || (pf_get_inertial(slam_, &known) == PF_OK && known.metric != 0);
+}
+
 bool Session::begin(std::string& error) {
   if (has_gravity_ && pf_set_gravity(slam_, gravity_W_) < PF_OK) {
     error = "--gravity: the library refused this direction";

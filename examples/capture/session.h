@@ -39,8 +39,8 @@ class Session {
   const pf_memory_t& memory() const { return memory_; }
   const std::string& start() const { return start_; }
   const pf_target_t* target() const { return has_target_ ? &target_ : nullptr; }
-  /// Lengths of the world are metres: the start says so.
-  bool is_metric() const { return has_target_ || has_pose_; }
+  /// Lengths of the world are metres: the start or the inertial unit says so.
+  bool is_metric() const;
   const Plan& plan() const { return plan_; }
   const std::vector<std::string>& log() const { return log_; }
 

@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "camera.h"
+#include "imu.h"
 #include "live_source.h"
 
 namespace pf::capture {
+
+std::unique_ptr<Imu> Source::imu(int64_t) const { return nullptr; }
 
 namespace {
 

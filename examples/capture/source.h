@@ -13,6 +13,7 @@
 
 namespace pf::capture {
 
+class Imu;
 class Recorder;
 
 enum class Read { kDone, kNothing, kUnusable, kEnd, kFailed };
@@ -47,6 +48,9 @@ class Source {
 
   /// The true planes, n . p = d as (n, d), where the source knows them.
   virtual std::vector<std::array<double, 4>> planes() const { return {}; }
+
+  /// The inertial unit that belongs to a simulated camera; null where there is none. Its times get the offset added.
+  virtual std::unique_ptr<Imu> imu(int64_t /*offset_ns*/) const;
 
   /// Frames may be read in any order, and more than once.
   virtual bool reads_in_any_order() const { return false; }

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "imu.h"
 #include "source.h"
 
 #ifdef PLANEFOLD_HAVE_SIM
@@ -16,7 +17,7 @@ namespace {
 class SimSource : public Source {
  public:
   SimSource(pf_sim_t* sim, const pf_sim_options_t& options, const std::string& scene)
-      : sim_(sim, pf_sim_close), scene_(scene) {
+      : sim_(sim, pf_sim_close), scene_(scene), seed_(options.seed) {
     pf_sim_camera(sim, &info_.camera);
     info_.count = options.frames;
     info_.rate_hz = options.rate_hz;
@@ -45,6 +46,8 @@ class SimSource : public Source {
     return pf_sim_target(sim_.get(), PF_TARGET_RECTANGLE, &target) == PF_OK;
   }
 
+  std::unique_ptr<Imu> imu(int64_t offset_ns) const override { return open_imu_sim(sim_.get(), seed_, offset_ns); }
+
   std::vector<std::array<double, 4>> planes() const override {
     std::vector<std::array<double, 4>> all;
     std::array<double, 4> plane{};
@@ -57,6 +60,7 @@ class SimSource : public Source {
  private:
   std::unique_ptr<pf_sim_t, void (*)(pf_sim_t*)> sim_;
   std::string scene_;
+  uint64_t seed_;
   SourceInfo info_;
   pf_pose_t truth_{};
   int64_t next_ = 0;
@@ -80,6 +84,7 @@ std::unique_ptr<Source> open_sim_source(const Options& options, std::string& err
     return nullptr;
   }
   sim_options.seed = options.seed;
+  sim_options.rest_s = options.sim_rest_s;
   if (options.frames > 0 && options.loop < 0) {
     sim_options.frames = static_cast<int32_t>(std::min<int64_t>(options.skip + options.frames, 1000000));
   }

@@ -13,6 +13,7 @@
 #include "decode.h"
 #include "folder.h"
 #include "imu.h"
+#include "imu_model.h"
 #include "refuse.h"
 #include "target.h"
 
@@ -292,6 +293,48 @@ int pf_read_imu(const char* path, pf_imu_sample_t** samples, size_t* count, char
     text = pf::sequence::read_text(path, pf::sequence::kMaxImuBytes, "inertial samples");
   });
   return done != 0 ? done : pf_parse_imu(text.data(), text.size(), path, samples, count, message);
+}
+
+int pf_parse_imu_noise(const char* text, size_t size, const char* name, pf_imu_model_t* imu,
+                       char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(text, "text");
+    require(imu, "imu");
+    pf_imu_model_t read = *imu;
+    const std::string ignored =
+        pf::sequence::parse_imu_noise(std::string(text, size), name != nullptr ? name : "text", &read);
+    *imu = read;
+    put(message, ignored.c_str());
+  });
+}
+
+int pf_parse_imu_mount(const char* text, size_t size, const char* name, pf_imu_model_t* imu,
+                       char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(text, "text");
+    require(imu, "imu");
+    pf_imu_model_t read = *imu;
+    pf::sequence::parse_imu_mount(std::string(text, size), name != nullptr ? name : "text", &read);
+    *imu = read;
+  });
+}
+
+int pf_read_imu_noise(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]) {
+  std::string text;
+  const int done = guarded(message, [&] {
+    require(path, "path");
+    text = pf::sequence::read_text(path, pf::sequence::kMaxImuModelBytes, "noise of the inertial unit");
+  });
+  return done != 0 ? done : pf_parse_imu_noise(text.data(), text.size(), path, imu, message);
+}
+
+int pf_read_imu_mount(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]) {
+  std::string text;
+  const int done = guarded(message, [&] {
+    require(path, "path");
+    text = pf::sequence::read_text(path, pf::sequence::kMaxImuModelBytes, "mounting of the inertial unit");
+  });
+  return done != 0 ? done : pf_parse_imu_mount(text.data(), text.size(), path, imu, message);
 }
 
 void pf_free_imu(pf_imu_sample_t* samples) { delete[] samples; }

@@ -6,7 +6,7 @@
 namespace pf::sim {
 namespace {
 
-enum Stream : std::uint64_t { kNoiseStream = 61, kWalkStream = 62 };
+enum Stream : std::uint64_t { kNoiseStream = 61, kWalkStream = 62, kStampStream = 63 };
 constexpr double kStep = 2e-4;  // of central differences [s]
 
 /// Pose of the unit: its axes and its origin in W.
@@ -29,28 +29,49 @@ ImuSensor::ImuSensor(const ImuOptions& options, Trajectory path)
       path_(std::move(path)),
       noise_(options.seed, kNoiseStream),
       walk_(options.seed, kWalkStream),
+      stamps_(options.seed, kStampStream),
       gyro_bias_(options.gyro_bias),
       accel_bias_(options.accel_bias) {}
 
+bool ImuSensor::in_gap(std::int64_t count) const {
+  const double t = time_of(count);
+  return t >= options_.gap_at_s && t < options_.gap_at_s + options_.gap_s;
+}
+
 std::int64_t ImuSensor::next_ns() const {
-  return static_cast<std::int64_t>(std::llround(static_cast<double>(count_) * 1e9 / options_.rate_hz));
+  std::int64_t count = count_;
+  while (in_gap(count)) ++count;
+  return static_cast<std::int64_t>(std::llround(static_cast<double>(count) * 1e9 / options_.rate_hz));
+}
+
+/// Biases one interval on.
+void ImuSensor::walk() {
+  const double root = std::sqrt(options_.rate_hz);
+  gyro_bias_ += walk_.normal3() * (options_.gyro_walk / root);
+  accel_bias_ += walk_.normal3() * (options_.accel_walk / root);
+  ++walked_;
 }
 
 pf_imu_sample_t ImuSensor::next() {
   const std::int64_t t_ns = next_ns();
+  while (in_gap(count_)) ++count_;
+  while (walked_ < count_) walk();
   Vec3 gyro, accel;
   true_reading(options_, path_, static_cast<double>(t_ns) * 1e-9, gyro, accel);
   const double root = std::sqrt(options_.rate_hz);
-  if (count_ > 0) {
-    gyro_bias_ += walk_.normal3() * (options_.gyro_walk / root);
-    accel_bias_ += walk_.normal3() * (options_.accel_walk / root);
-  }
+  gyro += gyro * options_.gyro_scale;
+  accel += accel * options_.accel_scale;
   gyro += gyro_bias_ + noise_.normal3() * (options_.gyro_density * root);
   accel += accel_bias_ + noise_.normal3() * (options_.accel_density * root);
   ++count_;
-  return {t_ns - static_cast<std::int64_t>(std::llround(options_.delay_s * 1e9)),
-          {gyro.x, gyro.y, gyro.z},
-          {accel.x, accel.y, accel.z}};
+  double off_s = -options_.delay_s;
+  if (options_.jitter_s > 0)
+    off_s += std::clamp(stamps_.normal() * options_.jitter_s, -0.4 / options_.rate_hz, 0.4 / options_.rate_hz);
+  const auto held = [](double v, double range) { return range > 0 ? std::clamp(v, -range, range) : v; };
+  const double g = options_.gyro_range, a = options_.accel_range;
+  return {t_ns + static_cast<std::int64_t>(std::llround(off_s * 1e9)),
+          {held(gyro.x, g), held(gyro.y, g), held(gyro.z, g)},
+          {held(accel.x, a), held(accel.y, a), held(accel.z, a)}};
 }
 
 Trajectory after_rest(Trajectory base, double rest_s, double ramp_s) {

@@ -18,6 +18,12 @@ struct ImuOptions {
   Vec3 gravity_W{0, 9.81, 0};                          ///< [m/s^2]
   double delay_s = 0;  ///< a sample's own time stamp is so much before the frames' clock
   std::uint64_t seed = 1;
+
+  // What is wrong with it.
+  double gyro_scale = 0, accel_scale = 0;  ///< relative errors of scale
+  double gyro_range = 0, accel_range = 0;  ///< [rad/s], [m/s^2] at which readings end; 0: nowhere
+  double jitter_s = 0;                     ///< standard deviation of time stamps, at most a quarter of the interval [s]
+  double gap_at_s = 0, gap_s = 0;          ///< no samples from here on for this long [s]
 };
 
 /// Samples of a unit that is carried along a camera's path, from its derivatives: one after the other, with white noise of
@@ -34,11 +40,15 @@ class ImuSensor {
   const Vec3& accel_bias() const { return accel_bias_; }
 
  private:
+  double time_of(std::int64_t count) const { return static_cast<double>(count) / options_.rate_hz; }
+  bool in_gap(std::int64_t count) const;
+  void walk();
+
   ImuOptions options_;
   Trajectory path_;
-  Random noise_, walk_;
+  Random noise_, walk_, stamps_;
   Vec3 gyro_bias_, accel_bias_;
-  std::int64_t count_ = 0;
+  std::int64_t count_ = 0, walked_ = 0;  ///< the next sample, and that of the biases
 };
 
 /// What a unit without noise and biases measures at a time: angular velocity and specific force in its axes.

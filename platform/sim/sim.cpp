@@ -6,6 +6,7 @@
 #include <new>
 #include <string>
 
+#include "sim/imu.h"
 #include "sim/paths.h"
 #include "sim/render.h"
 #include "sim/scene.h"
@@ -18,7 +19,9 @@ namespace {
 
 const char* const kScenes[] = {"desk", "room", "wall", "rotation", "person", "exposure", "repeat", nullptr};
 
-enum Stream : std::uint64_t { kSceneStream, kPathStream, kNoiseStream, kFaultStream, kGainStream };
+enum Stream : std::uint64_t { kSceneStream, kPathStream, kNoiseStream, kFaultStream, kGainStream, kBiasStream };
+
+constexpr double kUnderWay = 0.5;  // from rest to the path's own speed [s]
 
 bool in_range(double v, double low, double high) { return v >= low && v <= high; }
 
@@ -30,7 +33,8 @@ bool valid(const pf_sim_options_t& o) {
          o.blur_samples >= 1 && o.blur_samples <= 64 && in_range(o.readout_s, 0, period) && in_range(o.gain, 0, 100) &&
          in_range(o.bias, -255, 255) && in_range(o.exposure_step, 1, 100) && o.exposure_every > 0 &&
          in_range(o.vignetting, 0, 1) && in_range(o.drop_probability, 0, 0.9) &&
-         in_range(o.repeat_probability, 0, 0.9) && in_range(o.shake_m, 0, 1) && in_range(o.shake_rad, 0, 1);
+         in_range(o.repeat_probability, 0, 0.9) && in_range(o.shake_m, 0, 1) && in_range(o.shake_rad, 0, 1) &&
+         in_range(o.rest_s, 0, 1000);
 }
 
 }  // namespace
@@ -148,6 +152,7 @@ pf_sim_t* pf_sim_open(const char* scene, const pf_sim_options_t* options) {
                     : desk_path(way);
   }
   sim->path = shaken(std::move(sim->path), way, own.shake_m, own.shake_rad);
+  if (own.rest_s > 0) sim->path = after_rest(std::move(sim->path), own.rest_s, kUnderWay);
   sim->renderer = std::make_unique<Renderer>(own.camera, own.samples);
   if (!sim->renderer->ok()) return nullptr;
   sim->sensor = std::make_unique<Sensor>(own.camera.width, own.camera.height, own.vignetting);
@@ -251,6 +256,76 @@ pf_status_t pf_sim_surface(const pf_sim_t* sim, int32_t surface, double n_W[3], 
   n_W[2] = n.z;
   *d_W = n.dot(q.corner_W);
   return PF_OK;
+}
+
+struct pf_sim_imu {
+  ImuSensor sensor;
+};
+
+void pf_sim_imu_options_default(pf_sim_imu_options_t* options) {
+  const ImuOptions unit;
+  *options = {};
+  options->seed = 1;
+  options->rate_hz = unit.rate_hz;
+  options->sigma_gyro_bias = 0.02;
+  options->sigma_accel_bias = 0.1;
+  pf_imu_model_t& model = options->model;
+  model.gyro_density = unit.gyro_density;
+  model.accel_density = unit.accel_density;
+  model.gyro_walk = unit.gyro_walk;
+  model.accel_walk = unit.accel_walk;
+  const auto q = quaternion_of(rotation_exp({0.02, -0.03, 1.55}));
+  std::copy(q.begin(), q.end(), model.q_BC);
+  model.p_BC[0] = 0.05;
+  model.p_BC[1] = -0.02;
+  model.p_BC[2] = 0.03;
+  model.gravity = unit.gravity_W.y;
+}
+
+pf_sim_imu_t* pf_sim_imu_open(const pf_sim_t* sim, const pf_sim_imu_options_t* options) {
+  pf_sim_imu_options_t o;
+  pf_sim_imu_options_default(&o);
+  if (options) o = *options;
+  const pf_imu_model_t& model = o.model;
+  if (!in_range(o.rate_hz, 20, 2000) || !in_range(model.gravity, 9, 11) || !in_range(model.delay_s, -0.5, 0.5) ||
+      !in_range(o.jitter_s, 0, 0.25 / o.rate_hz) || !in_range(o.gyro_scale, -0.5, 0.5) ||
+      !in_range(o.accel_scale, -0.5, 0.5))
+    return nullptr;
+  ImuOptions unit;
+  Random bias(o.seed, kBiasStream);
+  unit.rate_hz = o.rate_hz;
+  unit.gyro_density = model.gyro_density;
+  unit.accel_density = model.accel_density;
+  unit.gyro_walk = model.gyro_walk;
+  unit.accel_walk = model.accel_walk;
+  unit.gyro_bias = bias.normal3() * o.sigma_gyro_bias;
+  unit.accel_bias = bias.normal3() * o.sigma_accel_bias;
+  unit.R_BC = rotation_of(model.q_BC);
+  unit.p_BC = {model.p_BC[0], model.p_BC[1], model.p_BC[2]};
+  unit.gravity_W = {0, model.gravity, 0};
+  unit.delay_s = model.delay_s;
+  unit.seed = o.seed;
+  unit.gyro_scale = o.gyro_scale;
+  unit.accel_scale = o.accel_scale;
+  unit.gyro_range = model.gyro_range;
+  unit.accel_range = model.accel_range;
+  unit.jitter_s = o.jitter_s;
+  unit.gap_at_s = o.gap_at_s;
+  unit.gap_s = o.gap_s;
+  return new (std::nothrow) pf_sim_imu{ImuSensor(unit, sim->path)};
+}
+
+void pf_sim_imu_close(pf_sim_imu_t* imu) { delete imu; }
+
+int64_t pf_sim_imu_next_ns(const pf_sim_imu_t* imu) { return imu->sensor.next_ns(); }
+
+void pf_sim_imu_next(pf_sim_imu_t* imu, pf_imu_sample_t* sample) { *sample = imu->sensor.next(); }
+
+void pf_sim_imu_biases(const pf_sim_imu_t* imu, double gyro[3], double accel[3]) {
+  const Vec3 g = imu->sensor.gyro_bias(), a = imu->sensor.accel_bias();
+  const double numbers[6] = {g.x, g.y, g.z, a.x, a.y, a.z};
+  std::copy(numbers, numbers + 3, gyro);
+  std::copy(numbers + 3, numbers + 6, accel);
 }
 
 }  // extern "C"

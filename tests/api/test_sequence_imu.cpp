@@ -5,7 +5,9 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <memory>
+#include <utility>
 
 #include "sequence_test.h"
 
@@ -119,8 +121,102 @@ static void test_sequences_should_name_the_samples_that_lie_beside_the_images() 
   }
 }
 
+namespace {
+
+constexpr const char* kKalibrNoise =
+    "accelerometer_noise_density: 1.86e-03\naccelerometer_random_walk: 4.33e-04\ngyroscope_noise_density: 1.87e-04\n"
+    "gyroscope_random_walk: 2.66e-05\nrostopic: /imu0\nupdate_rate: 200.0\n";
+
+bool read_noise(const std::string& text, pf_imu_model_t* imu, char* message) {
+  return pf_parse_imu_noise(text.data(), text.size(), "imu.yaml", imu, message) == 0;
+}
+
+bool read_mount(const std::string& text, pf_imu_model_t* imu, char* message) {
+  return pf_parse_imu_mount(text.data(), text.size(), "cam.yaml", imu, message) == 0;
+}
+
+void noise_refused(const std::string& from, const std::string& to, const char* part) {
+  std::string text = kKalibrNoise;
+  text.replace(text.find(from), from.size(), to);
+  pf_imu_model_t imu{};
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  TEST_ASSERT_FALSE_MESSAGE(read_noise(text, &imu, message), text.c_str());
+  require_message(message, part);
+  TEST_ASSERT_TRUE(imu.gyro_density == 0.0 && imu.accel_density == 0.0);
+}
+
+void require_mount(const pf_imu_model_t& imu, double delay_s) {
+  // A rotation by 90 degrees about z: the camera's x is the unit's y.
+  const double q[4] = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}, p[3] = {0.1, 0.2, 0.3};
+  for (int i = 0; i < 4; ++i) TEST_ASSERT_DOUBLE_WITHIN(1e-12, q[i], imu.q_BC[i]);
+  for (int i = 0; i < 3; ++i) TEST_ASSERT_DOUBLE_WITHIN(1e-12, p[i], imu.p_BC[i]);
+  TEST_ASSERT_DOUBLE_WITHIN(1e-12, delay_s, imu.delay_s);
+}
+
+}  // namespace
+
+static void test_noise_should_be_read_from_every_known_form() {
+  for (const std::string& text :
+       {std::string(kKalibrNoise), "sensor_type: imu\ncomment: x\nrate_hz: 200\n" + std::string(kKalibrNoise),
+        std::string("accel_noise_density: 1.86e-03\naccel_random_walk: 4.33e-04\ngyro_noise_density: 1.87e-04\n"
+                    "gyro_random_walk: 2.66e-05\nwidth: 752\n")}) {
+    pf_imu_model_t imu{};
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    TEST_ASSERT_TRUE_MESSAGE(read_noise(text, &imu, message), message);
+    TEST_ASSERT_TRUE(imu.accel_density == 1.86e-3 && imu.accel_walk == 4.33e-4);
+    TEST_ASSERT_TRUE(imu.gyro_density == 1.87e-4 && imu.gyro_walk == 2.66e-5);
+    TEST_ASSERT_TRUE(imu.delay_s == 0.0 && imu.q_BC[0] == 0.0);
+  }
+}
+
+static void test_noise_should_be_refused_when_a_field_is_missing_or_in_other_units() {
+  noise_refused("gyroscope_noise_density: 1.87e-04\n", "", "gyroscope_noise_density");
+  noise_refused("1.87e-04", "1.87e-02", "degrees");
+  noise_refused("1.87e-04", "1.87e-06", "gyroscope_noise_density");
+  noise_refused("1.86e-03", "1.86e-01", "accelerometer_noise_density");
+  noise_refused("1.86e-03", "1.86e-05", "accelerometer_noise_density");
+  noise_refused("2.66e-05", "nan", "finite");
+  noise_refused("gyroscope_random_walk", "gyroscope_random_wlak", "meant");
+}
+
+static void test_mounting_should_be_the_same_in_every_known_form() {
+  const std::string in_rows = "[0, -1, 0, 0.1, 1, 0, 0, 0.2, 0, 0, 1, 0.3, 0, 0, 0, 1]";
+  const std::string euroc = "sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: " + in_rows + "\n";
+  const std::string kalibr =
+      "cam0:\n  T_cam_imu:\n  - [0, 1, 0, -0.2]\n  - [-1, 0, 0, 0.1]\n  - [0, 0, 1, -0.3]\n  - [0, 0, 0, 1]\n"
+      "  timeshift_cam_imu: 0.004\n";
+  for (const auto& [text, delay_s] :
+       {std::pair<std::string, double>{euroc, 0.0}, {kalibr, -0.004}, {"T_imu_cam: " + in_rows + "\n", 0.0}}) {
+    pf_imu_model_t imu{};
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    TEST_ASSERT_TRUE_MESSAGE(read_mount(text, &imu, message), message);
+    require_mount(imu, delay_s);
+  }
+}
+
+static void test_mounting_should_be_refused_when_it_is_no_rotation_or_nowhere() {
+  const auto refused_mount = [](const std::string& text, const char* part) {
+    pf_imu_model_t imu{};
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    TEST_ASSERT_FALSE_MESSAGE(read_mount(text, &imu, message), text.c_str());
+    require_message(message, part);
+  };
+  refused_mount("width: 3\n", "T_BS");
+  refused_mount("T_imu_cam: [1, 0, 0]\n", "4 x 4");
+  refused_mount("T_imu_cam: [1,0,0,0, 0,1,0,0, 0,0,-1,0, 0,0,0,1]\n", "rotation");
+  refused_mount("T_imu_cam: [1,0,0,0, 0,1.1,0,0, 0,0,1,0, 0,0,0,1]\n", "rotation");
+  refused_mount("T_imu_cam: [1,0,0,60, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n", "metres");
+  refused_mount("T_imu_cam: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,2]\n", "last row");
+  refused_mount("sensor_type: imu\nT_BS: {data: [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}\n", "cam0");
+  refused_mount("T_cam_imu: [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]\ntimeshift_cam_imu: 2\n", "timeshift");
+}
+
 int main() {
   UNITY_BEGIN();
+  RUN_TEST(test_noise_should_be_read_from_every_known_form);
+  RUN_TEST(test_noise_should_be_refused_when_a_field_is_missing_or_in_other_units);
+  RUN_TEST(test_mounting_should_be_the_same_in_every_known_form);
+  RUN_TEST(test_mounting_should_be_refused_when_it_is_no_rotation_or_nowhere);
   RUN_TEST(test_rows_should_be_read_to_the_last_digit_when_times_are_nanoseconds);
   RUN_TEST(test_times_should_be_seconds_when_a_row_has_a_decimal_point);
   RUN_TEST(test_rows_should_be_refused_by_line_when_they_are_wrong);

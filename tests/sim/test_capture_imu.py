@@ -1,7 +1,8 @@
 """pf-capture --imu: samples of a file reach the library in order with the frames, the report counts them, a recording holds them,
-and replaying it pushes the same; the poses do not depend on them."""
+and replaying it pushes the same; poses depend on them only where their noise is known."""
 
 import json
+import math
 import pathlib
 import random
 import subprocess
@@ -12,15 +13,16 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, fail, run, skip  # noqa: E402
 
 PROGRAM = BIN / "pf-capture"
-QUIET = ["--headless", "--no-film", "--quiet", "--start", "rectangle:0.20x0.14"]
+FREE = ["--headless", "--no-film", "--quiet"]
+QUIET = [*FREE, "--start", "rectangle:0.20x0.14"]
 FRAMES = 40
 STEP_NS = 5_000_000
 MISSING = range(100, 110)  # samples that are left out
 SEED = 7
 
 
-def capture(out, *arguments):
-    run(PROGRAM, *QUIET, "--out", out, *arguments)
+def capture(out, *arguments, start=QUIET):
+    run(PROGRAM, *start, "--out", out, *arguments)
     return json.loads((out / "report.json").read_text())
 
 
@@ -102,6 +104,43 @@ def offset(root, times):
     expect(len(times) == FRAMES, f"{len(times)} frames")
 
 
+def inertial(root):
+    """A simulated unit from rest: metres and gravity with sigmas; a recording of it with its noise gives the same poses."""
+    still = ["--source", "sim:room", "--rest", "1.5", "--frames", "100", "--imu", "sim"]
+    report = capture(root / "vio", *still, "--record", root / "unit", start=FREE)
+    imu = report["imu"]
+    expect(imu["used"] is True and imu["start"] == "rest" and imu["metric"] is True, f"no start from rest: {imu}")
+    expect(30 <= imu["start_frame"] <= 45, f"at rest for 1.5 s, and metric from frame {imu['start_frame']} on")
+    expect(abs(math.hypot(*imu["gravity_W"]["value"]) - 9.81) < 1e-3 and max(imu["gravity_W"]["sigma"]) < 0.1, f"{imu['gravity_W']}")
+    for name, least in (("gyro_bias", 0), ("accel_bias", 0)):
+        expect(len(imu[name]["value"]) == len(imu[name]["sigma"]) == 3 and min(imu[name]["sigma"]) > least, f"{name}: {imu[name]}")
+    (root / "noise.yaml").write_text("gyro_noise_density: 1.7e-4\ngyro_random_walk: 2e-5\naccel_noise_density: 2e-3\naccel_random_walk: 3e-3\n")
+    q, p = imu["mount"]["q_BC"], imu["mount"]["p_BC"]
+    rows = [[*row, length] for row, length in zip(rotation_of(q), p)] + [[0, 0, 0, 1]]
+    (root / "mount.yaml").write_text(f"T_imu_cam: {[number for row in rows for number in row]}\n")
+    again = ["--source", f"euroc:{root}/unit", "--imu-noise", root / "noise.yaml", "--imu-mount", root / "mount.yaml"]
+    replayed = capture(root / "vio again", *again, start=FREE)["imu"]
+    expect(replayed["start_frame"] == imu["start_frame"] and replayed["metric"], f"replay: {replayed}")
+    apart = [abs(a - b) for one, two in zip(positions(root / "vio again"), positions(root / "vio"), strict=True) for a, b in zip(one, two)]
+    expect(max(apart) < 1e-3, f"a replay gives other poses, by {max(apart)} m")
+    left_out = capture(root / "not used", *again, "--no-inertial", "--frames", "30", start=FREE)["imu"]
+    expect(left_out["used"] is False and "metric" not in left_out, f"--no-inertial: {left_out}")
+    asked = subprocess.run([str(word) for word in [PROGRAM, *QUIET, "--source", f"euroc:{root}/unit", "--frames", "5", "--out", root / "asked"]],
+                           text=True, capture_output=True, check=False)
+    expect("--imu-noise" in asked.stderr, f"the noise is not asked for: {asked.stderr}")
+
+
+def rotation_of(q):
+    w, x, y, z = q
+    return [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+
+
+def positions(folder):
+    text = sorted(folder.glob("trajectory*.txt"))[-1].read_text()
+    return [[float(word) for word in line.split()[1:4]] for line in text.splitlines() if line[0] != "#"]
+
+
 def refusals(root):
     bad = root / "bad.csv"
     for name, text, part in [("running back", "10,0,0,0,0,0,1\n9,0,0,0,0,0,1\n", "line 2"), ("not finite", "10,0,0,nan,0,0,1\n", "line 1"),
@@ -114,7 +153,10 @@ def refusals(root):
     bad.write_text("".join(f"{i},0,0,{0 if i != 3 else 5000},0,0,1\n" for i in range(1, 10)))
     report = capture(root / "absurd", "--source", "sim:desk", "--frames", "5", "--imu", f"csv:{bad}", "--imu-offset", "-1")
     expect(report["imu"]["samples"] == 8 and report["imu"]["refused"] == 1, f"absurd: {report['imu']}")
-    for arguments, part in [(["--imu", "magic"], "csv:FILE"), (["--imu", "csv:"], "csv:FILE"), (["--imu-offset", "nan"], "--imu-offset"),
+    for arguments, part in [(["--imu", "csv:x", "--imu-noise", "x"], "--imu-mount"), (["--imu", "csv:x", "--imu-mount", "x"], "--imu-noise"),
+                            (["--imu", "none", "--imu-noise", "x"], "--imu none"), (["--imu", "sim", "--imu-noise", "x", "--imu-mount", "x"], "--imu sim"),
+                            (["--imu", "sim", "--realtime"], "--realtime"), (["--imu-noise", "x", "--imu-mount", "x"], "--imu"),
+                            (["--rest", "-1"], "--rest"), (["--imu", "magic"], "csv:FILE"), (["--imu", "csv:"], "csv:FILE"), (["--imu-offset", "nan"], "--imu-offset"),
                             (["--imu-rate", "-5"], "--imu-rate")]:
         result = subprocess.run([str(word) for word in [PROGRAM, *QUIET, "--source", "sim:desk", *arguments]], text=True,
                                 capture_output=True, check=False)
@@ -131,6 +173,7 @@ def main():
         replay(root)
         late_tracker(root)
         offset(root, times)
+        inertial(root)
         refusals(root)
 
 

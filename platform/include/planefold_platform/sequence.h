@@ -119,6 +119,21 @@ void pf_free_imu(pf_imu_sample_t* samples); /* null is welcome */
 int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_t** samples, size_t* count,
                  char message[PF_SEQUENCE_MESSAGE]);
 
+/* Noise densities of an inertial unit: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml (gyroscope_noise_density and so on), or
+ * gyro_noise_density, gyro_random_walk, accel_noise_density, accel_random_walk. Sets these four fields of *imu, and none when it is refused. A density that
+ * no unit has (degrees, or the noise of single samples) is refused. With 0, message is a line on what was ignored, or empty. */
+int pf_read_imu_noise(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]);
+
+/* How the unit is mounted: T_BS of EuRoC's cam0/sensor.yaml (p_B = T_BS p_C), T_cam_imu of Kalibr's camchain (p_C = T_cam_imu p_B; its
+ * timeshift_cam_imu becomes delay_s), or T_imu_cam, 16 numbers in rows (p_B = T_imu_cam p_C). Sets q_BC, p_BC and delay_s of *imu. */
+int pf_read_imu_mount(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]);
+
+/* The same from text in memory; name stands for the file in messages. */
+int pf_parse_imu_noise(const char* text, size_t size, const char* name, pf_imu_model_t* imu,
+                       char message[PF_SEQUENCE_MESSAGE]);
+int pf_parse_imu_mount(const char* text, size_t size, const char* name, pf_imu_model_t* imu,
+                       char message[PF_SEQUENCE_MESSAGE]);
+
 /* A folder for what a program writes. It is made where it is missing. Its list .planefold names what was written there: where there is
  * one, the files that it names are deleted, and no others. A folder that holds anything and has no list is refused, untouched.
  * option  how the user names the folder, for messages: "--out" */

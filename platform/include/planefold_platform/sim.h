@@ -56,6 +56,7 @@ typedef struct pf_sim_options {
   int32_t repeated_texture;  /* surfaces repeat a small cell */
   int32_t person;            /* somebody walks through */
   double shake_m, shake_rad; /* of the hand, standard deviations */
+  double rest_s;             /* the camera stands still at first, then gets under way within half a second, 0 .. 1000 */
 } pf_sim_options_t;
 
 /* PF_ERROR_RANGE: there is no such scene. */
@@ -93,6 +94,41 @@ pf_status_t pf_sim_depth(const pf_sim_t* sim, const pf_pose_t* pose, float* dept
 
 /* Plane of a surface, n . p = d in W, n towards what lies behind it. PF_ERROR_RANGE: no such surface. */
 pf_status_t pf_sim_surface(const pf_sim_t* sim, int32_t surface, double n_W[3], double* d_W);
+
+/* An inertial unit beside the camera. Its own axes are not the camera's; its seed stream is its own, so that pictures do not depend on it.
+ *
+ *   pf_sim_imu_options_t options;
+ *   pf_sim_imu_options_default(&options);
+ *   pf_sim_imu_t *imu = pf_sim_imu_open(sim, &options);      null: bad option, no memory
+ *   config.imu = options.model;                              what a calibration would say
+ *   while (pf_sim_imu_next_ns(imu) <= image.t_ns) { pf_sim_imu_next(imu, &sample); pf_push_imu(slam, &sample, 1); }
+ */
+typedef struct pf_sim_imu pf_sim_imu_t;
+
+typedef struct pf_sim_imu_options {
+  uint64_t seed;
+  double rate_hz; /* 20 .. 2000. Default 200 */
+  pf_imu_model_t
+      model; /* noise, mounting, delay, gravity (along W's y); readings end at its ranges, where they are not 0 */
+  double sigma_gyro_bias;         /* from which the biases at time 0 are drawn [rad/s] .. */
+  double sigma_accel_bias;        /* .. [m/s^2] */
+  double gyro_scale, accel_scale; /* relative errors of scale, -0.5 .. 0.5 */
+  double jitter_s;                /* standard deviation of time stamps, 0 .. a quarter of the interval */
+  double gap_at_s, gap_s;         /* no samples from here on for this long */
+} pf_sim_imu_options_t;
+
+/* Noise of EuRoC's unit, 6 cm beside the camera and rotated by 90 degrees about its axis. */
+void pf_sim_imu_options_default(pf_sim_imu_options_t* options);
+
+/* options may be null for the default. It lives as long as it likes, also without the scene. */
+pf_sim_imu_t* pf_sim_imu_open(const pf_sim_t* sim, const pf_sim_imu_options_t* options);
+void pf_sim_imu_close(pf_sim_imu_t* imu);
+
+/* When the next sample is measured, on the clock of the frames; its own time stamp is model.delay_s before that. */
+int64_t pf_sim_imu_next_ns(const pf_sim_imu_t* imu);
+void pf_sim_imu_next(pf_sim_imu_t* imu, pf_imu_sample_t* sample);
+/* The true biases at the sample that came last. */
+void pf_sim_imu_biases(const pf_sim_imu_t* imu, double gyro[3], double accel[3]);
 
 #ifdef __cplusplus
 }
