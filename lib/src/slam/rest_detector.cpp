@@ -1,5 +1,6 @@
 #include "slam/rest_detector.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
@@ -35,7 +36,9 @@ bool RestDetector::note(bool seen, RestReading* rest) {
     rest->accel = data_->mean[1];
     rest->sigma_gyro = noise.gyro_density / root + noise.gyro_walk * root;
     rest->sigma_accel = noise.accel_density / root + noise.accel_walk * root;
-    rest->sigma_speed = kSpeed;
+    // What the picture can vouch for: its motion at the depth that is assumed before any is known.
+    const Scalar motion_px = std::max(std::sqrt(data_->motion2), kMinMotionPx);
+    rest->sigma_speed = motion_px * settings_.start_depth / (settings_.camera.fx * T);
     rest->sigma_accel_bias = tuning::inertial::kAccelBias;
     rest->gravity = settings_.unit.gravity;
     data_->rest_begin_ns = data_->begin_ns;
@@ -95,7 +98,7 @@ bool RestDetector::is_quiet() const {
 /// rotation and expansion about their mean, which average the noise of single pixels. Too few of them say nothing, which counts as moved.
 ///
 ///   d = t + A c,   A = (a -b; b a)      c, d from the means of before and of the displacement
-bool RestDetector::has_moved() const {
+bool RestDetector::has_moved() {
   int count = 0;
   Vec2 centre = Vec2::Zero(), shift = Vec2::Zero();
   Scalar turned = 0, grown = 0, spread = 0;
@@ -122,7 +125,8 @@ bool RestDetector::has_moved() const {
     spread += c.squaredNorm();
   });
   const Scalar by_shape = (grown * grown + turned * turned) / (spread * static_cast<Scalar>(count));
-  return !(shift.squaredNorm() + by_shape < kMaxMotionPx * kMaxMotionPx);
+  data_->motion2 = shift.squaredNorm() + by_shape;
+  return !(data_->motion2 < kMaxMotionPx * kMaxMotionPx);
 }
 
 }  // namespace pf

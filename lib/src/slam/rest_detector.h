@@ -43,6 +43,7 @@ class RestDetector {
     std::int64_t sample_ns = 0;  ///< time of the last sample that was taken in
     int count = 0;
     int seen = 0;
+    Scalar motion2 = 0;                           ///< [px^2] of the picture since this second began
     Vec3 mean[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of gyro and accelerometer
     Scalar square[2] = {0, 0};                    ///< sums of squares about the means, over the axes
   };
@@ -51,7 +52,7 @@ class RestDetector {
   void keep_pixels();
   void add(const ImuSample& sample);
   bool is_quiet() const;
-  bool has_moved() const;
+  bool has_moved();
 
   const Settings& settings_;
   const Frame& frame_;

@@ -80,7 +80,7 @@ inline constexpr Scalar kMaxGyroBias = Scalar(0.3);    ///< [rad/s] that a gyro 
 inline constexpr Scalar kMaxGravityError = Scalar(1);  ///< [m/s^2] of the mean specific force
 inline constexpr Scalar kMaxMotionPx = Scalar(1);      ///< [px] of the picture as a whole, root mean square
 inline constexpr int kMinPixels = 8;                   ///< features by which that is judged
-inline constexpr Scalar kSpeed = Scalar(0.01);         ///< [m/s] sigma of the velocity of a camera at rest
+inline constexpr Scalar kMinMotionPx = Scalar(0.2);    ///< [px] least motion that the picture can tell from none
 }  // namespace rest
 
 /// Features that fail, and the depth of new ones.
