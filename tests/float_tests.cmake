@@ -19,6 +19,7 @@ set(PLANEFOLD_FLOAT_TESTS
     unit/test_small_geometry.cpp
     unit/test_covariance_reference.cpp
     unit/test_covariance_sets.cpp
+    unit/test_copied_covariance.cpp
     slow/test_covariance_sets_many.cpp
     property/test_slow_walk.cpp
     property/test_covariance_repair.cpp

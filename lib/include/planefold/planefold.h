@@ -15,7 +15,9 @@
  * LENGTHS are in one unit throughout, written [m]. It is the unit of the target or of the start pose: give those in
  * metres. After a start with neither, no length is known: the unit is then the one in which the features of the
  * first frame have a median depth of first_depth.depth (default 1).
- * ERRORS of a pose are (theta, p): R_true = Exp(theta) R, p_true = p + e, both in W. Covariances are row-major.
+ * ERRORS of a pose are (theta, p): R_true = Exp(theta) R, p_true = p + e, both in W.
+ * COVARIANCES are row-major, finite and positive semidefinite. A row is zero only where something is exactly known: where
+ * rounding has left nothing of a variance, or less, it is given as large as rounding may be, and 1e12 stands for unknown.
  * UNITS. SI and radians. Times, pixels and angles in other units say so in the name (_s, _ns, _px).
  * TYPES. In a structure, kinds and switches are int32_t, and the comment names the enum; a switch is 0 or 1. Ids are
  * uint32_t.

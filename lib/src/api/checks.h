@@ -9,6 +9,12 @@
 
 namespace pf {
 
+inline bool finite(const double* values, int count) {
+  for (int i = 0; i < count; ++i)
+    if (!(values[i] - values[i] == 0.0)) return false;
+  return true;
+}
+
 inline Vec3 vec3(const double* v) {
   return Vec3(static_cast<Scalar>(v[0]), static_cast<Scalar>(v[1]), static_cast<Scalar>(v[2]));
 }
@@ -34,6 +40,8 @@ inline bool quaternion_from(const double* q, Quat* out) {
   return true;
 }
 
+inline constexpr int kMaxCovariance = 10;  ///< rows of one that crosses the API
+
 /// Positive semidefinite to rounding. n <= 6.
 inline bool is_semidefinite(const double* P, int n) {
   double C[36];  // correlations, so that radians and metres have the same weight
@@ -42,17 +50,17 @@ inline bool is_semidefinite(const double* P, int n) {
   return factor_semidefinite(C, n, 1e-9);
 }
 
-/// Likewise to a given rounding, where rows of what is exactly known are zero.
+/// Likewise to a given rounding, where rows of what is exactly known are zero. n <= kMaxCovariance.
 inline bool is_semidefinite_or_zero(const double* P, int n, double rounding) {
-  double C[36];
+  double C[kMaxCovariance * kMaxCovariance];
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < i; ++j) {
       const double scale = std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]);
       C[i * n + j] = scale > 0.0 ? P[i * n + j] / scale : 0.0;
     }
-    C[i * n + i] = 1.0;
+    C[i * n + i] = 1.0 + rounding;
   }
-  return factor_semidefinite(C, n, rounding);
+  return factor_semidefinite(C, n, 0.0);
 }
 
 /// Symmetric to rounding, with positive diagonal, Cauchy-Schwarz between any two, and semidefinite.

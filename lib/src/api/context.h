@@ -1,5 +1,6 @@
 #pragma once
 
+#include "api/checks.h"
 #include "base/status.h"
 #include "planefold/planefold.h"
 #include "slam/session.h"
@@ -23,12 +24,6 @@ inline bool is_context(const pf_slam_t* slam) {
 }
 
 inline pf_status_t to_c(Status status) { return static_cast<pf_status_t>(status); }
-
-inline bool finite(const double* values, int count) {
-  for (int i = 0; i < count; ++i)
-    if (!(values[i] - values[i] == 0.0)) return false;
-  return true;
-}
 
 Status settings_from(const pf_config_t& config, Settings* settings, const char** field);
 

@@ -18,24 +18,47 @@ void copy_matrix(const Matrix& from, double* to) {
     for (int j = 0; j < columns; ++j) to[i * columns + j] = static_cast<double>(from(i, j));
 }
 
-/// A covariance, n x n with n <= 6. What rounding leaves of one may have an eigenvalue below zero (of its correlations, 1e-7 in float): its
-/// variances grow by as much.
-template <typename Matrix>
-void copy_covariance(const Matrix& from, double* to) {
-  constexpr int n = Matrix::RowsAtCompileTime;
+/// A covariance, n x n, for the caller: finite, positive semidefinite, and zero only in rows that are zero. Rounding may leave something
+/// else. A variance that is not positive is wrong by its own size at least, and no smaller than its covariances ask for:
+///
+///   v_i <- max(|v_i|, max_j c_ij^2 / v_j),   |c_ij| <= sqrt(v_i v_j)
+///
+/// and the variances grow until there is a Cholesky factor. A row with a number that is not finite is unknown: kMaxVariance.
+inline void repair_covariance(double* C, int n) {
   constexpr double kTolerance = 1e-9, kStep = 4;
-  static_assert(n > 0 && n <= 6);
-  copy_matrix(from, to);
+  bool lost[kMaxCovariance];
+  for (int i = 0; i < n; ++i) {
+    double* row = C + i * n;
+    if (!finite(row, n))
+      for (int j = 0; j < n; ++j) row[j] = C[j * n + i] = i == j ? kMaxVariance : 0.0;
+    lost[i] = !(row[i] > 0.0);
+    row[i] = std::fabs(row[i]);
+  }
   for (int i = 0; i < n; ++i)
-    if (!(to[i * n + i] > 0.0))
-      for (int j = 0; j < n; ++j) to[i * n + j] = to[j * n + i] = 0.0;
+    for (int j = 0; j < n && lost[i]; ++j) {
+      const double c = C[i * n + j], least = lost[j] ? std::fabs(c) : c / C[j * n + j] * c;
+      if (least > C[i * n + i]) C[i * n + i] = std::fmin(least, kMaxVariance);
+    }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double most = std::sqrt(C[i * n + i]) * std::sqrt(C[j * n + j]);
+      if (i != j && std::fabs(C[i * n + j]) > most) C[i * n + j] = std::copysign(most, C[i * n + j]);
+    }
   double grown = 0, factor = 1;
-  while (!is_semidefinite_or_zero(to, n, kTolerance / 2) && grown < n) {
+  while (!is_semidefinite_or_zero(C, n, kTolerance / 2) && grown < n) {
     const double before = factor;
     grown = grown > 0 ? kStep * grown : kTolerance;
     factor = 1 + grown;
-    for (int i = 0; i < n; ++i) to[i * n + i] *= factor / before;
+    for (int i = 0; i < n; ++i) C[i * n + i] *= factor / before;
   }
+}
+
+template <typename Matrix>
+void copy_covariance(const Matrix& from, double* to) {
+  constexpr int n = Matrix::RowsAtCompileTime;
+  static_assert(n > 0 && n <= kMaxCovariance);
+  copy_matrix(from, to);
+  repair_covariance(to, n);
 }
 
 }  // namespace pf

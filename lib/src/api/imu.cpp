@@ -69,6 +69,7 @@ pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial) {
   pf::copy(unit.accel_bias, 3, inertial->accel_bias);
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < 8; ++j) inertial->covariance[8 * i + j] = static_cast<double>(unit.covariance[i][j]);
+  pf::repair_covariance(inertial->covariance, 8);
   for (int k = 0; k < 2; ++k) pf::copy(unit.axis_W[k], 3, inertial->gravity_axes_W[k]);
   inertial->metric = unit.metric ? 1 : 0;
   inertial->map_id = view.map_id();

@@ -161,6 +161,7 @@ pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, double cov
   for (int i = 0; i < 10; ++i)
     for (int j = 0; j < 10; ++j)
       covariance[10 * i + j] = i < pf::kLensParameters && j < pf::kLensParameters ? static_cast<double>(C[i][j]) : 0.0;
+  pf::repair_covariance(covariance, 10);
   return PF_OK;
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "filter/block_filter.h"
 #include "filter/tuning.h"
@@ -41,6 +42,15 @@ BlockFilter::Repair BlockFilter::repair(int turn) {
     return Repair::kDone;
   }
   return Repair::kImpossible;
+}
+
+/// epsilon sum_i h_ri^2 P_ii
+Scalar BlockFilter::rounding_of(const Rows& J, int r) const {
+  int column[SparseRows::kMaxColumns];
+  const int count = columns(J, column);
+  Scalar sum = 0;
+  for (int i = 0; i < count; ++i) sum += J.h[r * count + i] * J.h[r * count + i] * P_(column[i], column[i]);
+  return std::numeric_limits<Scalar>::epsilon() * sum;
 }
 
 }  // namespace pf

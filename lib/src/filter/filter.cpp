@@ -217,7 +217,7 @@ Mat3 Filter::covariance3(int slot) const {
     return C;
   }
   if (!find_point(state_, slot, &at)) return C;
-  C = covariance_of<3>(at.rows<3>(Mat3::Identity()));
+  C = rounded_covariance_of<3>(at.rows<3>(Mat3::Identity()));
   if (!at.has_rows) C += at.J_own * block.inside() * at.J_own.transpose();
   return C;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "base/arena.h"
@@ -54,6 +55,14 @@ class Filter {
   Eigen::Matrix<Scalar, kRows, kRows> covariance_of(const Rows& J) const {
     Eigen::Matrix<Scalar, kRows, kRows> C = blocks_.covariance_of<kRows>(J);
     if (apart_.any()) C += apart_.covariance_of<kRows>(state_, J);
+    return C;
+  }
+  /// The same where somebody outside relies on it: a difference of numbers is not known better than each of them is rounded,
+  ///   C_rr >= epsilon sum_i h_ri^2 P_ii
+  template <int kRows>
+  Eigen::Matrix<Scalar, kRows, kRows> rounded_covariance_of(const Rows& J) const {
+    Eigen::Matrix<Scalar, kRows, kRows> C = covariance_of<kRows>(J);
+    for (int r = 0; r < kRows; ++r) C(r, r) = std::max(C(r, r), blocks_.rounding_of(J, r));
     return C;
   }
   /// Of a single row.

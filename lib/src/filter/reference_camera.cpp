@@ -44,7 +44,7 @@ void Filter::motion_since(int camera, Quat* q_KC, Vec3* p_KC, Mat6* covariance) 
   const int columns = now.columns() + 6;
   now.chain<6>(motion.J_C, J.h, columns);
   put<6, 6>(J.h, columns, now.columns(), motion.J_K);
-  *covariance = covariance_of<6>(J);
+  *covariance = rounded_covariance_of<6>(J);
 }
 
 }  // namespace pf

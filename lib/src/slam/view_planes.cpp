@@ -32,7 +32,7 @@ PlaneView View::plane(int i) const {
   J.parts = 1;
   J.part[0] = Part::of(map_.planes[i].slot, 0, 3);
   put<3, 3>(J.h, 3, 0, J_out_x);
-  out.covariance = filter().covariance_of<3>(J);
+  out.covariance = filter().rounded_covariance_of<3>(J);
   PlaneOutline outline;
   const PlanePoints points = outline_plane(filter(), map_, i, &outline);
   out.points = points.folded;
@@ -80,7 +80,7 @@ bool View::hit(const Vec2& pixel, HitView* hit) const {
       const Mat3 J_ray = J_direction * camera.q_WC.toRotationMatrix();
       put_lens<3>(J_ray.lazyProduct(ray_lens_jacobian(lens, ray_C, J_ray_pixel)), state.lens_rows, 9, columns, J.h);
     }
-    *hit = {map_.planes[i].id, range, at, filter().covariance_of<3>(J)};
+    *hit = {map_.planes[i].id, range, at, filter().rounded_covariance_of<3>(J)};
   }
   return true;
 }
