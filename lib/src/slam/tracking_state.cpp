@@ -16,7 +16,12 @@ Status TrackingState::conclude(const FrameReport& report, const StartProgress& s
     d.state = start.pending() ? SlamState::kStarting : SlamState::kTracking;
     return start.pending() ? Status::kStarting : Status::kOk;
   }
-  if (start.recording && d.last_tracked_ns == report.t_ns) return Status::kStarting;  // the start has just begun
+  if (start.recording && d.last_tracked_ns == report.t_ns) {  // the start has just begun, perhaps anew
+    d.lost = false;
+    d.usable_ns = 0;
+    d.state = SlamState::kStarting;
+    return Status::kStarting;
+  }
   if (!d.lost && elapsed_ns(d.last_tracked_ns, report.t_ns) > max_coast_ns) {
     d.lost = true;
     hooks.say("lost: too few features were found for too long");
