@@ -1,6 +1,6 @@
 // The whole contract: a config that is right, then calls in any order, most of which mean something and some of which are hostile. Every
 // status is one that the header names, what is refused or only asks leaves the block as it was, nothing is written outside of the
-// block, and what comes out is finite, with covariances that are covariances.
+// block, and what comes out is finite, with covariances that are covariances, already before the getters mend what rounding left of them.
 #include <planefold/planefold.h>
 #include <sys/mman.h>
 
@@ -10,11 +10,15 @@
 #include <cstdlib>
 #include <vector>
 
+#include "api/context.h"
 #include "bytes.h"
 
 namespace {
 
 constexpr double kSmallestEigenvalue = -1e-7;  ///< of a correlation matrix, which rounding may bring below zero
+// Likewise as the estimate holds it. The body is checked and repaired in every frame, other rows in turns.
+constexpr double kSmallestOfBody = sizeof(pf::Scalar) == sizeof(float) ? -1e-4 : -2e-6;
+constexpr double kSmallestOfOthers = -1e-3;
 constexpr size_t kMaxBlock = size_t{8} << 20;
 constexpr size_t kPage = 4096;
 
@@ -93,6 +97,25 @@ void require_covariance(const double* covariance, int n, const char* of) {
   const double smallest = smallest_eigenvalue(covariance, n);
   if (smallest < kSmallestEigenvalue) std::fprintf(stderr, "smallest eigenvalue %g\n", smallest);
   require(smallest >= kSmallestEigenvalue, of);
+}
+
+/// Of a covariance before it is mended for the caller.
+template <class Matrix>
+void require_nearly(const Matrix& covariance, double smallest_allowed, const char* of) {
+  constexpr int n = Matrix::RowsAtCompileTime;
+  double all[n * n];
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) all[i * n + j] = static_cast<double>(covariance(i, j));
+  require(finite(all, n * n), of);
+  for (int i = 0; i < n; ++i) {
+    bool empty = true;  // exactly known
+    for (int j = 0; j < n; ++j) empty = empty && all[i * n + j] == 0.0;
+    require(empty || all[i * n + i] > 0.0, of);
+    if (empty) all[i * n + i] = 1.0;
+  }
+  const double smallest = smallest_eigenvalue(all, n);
+  if (smallest < smallest_allowed) std::fprintf(stderr, "smallest eigenvalue %g\n", smallest);
+  require(smallest >= smallest_allowed, of);
 }
 
 void require_pose(const pf_pose_t& pose) {
@@ -499,6 +522,23 @@ class Run {
     require(posed == PF_OK || posed == PF_ERROR_STATE, "a pose, or none yet");
     if (posed == PF_OK) require_pose(pose);
     look_at_map(report);
+    look_inside();
+  }
+
+  /// Covariances before the getters mend what rounding has left of them.
+  void look_inside() const {
+    const pf::View view = slam_->session.view();
+    if (!view.has_pose()) return;
+    pf::Body body;
+    pf::Mat6 pose;
+    view.pose_at(view.last_ns(), &body, &pose);
+    require_nearly(pose, kSmallestOfBody, "a pose has a covariance before it is mended");
+    for (int i = 0; i < view.feature_capacity(); ++i)
+      if (view.has_feature(i))
+        require_nearly(view.feature(i).covariance, kSmallestOfOthers, "a feature has a covariance before it is mended");
+    for (int i = 0; i < view.plane_capacity(); ++i)
+      if (view.has_plane(i))
+        require_nearly(view.plane(i).covariance, kSmallestOfOthers, "a plane has a covariance before it is mended");
   }
 
   void look_at_map(const pf_report_t& report) const {
