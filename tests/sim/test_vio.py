@@ -45,5 +45,11 @@ with tempfile.TemporaryDirectory() as name:
     without, _ = report(folder, "--seconds", "12", "--no-imu")
     require(without["starts"]["accepted"] == 0 and not without["verdict"], "metres without a unit")
 
+    gap, _ = report(folder, "--seconds", "14", "--fault", "gap", "--fault-at", "7")
+    require(gap["lost_runs"] == 0 and gap["refused"] == 0, "lost by a unit that stops for a second")
+    require(gap["fault"]["tracked_after"] > 0.99 and gap["fault"]["worst_sigmas_after"] < 4, f"after a gap: {gap['fault']}")
+
+    unknown = subprocess.run([BIN / "pf-sim", "vio", "--fault", "magic"], capture_output=True, text=True)
+    require(unknown.returncode == 2 and "clock-jump" in unknown.stderr, f"{unknown.returncode}: {unknown.stderr}")
     bad = subprocess.run([BIN / "pf-sim", "vio", "--seeds", "0"], capture_output=True, text=True)
     require(bad.returncode == 2 and len(bad.stderr.splitlines()) == 1, f"{bad.returncode}: {bad.stderr}")

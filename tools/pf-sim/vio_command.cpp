@@ -19,9 +19,9 @@ struct Choices {
   VioOptions vio;
   int seeds = 20, jobs = 2;
   std::uint64_t first_seed = 1;
-  bool no_imu = false;
+  bool no_imu = false, still = false;
   double noise_scale = 1;
-  std::string json_file, csv;
+  std::string json_file, csv, fault = "none";
 };
 
 struct Job {
@@ -111,6 +111,11 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
   out["path_m"] = of_all(s, c.seeds, &VioSummary::path_m);
   out["scale_error_5s"] = of_all(s, c.seeds, &VioSummary::scale_error_5s);
   out["scale_error"] = of_all(s, c.seeds, &VioSummary::scale_error_end);
+  out["wander_m"] = of_all(s, c.seeds, &VioSummary::wander_m);
+  std::vector<VioSummary> in_degrees(s, s + c.seeds);
+  for (VioSummary& one : in_degrees) one.wander_rad *= 180 / 3.14159265358979;
+  out["wander_deg"] = of_all(in_degrees.data(), c.seeds, &VioSummary::wander_rad);
+  out["worst_bias_sigmas"] = of_all(s, c.seeds, &VioSummary::worst_bias_sigmas);
   out["worst_sigmas"] = of_all(s, c.seeds, &VioSummary::worst_sigmas);
   out["gauge_growth"] = growth;
   out["starts"] = {{"tried", c.seeds}, {"accepted", started}};
@@ -147,6 +152,29 @@ void print_vio(const json& j, bool with_imu) {
                 number("/frames_until_tracked_again/runs"));
 }
 
+/// A camera that rests to the end: how far it wanders. True where it stays within 2 mm and 0.1 degrees, with biases inside of 3 sigma.
+bool print_still(const json& j) {
+  const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
+  const bool stays = number("/wander_m/max") < 0.002 && number("/wander_deg/max") < 0.1;
+  const bool inside = number("/worst_bias_sigmas/max") < 3;
+  std::printf(
+      "still: position wanders by %.2f mm (largest %.2f), rotation by %.3f degrees (largest %.3f), biases at most %.1f "
+      "sigma "
+      "off\nverdict: %s\n",
+      1e3 * number("/wander_m/median"), 1e3 * number("/wander_m/max"), number("/wander_deg/median"),
+      number("/wander_deg/max"), number("/worst_bias_sigmas/max"), stays && inside ? "yes" : "no");
+  return stays && inside;
+}
+
+void print_fault(const json& j) {
+  const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
+  std::printf(
+      "  fault %s: from 5 s after its beginning on pose NEES %.2f, error at most %.1f of its sigma, %.1f %% tracked; "
+      "%g samples refused\n",
+      j.at("fault").at("name").get<std::string>().c_str(), number("/fault/nees_after"),
+      number("/fault/worst_sigmas_after"), 100 * number("/fault/tracked_after"), number("/fault/refused_samples"));
+}
+
 /// Bounds that the simulated unit should meet: lib/docs/inertial.md.
 bool verdict(const Choices& c, const json& j) {
   const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
@@ -161,6 +189,25 @@ bool verdict(const Choices& c, const json& j) {
   return honest && scaled && stays && all;
 }
 
+/// What became of a fault, over all runs.
+json of_fault(const Choices& c, const VioSummary* s) {
+  double nees = 0, frames = 0, tracked = 0, worst = 0, refused = 0;
+  for (int i = 0; i < c.seeds; ++i) {
+    nees += s[i].nees_after;
+    frames += s[i].frames_after;
+    tracked += s[i].tracked_after;
+    worst = std::max(worst, s[i].worst_sigmas_after);
+    refused += s[i].refused_samples;
+  }
+  frames = std::max(1.0, frames);
+  return {{"name", c.fault},
+          {"at_s", c.vio.fault_at_s},
+          {"nees_after", nees / frames},
+          {"worst_sigmas_after", worst},
+          {"tracked_after", tracked / frames},
+          {"refused_samples", refused}};
+}
+
 int run(Choices c) {
   const VioOptions& o = c.vio;
   if (c.seeds < 1 || c.seeds > 10000) return fail("--seeds is 1 to 10000");
@@ -171,6 +218,17 @@ int run(Choices c) {
   if (!(o.imu.rate_hz >= 20 && o.imu.rate_hz <= 2000)) return fail("--imu-rate is 20 to 2000 samples a second");
   if (!(o.rest_s >= 0)) return fail("--rest is 0 seconds or more");
   if (!(c.noise_scale > 0)) return fail("--noise-scale is above 0");
+  for (int i = 0; i < static_cast<int>(VioFault::kCount); ++i)
+    if (c.fault == name_of(static_cast<VioFault>(i))) c.vio.fault = static_cast<VioFault>(i);
+  if (c.fault != name_of(c.vio.fault)) {
+    std::string names;
+    for (int i = 1; i < static_cast<int>(VioFault::kCount); ++i)
+      names += (i > 1 ? ", " : "") + std::string(name_of(static_cast<VioFault>(i)));
+    return fail("--fault " + c.fault + ": write one of " + names);
+  }
+  if (c.vio.fault != VioFault::kNone && !(o.fault_at_s >= 0 && o.fault_at_s + 6 < o.seconds))
+    return fail("--fault-at is 0 seconds or more, and at least 6 before the end");
+  if (c.still) c.vio.rest_s = o.seconds + 1;
   c.vio.use_imu = !c.no_imu;
   for (double* density :
        {&c.vio.imu.gyro_density, &c.vio.imu.accel_density, &c.vio.imu.gyro_walk, &c.vio.imu.accel_walk})
@@ -196,8 +254,10 @@ int run(Choices c) {
                      {"first_seed", c.first_seed},
                      {"blackout_at_s", o.blackout_at_s},
                      {"blackout_s", o.blackout_s}};
-  print_vio(out, c.vio.use_imu);
-  out["verdict"] = c.vio.use_imu && verdict(c, out);
+  if (c.vio.fault != VioFault::kNone) out["fault"] = of_fault(c, job.summaries);
+  if (!c.still) print_vio(out, c.vio.use_imu);
+  if (c.vio.fault != VioFault::kNone) print_fault(out);
+  out["verdict"] = c.still ? print_still(out) : c.vio.use_imu && verdict(c, out);
   Runs runs;
   runs.seeds = c.seeds;
   runs.frames = static_cast<int>(frames);
@@ -229,7 +289,12 @@ void add_vio(CLI::App& app, int& result) {
   command->add_option("--points", c->vio.points, "of the room");
   command->add_option("--blackout-at", c->vio.blackout_at_s, "when the lens is covered [s]");
   command->add_option("--blackout", c->vio.blackout_s, "for how long [s]; 0: never");
+  command->add_option(
+      "--fault", c->fault,
+      "gap, stop, late, repeated, disorder, saturated, jitter, scale, clock-jump, frames-stop or mount");
+  command->add_option("--fault-at", c->vio.fault_at_s, "when it begins, where it has a beginning [s]");
   command->add_flag("--rendered", c->vio.rendered, "pictures of the room of 4 m, in place of points");
+  command->add_flag("--still", c->still, "the camera rests to the end");
   command->add_flag("--no-imu", c->no_imu, "the same walk with the constant-velocity model, up to scale");
   command->add_option("--jobs", c->jobs, "processes at a time");
   command->add_option("--json", c->json_file, "report to write");

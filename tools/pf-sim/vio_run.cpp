@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "context.h"
@@ -19,6 +20,16 @@ using pf::sim::Vec3;
 constexpr int kGaugeEvery = 50;    // frames
 constexpr double kScaleAfter = 5;  // [s] of motion, when the scale is judged first
 
+constexpr double kAfter = 5;          // [s] from the beginning of a fault, when all should be well again
+constexpr double kStill = 1;          // [s] that a unit or a camera stops
+constexpr double kLateBy = 0.02;      // [s]
+constexpr double kClockJump = 0.05;   // [s]
+constexpr double kJitter = 1e-3;      // [s]
+constexpr double kScaleError = 0.01;  // relative
+constexpr double kGyroRange = 0.4;    // [rad/s]
+constexpr double kAccelRange = 10.5;  // [m/s^2]
+constexpr int kDisorderEvery = 10;    // samples
+
 pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   pf_config_t config;
   pf_config_default(&config);
@@ -34,6 +45,10 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
     config.plane.enabled = 0;
   }
   if (!o.use_imu) return config;
+  if (o.fault == VioFault::kSaturated) {
+    config.imu.gyro_range = kGyroRange;
+    config.imu.accel_range = kAccelRange;
+  }
   config.motion.model = PF_MOTION_INERTIAL;
   config.imu.gyro_density = o.imu.gyro_density;
   config.imu.accel_density = o.imu.accel_density;
@@ -79,6 +94,18 @@ class Run {
     imu.gyro_bias = bias.normal3() * o.sigma_gyro_bias;
     imu.accel_bias = bias.normal3() * o.sigma_accel_bias;
     imu.seed = seed;
+    if (o.fault == VioFault::kGap) {
+      imu.gap_at_s = o.fault_at_s;
+      imu.gap_s = kStill;
+    }
+    if (o.fault == VioFault::kJitter) imu.jitter_s = kJitter;
+    if (o.fault == VioFault::kScale) imu.gyro_scale = imu.accel_scale = kScaleError;
+    if (o.fault == VioFault::kSaturated) {
+      imu.gyro_range = kGyroRange;
+      imu.accel_range = kAccelRange;
+    }
+    if (o.fault == VioFault::kMount)  // the truth; the config has it the other way round
+      imu.R_BC = pf::sim::rotation_exp({3.14159265358979, 0, 0}) * imu.R_BC;
     return imu;
   }
 
@@ -94,10 +121,25 @@ class Run {
 
   /// Samples up to a frame's time, on their own clock.
   void push_samples(std::int64_t t_ns) {
+    const auto in_ns = [](double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); };
+    const bool wrong = o_.fault != VioFault::kNone && t_ns >= in_ns(o_.fault_at_s);
+    const std::int64_t until_ns = wrong && o_.fault == VioFault::kLate ? t_ns - in_ns(kLateBy) : t_ns;
     std::vector<pf_imu_sample_t> samples;
-    while (sensor_.next_ns() <= t_ns) samples.push_back(sensor_.next());
-    if (!o_.use_imu || samples.empty()) return;
-    out_.refused += pf_push_imu(context_.slam, samples.data(), samples.size()) != PF_OK;
+    while (sensor_.next_ns() <= until_ns) {
+      samples.push_back(sensor_.next());
+      if (wrong && o_.fault == VioFault::kClockJump) samples.back().t_ns += in_ns(kClockJump);
+    }
+    if (!o_.use_imu || samples.empty() || (wrong && o_.fault == VioFault::kStop)) return;
+    if (wrong && o_.fault == VioFault::kDisorder)
+      for (std::size_t i = 1; i < samples.size(); ++i)
+        if (++counted_ % kDisorderEvery == 0) std::swap(samples[i - 1], samples[i]);
+    if (!wrong) {
+      out_.refused += pf_push_imu(context_.slam, samples.data(), samples.size()) != PF_OK;
+      return;
+    }
+    for (const pf_imu_sample_t& sample : samples)  // what is refused is no reason to do without the others
+      for (int again = 0; again < (o_.fault == VioFault::kRepeated ? 2 : 1); ++again)
+        out_.refused_samples += pf_push_imu(context_.slam, &sample, 1) != PF_OK;
   }
 
   pf_status_t push_points(const Pose& pose, std::int64_t t_ns, bool dark) {
@@ -118,6 +160,8 @@ class Run {
     const auto t_ns = static_cast<std::int64_t>(std::llround(k * 1e9 / o_.rate_hz));
     const double t = static_cast<double>(t_ns) * 1e-9;
     push_samples(t_ns);
+    rows_[k].nees_position = rows_[k].nees_pose = -1;
+    if (o_.fault == VioFault::kFramesStop && t >= o_.fault_at_s && t < o_.fault_at_s + kStill) return true;
     const Pose sim_pose = world_.path()(t), truth = truth_at(t);
     const bool dark = is_dark(t);
     const pf_status_t status = o_.rendered ? push_picture(sim_pose, t_ns, dark) : push_points(sim_pose, t_ns, dark);
@@ -141,6 +185,14 @@ class Run {
       if (row.sigma_m > 0 && row.error_m > 1e-4F)
         out_.worst_sigmas = std::max(out_.worst_sigmas, static_cast<double>(row.error_m / row.sigma_m));
     }
+    if (o_.fault != VioFault::kNone && t >= o_.fault_at_s + kAfter) {
+      ++out_.frames_after;
+      out_.tracked_after += status == PF_OK;
+      if (row.nees_pose >= 0) out_.nees_after += row.nees_pose;
+      if (row.sigma_m > 0)
+        out_.worst_sigmas_after = std::max(out_.worst_sigmas_after, static_cast<double>(row.error_m / row.sigma_m));
+    }
+    if (judged) note_wander(pose);
     if (judged) {
       const Vec3 p{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
       along_ += p.dot(truth.p_WC);
@@ -177,12 +229,22 @@ class Run {
       e[2 + i] = truth[i] - unit.gyro_bias[i];
       e[5 + i] = truth[3 + i] - unit.accel_bias[i];
     }
+    for (int i = 2; i < 8; ++i)
+      out_.worst_bias_sigmas = std::max(out_.worst_bias_sigmas, std::fabs(e[i]) / std::sqrt(unit.covariance[9 * i]));
     ++out_.unit_frames;
     out_.nees_gravity += normalised_error(e, unit.covariance, 2, 8, 0);
     out_.nees_gyro_bias += normalised_error(e + 2, unit.covariance, 3, 8, 2);
     out_.nees_accel_bias += normalised_error(e + 5, unit.covariance, 3, 8, 5);
     if (k % kGaugeEvery == 0) note_gauge(report.state_dim);
     return true;
+  }
+
+  void note_wander(const pf_pose_t& pose) {
+    const Pose now{pf::sim::rotation_of(pose.q_WC), {pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]}};
+    if (!has_rested_) rested_ = now;
+    has_rested_ = true;
+    out_.wander_m = std::max(out_.wander_m, (now.p_WC - rested_.p_WC).norm());
+    out_.wander_rad = std::max(out_.wander_rad, pf::sim::rotation_log(rested_.R_WC.transposed() * now.R_WC).norm());
   }
 
   void note_gauge(int state_dim) {
@@ -228,12 +290,22 @@ class Run {
   Pose last_;
   std::vector<double> scratch_;
   std::vector<std::uint8_t> grey_;
+  std::int64_t counted_ = 0;        ///< samples, towards the next one that comes too late
   double along_ = 0, squares_ = 0;  ///< of positions, the estimated ones along the true ones
+  Pose rested_;                     ///< the first one in metres
+  bool has_rested_ = false;
   double gauge_[49] = {};
   bool has_gauge_ = false;
 };
 
 }  // namespace
+
+const char* name_of(VioFault fault) {
+  constexpr const char* kNames[] = {"none",      "gap",    "stop",  "late",       "repeated",    "disorder",
+                                    "saturated", "jitter", "scale", "clock-jump", "frames-stop", "mount"};
+  static_assert(std::size(kNames) == static_cast<std::size_t>(VioFault::kCount));
+  return kNames[static_cast<int>(fault)];
+}
 
 int vio_frames(const VioOptions& options) { return static_cast<int>(options.seconds * options.rate_hz); }
 

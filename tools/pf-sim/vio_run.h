@@ -7,6 +7,25 @@
 
 namespace pfsim {
 
+/// What may be wrong with the unit, from a time on.
+enum class VioFault {
+  kNone,
+  kGap,         ///< no samples for a second
+  kStop,        ///< none for the rest of the run
+  kLate,        ///< samples of the last 20 ms come after their frame
+  kRepeated,    ///< every sample comes twice
+  kDisorder,    ///< every tenth sample comes after the next one
+  kSaturated,   ///< readings end at half of what the hand does
+  kJitter,      ///< time stamps are off by 1 ms
+  kScale,       ///< both sensors read 1 % too much
+  kClockJump,   ///< the unit's clock jumps by 50 ms
+  kFramesStop,  ///< no frames for a second, while samples go on
+  kMount,       ///< the unit is mounted the other way round, by 180 degrees
+  kCount
+};
+/// As on the command line.
+const char* name_of(VioFault fault);
+
 /// A hand-held walk through a room with an inertial unit: nothing is known beforehand but the unit's noise.
 struct VioOptions {
   double seconds = 60, rate_hz = 30;
@@ -18,8 +37,10 @@ struct VioOptions {
   double sigma_accel_bias = 0.1;  ///< [m/s^2]
   int points = 300;
   bool use_imu = true;
-  bool rendered = false;    ///< pictures of the room of 4 m, in place of points
-  double noise_grey = 2;    ///< of the pictures
+  bool rendered = false;  ///< pictures of the room of 4 m, in place of points
+  double noise_grey = 2;  ///< of the pictures
+  VioFault fault = VioFault::kNone;
+  double fault_at_s = 10;
   pf::sim::ImuOptions imu;  ///< noise, rate and mounting
 };
 
@@ -36,6 +57,12 @@ struct VioSummary {
   double gauge_growth = 0;                    ///< of the information about the six directions
   double worst_sigmas = 0;                    ///< largest position error in its own sigma
   double imu_seconds = 0, frame_seconds = 0;  ///< in all frames
+  double nees_after = 0,
+         worst_sigmas_after = 0;  ///< of the pose, from 5 s after a fault began on: sum, and largest position error
+  std::int32_t frames_after = 0;
+  double wander_m = 0, wander_rad = 0;  ///< of a camera that rests to the end: farthest from its first pose in metres
+  double worst_bias_sigmas = 0;         ///< largest error of a bias in its own sigma
+  std::int32_t tracked_after = 0, refused_samples = 0;
   std::int32_t dark_end_frame = -1, tracked_again_frame = -1;
 };
 
