@@ -195,6 +195,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   bool no_film = false;
   bool no_gauge = false;
   bool no_planes = false;
+  bool no_points = false;
   const std::map<std::string, pf_camera_estimate_t> lens_names = {
       {"exact", PF_CAMERA_EXACT}, {"consider", PF_CAMERA_CONSIDER}, {"estimate", PF_CAMERA_ESTIMATE}};
   const std::map<std::string, pf_kernels_t> kernel_names = {
@@ -213,6 +214,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "auto, pose:FILE, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
       ->capture_default_str();
   app.add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start (JSON)");
+  app.add_option("--patches", options.patches, "patches of walls that are followed, beside points")
+      ->check(CLI::Range(0, 32));
+  app.add_flag("--no-points", no_points, "patches of walls alone");
   app.add_option("--withdraw-target-after", options.withdraw_target_after, "measure the target no more after N frames")
       ->check(at_least(0));
   app.add_option("--frames", options.frames, "at most N frames")->check(at_least(1));
@@ -281,6 +285,14 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   if (!timestamps.empty()) {
     options.timestamps = timestamps == "nominal" ? PF_TIMESTAMPS_NOMINAL : PF_TIMESTAMPS_REAL;
   }
+  if (options.walls.empty() && (no_points || options.patches > 0)) {
+    code = refuse(std::string(no_points ? "--no-points" : "--patches") + " needs walls: add --walls FILE");
+    return Parsed::kExit;
+  }
+  if (no_points && (options.patches == 0 || options.features_in_view > 0)) {
+    code = refuse("--no-points follows patches and no features: leave --patches 0 and --features-in-view away");
+    return Parsed::kExit;
+  }
   const auto set = kernel_names.find(kernels);
   std::string wrong = check(options, backend);
   if (wrong.empty() && !timestamps.empty() && timestamps != "real" && timestamps != "nominal") {
@@ -308,6 +320,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   options.film = !no_film;
   options.keep_gauge = !no_gauge;
   options.planes = !no_planes;
+  options.points = !no_points;
   return Parsed::kRun;
 }
 

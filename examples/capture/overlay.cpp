@@ -103,6 +103,7 @@ const Canvas& Overlay::draw(const FrameView& view) {
   if (view.has_pose) {
     draw_target(view.pose);
   }
+  draw_patches(view);
   draw_tracks(view);
   draw_hits(view);
   cairo_restore(pen);
@@ -193,6 +194,28 @@ void Overlay::draw_target(const pf_pose_t& pose) {
   canvas_.colour(kTarget, 0.9);
   cairo_set_line_width(pen, 1.5);
   cairo_stroke(pen);
+}
+
+/// Outlines of patches of walls, in the colours of matches; those out of view are not drawn.
+void Overlay::draw_patches(const FrameView& view) {
+  cairo_t* pen = canvas_.pen();
+  for (const pf_patch_t& patch : view.patches) {
+    if (patch.status == 0) {
+      continue;
+    }
+    const Colour colour = patch.status == PF_MATCH_INLIER    ? kPoint
+                          : patch.status == PF_MATCH_OUTLIER ? kOutlier
+                          : patch.status == PF_MATCH_MISSED  ? kMissed
+                                                             : kNew;
+    cairo_new_path(pen);
+    for (const auto& corner : patch.corners_px) {
+      cairo_line_to(pen, zoom_ * (corner[0] + 0.5), zoom_ * (corner[1] + 0.5));
+    }
+    cairo_close_path(pen);
+    canvas_.colour(colour, 0.9);
+    cairo_set_line_width(pen, patch.status == PF_MATCH_INLIER ? 2.4 : 1.2);
+    cairo_stroke(pen);
+  }
 }
 
 void Overlay::draw_tracks(const FrameView& view) {

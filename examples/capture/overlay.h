@@ -51,6 +51,7 @@ class Overlay {
 
   void draw_image(const pf_image_t& image);
   void draw_target(const pf_pose_t& pose);
+  void draw_patches(const FrameView& view);
   void draw_tracks(const FrameView& view);
   void draw_hits(const FrameView& view);
   void draw_numbers(const FrameView& view, double x, double y, double width);

@@ -16,6 +16,8 @@ namespace {
 constexpr double kSpeedSigma = 0.5;
 constexpr double kRateSigma = 0.5;
 
+constexpr int32_t kPatchesAlone = 16;  ///< of walls, where there are no points
+
 int64_t clock_ns(void*) { return steady_ns(); }
 
 constexpr size_t kMaxLines = 400;
@@ -55,6 +57,8 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   set(config_.capacity.max_state_dim, options.max_state_dim);
   set(config_.capacity.max_observations, options.max_observations);
   set(config_.map.features_in_view, options.features_in_view);
+  if (!options.points) config_.map.features_in_view = 0;
+  config_.capacity.max_patches = options.patches >= 0 ? options.patches : options.points ? 0 : kPatchesAlone;
   if (!plan_.open(options.walls, error)) {
     code = kExitUsage;
     return false;
@@ -195,6 +199,10 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
     count = 0;
   }
   view.features.resize(std::min(count, view.features.size()));
+  count = 0;
+  view.patches.resize(static_cast<size_t>(config_.capacity.max_patches));
+  pf_get_patches(slam_, view.patches.data(), view.patches.size(), &count);
+  view.patches.resize(std::min(count, view.patches.size()));
   view.planes = read_planes(slam_);
   return true;
 }

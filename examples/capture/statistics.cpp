@@ -113,6 +113,7 @@ void Statistics::add(const FrameView& view) {
     state_dim_.add(report.state_dim);
     add_folding(view);
   }
+  add_patches(view);
   const bool untracked = !view.tracked;  // the first frames of a start may be tracked already
   starting_ += untracked && report.state == PF_STATE_STARTING ? 1 : 0;
   lost_ += untracked && report.state == PF_STATE_LOST ? 1 : 0;
@@ -134,6 +135,27 @@ void Statistics::add(const FrameView& view) {
   last_planes_ = view.planes;
   last_hits_ = view.hits;
   ++frames_;
+}
+
+/// A patch is lost where it was found in the frame before, is looked for and not found; found again where that ends.
+void Statistics::add_patches(const FrameView& view) {
+  std::map<uint32_t, int32_t> now;
+  int measured = 0;
+  for (const pf_patch_t& patch : view.patches) {
+    const auto before = last_patches_.find(patch.id);
+    const bool was = before != last_patches_.end();
+    const bool is_missed = patch.status == PF_MATCH_MISSED || patch.status == PF_MATCH_OUTLIER;
+    measured += patch.status == PF_MATCH_INLIER;
+    lost_patches_ += is_missed && was && before->second == PF_MATCH_INLIER;
+    refound_patches_ += patch.status == PF_MATCH_INLIER && was && before->second == PF_MATCH_MISSED && patch.frames > 1;
+    // What is out of view stays what it was.
+    now[patch.id] = is_missed ? PF_MATCH_MISSED : patch.status != 0 || !was ? patch.status : before->second;
+  }
+  last_patches_ = std::move(now);
+  if (view.tracked) {
+    patches_.add(measured);
+    cameras_.add(view.report.cameras);
+  }
 }
 
 void Statistics::add_folding(const FrameView& view) {
@@ -187,10 +209,12 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
                                 const RelativeMotion& relative, const std::string& live, const std::string& imu,
                                 const std::string& ended) const {
   constexpr const char* kStages[] = {"pyramid", "predict", "search", "gate", "update", "map"};
+  const bool has_patches = session.config().capacity.max_patches > 0;
   Json stages = Json::object();
   for (int i = 0; i <= PF_STAGE_MAP; ++i) {
     stages[kStages[i]] = rounded(stage_ms_[i].quantile(0.5));
   }
+  if (has_patches) stages["patch"] = rounded(stage_ms_[PF_STAGE_PATCH].quantile(0.5));
   const auto mean_of = [&](double sum) {
     return folding_.frames > 0 ? Json(rounded(sum / static_cast<double>(folding_.frames))) : Json();
   };
@@ -250,6 +274,12 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["state_dim_held"] = last_report_.state_dim_held;
   json["planes"] = planes_json(last_planes_);
   json["walls"] = session.plan().to_json(session.slam());
+  json["patches"] = has_patches ? Json{{"median", patches_.quantile(0.5)},
+                                       {"max", patches_.largest()},
+                                       {"lost", lost_patches_},
+                                       {"refound", refound_patches_}}
+                                : Json();
+  json["cameras"] = has_patches ? Json{{"median", cameras_.quantile(0.5)}, {"max", cameras_.largest()}} : Json();
   json["hits"] = hits_json(last_hits_);
   json["gravity"] = options.has_gravity ? Json(options.gravity_W) : Json();
   json["nis_per_dof"] = nis_dof_ > 0 ? Json(rounded(nis_ / static_cast<double>(nis_dof_))) : Json();

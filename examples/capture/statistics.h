@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,7 @@ class Statistics {
 
  private:
   void add_folding(const FrameView& view);
+  void add_patches(const FrameView& view);
   int64_t frames_ = 0;
   int64_t tracked_ = 0;
   int64_t starting_ = 0;
@@ -89,6 +91,9 @@ class Statistics {
   std::vector<PlaneView> last_planes_;
   std::vector<Hit> last_hits_;
   Histogram ms_;
+  std::map<uint32_t, int32_t> last_patches_;  ///< status of each by its id
+  int64_t lost_patches_ = 0, refound_patches_ = 0;
+  CountHistogram patches_, cameras_;
   CountHistogram inliers_, attempts_, state_dim_, planes_, folded_;
   Histogram stage_ms_[PF_STAGE_COUNT];
 };

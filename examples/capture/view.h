@@ -35,6 +35,7 @@ struct FrameView {
   double ms = 0.0;
   std::vector<pf_match_t> tracks;
   std::vector<pf_feature_t> features;
+  std::vector<pf_patch_t> patches;
   std::vector<PlaneView> planes;
   std::vector<Hit> hits;  ///< what the user pointed at so far
 };

@@ -9,7 +9,7 @@
 #include "sim/imu.h"
 #include "sim/paths.h"
 #include "sim/render.h"
-#include "sim/scene.h"
+#include "sim/scene_box.h"
 #include "sim/sensor.h"
 #include "sim/trajectory.h"
 
@@ -17,7 +17,47 @@ using namespace pf::sim;
 
 namespace {
 
-const char* const kScenes[] = {"desk", "room", "wall", "rotation", "person", "exposure", "repeat", nullptr};
+/// A scene: what there is to see, the way through it, how long that takes, and what of the options is its own.
+struct SceneKind {
+  const char* name;
+  Scene (*make)(Random&, const SceneOptions&);
+  Trajectory (*path)(Random&);
+  int frames;
+  void (*adjust)(pf_sim_options_t*);
+};
+
+Trajectory turning_path(Random& way) {
+  return turning({look_along({0, 0.05, 1}, {0, 1, 0}), {0.02, -0.05, -0.7}}, way, 0.5, 0.15, 10.0);
+}
+Trajectory circle_path(Random&) { return box_circle(kBoxSeconds, 0); }
+
+void adjust_box(pf_sim_options_t* o) {
+  constexpr double kFocal = 601.8;  // 56 degrees across
+  o->camera.width = 640;
+  o->camera.height = 480;
+  o->camera.fx = o->camera.fy = kFocal;
+  o->camera.cx = 319.5;
+  o->camera.cy = 239.5;
+  o->target = 0;
+  o->shake_m = o->shake_rad = 0.01;
+}
+
+const SceneKind kScenes[] = {
+    {"desk", make_desk, desk_path, 570, nullptr},
+    {"room", make_room, room_path, 840, nullptr},
+    {"wall", make_wall, wall_path, 390, nullptr},
+    {"rotation", make_desk, turning_path, 300, [](pf_sim_options_t* o) { o->shake_m = 0; }},
+    {"person", make_room, room_path, 840, [](pf_sim_options_t* o) { o->person = 1; }},
+    {"exposure", make_desk, desk_path, 570, [](pf_sim_options_t* o) { o->exposure_step = 1.6; }},
+    {"repeat", make_desk, desk_path, 570, [](pf_sim_options_t* o) { o->repeated_texture = 1; }},
+    {"box", make_box, circle_path, 930, adjust_box},
+};
+
+const SceneKind* find_scene(const char* name) {
+  const auto found = std::find_if(std::begin(kScenes), std::end(kScenes),
+                                  [&](const SceneKind& s) { return std::string(s.name) == name; });
+  return found == std::end(kScenes) ? nullptr : found;
+}
 
 enum Stream : std::uint64_t { kSceneStream, kPathStream, kNoiseStream, kFaultStream, kGainStream, kBiasStream };
 
@@ -98,34 +138,31 @@ struct pf_sim {
 extern "C" {
 
 const char* pf_sim_scene_name(int32_t index) {
-  return index >= 0 && index < static_cast<int32_t>(std::size(kScenes)) ? kScenes[index] : nullptr;
+  return index >= 0 && index < static_cast<int32_t>(std::size(kScenes)) ? kScenes[index].name : nullptr;
 }
 
 pf_status_t pf_sim_options_default(const char* scene, pf_sim_options_t* options) {
   if (!scene || !options) return PF_ERROR_NULL;
-  const auto known =
-      std::find_if(kScenes, std::end(kScenes) - 1, [&](const char* s) { return std::string(s) == scene; });
-  if (known == std::end(kScenes) - 1) return PF_ERROR_RANGE;
-  const std::string name = scene;
+  const SceneKind* kind = find_scene(scene);
+  if (!kind) return PF_ERROR_RANGE;
   *options = {};
   options->seed = 1;
   options->camera = {PF_CAMERA_PINHOLE,  320,  240,   205.0, 205.0, 159.5, 119.5, {}, 0, PF_CAMERA_EXACT,
                      PF_TIMESTAMPS_REAL, 0.01, 0.001, 3.2,   {0.05}};
   options->rate_hz = 30;
-  options->frames = name == "room" || name == "person" ? 840 : name == "wall" ? 390 : name == "rotation" ? 300 : 570;
+  options->frames = kind->frames;
   options->samples = 2;
   options->noise_grey = 2;
   options->exposure_s = 0.006;
   options->blur_samples = 1;
   options->gain = 1;
-  options->exposure_step = name == "exposure" ? 1.6 : 1;
+  options->exposure_step = 1;
   options->exposure_every = 2;
   options->vignetting = 0.1;
   options->target = 1;
-  options->repeated_texture = name == "repeat";
-  options->person = name == "person";
-  options->shake_m = name == "rotation" ? 0 : 0.003;
+  options->shake_m = 0.003;
   options->shake_rad = 0.006;
+  if (kind->adjust) kind->adjust(options);
   return PF_OK;
 }
 
@@ -134,23 +171,13 @@ pf_sim_t* pf_sim_open(const char* scene, const pf_sim_options_t* options) {
   if (pf_sim_options_default(scene, &own) != PF_OK) return nullptr;
   if (options) own = *options;
   if (!valid(own)) return nullptr;
-  const std::string name = scene;
+  const SceneKind& kind = *find_scene(scene);
   auto sim = std::make_unique<pf_sim>();
   sim->options = own;
   const SceneOptions what{own.target != 0, own.repeated_texture != 0, own.person != 0};
   Random scenery(own.seed, kSceneStream), way(own.seed, kPathStream);
-  if (name == "room" || name == "person") {
-    sim->scene = make_room(scenery, what);
-    sim->path = room_path(way);
-  } else if (name == "wall") {
-    sim->scene = make_wall(scenery, what);
-    sim->path = wall_path(way);
-  } else {
-    sim->scene = make_desk(scenery, what);
-    sim->path = name == "rotation"
-                    ? turning({look_along({0, 0.05, 1}, {0, 1, 0}), {0.02, -0.05, -0.7}}, way, 0.5, 0.15, 10.0)
-                    : desk_path(way);
-  }
+  sim->scene = kind.make(scenery, what);
+  sim->path = kind.path(way);
   sim->path = shaken(std::move(sim->path), way, own.shake_m, own.shake_rad);
   if (own.rest_s > 0) sim->path = after_rest(std::move(sim->path), own.rest_s, kUnderWay);
   sim->renderer = std::make_unique<Renderer>(own.camera, own.samples);

@@ -82,10 +82,35 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES_REAL(plane.fix_sigma, -1, 10.1);
   NAMES(capacity.max_kept_views, -1);
   NAMES(capacity.max_kept_views, 201);
+  NAMES(capacity.max_patches, -1);
+  NAMES(capacity.max_patches, 33);
+  NAMES(capacity.patch_side_px, 31);
+  NAMES(capacity.patch_side_px, 129);
+  NAMES(capacity.max_cameras, -1);
+  NAMES(capacity.max_cameras, 65);
+  NAMES(map.features_in_view, 0); /* without patches */
   NAMES(capacity.max_imu_samples, -1);
   NAMES(capacity.max_imu_samples, 10001);
   NAMES_REAL(imu.gyro_range, -1, 1001);
   NAMES_REAL(imu.accel_range, -1, 1.1e5);
+}
+
+static void test_patches_should_take_at_most_24_kib_each_and_nothing_where_there_are_none(void) {
+  pf_memory_t none, one, three;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &none));
+  config.capacity.patch_side_px = 64;
+  config.capacity.max_cameras = 0;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &one));
+  TEST_ASSERT_EQUAL_size_t(none.bytes, one.bytes);
+  config.capacity.max_patches = 1;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &one));
+  config.capacity.max_patches = 3;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &three));
+  TEST_ASSERT_TRUE(three.bytes > one.bytes && three.bytes - one.bytes <= 2 * 24 * 1024);
+  config.map.features_in_view = 0; /* patches alone */
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  config.map.features_in_view = 7;
+  names(PF_ERROR_CONFIG, "map.features_in_view");
 }
 
 static void test_check_should_name_what_the_inertial_model_lacks(void) {
@@ -228,6 +253,7 @@ int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_check_should_say_nothing_when_the_config_is_good);
   RUN_TEST(test_check_should_name_the_field_that_is_out_of_range);
+  RUN_TEST(test_patches_should_take_at_most_24_kib_each_and_nothing_where_there_are_none);
   RUN_TEST(test_check_should_name_what_the_inertial_model_lacks);
   RUN_TEST(test_check_should_name_the_number_of_the_camera_that_makes_no_sense);
   RUN_TEST(test_check_should_name_the_sigma_of_the_camera_that_makes_no_sense);

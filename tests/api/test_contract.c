@@ -54,6 +54,7 @@ static void test_every_call_should_refuse_null(void) {
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_project_point(NULL, three, out, NULL));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_features(NULL, NULL, 0, &count));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_matches(NULL, NULL, 0, &count));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_patches(NULL, NULL, 0, &count));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_report(NULL, &report));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_get_gauge_information(NULL, scratch, 8, out));
   REFUSES(PF_ERROR_NULL, pf_start_from_target(slam, NULL));
@@ -78,6 +79,10 @@ static void test_every_call_should_refuse_null(void) {
   REFUSES(PF_ERROR_NULL, pf_get_features(slam, NULL, 0, NULL));
   REFUSES(PF_ERROR_NULL, pf_get_features(slam, NULL, 3, &count));
   REFUSES(PF_ERROR_NULL, pf_get_matches(slam, NULL, 0, NULL));
+  REFUSES(PF_ERROR_NULL, pf_get_patches(slam, NULL, 0, NULL));
+  REFUSES(PF_ERROR_NULL, pf_get_patches(slam, NULL, 1, &count));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_patches(slam, NULL, 0, &count)); /* the config has no room for any */
+  TEST_ASSERT_EQUAL_size_t(0, count);
   REFUSES(PF_ERROR_NULL, pf_get_report(slam, NULL));
   REFUSES(PF_ERROR_NULL, pf_get_gauge_information(slam, NULL, 8, out));
   REFUSES(PF_ERROR_NULL, pf_get_gauge_information(slam, scratch, 8, NULL));

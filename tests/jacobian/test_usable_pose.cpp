@@ -115,7 +115,7 @@ void test_pose_should_be_usable_below_20_degrees_and_half_the_depth_against_the_
     }
     scene.filter.set_P(P);
     Scalar depth = 0;
-    const bool is = is_pose_usable(*scene.filter, f.map, f.frame, &depth);
+    const bool is = is_pose_usable(*scene.filter, f.map, f.frame, nullptr, 0, &depth);
     TEST_ASSERT_TRUE(depth > Scalar(0.9) && depth < Scalar(4.1));
     return is;
   };
@@ -132,7 +132,7 @@ void test_pose_should_not_be_usable_without_inliers() {
   FrameOfScene f(scene);
   for (int i = 0; i < f.frame.match_count(); ++i) f.frame.match(i).status = MatchStatus::kOutlier;
   Scalar depth = 0;
-  TEST_ASSERT_FALSE(is_pose_usable(*scene.filter, f.map, f.frame, &depth));
+  TEST_ASSERT_FALSE(is_pose_usable(*scene.filter, f.map, f.frame, nullptr, 0, &depth));
 }
 
 }  // namespace

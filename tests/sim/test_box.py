@@ -1,4 +1,5 @@
-"""pf-sim box --geometric: a wrong plan is refined, taken as exact it misleads, and a wall that is not there is doubted."""
+"""pf-sim box: a wrong plan is refined, taken as exact it misleads, and a wall that is not there is doubted; rendered, patches of the walls
+alone track the camera."""
 
 import json
 import pathlib
@@ -16,13 +17,15 @@ def main():
     skip_in_cross_builds()
     if not (BIN / "pf-sim").is_file():
         skip("pf-sim was not built")
-    refused = subprocess.run([BIN / "pf-sim", "box"], text=True, stderr=subprocess.PIPE, check=False)
-    if refused.returncode != 2 or "--geometric" not in refused.stderr:
-        fail(f"pf-sim box without --geometric: {refused.returncode}, {refused.stderr}")
+    refused = subprocess.run([BIN / "pf-sim", "box", "--geometric", "--no-points"], text=True, stderr=subprocess.PIPE, check=False)
+    if refused.returncode != 2 or "--no-points" not in refused.stderr:
+        fail(f"pf-sim box --geometric --no-points: {refused.returncode}, {refused.stderr}")
     with tempfile.TemporaryDirectory(prefix="planefold_") as name:
         file = pathlib.Path(name) / "box.json"
         run(BIN / "pf-sim", "box", "--geometric", "--seeds", SEEDS, "--jobs", 2, "--json", file, "--cases", "refined", "exact", "absent")
         cases = json.loads(file.read_text())["cases"]
+        run(BIN / "pf-sim", "box", "--no-points", "--seeds", SEEDS, "--jobs", 2, "--frames", 90, "--json", file, "--cases", "refined")
+        rendered = json.loads(file.read_text())["cases"]["refined"]
     refined, exact, absent = cases["refined"], cases["exact"], cases["absent"]
     rmse = [case["rmse_m"]["worst"] for case in (refined, exact, absent)]
     walls = refined["walls"]
@@ -32,6 +35,8 @@ def main():
         fail(f"walls: {walls}")
     if not 2 < refined["nees_pose"]["mean"] < 12:  # of two runs a perfect filter has 2.2 to 11.7 at any frame
         fail(f"pose NEES {refined['nees_pose']['mean']}")
+    if not (rendered["rmse_m"]["worst"] < 0.02 and rendered["tracked_share"] > 0.98 and rendered["patches"]["inliers"] > 2):
+        fail(f"patches alone: {rendered['rmse_m']}, {rendered['tracked_share']}, {rendered['patches']}")
     wrong = absent["wrong_wall"]
     if wrong["doubted_runs"] != SEEDS or not wrong["seen_before_s"]["worst"] < 2:
         fail(f"the wall that is not there: {wrong}")

@@ -5,7 +5,7 @@
 
 namespace pfsim {
 
-using pf::sim::look_along;
+using pf::sim::box_axes;
 using pf::sim::Mat3;
 using pf::sim::Pose;
 using pf::sim::rotation_exp;
@@ -15,26 +15,16 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180;
-constexpr double kHalf = 0.5;         // of the box [m]
-constexpr double kPoster = 0.45;      // half of a poster [m]
-constexpr double kRadius = 2.0;       // of the circle [m]
-constexpr double kRestSeconds = 1.0;  // before the circle begins
-constexpr double kEaseSeconds = 2.0;  // until the hand has its speed
+using pf::sim::kBoxHalf;
+using pf::sim::kBoxPoster;
 constexpr double kMaxSlantDeg = 66;   // beyond, nobody finds a point of a poster again
 constexpr double kBorder = 8;         // nothing is measured so close to the border [px]
 constexpr double kSigmaSpeed = 0.1;   // of the first velocities [m/s], [rad/s]
 constexpr double kExactSigma = 1e-6;  // [rad], [m]
 constexpr double kAbsentAhead = 0.5;  // of the wall that is not there, before its side [m]
 constexpr double kShift = 1.0;        // of the wall that is elsewhere [m]
-const Vec3 kDown{0, 1, 0};
 
 enum Stream : std::uint64_t { kPointStream = 51, kPathStream, kNoiseStream, kPlanStream, kStartStream };
-
-/// A wall's frame: z out of the box, y up.
-Mat3 frame_of(const Vec3& normal) {
-  const Vec3 up = -kDown;
-  return Mat3::columns(up.cross(normal), up, normal);
-}
 
 void set(const Mat3& R, const Vec3& p, pf_plane_prior_t* wall) {
   for (int i = 0; i < 9; ++i) wall->R_WP[i] = R.m[static_cast<std::size_t>(i)];
@@ -54,20 +44,18 @@ void move_along_normal(double metres, pf_plane_prior_t* wall) {
 
 }  // namespace
 
-Vec3 Box::normal(int side) {
-  const double a = 0.5 * kPi * side;
-  return {std::sin(a), 0, std::cos(a)};
-}
+Vec3 Box::normal(int side) { return pf::sim::box_normal(side); }
 
-Vec3 Box::centre(int side) { return normal(side) * kHalf; }
+Vec3 Box::centre(int side) { return normal(side) * kBoxHalf; }
 
-Box::Box(const BoxOptions& options, const pf_camera_t& camera, double sigma_px, std::uint64_t seed)
+Box::Box(const BoxOptions& options, const pf_camera_t& camera, double sigma_px, std::uint64_t seed,
+         const pf_sim_t* film)
     : options_(options), camera_(camera), sigma_px_(sigma_px), noise_(seed, kNoiseStream) {
   pf::sim::Random place(seed, kPointStream), way(seed, kPathStream), plan(seed, kPlanStream), draw(seed, kStartStream);
   for (int side = 0; side < kBoxSides; ++side) {
-    const Mat3 R = frame_of(normal(side));
+    const Mat3 R = box_axes(side);
     for (int k = 0; k < options.points_on_side; ++k) {
-      const double u = place.uniform(-kPoster, kPoster), v = place.uniform(-kPoster, kPoster);
+      const double u = place.uniform(-kBoxPoster, kBoxPoster), v = place.uniform(-kBoxPoster, kBoxPoster);
       points_.push_back({centre(side) + R * Vec3{u, v, 0}, side});
     }
     // Even over a disk of that radius: each of the two angles has half of the radius as its standard deviation.
@@ -81,20 +69,20 @@ Box::Box(const BoxOptions& options, const pf_camera_t& camera, double sigma_px, 
     wall.covariance[0] = wall.covariance[4] = sigma * sigma;
     wall.covariance[8] = options.sigma_offset * options.sigma_offset;
     wall.outline_count = 4;
-    const double corner[4][2] = {{-kHalf, -kHalf}, {kHalf, -kHalf}, {kHalf, kHalf}, {-kHalf, kHalf}};
+    const double corner[4][2] = {
+        {-kBoxHalf, -kBoxHalf}, {kBoxHalf, -kBoxHalf}, {kBoxHalf, kBoxHalf}, {-kBoxHalf, kBoxHalf}};
     std::copy(&corner[0][0], &corner[0][0] + 8, &wall.outline_P[0][0]);
   }
-  const double loop = options.loop_seconds;
-  path_ = shaken(
-      [loop](double t) {
-        const double since = std::max(0.0, t - kRestSeconds);
-        const double run = since < kEaseSeconds ? since * since / (2 * kEaseSeconds) : since - 0.5 * kEaseSeconds;
-        const double a = 2 * kPi * run / loop;
-        // The circle begins at a corner of the box, where two sides are seen.
-        const Vec3 radial{std::sin(a + 0.25 * kPi), 0, std::cos(a + 0.25 * kPi)};
-        return Pose{look_along(-radial, kDown), radial * kRadius};
-      },
-      way, options.shake_m, options.shake_rad);
+  if (film != nullptr) {
+    path_ = [film](double t) {
+      pf_pose_t pose;
+      pf_sim_pose_at(film, std::llround(1e9 * t), &pose);
+      return Pose{pf::sim::rotation_of(pose.q_WC), {pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]}};
+    };
+  } else {
+    // It begins at a corner of the box, where two sides are seen.
+    path_ = shaken(pf::sim::box_circle(options.loop_seconds, 0.25 * kPi), way, options.shake_m, options.shake_rad);
+  }
 
   const Pose first = path_(0);
   Vec3 v, w;
@@ -125,7 +113,7 @@ std::vector<pf_plane_prior_t> Box::walls(Plan plan) const {
       for (int i = 0; i < 9; i += 4) wall.covariance[i] = kExactSigma * kExactSigma;
   if (plan == Plan::kAbsent) {
     walls.push_back(plan_[1]);
-    set(frame_of(normal(1)), centre(1), &walls.back());
+    set(box_axes(1), centre(1), &walls.back());
     move_along_normal(kAbsentAhead, &walls.back());
     for (int k = 0; k < 4; ++k) walls.back().outline_P[k][0] *= 0.5;
   }

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "planefold/planefold.h"
+#include "planefold_platform/sim.h"
+#include "sim/scene_box.h"
 #include "sim/trajectory.h"
 
 /// A box of 1 m with posters on its four sides, circled by a hand at 2 m, and a plan of it whose angles are wrong by up to 6 degrees: the
@@ -21,23 +23,26 @@ enum class Plan {
   kMissing   ///< three walls: what kShifted is compared with
 };
 
-constexpr int kBoxSides = 4;
+using pf::sim::kBoxSides;
 
 struct BoxOptions {
   int frames = 930;
   double rate_hz = 30;
-  double loop_seconds = 30;     ///< once around, after one second at rest
+  double loop_seconds = 30;     ///< once around, after one second at rest; of points only
   int points_on_side = 40;      ///< of a poster of 0.9 m
   double max_angle_deg = 6;     ///< of a wall's normal in the plan; directions and angles spread evenly over that cone
   double sigma_offset = 0.002;  ///< of a wall in the plan [m]
   double sigma_start_m = 0.002, sigma_start_deg = 0.1;  ///< of the first pose
   double shake_m = 0.01, shake_rad = 0.01;              ///< of the hand
+  double black_from_s = 0, black_s = 0;                 ///< frames that are black; rendered ones only
 };
 
 /// One run's truth and its plan, drawn from one seed. Every plan of a seed has the same walls, views and noise.
 class Box {
  public:
-  Box(const BoxOptions& options, const pf_camera_t& camera, double sigma_px, std::uint64_t seed);
+  /// film: rendered frames of it, whose path is the truth; null: points and a path of its own.
+  Box(const BoxOptions& options, const pf_camera_t& camera, double sigma_px, std::uint64_t seed,
+      const pf_sim_t* film = nullptr);
 
   /// Of a side 0 .. 3, as it truly is: out of the box, and its centre.
   static pf::sim::Vec3 normal(int side);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <iterator>
 #include <memory>
 
@@ -31,7 +32,8 @@ struct Choices {
   std::uint64_t first_seed = 1;
   int jobs = 1;
   double sigma_px = 0.5, fov_deg = 56;
-  bool geometric = false;
+  bool geometric = false, no_points = false;
+  int patches = 16, cameras = 8, patch_side_px = 100;
   BoxOptions box;
   std::string json_file, csv;
 };
@@ -47,6 +49,30 @@ struct Job {
 int fail(const std::string& what) {
   std::fprintf(stderr, "pf-sim box: %s\n", what.c_str());
   return 2;
+}
+
+pf_config_t rendered_config(const Choices& c, Plan plan);
+
+std::int64_t clock_ns(void*) {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<std::int64_t>(now.tv_sec) * 1000000000 + now.tv_nsec;
+}
+
+/// One seed's frames, for all plans.
+void run_one_seed(int index, void* context) {
+  const Job& job = *static_cast<Job*>(context);
+  std::vector<BoxVariant> variants;
+  std::vector<BoxSummary*> summaries;
+  std::vector<FrameRow*> rows;
+  for (std::size_t k = 0; k < job.plans.size(); ++k) {
+    const std::size_t run = k * static_cast<std::size_t>(job.choices->seeds) + static_cast<std::size_t>(index);
+    variants.push_back({rendered_config(*job.choices, job.plans[k]), job.plans[k]});
+    summaries.push_back(job.summaries + run);
+    rows.push_back(job.rows + run * static_cast<std::size_t>(job.choices->box.frames));
+  }
+  run_rendered_box(job.choices->box, variants, job.choices->first_seed + static_cast<std::uint64_t>(index), summaries,
+                   rows);
 }
 
 void run_one(int index, void* context) {
@@ -69,6 +95,24 @@ pf_config_t config_of(const Choices& c) {
   config.capacity.max_features = kBoxSides * c.box.points_on_side;
   config.capacity.max_observations = std::min(200, config.capacity.max_features);
   config.capacity.max_state_dim = 60 + 6 * config.capacity.max_features;
+  return config;
+}
+
+/// Patches on the walls beside points, or alone. Without walls there are points alone.
+pf_config_t rendered_config(const Choices& c, Plan plan) {
+  pf_config_t config;
+  pf_config_default(&config);
+  const double f = 320 / std::tan(c.fov_deg * 3.14159265358979323846 / 360);
+  config.camera = {PF_CAMERA_PINHOLE,  640, 480, f, f, 319.5, 239.5, {}, 0, PF_CAMERA_EXACT,
+                   PF_TIMESTAMPS_REAL, 0,   0,   0, {}};
+  config.first_depth.depth = kDepth;
+  config.capacity.max_state_dim = 500;
+  config.clock_ns = clock_ns;
+  if (plan == Plan::kNone) return config;
+  config.capacity.max_patches = c.patches;
+  config.capacity.max_cameras = c.cameras;
+  config.capacity.patch_side_px = c.patch_side_px;
+  if (c.no_points) config.map.features_in_view = 0;
   return config;
 }
 
@@ -122,17 +166,31 @@ json walls_json(const BoxSummary* summaries, int seeds) {
 json summarise_case(const Runs& runs, const BoxSummary* summaries, Plan plan) {
   json out = summarise_frames(runs);
   std::vector<double> worst, seen;
-  int tracked = 0, doubted = 0, most_points = 0;
+  int tracked = 0, doubted = 0, most_points = 0, lost = 0, lost_runs = 0;
+  double inliers = 0, outliers = 0, missed = 0, patch_s = 0;
   for (int s = 0; s < runs.seeds; ++s) {
     worst.push_back(summaries[s].worst_m);
     tracked += summaries[s].tracked_frames;
     doubted += summaries[s].wrong_seen_s >= 0;
     if (summaries[s].wrong_seen_s >= 0) seen.push_back(summaries[s].wrong_seen_s);
+    lost += summaries[s].lost_frames;
+    lost_runs += summaries[s].lost_frames > 0;
+    inliers += summaries[s].patch_inliers;
+    outliers += summaries[s].patch_outliers;
+    missed += summaries[s].patch_missed;
+    patch_s += summaries[s].patch_seconds;
     most_points = std::max(most_points, summaries[s].wrong_points);
   }
   out["rmse_m"] = of_seeds(rmse_of(runs));
   out["largest_error_m"] = of_seeds(worst);
   out["tracked_share"] = tracked / (static_cast<double>(runs.seeds) * runs.frames);
+  out["lost"] = {{"frames", lost}, {"runs", lost_runs}};
+  const double frames = static_cast<double>(runs.seeds) * runs.frames;
+  if (inliers + outliers + missed > 0)
+    out["patches"] = {{"inliers", inliers / frames},
+                      {"outliers", outliers / frames},
+                      {"missed", missed / frames},
+                      {"ms", 1e3 * patch_s / frames}};
   out["walls"] = walls_json(summaries, runs.seeds);
   if (Box::wrong_wall(plan) >= 0)
     out["wrong_wall"] = {{"doubted_runs", doubted},
@@ -150,6 +208,10 @@ void print_case(const char* name, const json& j) {
   std::printf("  pose NEES %.2f (6 dof; bounds of the run average %.2f %.2f, inside %.1f %% of the frames), state %g\n",
               number("/nees_pose/mean"), number("/nees_pose/bound_low"), number("/nees_pose/bound_high"),
               100 * number("/nees_pose/inside_share"), number("/state_dim/median"));
+  if (j.contains("patches"))
+    std::printf("  patches: %.2f inliers, %.3f outliers, %.3f missed in a frame, %.2f ms; %g frames lost in %g runs\n",
+                number("/patches/inliers"), number("/patches/outliers"), number("/patches/missed"),
+                number("/patches/ms"), number("/lost/frames"), number("/lost/runs"));
   if (!j["walls"].is_null())
     std::printf(
         "  walls: %.2f deg, %.1f mm in the plan; %.2f deg (worst %.2f), %.1f mm at the end, NEES %.1f (3 dof), %.1f "
@@ -166,7 +228,8 @@ void print_case(const char* name, const json& j) {
 }
 
 int run(const Choices& c) {
-  if (!c.geometric) return fail("only --geometric: without pictures, points of the posters in exact pixels plus noise");
+  if (c.geometric && c.no_points) return fail("--no-points is for rendered frames: --geometric has nothing but points");
+  if (c.box.black_s < 0 || c.box.black_from_s < 0) return fail("--black: from when on, and how long, in seconds");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.box.frames < 1 || c.box.frames > 100000)
     return fail("seeds, jobs and frames must be positive");
   Job job{&c, config_of(c), {}, nullptr, nullptr};
@@ -178,17 +241,21 @@ int run(const Choices& c) {
     job.plans.push_back(found->plan);
   }
   const char* field = nullptr;
-  if (pf_config_check(&job.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
+  const pf_config_t config = c.geometric ? job.config : rendered_config(c, Plan::kRefined);
+  if (pf_config_check(&config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
   const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(c.box.frames);
   const std::size_t count = seeds * job.plans.size();
   job.summaries = static_cast<BoxSummary*>(shared_memory(count * sizeof(BoxSummary)));
   job.rows = static_cast<FrameRow*>(shared_memory(count * frames * sizeof(FrameRow)));
   if (!job.summaries || !job.rows) return fail("no memory");
-  if (!in_processes(static_cast<int>(count), c.jobs, "box", run_one, &job))
+  if (!in_processes(c.geometric ? static_cast<int>(count) : c.seeds, c.jobs, "box",
+                    c.geometric ? run_one : run_one_seed, &job))
     return fail("a run did not come to its end");
   json out = {{"experiment", "box"},
               {"settings",
-               {{"first_seed", c.first_seed},
+               {{"geometric", c.geometric},
+                {"points", !c.no_points},
+                {"first_seed", c.first_seed},
                 {"frames", c.box.frames},
                 {"points_on_side", c.box.points_on_side},
                 {"max_angle_deg", c.box.max_angle_deg},
@@ -211,6 +278,12 @@ void add_box(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("box", "A box with posters and a wrong plan of its sides, circled by hand");
   command->add_flag("--geometric", c->geometric, "points of the posters and no pictures");
+  command->add_flag("--no-points", c->no_points, "patches on the walls alone, without points");
+  command->add_option("--patches", c->patches, "that are followed at a time, at most");
+  command->add_option("--cameras", c->cameras, "reference cameras of patches, at most");
+  command->add_option("--patch-side", c->patch_side_px, "of a patch [px]");
+  command->add_option("--black-from", c->box.black_from_s, "when black frames begin, of rendered ones [s]");
+  command->add_option("--black", c->box.black_s, "for how long frames are black [s]");
   command->add_option("--cases", c->cases,
                       "one or more: refined, exact, points; absent, shifted (a wrong wall) and missing (without it)");
   command->add_option("--seeds", c->seeds, "how many runs of each case");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "context.h"
 #include "plane_error.h"
@@ -79,40 +80,118 @@ void judge_wall(const pf_slam_t* slam, const pf_plane_prior_t& prior, std::uint3
   summary.doubted += plane.doubted != 0;
 }
 
+/// One context on its way through the frames.
+class BoxRunner {
+ public:
+  BoxRunner(Box& box, const pf_config_t& config, Plan plan, double rate_hz)
+      : box_(box), plan_(plan), walls_(box.walls(plan)), ids_(walls_.size()), context_(config) {
+    pf_slam_t* slam = context_.slam;
+    if (!slam || pf_start_from_pose(slam, &box.start(), box.velocity_covariance()) != PF_OK) return;
+    for (std::size_t i = 0; i < walls_.size(); ++i)
+      if (pf_add_plane_prior(slam, &walls_[i], &ids_[i]) != PF_OK) return;
+    const int wrong = Box::wrong_wall(plan);
+    const auto at = static_cast<std::size_t>(std::max(wrong, 0));
+    watch_ = std::make_unique<WrongWall>(box, wrong < 0 ? nullptr : &walls_[at], wrong < 0 ? 0 : ids_[at], rate_hz);
+    summary.done = 1;
+  }
+
+  pf_slam_t* slam() { return context_.slam; }
+
+  void look(pf_status_t status, int frame, FrameRow& row) {
+    pf_pose_t pose;
+    pf_report_t report;
+    summary.lost_frames += status == PF_NOTE_LOST;
+    if (status < 0 || pf_get_pose(slam(), &pose) != PF_OK) return;
+    pf_get_report(slam(), &report);
+    row = judge(box_.truth(frame), pose, report);
+    summary.tracked_frames += status == PF_OK;
+    summary.worst_m = std::max(summary.worst_m, static_cast<double>(row.error_m));
+    summary.patch_seconds += 1e-9 * static_cast<double>(report.stage_ns[PF_STAGE_PATCH]);
+    count_patches();
+    watch_->look(slam(), frame, summary);
+  }
+
+  void judge_walls() {
+    for (std::size_t i = 0; i < walls_.size(); ++i)
+      if (static_cast<int>(i) != Box::wrong_wall(plan_)) judge_wall(slam(), walls_[i], ids_[i], summary);
+  }
+
+  BoxSummary summary;
+
+ private:
+  void count_patches() {
+    constexpr int kMaxPatches = 32;
+    pf_patch_t patches[kMaxPatches];
+    std::size_t count = 0;
+    pf_get_patches(slam(), patches, kMaxPatches, &count);
+    for (std::size_t i = 0; i < count; ++i) {
+      summary.patch_inliers += patches[i].status == PF_MATCH_INLIER;
+      summary.patch_outliers += patches[i].status == PF_MATCH_OUTLIER;
+      summary.patch_missed += patches[i].status == PF_MATCH_MISSED;
+    }
+  }
+
+  Box& box_;
+  Plan plan_;
+  std::vector<pf_plane_prior_t> walls_;
+  std::vector<std::uint32_t> ids_;
+  Context context_;
+  std::unique_ptr<WrongWall> watch_;
+};
+
+void forget(FrameRow* rows, int frames) {
+  for (int frame = 0; frame < frames; ++frame) rows[frame].nees_position = rows[frame].nees_pose = -1;
+}
+
 }  // namespace
 
 BoxSummary run_box(const BoxOptions& options, const pf_config_t& config, Plan plan, std::uint64_t seed,
                    FrameRow* rows) {
-  BoxSummary summary;
-  for (int frame = 0; frame < options.frames; ++frame) rows[frame].nees_position = rows[frame].nees_pose = -1;
+  forget(rows, options.frames);
   Box box(options, config.camera, config.measurement.sigma_px, seed);
-  const std::vector<pf_plane_prior_t> walls = box.walls(plan);
-  std::vector<std::uint32_t> ids(walls.size());
-  const Context context(config);
-  pf_slam_t* slam = context.slam;
-  if (!slam || pf_start_from_pose(slam, &box.start(), box.velocity_covariance()) != PF_OK) return summary;
-  for (std::size_t i = 0; i < walls.size(); ++i)
-    if (pf_add_plane_prior(slam, &walls[i], &ids[i]) != PF_OK) return summary;
-  const int wrong = Box::wrong_wall(plan);
-  const auto at = static_cast<std::size_t>(std::max(wrong, 0));
-  WrongWall watch(box, wrong < 0 ? nullptr : &walls[at], wrong < 0 ? 0 : ids[at], options.rate_hz);
-  summary.done = 1;
+  BoxRunner runner(box, config, plan, options.rate_hz);
+  if (runner.summary.done == 0) return runner.summary;
   for (int frame = 0; frame < options.frames; ++frame) {
     const auto seen = box.observe(frame);
     const auto t_ns = static_cast<std::int64_t>(std::llround(frame * 1e9 / options.rate_hz));
-    const pf_status_t status = pf_push_observations(slam, t_ns, seen.data(), seen.size());
-    pf_pose_t pose;
-    pf_report_t report;
-    if (status < 0 || pf_get_pose(slam, &pose) != PF_OK) continue;
-    pf_get_report(slam, &report);
-    rows[frame] = judge(box.truth(frame), pose, report);
-    summary.tracked_frames += status == PF_OK;
-    summary.worst_m = std::max(summary.worst_m, static_cast<double>(rows[frame].error_m));
-    watch.look(slam, frame, summary);
+    runner.look(pf_push_observations(runner.slam(), t_ns, seen.data(), seen.size()), frame, rows[frame]);
   }
-  for (std::size_t i = 0; i < walls.size(); ++i)
-    if (static_cast<int>(i) != wrong) judge_wall(slam, walls[i], ids[i], summary);
-  return summary;
+  runner.judge_walls();
+  return runner.summary;
+}
+
+void run_rendered_box(const BoxOptions& options, const std::vector<BoxVariant>& variants, std::uint64_t seed,
+                      const std::vector<BoxSummary*>& summaries, const std::vector<FrameRow*>& rows) {
+  for (FrameRow* of_variant : rows) forget(of_variant, options.frames);
+  pf_sim_options_t sim_options;
+  pf_sim_options_default("box", &sim_options);
+  sim_options.seed = seed;
+  sim_options.frames = options.frames;
+  sim_options.rate_hz = options.rate_hz;
+  sim_options.shake_m = options.shake_m;
+  sim_options.shake_rad = options.shake_rad;
+  const std::unique_ptr<pf_sim_t, void (*)(pf_sim_t*)> sim(pf_sim_open("box", &sim_options), pf_sim_close);
+  if (!sim) return;
+  Box box(options, sim_options.camera, 0, seed, sim.get());
+  std::vector<std::unique_ptr<BoxRunner>> runners;
+  for (BoxVariant variant : variants) {
+    pf_sim_camera(sim.get(), &variant.config.camera);
+    runners.push_back(std::make_unique<BoxRunner>(box, variant.config, variant.plan, options.rate_hz));
+    if (runners.back()->summary.done == 0) return;
+  }
+  pf_image_t image;
+  for (int frame = 0; frame < options.frames && pf_sim_next(sim.get(), &image, nullptr); ++frame) {
+    const double t = frame / options.rate_hz;
+    const std::vector<std::uint8_t> black(static_cast<std::size_t>(image.stride) *
+                                          static_cast<std::size_t>(image.height));
+    if (t >= options.black_from_s && t < options.black_from_s + options.black_s) image.pixels = black.data();
+    for (std::size_t v = 0; v < runners.size(); ++v)
+      runners[v]->look(pf_push_frame(runners[v]->slam(), &image), frame, rows[v][frame]);
+  }
+  for (std::size_t v = 0; v < runners.size(); ++v) {
+    runners[v]->judge_walls();
+    *summaries[v] = runners[v]->summary;
+  }
 }
 
 }  // namespace pfsim

@@ -19,9 +19,22 @@ struct BoxSummary {
   double wrong_seen_s = -1;       ///< how long the wrong wall was in view before it was doubted; -1: it was not
   std::int32_t wrong_points = 0;  ///< most points that ever were on it
   double worst_m = 0;             ///< largest position error
+  std::int32_t lost_frames = 0;
+  std::int32_t patch_inliers = 0, patch_outliers = 0, patch_missed = 0;  ///< over all frames
+  double patch_seconds = 0;
 };
 
 /// One run with one plan, start to end. rows has as many entries as the box has frames; nees_position is negative in those without a pose.
 BoxSummary run_box(const BoxOptions& options, const pf_config_t& config, Plan plan, std::uint64_t seed, FrameRow* rows);
+
+/// What runs on the same rendered frames as others.
+struct BoxVariant {
+  pf_config_t config;  ///< its camera is that of the frames
+  Plan plan;
+};
+
+/// Rendered frames once, for all variants. summaries and rows: one for each of them.
+void run_rendered_box(const BoxOptions& options, const std::vector<BoxVariant>& variants, std::uint64_t seed,
+                      const std::vector<BoxSummary*>& summaries, const std::vector<FrameRow*>& rows);
 
 }  // namespace pfsim

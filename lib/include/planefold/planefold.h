@@ -215,6 +215,11 @@ typedef struct pf_config {
     /* Views (thumbnails of tracked frames with their poses) by which a lost camera recognises where it is, 0 .. 200, of
      * about 1.3 kB each. 0: it searches about its last pose only. Default 24 */
     int32_t max_kept_views;
+    /* Patches of known walls (pf_add_plane_prior) that are followed in images, 0 .. 32, of at most 24 KiB each. They are
+     * squares of patch_side_px pixels, 32 .. 128, and less where a wall is seen at a slant. A patch takes eight rows of the
+     * state, and the camera that first saw it six, which is shared by all that began in its frame: of such cameras there
+     * are at most max_cameras, 0 .. 64. Defaults 0 (none), 100, 8 */
+    int32_t max_patches, patch_side_px, max_cameras;
   } capacity;
 
   /* How the camera may move between frames. Densities are those of white noise: over a time dt the velocity's
@@ -254,7 +259,9 @@ typedef struct pf_config {
   } first_depth;
 
   struct {
-    int32_t features_in_view; /* features to keep in view, 8 .. capacity.max_observations. Default 45 */
+    /* Features to keep in view, 8 .. capacity.max_observations; 0 with capacity.max_patches: none begin, and patches of
+     * walls alone are followed. Default 45 */
+    int32_t features_in_view;
     int32_t border_px;        /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
   } map;
 
@@ -578,6 +585,21 @@ typedef struct pf_match {
  * capacity was smaller. */
 PF_API pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t capacity, size_t* count);
 
+/* A patch of a wall that is followed in images (capacity.max_patches, lib/docs/homography.md). */
+typedef struct pf_patch {
+  uint32_t id;    /* never used twice */
+  uint32_t plane; /* id of the wall that it lies on */
+  int32_t status; /* pf_match_status_t; 0: out of view, or too slanted to be looked for */
+  int32_t frames; /* in which it was measured */
+  /* Where its corners are in the last frame, in the order of a circle: measured (inlier, outlier, new), or else predicted. */
+  double corners_px[4][2];
+  double covariance_px[64]; /* 8x8 of corners that were measured (x, y of each), from the noise of this frame's image */
+  double weight;            /* share of its pixels that fit in the last frame, 0 .. 1 */
+} pf_patch_t;
+
+/* Copy of the patches. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
+PF_API pf_status_t pf_get_patches(const pf_slam_t* slam, pf_patch_t* patches, size_t capacity, size_t* count);
+
 enum {
   PF_STAGE_PYRAMID = 0, /* image levels */
   PF_STAGE_PREDICT = 1, /* motion, predicted pixels, innovation covariance */
@@ -586,6 +608,7 @@ enum {
   PF_STAGE_UPDATE = 4,  /* covariance and state */
   PF_STAGE_MAP = 5,     /* conversion, eviction, corners, new features */
   PF_STAGE_IMU = 6,     /* samples, in place of the motion in PF_STAGE_PREDICT */
+  PF_STAGE_PATCH = 7,   /* patches on walls: prediction, alignment, update, new ones */
   PF_STAGE_COUNT = 8
 };
 
@@ -597,7 +620,7 @@ typedef struct pf_report {
   int64_t t_ns;
   int32_t state;  /* pf_state_t */
   int32_t frames; /* frames pushed since create or reset */
-  int32_t attempts, matches, inliers, new_features, evicted;
+  int32_t attempts, matches, inliers, new_features, evicted; /* a patch counts as eight of the first three */
   int32_t features, features_point, features_inverse_depth, features_folded, features_fixed;
   int32_t planes;
   int32_t state_dim;
@@ -609,6 +632,7 @@ typedef struct pf_report {
                                        images with the noise that one match has by itself */
   int32_t nis_dof;                  /* and its degrees of freedom */
   int32_t kernels;                  /* pf_kernels_t in use */
+  int32_t patches, cameras;         /* patches on walls, and the reference cameras that saw them first */
   int64_t duplicates;               /* of `frames`: images that were byte for byte the one before, see pf_push_frame */
   int64_t stage_ns[PF_STAGE_COUNT]; /* all zero without a clock */
   /* Noise of matches in images, as estimated so far (lib/docs/noise.md): of one match by itself, root mean square over

@@ -28,8 +28,11 @@ constexpr Range kIntegers[] = {
     PF_FIELD(capacity.max_observations, 8, 200),
     PF_FIELD(capacity.max_planes, 1, 64),
     PF_FIELD(capacity.max_kept_views, 0, 200),
+    PF_FIELD(capacity.max_patches, 0, 32),
+    PF_FIELD(capacity.patch_side_px, 32, 128),
+    PF_FIELD(capacity.max_cameras, 0, 64),
     PF_FIELD(plane.min_points, 4, 60),
-    PF_FIELD(map.features_in_view, 8, 200),
+    PF_FIELD(map.features_in_view, 0, 200),
     PF_FIELD(map.border_px, 4, 64),
     PF_FIELD(capacity.max_imu_samples, 0, 10000),
 };
@@ -76,6 +79,7 @@ constexpr Range kUnit[] = {
 
 #undef PF_FIELD
 
+constexpr int kMinFeaturesInView = 8;    // or none
 constexpr int kMinImuSamples = 64;       // with the inertial motion model
 constexpr double kMaxLever = 10;         // [m] between unit and camera
 constexpr double kLongestReadout = 0.2;  // [s]
@@ -160,7 +164,9 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
     const double value = field_at<double>(config, r.offset);
     if (!(value >= r.low && value <= r.high)) return *field = r.name, Status::kConfig;
   }
-  if (config.map.features_in_view > config.capacity.max_observations)
+  const bool patches_alone = config.map.features_in_view == 0 && config.capacity.max_patches > 0;
+  if (config.map.features_in_view > config.capacity.max_observations ||
+      (config.map.features_in_view < kMinFeaturesInView && !patches_alone))
     return *field = "map.features_in_view", Status::kConfig;
   *field = motion_from(config, settings);
   if (*field != nullptr) return Status::kConfig;
@@ -191,6 +197,9 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->max_observations = config.capacity.max_observations;
   settings->max_planes = config.capacity.max_planes;
   settings->max_kept_views = config.capacity.max_kept_views;
+  settings->max_patches = static_cast<std::uint8_t>(config.capacity.max_patches);
+  settings->patch_side_px = static_cast<std::uint8_t>(config.capacity.patch_side_px);
+  settings->max_cameras = static_cast<std::uint8_t>(config.capacity.max_cameras);
   settings->planes = config.plane.enabled != 0;
   settings->plane_min_points = config.plane.min_points;
   settings->plane_distance = static_cast<Scalar>(config.plane.max_distance);
@@ -240,6 +249,9 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->capacity.max_observations = 60;
   config->capacity.max_planes = 8;
   config->capacity.max_kept_views = 24;
+  config->capacity.max_patches = 0;
+  config->capacity.patch_side_px = 100;
+  config->capacity.max_cameras = 8;
   config->plane.enabled = 1;
   config->plane.min_points = 7;
   config->plane.max_distance = 0.01;

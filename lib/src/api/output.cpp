@@ -143,6 +143,29 @@ pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t ca
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
 }
 
+pf_status_t pf_get_patches(const pf_slam_t* slam, pf_patch_t* patches, size_t capacity, size_t* count) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (count == nullptr || (patches == nullptr && capacity > 0)) return PF_ERROR_NULL;
+  const pf::View view = slam->session.view();
+  *count = 0;
+  for (int i = 0; i < view.patch_capacity(); ++i) {
+    if (!view.has_patch(i)) continue;
+    const size_t at = (*count)++;
+    if (at >= capacity) continue;
+    const pf::PatchView p = view.patch(i);
+    pf_patch_t& out = patches[at];
+    out = pf_patch_t();
+    out.id = p.id;
+    out.plane = view.find_plane(p.plane);
+    out.status = p.status;
+    out.frames = p.frames;
+    for (int k = 0; k < 4; ++k) copy(p.corner[k], 2, out.corners_px[k]);
+    pf::copy_matrix(*p.covariance, out.covariance_px);
+    out.weight = static_cast<double>(p.weight);
+  }
+  return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
+}
+
 pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, double covariance[100]) {
   PF_REQUIRE_CONTEXT(slam);
   if (camera == nullptr) return PF_ERROR_NULL;
@@ -191,6 +214,8 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->state_dim_points_only = map.state_dim_points_only;
   report->map_id = view.map_id();
   report->kept_views = view.kept_views();
+  report->patches = map.patches;
+  report->cameras = map.cameras;
   report->nis = r.nis;
   report->nis_dof = r.nis_dof;
   report->duplicates = r.duplicates;

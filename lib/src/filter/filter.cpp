@@ -24,6 +24,7 @@ bool Filter::layout(Arena& arena, const FilterCapacity& capacity) {
 
 void Filter::init(const Kernels* kernels, const BodyLayout& layout, bool keep_gauge) {
   keep_gauge_ = keep_gauge;
+  ++generation_;
   for (int s = 0; s < state_.slots; ++s) state_.block[s] = Block();
   state_.body = Body();
   state_.layout = layout;

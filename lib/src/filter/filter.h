@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "base/arena.h"
 #include "filter/block_filter.h"
@@ -44,6 +45,8 @@ class Filter {
   void set_roughness(Scalar roughness) { roughness_ = roughness; }
   void keep_gauge(bool keep) { keep_gauge_ = keep; }
 
+  /// Another number after each init(): what others know of blocks does not hold any more.
+  std::uint32_t generation() const { return generation_; }
   const State& state() const { return state_; }
   const BlockFilter& blocks() const { return blocks_; }
   /// P, which is the covariance of the state but for what apart() holds.
@@ -250,6 +253,7 @@ class Filter {
   GaugePrior apart_;
   bool keep_gauge_ = true;
   bool gauge_is_told_ = false;  ///< tell_gauge()
+  std::uint32_t generation_ = 0;
   Scalar roughness_ = 0;
   Measurement* view_ = nullptr;  ///< observations; of pixels
   Vec3* place_ = nullptr;        ///< slots; of points, scratch of scale_row

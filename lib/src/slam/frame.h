@@ -27,7 +27,7 @@ struct Match {
   bool searched = false;  ///< the image was compared with its appearance
 };
 
-enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kImu, kStageCount = 8 };
+enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kImu, kPatch, kStageCount };
 
 struct FrameReport {
   std::int64_t t_ns = 0;

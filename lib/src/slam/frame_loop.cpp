@@ -1,6 +1,7 @@
 #include "slam/frame_loop.h"
 
 #include <algorithm>
+#include <new>
 
 #include "base/elapsed.h"
 #include "slam/tuning.h"
@@ -21,7 +22,16 @@ bool FrameLoop::layout(Arena& arena) {
   observations_.layout(arena, settings.max_features, settings.max_observations);
   rest_.layout(arena);
   start_.layout(arena, settings.camera.width, settings.camera.height);
-  return arena.ok();
+  return layout_patches(arena);
+}
+
+/// Patches take nothing where there are none.
+bool FrameLoop::layout_patches(Arena& arena) {
+  if (settings_.max_patches == 0) return arena.ok();
+  PatchKeeper* place = arena.take<PatchKeeper>(1);
+  if (place == nullptr) return PatchKeeper(settings_, filter_, map_, frame_, features_, tracking_).layout(arena);
+  patches_ = new (place) PatchKeeper(settings_, filter_, map_, frame_, features_, tracking_);
+  return patches_->layout(arena);
 }
 
 void FrameLoop::init() {
@@ -36,6 +46,7 @@ void FrameLoop::init() {
   relocaliser_.init();
   noise_.init(settings_.sigma_px);
   start_.init();
+  if (patches_ != nullptr) patches_->init();
 }
 
 Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
@@ -70,9 +81,11 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     relocaliser_.clear_proposals();
     images_.measure(rule, data_.median_depth);
   }
+  // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
+  if (patches_ != nullptr && !first) patches_->measure(images_.tracker().pyramid());
+  const bool supported = tracking_.is_tracked(frame_.report) || start_.progress().pending();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
-    const bool supported = tracking_.is_tracked(frame_.report) || start_.progress().pending();
     if (supported) features_.count_searches();
     // While the map starts, residuals are those of a coarse map.
     if (supported && tracking_.state() == SlamState::kTracking && !start_.progress().recording) learn_noise();
@@ -85,6 +98,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
       images_.add_features();
     start_.begin_record();
   }
+  if (patches_ != nullptr) patches_->maintain(images_.tracker().pyramid(), supported, may_begin_patches(first));
   return end_frame();
 }
 
@@ -157,6 +171,13 @@ ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
   return known < settings_.min_inliers ? ConsensusRule::kMostAgree : ConsensusRule::kBeyondChance;
 }
 
+/// As for features: a frame that does not support its pose begins patches only where there is nothing that could be found again.
+bool FrameLoop::may_begin_patches(bool first) const {
+  if (start_.progress().recording) return false;
+  const bool empty = first || (map_.features.count() == 0 && patches_->patches().count() == 0);
+  return tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0);
+}
+
 /// True where this frame is the first one whose samples tell the scale.
 bool FrameLoop::look_for_rest() {
   if (!settings_.inertial || !tracking_.has_pose()) return false;
@@ -194,7 +215,9 @@ Status FrameLoop::end_frame() {
   if (tracking_.has_pose() && (tracking_.updates_fail() || !repair_covariance() || !filter_.body_is_sound()))
     start_over();
   if (tracking_.is_tracked(frame_.report) && !start_.progress().pending()) {
-    if (!is_pose_usable(filter_, map_, frame_, &data_.median_depth))
+    Scalar patch_depth[PatchKeeper::kMaxPatches];
+    const int patches = patches_ != nullptr ? patches_->inlier_depths(patch_depth) : 0;
+    if (!is_pose_usable(filter_, map_, frame_, patch_depth, patches, &data_.median_depth))
       tracking_.set_unusable();
     else if (data_.image_usable)
       relocaliser_.remember_view(data_.median_depth);

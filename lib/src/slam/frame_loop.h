@@ -14,6 +14,7 @@
 #include "slam/image_front_end.h"
 #include "slam/noise_model.h"
 #include "slam/observation_front_end.h"
+#include "slam/patch_keeper.h"
 #include "slam/pixel_update.h"
 #include "slam/plane_keeper.h"
 #include "slam/pose_mark.h"
@@ -60,6 +61,8 @@ class FrameLoop {
   /// Time that the filter's body was predicted to: that of the last frame, or of the one that it repeats.
   std::int64_t filter_ns() const { return data_.filter_ns; }
   const NoiseModel& noise() const { return noise_; }
+  /// Null where the config has no room for patches.
+  const PatchKeeper* patches() const { return patches_; }
 
  private:
   struct Data {
@@ -77,6 +80,8 @@ class FrameLoop {
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
   bool look_for_rest();
   void learn_noise();
+  bool layout_patches(Arena& arena);
+  bool may_begin_patches(bool first) const;
   bool repair_covariance();
   void maintain_map(bool supported);
   void start_over();
@@ -100,6 +105,7 @@ class FrameLoop {
   ImageFrontEnd images_{settings_, filter_, map_, frame_, features_, update_, noise_};
   Relocaliser relocaliser_{settings_, filter_, map_, frame_, images_, update_};
   ObservationFrontEnd observations_{settings_, filter_, map_, frame_, features_, update_};
+  PatchKeeper* patches_ = nullptr;  ///< in the block behind this, where the config has room for patches
   FilterStart start_{settings_, motion_, {filter_, map_, frame_, tracking_, features_, images_, update_}};
   Data data_;
 };

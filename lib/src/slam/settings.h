@@ -40,6 +40,7 @@ struct Settings {
   Scalar linearity_index = 0;
 
   bool planes = false;
+  std::uint8_t max_patches = 0, patch_side_px = 100, max_cameras = 0;
   int plane_min_points = 0;
   Scalar plane_distance = 0;
   Scalar plane_radius = 0;

@@ -173,6 +173,35 @@ inline constexpr int kMinRefused = 8;                 ///< points, before a wall
 inline constexpr int kRefusedShare = 4;  ///< refused points for each on the wall, above which it is doubted
 }  // namespace plane_walls
 
+/// Patches on walls: finding them again.
+namespace patch_keeper {
+inline constexpr Scalar kMinCosine = Scalar(0.407);    ///< of the slant at which a patch is looked for: 66 degrees
+inline constexpr Scalar kCornersGate = Scalar(26.12);  ///< chi-square of eight degrees of freedom, 0.999
+inline constexpr Scalar kCornerSigma = Scalar(0.05);   ///< [px] of a corner, beside the noise: warp and interpolation
+inline constexpr Scalar kAlignerReach = Scalar(12);    ///< [px] of the gate, beyond which a patch is searched for first
+inline constexpr Scalar kLinearReach = Scalar(4);      ///< [px] of an innovation that is taken in as it is
+inline constexpr Scalar kPoseSigma = Scalar(1);        ///< [px] of what is not the pose, where the pose is sought
+inline constexpr int kPoseSteps = 6;                   ///< of that search
+inline constexpr int kMaxFailures = 30;                ///< in a row, before a patch is dropped
+inline constexpr int kMaxEarlyFailures = 3;            ///< likewise of one that was never found
+inline constexpr int kMaxRejections = 4;               ///< in a row
+}  // namespace patch_keeper
+
+/// Patches on walls: new ones.
+namespace patch_selection {
+inline constexpr Scalar kMinBirthCosine = Scalar(0.616);  ///< of the slant at birth: 52 degrees
+inline constexpr Scalar kLastingCosine = Scalar(0.515);   ///< of the slant of a patch that will last: 59 degrees
+inline constexpr Scalar kMargin = Scalar(0.1);  ///< around a patch that must be on the wall too, of half its side
+inline constexpr Scalar kApart = Scalar(0.6);   ///< of the middles of two patches, in sides
+inline constexpr int kOnWall = 3;               ///< patches of a wall in view
+inline constexpr int kBetween = 15;             ///< frames from one that begins on a wall to the next
+inline constexpr int kRetryFrames = 5;          ///< likewise where the wall has none in view
+inline constexpr int kSizes = 4;                ///< parts of the side: a patch has all, or
+inline constexpr int kSmallest = 1;             ///< fewer, but more than this
+inline constexpr int kMinSide = 32;             ///< [px]
+inline constexpr int kCoarseSide = 52;          ///< [px] from which texture is judged on level 2
+}  // namespace patch_selection
+
 /// Whole planes.
 namespace plane_lifecycle {
 inline constexpr int kMinPoints = 4;               ///< of a plane that once had more than plane.min_points

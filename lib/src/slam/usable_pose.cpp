@@ -11,6 +11,7 @@ namespace pf {
 namespace {
 
 constexpr int kMaxInliers = 200;    // capacity.max_observations at most
+constexpr int kMaxPatches = 32;     // capacity.max_patches at most
 constexpr int kMaxReferences = 12;  // points against which the camera is measured
 constexpr Scalar kMinVariance = Scalar(1e-12);
 
@@ -112,9 +113,10 @@ bool spread_against_points(const Filter& filter, const int* slots, int count, Po
   return true;
 }
 
-bool is_pose_usable(const Filter& filter, const Map& map, const Frame& frame, Scalar* median_depth) {
+bool is_pose_usable(const Filter& filter, const Map& map, const Frame& frame, const Scalar* patch_depth, int patches,
+                    Scalar* median_depth) {
   using namespace tuning::usable_pose;
-  Scalar depths[kMaxInliers];
+  Scalar depths[kMaxInliers + kMaxPatches];
   int slots[kMaxInliers];
   int count = 0;
   const Body& body = filter.state().body;
@@ -126,9 +128,11 @@ bool is_pose_usable(const Filter& filter, const Map& map, const Frame& frame, Sc
     depths[count] = forward.dot(filter.point(slots[count]) - body.p_W);
     ++count;
   }
-  if (count == 0) return false;
-  std::nth_element(depths, depths + count / 2, depths + count);
-  *median_depth = depths[count / 2];
+  int all = count;
+  for (int i = 0; i < patches && i < kMaxPatches; ++i) depths[all++] = patch_depth[i];
+  if (all == 0) return false;
+  std::nth_element(depths, depths + all / 2, depths + all);
+  *median_depth = depths[all / 2];
   const auto is_small = [&](const PoseSpread& spread) {
     const Scalar max_position = kMaxPositionSigma * *median_depth;
     return spread.rotation < kMaxRotationSigma * kMaxRotationSigma && spread.position < max_position * max_position;

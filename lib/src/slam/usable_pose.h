@@ -20,7 +20,9 @@ bool spread_against_points(const Filter& filter, const int* slots, int count, Po
 
 /// True if rotation sigma is below 20 degrees and position sigma below half the median depth of this frame's inliers: in the world; or
 /// where the world has drifted, as that of a bare camera does, against those inliers. False without inliers.
-/// median_depth gets that of the inliers.
-bool is_pose_usable(const Filter& filter, const Map& map, const Frame& frame, Scalar* median_depth);
+/// patch_depth   of the patches among the inliers, which are no matches
+/// median_depth  gets that of all inliers
+bool is_pose_usable(const Filter& filter, const Map& map, const Frame& frame, const Scalar* patch_depth, int patches,
+                    Scalar* median_depth);
 
 }  // namespace pf

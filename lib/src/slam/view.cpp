@@ -111,6 +111,14 @@ FeatureView View::feature(int i) const {
   return out;
 }
 
+int View::patch_capacity() const { return loop_.patches() != nullptr ? loop_.patches()->patches().capacity() : 0; }
+bool View::has_patch(int i) const { return loop_.patches()->patches().used(i); }
+
+PatchView View::patch(int i) const {
+  const StoredPatch& p = loop_.patches()->patches()[i];
+  return {p.id, p.plane, static_cast<int>(p.status), p.frames, p.corner, &p.covariance, static_cast<Scalar>(p.weight)};
+}
+
 MapCounts View::counts() const {
   const State& state = filter().state();
   MapCounts counts;
@@ -137,6 +145,10 @@ MapCounts View::counts() const {
   for (int s = 0; s < state.slots; ++s)
     if (info(state.block[s].kind).carries_points) unfolded_rows -= state.block[s].size;
   counts.planes = state.planes;
+  if (loop_.patches() != nullptr) {
+    counts.patches = loop_.patches()->patches().count();
+    counts.cameras = loop_.patches()->patches().cameras();
+  }
   counts.state_dim = filter().dim();
   counts.state_dim_held = filter().blocks().held_dim();
   counts.state_dim_points_only = filter().dim() + unfolded_rows;

@@ -64,10 +64,21 @@ struct InertialView {
   bool metric;
 };
 
+/// A patch on a wall in the last frame.
+struct PatchView {
+  std::uint32_t id, plane;
+  int status;  ///< pf_match_status_t, or 0
+  int frames;
+  const Vec2* corner;                             ///< four [px]
+  const Eigen::Matrix<Scalar, 8, 8>* covariance;  ///< [px^2]
+  Scalar weight;
+};
+
 /// Numbers of features by kind, of planes and of rows.
 struct MapCounts {
   int features = 0, points = 0, inverse_depths = 0, folded = 0, fixed = 0;
   int planes = 0;
+  int patches = 0, cameras = 0;
   int state_dim = 0, state_dim_held = 0;
   int state_dim_points_only = 0;  ///< rows of the same map without planes
 };
@@ -110,6 +121,11 @@ class View {
   bool has_plane(int i) const { return map_.planes.used(i); }
   /// Current id of the plane that once had this id; 0 if there is none.
   std::uint32_t find_plane(std::uint32_t id) const { return map_.planes.find(id); }
+
+  /// Rows of the store of patches; some are free.
+  int patch_capacity() const;
+  bool has_patch(int i) const;
+  PatchView patch(int i) const;
 
   // view_planes.cpp
   PlaneView plane(int i) const;

@@ -44,6 +44,16 @@ inline constexpr Scalar kMisfitSigmas = Scalar(1.5);   ///< of a rectangle's cor
 inline constexpr Scalar kMisfitShare = Scalar(0.003);  ///< likewise in addition, in its diagonals
 }  // namespace quad_refine
 
+/// Search for a patch on a plane that is far from where it is expected.
+namespace patch_search {
+inline constexpr float kMinContrast = 4.0f;  ///< standard deviation of its coarse pixels [grey levels]
+inline constexpr float kMinScore = 0.5f;     ///< normalised correlation of the peak
+inline constexpr float kMinLead = 0.05f;     ///< of the first peak over the second; less means repeated texture
+inline constexpr int kPeakWidth = 3;         ///< [px of the level] from a peak, beyond which another one begins
+inline constexpr int kMaxFineReach = 24;     ///< [px of level 2] of an ellipse; a larger one is searched one level up
+inline constexpr int kMaxReach = 8192;       ///< [px of the level] of a place that is no overflow
+}  // namespace patch_search
+
 /// Alignment of patches on planes.
 namespace align_plane {
 inline constexpr int kMaxCoarseSamples = 1200;  ///< of a coarse level; above, every other pixel

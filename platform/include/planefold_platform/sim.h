@@ -15,8 +15,9 @@
  *         person    the room, with somebody walking through the picture
  *         exposure  the desk, with exposure that jumps
  *         repeat    the desk, with texture that repeats
+ *         box       a box of 1 m with posters on its sides, circled at 2 m; no target
  *
- * W is the centre of the target: x right, y down, z into the wall. The same seed and options give the same pixels.
+ * W is the centre of the target: x right, y down, z into the wall; of the box, its middle. The same seed and options give the same pixels.
  * Units: metres, seconds, grey levels 0..255.
  */
 #ifndef PLANEFOLD_PLATFORM_SIM_H

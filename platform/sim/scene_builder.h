@@ -1,16 +1,21 @@
-#include "sim/scene.h"
+#pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 
-namespace pf::sim {
-namespace {
+#include "sim/scene.h"
 
-constexpr double kTargetWidth = 0.21, kTargetHeight = 0.1485;  // A5 [m]
+/// What scenes are put together from. The order of the draws is part of a scene: the same seed gives the same pixels.
+
+namespace pf::sim {
 
 using Painter = std::function<void(Canvas&)>;
 
 class Builder {
  public:
+  static constexpr double kTargetWidth = 0.21, kTargetHeight = 0.1485;  ///< A5 [m]
+
   Builder(Random& random, const SceneOptions& options) : random_(random), options_(options) {}
 
   /// Clutter for a surface whose interesting detail is about `scale` metres large.
@@ -87,93 +92,5 @@ class Builder {
   Random& random_;
   const SceneOptions& options_;
 };
-
-}  // namespace
-
-Scene make_desk(Random& random, const SceneOptions& options) {
-  Builder b(random, options);
-  const double top = 0.16, floor = 0.9;  // heights, y down [m]
-  const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-  b.add({-2.4, -1.4, 0.95}, x, y, 4.8, 2.4, 0.0025, 150, [&](Canvas& c) {
-    b.clutter(c, 0.30, 60);
-    b.papers(c, 14, 0.5);
-  });
-  b.add({-1.7, -1.4, -2.05}, z, y, 3.0, 2.4, 0.004, 130, [&](Canvas& c) { b.clutter(c, 0.3, 60); });
-  b.add({-2.4, floor, 1.0}, x, -z, 4.8, 3.4, 0.005, 100, [&](Canvas& c) { b.clutter(c, 0.25, 50); });
-  b.add({-1.0, top, 0.75}, x, -z, 2.0, 1.15, 0.001, 120, [&](Canvas& c) {
-    b.clutter(c, 0.10, 45);
-    b.papers(c, 12, 0.28);
-  });
-  b.add_box({0, top, 0.08}, {0.40, 0.30, 0.16}, 0, 0.0008, 120, 0.06, 70, [&](Canvas& c) {
-    b.clutter(c, 0.06, 70);
-    if (options.target) b.paint_target(c, 0.20, 0.14);
-  });
-  b.add_box({0.55, top, 0.28}, {0.50, 0.36, 0.06}, -0.35, 0.001, 60, 0.05, 80, [&](Canvas& c) {
-    paint_box(c, 0.02, 0.02, 0.48, 0.33, 170);
-    b.papers(c, 5, 0.22);
-    paint_rectangles(c, random, 40, 0.008, 0.05, 100, true);
-  });
-  b.add_box({-0.55, top, 0.30}, {0.42, 0.30, 0.10}, 0.4, 0.001, 80, 0.05, 80, nullptr);
-  for (int k = 0; k < 5; ++k) {
-    const double side = k % 2 ? 1 : -1;
-    const Vec3 foot{side * random.uniform(0.28, 0.8), top, random.uniform(-0.22, 0.1)};
-    const Vec3 size{random.uniform(0.12, 0.24), random.uniform(0.03, 0.14), random.uniform(0.10, 0.2)};
-    b.add_box(foot, size, random.uniform(-0.7, 0.7), 0.001, static_cast<float>(random.uniform(70, 180)), 0.05, 70,
-              nullptr);
-  }
-  if (options.person) b.add_person({-2.2, -0.95, 0.55}, {0.45, 0, 0}, x, 1.0);
-  return std::move(b.scene);
-}
-
-Scene make_room(Random& random, const SceneOptions& options) {
-  Builder b(random, options);
-  const double ceiling = -1.2, floor = 1.4, texel = 0.003;
-  const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-  const auto wall = [&](bool target) {
-    return [&b, &options, target](Canvas& c) {
-      b.clutter(c, 0.35, 65);
-      b.papers(c, 9, 0.6);
-      if (target && options.target) b.paint_target(c, 2.0, 1.2);
-    };
-  };
-  b.add({-2, ceiling, 0}, x, y, 4, 2.6, 0.002, 140, wall(true));    // looking along +z
-  b.add({2, ceiling, -4}, -x, y, 4, 2.6, texel, 130, wall(false));  // along -z
-  b.add({-2, ceiling, -4}, z, y, 4, 2.6, texel, 120, wall(false));  // along -x
-  b.add({2, ceiling, 0}, -z, y, 4, 2.6, texel, 150, wall(false));   // along +x
-  b.add({-2, floor, 0}, x, -z, 4, 4, 0.004, 100, [&](Canvas& c) { b.clutter(c, 0.35, 45); });
-  b.add({-2, ceiling, -4}, x, z, 4, 4, 0.005, 180, [&](Canvas& c) { b.clutter(c, 0.5, 30); });
-  b.add_box({1.2, floor, -0.35}, {0.9, 1.1, 0.5}, 0, 0.003, 110, 0.2, 60, nullptr);
-  b.add_box({-1.4, floor, -0.6}, {0.6, 0.7, 0.5}, 0.5, 0.003, 150, 0.2, 60, nullptr);
-  b.add_box({1.5, floor, -3.0}, {0.6, 1.5, 0.8}, 0.1, 0.003, 90, 0.2, 60, nullptr);
-  b.add_box({-1.5, floor, -3.3}, {0.8, 0.9, 0.6}, -0.4, 0.003, 130, 0.2, 60, nullptr);
-  if (options.person) b.add_person({-1.9, -0.3, -0.55}, {0.32, 0, 0}, x, 0.95);
-  return std::move(b.scene);
-}
-
-Scene make_wall(Random& random, const SceneOptions& options) {
-  Builder b(random, options);
-  b.add({-2.5, -1.8, 0}, {1, 0, 0}, {0, 1, 0}, 5.0, 3.6, 0.002, 135, [&](Canvas& c) {
-    b.clutter(c, 0.2, 75);
-    if (options.target) b.paint_target(c, 2.5, 1.8);
-  });
-  if (options.person) b.add_person({-1.6, -0.7, -0.4}, {0.25, 0, 0}, {1, 0, 0}, 0.8);
-  return std::move(b.scene);
-}
-
-Scene make_checker(double square, int squares) {
-  Scene scene;
-  // 64 texels a square: corners fall on texel borders.
-  Canvas canvas(square * squares, square * squares, square / 64, 128);
-  paint_checker(canvas, square, 40, 215);
-  const double half = 0.5 * square * squares;
-  scene.quads.push_back({{-half, -half, 0},
-                         {1, 0, 0},
-                         {0, 1, 0},
-                         2 * half,
-                         2 * half,
-                         std::make_shared<Texture>(canvas),
-                         Shape::kRectangle});
-  return scene;
-}
 
 }  // namespace pf::sim

@@ -1,0 +1,202 @@
+#include "slam/patch_keeper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/elapsed.h"
+#include "geometry/small_cholesky.h"
+#include "geometry/symmetric_eigen.h"
+#include "slam/tuning.h"
+
+/// Patches that there are: found, measured, dropped. Where they are expected is in patch_sight.cpp, new ones in patch_selection.cpp.
+
+namespace pf {
+namespace {
+
+using namespace tuning::patch_keeper;
+
+/// Covariance of the mean of the four corners.
+Mat2 middle_of(const Eigen::Matrix<Scalar, 8, 8>& C) {
+  Mat2 sum = Mat2::Zero();
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < 4; ++b) sum += C.block<2, 2>(2 * a, 2 * b);
+  return sum / (4 * 4);
+}
+
+}  // namespace
+
+bool PatchKeeper::layout(Arena& arena) {
+  store_.layout(arena, settings_.max_patches);
+  search_.layout(arena);
+  aligner_.layout(arena);
+  return arena.ok();
+}
+
+void PatchKeeper::init() {
+  store_.init();
+  generation_ = filter_.generation();
+}
+
+/// Where the filter began anew, the patches' blocks are gone.
+void PatchKeeper::follow_filter() {
+  if (generation_ == filter_.generation()) return;
+  generation_ = filter_.generation();
+  store_.clear();
+}
+
+/// The most proven patches first: what they say makes the others easier to find. Returns how many.
+int PatchKeeper::list_in_order(int* order) const {
+  int count = 0;
+  for (int i = 0; i < store_.capacity(); ++i) {
+    if (!store_.used(i)) continue;
+    int at = count++;
+    for (; at > 0 && store_[order[at - 1]].frames < store_[i].frames; --at) order[at] = order[at - 1];
+    order[at] = i;
+  }
+  return count;
+}
+
+/// Entry of the wall that a patch lies on; -1: it is gone or doubted.
+int PatchKeeper::wall_of(const StoredPatch& patch) const {
+  for (int k = 0; k < map_.planes.capacity(); ++k)
+    if (map_.planes.used(k) && map_.planes[k].id == patch.plane)
+      return map_.planes[k].known && !map_.planes[k].doubted ? k : -1;
+  return -1;
+}
+
+void PatchKeeper::measure(const Pyramid& image) {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPatch]);
+  follow_filter();
+  int order[kMaxPatches];
+  const int count = list_in_order(order);
+  for (int k = 0; k < count; ++k) measure_patch(image, &store_[order[k]]);
+}
+
+void PatchKeeper::measure_patch(const Pyramid& image, StoredPatch* patch) {
+  patch->status = PatchStatus::kUnseen;
+  patch->weight = 0;
+  Sight sight;
+  const int wall = wall_of(*patch);
+  if (wall < 0 || !expect(*patch, wall, &sight)) return;
+  std::copy(sight.corner, sight.corner + 4, patch->corner);
+  if (!is_visible(wall, sight)) return;
+  const int plane = map_.planes[wall].slot;
+  patch->status = PatchStatus::kMissed;
+  frame_.report.attempts += kWorth;
+  if (patch->is_proven()) {
+    if (!filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_)) return;
+    if (!find_from_afar(image, *patch, &sight)) return;
+  }
+  PlaneStart start;
+  start.H_CK = sight.H_CK;
+  start.gain = patch->gain;
+  start.offset = patch->offset;
+  const PlaneAlignment found = aligner_.align(image, filter_.lens(), patch->pixels, start, HomographyWarp());
+  patch->weight = found.weight;
+  if (!found.is_aligned()) return;
+  frame_.report.matches += kWorth;
+  patch->gain = found.gain;
+  patch->offset = found.offset;
+  std::copy(found.corner, found.corner + 4, patch->corner);
+  patch->covariance = found.covariance;
+  if (!patch->is_proven() && !(begin_block(patch, found.reference_covariance) &&
+                               filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_)))
+    return;
+  update(patch, plane, found);
+}
+
+/// Where the patch is expected within more pixels than the aligner reaches: looks for it. False where it is not there.
+bool PatchKeeper::find_from_afar(const Pyramid& image, const StoredPatch& patch, Sight* sight) {
+  const Mat2 innovation = middle_of(filter_.covariance_of<8>(z_.H));
+  const Scalar widest = symmetric_eigenvalues(innovation)(1);
+  if (!(widest > Scalar(0)) || settings_.gate * widest < kAlignerReach * kAlignerReach) return true;
+  Vec2 shift;
+  return search_.find(image, filter_.lens(), patch.pixels, sight->H_CK, innovation, settings_.gate, &shift) &&
+         move_to(patch, shift, sight);
+}
+
+/// A patch that is found for the first time gets its rows: then it is known how well the reference's noise lets its corners be placed.
+bool PatchKeeper::begin_block(StoredPatch* patch, const Mat8& covariance) {
+  const int block = filter_.add_patch(patch->camera, covariance);
+  if (block < 0) return false;
+  filter_.unpin(patch->camera);
+  patch->block = block;
+  return true;
+}
+
+/// Takes the corners in where they pass the gate: all eight rows or none.
+void PatchKeeper::update(StoredPatch* patch, int plane, const PlaneAlignment& found) {
+  for (int k = 0; k < 4; ++k) z_.measured.segment<2>(2 * k) = found.corner[k];
+  z_.set_noise(found.covariance + Mat8(Mat8::Identity() * (kCornerSigma * kCornerSigma)));
+  patch->status = PatchStatus::kOutlier;
+  const bool is_far = (z_.measured - z_.predicted).cwiseAbs().maxCoeff() > kLinearReach;
+  if (is_far && !linearise_near(*patch, plane)) return;
+  SmallCholesky<8> cholesky;
+  if (!cholesky.factor(filter_.covariance_of<8>(z_.H) + z_.R_gate)) return;
+  const Vec8 r = z_.measured - z_.predicted;
+  if (!(r.dot(cholesky.solve<1>(r)) < kCornersGate)) return;
+  const Measurement view = z_.view();
+  filter_.begin_update(&view, 1);
+  Scalar nis = 0;
+  const bool done = filter_.finish_update(&view, 1, nullptr, &nis);
+  tracking_.note_update(done);
+  if (!done) return;
+  patch->status = PatchStatus::kInlier;
+  patch->last_seen_ns = frame_.report.t_ns;
+  count_frame(&patch->frames);
+  frame_.report.inliers += kWorth;
+  frame_.report.nis += static_cast<double>(nis);
+  frame_.report.nis_dof += z_.kHeight;
+}
+
+int PatchKeeper::inlier_depths(Scalar* depth) const {
+  const Body& body = filter_.state().body;
+  const Vec3 forward = body.q_WC.toRotationMatrix().col(2);
+  int count = 0;
+  for (int i = 0; i < store_.capacity(); ++i) {
+    Sight sight;
+    if (!store_.used(i) || store_[i].status != PatchStatus::kInlier) continue;
+    const int wall = wall_of(store_[i]);
+    if (wall >= 0 && expect(store_[i], wall, &sight)) depth[count++] = forward.dot(sight.middle_W - body.p_W);
+  }
+  return count;
+}
+
+void PatchKeeper::maintain(const Pyramid& image, bool supported, bool may_begin) {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPatch]);
+  follow_filter();
+  drop_failing(supported);
+  if (may_begin) begin_patches(image);
+}
+
+/// Its reference camera goes with the last patch that needs it.
+void PatchKeeper::drop(int i) {
+  const StoredPatch& patch = store_[i];
+  if (patch.is_proven())
+    filter_.remove(&patch.block, 1);
+  else
+    filter_.unpin(patch.camera);
+  store_.remove(i);
+}
+
+void PatchKeeper::drop_failing(bool supported) {
+  for (int i = 0; i < store_.capacity(); ++i) {
+    if (!store_.used(i)) continue;
+    StoredPatch& patch = store_[i];
+    const int own = patch.is_proven() ? patch.block : patch.camera;
+    bool fails = wall_of(patch) < 0 || !filter_.block_is_sound(own);
+    if (supported) {
+      const bool inlier = patch.status == PatchStatus::kInlier;
+      const auto count = [&](PatchStatus status, std::int16_t* in_a_row) {
+        *in_a_row = static_cast<std::int16_t>(patch.status == status ? *in_a_row + 1 : inlier ? 0 : *in_a_row);
+      };
+      count(PatchStatus::kMissed, &patch.failures);
+      count(PatchStatus::kOutlier, &patch.rejections);
+      fails = fails || patch.failures > (patch.is_proven() ? kMaxFailures : kMaxEarlyFailures) ||
+              patch.rejections > kMaxRejections;
+    }
+    if (fails) drop(i);
+  }
+}
+
+}  // namespace pf

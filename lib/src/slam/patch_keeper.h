@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+
+#include "filter/filter.h"
+#include "map/map.h"
+#include "slam/feature_keeper.h"
+#include "slam/frame.h"
+#include "slam/settings.h"
+#include "slam/tracking_state.h"
+#include "track/align_plane.h"
+#include "track/patch_search.h"
+#include "track/patch_store.h"
+
+/// Keeps the patches of walls: finds them in the image and updates the filter with them, begins new ones, and drops those that fail.
+/// Servant 2008, sections 2.3 and 2.4 (lib/docs/homography.md).
+
+namespace pf {
+
+class PatchKeeper {
+ public:
+  static constexpr int kMaxPatches = 32;  ///< capacity.max_patches at most
+  static constexpr int kWorth = 8;        ///< inliers that a patch counts as
+
+  PatchKeeper(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features,
+              TrackingState& tracking)
+      : settings_(settings), filter_(filter), map_(map), frame_(frame), features_(features), tracking_(tracking) {}
+
+  bool layout(Arena& arena);
+  void init();
+
+  /// Finds the patches in the image, and updates the filter with each that passes its gate.
+  void measure(const Pyramid& image);
+  /// Drops patches that fail; supported: the frame's measurements support its pose. Begins new ones where it may.
+  void maintain(const Pyramid& image, bool supported, bool may_begin);
+
+  const PatchStore& patches() const { return store_; }
+  /// Depths of the inliers' middles. Returns how many.
+  int inlier_depths(Scalar* depth) const;
+
+ private:
+  using Mat8 = PatchMeasurement::Matrix;
+  using Vec8 = PatchMeasurement::Vector;
+
+  /// A patch as the filter expects it.
+  struct Sight {
+    Mat3 H_CK;       ///< rays of the reference at depth 1 to rays of this image
+    Vec2 corner[4];  ///< [px]
+    Scalar cosine;   ///< between the view of its middle and the wall's normal
+    Vec3 middle_W;
+  };
+
+  // patch_keeper.cpp
+  void follow_filter();
+  int list_in_order(int* order) const;
+  int wall_of(const StoredPatch& patch) const;
+  void measure_patch(const Pyramid& image, StoredPatch* patch);
+  bool find_from_afar(const Pyramid& image, const StoredPatch& patch, Sight* sight);
+  bool begin_block(StoredPatch* patch, const Mat8& covariance);
+  void update(StoredPatch* patch, int plane, const PlaneAlignment& found);
+  void drop(int i);
+  void drop_failing(bool supported);
+
+  // patch_sight.cpp
+  bool expect(const StoredPatch& patch, int wall, Sight* sight) const;
+  bool is_visible(int wall, const Sight& sight) const;
+  bool move_to(const StoredPatch& patch, const Vec2& shift, Sight* sight) const;
+  bool linearise_near(const StoredPatch& patch, int plane);
+  void set_pose(const Body& pose);
+
+  // patch_selection.cpp
+  struct Square {
+    int left, top, side;
+    Scalar score;
+  };
+  static constexpr int kMaxSquares = 6;
+  void begin_patches(const Pyramid& image);
+  int wanted_on(int wall, int* youngest) const;
+  int list_squares(const Pyramid& image, int wall, int side, Square* square) const;
+  bool is_on_wall(int wall, const Square& square, Scalar* cosine) const;
+  bool is_free(const Square& square) const;
+  bool begin_at(const ImageView& image, int wall, const Square& square, int* camera);
+  bool make_room(int rows, bool for_camera);
+  bool drop_oldest_camera();
+
+  const Settings& settings_;
+  Filter& filter_;
+  Map& map_;
+  Frame& frame_;
+  FeatureKeeper& features_;
+  TrackingState& tracking_;
+  PatchStore store_;
+  PatchSearch search_;
+  PlaneAligner aligner_;
+  PatchMeasurement z_;            ///< scratch: the patch that is measured
+  std::uint32_t generation_ = 0;  ///< of the filter that the patches have blocks in
+};
+
+}  // namespace pf
