@@ -36,7 +36,7 @@ def interrupted_run(root, name, *arguments):
     """Ctrl-C when some frames are recorded. Gives the report."""
     out, record = root / name / "out", root / name / "rec"
     command = [str(word) for word in [PROGRAM, *QUIET, "--source", f"euroc:{root}/scene", "--realtime", "--delay", 100,
-                                      "--imu", f"csv:{root}/imu.csv", "--record", record, "--out", out, *arguments]]
+                                      "--imu", f"csv:{root}/imu.csv", "--no-inertial", "--record", record, "--out", out, *arguments]]
     print("+", *command, flush=True)
     with subprocess.Popen(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         while process.poll() is None and pictures(record) < RECORDED_BEFORE_THE_END:

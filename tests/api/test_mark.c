@@ -70,8 +70,8 @@ static void test_the_motion_should_begin_at_zero_and_be_the_difference_of_poses_
 static void test_a_new_mark_should_replace_the_old_one(void) {
   run(slam, 20);
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_mark_pose(slam));
-  const int32_t rows = state_dim(slam);
   TEST_ASSERT_EQUAL_INT(PF_OK, push(slam, 20));
+  const int32_t rows = state_dim(slam);
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_mark_pose(slam));
   TEST_ASSERT_EQUAL_INT(rows, state_dim(slam));
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_motion_since_mark(slam, &motion));

@@ -262,7 +262,7 @@ typedef struct pf_config {
     /* Features to keep in view, 8 .. capacity.max_observations; 0 with capacity.max_patches: none begin, and patches of
      * walls alone are followed. Default 45 */
     int32_t features_in_view;
-    int32_t border_px;        /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
+    int32_t border_px; /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
   } map;
 
   /* Finding planes and folding points into them (lib/docs/planes.md). Names of Gee 2007, section 3, in brackets. */
@@ -618,8 +618,8 @@ PF_API pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, dou
 
 typedef struct pf_report {
   int64_t t_ns;
-  int32_t state;  /* pf_state_t */
-  int32_t frames; /* frames pushed since create or reset */
+  int32_t state;                                             /* pf_state_t */
+  int32_t frames;                                            /* frames pushed since create or reset */
   int32_t attempts, matches, inliers, new_features, evicted; /* a patch counts as eight of the first three */
   int32_t features, features_point, features_inverse_depth, features_folded, features_fixed;
   int32_t planes;

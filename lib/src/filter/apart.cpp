@@ -4,7 +4,7 @@
 #include "filter/filter.h"
 #include "filter/tuning.h"
 
-/// What is kept apart from P in float, and how it comes there and back (lib/docs/float.md).
+/// What is kept apart from P, and how it comes there and back (lib/docs/gauge.md).
 
 namespace pf {
 
@@ -12,7 +12,7 @@ using namespace tuning::apart;
 
 /// Whether nothing tells the place or the scale of W, as an inertial unit would, so that what is not known of them may be kept apart.
 bool Filter::keeps_apart() const {
-  return GaugePrior::kInUse && keep_gauge_ && !gauge_is_told_ && state_.unobservable == gauge::kBareCamera &&
+  return keep_gauge_ && !gauge_is_told_ && state_.unobservable == gauge::kBareCamera &&
          !state_.layout.has(BodyPart::kGravity);
 }
 
@@ -49,10 +49,10 @@ void Filter::tell_gauge() {
   apart_.clear();
 }
 
-/// After an update: the diagonal gets back what rounding may have taken from it, and the scale leaves P where l, the best known log
-/// length, says that it is known too little.
+/// After an update: in float the diagonal gets back what rounding may have taken from it, and the scale leaves P where l, the best known
+/// log length, says that it is known too little.
 void Filter::end_update_apart(const ScaleRow& l) {
-  blocks_.grow(kGrowth * std::sqrt(static_cast<Scalar>(blocks_.dim())));
+  if constexpr (sizeof(Scalar) == sizeof(float)) blocks_.grow(kGrowth * std::sqrt(static_cast<Scalar>(blocks_.dim())));
   if (l.parts > 0 && blocks_.variance(l) > kMaxScaleVariance) take_scale_apart();
 }
 

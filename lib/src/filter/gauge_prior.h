@@ -10,11 +10,10 @@ namespace pf {
 ///   covariance of the state = P + N V N^T     N(x): gauge rows of the state (model/gauge.h); V: 7x7, translation, rotation, log scale
 ///
 /// No pixel says anything about these directions (H N = 0), so updates leave V as it is, and N(x) follows the state as the transport of P
-/// does. P then holds only what is shared by few rows, which float can tell from zero.
+/// does. P then holds only what is shared by few rows, which float can tell from zero, and the prior depth of a new point says nothing of
+/// the scale of all others.
 class GaugePrior {
  public:
-  /// Double can hold all of it in P.
-  static constexpr bool kInUse = sizeof(Scalar) == sizeof(float);
   using Matrix = Eigen::Matrix<Scalar, gauge::kDirections, gauge::kDirections>;
 
   bool any() const { return any_; }

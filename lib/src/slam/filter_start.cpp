@@ -216,7 +216,8 @@ void FilterStart::record_frame() {
   without_.begin_frame(camera.q_WC, camera.p_W, parts_.frame.report.t_ns);
   for (int t = 0; t < parts_.frame.match_count(); ++t) {
     const Match& match = parts_.frame.match(t);
-    if (match.feature < 0 || match.status != MatchStatus::kInlier) continue;
+    // The gate judges by the depths of the last solution. What it refuses, the next one may explain, and that adjustment is robust.
+    if (match.feature < 0 || (match.status != MatchStatus::kInlier && match.status != MatchStatus::kOutlier)) continue;
     without_.add_pixel(settings_.camera, match.id,
                        at_frame_time(parts_.map.features[match.feature].slot, match.measured));
   }

@@ -80,7 +80,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
     PixelMeasurement& o = parts_.update.observation(count);
     if (!filter.predict_pixel(filter.lens(), parts_.map.features[i].slot, &o)) continue;
     o.measured = o.predicted;
-    o.set_noise(NoiseModel::search());
+    o.set_noise(NoiseModel::search_update());
     ++count;
   }
   if (count == 0) return;

@@ -30,6 +30,8 @@ class NoiseModel {
   }
   /// Of a match before the image has said how good it is: search, and the first depths without a target.
   static Mat2 search() { return Mat2::Identity() * (tuning::noise::kSearchSigma * tuning::noise::kSearchSigma); }
+  /// R_update of such a match.
+  static Mat2 search_update() { return search() * tuning::noise::kPriorFrames; }
 
   /// sigma_px: the least standard deviation. correlation_frames: the prior of tau.
   void init(Scalar sigma_px, Scalar correlation_frames = tuning::noise::kPriorFrames);
