@@ -189,6 +189,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   std::string backend = "filter";
   std::string kernels = "auto";
   std::string lens = "exact";
+  std::string masks = "none";
   std::string timestamps;
   std::vector<double> gravity;
   std::vector<std::string> taps;
@@ -198,6 +199,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   bool no_points = false;
   const std::map<std::string, pf_camera_estimate_t> lens_names = {
       {"exact", PF_CAMERA_EXACT}, {"consider", PF_CAMERA_CONSIDER}, {"estimate", PF_CAMERA_ESTIMATE}};
+  const std::map<std::string, pf_masks_t> mask_names = {
+      {"none", PF_MASKS_NONE}, {"partial", PF_MASKS_PARTIAL}, {"whole", PF_MASKS_WHOLE}};
   const std::map<std::string, pf_kernels_t> kernel_names = {
       {"auto", PF_KERNELS_AUTO}, {"reference", PF_KERNELS_REFERENCE}, {"portable", PF_KERNELS_PORTABLE},
       {"avx2", PF_KERNELS_AVX2}, {"avx512", PF_KERNELS_AVX512},       {"neon", PF_KERNELS_NEON}};
@@ -261,6 +264,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--lens", lens,
                  "exact, consider or estimate: what to make of errors of the calibration, by its sigma fields")
       ->capture_default_str();
+  app.add_option("--masks", masks,
+                 "none, partial or whole: templates that learn which of their pixels belong to one plane")
+      ->capture_default_str();
   app.add_flag("--no-planes", no_planes, "points only");
   app.add_flag("--plain-ekf", no_gauge, "the textbook filter, which is overconfident; for comparison");
   add_camera_options(app, options);
@@ -305,6 +311,10 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   if (wrong.empty() && estimate == lens_names.end()) {
     wrong = "--lens " + lens + ": write exact, consider or estimate";
   }
+  const auto mask = mask_names.find(masks);
+  if (wrong.empty() && mask == mask_names.end()) {
+    wrong = "--masks " + masks + ": write none, partial or whole";
+  }
   if (!wrong.empty()) {
     code = refuse(wrong);
     return Parsed::kExit;
@@ -317,6 +327,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   }
   options.kernels = set->second;
   options.lens = estimate->second;
+  options.masks = mask->second;
   options.film = !no_film;
   options.keep_gauge = !no_gauge;
   options.planes = !no_planes;

@@ -49,6 +49,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   config_.camera.estimate = options.lens;
   if (options.timestamps >= 0) config_.camera.timestamps = options.timestamps;
   config_.kernels = options.kernels;
+  config_.map.masks = options.masks;
   config_.keep_gauge = options.keep_gauge ? 1 : 0;
   config_.plane.enabled = options.planes ? 1 : 0;
   const auto set = [](int32_t& field, int32_t value) { field = value > 0 ? value : field; };

@@ -122,6 +122,9 @@ void Statistics::add(const FrameView& view) {
   unusable_ += view.status == PF_NOTE_UNUSABLE ? 1 : 0;
   evicted_ += report.evicted;
   new_features_ += report.new_features;
+  measured_ += report.inliers;
+  learning_frames_ += report.templates > 0 ? 1 : 0;
+  template_area_ += report.template_area;
   if (report.nis_dof > 0 && report.state == PF_STATE_TRACKING) {
     nis_ += report.nis;
     nis_dof_ += report.nis_dof;
@@ -215,6 +218,9 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
     stages[kStages[i]] = rounded(stage_ms_[i].quantile(0.5));
   }
   if (has_patches) stages["patch"] = rounded(stage_ms_[PF_STAGE_PATCH].quantile(0.5));
+  if (session.config().map.masks != PF_MASKS_NONE) {
+    stages["template"] = rounded(stage_ms_[PF_STAGE_TEMPLATE].quantile(0.5));
+  }
   const auto mean_of = [&](double sum) {
     return folding_.frames > 0 ? Json(rounded(sum / static_cast<double>(folding_.frames))) : Json();
   };
@@ -260,6 +266,11 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
                              {"fixed", last_report_.features_fixed}};
   json["new_features"] = new_features_;
   json["evicted"] = evicted_;
+  json["track_length"] = {
+      {"mean", new_features_ > 0 ? Json(rounded(static_cast<double>(measured_) / static_cast<double>(new_features_)))
+                                 : Json()}};
+  json["templates"] = {
+      {"area", learning_frames_ > 0 ? Json(rounded(template_area_ / static_cast<double>(learning_frames_))) : Json()}};
   json["state_dim"] = {
       {"median", state_dim_.quantile(0.5)}, {"max", state_dim_.largest()}, {"end", last_report_.state_dim}};
   json["state_dim_points_only"] = last_report_.state_dim_points_only;

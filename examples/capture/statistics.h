@@ -84,6 +84,9 @@ class Statistics {
   std::vector<MapCount> maps_;  ///< in which something was tracked; at most one per restart_s or reset
   int64_t evicted_ = 0;
   int64_t new_features_ = 0;
+  int64_t measured_ = 0;         ///< sum of inliers over all frames
+  int64_t learning_frames_ = 0;  ///< in which templates learnt
+  double template_area_ = 0.0;   ///< sum over them
   double nis_ = 0.0;
   int64_t nis_dof_ = 0;
   int32_t last_state_ = PF_STATE_STARTING;

@@ -54,4 +54,21 @@ Trajectory wall_path(Random& random) {
   return spline(vary(points, random, 0.03), 1.0);
 }
 
+Trajectory checker_path(Random& random) {
+  const double height = random.uniform(-0.03, 0.03);
+  return [height](double t) {
+    constexpr double kSpeed = 0.24;  // [m/s]
+    return Pose{look_along({0, 0, 1}, {0, 1, 0}), {-0.2 + kSpeed * t, height, -0.8}};
+  };
+}
+
+Trajectory clutter_path(Random& random) {
+  const std::vector<Waypoint> points = {{{0.02, -0.01, -0.72}, {0, 0, 0}},     {{0.14, -0.06, -0.70}, {0, 0, 0}},
+                                        {{0.24, -0.10, -0.70}, {0.03, 0, 0}},  {{0.12, -0.16, -0.74}, {-0.05, 0, 0}},
+                                        {{-0.10, -0.12, -0.78}, {-0.1, 0, 0}}, {{-0.26, 0.00, -0.74}, {-0.05, 0, 0}},
+                                        {{-0.14, 0.12, -0.72}, {0, 0.05, 0}},  {{0.08, 0.10, -0.76}, {0.05, 0, 0}},
+                                        {{0.22, 0.02, -0.74}, {0.03, 0, 0}},   {{0.05, -0.02, -0.72}, {0, 0, 0}}};
+  return spline(vary(points, random, 0.03), 1.0);
+}
+
 }  // namespace pf::sim

@@ -9,5 +9,8 @@ namespace pf::sim {
 Trajectory desk_path(Random& random);
 Trajectory room_path(Random& random);
 Trajectory wall_path(Random& random);
+/// Sideways at a constant speed, 0.8 m before two planes in a checkerboard.
+Trajectory checker_path(Random& random);
+Trajectory clutter_path(Random& random);
 
 }  // namespace pf::sim

@@ -44,6 +44,11 @@ Scene make_desk(Random& random, const SceneOptions& options);
 Scene make_room(Random& random, const SceneOptions& options);
 /// One large wall with the target on it.
 Scene make_wall(Random& random, const SceneOptions& options);
+/// Two planes that face the camera, in a checkerboard: squares before a wall, both with the same kind of texture. The target hangs in the
+/// plane of the squares. After Masoud 2015, Figure 2
+Scene make_two_depths(Random& random, const SceneOptions& options);
+/// Boards and posts at many depths before a wall: most of what has texture is near the rim of something. The target hangs in the middle.
+Scene make_clutter(Random& random, const SceneOptions& options);
 /// A checker board of `square` metres in the plane z = 0, its corner of squares at the origin.
 Scene make_checker(double square, int squares);
 

@@ -51,6 +51,8 @@ const SceneKind kScenes[] = {
     {"exposure", make_desk, desk_path, 570, [](pf_sim_options_t* o) { o->exposure_step = 1.6; }},
     {"repeat", make_desk, desk_path, 570, [](pf_sim_options_t* o) { o->repeated_texture = 1; }},
     {"box", make_box, circle_path, 930, adjust_box},
+    {"checker", make_two_depths, checker_path, 50, [](pf_sim_options_t* o) { o->shake_m = o->shake_rad = 0; }},
+    {"clutter", make_clutter, clutter_path, 240, nullptr},
 };
 
 const SceneKind* find_scene(const char* name) {

@@ -14,6 +14,7 @@ void add_kidnap(CLI::App& app, int& result);
 void add_rest(CLI::App& app, int& result);
 void add_box(CLI::App& app, int& result);
 void add_vio(CLI::App& app, int& result);
+void add_templates(CLI::App& app, int& result);
 
 /// What to say of a scene that is none: its name, and those that there are.
 std::string no_scene(const std::string& scene);

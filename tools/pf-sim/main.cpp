@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   pfsim::add_rest(app, result);
   pfsim::add_box(app, result);
   pfsim::add_vio(app, result);
+  pfsim::add_templates(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& done) {

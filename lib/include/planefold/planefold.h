@@ -175,6 +175,13 @@ typedef enum pf_fix {
   PF_FIX_ERROR_FREE = 3 /* leaves the state, as if known exactly (Gee 2007, section 3.4); for comparison */
 } pf_fix_t;
 
+/* Templates that learn which of their pixels belong to their dominant plane (lib/docs/templates.md; Masoud 2015). */
+typedef enum pf_masks {
+  PF_MASKS_NONE = 0,    /* every pixel of a feature counts, and one in five may be wrong; the default */
+  PF_MASKS_PARTIAL = 1, /* a mask for each feature whose depth is known, and the normal of its plane */
+  PF_MASKS_WHOLE = 2    /* as PARTIAL with all pixels on the plane; for comparison */
+} pf_masks_t;
+
 typedef enum pf_scalar { PF_SCALAR_DOUBLE = 8, PF_SCALAR_FLOAT = 4 } pf_scalar_t;
 
 /* The inertial unit of pf_push_imu. Its own axes are B. */
@@ -220,6 +227,8 @@ typedef struct pf_config {
      * state, and the camera that first saw it six, which is shared by all that began in its frame: of such cameras there
      * are at most max_cameras, 0 .. 64. Defaults 0 (none), 100, 8 */
     int32_t max_patches, patch_side_px, max_cameras;
+    /* Side of a feature's template with map.masks, odd, 9 .. 31 px; without, it takes no memory. Default 15 */
+    int32_t template_px;
   } capacity;
 
   /* How the camera may move between frames. Densities are those of white noise: over a time dt the velocity's
@@ -263,6 +272,10 @@ typedef struct pf_config {
      * walls alone are followed. Default 45 */
     int32_t features_in_view;
     int32_t border_px; /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
+    int32_t masks;     /* pf_masks_t. Default none. Other than none, it adds memory */
+    /* With masks: mean square of a match's residuals, in that of a pixel on the dominant plane, at most. 0.01 .. 100.
+     * Default 1 */
+    double max_misfit;
   } map;
 
   /* Finding planes and folding points into them (lib/docs/planes.md). Names of Gee 2007, section 3, in brackets. */
@@ -600,16 +613,33 @@ typedef struct pf_patch {
 /* Copy of the patches. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
 PF_API pf_status_t pf_get_patches(const pf_slam_t* slam, pf_patch_t* patches, size_t capacity, size_t* count);
 
+/* Template of a feature, with map.masks. */
+typedef struct pf_template {
+  uint32_t feature; /* id */
+  int32_t side;     /* [px] capacity.template_px */
+  /* side * side, row by row, in the image where the feature was first seen. mask: probability of belonging to the dominant
+   * plane in 1/255; 0 where there was no image. */
+  uint8_t grey[31 * 31], mask[31 * 31];
+  double normal_W[3];      /* unit, of the dominant plane, towards the camera; a folded feature has its plane's */
+  double sigma_normal_rad; /* of the template's own normal; 0 of a folded feature */
+  double centre_px[2];     /* of the middle pixel, in the image where the feature was first seen */
+  int32_t frames;          /* that the mask has learnt from */
+} pf_template_t;
+
+/* PF_NOTE_NOTHING, and *out is as it was: no feature has this id, or there are no masks. */
+PF_API pf_status_t pf_get_template(const pf_slam_t* slam, uint32_t feature, pf_template_t* out);
+
 enum {
-  PF_STAGE_PYRAMID = 0, /* image levels */
-  PF_STAGE_PREDICT = 1, /* motion, predicted pixels, innovation covariance */
-  PF_STAGE_SEARCH = 2,  /* warps, search, sub-pixel refinement */
-  PF_STAGE_GATE = 3,    /* inliers and outliers among the matches */
-  PF_STAGE_UPDATE = 4,  /* covariance and state */
-  PF_STAGE_MAP = 5,     /* conversion, eviction, corners, new features */
-  PF_STAGE_IMU = 6,     /* samples, in place of the motion in PF_STAGE_PREDICT */
-  PF_STAGE_PATCH = 7,   /* patches on walls: prediction, alignment, update, new ones */
-  PF_STAGE_COUNT = 8
+  PF_STAGE_PYRAMID = 0,  /* image levels */
+  PF_STAGE_PREDICT = 1,  /* motion, predicted pixels, innovation covariance */
+  PF_STAGE_SEARCH = 2,   /* warps, search, sub-pixel refinement */
+  PF_STAGE_GATE = 3,     /* inliers and outliers among the matches */
+  PF_STAGE_UPDATE = 4,   /* covariance and state */
+  PF_STAGE_MAP = 5,      /* conversion, eviction, corners, new features */
+  PF_STAGE_IMU = 6,      /* samples, in place of the motion in PF_STAGE_PREDICT */
+  PF_STAGE_PATCH = 7,    /* patches on walls: prediction, alignment, update, new ones */
+  PF_STAGE_TEMPLATE = 8, /* masks and normals of templates */
+  PF_STAGE_COUNT = 9
 };
 
 /* The calibration as it is known now, and the covariance of its numbers (may be null): 10x10, row-major, of (fx, fy, cx,
@@ -643,6 +673,10 @@ typedef struct pf_report {
    * and its variances were raised until it was (lib/docs/float.md). 0 is normal; where it grows, the poses deserve less
    * trust than their covariances say. */
   int64_t covariance_repairs;
+  /* With map.masks: templates that learnt from this frame, and the mean share of their pixels on the dominant plane (0
+   * without any). */
+  int32_t templates;
+  double template_area;
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

@@ -31,6 +31,8 @@ constexpr Range kIntegers[] = {
     PF_FIELD(capacity.max_patches, 0, 32),
     PF_FIELD(capacity.patch_side_px, 32, 128),
     PF_FIELD(capacity.max_cameras, 0, 64),
+    PF_FIELD(capacity.template_px, pf::PlanarTemplate::kMinSide, pf::PlanarTemplate::kMaxSide),
+    PF_FIELD(map.masks, PF_MASKS_NONE, PF_MASKS_WHOLE),
     PF_FIELD(plane.min_points, 4, 60),
     PF_FIELD(map.features_in_view, 0, 200),
     PF_FIELD(map.border_px, 4, 64),
@@ -48,6 +50,7 @@ constexpr Range kReals[] = {
     PF_FIELD(first_depth.depth, 1e-4, 1e5),
     PF_FIELD(first_depth.relative_sigma, 0.05, 5),
     PF_FIELD(first_depth.linearity_index, 0.001, 1),
+    PF_FIELD(map.max_misfit, 0.01, 100),
     PF_FIELD(plane.max_distance, 1e-5, 10),
     PF_FIELD(plane.max_radius, 0.01, 1e4),
     PF_FIELD(plane.roughness, 1e-6, 1),
@@ -164,6 +167,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
     const double value = field_at<double>(config, r.offset);
     if (!(value >= r.low && value <= r.high)) return *field = r.name, Status::kConfig;
   }
+  if (config.capacity.template_px % 2 == 0) return *field = "capacity.template_px", Status::kConfig;
   const bool patches_alone = config.map.features_in_view == 0 && config.capacity.max_patches > 0;
   if (config.map.features_in_view > config.capacity.max_observations ||
       (config.map.features_in_view < kMinFeaturesInView && !patches_alone))
@@ -200,6 +204,9 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->max_patches = static_cast<std::uint8_t>(config.capacity.max_patches);
   settings->patch_side_px = static_cast<std::uint8_t>(config.capacity.patch_side_px);
   settings->max_cameras = static_cast<std::uint8_t>(config.capacity.max_cameras);
+  settings->template_px = static_cast<std::uint8_t>(config.capacity.template_px);
+  settings->masks = static_cast<MaskMode>(config.map.masks);
+  settings->max_misfit = static_cast<float>(config.map.max_misfit);
   settings->planes = config.plane.enabled != 0;
   settings->plane_min_points = config.plane.min_points;
   settings->plane_distance = static_cast<Scalar>(config.plane.max_distance);
@@ -252,6 +259,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->capacity.max_patches = 0;
   config->capacity.patch_side_px = 100;
   config->capacity.max_cameras = 8;
+  config->capacity.template_px = pf::PlanarTemplate::kDefaultSide;
   config->plane.enabled = 1;
   config->plane.min_points = 7;
   config->plane.max_distance = 0.01;
@@ -274,6 +282,8 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->first_depth.linearity_index = 0.1;
   config->map.features_in_view = 45;
   config->map.border_px = 8;
+  config->map.masks = PF_MASKS_NONE;
+  config->map.max_misfit = 1;
   config->motion.coast_s = 1.0;
   config->motion.restart_s = 3.0;
   config->keep_gauge = 1;

@@ -166,6 +166,28 @@ pf_status_t pf_get_patches(const pf_slam_t* slam, pf_patch_t* patches, size_t ca
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
 }
 
+pf_status_t pf_get_template(const pf_slam_t* slam, uint32_t feature, pf_template_t* out) {
+  PF_REQUIRE_CONTEXT(slam);
+  if (out == nullptr) return PF_ERROR_NULL;
+  pf::TemplateView t;
+  if (!slam->session.view().template_of(feature, &t)) return PF_NOTE_NOTHING;
+  *out = pf_template_t();
+  out->feature = feature;
+  out->side = t.shape->side;
+  for (int y = 0; y < t.shape->side; ++y)
+    for (int x = 0; x < t.shape->side; ++x) {
+      const int at = y * t.shape->side + x;
+      out->grey[at] = t.grey(x, y);
+      out->mask[at] = t.mask[at];
+    }
+  copy(t.normal_W, 3, out->normal_W);
+  out->sigma_normal_rad = static_cast<double>(t.sigma_normal);
+  out->centre_px[0] = t.shape->left + t.shape->side / 2;
+  out->centre_px[1] = t.shape->top + t.shape->side / 2;
+  out->frames = t.shape->frames;
+  return PF_OK;
+}
+
 pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, double covariance[100]) {
   PF_REQUIRE_CONTEXT(slam);
   if (camera == nullptr) return PF_ERROR_NULL;
@@ -225,6 +247,8 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->correlation_frames = static_cast<double>(view.noise().correlation_frames());
   report->kernels = static_cast<int32_t>(pf::kernels_id(slam->session.settings().kernels));
   for (int i = 0; i < PF_STAGE_COUNT; ++i) report->stage_ns[i] = r.stage_ns[i];
+  report->templates = r.templates;
+  if (r.templates > 0) report->template_area = static_cast<double>(r.template_area / static_cast<float>(r.templates));
   return PF_OK;
 }
 

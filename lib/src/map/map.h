@@ -3,6 +3,7 @@
 #include "map/feature_table.h"
 #include "map/plane_table.h"
 #include "vision/appearance.h"
+#include "vision/planar_template.h"
 
 /// The map beside the filter: features, their appearances, and planes, as plain tables behind one handle. Rows hold no pointers, so
 /// that they can be copied and written to a file.
@@ -22,11 +23,17 @@ class Map {
   Mark mark;
   bool target_withdrawn = false;  ///< the target's points are no longer measured
 
-  bool layout(Arena& arena, int max_features, int max_planes) {
+  /// template_px: side of templates with masks; 0: there are none, and they take no memory.
+  bool layout(Arena& arena, int max_features, int max_planes, int template_px = 0) {
     features.layout(arena, max_features);
     planes.layout(arena, max_planes);
     appearance_ = arena.take<Appearance>(static_cast<std::size_t>(max_features));
     first_view_ = arena.take<CameraView>(static_cast<std::size_t>(max_features));
+    mask_size_ = template_px * template_px;
+    if (template_px > 0) {
+      template_ = arena.take<PlanarTemplate>(static_cast<std::size_t>(max_features));
+      mask_ = arena.take<std::uint8_t>(static_cast<std::size_t>(max_features * mask_size_));
+    }
     return arena.ok();
   }
   void init() {
@@ -42,10 +49,19 @@ class Map {
   /// The camera that saw it then: a constant in W that does not follow when the map moves.
   CameraView& first_view(int feature) { return first_view_[feature]; }
   const CameraView& first_view(int feature) const { return first_view_[feature]; }
+  /// Of a feature with an appearance, where has_templates().
+  bool has_templates() const { return mask_size_ > 0; }
+  PlanarTemplate& shape(int feature) { return template_[feature]; }
+  const PlanarTemplate& shape(int feature) const { return template_[feature]; }
+  std::uint8_t* mask(int feature) { return mask_ + feature * mask_size_; }
+  const std::uint8_t* mask(int feature) const { return mask_ + feature * mask_size_; }
 
  private:
-  Appearance* appearance_ = nullptr;  ///< of each row of the feature table
-  CameraView* first_view_ = nullptr;  ///< likewise
+  int mask_size_ = 0;
+  Appearance* appearance_ = nullptr;    ///< of each row of the feature table
+  CameraView* first_view_ = nullptr;    ///< likewise
+  PlanarTemplate* template_ = nullptr;  ///< likewise; null without masks
+  std::uint8_t* mask_ = nullptr;        ///< likewise, mask_size_ each
 };
 
 }  // namespace pf

@@ -27,7 +27,7 @@ struct Match {
   bool searched = false;  ///< the image was compared with its appearance
 };
 
-enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kImu, kPatch, kStageCount };
+enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kImu, kPatch, kTemplate, kStageCount };
 
 struct FrameReport {
   std::int64_t t_ns = 0;
@@ -37,6 +37,8 @@ struct FrameReport {
   int attempts = 0, matches = 0, inliers = 0, new_features = 0, evicted = 0;
   double nis = 0;
   int nis_dof = 0;
+  int templates = 0;        ///< that learnt from this frame
+  float template_area = 0;  ///< sum of their masks, in parts of a template
   std::int64_t stage_ns[kStageCount] = {};
 };
 

@@ -84,6 +84,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
   if (patches_ != nullptr && !first) patches_->measure(images_.tracker().pyramid());
   const bool supported = tracking_.is_tracked(frame_.report) || start_.progress().pending();
+  if (!first && tracking_.is_tracked(frame_.report)) images_.learn_templates();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     if (supported) features_.count_searches();

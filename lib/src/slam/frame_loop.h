@@ -69,8 +69,8 @@ class FrameLoop {
     std::int64_t filter_ns = 0;
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     bool image_usable = false;       ///< this frame is an image that shows something to track
-    Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     bool warned_of_noise = false;
+    Scalar median_depth = 1;  ///< of the inliers of the last tracked frame
   };
 
   bool is_next(std::int64_t t_ns) const { return frame_.report.frames == 0 || t_ns > frame_.report.t_ns; }

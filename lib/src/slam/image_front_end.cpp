@@ -20,6 +20,7 @@ using namespace tuning::image_front_end;
 
 bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observations) {
   searched_px2_ = arena.take<Scalar>(static_cast<std::size_t>(max_observations));
+  layout_templates(arena);
   return tracker_.layout(arena, width, height);
 }
 
@@ -36,6 +37,7 @@ void ImageFrontEnd::measure(ConsensusRule rule, Scalar median_depth) {
 void ImageFrontEnd::measure_visible(ConsensusRule rule) {
   const int count = list_visible();
   listed_ = count;
+  is_measured_ = true;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
     predict_pixels(0, count);
@@ -63,6 +65,9 @@ bool ImageFrontEnd::remember(int feature, const Vec2& pixel, const CameraView& v
   Feature& f = map_.features[feature];
   f.has_appearance = tracker_.remember(pixel, &map_.appearance(feature));
   map_.first_view(feature) = view;
+  if (f.has_appearance && map_.has_templates())
+    templates_->begin(tracker_.image(), map_.appearance(feature).patch, pixel, &map_.shape(feature),
+                      map_.mask(feature));
   return f.has_appearance;
 }
 
@@ -142,16 +147,18 @@ Scalar ImageFrontEnd::widest_ellipse(int count) const {
   return widest;
 }
 
-/// What the tracker needs to search for a candidate.
-SearchTask ImageFrontEnd::task_of(int i) const {
-  const Candidate& candidate = update_.candidate(i);
-  const int slot = map_.features[candidate.feature].slot;
+/// What the tracker needs to search for a feature, but for where it is predicted.
+SearchTask ImageFrontEnd::task_of(int feature) const {
+  const int slot = map_.features[feature].slot;
   const State& state = filter_.state();
   SearchTask task;
-  task.appearance = &map_.appearance(candidate.feature);
-  task.first_view = map_.first_view(candidate.feature);
-  task.predicted = update_.observation(i).predicted;
-  task.innovation = frame_.match(candidate.match).innovation;
+  task.appearance = &map_.appearance(feature);
+  task.first_view = map_.first_view(feature);
+  // Where a surface is in other images needs its depth. The target is matched as without masks (lib/docs/templates.md).
+  if (map_.has_templates() && !map_.features[feature].is_target && state.block[slot].kind != BlockKind::kInverseDepth) {
+    task.shape = &map_.shape(feature);
+    task.mask = map_.mask(feature);
+  }
   task.gate = settings_.gate;
   task.p_W = filter_.point(slot);
   if (is_planar(state.block[slot].kind)) {
@@ -165,6 +172,10 @@ SearchTask ImageFrontEnd::task_of(int i) const {
   return task;
 }
 
+SearchOutcome ImageFrontEnd::search_for(const SearchTask& task) {
+  return task.shape != nullptr ? templates_->search(tracker_, task) : tracker_.search(task);
+}
+
 int ImageFrontEnd::search(int first, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   int found = first;
@@ -172,7 +183,10 @@ int ImageFrontEnd::search(int first, int count) {
     PixelMeasurement& o = update_.observation(i);
     if (o.block < 0) continue;
     Match& match = frame_.match(update_.candidate(i).match);
-    const SearchOutcome outcome = tracker_.search(task_of(i));
+    SearchTask task = task_of(update_.candidate(i).feature);
+    task.predicted = o.predicted;
+    task.innovation = match.innovation;
+    const SearchOutcome outcome = search_for(task);
     if (!outcome.comparable) continue;
     match.searched = true;
     ++frame_.report.attempts;

@@ -8,6 +8,7 @@
 #include "slam/pixel_update.h"
 #include "slam/same_view.h"
 #include "slam/settings.h"
+#include "track/template_matcher.h"
 #include "track/tracker.h"
 
 /// Measures an image: predicts which features are in it and where, finds them, updates the filter, and adds features at corners.
@@ -36,11 +37,16 @@ class ImageFrontEnd {
   bool layout(Arena& arena, int width, int height, int max_observations);
   void init(const Camera& camera) {
     tracker_.init(camera);
+    if (templates_ != nullptr) templates_->init(camera, settings_.masks, settings_.max_misfit);
     same_view_.init();
   }
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
-  bool begin_frame(const ImageView& image) { return tracker_.begin_frame(image); }
+  bool begin_frame(const ImageView& image) {
+    if (templates_ != nullptr) templates_->begin_frame();
+    is_measured_ = false;
+    return tracker_.begin_frame(image);
+  }
   /// Finds the map's features in the image and updates the filter with them.
   /// median_depth: of the last tracked frame's inliers.
   void measure(ConsensusRule rule, Scalar median_depth);
@@ -49,6 +55,8 @@ class ImageFrontEnd {
   void forget_view() { same_view_.forget(); }
   /// Updates the noise model with the inliers' residuals after measure().
   void learn_noise();
+  /// Updates masks and normals of templates with this frame's inliers.
+  void learn_templates();
   /// Adds features in the emptiest cells of the image until enough are in view.
   void add_features();
   /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
@@ -72,9 +80,13 @@ class ImageFrontEnd {
   // image_front_end.cpp
   bool is_visible(int feature) const;
   Scalar widest_ellipse(int count) const;
-  SearchTask task_of(int i) const;
+  SearchTask task_of(int feature) const;
+  SearchOutcome search_for(const SearchTask& task);
   bool update_with_consensus(int first, int found, ConsensusRule rule);
   bool is_averaged(const Feature& f) const;
+
+  // image_templates.cpp
+  bool layout_templates(Arena& arena);
 
   // image_corners.cpp
   bool is_free(const Vec2& pixel) const;
@@ -88,10 +100,12 @@ class ImageFrontEnd {
   PixelUpdate& update_;
   NoiseModel& noise_;
   SameView same_view_;
-  bool is_learnt_ = false;  ///< the map has learnt from this frame's view already
+  bool is_learnt_ = false;    ///< the map has learnt from this frame's view already
+  bool is_measured_ = false;  ///< by measure(), so that candidates and matches are this frame's
+  int listed_ = 0;            ///< candidates of this frame
   Tracker tracker_;
-  Scalar* searched_px2_ = nullptr;  ///< max_observations
-  int listed_ = 0;                  ///< candidates of this frame
+  TemplateMatcher* templates_ = nullptr;  ///< in the block, with masks alone
+  Scalar* searched_px2_ = nullptr;        ///< max_observations
 };
 
 }  // namespace pf

@@ -6,7 +6,8 @@ namespace pf {
 
 bool Session::layout(Arena& arena, const Settings& settings) {
   settings_ = settings;
-  map_.layout(arena, settings.max_features, settings.max_planes);
+  map_.layout(arena, settings.max_features, settings.max_planes,
+              settings.masks == MaskMode::kNone ? 0 : settings.template_px);
   imu_.layout(arena, settings.imu_buffer);
   FrameLoop* place = arena.take<FrameLoop>(1);
   if (place == nullptr) return FrameLoop(settings_, map_, imu_).layout(arena);

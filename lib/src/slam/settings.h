@@ -9,6 +9,7 @@
 #include "filter/imu_path.h"
 #include "filter/motion.h"
 #include "geometry/lens.h"
+#include "vision/planar_template.h"
 
 namespace pf {
 
@@ -52,9 +53,12 @@ struct Settings {
   int features_in_view = 0;
   int min_inliers = 0;  ///< of a frame that counts as tracked
   int border_px = 0;
+  float max_misfit = 1;  ///< of a template with a mask, TemplateMatcher::init
   std::int64_t max_coast_ns = 0;
   std::int64_t restart_ns = 0;  ///< of usable images while lost, after which a new map begins; 0: never
   bool keep_gauge = true;
+  MaskMode masks = MaskMode::kNone;
+  std::uint8_t template_px = 0;  ///< side of templates with masks
 
   int imu_buffer = 0;
   ImuRanges imu_ranges;

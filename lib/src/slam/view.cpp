@@ -5,6 +5,7 @@
 #include "filter/gauge_information.h"
 #include "filter/observe/point.h"
 #include "slam/frame_loop.h"
+#include "track/template_warp.h"
 
 namespace pf {
 
@@ -117,6 +118,45 @@ bool View::has_patch(int i) const { return loop_.patches()->patches().used(i); }
 PatchView View::patch(int i) const {
   const StoredPatch& p = loop_.patches()->patches()[i];
   return {p.id, p.plane, static_cast<int>(p.status), p.frames, p.corner, &p.covariance, static_cast<Scalar>(p.weight)};
+}
+
+std::uint8_t TemplateView::grey(int x, int y) const {
+  const int from_x = static_cast<int>(patch->centre_x[0] + 0.5f) - shape->side / 2 + x;
+  const int from_y = static_cast<int>(patch->centre_y[0] + 0.5f) - shape->side / 2 + y;
+  return patch->pixels[0][from_y * SourcePatch::kSize + from_x];
+}
+
+bool View::template_of(std::uint32_t id, TemplateView* out) const {
+  if (!map_.has_templates()) return false;
+  int i = 0;
+  while (i < map_.features.capacity() && !(map_.features.used(i) && map_.features[i].id == id)) ++i;
+  if (i == map_.features.capacity() || !map_.features[i].has_appearance) return false;
+  const PlanarTemplate& shape = map_.shape(i);
+  const State& state = filter().state();
+  const int slot = map_.features[i].slot;
+  const Camera& camera = settings_.camera;
+  Vec3 ray;
+  if (!unproject(camera, template_centre(shape), &ray) || !(ray.z() > Scalar(0))) return false;
+  *out = {&shape, map_.mask(i), &map_.appearance(i).patch, Vec3::Zero(), Scalar(0)};
+  const CameraView& first = map_.first_view(i);
+  if (is_planar(state.block[slot].kind)) {
+    const Block& plane = state.block[state.plane_of(slot)];
+    Scalar d;
+    plane_normal(state.frame_of(plane), plane.xyz(), &out->normal_W, &d);
+    if (out->normal_W.dot(first.c_W - filter().point(slot)) < 0) out->normal_W = -out->normal_W;
+    return true;
+  }
+  TemplateWarp warp;
+  warp.ray_0 = ray.head<2>() / ray.z();
+  const Vec2 slope = shape.has_normal ? Vec2(shape.slope[0], shape.slope[1]) : warp.facing();
+  out->normal_W = first.q_WC * warp.normal_of(slope);
+  // A slope turns the normal by no more than itself over the normal's length.
+  const Scalar trace = static_cast<Scalar>(shape.covariance[0] + shape.covariance[2]) / 2;
+  const Scalar apart = static_cast<Scalar>(shape.covariance[0] - shape.covariance[2]) / 2;
+  const Scalar cross = static_cast<Scalar>(shape.covariance[1]);
+  const Scalar length = Vec3(slope.x(), slope.y(), 1 - slope.dot(warp.ray_0)).norm();
+  out->sigma_normal = std::sqrt(trace + std::sqrt(apart * apart + cross * cross)) / length;
+  return true;
 }
 
 MapCounts View::counts() const {

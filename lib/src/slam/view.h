@@ -74,6 +74,17 @@ struct PatchView {
   Scalar weight;
 };
 
+/// Template of a feature, with masks.
+struct TemplateView {
+  const PlanarTemplate* shape;
+  const std::uint8_t* mask;
+  const SourcePatch* patch;
+  Vec3 normal_W;        ///< towards the camera
+  Scalar sigma_normal;  ///< [rad] 0 of a folded feature's, which is its plane's
+
+  std::uint8_t grey(int x, int y) const;
+};
+
 /// Numbers of features by kind, of planes and of rows.
 struct MapCounts {
   int features = 0, points = 0, inverse_depths = 0, folded = 0, fixed = 0;
@@ -117,6 +128,8 @@ class View {
   int feature_capacity() const { return map_.features.capacity(); }
   bool has_feature(int i) const { return map_.features.used(i); }
   FeatureView feature(int i) const;
+  /// False without masks, and where no feature has this id.
+  bool template_of(std::uint32_t id, TemplateView* out) const;
   int plane_capacity() const { return map_.planes.capacity(); }
   bool has_plane(int i) const { return map_.planes.used(i); }
   /// Current id of the plane that once had this id; 0 if there is none.

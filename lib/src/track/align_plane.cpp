@@ -14,9 +14,11 @@ using namespace tuning::align_plane;
 constexpr float kBlur = 0.125f;                                                           // of each of four neighbours
 constexpr float kBlurKept = (1.0f - 4 * kBlur) * (1.0f - 4 * kBlur) + 4 * kBlur * kBlur;  // of noise that is blurred so
 // Of normal residuals with unit variance, with the weights of PlaneSums and their cut-off:
-constexpr float kPsiOfNormal = 0.7813f;  // E psi^2 / E h
-constexpr float kSpread = 0.8144f;       // E psi^2 / (E psi')^2 E h
-constexpr int kLevelsNear = 2;           ///< finest levels, on which steps are those of the weights' slope
+constexpr float kPsiOfNormal = 0.7813f;    // E psi^2 / E h
+constexpr float kSpread = 0.8144f;         // E psi^2 / (E psi')^2 E h
+constexpr float kPerByte = 1.0f / 255.0f;  // of a mask
+constexpr int kLightRounds = 2;            ///< of gain and bias about a homography that stays
+constexpr int kLevelsNear = 2;             ///< finest levels, on which steps are those of the weights' slope
 
 /// Rays at depth 1 to pixels of the pinhole, at a level.
 Mat3 level_projection(const Camera& camera, int level) {
@@ -104,7 +106,7 @@ Scalar PlaneAligner::corner_way(const Mat3& step) const {
 }
 
 /// Lists the pixels of a level that are compared, with their rays and gradients.
-void PlaneAligner::load_samples(const PlanePatch& patch, int level) {
+void PlaneAligner::load_samples(const PlanePatch& patch, int level, const std::uint8_t* mask) {
   const int side = patch.side_of(level);
   const std::uint8_t* pixels = patch.level(level);
   const int inner = (side - 2) * (side - 2);
@@ -117,6 +119,7 @@ void PlaneAligner::load_samples(const PlanePatch& patch, int level) {
   PlaneSamples& s = samples_;
   int n = 0;
   float squares = 0;
+  all_weight_ = 0.0f;
   for (int y = 1; y < side - 1; ++y)
     for (int x = 1; x < side - 1; ++x) {
       if (level == 0 ? !patch.is_chosen(x, y) : every_other && ((x + y) & 1) != 0) continue;
@@ -143,7 +146,8 @@ void PlaneAligner::load_samples(const PlanePatch& patch, int level) {
       s.grey[n] = static_cast<float>(at[0]) + kBlur * static_cast<float>(bend) - patch.mean;
       s.gx[n] = gx;
       s.gy[n] = gy;
-      s.mask[n] = 1.0f;
+      s.mask[n] = mask != nullptr ? kPerByte * static_cast<float>(mask[(y - 1) * (side - 2) + x - 1]) : 1.0f;
+      all_weight_ += s.mask[n];
       ++n;
     }
   gradient2_ = n > 0 ? squares / (half * half * static_cast<float>(n)) : 0.0f;
@@ -178,7 +182,7 @@ bool PlaneAligner::read(const ImageView& image, const Camera& camera, int level,
     }
   }
   progress->counts = read_samples(image, reading, &samples_);
-  return progress->counts.valid >= kMinWeight * static_cast<float>(samples_.count);
+  return progress->counts.valid > 0.0f && progress->counts.valid >= kMinWeight * all_weight_;
 }
 
 template <typename Warp>
@@ -195,7 +199,7 @@ bool PlaneAligner::align_level(const ImageView& image, const Camera& camera, int
     if (progress->iterations == 0) fit_light(&samples_, &reading);
     ++progress->iterations;
     warp->begin(progress->H);
-    const float sigma = std::max(kMinSigma, robust_sigma(samples_, static_cast<int>(progress->counts.valid)));
+    const float sigma = std::max(kMinSigma, robust_sigma(samples_, progress->counts.valid));
     sum_samples(samples_, *warp, kCutOff * sigma, level < kLevelsNear, sums);
     System b;
     for (int i = 0; i < kSize + 2; ++i) b(i) = static_cast<Scalar>(-sums->b[i]);
@@ -248,7 +252,9 @@ void PlaneAligner::judge(const Camera& camera, const Warp& warp, const PlaneSums
   out->covariance = shape * static_cast<Scalar>(kSpread * variance / (1.0f - noise));
   out->reference_covariance = out->covariance * static_cast<Scalar>(gain2);
   out->correlation = correlation_of(sums, gain);
-  out->weight = sums.weight / static_cast<float>(samples_.count);
+  if constexpr (kSize == 2)
+    out->step_covariance = C * static_cast<Scalar>(kSpread * variance * (1.0f + gain2) / (1.0f - noise));
+  out->weight = sums.weight / all_weight_;
   out->verdict = !is_comparable(camera, H, half_)         ? PlaneVerdict::kSlanted
                  : !(out->weight >= kMinWeight)           ? PlaneVerdict::kHidden
                  : !(out->correlation >= kMinCorrelation) ? PlaneVerdict::kUnlike
@@ -257,7 +263,7 @@ void PlaneAligner::judge(const Camera& camera, const Warp& warp, const PlaneSums
 
 template <typename Warp>
 PlaneAlignment PlaneAligner::align(const Pyramid& image, const Camera& camera, const PlanePatch& patch,
-                                   const PlaneStart& start, Warp warp) {
+                                   const PlaneStart& start, Warp warp, const std::uint8_t* mask) {
   PlaneAlignment out;
   out.H_CK = start.H_CK;
   out.covariance.setZero();
@@ -276,7 +282,7 @@ PlaneAlignment PlaneAligner::align(const Pyramid& image, const Camera& camera, c
   bool done = true;
   const int coarsest = std::min({start.level, patch.levels - 1, image.levels - 1});
   for (int level = coarsest; level >= 0 && done; --level) {
-    load_samples(patch, level);
+    load_samples(patch, level, level == 0 ? mask : nullptr);
     if (level == coarsest && level > 0 && Warp::kSize > ShiftWarp::kSize) {
       // A shift first: while it is far off, what hides a part of the patch would bend a homography.
       ShiftWarp shift;
@@ -294,11 +300,36 @@ PlaneAlignment PlaneAligner::align(const Pyramid& image, const Camera& camera, c
   return out;
 }
 
+bool PlaneAligner::compare(const Pyramid& image, const Camera& camera, const PlanePatch& patch, const PlaneStart& start,
+                           const std::uint8_t* mask, float* gain) {
+  if (!begin(camera, patch)) return false;
+  Progress progress;
+  progress.H = start.H_CK * to_ray_;
+  progress.reading.gain = start.gain;
+  progress.reading.bias = start.gain * patch.mean + start.offset;
+  load_samples(patch, 0, mask);
+  if (!read(image.level[0], camera, 0, &progress)) return false;
+  fit_light(&samples_, &progress.reading);
+  for (int round = 0; round < kLightRounds; ++round) {
+    const float sigma = std::max(kMinSigma, robust_sigma(samples_, progress.counts.valid));
+    PlaneSums<LightWarp::kSize + 2> sums;
+    sum_samples(samples_, LightWarp(), kCutOff * sigma, false, &sums);
+    SmallCholesky<2> cholesky;
+    if (!cholesky.factor(system_of(sums))) return false;
+    const Vec2 step = cholesky.solve<1>(Vec2(static_cast<Scalar>(sums.b[0]), static_cast<Scalar>(sums.b[1])));
+    const float by_gain = static_cast<float>(step(0)), by_bias = static_cast<float>(step(1));
+    for (int i = 0; i < samples_.count; ++i) samples_.r[i] -= by_gain * samples_.grey[i] + by_bias;
+    progress.reading.gain += by_gain;
+  }
+  *gain = progress.reading.gain;
+  return *gain > kMinGain;
+}
+
 template PlaneAlignment PlaneAligner::align(const Pyramid&, const Camera&, const PlanePatch&, const PlaneStart&,
-                                            ShiftWarp);
+                                            ShiftWarp, const std::uint8_t*);
 template PlaneAlignment PlaneAligner::align(const Pyramid&, const Camera&, const PlanePatch&, const PlaneStart&,
-                                            SlopesWarp);
+                                            SlopesWarp, const std::uint8_t*);
 template PlaneAlignment PlaneAligner::align(const Pyramid&, const Camera&, const PlanePatch&, const PlaneStart&,
-                                            HomographyWarp);
+                                            HomographyWarp, const std::uint8_t*);
 
 }  // namespace pf

@@ -35,9 +35,10 @@ struct PlaneAlignment {
   float correlation = 0;
   float weight = 0;  ///< share of its pixels that fit, each by its weight
   float gain = 1, offset = 0;
-  float sigma = 0;            ///< of the noise of a pixel of the image [grey levels]
-  Mat8 covariance;            ///< of the corners (x, y of each), from the noise of this image [px^2]
-  Mat8 reference_covariance;  ///< likewise from the noise of the reference: the same error in every frame
+  float sigma = 0;                      ///< of the noise of a pixel of the image [grey levels]
+  Mat8 covariance;                      ///< of the corners (x, y of each), from the noise of this image [px^2]
+  Mat8 reference_covariance;            ///< likewise from the noise of the reference: the same error in every frame
+  Mat2 step_covariance = Mat2::Zero();  ///< of the step of a warp with two parameters, from both noises
 
   bool is_aligned() const { return verdict == PlaneVerdict::kAligned; }
 };
@@ -55,20 +56,30 @@ class PlaneAligner {
  public:
   static constexpr int kMaxIterations = 12;
 
-  bool layout(Arena& arena) { return samples_.layout(arena, PlanePatch::kMaxSamples); }
+  bool layout(Arena& arena, int max_samples = PlanePatch::kMaxSamples) { return samples_.layout(arena, max_samples); }
 
   /// image, camera   what sees the patch now; the reference was seen by the same camera
   /// warp            ShiftWarp, SlopesWarp or HomographyWarp
+  /// mask            weight of each pixel but those of the border, row by row, in 1/255; null: 1 everywhere
   /// The covariance is of the corners under the warp, of rank k.
   template <typename Warp>
   PlaneAlignment align(const Pyramid& image, const Camera& camera, const PlanePatch& patch, const PlaneStart& start,
-                       Warp warp);
+                       Warp warp, const std::uint8_t* mask = nullptr);
+
+  /// Reads the image where a homography puts the pixels of level 0, and fits gain and bias to those that agree. samples() then holds the
+  /// residuals. False where too little of the patch is in the image or the light cannot be told.
+  bool compare(const Pyramid& image, const Camera& camera, const PlanePatch& patch, const PlaneStart& start,
+               const std::uint8_t* mask, float* gain);
+  /// Of the last align() or compare().
+  const PlaneSamples& samples() const { return samples_; }
+  /// Half of the patch's side [px]: its own coordinates are in these.
+  Scalar half_px() const { return half_; }
 
  private:
   struct Progress;  ///< of one alignment
 
   bool begin(const Camera& camera, const PlanePatch& patch);
-  void load_samples(const PlanePatch& patch, int level);
+  void load_samples(const PlanePatch& patch, int level, const std::uint8_t* mask);
   Scalar corner_way(const Mat3& step) const;
   bool read(const ImageView& image, const Camera& camera, int level, Progress* progress);
   template <typename Warp>
@@ -81,10 +92,11 @@ class PlaneAligner {
   PlaneSamples samples_;
   PlaneLens lens_;
   bool has_lens_ = false;
-  Scalar half_ = 1;      ///< pixel of the pinhole = centre + half (X, Y)
-  Mat3 to_ray_;          ///< (X, Y, 1) to a ray of the reference at depth 1
-  Vec2 corner_[4];       ///< (X, Y) of the patch's corners
-  float gradient2_ = 0;  ///< mean square of the finest level's chosen gradients [grey^2/px^2]
+  float all_weight_ = 0;  ///< sum of the mask over the samples
+  Scalar half_ = 1;       ///< pixel of the pinhole = centre + half (X, Y)
+  Mat3 to_ray_;           ///< (X, Y, 1) to a ray of the reference at depth 1
+  Vec2 corner_[4];        ///< (X, Y) of the patch's corners
+  float gradient2_ = 0;   ///< mean square of the finest level's chosen gradients [grey^2/px^2]
 };
 
 }  // namespace pf

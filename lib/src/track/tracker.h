@@ -5,6 +5,7 @@
 #include "vision/appearance.h"
 #include "vision/corners.h"
 #include "vision/image.h"
+#include "vision/planar_template.h"
 #include "vision/pyramid.h"
 
 /// Finds features in images, given where each is expected and with which covariance. Knows no filter and keeps no features.
@@ -22,6 +23,9 @@ struct SearchTask {
   Vec3 normal_W = Vec3::Zero();        ///< of the surface, either sign; zero: not known
   Quat q_WC = Quat::Identity();        ///< current camera
   Vec3 c_W = Vec3::Zero();             ///< its centre
+  // With masks only: the template, null where it cannot be used.
+  const PlanarTemplate* shape = nullptr;
+  const std::uint8_t* mask = nullptr;
 };
 
 struct SearchOutcome {
@@ -52,12 +56,13 @@ class Tracker {
   /// Corners of one cell of the image, best first. Returns how many.
   int corners(const Rect& cell, int threshold, Corner* out, int capacity) const;
 
+  /// Source pixels per current pixel at a task's feature. False where either camera does not see it.
+  bool warp(const SearchTask& task, Mat2* A) const;
+
   const Pyramid& pyramid() const { return pyramid_; }
   ImageView image() const { return pyramid_.level[0]; }
 
  private:
-  bool warp(const SearchTask& task, Mat2* A) const;
-
   Camera camera_;
   Pyramid pyramid_;
   CornerWorkspace corner_workspace_;

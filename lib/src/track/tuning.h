@@ -75,4 +75,35 @@ inline constexpr float kMinStretch = 0.3f;         ///< larger stretch of the pa
 inline constexpr float kMaxStretch = 3.0f;         ///< likewise
 }  // namespace align_plane
 
+/// Slopes of a template's surface.
+namespace template_normal {
+inline constexpr Scalar kMinLeverage = Scalar(0.8);  ///< [px] at the rim by a unit of slope; below, it says nothing
+inline constexpr Scalar kWarpError = Scalar(0.1);    ///< [px] at the rim that comes from elsewhere
+inline constexpr Scalar kMaxSigma = Scalar(0.7);     ///< of a measured slope
+inline constexpr Scalar kMaxStep = 1;                ///< of a slope in one frame
+inline constexpr Scalar kWalk = Scalar(0.01);        ///< of a slope from frame to frame
+inline constexpr Scalar kCorrelation = 4;            ///< frames that say the same
+}  // namespace template_normal
+
+/// Templates with a mask.
+namespace template_match {
+inline constexpr int kReach = 4;                       ///< [px] to each side that are searched
+inline constexpr Scalar kFloor = Scalar(0.1);          ///< [px^2] added to the ellipse that is searched
+inline constexpr float kMinPeak = 0.5f;                ///< correlation by the mask's weights, of the peak
+inline constexpr float kMinPeakLead = 0.04f;           ///< of the first peak over the second
+inline constexpr float kApart = 2.5f;                  ///< [px] between peaks
+inline constexpr float kRim = 0.5f;                    ///< [px] of a template's pixel beyond its centre
+inline constexpr Scalar kMaxMove = 2;                  ///< [px] of the sub-pixel place from where the search ended
+inline constexpr Scalar kMinScale = Scalar(0.6);       ///< source pixels per current pixel of views, from
+inline constexpr Scalar kMaxScale = Scalar(1.6);       ///< to
+inline constexpr float kFirstSlopeSigma = 0.7f;        ///< of a surface that is taken to face the camera
+inline constexpr Scalar kMaxSlopeSigma = Scalar(0.3);  ///< of a slope, as far as it excuses residuals
+inline constexpr float kWarpSlack = 0.1f;              ///< [px] of a warp, as far as it excuses residuals
+inline constexpr float kSlackSigmas = 1.0f;            ///< of the warp, as far as they excuse residuals
+inline constexpr float kDark = 1.0f;                   ///< [grey levels]; what is darker may be cut off
+inline constexpr float kBright = 254.0f;               ///< [grey levels]; what is brighter may be cut off
+inline constexpr float kMinKept = 0.5f;                ///< of a mask's area that one frame may leave
+inline constexpr float kMinArea = 30.0f;               ///< [px] of a mask
+}  // namespace template_match
+
 }  // namespace pf::tuning

@@ -121,32 +121,32 @@ void fit_light(PlaneSamples* samples, PlaneReading* reading) {
   reading->bias = bias;
 }
 
-float robust_sigma(const PlaneSamples& s, int valid) {
-  int bin[kBins] = {};
+float robust_sigma(const PlaneSamples& s, float valid) {
+  float bin[kBins] = {};
   for (int i = 0; i < s.count; ++i) {
     const float scaled = kBinsPerGrey * std::fabs(s.r[i]);
     const int at = scaled < static_cast<float>(kBins - 1) ? static_cast<int>(scaled) : kBins - 1;
-    bin[at] += s.valid[i] > 0.0f;
+    bin[at] += s.valid[i];
   }
   // Of the samples within kTrim sigma, which for normal residuals are nearly all, the median says sigma; what does not fit is beyond.
   const auto quantile = [&bin](float wanted) {
     float below = 0;
     int at = 0;
-    while (at < kBins - 1 && below + static_cast<float>(bin[at]) < wanted) below += static_cast<float>(bin[at++]);
-    const float part = bin[at] > 0 ? (wanted - below) / static_cast<float>(bin[at]) : 0.5f;
+    while (at < kBins - 1 && below + bin[at] < wanted) below += bin[at++];
+    const float part = bin[at] > 0.0f ? (wanted - below) / bin[at] : 0.5f;
     return (static_cast<float>(at) + part) / kBinsPerGrey;
   };
   const auto share_below = [&bin](float limit) {
     const float scaled = limit * kBinsPerGrey;
     float below = 0;
     int at = 0;
-    for (; at < kBins && static_cast<float>(at + 1) <= scaled; ++at) below += static_cast<float>(bin[at]);
-    return at < kBins ? below + (scaled - static_cast<float>(at)) * static_cast<float>(bin[at]) : below;
+    for (; at < kBins && static_cast<float>(at + 1) <= scaled; ++at) below += bin[at];
+    return at < kBins ? below + (scaled - static_cast<float>(at)) * bin[at] : below;
   };
-  float sigma = quantile(0.5f * static_cast<float>(valid)) / kMedian;
+  float sigma = quantile(0.5f * valid) / kMedian;
   for (int round = 0; round < kTrimRounds; ++round) {
     const float within = share_below(kTrim * sigma);
-    if (within < kMinFitting * static_cast<float>(valid)) break;
+    if (within < kMinFitting * valid) break;
     sigma = quantile(0.5f / kWithinTrim * within) / kMedian;
   }
   return sigma;

@@ -51,7 +51,7 @@ PlaneCounts read_samples(const ImageView& image, const PlaneReading& reading, Pl
 void fit_light(PlaneSamples* samples, PlaneReading* reading);
 
 /// Standard deviation of the residuals of the samples that fit, from the median of |r| among those within 2.5 of it.
-float robust_sigma(const PlaneSamples& samples, int valid);
+float robust_sigma(const PlaneSamples& samples, float valid);
 
 /// Over v = (J, grey, 1), with weights w = (1 - u)^2, u = (r/c)^2, within c and 0 beyond. The normal matrix has the slope of w r for its
 /// weight, h = max((1 - u)(1 - 5 u), w / 4): with w itself the steps are too short where much is hidden.

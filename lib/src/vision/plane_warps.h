@@ -10,6 +10,12 @@
 
 namespace pf {
 
+/// None: what remains are gain and bias.
+struct LightWarp {
+  static constexpr int kSize = 0;
+  PF_ALWAYS_INLINE void rows(const F32x4&, const F32x4&, const F32x4&, const F32x4&, F32x4*) const {}
+};
+
 /// A translation in the image.
 struct ShiftWarp {
   static constexpr int kSize = 2;

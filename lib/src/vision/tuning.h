@@ -26,6 +26,17 @@ inline constexpr float kMinFitting = 0.33f;  ///< of the samples, those that the
 inline constexpr float kMaxPerDepth = 1e3f;  ///< inverse depth of a ray in the image, against the patch's middle
 }  // namespace plane_patch
 
+/// Masks of templates.
+namespace template_mask {
+inline constexpr float kWarpError = 0.25f;      ///< [px] of a warp and its interpolation, on the dominant plane
+inline constexpr float kMinSigmaPlane = 6.0f;   ///< of residuals on the dominant plane [grey levels], from
+inline constexpr float kMaxSigmaPlane = 12.0f;  ///< to
+inline constexpr float kMinSigmaOther = 25.0f;  ///< of residuals off it [grey levels], from
+inline constexpr float kMaxSigmaOther = 60.0f;  ///< to
+inline constexpr int kDark = 1;                 ///< [grey levels]; what is darker may be cut off
+inline constexpr int kBright = 254;             ///< [grey levels]; what is brighter may be cut off
+}  // namespace template_mask
+
 /// Whether an image has content.
 namespace frame_use {
 inline constexpr float kMinDeviation = 3.0f;  ///< standard deviation of the image [grey levels]

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+
+#include "vision/patch.h"
+#include "vision/planar_template.h"
+
+/// Which pixels of a template belong to its dominant plane: a probability for each, in 1/255 (lib/docs/templates.md).
+
+namespace pf {
+
+constexpr std::uint8_t kMaskLeast = 5, kMaskUnknown = 128, kMaskFull = 255;
+
+/// One step of the discrete Bayes filter.
+///
+///   p' = p N(r; 0, sigma_D) / (p N(r; 0, sigma_D) + (1 - p) N(r; 0, sigma_B)),   kept in .02 .. .98
+///
+/// p, and the return value, are in 1/255.   sigma_D < sigma_B
+/// src  Masoud 2015 (7)-(8); the bounds let a pixel change its side again
+std::uint8_t updated_probability(std::uint8_t p, float residual, float sigma_plane, float sigma_other);
+
+/// What one frame says of one pixel.
+struct MaskEvidence {
+  float residual = 0;  ///< template less image, its shift and light taken out [grey levels of the template]
+  float slack = 0;     ///< what the uncertainty of the warp makes of the gradient there [grey levels]
+  bool valid = false;  ///< in the image, and saturated in neither
+};
+
+/// p after a frame. Unchanged where the pixel is not valid, and where the slack explains a residual that would speak against the plane.
+std::uint8_t learn_pixel(std::uint8_t p, const MaskEvidence& evidence, float sigma_plane, float sigma_other);
+
+/// Sum over a mask [px].
+float mask_area(const std::uint8_t* mask, int count);
+
+/// Begins a template on pixels that were remembered: an unknown mask (or a full one), zero where there is no image, and how large residuals
+/// will be on the plane and off it.
+///
+/// noise  standard deviation of the image's own noise [grey levels]
+///
+///   sigma_D^2 = 2 noise^2 + (warp error)^2 g^2,   sigma_B^2 = 2 var,   g and var: gradient and variance of the template's pixels
+void begin_template(const SourcePatch& patch, const Vec2& pixel, int side, bool full, float noise, PlanarTemplate* out,
+                    std::uint8_t* mask);
+
+/// Standard deviation of an image's noise [grey levels], from what neighbours do not explain: the quarter of its pixels that have least.
+/// Detail in all of the image adds to it.
+/// src  Immerkaer 1996, with a quantile in place of the mean
+float image_noise(const ImageView& image);
+
+}  // namespace pf

@@ -1,0 +1,132 @@
+#include "template_run.h"
+
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "context.h"
+#include "pose_difference.h"
+#include "statistics.h"
+#include "template_truth.h"
+
+namespace pfsim {
+namespace {
+
+constexpr double kLostError = 0.08;  // [m] a tenth of the scenes' depth
+
+struct CloseSim {
+  void operator()(pf_sim_t* sim) const { pf_sim_close(sim); }
+};
+
+/// One context on its way through the frames.
+struct Runner {
+  Runner(const pf_config_t& config, TemplateTruth* truth_, int side_)
+      : context(config), truth(truth_), side(side_), matches(1200), features(1000) {}
+
+  Context context;
+  TemplateTruth* truth;
+  int side;
+  std::vector<pf_match_t> matches;
+  std::vector<pf_feature_t> features;
+  std::map<std::uint32_t, TemplateTruth::Patch> patches;
+  std::map<std::uint32_t, int> lengths;  ///< frames in which a feature was an inlier
+
+  void push(const pf_image_t& image, const pf_pose_t& pose, int judge_after, bool* looked, TemplateSums* sums) {
+    ++sums->frames;
+    const pf_status_t status = pf_push_frame(context.slam, &image);
+    pf_pose_t estimate;
+    if (pf_get_pose(context.slam, &estimate) == PF_OK) {
+      const PoseDifference error = pose_difference(estimate, pose);
+      sums->position2 += error.m * error.m;
+      sums->rotation2 += error.rad * error.rad;
+      if (error.m > kLostError) sums->lost = 1;
+    }
+    sums->tracked += status == PF_OK;
+    pf_state_t state;
+    if (pf_get_state(context.slam, &state) == PF_OK && state == PF_STATE_LOST) sums->lost = 1;
+    std::size_t count = 0;
+    pf_get_matches(context.slam, matches.data(), matches.size(), &count);
+    for (std::size_t k = 0; k < count && k < matches.size(); ++k) {
+      const pf_match_t& match = matches[k];
+      if (match.status == PF_MATCH_INLIER) {
+        ++lengths[match.id];
+        sums->inliers += match.kind != PF_FEATURE_INVERSE_DEPTH;
+      } else if (match.status == PF_MATCH_NEW) {
+        if (!*looked) truth->look(pose);
+        *looked = true;
+        TemplateTruth::Patch patch = truth->cut(match.measured_px, side);
+        sums->begun += 1;
+        sums->straddling += patch.straddles;
+        if (patch.straddles) patches[match.id] = std::move(patch);
+      }
+    }
+    pf_report_t report;
+    if (pf_get_report(context.slam, &report) == PF_OK && report.templates > 0) {
+      sums->area += report.template_area;
+      sums->area_frames += 1;
+    }
+    judge(pose, judge_after, sums);
+  }
+
+  /// Templates whose masks have learnt long enough, once each.
+  void judge(const pf_pose_t& pose, int judge_after, TemplateSums* sums) {
+    std::size_t count = 0;
+    pf_get_features(context.slam, features.data(), features.size(), &count);
+    for (std::size_t k = 0; k < count && k < features.size(); ++k) {
+      const auto patch = patches.find(features[k].id);
+      pf_template_t mask;
+      if (patch == patches.end() || pf_get_template(context.slam, features[k].id, &mask) != PF_OK ||
+          mask.frames < judge_after)
+        continue;
+      const TemplateTruth::Agreement agreement = truth->judge(patch->second, mask, features[k].p_W, pose);
+      patches.erase(patch);
+      if (agreement.pixels == 0) continue;
+      sums->judged += 1;
+      sums->mask += agreement.mask;
+      sums->all_on += agreement.all_on;
+      sums->surface += agreement.surface;
+    }
+  }
+
+  void finish(TemplateSums* sums) {
+    std::vector<double> all;
+    for (const auto& [id, frames] : lengths) {
+      sums->tracks += 1;
+      sums->track_frames += frames;
+      all.push_back(frames);
+    }
+    sums->median_track = all.empty() ? 0 : median(all);
+    // Coasting at the end is a loss that had no time to be called one.
+    pf_state_t state;
+    if (pf_get_state(context.slam, &state) != PF_OK || state != PF_STATE_TRACKING) sums->lost = 1;
+    sums->done = 1;
+  }
+};
+
+}  // namespace
+
+void run_templates(const TemplateOptions& options, const std::vector<TemplateCase>& cases, std::uint64_t seed,
+                   TemplateSums* sums) {
+  pf_sim_options_t sim_options = options.sim;
+  sim_options.seed = seed;
+  const std::unique_ptr<pf_sim_t, CloseSim> sim(pf_sim_open(options.scene.c_str(), &sim_options));
+  pf_target_t target;
+  if (!sim || pf_sim_target(sim.get(), PF_TARGET_RECTANGLE, &target) != PF_OK) return;
+  TemplateTruth truth(sim.get(), sim_options.camera);
+  std::vector<std::unique_ptr<Runner>> runners;
+  for (const TemplateCase& one : cases) {
+    runners.push_back(std::make_unique<Runner>(one.config, &truth, one.config.capacity.template_px));
+    pf_slam_t* slam = runners.back()->context.slam;
+    if (slam == nullptr || pf_start_from_target(slam, &target) != PF_OK) return;
+  }
+  pf_image_t image;
+  pf_pose_t pose;
+  while (pf_sim_next(sim.get(), &image, &pose) != 0) {
+    bool looked = false;
+    for (std::size_t c = 0; c < cases.size(); ++c)
+      runners[c]->push(image, pose, options.judge_after, &looked, &sums[c]);
+  }
+  for (std::size_t c = 0; c < cases.size(); ++c) runners[c]->finish(&sums[c]);
+}
+
+}  // namespace pfsim
