@@ -144,6 +144,7 @@ struct NormalBed {
   Vec3 c_W = Vec3(Scalar(-0.11), Scalar(0.08), Scalar(0.02));
   TemplateWarp warp;
   Vec2 pixel;
+  TestImage now = TestImage(1, 1);  // the tracker looks into it
 
   NormalBed(std::uint64_t seed, const Vec2& slope, int masked) : scene(seed) {
     scene.near_slope = slope;
@@ -155,7 +156,7 @@ struct NormalBed {
     for (int i = 0; i < 31 * 31; ++i) mask[i] = i % 31 < masked ? 5 : 250;
     warp = scene.warp_to(c_W, scene.near_depth);
     warp.ray_0 = Vec2((80 - scene.camera.cx) / scene.camera.fx, (60 - scene.camera.cy) / scene.camera.fy);
-    const TestImage now = scene.see(c_W);
+    now = scene.see(c_W);
     scene.tracker.begin_frame(now.view());
     pixel = scene.through(warp.homography(slope), 80, 60);
   }
