@@ -319,22 +319,22 @@ int pf_parse_imu_mount(const char* text, size_t size, const char* name, pf_imu_m
   });
 }
 
-int pf_read_imu_noise(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]) {
+static int read_imu_model(const char* path, const char* what, decltype(&pf_parse_imu_noise) parse, pf_imu_model_t* imu,
+                          char* message) {
   std::string text;
   const int done = guarded(message, [&] {
     require(path, "path");
-    text = pf::sequence::read_text(path, pf::sequence::kMaxImuModelBytes, "noise of the inertial unit");
+    text = pf::sequence::read_text(path, pf::sequence::kMaxImuModelBytes, what);
   });
-  return done != 0 ? done : pf_parse_imu_noise(text.data(), text.size(), path, imu, message);
+  return done != 0 ? done : parse(text.data(), text.size(), path, imu, message);
+}
+
+int pf_read_imu_noise(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]) {
+  return read_imu_model(path, "noise of the inertial unit", pf_parse_imu_noise, imu, message);
 }
 
 int pf_read_imu_mount(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]) {
-  std::string text;
-  const int done = guarded(message, [&] {
-    require(path, "path");
-    text = pf::sequence::read_text(path, pf::sequence::kMaxImuModelBytes, "mounting of the inertial unit");
-  });
-  return done != 0 ? done : pf_parse_imu_mount(text.data(), text.size(), path, imu, message);
+  return read_imu_model(path, "mounting of the inertial unit", pf_parse_imu_mount, imu, message);
 }
 
 void pf_free_imu(pf_imu_sample_t* samples) { delete[] samples; }

@@ -160,7 +160,7 @@ pf_status_t pf_get_patches(const pf_slam_t* slam, pf_patch_t* patches, size_t ca
     out.status = p.status;
     out.frames = p.frames;
     for (int k = 0; k < 4; ++k) copy(p.corner[k], 2, out.corners_px[k]);
-    pf::copy_matrix(*p.covariance, out.covariance_px);
+    pf::copy_covariance(*p.covariance, out.covariance_px);
     out.weight = static_cast<double>(p.weight);
   }
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
