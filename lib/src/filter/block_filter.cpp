@@ -288,4 +288,6 @@ void BlockFilter::move_up(int gone) {
     if (gone_[g].first < end) held_dim_ -= gone_[g].size;
 }
 
+Scalar BlockFilter::variance(const Rows& row) const { return covariance_of<1>(row)(0, 0); }
+
 }  // namespace pf

@@ -140,7 +140,7 @@ class BlockFilter {
   template <int kRows>
   Eigen::Matrix<Scalar, kRows, kRows> covariance_of(const Rows& J) const;
   /// Of a single row.
-  Scalar variance(const Rows& row) const { return covariance_of<1>(row)(0, 0); }
+  Scalar variance(const Rows& row) const;
   /// What rounding of P may add to row r of J P J^T, or take away.
   Scalar rounding_of(const Rows& J, int r) const;
   /// Columns of the state that rows touch, in their order. Returns how many.

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <algorithm>
-
 #include "filter/state.h"
 #include "geometry/camera.h"
-#include "geometry/so3.h"
 
 namespace pf {
 
@@ -60,48 +57,16 @@ struct CameraAt {
 };
 
 /// The camera of the body at the frame's time.
-inline CameraAt camera_at(const Body& body) {
-  CameraAt camera;
-  camera.q_WC = body.q_WC;
-  camera.p_W = body.p_W;
-  camera.v_W = body.v_W;
-  camera.w_C = body.w_C;
-  return camera;
-}
+CameraAt camera_at(const Body& body);
 
 /// Velocity of the camera where the body's is that of the inertial unit.
-inline Vec3 camera_velocity(const Body& body, const Mounting& mounting) {
-  return body.v_W - body.q_WC * body.w_C.cross(mounting.p_C);
-}
+Vec3 camera_velocity(const Body& body, const Mounting& mounting);
 
 /// What follows from the unit's place and axes, for a camera tau seconds from the frame's time.
-inline void put_unit(const Body& body, const Mounting& mounting, CameraAt* camera) {
-  const Mat3 R = body.q_WC.toRotationMatrix();
-  camera->beside = true;
-  const Mat3 J_theta_w = camera->J_theta_w;
-  camera->J_theta_w = -J_theta_w.lazyProduct(mounting.R_CB);
-  camera->J_p_theta = camera->tau * hat(body.v_W - camera->v_W);
-  camera->J_p_w = -camera->tau * R.lazyProduct(hat(mounting.p_C)).lazyProduct(mounting.R_CB);
-}
+void put_unit(const Body& body, const Mounting& mounting, CameraAt* camera);
 
 /// The camera tau seconds from the frame's time; at the frame's time where the body has no velocities.
-inline CameraAt camera_at(const State& state, Scalar tau) {
-  const Body& body = state.body;
-  CameraAt camera = camera_at(body);
-  const bool has_unit = state.layout.has(BodyPart::kGyroBias);
-  if (has_unit) camera.v_W = camera_velocity(body, state.mounting);
-  if (tau == Scalar(0) || !state.layout.has(BodyPart::kVelocity)) return camera;
-  camera.tau = tau;
-  camera.velocity_row = state.layout.row(BodyPart::kVelocity);
-  camera.rate_row = state.layout.row(has_unit ? BodyPart::kGyroBias : BodyPart::kAngularVelocity);
-  const Vec3 rotation = body.w_C * tau;
-  camera.q_WC = body.q_WC * exp_so3(rotation);
-  camera.q_WC.normalize();
-  camera.p_W = body.p_W + camera.v_W * tau;
-  camera.J_theta_w = tau * body.q_WC.toRotationMatrix().lazyProduct(left_jacobian_so3(rotation));
-  if (has_unit) put_unit(body, state.mounting, &camera);
-  return camera;
-}
+CameraAt camera_at(const State& state, Scalar tau);
 
 /// Writes a Jacobian by all parameters of the lens into its rows' columns, from `first` on; h is row-major.
 template <int kRows>
@@ -113,9 +78,6 @@ inline void put_lens(const Eigen::Matrix<Scalar, kRows, kLensParameters>& J, con
 
 /// When a row is read out, from the frame's time, which is that of the middle of the image [s]. What lies far outside of the image
 /// is taken to be just outside of it.
-inline Scalar row_time(const Camera& camera, Scalar y) {
-  const Scalar part = (y + Scalar(0.5)) / static_cast<Scalar>(camera.height) - Scalar(0.5);
-  return camera.readout * std::clamp(part, Scalar(-1), Scalar(1));
-}
+Scalar row_time(const Camera& camera, Scalar y);
 
 }  // namespace pf

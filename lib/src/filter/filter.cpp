@@ -223,4 +223,8 @@ Mat3 Filter::covariance3(int slot) const {
   return C;
 }
 
+Scalar Filter::variance_of(const Rows& row) const { return covariance_of<1>(row)(0, 0); }
+
+Mat2 Filter::innovation(const PixelMeasurement& pixel) const { return blocks_.covariance_of<2>(pixel.H); }
+
 }  // namespace pf

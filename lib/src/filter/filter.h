@@ -69,7 +69,7 @@ class Filter {
     return C;
   }
   /// Of a single row.
-  Scalar variance_of(const Rows& row) const { return covariance_of<1>(row)(0, 0); }
+  Scalar variance_of(const Rows& row) const;
   /// Of the first rows of the body (rows x rows, row-major).
   void body_covariance(int rows, Scalar* out) const;
   /// Sets the mean of the body and leaves its covariance, where the mean comes from elsewhere (a restart).
@@ -178,7 +178,7 @@ class Filter {
   /// Jacobian and columns. False where one of them does not project.
   bool predict_patch(const Camera& lens, int patch, int plane, const Vec2* reference_px, PatchMeasurement* out) const;
   /// H P H^T of one pixel, without noise.
-  Mat2 innovation(const PixelMeasurement& pixel) const { return blocks_.covariance_of<2>(pixel.H); }
+  Mat2 innovation(const PixelMeasurement& pixel) const;
   /// Gathers H P and S = H P H^T (without noise) of measurements. Then innovation_block is valid until the state changes.
   void begin_update(const Measurement* z, int count) { blocks_.project(z, count); }
   void begin_update(const PixelMeasurement* z, int count) { begin_update(views_of(z, count), count); }

@@ -21,13 +21,7 @@ struct RayOnPlane {
   using RowsFor = RowsOf<kRows, CameraAt::kMaxColumns + 3 + kLensParameters, 3>;
 
   /// tau: the time of the pixel's row. False where the ray does not meet the plane.
-  bool meet(const State& state, int plane, const Vec3& ray_C, Scalar tau) {
-    camera = camera_at(state, tau);
-    R_WC = camera.q_WC.toRotationMatrix();
-    d_W = R_WC * ray_C;
-    const Block& block = state.block[plane];
-    return intersect_ray_plane(state.frame_of(block), block.xyz(), camera.p_W, d_W, &q_W, &J_c, &J_d, &J_x);
-  }
+  bool meet(const State& state, int plane, const Vec3& ray_C, Scalar tau);
 
   /// Jacobian of A q by the ray.
   template <int kRows>

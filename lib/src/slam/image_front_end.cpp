@@ -10,6 +10,7 @@
 #include "slam/tracking_state.h"
 #include "slam/triple_consensus.h"
 #include "slam/tuning.h"
+#include "track/template_matcher.h"
 
 namespace pf {
 namespace {
@@ -22,6 +23,18 @@ bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observat
   searched_px2_ = arena.take<Scalar>(static_cast<std::size_t>(max_observations));
   layout_templates(arena);
   return tracker_.layout(arena, width, height);
+}
+
+void ImageFrontEnd::init(const Camera& camera) {
+  tracker_.init(camera);
+  if (templates_ != nullptr) templates_->init(camera, settings_.masks, settings_.max_misfit);
+  same_view_.init();
+}
+
+bool ImageFrontEnd::begin_frame(const ImageView& image) {
+  if (templates_ != nullptr) templates_->begin_frame();
+  is_measured_ = false;
+  return tracker_.begin_frame(image);
 }
 
 void ImageFrontEnd::measure(ConsensusRule rule, Scalar median_depth) {

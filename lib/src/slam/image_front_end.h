@@ -8,12 +8,13 @@
 #include "slam/pixel_update.h"
 #include "slam/same_view.h"
 #include "slam/settings.h"
-#include "track/template_matcher.h"
 #include "track/tracker.h"
 
 /// Measures an image: predicts which features are in it and where, finds them, updates the filter, and adds features at corners.
 
 namespace pf {
+
+class TemplateMatcher;
 
 /// When a frame's consensus is believed.
 enum class ConsensusRule {
@@ -35,18 +36,10 @@ class ImageFrontEnd {
         noise_(noise) {}
 
   bool layout(Arena& arena, int width, int height, int max_observations);
-  void init(const Camera& camera) {
-    tracker_.init(camera);
-    if (templates_ != nullptr) templates_->init(camera, settings_.masks, settings_.max_misfit);
-    same_view_.init();
-  }
+  void init(const Camera& camera);
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
-  bool begin_frame(const ImageView& image) {
-    if (templates_ != nullptr) templates_->begin_frame();
-    is_measured_ = false;
-    return tracker_.begin_frame(image);
-  }
+  bool begin_frame(const ImageView& image);
   /// Finds the map's features in the image and updates the filter with them.
   /// median_depth: of the last tracked frame's inliers.
   void measure(ConsensusRule rule, Scalar median_depth);

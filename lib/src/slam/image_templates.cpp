@@ -2,6 +2,7 @@
 
 #include "base/elapsed.h"
 #include "slam/image_front_end.h"
+#include "track/template_matcher.h"
 
 namespace pf {
 

@@ -95,7 +95,7 @@ struct Body {
   Vec3 gyro_bias = Vec3::Zero();   ///< [rad/s], in the unit's axes
   Vec3 accel_bias = Vec3::Zero();  ///< [m/s^2], likewise
   Quat q_WG = Quat::Identity();    ///< z is where gravity points
-  Vec3 gravity_W() const { return q_WG.toRotationMatrix().col(2); }
+  Vec3 gravity_W() const;
 };
 
 /// Where the inertial unit B is on the camera: known, and no part of the state.

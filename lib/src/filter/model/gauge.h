@@ -39,26 +39,25 @@ void put_place(const Eigen::Matrix<Scalar, kRows, 3>& axes, const Vec3& p_W, Row
   }
 }
 
-/// The body's gauge rows: calls f(first row, rows, GaugeRowsOf<3>) for each of its parts that has any. Velocities in W rotate and scale but
-/// are not translated; angular velocities and biases, in axes of the body, do nothing. Gravity rotates with the world, about all axes but
-/// its own. An inertial unit rotates with the world, and keeps its distance from the camera when the world is scaled: of its velocity that
-/// part scales which is the camera's.
+/// Gauge rows of one part of the body.
+struct BodyGaugeRows {
+  int first = 0, size = 0;
+  GaugeRowsOf<3> N;
+};
+
+/// The body's gauge rows, one entry for each of its parts that has any. Velocities in W rotate and scale but are not translated; angular
+/// velocities and biases, in axes of the body, do nothing. Gravity rotates with the world, about all axes but its own. An inertial unit
+/// rotates with the world, and keeps its distance from the camera when the world is scaled: of its velocity that part scales which is the
+/// camera's. Returns how many.
+inline constexpr int kMaxBodyGaugeParts = 4;
+int body_gauge_rows(const Body& body, const BodyLayout& layout, const Mounting& mounting, BodyGaugeRows* out);
+
+/// Calls f(first row, size, rows) for each of them.
 template <typename F>
 void for_each_body_gauge(const Body& body, const BodyLayout& layout, const Mounting& mounting, F&& f) {
-  GaugeRowsOf<3> N = GaugeRowsOf<3>::Zero();
-  N.template block<3, 3>(0, gauge::kRotation).setIdentity();
-  f(Body::kTheta, 3, N);
-  put_place<3>(Mat3::Identity(), body.p_W, &N);
-  f(Body::kPosition, 3, N);
-  if (!layout.has(BodyPart::kVelocity)) return;
-  put_place<3>(Mat3::Identity(), body.v_W, &N);
-  N.template leftCols<3>().setZero();
-  if (layout.has(BodyPart::kGravity)) N.col(gauge::kScale) -= body.q_WC * body.w_C.cross(mounting.p_C);
-  f(layout.row(BodyPart::kVelocity), 3, N);
-  if (!layout.has(BodyPart::kGravity)) return;
-  N.setZero();
-  N.template block<2, 3>(0, gauge::kRotation) = body.q_WG.toRotationMatrix().leftCols<2>().transpose();
-  f(layout.row(BodyPart::kGravity), 2, N);
+  BodyGaugeRows part[kMaxBodyGaugeParts];
+  const int count = body_gauge_rows(body, layout, mounting, part);
+  for (int k = 0; k < count; ++k) f(part[k].first, part[k].size, part[k].N);
 }
 
 /// Where gauge rows over the whole state are added up, one dense row per direction; sign times each.

@@ -48,16 +48,7 @@ struct Place {
   }
 
   /// Makes it a point o of W (w = 1, b = 0):  o + b / w. False where there is none; it is as it was then.
-  bool resolve() {
-    if (w_column < 0) return true;
-    if (!(w > tuning::inverse_depth::kMinRho)) return false;
-    const Scalar depth = Scalar(1) / w;
-    for (int c = 0; c < columns; ++c) J_o.col(c) += depth * J_b.col(c);
-    J_o.col(w_column) = -depth * depth * b;
-    o = o + depth * b;
-    w_column = -1;
-    return true;
-  }
+  bool resolve();
 };
 
 }  // namespace pf

@@ -22,29 +22,12 @@ struct Group : Kind {
       (*N)(3, d) = (plane.by_u(0, d) + plane.by_v(1, d)) / 2;
     }
   }
-  static void gauge(const State& state, const Block& block, GaugeRows* N) { rows(state, block, N); }
-  static void add_gauge(const State& state, const Block& block, int first, const GaugeSum& sum) {
-    GaugeRowsOf<4> N;
-    rows(state, block, &N);
-    sum.add(first, 4, N);
-  }
+  static void gauge(const State& state, const Block& block, GaugeRows* N);
+  static void add_gauge(const State& state, const Block& block, int first, const GaugeSum& sum);
   /// Of coordinates in it: the shear that is left.
-  static void share(const State& state, const Block& block, PlanarRows* rows) {
-    PlanarRows plane;
-    Plane::share(state, state.block[block.parent], &plane);
-    rows->of_group(plane, block.group());
-  }
+  static void share(const State& state, const Block& block, PlanarRows* rows);
   /// e_lambda, less what a rotation of the world does to it.
-  static bool scale_row(const State& state, int slot, ScaleRow* row) {
-    GaugeRowsOf<4> N;
-    rows(state, state.block[slot], &N);
-    row->parts = 2;
-    row->part[0] = Part::body(Body::kTheta, 3);
-    row->part[1] = Part::of(slot, 3, 1);
-    for (int i = 0; i < 3; ++i) row->h[i] = -N(3, 3 + i);
-    row->h[3] = Scalar(1);
-    return true;
-  }
+  static bool scale_row(const State& state, int slot, ScaleRow* row);
 };
 
 }  // namespace pf::model

@@ -22,11 +22,7 @@ struct ReferenceCamera : Kind {
     }
   }
 
-  static void retract(Block* block, const Scalar* e) {
-    Quat q = exp_so3(Vec3(e[0], e[1], e[2])) * q_WC(*block);
-    q.normalize();
-    set(block, q, p_WC(*block) + Vec3(e[3], e[4], e[5]));
-  }
+  static void retract(Block* block, const Scalar* e);
   template <typename Rows>
   static void rows(const Block& block, Rows* N) {
     GaugeRowsOf<3> position;
@@ -34,12 +30,8 @@ struct ReferenceCamera : Kind {
     N->template block<3, 3>(0, gauge::kRotation).setIdentity();
     N->template middleRows<3>(3) = position;
   }
-  static void gauge(const State&, const Block& block, GaugeRows* N) { rows(block, N); }
-  static void add_gauge(const State&, const Block& block, int first, const GaugeSum& sum) {
-    GaugeRowsOf<6> N = GaugeRowsOf<6>::Zero();
-    rows(block, &N);
-    sum.add(first, 6, N);
-  }
+  static void gauge(const State&, const Block& block, GaugeRows* N);
+  static void add_gauge(const State&, const Block& block, int first, const GaugeSum& sum);
 };
 
 }  // namespace pf::model

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "filter/camera_at.h"
-#include "filter/tuning.h"
 
 namespace pf {
 
@@ -13,33 +12,12 @@ namespace pf {
 /// J_z_camera 2x6 of (theta, p), J_z_anchor 2x3, J_z_feature 2x3 of (e_1, e_2, e_rho).
 /// False when the point does not project; outputs are then undefined.
 /// src Montiel, Civera, Davison 2006; the bearing is a unit vector with a tangent basis in place of two angles.
-inline bool observe_inverse_depth(const Camera& lens, const CameraAt& camera, const Vec3& o_W,
-                                  const InverseDepth& feature, Vec2* z, Mat26* J_z_camera, Mat23* J_z_anchor,
-                                  Mat23* J_z_feature) {
-  const Mat3 R_CW = camera.q_WC.toRotationMatrix().transpose();
-  const Mat3 R_b = feature.q_b.toRotationMatrix();
-  const Vec3 baseline = o_W - camera.p_W;
-  const Vec3 d_W = feature.rho * baseline + R_b.col(2);
-  Mat23 J_z_C;
-  if (!project(lens, R_CW.lazyProduct(d_W), z, &J_z_C)) return false;
-  const Mat23 J_z_W = J_z_C.lazyProduct(R_CW);
-  J_z_camera->leftCols<3>() = J_z_W.lazyProduct(hat(d_W));
-  J_z_camera->rightCols<3>() = -feature.rho * J_z_W;
-  *J_z_anchor = feature.rho * J_z_W;
-  J_z_feature->leftCols<2>() = J_z_W.lazyProduct(R_b.leftCols<2>());
-  J_z_feature->col(2) = J_z_W.lazyProduct(baseline);
-  return true;
-}
+bool observe_inverse_depth(const Camera& lens, const CameraAt& camera, const Vec3& o_W, const InverseDepth& feature,
+                           Vec2* z, Mat26* J_z_camera, Mat23* J_z_anchor, Mat23* J_z_feature);
 
 /// 3-D point of an inverse-depth point, and its Jacobians.  f = o + b / rho,  rho > 0
 ///   J_f_o = I,   J_f_feature = [B / rho, -b / rho^2]
-inline Vec3 inverse_depth_to_point(const Vec3& o_W, const InverseDepth& feature, Mat3* J_f_feature) {
-  const Mat3 R_b = feature.q_b.toRotationMatrix();
-  const Scalar depth = Scalar(1) / feature.rho;
-  J_f_feature->leftCols<2>() = depth * R_b.leftCols<2>();
-  J_f_feature->col(2) = -depth * depth * R_b.col(2);
-  return o_W + depth * R_b.col(2);
-}
+Vec3 inverse_depth_to_point(const Vec3& o_W, const InverseDepth& feature, Mat3* J_f_feature);
 
 /// Place of an inverse-depth point for display, and its covariance, also where rho is not positive (then at the largest depth that
 /// is shown). cov is 6x6 of (o, e_1, e_2, e_rho).
@@ -47,35 +25,12 @@ inline Vec3 inverse_depth_to_point(const Vec3& o_W, const InverseDepth& feature,
 ///   f = o + b / rho',   rho' = max(rho, kMinShownRho),   C = J cov J^T + (J_rho (rho' - rho))(J_rho (rho' - rho))^T
 ///
 /// The second term is the second moment of the depth about the place that is shown: a far point is never reported as a known one.
-inline Vec3 shown_place(const Vec3& o_W, const InverseDepth& feature, const Mat6& cov, Mat3* C) {
-  InverseDepth shown = feature;
-  shown.rho = feature.rho > tuning::inverse_depth::kMinShownRho ? feature.rho : tuning::inverse_depth::kMinShownRho;
-  Mat3 J_feature;
-  const Vec3 f_W = inverse_depth_to_point(o_W, shown, &J_feature);
-  Eigen::Matrix<Scalar, 3, 6> J;
-  J.leftCols<3>().setIdentity();
-  J.rightCols<3>() = J_feature;
-  const Eigen::Matrix<Scalar, 3, 6> J_cov = J.lazyProduct(cov);
-  const Vec3 moved = (shown.rho - feature.rho) * J_feature.col(2);
-  *C = J_cov.lazyProduct(J.transpose());
-  *C += moved * moved.transpose();
-  return f_W;
-}
+Vec3 shown_place(const Vec3& o_W, const InverseDepth& feature, const Mat6& cov, Mat3* C);
 
 /// How far from linear (Gaussian) the depth is: 4 sigma_d |cos a| / d1 (Civera, Davison, Montiel 2007), where sigma_d = sigma_rho /
 /// rho^2, d1 the distance from the camera now at c_W, a the angle at the point between the first ray and the ray now.
 /// Large where rho is not well above zero.
-inline Scalar linearity_index(const Vec3& c_W, const Vec3& o_W, const InverseDepth& feature, Scalar sigma_rho) {
-  using namespace tuning::inverse_depth;
-  constexpr Scalar kMinDistance = Scalar(1e-9);  // [m]
-  if (feature.rho <= Scalar(2) * sigma_rho || feature.rho <= kMinRho) return kNever;
-  const Vec3 b = feature.q_b.toRotationMatrix().col(2);
-  const Vec3 ray = o_W + b / feature.rho - c_W;
-  const Scalar d1 = ray.norm();
-  if (d1 <= kMinDistance) return kNever;
-  const Scalar cosine = b.dot(ray) / d1;
-  return Scalar(4) * sigma_rho / (feature.rho * feature.rho) * std::abs(cosine) / d1;
-}
+Scalar linearity_index(const Vec3& c_W, const Vec3& o_W, const InverseDepth& feature, Scalar sigma_rho);
 
 /// State and Jacobians of a new inverse-depth point at a pixel whose unit ray in C is ray_C. The camera saw it from c = c_W beside
 /// the anchor, which is not zero where rows are read out at other times than the frame's.
@@ -83,22 +38,7 @@ inline Scalar linearity_index(const Vec3& c_W, const Vec3& o_W, const InverseDep
 ///   b = (R_WC r + rho c) / |..|;   e_b = B^T (-[R_WC r]x theta + R J_r_z e_z + rho e_c + c e_rho) / |..|;   rho free
 ///
 /// J_feature_theta 2x3, J_feature_z 2x2, J_feature_c 2x3 (all for the bearing's two rows); J_feature_rho = J_feature_c c / rho.
-inline InverseDepth begin_inverse_depth(const CameraAt& camera, const Vec3& ray_C, const Mat32& J_ray_z, Scalar rho,
-                                        const Vec3& c_W, Mat23* J_feature_theta, Mat2* J_feature_z,
-                                        Mat23* J_feature_c) {
-  const Mat3 R = camera.q_WC.toRotationMatrix();
-  const Vec3 seen = R.lazyProduct(ray_C);
-  const Vec3 from_anchor = seen + rho * c_W;
-  const Scalar length = from_anchor.norm();
-  InverseDepth feature;
-  feature.q_b = turn_z_to(from_anchor / length);
-  feature.rho = rho;
-  const Mat23 Bt = feature.q_b.toRotationMatrix().leftCols<2>().transpose() / length;
-  *J_feature_theta = -Bt.lazyProduct(hat(seen));
-  const Mat32 RJ = R.lazyProduct(J_ray_z);
-  *J_feature_z = Bt.lazyProduct(RJ);
-  *J_feature_c = rho * Bt;
-  return feature;
-}
+InverseDepth begin_inverse_depth(const CameraAt& camera, const Vec3& ray_C, const Mat32& J_ray_z, Scalar rho,
+                                 const Vec3& c_W, Mat23* J_feature_theta, Mat2* J_feature_z, Mat23* J_feature_c);
 
 }  // namespace pf
