@@ -148,7 +148,7 @@ void test_new_bearings_should_have_exact_jacobians_by_the_lens() {
     };
     const int first = layout.row(BodyPart::kLens), count = prior.rows.count;
     const Dense P = filter.P();
-    const Dense J = P.block(filter.first(slot), first, 2, count) * P.block(first, first, count, count).inverse();
+    const Dense J = P.block(filter.first(slot), first, 2, count) * inverse_of(P.block(first, first, count, count));
     check_jacobian<2, kLensParameters>(scaled<2>(lens_columns(J, prior, 0), prior), bearing_error, "J_bearing_lens", 1,
                                        kNumericJacobianIsFloat ? Scalar(4e-3) : Scalar(1e-7));
   }

@@ -131,7 +131,7 @@ void test_a_new_plane_point_should_have_an_exact_jacobian_over_the_state() {
     const int slot = view.add(Mat2::Identity());
     TEST_ASSERT_TRUE(slot >= 0);
     TEST_ASSERT_EQUAL_INT(n + 2, view.filter.dim());
-    const Dense J = view.filter.P().block(view.filter.first(slot), 0, 2, n) * P.inverse() * unit.row(0).asDiagonal();
+    const Dense J = view.filter.P().block(view.filter.first(slot), 0, 2, n) * inverse_of(P) * unit.row(0).asDiagonal();
     TEST_ASSERT_TRUE(numeric.leftCols(6).cwiseAbs().maxCoeff() > 0.5);
     if (tau > Scalar(0)) TEST_ASSERT_TRUE(numeric.block(0, kVelocityRow, 2, 6).cwiseAbs().maxCoeff() > 0.005);
     for (int row = 0; row < n; ++row)

@@ -34,7 +34,7 @@ struct MovedScene {
       A += w * G.transpose() * G;
       b += w * G.transpose() * e.cast<double>();
     }
-    const Dense g = A.ldlt().solve(b);
+    const Dense g = solved(A, b);
     Vec6 out;
     out << log_so3(after.q_WC * before.q_WC.conjugate()) - g.block(3, 0, 3, 1).cast<Scalar>(),
         after.p_W - before.p_W - g.block(0, 0, 3, 1).cast<Scalar>();

@@ -16,10 +16,10 @@ constexpr int kTurns = 40;  // in which every row has been looked at with the bo
 
 /// Correlations with one eigenvalue of this size, of rows that are all equally known.
 Dense with_eigenvalue(SeededRandom& random, int n, double smallest) {
-  const Eigen::SelfAdjointEigenSolver<Dense> eigen(random_covariance(random, n, 1));
-  Eigen::VectorXd values = eigen.eigenvalues();
+  Dense vectors;
+  Eigen::VectorXd values = eigenvalues_of(random_covariance(random, n, 1), &vectors);
   values(0) = smallest * values(n - 1);
-  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+  return vectors * values.asDiagonal() * vectors.transpose();
 }
 
 void test_a_sound_covariance_should_stay_bit_for_bit() {

@@ -359,7 +359,7 @@ void test_a_known_wall_should_bring_its_own_information_once() {
     const int wall = scene.filter->add_known_plane(frame, C.cast<Scalar>(), Scalar(0.002));
     TEST_ASSERT_TRUE(wall >= 0);
     const Dense N_w = plane_gauge(frame, Vec3::Zero()).cast<double>();
-    const Dense expected = before + N_w.transpose() * C.inverse() * N_w;
+    const Dense expected = before + N_w.transpose() * inverse_of(C) * N_w;
     Dense now = information_of(scene.filter);
     TEST_ASSERT_TRUE(largest(now - expected) < 1e-9 * largest(expected));
 

@@ -6,13 +6,12 @@
 
 #include "filter/filter.h"
 #include "geometry/so3.h"
+#include "support/dense.h"
 #include "support/seeded_random.h"
 #include "support/textured_images.h"
 #include "unity.h"
 
 namespace pf {
-
-using Dense = Eigen::MatrixXd;
 
 inline Quat random_turn(SeededRandom& random, double sigma) { return exp_so3(random.normals<3>(sigma)); }
 

@@ -3,8 +3,6 @@
 // A slow sideways walk past points that are seen with 0.1 px of noise, with default settings and no target: nothing tells the scale of
 // the world, and what its points know of each other is soon a hundred thousand times better known than the scale.
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <vector>
 
 #include "api/context.h"
@@ -43,16 +41,7 @@ inline double smallest_correlation(const Triangle& P) {
       const double scale = std::sqrt(static_cast<double>(P(i, i))) * std::sqrt(static_cast<double>(P(j, j)));
       C(i, j) = C(j, i) = i == j ? (P(i, i) < 0 ? -1 : 1) : scale > 0 ? static_cast<double>(P(i, j)) / scale : 0;
     }
-  return Eigen::SelfAdjointEigenSolver<Dense>(C, Eigen::EigenvaluesOnly).eigenvalues()(0);
-}
-
-/// Root mean square of what is left of `found` after the similarity that takes it closest to `truth`.
-inline double error_after_sim3(const std::vector<Point>& found, const std::vector<Point>& truth) {
-  const Eigen::Index n = static_cast<Eigen::Index>(found.size());
-  const Eigen::Map<const Eigen::Matrix3Xd> F(found[0].data(), 3, n), T(truth[0].data(), 3, n);
-  const Eigen::Matrix4d S = Eigen::umeyama(F, T, true);
-  const Eigen::Matrix3Xd moved = (S.topLeftCorner<3, 3>() * F).colwise() + Point(S.topRightCorner<3, 1>());
-  return std::sqrt((moved - T).squaredNorm() / static_cast<double>(n));
+  return eigenvalues_of(C)(0);
 }
 
 }  // namespace slow_walk
@@ -118,7 +107,7 @@ inline void SlowWalk::run(std::uint64_t seed) {
       smallest = std::min(smallest, slow_walk::smallest_correlation(loop.filter().covariance()));
   }
   repairs = loop.frame().report.repairs;
-  error_m = found.empty() ? 1e9 : slow_walk::error_after_sim3(found, truth);
+  error_m = found.empty() ? 1e9 : error_after_sim3(found, truth);
   std::printf(
       "%d frames: smallest eigenvalue %.3g, %.2f mm after Sim(3), tracked %d, starts again %d, repairs %d, rows %d\n",
       frames, smallest, 1000 * error_m, tracked, starts, repairs, loop.filter().dim());

@@ -112,11 +112,11 @@ Eigen::VectorXd dense_step(Dense H, const Eigen::VectorXd& g, double damping) {
   const int points = static_cast<int>(H.rows()) - 18;
   for (int i = 18; i < H.rows(); ++i) H(i, i) *= 1 + damping;
   const Dense W = H.topRightCorner(18, points), D = H.bottomRightCorner(points, points);
-  Dense S = H.topLeftCorner(18, 18) - W * D.inverse() * W.transpose();
+  Dense S = H.topLeftCorner(18, 18) - W * inverse_of(D) * W.transpose();
   for (int i = 0; i < 18; ++i) S(i, i) += damping * std::fabs(S(i, i)) + 1e-9;
   Eigen::VectorXd x(H.rows());
-  x.head(18) = S.ldlt().solve(g.head(18) - W * D.inverse() * g.tail(points));
-  x.tail(points) = D.inverse() * (g.tail(points) - W.transpose() * x.head(18));
+  x.head(18) = solved(S, g.head(18) - W * inverse_of(D) * g.tail(points));
+  x.tail(points) = inverse_of(D) * (g.tail(points) - W.transpose() * x.head(18));
   return x;
 }
 
@@ -147,7 +147,7 @@ void test_covariance_of_the_last_pose_should_be_that_of_the_dense_inverse() {
   Dense H;
   Eigen::VectorXd g;
   scene.dense(&H, &g);
-  const Dense expected = H.inverse().block(12, 12, 6, 6);
+  const Dense expected = inverse_of(H).block(12, 12, 6, 6);
   Mat6 covariance;
   TEST_ASSERT_TRUE(scene.adjuster.last_pose_covariance(scene.camera, scene.options, scene.bundle, &covariance));
   for (int a = 0; a < 6; ++a)

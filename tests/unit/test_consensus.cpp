@@ -118,7 +118,7 @@ void check_height(SeededRandom& random, Scalar gate) {
     fill_map(random, filter, 4, 0);
     filter.set_P(random_covariance(random, filter.dim(), 0.1));
     const Dense P = filter.P();
-    const Dense L = P.llt().matrixL();
+    const Dense L = lower_factor(P);
     Dense e = Dense::Zero(filter.dim(), 1);
     for (int i = 0; i < filter.dim(); ++i) e(i) = random.normal();
     e = L * e;
@@ -149,10 +149,10 @@ void check_height(SeededRandom& random, Scalar gate) {
       taken.emplace_back();
       for (int j = 0; j < kCount; ++j) {
         const Dense S_ji = H[j] * P * H[i].transpose();
-        const Dense r = z[j].measured.template cast<double>() -
-                        S_ji * S_ii.ldlt().solve(Dense(z[i].measured.template cast<double>()));
-        const Dense S = H[j] * P * H[j].transpose() + R - S_ji * S_ii.ldlt().solve(Dense(S_ji.transpose()));
-        taken.back().push_back(i == j || (r.transpose() * S.ldlt().solve(r))(0, 0) < static_cast<double>(gate));
+        const Dense r =
+            z[j].measured.template cast<double>() - S_ji * solved(S_ii, z[i].measured.template cast<double>());
+        const Dense S = H[j] * P * H[j].transpose() + R - S_ji * solved(S_ii, S_ji.transpose());
+        taken.back().push_back(i == j || (r.transpose() * solved(S, r))(0, 0) < static_cast<double>(gate));
         inliers += taken.back().back();
       }
       best = std::max(best, inliers);

@@ -1,5 +1,4 @@
 // A covariance that rounding has spoilt reaches the caller as one, and never as certainty.
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "api/copy.h"
@@ -19,7 +18,7 @@ double smallest_correlation(const double* C, int n) {
       const double scale = std::sqrt(C[i * n + i] * C[j * n + j]);
       A(i, j) = scale > 0 ? C[i * n + j] / scale : i == j ? 1 : 0;
     }
-  return Eigen::SelfAdjointEigenSolver<Dense>(A).eigenvalues()(0);
+  return eigenvalues_of(A)(0);
 }
 
 void test_a_sound_covariance_should_be_copied_as_it_is() {

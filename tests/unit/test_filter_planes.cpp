@@ -251,7 +251,7 @@ void test_conditioning_should_be_the_dense_update_with_distances_of_zero() {
   }
   const Dense P = scene.filter.P();
   const Dense S = H * P * H.transpose() + 0.002 * 0.002 * Dense::Identity(m, m);
-  const Dense K = P * H.transpose() * S.inverse();
+  const Dense K = P * H.transpose() * inverse_of(S);
   const Dense after = P - K * H * P;
   const Eigen::VectorXd dx = K * y;
   const Vec3 plane_before = plane.xyz();
@@ -309,7 +309,7 @@ void test_considered_points_should_keep_their_values_in_an_update() {
     H.middleRows(2 * static_cast<int>(i), 2) = dense_rows(*scene.filter, seen[i].H);
   const Dense P = scene.filter.P();
   const Dense S = H * P * H.transpose() + Dense::Identity(m, m);
-  Dense K = P * H.transpose() * S.inverse();
+  Dense K = P * H.transpose() * inverse_of(S);
   K.middleRows(kBodyRows, scene.filter.held_dim()).setZero();
   const Dense I = Dense::Identity(n, n);
   const Dense schmidt = (I - K * H) * P * (I - K * H).transpose() + K * K.transpose();
@@ -343,7 +343,7 @@ void test_forgetting_through_a_plane_should_reach_what_it_has_taught() {
   const int p = scene.filter.first(scene.plane);
   const Vec3 sigma(Scalar(0.02), Scalar(0.03), Scalar(0.01));
   scene.filter->forget_through(scene.plane, sigma);
-  const Dense G = P.middleCols(p, 3) * P.block(p, p, 3, 3).inverse();
+  const Dense G = P.middleCols(p, 3) * inverse_of(P.block(p, p, 3, 3));
   const Eigen::Vector3d s = sigma.cast<double>();
   const Dense expected = P + G * s.cwiseProduct(s).asDiagonal() * G.transpose();
   const Dense after = scene.filter.P();

@@ -30,7 +30,7 @@ struct Textbook {
       y.segment(2 * k, 2) = (o.measured - o.predicted).cast<double>();
     }
     const Dense before = scene.filter.P();
-    const Dense S_inverse = (H * before * H.transpose() + R).inverse();
+    const Dense S_inverse = inverse_of(H * before * H.transpose() + R);
     Dense K = before * H.transpose() * S_inverse;
     if (estimated > 0) K.bottomRows(n - estimated).setZero();
     const Dense A = Dense::Identity(n, n) - K * H;
@@ -138,12 +138,12 @@ void test_update_should_only_move_the_gauge_of_the_textbook_covariance_when_it_i
     scene.filter->begin_update(scene.observations.data(), scene.count());
     TEST_ASSERT_TRUE(scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr));
     const Dense after = scene.filter.gauge();
-    const Dense now = after.transpose() * scene.filter.P().inverse() * after;
-    const Dense should = before.transpose() * expected.P.inverse() * before;
+    const Dense now = after.transpose() * inverse_of(scene.filter.P()) * after;
+    const Dense should = before.transpose() * inverse_of(expected.P) * before;
     TEST_ASSERT_TRUE(largest(now - should) < 1e-7 * largest(should));
     // The change lies in the span of the change of the gauge: P+ - P1 = dN C + C^T dN^T.
     const Dense dN = after.rightCols(4) - before.rightCols(4);
-    const Dense Q = Dense::Identity(dN.rows(), dN.rows()) - dN * (dN.transpose() * dN).inverse() * dN.transpose();
+    const Dense Q = Dense::Identity(dN.rows(), dN.rows()) - dN * inverse_of(dN.transpose() * dN) * dN.transpose();
     const Dense left = Q * (scene.filter.P() - expected.P) * Q;
     TEST_ASSERT_TRUE(largest(left) < 1e-10);
   }

@@ -58,7 +58,7 @@ struct Matches {
         if (i == j) block += at(i).R_gate;
         S.block(2 * i, 2 * j, 2, 2) = block.cast<double>();
       }
-    const Dense L = S.llt().matrixL();
+    const Dense L = lower_factor(S);
     Eigen::VectorXd white(2 * count());
     for (int i = 0; i < white.size(); ++i) white(i) = random.normal();
     const Eigen::VectorXd r = L * white;
@@ -77,7 +77,7 @@ struct Matches {
       if (keep[static_cast<std::size_t>(i)] != 0 && i != left) rows.insert(rows.end(), {2 * i, 2 * i + 1});
     Eigen::VectorXd r(2 * count());
     for (int i = 0; i < count(); ++i) r.segment<2>(2 * i) = (at(i).measured - at(i).predicted).cast<double>();
-    const Dense inverse = S(rows, rows).inverse();
+    const Dense inverse = inverse_of(S(rows, rows));
     const Eigen::VectorXd r_rest = r(rows);
     if (left < 0) return r_rest.dot(inverse * r_rest);
     const std::vector<int> own = {2 * left, 2 * left + 1};

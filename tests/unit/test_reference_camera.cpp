@@ -114,7 +114,7 @@ void test_an_update_should_move_it_by_its_own_rows() {
       R.block(2 * i, 2 * i, 2, 2) = o.R_update.cast<double>();
       y.segment(2 * i, 2) = (o.measured - o.predicted).cast<double>();
     }
-    const Eigen::VectorXd dx = P * H.transpose() * (H * P * H.transpose() + R).inverse() * y;
+    const Eigen::VectorXd dx = P * H.transpose() * inverse_of(H * P * H.transpose() + R) * y;
     scene.filter->begin_update(scene.observations.data(), scene.count());
     TEST_ASSERT_TRUE(scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr));
     const Block& block = scene.filter->state().block[camera];
