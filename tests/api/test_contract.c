@@ -215,6 +215,16 @@ static void test_a_start_should_be_refused_when_its_numbers_make_no_sense(void) 
   bad = pose;
   bad.covariance[0] = -1;
   REFUSES(PF_ERROR_RANGE, pf_start_from_pose(slam, &bad, velocity));
+  /* Two rows that are known to be the same cannot correlate with a third one in opposite ways. */
+  bad = pose;
+  bad.covariance[6 * 1 + 0] = bad.covariance[6 * 0 + 1] = 0.01;
+  bad.covariance[6 * 2 + 0] = bad.covariance[6 * 0 + 2] = 0.005;
+  bad.covariance[6 * 2 + 1] = bad.covariance[6 * 1 + 2] = -0.005;
+  REFUSES(PF_ERROR_RANGE, pf_start_from_pose(slam, &bad, velocity));
+  bad = pose;
+  bad.covariance[0] = 0;
+  bad.covariance[1] = bad.covariance[6] = 0.005;
+  REFUSES(PF_ERROR_RANGE, pf_start_from_pose(slam, &bad, velocity));
   REFUSES(PF_ERROR_NULL, pf_start_from_pose(slam, &pose, NULL));
   wrong = target;
   wrong.kind = 9;

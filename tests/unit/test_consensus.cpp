@@ -1,5 +1,6 @@
 // One-point consensus: right matches agree with each other, wrong ones do not, whoever comes first.
 #include <algorithm>
+#include <limits>
 
 #include "slam/consensus.h"
 #include "support/filter_scene.h"
@@ -184,6 +185,16 @@ void test_squared_distance_should_be_that_of_the_inverse_covariance() {
   TEST_ASSERT_TRUE(squared_distance(Vec2(1, 0), broken) > Scalar(1e9));
 }
 
+/// Covariances of which the determinant is infinite once gave a distance that is no number.
+void test_a_covariance_should_be_none_when_a_distance_cannot_be_computed_from_it() {
+  const Scalar huge = 4 * std::sqrt(std::numeric_limits<Scalar>::max());
+  TEST_ASSERT_TRUE(is_covariance(Mat2(Mat2::Identity())));
+  TEST_ASSERT_FALSE(is_covariance(Mat2(Mat2::Identity() * huge)));
+  TEST_ASSERT_FALSE(is_covariance(Mat2(Mat2::Ones())));
+  TEST_ASSERT_FALSE(is_covariance(Mat2(-Mat2::Identity())));
+  TEST_ASSERT_FALSE(is_covariance(Mat2(Mat2::Identity() * std::numeric_limits<Scalar>::quiet_NaN())));
+}
+
 }  // namespace
 
 int main(void) {
@@ -193,5 +204,6 @@ int main(void) {
   RUN_TEST(test_consensus_should_find_few_when_all_matches_are_random);
   RUN_TEST(test_consensus_should_take_measurements_of_one_and_of_eight_rows);
   RUN_TEST(test_squared_distance_should_be_that_of_the_inverse_covariance);
+  RUN_TEST(test_a_covariance_should_be_none_when_a_distance_cannot_be_computed_from_it);
   return UNITY_END();
 }

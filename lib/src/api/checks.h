@@ -42,17 +42,9 @@ inline bool quaternion_from(const double* q, Quat* out) {
 
 inline constexpr int kMaxCovariance = 10;  ///< rows of one that crosses the API
 
-/// Positive semidefinite to rounding. n <= 6.
-inline bool is_semidefinite(const double* P, int n) {
-  double C[36];  // correlations, so that radians and metres have the same weight
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j <= i; ++j) C[i * n + j] = P[i * n + j] / (std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]));
-  return factor_semidefinite(C, n, 1e-9);
-}
-
-/// Likewise to a given rounding, where rows of what is exactly known are zero. n <= kMaxCovariance.
-inline bool is_semidefinite_or_zero(const double* P, int n, double rounding) {
-  double C[kMaxCovariance * kMaxCovariance];
+/// Whether the correlations of P have no eigenvalue below -rounding; rows of what is exactly known are zero. n <= kMaxCovariance.
+inline bool is_semidefinite(const double* P, int n, double rounding) {
+  double C[kMaxCovariance * kMaxCovariance];  // correlations, so that radians and metres have the same weight
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < i; ++j) {
       const double scale = std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]);
@@ -60,7 +52,7 @@ inline bool is_semidefinite_or_zero(const double* P, int n, double rounding) {
     }
     C[i * n + i] = 1.0 + rounding;
   }
-  return factor_semidefinite(C, n, 0.0);
+  return factor_cholesky(C, n, n);
 }
 
 /// Symmetric to rounding, with positive diagonal, Cauchy-Schwarz between any two, and semidefinite.
@@ -73,7 +65,7 @@ inline bool is_covariance(const double* P, int n) {
       if (std::fabs(P[i * n + j]) > scale * (1.0 + 1e-9)) return false;
     }
   }
-  return is_semidefinite(P, n);
+  return is_semidefinite(P, n, 1e-9);
 }
 
 }  // namespace pf

@@ -45,7 +45,7 @@ inline void repair_covariance(double* C, int n) {
       if (i != j && std::fabs(C[i * n + j]) > most) C[i * n + j] = std::copysign(most, C[i * n + j]);
     }
   double grown = 0, factor = 1;
-  while (!is_semidefinite_or_zero(C, n, kTolerance / 2) && grown < n) {
+  while (!is_semidefinite(C, n, kTolerance / 2) && grown < n) {
     const double before = factor;
     grown = grown > 0 ? kStep * grown : kTolerance;
     factor = 1 + grown;

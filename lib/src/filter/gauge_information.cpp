@@ -3,21 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/small_cholesky.h"
-
 namespace pf {
 namespace {
 
 using gauge::kDirections;
 constexpr double kTolerance = sizeof(Scalar) == 8 ? 1e-10 : 1e-4;  ///< of a pivot, relative to its variance
+constexpr int kColumns = 8;                                        ///< of N: the last one holds the variances
 
-/// The directions as columns of N (n x 8, the last column unused), in double; zero where they are observable.
+/// The directions as columns of N (n x 8, the last column zero), in double; zero where they are observable.
 void directions(const State& state, const BlockFilter& blocks, double* N) {
-  for (int i = 0; i < blocks.dim() * 8; ++i) N[i] = 0.0;
+  for (int i = 0; i < blocks.dim() * kColumns; ++i) N[i] = 0.0;
   const auto put_rows = [&](int first, int size, const auto& rows) {
     for (int i = 0; i < size; ++i)
       for (int d = 0; d < kDirections; ++d)
-        if (gauge::contains(state.unobservable, d)) N[(first + i) * 8 + d] = static_cast<double>(rows(i, d));
+        if (gauge::contains(state.unobservable, d)) N[(first + i) * kColumns + d] = static_cast<double>(rows(i, d));
   };
   for_each_body_gauge(state.body, state.layout, state.mounting,
                       [&](int first, int size, const GaugeRowsOf<3>& rows) { put_rows(first, size, rows); });
@@ -54,30 +53,67 @@ void add_apart(const GaugePrior::Matrix& V, double* A) {
     for (int j = 0; j < n; ++j) A[i * n + j] = (M[i][n + j] / M[i][i] + M[j][n + i] / M[j][j]) / 2;
 }
 
-}  // namespace
-
-bool gauge_information(const Filter& filter, double* scratch, double information[49]) {
-  const int n = filter.dim();
-  double* L = scratch;
-  double* N = scratch + static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j <= i; ++j) L[i * n + j] = static_cast<double>(filter.covariance()(i, j));
-  directions(filter.state(), filter.blocks(), N);
-  // A row that others determine (a new anchor is the body's position) says nothing new; one below zero is no covariance.
-  if (!factor_semidefinite(L, n, kTolerance)) return false;
+/// Row of the largest pivot that is left, relative to its variance. Negative where that is no more than the tolerance.
+int next_pivot(const double* S, const double* N, int n) {
+  int best = -1;
+  double largest = kTolerance;
   for (int i = 0; i < n; ++i) {
-    for (int c = 0; c < kDirections; ++c) {  // N <- L^-1 N, row by row
-      double sum = N[i * 8 + c];
-      for (int k = 0; k < i; ++k) sum -= L[i * n + k] * N[k * 8 + c];
-      N[i * 8 + c] = L[i * n + i] > 0 ? sum / L[i * n + i] : 0.0;
+    const double variance = N[i * kColumns + kDirections];
+    if (variance > 0 && S[i * n + i] > largest * variance) {
+      best = i;
+      largest = S[i * n + i] / variance;
     }
   }
-  for (int a = 0; a < kDirections; ++a)
-    for (int b = 0; b < kDirections; ++b) {
-      double sum = 0;
-      for (int i = 0; i < n; ++i) sum += N[i * 8 + a] * N[i * 8 + b];
-      information[a * kDirections + b] = sum;
+  return best;
+}
+
+/// Whether what is left of P, in rows that others determine, is that of a covariance to rounding.
+bool is_nothing(const double* S, const double* N, int n) {
+  for (int i = 0; i < n; ++i) {
+    const double v_i = N[i * kColumns + kDirections];
+    if (!(v_i > 0)) continue;
+    if (!(S[i * n + i] > -kTolerance * v_i)) return false;
+    for (int j = 0; j < i; ++j) {
+      const double v_j = N[j * kColumns + kDirections];
+      if (v_j > 0 && !(std::fabs(S[i * n + j]) <= 2 * kTolerance * std::sqrt(v_i) * std::sqrt(v_j))) return false;
     }
+  }
+  return true;
+}
+
+}  // namespace
+
+/// Eliminates one row after the other, that of the largest pivot first, so that rounding grows by nothing where P is nearly singular:
+///
+///   A += N_p^T N_p / S_pp,   N_i -= (S_ip / S_pp) N_p,   S_ij -= S_ip S_pj / S_pp,   S = P at first
+///
+/// A row that others determine (a new anchor is the body's position) says nothing new; one below zero is no covariance.
+bool gauge_information(const Filter& filter, double* scratch, double information[49]) {
+  const int n = filter.dim();
+  double* S = scratch;
+  double* N = scratch + static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) S[i * n + j] = S[j * n + i] = static_cast<double>(filter.covariance()(i, j));
+  directions(filter.state(), filter.blocks(), N);
+  for (int i = 0; i < n; ++i) {
+    if (!(S[i * n + i] > 0)) return false;
+    N[i * kColumns + kDirections] = S[i * n + i];
+  }
+  std::fill(information, information + kDirections * kDirections, 0.0);
+  for (int p = next_pivot(S, N, n); p >= 0; p = next_pivot(S, N, n)) {
+    const double* N_p = N + p * kColumns;
+    const double pivot = S[p * n + p];
+    for (int a = 0; a < kDirections; ++a)
+      for (int b = 0; b < kDirections; ++b) information[a * kDirections + b] += N_p[a] * N_p[b] / pivot;
+    N[p * kColumns + kDirections] = 0;  // done
+    for (int i = 0; i < n; ++i) {
+      if (!(N[i * kColumns + kDirections] > 0)) continue;
+      const double factor = S[i * n + p] / pivot;
+      for (int c = 0; c < kDirections; ++c) N[i * kColumns + c] -= factor * N_p[c];
+      for (int j = 0; j < n; ++j) S[i * n + j] -= factor * S[p * n + j];
+    }
+  }
+  if (!is_nothing(S, N, n)) return false;
   if (filter.apart().any()) add_apart(filter.apart().V(), information);
   return true;
 }

@@ -5,8 +5,8 @@
 
 #include "base/eigen.h"
 
-/// Cholesky factorisations A = L Lᵀ of small symmetric matrices, without a heap: scaled, of a size known at run time, and of a
-/// semidefinite matrix. Only the lower triangle of A is read. Those of the state's size are kernels (covariance/kernels.h).
+/// Cholesky factorisations A = L Lᵀ of small symmetric matrices, without a heap: scaled, and of a size known at run
+/// time. Only the lower triangle of A is read. Those of the state's size are kernels (covariance/kernels.h).
 
 namespace pf {
 
@@ -77,13 +77,14 @@ class SmallCholesky {
 };
 
 /// A = L Lᵀ in place (n x n, leading dimension ld), unscaled. False where a pivot is not positive; A is lost then.
-inline bool factor_cholesky(Scalar* A, int n, int ld) {
+template <typename T>
+bool factor_cholesky(T* A, int n, int ld) {
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j <= i; ++j) {
-      Scalar sum = A[i * ld + j];
+      T sum = A[i * ld + j];
       for (int k = 0; k < j; ++k) sum -= A[i * ld + k] * A[j * ld + k];
       if (i == j) {
-        if (!(sum > Scalar(0))) return false;
+        if (!(sum > T(0))) return false;
         A[i * ld + i] = std::sqrt(sum);
       } else {
         A[i * ld + j] = sum / A[j * ld + j];
@@ -103,24 +104,6 @@ inline void solve_cholesky(const Scalar* L, int n, int ld, Scalar* b) {
     for (int k = i + 1; k < n; ++k) b[i] -= L[k * ld + i] * b[k];
     b[i] /= L[i * ld + i];
   }
-}
-
-/// A = L Lᵀ in place of a matrix (n x n, row-major) that may be singular: where the rows before determine a row, its pivot and what the
-/// rows behind it owe to it become zero. False where a pivot is below zero by more than `tolerance` times its diagonal entry, or that
-/// entry is not positive.
-inline bool factor_semidefinite(double* A, int n, double tolerance) {
-  for (int i = 0; i < n; ++i) {
-    const double before = A[i * n + i];
-    for (int j = 0; j <= i; ++j) {
-      double sum = A[i * n + j];
-      for (int k = 0; k < j; ++k) sum -= A[i * n + k] * A[j * n + k];
-      A[i * n + j] = j < i ? (A[j * n + j] > 0 ? sum / A[j * n + j] : 0.0) : sum;
-    }
-    const double pivot = A[i * n + i];
-    if (!(pivot > -tolerance * before) || !(before > 0)) return false;
-    A[i * n + i] = pivot > tolerance * before ? std::sqrt(pivot) : 0.0;
-  }
-  return true;
 }
 
 }  // namespace pf

@@ -6,8 +6,8 @@
 namespace pf {
 
 bool is_covariance(const Mat2& S) {
-  return std::isfinite(S(0, 0)) && std::isfinite(S(1, 1)) && S(0, 0) > Scalar(0) &&
-         S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0) > Scalar(0);
+  const Scalar det = S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0);
+  return S(0, 0) > Scalar(0) && det > Scalar(0) && std::isfinite(det);
 }
 
 Scalar ellipse_area(const Mat2& S, Scalar gate) {

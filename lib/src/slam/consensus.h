@@ -20,9 +20,9 @@ inline Scalar squared_distance(const Vec2& r, const Mat2& S) {
   return (r.x() * (S(1, 1) * r.x() - S(0, 1) * r.y()) + r.y() * (S(0, 0) * r.y() - S(1, 0) * r.x())) / det;
 }
 
-/// Whether an innovation covariance S = H P H^T + R is one: finite and positive definite. It is not where H P H^T is a difference of
-/// numbers so large that rounding exceeds R: a position far from the map's origin with a variance of 1e6 and a point close to the camera,
-/// which shares nearly all of it. Such a pixel cannot be measured.
+/// Whether an innovation covariance S = H P H^T + R is one: positive definite, with a finite determinant. It is not where H P H^T is a
+/// difference of numbers so large that rounding exceeds R: a position far from the map's origin with a variance of 1e6 and a point close to
+/// the camera, which shares nearly all of it. Such a pixel cannot be measured.
 bool is_covariance(const Mat2& S);
 
 /// Of the ellipse r^T S^-1 r < gate [px^2].
