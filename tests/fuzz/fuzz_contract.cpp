@@ -552,6 +552,8 @@ class Run {
     for (size_t i = 0; i < count; ++i) {
       require(finite(features[i].p_W, 3), "a feature is finite");
       require_covariance(features[i].covariance, 3, "a feature has a covariance");
+      require(features[i].is_target || features[i].observations <= features[i].attempts,
+              "only what is searched is seen");
     }
     require(pf_get_matches(slam_, matches.data(), matches.size(), &count) == PF_OK, "every match is given");
     for (size_t i = 0; i < count; ++i) {

@@ -137,6 +137,7 @@ void ImageFrontEnd::predict_pixels(int first, int count) {
     if (has_place) {
       const Mat2 spread = update_.expected_innovation(&o);
       o.set_noise(NoiseModel::search() + o.second_order);
+      match.feature = candidate.feature;  // it may have had no place before the scouts were measured
       match.predicted = o.predicted;
       match.innovation = spread + o.R_gate;
       has_place = is_covariance(match.innovation);
