@@ -17,10 +17,15 @@ void count_warnings(void* user, const char* line) {
   if (std::strstr(line, "check the calibration") != nullptr) ++*static_cast<int*>(user);
 }
 
+void count_lens_warnings(void* user, const char* line) {
+  if (std::strstr(line, "the estimated lens is more than 3 sigma from the calibration") != nullptr)
+    ++*static_cast<int*>(user);
+}
+
 /// The desk for some seconds, as a context sees it whose camera may be wrong; how often the log warned.
-int warnings(RenderedRun& run, std::size_t frames) {
+int warnings(RenderedRun& run, std::size_t frames, void (*log)(void*, const char*) = count_warnings) {
   int count = 0;
-  run.config.log = count_warnings;
+  run.config.log = log;
   run.config.user = &count;
   run.create();
   run.start_at_rectangle();
@@ -48,6 +53,18 @@ void test_log_should_warn_once_when_the_lens_is_wrong() {
   TEST_ASSERT_TRUE(run.frames.back().report.sigma_gate_px > 0.3);
 }
 
+void test_log_should_warn_once_when_the_estimated_lens_leaves_its_prior() {
+  for (const double error : {0.0, 0.03}) {
+    RenderedRun run("desk", 150, Start::kNone);
+    run.config.camera.fx *= 1 + error;
+    run.config.camera.fy *= 1 + error;
+    run.config.camera.estimate = PF_CAMERA_ESTIMATE;
+    run.config.camera.sigma_focal = 0.005;
+    run.config.camera.sigma_aspect = 0.001;
+    TEST_ASSERT_EQUAL_INT(error > 0 ? 1 : 0, warnings(run, 150, count_lens_warnings));
+  }
+}
+
 /// Residuals are those of the lens as it is known after the update, not of the calibration that was given: the noise is that of a right
 /// calibration.
 void test_noise_should_be_that_of_the_right_calibration_when_a_wrong_one_is_estimated() {
@@ -69,6 +86,7 @@ int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_log_should_not_warn_and_noise_should_be_plausible_when_the_calibration_is_right);
   RUN_TEST(test_log_should_warn_once_when_the_lens_is_wrong);
+  RUN_TEST(test_log_should_warn_once_when_the_estimated_lens_leaves_its_prior);
   RUN_TEST(test_noise_should_be_that_of_the_right_calibration_when_a_wrong_one_is_estimated);
   return UNITY_END();
 }

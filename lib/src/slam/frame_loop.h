@@ -69,7 +69,7 @@ class FrameLoop {
     std::int64_t filter_ns = 0;
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     bool image_usable = false;       ///< this frame is an image that shows something to track
-    bool warned_of_noise = false;
+    bool warned_of_noise = false, warned_of_lens = false;
     Scalar median_depth = 1;  ///< of the inliers of the last tracked frame
   };
 

@@ -23,6 +23,7 @@ inline constexpr int kMinInliersOfFew = 5;  ///< and never fewer than that
 inline constexpr Scalar kMaxLogFalse = Scalar(-6.9);  ///< ln 0.001 consensuses as good that chance gives per frame
 inline constexpr int kTriples = 8;                    ///< of inliers, with which that number is computed
 inline constexpr Scalar kMaxYoungGap = Scalar(0.2);   ///< [s] untracked, after which a young map is no longer followed
+inline constexpr Scalar kMaxLensDeviation = Scalar(3);  ///< prior sigmas of an estimated lens without a warning
 }  // namespace tracking
 
 /// Whether a pose can be used.
@@ -157,7 +158,7 @@ inline constexpr int kTrialRejections = 2;           ///< in a row, before it is
 inline constexpr Scalar kTrialDepth = Scalar(0.05);  ///< of its depth, which must show before it is believed
 inline constexpr Scalar kTrialPixels = Scalar(1.8);  ///< [px] that show: three sigma of a match
 inline constexpr int kMinFixed = 4;                  ///< points that a point group needs
-inline constexpr Scalar kReach = 0.5f;               ///< beyond the outline of a plane, in square roots of its area
+inline constexpr Scalar kReach = Scalar(0.5);        ///< beyond the outline of a plane, in square roots of its area
 inline constexpr Scalar kUnfoldSigma = Scalar(10);   ///< of an unfolded point along the normal, in plane.max_distance
 }  // namespace plane_keeper
 
@@ -206,9 +207,9 @@ inline constexpr int kCoarseSide = 52;          ///< [px] from which texture is 
 namespace plane_lifecycle {
 inline constexpr int kMinPoints = 4;               ///< of a plane that once had more than plane.min_points
 inline constexpr int kMaxWeakFrames = 60;          ///< in a row, before a plane without enough points is dissolved
-inline constexpr Scalar kMaxSlant = 0.05f;         ///< of a plane against its frame, above which it gets another frame
-inline constexpr Scalar kMinNormalCosine = 0.97f;  ///< cosine of the largest angle between planes that are merged
-inline constexpr Scalar kSamePlaneGate = Scalar(9);  ///< chi-square of a point of one plane against the other
+inline constexpr Scalar kMaxSlant = Scalar(0.05);  ///< of a plane against its frame, above which it gets another frame
+inline constexpr Scalar kMinNormalCosine = Scalar(0.97);  ///< of the largest angle between planes that are merged
+inline constexpr Scalar kSamePlaneGate = Scalar(9);       ///< chi-square of a point of one plane against the other
 inline constexpr Scalar kMergeGate = Scalar(16);  ///< chi-square of a point that moves to a plane merged with its own
 }  // namespace plane_lifecycle
 
