@@ -24,7 +24,7 @@ def main():
         file = pathlib.Path(name) / "box.json"
         run(BIN / "pf-sim", "box", "--geometric", "--seeds", SEEDS, "--jobs", 2, "--json", file, "--cases", "refined", "exact", "absent")
         cases = json.loads(file.read_text())["cases"]
-        run(BIN / "pf-sim", "box", "--no-points", "--seeds", SEEDS, "--jobs", 2, "--frames", 90, "--json", file, "--cases", "refined")
+        run(BIN / "pf-sim", "box", "--no-points", "--seeds", SEEDS, "--jobs", 2, "--first-seed", 41, "--frames", 300, "--json", file, "--cases", "refined")
         rendered = json.loads(file.read_text())["cases"]["refined"]
     refined, exact, absent = cases["refined"], cases["exact"], cases["absent"]
     rmse = [case["rmse_m"]["worst"] for case in (refined, exact, absent)]
@@ -37,6 +37,8 @@ def main():
         fail(f"pose NEES {refined['nees_pose']['mean']}")
     if not (rendered["rmse_m"]["worst"] < 0.02 and rendered["tracked_share"] > 0.98 and rendered["patches"]["inliers"] > 2):
         fail(f"patches alone: {rendered['rmse_m']}, {rendered['tracked_share']}, {rendered['patches']}")
+    if not rendered["nees_pose"]["mean"] < 12:
+        fail(f"patches alone: pose NEES {rendered['nees_pose']['mean']}")
     wrong = absent["wrong_wall"]
     if wrong["doubted_runs"] != SEEDS or not wrong["seen_before_s"]["worst"] < 2:
         fail(f"the wall that is not there: {wrong}")

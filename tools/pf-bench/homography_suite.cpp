@@ -15,6 +15,7 @@
 #include "base/arena.h"
 #include "geometry/small_cholesky.h"
 #include "homography_frames.h"
+#include "slam/tuning.h"
 #include "suite.h"
 #include "track/align_plane.h"
 
@@ -77,6 +78,7 @@ class OwnTracker : public PatchTracker {
     const pf::ImageView image{first, options.width, options.height, options.width};
     ready_ = ready_ && pf::extract_plane_patch(image, frames.left(), frames.top(), options.side, &patch_);
     start_ = pf::PlaneStart();
+    start_.slack_px = pf::tuning::patch_keeper::kWarpSlack;
     unfinished_ = false;
     K_ = pf::Mat3::Identity();
     K_(0, 0) = camera_.fx, K_(1, 1) = camera_.fy, K_(0, 2) = camera_.cx, K_(1, 2) = camera_.cy;

@@ -38,6 +38,8 @@ class NoiseModel {
 
   /// R_gate
   Mat2 match(const Mat2& fit, Scalar level_scale) const;
+  /// g
+  Scalar scale() const { return scale_; }
   /// tau [frames]
   Scalar correlation_frames() const { return tau_; }
   /// Root mean square over recent inliers [px].

@@ -34,6 +34,7 @@ bool PatchKeeper::layout(Arena& arena) {
 
 void PatchKeeper::init() {
   store_.init();
+  noise_.init(kCornerSigma);
   generation_ = filter_.generation();
 }
 
@@ -70,6 +71,31 @@ void PatchKeeper::measure(const Pyramid& image) {
   int order[kMaxPatches];
   const int count = list_in_order(order);
   for (int k = 0; k < count; ++k) measure_patch(image, &store_[order[k]]);
+  learn_noise();
+}
+
+/// R_gate of the corners of a patch that was found.
+PatchKeeper::Mat8 PatchKeeper::noise_of(const StoredPatch& patch) const {
+  return noise_.scale() * noise_.scale() * (patch.covariance + Mat8(Mat8::Identity() * (kCornerSigma * kCornerSigma)));
+}
+
+/// From what is left of inliers after the update: each corner has its own trace.
+void PatchKeeper::learn_noise() {
+  for (int i = 0; i < store_.capacity(); ++i) {
+    if (!store_.used(i)) continue;
+    const StoredPatch& patch = store_[i];
+    if (patch.status != PatchStatus::kInlier || patch.frames < kSettledFrames) continue;
+    const int wall = wall_of(patch);
+    if (wall < 0 ||
+        !filter_.predict_patch(filter_.lens(), patch.block, map_.planes[wall].slot, patch.reference_px, &z_))
+      continue;
+    const Mat8 R = noise_of(patch);
+    const Scalar leverage = filter_.covariance_of<8>(z_.H).trace() / (noise_.correlation_frames() * R.trace());
+    for (int k = 0; k < 4; ++k)
+      noise_.learn(frame_.report.frames, patch.corner[k] - z_.predicted.segment<2>(2 * k), R.block<2, 2>(2 * k, 2 * k),
+                   leverage, &residuals_[i][k]);
+  }
+  noise_.end_frame();
 }
 
 void PatchKeeper::measure_patch(const Pyramid& image, StoredPatch* patch) {
@@ -91,6 +117,7 @@ void PatchKeeper::measure_patch(const Pyramid& image, StoredPatch* patch) {
   start.H_CK = sight.H_CK;
   start.gain = patch->gain;
   start.offset = patch->offset;
+  start.slack_px = kWarpSlack;
   const PlaneAlignment found = aligner_.align(image, filter_.lens(), patch->pixels, start, HomographyWarp());
   patch->weight = found.weight;
   if (!found.is_aligned()) return;
@@ -127,7 +154,8 @@ bool PatchKeeper::begin_block(StoredPatch* patch, const Mat8& covariance) {
 /// Takes the corners in where they pass the gate: all eight rows or none.
 void PatchKeeper::update(StoredPatch* patch, int plane, const PlaneAlignment& found) {
   for (int k = 0; k < 4; ++k) z_.measured.segment<2>(2 * k) = found.corner[k];
-  z_.set_noise(found.covariance + Mat8(Mat8::Identity() * (kCornerSigma * kCornerSigma)));
+  z_.R_gate = noise_of(*patch);
+  z_.R_update = noise_.correlation_frames() * z_.R_gate;
   patch->status = PatchStatus::kOutlier;
   const bool is_far = (z_.measured - z_.predicted).cwiseAbs().maxCoeff() > kLinearReach;
   if (is_far && !linearise_near(*patch, plane)) return;

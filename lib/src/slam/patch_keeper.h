@@ -6,6 +6,7 @@
 #include "map/map.h"
 #include "slam/feature_keeper.h"
 #include "slam/frame.h"
+#include "slam/noise_model.h"
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
 #include "track/align_plane.h"
@@ -58,6 +59,8 @@ class PatchKeeper {
   bool find_from_afar(const Pyramid& image, const StoredPatch& patch, Sight* sight);
   bool begin_block(StoredPatch* patch, const Mat8& covariance);
   void update(StoredPatch* patch, int plane, const PlaneAlignment& found);
+  Mat8 noise_of(const StoredPatch& patch) const;
+  void learn_noise();
   void drop(int i);
   void drop_failing(bool supported);
 
@@ -90,6 +93,8 @@ class PatchKeeper {
   FeatureKeeper& features_;
   TrackingState& tracking_;
   PatchStore store_;
+  NoiseModel noise_;                         ///< of corners, pooled over all patches
+  ResidualTrace residuals_[kMaxPatches][4];  ///< of each entry's corners
   PatchSearch search_;
   PlaneAligner aligner_;
   PatchMeasurement z_;            ///< scratch: the patch that is measured

@@ -139,6 +139,7 @@ bool PatchKeeper::begin_at(const ImageView& image, int wall, const Square& squar
   const int slot = *camera >= 0 ? *camera : filter_.add_reference_camera();
   if (slot < 0) return false;
   StoredPatch& patch = store_.begin(i);
+  for (ResidualTrace& trace : residuals_[i]) trace = ResidualTrace();
   *camera = patch.camera = slot;
   filter_.pin(slot);
   patch.plane = map_.planes[wall].id;

@@ -179,6 +179,8 @@ namespace patch_keeper {
 inline constexpr Scalar kMinCosine = Scalar(0.407);    ///< of the slant at which a patch is looked for: 66 degrees
 inline constexpr Scalar kCornersGate = Scalar(26.12);  ///< chi-square of eight degrees of freedom, 0.999
 inline constexpr Scalar kCornerSigma = Scalar(0.05);   ///< [px] of a corner, beside the noise: warp and interpolation
+inline constexpr float kWarpSlack = 0.1f;              ///< [px] of pixels, as far as it excuses residuals
+inline constexpr int kSettledFrames = 5;               ///< of a patch, before its residuals say what the noise is
 inline constexpr Scalar kAlignerReach = Scalar(12);    ///< [px] of the gate, beyond which a patch is searched for first
 inline constexpr Scalar kLinearReach = Scalar(4);      ///< [px] of an innovation that is taken in as it is
 inline constexpr Scalar kPoseSigma = Scalar(1);        ///< [px] of what is not the pose, where the pose is sought

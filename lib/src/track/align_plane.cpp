@@ -106,7 +106,7 @@ Scalar PlaneAligner::corner_way(const Mat3& step) const {
 }
 
 /// Lists the pixels of a level that are compared, with their rays and gradients.
-void PlaneAligner::load_samples(const PlanePatch& patch, int level, const std::uint8_t* mask) {
+void PlaneAligner::load_samples(const PlanePatch& patch, int level, float slack_px, const std::uint8_t* mask) {
   const int side = patch.side_of(level);
   const std::uint8_t* pixels = patch.level(level);
   const int inner = (side - 2) * (side - 2);
@@ -114,6 +114,7 @@ void PlaneAligner::load_samples(const PlanePatch& patch, int level, const std::u
   const float size = static_cast<float>(1 << level), first = 0.5f * size - 0.5f;
   const float middle = 0.5f * static_cast<float>(patch.side - 1), half = static_cast<float>(half_);
   const float per_half = 1.0f / half;
+  const float per_noise = slack_px * size / (half * kNominalNoise), per_noise2 = per_noise * per_noise;
   Eigen::Vector2f centre(middle, middle);
   if (has_lens_) centre += lens_.reference_at(lens_.cell_of(middle, middle));
   PlaneSamples& s = samples_;
@@ -144,6 +145,7 @@ void PlaneAligner::load_samples(const PlanePatch& patch, int level, const std::u
       // As blurred as interpolation leaves the image, over all places between its pixels.
       const int bend = at[1] + at[-1] + at[side] + at[-side] - 4 * at[0];
       s.grey[n] = static_cast<float>(at[0]) + kBlur * static_cast<float>(bend) - patch.mean;
+      s.trust[n] = 1.0f / (1.0f + per_noise2 * (gx * gx + gy * gy));
       s.gx[n] = gx;
       s.gy[n] = gy;
       s.mask[n] = mask != nullptr ? kPerByte * static_cast<float>(mask[(y - 1) * (side - 2) + x - 1]) : 1.0f;
@@ -153,7 +155,7 @@ void PlaneAligner::load_samples(const PlanePatch& patch, int level, const std::u
   gradient2_ = n > 0 ? squares / (half * half * static_cast<float>(n)) : 0.0f;
   s.count = n;
   for (; n % 4 != 0; ++n) {
-    for (float* each : {s.X, s.Y, s.grey, s.gx, s.gy, s.px, s.py, s.mask}) each[n] = 0.0f;
+    for (float* each : {s.X, s.Y, s.grey, s.gx, s.gy, s.px, s.py, s.mask, s.trust}) each[n] = 0.0f;
   }
   s.padded = n;
 }
@@ -282,7 +284,7 @@ PlaneAlignment PlaneAligner::align(const Pyramid& image, const Camera& camera, c
   bool done = true;
   const int coarsest = std::min({start.level, patch.levels - 1, image.levels - 1});
   for (int level = coarsest; level >= 0 && done; --level) {
-    load_samples(patch, level, level == 0 ? mask : nullptr);
+    load_samples(patch, level, start.slack_px, level == 0 ? mask : nullptr);
     if (level == coarsest && level > 0 && Warp::kSize > ShiftWarp::kSize) {
       // A shift first: while it is far off, what hides a part of the patch would bend a homography.
       ShiftWarp shift;
@@ -307,7 +309,7 @@ bool PlaneAligner::compare(const Pyramid& image, const Camera& camera, const Pla
   progress.H = start.H_CK * to_ray_;
   progress.reading.gain = start.gain;
   progress.reading.bias = start.gain * patch.mean + start.offset;
-  load_samples(patch, 0, mask);
+  load_samples(patch, 0, start.slack_px, mask);
   if (!read(image.level[0], camera, 0, &progress)) return false;
   fit_light(&samples_, &progress.reading);
   for (int round = 0; round < kLightRounds; ++round) {

@@ -13,6 +13,7 @@ namespace pf {
 struct PlaneStart {
   Mat3 H_CK = Mat3::Identity();  ///< rays of the reference image to rays of this one, both at depth 1:  R + t n^T / d
   float gain = 1, offset = 0;    ///< of light against the reference: grey = gain * grey_reference + offset
+  float slack_px = 0;            ///< by which edges may be off beside noise: warp and interpolation [px of a level]
   int level = PlanePatch::kLevels - 1;  ///< coarsest, where it begins; the finest is 0
 };
 
@@ -47,9 +48,10 @@ struct PlaneAlignment {
 ///
 ///   sum w (I(pi(H rho(x))) - gain T(x) - bias)^2        over the chosen pixels x of the patch, rho their rays
 ///
-/// with gain and bias estimated beside it, so that they are projected out; w = mask x M-estimator (Tukey's, whose scale follows the
-/// residuals). From the coarsest level to the finest; steps are of second order, with the mean of the gradients of image and template
-/// (ESM).
+/// with gain and bias estimated beside it, so that they are projected out; w = mask x M-estimator x trust. The M-estimator is Tukey's,
+/// whose scale follows the residuals; trust = 1 / (1 + (slack |grad T| / noise)^2), since an edge that is off by the slack has a residual
+/// of slack |grad T| beside noise. From the coarsest level to the finest; steps are of second order, with the mean of the gradients
+/// of image and template (ESM).
 ///
 /// src  Servant 2008, section 2.3; Benhimane and Malis 2004 (ESM); what is different: lib/docs/homography.md
 class PlaneAligner {
@@ -79,7 +81,7 @@ class PlaneAligner {
   struct Progress;  ///< of one alignment
 
   bool begin(const Camera& camera, const PlanePatch& patch);
-  void load_samples(const PlanePatch& patch, int level, const std::uint8_t* mask);
+  void load_samples(const PlanePatch& patch, int level, float slack_px, const std::uint8_t* mask);
   Scalar corner_way(const Mat3& step) const;
   bool read(const ImageView& image, const Camera& camera, int level, Progress* progress);
   template <typename Warp>

@@ -61,6 +61,7 @@ inline constexpr int kCoarseIterations = 3;     ///< on each level but the fines
 inline constexpr int kShiftIterations = 2;      ///< before them
 inline constexpr float kCutOff = 4.685f;        ///< of the weights [standard deviations]; 95 % as good as least squares
 inline constexpr float kMinSigma = 0.5f;        ///< of residuals [grey levels]
+inline constexpr float kNominalNoise = 2.0f;    ///< of a pixel, against which slack is weighed [grey levels]
 inline constexpr float kSmallStep = 0.03f;      ///< of a corner on the finest level [px]
 inline constexpr float kLastStep = 0.15f;       ///< likewise of the last iteration that there may be
 inline constexpr float kCoarseStep = 0.15f;     ///< likewise on the other levels [px of the level]

@@ -44,7 +44,7 @@ struct Corners {
 
 bool PlaneSamples::layout(Arena& arena, int capacity) {
   const std::size_t size = static_cast<std::size_t>((capacity + 3) / 4 * 4);
-  for (float** each : {&X, &Y, &grey, &gx, &gy, &px, &py, &ex, &ey, &mask, &valid, &r, &jx, &jy})
+  for (float** each : {&X, &Y, &grey, &gx, &gy, &px, &py, &ex, &ey, &trust, &mask, &valid, &r, &jx, &jy})
     *each = arena.take<float>(size);
   return arena.ok();
 }
@@ -124,7 +124,7 @@ void fit_light(PlaneSamples* samples, PlaneReading* reading) {
 float robust_sigma(const PlaneSamples& s, float valid) {
   float bin[kBins] = {};
   for (int i = 0; i < s.count; ++i) {
-    const float scaled = kBinsPerGrey * std::fabs(s.r[i]);
+    const float scaled = kBinsPerGrey * std::fabs(s.r[i]) * std::sqrt(s.trust[i]);
     const int at = scaled < static_cast<float>(kBins - 1) ? static_cast<int>(scaled) : kBins - 1;
     bin[at] += s.valid[i];
   }

@@ -19,10 +19,12 @@ struct PlaneSamples {
   float *gx = nullptr, *gy = nullptr;  ///< gradient of the template by (X, Y)
   float *px = nullptr, *py = nullptr;  ///< place in the patch, from the centre of its first pixel [px of level 0]
   float *ex = nullptr,
-        *ey = nullptr;     ///< what the lens adds to the pixel of a pinhole [px of the level]; with a lens only
-  float* mask = nullptr;   ///< weight of its own, 0 .. 1; 0 for what fills up
-  float* valid = nullptr;  ///< mask where its place is in the image and not saturated, else 0
-  float* r = nullptr;      ///< image less gain times template less bias
+        *ey = nullptr;  ///< what the lens adds to the pixel of a pinhole [px of the level]; with a lens only
+  float* trust =
+      nullptr;  ///< variance of noise, of that of the residual: what the warp's own error leaves of a pixel's weight
+  float* mask = nullptr;               ///< weight of its own, 0 .. 1; 0 for what fills up
+  float* valid = nullptr;              ///< mask where its place is in the image and not saturated, else 0
+  float* r = nullptr;                  ///< image less gain times template less bias
   float *jx = nullptr, *jy = nullptr;  ///< gradient by (X, Y) that the step is made with
 
   bool layout(Arena& arena, int capacity);
@@ -53,14 +55,14 @@ void fit_light(PlaneSamples* samples, PlaneReading* reading);
 /// Standard deviation of the residuals of the samples that fit, from the median of |r| among those within 2.5 of it.
 float robust_sigma(const PlaneSamples& samples, float valid);
 
-/// Over v = (J, grey, 1), with weights w = (1 - u)^2, u = (r/c)^2, within c and 0 beyond. The normal matrix has the slope of w r for its
-/// weight, h = max((1 - u)(1 - 5 u), w / 4): with w itself the steps are too short where much is hidden.
+/// Over v = (J, grey, 1), with weights w = q k, k = (1 - u)^2, u = q (r/c)^2, within c and 0 beyond; q: trust. The normal matrix has the
+/// slope of w r for its weight, h = q max((1 - u)(1 - 5 u), k / 4): with w itself the steps are too short where much is hidden.
 template <int kColumns>
 struct PlaneSums {
   float A[kColumns * (kColumns + 1) / 2];  ///< upper triangle of sum h v v^T, row by row
   float b[kColumns];                       ///< sum w v r
-  float weight, slope;                     ///< sum w, sum h
-  float squares, psi2;                     ///< sum w r^2, sum (w r)^2
+  float weight, slope;                     ///< sum k, sum h / q
+  float squares, psi2;                     ///< sum w r^2, sum (w r)^2 / q
   float grey, grey2;                       ///< sum w grey, sum w grey^2
 };
 
@@ -87,20 +89,21 @@ void sum_samples(const PlaneSamples& s, const Warp& warp, float c, bool is_near,
   const F32x4 one = F32x4{} + 1.0f, zero = {};
   const float per_c2 = 1.0f / (c * c);
   for (int at = 0; at < s.padded; at += 4) {
-    const F32x4 r = load<F32x4>(s.r + at), u = r * r * per_c2;
+    const F32x4 q = load<F32x4>(s.trust + at);
+    const F32x4 r = load<F32x4>(s.r + at), u = r * r * q * per_c2;
     const F32x4 in = larger(one - u, zero), valid = load<F32x4>(s.valid + at);
-    const F32x4 w = in * in * valid, psi = w * r;
-    const F32x4 h = is_near ? larger(in * (one - 5.0f * u) * valid, 0.25f * w) : w;
+    const F32x4 w0 = in * in * valid, w = w0 * q, psi = w * r;
+    const F32x4 h0 = is_near ? larger(in * (one - 5.0f * u) * valid, 0.25f * w0) : w0, h = h0 * q;
     F32x4 v[kColumns];
     warp.rows(load<F32x4>(s.X + at), load<F32x4>(s.Y + at), load<F32x4>(s.jx + at), load<F32x4>(s.jy + at), v);
     const F32x4 t = load<F32x4>(s.grey + at);
     v[kColumns - 2] = t;
     v[kColumns - 1] = one;
     plane_sums::add<kColumns>(v, h, psi, A, b);
-    weight += w;
-    slope += h;
+    weight += w0;
+    slope += h0;
     squares += psi * r;
-    psi2 += psi * psi;
+    psi2 += w0 * psi * r;
     grey += w * t;
     grey2 += w * t * t;
   }
