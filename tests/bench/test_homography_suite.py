@@ -14,7 +14,7 @@ if not PROGRAM.exists():
 
 with tempfile.TemporaryDirectory() as folder:
     file = pathlib.Path(folder) / "homography.json"
-    said = script.run(PROGRAM, "homography", "--seeds", "1", "--frames", "25", "--json", file)
+    said = script.run(PROGRAM, "homography", "--seeds", "3", "--frames", "25", "--json", file)
     print(said)
     document = json.loads(file.read_text())
     rows = {row["name"]: row for row in document["rows"]}
@@ -22,7 +22,9 @@ with tempfile.TemporaryDirectory() as folder:
         row = rows[f"{name} planefold"]
         if not line.startswith(name) or "px RMSE" not in line or name not in document["notes"]:
             script.fail(f"the line of {name} is {line!r}")
-        if not (row["rmse_px"] < 0.1 and row["lost"] == 0 and 4 < row["nees"] < 16):
+        # Where 30 % is hidden some frames in a thousand are lost (lib/docs/homography.md).
+        most_lost = 1 if name == "occlusion" else 0
+        if not (row["rmse_px"] < 0.1 and row["lost"] <= most_lost and 4 < row["nees"] < 16):
             script.fail(f"{name}: {row}")
     if "OpenCV" in document["notes"]["peers"] and "without" not in document["notes"]["peers"] and "plain KLT" not in rows:
         script.fail("the peers were there and have no rows")

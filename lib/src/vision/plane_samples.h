@@ -19,12 +19,11 @@ struct PlaneSamples {
   float *gx = nullptr, *gy = nullptr;  ///< gradient of the template by (X, Y)
   float *px = nullptr, *py = nullptr;  ///< place in the patch, from the centre of its first pixel [px of level 0]
   float *ex = nullptr,
-        *ey = nullptr;  ///< what the lens adds to the pixel of a pinhole [px of the level]; with a lens only
-  float* trust =
-      nullptr;  ///< variance of noise, of that of the residual: what the warp's own error leaves of a pixel's weight
-  float* mask = nullptr;               ///< weight of its own, 0 .. 1; 0 for what fills up
-  float* valid = nullptr;              ///< mask where its place is in the image and not saturated, else 0
-  float* r = nullptr;                  ///< image less gain times template less bias
+        *ey = nullptr;     ///< what the lens adds to the pixel of a pinhole [px of the level]; with a lens only
+  float* trust = nullptr;  ///< variance of noise over that of the residual, in which the warp is wrong as well: 0 .. 1
+  float* mask = nullptr;   ///< weight of its own, 0 .. 1; 0 for what fills up
+  float* valid = nullptr;  ///< mask where its place is in the image and not saturated, else 0
+  float* r = nullptr;      ///< image less gain times template less bias
   float *jx = nullptr, *jy = nullptr;  ///< gradient by (X, Y) that the step is made with
 
   bool layout(Arena& arena, int capacity);
