@@ -84,49 +84,6 @@ bool ImageFrontEnd::remember(int feature, const Vec2& pixel, const CameraView& v
   return f.has_appearance;
 }
 
-/// Whether a feature can be searched for and is predicted inside of the image.
-bool ImageFrontEnd::is_visible(int feature) const {
-  const Feature& f = map_.features[feature];
-  if ((f.is_target && map_.target_withdrawn) || !f.has_appearance) return false;
-  PixelMeasurement o;
-  if (!filter_.predict_pixel(filter_.lens(), f.slot, &o)) return false;
-  const Scalar margin = static_cast<Scalar>(settings_.border_px);
-  return !(o.predicted.x() < margin || o.predicted.y() < margin ||
-           o.predicted.x() > static_cast<Scalar>(settings_.camera.width - 1) - margin ||
-           o.predicted.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
-}
-
-int ImageFrontEnd::list_visible() {
-  const auto rate = [&](int feature) {
-    const Feature& f = map_.features[feature];
-    const int rated = std::min(f.observations, 20);
-    return static_cast<float>(rated) * static_cast<float>(f.observations + 1) / static_cast<float>(f.attempts + 1);
-  };
-  int count = 0;
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i) || !is_visible(i)) continue;
-    // Sorted by success rate, so that a full list keeps the best and the scouts are the best.
-    const float mine = rate(i);
-    int at = count;
-    if (count == settings_.max_observations) {
-      if (rate(update_.candidate(count - 1).feature) >= mine) continue;
-      at = count - 1;
-    } else {
-      ++count;
-    }
-    for (; at > 0 && rate(update_.candidate(at - 1).feature) < mine; --at)
-      update_.candidate(at) = update_.candidate(at - 1);
-    update_.candidate(at).feature = i;
-  }
-  for (int i = 0; i < count; ++i) {
-    Candidate& candidate = update_.candidate(i);
-    const Feature& f = map_.features[candidate.feature];
-    candidate.match = frame_.add({candidate.feature, f.id, MatchStatus::kMissed, filter_.state().block[f.slot].kind,
-                                  Vec2::Zero(), Mat2::Zero(), Vec2::Zero(), Scalar(0)});
-  }
-  return count;
-}
-
 void ImageFrontEnd::predict_pixels(int first, int count) {
   for (int i = first; i < first + count; ++i) {
     const Candidate& candidate = update_.candidate(i);

@@ -70,8 +70,11 @@ class ImageFrontEnd {
 
  private:
   void measure_visible(ConsensusRule rule);
+  // image_candidates.cpp
+  bool is_visible(int feature, Vec2* pixel) const;
+  float rate(int feature, const Vec2& pixel) const;
+
   // image_front_end.cpp
-  bool is_visible(int feature) const;
   Scalar widest_ellipse(int count) const;
   SearchTask task_of(int feature) const;
   SearchOutcome search_for(const SearchTask& task);

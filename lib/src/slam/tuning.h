@@ -112,7 +112,8 @@ inline constexpr int kMinNewFeatures = 4;        ///< in one frame; new features
 
 /// The order in which features are searched.
 namespace image_front_end {
-inline constexpr int kScouts = 12;                 ///< candidates that are measured first when the pose is uncertain
+inline constexpr float kIncomparable = 1000;  ///< taken off the rate of what cannot be compared: more than any rate
+inline constexpr int kScouts = 12;            ///< candidates that are measured first when the pose is uncertain
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
 inline constexpr int kSettled = 5;  ///< measurements of a feature whose residuals are those of its matches

@@ -114,7 +114,7 @@ Vec2 TemplateMatcher::slope_of(const SearchTask& task, const TemplateWarp& warp)
 void TemplateMatcher::make_pattern(const SearchTask& task, const Mat2& A, Pattern* out) {
   const SourcePatch& patch = task.appearance->patch;
   const int side = task.shape->side;
-  const Scalar scale = std::sqrt(std::abs(A.determinant()));
+  const Scalar scale = std::sqrt(std::max(A.determinant(), Scalar(0)));
   const int wanted = static_cast<int>(static_cast<Scalar>(side) / scale) | 1;
   const int n = std::clamp(wanted, std::min(side, static_cast<int>(PlanarTemplate::kMinSide)), side);
   Pattern p;

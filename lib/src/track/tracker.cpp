@@ -1,5 +1,6 @@
 #include "track/tracker.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/so3.h"
@@ -69,18 +70,31 @@ bool Tracker::warp(const SearchTask& task, Mat2* A) const {
   return true;
 }
 
+/// The warp, and the finest level at which the source is at least about as sharp as the current image. False: the views are too different.
+bool Tracker::choose_level(const SearchTask& task, Mat2* A, int* finest) const {
+  if (task.appearance == nullptr || !warp(task, A)) return false;
+  const Scalar scale = std::sqrt(std::max(A->determinant(), Scalar(0)));  // negative: the surface is seen from behind
+  if (!(scale > kMinScale && scale < kMaxScale)) return false;
+  *finest = 0;
+  while (*finest + 1 < pyramid_.levels && scale * static_cast<Scalar>(1 << *finest) < kMinSharpness) ++*finest;
+  return true;
+}
+
+bool Tracker::is_comparable(const SearchTask& task) const {
+  Mat2 A;
+  int finest;
+  return choose_level(task, &A, &finest) &&
+         has_template(task.appearance->patch, A * static_cast<Scalar>(1 << finest), kWarpSize);
+}
+
 SearchOutcome Tracker::search(const SearchTask& task) const {
   SearchOutcome outcome;
-  if (task.appearance == nullptr) return outcome;
-  const SourcePatch& patch = task.appearance->patch;
   Mat2 A;
-  if (!warp(task, &A)) return outcome;
-  const Scalar scale = std::sqrt(std::abs(A.determinant()));
-  if (!(scale > kMinScale && scale < kMaxScale)) return outcome;
+  int finest;
+  if (!choose_level(task, &A, &finest)) return outcome;
+  const SourcePatch& patch = task.appearance->patch;
   outcome.comparable = true;
 
-  int finest = 0;  // finest level at which the source is at least about as sharp as the current image
-  while (finest + 1 < pyramid_.levels && scale * static_cast<Scalar>(1 << finest) < kMinSharpness) ++finest;
   int level = finest;
   const Scalar radius = std::sqrt(task.gate * largest_eigenvalue(task.innovation));
   while (level + 1 < pyramid_.levels && radius > kSearchRadius * static_cast<Scalar>(1 << level)) ++level;

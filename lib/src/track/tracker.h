@@ -52,6 +52,8 @@ class Tracker {
   bool remember(const Vec2& pixel, Appearance* appearance) const;
 
   SearchOutcome search(const SearchTask& task) const;
+  /// Whether this view of a feature can be compared with the first one. Reads neither innovation nor gate of the task.
+  bool is_comparable(const SearchTask& task) const;
 
   /// Corners of one cell of the image, best first. Returns how many.
   int corners(const Rect& cell, int threshold, Corner* out, int capacity) const;
@@ -63,6 +65,8 @@ class Tracker {
   ImageView image() const { return pyramid_.level[0]; }
 
  private:
+  bool choose_level(const SearchTask& task, Mat2* A, int* finest) const;
+
   Camera camera_;
   Pyramid pyramid_;
   CornerWorkspace corner_workspace_;

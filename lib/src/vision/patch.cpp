@@ -58,7 +58,41 @@ PF_ALWAYS_INLINE F32x4 sample(const std::uint8_t* pixels, const F32x4& x, const 
   return top + fy * (bottom - top);
 }
 
+/// How the template is read: level, and its step there.
+struct Reading {
+  int level;
+  float a00, a01, a10, a11, centre;
+};
+
+bool choose_reading(const SourcePatch& patch, const Mat2& A, int size, Reading* r) {
+  if (size < 1 || size > SourcePatch::kSize) return false;
+  const Scalar step = std::sqrt(std::fmax(A.col(0).squaredNorm(), A.col(1).squaredNorm()));
+  if (!(step < Scalar(1e3))) return false;
+  const int l = step > kStepOfLevel1 ? 1 : 0;
+  const Scalar per_level = l == 1 ? Scalar(0.5) : Scalar(1);
+  const float c = 0.5f * static_cast<float>(size - 1);
+  *r = {l,
+        static_cast<float>(A(0, 0) * per_level),
+        static_cast<float>(A(0, 1) * per_level),
+        static_cast<float>(A(1, 0) * per_level),
+        static_cast<float>(A(1, 1) * per_level),
+        c};
+  // The corners are the furthest out: with them inside, all is. The margin is for rounding on the way there, so that
+  // no reading needs a check of its own.
+  const float reach_x = c * (std::fabs(r->a00) + std::fabs(r->a01)) + kMargin;
+  const float reach_y = c * (std::fabs(r->a10) + std::fabs(r->a11)) + kMargin;
+  const float x0 = patch.centre_x[l], y0 = patch.centre_y[l];
+  return x0 - reach_x >= static_cast<float>(patch.begin_x[l]) && y0 - reach_y >= static_cast<float>(patch.begin_y[l]) &&
+         x0 + reach_x <= static_cast<float>(patch.end_x[l] - 1) &&
+         y0 + reach_y <= static_cast<float>(patch.end_y[l] - 1);
+}
+
 }  // namespace
+
+bool has_template(const SourcePatch& patch, const Mat2& A_source_current, int size) {
+  Reading reading;
+  return choose_reading(patch, A_source_current, size, &reading);
+}
 
 bool extract_source(const Pyramid& pyramid, const Vec2& pixel, SourcePatch* patch) {
   const ImageView& image = pyramid.level[0];
@@ -81,29 +115,10 @@ bool extract_source(const Pyramid& pyramid, const Vec2& pixel, SourcePatch* patc
 }
 
 bool warp_template(const SourcePatch& patch, const Mat2& A_source_current, int size, float* out) {
-  if (size < 1 || size > SourcePatch::kSize) return false;
-  const Mat2& A = A_source_current;
-  const Scalar step = std::sqrt(std::fmax(A.col(0).squaredNorm(), A.col(1).squaredNorm()));
-  if (!(step < Scalar(1e3))) return false;
-  const int l = step > kStepOfLevel1 ? 1 : 0;
-  const Scalar per_level = l == 1 ? Scalar(0.5) : Scalar(1);
-  const float a00 = static_cast<float>(A(0, 0) * per_level);
-  const float a01 = static_cast<float>(A(0, 1) * per_level);
-  const float a10 = static_cast<float>(A(1, 0) * per_level);
-  const float a11 = static_cast<float>(A(1, 1) * per_level);
-
-  // The corners are the furthest out: with them inside, all is. The margin is for rounding on the way there, so that
-  // no reading needs a check of its own.
-  const float c = 0.5f * static_cast<float>(size - 1);
-  const float reach_x = c * (std::fabs(a00) + std::fabs(a01)) + kMargin;
-  const float reach_y = c * (std::fabs(a10) + std::fabs(a11)) + kMargin;
-  const float x0 = patch.centre_x[l];
-  const float y0 = patch.centre_y[l];
-  if (!(x0 - reach_x >= static_cast<float>(patch.begin_x[l]) && y0 - reach_y >= static_cast<float>(patch.begin_y[l]) &&
-        x0 + reach_x <= static_cast<float>(patch.end_x[l] - 1) &&
-        y0 + reach_y <= static_cast<float>(patch.end_y[l] - 1))) {
-    return false;
-  }
+  Reading reading;
+  if (!choose_reading(patch, A_source_current, size, &reading)) return false;
+  const auto [l, a00, a01, a10, a11, c] = reading;
+  const float x0 = patch.centre_x[l], y0 = patch.centre_y[l];
   const F32x4 lanes = {0.0f, 1.0f, 2.0f, 3.0f};
   for (int j = 0; j < size; ++j) {
     const float v = static_cast<float>(j) - c;

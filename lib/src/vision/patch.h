@@ -37,4 +37,7 @@ bool extract_source(const Pyramid& pyramid, const Vec2& pixel, SourcePatch* patc
 /// Costs about 2 ns per pixel of the template.
 bool warp_template(const SourcePatch& patch, const Mat2& A_source_current, int size, float* out);
 
+/// Whether warp_template() would make that template. Costs some 5 ns.
+bool has_template(const SourcePatch& patch, const Mat2& A_source_current, int size);
+
 }  // namespace pf

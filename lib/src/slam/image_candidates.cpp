@@ -1,0 +1,64 @@
+#include <algorithm>
+
+#include "slam/image_front_end.h"
+#include "slam/tuning.h"
+
+/// Which features a frame searches for.
+
+namespace pf {
+
+using namespace tuning::image_front_end;
+
+/// Whether a feature has an appearance and is predicted inside of the image, and where.
+bool ImageFrontEnd::is_visible(int feature, Vec2* pixel) const {
+  const Feature& f = map_.features[feature];
+  if ((f.is_target && map_.target_withdrawn) || !f.has_appearance) return false;
+  PixelMeasurement o;
+  if (!filter_.predict_pixel(filter_.lens(), f.slot, &o)) return false;
+  const Scalar margin = static_cast<Scalar>(settings_.border_px);
+  *pixel = o.predicted;
+  return !(o.predicted.x() < margin || o.predicted.y() < margin ||
+           o.predicted.x() > static_cast<Scalar>(settings_.camera.width - 1) - margin ||
+           o.predicted.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
+}
+
+/// How reliable a feature is: the rate of its successes, of proven ones more; negative where this view cannot be compared with its first.
+float ImageFrontEnd::rate(int feature, const Vec2& pixel) const {
+  const Feature& f = map_.features[feature];
+  const int rated = std::min(f.observations, 20);
+  const float rate =
+      static_cast<float>(rated) * static_cast<float>(f.observations + 1) / static_cast<float>(f.attempts + 1);
+  SearchTask task = task_of(feature);
+  task.predicted = pixel;
+  return tracker_.is_comparable(task) ? rate : rate - kIncomparable;
+}
+
+/// A full list keeps the best, and the scouts are the best. What cannot be compared comes last: it would fill the list in place of what
+/// was added instead.
+int ImageFrontEnd::list_visible() {
+  int count = 0;
+  for (int i = 0; i < map_.features.capacity(); ++i) {
+    Vec2 pixel;
+    if (!map_.features.used(i) || !is_visible(i, &pixel)) continue;
+    const float mine = rate(i, pixel);
+    int at = count;
+    if (count == settings_.max_observations) {
+      if (update_.candidate(count - 1).rate >= mine) continue;
+      at = count - 1;
+    } else {
+      ++count;
+    }
+    for (; at > 0 && update_.candidate(at - 1).rate < mine; --at) update_.candidate(at) = update_.candidate(at - 1);
+    update_.candidate(at).feature = i;
+    update_.candidate(at).rate = mine;
+  }
+  for (int i = 0; i < count; ++i) {
+    Candidate& candidate = update_.candidate(i);
+    const Feature& f = map_.features[candidate.feature];
+    candidate.match = frame_.add({candidate.feature, f.id, MatchStatus::kMissed, filter_.state().block[f.slot].kind,
+                                  Vec2::Zero(), Mat2::Zero(), Vec2::Zero(), Scalar(0)});
+  }
+  return count;
+}
+
+}  // namespace pf
