@@ -20,6 +20,9 @@ def main():
     refused = subprocess.run([BIN / "pf-sim", "box", "--geometric", "--no-points"], text=True, stderr=subprocess.PIPE, check=False)
     if refused.returncode != 2 or "--no-points" not in refused.stderr:
         fail(f"pf-sim box --geometric --no-points: {refused.returncode}, {refused.stderr}")
+    refused = subprocess.run([BIN / "pf-sim", "box", "--gross", "2"], text=True, stderr=subprocess.PIPE, check=False)
+    if refused.returncode != 2 or "--gross" not in refused.stderr:
+        fail(f"pf-sim box --gross 2: {refused.returncode}, {refused.stderr}")
     with tempfile.TemporaryDirectory(prefix="planefold_") as name:
         file = pathlib.Path(name) / "box.json"
         run(BIN / "pf-sim", "box", "--geometric", "--seeds", SEEDS, "--jobs", 2, "--json", file, "--cases", "refined", "exact", "absent")

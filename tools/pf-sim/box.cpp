@@ -119,6 +119,7 @@ std::vector<pf_plane_prior_t> Box::walls(Plan plan) const {
   }
   if (plan == Plan::kShifted) move_along_normal(kShift, &walls[1]);
   if (plan == Plan::kMissing) walls.erase(walls.begin() + 1);
+  if (plan == Plan::kHalf) walls = {walls[0], walls[2]};
   return walls;
 }
 

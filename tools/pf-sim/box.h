@@ -20,7 +20,8 @@ enum class Plan {
   kExact,    ///< the same wrong walls, as if they were exact (sigmas of 1e-6)
   kAbsent,   ///< likewise refined, and a fifth wall half a metre before one side, which is not there
   kShifted,  ///< one of the four is 1 m off, and its sigma is that of the others
-  kMissing   ///< three walls: what kShifted is compared with
+  kMissing,  ///< three walls: what kShifted is compared with
+  kHalf      ///< two walls opposite each other
 };
 
 using pf::sim::kBoxSides;
@@ -35,6 +36,7 @@ struct BoxOptions {
   double sigma_start_m = 0.002, sigma_start_deg = 0.1;  ///< of the first pose
   double shake_m = 0.01, shake_rad = 0.01;              ///< of the hand
   double black_from_s = 0, black_s = 0;                 ///< frames that are black; rendered ones only
+  double gross = 0;  ///< share of patches that are found at a wrong place (GrossPatches), likewise
 };
 
 /// One run's truth and its plan, drawn from one seed. Every plan of a seed has the same walls, views and noise.

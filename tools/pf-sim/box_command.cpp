@@ -20,11 +20,13 @@ struct Case {
   Plan plan;
 };
 
+constexpr double kGoodDeg = 2;  // of a wall that was discovered
 constexpr double kDepth =
     1.6;  // of the sides when they are first seen, roughly: what a point without a wall begins with [m]
 
 const Case kCases[] = {{"refined", Plan::kRefined}, {"exact", Plan::kExact},     {"points", Plan::kNone},
-                       {"absent", Plan::kAbsent},   {"shifted", Plan::kShifted}, {"missing", Plan::kMissing}};
+                       {"absent", Plan::kAbsent},   {"shifted", Plan::kShifted}, {"missing", Plan::kMissing},
+                       {"half", Plan::kHalf}};
 
 struct Choices {
   std::vector<std::string> cases = {"refined", "exact", "points"};
@@ -163,14 +165,40 @@ json walls_json(const BoxSummary* summaries, int seeds) {
           {"doubted", doubted}};
 }
 
+json of_sides(const std::vector<double>& values) {
+  if (values.empty()) return nullptr;
+  return {{"median", median(values)}, {"worst", *std::max_element(values.begin(), values.end())}};
+}
+
+/// Sides that the plan does not have.
+json discovered_json(const BoxSummary* summaries, int seeds) {
+  std::vector<double> deg, m;
+  int missing = 0, good = 0;
+  for (int s = 0; s < seeds; ++s)
+    for (int k = 0; k < summaries[s].missing; ++k, ++missing) {
+      if (summaries[s].found_deg[k] < 0) continue;
+      deg.push_back(summaries[s].found_deg[k]);
+      m.push_back(summaries[s].found_m[k]);
+      good += summaries[s].found_deg[k] <= kGoodDeg;
+    }
+  if (missing == 0) return nullptr;
+  return {{"missing", missing},
+          {"found", deg.size()},
+          {"within_2_deg", good},
+          {"angle_deg", of_sides(deg)},
+          {"offset_m", of_sides(m)}};
+}
+
 json summarise_case(const Runs& runs, const BoxSummary* summaries, Plan plan) {
   json out = summarise_frames(runs);
-  std::vector<double> worst, seen;
-  int tracked = 0, doubted = 0, most_points = 0, lost = 0, lost_runs = 0;
+  std::vector<double> worst, seen, to_find;
+  int dark = 0, tracked = 0, doubted = 0, most_points = 0, lost = 0, lost_runs = 0;
   double inliers = 0, outliers = 0, missed = 0, patch_s = 0;
   for (int s = 0; s < runs.seeds; ++s) {
     worst.push_back(summaries[s].worst_m);
     tracked += summaries[s].tracked_frames;
+    dark += summaries[s].dark_frames;
+    to_find.push_back(summaries[s].frames_to_find);
     doubted += summaries[s].wrong_seen_s >= 0;
     if (summaries[s].wrong_seen_s >= 0) seen.push_back(summaries[s].wrong_seen_s);
     lost += summaries[s].lost_frames;
@@ -183,7 +211,9 @@ json summarise_case(const Runs& runs, const BoxSummary* summaries, Plan plan) {
   }
   out["rmse_m"] = of_seeds(rmse_of(runs));
   out["largest_error_m"] = of_seeds(worst);
-  out["tracked_share"] = tracked / (static_cast<double>(runs.seeds) * runs.frames);
+  out["tracked_share"] = tracked / std::max(1.0, static_cast<double>(runs.seeds) * runs.frames - dark);
+  if (dark > 0) out["dark"] = {{"frames", dark}, {"frames_to_find", of_seeds(to_find)}};
+  out["discovered"] = discovered_json(summaries, runs.seeds);
   out["lost"] = {{"frames", lost}, {"runs", lost_runs}};
   const double frames = static_cast<double>(runs.seeds) * runs.frames;
   if (inliers + outliers + missed > 0)
@@ -212,6 +242,18 @@ void print_case(const char* name, const json& j) {
     std::printf("  patches: %.2f inliers, %.3f outliers, %.3f missed in a frame, %.2f ms; %g frames lost in %g runs\n",
                 number("/patches/inliers"), number("/patches/outliers"), number("/patches/missed"),
                 number("/patches/ms"), number("/lost/frames"), number("/lost/runs"));
+  if (j.contains("dark"))
+    std::printf("  dark: %g frames, tracked again after %g more in the median seed, %g in the worst\n",
+                number("/dark/frames"), number("/dark/frames_to_find/median"), number("/dark/frames_to_find/worst"));
+  if (!j["discovered"].is_null()) {
+    std::printf("  sides that the plan does not have: %g of %g found, %g within 2 deg", number("/discovered/found"),
+                number("/discovered/missing"), number("/discovered/within_2_deg"));
+    if (number("/discovered/found") > 0)
+      std::printf(" (median %.2f, worst %.2f deg; %.1f, %.1f mm)", number("/discovered/angle_deg/median"),
+                  number("/discovered/angle_deg/worst"), 1e3 * number("/discovered/offset_m/median"),
+                  1e3 * number("/discovered/offset_m/worst"));
+    std::printf("\n");
+  }
   if (!j["walls"].is_null())
     std::printf(
         "  walls: %.2f deg, %.1f mm in the plan; %.2f deg (worst %.2f), %.1f mm at the end, NEES %.1f (3 dof), %.1f "
@@ -230,6 +272,7 @@ void print_case(const char* name, const json& j) {
 int run(const Choices& c) {
   if (c.geometric && c.no_points) return fail("--no-points is for rendered frames: --geometric has nothing but points");
   if (c.box.black_s < 0 || c.box.black_from_s < 0) return fail("--black: from when on, and how long, in seconds");
+  if (!(c.box.gross >= 0 && c.box.gross <= 1)) return fail("--gross: a share from 0 to 1");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.box.frames < 1 || c.box.frames > 100000)
     return fail("seeds, jobs and frames must be positive");
   Job job{&c, config_of(c), {}, nullptr, nullptr};
@@ -237,7 +280,7 @@ int run(const Choices& c) {
     const auto* found =
         std::find_if(std::begin(kCases), std::end(kCases), [&](const Case& x) { return name == x.name; });
     if (found == std::end(kCases))
-      return fail("no case " + name + "; they are refined exact points absent shifted missing");
+      return fail("no case " + name + "; they are refined exact points absent shifted missing half");
     job.plans.push_back(found->plan);
   }
   const char* field = nullptr;
@@ -261,7 +304,10 @@ int run(const Choices& c) {
                 {"max_angle_deg", c.box.max_angle_deg},
                 {"sigma_offset_m", c.box.sigma_offset},
                 {"sigma_px", c.sigma_px},
-                {"fov_deg", c.fov_deg}}}};
+                {"fov_deg", c.fov_deg},
+                {"rate_hz", c.box.rate_hz},
+                {"black_s", c.box.black_s},
+                {"gross", c.box.gross}}}};
   for (std::size_t k = 0; k < job.plans.size(); ++k) {
     const Runs runs{c.seeds, c.box.frames, c.first_seed, job.rows + k * seeds * frames};
     json& numbers = out["cases"][c.cases[k]] = summarise_case(runs, job.summaries + k * seeds, job.plans[k]);
@@ -284,8 +330,12 @@ void add_box(CLI::App& app, int& result) {
   command->add_option("--patch-side", c->patch_side_px, "of a patch [px]");
   command->add_option("--black-from", c->box.black_from_s, "when black frames begin, of rendered ones [s]");
   command->add_option("--black", c->box.black_s, "for how long frames are black [s]");
-  command->add_option("--cases", c->cases,
-                      "one or more: refined, exact, points; absent, shifted (a wrong wall) and missing (without it)");
+  command->add_option("--gross", c->box.gross,
+                      "share of patches that are moved in a rendered frame, so that they are found there");
+  command->add_option(
+      "--cases", c->cases,
+      "one or more: refined, exact, points; absent, shifted (a wrong wall), missing (without it) and half (two "
+      "walls of four)");
   command->add_option("--seeds", c->seeds, "how many runs of each case");
   command->add_option("--first-seed", c->first_seed, "seed of the first run");
   command->add_option("--frames", c->box.frames, "of each run");

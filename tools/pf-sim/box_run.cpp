@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "context.h"
+#include "gross_patches.h"
 #include "plane_error.h"
 
 namespace pfsim {
@@ -13,7 +14,9 @@ namespace {
 using pf::sim::Vec3;
 
 constexpr int kMaxPlanes = 64;
-constexpr int kInView = 8;  // points that are seen through a wall's outline, for it to be in view
+constexpr int kInView = 8;        // points that are seen through a wall's outline, for it to be in view
+constexpr double kFoundDeg = 15;  // of a plane that may be a side
+constexpr double kFoundM = 0.15;
 constexpr double kDegrees = 57.29577951308232;
 
 double angle_deg(const Vec3& a, const Vec3& b) { return kDegrees * std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -80,6 +83,24 @@ void judge_wall(const pf_slam_t* slam, const pf_plane_prior_t& prior, std::uint3
   summary.doubted += plane.doubted != 0;
 }
 
+/// The plane that was found of a side that the plan does not have: the nearest in angle.
+void judge_missing(const pf_slam_t* slam, int side, BoxSummary& summary) {
+  const int k = summary.missing++;
+  const Vec3 n = Box::normal(side), c = Box::centre(side);
+  summary.found_deg[k] = summary.found_m[k] = -1;
+  pf_plane_t planes[kMaxPlanes];
+  std::size_t count = 0;
+  if (pf_get_planes(slam, planes, kMaxPlanes, &count) < PF_OK) return;
+  for (const pf_plane_t* plane = planes; plane != planes + std::min<std::size_t>(count, kMaxPlanes); ++plane) {
+    const Vec3 now{plane->normal_W[0], plane->normal_W[1], plane->normal_W[2]};
+    const double angle = angle_deg(now, n), off = std::fabs(now.dot(c) - plane->distance);
+    if (plane->known != 0 || angle > kFoundDeg || off > kFoundM) continue;
+    if (summary.found_deg[k] >= 0 && summary.found_deg[k] < angle) continue;
+    summary.found_deg[k] = angle;
+    summary.found_m[k] = off;
+  }
+}
+
 /// One context on its way through the frames.
 class BoxRunner {
  public:
@@ -97,9 +118,17 @@ class BoxRunner {
 
   pf_slam_t* slam() { return context_.slam; }
 
-  void look(pf_status_t status, int frame, FrameRow& row) {
+  /// dark: the frame was black, and is not judged.
+  void look(pf_status_t status, int frame, bool dark, FrameRow& row) {
     pf_pose_t pose;
     pf_report_t report;
+    if (dark) {
+      ++summary.dark_frames;
+      searching_ = true;
+      return;
+    }
+    searching_ = searching_ && status != PF_OK;
+    summary.frames_to_find += searching_;
     summary.lost_frames += status == PF_NOTE_LOST;
     if (status < 0 || pf_get_pose(slam(), &pose) != PF_OK) return;
     pf_get_report(slam(), &report);
@@ -114,6 +143,10 @@ class BoxRunner {
   void judge_walls() {
     for (std::size_t i = 0; i < walls_.size(); ++i)
       if (static_cast<int>(i) != Box::wrong_wall(plan_)) judge_wall(slam(), walls_[i], ids_[i], summary);
+    for (int side = 0; side < kBoxSides; ++side) {
+      const bool known = std::any_of(walls_.begin(), walls_.end(), [&](const auto& w) { return side_of(w) == side; });
+      if (!known) judge_missing(slam(), side, summary);
+    }
   }
 
   BoxSummary summary;
@@ -137,6 +170,7 @@ class BoxRunner {
   std::vector<std::uint32_t> ids_;
   Context context_;
   std::unique_ptr<WrongWall> watch_;
+  bool searching_ = false;  ///< since the dark
 };
 
 void forget(FrameRow* rows, int frames) {
@@ -154,7 +188,7 @@ BoxSummary run_box(const BoxOptions& options, const pf_config_t& config, Plan pl
   for (int frame = 0; frame < options.frames; ++frame) {
     const auto seen = box.observe(frame);
     const auto t_ns = static_cast<std::int64_t>(std::llround(frame * 1e9 / options.rate_hz));
-    runner.look(pf_push_observations(runner.slam(), t_ns, seen.data(), seen.size()), frame, rows[frame]);
+    runner.look(pf_push_observations(runner.slam(), t_ns, seen.data(), seen.size()), frame, false, rows[frame]);
   }
   runner.judge_walls();
   return runner.summary;
@@ -174,6 +208,7 @@ void run_rendered_box(const BoxOptions& options, const std::vector<BoxVariant>& 
   if (!sim) return;
   Box box(options, sim_options.camera, 0, seed, sim.get());
   std::vector<std::unique_ptr<BoxRunner>> runners;
+  std::vector<GrossPatches> gross(variants.size(), GrossPatches(options.gross, seed));
   for (BoxVariant variant : variants) {
     pf_sim_camera(sim.get(), &variant.config.camera);
     runners.push_back(std::make_unique<BoxRunner>(box, variant.config, variant.plan, options.rate_hz));
@@ -184,9 +219,12 @@ void run_rendered_box(const BoxOptions& options, const std::vector<BoxVariant>& 
     const double t = frame / options.rate_hz;
     const std::vector<std::uint8_t> black(static_cast<std::size_t>(image.stride) *
                                           static_cast<std::size_t>(image.height));
-    if (t >= options.black_from_s && t < options.black_from_s + options.black_s) image.pixels = black.data();
-    for (std::size_t v = 0; v < runners.size(); ++v)
-      runners[v]->look(pf_push_frame(runners[v]->slam(), &image), frame, rows[v][frame]);
+    const bool dark = t >= options.black_from_s && t < options.black_from_s + options.black_s;
+    if (dark) image.pixels = black.data();
+    for (std::size_t v = 0; v < runners.size(); ++v) {
+      const pf_image_t seen = gross[v].spoil(runners[v]->slam(), image);
+      runners[v]->look(pf_push_frame(runners[v]->slam(), &seen), frame, dark, rows[v][frame]);
+    }
   }
   for (std::size_t v = 0; v < runners.size(); ++v) {
     runners[v]->judge_walls();

@@ -20,6 +20,10 @@ struct BoxSummary {
   std::int32_t wrong_points = 0;  ///< most points that ever were on it
   double worst_m = 0;             ///< largest position error
   std::int32_t lost_frames = 0;
+  std::int32_t dark_frames = 0;                               ///< left out of all that is judged
+  std::int32_t frames_to_find = 0;                            ///< with light behind the dark, until one is tracked
+  std::int32_t missing = 0;                                   ///< sides that the plan does not have
+  double found_deg[kBoxSides] = {}, found_m[kBoxSides] = {};  ///< of the best plane for each; negative: there is none
   std::int32_t patch_inliers = 0, patch_outliers = 0, patch_missed = 0;  ///< over all frames
   double patch_seconds = 0;
 };
