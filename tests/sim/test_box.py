@@ -27,8 +27,12 @@ def main():
         file = pathlib.Path(name) / "box.json"
         run(BIN / "pf-sim", "box", "--geometric", "--seeds", SEEDS, "--jobs", 2, "--json", file, "--cases", "refined", "exact", "absent")
         cases = json.loads(file.read_text())["cases"]
-        run(BIN / "pf-sim", "box", "--no-points", "--seeds", SEEDS, "--jobs", 2, "--first-seed", 41, "--frames", 300, "--json", file, "--cases", "refined")
-        rendered = json.loads(file.read_text())["cases"]["refined"]
+        run(BIN / "pf-sim", "box", "--no-points", "--seeds", SEEDS, "--jobs", 2, "--first-seed", 41, "--frames", 300, "--json", file, "--cases", "refined", "absent")
+        alone = json.loads(file.read_text())["cases"]
+        # Behind the second corner, where points of the side that was left stay in the map.
+        run(BIN / "pf-sim", "box", "--seeds", 1, "--first-seed", 62, "--frames", 440, "--json", file, "--cases", "refined")
+        both = json.loads(file.read_text())["cases"]["refined"]
+    rendered = alone["refined"]
     refined, exact, absent = cases["refined"], cases["exact"], cases["absent"]
     rmse = [case["rmse_m"]["worst"] for case in (refined, exact, absent)]
     walls = refined["walls"]
@@ -42,6 +46,11 @@ def main():
         fail(f"patches alone: {rendered['rmse_m']}, {rendered['tracked_share']}, {rendered['patches']}")
     if not rendered["nees_pose"]["mean"] < 12:
         fail(f"patches alone: pose NEES {rendered['nees_pose']['mean']}")
+    wrong = alone["absent"]["wrong_wall"]
+    if not (alone["absent"]["rmse_m"]["worst"] < 0.025 and wrong["doubted_runs"] == SEEDS and wrong["seen_before_s"]["worst"] < 2.5):
+        fail(f"patches alone, a wall that is not there: {alone['absent']['rmse_m']}, {wrong}")
+    if not (both["rmse_m"]["worst"] < 0.025 and both["walls"]["doubted"] == 0):
+        fail(f"points and patches: {both['rmse_m']}, {both['walls']}")
     wrong = absent["wrong_wall"]
     if wrong["doubted_runs"] != SEEDS or not wrong["seen_before_s"]["worst"] < 2:
         fail(f"the wall that is not there: {wrong}")

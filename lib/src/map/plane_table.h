@@ -26,6 +26,8 @@ struct PlaneEntry {
   int weak = 0;          ///< of these, the last ones in a row with too few points
   int max_points = 0;    ///< most points that it had at one time
   int outliers = 0;      ///< points that were unfolded because they do not lie on it
+  int upheld = 0;        ///< patches that were measured on it for long
+  int refused = 0;       ///< patches that were dropped because they were found elsewhere
   PlaneOutline seen;     ///< of points that were on it when it was last tended to, many of them gone from the map since
   bool known = false;    ///< a wall: known beforehand, and never dissolved
   bool doubted = false;  ///< a wall that the gate refuses what should be on it; it takes no points
@@ -35,6 +37,11 @@ struct PlaneEntry {
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 
   static constexpr int kOutlierShare = 4;  ///< one in so many
+  /// Whether patches say that a wall is not where the plan has it.
+  bool is_refused_by_patches() const {
+    constexpr int kMinRefused = 3;
+    return refused >= kMinRefused && refused > upheld;
+  }
   /// Whether points that nothing else is known of may begin on it: it was found, has had enough points for kProvenAge frames, and most
   /// kept to it.
   bool is_proven(int min_points) const {

@@ -130,6 +130,7 @@ void PatchKeeper::measure_patch(const Pyramid& image, StoredPatch* patch) {
                                filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_)))
     return;
   update(patch, plane, found);
+  if (patch->status == PatchStatus::kInlier && patch->frames == kUpheldFrames) ++map_.planes[wall].upheld;
 }
 
 /// Where the patch is expected within more pixels than the aligner reaches: looks for it. False where it is not there.
@@ -212,7 +213,8 @@ void PatchKeeper::drop_failing(bool supported) {
     if (!store_.used(i)) continue;
     StoredPatch& patch = store_[i];
     const int own = patch.is_proven() ? patch.block : patch.camera;
-    bool fails = wall_of(patch) < 0 || !filter_.block_is_sound(own);
+    const int wall = wall_of(patch);
+    bool fails = wall < 0 || !filter_.block_is_sound(own);
     if (supported) {
       const bool inlier = patch.status == PatchStatus::kInlier;
       const auto count = [&](PatchStatus status, std::int16_t* in_a_row) {
@@ -220,8 +222,9 @@ void PatchKeeper::drop_failing(bool supported) {
       };
       count(PatchStatus::kMissed, &patch.failures);
       count(PatchStatus::kOutlier, &patch.rejections);
-      fails = fails || patch.failures > (patch.is_proven() ? kMaxFailures : kMaxEarlyFailures) ||
-              patch.rejections > kMaxRejections;
+      const bool refused = patch.rejections > kMaxRejections;
+      if (refused && wall >= 0) ++map_.planes[wall].refused;
+      fails = fails || refused || patch.failures > (patch.is_proven() ? kMaxFailures : kMaxEarlyFailures);
     }
     if (fails) drop(i);
   }

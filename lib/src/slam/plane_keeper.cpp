@@ -38,6 +38,8 @@ void PlaneKeeper::maintain() {
     const int i = (turn + k) % map_.planes.capacity();
     if (!map_.planes.used(i)) continue;
     ++map_.planes[i].age;
+    // A wall that patches refuse does not wait for its turn: what begins on it misleads.
+    if (map_.planes[i].is_refused_by_patches() && !map_.planes[i].doubted) judge_wall(i);
     if (maintained++ > 0) continue;
     fold_into(i);
     if (map_.planes[i].known) {

@@ -207,7 +207,8 @@ void PlaneKeeper::judge_wall(int plane_entry) {
   for (int i = 0; i < map_.features.capacity(); ++i) {
     Scalar d, variance;
     Mat3 covariance;
-    if (!map_.features.used(i) || map_.features[i].failures > 0) continue;
+    // What is out of sight behind the wall lies on another one.
+    if (!map_.features.used(i) || map_.features[i].last_seen_ns != frame_.report.t_ns) continue;
     const int slot = map_.features[i].slot;
     // A point of another plane is known well enough, and is no less on that one than here.
     const bool elsewhere = is_planar(state.block[slot].kind) && state.plane_of(slot) != wall.slot;
@@ -221,12 +222,13 @@ void PlaneKeeper::judge_wall(int plane_entry) {
       ++on_it;
     }
   }
-  const bool denied = wall.outliers >= kMinRefused && wall.outliers > on_it;
+  const bool denied =
+      (wall.outliers >= kMinRefused && wall.outliers > on_it) || (wall.is_refused_by_patches() && on_it < kMinRefused);
   if (!wall.doubted && (denied || (refused >= kMinRefused && refused > kRefusedShare * on_it))) {
     doubt_wall(plane_entry, refused > 0 ? std::sqrt(off / static_cast<Scalar>(refused)) : Scalar(0));
   } else if (wall.doubted && on_it >= kMinRefused && on_it > refused) {
     wall.doubted = false;
-    wall.outliers = 0;
+    wall.outliers = wall.upheld = wall.refused = 0;
     settings_.hooks.say("points lie on a wall of the plan that was doubted: it counts again");
   }
 }
@@ -236,13 +238,13 @@ void PlaneKeeper::doubt_wall(int plane_entry, Scalar off) {
   PlaneEntry& wall = map_.planes[plane_entry];
   const int plane = wall.slot;
   const Vec3 sigma(doubt().x(), doubt().y(), std::max(doubt().z(), off));
-  if (filter_.state().block[plane].children > 0) filter_.forget_through(plane, sigma);
+  if (filter_.state().block[plane].children > 0 || wall.refused + wall.upheld > 0) filter_.forget_through(plane, sigma);
   filter_.state().for_each_planar(plane, [&](int slot) {
     const int feature = filter_.state().block[slot].owner;
     if (!filter_.unfold(slot, settings_.plane_distance)) features_.drop(&feature, 1);
   });
   wall.doubted = true;
-  wall.outliers = 0;
+  wall.outliers = wall.upheld = wall.refused = 0;
   wall.seen = wall.support = wall.plan;
   settings_.hooks.say("a wall of the plan is not where it should be: it is doubted, and takes no points");
 }

@@ -189,6 +189,7 @@ inline constexpr int kPoseSteps = 6;                   ///< of that search
 inline constexpr int kMaxFailures = 30;                ///< in a row, before a patch is dropped
 inline constexpr int kMaxEarlyFailures = 3;            ///< likewise of one that was never found
 inline constexpr int kMaxRejections = 4;               ///< in a row
+inline constexpr int kUpheldFrames = 30;               ///< that a patch was measured, for its wall to be upheld by it
 }  // namespace patch_keeper
 
 /// Patches on walls: new ones.
