@@ -183,6 +183,8 @@ std::string ImuFeed::report(const pf_slam_t* slam, std::string& advice) const {
     json["saturated"] = nullptr;  // the ranges are not known
   }
   if (inertial_) {
+    json["doubted"] = r.doubted != 0;
+    json["doubted_s"] = rounded(r.doubted_s);
     add_inertial(slam, metric_frame_, model_, json);
   }
   const TimeOffset offset = offset_.estimate();

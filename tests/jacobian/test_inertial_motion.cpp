@@ -101,6 +101,67 @@ void test_transition_without_gravity_should_be_exact() {
   check_transition(random, "F without gravity", predict);
 }
 
+/// Without samples the rows of the gyro's bias are the angular velocity's: e_w = -R_CB e_b.
+void test_transition_without_samples_should_be_exact() {
+  SeededRandom random(306);
+  const MotionNoise noise = {Scalar(1), Scalar(2)};
+  const Scalar dt = Scalar(0.04);
+  const BodyLayout layout = BodyLayout::with_inertial_unit();
+  for (int trial = 0; trial < 10; ++trial) {
+    Body body = random_inertial_body(random);
+    body.w_C = random.normals<3>(1);
+    const Mounting mounting = random_mounting(random);
+    Transition transition, other;
+    predict_without_samples(body, layout, mounting, dt, noise, &transition);
+    const auto moves = [&](const Vec17& e) {
+      Body beside = moved_inertial(body, e);
+      beside.w_C -= mounting.R_CB * Vec3(e.segment<3>(9));
+      predict_without_samples(beside, layout, mounting, dt, noise, &other);
+      Vec17 difference = inertial_difference(other.mean, transition.mean);
+      difference.segment<3>(9) = -mounting.R_CB.transpose() * (other.mean.w_C - transition.mean.w_C);
+      return difference;
+    };
+    check_jacobian<kInertialRows, kInertialRows>(matrix17(transition.F), moves, "F without samples", Scalar(1),
+                                                 kNumericJacobianTolerance * 4);
+    // The noise of the rate is that of constant velocity.
+    const Mat17 Q = matrix17(transition.Q);
+    for (int i = 0; i < 3; ++i) {
+      TEST_ASSERT_TRUE(std::abs(Q(9 + i, 9 + i) - 4 * dt) < Scalar(1e-6));
+      TEST_ASSERT_TRUE(std::abs(Q(6 + i, 6 + i) - dt) < Scalar(1e-6));
+    }
+  }
+}
+
+/// Samples that are used again: the bias has the error of the rate, and gravity that of the rotation that its direction was seen with.
+void test_return_to_samples_should_be_exact() {
+  SeededRandom random(307);
+  const BodyLayout layout = BodyLayout::with_inertial_unit();
+  for (int trial = 0; trial < 10; ++trial) {
+    Body body = random_inertial_body(random);
+    body.w_C = random.normals<3>(1);
+    const Mounting mounting = random_mounting(random);
+    FreshReading fresh;
+    fresh.gyro = random.normals<3>(1);
+    fresh.anew = true;
+    fresh.gravity_W = random.normals<3>(9);
+    Transition transition, other;
+    begin_with_samples(body, layout, mounting, fresh, &transition);
+    const auto moves = [&](const Vec17& e) {
+      Body beside = moved_inertial(body, e);
+      beside.w_C -= mounting.R_CB * Vec3(e.segment<3>(9));
+      FreshReading seen = fresh;  // with the rotation that it was seen in
+      seen.gravity_W = exp_so3(Vec3(e.head<3>())) * fresh.gravity_W;
+      begin_with_samples(beside, layout, mounting, seen, &other);
+      Vec17 difference = inertial_difference(other.mean, transition.mean);
+      const Vec3 tilt = transition.mean.gravity_W().cross(other.mean.gravity_W());
+      difference.tail<2>() = transition.mean.q_WG.toRotationMatrix().leftCols<2>().transpose() * tilt;
+      return difference;
+    };
+    check_jacobian<kInertialRows, kInertialRows>(matrix17(transition.F), moves, "F of the return", Scalar(1),
+                                                 kNumericJacobianTolerance * 4);
+  }
+}
+
 /// The truth of a body at rest drawn from what begin_at_rest says: its readings are those that were given.
 void test_begin_at_rest_should_hang_gravity_and_the_accelerometer_s_bias_together() {
   SeededRandom random(305);
@@ -174,6 +235,8 @@ int main(void) {
   RUN_TEST(test_preintegral_s_covariance_should_be_that_of_noisy_samples);
   RUN_TEST(test_transition_of_the_inertial_model_should_be_exact);
   RUN_TEST(test_transition_without_gravity_should_be_exact);
+  RUN_TEST(test_transition_without_samples_should_be_exact);
+  RUN_TEST(test_return_to_samples_should_be_exact);
   RUN_TEST(test_begin_at_rest_should_hang_gravity_and_the_accelerometer_s_bias_together);
   RUN_TEST(test_pixels_of_late_rows_should_be_exact_by_every_row_of_the_body);
   return UNITY_END();

@@ -85,7 +85,8 @@ void test_damping_should_carry_every_direction() {
   SeededRandom random(63);
   const auto damp = [](TestFilter& filter, const std::vector<int>&) {
     Transition transition;
-    damp_speed(filter->state().body, BodyLayout::with_constant_velocity(), Scalar(0.7), Mat6::Zero(), &transition);
+    damp_speed(filter->state().body, BodyLayout::with_constant_velocity(), Scalar(0.7), filter->state().body.w_C,
+               Mat6::Zero(), &transition);
     for (Scalar& q : transition.Q) q = Scalar(0);
     filter->predict(transition);
   };

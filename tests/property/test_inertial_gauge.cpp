@@ -110,6 +110,17 @@ void test_a_rest_should_carry_shifts_and_turns() {
   });
 }
 
+/// The scale too where the unit is in the camera; beside it the curve of its arm is a length.
+void test_a_body_without_samples_should_carry_every_direction() {
+  SeededRandom random(317);
+  const auto predict = [&](InertialScene& scene, Transition* transition) {
+    predict_without_samples(scene.filter->state().body, BodyLayout::with_inertial_unit(), scene.mounting, Scalar(0.04),
+                            {Scalar(1), Scalar(2)}, transition);
+  };
+  carries("predict_without_samples", kShiftAndTurn, true, random, predict);
+  carries("predict_without_samples", kAll, false, random, predict);
+}
+
 double information_growth(bool keep_gauge) {
   SeededRandom random(316);
   double growth = 0;
@@ -153,6 +164,7 @@ int main(void) {
   RUN_TEST(test_samples_should_see_the_scale);
   RUN_TEST(test_samples_of_the_gyro_alone_should_carry_every_direction);
   RUN_TEST(test_a_rest_should_carry_shifts_and_turns);
+  RUN_TEST(test_a_body_without_samples_should_carry_every_direction);
   RUN_TEST(test_pixels_should_gain_nothing_about_the_gauge);
   return UNITY_END();
 }

@@ -49,6 +49,16 @@ with tempfile.TemporaryDirectory() as name:
     require(gap["lost_runs"] == 0 and gap["refused"] == 0, "lost by a unit that stops for a second")
     require(gap["fault"]["tracked_after"] > 0.99 and gap["fault"]["worst_sigmas_after"] < 4, f"after a gap: {gap['fault']}")
 
+    require(vio["doubt"]["runs"] == 0, f"a healthy unit was doubted: {vio['doubt']}")
+    mount, _ = report(folder, "--seconds", "14", "--fault", "mount", "--fault-at", "2")
+    require(mount["doubt"]["runs"] == SEEDS and mount["doubt"]["at_s"]["max"] < 2 + 5, f"mounted wrongly: {mount['doubt']}")
+    require(mount["lost_runs"] == 0 and mount["refused"] == 0, "lost by a unit that is mounted wrongly")
+    require(mount["fault"]["tracked_after"] > 0.99 and mount["fault"]["metric_after"] == 0, f"{mount['fault']}")
+
+    back, _ = report(folder, "--seconds", "20", "--fault", "reversed", "--fault-at", "8")
+    require(back["doubt"]["runs"] == SEEDS and back["doubt"]["at_s"]["max"] < 8.5, f"doubted late: {back['doubt']}")
+    require(back["lost_runs"] == 0 and back["fault"]["tracked_after"] > 0.99, f"readings reversed: {back['fault']}")
+
     unknown = subprocess.run([BIN / "pf-sim", "vio", "--fault", "magic"], capture_output=True, text=True)
     require(unknown.returncode == 2 and "clock-jump" in unknown.stderr, f"{unknown.returncode}: {unknown.stderr}")
     bad = subprocess.run([BIN / "pf-sim", "vio", "--seeds", "0"], capture_output=True, text=True)

@@ -119,7 +119,8 @@ void test_damping_should_leave_room_for_both_when_a_speed_goes_on_and_when_it_en
       for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j) P_speed(i, j) = filter->covariance()(kVelocityRow + i, kVelocityRow + j);
       Transition t;
-      damp_speed(filter->state().body, BodyLayout::with_constant_velocity(), kFactor, P_speed, &t);
+      damp_speed(filter->state().body, BodyLayout::with_constant_velocity(), kFactor, filter->state().body.w_C, P_speed,
+                 &t);
       filter->predict(t);
       predict_constant_velocity(filter->state().body, BodyLayout::with_constant_velocity(), kDt,
                                 {Scalar(0.01), Scalar(0.01)}, &t);

@@ -51,6 +51,20 @@ void test_ends_between_samples_should_be_on_the_line_between_them() {
   TEST_ASSERT_TRUE((path.end.gyro - kRate * (1 + 2 * b)).norm() < Scalar(10) * kNear);
 }
 
+void test_a_reading_should_be_on_the_line_and_never_in_a_gap() {
+  Path path;
+  for (int k = 0; k < 60; ++k)
+    if (k < 20 || k > 24) path.add(k, Scalar(2));
+  ImuReading reading;
+  TEST_ASSERT_TRUE(reading_at(path.log, 52500000, &reading));
+  TEST_ASSERT_TRUE((reading.gyro - kRate * Scalar(1.105)).norm() < Scalar(10) * kNear);
+  TEST_ASSERT_FALSE(reading_at(path.log, 110000000, &reading));  // in the gap
+  TEST_ASSERT_TRUE(reading_at(path.log, 59 * kIntervalNs + 3000000, &reading));
+  TEST_ASSERT_TRUE((reading.gyro - kRate * Scalar(1.596)).norm() < Scalar(10) * kNear);
+  TEST_ASSERT_FALSE(reading_at(path.log, 59 * kIntervalNs + 9000000, &reading));
+  TEST_ASSERT_FALSE(reading_at(path.log, -1000000, &reading));
+}
+
 void test_a_frame_behind_the_last_sample_should_go_on_along_the_last_two() {
   Path path;
   for (int k = 0; k < 40; ++k) path.add(k, Scalar(2));
@@ -103,6 +117,7 @@ void test_without_samples_all_time_should_be_coasted_and_a_jump_of_the_clock_sho
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_ends_between_samples_should_be_on_the_line_between_them);
+  RUN_TEST(test_a_reading_should_be_on_the_line_and_never_in_a_gap);
   RUN_TEST(test_a_frame_behind_the_last_sample_should_go_on_along_the_last_two);
   RUN_TEST(test_a_frame_far_behind_the_last_sample_should_coast);
   RUN_TEST(test_missing_samples_should_be_bridged_with_more_noise);

@@ -84,7 +84,8 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
   runs.rows = rows;
   json out = summarise_frames(runs);
   double gravity = 0, gyro = 0, accel = 0, frames = 0, growth = 0, imu = 0, whole = 0;
-  std::vector<double> drift, again;
+  std::vector<double> drift, again, doubted_at;
+  double doubted_s = 0, maps = 0;
   int lost = 0, started = 0, refused = 0;
   double tracked = 0;
   for (int i = 0; i < c.seeds; ++i) {
@@ -100,6 +101,9 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
     refused += s[i].refused;
     started += s[i].metric_frame >= 0;
     tracked += s[i].frames_tracked;
+    if (s[i].doubted_at_s >= 0) doubted_at.push_back(s[i].doubted_at_s);
+    doubted_s += s[i].doubted_s;
+    maps += s[i].maps;
     if (s[i].tracked_again_frame >= 0) again.push_back(s[i].tracked_again_frame - s[i].dark_end_frame + 1);
   }
   frames = std::max(1.0, frames);
@@ -119,6 +123,10 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
   out["worst_sigmas"] = of_all(s, c.seeds, &VioSummary::worst_sigmas);
   out["gauge_growth"] = growth;
   out["starts"] = {{"tried", c.seeds}, {"accepted", started}};
+  out["doubt"] = {{"runs", doubted_at.size()},
+                  {"at_s", {{"median", quantile(doubted_at, 0.5)}, {"max", quantile(doubted_at, 1)}}},
+                  {"mean_s", doubted_s / c.seeds},
+                  {"maps_per_run", maps / c.seeds}};
   out["lost_runs"] = lost;
   out["refused"] = refused;
   out["tracked_share"] = tracked / (static_cast<double>(c.seeds) * runs.frames);
@@ -146,6 +154,11 @@ void print_vio(const json& j, bool with_imu) {
       "  error at most %.1f of its sigma (median of runs %.1f); %g lost, %.1f %% tracked; samples %.0f us a frame\n",
       number("/worst_sigmas/max"), number("/worst_sigmas/median"), number("/lost_runs"), 100 * number("/tracked_share"),
       number("/imu_us_per_frame"));
+  if (number("/doubt/runs") > 0)
+    std::printf(
+        "  the unit was doubted in %g runs, first at %.2f s (at the latest %.2f), for %.1f s a run; %g maps a run\n",
+        number("/doubt/runs"), number("/doubt/at_s/median"), number("/doubt/at_s/max"), number("/doubt/mean_s"),
+        number("/doubt/maps_per_run"));
   if (j.contains("frames_until_tracked_again"))
     std::printf("  tracked again in frame %g with light (at most %g), in %g runs\n",
                 number("/frames_until_tracked_again/median"), number("/frames_until_tracked_again/max"),
@@ -169,10 +182,12 @@ bool print_still(const json& j) {
 void print_fault(const json& j) {
   const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
   std::printf(
-      "  fault %s: from 5 s after its beginning on pose NEES %.2f, error at most %.1f of its sigma, %.1f %% tracked; "
-      "%g samples refused\n",
-      j.at("fault").at("name").get<std::string>().c_str(), number("/fault/nees_after"),
-      number("/fault/worst_sigmas_after"), 100 * number("/fault/tracked_after"), number("/fault/refused_samples"));
+      "  fault %s: from 5 s after its beginning on %.1f %% tracked, %.1f %% in metres with pose NEES %.2f and error at "
+      "most "
+      "%.1f of its sigma; %g samples refused\n",
+      j.at("fault").at("name").get<std::string>().c_str(), 100 * number("/fault/tracked_after"),
+      100 * number("/fault/metric_after"), number("/fault/nees_after"), number("/fault/worst_sigmas_after"),
+      number("/fault/refused_samples"));
 }
 
 /// Bounds that the simulated unit should meet: lib/docs/inertial.md.
@@ -191,10 +206,11 @@ bool verdict(const Choices& c, const json& j) {
 
 /// What became of a fault, over all runs.
 json of_fault(const Choices& c, const VioSummary* s) {
-  double nees = 0, frames = 0, tracked = 0, worst = 0, refused = 0;
+  double nees = 0, frames = 0, judged = 0, tracked = 0, worst = 0, refused = 0;
   for (int i = 0; i < c.seeds; ++i) {
     nees += s[i].nees_after;
     frames += s[i].frames_after;
+    judged += s[i].judged_after;
     tracked += s[i].tracked_after;
     worst = std::max(worst, s[i].worst_sigmas_after);
     refused += s[i].refused_samples;
@@ -202,7 +218,8 @@ json of_fault(const Choices& c, const VioSummary* s) {
   frames = std::max(1.0, frames);
   return {{"name", c.fault},
           {"at_s", c.vio.fault_at_s},
-          {"nees_after", nees / frames},
+          {"nees_after", judged > 0 ? nees / judged : -1},
+          {"metric_after", judged / frames},
           {"worst_sigmas_after", worst},
           {"tracked_after", tracked / frames},
           {"refused_samples", refused}};
@@ -291,7 +308,7 @@ void add_vio(CLI::App& app, int& result) {
   command->add_option("--blackout", c->vio.blackout_s, "for how long [s]; 0: never");
   command->add_option(
       "--fault", c->fault,
-      "gap, stop, late, repeated, disorder, saturated, jitter, scale, clock-jump, frames-stop or mount");
+      "gap, stop, late, repeated, disorder, saturated, jitter, scale, clock-jump, frames-stop, reversed or mount");
   command->add_option("--fault-at", c->vio.fault_at_s, "when it begins, where it has a beginning [s]");
   command->add_flag("--rendered", c->vio.rendered, "pictures of the room of 4 m, in place of points");
   command->add_flag("--still", c->still, "the camera rests to the end");

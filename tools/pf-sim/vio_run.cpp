@@ -22,6 +22,7 @@ constexpr double kScaleAfter = 5;  // [s] of motion, when the scale is judged fi
 
 constexpr double kAfter = 5;          // [s] from the beginning of a fault, when all should be well again
 constexpr double kStill = 1;          // [s] that a unit or a camera stops
+constexpr double kReversed = 2;       // [s]
 constexpr double kLateBy = 0.02;      // [s]
 constexpr double kClockJump = 0.05;   // [s]
 constexpr double kJitter = 1e-3;      // [s]
@@ -119,6 +120,13 @@ class Run {
     return o_.blackout_s > 0 && t >= o_.blackout_at_s && t < o_.blackout_at_s + o_.blackout_s;
   }
 
+  static void reverse(pf_imu_sample_t* sample) {
+    for (int i = 0; i < 3; ++i) {
+      sample->gyro[i] = -sample->gyro[i];
+      sample->accel[i] = -sample->accel[i];
+    }
+  }
+
   /// Samples up to a frame's time, on their own clock.
   void push_samples(std::int64_t t_ns) {
     const auto in_ns = [](double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); };
@@ -128,6 +136,7 @@ class Run {
     while (sensor_.next_ns() <= until_ns) {
       samples.push_back(sensor_.next());
       if (wrong && o_.fault == VioFault::kClockJump) samples.back().t_ns += in_ns(kClockJump);
+      if (wrong && o_.fault == VioFault::kReversed && t_ns < in_ns(o_.fault_at_s + kReversed)) reverse(&samples.back());
     }
     if (!o_.use_imu || samples.empty() || (wrong && o_.fault == VioFault::kStop)) return;
     if (wrong && o_.fault == VioFault::kDisorder)
@@ -179,6 +188,7 @@ class Run {
     out_.imu_seconds += 1e-9 * static_cast<double>(report.stage_ns[PF_STAGE_IMU]);
     for (const std::int64_t ns : report.stage_ns) out_.frame_seconds += 1e-9 * static_cast<double>(ns);
     note_blackout(k, dark, status);
+    note_doubt(t, pose);
     const bool judged = note_unit(k, report);
     if (judged || !o_.use_imu) {
       row = judge(truth, pose, report);
@@ -188,7 +198,10 @@ class Run {
     if (o_.fault != VioFault::kNone && t >= o_.fault_at_s + kAfter) {
       ++out_.frames_after;
       out_.tracked_after += status == PF_OK;
-      if (row.nees_pose >= 0) out_.nees_after += row.nees_pose;
+      if (row.nees_pose >= 0) {
+        ++out_.judged_after;
+        out_.nees_after += row.nees_pose;
+      }
       if (row.sigma_m > 0)
         out_.worst_sigmas_after = std::max(out_.worst_sigmas_after, static_cast<double>(row.error_m / row.sigma_m));
     }
@@ -210,6 +223,15 @@ class Run {
     if (dark) out_.dark_end_frame = k + 1;
     if (out_.dark_end_frame > 0 && !dark && out_.tracked_again_frame < 0 && status == PF_OK)
       out_.tracked_again_frame = k;
+  }
+
+  void note_doubt(double t, const pf_pose_t& pose) {
+    pf_imu_report_t imu;
+    if (pf_get_imu_report(context_.slam, &imu) != PF_OK) return;
+    if (imu.doubted != 0 && out_.doubted_at_s < 0) out_.doubted_at_s = t;
+    out_.doubted_s = imu.doubted_s;
+    if (pose.map_id != map_id_) out_.maps += map_id_ != 0;
+    map_id_ = pose.map_id;
   }
 
   /// Biases and gravity against the truth; true once lengths are in metres.
@@ -296,13 +318,14 @@ class Run {
   bool has_rested_ = false;
   double gauge_[49] = {};
   bool has_gauge_ = false;
+  std::uint32_t map_id_ = 0;
 };
 
 }  // namespace
 
 const char* name_of(VioFault fault) {
-  constexpr const char* kNames[] = {"none",      "gap",    "stop",  "late",       "repeated",    "disorder",
-                                    "saturated", "jitter", "scale", "clock-jump", "frames-stop", "mount"};
+  constexpr const char* kNames[] = {"none",   "gap",   "stop",       "late",        "repeated", "disorder", "saturated",
+                                    "jitter", "scale", "clock-jump", "frames-stop", "reversed", "mount"};
   static_assert(std::size(kNames) == static_cast<std::size_t>(VioFault::kCount));
   return kNames[static_cast<int>(fault)];
 }

@@ -20,6 +20,7 @@ enum class VioFault {
   kScale,       ///< both sensors read 1 % too much
   kClockJump,   ///< the unit's clock jumps by 50 ms
   kFramesStop,  ///< no frames for a second, while samples go on
+  kReversed,    ///< readings have the wrong sign for two seconds
   kMount,       ///< the unit is mounted the other way round, by 180 degrees
   kCount
 };
@@ -62,7 +63,10 @@ struct VioSummary {
   std::int32_t frames_after = 0;
   double wander_m = 0, wander_rad = 0;  ///< of a camera that rests to the end: farthest from its first pose in metres
   double worst_bias_sigmas = 0;         ///< largest error of a bias in its own sigma
-  std::int32_t tracked_after = 0, refused_samples = 0;
+  std::int32_t tracked_after = 0, judged_after = 0, refused_samples = 0;
+  double doubted_at_s = -1;  ///< when the unit first came into doubt, negative: never
+  double doubted_s = 0;      ///< for how long it was
+  std::int32_t maps = 1;     ///< begun
   std::int32_t dark_end_frame = -1, tracked_again_frame = -1;
 };
 

@@ -696,6 +696,11 @@ typedef struct pf_imu_report {
   double median_s;    /* interval, a running median; 0 of fewer than two */
   int32_t kept;       /* samples in the buffer */
   int32_t used;       /* 1 when poses hang on the samples: PF_MOTION_INERTIAL, and samples have come */
+  /* With PF_MOTION_INERTIAL. 1: pictures contradict the samples, which this map does not use any more (up to scale: until
+   * the gyro agrees again); the motion is that of PF_MOTION_CONSTANT_VELOCITY. A map that had been in metres for less than
+   * 5 s begins anew, up to scale. */
+  int32_t doubted;
+  double doubted_s; /* for how long in all */
 } pf_imu_report_t;
 
 PF_API pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report);

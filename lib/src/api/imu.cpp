@@ -54,6 +54,9 @@ pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report) {
   report->median_s = 1e-9 * static_cast<double>(c.median_ns);
   report->kept = slam->session.imu().held();
   report->used = slam->session.settings().inertial && slam->session.imu().any() ? 1 : 0;
+  const pf::View view = slam->session.view();
+  report->doubted = view.unit_doubted() ? 1 : 0;
+  report->doubted_s = 1e-9 * static_cast<double>(view.unit_doubted_ns());
   return PF_OK;
 }
 

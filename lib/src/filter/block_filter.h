@@ -130,6 +130,8 @@ class BlockFilter {
   const Scalar* gain(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
   /// Rows of L^-1 H P that the gain left, S + R = L L^T.
   const Scalar* whitened(int row) const { return W_ + row * ld_; }
+  /// Likewise of L^-1 (measured - predicted): white where model and noise are right.
+  const Scalar* whitened_innovation() const { return y_; }
   int gained_rows() const { return gained_; }
   /// P -= W^T W, then P += U^T G + G^T U (both rows x ld()).
   void downdate(const Scalar* U, const Scalar* G, int rows);

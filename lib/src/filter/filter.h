@@ -82,6 +82,9 @@ class Filter {
   /// From now on the samples of the inertial unit tell the scale.
   void set_metric();
   bool is_metric() const { return state_.metric; }
+  /// Whether samples move the body from now on (State::uses_samples), with what is known of it then. It outlasts init().
+  void use_samples(bool use) { state_.uses_samples = use; }
+  bool uses_samples() const { return state_.uses_samples; }
   /// Whether updates leave the lens as it is and allow for its error, whatever the layout says of it.
   void consider_lens(bool only_considered);
   /// Updates estimate what moves, the body without its constants, and consider the map and the lens (Schmidt), until the next call.
@@ -191,6 +194,13 @@ class Filter {
   bool finish_update(const PixelMeasurement* z, int count, const unsigned char* keep, Scalar* nis) {
     return finish_update(views_of(z, count), count, keep, nis);
   }
+  /// Of the update that finish_update has just made: the part of its innovation that says something of the pose. With L L^T = S + R,
+  /// A = L^-1 H P_x and y = L^-1 (measured - predicted), x the rows of the pose,
+  ///
+  ///   nis = y^T A (A^T A)^-1 A^T y = e^T (P_before - P_after)^-1 e,   e the correction of the pose
+  ///
+  /// chi-square with six degrees of freedom. False where it does not say all of the pose.
+  bool pose_nis(Scalar* nis) const;
 
   /// Pose (q_KC, p_KC) of the camera in the frame of a reference camera K, and the covariance of its (theta, p), in K (relative_pose.h).
   void motion_since(int camera, Quat* q_KC, Vec3* p_KC, Mat6* covariance) const;

@@ -122,4 +122,17 @@ Scalar integrate_samples(const ImuLog& log, std::int64_t from_ns, std::int64_t t
   return walk.coasted();
 }
 
+bool reading_at(const ImuLog& log, std::int64_t t_ns, ImuReading* reading) {
+  int next = log.held() - 1;
+  while (next > 0 && log[next - 1].t_ns >= t_ns) --next;
+  if (next < 1) return false;
+  const ImuSample &a = log[next - 1], &b = log[next];
+  const Scalar interval = seconds_between(a.t_ns, b.t_ns);
+  const Scalar median = static_cast<Scalar>(seconds(log.counts().median_ns));
+  if (t_ns < a.t_ns || interval > kMaxGap * median) return false;
+  if (t_ns > b.t_ns && seconds_between(b.t_ns, t_ns) > kMaxHold * median) return false;
+  *reading = between(a, b, seconds_between(a.t_ns, t_ns) / interval);
+  return true;
+}
+
 }  // namespace pf

@@ -27,4 +27,8 @@ struct Coasting {
 Scalar integrate_samples(const ImuLog& log, std::int64_t from_ns, std::int64_t to_ns, const Coasting& coasting,
                          Preintegral* sum, ImuReading* at_end);
 
+/// What the unit reads at a time on its own clock: on the line through two samples that no gap parts, at most kMaxHold intervals behind
+/// them. False where there are none.
+bool reading_at(const ImuLog& log, std::int64_t t_ns, ImuReading* reading);
+
 }  // namespace pf

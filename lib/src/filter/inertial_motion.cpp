@@ -91,8 +91,12 @@ void predict_inertial(const Body& body, const BodyLayout& layout, const Mounting
   set_noise(samples.covariance(), R, m_hat, rows, transition);
 }
 
-void predict_rotation_only(const Body& body, const BodyLayout& layout, const Mounting& mounting,
-                           const Preintegral& samples, Scalar linear_density, Transition* transition) {
+namespace {
+
+/// Rotation as `samples` say with covariance S, translation with white accelerations.
+void predict_by_rotation(const Body& body, const BodyLayout& layout, const Mounting& mounting,
+                         const Preintegral& samples, Preintegral::Covariance S, Scalar linear_density,
+                         Transition* transition) {
   const PartRows rows(layout);
   clear(transition, body, rows.dim);
   const Scalar T = samples.dt(), a = linear_density * linear_density;
@@ -107,7 +111,6 @@ void predict_rotation_only(const Body& body, const BodyLayout& layout, const Mou
   set_block<3>(transition->F, rows.dim, Body::kPosition, Body::kTheta, hat(m_after - m_before));
   set_block<3>(transition->F, rows.dim, Body::kPosition, rows.velocity, T * Mat3::Identity());
   set_block<3>(transition->F, rows.dim, Body::kPosition, rows.gyro, m_hat.lazyProduct(phi));
-  Preintegral::Covariance S = samples.covariance();
   S.middleRows<6>(Preintegral::kVelocity).setZero();
   S.middleCols<6>(Preintegral::kVelocity).setZero();
   for (int i = 0; i < 3; ++i) {
@@ -119,12 +122,79 @@ void predict_rotation_only(const Body& body, const BodyLayout& layout, const Mou
   set_noise(S, R, m_hat, rows, transition);
 }
 
+void add_variance(Transition* transition, int first, int rows, Scalar sigma) {
+  for (int i = first; i < first + rows; ++i) transition->Q[i * transition->dim + i] += sigma * sigma;
+}
+
+void forget_rows(Transition* transition, int first, int rows) {
+  for (int i = first; i < first + rows; ++i)
+    for (int j = 0; j < transition->dim; ++j) transition->F[i * transition->dim + j] = Scalar(0);
+}
+
+/// Gravity's rows by those of the rotation, where its direction was read off with that.
+Eigen::Matrix<Scalar, 2, 3> set_gravity_by_rotation(const PartRows& rows, Transition* transition) {
+  const Eigen::Matrix<Scalar, 2, 3> E_t = transition->mean.q_WG.toRotationMatrix().leftCols<2>().transpose();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 2; ++j) transition->F[(rows.gravity + j) * rows.dim + Body::kTheta + i] = E_t(j, i);
+  return E_t;
+}
+
+}  // namespace
+
+void predict_rotation_only(const Body& body, const BodyLayout& layout, const Mounting& mounting,
+                           const Preintegral& samples, Scalar linear_density, Transition* transition) {
+  predict_by_rotation(body, layout, mounting, samples, samples.covariance(), linear_density, transition);
+}
+
+/// Of the rate: white accelerations b over T give e_b variance b T, and with phi by it through G, which is T of a rotation:
+/// phi b T / 3 G G^T, between them b / 2 G T.
+void predict_without_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, Scalar dt,
+                             const MotionNoise& noise, Transition* transition) {
+  Preintegral path(ImuNoise(), Vec3::Zero(), Vec3::Zero());
+  path.coast(dt, mounting.R_CB.transpose() * body.w_C, Vec3::Zero(), Scalar(0), Scalar(0));
+  const Mat3 G = path.by_bias().topLeftCorner<3, 3>();
+  const Scalar b = noise.angular * noise.angular;
+  Preintegral::Covariance S = Preintegral::Covariance::Zero();
+  S.block<3, 3>(Preintegral::kPhi, Preintegral::kPhi) = b * dt / 3 * G.lazyProduct(G.transpose());
+  S.block<3, 3>(Preintegral::kPhi, Preintegral::kGyroBias) = b * dt / 2 * G;
+  S.block<3, 3>(Preintegral::kGyroBias, Preintegral::kPhi) = b * dt / 2 * G.transpose();
+  S.block<3, 3>(Preintegral::kGyroBias, Preintegral::kGyroBias) = b * dt * Mat3::Identity();
+  predict_by_rotation(body, layout, mounting, path, S, noise.linear, transition);
+}
+
+void begin_without_samples(const Body& body, const BodyLayout& layout, Scalar sigma_rate, bool anew, Scalar sigma_speed,
+                           Transition* transition) {
+  const PartRows rows(layout);
+  clear(transition, body, rows.dim);
+  if (anew) {
+    forget_rows(transition, rows.velocity, 3);
+    forget_rows(transition, rows.gyro, 3);
+    add_variance(transition, rows.velocity, 3, sigma_speed);
+  }
+  add_variance(transition, rows.gyro, 3, sigma_rate);
+}
+
+void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, const FreshReading& fresh,
+                        Transition* transition) {
+  const PartRows rows(layout);
+  clear(transition, body, rows.dim);
+  transition->mean.gyro_bias = fresh.gyro - mounting.R_CB.transpose() * body.w_C;
+  add_variance(transition, rows.gyro, 3, fresh.sigma_gyro);
+  if (!fresh.anew) return;
+  transition->mean.accel_bias.setZero();
+  transition->mean.q_WG = turn_z_to(fresh.gravity_W.normalized());
+  forget_rows(transition, rows.accel, 5);  // gravity follows
+  add_variance(transition, rows.accel, 3, fresh.sigma_accel_bias);
+  add_variance(transition, rows.gravity, 2, fresh.sigma_gravity);
+  set_gravity_by_rotation(rows, transition);
+}
+
 void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& mounting, const RestReading& rest,
                    Transition* transition) {
   const PartRows rows(layout);
   clear(transition, body, rows.dim);
   Body& mean = transition->mean;
-  Scalar *F = transition->F, *Q = transition->Q;
+  Scalar* Q = transition->Q;
   const Mat3 R = body.q_WC.toRotationMatrix() * mounting.R_CB;
   const Scalar length = rest.accel.norm();
   const Vec3 f_B = rest.accel / length, u = -(R * f_B);
@@ -134,12 +204,11 @@ void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& m
   mean.accel_bias = (length - rest.gravity) * f_B;
   mean.q_WG = turn_z_to(u);
 
-  for (int i = rows.velocity; i < rows.dim; ++i)  // velocity, biases and gravity begin anew
-    for (int j = 0; j < rows.dim; ++j) F[i * rows.dim + j] = Scalar(0);
+  forget_rows(transition, rows.velocity, rows.dim - rows.velocity);  // velocity, biases and gravity begin anew
   const Mat3 along = f_B * f_B.transpose(), across = Mat3::Identity() - along;
   const Mat3 open = rest.sigma_accel_bias * rest.sigma_accel_bias * across;
   const Scalar noise = rest.sigma_accel * rest.sigma_accel;
-  const Eigen::Matrix<Scalar, 2, 3> E_t = mean.q_WG.toRotationMatrix().leftCols<2>().transpose();
+  const Eigen::Matrix<Scalar, 2, 3> E_t = set_gravity_by_rotation(rows, transition);
   const Eigen::Matrix<Scalar, 2, 3> K = E_t * hat(u) * R / rest.gravity;  // d by e_b and n
   const Mat3 Q_accel = open + noise * along;
   const Eigen::Matrix<Scalar, 2, 3> Q_cross = K * open;
@@ -149,7 +218,6 @@ void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& m
     Q[(rows.gyro + i) * rows.dim + rows.gyro + i] = rest.sigma_gyro * rest.sigma_gyro;
     for (int j = 0; j < 3; ++j) Q[(rows.accel + i) * rows.dim + rows.accel + j] = Q_accel(i, j);
     for (int j = 0; j < 2; ++j) {
-      F[(rows.gravity + j) * rows.dim + Body::kTheta + i] = E_t(j, i);
       Q[(rows.gravity + j) * rows.dim + rows.accel + i] = Q_cross(j, i);
       Q[(rows.accel + i) * rows.dim + rows.gravity + j] = Q_cross(j, i);
     }

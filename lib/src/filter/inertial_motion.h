@@ -23,6 +23,35 @@ void predict_inertial(const Body& body, const BodyLayout& layout, const Mounting
 void predict_rotation_only(const Body& body, const BodyLayout& layout, const Mounting& mounting,
                            const Preintegral& samples, Scalar linear_density, Transition* transition);
 
+/// Without samples: constant velocity with white accelerations, as in motion.h. The angular velocity stands in the rows of the gyro's
+/// bias (State::uses_samples), e_w = -e_b, both in the axes of the unit:
+///
+///   R_WB+ = R_WB Exp(w_B T),   v+ = v,   p_B+ = p_B + v T
+///   theta+ = theta - T R J_l(w_B T) e_b,   Q: as that of constant velocity, through the same J
+void predict_without_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, Scalar dt,
+                             const MotionNoise& noise, Transition* transition);
+
+/// From here on without samples. sigma_rate [rad/s]: of the angular velocity, beside the error of the bias that it was known with; with
+/// `anew` it and the velocity, with sigma_speed [m/s], begin anew about their means.
+void begin_without_samples(const Body& body, const BodyLayout& layout, Scalar sigma_rate, bool anew, Scalar sigma_speed,
+                           Transition* transition);
+
+/// What samples say that are used again.
+struct FreshReading {
+  Vec3 gyro = Vec3::Zero();  ///< at the body's time
+  Scalar sigma_gyro = 0;     ///< [rad/s] of each axis
+  bool anew = false;         ///< gravity and the accelerometer's bias begin anew too, as below
+  Vec3 gravity_W = Vec3::Zero();
+  Scalar sigma_gravity = 0;     ///< [rad] of its direction
+  Scalar sigma_accel_bias = 0;  ///< [m/s^2]
+};
+
+/// From here on by samples again: b = gyro - w_B, so that the error of the one is that of the other,
+///
+///   e_b+ = e_b + n,   anew:  e_a+ = n_a,  d+ = E^T theta + n_g        E = (R_WG e_x, R_WG e_y)
+void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, const FreshReading& fresh,
+                        Transition* transition);
+
 /// What a second at rest says. Readings are means over it.
 struct RestReading {
   Vec3 gyro = Vec3::Zero();   ///< [rad/s]

@@ -58,11 +58,12 @@ void change_velocity(const Body& body, const BodyLayout& layout, const Vec3& dv_
   set_block(transition->F, transition->dim, layout.row(BodyPart::kVelocity), Body::kTheta, -hat(dv_W));
 }
 
-void damp_speed(const Body& body, const BodyLayout& layout, Scalar factor, const Mat6& P_m, Transition* transition) {
+void damp_speed(const Body& body, const BodyLayout& layout, Scalar factor, const Vec3& rate, const Mat6& P_m,
+                Transition* transition) {
   const int dim = layout.dynamic_rows(), first = layout.row(BodyPart::kVelocity);  // the angular velocity follows
   clear(transition, body, layout);
   Vec6 m;
-  m << body.v_W, body.w_C;
+  m << body.v_W, rate;
   for (int i = 0; i < 6; ++i) {
     transition->F[(first + i) * dim + first + i] = factor;
     for (int j = 0; j < 6; ++j)

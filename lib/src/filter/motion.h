@@ -39,8 +39,10 @@ void change_velocity(const Body& body, const BodyLayout& layout, const Vec3& dv_
 ///
 ///   m+ = f m,   e_m+ = f e_m,   Q = (1 - f^2)(P_m + m m^T)
 ///
-/// so that a speed that goes on and one that ends are both expected. P_m 6x6 is their covariance.
-void damp_speed(const Body& body, const BodyLayout& layout, Scalar factor, const Mat6& P_m, Transition* transition);
+/// so that a speed that goes on and one that ends are both expected. P_m 6x6 is their covariance. rate: w, or what stands for it in the
+/// rows behind the velocity.
+void damp_speed(const Body& body, const BodyLayout& layout, Scalar factor, const Vec3& rate, const Mat6& P_m,
+                Transition* transition);
 
 /// Random walk of the pose (Gee 2007, eq 1): R+ = Exp(w_theta) R, p+ = p + w_p, with variances density^2 dt.
 /// The paper's Euler angles become a rotation vector, which is the same to first order in the noise.

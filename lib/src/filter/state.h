@@ -23,10 +23,13 @@ struct State {
   BodyLayout layout;
   gauge::Set unobservable = gauge::kBareCamera;  ///< directions about which no measurement says anything
   bool metric = false;                           ///< samples of the inertial unit tell lengths and gravity
-  Mounting mounting;                             ///< of the inertial unit
-  Camera lens;                                   ///< calibration as it is known now
-  LensRows lens_rows;                            ///< of BodyPart::kLens
-  Block* block = nullptr;                        ///< slots
+  /// The samples of the inertial unit move the body. Without them its velocity goes on, and the rows of the gyro's bias are those of the
+  /// angular velocity: w_B = c - b, where c does not matter.
+  bool uses_samples = true;
+  Mounting mounting;       ///< of the inertial unit
+  Camera lens;             ///< calibration as it is known now
+  LensRows lens_rows;      ///< of BodyPart::kLens
+  Block* block = nullptr;  ///< slots
   int slots = 0;
   PlaneFrame* plane_frame = nullptr;
   Scalar* plane_roughness = nullptr;  ///< [m] standard deviation of points from each plane, as plane_frame

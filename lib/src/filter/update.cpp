@@ -1,4 +1,5 @@
 #include "filter/filter.h"
+#include "geometry/small_cholesky.h"
 
 /// The update.
 
@@ -25,6 +26,20 @@ bool Filter::finish_update(const Measurement* z, int count, const unsigned char*
   if (keep_gauge_) transport_.finish(state_, blocks_);
   blocks_.downdate(transport_.U(), transport_.G(), transport_.rows());
   if (keeps_apart()) end_update_apart(l);
+  return true;
+}
+
+bool Filter::pose_nis(Scalar* nis) const {
+  Mat6 A = Mat6::Zero();
+  Vec6 b = Vec6::Zero();
+  for (int k = 0; k < blocks_.gained_rows(); ++k) {
+    const Vec6 a = Eigen::Map<const Vec6>(blocks_.whitened(k));
+    A += a * a.transpose();
+    b += a * blocks_.whitened_innovation()[k];
+  }
+  SmallCholesky<Body::kPoseDim> cholesky;
+  if (!cholesky.factor(A)) return false;
+  *nis = b.dot(cholesky.solve<1>(b));
   return true;
 }
 

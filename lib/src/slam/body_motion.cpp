@@ -17,20 +17,19 @@ Scalar predicted_seconds(std::int64_t before_ns, std::int64_t t_ns) {
   return static_cast<Scalar>(seconds(gap_ns < BodyMotion::kMaxGapNs ? gap_ns : BodyMotion::kMaxGapNs));
 }
 
-/// The time of a frame on the clock of the samples.
-std::int64_t on_unit_clock(std::int64_t t_ns, std::int64_t delay_ns) {
-  std::int64_t shifted;
-  return __builtin_sub_overflow(t_ns, delay_ns, &shifted) ? t_ns : shifted;
-}
-
 }  // namespace
+
+std::int64_t BodyMotion::on_unit_clock(std::int64_t t_ns) const {
+  std::int64_t shifted;
+  return __builtin_sub_overflow(t_ns, settings_.unit.delay_ns, &shifted) ? t_ns : shifted;
+}
 
 void BodyMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured) {
   MotionNoise noise = settings_.motion_noise;
   if (coasting_or_lost) {
     // A hand does not keep its speed for long, and half a radian of rotation uncertainty already means searching everywhere. Without
     // these limits, one second without an image would predict the camera out of the room. The position keeps growing with the speed.
-    if (settings_.constant_velocity && nothing_measured) damp(predicted_seconds(before_ns, t_ns));
+    if (has_rate() && nothing_measured) damp(predicted_seconds(before_ns, t_ns));
     noise = limited_noise();
   }
   Transition transition;
@@ -42,6 +41,11 @@ void BodyMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coastin
   predict(filter_.state().body, before_ns, t_ns, noise, &transition);
   filter_.predict(transition);
   data_ = Data();
+}
+
+/// Whether the angular velocity is part of the state, which then moves by constant velocity.
+bool BodyMotion::has_rate() const {
+  return settings_.constant_velocity || (settings_.inertial && !filter_.uses_samples());
 }
 
 /// The noise of the model, without what would make wide covariances wider.
@@ -67,6 +71,10 @@ void BodyMotion::predict_by_samples(const Body& body, std::int64_t before_ns, st
                                     const MotionNoise& noise, Transition* transition) const {
   const ImuUnit& unit = settings_.unit;
   const Mounting& mounting = filter_.state().mounting;
+  if (!filter_.uses_samples()) {
+    predict_without_samples(body, settings_.body, mounting, predicted_seconds(before_ns, t_ns), noise, transition);
+    return;
+  }
   const Quat q_BW = Quat(Mat3(body.q_WC.toRotationMatrix() * mounting.R_CB)).conjugate();
   Coasting coasting;
   coasting.w_B = mounting.R_CB.transpose() * body.w_C;
@@ -74,8 +82,7 @@ void BodyMotion::predict_by_samples(const Body& body, std::int64_t before_ns, st
   coasting.noise = noise;
   Preintegral samples(unit.noise, body.gyro_bias, body.accel_bias);
   ImuReading now;
-  integrate_samples(imu_, on_unit_clock(before_ns, unit.delay_ns), on_unit_clock(t_ns, unit.delay_ns), coasting,
-                    &samples, &now);
+  integrate_samples(imu_, on_unit_clock(before_ns), on_unit_clock(t_ns), coasting, &samples, &now);
   if (filter_.is_metric())
     predict_inertial(body, settings_.body, mounting, samples, unit.gravity, transition);
   else
@@ -104,7 +111,10 @@ void BodyMotion::damp(Scalar dt) {
     for (int j = 0; j < 6; ++j)
       if ((any_position && (i < 3 || j < 3)) || (any_rotation && (i >= 3 || j >= 3))) P_speed(i, j) = Scalar(0);
   Transition transition;
-  damp_speed(filter_.state().body, settings_.body, std::exp(-dt / kSpeedDecay), P_speed, &transition);
+  const Body& body = filter_.state().body;
+  const Vec3 rate =
+      settings_.inertial ? Vec3(-(filter_.state().mounting.R_CB.transpose() * body.w_C)) : body.w_C;  // e_b = -e_w
+  damp_speed(body, settings_.body, std::exp(-dt / kSpeedDecay), rate, P_speed, &transition);
   filter_.predict(transition);
 }
 

@@ -27,6 +27,8 @@ class BodyMotion {
   /// Predicts the filter's body from one frame's time to the next. coasting_or_lost: the tracking state; nothing_measured: the last frame
   /// had no inlier.
   void advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured);
+  /// The time of a frame on the clock of the samples.
+  std::int64_t on_unit_clock(std::int64_t t_ns) const;
   /// What the configured motion model says of a body between two frames' times.
   void predict(const Body& body, std::int64_t before_ns, std::int64_t t_ns, const MotionNoise& noise,
                Transition* transition) const;
@@ -45,6 +47,7 @@ class BodyMotion {
                           Transition* transition) const;
   void predict_after(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
   MotionNoise limited_noise() const;
+  bool has_rate() const;
   void damp(Scalar dt);
 
   const Settings& settings_;

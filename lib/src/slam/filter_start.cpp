@@ -80,7 +80,7 @@ void FilterStart::set_body(const Body& body, const Scalar* known, const Scalar* 
     const auto set_sigma = [&](BodyPart part, int rows, Scalar sigma) {
       for (int i = layout.row(part); i < layout.row(part) + rows; ++i) all[i * dim + i] = sigma * sigma;
     };
-    set_sigma(BodyPart::kGyroBias, 3, kGyroBias);
+    set_sigma(BodyPart::kGyroBias, 3, parts_.filter.uses_samples() ? kGyroBias : kStartRate);
     set_sigma(BodyPart::kAccelBias, 3, kAccelBias);
     set_sigma(BodyPart::kGravity, 2, kGravity);
     known = all;

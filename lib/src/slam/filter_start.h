@@ -43,6 +43,9 @@ class FilterStart {
   /// was not withdrawn is kept and may be found again.
   void start_over();
 
+  /// A target, walls or a known speed tell the scale, and the samples of a unit did not.
+  bool knows_scale() const { return data_.knows_scale; }
+
   /// Whether the target's points fit into the capacities.
   bool fits(const Target& target) const;
   Status use_target(const Target& target);

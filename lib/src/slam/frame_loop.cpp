@@ -21,6 +21,7 @@ bool FrameLoop::layout(Arena& arena) {
   images_.layout(arena, settings.camera.width, settings.camera.height, settings.max_observations);
   relocaliser_.layout(arena, settings.max_observations, settings.max_kept_views);
   observations_.layout(arena, settings.max_features, settings.max_observations);
+  watch_.layout(arena);
   rest_.layout(arena);
   start_.layout(arena, settings.camera.width, settings.camera.height);
   return layout_patches(arena);
@@ -41,6 +42,7 @@ void FrameLoop::init() {
   frozen_.init();
   data_ = Data();
   motion_.init();
+  watch_.init();
   rest_.init();
   planes_.init();
   images_.init(settings_.camera);
@@ -71,7 +73,8 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   relocaliser_.begin_frame();
   tracking_.note_usable_image(data_.since_last_ns);
   // W is the plan's as long as there are walls: a new map would begin somewhere else.
-  if (tracking_.needs_new_map(settings_.restart_ns) && !map_.planes.has_known()) begin_new_map();
+  if (tracking_.needs_new_map(settings_.restart_ns) && !map_.planes.has_known())
+    begin_new_map("not found again for too long: the old map is discarded, a new map begins");
   const bool first = !tracking_.has_pose();
   const ConsensusRule rule = consensus_rule(t_ns);
   if (first) {
@@ -149,13 +152,16 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
   data_.since_last_ns = frame_.report.frames > 0 ? std::min(elapsed_ns(before_ns, t_ns), BodyMotion::kMaxGapNs) : 0;
   data_.image_usable = false;
   const bool nothing_measured = frame_.report.inliers == 0;
+  data_.follows = tracking_.has_pose() && !tracking_.coasting_or_lost() && !start_.progress().pending();
   frame_.begin(t_ns);
+  if (data_.map_discredited) begin_new_map("the map's scale came from a unit that is doubted: a new map begins");
   tracking_.begin_frame();
   if (!tracking_.has_pose()) {
     motion_.init();  // control input is for one frame only
     return;
   }
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[settings_.inertial ? kImu : kPredict]);
+  watch_.begin_frame(before_ns, t_ns);
   motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
   if (!filter_.body_is_sound()) start_over();
 }
@@ -182,12 +188,20 @@ bool FrameLoop::may_begin_patches(bool first) const {
 
 /// True where this frame is the first one whose samples tell the scale.
 bool FrameLoop::look_for_rest() {
-  if (!settings_.inertial || !tracking_.has_pose()) return false;
+  if (!settings_.inertial || !tracking_.has_pose() || !filter_.uses_samples()) return false;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kImu]);
   RestReading rest;
   if (!rest_.note(tracking_.is_tracked(frame_.report), &rest) || !start_.use_rest(rest, rest_.begin_ns())) return false;
   if (map_.features.count() == 0) relocaliser_.init();
   return true;
+}
+
+/// A map in metres that hangs on a unit in doubt is given up, for nothing tells how wrong it is.
+void FrameLoop::watch_unit() {
+  if (!settings_.inertial || !tracking_.has_pose()) return;
+  if (!watch_.note(data_.follows, tracking_.is_tracked(frame_.report), data_.since_last_ns)) return;
+  data_.map_discredited = watch_.is_map_on_trial() && !start_.knows_scale() && !map_.planes.has_known();
+  if (data_.map_discredited) watch_.begin_without();
 }
 
 void FrameLoop::learn_noise() {
@@ -222,6 +236,7 @@ void FrameLoop::maintain_map(bool supported) {
 
 /// Returns the status of the frame.
 Status FrameLoop::end_frame() {
+  watch_unit();
   if (tracking_.has_pose() && (tracking_.updates_fail() || !repair_covariance() || !filter_.body_is_sound()))
     start_over();
   if (tracking_.is_tracked(frame_.report) && !start_.progress().pending()) {
@@ -253,11 +268,13 @@ void FrameLoop::start_over() {
   settings_.hooks.say("the estimate is no longer finite: starting again without it");
 }
 
-/// The map was not found again for too long, although the images were usable: a new one begins with this frame.
-void FrameLoop::begin_new_map() {
+/// The map was not found again for too long, although the images were usable, or its scale is discredited: a new one begins with this
+/// frame.
+void FrameLoop::begin_new_map(const char* why) {
   clear_estimate();
   tracking_.begin_map();
-  settings_.hooks.say("not found again for too long: the old map is discarded, a new map begins");
+  data_.map_discredited = false;
+  settings_.hooks.say(why);
 }
 
 void FrameLoop::clear_estimate() {

@@ -22,6 +22,7 @@
 #include "slam/rest_detector.h"
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
+#include "slam/unit_watch.h"
 
 /// The order of work of one frame with the filter as back end (Gee 2007), and nothing else:
 ///
@@ -52,6 +53,7 @@ class FrameLoop {
   BodyMotion& motion() { return motion_; }
   ObservationFrontEnd& observations() { return observations_; }
 
+  const UnitWatch& watch() const { return watch_; }
   const FilterStart& start() const { return start_; }
   const BodyMotion& motion() const { return motion_; }
   const Filter& filter() const { return filter_; }
@@ -69,6 +71,8 @@ class FrameLoop {
     std::int64_t filter_ns = 0;
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     bool image_usable = false;       ///< this frame is an image that shows something to track
+    bool follows = false;  ///< the frame before was tracked, and so was the pose that this one's prediction begins at
+    bool map_discredited = false;  ///< by the unit that its scale came from: a new one begins
     bool warned_of_noise = false, warned_of_lens = false;
     Scalar median_depth = 1;  ///< of the inliers of the last tracked frame
   };
@@ -79,13 +83,14 @@ class FrameLoop {
   Status end_frame();
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
   bool look_for_rest();
+  void watch_unit();
   void learn_noise();
   bool layout_patches(Arena& arena);
   bool may_begin_patches(bool first) const;
   bool repair_covariance();
   void maintain_map(bool supported);
   void start_over();
-  void begin_new_map();
+  void begin_new_map(const char* why);
   void clear_estimate();
 
   const Settings& settings_;
@@ -97,6 +102,7 @@ class FrameLoop {
   TrackingState tracking_{settings_};
   FrozenCamera frozen_;
   BodyMotion motion_{settings_, filter_, imu_};
+  UnitWatch watch_{settings_, filter_, frame_, imu_, motion_};
   RestDetector rest_{settings_, frame_, imu_};
   PixelUpdate update_{settings_, filter_, map_, frame_, tracking_};
   FeatureKeeper features_{settings_, filter_, map_, frame_};

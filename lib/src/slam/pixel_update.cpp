@@ -46,6 +46,11 @@ bool PixelUpdate::apply(int first, int count, double* nis) {
     return false;
   }
   if (nis != nullptr) *nis += static_cast<double>(sum);
+  Scalar pose_nis;
+  if (settings_.inertial && filter_.pose_nis(&pose_nis)) {
+    frame_.report.pose_nis += static_cast<double>(pose_nis);
+    frame_.report.pose_nis_dof += Body::kPoseDim;
+  }
   for (int i = first; i < first + count; ++i) {
     if (keep_[i] == 0) continue;
     frame_.report.nis_dof += 2;

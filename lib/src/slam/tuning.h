@@ -72,6 +72,26 @@ inline constexpr Scalar kGravity = Scalar(1);      ///< [rad] sigma of its direc
 inline constexpr Scalar kYoungMap = Scalar(15);    ///< [s] age of a map of unknown scale that gives way to a metric one
 }  // namespace inertial
 
+/// Whether samples and pictures agree. The slack and the bound were taken from six healthy runs of 60 s (largest sum 38) and from units
+/// that are wrong (pf-sim vio --fault).
+namespace unit_watch {
+inline constexpr Scalar kSlack = Scalar(9);              ///< that a frame may add to the sum, of a chi-square of six
+inline constexpr Scalar kBound = Scalar(100);            ///< of the sum, above which the unit is doubted
+inline constexpr Scalar kBoundOnProbation = Scalar(30);  ///< in the first kTrial of its use after a doubt
+inline constexpr Scalar kMaxOfFrame = Scalar(50);        ///< no single frame is enough
+inline constexpr Scalar kSilence = Scalar(0.1);          ///< [s] without a sample, after which none is waited for
+inline constexpr Scalar kRate = Scalar(1);               ///< [rad/s] sigma of the rate where samples were wrong
+inline constexpr Scalar kSpeed = Scalar(1);              ///< [m/s] sigma of the velocity likewise, or in units of W
+inline constexpr Scalar kTime = Scalar(0.2);             ///< [s] for which the pose may have followed wrong samples
+inline constexpr Scalar kTrial = Scalar(5);              ///< [s] in metres, before which a map hangs on the unit alone
+inline constexpr Scalar kWindow = Scalar(3);  ///< [s] for which a doubted gyro must agree; doubles with each doubt
+inline constexpr int kMaxDoublings = 8;       ///< of that
+inline constexpr Scalar kMaxScatter = Scalar(1.5);  ///< of gyro less rate, in variances
+inline constexpr Scalar kMaxShare = Scalar(0.1);    ///< of the rate's own scatter that gyro less rate may have
+inline constexpr Scalar kMinPower = Scalar(100);    ///< of the rate over its variance, summed: rest proves nothing
+inline constexpr int kMinFrames = 30;               ///< that such a test wants
+}  // namespace unit_watch
+
 /// Standing still.
 namespace rest {
 inline constexpr Scalar kTime = Scalar(1);             ///< [s] at rest before it counts

@@ -44,6 +44,9 @@ bool View::inertial(InertialView* out) const {
   return true;
 }
 
+bool View::unit_doubted() const { return loop_.watch().doubted(); }
+std::int64_t View::unit_doubted_ns() const { return loop_.watch().doubted_ns(); }
+
 bool View::motion_since_mark(MotionView* out) const {
   if (map_.mark.camera < 0) return false;
   out->mark_ns = map_.mark.t_ns;

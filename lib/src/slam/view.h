@@ -111,6 +111,9 @@ class View {
   void pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const;
   /// False without the inertial motion model, or without a pose.
   bool inertial(InertialView* out) const;
+  /// Whether pictures contradict the inertial unit, and for how long they have in all.
+  bool unit_doubted() const;
+  std::int64_t unit_doubted_ns() const;
   /// False if there is no mark in this map.
   bool motion_since_mark(MotionView* out) const;
   /// Projects a known point; covariance may be null. False if the point does not project.
