@@ -150,7 +150,9 @@ def check_interrupted(results):
         folder = results.share / name
         report = results.read(name)
         code = (results.share / f"{name}.log" / "code").read_text().strip()
-        results.require(code == ("0" if report["tracked"] > 0 else "1"), f"{name}: the interrupted run ended with {code}")
+        # A busy host makes the guest so slow that the camera may be lost between its frames; the run then says so and ends with 1.
+        failed = report["tracked"] == 0 or "the camera was lost" in results.stderr(name)
+        results.require(code == ("1" if failed else "0"), f"{name}: the interrupted run ended with {code}: {results.stderr(name)}")
         text = (folder / "frames.csv").read_text()
         rows = text.splitlines()
         results.require(text.endswith("\n") and len(rows) == report["frames"] + 1
