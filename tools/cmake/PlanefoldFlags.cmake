@@ -24,6 +24,10 @@ endif()
 if(PLANEFOLD_SANITIZE)
   add_compile_options(-fsanitize=${PLANEFOLD_SANITIZE} -fno-omit-frame-pointer
                       -fno-sanitize-recover=all)
+  if(PLANEFOLD_SANITIZE MATCHES "address")
+    # A null pointer that is followed ends in the address sanitizer's report as well; the check costs a fifth of the build.
+    add_compile_options(-fno-sanitize=null)
+  endif()
   add_link_options(-fsanitize=${PLANEFOLD_SANITIZE})
 endif()
 if(PLANEFOLD_COVERAGE)
