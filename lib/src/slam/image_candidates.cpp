@@ -36,21 +36,25 @@ float ImageFrontEnd::rate(int feature, const Vec2& pixel) const {
 /// A full list keeps the best, and the scouts are the best. What cannot be compared comes last: it would fill the list in place of what
 /// was added instead.
 int ImageFrontEnd::list_visible() {
+  Scalar* rates = scratch_;
   int count = 0;
   for (int i = 0; i < map_.features.capacity(); ++i) {
     Vec2 pixel;
     if (!map_.features.used(i) || !is_visible(i, &pixel)) continue;
-    const float mine = rate(i, pixel);
+    const Scalar mine = rate(i, pixel);
     int at = count;
     if (count == settings_.max_observations) {
-      if (update_.candidate(count - 1).rate >= mine) continue;
+      if (rates[count - 1] >= mine) continue;
       at = count - 1;
     } else {
       ++count;
     }
-    for (; at > 0 && update_.candidate(at - 1).rate < mine; --at) update_.candidate(at) = update_.candidate(at - 1);
+    for (; at > 0 && rates[at - 1] < mine; --at) {
+      update_.candidate(at) = update_.candidate(at - 1);
+      rates[at] = rates[at - 1];
+    }
     update_.candidate(at).feature = i;
-    update_.candidate(at).rate = mine;
+    rates[at] = mine;
   }
   for (int i = 0; i < count; ++i) {
     Candidate& candidate = update_.candidate(i);

@@ -20,7 +20,7 @@ using namespace tuning::image_front_end;
 }  // namespace
 
 bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observations) {
-  searched_px2_ = arena.take<Scalar>(static_cast<std::size_t>(max_observations));
+  scratch_ = arena.take<Scalar>(static_cast<std::size_t>(max_observations));
   layout_templates(arena);
   return tracker_.layout(arena, width, height);
 }
@@ -218,9 +218,9 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
 
 /// Whether chance would hardly let as many matches agree as keep says.
 bool ImageFrontEnd::is_beyond_chance(int first, int found) {
-  for (int i = 0; i < found; ++i) searched_px2_[i] = searched_area(first + i);
+  for (int i = 0; i < found; ++i) scratch_[i] = searched_area(first + i);
   const TripleConsensus consensus =
-      find_triple_consensus(filter_, update_.observations() + first, searched_px2_, found, frame_.report.attempts,
+      find_triple_consensus(filter_, update_.observations() + first, scratch_, found, frame_.report.attempts,
                             settings_.gate, tuning::tracking::kTriples, update_.keep() + first, nullptr);
   return consensus.log_false < tuning::tracking::kMaxLogFalse;
 }

@@ -101,7 +101,7 @@ class ImageFrontEnd {
   int listed_ = 0;            ///< candidates of this frame
   Tracker tracker_;
   TemplateMatcher* templates_ = nullptr;  ///< in the block, with masks alone
-  Scalar* searched_px2_ = nullptr;        ///< max_observations
+  Scalar* scratch_ = nullptr;             ///< max_observations: rates of candidates, then the areas that were searched
 };
 
 }  // namespace pf

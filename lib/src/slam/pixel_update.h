@@ -17,7 +17,6 @@ namespace pf {
 struct Candidate {
   int feature;                ///< entry of the feature table
   int match;                  ///< index in the frame's matches
-  float rate = 0;             ///< by which candidates are sorted, the largest first
   Mat2 noise = Mat2::Zero();  ///< of a match in an image by itself, NoiseModel::match
 };
 
