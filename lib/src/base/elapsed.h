@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 
 namespace pf {
 
@@ -13,10 +15,10 @@ inline std::int64_t elapsed_ns(std::int64_t from, std::int64_t to) {
 
 inline double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-/// A frame counter that stops well before it would overflow (after about seven months at 60 Hz).
+/// A frame counter that stops before it would overflow (after about seven months at 60 Hz; smaller types at their largest value).
 template <class Int>
 inline void count_frame(Int* count) {
-  if (*count < 1000000000) ++*count;
+  if (*count < std::min<std::intmax_t>(1000000000, std::numeric_limits<Int>::max())) ++*count;
 }
 
 }  // namespace pf

@@ -15,19 +15,20 @@ struct ResidualTrace {
   int frame = 0;  ///< number of the last frame with a residual; 0: none yet
 };
 
+/// Ordered by size, since there are as many as features.
 struct Feature {
+  std::int64_t last_seen_ns = 0;
   std::uint32_t id = 0;           ///< never used twice
   std::uint32_t external_id = 0;  ///< the caller's id of an observed feature; of the target, the index of the point
   int slot = -1;                  ///< block in the filter; -1: this entry is free
+  int observations = 0;           ///< frames in which it was an inlier
+  int attempts = 0;               ///< frames in which it was searched for
+  int failures = 0;               ///< attempts since it was last an inlier
+  ResidualTrace residuals;
+  std::uint8_t rejections = 0;  ///< of these failures, matches that were outliers; up to 255
   bool is_target = false;
   bool has_appearance = false;
   bool on_trial = false;  ///< began on a plane, which nothing but its place in the image says yet
-  int observations = 0;   ///< frames in which it was an inlier
-  int attempts = 0;       ///< frames in which it was searched for
-  int failures = 0;       ///< attempts since it was last an inlier
-  int rejections = 0;     ///< of these failures, matches that were outliers
-  std::int64_t last_seen_ns = 0;
-  ResidualTrace residuals;
 };
 
 class FeatureTable {
