@@ -6,8 +6,11 @@
 /// Which features a frame searches for.
 
 namespace pf {
+namespace {
 
 using namespace tuning::image_front_end;
+
+}  // namespace
 
 /// Whether a feature has an appearance and is predicted inside of the image, and where.
 bool ImageFrontEnd::is_visible(int feature, Vec2* pixel) const {
