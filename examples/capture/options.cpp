@@ -246,7 +246,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_flag("--headless", options.headless, "no window");
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
-  app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame");
+  app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame; patches.csv likewise");
   app.add_flag("--quiet", options.quiet, "no progress line");
   app.add_option("--backend", backend, "filter")->capture_default_str();
   app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();

@@ -54,6 +54,16 @@ const char* match_name(int32_t status) {
   return kNames[status >= 0 && status <= 4 ? status : 0];
 }
 
+/// Corners that were measured, or else predicted.
+void put_patch(std::string& rows, int64_t frame, const pf_patch_t& patch) {
+  append(rows, "%" PRId64 ",%u,%u,%s,%d,%.3f", frame, patch.id, patch.plane,
+         patch.status == 0 ? "unseen" : match_name(patch.status), patch.frames, patch.weight);
+  for (const auto& corner : patch.corners_px) {
+    append(rows, ",%.3f,%.3f", corner[0], corner[1]);
+  }
+  rows += '\n';
+}
+
 const char* kind_name(int32_t kind) {
   constexpr const char* kNames[] = {"unknown", "inverse_depth", "point", "folded", "fixed"};
   return kNames[kind >= 0 && kind <= 4 ? kind : 0];
@@ -81,8 +91,8 @@ bool Outputs::create(TextFile& file, const std::string& name, std::string& error
   return true;
 }
 
-bool Outputs::open(const std::string& folder, bool tracks, bool truth, bool relative, const pf_camera_t& camera,
-                   std::string& error) {
+bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool truth, bool relative,
+                   const pf_camera_t& camera, std::string& error) {
   folder_ = folder;
   char message[PF_SEQUENCE_MESSAGE] = "";
   if (pf_open_output_folder(folder.c_str(), "--out", message) != 0) {
@@ -90,8 +100,8 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, bool rela
     return false;
   }
   if (!open_map(1, error) || !create(frames_, "frames.csv", error) ||
-      (tracks && !create(tracks_, "tracks.csv", error)) || (truth && !create(truth_, "truth.tum", error)) ||
-      (relative && !create(relative_, "relative.csv", error))) {
+      (tracks && !create(tracks_, "tracks.csv", error)) || (patches && !create(patches_, "patches.csv", error)) ||
+      (truth && !create(truth_, "truth.tum", error)) || (relative && !create(relative_, "relative.csv", error))) {
     return false;
   }
   for (const char* name : {"calib.yaml", "map.ply", "map.ply.part", "report.json", "report.json.part"}) {
@@ -107,6 +117,7 @@ bool Outputs::open(const std::string& folder, bool tracks, bool truth, bool rela
       "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof,planes,folded,fixed,rows_points_only,"
       "tracked\n";
   tracks_.rows() = "frame,id,status,kind,predicted_u,predicted_v,s_uu,s_uv,s_vv,measured_u,measured_v\n";
+  patches_.rows() = "frame,id,wall,status,frames,weight,u0,v0,u1,v1,u2,v2,u3,v3\n";
   relative_.rows() = "mark_t_s,t_s,map,qw,qx,qy,qz,px,py,pz";
   for (int i = 0; i < 36; ++i) {
     append(relative_.rows(), ",c%d%d", i / 6, i % 6);
@@ -173,9 +184,13 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, const MotionW
       }
     }
   }
+  if (patches_.is_open()) {
+    for (const pf_patch_t& patch : view.patches) put_patch(patches_.rows(), view.index, patch);
+  }
   bool written = true;
   // The covariance before the trajectory, so that whatever ends the program leaves one for every pose.
-  for (TextFile* file : {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &truth_, &relative_, &frames_}) {
+  for (TextFile* file :
+       {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &patches_, &truth_, &relative_, &frames_}) {
     written = file->write_rows(error) && written;
   }
   return written;

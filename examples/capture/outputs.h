@@ -18,12 +18,12 @@ namespace pf::capture {
 class Outputs {
  public:
   /// Makes the folder, opens the files and writes calib.yaml. false: error is one line.
-  bool open(const std::string& folder, bool tracks, bool truth, bool relative, const pf_camera_t& camera,
+  bool open(const std::string& folder, bool tracks, bool patches, bool truth, bool relative, const pf_camera_t& camera,
             std::string& error);
 
   /// trajectory.txt and covariance.csv where the frame was tracked, trajectory_all.txt wherever there is a pose; of the second map
   /// trajectory_2.txt and so on, since each map has a world of its own;
-  /// frames.csv in every frame, tracks.csv; truth.tum where truth is not null. false: error is one line (the disk is full, say).
+  /// frames.csv in every frame, tracks.csv, patches.csv; truth.tum where truth is not null. false: error is one line (disk full, say).
   /// A row of relative.csv where window is not null.
   bool write(const FrameView& view, const pf_pose_t* truth, const MotionWindow* window, std::string& error);
   /// truth_planes.json, where the source knows them.
@@ -41,7 +41,7 @@ class Outputs {
   bool open_map(int map, std::string& error);
 
   std::filesystem::path folder_;
-  TextFile trajectory_, trajectory_all_, covariance_, frames_, tracks_, truth_, relative_;
+  TextFile trajectory_, trajectory_all_, covariance_, frames_, tracks_, patches_, truth_, relative_;
   int map_ = 0;  ///< whose files are open
 };
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <memory>
 
+#include "rows.h"
+
 namespace pf::capture {
 
 namespace {
@@ -25,6 +27,39 @@ double offset_m(const pf_plane_prior_t& prior, const pf_plane_t& plane) {
   double at = -plane.distance;
   for (size_t i = 0; i < 3; ++i) at += plane.normal_W[i] * prior.p_WP[i];
   return -at;
+}
+
+Vec3 column(const pf_plane_prior_t& wall, size_t axis) {
+  return {wall.R_WP[axis], wall.R_WP[3 + axis], wall.R_WP[6 + axis]};
+}
+
+Vec3 difference(const double a[3], const double b[3]) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+/// Whether the wall stands between two points with a side that can be seen towards the first.
+bool hides(const pf_plane_prior_t& wall, const double from_W[3], const double to_W[3]) {
+  const Vec3 n = column(wall, 2);
+  const double a = dot(n, difference(from_W, wall.p_WP)), b = dot(n, difference(to_W, wall.p_WP));
+  if (a * b >= 0.0 || (a < 0.0 && wall.two_sided == 0)) return false;
+  double hit_W[3];
+  for (size_t i = 0; i < 3; ++i) hit_W[i] = from_W[i] + (to_W[i] - from_W[i]) * a / (a - b);
+  const Vec3 at = difference(hit_W, wall.p_WP);
+  const double u = dot(column(wall, 0), at), v = dot(column(wall, 1), at);
+  for (int32_t k = 0; k < wall.outline_count; ++k) {
+    const double *p = wall.outline_P[k], *q = wall.outline_P[(k + 1) % wall.outline_count];
+    if ((q[0] - p[0]) * (v - p[1]) < (q[1] - p[1]) * (u - p[0])) return false;  // counter-clockwise
+  }
+  return true;
+}
+
+/// Whether the middle of the wall is in the image, seen from behind.
+bool shows_its_back(const pf_plane_prior_t& wall, const pf_pose_t& pose, const pf_camera_t& camera) {
+  constexpr double kSigmas = 3.0;
+  const double ahead = dot(column(wall, 2), difference(pose.p_WC, wall.p_WP));
+  if (wall.two_sided != 0 || ahead > -kSigmas * std::sqrt(wall.covariance[8])) return false;
+  const Vec3 p_C = to_camera(pose, {wall.p_WP[0], wall.p_WP[1], wall.p_WP[2]});
+  double pixel[2];
+  return pf_camera_project(&camera, p_C.data(), pixel) == PF_OK && pixel[0] >= 0.0 && pixel[1] >= 0.0 &&
+         pixel[0] < camera.width && pixel[1] < camera.height;
 }
 
 }  // namespace
@@ -57,6 +92,22 @@ bool Plan::add_to(pf_slam_t* slam, std::string& error) {
   if (walls_.has_up == 0) return true;
   const double gravity_W[3] = {-walls_.up_W[0], -walls_.up_W[1], -walls_.up_W[2]};
   return pf_set_gravity(slam, gravity_W) >= PF_OK;
+}
+
+bool Plan::take_notice(const FrameView& view, const pf_camera_t& camera, std::string& line) {
+  told_.resize(static_cast<size_t>(walls_.count));
+  for (int32_t i = 0; i < walls_.count && view.has_pose; ++i) {
+    const pf_plane_prior_t& wall = walls_.wall[i].prior;
+    if (told_[static_cast<size_t>(i)] || !shows_its_back(wall, view.pose, camera)) continue;
+    const bool hidden = std::any_of(walls_.wall, walls_.wall + walls_.count,
+                                    [&](const pf_wall_t& w) { return hides(w.prior, view.pose.p_WC, wall.p_WP); });
+    if (hidden) continue;
+    told_[static_cast<size_t>(i)] = true;
+    line = std::string("--walls: the camera sees wall '") + walls_.wall[i].name +
+           "' from its back side, where it does not count; turn its corners (or seen_from) round if it looks this way";
+    return true;
+  }
+  return false;
 }
 
 nlohmann::ordered_json Plan::to_json(const pf_slam_t* slam) const {

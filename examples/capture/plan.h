@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "maths.h"
+#include "view.h"
 
 namespace pf::capture {
 
@@ -23,6 +24,10 @@ class Plan {
   /// Adds the walls to a context that was started, and says where gravity goes if the file does. false: error is one line.
   bool add_to(pf_slam_t* slam, std::string& error);
 
+  /// One line about a wall whose middle the camera sees from its back side, with no other wall before it: the plan has it the wrong way
+  /// round, or lacks what hides it. Once for each wall. false: there is none.
+  bool take_notice(const FrameView& view, const pf_camera_t& camera, std::string& line);
+
   /// For report.json: of each wall how far it has gone from the plan, and how well it is known now.
   nlohmann::ordered_json to_json(const pf_slam_t* slam) const;
 
@@ -32,6 +37,7 @@ class Plan {
  private:
   pf_walls_t walls_{};
   std::vector<uint32_t> id_;  ///< of each wall in the map
+  std::vector<bool> told_;    ///< of each wall, that it is seen from behind
 };
 
 }  // namespace pf::capture

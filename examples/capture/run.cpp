@@ -99,8 +99,9 @@ bool Run::open(std::string& error, int& code) {
   }
   code = kExitRun;
   relative_.open(options_.relative, session_.target() != nullptr);
-  if (!outputs_.open(options_.out, options_.tracks, info.knows_truth, options_.relative > 0, session_.config().camera,
-                     error) ||
+  const bool patches = options_.tracks && session_.config().capacity.max_patches > 0;
+  if (!outputs_.open(options_.out, options_.tracks, patches, info.knows_truth, options_.relative > 0,
+                     session_.config().camera, error) ||
       !outputs_.write_true_planes(source_.planes(), error)) {
     return false;
   }
@@ -193,6 +194,9 @@ Read Run::step(int64_t index) {
   if (!session_.push(image, view_, failure_)) {
     failure_ = "frame " + std::to_string(at) + " (" + source_.name(at) + "): " + failure_;
     return Read::kFailed;
+  }
+  for (std::string line; session_.take_notice(view_, line);) {
+    note(line);
   }
   imu_.add_frame(index, session_.slam(), view_.pose, view_.tracked);
   follow_planes(session_.slam(), view_.hits);

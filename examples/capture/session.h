@@ -42,6 +42,10 @@ class Session {
   /// Lengths of the world are metres: the start or the inertial unit says so.
   bool is_metric() const;
   const Plan& plan() const { return plan_; }
+  /// A line for the user about what this frame has shown. false: there is none.
+  bool take_notice(const FrameView& view, std::string& line) {
+    return !plan_.empty() && plan_.take_notice(view, config_.camera, line);
+  }
   const std::vector<std::string>& log() const { return log_; }
 
  private:

@@ -1,5 +1,7 @@
 #include "sim/paths.h"
 
+#include <cmath>
+
 namespace pf::sim {
 namespace {
 
@@ -69,6 +71,16 @@ Trajectory clutter_path(Random& random) {
                                         {{-0.14, 0.12, -0.72}, {0, 0.05, 0}},  {{0.08, 0.10, -0.76}, {0.05, 0, 0}},
                                         {{0.22, 0.02, -0.74}, {0.03, 0, 0}},   {{0.05, -0.02, -0.72}, {0, 0, 0}}};
   return spline(vary(points, random, 0.03), 1.0);
+}
+
+Trajectory bushes_path(Random& random) {
+  std::vector<Waypoint> points;
+  for (int k = 0; k <= 22; ++k) {
+    const double t = k;
+    points.push_back({{0.26 * std::sin(0.7 * t), -0.12 * std::sin(0.45 * t), -0.72 + 0.05 * std::sin(0.9 * t)},
+                      {0.10 * std::sin(0.5 * t), 0.06 * std::sin(0.35 * t), 0.1}});
+  }
+  return spline(vary(points, random, 0.02), 1.0);
 }
 
 }  // namespace pf::sim

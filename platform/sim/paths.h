@@ -12,5 +12,7 @@ Trajectory wall_path(Random& random);
 /// Sideways at a constant speed, 0.8 m before two planes in a checkerboard.
 Trajectory checker_path(Random& random);
 Trajectory clutter_path(Random& random);
+/// To and fro before leaves, for more than 20 s.
+Trajectory bushes_path(Random& random);
 
 }  // namespace pf::sim

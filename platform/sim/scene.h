@@ -49,6 +49,8 @@ Scene make_wall(Random& random, const SceneOptions& options);
 Scene make_two_depths(Random& random, const SceneOptions& options);
 /// Boards and posts at many depths before a wall: most of what has texture is near the rim of something. The target hangs in the middle.
 Scene make_clutter(Random& random, const SceneOptions& options);
+/// Leaves anywhere in a volume, at all slants, before nothing: no plane holds more than a few points. The target hangs in the middle.
+Scene make_bushes(Random& random, const SceneOptions& options);
 /// A checker board of `square` metres in the plane z = 0, its corner of squares at the origin.
 Scene make_checker(double square, int squares);
 

@@ -10,6 +10,7 @@
 #include "sim/paths.h"
 #include "sim/render.h"
 #include "sim/scene_box.h"
+#include "sim/scene_street.h"
 #include "sim/sensor.h"
 #include "sim/trajectory.h"
 
@@ -31,7 +32,10 @@ Trajectory turning_path(Random& way) {
 }
 Trajectory circle_path(Random&) { return box_circle(kBoxSeconds, 0); }
 
-void adjust_box(pf_sim_options_t* o) {
+Trajectory street_path(Random&) { return street_walk(); }
+
+/// A camera that walks around a wall or along it, and no target.
+void adjust_walk(pf_sim_options_t* o) {
   constexpr double kFocal = 601.8;  // 56 degrees across
   o->camera.width = 640;
   o->camera.height = 480;
@@ -50,9 +54,11 @@ const SceneKind kScenes[] = {
     {"person", make_room, room_path, 840, [](pf_sim_options_t* o) { o->person = 1; }},
     {"exposure", make_desk, desk_path, 570, [](pf_sim_options_t* o) { o->exposure_step = 1.6; }},
     {"repeat", make_desk, desk_path, 570, [](pf_sim_options_t* o) { o->repeated_texture = 1; }},
-    {"box", make_box, circle_path, 930, adjust_box},
+    {"box", make_box, circle_path, 930, adjust_walk},
+    {"street", make_street, street_path, 1800, adjust_walk},
     {"checker", make_two_depths, checker_path, 50, [](pf_sim_options_t* o) { o->shake_m = o->shake_rad = 0; }},
     {"clutter", make_clutter, clutter_path, 240, nullptr},
+    {"bushes", make_bushes, bushes_path, 600, nullptr},
 };
 
 const SceneKind* find_scene(const char* name) {

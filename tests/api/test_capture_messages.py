@@ -152,6 +152,13 @@ def test_walls(root):
     refuse("walls without a start in their frame", 2, ["--start pose:FILE", "q_WT"], [wall], start=[])
     refuse("walls without planes", 2, ["needs planes"], [wall], "--no-planes")
     refuse("too few planes", 2, ["'south'", "--max-planes"], [wall, wall | {"name": "south"}], "--max-planes", "1")
+    corners = [[-1, -1, 3], [1, -1, 3], [1, 1, 3], [-1, 1, 3]]  # its front looks along z, as the camera does
+    for behind, order in ((True, corners), (False, corners[::-1])):
+        face = {"name": "board", "corners": order, "sigma_rotation_deg": 2, "sigma_vertical_deg": 2, "sigma_offset_m": 0.1}
+        path = written(root, "plan.json", json.dumps({"planefold_walls": 1, "faces": [face]}))
+        said = capture("--source", source, "--walls", path, *out, *start).stderr
+        if ("wall 'board' from its back side" in said) != behind:
+            failures.append(f"a wall whose back side is in view ({behind}): {said!r}")
     expect("no such plan", 2, ["--walls", "none.json"], "--source", source, "--walls", root / "none.json", *start, *out)
 
 

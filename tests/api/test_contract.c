@@ -225,6 +225,9 @@ static void test_a_start_should_be_refused_when_its_numbers_make_no_sense(void) 
   bad.covariance[0] = 0;
   bad.covariance[1] = bad.covariance[6] = 0.005;
   REFUSES(PF_ERROR_RANGE, pf_start_from_pose(slam, &bad, velocity));
+  bad = pose;
+  bad.covariance[7] = 1e-20; /* information that no float can hold */
+  REFUSES(PF_ERROR_RANGE, pf_start_from_pose(slam, &bad, velocity));
   REFUSES(PF_ERROR_NULL, pf_start_from_pose(slam, &pose, NULL));
   wrong = target;
   wrong.kind = 9;
@@ -237,6 +240,8 @@ static void test_a_start_should_be_refused_when_its_numbers_make_no_sense(void) 
   REFUSES(PF_ERROR_NONFINITE, pf_start_from_target(slam, &wrong));
   wrong = target;
   wrong.sigma = -1;
+  REFUSES(PF_ERROR_RANGE, pf_start_from_target(slam, &wrong));
+  wrong.sigma = 1e-200;
   REFUSES(PF_ERROR_RANGE, pf_start_from_target(slam, &wrong));
   wrong = target;
   wrong.kind = PF_TARGET_POINTS;

@@ -101,6 +101,35 @@ void test_transition_without_gravity_should_be_exact() {
   check_transition(random, "F without gravity", predict);
 }
 
+/// A prediction that is taken back: the covariance is what the other transition alone makes of the one before.
+void test_transition_that_is_replaced_should_leave_nothing_of_itself() {
+  SeededRandom random(308);
+  const BodyLayout layout = BodyLayout::with_inertial_unit();
+  for (int trial = 0; trial < 10; ++trial) {
+    const Body body = random_inertial_body(random);
+    const Mounting mounting = random_mounting(random);
+    const Preintegral samples = preintegral_of(random_readings(random, 7), body);
+    Preintegral path(kUnitNoise, body.gyro_bias, body.accel_bias);
+    path.coast(samples.dt(), random.normals<3>(1), random.normals<3>(9), Scalar(2), Scalar(1));
+    Transition made, alone, replacing;
+    predict_inertial(body, layout, mounting, samples, Scalar(9.81), &made);
+    predict_inertial(body, layout, mounting, path, Scalar(9.81), &alone);
+    predict_inertial(body, layout, mounting, path, Scalar(9.81), &replacing);
+    replace_transition(made, &replacing);
+    Mat17 A;
+    for (int j = 0; j < kInertialRows; ++j) A.col(j) = random.normals<kInertialRows>(0.1);
+    const Mat17 P = A * A.transpose();
+    const auto after = [](const Transition& t, const Mat17& before) -> Mat17 {
+      return matrix17(t.F) * before * matrix17(t.F).transpose() + matrix17(t.Q);
+    };
+    TEST_ASSERT_TRUE((after(replacing, after(made, P)) - after(alone, P)).cwiseAbs().maxCoeff() <
+                     Scalar(kNumericJacobianIsFloat ? 1e-5 : 1e-12));
+    TEST_ASSERT_TRUE((matrix17(replacing.F) * matrix17(made.F) - matrix17(alone.F)).cwiseAbs().maxCoeff() <
+                     Scalar(kNumericJacobianIsFloat ? 1e-5 : 1e-13));
+    TEST_ASSERT_TRUE(inertial_difference(replacing.mean, alone.mean).norm() == Scalar(0));
+  }
+}
+
 /// Without samples the rows of the gyro's bias are the angular velocity's: e_w = -R_CB e_b.
 void test_transition_without_samples_should_be_exact() {
   SeededRandom random(306);
@@ -200,6 +229,25 @@ void test_begin_at_rest_should_hang_gravity_and_the_accelerometer_s_bias_togethe
   }
 }
 
+/// What a unit at rest reads, by every row of the body.
+void test_reading_at_rest_should_be_exact_by_every_row_of_the_body() {
+  SeededRandom random(309);
+  for (int trial = 0; trial < 10; ++trial) {
+    TestFilter filter(true, BodyLayout::with_inertial_unit());
+    filter->set_mounting(random_mounting(random));
+    const Body body = random_inertial_body(random);
+    StillMeasurement z;
+    const auto reads = [&](const Vec17& e) -> Vec6 {
+      filter->set_mean(moved_inertial(body, e));
+      filter->predict_still(StillReading(), Scalar(9.81), &z);
+      return z.predicted;
+    };
+    reads(Vec17::Zero());
+    const Eigen::Matrix<Scalar, 6, kInertialRows> J = dense_rows(*filter, z.H).leftCols<kInertialRows>().cast<Scalar>();
+    check_jacobian<6, kInertialRows>(J, reads, "J_z_body at rest", Scalar(1), kNumericJacobianTolerance * 4);
+  }
+}
+
 /// Pixels of a rolling shutter, by every row of a body with a unit beside the camera.
 void test_pixels_of_late_rows_should_be_exact_by_every_row_of_the_body() {
   SeededRandom random(306);
@@ -236,8 +284,10 @@ int main(void) {
   RUN_TEST(test_transition_of_the_inertial_model_should_be_exact);
   RUN_TEST(test_transition_without_gravity_should_be_exact);
   RUN_TEST(test_transition_without_samples_should_be_exact);
+  RUN_TEST(test_transition_that_is_replaced_should_leave_nothing_of_itself);
   RUN_TEST(test_return_to_samples_should_be_exact);
   RUN_TEST(test_begin_at_rest_should_hang_gravity_and_the_accelerometer_s_bias_together);
+  RUN_TEST(test_reading_at_rest_should_be_exact_by_every_row_of_the_body);
   RUN_TEST(test_pixels_of_late_rows_should_be_exact_by_every_row_of_the_body);
   return UNITY_END();
 }

@@ -32,6 +32,20 @@ void test_pose_jacobian_should_be_exact_when_turned_about_any_pivot() {
         return z;
       };
       check_jacobian<2, 6>(J, f, "J_pixel_pose");
+
+      // The same point as m / w, and as a direction.
+      for (const Scalar w : {Scalar(0.4), Scalar(0)}) {
+        const Vec3 m = w > Scalar(0) ? Vec3(w * p_W) : Vec3(p_W - p_WC);
+        TEST_ASSERT_TRUE(project_from_pose(camera, q_WC, p_WC, m, w, pivot, &pixel, &J));
+        const auto scaled = [&](const Vec6& d) {
+          const Quat turn = exp_so3(d.head<3>());
+          Vec2 z;
+          TEST_ASSERT_TRUE(
+              project_from_pose(camera, turn * q_WC, pivot + turn * (p_WC - pivot) + d.tail<3>(), m, w, pivot, &z));
+          return z;
+        };
+        check_jacobian<2, 6>(J, scaled, "J_pixel_pose of m / w");
+      }
     }
   }
 }

@@ -40,12 +40,13 @@ LOOK_INSIDE = {"tools/pf-bench"}
 # Inside rooms: headers that only these files may include themselves. A name that ends in * stands for all that begin so.
 ONLY_FOR = {
     # The API reads and drives a session; which back end works behind it is the session's and the view's affair.
-    "slam/frame_loop.h": ["slam/frame_loop.cpp", "slam/session*", "slam/view*"],
+    "slam/frame_loop.h": ["slam/frame_loop*", "slam/session*", "slam/view*"],
     "slam/session.h": ["slam/session.cpp", "api/*"],
     # Starts and the state that the caller sees know no filter; nor do the frame's results.
     "filter/filter.h": ["filter/*", "slam/body_motion*", "slam/consensus*", "slam/feature_keeper*", "slam/filter_start*", "slam/frame_loop*",
                         "slam/image_front_end*", "slam/leave_one_out*", "slam/observation_front_end*", "slam/pixel_update*", "slam/patch_*", "slam/plane_*",
-                        "slam/pose_mark*", "slam/relocaliser*", "slam/settings.h", "slam/triple_consensus*", "slam/unit_watch*", "slam/usable_pose*"],
+                        "slam/pose_mark*", "slam/relocaliser*", "slam/rest_hold*", "slam/settings.h", "slam/triple_consensus*", "slam/unit_watch*",
+                        "slam/usable_pose*"],
     "slam/patch_keeper.h": ["slam/patch_*", "slam/frame_loop*", "slam/view*"],
     "slam/plane_keeper.h": ["slam/plane_*", "slam/frame_loop*", "slam/view*"],
     "slam/image_front_end.h": ["slam/image_*", "slam/filter_start*", "slam/frame_loop*", "slam/relocaliser*"],

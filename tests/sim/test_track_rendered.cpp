@@ -190,6 +190,18 @@ void test_a_map_of_a_dozen_features_should_be_tracked_at_four_frames_a_second() 
   TEST_ASSERT_EQUAL_INT(15, tracked);
 }
 
+/// Between two frames the picture moves by up to a third of its width, and seldom as before.
+void test_a_hand_that_shakes_should_be_followed_at_ten_frames_a_second() {
+  RenderedRun run("desk", 40, Start::kRectangle, [](pf_sim_options_t* options) {
+    options->rate_hz = 10;
+    options->shake_rad = 0.05;
+  });
+  const int tracked = run.tracked_until(40);
+  tell("a hand that shakes, 10 frames/s", run, 0);
+  TEST_ASSERT_GREATER_OR_EQUAL_INT(38, tracked);
+  TEST_ASSERT_TRUE(run.worst_error(0) < 0.03);
+}
+
 void count_line(void* user, const char* line) {
   std::printf("%s\n", line);
   *static_cast<int*>(user) += std::strstr(line, "nominal timestamps") != nullptr ? 1 : 0;
@@ -233,6 +245,7 @@ int main(void) {
   RUN_TEST(test_a_frozen_camera_should_coast_after_coast_s_with_growing_covariance_and_be_found_again);
   RUN_TEST(test_a_map_of_a_dozen_features_should_be_tracked_from_the_target_on);
   RUN_TEST(test_a_map_of_a_dozen_features_should_be_tracked_at_four_frames_a_second);
+  RUN_TEST(test_a_hand_that_shakes_should_be_followed_at_ten_frames_a_second);
   RUN_TEST(test_rows_should_have_no_times_of_their_own_when_timestamps_are_nominal);
   RUN_TEST(test_pure_rotation_should_stay_starting_when_there_is_no_target);
   return UNITY_END();

@@ -49,6 +49,14 @@ with tempfile.TemporaryDirectory() as name:
     require(gap["lost_runs"] == 0 and gap["refused"] == 0, "lost by a unit that stops for a second")
     require(gap["fault"]["tracked_after"] > 0.99 and gap["fault"]["worst_sigmas_after"] < 4, f"after a gap: {gap['fault']}")
 
+    # A longer rest tells nothing new of depths, and must not seem to.
+    rested, _ = report(folder, "--seconds", "28", "--rest", "20")
+    require(rested["doubt"]["runs"] == 0 and rested["scale_error"]["max"] < 0.03, f"after a long rest: {rested['scale_error']}")
+    still, _ = report(folder, "--still", "--seconds", "30")
+    require(still["resting_share"] > 0.9 and still["wander_m"]["median"] < 0.002, f"at rest: {still['wander_m']}")
+    turns, _ = report(folder, "--still", "--seconds", "10", "--turn", "0.5")
+    require(turns["resting_share"] == 0, f"at rest on a turntable in {turns['resting_share']} of frames")
+
     require(vio["doubt"]["runs"] == 0, f"a healthy unit was doubted: {vio['doubt']}")
     mount, _ = report(folder, "--seconds", "14", "--fault", "mount", "--fault-at", "2")
     require(mount["doubt"]["runs"] == SEEDS and mount["doubt"]["at_s"]["max"] < 2 + 5, f"mounted wrongly: {mount['doubt']}")
@@ -58,6 +66,15 @@ with tempfile.TemporaryDirectory() as name:
     back, _ = report(folder, "--seconds", "20", "--fault", "reversed", "--fault-at", "8")
     require(back["doubt"]["runs"] == SEEDS and back["doubt"]["at_s"]["max"] < 8.5, f"doubted late: {back['doubt']}")
     require(back["lost_runs"] == 0 and back["fault"]["tracked_after"] > 0.99, f"readings reversed: {back['fault']}")
+    # What wrong samples say is not used, so that the map is what it was.
+    require(back["fault"]["nees_after"] < 12 and back["fault"]["worst_sigmas_after"] < 4, f"after the doubt: {back['fault']}")
+
+    # Search ellipses about a wrong prediction hold nothing.
+    path = folder / "rendered.json"
+    run(BIN / "pf-sim", "vio", "--rendered", "--seeds", "1", "--seconds", "13", "--fault", "reversed", "--fault-at", "6", "--json", path)
+    seen = json.loads(path.read_text())
+    require(seen["lost_runs"] == 0 and seen["doubt"]["runs"] == 1, f"reversed in pictures: {seen['doubt']}")
+    require(seen["fault"]["tracked_after"] > 0.99 and seen["fault"]["worst_sigmas_after"] < 4, f"{seen['fault']}")
 
     unknown = subprocess.run([BIN / "pf-sim", "vio", "--fault", "magic"], capture_output=True, text=True)
     require(unknown.returncode == 2 and "clock-jump" in unknown.stderr, f"{unknown.returncode}: {unknown.stderr}")

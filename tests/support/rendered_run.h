@@ -29,12 +29,14 @@ class RenderedRun {
 
   enum class Start { kRectangle, kNone };
 
-  RenderedRun(const char* scene, int length, Start start) {
+  /// change: of what the scene's own options are.
+  RenderedRun(const char* scene, int length, Start start, void (*change)(pf_sim_options_t*) = nullptr) {
     std::printf("scene %s, seed %llu\n", scene, static_cast<unsigned long long>(kSeed));
     pf_sim_options_t options;
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_options_default(scene, &options));
     options.seed = kSeed;
     options.frames = length;
+    if (change != nullptr) change(&options);
     sim_ = pf_sim_open(scene, &options);
     TEST_ASSERT_NOT_NULL(sim_);
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));

@@ -81,6 +81,14 @@ void test_what_is_not_finite_should_read_as_unknown() {
   TEST_ASSERT_EQUAL_DOUBLE(0.0, out[1]);
 }
 
+void test_two_sides_that_differ_should_become_their_mean() {
+  double C[9] = {4, 1, 0, 1 + 2e-9, 2, 0.5, 0, 0.5, 1};
+  repair_covariance(C, 3);
+  TEST_ASSERT_EQUAL_DOUBLE(1 + 1e-9, C[1]);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < i; ++j) TEST_ASSERT_TRUE(C[3 * i + j] == C[3 * j + i]);
+}
+
 void test_any_symmetric_numbers_should_become_a_covariance() {
   SeededRandom random(14);
   for (int run = 0; run < 2000; ++run) {
@@ -131,6 +139,7 @@ int main() {
   RUN_TEST(test_a_variance_should_be_as_large_as_its_covariances_ask_for);
   RUN_TEST(test_two_lost_variances_with_a_covariance_should_not_read_as_certain);
   RUN_TEST(test_what_is_not_finite_should_read_as_unknown);
+  RUN_TEST(test_two_sides_that_differ_should_become_their_mean);
   RUN_TEST(test_any_symmetric_numbers_should_become_a_covariance);
   RUN_TEST(test_a_motion_should_not_be_certain_when_rounding_took_all_of_it);
   return UNITY_END();

@@ -127,6 +127,12 @@ class Association(unittest.TestCase):
         np.testing.assert_allclose(kept.t - matched.t, 0.004, atol=1e-12)
         self.assertEqual(len(kept), 15)
 
+    def test_truth_should_be_taken_where_frames_are_every_other_one_of_a_slow_camera(self):
+        truth = curve(30, 15.0)
+        kept, matched, how = associate(truth.select(np.arange(0, 30, 2)), truth)
+        self.assertEqual((len(kept), how), (15, "nearest"))
+        np.testing.assert_array_equal(matched.t, kept.t)
+
     def test_frames_should_be_left_out_when_truth_has_a_hole(self):
         truth = curve(700, 200.0)
         truth = truth.select(np.flatnonzero((truth.t < 0.5) | (truth.t > 1.5)))

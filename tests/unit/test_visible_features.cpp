@@ -1,4 +1,5 @@
 // Which of the visible features are measured when there are more than a frame takes: those that this view can be compared with first.
+// Where new features are taken when not every cell of the image gets one: where a proven plane is.
 #include "slam/image_front_end.h"
 #include "support/filter_cases.h"
 #include "support/test_cameras.h"
@@ -91,11 +92,56 @@ void test_proven_features_should_be_measured_first() {
   TEST_ASSERT_EQUAL_INT(proven, bench.update.candidate(1).feature);
 }
 
+/// How many of ten new features lie in the left quarter of the image, where a plane of this age is seen.
+int new_features_on_the_left(int age) {
+  Bench bench;
+  Settings& settings = bench.settings;
+  settings.planes = true;
+  settings.plane_min_points = 7;
+  settings.features_in_view = 10;
+  settings.inverse_depth_relative_sigma = Scalar(0.5);
+  const Body body = bench.filter->state().body;
+  const auto at = [&](Scalar u, Scalar v) {
+    Vec3 ray_C;
+    TEST_ASSERT_TRUE(unproject(settings.camera, Vec2(u, v), &ray_C));
+    return Vec3(2 * ray_C / ray_C.z());
+  };
+  const Scalar right = static_cast<Scalar>(settings.camera.width) / 4,
+               low = static_cast<Scalar>(settings.camera.height - 1);
+  const Vec3 corner = at(0, 0);
+  PlaneFrame frame;
+  frame.o_W = body.p_W + body.q_WC * corner;
+  // The normal is towards the camera, so that y goes up in the image.
+  frame.R_WP = body.q_WC.toRotationMatrix() * Eigen::DiagonalMatrix<Scalar, 3>(1, -1, -1);
+  const int slot = bench.filter->add_known_plane(frame, Mat3::Identity() * Scalar(1e-6), Scalar(0));
+  TEST_ASSERT_TRUE(slot >= 0);
+  PlaneEntry& plane = bench.map.planes[bench.map.planes.add(slot)];
+  plane.age = age;
+  plane.max_points = 8;
+  const Vec2 outline[4] = {Vec2(0, 0), Vec2(at(right, 0).x() - corner.x(), 0), Vec2(0, corner.y() - at(0, low).y()),
+                           Vec2(at(right, 0).x() - corner.x(), corner.y() - at(0, low).y())};
+  extend_outline(&plane.seen, outline, 4);
+  bench.images.add_features();
+  int added = 0, left = 0;
+  for (int t = 0; t < bench.frame.match_count(); ++t) {
+    ++added;
+    if (bench.frame.match(t).measured.x() < right) ++left;
+  }
+  TEST_ASSERT_EQUAL_INT(10, added);
+  return left;
+}
+
+void test_new_features_should_be_taken_on_a_proven_plane_first() {
+  TEST_ASSERT_EQUAL_INT(10, new_features_on_the_left(10));
+  TEST_ASSERT_TRUE(new_features_on_the_left(0) <= 5);
+}
+
 }  // namespace
 
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_features_of_another_side_should_not_take_the_place_of_new_ones);
   RUN_TEST(test_proven_features_should_be_measured_first);
+  RUN_TEST(test_new_features_should_be_taken_on_a_proven_plane_first);
   return UNITY_END();
 }

@@ -10,6 +10,9 @@
 #ifdef PF_BENCH_HAVE_SIM
 #include <planefold_platform/sim.h>
 #endif
+#ifdef PF_BENCH_HAVE_WALLS
+#include <planefold_platform/walls.h>
+#endif
 
 namespace bench {
 namespace {
@@ -109,10 +112,12 @@ bool load_frames(const std::string& source, const std::string& start, const std:
     frames.has_target = pf_read_target(start.c_str() + 7, &frames.target, line) == 0;
   } else if (start.rfind("rectangle:", 0) == 0) {
     frames.has_target = pf_parse_rectangle(start.c_str() + 10, &frames.target, line) == 0;
+  } else if (start.rfind("pose:", 0) == 0) {
+    frames.has_pose = pf_read_first_pose(start.c_str() + 5, &frames.pose, line) == 0;
   } else if (!start.empty() && start != "auto") {
-    std::snprintf(line, sizeof(line), "--start %s: write auto, target:FILE or rectangle:WxH", start.c_str());
+    std::snprintf(line, sizeof(line), "--start %s: write auto, pose:FILE, target:FILE or rectangle:WxH", start.c_str());
   }
-  if (line[0] != '\0' && !frames.has_target) {
+  if (line[0] != '\0' && !frames.has_target && !frames.has_pose) {
     message = line;
     return false;
   }
@@ -121,6 +126,24 @@ bool load_frames(const std::string& source, const std::string& start, const std:
     return false;
   }
   return true;
+}
+
+bool load_walls(const std::string& file, Frames& frames, std::string& message) {
+#ifdef PF_BENCH_HAVE_WALLS
+  const auto walls = std::make_unique<pf_walls_t>();
+  char line[PF_WALLS_MESSAGE] = "";
+  if (pf_read_walls(file.c_str(), walls.get(), line) != 0) {
+    message = line;
+    return false;
+  }
+  frames.walls.clear();
+  for (int32_t i = 0; i < walls->count; ++i) frames.walls.push_back(walls->wall[i].prior);
+  return true;
+#else
+  (void)frames;
+  message = "--walls " + file + ": this build cannot read walls";
+  return false;
+#endif
 }
 
 std::vector<std::string> default_sources(const char* folder) {

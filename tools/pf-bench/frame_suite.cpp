@@ -41,9 +41,24 @@ uint32_t kernels_by_name(const std::string& name) {
   return name.empty() ? PF_KERNELS_AUTO : 99;  // 99: the config is refused, with the field's name
 }
 
+/// First velocities of a hand [m/s, rad/s].
+constexpr double kHandVariance = 0.25;
+constexpr double kHandCovariance[36] = {kHandVariance, 0, 0, 0, 0, 0, 0, kHandVariance, 0, 0, 0, 0, 0, 0,
+                                        kHandVariance, 0, 0, 0, 0, 0, 0, kHandVariance, 0, 0, 0, 0, 0, 0,
+                                        kHandVariance, 0, 0, 0, 0, 0, 0, kHandVariance};
+
+/// Patches that the last frame measured.
+int count_patches(const pf_slam_t* slam) {
+  pf_patch_t patches[32];
+  size_t count = 0;
+  if (pf_get_patches(slam, patches, 32, &count) < 0) return 0;
+  return static_cast<int>(std::count_if(patches, patches + std::min<size_t>(count, 32),
+                                        [](const pf_patch_t& p) { return p.status == PF_MATCH_INLIER; }));
+}
+
 /// Samples of one sequence, frames with a tracked camera only; all in microseconds.
 struct Samples {
-  std::vector<double> own, peer, stage[kStageCount], inliers, attempts, features, state_dim;
+  std::vector<double> own, peer, stage[kStageCount], patch, patches, inliers, attempts, features, state_dim;
   int64_t frames = 0, tracked = 0;
 };
 
@@ -61,7 +76,7 @@ class FrameSuite {
       Frames frames;
       std::string message;
       if (!load_frames(source, options_.start, options_.calibration, options_.frames, frames, message) ||
-          !measure(frames, message)) {
+          !(options_.walls.empty() || load_walls(options_.walls, frames, message)) || !measure(frames, message)) {
         std::fprintf(stderr, "pf-bench: %s\n", message.c_str());
         return 1;
       }
@@ -76,6 +91,10 @@ class FrameSuite {
     config.camera = frames.camera;
     config.kernels = kernels_by_name(options_.kernels);
     config.clock_ns = clock_ns;
+    if (!frames.walls.empty()) {
+      config.capacity.max_patches = options_.patches;
+      config.capacity.max_planes += static_cast<int32_t>(frames.walls.size());
+    }
     const char* field = "";
     pf_memory_t memory{};
     if (pf_config_check(&config, &field) != PF_OK || pf_memory_query(&config, &memory) != PF_OK) {
@@ -92,6 +111,11 @@ class FrameSuite {
     for (int pass = 0; pass < options_.passes && status >= 0; ++pass) {
       if (pass > 0) status = pf_reset(slam);
       if (status >= 0 && frames.has_target) status = pf_start_from_target(slam, &frames.target);
+      if (status >= 0 && frames.has_pose) status = pf_start_from_pose(slam, &frames.pose, kHandCovariance);
+      for (const pf_plane_prior_t& wall : frames.walls) {
+        uint32_t id = 0;
+        if (status >= 0) status = pf_add_plane_prior(slam, &wall, &id);
+      }
       for (size_t i = 0; i < frames.pixels.size() && status >= 0; ++i) status = step(slam, frames, i, samples);
     }
     if (status < 0) {
@@ -127,6 +151,8 @@ class FrameSuite {
       samples.own.push_back(own);
       if (peer >= 0) samples.peer.push_back(peer);
       for (int s = 0; s < kStageCount; ++s) samples.stage[s].push_back(1e-3 * static_cast<double>(report.stage_ns[s]));
+      samples.patch.push_back(1e-3 * static_cast<double>(report.stage_ns[PF_STAGE_PATCH]));
+      samples.patches.push_back(count_patches(slam));
       samples.inliers.push_back(report.inliers);
       samples.attempts.push_back(report.attempts);
       samples.features.push_back(report.features);
@@ -165,6 +191,12 @@ class FrameSuite {
       row(std::string(" ") + kStages[s], us, "frame", median);
     }
     row(" all stages", sum, "frame", median);
+    if (options_.patches > 0 && !frames.walls.empty()) {
+      for (const auto& [what, share] : {std::pair{" patch", 0.5}, {" patch p95", 0.95}})
+        row(what, quantile(samples.patch, share), peer, quantile(samples.peer, 0.5));
+      std::snprintf(line, sizeof(line), "%.0f patches measured in a frame (median)", quantile(samples.patches, 0.5));
+      report_.note(frames.name + " patches", line);
+    }
     report_.note(frames.name + " slowest", slowest(samples));
   }
 

@@ -21,9 +21,14 @@ int main(int argc, char** argv) {
     } else if (s->input == bench::Suite::kSequences) {
       sub->add_option("--source", options.sources,
                       "images:DIR, euroc:DIR, tum:DIR or sim:NAME (default: what lies in $PLANEFOLD_DATA)");
-      sub->add_option("--start", options.start,
-                      "auto, target:FILE or rectangle:WxH (default: target.yaml beside the images, else auto)");
+      sub->add_option(
+          "--start", options.start,
+          "auto, pose:FILE, target:FILE or rectangle:WxH (default: target.yaml beside the images, else auto)");
       sub->add_option("--calib", options.calibration, "calibration file (default: the one beside the images)");
+      sub->add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start");
+      sub->add_option("--patches", options.patches, "capacity for patches of these walls")
+          ->check(CLI::Range(0, 32))
+          ->capture_default_str();
       sub->add_option("--passes", options.passes, "through every sequence")
           ->check(CLI::Range(1, 1000))
           ->capture_default_str();

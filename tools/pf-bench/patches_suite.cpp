@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "covariance/select.h"
@@ -30,6 +31,7 @@ constexpr double kMaxAngleDeg = 6, kSigmaOffset = 0.002, kExact = 1e-6;
 constexpr double kSigmaStart = 0.002, kSigmaStartDeg = 0.1, kSigmaSpeed = 0.1;
 constexpr double kShakeM = 0.01, kShakeRad = 0.01;
 constexpr double kCornerPx = 0.1;                        // noise of a corner, in the reference and in each frame
+constexpr double kNoNoise = 1e-4;                        // [px]
 constexpr double kPatchHalf = 0.15, kPatchReach = 0.25;  // of a patch, and where its middle may be [m]
 constexpr double kBirthSlant = 52, kMaxSlant = 66;       // [deg]
 constexpr int kPatchesOnWall = 3, kBirthFrames = 30;     // a wall's next one begins so long after its last
@@ -59,6 +61,12 @@ struct Patch {
   pf::Vec2 reference_px[4];
 };
 
+enum class Told {
+  kAsDrawn,        ///< walls and noise as they are drawn
+  kWallsExact,     ///< walls as if they were exact
+  kReferenceExact  ///< the reference's own noise as if there were none
+};
+
 struct Result {
   double rmse_m = 0, worst_m = 0, nees = 0, wall_deg = 0, plan_deg = 0;
   int rejected = 0, measured = 0;
@@ -66,8 +74,9 @@ struct Result {
 
 class BoxRun {
  public:
-  BoxRun(std::uint64_t seed, bool exact)
-      : patch_random_(seed, kPatchStream),
+  BoxRun(std::uint64_t seed, Told told)
+      : own_px_(told == Told::kReferenceExact ? kNoNoise : kCornerPx),
+        patch_random_(seed, kPatchStream),
         noise_(seed, kNoiseStream),
         block_(std::aligned_alloc(64, kBytes), std::free) {
     const double f = 320 / std::tan(28 * kDegree), intrinsics[4] = {f, f, 319.5, 239.5}, distortion[8] = {};
@@ -86,7 +95,7 @@ class BoxRun {
     filter_.init(pf::select_kernels(0), pf::BodyLayout::with_constant_velocity(), true);
     filter_.set_lens(camera_, pf::LensPrior());
     begin(seed);
-    add_walls(seed, exact);
+    add_walls(seed, told == Told::kWallsExact);
   }
 
   Result run() {
@@ -239,7 +248,7 @@ class BoxRun {
       if (camera < 0) return;
       for (int k = 0; k < 4; ++k) patch.reference_px[k] = pixel[k] + noise();
       patch.slot = filter_.add_patch(
-          camera, pf::PatchMeasurement::Matrix::Identity() * static_cast<pf::Scalar>(kCornerPx * kCornerPx));
+          camera, pf::PatchMeasurement::Matrix::Identity() * static_cast<pf::Scalar>(own_px_ * own_px_));
       if (patch.slot >= 0) patches_.push_back(patch);
     }
   }
@@ -261,6 +270,7 @@ class BoxRun {
     result_.worst_m = std::max(result_.worst_m, error);
   }
 
+  double own_px_;  ///< sigma of the reference's corners, as the filter is told
   Random patch_random_, noise_;
   std::unique_ptr<void, void (*)(void*)> block_;
   pf::Camera camera_;
@@ -280,11 +290,13 @@ double median(std::vector<double> values) {
 int run_patches(const SuiteOptions& options) {
   Report report(options);
   report.note("scalar", scalar_name());
-  for (const bool exact : {false, true}) {
+  for (const auto& [name, told] : {std::pair{"refined", Told::kAsDrawn},
+                                   {"exact", Told::kWallsExact},
+                                   {"reference as exact", Told::kReferenceExact}}) {
     std::vector<double> rmse, worst, nees, wall, plan;
     int rejected = 0, measured = 0;
     for (int seed = 1; seed <= options.seeds; ++seed) {
-      const Result r = std::make_unique<BoxRun>(static_cast<std::uint64_t>(seed), exact)->run();
+      const Result r = std::make_unique<BoxRun>(static_cast<std::uint64_t>(seed), told)->run();
       rmse.push_back(100 * r.rmse_m);
       worst.push_back(100 * r.worst_m);
       nees.push_back(r.nees);
@@ -293,7 +305,7 @@ int run_patches(const SuiteOptions& options) {
       rejected += r.rejected;
       measured += r.measured;
     }
-    Row row{"patches", exact ? "exact" : "refined", scalar_name(), 0, 8, 0, "", 0};
+    Row row{"patches", name, scalar_name(), 0, 8, 0, "", 0};
     row.figures = {
         {"rmse_cm", median(rmse)},     {"rmse_worst_cm", *std::max_element(rmse.begin(), rmse.end())},
         {"largest_cm", median(worst)}, {"largest_worst_cm", *std::max_element(worst.begin(), worst.end())},

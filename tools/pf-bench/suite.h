@@ -25,6 +25,8 @@ struct SuiteOptions {
   /// Of suites that run on sequences.
   std::vector<std::string> sources;
   std::string start, calibration;
+  std::string walls;    ///< file of walls known beforehand; none where it is empty
+  int patches = 4;      ///< capacity for patches, where there are walls
   int passes = 3;       ///< through every sequence
   int seeds = 10;       ///< of suites that draw what they run on
   int frames = 100000;  ///< at most, of every sequence

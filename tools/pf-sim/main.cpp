@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   pfsim::add_kidnap(app, result);
   pfsim::add_rest(app, result);
   pfsim::add_box(app, result);
+  pfsim::add_street(app, result);
   pfsim::add_vio(app, result);
   pfsim::add_templates(app, result);
   try {

@@ -73,7 +73,7 @@ class Run {
         rows_(rows),
         out_(*summary),
         world_(options.rendered ? VioWorld(seed, options.rest_s)
-                                : VioWorld(seed, options.points, options.seconds, options.rest_s)),
+                                : VioWorld(seed, options.points, options.seconds, options.rest_s, options.turn_rad_s)),
         noise_(seed, 53),
         sensor_(unit(options, seed), world_.path()),
         context_(config_of(options, world_.camera())),
@@ -153,6 +153,7 @@ class Run {
 
   pf_status_t push_points(const Pose& pose, std::int64_t t_ns, bool dark) {
     auto seen = world_.observe(pose, o_.sigma_px, noise_);
+    if (o_.hand) world_.wave(1e-9 * static_cast<double>(t_ns), o_.sigma_px, noise_, &seen);
     if (dark) seen.clear();
     return pf_push_observations(context_.slam, t_ns, seen.data(), seen.size());
   }
@@ -239,6 +240,7 @@ class Run {
     pf_inertial_t unit;
     if (pf_get_inertial(context_.slam, &unit) != PF_OK || unit.metric == 0) return false;
     if (out_.metric_frame < 0) out_.metric_frame = k;
+    out_.resting_frames += unit.resting != 0;
     const Vec3 g = (first_.R_WC.transposed() * o_.imu.gravity_W).unit();
     const Vec3 estimate = Vec3{unit.gravity_W[0], unit.gravity_W[1], unit.gravity_W[2]}.unit();
     const Vec3 turn = estimate.cross(g);

@@ -37,6 +37,8 @@ struct VioOptions {
   double sigma_gyro_bias = 0.02;  ///< from which a run's biases are drawn [rad/s]
   double sigma_accel_bias = 0.1;  ///< [m/s^2]
   int points = 300;
+  double turn_rad_s = 0;  ///< of a camera on a turntable that rests otherwise
+  bool hand = false;      ///< moves before the lens
   bool use_imu = true;
   bool rendered = false;  ///< pictures of the room of 4 m, in place of points
   double noise_grey = 2;  ///< of the pictures
@@ -62,6 +64,7 @@ struct VioSummary {
          worst_sigmas_after = 0;  ///< of the pose, from 5 s after a fault began on: sum, and largest position error
   std::int32_t frames_after = 0;
   double wander_m = 0, wander_rad = 0;  ///< of a camera that rests to the end: farthest from its first pose in metres
+  std::int32_t resting_frames = 0;      ///< in which the pose was held
   double worst_bias_sigmas = 0;         ///< largest error of a bias in its own sigma
   std::int32_t tracked_after = 0, judged_after = 0, refused_samples = 0;
   double doubted_at_s = -1;  ///< when the unit first came into doubt, negative: never

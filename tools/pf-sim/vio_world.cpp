@@ -19,6 +19,7 @@ constexpr double kStep = 0.6;                           // from one to the next 
 constexpr double kShakeM = 0.004, kShakeRad = 0.012;    // of the hand
 constexpr double kRamp = 0.5;                           // from rest to the walk's speed [s]
 constexpr double kBorder = 4;                           // nothing is measured this close to the border [px]
+constexpr int kHand = 24;                               // points of a hand
 constexpr double kNearest = 0.3;                        // nor nearer [m]
 
 /// Points on the walls, the floor and the ceiling, and every third one inside.
@@ -43,7 +44,8 @@ pf_camera_t camera_of_points() {
 
 }  // namespace
 
-VioWorld::VioWorld(std::uint64_t seed, int points, double seconds, double rest_s) : camera_(camera_of_points()) {
+VioWorld::VioWorld(std::uint64_t seed, int points, double seconds, double rest_s, double turn_rad_s)
+    : camera_(camera_of_points()) {
   Random world(seed, 51), way(seed, 52);
   for (int k = 0; k < points; ++k) points_.push_back(place(world, k));
   // Round and round an ellipse, looking ahead and about, up and down.
@@ -58,6 +60,24 @@ VioWorld::VioWorld(std::uint64_t seed, int points, double seconds, double rest_s
   }
   path_ = pf::sim::after_rest(pf::sim::shaken(pf::sim::spline(waypoints, kInterval), way, kShakeM, kShakeRad), rest_s,
                               kRamp);
+  if (turn_rad_s == 0) return;
+  const Pose begin = path_(0);
+  path_ = [begin, turn_rad_s](double t) {
+    return Pose{pf::sim::rotation_exp({0, turn_rad_s * t, 0}) * begin.R_WC, begin.p_WC};
+  };
+}
+
+void VioWorld::wave(double t, double sigma_px, Random& noise, std::vector<pf_observation_t>* seen) const {
+  for (int k = 0; k < kHand; ++k) {
+    const double a = 0.02 * (k % 6) + 0.12 * std::sin(2.1 * t), b = 0.02 * (k / 6) + 0.08 * std::sin(3.3 * t + 1);
+    const double p[3] = {a - 0.05, b - 0.05, 0.4 + 0.03 * std::sin(1.3 * t)};
+    double pixel[2];
+    if (pf_camera_project(&camera_, p, pixel) != PF_OK) continue;
+    const double e[2] = {noise.normal(), noise.normal()};
+    seen->push_back({static_cast<std::uint32_t>(points_.size()) + static_cast<std::uint32_t>(k),
+                     {pixel[0] + sigma_px * e[0], pixel[1] + sigma_px * e[1]},
+                     sigma_px});
+  }
 }
 
 VioWorld::VioWorld(std::uint64_t seed, double rest_s) {

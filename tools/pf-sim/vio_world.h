@@ -12,13 +12,15 @@ namespace pfsim {
 /// Points of a room, and a walk through it. W has y down.
 class VioWorld {
  public:
-  VioWorld(std::uint64_t seed, int points, double seconds, double rest_s);
+  VioWorld(std::uint64_t seed, int points, double seconds, double rest_s, double turn_rad_s);
   /// The rendered room, and the walk that belongs to it.
   VioWorld(std::uint64_t seed, double rest_s);
 
   const pf_camera_t& camera() const { return camera_; }
   const pf::sim::Trajectory& path() const { return path_; }
   const std::vector<pf::sim::Vec3>& points() const { return points_; }
+  /// A hand of kHand points, 0.4 m before the camera, that waves about: pixels with noise, their ids behind those of the points.
+  void wave(double t, double sigma_px, pf::sim::Random& noise, std::vector<pf_observation_t>* seen) const;
   /// Pixels with noise of the points that a camera sees.
   std::vector<pf_observation_t> observe(const pf::sim::Pose& pose, double sigma_px, pf::sim::Random& noise) const;
   /// The picture that a camera sees, in `grey`. False where nothing is rendered.

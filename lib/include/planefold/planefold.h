@@ -365,7 +365,7 @@ typedef struct pf_target {
   double points_W[PF_TARGET_MAX_POINTS][3]; /* [m] */
   pf_pose_t first_pose; /* about where the camera is at first, with its covariance; t_ns is unused */
   /* Both. */
-  double sigma; /* [m] > 0, standard deviation of the target's points */
+  double sigma; /* [m] 1e-9 .. 1e3, standard deviation of the target's points */
 } pf_target_t;
 
 /* Start in front of a known target. Before the first frame only. Until the target is seen the state is starting. */
@@ -376,7 +376,7 @@ PF_API pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* targ
  * above twice its sigma tell them; the scale is that of first_depth where nothing else says it. PF_ERROR_STATE together
  * with a rectangle as target, which gives the pose itself. With a target of points both may be given: the known pose
  * then counts if the points are seen in the first frame, and their own sighting later. With neither start, W is the
- * first camera. */
+ * first camera. PF_ERROR_RANGE: a standard deviation below 1e-9, or numbers that are no covariance. */
 PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]);
 
 /* Stops measuring the target's own points; they stay in the map. */
@@ -392,7 +392,7 @@ typedef struct pf_plane_prior {
   double R_WP[9]; /* the plane's frame, row-major: x and y in the plane, z towards the side that can be seen */
   double p_WP[3]; /* its origin: the wall's own centre, inside of the outline [m] */
   /* 3x3 of (alpha, beta, delta) at that origin: n_true = n + alpha x_W + beta y_W, n_true . (p - p_WP) = delta.
-   * Positive on the diagonal.   [rad, rad, m] */
+   * Standard deviations of 1e-9 at least.   [rad, rad, m] */
   double covariance[9];
   int32_t outline_count; /* 3 .. PF_OUTLINE_MAX */
   /* x y in the plane's frame, counter-clockwise seen from the z side, convex: every vertex is a corner */
@@ -409,8 +409,8 @@ typedef struct pf_plane_prior {
  * new map begins after a loss; pf_reset drops them, and so does an estimate that is no longer finite.
  * PF_ERROR_STATE where the place of W is not known to you: before pf_start_from_pose, or pf_start_from_target with points or
  * with a place, and in a map that began after that start's; with plane.enabled 0. PF_ERROR_FULL: more planes than
- * capacity.max_planes, or no rows. PF_ERROR_RANGE: R_WP is no rotation, covariance has a negative eigenvalue or a zero
- * on its diagonal, or the outline is not convex, crosses itself, is not counter-clockwise or does not hold the origin. */
+ * capacity.max_planes, or no rows. PF_ERROR_RANGE: R_WP is no rotation, covariance has a negative eigenvalue or a standard
+ * deviation below 1e-9, or the outline is not convex, crosses itself, is not counter-clockwise or does not hold the origin. */
 PF_API pf_status_t pf_add_plane_prior(pf_slam_t* slam, const pf_plane_prior_t* prior, uint32_t* id);
 
 /* ---------------------------------------------------------------------------------------------------- input -- */
@@ -718,6 +718,10 @@ typedef struct pf_inertial {
    * the camera has been at rest for a second. A map of unknown scale that is younger than 15 s begins anew then. */
   uint32_t metric;
   uint32_t map_id; /* as in pf_pose_t */
+  /* 1: in this frame the pose is held, since samples and pictures have been at rest for a second at least. A picture alone or
+   * samples alone never say so. */
+  uint32_t resting;
+  uint32_t rests; /* begun since the beginning */
 } pf_inertial_t;
 
 /* PF_NOTE_NOTHING, and *inertial is as it was, before the start and without PF_MOTION_INERTIAL. */

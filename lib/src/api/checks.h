@@ -23,6 +23,8 @@ inline Vec3 vec3(const double* v) {
 inline constexpr double kMaxMetres = 1e6;  // also [m/s]
 inline constexpr double kMaxRate = 1e4;    // [rad/s]
 inline constexpr double kMaxVariance = 1e12;
+/// Smaller standard deviations are refused: float could not hold the information, which is their inverse square, beside other numbers.
+inline constexpr double kMinSigma = 1e-9;  // [m] or [rad], and their rates
 
 inline bool within(const double* v, int n, double max) {
   for (int i = 0; i < n; ++i)
@@ -55,10 +57,10 @@ inline bool is_semidefinite(const double* P, int n, double rounding) {
   return factor_cholesky(C, n, n);
 }
 
-/// Symmetric to rounding, with positive diagonal, Cauchy-Schwarz between any two, and semidefinite.
+/// Symmetric to rounding, with standard deviations of kMinSigma at least, Cauchy-Schwarz between any two, and semidefinite.
 inline bool is_covariance(const double* P, int n) {
   for (int i = 0; i < n; ++i) {
-    if (!(P[i * n + i] > 0.0 && P[i * n + i] <= kMaxVariance)) return false;
+    if (!(P[i * n + i] >= kMinSigma * kMinSigma && P[i * n + i] <= kMaxVariance)) return false;
     for (int j = 0; j < i; ++j) {
       const double scale = std::sqrt(P[i * n + i]) * std::sqrt(P[j * n + j]);
       if (std::fabs(P[i * n + j] - P[j * n + i]) > 1e-9 * scale) return false;

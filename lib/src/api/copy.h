@@ -18,8 +18,9 @@ void copy_matrix(const Matrix& from, double* to) {
     for (int j = 0; j < columns; ++j) to[i * columns + j] = static_cast<double>(from(i, j));
 }
 
-/// A covariance, n x n, for the caller: finite, positive semidefinite, and zero only in rows that are zero. Rounding may leave something
-/// else. A variance that is not positive is wrong by its own size at least, and no smaller than its covariances ask for:
+/// A covariance, n x n, for the caller: finite, symmetric, positive semidefinite, and zero only in rows that are zero. Rounding may leave
+/// something else. Where the two sides of the diagonal differ, their mean counts. A variance that is not positive is wrong by its own size
+/// at least, and no smaller than its covariances ask for:
 ///
 ///   v_i <- max(|v_i|, max_j c_ij^2 / v_j),   |c_ij| <= sqrt(v_i v_j)
 ///
@@ -34,6 +35,8 @@ inline void repair_covariance(double* C, int n) {
     lost[i] = !(row[i] > 0.0);
     row[i] = std::fabs(row[i]);
   }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < i; ++j) C[i * n + j] = C[j * n + i] = 0.5 * C[i * n + j] + 0.5 * C[j * n + i];
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n && lost[i]; ++j) {
       const double c = C[i * n + j], least = lost[j] ? std::fabs(c) : c / C[j * n + j] * c;

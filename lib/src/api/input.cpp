@@ -44,7 +44,7 @@ pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target) {
   if (target == nullptr) return PF_ERROR_NULL;
   if (slam->session.view().used()) return PF_ERROR_STATE;
   if (!pf::finite(&target->sigma, 1)) return PF_ERROR_NONFINITE;
-  if (!(target->sigma > 0.0 && target->sigma < 1e3)) return PF_ERROR_RANGE;
+  if (!(target->sigma >= pf::kMinSigma && target->sigma < 1e3)) return PF_ERROR_RANGE;
   pf::Target t;
   t.sigma_m = static_cast<Scalar>(target->sigma);
   if (target->kind == PF_TARGET_RECTANGLE) {

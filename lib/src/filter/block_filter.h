@@ -128,6 +128,8 @@ class BlockFilter {
   /// dx = P H^T (S + R)^-1 r of the projected measurements that are kept (null: all); zero for considered rows. Null when S + R cannot be
   /// factored or nothing is kept; P is as it was then. *nis gets r^T (S + R)^-1 r.
   const Scalar* gain(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
+  /// dx of the last gain.
+  const Scalar* step() const { return dx_; }
   /// Rows of L^-1 H P that the gain left, S + R = L L^T.
   const Scalar* whitened(int row) const { return W_ + row * ld_; }
   /// Likewise of L^-1 (measured - predicted): white where model and noise are right.

@@ -7,6 +7,7 @@
 #include "base/arena.h"
 #include "filter/block_filter.h"
 #include "filter/gauge_prior.h"
+#include "filter/inertial_motion.h"
 #include "filter/motion.h"
 #include "filter/state.h"
 #include "filter/transport.h"
@@ -190,17 +191,36 @@ class Filter {
   Scalar* scratch_row(int i) { return blocks_.scratch_row(i); }
   /// Takes the chosen measurements in (keep[i] != 0; null takes all) and moves the state. False, with the state and P unchanged, when
   /// S cannot be factored or the step is no number. *nis (may be null) gets the normalised innovation squared.
-  bool finish_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
+  bool finish_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis) {
+    if (!solve_update(z, count, keep, nis)) return false;
+    commit_update();
+    return true;
+  }
   bool finish_update(const PixelMeasurement* z, int count, const unsigned char* keep, Scalar* nis) {
     return finish_update(views_of(z, count), count, keep, nis);
   }
-  /// Of the update that finish_update has just made: the part of its innovation that says something of the pose. With L L^T = S + R,
+  /// finish_update in two steps. The first changes neither the state nor P, and the second need not follow.
+  bool solve_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
+  bool solve_update(const PixelMeasurement* z, int count, const unsigned char* keep, Scalar* nis) {
+    return solve_update(views_of(z, count), count, keep, nis);
+  }
+  void commit_update();
+  /// Of the update that solve_update has just solved: the part of its innovation that says something of the pose. With L L^T = S + R,
   /// A = L^-1 H P_x and y = L^-1 (measured - predicted), x the rows of the pose,
   ///
   ///   nis = y^T A (A^T A)^-1 A^T y = e^T (P_before - P_after)^-1 e,   e the correction of the pose
   ///
   /// chi-square with six degrees of freedom. False where it does not say all of the pose.
   bool pose_nis(Scalar* nis) const;
+
+  /// What a unit at rest should read, with R = R_WB and g = gravity R_WG e_z:
+  ///
+  ///   z = (b_g, b_a - R^T g),   e_bg,   e_ba - R^T [g]x theta - R^T E d          E = gravity (-R_WG e_y, R_WG e_x)
+  ///
+  /// A rotation of the world with gravity changes neither.
+  void predict_still(const StillReading& still, Scalar gravity, StillMeasurement* out) const;
+  /// Whether the reading is within max_nis of that; updates with it where `commit` says so.
+  bool take_still(const StillReading& still, Scalar gravity, Scalar max_nis, bool commit);
 
   /// Pose (q_KC, p_KC) of the camera in the frame of a reference camera K, and the covariance of its (theta, p), in K (relative_pose.h).
   void motion_since(int camera, Quat* q_KC, Vec3* p_KC, Mat6* covariance) const;

@@ -1,5 +1,7 @@
 #include "filter/inertial_motion.h"
 
+#include <cmath>
+
 #include "geometry/so3.h"
 
 namespace pf {
@@ -7,6 +9,8 @@ namespace {
 
 using Mat32 = Eigen::Matrix<Scalar, 3, 2>;
 using Mat36 = Eigen::Matrix<Scalar, 3, 6>;
+
+constexpr int kChain = 3;  ///< biases to rotation to velocity to position
 
 /// Rows of the layout.
 struct PartRows {
@@ -146,6 +150,32 @@ void predict_rotation_only(const Body& body, const BodyLayout& layout, const Mou
   predict_by_rotation(body, layout, mounting, samples, samples.covariance(), linear_density, transition);
 }
 
+/// With N = F_made - I and N^4 = 0:   F F_made^-1 = F - (F - (F - F N) N) N
+void replace_transition(const Transition& made, Transition* transition) {
+  constexpr int kMax = BodyLayout::kMaxDynamicRows;
+  const int dim = made.dim;
+  Scalar X[kMax * kMax], row[kMax];
+  const Scalar* F = transition->F;
+  for (int i = 0; i < dim * dim; ++i) X[i] = F[i];
+  for (int round = 0; round < kChain; ++round)
+    for (int i = 0; i < dim; ++i) {
+      for (int j = 0; j < dim; ++j) {
+        row[j] = F[i * dim + j] + X[i * dim + j];
+        for (int k = 0; k < dim; ++k) row[j] -= X[i * dim + k] * made.F[k * dim + j];
+      }
+      for (int j = 0; j < dim; ++j) X[i * dim + j] = row[j];
+    }
+  for (int i = 0; i < dim * dim; ++i) transition->F[i] = X[i];
+  for (int i = 0; i < dim; ++i) {
+    for (int j = 0; j < dim; ++j) {
+      row[j] = Scalar(0);
+      for (int k = 0; k < dim; ++k) row[j] += X[i * dim + k] * made.Q[k * dim + j];
+    }
+    for (int j = 0; j < dim; ++j)
+      for (int k = 0; k < dim; ++k) transition->Q[i * dim + j] -= row[k] * X[j * dim + k];
+  }
+}
+
 /// Of the rate: white accelerations b over T give e_b variance b T, and with phi by it through G, which is T of a rotation:
 /// phi b T / 3 G G^T, between them b / 2 G T.
 void predict_without_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, Scalar dt,
@@ -187,6 +217,26 @@ void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounti
   add_variance(transition, rows.accel, 3, fresh.sigma_accel_bias);
   add_variance(transition, rows.gravity, 2, fresh.sigma_gravity);
   set_gravity_by_rotation(rows, transition);
+}
+
+void predict_at_rest(const Body& body, const BodyLayout& layout, Scalar dt, const ImuNoise& noise, Scalar sigma_rad,
+                     Scalar sigma_m, Transition* transition) {
+  const PartRows rows(layout);
+  clear(transition, body, rows.dim);
+  transition->mean.w_C.setZero();
+  const Scalar root = std::sqrt(dt);
+  add_variance(transition, Body::kTheta, 3, sigma_rad);
+  add_variance(transition, Body::kPosition, 3, sigma_m);
+  add_variance(transition, rows.gyro, 3, noise.gyro_walk * root);
+  add_variance(transition, rows.accel, 3, noise.accel_walk * root);
+}
+
+void begin_speed(const Body& body, const BodyLayout& layout, Scalar sigma_speed, Transition* transition) {
+  const PartRows rows(layout);
+  clear(transition, body, rows.dim);
+  transition->mean.v_W.setZero();
+  forget_rows(transition, rows.velocity, 3);
+  add_variance(transition, rows.velocity, 3, sigma_speed);
 }
 
 void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& mounting, const RestReading& rest,

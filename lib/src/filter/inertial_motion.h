@@ -36,6 +36,13 @@ void predict_without_samples(const Body& body, const BodyLayout& layout, const M
 void begin_without_samples(const Body& body, const BodyLayout& layout, Scalar sigma_rate, bool anew, Scalar sigma_speed,
                            Transition* transition);
 
+/// What takes back a transition that was made, and makes another from where it began:
+///
+///   F <- F F_made^-1,   Q <- Q - F Q_made F^T   (with the new F), which is a covariance only together with P
+///
+/// F_made - I is nilpotent, as in the models above: biases and gravity move the rotation and the velocity, these the position.
+void replace_transition(const Transition& made, Transition* transition);
+
 /// What samples say that are used again.
 struct FreshReading {
   Vec3 gyro = Vec3::Zero();  ///< at the body's time
@@ -62,6 +69,22 @@ struct RestReading {
   Scalar sigma_accel_bias = 0;  ///< [m/s^2] of a bias that nothing else is known of
   Scalar gravity = 0;           ///< [m/s^2]
 };
+
+/// What the samples of a frame say, while a rest goes on: means since the last frame.
+struct StillReading {
+  Vec3 gyro = Vec3::Zero();   ///< [rad/s]
+  Vec3 accel = Vec3::Zero();  ///< [m/s^2]
+  Scalar sigma_gyro = 0;      ///< of each axis
+  Scalar sigma_accel = 0;
+};
+
+/// While a rest goes on: nothing moves, and biases walk. The samples are no motion then but measurements (Filter::predict_still).
+/// sigma_rad, sigma_m: what the pose may have moved beside that.
+void predict_at_rest(const Body& body, const BodyLayout& layout, Scalar dt, const ImuNoise& noise, Scalar sigma_rad,
+                     Scalar sigma_m, Transition* transition);
+
+/// A rest begins or ends: the velocity is zero within sigma_speed [m/s].
+void begin_speed(const Body& body, const BodyLayout& layout, Scalar sigma_speed, Transition* transition);
 
 /// The gyro's bias is its reading, the velocity zero. Gravity and the accelerometer's bias become known together: with u = -R a / |a| in W,
 ///

@@ -10,6 +10,7 @@
 namespace pf {
 namespace {
 
+constexpr int kRefineRounds = 50;
 constexpr Scalar kMaxScalar = std::numeric_limits<Scalar>::max();
 
 /// Rotation nearest to [a b a x b]: both directions are rotated by the same angle until they are perpendicular.
@@ -50,51 +51,11 @@ PoseEstimate pose_of(const Mat3& R_CW, const Vec3& t_CW) {
   return pose;
 }
 
-/// Sum of squares, and the normal equations about the pivot where A and b are given.
-bool residuals(const Camera& camera, const PoseEstimate& pose, const Vec3* points, const Vec2* pixels, int count,
-               const Vec3& pivot, Scalar* cost, Mat6* A = nullptr, Vec6* b = nullptr) {
-  Scalar sum = 0;
-  if (A != nullptr) {
-    A->setZero();
-    b->setZero();
-  }
-  for (int i = 0; i < count; ++i) {
-    Vec2 pixel;
-    Mat26 J;
-    if (!project_from_pose(camera, pose.q_WC, pose.p_WC, points[i], pivot, &pixel, A != nullptr ? &J : nullptr)) {
-      return false;
-    }
-    const Vec2 r = pixels[i] - pixel;
-    sum += r.squaredNorm();
-    if (A != nullptr) {
-      *A += J.transpose().lazyProduct(J);
-      *b += J.transpose().lazyProduct(r);
-    }
-  }
-  if (!std::isfinite(sum)) return false;
-  *cost = sum;
-  return true;
-}
-
-PoseEstimate moved(const PoseEstimate& pose, const Vec3& pivot, const Vec6& step) {
-  PoseEstimate out = pose;
-  const Quat turn = exp_so3(step.head<3>());
-  out.q_WC = (turn * pose.q_WC).normalized();
-  out.p_WC = pivot + turn * (pose.p_WC - pivot) + step.tail<3>();
-  return out;
-}
-
 /// An error about the pivot as one about the camera: e = e_pivot + θ x (p - pivot).
 Mat6 to_camera(const Vec3& arm) {
   Mat6 T = Mat6::Identity();
   T.block<3, 3>(3, 0) = -hat(arm);
   return T;
-}
-
-/// Covariance of the error about the pivot, as one about the camera.
-Mat6 about_camera(const Mat6& P, const Vec3& arm) {
-  const Mat6 T = to_camera(arm), TP = T.lazyProduct(P);
-  return TP.lazyProduct(T.transpose());
 }
 
 /// Whether both estimates are the same pose to working precision.
@@ -117,56 +78,12 @@ void widen(const PoseEstimate& other, int count, Scalar sigma_px, PoseEstimate* 
 
 }  // namespace
 
-bool project_from_pose(const Camera& camera, const Quat& q_WC, const Vec3& p_WC, const Vec3& p_W, const Vec3& pivot,
-                       Vec2* pixel, Mat26* J_pixel_pose) {
-  const Mat3 R_CW = q_WC.conjugate().toRotationMatrix();
-  const Vec3 p_C = R_CW * (p_W - p_WC);
-  Mat23 J_pixel_C;
-  if (!project(camera, p_C, pixel, J_pixel_pose != nullptr ? &J_pixel_C : nullptr)) return false;
-  if (J_pixel_pose != nullptr) {
-    const Mat23 J_pixel_W = J_pixel_C * R_CW;
-    J_pixel_pose->leftCols<3>() = J_pixel_W * hat(p_W - pivot);
-    J_pixel_pose->rightCols<3>() = -J_pixel_W;
-  }
-  return true;
-}
-
 bool refine_pose(const Camera& camera, const Vec3* points_W, const Vec2* pixels, int count, Scalar sigma_px,
                  PoseEstimate* inout) {
   if (count < 3 || count > kPoseMaxPoints) return false;
-  Vec3 pivot = Vec3::Zero();
-  for (int i = 0; i < count; ++i) pivot += points_W[i] / static_cast<Scalar>(count);
-
-  PoseEstimate pose = *inout;
-  Mat6 A;
-  Vec6 b;
-  Scalar cost;
-  SmallCholesky<6> factored;
-  if (!residuals(camera, pose, points_W, pixels, count, pivot, &cost, &A, &b)) return false;
-  Scalar damping = Scalar(1e-4);
-  for (int i = 0; i < 50; ++i) {
-    Mat6 damped = A;
-    damped.diagonal() *= 1 + damping;
-    if (!factored.factor(damped)) return false;
-    const Vec6 step = factored.solve<1>(b);
-    const PoseEstimate next = moved(pose, pivot, step);
-    Scalar next_cost;
-    if (residuals(camera, next, points_W, pixels, count, pivot, &next_cost) && next_cost <= cost) {
-      const bool done = cost - next_cost <= 16 * std::numeric_limits<Scalar>::epsilon() * cost;
-      pose = next;
-      if (!residuals(camera, pose, points_W, pixels, count, pivot, &cost, &A, &b)) return false;
-      damping *= Scalar(0.1);
-      if (done) break;
-    } else {
-      damping *= 10;
-      if (damping > Scalar(1e8)) break;
-    }
-  }
-  if (!factored.factor(A)) return false;
-  pose.covariance = about_camera(sigma_px * sigma_px * factored.inverse(), pose.p_WC - pivot);
-  pose.rms_px = std::sqrt(cost / static_cast<Scalar>(2 * count));
-  *inout = pose;
-  return true;
+  PnpPoint points[kPoseMaxPoints];
+  for (int i = 0; i < count; ++i) points[i] = {points_W[i], Scalar(1), pixels[i]};
+  return refine_pnp(camera, points, count, nullptr, {sigma_px, Scalar(0), kRefineRounds}, inout);
 }
 
 bool pose_by_lens(const Camera& camera, const Vec3* points_W, int count, const PoseEstimate& pose, const LensRows& rows,

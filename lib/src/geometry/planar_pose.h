@@ -2,30 +2,19 @@
 
 #include "base/eigen.h"
 #include "geometry/lens.h"
+#include "geometry/pnp.h"
 
 namespace pf {
 
-/// A camera's pose from known points. Errors on the world side: R_true = Exp(θ) R_WC, p_true = p_WC + e.
-struct PoseEstimate {
-  Quat q_WC = Quat::Identity();
-  Vec3 p_WC = Vec3::Zero();        ///< [m]
-  Mat6 covariance = Mat6::Zero();  ///< of (θ, e) [rad, m]
-  Scalar rms_px = 0;               ///< root of the mean square of the pixel coordinates' residuals [px]
-};
-
 constexpr int kPoseMaxPoints = 16;
 
-/// Pixel of a world point seen from a pose, and its Jacobian with respect to (θ, e) about a pivot: θ turns the camera
-/// about the pivot, p → pivot + Exp(θ)(p - pivot) + e. With the pivot at p it is the plain world-side error.
-///
-///   p_C = R_WCᵀ (p_W - p_WC),   J_pC = R_WCᵀ [ [p_W - pivot]x   -I ]
-///
-/// J_pixel_pose  2x6 (null to skip). False where project says so; outputs untouched.
-bool project_from_pose(const Camera& camera, const Quat& q_WC, const Vec3& p_WC, const Vec3& p_W, const Vec3& pivot,
-                       Vec2* pixel, Mat26* J_pixel_pose = nullptr);
+/// Pixel of a world point seen from a pose, as in pnp.h.
+inline bool project_from_pose(const Camera& camera, const Quat& q_WC, const Vec3& p_WC, const Vec3& p_W,
+                              const Vec3& pivot, Vec2* pixel, Mat26* J_pixel_pose = nullptr) {
+  return project_from_pose(camera, q_WC, p_WC, p_W, Scalar(1), pivot, pixel, J_pixel_pose);
+}
 
-/// Least squares of the reprojection from the pose in inout, which must see every point; damped Gauss-Newton about the
-/// points' centroid. covariance = sigma_px² (JᵀJ)⁻¹ at the solution.
+/// Least squares of the reprojection from the pose in inout, which must see every point: refine_pnp with all points, to the end.
 ///
 /// count     3 .. kPoseMaxPoints points, in a plane or not
 /// sigma_px  of one pixel coordinate [px]

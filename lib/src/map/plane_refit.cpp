@@ -147,8 +147,42 @@ bool PlaneRefit::passes() const {
   const Scalar density = n / 2,
                beside = static_cast<Scalar>(std::max(layers.side[0], layers.side[1])) / (kPlaneLayer - 1);
   if (!(density >= kContrast * beside)) return false;
+  return !chance_explains(layers);
+}
+
+/// Whether chance makes planes like this one. Two families of tests, each with its own allowance of false planes:
+///
+///   among all within the radius     near / distance = kSurroundings, so share = 1 / kSurroundings
+///   among those in a ball about the origin, radius rho, in which points without a plane are spread evenly:
+///   share = (3 h - h³) / 2 with h = e / rho, of a layer of half-thickness e = distance or half of that
+///
+/// A small plane that nothing stands beside, such as a screen, does not show in the first: there are too many points elsewhere.
+bool PlaneRefit::chance_explains(const PlaneLayers& layers) const {
   const int near = layers.near - layers.on + member_count_;
-  return log_false_planes(member_count_, near, Scalar(1) / kSurroundings, layers.around) < kLogFalsePlanes;
+  if (log_false_planes(member_count_, near, Scalar(1) / kSurroundings, layers.around) < kLogFalsePlanes) return false;
+  const Vec3& o_W = fit_.frame.o_W;
+  const Vec3 n_W = fit_.frame.R_WP.col(2);
+  const Scalar bound = kLogFalseLocalPlanes - std::log(Scalar(2 * kBalls));
+  Scalar rho = kSmallestBall * settings_.distance;
+  for (int ball = 0; ball < kBalls; ++ball, rho *= 2) {
+    int beside = 0, on = 0, close = 0;
+    for (int i = 0; i < count_; ++i) {
+      const Vec3 r = candidates_[i].p_W - o_W;
+      if (r.squaredNorm() < rho * rho && std::abs(n_W.dot(r)) > settings_.distance) ++beside;
+    }
+    for (int k = 0; k < member_count_; ++k) {
+      const Vec3 r = candidates_[members_[k]].p_W - o_W;
+      if (!(r.squaredNorm() < rho * rho)) continue;
+      ++on;
+      if (std::abs(n_W.dot(r)) <= settings_.distance / 2) ++close;
+    }
+    const auto log_false = [&](int inside, Scalar h) {
+      return log_false_planes(inside, beside + on, (3 * h - h * h * h) / 2, layers.around);
+    };
+    const Scalar h = settings_.distance / rho;
+    if (log_false(on, h) < bound || log_false(close, h / 2) < bound) return false;
+  }
+  return true;
 }
 
 }  // namespace pf

@@ -45,6 +45,7 @@ class PlaneRefit {
   void keep_connected();
   bool reject_high_leverage();
   bool passes() const;
+  bool chance_explains(const PlaneLayers& layers) const;
 
   const PlaneCandidate* candidates_;
   int count_;

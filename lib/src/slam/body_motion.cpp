@@ -75,19 +75,34 @@ void BodyMotion::predict_by_samples(const Body& body, std::int64_t before_ns, st
     predict_without_samples(body, settings_.body, mounting, predicted_seconds(before_ns, t_ns), noise, transition);
     return;
   }
-  const Quat q_BW = Quat(Mat3(body.q_WC.toRotationMatrix() * mounting.R_CB)).conjugate();
-  Coasting coasting;
-  coasting.w_B = mounting.R_CB.transpose() * body.w_C;
-  coasting.f_B = q_BW * (-unit.gravity * body.gravity_W());
-  coasting.noise = noise;
   Preintegral samples(unit.noise, body.gyro_bias, body.accel_bias);
   ImuReading now;
-  integrate_samples(imu_, on_unit_clock(before_ns), on_unit_clock(t_ns), coasting, &samples, &now);
+  integrate_samples(imu_, on_unit_clock(before_ns), on_unit_clock(t_ns), coasting(body, noise), &samples, &now);
+  predict_by(body, samples, noise, transition);
+  transition->mean.w_C = mounting.R_CB * (now.gyro - body.gyro_bias);
+}
+
+void BodyMotion::predict_coasting(const Body& body, std::int64_t before_ns, std::int64_t t_ns,
+                                  Transition* transition) const {
+  const Coasting c = coasting(body, settings_.motion_noise);
+  Preintegral path(settings_.unit.noise, body.gyro_bias, body.accel_bias);
+  path.coast(predicted_seconds(before_ns, t_ns), c.w_B, c.f_B, c.noise.angular, c.noise.linear);
+  predict_by(body, path, c.noise, transition);
+}
+
+Coasting BodyMotion::coasting(const Body& body, const MotionNoise& noise) const {
+  const Mat3& R_CB = filter_.state().mounting.R_CB;
+  const Quat q_BW = Quat(Mat3(body.q_WC.toRotationMatrix() * R_CB)).conjugate();
+  return {R_CB.transpose() * body.w_C, q_BW * (-settings_.unit.gravity * body.gravity_W()), noise};
+}
+
+void BodyMotion::predict_by(const Body& body, const Preintegral& samples, const MotionNoise& noise,
+                            Transition* transition) const {
+  const Mounting& mounting = filter_.state().mounting;
   if (filter_.is_metric())
-    predict_inertial(body, settings_.body, mounting, samples, unit.gravity, transition);
+    predict_inertial(body, settings_.body, mounting, samples, settings_.unit.gravity, transition);
   else
     predict_rotation_only(body, settings_.body, mounting, samples, noise.linear, transition);
-  transition->mean.w_C = mounting.R_CB * (now.gyro - body.gyro_bias);
 }
 
 /// What a model without samples says of a body after dt [s].

@@ -32,6 +32,8 @@ class BodyMotion {
   /// What the configured motion model says of a body between two frames' times.
   void predict(const Body& body, std::int64_t before_ns, std::int64_t t_ns, const MotionNoise& noise,
                Transition* transition) const;
+  /// The same as if no samples had come: white accelerations about the rate and the velocity.
+  void predict_coasting(const Body& body, std::int64_t before_ns, std::int64_t t_ns, Transition* transition) const;
   /// Body and pose covariance (6x6) at t_ns; predicted if t_ns is after now_ns.
   void predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const;
 
@@ -45,6 +47,8 @@ class BodyMotion {
 
   void predict_by_samples(const Body& body, std::int64_t before_ns, std::int64_t t_ns, const MotionNoise& noise,
                           Transition* transition) const;
+  Coasting coasting(const Body& body, const MotionNoise& noise) const;
+  void predict_by(const Body& body, const Preintegral& samples, const MotionNoise& noise, Transition* transition) const;
   void predict_after(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
   MotionNoise limited_noise() const;
   bool has_rate() const;

@@ -70,6 +70,14 @@ class Frame {
     count_ = 0;
   }
 
+  /// Measures the same frame once more: as begin() left it, but for the time that it has cost.
+  void begin_again() {
+    const FrameReport before = report;
+    begin(before.t_ns);
+    report.frames = before.frames;
+    for (int i = 0; i < kStageCount; ++i) report.stage_ns[i] = before.stage_ns[i];
+  }
+
   int match_count() const { return count_; }
   bool full() const { return count_ >= capacity_; }
   Match& match(int i) { return match_[i]; }
@@ -87,6 +95,11 @@ class Frame {
   }
   void forget_all() {
     for (int i = 0; i < count_; ++i) match_[i].feature = -1;
+  }
+  /// What was searched for in vain is searched once more: takes its matches back.
+  void forget_searches() {
+    count_ = 0;
+    report.attempts = report.matches = 0;
   }
 
  private:

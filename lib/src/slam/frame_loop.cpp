@@ -23,6 +23,10 @@ bool FrameLoop::layout(Arena& arena) {
   observations_.layout(arena, settings.max_features, settings.max_observations);
   watch_.layout(arena);
   rest_.layout(arena);
+  if (settings.inertial) {
+    RestHold* const place = arena.take<RestHold>(1);
+    if (place != nullptr) hold_ = new (place) RestHold(settings_, filter_, rest_);
+  }
   start_.layout(arena, settings.camera.width, settings.camera.height);
   return layout_patches(arena);
 }
@@ -44,6 +48,7 @@ void FrameLoop::init() {
   motion_.init();
   watch_.init();
   rest_.init();
+  if (hold_ != nullptr) hold_->init();
   planes_.init();
   images_.init(settings_.camera);
   relocaliser_.init();
@@ -70,7 +75,6 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     return status == Status::kLost || status == Status::kStarting ? status : Status::kUnusable;
   }
   data_.image_usable = true;
-  relocaliser_.begin_frame();
   tracking_.note_usable_image(data_.since_last_ns);
   // W is the plan's as long as there are walls: a new map would begin somewhere else.
   if (tracking_.needs_new_map(settings_.restart_ns) && !map_.planes.has_known())
@@ -83,7 +87,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     relocaliser_.recover(data_.since_last_ns);
   } else {
     relocaliser_.clear_proposals();
-    images_.measure(rule, data_.median_depth);
+    measure_watched([&](bool) { images_.measure(rule, data_.median_depth); });
   }
   // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
   if (patches_ != nullptr && !first) patches_->measure(images_.tracker().pyramid());
@@ -113,7 +117,7 @@ Status FrameLoop::push_observations(const PixelObservation* observations, int co
   begin_frame(t_ns);
   if (tracking_.started_over()) return end_frame();
   if (!tracking_.has_pose()) start_.start_with_observations();
-  observations_.measure(observations, count);
+  measure_watched([&](bool again) { observations_.measure(observations, count, again); });
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     maintain_map(true);
@@ -162,7 +166,8 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
   }
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[settings_.inertial ? kImu : kPredict]);
   watch_.begin_frame(before_ns, t_ns);
-  motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
+  if (hold_ == nullptr || !hold_->predict(data_.follows, before_ns, t_ns, data_.median_depth))
+    motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
   if (!filter_.body_is_sound()) start_over();
 }
 
@@ -186,22 +191,26 @@ bool FrameLoop::may_begin_patches(bool first) const {
   return tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0);
 }
 
-/// True where this frame is the first one whose samples tell the scale.
-bool FrameLoop::look_for_rest() {
-  if (!settings_.inertial || !tracking_.has_pose() || !filter_.uses_samples()) return false;
-  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kImu]);
-  RestReading rest;
-  if (!rest_.note(tracking_.is_tracked(frame_.report), &rest) || !start_.use_rest(rest, rest_.begin_ns())) return false;
-  if (map_.features.count() == 0) relocaliser_.init();
-  return true;
-}
-
-/// A map in metres that hangs on a unit in doubt is given up, for nothing tells how wrong it is.
-void FrameLoop::watch_unit() {
-  if (!settings_.inertial || !tracking_.has_pose()) return;
-  if (!watch_.note(data_.follows, tracking_.is_tracked(frame_.report), data_.since_last_ns)) return;
-  data_.map_discredited = watch_.is_map_on_trial() && !start_.knows_scale() && !map_.planes.has_known();
-  if (data_.map_discredited) watch_.begin_without();
+/// measure(again): where a rest or samples may have led the prediction astray, once more from one without them.
+template <typename F>
+void FrameLoop::measure_watched(F&& measure) {
+  bool again = false;
+  if (holds()) {
+    watch_.begin_measuring(data_.follows);
+    measure(again);
+    if (!watch_.is_refused()) return;
+    hold_->take_back();
+    motion_.advance(hold_->before_ns(), frame_.report.t_ns, false, false);
+    frame_.begin_again();
+    again = true;
+  }
+  watch_.begin_measuring(data_.follows);
+  measure(again);
+  if (!watch_.is_refused()) return;
+  watch_.leave_prediction();
+  frame_.begin_again();
+  measure(true);
+  watch_.settle(tracking_.is_tracked(frame_.report));
 }
 
 void FrameLoop::learn_noise() {
@@ -247,10 +256,8 @@ Status FrameLoop::end_frame() {
     else if (data_.image_usable)
       relocaliser_.remember_view(data_.median_depth);
   }
-  if (tracking_.is_tracked(frame_.report) && !start_.progress().recording)
-    images_.note_view(data_.median_depth);
-  else
-    images_.forget_view();
+  images_.note_view(tracking_.is_tracked(frame_.report) && !start_.progress().recording, data_.median_depth);
+  if (data_.image_usable && frame_.report.inliers > 0) images_.keep_view();
   return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
 }
 
@@ -282,6 +289,8 @@ void FrameLoop::clear_estimate() {
   map_.features.clear();
   motion_.init();
   rest_.init();
+  if (hold_ != nullptr) hold_->init();
+  images_.forget_map();
   relocaliser_.init();
   frame_.forget_all();
 }

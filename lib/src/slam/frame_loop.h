@@ -20,6 +20,7 @@
 #include "slam/pose_mark.h"
 #include "slam/relocaliser.h"
 #include "slam/rest_detector.h"
+#include "slam/rest_hold.h"
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
 #include "slam/unit_watch.h"
@@ -54,6 +55,7 @@ class FrameLoop {
   ObservationFrontEnd& observations() { return observations_; }
 
   const UnitWatch& watch() const { return watch_; }
+  const RestHold* hold() const { return hold_; }
   const FilterStart& start() const { return start_; }
   const BodyMotion& motion() const { return motion_; }
   const Filter& filter() const { return filter_; }
@@ -83,9 +85,12 @@ class FrameLoop {
   Status end_frame();
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
   bool look_for_rest();
+  template <typename F>
+  void measure_watched(F&& measure);
   void watch_unit();
   void learn_noise();
   bool layout_patches(Arena& arena);
+  bool holds() const { return hold_ != nullptr && hold_->holds(); }
   bool may_begin_patches(bool first) const;
   bool repair_covariance();
   void maintain_map(bool supported);
@@ -102,9 +107,10 @@ class FrameLoop {
   TrackingState tracking_{settings_};
   FrozenCamera frozen_;
   BodyMotion motion_{settings_, filter_, imu_};
-  UnitWatch watch_{settings_, filter_, frame_, imu_, motion_};
   RestDetector rest_{settings_, frame_, imu_};
+  RestHold* hold_ = nullptr;  ///< in the block behind this, with the inertial motion model
   PixelUpdate update_{settings_, filter_, map_, frame_, tracking_};
+  UnitWatch watch_{settings_, filter_, frame_, imu_, motion_, update_};
   FeatureKeeper features_{settings_, filter_, map_, frame_};
   PoseMark mark_{filter_, map_, features_};
   PlaneKeeper planes_{settings_, filter_, map_, frame_, features_};

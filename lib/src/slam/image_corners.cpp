@@ -34,15 +34,18 @@ void ImageFrontEnd::add_features() {
   const int wanted = settings_.features_in_view - in_view;
   if (wanted < kMinNewFeatures) return;
 
+  bool on_plane[kCells] = {};
+  find_plane_cells(on_plane);
   const int border = std::max(settings_.border_px, 10);
   int anchor = -1, added = 0;
-  // Emptiest cells first: pass `level` takes cells that hold that many features.
-  for (int level = 0; level < 3 && added < wanted; ++level) {
+  // Emptiest cells first: pass `level` takes cells that hold that many features, or kPlaneAhead more on a plane, where one is cheap
+  // and known at once.
+  for (int level = -kPlaneAhead; level < kMaxInCell && added < wanted; ++level) {
     for (int cell = 0; cell < kCells && added < wanted; ++cell) {
       // This order visits no neighbours one after the other.
       const int k = (cell * 19 + frame_.report.frames) % kCells;
       const int row = k / kCellColumns, column = k % kCellColumns;
-      if (in_cell[k] != level) continue;
+      if (in_cell[k] > kMaxInCell || in_cell[k] != level + (on_plane[k] ? kPlaneAhead : 0)) continue;
       Rect rect;
       rect.x = std::max(column * width / kCellColumns, border);
       rect.y = std::max(row * height / kCellRows, border);
@@ -54,6 +57,21 @@ void ImageFrontEnd::add_features() {
     }
   }
   if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children
+}
+
+/// Marks the cells of the image that show a plane on which features may begin, by a few pixels of each.
+void ImageFrontEnd::find_plane_cells(bool* on_plane) const {
+  constexpr int kAlong = 3;
+  if (filter_.state().planes == 0) return;
+  const Vec2 size(static_cast<Scalar>(settings_.camera.width) / kCellColumns,
+                  static_cast<Scalar>(settings_.camera.height) / kCellRows);
+  for (int k = 0; k < kCells; ++k)
+    for (int i = 0; i < kAlong * kAlong && !on_plane[k]; ++i) {
+      const Vec2 within((static_cast<Scalar>(i % kAlong) + Scalar(0.5)) / kAlong,
+                        (static_cast<Scalar>(i / kAlong) + Scalar(0.5)) / kAlong);
+      const Vec2 cell(static_cast<Scalar>(k % kCellColumns), static_cast<Scalar>(k / kCellColumns));
+      on_plane[k] = features_.plane_at(size.cwiseProduct(cell + within)) >= 0;
+    }
 }
 
 /// Adds a feature at the best corner of this rectangle that is not near another feature. False: no such corner, or no room.

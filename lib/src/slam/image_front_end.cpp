@@ -29,6 +29,7 @@ void ImageFrontEnd::init(const Camera& camera) {
   tracker_.init(camera);
   if (templates_ != nullptr) templates_->init(camera, settings_.masks, settings_.max_misfit);
   same_view_.init();
+  followed_.init();
 }
 
 bool ImageFrontEnd::begin_frame(const ImageView& image) {
@@ -42,7 +43,23 @@ void ImageFrontEnd::measure(ConsensusRule rule, Scalar median_depth) {
                                                                      settings_.camera.fx, noise_.correlation_frames());
   filter_.estimate_motion_only(is_learnt_);
   measure_visible(rule);
+  if (frame_.report.inliers == 0 && begin_following()) {
+    frame_.forget_searches();
+    measure_visible(rule);
+    is_following_ = false;
+  }
   filter_.estimate_motion_only(false);
+}
+
+/// Where no consensus came about and the prediction is vague, searches go once more, about the places where the picture as a whole has
+/// gone. A match still has to pass the gate about its prediction: following says where to look, and the filter what to believe.
+bool ImageFrontEnd::begin_following() {
+  int wide = 0;
+  for (int i = 0; i < listed_; ++i) wide += is_wide(frame_.match(update_.candidate(i).match).innovation) ? 1 : 0;
+  if (wide == 0 || 2 * wide < listed_) return false;
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
+  is_following_ = followed_.find(filter_.lens(), tracker_.pyramid());
+  return is_following_;
 }
 
 /// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
@@ -118,6 +135,21 @@ Scalar ImageFrontEnd::widest_ellipse(int count) const {
   return widest;
 }
 
+/// Whether a search ellipse is several times as large as that about a followed pixel.
+bool ImageFrontEnd::is_wide(const Mat2& innovation) const {
+  const Mat2 followed = Mat2::Identity() * FollowedView::variance(filter_.lens());
+  return ellipse_area(innovation, settings_.gate) > kFollowArea * ellipse_area(followed, settings_.gate);
+}
+
+/// Directs a search to where the followed view has the feature, unless its own ellipse says as much. False where that has no place for it.
+bool ImageFrontEnd::aim(SearchTask* task) const {
+  if (!is_following_ || !is_wide(task->innovation)) return true;
+  task->q_WC = followed_.q_WC();
+  task->c_W = followed_.p_W();
+  task->innovation = Mat2::Identity() * FollowedView::variance(filter_.lens());
+  return followed_.pixel_of(filter_.lens(), task->p_W, &task->predicted);
+}
+
 /// What the tracker needs to search for a feature, but for where it is predicted.
 SearchTask ImageFrontEnd::task_of(int feature) const {
   const int slot = map_.features[feature].slot;
@@ -157,6 +189,7 @@ int ImageFrontEnd::search(int first, int count) {
     SearchTask task = task_of(update_.candidate(i).feature);
     task.predicted = o.predicted;
     task.innovation = match.innovation;
+    if (!aim(&task)) continue;
     const SearchOutcome outcome = search_for(task);
     if (!outcome.comparable) continue;
     match.searched = true;
@@ -227,8 +260,10 @@ bool ImageFrontEnd::is_beyond_chance(int first, int found) {
 
 Scalar ImageFrontEnd::searched_area(int i) const {
   const Mat2& S = frame_.match(update_.candidate(i).match).innovation;
-  const Scalar all = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
-  return std::min(all, ellipse_area(S, settings_.gate));
+  Scalar most = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
+  if (is_following_ && is_wide(S))
+    most = ellipse_area(Mat2::Identity() * FollowedView::variance(filter_.lens()), settings_.gate);
+  return std::min(most, ellipse_area(S, settings_.gate));
 }
 
 /// Whether a feature's matches add up to coordinates that are averaged over frames, so that errors which stay with the feature count. The

@@ -3,6 +3,7 @@
 #include "filter/filter.h"
 #include "map/map.h"
 #include "slam/feature_keeper.h"
+#include "slam/followed_view.h"
 #include "slam/frame.h"
 #include "slam/noise_model.h"
 #include "slam/pixel_update.h"
@@ -43,9 +44,17 @@ class ImageFrontEnd {
   /// Finds the map's features in the image and updates the filter with them.
   /// median_depth: of the last tracked frame's inliers.
   void measure(ConsensusRule rule, Scalar median_depth);
-  /// Where the camera is after a tracked frame. SameView
-  void note_view(Scalar median_depth) { same_view_.note(filter_.state().body, median_depth, settings_.camera.fx); }
-  void forget_view() { same_view_.forget(); }
+  /// Where the camera is after a frame, and whether that taught the map. SameView
+  void note_view(bool taught, Scalar median_depth) {
+    if (taught)
+      same_view_.note(filter_.state().body, median_depth, settings_.camera.fx);
+    else
+      same_view_.forget();
+  }
+  /// After a frame that used matches: the next one may be followed from it.
+  void keep_view() { followed_.keep(tracker_.pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W); }
+  /// The map is given up, and with it all poses.
+  void forget_map() { followed_.init(); }
   /// Updates the noise model with the inliers' residuals after measure().
   void learn_noise();
   /// Updates masks and normals of templates with this frame's inliers.
@@ -65,17 +74,20 @@ class ImageFrontEnd {
   /// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
   int search(int first, int count);
   bool is_beyond_chance(int first, int found);
-  /// Area of a candidate's search ellipse [px^2], at most that of the image.
+  /// Area that was searched for a candidate [px^2], at most that of the image.
   Scalar searched_area(int i) const;
 
  private:
   void measure_visible(ConsensusRule rule);
+  bool begin_following();
   // image_candidates.cpp
   bool is_visible(int feature, Vec2* pixel) const;
   float rate(int feature, const Vec2& pixel) const;
 
   // image_front_end.cpp
   Scalar widest_ellipse(int count) const;
+  bool is_wide(const Mat2& innovation) const;
+  bool aim(SearchTask* task) const;
   SearchTask task_of(int feature) const;
   SearchOutcome search_for(const SearchTask& task);
   bool update_with_consensus(int first, int found, ConsensusRule rule);
@@ -86,6 +98,7 @@ class ImageFrontEnd {
 
   // image_corners.cpp
   bool is_free(const Vec2& pixel) const;
+  void find_plane_cells(bool* on_plane) const;
   bool add_in(const Rect& rect, int* anchor);
 
   const Settings& settings_;
@@ -96,9 +109,11 @@ class ImageFrontEnd {
   PixelUpdate& update_;
   NoiseModel& noise_;
   SameView same_view_;
-  bool is_learnt_ = false;    ///< the map has learnt from this frame's view already
-  bool is_measured_ = false;  ///< by measure(), so that candidates and matches are this frame's
-  int listed_ = 0;            ///< candidates of this frame
+  FollowedView followed_;
+  bool is_following_ = false;  ///< searches go about the followed view's pixels
+  bool is_learnt_ = false;     ///< the map has learnt from this frame's view already
+  bool is_measured_ = false;   ///< by measure(), so that candidates and matches are this frame's
+  int listed_ = 0;             ///< candidates of this frame
   Tracker tracker_;
   TemplateMatcher* templates_ = nullptr;  ///< in the block, with masks alone
   Scalar* scratch_ = nullptr;             ///< max_observations: rates of candidates, then the areas that were searched

@@ -11,17 +11,21 @@ bool ObservationFrontEnd::layout(Arena& arena, int max_features, int max_observa
   return arena.ok();
 }
 
-void ObservationFrontEnd::measure(const PixelObservation* observations, int count) {
-  const int known = gate(observations, count);
-  if (known == 0) return;
+void ObservationFrontEnd::measure(const PixelObservation* observations, int count, bool again) {
+  const int known = gate(observations, count, again);
+  // Where the prediction is in doubt, the few that pass a gate which refuses most of them pass it by chance.
+  if (known == 0 || (update_.limits_pose_nis() && 2 * known < frame_.report.matches)) return;
   update_.begin(0, known);
   update_.apply(0, known, &frame_.report.nis);
 }
 
 /// Lists observations of the map's features as matches, and those inside of their gate as candidates. Returns how many candidates.
-int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
+int ObservationFrontEnd::gate(const PixelObservation* observations, int count, bool again) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int i = 0; i < map_.features.capacity(); ++i) seen_[i] = false;
+  const auto count_up = [again](auto* counter) {
+    if (!again) count_frame(counter);
+  };
   int known = 0;
   for (int i = 0; i < count && known < settings_.max_observations; ++i) {
     const int entry = find(observations[i].external_id);
@@ -31,10 +35,10 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
     if (seen_[entry]) continue;  // the same id again
     seen_[entry] = true;
     PixelMeasurement& o = update_.observation(known);
-    count_frame(&feature.attempts);
+    count_up(&feature.attempts);
     ++frame_.report.attempts;
     if (!filter_.predict_pixel(filter_.lens(), feature.slot, &o)) {
-      count_frame(&feature.failures);
+      count_up(&feature.failures);
       continue;
     }
     const Mat2 spread = update_.expected_innovation(&o);
@@ -42,7 +46,7 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
     o.set_noise(Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order);
     const Mat2 S = spread + o.R_gate;
     if (!is_covariance(S)) {
-      count_frame(&feature.failures);
+      count_up(&feature.failures);
       continue;
     }
     const Scalar nis = squared_distance(o.measured - o.predicted, S);
@@ -51,8 +55,8 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count) {
                                   filter_.state().block[feature.slot].kind, o.predicted, S, o.measured, nis});
     ++frame_.report.matches;
     if (!is_inlier) {
-      count_frame(&feature.failures);
-      count_frame(&feature.rejections);
+      count_up(&feature.failures);
+      count_up(&feature.rejections);
       continue;
     }
     update_.keep()[known] = 1;

@@ -31,13 +31,13 @@ class ObservationFrontEnd {
   PixelObservation* inbox() { return inbox_; }
   int inbox_size() const { return settings_.max_features + settings_.max_observations; }
 
-  /// Updates the filter with observations of the map's features.
-  void measure(const PixelObservation* observations, int count);
+  /// Updates the filter with observations of the map's features. again: of the same frame once more, which is not counted twice.
+  void measure(const PixelObservation* observations, int count, bool again);
   /// Adds features for observations with unknown ids.
   void add_features(const PixelObservation* observations, int count);
 
  private:
-  int gate(const PixelObservation* observations, int count);
+  int gate(const PixelObservation* observations, int count, bool again);
   int find(std::uint32_t external_id) const;
 
   const Settings& settings_;

@@ -35,6 +35,7 @@ bool PatchKeeper::layout(Arena& arena) {
 void PatchKeeper::init() {
   store_.init();
   noise_.init(kCornerSigma);
+  std::fill(in_vain_, in_vain_ + kMaxWalls, 0);
   generation_ = filter_.generation();
 }
 

@@ -77,6 +77,7 @@ class PatchKeeper {
     Scalar score;
   };
   static constexpr int kMaxSquares = 6;
+  static constexpr int kMaxWalls = 64;  ///< capacity.max_planes at most
   void begin_patches(const Pyramid& image);
   int wanted_on(int wall, int* youngest) const;
   int list_squares(const Pyramid& image, int wall, int side, Square* square) const;
@@ -99,6 +100,7 @@ class PatchKeeper {
   PlaneAligner aligner_;
   PatchMeasurement z_;            ///< scratch: the patch that is measured
   std::uint32_t generation_ = 0;  ///< of the filter that the patches have blocks in
+  int in_vain_[kMaxWalls] = {};   ///< frame in which each plane's wall had no place for a patch that it wants
 };
 
 }  // namespace pf

@@ -116,6 +116,8 @@ void PatchKeeper::begin_patches(const Pyramid& image) {
     if (!map_.planes.used(wall) || !map_.planes[wall].known || map_.planes[wall].doubted) continue;
     int youngest = 0;
     int wanted = wanted_on(wall, &youngest);
+    // The lattice costs as much as a patch: where it had no place, or the store no room, not again in the next frame.
+    if (wanted > 0 && in_vain_[wall] > 0 && frame_.report.frames < in_vain_[wall] + kRetryFrames) continue;
     for (int part = kSizes; part > kSmallest && wanted > 0; --part) {
       const int side = settings_.patch_side_px * part / kSizes;
       if (side < kMinSide) break;
@@ -128,6 +130,7 @@ void PatchKeeper::begin_patches(const Pyramid& image) {
         wanted -= more;
       }
     }
+    in_vain_[wall] = wanted > 0 ? frame_.report.frames : 0;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "slam/consensus.h"
 #include "slam/tuning.h"
 
 namespace pf {
@@ -38,16 +39,18 @@ int PixelUpdate::reject_contradicted(int first, int count, double* nis) {
 
 bool PixelUpdate::apply(int first, int count, double* nis) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
-  Scalar sum = 0;
-  const bool done = filter_.finish_update(observation_ + first, count, keep_ + first, &sum);
-  tracking_.note_update(done);
-  if (!done) {
+  Scalar sum = 0, pose_nis = 0;
+  const bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum);
+  const bool says_pose = solved && settings_.inertial && filter_.pose_nis(&pose_nis);
+  is_contradicted_ = is_contradicted_ || (says_pose && contradicts(pose_nis));
+  if (!is_contradicted_) tracking_.note_update(solved);
+  if (!solved || is_contradicted_) {
     for (int i = first; i < first + count; ++i) frame_.match(candidate_[i].match).status = MatchStatus::kOutlier;
     return false;
   }
+  filter_.commit_update();
   if (nis != nullptr) *nis += static_cast<double>(sum);
-  Scalar pose_nis;
-  if (settings_.inertial && filter_.pose_nis(&pose_nis)) {
+  if (says_pose) {
     frame_.report.pose_nis += static_cast<double>(pose_nis);
     frame_.report.pose_nis_dof += Body::kPoseDim;
   }
@@ -79,7 +82,8 @@ Mat2 PixelUpdate::expected_innovation(PixelMeasurement* o) const {
 }
 
 /// If second-order noise was large in the update, linearises the same pixels again at the updated pose and updates with the information
-/// that this noise had withheld:  R' = (R^-1 - (R + bend I)^-1)^-1 = R + R^2 / bend.
+/// that this noise had withheld:  R' = (R^-1 - (R + bend I)^-1)^-1 = R + R^2 / bend. Those whose place the update has thrown out of their
+/// gate are left out.
 void PixelUpdate::relinearise_update(int first, int count) {
   for (int round = 0; round < kMaxRounds; ++round) {
     bool bent = false;
@@ -94,9 +98,10 @@ void PixelUpdate::relinearise_update(int first, int count) {
       const Mat2 R = o.R_update - Mat2::Identity() * bend;
       keep_[i] = filter_.predict_pixel(filter_.lens(), o.block, &o) ? 1 : 0;
       if (keep_[i] == 0) continue;
-      expected_innovation(&o);
+      const Mat2 spread = expected_innovation(&o);
       o.measured = measured;
       o.set_noise(R + R.lazyProduct(R) / bend + Mat2::Identity() * o.bend);
+      keep_[i] = squared_distance(o.measured - o.predicted, spread + o.R_update) < settings_.gate ? 1 : 0;
     }
     filter_.begin_update(observation_ + first, count);
     if (!filter_.finish_update(observation_ + first, count, keep_ + first, nullptr)) return;

@@ -47,11 +47,22 @@ class PixelUpdate {
   /// Stops keeping matches of the range that begin() got which all the other kept ones contradict. Returns how many stay. *nis: their
   /// normalised innovation squared, jointly, with R_gate.
   int reject_contradicted(int first, int count, double* nis);
+  /// Until the next call: apply() refuses the first update of a frame where the pose NIS is above this. 0: no bound.
+  void limit_pose_nis(Scalar most) {
+    max_pose_nis_ = most;
+    is_contradicted_ = false;
+  }
+  bool limits_pose_nis() const { return max_pose_nis_ > Scalar(0); }
+  /// It has done so.
+  bool is_contradicted() const { return is_contradicted_; }
   /// Updates with the kept ones of the range that begin() got. False if the update could not be made; then nothing has changed.
   /// Adds their normalised innovation squared to *nis where it is not null.
   bool apply(int first, int count, double* nis);
 
  private:
+  bool contradicts(Scalar pose_nis) const {
+    return limits_pose_nis() && frame_.report.inliers == 0 && pose_nis > max_pose_nis_;
+  }
   void relinearise_update(int first, int count);
 
   const Settings& settings_;
@@ -63,6 +74,8 @@ class PixelUpdate {
   PixelMeasurement* observation_ = nullptr;
   unsigned char* keep_ = nullptr;
   LeaveOneOut others_;
+  Scalar max_pose_nis_ = 0;
+  bool is_contradicted_ = false;
 };
 
 }  // namespace pf

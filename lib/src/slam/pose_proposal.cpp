@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "base/random_triples.h"
 #include "filter/observe/point.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
-#include "slam/random_triples.h"
 #include "slam/tuning.h"
 
 namespace pf {

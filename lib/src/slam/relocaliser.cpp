@@ -43,7 +43,7 @@ void Relocaliser::init() {
 
 void Relocaliser::remember_view(Scalar median_depth) {
   data_.depth = median_depth;
-  views_.keep_if_new(filter_.state().body.q_WC, filter_.state().body.p_W);
+  views_.keep_if_new(images_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W);
 }
 
 void Relocaliser::recover(std::int64_t dt_ns) {
@@ -83,7 +83,7 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
     position *= data_.proposal.depth;
   } else {
     if (is_prediction_narrow()) return about;
-    const Recognition place = views_.recognise(filter_.lens());
+    const Recognition place = views_.recognise(images_.tracker().pyramid(), filter_.lens());
     if (place.score < kMinRecognition) return about;
     about.body.q_WC = place.q_WC;
     about.body.p_W = place.p_W;

@@ -26,8 +26,6 @@ class Relocaliser {
   bool layout(Arena& arena, int max_observations, int max_kept_views);
   void init();
 
-  /// Makes the thumbnail of a usable image.
-  void begin_frame() { views_.set_image(images_.tracker().pyramid()); }
   /// Keeps the view of a tracked frame, and how far away its features are.
   void remember_view(Scalar median_depth);
   /// The map is tracked: forgets what earlier frames proposed.

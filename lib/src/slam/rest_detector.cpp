@@ -12,7 +12,7 @@ using namespace tuning::rest;
 
 void RestDetector::layout(Arena& arena) {
   if (!settings_.inertial) return;
-  seen_ = arena.take<Seen>(kMaxPixels);
+  seen_ = arena.take<Seen>(2 * kMaxPixels);
   data_ = arena.take<Data>(1);
 }
 
@@ -20,12 +20,17 @@ bool RestDetector::note(bool seen, RestReading* rest) {
   const std::int64_t t_ns = frame_.report.t_ns;
   const bool has_pixels = data_->seen > 0;
   if (!data_->begun || !seen || (has_pixels && has_moved())) {
-    begin();
+    begin(false);
     return false;
   }
   if (!has_pixels) keep_pixels();  // a map's first frame has none yet
   for (int i = 0; i < imu_.held(); ++i)
     if (imu_[i].t_ns > data_->sample_ns) add(imu_[i]);
+  compare_with_first();
+  if (data_->rested > Scalar(0))
+    data_->rested = static_cast<Scalar>(seconds(elapsed_ns(data_->first_ns, t_ns)));
+  else
+    keep_first();
   const Scalar T = static_cast<Scalar>(seconds(elapsed_ns(data_->begin_ns, t_ns)));
   if (T < kTime) return false;
   const bool at_rest = is_quiet();
@@ -44,15 +49,24 @@ bool RestDetector::note(bool seen, RestReading* rest) {
     data_->rest_begin_ns = data_->begin_ns;
   }
   const std::int64_t rest_begin_ns = data_->rest_begin_ns;
-  begin();
+  begin(at_rest);
   data_->rest_begin_ns = rest_begin_ns;
   return at_rest;
 }
 
-/// The next second; samples before it have been seen.
-void RestDetector::begin() {
+/// The next second; samples before it have been seen. rests_on: the one before was at rest.
+void RestDetector::begin(bool rests_on) {
+  const Data before = *data_;
   *data_ = Data();
   data_->begun = true;
+  data_->first_ns = frame_.report.t_ns;
+  if (rests_on) {
+    data_->first_ns = before.first_ns;
+    data_->rested = static_cast<Scalar>(seconds(elapsed_ns(before.first_ns, frame_.report.t_ns)));
+    data_->first = before.first;
+    data_->motion_px = before.motion_px;
+    for (int k = 0; k < 2; ++k) data_->scatter[k] = before.scatter[k];
+  }
   data_->begin_ns = frame_.report.t_ns;
   data_->sample_ns = imu_.any() ? imu_.counts().last_ns : INT64_MIN;
   keep_pixels();
@@ -63,8 +77,54 @@ void RestDetector::keep_pixels() {
   for (int t = 0; t < frame_.match_count() && data_->seen < kMaxPixels; ++t) {
     const Match& match = frame_.match(t);
     if (match.status == MatchStatus::kInlier || match.status == MatchStatus::kNew)
-      seen_[data_->seen++] = {match.id, match.measured};
+      seen_[data_->seen++] = {match.id, 1, match.measured};
   }
+}
+
+/// Running means over the first second, of the features that it began with.
+void RestDetector::keep_first() {
+  Seen* const first = seen_ + kMaxPixels;
+  if (data_->first == 0)
+    for (; data_->first < data_->seen; ++data_->first) first[data_->first] = seen_[data_->first];
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const Match& match = frame_.match(t);
+    for (int i = 0; i < data_->first && match.status == MatchStatus::kInlier; ++i)
+      if (first[i].id == match.id)
+        first[i].pixel += (match.measured - first[i].pixel) / static_cast<Scalar>(++first[i].count);
+  }
+}
+
+/// How the picture has moved since the rest began; where it has, the rest is over.
+void RestDetector::compare_with_first() {
+  if (!(data_->rested > Scalar(0))) return;
+  Vec4 motion;
+  if (!motion_since(seen_ + kMaxPixels, data_->first, &motion)) return end_rest();
+  data_->motion_px += kMeanGain * (motion - data_->motion_px);
+  if (motion_px() > kMaxMeanMotionPx) end_rest();
+}
+
+Scalar RestDetector::motion_px() const { return std::max(data_->motion_px.norm(), kMinMeanMotionPx); }
+
+bool RestDetector::read_frame(StillReading* still) const {
+  if (!is_resting()) return false;
+  Vec3 gyro = Vec3::Zero(), accel = Vec3::Zero();
+  int count = 0;
+  for (int i = 0; i < imu_.held(); ++i) {
+    const ImuSample& sample = imu_[i];
+    if (sample.t_ns <= data_->sample_ns) continue;
+    gyro += Vec3(sample.gyro[0], sample.gyro[1], sample.gyro[2]);
+    accel += Vec3(sample.accel[0], sample.accel[1], sample.accel[2]);
+    ++count;
+  }
+  if (count == 0 || imu_.counts().median_ns <= 0) return false;
+  const ImuNoise& noise = settings_.unit.noise;
+  const Scalar n = static_cast<Scalar>(count);
+  const Scalar root = std::sqrt(n * static_cast<Scalar>(seconds(imu_.counts().median_ns)));
+  still->gyro = gyro / n;
+  still->accel = accel / n;
+  still->sigma_gyro = data_->scatter[0] * noise.gyro_density / root;
+  still->sigma_accel = data_->scatter[1] * noise.accel_density / root;
+  return true;
 }
 
 /// Welford's running mean and sum of squares.
@@ -81,52 +141,74 @@ void RestDetector::add(const ImuSample& sample) {
 }
 
 /// Both sensors scatter as their densities say, at the rate at which samples come, and the specific force is about gravity.
-bool RestDetector::is_quiet() const {
+bool RestDetector::is_quiet() {
   if (data_->count < kMinSamples || imu_.counts().median_ns <= 0) return false;
   const Scalar rate = Scalar(1) / static_cast<Scalar>(seconds(imu_.counts().median_ns));
   const ImuNoise& noise = settings_.unit.noise;
   const auto quiet = [&](int k, Scalar density) {
     const Scalar expected = 3 * static_cast<Scalar>(data_->count - 1) * density * density * rate;
-    return data_->square[k] < kMaxScatter * kMaxScatter * expected;
+    data_->scatter[k] = std::max(Scalar(1), std::sqrt(data_->square[k] / expected));
+    return data_->scatter[k] < kMaxScatter;
   };
   const Scalar off = std::abs(data_->mean[1].norm() - settings_.unit.gravity);
   return quiet(0, noise.gyro_density) && quiet(1, noise.accel_density) && data_->mean[0].norm() < kMaxGyroBias &&
          off < kMaxGravityError;
 }
 
-/// Whether the picture has moved since the second began, by the similarity that fits its features: their mean displacement, and
-/// rotation and expansion about their mean, which average the noise of single pixels. Too few of them say nothing, which counts as moved.
+/// Whether the picture has moved since the second began. Too few features say nothing, which counts as moved.
+bool RestDetector::has_moved() {
+  Vec4 motion_px;
+  if (!motion_since(seen_, data_->seen, &motion_px)) return true;
+  data_->motion2 = motion_px.squaredNorm();
+  return !(data_->motion2 < kMaxMotionPx * kMaxMotionPx);
+}
+
+/// How the picture has moved, by the similarity that fits its features: their mean displacement, and rotation and expansion about their
+/// mean as root mean square displacements, which average the noise of single pixels. What is farther than kMaxApartPx from the median
+/// displacement moves by itself (a hand), and is left out. False where too few are left, or less than half.
 ///
 ///   d = t + A c,   A = (a -b; b a)      c, d from the means of before and of the displacement
-bool RestDetector::has_moved() {
+bool RestDetector::motion_since(const Seen* before, int count_before, Vec4* motion_px) const {
+  Vec2 c[kMaxPixels], d[kMaxPixels];
+  Scalar sorted[kMaxPixels];
+  int all = 0;
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const Match& match = frame_.match(t);
+    if (match.status != MatchStatus::kInlier) continue;
+    for (int i = 0; i < count_before && all < kMaxPixels; ++i)
+      if (before[i].id == match.id) {
+        c[all] = before[i].pixel;
+        d[all++] = match.measured - before[i].pixel;
+      }
+  }
+  if (all < kMinPixels) return false;
+  Vec2 median, centre = Vec2::Zero(), shift = Vec2::Zero();
+  for (int k = 0; k < 2; ++k) {
+    for (int i = 0; i < all; ++i) sorted[i] = d[i](k);
+    std::nth_element(sorted, sorted + all / 2, sorted + all);
+    median(k) = sorted[all / 2];
+  }
   int count = 0;
-  Vec2 centre = Vec2::Zero(), shift = Vec2::Zero();
+  for (int i = 0; i < all; ++i) {
+    if ((d[i] - median).squaredNorm() > kMaxApartPx * kMaxApartPx) continue;
+    c[count] = c[i];
+    d[count++] = d[i];
+  }
+  if (count < kMinPixels || 2 * count < all) return false;
+  for (int i = 0; i < count; ++i) {
+    centre += c[i] / static_cast<Scalar>(count);
+    shift += d[i] / static_cast<Scalar>(count);
+  }
   Scalar turned = 0, grown = 0, spread = 0;
-  const auto for_each = [&](auto f) {
-    for (int t = 0; t < frame_.match_count(); ++t) {
-      const Match& match = frame_.match(t);
-      if (match.status != MatchStatus::kInlier) continue;
-      for (int i = 0; i < data_->seen; ++i)
-        if (seen_[i].id == match.id) f(seen_[i].pixel, Vec2(match.measured - seen_[i].pixel));
-    }
-  };
-  for_each([&](const Vec2& pixel, const Vec2& d) {
-    ++count;
-    centre += pixel;
-    shift += d;
-  });
-  if (count < kMinPixels) return true;
-  centre /= static_cast<Scalar>(count);
-  shift /= static_cast<Scalar>(count);
-  for_each([&](const Vec2& pixel, const Vec2& d) {
-    const Vec2 c = pixel - centre, e = d - shift;
-    grown += c.dot(e);
-    turned += c.x() * e.y() - c.y() * e.x();
-    spread += c.squaredNorm();
-  });
-  const Scalar by_shape = (grown * grown + turned * turned) / (spread * static_cast<Scalar>(count));
-  data_->motion2 = shift.squaredNorm() + by_shape;
-  return !(data_->motion2 < kMaxMotionPx * kMaxMotionPx);
+  for (int i = 0; i < count; ++i) {
+    const Vec2 r = c[i] - centre, e = d[i] - shift;
+    grown += r.dot(e);
+    turned += r.x() * e.y() - r.y() * e.x();
+    spread += r.squaredNorm();
+  }
+  const Scalar root = std::sqrt(spread * static_cast<Scalar>(count));
+  *motion_px << shift, grown / root, turned / root;
+  return true;
 }
 
 }  // namespace pf

@@ -26,13 +26,24 @@ class RestDetector {
   bool note(bool seen, RestReading* rest);
   /// When the last second at rest began, in the time of frames.
   std::int64_t begin_ns() const { return data_->rest_begin_ns; }
+  /// Before a frame is measured: what samples since the last frame say, where the camera has been at rest until then, for a second at
+  /// least. False where there are none.
+  bool read_frame(StillReading* still) const;
+  /// How far the picture has moved since this rest began, as a mean over some frames; what it can tell from none at least [px].
+  Scalar motion_px() const;
+  /// It moves, as something else says.
+  void end_rest() { data_->rested = 0; }
+  bool is_resting() const { return data_ != nullptr && data_->rested > Scalar(0); }
 
  private:
   static constexpr int kMaxPixels = 60;
 
-  /// Where a feature was at the beginning of this second.
+  using Vec4 = Eigen::Matrix<Scalar, 4, 1>;
+
+  /// Where a feature was at the beginning of this second, or in the mean of the first second of this rest.
   struct Seen {
     std::uint32_t id;
+    int count;
     Vec2 pixel;
   };
 
@@ -46,18 +57,28 @@ class RestDetector {
     Scalar motion2 = 0;                           ///< [px^2] of the picture since this second began
     Vec3 mean[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of gyro and accelerometer
     Scalar square[2] = {0, 0};                    ///< sums of squares about the means, over the axes
+    // Of the whole rest.
+    Scalar rested = 0;              ///< [s] since it began, once its first second has passed
+    std::int64_t first_ns = 0;      ///< when it began
+    int first = 0;                  ///< pixels of its first second
+    Vec4 motion_px = Vec4::Zero();  ///< of the picture since then, a running mean over frames
+    Scalar scatter[2] = {1, 1};     ///< of the samples in the last second, in that of their densities; at least 1
   };
 
-  void begin();
+  void begin(bool rests_on);
   void keep_pixels();
+  void keep_first();
   void add(const ImuSample& sample);
-  bool is_quiet() const;
+  void compare_with_first();
+  bool is_quiet();
   bool has_moved();
+  bool motion_since(const Seen* before, int count, Vec4* motion_px) const;
 
   const Settings& settings_;
   const Frame& frame_;
   const ImuLog& imu_;
-  Seen* seen_ = nullptr;  ///< kMaxPixels; null without the inertial motion model, which needs no room then
+  Seen* seen_ =
+      nullptr;  ///< 2 kMaxPixels: of this second, of the first one; null without the inertial motion model, which needs no room then
   Data* data_ = nullptr;  ///< likewise
 };
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random_triples.h"
 #include "geometry/small_cholesky.h"
 #include "map/plane_chance.h"
 #include "slam/consensus.h"
-#include "slam/random_triples.h"
 #include "slam/tuning.h"
 
 namespace pf {

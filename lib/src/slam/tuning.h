@@ -79,6 +79,7 @@ inline constexpr Scalar kSlack = Scalar(9);              ///< that a frame may a
 inline constexpr Scalar kBound = Scalar(100);            ///< of the sum, above which the unit is doubted
 inline constexpr Scalar kBoundOnProbation = Scalar(30);  ///< in the first kTrial of its use after a doubt
 inline constexpr Scalar kMaxOfFrame = Scalar(50);        ///< no single frame is enough
+inline constexpr Scalar kMaxPoseNis = Scalar(38.3);      ///< chi-square of six, 1 - 1e-6: samples are not used for it
 inline constexpr Scalar kSilence = Scalar(0.1);          ///< [s] without a sample, after which none is waited for
 inline constexpr Scalar kRate = Scalar(1);               ///< [rad/s] sigma of the rate where samples were wrong
 inline constexpr Scalar kSpeed = Scalar(1);              ///< [m/s] sigma of the velocity likewise, or in units of W
@@ -94,14 +95,21 @@ inline constexpr int kMinFrames = 30;               ///< that such a test wants
 
 /// Standing still.
 namespace rest {
-inline constexpr Scalar kTime = Scalar(1);             ///< [s] at rest before it counts
-inline constexpr int kMinSamples = 20;                 ///< in that time
-inline constexpr Scalar kMaxScatter = Scalar(2);       ///< standard deviations that the densities allow
-inline constexpr Scalar kMaxGyroBias = Scalar(0.3);    ///< [rad/s] that a gyro at rest may show
-inline constexpr Scalar kMaxGravityError = Scalar(1);  ///< [m/s^2] of the mean specific force
-inline constexpr Scalar kMaxMotionPx = Scalar(1);      ///< [px] of the picture as a whole, root mean square
-inline constexpr int kMinPixels = 8;                   ///< features by which that is judged
-inline constexpr Scalar kMinMotionPx = Scalar(0.2);    ///< [px] least motion that the picture can tell from none
+inline constexpr Scalar kTime = Scalar(1);                ///< [s] at rest before it counts
+inline constexpr int kMinSamples = 20;                    ///< in that time
+inline constexpr Scalar kMaxScatter = Scalar(2);          ///< standard deviations that the densities allow
+inline constexpr Scalar kMaxGyroBias = Scalar(0.3);       ///< [rad/s] that a gyro at rest may show
+inline constexpr Scalar kMaxGravityError = Scalar(1);     ///< [m/s^2] of the mean specific force
+inline constexpr Scalar kMaxMotionPx = Scalar(1);         ///< [px] of the picture as a whole, root mean square
+inline constexpr int kMinPixels = 8;                      ///< features by which that is judged
+inline constexpr Scalar kMaxApartPx = Scalar(3);          ///< [px] of these from their median displacement
+inline constexpr Scalar kMinMotionPx = Scalar(0.2);       ///< [px] least motion that the picture can tell from none
+inline constexpr Scalar kMinMeanMotionPx = Scalar(0.05);  ///< [px] likewise of its mean over kMeanGain's frames
+inline constexpr Scalar kMaxMeanMotionPx = Scalar(0.3);   ///< [px] of that since the rest began
+inline constexpr Scalar kMeanGain = Scalar(0.1);          ///< of that running mean, per frame
+inline constexpr Scalar kMaxNis = Scalar(38.3);  ///< chi-square of six, 1 - 1e-6: beyond it samples say it moves
+inline constexpr Scalar kAnyNis = Scalar(1e9);   ///< the same, once the frame has shown no motion
+inline constexpr Scalar kHidden = Scalar(2);     ///< sigmas of a frame's mean acceleration that pass for none
 }  // namespace rest
 
 /// Features that fail, and the depth of new ones.
@@ -128,6 +136,8 @@ namespace image_corners {
 inline constexpr int kCornerThreshold = 8;       ///< [grey levels] of the segment test
 inline constexpr float kMinCornerScore = 12.0f;  ///< smaller eigenvalue of the gradients [grey levels^2/px^2]
 inline constexpr int kMinNewFeatures = 4;        ///< in one frame; new features share an anchor
+inline constexpr int kMaxInCell = 3;             ///< features in a cell of the image; one more where it shows a plane
+inline constexpr int kPlaneAhead = 2;            ///< features that do not count there when cells take turns
 }  // namespace image_corners
 
 /// The order in which features are searched.
@@ -137,7 +147,13 @@ inline constexpr int kScouts = 12;            ///< candidates that are measured 
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
 inline constexpr int kSettled = 5;  ///< measurements of a feature whose residuals are those of its matches
+inline constexpr Scalar kFollowArea = Scalar(4);  ///< least area of an ellipse in those about followed pixels
 }  // namespace image_front_end
+
+/// Where the picture as a whole has gone.
+namespace followed_view {
+inline constexpr Scalar kSigma = Scalar(0.3);  ///< [px of a thumbnail] of a pixel, for a shift is taken as a turn
+}  // namespace followed_view
 
 /// Matches that enter the update.
 namespace pixel_update {
@@ -220,7 +236,7 @@ inline constexpr Scalar kMargin = Scalar(0.1);  ///< around a patch that must be
 inline constexpr Scalar kApart = Scalar(0.6);   ///< of the middles of two patches, in sides
 inline constexpr int kOnWall = 3;               ///< patches of a wall in view
 inline constexpr int kBetween = 15;             ///< frames from one that begins on a wall to the next
-inline constexpr int kRetryFrames = 5;          ///< likewise where the wall has none in view
+inline constexpr int kRetryFrames = 5;          ///< likewise where the wall has none in view, or had no place
 inline constexpr int kSizes = 4;                ///< parts of the side: a patch has all, or
 inline constexpr int kSmallest = 1;             ///< fewer, but more than this
 inline constexpr int kMinSide = 32;             ///< [px]

@@ -37,6 +37,53 @@ void UnitWatch::begin_frame(std::int64_t before_ns, std::int64_t t_ns) {
     return_to_samples(reading);
   }
   data_->fresh = false;
+  data_->prior = filter_.state().body;
+  data_->prior_ns = before_ns;
+  data_->follows = data_->contradicted = data_->taken_back = false;
+}
+
+void UnitWatch::begin_measuring(bool follows) {
+  if (data_ == nullptr) return;
+  data_->follows = follows && filter_.uses_samples();
+  update_.limit_pose_nis(data_->follows ? kMaxPoseNis : Scalar(0));
+}
+
+bool UnitWatch::is_refused() {
+  if (data_ == nullptr || !data_->follows) return false;
+  const FrameReport& report = frame_.report;
+  const bool nothing_used = report.inliers == 0;
+  data_->contradicted = update_.is_contradicted() || (nothing_used && report.matches >= settings_.min_inliers);
+  update_.limit_pose_nis(Scalar(0));
+  return data_->contradicted || (nothing_used && report.attempts >= settings_.min_inliers);
+}
+
+void UnitWatch::leave_prediction() {
+  data_->taken_back = true;
+  predict_again(false);
+}
+
+void UnitWatch::settle(bool is_tracked) {
+  if (is_tracked || data_->contradicted || frame_.report.inliers > 0) return;
+  predict_again(true);
+  data_->taken_back = false;
+}
+
+/// Between the two predictions of this frame: from the one by samples to the other, or back.
+void UnitWatch::predict_again(bool by_samples) {
+  const std::int64_t t_ns = frame_.report.t_ns;
+  Transition transition[2];
+  motion_.predict(data_->prior, data_->prior_ns, t_ns, settings_.motion_noise, &transition[by_samples ? 1 : 0]);
+  motion_.predict_coasting(data_->prior, data_->prior_ns, t_ns, &transition[by_samples ? 0 : 1]);
+  replace_transition(transition[0], &transition[1]);
+  filter_.predict(transition[1]);
+}
+
+/// Without samples only the two poses say how fast the body rotates, which the next prediction may want again.
+void UnitWatch::note_rate() {
+  Body body = filter_.state().body;
+  const Scalar T = static_cast<Scalar>(seconds(elapsed_ns(data_->prior_ns, frame_.report.t_ns)));
+  body.w_C = log_so3(Quat(data_->prior.q_WC.conjugate() * body.q_WC)) / T;
+  filter_.set_mean(body);
 }
 
 /// Where samples were wrong, the body goes back to where it was tracked last, velocities begin anew, and the pose is off by as much as a
@@ -87,6 +134,7 @@ void UnitWatch::return_to_samples(const ImuReading& reading) {
 /// one frame can say.
 Scalar UnitWatch::contradiction(bool before_was_tracked, bool is_tracked) const {
   const FrameReport& report = frame_.report;
+  if (data_->taken_back) return kMaxOfFrame;
   if (!is_tracked && report.matches >= settings_.min_inliers && 2 * report.inliers < report.matches) return kMaxOfFrame;
   if (!before_was_tracked || !is_tracked || report.pose_nis_dof == 0) return kSlack;
   return std::min(static_cast<Scalar>(report.pose_nis * Body::kPoseDim / report.pose_nis_dof), kMaxOfFrame);
@@ -102,6 +150,7 @@ bool UnitWatch::note(bool before_was_tracked, bool is_tracked, std::int64_t dt_n
   if (!filter_.is_metric()) data_->metric_ns = data_->sound_ns = 0;
   if (!filter_.uses_samples()) return false;
   data_->used_ns += dt_ns;
+  if (data_->taken_back && is_tracked) note_rate();
   const bool on_probation = data_->doubts > 0 && seconds(data_->used_ns) < static_cast<double>(kTrial);
   data_->sum = std::max(Scalar(0), data_->sum + contradiction(before_was_tracked, is_tracked) - kSlack);
   if (data_->sum < (on_probation ? kBoundOnProbation : kBound)) {

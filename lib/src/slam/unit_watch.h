@@ -6,6 +6,7 @@
 #include "filter/imu_log.h"
 #include "slam/body_motion.h"
 #include "slam/frame.h"
+#include "slam/pixel_update.h"
 #include "slam/settings.h"
 
 /// Watches whether the samples of the inertial unit agree with the pictures, and decides whether they move the body. See
@@ -18,13 +19,23 @@ namespace pf {
 
 class UnitWatch {
  public:
-  UnitWatch(const Settings& settings, Filter& filter, const Frame& frame, const ImuLog& imu, const BodyMotion& motion)
-      : settings_(settings), filter_(filter), frame_(frame), imu_(imu), motion_(motion) {}
+  UnitWatch(const Settings& settings, Filter& filter, const Frame& frame, const ImuLog& imu, const BodyMotion& motion,
+            PixelUpdate& update)
+      : settings_(settings), filter_(filter), frame_(frame), imu_(imu), motion_(motion), update_(update) {}
 
   void layout(Arena& arena);
   void init();
   /// Before the body goes from one frame to the next: whether samples move it, which it is prepared for.
   void begin_frame(std::int64_t before_ns, std::int64_t t_ns);
+  /// Before the frame is measured. follows: the frame before was tracked, and so was the pose that this one's prediction begins at.
+  void begin_measuring(bool follows);
+  /// After it was measured. True where nothing was used of it, since it says so much against the prediction or since hardly anything was
+  /// found: then it is to be measured again from another prediction.
+  bool is_refused();
+  /// Predicts the body as if no samples had come.
+  void leave_prediction();
+  /// After it was measured again: whether it is tracked now. Where nothing was found this time either, samples are as good as before.
+  void settle(bool is_tracked);
   /// After a frame, dt_ns after the one before. True when the unit has just come into doubt.
   bool note(bool before_was_tracked, bool is_tracked, std::int64_t dt_ns);
   /// The map is given up, so there is nothing to prepare: the next one begins without samples.
@@ -55,13 +66,20 @@ class UnitWatch {
     std::int64_t used_ns = 0;    ///< since it was doubted last
     std::int64_t metric_ns = 0;  ///< for how long the map has been tracked in metres
     std::int64_t sound_ns = 0;   ///< the same when the sum was zero last: since then the samples may have been wrong
-    Body tracked;                ///< at the last tracked frame
+    Body prior;                  ///< before this frame's prediction
+    std::int64_t prior_ns = 0;
+    bool follows = false;       ///< that prediction is by samples alone, from a tracked pose
+    bool contradicted = false;  ///< in this frame, by what was found of it
+    bool taken_back = false;    ///< in this frame
+    Body tracked;               ///< at the last tracked frame
     std::int64_t tracked_ns = 0;
     Trial trial;
   };
 
   bool is_silent(std::int64_t t_ns) const;
   Scalar contradiction(bool before_was_tracked, bool is_tracked) const;
+  void predict_again(bool by_samples);
+  void note_rate();
   void leave_samples(std::int64_t before_ns);
   void return_to_samples(const ImuReading& reading);
   void try_again(bool follows);
@@ -71,6 +89,7 @@ class UnitWatch {
   const Frame& frame_;
   const ImuLog& imu_;
   const BodyMotion& motion_;
+  PixelUpdate& update_;
   Data* data_ = nullptr;  ///< null without the inertial motion model, which needs no room then
 };
 

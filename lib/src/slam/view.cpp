@@ -41,6 +41,8 @@ bool View::inertial(InertialView* out) const {
     for (int j = 0; j < 8; ++j)
       out->covariance[i][j] = filter().covariance()(std::max(row(i), row(j)), std::min(row(i), row(j)));
   out->metric = filter().is_metric();
+  out->resting = loop_.hold()->holds();
+  out->rests = loop_.hold()->rests();
   return true;
 }
 

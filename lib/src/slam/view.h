@@ -61,7 +61,8 @@ struct InertialView {
   Vec3 gravity_W, gyro_bias, accel_bias;
   Vec3 axis_W[2];           ///< about which gravity's error rotates it
   Scalar covariance[8][8];  ///< of (gravity, gyro bias, accelerometer bias)
-  bool metric;
+  bool metric, resting;
+  int rests;
 };
 
 /// A patch on a wall in the last frame.

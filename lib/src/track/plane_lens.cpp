@@ -12,8 +12,9 @@ bool PlaneLens::set_reference(const Camera& camera, const PlanePatch& patch) {
       const int at = j * nodes_ + i;
       ray_[at] = Vec2(ray.x() / ray.z(), ray.y() / ray.z());
       const Vec2 pinhole(camera.fx * ray_[at].x() + camera.cx, camera.fy * ray_[at].y() + camera.cy);
-      reference_[at] = (pinhole - pixel).cast<float>();
+      reference_[at].value = (pinhole - pixel).cast<float>();
     }
+  bend(reference_);
   return true;
 }
 
@@ -23,29 +24,38 @@ bool PlaneLens::set_image(const Camera& camera, const Mat3& H) {
     Vec2 pixel;
     if (!(p.z() > Scalar(0)) || !project(camera, p, &pixel)) return false;
     const Vec2 pinhole(camera.fx * p.x() / p.z() + camera.cx, camera.fy * p.y() / p.z() + camera.cy);
-    image_[at] = (pixel - pinhole).cast<float>();
+    image_[at].value = (pixel - pinhole).cast<float>();
   }
+  bend(image_);
   return true;
 }
 
-/// Bilinear, less what the bend of the function between two nodes adds: f(1 - f)/2 times its second difference, in each direction.
-Eigen::Vector2f PlaneLens::at(const Eigen::Vector2f* node, const Cell& cell, float* J) const {
-  const int i = cell.node % nodes_, j = cell.node / nodes_;
-  const Eigen::Vector2f* at = node + cell.node;
-  const auto bend = [this](const Eigen::Vector2f* from, int index, int step) {
-    // At the nodes of both ends, or at the next ones that have neighbours.
-    const auto second = [&](int k) -> Eigen::Vector2f {
-      const int inner = k < 1 ? 1 : k > nodes_ - 2 ? nodes_ - 2 : k;
-      const Eigen::Vector2f* c = from + (inner - index) * step;
-      return c[step] - 2.0f * c[0] + c[-step];
-    };
-    if (nodes_ < 3) return Eigen::Vector2f(0.0f, 0.0f);
-    return Eigen::Vector2f(0.5f * (second(index) + second(index + 1)));
+/// Second differences of a cell, the mean of those at its ends; at the border those of the next nodes that have neighbours.
+void PlaneLens::bend(Node* node) const {
+  const auto second = [&](const Node* row, int k, int step) -> Eigen::Vector2f {
+    const int inner = k < 1 ? 1 : k > nodes_ - 2 ? nodes_ - 2 : k;
+    const Node* c = row + inner * step;
+    return c[step].value - 2.0f * c[0].value + c[-step].value;
   };
+  for (int j = 0; j + 1 < nodes_; ++j)
+    for (int i = 0; i + 1 < nodes_; ++i) {
+      Node& cell = node[j * nodes_ + i];
+      cell.xx.setZero();
+      cell.yy.setZero();
+      if (nodes_ < 3) continue;
+      const Node *row = node + j * nodes_, *column = node + i;
+      cell.xx = 0.5f * (second(row, i, 1) + second(row, i + 1, 1));
+      cell.yy = 0.5f * (second(column, j, nodes_) + second(column, j + 1, nodes_));
+    }
+}
+
+/// Bilinear, less what the bend of the function between two nodes adds: f(1 - f)/2 times its second difference, in each direction.
+Eigen::Vector2f PlaneLens::at(const Node* node, const Cell& cell, float* J) const {
+  const Node *at = node + cell.node, *next = at + nodes_;
   const float fx = cell.fx, fy = cell.fy;
-  const Eigen::Vector2f xx = bend(at, i, 1), yy = bend(at, j, nodes_);
-  const Eigen::Vector2f left = at[1] - at[0], lower = at[nodes_ + 1] - at[nodes_];
-  const Eigen::Vector2f above = at[0] + fx * left, below = at[nodes_] + fx * lower;
+  const Eigen::Vector2f &xx = at->xx, &yy = at->yy;
+  const Eigen::Vector2f left = at[1].value - at[0].value, lower = next[1].value - next[0].value;
+  const Eigen::Vector2f above = at[0].value + fx * left, below = next[0].value + fx * lower;
   if (J != nullptr) {
     const float per_px = 1.0f / static_cast<float>(kStep);
     const Eigen::Vector2f by_x = (left + fy * (lower - left) - (0.5f - fx) * xx) * per_px;

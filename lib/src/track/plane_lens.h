@@ -40,11 +40,16 @@ class PlaneLens {
     const int i = static_cast<int>(x) / kStep;
     return i < nodes_ - 2 ? i : nodes_ - 2;
   }
-  Eigen::Vector2f at(const Eigen::Vector2f* node, const Cell& cell, float* J) const;
+  /// At a node: the value, and of the cell that begins there the second differences in x and in y.
+  struct Node {
+    Eigen::Vector2f value, xx, yy;
+  };
+  void bend(Node* node) const;
+  Eigen::Vector2f at(const Node* node, const Cell& cell, float* J) const;
 
   int nodes_ = 2;                    ///< in each direction
   Vec2 ray_[kMaxNodes * kMaxNodes];  ///< of the reference, at depth 1
-  Eigen::Vector2f reference_[kMaxNodes * kMaxNodes], image_[kMaxNodes * kMaxNodes];
+  Node reference_[kMaxNodes * kMaxNodes], image_[kMaxNodes * kMaxNodes];
 };
 
 }  // namespace pf

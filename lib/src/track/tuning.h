@@ -19,12 +19,27 @@ inline constexpr Scalar kMinSharpness = Scalar(0.6);  ///< source pixels per pix
 inline constexpr Scalar kSearchFloor = Scalar(0.1);   ///< [px^2 of the level] added to the ellipse that is searched
 }  // namespace match
 
+/// Images made small.
+namespace thumbnail {
+inline constexpr int kMinVariance = 1;  ///< [grey levels^2] of a thumbnail that can be recognised
+}  // namespace thumbnail
+
 /// Thumbnails of tracked frames.
 namespace view_memory {
 inline constexpr int kMaxShift = 8;        ///< [px of the thumbnail] to each side, within which views are compared
 inline constexpr float kKnownView = 0.8f;  ///< correlation above which a view is kept already
-inline constexpr int kMinVariance = 1;     ///< [grey levels^2] of a thumbnail that can be recognised
 }  // namespace view_memory
+
+/// The turn between two thumbnails.
+namespace image_rotation {
+inline constexpr int kReach = 12;                   ///< [px of the thumbnail] to each side that are searched first
+inline constexpr float kMinShiftScore = 0.5f;       ///< correlation at the best shift
+inline constexpr float kMinOverlapScore = 0.7f;     ///< correlation at the end, over what both show
+inline constexpr int kMinOverlap = 300;             ///< [px of the thumbnail] that both show: a quarter
+inline constexpr int kMaxRounds = 10;               ///< of Gauss-Newton
+inline constexpr Scalar kMaxTurn = Scalar(0.2);     ///< [rad] of one round
+inline constexpr Scalar kSmallTurn = Scalar(1e-3);  ///< [rad] of the last one: a thirtieth of a pixel
+}  // namespace image_rotation
 
 /// Sub-pixel sides of a quadrilateral.
 namespace quad_refine {

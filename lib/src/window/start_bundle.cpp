@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/small_cholesky.h"
+#include "geometry/pnp.h"
 #include "geometry/so3.h"
 #include "window/tuning.h"
 
@@ -67,6 +67,7 @@ bool StartBundle::layout(Arena& arena) {
 void StartBundle::init() {
   for (int i = 0; i < StartRecord::kMaxFeatures; ++i) last_rho_[i] = Scalar(0);
   last_parallax_ = Scalar(0);
+  random_ = kPoseSeed;
 }
 
 /// Robust fit of a rotation alone to a frame's pixels; returns the median residual, which is the parallax [px].
@@ -221,35 +222,21 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   return parallax > kSettledParallax * sigma_px ? StartOutcome::kSettled : StartOutcome::kSolved;
 }
 
-/// Pose of one frame with the depths held fixed, by Gauss-Newton.
+/// Pose of one frame with the depths held fixed, from the pose that is in it and from triples of the frame's pixels.
 bool StartBundle::locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px,
-                         BundlePose* pose) const {
-  const Scalar information = Scalar(1) / (sigma_px * sigma_px);
-  for (int round = 0; round < kPoseRounds; ++round) {
-    Scalar H[36], b[6];
-    std::fill(H, H + 36, Scalar(0));
-    std::fill(b, b + 6, Scalar(0));
-    const Mat3 R_WC = pose->q_WC.toRotationMatrix();
-    for (int i = 0; i < record.features(); ++i) {
-      if (!record.seen(frame, i)) continue;
-      Vec2 z;
-      Mat26 J;
-      if (!project_bearing(camera, R_WC, record.ray(i), -pose->p_W, rho_[i], &z, &J)) continue;
-      const Vec2 r = record.pixel(frame, i) - z;
-      Scalar weight;
-      huber_cost(r.squaredNorm() * information, kHuber, &weight);
-      for (int a = 0; a < 6; ++a) {
-        for (int e = 0; e <= a; ++e) H[a * 6 + e] += weight * (J(0, a) * J(0, e) + J(1, a) * J(1, e));
-        b[a] += weight * (J(0, a) * r.x() + J(1, a) * r.y());
-      }
-    }
-    for (int a = 0; a < 6; ++a) H[a * 6 + a] += kStepRegularisation;
-    if (!factor_cholesky(H, 6, 6)) return false;
-    solve_cholesky(H, 6, 6, b);
-    pose->q_WC = exp_so3(Vec3(b[0], b[1], b[2])) * pose->q_WC;
-    pose->q_WC.normalize();
-    pose->p_W += Vec3(b[3], b[4], b[5]);
-  }
+                         BundlePose* pose) {
+  PnpPoint points[StartRecord::kMaxFeatures];
+  unsigned char inliers[StartRecord::kMaxFeatures];
+  int count = 0;
+  for (int i = 0; i < record.features(); ++i)
+    if (record.seen(frame, i)) points[count++] = {record.ray(i), rho_[i], record.pixel(frame, i)};
+  PoseEstimate estimate;
+  estimate.q_WC = pose->q_WC;
+  estimate.p_WC = pose->p_W;
+  const PnpSearch search = {kMaxGoodResidual * sigma_px, kPoseTrials, kMinPoseInliers, {sigma_px, kHuber, kPoseRounds}};
+  if (find_pose(camera, points, count, search, &random_, &estimate, inliers) == 0) return false;
+  pose->q_WC = estimate.q_WC;
+  pose->p_W = estimate.p_WC;
   return true;
 }
 

@@ -81,7 +81,7 @@ class StartBundle {
   Scalar fit_rotation(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const;
   Scalar adjust(const Camera& camera, const StartRecord& record, const int* frame, int cameras, int rounds,
                 Scalar sigma_px);
-  bool locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px, BundlePose* pose) const;
+  bool locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px, BundlePose* pose);
 
   BundleAdjuster adjuster_;
   BundlePose pose_[1 + kMaxCameras];  ///< frame 0, which is fixed and hosts every feature, and the cameras
@@ -89,6 +89,7 @@ class StartBundle {
   Scalar* best_rho_ = nullptr;
   Scalar* last_rho_ = nullptr;  ///< of the last solution, zero where it had none
   Scalar last_parallax_ = 0;    ///< [px]
+  std::uint32_t random_ = 0;    ///< of the search for poses
   unsigned char* good_ = nullptr;
 };
 

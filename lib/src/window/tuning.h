@@ -38,6 +38,9 @@ inline constexpr Scalar kMaxGoodResidual = Scalar(5);  ///< likewise, in every c
 inline constexpr int kGuessRounds = 25;                ///< of the adjustment from each direction of motion
 inline constexpr int kRounds = 30;                     ///< of the adjustment of all cameras
 inline constexpr int kPoseRounds = 8;                  ///< of a rotation or a pose alone
+inline constexpr int kPoseTrials = 50;                 ///< sets of three features from which a frame's pose is sought
+inline constexpr int kMinPoseInliers = 6;              ///< features that must agree with a frame's pose
+inline constexpr int kPoseSeed = 1;                    ///< of the generator that draws these sets
 inline constexpr Scalar kStepRegularisation = Scalar(1e-6);  ///< likewise, on the diagonal [1/rad², 1/m²]
 }  // namespace start
 

@@ -16,10 +16,13 @@
  *         exposure  the desk, with exposure that jumps
  *         repeat    the desk, with texture that repeats
  *         box       a box of 1 m with posters on its sides, circled at 2 m; no target
+ *         street    72 m along fronts with pillars, signs and parked boxes before them; no target
  *         checker   two planes in a checkerboard, one before the other; the camera moves sideways
  *         clutter   boards and posts at many depths before a wall
+ *         bushes    leaves anywhere in a volume: no plane
  *
- * W is the centre of the target: x right, y down, z into the wall; of the box, its middle. The same seed and options give the same pixels.
+ * W is the centre of the target: x right, y down, z into the wall; of the box, its middle; of the street, where the camera
+ * begins. The same seed and options give the same pixels.
  * Units: metres, seconds, grey levels 0..255.
  */
 #ifndef PLANEFOLD_PLATFORM_SIM_H

@@ -12,11 +12,14 @@ TOLERANCE = 0.010  # [s]
 def associate(run, truth, tolerance=TOLERANCE):
     """(run, truth, how), both of the same length. Frames without truth are left out.
 
-    Where truth comes at least 1.5 times as often as the frames, it is interpolated at each frame's time (position linearly,
-    rotation on the shortest arc) if it has a pose within the tolerance on either side; otherwise the nearest pose within
-    the tolerance is taken, and no true pose twice.
+    Where truth comes at least 1.5 times as often as the frames, and at most two tolerances apart, it is interpolated at each
+    frame's time (position linearly, rotation on the shortest arc) if it has a pose within the tolerance on either side;
+    otherwise the nearest pose within the tolerance is taken, and no true pose twice.
     """
-    often = len(truth) > 2 and len(run) > 1 and 1.5 * np.median(np.diff(truth.t)) <= np.median(np.diff(run.t))
+    often = False
+    if len(truth) > 2 and len(run) > 1:
+        step = np.median(np.diff(truth.t))
+        often = 1.5 * step <= np.median(np.diff(run.t)) and step <= 2 * tolerance
     after = np.searchsorted(truth.t, run.t)
     before = np.clip(after - 1, 0, len(truth) - 1)
     after = np.clip(after, 0, len(truth) - 1)

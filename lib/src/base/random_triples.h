@@ -11,6 +11,8 @@ class RandomTriples {
   /// Of the indices 0 .. count - 1, at least three.
   RandomTriples(int count, std::uint32_t seed) : count_(static_cast<std::uint32_t>(count)), state_(seed) {}
 
+  std::uint32_t state() const { return state_; }  ///< a seed with which drawing goes on
+
   void draw(int three[3]) {
     three[0] = one();
     do three[1] = one();

@@ -1,0 +1,34 @@
+#include "slam/followed_view.h"
+
+#include "slam/tuning.h"
+#include "track/image_rotation.h"
+
+namespace pf {
+
+void FollowedView::keep(const Pyramid& image, const Quat& q_WC, const Vec3& p_W) {
+  make_thumbnail(image, &data_.thumbnail);
+  data_.is_kept = true;
+  data_.q_WC = q_WC;
+  data_.p_W = p_W;
+}
+
+bool FollowedView::find(const Camera& camera, const Pyramid& image) {
+  if (!data_.is_kept) return false;
+  Thumbnail now;
+  make_thumbnail(image, &now);
+  Quat q_before_now;
+  if (!find_rotation(camera, data_.thumbnail, now, &q_before_now)) return false;
+  data_.q_now_WC = (data_.q_WC * q_before_now).normalized();
+  return true;
+}
+
+bool FollowedView::pixel_of(const Camera& camera, const Vec3& point_W, Vec2* pixel) const {
+  return project(camera, data_.q_now_WC.conjugate() * (point_W - data_.p_W), pixel);
+}
+
+Scalar FollowedView::variance(const Camera& camera) {
+  const Scalar sigma = tuning::followed_view::kSigma * static_cast<Scalar>(camera.width) / Thumbnail::kWidth;
+  return sigma * sigma;
+}
+
+}  // namespace pf

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "geometry/camera.h"
+#include "track/thumbnail.h"
+#include "vision/pyramid.h"
+
+/// Where to look in an image when the motion model cannot tell: by how the whole picture has moved since the last frame that supported its
+/// pose. See lib/docs/matching.md.
+
+namespace pf {
+
+/// The camera may have turned by more, or stopped more suddenly, than the motion model allows for, and searches about the prediction then
+/// find nothing. The picture itself says how it has moved, to a fraction of a pixel of its thumbnail, as if the camera had only turned.
+class FollowedView {
+ public:
+  void init() { data_.is_kept = false; }
+
+  /// Keeps the view of a frame that supported its pose.
+  void keep(const Pyramid& image, const Quat& q_WC, const Vec3& p_W);
+  /// Finds the kept view in an image. False if there is none, or the pictures do not match.
+  bool find(const Camera& camera, const Pyramid& image);
+
+  /// Camera of the image in which the view was found, as if it had only turned.
+  const Quat& q_WC() const { return data_.q_now_WC; }
+  const Vec3& p_W() const { return data_.p_W; }
+  /// Pixel of a point there. False where it is not in front of the camera.
+  bool pixel_of(const Camera& camera, const Vec3& point_W, Vec2* pixel) const;
+  /// Of that pixel, per axis [px^2].
+  static Scalar variance(const Camera& camera);
+
+ private:
+  struct Data {
+    Thumbnail thumbnail;
+    bool is_kept = false;
+    Quat q_WC = Quat::Identity(), q_now_WC = Quat::Identity();
+    Vec3 p_W = Vec3::Zero();
+  };
+
+  Data data_;
+};
+
+}  // namespace pf

@@ -1,0 +1,29 @@
+#include "base/elapsed.h"
+#include "slam/frame_loop.h"
+
+/// FrameLoop: what a frame says of the inertial unit (lib/docs/inertial.md).
+
+namespace pf {
+
+/// True where this frame is the first one whose samples tell the scale.
+bool FrameLoop::look_for_rest() {
+  if (!settings_.inertial || !tracking_.has_pose() || !filter_.uses_samples()) return false;
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kImu]);
+  RestReading rest;
+  if (rest_.note(tracking_.is_tracked(frame_.report), &rest) && start_.use_rest(rest, rest_.begin_ns())) {
+    if (map_.features.count() == 0) relocaliser_.init();
+    return true;
+  }
+  hold_->end_frame();
+  return false;
+}
+
+/// A map in metres that hangs on a unit in doubt is given up, for nothing tells how wrong it is.
+void FrameLoop::watch_unit() {
+  if (!settings_.inertial || !tracking_.has_pose()) return;
+  if (!watch_.note(data_.follows && !holds(), tracking_.is_tracked(frame_.report), data_.since_last_ns)) return;
+  data_.map_discredited = watch_.is_map_on_trial() && !start_.knows_scale() && !map_.planes.has_known();
+  if (data_.map_discredited) watch_.begin_without();
+}
+
+}  // namespace pf

@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <memory>
+
+#include "commands.h"
+#include "report.h"
+#include "statistics.h"
+#include "street_run.h"
+
+namespace pfsim {
+namespace {
+
+using nlohmann::json;
+
+struct Case {
+  const char* name;
+  StreetPlan plan;
+};
+
+constexpr double kDepth = 5;  // of the fronts, roughly: what a point without a wall begins with [m]
+const Case kCases[] = {{"refined", StreetPlan::kRefined}, {"exact", StreetPlan::kExact}, {"points", StreetPlan::kNone}};
+
+struct Choices {
+  std::vector<std::string> cases = {"refined", "exact", "points"};
+  int seeds = 5, jobs = 1, patches = 16, cameras = 8, max_state_dim = 500;
+  std::uint64_t first_seed = 1;
+  bool no_points = false;
+  StreetOptions street;
+  std::string json_file, csv;
+};
+
+struct Job {
+  const Choices* choices;
+  std::vector<StreetPlan> plans;
+  StreetSummary* summaries;
+  FrameRow* rows;
+};
+
+int fail(const std::string& what) {
+  std::fprintf(stderr, "pf-sim street: %s\n", what.c_str());
+  return 2;
+}
+
+/// Patches on the walls beside points, or alone. Without walls there are points alone.
+pf_config_t config_of(const Choices& c, StreetPlan plan) {
+  pf_config_t config;
+  pf_config_default(&config);
+  const double f = 601.8;
+  config.camera = {PF_CAMERA_PINHOLE,  640, 480, f, f, 319.5, 239.5, {}, 0, PF_CAMERA_EXACT,
+                   PF_TIMESTAMPS_REAL, 0,   0,   0, {}};
+  config.first_depth.depth = kDepth;
+  config.capacity.max_state_dim = c.max_state_dim;
+  config.capacity.max_features = std::max(config.capacity.max_features, c.max_state_dim / 3);
+  if (plan == StreetPlan::kNone) return config;
+  config.capacity.max_patches = c.patches;
+  config.capacity.max_cameras = c.cameras;
+  if (c.no_points) config.map.features_in_view = 0;
+  return config;
+}
+
+/// One seed's frames, for all plans.
+void run_one_seed(int index, void* context) {
+  const Job& job = *static_cast<Job*>(context);
+  std::vector<StreetVariant> variants;
+  std::vector<StreetSummary*> summaries;
+  std::vector<FrameRow*> rows;
+  for (std::size_t k = 0; k < job.plans.size(); ++k) {
+    const std::size_t run = k * static_cast<std::size_t>(job.choices->seeds) + static_cast<std::size_t>(index);
+    variants.push_back({config_of(*job.choices, job.plans[k]), job.plans[k]});
+    summaries.push_back(job.summaries + run);
+    rows.push_back(job.rows + run * static_cast<std::size_t>(job.choices->street.frames));
+  }
+  run_street(job.choices->street, variants, job.choices->first_seed + static_cast<std::uint64_t>(index), summaries,
+             rows);
+}
+
+/// Root mean square of the positions' errors of each run.
+std::vector<double> rmse_of(const Runs& runs) {
+  std::vector<double> all;
+  for (int s = 0; s < runs.seeds; ++s) {
+    double square = 0, count = 0;
+    for (int f = 0; f < runs.frames; ++f) {
+      const FrameRow& row = runs.row(s, f);
+      if (!(row.nees_position >= 0)) continue;
+      square += static_cast<double>(row.error_m) * static_cast<double>(row.error_m);
+      count += 1;
+    }
+    all.push_back(std::sqrt(square / std::max(1.0, count)));
+  }
+  return all;
+}
+
+json of_seeds(const std::vector<double>& values) {
+  return {{"median", median(values)}, {"worst", *std::max_element(values.begin(), values.end())}, {"seeds", values}};
+}
+
+json summarise_case(const Runs& runs, const StreetSummary* summaries) {
+  json out = summarise_frames(runs);
+  std::vector<double> end, share, sigmas;
+  int lost = 0, lost_runs = 0, tracked = 0, walls = 0, doubted = 0;
+  double plan_deg = 0, plan_m = 0, end_deg = 0, end_m = 0, nees = 0, patches = 0;
+  for (const StreetSummary* r = summaries; r != summaries + runs.seeds; ++r) {
+    end.push_back(r->end_m >= 0 ? r->end_m : INFINITY);
+    share.push_back(end.back() / std::max(r->path_m, 1e-9));
+    sigmas.push_back(r->end_m >= 0 ? r->end_m / r->end_sigma_m : INFINITY);
+    lost += r->lost_frames;
+    lost_runs += r->lost_frames > 0;
+    tracked += r->tracked_frames;
+    walls += r->walls;
+    doubted += r->doubted;
+    plan_deg += r->plan_deg;
+    plan_m += r->plan_m;
+    end_deg += r->end_deg;
+    end_m += r->wall_end_m;
+    nees += r->wall_nees;
+    patches += r->patches;
+  }
+  const double frames = static_cast<double>(runs.seeds) * runs.frames, seen = std::max(1, walls);
+  out["rmse_m"] = of_seeds(rmse_of(runs));
+  out["end_error_m"] = of_seeds(end);
+  out["end_error_of_path"] = of_seeds(share);
+  out["end_error_in_sigmas"] = of_seeds(sigmas);
+  out["lost"] = {{"frames", lost}, {"runs", lost_runs}};
+  out["tracked_share"] = tracked / frames;
+  out["patches"] = patches / frames;
+  out["walls"] = {{"count", walls},
+                  {"doubted", doubted},
+                  {"plan_angle_deg", plan_deg / seen},
+                  {"plan_offset_m", plan_m / seen},
+                  {"angle_deg", end_deg / seen},
+                  {"offset_m", end_m / seen},
+                  {"nees", nees / seen}};
+  return out;
+}
+
+void print_case(const char* name, const json& j) {
+  const auto number = [&](const char* path) {
+    const json& value = j.at(json::json_pointer(path));
+    return value.is_number() ? value.get<double>() : NAN;
+  };
+  std::printf(
+      "%s: camera RMSE %.3f m in the median seed, %.3f in the worst; end error %.3f, %.3f m (%.2f, %.2f %% of the "
+      "path; %.1f, %.1f sigma)\n",
+      name, number("/rmse_m/median"), number("/rmse_m/worst"), number("/end_error_m/median"),
+      number("/end_error_m/worst"), 100 * number("/end_error_of_path/median"), 100 * number("/end_error_of_path/worst"),
+      number("/end_error_in_sigmas/median"), number("/end_error_in_sigmas/worst"));
+  std::printf(
+      "  %.1f %% tracked, %g frames lost in %g runs; pose NEES %.1f (6 dof), state %g, %.1f patches in a frame\n",
+      100 * number("/tracked_share"), number("/lost/frames"), number("/lost/runs"), number("/nees_pose/mean"),
+      number("/state_dim/median"), number("/patches"));
+  if (number("/walls/count") > 0)
+    std::printf(
+        "  fronts that were seen: %g, %.2f deg, %.3f m in the plan; %.2f deg, %.3f m at the end, NEES %.1f (3 dof); %g "
+        "doubted\n",
+        number("/walls/count"), number("/walls/plan_angle_deg"), number("/walls/plan_offset_m"),
+        number("/walls/angle_deg"), number("/walls/offset_m"), number("/walls/nees"), number("/walls/doubted"));
+}
+
+int run(const Choices& c) {
+  if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.street.frames < 1 || c.street.frames > 100000)
+    return fail("seeds, jobs and frames must be positive");
+  Job job{&c, {}, nullptr, nullptr};
+  for (const std::string& name : c.cases) {
+    const auto* found =
+        std::find_if(std::begin(kCases), std::end(kCases), [&](const Case& x) { return name == x.name; });
+    if (found == std::end(kCases)) return fail("no case " + name + "; they are refined exact points");
+    job.plans.push_back(found->plan);
+  }
+  const char* field = nullptr;
+  const pf_config_t config = config_of(c, StreetPlan::kRefined);
+  if (pf_config_check(&config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
+  const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(c.street.frames);
+  const std::size_t count = seeds * job.plans.size();
+  job.summaries = static_cast<StreetSummary*>(shared_memory(count * sizeof(StreetSummary)));
+  job.rows = static_cast<FrameRow*>(shared_memory(count * frames * sizeof(FrameRow)));
+  if (!job.summaries || !job.rows) return fail("no memory");
+  if (!in_processes(c.seeds, c.jobs, "street", run_one_seed, &job)) return fail("a run did not come to its end");
+  json out = {{"experiment", "street"},
+              {"settings",
+               {{"points", !c.no_points},
+                {"first_seed", c.first_seed},
+                {"frames", c.street.frames},
+                {"rate_hz", c.street.rate_hz},
+                {"max_state_dim", c.max_state_dim},
+                {"sigma_rotation_deg", c.street.sigma_rotation_deg},
+                {"sigma_offset_m", c.street.sigma_offset}}}};
+  for (std::size_t k = 0; k < job.plans.size(); ++k) {
+    const Runs runs{c.seeds, c.street.frames, c.first_seed, job.rows + k * seeds * frames};
+    json& numbers = out["cases"][c.cases[k]] = summarise_case(runs, job.summaries + k * seeds);
+    print_case(c.cases[k].c_str(), numbers);
+    if (!c.csv.empty() && !write_csv(runs, c.csv, "street_" + c.cases[k])) return fail("cannot write to " + c.csv);
+  }
+  if (!c.json_file.empty() && !write_json(c.json_file, out)) return fail("cannot write " + c.json_file);
+  return 0;
+}
+
+}  // namespace
+
+void add_street(CLI::App& app, int& result) {
+  auto c = std::make_shared<Choices>();
+  CLI::App* command = app.add_subcommand("street", "A walk of 72 m along fronts that a coarse plan knows");
+  command->add_flag("--no-points", c->no_points, "patches on the fronts alone, without points");
+  command->add_option("--patches", c->patches, "that are followed at a time, at most");
+  command->add_option("--cameras", c->cameras, "reference cameras of patches, at most");
+  command->add_option("--max-state-dim", c->max_state_dim, "rows of the covariance");
+  command->add_option("--cases", c->cases, "one or more: refined, exact, points");
+  command->add_option("--seeds", c->seeds, "how many runs of each case");
+  command->add_option("--first-seed", c->first_seed, "seed of the first run");
+  command->add_option("--frames", c->street.frames, "of each run");
+  command->add_option("--rate", c->street.rate_hz, "frames per second");
+  command->add_option("--angle", c->street.sigma_rotation_deg,
+                      "of the plan's fronts about the vertical: standard deviation [deg]");
+  command->add_option("--offset", c->street.sigma_offset, "of the plan's fronts: standard deviation [m]");
+  command->add_option("--jobs", c->jobs, "processes at a time");
+  command->add_option("--json", c->json_file, "report to write");
+  command->add_option("--csv", c->csv, "folder for per-frame tables");
+  command->callback([c, &result] { result = run(*c); });
+}
+
+}  // namespace pfsim
