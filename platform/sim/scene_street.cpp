@@ -62,10 +62,10 @@ Trajectory street_walk() {
     const double speed = kStreetLength / (kStreetSeconds - kRestSeconds - 0.5 * kEaseSeconds);
     const double since = std::max(0.0, t - kRestSeconds);
     const double run = since < kEaseSeconds ? since * since / (2 * kEaseSeconds) : since - 0.5 * kEaseSeconds;
-    // It looks at the fronts, somewhat ahead, and to and fro.
-    const double yaw = 0.3 + 0.15 * std::sin(2 * kPi * since / 9.0);
+    // It looks at the fronts, somewhat ahead, and to and fro; from rest this begins as slowly as the walk does.
+    const double yaw = 0.3 + 0.15 * std::sin(2 * kPi * run / 9.0);
     return Pose{look_along({std::sin(yaw), 0, std::cos(yaw)}, kDown),
-                {speed * run, 0.1 * std::sin(2 * kPi * since / 7.0), 0}};
+                {speed * run, 0.1 * std::sin(2 * kPi * run / 7.0), 0}};
   };
 }
 

@@ -15,6 +15,9 @@ constexpr double kMaxResidual = 1e-9;   // of a distance equation, relative
 constexpr double kSameSolution = 1e-6;  // of distances, relative
 constexpr int kNewtonRounds = 6;
 
+/// The cube root, up to rounding that Newton's steps take away.
+double cube_root(double x) { return x == 0 ? 0 : std::copysign(std::exp(std::log(std::abs(x)) / 3), x); }
+
 /// The largest real root of x³ + b x² + c x + d (Cardano; trigonometric where there are three).
 double largest_cubic_root(double b, double c, double d) {
   const double p = c - b * b / 3, q = 2 * b * b * b / 27 - b * c / 3 + d;
@@ -22,7 +25,7 @@ double largest_cubic_root(double b, double c, double d) {
   double t;
   if (D >= 0) {
     const double s = std::sqrt(D);
-    const double A = std::cbrt(q < 0 ? -q / 2 + s : -q / 2 - s);
+    const double A = cube_root(q < 0 ? -q / 2 + s : -q / 2 - s);
     t = A == 0 ? 0 : A - p / (3 * A);
   } else {
     const double r = std::sqrt(-p / 3);

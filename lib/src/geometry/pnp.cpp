@@ -110,7 +110,7 @@ int needed_trials(Scalar share, int max_trials) {
   const Scalar right = share * share * share;
   if (!(right > Scalar(0))) return max_trials;
   if (right >= Scalar(1)) return 1;
-  const Scalar trials = std::log(kMissedTriple) / std::log1p(-right);
+  const Scalar trials = std::log(kMissedTriple) / std::log(Scalar(1) - right);
   return trials < static_cast<Scalar>(max_trials) ? static_cast<int>(std::ceil(trials)) : max_trials;
 }
 
