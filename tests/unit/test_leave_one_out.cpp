@@ -112,7 +112,7 @@ void test_rejection_should_be_that_of_one_match_at_a_time_by_brute_force() {
       ++rejected;
     }
     Scalar nis = -1;
-    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, keep.data(), &nis));
+    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
     for (int i = 0; i < m.count(); ++i)
       TEST_ASSERT_EQUAL_INT(expected[static_cast<std::size_t>(i)], keep[static_cast<std::size_t>(i)]);
     const double exact = m.distance(-1, expected);
@@ -131,7 +131,7 @@ void test_matches_should_be_kept_as_the_gate_says_when_all_are_right() {
     Matches m(random, 12, 8);
     std::vector<unsigned char> keep(static_cast<std::size_t>(m.count()), 1);
     Scalar nis;
-    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, keep.data(), &nis));
+    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
     for (const unsigned char k : keep) kept += k;
     all += m.count();
     nis_sum += static_cast<double>(nis);
@@ -158,7 +158,7 @@ void test_a_moving_feature_should_be_rejected_when_its_depth_is_open() {
     within += squared_distance(o.measured - o.predicted, m.S.block<2, 2>(2 * young, 2 * young).cast<Scalar>()) < kGate;
     std::vector<unsigned char> keep(static_cast<std::size_t>(m.count()), 1);
     Scalar nis;
-    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, keep.data(), &nis));
+    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
     caught += 1 - keep[static_cast<std::size_t>(young)];
     for (int i = 0; i < young; ++i) kept += keep[static_cast<std::size_t>(i)];
   }
@@ -169,17 +169,58 @@ void test_a_moving_feature_should_be_rejected_when_its_depth_is_open() {
   TEST_ASSERT_TRUE(kept >= 0.99 * 24 * kTrials);
 }
 
+/// Young features that all move by the same few pixels support each other: hardly one of them is rejected by itself.
+void test_a_group_of_young_features_should_be_rejected_when_the_older_ones_contradict_it() {
+  SeededRandom random(45);
+  Tester tester;
+  constexpr int kTrials = 40, kPoints = 16, kYoung = 12, kAll = kPoints + kYoung;
+  int ages[kAll];
+  for (int i = 0; i < kAll; ++i) ages[i] = i < kPoints ? 30 : 1 + i % 3;
+  int alone = 0, group = 0, older = 0, still = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Matches m(random, kPoints, kYoung, true);
+    const std::vector<unsigned char> all(kAll, 1);
+    Scalar nis;
+    std::vector<unsigned char> keep = all;
+    TEST_ASSERT_TRUE(
+        tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {ages, 8}, keep.data(), &nis));
+    for (int i = kPoints; i < kAll; ++i) still += keep[static_cast<std::size_t>(i)];
+    for (int i = kPoints; i < kAll; ++i) {
+      const int columns = m.at(i).H.columns();
+      const Vec2 along = Vec2(m.at(i).H.h[columns - 1], m.at(i).H.h[2 * columns - 1]).normalized();
+      m.at(i).measured += Scalar(1.2) * Vec2(-along.y(), along.x());
+    }
+    keep = all;
+    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
+    for (int i = kPoints; i < kAll; ++i) alone += keep[static_cast<std::size_t>(i)];
+    keep = all;
+    TEST_ASSERT_TRUE(
+        tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {ages, 8}, keep.data(), &nis));
+    const std::vector<unsigned char> left = keep;
+    const double exact = m.distance(-1, left);
+    TEST_ASSERT_TRUE(std::fabs(static_cast<double>(nis) - exact) < kTolerance * (1 + exact));
+    for (int i = 0; i < kAll; ++i) (i < kPoints ? older : group) += keep[static_cast<std::size_t>(i)];
+  }
+  std::printf(
+      "young ones kept: %d at rest, %d moving without the test of groups, %d with it, of %d; older ones %d of %d\n",
+      still, alone, group, kTrials * kYoung, older, kTrials * kPoints);
+  TEST_ASSERT_TRUE(still >= 0.97 * kTrials * kYoung);
+  TEST_ASSERT_TRUE(alone >= 0.5 * kTrials * kYoung);
+  TEST_ASSERT_TRUE(group <= 0.1 * kTrials * kYoung);
+  TEST_ASSERT_TRUE(older >= 0.99 * kTrials * kPoints);
+}
+
 void test_nothing_should_change_when_there_is_nothing_to_test() {
   SeededRandom random(44);
   Tester tester;
   Matches m(random, 5, 0);
   std::vector<unsigned char> keep(5, 0);
   Scalar nis = 7;
-  TEST_ASSERT_FALSE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, keep.data(), &nis));
+  TEST_ASSERT_FALSE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
   TEST_ASSERT_TRUE(nis == Scalar(7));
   keep[2] = 1;  // one match has no others: its own ellipse
   m.at(2).measured = m.at(2).predicted + Vec2(Scalar(1000), Scalar(0));
-  TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, keep.data(), &nis));
+  TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
   TEST_ASSERT_EQUAL_INT(0, keep[2]);
   TEST_ASSERT_TRUE(nis >= Scalar(0) && nis < Scalar(1e-3));
 }
@@ -191,6 +232,7 @@ int main(void) {
   RUN_TEST(test_rejection_should_be_that_of_one_match_at_a_time_by_brute_force);
   RUN_TEST(test_matches_should_be_kept_as_the_gate_says_when_all_are_right);
   RUN_TEST(test_a_moving_feature_should_be_rejected_when_its_depth_is_open);
+  RUN_TEST(test_a_group_of_young_features_should_be_rejected_when_the_older_ones_contradict_it);
   RUN_TEST(test_nothing_should_change_when_there_is_nothing_to_test);
   return UNITY_END();
 }

@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "slam/consensus.h"
+#include "slam/tuning.h"
 
 namespace pf {
 namespace {
+
+using namespace tuning::leave_one_out;
 
 /// Four sums side by side, so that none waits for the one before.
 Scalar dot(const Scalar* a, const Scalar* b, int n) {
@@ -36,21 +39,26 @@ bool LeaveOneOut::layout(Arena& arena, int max_observations) {
 }
 
 bool LeaveOneOut::reject(Filter& filter, const PixelMeasurement* observations, int count, Scalar gate,
-                         unsigned char* keep, Scalar* nis) {
+                         const MatchAges& ages, unsigned char* keep, Scalar* nis) {
   filter_ = &filter;
   kept_ = 0;
   for (int i = 0; i < count; ++i)
     if (keep[i] != 0) index_[kept_++] = i;
+  if (ages.frames != nullptr) sort(ages.frames);
   fill(observations);
   if (kept_ == 0 || !factor()) return false;
   invert_factor();
-  Scalar sum = 0;
   for (int i = 2 * kept_ - 1; i >= 0; --i) {  // g <- L^-1 r; from the last on, since row i reads entries up to i
     Scalar v = 0;
     for (int k = 0; k <= i; ++k) v += row(i)[k] * g_[k];
     g_[i] = v;
-    sum += v * v;
   }
+  // The rows of L^-1 and of v that stay are those of the older matches alone.
+  const int older = ages.frames != nullptr ? group_begin(ages) : kept_;
+  for (int a = older; a < kept_; ++a) keep[index_[a]] = 0;
+  kept_ = older;
+  Scalar sum = 0;
+  for (int i = 2 * kept_ - 1; i >= 0; --i) sum += g_[i] * g_[i];
   for (int i = 0; i < 2 * kept_; ++i) {  // g <- L^-T g
     const Scalar v = g_[i];
     g_[i] = 0;
@@ -65,6 +73,33 @@ bool LeaveOneOut::reject(Filter& filter, const PixelMeasurement* observations, i
   }
   *nis = sum;
   return true;
+}
+
+/// Oldest first; equals stay in their order.
+void LeaveOneOut::sort(const int* frames) {
+  for (int a = 1; a < kept_; ++a)
+    for (int b = a; b > 0 && frames[index_[b]] > frames[index_[b - 1]]; --b) std::swap(index_[b], index_[b - 1]);
+}
+
+/// Where the group of the youngest begins that the older ones contradict most; kept_ if they contradict none. With n rows in the group,
+/// N in all, q = sum of v^2 over the group and s that of the older ones per row, at least 1 (where the model is wrong, it is so for all):
+///
+///   z = ((q / (n s))^(1/3) - (1 - 2 / (9 n))) / sqrt(2 / (9 n))       Wilson and Hilferty 1931: normal, if q / s is chi-square
+int LeaveOneOut::group_begin(const MatchAges& ages) const {
+  int begin = kept_;
+  Scalar all = 0, q = 0, worst = kGroupDeviations;
+  for (int i = 0; i < 2 * kept_; ++i) all += g_[i] * g_[i];
+  for (int a = kept_ - 1; a >= ages.least && 2 * a >= kept_ && ages.frames[index_[a]] < kYoung; --a) {
+    q += g_[2 * a] * g_[2 * a] + g_[2 * a + 1] * g_[2 * a + 1];
+    if (ages.frames[index_[a]] == ages.frames[index_[a - 1]]) continue;  // no younger than the next one
+    const Scalar n = static_cast<Scalar>(2 * (kept_ - a)), spread = 2 / (9 * n);
+    const Scalar s = std::max(Scalar(1), (all - q) / static_cast<Scalar>(2 * a));
+    const Scalar z = (std::pow(q / (n * s), Scalar(1) / 3) - (1 - spread)) / std::sqrt(spread);
+    if (!(z > worst)) continue;
+    worst = z;
+    begin = a;
+  }
+  return begin;
 }
 
 /// G <- S, g <- r

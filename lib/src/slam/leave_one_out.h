@@ -18,7 +18,16 @@ namespace pf {
 ///
 ///   G <- G - G_:i G_ii^-1 G_i:,   g <- g - G_:i G_ii^-1 g_i
 ///
+/// Points that move together support each other in that test. So before it, the young features are tested as a group against the older
+/// ones: with the matches in order of age and S = L L^T, v = L^-1 r, the sum of v^2 over the rows of the youngest is their normalised
+/// innovation squared given all the older ones. Where chance does not explain it, all of them are rejected.
+///
 /// Derivation and measurements: lib/docs/noise.md
+struct MatchAges {
+  const int* frames = nullptr;  ///< in which the feature of each match was measured; null: groups are not tested
+  int least = 0;                ///< matches that a group of young ones is tested against, at least
+};
+
 class LeaveOneOut {
  public:
   bool layout(Arena& arena, int max_observations);
@@ -26,13 +35,15 @@ class LeaveOneOut {
   /// Clears keep of the matches that it rejects. Between begin_update with the same observations, max_observations at most as in the
   /// filter, and finish_update. nis: r^T S^-1 r of those that stay.
   /// False if S is not positive definite; then keep and nis are untouched.
-  bool reject(Filter& filter, const PixelMeasurement* observations, int count, Scalar gate, unsigned char* keep,
-              Scalar* nis);
+  bool reject(Filter& filter, const PixelMeasurement* observations, int count, Scalar gate, const MatchAges& ages,
+              unsigned char* keep, Scalar* nis);
 
  private:
   /// Row i of G, i + 1 numbers. All but the last lie in the filter's scratch.
   Scalar* row(int i) { return i + 1 < max_rows_ ? filter_->scratch_row(i) : last_row_; }
   void fill(const PixelMeasurement* observations);
+  void sort(const int* frames);
+  int group_begin(const MatchAges& ages) const;
   bool factor();
   void invert_factor();
   void diagonal_of_inverse();
@@ -43,7 +54,7 @@ class LeaveOneOut {
   int max_rows_ = 0;  ///< 2 max_observations
   Filter* filter_ = nullptr;
   Scalar* last_row_ = nullptr;  ///< of G: S, then its factor L, then L^-1, then G; lower triangles
-  Scalar* g_ = nullptr;         ///< r, then L^-1 r, then g
+  Scalar* g_ = nullptr;         ///< r, then v = L^-1 r, then g
   Scalar* spare_ = nullptr;     ///< 2 x max_rows
   Mat2* diagonal_ = nullptr;    ///< G_ii, max_observations
   int* index_ = nullptr;        ///< of the kept matches; -1 once rejected

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/elapsed.h"
 #include "slam/consensus.h"
@@ -20,6 +21,7 @@ bool PixelUpdate::layout(Arena& arena, int max_observations) {
   candidate_ = arena.take<Candidate>(count);
   observation_ = arena.take<PixelMeasurement>(count);
   keep_ = arena.take<unsigned char>(count);
+  age_ = arena.take<int>(count);
   others_.layout(arena, max_observations);
   return arena.ok();
 }
@@ -31,8 +33,12 @@ void PixelUpdate::begin(int first, int count) {
 
 int PixelUpdate::reject_contradicted(int first, int count, double* nis) {
   Scalar sum = 0;
+  for (int i = 0; i < count; ++i) {
+    const Feature& feature = map_.features[candidate_[first + i].feature];
+    age_[i] = feature.is_target ? std::numeric_limits<int>::max() : feature.observations;
+  }
   others_.reject(filter_, observation_ + first, count, tuning::pixel_update::kOthersGate * settings_.gate,
-                 keep_ + first, &sum);
+                 {age_, settings_.min_inliers}, keep_ + first, &sum);
   *nis = static_cast<double>(sum);
   return static_cast<int>(std::count(keep_ + first, keep_ + first + count, static_cast<unsigned char>(1)));
 }
