@@ -169,11 +169,8 @@ std::string check(const Options& options, const std::string& backend) {
   if (!wrong_imu.empty()) {
     return wrong_imu;
   }
-  if (backend == "window") {
-    return "--backend window is not available yet; use --backend filter";
-  }
-  if (backend != "filter") {
-    return "--backend " + backend + ": the only back end is filter";
+  if (backend != "filter" && backend != "window") {
+    return "--backend " + backend + ": write filter or window";
   }
   return "";
 }
@@ -248,7 +245,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
   app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame; patches.csv likewise");
   app.add_flag("--quiet", options.quiet, "no progress line");
-  app.add_option("--backend", backend, "filter")->capture_default_str();
+  app.add_option("--backend", backend, "filter: a filter over pose and map; window: keyframes and bundle adjustment")
+      ->capture_default_str();
   app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
   app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
       ->check(CLI::Range(0.0, 1000.0));
@@ -328,6 +326,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   options.kernels = set->second;
   options.lens = estimate->second;
   options.masks = mask->second;
+  options.backend = backend == "window" ? PF_BACKEND_WINDOW : PF_BACKEND_FILTER;
   options.film = !no_film;
   options.keep_gauge = !no_gauge;
   options.planes = !no_planes;

@@ -37,6 +37,7 @@ struct Options {
   pf_kernels_t kernels = PF_KERNELS_AUTO;
   bool planes = true;
   pf_camera_estimate_t lens = PF_CAMERA_EXACT;
+  pf_backend_t backend = PF_BACKEND_FILTER;
   pf_masks_t masks = PF_MASKS_NONE;
   bool keep_gauge = true;
 

@@ -16,6 +16,8 @@ namespace {
 constexpr double kSpeedSigma = 0.5;
 constexpr double kRateSigma = 0.5;
 
+constexpr int32_t kWindowFeatures = 150;  ///< in view, with the window
+
 constexpr int32_t kPatchesAlone = 16;  ///< of walls, where there are no points
 
 int64_t clock_ns(void*) { return steady_ns(); }
@@ -50,10 +52,13 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   if (options.timestamps >= 0) config_.camera.timestamps = options.timestamps;
   config_.kernels = options.kernels;
   config_.map.masks = options.masks;
+  config_.backend = options.backend;
+  const bool has_window = options.backend == PF_BACKEND_WINDOW;
+  if (has_window) config_.map.features_in_view = kWindowFeatures;
   config_.keep_gauge = options.keep_gauge ? 1 : 0;
   config_.plane.enabled = options.planes ? 1 : 0;
   const auto set = [](int32_t& field, int32_t value) { field = value > 0 ? value : field; };
-  set(config_.capacity.max_features, options.max_features);
+  set(has_window ? config_.capacity.window_points : config_.capacity.max_features, options.max_features);
   set(config_.capacity.max_planes, options.max_planes);
   set(config_.capacity.max_state_dim, options.max_state_dim);
   set(config_.capacity.max_observations, options.max_observations);
@@ -67,7 +72,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   if (options.max_planes < 0) {  // room for all walls, and for as many found planes as without
     config_.capacity.max_planes = std::min(64, config_.capacity.max_planes + plan_.count());
   }
-  if (options.max_observations < 0) {
+  if (options.max_observations < 0 && !has_window) {
     config_.capacity.max_observations = std::max(config_.capacity.max_observations, config_.map.features_in_view);
   }
   imu.configure(config_);

@@ -221,6 +221,8 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   if (session.config().map.masks != PF_MASKS_NONE) {
     stages["template"] = rounded(stage_ms_[PF_STAGE_TEMPLATE].quantile(0.5));
   }
+  const bool has_window = session.config().backend == PF_BACKEND_WINDOW;
+  if (has_window) stages["adjust"] = rounded(stage_ms_[PF_STAGE_ADJUST].quantile(0.5));
   const auto mean_of = [&](double sum) {
     return folding_.frames > 0 ? Json(rounded(sum / static_cast<double>(folding_.frames))) : Json();
   };
@@ -230,6 +232,8 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["version"] =
       std::to_string(version >> 16) + "." + std::to_string((version >> 8) & 255) + "." + std::to_string(version & 255);
   json["command"] = options.command;
+  json["backend"] = has_window ? "window" : "filter";
+  if (has_window) json["keyframes"] = last_report_.keyframes;
   json["processor"] = processor_name();
   json["source"] = options.source;
   json["frames"] = frames_;

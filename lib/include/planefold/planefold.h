@@ -182,6 +182,15 @@ typedef enum pf_masks {
   PF_MASKS_WHOLE = 2    /* as PARTIAL with all pixels on the plane; for comparison */
 } pf_masks_t;
 
+/* What estimates pose and map. */
+typedef enum pf_backend {
+  PF_BACKEND_FILTER = 1, /* a filter over pose, points and planes (Gee 2007); the default */
+  /* Keyframes whose newest are adjusted with the points that they see (lib/docs/window.md; Masoud 2015). Images only. PF_ERROR_CONFIG
+   * with motion.model inertial, camera.readout_s above 0, camera.estimate other than exact, plane.fix_sigma above 0 and
+   * capacity.max_patches above 0. */
+  PF_BACKEND_WINDOW = 2
+} pf_backend_t;
+
 typedef enum pf_scalar { PF_SCALAR_DOUBLE = 8, PF_SCALAR_FLOAT = 4 } pf_scalar_t;
 
 /* The inertial unit of pf_push_imu. Its own axes are B. */
@@ -209,6 +218,8 @@ typedef struct pf_config {
   uint32_t version; /* PF_VERSION, set by pf_config_default */
   int32_t scalar;   /* pf_scalar_t of the library that filled this in */
   int32_t kernels;  /* pf_kernels_t; a set that this processor cannot run is PF_ERROR_CONFIG. Default auto */
+  int32_t backend;  /* pf_backend_t. Default filter */
+  int32_t reserved; /* 0 */
 
   pf_camera_t camera; /* no default: the calibration of your camera */
 
@@ -229,6 +240,10 @@ typedef struct pf_config {
     int32_t max_patches, patch_side_px, max_cameras;
     /* Side of a feature's template with map.masks, odd, 9 .. 31 px; without, it takes no memory. Default 15 */
     int32_t template_px;
+    /* Of the window, and of no meaning with the filter: keyframes that are adjusted together, 2 .. 8, default 3; older ones that see the
+     * same points and are held fixed, 0 .. 16, default 5; points in the map, 50 .. 1000, default 300. In the window max_state_dim,
+     * max_features, max_observations, max_patches and max_cameras take nothing. */
+    int32_t window_keyframes, window_fixed, window_points;
   } capacity;
 
   /* How the camera may move between frames. Densities are those of white noise: over a time dt the velocity's
@@ -639,7 +654,8 @@ enum {
   PF_STAGE_IMU = 6,      /* samples, in place of the motion in PF_STAGE_PREDICT */
   PF_STAGE_PATCH = 7,    /* patches on walls: prediction, alignment, update, new ones */
   PF_STAGE_TEMPLATE = 8, /* masks and normals of templates */
-  PF_STAGE_COUNT = 9
+  PF_STAGE_ADJUST = 9,   /* of the window: adjusting keyframes and points */
+  PF_STAGE_COUNT = 10
 };
 
 /* The calibration as it is known now, and the covariance of its numbers (may be null): 10x10, row-major, of (fx, fy, cx,
@@ -676,6 +692,7 @@ typedef struct pf_report {
   /* With map.masks: templates that learnt from this frame, and the mean share of their pixels on the dominant plane (0
    * without any). */
   int32_t templates;
+  int32_t keyframes; /* of the window: that are kept */
   double template_area;
 } pf_report_t;
 

@@ -32,9 +32,13 @@ constexpr Range kIntegers[] = {
     PF_FIELD(capacity.patch_side_px, 32, 128),
     PF_FIELD(capacity.max_cameras, 0, 64),
     PF_FIELD(capacity.template_px, pf::PlanarTemplate::kMinSide, pf::PlanarTemplate::kMaxSide),
+    PF_FIELD(capacity.window_keyframes, 2, 8),
+    PF_FIELD(capacity.window_fixed, 0, 16),
+    PF_FIELD(capacity.window_points, 50, 1000),
+    PF_FIELD(backend, PF_BACKEND_FILTER, PF_BACKEND_WINDOW),
     PF_FIELD(map.masks, PF_MASKS_NONE, PF_MASKS_WHOLE),
     PF_FIELD(plane.min_points, 4, 60),
-    PF_FIELD(map.features_in_view, 0, 200),
+    PF_FIELD(map.features_in_view, 0, 1000),
     PF_FIELD(map.border_px, 4, 64),
     PF_FIELD(capacity.max_imu_samples, 0, 10000),
 };
@@ -150,6 +154,17 @@ const char* motion_from(const pf_config_t& config, Settings* settings) {
   return unit_from(config, &settings->unit);
 }
 
+/// What the window cannot do. Null, or the name of the first field that asks for it.
+const char* refused_by_window(const pf_config_t& config) {
+  if (config.backend != PF_BACKEND_WINDOW) return nullptr;
+  if (config.motion.model == PF_MOTION_INERTIAL) return "motion.model";
+  if (config.camera.readout_s > 0) return "camera.readout_s";
+  if (config.camera.estimate != PF_CAMERA_EXACT) return "camera.estimate";
+  if (config.plane.fix_sigma > 0) return "plane.fix_sigma";
+  if (config.capacity.max_patches > 0) return "capacity.max_patches";
+  return nullptr;
+}
+
 }  // namespace
 
 Status settings_from(const pf_config_t& config, Settings* settings, const char** field) {
@@ -168,10 +183,14 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
     if (!(value >= r.low && value <= r.high)) return *field = r.name, Status::kConfig;
   }
   if (config.capacity.template_px % 2 == 0) return *field = "capacity.template_px", Status::kConfig;
-  const bool patches_alone = config.map.features_in_view == 0 && config.capacity.max_patches > 0;
-  if (config.map.features_in_view > config.capacity.max_observations ||
+  const bool has_window = config.backend == PF_BACKEND_WINDOW;
+  const bool patches_alone = config.map.features_in_view == 0 && config.capacity.max_patches > 0 && !has_window;
+  if (config.map.features_in_view >
+          (has_window ? config.capacity.window_points : config.capacity.max_observations) ||
       (config.map.features_in_view < kMinFeaturesInView && !patches_alone))
     return *field = "map.features_in_view", Status::kConfig;
+  *field = refused_by_window(config);
+  if (*field != nullptr) return Status::kConfig;
   *field = motion_from(config, settings);
   if (*field != nullptr) return Status::kConfig;
   if (config.plane.fold != PF_FOLD_CONDITION && config.plane.fold != PF_FOLD_DROP)
@@ -196,6 +215,10 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->camera.readout = nominal ? Scalar(0) : static_cast<Scalar>(c.readout_s);
   settings->readout_ignored = nominal && c.readout_s > 0;
 
+  settings->backend = static_cast<BackEnd>(config.backend);
+  settings->window_keyframes = static_cast<std::uint8_t>(config.capacity.window_keyframes);
+  settings->window_fixed = static_cast<std::uint8_t>(config.capacity.window_fixed);
+  settings->window_points = static_cast<std::int16_t>(config.capacity.window_points);
   settings->max_state_dim = config.capacity.max_state_dim;
   settings->max_features = config.capacity.max_features;
   settings->max_observations = config.capacity.max_observations;
@@ -260,6 +283,10 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->capacity.patch_side_px = 100;
   config->capacity.max_cameras = 8;
   config->capacity.template_px = pf::PlanarTemplate::kDefaultSide;
+  config->backend = PF_BACKEND_FILTER;
+  config->capacity.window_keyframes = 3;
+  config->capacity.window_fixed = 5;
+  config->capacity.window_points = 300;
   config->plane.enabled = 1;
   config->plane.min_points = 7;
   config->plane.max_distance = 0.01;

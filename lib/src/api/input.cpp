@@ -117,7 +117,7 @@ pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double 
   if (dv_C == nullptr || dw_C == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(dv_C, 3) || !pf::finite(dw_C, 3)) return PF_ERROR_NONFINITE;
   if (!within(dv_C, 3, kMaxMetres) || !within(dw_C, 3, kMaxRate)) return PF_ERROR_RANGE;
-  if (!slam->session.settings().constant_velocity) return PF_ERROR_STATE;
+  if (!slam->session.takes_control()) return PF_ERROR_STATE;
   slam->session.push_control(vec3(dv_C), vec3(dw_C));
   return PF_OK;
 }

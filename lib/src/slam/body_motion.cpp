@@ -1,15 +1,11 @@
 #include "slam/body_motion.h"
 
-#include <cmath>
-
 #include "base/elapsed.h"
 #include "filter/inertial_motion.h"
-#include "slam/tuning.h"
+#include "slam/speed_limits.h"
 
 namespace pf {
 namespace {
-
-using namespace tuning::body_motion;
 
 /// After kMaxGapNs no motion is predictable, and the covariance grows no further.
 Scalar predicted_seconds(std::int64_t before_ns, std::int64_t t_ns) {
@@ -27,8 +23,7 @@ std::int64_t BodyMotion::on_unit_clock(std::int64_t t_ns) const {
 void BodyMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured) {
   MotionNoise noise = settings_.motion_noise;
   if (coasting_or_lost) {
-    // A hand does not keep its speed for long, and half a radian of rotation uncertainty already means searching everywhere. Without
-    // these limits, one second without an image would predict the camera out of the room. The position keeps growing with the speed.
+    // The position keeps growing with the speed.
     if (has_rate() && nothing_measured) damp(predicted_seconds(before_ns, t_ns));
     noise = limited_noise();
   }
@@ -48,15 +43,11 @@ bool BodyMotion::has_rate() const {
   return settings_.constant_velocity || (settings_.inertial && !filter_.uses_samples());
 }
 
-/// The noise of the model, without what would make wide covariances wider.
 MotionNoise BodyMotion::limited_noise() const {
-  MotionNoise noise = settings_.motion_noise;
   const bool has_velocity = settings_.body.has(BodyPart::kVelocity);
-  if (filter_.variance(Body::kTheta) > kMaxRotationSigma * kMaxRotationSigma) noise.angular = Scalar(0);
   const int linear = has_velocity ? settings_.body.row(BodyPart::kVelocity) : Body::kPosition;
-  const Scalar most = has_velocity ? kMaxSpeedSigma : kAnyPosition;
-  if (filter_.variance(linear) > most * most) noise.linear = Scalar(0);
-  return noise;
+  return pf::limited_noise(settings_.motion_noise, has_velocity, filter_.variance(Body::kTheta),
+                           filter_.variance(linear));
 }
 
 void BodyMotion::predict(const Body& body, std::int64_t before_ns, std::int64_t t_ns, const MotionNoise& noise,
@@ -119,17 +110,12 @@ void BodyMotion::damp(Scalar dt) {
   const int first = settings_.body.row(BodyPart::kVelocity);  // the angular velocity follows
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) P_speed(i, j) = filter_.covariance()(first + i, first + j);
-  // Beyond any position and any rotation the speeds decay without noise that keeps them up.
-  const bool any_rotation = filter_.variance(Body::kTheta) > kAnyRotation * kAnyRotation;
-  const bool any_position = filter_.variance(Body::kPosition) > kAnyPosition * kAnyPosition;
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j)
-      if ((any_position && (i < 3 || j < 3)) || (any_rotation && (i >= 3 || j >= 3))) P_speed(i, j) = Scalar(0);
+  limit_speed(filter_.variance(Body::kTheta), filter_.variance(Body::kPosition), &P_speed);
   Transition transition;
   const Body& body = filter_.state().body;
   const Vec3 rate =
       settings_.inertial ? Vec3(-(filter_.state().mounting.R_CB.transpose() * body.w_C)) : body.w_C;  // e_b = -e_w
-  damp_speed(body, settings_.body, std::exp(-dt / kSpeedDecay), rate, P_speed, &transition);
+  damp_speed(body, settings_.body, speed_decay(dt), rate, P_speed, &transition);
   filter_.predict(transition);
 }
 

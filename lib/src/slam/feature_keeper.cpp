@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "base/elapsed.h"
 #include "filter/camera_at.h"
 #include "filter/observe/inverse_depth.h"
 #include "geometry/ray_plane.h"
+#include "slam/feature_upkeep.h"
 #include "slam/plane_walls.h"
 #include "slam/tuning.h"
 
@@ -38,18 +38,6 @@ void FeatureKeeper::convert_linear() {
   }
 }
 
-void FeatureKeeper::count_searches() {
-  for (int t = 0; t < frame_.match_count(); ++t) {
-    const Match& match = frame_.match(t);
-    if (match.feature < 0 || !match.searched) continue;
-    Feature& f = map_.features[match.feature];
-    count_frame(&f.attempts);
-    if (match.status == MatchStatus::kInlier) continue;
-    count_frame(&f.failures);
-    if (match.status == MatchStatus::kOutlier) count_frame(&f.rejections);
-  }
-}
-
 void FeatureKeeper::drop_failing(bool is_tracked) {
   int count = 0;
   for (int i = 0; i < map_.features.capacity(); ++i) {
@@ -60,14 +48,12 @@ void FeatureKeeper::drop_failing(bool is_tracked) {
       continue;
     }
     if (f.is_target || !is_tracked) continue;
-    const bool seldom = f.attempts >= kMinAttempts && 2 * f.observations < f.attempts;
-    const bool in_a_row = f.failures >= (f.observations < kMinAttempts ? kMaxEarlyFailures : kMaxFailures);
     // A depth that is negative by three sigma is wrong.
     const Block& block = filter_.state().block[f.slot];
     const bool inverted =
         block.kind == BlockKind::kInverseDepth && block.inverse_depth().rho < Scalar(0) &&
         block.inverse_depth().rho * block.inverse_depth().rho > kSureSign * filter_.block_variance(f.slot, 2);
-    if ((f.failures > 0 && seldom) || in_a_row || inverted) scratch_[count++] = i;
+    if (fails_too_often(f) || inverted) scratch_[count++] = i;
   }
   drop(scratch_, count);
 }

@@ -22,8 +22,6 @@ class FeatureKeeper {
   /// Drops features that fail too often, lie behind their first camera, or whose values are not finite and bounded.
   /// Unsound ones only if this frame does not support its pose: then a feature that is not found may still be there.
   void drop_failing(bool is_tracked);
-  /// Counts the searches of a tracked frame: attempts, failures and rejections.
-  void count_searches();
   void drop(const int* entries, int count);
   void drop_all();
   /// Removes a table entry whose block is no longer in the filter.

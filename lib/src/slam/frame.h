@@ -27,7 +27,7 @@ struct Match {
   bool searched = false;  ///< the image was compared with its appearance
 };
 
-enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kImu, kPatch, kTemplate, kStageCount };
+enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kImu, kPatch, kTemplate, kAdjust, kStageCount };
 
 struct FrameReport {
   std::int64_t t_ns = 0;

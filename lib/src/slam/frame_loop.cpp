@@ -5,6 +5,7 @@
 
 #include "base/elapsed.h"
 #include "geometry/lens_deviation.h"
+#include "slam/feature_upkeep.h"
 #include "slam/tuning.h"
 #include "slam/usable_pose.h"
 
@@ -95,7 +96,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   if (!first && tracking_.is_tracked(frame_.report)) images_.learn_templates();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
-    if (supported) features_.count_searches();
+    if (supported) count_searches(frame_, &map_.features);
     // While the map starts, residuals are those of a coarse map.
     if (supported && tracking_.state() == SlamState::kTracking && !start_.progress().recording) learn_noise();
     maintain_map(supported);

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "slam/feature_upkeep.h"
 #include "slam/image_front_end.h"
 #include "slam/tuning.h"
 
@@ -25,15 +26,13 @@ bool ImageFrontEnd::is_visible(int feature, Vec2* pixel) const {
            o.predicted.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
 }
 
-/// How reliable a feature is: the rate of its successes, of proven ones more; negative where this view cannot be compared with its first.
+/// How reliable a feature is; negative where this view cannot be compared with its first.
 float ImageFrontEnd::rate(int feature, const Vec2& pixel) const {
   const Feature& f = map_.features[feature];
-  const int rated = std::min(f.observations, 20);
-  const float rate =
-      static_cast<float>(rated) * static_cast<float>(f.observations + 1) / static_cast<float>(f.attempts + 1);
+  const float rate = reliability(f);
   SearchTask task = task_of(feature);
   task.predicted = pixel;
-  return tracker_.is_comparable(task) ? rate : rate - kIncomparable;
+  return search_.tracker().is_comparable(task) ? rate : rate - kIncomparable;
 }
 
 /// A full list keeps the best, and the scouts are the best. What cannot be compared comes last: it would fill the list in place of what

@@ -10,7 +10,6 @@
 #include "slam/tracking_state.h"
 #include "slam/triple_consensus.h"
 #include "slam/tuning.h"
-#include "track/template_matcher.h"
 
 namespace pf {
 namespace {
@@ -21,21 +20,18 @@ using namespace tuning::image_front_end;
 
 bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observations) {
   scratch_ = arena.take<Scalar>(static_cast<std::size_t>(max_observations));
-  layout_templates(arena);
-  return tracker_.layout(arena, width, height);
+  return search_.layout(arena, width, height);
 }
 
 void ImageFrontEnd::init(const Camera& camera) {
-  tracker_.init(camera);
-  if (templates_ != nullptr) templates_->init(camera, settings_.masks, settings_.max_misfit);
+  search_.init(camera);
   same_view_.init();
   followed_.init();
 }
 
 bool ImageFrontEnd::begin_frame(const ImageView& image) {
-  if (templates_ != nullptr) templates_->begin_frame();
   is_measured_ = false;
-  return tracker_.begin_frame(image);
+  return search_.begin_frame(image);
 }
 
 void ImageFrontEnd::measure(ConsensusRule rule, Scalar median_depth) {
@@ -58,7 +54,7 @@ bool ImageFrontEnd::begin_following() {
   for (int i = 0; i < listed_; ++i) wide += is_wide(frame_.match(update_.candidate(i).match).innovation) ? 1 : 0;
   if (wide == 0 || 2 * wide < listed_) return false;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
-  is_following_ = followed_.find(filter_.lens(), tracker_.pyramid());
+  is_following_ = followed_.find(filter_.lens(), search_.tracker().pyramid());
   return is_following_;
 }
 
@@ -92,13 +88,7 @@ void ImageFrontEnd::measure_visible(ConsensusRule rule) {
 }
 
 bool ImageFrontEnd::remember(int feature, const Vec2& pixel, const CameraView& view) {
-  Feature& f = map_.features[feature];
-  f.has_appearance = tracker_.remember(pixel, &map_.appearance(feature));
-  map_.first_view(feature) = view;
-  if (f.has_appearance && map_.has_templates())
-    templates_->begin(tracker_.image(), map_.appearance(feature).patch, pixel, &map_.shape(feature),
-                      map_.mask(feature));
-  return f.has_appearance;
+  return search_.remember(&map_, feature, pixel, view);
 }
 
 void ImageFrontEnd::predict_pixels(int first, int count) {
@@ -158,10 +148,8 @@ SearchTask ImageFrontEnd::task_of(int feature) const {
   task.appearance = &map_.appearance(feature);
   task.first_view = map_.first_view(feature);
   // Where a surface is in other images needs its depth. The target is matched as without masks (lib/docs/templates.md).
-  if (map_.has_templates() && !map_.features[feature].is_target && state.block[slot].kind != BlockKind::kInverseDepth) {
-    task.shape = &map_.shape(feature);
-    task.mask = map_.mask(feature);
-  }
+  if (map_.has_templates() && !map_.features[feature].is_target && state.block[slot].kind != BlockKind::kInverseDepth)
+    ImageSearch::use_template(map_, feature, &task);
   task.gate = settings_.gate;
   task.p_W = filter_.point(slot);
   if (is_planar(state.block[slot].kind)) {
@@ -175,10 +163,6 @@ SearchTask ImageFrontEnd::task_of(int feature) const {
   return task;
 }
 
-SearchOutcome ImageFrontEnd::search_for(const SearchTask& task) {
-  return task.shape != nullptr ? templates_->search(tracker_, task) : tracker_.search(task);
-}
-
 int ImageFrontEnd::search(int first, int count) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   int found = first;
@@ -190,7 +174,7 @@ int ImageFrontEnd::search(int first, int count) {
     task.predicted = o.predicted;
     task.innovation = match.innovation;
     if (!aim(&task)) continue;
-    const SearchOutcome outcome = search_for(task);
+    const SearchOutcome outcome = search_.search(task);
     if (!outcome.comparable) continue;
     match.searched = true;
     ++frame_.report.attempts;

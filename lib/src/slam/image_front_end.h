@@ -5,17 +5,15 @@
 #include "slam/feature_keeper.h"
 #include "slam/followed_view.h"
 #include "slam/frame.h"
+#include "slam/image_search.h"
 #include "slam/noise_model.h"
 #include "slam/pixel_update.h"
 #include "slam/same_view.h"
 #include "slam/settings.h"
-#include "track/tracker.h"
 
 /// Measures an image: predicts which features are in it and where, finds them, updates the filter, and adds features at corners.
 
 namespace pf {
-
-class TemplateMatcher;
 
 /// When a frame's consensus is believed.
 enum class ConsensusRule {
@@ -34,7 +32,8 @@ class ImageFrontEnd {
         frame_(frame),
         features_(features),
         update_(update),
-        noise_(noise) {}
+        noise_(noise),
+        search_(settings) {}
 
   bool layout(Arena& arena, int width, int height, int max_observations);
   void init(const Camera& camera);
@@ -52,7 +51,7 @@ class ImageFrontEnd {
       same_view_.forget();
   }
   /// After a frame that used matches: the next one may be followed from it.
-  void keep_view() { followed_.keep(tracker_.pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W); }
+  void keep_view() { followed_.keep(search_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W); }
   /// The map is given up, and with it all poses.
   void forget_map() { followed_.init(); }
   /// Updates the noise model with the inliers' residuals after measure().
@@ -64,7 +63,7 @@ class ImageFrontEnd {
   /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
   bool remember(int feature, const Vec2& pixel, const CameraView& view);
 
-  const Tracker& tracker() const { return tracker_; }
+  const Tracker& tracker() const { return search_.tracker(); }
 
   // --- steps of a search
   /// Lists visible features as candidates and matches, the most reliable first. Returns how many.
@@ -89,16 +88,10 @@ class ImageFrontEnd {
   bool is_wide(const Mat2& innovation) const;
   bool aim(SearchTask* task) const;
   SearchTask task_of(int feature) const;
-  SearchOutcome search_for(const SearchTask& task);
   bool update_with_consensus(int first, int found, ConsensusRule rule);
   bool is_averaged(const Feature& f) const;
 
-  // image_templates.cpp
-  bool layout_templates(Arena& arena);
-
   // image_corners.cpp
-  bool is_free(const Vec2& pixel) const;
-  void find_plane_cells(bool* on_plane) const;
   bool add_in(const Rect& rect, int* anchor);
 
   const Settings& settings_;
@@ -114,9 +107,8 @@ class ImageFrontEnd {
   bool is_learnt_ = false;     ///< the map has learnt from this frame's view already
   bool is_measured_ = false;   ///< by measure(), so that candidates and matches are this frame's
   int listed_ = 0;             ///< candidates of this frame
-  Tracker tracker_;
-  TemplateMatcher* templates_ = nullptr;  ///< in the block, with masks alone
-  Scalar* scratch_ = nullptr;             ///< max_observations: rates of candidates, then the areas that were searched
+  ImageSearch search_;
+  Scalar* scratch_ = nullptr;  ///< max_observations: rates of candidates, then the areas that were searched
 };
 
 }  // namespace pf

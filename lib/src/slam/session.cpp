@@ -4,32 +4,54 @@
 
 namespace pf {
 
+namespace {
+
+/// Lays out a back end in the block, or only counts it.
+template <typename BackEndT, typename... Arguments>
+BackEndT* place(Arena& arena, Arguments&... arguments) {
+  BackEndT* const at = arena.take<BackEndT>(1);
+  if (at == nullptr) {
+    BackEndT(arguments...).layout(arena);
+    return nullptr;
+  }
+  BackEndT* const made = new (at) BackEndT(arguments...);
+  made->layout(arena);
+  return made;
+}
+
+}  // namespace
+
 bool Session::layout(Arena& arena, const Settings& settings) {
   settings_ = settings;
-  map_.layout(arena, settings.max_features, settings.max_planes,
+  const bool has_window = settings.backend == BackEnd::kWindow;
+  map_.layout(arena, has_window ? settings.window_points : settings.max_features, settings.max_planes,
               settings.masks == MaskMode::kNone ? 0 : settings.template_px);
   imu_.layout(arena, settings.imu_buffer);
-  FrameLoop* place = arena.take<FrameLoop>(1);
-  if (place == nullptr) return FrameLoop(settings_, map_, imu_).layout(arena);
-  filter_ = new (place) FrameLoop(settings_, map_, imu_);
-  return filter_->layout(arena);
+  if (has_window)
+    window_ = place<WindowSlam>(arena, settings_, map_);
+  else
+    filter_ = place<FrameLoop>(arena, settings_, map_, imu_);
+  return arena.ok();
 }
 
 void Session::init() {
   data_ = Data();
   map_.init();
   imu_.init(settings_.imu_buffer, settings_.imu_ranges);
-  filter_->init();
+  if (filter_ != nullptr) filter_->init();
+  if (window_ != nullptr) window_->init();
   if (settings_.readout_ignored)
     settings_.hooks.say("nominal timestamps give rows no time of their own: the rolling shutter counts as global");
 }
 
 Status Session::start_from_target(const Target& target) {
-  return view().used() ? Status::kState : filter_->start().use_target(target);
+  if (view().used()) return Status::kState;
+  return filter_ != nullptr ? filter_->start().use_target(target) : window_->start().use_target(target);
 }
 
 Status Session::start_from_pose(const KnownBody& known) {
-  return view().used() ? Status::kState : filter_->start().use_pose(known);
+  if (view().used()) return Status::kState;
+  return filter_ != nullptr ? filter_->start().use_pose(known) : window_->start().use_pose(known);
 }
 
 Vec3 Session::gravity_W() const {
@@ -41,7 +63,7 @@ Vec3 Session::gravity_W() const {
 Status Session::push_frame(const ImageView& image, std::int64_t t_ns) {
   data_.kind = FrameKind::kImages;
   imu_.mark_frame(t_ns);
-  return filter_->push_frame(image, t_ns);
+  return filter_ != nullptr ? filter_->push_frame(image, t_ns) : window_->push_frame(image, t_ns);
 }
 
 Status Session::push_observations(int count, std::int64_t t_ns) {

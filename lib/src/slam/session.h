@@ -9,6 +9,7 @@
 #include "slam/frame_loop.h"
 #include "slam/settings.h"
 #include "slam/view.h"
+#include "slam/window_slam.h"
 
 /// What the API calls act on: input, choice of the start, and the back end that does the work.
 
@@ -31,31 +32,37 @@ class Session {
   // --- how to start; before the first frame
   Status start_from_target(const Target& target);
   Status start_from_pose(const KnownBody& known);
-  Status add_wall(const PlanePrior& prior, std::uint32_t* id) { return filter_->add_wall(prior, id); }
+  /// kState: there are no walls with the window.
+  Status add_wall(const PlanePrior& prior, std::uint32_t* id) {
+    return filter_ != nullptr ? filter_->add_wall(prior, id) : Status::kState;
+  }
   void withdraw_target() { map_.target_withdrawn = true; }
 
   // --- what comes in
   bool takes_images() const { return data_.kind != FrameKind::kObservations; }
-  bool takes_observations() const { return data_.kind != FrameKind::kImages; }
+  bool takes_observations() const { return filter_ != nullptr && data_.kind != FrameKind::kImages; }
+  bool takes_control() const { return filter_ != nullptr && settings_.constant_velocity; }
+  /// There is a state whose covariance can be asked for.
+  bool has_state() const { return filter_ != nullptr; }
   /// The start that was chosen needs images.
-  bool needs_images() const { return filter_->start().takes_images_only(); }
+  bool needs_images() const { return filter_ == nullptr || filter_->start().takes_images_only(); }
   /// Whether a frame of this time may come next.
   bool is_next(std::int64_t t_ns) const { return !view().used() || t_ns > view().last_ns(); }
 
   Status push_frame(const ImageView& image, std::int64_t t_ns);
-  /// Where the observations of the next frame are written, as many as inbox_size().
+  /// Of a session that takes observations: where those of the next frame are written, as many as inbox_size().
   PixelObservation* inbox() { return filter_->observations().inbox(); }
   int inbox_size() const { return settings_.max_features + settings_.max_observations; }
   /// The first `count` of the inbox.
   Status push_observations(int count, std::int64_t t_ns);
   /// Known change of the velocities in camera axes, until the next frame.
   void push_control(const Vec3& dv_C, const Vec3& dw_C) { filter_->motion().push_control(dv_C, dw_C); }
-  Status mark_pose() { return filter_->mark_pose(); }
+  Status mark_pose() { return filter_ != nullptr ? filter_->mark_pose() : window_->mark_pose(); }
   void push_imu(const ImuSample& sample) { imu_.add(sample); }
   void set_gravity(const Vec3& gravity_W) { data_.gravity_W = gravity_W, data_.gravity_map = view().map_id(); }
 
   // --- what can be read
-  View view() const { return View(settings_, map_, *filter_); }
+  View view() const { return filter_ != nullptr ? View(settings_, map_, *filter_) : View(settings_, map_, *window_); }
   const Settings& settings() const { return settings_; }
   const ImuLog& imu() const { return imu_; }
   /// In the W of the current map: what the caller said, or else what the samples say. Zero: not known.
@@ -73,8 +80,8 @@ class Session {
   Map map_;
   ImuLog imu_;
   Data data_;
-  FrameLoop* filter_ =
-      nullptr;  ///< the back end; a second one becomes a pointer beside this one, and one of the two is null
+  FrameLoop* filter_ = nullptr;  ///< the back end: one of the two is null
+  WindowSlam* window_ = nullptr;
 };
 
 }  // namespace pf

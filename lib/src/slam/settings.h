@@ -13,11 +13,18 @@
 
 namespace pf {
 
+/// With the numbers of pf_backend_t.
+enum class BackEnd : std::uint8_t { kFilter = 1, kWindow = 2 };
+
 /// The config after it was checked, in the library's own types.
 struct Settings {
   Camera camera;
   LensPrior lens;  ///< what is uncertain of it; no rows where it is taken as exact
   const Kernels* kernels = nullptr;
+
+  BackEnd backend = BackEnd::kFilter;
+  std::uint8_t window_keyframes = 0, window_fixed = 0;
+  std::int16_t window_points = 0;
 
   int max_state_dim = 0;
   int max_features = 0;

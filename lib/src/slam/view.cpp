@@ -5,26 +5,47 @@
 #include "filter/gauge_information.h"
 #include "filter/observe/point.h"
 #include "slam/frame_loop.h"
+#include "slam/window_slam.h"
 #include "track/template_warp.h"
 
 namespace pf {
 
-const Filter& View::filter() const { return loop_.filter(); }
+View::View(const Settings& settings, const Map& map, const FrameLoop& loop)
+    : settings_(settings),
+      map_(map),
+      frame_(loop.frame()),
+      tracking_(loop.tracking()),
+      noise_(loop.noise()),
+      loop_(&loop) {}
+
+View::View(const Settings& settings, const Map& map, const WindowSlam& window)
+    : settings_(settings),
+      map_(map),
+      frame_(window.frame()),
+      tracking_(window.tracking()),
+      noise_(window.noise()),
+      window_(&window) {}
+
+const Filter& View::filter() const { return loop_->filter(); }
 bool View::used() const { return report().frames > 0; }
 std::int64_t View::last_ns() const { return report().t_ns; }
-SlamState View::state() const { return loop_.tracking().state(); }
-std::uint32_t View::map_id() const { return loop_.tracking().map_id(); }
-int View::kept_views() const { return loop_.relocaliser().kept_views(); }
-bool View::has_pose() const { return loop_.tracking().has_pose(); }
-const FrameReport& View::report() const { return loop_.frame().report; }
-const NoiseModel& View::noise() const { return loop_.noise(); }
-int View::match_count() const { return loop_.frame().match_count(); }
-const Match& View::match(int i) const { return loop_.frame().match(i); }
+SlamState View::state() const { return tracking_.state(); }
+std::uint32_t View::map_id() const { return tracking_.map_id(); }
+bool View::has_pose() const { return tracking_.has_pose(); }
+const FrameReport& View::report() const { return frame_.report; }
+const NoiseModel& View::noise() const { return noise_; }
+int View::match_count() const { return frame_.match_count(); }
+const Match& View::match(int i) const { return frame_.match(i); }
 int View::state_dim() const { return filter().dim(); }
 
+int View::kept_views() const {
+  return window_ != nullptr ? window_->kept_views() : loop_->relocaliser().kept_views();
+}
+
 void View::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
+  if (window_ != nullptr) return window_pose_at(t_ns, body, covariance);
   // Of a frame that repeats the one before, the pose is that one's.
-  loop_.motion().predict_pose(t_ns > last_ns() ? loop_.filter_ns() : t_ns, t_ns, body, covariance);
+  loop_->motion().predict_pose(t_ns > last_ns() ? loop_->filter_ns() : t_ns, t_ns, body, covariance);
   if (settings_.inertial) body->v_W = camera_velocity(*body, filter().state().mounting);
 }
 
@@ -41,15 +62,16 @@ bool View::inertial(InertialView* out) const {
     for (int j = 0; j < 8; ++j)
       out->covariance[i][j] = filter().covariance()(std::max(row(i), row(j)), std::min(row(i), row(j)));
   out->metric = filter().is_metric();
-  out->resting = loop_.hold()->holds();
-  out->rests = loop_.hold()->rests();
+  out->resting = loop_->hold()->holds();
+  out->rests = loop_->hold()->rests();
   return true;
 }
 
-bool View::unit_doubted() const { return loop_.watch().doubted(); }
-std::int64_t View::unit_doubted_ns() const { return loop_.watch().doubted_ns(); }
+bool View::unit_doubted() const { return loop_ != nullptr && loop_->watch().doubted(); }
+std::int64_t View::unit_doubted_ns() const { return loop_ != nullptr ? loop_->watch().doubted_ns() : 0; }
 
 bool View::motion_since_mark(MotionView* out) const {
+  if (window_ != nullptr) return window_motion_since_mark(out);
   if (map_.mark.camera < 0) return false;
   out->mark_ns = map_.mark.t_ns;
   filter().motion_since(map_.mark.camera, &out->q_KC, &out->p_KC, &out->covariance);
@@ -57,10 +79,11 @@ bool View::motion_since_mark(MotionView* out) const {
 }
 
 const Camera& View::lens(Scalar covariance[kLensParameters][kLensParameters]) const {
-  const State& state = filter().state();
-  const LensRows& rows = state.lens_rows;
   for (int i = 0; i < kLensParameters; ++i)
     for (int j = 0; j < kLensParameters; ++j) covariance[i][j] = Scalar(0);
+  if (window_ != nullptr) return settings_.camera;
+  const State& state = filter().state();
+  const LensRows& rows = state.lens_rows;
   const int first = state.layout.row(BodyPart::kLens);
   for (int i = 0; i < rows.count; ++i)
     for (int j = 0; j < rows.count; ++j)
@@ -69,6 +92,7 @@ const Camera& View::lens(Scalar covariance[kLensParameters][kLensParameters]) co
 }
 
 bool View::project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const {
+  if (window_ != nullptr) return window_project(p_W, pixel, covariance);
   const State& state = filter().state();
   const CameraAt camera = camera_at(state, Scalar(0));
   Mat26 J_camera;
@@ -102,6 +126,7 @@ bool View::gauge_information(double* scratch, double* information) const {
 }
 
 FeatureView View::feature(int i) const {
+  if (window_ != nullptr) return window_feature(i);
   const Feature& f = map_.features[i];
   const State& state = filter().state();
   FeatureView out;
@@ -117,11 +142,13 @@ FeatureView View::feature(int i) const {
   return out;
 }
 
-int View::patch_capacity() const { return loop_.patches() != nullptr ? loop_.patches()->patches().capacity() : 0; }
-bool View::has_patch(int i) const { return loop_.patches()->patches().used(i); }
+int View::patch_capacity() const {
+  return loop_ != nullptr && loop_->patches() != nullptr ? loop_->patches()->patches().capacity() : 0;
+}
+bool View::has_patch(int i) const { return loop_->patches()->patches().used(i); }
 
 PatchView View::patch(int i) const {
-  const StoredPatch& p = loop_.patches()->patches()[i];
+  const StoredPatch& p = loop_->patches()->patches()[i];
   return {p.id, p.plane, static_cast<int>(p.status), p.frames, p.corner, &p.covariance, static_cast<Scalar>(p.weight)};
 }
 
@@ -131,26 +158,31 @@ std::uint8_t TemplateView::grey(int x, int y) const {
   return patch->pixels[0][from_y * SourcePatch::kSize + from_x];
 }
 
+/// Normal of the plane that a feature lies on, towards a viewer. False where it lies on none.
+bool View::surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const {
+  if (window_ != nullptr) return window_surface_of(i, viewer_W, normal_W);
+  const State& state = filter().state();
+  const int slot = map_.features[i].slot;
+  if (!is_planar(state.block[slot].kind)) return false;
+  const Block& plane = state.block[state.plane_of(slot)];
+  Scalar d;
+  plane_normal(state.frame_of(plane), plane.xyz(), normal_W, &d);
+  if (normal_W->dot(viewer_W - filter().point(slot)) < 0) *normal_W = -*normal_W;
+  return true;
+}
+
 bool View::template_of(std::uint32_t id, TemplateView* out) const {
   if (!map_.has_templates()) return false;
   int i = 0;
   while (i < map_.features.capacity() && !(map_.features.used(i) && map_.features[i].id == id)) ++i;
   if (i == map_.features.capacity() || !map_.features[i].has_appearance) return false;
   const PlanarTemplate& shape = map_.shape(i);
-  const State& state = filter().state();
-  const int slot = map_.features[i].slot;
   const Camera& camera = settings_.camera;
   Vec3 ray;
   if (!unproject(camera, template_centre(shape), &ray) || !(ray.z() > Scalar(0))) return false;
   *out = {&shape, map_.mask(i), &map_.appearance(i).patch, Vec3::Zero(), Scalar(0)};
   const CameraView& first = map_.first_view(i);
-  if (is_planar(state.block[slot].kind)) {
-    const Block& plane = state.block[state.plane_of(slot)];
-    Scalar d;
-    plane_normal(state.frame_of(plane), plane.xyz(), &out->normal_W, &d);
-    if (out->normal_W.dot(first.c_W - filter().point(slot)) < 0) out->normal_W = -out->normal_W;
-    return true;
-  }
+  if (surface_of(i, first.c_W, &out->normal_W)) return true;
   TemplateWarp warp;
   warp.ray_0 = ray.head<2>() / ray.z();
   const Vec2 slope = shape.has_normal ? Vec2(shape.slope[0], shape.slope[1]) : warp.facing();
@@ -165,6 +197,7 @@ bool View::template_of(std::uint32_t id, TemplateView* out) const {
 }
 
 MapCounts View::counts() const {
+  if (window_ != nullptr) return window_counts();
   const State& state = filter().state();
   MapCounts counts;
   int unfolded_rows = 0;
@@ -190,9 +223,9 @@ MapCounts View::counts() const {
   for (int s = 0; s < state.slots; ++s)
     if (info(state.block[s].kind).carries_points) unfolded_rows -= state.block[s].size;
   counts.planes = state.planes;
-  if (loop_.patches() != nullptr) {
-    counts.patches = loop_.patches()->patches().count();
-    counts.cameras = loop_.patches()->patches().cameras();
+  if (loop_->patches() != nullptr) {
+    counts.patches = loop_->patches()->patches().count();
+    counts.cameras = loop_->patches()->patches().cameras();
   }
   counts.state_dim = filter().dim();
   counts.state_dim_held = filter().blocks().held_dim();

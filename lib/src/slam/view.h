@@ -15,6 +15,7 @@ namespace pf {
 
 class FrameLoop;
 class Filter;
+class WindowSlam;
 
 /// Current estimate of a feature.
 struct FeatureView {
@@ -90,14 +91,15 @@ struct TemplateView {
 struct MapCounts {
   int features = 0, points = 0, inverse_depths = 0, folded = 0, fixed = 0;
   int planes = 0;
-  int patches = 0, cameras = 0;
+  int patches = 0, cameras = 0, keyframes = 0;
   int state_dim = 0, state_dim_held = 0;
   int state_dim_points_only = 0;  ///< rows of the same map without planes
 };
 
 class View {
  public:
-  View(const Settings& settings, const Map& map, const FrameLoop& loop) : settings_(settings), map_(map), loop_(loop) {}
+  View(const Settings& settings, const Map& map, const FrameLoop& loop);
+  View(const Settings& settings, const Map& map, const WindowSlam& window);
 
   // view.cpp
   bool used() const;
@@ -151,10 +153,25 @@ class View {
 
  private:
   const Filter& filter() const;
+  bool surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const;
+
+  // view_window.cpp: the same of the window
+  void window_pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const;
+  bool window_motion_since_mark(MotionView* out) const;
+  bool window_project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const;
+  FeatureView window_feature(int i) const;
+  bool window_surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const;
+  MapCounts window_counts() const;
+  PlaneView window_plane(int i) const;
+  bool window_hit(const Vec2& pixel, HitView* hit) const;
 
   const Settings& settings_;
   const Map& map_;
-  const FrameLoop& loop_;
+  const Frame& frame_;
+  const TrackingState& tracking_;
+  const NoiseModel& noise_;
+  const FrameLoop* loop_ = nullptr;      ///< one of these two is null
+  const WindowSlam* window_ = nullptr;
 };
 
 }  // namespace pf

@@ -9,6 +9,7 @@
 namespace pf {
 
 PlaneView View::plane(int i) const {
+  if (window_ != nullptr) return window_plane(i);
   const State& state = filter().state();
   const Block& block = state.block[map_.planes[i].slot];
   const PlaneFrame& frame = state.frame_of(block);
@@ -46,6 +47,7 @@ PlaneView View::plane(int i) const {
 }
 
 bool View::hit(const Vec2& pixel, HitView* hit) const {
+  if (window_ != nullptr) return window_hit(pixel, hit);
   const Camera& lens = filter().lens();
   Vec3 ray_C;
   Mat32 J_ray_pixel;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "geometry/pnp.h"
-#include "geometry/so3.h"
+#include "window/rotation_fit.h"
 #include "window/tuning.h"
 
 namespace pf {
@@ -70,36 +70,10 @@ void StartBundle::init() {
   random_ = kPoseSeed;
 }
 
-/// Robust fit of a rotation alone to a frame's pixels; returns the median residual, which is the parallax [px].
+/// Parallax of a frame [px].
 Scalar StartBundle::fit_rotation(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const {
-  Scalar left[StartRecord::kMaxFeatures];
-  Scalar scale = kFirstRotationScale;  // tightens as the rotation is found
-  int count = 0;
-  for (int round = 0; round < kPoseRounds; ++round) {
-    Mat3 H = Mat3::Identity() * kStepRegularisation;
-    Vec3 g = Vec3::Zero();
-    const Mat3 R_WC = q_WC->toRotationMatrix();
-    count = 0;
-    for (int i = 0; i < record.features(); ++i) {
-      if (!record.seen(frame, i)) continue;
-      Vec2 z;
-      Mat26 J_z_C;
-      if (!project_bearing(camera, R_WC, record.ray(i), Vec3::Zero(), Scalar(0), &z, &J_z_C)) continue;
-      const Vec2 r = record.pixel(frame, i) - z;
-      left[count++] = r.norm();
-      const Scalar w = Scalar(1) / (Scalar(1) + r.squaredNorm() / (scale * scale));
-      const Mat23 J = J_z_C.leftCols<3>();
-      H += w * J.transpose().lazyProduct(J);
-      g += w * J.transpose().lazyProduct(r);
-    }
-    if (count == 0) return Scalar(0);
-    const Mat3 inverse = H.inverse();
-    *q_WC = exp_so3(inverse.lazyProduct(g)) * *q_WC;
-    q_WC->normalize();
-    std::nth_element(left, left + count / 2, left + count);
-    scale = std::max(Scalar(1), Scalar(2) * left[count / 2]);
-  }
-  return left[count / 2];
+  Scalar scratch[StartRecord::kMaxFeatures];
+  return pf::fit_rotation(camera, record.rays(), record.pixels(frame), record.features(), scratch, q_WC);
 }
 
 /// Adjusts the poses of `frame` (pose_[1] and on) and all rho; returns the robust cost.

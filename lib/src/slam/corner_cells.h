@@ -1,0 +1,91 @@
+#pragma once
+
+#include "slam/frame.h"
+#include "slam/tuning.h"
+#include "track/tracker.h"
+
+/// Where new features begin: at corners, in the cells of the image that hold the fewest. Knows no back end.
+
+namespace pf {
+
+class CornerCells {
+ public:
+  static constexpr int kColumns = 8, kRows = 6, kCells = kRows * kColumns;
+
+  /// border_px: of the image, in which no feature begins.
+  CornerCells(int width, int height, int border_px);
+
+  /// Counts the features of a frame by where they are predicted. Returns how many of them are inliers.
+  int count(const Frame& frame);
+  /// Marks the cells that show a plane: is_on_plane(pixel) is asked for a few pixels of each.
+  template <typename F>
+  void mark_planes(F&& is_on_plane);
+  /// Calls add_in(cell) for the emptiest cells until it has been true `wanted` times. Cells take turns: pass `level` takes those that hold
+  /// that many features, or kPlaneAhead more on a plane, where one is cheap and known at once. max_in_cell: features of a cell, one more
+  /// where it shows a plane.
+  template <typename F>
+  void fill(int wanted, int turn, int max_in_cell, F&& add_in);
+
+ private:
+  Rect rect_of(int row, int column) const;
+
+  int width_, height_, border_;
+  int in_cell_[kCells] = {};
+  bool on_plane_[kCells] = {};
+};
+
+enum class CornerUse { kTaken, kNotHere, kNoRoom };
+
+/// Offers the corners of a cell that are near no feature of the frame, the best first, to take(pixel), until it takes one. False: it took
+/// none.
+template <typename F>
+bool take_corner(const Tracker& tracker, const Rect& cell, const Frame& frame, int width, F&& take);
+
+/// Whether no feature of this frame is near the pixel. width: of the image.
+bool is_free(const Frame& frame, int width, const Vec2& pixel);
+
+template <typename F>
+void CornerCells::mark_planes(F&& is_on_plane) {
+  constexpr int kAlong = 3;
+  const Vec2 size(static_cast<Scalar>(width_) / kColumns, static_cast<Scalar>(height_) / kRows);
+  for (int k = 0; k < kCells; ++k)
+    for (int i = 0; i < kAlong * kAlong && !on_plane_[k]; ++i) {
+      const Vec2 within((static_cast<Scalar>(i % kAlong) + Scalar(0.5)) / kAlong,
+                        (static_cast<Scalar>(i / kAlong) + Scalar(0.5)) / kAlong);
+      const Vec2 cell(static_cast<Scalar>(k % kColumns), static_cast<Scalar>(k / kColumns));
+      on_plane_[k] = is_on_plane(Vec2(size.cwiseProduct(cell + within)));
+    }
+}
+
+template <typename F>
+void CornerCells::fill(int wanted, int turn, int max_in_cell, F&& add_in) {
+  constexpr int kPlaneAhead = tuning::image_corners::kPlaneAhead;
+  int added = 0;
+  for (int level = -kPlaneAhead; level < max_in_cell && added < wanted; ++level) {
+    for (int cell = 0; cell < kCells && added < wanted; ++cell) {
+      // This order visits no neighbours one after the other.
+      const int k = (cell * 19 + turn) % kCells;
+      if (in_cell_[k] > max_in_cell || in_cell_[k] != level + (on_plane_[k] ? kPlaneAhead : 0)) continue;
+      if (!add_in(rect_of(k / kColumns, k % kColumns))) continue;
+      ++in_cell_[k];
+      ++added;
+    }
+  }
+}
+
+template <typename F>
+bool take_corner(const Tracker& tracker, const Rect& cell, const Frame& frame, int width, F&& take) {
+  constexpr int kCorners = 8;
+  Corner corner[kCorners];
+  const int corners = tracker.corners(cell, tuning::image_corners::kCornerThreshold, corner, kCorners);
+  for (int c = 0; c < corners; ++c) {
+    if (corner[c].score < tuning::image_corners::kMinCornerScore) return false;
+    const Vec2 pixel(static_cast<Scalar>(corner[c].x), static_cast<Scalar>(corner[c].y));
+    if (!is_free(frame, width, pixel)) continue;
+    const CornerUse use = take(pixel);
+    if (use != CornerUse::kNotHere) return use == CornerUse::kTaken;
+  }
+  return false;
+}
+
+}  // namespace pf

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <algorithm>
+
+#include "base/elapsed.h"
+#include "map/map.h"
+#include "slam/frame.h"
+#include "slam/tuning.h"
+
+/// What both back ends count of features, and what follows from it.
+
+namespace pf {
+
+/// How reliable a feature is: the rate of its successes, of proven ones more.
+inline float reliability(const Feature& f) {
+  const int rated = std::min(f.observations, 20);
+  return static_cast<float>(rated) * static_cast<float>(f.observations + 1) / static_cast<float>(f.attempts + 1);
+}
+
+/// Whether a feature is found too seldom to be kept, or was not found too many times in a row.
+inline bool fails_too_often(const Feature& f) {
+  using namespace tuning::feature_keeper;
+  const bool seldom = f.attempts >= kMinAttempts && 2 * f.observations < f.attempts;
+  const bool in_a_row = f.failures >= (f.observations < kMinAttempts ? kMaxEarlyFailures : kMaxFailures);
+  return (f.failures > 0 && seldom) || in_a_row;
+}
+
+/// Counts the searches of a tracked frame: attempts, failures and rejections.
+inline void count_searches(const Frame& frame, FeatureTable* features) {
+  for (int t = 0; t < frame.match_count(); ++t) {
+    const Match& match = frame.match(t);
+    if (match.feature < 0 || !match.searched) continue;
+    Feature& f = (*features)[match.feature];
+    count_frame(&f.attempts);
+    if (match.status == MatchStatus::kInlier) continue;
+    count_frame(&f.failures);
+    if (match.status == MatchStatus::kOutlier) count_frame(&f.rejections);
+  }
+}
+
+}  // namespace pf

@@ -1,0 +1,56 @@
+#include "slam/image_search.h"
+
+#include <new>
+
+#include "track/template_matcher.h"
+
+namespace pf {
+
+bool ImageSearch::layout(Arena& arena, int width, int height) {
+  if (settings_.masks != MaskMode::kNone) {
+    TemplateMatcher* place = arena.take<TemplateMatcher>(1);
+    if (place == nullptr) {
+      TemplateMatcher().layout(arena, settings_.template_px);
+    } else {
+      templates_ = new (place) TemplateMatcher();
+      templates_->layout(arena, settings_.template_px);
+    }
+  }
+  return tracker_.layout(arena, width, height);
+}
+
+void ImageSearch::init(const Camera& camera) {
+  tracker_.init(camera);
+  if (templates_ != nullptr) templates_->init(camera, settings_.masks, settings_.max_misfit);
+}
+
+bool ImageSearch::begin_frame(const ImageView& image) {
+  if (templates_ != nullptr) templates_->begin_frame();
+  return tracker_.begin_frame(image);
+}
+
+bool ImageSearch::remember(Map* map, int feature, const Vec2& pixel, const CameraView& view) const {
+  Feature& f = map->features[feature];
+  f.has_appearance = tracker_.remember(pixel, &map->appearance(feature));
+  map->first_view(feature) = view;
+  if (f.has_appearance && map->has_templates())
+    templates_->begin(tracker_.image(), map->appearance(feature).patch, pixel, &map->shape(feature),
+                      map->mask(feature));
+  return f.has_appearance;
+}
+
+void ImageSearch::use_template(const Map& map, int feature, SearchTask* task) {
+  task->shape = &map.shape(feature);
+  task->mask = map.mask(feature);
+}
+
+SearchOutcome ImageSearch::search(const SearchTask& task) const {
+  return task.shape != nullptr ? templates_->search(tracker_, task) : tracker_.search(task);
+}
+
+bool ImageSearch::learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const {
+  return task.shape != nullptr &&
+         templates_->learn(tracker_, task, pixel, &map->shape(feature), map->mask(feature));
+}
+
+}  // namespace pf

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "base/arena.h"
+#include "map/map.h"
+#include "slam/settings.h"
+#include "track/tracker.h"
+
+/// Comparing features with an image, by the tracker or by templates with masks. Knows no back end.
+
+namespace pf {
+
+class TemplateMatcher;
+
+class ImageSearch {
+ public:
+  explicit ImageSearch(const Settings& settings) : settings_(settings) {}
+
+  /// Templates take nothing where the config has no masks.
+  bool layout(Arena& arena, int width, int height);
+  void init(const Camera& camera);
+
+  /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
+  bool begin_frame(const ImageView& image);
+  /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
+  bool remember(Map* map, int feature, const Vec2& pixel, const CameraView& view) const;
+  /// Lets a task search with the feature's template. Its point has a depth.
+  static void use_template(const Map& map, int feature, SearchTask* task);
+  SearchOutcome search(const SearchTask& task) const;
+  /// Updates mask and normal of a feature's template, which was found at this pixel. False where nothing was learnt.
+  bool learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const;
+
+  bool has_templates() const { return templates_ != nullptr; }
+  const Tracker& tracker() const { return tracker_; }
+
+ private:
+  const Settings& settings_;
+  Tracker tracker_;
+  TemplateMatcher* templates_ = nullptr;  ///< in the block, with masks alone
+};
+
+}  // namespace pf

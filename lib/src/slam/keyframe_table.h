@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "window/adjust.h"
+
+/// Table of keyframes: poses whose images the map was measured in, with the pixels of its points.
+
+namespace pf {
+
+struct Keyframe {
+  int number = 0;  ///< counted from 1 in the order of time; 0: this entry is free
+  std::int64_t t_ns = 0;
+  Quat q_WC = Quat::Identity();
+  Vec3 p_W = Vec3::Zero();
+};
+
+class KeyframeTable {
+ public:
+  bool layout(Arena& arena, int capacity, int points) {
+    keyframe_ = arena.take<Keyframe>(static_cast<std::size_t>(capacity));
+    pixel_ = arena.take<BundlePixel>(static_cast<std::size_t>(capacity) * static_cast<std::size_t>(points));
+    capacity_ = capacity;
+    points_ = points;
+    return arena.ok();
+  }
+  void init() {
+    for (int k = 0; k < capacity_; ++k) keyframe_[k] = Keyframe();
+    count_ = last_number_ = 0;
+    newest_ = -1;
+  }
+
+  int capacity() const { return capacity_; }
+  int count() const { return count_; }
+  /// How many there have been.
+  int numbered() const { return last_number_; }
+  /// Entry of the newest one, or -1.
+  int newest() const { return newest_; }
+  bool used(int k) const { return keyframe_[k].number > 0; }
+  Keyframe& operator[](int k) { return keyframe_[k]; }
+  const Keyframe& operator[](int k) const { return keyframe_[k]; }
+
+  /// Entry of a new keyframe that has seen no point yet, or -1 when the table is full.
+  int add(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W) {
+    for (int k = 0; k < capacity_; ++k) {
+      if (used(k)) continue;
+      keyframe_[k] = {++last_number_, t_ns, q_WC, p_W};
+      for (int i = 0; i < points_; ++i) pixels(k)[i].seen = false;
+      ++count_;
+      return newest_ = k;
+    }
+    return -1;
+  }
+  void remove(int k) {
+    keyframe_[k] = Keyframe();
+    --count_;
+  }
+
+  /// Pixels of all points, by their row.
+  BundlePixel* pixels(int k) { return pixel_ + k * points_; }
+  const BundlePixel* pixels(int k) const { return pixel_ + k * points_; }
+  void set_pixel(int k, int point, const Vec2& pixel) {
+    pixels(k)[point] = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), true};
+  }
+  /// The row of a point is free for another one.
+  void forget_point(int point) {
+    for (int k = 0; k < capacity_; ++k) pixels(k)[point].seen = false;
+  }
+
+ private:
+  Keyframe* keyframe_ = nullptr;
+  BundlePixel* pixel_ = nullptr;  ///< capacity_ x points_
+  int capacity_ = 0, points_ = 0;
+  int count_ = 0, last_number_ = 0;
+  int newest_ = -1;
+};
+
+}  // namespace pf

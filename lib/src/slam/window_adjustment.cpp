@@ -1,0 +1,202 @@
+#include "slam/window_adjustment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/so3.h"
+#include "slam/tuning.h"
+
+namespace pf {
+
+using namespace tuning::window_adjustment;
+
+namespace {
+
+constexpr int kTargetViews = 2;
+
+}  // namespace
+
+bool WindowAdjustment::layout(Arena& arena) {
+  const int keyframes = tuning::window_map::kKeyframes;
+  const int seeing = settings_.window_keyframes + settings_.window_fixed + kTargetViews;
+  const std::size_t points = static_cast<std::size_t>(settings_.window_points);
+  const std::size_t poses = static_cast<std::size_t>(keyframes + kTargetViews);
+  pose_ = arena.take<BundlePose>(poses);
+  keyframe_ = arena.take<int>(poses);
+  pixel_ = arena.take<BundlePixel>(static_cast<std::size_t>(seeing) * points);
+  ray_ = arena.take<Vec3>(points);
+  host_ = arena.take<int>(points);
+  rho_ = arena.take<Scalar>(points);
+  row_ = arena.take<int>(points);
+  return adjuster_.layout(arena, static_cast<int>(poses), settings_.window_keyframes, settings_.window_points);
+}
+
+/// The newest keyframes, the oldest first; of few, all but one. Returns how many.
+int WindowAdjustment::choose_free() {
+  const KeyframeTable& keyframes = map_.keyframes;
+  const int free = std::min(static_cast<int>(settings_.window_keyframes), keyframes.count() - 1);
+  for (int c = 0; c < free; ++c) {
+    // The (free - c)-th newest.
+    int at = -1;
+    for (int k = 0; k < keyframes.capacity(); ++k) {
+      if (!keyframes.used(k)) continue;
+      int newer = 0;
+      for (int other = 0; other < keyframes.capacity(); ++other)
+        newer += keyframes.used(other) && keyframes[other].number > keyframes[k].number ? 1 : 0;
+      if (newer == free - 1 - c) at = k;
+    }
+    keyframe_[c] = at;
+  }
+  return free;
+}
+
+/// Points with a depth that the free keyframes see, and another one. Returns how many.
+int WindowAdjustment::choose_points(int free) {
+  int points = 0;
+  for (int i = 0; i < map_.capacity(); ++i) {
+    if (!map_.used(i) || !map_.point(i).has_depth) continue;
+    int in_free = 0, in_all = 0;
+    for (int c = 0; c < free; ++c) in_free += map_.keyframes.pixels(keyframe_[c])[i].seen ? 1 : 0;
+    for (int k = 0; k < map_.keyframes.capacity(); ++k)
+      in_all += map_.keyframes.used(k) && map_.keyframes.pixels(k)[i].seen ? 1 : 0;
+    if (in_free > 0 && in_all > 1) row_[points++] = i;
+  }
+  return points;
+}
+
+/// The older keyframes that see most of these points. Returns how many there are with the free ones.
+int WindowAdjustment::choose_fixed(int free, int points) {
+  int poses = free;
+  for (int f = 0; f < settings_.window_fixed; ++f) {
+    int best = -1, most = kMinShared - 1;
+    for (int k = 0; k < map_.keyframes.capacity(); ++k) {
+      if (!map_.keyframes.used(k) || std::find(keyframe_, keyframe_ + poses, k) != keyframe_ + poses) continue;
+      int seen = 0;
+      for (int p = 0; p < points; ++p) seen += map_.keyframes.pixels(k)[row_[p]].seen ? 1 : 0;
+      if (seen < most || (seen == most && (best < 0 || map_.keyframes[k].number < map_.keyframes[best].number))) continue;
+      best = k;
+      most = seen;
+    }
+    if (best < 0) break;
+    keyframe_[poses++] = best;
+  }
+  return poses;
+}
+
+/// Pose of a keyframe in the bundle, which becomes a fixed one without pixels where it is in there no other way.
+int WindowAdjustment::pose_of(int keyframe, int* poses) {
+  const int at = static_cast<int>(std::find(keyframe_, keyframe_ + *poses, keyframe) - keyframe_);
+  if (at < *poses) return at;
+  const Keyframe& k = map_.keyframes[keyframe];
+  keyframe_[*poses] = keyframe;
+  pose_[*poses] = {k.q_WC, k.p_W, false, nullptr};
+  return (*poses)++;
+}
+
+void WindowAdjustment::fill(int seen_in, int points, int* poses) {
+  for (int p = 0; p < points; ++p) {
+    const WindowPoint& point = map_.point(row_[p]);
+    for (int c = 0; c < seen_in; ++c)
+      pixel_[c * settings_.window_points + p] = map_.keyframes.pixels(keyframe_[c])[row_[p]];
+    ray_[p] = point.ray_K;
+    host_[p] = pose_of(point.host, poses);
+    rho_[p] = point.rho;
+  }
+}
+
+/// The target's points are held where they are known to be by two fixed views of it, a quarter of a turn apart.
+void WindowAdjustment::add_target(int points, int* poses) {
+  const int first = *poses;
+  int held = 0;
+  for (int v = 0; v < kTargetViews; ++v) {
+    const Quat turn = exp_so3(static_cast<Scalar>(v) * kTargetTurn * (target_view_.q_WC * Vec3::UnitY()));
+    BundlePose& pose = pose_[first + v];
+    pose = {turn * target_view_.q_WC, target_middle_W_ + turn * (target_view_.c_W - target_middle_W_), false,
+            pixel_ + (settings_.window_keyframes + settings_.window_fixed + v) * settings_.window_points};
+    keyframe_[first + v] = -1;
+    BundlePixel* pixels = pixel_ + (settings_.window_keyframes + settings_.window_fixed + v) * settings_.window_points;
+    for (int p = 0; p < points; ++p) {
+      pixels[p].seen = false;
+      const int i = row_[p];
+      Vec2 z;
+      if (!map_.feature(i).is_target ||
+          !project(settings_.camera, pose.q_WC.conjugate() * (map_.position(i) - pose.p_W), &z))
+        continue;
+      pixels[p] = {static_cast<float>(z.x()), static_cast<float>(z.y()), true};
+      ++held;
+    }
+  }
+  if (held > 0) *poses += kTargetViews;
+}
+
+bool WindowAdjustment::run() {
+  const int free = choose_free();
+  if (free < 1) return false;
+  const int points = choose_points(free);
+  if (points < kMinPoints) return false;
+  const int seen_in = choose_fixed(free, points);
+  int poses = seen_in;
+  for (int c = 0; c < seen_in; ++c) {
+    const Keyframe& k = map_.keyframes[keyframe_[c]];
+    pose_[c] = {k.q_WC, k.p_W, c < free, pixel_ + c * settings_.window_points};
+  }
+  fill(seen_in, points, &poses);
+  add_target(points, &poses);
+
+  // A weak prior that leaves the scale where it is: it holds what nothing else does.
+  Scalar sum = 0, squares = 0;
+  for (int p = 0; p < points; ++p) {
+    sum += rho_[p];
+    squares += rho_[p] * rho_[p];
+  }
+  const Scalar mean = squares / sum;
+  const AdjustOptions options = {std::max(noise_.sigma_gate(), kMinSigma), kHuber, mean, kPriorSigma * mean,
+                                 kBehindWeight,       kNoPixelPenalty, kRounds};
+  const Bundle bundle = {pose_, poses, ray_, host_, rho_, points};
+  adjuster_.adjust(settings_.camera, options, bundle);
+  // The last free pose is the newest keyframe's.
+  Mat6 P;
+  if (adjuster_.last_pose_covariance(settings_.camera, options, bundle, &P))
+    map_covariance_ = noise_.correlation_frames() * (P + P.transpose()) / 2;
+  take_back(free, points);
+  return true;
+}
+
+void WindowAdjustment::take_back(int free, int points) {
+  for (int c = 0; c < free; ++c) {
+    Keyframe& k = map_.keyframes[keyframe_[c]];
+    k.q_WC = pose_[c].q_WC;
+    k.p_W = pose_[c].p_W;
+  }
+  for (int p = 0; p < points; ++p) {
+    WindowPoint& point = map_.point(row_[p]);
+    if (!map_.feature(row_[p]).is_target) {
+      point.rho = rho_[p];
+      point.variance = variance_of(row_[p]);
+    }
+    if (point.faces_host) {
+      const Keyframe& host = map_.keyframes[point.host];
+      map_.tables().first_view(row_[p]) = {host.q_WC, host.p_W};
+    }
+  }
+}
+
+Scalar WindowAdjustment::variance_of(int i) const {
+  const WindowPoint& point = map_.point(i);
+  const Keyframe& host = map_.keyframes[point.host];
+  const Vec3 ray_W = map_.ray_W(i);
+  Scalar information = 0;
+  for (int k = 0; k < map_.keyframes.capacity(); ++k) {
+    if (k == point.host || !map_.keyframes.used(k) || !map_.keyframes.pixels(k)[i].seen) continue;
+    const Keyframe& keyframe = map_.keyframes[k];
+    Vec2 z, J_rho;
+    Mat26 J_C;
+    if (project_bearing(settings_.camera, keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, point.rho,
+                        &z, &J_C, nullptr, &J_rho))
+      information += J_rho.squaredNorm();
+  }
+  const Scalar sigma = noise_.sigma_info();
+  return information > Scalar(0) ? sigma * sigma / information : Scalar(0);
+}
+
+}  // namespace pf

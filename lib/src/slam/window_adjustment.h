@@ -1,0 +1,58 @@
+#pragma once
+
+#include "slam/noise_model.h"
+#include "slam/window_map.h"
+#include "window/adjust.h"
+
+/// Adjusts the newest keyframes and the points that they see, with older keyframes that see the same points held fixed.
+
+namespace pf {
+
+class WindowAdjustment {
+ public:
+  WindowAdjustment(const Settings& settings, WindowMap& map, const NoiseModel& noise)
+      : settings_(settings), map_(map), noise_(noise) {}
+
+  bool layout(Arena& arena);
+  void init() { map_covariance_.setZero(); }
+
+  /// Adjusts. False: there is nothing to adjust yet.
+  bool run();
+  /// Of the newest keyframe's (theta, p), and with it of the map about it, given the keyframes that were held fixed.
+  const Mat6& map_covariance() const { return map_covariance_; }
+  /// The target as it was first seen holds its points from now on.
+  void hold_target(const CameraView& seen_from, const Vec3& middle_W) {
+    target_view_ = seen_from;
+    target_middle_W_ = middle_W;
+  }
+  /// Variance of a point's inverse depth by the pixels of the keyframes, which are taken as exact; 0 where none says anything.
+  Scalar variance_of(int i) const;
+
+ private:
+  int choose_free();
+  int choose_points(int free);
+  int choose_fixed(int free, int points);
+  int pose_of(int keyframe, int* poses);
+  void fill(int seen_in, int points, int* poses);
+  void add_target(int points, int* poses);
+  void take_back(int poses, int points);
+
+  const Settings& settings_;
+  WindowMap& map_;
+  const NoiseModel& noise_;
+  BundleAdjuster adjuster_;
+  Mat6 map_covariance_ = Mat6::Zero();
+  CameraView target_view_;
+  Vec3 target_middle_W_ = Vec3::Zero();
+
+  // Of the bundle.
+  BundlePose* pose_ = nullptr;
+  int* keyframe_ = nullptr;  ///< of each pose, -1 of a view of the target
+  BundlePixel* pixel_ = nullptr;
+  Vec3* ray_ = nullptr;
+  int* host_ = nullptr;
+  Scalar* rho_ = nullptr;
+  int* row_ = nullptr;  ///< of each point in the map
+};
+
+}  // namespace pf

@@ -1,0 +1,30 @@
+#include "slam/window_corners.h"
+
+#include "slam/corner_cells.h"
+#include "slam/tuning.h"
+
+namespace pf {
+
+void add_corners(const Settings& settings, const ImageSearch& search, int keyframe, WindowMap* map, Frame* frame) {
+  CornerCells cells(settings.camera.width, settings.camera.height, settings.border_px);
+  const int wanted = settings.features_in_view - cells.count(*frame);
+  if (wanted <= 0) return;
+  const Keyframe& host = map->keyframes[keyframe];
+  // Three times as many as an even spread has.
+  const int max_in_cell = 1 + 3 * settings.features_in_view / CornerCells::kCells;
+  cells.fill(wanted, frame->report.frames, max_in_cell, [&](const Rect& cell) {
+    return take_corner(search.tracker(), cell, *frame, settings.camera.width, [&](const Vec2& pixel) {
+      if (frame->full()) return CornerUse::kNoRoom;
+      const int i = map->add(keyframe, pixel);
+      if (i < 0) return CornerUse::kNoRoom;
+      if (!search.remember(&map->tables(), i, pixel, {host.q_WC, host.p_W})) {
+        map->drop(i);
+        return CornerUse::kNotHere;
+      }
+      frame->add({i, map->feature(i).id, MatchStatus::kNew, map->kind(i), pixel, Mat2::Zero(), pixel, Scalar(0)});
+      return CornerUse::kTaken;
+    });
+  });
+}
+
+}  // namespace pf

@@ -1,0 +1,69 @@
+#include "slam/window_depth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slam/tuning.h"
+#include "window/adjust.h"
+
+namespace pf {
+namespace {
+
+using namespace tuning::window_depth;
+
+/// Sums of one view's pixel. False where the point does not project.
+struct DepthSums {
+  Scalar information = 0, gradient = 0, worst2 = 0;
+
+  bool add(const Camera& camera, const Mat3& R_WC, const Vec3& ray_W, const Vec3& p_HC_W, Scalar rho,
+           const Vec2& pixel) {
+    Vec2 z, J;
+    Mat26 J_C;
+    if (!project_bearing(camera, R_WC, ray_W, p_HC_W, rho, &z, &J_C, nullptr, &J)) return false;
+    const Vec2 r = pixel - z;
+    information += J.squaredNorm();
+    gradient += J.dot(r);
+    worst2 = std::max(worst2, r.squaredNorm());
+    return true;
+  }
+};
+
+}  // namespace
+
+bool fit_depth(const Camera& camera, const WindowMap& map, int i, const CameraView& now, const Vec2& pixel,
+               DepthFit* fit) {
+  const WindowPoint& point = map.point(i);
+  const Keyframe& host = map.keyframes[point.host];
+  const Vec3 ray_W = map.ray_W(i);
+  Vec3 ray_C;
+  fit->cos_parallax = Scalar(1);
+  if (!unproject(camera, pixel, &ray_C)) return false;
+  const Vec3 d = (now.q_WC * ray_C).normalized();
+  const Scalar c = ray_W.dot(d), sin2 = 1 - c * c;
+  fit->cos_parallax = c;
+  if (!(sin2 > kMinSin2)) return false;
+  const Scalar s = (ray_W - c * d).dot(now.c_W - host.p_W) / sin2;
+  if (!(s > Scalar(0))) return false;
+  Scalar rho = 1 / s;
+  DepthSums sums;
+  for (int round = 0; round <= kRounds; ++round) {
+    sums = DepthSums();
+    if (!sums.add(camera, now.q_WC.toRotationMatrix(), ray_W, host.p_W - now.c_W, rho, pixel)) return false;
+    for (int k = 0; k < map.keyframes.capacity(); ++k) {
+      const BundlePixel& seen = map.keyframes.pixels(k)[i];
+      if (k == point.host || !map.keyframes.used(k) || !seen.seen) continue;
+      const Keyframe& keyframe = map.keyframes[k];
+      if (!sums.add(camera, keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, rho, seen.pixel()))
+        return false;
+    }
+    if (!(sums.information > Scalar(0))) return false;
+    if (round < kRounds) rho += sums.gradient / sums.information;
+    if (!(rho > Scalar(0))) return false;
+  }
+  fit->rho = rho;
+  fit->information = sums.information;
+  fit->worst_px = std::sqrt(sums.worst2);
+  return std::isfinite(rho);
+}
+
+}  // namespace pf

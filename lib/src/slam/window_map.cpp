@@ -1,0 +1,166 @@
+#include "slam/window_map.h"
+
+#include <algorithm>
+
+#include "slam/feature_upkeep.h"
+#include "slam/tuning.h"
+
+namespace pf {
+
+using namespace tuning::window_map;
+
+bool WindowMap::layout(Arena& arena) {
+  const int points = settings_.window_points;
+  point_ = arena.take<WindowPoint>(static_cast<std::size_t>(points));
+  scratch_ = arena.take<Scalar>(static_cast<std::size_t>(points));
+  return keyframes.layout(arena, kKeyframes, points);
+}
+
+void WindowMap::init() {
+  keyframes.init();
+  for (int i = 0; i < capacity(); ++i) point_[i] = WindowPoint();
+}
+
+int WindowMap::placed() const {
+  int placed = 0;
+  for (int i = 0; i < capacity(); ++i) placed += used(i) && point_[i].has_depth ? 1 : 0;
+  return placed;
+}
+
+///   p = c + r / rho:   Sigma = r rᵀ var(rho) / rho^4 + (I - r rᵀ) sigma_b² / rho²
+Mat3 WindowMap::covariance(int i) const {
+  const WindowPoint& point = point_[i];
+  const Vec3 ray = ray_W(i);
+  const Scalar depth = 1 / point.rho;
+  const Scalar across = tuning::noise::kReferenceSigma / settings_.camera.fx * depth;
+  const Scalar along = point.variance * depth * depth * depth * depth;
+  return along * ray * ray.transpose() + across * across * (Mat3::Identity() - Mat3(ray * ray.transpose()));
+}
+
+BlockKind WindowMap::kind(int i) const {
+  if (!point_[i].has_depth) return BlockKind::kInverseDepth;
+  return point_[i].plane >= 0 ? BlockKind::kPlanePoint : BlockKind::kPoint;
+}
+
+Scalar WindowMap::median_depth(const Quat& q_WC, const Vec3& p_W) const {
+  const Vec3 forward = q_WC.toRotationMatrix().col(2);
+  int count = 0;
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const Match& match = frame_.match(t);
+    if (match.feature < 0 || match.status != MatchStatus::kInlier || !point_[match.feature].has_depth) continue;
+    if (count < capacity()) scratch_[count++] = forward.dot(position(match.feature) - p_W);
+  }
+  if (count == 0) return 0;
+  std::nth_element(scratch_, scratch_ + count / 2, scratch_ + count);
+  return scratch_[count / 2];
+}
+
+int WindowMap::add(int host, const Vec2& pixel) {
+  Vec3 ray_C;
+  if (!unproject(settings_.camera, pixel, &ray_C)) return -1;
+  if (map_.features.count() >= capacity()) {
+    const int worst = map_.features.least_useful(frame_.report.t_ns);
+    if (worst < 0) return -1;
+    drop(worst);
+  }
+  const int i = map_.features.add(0);
+  if (i < 0) return -1;
+  Feature& f = map_.features[i];
+  f.observations = f.attempts = 1;
+  f.last_seen_ns = frame_.report.t_ns;
+  const Keyframe& keyframe = keyframes[host];
+  WindowPoint& point = point_[i];
+  point = WindowPoint();
+  point.host = host;
+  point.ray_K = ray_C.normalized();
+  point.faces_host = true;
+  point.pixel = pixel;
+  point.seen_from = {keyframe.q_WC, keyframe.p_W};
+  keyframes.forget_point(i);
+  keyframes.set_pixel(host, i, pixel);
+  ++frame_.report.new_features;
+  return i;
+}
+
+int WindowMap::add_placed(int host, const Vec3& p_W) {
+  const Keyframe& keyframe = keyframes[host];
+  const Vec3 at = keyframe.q_WC.conjugate() * (p_W - keyframe.p_W);
+  Vec2 pixel;
+  if (!project(settings_.camera, at, &pixel)) return -1;
+  const int i = add(host, pixel);
+  if (i < 0) return -1;
+  WindowPoint& point = point_[i];
+  point.ray_K = at.normalized();
+  point.rho = 1 / at.norm();
+  point.has_depth = true;
+  return i;
+}
+
+void WindowMap::drop(int i) {
+  frame_.forget(i);
+  map_.features.remove(i);
+  point_[i] = WindowPoint();
+  keyframes.forget_point(i);
+  ++frame_.report.evicted;
+}
+
+void WindowMap::drop_failing() {
+  for (int i = 0; i < capacity(); ++i) {
+    if (!used(i) || map_.features[i].is_target) continue;
+    const WindowPoint& point = point_[i];
+    if (fails_too_often(map_.features[i]) || (point.has_depth && !(point.rho > Scalar(0)))) drop(i);
+  }
+}
+
+int WindowMap::add_keyframe(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W) {
+  if (keyframes.count() >= keyframes.capacity()) remove_keyframe(least_useful_keyframe());
+  const int k = keyframes.add(t_ns, q_WC, p_W);
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const Match& match = frame_.match(t);
+    if (match.feature >= 0 && match.status == MatchStatus::kInlier)
+      keyframes.set_pixel(k, match.feature, match.measured);
+  }
+  return k;
+}
+
+/// The one that saw the fewest of the points that there are, and is not in the window; the older one among equals.
+int WindowMap::least_useful_keyframe() const {
+  int worst = -1, fewest = 0;
+  for (int k = 0; k < keyframes.capacity(); ++k) {
+    if (!keyframes.used(k) || keyframes[k].number > keyframes.numbered() - settings_.window_keyframes) continue;
+    int seen = 0;
+    for (int i = 0; i < capacity(); ++i) seen += keyframes.pixels(k)[i].seen ? 1 : 0;
+    if (worst >= 0 && (seen > fewest || (seen == fewest && keyframes[k].number > keyframes[worst].number))) continue;
+    worst = k;
+    fewest = seen;
+  }
+  return worst;
+}
+
+/// Its points go to the newest keyframe that saw them; where there is none they are dropped.
+void WindowMap::remove_keyframe(int k) {
+  for (int i = 0; i < capacity(); ++i) {
+    if (!used(i) || point_[i].host != k) continue;
+    int host = -1;
+    for (int other = 0; other < keyframes.capacity(); ++other) {
+      if (other == k || !keyframes.used(other) || !keyframes.pixels(other)[i].seen) continue;
+      if (host < 0 || keyframes[other].number > keyframes[host].number) host = other;
+    }
+    WindowPoint& point = point_[i];
+    const bool stays = host >= 0 && point.has_depth;
+    const Vec3 at = stays ? Vec3(keyframes[host].q_WC.conjugate() * (position(i) - keyframes[host].p_W)) : Vec3::Zero();
+    if (!stays || !(at.squaredNorm() > Scalar(0))) {
+      drop(i);
+      continue;
+    }
+    const Scalar rho = 1 / at.norm(), ratio = rho / point.rho;
+    point.host = host;
+    point.ray_K = at * rho;
+    point.rho = rho;
+    point.variance *= ratio * ratio * ratio * ratio;
+    point.faces_host = false;
+  }
+  keyframes.remove(k);
+}
+
+}  // namespace pf

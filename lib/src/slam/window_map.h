@@ -1,0 +1,78 @@
+#pragma once
+
+#include "map/map.h"
+#include "slam/frame.h"
+#include "slam/keyframe_table.h"
+#include "slam/settings.h"
+
+/// Points and keyframes of the window. A point is a bearing and an inverse depth in the keyframe that saw it first, its host.
+
+namespace pf {
+
+/// Beside its row in the feature table, with the same number.
+struct WindowPoint {
+  int host = -1;  ///< keyframe
+  Vec3 ray_K = Vec3::UnitZ();
+  Scalar rho = 0;           ///< [1/m] along ray_K, which has length 1
+  Scalar variance = 0;      ///< of rho, keyframes taken as exact
+  bool has_depth = false;   ///< rho was triangulated, or is the target's
+  bool faces_host = false;  ///< its appearance is the host's
+  std::int8_t plane = -1;   ///< entry of the plane that it lies on, or -1
+  Vec2 pixel = Vec2::Zero();  ///< where it was last seen, and from where
+  CameraView seen_from;
+};
+
+class WindowMap {
+ public:
+  WindowMap(const Settings& settings, Map& map, Frame& frame) : settings_(settings), map_(map), frame_(frame) {}
+
+  bool layout(Arena& arena);
+  void init();
+
+  KeyframeTable keyframes;
+
+  int capacity() const { return map_.features.capacity(); }
+  bool used(int i) const { return map_.features.used(i); }
+  WindowPoint& point(int i) { return point_[i]; }
+  const WindowPoint& point(int i) const { return point_[i]; }
+  Feature& feature(int i) { return map_.features[i]; }
+  const Feature& feature(int i) const { return map_.features[i]; }
+  Map& tables() { return map_; }
+  const Map& tables() const { return map_; }
+
+  /// Numbers of points with a depth.
+  int placed() const;
+  /// Bearing in W, of length 1.
+  Vec3 ray_W(int i) const { return keyframes[point_[i].host].q_WC * point_[i].ray_K; }
+  /// Of a point with a depth.
+  Vec3 position(int i) const { return keyframes[point_[i].host].p_W + ray_W(i) / point_[i].rho; }
+  /// Of its position, keyframes taken as exact: along the ray by the depth, across it by a pixel of the host.
+  Mat3 covariance(int i) const;
+  BlockKind kind(int i) const;
+  /// Median depth of this frame's inliers that have one, seen from a pose; 0 without any.
+  Scalar median_depth(const Quat& q_WC, const Vec3& p_W) const;
+
+  /// Adds a point without a depth at a pixel of a keyframe; evicts one that was not seen in this frame where there is no room. Returns its
+  /// row, or -1.
+  int add(int host, const Vec2& pixel);
+  /// Adds a point at a known place. Returns its row, or -1.
+  int add_placed(int host, const Vec3& p_W);
+  void drop(int i);
+  /// Drops points that fail too often, and those that are not in front of their hosts.
+  void drop_failing();
+
+  /// Adds the pose as a keyframe with this frame's inliers; where there is no room, the one with the fewest points leaves.
+  int add_keyframe(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);
+
+ private:
+  int least_useful_keyframe() const;
+  void remove_keyframe(int k);
+
+  const Settings& settings_;
+  Map& map_;
+  Frame& frame_;
+  WindowPoint* point_ = nullptr;
+  Scalar* scratch_ = nullptr;  ///< one for each point
+};
+
+}  // namespace pf

@@ -1,0 +1,122 @@
+#include "slam/window_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/elapsed.h"
+#include "geometry/small_cholesky.h"
+#include "geometry/so3.h"
+#include "slam/speed_limits.h"
+
+namespace pf {
+namespace {
+
+constexpr std::int64_t kMaxGapNs = 2000000000;  // [ns] longest time between frames that a prediction covers
+constexpr int kVelocity = 6;                    // first row of (v, w)
+
+}  // namespace
+
+void WindowMotion::set(const Body& body, const Mat6& pose, Scalar speed, Scalar rate) {
+  data_.body = body;
+  data_.P.setZero();
+  data_.P.topLeftCorner<6, 6>() = pose;
+  if (!settings_.constant_velocity) return;
+  for (int i = 0; i < 3; ++i) {
+    data_.P(kVelocity + i, kVelocity + i) = speed * speed;
+    data_.P(kVelocity + 3 + i, kVelocity + 3 + i) = rate * rate;
+  }
+}
+
+void WindowMotion::set_pose_covariance(const Mat6& pose) {
+  data_.P.topRightCorner<6, 6>().setZero();
+  data_.P.bottomLeftCorner<6, 6>().setZero();
+  data_.P.topLeftCorner<6, 6>() = pose;
+}
+
+void WindowMotion::predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const {
+  if (settings_.constant_velocity)
+    predict_constant_velocity(body, settings_.body, dt, noise, transition);
+  else
+    predict_constant_position(body, settings_.body, dt, noise, transition);
+}
+
+/// P+ = F P Fᵀ + Q over the rows that move.
+void WindowMotion::apply(const Transition& transition, Data* data) {
+  const int dim = transition.dim;
+  Covariance FP = Covariance::Zero(), P = Covariance::Zero();
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j)
+      for (int k = 0; k < dim; ++k) FP(i, j) += transition.F[i * dim + k] * data->P(k, j);
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) {
+      Scalar sum = transition.Q[i * dim + j];
+      for (int k = 0; k < dim; ++k) sum += FP(i, k) * transition.F[j * dim + k];
+      P(i, j) = sum;
+    }
+  data->P = (P + P.transpose()) / 2;
+  data->body = transition.mean;
+}
+
+void WindowMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured) {
+  const Scalar dt = static_cast<Scalar>(seconds(std::min(elapsed_ns(before_ns, t_ns), kMaxGapNs)));
+  MotionNoise noise = settings_.motion_noise;
+  if (coasting_or_lost) {
+    if (settings_.constant_velocity && nothing_measured) damp(dt);
+    const int linear = settings_.constant_velocity ? kVelocity : Body::kPosition;
+    noise = limited_noise(noise, settings_.constant_velocity, data_.P(0, 0), data_.P(linear, linear));
+  }
+  Transition transition;
+  predict(data_.body, dt, noise, &transition);
+  apply(transition, &data_);
+}
+
+/// Lets the speed decay while nothing is measured.
+void WindowMotion::damp(Scalar dt) {
+  Mat6 P_speed = data_.P.bottomRightCorner<6, 6>();
+  limit_speed(data_.P(0, 0), data_.P(Body::kPosition, Body::kPosition), &P_speed);
+  Transition transition;
+  damp_speed(data_.body, settings_.body, speed_decay(dt), data_.body.w_C, P_speed, &transition);
+  apply(transition, &data_);
+}
+
+bool WindowMotion::correct(const Quat& q_WC, const Vec3& p_W, const Mat6& R) {
+  SmallCholesky<6> S;
+  if (!S.factor(Mat6(data_.P.topLeftCorner<6, 6>() + R))) return false;
+  Vec6 e;
+  e << log_so3(q_WC * data_.body.q_WC.conjugate()), p_W - data_.body.p_W;
+  const Eigen::Matrix<Scalar, 6, kMaxRows> HP = data_.P.topRows<6>();
+  const Eigen::Matrix<Scalar, 6, kMaxRows> K_transposed = S.solve<kMaxRows>(HP);
+  const Eigen::Matrix<Scalar, kMaxRows, 1> dx = K_transposed.transpose().lazyProduct(e);
+  const Covariance P = data_.P - Covariance(HP.transpose().lazyProduct(K_transposed));
+  data_.P = (P + P.transpose()) / 2;
+  data_.body.q_WC = q_WC;
+  data_.body.p_W = p_W;
+  if (settings_.constant_velocity) {
+    data_.body.v_W += dx.segment<3>(kVelocity);
+    data_.body.w_C += dx.segment<3>(kVelocity + 3);
+  }
+  return true;
+}
+
+bool WindowMotion::is_sound() const {
+  const Body& b = data_.body;
+  Scalar sum = b.q_WC.coeffs().sum() + b.p_W.sum() + b.v_W.sum() + b.w_C.sum();
+  for (int i = 0; i < kMaxRows; ++i) {
+    if (!(data_.P(i, i) >= Scalar(0))) return false;
+    sum += data_.P(i, i);
+  }
+  return std::isfinite(sum);
+}
+
+void WindowMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const {
+  Data data = data_;
+  if (t_ns > now_ns) {
+    Transition transition;
+    predict(data.body, static_cast<Scalar>(seconds(elapsed_ns(now_ns, t_ns))), settings_.motion_noise, &transition);
+    apply(transition, &data);
+  }
+  *body = data.body;
+  *covariance = data.P.topLeftCorner<6, 6>();
+}
+
+}  // namespace pf

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+
+#include "filter/motion.h"
+#include "slam/settings.h"
+
+/// The body of the window: pose and velocities with their covariance, predicted by the motion model and corrected by measured poses.
+
+namespace pf {
+
+class WindowMotion {
+ public:
+  static constexpr int kMaxRows = BodyLayout::kVelocityRows;
+  using Covariance = Eigen::Matrix<Scalar, kMaxRows, kMaxRows>;
+
+  explicit WindowMotion(const Settings& settings) : settings_(settings) {}
+
+  void init() { data_ = Data(); }
+  /// Sets the body. pose: covariance of (theta, p); speed, rate: standard deviations of the velocities [m/s, rad/s].
+  void set(const Body& body, const Mat6& pose, Scalar speed, Scalar rate);
+
+  /// Predicts the body from one frame's time to the next. Without measurements its speed decays.
+  void advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured);
+  /// Corrects the body by a pose that was measured with covariance R. The pose becomes the measured one, which allows for the prediction
+  /// already; velocities and covariance follow by Kalman's gain
+  ///
+  ///   K = P Hᵀ (P_pp + R)⁻¹,   P+ = P - K (P_pp + R) Kᵀ,   H = (I 0)
+  ///
+  /// False where P_pp + R is no covariance; nothing has changed then.
+  bool correct(const Quat& q_WC, const Vec3& p_W, const Mat6& R);
+  /// Puts the body in another place, where the map was moved by an adjustment. The velocities turn and scale with it.
+  void move(const Quat& q_WC, const Vec3& p_W) {
+    data_.body.v_W = q_WC * (data_.body.q_WC.conjugate() * data_.body.v_W);
+    data_.body.q_WC = q_WC;
+    data_.body.p_W = p_W;
+  }
+  /// Sets the pose's covariance alone, and forgets how it hangs on the velocities.
+  void set_pose_covariance(const Mat6& pose);
+
+  const Body& body() const { return data_.body; }
+  Mat6 pose_covariance() const { return data_.P.topLeftCorner<6, 6>(); }
+  bool is_sound() const;
+  /// Body and pose covariance at t_ns, predicted if it is after now_ns.
+  void predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const;
+
+ private:
+  /// What is kept between frames.
+  struct Data {
+    Body body;
+    Covariance P = Covariance::Zero();  ///< of (theta, p, v, w); without velocities their rows are zero
+  };
+
+  void predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
+  static void apply(const Transition& transition, Data* data);
+  void damp(Scalar dt);
+
+  const Settings& settings_;
+  Data data_;
+};
+
+}  // namespace pf

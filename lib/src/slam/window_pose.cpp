@@ -1,0 +1,89 @@
+#include "slam/window_pose.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/small_cholesky.h"
+#include "geometry/so3.h"
+#include "slam/tuning.h"
+#include "window/adjust.h"
+
+namespace pf {
+namespace {
+
+using namespace tuning::window_pose;
+
+Mat2 inverse2(const Mat2& S) {
+  Mat2 inverse;
+  inverse << S(1, 1), -S(0, 1), -S(1, 0), S(0, 0);
+  return inverse / (S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0));
+}
+
+}  // namespace
+
+bool fit_pose(const Camera& camera, const PoseMatch* matches, int count, const unsigned char* use,
+              const PosePrior& prior, Scalar huber, CameraPose* inout, Mat6* information) {
+  SmallCholesky<6> factored;
+  if (!factored.factor(prior.covariance)) return false;
+  const Mat6 prior_information = factored.inverse();
+  CameraPose pose = *inout;
+  Mat6 A;
+  for (int round = 0; round < kRounds; ++round) {
+    A.setZero();
+    Vec6 b = Vec6::Zero();
+    for (int i = 0; i < count; ++i) {
+      if (use[i] == 0) continue;
+      const PnpPoint& point = matches[i].point;
+      Vec2 z;
+      Mat26 J;
+      if (!project_from_pose(camera, pose.q_WC, pose.p_WC, point.m, point.w, pose.p_WC, &z, &J)) continue;
+      const Vec2 r = point.pixel - z;
+      Scalar weight;
+      const Mat2 W = inverse2(matches[i].noise);
+      huber_cost(r.dot(W * r), huber, &weight);
+      const Eigen::Matrix<Scalar, 6, 2> JW = weight * J.transpose().lazyProduct(W);
+      A += JW.lazyProduct(J);
+      b += JW.lazyProduct(r);
+    }
+    Vec6 e;
+    e << log_so3(prior.q_WC * pose.q_WC.conjugate()), prior.p_W - pose.p_WC;
+    if (!factored.factor(Mat6(A + prior_information))) return false;
+    const Vec6 step = factored.solve<1>(Vec6(b + prior_information.lazyProduct(e)));
+    pose.q_WC = (exp_so3(step.head<3>()) * pose.q_WC).normalized();
+    pose.p_WC += step.tail<3>();
+    if (!std::isfinite(step.sum())) return false;
+    if (step.squaredNorm() < kSmallStep2) break;
+  }
+  *inout = pose;
+  *information = A;
+  return true;
+}
+
+bool WindowPose::layout(Arena& arena, int capacity) {
+  const std::size_t count = static_cast<std::size_t>(capacity);
+  match_ = arena.take<PoseMatch>(count);
+  point_ = arena.take<PnpPoint>(count);
+  inlier_ = arena.take<unsigned char>(count);
+  return arena.ok();
+}
+
+void WindowPose::init() { random_ = kSeed; }
+
+int WindowPose::find(const Camera& camera, int count, const PosePrior& prior, Scalar bound_px, int least,
+                     CameraPose* pose, Mat6* information) {
+  PoseEstimate estimate;
+  estimate.q_WC = prior.q_WC;
+  estimate.p_WC = prior.p_W;
+  for (int i = 0; i < count; ++i) point_[i] = match_[i].point;
+  const PnpSearch search = {bound_px, kTrials, least, {bound_px / kBoundSigmas, kHuber, kRefinementRounds}};
+  const int inliers = find_pose(camera, point_, count, search, &random_, &estimate, inlier_);
+  if (inliers == 0) return 0;
+  CameraPose found = {estimate.q_WC, estimate.p_WC};
+  Mat6 A;
+  if (!fit_pose(camera, match_, count, inlier_, prior, kHuber, &found, &A)) return 0;
+  *pose = found;
+  *information = A;
+  return inliers;
+}
+
+}  // namespace pf

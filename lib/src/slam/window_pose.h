@@ -1,0 +1,57 @@
+#pragma once
+
+#include "base/arena.h"
+#include "geometry/p3p.h"
+#include "geometry/pnp.h"
+#include "slam/settings.h"
+
+/// Pose of a frame from matches with known points: the consensus, and the fit with the noise of each.
+
+namespace pf {
+
+/// A match with a point whose depth is known.
+struct PoseMatch {
+  PnpPoint point;
+  Mat2 noise;  ///< covariance of the pixel, the point's depth included [px^2]
+};
+
+/// A pose with what is known of it.
+struct PosePrior {
+  Quat q_WC = Quat::Identity();
+  Vec3 p_W = Vec3::Zero();
+  Mat6 covariance = Mat6::Zero();  ///< of (theta, p)
+};
+
+/// Fits the pose to the matches that count, and to the prior:
+///
+///   min over (theta, p) of  sum rho(r_iᵀ R_i⁻¹ r_i) + eᵀ P⁻¹ e,   e = (theta, p) of the pose against the prior;  rho of Huber
+///
+/// by Gauss-Newton from the pose in inout. information gets that of the matches alone, robust weights included.
+/// use     of each match, whether it counts
+/// false   where a step cannot be computed; inout is then untouched
+bool fit_pose(const Camera& camera, const PoseMatch* matches, int count, const unsigned char* use,
+              const PosePrior& prior, Scalar huber, CameraPose* inout, Mat6* information);
+
+/// Finds the pose that most matches support (geometry/pnp.h), from the prior's and from triples of them.
+class WindowPose {
+ public:
+  bool layout(Arena& arena, int capacity);
+  void init();
+
+  PoseMatch& match(int i) { return match_[i]; }
+  const PoseMatch& match(int i) const { return match_[i]; }
+  bool is_inlier(int i) const { return inlier_[i] != 0; }
+
+  /// Consensus and fit over the first `count` matches. bound_px: of an inlier. least: inliers that are enough.
+  /// Returns the number of inliers, 0 where they are too few; pose and information are then untouched.
+  int find(const Camera& camera, int count, const PosePrior& prior, Scalar bound_px, int least, CameraPose* pose,
+           Mat6* information);
+
+ private:
+  PoseMatch* match_ = nullptr;  ///< capacity each
+  PnpPoint* point_ = nullptr;
+  unsigned char* inlier_ = nullptr;
+  std::uint32_t random_ = 1;
+};
+
+}  // namespace pf

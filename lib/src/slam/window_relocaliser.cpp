@@ -1,0 +1,63 @@
+#include "slam/window_relocaliser.h"
+
+#include "geometry/so3.h"
+#include "slam/tuning.h"
+
+namespace pf {
+
+using namespace tuning::relocaliser;
+
+namespace {
+
+Mat6 sphere(Scalar rotation, Scalar position) {
+  Mat6 P = Mat6::Zero();
+  for (int i = 0; i < 3; ++i) {
+    P(i, i) = rotation * rotation;
+    P(3 + i, 3 + i) = position * position;
+  }
+  return P;
+}
+
+}  // namespace
+
+bool WindowRelocaliser::is_prediction_narrow(Scalar median_depth) const {
+  const Mat6 P = motion_.pose_covariance();
+  const Scalar position = kNearbySigma * median_depth;
+  return P(0, 0) + P(1, 1) + P(2, 2) < kNearbySigma * kNearbySigma && P(3, 3) + P(4, 4) + P(5, 5) < position * position;
+}
+
+/// Where to search; false where nothing says it.
+bool WindowRelocaliser::choose(Scalar median_depth, PosePrior* about) const {
+  if (data_.frames > 0) {
+    *about = {data_.q_WC, data_.p_W, sphere(kAboutProposal, kAboutProposal * median_depth)};
+    return true;
+  }
+  *about = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  if (is_prediction_narrow(median_depth)) return true;
+  const Recognition place = views_.recognise(measuring_.tracker().pyramid(), settings_.camera);
+  if (place.score < kMinRecognition) return false;
+  *about = {place.q_WC, place.p_W, sphere(kAboutView, kAboutView * median_depth)};
+  return true;
+}
+
+void WindowRelocaliser::recover(Scalar median_depth) {
+  const bool nearby = data_.frames == 0 && is_prediction_narrow(median_depth);
+  const Data before = data_;
+  PosePrior about;
+  CameraPose pose;
+  Mat6 information;
+  if (!choose(median_depth, &about) || measuring_.measure_about(about, &pose, &information) < settings_.min_inliers) {
+    data_ = Data();
+    return;
+  }
+  const bool follows = before.frames > 0 &&
+                       log_so3(pose.q_WC * before.q_WC.conjugate()).norm() < kAboutView &&
+                       (pose.p_WC - before.p_W).norm() < kAboutView * median_depth;
+  data_ = {follows ? before.frames + 1 : 1, pose.q_WC, pose.p_WC};
+  if (data_.frames < (nearby ? kFramesNearby : kFramesAnywhere)) return;
+  if (!nearby) motion_.set_pose_covariance(about.covariance);
+  measuring_.correct(pose, information);
+  data_ = Data();
+}
+
+}  // namespace pf

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "slam/window_tracking.h"
+#include "track/view_memory.h"
+
+/// Finds the window's map again after frames that did not support the pose (lib/docs/states.md).
+
+namespace pf {
+
+class WindowRelocaliser {
+ public:
+  WindowRelocaliser(const Settings& settings, WindowMap& map, Frame& frame, WindowMotion& motion,
+                    WindowTracking& measuring)
+      : settings_(settings), map_(map), frame_(frame), motion_(motion), measuring_(measuring) {}
+
+  bool layout(Arena& arena) { return views_.layout(arena, settings_.max_kept_views); }
+  void init() {
+    views_.init();
+    data_ = Data();
+  }
+
+  /// Keeps the view of a tracked frame.
+  void remember_view() {
+    views_.keep_if_new(measuring_.tracker().pyramid(), motion_.body().q_WC, motion_.body().p_W);
+  }
+  /// The map is tracked: forgets what earlier frames proposed.
+  void clear_proposal() { data_ = Data(); }
+  /// Searches where the pose may be: about the prediction as long as it is narrow, else about a kept view that looks like this image. A
+  /// pose is taken when several frames in a row propose it.
+  void recover(Scalar median_depth);
+
+  int kept_views() const { return views_.count(); }
+
+ private:
+  /// What earlier frames proposed.
+  struct Data {
+    int frames = 0;  ///< in a row
+    Quat q_WC = Quat::Identity();
+    Vec3 p_W = Vec3::Zero();
+  };
+
+  bool choose(Scalar median_depth, PosePrior* about) const;
+  bool is_prediction_narrow(Scalar median_depth) const;
+
+  const Settings& settings_;
+  WindowMap& map_;
+  Frame& frame_;
+  WindowMotion& motion_;
+  WindowTracking& measuring_;
+  ViewMemory views_;
+  Data data_;
+};
+
+}  // namespace pf

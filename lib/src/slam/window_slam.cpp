@@ -1,0 +1,225 @@
+#include "slam/window_slam.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/elapsed.h"
+#include "slam/feature_upkeep.h"
+#include "slam/tuning.h"
+#include "slam/window_corners.h"
+#include "slam/window_depth.h"
+
+namespace pf {
+
+using namespace tuning::window_slam;
+
+bool WindowSlam::layout(Arena& arena) {
+  frame_.layout(arena, 2 * settings_.window_points);
+  map_.layout(arena);
+  measuring_.layout(arena);
+  adjustment_.layout(arena);
+  relocaliser_.layout(arena);
+  return start_.layout(arena);
+}
+
+void WindowSlam::init() {
+  frame_.init();
+  noise_.init(settings_.sigma_px);
+  tracking_.init();
+  frozen_.init();
+  map_.init();
+  motion_.init();
+  measuring_.init();
+  adjustment_.init();
+  relocaliser_.init();
+  start_.init();
+  data_ = Data();
+}
+
+Status WindowSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
+  if (!is_next(t_ns)) return Status::kTime;
+  const bool duplicate = frozen_.is_duplicate(image, t_ns);
+  if (duplicate) count_frame(&frame_.report.duplicates);
+  if (duplicate && !tracking_.coasting_or_lost() && frozen_.frozen_ns(t_ns) <= settings_.max_coast_ns)
+    return repeat_frame(t_ns);
+  begin_frame(t_ns);
+  if (tracking_.started_over()) return end_frame();
+  bool usable = !duplicate;  // where a frozen camera is now, nobody knows
+  if (usable) {
+    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPyramid]);
+    usable = measuring_.begin_frame(image);
+  }
+  if (!usable) {
+    const Status status = end_frame();
+    return status == Status::kLost || status == Status::kStarting ? status : Status::kUnusable;
+  }
+  tracking_.note_usable_image(data_.since_last_ns);
+  if (tracking_.needs_new_map(settings_.restart_ns))
+    begin_new_map("not found again for too long: the old map is discarded, a new map begins");
+  measure();
+  maintain_map();
+  return end_frame();
+}
+
+Status WindowSlam::mark_pose() {
+  if (!tracking_.has_pose()) return Status::kState;
+  const Body& body = motion_.body();
+  data_.mark = {true, frame_.report.t_ns, body.q_WC, body.p_W, motion_.pose_covariance()};
+  return Status::kOk;
+}
+
+/// The last pose and status again, under a new time. The next prediction begins where this one did not go on.
+Status WindowSlam::repeat_frame(std::int64_t t_ns) {
+  frame_.begin(t_ns);
+  tracking_.repeat(t_ns);
+  return tracking_.state() == SlamState::kTracking ? Status::kOk : Status::kStarting;
+}
+
+/// Begins the report and predicts the body to the new time.
+void WindowSlam::begin_frame(std::int64_t t_ns) {
+  const std::int64_t before_ns = data_.body_ns;
+  data_.body_ns = t_ns;
+  data_.since_last_ns = frame_.report.frames > 0 ? elapsed_ns(before_ns, t_ns) : 0;
+  const bool nothing_measured = frame_.report.inliers == 0;
+  frame_.begin(t_ns);
+  tracking_.begin_frame();
+  if (!tracking_.has_pose()) return;
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
+  motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
+}
+
+/// Finds the pose of the frame, in the way that the state asks for.
+void WindowSlam::measure() {
+  if (!tracking_.has_pose()) {
+    start_.start_in_image();
+  } else if (start_.progress().pending()) {
+    if (start_.follow_record()) adjust();
+  } else if (tracking_.is_relocalising(start_.progress())) {
+    relocaliser_.recover(data_.median_depth);
+  } else {
+    relocaliser_.clear_proposal();
+    measuring_.measure(data_.median_depth);
+  }
+}
+
+/// A frame that does not support its pose changes nothing in the map.
+void WindowSlam::maintain_map() {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
+  const bool pending = start_.progress().pending();
+  const bool tracked = tracking_.is_tracked(frame_.report);
+  if (!tracking_.has_pose()) return;
+  if (tracked && !pending) {
+    measuring_.learn_templates();
+    learn_noise();
+    triangulate();
+  }
+  if (tracked || pending) {
+    count_searches(frame_, &tables_.features);
+    map_.drop_failing();
+  }
+  if (tracked && !pending && wants_keyframe()) add_keyframe();
+  // The first frame, one in which a record began anew, and every other keyframe.
+  const int newest = map_.keyframes.newest();
+  if (newest < 0 || map_.keyframes[newest].t_ns != frame_.report.t_ns) return;
+  add_corners(settings_, measuring_.search(), newest, &map_, &frame_);
+  start_.begin_record();
+}
+
+/// Gives points a depth whose rays from host and frame differ by enough; drops those that no depth explains.
+void WindowSlam::triangulate() {
+  const CameraView now = {motion_.body().q_WC, motion_.body().p_W};
+  const Scalar cos_parallax = std::cos(kMinParallax);
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const Match& match = frame_.match(t);
+    if (match.feature < 0 || match.status != MatchStatus::kInlier || map_.point(match.feature).has_depth) continue;
+    DepthFit fit;
+    const bool fits = fit_depth(settings_.camera, map_, match.feature, now, match.measured, &fit);
+    if (fit.cos_parallax > cos_parallax) continue;
+    if (!fits || fit.worst_px > measuring_.bound_px()) {
+      map_.drop(match.feature);
+      continue;
+    }
+    WindowPoint& point = map_.point(match.feature);
+    point.rho = fit.rho;
+    point.variance = noise_.sigma_info() * noise_.sigma_info() / fit.information;
+    point.has_depth = true;
+  }
+}
+
+/// The camera has moved far enough since the last keyframe, in depths of what it sees, or sees too little of what is known.
+bool WindowSlam::wants_keyframe() const {
+  const Keyframe& last = map_.keyframes[map_.keyframes.newest()];
+  if (last.t_ns == frame_.report.t_ns) return false;
+  const Body& body = motion_.body();
+  const Scalar moved = (body.p_W - last.p_W).norm() / data_.median_depth;
+  const Scalar turned = body.q_WC.angularDistance(last.q_WC);
+  int inliers = 0;
+  for (int t = 0; t < frame_.match_count(); ++t) inliers += frame_.match(t).status == MatchStatus::kInlier ? 1 : 0;
+  return moved > kKeyframeShift || turned > kKeyframeTurn ||
+         (static_cast<Scalar>(inliers) < kFewPoints * static_cast<Scalar>(settings_.features_in_view) &&
+          (moved > kMinKeyframeShift || turned > kMinKeyframeTurn));
+}
+
+void WindowSlam::add_keyframe() {
+  map_.add_keyframe(frame_.report.t_ns, motion_.body().q_WC, motion_.body().p_W);
+  adjust();
+}
+
+void WindowSlam::adjust() {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kAdjust]);
+  if (!adjustment_.run()) return;
+  const Keyframe& newest = map_.keyframes[map_.keyframes.newest()];
+  motion_.move(newest.q_WC, newest.p_W);
+}
+
+void WindowSlam::learn_noise() {
+  measuring_.learn_noise();
+  if (data_.warned_of_noise || !noise_.is_implausible()) return;
+  data_.warned_of_noise = true;
+  settings_.hooks.say(
+      "matches are 3 times as far off as their noise explains: check the calibration, the readout time and the "
+      "timestamps");
+}
+
+/// Whether rotation and position are known well enough against the map (lib/docs/states.md).
+bool WindowSlam::is_pose_usable() {
+  using namespace tuning::usable_pose;
+  const Scalar depth = map_.median_depth(motion_.body().q_WC, motion_.body().p_W);
+  if (!(depth > Scalar(0))) return false;
+  data_.median_depth = depth;
+  const Mat6 P = motion_.pose_covariance();
+  const Scalar position = kMaxPositionSigma * depth;
+  return P(0, 0) + P(1, 1) + P(2, 2) < kMaxRotationSigma * kMaxRotationSigma &&
+         P(3, 3) + P(4, 4) + P(5, 5) < position * position;
+}
+
+/// Returns the status of the frame.
+Status WindowSlam::end_frame() {
+  if (tracking_.has_pose() && !motion_.is_sound()) {
+    start_.start_over();
+    motion_.init();
+    relocaliser_.init();
+    tracking_.start_over();
+    settings_.hooks.say("the estimate is no longer finite: starting again without it");
+  }
+  if (tracking_.is_tracked(frame_.report) && !start_.progress().pending()) {
+    if (!is_pose_usable())
+      tracking_.set_unusable();
+    else if (frame_.report.attempts > 0)
+      relocaliser_.remember_view();
+  }
+  return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
+}
+
+/// The map was not found again for too long, although the images were usable: a new one begins with this frame.
+void WindowSlam::begin_new_map(const char* why) {
+  start_.start_over();
+  motion_.init();
+  relocaliser_.init();
+  adjustment_.init();
+  data_.mark = Mark();
+  tracking_.begin_map();
+  settings_.hooks.say(why);
+}
+
+}  // namespace pf

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "base/status.h"
+#include "slam/frozen_camera.h"
+#include "slam/window_adjustment.h"
+#include "slam/window_relocaliser.h"
+#include "slam/window_start.h"
+#include "slam/window_tracking.h"
+
+/// The order of work of one frame with the window as back end (Masoud and Hoff 2015, Figure 4), and nothing else:
+///
+///   predict -> search -> pose -> points without a depth -> triangulate -> keyframe -> adjust -> new points
+///
+/// Its parts refer to each other, so it is constructed in place and never copied. lib/docs/window.md
+
+namespace pf {
+
+class WindowSlam {
+ public:
+  WindowSlam(const Settings& settings, Map& map) : settings_(settings), tables_(map) {}
+  WindowSlam(const WindowSlam&) = delete;
+  WindowSlam& operator=(const WindowSlam&) = delete;
+
+  bool layout(Arena& arena);
+  void init();
+
+  Status push_frame(const ImageView& image, std::int64_t t_ns);
+  /// Marks the pose of the last frame. kState: there is none.
+  Status mark_pose();
+
+  WindowStart& start() { return start_; }
+
+  const Frame& frame() const { return frame_; }
+  const TrackingState& tracking() const { return tracking_; }
+  const NoiseModel& noise() const { return noise_; }
+  const WindowMap& map() const { return map_; }
+  const WindowMotion& motion() const { return motion_; }
+  /// Time of the body: that of the last frame, or of the one that it repeats.
+  std::int64_t body_ns() const { return data_.body_ns; }
+  /// Covariance of the map about the last frame, given the keyframes that the last adjustment held fixed.
+  const Mat6& map_covariance() const { return adjustment_.map_covariance(); }
+  int kept_views() const { return relocaliser_.kept_views(); }
+  /// Of the inliers of the last tracked frame.
+  Scalar median_depth() const { return data_.median_depth; }
+
+  /// The pose that the caller marked.
+  struct Mark {
+    bool is_set = false;
+    std::int64_t t_ns = 0;
+    Quat q_WC = Quat::Identity();
+    Vec3 p_W = Vec3::Zero();
+    Mat6 covariance = Mat6::Zero();
+  };
+  const Mark& mark() const { return data_.mark; }
+
+ private:
+  struct Data {
+    std::int64_t body_ns = 0;
+    std::int64_t since_last_ns = 0;  ///< from the frame before this one
+    Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
+    Mark mark;
+    bool warned_of_noise = false;
+  };
+
+  bool is_next(std::int64_t t_ns) const { return frame_.report.frames == 0 || t_ns > frame_.report.t_ns; }
+  void begin_frame(std::int64_t t_ns);
+  Status repeat_frame(std::int64_t t_ns);
+  Status end_frame();
+  void measure();
+  void maintain_map();
+  void triangulate();
+  bool wants_keyframe() const;
+  void add_keyframe();
+  void adjust();
+  void learn_noise();
+  bool is_pose_usable();
+  void begin_new_map(const char* why);
+
+  const Settings& settings_;
+  Map& tables_;
+  Frame frame_;
+  NoiseModel noise_;
+  TrackingState tracking_{settings_};
+  FrozenCamera frozen_;
+  WindowMap map_{settings_, tables_, frame_};
+  WindowMotion motion_{settings_};
+  WindowTracking measuring_{settings_, map_, frame_, motion_, noise_};
+  WindowAdjustment adjustment_{settings_, map_, noise_};
+  WindowRelocaliser relocaliser_{settings_, map_, frame_, motion_, measuring_};
+  WindowStart start_{settings_, {map_, frame_, tracking_, motion_, measuring_, adjustment_}};
+  Data data_;
+};
+
+}  // namespace pf

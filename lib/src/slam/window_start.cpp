@@ -1,0 +1,240 @@
+#include "slam/window_start.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/elapsed.h"
+#include "geometry/so3.h"
+#include "slam/tuning.h"
+#include "slam/window_depth.h"
+#include "window/rotation_fit.h"
+
+namespace pf {
+
+using namespace tuning::window_start;
+namespace assumed = tuning::filter_start;
+
+bool WindowStart::layout(Arena& arena) {
+  const std::size_t points = static_cast<std::size_t>(settings_.window_points);
+  ray_ = arena.take<Vec3>(points);
+  pixel_ = arena.take<BundlePixel>(points);
+  scratch_ = arena.take<Scalar>(points);
+  target_.layout(arena, settings_.camera.width, settings_.camera.height);
+  return without_.layout(arena);
+}
+
+void WindowStart::init() {
+  data_ = Data();
+  target_.init();
+  without_.init();
+}
+
+void WindowStart::start_over() {
+  clear_map();
+  without_.init();
+  data_.known = KnownBody();
+  if (parts_.map.tables().target_withdrawn) target_.init();
+}
+
+void WindowStart::clear_map() {
+  parts_.frame.forget_all();
+  parts_.map.tables().features.clear();
+  parts_.map.tables().planes.clear();
+  parts_.map.init();
+}
+
+Status WindowStart::use_target(const Target& target) {
+  if (data_.known.given && target.kind == TargetKind::kRectangle) return Status::kState;
+  target_.set_target(target);
+  return Status::kOk;
+}
+
+Status WindowStart::use_pose(const KnownBody& known) {
+  if (target_.target().kind == TargetKind::kRectangle) return Status::kState;
+  data_.known = known;
+  data_.known.given = true;
+  return Status::kOk;
+}
+
+/// The pose before the first measurement: the one that the caller gave, that of the target, or the one that defines the world.
+void WindowStart::set_pose(bool at_target) {
+  const int dim = settings_.body.known_rows();
+  Body body = at_target ? target_.target().first_pose : Body();
+  Mat6 P = at_target ? target_.target().first_covariance
+                     : Mat6(Mat6::Identity() * (assumed::kDefinedSigma * assumed::kDefinedSigma));
+  Scalar speed = assumed::kStartSpeed * (at_target ? Scalar(1) : settings_.start_depth), rate = assumed::kStartRate;
+  if (data_.known.given) {
+    body = data_.known.body;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) P(i, j) = data_.known.covariance[i * dim + j];
+    const auto sigma = [&](int first) {
+      Scalar trace = 0;
+      for (int i = first; i < first + 3; ++i) trace += data_.known.covariance[i * dim + i];
+      return std::sqrt(trace / 3);
+    };
+    if (settings_.constant_velocity) {
+      speed = sigma(settings_.body.row(BodyPart::kVelocity));
+      rate = sigma(settings_.body.row(BodyPart::kAngularVelocity));
+    }
+  }
+  parts_.motion.set(body, P, speed, rate);
+  parts_.tracking.set_has_pose(parts_.frame.report.t_ns);
+}
+
+bool WindowStart::start_in_image() {
+  FrameReport& report = parts_.frame.report;
+  TargetSighting sighting;
+  const bool seen =
+      target_.has_target() && target_.find(settings_.camera, parts_.measuring.tracker(), &sighting);
+  if (!seen && target_.has_target() && !parts_.tracking.may_skip_target()) return false;
+  if (seen && report.frames > 1) data_.known = KnownBody();  // it was the pose of the first frame
+  set_pose(seen);
+  const Body& body = parts_.motion.body();
+  const int keyframe = parts_.map.add_keyframe(report.t_ns, body.q_WC, body.p_W);
+  if (!seen) {
+    without_.begin();
+    return true;
+  }
+  const Target& target = target_.target();
+  Vec3 middle_W = Vec3::Zero();
+  for (int i = 0; i < target.count; ++i) {
+    middle_W += target.point_W[i] / static_cast<Scalar>(target.count);
+    const int row = parts_.map.add_placed(keyframe, target.point_W[i]);
+    if (row < 0) continue;
+    Feature& f = parts_.map.feature(row);
+    f.is_target = true;
+    f.external_id = static_cast<std::uint32_t>(i);
+    const Vec2 z = sighting.pixel[i];
+    parts_.measuring.search().remember(&parts_.map.tables(), row, z, {body.q_WC, body.p_W});
+    parts_.map.keyframes.set_pixel(keyframe, row, z);
+    parts_.map.point(row).pixel = z;
+    ++report.inliers;
+    parts_.frame.add({row, f.id, MatchStatus::kInlier, BlockKind::kPoint, z, Mat2::Zero(), z, Scalar(0)});
+  }
+  report.new_features = 0;
+  report.attempts = report.matches = report.inliers;
+  parts_.adjustment.hold_target({body.q_WC, body.p_W}, middle_W);
+  parts_.tracking.set_from_target();
+  settings_.hooks.say("started at the target");
+  return true;
+}
+
+void WindowStart::begin_record() {
+  if (!progress().recording || !without_.empty()) return;
+  const Body& body = parts_.motion.body();
+  without_.begin_record(body.q_WC, body.p_W, parts_.frame.report.t_ns);
+  for (int t = 0; t < parts_.frame.match_count(); ++t) {
+    const Match& match = parts_.frame.match(t);
+    Vec3 ray_C;
+    if (match.status != MatchStatus::kNew || match.feature < 0) continue;
+    if (unproject(settings_.camera, match.measured, &ray_C)) without_.add_feature(match.id, ray_C);
+  }
+}
+
+/// The rotation that explains the picture best, from the first frame's rays. Accepts matches that are within a few times the typical
+/// parallax of it. False: too few.
+bool WindowStart::accept_rotation(int found) {
+  Frame& frame = parts_.frame;
+  int count = 0;
+  for (int t = 0; t < frame.match_count(); ++t) {
+    const Match& match = frame.match(t);
+    if (match.status != MatchStatus::kOutlier || match.feature < 0 || count == settings_.window_points) continue;
+    ray_[count] = parts_.map.ray_W(match.feature);
+    pixel_[count++] = {static_cast<float>(match.measured.x()), static_cast<float>(match.measured.y()), true};
+  }
+  if (found < settings_.min_inliers) return false;
+  Quat q_WC = parts_.motion.body().q_WC;
+  const Scalar parallax = fit_rotation(settings_.camera, ray_, pixel_, count, scratch_, &q_WC);
+  const Scalar bound = kParallaxes * parallax + parts_.measuring.bound_px();
+  Mat6 R = Mat6::Identity() * (kRotationSigma * kRotationSigma);
+  R.bottomRightCorner<3, 3>() = Mat3::Identity() * (kPositionSigma * kPositionSigma * settings_.start_depth * settings_.start_depth);
+  parts_.motion.correct(q_WC, without_.base_p_W(), R);
+  for (int t = 0; t < frame.match_count(); ++t) {
+    Match& match = frame.match(t);
+    Vec2 z;
+    if (match.status != MatchStatus::kOutlier || match.feature < 0) continue;
+    if (!project(settings_.camera, q_WC.conjugate() * parts_.map.ray_W(match.feature), &z)) continue;
+    if ((match.measured - z).squaredNorm() > bound * bound) continue;
+    parts_.measuring.accept(&match);
+    ++frame.report.inliers;
+  }
+  return frame.report.inliers >= settings_.min_inliers;
+}
+
+bool WindowStart::follow_record() {
+  Frame& frame = parts_.frame;
+  const int found = parts_.measuring.follow(settings_.start_depth);
+  StartOutcome outcome = StartOutcome::kTooFew;
+  if (accept_rotation(found)) {
+    const Body& body = parts_.motion.body();
+    without_.begin_frame(body.q_WC, body.p_W, frame.report.t_ns);
+    for (int t = 0; t < frame.match_count(); ++t) {
+      const Match& match = frame.match(t);
+      if (match.status == MatchStatus::kInlier && match.feature >= 0)
+        without_.add_pixel(settings_.camera, match.id, match.measured);
+    }
+    outcome = without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth);
+  }
+  if (outcome == StartOutcome::kWait) return false;
+  if (outcome != StartOutcome::kTooFew) {
+    take_record();
+    settings_.hooks.say("started without a target: the first depths are known");
+    return true;
+  }
+  // Only rotation so far, or too few features in view: the world stays, and the record begins again with this frame.
+  clear_map();
+  frame.report.inliers = 0;
+  without_.init();
+  without_.begin();
+  const Body body = parts_.motion.body();
+  parts_.tracking.set_has_pose(frame.report.t_ns);
+  parts_.map.add_keyframe(frame.report.t_ns, body.q_WC, body.p_W);
+  return false;
+}
+
+/// Depths and poses of the solved record. The frame becomes a keyframe, and velocities are those of the record's last frames.
+void WindowStart::take_record() {
+  const StartRecord& record = without_.record();
+  const int last = record.frames() - 1;
+  const auto pose_of = [&](int k) {
+    return CameraView{without_.base_q_WC() * record.frame(k).q_WC,
+                      without_.base_p_W() + without_.base_q_WC() * record.frame(k).p_W};
+  };
+  const CameraView now = pose_of(last);
+  WindowMap& map = parts_.map;
+  for (int i = 0; i < map.capacity(); ++i) {
+    if (!map.used(i)) continue;
+    const int index = without_.index_of(map.feature(i).id);
+    WindowPoint& point = map.point(i);
+    if (index >= 0 && without_.bundle().good(index)) {
+      point.ray_K = record.ray(index).normalized();
+      point.rho = without_.bundle().rho(index) / record.ray(index).norm();
+      point.has_depth = true;
+    } else if (index >= 0) {
+      map.drop(i);
+    }
+  }
+  Body body = parts_.motion.body();
+  body.q_WC = now.q_WC;
+  body.p_W = now.c_W;
+  const int before = std::max(0, last - kSpeedFrames);
+  if (settings_.constant_velocity && before < last) {
+    const CameraView then = pose_of(before);
+    const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(record.frame(before).t_ns, record.frame(last).t_ns)));
+    body.v_W = (now.c_W - then.c_W) / dt;
+    body.w_C = log_so3(then.q_WC.conjugate() * now.q_WC) / dt;
+  }
+  Mat6 P = Mat6::Identity() * (kRotationSigma * kRotationSigma);
+  P.bottomRightCorner<3, 3>() *= settings_.start_depth * settings_.start_depth;
+  parts_.motion.set(body, P, kSpeedSigma * settings_.start_depth, assumed::kStartRate);
+  map.add_keyframe(parts_.frame.report.t_ns, now.q_WC, now.c_W);
+  for (int t = 0; t < parts_.frame.match_count(); ++t) {
+    const Match& match = parts_.frame.match(t);
+    if (match.feature >= 0 && match.status == MatchStatus::kInlier) map.point(match.feature).seen_from = now;
+  }
+  for (int i = 0; i < map.capacity(); ++i)
+    if (map.used(i) && map.point(i).has_depth) map.point(i).variance = parts_.adjustment.variance_of(i);
+  without_.init();
+}
+
+}  // namespace pf

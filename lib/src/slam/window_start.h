@@ -1,0 +1,65 @@
+#pragma once
+
+#include "base/status.h"
+#include "slam/start.h"
+#include "slam/start_at_target.h"
+#include "slam/start_without_target.h"
+#include "slam/window_adjustment.h"
+#include "slam/window_tracking.h"
+
+/// Starts the window in the way that the caller chose: at a known pose, at a target, or from a record of the first frames.
+
+namespace pf {
+
+/// The parts of the window that a start writes to.
+struct WindowParts {
+  WindowMap& map;
+  Frame& frame;
+  TrackingState& tracking;
+  WindowMotion& motion;
+  WindowTracking& measuring;
+  WindowAdjustment& adjustment;
+};
+
+class WindowStart {
+ public:
+  WindowStart(const Settings& settings, const WindowParts& parts) : settings_(settings), parts_(parts) {}
+
+  bool layout(Arena& arena);
+  void init();
+  /// Clears the map and what came from it, and the first pose that the caller gave. A target that was not withdrawn may be found again.
+  void start_over();
+
+  Status use_target(const Target& target);
+  Status use_pose(const KnownBody& known);
+  const StartProgress& progress() const { return without_.progress(); }
+
+  /// Sets the pose of the first frame and makes it a keyframe. False: not possible in this frame.
+  bool start_in_image();
+  /// A frame while the depths are not known: follows the points, records them, and tries to solve the record. True: depths are known now,
+  /// and this frame is a keyframe.
+  bool follow_record();
+  /// Begins an empty record with the features that this frame has added.
+  void begin_record();
+
+ private:
+  void set_pose(bool at_target);
+  void clear_map();
+  bool accept_rotation(int found);
+  void take_record();
+
+  struct Data {
+    KnownBody known;
+  };
+
+  const Settings& settings_;
+  const WindowParts parts_;
+  Data data_;
+  StartAtTarget target_;
+  StartWithoutTarget without_;
+  Vec3* ray_ = nullptr;  ///< window_points each
+  BundlePixel* pixel_ = nullptr;
+  Scalar* scratch_ = nullptr;
+};
+
+}  // namespace pf

@@ -1,0 +1,322 @@
+#include "slam/window_tracking.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/elapsed.h"
+#include "geometry/small_cholesky.h"
+#include "geometry/symmetric_eigen.h"
+#include "map/plane_chance.h"
+#include "slam/ellipse.h"
+#include "slam/feature_upkeep.h"
+#include "slam/tuning.h"
+#include "slam/window_depth.h"
+
+namespace pf {
+
+using namespace tuning::window_tracking;
+
+bool WindowTracking::layout(Arena& arena) {
+  candidate_ = arena.take<Candidate>(static_cast<std::size_t>(settings_.window_points));
+  pose_.layout(arena, settings_.window_points);
+  return search_.layout(arena, settings_.camera.width, settings_.camera.height);
+}
+
+void WindowTracking::init() {
+  search_.init(settings_.camera);
+  pose_.init();
+  listed_ = 0;
+}
+
+Scalar WindowTracking::bound_px() const {
+  return std::max(kBoundWidth * static_cast<Scalar>(settings_.camera.width), kBoundSigmas * noise_.sigma_gate());
+}
+
+bool WindowTracking::is_inside(const Vec2& pixel) const {
+  const Scalar margin = static_cast<Scalar>(settings_.border_px);
+  return !(pixel.x() < margin || pixel.y() < margin ||
+           pixel.x() > static_cast<Scalar>(settings_.camera.width - 1) - margin ||
+           pixel.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
+}
+
+bool WindowTracking::expect_placed(int i, const PosePrior& at, ExpectedPixel* out) const {
+  const WindowPoint& point = map_.point(i);
+  Mat26 J_C;
+  Vec2 J_rho;
+  if (!project_bearing(settings_.camera, at.q_WC.toRotationMatrix(), map_.ray_W(i),
+                       map_.keyframes[point.host].p_W - at.p_W, point.rho, &out->pixel, &J_C, nullptr, &J_rho))
+    return false;
+  const Mat26 JP = J_C.lazyProduct(at.covariance);
+  out->spread = JP.lazyProduct(J_C.transpose()) + point.variance * J_rho * J_rho.transpose();
+  return true;
+}
+
+/// About the last pixel, for depths about the median: rho = (1 +- 1) / depth along the ray on which it was last seen.
+bool WindowTracking::expect_unplaced(int i, const PosePrior& at, Scalar depth, ExpectedPixel* out) const {
+  const WindowPoint& point = map_.point(i);
+  Vec3 ray_C;
+  if (!unproject(settings_.camera, point.pixel, &ray_C)) return false;
+  Mat26 J_C;
+  Vec2 J_rho;
+  if (!project_bearing(settings_.camera, at.q_WC.toRotationMatrix(), point.seen_from.q_WC * ray_C,
+                       point.seen_from.c_W - at.p_W, 1 / depth, &out->pixel, &J_C, nullptr, &J_rho))
+    return false;
+  const Mat26 JP = J_C.lazyProduct(at.covariance);
+  out->spread = JP.lazyProduct(J_C.transpose()) + J_rho * J_rho.transpose() / (depth * depth);
+  return true;
+}
+
+/// Lists the points that should be in view, the most reliable first. Returns how many.
+int WindowTracking::list(const PosePrior& at, bool placed, Scalar depth) {
+  const int first = placed ? 0 : listed_;
+  int count = 0;
+  for (int i = 0; i < map_.capacity() && first + count < map_.capacity() && !frame_.full(); ++i) {
+    if (!map_.used(i) || map_.point(i).has_depth != placed) continue;
+    const Feature& f = map_.feature(i);
+    ExpectedPixel expected;
+    if (!f.has_appearance || (f.is_target && map_.tables().target_withdrawn)) continue;
+    if (!(placed ? expect_placed(i, at, &expected) : expect_unplaced(i, at, depth, &expected))) continue;
+    const Mat2 innovation = expected.spread + Mat2::Identity() * (kMapSigma * kMapSigma);
+    if (!is_inside(expected.pixel) || !is_covariance(innovation)) continue;
+    const int match = frame_.add({i, f.id, MatchStatus::kMissed, map_.kind(i), expected.pixel, innovation, Vec2::Zero(),
+                                  Scalar(0)});
+    candidate_[first + count++] = {match, Mat2::Identity(), Scalar(0)};
+  }
+  std::sort(candidate_ + first, candidate_ + first + count, [&](const Candidate& a, const Candidate& b) {
+    const Match &m = frame_.match(a.match), &n = frame_.match(b.match);
+    const float of_a = reliability(map_.feature(m.feature)), of_b = reliability(map_.feature(n.feature));
+    return of_a != of_b ? of_a > of_b : m.feature < n.feature;
+  });
+  return count;
+}
+
+/// Predicts candidates again, from a pose that is known better.
+void WindowTracking::expect(int first, int count, const PosePrior& at) {
+  for (int c = first; c < first + count; ++c) {
+    Match& match = frame_.match(candidate_[c].match);
+    ExpectedPixel expected;
+    if (!expect_placed(match.feature, at, &expected)) continue;
+    const Mat2 innovation = expected.spread + Mat2::Identity() * (kMapSigma * kMapSigma);
+    if (!is_covariance(innovation)) continue;
+    match.predicted = expected.pixel;
+    match.innovation = innovation;
+  }
+}
+
+SearchTask WindowTracking::task_of(int i, const PosePrior& at, Scalar depth) const {
+  const WindowPoint& point = map_.point(i);
+  const Map& tables = map_.tables();
+  const Keyframe& host = map_.keyframes[point.host];
+  SearchTask task;
+  task.appearance = &tables.appearance(i);
+  task.first_view = point.faces_host ? CameraView{host.q_WC, host.p_W} : tables.first_view(i);
+  if (tables.has_templates() && !tables.features[i].is_target && point.has_depth)
+    ImageSearch::use_template(tables, i, &task);
+  task.gate = settings_.gate;
+  task.p_W = host.p_W + map_.ray_W(i) * (point.has_depth ? 1 / point.rho : depth);
+  task.q_WC = at.q_WC;
+  task.c_W = at.p_W;
+  return task;
+}
+
+/// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
+int WindowTracking::search_for(int first, int count, const PosePrior& at, Scalar depth) {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
+  const Scalar image = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
+  int found = first;
+  for (int c = first; c < first + count; ++c) {
+    Match& match = frame_.match(candidate_[c].match);
+    SearchTask task = task_of(match.feature, at, depth);
+    task.predicted = match.predicted;
+    task.innovation = match.innovation;
+    const SearchOutcome outcome = search_.search(task);
+    if (!outcome.comparable) continue;
+    match.searched = true;
+    ++frame_.report.attempts;
+    if (!outcome.found || squared_distance(outcome.pixel - match.predicted, match.innovation) > settings_.gate) continue;
+    ++frame_.report.matches;
+    match.measured = outcome.pixel;
+    match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
+    candidate_[c].noise = noise_.match(outcome.noise, outcome.level_scale);
+    candidate_[c].searched = std::min(image, ellipse_area(match.innovation, settings_.gate));
+    std::swap(candidate_[found++], candidate_[c]);
+  }
+  return found - first;
+}
+
+/// Pose that the first `found` candidates support. Returns the number of inliers, 0 where the pose may be chance.
+int WindowTracking::find_pose(int found, const PosePrior& prior, CameraPose* pose, Mat6* information) {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
+  for (int c = 0; c < found; ++c) {
+    const Match& match = frame_.match(candidate_[c].match);
+    const WindowPoint& point = map_.point(match.feature);
+    const Vec3& host_W = map_.keyframes[point.host].p_W;
+    const Vec3 ray_W = map_.ray_W(match.feature);
+    Vec2 z, J_rho;
+    Mat26 J_C;
+    PoseMatch& out = pose_.match(c);
+    out.point = {ray_W + point.rho * host_W, point.rho, match.measured};
+    out.noise = noise_.correlation_frames() * candidate_[c].noise;
+    if (project_bearing(settings_.camera, prior.q_WC.toRotationMatrix(), ray_W, host_W - prior.p_W, point.rho, &z, &J_C,
+                        nullptr, &J_rho))
+      out.noise += point.variance * J_rho * J_rho.transpose();
+  }
+  const int least = std::min(settings_.min_inliers, std::max(kMinYoungInliers, map_.placed() / 2));
+  const int inliers = pose_.find(settings_.camera, found, prior, bound_px(), least, pose, information);
+  return is_believed(inliers, found) ? inliers : 0;
+}
+
+/// Half of what was searched for agrees, or far more than chance would give: with n of m matches within the bound, by chance each with the
+/// share of the searched area that the bound fills.
+bool WindowTracking::is_believed(int inliers, int found) const {
+  if (inliers == 0) return false;
+  if (2 * inliers >= frame_.report.attempts) return true;
+  const Scalar circle = ellipse_area(Mat2::Identity() * (bound_px() * bound_px()), Scalar(1));
+  Scalar share = 0;
+  for (int c = 0; c < found; ++c)
+    share += std::clamp(tuning::chance::kMaxFindShare * circle / candidate_[c].searched, tuning::chance::kMinShare,
+                        tuning::chance::kMaxShare);
+  share /= static_cast<Scalar>(found);
+  return log_false_planes(inliers, frame_.report.attempts, share, found) < tuning::tracking::kMaxLogFalse;
+}
+
+/// Says of each match whether it is where the pose has it, within its own noise and that of the pose.
+void WindowTracking::mark(int found, const PosePrior& at) {
+  for (int c = 0; c < found; ++c) {
+    Match& match = frame_.match(candidate_[c].match);
+    ExpectedPixel expected;
+    match.status = MatchStatus::kOutlier;
+    if (!pose_.is_inlier(c) || !expect_placed(match.feature, at, &expected)) continue;
+    const Vec2 r = match.measured - expected.pixel;
+    match.nis = squared_distance(r, Mat2(candidate_[c].noise + expected.spread));
+    const Mat2 S = candidate_[c].noise + NoiseModel::search() + expected.spread;
+    if (squared_distance(r, S) > settings_.gate) continue;
+    frame_.report.nis += static_cast<double>(match.nis);
+    frame_.report.nis_dof += 2;
+    ++frame_.report.inliers;
+    accept(&match);
+  }
+}
+
+void WindowTracking::accept(Match* match) {
+  match->status = MatchStatus::kInlier;
+  Feature& f = map_.feature(match->feature);
+  count_frame(&f.observations);
+  f.failures = 0;
+  f.rejections = 0;
+  f.last_seen_ns = frame_.report.t_ns;
+  WindowPoint& point = map_.point(match->feature);
+  point.pixel = match->measured;
+  point.seen_from = {motion_.body().q_WC, motion_.body().p_W};
+}
+
+int WindowTracking::measure_about(const PosePrior& about, CameraPose* pose, Mat6* information) {
+  listed_ = list(about, true, Scalar(1));
+  Scalar widest = 0;
+  for (int c = 0; c < listed_; ++c)
+    widest = std::max(widest, symmetric_eigenvalues(frame_.match(candidate_[c].match).innovation)(1));
+  const bool wide = settings_.gate * widest > kWideEllipse * kWideEllipse && listed_ > kScouts;
+  int found = search_for(0, wide ? kScouts : listed_, about, Scalar(1));
+  int inliers = 0;
+  if (wide) {
+    // A few first: with their pose the others are searched for in small ellipses.
+    PosePrior scouted = about;
+    inliers = find_pose(found, about, pose, information);
+    SmallCholesky<6> factored, prior;
+    if (inliers > 0 && prior.factor(about.covariance) && factored.factor(Mat6(*information + prior.inverse()))) {
+      scouted = {pose->q_WC, pose->p_WC, factored.inverse()};
+      expect(kScouts, listed_ - kScouts, scouted);
+    }
+    const int more = search_for(kScouts, listed_ - kScouts, scouted, Scalar(1));
+    for (int k = 0; k < more; ++k, ++found)
+      if (found != kScouts + k) std::swap(candidate_[found], candidate_[kScouts + k]);
+  }
+  return find_pose(found, about, pose, information);
+}
+
+void WindowTracking::measure(Scalar median_depth) {
+  const PosePrior prior = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  CameraPose pose;
+  Mat6 information;
+  if (measure_about(prior, &pose, &information) == 0) return;
+  correct(pose, information);
+  measure_unplaced(median_depth);
+}
+
+void WindowTracking::correct(const CameraPose& pose, const Mat6& information) {
+  SmallCholesky<6> factored;
+  const PosePrior prior = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
+  Mat6 A = information;
+  // What the matches do not determine, the prediction does.
+  if (!factored.factor(A)) {
+    SmallCholesky<6> of_prior;
+    if (!of_prior.factor(prior.covariance)) return;
+    A += kWeakPrior * of_prior.inverse();
+    if (!factored.factor(A)) return;
+  }
+  if (!motion_.correct(pose.q_WC, pose.p_WC, factored.inverse())) return;
+  const PosePrior now = {pose.q_WC, pose.p_WC, factored.inverse()};
+  mark(frame_.report.matches, now);
+}
+
+/// Points without a depth: where the corrected pose leaves no depth that explains their pixel, it is wrong.
+void WindowTracking::measure_unplaced(Scalar depth) {
+  const PosePrior now = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  const int placed_inliers = frame_.report.inliers;
+  const int count = list(now, false, depth), first = listed_;
+  const int found = search_for(first, count, now, depth);
+  int inliers = 0;
+  for (int c = first; c < first + found; ++c) {
+    Match& match = frame_.match(candidate_[c].match);
+    DepthFit fit;
+    const bool fits = fit_depth(settings_.camera, map_, match.feature, {now.q_WC, now.p_W}, match.measured, &fit);
+    if (fits ? fit.worst_px > bound_px() : fit.cos_parallax < std::cos(kMaxParallel)) continue;
+    accept(&match);
+    ++inliers;
+  }
+  // A young map holds few points with a depth; those without are what keeps it together.
+  if (map_.placed() < settings_.min_inliers && placed_inliers > 0) frame_.report.inliers += inliers;
+}
+
+int WindowTracking::follow(Scalar depth) {
+  listed_ = 0;
+  const PosePrior now = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  const int count = list(now, false, depth);
+  const int found = search_for(0, count, now, depth);
+  return found;
+}
+
+void WindowTracking::learn_noise() {
+  const PosePrior now = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  for (int c = 0; c < listed_; ++c) {
+    const Match& match = frame_.match(candidate_[c].match);
+    ExpectedPixel expected;
+    if (match.status != MatchStatus::kInlier || match.feature < 0) continue;
+    Feature& f = map_.feature(match.feature);
+    if (f.observations < tuning::image_front_end::kSettled || !expect_placed(match.feature, now, &expected)) continue;
+    const Scalar leverage =
+        expected.spread.trace() / (noise_.correlation_frames() * candidate_[c].noise.trace());
+    noise_.learn(frame_.report.frames, match.measured - expected.pixel, candidate_[c].noise, leverage,
+                 f.is_target ? nullptr : &f.residuals);
+  }
+  noise_.end_frame();
+}
+
+void WindowTracking::learn_templates() {
+  if (!search_.has_templates()) return;
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kTemplate]);
+  const PosePrior now = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  for (int c = 0; c < listed_; ++c) {
+    const Match& match = frame_.match(candidate_[c].match);
+    if (match.status != MatchStatus::kInlier || match.feature < 0) continue;
+    SearchTask task = task_of(match.feature, now, Scalar(1));
+    task.predicted = match.measured;
+    if (!search_.learn(task, match.measured, &map_.tables(), match.feature)) continue;
+    const PlanarTemplate& shape = map_.tables().shape(match.feature);
+    ++frame_.report.templates;
+    frame_.report.template_area += shape.area / static_cast<float>(shape.side * shape.side);
+  }
+}
+
+}  // namespace pf

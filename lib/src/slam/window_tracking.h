@@ -1,0 +1,83 @@
+#pragma once
+
+#include "slam/image_search.h"
+#include "slam/noise_model.h"
+#include "slam/window_map.h"
+#include "slam/window_motion.h"
+#include "slam/window_pose.h"
+
+/// Measures an image with the window's map: where its points should be, where they are, and the pose that this says.
+
+namespace pf {
+
+/// Where a point is expected.
+struct ExpectedPixel {
+  Vec2 pixel;
+  Mat2 spread;  ///< by pose and depth, without the noise of a match [px^2]
+};
+
+class WindowTracking {
+ public:
+  WindowTracking(const Settings& settings, WindowMap& map, Frame& frame, WindowMotion& motion, NoiseModel& noise)
+      : settings_(settings), map_(map), frame_(frame), motion_(motion), noise_(noise), search_(settings) {}
+
+  bool layout(Arena& arena);
+  void init();
+  bool begin_frame(const ImageView& image) {
+    listed_ = 0;
+    return search_.begin_frame(image);
+  }
+
+  /// Finds points with a depth about the predicted pose, and corrects the body by the pose that they say; then finds those without.
+  void measure(Scalar median_depth);
+  /// The same about another pose than the predicted one. Changes nothing but the frame's matches. Returns the number of inliers, and the
+  /// pose with its information.
+  int measure_about(const PosePrior& about, CameraPose* pose, Mat6* information);
+  /// Corrects the body by a pose that measure_about() returned, and says which matches agree with it.
+  void correct(const CameraPose& pose, const Mat6& information);
+  /// Finds points without a depth about where they were last, as if the camera had only turned. Returns how many were found.
+  int follow(Scalar depth);
+  /// Updates the noise model with the residuals of this frame's inliers.
+  void learn_noise();
+  /// Updates masks and normals of templates with this frame's inliers.
+  void learn_templates();
+  /// Counts a found feature as an inlier. The match's pixel is its last one from now on.
+  void accept(Match* match);
+
+  /// Within which a match supports a pose [px].
+  Scalar bound_px() const;
+  ImageSearch& search() { return search_; }
+  const Tracker& tracker() const { return search_.tracker(); }
+
+ private:
+  bool expect_placed(int i, const PosePrior& at, ExpectedPixel* out) const;
+  bool expect_unplaced(int i, const PosePrior& at, Scalar depth, ExpectedPixel* out) const;
+  SearchTask task_of(int i, const PosePrior& at, Scalar depth) const;
+  int list(const PosePrior& at, bool placed, Scalar depth);
+  void expect(int first, int count, const PosePrior& at);
+  int search_for(int first, int count, const PosePrior& at, Scalar depth);
+  int find_pose(int found, const PosePrior& prior, CameraPose* pose, Mat6* information);
+  bool is_believed(int inliers, int found) const;
+  void mark(int found, const PosePrior& at);
+  void measure_unplaced(Scalar depth);
+  bool is_inside(const Vec2& pixel) const;
+
+  const Settings& settings_;
+  WindowMap& map_;
+  Frame& frame_;
+  WindowMotion& motion_;
+  NoiseModel& noise_;
+  ImageSearch search_;
+  WindowPose pose_;
+
+  /// A point that is searched for.
+  struct Candidate {
+    int match;        ///< of the frame
+    Mat2 noise;       ///< of its match
+    Scalar searched;  ///< area [px^2]
+  };
+  Candidate* candidate_ = nullptr;  ///< window_points
+  int listed_ = 0;                  ///< with a depth
+};
+
+}  // namespace pf
