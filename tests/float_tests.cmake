@@ -1,5 +1,6 @@
 set(PLANEFOLD_FLOAT_TESTS
     unit/test_build_mode.cpp
+    jacobian/test_bundle_plane.cpp
     jacobian/test_bundle_projection.cpp
     jacobian/test_camera.cpp
     regression/test_absurd_cameras.c
@@ -12,6 +13,7 @@ set(PLANEFOLD_FLOAT_TESTS
     jacobian/test_plane.cpp
     jacobian/test_ray_plane.cpp
     unit/test_bundle_adjust.cpp
+    unit/test_bundle_planes.cpp
     unit/test_camera.cpp
     unit/test_dark_quads.cpp
     unit/test_planar_pose.cpp
@@ -21,7 +23,9 @@ set(PLANEFOLD_FLOAT_TESTS
     unit/test_covariance_sets.cpp
     unit/test_copied_covariance.cpp
     slow/test_covariance_sets_many.cpp
+    property/test_adjust.cpp
     property/test_slow_walk.cpp
     property/test_covariance_repair.cpp
+    slow/test_adjust_many.cpp
     slow/test_slow_walks.cpp
 )

@@ -7,10 +7,10 @@ packages_programs=(libpng-dev libjpeg62-turbo-dev libyaml-cpp-dev libcli11-dev n
 packages_package=(help2man) # man pages
 packages_test=(libbenchmark-dev clang-format "${packages_package[@]}")
 
-# Without these some tests and comparisons are left out: the peers in pf-bench, pf-calibrate and (of the last one) its
+# Without these some tests and comparisons are left out: the peers in pf-bench, pf-calibrate and (of libopencv-contrib-dev) its
 # ChArUco, the fuzzers and the checker of names, the cross builds.
 optional_peers=(libopenblas-dev libblis-dev libopencv-core-dev libopencv-imgproc-dev libopencv-video-dev
-  libopencv-calib3d-dev libopencv-contrib-dev)
+  libopencv-calib3d-dev libopencv-contrib-dev libceres-dev)
 optional_targets=(g++-aarch64-linux-gnu gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-user qemu-system-arm)
 # Without these pf-capture has no libcamera and no inertial units, and its window is not tried without a screen.
 optional_devices=(libcamera-dev libiio-dev xvfb)

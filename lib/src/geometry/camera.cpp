@@ -9,8 +9,6 @@ namespace pf {
 namespace {
 
 constexpr Scalar kEpsilon = std::numeric_limits<Scalar>::epsilon();
-constexpr Scalar kMinDepth = Scalar(1e-9);
-constexpr Scalar kMaxDepth = std::numeric_limits<Scalar>::max();
 
 CameraModel model_of(const Camera& camera) { return static_cast<CameraModel>(camera.model); }
 

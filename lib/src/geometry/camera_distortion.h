@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "geometry/camera.h"
 
 namespace pf {
@@ -32,6 +35,22 @@ inline Scalar distort_theta(const Scalar k[8], Scalar theta, Scalar* slope) {
   const Scalar t2 = theta * theta;
   *slope = 1 + t2 * (3 * k[0] + t2 * (5 * k[1] + t2 * (7 * k[2] + t2 * 9 * k[3])));
   return theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+}
+
+/// Depths of what flat models see.
+constexpr Scalar kMinDepth = Scalar(1e-9);
+constexpr Scalar kMaxDepth = std::numeric_limits<Scalar>::max();
+
+/// project() of a pinhole for loops that cannot afford a call. Its Jacobian is [a 0 b; 0 c d], slope = (a, b, c, d).
+inline bool project_pinhole(const Camera& c, const Vec3& p_C, Vec2* pixel, Vec4* slope) {
+  if (!(p_C.z() > kMinDepth && p_C.z() <= kMaxDepth)) return false;
+  const Scalar w = 1 / p_C.z();
+  const Vec2 m(p_C.x() * w, p_C.y() * w);
+  if (!(m.squaredNorm() <= c.max_r2)) return false;
+  const Scalar x = c.fx * w, y = c.fy * w;
+  *pixel = Vec2(c.fx * m.x() + c.cx, c.fy * m.y() + c.cy);
+  *slope = Vec4(x, -(x * m.x()), y, -(y * m.y()));
+  return true;
 }
 
 }  // namespace pf

@@ -2,28 +2,115 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
 
+#include "geometry/camera_distortion.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
-#include "window/tuning.h"
 
 namespace pf {
 namespace {
 
 using namespace tuning::adjust;
 
+constexpr int kMaxPoses = 32;  ///< as many as a mask has bits
+
 int host_of(const Bundle& bundle, int point) { return bundle.host == nullptr ? 0 : bundle.host[point]; }
+
+RhoPrior prior_of(const AdjustOptions& options, const Bundle& bundle, int point) {
+  return bundle.prior == nullptr ? RhoPrior{options.rho_mean, options.rho_sigma} : bundle.prior[point];
+}
+
+bool is_finite(const BundlePose& pose) { return pose.q_WC.coeffs().allFinite() && pose.p_W.allFinite(); }
+
+/// Two numbers in one register. What is computed with them is what single numbers would give, to the last bit.
+typedef Scalar Pair __attribute__((vector_size(2 * sizeof(Scalar))));
+
+inline Pair load(const Scalar* from) {
+  Pair pair;
+  std::memcpy(&pair, from, sizeof pair);
+  return pair;
+}
+inline void store(Scalar* to, Pair pair) { std::memcpy(to, &pair, sizeof pair); }
+inline Pair twice(Scalar v) { return Pair{v, v}; }
+
+/// Columns of a 2x3 Jacobian.
+struct Columns {
+  Pair at[3];
+};
+
+/// Two rows of a Jacobian by (theta, p), two columns in one register.
+struct Rows {
+  Pair x[3], y[3];
+};
+
+/// [J [v]x, scale J]. -J gives the rows of the host with -scale.
+inline Rows pose_rows(const Columns& J, const Vec3& v, Scalar scale) {
+  const Pair c[6] = {J.at[1] * v.z() - J.at[2] * v.y(),
+                     J.at[2] * v.x() - J.at[0] * v.z(),
+                     J.at[0] * v.y() - J.at[1] * v.x(),
+                     scale * J.at[0],
+                     scale * J.at[1],
+                     scale * J.at[2]};
+  Rows rows;
+  for (int k = 0; k < 3; ++k) {
+    rows.x[k] = Pair{c[2 * k][0], c[2 * k + 1][0]};
+    rows.y[k] = Pair{c[2 * k][1], c[2 * k + 1][1]};
+  }
+  return rows;
+}
+
+/// H += weight AᵀB in the first 2 kPairs columns of rows 2 k and 2 k + 1.
+template <int kPairs>
+inline void add_two_rows(const Rows& A, const Rows& B, Scalar weight, int k, Scalar* H, int ld) {
+  for (int a = 0; a < 2; ++a) {
+    const Pair x = twice(A.x[k][a]), y = twice(A.y[k][a]);
+    Scalar* row = H + (2 * k + a) * ld;
+    for (int e = 0; e < kPairs; ++e) store(row + 2 * e, load(row + 2 * e) + weight * (x * B.x[e] + y * B.y[e]));
+  }
+}
+
+/// H += weight AᵀB, six by six.
+inline void add_block(const Rows& A, const Rows& B, Scalar weight, Scalar* H, int ld) {
+  add_two_rows<3>(A, B, weight, 0, H, ld);
+  add_two_rows<3>(A, B, weight, 1, H, ld);
+  add_two_rows<3>(A, B, weight, 2, H, ld);
+}
+
+/// H += weight JᵀJ: the lower triangle, and one number to the right of it in every other row.
+inline void add_square(const Rows& J, Scalar weight, Scalar* H, int ld) {
+  add_two_rows<1>(J, J, weight, 0, H, ld);
+  add_two_rows<2>(J, J, weight, 1, H, ld);
+  add_two_rows<3>(J, J, weight, 2, H, ld);
+}
+
+/// b += weight Jᵀr.
+inline void add_column(const Rows& J, Scalar r_x, Scalar r_y, Scalar weight, Scalar* b) {
+  for (int e = 0; e < 3; ++e) store(b + 2 * e, load(b + 2 * e) + weight * (J.x[e] * r_x + J.y[e] * r_y));
+}
+
+/// H -= t wᵀ.
+inline void subtract_block(const Scalar (&t)[6], const Scalar* w, Scalar* H, int ld) {
+  const Pair row[3] = {load(w), load(w + 2), load(w + 4)};
+  for (int a = 0; a < 6; ++a, H += ld)
+    for (int e = 0; e < 3; ++e) store(H + 2 * e, load(H + 2 * e) - t[a] * row[e]);
+}
+template <int kRows, int kColumns>
+inline void subtract_small(const Scalar (&t)[6], const Scalar* w, Scalar* H, int ld) {
+  Scalar row[kColumns];
+  for (int e = 0; e < kColumns; ++e) row[e] = w[e];
+  for (int a = 0; a < kRows; ++a, H += ld)
+    for (int e = 0; e < kColumns; ++e) H[e] -= t[a] * row[e];
+}
 
 }  // namespace
 
+/// Without a branch: which pixels are outliers cannot be predicted. sqrt(h h) is h, and 2 h r - h² <= r².
 Scalar huber_cost(Scalar r2, Scalar huber, Scalar* weight) {
-  if (r2 <= huber * huber) {
-    *weight = Scalar(1);
-    return r2;
-  }
-  const Scalar r = std::sqrt(r2);
+  const Scalar r = std::sqrt(std::max(r2, huber * huber));
   *weight = huber / r;
-  return Scalar(2) * huber * r - huber * huber;
+  return std::min(r2, Scalar(2) * huber * r - huber * huber);
 }
 
 bool project_bearing(const Camera& camera, const Mat3& R_WC, const Vec3& ray_W, const Vec3& p_HC_W, Scalar rho,
@@ -44,165 +131,364 @@ bool project_bearing(const Camera& camera, const Mat3& R_WC, const Vec3& ray_W, 
   return true;
 }
 
-bool BundleAdjuster::layout(Arena& arena, int max_poses, int max_free_poses, int max_points) {
-  max_free_ = max_free_poses;
-  ld_ = 6 * max_free_poses;
+Scalar bearing_plane_distance(const BundlePlane& plane, const Vec3& ray_W, const Vec3& p_H, Scalar rho,
+                              Mat13* J_e_plane, Mat16* J_e_H, Scalar* J_e_rho) {
+  const Vec3 q = ray_W / rho;
+  Mat13 n;
+  const Scalar e = plane_distance(plane.frame, plane.x, p_H + q, J_e_plane, &n);
+  if (J_e_H != nullptr) {
+    J_e_H->leftCols<3>() = q.cross(n.transpose()).transpose();
+    J_e_H->rightCols<3>() = n;
+  }
+  if (J_e_rho != nullptr) *J_e_rho = -n.dot(q) / rho;
+  return e;
+}
+
+bool BundleAdjuster::layout(Arena& arena, int max_poses, int max_free_poses, int max_points, int max_planes) {
+  PF_ASSERT(max_poses <= kMaxPoses);
+  ld_ = 3 * max_planes + 6 * max_free_poses;
+  plane_part_ = max_planes > 0 ? 3 : 0;
+  w_ld_ = plane_part_ + 6 * max_free_poses;
   const std::size_t poses = static_cast<std::size_t>(max_poses), points = static_cast<std::size_t>(max_points);
-  const std::size_t columns = static_cast<std::size_t>(ld_);
-  column_ = arena.take<int>(poses);
-  R_WC_ = arena.take<Mat3>(poses);
+  const std::size_t planes = static_cast<std::size_t>(max_planes), columns = static_cast<std::size_t>(ld_);
+  free_ = arena.take<int>(poses);
+  free_plane_ = arena.take<int>(planes);
+  R_CW_ = arena.take<Mat3>(poses);
   old_pose_ = arena.take<BundlePose>(poses);
+  old_plane_ = arena.take<Vec3>(planes);
   old_rho_ = arena.take<Scalar>(points);
+  seen_ = arena.take<std::uint32_t>(points);
   H_ = arena.take<Scalar>(columns * columns);
   b_ = arena.take<Scalar>(columns);
-  W_ = arena.take<Scalar>(points * columns);
+  W_ = arena.take<Scalar>(points * static_cast<std::size_t>(w_ld_));
   D_ = arena.take<Scalar>(points);
   g_ = arena.take<Scalar>(points);
   return arena.ok();
 }
 
 Scalar BundleAdjuster::rho_step(int point) const {
+  if (!(D_[point] > Scalar(0))) return Scalar(0);
   Scalar g = g_[point];
-  for (int a = 0; a < columns_; ++a) g -= W_[point * ld_ + a] * b_[a];
+  const Scalar* w = W_ + point * w_ld_;
+  const int plane = free_plane_of(point);
+  for (int a = 0; a < 3 && plane >= 0; ++a) g -= w[a] * b_[3 * plane + a];
+  w += plane_part_;
+  const Scalar* dx = pose_step();
+  for (int a = 0; a < columns_ - plane_columns_; ++a) g -= w[a] * dx[a];
   return g / D_[point];
 }
 
-Scalar BundleAdjuster::cost(const Camera& camera, const AdjustOptions& options, const Bundle& bundle) const {
-  Scalar sum = 0, weight;
-  for (int c = 0; c < bundle.poses; ++c) R_WC_[c] = bundle.pose[c].q_WC.toRotationMatrix();
-  for (int c = 0; c < bundle.poses; ++c) {
+/// Adds a point's pixels to H_pp and b, and to its row of W, D and g. Fixed poses have neither columns nor Jacobians.
+template <bool kCostAlone>
+void BundleAdjuster::add_pixels(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, int point,
+                                Sums* sums) {
+  const int host = host_of(bundle, point), free_host = free_[host];
+  const Mat3 R_WH = R_CW_[host].transpose();
+  const Vec3 ray_W = R_WH.lazyProduct(bundle.ray[point]);
+  const Vec3 p_H = bundle.pose[host].p_W;
+  const Scalar rho = bundle.rho[point];
+  const bool is_pinhole = camera.model == static_cast<int>(CameraModel::kPinhole);
+  Scalar D = sums->D, g = sums->g, cost = sums->cost;
+  std::uint32_t seen_by = 0;
+  Scalar information = Scalar(1) / (options.sigma_px * options.sigma_px);
+  for (std::uint32_t left = seen_[point]; left != 0; left &= left - 1) {
+    const int c = __builtin_ctz(left);
     const BundlePose& pose = bundle.pose[c];
-    for (int i = 0; i < bundle.points && pose.pixel != nullptr; ++i) {
-      const int host = host_of(bundle, i);
-      if (!pose.pixel[i].seen || host == c) continue;
-      Vec2 z;
-      const Vec3 ray_W = R_WC_[host].lazyProduct(bundle.ray[i]);
-      if (!project_bearing(camera, R_WC_[c], ray_W, bundle.pose[host].p_W - pose.p_W, bundle.rho[i], &z)) {
-        sum += options.no_pixel_penalty;
-        continue;
-      }
-      const Vec2 r = pose.pixel[i].pixel() - z;
-      sum += huber_cost(r.squaredNorm() / (options.sigma_px * options.sigma_px), options.huber, &weight);
+    const BundlePixel& measured = pose.pixel[point];
+    const Mat3& R_CW = R_CW_[c];
+    const Vec3 p_HC_W = p_H - pose.p_W;
+    const Vec3 d = ray_W + rho * p_HC_W;
+    const Vec3 d_C = R_CW.lazyProduct(d);
+    Vec2 z;
+    Mat23 J_z_d_C;
+    Vec4 slope = Vec4::Zero();
+    if (!(is_pinhole ? project_pinhole(camera, d_C, &z, &slope) : project(camera, d_C, &z, &J_z_d_C))) {
+      cost += options.no_pixel_penalty;
+      continue;
     }
+    const Vec2 r = measured.pixel() - z;
+    if (options.class_sigma_px != nullptr) {
+      const Scalar sigma = options.class_sigma_px[measured.sigma_class];
+      information = Scalar(1) / (sigma * sigma);
+    }
+    Scalar weight;
+    cost += huber_cost(r.squaredNorm() * information, options.huber, &weight);
+    if (kCostAlone) continue;
+    weight *= information;
+    const int free_pose = free_[c];
+    if (free_pose < 0 && free_host < 0) {
+      const Vec3 p_HC_C = R_CW.lazyProduct(p_HC_W);
+      const Vec2 J_rho = is_pinhole ? Vec2(slope(0) * p_HC_C.x() + slope(1) * p_HC_C.z(),
+                                           slope(2) * p_HC_C.y() + slope(3) * p_HC_C.z())
+                                    : Vec2(J_z_d_C.lazyProduct(p_HC_C));
+      D += weight * J_rho.squaredNorm();
+      g += weight * J_rho.dot(r);
+      continue;
+    }
+    Columns J_z_d;
+    if (is_pinhole) {
+      for (int m = 0; m < 3; ++m)
+        J_z_d.at[m] = Pair{slope(0), slope(2)} * load(&R_CW(0, m)) + Pair{slope(1), slope(3)} * R_CW(2, m);
+    } else {
+      const Mat23 J = J_z_d_C.lazyProduct(R_CW);
+      for (int m = 0; m < 3; ++m) J_z_d.at[m] = load(&J(0, m));
+    }
+    const Pair J_rho = J_z_d.at[0] * p_HC_W.x() + J_z_d.at[1] * p_HC_W.y() + J_z_d.at[2] * p_HC_W.z();
+    Rows J_C, J_H;
+    if (free_pose >= 0) {
+      J_C = pose_rows(J_z_d, d, -rho);
+      const int column = pose_column(free_pose);
+      add_square(J_C, weight, H_ + column * (ld_ + 1), ld_);
+      add_column(J_C, r.x(), r.y(), weight, b_ + column);
+      add_column(J_C, J_rho[0], J_rho[1], weight, pose_part(point, free_pose));
+      seen_by |= std::uint32_t{1} << free_pose;
+    }
+    if (free_host >= 0) {
+      for (Pair& column : J_z_d.at) column = -column;
+      J_H = pose_rows(J_z_d, ray_W, -rho);
+      const int column = pose_column(free_host);
+      add_square(J_H, weight, H_ + column * (ld_ + 1), ld_);
+      add_column(J_H, r.x(), r.y(), weight, b_ + column);
+      add_column(J_H, J_rho[0], J_rho[1], weight, pose_part(point, free_host));
+      seen_by |= std::uint32_t{1} << free_host;
+    }
+    if (free_pose >= 0 && free_host >= 0) {  // in the triangle's lower half
+      if (free_pose > free_host)
+        add_block(J_C, J_H, weight, H_ + pose_column(free_pose) * ld_ + pose_column(free_host), ld_);
+      else
+        add_block(J_H, J_C, weight, H_ + pose_column(free_host) * ld_ + pose_column(free_pose), ld_);
+    }
+    D += weight * (J_rho[0] * J_rho[0] + J_rho[1] * J_rho[1]);
+    g += weight * (J_rho[0] * r.x() + J_rho[1] * r.y());
   }
+  *sums = {cost, D, g, seen_by, false};
+}
+
+/// Adds the distance from its plane of a point that has one.
+template <bool kCostAlone>
+void BundleAdjuster::add_plane(const AdjustOptions& options, const Bundle& bundle, int point, Sums* sums) {
+  const int index = bundle.plane_of[point];
+  if (index < 0) return;
+  const BundlePlane& plane = bundle.plane[index];
+  const Scalar rho = bundle.rho[point];
+  if (!(rho > kMinPlaneRho)) {
+    sums->cost += options.no_pixel_penalty;
+    return;
+  }
+  const int host = host_of(bundle, point);
+  Mat13 J_plane;
+  Mat16 J_H;
+  Scalar J_rho, weight;
+  const Scalar e = bearing_plane_distance(plane, R_CW_[host].transpose() * bundle.ray[point], bundle.pose[host].p_W,
+                                          rho, &J_plane, &J_H, &J_rho);
+  const Scalar information = Scalar(1) / (plane.roughness * plane.roughness);
+  sums->cost += huber_cost(e * e * information, options.huber, &weight);
+  if (kCostAlone) return;
+  weight *= information;
+  sums->D += weight * J_rho * J_rho;
+  sums->g -= weight * J_rho * e;
+  const int free_host = free_[host], free_plane = free_plane_of(point);
+  if (free_host >= 0) {
+    const int column = pose_column(free_host);
+    Scalar* w = pose_part(point, free_host);
+    for (int a = 0; a < 6; ++a) {
+      for (int f = 0; f <= a; ++f) H_[(column + a) * ld_ + column + f] += weight * J_H(a) * J_H(f);
+      b_[column + a] -= weight * J_H(a) * e;
+      w[a] += weight * J_H(a) * J_rho;
+    }
+    sums->seen_by |= std::uint32_t{1} << free_host;
+    for (int a = 0; a < 6 && free_plane >= 0; ++a)
+      for (int f = 0; f < 3; ++f) H_[(column + a) * ld_ + 3 * free_plane + f] += weight * J_H(a) * J_plane(f);
+  }
+  if (free_plane >= 0) {
+    Scalar* w = W_ + point * w_ld_;
+    for (int a = 0; a < 3; ++a) {
+      for (int f = 0; f <= a; ++f)
+        H_[(3 * free_plane + a) * ld_ + 3 * free_plane + f] += weight * J_plane(a) * J_plane(f);
+      b_[3 * free_plane + a] -= weight * J_plane(a) * e;
+      w[a] += weight * J_plane(a) * J_rho;
+    }
+    sums->on_plane = true;
+  }
+}
+
+/// H -= w wᵀ / D and b -= w g / D, in the blocks that w touches alone.
+void BundleAdjuster::eliminate(int point, const Sums& sums) {
+  const Scalar D = D_[point], g = g_[point];
+  const Scalar* w_plane = W_ + point * w_ld_;
+  const int plane_column = sums.on_plane ? 3 * free_plane_of(point) : 0;
+  Scalar t[6];
+  if (sums.on_plane) {
+    for (int a = 0; a < 3; ++a) t[a] = w_plane[a] / D;
+    subtract_small<3, 3>(t, w_plane, H_ + plane_column * (ld_ + 1), ld_);
+    for (int a = 0; a < 3; ++a) b_[plane_column + a] -= t[a] * g;
+  }
+  for (int f = 0; sums.seen_by >> f != 0; ++f) {
+    if ((sums.seen_by >> f & 1) == 0) continue;
+    const int column = pose_column(f);
+    const Scalar* w = pose_part(point, f);
+    for (int a = 0; a < 6; ++a) t[a] = w[a] / D;
+    if (sums.on_plane) subtract_small<6, 3>(t, w_plane, H_ + column * ld_ + plane_column, ld_);
+    for (int k = 0; k <= f; ++k)
+      if ((sums.seen_by >> k & 1) != 0) subtract_block(t, pose_part(point, k), H_ + column * ld_ + pose_column(k), ld_);
+    for (int a = 0; a < 6; ++a) b_[column + a] -= t[a] * g;
+  }
+}
+
+/// Cost and, unless kCostAlone, derivatives of what is measured and known of a point.
+template <bool kCostAlone>
+BundleAdjuster::Sums BundleAdjuster::add_point(const Camera& camera, const AdjustOptions& options, const Bundle& bundle,
+                                               int point) {
+  Sums sums = {Scalar(0), Scalar(0), Scalar(0), 0, false};
+  const RhoPrior prior = prior_of(options, bundle, point);
+  if (prior.sigma > Scalar(0)) {
+    const Scalar e = prior.mean - bundle.rho[point];
+    sums.D = Scalar(1) / (prior.sigma * prior.sigma) *
+             (bundle.rho[point] < Scalar(0) ? Scalar(1) + options.behind_weight : Scalar(1));
+    sums.g = sums.D * e;
+    sums.cost = sums.g * e;
+  }
+  add_pixels<kCostAlone>(camera, options, bundle, point, &sums);
+  if (bundle.plane_of != nullptr) add_plane<kCostAlone>(options, bundle, point, &sums);
+  return sums;
+}
+
+void BundleAdjuster::begin(const Bundle& bundle) {
+  plane_columns_ = 0;
+  plane_of_ = bundle.plane_of;
+  for (int j = 0; j < bundle.planes && plane_part_ > 0; ++j) {
+    free_plane_[j] = bundle.plane[j].free ? plane_columns_ / 3 : -1;
+    plane_columns_ += bundle.plane[j].free ? 3 : 0;
+  }
+  int free_poses = 0;
+  for (int c = 0; c < bundle.poses; ++c) free_[c] = bundle.pose[c].free ? free_poses++ : -1;
+  columns_ = pose_column(free_poses);
+  PF_ASSERT(columns_ <= ld_);
+  for (int i = 0; i < bundle.points; ++i) seen_[i] = 0;
+  for (int c = 0; c < bundle.poses; ++c) {
+    const BundlePixel* pixel = bundle.pose[c].pixel;
+    for (int i = 0; i < bundle.points && pixel != nullptr; ++i)
+      seen_[i] |= static_cast<std::uint32_t>(pixel[i].seen && host_of(bundle, i) != c) << c;
+  }
+}
+
+void BundleAdjuster::set_rotations(const Bundle& bundle) {
+  for (int c = 0; c < bundle.poses; ++c) R_CW_[c] = bundle.pose[c].q_WC.toRotationMatrix().transpose();
+}
+
+Scalar BundleAdjuster::cost(const Camera& camera, const AdjustOptions& options, const Bundle& bundle) {
+  set_rotations(bundle);
+  Scalar sum = 0;
+  for (int i = 0; i < bundle.points; ++i) sum += add_point<true>(camera, options, bundle, i).cost;
+  return sum;
+}
+
+/// Returns the cost. H_ becomes S without its own damping, b_ its right side; W_, D_ (damped) and g_ as step() writes
+/// them.
+Scalar BundleAdjuster::linearise(const Camera& camera, const AdjustOptions& options, const Bundle& bundle,
+                                 Scalar damping) {
+  set_rotations(bundle);
+  for (int a = 0; a < columns_; ++a) {
+    std::fill(H_ + a * ld_, H_ + a * ld_ + columns_, Scalar(0));
+    b_[a] = Scalar(0);
+  }
+  Scalar sum = 0;
   for (int i = 0; i < bundle.points; ++i) {
-    const Scalar e = (bundle.rho[i] - options.rho_mean) / options.rho_sigma;
-    sum += e * e;
-    if (bundle.rho[i] < Scalar(0)) sum += options.behind_weight * e * e;
+    std::fill(W_ + i * w_ld_, W_ + i * w_ld_ + plane_part_ + columns_ - plane_columns_, Scalar(0));
+    const Sums sums = add_point<false>(camera, options, bundle, i);
+    sum += sums.cost;
+    D_[i] = sums.D < kMinInformation ? sums.D + damping * kMinInformation : sums.D * (Scalar(1) + damping);
+    g_[i] = sums.g;
+    if (D_[i] > kNoInformation)
+      eliminate(i, sums);
+    else
+      D_[i] = Scalar(0);
   }
   return sum;
 }
 
-/// Adds one pixel to H_pp, b and to its point's row of W, D and g.
-void BundleAdjuster::add_pixel(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, int pose,
-                               int point) {
-  const int host = host_of(bundle, point);
-  const BundlePixel& measured = bundle.pose[pose].pixel[point];
-  if (!measured.seen || host == pose) return;
-  const Vec3 ray_W = R_WC_[host].lazyProduct(bundle.ray[point]);
-  const Vec3 p_HC_W = bundle.pose[host].p_W - bundle.pose[pose].p_W;
-  Vec2 z, J_rho;
-  Mat26 J[2];  // with respect to the pose and to the host
-  if (!project_bearing(camera, R_WC_[pose], ray_W, p_HC_W, bundle.rho[point], &z, &J[0], &J[1], &J_rho)) return;
-  const Vec2 r = measured.pixel() - z;
-  const Scalar information = Scalar(1) / (options.sigma_px * options.sigma_px);
-  Scalar weight;
-  huber_cost(r.squaredNorm() * information, options.huber, &weight);
-  weight *= information;
-  const int column[2] = {column_[pose], column_[host]};
-  Scalar* w = W_ + point * ld_;
-  for (int s = 0; s < 2; ++s) {
-    if (column[s] < 0) continue;
-    for (int a = 0; a < 6; ++a) {
-      for (int e = 0; e <= a; ++e)
-        H_[(column[s] + a) * ld_ + column[s] + e] += weight * (J[s](0, a) * J[s](0, e) + J[s](1, a) * J[s](1, e));
-      b_[column[s] + a] += weight * (J[s](0, a) * r.x() + J[s](1, a) * r.y());
-      w[column[s] + a] += weight * (J[s](0, a) * J_rho.x() + J[s](1, a) * J_rho.y());
-    }
-  }
-  if (column[0] >= 0 && column[1] >= 0) {
-    const int below = column[0] > column[1] ? 0 : 1;  // the block that lies lower in the triangle
-    const Mat26 &J_row = J[below], &J_column = J[1 - below];
-    for (int a = 0; a < 6; ++a)
-      for (int e = 0; e < 6; ++e)
-        H_[(column[below] + a) * ld_ + column[1 - below] + e] +=
-            weight * (J_row(0, a) * J_column(0, e) + J_row(1, a) * J_column(1, e));
-  }
-  D_[point] += weight * J_rho.squaredNorm();
-  g_[point] += weight * J_rho.dot(r);
-}
-
-/// H_ becomes S without its own damping, b_ its right side; W_, D_ (damped) and g_ as step() writes them.
-void BundleAdjuster::linearise(const Camera& camera, const AdjustOptions& options, const Bundle& bundle,
-                               Scalar damping) {
-  columns_ = 0;
-  for (int c = 0; c < bundle.poses; ++c) {
-    R_WC_[c] = bundle.pose[c].q_WC.toRotationMatrix();
-    column_[c] = bundle.pose[c].free ? columns_ : -1;
-    if (bundle.pose[c].free) columns_ += 6;
-  }
-  PF_ASSERT(columns_ <= ld_);
-  for (int i = 0; i < columns_; ++i) {
-    for (int j = 0; j <= i; ++j) H_[i * ld_ + j] = Scalar(0);
-    b_[i] = Scalar(0);
-  }
-  for (int i = 0; i < bundle.points; ++i) {
-    Scalar* w = W_ + i * ld_;
-    for (int j = 0; j < columns_; ++j) w[j] = Scalar(0);
-    const Scalar prior = Scalar(1) / (options.rho_sigma * options.rho_sigma) *
-                         (bundle.rho[i] < Scalar(0) ? Scalar(1) + options.behind_weight : Scalar(1));
-    D_[i] = prior;
-    g_[i] = prior * (options.rho_mean - bundle.rho[i]);
-    for (int c = 0; c < bundle.poses; ++c)
-      if (bundle.pose[c].pixel != nullptr) add_pixel(camera, options, bundle, c, i);
-    D_[i] *= Scalar(1) + damping;
-    for (int a = 0; a < columns_; ++a) {
-      const Scalar t = w[a] / D_[i];
-      for (int e = 0; e <= a; ++e) H_[a * ld_ + e] -= t * w[e];
-      b_[a] -= t * g_[i];
-    }
-  }
-}
-
-bool BundleAdjuster::step(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, Scalar damping) {
-  linearise(camera, options, bundle, damping);
+bool BundleAdjuster::solve(Scalar damping) {
   for (int a = 0; a < columns_; ++a) H_[a * ld_ + a] += damping * std::abs(H_[a * ld_ + a]) + kRegularisation;
   if (!factor_cholesky(H_, columns_, ld_)) return false;
   solve_cholesky(H_, columns_, ld_, b_);
   return true;
 }
 
+bool BundleAdjuster::step(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, Scalar damping) {
+  begin(bundle);
+  linearise(camera, options, bundle, damping);
+  return solve(damping);
+}
+
+/// Moves what is free by the step; false when something is then no number.
+bool BundleAdjuster::take_step(const Bundle& bundle) {
+  bool finite = true;
+  const Scalar* dx = b_;
+  for (int j = 0; j < bundle.planes && plane_columns_ > 0; ++j) {
+    BundlePlane& plane = bundle.plane[j];
+    if (!plane.free) continue;
+    plane.x += Vec3(dx[0], dx[1], dx[2]);
+    finite = finite && plane.x.allFinite();
+    dx += 3;
+  }
+  for (int c = 0; c < bundle.poses; ++c) {
+    BundlePose& pose = bundle.pose[c];
+    if (!pose.free) continue;
+    pose.q_WC = exp_so3(Vec3(dx[0], dx[1], dx[2])) * pose.q_WC;
+    pose.q_WC.normalize();
+    pose.p_W += Vec3(dx[3], dx[4], dx[5]);
+    finite = finite && is_finite(pose);
+    dx += 6;
+  }
+  for (int i = 0; i < bundle.points; ++i) {
+    bundle.rho[i] += rho_step(i);
+    finite = finite && std::isfinite(bundle.rho[i]);
+  }
+  return finite;
+}
+
+void BundleAdjuster::keep(const Bundle& bundle) {
+  std::copy(bundle.pose, bundle.pose + bundle.poses, old_pose_);
+  std::copy(bundle.rho, bundle.rho + bundle.points, old_rho_);
+  for (int j = 0, k = 0; j < bundle.planes && plane_columns_ > 0; ++j)
+    if (bundle.plane[j].free) old_plane_[k++] = bundle.plane[j].x;
+}
+
+void BundleAdjuster::restore(const Bundle& bundle) {
+  std::copy(old_pose_, old_pose_ + bundle.poses, bundle.pose);
+  std::copy(old_rho_, old_rho_ + bundle.points, bundle.rho);
+  for (int j = 0, k = 0; j < bundle.planes && plane_columns_ > 0; ++j)
+    if (bundle.plane[j].free) bundle.plane[j].x = old_plane_[k++];
+}
+
+/// Where a step is tried, cost and linearisation come together, with the damping of the round that follows if the step is kept; so
+/// each pixel is projected once a round, and once more after a step that is not. Where the last gain was near to the bound, the step is
+/// probably the last one, and its cost is enough.
 Scalar BundleAdjuster::adjust(const Camera& camera, const AdjustOptions& options, const Bundle& bundle) {
-  Scalar before = cost(camera, options, bundle);
+  begin(bundle);
   Scalar damping = kFirstDamping;
-  for (int round = 0; round < options.max_rounds; ++round) {
-    std::copy(bundle.pose, bundle.pose + bundle.poses, old_pose_);
-    std::copy(bundle.rho, bundle.rho + bundle.points, old_rho_);
-    bool better = false;
+  Scalar before = linearise(camera, options, bundle, damping);
+  bool last = false;
+  for (rounds_ = 0; rounds_ < options.max_rounds;) {
+    ++rounds_;
+    last = last || rounds_ == options.max_rounds;
+    keep(bundle);
+    const Scalar next = std::max(damping / kDampingDown, kMinDamping);
     Scalar after = before;
-    if (step(camera, options, bundle, damping)) {
-      for (int c = 0; c < bundle.poses; ++c) {
-        if (!bundle.pose[c].free) continue;
-        const Scalar* dx = b_ + column_[c];
-        BundlePose& pose = bundle.pose[c];
-        pose.q_WC = exp_so3(Vec3(dx[0], dx[1], dx[2])) * pose.q_WC;
-        pose.q_WC.normalize();
-        pose.p_W += Vec3(dx[3], dx[4], dx[5]);
-      }
-      for (int i = 0; i < bundle.points; ++i) bundle.rho[i] += rho_step(i);
-      after = cost(camera, options, bundle);
-      better = after < before;
-    }
-    if (better) {
-      const bool done = before - after < kSmallGain * before;
+    if (solve(damping) && take_step(bundle))
+      after = last ? cost(camera, options, bundle) : linearise(camera, options, bundle, next);
+    if (after < before) {
+      const Scalar gain = before - after, bound = options.small_gain * before;
       before = after;
-      damping = std::max(damping / kDampingDown, kMinDamping);
-      if (done) break;
+      damping = next;
+      if (gain < bound) break;
+      if (last && rounds_ < options.max_rounds) linearise(camera, options, bundle, damping);
+      last = gain < kNearlyDone * bound;
     } else {
-      std::copy(old_pose_, old_pose_ + bundle.poses, bundle.pose);
-      std::copy(old_rho_, old_rho_ + bundle.points, bundle.rho);
+      restore(bundle);
       damping *= kDampingUp;
       if (damping > kMaxDamping) break;
+      if (rounds_ < options.max_rounds) linearise(camera, options, bundle, damping);
     }
   }
   return before;
@@ -211,8 +497,7 @@ Scalar BundleAdjuster::adjust(const Camera& camera, const AdjustOptions& options
 /// S = L Lᵀ with the last pose's rows last: their covariance is (L_22 L_22ᵀ)⁻¹.
 bool BundleAdjuster::last_pose_covariance(const Camera& camera, const AdjustOptions& options, const Bundle& bundle,
                                           Mat6* covariance) {
-  linearise(camera, options, bundle, Scalar(0));
-  if (columns_ == 0 || !factor_cholesky(H_, columns_, ld_)) return false;
+  if (!begin_covariances(camera, options, bundle) || columns_ == plane_columns_) return false;
   const Scalar* L = H_ + (columns_ - 6) * (ld_ + 1);
   for (int c = 0; c < 6; ++c) {
     Vec6 x = Vec6::Zero();
@@ -220,6 +505,92 @@ bool BundleAdjuster::last_pose_covariance(const Camera& camera, const AdjustOpti
     solve_cholesky(L, 6, ld_, x.data());
     covariance->col(c) = x;
   }
+  return true;
+}
+
+bool BundleAdjuster::begin_covariances(const Camera& camera, const AdjustOptions& options, const Bundle& bundle) {
+  begin(bundle);
+  linearise(camera, options, bundle, Scalar(0));
+  return columns_ > 0 && factor_cholesky(H_, columns_, ld_);
+}
+
+Mat6 BundleAdjuster::pose_covariance(int pose) const {
+  Mat6 covariance = Mat6::Zero();
+  if (free_[pose] < 0) return covariance;
+  const int column = pose_column(free_[pose]);
+  for (int c = 0; c < 6; ++c) {
+    std::fill(b_, b_ + columns_, Scalar(0));
+    b_[column + c] = Scalar(1);
+    solve_cholesky(H_, columns_, ld_, b_);
+    for (int a = 0; a < 6; ++a) covariance(a, c) = b_[column + a];
+  }
+  return covariance;
+}
+
+Mat3 BundleAdjuster::plane_covariance(int plane) const {
+  Mat3 covariance = Mat3::Zero();
+  if (plane_columns_ == 0 || free_plane_[plane] < 0) return covariance;
+  const int column = 3 * free_plane_[plane];
+  for (int c = 0; c < 3; ++c) {
+    std::fill(b_, b_ + columns_, Scalar(0));
+    b_[column + c] = Scalar(1);
+    solve_cholesky(H_, columns_, ld_, b_);
+    for (int a = 0; a < 3; ++a) covariance(a, c) = b_[column + a];
+  }
+  return covariance;
+}
+
+/// b_ = factor w.
+void BundleAdjuster::spread(int point, Scalar factor) const {
+  std::fill(b_, b_ + columns_, Scalar(0));
+  const int plane = free_plane_of(point);
+  const Scalar* w = W_ + point * w_ld_;
+  for (int a = 0; a < 3 && plane >= 0; ++a) b_[3 * plane + a] = factor * w[a];
+  for (int a = 0; a < columns_ - plane_columns_; ++a) b_[plane_columns_ + a] = factor * w[plane_part_ + a];
+}
+
+/// w . b_.
+Scalar BundleAdjuster::gather(int point) const {
+  Scalar sum = 0;
+  const int plane = free_plane_of(point);
+  const Scalar* w = W_ + point * w_ld_;
+  for (int a = 0; a < 3 && plane >= 0; ++a) sum += w[a] * b_[3 * plane + a];
+  for (int a = 0; a < columns_ - plane_columns_; ++a) sum += w[plane_part_ + a] * b_[plane_columns_ + a];
+  return sum;
+}
+
+/// With the other unknowns x: drho = -wᵀ dx / D + e, var(e) = 1 / D.
+Scalar BundleAdjuster::rho_variance(int point) const {
+  const Scalar D = D_[point];
+  if (!(D > Scalar(0))) return std::numeric_limits<Scalar>::infinity();
+  spread(point, Scalar(1) / D);
+  solve_cholesky(H_, columns_, ld_, b_);
+  return Scalar(1) / D + gather(point) / D;
+}
+
+/// dp = M dx + j e,  M = dp/dx_H - j wᵀ / D,  j = dp/drho = -q / rho.
+bool BundleAdjuster::point_covariance(const Bundle& bundle, int point, Scalar sigma_bearing, Mat3* covariance) const {
+  const Scalar D = D_[point], rho = bundle.rho[point];
+  if (!(D > Scalar(0)) || !(rho > Scalar(0))) return false;
+  const int host = host_of(bundle, point), free_host = free_[host];
+  const Vec3 q = bundle.pose[host].q_WC * bundle.ray[point] / rho, j = -q / rho;
+  const Mat3 turn = -hat(q);
+  Mat3 P = j * j.transpose() / D;
+  P += sigma_bearing * sigma_bearing * (q.squaredNorm() * Mat3::Identity() - q * q.transpose());
+  for (int c = 0; c < 3; ++c) {
+    spread(point, -j(c) / D);
+    Scalar* of_host = free_host >= 0 ? b_ + pose_column(free_host) : nullptr;
+    for (int a = 0; a < 3 && of_host != nullptr; ++a) of_host[a] += turn(c, a);
+    if (of_host != nullptr) of_host[3 + c] += Scalar(1);
+    solve_cholesky(H_, columns_, ld_, b_);
+    const Scalar along_w = gather(point) / D;
+    for (int r = 0; r < 3; ++r) {
+      P(r, c) -= j(r) * along_w;
+      for (int a = 0; a < 3 && of_host != nullptr; ++a) P(r, c) += turn(r, a) * of_host[a];
+      if (of_host != nullptr) P(r, c) += of_host[3 + r];
+    }
+  }
+  *covariance = (P + P.transpose()) / 2;
   return true;
 }
 

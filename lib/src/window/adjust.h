@@ -1,16 +1,24 @@
 #pragma once
 
+#include <cstdint>
+
 #include "base/arena.h"
 #include "geometry/camera.h"
+#include "geometry/plane.h"
+#include "window/tuning.h"
 
-/// A small bundle adjustment: poses, and points by their bearing and inverse depth in a host pose (lib/docs/starting.md).
+/// A small bundle adjustment: poses, points by their bearing and inverse depth in a host pose, and planes on which some
+/// of the points lie (lib/docs/window.md, lib/docs/starting.md).
 
 namespace pf {
+
+using Mat16 = Eigen::Matrix<Scalar, 1, 6>;
 
 /// Where a pose saw a point.
 struct BundlePixel {
   float x, y;  ///< [px]
   bool seen;
+  std::uint8_t sigma_class = 0;  ///< index into AdjustOptions::class_sigma_px
 
   Vec2 pixel() const { return Vec2(static_cast<Scalar>(x), static_cast<Scalar>(y)); }
 };
@@ -20,6 +28,20 @@ struct BundlePose {
   Vec3 p_W;
   bool free;                 ///< false: not adjusted
   const BundlePixel* pixel;  ///< by point; null: this pose is a host only
+};
+
+/// A plane (geometry/plane.h): three numbers about a constant frame, which should lie near it.
+struct BundlePlane {
+  PlaneFrame frame;
+  Vec3 x;            ///< (a, b, h)
+  Scalar roughness;  ///< standard deviation of its points' distances from it [m]
+  bool free;         ///< false: not adjusted
+};
+
+/// What is known of an inverse depth beforehand.
+struct RhoPrior {
+  Scalar mean;
+  Scalar sigma;  ///< not above zero: nothing is known
 };
 
 /// What is adjusted; a view of the caller's arrays. Something must hold position, rotation and scale: fixed poses, or
@@ -32,16 +54,22 @@ struct Bundle {
       host;  ///< pose of each point; null: pose 0 for all. Pixels of a point in its own host say nothing and are skipped
   Scalar* rho;
   int points;
+  const RhoPrior* prior = nullptr;  ///< of each point; null: the options' for all
+  BundlePlane* plane = nullptr;
+  int planes = 0;
+  const int* plane_of = nullptr;  ///< plane of each point, -1 where it has none; null: of no point
 };
 
 struct AdjustOptions {
   Scalar sigma_px;          ///< [px] of every pixel
   Scalar huber;             ///< residuals beyond this count linearly [standard deviations]
   Scalar rho_mean;          ///< prior on every inverse depth
-  Scalar rho_sigma;         ///< its standard deviation
+  Scalar rho_sigma;         ///< its standard deviation; not above zero: there is no prior
   Scalar behind_weight;     ///< information of the prior is (1 + this) times larger where rho < 0
   Scalar no_pixel_penalty;  ///< cost of a seen point that has no pixel, in squared standard deviations
   int max_rounds;
+  Scalar small_gain = tuning::adjust::kSmallGain;  ///< a step that lowers the cost by less than this share is the last
+  const Scalar* class_sigma_px = nullptr;          ///< by BundlePixel::sigma_class, in place of sigma_px; null: none
 };
 
 /// Pixel of a point, and its Jacobians (null to skip):
@@ -55,49 +83,117 @@ struct AdjustOptions {
 bool project_bearing(const Camera& camera, const Mat3& R_WC, const Vec3& ray_W, const Vec3& p_HC_W, Scalar rho,
                      Vec2* pixel, Mat26* J_z_C = nullptr, Mat26* J_z_H = nullptr, Vec2* J_z_rho = nullptr);
 
+/// Distance of a point from a plane, and its Jacobians (null to skip):
+///
+///   e = n . p - d,   p = p_H + q,   q = R_WH r / rho
+///   de/dx_H = [(q x n)ᵀ, nᵀ],  de/drho = -n . q / rho,  de/dx by plane_distance
+///
+/// x_H    (theta, p) of the host, rotation on the world side; q turns with it: n . (theta x q) = theta . (q x n)
+Scalar bearing_plane_distance(const BundlePlane& plane, const Vec3& ray_W, const Vec3& p_H, Scalar rho,
+                              Mat13* J_e_plane = nullptr, Mat16* J_e_H = nullptr, Scalar* J_e_rho = nullptr);
+
 /// Huber's cost of a squared residual r2, in squared standard deviations, and the weight of its linearisation.
 Scalar huber_cost(Scalar r2, Scalar huber, Scalar* weight);
 
 /// Levenberg-Marquardt with the points eliminated one by one, in storage from the arena.
+///
+/// The cost is, in squared standard deviations, with Huber's function h,
+///
+///   sum h(|z - pi|² / sigma²) + sum h(e² / roughness²) + sum ((rho - mean) / sigma_rho)²
+///
+/// A pixel outside the camera's domain, and a point on a plane that is nearer to infinity than tuning says, cost
+/// no_pixel_penalty and have no derivative.
 class BundleAdjuster {
  public:
-  bool layout(Arena& arena, int max_poses, int max_free_poses, int max_points);
+  bool layout(Arena& arena, int max_poses, int max_free_poses, int max_points, int max_planes = 0);
 
-  /// Adjusts free poses and all rho; returns the robust cost, the prior included. Bounded by max_rounds.
+  /// Adjusts free poses, free planes and all rho; returns the robust cost, which never rises. Bounded by max_rounds.
   Scalar adjust(const Camera& camera, const AdjustOptions& options, const Bundle& bundle);
 
-  /// One step from where the bundle is, without taking it: (theta, p) of each free pose in order, and the step of each
-  /// rho.
+  int rounds() const { return rounds_; }  ///< steps that the last adjust() has tried
+
+  /// One step from where the bundle is, without taking it.
   ///
   ///   | H_pp  W  | dx   |b|      damping:  D' = D (1 + damping);  S = H_pp - W D'⁻¹ Wᵀ;  S_ii += damping |S_ii| + 1e-9
   ///   | Wᵀ    D  | drho |g|      S dx = b - W D'⁻¹ g,   drho = D'⁻¹ (g - Wᵀ dx)
   ///
+  /// x holds (a, b, h) of each free plane and then (theta, p) of each free pose, in the bundle's order. A D below one
+  /// (a point that hardly anything is known of) is damped as if it were one.
+  ///
   /// False when S is not positive definite.
   bool step(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, Scalar damping);
-  const Scalar* pose_step() const { return b_; }
+  const Scalar* plane_step() const { return b_; }
+  const Scalar* pose_step() const { return b_ + plane_columns_; }
   Scalar rho_step(int point) const;
 
-  /// Covariance of (theta, p) of the last free pose, the points and the other free poses marginalised. False when
-  /// something that is adjusted is not determined.
+  /// Covariance of (theta, p) of the last free pose, the points, the planes and the other free poses marginalised.
+  /// False when something that is adjusted is not determined.
   bool last_pose_covariance(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, Mat6* covariance);
 
- private:
-  Scalar cost(const Camera& camera, const AdjustOptions& options, const Bundle& bundle) const;
-  void linearise(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, Scalar damping);
-  void add_pixel(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, int pose, int point);
+  /// Prepares the covariances below: those of all that is adjusted, about where the bundle is, with what is fixed taken as
+  /// exact (so they are conditional on fixed poses, planes and on the points' bearings in their hosts). False when
+  /// something that is adjusted is not determined; the functions below are then not to be called, nor after another
+  /// call of this class.
+  bool begin_covariances(const Camera& camera, const AdjustOptions& options, const Bundle& bundle);
 
-  int max_free_ = 0;
-  int columns_ = 0;                 ///< 6 times the free poses of this bundle
-  int ld_ = 0;                      ///< 6 max_free_
-  int* column_ = nullptr;           ///< first column of each pose, -1 where it is fixed
-  Mat3* R_WC_ = nullptr;            ///< of each pose
+  Mat6 pose_covariance(int pose) const;    ///< of (theta, p); zero for a fixed pose
+  Mat3 plane_covariance(int plane) const;  ///< of (a, b, h); zero for a fixed plane
+  Scalar rho_variance(int point) const;    ///< infinite for a point that nothing is known of
+  /// Of the place p_H + R_WH r / rho [m²], the host's covariance included. sigma_bearing [rad] is the standard deviation
+  /// of its bearing in each direction. False where rho is not above zero or nothing is known of it.
+  bool point_covariance(const Bundle& bundle, int point, Scalar sigma_bearing, Mat3* covariance) const;
+
+ private:
+  /// What one point adds up to: rows of a point are w (a row of W), D and g.
+  struct Sums {
+    Scalar cost, D, g;
+    std::uint32_t seen_by;  ///< bit f: w has entries for free pose f
+    bool on_plane;          ///< and for its plane
+  };
+
+  void begin(const Bundle& bundle);
+  void set_rotations(const Bundle& bundle);
+  Scalar cost(const Camera& camera, const AdjustOptions& options, const Bundle& bundle);
+  Scalar linearise(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, Scalar damping);
+  template <bool kCostAlone>
+  Sums add_point(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, int point);
+  template <bool kCostAlone>
+  void add_pixels(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, int point, Sums* sums);
+  template <bool kCostAlone>
+  void add_plane(const AdjustOptions& options, const Bundle& bundle, int point, Sums* sums);
+  void eliminate(int point, const Sums& sums);
+  bool solve(Scalar damping);
+  bool take_step(const Bundle& bundle);
+  void keep(const Bundle& bundle);
+  void restore(const Bundle& bundle);
+  void spread(int point, Scalar factor) const;
+  Scalar gather(int point) const;
+
+  int free_plane_of(int point) const {
+    return plane_columns_ == 0 || plane_of_ == nullptr || plane_of_[point] < 0 ? -1 : free_plane_[plane_of_[point]];
+  }
+  int pose_column(int free_pose) const { return plane_columns_ + 6 * free_pose; }
+  Scalar* pose_part(int point, int free_pose) const { return W_ + point * w_ld_ + plane_part_ + 6 * free_pose; }
+
+  int ld_ = 0;             ///< 3 max_planes + 6 max_free_poses
+  int w_ld_ = 0;           ///< plane_part_ + 6 max_free_poses
+  int plane_part_ = 0;     ///< 3 if there may be planes, else 0
+  int plane_columns_ = 0;  ///< 3 times the free planes of this bundle
+  int columns_ = 0;        ///< and 6 times its free poses
+  int rounds_ = 0;
+  int* free_ = nullptr;             ///< number of each pose among the free ones, -1 where it is fixed
+  int* free_plane_ = nullptr;       ///< and of each plane
+  const int* plane_of_ = nullptr;   ///< the bundle's
+  Mat3* R_CW_ = nullptr;            ///< of each pose
   BundlePose* old_pose_ = nullptr;  ///< before the step that is tried
+  Vec3* old_plane_ = nullptr;
   Scalar* old_rho_ = nullptr;
-  Scalar* H_ = nullptr;  ///< ld_ square: H_pp, then S, then its factor
-  Scalar* b_ = nullptr;  ///< ld_
-  Scalar* W_ = nullptr;  ///< max_points x ld_: Wᵀ, a row for each point
-  Scalar* D_ = nullptr;  ///< max_points
-  Scalar* g_ = nullptr;  ///< max_points
+  std::uint32_t* seen_ = nullptr;  ///< of each point, bit c: pose c sees it and is not its host
+  Scalar* H_ = nullptr;            ///< ld_ square: S, then its factor
+  Scalar* b_ = nullptr;            ///< ld_
+  Scalar* W_ = nullptr;            ///< max_points x w_ld_: a row for each point: its plane, then each free pose
+  Scalar* D_ = nullptr;            ///< max_points, damped; zero where nothing is known of a point
+  Scalar* g_ = nullptr;            ///< max_points
 };
 
 }  // namespace pf

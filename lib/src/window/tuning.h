@@ -9,13 +9,17 @@ namespace pf::tuning {
 
 /// Levenberg-Marquardt of the bundle adjuster.
 namespace adjust {
-inline constexpr Scalar kFirstDamping = Scalar(1e-3);    ///< relative, of the first round
-inline constexpr Scalar kMinDamping = Scalar(1e-6);      ///< relative
-inline constexpr Scalar kMaxDamping = Scalar(1e4);       ///< relative; more means that no step helps
-inline constexpr Scalar kDampingDown = Scalar(5);        ///< divisor after a step that lowers the cost
-inline constexpr Scalar kDampingUp = Scalar(8);          ///< factor after one that does not
-inline constexpr Scalar kSmallGain = Scalar(1e-4);       ///< of the cost; a smaller one ends the adjustment
+inline constexpr Scalar kFirstDamping = Scalar(1e-3);  ///< relative, of the first round
+inline constexpr Scalar kMinDamping = Scalar(1e-6);    ///< relative
+inline constexpr Scalar kMaxDamping = Scalar(1e4);     ///< relative; more means that no step helps
+inline constexpr Scalar kDampingDown = Scalar(5);      ///< divisor after a step that lowers the cost
+inline constexpr Scalar kDampingUp = Scalar(8);        ///< factor after one that does not
+inline constexpr Scalar kSmallGain = Scalar(1e-4);     ///< of the cost; a smaller one ends the adjustment
+inline constexpr Scalar kNearlyDone = Scalar(4);       ///< times the bound on the gain; the next step is then the last
 inline constexpr Scalar kRegularisation = Scalar(1e-9);  ///< on the diagonal of S [1/rad², 1/m²]
+inline constexpr Scalar kMinInformation = Scalar(1);  ///< of an inverse depth; less is damped as if it were this [m²]
+inline constexpr Scalar kNoInformation = Scalar(1e-12);  ///< likewise; a point with less is left where it is [m²]
+inline constexpr Scalar kMinPlaneRho = Scalar(1e-3);     ///< of a point that is held to its plane [1/m]
 }  // namespace adjust
 
 /// The start without a target.

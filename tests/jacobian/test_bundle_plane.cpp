@@ -1,0 +1,55 @@
+// The distance of a bundle's point from a plane: Jacobians by plane, host and inverse depth, in double and in float.
+#include "geometry/so3.h"
+#include "support/numeric_jacobian.h"
+#include "support/seeded_random.h"
+#include "unity.h"
+#include "window/adjust.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+void test_bundle_plane_jacobians_should_be_exact() {
+  SeededRandom random(42);
+  using Vec1 = Eigen::Matrix<Scalar, 1, 1>;
+  for (int trial = 0; trial < 40; ++trial) {
+    BundlePlane plane = {
+        {exp_so3(random.normals<3>(1)).toRotationMatrix(), random.normals<3>(1)}, random.normals<3>(0.2), 1, true};
+    const Mat3 R_WH = exp_so3(random.normals<3>(1)).toRotationMatrix();
+    const Vec3 p_H = random.normals<3>(1);
+    Vec3 ray(0, 0, 1);
+    ray.head<2>() = random.normals<2>(0.3);
+    const Scalar rho = static_cast<Scalar>(random.uniform(0.5, 2));
+    const auto distance = [&](const Vec3& x, const Vec6& h, Scalar e) {
+      BundlePlane moved = plane;
+      moved.x += x;
+      const Mat3 R_H = exp_so3(h.head<3>()).toRotationMatrix().lazyProduct(R_WH);
+      return Vec1(bearing_plane_distance(moved, R_H.lazyProduct(ray), p_H + h.tail<3>(), rho + e));
+    };
+    Mat13 J_plane;
+    Mat16 J_H;
+    Vec1 J_rho;
+    const Scalar e = bearing_plane_distance(plane, R_WH.lazyProduct(ray), p_H, rho, &J_plane, &J_H, &J_rho(0));
+    Vec3 n;
+    Scalar d;
+    plane_normal(plane.frame, plane.x, &n, &d);
+    TEST_ASSERT_TRUE(std::abs(e - (n.dot(p_H + R_WH * ray / rho) - d)) < Scalar(1e-5));
+    check_jacobian<1, 3>(
+        J_plane, [&](const Vec3& x) { return distance(x, Vec6::Zero(), 0); }, "J_e_plane");
+    check_jacobian<1, 6>(
+        J_H, [&](const Vec6& h) { return distance(Vec3::Zero(), h, 0); }, "J_e_H");
+    check_jacobian<1, 1>(
+        J_rho, [&](const Vec1& s) { return distance(Vec3::Zero(), Vec6::Zero(), s(0)); }, "J_e_rho", Scalar(0.3));
+  }
+}
+
+}  // namespace
+
+int main() {
+  UNITY_BEGIN();
+  RUN_TEST(test_bundle_plane_jacobians_should_be_exact);
+  return UNITY_END();
+}
