@@ -41,19 +41,19 @@ struct Columns {
 };
 
 /// Two rows of a Jacobian by (theta, p), two columns in one register.
-struct Rows {
+struct PoseRows {
   Pair x[3], y[3];
 };
 
 /// [J [v]x, scale J]. -J gives the rows of the host with -scale.
-inline Rows pose_rows(const Columns& J, const Vec3& v, Scalar scale) {
+inline PoseRows pose_rows(const Columns& J, const Vec3& v, Scalar scale) {
   const Pair c[6] = {J.at[1] * v.z() - J.at[2] * v.y(),
                      J.at[2] * v.x() - J.at[0] * v.z(),
                      J.at[0] * v.y() - J.at[1] * v.x(),
                      scale * J.at[0],
                      scale * J.at[1],
                      scale * J.at[2]};
-  Rows rows;
+  PoseRows rows;
   for (int k = 0; k < 3; ++k) {
     rows.x[k] = Pair{c[2 * k][0], c[2 * k + 1][0]};
     rows.y[k] = Pair{c[2 * k][1], c[2 * k + 1][1]};
@@ -63,7 +63,7 @@ inline Rows pose_rows(const Columns& J, const Vec3& v, Scalar scale) {
 
 /// H += weight AᵀB in the first 2 kPairs columns of rows 2 k and 2 k + 1.
 template <int kPairs>
-inline void add_two_rows(const Rows& A, const Rows& B, Scalar weight, int k, Scalar* H, int ld) {
+inline void add_two_rows(const PoseRows& A, const PoseRows& B, Scalar weight, int k, Scalar* H, int ld) {
   for (int a = 0; a < 2; ++a) {
     const Pair x = twice(A.x[k][a]), y = twice(A.y[k][a]);
     Scalar* row = H + (2 * k + a) * ld;
@@ -72,21 +72,21 @@ inline void add_two_rows(const Rows& A, const Rows& B, Scalar weight, int k, Sca
 }
 
 /// H += weight AᵀB, six by six.
-inline void add_block(const Rows& A, const Rows& B, Scalar weight, Scalar* H, int ld) {
+inline void add_block(const PoseRows& A, const PoseRows& B, Scalar weight, Scalar* H, int ld) {
   add_two_rows<3>(A, B, weight, 0, H, ld);
   add_two_rows<3>(A, B, weight, 1, H, ld);
   add_two_rows<3>(A, B, weight, 2, H, ld);
 }
 
 /// H += weight JᵀJ: the lower triangle, and one number to the right of it in every other row.
-inline void add_square(const Rows& J, Scalar weight, Scalar* H, int ld) {
+inline void add_square(const PoseRows& J, Scalar weight, Scalar* H, int ld) {
   add_two_rows<1>(J, J, weight, 0, H, ld);
   add_two_rows<2>(J, J, weight, 1, H, ld);
   add_two_rows<3>(J, J, weight, 2, H, ld);
 }
 
 /// b += weight Jᵀr.
-inline void add_column(const Rows& J, Scalar r_x, Scalar r_y, Scalar weight, Scalar* b) {
+inline void add_column(const PoseRows& J, Scalar r_x, Scalar r_y, Scalar weight, Scalar* b) {
   for (int e = 0; e < 3; ++e) store(b + 2 * e, load(b + 2 * e) + weight * (J.x[e] * r_x + J.y[e] * r_y));
 }
 
@@ -234,7 +234,7 @@ void BundleAdjuster::add_pixels(const Camera& camera, const AdjustOptions& optio
       for (int m = 0; m < 3; ++m) J_z_d.at[m] = load(&J(0, m));
     }
     const Pair J_rho = J_z_d.at[0] * p_HC_W.x() + J_z_d.at[1] * p_HC_W.y() + J_z_d.at[2] * p_HC_W.z();
-    Rows J_C, J_H;
+    PoseRows J_C, J_H;
     if (free_pose >= 0) {
       J_C = pose_rows(J_z_d, d, -rho);
       const int column = pose_column(free_pose);
