@@ -174,8 +174,8 @@ void test_a_group_of_young_features_should_be_rejected_when_the_older_ones_contr
   SeededRandom random(45);
   Tester tester;
   constexpr int kTrials = 40, kPoints = 16, kYoung = 12, kAll = kPoints + kYoung;
-  int ages[kAll];
-  for (int i = 0; i < kAll; ++i) ages[i] = i < kPoints ? 30 : 1 + i % 3;
+  unsigned char ages[kAll];
+  for (int i = 0; i < kAll; ++i) ages[i] = static_cast<unsigned char>(i < kPoints ? 30 : 1 + i % 3);
   int alone = 0, group = 0, older = 0, still = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
     Matches m(random, kPoints, kYoung, true);

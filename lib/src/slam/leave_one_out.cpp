@@ -76,7 +76,7 @@ bool LeaveOneOut::reject(Filter& filter, const PixelMeasurement* observations, i
 }
 
 /// Oldest first; equals stay in their order.
-void LeaveOneOut::sort(const int* frames) {
+void LeaveOneOut::sort(const unsigned char* frames) {
   for (int a = 1; a < kept_; ++a)
     for (int b = a; b > 0 && frames[index_[b]] > frames[index_[b - 1]]; --b) std::swap(index_[b], index_[b - 1]);
 }

@@ -24,8 +24,9 @@ namespace pf {
 ///
 /// Derivation and measurements: lib/docs/noise.md
 struct MatchAges {
-  const int* frames = nullptr;  ///< in which the feature of each match was measured; null: groups are not tested
-  int least = 0;                ///< matches that a group of young ones is tested against, at least
+  const unsigned char* frames =
+      nullptr;    ///< in which the feature of each match was measured, up to 255; null: groups are not tested
+  int least = 0;  ///< matches that a group of young ones is tested against, at least
 };
 
 class LeaveOneOut {
@@ -42,7 +43,7 @@ class LeaveOneOut {
   /// Row i of G, i + 1 numbers. All but the last lie in the filter's scratch.
   Scalar* row(int i) { return i + 1 < max_rows_ ? filter_->scratch_row(i) : last_row_; }
   void fill(const PixelMeasurement* observations);
-  void sort(const int* frames);
+  void sort(const unsigned char* frames);
   int group_begin(const MatchAges& ages) const;
   bool factor();
   void invert_factor();

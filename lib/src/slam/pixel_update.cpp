@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/elapsed.h"
 #include "slam/consensus.h"
@@ -12,6 +11,7 @@ namespace pf {
 namespace {
 
 constexpr int kMaxRounds = 3;              ///< of relinearisation
+constexpr int kOldest = 255;               ///< [frames] that are told apart
 constexpr Scalar kMinBend = Scalar(1e-6);  ///< [px^2] that R^2 is divided by
 
 }  // namespace
@@ -21,7 +21,7 @@ bool PixelUpdate::layout(Arena& arena, int max_observations) {
   candidate_ = arena.take<Candidate>(count);
   observation_ = arena.take<PixelMeasurement>(count);
   keep_ = arena.take<unsigned char>(count);
-  age_ = arena.take<int>(count);
+  age_ = arena.take<unsigned char>(count);
   others_.layout(arena, max_observations);
   return arena.ok();
 }
@@ -35,7 +35,7 @@ int PixelUpdate::reject_contradicted(int first, int count, double* nis) {
   Scalar sum = 0;
   for (int i = 0; i < count; ++i) {
     const Feature& feature = map_.features[candidate_[first + i].feature];
-    age_[i] = feature.is_target ? std::numeric_limits<int>::max() : feature.observations;
+    age_[i] = static_cast<unsigned char>(feature.is_target ? kOldest : std::min(feature.observations, kOldest));
   }
   others_.reject(filter_, observation_ + first, count, tuning::pixel_update::kOthersGate * settings_.gate,
                  {age_, settings_.min_inliers}, keep_ + first, &sum);

@@ -73,7 +73,7 @@ class PixelUpdate {
   Candidate* candidate_ = nullptr;
   PixelMeasurement* observation_ = nullptr;
   unsigned char* keep_ = nullptr;
-  int* age_ = nullptr;  ///< scratch: frames in which the feature of each match was measured
+  unsigned char* age_ = nullptr;  ///< scratch: frames in which the feature of each match was measured, up to 255
   LeaveOneOut others_;
   Scalar max_pose_nis_ = 0;
   bool is_contradicted_ = false;
