@@ -218,10 +218,10 @@ typedef struct pf_config {
   uint32_t version; /* PF_VERSION, set by pf_config_default */
   int32_t scalar;   /* pf_scalar_t of the library that filled this in */
   int32_t kernels;  /* pf_kernels_t; a set that this processor cannot run is PF_ERROR_CONFIG. Default auto */
-  int32_t backend;  /* pf_backend_t. Default filter */
-  int32_t reserved; /* 0 */
 
   pf_camera_t camera; /* no default: the calibration of your camera */
+
+  int32_t backend; /* pf_backend_t. Default filter */
 
   /* The only fields, beside the image size, that change the memory. */
   struct {

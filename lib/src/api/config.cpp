@@ -185,8 +185,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   if (config.capacity.template_px % 2 == 0) return *field = "capacity.template_px", Status::kConfig;
   const bool has_window = config.backend == PF_BACKEND_WINDOW;
   const bool patches_alone = config.map.features_in_view == 0 && config.capacity.max_patches > 0 && !has_window;
-  if (config.map.features_in_view >
-          (has_window ? config.capacity.window_points : config.capacity.max_observations) ||
+  if (config.map.features_in_view > (has_window ? config.capacity.window_points : config.capacity.max_observations) ||
       (config.map.features_in_view < kMinFeaturesInView && !patches_alone))
     return *field = "map.features_in_view", Status::kConfig;
   *field = refused_by_window(config);
@@ -218,9 +217,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->backend = static_cast<BackEnd>(config.backend);
   settings->window_keyframes = static_cast<std::uint8_t>(config.capacity.window_keyframes);
   settings->window_fixed = static_cast<std::uint8_t>(config.capacity.window_fixed);
-  settings->window_points = static_cast<std::int16_t>(config.capacity.window_points);
   settings->max_state_dim = config.capacity.max_state_dim;
-  settings->max_features = config.capacity.max_features;
+  settings->max_features = has_window ? config.capacity.window_points : config.capacity.max_features;
   settings->max_observations = config.capacity.max_observations;
   settings->max_planes = config.capacity.max_planes;
   settings->max_kept_views = config.capacity.max_kept_views;

@@ -19,7 +19,7 @@ bool FrameLoop::layout(Arena& arena) {
   update_.layout(arena, settings.max_observations);
   features_.layout(arena, settings.max_features);
   planes_.layout(arena, settings.max_features);
-  images_.layout(arena, settings.camera.width, settings.camera.height, settings.max_observations);
+  images_.layout(arena, settings.max_observations);
   relocaliser_.layout(arena, settings.max_observations, settings.max_kept_views);
   observations_.layout(arena, settings.max_features, settings.max_observations);
   watch_.layout(arena);
@@ -51,7 +51,7 @@ void FrameLoop::init() {
   rest_.init();
   if (hold_ != nullptr) hold_->init();
   planes_.init();
-  images_.init(settings_.camera);
+  images_.init();
   relocaliser_.init();
   noise_.init(settings_.sigma_px);
   start_.init();

@@ -11,8 +11,7 @@ void ImageFrontEnd::add_features() {
   CornerCells cells(settings_.camera.width, settings_.camera.height, settings_.border_px);
   const int wanted = settings_.features_in_view - cells.count(frame_);
   if (wanted < tuning::image_corners::kMinNewFeatures) return;
-  if (filter_.state().planes > 0)
-    cells.mark_planes([&](const Vec2& pixel) { return features_.plane_at(pixel) >= 0; });
+  if (filter_.state().planes > 0) cells.mark_planes([&](const Vec2& pixel) { return features_.plane_at(pixel) >= 0; });
   int anchor = -1;
   cells.fill(wanted, frame_.report.frames, tuning::image_corners::kMaxInCell,
              [&](const Rect& cell) { return add_in(cell, &anchor); });

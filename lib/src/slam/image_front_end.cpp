@@ -18,13 +18,13 @@ using namespace tuning::image_front_end;
 
 }  // namespace
 
-bool ImageFrontEnd::layout(Arena& arena, int width, int height, int max_observations) {
+bool ImageFrontEnd::layout(Arena& arena, int max_observations) {
   scratch_ = arena.take<Scalar>(static_cast<std::size_t>(max_observations));
-  return search_.layout(arena, width, height);
+  return search_.layout(arena, settings_);
 }
 
-void ImageFrontEnd::init(const Camera& camera) {
-  search_.init(camera);
+void ImageFrontEnd::init() {
+  search_.init(settings_);
   same_view_.init();
   followed_.init();
 }

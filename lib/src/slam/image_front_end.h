@@ -32,11 +32,10 @@ class ImageFrontEnd {
         frame_(frame),
         features_(features),
         update_(update),
-        noise_(noise),
-        search_(settings) {}
+        noise_(noise) {}
 
-  bool layout(Arena& arena, int width, int height, int max_observations);
-  void init(const Camera& camera);
+  bool layout(Arena& arena, int max_observations);
+  void init();
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);

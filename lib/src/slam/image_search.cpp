@@ -6,22 +6,22 @@
 
 namespace pf {
 
-bool ImageSearch::layout(Arena& arena, int width, int height) {
-  if (settings_.masks != MaskMode::kNone) {
+bool ImageSearch::layout(Arena& arena, const Settings& settings) {
+  if (settings.masks != MaskMode::kNone) {
     TemplateMatcher* place = arena.take<TemplateMatcher>(1);
     if (place == nullptr) {
-      TemplateMatcher().layout(arena, settings_.template_px);
+      TemplateMatcher().layout(arena, settings.template_px);
     } else {
       templates_ = new (place) TemplateMatcher();
-      templates_->layout(arena, settings_.template_px);
+      templates_->layout(arena, settings.template_px);
     }
   }
-  return tracker_.layout(arena, width, height);
+  return tracker_.layout(arena, settings.camera.width, settings.camera.height);
 }
 
-void ImageSearch::init(const Camera& camera) {
-  tracker_.init(camera);
-  if (templates_ != nullptr) templates_->init(camera, settings_.masks, settings_.max_misfit);
+void ImageSearch::init(const Settings& settings) {
+  tracker_.init(settings.camera);
+  if (templates_ != nullptr) templates_->init(settings.camera, settings.masks, settings.max_misfit);
 }
 
 bool ImageSearch::begin_frame(const ImageView& image) {
@@ -49,8 +49,7 @@ SearchOutcome ImageSearch::search(const SearchTask& task) const {
 }
 
 bool ImageSearch::learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const {
-  return task.shape != nullptr &&
-         templates_->learn(tracker_, task, pixel, &map->shape(feature), map->mask(feature));
+  return task.shape != nullptr && templates_->learn(tracker_, task, pixel, &map->shape(feature), map->mask(feature));
 }
 
 }  // namespace pf

@@ -13,11 +13,9 @@ class TemplateMatcher;
 
 class ImageSearch {
  public:
-  explicit ImageSearch(const Settings& settings) : settings_(settings) {}
-
   /// Templates take nothing where the config has no masks.
-  bool layout(Arena& arena, int width, int height);
-  void init(const Camera& camera);
+  bool layout(Arena& arena, const Settings& settings);
+  void init(const Settings& settings);
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);
@@ -33,7 +31,6 @@ class ImageSearch {
   const Tracker& tracker() const { return tracker_; }
 
  private:
-  const Settings& settings_;
   Tracker tracker_;
   TemplateMatcher* templates_ = nullptr;  ///< in the block, with masks alone
 };

@@ -24,7 +24,7 @@ BackEndT* place(Arena& arena, Arguments&... arguments) {
 bool Session::layout(Arena& arena, const Settings& settings) {
   settings_ = settings;
   const bool has_window = settings.backend == BackEnd::kWindow;
-  map_.layout(arena, has_window ? settings.window_points : settings.max_features, settings.max_planes,
+  map_.layout(arena, settings.max_features, settings.max_planes,
               settings.masks == MaskMode::kNone ? 0 : settings.template_px);
   imu_.layout(arena, settings.imu_buffer);
   if (has_window)

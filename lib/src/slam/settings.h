@@ -22,12 +22,8 @@ struct Settings {
   LensPrior lens;  ///< what is uncertain of it; no rows where it is taken as exact
   const Kernels* kernels = nullptr;
 
-  BackEnd backend = BackEnd::kFilter;
-  std::uint8_t window_keyframes = 0, window_fixed = 0;
-  std::int16_t window_points = 0;
-
   int max_state_dim = 0;
-  int max_features = 0;
+  int max_features = 0;  ///< of the window, its points
   int max_observations = 0;
   int max_planes = 0;
   int max_kept_views = 0;
@@ -38,6 +34,7 @@ struct Settings {
   BodyLayout body;
   MotionNoise motion_noise = {};
   bool readout_ignored = false;  ///< the camera has a rolling shutter, but no times for its rows
+  std::uint8_t window_keyframes = 0, window_fixed = 0;
 
   Scalar sigma_px = 0;
   Scalar gate = 0;  ///< chi-square bound with two degrees of freedom
@@ -66,6 +63,7 @@ struct Settings {
   bool keep_gauge = true;
   MaskMode masks = MaskMode::kNone;
   std::uint8_t template_px = 0;  ///< side of templates with masks
+  BackEnd backend = BackEnd::kFilter;
 
   int imu_buffer = 0;
   ImuRanges imu_ranges;

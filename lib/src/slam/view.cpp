@@ -38,9 +38,7 @@ int View::match_count() const { return frame_.match_count(); }
 const Match& View::match(int i) const { return frame_.match(i); }
 int View::state_dim() const { return filter().dim(); }
 
-int View::kept_views() const {
-  return window_ != nullptr ? window_->kept_views() : loop_->relocaliser().kept_views();
-}
+int View::kept_views() const { return window_ != nullptr ? window_->kept_views() : loop_->relocaliser().kept_views(); }
 
 void View::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
   if (window_ != nullptr) return window_pose_at(t_ns, body, covariance);

@@ -170,7 +170,7 @@ class View {
   const Frame& frame_;
   const TrackingState& tracking_;
   const NoiseModel& noise_;
-  const FrameLoop* loop_ = nullptr;      ///< one of these two is null
+  const FrameLoop* loop_ = nullptr;  ///< one of these two is null
   const WindowSlam* window_ = nullptr;
 };
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "geometry/ray_plane.h"
 #include "geometry/so3.h"
 #include "slam/view.h"
 #include "slam/window_slam.h"
@@ -70,8 +71,11 @@ FeatureView View::window_feature(int i) const {
 }
 
 bool View::window_surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const {
-  (void)i, (void)viewer_W, (void)normal_W;
-  return false;
+  const WindowPoint& point = window_->map().point(i);
+  if (!point.has_depth || point.plane < 0) return false;
+  *normal_W = window_->planes().plane(point.plane).frame.R_WP.col(2);
+  if (normal_W->dot(viewer_W - window_->map().position(i)) < 0) *normal_W = -*normal_W;
+  return true;
 }
 
 MapCounts View::window_counts() const {
@@ -81,27 +85,62 @@ MapCounts View::window_counts() const {
     if (!map.used(i)) continue;
     ++counts.features;
     const BlockKind kind = map.kind(i);
-    ++(kind == BlockKind::kPoint ? counts.points
+    ++(kind == BlockKind::kPoint          ? counts.points
        : kind == BlockKind::kInverseDepth ? counts.inverse_depths
                                           : counts.folded);
   }
   for (int k = 0; k < map_.planes.capacity(); ++k) counts.planes += map_.planes.used(k) ? 1 : 0;
   counts.keyframes = map.keyframes.count();
-  counts.state_dim = 6 * std::min(static_cast<int>(settings_.window_keyframes), counts.keyframes) +
-                     counts.points + counts.folded;
+  counts.state_dim =
+      6 * std::min(static_cast<int>(settings_.window_keyframes), counts.keyframes) + counts.points + counts.folded;
   counts.state_dim_points_only = counts.state_dim;
   return counts;
 }
 
+///   (alpha, beta, delta) = (-a, -b, h)
 PlaneView View::window_plane(int i) const {
-  (void)i;
-  return PlaneView();
+  const WindowPlane& plane = window_->planes().plane(i);
+  PlaneView out;
+  out.id = map_.planes[i].id;
+  out.points = window_->planes().points_on(i);
+  out.fixed_points = 0;
+  out.known = out.doubted = false;
+  out.R_WP = plane.frame.R_WP;
+  out.p_WP = plane.frame.o_W;
+  out.normal_W = plane.frame.R_WP.col(2);
+  out.distance = out.normal_W.dot(out.p_WP);
+  const Mat3 J = plane_error_jacobian();
+  out.covariance = J.lazyProduct(plane.covariance).lazyProduct(J.transpose());
+  out.outline = map_.planes[i].seen;
+  return out;
 }
 
 bool View::window_hit(const Vec2& pixel, HitView* hit) const {
   Vec3 ray_C;
-  if (!unproject(settings_.camera, pixel, &ray_C)) return false;
+  Mat32 J_ray_pixel;
+  if (!unproject(settings_.camera, pixel, &ray_C, &J_ray_pixel)) return false;
+  Body body;
+  Mat6 P;
+  window_pose_at(last_ns(), &body, &P);
+  const Vec3 direction = body.q_WC * ray_C;
   *hit = HitView();
+  for (int k = 0; k < map_.planes.capacity(); ++k) {
+    if (!map_.planes.used(k)) continue;
+    const WindowPlane& plane = window_->planes().plane(k);
+    Vec3 at;
+    Mat3 J_origin, J_direction, J_plane;
+    if (!intersect_ray_plane(plane.frame, Vec3::Zero(), body.p_W, direction, &at, &J_origin, &J_direction, &J_plane))
+      continue;
+    const Scalar range = (at - body.p_W).norm();
+    if (!outline_contains(map_.planes[k].seen, plane_coordinates(plane.frame, at))) continue;
+    if (hit->plane != 0 && range >= hit->range) continue;
+    Eigen::Matrix<Scalar, 3, 6> J_pose;
+    J_pose.leftCols<3>() = -J_direction * hat(direction);
+    J_pose.rightCols<3>() = J_origin;
+    *hit = {map_.planes[k].id, range, at,
+            Mat3(J_pose.lazyProduct(P).lazyProduct(J_pose.transpose()) +
+                 J_plane.lazyProduct(plane.covariance).lazyProduct(J_plane.transpose()))};
+  }
   return true;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "geometry/so3.h"
-#include "slam/tuning.h"
+#include "window/tuning.h"
 
 namespace pf {
 
@@ -19,7 +19,7 @@ constexpr int kTargetViews = 2;
 bool WindowAdjustment::layout(Arena& arena) {
   const int keyframes = tuning::window_map::kKeyframes;
   const int seeing = settings_.window_keyframes + settings_.window_fixed + kTargetViews;
-  const std::size_t points = static_cast<std::size_t>(settings_.window_points);
+  const std::size_t points = static_cast<std::size_t>(settings_.max_features);
   const std::size_t poses = static_cast<std::size_t>(keyframes + kTargetViews);
   pose_ = arena.take<BundlePose>(poses);
   keyframe_ = arena.take<int>(poses);
@@ -28,13 +28,27 @@ bool WindowAdjustment::layout(Arena& arena) {
   host_ = arena.take<int>(points);
   rho_ = arena.take<Scalar>(points);
   row_ = arena.take<int>(points);
-  return adjuster_.layout(arena, static_cast<int>(poses), settings_.window_keyframes, settings_.window_points);
+  return adjuster_.layout(arena, static_cast<int>(poses), settings_.window_keyframes, settings_.max_features);
 }
 
-/// The newest keyframes, the oldest first; of few, all but one. Returns how many.
+/// Whether two keyframes at least see points of the target, which then holds the map where it is.
+bool WindowAdjustment::is_held_by_target() const {
+  int keyframes = 0;
+  for (int k = 0; k < map_.keyframes.capacity(); ++k) {
+    if (!map_.keyframes.used(k)) continue;
+    int seen = 0;
+    for (int i = 0; i < map_.capacity(); ++i)
+      seen += map_.used(i) && map_.feature(i).is_target && map_.keyframes.pixels(k)[i].seen ? 1 : 0;
+    keyframes += seen >= kMinTargetPoints ? 1 : 0;
+  }
+  return keyframes > 1;
+}
+
+/// The newest keyframes, the oldest first; of few, all but one, unless the target holds them. Returns how many.
 int WindowAdjustment::choose_free() {
   const KeyframeTable& keyframes = map_.keyframes;
-  const int free = std::min(static_cast<int>(settings_.window_keyframes), keyframes.count() - 1);
+  const int others = is_held_by_target() ? 0 : 1;
+  const int free = std::min(static_cast<int>(settings_.window_keyframes), keyframes.count() - others);
   for (int c = 0; c < free; ++c) {
     // The (free - c)-th newest.
     int at = -1;
@@ -73,7 +87,8 @@ int WindowAdjustment::choose_fixed(int free, int points) {
       if (!map_.keyframes.used(k) || std::find(keyframe_, keyframe_ + poses, k) != keyframe_ + poses) continue;
       int seen = 0;
       for (int p = 0; p < points; ++p) seen += map_.keyframes.pixels(k)[row_[p]].seen ? 1 : 0;
-      if (seen < most || (seen == most && (best < 0 || map_.keyframes[k].number < map_.keyframes[best].number))) continue;
+      if (seen < most || (seen == most && (best < 0 || map_.keyframes[k].number < map_.keyframes[best].number)))
+        continue;
       best = k;
       most = seen;
     }
@@ -97,7 +112,7 @@ void WindowAdjustment::fill(int seen_in, int points, int* poses) {
   for (int p = 0; p < points; ++p) {
     const WindowPoint& point = map_.point(row_[p]);
     for (int c = 0; c < seen_in; ++c)
-      pixel_[c * settings_.window_points + p] = map_.keyframes.pixels(keyframe_[c])[row_[p]];
+      pixel_[c * settings_.max_features + p] = map_.keyframes.pixels(keyframe_[c])[row_[p]];
     ray_[p] = point.ray_K;
     host_[p] = pose_of(point.host, poses);
     rho_[p] = point.rho;
@@ -112,9 +127,9 @@ void WindowAdjustment::add_target(int points, int* poses) {
     const Quat turn = exp_so3(static_cast<Scalar>(v) * kTargetTurn * (target_view_.q_WC * Vec3::UnitY()));
     BundlePose& pose = pose_[first + v];
     pose = {turn * target_view_.q_WC, target_middle_W_ + turn * (target_view_.c_W - target_middle_W_), false,
-            pixel_ + (settings_.window_keyframes + settings_.window_fixed + v) * settings_.window_points};
+            pixel_ + (settings_.window_keyframes + settings_.window_fixed + v) * settings_.max_features};
     keyframe_[first + v] = -1;
-    BundlePixel* pixels = pixel_ + (settings_.window_keyframes + settings_.window_fixed + v) * settings_.window_points;
+    BundlePixel* pixels = pixel_ + (settings_.window_keyframes + settings_.window_fixed + v) * settings_.max_features;
     for (int p = 0; p < points; ++p) {
       pixels[p].seen = false;
       const int i = row_[p];
@@ -138,7 +153,7 @@ bool WindowAdjustment::run() {
   int poses = seen_in;
   for (int c = 0; c < seen_in; ++c) {
     const Keyframe& k = map_.keyframes[keyframe_[c]];
-    pose_[c] = {k.q_WC, k.p_W, c < free, pixel_ + c * settings_.window_points};
+    pose_[c] = {k.q_WC, k.p_W, c < free, pixel_ + c * settings_.max_features};
   }
   fill(seen_in, points, &poses);
   add_target(points, &poses);
@@ -150,8 +165,14 @@ bool WindowAdjustment::run() {
     squares += rho_[p] * rho_[p];
   }
   const Scalar mean = squares / sum;
-  const AdjustOptions options = {std::max(noise_.sigma_gate(), kMinSigma), kHuber, mean, kPriorSigma * mean,
-                                 kBehindWeight,       kNoPixelPenalty, kRounds};
+  const int rounds = map_.keyframes.count() <= settings_.window_keyframes ? kFirstRounds : kRounds;
+  const AdjustOptions options = {std::max(noise_.sigma_gate(), kMinSigma),
+                                 kHuber,
+                                 mean,
+                                 kPriorSigma * mean,
+                                 kBehindWeight,
+                                 kNoPixelPenalty,
+                                 rounds};
   const Bundle bundle = {pose_, poses, ray_, host_, rho_, points};
   adjuster_.adjust(settings_.camera, options, bundle);
   // The last free pose is the newest keyframe's.
@@ -174,10 +195,29 @@ void WindowAdjustment::take_back(int free, int points) {
       point.rho = rho_[p];
       point.variance = variance_of(row_[p]);
     }
+    reject_outliers(row_[p]);
     if (point.faces_host) {
       const Keyframe& host = map_.keyframes[point.host];
       map_.tables().first_view(row_[p]) = {host.q_WC, host.p_W};
     }
+  }
+}
+
+/// Forgets pixels of a point that are not where it is.
+void WindowAdjustment::reject_outliers(int i) {
+  const WindowPoint& point = map_.point(i);
+  const Keyframe& host = map_.keyframes[point.host];
+  const Vec3 ray_W = map_.ray_W(i);
+  const Scalar bound = kOutlierSigmas * std::max(noise_.sigma_gate(), kMinSigma);
+  for (int k = 0; k < map_.keyframes.capacity(); ++k) {
+    BundlePixel& pixel = map_.keyframes.pixels(k)[i];
+    if (k == point.host || !map_.keyframes.used(k) || !pixel.seen) continue;
+    const Keyframe& keyframe = map_.keyframes[k];
+    Vec2 z;
+    if (!project_bearing(settings_.camera, keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, point.rho,
+                         &z) ||
+        (pixel.pixel() - z).squaredNorm() > bound * bound)
+      pixel.seen = false;
   }
 }
 

@@ -29,13 +29,15 @@ class WindowAdjustment {
   Scalar variance_of(int i) const;
 
  private:
+  bool is_held_by_target() const;
   int choose_free();
   int choose_points(int free);
   int choose_fixed(int free, int points);
   int pose_of(int keyframe, int* poses);
   void fill(int seen_in, int points, int* poses);
   void add_target(int points, int* poses);
-  void take_back(int poses, int points);
+  void take_back(int free, int points);
+  void reject_outliers(int i);
 
   const Settings& settings_;
   WindowMap& map_;

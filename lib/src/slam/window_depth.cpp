@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slam/tuning.h"
 #include "window/adjust.h"
+#include "window/tuning.h"
 
 namespace pf {
 namespace {

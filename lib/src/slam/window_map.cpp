@@ -4,13 +4,14 @@
 
 #include "slam/feature_upkeep.h"
 #include "slam/tuning.h"
+#include "window/tuning.h"
 
 namespace pf {
 
 using namespace tuning::window_map;
 
 bool WindowMap::layout(Arena& arena) {
-  const int points = settings_.window_points;
+  const int points = settings_.max_features;
   point_ = arena.take<WindowPoint>(static_cast<std::size_t>(points));
   scratch_ = arena.take<Scalar>(static_cast<std::size_t>(points));
   return keyframes.layout(arena, kKeyframes, points);
@@ -121,6 +122,15 @@ int WindowMap::add_keyframe(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W
       keyframes.set_pixel(k, match.feature, match.measured);
   }
   return k;
+}
+
+void WindowMap::keep_first_keyframe() {
+  for (int k = 0; k < keyframes.capacity(); ++k) {
+    if (!keyframes.used(k) || keyframes[k].number == 1) continue;
+    for (int i = 0; i < capacity(); ++i)
+      if (used(i) && point_[i].host == k) drop(i);
+    keyframes.remove(k);
+  }
 }
 
 /// The one that saw the fewest of the points that there are, and is not in the window; the older one among equals.

@@ -13,11 +13,11 @@ namespace pf {
 struct WindowPoint {
   int host = -1;  ///< keyframe
   Vec3 ray_K = Vec3::UnitZ();
-  Scalar rho = 0;           ///< [1/m] along ray_K, which has length 1
-  Scalar variance = 0;      ///< of rho, keyframes taken as exact
-  bool has_depth = false;   ///< rho was triangulated, or is the target's
-  bool faces_host = false;  ///< its appearance is the host's
-  std::int8_t plane = -1;   ///< entry of the plane that it lies on, or -1
+  Scalar rho = 0;             ///< [1/m] along ray_K, which has length 1
+  Scalar variance = 0;        ///< of rho, keyframes taken as exact
+  bool has_depth = false;     ///< rho was triangulated, or is the target's
+  bool faces_host = false;    ///< its appearance is the host's
+  std::int8_t plane = -1;     ///< entry of the plane that it lies on, or -1
   Vec2 pixel = Vec2::Zero();  ///< where it was last seen, and from where
   CameraView seen_from;
 };
@@ -63,6 +63,8 @@ class WindowMap {
 
   /// Adds the pose as a keyframe with this frame's inliers; where there is no room, the one with the fewest points leaves.
   int add_keyframe(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);
+  /// Removes all keyframes but the first, and the points that they host.
+  void keep_first_keyframe();
 
  private:
   int least_useful_keyframe() const;

@@ -5,8 +5,10 @@
 
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
+#include "slam/ellipse.h"
 #include "slam/tuning.h"
 #include "window/adjust.h"
+#include "window/tuning.h"
 
 namespace pf {
 namespace {
@@ -83,6 +85,27 @@ int WindowPose::find(const Camera& camera, int count, const PosePrior& prior, Sc
   if (!fit_pose(camera, match_, count, inlier_, prior, kHuber, &found, &A)) return 0;
   *pose = found;
   *information = A;
+  return inliers;
+}
+
+int WindowPose::fit(const Camera& camera, int count, const PosePrior& prior, Scalar gate, CameraPose* pose,
+                    Mat6* information) {
+  std::fill(inlier_, inlier_ + count, static_cast<unsigned char>(1));
+  CameraPose found = {prior.q_WC, prior.p_W};
+  int inliers = 0;
+  for (int pass = 0; pass < 2; ++pass) {
+    if (!fit_pose(camera, match_, count, inlier_, prior, kHuber, &found, information)) return 0;
+    inliers = 0;
+    for (int i = 0; i < count; ++i) {
+      Vec2 z;
+      const PnpPoint& point = match_[i].point;
+      const bool seen = project_from_pose(camera, found.q_WC, found.p_WC, point.m, point.w, found.p_WC, &z);
+      const Mat2 S = match_[i].noise + Mat2::Identity() * (tuning::noise::kSearchSigma * tuning::noise::kSearchSigma);
+      inlier_[i] = seen && squared_distance(point.pixel - z, S) < gate ? 1 : 0;
+      inliers += inlier_[i];
+    }
+  }
+  *pose = found;
   return inliers;
 }
 

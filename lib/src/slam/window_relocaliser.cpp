@@ -50,8 +50,7 @@ void WindowRelocaliser::recover(Scalar median_depth) {
     data_ = Data();
     return;
   }
-  const bool follows = before.frames > 0 &&
-                       log_so3(pose.q_WC * before.q_WC.conjugate()).norm() < kAboutView &&
+  const bool follows = before.frames > 0 && log_so3(pose.q_WC * before.q_WC.conjugate()).norm() < kAboutView &&
                        (pose.p_WC - before.p_W).norm() < kAboutView * median_depth;
   data_ = {follows ? before.frames + 1 : 1, pose.q_WC, pose.p_WC};
   if (data_.frames < (nearby ? kFramesNearby : kFramesAnywhere)) return;

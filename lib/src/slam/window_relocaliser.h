@@ -20,9 +20,7 @@ class WindowRelocaliser {
   }
 
   /// Keeps the view of a tracked frame.
-  void remember_view() {
-    views_.keep_if_new(measuring_.tracker().pyramid(), motion_.body().q_WC, motion_.body().p_W);
-  }
+  void remember_view() { views_.keep_if_new(measuring_.tracker().pyramid(), motion_.body().q_WC, motion_.body().p_W); }
   /// The map is tracked: forgets what earlier frames proposed.
   void clear_proposal() { data_ = Data(); }
   /// Searches where the pose may be: about the prediction as long as it is narrow, else about a kept view that looks like this image. A

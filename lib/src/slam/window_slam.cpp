@@ -8,16 +8,18 @@
 #include "slam/tuning.h"
 #include "slam/window_corners.h"
 #include "slam/window_depth.h"
+#include "window/tuning.h"
 
 namespace pf {
 
 using namespace tuning::window_slam;
 
 bool WindowSlam::layout(Arena& arena) {
-  frame_.layout(arena, 2 * settings_.window_points);
+  frame_.layout(arena, 2 * settings_.max_features);
   map_.layout(arena);
   measuring_.layout(arena);
   adjustment_.layout(arena);
+  planes_.layout(arena);
   relocaliser_.layout(arena);
   return start_.layout(arena);
 }
@@ -31,6 +33,7 @@ void WindowSlam::init() {
   motion_.init();
   measuring_.init();
   adjustment_.init();
+  planes_.init();
   relocaliser_.init();
   start_.init();
   data_ = Data();
@@ -90,16 +93,22 @@ void WindowSlam::begin_frame(std::int64_t t_ns) {
 
 /// Finds the pose of the frame, in the way that the state asks for.
 void WindowSlam::measure() {
+  data_.young = measuring_.is_young();
   if (!tracking_.has_pose()) {
     start_.start_in_image();
   } else if (start_.progress().pending()) {
     if (start_.follow_record()) adjust();
+  } else if (data_.young) {
+    measuring_.measure_young(data_.median_depth);
   } else if (tracking_.is_relocalising(start_.progress())) {
     relocaliser_.recover(data_.median_depth);
   } else {
     relocaliser_.clear_proposal();
     measuring_.measure(data_.median_depth);
   }
+  if (start_.progress().recording && start_.progress().depth_known && tracking_.is_tracked(frame_.report) &&
+      start_.record_more())
+    adjust();
 }
 
 /// A frame that does not support its pose changes nothing in the map.
@@ -111,7 +120,8 @@ void WindowSlam::maintain_map() {
   if (tracked && !pending) {
     measuring_.learn_templates();
     learn_noise();
-    triangulate();
+    // A young map's poses are too coarse for depths of their own: a keyframe's are adjusted with it.
+    if (!data_.young) triangulate(true);
   }
   if (tracked || pending) {
     count_searches(frame_, &tables_.features);
@@ -125,8 +135,8 @@ void WindowSlam::maintain_map() {
   start_.begin_record();
 }
 
-/// Gives points a depth whose rays from host and frame differ by enough; drops those that no depth explains.
-void WindowSlam::triangulate() {
+/// Gives points a depth whose rays from host and frame differ by enough; strict: drops those that no depth explains.
+void WindowSlam::triangulate(bool strict) {
   const CameraView now = {motion_.body().q_WC, motion_.body().p_W};
   const Scalar cos_parallax = std::cos(kMinParallax);
   for (int t = 0; t < frame_.match_count(); ++t) {
@@ -135,8 +145,8 @@ void WindowSlam::triangulate() {
     DepthFit fit;
     const bool fits = fit_depth(settings_.camera, map_, match.feature, now, match.measured, &fit);
     if (fit.cos_parallax > cos_parallax) continue;
-    if (!fits || fit.worst_px > measuring_.bound_px()) {
-      map_.drop(match.feature);
+    if (!fits || (strict && fit.worst_px > measuring_.bound_px())) {
+      if (strict) map_.drop(match.feature);
       continue;
     }
     WindowPoint& point = map_.point(match.feature);
@@ -148,6 +158,7 @@ void WindowSlam::triangulate() {
 
 /// The camera has moved far enough since the last keyframe, in depths of what it sees, or sees too little of what is known.
 bool WindowSlam::wants_keyframe() const {
+  if (start_.progress().recording) return false;  // the record makes its own
   const Keyframe& last = map_.keyframes[map_.keyframes.newest()];
   if (last.t_ns == frame_.report.t_ns) return false;
   const Body& body = motion_.body();
@@ -156,12 +167,13 @@ bool WindowSlam::wants_keyframe() const {
   int inliers = 0;
   for (int t = 0; t < frame_.match_count(); ++t) inliers += frame_.match(t).status == MatchStatus::kInlier ? 1 : 0;
   return moved > kKeyframeShift || turned > kKeyframeTurn ||
-         (static_cast<Scalar>(inliers) < kFewPoints * static_cast<Scalar>(settings_.features_in_view) &&
+         (!data_.young && static_cast<Scalar>(inliers) < kFewPoints * static_cast<Scalar>(settings_.features_in_view) &&
           (moved > kMinKeyframeShift || turned > kMinKeyframeTurn));
 }
 
 void WindowSlam::add_keyframe() {
   map_.add_keyframe(frame_.report.t_ns, motion_.body().q_WC, motion_.body().p_W);
+  if (data_.young) triangulate(false);
   adjust();
 }
 
@@ -170,6 +182,8 @@ void WindowSlam::adjust() {
   if (!adjustment_.run()) return;
   const Keyframe& newest = map_.keyframes[map_.keyframes.newest()];
   motion_.move(newest.q_WC, newest.p_W);
+  // During a start the map may begin again; ids of planes found before would then name nothing.
+  if (settings_.planes && !start_.progress().recording) planes_.maintain(newest.p_W);
 }
 
 void WindowSlam::learn_noise() {

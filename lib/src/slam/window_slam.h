@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "slam/frozen_camera.h"
 #include "slam/window_adjustment.h"
+#include "slam/window_planes.h"
 #include "slam/window_relocaliser.h"
 #include "slam/window_start.h"
 #include "slam/window_tracking.h"
@@ -37,6 +38,7 @@ class WindowSlam {
   const TrackingState& tracking() const { return tracking_; }
   const NoiseModel& noise() const { return noise_; }
   const WindowMap& map() const { return map_; }
+  const WindowPlanes& planes() const { return planes_; }
   const WindowMotion& motion() const { return motion_; }
   /// Time of the body: that of the last frame, or of the one that it repeats.
   std::int64_t body_ns() const { return data_.body_ns; }
@@ -62,6 +64,7 @@ class WindowSlam {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     Mark mark;
+    bool young = false;  ///< in this frame, WindowTracking::is_young
     bool warned_of_noise = false;
   };
 
@@ -71,7 +74,7 @@ class WindowSlam {
   Status end_frame();
   void measure();
   void maintain_map();
-  void triangulate();
+  void triangulate(bool strict);
   bool wants_keyframe() const;
   void add_keyframe();
   void adjust();
@@ -87,7 +90,8 @@ class WindowSlam {
   FrozenCamera frozen_;
   WindowMap map_{settings_, tables_, frame_};
   WindowMotion motion_{settings_};
-  WindowTracking measuring_{settings_, map_, frame_, motion_, noise_};
+  WindowPlanes planes_{settings_, map_};
+  WindowTracking measuring_{settings_, map_, planes_, frame_, motion_, noise_};
   WindowAdjustment adjustment_{settings_, map_, noise_};
   WindowRelocaliser relocaliser_{settings_, map_, frame_, motion_, measuring_};
   WindowStart start_{settings_, {map_, frame_, tracking_, motion_, measuring_, adjustment_}};

@@ -8,6 +8,7 @@
 #include "slam/tuning.h"
 #include "slam/window_depth.h"
 #include "window/rotation_fit.h"
+#include "window/tuning.h"
 
 namespace pf {
 
@@ -15,7 +16,7 @@ using namespace tuning::window_start;
 namespace assumed = tuning::filter_start;
 
 bool WindowStart::layout(Arena& arena) {
-  const std::size_t points = static_cast<std::size_t>(settings_.window_points);
+  const std::size_t points = static_cast<std::size_t>(settings_.max_features);
   ray_ = arena.take<Vec3>(points);
   pixel_ = arena.take<BundlePixel>(points);
   scratch_ = arena.take<Scalar>(points);
@@ -84,8 +85,7 @@ void WindowStart::set_pose(bool at_target) {
 bool WindowStart::start_in_image() {
   FrameReport& report = parts_.frame.report;
   TargetSighting sighting;
-  const bool seen =
-      target_.has_target() && target_.find(settings_.camera, parts_.measuring.tracker(), &sighting);
+  const bool seen = target_.has_target() && target_.find(settings_.camera, parts_.measuring.tracker(), &sighting);
   if (!seen && target_.has_target() && !parts_.tracking.may_skip_target()) return false;
   if (seen && report.frames > 1) data_.known = KnownBody();  // it was the pose of the first frame
   set_pose(seen);
@@ -138,7 +138,7 @@ bool WindowStart::accept_rotation(int found) {
   int count = 0;
   for (int t = 0; t < frame.match_count(); ++t) {
     const Match& match = frame.match(t);
-    if (match.status != MatchStatus::kOutlier || match.feature < 0 || count == settings_.window_points) continue;
+    if (match.status != MatchStatus::kOutlier || match.feature < 0 || count == settings_.max_features) continue;
     ray_[count] = parts_.map.ray_W(match.feature);
     pixel_[count++] = {static_cast<float>(match.measured.x()), static_cast<float>(match.measured.y()), true};
   }
@@ -146,9 +146,7 @@ bool WindowStart::accept_rotation(int found) {
   Quat q_WC = parts_.motion.body().q_WC;
   const Scalar parallax = fit_rotation(settings_.camera, ray_, pixel_, count, scratch_, &q_WC);
   const Scalar bound = kParallaxes * parallax + parts_.measuring.bound_px();
-  Mat6 R = Mat6::Identity() * (kRotationSigma * kRotationSigma);
-  R.bottomRightCorner<3, 3>() = Mat3::Identity() * (kPositionSigma * kPositionSigma * settings_.start_depth * settings_.start_depth);
-  parts_.motion.correct(q_WC, without_.base_p_W(), R);
+  parts_.measuring.settle_followed(found, q_WC, without_.base_p_W(), settings_.start_depth);
   for (int t = 0; t < frame.match_count(); ++t) {
     Match& match = frame.match(t);
     Vec2 z;
@@ -161,20 +159,31 @@ bool WindowStart::accept_rotation(int found) {
   return frame.report.inliers >= settings_.min_inliers;
 }
 
+StartOutcome WindowStart::record_frame() {
+  const Frame& frame = parts_.frame;
+  const Body& body = parts_.motion.body();
+  without_.begin_frame(body.q_WC, body.p_W, frame.report.t_ns);
+  for (int t = 0; t < frame.match_count(); ++t) {
+    const Match& match = frame.match(t);
+    // What the last depths refuse, the next ones may explain, and that adjustment is robust.
+    if (match.feature >= 0 && (match.status == MatchStatus::kInlier || match.status == MatchStatus::kOutlier))
+      without_.add_pixel(settings_.camera, match.id, match.measured);
+  }
+  return without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth);
+}
+
+bool WindowStart::record_more() {
+  const StartOutcome outcome = record_frame();
+  if (outcome != StartOutcome::kSolved && outcome != StartOutcome::kSettled) return false;
+  parts_.map.keep_first_keyframe();
+  take_record();
+  return true;
+}
+
 bool WindowStart::follow_record() {
   Frame& frame = parts_.frame;
   const int found = parts_.measuring.follow(settings_.start_depth);
-  StartOutcome outcome = StartOutcome::kTooFew;
-  if (accept_rotation(found)) {
-    const Body& body = parts_.motion.body();
-    without_.begin_frame(body.q_WC, body.p_W, frame.report.t_ns);
-    for (int t = 0; t < frame.match_count(); ++t) {
-      const Match& match = frame.match(t);
-      if (match.status == MatchStatus::kInlier && match.feature >= 0)
-        without_.add_pixel(settings_.camera, match.id, match.measured);
-    }
-    outcome = without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth);
-  }
+  const StartOutcome outcome = accept_rotation(found) ? record_frame() : StartOutcome::kTooFew;
   if (outcome == StartOutcome::kWait) return false;
   if (outcome != StartOutcome::kTooFew) {
     take_record();
@@ -212,6 +221,8 @@ void WindowStart::take_record() {
       point.has_depth = true;
     } else if (index >= 0) {
       map.drop(i);
+    } else {
+      point.has_depth = false;  // by poses that are no longer
     }
   }
   Body body = parts_.motion.body();
@@ -234,7 +245,7 @@ void WindowStart::take_record() {
   }
   for (int i = 0; i < map.capacity(); ++i)
     if (map.used(i) && map.point(i).has_depth) map.point(i).variance = parts_.adjustment.variance_of(i);
-  without_.init();
+  if (!progress().recording) without_.init();
 }
 
 }  // namespace pf

@@ -39,6 +39,8 @@ class WindowStart {
   /// A frame while the depths are not known: follows the points, records them, and tries to solve the record. True: depths are known now,
   /// and this frame is a keyframe.
   bool follow_record();
+  /// A tracked frame while the record goes on: records it. True: the record has better depths, and this frame is a keyframe.
+  bool record_more();
   /// Begins an empty record with the features that this frame has added.
   void begin_record();
 
@@ -46,6 +48,7 @@ class WindowStart {
   void set_pose(bool at_target);
   void clear_map();
   bool accept_rotation(int found);
+  StartOutcome record_frame();
   void take_record();
 
   struct Data {
@@ -57,7 +60,7 @@ class WindowStart {
   Data data_;
   StartAtTarget target_;
   StartWithoutTarget without_;
-  Vec3* ray_ = nullptr;  ///< window_points each
+  Vec3* ray_ = nullptr;  ///< one for each point
   BundlePixel* pixel_ = nullptr;
   Scalar* scratch_ = nullptr;
 };

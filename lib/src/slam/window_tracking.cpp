@@ -11,19 +11,20 @@
 #include "slam/feature_upkeep.h"
 #include "slam/tuning.h"
 #include "slam/window_depth.h"
+#include "window/tuning.h"
 
 namespace pf {
 
 using namespace tuning::window_tracking;
 
 bool WindowTracking::layout(Arena& arena) {
-  candidate_ = arena.take<Candidate>(static_cast<std::size_t>(settings_.window_points));
-  pose_.layout(arena, settings_.window_points);
-  return search_.layout(arena, settings_.camera.width, settings_.camera.height);
+  candidate_ = arena.take<Candidate>(static_cast<std::size_t>(settings_.max_features));
+  pose_.layout(arena, settings_.max_features);
+  return search_.layout(arena, settings_);
 }
 
 void WindowTracking::init() {
-  search_.init(settings_.camera);
+  search_.init(settings_);
   pose_.init();
   listed_ = 0;
 }
@@ -78,8 +79,8 @@ int WindowTracking::list(const PosePrior& at, bool placed, Scalar depth) {
     if (!(placed ? expect_placed(i, at, &expected) : expect_unplaced(i, at, depth, &expected))) continue;
     const Mat2 innovation = expected.spread + Mat2::Identity() * (kMapSigma * kMapSigma);
     if (!is_inside(expected.pixel) || !is_covariance(innovation)) continue;
-    const int match = frame_.add({i, f.id, MatchStatus::kMissed, map_.kind(i), expected.pixel, innovation, Vec2::Zero(),
-                                  Scalar(0)});
+    const int match =
+        frame_.add({i, f.id, MatchStatus::kMissed, map_.kind(i), expected.pixel, innovation, Vec2::Zero(), Scalar(0)});
     candidate_[first + count++] = {match, Mat2::Identity(), Scalar(0)};
   }
   std::sort(candidate_ + first, candidate_ + first + count, [&](const Candidate& a, const Candidate& b) {
@@ -114,6 +115,7 @@ SearchTask WindowTracking::task_of(int i, const PosePrior& at, Scalar depth) con
     ImageSearch::use_template(tables, i, &task);
   task.gate = settings_.gate;
   task.p_W = host.p_W + map_.ray_W(i) * (point.has_depth ? 1 / point.rho : depth);
+  if (point.has_depth && point.plane >= 0) task.normal_W = planes_.plane(point.plane).frame.R_WP.col(2);
   task.q_WC = at.q_WC;
   task.c_W = at.p_W;
   return task;
@@ -133,7 +135,8 @@ int WindowTracking::search_for(int first, int count, const PosePrior& at, Scalar
     if (!outcome.comparable) continue;
     match.searched = true;
     ++frame_.report.attempts;
-    if (!outcome.found || squared_distance(outcome.pixel - match.predicted, match.innovation) > settings_.gate) continue;
+    if (!outcome.found || squared_distance(outcome.pixel - match.predicted, match.innovation) > settings_.gate)
+      continue;
     ++frame_.report.matches;
     match.measured = outcome.pixel;
     match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
@@ -144,25 +147,31 @@ int WindowTracking::search_for(int first, int count, const PosePrior& at, Scalar
   return found - first;
 }
 
+/// A candidate as a match for the pose: m = R r + rho p_host, w = rho. Without a depth it has the median one, and as much again as standard
+/// deviation. `shared`: points without a depth in the fit; they may all be nearer or farther than that together, so that their mean is no
+/// better known than one.
+void WindowTracking::make_pose_match(int c, const PosePrior& prior, Scalar depth, int shared) {
+  const Match& match = frame_.match(candidate_[c].match);
+  const WindowPoint& point = map_.point(match.feature);
+  const Vec3& host_W = map_.keyframes[point.host].p_W;
+  const Vec3 ray_W = map_.ray_W(match.feature);
+  const Scalar rho = point.has_depth ? point.rho : 1 / depth;
+  const Scalar variance = point.has_depth ? point.variance : static_cast<Scalar>(shared) * rho * rho;
+  Vec2 z, J_rho;
+  Mat26 J_C;
+  PoseMatch& out = pose_.match(c);
+  out.point = {ray_W + rho * host_W, rho, match.measured};
+  out.noise = noise_.correlation_frames() * candidate_[c].noise;
+  if (project_bearing(settings_.camera, prior.q_WC.toRotationMatrix(), ray_W, host_W - prior.p_W, rho, &z, &J_C,
+                      nullptr, &J_rho))
+    out.noise += variance * J_rho * J_rho.transpose();
+}
+
 /// Pose that the first `found` candidates support. Returns the number of inliers, 0 where the pose may be chance.
 int WindowTracking::find_pose(int found, const PosePrior& prior, CameraPose* pose, Mat6* information) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
-  for (int c = 0; c < found; ++c) {
-    const Match& match = frame_.match(candidate_[c].match);
-    const WindowPoint& point = map_.point(match.feature);
-    const Vec3& host_W = map_.keyframes[point.host].p_W;
-    const Vec3 ray_W = map_.ray_W(match.feature);
-    Vec2 z, J_rho;
-    Mat26 J_C;
-    PoseMatch& out = pose_.match(c);
-    out.point = {ray_W + point.rho * host_W, point.rho, match.measured};
-    out.noise = noise_.correlation_frames() * candidate_[c].noise;
-    if (project_bearing(settings_.camera, prior.q_WC.toRotationMatrix(), ray_W, host_W - prior.p_W, point.rho, &z, &J_C,
-                        nullptr, &J_rho))
-      out.noise += point.variance * J_rho * J_rho.transpose();
-  }
-  const int least = std::min(settings_.min_inliers, std::max(kMinYoungInliers, map_.placed() / 2));
-  const int inliers = pose_.find(settings_.camera, found, prior, bound_px(), least, pose, information);
+  for (int c = 0; c < found; ++c) make_pose_match(c, prior, Scalar(1), 0);
+  const int inliers = pose_.find(settings_.camera, found, prior, bound_px(), settings_.min_inliers, pose, information);
   return is_believed(inliers, found) ? inliers : 0;
 }
 
@@ -244,78 +253,36 @@ void WindowTracking::measure(Scalar median_depth) {
 }
 
 void WindowTracking::correct(const CameraPose& pose, const Mat6& information) {
-  SmallCholesky<6> factored;
-  const PosePrior prior = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  PosePrior now;
+  if (apply(pose, information, &now)) mark(frame_.report.matches, now);
+}
+
+/// Corrects the body by a measured pose. False where its covariance is none. now: the pose with the covariance that the matches leave.
+bool WindowTracking::apply(const CameraPose& pose, Mat6 information, PosePrior* now) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
-  Mat6 A = information;
+  SmallCholesky<6> factored;
   // What the matches do not determine, the prediction does.
-  if (!factored.factor(A)) {
-    SmallCholesky<6> of_prior;
-    if (!of_prior.factor(prior.covariance)) return;
-    A += kWeakPrior * of_prior.inverse();
-    if (!factored.factor(A)) return;
+  if (!factored.factor(information)) {
+    SmallCholesky<6> prior;
+    if (!prior.factor(motion_.pose_covariance())) return false;
+    information += kWeakPrior * prior.inverse();
+    if (!factored.factor(information)) return false;
   }
-  if (!motion_.correct(pose.q_WC, pose.p_WC, factored.inverse())) return;
-  const PosePrior now = {pose.q_WC, pose.p_WC, factored.inverse()};
-  mark(frame_.report.matches, now);
+  *now = {pose.q_WC, pose.p_WC, factored.inverse()};
+  return motion_.correct(pose.q_WC, pose.p_WC, now->covariance);
 }
 
 /// Points without a depth: where the corrected pose leaves no depth that explains their pixel, it is wrong.
 void WindowTracking::measure_unplaced(Scalar depth) {
   const PosePrior now = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
-  const int placed_inliers = frame_.report.inliers;
   const int count = list(now, false, depth), first = listed_;
   const int found = search_for(first, count, now, depth);
-  int inliers = 0;
   for (int c = first; c < first + found; ++c) {
     Match& match = frame_.match(candidate_[c].match);
     DepthFit fit;
     const bool fits = fit_depth(settings_.camera, map_, match.feature, {now.q_WC, now.p_W}, match.measured, &fit);
     if (fits ? fit.worst_px > bound_px() : fit.cos_parallax < std::cos(kMaxParallel)) continue;
     accept(&match);
-    ++inliers;
-  }
-  // A young map holds few points with a depth; those without are what keeps it together.
-  if (map_.placed() < settings_.min_inliers && placed_inliers > 0) frame_.report.inliers += inliers;
-}
-
-int WindowTracking::follow(Scalar depth) {
-  listed_ = 0;
-  const PosePrior now = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
-  const int count = list(now, false, depth);
-  const int found = search_for(0, count, now, depth);
-  return found;
-}
-
-void WindowTracking::learn_noise() {
-  const PosePrior now = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
-  for (int c = 0; c < listed_; ++c) {
-    const Match& match = frame_.match(candidate_[c].match);
-    ExpectedPixel expected;
-    if (match.status != MatchStatus::kInlier || match.feature < 0) continue;
-    Feature& f = map_.feature(match.feature);
-    if (f.observations < tuning::image_front_end::kSettled || !expect_placed(match.feature, now, &expected)) continue;
-    const Scalar leverage =
-        expected.spread.trace() / (noise_.correlation_frames() * candidate_[c].noise.trace());
-    noise_.learn(frame_.report.frames, match.measured - expected.pixel, candidate_[c].noise, leverage,
-                 f.is_target ? nullptr : &f.residuals);
-  }
-  noise_.end_frame();
-}
-
-void WindowTracking::learn_templates() {
-  if (!search_.has_templates()) return;
-  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kTemplate]);
-  const PosePrior now = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
-  for (int c = 0; c < listed_; ++c) {
-    const Match& match = frame_.match(candidate_[c].match);
-    if (match.status != MatchStatus::kInlier || match.feature < 0) continue;
-    SearchTask task = task_of(match.feature, now, Scalar(1));
-    task.predicted = match.measured;
-    if (!search_.learn(task, match.measured, &map_.tables(), match.feature)) continue;
-    const PlanarTemplate& shape = map_.tables().shape(match.feature);
-    ++frame_.report.templates;
-    frame_.report.template_area += shape.area / static_cast<float>(shape.side * shape.side);
   }
 }
 

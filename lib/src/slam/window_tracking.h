@@ -2,9 +2,10 @@
 
 #include "slam/image_search.h"
 #include "slam/noise_model.h"
-#include "slam/window_map.h"
 #include "slam/window_motion.h"
+#include "slam/window_planes.h"
 #include "slam/window_pose.h"
+#include "window/tuning.h"
 
 /// Measures an image with the window's map: where its points should be, where they are, and the pose that this says.
 
@@ -18,8 +19,9 @@ struct ExpectedPixel {
 
 class WindowTracking {
  public:
-  WindowTracking(const Settings& settings, WindowMap& map, Frame& frame, WindowMotion& motion, NoiseModel& noise)
-      : settings_(settings), map_(map), frame_(frame), motion_(motion), noise_(noise), search_(settings) {}
+  WindowTracking(const Settings& settings, WindowMap& map, const WindowPlanes& planes, Frame& frame,
+                 WindowMotion& motion, NoiseModel& noise)
+      : settings_(settings), map_(map), planes_(planes), frame_(frame), motion_(motion), noise_(noise) {}
 
   bool layout(Arena& arena);
   void init();
@@ -30,6 +32,11 @@ class WindowTracking {
 
   /// Finds points with a depth about the predicted pose, and corrects the body by the pose that they say; then finds those without.
   void measure(Scalar median_depth);
+  /// So few points have a depth that those without must help.
+  bool is_young() const { return map_.placed() < tuning::window_tracking::kYoung; }
+  /// Finds all points about the predicted pose, and corrects the body by the pose that they say together: a point without a depth says
+  /// where the camera is but for a shift along its epipolar line.
+  void measure_young(Scalar median_depth);
   /// The same about another pose than the predicted one. Changes nothing but the frame's matches. Returns the number of inliers, and the
   /// pose with its information.
   int measure_about(const PosePrior& about, CameraPose* pose, Mat6* information);
@@ -37,6 +44,8 @@ class WindowTracking {
   void correct(const CameraPose& pose, const Mat6& information);
   /// Finds points without a depth about where they were last, as if the camera had only turned. Returns how many were found.
   int follow(Scalar depth);
+  /// Pose that all of the first `found` matches that were followed say together, about a rotation that is known; where it fails, that.
+  void settle_followed(int found, const Quat& q_WC, const Vec3& p_W, Scalar depth);
   /// Updates the noise model with the residuals of this frame's inliers.
   void learn_noise();
   /// Updates masks and normals of templates with this frame's inliers.
@@ -56,14 +65,17 @@ class WindowTracking {
   int list(const PosePrior& at, bool placed, Scalar depth);
   void expect(int first, int count, const PosePrior& at);
   int search_for(int first, int count, const PosePrior& at, Scalar depth);
+  void make_pose_match(int c, const PosePrior& prior, Scalar depth, int shared);
   int find_pose(int found, const PosePrior& prior, CameraPose* pose, Mat6* information);
   bool is_believed(int inliers, int found) const;
   void mark(int found, const PosePrior& at);
+  bool apply(const CameraPose& pose, Mat6 information, PosePrior* now);
   void measure_unplaced(Scalar depth);
   bool is_inside(const Vec2& pixel) const;
 
   const Settings& settings_;
   WindowMap& map_;
+  const WindowPlanes& planes_;
   Frame& frame_;
   WindowMotion& motion_;
   NoiseModel& noise_;
@@ -76,7 +88,7 @@ class WindowTracking {
     Mat2 noise;       ///< of its match
     Scalar searched;  ///< area [px^2]
   };
-  Candidate* candidate_ = nullptr;  ///< window_points
+  Candidate* candidate_ = nullptr;  ///< one for each point
   int listed_ = 0;                  ///< with a depth
 };
 

@@ -1,0 +1,234 @@
+#include "slam/window_planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slam/tuning.h"
+#include "window/tuning.h"
+
+namespace pf {
+
+namespace same = tuning::plane_lifecycle;
+namespace member = tuning::plane_keeper;
+
+bool WindowPlanes::layout(Arena& arena) {
+  const std::size_t points = static_cast<std::size_t>(settings_.max_features);
+  plane_ = arena.take<WindowPlane>(static_cast<std::size_t>(settings_.max_planes));
+  candidate_ = arena.take<PlaneCandidate>(points);
+  row_ = arena.take<int>(points);
+  point_W_ = arena.take<Vec3>(points);
+  return arena.ok();
+}
+
+void WindowPlanes::maintain(const Vec3& viewer_W) {
+  for (int k = 0; k < table_.capacity(); ++k) {
+    if (!table_.used(k)) continue;
+    ++table_[k].age;
+    refit(k);
+    take_points(k);
+    outline(k);
+  }
+  merge();
+  dissolve_weak();
+  discover(viewer_W);
+}
+
+/// Lists the points on a plane. Returns how many.
+int WindowPlanes::list_points(int k) {
+  int count = 0;
+  for (int i = 0; i < map_.capacity(); ++i) {
+    if (!map_.used(i) || !map_.point(i).has_depth || map_.point(i).plane != k) continue;
+    row_[count] = i;
+    point_W_[count++] = map_.position(i);
+  }
+  return count;
+}
+
+int WindowPlanes::points_on(int k) const {
+  int count = 0;
+  for (int i = 0; i < map_.capacity(); ++i) count += map_.used(i) && map_.point(i).plane == k ? 1 : 0;
+  return count;
+}
+
+/// Whether a point is known well enough to be put on a plane.
+bool WindowPlanes::is_settled(int i, Mat3* covariance) const {
+  if (!map_.used(i) || !map_.point(i).has_depth || map_.point(i).plane >= 0) return false;
+  const Feature& f = map_.feature(i);
+  if (f.is_target || f.failures > 0 || f.observations < member::kConverged) return false;
+  if (!(map_.point(i).variance > Scalar(0))) return false;
+  *covariance = map_.covariance(i);
+  return covariance->trace() < settings_.fold_sigma * settings_.fold_sigma;
+}
+
+///   d² < gate (nᵀ Sigma n + roughness² + variance of the plane there),   |d| < 2 max_distance,   nᵀ Sigma n <= max_distance²
+bool WindowPlanes::lies_on(int k, const Vec3& p_W, const Mat3& covariance) const {
+  const WindowPlane& plane = plane_[k];
+  const Vec3 n = plane.frame.R_WP.col(2);
+  const Vec3 r = plane.frame.R_WP.transpose() * (p_W - plane.frame.o_W);
+  const Vec3 J(-r.x(), -r.y(), -1);  // of the distance by (a, b, h)
+  const Scalar of_point = n.dot(covariance * n), of_plane = J.dot(plane.covariance * J);
+  const Scalar limit = settings_.plane_distance * settings_.plane_distance;
+  const Scalar noise = settings_.fold.roughness * settings_.fold.roughness;
+  const Scalar d2 = r.z() * r.z();
+  return d2 < 4 * limit && of_point <= limit && d2 < settings_.fold.gate * (of_point + of_plane + noise);
+}
+
+/// Gives a plane another frame, with the first axis along the old one's, and its outlines in it.
+void WindowPlanes::set_frame(int k, const PlaneFrame& frame) {
+  const PlaneFrame from = plane_[k].frame;
+  plane_[k].frame = frame;
+  for (PlaneOutline* known : {&table_[k].seen, &table_[k].support})
+    for (int i = 0; i < known->count; ++i)
+      known->uv[i] = plane_coordinates(frame, plane_point(from, Vec3::Zero(), known->uv[i]));
+}
+
+/// Fits a plane to its points again, without those that have left it.
+///
+///   covariance of (a, b, h) = sum J_i (Sigma_i + roughness² n nᵀ) J_iᵀ,   J_i of fit_plane_jacobian
+void WindowPlanes::refit(int k) {
+  const PlaneFrame old = plane_[k].frame;
+  const Vec3 n_old = old.R_WP.col(2);
+  int count = list_points(k), kept = 0;
+  for (int c = 0; c < count; ++c) {
+    const Scalar d = n_old.dot(point_W_[c] - old.o_W);
+    if (std::abs(d) > 3 * settings_.plane_distance) {
+      map_.point(row_[c]).plane = -1;
+      ++table_[k].outliers;
+      continue;
+    }
+    row_[kept] = row_[c];
+    point_W_[kept++] = point_W_[c];
+  }
+  PlaneFit fit;
+  if (kept < same::kMinPoints || !fit_plane(point_W_, kept, old.o_W + n_old, &fit)) return;
+  const Mat3 axes = fit.frame.R_WP;
+  const Vec3 n = axes.col(2);
+  if (!(n.dot(n_old) > same::kMinNormalCosine)) return;
+  Mat3 P = Mat3::Zero();
+  const Scalar roughness2 = settings_.fold.roughness * settings_.fold.roughness;
+  for (int c = 0; c < kept; ++c) {
+    const Mat3 J = fit_plane_jacobian(fit, point_W_[c]);
+    const Mat3 S = map_.covariance(row_[c]) + roughness2 * n * n.transpose();
+    P += J.lazyProduct(S).lazyProduct(J.transpose());
+  }
+  PlaneFrame frame = fit.frame;
+  frame.R_WP.col(0) = (old.R_WP.col(0) - n * n.dot(old.R_WP.col(0))).normalized();
+  frame.R_WP.col(1) = n.cross(frame.R_WP.col(0));
+  // (a, b) turn with the axes.
+  Mat3 T = frame.R_WP.transpose() * axes;
+  T.col(2).setZero();
+  T.row(2).setZero();
+  T(2, 2) = 1;
+  plane_[k].covariance = T.lazyProduct(P).lazyProduct(T.transpose());
+  set_frame(k, frame);
+}
+
+void WindowPlanes::put_on(int k, int i) {
+  map_.point(i).plane = static_cast<std::int8_t>(k);
+  const Vec2 uv = plane_coordinates(plane_[k].frame, map_.position(i));
+  extend_outline(&table_[k].support, &uv, 1);
+}
+
+/// Points that lie on the plane, near to what is known of it.
+void WindowPlanes::take_points(int k) {
+  const Scalar reach = std::min(member::kReach * std::sqrt(outline_area(table_[k].support)), settings_.plane_radius);
+  for (int i = 0; i < map_.capacity(); ++i) {
+    Mat3 covariance;
+    if (!is_settled(i, &covariance)) continue;
+    const Vec3 p_W = map_.position(i);
+    if (outline_contains(table_[k].support, plane_coordinates(plane_[k].frame, p_W), reach) &&
+        lies_on(k, p_W, covariance))
+      put_on(k, i);
+  }
+}
+
+/// Extends what was seen of a plane by the points that are on it now.
+void WindowPlanes::outline(int k) {
+  const int count = list_points(k);
+  Vec2 uv[kOutlineBatch];
+  for (int c = 0; c < count;) {
+    int batch = 0;
+    while (c < count && batch < kOutlineBatch) uv[batch++] = plane_coordinates(plane_[k].frame, point_W_[c++]);
+    extend_outline(&table_[k].seen, uv, reject_isolated(uv, batch));
+  }
+}
+
+/// Looks for one new plane among points that lie on none yet.
+void WindowPlanes::discover(const Vec3& viewer_W) {
+  int count = 0;
+  const Scalar near = 2 * settings_.plane_distance;
+  for (int i = 0; i < map_.capacity(); ++i) {
+    if (!is_settled(i, &candidate_[count].covariance)) continue;
+    const Vec3 p_W = map_.position(i);
+    bool taken = false;
+    for (int k = 0; k < table_.capacity() && !taken; ++k)
+      taken = table_.used(k) && std::abs(plane_distance(plane_[k].frame, Vec3::Zero(), p_W)) < near &&
+              outline_contains(table_[k].support, plane_coordinates(plane_[k].frame, p_W), settings_.plane_radius);
+    if (taken) continue;
+    candidate_[count].p_W = p_W;
+    row_[count++] = i;
+  }
+  if (count <= settings_.plane_min_points) return;
+  PlaneSearchSettings search;
+  search.min_points = settings_.plane_min_points;
+  search.distance = settings_.plane_distance;
+  search.radius = settings_.plane_radius;
+  search.normal_variance = settings_.plane_distance * settings_.plane_distance / Scalar(4);
+  PlaneFit fit;
+  int members[kMaxPlaneMembers];
+  int number = 0;
+  if (!search_plane(candidate_, count, search, viewer_W, &random_, &fit, members, &number)) return;
+  for (int m = 0; m < number; ++m) members[m] = row_[members[m]];
+  const int k = table_.add(0);
+  if (k < 0) return;
+  plane_[k] = {fit.frame, Mat3::Identity() * (settings_.plane_distance * settings_.plane_distance)};
+  for (int m = 0; m < number; ++m) put_on(k, members[m]);
+  refit(k);
+  outline(k);
+  settings_.hooks.say("found a plane");
+}
+
+/// Merges one plane into another that its points lie on as well.
+void WindowPlanes::merge() {
+  for (int k = 0; k < table_.capacity(); ++k)
+    for (int other = 0; other < table_.capacity(); ++other) {
+      if (k == other || !table_.used(k) || !table_.used(other) || points_on(other) > points_on(k)) continue;
+      const PlaneFrame &to = plane_[k].frame, &from = plane_[other].frame;
+      if (to.R_WP.col(2).dot(from.R_WP.col(2)) < same::kMinNormalCosine) continue;
+      const int count = list_points(other);
+      int close = 0;
+      for (int c = 0; c < count; ++c)
+        close += std::abs(plane_distance(to, Vec3::Zero(), point_W_[c])) < 3 * settings_.plane_distance ? 1 : 0;
+      if (count < same::kMinPoints || 10 * close < 9 * count) continue;
+      for (int c = 0; c < count; ++c) put_on(k, row_[c]);
+      for (int i = 0; i < table_[other].seen.count; ++i) {
+        const Vec2 uv = plane_coordinates(to, plane_point(from, Vec3::Zero(), table_[other].seen.uv[i]));
+        extend_outline(&table_[k].seen, &uv, 1);
+      }
+      table_.remember_merge(table_[other].id, table_[k].id);
+      table_.remove(other);
+      refit(k);
+      settings_.hooks.say("merged two planes");
+      return;
+    }
+}
+
+void WindowPlanes::dissolve_weak() {
+  for (int k = 0; k < table_.capacity(); ++k) {
+    if (!table_.used(k)) continue;
+    const int points = points_on(k);
+    PlaneEntry& entry = table_[k];
+    entry.max_points = std::max(entry.max_points, points);
+    const bool proven = entry.max_points > settings_.plane_min_points;
+    entry.weak = points < same::kMinPoints || !proven ? entry.weak + 1 : 0;
+    if (entry.outliers > points || entry.weak > tuning::window_planes::kMaxWeak) dissolve(k);
+  }
+}
+
+void WindowPlanes::dissolve(int k) {
+  for (int i = 0; i < map_.capacity(); ++i)
+    if (map_.used(i) && map_.point(i).plane == k) map_.point(i).plane = -1;
+  table_.remove(k);
+}
+
+}  // namespace pf

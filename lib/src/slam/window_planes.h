@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+
+#include "map/plane_search.h"
+#include "slam/window_map.h"
+
+/// Planes of the window: found among its points, fitted again with every adjustment, merged and dissolved (lib/docs/window.md).
+
+namespace pf {
+
+/// Beside its row in the plane table, with the same number. The plane lies in its frame.
+struct WindowPlane {
+  PlaneFrame frame;
+  Mat3 covariance = Mat3::Zero();  ///< of (a, b, h), keyframes taken as exact
+};
+
+class WindowPlanes {
+ public:
+  WindowPlanes(const Settings& settings, WindowMap& map)
+      : settings_(settings), map_(map), table_(map.tables().planes) {}
+
+  bool layout(Arena& arena);
+  void init() { random_ = 1; }
+
+  /// The work of one keyframe, after its adjustment.
+  void maintain(const Vec3& viewer_W);
+
+  const WindowPlane& plane(int k) const { return plane_[k]; }
+  int points_on(int k) const;
+
+ private:
+  void refit(int k);
+  bool is_settled(int i, Mat3* covariance) const;
+  bool lies_on(int k, const Vec3& p_W, const Mat3& covariance) const;
+  void set_frame(int k, const PlaneFrame& frame);
+  void put_on(int k, int i);
+  void take_points(int k);
+  void outline(int k);
+  void discover(const Vec3& viewer_W);
+  void merge();
+  void dissolve_weak();
+  void dissolve(int k);
+  int list_points(int k);
+
+  const Settings& settings_;
+  WindowMap& map_;
+  PlaneTable& table_;
+  WindowPlane* plane_ = nullptr;         ///< max_planes
+  PlaneCandidate* candidate_ = nullptr;  ///< one for each point
+  int* row_ = nullptr;                   ///< likewise
+  Vec3* point_W_ = nullptr;              ///< likewise
+  std::uint32_t random_ = 1;
+};
+
+}  // namespace pf
