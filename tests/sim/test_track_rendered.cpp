@@ -232,8 +232,8 @@ void test_pure_rotation_should_stay_starting_when_there_is_no_target() {
 
 }  // namespace
 
-int main(void) {
-  UNITY_BEGIN();
+/// What holds for both back ends.
+void run_for_both() {
   RUN_TEST(test_desk_should_be_tracked_in_every_frame_when_it_starts_at_the_target);
   RUN_TEST(test_desk_should_start_without_a_target_and_then_be_tracked);
   RUN_TEST(test_tracking_should_go_on_when_the_exposure_jumps);
@@ -243,10 +243,18 @@ int main(void) {
   RUN_TEST(test_a_covered_lens_should_be_called_lost_and_tracking_should_resume_when_the_view_comes_back);
   RUN_TEST(test_a_repeated_image_should_repeat_pose_and_status_and_the_next_one_should_be_tracked);
   RUN_TEST(test_a_frozen_camera_should_coast_after_coast_s_with_growing_covariance_and_be_found_again);
+  RUN_TEST(test_a_hand_that_shakes_should_be_followed_at_ten_frames_a_second);
+  RUN_TEST(test_pure_rotation_should_stay_starting_when_there_is_no_target);
+}
+
+int main(void) {
+  UNITY_BEGIN();
+  run_for_both();
   RUN_TEST(test_a_map_of_a_dozen_features_should_be_tracked_from_the_target_on);
   RUN_TEST(test_a_map_of_a_dozen_features_should_be_tracked_at_four_frames_a_second);
-  RUN_TEST(test_a_hand_that_shakes_should_be_followed_at_ten_frames_a_second);
   RUN_TEST(test_rows_should_have_no_times_of_their_own_when_timestamps_are_nominal);
-  RUN_TEST(test_pure_rotation_should_stay_starting_when_there_is_no_target);
+  RenderedRun::backend = PF_BACKEND_WINDOW;
+  std::printf("--- the window\n");
+  run_for_both();
   return UNITY_END();
 }

@@ -29,6 +29,9 @@ class RenderedRun {
 
   enum class Start { kRectangle, kNone };
 
+  /// Of the runs that are made from now on.
+  static inline pf_backend_t backend = PF_BACKEND_FILTER;
+
   /// change: of what the scene's own options are.
   RenderedRun(const char* scene, int length, Start start, void (*change)(pf_sim_options_t*) = nullptr) {
     std::printf("scene %s, seed %llu\n", scene, static_cast<unsigned long long>(kSeed));
@@ -41,6 +44,8 @@ class RenderedRun {
     TEST_ASSERT_NOT_NULL(sim_);
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
     pf_sim_camera(sim_, &config.camera);
+    config.backend = backend;
+    if (backend == PF_BACKEND_WINDOW) config.map.features_in_view = 150;
     create();
     if (start == Start::kRectangle) start_at_rectangle();
   }
