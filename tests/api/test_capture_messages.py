@@ -106,7 +106,7 @@ def test_usage(root):
     expect("there and back by rows", 1, ["--there-and-back", "--readout 0"], "--source", source, "--there-and-back",
            "--readout", "0.03", *out)
     expect("as recorded", 2, ["--as-recorded", "euroc:"], "--source", source, "--as-recorded")
-    expect("window back end", 2, ["not available yet"], "--source", source, "--backend", "window")
+    expect("window back end with rows", 2, ["camera.readout_s"], "--source", source, "--backend", "window", "--readout", "0.03", *out)
     expect("back end", 2, ["--backend", "filter"], "--source", source, "--backend", "magic")
     expect("start", 2, ["--start"], "--source", source, "--start", "somehow")
     expect("rectangle", 2, ["rectangle:", "metres"], "--source", source, "--start", "rectangle:big", *out)

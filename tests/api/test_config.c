@@ -42,6 +42,14 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES(capacity.max_features, 1001);
   NAMES(capacity.max_observations, 7);
   NAMES(capacity.max_observations, 201);
+  NAMES(backend, 0);
+  NAMES(backend, 3);
+  NAMES(capacity.window_keyframes, 1);
+  NAMES(capacity.window_keyframes, 9);
+  NAMES(capacity.window_fixed, -1);
+  NAMES(capacity.window_fixed, 17);
+  NAMES(capacity.window_points, 49);
+  NAMES(capacity.window_points, 1001);
   NAMES(map.features_in_view, 7);
   NAMES(map.features_in_view, 31); /* more than max_observations */
   NAMES(map.border_px, 3);

@@ -148,23 +148,32 @@ int WindowTracking::search_for(int first, int count, const PosePrior& at, Scalar
 }
 
 /// A candidate as a match for the pose: m = R r + rho p_host, w = rho. Without a depth it has the median one, and as much again as standard
-/// deviation. `shared`: points without a depth in the fit; they may all be nearer or farther than that together, so that their mean is no
-/// better known than one.
+/// deviation; its noise has that times the baseline, the prior's and the uncertain part of it:
+///
+///   R += var(rho) (J_rho J_rhoᵀ + J_p P_p J_pᵀ / rho²)
+///
+/// shared: points without a depth in the fit, which may all be nearer or farther together, so that their mean is no better known than one;
+/// 0: their median is the unit of length, and each is wrong by itself.
 void WindowTracking::make_pose_match(int c, const PosePrior& prior, Scalar depth, int shared) {
   const Match& match = frame_.match(candidate_[c].match);
   const WindowPoint& point = map_.point(match.feature);
   const Vec3& host_W = map_.keyframes[point.host].p_W;
   const Vec3 ray_W = map_.ray_W(match.feature);
   const Scalar rho = point.has_depth ? point.rho : 1 / depth;
-  const Scalar variance = point.has_depth ? point.variance : static_cast<Scalar>(shared) * rho * rho;
+  const Scalar variance = point.has_depth ? point.variance : static_cast<Scalar>(std::max(shared, 1)) * rho * rho;
   Vec2 z, J_rho;
   Mat26 J_C;
   PoseMatch& out = pose_.match(c);
   out.point = {ray_W + rho * host_W, rho, match.measured};
   out.noise = noise_.correlation_frames() * candidate_[c].noise;
   if (project_bearing(settings_.camera, prior.q_WC.toRotationMatrix(), ray_W, host_W - prior.p_W, rho, &z, &J_C,
-                      nullptr, &J_rho))
+                      nullptr, &J_rho)) {
     out.noise += variance * J_rho * J_rho.transpose();
+    if (point.has_depth || shared == 0) return;
+    const Mat23 J_p = J_C.rightCols<3>() / rho;
+    const Mat3 P_p = prior.covariance.bottomRightCorner<3, 3>();
+    out.noise += variance * J_p.lazyProduct(P_p).lazyProduct(J_p.transpose());
+  }
 }
 
 /// Pose that the first `found` candidates support. Returns the number of inliers, 0 where the pose may be chance.

@@ -45,7 +45,7 @@ void WindowTracking::settle_followed(int found, const Quat& q_WC, const Vec3& p_
   using namespace tuning::window_start;
   PosePrior about = {q_WC, p_W, Mat6(Mat6::Identity() * (kRotationSigma * kRotationSigma))};
   about.covariance.bottomRightCorner<3, 3>() = Mat3::Identity() * (kPositionSigma * kPositionSigma * depth * depth);
-  for (int c = 0; c < found; ++c) make_pose_match(c, about, depth, 1);
+  for (int c = 0; c < found; ++c) make_pose_match(c, about, depth, 0);
   CameraPose pose;
   Mat6 information;
   if (pose_.fit(settings_.camera, found, about, settings_.gate, &pose, &information) < settings_.min_inliers)

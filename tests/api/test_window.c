@@ -1,0 +1,92 @@
+/* The window: what it refuses, what its block takes, and that it repeats itself. */
+#include <planefold/planefold.h>
+#include <string.h>
+
+#include "unity.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static pf_config_t config;
+
+static void good_config(void) {
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
+  config.camera.model = PF_CAMERA_PINHOLE;
+  config.camera.width = 640;
+  config.camera.height = 480;
+  config.camera.fx = config.camera.fy = 500;
+  config.camera.cx = 319.5;
+  config.camera.cy = 239.5;
+  config.backend = PF_BACKEND_WINDOW;
+}
+
+static void refuses(const char* field) {
+  const char* named = NULL;
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_CONFIG, pf_config_check(&config, &named));
+  TEST_ASSERT_EQUAL_STRING(field, named);
+  good_config();
+}
+
+static void test_check_should_name_what_the_window_cannot_do(void) {
+  good_config();
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  config.camera.readout_s = 0.03;
+  refuses("camera.readout_s");
+  config.plane.fix_sigma = 0.01;
+  refuses("plane.fix_sigma");
+  config.motion.model = PF_MOTION_INERTIAL;
+  refuses("motion.model");
+  config.camera.estimate = PF_CAMERA_CONSIDER;
+  refuses("camera.estimate");
+  config.capacity.max_patches = 4;
+  refuses("capacity.max_patches");
+  config.map.features_in_view = 301;
+  refuses("map.features_in_view");
+}
+
+static void test_block_should_take_two_mebibytes_at_most(void) {
+  pf_memory_t need;
+  good_config();
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
+  TEST_ASSERT_TRUE(need.bytes <= 2u << 20);
+}
+
+static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) {
+  static uint8_t block[2u << 20] __attribute__((aligned(64)));
+  static uint8_t pixels[640 * 480];
+  const pf_image_t image = {pixels, 640, 480, 640, 1000};
+  const double none[3] = {0, 0, 0};
+  double scratch[8], information[49];
+  pf_observation_t observation;
+  pf_plane_prior_t prior;
+  uint32_t id = 0;
+  pf_memory_t need;
+  pf_slam_t* slam = NULL;
+  good_config();
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
+  TEST_ASSERT_TRUE(need.bytes <= sizeof(block) && need.alignment <= 64);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block, sizeof(block), &slam));
+  memset(&observation, 0, sizeof(observation));
+  memset(&prior, 0, sizeof(prior));
+  prior.R_WP[0] = prior.R_WP[4] = prior.R_WP[8] = 1;
+  prior.covariance[0] = prior.covariance[4] = prior.covariance[8] = 1e-6;
+  prior.outline_count = 3;
+  prior.outline_P[0][0] = -1, prior.outline_P[0][1] = -1;
+  prior.outline_P[1][0] = 1, prior.outline_P[1][1] = -1;
+  prior.outline_P[2][1] = 1;
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_push_observations(slam, 1, &observation, 1));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_push_control(slam, none, none));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_plane_prior(slam, &prior, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_get_gauge_information(slam, scratch, 8, information));
+  /* A picture without a corner: starting, and no crash. */
+  memset(pixels, 128, sizeof(pixels));
+  TEST_ASSERT_EQUAL_INT(PF_NOTE_STARTING, pf_push_frame(slam, &image));
+}
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_check_should_name_what_the_window_cannot_do);
+  RUN_TEST(test_block_should_take_two_mebibytes_at_most);
+  RUN_TEST(test_calls_of_the_filter_should_be_refused_and_change_nothing);
+  return UNITY_END();
+}
