@@ -10,6 +10,7 @@
 #include "sim/paths.h"
 #include "sim/render.h"
 #include "sim/scene_box.h"
+#include "sim/scene_road.h"
 #include "sim/scene_street.h"
 #include "sim/sensor.h"
 #include "sim/trajectory.h"
@@ -46,6 +47,13 @@ void adjust_walk(pf_sim_options_t* o) {
   o->shake_m = o->shake_rad = 0.01;
 }
 
+/// A camera that rides past a target.
+void adjust_ride(pf_sim_options_t* o) {
+  constexpr double kFocal = 300.9;  // 56 degrees across
+  o->camera.fx = o->camera.fy = kFocal;
+  o->shake_m = 0.005;
+}
+
 const SceneKind kScenes[] = {
     {"desk", make_desk, desk_path, 570, nullptr},
     {"room", make_room, room_path, 840, nullptr},
@@ -59,6 +67,7 @@ const SceneKind kScenes[] = {
     {"checker", make_two_depths, checker_path, 50, [](pf_sim_options_t* o) { o->shake_m = o->shake_rad = 0; }},
     {"clutter", make_clutter, clutter_path, 240, nullptr},
     {"bushes", make_bushes, bushes_path, 600, nullptr},
+    {"road", make_road, road_path, 600, adjust_ride},
 };
 
 const SceneKind* find_scene(const char* name) {

@@ -1,6 +1,7 @@
 #include "template_run.h"
 
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <memory>
 
@@ -12,7 +13,9 @@
 namespace pfsim {
 namespace {
 
-constexpr double kLostError = 0.08;  // [m] a tenth of the scenes' depth
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
 
 struct CloseSim {
   void operator()(pf_sim_t* sim) const { pf_sim_close(sim); }
@@ -20,12 +23,23 @@ struct CloseSim {
 
 /// One context on its way through the frames.
 struct Runner {
-  Runner(const pf_config_t& config, TemplateTruth* truth_, int side_)
-      : context(config), truth(truth_), side(side_), matches(1200), features(1000) {}
+  Runner(const TemplateCase& one, const TemplateOptions& options, TemplateTruth* truth_)
+      : context(one.config),
+        truth(truth_),
+        side(one.config.capacity.template_px),
+        lost_error(options.lost_error),
+        matches(1200),
+        features(1000) {
+    if (options.table.empty()) return;
+    table.reset(std::fopen((options.table + one.name + ".csv").c_str(), "w"));
+    if (table) std::fputs("frame,true_x,true_y,true_z,x,y,z,inliers\n", table.get());
+  }
 
   Context context;
   TemplateTruth* truth;
   int side;
+  double lost_error;
+  std::unique_ptr<std::FILE, CloseFile> table;
   std::vector<pf_match_t> matches;
   std::vector<pf_feature_t> features;
   std::map<std::uint32_t, TemplateTruth::Patch> patches;
@@ -35,15 +49,18 @@ struct Runner {
     ++sums->frames;
     const pf_status_t status = pf_push_frame(context.slam, &image);
     pf_pose_t estimate;
+    bool has_pose = false;
     if (pf_get_pose(context.slam, &estimate) == PF_OK) {
+      has_pose = true;
       const PoseDifference error = pose_difference(estimate, pose);
       sums->position2 += error.m * error.m;
       sums->rotation2 += error.rad * error.rad;
-      if (error.m > kLostError) sums->lost = 1;
+      if (error.m > lost_error) sums->lost = 1;
     }
     sums->tracked += status == PF_OK;
     pf_state_t state;
     if (pf_get_state(context.slam, &state) == PF_OK && state == PF_STATE_LOST) sums->lost = 1;
+    const double inliers_before = sums->inliers;
     std::size_t count = 0;
     pf_get_matches(context.slam, matches.data(), matches.size(), &count);
     for (std::size_t k = 0; k < count && k < matches.size(); ++k) {
@@ -59,6 +76,14 @@ struct Runner {
         sums->straddling += patch.straddles;
         if (patch.straddles) patches[match.id] = std::move(patch);
       }
+    }
+    if (table) {
+      std::fprintf(table.get(), "%d,%.6f,%.6f,%.6f,", sums->frames - 1, pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]);
+      if (has_pose)
+        std::fprintf(table.get(), "%.6f,%.6f,%.6f,", estimate.p_WC[0], estimate.p_WC[1], estimate.p_WC[2]);
+      else
+        std::fputs(",,,", table.get());
+      std::fprintf(table.get(), "%.0f\n", sums->inliers - inliers_before);
     }
     pf_report_t report;
     if (pf_get_report(context.slam, &report) == PF_OK && report.templates > 0) {
@@ -115,7 +140,7 @@ void run_templates(const TemplateOptions& options, const std::vector<TemplateCas
   TemplateTruth truth(sim.get(), sim_options.camera);
   std::vector<std::unique_ptr<Runner>> runners;
   for (const TemplateCase& one : cases) {
-    runners.push_back(std::make_unique<Runner>(one.config, &truth, one.config.capacity.template_px));
+    runners.push_back(std::make_unique<Runner>(one, options, &truth));
     pf_slam_t* slam = runners.back()->context.slam;
     if (slam == nullptr || pf_start_from_target(slam, &target) != PF_OK) return;
   }

@@ -16,13 +16,15 @@ struct TemplateCase {
 
 struct TemplateOptions {
   std::string scene;
-  pf_sim_options_t sim;  ///< the seed is set for each run
-  int judge_after = 30;  ///< frames that a mask has learnt from
+  pf_sim_options_t sim;      ///< the seed is set for each run
+  int judge_after = 30;      ///< frames that a mask has learnt from
+  double lost_error = 0.08;  ///< an error that is a loss [m]: a tenth of the depth
+  std::string table;         ///< beginning of the names of CSV files, one for each case; empty: none
 };
 
 /// One run of one case. Plain data, so that it may lie in memory shared between processes.
 struct TemplateSums {
-  std::int32_t done = 0, lost = 0;  ///< lost: tracking ended, or the error is beyond a tenth of the depth
+  std::int32_t done = 0, lost = 0;  ///< lost: tracking ended, or the error is beyond lost_error
   std::int32_t frames = 0, tracked = 0;
   double tracks = 0, track_frames = 0,
          median_track = 0;              ///< features that were measured again, frames in which they were

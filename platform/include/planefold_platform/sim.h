@@ -20,6 +20,7 @@
  *         checker   two planes in a checkerboard, one before the other; the camera moves sideways
  *         clutter   boards and posts at many depths before a wall
  *         bushes    leaves anywhere in a volume: no plane
+ *         road      72 m past poles, parked boxes and fronts
  *
  * W is the centre of the target: x right, y down, z into the wall; of the box, its middle; of the street, where the camera
  * begins. The same seed and options give the same pixels.
