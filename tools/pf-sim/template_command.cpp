@@ -42,7 +42,10 @@ int fail(const std::string& what, int code = 2) {
 void run_one(int index, void* context) {
   const Job& job = *static_cast<Job*>(context);
   TemplateOptions options = *job.options;
-  if (index > 0) options.table.clear();  // the first run's alone
+  if (index > 0) {  // files are the first run's alone
+    options.table.clear();
+    options.templates.clear();
+  }
   run_templates(options, *job.cases, job.seed + static_cast<std::uint64_t>(index),
                 job.sums + static_cast<std::size_t>(index) * job.cases->size());
 }
@@ -167,6 +170,7 @@ int run(const Choices& c) {
   if (!is_road) cases.push_back({"none", config_of(camera, c, PF_MASKS_NONE, c.misfit)});
   if (chooses) cases.push_back({"whole-best", config_of(camera, c, PF_MASKS_WHOLE, best_misfit)});
   if (!c.table.empty()) options.table = c.table + "/" + c.scene + "_";
+  if (!c.table.empty() && c.scene == "checker") options.templates = c.table + "/checker_templates.csv";
   std::vector<std::vector<Means>> by_seed;
   const std::vector<Means> means = run_cases(options, cases, c.seed, c, &by_seed);
   if (means.empty()) return fail("a run did not come to its end", 1);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "context.h"
 #include "pose_difference.h"
@@ -30,6 +31,10 @@ struct Runner {
         lost_error(options.lost_error),
         matches(1200),
         features(1000) {
+    if (!options.templates.empty() && one.config.map.masks == PF_MASKS_PARTIAL) {
+      templates.reset(std::fopen(options.templates.c_str(), "w"));
+      if (templates) std::fputs("frame,id,side,region_side,grey,mask,region\n", templates.get());
+    }
     if (options.table.empty()) return;
     table.reset(std::fopen((options.table + one.name + ".csv").c_str(), "w"));
     if (table) std::fputs("frame,true_x,true_y,true_z,x,y,z,inliers\n", table.get());
@@ -39,10 +44,11 @@ struct Runner {
   TemplateTruth* truth;
   int side;
   double lost_error;
-  std::unique_ptr<std::FILE, CloseFile> table;
+  std::unique_ptr<std::FILE, CloseFile> table, templates;
   std::vector<pf_match_t> matches;
   std::vector<pf_feature_t> features;
   std::map<std::uint32_t, TemplateTruth::Patch> patches;
+  std::set<std::uint32_t> straddling;
   std::map<std::uint32_t, int> lengths;  ///< frames in which a feature was an inlier
 
   void push(const pf_image_t& image, const pf_pose_t& pose, int judge_after, bool* looked, TemplateSums* sums) {
@@ -66,6 +72,7 @@ struct Runner {
     for (std::size_t k = 0; k < count && k < matches.size(); ++k) {
       const pf_match_t& match = matches[k];
       if (match.status == PF_MATCH_INLIER) {
+        write_template(image, match, sums->frames - 1);
         ++lengths[match.id];
         sums->inliers += match.kind != PF_FEATURE_INVERSE_DEPTH;
       } else if (match.status == PF_MATCH_NEW) {
@@ -74,7 +81,10 @@ struct Runner {
         TemplateTruth::Patch patch = truth->cut(match.measured_px, side);
         sums->begun += 1;
         sums->straddling += patch.straddles;
-        if (patch.straddles) patches[match.id] = std::move(patch);
+        if (patch.straddles) {
+          straddling.insert(match.id);
+          patches[match.id] = std::move(patch);
+        }
       }
     }
     if (table) {
@@ -91,6 +101,29 @@ struct Runner {
       sums->area_frames += 1;
     }
     judge(pose, judge_after, sums);
+  }
+
+  /// A straddling template with its mask, and the image about where it was found, in every fifth frame.
+  void write_template(const pf_image_t& image, const pf_match_t& match, int frame) {
+    constexpr int kEvery = 5, kReach = 20;
+    pf_template_t found;
+    if (!templates || frame % kEvery != 0 || straddling.count(match.id) == 0 ||
+        pf_get_template(context.slam, match.id, &found) != PF_OK)
+      return;
+    std::FILE* const file = templates.get();
+    std::fprintf(file, "%d,%u,%d,%d,", frame, match.id, found.side, 2 * kReach + 1);
+    for (int i = 0; i < found.side * found.side; ++i) std::fprintf(file, "%02x", found.grey[i]);
+    std::fputc(',', file);
+    for (int i = 0; i < found.side * found.side; ++i) std::fprintf(file, "%02x", found.mask[i]);
+    std::fputc(',', file);
+    const int x = static_cast<int>(std::lround(match.measured_px[0])),
+              y = static_cast<int>(std::lround(match.measured_px[1]));
+    for (int v = y - kReach; v <= y + kReach; ++v)
+      for (int u = x - kReach; u <= x + kReach; ++u) {
+        const bool inside = u >= 0 && v >= 0 && u < image.width && v < image.height;
+        std::fprintf(file, "%02x", inside ? image.pixels[v * image.stride + u] : 0);
+      }
+    std::fputc('\n', file);
   }
 
   /// Templates whose masks have learnt long enough, once each.

@@ -20,6 +20,7 @@ struct TemplateOptions {
   int judge_after = 30;      ///< frames that a mask has learnt from
   double lost_error = 0.08;  ///< an error that is a loss [m]: a tenth of the depth
   std::string table;         ///< beginning of the names of CSV files, one for each case; empty: none
+  std::string templates;     ///< CSV file for pixels and masks of straddling templates of the first case; empty: none
 };
 
 /// One run of one case. Plain data, so that it may lie in memory shared between processes.
