@@ -36,10 +36,10 @@ struct Bench {
     TEST_ASSERT_TRUE(map.layout(*arena, 40, 2));
     TEST_ASSERT_TRUE(frame.layout(*arena, 40 + kMost));
     TEST_ASSERT_TRUE(update.layout(*arena, kMost));
-    TEST_ASSERT_TRUE(images.layout(*arena, settings.camera.width, settings.camera.height, kMost));
+    TEST_ASSERT_TRUE(images.layout(*arena, kMost));
     map.init();
     frame.init();
-    images.init(settings.camera);
+    images.init();
     filter->set_lens(settings.camera, LensPrior());
     filter->set_mean(random_body(random));
     TEST_ASSERT_TRUE(images.begin_frame(image.view()));

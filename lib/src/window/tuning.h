@@ -50,7 +50,7 @@ inline constexpr Scalar kStepRegularisation = Scalar(1e-6);  ///< likewise, on t
 
 /// Tables of the window.
 namespace window_map {
-inline constexpr int kKeyframes = 40;  ///< that are kept
+inline constexpr int kKeyframes = 30;  ///< that are kept; two more poses than these is the most that the adjuster takes
 }  // namespace window_map
 
 /// Depths of the window's points.
