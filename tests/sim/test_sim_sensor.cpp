@@ -121,7 +121,8 @@ void test_paths_should_be_smooth_and_their_velocities_should_integrate_to_the_po
     }
     std::printf("%s: fastest %.2f m/s, hardest %.1f m/s^2, velocity error %.4f m/s, %.4f rad/s\n", scene, fastest,
                 hardest, worst_v, worst_w);
-    TEST_ASSERT_TRUE(fastest < 1.5);
+    const double driven = 4.5, walked = 1.5;  // [m/s] 72 m of the road are driven in 600 frames
+    TEST_ASSERT_TRUE(fastest < (std::strcmp(scene, "road") == 0 ? driven : walked));
     TEST_ASSERT_TRUE(hardest < 10);
     TEST_ASSERT_TRUE(worst_v < 0.01);
     TEST_ASSERT_TRUE(worst_w < 0.02);

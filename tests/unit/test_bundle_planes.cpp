@@ -84,7 +84,8 @@ struct Case {
   RandomWindow window;
   Bundle bundle;
 
-  explicit Case(SeededRandom& random, int poses = 6) : window(random, poses, 3, 40, 3, 0.4, 0.004), bundle(window.bundle()) {
+  explicit Case(SeededRandom& random, int poses = 6)
+      : window(random, poses, 3, 40, 3, 0.4, 0.004), bundle(window.bundle()) {
     TEST_ASSERT_TRUE(adjuster.layout(*arena, poses, 3, 40, 3));
   }
 };

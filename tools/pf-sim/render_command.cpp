@@ -146,7 +146,8 @@ std::string no_scene(const std::string& scene) {
 void add_render(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("render", "Render a scene: images, times, calibration, target, truth");
-  command->add_option("scene", c->scene, "desk room wall rotation person exposure repeat box checker clutter bushes road")
+  command
+      ->add_option("scene", c->scene, "desk room wall rotation person exposure repeat box checker clutter bushes road")
       ->required();
   command->add_option("--out", c->out, "folder to write")->required();
   command->add_option("--seed", c->seed, "of scene, path and noise");
