@@ -95,7 +95,7 @@ struct FrameOfScene {
     map.init();
     frame.init();
     for (const int slot : scene.slots) {
-      frame.add({map.features.add(slot), 0, MatchStatus::kInlier, BlockKind::kPoint, Vec2::Zero(), Mat2::Zero(),
+      frame.add({map.features.add(slot), 0, MatchStatus::kInlier, BlockKind::kPoint, false, Vec2::Zero(), Mat2::Zero(),
                  Vec2::Zero(), Scalar(0)});
     }
   }

@@ -176,7 +176,7 @@ bool FilterStart::start_in_image() {
     parts_.images.remember(i, z, {sighting.pose.q_WC, sighting.pose.p_WC});
     f.observations = f.attempts = 1;
     ++report.inliers;
-    parts_.frame.add({i, f.id, MatchStatus::kInlier, BlockKind::kPoint, z, Mat2::Zero(), z, Scalar(0)});
+    parts_.frame.add({i, f.id, MatchStatus::kInlier, BlockKind::kPoint, false, z, Mat2::Zero(), z, Scalar(0)});
   }
   report.attempts = report.matches = report.inliers;
   parts_.tracking.set_from_target();

@@ -20,11 +20,11 @@ struct Match {
   std::uint32_t id;
   MatchStatus status;
   BlockKind kind;
+  bool searched;  ///< the image was compared with its appearance
   Vec2 predicted;
   Mat2 innovation;
   Vec2 measured;
   Scalar nis;  ///< normalised innovation squared of the match alone, two degrees of freedom; zero without a match
-  bool searched = false;  ///< the image was compared with its appearance
 };
 
 enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kImu, kPatch, kTemplate, kAdjust, kStageCount };

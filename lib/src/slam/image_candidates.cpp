@@ -62,7 +62,7 @@ int ImageFrontEnd::list_visible() {
     Candidate& candidate = update_.candidate(i);
     const Feature& f = map_.features[candidate.feature];
     candidate.match = frame_.add({candidate.feature, f.id, MatchStatus::kMissed, filter_.state().block[f.slot].kind,
-                                  Vec2::Zero(), Mat2::Zero(), Vec2::Zero(), Scalar(0)});
+                                  false, Vec2::Zero(), Mat2::Zero(), Vec2::Zero(), Scalar(0)});
   }
   return count;
 }

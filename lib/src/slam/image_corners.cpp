@@ -33,7 +33,7 @@ bool ImageFrontEnd::add_in(const Rect& rect, int* anchor) {
       return CornerUse::kNotHere;
     }
     frame_.add({entry, map_.features[entry].id, MatchStatus::kNew,
-                filter_.state().block[map_.features[entry].slot].kind, pixel, Mat2::Zero(), pixel, Scalar(0)});
+                filter_.state().block[map_.features[entry].slot].kind, false, pixel, Mat2::Zero(), pixel, Scalar(0)});
     return CornerUse::kTaken;
   });
 }

@@ -52,7 +52,7 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count, b
     const Scalar nis = squared_distance(o.measured - o.predicted, S);
     const bool is_inlier = nis < settings_.gate;
     const int match = frame_.add({entry, feature.id, is_inlier ? MatchStatus::kInlier : MatchStatus::kOutlier,
-                                  filter_.state().block[feature.slot].kind, o.predicted, S, o.measured, nis});
+                                  filter_.state().block[feature.slot].kind, false, o.predicted, S, o.measured, nis});
     ++frame_.report.matches;
     if (!is_inlier) {
       count_up(&feature.failures);
@@ -74,8 +74,8 @@ void ObservationFrontEnd::add_features(const PixelObservation* observations, int
     const int entry = features_.add(anchor, o.pixel, Mat2::Identity() * (o.sigma_px * o.sigma_px));
     if (entry < 0) continue;
     map_.features[entry].external_id = o.external_id;
-    frame_.add({entry, map_.features[entry].id, MatchStatus::kNew, BlockKind::kInverseDepth, o.pixel, Mat2::Zero(),
-                o.pixel, Scalar(0)});
+    frame_.add({entry, map_.features[entry].id, MatchStatus::kNew, BlockKind::kInverseDepth, false, o.pixel,
+                Mat2::Zero(), o.pixel, Scalar(0)});
   }
   if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children
 }

@@ -20,8 +20,8 @@ bool PixelUpdate::layout(Arena& arena, int max_observations) {
   const std::size_t count = static_cast<std::size_t>(max_observations);
   candidate_ = arena.take<Candidate>(count);
   observation_ = arena.take<PixelMeasurement>(count);
-  keep_ = arena.take<unsigned char>(count);
-  age_ = arena.take<unsigned char>(count);
+  keep_ = arena.take<unsigned char>(2 * count);
+  age_ = keep_ != nullptr ? keep_ + count : nullptr;
   others_.layout(arena, max_observations);
   return arena.ok();
 }

@@ -73,7 +73,8 @@ class PixelUpdate {
   Candidate* candidate_ = nullptr;
   PixelMeasurement* observation_ = nullptr;
   unsigned char* keep_ = nullptr;
-  unsigned char* age_ = nullptr;  ///< scratch: frames in which the feature of each match was measured, up to 255
+  unsigned char* age_ =
+      nullptr;  ///< scratch behind keep_: frames in which the feature of each match was measured, up to 255
   LeaveOneOut others_;
   Scalar max_pose_nis_ = 0;
   bool is_contradicted_ = false;

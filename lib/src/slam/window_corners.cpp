@@ -21,7 +21,8 @@ void add_corners(const Settings& settings, const ImageSearch& search, int keyfra
         map->drop(i);
         return CornerUse::kNotHere;
       }
-      frame->add({i, map->feature(i).id, MatchStatus::kNew, map->kind(i), pixel, Mat2::Zero(), pixel, Scalar(0)});
+      frame->add(
+          {i, map->feature(i).id, MatchStatus::kNew, map->kind(i), false, pixel, Mat2::Zero(), pixel, Scalar(0)});
       return CornerUse::kTaken;
     });
   });

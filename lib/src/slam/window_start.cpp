@@ -109,7 +109,7 @@ bool WindowStart::start_in_image() {
     parts_.map.keyframes.set_pixel(keyframe, row, z);
     parts_.map.point(row).pixel = z;
     ++report.inliers;
-    parts_.frame.add({row, f.id, MatchStatus::kInlier, BlockKind::kPoint, z, Mat2::Zero(), z, Scalar(0)});
+    parts_.frame.add({row, f.id, MatchStatus::kInlier, BlockKind::kPoint, false, z, Mat2::Zero(), z, Scalar(0)});
   }
   report.new_features = 0;
   report.attempts = report.matches = report.inliers;

@@ -79,8 +79,8 @@ int WindowTracking::list(const PosePrior& at, bool placed, Scalar depth) {
     if (!(placed ? expect_placed(i, at, &expected) : expect_unplaced(i, at, depth, &expected))) continue;
     const Mat2 innovation = expected.spread + Mat2::Identity() * (kMapSigma * kMapSigma);
     if (!is_inside(expected.pixel) || !is_covariance(innovation)) continue;
-    const int match =
-        frame_.add({i, f.id, MatchStatus::kMissed, map_.kind(i), expected.pixel, innovation, Vec2::Zero(), Scalar(0)});
+    const int match = frame_.add(
+        {i, f.id, MatchStatus::kMissed, map_.kind(i), false, expected.pixel, innovation, Vec2::Zero(), Scalar(0)});
     candidate_[first + count++] = {match, Mat2::Identity(), Scalar(0)};
   }
   std::sort(candidate_ + first, candidate_ + first + count, [&](const Candidate& a, const Candidate& b) {

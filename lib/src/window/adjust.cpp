@@ -15,6 +15,7 @@ namespace {
 using namespace tuning::adjust;
 
 constexpr int kMaxPoses = 32;  ///< as many as a mask has bits
+constexpr int kSeenBits = 16;  ///< of such a mask in one array
 
 int host_of(const Bundle& bundle, int point) { return bundle.host == nullptr ? 0 : bundle.host[point]; }
 
@@ -157,13 +158,18 @@ bool BundleAdjuster::layout(Arena& arena, int max_poses, int max_free_poses, int
   old_pose_ = arena.take<BundlePose>(poses);
   old_plane_ = arena.take<Vec3>(planes);
   old_rho_ = arena.take<Scalar>(points);
-  seen_ = arena.take<std::uint32_t>(points);
+  seen_ = arena.take<std::uint16_t>(points);
+  seen_later_ = max_poses > kSeenBits ? arena.take<std::uint16_t>(points) : nullptr;
   H_ = arena.take<Scalar>(columns * columns);
   b_ = arena.take<Scalar>(columns);
   W_ = arena.take<Scalar>(points * static_cast<std::size_t>(w_ld_));
   D_ = arena.take<Scalar>(points);
   g_ = arena.take<Scalar>(points);
   return arena.ok();
+}
+
+std::uint32_t BundleAdjuster::seen(int point) const {
+  return seen_[point] | (seen_later_ != nullptr ? static_cast<std::uint32_t>(seen_later_[point]) << kSeenBits : 0u);
 }
 
 Scalar BundleAdjuster::rho_step(int point) const {
@@ -191,7 +197,7 @@ void BundleAdjuster::add_pixels(const Camera& camera, const AdjustOptions& optio
   Scalar D = sums->D, g = sums->g, cost = sums->cost;
   std::uint32_t seen_by = 0;
   Scalar information = Scalar(1) / (options.sigma_px * options.sigma_px);
-  for (std::uint32_t left = seen_[point]; left != 0; left &= left - 1) {
+  for (std::uint32_t left = seen(point); left != 0; left &= left - 1) {
     const int c = __builtin_ctz(left);
     const BundlePose& pose = bundle.pose[c];
     const BundlePixel& measured = pose.pixel[point];
@@ -364,11 +370,16 @@ void BundleAdjuster::begin(const Bundle& bundle) {
   for (int c = 0; c < bundle.poses; ++c) free_[c] = bundle.pose[c].free ? free_poses++ : -1;
   columns_ = pose_column(free_poses);
   PF_ASSERT(columns_ <= ld_);
-  for (int i = 0; i < bundle.points; ++i) seen_[i] = 0;
+  for (int i = 0; i < bundle.points; ++i) {
+    seen_[i] = 0;
+    if (seen_later_ != nullptr) seen_later_[i] = 0;
+  }
   for (int c = 0; c < bundle.poses; ++c) {
     const BundlePixel* pixel = bundle.pose[c].pixel;
+    std::uint16_t* seen = c < kSeenBits ? seen_ : seen_later_;
+    const unsigned bit = 1u << (c % kSeenBits);
     for (int i = 0; i < bundle.points && pixel != nullptr; ++i)
-      seen_[i] |= static_cast<std::uint32_t>(pixel[i].seen && host_of(bundle, i) != c) << c;
+      if (pixel[i].seen && host_of(bundle, i) != c) seen[i] = static_cast<std::uint16_t>(seen[i] | bit);
   }
 }
 

@@ -188,12 +188,15 @@ class BundleAdjuster {
   BundlePose* old_pose_ = nullptr;  ///< before the step that is tried
   Vec3* old_plane_ = nullptr;
   Scalar* old_rho_ = nullptr;
-  std::uint32_t* seen_ = nullptr;  ///< of each point, bit c: pose c sees it and is not its host
-  Scalar* H_ = nullptr;            ///< ld_ square: S, then its factor
-  Scalar* b_ = nullptr;            ///< ld_
-  Scalar* W_ = nullptr;            ///< max_points x w_ld_: a row for each point: its plane, then each free pose
-  Scalar* D_ = nullptr;            ///< max_points, damped; zero where nothing is known of a point
-  Scalar* g_ = nullptr;            ///< max_points
+  std::uint32_t seen(int point) const;
+
+  std::uint16_t* seen_ = nullptr;        ///< of each point, bit c: pose c sees it and is not its host
+  std::uint16_t* seen_later_ = nullptr;  ///< the same of poses 16 to 31; null where there are never so many
+  Scalar* H_ = nullptr;                  ///< ld_ square: S, then its factor
+  Scalar* b_ = nullptr;                  ///< ld_
+  Scalar* W_ = nullptr;                  ///< max_points x w_ld_: a row for each point: its plane, then each free pose
+  Scalar* D_ = nullptr;                  ///< max_points, damped; zero where nothing is known of a point
+  Scalar* g_ = nullptr;                  ///< max_points
 };
 
 }  // namespace pf

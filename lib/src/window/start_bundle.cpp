@@ -60,7 +60,6 @@ bool StartBundle::layout(Arena& arena) {
   rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
   best_rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
   last_rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
-  good_ = arena.take<unsigned char>(StartRecord::kMaxFeatures);
   return adjuster_.layout(arena, 1 + kMaxCameras, kMaxCameras, StartRecord::kMaxFeatures);
 }
 
@@ -151,9 +150,9 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
 
   // Select the depths that can be trusted, and set the unit of length.
   Scalar sorted[StartRecord::kMaxFeatures];
+  bool is_good[StartRecord::kMaxFeatures] = {};
   int good = 0;
   for (int i = 0; i < count; ++i) {
-    good_[i] = 0;
     if (!record.seen(last, i) || !(rho_[i] > kMinGoodRho)) continue;
     Scalar worst = 0;
     for (int c = 0; c < cameras; ++c) {
@@ -166,7 +165,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
         worst = std::max(worst, (record.pixel(frame[c], i) - z).squaredNorm());
     }
     if (worst > kMaxGoodResidual * kMaxGoodResidual * sigma_px * sigma_px) continue;
-    good_[i] = 1;
+    is_good[i] = true;
     sorted[good++] = rho_[i];
   }
   if (good < kMinFeatures) return StartOutcome::kWait;
@@ -174,7 +173,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   Scalar unit = Scalar(1) / (sorted[good / 2] * median_depth);
   int common = 0;
   for (int i = 0; i < count; ++i)
-    if (good_[i] != 0 && last_rho_[i] > Scalar(0)) sorted[common++] = last_rho_[i] / rho_[i];
+    if (is_good[i] && last_rho_[i] > Scalar(0)) sorted[common++] = last_rho_[i] / rho_[i];
   if (common >= kMinFeatures) {
     std::nth_element(sorted, sorted + common / 2, sorted + common);
     unit = sorted[common / 2];
@@ -190,7 +189,7 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   }
   for (int i = 0; i < count; ++i) {
     rho_[i] *= unit;
-    last_rho_[i] = good_[i] != 0 ? rho_[i] : Scalar(0);
+    last_rho_[i] = is_good[i] ? rho_[i] : Scalar(0);
   }
   last_parallax_ = parallax;
   return parallax > kSettledParallax * sigma_px ? StartOutcome::kSettled : StartOutcome::kSolved;

@@ -73,7 +73,7 @@ class StartBundle {
   StartOutcome solve(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth);
 
   Scalar rho(int feature) const { return rho_[feature]; }
-  bool good(int feature) const { return good_[feature] != 0; }
+  bool good(int feature) const { return last_rho_[feature] > Scalar(0); }
 
  private:
   static constexpr int kMaxCameras = 8;  ///< of the adjustment
@@ -90,7 +90,6 @@ class StartBundle {
   Scalar* last_rho_ = nullptr;  ///< of the last solution, zero where it had none
   Scalar last_parallax_ = 0;    ///< [px]
   std::uint32_t random_ = 0;    ///< of the search for poses
-  unsigned char* good_ = nullptr;
 };
 
 }  // namespace pf
