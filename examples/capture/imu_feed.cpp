@@ -13,6 +13,10 @@ namespace {
 constexpr int32_t kKept = 256;         ///< samples that the library keeps: a quarter of a second of a fast unit
 constexpr int32_t kKeptToMove = 2000;  ///< likewise where poses depend on them: two seconds
 
+constexpr double kSigmaMountRad = 0.035;  ///< of --estimate mount: 2 degrees
+constexpr double kSigmaMountM = 0.02;
+constexpr double kSigmaDelayS = 0.01;  ///< of --estimate delay
+
 constexpr int64_t kPatience = 30;  ///< frames without any sample before them: worth a note
 
 double rounded(double value) { return std::round(value * 1e6) / 1e6; }
@@ -35,7 +39,7 @@ nlohmann::ordered_json time_offset_json(const TimeOffset& offset, double given_s
 void add_inertial(const pf_slam_t* slam, int64_t metric_frame, const pf_imu_model_t& model,
                   nlohmann::ordered_json& json) {
   pf_inertial_t known{};
-  const bool any = pf_get_inertial(slam, &known) == PF_OK && known.metric != 0;
+  const bool known_at_all = pf_get_inertial(slam, &known) == PF_OK, any = known_at_all && known.metric != 0;
   json["start"] = metric_frame >= 0 ? "rest" : "none";
   json["start_frame"] = metric_frame >= 0 ? nlohmann::ordered_json(metric_frame) : nullptr;
   json["metric"] = any;
@@ -53,8 +57,27 @@ void add_inertial(const pf_slam_t* slam, int64_t metric_frame, const pf_imu_mode
   json["gravity_W"] = with_sigma(known.gravity_W, 3, 0, 2);  // of its direction, about two axes [rad]
   json["gyro_bias"] = with_sigma(known.gyro_bias, 3, 2, 3);
   json["accel_bias"] = with_sigma(known.accel_bias, 3, 5, 3);
-  json["mount"] = {{"q_BC", model.q_BC}, {"p_BC", model.p_BC}};
-  json["delay_s"] = rounded(model.delay_s);
+  const auto estimated = [&](int first) { return known_at_all && known.sigma[first] >= 0.0; };
+  const auto three_sigmas = [&](int first) {
+    nlohmann::ordered_json sigmas;
+    for (int i = first; i < first + 3 && estimated(first); ++i) {
+      sigmas.push_back(rounded(known.sigma[i]));
+    }
+    return sigmas;
+  };
+  constexpr int kTurn = 8, kPlace = 11, kDelay = 14;  // of pf_inertial_t.sigma
+  if (estimated(kTurn)) {
+    json["mount"] = {{"q_BC", known.q_BC},
+                     {"p_BC", known.p_BC},
+                     {"sigma_rad", three_sigmas(kTurn)},
+                     {"sigma_m", three_sigmas(kPlace)}};
+  } else {
+    json["mount"] = {{"q_BC", model.q_BC}, {"p_BC", model.p_BC}};
+  }
+  json["delay_s"] = rounded(estimated(kDelay) ? known.delay_s : model.delay_s);
+  if (estimated(kDelay)) {
+    json["delay_sigma_s"] = rounded(known.sigma[kDelay]);
+  }
 }
 
 std::string time_offset_advice(const TimeOffset& offset, double given_s) {
@@ -75,6 +98,10 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
   error.clear();
   imu_ = open_imu(options, source, beside, error);
   offset_s_ = options.imu_offset_s;
+  for (const std::string& what : options.estimate) {
+    estimate_mount_ |= what == "mount";
+    estimate_delay_ |= what == "delay";
+  }
   if (!error.empty() || !options.inertial) {
     return error.empty();
   }
@@ -115,6 +142,9 @@ void ImuFeed::configure(pf_config_t& config) const {
     const double gravity = config.imu.gravity;
     config.imu = model_;
     config.imu.gravity = model_.gravity > 0.0 ? model_.gravity : gravity;
+    config.imu.sigma_mount_rad = estimate_mount_ ? kSigmaMountRad : 0.0;
+    config.imu.sigma_mount_m = estimate_mount_ ? kSigmaMountM : 0.0;
+    config.imu.sigma_delay_s = estimate_delay_ ? kSigmaDelayS : 0.0;
   }
   config.capacity.max_imu_samples = inertial_ ? kKeptToMove : kKept;
   config.imu.gyro_range = imu_->gyro_range();

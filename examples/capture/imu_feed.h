@@ -48,6 +48,7 @@ class ImuFeed {
   Notices notices_;
   std::string failure_;  ///< of the recording
   pf_imu_model_t model_{};
+  bool estimate_mount_ = false, estimate_delay_ = false;
   bool inertial_ = false;
   int64_t metric_frame_ = -1;  ///< the first one whose lengths the samples tell
   double offset_s_ = 0.0;

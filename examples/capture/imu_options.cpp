@@ -25,6 +25,10 @@ void add_imu_options(CLI::App& app, Options& options) {
   app.add_option("--imu-mount", options.imu_mount,
                  "where the unit is: T_BS (EuRoC's cam0/sensor.yaml), T_cam_imu (Kalibr's camchain) or T_imu_cam")
       ->group(group);
+  app.add_option("--estimate", options.estimate,
+                 "mount, delay: estimated from 2 degrees, 2 cm and 10 ms about what is given")
+      ->delimiter(',')
+      ->group(group);
   app.add_flag("!--no-inertial", options.inertial, "count and record the samples; poses do not depend on them")
       ->group(group);
 }
@@ -46,6 +50,14 @@ std::string check_imu_options(const Options& options) {
   }
   if (options.imu_mount.empty() && !options.imu_noise.empty() && options.inertial) {
     return "--imu-noise: where the unit is mounted is not known; add --imu-mount FILE (T_BS, T_cam_imu or T_imu_cam)";
+  }
+  for (const std::string& what : options.estimate) {
+    if (what != "mount" && what != "delay") {
+      return "--estimate " + what + ": write mount, delay or mount,delay";
+    }
+  }
+  if (!options.estimate.empty() && !options.inertial) {
+    return "--estimate: poses depend on no samples with --no-inertial; leave one of them away";
   }
   return std::isfinite(options.imu_offset_s) ? "" : "--imu-offset: not a finite number of seconds";
 }

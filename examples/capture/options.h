@@ -44,10 +44,11 @@ struct Options {
   std::string imu = "auto";
   double imu_rate_hz = 0.0;  ///< 0: as the unit has it
   double imu_offset_s = 0.0;
-  std::string imu_noise;    ///< file; "": none
-  std::string imu_mount;    ///< likewise
-  bool inertial = true;     ///< where samples and their noise are there
-  double sim_rest_s = 0.0;  ///< of a sim: source, at its beginning
+  std::string imu_noise;              ///< file; "": none
+  std::string imu_mount;              ///< likewise
+  std::vector<std::string> estimate;  ///< of the unit: mount, delay
+  bool inertial = true;               ///< where samples and their noise are there
+  double sim_rest_s = 0.0;            ///< of a sim: source, at its beginning
 
   // Cameras, and what is played as if it came from one.
   std::string record;

@@ -142,6 +142,23 @@ static void test_check_should_name_what_the_inertial_model_lacks(void) {
   NAMES_REAL(imu.accel_walk, 0, 10.1);
   NAMES_REAL(imu.delay_s, -0.51, 0.51);
   NAMES_REAL(imu.gravity, 8.9, 11.1);
+  NAMES_REAL(imu.sigma_mount_rad, -1e-3, 0.51);
+  NAMES_REAL(imu.sigma_mount_m, -1e-3, 1.1);
+  NAMES_REAL(imu.sigma_delay_s, -1e-3, 0.11);
+  NAMES(imu.sigma_delay_s, 1e-9); /* less than float can hold */
+  config.imu.sigma_mount_rad = config.imu.sigma_mount_m = 0.02;
+  config.imu.sigma_delay_s = 0.01;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  const int32_t rows = config.capacity.max_state_dim;
+  config.capacity.max_state_dim = 32; /* the body alone has 24 */
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  config.camera.estimate = PF_CAMERA_ESTIMATE;
+  config.camera.sigma_focal = 0.01;
+  config.camera.sigma_aspect = 0.001;
+  config.camera.sigma_centre_px = 5;
+  names(PF_ERROR_CONFIG, "capacity.max_state_dim");
+  config.camera.estimate = PF_CAMERA_EXACT;
+  config.capacity.max_state_dim = rows;
   config.imu.p_BC[1] = 11;
   names(PF_ERROR_CONFIG, "imu.p_BC");
   config.imu.p_BC[1] = NAN;

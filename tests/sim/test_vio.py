@@ -37,6 +37,16 @@ with tempfile.TemporaryDirectory() as name:
     require(vio["gauge_growth"] < 1e-9, f"information about six directions grew by {vio['gauge_growth']}")
     require(vio["scale_error"]["max"] < 0.02, f"scale off by {vio['scale_error']['max']}")
 
+    # How the unit is mounted and how late it is, found from 2 degrees, 2 cm and 10 ms.
+    mounted, _ = report(folder, "--seconds", "20", "--estimate", "mount,delay", "--first-seed", "3")
+    require(mounted["lost_runs"] == 0 and mounted["doubt"]["runs"] == 0, f"with an uncertain mounting: {mounted['doubt']}")
+    require(mounted["mount_error_deg"]["max"] < 0.1 and mounted["mount_error_m"]["max"] < 0.01, f"{mounted['mount_error_deg']}")
+    require(mounted["delay_error_ms"]["max"] < 0.3 and mounted["mount_sigmas"]["max"] < 5, f"{mounted['delay_error_ms']}")
+    require(3.5 < mounted["nees_pose"]["mean"] < 14, f"pose NEES {mounted['nees_pose']['mean']} with an uncertain mounting")
+    require(mounted["gauge_growth"] < 1e-9, f"information about six directions grew by {mounted['gauge_growth']}")
+    unknown = subprocess.run([BIN / "pf-sim", "vio", "--estimate", "colour"], capture_output=True, text=True)
+    require(unknown.returncode == 2 and "mount, delay" in unknown.stderr, f"{unknown.returncode}: {unknown.stderr}")
+
     dark, _ = report(folder, "--seconds", "12", "--blackout-at", "7", "--blackout", "1")
     require(dark["lost_runs"] == 0, "lost behind a covered lens")
     require(dark["frames_until_tracked_again"]["runs"] == SEEDS, "not tracked again")

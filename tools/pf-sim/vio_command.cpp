@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "commands.h"
 #include "report.h"
@@ -15,12 +17,15 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double kSigmaMountRad = 2 * 3.14159265358979 / 180, kSigmaMountM = 0.02, kSigmaDelayS = 0.01;
+
 struct Choices {
   VioOptions vio;
   int seeds = 20, jobs = 2;
   std::uint64_t first_seed = 1;
   double turn_deg_s = 0;
   bool no_imu = false, still = false;
+  std::vector<std::string> estimate;  ///< of the unit: mount, delay
   double noise_scale = 1;
   std::string json_file, csv, fault = "none";
 };
@@ -126,6 +131,17 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
   for (int i = 0; i < c.seeds; ++i) resting += s[i].resting_frames;
   out["resting_share"] = resting / (static_cast<double>(c.seeds) * runs.frames);
   out["gauge_growth"] = growth;
+  std::vector<VioSummary> units(s, s + c.seeds);
+  for (VioSummary& one : units) {
+    if (one.mount_error_rad >= 0) one.mount_error_rad *= 180 / 3.14159265358979;
+    if (one.delay_error_s >= 0) one.delay_error_s *= 1e3;
+  }
+  if (c.vio.sigma_mount_rad > 0) {
+    out["mount_error_deg"] = of_all(units.data(), c.seeds, &VioSummary::mount_error_rad);
+    out["mount_error_m"] = of_all(s, c.seeds, &VioSummary::mount_error_m);
+  }
+  if (c.vio.sigma_delay_s > 0) out["delay_error_ms"] = of_all(units.data(), c.seeds, &VioSummary::delay_error_s);
+  if (!c.estimate.empty()) out["mount_sigmas"] = of_all(s, c.seeds, &VioSummary::mount_sigmas);
   out["starts"] = {{"tried", c.seeds}, {"accepted", started}};
   out["doubt"] = {{"runs", doubted_at.size()},
                   {"at_s", {{"median", quantile(doubted_at, 0.5)}, {"max", quantile(doubted_at, 1)}}},
@@ -158,6 +174,16 @@ void print_vio(const json& j, bool with_imu) {
       "  error at most %.1f of its sigma (median of runs %.1f); %g lost, %.1f %% tracked; samples %.0f us a frame\n",
       number("/worst_sigmas/max"), number("/worst_sigmas/median"), number("/lost_runs"), 100 * number("/tracked_share"),
       number("/imu_us_per_frame"));
+  if (j.contains("mount_error_deg"))
+    std::printf("  mounting off by %.3f degrees (largest %.3f) and %.1f mm (%.1f) at the end\n",
+                number("/mount_error_deg/median"), number("/mount_error_deg/max"),
+                1e3 * number("/mount_error_m/median"), 1e3 * number("/mount_error_m/max"));
+  if (j.contains("delay_error_ms"))
+    std::printf("  delay off by %.3f ms (largest %.3f)\n", number("/delay_error_ms/median"),
+                number("/delay_error_ms/max"));
+  if (j.contains("mount_sigmas"))
+    std::printf("  of these an axis is at most %.1f of its sigma off (median of runs %.1f)\n",
+                number("/mount_sigmas/max"), number("/mount_sigmas/median"));
   if (number("/doubt/runs") > 0)
     std::printf(
         "  the unit was doubted in %g runs, first at %.2f s (at the latest %.2f), for %.1f s a run; %g maps a run\n",
@@ -253,6 +279,16 @@ int run(Choices c) {
     return fail("--fault-at is 0 seconds or more, and at least 6 before the end");
   if (c.still) c.vio.rest_s = o.seconds + 1;
   c.vio.use_imu = !c.no_imu;
+  for (const std::string& what : c.estimate) {
+    if (what == "mount") {
+      c.vio.sigma_mount_rad = kSigmaMountRad;
+      c.vio.sigma_mount_m = kSigmaMountM;
+    } else if (what == "delay") {
+      c.vio.sigma_delay_s = kSigmaDelayS;
+    } else {
+      return fail("--estimate " + what + ": write mount, delay or mount,delay");
+    }
+  }
   c.vio.turn_rad_s = c.turn_deg_s * 3.14159265358979 / 180;
   for (double* density :
        {&c.vio.imu.gyro_density, &c.vio.imu.accel_density, &c.vio.imu.gyro_walk, &c.vio.imu.accel_walk})
@@ -266,17 +302,10 @@ int run(Choices c) {
     if (job.summaries[i].done == 0) return fail("the library refused the config", 1);
   json out = summarise_vio(c, job.rows, job.summaries);
   out["experiment"] = "vio";
-  out["settings"] = {{"seconds", o.seconds},
-                     {"rate_hz", o.rate_hz},
-                     {"imu_rate_hz", o.imu.rate_hz},
-                     {"noise_scale", c.noise_scale},
-                     {"rest_s", o.rest_s},
-                     {"sigma_px", o.sigma_px},
-                     {"rendered", o.rendered},
-                     {"delay_s", o.imu.delay_s},
-                     {"imu", c.vio.use_imu},
-                     {"first_seed", c.first_seed},
-                     {"blackout_at_s", o.blackout_at_s},
+  out["settings"] = {{"seconds", o.seconds},         {"rate_hz", o.rate_hz},       {"imu_rate_hz", o.imu.rate_hz},
+                     {"noise_scale", c.noise_scale}, {"rest_s", o.rest_s},         {"sigma_px", o.sigma_px},
+                     {"rendered", o.rendered},       {"delay_s", o.imu.delay_s},   {"estimate", c.estimate},
+                     {"imu", c.vio.use_imu},         {"first_seed", c.first_seed}, {"blackout_at_s", o.blackout_at_s},
                      {"blackout_s", o.blackout_s}};
   if (c.vio.fault != VioFault::kNone) out["fault"] = of_fault(c, job.summaries);
   if (!c.still) print_vio(out, c.vio.use_imu);
@@ -308,6 +337,10 @@ void add_vio(CLI::App& app, int& result) {
   command->add_option("--imu-rate", c->vio.imu.rate_hz, "samples a second");
   command->add_option("--noise-scale", c->noise_scale, "times the noise of EuRoC's unit, of truth and filter");
   command->add_option("--delay", c->vio.imu.delay_s, "of frames against samples, known [s]");
+  command
+      ->add_option("--estimate", c->estimate,
+                   "mount, delay: drawn with 2 degrees, 2 cm and 10 ms, and estimated from there on")
+      ->delimiter(',');
   command->add_option("--rest", c->vio.rest_s, "at the beginning [s]");
   command->add_option("--sigma-px", c->vio.sigma_px, "measurement noise [px]");
   command->add_option("--points", c->vio.points, "of the room");

@@ -62,6 +62,9 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   config.imu.p_BC[2] = o.imu.p_BC.z;
   config.imu.delay_s = o.imu.delay_s;
   config.imu.gravity = o.imu.gravity_W.norm();
+  config.imu.sigma_mount_rad = o.sigma_mount_rad;
+  config.imu.sigma_mount_m = o.sigma_mount_m;
+  config.imu.sigma_delay_s = o.sigma_delay_s;
   return config;
 }
 
@@ -75,7 +78,8 @@ class Run {
         world_(options.rendered ? VioWorld(seed, options.rest_s)
                                 : VioWorld(seed, options.points, options.seconds, options.rest_s, options.turn_rad_s)),
         noise_(seed, 53),
-        sensor_(unit(options, seed), world_.path()),
+        unit_(unit(options, seed)),
+        sensor_(unit_, world_.path()),
         context_(config_of(options, world_.camera())),
         first_(world_.path()(0)) {}
 
@@ -86,6 +90,7 @@ class Run {
     for (int k = 0; k < frames; ++k)
       if (!frame(k)) return;
     out_.scale_error_end = scale_error();
+    note_mounting();
   }
 
  private:
@@ -95,6 +100,15 @@ class Run {
     imu.gyro_bias = bias.normal3() * o.sigma_gyro_bias;
     imu.accel_bias = bias.normal3() * o.sigma_accel_bias;
     imu.seed = seed;
+    Random mounting(seed, 55);  // R_CB_true = Exp(mu) R_CB, and the origin in C
+    const Vec3 turn = mounting.normal3() * o.sigma_mount_rad, shift = mounting.normal3() * o.sigma_mount_m;
+    const double delay = mounting.normal() * o.sigma_delay_s;
+    if (o.sigma_mount_rad > 0 || o.sigma_mount_m > 0) {
+      const Vec3 origin_C = imu.R_BC.transposed() * imu.p_BC * -1;
+      imu.R_BC = imu.R_BC * pf::sim::rotation_exp(turn * -1);
+      imu.p_BC = imu.R_BC * (origin_C + shift) * -1;
+    }
+    imu.delay_s += delay;
     if (o.fault == VioFault::kGap) {
       imu.gap_at_s = o.fault_at_s;
       imu.gap_s = kStill;
@@ -263,6 +277,21 @@ class Run {
     return true;
   }
 
+  /// Of the last frame.
+  void note_mounting() {
+    pf_inertial_t unit;
+    if (pf_get_inertial(context_.slam, &unit) != PF_OK) return;
+    const Vec3 turn = pf::sim::rotation_log(unit_.R_BC * pf::sim::rotation_of(unit.q_BC).transposed());
+    const Vec3 shift = unit_.p_BC - Vec3{unit.p_BC[0], unit.p_BC[1], unit.p_BC[2]};
+    const double delay = unit_.delay_s - unit.delay_s;
+    if (o_.sigma_mount_rad > 0) out_.mount_error_rad = turn.norm();
+    if (o_.sigma_mount_m > 0) out_.mount_error_m = shift.norm();
+    if (o_.sigma_delay_s > 0) out_.delay_error_s = std::fabs(delay);
+    const double e[7] = {turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, delay};
+    for (int i = 0; i < 7; ++i)
+      if (unit.sigma[8 + i] > 0) out_.mount_sigmas = std::max(out_.mount_sigmas, std::fabs(e[i]) / unit.sigma[8 + i]);
+  }
+
   void note_wander(const pf_pose_t& pose) {
     const Pose now{pf::sim::rotation_of(pose.q_WC), {pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]}};
     if (!has_rested_) rested_ = now;
@@ -308,6 +337,7 @@ class Run {
   VioSummary& out_;
   const VioWorld world_;
   Random noise_;
+  const pf::sim::ImuOptions unit_;
   pf::sim::ImuSensor sensor_;
   const Context context_;
   const Pose first_;

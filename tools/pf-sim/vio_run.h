@@ -36,6 +36,8 @@ struct VioOptions {
   double sigma_px = 0.5;
   double sigma_gyro_bias = 0.02;  ///< from which a run's biases are drawn [rad/s]
   double sigma_accel_bias = 0.1;  ///< [m/s^2]
+  /// From which the errors of the unit's mounting and delay are drawn, and with which they are estimated [rad], [m], [s]; 0: exact.
+  double sigma_mount_rad = 0, sigma_mount_m = 0, sigma_delay_s = 0;
   int points = 300;
   double turn_rad_s = 0;  ///< of a camera on a turntable that rests otherwise
   bool hand = false;      ///< moves before the lens
@@ -67,6 +69,8 @@ struct VioSummary {
   std::int32_t resting_frames = 0;      ///< in which the pose was held
   double worst_bias_sigmas = 0;         ///< largest error of a bias in its own sigma
   std::int32_t tracked_after = 0, judged_after = 0, refused_samples = 0;
+  double mount_error_rad = -1, mount_error_m = -1, delay_error_s = -1;  ///< at the end, where they are estimated
+  double mount_sigmas = -1;  ///< the largest of their errors along an axis, in its own sigma
   double doubted_at_s = -1;  ///< when the unit first came into doubt, negative: never
   double doubted_s = 0;      ///< for how long it was
   std::int32_t maps = 1;     ///< begun

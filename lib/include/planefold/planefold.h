@@ -203,12 +203,17 @@ typedef struct pf_imu_model {
   double accel_density; /* likewise [m/s^2/sqrt(Hz)], up to 10 */
   double gyro_walk;     /* of its bias [rad/s^2/sqrt(Hz)], up to 1 */
   double accel_walk;    /* likewise [m/s^3/sqrt(Hz)], up to 10 */
-  /* Mounting, p_B = R_BC p_C + p_BC: EuRoC's T_BS of the camera, the inverse of Kalibr's T_cam_imu. Taken as exact. Default:
-   * axes and origin of the camera. */
+  /* Mounting, p_B = R_BC p_C + p_BC: EuRoC's T_BS of the camera, the inverse of Kalibr's T_cam_imu. Default: axes and origin
+   * of the camera. */
   double q_BC[4]; /* w x y z */
   double p_BC[3]; /* [m] */
-  double delay_s; /* t_frame = t_sample + delay, -0.5 .. 0.5. Taken as exact. Default 0 */
+  double delay_s; /* t_frame = t_sample + delay, -0.5 .. 0.5. Default 0 */
   double gravity; /* [m/s^2] 9 .. 11. Default 9.81 */
+  /* How far the mounting and the delay may be off, of each axis: standard deviations, from which they are then estimated
+   * (pf_get_inertial). 0: taken as exact; else at least 1e-6. Defaults 0 */
+  double sigma_mount_rad; /* of the unit's axes, up to 0.5. Three rows of the state */
+  double sigma_mount_m;   /* of its origin in C, up to 1. Three rows */
+  double sigma_delay_s;   /* up to 0.1. One row */
 } pf_imu_model_t;
 
 /* Fill with pf_config_default, then change what you know better. pf_config_check names a bad field as it is written
@@ -739,6 +744,12 @@ typedef struct pf_inertial {
    * samples alone never say so. */
   uint32_t resting;
   uint32_t rests; /* begun since the beginning */
+  /* Mounting and delay as they are known now; those of the config where they are not estimated. */
+  double q_BC[4], p_BC[3], delay_s;
+  double readout_s; /* of the camera's rows: that of the config */
+  /* Standard deviations: gravity 2, biases 6 (as in covariance), rotation of the mounting 3 (about the axes of B), p_BC 3,
+   * delay, readout, log scale of the best known length. Negative: not estimated, or not known yet. */
+  double sigma[17];
 } pf_inertial_t;
 
 /* PF_NOTE_NOTHING, and *inertial is as it was, before the start and without PF_MOTION_INERTIAL. */

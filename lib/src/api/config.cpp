@@ -84,9 +84,16 @@ constexpr Range kUnit[] = {
     PF_FIELD(imu.accel_walk, kTiny, 10),  PF_FIELD(imu.delay_s, -0.5, 0.5),       PF_FIELD(imu.gravity, 9, 11),
 };
 
+constexpr Range kUnitSigmas[] = {
+    PF_FIELD(imu.sigma_mount_rad, 1e-6, 0.5),
+    PF_FIELD(imu.sigma_mount_m, 1e-6, 1),
+    PF_FIELD(imu.sigma_delay_s, 1e-6, 0.1),
+};
+
 #undef PF_FIELD
 
 constexpr int kMinFeaturesInView = 8;    // or none
+constexpr int kMinMapRows = 6;           // of the state, behind the body: an anchor and a feature
 constexpr int kMinImuSamples = 64;       // with the inertial motion model
 constexpr double kMaxLever = 10;         // [m] between unit and camera
 constexpr double kLongestReadout = 0.2;  // [s]
@@ -117,7 +124,7 @@ const char* lens_from(const pf_camera_t& c, const pf_config_t& config, Settings*
 }
 
 /// The inertial unit. Null, or the name of the first field that makes no sense.
-const char* unit_from(const pf_config_t& config, ImuUnit* unit) {
+const char* unit_from(const pf_config_t& config, ImuUnit* unit, BodyLayout* layout) {
   if (config.motion.model != PF_MOTION_INERTIAL) return nullptr;
   if (config.capacity.max_imu_samples < kMinImuSamples) return "capacity.max_imu_samples";
   for (const Range& r : kUnit) {
@@ -134,6 +141,14 @@ const char* unit_from(const pf_config_t& config, ImuUnit* unit) {
   unit->mounting.p_C = -(unit->mounting.R_CB * vec3(imu.p_BC));
   unit->delay_ns = static_cast<std::int64_t>(imu.delay_s * 1e9);
   unit->gravity = static_cast<Scalar>(imu.gravity);
+  for (const Range& r : kUnitSigmas) {
+    const double value = field_at<double>(config, r.offset);
+    if (value != 0 && !(value >= r.low && value <= r.high)) return r.name;
+  }
+  unit->sigma_turn = static_cast<Scalar>(imu.sigma_mount_rad);
+  unit->sigma_place = static_cast<Scalar>(imu.sigma_mount_m);
+  unit->sigma_delay = static_cast<Scalar>(imu.sigma_delay_s);
+  layout->add_mounting(imu.sigma_mount_rad > 0, imu.sigma_mount_m > 0, imu.sigma_delay_s > 0);
   return nullptr;
 }
 
@@ -151,7 +166,7 @@ const char* motion_from(const pf_config_t& config, Settings* settings) {
       static_cast<Scalar>(walks ? config.motion.linear_walk : config.motion.linear_acceleration_density);
   settings->motion_noise.angular =
       static_cast<Scalar>(walks ? config.motion.angular_walk : config.motion.angular_acceleration_density);
-  return unit_from(config, &settings->unit);
+  return unit_from(config, &settings->unit, &settings->body);
 }
 
 /// What the window cannot do. Null, or the name of the first field that asks for it.
@@ -208,6 +223,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
     return *field = "camera.readout_s", Status::kConfig;
   bad = lens_from(c, config, settings);
   if (bad != nullptr) return *field = bad, Status::kConfig;
+  if (settings->body.rows() + kMinMapRows > config.capacity.max_state_dim)
+    return *field = "capacity.max_state_dim", Status::kConfig;
   if (c.timestamps != PF_TIMESTAMPS_REAL && c.timestamps != PF_TIMESTAMPS_NOMINAL)
     return *field = "camera.timestamps", Status::kConfig;
   const bool nominal = c.timestamps == PF_TIMESTAMPS_NOMINAL;

@@ -78,6 +78,13 @@ pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial) {
   inertial->resting = unit.resting ? 1 : 0;
   inertial->rests = static_cast<uint32_t>(unit.rests);
   inertial->map_id = view.map_id();
+  const double q[4] = {static_cast<double>(unit.q_BC.w()), static_cast<double>(unit.q_BC.x()),
+                       static_cast<double>(unit.q_BC.y()), static_cast<double>(unit.q_BC.z())};
+  for (int i = 0; i < 4; ++i) inertial->q_BC[i] = q[0] < 0 ? -q[i] : q[i];
+  pf::copy(unit.p_BC, 3, inertial->p_BC);
+  inertial->delay_s = unit.delay_s;
+  inertial->readout_s = slam->config.camera.readout_s;
+  for (int i = 0; i < 17; ++i) inertial->sigma[i] = static_cast<double>(unit.sigma[i]);
   return PF_OK;
 }
 

@@ -217,7 +217,7 @@ class Filter {
   ///
   ///   z = (b_g, b_a - R^T g),   e_bg,   e_ba - R^T [g]x theta - R^T E d          E = gravity (-R_WG e_y, R_WG e_x)
   ///
-  /// A rotation of the world with gravity changes neither.
+  /// and where the unit's axes are estimated, theta + R_WC mu in place of theta. A rotation of the world with gravity changes neither.
   void predict_still(const StillReading& still, Scalar gravity, StillMeasurement* out) const;
   /// Whether the reading is within max_nis of that; updates with it where `commit` says so.
   bool take_still(const StillReading& still, Scalar gravity, Scalar max_nis, bool commit);
@@ -238,6 +238,8 @@ class Filter {
   /// First row of a block in the covariance.
   int first_row(int slot) const { return blocks_.first(slot); }
   Scalar variance(int row) const { return covariance()(row, row); }
+  /// Of the rotation of the unit's axes, a mean over them [rad^2]; 0 where it is not estimated.
+  Scalar unit_turn_variance() const;
   /// Variance of one row of a block.
   Scalar block_variance(int slot, int offset) const { return variance(first_row(slot) + offset); }
   int dim() const { return blocks_.dim(); }

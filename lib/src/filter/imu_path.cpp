@@ -50,6 +50,7 @@ class Walk {
       }
     }
   }
+  const ImuReading& first() const { return first_; }
   const ImuReading& now() const { return now_; }
   Scalar coasted() const { return coasted_; }
 
@@ -91,14 +92,22 @@ class Walk {
   }
 
   void step(const ImuReading& from, const ImuReading& to, std::int64_t to_ns, Scalar gyro_more, Scalar accel_more) {
+    note_first(from);
     sum_->add(seconds_between(t_ns_, to_ns), from, to, gyro_more, accel_more);
     t_ns_ = to_ns;
     now_ = to;
   }
 
+  void note_first(const ImuReading& reading) {
+    if (sum_->dt() <= Scalar(0)) first_ = reading;
+  }
+
   void coast_to(std::int64_t to_ns) {
     const Scalar dt = std::min(seconds_between(t_ns_, to_ns), kMaxCoast);  // after it no motion is predictable
+    now_.accel = sum_->R().transpose() * coasting_.f_B + sum_->accel_bias();
+    note_first(now_);
     sum_->coast(dt, now_.gyro - sum_->gyro_bias(), coasting_.f_B, coasting_.noise.angular, coasting_.noise.linear);
+    now_.accel = sum_->R().transpose() * coasting_.f_B + sum_->accel_bias();
     coasted_ += dt;
     t_ns_ = to_ns;
   }
@@ -108,7 +117,7 @@ class Walk {
   Preintegral* sum_;
   std::int64_t t_ns_, hold_ns_ = 0;
   int next_ = 0;  ///< the first sample behind t_ns_
-  ImuReading now_;
+  ImuReading first_, now_;
   Scalar coasted_ = 0;
 };
 
@@ -119,6 +128,7 @@ Scalar integrate_samples(const ImuLog& log, std::int64_t from_ns, std::int64_t t
   Walk walk(log, coasting, sum, from_ns);
   walk.go_to(to_ns);
   *at_end = walk.now();
+  sum->set_ends(walk.first(), walk.now());
   return walk.coasted();
 }
 

@@ -12,6 +12,8 @@ struct ImuUnit {
   Mounting mounting;
   std::int64_t delay_ns = 0;  ///< t_frame = t_sample + delay
   Scalar gravity = 0;         ///< [m/s^2]
+  /// Of the mounting and the delay [rad], [m], [s]; 0: constant.
+  Scalar sigma_turn = 0, sigma_place = 0, sigma_delay = 0;
 };
 
 /// Without samples: the rate and the specific force that the body would have with constant velocity, and its accelerations.

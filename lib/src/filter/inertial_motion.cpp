@@ -19,8 +19,12 @@ struct PartRows {
         velocity(layout.row(BodyPart::kVelocity)),
         gyro(layout.row(BodyPart::kGyroBias)),
         accel(layout.row(BodyPart::kAccelBias)),
-        gravity(layout.row(BodyPart::kGravity)) {}
+        gravity(layout.row(BodyPart::kGravity)),
+        turn(layout.row(BodyPart::kMountRotation)),
+        place(layout.row(BodyPart::kMountPlace)),
+        delay(layout.row(BodyPart::kDelay)) {}
   int dim, velocity, gyro, accel, gravity;
+  int turn, place, delay;  ///< of the mounting; negative where it is not estimated
 };
 
 void clear(Transition* t, const Body& body, int dim) {
@@ -50,6 +54,21 @@ void set_noise(const Preintegral::Covariance& S, const Mat3& R, const Mat3& m_ha
   for (int a = 0; a < Rows::kRows / 3; ++a)
     for (int b = 0; b < Rows::kRows / 3; ++b)
       set_block<3>(transition->Q, rows.dim, to[a], to[b], Mat3(Q.block<3, 3>(3 * a, 3 * b)));
+}
+
+/// F by the mounting. dv_W, dp_W: what the unit's specific force has added, which rotates with it; zero where that is not used.
+void set_by_mounting(const Body& body, const Mounting& mounting, const PartRows& rows, const Vec3& dv_W,
+                     const Vec3& dp_W, const Mat3& m_hat, Transition* transition) {
+  if (rows.turn < 0 && rows.place < 0) return;
+  const Mat3 R_before = body.q_WC.toRotationMatrix();
+  const Mat3 turned = R_before - transition->mean.q_WC.toRotationMatrix();
+  if (rows.turn >= 0) {
+    set_block<3>(transition->F, rows.dim, Body::kTheta, rows.turn, turned);
+    set_block<3>(transition->F, rows.dim, rows.velocity, rows.turn, Mat3(-hat(dv_W).lazyProduct(R_before)));
+    set_block<3>(transition->F, rows.dim, Body::kPosition, rows.turn,
+                 Mat3(m_hat.lazyProduct(turned) - hat(dp_W).lazyProduct(R_before)));
+  }
+  if (rows.place >= 0 && mounting.in_metres) set_block<3>(transition->F, rows.dim, Body::kPosition, rows.place, turned);
 }
 
 /// Pose and velocity of the mean, from where the unit goes.
@@ -92,6 +111,13 @@ void predict_inertial(const Body& body, const BodyLayout& layout, const Mounting
   set_block<3>(F, rows.dim, Body::kPosition, rows.velocity, T * Mat3::Identity());
   set_block<6>(F, rows.dim, Body::kPosition, rows.gyro, by_p);
   set_block<2>(F, rows.dim, Body::kPosition, rows.gravity, T2 * E);
+  set_by_mounting(body, mounting, rows, dv_W, dp_W, m_hat, transition);
+  if (rows.delay >= 0) {
+    const Vec3 by_phi = R * samples.by_delay().head<3>();
+    set_block<1>(F, rows.dim, Body::kTheta, rows.delay, by_phi);
+    set_block<1>(F, rows.dim, rows.velocity, rows.delay, Vec3(R * samples.by_delay().segment<3>(3)));
+    set_block<1>(F, rows.dim, Body::kPosition, rows.delay, Vec3(R * samples.by_delay().tail<3>() + m_hat * by_phi));
+  }
   set_noise(samples.covariance(), R, m_hat, rows, transition);
 }
 
@@ -115,6 +141,12 @@ void predict_by_rotation(const Body& body, const BodyLayout& layout, const Mount
   set_block<3>(transition->F, rows.dim, Body::kPosition, Body::kTheta, hat(m_after - m_before));
   set_block<3>(transition->F, rows.dim, Body::kPosition, rows.velocity, T * Mat3::Identity());
   set_block<3>(transition->F, rows.dim, Body::kPosition, rows.gyro, m_hat.lazyProduct(phi));
+  set_by_mounting(body, mounting, rows, Vec3::Zero(), Vec3::Zero(), m_hat, transition);
+  if (rows.delay >= 0) {
+    const Vec3 by_phi = R * samples.by_delay().head<3>();
+    set_block<1>(transition->F, rows.dim, Body::kTheta, rows.delay, by_phi);
+    set_block<1>(transition->F, rows.dim, Body::kPosition, rows.delay, Vec3(m_hat * by_phi));
+  }
   S.middleRows<6>(Preintegral::kVelocity).setZero();
   S.middleCols<6>(Preintegral::kVelocity).setZero();
   for (int i = 0; i < 3; ++i) {
@@ -135,11 +167,16 @@ void forget_rows(Transition* transition, int first, int rows) {
     for (int j = 0; j < transition->dim; ++j) transition->F[i * transition->dim + j] = Scalar(0);
 }
 
-/// Gravity's rows by those of the rotation, where its direction was read off with that.
-Eigen::Matrix<Scalar, 2, 3> set_gravity_by_rotation(const PartRows& rows, Transition* transition) {
+/// Gravity's rows by those of the rotation, where its direction was read off with that; by_unit: in axes of the unit.
+Eigen::Matrix<Scalar, 2, 3> set_gravity_by_rotation(const PartRows& rows, bool by_unit, Transition* transition) {
   const Eigen::Matrix<Scalar, 2, 3> E_t = transition->mean.q_WG.toRotationMatrix().leftCols<2>().transpose();
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 2; ++j) transition->F[(rows.gravity + j) * rows.dim + Body::kTheta + i] = E_t(j, i);
+  if (by_unit && rows.turn >= 0) {
+    const Eigen::Matrix<Scalar, 2, 3> by_turn = E_t * transition->mean.q_WC.toRotationMatrix();
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 2; ++j) transition->F[(rows.gravity + j) * rows.dim + rows.turn + i] = by_turn(j, i);
+  }
   return E_t;
 }
 
@@ -216,7 +253,7 @@ void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounti
   forget_rows(transition, rows.accel, 5);  // gravity follows
   add_variance(transition, rows.accel, 3, fresh.sigma_accel_bias);
   add_variance(transition, rows.gravity, 2, fresh.sigma_gravity);
-  set_gravity_by_rotation(rows, transition);
+  set_gravity_by_rotation(rows, false, transition);
 }
 
 void predict_at_rest(const Body& body, const BodyLayout& layout, Scalar dt, const ImuNoise& noise, Scalar sigma_rad,
@@ -239,6 +276,12 @@ void begin_speed(const Body& body, const BodyLayout& layout, Scalar sigma_speed,
   add_variance(transition, rows.velocity, 3, sigma_speed);
 }
 
+void allow_for_turned_gravity(const Body& body, const BodyLayout& layout, Scalar variance, Transition* transition) {
+  const PartRows rows(layout);
+  clear(transition, body, rows.dim);
+  add_variance(transition, rows.gravity, 2, variance / 2);
+}
+
 void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& mounting, const RestReading& rest,
                    Transition* transition) {
   const PartRows rows(layout);
@@ -254,11 +297,11 @@ void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& m
   mean.accel_bias = (length - rest.gravity) * f_B;
   mean.q_WG = turn_z_to(u);
 
-  forget_rows(transition, rows.velocity, rows.dim - rows.velocity);  // velocity, biases and gravity begin anew
+  forget_rows(transition, rows.velocity, rows.gravity + 2 - rows.velocity);  // velocity, biases and gravity begin anew
   const Mat3 along = f_B * f_B.transpose(), across = Mat3::Identity() - along;
   const Mat3 open = rest.sigma_accel_bias * rest.sigma_accel_bias * across;
   const Scalar noise = rest.sigma_accel * rest.sigma_accel;
-  const Eigen::Matrix<Scalar, 2, 3> E_t = set_gravity_by_rotation(rows, transition);
+  const Eigen::Matrix<Scalar, 2, 3> E_t = set_gravity_by_rotation(rows, true, transition);
   const Eigen::Matrix<Scalar, 2, 3> K = E_t * hat(u) * R / rest.gravity;  // d by e_b and n
   const Mat3 Q_accel = open + noise * along;
   const Eigen::Matrix<Scalar, 2, 3> Q_cross = K * open;

@@ -15,6 +15,11 @@ namespace pf {
 ///   e_v+   = e_v - [R dv]x theta + R e_dv + T E d                          E = gravity (-R_WG e_y, R_WG e_x)
 ///   e_p+   = e_p + ([m_W+]x - [m_W]x - [R dp]x) theta + T e_v + R e_dp + [m_W+]x R e_phi + T^2/2 E d
 ///
+/// and where the layout has them, by the mounting (mu, e_m) and by a delay that is longer by e, through (e_phi, e_dv, e_dp) of by_delay:
+///
+///   theta+ += (R_WC - R_WC+) mu,   e_v+ -= [R dv]x R_WC mu
+///   e_p+   += ([m_W+]x (R_WC - R_WC+) - [R dp]x R_WC) mu + (R_WC - R_WC+) e_m
+///
 /// gravity [m/s^2]. The mean's w_C is left as it is.
 void predict_inertial(const Body& body, const BodyLayout& layout, const Mounting& mounting, const Preintegral& samples,
                       Scalar gravity, Transition* transition);
@@ -86,12 +91,17 @@ void predict_at_rest(const Body& body, const BodyLayout& layout, Scalar dt, cons
 /// A rest begins or ends: the velocity is zero within sigma_speed [m/s].
 void begin_speed(const Body& body, const BodyLayout& layout, Scalar sigma_speed, Transition* transition);
 
+/// What a rest says of gravity and of the unit's axes together is linear in both only to first order. Of a rotation mu of the axes, with
+/// variance s^2 about each, its part along gravity b and that across it a leave [a]x b / 2:  Q = s^4 / 4 in both rows of gravity.
+void allow_for_turned_gravity(const Body& body, const BodyLayout& layout, Scalar variance, Transition* transition);
+
 /// The gyro's bias is its reading, the velocity zero. Gravity and the accelerometer's bias become known together: with u = -R a / |a| in W,
 ///
 ///   g_W + R (b_a + n) = -R a:   b_a = (|a| - gravity) a / |a|,   gravity's direction is u
 ///   d = E^T (u x R (e_b + n)) / gravity + E^T theta                        E = (R_WG e_x, R_WG e_y)
 ///
-/// so that of e_b the two rows across gravity stay open, and hang together with d, and the one along it is n.
+/// so that of e_b the two rows across gravity stay open, and hang together with d, and the one along it is n. Where the unit's axes are
+/// estimated, theta + R_WC mu stands in place of theta.
 void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& mounting, const RestReading& rest,
                    Transition* transition);
 

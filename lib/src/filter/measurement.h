@@ -49,7 +49,7 @@ using PatchMeasurement = MeasurementOf<8, 38, 5>;
 /// Distance of a feature from a plane [m], over plane, feature and the row of the scale.
 using DistanceMeasurement = MeasurementOf<1, 24, 8>;
 
-/// What a unit at rest reads: gyro [rad/s] and accelerometer [m/s^2], over rotation, biases and gravity.
-using StillMeasurement = MeasurementOf<6, 11, 2>;
+/// What a unit at rest reads: gyro [rad/s] and accelerometer [m/s^2], over rotation, biases, gravity and the unit's axes.
+using StillMeasurement = MeasurementOf<6, 14, 3>;
 
 }  // namespace pf

@@ -32,6 +32,19 @@ void follow_row(const CameraAt& camera, const Mat26& J_camera, Scalar k, PixelMe
   }
 }
 
+/// What the unknown rotation of an inertial unit does to a row that is read out early or late: w = R_CB (gyro - bias), e_w = -[w]x mu, and
+/// -R_CB e_b = e_w. It is the same for all rows, but far below their noise once the camera has moved, so it has no columns of its own.
+Mat2 mounting_noise(const State& state, const CameraAt& camera, const Mat26& J_camera, const Triangle& P) {
+  const int first = state.layout.row(BodyPart::kMountRotation);
+  const Mat23 by_bias =
+      J_camera.leftCols<3>().lazyProduct(camera.J_theta_w) + J_camera.rightCols<3>().lazyProduct(camera.J_p_w);
+  const Mat23 J = by_bias * (state.mounting.R_CB.transpose() * hat(camera.w_C));
+  Mat3 C;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) C(i, j) = P(first + (i > j ? i : j), first + (i > j ? j : i));
+  return J * C * J.transpose();
+}
+
 }  // namespace
 
 /// Parallax is the product of inverse depth and baseline. Where both are uncertain, what neither Jacobian shows is their product, with
@@ -99,6 +112,8 @@ bool Filter::predict_pixel(const Camera& lens, int slot, PixelMeasurement* out) 
     camera = camera_at(state_, row_time(lens, out->predicted.y()));
     if (!predict_at(lens, camera, slot, out, &J_camera)) return false;
   }
+  if (camera.tau != Scalar(0) && state_.layout.has(BodyPart::kMountRotation))
+    out->second_order += mounting_noise(state_, camera, J_camera, covariance());
   follow_row(camera, J_camera, lens.readout / static_cast<Scalar>(lens.height), out);
   return true;
 }

@@ -70,6 +70,12 @@ void Preintegral::add(Scalar dt, const ImuReading& from, const ImuReading& to, S
   dt_ += dt;
 }
 
+void Preintegral::set_ends(const ImuReading& from, const ImuReading& to) {
+  const Vec3 w_0 = from.gyro - gyro_bias_, w_1 = to.gyro - gyro_bias_;
+  const Vec3 a_0 = from.accel - accel_bias_, a_1 = to.accel - accel_bias_;
+  by_delay_ << w_0 - R_ * w_1, w_0.cross(v_) + a_0 - R_ * a_1, w_0.cross(p_) + dt_ * a_0 - v_;
+}
+
 void Preintegral::coast(Scalar dt, const Vec3& w_B, const Vec3& f_B, Scalar angular_density, Scalar linear_density) {
   const Vec3 turn = w_B * dt;
   const Mat3 G = -dt * R_.lazyProduct(left_jacobian_so3(turn));

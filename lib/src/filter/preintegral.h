@@ -27,6 +27,7 @@ class Preintegral {
   static constexpr int kRows = 15, kPhi = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12;
   using Covariance = Eigen::Matrix<Scalar, kRows, kRows>;
   using ByBias = Eigen::Matrix<Scalar, 9, 6>;
+  using ByDelay = Eigen::Matrix<Scalar, 9, 1>;
 
   Preintegral(const ImuNoise& noise, const Vec3& gyro_bias, const Vec3& accel_bias)
       : noise_(noise), gyro_bias_(gyro_bias), accel_bias_(accel_bias) {}
@@ -47,11 +48,19 @@ class Preintegral {
 
   Scalar dt() const { return dt_; }
   const Vec3& gyro_bias() const { return gyro_bias_; }
+  const Vec3& accel_bias() const { return accel_bias_; }
   const Mat3& R() const { return R_; }
   const Vec3& v() const { return v_; }
   const Vec3& p() const { return p_; }
   /// Of (phi, v, p) by (b_g, b_a).
   const ByBias& by_bias() const { return D_; }
+  /// The readings at both ends, which tell what a delay does.
+  void set_ends(const ImuReading& from, const ImuReading& to);
+  /// Of (phi, v, p) by a delay that is longer by e: both ends are e earlier on the clock of the samples. With w and a without bias, at the
+  /// beginning (0) and at the end (1); zero where set_ends was not called.
+  ///
+  ///   phi: w_0 - R w_1,   v: [w_0]x v + a_0 - R a_1,   p: [w_0]x p + T a_0 - v
+  const ByDelay& by_delay() const { return by_delay_; }
   const Covariance& covariance() const { return S_; }
 
  private:
@@ -64,6 +73,7 @@ class Preintegral {
   Vec3 v_ = Vec3::Zero();
   Vec3 p_ = Vec3::Zero();
   ByBias D_ = ByBias::Zero();
+  ByDelay by_delay_ = ByDelay::Zero();
   Covariance S_ = Covariance::Zero();
 };
 

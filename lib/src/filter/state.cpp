@@ -88,6 +88,14 @@ void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
     body.accel_bias += three(layout.row(BodyPart::kAccelBias));
     body.q_WG = body.q_WG * exp_so3(Vec3(dx[gravity], dx[gravity + 1], Scalar(0)));
     body.q_WG.normalize();
+    Mounting& mounting = state.mounting;
+    if (layout.has(BodyPart::kMountRotation)) {
+      const Quat turn = exp_so3(three(layout.row(BodyPart::kMountRotation)));
+      mounting.R_CB = (turn * Quat(mounting.R_CB)).normalized().toRotationMatrix();
+      body.w_C = turn * body.w_C;  // the samples' axes, not the samples
+    }
+    if (layout.has(BodyPart::kMountPlace)) mounting.p_C += three(layout.row(BodyPart::kMountPlace));
+    if (layout.has(BodyPart::kDelay)) mounting.delay += dx[layout.row(BodyPart::kDelay)];
   }
   if (layout.has(BodyPart::kLens) && layout.considered_rows() == 0)
     move_lens(state.lens_rows, dx + layout.row(BodyPart::kLens), &state.lens);

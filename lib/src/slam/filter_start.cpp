@@ -12,6 +12,7 @@ using namespace tuning::filter_start;
 bool FilterStart::layout(Arena& arena, int width, int height) {
   target_.layout(arena, width, height);
   without_.layout(arena);
+  if (settings_.body.estimates_mounting()) mounting_ = arena.take<KnownMounting>(1);
   return arena.ok();
 }
 
@@ -19,14 +20,49 @@ void FilterStart::init() {
   data_ = Data();
   target_.init();
   without_.init();
+  forget_mounting();
   clear_filter();
+}
+
+void FilterStart::forget_mounting() {
+  if (mounting_ == nullptr) return;
+  const ImuUnit& unit = settings_.unit;
+  const int first = settings_.body.row(BodyPart::kGravity) + 2, rows = settings_.body.dynamic_rows() - first;
+  mounting_->mounting = unit.mounting;
+  for (Scalar& c : mounting_->covariance) c = Scalar(0);
+  const auto set_sigma = [&](BodyPart part, int count, Scalar sigma) {
+    if (!settings_.body.has(part)) return;
+    const int begin = settings_.body.row(part) - first;
+    for (int i = begin; i < begin + count; ++i) mounting_->covariance[i * rows + i] = sigma * sigma;
+  };
+  set_sigma(BodyPart::kMountRotation, 3, unit.sigma_turn);
+  set_sigma(BodyPart::kMountPlace, 3, unit.sigma_place);
+  set_sigma(BodyPart::kDelay, 1, unit.sigma_delay);
+}
+
+void FilterStart::keep_mounting() {
+  if (mounting_ == nullptr || !parts_.tracking.has_pose() || !parts_.filter.body_is_sound()) return;
+  const int first = settings_.body.row(BodyPart::kGravity) + 2, rows = settings_.body.dynamic_rows() - first;
+  mounting_->mounting = mounting();
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < rows; ++j) {
+      const int row = first + (i > j ? i : j), column = first + (i > j ? j : i);
+      mounting_->covariance[i * rows + j] = parts_.filter.covariance()(row, column);
+    }
+}
+
+Mounting FilterStart::mounting() const {
+  Mounting mounting = parts_.filter.state().mounting;
+  if (!mounting.in_metres) mounting.p_C = known_mounting().p_C;
+  mounting.in_metres = true;
+  return mounting;
 }
 
 void FilterStart::clear_filter() {
   parts_.filter.init(settings_.kernels, settings_.body, settings_.keep_gauge);
   parts_.filter.set_lens(settings_.camera, settings_.lens);
   // Where the scale is not known, neither is the unit's place in it.
-  parts_.filter.set_mounting({settings_.unit.mounting.R_CB, Vec3::Zero()});
+  parts_.filter.set_mounting({known_mounting().R_CB, Vec3::Zero(), known_mounting().delay, false});
   parts_.filter.set_roughness(settings_.fold.roughness);
   parts_.map.planes.clear();
   parts_.map.mark = Mark();
@@ -83,6 +119,9 @@ void FilterStart::set_body(const Body& body, const Scalar* known, const Scalar* 
     set_sigma(BodyPart::kGyroBias, 3, parts_.filter.uses_samples() ? kGyroBias : kStartRate);
     set_sigma(BodyPart::kAccelBias, 3, kAccelBias);
     set_sigma(BodyPart::kGravity, 2, kGravity);
+    const int first = layout.row(BodyPart::kGravity) + 2, rows = dim - first;
+    for (int i = 0; i < rows; ++i)
+      for (int j = 0; j < rows; ++j) all[(first + i) * dim + first + j] = mounting_->covariance[i * rows + j];
     known = all;
   }
   parts_.filter.set_body(body, known, J_lens);

@@ -69,6 +69,10 @@ class FilterStart {
   /// The camera has been at rest since begin_ns. The first time that samples can tell the scale from here on: true, and gravity and biases
   /// are known. A map whose scale is unknown begins anew with this frame.
   bool use_rest(const RestReading& rest, std::int64_t begin_ns);
+  /// The next map begins with the unit's mounting and its delay as they are known now, and not with those of the config.
+  void keep_mounting();
+  /// Where the unit is on the camera, as far as it is known.
+  Mounting mounting() const;
   /// Ends a record, where something else tells the depths from now on.
   void end_record() { without_.init(); }
 
@@ -94,9 +98,22 @@ class FilterStart {
     Scalar covariance[BodyLayout::kVelocityRows * BodyLayout::kVelocityRows] = {};  ///< of the body at the first frame
   };
 
+  /// How the unit is mounted, and the covariance of those rows.
+  struct KnownMounting {
+    static constexpr int kRows = 7;
+    Mounting mounting;
+    Scalar covariance[kRows * kRows];
+  };
+
+  void forget_mounting();
+  const Mounting& known_mounting() const {
+    return mounting_ != nullptr ? mounting_->mounting : settings_.unit.mounting;
+  }
+
   const Settings& settings_;
   const BodyMotion& motion_;
   const StartedParts parts_;
+  KnownMounting* mounting_ = nullptr;  ///< that maps begin with; null where it is constant, that of the settings
   Data data_;
   StartAtTarget target_;
   StartWithoutTarget without_;

@@ -19,6 +19,7 @@ bool FilterStart::use_rest(const RestReading& rest, std::int64_t begin_ns) {
   if (filter.is_metric()) return false;
   if (!data_.knows_scale) {
     if (parts_.map.planes.has_known() || !may_begin_anew(begin_ns)) return false;
+    keep_mounting();
     const bool pending = progress().pending();
     end_record();
     if (begin_ns > data_.begin_ns) {
@@ -31,9 +32,14 @@ bool FilterStart::use_rest(const RestReading& rest, std::int64_t begin_ns) {
     set_known_pose(false);
   }
   Transition transition;
-  begin_at_rest(filter.state().body, settings_.body, settings_.unit.mounting, rest, &transition);
+  const Mounting known = mounting();
+  begin_at_rest(filter.state().body, settings_.body, known, rest, &transition);
   filter.predict(transition);
-  filter.set_mounting(settings_.unit.mounting);
+  filter.set_mounting(known);
+  if (settings_.body.has(BodyPart::kMountRotation)) {
+    allow_for_turned_gravity(filter.state().body, settings_.body, filter.unit_turn_variance(), &transition);
+    filter.predict(transition);
+  }
   filter.set_metric();
   settings_.hooks.say("at rest: gravity and the biases are known, lengths are in metres from here on");
   return true;

@@ -70,7 +70,11 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   now.v_W = (p_W - now.p_W) / dt;
   now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
   Transition transition;
-  motion_.predict(now, before_ns, frame.t_ns, settings_.motion_noise, &transition);
+  // Residuals of zero say nothing of how the unit is mounted either.
+  if (settings_.body.estimates_mounting())
+    motion_.predict_coasting(now, before_ns, frame.t_ns, &transition);
+  else
+    motion_.predict(now, before_ns, frame.t_ns, settings_.motion_noise, &transition);
   transition.mean.q_WC = q_WC;
   transition.mean.p_W = p_W;
   filter.predict(transition);

@@ -279,6 +279,7 @@ void FrameLoop::start_over() {
 /// The map was not found again for too long, although the images were usable, or its scale is discredited: a new one begins with this
 /// frame.
 void FrameLoop::begin_new_map(const char* why) {
+  if (!data_.map_discredited) start_.keep_mounting();
   clear_estimate();
   tracking_.begin_map();
   data_.map_discredited = false;

@@ -12,6 +12,12 @@ namespace pf {
 using namespace tuning::rest;
 
 bool RestHold::predict(bool follows, std::int64_t before_ns, std::int64_t t_ns, Scalar depth) {
+  const bool held = data_.holds, holds = follow_rest(follows, before_ns, t_ns, depth);
+  if (held && !holds) leave();
+  return holds;
+}
+
+bool RestHold::follow_rest(bool follows, std::int64_t before_ns, std::int64_t t_ns, Scalar depth) {
   const bool held = data_.holds;
   data_.holds = false;
   if (!settings_.inertial || !follows || !filter_.is_metric() || !filter_.uses_samples() ||
@@ -43,6 +49,14 @@ void RestHold::begin_rest() {
   filter_.predict(transition);
 }
 
+/// Gravity was read in axes that motion may yet show to be others.
+void RestHold::leave() {
+  if (!settings_.body.has(BodyPart::kMountRotation)) return;
+  Transition transition;
+  allow_for_turned_gravity(filter_.state().body, settings_.body, filter_.unit_turn_variance(), &transition);
+  filter_.predict(transition);
+}
+
 /// And so it may for as long as the picture does not show it: s = a t^2 / 2, v = a t.
 void RestHold::end_rest() {
   data_.holds = false;
@@ -52,6 +66,7 @@ void RestHold::end_rest() {
   begin_speed(filter_.state().body, settings_.body, std::sqrt(2 * kHidden * data_.still.sigma_accel * moved_m),
               &transition);
   filter_.predict(transition);
+  leave();
 }
 
 /// Predicts the frame, or takes that back.

@@ -43,7 +43,9 @@ class RestHold {
     StillReading still;
   };
 
+  bool follow_rest(bool follows, std::int64_t before_ns, std::int64_t t_ns, Scalar depth);
   void begin_rest();
+  void leave();
   void end_rest();
   void move(Scalar sign);
 

@@ -1,9 +1,11 @@
 #include "slam/view.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "filter/gauge_information.h"
 #include "filter/observe/point.h"
+#include "geometry/so3.h"
 #include "slam/frame_loop.h"
 #include "slam/window_slam.h"
 #include "track/template_warp.h"
@@ -62,7 +64,46 @@ bool View::inertial(InertialView* out) const {
   out->metric = filter().is_metric();
   out->resting = loop_->hold()->holds();
   out->rests = loop_->hold()->rests();
+  for (int i = 0; i < 8; ++i) out->sigma[i] = std::sqrt(std::max(Scalar(0), out->covariance[i][i]));
+  describe_mounting(out);
+  ScaleRow l;
+  if (out->metric && filter().scale_row(&l)) out->sigma[16] = std::sqrt(std::max(Scalar(0), filter().variance_of(l)));
   return true;
+}
+
+/// With R_CB_true = Exp(mu) R_CB and m_true = m + e_m:
+///
+///   R_BC_true = Exp(-R_BC mu) R_BC,   p_BC = -R_BC m:   e = -R_BC e_m - R_BC [m]x mu
+void View::describe_mounting(InertialView* out) const {
+  const Mounting mounting = loop_->start().mounting();
+  const BodyLayout& layout = settings_.body;
+  const Mat3 R_BC = mounting.R_CB.transpose();
+  out->q_BC = Quat(R_BC);
+  out->p_BC = -(R_BC * mounting.p_C);
+  out->delay_s = 1e-9 * static_cast<double>(settings_.unit.delay_ns) + static_cast<double>(mounting.delay);
+  for (int i = 8; i < 17; ++i) out->sigma[i] = Scalar(-1);
+  const int turn = layout.row(BodyPart::kMountRotation), place = layout.row(BodyPart::kMountPlace);
+  const auto put_sigmas = [&](int first, const Mat3* by_turn, const Mat3* by_place) {
+    RowsOf<3, 6, 2> J;
+    J.parts = 0;
+    const int columns = by_turn != nullptr && by_place != nullptr ? 6 : 3;
+    int column = 0;
+    const auto add = [&](int row, const Mat3* by) {
+      if (by == nullptr) return;
+      J.part[J.parts++] = Part::body(row, 3);
+      put<3, 3>(J.h, columns, column, *by);
+      column += 3;
+    };
+    add(turn, by_turn);
+    add(place, by_place);
+    const Mat3 C = filter().covariance_of<3>(J);
+    for (int i = 0; i < 3; ++i) out->sigma[first + i] = std::sqrt(std::max(Scalar(0), C(i, i)));
+  };
+  const Mat3 by_turn = -R_BC.lazyProduct(hat(mounting.p_C)), minus = -R_BC;
+  if (turn >= 0) put_sigmas(8, &minus, nullptr);
+  if (place >= 0) put_sigmas(11, turn >= 0 ? &by_turn : nullptr, &minus);
+  if (layout.has(BodyPart::kDelay))
+    out->sigma[14] = std::sqrt(std::max(Scalar(0), filter().variance(layout.row(BodyPart::kDelay))));
 }
 
 bool View::unit_doubted() const { return loop_ != nullptr && loop_->watch().doubted(); }

@@ -64,6 +64,10 @@ struct InertialView {
   Scalar covariance[8][8];  ///< of (gravity, gyro bias, accelerometer bias)
   bool metric, resting;
   int rests;
+  Quat q_BC;
+  Vec3 p_BC;
+  double delay_s;
+  Scalar sigma[17];  ///< as pf_inertial_t says
 };
 
 /// A patch on a wall in the last frame.
@@ -153,6 +157,7 @@ class View {
 
  private:
   const Filter& filter() const;
+  void describe_mounting(InertialView* out) const;
   bool surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const;
 
   // view_window.cpp: the same of the window

@@ -16,13 +16,16 @@ enum class BodyPart : std::uint8_t {
   kGyroBias,         ///< of the inertial unit, in its axes
   kAccelBias,        ///< likewise
   kGravity,          ///< its direction in W, two rows
+  kMountRotation,    ///< of the inertial unit's axes against the camera's, where they are estimated
+  kMountPlace,       ///< of its origin, likewise
+  kDelay,            ///< of its clock, likewise, one row
   kLens              ///< numbers of the calibration (geometry/lens.h)
 };
 
 /// Which parts a body has, and where their rows lie. The pose is always there, and first.
 class BodyLayout {
  public:
-  static constexpr int kMaxDynamicRows = 17;
+  static constexpr int kMaxDynamicRows = 24;
   static constexpr int kVelocityRows =
       12;  ///< pose, velocity and angular velocity: the most that a caller knows at the start
 
@@ -42,6 +45,15 @@ class BodyLayout {
     layout.add(BodyPart::kAccelBias, 3);
     layout.add(BodyPart::kGravity, 2);
     return layout;
+  }
+  /// How the unit is mounted, and its delay, which stay as they are, but which its samples hang on: F covers them.
+  void add_mounting(bool rotation, bool place, bool delay) {
+    if (rotation) add(BodyPart::kMountRotation, 3);
+    if (place) add(BodyPart::kMountPlace, 3);
+    if (delay) add(BodyPart::kDelay, 1);
+  }
+  bool estimates_mounting() const {
+    return has(BodyPart::kMountRotation) || has(BodyPart::kMountPlace) || has(BodyPart::kDelay);
   }
 
   /// Adds a part that does not move. Considered: it keeps its covariance and is not estimated (Schmidt); such parts come last, so that
@@ -64,7 +76,7 @@ class BodyLayout {
   int considered_rows() const { return considered_rows_; }
 
  private:
-  static constexpr int kParts = 7;
+  static constexpr int kParts = 10;
   static constexpr int index(BodyPart part) { return static_cast<int>(part); }
 
   void add(BodyPart part, int rows) {
@@ -72,7 +84,7 @@ class BodyLayout {
     dynamic_rows_ = static_cast<std::int8_t>(dynamic_rows_ + rows);
   }
 
-  std::int8_t row_[kParts] = {0, -1, -1, -1, -1, -1, -1};
+  std::int8_t row_[kParts] = {0, -1, -1, -1, -1, -1, -1, -1, -1, -1};
   std::int8_t dynamic_rows_ = 6, constant_rows_ = 0, considered_rows_ = 0;
 };
 
@@ -98,10 +110,13 @@ struct Body {
   Vec3 gravity_W() const;
 };
 
-/// Where the inertial unit B is on the camera: known, and no part of the state.
+/// Where the inertial unit B is on the camera, and how its clock runs. Error, where it is estimated: R_CB_true = Exp(mu) R_CB, the others
+/// additive.
 struct Mounting {
   Mat3 R_CB = Mat3::Identity();
   Vec3 p_C = Vec3::Zero();  ///< its origin in C [m]
+  Scalar delay = 0;         ///< t_frame = t_sample + delay, beside the delay of the config [s]
+  bool in_metres = true;    ///< false: p_C is zero and no part of the motion, since lengths have no unit yet
 };
 
 }  // namespace pf
