@@ -14,6 +14,7 @@ inline std::int64_t elapsed_ns(std::int64_t from, std::int64_t to) {
 }
 
 inline double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+inline std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
 /// A frame counter that stops before it would overflow (after about seven months at 60 Hz; smaller types at their largest value).
 template <class Int>

@@ -2,43 +2,19 @@
 
 #include <cmath>
 
+#include "filter/inertial_rows.h"
 #include "geometry/so3.h"
 
 namespace pf {
+
+using namespace inertial_rows;
+
 namespace {
 
 using Mat32 = Eigen::Matrix<Scalar, 3, 2>;
 using Mat36 = Eigen::Matrix<Scalar, 3, 6>;
 
 constexpr int kChain = 3;  ///< biases to rotation to velocity to position
-
-/// Rows of the layout.
-struct PartRows {
-  explicit PartRows(const BodyLayout& layout)
-      : dim(layout.dynamic_rows()),
-        velocity(layout.row(BodyPart::kVelocity)),
-        gyro(layout.row(BodyPart::kGyroBias)),
-        accel(layout.row(BodyPart::kAccelBias)),
-        gravity(layout.row(BodyPart::kGravity)),
-        turn(layout.row(BodyPart::kMountRotation)),
-        place(layout.row(BodyPart::kMountPlace)),
-        delay(layout.row(BodyPart::kDelay)) {}
-  int dim, velocity, gyro, accel, gravity;
-  int turn, place, delay;  ///< of the mounting; negative where it is not estimated
-};
-
-void clear(Transition* t, const Body& body, int dim) {
-  t->mean = body;
-  t->dim = dim;
-  for (int i = 0; i < dim * dim; ++i) t->F[i] = t->Q[i] = Scalar(0);
-  for (int i = 0; i < dim; ++i) t->F[i * dim + i] = Scalar(1);
-}
-
-template <int kColumns>
-void set_block(Scalar* matrix, int dim, int row, int column, const Eigen::Matrix<Scalar, 3, kColumns>& value) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < kColumns; ++j) matrix[(row + i) * dim + column + j] = value(i, j);
-}
 
 /// Q = J S J^T, where J takes (phi, v, p) to (theta, p, v) by R and m_W, and biases to biases.
 void set_noise(const Preintegral::Covariance& S, const Mat3& R, const Mat3& m_hat, const PartRows& rows,
@@ -158,28 +134,6 @@ void predict_by_rotation(const Body& body, const BodyLayout& layout, const Mount
   set_noise(S, R, m_hat, rows, transition);
 }
 
-void add_variance(Transition* transition, int first, int rows, Scalar sigma) {
-  for (int i = first; i < first + rows; ++i) transition->Q[i * transition->dim + i] += sigma * sigma;
-}
-
-void forget_rows(Transition* transition, int first, int rows) {
-  for (int i = first; i < first + rows; ++i)
-    for (int j = 0; j < transition->dim; ++j) transition->F[i * transition->dim + j] = Scalar(0);
-}
-
-/// Gravity's rows by those of the rotation, where its direction was read off with that; by_unit: in axes of the unit.
-Eigen::Matrix<Scalar, 2, 3> set_gravity_by_rotation(const PartRows& rows, bool by_unit, Transition* transition) {
-  const Eigen::Matrix<Scalar, 2, 3> E_t = transition->mean.q_WG.toRotationMatrix().leftCols<2>().transpose();
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 2; ++j) transition->F[(rows.gravity + j) * rows.dim + Body::kTheta + i] = E_t(j, i);
-  if (by_unit && rows.turn >= 0) {
-    const Eigen::Matrix<Scalar, 2, 3> by_turn = E_t * transition->mean.q_WC.toRotationMatrix();
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 2; ++j) transition->F[(rows.gravity + j) * rows.dim + rows.turn + i] = by_turn(j, i);
-  }
-  return E_t;
-}
-
 }  // namespace
 
 void predict_rotation_only(const Body& body, const BodyLayout& layout, const Mounting& mounting,
@@ -227,96 +181,6 @@ void predict_without_samples(const Body& body, const BodyLayout& layout, const M
   S.block<3, 3>(Preintegral::kGyroBias, Preintegral::kPhi) = b * dt / 2 * G.transpose();
   S.block<3, 3>(Preintegral::kGyroBias, Preintegral::kGyroBias) = b * dt * Mat3::Identity();
   predict_by_rotation(body, layout, mounting, path, S, noise.linear, transition);
-}
-
-void begin_without_samples(const Body& body, const BodyLayout& layout, Scalar sigma_rate, bool anew, Scalar sigma_speed,
-                           Transition* transition) {
-  const PartRows rows(layout);
-  clear(transition, body, rows.dim);
-  if (anew) {
-    forget_rows(transition, rows.velocity, 3);
-    forget_rows(transition, rows.gyro, 3);
-    add_variance(transition, rows.velocity, 3, sigma_speed);
-  }
-  add_variance(transition, rows.gyro, 3, sigma_rate);
-}
-
-void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, const FreshReading& fresh,
-                        Transition* transition) {
-  const PartRows rows(layout);
-  clear(transition, body, rows.dim);
-  transition->mean.gyro_bias = fresh.gyro - mounting.R_CB.transpose() * body.w_C;
-  add_variance(transition, rows.gyro, 3, fresh.sigma_gyro);
-  if (!fresh.anew) return;
-  transition->mean.accel_bias.setZero();
-  transition->mean.q_WG = turn_z_to(fresh.gravity_W.normalized());
-  forget_rows(transition, rows.accel, 5);  // gravity follows
-  add_variance(transition, rows.accel, 3, fresh.sigma_accel_bias);
-  add_variance(transition, rows.gravity, 2, fresh.sigma_gravity);
-  set_gravity_by_rotation(rows, false, transition);
-}
-
-void predict_at_rest(const Body& body, const BodyLayout& layout, Scalar dt, const ImuNoise& noise, Scalar sigma_rad,
-                     Scalar sigma_m, Transition* transition) {
-  const PartRows rows(layout);
-  clear(transition, body, rows.dim);
-  transition->mean.w_C.setZero();
-  const Scalar root = std::sqrt(dt);
-  add_variance(transition, Body::kTheta, 3, sigma_rad);
-  add_variance(transition, Body::kPosition, 3, sigma_m);
-  add_variance(transition, rows.gyro, 3, noise.gyro_walk * root);
-  add_variance(transition, rows.accel, 3, noise.accel_walk * root);
-}
-
-void begin_speed(const Body& body, const BodyLayout& layout, Scalar sigma_speed, Transition* transition) {
-  const PartRows rows(layout);
-  clear(transition, body, rows.dim);
-  transition->mean.v_W.setZero();
-  forget_rows(transition, rows.velocity, 3);
-  add_variance(transition, rows.velocity, 3, sigma_speed);
-}
-
-void allow_for_turned_gravity(const Body& body, const BodyLayout& layout, Scalar variance, Transition* transition) {
-  const PartRows rows(layout);
-  clear(transition, body, rows.dim);
-  add_variance(transition, rows.gravity, 2, variance / 2);
-}
-
-void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& mounting, const RestReading& rest,
-                   Transition* transition) {
-  const PartRows rows(layout);
-  clear(transition, body, rows.dim);
-  Body& mean = transition->mean;
-  Scalar* Q = transition->Q;
-  const Mat3 R = body.q_WC.toRotationMatrix() * mounting.R_CB;
-  const Scalar length = rest.accel.norm();
-  const Vec3 f_B = rest.accel / length, u = -(R * f_B);
-  mean.v_W.setZero();
-  mean.w_C.setZero();
-  mean.gyro_bias = rest.gyro;
-  mean.accel_bias = (length - rest.gravity) * f_B;
-  mean.q_WG = turn_z_to(u);
-
-  forget_rows(transition, rows.velocity, rows.gravity + 2 - rows.velocity);  // velocity, biases and gravity begin anew
-  const Mat3 along = f_B * f_B.transpose(), across = Mat3::Identity() - along;
-  const Mat3 open = rest.sigma_accel_bias * rest.sigma_accel_bias * across;
-  const Scalar noise = rest.sigma_accel * rest.sigma_accel;
-  const Eigen::Matrix<Scalar, 2, 3> E_t = set_gravity_by_rotation(rows, true, transition);
-  const Eigen::Matrix<Scalar, 2, 3> K = E_t * hat(u) * R / rest.gravity;  // d by e_b and n
-  const Mat3 Q_accel = open + noise * along;
-  const Eigen::Matrix<Scalar, 2, 3> Q_cross = K * open;
-  const Mat2 Q_gravity = Q_cross * K.transpose() + noise * K * K.transpose();
-  for (int i = 0; i < 3; ++i) {
-    Q[(rows.velocity + i) * rows.dim + rows.velocity + i] = rest.sigma_speed * rest.sigma_speed;
-    Q[(rows.gyro + i) * rows.dim + rows.gyro + i] = rest.sigma_gyro * rest.sigma_gyro;
-    for (int j = 0; j < 3; ++j) Q[(rows.accel + i) * rows.dim + rows.accel + j] = Q_accel(i, j);
-    for (int j = 0; j < 2; ++j) {
-      Q[(rows.gravity + j) * rows.dim + rows.accel + i] = Q_cross(j, i);
-      Q[(rows.accel + i) * rows.dim + rows.gravity + j] = Q_cross(j, i);
-    }
-  }
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j) Q[(rows.gravity + i) * rows.dim + rows.gravity + j] = Q_gravity(i, j);
 }
 
 }  // namespace pf

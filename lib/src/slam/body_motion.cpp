@@ -18,7 +18,7 @@ Scalar predicted_seconds(std::int64_t before_ns, std::int64_t t_ns) {
 std::int64_t BodyMotion::on_unit_clock(std::int64_t t_ns) const {
   std::int64_t shifted, delay_ns = settings_.unit.delay_ns;
   if (settings_.body.has(BodyPart::kDelay))
-    delay_ns += static_cast<std::int64_t>(static_cast<double>(filter_.state().mounting.delay) * 1e9);
+    delay_ns += nanoseconds(static_cast<double>(filter_.state().mounting.delay));
   return __builtin_sub_overflow(t_ns, delay_ns, &shifted) ? t_ns : shifted;
 }
 

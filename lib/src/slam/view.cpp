@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elapsed.h"
 #include "filter/gauge_information.h"
 #include "filter/observe/point.h"
 #include "geometry/so3.h"
@@ -80,7 +81,7 @@ void View::describe_mounting(InertialView* out) const {
   const Mat3 R_BC = mounting.R_CB.transpose();
   out->q_BC = Quat(R_BC);
   out->p_BC = -(R_BC * mounting.p_C);
-  out->delay_s = 1e-9 * static_cast<double>(settings_.unit.delay_ns) + static_cast<double>(mounting.delay);
+  out->delay_s = seconds(settings_.unit.delay_ns) + static_cast<double>(mounting.delay);
   for (int i = 8; i < 17; ++i) out->sigma[i] = Scalar(-1);
   const int turn = layout.row(BodyPart::kMountRotation), place = layout.row(BodyPart::kMountPlace);
   const auto put_sigmas = [&](int first, const Mat3* by_turn, const Mat3* by_place) {
