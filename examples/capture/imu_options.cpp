@@ -59,6 +59,9 @@ std::string check_imu_options(const Options& options) {
   if (!options.estimate.empty() && !options.inertial) {
     return "--estimate: poses depend on no samples with --no-inertial; leave one of them away";
   }
+  if (!options.estimate.empty() && imu != "sim" && options.imu_noise.empty()) {
+    return "--estimate: poses depend on the samples only where their noise is known; add --imu-noise FILE";
+  }
   return std::isfinite(options.imu_offset_s) ? "" : "--imu-offset: not a finite number of seconds";
 }
 
