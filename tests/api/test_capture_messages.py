@@ -120,6 +120,8 @@ def test_usage(root):
     expect("no pose", 1, ["none.tum"], "--source", source, "--start", f"pose:{root}/none.tum", *out)
     expect("withdrawn", 2, ["--withdraw-target-after"], "--source", source, "--withdraw-target-after", "5")
     expect("lens", 2, ["--lens", "exact, consider or estimate"], "--source", source, "--lens", "free", *out)
+    expect("rows of the window", 2, ["--backend window", "camera.readout_s", "--readout 0"], "--source", "sim:desk", "--backend", "window",
+           "--readout", "0.02", *out)
     expect("mounting without samples", 2, ["--estimate", "--imu-noise"], "--source", source, "--estimate", "mount", *out)
     expect("timestamps", 2, ["--timestamps", "real or nominal"], "--source", source, "--timestamps", "counted", *out)
     expect("kernels", 2, ["--kernels"], "--source", source, "--kernels", "fast", *out)
