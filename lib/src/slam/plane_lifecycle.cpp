@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "slam/plane_keeper.h"
+#include "slam/plane_settings.h"
 #include "slam/tuning.h"
 
 /// Whole planes: discover, merge, change the frame, outline, dissolve. Gee 2007, section 3.3.
@@ -38,11 +39,7 @@ void PlaneKeeper::discover() {
   if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
   const int count = list_candidates();
   if (count <= settings_.plane_min_points) return;
-  PlaneSearchSettings search;
-  search.min_points = settings_.plane_min_points;
-  search.distance = settings_.plane_distance;
-  search.radius = settings_.plane_radius;
-  search.normal_variance = settings_.plane_distance * settings_.plane_distance / Scalar(4);
+  const PlaneSearchSettings search = plane_search_settings(settings_);
   PlaneFit fit;
   int member[kMaxPlaneMembers];
   int members = 0;

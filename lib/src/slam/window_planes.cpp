@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slam/plane_settings.h"
 #include "slam/tuning.h"
 #include "window/tuning.h"
 
@@ -169,11 +170,7 @@ void WindowPlanes::discover(const Vec3& viewer_W) {
     row_[count++] = i;
   }
   if (count <= settings_.plane_min_points) return;
-  PlaneSearchSettings search;
-  search.min_points = settings_.plane_min_points;
-  search.distance = settings_.plane_distance;
-  search.radius = settings_.plane_radius;
-  search.normal_variance = settings_.plane_distance * settings_.plane_distance / Scalar(4);
+  const PlaneSearchSettings search = plane_search_settings(settings_);
   PlaneFit fit;
   int members[kMaxPlaneMembers];
   int number = 0;
