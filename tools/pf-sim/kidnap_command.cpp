@@ -70,13 +70,15 @@ json trial_report(const GapCase& gap, int frame, const Trial& t) {
           {"worst_deg", t.worst_deg},
           {"worst_depths", t.worst_depths},
           {"worst_normalised", t.worst_normalised},
-          {"least_covariance_growth", t.least_growth}};
+          {"least_covariance_growth", t.least_growth},
+          {"least_against_prediction", t.least_taken_in}};
 }
 
 /// Counts over trials.
 struct Tally {
-  int trials = 0, tracking_again = 0, beyond = 0, wrong = 0, wrong_and_beyond = 0, shrinks = 0, in_view = 0, found = 0;
-  double least_growth = 1;
+  int trials = 0, tracking_again = 0, beyond = 0, wrong = 0, wrong_and_beyond = 0, shrinks = 0, taken_in = 0,
+      in_view = 0, found = 0;
+  double least_growth = 1, least_taken_in = 1;
   double old_ids = 0, kept_ids = 0;
   std::vector<double> delay_s;
 
@@ -91,6 +93,8 @@ struct Tally {
     wrong_and_beyond += t.wrong_normalised > bound;
     shrinks += t.least_growth < 1 - kRounding;
     least_growth = std::min(least_growth, t.least_growth);
+    taken_in += t.least_taken_in < 1 - kRounding;
+    least_taken_in = std::min(least_taken_in, t.least_taken_in);
     old_ids += t.old_ids;
     kept_ids += t.kept_ids;
     if (t.old_in_view < kManyInView) return;
@@ -107,6 +111,8 @@ struct Tally {
             {"wrong_beyond_5_sigma", wrong_and_beyond},
             {"covariance_shrinks", shrinks},
             {"least_covariance_growth", least_growth},
+            {"shrinks_below_prediction", taken_in},
+            {"least_against_prediction", least_taken_in},
             {"ids_kept", old_ids > 0 ? kept_ids / old_ids : 1.0},
             {"many_in_view", in_view},
             {"found_within_1_s", found}};
@@ -115,11 +121,11 @@ struct Tally {
 
 void print_row(const std::string& label, const json& j) {
   const auto number = [&](const char* name) { return j[name].is_null() ? -1.0 : j[name].get<double>(); };
-  std::printf("%-20s %6.0f %8.0f %7.2f %8.0f %6.0f %6.0f %8.0f %6.3f %6.1f %6.0f/%-5.0f\n", label.c_str(),
+  std::printf("%-20s %6.0f %8.0f %7.2f %8.0f %6.0f %6.0f %8.0f %6.3f %6.0f %6.1f %6.0f/%-5.0f\n", label.c_str(),
               number("trials"), number("tracking_again"), number("delay_s_median"), number("beyond_5_sigma"),
               number("wrong"), number("wrong_beyond_5_sigma"), number("covariance_shrinks"),
-              number("least_covariance_growth"), 100 * number("ids_kept"), number("found_within_1_s"),
-              number("many_in_view"));
+              number("least_covariance_growth"), number("shrinks_below_prediction"), 100 * number("ids_kept"),
+              number("found_within_1_s"), number("many_in_view"));
 }
 
 json summarise(const Job& job) {
@@ -128,8 +134,8 @@ json summarise(const Job& job) {
   const std::size_t starts = job.reference->starts.size();
   json out, doubtful = json::array();
   Tally all, second;
-  std::printf("%-20s %6s %8s %7s %8s %6s %6s %8s %6s %6s %12s\n", "gap", "trials", "tracking", "after s", "5 sigma",
-              "wrong", "both", "shrinks", "least", "ids %", "found in 1 s");
+  std::printf("%-20s %6s %8s %7s %8s %6s %6s %8s %6s %6s %6s %12s\n", "gap", "trials", "tracking", "after s", "5 sigma",
+              "wrong", "both", "shrinks", "least", "taken", "ids %", "found in 1 s");
   for (std::size_t c = 0; c < cases.size(); ++c) {
     Tally tally;
     for (std::size_t s = 0; s < starts; ++s) {
@@ -155,24 +161,32 @@ json summarise(const Job& job) {
     kept_ids += job.survivals[s].kept_ids;
   }
   out["ids_kept_without_pictures"] = old_ids > 0 ? kept_ids / old_ids : 1.0;
-  int frames = 0, tracking = 0, in_map = 0, right = 0;
+  int frames = 0, tracking = 0, in_map = 0, judged = 0, right = 0, turns = 0, turns_wrong = 0;
   for (int r = 0; r < job.options->random_runs && starts > 0; ++r) {
     frames += job.random[r].frames;
     tracking += job.random[r].tracking;
     in_map += job.random[r].in_map;
+    judged += job.random[r].judged;
     right += job.random[r].right;
+    turns += job.random[r].turns;
+    turns_wrong += job.random[r].turns_wrong;
   }
   out["random_order"] = {{"frames", frames},
                          {"tracking", tracking},
                          {"in_the_old_map", in_map},
+                         {"judged", judged},
                          {"right", right},
+                         {"turns", turns},
+                         {"turns_wrong", turns_wrong},
                          {"tracking_share", frames > 0 ? static_cast<double>(tracking) / frames : 0.0}};
   std::printf("after a black second with %d old features in view: %d of %d found within %g s\n", kManyInView,
               second.found, second.in_view, kFoundWithin_s);
   std::printf("ids kept over %g s without a picture: %.1f %%\n", job.options->survive_s,
               100 * out["ids_kept_without_pictures"].get<double>());
-  std::printf("random order: %d of %d frames tracking (%.2f %%), %d of them in the old map, %d where they should be\n",
-              tracking, frames, frames > 0 ? 100.0 * tracking / frames : 0.0, in_map, right);
+  std::printf(
+      "random order: %d of %d frames tracking (%.2f %%), %d of them in the old map; %d of %d that can be judged are "
+      "where they should be; %d of %d turns between two of them are wrong\n",
+      tracking, frames, frames > 0 ? 100.0 * tracking / frames : 0.0, in_map, right, judged, turns_wrong, turns);
   return out;
 }
 

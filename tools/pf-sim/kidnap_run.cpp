@@ -91,13 +91,19 @@ class Player {
     t_ns_ += film_.interval_ns();
     const pf_camera_t& camera = film_.camera();
     const pf_image_t image = {film_.pixels(frame), camera.width, camera.height, camera.width, t_ns_};
+    pf_pose_t predicted;
+    if (pf_predict_pose(context_.slam, t_ns_, &predicted) != PF_OK) predicted = last_;
     const pf_status_t status = pf_push_frame(context_.slam, &image);
     pf_pose_t pose;
     if (pf_get_pose(context_.slam, &pose) != PF_OK) return false;
     const bool tracking = status == PF_OK && pose.map_id == map_id_;
     if (trial_ != nullptr) {
       if (tracking && frame >= 0) judge(pose, frame);
-      if (status != PF_OK && pose.map_id == map_id_) compare_covariance(pose);
+      if (status != PF_OK && pose.map_id == map_id_) {
+        const double against_last = growth(last_, pose);
+        trial_->least_growth = std::min(trial_->least_growth, against_last);
+        trial_->least_taken_in = std::min(trial_->least_taken_in, std::max(against_last, growth(predicted, pose)));
+      }
     }
     last_ = pose;
     return tracking;
@@ -117,15 +123,18 @@ class Player {
       trial_->wrong_normalised = std::max(trial_->wrong_normalised, error.normalised);
   }
 
-  void compare_covariance(const pf_pose_t& pose) {
+  /// The smaller ratio of the sigmas of rotation and position, or 1.
+  static double growth(const pf_pose_t& from, const pf_pose_t& to) {
+    double least = 1;
     for (int first = 0; first < 6; first += 3) {
       double before = 0, now = 0;
       for (int i = first; i < first + 3; ++i) {
-        before += last_.covariance[7 * i];
-        now += pose.covariance[7 * i];
+        before += from.covariance[7 * i];
+        now += to.covariance[7 * i];
       }
-      if (before > 0) trial_->least_growth = std::min(trial_->least_growth, std::sqrt(now / before));
+      if (before > 0) least = std::min(least, std::sqrt(now / before));
     }
+    return least;
   }
 
   const Film& film_;
@@ -136,6 +145,24 @@ class Player {
   pf_pose_t last_{};
   std::uint32_t map_id_ = 0;
 };
+
+struct Shown {
+  pf_pose_t pose;
+  int frame;
+};
+
+/// The turn between two frames of one map needs neither its scale nor its place.
+void count_turn(const Reference& reference, const Shown& from, const Shown& to, RandomOrder* result) {
+  const Reference::Frame& a = reference.frames[static_cast<std::size_t>(from.frame)];
+  const Reference::Frame& b = reference.frames[static_cast<std::size_t>(to.frame)];
+  if (!a.tracked || !b.tracked) return;
+  const auto turn = [](const pf_pose_t& p, const pf_pose_t& q) {
+    return pf::sim::rotation_of(p.q_WC).transposed() * pf::sim::rotation_of(q.q_WC);
+  };
+  const double off = pf::sim::rotation_log(turn(a.pose, b.pose).transposed() * turn(from.pose, to.pose)).norm();
+  ++result->turns;
+  result->turns_wrong += off * kDegrees > kWrongDeg;
+}
 
 int count_in_view(const Film& film, const KidnapOptions& options, const std::vector<pf_feature_t>& map,
                   const pf_pose_t& pose) {
@@ -260,6 +287,7 @@ void play_trials(const Film& film, const KidnapOptions& options, const Reference
     const int gap = frames_in(cases[c].seconds, film);
     wait_until(gap);
     trials[c].least_growth = in_the_dark.least_growth;
+    trials[c].least_taken_in = in_the_dark.least_taken_in;
     player.begin(&trials[c]);
     play_one(cases[c], gap, &trials[c]);
   }
@@ -289,14 +317,25 @@ RandomOrder play_random(const Film& film, const KidnapOptions& options, const Re
   player.stay_in_map();
   pf::sim::Random random(seed, kOrderStream);
   RandomOrder result;
+  pf_pose_t before{};
+  int shown_before = -1;
   for (; result.frames < options.random_frames; ++result.frames) {
     Trial frame;
     player.begin(&frame);
-    const bool in_map = player.show(random.below(film.frames()));
+    const int shown = random.below(film.frames());
+    const bool in_map = player.show(shown);
     pf_state_t state;
     pf_get_state(context.slam, &state);
     result.tracking += state == PF_STATE_TRACKING;
+    pf_pose_t pose;
+    if (state == PF_STATE_TRACKING && pf_get_pose(context.slam, &pose) == PF_OK) {
+      if (shown_before >= 0 && before.map_id == pose.map_id)
+        count_turn(reference, {before, shown_before}, {pose, shown}, &result);
+      before = pose;
+      shown_before = shown;
+    }
     result.in_map += in_map;
+    result.judged += frame.judged;
     result.right += in_map && frame.judged > 0 && !is_wrong(frame.worst_deg, frame.worst_depths);
   }
   return result;

@@ -66,6 +66,7 @@ struct Trial {
   std::int32_t worst_frame = -1;           ///< of the film, where the rotation is worst
   double wrong_normalised = 0;  ///< largest normalised error of the frames that are wrong by 5 degrees or 10 % of depth
   double least_growth = 1;      ///< least ratio of successive standard deviations of the pose while coasting or lost
+  double least_taken_in = 1;    ///< least ratio to the smaller of that and of the prediction
   std::int32_t old_ids = 0, kept_ids = 0;  ///< of the map when the gap began, and of them at the end of the trial
 };
 
@@ -75,7 +76,10 @@ struct Survival {
 
 struct RandomOrder {
   std::int32_t frames = 0, tracking = 0, in_map = 0;  ///< in_map: tracking in the map of the beginning
+  std::int32_t judged = 0;                            ///< of those in the old map where the truth is known
   std::int32_t right = 0;  ///< of those right: within 5 degrees and 10 % of depth of the truth
+  std::int32_t turns = 0,
+               turns_wrong = 0;  ///< from a tracked frame to the next one in the same map; wrong by over 5 degrees
 };
 
 bool is_wrong(double deg, double depths);

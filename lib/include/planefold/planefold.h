@@ -383,7 +383,8 @@ typedef struct pf_target {
   /* Points. */
   int32_t count;                            /* 4 .. PF_TARGET_MAX_POINTS */
   double points_W[PF_TARGET_MAX_POINTS][3]; /* [m] */
-  pf_pose_t first_pose; /* about where the camera is at first, with its covariance; t_ns is unused */
+  /* About where the camera is at first, with its covariance; t_ns is unused. Images of later maps begin without the points. */
+  pf_pose_t first_pose;
   /* Both. */
   double sigma; /* [m] 1e-9 .. 1e3, standard deviation of the target's points */
 } pf_target_t;

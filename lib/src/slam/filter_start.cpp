@@ -196,9 +196,11 @@ void FilterStart::start_with_observations() {
 
 bool FilterStart::start_in_image() {
   TargetSighting sighting;
-  const bool seen = target_.has_target() && target_.find(settings_.camera, parts_.images.tracker(), &sighting);
+  const bool expected = target_.is_expected();
+  const bool seen = expected && target_.find(settings_.camera, parts_.images.tracker(), &sighting);
+  if (!seen && expected && !parts_.tracking.may_skip_target()) return false;
+  target_.note_begin();
   if (!seen) {
-    if (target_.has_target() && !parts_.tracking.may_skip_target()) return false;
     set_known_pose(false);
     if (needs_record()) without_.begin();
     return true;

@@ -18,11 +18,20 @@ struct TargetSighting {
 class StartAtTarget {
  public:
   bool layout(Arena& arena, int width, int height);
-  void init() { target_ = Target(); }
+  void init() {
+    target_ = Target();
+    has_begun_ = false;
+  }
 
   void set_target(const Target& target) { target_ = target; }
   const Target& target() const { return target_; }
   bool has_target() const { return target_.kind != TargetKind::kNone; }
+
+  /// Whether a map may begin at the target in an image. The pose that comes with points is that of the first frame: where the
+  /// camera is after it has been lost, nobody knows, and strong corners near those pixels are chance.
+  bool is_expected() const { return has_target() && !(has_begun_ && target_.kind == TargetKind::kPoints); }
+  /// A map begins in an image, at the target or without it.
+  void note_begin() { has_begun_ = true; }
 
   /// Finds the target in the image, and keeps the pose that was found as the target's first pose. False: not found.
   bool find(const Camera& camera, const Tracker& tracker, TargetSighting* sighting);
@@ -36,6 +45,7 @@ class StartAtTarget {
   bool fit(const Camera& camera, const Vec2* z, Scalar sigma_px, TargetSighting* sighting) const;
 
   Target target_;  ///< kept between frames
+  bool has_begun_ = false;
   QuadWorkspace quad_workspace_;
 };
 

@@ -85,8 +85,10 @@ void WindowStart::set_pose(bool at_target) {
 bool WindowStart::start_in_image() {
   FrameReport& report = parts_.frame.report;
   TargetSighting sighting;
-  const bool seen = target_.has_target() && target_.find(settings_.camera, parts_.measuring.tracker(), &sighting);
-  if (!seen && target_.has_target() && !parts_.tracking.may_skip_target()) return false;
+  const bool expected = target_.is_expected();
+  const bool seen = expected && target_.find(settings_.camera, parts_.measuring.tracker(), &sighting);
+  if (!seen && expected && !parts_.tracking.may_skip_target()) return false;
+  target_.note_begin();
   if (seen && report.frames > 1) data_.known = KnownBody();  // it was the pose of the first frame
   set_pose(seen);
   const Body& body = parts_.motion.body();
