@@ -2,6 +2,7 @@
 
 #include <planefold_platform/sequence.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,9 @@ constexpr int32_t kKeptToMove = 2000;  ///< likewise where poses depend on them:
 constexpr double kSigmaMountRad = 0.035;  ///< of --estimate mount: 2 degrees
 constexpr double kSigmaMountM = 0.02;
 constexpr double kSigmaDelayS = 0.01;  ///< of --estimate delay
+
+constexpr double kRadians = 3.14159265358979 / 180.0;
+constexpr size_t kPlanes = 64;  ///< the largest capacity.max_planes
 
 constexpr int64_t kPatience = 30;  ///< frames without any sample before them: worth a note
 
@@ -98,6 +102,7 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
   error.clear();
   imu_ = open_imu(options, source, beside, error);
   offset_s_ = options.imu_offset_s;
+  vertical_rad_ = options.vertical_deg * kRadians;
   for (const std::string& what : options.estimate) {
     estimate_mount_ |= what == "mount";
     estimate_delay_ |= what == "delay";
@@ -163,9 +168,26 @@ bool ImuFeed::record_to(const std::string& folder, std::string& error) {
   return imu_ == nullptr || recorder_.open(folder, error);
 }
 
+/// Once a plane, as soon as its class is known.
+void ImuFeed::tell_vertical(pf_slam_t* slam) {
+  pf_plane_t planes[kPlanes];
+  size_t count = 0;
+  if (pf_get_planes(slam, planes, kPlanes, &count) < PF_OK) {
+    return;
+  }
+  for (size_t i = 0; i < std::min(count, kPlanes); ++i) {
+    if (planes[i].orientation == PF_ORIENTATION_VERTICAL && looked_at_.insert(planes[i].id).second) {
+      vertical_ += pf_set_plane_vertical(slam, planes[i].id, vertical_rad_) == PF_OK ? 1 : 0;
+    }
+  }
+}
+
 void ImuFeed::push_until(int64_t t_ns, pf_slam_t* slam) {
   if (imu_ == nullptr) {
     return;
+  }
+  if (inertial_ && vertical_rad_ > 0.0) {
+    tell_vertical(slam);
   }
   samples_.clear();
   imu_->take(t_ns, samples_);
@@ -215,6 +237,7 @@ std::string ImuFeed::report(const pf_slam_t* slam, std::string& advice) const {
   if (inertial_) {
     json["doubted"] = r.doubted != 0;
     json["doubted_s"] = rounded(r.doubted_s);
+    json["vertical_planes"] = vertical_;
     add_inertial(slam, metric_frame_, model_, json);
   }
   const TimeOffset offset = offset_.estimate();

@@ -2,6 +2,7 @@
 #define PLANEFOLD_CAPTURE_IMU_FEED_H
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,8 @@ class ImuFeed {
   std::string report(const pf_slam_t* slam, std::string& advice) const;
 
  private:
+  void tell_vertical(pf_slam_t* slam);
+
   std::unique_ptr<Imu> imu_;
   ImuRecorder recorder_;
   TimeOffsetEstimator offset_;
@@ -50,7 +53,10 @@ class ImuFeed {
   pf_imu_model_t model_{};
   bool estimate_mount_ = false, estimate_delay_ = false;
   bool inertial_ = false;
-  int64_t metric_frame_ = -1;  ///< the first one whose lengths the samples tell
+  double vertical_rad_ = 0.0;     ///< to which planes are told to be vertical; 0: they are not
+  std::set<uint32_t> looked_at_;  ///< planes that were told, or that contradict it
+  int64_t vertical_ = 0;          ///< planes that were told
+  int64_t metric_frame_ = -1;     ///< the first one whose lengths the samples tell
   double offset_s_ = 0.0;
   int64_t frames_ = 0, pushed_ = 0, refused_ = 0;
 };

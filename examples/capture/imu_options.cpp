@@ -29,6 +29,11 @@ void add_imu_options(CLI::App& app, Options& options) {
                  "mount, delay: estimated from 2 degrees, 2 cm and 10 ms about what is given")
       ->delimiter(',')
       ->group(group);
+  app.add_option(
+         "--vertical", options.vertical_deg,
+         "degrees within which planes that are found to be vertical are told to be so, for walls that are built so")
+      ->check(CLI::Range(0.01, 28.0))
+      ->group(group);
   app.add_flag("!--no-inertial", options.inertial, "count and record the samples; poses do not depend on them")
       ->group(group);
 }
@@ -61,6 +66,12 @@ std::string check_imu_options(const Options& options) {
   }
   if (!options.estimate.empty() && imu != "sim" && options.imu_noise.empty()) {
     return "--estimate: poses depend on the samples only where their noise is known; add --imu-noise FILE";
+  }
+  if (options.vertical_deg > 0.0 && !options.inertial) {
+    return "--vertical: gravity is not estimated with --no-inertial; leave one of them away";
+  }
+  if (options.vertical_deg > 0.0 && imu != "sim" && options.imu_noise.empty()) {
+    return "--vertical: gravity is estimated only where the samples' noise is known; add --imu-noise FILE";
   }
   return std::isfinite(options.imu_offset_s) ? "" : "--imu-offset: not a finite number of seconds";
 }

@@ -47,6 +47,7 @@ struct Options {
   std::string imu_noise;              ///< file; "": none
   std::string imu_mount;              ///< likewise
   std::vector<std::string> estimate;  ///< of the unit: mount, delay
+  double vertical_deg = 0.0;          ///< to which planes of that class are told to be vertical; 0: they are not
   bool inertial = true;               ///< where samples and their noise are there
   double sim_rest_s = 0.0;            ///< of a sim: source, at its beginning
 

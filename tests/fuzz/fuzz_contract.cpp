@@ -303,6 +303,9 @@ class Run {
       case 4: {
         const double gravity[3] = {hostile(bytes_), hostile(bytes_), hostile(bytes_)};
         changing([&] { return pf_set_gravity(slam_, gravity); });
+        const uint32_t plane = bytes_.take<uint8_t>();
+        const uint8_t sigma = bytes_.take<uint8_t>();
+        changing([&] { return pf_set_plane_vertical(slam_, plane, sigma < 128 ? sigma / 256.0 : hostile(bytes_)); });
         break;
       }
       case 5:

@@ -1,6 +1,7 @@
 // With an inertial unit the whole world can still be shifted, and turned with gravity, without any measurement or sample seeing it. Pixels
 // see no change of scale either; samples do.
 #include "filter/gauge_information.h"
+#include "filter/vertical.h"
 #include "support/filter_scene.h"
 #include "support/inertial_cases.h"
 
@@ -121,6 +122,31 @@ void test_a_body_without_samples_should_carry_every_direction() {
   carries("predict_without_samples", kAll, false, random, predict);
 }
 
+int random_plane(SeededRandom& random, TestFilter& filter) {
+  const PlaneFrame frame = {random_turn(random, 1.5).toRotationMatrix(), random.normals<3>(2)};
+  const int plane = filter->add_known_plane(frame, Mat3::Identity(), Scalar(0));
+  TEST_ASSERT_TRUE(plane >= 0);
+  std::vector<Scalar> e(static_cast<std::size_t>(filter.dim()), Scalar(0));  // away from its frame
+  for (int i = 0; i < 3; ++i) e[static_cast<std::size_t>(filter.first(plane) + i)] = random.normals<1>(0.3)(0);
+  filter.move(e.data());
+  return plane;
+}
+
+void test_no_vertical_plane_should_see_a_shift_a_turn_or_a_change_of_scale() {
+  SeededRandom random(318);
+  for (int trial = 0; trial < 10; ++trial) {
+    InertialScene scene(random);
+    const int plane = random_plane(random, scene.filter);
+    scene.filter.set_unobservable(
+        gauge::kBareCamera);  // the plane was known beforehand, but is a plane like any other here
+    VerticalMeasurement z;
+    predict_vertical(scene.filter->state(), plane, &z);
+    const Dense H = dense_rows(*scene.filter, z.H), N = scene.filter.gauge();
+    for (int c = 0; c < kAll; ++c)
+      TEST_ASSERT_TRUE(largest(H * N.col(c)) < 1e-11 * (1 + largest(H) * largest(N.col(c))));
+  }
+}
+
 double information_growth(bool keep_gauge) {
   SeededRandom random(316);
   double growth = 0;
@@ -165,6 +191,7 @@ int main(void) {
   RUN_TEST(test_samples_of_the_gyro_alone_should_carry_every_direction);
   RUN_TEST(test_a_rest_should_carry_shifts_and_turns);
   RUN_TEST(test_a_body_without_samples_should_carry_every_direction);
+  RUN_TEST(test_no_vertical_plane_should_see_a_shift_a_turn_or_a_change_of_scale);
   RUN_TEST(test_pixels_should_gain_nothing_about_the_gauge);
   return UNITY_END();
 }

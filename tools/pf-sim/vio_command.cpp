@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "planefold_platform/sim.h"
 #include "report.h"
 #include "statistics.h"
 #include "vio_run.h"
@@ -23,7 +24,7 @@ struct Choices {
   VioOptions vio;
   int seeds = 20, jobs = 2;
   std::uint64_t first_seed = 1;
-  double turn_deg_s = 0;
+  double turn_deg_s = 0, vertical_deg = 0;
   bool no_imu = false, still = false;
   std::vector<std::string> estimate;  ///< of the unit: mount, delay
   double noise_scale = 1;
@@ -142,6 +143,28 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
   }
   if (c.vio.sigma_delay_s > 0) out["delay_error_ms"] = of_all(units.data(), c.seeds, &VioSummary::delay_error_s);
   if (!c.estimate.empty()) out["mount_sigmas"] = of_all(s, c.seeds, &VioSummary::mount_sigmas);
+  for (VioSummary& one : units) {
+    one.tilt_rad *= 180 / 3.14159265358979;
+    one.tilt_rms_rad *= 180 / 3.14159265358979;
+  }
+  out["tilt_deg"] = of_all(units.data(), c.seeds, &VioSummary::tilt_rad);
+  out["tilt_rms_deg"] = of_all(units.data(), c.seeds, &VioSummary::tilt_rms_rad);
+  VioPlanes planes;
+  for (int i = 0; i < c.seeds; ++i) {
+    const VioPlanes& p = s[i].planes;
+    planes.right += p.right;
+    planes.wrong += p.wrong;
+    planes.unknown += p.unknown;
+    planes.ever_wrong += p.ever_wrong;
+    planes.early += p.early;
+    planes.told += p.told;
+    planes.refused += p.refused;
+  }
+  if (c.vio.rendered)
+    out["planes"] = {{"right", planes.right},          {"wrong", planes.wrong},
+                     {"unknown", planes.unknown},      {"wrong_in_frames", planes.ever_wrong},
+                     {"before_gravity", planes.early}, {"told_vertical", planes.told},
+                     {"refused", planes.refused}};
   out["starts"] = {{"tried", c.seeds}, {"accepted", started}};
   out["doubt"] = {{"runs", doubted_at.size()},
                   {"at_s", {{"median", quantile(doubted_at, 0.5)}, {"max", quantile(doubted_at, 1)}}},
@@ -174,6 +197,17 @@ void print_vio(const json& j, bool with_imu) {
       "  error at most %.1f of its sigma (median of runs %.1f); %g lost, %.1f %% tracked; samples %.0f us a frame\n",
       number("/worst_sigmas/max"), number("/worst_sigmas/median"), number("/lost_runs"), 100 * number("/tracked_share"),
       number("/imu_us_per_frame"));
+  if (with_imu)
+    std::printf("  gravity off by %.3f degrees at the end (largest %.3f), %.3f over the run (%.3f)\n",
+                number("/tilt_deg/median"), number("/tilt_deg/max"), number("/tilt_rms_deg/median"),
+                number("/tilt_rms_deg/max"));
+  if (j.contains("planes"))
+    std::printf(
+        "  planes at the end: %g of the right class, %g wrong, %g unknown; wrong in %g frames, %g had one before "
+        "gravity "
+        "was known; %g told to be vertical, %g refused\n",
+        number("/planes/right"), number("/planes/wrong"), number("/planes/unknown"), number("/planes/wrong_in_frames"),
+        number("/planes/before_gravity"), number("/planes/told_vertical"), number("/planes/refused"));
   if (j.contains("mount_error_deg"))
     std::printf("  mounting off by %.3f degrees (largest %.3f) and %.1f mm (%.1f) at the end\n",
                 number("/mount_error_deg/median"), number("/mount_error_deg/max"),
@@ -289,6 +323,11 @@ int run(Choices c) {
       return fail("--estimate " + what + ": write mount, delay or mount,delay");
     }
   }
+  pf_sim_options_t scene;
+  if (o.rendered && pf_sim_options_default(o.scene.c_str(), &scene) != PF_OK)
+    return fail("--scene " + o.scene + ": there is no such scene");
+  if (!(c.vertical_deg >= 0 && c.vertical_deg < 28)) return fail("--vertical is 0 to 28 degrees");
+  c.vio.sigma_vertical_rad = c.vertical_deg * 3.14159265358979 / 180;
   c.vio.turn_rad_s = c.turn_deg_s * 3.14159265358979 / 180;
   for (double* density :
        {&c.vio.imu.gyro_density, &c.vio.imu.accel_density, &c.vio.imu.gyro_walk, &c.vio.imu.accel_walk})
@@ -350,7 +389,10 @@ void add_vio(CLI::App& app, int& result) {
       "--fault", c->fault,
       "gap, stop, late, repeated, disorder, saturated, jitter, scale, clock-jump, frames-stop, reversed or mount");
   command->add_option("--fault-at", c->vio.fault_at_s, "when it begins, where it has a beginning [s]");
-  command->add_flag("--rendered", c->vio.rendered, "pictures of the room of 4 m, in place of points");
+  command->add_flag("--rendered", c->vio.rendered, "pictures of a scene, in place of points");
+  command->add_option("--scene", c->vio.scene, "of --rendered: room, desk, street, ...");
+  command->add_option("--vertical", c->vertical_deg,
+                      "planes found to be vertical are told to be so within this [degrees]; 0: they are not");
   command->add_flag("--still", c->still, "the camera rests to the end");
   command->add_option("--turn", c->turn_deg_s, "of a turntable on which the camera rests otherwise [degrees/s]");
   command->add_flag("--hand", c->vio.hand, "24 points of a hand wave 0.4 m before the lens");

@@ -8,6 +8,7 @@
 #include "context.h"
 #include "statistics.h"
 #include "update_cost.h"
+#include "vio_planes.h"
 #include "vio_world.h"
 
 namespace pfsim {
@@ -75,13 +76,14 @@ class Run {
       : o_(options),
         rows_(rows),
         out_(*summary),
-        world_(options.rendered ? VioWorld(seed, options.rest_s)
+        world_(options.rendered ? VioWorld(seed, options.scene, options.rest_s)
                                 : VioWorld(seed, options.points, options.seconds, options.rest_s, options.turn_rad_s)),
         noise_(seed, 53),
         unit_(unit(options, seed)),
         sensor_(unit_, world_.path()),
         context_(config_of(options, world_.camera())),
-        first_(world_.path()(0)) {}
+        first_(world_.path()(0)),
+        planes_(world_.scene(), first_, options.imu.gravity_W, options.sigma_vertical_rad) {}
 
   void go() {
     if (context_.slam == nullptr) return;
@@ -205,6 +207,7 @@ class Run {
     note_blackout(k, dark, status);
     note_doubt(t, pose);
     const bool judged = note_unit(k, report);
+    if (o_.rendered) planes_.note(context_.slam, judged, k + 1 == vio_frames(o_), &out_.planes);
     if (judged || !o_.use_imu) {
       row = judge(truth, pose, report);
       if (row.sigma_m > 0 && row.error_m > 1e-4F)
@@ -258,6 +261,9 @@ class Run {
     const Vec3 g = (first_.R_WC.transposed() * o_.imu.gravity_W).unit();
     const Vec3 estimate = Vec3{unit.gravity_W[0], unit.gravity_W[1], unit.gravity_W[2]}.unit();
     const Vec3 turn = estimate.cross(g);
+    out_.tilt_rad = std::atan2(turn.norm(), estimate.dot(g));
+    tilt_squares_ += out_.tilt_rad * out_.tilt_rad;
+    out_.tilt_rms_rad = std::sqrt(tilt_squares_ / (out_.unit_frames + 1));
     double e[8];
     for (int i = 0; i < 2; ++i)
       e[i] = turn.dot({unit.gravity_axes_W[i][0], unit.gravity_axes_W[i][1], unit.gravity_axes_W[i][2]});
@@ -341,6 +347,8 @@ class Run {
   pf::sim::ImuSensor sensor_;
   const Context context_;
   const Pose first_;
+  VioPlaneWatch planes_;
+  double tilt_squares_ = 0;
   Pose last_;
   std::vector<double> scratch_;
   std::vector<std::uint8_t> grey_;

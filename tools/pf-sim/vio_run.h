@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "run.h"
 #include "sim/imu.h"
@@ -42,11 +43,20 @@ struct VioOptions {
   double turn_rad_s = 0;  ///< of a camera on a turntable that rests otherwise
   bool hand = false;      ///< moves before the lens
   bool use_imu = true;
-  bool rendered = false;  ///< pictures of the room of 4 m, in place of points
-  double noise_grey = 2;  ///< of the pictures
+  bool rendered = false;          ///< pictures of the room of 4 m, in place of points
+  std::string scene = "room";     ///< of the pictures
+  double noise_grey = 2;          ///< of the pictures
+  double sigma_vertical_rad = 0;  ///< planes of that class are told to be vertical; 0: they are not
   VioFault fault = VioFault::kNone;
   double fault_at_s = 10;
   pf::sim::ImuOptions imu;  ///< noise, rate and mounting
+};
+
+/// Classes of planes against the surfaces that they are, in pictures.
+struct VioPlanes {
+  std::int32_t right = 0, wrong = 0, unknown = 0;  ///< at the end
+  std::int32_t ever_wrong = 0, early = 0;          ///< over all frames: wrong ones, and any before gravity is known
+  std::int32_t told = 0, refused = 0;              ///< to be vertical
 };
 
 /// What one run gave besides its frames. Plain data, so that it may lie in memory shared between processes.
@@ -74,6 +84,9 @@ struct VioSummary {
   double doubted_at_s = -1;  ///< when the unit first came into doubt, negative: never
   double doubted_s = 0;      ///< for how long it was
   std::int32_t maps = 1;     ///< begun
+  double tilt_rad = -1,
+         tilt_rms_rad = -1;  ///< of gravity's direction: at the end, and over all frames in which it is known
+  VioPlanes planes;
   std::int32_t dark_end_frame = -1, tracked_again_frame = -1;
 };
 

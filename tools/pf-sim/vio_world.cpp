@@ -80,11 +80,11 @@ void VioWorld::wave(double t, double sigma_px, Random& noise, std::vector<pf_obs
   }
 }
 
-VioWorld::VioWorld(std::uint64_t seed, double rest_s) {
+VioWorld::VioWorld(std::uint64_t seed, const std::string& scene, double rest_s) {
   pf_sim_options_t options;
-  pf_sim_options_default("room", &options);
+  pf_sim_options_default(scene.c_str(), &options);
   options.seed = seed;
-  room_.reset(pf_sim_open("room", &options), pf_sim_close);
+  room_.reset(pf_sim_open(scene.c_str(), &options), pf_sim_close);
   pf_sim_camera(room_.get(), &camera_);
   const auto base = [room = room_](double t) {
     pf_pose_t pose;

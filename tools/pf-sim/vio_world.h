@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "planefold_platform/sim.h"
@@ -13,11 +14,13 @@ namespace pfsim {
 class VioWorld {
  public:
   VioWorld(std::uint64_t seed, int points, double seconds, double rest_s, double turn_rad_s);
-  /// The rendered room, and the walk that belongs to it.
-  VioWorld(std::uint64_t seed, double rest_s);
+  /// A rendered scene, and the walk that belongs to it.
+  VioWorld(std::uint64_t seed, const std::string& scene, double rest_s);
 
   const pf_camera_t& camera() const { return camera_; }
   const pf::sim::Trajectory& path() const { return path_; }
+  /// The rendered scene, or null.
+  const pf_sim_t* scene() const { return room_.get(); }
   const std::vector<pf::sim::Vec3>& points() const { return points_; }
   /// A hand of kHand points, 0.4 m before the camera, that waves about: pixels with noise, their ids behind those of the points.
   void wave(double t, double sigma_px, pf::sim::Random& noise, std::vector<pf_observation_t>* seen) const;

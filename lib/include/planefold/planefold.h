@@ -547,10 +547,10 @@ typedef struct pf_feature {
 /* Copy of the map. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
 PF_API pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_t capacity, size_t* count);
 
-/* Of a plane, once the direction of gravity is known (pf_set_gravity, pf_get_inertial). Up and down: which way the side looks that
- * was seen. */
+/* Of a plane, once the direction of gravity is known (pf_set_gravity, pf_get_inertial): within 15 degrees with a probability of 95 %, by
+ * the covariance of the plane and, where it is estimated, of gravity. Up and down: which way the side looks that was seen. */
 typedef enum pf_orientation {
-  PF_ORIENTATION_UNKNOWN = 0,
+  PF_ORIENTATION_UNKNOWN = 0,         /* gravity is not known, or which of the others it is */
   PF_ORIENTATION_HORIZONTAL_UP = 1,   /* floor, table top */
   PF_ORIENTATION_HORIZONTAL_DOWN = 2, /* ceiling */
   PF_ORIENTATION_VERTICAL = 3,        /* wall, front */
@@ -559,7 +559,7 @@ typedef enum pf_orientation {
 
 typedef struct pf_plane {
   uint32_t id;         /* never used twice */
-  int32_t orientation; /* pf_orientation_t, within 15 degrees */
+  int32_t orientation; /* pf_orientation_t */
   int32_t points;      /* folded into it, fixed ones among them */
   int32_t fixed_points;
   uint32_t map_id;       /* as in pf_pose_t */
@@ -586,6 +586,12 @@ PF_API pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* c
 /* The direction of gravity in W, of any length; zero forgets it, and so does a new map. Only pf_plane_t.orientation
  * depends on it. With PF_MOTION_INERTIAL gravity is known without it (pf_get_inertial), and this goes before that. */
 PF_API pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]);
+
+/* Says that a plane is vertical within a standard deviation of sigma_rad, 1e-6 .. 0.5, which tells gravity's direction and the plane's.
+ * It counts once: to say it again changes nothing, until 0 has forgotten it, which adds back what it took from the plane's tilt.
+ * PF_ERROR_STATE where gravity is not estimated and known (pf_inertial_t.metric). PF_NOTE_NOTHING: no plane has this id.
+ * PF_ERROR_RANGE too where gravity and plane contradict it by their covariances (1 in 10,000). */
+PF_API pf_status_t pf_set_plane_vertical(pf_slam_t* slam, uint32_t plane, double sigma_rad);
 
 typedef struct pf_hit {
   uint32_t plane; /* id */

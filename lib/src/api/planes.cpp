@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "api/context.h"
@@ -9,20 +10,25 @@ using pf::Scalar;
 using pf::Vec2;
 using pf::Vec3;
 
-int32_t orientation_of(const Vec3& normal, const Vec3& g) {
-  const Scalar length = g.norm();
-  if (!(length > Scalar(0))) return PF_ORIENTATION_UNKNOWN;
-  constexpr Scalar kCos15 = Scalar(0.9659258), kSin15 = Scalar(0.2588190);
-  const Scalar up = -normal.dot(g) / length;
-  if (up > kCos15) return PF_ORIENTATION_HORIZONTAL_UP;
-  if (up < -kCos15) return PF_ORIENTATION_HORIZONTAL_DOWN;
-  return std::abs(up) < kSin15 ? PF_ORIENTATION_VERTICAL : PF_ORIENTATION_OTHER;
+/// The class of which 95 % are: with gravity and the normal off by 1.96 of their sigma, it is still that one. For the two axes of a
+/// horizontal plane 1.96 of their sum's root holds at least as many, whatever their shares.
+int32_t orientation_of(const pf::TiltView& tilt) {
+  if (!tilt.known) return PF_ORIENTATION_UNKNOWN;
+  constexpr Scalar k15 = Scalar(0.2617994), k95 = Scalar(1.959964), kMinSine = Scalar(1e-3);
+  const Scalar up = std::clamp(tilt.up, Scalar(-1), Scalar(1));
+  const Scalar from_vertical = std::abs(std::asin(up)), from_horizontal = std::acos(std::abs(up));
+  const Scalar sigma = tilt.sigma_up / std::max(std::sin(from_horizontal), kMinSine);  // of from_vertical
+  if (from_horizontal + k95 * tilt.sigma_tilt < k15)
+    return up > Scalar(0) ? PF_ORIENTATION_HORIZONTAL_UP : PF_ORIENTATION_HORIZONTAL_DOWN;
+  if (from_vertical + k95 * sigma < k15) return PF_ORIENTATION_VERTICAL;
+  const bool other = from_vertical - k95 * sigma > k15 && from_horizontal - k95 * sigma > k15;
+  return other ? PF_ORIENTATION_OTHER : PF_ORIENTATION_UNKNOWN;
 }
 
-void describe(const pf::PlaneView& plane, std::uint32_t map_id, const Vec3& gravity_W, pf_plane_t* out) {
+void describe(const pf::PlaneView& plane, std::uint32_t map_id, const pf::TiltView& tilt, pf_plane_t* out) {
   *out = pf_plane_t();
   out->id = plane.id;
-  out->orientation = orientation_of(plane.normal_W, gravity_W);
+  out->orientation = orientation_of(tilt);
   out->points = plane.points;
   out->fixed_points = plane.fixed_points;
   out->map_id = map_id;
@@ -47,7 +53,10 @@ pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size_t capa
   const pf::View view = slam->session.view();
   for (int i = 0; i < view.plane_capacity(); ++i) {
     if (!view.has_plane(i)) continue;
-    if (*count < capacity) describe(view.plane(i), view.map_id(), slam->session.gravity_W(), &planes[*count]);
+    if (*count < capacity) {
+      const pf::PlaneView plane = view.plane(i);
+      describe(plane, view.map_id(), view.tilt(i, plane, slam->session.given_gravity_W()), &planes[*count]);
+    }
     ++*count;
   }
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
@@ -69,6 +78,14 @@ pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]) {
   slam->session.set_gravity(
       Vec3(static_cast<Scalar>(gravity_W[0]), static_cast<Scalar>(gravity_W[1]), static_cast<Scalar>(gravity_W[2])));
   return PF_OK;
+}
+
+pf_status_t pf_set_plane_vertical(pf_slam_t* slam, uint32_t plane, double sigma_rad) {
+  PF_REQUIRE_IDLE(slam);
+  if (!pf::finite(&sigma_rad, 1)) return PF_ERROR_NONFINITE;
+  constexpr double kMinSigma = 1e-6, kMaxSigma = 0.5;
+  if (sigma_rad != 0 && !(sigma_rad >= kMinSigma && sigma_rad <= kMaxSigma)) return PF_ERROR_RANGE;
+  return pf::to_c(slam->session.set_plane_vertical(plane, static_cast<Scalar>(sigma_rad)));
 }
 
 pf_status_t pf_hit_test(const pf_slam_t* slam, const double pixel[2], pf_hit_t* hit) {

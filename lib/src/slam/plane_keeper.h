@@ -39,6 +39,10 @@ class PlaneKeeper {
   Status add_wall(const PlanePrior& prior, int reserved_rows, bool may_evict, std::int64_t not_since_ns,
                   std::uint32_t* id);
 
+  /// A plane of the table is vertical within sigma [rad], which counts once; 0 forgets it. The state has gravity. kRange: what is known
+  /// of both contradicts it; nothing has changed then.
+  Status set_vertical(int plane_entry, Scalar sigma);
+
   /// The work of one frame. Folds, fixes and merges one plane per frame, in turn, so that the work is bounded.
   void maintain();
 

@@ -61,12 +61,17 @@ class Session {
   void push_imu(const ImuSample& sample) { imu_.add(sample); }
   void set_gravity(const Vec3& gravity_W) { data_.gravity_W = gravity_W, data_.gravity_map = view().map_id(); }
 
+  /// kState: gravity is not estimated, or not known yet. kNothing: no such plane.
+  Status set_plane_vertical(std::uint32_t plane, Scalar sigma) {
+    return filter_ != nullptr ? filter_->set_plane_vertical(plane, sigma) : Status::kState;
+  }
+
   // --- what can be read
   View view() const { return filter_ != nullptr ? View(settings_, map_, *filter_) : View(settings_, map_, *window_); }
   const Settings& settings() const { return settings_; }
   const ImuLog& imu() const { return imu_; }
-  /// In the W of the current map: what the caller said, or else what the samples say. Zero: not known.
-  Vec3 gravity_W() const;
+  /// Gravity in the W of the current map as the caller said it; zero: not said.
+  Vec3 given_gravity_W() const;
 
  private:
   /// What is kept between frames.

@@ -217,6 +217,13 @@ inline constexpr int kMinRefused = 8;                 ///< points, before a wall
 inline constexpr int kRefusedShare = 4;  ///< refused points for each on the wall, above which it is doubted
 }  // namespace plane_walls
 
+/// Planes that somebody says are vertical.
+namespace plane_vertical {
+inline constexpr Scalar kVerticalGate = Scalar(15.1);  ///< chi-square of one degree of freedom, 0.9999
+inline constexpr Scalar kTiltUnit = Scalar(0.001);     ///< [rad] in which the tilt's sigma is kept
+inline constexpr Scalar kMaxTiltUnits = Scalar(255);   ///< that a byte holds
+}  // namespace plane_vertical
+
 /// Patches on walls: finding them again.
 namespace patch_keeper {
 inline constexpr Scalar kMinCosine = Scalar(0.407);    ///< of the slant at which a patch is looked for: 66 degrees

@@ -41,6 +41,14 @@ struct PlaneView {
   PlaneOutline outline;  ///< in P
 };
 
+/// How a plane lies against gravity.
+struct TiltView {
+  bool known = false;     ///< whether gravity is
+  Scalar up = 0;          ///< cosine of the angle from up to the normal
+  Scalar sigma_up = 0;    ///< of `up`
+  Scalar sigma_tilt = 0;  ///< of the angle between the normal and gravity's line, where that is small, in all [rad]
+};
+
 /// Motion of the camera from the mark to the last frame: its pose now in the frame K of the camera then.
 struct MotionView {
   std::int64_t mark_ns;
@@ -152,6 +160,8 @@ class View {
 
   // view_planes.cpp
   PlaneView plane(int i) const;
+  /// Of a plane, given_W or, where that is zero, the state's gravity.
+  TiltView tilt(int i, const PlaneView& plane, const Vec3& given_W) const;
   /// Nearest plane whose outline the ray of a pixel hits; plane 0 if there is none. False if the pixel has no ray.
   bool hit(const Vec2& pixel, HitView* hit) const;
 

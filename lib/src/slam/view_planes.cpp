@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <cmath>
+
 #include "filter/camera_at.h"
+#include "filter/vertical.h"
 #include "geometry/ray_plane.h"
 #include "geometry/so3.h"
 #include "slam/frame_loop.h"
@@ -43,6 +47,47 @@ PlaneView View::plane(int i) const {
     const Vec3 d = plane_point(frame, x, outline.uv[k]) - out.p_WP;
     out.outline.uv[k] = Vec2(out.R_WP.col(0).dot(d), out.R_WP.col(1).dot(d));
   }
+  return out;
+}
+
+/// Where gravity is given, it is exact, and the normal's error is alpha x_W + beta y_W. Where it is estimated, with n about s g, s = 1 or -1,
+/// and E of VerticalMeasurement: the tilt's error is e_n - s E d.
+TiltView View::tilt(int i, const PlaneView& plane, const Vec3& given_W) const {
+  TiltView out;
+  const Scalar length = given_W.norm();
+  if (length > Scalar(0)) {
+    const Vec3 g_W = given_W / length;
+    const Mat2 C = plane.covariance.topLeftCorner<2, 2>();
+    const Vec2 h(g_W.dot(plane.R_WP.col(0)), g_W.dot(plane.R_WP.col(1)));
+    out.known = true;
+    out.up = -plane.normal_W.dot(g_W);
+    out.sigma_up = std::sqrt(std::max(Scalar(0), h.dot(C * h)));
+    out.sigma_tilt = std::sqrt(std::max(Scalar(0), C.trace()));
+    return out;
+  }
+  if (!settings_.inertial || !has_pose() || !filter().is_metric()) return out;
+  const State& state = filter().state();
+  VerticalMeasurement z;
+  predict_vertical(state, map_.planes[i].slot, &z);
+  out.known = true;
+  out.up = -z.predicted(0);
+  out.sigma_up = std::sqrt(std::max(Scalar(0), filter().rounded_covariance_of<1>(z.H)(0, 0)));
+  constexpr int kColumns = 5;
+  RowsOf<3, kColumns, 2> J;
+  J.parts = z.H.parts;
+  std::copy(z.H.part, z.H.part + z.H.parts, J.part);
+  const Block& block = state.block[map_.planes[i].slot];
+  Vec3 n_W;
+  Scalar d_W;
+  Mat3 J_n_x;
+  plane_normal(state.frame_of(block), block.xyz(), &n_W, &d_W, &J_n_x);
+  const Mat3 R_WG = state.body.q_WG.toRotationMatrix();
+  const Scalar s = out.up < Scalar(0) ? Scalar(1) : Scalar(-1);
+  Mat32 E;
+  E << s * R_WG.col(1), -s * R_WG.col(0);
+  put<3, 3>(J.h, kColumns, 0, J_n_x);
+  put<3, 2>(J.h, kColumns, 3, E);
+  out.sigma_tilt = std::sqrt(std::max(Scalar(0), filter().rounded_covariance_of<3>(J).trace()));
   return out;
 }
 

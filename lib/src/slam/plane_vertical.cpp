@@ -1,0 +1,37 @@
+#include <algorithm>
+#include <cmath>
+
+#include "filter/vertical.h"
+#include "slam/frame_loop.h"
+#include "slam/plane_keeper.h"
+#include "slam/tuning.h"
+
+/// Planes that somebody says are vertical (lib/docs/inertial.md).
+
+namespace pf {
+
+/// How far the plane is from vertical is one constant, so that saying it again says nothing new.
+Status PlaneKeeper::set_vertical(int plane_entry, Scalar sigma) {
+  using namespace tuning::plane_vertical;
+  PlaneEntry& plane = map_.planes[plane_entry];
+  if (sigma > Scalar(0)) {
+    if (plane.vertical_mrad != 0) return Status::kOk;
+    Scalar before = 0;
+    if (!take_vertical(filter_, plane.slot, sigma, kVerticalGate, &before)) return Status::kRange;
+    plane.vertical_mrad =
+        static_cast<std::uint8_t>(std::clamp(std::ceil(before / kTiltUnit), Scalar(1), kMaxTiltUnits));
+  } else if (plane.vertical_mrad != 0) {
+    forget_vertical(filter_, plane.slot, kTiltUnit * static_cast<Scalar>(plane.vertical_mrad));
+    plane.vertical_mrad = 0;
+  }
+  return Status::kOk;
+}
+
+Status FrameLoop::set_plane_vertical(std::uint32_t id, Scalar sigma) {
+  if (!settings_.inertial || !tracking_.has_pose() || !filter_.is_metric()) return Status::kState;
+  for (int i = 0; i < map_.planes.capacity(); ++i)
+    if (map_.planes.used(i) && map_.planes[i].id == id) return planes_.set_vertical(i, sigma);
+  return Status::kNothing;
+}
+
+}  // namespace pf
