@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstring>
 
 #include "filter/located.h"
@@ -111,6 +112,20 @@ const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned 
 
 void BlockFilter::downdate(const Scalar* U, const Scalar* G, int rows) {
   kernels_->downdate(P_, W_, gained_, U, G, rows, ld_, considered_begin(), considered_end());
+}
+
+/// With k = P h^T / (h P h^T), which is along the gain of an update by h, whether before it or after it: P + variance k k^T.
+void BlockFilter::inflate_along(const Rows& row, Scalar variance) {
+  PF_ASSERT(row.rows == 1 && max_rows_ >= 3);
+  const Scalar of_row = covariance_of<1>(row)(0, 0);
+  if (!(of_row > Scalar(0))) return;
+  gather(&row, 1, W_);                      // h P
+  Scalar *U = W_ + ld_, *G = W_ + 2 * ld_;  // U^T G + G^T U with G = U / 2
+  for (int j = 0; j < ld_; ++j) {
+    U[j] = W_[j] * (std::sqrt(variance) / of_row);
+    G[j] = U[j] / 2;
+  }
+  add_shared(U, G, 1);
 }
 
 }  // namespace pf

@@ -43,14 +43,10 @@ bool take_vertical(Filter& filter, int plane, Scalar sigma, Scalar max_nis, Scal
   return filter.finish_update(&view, 1, nullptr, nullptr);
 }
 
-/// The tilt is |h| along h = g^T J_n_x in (a, b).
 void forget_vertical(Filter& filter, int plane, Scalar sigma_before) {
   VerticalMeasurement z;
   predict_vertical(filter.state(), plane, &z);
-  const Vec3 h(z.H.h[0], z.H.h[1], z.H.h[2]);
-  const Scalar square = h.squaredNorm();
-  if (!(square > Scalar(0))) return;
-  filter.forget_through(plane, h.cwiseAbs() * (sigma_before / square));
+  filter.forget_row(z.H, sigma_before * sigma_before);
 }
 
 }  // namespace pf

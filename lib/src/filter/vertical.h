@@ -22,7 +22,7 @@ void predict_vertical(const State& state, int plane, VerticalMeasurement* out);
 /// max_nis. *sigma_before: the standard deviation of z before [rad].
 bool take_vertical(Filter& filter, int plane, Scalar sigma, Scalar max_nis, Scalar* sigma_before);
 
-/// Adds back to a plane, and to all that has learnt from it, the variance that its tilt against gravity had before take_vertical.
+/// Adds back to a plane's tilt against gravity, and to all that has learnt from it, the variance that it had before take_vertical.
 void forget_vertical(Filter& filter, int plane, Scalar sigma_before);
 
 }  // namespace pf
