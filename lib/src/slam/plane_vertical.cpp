@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "filter/vertical.h"
-#include "slam/frame_loop.h"
 #include "slam/plane_keeper.h"
 #include "slam/tuning.h"
 
@@ -25,13 +24,6 @@ Status PlaneKeeper::set_vertical(int plane_entry, Scalar sigma) {
     plane.vertical_mrad = 0;
   }
   return Status::kOk;
-}
-
-Status FrameLoop::set_plane_vertical(std::uint32_t id, Scalar sigma) {
-  if (!settings_.inertial || !tracking_.has_pose() || !filter_.is_metric()) return Status::kState;
-  for (int i = 0; i < map_.planes.capacity(); ++i)
-    if (map_.planes.used(i) && map_.planes[i].id == id) return planes_.set_vertical(i, sigma);
-  return Status::kNothing;
 }
 
 }  // namespace pf

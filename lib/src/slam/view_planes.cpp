@@ -50,8 +50,8 @@ PlaneView View::plane(int i) const {
   return out;
 }
 
-/// Where gravity is given, it is exact, and the normal's error is alpha x_W + beta y_W. Where it is estimated, with n about s g, s = 1 or -1,
-/// and E of VerticalMeasurement: the tilt's error is e_n - s E d.
+/// Where gravity is given, it is exact, and the normal's error is alpha x_W + beta y_W. Where it is estimated, with n about s g, s = 1
+/// or -1, and E of VerticalMeasurement: the tilt's error is e_n - s E d.
 TiltView View::tilt(int i, const PlaneView& plane, const Vec3& given_W) const {
   TiltView out;
   const Scalar length = given_W.norm();
