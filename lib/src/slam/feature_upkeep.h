@@ -25,11 +25,13 @@ inline bool fails_too_often(const Feature& f) {
   return (f.failures > 0 && seldom) || in_a_row;
 }
 
-/// Counts the searches of a tracked frame: attempts, failures and rejections.
-inline void count_searches(const Frame& frame, FeatureTable* features) {
+/// Counts the searches of a frame: attempts, failures and rejections. Of one that does not support its pose: attempts of what was taken all
+/// the same, and no failures.
+inline void count_searches(const Frame& frame, FeatureTable* features, bool supported = true) {
   for (int t = 0; t < frame.match_count(); ++t) {
     const Match& match = frame.match(t);
     if (match.feature < 0 || !match.searched) continue;
+    if (!supported && match.status != MatchStatus::kInlier) continue;
     Feature& f = (*features)[match.feature];
     count_frame(&f.attempts);
     if (match.status == MatchStatus::kInlier) continue;

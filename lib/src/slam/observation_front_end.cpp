@@ -5,8 +5,14 @@
 
 namespace pf {
 
+namespace {
+
+constexpr unsigned char kSeen = 1, kCounted = 2;
+
+}  // namespace
+
 bool ObservationFrontEnd::layout(Arena& arena, int max_features, int max_observations) {
-  seen_ = arena.take<bool>(static_cast<std::size_t>(max_features));
+  seen_ = arena.take<unsigned char>(static_cast<std::size_t>(max_features));
   inbox_ = arena.take<PixelObservation>(static_cast<std::size_t>(max_features + max_observations));
   return arena.ok();
 }
@@ -22,18 +28,21 @@ void ObservationFrontEnd::measure(const PixelObservation* observations, int coun
 /// Lists observations of the map's features as matches, and those inside of their gate as candidates. Returns how many candidates.
 int ObservationFrontEnd::gate(const PixelObservation* observations, int count, bool again) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
-  for (int i = 0; i < map_.features.capacity(); ++i) seen_[i] = false;
-  const auto count_up = [again](auto* counter) {
-    if (!again) count_frame(counter);
-  };
+  // Measured again, a full frame may take other features than the first time; those are counted now.
+  for (int i = 0; i < map_.features.capacity(); ++i)
+    seen_[i] = again ? static_cast<unsigned char>(seen_[i] & kCounted) : 0;
   int known = 0;
   for (int i = 0; i < count && known < settings_.max_observations; ++i) {
     const int entry = find(observations[i].external_id);
     if (entry < 0) continue;
     Feature& feature = map_.features[entry];
     if (feature.is_target && map_.target_withdrawn) continue;
-    if (seen_[entry]) continue;  // the same id again
-    seen_[entry] = true;
+    if ((seen_[entry] & kSeen) != 0) continue;  // the same id again
+    const bool counts = seen_[entry] == 0;
+    const auto count_up = [counts](auto* counter) {
+      if (counts) count_frame(counter);
+    };
+    seen_[entry] = kSeen | kCounted;
     PixelMeasurement& o = update_.observation(known);
     count_up(&feature.attempts);
     ++frame_.report.attempts;

@@ -46,7 +46,7 @@ class ObservationFrontEnd {
   Frame& frame_;
   FeatureKeeper& features_;
   PixelUpdate& update_;
-  bool* seen_ = nullptr;  ///< max_features: observed in this frame
+  unsigned char* seen_ = nullptr;  ///< max_features: observed in this frame, and counted
   PixelObservation* inbox_ = nullptr;
 };
 

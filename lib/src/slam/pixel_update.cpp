@@ -65,7 +65,8 @@ bool PixelUpdate::apply(int first, int count, double* nis) {
     frame_.report.nis_dof += 2;
     ++frame_.report.inliers;
     Feature& feature = map_.features[candidate_[i].feature];
-    count_frame(&feature.observations);
+    // A frame that is measured again, without a prediction that led it astray, counts once.
+    if (feature.last_seen_ns != frame_.report.t_ns) count_frame(&feature.observations);
     feature.failures = 0;
     feature.rejections = 0;
     feature.last_seen_ns = frame_.report.t_ns;

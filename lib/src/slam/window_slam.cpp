@@ -123,10 +123,8 @@ void WindowSlam::maintain_map() {
     // A young map's poses are too coarse for depths of their own: a keyframe's are adjusted with it.
     if (!data_.young) triangulate(true);
   }
-  if (tracked || pending) {
-    count_searches(frame_, &tables_.features);
-    map_.drop_failing();
-  }
+  count_searches(frame_, &tables_.features, tracked || pending);
+  if (tracked || pending) map_.drop_failing();
   if (tracked && !pending && wants_keyframe()) add_keyframe();
   // The first frame, one in which a record began anew, and every other keyframe.
   const int newest = map_.keyframes.newest();
