@@ -270,6 +270,53 @@ static void test_poses_should_go_on_with_the_samples_when_no_frame_shows_anythin
   TEST_ASSERT_TRUE(after.covariance[0] > before.covariance[0]);
 }
 
+/* Samples and frame k of a camera that speeds up sideways after frame 39. It sees the first of the points, and features that are new. */
+static pf_status_t push_moving(int k, int known, int unknown) {
+  const double a = 0.5, t = 1e-9 * (double)(STEP_NS * (k - 39)); /* [m/s^2] [s] */
+  for (int64_t t_ns = STEP_NS * (k - 1) + IMU_NS; t_ns <= STEP_NS * k; t_ns += IMU_NS) {
+    pf_imu_sample_t sample = at(t_ns);
+    sample.accel[0] += a;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_push_imu(slam, &sample, 1));
+  }
+  pf_observation_t seen[POINTS];
+  for (int i = 0; i < known; ++i) {
+    const double p_C[3] = {-0.9 + 0.36 * (i % 6) - a * t * t / 2, -0.6 + 0.4 * (i / 6), i % 2 ? 2.0 : 3.0};
+    seen[i].id = (uint32_t)i;
+    seen[i].sigma_px = 0;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_camera_project(&config.camera, p_C, seen[i].pixel));
+  }
+  for (int i = 0; i < unknown; ++i) {
+    const pf_observation_t o = {100u + (uint32_t)i, {20.0 + 6 * i, 60}, 0};
+    seen[known + i] = o;
+  }
+  return pf_push_observations(slam, STEP_NS * k, seen, (size_t)(known + unknown));
+}
+
+static void test_asking_for_the_unit_should_leave_the_block_as_it_was(void) {
+  pf_inertial_t inertial;
+  pf_report_t report;
+  config.first_depth.linearity_index = 1;
+  config.plane.enabled = 0;
+  config.capacity.max_features = POINTS;
+  use_inertial_model();
+  stand_still(40);
+  for (int k = 40; k < 80; ++k) TEST_ASSERT_TRUE(push_moving(k, POINTS, 0) >= PF_OK);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(slam, &report));
+  TEST_ASSERT_GREATER_THAN_INT32(2, report.features_point);
+  /* New features take the place of points after the last update, so that what was computed for it is out of date. */
+  TEST_ASSERT_TRUE(push_moving(80, POINTS - 8, 8) >= PF_OK);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(slam, &report));
+  TEST_ASSERT_EQUAL_INT32(8, report.evicted);
+  unsigned char* before = (unsigned char*)malloc(need.bytes);
+  TEST_ASSERT_NOT_NULL(before);
+  memcpy(before, block, need.bytes);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_inertial(slam, &inertial));
+  TEST_ASSERT_EQUAL_UINT32(1, inertial.metric);
+  TEST_ASSERT_TRUE(inertial.sigma[16] > 0);
+  TEST_ASSERT_EQUAL_MEMORY(before, block, need.bytes);
+  free(before);
+}
+
 static void test_reset_should_forget_the_samples(void) {
   size_t count = 1;
   use_buffer();
@@ -296,6 +343,7 @@ int main(void) {
   RUN_TEST(test_poses_should_be_the_same_with_and_without_samples);
   RUN_TEST(test_a_second_at_rest_should_tell_gravity_and_the_gyro_s_bias);
   RUN_TEST(test_poses_should_go_on_with_the_samples_when_no_frame_shows_anything);
+  RUN_TEST(test_asking_for_the_unit_should_leave_the_block_as_it_was);
   RUN_TEST(test_reset_should_forget_the_samples);
   return UNITY_END();
 }

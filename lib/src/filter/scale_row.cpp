@@ -1,7 +1,8 @@
+#include "filter/scale_row.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "filter/filter.h"
 #include "filter/model/kinds.h"
 #include "filter/tuning.h"
 
@@ -21,6 +22,32 @@ void add_place(const Place& at, const Vec3& d, ScaleRow* row) {
     add_part(row, at.part[p], h);
   }
 }
+
+/// The point that is farthest from another one.
+struct FarthestPoint {
+  Vec3 from;
+  int slot = -1;
+  Scalar distance2 = kMinDistance2;
+
+  void look_at(int t, const Vec3& p) {
+    const Scalar d2 = (p - from).squaredNorm();
+    if (!(d2 > distance2)) return;
+    distance2 = d2;
+    slot = t;
+  }
+
+  /// The row of the log distance. False where no point is away from this one.
+  bool add_length(const State& state, int from_slot, ScaleRow* row) const {
+    if (slot < 0) return false;
+    Place a, b;
+    find_point(state, from_slot, &a);
+    find_point(state, slot, &b);
+    const Vec3 d = (a.o - b.o) / distance2;
+    add_place(a, d, row);
+    add_place(b, -d, row);
+    return true;
+  }
+};
 
 }  // namespace
 
@@ -84,24 +111,9 @@ bool Filter::scale_candidate(int slot, int* places, ScaleRow* row) const {
       place_[(*places)++] = point(t);
     }
   }
-  const Vec3 here = point(slot);
-  int far = -1;
-  Scalar far2 = kMinDistance2;
-  for (int t = 0; t < *places; ++t) {
-    const Scalar d2 = (place_[t] - here).squaredNorm();
-    if (d2 > far2) {
-      far2 = d2;
-      far = t;
-    }
-  }
-  if (far < 0) return false;
-  Place from, to;
-  find_point(state_, slot, &from);
-  find_point(state_, place_slot_[far], &to);
-  const Vec3 d = (from.o - to.o) / far2;
-  add_place(from, d, row);
-  add_place(to, -d, row);
-  return true;
+  FarthestPoint farthest = {point(slot)};
+  for (int t = 0; t < *places; ++t) farthest.look_at(place_slot_[t], place_[t]);
+  return farthest.add_length(state_, slot, row);
 }
 
 /// The best known of a few log lengths. There is none where the scale is observable.
@@ -117,6 +129,37 @@ bool Filter::scale_row(ScaleRow* row) const {
     if (!scale_candidate(s, &places, &candidate)) continue;
     ++tried;
     const Scalar variance = blocks_.variance(candidate);
+    if (found && variance >= best) continue;
+    best = variance;
+    found = true;
+    *row = candidate;
+  }
+  return found;
+}
+
+bool find_scale_row(const Filter& filter, ScaleRow* row) {
+  const State& state = filter.state();
+  row->parts = 0;
+  if (!gauge::contains(state.unobservable, gauge::kScale)) return false;
+  Scalar best = Scalar(0);
+  bool found = false;
+  int tried = 0;
+  for (int s = 0; s < state.slots && tried < tuning::scale::kMaxTried; ++s) {
+    const ScaleSource source = info(state.block[s].kind).scale;
+    ScaleRow candidate;
+    candidate.parts = 0;
+    bool has = false;
+    if (source == ScaleSource::kOwnRow) {
+      visit(state.block[s].kind, [&](auto kind) { has = decltype(kind)::scale_row(state, s, &candidate); });
+    } else if (source == ScaleSource::kDistance) {
+      FarthestPoint farthest = {filter.point(s)};
+      for (int t = 0; t < state.slots; ++t)
+        if (info(state.block[t].kind).scale == ScaleSource::kDistance) farthest.look_at(t, filter.point(t));
+      has = farthest.add_length(state, s, &candidate);
+    }
+    if (!has) continue;
+    ++tried;
+    const Scalar variance = filter.blocks().variance(candidate);
     if (found && variance >= best) continue;
     best = variance;
     found = true;

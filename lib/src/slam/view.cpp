@@ -6,6 +6,7 @@
 #include "base/elapsed.h"
 #include "filter/gauge_information.h"
 #include "filter/observe/point.h"
+#include "filter/scale_row.h"
 #include "geometry/so3.h"
 #include "slam/frame_loop.h"
 #include "slam/window_slam.h"
@@ -68,7 +69,8 @@ bool View::inertial(InertialView* out) const {
   for (int i = 0; i < 8; ++i) out->sigma[i] = std::sqrt(std::max(Scalar(0), out->covariance[i][i]));
   describe_mounting(out);
   ScaleRow l;
-  if (out->metric && filter().scale_row(&l)) out->sigma[16] = std::sqrt(std::max(Scalar(0), filter().variance_of(l)));
+  if (out->metric && find_scale_row(filter(), &l))
+    out->sigma[16] = std::sqrt(std::max(Scalar(0), filter().variance_of(l)));
   return true;
 }
 
