@@ -200,6 +200,13 @@ void test_adjusting_should_never_raise_the_cost_and_stop_after_its_rounds() {
   }
 }
 
+void test_more_poses_than_a_mask_has_bits_should_be_refused() {
+  TestArena arena;
+  BundleAdjuster adjuster;
+  TEST_ASSERT_FALSE(adjuster.layout(*arena, BundleAdjuster::kMaxPoses + 1, 3, kPoints));
+  TEST_ASSERT_TRUE(adjuster.layout(*arena, BundleAdjuster::kMaxPoses, 3, kPoints));
+}
+
 }  // namespace
 
 int main() {
@@ -209,5 +216,6 @@ int main() {
   RUN_TEST(test_covariance_should_be_refused_when_nothing_is_free_or_a_pose_sees_nothing);
   RUN_TEST(test_adjusting_should_find_the_truth_and_leave_fixed_poses_when_pixels_are_exact);
   RUN_TEST(test_adjusting_should_never_raise_the_cost_and_stop_after_its_rounds);
+  RUN_TEST(test_more_poses_than_a_mask_has_bits_should_be_refused);
   return UNITY_END();
 }

@@ -13,6 +13,7 @@ using namespace tuning::window_adjustment;
 namespace {
 
 constexpr int kTargetViews = 2;
+static_assert(tuning::window_map::kKeyframes + kTargetViews <= BundleAdjuster::kMaxPoses);
 
 }  // namespace
 

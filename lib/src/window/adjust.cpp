@@ -14,7 +14,6 @@ namespace {
 
 using namespace tuning::adjust;
 
-constexpr int kMaxPoses = 32;  ///< as many as a mask has bits
 constexpr int kSeenBits = 16;  ///< of such a mask in one array
 
 int host_of(const Bundle& bundle, int point) { return bundle.host == nullptr ? 0 : bundle.host[point]; }
@@ -146,7 +145,7 @@ Scalar bearing_plane_distance(const BundlePlane& plane, const Vec3& ray_W, const
 }
 
 bool BundleAdjuster::layout(Arena& arena, int max_poses, int max_free_poses, int max_points, int max_planes) {
-  PF_ASSERT(max_poses <= kMaxPoses);
+  if (max_poses > kMaxPoses) return false;
   ld_ = 3 * max_planes + 6 * max_free_poses;
   plane_part_ = max_planes > 0 ? 3 : 0;
   w_ld_ = plane_part_ + 6 * max_free_poses;

@@ -105,6 +105,9 @@ Scalar huber_cost(Scalar r2, Scalar huber, Scalar* weight);
 /// no_pixel_penalty and have no derivative.
 class BundleAdjuster {
  public:
+  static constexpr int kMaxPoses = 32;  ///< of a bundle: as many as a mask has bits
+
+  /// False: no room, or more than kMaxPoses.
   bool layout(Arena& arena, int max_poses, int max_free_poses, int max_points, int max_planes = 0);
 
   /// Adjusts free poses, free planes and all rho; returns the robust cost, which never rises. Bounded by max_rounds.

@@ -57,6 +57,7 @@ void StartRecord::add_pixel(int frame, int feature, const Vec2& pixel) {
 }
 
 bool StartBundle::layout(Arena& arena) {
+  static_assert(1 + kMaxCameras <= BundleAdjuster::kMaxPoses);
   rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
   best_rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
   last_rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
