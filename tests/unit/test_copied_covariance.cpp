@@ -129,6 +129,18 @@ void test_a_motion_should_not_be_certain_when_rounding_took_all_of_it() {
   }
 }
 
+/// Two rows that are one, up to scale, leave a pivot of zero; what follows may still be indefinite.
+void test_an_indefinite_matrix_should_be_no_covariance_behind_a_pivot_of_zero() {
+  double P[9] = {1, 1, 0, 1, 1, 0.5, 0, 0.5, 1};
+  TEST_ASSERT_FALSE(is_covariance(P, 3));
+  P[5] = P[7] = 0;
+  TEST_ASSERT_TRUE(is_covariance(P, 3));
+  P[5] = P[7] = 1e-3;
+  TEST_ASSERT_FALSE(is_covariance(P, 3));
+  P[2] = P[6] = 1e-3;
+  TEST_ASSERT_TRUE(is_covariance(P, 3));
+}
+
 }  // namespace
 
 int main() {
@@ -142,5 +154,6 @@ int main() {
   RUN_TEST(test_two_sides_that_differ_should_become_their_mean);
   RUN_TEST(test_any_symmetric_numbers_should_become_a_covariance);
   RUN_TEST(test_a_motion_should_not_be_certain_when_rounding_took_all_of_it);
+  RUN_TEST(test_an_indefinite_matrix_should_be_no_covariance_behind_a_pivot_of_zero);
   return UNITY_END();
 }
