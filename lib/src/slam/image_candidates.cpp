@@ -43,7 +43,7 @@ int ImageFrontEnd::list_visible() {
   for (int i = 0; i < map_.features.capacity(); ++i) {
     Vec2 pixel;
     if (!map_.features.used(i) || !is_visible(i, &pixel)) continue;
-    const Scalar mine = rate(i, pixel);
+    const Scalar mine = static_cast<Scalar>(rate(i, pixel));
     int at = count;
     if (count == settings_.max_observations) {
       if (rates[count - 1] >= mine) continue;

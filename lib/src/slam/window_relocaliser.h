@@ -9,9 +9,8 @@ namespace pf {
 
 class WindowRelocaliser {
  public:
-  WindowRelocaliser(const Settings& settings, WindowMap& map, Frame& frame, WindowMotion& motion,
-                    WindowTracking& measuring)
-      : settings_(settings), map_(map), frame_(frame), motion_(motion), measuring_(measuring) {}
+  WindowRelocaliser(const Settings& settings, WindowMotion& motion, WindowTracking& measuring)
+      : settings_(settings), motion_(motion), measuring_(measuring) {}
 
   bool layout(Arena& arena) { return views_.layout(arena, settings_.max_kept_views); }
   void init() {
@@ -41,8 +40,6 @@ class WindowRelocaliser {
   bool is_prediction_narrow(Scalar median_depth) const;
 
   const Settings& settings_;
-  WindowMap& map_;
-  Frame& frame_;
   WindowMotion& motion_;
   WindowTracking& measuring_;
   ViewMemory views_;

@@ -28,7 +28,7 @@ void square(const SparseRows& J, const Triangle& P, Scalar* out) {
 
 void gather(const Triangle& P, const SparseRows& J, Scalar* out, int ld) {
   for (int a = 0; a < J.rows; ++a) {
-    for (int j = 0; j < P.n; ++j) out[static_cast<std::size_t>(a) * ld + j] = product(J, a, P, j);
+    for (int j = 0; j < P.n; ++j) out[a * static_cast<std::ptrdiff_t>(ld) + j] = product(J, a, P, j);
   }
 }
 

@@ -12,7 +12,7 @@
 namespace pf {
 namespace {
 
-#define PF_FUNCTION inline __attribute__((always_inline))
+#define PF_FUNCTION [[maybe_unused]] inline __attribute__((always_inline))
 PF_FUNCTION __m256d plus_product(__m256d a, __m256d b, __m256d c) { return _mm256_fmadd_pd(a, b, c); }
 PF_FUNCTION __m256d minus_product(__m256d a, __m256d b, __m256d c) { return _mm256_fnmadd_pd(a, b, c); }
 PF_FUNCTION __m256 plus_product(__m256 a, __m256 b, __m256 c) { return _mm256_fmadd_ps(a, b, c); }

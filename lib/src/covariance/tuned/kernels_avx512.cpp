@@ -12,7 +12,7 @@
 namespace pf {
 namespace {
 
-#define PF_FUNCTION inline __attribute__((always_inline))
+#define PF_FUNCTION [[maybe_unused]] inline __attribute__((always_inline))
 PF_FUNCTION __m512d plus_product(__m512d a, __m512d b, __m512d c) { return _mm512_fmadd_pd(a, b, c); }
 PF_FUNCTION __m512d minus_product(__m512d a, __m512d b, __m512d c) { return _mm512_fnmadd_pd(a, b, c); }
 PF_FUNCTION __m512 plus_product(__m512 a, __m512 b, __m512 c) { return _mm512_fmadd_ps(a, b, c); }

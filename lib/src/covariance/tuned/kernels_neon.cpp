@@ -17,7 +17,7 @@
 namespace pf {
 namespace {
 
-#define PF_FUNCTION inline __attribute__((always_inline))
+#define PF_FUNCTION [[maybe_unused]] inline __attribute__((always_inline))
 PF_FUNCTION float32x4_t plus_product(float32x4_t a, float32x4_t b, float32x4_t c) { return vfmaq_f32(c, a, b); }
 PF_FUNCTION float32x4_t minus_product(float32x4_t a, float32x4_t b, float32x4_t c) { return vfmsq_f32(c, a, b); }
 #if defined(__aarch64__)

@@ -21,8 +21,8 @@ inline __attribute__((always_inline)) V minus_product(V a, V b, V c) {
   return c - a * b;
 }
 
-inline double square_root(double x) { return __builtin_sqrt(x); }
-inline float square_root(float x) { return __builtin_sqrtf(x); }
+[[maybe_unused]] inline double square_root(double x) { return __builtin_sqrt(x); }
+[[maybe_unused]] inline float square_root(float x) { return __builtin_sqrtf(x); }
 
 }  // namespace
 }  // namespace pf
