@@ -1,6 +1,7 @@
-// The whole contract: a config that is right, then calls in any order, most of which mean something and some of which are hostile. Every
-// status is one that the header names, what is refused or only asks leaves the block as it was, nothing is written outside of the
-// block, and what comes out is finite, with covariances that are covariances, already before the getters mend what rounding left of them.
+// The whole contract (lib/docs/robustness.md): a config that is right, then calls in any order, most of which mean something and some of
+// which are hostile. Every status is one that the header names, what is refused or only asks leaves the block as it was, nothing is written
+// outside of the block, and what comes out is finite, with covariances that are covariances, already before the getters mend what rounding
+// left of them.
 #include <planefold/planefold.h>
 #include <sys/mman.h>
 
@@ -8,6 +9,7 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include "api/context.h"
@@ -129,8 +131,9 @@ void require_pose(const pf_pose_t& pose) {
 
 /// A number that no program should pass, or one that it might.
 double hostile(Bytes& bytes) {
-  static const double values[] = {NAN,      INFINITY, -INFINITY, 0.0,  -0.0, 5e-324, DBL_MIN, DBL_MAX,
-                                  -DBL_MAX, 1e-30,    1e30,      -1.0, 1e-9, 1e5,    0.1,     1.0};
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+  static const double values[] = {kNan,     kInfinity, -kInfinity, 0.0,  -0.0, 5e-324, DBL_MIN, DBL_MAX,
+                                  -DBL_MAX, 1e-30,     1e30,       -1.0, 1e-9, 1e5,    0.1,     1.0};
   const uint8_t which = bytes.take<uint8_t>();
   return which < 240 ? values[which % 16] : bytes.take<double>();
 }
@@ -161,8 +164,45 @@ double between(Bytes& bytes, double low, double high) {
   return low * std::pow(high / low, bytes.take<uint8_t>() / 255.0);
 }
 
+/// The other back end, or walls with patches, an uncertain lens and an uncertain mounting; masks with both.
+void extend(Bytes& bytes, pf_config_t* config) {
+  const uint8_t more = bytes.take<uint8_t>();
+  if ((more & 1) != 0) {
+    config->backend = PF_BACKEND_WINDOW;
+    config->capacity.window_keyframes = 2 + bytes.take<uint8_t>() % 7;
+    config->capacity.window_fixed = bytes.take<uint8_t>() % 17;
+    config->capacity.window_points = 50 + bytes.take<uint8_t>();
+    config->camera.readout_s = config->plane.fix_sigma = 0;
+    if (config->motion.model == PF_MOTION_INERTIAL) config->motion.model = PF_MOTION_CONSTANT_VELOCITY;
+  } else {
+    if ((more & 2) != 0) {
+      config->capacity.max_patches = 1 + bytes.take<uint8_t>() % 8;
+      config->capacity.patch_side_px = 32 + bytes.take<uint8_t>() % 24;
+      config->capacity.max_cameras = bytes.take<uint8_t>() % 9;
+      if ((more & 32) != 0) config->map.features_in_view = 0;
+    }
+    if ((more & 4) != 0) {
+      config->camera.estimate = (more & 64) != 0 ? PF_CAMERA_CONSIDER : PF_CAMERA_ESTIMATE;
+      config->camera.sigma_focal = between(bytes, 1e-5, 0.2);
+      config->camera.sigma_aspect = between(bytes, 1e-6, 0.2);
+      config->camera.sigma_centre_px = between(bytes, 1e-3, 100);
+    }
+    if ((more & 8) != 0) {
+      config->imu.sigma_mount_rad = between(bytes, 1e-6, 0.5);
+      config->imu.sigma_mount_m = between(bytes, 1e-6, 1);
+      config->imu.sigma_delay_s = between(bytes, 1e-6, 0.1);
+    }
+  }
+  if ((more & 16) != 0) {
+    config->map.masks = (more & 128) != 0 ? PF_MASKS_WHOLE : PF_MASKS_PARTIAL;
+    config->capacity.template_px = 9 + 2 * (bytes.take<uint8_t>() % 12);
+  }
+}
+
+constexpr uint8_t kExtended = 128;  ///< of a config's first byte
+
 /// A config within its ranges; for every second one, near what people use.
-pf_config_t config_from(Bytes& bytes) {
+pf_config_t config_from(Bytes& bytes, bool* extended) {
   pf_config_t config;
   pf_config_default(&config);
   const uint8_t what = bytes.take<uint8_t>();
@@ -215,13 +255,15 @@ pf_config_t config_from(Bytes& bytes) {
     config.imu.p_BC[0] = unit(bytes);
     config.imu.delay_s = 0.5 * unit(bytes);
   }
+  *extended = (what & kExtended) != 0;
+  if (*extended) extend(bytes, &config);
   return config;
 }
 
 /// A context with guard pages about its block and its image, what was pushed, and a world to observe.
 class Run {
  public:
-  explicit Run(Bytes& bytes) : bytes_(bytes), config_(config_from(bytes)) {
+  explicit Run(Bytes& bytes) : bytes_(bytes), config_(config_from(bytes, &extended_)) {
     const char* field = nullptr;
     usable_ = status(pf_config_check(&config_, &field)) == PF_OK;
     require(usable_ == (field == nullptr), "a bad config names a field");
@@ -245,11 +287,12 @@ class Run {
                        static_cast<size_t>(config_.camera.width),
                    1, (how & 2) != 0);
     pixels_ = pixels.begin();
-    observes_ = (how & 4) != 0;
+    observes_ = (how & 4) != 0 && config_.backend == PF_BACKEND_FILTER;
     t_ns_ = (how & 8) != 0 ? bytes_.take<int64_t>() : 0;
     for (double& v : velocity_) v = unit(bytes_) * 0.05;
     if (bytes_.take<uint8_t>() % 4 == 0) changing([&] { return start_from_target(); });
     if (bytes_.take<uint8_t>() % 4 == 0) changing([&] { return start_from_pose(); });
+    if (extended_ && config_.backend == PF_BACKEND_FILTER && bytes_.take<uint8_t>() % 2 == 0) start_before_walls();
     for (int steps = 0; steps < 120 && !bytes_.empty(); ++steps) step();
   }
 
@@ -315,6 +358,8 @@ class Run {
         if (bytes_.take<uint8_t>() % 8 == 0) {
           require(changing([&] { return pf_reset(slam_); }) == PF_OK, "reset");
           pushed_ = false;
+        } else if (extended_) {
+          changing([&] { return add_wall(what >= 224); });
         }
         break;
       case 7:
@@ -346,7 +391,9 @@ class Run {
     dt = t_ns_ > INT64_MAX - dt ? INT64_MAX - t_ns_ : dt;
     t_ns_ += dt;
     const bool late = pushed_ && t_ns_ <= last_t_ns_;
-    for (int i = 0; i < 3; ++i) position_[i] += velocity_[i];
+    const bool rests = extended_ && frames_++ < kRest;  // long enough for gravity
+    for (int i = 0; i < 3 && !rests; ++i) position_[i] += velocity_[i];
+    if (extended_ && config_.motion.model == PF_MOTION_INERTIAL && how % 64 != 63) push_samples();
     if (how % 32 == 31) position_[0] += 1;  // a jump
     pf_status_t result = PF_OK;
     if (observes_) {
@@ -369,6 +416,78 @@ class Run {
       require(result != PF_NOTE_COASTING || state == PF_STATE_COASTING, "coasting is coasting");
       require(result != PF_NOTE_LOST || state == PF_STATE_LOST, "lost is lost");
     }
+  }
+
+  /// Up to the frame, of a unit that lies still but for noise; a camera that moves speeds up unseen.
+  void push_samples() {
+    const int64_t step = 5000000;
+    if (imu_t_ns_ < t_ns_ - 20 * step || t_ns_ < INT64_MIN + 40 * step)
+      imu_t_ns_ = t_ns_ - std::min<int64_t>(20 * step, t_ns_ - INT64_MIN);
+    while (t_ns_ - imu_t_ns_ >= step) {
+      imu_t_ns_ += step;
+      noise_ = noise_ * 6364136223846793005u + 1442695040888963407u;
+      const double e = static_cast<double>(noise_ >> 40) / 0x800000 - 1;
+      const pf_imu_sample_t sample = {imu_t_ns_, {0.001 * e, -0.002 * e, 0.001}, {0.01 * e, -9.81, 0.02 * e}};
+      status(pf_push_imu(slam_, &sample, 1));
+    }
+  }
+
+  /// A pose that is known well enough, and the nearer of the walls that are painted, or the one of the points.
+  void start_before_walls() {
+    pf_pose_t pose;
+    std::memset(static_cast<void*>(&pose), 0, sizeof(pose));
+    double velocity_covariance[36] = {};
+    pose.q_WC[0] = 1;
+    for (int i = 0; i < 6; ++i) pose.covariance[7 * i] = between(bytes_, 1e-8, 1e-2);
+    for (int i = 0; i < 6; ++i) velocity_covariance[7 * i] = between(bytes_, 1e-6, 1);
+    changing([&] { return pf_start_from_pose(slam_, &pose, velocity_covariance); });
+    const int walls = 1 + bytes_.take<uint8_t>() % 3;
+    for (int i = 0; i < walls; ++i) changing([&] { return add_wall(false); });
+  }
+
+  pf_status_t add_wall(bool is_hostile) {
+    pf_plane_prior_t wall;
+    std::memset(static_cast<void*>(&wall), 0, sizeof(wall));
+    const double slant = 0.05 * unit(bytes_), c = std::cos(slant), s = std::sin(slant);
+    const double R[9] = {1, 0, 0, 0, -c, -s, 0, s, -c};
+    std::memcpy(wall.R_WP, R, sizeof(R));
+    for (double& p : wall.p_WP) p = 0.1 * unit(bytes_);
+    wall.p_WP[2] += observes_ ? 2.0 : config_.camera.fx / 40;
+    for (int i = 0; i < 3; ++i) wall.covariance[4 * i] = between(bytes_, 1e-8, 0.1);
+    wall.outline_count = 3 + bytes_.take<uint8_t>() % 6;
+    for (int i = 0; i < wall.outline_count; ++i) {
+      const double a = 2 * 3.14159265358979 * i / wall.outline_count;
+      wall.outline_P[i][0] = 3 * std::cos(a);
+      wall.outline_P[i][1] = 3 * std::sin(a);
+    }
+    wall.two_sided = bytes_.take<uint8_t>() % 2;
+    if (is_hostile) {
+      switch (bytes_.take<uint8_t>() % 6) {
+        case 0:
+          wall.covariance[bytes_.take<uint8_t>() % 9] = hostile(bytes_);
+          break;
+        case 1:
+          wall.R_WP[bytes_.take<uint8_t>() % 9] = hostile(bytes_);
+          break;
+        case 2:
+          wall.outline_P[bytes_.take<uint8_t>() % PF_OUTLINE_MAX][0] = hostile(bytes_);
+          break;
+        case 3:
+          wall.outline_count = bytes_.take<int8_t>();
+          break;
+        case 4:
+          wall.roughness = hostile(bytes_);
+          break;
+        default:
+          wall.p_WP[bytes_.take<uint8_t>() % 3] = hostile(bytes_);
+          break;
+      }
+    }
+    uint32_t id = 0, current = 0;
+    const pf_status_t result = pf_add_plane_prior(slam_, &wall, &id);
+    if (result == PF_OK)
+      require(pf_find_plane(slam_, id, &current) == PF_OK && current == id, "a wall is found by its id");
+    return result;
   }
 
   /// A wall of blocks whose grey levels are hashed from their place, and a nearer one before it, both seen by the moving camera.
@@ -513,8 +632,11 @@ class Run {
     pf_pose_t pose;
     require(pf_get_report(slam_, &report) == PF_OK && pf_get_state(slam_, &state) == PF_OK, "a report and a state");
     require(report.state == static_cast<int32_t>(state), "state and report agree");
-    require(report.features <= config_.capacity.max_features && report.planes <= config_.capacity.max_planes &&
-                report.state_dim <= config_.capacity.max_state_dim,
+    const bool has_window = config_.backend == PF_BACKEND_WINDOW;
+    require(report.features <= (has_window ? config_.capacity.window_points : config_.capacity.max_features) &&
+                report.patches <= config_.capacity.max_patches && report.cameras <= config_.capacity.max_cameras,
+            "features and patches keep to their capacity");
+    require(report.planes <= config_.capacity.max_planes && report.state_dim <= config_.capacity.max_state_dim,
             "the map keeps to its capacity");
     require(report.attempts >= report.matches && report.matches >= report.inliers &&
                 report.features == report.features_point + report.features_inverse_depth + report.features_folded +
@@ -525,6 +647,7 @@ class Run {
     require(posed == PF_OK || posed == PF_ERROR_STATE, "a pose, or none yet");
     if (posed == PF_OK) require_pose(pose);
     look_at_map(report);
+    look_at_patches(report);
     look_inside();
   }
 
@@ -544,8 +667,24 @@ class Run {
         require_nearly(view.plane(i).covariance, kSmallestOfOthers, "a plane has a covariance before it is mended");
   }
 
+  void look_at_patches(const pf_report_t& report) const {
+    std::vector<pf_patch_t> patches(static_cast<size_t>(config_.capacity.max_patches));
+    size_t count = 0;
+    require(pf_get_patches(slam_, patches.data(), patches.size(), &count) == PF_OK &&
+                count == static_cast<size_t>(report.patches),
+            "every patch is given");
+    for (size_t i = 0; i < count; ++i) {
+      const pf_patch_t& patch = patches[i];
+      require(finite(&patch.corners_px[0][0], 8) && patch.weight >= 0 && patch.weight <= 1, "a patch is finite");
+      double corners[36];
+      for (int k = 0; k < 36; ++k) corners[k] = patch.covariance_px[k / 6 * 8 + k % 6];
+      require_covariance(corners, 6, "corners have a covariance");
+    }
+  }
+
   void look_at_map(const pf_report_t& report) const {
-    std::vector<pf_feature_t> features(static_cast<size_t>(config_.capacity.max_features));
+    std::vector<pf_feature_t> features(
+        static_cast<size_t>(std::max(config_.capacity.max_features, config_.capacity.window_points)));
     std::vector<pf_match_t> matches(features.size() + static_cast<size_t>(config_.capacity.max_observations));
     std::vector<pf_plane_t> planes(static_cast<size_t>(config_.capacity.max_planes));
     size_t count = 0;
@@ -557,6 +696,14 @@ class Run {
       require_covariance(features[i].covariance, 3, "a feature has a covariance");
       require(features[i].is_target || features[i].observations <= features[i].attempts,
               "only what is searched is seen");
+      pf_template_t shape;
+      const pf_status_t shaped = status(pf_get_template(slam_, features[i].id, &shape));
+      require(shaped == PF_OK || shaped == PF_NOTE_NOTHING, "a template, or none");
+      if (shaped != PF_OK) continue;
+      const double* n = shape.normal_W;
+      require(finite(n, 3) && std::fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-4 &&
+                  std::isfinite(shape.sigma_normal_rad) && shape.side == config_.capacity.template_px,
+              "a template has a normal");
     }
     require(pf_get_matches(slam_, matches.data(), matches.size(), &count) == PF_OK, "every match is given");
     for (size_t i = 0; i < count; ++i) {
@@ -629,12 +776,23 @@ class Run {
         pf_inertial_t inertial;
         if (status(pf_get_inertial(slam_, &inertial)) == PF_OK)
           require(finite(inertial.gravity_W, 3) && finite(inertial.gyro_bias, 3) && finite(inertial.accel_bias, 3) &&
-                      finite(inertial.covariance, 64),
+                      finite(inertial.covariance, 64) && finite(inertial.q_BC, 4) && finite(inertial.p_BC, 3) &&
+                      finite(inertial.sigma, 17),
                   "what is known of the unit is finite");
+        pf_camera_t camera;
+        double lens[100];
+        require(pf_get_camera(slam_, &camera, lens) == PF_OK && finite(lens, 100) && finite(camera.distortion, 8) &&
+                    std::isfinite(camera.fx + camera.fy + camera.cx + camera.cy),
+                "what is known of the camera is finite");
+        size_t kept = 0;
+        pf_imu_sample_t newest[4];
+        require(status(pf_get_imu_samples(slam_, newest, 4, &kept)) >= PF_OK && static_cast<int>(kept) == report.kept,
+                "samples are given");
         pf_motion_t motion;
         if (status(pf_get_motion_since_mark(slam_, &motion)) == PF_OK)
-          require(finite(motion.q_KC, 4) && finite(motion.p_KC, 3) && finite(motion.covariance, 36),
-                  "a motion is finite");
+          require(finite(motion.q_KC, 4) && finite(motion.p_KC, 3), "a motion is finite");
+        if (pf_get_motion_since_mark(slam_, &motion) == PF_OK)
+          require_covariance(motion.covariance, 6, "a motion has a covariance");
         break;
       }
     }
@@ -655,8 +813,11 @@ class Run {
   }
 
   Bytes& bytes_;
+  bool extended_ = false;  ///< before the config, which sets it
   pf_config_t config_;
   pf_memory_t need_{};
+  static constexpr int kRest = 45;  ///< frames
+  int frames_ = 0;
   bool usable_ = false;
   const Guarded* block_ = nullptr;
   pf_slam_t* slam_ = nullptr;
