@@ -24,6 +24,7 @@ class RenderedRun {
     pf_state_t state;
     pf_pose_t pose;  ///< t_ns is -1 where there is none
     pf_report_t report;
+    pf_pose_t truth;
     double error_m;  ///< distance from the truth (in W, where there is a target)
   };
 
@@ -69,6 +70,12 @@ class RenderedRun {
     pf_target_t target;
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_target(sim_, PF_TARGET_RECTANGLE, &target));
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
+  }
+
+  /// The first frames of the film are not shown.
+  void skip(int count) {
+    pf_image_t image;
+    for (int i = 0; i < count; ++i) TEST_ASSERT_TRUE(next_image(&image));
   }
 
   bool next_image(pf_image_t* image) { return pf_sim_next(sim_, image, &truth_) == 1; }
@@ -123,6 +130,7 @@ class RenderedRun {
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_state(slam, &f.state));
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(slam, &f.report));
     if (pf_get_pose(slam, &f.pose) != PF_OK) f.pose.t_ns = -1;
+    f.truth = truth_;
     double sum = 0;
     for (int i = 0; i < 3; ++i) sum += (f.pose.p_WC[i] - truth_.p_WC[i]) * (f.pose.p_WC[i] - truth_.p_WC[i]);
     f.error_m = std::sqrt(sum);

@@ -12,6 +12,7 @@ namespace {
 
 using namespace tuning::start;
 
+constexpr int kDirections = 6;                 // there and back along each axis
 constexpr Scalar kBehindCamera = Scalar(1e6);  ///< [px^2] error of what does not project: larger than any other
 
 }  // namespace
@@ -99,17 +100,26 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   const Scalar parallax = fit_rotation(camera, record, last, &q_last);
   if (!(parallax >= kMinParallax * sigma_px && parallax >= kGrowth * last_parallax_)) return StartOutcome::kWait;
 
-  // Adjust frame 0 and the last frame from six directions of motion; the parallax gives the distance at a depth of one.
+  // Adjust frame 0 and the last frame from six directions of motion, with the turn that explains most by itself; the parallax gives the
+  // distance at a depth of one. A camera that looks at one place while it moves about it has a turn that none of them comes near, so the
+  // last solution, where there is one, is the seventh.
   const int count = record.features();
   const Scalar length = parallax / camera.fx;
+  const int guesses = kDirections + (last_parallax_ > Scalar(0) ? 1 : 0);
   BundlePose best_pose = {Quat::Identity(), Vec3::Zero(), true, nullptr};
   Scalar best = -1, second = -1;
-  for (int guess = 0; guess < 6; ++guess) {
-    Vec3 direction = Vec3::Zero();
-    direction[guess / 2] = guess % 2 == 0 ? Scalar(1) : Scalar(-1);
-    pose_[1].q_WC = q_last;
-    pose_[1].p_W = direction * length * Scalar(2);
-    for (int i = 0; i < count; ++i) rho_[i] = Scalar(1);
+  for (int guess = 0; guess < guesses; ++guess) {
+    if (guess < kDirections) {
+      Vec3 direction = Vec3::Zero();
+      direction[guess / 2] = guess % 2 == 0 ? Scalar(1) : Scalar(-1);
+      pose_[1].q_WC = q_last;
+      pose_[1].p_W = direction * length * Scalar(2);
+      for (int i = 0; i < count; ++i) rho_[i] = Scalar(1);
+    } else {
+      pose_[1].q_WC = record.frame(last).q_WC;
+      pose_[1].p_W = record.frame(last).p_W / median_depth;
+      for (int i = 0; i < count; ++i) rho_[i] = last_rho_[i] > Scalar(0) ? last_rho_[i] * median_depth : Scalar(1);
+    }
     const Scalar c = adjust(camera, record, &last, 1, kGuessRounds, sigma_px);
     if (best >= Scalar(0)) {
       const Scalar cosine = pose_[1].p_W.dot(best_pose.p_W) / (pose_[1].p_W.norm() * best_pose.p_W.norm());
