@@ -145,7 +145,7 @@ double pf_v4l2_read_slowness(const uint8_t* mapped, size_t bytes) {
   for (int round = 0; round < 4; ++round) {
     for (int which = 0; which < 2; ++which) {
       const int64_t before = pf_v4l2_now_ns();
-      keep += sum(which == 0 ? mapped : ordinary, bytes);
+      keep = keep + sum(which == 0 ? mapped : ordinary, bytes);
       {
         const int64_t took = pf_v4l2_now_ns() - before;
         best[which] = took < best[which] ? took : best[which];
