@@ -68,6 +68,10 @@ double smallest_eigenvalue(const double* covariance, int n) {
     for (int j = 0; j < n; ++j)
       A[i * n + j] = (covariance[i * n + j] + covariance[j * n + i]) / 2 * scale[i] * scale[j];
   for (int sweep = 0; sweep < 30; ++sweep) {
+    double rest = 0;
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < i; ++j) rest += A[i * n + j] * A[i * n + j];
+    if (rest < 1e-24) break;
     for (int p = 0; p < n; ++p) {
       for (int q = p + 1; q < n; ++q) {
         const double a = A[p * n + q];
@@ -420,10 +424,10 @@ class Run {
 
   /// Up to the frame, of a unit that lies still but for noise; a camera that moves speeds up unseen.
   void push_samples() {
-    const int64_t step = 5000000;
-    if (imu_t_ns_ < t_ns_ - 20 * step || t_ns_ < INT64_MIN + 40 * step)
-      imu_t_ns_ = t_ns_ - std::min<int64_t>(20 * step, t_ns_ - INT64_MIN);
-    while (t_ns_ - imu_t_ns_ >= step) {
+    const int64_t step = 5000000, span = 20 * step;
+    if (t_ns_ < INT64_MIN + span) return;
+    imu_t_ns_ = std::max(imu_t_ns_, t_ns_ - span);
+    while (imu_t_ns_ <= t_ns_ - step) {
       imu_t_ns_ += step;
       noise_ = noise_ * 6364136223846793005u + 1442695040888963407u;
       const double e = static_cast<double>(noise_ >> 40) / 0x800000 - 1;
@@ -507,6 +511,14 @@ class Run {
         if (pattern_ % 8 == 1) grey = static_cast<uint8_t>(pattern_);
         if (pattern_ % 8 == 2) grey = (x / 6 + y / 6) % 2 == 0 ? 230 : 20;
         if (pattern_ % 8 == 3) grey = x > 12 && y > 10 && x < 36 && y < 30 ? 15 : 220;
+        if (pattern_ % 8 == 4) {  // a dark rectangle on a light ground, on the nearer wall
+          const double rx = std::fabs(x + u - config_.camera.width / 2.0),
+                       ry = std::fabs(y + v - config_.camera.height / 2.0);
+          if (rx < config_.camera.width / 4.0 && ry < config_.camera.width / 5.0) grey = 220;
+          if (rx < config_.camera.width / 6.0 && ry < config_.camera.width / 8.0) grey = 15;
+        }
+        // No two images of a camera are the same to the last bit.
+        if (extended_) grey = static_cast<uint8_t>(grey ^ (h * static_cast<uint32_t>(frames_) >> 31));
         pixels_[y * stride_ + x] = grey;
       }
     }
@@ -597,6 +609,7 @@ class Run {
     const uint8_t how = bytes_.take<uint8_t>();
     target.kind = how % 16 == 0 ? bytes_.take<int8_t>() : 1 + how % 2;
     target.width = 0.2;
+    if (extended_ && target.kind == PF_TARGET_RECTANGLE) pattern_ = 4;
     target.height = how % 32 == 1 ? hostile(bytes_) : 0.15;
     target.sigma = how % 32 == 2 ? hostile(bytes_) : 1e-3;
     target.count = how % 32 == 3 ? bytes_.take<int8_t>() : 4 + how % 13;
