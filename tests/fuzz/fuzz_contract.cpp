@@ -291,6 +291,8 @@ class Run {
                        static_cast<size_t>(config_.camera.width),
                    1, (how & 2) != 0);
     pixels_ = pixels.begin();
+    for (int s = PF_ERROR_FULL - 1; s <= PF_NOTE_NOTHING + 1; ++s)
+      require(pf_status_text(static_cast<pf_status_t>(s)) != nullptr, "every status has a text");
     observes_ = (how & 4) != 0 && config_.backend == PF_BACKEND_FILTER;
     t_ns_ = (how & 8) != 0 ? bytes_.take<int64_t>() : 0;
     for (double& v : velocity_) v = unit(bytes_) * 0.05;
@@ -610,6 +612,7 @@ class Run {
     target.kind = how % 16 == 0 ? bytes_.take<int8_t>() : 1 + how % 2;
     target.width = 0.2;
     if (extended_ && target.kind == PF_TARGET_RECTANGLE) pattern_ = 4;
+    if (extended_ && (how & 64) != 0) target.q_WT[0] = target.p_WT[2] = 1;
     target.height = how % 32 == 1 ? hostile(bytes_) : 0.15;
     target.sigma = how % 32 == 2 ? hostile(bytes_) : 1e-3;
     target.count = how % 32 == 3 ? bytes_.take<int8_t>() : 4 + how % 13;

@@ -27,7 +27,7 @@ def run(target, seconds):
     corpus = BUILD / "corpus" / target.name
     corpus.mkdir(parents=True, exist_ok=True)
     seeds = ROOT / "tests" / "fuzz" / (source_name(target.name)[len("fuzz_"):] + "_seeds")
-    command = [target, f"-max_total_time={seconds}", "-timeout=25", "-rss_limit_mb=2048", "-max_len=4096", "-len_control=0",
+    command = [target, f"-max_total_time={seconds}", "-timeout=120", "-rss_limit_mb=2048", "-max_len=4096", "-len_control=0",
                "-verbosity=0", "-print_final_stats=1", f"-artifact_prefix={BUILD}/{target.name}-", corpus]
     command += [seeds] if seeds.is_dir() else []
     profile = BUILD / "profiles" / f"{target.name}.profraw"
