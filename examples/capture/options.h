@@ -31,6 +31,7 @@ struct Options {
   uint64_t seed = 1;
   int32_t max_features = -1;
   int32_t max_planes = -1;
+  int32_t window_keyframes = -1, window_fixed = -1;
   int32_t max_state_dim = -1;
   int32_t max_observations = -1;
   int32_t features_in_view = -1;

@@ -59,6 +59,8 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   config_.plane.enabled = options.planes ? 1 : 0;
   const auto set = [](int32_t& field, int32_t value) { field = value > 0 ? value : field; };
   set(has_window ? config_.capacity.window_points : config_.capacity.max_features, options.max_features);
+  set(config_.capacity.window_keyframes, options.window_keyframes);
+  if (options.window_fixed >= 0) config_.capacity.window_fixed = options.window_fixed;
   set(config_.capacity.max_planes, options.max_planes);
   set(config_.capacity.max_state_dim, options.max_state_dim);
   set(config_.capacity.max_observations, options.max_observations);

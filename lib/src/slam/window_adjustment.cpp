@@ -3,31 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/so3.h"
 #include "window/tuning.h"
 
 namespace pf {
 
 using namespace tuning::window_adjustment;
 
-namespace {
-
-constexpr int kTargetViews = 2;
-static_assert(tuning::window_map::kKeyframes + kTargetViews <= BundleAdjuster::kMaxPoses);
-
-}  // namespace
+static_assert(tuning::window_map::kKeyframes + 1 <= BundleAdjuster::kMaxPoses, "keyframes and the target's host");
 
 bool WindowAdjustment::layout(Arena& arena) {
   const int keyframes = tuning::window_map::kKeyframes;
-  const int seeing = settings_.window_keyframes + settings_.window_fixed + kTargetViews;
+  const int seeing = settings_.window_keyframes + settings_.window_fixed;
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
-  const std::size_t poses = static_cast<std::size_t>(keyframes + kTargetViews);
+  const std::size_t poses = static_cast<std::size_t>(keyframes + 1);  // and the target's host
   pose_ = arena.take<BundlePose>(poses);
   keyframe_ = arena.take<int>(poses);
   pixel_ = arena.take<BundlePixel>(static_cast<std::size_t>(seeing) * points);
   ray_ = arena.take<Vec3>(points);
   host_ = arena.take<int>(points);
   rho_ = arena.take<Scalar>(points);
+  prior_ = arena.take<RhoPrior>(points);
   row_ = arena.take<int>(points);
   return adjuster_.layout(arena, static_cast<int>(poses), settings_.window_keyframes, settings_.max_features);
 }
@@ -120,29 +115,29 @@ void WindowAdjustment::fill(int seen_in, int points, int* poses) {
   }
 }
 
-/// The target's points are held where they are known to be by two fixed views of it, a quarter of a turn apart.
+/// The target's points have a fixed pose as host, and their inverse depths are known.
+///
+///   sigma_rho = sigma_m rho²
 void WindowAdjustment::add_target(int points, int* poses) {
-  const int first = *poses;
-  int held = 0;
-  for (int v = 0; v < kTargetViews; ++v) {
-    const Quat turn = exp_so3(static_cast<Scalar>(v) * kTargetTurn * (target_view_.q_WC * Vec3::UnitY()));
-    BundlePose& pose = pose_[first + v];
-    pose = {turn * target_view_.q_WC, target_middle_W_ + turn * (target_view_.c_W - target_middle_W_), false,
-            pixel_ + (settings_.window_keyframes + settings_.window_fixed + v) * settings_.max_features};
-    keyframe_[first + v] = -1;
-    BundlePixel* pixels = pixel_ + (settings_.window_keyframes + settings_.window_fixed + v) * settings_.max_features;
-    for (int p = 0; p < points; ++p) {
-      pixels[p].seen = false;
-      const int i = row_[p];
-      Vec2 z;
-      if (!map_.feature(i).is_target ||
-          !project(settings_.camera, pose.q_WC.conjugate() * (map_.position(i) - pose.p_W), &z))
-        continue;
-      pixels[p] = {static_cast<float>(z.x()), static_cast<float>(z.y()), true};
-      ++held;
-    }
+  const int host = *poses;
+  for (int p = 0; p < points; ++p) {
+    const Feature& f = map_.feature(row_[p]);
+    if (!f.is_target) continue;
+    const Vec3 at = target_view_.q_WC.conjugate() * (target_.point_W[f.external_id] - target_view_.c_W);
+    ray_[p] = at.normalized();
+    host_[p] = host;
+    rho_[p] = 1 / at.norm();
+    prior_[p] = {rho_[p], std::max(target_.sigma_m * rho_[p], kTargetSigma) * rho_[p]};
+    pose_[host] = {target_view_.q_WC, target_view_.c_W, false, nullptr};
+    keyframe_[host] = -1;
+    *poses = host + 1;
   }
-  if (held > 0) *poses += kTargetViews;
+}
+
+/// The keyframe that hosts the target's points has moved; they have not.
+void WindowAdjustment::put_target_back() {
+  for (int i = 0; i < map_.capacity(); ++i)
+    if (map_.used(i) && map_.feature(i).is_target) map_.place(i, target_.point_W[map_.feature(i).external_id]);
 }
 
 bool WindowAdjustment::run() {
@@ -157,7 +152,6 @@ bool WindowAdjustment::run() {
     pose_[c] = {k.q_WC, k.p_W, c < free, pixel_ + c * settings_.max_features};
   }
   fill(seen_in, points, &poses);
-  add_target(points, &poses);
 
   // A weak prior that leaves the scale where it is: it holds what nothing else does.
   Scalar sum = 0, squares = 0;
@@ -166,6 +160,8 @@ bool WindowAdjustment::run() {
     squares += rho_[p] * rho_[p];
   }
   const Scalar mean = squares / sum;
+  std::fill(prior_, prior_ + points, RhoPrior{mean, kPriorSigma * mean});
+  add_target(points, &poses);
   const int rounds = map_.keyframes.count() <= settings_.window_keyframes ? kFirstRounds : kRounds;
   const AdjustOptions options = {std::max(noise_.sigma_gate(), kMinSigma),
                                  kHuber,
@@ -174,7 +170,7 @@ bool WindowAdjustment::run() {
                                  kBehindWeight,
                                  kNoPixelPenalty,
                                  rounds};
-  const Bundle bundle = {pose_, poses, ray_, host_, rho_, points};
+  const Bundle bundle = {pose_, poses, ray_, host_, rho_, points, prior_};
   adjuster_.adjust(settings_.camera, options, bundle);
   // The last free pose is the newest keyframe's.
   Mat6 P;
@@ -190,6 +186,7 @@ void WindowAdjustment::take_back(int free, int points) {
     k.q_WC = pose_[c].q_WC;
     k.p_W = pose_[c].p_W;
   }
+  put_target_back();
   for (int p = 0; p < points; ++p) {
     WindowPoint& point = map_.point(row_[p]);
     if (!map_.feature(row_[p]).is_target) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slam/noise_model.h"
+#include "slam/start.h"
 #include "slam/window_map.h"
 #include "window/adjust.h"
 
@@ -14,16 +15,19 @@ class WindowAdjustment {
       : settings_(settings), map_(map), noise_(noise) {}
 
   bool layout(Arena& arena);
-  void init() { map_covariance_.setZero(); }
+  void init() {
+    map_covariance_.setZero();
+    target_ = Target();
+  }
 
   /// Adjusts. False: there is nothing to adjust yet.
   bool run();
   /// Of the newest keyframe's (theta, p), and with it of the map about it, given the keyframes that were held fixed.
   const Mat6& map_covariance() const { return map_covariance_; }
-  /// The target as it was first seen holds its points from now on.
-  void hold_target(const CameraView& seen_from, const Vec3& middle_W) {
+  /// The target's points are where it says from now on. seen_from: any pose in front of them.
+  void hold_target(const CameraView& seen_from, const Target& target) {
     target_view_ = seen_from;
-    target_middle_W_ = middle_W;
+    target_ = target;
   }
   /// Variance of a point's inverse depth by the pixels of the keyframes, which are taken as exact; 0 where none says anything.
   Scalar variance_of(int i) const;
@@ -36,6 +40,7 @@ class WindowAdjustment {
   int pose_of(int keyframe, int* poses);
   void fill(int seen_in, int points, int* poses);
   void add_target(int points, int* poses);
+  void put_target_back();
   void take_back(int free, int points);
   void reject_outliers(int i);
 
@@ -45,15 +50,16 @@ class WindowAdjustment {
   BundleAdjuster adjuster_;
   Mat6 map_covariance_ = Mat6::Zero();
   CameraView target_view_;
-  Vec3 target_middle_W_ = Vec3::Zero();
+  Target target_;
 
   // Of the bundle.
   BundlePose* pose_ = nullptr;
-  int* keyframe_ = nullptr;  ///< of each pose, -1 of a view of the target
+  int* keyframe_ = nullptr;  ///< of each pose, -1 of the target's host
   BundlePixel* pixel_ = nullptr;
   Vec3* ray_ = nullptr;
   int* host_ = nullptr;
   Scalar* rho_ = nullptr;
+  RhoPrior* prior_ = nullptr;
   int* row_ = nullptr;  ///< of each point in the map
 };
 

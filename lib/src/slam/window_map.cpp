@@ -90,11 +90,17 @@ int WindowMap::add_placed(int host, const Vec3& p_W) {
   if (!project(settings_.camera, at, &pixel)) return -1;
   const int i = add(host, pixel);
   if (i < 0) return -1;
+  place(i, p_W);
+  return i;
+}
+
+void WindowMap::place(int i, const Vec3& p_W) {
   WindowPoint& point = point_[i];
+  const Keyframe& host = keyframes[point.host];
+  const Vec3 at = host.q_WC.conjugate() * (p_W - host.p_W);
   point.ray_K = at.normalized();
   point.rho = 1 / at.norm();
   point.has_depth = true;
-  return i;
 }
 
 void WindowMap::drop(int i) {

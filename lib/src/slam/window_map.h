@@ -57,6 +57,8 @@ class WindowMap {
   int add(int host, const Vec2& pixel);
   /// Adds a point at a known place. Returns its row, or -1.
   int add_placed(int host, const Vec3& p_W);
+  /// Says where a point is, seen from its host.
+  void place(int i, const Vec3& p_W);
   void drop(int i);
   /// Drops points that fail too often, and those that are not in front of their hosts.
   void drop_failing();

@@ -98,9 +98,7 @@ bool WindowStart::start_in_image() {
     return true;
   }
   const Target& target = target_.target();
-  Vec3 middle_W = Vec3::Zero();
   for (int i = 0; i < target.count; ++i) {
-    middle_W += target.point_W[i] / static_cast<Scalar>(target.count);
     const int row = parts_.map.add_placed(keyframe, target.point_W[i]);
     if (row < 0) continue;
     Feature& f = parts_.map.feature(row);
@@ -115,7 +113,7 @@ bool WindowStart::start_in_image() {
   }
   report.new_features = 0;
   report.attempts = report.matches = report.inliers;
-  parts_.adjustment.hold_target({body.q_WC, body.p_W}, middle_W);
+  parts_.adjustment.hold_target({body.q_WC, body.p_W}, target);
   parts_.tracking.set_from_target();
   settings_.hooks.say("started at the target");
   return true;

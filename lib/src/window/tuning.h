@@ -50,7 +50,7 @@ inline constexpr Scalar kStepRegularisation = Scalar(1e-6);  ///< likewise, on t
 
 /// Tables of the window.
 namespace window_map {
-inline constexpr int kKeyframes = 30;  ///< that are kept; two more poses than these is the most that the adjuster takes
+inline constexpr int kKeyframes = 30;  ///< that are kept; the adjuster takes 32 poses, and one is the target's host
 }  // namespace window_map
 
 /// Depths of the window's points.
@@ -105,7 +105,7 @@ inline constexpr Scalar kOutlierSigmas = Scalar(5);     ///< of a pixel that is 
 inline constexpr Scalar kPriorSigma = Scalar(10);       ///< of the prior on inverse depths, in their mean
 inline constexpr Scalar kBehindWeight = Scalar(1e4);    ///< of the prior in addition, where a point is behind its host
 inline constexpr Scalar kNoPixelPenalty = Scalar(100);  ///< of a seen point that does not project [chi-square]
-inline constexpr Scalar kTargetTurn = Scalar(1.5707963);  ///< [rad] between the two views that hold the target
+inline constexpr Scalar kTargetSigma = Scalar(1e-4);  ///< of the distance of a target's point, in distances, at least
 }  // namespace window_adjustment
 
 /// Planes of the window.
