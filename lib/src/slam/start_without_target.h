@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "slam/tracking_state.h"
+#include "vision/appearance.h"
 #include "window/start_bundle.h"
 
 /// Start with nothing known: records the pixels of the first frames until a bundle adjustment has a unique solution for them.
@@ -29,6 +30,9 @@ class StartWithoutTarget {
   void add_pixel(const Camera& camera, std::uint32_t id, const Vec2& pixel);
   /// Tries to solve the record. kTooFew empties it, unless depths are known already; then the start is over.
   StartOutcome solve(const Camera& camera, Scalar sigma_px, Scalar median_depth);
+
+  /// Improves the last frame's pose while the depths are open (StartBundle::follow). rho: of each feature, about one.
+  CameraView follow(const Camera& camera, Scalar sigma_px, Scalar depth, Scalar* rho);
 
   bool empty() const { return record_.features() == 0; }
   const StartRecord& record() const { return record_; }

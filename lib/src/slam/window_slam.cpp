@@ -156,7 +156,6 @@ void WindowSlam::triangulate(bool strict) {
 
 /// The camera has moved far enough since the last keyframe, in depths of what it sees, or sees too little of what is known.
 bool WindowSlam::wants_keyframe() const {
-  if (start_.progress().recording) return false;  // the record makes its own
   const Keyframe& last = map_.keyframes[map_.keyframes.newest()];
   if (last.t_ns == frame_.report.t_ns) return false;
   const Body& body = motion_.body();
@@ -164,12 +163,15 @@ bool WindowSlam::wants_keyframe() const {
   const Scalar turned = body.q_WC.angularDistance(last.q_WC);
   int inliers = 0;
   for (int t = 0; t < frame_.match_count(); ++t) inliers += frame_.match(t).status == MatchStatus::kInlier ? 1 : 0;
+  // A record that goes on makes the others itself.
   return moved > kKeyframeShift || turned > kKeyframeTurn ||
-         (!data_.young && static_cast<Scalar>(inliers) < kFewPoints * static_cast<Scalar>(settings_.features_in_view) &&
+         ((!data_.young || map_.keyframes.count() > 1) && !start_.progress().recording &&
+          static_cast<Scalar>(inliers) < kFewPoints * static_cast<Scalar>(settings_.features_in_view) &&
           (moved > kMinKeyframeShift || turned > kMinKeyframeTurn));
 }
 
 void WindowSlam::add_keyframe() {
+  start_.note_keyframe();
   map_.add_keyframe(frame_.report.t_ns, motion_.body().q_WC, motion_.body().p_W);
   if (data_.young) triangulate(false);
   adjust();

@@ -20,6 +20,7 @@ bool WindowStart::layout(Arena& arena) {
   ray_ = arena.take<Vec3>(points);
   pixel_ = arena.take<BundlePixel>(points);
   scratch_ = arena.take<Scalar>(points);
+  record_rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
   target_.layout(arena, settings_.camera.width, settings_.camera.height);
   return without_.layout(arena);
 }
@@ -122,6 +123,7 @@ bool WindowStart::start_in_image() {
 void WindowStart::begin_record() {
   if (!progress().recording || !without_.empty()) return;
   const Body& body = parts_.motion.body();
+  std::fill(record_rho_, record_rho_ + StartRecord::kMaxFeatures, Scalar(1));
   without_.begin_record(body.q_WC, body.p_W, parts_.frame.report.t_ns);
   for (int t = 0; t < parts_.frame.match_count(); ++t) {
     const Match& match = parts_.frame.match(t);
@@ -172,7 +174,12 @@ StartOutcome WindowStart::record_frame() {
   return without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth);
 }
 
+void WindowStart::note_keyframe() {
+  if (progress().depth_known && data_.solved_before > kPatience) without_.init();
+}
+
 bool WindowStart::record_more() {
+  ++data_.solved_before;
   const StartOutcome outcome = record_frame();
   if (outcome != StartOutcome::kSolved && outcome != StartOutcome::kSettled) return false;
   parts_.map.keep_first_keyframe();
@@ -184,7 +191,12 @@ bool WindowStart::follow_record() {
   Frame& frame = parts_.frame;
   const int found = parts_.measuring.follow(settings_.start_depth);
   const StartOutcome outcome = accept_rotation(found) ? record_frame() : StartOutcome::kTooFew;
-  if (outcome == StartOutcome::kWait) return false;
+  if (outcome == StartOutcome::kWait) {
+    const CameraView now =
+        without_.follow(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth, record_rho_);
+    parts_.motion.move(now.q_WC, now.c_W);
+    return false;
+  }
   if (outcome != StartOutcome::kTooFew) {
     take_record();
     settings_.hooks.say("started without a target: the first depths are known");
@@ -203,6 +215,7 @@ bool WindowStart::follow_record() {
 
 /// Depths and poses of the solved record. The frame becomes a keyframe, and velocities are those of the record's last frames.
 void WindowStart::take_record() {
+  data_.solved_before = 0;
   const StartRecord& record = without_.record();
   const int last = record.frames() - 1;
   const auto pose_of = [&](int k) {

@@ -41,6 +41,8 @@ class WindowStart {
   bool follow_record();
   /// A tracked frame while the record goes on: records it. True: the record has better depths, and this frame is a keyframe.
   bool record_more();
+  /// The camera has moved far enough for a keyframe. A record that has had no better solution for long is over; its depths stay.
+  void note_keyframe();
   /// Begins an empty record with the features that this frame has added.
   void begin_record();
 
@@ -53,6 +55,7 @@ class WindowStart {
 
   struct Data {
     KnownBody known;
+    int solved_before = 0;  ///< frames since the record had a solution
   };
 
   const Settings& settings_;
@@ -63,6 +66,7 @@ class WindowStart {
   Vec3* ray_ = nullptr;  ///< one for each point
   BundlePixel* pixel_ = nullptr;
   Scalar* scratch_ = nullptr;
+  Scalar* record_rho_ = nullptr;  ///< of each feature of the record, while the depths are open
 };
 
 }  // namespace pf

@@ -206,6 +206,29 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   return parallax > kSettledParallax * sigma_px ? StartOutcome::kSettled : StartOutcome::kSolved;
 }
 
+void StartBundle::follow(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar depth, Scalar* rho) {
+  const int last = record.frames() - 1;
+  const int cameras = std::min(static_cast<int>(kMaxCameras), record.frames());
+  int frame[kMaxCameras] = {};
+  for (int c = 0; c < cameras; ++c) {
+    frame[c] = last - c * (last + 1) / cameras;
+    pose_[1 + c].q_WC = record.frame(frame[c]).q_WC;
+    pose_[1 + c].p_W = record.frame(frame[c]).p_W / depth;
+  }
+  std::copy(rho, rho + record.features(), rho_);
+  adjust(camera, record, frame, cameras, kFollowRounds, sigma_px);
+  // The unit of length is that of a solution: the median depth.
+  std::copy(rho_, rho_ + record.features(), best_rho_);
+  std::nth_element(best_rho_, best_rho_ + record.features() / 2, best_rho_ + record.features());
+  const Scalar median = best_rho_[record.features() / 2];
+  if (!(median > kMinGoodRho)) return;
+  for (int i = 0; i < record.features(); ++i) rho[i] = rho_[i] / median;
+  for (int c = 0; c < cameras; ++c) {
+    record.frame(frame[c]).q_WC = pose_[1 + c].q_WC;
+    record.frame(frame[c]).p_W = pose_[1 + c].p_W * (depth * median);
+  }
+}
+
 /// Pose of one frame with the depths held fixed, from the pose that is in it and from triples of the frame's pixels.
 bool StartBundle::locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px,
                          BundlePose* pose) {

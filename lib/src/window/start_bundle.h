@@ -72,6 +72,11 @@ class StartBundle {
   /// `median_depth`; later ones keep it.
   StartOutcome solve(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth);
 
+  /// Improves the last frame's pose while the depths are open: one adjustment with others spread over the record, from the poses that are
+  /// in it and from these inverse depths (about one), under the prior that all are about one. Poses and depths are written back.
+  /// depth: of an inverse depth of one.
+  void follow(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar depth, Scalar* rho);
+
   Scalar rho(int feature) const { return rho_[feature]; }
   bool good(int feature) const { return last_rho_[feature] > Scalar(0); }
 

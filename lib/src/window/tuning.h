@@ -42,6 +42,7 @@ inline constexpr Scalar kMaxGoodResidual = Scalar(5);  ///< likewise, in every c
 inline constexpr int kGuessRounds = 25;                ///< of the adjustment from each direction of motion
 inline constexpr int kRounds = 30;                     ///< of the adjustment of all cameras
 inline constexpr int kPoseRounds = 8;                  ///< of a rotation or a pose alone
+inline constexpr int kFollowRounds = 5;                ///< of the adjustment that a frame gets while depths are open
 inline constexpr int kPoseTrials = 50;                 ///< sets of three features from which a frame's pose is sought
 inline constexpr int kMinPoseInliers = 6;              ///< features that must agree with a frame's pose
 inline constexpr int kPoseSeed = 1;                    ///< of the generator that draws these sets
@@ -105,7 +106,7 @@ inline constexpr Scalar kOutlierSigmas = Scalar(5);     ///< of a pixel that is 
 inline constexpr Scalar kPriorSigma = Scalar(10);       ///< of the prior on inverse depths, in their mean
 inline constexpr Scalar kBehindWeight = Scalar(1e4);    ///< of the prior in addition, where a point is behind its host
 inline constexpr Scalar kNoPixelPenalty = Scalar(100);  ///< of a seen point that does not project [chi-square]
-inline constexpr Scalar kTargetSigma = Scalar(1e-4);  ///< of the distance of a target's point, in distances, at least
+inline constexpr Scalar kTargetSigma = Scalar(1e-4);    ///< of the distance of a target's point, in distances, at least
 }  // namespace window_adjustment
 
 /// Planes of the window.
@@ -119,7 +120,8 @@ inline constexpr Scalar kParallaxes = Scalar(4);        ///< of a match from the
 inline constexpr Scalar kRotationSigma = Scalar(0.01);  ///< [rad] of that rotation
 inline constexpr Scalar kPositionSigma = Scalar(0.1);   ///< [depths] while nothing is known of the position
 inline constexpr Scalar kSpeedSigma = Scalar(0.2);      ///< [depths/s] of the speed that a record tells
-inline constexpr int kSpeedFrames = 3;                  ///< that tell it
+inline constexpr int kPatience = 8;  ///< frames without a better solution that end a record at the next keyframe
+inline constexpr int kSpeedFrames = 3;  ///< that tell it
 }  // namespace window_start
 
 }  // namespace pf::tuning
