@@ -131,6 +131,8 @@ int WindowTracking::search_for(int first, int count, const PosePrior& at, Scalar
     SearchTask task = task_of(match.feature, at, depth);
     task.predicted = match.predicted;
     task.innovation = match.innovation;
+    if (settings_.gate * symmetric_eigenvalues(match.innovation)(1) > kTemplateEllipse * kTemplateEllipse)
+      task.shape = nullptr;
     const SearchOutcome outcome = search_.search(task);
     if (!outcome.comparable) continue;
     match.searched = true;

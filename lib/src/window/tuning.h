@@ -73,13 +73,14 @@ inline constexpr Scalar kSmallStep2 = Scalar(1e-12);  ///< [rad^2, m^2] squared 
 
 /// A frame of the window.
 namespace window_tracking {
-inline constexpr Scalar kMapSigma = Scalar(1);          ///< [px] of a point of the map beside its depth, in a search
-inline constexpr Scalar kBoundWidth = Scalar(0.004);    ///< of a match that supports a pose, in image widths
-inline constexpr Scalar kBoundSigmas = Scalar(4);       ///< likewise, in standard deviations of a match
-inline constexpr int kScouts = 30;                      ///< candidates that are measured first in wide ellipses
-inline constexpr Scalar kWideEllipse = Scalar(12);      ///< [px] largest semi-axis of those
-inline constexpr int kYoung = 16;                       ///< points with a depth, below which the others help
-inline constexpr Scalar kWeakPrior = Scalar(1);         ///< weight of the prediction where matches leave a pose open
+inline constexpr Scalar kMapSigma = Scalar(1);           ///< [px] of a point of the map beside its depth, in a search
+inline constexpr Scalar kBoundWidth = Scalar(0.004);     ///< of a match that supports a pose, in image widths
+inline constexpr Scalar kBoundSigmas = Scalar(4);        ///< likewise, in standard deviations of a match
+inline constexpr int kScouts = 30;                       ///< candidates that are measured first in wide ellipses
+inline constexpr Scalar kWideEllipse = Scalar(12);       ///< [px] largest semi-axis of those
+inline constexpr Scalar kTemplateEllipse = Scalar(4.5);  ///< [px] largest semi-axis in which templates are tried
+inline constexpr int kYoung = 16;                        ///< points with a depth, below which the others help
+inline constexpr Scalar kWeakPrior = Scalar(1);          ///< weight of the prediction where matches leave a pose open
 inline constexpr Scalar kMaxParallel = Scalar(0.0087);  ///< [rad] between rays that need no depth to fit: half a degree
 }  // namespace window_tracking
 
@@ -120,7 +121,7 @@ inline constexpr Scalar kParallaxes = Scalar(4);        ///< of a match from the
 inline constexpr Scalar kRotationSigma = Scalar(0.01);  ///< [rad] of that rotation
 inline constexpr Scalar kPositionSigma = Scalar(0.1);   ///< [depths] while nothing is known of the position
 inline constexpr Scalar kSpeedSigma = Scalar(0.2);      ///< [depths/s] of the speed that a record tells
-inline constexpr int kPatience = 8;  ///< frames without a better solution that end a record at the next keyframe
+inline constexpr int kPatience = 8;     ///< frames without a better solution that end a record at the next keyframe
 inline constexpr int kSpeedFrames = 3;  ///< that tell it
 }  // namespace window_start
 
