@@ -187,7 +187,7 @@ typedef enum pf_backend {
   PF_BACKEND_FILTER = 1, /* a filter over pose, points and planes (Gee 2007); the default */
   /* Keyframes whose newest are adjusted with the points that they see (lib/docs/window.md; Masoud 2015). Images only. PF_ERROR_CONFIG
    * with motion.model inertial, camera.readout_s above 0, camera.estimate other than exact, plane.fix_sigma above 0 and
-   * capacity.max_patches above 0. */
+   * capacity.max_patches above 0. The pose's covariance takes old keyframes as exact, those of points and planes all keyframes. */
   PF_BACKEND_WINDOW = 2
 } pf_backend_t;
 

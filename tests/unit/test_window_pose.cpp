@@ -1,0 +1,154 @@
+// The window's fit of a pose to matches and prediction, and its motion.
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/so3.h"
+#include "slam/window_motion.h"
+#include "slam/window_pose.h"
+#include "support/seeded_random.h"
+#include "support/test_cameras.h"
+#include "unity.h"
+#include "window/adjust.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr bool kFloat = sizeof(Scalar) == 4;
+constexpr int kMatches = 30;
+constexpr Scalar kHuber = 2;
+
+struct Matches {
+  CameraPose truth;
+  PoseMatch match[kMatches];
+  unsigned char use[kMatches];
+  PosePrior prior;
+};
+
+/// Points in view of a camera, with pixels off by sigma times what their noise says, and a prediction that is off as well.
+Matches random_matches(const Camera& camera, SeededRandom& random, double sigma) {
+  Matches all;
+  all.truth = {exp_so3(random.normals<3>(0.5)), random.normals<3>(1.0)};
+  for (int i = 0; i < kMatches; ++i) {
+    const Vec3 in_C =
+        Vec3(static_cast<Scalar>(random.uniform(-0.5, 0.5)), static_cast<Scalar>(random.uniform(-0.4, 0.4)), 1) *
+        static_cast<Scalar>(random.uniform(1, 4));
+    const Vec3 p_W = all.truth.p_WC + all.truth.q_WC * in_C;
+    const Scalar w = static_cast<Scalar>(random.uniform(0.2, 1));
+    PoseMatch& match = all.match[i];
+    match.point = {w * p_W, w, Vec2::Zero()};
+    match.noise << Scalar(0.5), Scalar(0.1), Scalar(0.1), Scalar(0.8);
+    TEST_ASSERT_TRUE(project(camera, in_C, &match.point.pixel));
+    match.point.pixel += random.normals<2>(sigma);
+    all.use[i] = 1;
+  }
+  all.prior = {exp_so3(random.normals<3>(0.02)) * all.truth.q_WC, all.truth.p_WC + random.normals<3>(0.03),
+               Mat6::Identity()};
+  return all;
+}
+
+/// The cost that fit_pose minimises, with the pose rotated and moved by x.
+double cost_at(const Camera& camera, const Matches& all, const CameraPose& pose, const Vec6& x) {
+  const CameraPose at = {exp_so3(Vec3(x.head<3>())) * pose.q_WC, pose.p_WC + x.tail<3>()};
+  double cost = 0;
+  for (int i = 0; i < kMatches; ++i) {
+    Vec2 z;
+    const PnpPoint& point = all.match[i].point;
+    if (!project_from_pose(camera, at.q_WC, at.p_WC, point.m, point.w, at.p_WC, &z)) continue;
+    const Vec2 r = point.pixel - z;
+    Scalar weight;
+    cost += static_cast<double>(huber_cost(r.dot(all.match[i].noise.inverse() * r), kHuber, &weight));
+  }
+  Vec6 e;
+  e << log_so3(all.prior.q_WC * at.q_WC.conjugate()), all.prior.p_W - at.p_WC;
+  return cost + static_cast<double>(e.dot(all.prior.covariance.inverse() * e));
+}
+
+void test_fit_pose_should_find_the_pose_that_made_the_pixels() {
+  SeededRandom random(1);
+  const Camera camera = pinhole_camera();
+  for (int run = 0; run < 20; ++run) {
+    Matches all = random_matches(camera, random, 0);
+    all.prior.covariance *= 100;
+    CameraPose pose = {all.prior.q_WC, all.prior.p_W};
+    Mat6 information;
+    TEST_ASSERT_TRUE(fit_pose(camera, all.match, kMatches, all.use, all.prior, kHuber, &pose, &information));
+    TEST_ASSERT_TRUE(pose.q_WC.angularDistance(all.truth.q_WC) < 1e-3);
+    TEST_ASSERT_TRUE((pose.p_WC - all.truth.p_WC).norm() < 1e-3);
+  }
+}
+
+void test_fit_pose_should_end_where_the_cost_has_no_slope() {
+  if (kFloat) return;  // differences of a cost say nothing there
+  SeededRandom random(2);
+  const Camera camera = pinhole_camera();
+  for (int run = 0; run < 20; ++run) {
+    Matches all = random_matches(camera, random, 0.4);
+    all.prior.covariance *= static_cast<Scalar>(1e-4);
+    CameraPose pose = {all.prior.q_WC, all.prior.p_W};
+    Mat6 information;
+    TEST_ASSERT_TRUE(fit_pose(camera, all.match, kMatches, all.use, all.prior, kHuber, &pose, &information));
+    const double at_end = cost_at(camera, all, pose, Vec6::Zero());
+    for (int i = 0; i < 6; ++i) {
+      // A step of a tenth of a standard deviation to either side costs more.
+      const Scalar step = Scalar(0.1) / std::sqrt(information(i, i) + 1 / all.prior.covariance(i, i));
+      TEST_ASSERT_TRUE(cost_at(camera, all, pose, Vec6(step * Vec6::Unit(i))) > at_end);
+      TEST_ASSERT_TRUE(cost_at(camera, all, pose, Vec6(-step * Vec6::Unit(i))) > at_end);
+    }
+  }
+}
+
+void test_fit_pose_should_stay_at_the_prediction_without_matches() {
+  SeededRandom random(3);
+  const Camera camera = pinhole_camera();
+  Matches all = random_matches(camera, random, 0);
+  std::fill(all.use, all.use + kMatches, static_cast<unsigned char>(0));
+  CameraPose pose = all.truth;
+  Mat6 information;
+  TEST_ASSERT_TRUE(fit_pose(camera, all.match, kMatches, all.use, all.prior, kHuber, &pose, &information));
+  TEST_ASSERT_TRUE(pose.q_WC.angularDistance(all.prior.q_WC) < 1e-3);
+  TEST_ASSERT_TRUE((pose.p_WC - all.prior.p_W).norm() < 1e-3);
+  TEST_ASSERT_TRUE(information.isZero(0));
+}
+
+void test_motion_should_learn_velocities_from_poses() {
+  Settings settings;
+  settings.constant_velocity = true;
+  settings.body = BodyLayout::with_constant_velocity();
+  settings.motion_noise = {Scalar(0.01), Scalar(0.01)};
+  WindowMotion motion(settings);
+  motion.init();
+  const Mat6 R = Mat6::Identity() * Scalar(1e-6);
+  motion.set(Body(), R, 1, 1);
+  const Vec3 v(Scalar(0.5), Scalar(-0.2), Scalar(0.1)), w(Scalar(0.1), Scalar(0.3), Scalar(-0.2));
+  constexpr std::int64_t kStepNs = 50000000;
+  for (int k = 1; k <= 10; ++k) {
+    const Scalar t = static_cast<Scalar>(k) * Scalar(0.05);
+    motion.advance((k - 1) * kStepNs, k * kStepNs, false, false);
+    TEST_ASSERT_TRUE(motion.correct(exp_so3(Vec3(w * t)), v * t, R));
+    TEST_ASSERT_TRUE(motion.is_sound());
+  }
+  TEST_ASSERT_TRUE((motion.body().v_W - v).norm() < 0.01);
+  TEST_ASSERT_TRUE((motion.body().w_C - w).norm() < 0.01);
+  // The measured pose and the prediction together are better than either.
+  TEST_ASSERT_TRUE(motion.pose_covariance().trace() < R.trace());
+  Body later;
+  Mat6 covariance;
+  motion.predict_pose(10 * kStepNs, 12 * kStepNs, &later, &covariance);
+  TEST_ASSERT_TRUE((later.p_W - v * Scalar(0.6)).norm() < 0.005);
+  TEST_ASSERT_TRUE(covariance.trace() > motion.pose_covariance().trace());
+}
+
+}  // namespace
+
+int main() {
+  UNITY_BEGIN();
+  RUN_TEST(test_fit_pose_should_find_the_pose_that_made_the_pixels);
+  RUN_TEST(test_fit_pose_should_end_where_the_cost_has_no_slope);
+  RUN_TEST(test_fit_pose_should_stay_at_the_prediction_without_matches);
+  RUN_TEST(test_motion_should_learn_velocities_from_poses);
+  return UNITY_END();
+}
