@@ -53,16 +53,16 @@ void Filter::tell_gauge() {
 /// log length, says that it is known too little.
 void Filter::end_update_apart(const ScaleRow& l) {
   if constexpr (sizeof(Scalar) == sizeof(float)) blocks_.grow(kGrowth * std::sqrt(static_cast<Scalar>(blocks_.dim())));
-  if (l.parts > 0 && blocks_.variance(l) > kMaxScaleVariance) take_scale_apart();
+  if (l.parts > 0 && blocks_.variance(l) > kMaxScaleVariance) apart_.add_scale(replace_scale(kLeftScaleVariance));
 }
 
 /// The log scale of all that has one, weighted by how well each is known:  l = sum l_k / v_k / sum 1 / v_k,  v_k = l_k P l_k^T.
 ///
-///   P <- (I - N_s l) P (I - N_s l)^T,   V_ss += l P l^T
+///   P <- (I - N_s l) P (I - N_s l)^T + left N_s N_s^T
 ///
-/// What does not change with the scale has J N_s = 0, and keeps its J P J^T. Left out is the covariance of l with such things, which is
+/// Returns l P l^T as it was; 0, with nothing changed, where there is no log length. What does not change with the scale has J N_s = 0, and keeps its J P J^T. Left out is the covariance of l with such things, which is
 /// zero where all that P knows of the scale are independent priors of depths.
-void Filter::take_scale_apart() {
+Scalar Filter::replace_scale(Scalar left) {
   int places = -1;
   Scalar total = 0;
   ScaleRow row;
@@ -71,7 +71,7 @@ void Filter::take_scale_apart() {
     const Scalar variance = blocks_.variance(row);
     if (variance > Scalar(0)) total += Scalar(1) / variance;
   }
-  if (!(total > Scalar(0))) return;
+  if (!(total > Scalar(0))) return Scalar(0);
   const auto weighted = [&](int slot, ScaleRow* l) {
     if (!scale_candidate(slot, &places, l)) return false;
     const Scalar variance = blocks_.variance(*l);
@@ -79,8 +79,7 @@ void Filter::take_scale_apart() {
     for (int i = 0; i < l->columns(); ++i) l->h[i] /= variance * total;
     return true;
   };
-  apart_.add_scale(
-      blocks_.take_out(transport_.scale_direction(state_, blocks_), kLeftScaleVariance, state_.slots, weighted));
+  return blocks_.take_out(transport_.scale_direction(state_, blocks_), left, state_.slots, weighted);
 }
 
 }  // namespace pf

@@ -83,6 +83,16 @@ class BlockFilter {
   void inflate_through(const Part& part, const Vec3& sigma);
   /// Likewise along one row h of a Jacobian: the variance of h x grows by so much.
   void inflate_along(const Rows& row, Scalar variance);
+  /// P_ij <- f_i f_j P_ij: rows in other units.
+  void scale_rows(const Scalar* factor) {
+    for (int i = 0; i < P_.n; ++i)
+      for (int j = 0; j <= i; ++j) P_.set(i, j, factor[i] * factor[j] * P_(i, j));
+  }
+  /// ld() numbers of the caller's until the next operation, all of them one.
+  Scalar* row_factors() {
+    std::fill(W_, W_ + ld_, Scalar(1));
+    return W_;
+  }
 
   /// P += U^T G + G^T U (both rows x ld()).
   void add_shared(const Scalar* U, const Scalar* G, int rows);

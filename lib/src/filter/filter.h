@@ -80,8 +80,9 @@ class Filter {
   void set_lens(const Camera& camera, const LensPrior& prior);
   /// Where the inertial unit is. Before anything is added.
   void set_mounting(const Mounting& mounting) { state_.mounting = mounting; }
-  /// From now on the samples of the inertial unit tell the scale.
+  /// From now on the samples of the inertial unit tell the scale. With a start: of a map up to scale that is scaled by it first.
   void set_metric();
+  void set_metric(const struct MovingSolution& start, const Mounting& mounting);
   bool is_metric() const { return state_.metric; }
   /// Whether samples move the body from now on (State::uses_samples), with what is known of it then. It outlasts init().
   void use_samples(bool use) { state_.uses_samples = use; }
@@ -271,7 +272,7 @@ class Filter {
   // apart.cpp
   bool keeps_apart() const;
   void end_update_apart(const ScaleRow& l);
-  void take_scale_apart();
+  Scalar replace_scale(Scalar left);
 
   // planes.cpp
   void place_plane(int slot, const PlaneFrame& frame, Scalar roughness);

@@ -48,6 +48,13 @@ inline constexpr Scalar kStep = Scalar(4);              ///< factor by which a r
 inline constexpr Scalar kMaxRepair = Scalar(64);  ///< of a variance; more than the rows of a sample is never needed
 }  // namespace soundness
 
+/// Scale and gravity from a moving camera.
+namespace moving_start {
+inline constexpr int kMinPoses = 8;             ///< that are solved
+inline constexpr int kSteps = 6;                ///< of the refinement
+inline constexpr Scalar kMaxStep = Scalar(20);  ///< of the log scale in one of them
+}  // namespace moving_start
+
 /// Inertial samples.
 namespace imu {
 inline constexpr Scalar kSaturation = Scalar(0.995);  ///< of the range: a sample that reaches it says "at least this"

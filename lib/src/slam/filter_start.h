@@ -3,6 +3,7 @@
 #include "base/status.h"
 #include "filter/filter.h"
 #include "filter/inertial_motion.h"
+#include "filter/moving_start.h"
 #include "map/map.h"
 #include "slam/body_motion.h"
 #include "slam/feature_keeper.h"
@@ -69,6 +70,10 @@ class FilterStart {
   /// The camera has been at rest since begin_ns. The first time that samples can tell the scale from here on: true, and gravity and biases
   /// are known. A map whose scale is unknown begins anew with this frame.
   bool use_rest(const RestReading& rest, std::int64_t begin_ns);
+  /// Likewise of a camera that moves: the map goes on in metres, under another id.
+  bool use_motion(const MovingSolution& solution);
+  /// A map that samples may scale: of unknown scale, past its start and not too old for it.
+  bool may_become_metric() const;
   /// The next map begins with the unit's mounting and its delay as they are known now, and not with those of the config.
   void keep_mounting();
   /// Where the unit is on the camera, as far as it is known.

@@ -2,7 +2,8 @@
 #include "slam/filter_start.h"
 #include "slam/tuning.h"
 
-/// FilterStart: what a camera at rest says of gravity, of the biases of its inertial unit, and so of the scale (lib/docs/inertial.md).
+/// FilterStart: what a camera at rest, or one that moves, says of gravity, of the biases of its inertial unit, and so of the
+/// scale (lib/docs/inertial.md).
 
 namespace pf {
 
@@ -42,6 +43,25 @@ bool FilterStart::use_rest(const RestReading& rest, std::int64_t begin_ns) {
   }
   filter.set_metric();
   settings_.hooks.say("at rest: gravity and the biases are known, lengths are in metres from here on");
+  return true;
+}
+
+bool FilterStart::may_become_metric() const {
+  const std::int64_t age_ns = elapsed_ns(data_.begin_ns, parts_.frame.report.t_ns);
+  return !parts_.filter.is_metric() && !data_.knows_scale && !progress().pending() && !progress().recording &&
+         !parts_.map.planes.has_known() && seconds(age_ns) < static_cast<double>(tuning::inertial::kYoungMap);
+}
+
+bool FilterStart::use_motion(const MovingSolution& solution) {
+  Map& map = parts_.map;
+  parts_.filter.set_metric(solution, mounting());
+  for (int i = 0; i < map.features.capacity(); ++i)
+    if (map.features.used(i) && map.features[i].has_appearance) map.first_view(i).c_W *= solution.scale;
+  for (int i = 0; i < map.planes.capacity(); ++i)
+    for (PlaneOutline* outline : {&map.planes[i].seen, &map.planes[i].support})
+      for (int k = 0; k < outline->count; ++k) outline->uv[k] *= solution.scale;
+  parts_.tracking.rename_map();
+  settings_.hooks.say("from motion: gravity and the biases are known, lengths are in metres from here on");
   return true;
 }
 

@@ -25,8 +25,9 @@ bool FrameLoop::layout(Arena& arena) {
   watch_.layout(arena);
   rest_.layout(arena);
   if (settings.inertial) {
-    RestHold* const place = arena.take<RestHold>(1);
-    if (place != nullptr) hold_ = new (place) RestHold(settings_, filter_, rest_);
+    UnitParts* const place = arena.take<UnitParts>(1);
+    if (place != nullptr)
+      unit_ = new (place) UnitParts{{settings_, filter_, rest_}, {settings_, filter_, imu_, motion_}};
   }
   start_.layout(arena, settings.camera.width, settings.camera.height);
   return layout_patches(arena);
@@ -49,7 +50,7 @@ void FrameLoop::init() {
   motion_.init();
   watch_.init();
   rest_.init();
-  if (hold_ != nullptr) hold_->init();
+  init_unit();
   planes_.init();
   images_.init();
   relocaliser_.init();
@@ -167,7 +168,7 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
   }
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[settings_.inertial ? kImu : kPredict]);
   watch_.begin_frame(before_ns, t_ns);
-  if (hold_ == nullptr || !hold_->predict(data_.follows, before_ns, t_ns, data_.median_depth))
+  if (unit_ == nullptr || !unit_->hold.predict(data_.follows, before_ns, t_ns, data_.median_depth))
     motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
   if (!filter_.body_is_sound()) start_over();
 }
@@ -200,8 +201,8 @@ void FrameLoop::measure_watched(F&& measure) {
     watch_.begin_measuring(data_.follows);
     measure(again);
     if (!watch_.is_refused()) return;
-    hold_->take_back();
-    motion_.advance(hold_->before_ns(), frame_.report.t_ns, false, false);
+    unit_->hold.take_back();
+    motion_.advance(unit_->hold.before_ns(), frame_.report.t_ns, false, false);
     frame_.begin_again();
     again = true;
   }
@@ -291,7 +292,7 @@ void FrameLoop::clear_estimate() {
   map_.features.clear();
   motion_.init();
   rest_.init();
-  if (hold_ != nullptr) hold_->init();
+  init_unit();
   images_.forget_map();
   relocaliser_.init();
   frame_.forget_all();

@@ -12,6 +12,7 @@
 #include "slam/frame.h"
 #include "slam/frozen_camera.h"
 #include "slam/image_front_end.h"
+#include "slam/moving_start.h"
 #include "slam/noise_model.h"
 #include "slam/observation_front_end.h"
 #include "slam/patch_keeper.h"
@@ -58,7 +59,7 @@ class FrameLoop {
   ObservationFrontEnd& observations() { return observations_; }
 
   const UnitWatch& watch() const { return watch_; }
-  const RestHold* hold() const { return hold_; }
+  const RestHold* hold() const { return &unit_->hold; }
   const FilterStart& start() const { return start_; }
   const BodyMotion& motion() const { return motion_; }
   const Filter& filter() const { return filter_; }
@@ -88,12 +89,14 @@ class FrameLoop {
   Status end_frame();
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
   bool look_for_rest();
+  bool look_for_scale();
+  void init_unit();
   template <typename F>
   void measure_watched(F&& measure);
   void watch_unit();
   void learn_noise();
   bool layout_patches(Arena& arena);
-  bool holds() const { return hold_ != nullptr && hold_->holds(); }
+  bool holds() const { return unit_ != nullptr && unit_->hold.holds(); }
   bool may_begin_patches(bool first) const;
   bool repair_covariance();
   void maintain_map(bool supported);
@@ -111,7 +114,12 @@ class FrameLoop {
   FrozenCamera frozen_;
   BodyMotion motion_{settings_, filter_, imu_};
   RestDetector rest_{settings_, frame_, imu_};
-  RestHold* hold_ = nullptr;  ///< in the block behind this, with the inertial motion model
+  /// With the inertial motion model, in the block behind this.
+  struct UnitParts {
+    RestHold hold;
+    MovingStart moving;
+  };
+  UnitParts* unit_ = nullptr;
   PixelUpdate update_{settings_, filter_, map_, frame_, tracking_};
   UnitWatch watch_{settings_, filter_, frame_, imu_, motion_, update_};
   FeatureKeeper features_{settings_, filter_, map_, frame_};

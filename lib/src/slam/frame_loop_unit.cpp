@@ -14,8 +14,24 @@ bool FrameLoop::look_for_rest() {
     if (map_.features.count() == 0) relocaliser_.init();
     return true;
   }
-  hold_->end_frame();
-  return false;
+  unit_->hold.end_frame();
+  return look_for_scale();
+}
+
+/// The same from a camera that moves.
+bool FrameLoop::look_for_scale() {
+  const bool usable = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && !watch_.doubted();
+  MovingSolution solution;
+  if (!unit_->moving.note(usable, frame_.report.t_ns, tracking_.map_id(), data_.median_depth, &solution)) return false;
+  start_.use_motion(solution);
+  relocaliser_.init();
+  return true;
+}
+
+void FrameLoop::init_unit() {
+  if (unit_ == nullptr) return;
+  unit_->hold.init();
+  unit_->moving.init();
 }
 
 /// A map in metres that hangs on a unit in doubt is given up, for nothing tells how wrong it is.

@@ -55,6 +55,8 @@ class TrackingState {
     data_.map_id = map_id;
     data_.may_skip_target = true;
   }
+  /// The same map in other units, and so with another id.
+  void rename_map() { ++data_.map_id; }
   /// This frame's pose is measured, but too uncertain to use.
   void set_unusable() { data_.unusable = true; }
   /// Decides the state at the end of a frame. Returns the status of the frame.

@@ -72,6 +72,18 @@ inline constexpr Scalar kGravity = Scalar(1);      ///< [rad] sigma of its direc
 inline constexpr Scalar kYoungMap = Scalar(15);    ///< [s] age of a map of unknown scale that gives way to a metric one
 }  // namespace inertial
 
+/// A start in metres from a moving camera.
+namespace moving_verdict {
+inline constexpr std::int64_t kIntervalNs = 99000000;     ///< [ns] between poses at least
+inline constexpr int kMinPoses = 16;                      ///< of a solution
+inline constexpr Scalar kPosition = Scalar(0.001);        ///< sigma of a pose's position, of the median depth
+inline constexpr Scalar kTiltDensity = Scalar(0.0003);    ///< [rad/sqrt(s)] of the poses' rotations
+inline constexpr Scalar kMaxSigmaScale = Scalar(0.015);   ///< of the log scale
+inline constexpr Scalar kMaxSigmaGravity = Scalar(0.01);  ///< [rad] of its direction
+inline constexpr Scalar kMaxMisfit = Scalar(3);           ///< chi-square over its degrees of freedom
+inline constexpr Scalar kMaxApart = Scalar(9);            ///< of two halves, in the sum of their variances
+}  // namespace moving_verdict
+
 /// Whether samples and pictures agree. The slack and the bound were taken from six healthy runs of 60 s (largest sum 38) and from units
 /// that are wrong (pf-sim vio --fault).
 namespace unit_watch {

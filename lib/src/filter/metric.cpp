@@ -1,0 +1,109 @@
+#include <cmath>
+
+#include "filter/filter.h"
+#include "filter/inertial_rows.h"
+#include "filter/moving_start.h"
+
+/// A map up to scale becomes one in metres (lib/docs/inertial.md).
+
+namespace pf {
+namespace {
+
+/// What a block's values and rows are multiplied by when lengths are by s.
+void scale_block(Block* block, Scalar s, Scalar* factor) {
+  const auto lengths = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      block->value[i] *= s;
+      factor[i] = s;
+    }
+  };
+  switch (block->kind) {
+    case BlockKind::kAnchor:
+    case BlockKind::kPoint:
+      lengths(3);
+      break;
+    case BlockKind::kPlanePoint:
+      lengths(2);
+      break;
+    case BlockKind::kInverseDepth: {
+      InverseDepth d = block->inverse_depth();
+      d.rho /= s;
+      block->set_inverse_depth(d);
+      factor[2] = 1 / s;
+      break;
+    }
+    case BlockKind::kPlane: {  // (a, b, h)
+      const Vec3 x = block->xyz();
+      block->set_xyz(Vec3(x(0), x(1), s * x(2)));
+      factor[2] = s;
+      break;
+    }
+    case BlockKind::kPointGroup: {
+      PointGroup group = block->group();
+      group.t *= s;
+      group.lambda += std::log(s);
+      block->set_group(group);
+      factor[0] = factor[1] = s;
+      break;
+    }
+    default:
+      break;
+  }
+}
+
+}  // namespace
+
+/// Mean and P in metres; then the log scale, gravity and the accelerometer's bias are as known as `start` says, the scale in place of what
+/// P held of it:
+///
+///   P <- (I - N_s l) P (I - N_s l)^T + C_ss N_s N_s^T + N_s c^T + c N_s^T       c: C_(g a)s over the rows of gravity and bias
+///
+/// Gravity's direction was read off the poses' rotations, d = E^T theta + n. The velocity becomes that of the unit's origin.
+void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
+  using namespace inertial_rows;
+  const Scalar s = start.scale;
+  const PartRows rows(state_.layout);
+  Scalar* factor = blocks_.row_factors();
+  for (int i = 0; i < 3; ++i) factor[Body::kPosition + i] = factor[rows.velocity + i] = s;
+  Body body = state_.body;
+  body.p_W *= s;
+  body.v_W = s * body.v_W + body.q_WC * (body.w_C.cross(mounting.p_C));
+  for (int k = 0; k < state_.slots; ++k) {
+    Block& block = state_.block[k];
+    if (block.kind == BlockKind::kReferenceCamera) {
+      const int first = first_row(k) + Body::kPosition;
+      for (int i = 0; i < 3; ++i) {
+        block.value[4 + i] *= s;
+        factor[first + i] = s;
+      }
+    } else if (block.size > 0) {
+      scale_block(&block, s, factor + first_row(k));
+    }
+  }
+  for (int f = 0; f < state_.max_planes; ++f) state_.plane_frame[f].o_W *= s;
+  blocks_.scale_rows(factor);
+
+  Transition transition;
+  clear(&transition, body, rows.dim);
+  transition.mean.accel_bias += start.accel_bias;
+  transition.mean.q_WG = start.q_WG;
+  forget_rows(&transition, rows.accel, 5);  // gravity follows
+  set_gravity_by_rotation(rows, false, &transition);
+  constexpr int kAt[5] = {3, 4, 0, 1, 2};  // (d, b_a) behind the scale: rows from accel on
+  Scalar* const Q = transition.Q;
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j)
+      Q[(rows.accel + kAt[i]) * rows.dim + rows.accel + kAt[j]] = start.covariance(1 + i, 1 + j);
+  predict(transition);
+  state_.mounting = mounting;
+
+  replace_scale(start.covariance(0, 0));
+  const Scalar* const N = transport_.scale_direction(state_, blocks_);
+  Scalar* const shared = blocks_.row_factors();
+  for (int i = 0; i < blocks_.ld(); ++i) shared[i] = Scalar(0);
+  for (int i = 0; i < 5; ++i) shared[rows.accel + kAt[i]] = start.covariance(0, 1 + i);
+  blocks_.add_shared(N, shared, 1);
+  set_metric();
+}
+
+}  // namespace pf

@@ -1,0 +1,184 @@
+#include "filter/moving_start.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filter/tuning.h"
+#include "geometry/small_cholesky.h"
+#include "geometry/so3.h"
+
+namespace pf {
+namespace {
+
+using namespace tuning::moving_start;
+
+constexpr int kLinear = 7;   ///< s, v_0, g
+constexpr int kRefined = 9;  ///< s, v_0, d, b_a
+constexpr int kMaxRows = kMaxMovingPoses - 1;
+
+/// The sums up to one pose.
+struct Sum {
+  Scalar t;
+  Vec3 p, m, S;
+  Mat3 B;
+};
+
+/// Cholesky factor of the covariance of positions along an axis, row-major.
+struct Whitener {
+  Scalar L[kMaxRows][kMaxRows];
+
+  bool factor(const Sum* sum, int n, Scalar sigma_p, Scalar q_a, Scalar q_r) {
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k <= j; ++k) {
+        const Scalar t = sum[k].t, u = sum[j].t;  // t <= u
+        const Scalar G2 = t * t * (3 * u - t) / 6;
+        const Scalar G3 = t * t * t * (t * t - 5 * t * u + 10 * u * u) / 120;
+        Scalar C = sigma_p * sigma_p * (j == k ? 2 : 1) + q_a * q_a * G2 + q_r * q_r * G3;
+        for (int i = 0; i < k; ++i) C -= L[j][i] * L[k][i];
+        if (j == k && !(C > Scalar(0))) return false;
+        L[j][k] = j == k ? std::sqrt(C) : C / L[k][k];
+      }
+    return true;
+  }
+  /// x <- L^-1 x of n numbers that are `stride` apart.
+  void apply(Scalar* x, int n, int stride) const {
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < j; ++i) x[j * stride] -= L[j][i] * x[i * stride];
+      x[j * stride] /= L[j][j];
+    }
+  }
+};
+
+/// Rows of the whitened system, three for each pose behind the first; the last column is the right side.
+template <int kColumns>
+struct System {
+  Scalar a[3 * kMaxRows][kColumns + 1];
+
+  void whiten(const Whitener& whitener, int n) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int c = 0; c <= kColumns; ++c) whitener.apply(&a[axis][c], n, 3 * (kColumns + 1));
+  }
+  void normal(int rows, Eigen::Matrix<Scalar, kColumns, kColumns>* A, Eigen::Matrix<Scalar, kColumns, 1>* b) const {
+    A->setZero();
+    b->setZero();
+    for (int r = 0; r < rows; ++r)
+      for (int i = 0; i < kColumns; ++i) {
+        (*b)(i) += a[r][i] * a[r][kColumns];
+        for (int j = 0; j < kColumns; ++j) (*A)(i, j) += a[r][i] * a[r][j];
+      }
+  }
+};
+
+/// Returns how many sums there are.
+int accumulate(const MovingPose* pose, int count, Sum* sum) {
+  Vec3 V = Vec3::Zero(), S = Vec3::Zero();
+  Mat3 BV = Mat3::Zero(), B = Mat3::Zero();
+  Scalar t = 0;
+  for (int k = 1; k < count; ++k) {
+    S += V * pose[k].dt + pose[k].Rp;
+    V += pose[k].Rv;
+    B += BV * pose[k].dt + pose[k].Rp_b;
+    BV += pose[k].Rv_b;
+    t += pose[k].dt;
+    sum[k - 1] = {t, pose[k].p_W - pose[0].p_W, pose[k].m_W - pose[0].m_W, S, B};
+  }
+  return count - 1;
+}
+
+bool solve_linear(const Sum* sum, int n, const Whitener& whitener, Scalar* s, Vec3* v_0, Vec3* g) {
+  System<kLinear> system;
+  for (int k = 0; k < n; ++k)
+    for (int axis = 0; axis < 3; ++axis) {
+      Scalar* const row = system.a[3 * k + axis];
+      std::fill(row, row + kLinear, Scalar(0));
+      row[0] = sum[k].p(axis);
+      row[1 + axis] = -sum[k].t;
+      row[4 + axis] = -sum[k].t * sum[k].t / 2;
+      row[kLinear] = sum[k].S(axis) - sum[k].m(axis);
+    }
+  system.whiten(whitener, n);
+  Eigen::Matrix<Scalar, kLinear, kLinear> A;
+  Eigen::Matrix<Scalar, kLinear, 1> b;
+  system.normal(3 * n, &A, &b);
+  SmallCholesky<kLinear> cholesky;
+  if (!cholesky.factor(A)) return false;
+  const Eigen::Matrix<Scalar, kLinear, 1> x = cholesky.solve(b);
+  *s = x(0);
+  *v_0 = x.segment<3>(1);
+  *g = x.segment<3>(4);
+  return true;
+}
+
+}  // namespace
+
+bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out) {
+  if (count < kMinPoses || count > kMaxMovingPoses) return false;
+  Sum sum[kMaxRows];
+  const int n = accumulate(pose, count, sum);
+  Whitener whitener;
+  Scalar s = 1;
+  Vec3 v_0, g;
+  const Scalar tilt = noise.gravity * noise.tilt_density;
+  for (int pass = 0; pass < 2; ++pass)  // the second with the noise of positions in metres
+    if (!whitener.factor(sum, n, s * noise.position, noise.accel_density, tilt) ||
+        !solve_linear(sum, n, whitener, &s, &v_0, &g) || !(s > Scalar(0)) || !(g.norm() > Scalar(0)))
+      return false;
+  if (!whitener.factor(sum, n, s * noise.position, noise.accel_density, tilt)) return false;
+
+  Quat q_WG = turn_z_to(g.normalized());
+  Vec3 bias = Vec3::Zero();
+  Eigen::Matrix<Scalar, kRefined, kRefined> A;
+  Eigen::Matrix<Scalar, kRefined, 1> b;
+  SmallCholesky<kRefined> cholesky;
+  Scalar chi2 = 0;
+  for (int step = 0; step <= kSteps; ++step) {
+    System<kRefined> system;
+    const Mat3 R_WG = q_WG.toRotationMatrix();
+    g = noise.gravity * R_WG.col(2);
+    Mat32 E;
+    E << -noise.gravity * R_WG.col(1), noise.gravity * R_WG.col(0);
+    for (int k = 0; k < n; ++k) {
+      const Scalar t = sum[k].t;
+      const Vec3 r = sum[k].S - sum[k].m - s * sum[k].p + v_0 * t + g * (t * t / 2) + sum[k].B * bias;
+      for (int axis = 0; axis < 3; ++axis) {
+        Scalar* const row = system.a[3 * k + axis];
+        std::fill(row, row + kRefined, Scalar(0));
+        row[0] = s * sum[k].p(axis);  // by log s
+        row[1 + axis] = -t;
+        for (int j = 0; j < 2; ++j) row[4 + j] = -t * t / 2 * E(axis, j);
+        for (int j = 0; j < 3; ++j) row[6 + j] = -sum[k].B(axis, j);
+        row[kRefined] = r(axis);
+      }
+    }
+    system.whiten(whitener, n);
+    system.normal(3 * n, &A, &b);
+    const Scalar prior = Scalar(1) / (noise.accel_bias * noise.accel_bias);
+    chi2 = prior * bias.squaredNorm();
+    for (int r = 0; r < 3 * n; ++r) chi2 += system.a[r][kRefined] * system.a[r][kRefined];
+    for (int i = 0; i < 3; ++i) {
+      A(6 + i, 6 + i) += prior;
+      b(6 + i) -= prior * bias(i);
+    }
+    if (!cholesky.factor(A)) return false;
+    if (step == kSteps) break;
+    const Eigen::Matrix<Scalar, kRefined, 1> x = cholesky.solve(b);
+    if (!x.allFinite() || !(std::abs(x(0)) < kMaxStep)) return false;
+    s *= std::exp(x(0));
+    v_0 += x.segment<3>(1);
+    q_WG = q_WG * exp_so3(Vec3(x(4), x(5), Scalar(0)));
+    bias += x.segment<3>(6);
+  }
+  const Eigen::Matrix<Scalar, kRefined, kRefined> identity = Eigen::Matrix<Scalar, kRefined, kRefined>::Identity();
+  const Eigen::Matrix<Scalar, kRefined, kRefined> C = cholesky.solve(identity);
+  out->scale = s;
+  out->q_WG = q_WG;
+  out->accel_bias = bias;
+  out->misfit = chi2 / static_cast<Scalar>(3 * n - kRefined + 3);
+  constexpr int kAt[MovingSolution::kRows] = {0, 4, 5, 6, 7, 8};
+  const Scalar widen = std::max(Scalar(1), out->misfit);
+  for (int i = 0; i < MovingSolution::kRows; ++i)
+    for (int j = 0; j < MovingSolution::kRows; ++j) out->covariance(i, j) = widen * C(kAt[i], kAt[j]);
+  return true;
+}
+
+}  // namespace pf

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "filter/preintegral.h"
+
+/// Scale, gravity and the accelerometer's bias from a moving camera: poses up to scale and samples between them (lib/docs/inertial.md).
+
+namespace pf {
+
+/// A pose of the camera in a map up to scale, and what the samples since the one before say, in W. R: R_WB of the one before.
+struct MovingPose {
+  Scalar dt = 0;             ///< since the one before [s]
+  Vec3 p_W = Vec3::Zero();   ///< of the camera, in units of the map
+  Vec3 m_W = Vec3::Zero();   ///< from the camera to the unit's origin [m]
+  Vec3 Rv = Vec3::Zero();    ///< R dv
+  Vec3 Rp = Vec3::Zero();    ///< R dp
+  Mat3 Rv_b = Mat3::Zero();  ///< of R dv by the accelerometer's bias
+  Mat3 Rp_b = Mat3::Zero();  ///< of R dp likewise
+};
+
+struct MovingStartNoise {
+  Scalar gravity = 0;        ///< [m/s^2]
+  Scalar position = 0;       ///< of p_W, in units of the map
+  Scalar accel_density = 0;  ///< white, of the accelerometer [m/s^2/sqrt(Hz)]
+  Scalar tilt_density = 0;   ///< of the poses' rotations, which tilts gravity in them [rad/sqrt(s)]
+  Scalar accel_bias = 0;     ///< prior sigma of each axis [m/s^2]
+};
+
+/// What was found. Covariance over (log scale, d, b_a): d as in model/body.h.
+struct MovingSolution {
+  static constexpr int kRows = 6;
+  using Covariance = Eigen::Matrix<Scalar, kRows, kRows>;
+
+  Scalar scale = 1;  ///< metres for a unit of the map
+  Quat q_WG = Quat::Identity();
+  Vec3 accel_bias = Vec3::Zero();  ///< beside the one that the samples were integrated with
+  Covariance covariance = Covariance::Zero();
+  Scalar misfit = 0;  ///< chi-square over its degrees of freedom
+
+  Scalar sigma_scale() const { return std::sqrt(covariance(0, 0)); }  ///< relative
+  Scalar sigma_gravity() const { return std::sqrt(covariance(1, 1) + covariance(2, 2)); }
+};
+
+inline constexpr int kMaxMovingPoses = 32;
+
+/// With S_k, B_k the double sums over R dv, R dp and their Jacobians, t_k the time since the first pose:
+///
+///   s (p_k - p_0) - v_0 t_k - g t_k^2 / 2 - B_k b_a = S_k - (m_k - m_0)
+///
+/// linear in s, v_0, g and b_a. First without b_a and with g of any length, then refined with |g| imposed and the prior of b_a:
+/// g = gravity R_WG e_z, dg = gravity (-R_WG e_y, R_WG e_x) d. Residuals are whitened by
+///
+///   C_jk = (s sigma_p)^2 (delta_jk + 1) + q_a^2 G2_jk + (gravity q_r)^2 G3_jk,   Gn: covariance of an n times integrated white noise
+///
+/// and a misfit above one widens the covariance. False where there are too few poses or the system is singular.
+bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out);
+
+}  // namespace pf
