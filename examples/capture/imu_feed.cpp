@@ -40,11 +40,11 @@ nlohmann::ordered_json time_offset_json(const TimeOffset& offset, double given_s
 }
 
 /// Gravity and biases as they are known at the last frame, each with its standard deviations.
-void add_inertial(const pf_slam_t* slam, int64_t metric_frame, const pf_imu_model_t& model,
+void add_inertial(const pf_slam_t* slam, int64_t metric_frame, bool moving, const pf_imu_model_t& model,
                   nlohmann::ordered_json& json) {
   pf_inertial_t known{};
   const bool known_at_all = pf_get_inertial(slam, &known) == PF_OK, any = known_at_all && known.metric != 0;
-  json["start"] = metric_frame >= 0 ? "rest" : "none";
+  json["start"] = metric_frame < 0 ? "none" : moving ? "moving" : "rest";
   json["start_frame"] = metric_frame >= 0 ? nlohmann::ordered_json(metric_frame) : nullptr;
   json["metric"] = any;
   const auto with_sigma = [&](const double* values, int count, int first, int sigmas) {
@@ -161,6 +161,8 @@ void ImuFeed::add_frame(int64_t index, const pf_slam_t* slam, const pf_pose_t& p
   pf_inertial_t known{};
   if (inertial_ && metric_frame_ < 0 && pf_get_inertial(slam, &known) == PF_OK && known.metric != 0) {
     metric_frame_ = index;
+  } else if (metric_frame_ >= 0 && metric_frame_ + 1 == index && pf_get_inertial(slam, &known) == PF_OK) {
+    moving_ = known.rests == 0;  // a start at rest holds the pose from the next frame on
   }
 }
 
@@ -238,7 +240,7 @@ std::string ImuFeed::report(const pf_slam_t* slam, std::string& advice) const {
     json["doubted"] = r.doubted != 0;
     json["doubted_s"] = rounded(r.doubted_s);
     json["vertical_planes"] = vertical_;
-    add_inertial(slam, metric_frame_, model_, json);
+    add_inertial(slam, metric_frame_, moving_, model_, json);
   }
   const TimeOffset offset = offset_.estimate();
   json["time_offset"] = time_offset_json(offset, offset_s_);

@@ -57,6 +57,7 @@ class ImuFeed {
   std::set<uint32_t> looked_at_;  ///< planes that were told, or that contradict it
   int64_t vertical_ = 0;          ///< planes that were told
   int64_t metric_frame_ = -1;     ///< the first one whose lengths the samples tell
+  bool moving_ = false;           ///< .. from a camera that moved
   double offset_s_ = 0.0;
   int64_t frames_ = 0, pushed_ = 0, refused_ = 0;
 };

@@ -18,8 +18,9 @@ using pf::sim::Pose;
 using pf::sim::Random;
 using pf::sim::Vec3;
 
-constexpr int kGaugeEvery = 50;    // frames
-constexpr double kScaleAfter = 5;  // [s] of motion, when the scale is judged first
+constexpr std::uint64_t kPoorEvery = 10;  // runs
+constexpr int kGaugeEvery = 50;           // frames
+constexpr double kScaleAfter = 5;         // [s] of motion, when the scale is judged first
 
 constexpr double kAfter = 5;          // [s] from the beginning of a fault, when all should be well again
 constexpr double kStill = 1;          // [s] that a unit or a camera stops
@@ -74,10 +75,10 @@ class Run {
  public:
   Run(const VioOptions& options, std::uint64_t seed, FrameRow* rows, VioSummary* summary)
       : o_(options),
+        seed_(seed),
         rows_(rows),
         out_(*summary),
-        world_(options.rendered ? VioWorld(seed, options.scene, options.rest_s)
-                                : VioWorld(seed, options.points, options.seconds, options.rest_s, options.turn_rad_s)),
+        world_(world(options, seed)),
         noise_(seed, 53),
         unit_(unit(options, seed)),
         sensor_(unit_, world_.path()),
@@ -88,6 +89,7 @@ class Run {
   void go() {
     if (context_.slam == nullptr) return;
     out_.done = 1;
+    out_.poor = is_poor(o_, seed_);
     const int frames = vio_frames(o_);
     for (int k = 0; k < frames; ++k)
       if (!frame(k)) return;
@@ -96,6 +98,13 @@ class Run {
   }
 
  private:
+  static VioWorld world(const VioOptions& o, std::uint64_t seed) {
+    if (o.rendered) return VioWorld(seed, o.scene, o.rest_s);
+    if (!o.moving) return VioWorld(seed, o.points, o.seconds, o.rest_s, o.turn_rad_s);
+    const auto poor = seed / kPoorEvery % 2 == 0 ? VioWorld::Motion::kRotation : VioWorld::Motion::kEven;
+    return VioWorld(seed, o.points, 1.4 * o.seconds, is_poor(o, seed) ? poor : VioWorld::Motion::kVaried);
+  }
+
   static pf::sim::ImuOptions unit(const VioOptions& o, std::uint64_t seed) {
     pf::sim::ImuOptions imu = o.imu;
     Random bias(seed, 54);
@@ -125,6 +134,9 @@ class Run {
       imu.R_BC = pf::sim::rotation_exp({3.14159265358979, 0, 0}) * imu.R_BC;
     return imu;
   }
+
+  /// When the scale should be known.
+  double begin_s() const { return !o_.moving ? o_.rest_s : out_.start_s >= 0 ? out_.start_s : 1e9; }
 
   Pose truth_at(double t) const {
     const Pose now = world_.path()(t);
@@ -207,6 +219,10 @@ class Run {
     note_blackout(k, dark, status);
     note_doubt(t, pose);
     const bool judged = note_unit(k, report);
+    if (judged && out_.start_s < 0) {
+      out_.start_s = t;
+      out_.start_tilt_rad = out_.tilt_rad;
+    }
     if (o_.rendered) planes_.note(context_.slam, judged, k + 1 == vio_frames(o_), &out_.planes);
     if (judged || !o_.use_imu) {
       row = judge(truth, pose, report);
@@ -231,9 +247,10 @@ class Run {
     }
     if (k > 0) out_.path_m += (truth.p_WC - last_.p_WC).norm();
     last_ = truth;
+    if (judged && out_.start_s == t) out_.start_scale_error = scale_error();
     const Vec3 e = truth.p_WC - Vec3{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
     out_.end_error_m = e.norm();
-    if (out_.scale_error_5s < 0 && t >= o_.rest_s + kScaleAfter) out_.scale_error_5s = scale_error();
+    if (out_.scale_error_5s < 0 && t >= begin_s() + kScaleAfter) out_.scale_error_5s = scale_error();
     return true;
   }
 
@@ -339,6 +356,7 @@ class Run {
   }
 
   const VioOptions& o_;
+  const std::uint64_t seed_;
   FrameRow* const rows_;
   VioSummary& out_;
   const VioWorld world_;
@@ -369,6 +387,8 @@ const char* name_of(VioFault fault) {
   static_assert(std::size(kNames) == static_cast<std::size_t>(VioFault::kCount));
   return kNames[static_cast<int>(fault)];
 }
+
+bool is_poor(const VioOptions& options, std::uint64_t seed) { return options.moving && seed % kPoorEvery == 0; }
 
 int vio_frames(const VioOptions& options) { return static_cast<int>(options.seconds * options.rate_hz); }
 

@@ -32,6 +32,7 @@ const char* name_of(VioFault fault);
 struct VioOptions {
   double seconds = 60, rate_hz = 30;
   double rest_s = 2;         ///< at the beginning
+  bool moving = false;       ///< instead of that it moves from the first frame on, each run in another way
   double blackout_at_s = 0;  ///< no frame shows anything from here on ..
   double blackout_s = 0;     ///< .. for this long
   double sigma_px = 0.5;
@@ -87,11 +88,16 @@ struct VioSummary {
   double tilt_rad = -1,
          tilt_rms_rad = -1;  ///< of gravity's direction: at the end, and over all frames in which it is known
   VioPlanes planes;
+  // Of a start from a moving camera: whether the motion tells anything, when it was believed, and how wrong that is then.
+  std::int32_t poor = 0;
+  double start_s = -1, start_scale_error = -1, start_tilt_rad = -1;
   std::int32_t dark_end_frame = -1, tracked_again_frame = -1;
 };
 
 /// One run. rows has as many entries as the run has frames.
 VioSummary run_vio(const VioOptions& options, std::uint64_t seed, FrameRow* rows);
 int vio_frames(const VioOptions& options);
+/// Whether the motion of a run tells neither scale nor gravity: every tenth, by turns a camera that only rotates and one that moves evenly.
+bool is_poor(const VioOptions& options, std::uint64_t seed);
 
 }  // namespace pfsim

@@ -19,6 +19,7 @@ constexpr double kStep = 0.6;                           // from one to the next 
 constexpr double kShakeM = 0.004, kShakeRad = 0.012;    // of the hand
 constexpr double kRamp = 0.5;                           // from rest to the walk's speed [s]
 constexpr double kBorder = 4;                           // nothing is measured this close to the border [px]
+constexpr double kIntoWalk = 2;                         // of a camera that moves from the first frame on [s]
 constexpr int kHand = 24;                               // points of a hand
 constexpr double kNearest = 0.3;                        // nor nearer [m]
 
@@ -65,6 +66,19 @@ VioWorld::VioWorld(std::uint64_t seed, int points, double seconds, double rest_s
   path_ = [begin, turn_rad_s](double t) {
     return Pose{pf::sim::rotation_exp({0, turn_rad_s * t, 0}) * begin.R_WC, begin.p_WC};
   };
+}
+
+VioWorld::VioWorld(std::uint64_t seed, int points, double seconds, Motion motion)
+    : VioWorld(seed, points, seconds + kIntoWalk, 0, 0) {
+  Random kind(seed, 56);
+  const double speed = kind.uniform(0.6, 1.4);
+  const auto walk = path_;
+  const auto later = [walk, speed](double t) { return walk(kIntoWalk + speed * t); };
+  path_ = later;
+  const Pose begin = later(0);
+  const Vec3 v = (later(0.01).p_WC - begin.p_WC) * 100;
+  if (motion == Motion::kRotation) path_ = [later, begin](double t) { return Pose{later(t).R_WC, begin.p_WC}; };
+  if (motion == Motion::kEven) path_ = [later, begin, v](double t) { return Pose{later(t).R_WC, begin.p_WC + v * t}; };
 }
 
 void VioWorld::wave(double t, double sigma_px, Random& noise, std::vector<pf_observation_t>* seen) const {

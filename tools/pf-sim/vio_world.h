@@ -14,6 +14,9 @@ namespace pfsim {
 class VioWorld {
  public:
   VioWorld(std::uint64_t seed, int points, double seconds, double rest_s, double turn_rad_s);
+  /// A camera that moves from the first frame on, faster or slower, with more or less of a hand's shaking.
+  enum class Motion { kVaried, kRotation, kEven };
+  VioWorld(std::uint64_t seed, int points, double seconds, Motion motion);
   /// A rendered scene, and the walk that belongs to it.
   VioWorld(std::uint64_t seed, const std::string& scene, double rest_s);
 
