@@ -13,7 +13,7 @@ namespace {
 using namespace tuning::moving_start;
 
 constexpr int kLinear = 7;   ///< s, v_0, g
-constexpr int kRefined = 9;  ///< s, v_0, d, b_a
+constexpr int kRefined = 9;  ///< log u, u v_0, d, b_a
 constexpr int kMaxRows = kMaxMovingPoses - 1;
 
 /// The sums up to one pose.
@@ -85,16 +85,16 @@ int accumulate(const MovingPose* pose, int count, Sum* sum) {
   return count - 1;
 }
 
-bool solve_linear(const Sum* sum, int n, const Whitener& whitener, Scalar* s, Vec3* v_0, Vec3* g) {
+bool solve_linear(const Sum* sum, int n, const Whitener& whitener, Scalar* units, Vec3* v_0, Vec3* g) {
   System<kLinear> system;
   for (int k = 0; k < n; ++k)
     for (int axis = 0; axis < 3; ++axis) {
       Scalar* const row = system.a[3 * k + axis];
       std::fill(row, row + kLinear, Scalar(0));
-      row[0] = sum[k].p(axis);
-      row[1 + axis] = -sum[k].t;
-      row[4 + axis] = -sum[k].t * sum[k].t / 2;
-      row[kLinear] = sum[k].S(axis) - sum[k].m(axis);
+      row[0] = sum[k].S(axis) - sum[k].m(axis);
+      row[1 + axis] = sum[k].t;
+      row[4 + axis] = sum[k].t * sum[k].t / 2;
+      row[kLinear] = sum[k].p(axis);
     }
   system.whiten(whitener, n);
   Eigen::Matrix<Scalar, kLinear, kLinear> A;
@@ -103,7 +103,7 @@ bool solve_linear(const Sum* sum, int n, const Whitener& whitener, Scalar* s, Ve
   SmallCholesky<kLinear> cholesky;
   if (!cholesky.factor(A)) return false;
   const Eigen::Matrix<Scalar, kLinear, 1> x = cholesky.solve(b);
-  *s = x(0);
+  *units = x(0);
   *v_0 = x.segment<3>(1);
   *g = x.segment<3>(4);
   return true;
@@ -116,14 +116,14 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
   Sum sum[kMaxRows];
   const int n = accumulate(pose, count, sum);
   Whitener whitener;
-  Scalar s = 1;
+  Scalar u = 1;  // units of the map in a metre
   Vec3 v_0, g;
   const Scalar tilt = noise.gravity * noise.tilt_density;
-  for (int pass = 0; pass < 2; ++pass)  // the second with the noise of positions in metres
-    if (!whitener.factor(sum, n, s * noise.position, noise.accel_density, tilt) ||
-        !solve_linear(sum, n, whitener, &s, &v_0, &g) || !(s > Scalar(0)) || !(g.norm() > Scalar(0)))
+  for (int pass = 0; pass < 2; ++pass)  // the second with the noise of the samples in units of the map
+    if (!whitener.factor(sum, n, noise.position, u * noise.accel_density, u * tilt) ||
+        !solve_linear(sum, n, whitener, &u, &v_0, &g) || !(u > Scalar(0)) || !(g.norm() > Scalar(0)))
       return false;
-  if (!whitener.factor(sum, n, s * noise.position, noise.accel_density, tilt)) return false;
+  if (!whitener.factor(sum, n, noise.position, u * noise.accel_density, u * tilt)) return false;
 
   Quat q_WG = turn_z_to(g.normalized());
   Vec3 bias = Vec3::Zero();
@@ -139,14 +139,15 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
     E << -noise.gravity * R_WG.col(1), noise.gravity * R_WG.col(0);
     for (int k = 0; k < n; ++k) {
       const Scalar t = sum[k].t;
-      const Vec3 r = sum[k].S - sum[k].m - s * sum[k].p + v_0 * t + g * (t * t / 2) + sum[k].B * bias;
+      const Vec3 moved = u * (sum[k].S - sum[k].m + g * (t * t / 2) + sum[k].B * bias);
+      const Vec3 r = sum[k].p - v_0 * t - moved;
       for (int axis = 0; axis < 3; ++axis) {
         Scalar* const row = system.a[3 * k + axis];
         std::fill(row, row + kRefined, Scalar(0));
-        row[0] = s * sum[k].p(axis);  // by log s
-        row[1 + axis] = -t;
-        for (int j = 0; j < 2; ++j) row[4 + j] = -t * t / 2 * E(axis, j);
-        for (int j = 0; j < 3; ++j) row[6 + j] = -sum[k].B(axis, j);
+        row[0] = moved(axis);  // by log u
+        row[1 + axis] = t;
+        for (int j = 0; j < 2; ++j) row[4 + j] = u * t * t / 2 * E(axis, j);
+        for (int j = 0; j < 3; ++j) row[6 + j] = u * sum[k].B(axis, j);
         row[kRefined] = r(axis);
       }
     }
@@ -163,14 +164,14 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
     if (step == kSteps) break;
     const Eigen::Matrix<Scalar, kRefined, 1> x = cholesky.solve(b);
     if (!x.allFinite() || !(std::abs(x(0)) < kMaxStep)) return false;
-    s *= std::exp(x(0));
+    u *= std::exp(x(0));
     v_0 += x.segment<3>(1);
     q_WG = q_WG * exp_so3(Vec3(x(4), x(5), Scalar(0)));
     bias += x.segment<3>(6);
   }
   const Eigen::Matrix<Scalar, kRefined, kRefined> identity = Eigen::Matrix<Scalar, kRefined, kRefined>::Identity();
   const Eigen::Matrix<Scalar, kRefined, kRefined> C = cholesky.solve(identity);
-  out->scale = s;
+  out->scale = 1 / u;
   out->q_WG = q_WG;
   out->accel_bias = bias;
   out->misfit = chi2 / static_cast<Scalar>(3 * n - kRefined + 3);
@@ -178,6 +179,8 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
   const Scalar widen = std::max(Scalar(1), out->misfit);
   for (int i = 0; i < MovingSolution::kRows; ++i)
     for (int j = 0; j < MovingSolution::kRows; ++j) out->covariance(i, j) = widen * C(kAt[i], kAt[j]);
+  for (int i = 1; i < MovingSolution::kRows; ++i)
+    out->covariance(0, i) = out->covariance(i, 0) = -out->covariance(i, 0);  // log scale = -log u
   return true;
 }
 

@@ -42,14 +42,16 @@ struct MovingSolution {
 
 inline constexpr int kMaxMovingPoses = 32;
 
-/// With S_k, B_k the double sums over R dv, R dp and their Jacobians, t_k the time since the first pose:
+/// With S_k, B_k the double sums over R dv, R dp and their Jacobians, t_k the time since the first pose, and u the units of the map in a
+/// metre:
 ///
-///   s (p_k - p_0) - v_0 t_k - g t_k^2 / 2 - B_k b_a = S_k - (m_k - m_0)
+///   p_k - p_0 = u (v_0 t_k + g t_k^2 / 2 + S_k + B_k b_a - (m_k - m_0))
 ///
-/// linear in s, v_0, g and b_a. First without b_a and with g of any length, then refined with |g| imposed and the prior of b_a:
-/// g = gravity R_WG e_z, dg = gravity (-R_WG e_y, R_WG e_x) d. Residuals are whitened by
+/// linear in u, u v_0, u g and u b_a. What is noisy, the poses, stands alone: as a factor of the scale it would draw that to zero. First
+/// without b_a and with g of any length, then refined with |g| imposed and the prior of b_a: g = gravity R_WG e_z,
+/// dg = gravity (-R_WG e_y, R_WG e_x) d. Residuals are whitened by
 ///
-///   C_jk = (s sigma_p)^2 (delta_jk + 1) + q_a^2 G2_jk + (gravity q_r)^2 G3_jk,   Gn: covariance of an n times integrated white noise
+///   C_jk = sigma_p^2 (delta_jk + 1) + (u q_a)^2 G2_jk + (u gravity q_r)^2 G3_jk,   Gn: covariance of an n times integrated white noise
 ///
 /// and a misfit above one widens the covariance. False where there are too few poses or the system is singular.
 bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out);

@@ -27,7 +27,7 @@ bool FrameLoop::layout(Arena& arena) {
   if (settings.inertial) {
     UnitParts* const place = arena.take<UnitParts>(1);
     if (place != nullptr)
-      unit_ = new (place) UnitParts{{settings_, filter_, rest_}, {settings_, filter_, imu_, motion_}};
+      unit_ = new (place) UnitParts{{settings_, filter_, rest_}, {settings_, filter_, map_, frame_, imu_, motion_}};
   }
   start_.layout(arena, settings.camera.width, settings.camera.height);
   return layout_patches(arena);

@@ -22,7 +22,7 @@ bool FrameLoop::look_for_rest() {
 bool FrameLoop::look_for_scale() {
   const bool usable = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && !watch_.doubted();
   MovingSolution solution;
-  if (!unit_->moving.note(usable, frame_.report.t_ns, tracking_.map_id(), data_.median_depth, &solution)) return false;
+  if (!unit_->moving.note(usable, tracking_.map_id(), data_.median_depth, &solution)) return false;
   start_.use_motion(solution);
   relocaliser_.init();
   return true;
