@@ -1,6 +1,9 @@
 // With an inertial unit the whole world can still be shifted, and turned with gravity, without any measurement or sample seeing it. Pixels
 // see no change of scale either; samples do.
+#include <Eigen/Eigenvalues>
+
 #include "filter/gauge_information.h"
+#include "filter/moving_start.h"
 #include "filter/vertical.h"
 #include "support/filter_scene.h"
 #include "support/inertial_cases.h"
@@ -147,6 +150,46 @@ void test_no_vertical_plane_should_see_a_shift_a_turn_or_a_change_of_scale() {
   }
 }
 
+/// A map of points, a plane and inverse depths that becomes metric: pixels stay where they were, the scale is as known as the start says,
+/// together with gravity, and shifts and turns stay as open as they were.
+void test_a_map_that_becomes_metric_should_look_the_same_and_know_its_scale() {
+  SeededRandom random(319);
+  for (int trial = 0; trial < 10; ++trial) {
+    InertialScene scene(random);
+    Mounting none = scene.mounting;
+    none.p_C.setZero();
+    none.in_metres = false;
+    scene.filter->set_mounting(none);
+    random_plane(random, scene.filter);
+    scene.filter.set_P(random_covariance(random, scene.filter.dim(), 0.05));
+    std::vector<Vec2> before;
+    for (const int slot : scene.slots) {
+      PixelMeasurement o;
+      TEST_ASSERT_TRUE(scene.filter->predict_pixel(pinhole_camera(), slot, &o));
+      before.push_back(o.predicted);
+    }
+    MovingSolution start;
+    start.scale = Scalar(2.5);
+    start.q_WG = random_turn(random, 1);
+    start.covariance = random_covariance(random, 6, 0.02).cast<Scalar>();
+    scene.filter->set_metric(start, scene.mounting);
+    TEST_ASSERT_TRUE(scene.filter->is_metric());
+    for (std::size_t i = 0; i < scene.slots.size(); ++i) {
+      PixelMeasurement o;
+      TEST_ASSERT_TRUE(scene.filter->predict_pixel(pinhole_camera(), scene.slots[i], &o));
+      TEST_ASSERT_TRUE((o.predicted - before[i]).norm() < Scalar(1e-6));
+    }
+    ScaleRow l;
+    TEST_ASSERT_TRUE(scene.filter->scale_row(&l));
+    const Dense P = scene.filter.P();
+    const Eigen::SelfAdjointEigenSolver<Dense> eigen(P, Eigen::EigenvaluesOnly);
+    TEST_ASSERT_TRUE(eigen.eigenvalues()(0) > -1e-12);
+    const int gravity = scene.filter->state().layout.row(BodyPart::kGravity), accel = gravity - 3;
+    for (int i = 0; i < 3; ++i)
+      TEST_ASSERT_TRUE(std::abs(scene.filter->variance(accel + i) / start.covariance(3 + i, 3 + i) - 1) < Scalar(1e-6));
+  }
+}
+
 double information_growth(bool keep_gauge) {
   SeededRandom random(316);
   double growth = 0;
@@ -192,6 +235,7 @@ int main(void) {
   RUN_TEST(test_a_rest_should_carry_shifts_and_turns);
   RUN_TEST(test_a_body_without_samples_should_carry_every_direction);
   RUN_TEST(test_no_vertical_plane_should_see_a_shift_a_turn_or_a_change_of_scale);
+  RUN_TEST(test_a_map_that_becomes_metric_should_look_the_same_and_know_its_scale);
   RUN_TEST(test_pixels_should_gain_nothing_about_the_gauge);
   return UNITY_END();
 }
