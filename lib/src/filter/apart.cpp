@@ -60,8 +60,9 @@ void Filter::end_update_apart(const ScaleRow& l) {
 ///
 ///   P <- (I - N_s l) P (I - N_s l)^T + left N_s N_s^T
 ///
-/// Returns l P l^T as it was; 0, with nothing changed, where there is no log length. What does not change with the scale has J N_s = 0, and keeps its J P J^T. Left out is the covariance of l with such things, which is
-/// zero where all that P knows of the scale are independent priors of depths.
+/// Returns l P l^T as it was; 0, with nothing changed, where there is no log length. What does not change with the scale has J N_s = 0, and
+/// keeps its J P J^T. Left out is the covariance of l with such things, which is zero where all that P knows of the scale are independent
+/// priors of depths.
 Scalar Filter::replace_scale(Scalar left) {
   int places = -1;
   Scalar total = 0;

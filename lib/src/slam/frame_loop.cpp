@@ -24,11 +24,7 @@ bool FrameLoop::layout(Arena& arena) {
   observations_.layout(arena, settings.max_features, settings.max_observations);
   watch_.layout(arena);
   rest_.layout(arena);
-  if (settings.inertial) {
-    UnitParts* const place = arena.take<UnitParts>(1);
-    if (place != nullptr)
-      unit_ = new (place) UnitParts{{settings_, filter_, rest_}, {settings_, filter_, map_, frame_, imu_, motion_}};
-  }
+  layout_unit(arena);
   start_.layout(arena, settings.camera.width, settings.camera.height);
   return layout_patches(arena);
 }

@@ -90,6 +90,7 @@ class FrameLoop {
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
   bool look_for_rest();
   bool look_for_scale();
+  void layout_unit(Arena& arena);
   void init_unit();
   template <typename F>
   void measure_watched(F&& measure);

@@ -1,3 +1,5 @@
+#include <new>
+
 #include "base/elapsed.h"
 #include "slam/frame_loop.h"
 
@@ -26,6 +28,13 @@ bool FrameLoop::look_for_scale() {
   start_.use_motion(solution);
   relocaliser_.init();
   return true;
+}
+
+void FrameLoop::layout_unit(Arena& arena) {
+  if (!settings_.inertial) return;
+  UnitParts* const place = arena.take<UnitParts>(1);
+  if (place != nullptr)
+    unit_ = new (place) UnitParts{{settings_, filter_, rest_}, {settings_, filter_, map_, frame_, imu_, motion_}};
 }
 
 void FrameLoop::init_unit() {

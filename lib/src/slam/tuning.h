@@ -72,23 +72,6 @@ inline constexpr Scalar kGravity = Scalar(1);      ///< [rad] sigma of its direc
 inline constexpr Scalar kYoungMap = Scalar(15);    ///< [s] age of a map of unknown scale that gives way to a metric one
 }  // namespace inertial
 
-/// A start in metres from a moving camera.
-namespace moving_verdict {
-inline constexpr std::int64_t kIntervalNs = 99000000;    ///< [ns] between poses at least
-inline constexpr int kMinPoses = 16;                     ///< of a solution
-inline constexpr Scalar kMaxDepthSigma = Scalar(0.3);    ///< of a feature's inverse depth, relative
-inline constexpr int kMinPixels = 8;                     ///< with a depth, in each of these frames
-inline constexpr Scalar kHuber = Scalar(3);              ///< sigmas of a pixel beyond which it counts linearly
-inline constexpr int kRounds = 5;                        ///< of a pose's refinement
-inline constexpr Scalar kPosition = Scalar(0.0005);      ///< sigma of a pose's position, of the median depth
-inline constexpr Scalar kTiltDensity = Scalar(0.00005);  ///< [rad/sqrt(s)] of the drift of the poses' rotations
-inline constexpr Scalar kRotation = Scalar(0.0001);      ///< [rad/sqrt(Hz)] of their noise: 0.3 mrad ten times a second
-inline constexpr Scalar kMaxSigmaScale = Scalar(0.025);  ///< of the log scale
-inline constexpr Scalar kMaxSigmaGravity = Scalar(0.01);  ///< [rad] of its direction
-inline constexpr Scalar kMaxMisfit = Scalar(3);           ///< chi-square over its degrees of freedom
-inline constexpr Scalar kMaxApart = Scalar(9);            ///< of two halves, in the sum of their variances
-}  // namespace moving_verdict
-
 /// Whether samples and pictures agree. The slack and the bound were taken from six healthy runs of 60 s (largest sum 38) and from units
 /// that are wrong (pf-sim vio --fault).
 namespace unit_watch {
