@@ -57,7 +57,7 @@ inline constexpr Scalar kMaxStep = Scalar(20);  ///< of the log scale in one of 
 
 /// A start in metres from a moving camera.
 namespace moving_verdict {
-inline constexpr Scalar kInterval = Scalar(0.099);        ///< [s] between poses at least
+inline constexpr Scalar kInterval = Scalar(0.099);       ///< [s] between poses at least
 inline constexpr int kMinPoses = 16;                     ///< of a solution
 inline constexpr Scalar kMaxDepthSigma = Scalar(0.3);    ///< of a feature's inverse depth, relative
 inline constexpr int kMinPixels = 8;                     ///< with a depth, in each of these frames

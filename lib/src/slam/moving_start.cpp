@@ -121,7 +121,9 @@ bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingSta
 bool MovingStart::note(bool usable, std::uint32_t map_id, Scalar depth, MovingSolution* solution) {
   if (!usable || map_id != data_.map_id) data_.count = 0;
   data_.map_id = map_id;
-  if (!usable || (data_.count > 0 && seconds(elapsed_ns(data_.t_ns, frame_.report.t_ns)) < static_cast<double>(kInterval))) return false;
+  if (!usable ||
+      (data_.count > 0 && seconds(elapsed_ns(data_.t_ns, frame_.report.t_ns)) < static_cast<double>(kInterval)))
+    return false;
   if (!add()) {
     data_.count = 0;
     return false;
