@@ -52,6 +52,18 @@ with tempfile.TemporaryDirectory() as name:
     require(dark["frames_until_tracked_again"]["runs"] == SEEDS, "not tracked again")
     require(dark["frames_until_tracked_again"]["max"] <= 2, "tracked again too late")
 
+    # Metres while it moves; not from a camera that only rotates (seed 20) or moves evenly (10).
+    moving, text = report(folder, "--start", "moving", "--seconds", "8", "--first-seed", "1")
+    require("verdict: " in text.splitlines()[-1], "the last line is no verdict")
+    require(moving["starts"]["accepted"] >= 2 and moving["starts"]["wrong"] == 0, f"starts while it moves: {moving['starts']}")
+    require(moving["scale_error"]["max"] < 0.03 and moving["tilt_deg"]["max"] < 1, f"moving: {moving['scale_error']}")
+    require(moving["gauge_growth"] < 1e-9, f"information about six directions grew by {moving['gauge_growth']}")
+    for seed in ("10", "20"):
+        path = folder / "poor.json"
+        run(BIN / "pf-sim", "vio", "--start", "moving", "--seeds", "1", "--first-seed", seed, "--seconds", "8", "--json", path)
+        poor = json.loads(path.read_text())["starts"]
+        require(poor["accepted_poor"] == 0 and poor["good"] == 0, f"metres from a camera that tells nothing: {poor}")
+
     without, _ = report(folder, "--seconds", "12", "--no-imu")
     require(without["starts"]["accepted"] == 0 and not without["verdict"], "metres without a unit")
 

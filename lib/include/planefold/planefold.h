@@ -744,7 +744,8 @@ typedef struct pf_inertial {
   double covariance[64];
   double gravity_axes_W[2][3]; /* unit, across gravity and each other */
   /* 1: the samples tell lengths, which are metres; 0: gravity is not known yet, and only the gyro is used. It becomes 1 when
-   * the camera has been at rest for a second. A map of unknown scale that is younger than 15 s begins anew then. */
+   * the camera has been at rest for a second: a map of unknown scale that is younger than 15 s begins anew then; or when such a map
+   * has seen enough motion to tell: it goes on in metres, under another map_id. */
   uint32_t metric;
   uint32_t map_id; /* as in pf_pose_t */
   /* 1: in this frame the pose is held, since samples and pictures have been at rest for a second at least. A picture alone or
