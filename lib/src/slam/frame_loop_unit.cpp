@@ -20,9 +20,9 @@ bool FrameLoop::look_for_rest() {
   return look_for_scale();
 }
 
-/// The same from a camera that moves.
+/// The same from a camera that moves, and a unit that was never doubted.
 bool FrameLoop::look_for_scale() {
-  const bool usable = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && !watch_.doubted();
+  const bool usable = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && watch_.doubted_ns() == 0;
   MovingSolution solution;
   if (!unit_->moving.note(usable, tracking_.map_id(), data_.median_depth, &solution)) return false;
   start_.use_motion(solution);
