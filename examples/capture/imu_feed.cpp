@@ -161,8 +161,7 @@ void ImuFeed::add_frame(int64_t index, const pf_slam_t* slam, const pf_pose_t& p
   pf_inertial_t known{};
   if (inertial_ && metric_frame_ < 0 && pf_get_inertial(slam, &known) == PF_OK && known.metric != 0) {
     metric_frame_ = index;
-  } else if (metric_frame_ >= 0 && metric_frame_ + 1 == index && pf_get_inertial(slam, &known) == PF_OK) {
-    moving_ = known.rests == 0;  // a start at rest holds the pose from the next frame on
+    moving_ = known.from_motion != 0;
   }
 }
 

@@ -62,8 +62,8 @@ void test_desk_should_start_without_a_target_and_then_be_tracked() {
   for (std::size_t i = first; i < 120; ++i) TEST_ASSERT_EQUAL_INT(PF_OK, run.frames[i].status);
 }
 
-/// The camera moves about what it looks at. Once more parallax was there, the start without a target left the right solution, 0.02 degrees off,
-/// for one without that turn, and the run was 20 degrees off after 250 frames.
+/// The camera moves about what it looks at. Once more parallax was there, the start without a target left the right solution, 0.02
+/// degrees off, for one without that turn, and the run was 20 degrees off after 250 frames.
 void test_a_start_should_not_leave_a_right_solution_when_the_camera_orbits_the_desk() {
   RenderedRun run("desk", 75, Start::kNone, [](pf_sim_options_t* options) { options->seed = 9; });
   run.skip(15);

@@ -747,7 +747,8 @@ typedef struct pf_inertial {
    * the camera has been at rest for a second: a map of unknown scale that is younger than 15 s begins anew then; or when such a map
    * has seen enough motion to tell: it goes on in metres, under another map_id. */
   uint32_t metric;
-  uint32_t map_id; /* as in pf_pose_t */
+  uint32_t from_motion; /* 1: it became 1 by motion, 0: at rest, or not yet */
+  uint32_t map_id;      /* as in pf_pose_t */
   /* 1: in this frame the pose is held, since samples and pictures have been at rest for a second at least. A picture alone or
    * samples alone never say so. */
   uint32_t resting;

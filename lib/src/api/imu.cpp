@@ -75,6 +75,7 @@ pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial) {
   pf::repair_covariance(inertial->covariance, 8);
   for (int k = 0; k < 2; ++k) pf::copy(unit.axis_W[k], 3, inertial->gravity_axes_W[k]);
   inertial->metric = unit.metric ? 1 : 0;
+  inertial->from_motion = unit.from_motion ? 1 : 0;
   inertial->resting = unit.resting ? 1 : 0;
   inertial->rests = static_cast<uint32_t>(unit.rests);
   inertial->map_id = view.map_id();

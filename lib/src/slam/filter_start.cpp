@@ -73,6 +73,7 @@ void FilterStart::start_over() {
   without_.init();
   data_.known = KnownBody();
   data_.has_place = false;
+  data_.from_motion = false;
   if (parts_.map.target_withdrawn) target_.init();
 }
 

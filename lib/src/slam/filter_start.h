@@ -46,6 +46,8 @@ class FilterStart {
 
   /// A target, walls or a known speed tell the scale, and the samples of a unit did not.
   bool knows_scale() const { return data_.knows_scale; }
+  /// Whether lengths are in metres since the samples of a moving camera told them.
+  bool is_from_motion() const { return data_.from_motion; }
 
   /// Whether the target's points fit into the capacities.
   bool fits(const Target& target) const;
@@ -99,6 +101,7 @@ class FilterStart {
     KnownBody known;
     bool has_place = false;     ///< the caller said where in W the start is
     bool knows_scale = false;   ///< a target, walls or a known speed tell it
+    bool from_motion = false;   ///< lengths are in metres since the samples of a moving camera told them
     std::int64_t begin_ns = 0;  ///< when the body got its first pose
     Scalar covariance[BodyLayout::kVelocityRows * BodyLayout::kVelocityRows] = {};  ///< of the body at the first frame
   };

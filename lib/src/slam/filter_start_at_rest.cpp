@@ -42,6 +42,7 @@ bool FilterStart::use_rest(const RestReading& rest, std::int64_t begin_ns) {
     filter.predict(transition);
   }
   filter.set_metric();
+  data_.from_motion = false;
   settings_.hooks.say("at rest: gravity and the biases are known, lengths are in metres from here on");
   return true;
 }
@@ -55,6 +56,7 @@ bool FilterStart::may_become_metric() const {
 bool FilterStart::use_motion(const MovingSolution& solution) {
   Map& map = parts_.map;
   parts_.filter.set_metric(solution, mounting());
+  data_.from_motion = true;
   for (int i = 0; i < map.features.capacity(); ++i)
     if (map.features.used(i) && map.features[i].has_appearance) map.first_view(i).c_W *= solution.scale;
   for (int i = 0; i < map.planes.capacity(); ++i)

@@ -1,7 +1,6 @@
 #include "slam/same_view.h"
 
 #include "base/elapsed.h"
-#include "geometry/so3.h"
 #include "slam/tuning.h"
 
 namespace pf {
@@ -11,11 +10,20 @@ void SameView::note(const Body& body, Scalar median_depth, Scalar focal_px) {
   count_frame(&data_.frames);
 }
 
-/// How far points at the median depth move in the picture, roughly: f (|theta| + |t| / depth).
+/// Whether a point near the median depth moves by more than 2 px in the picture, or is behind the camera. Rotation and place together: the
+/// estimate of a camera at rest drifts about what it looks at, where neither tells anything by itself.
 bool SameView::has_moved(const Body& body, Scalar median_depth, Scalar focal_px) const {
-  const Scalar rotation = log_so3(data_.q_WC.conjugate() * body.q_WC).norm();
-  const Scalar parallax = (body.p_W - data_.p_W).norm() / median_depth;
-  return !(focal_px * (rotation + parallax) < tuning::same_view::kMaxMotionPx);
+  using namespace tuning::same_view;
+  const Quat q_CW = body.q_WC.conjugate();
+  for (const Scalar share : {Scalar(1) / kDepthRatio, Scalar(1), kDepthRatio})
+    for (int corner = 0; corner < 5; ++corner) {
+      const Vec2 before = corner == 4 ? Vec2(Vec2::Zero())
+                                      : Vec2(corner % 2 == 0 ? -kCorner : kCorner, corner < 2 ? -kCorner : kCorner);
+      const Vec3 p_W = data_.p_W + data_.q_WC * (Vec3(before.x(), before.y(), Scalar(1)) * (share * median_depth));
+      const Vec3 p_C = q_CW * (p_W - body.p_W);
+      if (!(p_C.z() > Scalar(0) && focal_px * (p_C.head<2>() / p_C.z() - before).norm() < kMaxMotionPx)) return true;
+    }
+  return false;
 }
 
 }  // namespace pf

@@ -64,6 +64,7 @@ bool View::inertial(InertialView* out) const {
     for (int j = 0; j < 8; ++j)
       out->covariance[i][j] = filter().covariance()(std::max(row(i), row(j)), std::min(row(i), row(j)));
   out->metric = filter().is_metric();
+  out->from_motion = out->metric && loop_->start().is_from_motion();
   out->resting = loop_->hold()->holds();
   out->rests = loop_->hold()->rests();
   for (int i = 0; i < 8; ++i) out->sigma[i] = std::sqrt(std::max(Scalar(0), out->covariance[i][i]));

@@ -70,7 +70,7 @@ struct InertialView {
   Vec3 gravity_W, gyro_bias, accel_bias;
   Vec3 axis_W[2];           ///< about which gravity's error rotates it
   Scalar covariance[8][8];  ///< of (gravity, gyro bias, accelerometer bias)
-  bool metric, resting;
+  bool metric, from_motion, resting;
   int rests;
   Quat q_BC;
   Vec3 p_BC;
