@@ -24,16 +24,6 @@ static void test_a_block_should_be_refused_when_it_is_too_small_or_misaligned(vo
   TEST_ASSERT_NULL(other);
 }
 
-/* memcpy that may read the poisoned zones between the pieces of a block. */
-#if defined(__GNUC__)
-__attribute__((no_sanitize_address))
-#endif
-static void
-copy_block(unsigned char* to, const unsigned char* from, size_t bytes) {
-  const volatile unsigned char* at = from;
-  for (size_t i = 0; i < bytes; ++i) to[i] = at[i];
-}
-
 static void test_a_context_should_be_refused_when_its_block_was_moved_or_overwritten(void) {
   unsigned char* elsewhere = new_block(need.bytes, 0);
   const ptrdiff_t at = (const unsigned char*)slam - block;
