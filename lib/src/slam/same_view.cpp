@@ -13,15 +13,17 @@ void SameView::note(const Body& body, Scalar median_depth, Scalar focal_px) {
 /// Whether a point near the median depth moves by more than 2 px in the picture, or is behind the camera. Rotation and place together: the
 /// estimate of a camera at rest drifts about what it looks at, where neither tells anything by itself.
 bool SameView::has_moved(const Body& body, Scalar median_depth, Scalar focal_px) const {
-  using namespace tuning::same_view;
+  namespace near = tuning::same_view;
   const Quat q_CW = body.q_WC.conjugate();
-  for (const Scalar share : {Scalar(1) / kDepthRatio, Scalar(1), kDepthRatio})
+  for (const Scalar share : {Scalar(1) / near::kDepthRatio, Scalar(1), near::kDepthRatio})
     for (int corner = 0; corner < 5; ++corner) {
       const Vec2 before = corner == 4 ? Vec2(Vec2::Zero())
-                                      : Vec2(corner % 2 == 0 ? -kCorner : kCorner, corner < 2 ? -kCorner : kCorner);
+                                      : Vec2(corner % 2 == 0 ? -near::kCorner : near::kCorner,
+                                             corner < 2 ? -near::kCorner : near::kCorner);
       const Vec3 p_W = data_.p_W + data_.q_WC * (Vec3(before.x(), before.y(), Scalar(1)) * (share * median_depth));
       const Vec3 p_C = q_CW * (p_W - body.p_W);
-      if (!(p_C.z() > Scalar(0) && focal_px * (p_C.head<2>() / p_C.z() - before).norm() < kMaxMotionPx)) return true;
+      if (!(p_C.z() > Scalar(0) && focal_px * (p_C.head<2>() / p_C.z() - before).norm() < near::kMaxMotionPx))
+        return true;
     }
   return false;
 }
