@@ -55,13 +55,13 @@ void test_log_should_warn_once_when_the_lens_is_wrong() {
 
 void test_log_should_warn_once_when_the_estimated_lens_leaves_its_prior() {
   for (const double error : {0.0, 0.03}) {
-    RenderedRun run("desk", 200, Start::kNone);
+    RenderedRun run("desk", 150, Start::kNone);
     run.config.camera.fx *= 1 + error;
     run.config.camera.fy *= 1 + error;
     run.config.camera.estimate = PF_CAMERA_ESTIMATE;
     run.config.camera.sigma_focal = 0.005;
     run.config.camera.sigma_aspect = 0.001;
-    TEST_ASSERT_EQUAL_INT(error > 0 ? 1 : 0, warnings(run, 200, count_lens_warnings));
+    TEST_ASSERT_EQUAL_INT(error > 0 ? 1 : 0, warnings(run, 150, count_lens_warnings));
   }
 }
 

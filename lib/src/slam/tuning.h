@@ -168,9 +168,9 @@ inline constexpr int kYoung = 20;  ///< [frames] that a feature of such a group 
 
 /// A camera at rest.
 namespace same_view {
-inline constexpr Scalar kMaxMotionPx = Scalar(2);    ///< [px] of points near the median depth; errors come again
-inline constexpr Scalar kDepthRatio = Scalar(1.25);  ///< how near: the median depth divided by it, and times it
-inline constexpr Scalar kCorner = Scalar(0.4);       ///< tangent of the angles at which such points are looked at
+inline constexpr Scalar kMaxMotionPx = Scalar(2);   ///< [px] of points near the median depth; errors come again
+inline constexpr Scalar kDepthRatio = Scalar(1.5);  ///< how near: the median depth divided by it, and times it
+inline constexpr Scalar kCorner = Scalar(0.4);      ///< tangent of the angles at which such points are looked at
 }  // namespace same_view
 
 /// The noise of matches in images (lib/docs/noise.md).
