@@ -52,7 +52,7 @@ Body orbited(Scalar angle) {
 /// The estimate of a camera at rest once drifted so, by half a millimetre a frame, and was taken for a moving one for six seconds.
 void test_a_drift_about_what_is_seen_should_be_the_same_view_until_points_near_it_move() {
   TEST_ASSERT_TRUE(
-      is_learnt(after(20), orbited(Scalar(0.01))));  // 5 px of rotation, as many of parallax, about 1 px of both
+      is_learnt(after(20), orbited(Scalar(0.005))));  // 2.5 px of rotation, as many of parallax, 1.5 px of both
   TEST_ASSERT_FALSE(is_learnt(after(20), orbited(Scalar(0.03))));
 }
 
