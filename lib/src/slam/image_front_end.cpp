@@ -213,8 +213,8 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
       least = std::min(kMinConsensus, map_.features.count());
     } else if (frame_.report.inliers == 0) {
       least = settings_.min_inliers;
-      accepted = inliers >= least && (rule == ConsensusRule::kMostAgree ? 2 * inliers >= frame_.report.attempts
-                                                                        : is_beyond_chance(first, found));
+      accepted = inliers >= least &&
+                 (rule == ConsensusRule::kMostAgree ? most_agree(first, found) : is_beyond_chance(first, found));
     }
     // A match that all the others contradict supports nothing.
     if (accepted) accepted = update_.reject_contradicted(first, found, &nis) >= least;
@@ -231,6 +231,21 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
   if (!accepted || !update_.apply(first, found, nullptr)) return false;
   frame_.report.nis += nis;
   return true;
+}
+
+/// Whether at least half of what was searched for is among the inliers. Half of all corners are never found again, so the new ones say
+/// little by being missed, and do not count where enough others were searched for.
+bool ImageFrontEnd::most_agree(int first, int found) const {
+  int searched = 0, agree = 0;
+  for (int i = 0; i < listed_; ++i) {
+    const Candidate& candidate = update_.candidate(i);
+    if (map_.features[candidate.feature].observations < 2 || !frame_.match(candidate.match).searched) continue;
+    ++searched;
+    agree += i >= first && i < first + found && update_.keep()[i] != 0 ? 1 : 0;
+  }
+  if (searched >= settings_.min_inliers) return 2 * agree >= searched;
+  const int inliers = static_cast<int>(std::count(update_.keep() + first, update_.keep() + first + found, 1));
+  return 2 * inliers >= frame_.report.attempts;
 }
 
 /// Whether chance would hardly let as many matches agree as keep says.

@@ -71,6 +71,7 @@ class ImageFrontEnd {
   void predict_pixels(int first, int count);
   /// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
   int search(int first, int count);
+  bool most_agree(int first, int found) const;
   bool is_beyond_chance(int first, int found);
   /// Area that was searched for a candidate [px^2], at most that of the image.
   Scalar searched_area(int i) const;
