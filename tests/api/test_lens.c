@@ -85,10 +85,41 @@ static void test_an_estimated_calibration_should_become_better_known_and_a_reset
   free_block(at);
 }
 
+/* Its row has a variance of zero: 1e-400 in double, 1e-60 in float. */
+static void test_a_coefficient_as_good_as_exact_should_leave_what_is_known_about_the_gauge(void) {
+  const double sigmas[2] = {1e-30, 1e-200};
+  for (int i = 0; i < 2; ++i) {
+    pf_memory_t bytes;
+    pf_report_t report;
+    pf_slam_t* own;
+    double information[49];
+    config.camera.model = PF_CAMERA_RADTAN;
+    config.camera.estimate = PF_CAMERA_ESTIMATE;
+    config.camera.sigma_focal = 0.01;
+    config.camera.sigma_aspect = 0.001;
+    config.camera.sigma_centre_px = 1.6;
+    config.camera.sigma_distortion[0] = 0.05;
+    config.camera.sigma_distortion[1] = sigmas[i];
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &bytes));
+    unsigned char* at = new_block(bytes.bytes, 0);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, at, bytes.bytes, &own));
+    run(own, 10);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(own, &report));
+    const size_t rows = (size_t)report.state_dim;
+    double* scratch = (double*)malloc(rows * (rows + 8) * sizeof *scratch);
+    TEST_ASSERT_NOT_NULL(scratch);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_gauge_information(own, scratch, rows * (rows + 8), information));
+    for (int k = 0; k < 49; ++k) TEST_ASSERT_TRUE(isfinite(information[k]));
+    free(scratch);
+    free_block(at);
+  }
+}
+
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_an_exact_calibration_should_be_the_one_that_was_given);
   RUN_TEST(test_a_considered_calibration_should_keep_its_numbers_and_its_prior);
   RUN_TEST(test_an_estimated_calibration_should_become_better_known_and_a_reset_should_forget_that);
+  RUN_TEST(test_a_coefficient_as_good_as_exact_should_leave_what_is_known_about_the_gauge);
   return UNITY_END();
 }

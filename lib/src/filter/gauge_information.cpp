@@ -53,6 +53,13 @@ void add_apart(const GaugePrior::Matrix& V, double* A) {
     for (int j = 0; j < n; ++j) A[i * n + j] = (M[i][n + j] / M[i][i] + M[j][n + i] / M[j][j]) / 2;
 }
 
+/// A row without any error, as that of a lens coefficient whose variance is too small for a number, and that no direction changes.
+bool is_exact(const double* S, const double* N, int row, int n) {
+  const auto is_zero = [](double value) { return value == 0.0; };
+  return std::all_of(S + row * n, S + (row + 1) * n, is_zero) &&
+         std::all_of(N + row * kColumns, N + row * kColumns + kDirections, is_zero);
+}
+
 /// Row of the largest pivot that is left, relative to its variance. Negative where that is no more than the tolerance.
 int next_pivot(const double* S, const double* N, int n) {
   int best = -1;
@@ -96,8 +103,8 @@ bool gauge_information(const Filter& filter, double* scratch, double information
     for (int j = 0; j <= i; ++j) S[i * n + j] = S[j * n + i] = static_cast<double>(filter.covariance()(i, j));
   directions(filter.state(), filter.blocks(), N);
   for (int i = 0; i < n; ++i) {
-    if (!(S[i * n + i] > 0)) return false;
-    N[i * kColumns + kDirections] = S[i * n + i];
+    if (!(S[i * n + i] > 0) && !is_exact(S, N, i, n)) return false;
+    N[i * kColumns + kDirections] = S[i * n + i];  // zero: nothing to eliminate
   }
   std::fill(information, information + kDirections * kDirections, 0.0);
   for (int p = next_pivot(S, N, n); p >= 0; p = next_pivot(S, N, n)) {
