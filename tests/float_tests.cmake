@@ -3,6 +3,8 @@ set(PLANEFOLD_FLOAT_TESTS
     jacobian/test_bundle_plane.cpp
     jacobian/test_bundle_projection.cpp
     jacobian/test_camera.cpp
+    api/test_lens.c
+    api/test_mark.c
     regression/test_absurd_cameras.c
     regression/test_unequal_covariances.c
     jacobian/test_inverse_depth_conversion.cpp

@@ -49,6 +49,28 @@ struct FarthestPoint {
   }
 };
 
+/// The best known of the first few lengths. length(slot, row): whether that block gives one.
+template <typename Length>
+bool best_length(const Filter& filter, ScaleRow* row, Length length) {
+  const State& state = filter.state();
+  row->parts = 0;
+  if (!gauge::contains(state.unobservable, gauge::kScale)) return false;
+  Scalar best = Scalar(0);
+  bool found = false;
+  int tried = 0;
+  for (int s = 0; s < state.slots && tried < tuning::scale::kMaxTried; ++s) {
+    ScaleRow candidate;
+    if (!length(s, &candidate)) continue;
+    ++tried;
+    const Scalar variance = filter.blocks().variance(candidate);
+    if (found && variance >= best) continue;
+    best = variance;
+    found = true;
+    *row = candidate;
+  }
+  return found;
+}
+
 }  // namespace
 
 Mat3 Filter::relative_covariance(int slot, const ScaleRow& l) const {
@@ -118,54 +140,26 @@ bool Filter::scale_candidate(int slot, int* places, ScaleRow* row) const {
 
 /// The best known of a few log lengths. There is none where the scale is observable.
 bool Filter::scale_row(ScaleRow* row) const {
-  row->parts = 0;
-  if (!gauge::contains(state_.unobservable, gauge::kScale)) return false;
   int places = -1;
-  Scalar best = Scalar(0);
-  bool found = false;
-  int tried = 0;
-  for (int s = 0; s < state_.slots && tried < tuning::scale::kMaxTried; ++s) {
-    ScaleRow candidate;
-    if (!scale_candidate(s, &places, &candidate)) continue;
-    ++tried;
-    const Scalar variance = blocks_.variance(candidate);
-    if (found && variance >= best) continue;
-    best = variance;
-    found = true;
-    *row = candidate;
-  }
-  return found;
+  return best_length(*this, row, [&](int slot, ScaleRow* length) { return scale_candidate(slot, &places, length); });
 }
 
 bool find_scale_row(const Filter& filter, ScaleRow* row) {
   const State& state = filter.state();
-  row->parts = 0;
-  if (!gauge::contains(state.unobservable, gauge::kScale)) return false;
-  Scalar best = Scalar(0);
-  bool found = false;
-  int tried = 0;
-  for (int s = 0; s < state.slots && tried < tuning::scale::kMaxTried; ++s) {
-    const ScaleSource source = info(state.block[s].kind).scale;
-    ScaleRow candidate;
-    candidate.parts = 0;
+  return best_length(filter, row, [&](int slot, ScaleRow* length) {
+    const ScaleSource source = info(state.block[slot].kind).scale;
+    length->parts = 0;
     bool has = false;
     if (source == ScaleSource::kOwnRow) {
-      visit(state.block[s].kind, [&](auto kind) { has = decltype(kind)::scale_row(state, s, &candidate); });
+      visit(state.block[slot].kind, [&](auto kind) { has = decltype(kind)::scale_row(state, slot, length); });
     } else if (source == ScaleSource::kDistance) {
-      FarthestPoint farthest = {filter.point(s)};
+      FarthestPoint farthest = {filter.point(slot)};
       for (int t = 0; t < state.slots; ++t)
         if (info(state.block[t].kind).scale == ScaleSource::kDistance) farthest.look_at(t, filter.point(t));
-      has = farthest.add_length(state, s, &candidate);
+      has = farthest.add_length(state, slot, length);
     }
-    if (!has) continue;
-    ++tried;
-    const Scalar variance = filter.blocks().variance(candidate);
-    if (found && variance >= best) continue;
-    best = variance;
-    found = true;
-    *row = candidate;
-  }
-  return found;
+    return has;
+  });
 }
 
 }  // namespace pf
