@@ -185,7 +185,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.footer(kFooter);
   std::string backend = "filter";
   std::string kernels = "auto";
-  std::string lens = "exact";
+  std::string lens = "auto";
   std::string masks = "none";
   std::string timestamps;
   std::vector<double> gravity;
@@ -264,8 +264,10 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "times of frames: real (measured) or nominal (counted); as the calibration says")
       ->type_name("KIND");
   app.add_option("--kernels", kernels, "auto, reference, portable, avx2, avx512 or neon")->capture_default_str();
-  app.add_option("--lens", lens,
-                 "exact, consider or estimate: what to make of errors of the calibration, by its sigma fields")
+  app.add_option(
+         "--lens", lens,
+         "exact, consider or estimate: what to make of errors of the calibration, by its sigma fields; auto: estimate\n"
+         "with the filter, but for what a sim: scene knows, and with an inertial unit that moves the pose")
       ->capture_default_str();
   app.add_option("--masks", masks,
                  "none, partial or whole: templates that learn which of their pixels belong to one plane")
@@ -311,8 +313,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     wrong = "--kernels " + kernels + ": write auto, reference, portable, avx2, avx512 or neon";
   }
   const auto estimate = lens_names.find(lens);
-  if (wrong.empty() && estimate == lens_names.end()) {
-    wrong = "--lens " + lens + ": write exact, consider or estimate";
+  if (wrong.empty() && lens != "auto" && estimate == lens_names.end()) {
+    wrong = "--lens " + lens + ": write auto, exact, consider or estimate";
   }
   const auto mask = mask_names.find(masks);
   if (wrong.empty() && mask == mask_names.end()) {
@@ -329,7 +331,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     return Parsed::kExit;
   }
   options.kernels = set->second;
-  options.lens = estimate->second;
+  if (estimate != lens_names.end()) options.lens = estimate->second;
   options.masks = mask->second;
   options.backend = backend == "window" ? PF_BACKEND_WINDOW : PF_BACKEND_FILTER;
   options.film = !no_film;

@@ -4,6 +4,7 @@
 #include <planefold/planefold.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,7 @@ struct Options {
   int32_t features_in_view = -1;
   pf_kernels_t kernels = PF_KERNELS_AUTO;
   bool planes = true;
-  pf_camera_estimate_t lens = PF_CAMERA_EXACT;
+  std::optional<pf_camera_estimate_t> lens;  ///< none: what Session makes of the calibration
   pf_backend_t backend = PF_BACKEND_FILTER;
   pf_masks_t masks = PF_MASKS_NONE;
   bool keep_gauge = true;

@@ -49,6 +49,16 @@ void put_window(std::string& rows, const MotionWindow& window) {
   }
 }
 
+/// The lens that the pose at this time belongs to.
+void put_lens(std::string& rows, int64_t t_ns, const pf_camera_t& camera) {
+  put_seconds(rows, t_ns);
+  append(rows, ",%.9g,%.9g,%.9g,%.9g", camera.fx, camera.fy, camera.cx, camera.cy);
+  for (int i = 0; i < 5; ++i) {
+    append(rows, ",%.9g", camera.distortion[i]);
+  }
+  rows += '\n';
+}
+
 const char* match_name(int32_t status) {
   constexpr const char* kNames[] = {"unknown", "inlier", "outlier", "missed", "new"};
   return kNames[status >= 0 && status <= 4 ? status : 0];
@@ -101,7 +111,8 @@ bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool tr
   }
   if (!open_map(1, error) || !create(frames_, "frames.csv", error) ||
       (tracks && !create(tracks_, "tracks.csv", error)) || (patches && !create(patches_, "patches.csv", error)) ||
-      (truth && !create(truth_, "truth.tum", error)) || (relative && !create(relative_, "relative.csv", error))) {
+      (truth && !create(truth_, "truth.tum", error)) || (relative && !create(relative_, "relative.csv", error)) ||
+      (camera.estimate == PF_CAMERA_ESTIMATE && !create(lens_, "lens.csv", error))) {
     return false;
   }
   for (const char* name : {"calib.yaml", "map.ply", "map.ply.part", "report.json", "report.json.part"}) {
@@ -123,6 +134,8 @@ bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool tr
     append(relative_.rows(), ",c%d%d", i / 6, i % 6);
   }
   relative_.rows() += ",nees,nees_dof\n";
+  lens_.rows() =
+      "# lens of the poses of tracked frames: timestamp, fx, fy, cx, cy [px], distortion[0] .. distortion[4]\n";
   truth_.rows() = "# true T_WC: timestamp tx ty tz qx qy qz qw\n";
   return true;
 }
@@ -164,6 +177,7 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, const MotionW
       append(covariance, ",%.9g", value);
     }
     covariance += '\n';
+    if (lens_.is_open()) put_lens(lens_.rows(), view.pose.t_ns, view.camera);
   }
   if (truth != nullptr) {
     put_tum(truth_.rows(), *truth);
@@ -190,7 +204,7 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, const MotionW
   bool written = true;
   // The covariance before the trajectory, so that whatever ends the program leaves one for every pose.
   for (TextFile* file :
-       {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &patches_, &truth_, &relative_, &frames_}) {
+       {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &patches_, &truth_, &relative_, &lens_, &frames_}) {
     written = file->write_rows(error) && written;
   }
   return written;

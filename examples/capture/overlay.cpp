@@ -99,9 +99,9 @@ const Canvas& Overlay::draw(const FrameView& view) {
   cairo_rectangle(pen, 0, 0, image_width_, image_height_);
   cairo_clip(pen);
   draw_image(view.image);
-  draw_planes(canvas_, view, session_.config().camera, zoom_, session_.is_metric(), session_.plan().outlines());
+  draw_planes(canvas_, view, view.camera, zoom_, session_.is_metric(), session_.plan().outlines());
   if (view.has_pose) {
-    draw_target(view.pose);
+    draw_target(view);
   }
   draw_patches(view);
   draw_tracks(view);
@@ -125,7 +125,7 @@ void Overlay::draw_hits(const FrameView& view) {
   for (const Hit& hit : view.hits) {
     double pixel[2];
     const Vec3 p_C = to_camera(view.pose, {hit.at.p_W[0], hit.at.p_W[1], hit.at.p_W[2]});
-    if (!view.has_pose || p_C[2] <= 0.0 || !project_row(session_.config().camera, view.pose, p_C, pixel)) {
+    if (!view.has_pose || p_C[2] <= 0.0 || !project_row(view.camera, view.pose, p_C, pixel)) {
       continue;
     }
     const double x = zoom_ * (pixel[0] + 0.5);
@@ -169,7 +169,7 @@ void Overlay::draw_image(const pf_image_t& image) {
 }
 
 /// Outline of the known rectangle where the pose puts it, in short pieces because lenses bend lines.
-void Overlay::draw_target(const pf_pose_t& pose) {
+void Overlay::draw_target(const FrameView& view) {
   const pf_target_t* target = session_.target();
   if (target == nullptr || target->kind != PF_TARGET_RECTANGLE) {
     return;
@@ -184,7 +184,7 @@ void Overlay::draw_target(const pf_pose_t& pose) {
       const Vec3 p_W = {target->width * ((1.0 - s) * kCorners[side][0] + s * kCorners[side + 1][0]),
                         target->height * ((1.0 - s) * kCorners[side][1] + s * kCorners[side + 1][1]), 0.0};
       double pixel[2];
-      if (!project_row(session_.config().camera, pose, to_camera(pose, p_W), pixel)) {
+      if (!project_row(view.camera, view.pose, to_camera(view.pose, p_W), pixel)) {
         cairo_new_path(pen);
         return;
       }

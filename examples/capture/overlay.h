@@ -50,7 +50,7 @@ class Overlay {
   };
 
   void draw_image(const pf_image_t& image);
-  void draw_target(const pf_pose_t& pose);
+  void draw_target(const FrameView& view);
   void draw_patches(const FrameView& view);
   void draw_tracks(const FrameView& view);
   void draw_hits(const FrameView& view);

@@ -16,6 +16,8 @@ namespace {
 constexpr double kSpeedSigma = 0.5;
 constexpr double kRateSigma = 0.5;
 
+constexpr double kExactFocal = 1e-4;  ///< relative; a calibration that states less is taken as exact
+
 constexpr int32_t kWindowFeatures = 150;  ///< in view, with the window
 
 constexpr int32_t kPatchesAlone = 16;  ///< of walls, where there are no points
@@ -34,6 +36,13 @@ void keep_line(void* user, const char* line) {
   lines.emplace_back(line);
 }
 
+/// A calibration is a measurement too, and estimating what it left gains more where it is poor than it costs where it is good
+/// (lib/docs/lens.md). A scene's is exact, and says so.
+pf_camera_estimate_t default_estimate(const pf_config_t& config) {
+  const bool can = config.backend == PF_BACKEND_FILTER && config.motion.model != PF_MOTION_INERTIAL;
+  return can && config.camera.sigma_focal > kExactFocal ? PF_CAMERA_ESTIMATE : PF_CAMERA_EXACT;
+}
+
 }  // namespace
 
 Session::~Session() { std::free(block_); }
@@ -48,7 +57,6 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   std::copy_n(options.gravity_W, 3, gravity_W_);
   config_.camera = source.info().camera;
   if (options.readout_s >= 0.0) config_.camera.readout_s = options.readout_s;
-  config_.camera.estimate = options.lens;
   if (options.timestamps >= 0) config_.camera.timestamps = options.timestamps;
   config_.kernels = options.kernels;
   config_.map.masks = options.masks;
@@ -78,6 +86,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     config_.capacity.max_observations = std::max(config_.capacity.max_observations, config_.map.features_in_view);
   }
   imu.configure(config_);
+  config_.camera.estimate = options.lens.value_or(default_estimate(config_));
   config_.clock_ns = clock_ns;
   config_.log = keep_line;
   config_.user = &log_;
@@ -197,6 +206,7 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   }
   pf_get_report(slam_, &view.report);
   view.has_pose = pf_get_pose(slam_, &view.pose) == PF_OK;
+  pf_get_camera(slam_, &view.camera, nullptr);
   // Tracked: the library says so (in the frame of the start the target alone carries the pose), or, while the depths are not known
   // yet, a pose from at least 8 gated inliers of this very frame.
   view.tracked =

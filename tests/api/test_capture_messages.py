@@ -119,7 +119,7 @@ def test_usage(root):
            f"pose:{written(root, 'two.tum', '0 0 0 0 0 0 0 1' + chr(10) + '1 0 0 0 0 0 0 1')}", *out)
     expect("no pose", 1, ["none.tum"], "--source", source, "--start", f"pose:{root}/none.tum", *out)
     expect("withdrawn", 2, ["--withdraw-target-after"], "--source", source, "--withdraw-target-after", "5")
-    expect("lens", 2, ["--lens", "exact, consider or estimate"], "--source", source, "--lens", "free", *out)
+    expect("lens", 2, ["--lens", "auto, exact, consider or estimate"], "--source", source, "--lens", "free", *out)
     expect("rows of the window", 2, ["--backend window", "camera.readout_s", "--readout 0"], "--source", "sim:desk", "--backend", "window",
            "--readout", "0.02", *out)
     expect("mounting without samples", 2, ["--estimate", "--imu-noise"], "--source", source, "--estimate", "mount", *out)

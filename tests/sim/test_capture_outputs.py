@@ -26,8 +26,8 @@ def require(condition, message):
         fail(message)
 
 
-def capture(out, *arguments):
-    run(PROGRAM, "--source", "sim:desk", "--headless", "--quiet", "--out", out, *arguments)
+def capture(out, *arguments, source="sim:desk"):
+    run(PROGRAM, "--source", source, "--headless", "--quiet", "--out", out, *arguments)
     return json.loads((out / "report.json").read_text())
 
 
@@ -113,6 +113,15 @@ def check_files(out, report):
         require(film.stat().st_size > 10000, "overlay.mp4 is missing or empty")
 
 
+def check_lens(out, report):
+    require(report["lens"]["estimate"] == "estimate", f"the lens is {report['lens']}")
+    lens = [[float(number) for number in row[0].split(",")] for row in rows(out / "lens.csv")]
+    require(len(lens) == report["tracked"] and all(len(row) == 10 for row in lens), f"lens.csv has {len(lens)} rows")
+    for i, name in enumerate(("fx", "fy", "cx", "cy")):
+        error, sigma = abs(lens[-1][1 + i] - report["lens"][name]), report["lens"]["sigma"][name]
+        require(error < 1e-6 * report["lens"][name] and sigma > 0, f"{name}: {lens[-1]} and {report['lens']}")
+
+
 def main():
     if not PROGRAM.is_file():
         skip("pf-capture was not built")
@@ -125,6 +134,12 @@ def main():
         for file in ("trajectory.txt", "covariance.csv", "map.ply"):
             require((root / "a" / file).read_bytes() == (root / "b" / file).read_bytes(), f"{file} differs in a second run")
         require(not (root / "b" / "overlay.mp4").exists(), "--no-film wrote a film")
+        # A scene knows its lens, and its calibration says so; that of another calibration is estimated.
+        require(report["lens"] is None and not (root / "a" / "lens.csv").exists(), "the lens of a scene was estimated")
+        text = (root / "a" / "calib.yaml").read_text()
+        (root / "calib.yaml").write_text("".join(line for line in text.splitlines(True) if not line.startswith("sigma_")))
+        capture(root / "g", "--frames", "40", "--no-film", "--record", root / "recorded")
+        check_lens(root / "f", capture(root / "f", "--no-film", "--calib", root / "calib.yaml", source=f"euroc:{root / 'recorded'}"))
         # A target tells place, turn and scale; without, they are most of what is not known.
         capture(root / "e", "--frames", str(FRAMES), "--no-film")
         shares = share_within_map(root / "a"), share_within_map(root / "e")

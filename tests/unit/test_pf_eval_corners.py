@@ -12,7 +12,7 @@ venv.enter()
 import numpy as np  # noqa: E402
 
 from pf_eval import Refused  # noqa: E402
-from pf_eval.camera import Camera, read_camera  # noqa: E402
+from pf_eval.camera import Camera, camera_of_run, read_camera  # noqa: E402
 from pf_eval.corners import compare_corners, read_target  # noqa: E402
 from pf_eval.files import Trajectory  # noqa: E402
 
@@ -54,6 +54,23 @@ class Corners(unittest.TestCase):
         self.assertAlmostEqual(summary["corner_rms_px"], 5.0, places=5)
         self.assertAlmostEqual(summary["corner_max_px"], 5.0, places=5)
         self.assertAlmostEqual(summary["corner_bias_u_px"], -3.0, places=5)
+
+    def test_corners_should_have_no_error_when_each_pose_goes_with_the_lens_of_its_frame(self):
+        (self.path / "calib.yaml").write_text(
+            "camera_model: pinhole\nwidth: 320\nheight: 240\nfx: 195\nfy: 195\ncx: 162\ncy: 125\ndistortion_model: none\n")
+        lens = [(200.0 + i, 201.0, 160.0, 120.0) for i in range(3)]
+        (self.path / "lens.csv").write_text("# lens\n" + "".join(
+            f"{i / 30:.6f},{','.join(map(str, numbers))},0,0,0,0,0\n" for i, numbers in enumerate(lens)))
+        with open(self.path / "corners.csv", "w") as file:
+            for i, numbers in enumerate(lens):
+                pixels = Camera("none", 320, 240, numbers, []).project(self.target - self.run.p[i])
+                file.write(f"{i},{i / 30:.6f}," + ",".join(f"{value:.6f}" for value in pixels.ravel()) + "\n")
+        camera = camera_of_run({"lens": {"estimate": "estimate"}}, self.path, self.path / "calib.yaml")
+        summary, _ = compare_corners(self.run, camera, self.target, self.path / "corners.csv")
+        self.assertLess(summary["corner_rms_px"], 1e-5)
+        camera = camera_of_run({"lens": None}, self.path, self.path / "calib.yaml")
+        summary, _ = compare_corners(self.run, camera, self.target, self.path / "corners.csv")
+        self.assertGreater(summary["corner_rms_px"], 1.0)
 
     def test_corner_should_count_as_the_diagonal_when_behind_the_camera(self):
         corners = self.write_corners([0, 0])

@@ -105,7 +105,7 @@ typedef enum pf_camera_model {
 typedef enum pf_camera_estimate {
   PF_CAMERA_EXACT = 0,    /* takes them as exact; the default */
   PF_CAMERA_CONSIDER = 1, /* allows for their errors in every covariance, and does not correct them (Schmidt) */
-  PF_CAMERA_ESTIMATE = 2  /* estimates them with pose and map */
+  PF_CAMERA_ESTIMATE = 2  /* estimates them with pose and map: better wherever nobody has measured them well */
 } pf_camera_estimate_t;
 /* Where the times of frames come from. */
 typedef enum pf_timestamps {

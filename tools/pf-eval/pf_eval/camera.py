@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import Refused
-from .files import read_yaml
+from .files import read_numbers, read_yaml
 
 
 class Camera:
@@ -14,6 +14,10 @@ class Camera:
         self.fx, self.fy, self.cx, self.cy = intrinsics
         self.distortion = np.zeros(8)
         self.distortion[:len(distortion)] = distortion
+
+    def at(self, _):
+        """The lens at a time [s]: always the same."""
+        return self
 
     def project(self, p_C):
         """Pixels (n,2) of points in C (n,3); NaN where a point cannot be seen."""
@@ -100,3 +104,22 @@ def read_camera(path):
                       [float(value) for value in intrinsics], [float(value) for value in distortion or []])
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise Refused(f"{path}: a field of the calibration is missing or wrong ({error})") from error
+
+
+class EstimatedCamera:
+    """The lens that a run estimated, over time: a pose belongs to the lens of its frame."""
+
+    def __init__(self, last, rows):
+        """last: the Camera at the end; rows of lens.csv: t, fx, fy, cx, cy, distortion."""
+        self.width, self.height, self.model, self.rows = last.width, last.height, last.model, rows
+
+    def at(self, t):
+        row = self.rows[int(np.argmin(np.abs(self.rows[:, 0] - t)))]
+        return Camera(self.model, self.width, self.height, row[1:5], row[5:])
+
+
+def camera_of_run(report, folder, calibration):
+    """The lens that a run has estimated, or that of the calibration file."""
+    if (report.get("lens") or {}).get("estimate") != "estimate":
+        return read_camera(calibration)
+    return EstimatedCamera(read_camera(folder / "calib.yaml"), read_numbers(folder / "lens.csv", 10, ","))

@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 from . import Refused
-from .camera import read_camera
+from .camera import camera_of_run
 from .corners import compare_corners, read_target
 from .errors import compare
 from .files import read_run, read_tum
@@ -119,7 +119,7 @@ def measure(folder, sequence):
         row["ate"] = compare(forward(run, report), read_tum(sequence / "groundtruth.tum"), "sim3").summary["ate_rmse_m"]
     if (sequence / "target.yaml").exists() and (sequence / "target_corners.csv").exists():
         target_W = read_target(sequence / "target.yaml")
-        camera = read_camera(folder / "calib.yaml")
+        camera = camera_of_run(report, folder, folder / "calib.yaml")
         row["corners"] = compare_corners(run, camera, target_W, sequence / "target_corners.csv")[0]["corner_rms_px"]
     if report.get("there_and_back"):
         row["back"] = compare_passes(run, report, folder)["back_distance_median"]

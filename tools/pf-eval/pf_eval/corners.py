@@ -49,7 +49,7 @@ def compare_corners(run, camera, target_W, corners_path, skip_frames=0):
         if abs(run.t[i] - row[1]) > TOLERANCE:
             continue
         one = run.select(slice(i, i + 1))
-        pixels = camera.project((target_W - one.p) @ one.rotations()[0])
+        pixels = camera.at(row[1]).project((target_W - one.p) @ one.rotations()[0])
         offset = pixels - row[2:].reshape(4, 2)
         distance = np.linalg.norm(offset, axis=1)
         hidden = ~np.isfinite(distance)

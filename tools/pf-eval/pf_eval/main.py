@@ -8,7 +8,7 @@ import sys
 import numpy as np
 
 from . import Refused
-from .camera import read_camera
+from .camera import camera_of_run, read_camera
 from .corners import compare_corners, read_target
 from .errors import compare, default_alignment
 from .files import list_maps, read_map, read_run
@@ -97,13 +97,14 @@ def evaluate_truth(options):
 
 
 def evaluate_corners(options):
-    run, _, folder = read_run(options.run)
+    run, report, folder = read_run(options.run)
     places = [folder / "calib.yaml", pathlib.Path(options.corners).parent / "calib.yaml"]
     calibration = options.calib or next((place for place in places if place.exists()), None)
     if calibration is None:
         raise Refused(f"{places[0]}: there is no such file; give the calibration with --calib")
     target_W = read_target(options.target)
-    summary, rows = compare_corners(run, read_camera(calibration), target_W, options.corners, options.skip_frames)
+    camera = read_camera(options.calib) if options.calib else camera_of_run(report, folder, calibration)
+    summary, rows = compare_corners(run, camera, target_W, options.corners, options.skip_frames)
     if options.per_frame:
         write_rows(options.per_frame, "frame,t_s,TL_px,TR_px,BR_px,BL_px", rows)
     return summary
