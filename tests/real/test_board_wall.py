@@ -90,7 +90,7 @@ def measure(data, folder, plan, start, chosen):
     first.write_text(" ".join(map(str, [times[start], *truth[times[start]], SIGMA_START_M, SIGMA_START_DEG])) + "\n")
     walls.write_text(json.dumps(plan_of(board, *plan)))
     command = [BIN / "pf-capture", "--source", f"images:{data}", "--skip", start, "--start", f"pose:{first}", "--walls", walls,
-               "--out", out, "--headless", "--no-film", "--quiet", *(["--patches", 8] if chosen.points else ["--no-points"])]
+               "--out", out, "--headless", "--no-film", "--quiet", "--lens", chosen.lens, *(["--patches", 8] if chosen.points else ["--no-points"])]
     if not chosen.as_published:
         (folder / "calib.yaml").write_text(CALIBRATION)
         command += ["--calib", folder / "calib.yaml"]
@@ -131,6 +131,7 @@ arguments = argparse.ArgumentParser()
 arguments.add_argument("--table", action="store_true")
 arguments.add_argument("--points", action="store_true")
 arguments.add_argument("--as-published", action="store_true")
+arguments.add_argument("--lens", default="exact")
 arguments.add_argument("--truth")
 asked = arguments.parse_args()
 skip_in_cross_builds()
