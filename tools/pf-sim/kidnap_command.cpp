@@ -20,7 +20,7 @@ constexpr double kFiveSigma = 5.733e-7;  // probability that a normal variable l
 constexpr double kRounding = 1e-6;       // of a ratio of standard deviations
 
 struct Choices {
-  std::string source, start = "auto", json_file;
+  std::string source, start = "auto", lens = "estimate", json_file;
   int every = 8, jobs = 2, random_frames = 700, random_runs = 4;
   std::uint64_t seed = 1;
 };
@@ -202,6 +202,7 @@ int run(const Choices& c) {
   std::string error;
   if (!read_start(c.start, &options.has_target, &options.target, &error)) return fail(error);
   if (!film.open(c.source, &error) || !config_for(film, &options.config, &error)) return fail(error);
+  options.config.camera.estimate = c.lens == "estimate" ? PF_CAMERA_ESTIMATE : PF_CAMERA_EXACT;
   Context context(options.config);
   Reference reference;
   if (!context.slam || !play_reference(film, options, context, &reference))
@@ -226,7 +227,7 @@ int run(const Choices& c) {
     return fail("a run did not come to its end", 1);
   json out = summarise(job);
   out["experiment"] = "kidnap";
-  out["settings"] = {{"source", c.source}, {"start", c.start}, {"every", c.every}, {"seed", c.seed}};
+  out["settings"] = {{"source", c.source}, {"start", c.start}, {"lens", c.lens}, {"every", c.every}, {"seed", c.seed}};
   out["reference"] = {{"frames", film.frames()}, {"tracked", tracked}, {"judged_by", truths}, {"starts", starts}};
   if (!c.json_file.empty() && !write_json(c.json_file, out)) return fail("cannot write " + c.json_file, 1);
   return 0;
@@ -240,6 +241,9 @@ void add_kidnap(CLI::App& app, int& result) {
       "kidnap", "Black pictures, other places and random order on real frames: what is believed after them");
   command->add_option("--source", c->source, "images:DIR, euroc:DIR or tum:DIR")->required();
   command->add_option("--start", c->start, "auto or target:FILE");
+  command->add_option("--lens", c->lens, "exact, or estimate as pf-capture does by default")
+      ->check(CLI::IsMember({"exact", "estimate"}))
+      ->capture_default_str();
   command->add_option("--every", c->every, "frames between the frames at which trials begin");
   command->add_option("--random-frames", c->random_frames, "of each run in random order");
   command->add_option("--random-runs", c->random_runs, "runs in random order");
