@@ -45,6 +45,18 @@ Trajectory room_path(Random& random) {
   return spline(vary(points, random, 0.03), 0.9);
 }
 
+Trajectory corridor_path(Random& random) {
+  std::vector<Waypoint> points = {{{0.02, 0.0, -0.70}, {0, 0, 0}},     {{0.20, -0.05, -0.72}, {0, 0, 0}},
+                                  {{0.32, -0.08, -0.85}, {0.1, 0, 0}}, {{0.38, -0.08, -0.95}, {0.6, 0, 0}},
+                                  {{0.45, -0.06, -1.0}, {1.2, 0, 0}},  {{0.55, -0.05, -1.05}, {2.0, 0, -0.2}}};
+  for (int k = 0; k < 14; ++k) {
+    const double along = 0.8 + 0.7 * k;
+    points.push_back({{along, 0.02 * (k % 3) - 0.04, -1.05 + 0.08 * std::sin(1.3 * k)},
+                      {along + 2.5, 0.05 * std::sin(k), -1.05 + 0.9 * std::cos(0.9 * k)}});
+  }
+  return spline(vary(points, random, 0.03), 0.9);
+}
+
 Trajectory wall_path(Random& random) {
   const std::vector<Waypoint> points = {{{0.02, 0.0, -0.7}, {0, 0, 0}},       {{0.22, -0.05, -0.68}, {0, 0, 0}},
                                         {{0.32, -0.1, -0.7}, {0.05, 0, 0}},   {{0.15, -0.15, -0.85}, {-0.05, 0, 0}},

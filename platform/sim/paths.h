@@ -8,6 +8,8 @@ namespace pf::sim {
 /// seed moves the way points by a few centimetres.
 Trajectory desk_path(Random& random);
 Trajectory room_path(Random& random);
+/// Ten metres along the corridor, looking ahead and to both sides.
+Trajectory corridor_path(Random& random);
 Trajectory wall_path(Random& random);
 /// Sideways at a constant speed, 0.8 m before two planes in a checkerboard.
 Trajectory checker_path(Random& random);

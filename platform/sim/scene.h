@@ -40,6 +40,8 @@ struct SceneOptions {
 
 /// A table with a box that carries the target, books, a monitor and papers; a wall behind, one beside, the floor.
 Scene make_desk(Random& random, const SceneOptions& options);
+/// A corridor of 2 m x 17 m with posters and doors; the target on one of its long walls.
+Scene make_corridor(Random& random, const SceneOptions& options);
 /// A closed room of 4 m x 4 m x 2.6 m with pictures, cupboards and boxes; the target on one wall.
 Scene make_room(Random& random, const SceneOptions& options);
 /// One large wall with the target on it.

@@ -57,6 +57,7 @@ void adjust_ride(pf_sim_options_t* o) {
 const SceneKind kScenes[] = {
     {"desk", make_desk, desk_path, 570, nullptr},
     {"room", make_room, room_path, 840, nullptr},
+    {"corridor", make_corridor, corridor_path, 480, nullptr},
     {"wall", make_wall, wall_path, 390, nullptr},
     {"rotation", make_desk, turning_path, 300, [](pf_sim_options_t* o) { o->shake_m = 0; }},
     {"person", make_room, room_path, 840, [](pf_sim_options_t* o) { o->person = 1; }},

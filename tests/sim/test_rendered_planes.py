@@ -1,4 +1,4 @@
-"""pf-sim rendered on the textured room: its walls are found where they are, and nothing else is called a plane."""
+"""pf-sim rendered on the textured room and along a corridor: walls are found where they are, and points are folded into the right ones."""
 
 import json
 import pathlib
@@ -18,6 +18,8 @@ def require(condition, message):
 
 with tempfile.TemporaryDirectory() as folder:
     report = pathlib.Path(folder) / "report.json"
+    run(BIN / "pf-sim", "rendered", "--scene", "corridor", "--seeds", SEEDS, "--frames", FRAMES, "--jobs", 2, "--json", report)
+    corridor = json.loads(report.read_text())["cases"]["corridor"]
     run(BIN / "pf-sim", "rendered", "--scene", "room", "--seeds", SEEDS, "--first-seed", FIRST_SEED, "--frames", FRAMES,
         "--jobs", 2, "--max-features", 300, "--max-state-dim", 800, "--max-planes", 16, "--json", report)
     case = json.loads(report.read_text())["cases"]["room"]
@@ -40,3 +42,8 @@ for one in planes["each_run"]:
 missed = case["innovations"]["point"]["match_rms_px"]
 print(f"matches of points of the map against the truth: {missed:.3f} px RMS")
 require(missed < 0.075, f"matches of points of the map miss by {missed:.3f} px RMS")
+folds = corridor["folds"]
+print(f"corridor: {folds}; planes found {corridor['planes']['found']} of {corridor['planes']['wanted']}")
+require(corridor["lost_runs"] == 0, "a run in the corridor was lost")
+require(folds["due"] >= 40 and folds["share"] >= 0.7, f"of {folds['due']} points that lie on a wall with others {folds['share']:.1%} are folded in time")
+require(folds["wrong_share"] <= 0.02, f"{folds['wrong_share']:.2%} of the points on planes are on a wrong one")

@@ -305,7 +305,7 @@ int run(const Choices& c) {
 void add_rendered(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("rendered", "Honesty of the whole library on rendered frames");
-  command->add_option("--scene", c->scene, "desk room wall person exposure repeat bushes road");
+  command->add_option("--scene", c->scene, "desk room corridor wall person exposure repeat bushes road");
   command->add_option("--start", c->starts,
                       "rectangle: found by itself; points: its corners, about a pose from its prior");
   command->add_option("--seeds", c->seeds, "how many runs");

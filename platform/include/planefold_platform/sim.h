@@ -10,6 +10,7 @@
  *
  * Scenes: desk      hand-held look around a desk that carries the target
  *         room      the same through a room of 4 m
+ *         corridor  17 m with posters and doors, walked along
  *         wall      one textured wall
  *         rotation  the camera only turns (no depth can be known)
  *         person    the room, with somebody walking through the picture
