@@ -14,20 +14,11 @@ namespace pf::capture {
 
 namespace {
 
-/// A scene knows its lens: the least standard deviations that a calibration may state.
-void state_exact(pf_camera_t& camera) {
-  camera.sigma_focal = 1e-5;
-  camera.sigma_aspect = 1e-6;
-  camera.sigma_centre_px = 1e-3;
-  std::fill(std::begin(camera.sigma_distortion), std::end(camera.sigma_distortion), 0.0);
-}
-
 class SimSource : public Source {
  public:
   SimSource(pf_sim_t* sim, const pf_sim_options_t& options, const std::string& scene)
       : sim_(sim, pf_sim_close), scene_(scene), seed_(options.seed) {
     pf_sim_camera(sim, &info_.camera);
-    state_exact(info_.camera);
     info_.count = options.frames;
     info_.rate_hz = options.rate_hz;
     info_.knows_truth = true;

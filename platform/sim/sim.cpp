@@ -211,6 +211,10 @@ void pf_sim_close(pf_sim_t* sim) { delete sim; }
 void pf_sim_camera(const pf_sim_t* sim, pf_camera_t* camera) {
   *camera = sim->options.camera;
   camera->readout_s = sim->options.readout_s;
+  camera->sigma_focal = 1e-5;
+  camera->sigma_aspect = 1e-6;
+  camera->sigma_centre_px = 1e-3;
+  std::fill(std::begin(camera->sigma_distortion), std::end(camera->sigma_distortion), 0.0);
 }
 
 void pf_sim_rewind(pf_sim_t* sim) {

@@ -147,7 +147,8 @@ void add_render(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("render", "Render a scene: images, times, calibration, target, truth");
   command
-      ->add_option("scene", c->scene, "desk room corridor wall rotation person exposure repeat box checker clutter bushes road")
+      ->add_option("scene", c->scene,
+                   "desk room corridor wall rotation person exposure repeat box checker clutter bushes road")
       ->required();
   command->add_option("--out", c->out, "folder to write")->required();
   command->add_option("--seed", c->seed, "of scene, path and noise");

@@ -77,6 +77,7 @@ const char* pf_sim_scene_name(int32_t index);
 pf_sim_t* pf_sim_open(const char* scene, const pf_sim_options_t* options);
 void pf_sim_close(pf_sim_t* sim);
 
+/* A scene knows its lens: with the least standard deviations that a calibration may state. */
 void pf_sim_camera(const pf_sim_t* sim, pf_camera_t* camera);
 
 /* 1 and the next frame, or 0 at the end. The pixels stay valid until the next call. truth (may be null): the camera at
