@@ -169,8 +169,8 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
   if (!filter_.body_is_sound()) start_over();
 }
 
-/// A match along a ray whose depth is open passes nearly everywhere, so chance cannot be computed while fewer features have a depth of
-/// their own than a tracked frame needs. A map as young as that is tracked from frame to frame, and not found again after a gap.
+/// A match along a ray whose depth is open passes nearly everywhere, so not every right frame is beyond chance while fewer features have a
+/// depth of their own than a tracked frame needs. A map as young as that is tracked from frame to frame, and not found again after a gap.
 ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
   if (start_.progress().pending()) return ConsensusRule::kStart;
   const double gap_s = seconds(elapsed_ns(tracking_.last_tracked_ns(), t_ns));

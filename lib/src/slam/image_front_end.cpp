@@ -214,7 +214,7 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
     } else if (frame_.report.inliers == 0) {
       least = settings_.min_inliers;
       accepted = inliers >= least &&
-                 (rule == ConsensusRule::kMostAgree ? most_agree(first, found) : is_beyond_chance(first, found));
+                 ((rule == ConsensusRule::kMostAgree && most_agree(first, found)) || is_beyond_chance(first, found));
     }
     // A match that all the others contradict supports nothing.
     if (accepted) accepted = update_.reject_contradicted(first, found, &nis) >= least;

@@ -18,7 +18,7 @@ namespace pf {
 /// When a frame's consensus is believed.
 enum class ConsensusRule {
   kStart,         ///< five agree: there is no map yet that could be spoilt
-  kMostAgree,     ///< at least eight, and half of what was searched for: the map is too young to compute chance
+  kMostAgree,     ///< as below, or at least eight and half of what was searched for: the map is too young to show more
   kBeyondChance,  ///< at least eight, far more than chance would give
 };
 
