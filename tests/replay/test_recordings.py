@@ -34,6 +34,9 @@ def record_and_replay(root):
     if first["tracked"] < 50 or again["frames"] != 60:
         fail(f"tracked {first['tracked']} frames, replayed {again['frames']}")
     expect_same(root / "a", root / "b", "a recording of every frame")
+    capture(root / "w", "--source", "sim:desk", "--frames", "60", "--backend", "window")
+    capture(root / "v", "--source", f"euroc:{root}/all", "--backend", "window")
+    expect_same(root / "w", root / "v", "the window on a recording")
     result = subprocess.run([PROGRAM, *QUIET, "--source", "sim:desk", "--record", root / "all", "--out", root / "c"], text=True,
                             capture_output=True, check=False)
     if result.returncode != 1 or "recording already" not in result.stderr:

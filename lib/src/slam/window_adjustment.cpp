@@ -24,7 +24,11 @@ bool WindowAdjustment::layout(Arena& arena) {
   rho_ = arena.take<Scalar>(points);
   prior_ = arena.take<RhoPrior>(points);
   row_ = arena.take<int>(points);
-  return adjuster_.layout(arena, static_cast<int>(poses), settings_.window_keyframes, settings_.max_features);
+  plane_ = arena.take<BundlePlane>(static_cast<std::size_t>(settings_.max_planes));
+  plane_row_ = arena.take<int>(static_cast<std::size_t>(settings_.max_planes));
+  plane_of_ = arena.take<int>(points);
+  return adjuster_.layout(arena, static_cast<int>(poses), settings_.window_keyframes, settings_.max_features,
+                          settings_.max_planes);
 }
 
 /// Whether two keyframes at least see points of the target, which then holds the map where it is.
@@ -143,9 +147,11 @@ void WindowAdjustment::put_target_back() {
 bool WindowAdjustment::run() {
   const int free = choose_free();
   if (free < 1) return false;
-  const int points = choose_points(free);
-  if (points < kMinPoints) return false;
-  const int seen_in = choose_fixed(free, points);
+  const int seen = choose_points(free);
+  if (seen < kMinPoints) return false;
+  const int seen_in = choose_fixed(free, seen);
+  const bool has_scale = seen_in - free >= kMinScaleKeyframes || is_held_by_target();
+  const int points = has_scale ? add_plane_points(seen) : seen;
   int poses = seen_in;
   for (int c = 0; c < seen_in; ++c) {
     const Keyframe& k = map_.keyframes[keyframe_[c]];
@@ -161,7 +167,9 @@ bool WindowAdjustment::run() {
   }
   const Scalar mean = squares / sum;
   std::fill(prior_, prior_ + points, RhoPrior{mean, kPriorSigma * mean});
+  hold_by_pixels(seen, points);
   add_target(points, &poses);
+  const int planes = has_scale ? add_planes(points) : 0;
   const int rounds = map_.keyframes.count() <= settings_.window_keyframes ? kFirstRounds : kRounds;
   const AdjustOptions options = {std::max(noise_.sigma_gate(), kMinSigma),
                                  kHuber,
@@ -170,13 +178,15 @@ bool WindowAdjustment::run() {
                                  kBehindWeight,
                                  kNoPixelPenalty,
                                  rounds};
-  const Bundle bundle = {pose_, poses, ray_, host_, rho_, points, prior_};
+  const Bundle bundle = {pose_,  poses,  ray_,   host_,  rho_,
+                         points, prior_, plane_, planes, planes > 0 ? plane_of_ : nullptr};
   adjuster_.adjust(settings_.camera, options, bundle);
   // The last free pose is the newest keyframe's.
   Mat6 P;
-  if (adjuster_.last_pose_covariance(settings_.camera, options, bundle, &P))
-    map_covariance_ = noise_.correlation_frames() * (P + P.transpose()) / 2;
+  const bool determined = adjuster_.last_pose_covariance(settings_.camera, options, bundle, &P);
+  if (determined) map_covariance_ = noise_.correlation_frames() * (P + P.transpose()) / 2;
   take_back(free, points);
+  take_planes_back(planes, determined);
   return true;
 }
 
@@ -219,22 +229,27 @@ void WindowAdjustment::reject_outliers(int i) {
   }
 }
 
-Scalar WindowAdjustment::variance_of(int i) const {
+/// By one step of Gauss-Newton from where the point is:  rho + sum J.r / sum J²,  variance sigma² / sum J².
+WindowAdjustment::PixelDepth WindowAdjustment::depth_by_pixels(int i) const {
   const WindowPoint& point = map_.point(i);
   const Keyframe& host = map_.keyframes[point.host];
   const Vec3 ray_W = map_.ray_W(i);
-  Scalar information = 0;
+  Scalar information = 0, gradient = 0;
   for (int k = 0; k < map_.keyframes.capacity(); ++k) {
-    if (k == point.host || !map_.keyframes.used(k) || !map_.keyframes.pixels(k)[i].seen) continue;
+    const BundlePixel& pixel = map_.keyframes.pixels(k)[i];
+    if (k == point.host || !map_.keyframes.used(k) || !pixel.seen) continue;
     const Keyframe& keyframe = map_.keyframes[k];
     Vec2 z, J_rho;
     Mat26 J_C;
-    if (project_bearing(settings_.camera, keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, point.rho,
-                        &z, &J_C, nullptr, &J_rho))
-      information += J_rho.squaredNorm();
+    if (!project_bearing(settings_.camera, keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, point.rho,
+                         &z, &J_C, nullptr, &J_rho))
+      continue;
+    information += J_rho.squaredNorm();
+    gradient += J_rho.dot(pixel.pixel() - z);
   }
+  if (!(information > Scalar(0))) return {point.rho, Scalar(0)};
   const Scalar sigma = noise_.sigma_info();
-  return information > Scalar(0) ? sigma * sigma / information : Scalar(0);
+  return {point.rho + gradient / information, sigma * sigma / information};
 }
 
 }  // namespace pf

@@ -3,16 +3,18 @@
 #include "slam/noise_model.h"
 #include "slam/start.h"
 #include "slam/window_map.h"
+#include "slam/window_planes.h"
 #include "window/adjust.h"
 
-/// Adjusts the newest keyframes and the points that they see, with older keyframes that see the same points held fixed.
+/// Adjusts the newest keyframes and the points that they see, with older keyframes that see the same points held fixed. Points on a plane
+/// are held to it, and the plane is adjusted with them.
 
 namespace pf {
 
 class WindowAdjustment {
  public:
-  WindowAdjustment(const Settings& settings, WindowMap& map, const NoiseModel& noise)
-      : settings_(settings), map_(map), noise_(noise) {}
+  WindowAdjustment(const Settings& settings, WindowMap& map, WindowPlanes& planes, const NoiseModel& noise)
+      : settings_(settings), map_(map), planes_(planes), noise_(noise) {}
 
   bool layout(Arena& arena);
   void init() {
@@ -30,9 +32,14 @@ class WindowAdjustment {
     target_ = target;
   }
   /// Variance of a point's inverse depth by the pixels of the keyframes, which are taken as exact; 0 where none says anything.
-  Scalar variance_of(int i) const;
+  Scalar variance_of(int i) const { return depth_by_pixels(i).variance; }
 
  private:
+  struct PixelDepth {
+    Scalar rho, variance;
+  };
+
+  PixelDepth depth_by_pixels(int i) const;
   bool is_held_by_target() const;
   int choose_free();
   int choose_points(int free);
@@ -41,11 +48,17 @@ class WindowAdjustment {
   void fill(int seen_in, int points, int* poses);
   void add_target(int points, int* poses);
   void put_target_back();
+  int add_plane_points(int points);
+  bool fits_plane(const BundlePlane& plane, int i) const;
+  int add_planes(int points);
+  void hold_by_pixels(int first, int points);
   void take_back(int free, int points);
+  void take_planes_back(int planes, bool determined);
   void reject_outliers(int i);
 
   const Settings& settings_;
   WindowMap& map_;
+  WindowPlanes& planes_;
   const NoiseModel& noise_;
   BundleAdjuster adjuster_;
   Mat6 map_covariance_ = Mat6::Zero();
@@ -61,6 +74,9 @@ class WindowAdjustment {
   Scalar* rho_ = nullptr;
   RhoPrior* prior_ = nullptr;
   int* row_ = nullptr;  ///< of each point in the map
+  BundlePlane* plane_ = nullptr;
+  int* plane_row_ = nullptr;  ///< of each plane in the table
+  int* plane_of_ = nullptr;   ///< plane of each point, or -1
 };
 
 }  // namespace pf

@@ -25,7 +25,11 @@ void WindowPlanes::maintain(const Vec3& viewer_W) {
   for (int k = 0; k < table_.capacity(); ++k) {
     if (!table_.used(k)) continue;
     ++table_[k].age;
-    refit(k);
+    if (plane_[k].adjusted)
+      drop_distant_points(k);
+    else
+      refit(k);
+    plane_[k].adjusted = false;
     take_points(k);
     outline(k);
   }
@@ -83,16 +87,32 @@ void WindowPlanes::set_frame(int k, const PlaneFrame& frame) {
       known->uv[i] = plane_coordinates(frame, plane_point(from, Vec3::Zero(), known->uv[i]));
 }
 
-/// Fits a plane to its points again, without those that have left it.
-///
-///   covariance of (a, b, h) = sum J_i (Sigma_i + roughness² n nᵀ) J_iᵀ,   J_i of fit_plane_jacobian
-void WindowPlanes::refit(int k) {
-  const PlaneFrame old = plane_[k].frame;
-  const Vec3 n_old = old.R_WP.col(2);
-  int count = list_points(k), kept = 0;
+bool WindowPlanes::take_adjusted(int k, const Vec3& x, const Mat3& covariance) {
+  const PlaneFrame& old = plane_[k].frame;
+  PlaneFrame frame;
+  Vec3 n, zero;
+  Scalar d;
+  Mat3 J;
+  plane_normal(old, x, &n, &d);
+  if (!(n.dot(old.R_WP.col(2)) > same::kMinNormalCosine)) return false;
+  frame.o_W = plane_point(old, x, Vec2::Zero());
+  frame.R_WP.col(0) = (old.R_WP.col(0) - n * n.dot(old.R_WP.col(0))).normalized();
+  frame.R_WP.col(1) = n.cross(frame.R_WP.col(0));
+  frame.R_WP.col(2) = n;
+  if (!reframe_plane(old, x, frame, &zero, &J)) return false;
+  set_frame(k, frame);
+  plane_[k].covariance = J.lazyProduct(covariance).lazyProduct(J.transpose());
+  plane_[k].adjusted = true;
+  return true;
+}
+
+/// Takes points off a plane that they have left, and lists the others. Returns how many stay.
+int WindowPlanes::drop_distant_points(int k) {
+  const PlaneFrame& frame = plane_[k].frame;
+  const int count = list_points(k);
+  int kept = 0;
   for (int c = 0; c < count; ++c) {
-    const Scalar d = n_old.dot(point_W_[c] - old.o_W);
-    if (std::abs(d) > 3 * settings_.plane_distance) {
+    if (std::abs(plane_distance(frame, Vec3::Zero(), point_W_[c])) > 3 * settings_.plane_distance) {
       map_.point(row_[c]).plane = -1;
       ++table_[k].outliers;
       continue;
@@ -100,6 +120,16 @@ void WindowPlanes::refit(int k) {
     row_[kept] = row_[c];
     point_W_[kept++] = point_W_[c];
   }
+  return kept;
+}
+
+/// Fits a plane to its points again, without those that have left it.
+///
+///   covariance of (a, b, h) = sum J_i (Sigma_i + roughness² n nᵀ) J_iᵀ,   J_i of fit_plane_jacobian
+void WindowPlanes::refit(int k) {
+  const PlaneFrame old = plane_[k].frame;
+  const Vec3 n_old = old.R_WP.col(2);
+  const int kept = drop_distant_points(k);
   PlaneFit fit;
   if (kept < same::kMinPoints || !fit_plane(point_W_, kept, old.o_W + n_old, &fit)) return;
   const Mat3 axes = fit.frame.R_WP;
@@ -178,7 +208,7 @@ void WindowPlanes::discover(const Vec3& viewer_W) {
   for (int m = 0; m < number; ++m) members[m] = row_[members[m]];
   const int k = table_.add(0);
   if (k < 0) return;
-  plane_[k] = {fit.frame, Mat3::Identity() * (settings_.plane_distance * settings_.plane_distance)};
+  plane_[k] = {fit.frame, Mat3::Identity() * (settings_.plane_distance * settings_.plane_distance), false};
   for (int m = 0; m < number; ++m) put_on(k, members[m]);
   refit(k);
   outline(k);

@@ -12,7 +12,8 @@ namespace pf {
 /// Beside its row in the plane table, with the same number. The plane lies in its frame.
 struct WindowPlane {
   PlaneFrame frame;
-  Mat3 covariance = Mat3::Zero();  ///< of (a, b, h), keyframes taken as exact
+  Mat3 covariance = Mat3::Zero();  ///< of (a, b, h), given the keyframes that the last adjustment held fixed
+  bool adjusted = false;           ///< the adjustment of this keyframe has set it
 };
 
 class WindowPlanes {
@@ -28,8 +29,15 @@ class WindowPlanes {
 
   const WindowPlane& plane(int k) const { return plane_[k]; }
   int points_on(int k) const;
+  bool used(int k) const { return table_.used(k); }
+  int capacity() const { return table_.capacity(); }
+
+  /// Takes what an adjustment says of a plane: (a, b, h) about its frame, and their covariance. The plane gets a frame that it lies in.
+  /// False where it has turned too far to be the same plane; nothing changes.
+  bool take_adjusted(int k, const Vec3& x, const Mat3& covariance);
 
  private:
+  int drop_distant_points(int k);
   void refit(int k);
   bool is_settled(int i, Mat3* covariance) const;
   bool lies_on(int k, const Vec3& p_W, const Mat3& covariance) const;

@@ -92,7 +92,7 @@ class WindowSlam {
   WindowMotion motion_{settings_};
   WindowPlanes planes_{settings_, map_};
   WindowTracking measuring_{settings_, map_, planes_, frame_, motion_, noise_};
-  WindowAdjustment adjustment_{settings_, map_, noise_};
+  WindowAdjustment adjustment_{settings_, map_, planes_, noise_};
   WindowRelocaliser relocaliser_{settings_, motion_, measuring_};
   WindowStart start_{settings_, {map_, frame_, tracking_, motion_, measuring_, adjustment_}};
   Data data_;

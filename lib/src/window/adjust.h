@@ -130,7 +130,7 @@ class BundleAdjuster {
   Scalar rho_step(int point) const;
 
   /// Covariance of (theta, p) of the last free pose, the points, the planes and the other free poses marginalised.
-  /// False when something that is adjusted is not determined.
+  /// False when something that is adjusted is not determined; else as after begin_covariances().
   bool last_pose_covariance(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, Mat6* covariance);
 
   /// Prepares the covariances below: those of all that is adjusted, about where the bundle is, with what is fixed taken as
