@@ -172,6 +172,10 @@ std::string check(const Options& options, const std::string& backend) {
   if (backend != "filter" && backend != "window") {
     return "--backend " + backend + ": write filter or window";
   }
+  if (backend != "window" && (options.window_keyframes >= 0 || options.window_fixed >= 0)) {
+    return std::string(options.window_keyframes >= 0 ? "--window-keyframes" : "--window-fixed") +
+           " needs --backend window";
+  }
   return "";
 }
 

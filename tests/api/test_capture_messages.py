@@ -90,6 +90,8 @@ def test_usage(root):
     expect("libcamera without calibration", 1, ["libcamera:0", "--calib"], "--source", "libcamera:0")
     expect("format of libcamera", 2, ["--format", "RGB888"], "--source", "libcamera:0", "--format", "MJPEG")
     expect("format", 2, ["--format", "MJPEG"], "--source", "v4l2:/dev/video0", "--format", "RGB")
+    expect("keyframes of the filter", 2, ["--window-keyframes", "--backend window"], "--source", source, "--window-keyframes", "4")
+    expect("fixed keyframes of the filter", 2, ["--window-fixed", "--backend window"], "--source", source, "--window-fixed", "0")
     expect("every frame of a folder", 2, ["--every-frame", "--realtime"], "--source", source, "--every-frame")
     expect("skip of a camera", 2, ["--skip"], "--source", "v4l2:/dev/video0", "--skip", "3")
     expect("no direction", 2, ["--gravity", "0,1,0"], "--source", source, "--gravity", "0,0,0")

@@ -6,6 +6,7 @@
 #include "base/elapsed.h"
 #include "geometry/lens_deviation.h"
 #include "slam/feature_upkeep.h"
+#include "slam/frame_entry.h"
 #include "slam/tuning.h"
 #include "slam/usable_pose.h"
 
@@ -56,22 +57,16 @@ void FrameLoop::init() {
 }
 
 Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
-  if (!is_next(t_ns)) return Status::kTime;
-  const bool duplicate = frozen_.is_duplicate(image, t_ns);
-  if (duplicate) count_frame(&frame_.report.duplicates);
-  if (duplicate && !tracking_.coasting_or_lost() && frozen_.frozen_ns(t_ns) <= settings_.max_coast_ns)
-    return repeat_frame(t_ns);
+  const FrameEntry entry = enter_frame(settings_, image, t_ns, &frozen_, &frame_, &tracking_);
+  if (entry == FrameEntry::kLate || entry == FrameEntry::kRepeated) return entry_status(entry, tracking_);
   begin_frame(t_ns);
   if (tracking_.started_over()) return end_frame();
-  bool usable = !duplicate;  // where a frozen camera is now, nobody knows
+  bool usable = entry == FrameEntry::kNew;
   if (usable) {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPyramid]);
     usable = images_.begin_frame(image);
   }
-  if (!usable) {
-    const Status status = end_frame();
-    return status == Status::kLost || status == Status::kStarting ? status : Status::kUnusable;
-  }
+  if (!usable) return unusable_status(end_frame());
   data_.image_usable = true;
   tracking_.note_usable_image(data_.since_last_ns);
   // W is the plan's as long as there are walls: a new map would begin somewhere else.
@@ -111,7 +106,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
 
 Status FrameLoop::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
   if (start_.takes_images_only()) return Status::kState;
-  if (!is_next(t_ns)) return Status::kTime;
+  if (!is_next_frame(frame_, t_ns)) return Status::kTime;
   begin_frame(t_ns);
   if (tracking_.started_over()) return end_frame();
   if (!tracking_.has_pose()) start_.start_with_observations();
@@ -138,13 +133,6 @@ Status FrameLoop::add_wall(const PlanePrior& prior, std::uint32_t* id) {
       planes_.add_wall(prior, reserved, tracking_.state() == SlamState::kTracking, data_.filter_ns, id);
   if (status == Status::kOk) start_.end_record();
   return status;
-}
-
-/// The last pose and status again, under a new time. The next prediction begins where this one did not go on.
-Status FrameLoop::repeat_frame(std::int64_t t_ns) {
-  frame_.begin(t_ns);
-  tracking_.repeat(t_ns);
-  return tracking_.state() == SlamState::kTracking ? Status::kOk : Status::kStarting;
 }
 
 /// Begins the report and predicts the body to the new time.

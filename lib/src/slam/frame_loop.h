@@ -83,9 +83,7 @@ class FrameLoop {
     Scalar median_depth = 1;  ///< of the inliers of the last tracked frame
   };
 
-  bool is_next(std::int64_t t_ns) const { return frame_.report.frames == 0 || t_ns > frame_.report.t_ns; }
   void begin_frame(std::int64_t t_ns);
-  Status repeat_frame(std::int64_t t_ns);
   Status end_frame();
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
   bool look_for_rest();

@@ -5,6 +5,7 @@
 
 #include "base/elapsed.h"
 #include "slam/feature_upkeep.h"
+#include "slam/frame_entry.h"
 #include "slam/tuning.h"
 #include "slam/window_corners.h"
 #include "slam/window_depth.h"
@@ -40,22 +41,16 @@ void WindowSlam::init() {
 }
 
 Status WindowSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
-  if (!is_next(t_ns)) return Status::kTime;
-  const bool duplicate = frozen_.is_duplicate(image, t_ns);
-  if (duplicate) count_frame(&frame_.report.duplicates);
-  if (duplicate && !tracking_.coasting_or_lost() && frozen_.frozen_ns(t_ns) <= settings_.max_coast_ns)
-    return repeat_frame(t_ns);
+  const FrameEntry entry = enter_frame(settings_, image, t_ns, &frozen_, &frame_, &tracking_);
+  if (entry == FrameEntry::kLate || entry == FrameEntry::kRepeated) return entry_status(entry, tracking_);
   begin_frame(t_ns);
   if (tracking_.started_over()) return end_frame();
-  bool usable = !duplicate;  // where a frozen camera is now, nobody knows
+  bool usable = entry == FrameEntry::kNew;
   if (usable) {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPyramid]);
     usable = measuring_.begin_frame(image);
   }
-  if (!usable) {
-    const Status status = end_frame();
-    return status == Status::kLost || status == Status::kStarting ? status : Status::kUnusable;
-  }
+  if (!usable) return unusable_status(end_frame());
   tracking_.note_usable_image(data_.since_last_ns);
   if (tracking_.needs_new_map(settings_.restart_ns))
     begin_new_map("not found again for too long: the old map is discarded, a new map begins");
@@ -69,13 +64,6 @@ Status WindowSlam::mark_pose() {
   const Body& body = motion_.body();
   data_.mark = {true, frame_.report.t_ns, body.q_WC, body.p_W, motion_.pose_covariance()};
   return Status::kOk;
-}
-
-/// The last pose and status again, under a new time. The next prediction begins where this one did not go on.
-Status WindowSlam::repeat_frame(std::int64_t t_ns) {
-  frame_.begin(t_ns);
-  tracking_.repeat(t_ns);
-  return tracking_.state() == SlamState::kTracking ? Status::kOk : Status::kStarting;
 }
 
 /// Begins the report and predicts the body to the new time.

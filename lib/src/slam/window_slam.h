@@ -68,9 +68,7 @@ class WindowSlam {
     bool warned_of_noise = false;
   };
 
-  bool is_next(std::int64_t t_ns) const { return frame_.report.frames == 0 || t_ns > frame_.report.t_ns; }
   void begin_frame(std::int64_t t_ns);
-  Status repeat_frame(std::int64_t t_ns);
   Status end_frame();
   void measure();
   void maintain_map();

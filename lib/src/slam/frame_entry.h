@@ -1,0 +1,46 @@
+#pragma once
+
+#include "slam/frame.h"
+#include "slam/frozen_camera.h"
+#include "slam/settings.h"
+#include "slam/tracking_state.h"
+
+/// What both back ends do with an image before its frame begins, and what an image without use ends with.
+
+namespace pf {
+
+enum class FrameEntry : std::uint8_t {
+  kLate,      ///< not after the last frame: refused
+  kRepeated,  ///< the image before again: so are its pose and status, under the new time
+  kFrozen,    ///< likewise, for so long that nobody knows where the camera is now
+  kNew
+};
+
+inline bool is_next_frame(const Frame& frame, std::int64_t t_ns) {
+  return frame.report.frames == 0 || t_ns > frame.report.t_ns;
+}
+
+/// Of kRepeated the frame is done. The next prediction begins where this one did not go on.
+inline FrameEntry enter_frame(const Settings& settings, const ImageView& image, std::int64_t t_ns, FrozenCamera* frozen,
+                              Frame* frame, TrackingState* tracking) {
+  if (!is_next_frame(*frame, t_ns)) return FrameEntry::kLate;
+  if (!frozen->is_duplicate(image, t_ns)) return FrameEntry::kNew;
+  count_frame(&frame->report.duplicates);
+  if (tracking->coasting_or_lost() || frozen->frozen_ns(t_ns) > settings.max_coast_ns) return FrameEntry::kFrozen;
+  frame->begin(t_ns);
+  tracking->repeat(t_ns);
+  return FrameEntry::kRepeated;
+}
+
+/// Of a frame that is late or repeated.
+inline Status entry_status(FrameEntry entry, const TrackingState& tracking) {
+  if (entry == FrameEntry::kLate) return Status::kTime;
+  return tracking.state() == SlamState::kTracking ? Status::kOk : Status::kStarting;
+}
+
+/// Of a frame whose image was of no use, from the status that it ended with.
+inline Status unusable_status(Status ended) {
+  return ended == Status::kLost || ended == Status::kStarting ? ended : Status::kUnusable;
+}
+
+}  // namespace pf
