@@ -41,6 +41,7 @@ static void test_every_call_should_refuse_null(void) {
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_start_from_target(NULL, &target));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_start_from_pose(NULL, &pose, out));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_withdraw_target(NULL));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_set_second_pose(NULL, 1, &pose));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_push_frame(NULL, &image));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_push_observations(NULL, 1, NULL, 0));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_push_control(NULL, three, three));

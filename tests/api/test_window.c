@@ -1,4 +1,5 @@
 /* The window: what it refuses, what its block takes, and that it repeats itself. */
+#include <math.h>
 #include <planefold/planefold.h>
 #include <string.h>
 
@@ -83,10 +84,39 @@ static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) 
   TEST_ASSERT_EQUAL_INT(PF_NOTE_STARTING, pf_push_frame(slam, &image));
 }
 
+static void test_second_pose_should_be_refused_where_it_says_nothing(void) {
+  static uint8_t block[2u << 20] __attribute__((aligned(64)));
+  static uint8_t pixels[640 * 480];
+  const pf_image_t image = {pixels, 640, 480, 640, 1000};
+  pf_slam_t* slam = NULL;
+  pf_pose_t pose;
+  memset(&pose, 0, sizeof(pose));
+  memset(pixels, 128, sizeof(pixels));
+  pose.q_WC[0] = 1;
+  for (int i = 0; i < 6; ++i) pose.covariance[7 * i] = 1e-6;
+  good_config();
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block, sizeof(block), &slam));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_RANGE, pf_set_second_pose(slam, 2000, &pose));
+  pose.p_WC[0] = 0.01, pose.covariance[21] = 0.02 * 0.02;
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_RANGE, pf_set_second_pose(slam, 2000, &pose));
+  pose.covariance[21] = 1e-6, pose.p_WC[0] = NAN;
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NONFINITE, pf_set_second_pose(slam, 2000, &pose));
+  pose.p_WC[0] = 0.3;
+  TEST_ASSERT_EQUAL_INT(PF_NOTE_STARTING, pf_push_frame(slam, &image));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_TIME, pf_set_second_pose(slam, 1000, &pose));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_set_second_pose(slam, 2000, &pose));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_set_second_pose(slam, 3000, &pose));
+  good_config();
+  config.backend = PF_BACKEND_FILTER;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block, sizeof(block), &slam));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_set_second_pose(slam, 2000, &pose));
+}
+
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_check_should_name_what_the_window_cannot_do);
   RUN_TEST(test_block_should_take_two_mebibytes_at_most);
   RUN_TEST(test_calls_of_the_filter_should_be_refused_and_change_nothing);
+  RUN_TEST(test_second_pose_should_be_refused_where_it_says_nothing);
   return UNITY_END();
 }

@@ -101,6 +101,17 @@ pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const dou
   return pf::to_c(slam->session.start_from_pose(known));
 }
 
+pf_status_t pf_set_second_pose(pf_slam_t* slam, int64_t t_ns, const pf_pose_t* pose) {
+  PF_REQUIRE_IDLE(slam);
+  if (pose == nullptr) return PF_ERROR_NULL;
+  pf::Body body;
+  const pf_status_t status = body_from(*pose, &body);
+  if (status != PF_OK) return status;
+  const double* P = pose->covariance;
+  const Scalar sigma = static_cast<Scalar>(std::sqrt(P[21] + P[28] + P[35]));
+  return pf::to_c(slam->session.set_second_pose(t_ns, body.p_W, sigma));
+}
+
 pf_status_t pf_withdraw_target(pf_slam_t* slam) {
   PF_REQUIRE_IDLE(slam);
   slam->session.withdraw_target();

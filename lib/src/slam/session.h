@@ -36,6 +36,10 @@ class Session {
   Status add_wall(const PlanePrior& prior, std::uint32_t* id) {
     return filter_ != nullptr ? filter_->add_wall(prior, id) : Status::kState;
   }
+  /// kState: with the filter, or the scale is known already.
+  Status set_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
+    return window_ != nullptr ? window_->use_second_pose(t_ns, p_W, sigma) : Status::kState;
+  }
   void withdraw_target() { map_.target_withdrawn = true; }
 
   // --- what comes in

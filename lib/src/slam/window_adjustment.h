@@ -26,6 +26,11 @@ class WindowAdjustment {
   bool run();
   /// Of the newest keyframe's (theta, p), and with it of the map about it, given the keyframes that were held fixed.
   const Mat6& map_covariance() const { return map_covariance_; }
+  /// The map's lengths were multiplied by s.
+  void scale(Scalar s) {
+    map_covariance_.bottomRows<3>() *= s;
+    map_covariance_.rightCols<3>() *= s;
+  }
   /// The target's points are where it says from now on. seen_from: any pose in front of them.
   void hold_target(const CameraView& seen_from, const Target& target) {
     target_view_ = seen_from;

@@ -119,4 +119,13 @@ void WindowMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* bo
   *covariance = data.P.topLeftCorner<6, 6>();
 }
 
+void WindowMotion::scale(Scalar s, const Vec3& c_W) {
+  data_.body.p_W = c_W + s * (data_.body.p_W - c_W);
+  data_.body.v_W *= s;
+  for (int part : {3, 6}) {  // p and v
+    data_.P.middleRows<3>(part) *= s;
+    data_.P.middleCols<3>(part) *= s;
+  }
+}
+
 }  // namespace pf

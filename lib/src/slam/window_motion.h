@@ -35,6 +35,8 @@ class WindowMotion {
     data_.body.q_WC = q_WC;
     data_.body.p_W = p_W;
   }
+  /// Multiplies lengths by s about a place that stays.
+  void scale(Scalar s, const Vec3& c_W);
   /// Sets the pose's covariance alone, and forgets how it hangs on the velocities.
   void set_pose_covariance(const Mat6& pose);
 

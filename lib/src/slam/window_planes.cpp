@@ -106,6 +106,18 @@ bool WindowPlanes::take_adjusted(int k, const Vec3& x, const Mat3& covariance) {
   return true;
 }
 
+void WindowPlanes::scale(Scalar s, const Vec3& c_W) {
+  for (int k = 0; k < table_.capacity(); ++k) {
+    if (!table_.used(k)) continue;
+    WindowPlane& plane = plane_[k];
+    plane.frame.o_W = c_W + s * (plane.frame.o_W - c_W);
+    plane.covariance.row(2) *= s;
+    plane.covariance.col(2) *= s;
+    for (PlaneOutline* known : {&table_[k].seen, &table_[k].support})
+      for (int i = 0; i < known->count; ++i) known->uv[i] *= s;
+  }
+}
+
 /// Takes points off a plane that they have left, and lists the others. Returns how many stay.
 int WindowPlanes::drop_distant_points(int k) {
   const PlaneFrame& frame = plane_[k].frame;

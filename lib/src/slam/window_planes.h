@@ -31,6 +31,8 @@ class WindowPlanes {
   int points_on(int k) const;
   bool used(int k) const { return table_.used(k); }
   int capacity() const { return table_.capacity(); }
+  /// Multiplies lengths by s about a place.
+  void scale(Scalar s, const Vec3& c_W);
 
   /// Takes what an adjustment says of a plane: (a, b, h) about its frame, and their covariance. The plane gets a frame that it lies in.
   /// False where it has turned too far to be the same plane; nothing changes.

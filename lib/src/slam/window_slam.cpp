@@ -9,6 +9,7 @@
 #include "slam/tuning.h"
 #include "slam/window_corners.h"
 #include "slam/window_depth.h"
+#include "slam/window_scale.h"
 #include "window/tuning.h"
 
 namespace pf {
@@ -56,6 +57,7 @@ Status WindowSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
     begin_new_map("not found again for too long: the old map is discarded, a new map begins");
   measure();
   maintain_map();
+  if (start_.second_pose().given && t_ns >= start_.second_pose().t_ns) scale_by_second_pose();
   return end_frame();
 }
 
@@ -172,6 +174,35 @@ void WindowSlam::adjust() {
   motion_.move(newest.q_WC, newest.p_W);
   // During a start the map may begin again; ids of planes found before would then name nothing.
   if (settings_.planes && !start_.progress().recording) planes_.maintain(newest.p_W);
+}
+
+Status WindowSlam::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
+  if (!is_next_frame(frame_, t_ns)) return Status::kTime;
+  if (!((p_W - start_.first_place_W()).norm() > sigma)) return Status::kRange;
+  return start_.use_second_pose(t_ns, p_W);
+}
+
+/// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known, its
+/// place is the solved record's.
+void WindowSlam::scale_by_second_pose() {
+  const SecondPose second = start_.second_pose();
+  if (start_.progress().pending()) return;
+  const Vec3 first_W = start_.first_place_W();
+  const bool is_now = frame_.report.t_ns == second.t_ns && tracking_.is_tracked(frame_.report);
+  const Vec3 at_W = is_now ? motion_.body().p_W : second.estimate_W;
+  const Scalar moved = (at_W - first_W).norm();
+  const Scalar scale = (second.p_W - first_W).norm() / moved;
+  start_.end_second_pose();
+  if (!(is_now || second.estimated) || !(moved > kMinSecondShift * data_.median_depth) || !std::isfinite(scale)) {
+    settings_.hooks.say("the second pose gives no scale: its frame was not tracked, or the camera had not moved");
+    return;
+  }
+  scale_window(scale, first_W, &map_, &planes_, &motion_);
+  adjustment_.scale(scale);
+  relocaliser_.init();
+  data_.median_depth *= scale;
+  if (data_.mark.is_set) data_.mark = Mark();
+  settings_.hooks.say("the scale is that of the second pose");
 }
 
 void WindowSlam::learn_noise() {

@@ -33,6 +33,8 @@ class WindowSlam {
   Status mark_pose();
 
   WindowStart& start() { return start_; }
+  /// Of the frame that comes at t_ns. kTime: it has been. kState: the scale is known. kRange: it is where the camera was first.
+  Status use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma);
 
   const Frame& frame() const { return frame_; }
   const TrackingState& tracking() const { return tracking_; }
@@ -76,6 +78,7 @@ class WindowSlam {
   bool wants_keyframe() const;
   void add_keyframe();
   void adjust();
+  void scale_by_second_pose();
   void learn_noise();
   bool is_pose_usable();
   void begin_new_map(const char* why);

@@ -35,6 +35,7 @@ void WindowStart::start_over() {
   clear_map();
   without_.init();
   data_.known = KnownBody();
+  data_.second = SecondPose();
   if (parts_.map.tables().target_withdrawn) target_.init();
 }
 
@@ -46,6 +47,7 @@ void WindowStart::clear_map() {
 }
 
 Status WindowStart::use_target(const Target& target) {
+  if (data_.second.given) return Status::kState;
   if (data_.known.given && target.kind == TargetKind::kRectangle) return Status::kState;
   target_.set_target(target);
   return Status::kOk;
@@ -56,6 +58,20 @@ Status WindowStart::use_pose(const KnownBody& known) {
   data_.known = known;
   data_.known.given = true;
   return Status::kOk;
+}
+
+Status WindowStart::use_second_pose(std::int64_t t_ns, const Vec3& p_W) {
+  if (target_.target().kind != TargetKind::kNone || data_.second.given) return Status::kState;
+  data_.second = SecondPose();
+  data_.second.given = true;
+  data_.second.t_ns = t_ns;
+  data_.second.p_W = p_W;
+  return Status::kOk;
+}
+
+void WindowStart::end_second_pose() {
+  data_.second = SecondPose();
+  without_.init();
 }
 
 /// The pose before the first measurement: the one that the caller gave, that of the target, or the one that defines the world.
@@ -223,6 +239,11 @@ void WindowStart::take_record() {
                       without_.base_p_W() + without_.base_q_WC() * record.frame(k).p_W};
   };
   const CameraView now = pose_of(last);
+  for (int k = 0; k <= last && data_.second.given; ++k) {
+    if (record.frame(k).t_ns != data_.second.t_ns) continue;
+    data_.second.estimated = true;
+    data_.second.estimate_W = pose_of(k).c_W;
+  }
   WindowMap& map = parts_.map;
   for (int i = 0; i < map.capacity(); ++i) {
     if (!map.used(i)) continue;

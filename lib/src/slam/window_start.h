@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "slam/second_pose.h"
 #include "slam/start.h"
 #include "slam/start_at_target.h"
 #include "slam/start_without_target.h"
@@ -32,6 +33,13 @@ class WindowStart {
 
   Status use_target(const Target& target);
   Status use_pose(const KnownBody& known);
+  /// kState: the scale is known already.
+  Status use_second_pose(std::int64_t t_ns, const Vec3& p_W);
+  const SecondPose& second_pose() const { return data_.second; }
+  /// Where the camera was first, as the caller knows it or as it defines W.
+  Vec3 first_place_W() const { return data_.known.given ? data_.known.body.p_W : Vec3::Zero(); }
+  /// The second pose has been used, or cannot be. A record that goes on ends, and the map keeps its scale.
+  void end_second_pose();
   const StartProgress& progress() const { return without_.progress(); }
 
   /// Sets the pose of the first frame and makes it a keyframe. False: not possible in this frame.
@@ -55,6 +63,7 @@ class WindowStart {
 
   struct Data {
     KnownBody known;
+    SecondPose second;
     int solved_before = 0;  ///< frames since the record had a solution
   };
 

@@ -1,0 +1,21 @@
+#include "slam/window_scale.h"
+
+namespace pf {
+
+void scale_window(Scalar s, const Vec3& c_W, WindowMap* map, WindowPlanes* planes, WindowMotion* motion) {
+  const auto move = [&](Vec3* p_W) { *p_W = c_W + s * (*p_W - c_W); };
+  for (int k = 0; k < map->keyframes.capacity(); ++k)
+    if (map->keyframes.used(k)) move(&map->keyframes[k].p_W);
+  for (int i = 0; i < map->capacity(); ++i) {
+    if (!map->used(i)) continue;
+    WindowPoint& point = map->point(i);
+    point.rho /= s;
+    point.variance /= s * s;
+    move(&point.seen_from.c_W);
+    move(&map->tables().first_view(i).c_W);
+  }
+  planes->scale(s, c_W);
+  motion->scale(s, c_W);
+}
+
+}  // namespace pf
