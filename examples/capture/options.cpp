@@ -176,6 +176,12 @@ std::string check(const Options& options, const std::string& backend) {
     return std::string(options.window_keyframes >= 0 ? "--window-keyframes" : "--window-fixed") +
            " needs --backend window";
   }
+  if (!options.second_pose.empty() && backend != "window") {
+    return "--second-pose needs --backend window";
+  }
+  if (!options.second_pose.empty() && options.start != "auto" && options.start.rfind("pose:", 0) != 0) {
+    return "--second-pose: a target gives the scale already; write --start auto or pose:FILE";
+  }
   return "";
 }
 
@@ -217,6 +223,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--start", options.start,
                  "auto, pose:FILE, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
       ->capture_default_str();
+  app.add_option(
+      "--second-pose", options.second_pose,
+      "of the window: file (TUM) with the pose of a later frame at its time; its distance from the first is the scale");
   app.add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start (JSON)");
   app.add_option("--patches", options.patches, "patches of walls that are followed, beside points")
       ->check(CLI::Range(0, 32));

@@ -21,9 +21,10 @@ struct Options {
   std::string source;
   std::string calibration;
   std::string start = "auto";
-  std::string walls;   ///< file of a plan; "": none
-  int patches = -1;    ///< of walls that are followed; negative: none beside points, kPatchesAlone without
-  bool points = true;  ///< false: patches of walls alone
+  std::string second_pose;  ///< file of a second known pose; "": none
+  std::string walls;        ///< file of a plan; "": none
+  int patches = -1;         ///< of walls that are followed; negative: none beside points, kPatchesAlone without
+  bool points = true;       ///< false: patches of walls alone
   std::string out = "out/capture";
   int64_t withdraw_target_after = -1;
   int64_t frames = -1;

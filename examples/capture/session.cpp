@@ -124,6 +124,12 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     error = message;
     return false;
   }
+  has_second_pose_ =
+      !options.second_pose.empty() && pf_read_first_pose(options.second_pose.c_str(), &second_pose_, message) == 0;
+  if (!options.second_pose.empty() && !has_second_pose_) {
+    error = message;
+    return false;
+  }
   pf_status_t status = pf_memory_query(&config_, &memory_);
   if (status == PF_OK && posix_memalign(&block_, memory_.alignment, memory_.bytes) != 0) {
     error = "no " + std::to_string(memory_.bytes) + " bytes of memory left for the map; lower --max-state-dim";
@@ -169,6 +175,13 @@ bool Session::begin(std::string& error) {
     const pf_status_t status = pf_start_from_pose(slam_, &pose_, velocity_covariance);
     if (status < 0) {
       error = "--start " + start_ + ": the pose was refused: " + pf_status_text(status);
+      return false;
+    }
+  }
+  if (has_second_pose_) {
+    const pf_status_t status = pf_set_second_pose(slam_, second_pose_.t_ns, &second_pose_);
+    if (status < 0) {
+      error = std::string("--second-pose: the pose was refused: ") + pf_status_text(status);
       return false;
     }
   }

@@ -60,6 +60,8 @@ class Session {
   bool has_target_ = false;
   pf_pose_t pose_{};  ///< of the first frame
   bool has_pose_ = false;
+  bool has_second_pose_ = false;
+  pf_pose_t second_pose_{};
   Plan plan_;
   bool has_gravity_ = false;
   double gravity_W_[3] = {0.0, 0.0, 0.0};

@@ -198,6 +198,11 @@ pf_pose_t parse_first_pose(const std::string& text, const std::string& file) {
            "neither");
   }
   pf_pose_t pose{};
+  constexpr double kMaxSeconds = 9e9;
+  if (!(std::fabs(number[0]) < kMaxSeconds)) {
+    refuse(file + ": the time of the pose is no time in seconds");
+  }
+  pose.t_ns = static_cast<int64_t>(std::llround(number[0] * 1e9));
   double norm = 0.0;
   for (size_t i = 4; i < 8; ++i) {
     norm += number[i] * number[i];

@@ -92,6 +92,10 @@ def test_usage(root):
     expect("format", 2, ["--format", "MJPEG"], "--source", "v4l2:/dev/video0", "--format", "RGB")
     expect("keyframes of the filter", 2, ["--window-keyframes", "--backend window"], "--source", source, "--window-keyframes", "4")
     expect("fixed keyframes of the filter", 2, ["--window-fixed", "--backend window"], "--source", source, "--window-fixed", "0")
+    expect("second pose of the filter", 2, ["--second-pose", "--backend window"], "--source", source, "--second-pose", "x.tum")
+    expect("second pose with a target", 2, ["--second-pose", "target"], "--source", source, "--second-pose", "x.tum", "--start", "rectangle:0.2x0.1",
+           "--backend", "window")
+    expect("no second pose", 1, ["x.tum"], "--source", source, "--second-pose", "/nowhere/x.tum", "--backend", "window")
     expect("every frame of a folder", 2, ["--every-frame", "--realtime"], "--source", source, "--every-frame")
     expect("skip of a camera", 2, ["--skip"], "--source", "v4l2:/dev/video0", "--skip", "3")
     expect("no direction", 2, ["--gravity", "0,1,0"], "--source", source, "--gravity", "0,0,0")

@@ -400,11 +400,12 @@ PF_API pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* targ
  * first camera. PF_ERROR_RANGE: a standard deviation below 1e-9, or numbers that are no covariance. */
 PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]);
 
-/* Says where the camera is in the frame at t_ns, which is still to come: its distance from the first camera (that of pf_start_from_pose,
- * else the origin of W) is the scale, and the map is scaled about the first camera in that frame, or when the depths are known. Of the pose
- * the position counts; nothing is scaled, and the log says so, where the frame does not come, is not tracked, or the camera has hardly
- * moved. A mark (pf_mark_pose) is lost. PF_ERROR_STATE: with PF_BACKEND_FILTER, with a target, or while another one is waited for.
- * PF_ERROR_TIME: the frame is not after the last one. PF_ERROR_RANGE: it is nearer to the first place than its own standard deviation. */
+/* Says where the camera is in the frame at t_ns (to a millisecond), which is still to come: its distance from the first camera (that of
+ * pf_start_from_pose, else the origin of W) is the scale, and the map is scaled about the first camera in that frame, or when the depths
+ * are known. Of the pose the position counts. Poses that were told before keep the old scale, and a mark (pf_mark_pose) is lost. Nothing is
+ * scaled, and the log says so, where the frame does not come, is not tracked, or the camera has hardly moved. PF_ERROR_STATE: with
+ * PF_BACKEND_FILTER, with a target, or while another one is waited for. PF_ERROR_TIME: the frame is not after the last one.
+ * PF_ERROR_RANGE: it is nearer to the first place than its own standard deviation. */
 PF_API pf_status_t pf_set_second_pose(pf_slam_t* slam, int64_t t_ns, const pf_pose_t* pose);
 
 /* Stops measuring the target's own points; they stay in the map. */

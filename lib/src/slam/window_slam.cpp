@@ -57,7 +57,7 @@ Status WindowSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
     begin_new_map("not found again for too long: the old map is discarded, a new map begins");
   measure();
   maintain_map();
-  if (start_.second_pose().given && t_ns >= start_.second_pose().t_ns) scale_by_second_pose();
+  if (start_.second_pose().given && start_.second_pose().has_come(t_ns)) scale_by_second_pose();
   return end_frame();
 }
 
@@ -188,7 +188,7 @@ void WindowSlam::scale_by_second_pose() {
   const SecondPose second = start_.second_pose();
   if (start_.progress().pending()) return;
   const Vec3 first_W = start_.first_place_W();
-  const bool is_now = frame_.report.t_ns == second.t_ns && tracking_.is_tracked(frame_.report);
+  const bool is_now = second.is_frame(frame_.report.t_ns) && tracking_.is_tracked(frame_.report);
   const Vec3 at_W = is_now ? motion_.body().p_W : second.estimate_W;
   const Scalar moved = (at_W - first_W).norm();
   const Scalar scale = (second.p_W - first_W).norm() / moved;

@@ -240,7 +240,7 @@ void WindowStart::take_record() {
   };
   const CameraView now = pose_of(last);
   for (int k = 0; k <= last && data_.second.given; ++k) {
-    if (record.frame(k).t_ns != data_.second.t_ns) continue;
+    if (!data_.second.is_frame(record.frame(k).t_ns)) continue;
     data_.second.estimated = true;
     data_.second.estimate_W = pose_of(k).c_W;
   }

@@ -89,6 +89,7 @@ namespace window_slam {
 inline constexpr Scalar kMinParallax = Scalar(0.0349);      ///< [rad] 2 degrees, Masoud 2015
 inline constexpr Scalar kKeyframeShift = Scalar(0.06);      ///< since the last keyframe, in median depths
 inline constexpr Scalar kKeyframeTurn = Scalar(0.15);       ///< likewise [rad]
+inline constexpr int kMaxSecondNs = 1000000;                ///< [ns] of a second pose from its frame, as files round
 inline constexpr Scalar kMinSecondShift = Scalar(0.015);    ///< of a second pose from the first, in median depths
 inline constexpr Scalar kFewPoints = Scalar(0.6);           ///< of map.features_in_view
 inline constexpr Scalar kMinKeyframeShift = Scalar(0.015);  ///< of a keyframe that comes for few points
