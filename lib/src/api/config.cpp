@@ -264,8 +264,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->inverse_depth_relative_sigma = static_cast<Scalar>(config.first_depth.relative_sigma);
   settings->linearity_index = static_cast<Scalar>(config.first_depth.linearity_index);
   settings->features_in_view = config.map.features_in_view;
-  settings->min_inliers =
-      std::clamp(config.map.features_in_view / 2, tuning::tracking::kMinInliersOfFew, tuning::tracking::kMinInliers);
+  settings->min_inliers = std::clamp<int>(config.map.features_in_view / 2, tuning::tracking::kMinInliersOfFew,
+                                          tuning::tracking::kMinInliers);
   settings->border_px = config.map.border_px;
   settings->max_coast_ns = static_cast<std::int64_t>(config.motion.coast_s * 1e9);
   settings->restart_ns = static_cast<std::int64_t>(config.motion.restart_s * 1e9);
