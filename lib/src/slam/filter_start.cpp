@@ -182,12 +182,17 @@ void FilterStart::set_known_pose(bool at_target, const TargetSighting* sighting)
       covariance[i * dim + j] =
           at_target ? target.first_covariance(i, j) : (i == j ? kDefinedSigma * kDefinedSigma : Scalar(0));
   set_start_velocities(kStartSpeed * (at_target ? Scalar(1) : settings_.start_depth));
-  // A pose that was fitted to pixels is wrong where the lens is: rows of the pose, and none of the velocities.
+  begin_body(at_target ? target.first_pose : Body(), sighting != nullptr ? &sighting->pose : nullptr);
+}
+
+/// A pose that was fitted to pixels of the target is wrong where the lens is: rows of the pose, and none of the velocities.
+void FilterStart::begin_body(const Body& body, const PoseEstimate* at_target) {
   Scalar J_lens[BodyLayout::kMaxDynamicRows * kLensParameters] = {};
+  const Target& target = target_.target();
   const LensRows& rows = parts_.filter.state().lens_rows;
-  const bool by_lens = sighting != nullptr && rows.count > 0 &&
-                       pose_by_lens(settings_.camera, target.point_W, target.count, sighting->pose, rows, J_lens);
-  set_body(at_target ? target.first_pose : Body(), covariance, by_lens ? J_lens : nullptr);
+  const bool by_lens = at_target != nullptr && rows.count > 0 &&
+                       pose_by_lens(settings_.camera, target.point_W, target.count, *at_target, rows, J_lens);
+  set_body(body, data_.covariance, by_lens ? J_lens : nullptr);
 }
 
 void FilterStart::start_with_observations() {
@@ -221,20 +226,22 @@ bool FilterStart::start_in_image() {
     parts_.frame.add({i, f.id, MatchStatus::kInlier, BlockKind::kPoint, false, z, Mat2::Zero(), z, Scalar(0)});
   }
   report.attempts = report.matches = report.inliers;
+  if (!settings_.inertial && !parts_.map.planes.has_known()) without_.begin_check();
   parts_.tracking.set_from_target();
   settings_.hooks.say("started at the target");
   return true;
 }
 
 void FilterStart::begin_record() {
-  if (!progress().recording || !without_.empty()) return;
+  if (!is_recording() || !without_.empty()) return;
   if (data_.known.given) note_covariance();
   const CameraAt camera = camera_at(parts_.filter.state(), Scalar(0));
   without_.begin_record(camera.q_WC, camera.p_W, parts_.frame.report.t_ns);
   for (int t = 0; t < parts_.frame.match_count(); ++t) {
     const Match& match = parts_.frame.match(t);
     Vec3 ray_C;
-    if (match.status != MatchStatus::kNew || match.feature < 0) continue;
+    if (match.feature < 0) continue;
+    if (match.status != MatchStatus::kNew && !parts_.map.features[match.feature].is_target) continue;
     if (unproject(settings_.camera, match.measured, &ray_C)) without_.add_feature(match.id, ray_C);
   }
 }
@@ -253,7 +260,7 @@ Vec2 FilterStart::at_frame_time(int slot, const Vec2& measured) const {
 }
 
 void FilterStart::record_frame() {
-  if (!progress().recording || without_.empty() || parts_.frame.report.inliers < settings_.min_inliers) return;
+  if (!is_recording() || without_.empty() || parts_.frame.report.inliers < settings_.min_inliers) return;
   const CameraAt camera = camera_at(parts_.filter.state(), Scalar(0));
   without_.begin_frame(camera.q_WC, camera.p_W, parts_.frame.report.t_ns);
   for (int t = 0; t < parts_.frame.match_count(); ++t) {
@@ -264,17 +271,22 @@ void FilterStart::record_frame() {
                        at_frame_time(parts_.map.features[match.feature].slot, match.measured));
   }
   const bool first = !progress().depth_known;
-  switch (without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth)) {
+  const StartOutcome outcome = without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth);
+  switch (outcome) {
     case StartOutcome::kWait:
       break;
     case StartOutcome::kSolved:
     case StartOutcome::kSettled:
+      if (progress().checking) {
+        check_depths(outcome == StartOutcome::kSettled);
+        break;
+      }
       restart_from_record();
       if (first) settings_.hooks.say("started without a target: the first depths are known");
       break;
     case StartOutcome::kTooFew:
       // Only rotation so far, or too few features in view: the world stays, and the record begins again with this frame.
-      if (first) parts_.features.drop_all();
+      if (first && progress().recording) parts_.features.drop_all();
       break;
   }
 }

@@ -66,6 +66,7 @@ class FilterStart {
   const StartProgress& progress() const { return without_.progress(); }
 
   /// While a start without a target is under way: records the frame's pixels, and restarts the filter when the record gives better depths.
+  /// After one at a target: likewise, until the record's depths show that the filter's are right, or wrong.
   void record_frame();
   /// Begins an empty record with the features that this frame has added.
   void begin_record();
@@ -84,6 +85,7 @@ class FilterStart {
   void end_record() { without_.init(); }
 
  private:
+  bool is_recording() const { return progress().recording || progress().checking; }
   void set_body(const Body& body, const Scalar* known, const Scalar* J_lens = nullptr);
   bool may_begin_anew(std::int64_t begin_ns) const;
   bool needs_record() const;
@@ -91,10 +93,15 @@ class FilterStart {
   void note_covariance();
   void set_known_pose(bool at_target, const TargetSighting* sighting = nullptr);
   Vec2 at_frame_time(int slot, const Vec2& measured) const;
+  void begin_body(const Body& body, const PoseEstimate* at_target);
+  void check_depths(bool settled);
+  Scalar unit_of_record() const;
+  bool most_depths_agree() const;
   void restart_from_record();
   void restart_features();
   void restart_frame(int k, std::int64_t before_ns);
   void restart_velocities();
+  void restart_at_target();
 
   /// What is kept between frames.
   struct Data {
@@ -103,6 +110,7 @@ class FilterStart {
     bool knows_scale = false;   ///< a target, walls or a known speed tell it
     bool from_motion = false;   ///< lengths are in metres since the samples of a moving camera told them
     std::int64_t begin_ns = 0;  ///< when the body got its first pose
+    Scalar unit = 1;            ///< of the record's lengths, in those of W
     Scalar covariance[BodyLayout::kVelocityRows * BodyLayout::kVelocityRows] = {};  ///< of the body at the first frame
   };
 

@@ -13,13 +13,17 @@ using namespace tuning::filter_start;
 
 /// Restarts the filter at the record's frame 0 with the bundle's depths as wide priors, and repeats the recorded frames with every
 /// linearisation at the bundle's poses and with residuals of zero. That moves no mean, and leaves the covariance that the recorded
-/// pixels support.
+/// pixels support. At a target its points are left out of that, since the record's unit of length is only as good as the bundle's depths of
+/// them; their pixels in the last frame correct the mean.
 void FilterStart::restart_from_record() {
   Body body;
   body.q_WC = without_.base_q_WC();
   body.p_W = without_.base_p_W();
   clear_filter();
-  set_body(body, data_.covariance);
+  PoseEstimate at_target;
+  at_target.q_WC = body.q_WC;
+  at_target.p_WC = body.p_W;
+  begin_body(body, progress().checking ? &at_target : nullptr);
   // The bundle's solution holds for the calibration as it was given, so residuals of zero say nothing about it.
   parts_.filter.consider_lens(true);
   restart_features();
@@ -30,6 +34,50 @@ void FilterStart::restart_from_record() {
   }
   parts_.filter.consider_lens(false);
   if (settings_.body.has(BodyPart::kVelocity)) restart_velocities();
+  if (progress().checking) restart_at_target();
+}
+
+/// After a start at a target: where the record tells other depths than the filter has found, the filter has settled in a wrong
+/// explanation of the first frames, and begins again with those of the record (lib/docs/starting.md).
+void FilterStart::check_depths(bool settled) {
+  data_.unit = unit_of_record();
+  if (!(data_.unit > Scalar(0))) return;
+  const bool agree = most_depths_agree();
+  if (!agree) {
+    restart_from_record();
+    settings_.hooks.say(
+        "the first depths were wrong: the map begins again at the target, with those of all frames since");
+  }
+  if (agree || settled) without_.init();
+}
+
+/// W's lengths per length of the record: the ratio of the sums of distances of the target's points. Zero where the bundle has none of them.
+Scalar FilterStart::unit_of_record() const {
+  Scalar distances = 0, of_record = 0;
+  for (int i = 0; i < parts_.map.features.capacity(); ++i) {
+    const Feature& f = parts_.map.features[i];
+    const int index = parts_.map.features.used(i) && f.is_target ? without_.index_of(f.id) : -1;
+    if (index < 0 || !without_.bundle().good(index)) continue;
+    distances += (target_.target().point_W[f.external_id] - without_.base_p_W()).norm();
+    of_record += without_.record().ray(index).norm() / without_.bundle().rho(index);
+  }
+  return of_record > Scalar(0) ? distances / of_record : Scalar(0);
+}
+
+/// Whether for most features the filter and the record tell about the same distance from the first frame.
+bool FilterStart::most_depths_agree() const {
+  int compared = 0, agree = 0;
+  for (int i = 0; i < parts_.map.features.capacity(); ++i) {
+    const Feature& f = parts_.map.features[i];
+    const int index = parts_.map.features.used(i) && !f.is_target ? without_.index_of(f.id) : -1;
+    if (index < 0 || !without_.bundle().good(index)) continue;
+    const Vec3 ray_W = without_.base_q_WC() * without_.record().ray(index);
+    const Scalar of_filter = ray_W.normalized().dot(parts_.filter.point(f.slot) - without_.base_p_W());
+    const Scalar of_record = data_.unit * ray_W.norm() / without_.bundle().rho(index);
+    ++compared;
+    agree += of_filter * kSameDepth > of_record && of_filter < of_record * kSameDepth ? 1 : 0;
+  }
+  return 2 * agree >= compared;
 }
 
 /// Adds the record's features to the filter with its depths; removes all others.
@@ -40,6 +88,12 @@ void FilterStart::restart_features() {
   for (int i = 0; i < parts_.map.features.capacity(); ++i) {
     if (!parts_.map.features.used(i)) continue;
     Feature& f = parts_.map.features[i];
+    if (f.is_target) {
+      const Target& target = target_.target();
+      f.slot = filter.add_point(target.point_W[f.external_id], Mat3::Identity() * (target.sigma_m * target.sigma_m));
+      filter.set_owner(f.slot, i);
+      continue;
+    }
     const int index = without_.index_of(f.id);
     Vec3 ray_C;
     Mat32 J_ray_pixel;
@@ -49,7 +103,7 @@ void FilterStart::restart_features() {
       parts_.features.release(i);
       continue;
     }
-    const Scalar rho = without_.bundle().rho(index);
+    const Scalar rho = without_.bundle().rho(index) / data_.unit;
     f.slot = filter.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, kWideDepth * rho);
     if (f.slot < 0)
       parts_.features.release(i);
@@ -66,7 +120,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   const Scalar dt = static_cast<Scalar>(seconds(std::min(elapsed_ns(before_ns, frame.t_ns), BodyMotion::kMaxGapNs)));
   Body now = filter.state().body;
   const Quat q_WC = without_.base_q_WC() * frame.q_WC;
-  const Vec3 p_W = without_.base_p_W() + without_.base_q_WC() * frame.p_W;
+  const Vec3 p_W = without_.base_p_W() + without_.base_q_WC() * frame.p_W * data_.unit;
   now.v_W = (p_W - now.p_W) / dt;
   now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
   Transition transition;
@@ -80,9 +134,10 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
   filter.predict(transition);
   int count = 0;
   for (int i = 0; i < parts_.map.features.capacity() && count < settings_.max_observations; ++i) {
-    if (!parts_.map.features.used(i) || !record.seen(k, without_.index_of(parts_.map.features[i].id))) continue;
+    const Feature& f = parts_.map.features[i];
+    if (!parts_.map.features.used(i) || f.is_target || !record.seen(k, without_.index_of(f.id))) continue;
     PixelMeasurement& o = parts_.update.observation(count);
-    if (!filter.predict_pixel(filter.lens(), parts_.map.features[i].slot, &o)) continue;
+    if (!filter.predict_pixel(filter.lens(), f.slot, &o)) continue;
     o.measured = o.predicted;
     o.set_noise(NoiseModel::search_update());
     ++count;
@@ -101,9 +156,27 @@ void FilterStart::restart_velocities() {
   if (b.t_ns <= a.t_ns) return;
   const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(a.t_ns, b.t_ns)));
   Body now = parts_.filter.state().body;
-  now.v_W = without_.base_q_WC() * (b.p_W - a.p_W) / dt;
+  now.v_W = without_.base_q_WC() * (b.p_W - a.p_W) * data_.unit / dt;
   now.w_C = log_so3(a.q_WC.conjugate() * b.q_WC) / dt;
   parts_.filter.set_mean(now);
+}
+
+/// Updates with the target's pixels in this frame.
+void FilterStart::restart_at_target() {
+  int count = 0;
+  for (int t = 0; t < parts_.frame.match_count() && count < settings_.max_observations; ++t) {
+    const Match& match = parts_.frame.match(t);
+    if (match.feature < 0 || match.status != MatchStatus::kInlier) continue;
+    const Feature& f = parts_.map.features[match.feature];
+    PixelMeasurement& o = parts_.update.observation(count);
+    if (!f.is_target || !parts_.filter.predict_pixel(parts_.filter.lens(), f.slot, &o)) continue;
+    o.measured = match.measured;
+    o.set_noise(NoiseModel::search());
+    ++count;
+  }
+  if (count == 0) return;
+  parts_.filter.begin_update(parts_.update.observations(), count);
+  parts_.filter.finish_update(parts_.update.observations(), count, nullptr, nullptr);
 }
 
 }  // namespace pf

@@ -57,7 +57,9 @@ void StartWithoutTarget::move_ray(const Camera& camera, int index, const Vec2& p
 StartOutcome StartWithoutTarget::solve(const Camera& camera, Scalar sigma_px, Scalar median_depth) {
   const StartOutcome outcome = bundle_.solve(camera, record_, sigma_px, median_depth);
   StartProgress& progress = data_.progress;
-  if (outcome == StartOutcome::kSolved || outcome == StartOutcome::kSettled) {
+  if (progress.checking) {
+    if (outcome == StartOutcome::kTooFew) init();
+  } else if (outcome == StartOutcome::kSolved || outcome == StartOutcome::kSettled) {
     progress.depth_known = true;
     progress.recording = outcome != StartOutcome::kSettled;
   } else if (outcome == StartOutcome::kTooFew) {

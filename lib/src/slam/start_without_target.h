@@ -19,6 +19,8 @@ class StartWithoutTarget {
   void init();
   /// Begins a start.
   void begin() { data_.progress.recording = true; }
+  /// Begins a record beside a filter that has a scale, to check its depths.
+  void begin_check() { data_.progress.checking = true; }
   const StartProgress& progress() const { return data_.progress; }
 
   /// Begins the record with this frame. Its camera is the record's frame of reference.
@@ -28,7 +30,7 @@ class StartWithoutTarget {
   /// Adds a later frame with its estimated pose in W. Its pixels follow, corrected to the frame's time.
   void begin_frame(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns);
   void add_pixel(const Camera& camera, std::uint32_t id, const Vec2& pixel);
-  /// Tries to solve the record. kTooFew empties it, unless depths are known already; then the start is over.
+  /// Tries to solve the record. kTooFew empties it, unless depths are known already; then the start is over, and so is a check.
   StartOutcome solve(const Camera& camera, Scalar sigma_px, Scalar median_depth);
 
   /// Improves the last frame's pose while the depths are open (StartBundle::follow). rho: of each feature, about one.

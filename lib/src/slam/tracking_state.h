@@ -18,6 +18,7 @@ enum class SlamState : int { kStarting = 0, kTracking = 1, kCoasting = 2, kLost 
 struct StartProgress {
   bool recording = false;
   bool depth_known = false;
+  bool checking = false;  ///< a record goes on beside a start at a target, to check the depths that came of it
 
   /// No depth has been solved yet, so the map has no scale and no reliable depths.
   bool pending() const { return recording && !depth_known; }
