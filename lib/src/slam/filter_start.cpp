@@ -270,14 +270,14 @@ void FilterStart::record_frame() {
     without_.add_pixel(settings_.camera, match.id,
                        at_frame_time(parts_.map.features[match.feature].slot, match.measured));
   }
-  const bool first = !progress().depth_known;
+  const bool first = !progress().depth_known, checks = progress().checking;
   const StartOutcome outcome = without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth);
   switch (outcome) {
     case StartOutcome::kWait:
       break;
     case StartOutcome::kSolved:
     case StartOutcome::kSettled:
-      if (progress().checking) {
+      if (checks) {
         check_depths(outcome == StartOutcome::kSettled);
         break;
       }
@@ -286,7 +286,7 @@ void FilterStart::record_frame() {
       break;
     case StartOutcome::kTooFew:
       // Only rotation so far, or too few features in view: the world stays, and the record begins again with this frame.
-      if (first && progress().recording) parts_.features.drop_all();
+      if (first && !checks) parts_.features.drop_all();
       break;
   }
 }
