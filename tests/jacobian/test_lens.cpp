@@ -2,9 +2,11 @@
 // fitted to known points; for every camera model.
 #include "geometry/lens.h"
 #include "geometry/planar_pose.h"
+#include "geometry/so3.h"
 #include "support/filter_cases.h"
 #include "support/numeric_jacobian.h"
 #include "support/test_cameras.h"
+#include "window/adjust.h"
 
 using namespace pf;
 
@@ -78,6 +80,39 @@ void test_pixel_and_ray_should_have_exact_jacobians_by_the_lens() {
     };
     check_jacobian<3, kLensParameters>(scaled<3>(ray_lens_jacobian(camera, ray, J_ray_pixel), prior), ray_of,
                                        "J_ray_lens", 1, kTolerance);
+  }
+}
+
+/// Of the bundle adjuster: the pixel and the bearing in the host were seen through one lens.
+void test_pixel_of_a_bearing_should_have_an_exact_jacobian_by_the_lens() {
+  SeededRandom random(475);
+  for (int trial = 0; trial < 40; ++trial) {
+    Camera camera = test_camera_of(trial % kTestCameras);
+    const LensPrior prior = prior_of(&camera);
+    const Mat3 R_CW = exp_so3(random.normals<3>(0.1)).toRotationMatrix();
+    const Mat3 R_WH = exp_so3(random.normals<3>(0.1)).toRotationMatrix();
+    const Vec3 p_HC_W = random.normals<3>(0.1);
+    const Scalar rho = static_cast<Scalar>(random.uniform(0.1, 1));
+    Vec3 ray(0, 0, 1);
+    ray.head<2>() = random.normals<2>(0.1);
+    Vec2 host, z;
+    Mat32 J_ray_host;
+    TEST_ASSERT_TRUE(project(camera, ray, &host) && unproject(camera, host, &ray, &J_ray_host));
+    const auto pixel = [&](const Parameters& e) {
+      const Camera moved = with(camera, prior, e);
+      Vec3 r;
+      Vec2 at;
+      TEST_ASSERT_TRUE(unproject(moved, host, &r));
+      TEST_ASSERT_TRUE(project(moved, R_CW * (R_WH * r + rho * p_HC_W), &at));
+      return at;
+    };
+    const Vec3 d_C = R_CW * (R_WH * ray + rho * p_HC_W);
+    Mat23 J_z_d_C;
+    TEST_ASSERT_TRUE(project(camera, d_C, &z, &J_z_d_C));
+    const RayByLens J_ray_W = R_WH * ray_lens_jacobian(camera, ray, J_ray_host);
+    check_jacobian<2, kLensParameters>(
+        scaled<2>(bearing_lens_jacobian(camera, d_C, J_z_d_C.lazyProduct(R_CW), J_ray_W), prior), pixel,
+        "J_bearing_lens", 1, kTolerance);
   }
 }
 
@@ -191,6 +226,7 @@ void test_poses_from_known_points_should_have_exact_jacobians_by_the_lens() {
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_pixel_and_ray_should_have_exact_jacobians_by_the_lens);
+  RUN_TEST(test_pixel_of_a_bearing_should_have_an_exact_jacobian_by_the_lens);
   RUN_TEST(test_predicted_pixels_should_have_exact_jacobians_by_the_lens);
   RUN_TEST(test_new_bearings_should_have_exact_jacobians_by_the_lens);
   RUN_TEST(test_poses_from_known_points_should_have_exact_jacobians_by_the_lens);

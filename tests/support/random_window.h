@@ -26,6 +26,11 @@ struct RandomWindow {
   std::vector<RhoPrior> prior;
   std::vector<BundlePlane> plane;
   Scalar class_sigma[3] = {Scalar(0.5), Scalar(1), Scalar(0.25)};
+  // Of the lens, where it is adjusted.
+  Camera lens;
+  BundleLens bundle_lens;
+  std::vector<HostPixel> host_pixel;
+  std::vector<Scalar> lens_information;
 
   /// The last `free` poses and every second plane are free; pixels, poses, depths and planes are off by the sigmas.
   RandomWindow(SeededRandom& random, int poses, int free, int points, int planes, double noise_px, double off)
@@ -93,13 +98,45 @@ struct RandomWindow {
   }
 };
 
+/// The window's lens is adjusted too: every parameter but k2 and those behind it, off by `off` of its prior's sigma. Every fourth bearing
+/// does not depend on it.
+inline void adjust_lens(SeededRandom& random, double off, RandomWindow* w, Bundle* bundle) {
+  LensSigmas sigmas;
+  sigmas.focal = Scalar(0.02);
+  sigmas.aspect = Scalar(0.01);
+  sigmas.centre = Scalar(3);
+  sigmas.distortion[0] =
+      static_cast<CameraModel>(w->camera.model) == CameraModel::kDivision ? Scalar(1e-7) : Scalar(0.02);
+  const LensPrior prior = make_lens_prior(sigmas, &w->camera);
+  const auto n = static_cast<std::size_t>(prior.rows.count);
+  w->lens_information.assign(n * n, 0);
+  std::vector<Scalar> e(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Scalar sigma = std::sqrt(prior.covariance[k * (n + 1)]);
+    w->lens_information[k * (n + 1)] = 1 / (sigma * sigma);
+    e[k] = sigma * static_cast<Scalar>(off * random.normal());
+  }
+  w->host_pixel.clear();
+  for (std::size_t i = 0; i < w->ray.size(); ++i) {
+    HostPixel h = {Vec2::Zero(), false};
+    h.given = i % 4 != 3 && project(w->camera, w->ray[i], &h.pixel);
+    w->host_pixel.push_back(h);
+  }
+  w->lens = w->camera;
+  move_lens(prior.rows, e.data(), &w->lens);
+  for (std::size_t i = 0; i < w->ray.size(); ++i)
+    if (w->host_pixel[i].given) unproject(w->lens, w->host_pixel[i].pixel, &w->ray[i]);
+  w->bundle_lens = {prior.rows, w->lens_information.data(), w->camera, &w->lens, w->host_pixel.data(), w->ray.data()};
+  bundle->lens = &w->bundle_lens;
+}
+
 /// Many windows, some of them degenerate: their cost never rises, and nothing becomes anything but a number.
 inline void check_random_windows(std::uint64_t seed, int windows) {
   SeededRandom random(seed);
   TestArena arena;
   BundleAdjuster adjuster;
   TEST_ASSERT_TRUE(adjuster.layout(*arena, RandomWindow::kMaxPoses, RandomWindow::kMaxFree, RandomWindow::kMaxPoints,
-                                   RandomWindow::kMaxPlanes));
+                                   RandomWindow::kMaxPlanes, kLensParameters));
   int lowered = 0, determined = 0;
   for (int trial = 0; trial < windows; ++trial) {
     const int poses = 2 + static_cast<int>(random.uniform(0, 8)),
@@ -128,6 +165,7 @@ inline void check_random_windows(std::uint64_t seed, int windows) {
     for (BundlePose& p : window.pose) p.free = p.free && now_free++ < RandomWindow::kMaxFree;
     Bundle bundle = window.bundle();
     if (trial % 5 == 2) bundle.prior = nullptr;
+    if (trial % 2 == 1) adjust_lens(random, trial % 3 == 0 ? 3 : 0.5, &window, &bundle);
     const std::vector<BundlePose> before = window.pose;
     AdjustOptions none = window.options;
     none.max_rounds = 0;
@@ -144,6 +182,7 @@ inline void check_random_windows(std::uint64_t seed, int windows) {
     }
     for (const Scalar rho : window.rho) TEST_ASSERT_TRUE(std::isfinite(rho));
     for (const BundlePlane& p : window.plane) TEST_ASSERT_TRUE(p.x.allFinite());
+    if (bundle.lens != nullptr) TEST_ASSERT_TRUE(check_camera(window.lens) == nullptr);
     if (!adjuster.begin_covariances(window.camera, window.options, bundle)) continue;
     ++determined;
     for (int c = 0; c < poses; ++c) TEST_ASSERT_TRUE(adjuster.pose_covariance(c).allFinite());

@@ -1,4 +1,4 @@
-// The bundle adjuster with planes, priors by point and classes of pixels, against dense normal equations.
+// The bundle adjuster with planes, priors by point, classes of pixels and a lens, against dense normal equations.
 #include "support/bounds.h"
 #include "support/dense.h"
 #include "support/random_window.h"
@@ -18,13 +18,17 @@ struct DenseSystem {
   Dense H;
   Eigen::VectorXd g;
   std::vector<int> pose, plane;  ///< first columns, -1 where it is fixed
-  int first_rho = 0;
+  int first_rho = 0, first_lens = 0;
 
-  explicit DenseSystem(const RandomWindow& w) {
+  explicit DenseSystem(const RandomWindow& w, const BundleLens* lens = nullptr) {
     for (const BundlePlane& p : w.plane) {
       plane.push_back(p.free ? first_rho : -1);
       first_rho += p.free ? 3 : 0;
     }
+    first_lens = first_rho;
+    const int lens_rows = lens == nullptr ? 0 : lens->rows.count;
+    first_rho += lens_rows;
+    const Camera& camera = lens == nullptr ? w.camera : *lens->camera;
     for (const BundlePose& p : w.pose) {
       pose.push_back(p.free ? first_rho : -1);
       first_rho += p.free ? 6 : 0;
@@ -36,18 +40,31 @@ struct DenseSystem {
       const auto h = static_cast<std::size_t>(w.host[i]);
       const Eigen::Index own = first_rho + static_cast<Eigen::Index>(i);
       const Vec3 ray_W = w.pose[h].q_WC * w.ray[i];
+      RayByLens J_ray_W = RayByLens::Zero();
+      Mat32 J_ray_z;
+      Vec3 ray;
+      if (lens != nullptr && lens->host_pixel[i].given) {
+        TEST_ASSERT_TRUE(unproject(camera, lens->host_pixel[i].pixel, &ray, &J_ray_z));
+        J_ray_W = w.pose[h].q_WC.toRotationMatrix() * ray_lens_jacobian(camera, ray, J_ray_z);
+      }
       for (std::size_t c = 0; c < w.pose.size(); ++c) {
         const BundlePixel& seen = w.pixel[c][i];
         Vec2 z, J_rho;
         Mat26 J_C, J_H;
         if (!seen.seen || c == h ||
-            !project_bearing(w.camera, w.pose[c].q_WC.toRotationMatrix(), ray_W, w.pose[h].p_W - w.pose[c].p_W,
-                             w.rho[i], &z, &J_C, &J_H, &J_rho))
+            !project_bearing(camera, w.pose[c].q_WC.toRotationMatrix(), ray_W, w.pose[h].p_W - w.pose[c].p_W, w.rho[i],
+                             &z, &J_C, &J_H, &J_rho))
           continue;
         Dense J = Dense::Zero(2, n);
         if (pose[c] >= 0) J.middleCols(pose[c], 6) += J_C.cast<double>();
         if (pose[h] >= 0) J.middleCols(pose[h], 6) += J_H.cast<double>();
         J.col(own) = J_rho.cast<double>();
+        const Mat3 R_CW = w.pose[c].q_WC.toRotationMatrix().transpose();
+        const Vec3 d_C = R_CW * (ray_W + w.rho[i] * (w.pose[h].p_W - w.pose[c].p_W));
+        Mat23 J_z_d_C;
+        TEST_ASSERT_TRUE(project(camera, d_C, &z, &J_z_d_C));
+        const LensJacobian J_lens = bearing_lens_jacobian(camera, d_C, J_z_d_C * R_CW, J_ray_W);
+        for (int k = 0; k < lens_rows; ++k) J.col(first_lens + k) = J_lens.col(lens->rows.parameter[k]).cast<double>();
         add(J, (seen.pixel() - z).cast<double>(), static_cast<double>(w.class_sigma[seen.sigma_class]), w);
       }
       if (w.plane_of[i] >= 0) {
@@ -60,6 +77,11 @@ struct DenseSystem {
         if (pose[h] >= 0) J.middleCols(pose[h], 6) = J_H.cast<double>();
         if (plane[j] >= 0) J.middleCols(plane[j], 3) = J_plane.cast<double>();
         J(0, own) = static_cast<double>(J_rho);
+        Vec3 normal;
+        Scalar d;
+        plane_normal(w.plane[j].frame, w.plane[j].x, &normal, &d);
+        for (int k = 0; k < lens_rows; ++k)
+          J(0, first_lens + k) = static_cast<double>(normal.dot(J_ray_W.col(lens->rows.parameter[k])) / w.rho[i]);
         add(J, Eigen::VectorXd::Constant(1, -static_cast<double>(e)), static_cast<double>(w.plane[j].roughness), w);
       }
       if (w.prior[i].sigma > 0) {
@@ -67,6 +89,13 @@ struct DenseSystem {
         H(own, own) += information;
         g(own) += information * static_cast<double>(w.prior[i].mean - w.rho[i]);
       }
+    }
+    Scalar e[kLensParameters];
+    if (lens != nullptr) lens_difference(lens->rows, lens->prior, *lens->camera, e);
+    for (int k = 0; k < lens_rows; ++k) {
+      const double information = static_cast<double>(lens->prior_information[k * (lens_rows + 1)]);
+      H(first_lens + k, first_lens + k) += information;
+      g(first_lens + k) -= information * static_cast<double>(e[k]);
     }
   }
 
@@ -86,7 +115,7 @@ struct Case {
 
   explicit Case(SeededRandom& random, int poses = 6)
       : window(random, poses, 3, 40, 3, 0.4, 0.004), bundle(window.bundle()) {
-    TEST_ASSERT_TRUE(adjuster.layout(*arena, poses, 3, 40, 3));
+    TEST_ASSERT_TRUE(adjuster.layout(*arena, poses, 3, 40, 3, kLensParameters));
   }
 };
 
@@ -113,6 +142,63 @@ void test_step_should_be_that_of_the_dense_normal_equations_when_there_are_plane
       worst = std::max(worst, std::fabs(static_cast<double>(c.adjuster.rho_step(i)) - expected(dense.first_rho + i)));
     std::printf("steps up to %.3g, difference %.3g\n", expected.cwiseAbs().maxCoeff(), worst);
     EXPECT_BELOW((kIsFloat ? 1e-2 : 1e-8) * expected.cwiseAbs().maxCoeff(), worst);
+  }
+}
+
+void test_step_and_covariance_of_the_lens_should_be_those_of_the_dense_normal_equations() {
+  SeededRandom random(65);
+  for (int poses = 4; poses < 4 + 2 * kTestCameras; ++poses) {
+    Case c(random, poses);
+    adjust_lens(random, 0.3, &c.window, &c.bundle);
+    const DenseSystem dense(c.window, c.bundle.lens);
+    Dense H = dense.H;
+    for (int i = 0; i < dense.first_rho; ++i) H(i, i) += 1e-9;
+    const Eigen::VectorXd expected = solved(H, dense.g);
+    TEST_ASSERT_TRUE(c.adjuster.step(c.window.camera, c.window.options, c.bundle, 0));
+    const auto off = [](double found, double wanted, double size) { return std::fabs(found - wanted) / size; };
+    double worst = 0;
+    const Dense P = inverse_of(dense.H);
+    const auto sigma = [&](int i) { return std::sqrt(P(i, i)); };
+    for (int a = 0; a < dense.first_rho; ++a)
+      worst = std::max(worst, off(static_cast<double>(c.adjuster.plane_step()[a]), expected(a), sigma(a)));
+    for (int i = 0; i < c.bundle.points; ++i) {
+      const int own = dense.first_rho + i;
+      worst = std::max(worst, off(static_cast<double>(c.adjuster.rho_step(i)), expected(own), sigma(own)));
+    }
+    std::printf("largest difference of a step %.3g sigma\n", worst);
+    EXPECT_BELOW(kIsFloat ? 0.3 : 1e-6, worst);
+    TEST_ASSERT_TRUE(c.adjuster.begin_covariances(c.window.camera, c.window.options, c.bundle));
+    const int n = c.bundle.lens->rows.count;
+    std::vector<Scalar> found(static_cast<std::size_t>(n * n));
+    c.adjuster.lens_covariance(found.data());
+    const Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> of_lens(found.data(), n, n);
+    expect_same(P.block(dense.first_lens, dense.first_lens, n, n), of_lens.cast<double>());
+    const int last = dense.pose.back();
+    expect_same(P.block(last, last, 6, 6), c.adjuster.pose_covariance(c.bundle.poses - 1).cast<double>());
+    for (int i = 0; i < 5; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const BundlePose& host = c.bundle.pose[c.bundle.host[i]];
+      const Eigen::Vector3d q = (host.q_WC * c.bundle.ray[i] / c.bundle.rho[i]).cast<double>();
+      const int column = dense.pose[static_cast<std::size_t>(c.window.host[at])];
+      Dense J = Dense::Zero(3, P.rows());
+      if (column >= 0) {
+        J.middleCols(column, 3) = -hat(q.cast<Scalar>()).cast<double>();
+        J.middleCols(column + 3, 3).setIdentity();
+      }
+      J.col(dense.first_rho + i) = -q / static_cast<double>(c.bundle.rho[i]);
+      Vec3 ray;
+      Mat32 J_ray_z;
+      if (c.window.host_pixel[at].given) {
+        TEST_ASSERT_TRUE(unproject(c.window.lens, c.window.host_pixel[at].pixel, &ray, &J_ray_z));
+        const RayByLens J_ray = ray_lens_jacobian(c.window.lens, ray, J_ray_z);
+        for (int k = 0; k < n; ++k)
+          J.col(dense.first_lens + k) =
+              (host.q_WC * Vec3(J_ray.col(c.bundle.lens->rows.parameter[k])) / c.bundle.rho[i]).cast<double>();
+      }
+      Mat3 of_place;
+      TEST_ASSERT_TRUE(c.adjuster.point_covariance(c.bundle, i, Scalar(0), &of_place));
+      expect_same(J * P * J.transpose(), of_place.cast<double>());
+    }
   }
 }
 
@@ -195,6 +281,7 @@ void test_point_without_parallax_or_prior_should_stay_where_it_is() {
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_step_should_be_that_of_the_dense_normal_equations_when_there_are_planes);
+  RUN_TEST(test_step_and_covariance_of_the_lens_should_be_those_of_the_dense_normal_equations);
   RUN_TEST(test_covariances_should_be_those_of_the_dense_inverse);
   RUN_TEST(test_points_should_come_to_lie_on_their_planes);
   RUN_TEST(test_point_without_parallax_or_prior_should_stay_where_it_is);

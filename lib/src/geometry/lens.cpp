@@ -77,6 +77,12 @@ LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera) {
   return prior;
 }
 
+void lens_difference(const LensRows& rows, const Camera& from, const Camera& to, Scalar* e) {
+  Camera a = from, b = to;
+  for (int i = 0; i < rows.count; ++i)
+    e[i] = *parameter_of(&b, rows.parameter[i]) - *parameter_of(&a, rows.parameter[i]);
+}
+
 void move_lens(const LensRows& rows, const Scalar* e, Camera* camera) {
   for (int i = 0; i < rows.count; ++i) *parameter_of(camera, rows.parameter[i]) += e[i];
   init_camera(camera);

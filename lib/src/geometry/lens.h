@@ -56,4 +56,7 @@ LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera);
 /// Moves a camera's parameters by an error over these rows, and finds its domain anew.
 void move_lens(const LensRows& rows, const Scalar* e, Camera* camera);
 
+/// e of a camera over another one of its model: move_lens(rows, e, &from) gives `to` in these rows.
+void lens_difference(const LensRows& rows, const Camera& from, const Camera& to, Scalar* e);
+
 }  // namespace pf

@@ -22,6 +22,10 @@ RhoPrior prior_of(const AdjustOptions& options, const Bundle& bundle, int point)
   return bundle.prior == nullptr ? RhoPrior{options.rho_mean, options.rho_sigma} : bundle.prior[point];
 }
 
+const Camera& camera_of(const Camera& camera, const Bundle& bundle) {
+  return bundle.lens == nullptr ? camera : *bundle.lens->camera;
+}
+
 bool is_finite(const BundlePose& pose) { return pose.q_WC.coeffs().allFinite() && pose.p_W.allFinite(); }
 
 /// Two numbers in one register. What is computed with them is what single numbers would give, to the last bit.
@@ -90,6 +94,11 @@ inline void add_column(const PoseRows& J, Scalar r_x, Scalar r_y, Scalar weight,
   for (int e = 0; e < 3; ++e) store(b + 2 * e, load(b + 2 * e) + weight * (J.x[e] * r_x + J.y[e] * r_y));
 }
 
+/// H += Jᵀ v, six rows in one column.
+inline void add_lens_column(const PoseRows& J, const Vec2& v, Scalar* H, int ld) {
+  for (int a = 0; a < 6; ++a, H += ld) *H += J.x[a / 2][a % 2] * v.x() + J.y[a / 2][a % 2] * v.y();
+}
+
 /// H -= t wᵀ.
 inline void subtract_block(const Scalar (&t)[6], const Scalar* w, Scalar* H, int ld) {
   const Pair row[3] = {load(w), load(w + 2), load(w + 4)};
@@ -144,11 +153,12 @@ Scalar bearing_plane_distance(const BundlePlane& plane, const Vec3& ray_W, const
   return e;
 }
 
-bool BundleAdjuster::layout(Arena& arena, int max_poses, int max_free_poses, int max_points, int max_planes) {
+bool BundleAdjuster::layout(Arena& arena, int max_poses, int max_free_poses, int max_points, int max_planes,
+                            int max_lens_rows) {
   if (max_poses > kMaxPoses) return false;
-  ld_ = 3 * max_planes + 6 * max_free_poses;
+  ld_ = 3 * max_planes + max_lens_rows + 6 * max_free_poses;
   plane_part_ = max_planes > 0 ? 3 : 0;
-  w_ld_ = plane_part_ + 6 * max_free_poses;
+  w_ld_ = plane_part_ + max_lens_rows + 6 * max_free_poses;
   const std::size_t poses = static_cast<std::size_t>(max_poses), points = static_cast<std::size_t>(max_points);
   const std::size_t planes = static_cast<std::size_t>(max_planes), columns = static_cast<std::size_t>(ld_);
   free_ = arena.take<int>(poses);
@@ -157,6 +167,7 @@ bool BundleAdjuster::layout(Arena& arena, int max_poses, int max_free_poses, int
   old_pose_ = arena.take<BundlePose>(poses);
   old_plane_ = arena.take<Vec3>(planes);
   old_rho_ = arena.take<Scalar>(points);
+  of_lens_ = max_lens_rows > 0 ? arena.take<OfLens>(1) : nullptr;
   seen_ = arena.take<std::uint16_t>(points);
   seen_later_ = max_poses > kSeenBits ? arena.take<std::uint16_t>(points) : nullptr;
   H_ = arena.take<Scalar>(columns * columns);
@@ -178,7 +189,7 @@ Scalar BundleAdjuster::rho_step(int point) const {
   const int plane = free_plane_of(point);
   for (int a = 0; a < 3 && plane >= 0; ++a) g -= w[a] * b_[3 * plane + a];
   w += plane_part_;
-  const Scalar* dx = pose_step();
+  const Scalar* dx = b_ + plane_columns_;
   for (int a = 0; a < columns_ - plane_columns_; ++a) g -= w[a] * dx[a];
   return g / D_[point];
 }
@@ -221,7 +232,7 @@ void BundleAdjuster::add_pixels(const Camera& camera, const AdjustOptions& optio
     if (kCostAlone) continue;
     weight *= information;
     const int free_pose = free_[c];
-    if (free_pose < 0 && free_host < 0) {
+    if (free_pose < 0 && free_host < 0 && lens_columns_ == 0) {
       const Vec3 p_HC_C = R_CW.lazyProduct(p_HC_W);
       const Vec2 J_rho = is_pinhole ? Vec2(slope(0) * p_HC_C.x() + slope(1) * p_HC_C.z(),
                                            slope(2) * p_HC_C.y() + slope(3) * p_HC_C.z())
@@ -262,6 +273,23 @@ void BundleAdjuster::add_pixels(const Camera& camera, const AdjustOptions& optio
         add_block(J_C, J_H, weight, H_ + pose_column(free_pose) * ld_ + pose_column(free_host), ld_);
       else
         add_block(J_H, J_C, weight, H_ + pose_column(free_host) * ld_ + pose_column(free_pose), ld_);
+    }
+    if (lens_columns_ > 0) {
+      Mat23 J;
+      for (int m = 0; m < 3; ++m) J.col(m) = Vec2(J_z_d.at[m][0], J_z_d.at[m][1]);
+      if (free_host >= 0) J = -J;  // the columns were turned for the host
+      const LensJacobian J_lens = bearing_lens_jacobian(camera, d_C, J, of_lens_->J_ray_W);
+      const std::int8_t* parameter = bundle.lens->rows.parameter;
+      Scalar* w = lens_part(point);
+      for (int a = 0; a < lens_columns_; ++a) {
+        const Vec2 by_a = weight * J_lens.col(parameter[a]);
+        Scalar* row = H_ + (plane_columns_ + a) * ld_ + plane_columns_;
+        for (int k = 0; k <= a; ++k) row[k] += by_a.dot(J_lens.col(parameter[k]));
+        b_[plane_columns_ + a] += by_a.dot(r);
+        w[a] += by_a.x() * J_rho[0] + by_a.y() * J_rho[1];
+        if (free_pose >= 0) add_lens_column(J_C, by_a, H_ + pose_column(free_pose) * ld_ + plane_columns_ + a, ld_);
+        if (free_host >= 0) add_lens_column(J_H, by_a, H_ + pose_column(free_host) * ld_ + plane_columns_ + a, ld_);
+      }
     }
     D += weight * (J_rho[0] * J_rho[0] + J_rho[1] * J_rho[1]);
     g += weight * (J_rho[0] * r.x() + J_rho[1] * r.y());
@@ -305,6 +333,19 @@ void BundleAdjuster::add_plane(const AdjustOptions& options, const Bundle& bundl
     for (int a = 0; a < 6 && free_plane >= 0; ++a)
       for (int f = 0; f < 3; ++f) H_[(column + a) * ld_ + 3 * free_plane + f] += weight * J_H(a) * J_plane(f);
   }
+  // e = n . (p_H + R_WH r(c) / rho) - d
+  for (int k = 0; k < lens_columns_; ++k) {
+    const Vec3 n = J_H.rightCols<3>().transpose();
+    const auto by = [&](int column) { return n.dot(of_lens_->J_ray_W.col(bundle.lens->rows.parameter[column])) / rho; };
+    const Scalar by_k = weight * by(k);
+    Scalar* row = H_ + (plane_columns_ + k) * ld_;
+    for (int f = 0; f <= k; ++f) row[plane_columns_ + f] += by_k * by(f);
+    for (int f = 0; f < 3 && free_plane >= 0; ++f) row[3 * free_plane + f] += by_k * J_plane(f);
+    for (int a = 0; a < 6 && free_host >= 0; ++a)
+      H_[(pose_column(free_host) + a) * ld_ + plane_columns_ + k] += by_k * J_H(a);
+    b_[plane_columns_ + k] -= by_k * e;
+    lens_part(point)[k] += by_k * J_rho;
+  }
   if (free_plane >= 0) {
     Scalar* w = W_ + point * w_ld_;
     for (int a = 0; a < 3; ++a) {
@@ -328,16 +369,56 @@ void BundleAdjuster::eliminate(int point, const Sums& sums) {
     subtract_small<3, 3>(t, w_plane, H_ + plane_column * (ld_ + 1), ld_);
     for (int a = 0; a < 3; ++a) b_[plane_column + a] -= t[a] * g;
   }
+  const Scalar* w_lens = lens_part(point);
+  for (int a = 0; a < lens_columns_; ++a) {
+    const Scalar share = w_lens[a] / D;
+    Scalar* row = H_ + (plane_columns_ + a) * ld_;
+    for (int f = 0; f < 3 && sums.on_plane; ++f) row[plane_column + f] -= share * w_plane[f];
+    for (int k = 0; k <= a; ++k) row[plane_columns_ + k] -= share * w_lens[k];
+    b_[plane_columns_ + a] -= share * g;
+  }
   for (int f = 0; sums.seen_by >> f != 0; ++f) {
     if ((sums.seen_by >> f & 1) == 0) continue;
     const int column = pose_column(f);
     const Scalar* w = pose_part(point, f);
     for (int a = 0; a < 6; ++a) t[a] = w[a] / D;
     if (sums.on_plane) subtract_small<6, 3>(t, w_plane, H_ + column * ld_ + plane_column, ld_);
+    for (int a = 0; a < 6 && lens_columns_ > 0; ++a)
+      for (int k = 0; k < lens_columns_; ++k) H_[(column + a) * ld_ + plane_columns_ + k] -= t[a] * w_lens[k];
     for (int k = 0; k <= f; ++k)
       if ((sums.seen_by >> k & 1) != 0) subtract_block(t, pose_part(point, k), H_ + column * ld_ + pose_column(k), ld_);
     for (int a = 0; a < 6; ++a) b_[column + a] -= t[a] * g;
   }
+}
+
+/// The bearing of a point's host pixel, and its derivative in W (null to skip). False where the lens has none; the bearing then stays.
+bool BundleAdjuster::set_ray(const Bundle& bundle, int point, RayByLens* J_ray_W) const {
+  const BundleLens& lens = *bundle.lens;
+  const HostPixel& host = lens.host_pixel[point];
+  if (J_ray_W != nullptr) J_ray_W->setZero();
+  if (!host.given) return true;
+  Mat32 J_ray_z;
+  if (!unproject(*lens.camera, host.pixel, &lens.ray[point], J_ray_W != nullptr ? &J_ray_z : nullptr)) return false;
+  if (J_ray_W != nullptr)
+    *J_ray_W = R_CW_[host_of(bundle, point)].transpose().lazyProduct(
+        ray_lens_jacobian(*lens.camera, lens.ray[point], J_ray_z));
+  return true;
+}
+
+Scalar BundleAdjuster::add_lens_prior(const Bundle& bundle, bool cost_alone) {
+  if (lens_columns_ == 0) return Scalar(0);
+  Scalar e[kLensParameters], sum = 0;
+  lens_difference(bundle.lens->rows, bundle.lens->prior, *bundle.lens->camera, e);
+  for (int a = 0; a < lens_columns_; ++a) {
+    const Scalar* information = bundle.lens->prior_information + a * lens_columns_;
+    Scalar gradient = 0;
+    for (int k = 0; k < lens_columns_; ++k) gradient += information[k] * e[k];
+    sum += e[a] * gradient;
+    if (cost_alone) continue;
+    for (int k = 0; k <= a; ++k) H_[(plane_columns_ + a) * ld_ + plane_columns_ + k] += information[k];
+    b_[plane_columns_ + a] -= gradient;
+  }
+  return sum;
 }
 
 /// Cost and, unless kCostAlone, derivatives of what is measured and known of a point.
@@ -353,6 +434,11 @@ BundleAdjuster::Sums BundleAdjuster::add_point(const Camera& camera, const Adjus
     sums.g = sums.D * e;
     sums.cost = sums.g * e;
   }
+  if (lens_columns_ > 0 && !set_ray(bundle, point, kCostAlone ? nullptr : &of_lens_->J_ray_W)) {
+    for (std::uint32_t left = seen(point); left != 0; left &= left - 1) sums.cost += options.no_pixel_penalty;
+    if (bundle.plane_of != nullptr && bundle.plane_of[point] >= 0) sums.cost += options.no_pixel_penalty;
+    return sums;
+  }
   add_pixels<kCostAlone>(camera, options, bundle, point, &sums);
   if (bundle.plane_of != nullptr) add_plane<kCostAlone>(options, bundle, point, &sums);
   return sums;
@@ -365,6 +451,7 @@ void BundleAdjuster::begin(const Bundle& bundle) {
     free_plane_[j] = bundle.plane[j].free ? plane_columns_ / 3 : -1;
     plane_columns_ += bundle.plane[j].free ? 3 : 0;
   }
+  lens_columns_ = bundle.lens == nullptr ? 0 : bundle.lens->rows.count;
   int free_poses = 0;
   for (int c = 0; c < bundle.poses; ++c) free_[c] = bundle.pose[c].free ? free_poses++ : -1;
   columns_ = pose_column(free_poses);
@@ -388,7 +475,7 @@ void BundleAdjuster::set_rotations(const Bundle& bundle) {
 
 Scalar BundleAdjuster::cost(const Camera& camera, const AdjustOptions& options, const Bundle& bundle) {
   set_rotations(bundle);
-  Scalar sum = 0;
+  Scalar sum = add_lens_prior(bundle, true);
   for (int i = 0; i < bundle.points; ++i) sum += add_point<true>(camera, options, bundle, i).cost;
   return sum;
 }
@@ -402,7 +489,7 @@ Scalar BundleAdjuster::linearise(const Camera& camera, const AdjustOptions& opti
     std::fill(H_ + a * ld_, H_ + a * ld_ + columns_, Scalar(0));
     b_[a] = Scalar(0);
   }
-  Scalar sum = 0;
+  Scalar sum = add_lens_prior(bundle, false);
   for (int i = 0; i < bundle.points; ++i) {
     std::fill(W_ + i * w_ld_, W_ + i * w_ld_ + plane_part_ + columns_ - plane_columns_, Scalar(0));
     const Sums sums = add_point<false>(camera, options, bundle, i);
@@ -426,7 +513,7 @@ bool BundleAdjuster::solve(Scalar damping) {
 
 bool BundleAdjuster::step(const Camera& camera, const AdjustOptions& options, const Bundle& bundle, Scalar damping) {
   begin(bundle);
-  linearise(camera, options, bundle, damping);
+  linearise(camera_of(camera, bundle), options, bundle, damping);
   return solve(damping);
 }
 
@@ -440,6 +527,11 @@ bool BundleAdjuster::take_step(const Bundle& bundle) {
     plane.x += Vec3(dx[0], dx[1], dx[2]);
     finite = finite && plane.x.allFinite();
     dx += 3;
+  }
+  if (lens_columns_ > 0) {
+    move_lens(bundle.lens->rows, dx, bundle.lens->camera);
+    finite = finite && check_camera(*bundle.lens->camera) == nullptr;
+    dx += lens_columns_;
   }
   for (int c = 0; c < bundle.poses; ++c) {
     BundlePose& pose = bundle.pose[c];
@@ -462,6 +554,7 @@ void BundleAdjuster::keep(const Bundle& bundle) {
   std::copy(bundle.rho, bundle.rho + bundle.points, old_rho_);
   for (int j = 0, k = 0; j < bundle.planes && plane_columns_ > 0; ++j)
     if (bundle.plane[j].free) old_plane_[k++] = bundle.plane[j].x;
+  if (lens_columns_ > 0) of_lens_->old = *bundle.lens->camera;
 }
 
 void BundleAdjuster::restore(const Bundle& bundle) {
@@ -469,12 +562,15 @@ void BundleAdjuster::restore(const Bundle& bundle) {
   std::copy(old_rho_, old_rho_ + bundle.points, bundle.rho);
   for (int j = 0, k = 0; j < bundle.planes && plane_columns_ > 0; ++j)
     if (bundle.plane[j].free) bundle.plane[j].x = old_plane_[k++];
+  if (lens_columns_ > 0) *bundle.lens->camera = of_lens_->old;
+  for (int i = 0; i < bundle.points && lens_columns_ > 0; ++i) set_ray(bundle, i, nullptr);
 }
 
 /// Where a step is tried, cost and linearisation come together, with the damping of the round that follows if the step is kept; so
 /// each pixel is projected once a round, and once more after a step that is not. Where the last gain was near to the bound, the step is
 /// probably the last one, and its cost is enough.
-Scalar BundleAdjuster::adjust(const Camera& camera, const AdjustOptions& options, const Bundle& bundle) {
+Scalar BundleAdjuster::adjust(const Camera& calibration, const AdjustOptions& options, const Bundle& bundle) {
+  const Camera& camera = camera_of(calibration, bundle);
   begin(bundle);
   Scalar damping = kFirstDamping;
   Scalar before = linearise(camera, options, bundle, damping);
@@ -507,7 +603,7 @@ Scalar BundleAdjuster::adjust(const Camera& camera, const AdjustOptions& options
 /// S = L Lᵀ with the last pose's rows last: their covariance is (L_22 L_22ᵀ)⁻¹.
 bool BundleAdjuster::last_pose_covariance(const Camera& camera, const AdjustOptions& options, const Bundle& bundle,
                                           Mat6* covariance) {
-  if (!begin_covariances(camera, options, bundle) || columns_ == plane_columns_) return false;
+  if (!begin_covariances(camera, options, bundle) || columns_ == pose_column(0)) return false;
   const Scalar* L = H_ + (columns_ - 6) * (ld_ + 1);
   for (int c = 0; c < 6; ++c) {
     Vec6 x = Vec6::Zero();
@@ -520,7 +616,7 @@ bool BundleAdjuster::last_pose_covariance(const Camera& camera, const AdjustOpti
 
 bool BundleAdjuster::begin_covariances(const Camera& camera, const AdjustOptions& options, const Bundle& bundle) {
   begin(bundle);
-  linearise(camera, options, bundle, Scalar(0));
+  linearise(camera_of(camera, bundle), options, bundle, Scalar(0));
   return columns_ > 0 && factor_cholesky(H_, columns_, ld_);
 }
 
@@ -548,6 +644,15 @@ Mat3 BundleAdjuster::plane_covariance(int plane) const {
     for (int a = 0; a < 3; ++a) covariance(a, c) = b_[column + a];
   }
   return covariance;
+}
+
+void BundleAdjuster::lens_covariance(Scalar* covariance) const {
+  for (int c = 0; c < lens_columns_; ++c) {
+    std::fill(b_, b_ + columns_, Scalar(0));
+    b_[plane_columns_ + c] = Scalar(1);
+    solve_cholesky(H_, columns_, ld_, b_);
+    for (int a = 0; a < lens_columns_; ++a) covariance[a * lens_columns_ + c] = b_[plane_columns_ + a];
+  }
 }
 
 /// b_ = factor w.
@@ -578,13 +683,16 @@ Scalar BundleAdjuster::rho_variance(int point) const {
   return Scalar(1) / D + gather(point) / D;
 }
 
-/// dp = M dx + j e,  M = dp/dx_H - j wᵀ / D,  j = dp/drho = -q / rho.
+/// dp = M dx + j e,  M = dp/dx_H + R_WH dr/dc / rho - j wᵀ / D,  j = dp/drho = -q / rho.
 bool BundleAdjuster::point_covariance(const Bundle& bundle, int point, Scalar sigma_bearing, Mat3* covariance) const {
   const Scalar D = D_[point], rho = bundle.rho[point];
   if (!(D > Scalar(0)) || !(rho > Scalar(0))) return false;
   const int host = host_of(bundle, point), free_host = free_[host];
   const Vec3 q = bundle.pose[host].q_WC * bundle.ray[point] / rho, j = -q / rho;
   const Mat3 turn = -hat(q);
+  RayByLens by_lens = RayByLens::Zero();
+  if (lens_columns_ > 0) set_ray(bundle, point, &by_lens);
+  const auto by = [&](int row, int k) { return by_lens(row, bundle.lens->rows.parameter[k]) / rho; };
   Mat3 P = j * j.transpose() / D;
   P += sigma_bearing * sigma_bearing * (q.squaredNorm() * Mat3::Identity() - q * q.transpose());
   for (int c = 0; c < 3; ++c) {
@@ -592,12 +700,14 @@ bool BundleAdjuster::point_covariance(const Bundle& bundle, int point, Scalar si
     Scalar* of_host = free_host >= 0 ? b_ + pose_column(free_host) : nullptr;
     for (int a = 0; a < 3 && of_host != nullptr; ++a) of_host[a] += turn(c, a);
     if (of_host != nullptr) of_host[3 + c] += Scalar(1);
+    for (int k = 0; k < lens_columns_; ++k) b_[plane_columns_ + k] += by(c, k);
     solve_cholesky(H_, columns_, ld_, b_);
     const Scalar along_w = gather(point) / D;
     for (int r = 0; r < 3; ++r) {
       P(r, c) -= j(r) * along_w;
       for (int a = 0; a < 3 && of_host != nullptr; ++a) P(r, c) += turn(r, a) * of_host[a];
       if (of_host != nullptr) P(r, c) += of_host[3 + r];
+      for (int k = 0; k < lens_columns_; ++k) P(r, c) += by(r, k) * b_[plane_columns_ + k];
     }
   }
   *covariance = (P + P.transpose()) / 2;
