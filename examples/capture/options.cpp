@@ -279,8 +279,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--kernels", kernels, "auto, reference, portable, avx2, avx512 or neon")->capture_default_str();
   app.add_option(
          "--lens", lens,
-         "exact, consider or estimate: what to make of errors of the calibration, by its sigma fields; auto: estimate\n"
-         "with the filter, but for what a sim: scene knows, and with an inertial unit that moves the pose")
+         "exact, consider or estimate: what to make of errors of the calibration, by its sigma fields; auto: "
+         "estimate,\n"
+         "but for what a sim: scene knows, and with an inertial unit that moves the pose; the window does not consider")
       ->capture_default_str();
   app.add_option("--masks", masks,
                  "none, partial or whole: templates that learn which of their pixels belong to one plane")

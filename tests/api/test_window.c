@@ -52,6 +52,29 @@ static void test_block_should_take_two_mebibytes_at_most(void) {
   TEST_ASSERT_TRUE(need.bytes <= 2u << 20);
 }
 
+static void test_an_estimated_lens_should_be_taken_with_its_prior(void) {
+  static uint8_t block[3u << 20] __attribute__((aligned(64)));
+  pf_camera_t lens;
+  double covariance[100];
+  pf_memory_t exact, need;
+  pf_slam_t* slam = NULL;
+  good_config();
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &exact));
+  config.camera.estimate = PF_CAMERA_ESTIMATE;
+  config.camera.sigma_focal = 0.01;
+  config.camera.sigma_aspect = 0.001;
+  config.camera.sigma_centre_px = 6.4;
+  config.camera.sigma_distortion[0] = 0.05;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
+  TEST_ASSERT_TRUE(need.bytes > exact.bytes && need.bytes <= sizeof(block));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, block, sizeof(block), &slam));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_camera(slam, &lens, covariance));
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_RADTAN, lens.model);
+  TEST_ASSERT_TRUE(lens.fx == config.camera.fx && lens.distortion[0] == 0);
+  TEST_ASSERT_TRUE(fabs(sqrt(covariance[44]) - 0.05) < 1e-6);
+  TEST_ASSERT_TRUE(fabs(sqrt(covariance[0]) / 5 - 1) < 0.01);
+}
+
 static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) {
   static uint8_t block[2u << 20] __attribute__((aligned(64)));
   static uint8_t pixels[640 * 480];
@@ -116,6 +139,7 @@ int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_check_should_name_what_the_window_cannot_do);
   RUN_TEST(test_block_should_take_two_mebibytes_at_most);
+  RUN_TEST(test_an_estimated_lens_should_be_taken_with_its_prior);
   RUN_TEST(test_calls_of_the_filter_should_be_refused_and_change_nothing);
   RUN_TEST(test_second_pose_should_be_refused_where_it_says_nothing);
   return UNITY_END();

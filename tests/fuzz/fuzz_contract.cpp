@@ -168,7 +168,14 @@ double between(Bytes& bytes, double low, double high) {
   return low * std::pow(high / low, bytes.take<uint8_t>() / 255.0);
 }
 
-/// The other back end, or walls with patches, an uncertain lens and an uncertain mounting; masks with both.
+void make_lens_uncertain(Bytes& bytes, pf_camera_estimate_t estimate, pf_config_t* config) {
+  config->camera.estimate = estimate;
+  config->camera.sigma_focal = between(bytes, 1e-5, 0.2);
+  config->camera.sigma_aspect = between(bytes, 1e-6, 0.2);
+  config->camera.sigma_centre_px = between(bytes, 1e-3, 100);
+}
+
+/// The other back end, or walls with patches and an uncertain mounting; an uncertain lens and masks with both.
 void extend(Bytes& bytes, pf_config_t* config) {
   const uint8_t more = bytes.take<uint8_t>();
   if ((more & 1) != 0) {
@@ -178,6 +185,7 @@ void extend(Bytes& bytes, pf_config_t* config) {
     config->capacity.window_points = 50 + bytes.take<uint8_t>();
     config->camera.readout_s = config->plane.fix_sigma = 0;
     if (config->motion.model == PF_MOTION_INERTIAL) config->motion.model = PF_MOTION_CONSTANT_VELOCITY;
+    if ((more & 4) != 0) make_lens_uncertain(bytes, PF_CAMERA_ESTIMATE, config);
   } else {
     if ((more & 2) != 0) {
       config->capacity.max_patches = 1 + bytes.take<uint8_t>() % 8;
@@ -185,12 +193,7 @@ void extend(Bytes& bytes, pf_config_t* config) {
       config->capacity.max_cameras = bytes.take<uint8_t>() % 9;
       if ((more & 32) != 0) config->map.features_in_view = 0;
     }
-    if ((more & 4) != 0) {
-      config->camera.estimate = (more & 64) != 0 ? PF_CAMERA_CONSIDER : PF_CAMERA_ESTIMATE;
-      config->camera.sigma_focal = between(bytes, 1e-5, 0.2);
-      config->camera.sigma_aspect = between(bytes, 1e-6, 0.2);
-      config->camera.sigma_centre_px = between(bytes, 1e-3, 100);
-    }
+    if ((more & 4) != 0) make_lens_uncertain(bytes, (more & 64) != 0 ? PF_CAMERA_CONSIDER : PF_CAMERA_ESTIMATE, config);
     if ((more & 8) != 0) {
       config->imu.sigma_mount_rad = between(bytes, 1e-6, 0.5);
       config->imu.sigma_mount_m = between(bytes, 1e-6, 1);

@@ -37,6 +37,10 @@ def record_and_replay(root):
     capture(root / "w", "--source", "sim:desk", "--frames", "60", "--backend", "window")
     capture(root / "v", "--source", f"euroc:{root}/all", "--backend", "window")
     expect_same(root / "w", root / "v", "the window on a recording")
+    lens = ["--backend", "window", "--lens", "estimate"]
+    capture(root / "wl", "--source", "sim:desk", "--frames", "60", *lens)
+    capture(root / "vl", "--source", f"euroc:{root}/all", *lens)
+    expect_same(root / "wl", root / "vl", "the window with its lens on a recording")
     result = subprocess.run([PROGRAM, *QUIET, "--source", "sim:desk", "--record", root / "all", "--out", root / "c"], text=True,
                             capture_output=True, check=False)
     if result.returncode != 1 or "recording already" not in result.stderr:

@@ -51,8 +51,8 @@ void test_points_on_a_plane_should_be_held_to_it() {
   find_plane(&with);
   find_plane(&without);
   for (int i = 0; i < WindowBench::kPoints; ++i) without.map.point(i).plane = -1;
-  TEST_ASSERT_TRUE(with.adjustment.run());
-  TEST_ASSERT_TRUE(without.adjustment.run());
+  TEST_ASSERT_TRUE(with.adjustment.run(false));
+  TEST_ASSERT_TRUE(without.adjustment.run(false));
   const double held = std::sqrt(mean_square_height(with)), loose = std::sqrt(mean_square_height(without));
   std::printf("from the plane: %.2f mm, not held to it %.2f mm\n", held * 1e3, loose * 1e3);
   TEST_ASSERT_TRUE(held < 0.6 * loose);
@@ -66,7 +66,7 @@ void test_error_of_an_adjusted_plane_should_be_as_its_covariance_says() {
   for (int run = 0; run < kRuns; ++run) {
     WindowBench bench(static_cast<std::uint64_t>(100 + run));
     find_plane(&bench);
-    TEST_ASSERT_TRUE(bench.adjustment.run());
+    TEST_ASSERT_TRUE(bench.adjustment.run(false));
     const WindowPlane& plane = bench.planes.plane(0);
     // The true plane about the frame that the adjusted one lies in.
     const Vec3 n = plane.frame.R_WP.transpose() * kNormal;
@@ -85,7 +85,7 @@ void test_a_point_that_its_pixels_place_elsewhere_should_not_be_held() {
   const Vec3 before = bench.map.position(i);
   bench.map.point(i).plane = 0;
   TEST_ASSERT_TRUE(std::abs(height(before)) > Scalar(0.3));
-  TEST_ASSERT_TRUE(bench.adjustment.run());
+  TEST_ASSERT_TRUE(bench.adjustment.run(false));
   TEST_ASSERT_TRUE((bench.map.position(i) - before).norm() < Scalar(0.05));
   bench.planes.maintain(Vec3::Zero());
   TEST_ASSERT_TRUE(bench.map.point(i).plane < 0);
@@ -95,7 +95,7 @@ void test_planes_should_not_be_adjusted_where_nothing_holds_the_scale() {
   WindowBench bench(3);
   find_plane(&bench);
   bench.settings.window_fixed = 1;
-  TEST_ASSERT_TRUE(bench.adjustment.run());
+  TEST_ASSERT_TRUE(bench.adjustment.run(false));
   TEST_ASSERT_FALSE(bench.planes.plane(0).adjusted);
 }
 

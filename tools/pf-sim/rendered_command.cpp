@@ -13,8 +13,10 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::int32_t kWindowFeatures = 150;  // in view, as pf-capture has them with the window
+
 struct Choices {
-  std::string scene = "desk", json_file, csv;
+  std::string scene = "desk", backend = "filter", json_file, csv;
   std::vector<std::string> starts{"rectangle"};
   std::vector<double> sigma_pixels{0};
   int seeds = 20, frames = 300, jobs = 2, blur = 2, relative = 0;
@@ -217,6 +219,10 @@ bool prepare(const Choices& c, RenderedOptions& o) {
         v.config.camera = lens == "right" ? o.sim.camera : wrong_camera(o.sim.camera, c.focal_error, lens);
         v.config.camera.readout_s = c.as_global ? 0 : c.readout_s;
         if (sigma > 0) v.config.measurement.sigma_px = sigma;
+        if (c.backend == "window") {
+          v.config.backend = PF_BACKEND_WINDOW;
+          v.config.map.features_in_view = kWindowFeatures;
+        }
         if (c.no_planes) v.config.plane.enabled = 0;
         if (c.max_features > 0) v.config.capacity.max_features = c.max_features;
         if (c.max_state_dim > 0) v.config.capacity.max_state_dim = c.max_state_dim;
@@ -250,6 +256,7 @@ int run(const Choices& c) {
   for (const std::string& lens : c.lenses)
     if (lens != "right" && lens != "exact" && lens != "consider" && lens != "estimate")
       return fail("the lens is right, exact, consider or estimate");
+  if (c.backend != "filter" && c.backend != "window") return fail("--backend is filter or window");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
     return fail("seeds, jobs and frames must be positive");
   if (c.relative < 0) return fail("--relative is a number of frames, or 0");
@@ -275,6 +282,7 @@ int run(const Choices& c) {
   json out = {{"experiment", "rendered"},
               {"settings",
                {{"scene", c.scene},
+                {"backend", c.backend},
                 {"first_seed", c.first_seed},
                 {"noise_grey", c.noise},
                 {"exposure_s", c.exposure_s},
@@ -306,6 +314,7 @@ void add_rendered(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("rendered", "Honesty of the whole library on rendered frames");
   command->add_option("--scene", c->scene, "desk room corridor wall person exposure repeat bushes road");
+  command->add_option("--backend", c->backend, "filter or window");
   command->add_option("--start", c->starts,
                       "rectangle: found by itself; points: its corners, about a pose from its prior");
   command->add_option("--seeds", c->seeds, "how many runs");
@@ -321,7 +330,7 @@ void add_rendered(CLI::App& app, int& result) {
   command->add_flag("--as-global", c->as_global, "the filter knows nothing of the readout, for comparison");
   command->add_option(
       "--lens", c->lenses,
-      "one or more: right, or with a wrong calibration that the filter takes as exact, considers or estimates");
+      "one or more: right, or with a wrong calibration that the library takes as exact, considers or estimates");
   command->add_option("--focal-error", c->focal_error, "of a wrong calibration, relative");
   command->add_flag("--draw-lens", c->draw_lens,
                     "each run's true lens is drawn from the prior (1 %, centre 1 % of the width, k1 0.05), which only "

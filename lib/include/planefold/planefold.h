@@ -101,7 +101,7 @@ typedef enum pf_camera_model {
   PF_CAMERA_DIVISION = 4 /* distortion = k [1/px^2]: r_d = r_u / sqrt(1 + 2 k r_u^2), r in pixels (Harris; MonoSLAM) */
 } pf_camera_model_t;
 
-/* What the filter makes of the numbers of a calibration (lib/docs/lens.md). */
+/* What a context makes of the numbers of a calibration (lib/docs/lens.md). The window cannot consider them. */
 typedef enum pf_camera_estimate {
   PF_CAMERA_EXACT = 0,    /* takes them as exact; the default */
   PF_CAMERA_CONSIDER = 1, /* allows for their errors in every covariance, and does not correct them (Schmidt) */
@@ -122,8 +122,8 @@ typedef struct pf_camera {
    * middle row. Needs constant velocity: rows differ by how the camera moves. */
   double readout_s;
 
-  /* What a context makes of the numbers above, and how uncertain they are. Each uncertain one is a row of the state,
-   * up to nine: count them in capacity.max_state_dim. Only read where estimate is not PF_CAMERA_EXACT. */
+  /* What a context makes of the numbers above, and how uncertain they are. Each uncertain one is a row of the filter's
+   * state, up to nine: count them in capacity.max_state_dim. Only read where estimate is not PF_CAMERA_EXACT. */
   int32_t estimate; /* pf_camera_estimate_t */
   /* pf_timestamps_t. With nominal ones readout_s counts as 0, since the rows hang on a velocity that such times do not
    * give; the log says so. */
@@ -186,8 +186,10 @@ typedef enum pf_masks {
 typedef enum pf_backend {
   PF_BACKEND_FILTER = 1, /* a filter over pose, points and planes (Gee 2007); the default */
   /* Keyframes whose newest are adjusted with the points that they see (lib/docs/window.md; Masoud 2015). Images only. PF_ERROR_CONFIG
-   * with motion.model inertial, camera.readout_s above 0, camera.estimate other than exact, plane.fix_sigma above 0 and
-   * capacity.max_patches above 0. The pose's covariance takes old keyframes as exact, those of points and planes all keyframes. */
+   * with motion.model inertial, camera.readout_s above 0, camera.estimate consider, plane.fix_sigma above 0 and
+   * capacity.max_patches above 0. The pose's covariance takes old keyframes as exact, those of points and planes all keyframes and the
+   * lens. With camera.estimate estimate all keyframes but the oldest are adjusted, which takes more time and memory: the block at its
+   * defaults is 2.1 MiB in place of 1.3, and the pose's covariance takes the oldest keyframes as exact only. */
   PF_BACKEND_WINDOW = 2
 } pf_backend_t;
 

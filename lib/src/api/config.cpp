@@ -119,7 +119,8 @@ const char* lens_from(const pf_camera_t& c, const pf_config_t& config, Settings*
   sigmas.aspect = static_cast<Scalar>(c.sigma_aspect);
   sigmas.centre = static_cast<Scalar>(c.sigma_centre_px);
   settings->lens = make_lens_prior(sigmas, &settings->camera);
-  settings->body.add_constant(BodyPart::kLens, settings->lens.rows.count, c.estimate == PF_CAMERA_CONSIDER);
+  if (config.backend != PF_BACKEND_WINDOW)
+    settings->body.add_constant(BodyPart::kLens, settings->lens.rows.count, c.estimate == PF_CAMERA_CONSIDER);
   return nullptr;
 }
 
@@ -174,7 +175,7 @@ const char* refused_by_window(const pf_config_t& config) {
   if (config.backend != PF_BACKEND_WINDOW) return nullptr;
   if (config.motion.model == PF_MOTION_INERTIAL) return "motion.model";
   if (config.camera.readout_s > 0) return "camera.readout_s";
-  if (config.camera.estimate != PF_CAMERA_EXACT) return "camera.estimate";
+  if (config.camera.estimate == PF_CAMERA_CONSIDER) return "camera.estimate";
   if (config.plane.fix_sigma > 0) return "plane.fix_sigma";
   if (config.capacity.max_patches > 0) return "capacity.max_patches";
   return nullptr;

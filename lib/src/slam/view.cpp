@@ -124,7 +124,7 @@ bool View::motion_since_mark(MotionView* out) const {
 const Camera& View::lens(Scalar covariance[kLensParameters][kLensParameters]) const {
   for (int i = 0; i < kLensParameters; ++i)
     for (int j = 0; j < kLensParameters; ++j) covariance[i][j] = Scalar(0);
-  if (window_ != nullptr) return settings_.camera;
+  if (window_ != nullptr) return window_lens(covariance);
   const State& state = filter().state();
   const LensRows& rows = state.lens_rows;
   const int first = state.layout.row(BodyPart::kLens);

@@ -176,6 +176,7 @@ class View {
   bool window_project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const;
   FeatureView window_feature(int i) const;
   bool window_surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const;
+  const Camera& window_lens(Scalar covariance[kLensParameters][kLensParameters]) const;
   MapCounts window_counts() const;
   PlaneView window_plane(int i) const;
   bool window_hit(const Vec2& pixel, HitView* hit) const;

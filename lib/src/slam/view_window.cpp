@@ -43,11 +43,21 @@ bool View::window_project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const 
   window_pose_at(last_ns(), &body, &P);
   Mat26 J;
   const Mat3 R_WC = body.q_WC.toRotationMatrix();
-  if (!project_bearing(settings_.camera, R_WC, Vec3(p_W - body.p_W), Vec3::Zero(), Scalar(0), pixel, &J)) return false;
+  if (!project_bearing(window_->map().camera(), R_WC, Vec3(p_W - body.p_W), Vec3::Zero(), Scalar(0), pixel, &J))
+    return false;
   if (covariance == nullptr) return true;
-  project_bearing(settings_.camera, R_WC, p_W, Vec3(-body.p_W), Scalar(1), pixel, &J);
+  project_bearing(window_->map().camera(), R_WC, p_W, Vec3(-body.p_W), Scalar(1), pixel, &J);
   *covariance = J.lazyProduct(P).lazyProduct(J.transpose());
   return true;
+}
+
+const Camera& View::window_lens(Scalar covariance[kLensParameters][kLensParameters]) const {
+  const WindowLens& lens = window_->map().lens();
+  const LensRows& rows = lens.rows();
+  for (int i = 0; i < rows.count; ++i)
+    for (int j = 0; j < rows.count; ++j)
+      covariance[rows.parameter[i]][rows.parameter[j]] = lens.covariance()[i * rows.count + j];
+  return lens.camera();
 }
 
 /// A point without a depth is shown at the median one, with as much again as standard deviation.
@@ -118,7 +128,7 @@ PlaneView View::window_plane(int i) const {
 bool View::window_hit(const Vec2& pixel, HitView* hit) const {
   Vec3 ray_C;
   Mat32 J_ray_pixel;
-  if (!unproject(settings_.camera, pixel, &ray_C, &J_ray_pixel)) return false;
+  if (!unproject(window_->map().camera(), pixel, &ray_C, &J_ray_pixel)) return false;
   Body body;
   Mat6 P;
   window_pose_at(last_ns(), &body, &P);

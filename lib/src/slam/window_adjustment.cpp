@@ -13,7 +13,9 @@ static_assert(tuning::window_map::kKeyframes + 1 <= BundleAdjuster::kMaxPoses, "
 
 bool WindowAdjustment::layout(Arena& arena) {
   const int keyframes = tuning::window_map::kKeyframes;
-  const int seeing = settings_.window_keyframes + settings_.window_fixed;
+  const int lens_rows = settings_.lens.rows.count;
+  const int max_free = lens_rows > 0 ? keyframes : settings_.window_keyframes;
+  const int seeing = lens_rows > 0 ? keyframes : settings_.window_keyframes + settings_.window_fixed;
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
   const std::size_t poses = static_cast<std::size_t>(keyframes + 1);  // and the target's host
   pose_ = arena.take<BundlePose>(poses);
@@ -27,8 +29,9 @@ bool WindowAdjustment::layout(Arena& arena) {
   plane_ = arena.take<BundlePlane>(static_cast<std::size_t>(settings_.max_planes));
   plane_row_ = arena.take<int>(static_cast<std::size_t>(settings_.max_planes));
   plane_of_ = arena.take<int>(points);
-  return adjuster_.layout(arena, static_cast<int>(poses), settings_.window_keyframes, settings_.max_features,
-                          settings_.max_planes);
+  host_pixel_ = lens_rows > 0 ? arena.take<HostPixel>(points) : nullptr;
+  return adjuster_.layout(arena, static_cast<int>(poses), max_free, settings_.max_features, settings_.max_planes,
+                          lens_rows);
 }
 
 /// Whether two keyframes at least see points of the target, which then holds the map where it is.
@@ -44,11 +47,15 @@ bool WindowAdjustment::is_held_by_target() const {
   return keyframes > 1;
 }
 
-/// The newest keyframes, the oldest first; of few, all but one, unless the target holds them. Returns how many.
-int WindowAdjustment::choose_free() {
+/// The newest keyframes, the oldest first; of few, all but one, unless the target holds them. With the lens all but the oldest three: what
+/// those held fixed have taken in of a wrong lens says that it is right. Returns how many.
+int WindowAdjustment::choose_free(bool with_lens) {
   const KeyframeTable& keyframes = map_.keyframes;
-  const int others = is_held_by_target() ? 0 : 1;
-  const int free = std::min(static_cast<int>(settings_.window_keyframes), keyframes.count() - others);
+  const int others = is_held_by_target()                                    ? 0
+                     : with_lens && keyframes.count() >= 2 * kHeldKeyframes ? kHeldKeyframes
+                                                                            : 1;
+  const int free = std::min(with_lens ? keyframes.capacity() : static_cast<int>(settings_.window_keyframes),
+                            keyframes.count() - others);
   for (int c = 0; c < free; ++c) {
     // The (free - c)-th newest.
     int at = -1;
@@ -79,9 +86,10 @@ int WindowAdjustment::choose_points(int free) {
 }
 
 /// The older keyframes that see most of these points. Returns how many there are with the free ones.
-int WindowAdjustment::choose_fixed(int free, int points) {
+int WindowAdjustment::choose_fixed(int free, int points, bool with_lens) {
   int poses = free;
-  for (int f = 0; f < settings_.window_fixed; ++f) {
+  const int most_fixed = with_lens ? kHeldKeyframes : settings_.window_fixed;
+  for (int f = 0; f < most_fixed; ++f) {
     int best = -1, most = kMinShared - 1;
     for (int k = 0; k < map_.keyframes.capacity(); ++k) {
       if (!map_.keyframes.used(k) || std::find(keyframe_, keyframe_ + poses, k) != keyframe_ + poses) continue;
@@ -144,12 +152,13 @@ void WindowAdjustment::put_target_back() {
     if (map_.used(i) && map_.feature(i).is_target) map_.place(i, target_.point_W[map_.feature(i).external_id]);
 }
 
-bool WindowAdjustment::run() {
-  const int free = choose_free();
+bool WindowAdjustment::run(bool with_lens) {
+  with_lens = with_lens && map_.lens().rows().count > 0;
+  const int free = choose_free(with_lens);
   if (free < 1) return false;
   const int seen = choose_points(free);
   if (seen < kMinPoints) return false;
-  const int seen_in = choose_fixed(free, seen);
+  const int seen_in = choose_fixed(free, seen, with_lens);
   const bool has_scale = seen_in - free >= kMinScaleKeyframes || is_held_by_target();
   const int points = has_scale ? add_plane_points(seen) : seen;
   int poses = seen_in;
@@ -178,13 +187,36 @@ bool WindowAdjustment::run() {
                                  kBehindWeight,
                                  kNoPixelPenalty,
                                  rounds};
-  const Bundle bundle = {pose_,  poses,  ray_,   host_,  rho_,
-                         points, prior_, plane_, planes, planes > 0 ? plane_of_ : nullptr};
-  adjuster_.adjust(settings_.camera, options, bundle);
+  const Scalar inflation = noise_.correlation_frames();
+  Camera camera = map_.camera();
+  Scalar information[WindowLens::kMaxEntries];
+  lens_information(settings_.lens, inflation, information);
+  const BundleLens lens = {map_.lens().rows(), information, settings_.camera, &camera, host_pixel_, ray_};
+  for (int p = 0; p < points && with_lens; ++p) host_pixel_[p] = map_.host_pixel(row_[p]);
+  const Bundle bundle = {pose_,
+                         poses,
+                         ray_,
+                         host_,
+                         rho_,
+                         points,
+                         prior_,
+                         plane_,
+                         planes,
+                         planes > 0 ? plane_of_ : nullptr,
+                         with_lens ? &lens : nullptr};
+  adjuster_.adjust(map_.camera(), options, bundle);
   // The last free pose is the newest keyframe's.
   Mat6 P;
-  const bool determined = adjuster_.last_pose_covariance(settings_.camera, options, bundle, &P);
-  if (determined) map_covariance_ = noise_.correlation_frames() * (P + P.transpose()) / 2;
+  const bool determined = adjuster_.last_pose_covariance(map_.camera(), options, bundle, &P);
+  if (determined) map_covariance_ = inflation * (P + P.transpose()) / 2;
+  if (with_lens) {
+    map_.move_lens(camera);
+    Scalar covariance[WindowLens::kMaxEntries];
+    if (determined) {
+      adjuster_.lens_covariance(covariance);
+      map_.lens().set_covariance(covariance, inflation);
+    }
+  }
   take_back(free, points);
   take_planes_back(planes, determined);
   return true;
@@ -222,7 +254,7 @@ void WindowAdjustment::reject_outliers(int i) {
     if (k == point.host || !map_.keyframes.used(k) || !pixel.seen) continue;
     const Keyframe& keyframe = map_.keyframes[k];
     Vec2 z;
-    if (!project_bearing(settings_.camera, keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, point.rho,
+    if (!project_bearing(map_.camera(), keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, point.rho,
                          &z) ||
         (pixel.pixel() - z).squaredNorm() > bound * bound)
       pixel.seen = false;
@@ -241,8 +273,8 @@ WindowAdjustment::PixelDepth WindowAdjustment::depth_by_pixels(int i) const {
     const Keyframe& keyframe = map_.keyframes[k];
     Vec2 z, J_rho;
     Mat26 J_C;
-    if (!project_bearing(settings_.camera, keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, point.rho,
-                         &z, &J_C, nullptr, &J_rho))
+    if (!project_bearing(map_.camera(), keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, point.rho, &z,
+                         &J_C, nullptr, &J_rho))
       continue;
     information += J_rho.squaredNorm();
     gradient += J_rho.dot(pixel.pixel() - z);

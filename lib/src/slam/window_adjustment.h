@@ -7,7 +7,7 @@
 #include "window/adjust.h"
 
 /// Adjusts the newest keyframes and the points that they see, with older keyframes that see the same points held fixed. Points on a plane
-/// are held to it, and the plane is adjusted with them.
+/// are held to it, and the plane is adjusted with them; so is the lens, where the settings say that it is uncertain.
 
 namespace pf {
 
@@ -22,8 +22,8 @@ class WindowAdjustment {
     target_ = Target();
   }
 
-  /// Adjusts. False: there is nothing to adjust yet.
-  bool run();
+  /// Adjusts, with the lens where the settings let it be estimated. False: there is nothing to adjust yet.
+  bool run(bool with_lens);
   /// Of the newest keyframe's (theta, p), and with it of the map about it, given the keyframes that were held fixed.
   const Mat6& map_covariance() const { return map_covariance_; }
   /// The map's lengths were multiplied by s.
@@ -46,9 +46,9 @@ class WindowAdjustment {
 
   PixelDepth depth_by_pixels(int i) const;
   bool is_held_by_target() const;
-  int choose_free();
+  int choose_free(bool with_lens);
   int choose_points(int free);
-  int choose_fixed(int free, int points);
+  int choose_fixed(int free, int points, bool with_lens);
   int pose_of(int keyframe, int* poses);
   void fill(int seen_in, int points, int* poses);
   void add_target(int points, int* poses);
@@ -80,8 +80,9 @@ class WindowAdjustment {
   RhoPrior* prior_ = nullptr;
   int* row_ = nullptr;  ///< of each point in the map
   BundlePlane* plane_ = nullptr;
-  int* plane_row_ = nullptr;  ///< of each plane in the table
-  int* plane_of_ = nullptr;   ///< plane of each point, or -1
+  int* plane_row_ = nullptr;         ///< of each plane in the table
+  int* plane_of_ = nullptr;          ///< plane of each point, or -1
+  HostPixel* host_pixel_ = nullptr;  ///< null where the lens is exact
 };
 
 }  // namespace pf

@@ -18,8 +18,24 @@ bool WindowMap::layout(Arena& arena) {
 }
 
 void WindowMap::init() {
+  lens_.init(settings_.camera, settings_.lens);
   keyframes.init();
   for (int i = 0; i < capacity(); ++i) point_[i] = WindowPoint();
+}
+
+HostPixel WindowMap::host_pixel(int i) const {
+  HostPixel host = {Vec2::Zero(), false};
+  host.given = !map_.features[i].is_target && project(camera(), point_[i].ray_K, &host.pixel);
+  return host;
+}
+
+void WindowMap::move_lens(const Camera& camera) {
+  for (int i = 0; i < capacity(); ++i) {
+    if (!used(i)) continue;
+    const HostPixel host = host_pixel(i);
+    if (host.given) unproject(camera, host.pixel, &point_[i].ray_K);
+  }
+  lens_.move(camera);
 }
 
 int WindowMap::placed() const {
@@ -33,7 +49,7 @@ Mat3 WindowMap::covariance(int i) const {
   const WindowPoint& point = point_[i];
   const Vec3 ray = ray_W(i);
   const Scalar depth = 1 / point.rho;
-  const Scalar across = tuning::noise::kReferenceSigma / settings_.camera.fx * depth;
+  const Scalar across = tuning::noise::kReferenceSigma / camera().fx * depth;
   const Scalar along = point.variance * depth * depth * depth * depth;
   return along * ray * ray.transpose() + across * across * (Mat3::Identity() - Mat3(ray * ray.transpose()));
 }
@@ -58,7 +74,7 @@ Scalar WindowMap::median_depth(const Quat& q_WC, const Vec3& p_W) const {
 
 int WindowMap::add(int host, const Vec2& pixel) {
   Vec3 ray_C;
-  if (!unproject(settings_.camera, pixel, &ray_C)) return -1;
+  if (!unproject(camera(), pixel, &ray_C)) return -1;
   if (map_.features.count() >= capacity()) {
     const int worst = map_.features.least_useful(frame_.report.t_ns);
     if (worst < 0) return -1;
@@ -87,7 +103,7 @@ int WindowMap::add_placed(int host, const Vec3& p_W) {
   const Keyframe& keyframe = keyframes[host];
   const Vec3 at = keyframe.q_WC.conjugate() * (p_W - keyframe.p_W);
   Vec2 pixel;
-  if (!project(settings_.camera, at, &pixel)) return -1;
+  if (!project(camera(), at, &pixel)) return -1;
   const int i = add(host, pixel);
   if (i < 0) return -1;
   place(i, p_W);

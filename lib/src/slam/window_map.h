@@ -4,6 +4,7 @@
 #include "slam/frame.h"
 #include "slam/keyframe_table.h"
 #include "slam/settings.h"
+#include "slam/window_lens.h"
 
 /// Points and keyframes of the window. A point is a bearing and an inverse depth in the keyframe that saw it first, its host.
 
@@ -30,6 +31,15 @@ class WindowMap {
   void init();
 
   KeyframeTable keyframes;
+
+  /// As it is known now.
+  const Camera& camera() const { return lens_.camera(); }
+  WindowLens& lens() { return lens_; }
+  const WindowLens& lens() const { return lens_; }
+  /// Another estimate of the lens: bearings become those of the same pixels of their hosts. Points of the target stay where they are.
+  void move_lens(const Camera& camera);
+  /// Where a point's host saw it, by the lens as it is known now.
+  HostPixel host_pixel(int i) const;
 
   int capacity() const { return map_.features.capacity(); }
   bool used(int i) const { return map_.features.used(i); }
@@ -75,6 +85,7 @@ class WindowMap {
   const Settings& settings_;
   Map& map_;
   Frame& frame_;
+  WindowLens lens_;
   WindowPoint* point_ = nullptr;
   Scalar* scratch_ = nullptr;  ///< one for each point
 };

@@ -34,7 +34,7 @@ bool WindowRelocaliser::choose(Scalar median_depth, PosePrior* about) const {
   }
   *about = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
   if (is_prediction_narrow(median_depth)) return true;
-  const Recognition place = views_.recognise(measuring_.tracker().pyramid(), settings_.camera);
+  const Recognition place = views_.recognise(measuring_.tracker().pyramid(), measuring_.camera());
   if (place.score < kMinRecognition) return false;
   *about = {place.q_WC, place.p_W, sphere(kAboutView, kAboutView * median_depth)};
   return true;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "geometry/lens_deviation.h"
 #include "slam/feature_upkeep.h"
 #include "slam/frame_entry.h"
 #include "slam/tuning.h"
@@ -131,7 +132,7 @@ void WindowSlam::triangulate(bool strict) {
     const Match& match = frame_.match(t);
     if (match.feature < 0 || match.status != MatchStatus::kInlier || map_.point(match.feature).has_depth) continue;
     DepthFit fit;
-    const bool fits = fit_depth(settings_.camera, map_, match.feature, now, match.measured, &fit);
+    const bool fits = fit_depth(map_.camera(), map_, match.feature, now, match.measured, &fit);
     if (fit.cos_parallax > cos_parallax) continue;
     if (!fits || (strict && fit.worst_px > measuring_.bound_px())) {
       if (strict) map_.drop(match.feature);
@@ -169,7 +170,8 @@ void WindowSlam::add_keyframe() {
 
 void WindowSlam::adjust() {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kAdjust]);
-  if (!adjustment_.run()) return;
+  // A record is solved by one lens, which changes no more until it ends.
+  if (!adjustment_.run(!start_.progress().recording)) return;
   const Keyframe& newest = map_.keyframes[map_.keyframes.newest()];
   motion_.move(newest.q_WC, newest.p_W);
   // During a start the map may begin again; ids of planes found before would then name nothing.
@@ -207,11 +209,19 @@ void WindowSlam::scale_by_second_pose() {
 
 void WindowSlam::learn_noise() {
   measuring_.learn_noise();
-  if (data_.warned_of_noise || !noise_.is_implausible()) return;
-  data_.warned_of_noise = true;
-  settings_.hooks.say(
-      "matches are 3 times as far off as their noise explains: check the calibration, the readout time and the "
-      "timestamps");
+  if (!data_.warned_of_noise && noise_.is_implausible()) {
+    data_.warned_of_noise = true;
+    settings_.hooks.say(
+        "matches are 3 times as far off as their noise explains: check the calibration, the readout time and the "
+        "timestamps");
+  }
+  if (!data_.warned_of_lens &&
+      lens_deviation(settings_.lens, settings_.camera, map_.camera()) > tuning::tracking::kMaxLensDeviation) {
+    data_.warned_of_lens = true;
+    settings_.hooks.say(
+        "the estimated lens is more than 3 sigma from the calibration: check the calibration, or give it larger "
+        "sigmas");
+  }
 }
 
 /// Whether rotation and position are known well enough against the map (lib/docs/states.md).

@@ -67,7 +67,7 @@ class WindowSlam {
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     Mark mark;
     bool young = false;  ///< in this frame, WindowTracking::is_young
-    bool warned_of_noise = false;
+    bool warned_of_noise = false, warned_of_lens = false;
   };
 
   void begin_frame(std::int64_t t_ns);

@@ -103,7 +103,7 @@ bool WindowStart::start_in_image() {
   FrameReport& report = parts_.frame.report;
   TargetSighting sighting;
   const bool expected = target_.is_expected();
-  const bool seen = expected && target_.find(settings_.camera, parts_.measuring.tracker(), &sighting);
+  const bool seen = expected && target_.find(parts_.map.camera(), parts_.measuring.tracker(), &sighting);
   if (!seen && expected && !parts_.tracking.may_skip_target()) return false;
   target_.note_begin();
   if (seen && report.frames > 1) data_.known = KnownBody();  // it was the pose of the first frame
@@ -145,7 +145,7 @@ void WindowStart::begin_record() {
     const Match& match = parts_.frame.match(t);
     Vec3 ray_C;
     if (match.status != MatchStatus::kNew || match.feature < 0) continue;
-    if (unproject(settings_.camera, match.measured, &ray_C)) without_.add_feature(match.id, ray_C);
+    if (unproject(parts_.map.camera(), match.measured, &ray_C)) without_.add_feature(match.id, ray_C);
   }
 }
 
@@ -162,14 +162,14 @@ bool WindowStart::accept_rotation(int found) {
   }
   if (found < settings_.min_inliers) return false;
   Quat q_WC = parts_.motion.body().q_WC;
-  const Scalar parallax = fit_rotation(settings_.camera, ray_, pixel_, count, scratch_, &q_WC);
+  const Scalar parallax = fit_rotation(parts_.map.camera(), ray_, pixel_, count, scratch_, &q_WC);
   const Scalar bound = kParallaxes * parallax + parts_.measuring.bound_px();
   parts_.measuring.settle_followed(found, q_WC, without_.base_p_W(), settings_.start_depth);
   for (int t = 0; t < frame.match_count(); ++t) {
     Match& match = frame.match(t);
     Vec2 z;
     if (match.status != MatchStatus::kOutlier || match.feature < 0) continue;
-    if (!project(settings_.camera, q_WC.conjugate() * parts_.map.ray_W(match.feature), &z)) continue;
+    if (!project(parts_.map.camera(), q_WC.conjugate() * parts_.map.ray_W(match.feature), &z)) continue;
     if ((match.measured - z).squaredNorm() > bound * bound) continue;
     parts_.measuring.accept(&match);
     ++frame.report.inliers;
@@ -185,9 +185,9 @@ StartOutcome WindowStart::record_frame() {
     const Match& match = frame.match(t);
     // What the last depths refuse, the next ones may explain, and that adjustment is robust.
     if (match.feature >= 0 && (match.status == MatchStatus::kInlier || match.status == MatchStatus::kOutlier))
-      without_.add_pixel(settings_.camera, match.id, match.measured);
+      without_.add_pixel(parts_.map.camera(), match.id, match.measured);
   }
-  return without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth);
+  return without_.solve(parts_.map.camera(), tuning::noise::kSearchSigma, settings_.start_depth);
 }
 
 void WindowStart::note_keyframe() {
@@ -209,7 +209,7 @@ bool WindowStart::follow_record() {
   const StartOutcome outcome = accept_rotation(found) ? record_frame() : StartOutcome::kTooFew;
   if (outcome == StartOutcome::kWait) {
     const CameraView now =
-        without_.follow(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth, record_rho_);
+        without_.follow(parts_.map.camera(), tuning::noise::kSearchSigma, settings_.start_depth, record_rho_);
     parts_.motion.move(now.q_WC, now.c_W);
     return false;
   }

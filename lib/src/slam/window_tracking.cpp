@@ -44,7 +44,7 @@ bool WindowTracking::expect_placed(int i, const PosePrior& at, ExpectedPixel* ou
   const WindowPoint& point = map_.point(i);
   Mat26 J_C;
   Vec2 J_rho;
-  if (!project_bearing(settings_.camera, at.q_WC.toRotationMatrix(), map_.ray_W(i),
+  if (!project_bearing(map_.camera(), at.q_WC.toRotationMatrix(), map_.ray_W(i),
                        map_.keyframes[point.host].p_W - at.p_W, point.rho, &out->pixel, &J_C, nullptr, &J_rho))
     return false;
   const Mat26 JP = J_C.lazyProduct(at.covariance);
@@ -56,10 +56,10 @@ bool WindowTracking::expect_placed(int i, const PosePrior& at, ExpectedPixel* ou
 bool WindowTracking::expect_unplaced(int i, const PosePrior& at, Scalar depth, ExpectedPixel* out) const {
   const WindowPoint& point = map_.point(i);
   Vec3 ray_C;
-  if (!unproject(settings_.camera, point.pixel, &ray_C)) return false;
+  if (!unproject(map_.camera(), point.pixel, &ray_C)) return false;
   Mat26 J_C;
   Vec2 J_rho;
-  if (!project_bearing(settings_.camera, at.q_WC.toRotationMatrix(), point.seen_from.q_WC * ray_C,
+  if (!project_bearing(map_.camera(), at.q_WC.toRotationMatrix(), point.seen_from.q_WC * ray_C,
                        point.seen_from.c_W - at.p_W, 1 / depth, &out->pixel, &J_C, nullptr, &J_rho))
     return false;
   const Mat26 JP = J_C.lazyProduct(at.covariance);
@@ -168,8 +168,8 @@ void WindowTracking::make_pose_match(int c, const PosePrior& prior, Scalar depth
   PoseMatch& out = pose_.match(c);
   out.point = {ray_W + rho * host_W, rho, match.measured};
   out.noise = noise_.correlation_frames() * candidate_[c].noise;
-  if (project_bearing(settings_.camera, prior.q_WC.toRotationMatrix(), ray_W, host_W - prior.p_W, rho, &z, &J_C,
-                      nullptr, &J_rho)) {
+  if (project_bearing(map_.camera(), prior.q_WC.toRotationMatrix(), ray_W, host_W - prior.p_W, rho, &z, &J_C, nullptr,
+                      &J_rho)) {
     out.noise += variance * J_rho * J_rho.transpose();
     if (point.has_depth || shared == 0) return;
     const Mat23 J_p = J_C.rightCols<3>() / rho;
@@ -182,7 +182,7 @@ void WindowTracking::make_pose_match(int c, const PosePrior& prior, Scalar depth
 int WindowTracking::find_pose(int found, const PosePrior& prior, CameraPose* pose, Mat6* information) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int c = 0; c < found; ++c) make_pose_match(c, prior, Scalar(1), 0);
-  const int inliers = pose_.find(settings_.camera, found, prior, bound_px(), settings_.min_inliers, pose, information);
+  const int inliers = pose_.find(map_.camera(), found, prior, bound_px(), settings_.min_inliers, pose, information);
   return is_believed(inliers, found) ? inliers : 0;
 }
 
@@ -291,7 +291,7 @@ void WindowTracking::measure_unplaced(Scalar depth) {
   for (int c = first; c < first + found; ++c) {
     Match& match = frame_.match(candidate_[c].match);
     DepthFit fit;
-    const bool fits = fit_depth(settings_.camera, map_, match.feature, {now.q_WC, now.p_W}, match.measured, &fit);
+    const bool fits = fit_depth(map_.camera(), map_, match.feature, {now.q_WC, now.p_W}, match.measured, &fit);
     if (fits ? fit.worst_px > bound_px() : fit.cos_parallax < std::cos(kMaxParallel)) continue;
     accept(&match);
   }

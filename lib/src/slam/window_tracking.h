@@ -57,6 +57,7 @@ class WindowTracking {
   Scalar bound_px() const;
   ImageSearch& search() { return search_; }
   const Tracker& tracker() const { return search_.tracker(); }
+  const Camera& camera() const { return map_.camera(); }
 
  private:
   bool expect_placed(int i, const PosePrior& at, ExpectedPixel* out) const;

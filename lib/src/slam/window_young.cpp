@@ -20,7 +20,7 @@ void WindowTracking::measure_young(Scalar median_depth) {
     int open = 0;
     for (int c = 0; c < found; ++c) open += map_.point(frame_.match(candidate_[c].match).feature).has_depth ? 0 : 1;
     for (int c = 0; c < found; ++c) make_pose_match(c, prior, median_depth, open);
-    inliers = pose_.fit(settings_.camera, found, prior, settings_.gate, &pose, &information);
+    inliers = pose_.fit(map_.camera(), found, prior, settings_.gate, &pose, &information);
   }
   PosePrior now;
   if (inliers < settings_.min_inliers || 2 * inliers < frame_.report.attempts || !apply(pose, information, &now))
@@ -48,7 +48,7 @@ void WindowTracking::settle_followed(int found, const Quat& q_WC, const Vec3& p_
   for (int c = 0; c < found; ++c) make_pose_match(c, about, depth, 0);
   CameraPose pose;
   Mat6 information;
-  if (pose_.fit(settings_.camera, found, about, settings_.gate, &pose, &information) < settings_.min_inliers)
+  if (pose_.fit(map_.camera(), found, about, settings_.gate, &pose, &information) < settings_.min_inliers)
     pose = {q_WC, p_W};
   motion_.correct(pose.q_WC, pose.p_WC, about.covariance);
 }

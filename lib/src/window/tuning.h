@@ -104,6 +104,7 @@ inline constexpr int kRounds = 10;                 ///< of Levenberg-Marquardt
 inline constexpr int kFirstRounds = 30;            ///< likewise, while the window holds all keyframes
 inline constexpr int kMinPlanePoints = 4;          ///< of a plane that is adjusted
 inline constexpr int kMinScaleKeyframes = 2;       ///< held fixed, so that distances from planes do not shrink the map
+inline constexpr int kHeldKeyframes = 3;           ///< the oldest, where all others are adjusted with the lens
 inline constexpr int kMinTargetPoints = 4;         ///< of the target, that hold a keyframe
 inline constexpr Scalar kHuber = Scalar(2);        ///< residuals beyond count linearly [standard deviations]
 inline constexpr Scalar kMinSigma = Scalar(0.25);  ///< [px] of a pixel, at least

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "geometry/lens.h"
+
+/// The lens as the window knows it: an estimate that all keyframes share, and what the calibration says of it.
+
+namespace pf {
+
+class WindowLens {
+ public:
+  static constexpr int kMaxEntries = kLensParameters * kLensParameters;  ///< of a matrix of its rows, row-major
+
+  /// Begins at the calibration.
+  void init(const Camera& calibration, const LensPrior& prior);
+
+  const LensRows& rows() const { return rows_; }
+  const Camera& camera() const { return camera_; }
+  const Scalar* covariance() const { return covariance_; }
+
+  /// The lens is where an adjustment has found it.
+  void move(const Camera& camera) { camera_ = camera; }
+  /// As that adjustment says, which believed its pixels so many times too much.
+  void set_covariance(const Scalar* covariance, Scalar inflation);
+
+ private:
+  LensRows rows_;
+  Camera camera_;
+  Scalar covariance_[kMaxEntries] = {};
+};
+
+/// Inverse of a prior's covariance, rows x rows. inflation: how many times too much an adjustment believes its pixels; it must believe the
+/// prior as many times too much.
+void lens_information(const LensPrior& prior, Scalar inflation, Scalar* information);
+
+}  // namespace pf
