@@ -62,6 +62,16 @@ void test_desk_should_start_without_a_target_and_then_be_tracked() {
   for (std::size_t i = first; i < 120; ++i) TEST_ASSERT_EQUAL_INT(PF_OK, run.frames[i].status);
 }
 
+void test_a_picture_of_hardly_any_contrast_should_be_tracked() {
+  RenderedRun run("desk", 90, Start::kNone);
+  run.contrast = 0.1;
+  run.tracked_until(90);
+  tell("faint desk", run, 30);
+  int tracked = 0;
+  for (std::size_t i = 45; i < 90; ++i) tracked += run.frames[i].status == PF_OK ? 1 : 0;
+  TEST_ASSERT_GREATER_OR_EQUAL_INT(42, tracked);
+}
+
 /// First depths that are wrong by a factor let a filter settle in another explanation of the first frames, for good.
 void test_a_start_at_a_target_should_be_right_when_the_first_depths_are_far_off() {
   const struct {
@@ -303,6 +313,7 @@ void run_for_both() {
   RUN_TEST(test_a_frozen_camera_should_coast_after_coast_s_with_growing_covariance_and_be_found_again);
   RUN_TEST(test_a_hand_that_shakes_should_be_followed_at_ten_frames_a_second);
   RUN_TEST(test_pure_rotation_should_stay_starting_when_there_is_no_target);
+  RUN_TEST(test_a_picture_of_hardly_any_contrast_should_be_tracked);
 }
 
 int main(void) {

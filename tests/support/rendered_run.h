@@ -85,6 +85,10 @@ class RenderedRun {
     pf_image_t image;
     if (!next_image(&image)) return false;
     seen_.assign(image.pixels, image.pixels + image.stride * image.height);
+    if (contrast < 1) {
+      for (std::uint8_t& grey : seen_) grey = static_cast<std::uint8_t>(std::lround(110 + contrast * (grey - 110)));
+      image.pixels = seen_.data();
+    }
     if (cover >= 0) {
       covered_.assign(static_cast<std::size_t>(image.stride * image.height), static_cast<std::uint8_t>(cover));
       image.pixels = covered_.data();
@@ -117,6 +121,7 @@ class RenderedRun {
     return worst;
   }
 
+  double contrast = 1;  ///< of what is left of it
   pf_config_t config;
   pf_memory_t need;
   pf_slam_t* slam = nullptr;

@@ -24,6 +24,7 @@ int CornerCells::count(const Frame& frame) {
     ++in_cell_[row * kColumns + cell_along(match.predicted.x(), width_, kColumns)];
     if (match.status == MatchStatus::kInlier) ++inliers;
   }
+  in_view_ = inliers;
   return inliers;
 }
 

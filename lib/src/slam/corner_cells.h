@@ -25,21 +25,35 @@ class CornerCells {
   /// where it shows a plane.
   template <typename F>
   void fill(int wanted, int turn, int max_in_cell, F&& add_in);
+  /// How many more must be in view for plain corners to be enough, where a tracked frame has so many inliers at least. May be negative.
+  int missing(int min_inliers) const { return tuning::image_corners::kFaintBelow * min_inliers - in_view_; }
 
  private:
   Rect rect_of(int row, int column) const;
 
   int width_, height_, border_;
+  int in_view_ = 0;  ///< inliers and what was added
   int in_cell_[kCells] = {};
   bool on_plane_[kCells] = {};
 };
 
 enum class CornerUse { kTaken, kNotHere, kNoRoom };
 
+/// What a corner must have, at least.
+struct CornerStrength {
+  int threshold;  ///< of the segment test [grey levels]
+  float score;    ///< min_eigenvalue
+};
+constexpr CornerStrength kPlainCorner = {tuning::image_corners::kCornerThreshold,
+                                         tuning::image_corners::kMinCornerScore};
+/// Of a picture that has too few others: a dim one, or one of a bare wall.
+constexpr CornerStrength kFaintCorner = {tuning::image_corners::kFaintThreshold, tuning::image_corners::kFaintScore};
+
 /// Offers the corners of a cell that are near no feature of the frame, the best first, to take(pixel), until it takes one. False: it took
 /// none.
 template <typename F>
-bool take_corner(const Tracker& tracker, const Rect& cell, const Frame& frame, int width, F&& take);
+bool take_corner(const Tracker& tracker, const Rect& cell, const CornerStrength& least, const Frame& frame, int width,
+                 F&& take);
 
 /// Whether no feature of this frame is near the pixel. width: of the image.
 bool is_free(const Frame& frame, int width, const Vec2& pixel);
@@ -68,18 +82,20 @@ void CornerCells::fill(int wanted, int turn, int max_in_cell, F&& add_in) {
       if (in_cell_[k] > max_in_cell || in_cell_[k] != level + (on_plane_[k] ? kPlaneAhead : 0)) continue;
       if (!add_in(rect_of(k / kColumns, k % kColumns))) continue;
       ++in_cell_[k];
+      ++in_view_;
       ++added;
     }
   }
 }
 
 template <typename F>
-bool take_corner(const Tracker& tracker, const Rect& cell, const Frame& frame, int width, F&& take) {
+bool take_corner(const Tracker& tracker, const Rect& cell, const CornerStrength& least, const Frame& frame, int width,
+                 F&& take) {
   constexpr int kCorners = 8;
   Corner corner[kCorners];
-  const int corners = tracker.corners(cell, tuning::image_corners::kCornerThreshold, corner, kCorners);
+  const int corners = tracker.corners(cell, least.threshold, corner, kCorners);
   for (int c = 0; c < corners; ++c) {
-    if (corner[c].score < tuning::image_corners::kMinCornerScore) return false;
+    if (corner[c].score < least.score) return false;
     const Vec2 pixel(static_cast<Scalar>(corner[c].x), static_cast<Scalar>(corner[c].y));
     if (!is_free(frame, width, pixel)) continue;
     const CornerUse use = take(pixel);

@@ -14,13 +14,15 @@ void ImageFrontEnd::add_features() {
   if (filter_.state().planes > 0) cells.mark_planes([&](const Vec2& pixel) { return features_.plane_at(pixel) >= 0; });
   int anchor = -1;
   cells.fill(wanted, frame_.report.frames, tuning::image_corners::kMaxInCell,
-             [&](const Rect& cell) { return add_in(cell, &anchor); });
+             [&](const Rect& cell) { return add_in(cell, kPlainCorner, &anchor); });
+  cells.fill(cells.missing(settings_.min_inliers), frame_.report.frames, tuning::image_corners::kMaxInCell,
+             [&](const Rect& cell) { return add_in(cell, kFaintCorner, &anchor); });
   if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children
 }
 
 /// Adds a feature at the best corner of this rectangle that is not near another feature. False: no such corner, or no room.
-bool ImageFrontEnd::add_in(const Rect& rect, int* anchor) {
-  return take_corner(search_.tracker(), rect, frame_, settings_.camera.width, [&](const Vec2& pixel) {
+bool ImageFrontEnd::add_in(const Rect& rect, const CornerStrength& least, int* anchor) {
+  return take_corner(search_.tracker(), rect, least, frame_, settings_.camera.width, [&](const Vec2& pixel) {
     if (frame_.full()) return CornerUse::kNoRoom;
     const int plane = features_.plane_at(pixel);
     if (!(plane >= 0 ? features_.make_room_on_plane() : features_.make_room_at(anchor))) return CornerUse::kNoRoom;

@@ -2,6 +2,7 @@
 
 #include "filter/filter.h"
 #include "map/map.h"
+#include "slam/corner_cells.h"
 #include "slam/feature_keeper.h"
 #include "slam/followed_view.h"
 #include "slam/frame.h"
@@ -92,7 +93,7 @@ class ImageFrontEnd {
   bool is_averaged(const Feature& f) const;
 
   // image_corners.cpp
-  bool add_in(const Rect& rect, int* anchor);
+  bool add_in(const Rect& rect, const CornerStrength& least, int* anchor);
 
   const Settings& settings_;
   Filter& filter_;

@@ -136,6 +136,9 @@ inline constexpr Scalar kSameDepth = Scalar(1.25);     ///< ratio of two; right:
 namespace image_corners {
 inline constexpr int kCornerThreshold = 8;       ///< [grey levels] of the segment test
 inline constexpr float kMinCornerScore = 12.0f;  ///< smaller eigenvalue of the gradients [grey levels^2/px^2]
+inline constexpr int kFaintThreshold = 3;        ///< [grey levels] likewise, where such corners leave too few in view
+inline constexpr float kFaintScore = 1.5f;       ///< likewise
+inline constexpr int kFaintBelow = 2;            ///< tracked frames' least inliers in view, below which it is that
 inline constexpr int kMinNewFeatures = 4;        ///< in one frame; new features share an anchor
 inline constexpr int kMaxInCell = 3;             ///< features in a cell of the image; one more where it shows a plane
 inline constexpr int kPlaneAhead = 2;            ///< features that do not count there when cells take turns

@@ -12,8 +12,8 @@ void add_corners(const Settings& settings, const ImageSearch& search, int keyfra
   const Keyframe& host = map->keyframes[keyframe];
   // Three times as many as an even spread has.
   const int max_in_cell = 1 + 3 * settings.features_in_view / CornerCells::kCells;
-  cells.fill(wanted, frame->report.frames, max_in_cell, [&](const Rect& cell) {
-    return take_corner(search.tracker(), cell, *frame, settings.camera.width, [&](const Vec2& pixel) {
+  const auto add_in = [&](const Rect& cell, const CornerStrength& least) {
+    return take_corner(search.tracker(), cell, least, *frame, settings.camera.width, [&](const Vec2& pixel) {
       if (frame->full()) return CornerUse::kNoRoom;
       const int i = map->add(keyframe, pixel);
       if (i < 0) return CornerUse::kNoRoom;
@@ -25,7 +25,10 @@ void add_corners(const Settings& settings, const ImageSearch& search, int keyfra
           {i, map->feature(i).id, MatchStatus::kNew, map->kind(i), false, pixel, Mat2::Zero(), pixel, Scalar(0)});
       return CornerUse::kTaken;
     });
-  });
+  };
+  cells.fill(wanted, frame->report.frames, max_in_cell, [&](const Rect& cell) { return add_in(cell, kPlainCorner); });
+  cells.fill(cells.missing(settings.min_inliers), frame->report.frames, max_in_cell,
+             [&](const Rect& cell) { return add_in(cell, kFaintCorner); });
 }
 
 }  // namespace pf
