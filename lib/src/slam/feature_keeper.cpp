@@ -226,9 +226,13 @@ int FeatureKeeper::add_entry(int slot) {
   return entry;
 }
 
+int FeatureKeeper::add_target_point(const Target& target, int index) {
+  return filter_.add_point(target.point_W[index], Mat3::Identity() * (target.sigma_m * target.sigma_m));
+}
+
 void FeatureKeeper::add_target_points(const Target& target) {
   for (int i = 0; i < target.count; ++i) {
-    const int slot = filter_.add_point(target.point_W[i], Mat3::Identity() * (target.sigma_m * target.sigma_m));
+    const int slot = add_target_point(target, i);
     if (slot < 0) return;
     const int entry = map_.features.add(slot);
     if (entry < 0) return;

@@ -42,6 +42,8 @@ class FeatureKeeper {
   int add_on_plane(int plane, const Vec2& pixel, const Mat2& noise);
   /// Adds the target's points to the state with their own uncertainty.
   void add_target_points(const Target& target);
+  /// Adds one of them to the filter alone. Returns its slot, or -1.
+  int add_target_point(const Target& target, int index);
 
  private:
   bool make_room(int rows);

@@ -165,7 +165,7 @@ bool FilterStart::needs_record() const {
 }
 
 /// The pose before the first measurement: the one that the caller gave, or the one that defines the world.
-void FilterStart::set_known_pose(bool at_target, const TargetSighting* sighting) {
+void FilterStart::set_known_pose(bool at_target, bool fitted_to_target) {
   data_.knows_scale = at_target || !needs_record();
   data_.begin_ns = parts_.frame.report.t_ns;
   if (data_.known.given) {
@@ -182,16 +182,19 @@ void FilterStart::set_known_pose(bool at_target, const TargetSighting* sighting)
       covariance[i * dim + j] =
           at_target ? target.first_covariance(i, j) : (i == j ? kDefinedSigma * kDefinedSigma : Scalar(0));
   set_start_velocities(kStartSpeed * (at_target ? Scalar(1) : settings_.start_depth));
-  begin_body(at_target ? target.first_pose : Body(), sighting != nullptr ? &sighting->pose : nullptr);
+  begin_body(at_target ? target.first_pose : Body(), fitted_to_target);
 }
 
 /// A pose that was fitted to pixels of the target is wrong where the lens is: rows of the pose, and none of the velocities.
-void FilterStart::begin_body(const Body& body, const PoseEstimate* at_target) {
+void FilterStart::begin_body(const Body& body, bool fitted_to_target) {
   Scalar J_lens[BodyLayout::kMaxDynamicRows * kLensParameters] = {};
   const Target& target = target_.target();
   const LensRows& rows = parts_.filter.state().lens_rows;
-  const bool by_lens = at_target != nullptr && rows.count > 0 &&
-                       pose_by_lens(settings_.camera, target.point_W, target.count, *at_target, rows, J_lens);
+  PoseEstimate pose;
+  pose.q_WC = body.q_WC;
+  pose.p_WC = body.p_W;
+  const bool by_lens = fitted_to_target && rows.count > 0 &&
+                       pose_by_lens(settings_.camera, target.point_W, target.count, pose, rows, J_lens);
   set_body(body, data_.covariance, by_lens ? J_lens : nullptr);
 }
 
@@ -214,7 +217,7 @@ bool FilterStart::start_in_image() {
 
   FrameReport& report = parts_.frame.report;
   if (report.frames > 1) data_.known = KnownBody();  // it was the pose of the first frame
-  set_known_pose(true, &sighting);
+  set_known_pose(true, true);
   parts_.features.add_target_points(target_.target());
   for (int i = 0; i < parts_.map.features.capacity(); ++i) {
     if (!parts_.map.features.used(i) || !parts_.map.features[i].is_target) continue;
@@ -259,8 +262,8 @@ Vec2 FilterStart::at_frame_time(int slot, const Vec2& measured) const {
   return measured - (by_rows.predicted - still.predicted);
 }
 
-void FilterStart::record_frame() {
-  if (!is_recording() || without_.empty() || parts_.frame.report.inliers < settings_.min_inliers) return;
+bool FilterStart::record_frame() {
+  if (!is_recording() || without_.empty() || parts_.frame.report.inliers < settings_.min_inliers) return false;
   const CameraAt camera = camera_at(parts_.filter.state(), Scalar(0));
   without_.begin_frame(camera.q_WC, camera.p_W, parts_.frame.report.t_ns);
   for (int t = 0; t < parts_.frame.match_count(); ++t) {
@@ -277,11 +280,8 @@ void FilterStart::record_frame() {
       break;
     case StartOutcome::kSolved:
     case StartOutcome::kSettled:
-      if (checks) {
-        check_depths(outcome == StartOutcome::kSettled);
-        break;
-      }
-      restart_from_record();
+      if (checks) return check_depths(outcome == StartOutcome::kSettled);
+      restart_from_record(Scalar(1));
       if (first) settings_.hooks.say("started without a target: the first depths are known");
       break;
     case StartOutcome::kTooFew:
@@ -289,6 +289,7 @@ void FilterStart::record_frame() {
       if (first && !checks) parts_.features.drop_all();
       break;
   }
+  return false;
 }
 
 }  // namespace pf

@@ -66,8 +66,9 @@ class FilterStart {
   const StartProgress& progress() const { return without_.progress(); }
 
   /// While a start without a target is under way: records the frame's pixels, and restarts the filter when the record gives better depths.
-  /// After one at a target: likewise, until the record's depths show that the filter's are right, or wrong.
-  void record_frame();
+  /// After one at a target: likewise, until the record's depths show that the filter's are right, or wrong. True: they were wrong, and
+  /// places and poses of before no longer hold.
+  bool record_frame();
   /// Begins an empty record with the features that this frame has added.
   void begin_record();
   /// The camera has been at rest since begin_ns. The first time that samples can tell the scale from here on: true, and gravity and biases
@@ -91,16 +92,16 @@ class FilterStart {
   bool needs_record() const;
   void set_start_velocities(Scalar speed);
   void note_covariance();
-  void set_known_pose(bool at_target, const TargetSighting* sighting = nullptr);
+  void set_known_pose(bool at_target, bool fitted_to_target = false);
   Vec2 at_frame_time(int slot, const Vec2& measured) const;
-  void begin_body(const Body& body, const PoseEstimate* at_target);
-  void check_depths(bool settled);
+  void begin_body(const Body& body, bool fitted_to_target);
+  bool check_depths(bool settled);
   Scalar unit_of_record() const;
-  bool most_depths_agree() const;
-  void restart_from_record();
-  void restart_features();
-  void restart_frame(int k, std::int64_t before_ns);
-  void restart_velocities();
+  bool most_depths_agree(Scalar unit) const;
+  void restart_from_record(Scalar unit);
+  void restart_features(Scalar unit);
+  void restart_frame(int k, std::int64_t before_ns, Scalar unit);
+  void restart_velocities(Scalar unit);
   void restart_at_target();
 
   /// What is kept between frames.
@@ -110,7 +111,6 @@ class FilterStart {
     bool knows_scale = false;   ///< a target, walls or a known speed tell it
     bool from_motion = false;   ///< lengths are in metres since the samples of a moving camera told them
     std::int64_t begin_ns = 0;  ///< when the body got its first pose
-    Scalar unit = 1;            ///< of the record's lengths, in those of W
     Scalar covariance[BodyLayout::kVelocityRows * BodyLayout::kVelocityRows] = {};  ///< of the body at the first frame
   };
 

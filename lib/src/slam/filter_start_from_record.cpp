@@ -14,41 +14,39 @@ using namespace tuning::filter_start;
 /// Restarts the filter at the record's frame 0 with the bundle's depths as wide priors, and repeats the recorded frames with every
 /// linearisation at the bundle's poses and with residuals of zero. That moves no mean, and leaves the covariance that the recorded
 /// pixels support. At a target its points are left out of that, since the record's unit of length is only as good as the bundle's depths of
-/// them; their pixels in the last frame correct the mean.
-void FilterStart::restart_from_record() {
+/// them; their pixels in the last frame correct the mean. unit: W's lengths per length of the record.
+void FilterStart::restart_from_record(Scalar unit) {
   Body body;
   body.q_WC = without_.base_q_WC();
   body.p_W = without_.base_p_W();
   clear_filter();
-  PoseEstimate at_target;
-  at_target.q_WC = body.q_WC;
-  at_target.p_WC = body.p_W;
-  begin_body(body, progress().checking ? &at_target : nullptr);
+  begin_body(body, progress().checking && !data_.known.given);
   // The bundle's solution holds for the calibration as it was given, so residuals of zero say nothing about it.
   parts_.filter.consider_lens(true);
-  restart_features();
+  restart_features(unit);
   std::int64_t before_ns = without_.begin_ns();
   for (int k = 0; k < without_.record().frames(); ++k) {
-    restart_frame(k, before_ns);
+    restart_frame(k, before_ns, unit);
     before_ns = without_.record().frame(k).t_ns;
   }
   parts_.filter.consider_lens(false);
-  if (settings_.body.has(BodyPart::kVelocity)) restart_velocities();
+  if (settings_.body.has(BodyPart::kVelocity)) restart_velocities(unit);
   if (progress().checking) restart_at_target();
 }
 
 /// After a start at a target: where the record tells other depths than the filter has found, the filter has settled in a wrong
-/// explanation of the first frames, and begins again with those of the record (lib/docs/starting.md).
-void FilterStart::check_depths(bool settled) {
-  data_.unit = unit_of_record();
-  if (!(data_.unit > Scalar(0))) return;
-  const bool agree = most_depths_agree();
+/// explanation of the first frames, and begins again with those of the record (lib/docs/starting.md). Returns whether it did.
+bool FilterStart::check_depths(bool settled) {
+  const Scalar unit = unit_of_record();
+  if (!(unit > Scalar(0))) return false;
+  const bool agree = most_depths_agree(unit);
   if (!agree) {
-    restart_from_record();
+    restart_from_record(unit);
     settings_.hooks.say(
         "the first depths were wrong: the map begins again at the target, with those of all frames since");
   }
   if (agree || settled) without_.init();
+  return !agree;
 }
 
 /// W's lengths per length of the record: the ratio of the sums of distances of the target's points. Zero where the bundle has none of them.
@@ -65,7 +63,7 @@ Scalar FilterStart::unit_of_record() const {
 }
 
 /// Whether for most features the filter and the record tell about the same distance from the first frame.
-bool FilterStart::most_depths_agree() const {
+bool FilterStart::most_depths_agree(Scalar unit) const {
   int compared = 0, agree = 0;
   for (int i = 0; i < parts_.map.features.capacity(); ++i) {
     const Feature& f = parts_.map.features[i];
@@ -73,7 +71,7 @@ bool FilterStart::most_depths_agree() const {
     if (index < 0 || !without_.bundle().good(index)) continue;
     const Vec3 ray_W = without_.base_q_WC() * without_.record().ray(index);
     const Scalar of_filter = ray_W.normalized().dot(parts_.filter.point(f.slot) - without_.base_p_W());
-    const Scalar of_record = data_.unit * ray_W.norm() / without_.bundle().rho(index);
+    const Scalar of_record = unit * ray_W.norm() / without_.bundle().rho(index);
     ++compared;
     agree += of_filter * kSameDepth > of_record && of_filter < of_record * kSameDepth ? 1 : 0;
   }
@@ -81,7 +79,7 @@ bool FilterStart::most_depths_agree() const {
 }
 
 /// Adds the record's features to the filter with its depths; removes all others.
-void FilterStart::restart_features() {
+void FilterStart::restart_features(Scalar unit) {
   Filter& filter = parts_.filter;
   const int anchor = filter.add_anchor();
   const Mat2 noise = NoiseModel::search();
@@ -89,9 +87,11 @@ void FilterStart::restart_features() {
     if (!parts_.map.features.used(i)) continue;
     Feature& f = parts_.map.features[i];
     if (f.is_target) {
-      const Target& target = target_.target();
-      f.slot = filter.add_point(target.point_W[f.external_id], Mat3::Identity() * (target.sigma_m * target.sigma_m));
-      filter.set_owner(f.slot, i);
+      f.slot = parts_.features.add_target_point(target_.target(), static_cast<int>(f.external_id));
+      if (f.slot < 0)
+        parts_.features.release(i);
+      else
+        filter.set_owner(f.slot, i);
       continue;
     }
     const int index = without_.index_of(f.id);
@@ -103,7 +103,7 @@ void FilterStart::restart_features() {
       parts_.features.release(i);
       continue;
     }
-    const Scalar rho = without_.bundle().rho(index) / data_.unit;
+    const Scalar rho = without_.bundle().rho(index) / unit;
     f.slot = filter.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, kWideDepth * rho);
     if (f.slot < 0)
       parts_.features.release(i);
@@ -113,14 +113,14 @@ void FilterStart::restart_features() {
 }
 
 /// Moves the body to frame k of the record, and updates with its pixels and residuals of zero.
-void FilterStart::restart_frame(int k, std::int64_t before_ns) {
+void FilterStart::restart_frame(int k, std::int64_t before_ns, Scalar unit) {
   Filter& filter = parts_.filter;
   const StartRecord& record = without_.record();
   const StartRecord::Frame& frame = record.frame(k);
   const Scalar dt = static_cast<Scalar>(seconds(std::min(elapsed_ns(before_ns, frame.t_ns), BodyMotion::kMaxGapNs)));
   Body now = filter.state().body;
   const Quat q_WC = without_.base_q_WC() * frame.q_WC;
-  const Vec3 p_W = without_.base_p_W() + without_.base_q_WC() * frame.p_W * data_.unit;
+  const Vec3 p_W = without_.base_p_W() + without_.base_q_WC() * frame.p_W * unit;
   now.v_W = (p_W - now.p_W) / dt;
   now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
   Transition transition;
@@ -148,7 +148,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns) {
 }
 
 /// Sets the velocities from the last few frames of the record; several, because single poses are noisy.
-void FilterStart::restart_velocities() {
+void FilterStart::restart_velocities(Scalar unit) {
   const StartRecord& record = without_.record();
   const int frames = record.frames();
   const StartRecord::Frame& a = record.frame(frames > 4 ? frames - 4 : 0);
@@ -156,7 +156,7 @@ void FilterStart::restart_velocities() {
   if (b.t_ns <= a.t_ns) return;
   const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(a.t_ns, b.t_ns)));
   Body now = parts_.filter.state().body;
-  now.v_W = without_.base_q_WC() * (b.p_W - a.p_W) * data_.unit / dt;
+  now.v_W = without_.base_q_WC() * (b.p_W - a.p_W) * unit / dt;
   now.w_C = log_so3(a.q_WC.conjugate() * b.q_WC) / dt;
   parts_.filter.set_mean(now);
 }

@@ -92,7 +92,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     // While the map starts, residuals are those of a coarse map.
     if (supported && tracking_.state() == SlamState::kTracking && !start_.progress().recording) learn_noise();
     maintain_map(supported);
-    start_.record_frame();
+    if (start_.record_frame()) relocaliser_.init();  // its views have poses of the wrong map
     const bool begins_anew = look_for_rest() && map_.features.count() == 0;
     // A frame that does not support its pose adds features only to a map that has none to lose.
     const bool empty = first || start_.progress().pending() || map_.features.count() == 0;
