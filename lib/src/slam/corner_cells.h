@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "slam/frame.h"
 #include "slam/tuning.h"
 #include "track/tracker.h"
@@ -20,15 +22,15 @@ class CornerCells {
   /// Marks the cells that show a plane: is_on_plane(pixel) is asked for a few pixels of each.
   template <typename F>
   void mark_planes(F&& is_on_plane);
-  /// Calls add_in(cell) for the emptiest cells until it has been true `wanted` times. Cells take turns: pass `level` takes those that hold
-  /// that many features, or kPlaneAhead more on a plane, where one is cheap and known at once. max_in_cell: features of a cell, one more
-  /// where it shows a plane.
+  /// Adds features until so many are in view: at plain corners; where those leave fewer than kFaintBelow times min_inliers, the least of a
+  /// tracked frame, at faint ones as well. add_in(cell, least) adds one in a cell, and says whether it could. max_in_cell: features of a
+  /// cell, one more where it shows a plane. turn: changes which cells come first.
   template <typename F>
-  void fill(int wanted, int turn, int max_in_cell, F&& add_in);
-  /// How many more must be in view for plain corners to be enough, where a tracked frame has so many inliers at least. May be negative.
-  int missing(int min_inliers) const { return tuning::image_corners::kFaintBelow * min_inliers - in_view_; }
+  void fill(int in_view, int min_inliers, int turn, int max_in_cell, F&& add_in);
 
  private:
+  template <typename F>
+  void fill_cells(int in_view, int turn, int max_in_cell, F&& add_in);
   Rect rect_of(int row, int column) const;
 
   int width_, height_, border_;
@@ -72,18 +74,25 @@ void CornerCells::mark_planes(F&& is_on_plane) {
 }
 
 template <typename F>
-void CornerCells::fill(int wanted, int turn, int max_in_cell, F&& add_in) {
+void CornerCells::fill(int in_view, int min_inliers, int turn, int max_in_cell, F&& add_in) {
+  fill_cells(in_view, turn, max_in_cell, [&](const Rect& cell) { return add_in(cell, kPlainCorner); });
+  const int at_least = std::min(in_view, tuning::image_corners::kFaintBelow * min_inliers);
+  fill_cells(at_least, turn, max_in_cell, [&](const Rect& cell) { return add_in(cell, kFaintCorner); });
+}
+
+/// Calls add_in(cell) for the emptiest cells until so many features are in view. Cells take turns: pass `level` takes those that hold
+/// that many features, or kPlaneAhead more on a plane, where one is cheap and known at once.
+template <typename F>
+void CornerCells::fill_cells(int in_view, int turn, int max_in_cell, F&& add_in) {
   constexpr int kPlaneAhead = tuning::image_corners::kPlaneAhead;
-  int added = 0;
-  for (int level = -kPlaneAhead; level < max_in_cell && added < wanted; ++level) {
-    for (int cell = 0; cell < kCells && added < wanted; ++cell) {
+  for (int level = -kPlaneAhead; level < max_in_cell && in_view_ < in_view; ++level) {
+    for (int cell = 0; cell < kCells && in_view_ < in_view; ++cell) {
       // This order visits no neighbours one after the other.
       const int k = (cell * 19 + turn) % kCells;
       if (in_cell_[k] > max_in_cell || in_cell_[k] != level + (on_plane_[k] ? kPlaneAhead : 0)) continue;
       if (!add_in(rect_of(k / kColumns, k % kColumns))) continue;
       ++in_cell_[k];
       ++in_view_;
-      ++added;
     }
   }
 }

@@ -9,14 +9,11 @@ namespace pf {
 
 void ImageFrontEnd::add_features() {
   CornerCells cells(settings_.camera.width, settings_.camera.height, settings_.border_px);
-  const int wanted = settings_.features_in_view - cells.count(frame_);
-  if (wanted < tuning::image_corners::kMinNewFeatures) return;
+  if (settings_.features_in_view - cells.count(frame_) < tuning::image_corners::kMinNewFeatures) return;
   if (filter_.state().planes > 0) cells.mark_planes([&](const Vec2& pixel) { return features_.plane_at(pixel) >= 0; });
   int anchor = -1;
-  cells.fill(wanted, frame_.report.frames, tuning::image_corners::kMaxInCell,
-             [&](const Rect& cell) { return add_in(cell, kPlainCorner, &anchor); });
-  cells.fill(cells.missing(settings_.min_inliers), frame_.report.frames, tuning::image_corners::kMaxInCell,
-             [&](const Rect& cell) { return add_in(cell, kFaintCorner, &anchor); });
+  cells.fill(settings_.features_in_view, settings_.min_inliers, frame_.report.frames, tuning::image_corners::kMaxInCell,
+             [&](const Rect& cell, const CornerStrength& least) { return add_in(cell, least, &anchor); });
   if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children
 }
 

@@ -7,8 +7,7 @@ namespace pf {
 
 void add_corners(const Settings& settings, const ImageSearch& search, int keyframe, WindowMap* map, Frame* frame) {
   CornerCells cells(settings.camera.width, settings.camera.height, settings.border_px);
-  const int wanted = settings.features_in_view - cells.count(*frame);
-  if (wanted <= 0) return;
+  if (cells.count(*frame) >= settings.features_in_view) return;
   const Keyframe& host = map->keyframes[keyframe];
   // Three times as many as an even spread has.
   const int max_in_cell = 1 + 3 * settings.features_in_view / CornerCells::kCells;
@@ -26,9 +25,7 @@ void add_corners(const Settings& settings, const ImageSearch& search, int keyfra
       return CornerUse::kTaken;
     });
   };
-  cells.fill(wanted, frame->report.frames, max_in_cell, [&](const Rect& cell) { return add_in(cell, kPlainCorner); });
-  cells.fill(cells.missing(settings.min_inliers), frame->report.frames, max_in_cell,
-             [&](const Rect& cell) { return add_in(cell, kFaintCorner); });
+  cells.fill(settings.features_in_view, settings.min_inliers, frame->report.frames, max_in_cell, add_in);
 }
 
 }  // namespace pf
