@@ -4,7 +4,6 @@
 #include <new>
 
 #include "base/elapsed.h"
-#include "geometry/lens_deviation.h"
 #include "slam/feature_upkeep.h"
 #include "slam/frame_entry.h"
 #include "slam/tuning.h"
@@ -201,19 +200,7 @@ void FrameLoop::measure_watched(F&& measure) {
 
 void FrameLoop::learn_noise() {
   images_.learn_noise();
-  if (!data_.warned_of_noise && noise_.is_implausible()) {
-    data_.warned_of_noise = true;
-    settings_.hooks.say(
-        "matches are 3 times as far off as their noise explains: check the calibration, the readout time and the "
-        "timestamps");
-  }
-  if (!data_.warned_of_lens &&
-      lens_deviation(settings_.lens, settings_.camera, filter_.lens()) > tuning::tracking::kMaxLensDeviation) {
-    data_.warned_of_lens = true;
-    settings_.hooks.say(
-        "the estimated lens is more than 3 sigma from the calibration: check the calibration, or give it larger "
-        "sigmas");
-  }
+  data_.warnings.check(settings_, noise_, filter_.lens());
 }
 
 /// If the frame does not support its pose, nothing is decided about the map.

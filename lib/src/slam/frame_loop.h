@@ -9,6 +9,7 @@
 #include "slam/body_motion.h"
 #include "slam/feature_keeper.h"
 #include "slam/filter_start.h"
+#include "slam/fit_warnings.h"
 #include "slam/frame.h"
 #include "slam/frozen_camera.h"
 #include "slam/image_front_end.h"
@@ -79,7 +80,7 @@ class FrameLoop {
     bool image_usable = false;       ///< this frame is an image that shows something to track
     bool follows = false;  ///< the frame before was tracked, and so was the pose that this one's prediction begins at
     bool map_discredited = false;  ///< by the unit that its scale came from: a new one begins
-    bool warned_of_noise = false, warned_of_lens = false;
+    FitWarnings warnings;
     Scalar median_depth = 1;  ///< of the inliers of the last tracked frame
   };
 

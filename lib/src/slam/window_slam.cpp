@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "geometry/lens_deviation.h"
 #include "slam/feature_upkeep.h"
 #include "slam/frame_entry.h"
 #include "slam/tuning.h"
@@ -209,19 +208,7 @@ void WindowSlam::scale_by_second_pose() {
 
 void WindowSlam::learn_noise() {
   measuring_.learn_noise();
-  if (!data_.warned_of_noise && noise_.is_implausible()) {
-    data_.warned_of_noise = true;
-    settings_.hooks.say(
-        "matches are 3 times as far off as their noise explains: check the calibration, the readout time and the "
-        "timestamps");
-  }
-  if (!data_.warned_of_lens &&
-      lens_deviation(settings_.lens, settings_.camera, map_.camera()) > tuning::tracking::kMaxLensDeviation) {
-    data_.warned_of_lens = true;
-    settings_.hooks.say(
-        "the estimated lens is more than 3 sigma from the calibration: check the calibration, or give it larger "
-        "sigmas");
-  }
+  data_.warnings.check(settings_, noise_, map_.camera());
 }
 
 /// Whether rotation and position are known well enough against the map (lib/docs/states.md).

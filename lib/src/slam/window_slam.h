@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "base/status.h"
+#include "slam/fit_warnings.h"
 #include "slam/frozen_camera.h"
 #include "slam/window_adjustment.h"
 #include "slam/window_planes.h"
@@ -67,7 +68,7 @@ class WindowSlam {
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     Mark mark;
     bool young = false;  ///< in this frame, WindowTracking::is_young
-    bool warned_of_noise = false, warned_of_lens = false;
+    FitWarnings warnings;
   };
 
   void begin_frame(std::int64_t t_ns);

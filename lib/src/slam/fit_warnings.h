@@ -1,0 +1,18 @@
+#pragma once
+
+#include "slam/noise_model.h"
+#include "slam/settings.h"
+
+namespace pf {
+
+/// Says what fits badly, once each: matches far beyond their noise, a lens far from its calibration.
+class FitWarnings {
+ public:
+  /// lens: as it is estimated now.
+  void check(const Settings& settings, const NoiseModel& noise, const Camera& lens);
+
+ private:
+  bool said_noise_ = false, said_lens_ = false;
+};
+
+}  // namespace pf
