@@ -185,11 +185,10 @@ typedef enum pf_masks {
 /* What estimates pose and map. */
 typedef enum pf_backend {
   PF_BACKEND_FILTER = 1, /* a filter over pose, points and planes (Gee 2007); the default */
-  /* Keyframes whose newest are adjusted with the points that they see (lib/docs/window.md; Masoud 2015). Images only. PF_ERROR_CONFIG
-   * with motion.model inertial, camera.readout_s above 0, camera.estimate consider, plane.fix_sigma above 0 and
-   * capacity.max_patches above 0. The pose's covariance takes old keyframes as exact, those of points and planes all keyframes and the
-   * lens. With camera.estimate estimate all keyframes but the oldest are adjusted, which takes more time and memory: the block at its
-   * defaults is 2.1 MiB in place of 1.3, and the pose's covariance takes the oldest keyframes as exact only. */
+  /* Keyframes that are adjusted with the points that they see (lib/docs/window.md; Masoud 2015). Images only. PF_ERROR_CONFIG with
+   * motion.model inertial, camera.readout_s above 0, camera.estimate consider, plane.fix_sigma above 0 and capacity.max_patches above 0.
+   * The pose's covariance takes the oldest keyframes as exact, those of points and planes all keyframes and the lens. The block at its
+   * defaults is 2.0 MiB, with camera.estimate estimate 2.1. */
   PF_BACKEND_WINDOW = 2
 } pf_backend_t;
 
@@ -247,8 +246,9 @@ typedef struct pf_config {
     int32_t max_patches, patch_side_px, max_cameras;
     /* Side of a feature's template with map.masks, odd, 9 .. 31 px; without, it takes no memory. Default 15 */
     int32_t template_px;
-    /* Of the window, and of no meaning with the filter: keyframes that are adjusted together, 2 .. 8, default 3; older ones that see the
-     * same points and are held fixed, 0 .. 16, default 5; points in the map, 50 .. 1000, default 300. In the window max_state_dim,
+    /* Of the window, and of no meaning with the filter: keyframes that are adjusted together while a start without a target still improves its
+     * first depths, 2 .. 8, default 3; older ones that see the same points and are held fixed then, 0 .. 16, default 5 (afterwards all
+     * keyframes but the oldest are adjusted); points in the map, 50 .. 1000, default 300. In the window max_state_dim,
      * max_features, max_observations, max_patches and max_cameras take nothing. */
     int32_t window_keyframes, window_fixed, window_points;
   } capacity;

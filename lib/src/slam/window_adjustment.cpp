@@ -14,13 +14,12 @@ static_assert(tuning::window_map::kKeyframes + 1 <= BundleAdjuster::kMaxPoses, "
 bool WindowAdjustment::layout(Arena& arena) {
   const int keyframes = tuning::window_map::kKeyframes;
   const int lens_rows = settings_.lens.rows.count;
-  const int max_free = lens_rows > 0 ? keyframes : settings_.window_keyframes;
-  const int seeing = lens_rows > 0 ? keyframes : settings_.window_keyframes + settings_.window_fixed;
+  max_free_ = lens_rows > 0 ? keyframes : keyframes - kHeldKeyframes;
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
   const std::size_t poses = static_cast<std::size_t>(keyframes + 1);  // and the target's host
   pose_ = arena.take<BundlePose>(poses);
   keyframe_ = arena.take<int>(poses);
-  pixel_ = arena.take<BundlePixel>(static_cast<std::size_t>(seeing) * points);
+  pixel_ = arena.take<BundlePixel>(static_cast<std::size_t>(keyframes) * points);
   ray_ = arena.take<Vec3>(points);
   host_ = arena.take<int>(points);
   rho_ = arena.take<Scalar>(points);
@@ -30,7 +29,7 @@ bool WindowAdjustment::layout(Arena& arena) {
   plane_row_ = arena.take<int>(static_cast<std::size_t>(settings_.max_planes));
   plane_of_ = arena.take<int>(points);
   host_pixel_ = lens_rows > 0 ? arena.take<HostPixel>(points) : nullptr;
-  return adjuster_.layout(arena, static_cast<int>(poses), max_free, settings_.max_features, settings_.max_planes,
+  return adjuster_.layout(arena, static_cast<int>(poses), max_free_, settings_.max_features, settings_.max_planes,
                           lens_rows);
 }
 
@@ -47,15 +46,13 @@ bool WindowAdjustment::is_held_by_target() const {
   return keyframes > 1;
 }
 
-/// The newest keyframes, the oldest first; of few, all but one, unless the target holds them. With the lens all but the oldest three: what
-/// those held fixed have taken in of a wrong lens says that it is right. Returns how many.
-int WindowAdjustment::choose_free(bool with_lens) {
+/// Of few keyframes, all but one, unless the target holds them; of more, all but the oldest three, the oldest first: what keyframes that are
+/// held fixed have taken in of errors, those of a wrong lens too, is taken as exact. While a record goes on, the newest. Returns how many.
+int WindowAdjustment::choose_free(bool settled) {
   const KeyframeTable& keyframes = map_.keyframes;
-  const int others = is_held_by_target()                                    ? 0
-                     : with_lens && keyframes.count() >= 2 * kHeldKeyframes ? kHeldKeyframes
-                                                                            : 1;
-  const int free = std::min(with_lens ? keyframes.capacity() : static_cast<int>(settings_.window_keyframes),
-                            keyframes.count() - others);
+  const int others = is_held_by_target() ? 0 : settled && keyframes.count() >= 2 * kHeldKeyframes ? kHeldKeyframes : 1;
+  const int free =
+      std::min(settled ? max_free_ : static_cast<int>(settings_.window_keyframes), keyframes.count() - others);
   for (int c = 0; c < free; ++c) {
     // The (free - c)-th newest.
     int at = -1;
@@ -86,9 +83,9 @@ int WindowAdjustment::choose_points(int free) {
 }
 
 /// The older keyframes that see most of these points. Returns how many there are with the free ones.
-int WindowAdjustment::choose_fixed(int free, int points, bool with_lens) {
+int WindowAdjustment::choose_fixed(int free, int points, bool settled) {
   int poses = free;
-  const int most_fixed = with_lens ? kHeldKeyframes : settings_.window_fixed;
+  const int most_fixed = settled ? kHeldKeyframes : settings_.window_fixed;
   for (int f = 0; f < most_fixed; ++f) {
     int best = -1, most = kMinShared - 1;
     for (int k = 0; k < map_.keyframes.capacity(); ++k) {
@@ -152,13 +149,13 @@ void WindowAdjustment::put_target_back() {
     if (map_.used(i) && map_.feature(i).is_target) map_.place(i, target_.point_W[map_.feature(i).external_id]);
 }
 
-bool WindowAdjustment::run(bool with_lens) {
-  with_lens = with_lens && map_.lens().rows().count > 0;
-  const int free = choose_free(with_lens);
+bool WindowAdjustment::run(bool settled) {
+  const bool with_lens = settled && map_.lens().rows().count > 0;
+  const int free = choose_free(settled);
   if (free < 1) return false;
   const int seen = choose_points(free);
   if (seen < kMinPoints) return false;
-  const int seen_in = choose_fixed(free, seen, with_lens);
+  const int seen_in = choose_fixed(free, seen, settled);
   const bool has_scale = seen_in - free >= kMinScaleKeyframes || is_held_by_target();
   const int points = has_scale ? add_plane_points(seen) : seen;
   int poses = seen_in;

@@ -6,8 +6,8 @@
 #include "slam/window_planes.h"
 #include "window/adjust.h"
 
-/// Adjusts the newest keyframes and the points that they see, with older keyframes that see the same points held fixed. Points on a plane
-/// are held to it, and the plane is adjusted with them; so is the lens, where the settings say that it is uncertain.
+/// Adjusts keyframes and the points that they see, with a few older keyframes that see the same points held fixed. Points on a plane are held
+/// to it, and the plane is adjusted with them; so is the lens, where the settings say that it is uncertain.
 
 namespace pf {
 
@@ -22,8 +22,9 @@ class WindowAdjustment {
     target_ = Target();
   }
 
-  /// Adjusts, with the lens where the settings let it be estimated. False: there is nothing to adjust yet.
-  bool run(bool with_lens);
+  /// Adjusts all keyframes of a map that is settled, with the lens where the settings let it be estimated; before, while a record of its
+  /// start goes on, the newest ones with the lens as it is. False: there is nothing to adjust yet.
+  bool run(bool settled);
   /// Of the newest keyframe's (theta, p), and with it of the map about it, given the keyframes that were held fixed.
   const Mat6& map_covariance() const { return map_covariance_; }
   /// The map's lengths were multiplied by s.
@@ -46,9 +47,9 @@ class WindowAdjustment {
 
   PixelDepth depth_by_pixels(int i) const;
   bool is_held_by_target() const;
-  int choose_free(bool with_lens);
+  int choose_free(bool settled);
   int choose_points(int free);
-  int choose_fixed(int free, int points, bool with_lens);
+  int choose_fixed(int free, int points, bool settled);
   int pose_of(int keyframe, int* poses);
   void fill(int seen_in, int points, int* poses);
   void add_target(int points, int* poses);
@@ -69,6 +70,7 @@ class WindowAdjustment {
   Mat6 map_covariance_ = Mat6::Zero();
   CameraView target_view_;
   Target target_;
+  int max_free_ = 0;  ///< keyframes that are adjusted at once
 
   // Of the bundle.
   BundlePose* pose_ = nullptr;
