@@ -268,8 +268,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(at_least(1));
   app.add_option("--max-observations", options.max_observations, "features measured in one frame")->check(at_least(1));
   app.add_option("--features-in-view", options.features_in_view, "features to keep in view")->check(at_least(1));
-  app.add_option("--window-keyframes", options.window_keyframes,
-                 "of the window: keyframes that are adjusted together during its start, 2 to 8; its points are --max-features")
+  app.add_option(
+         "--window-keyframes", options.window_keyframes,
+         "of the window: keyframes that are adjusted together during its start, 2 to 8; its points are --max-features")
       ->check(CLI::Range(2, 8));
   app.add_option("--window-fixed", options.window_fixed, "of the window: older keyframes held fixed then, 0 to 16")
       ->check(CLI::Range(0, 16));

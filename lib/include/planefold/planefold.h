@@ -246,9 +246,9 @@ typedef struct pf_config {
     int32_t max_patches, patch_side_px, max_cameras;
     /* Side of a feature's template with map.masks, odd, 9 .. 31 px; without, it takes no memory. Default 15 */
     int32_t template_px;
-    /* Of the window, and of no meaning with the filter: keyframes that are adjusted together while a start without a target still improves its
-     * first depths, 2 .. 8, default 3; older ones that see the same points and are held fixed then, 0 .. 16, default 5 (afterwards all
-     * keyframes but the oldest are adjusted); points in the map, 50 .. 1000, default 300. In the window max_state_dim,
+    /* Of the window, and of no meaning with the filter: keyframes that are adjusted together while a start without a target still
+     * improves its first depths, 2 .. 8, default 3; older ones that see the same points and are held fixed then, 0 .. 16, default 5
+     * (afterwards all keyframes but the oldest are adjusted); points in the map, 50 .. 1000, default 300. In the window max_state_dim,
      * max_features, max_observations, max_patches and max_cameras take nothing. */
     int32_t window_keyframes, window_fixed, window_points;
   } capacity;

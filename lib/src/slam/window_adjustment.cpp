@@ -46,8 +46,9 @@ bool WindowAdjustment::is_held_by_target() const {
   return keyframes > 1;
 }
 
-/// Of few keyframes, all but one, unless the target holds them; of more, all but the oldest three, the oldest first: what keyframes that are
-/// held fixed have taken in of errors, those of a wrong lens too, is taken as exact. While a record goes on, the newest. Returns how many.
+/// Of few keyframes, all but one, unless the target holds them; of more, all but the oldest three, the oldest first: what keyframes that
+/// are held fixed have taken in of errors, those of a wrong lens too, is taken as exact. While a record goes on, the newest. Returns how
+/// many.
 int WindowAdjustment::choose_free(bool settled) {
   const KeyframeTable& keyframes = map_.keyframes;
   const int others = is_held_by_target() ? 0 : settled && keyframes.count() >= 2 * kHeldKeyframes ? kHeldKeyframes : 1;

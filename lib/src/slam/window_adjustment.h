@@ -6,8 +6,8 @@
 #include "slam/window_planes.h"
 #include "window/adjust.h"
 
-/// Adjusts keyframes and the points that they see, with a few older keyframes that see the same points held fixed. Points on a plane are held
-/// to it, and the plane is adjusted with them; so is the lens, where the settings say that it is uncertain.
+/// Adjusts keyframes and the points that they see, with a few older keyframes that see the same points held fixed. Points on a plane are
+/// held to it, and the plane is adjusted with them; so is the lens, where the settings say that it is uncertain.
 
 namespace pf {
 
