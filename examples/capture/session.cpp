@@ -98,8 +98,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     by_filter.backend = PF_BACKEND_FILTER;
     by_filter.map.features_in_view = std::min(by_filter.map.features_in_view, by_filter.capacity.max_observations);
     if (has_window && pf_config_check(&by_filter, nullptr) == PF_OK) {
-      error = "--backend window cannot have this " + name +
-              " yet: leave away what sets it (--readout 0 for a rolling shutter), or take --backend filter";
+      error = "--backend window cannot have this " + name + " yet: leave away what sets it, or take --backend filter";
     } else {
       error = "configuration field '" + name + "' is out of its range; " +
               (name.rfind("camera", 0) == 0 ? "check the calibration" : "planefold.h says what is possible");

@@ -112,7 +112,6 @@ def test_usage(root):
     expect("there and back by rows", 1, ["--there-and-back", "--readout 0"], "--source", source, "--there-and-back",
            "--readout", "0.03", *out)
     expect("as recorded", 2, ["--as-recorded", "euroc:"], "--source", source, "--as-recorded")
-    expect("window back end with rows", 2, ["camera.readout_s"], "--source", source, "--backend", "window", "--readout", "0.03", *out)
     expect("back end", 2, ["--backend", "filter"], "--source", source, "--backend", "magic")
     expect("start", 2, ["--start"], "--source", source, "--start", "somehow")
     expect("rectangle", 2, ["rectangle:", "metres"], "--source", source, "--start", "rectangle:big", *out)
@@ -126,8 +125,7 @@ def test_usage(root):
     expect("no pose", 1, ["none.tum"], "--source", source, "--start", f"pose:{root}/none.tum", *out)
     expect("withdrawn", 2, ["--withdraw-target-after"], "--source", source, "--withdraw-target-after", "5")
     expect("lens", 2, ["--lens", "auto, exact, consider or estimate"], "--source", source, "--lens", "free", *out)
-    expect("rows of the window", 2, ["--backend window", "camera.readout_s", "--readout 0"], "--source", "sim:desk", "--backend", "window",
-           "--readout", "0.02", *out)
+    expect("considered lens of the window", 2, ["--backend window"], "--source", "sim:desk", "--backend", "window", "--lens", "consider", *out)
     expect("mounting without samples", 2, ["--estimate", "--imu-noise"], "--source", source, "--estimate", "mount", *out)
     expect("timestamps", 2, ["--timestamps", "real or nominal"], "--source", source, "--timestamps", "counted", *out)
     expect("kernels", 2, ["--kernels"], "--source", source, "--kernels", "fast", *out)

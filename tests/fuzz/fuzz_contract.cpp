@@ -183,7 +183,7 @@ void extend(Bytes& bytes, pf_config_t* config) {
     config->capacity.window_keyframes = 2 + bytes.take<uint8_t>() % 7;
     config->capacity.window_fixed = bytes.take<uint8_t>() % 17;
     config->capacity.window_points = 50 + bytes.take<uint8_t>();
-    config->camera.readout_s = config->plane.fix_sigma = 0;
+    config->plane.fix_sigma = 0;
     if (config->motion.model == PF_MOTION_INERTIAL) config->motion.model = PF_MOTION_CONSTANT_VELOCITY;
     if ((more & 4) != 0) make_lens_uncertain(bytes, PF_CAMERA_ESTIMATE, config);
   } else {

@@ -49,3 +49,12 @@ print(f"rows over 30 ms: innovations per degree of freedom {known['nis_per_dof']
       f"RMSE {known['camera_rmse_m']:.4f}, {ignored['camera_rmse_m']:.4f} m")
 require(known["lost_frames"] == 0, "a camera with a rolling shutter was lost")
 require(known["nis_per_dof"] < 0.7 * ignored["nis_per_dof"], "knowing the readout explains the pixels no better")
+
+# The same of the window.
+window = ["--readout", 0.03, "--backend", "window", "--lens", "right"]
+known = rendered(ROLLING_FRAMES, *window)
+ignored = rendered(ROLLING_FRAMES, *window, "--as-global")
+print(f"window, rows over 30 ms: innovations per degree of freedom {known['nis_per_dof']:.2f} known, {ignored['nis_per_dof']:.2f} ignored, "
+      f"RMSE {known['camera_rmse_m']:.4f}, {ignored['camera_rmse_m']:.4f} m")
+require(known["lost_frames"] == 0, "the window lost a camera with a rolling shutter")
+require(known["nis_per_dof"] < 0.85 * ignored["nis_per_dof"], "knowing the readout explains the window's pixels no better")

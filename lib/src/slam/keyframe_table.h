@@ -14,6 +14,11 @@ struct Keyframe {
   std::int64_t t_ns = 0;
   Quat q_WC = Quat::Identity();
   Vec3 p_W = Vec3::Zero();
+  /// With which pixels of points without a depth were taken to the frame's time (window_rows.h): velocities, and a depth, 0: none were.
+  /// matches_by_motion: those of points that were seen before too, and not the new points' alone.
+  Vec3 v_W = Vec3::Zero(), w_C = Vec3::Zero();
+  Scalar row_depth = 0;
+  bool matches_by_motion = false;
 };
 
 class KeyframeTable {

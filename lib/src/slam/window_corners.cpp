@@ -2,10 +2,12 @@
 
 #include "slam/corner_cells.h"
 #include "slam/tuning.h"
+#include "slam/window_rows.h"
 
 namespace pf {
 
-void add_corners(const Settings& settings, const ImageSearch& search, int keyframe, WindowMap* map, Frame* frame) {
+void add_corners(const Settings& settings, const ImageSearch& search, int keyframe, const Body& body, Scalar depth,
+                 WindowMap* map, Frame* frame) {
   CornerCells cells(settings.camera.width, settings.camera.height, settings.border_px);
   if (cells.count(*frame) >= settings.features_in_view) return;
   const Keyframe& host = map->keyframes[keyframe];
@@ -14,7 +16,11 @@ void add_corners(const Settings& settings, const ImageSearch& search, int keyfra
   const auto add_in = [&](const Rect& cell, const CornerStrength& least) {
     return take_corner(search.tracker(), cell, least, *frame, settings.camera.width, [&](const Vec2& pixel) {
       if (frame->full()) return CornerUse::kNoRoom;
-      const int i = map->add(keyframe, pixel);
+      Vec3 ray_C;
+      // Of the first frame the motion is not known; its pixels are corrected when they are seen again.
+      const bool has_ray = host.number > 1 && unproject(map->camera(), pixel, &ray_C);
+      const Vec3 m = has_ray ? Vec3(host.q_WC * ray_C + host.p_W / depth) : Vec3::Zero();
+      const int i = map->add(keyframe, has_ray ? at_frame_time(map->camera(), body, m, 1 / depth, pixel) : pixel);
       if (i < 0) return CornerUse::kNoRoom;
       if (!search.remember(&map->tables(), i, pixel, {host.q_WC, host.p_W})) {
         map->drop(i);

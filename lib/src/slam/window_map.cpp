@@ -4,6 +4,7 @@
 
 #include "slam/feature_upkeep.h"
 #include "slam/tuning.h"
+#include "slam/window_rows.h"
 #include "window/tuning.h"
 
 namespace pf {
@@ -141,9 +142,34 @@ int WindowMap::add_keyframe(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
     if (match.feature >= 0 && match.status == MatchStatus::kInlier)
-      keyframes.set_pixel(k, match.feature, match.measured);
+      keyframes.set_pixel(k, match.feature, point_[match.feature].pixel);
   }
   return k;
+}
+
+void WindowMap::correct_rows(int i, Scalar rho) {
+  WindowPoint& point = point_[i];
+  const Vec3 at_W = position_at(i, rho);
+  for (int k = 0; k < keyframes.capacity(); ++k) {
+    const Keyframe& keyframe = keyframes[k];
+    const BundlePixel& seen = keyframes.pixels(k)[i];
+    if (!keyframes.used(k) || !seen.seen || !(keyframe.row_depth > Scalar(0))) continue;
+    if (k != point.host && !keyframe.matches_by_motion) continue;
+    Body body;
+    body.q_WC = keyframe.q_WC;
+    body.p_W = keyframe.p_W;
+    body.v_W = keyframe.v_W;
+    body.w_C = keyframe.w_C;
+    const Vec3 d = at_W - keyframe.p_W;
+    const Scalar w = 1 / keyframe.row_depth, w_now = 1 / d.norm();
+    const Vec3 ray = d * w_now;
+    const Vec2 before = seen.pixel();
+    const Vec2 pixel = before + at_frame_time(camera(), body, ray + w_now * body.p_W, w_now, before) -
+                       at_frame_time(camera(), body, ray + w * body.p_W, w, before);
+    keyframes.set_pixel(k, i, pixel);
+    Vec3 ray_C;
+    if (k == point.host && unproject(camera(), pixel, &ray_C)) point.ray_K = ray_C.normalized();
+  }
 }
 
 void WindowMap::keep_first_keyframe() {

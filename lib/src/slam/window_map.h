@@ -55,7 +55,8 @@ class WindowMap {
   /// Bearing in W, of length 1.
   Vec3 ray_W(int i) const { return keyframes[point_[i].host].q_WC * point_[i].ray_K; }
   /// Of a point with a depth.
-  Vec3 position(int i) const { return keyframes[point_[i].host].p_W + ray_W(i) / point_[i].rho; }
+  Vec3 position(int i) const { return position_at(i, point_[i].rho); }
+  Vec3 position_at(int i, Scalar rho) const { return keyframes[point_[i].host].p_W + ray_W(i) / rho; }
   /// Of its position, keyframes taken as exact: along the ray by the depth, across it by a pixel of the host.
   Mat3 covariance(int i) const;
   BlockKind kind(int i) const;
@@ -72,6 +73,9 @@ class WindowMap {
   void drop(int i);
   /// Drops points that fail too often, and those that are not in front of their hosts.
   void drop_failing();
+
+  /// A point's inverse depth has become known: its pixels were taken to their frames' times with that of their keyframes.
+  void correct_rows(int i, Scalar rho);
 
   /// Adds the pose as a keyframe with this frame's inliers; where there is no room, the one with the fewest points leaves.
   int add_keyframe(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);

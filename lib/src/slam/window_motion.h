@@ -42,6 +42,8 @@ class WindowMotion {
 
   const Body& body() const { return data_.body; }
   Mat6 pose_covariance() const { return data_.P.topLeftCorner<6, 6>(); }
+  /// Of (theta, p, v, w).
+  const Covariance& covariance() const { return data_.P; }
   bool is_sound() const;
   /// Body and pose covariance at t_ns, predicted if it is after now_ns.
   void predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const;

@@ -20,6 +20,9 @@ struct PosePrior {
   Quat q_WC = Quat::Identity();
   Vec3 p_W = Vec3::Zero();
   Mat6 covariance = Mat6::Zero();  ///< of (theta, p)
+  /// Velocities, which matter to the rows of a rolling shutter alone; covariance of (theta, p, v, w), null: velocities taken as exact.
+  Vec3 v_W = Vec3::Zero(), w_C = Vec3::Zero();
+  const Eigen::Matrix<Scalar, 12, 12>* with_velocities = nullptr;
 };
 
 /// Fits the pose to the matches that count, and to the prior:

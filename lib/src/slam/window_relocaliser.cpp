@@ -32,7 +32,7 @@ bool WindowRelocaliser::choose(Scalar median_depth, PosePrior* about) const {
     *about = {data_.q_WC, data_.p_W, sphere(kAboutProposal, kAboutProposal * median_depth)};
     return true;
   }
-  *about = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  *about = measuring_.now();
   if (is_prediction_narrow(median_depth)) return true;
   const Recognition place = views_.recognise(measuring_.tracker().pyramid(), measuring_.camera());
   if (place.score < kMinRecognition) return false;

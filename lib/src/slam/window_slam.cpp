@@ -119,7 +119,13 @@ void WindowSlam::maintain_map() {
   // The first frame, one in which a record began anew, and every other keyframe.
   const int newest = map_.keyframes.newest();
   if (newest < 0 || map_.keyframes[newest].t_ns != frame_.report.t_ns) return;
-  add_corners(settings_, measuring_.search(), newest, &map_, &frame_);
+  Keyframe& keyframe = map_.keyframes[newest];
+  if (keyframe.number > 1) {
+    keyframe.v_W = motion_.body().v_W;
+    keyframe.w_C = motion_.body().w_C;
+    keyframe.row_depth = pending ? settings_.start_depth : data_.median_depth;
+  }
+  add_corners(settings_, measuring_.search(), newest, motion_.body(), keyframe.row_depth, &map_, &frame_);
   start_.begin_record();
 }
 
@@ -131,17 +137,27 @@ void WindowSlam::triangulate(bool strict) {
     const Match& match = frame_.match(t);
     if (match.feature < 0 || match.status != MatchStatus::kInlier || map_.point(match.feature).has_depth) continue;
     DepthFit fit;
-    const bool fits = fit_depth(map_.camera(), map_, match.feature, now, match.measured, &fit);
+    const bool fits = fit_depth(map_.camera(), map_, match.feature, now, map_.point(match.feature).pixel, &fit);
     if (fit.cos_parallax > cos_parallax) continue;
     if (!fits || (strict && fit.worst_px > measuring_.bound_px())) {
       if (strict) map_.drop(match.feature);
       continue;
     }
     WindowPoint& point = map_.point(match.feature);
+    if (map_.camera().readout != Scalar(0)) correct_rows(match, now, &fit);
     point.rho = fit.rho;
     point.variance = noise_.sigma_info() * noise_.sigma_info() / fit.information;
     point.has_depth = true;
   }
+}
+
+/// Rows of a point whose depth has become known, and so its depth once more.
+void WindowSlam::correct_rows(const Match& match, const CameraView& now, DepthFit* fit) {
+  map_.correct_rows(match.feature, fit->rho);
+  WindowPoint& point = map_.point(match.feature);
+  if (!data_.young) point.pixel = measuring_.at_frame_time(match, 1 / fit->rho);
+  DepthFit again;
+  if (fit_depth(map_.camera(), map_, match.feature, now, point.pixel, &again)) *fit = again;
 }
 
 /// The camera has moved far enough since the last keyframe, in depths of what it sees, or sees too little of what is known.
@@ -163,6 +179,7 @@ bool WindowSlam::wants_keyframe() const {
 void WindowSlam::add_keyframe() {
   start_.note_keyframe();
   map_.add_keyframe(frame_.report.t_ns, motion_.body().q_WC, motion_.body().p_W);
+  map_.keyframes[map_.keyframes.newest()].matches_by_motion = !data_.young;
   if (data_.young) triangulate(false);
   adjust();
 }

@@ -7,6 +7,7 @@
 #include "slam/fit_warnings.h"
 #include "slam/frozen_camera.h"
 #include "slam/window_adjustment.h"
+#include "slam/window_depth.h"
 #include "slam/window_planes.h"
 #include "slam/window_relocaliser.h"
 #include "slam/window_start.h"
@@ -76,6 +77,7 @@ class WindowSlam {
   void measure();
   void maintain_map();
   void triangulate(bool strict);
+  void correct_rows(const Match& match, const CameraView& now, DepthFit* fit);
   bool wants_keyframe() const;
   void add_keyframe();
   void adjust();

@@ -158,7 +158,8 @@ bool WindowStart::accept_rotation(int found) {
     const Match& match = frame.match(t);
     if (match.status != MatchStatus::kOutlier || match.feature < 0 || count == settings_.max_features) continue;
     ray_[count] = parts_.map.ray_W(match.feature);
-    pixel_[count++] = {static_cast<float>(match.measured.x()), static_cast<float>(match.measured.y()), true};
+    const Vec2 pixel = parts_.measuring.followed_at_frame_time(match);
+    pixel_[count++] = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), true};
   }
   if (found < settings_.min_inliers) return false;
   Quat q_WC = parts_.motion.body().q_WC;
@@ -170,11 +171,20 @@ bool WindowStart::accept_rotation(int found) {
     Vec2 z;
     if (match.status != MatchStatus::kOutlier || match.feature < 0) continue;
     if (!project(parts_.map.camera(), q_WC.conjugate() * parts_.map.ray_W(match.feature), &z)) continue;
-    if ((match.measured - z).squaredNorm() > bound * bound) continue;
-    parts_.measuring.accept(&match);
+    const Vec2 pixel = parts_.measuring.followed_at_frame_time(match);
+    if ((pixel - z).squaredNorm() > bound * bound) continue;
+    parts_.measuring.accept(&match, pixel);
     ++frame.report.inliers;
   }
   return frame.report.inliers >= settings_.min_inliers;
+}
+
+/// Of a match of the record, at the frame's time. An accepted one has it already.
+Vec2 WindowStart::pixel_of(const Match& match) const {
+  if (parts_.map.camera().readout == Scalar(0)) return match.measured;
+  if (match.status == MatchStatus::kInlier) return parts_.map.point(match.feature).pixel;
+  return progress().depth_known ? parts_.measuring.at_frame_time(match, settings_.start_depth)
+                                : parts_.measuring.followed_at_frame_time(match);
 }
 
 StartOutcome WindowStart::record_frame() {
@@ -185,7 +195,7 @@ StartOutcome WindowStart::record_frame() {
     const Match& match = frame.match(t);
     // What the last depths refuse, the next ones may explain, and that adjustment is robust.
     if (match.feature >= 0 && (match.status == MatchStatus::kInlier || match.status == MatchStatus::kOutlier))
-      without_.add_pixel(parts_.map.camera(), match.id, match.measured);
+      without_.add_pixel(parts_.map.camera(), match.id, pixel_of(match));
   }
   return without_.solve(parts_.map.camera(), tuning::noise::kSearchSigma, settings_.start_depth);
 }

@@ -58,6 +58,7 @@ class WindowStart {
   void set_pose(bool at_target);
   void clear_map();
   bool accept_rotation(int found);
+  Vec2 pixel_of(const Match& match) const;
   StartOutcome record_frame();
   void take_record();
 

@@ -10,7 +10,6 @@
 #include "slam/ellipse.h"
 #include "slam/feature_upkeep.h"
 #include "slam/tuning.h"
-#include "slam/window_depth.h"
 #include "window/tuning.h"
 
 namespace pf {
@@ -49,21 +48,10 @@ bool WindowTracking::expect_placed(int i, const PosePrior& at, ExpectedPixel* ou
     return false;
   const Mat26 JP = J_C.lazyProduct(at.covariance);
   out->spread = JP.lazyProduct(J_C.transpose()) + point.variance * J_rho * J_rho.transpose();
-  return true;
-}
-
-/// About the last pixel, for depths about the median: rho = (1 +- 1) / depth along the ray on which it was last seen.
-bool WindowTracking::expect_unplaced(int i, const PosePrior& at, Scalar depth, ExpectedPixel* out) const {
-  const WindowPoint& point = map_.point(i);
-  Vec3 ray_C;
-  if (!unproject(map_.camera(), point.pixel, &ray_C)) return false;
-  Mat26 J_C;
-  Vec2 J_rho;
-  if (!project_bearing(map_.camera(), at.q_WC.toRotationMatrix(), point.seen_from.q_WC * ray_C,
-                       point.seen_from.c_W - at.p_W, 1 / depth, &out->pixel, &J_C, nullptr, &J_rho))
-    return false;
-  const Mat26 JP = J_C.lazyProduct(at.covariance);
-  out->spread = JP.lazyProduct(J_C.transpose()) + J_rho * J_rho.transpose() / (depth * depth);
+  if (!has_rows()) return true;
+  const Vec3 m = map_.ray_W(i) + point.rho * map_.keyframes[point.host].p_W;
+  if (!expect_row(at, m, point.rho, out)) return false;
+  out->spread += point.variance * J_rho * J_rho.transpose();
   return true;
 }
 
@@ -166,7 +154,7 @@ void WindowTracking::make_pose_match(int c, const PosePrior& prior, Scalar depth
   Vec2 z, J_rho;
   Mat26 J_C;
   PoseMatch& out = pose_.match(c);
-  out.point = {ray_W + rho * host_W, rho, match.measured};
+  out.point = {ray_W + rho * host_W, rho, match_at_frame_time(match, prior, depth)};
   out.noise = noise_.correlation_frames() * candidate_[c].noise;
   if (project_bearing(map_.camera(), prior.q_WC.toRotationMatrix(), ray_W, host_W - prior.p_W, rho, &z, &J_C, nullptr,
                       &J_rho)) {
@@ -218,15 +206,16 @@ void WindowTracking::mark(int found, const PosePrior& at) {
   }
 }
 
-void WindowTracking::accept(Match* match) {
+void WindowTracking::accept(Match* match, const Vec2& pixel) {
   match->status = MatchStatus::kInlier;
   Feature& f = map_.feature(match->feature);
+  if (has_rows() && is_seen_again(*match)) correct_first_pixel(*match);
   count_frame(&f.observations);
   f.failures = 0;
   f.rejections = 0;
   f.last_seen_ns = frame_.report.t_ns;
   WindowPoint& point = map_.point(match->feature);
-  point.pixel = match->measured;
+  point.pixel = pixel;
   point.seen_from = {motion_.body().q_WC, motion_.body().p_W};
 }
 
@@ -238,28 +227,40 @@ int WindowTracking::measure_about(const PosePrior& about, CameraPose* pose, Mat6
   const bool wide = settings_.gate * widest > kWideEllipse * kWideEllipse && listed_ > kScouts;
   int found = search_for(0, wide ? kScouts : listed_, about, Scalar(1));
   int inliers = 0;
+  PosePrior moving = about;  // with the velocities that are known best
   if (wide) {
     // A few first: with their pose the others are searched for in small ellipses.
     PosePrior scouted = about;
     inliers = find_pose(found, about, pose, information);
     SmallCholesky<6> factored, prior;
-    if (inliers > 0 && prior.factor(about.covariance) && factored.factor(Mat6(*information + prior.inverse()))) {
-      scouted = {pose->q_WC, pose->p_WC, factored.inverse()};
+    WindowMotion after = motion_;
+    if (inliers > 0 && has_rows() && about.with_velocities != nullptr &&
+        follow_velocities(*pose, *information, &after)) {
+      scouted = {pose->q_WC,       pose->p_WC,       after.pose_covariance(),
+                 after.body().v_W, after.body().w_C, &after.covariance()};
+      expect(kScouts, listed_ - kScouts, scouted);
+    } else if (inliers > 0 && prior.factor(about.covariance) && factored.factor(Mat6(*information + prior.inverse()))) {
+      scouted = {pose->q_WC, pose->p_WC, factored.inverse(), about.v_W, about.w_C};
       expect(kScouts, listed_ - kScouts, scouted);
     }
     const int more = search_for(kScouts, listed_ - kScouts, scouted, Scalar(1));
     for (int k = 0; k < more; ++k, ++found)
       if (found != kScouts + k) std::swap(candidate_[found], candidate_[kScouts + k]);
+    moving.v_W = scouted.v_W;
+    moving.w_C = scouted.w_C;
   }
-  return find_pose(found, about, pose, information);
+  return find_pose(found, moving, pose, information);
 }
 
 void WindowTracking::measure(Scalar median_depth) {
-  const PosePrior prior = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  const PosePrior prior = now();
   CameraPose pose;
   Mat6 information;
   if (measure_about(prior, &pose, &information) == 0) return;
-  correct(pose, information);
+  if (has_rows())
+    correct_by_rows(prior, pose, information);
+  else
+    correct(pose, information);
   measure_unplaced(median_depth);
 }
 
@@ -279,22 +280,9 @@ bool WindowTracking::apply(const CameraPose& pose, Mat6 information, PosePrior* 
     information += kWeakPrior * prior.inverse();
     if (!factored.factor(information)) return false;
   }
-  *now = {pose.q_WC, pose.p_WC, factored.inverse()};
-  return motion_.correct(pose.q_WC, pose.p_WC, now->covariance);
-}
-
-/// Points without a depth: where the corrected pose leaves no depth that explains their pixel, it is wrong.
-void WindowTracking::measure_unplaced(Scalar depth) {
-  const PosePrior now = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
-  const int count = list(now, false, depth), first = listed_;
-  const int found = search_for(first, count, now, depth);
-  for (int c = first; c < first + found; ++c) {
-    Match& match = frame_.match(candidate_[c].match);
-    DepthFit fit;
-    const bool fits = fit_depth(map_.camera(), map_, match.feature, {now.q_WC, now.p_W}, match.measured, &fit);
-    if (fits ? fit.worst_px > bound_px() : fit.cos_parallax < std::cos(kMaxParallel)) continue;
-    accept(&match);
-  }
+  const bool corrected = motion_.correct(pose.q_WC, pose.p_WC, factored.inverse());
+  *now = {pose.q_WC, pose.p_WC, factored.inverse(), motion_.body().v_W, motion_.body().w_C};
+  return corrected;
 }
 
 }  // namespace pf

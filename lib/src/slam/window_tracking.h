@@ -5,6 +5,7 @@
 #include "slam/window_motion.h"
 #include "slam/window_planes.h"
 #include "slam/window_pose.h"
+#include "slam/window_rows.h"
 #include "window/tuning.h"
 
 /// Measures an image with the window's map: where its points should be, where they are, and the pose that this says.
@@ -46,12 +47,20 @@ class WindowTracking {
   int follow(Scalar depth);
   /// Pose that all of the first `found` matches that were followed say together, about a rotation that is known; where it fails, that.
   void settle_followed(int found, const Quat& q_WC, const Vec3& p_W, Scalar depth);
+  /// The body before or after the frame's matches, as it is now.
+  PosePrior now() const;
+  /// Where a match would be at the frame's time, by the body's velocities. depth: of a point without one.
+  Vec2 at_frame_time(const Match& match, Scalar depth) const;
+  /// The same by how far its pixel has moved since it was last accepted, where velocities are not known yet.
+  Vec2 followed_at_frame_time(const Match& match) const;
   /// Updates the noise model with the residuals of this frame's inliers.
   void learn_noise();
   /// Updates masks and normals of templates with this frame's inliers.
   void learn_templates();
   /// Counts a found feature as an inlier. The match's pixel is its last one from now on.
-  void accept(Match* match);
+  void accept(Match* match) { accept(match, at_frame_time(*match, Scalar(1))); }
+  /// The same with the pixel at the frame's time.
+  void accept(Match* match, const Vec2& pixel);
 
   /// Within which a match supports a pose [px].
   Scalar bound_px() const;
@@ -61,6 +70,14 @@ class WindowTracking {
 
  private:
   bool expect_placed(int i, const PosePrior& at, ExpectedPixel* out) const;
+  bool has_rows() const { return map_.camera().readout != Scalar(0); }
+  bool expect_row(const PosePrior& at, const Vec3& m, Scalar w, ExpectedPixel* out) const;
+  Vec2 match_at_frame_time(const Match& match, const PosePrior& at, Scalar depth) const;
+  bool follow_velocities(const CameraPose& pose, const Mat6& information, WindowMotion* after) const;
+  void correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information);
+  Vec2 image_motion(const Match& match) const;
+  bool is_seen_again(const Match& match) const;
+  void correct_first_pixel(const Match& match);
   bool expect_unplaced(int i, const PosePrior& at, Scalar depth, ExpectedPixel* out) const;
   SearchTask task_of(int i, const PosePrior& at, Scalar depth) const;
   int list(const PosePrior& at, bool placed, Scalar depth);

@@ -1,13 +1,49 @@
+#include <cmath>
+
 #include "base/elapsed.h"
+#include "slam/window_depth.h"
 #include "slam/window_tracking.h"
 #include "window/tuning.h"
 
-/// WindowTracking while few depths are known, or none.
+/// WindowTracking where depths are not known: of some points, of most while the map is young, of none.
 
 namespace pf {
 
+/// About the last pixel, for depths about the median: rho = (1 +- 1) / depth along the ray on which it was last seen.
+bool WindowTracking::expect_unplaced(int i, const PosePrior& at, Scalar depth, ExpectedPixel* out) const {
+  const WindowPoint& point = map_.point(i);
+  Vec3 ray_C;
+  if (!unproject(map_.camera(), point.pixel, &ray_C)) return false;
+  Mat26 J_C;
+  Vec2 J_rho;
+  if (!project_bearing(map_.camera(), at.q_WC.toRotationMatrix(), point.seen_from.q_WC * ray_C,
+                       point.seen_from.c_W - at.p_W, 1 / depth, &out->pixel, &J_C, nullptr, &J_rho))
+    return false;
+  const Mat26 JP = J_C.lazyProduct(at.covariance);
+  out->spread = JP.lazyProduct(J_C.transpose()) + J_rho * J_rho.transpose() / (depth * depth);
+  if (!has_rows()) return true;
+  if (!expect_row(at, point.seen_from.q_WC * ray_C + point.seen_from.c_W / depth, 1 / depth, out)) return false;
+  out->spread += J_rho * J_rho.transpose() / (depth * depth);
+  return true;
+}
+
+/// Points without a depth: where the corrected pose leaves no depth that explains their pixel, it is wrong.
+void WindowTracking::measure_unplaced(Scalar depth) {
+  const PosePrior at = now();
+  const int count = list(at, false, depth), first = listed_;
+  const int found = search_for(first, count, at, depth);
+  for (int c = first; c < first + found; ++c) {
+    Match& match = frame_.match(candidate_[c].match);
+    const Vec2 pixel = match_at_frame_time(match, at, depth);
+    DepthFit fit;
+    const bool fits = fit_depth(map_.camera(), map_, match.feature, {at.q_WC, at.p_W}, pixel, &fit);
+    if (fits ? fit.worst_px > bound_px() : fit.cos_parallax < std::cos(tuning::window_tracking::kMaxParallel)) continue;
+    accept(&match, pixel);
+  }
+}
+
 void WindowTracking::measure_young(Scalar median_depth) {
-  const PosePrior prior = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
+  const PosePrior prior = now();
   listed_ = 0;
   listed_ = list(prior, true, median_depth);
   const int count = listed_ + list(prior, false, median_depth);
@@ -19,25 +55,27 @@ void WindowTracking::measure_young(Scalar median_depth) {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
     int open = 0;
     for (int c = 0; c < found; ++c) open += map_.point(frame_.match(candidate_[c].match).feature).has_depth ? 0 : 1;
-    for (int c = 0; c < found; ++c) make_pose_match(c, prior, median_depth, open);
+    for (int c = 0; c < found; ++c) {
+      make_pose_match(c, prior, median_depth, open);
+      if (has_rows()) pose_.match(c).point.pixel = followed_at_frame_time(frame_.match(candidate_[c].match));
+    }
     inliers = pose_.fit(map_.camera(), found, prior, settings_.gate, &pose, &information);
   }
-  PosePrior now;
-  if (inliers < settings_.min_inliers || 2 * inliers < frame_.report.attempts || !apply(pose, information, &now))
-    return;
+  PosePrior at;
+  if (inliers < settings_.min_inliers || 2 * inliers < frame_.report.attempts || !apply(pose, information, &at)) return;
   for (int c = 0; c < found; ++c) {
     Match& match = frame_.match(candidate_[c].match);
     if (!pose_.is_inlier(c)) continue;
     ++frame_.report.inliers;
-    accept(&match);
+    accept(&match, followed_at_frame_time(match));
   }
 }
 
 int WindowTracking::follow(Scalar depth) {
   listed_ = 0;
-  const PosePrior now = {motion_.body().q_WC, motion_.body().p_W, motion_.pose_covariance()};
-  const int count = list(now, false, depth);
-  const int found = search_for(0, count, now, depth);
+  const PosePrior at = now();
+  const int count = list(at, false, depth);
+  const int found = search_for(0, count, at, depth);
   return found;
 }
 
@@ -45,7 +83,12 @@ void WindowTracking::settle_followed(int found, const Quat& q_WC, const Vec3& p_
   using namespace tuning::window_start;
   PosePrior about = {q_WC, p_W, Mat6(Mat6::Identity() * (kRotationSigma * kRotationSigma))};
   about.covariance.bottomRightCorner<3, 3>() = Mat3::Identity() * (kPositionSigma * kPositionSigma * depth * depth);
-  for (int c = 0; c < found; ++c) make_pose_match(c, about, depth, 0);
+  about.v_W = motion_.body().v_W;
+  about.w_C = motion_.body().w_C;
+  for (int c = 0; c < found; ++c) {
+    make_pose_match(c, about, depth, 0);
+    if (has_rows()) pose_.match(c).point.pixel = followed_at_frame_time(frame_.match(candidate_[c].match));
+  }
   CameraPose pose;
   Mat6 information;
   if (pose_.fit(map_.camera(), found, about, settings_.gate, &pose, &information) < settings_.min_inliers)

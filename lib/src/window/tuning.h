@@ -79,6 +79,7 @@ inline constexpr Scalar kBoundSigmas = Scalar(4);        ///< likewise, in stand
 inline constexpr int kScouts = 30;                       ///< candidates that are measured first in wide ellipses
 inline constexpr Scalar kWideEllipse = Scalar(12);       ///< [px] largest semi-axis of those
 inline constexpr Scalar kTemplateEllipse = Scalar(4.5);  ///< [px] largest semi-axis in which templates are tried
+inline constexpr int kRowPasses = 2;                     ///< of consensus with velocities that its pose tells
 inline constexpr int kYoung = 16;                        ///< points with a depth, below which the others help
 inline constexpr Scalar kWeakPrior = Scalar(1);          ///< weight of the prediction where matches leave a pose open
 inline constexpr Scalar kMaxParallel = Scalar(0.0087);  ///< [rad] between rays that need no depth to fit: half a degree
