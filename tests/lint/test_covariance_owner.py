@@ -5,7 +5,7 @@ import re
 
 import source
 
-OWNERS = re.compile(r"lib/src/(covariance/|filter/block_filter\.|filter/block_update\.|filter/located\.h)")
+OWNERS = re.compile(r"lib/src/(covariance/|filter/block_filter\.|filter/block_update\.|filter/block_inflate\.|filter/located\.h)")
 RULES = [
     (re.compile(r"\bTriangle\b(?!::)"), re.compile(r"\bconst Triangle&"), "a Triangle that is not const Triangle&"),
     (re.compile(r"\.data\b(?!\()"), None, "memory of a matrix"),

@@ -352,6 +352,33 @@ void test_forgetting_through_a_plane_should_reach_what_it_has_taught() {
   TEST_ASSERT_TRUE(after(Body::kPosition, Body::kPosition) > P(Body::kPosition, Body::kPosition));
 }
 
+/// A prior of covariance C that is taken back but for one part in w leaves the information of a prior of (1 + w) C, and the step of the
+/// mean that is not taken counts as uncertain.
+void test_taking_back_a_prior_should_leave_what_a_wider_one_would_have_given() {
+  SeededRandom random(33);
+  PlaneScene scene(random, 0.001);
+  scene.fold_all(PlaneScene::drop());
+  std::vector<Scalar> dx(static_cast<std::size_t>(scene.filter.dim()), Scalar(0));
+  const int p = scene.filter.first(scene.plane);
+  for (int k = 0; k < 3; ++k) dx[static_cast<std::size_t>(p + k)] = Scalar(0.01) * static_cast<Scalar>(k + 1);
+  scene.filter.move(dx.data());
+  const Dense P = scene.filter.P(), Ppp = P.block(p, p, 3, 3), C = 3 * Ppp;
+  constexpr double w = 50;
+  TEST_ASSERT_TRUE(scene.filter->forget_prior(scene.plane, C.cast<Scalar>(), Scalar(w)));
+  Dense information = inverse_of(P);
+  information.block(p, p, 3, 3) -= inverse_of(C) * (1 - 1 / (1 + w));
+  const Dense M = inverse_of((1 + 1 / w) * C - Ppp);
+  const Eigen::VectorXd step = P.middleCols(p, 3) * M * scene.filter->state().block[scene.plane].xyz().cast<double>();
+  const Dense expected = inverse_of(information) + step * step.transpose(), after = scene.filter.P();
+  TEST_ASSERT_TRUE((after - expected).cwiseAbs().maxCoeff() <
+                   (sizeof(Scalar) == 8 ? 1e-9 : 2e-3) * expected.cwiseAbs().maxCoeff());
+  TEST_ASSERT_TRUE(step.norm() > 1e-3);
+  // What is tighter than the plane is now was never its prior.
+  const Dense tight = Ppp / 2;
+  TEST_ASSERT_FALSE(scene.filter->forget_prior(scene.plane, tight.cast<Scalar>(), Scalar(w)));
+  TEST_ASSERT_TRUE((scene.filter.P() - after).cwiseAbs().maxCoeff() == 0);
+}
+
 /// The scale may hang on two points of two planes, which fills its row; an inverse depth against it needs room for one column more.
 void test_sigma_of_an_inverse_depth_should_have_room_for_the_longest_row_of_the_scale() {
   SeededRandom random(37);
@@ -396,6 +423,7 @@ int main(void) {
   RUN_TEST(test_released_points_should_have_the_covariance_that_they_had);
   RUN_TEST(test_variance_in_a_drawing_should_be_that_of_the_fixed_point);
   RUN_TEST(test_forgetting_through_a_plane_should_reach_what_it_has_taught);
+  RUN_TEST(test_taking_back_a_prior_should_leave_what_a_wider_one_would_have_given);
   RUN_TEST(test_sigma_of_an_inverse_depth_should_have_room_for_the_longest_row_of_the_scale);
   RUN_TEST(test_conditioning_should_be_the_dense_update_with_distances_of_zero);
   RUN_TEST(test_the_gate_should_keep_out_what_lies_beside);

@@ -227,40 +227,6 @@ void BlockFilter::remove(const int* blocks, int count) {
   close_gaps(gone);
 }
 
-void BlockFilter::inflate(const Part& part, const Scalar* Q) {
-  const int first = row(part);
-  for (int i = 0; i < part.size; ++i)
-    for (int j = 0; j <= i; ++j) P_.set(first + i, first + j, P_(first + i, first + j) + Q[i * part.size + j]);
-}
-
-void BlockFilter::inflate_through(const Part& part, const Vec3& sigma) {
-  PF_ASSERT(part.size == 3 && max_rows_ >= 9);
-  constexpr Scalar kRidge =
-      sizeof(Scalar) == 8 ? Scalar(1e-9) : Scalar(1e-4);  ///< of correlations: P_pp may be singular
-  RowsOf<3, 3, 1> J;
-  J.parts = 1;
-  J.part[0] = part;
-  put<3, 3>(J.h, 3, 0, Mat3::Identity());
-  const Rows rows = J;
-  gather(&rows, 1, W_);  // P_px
-  const int first = row(part);
-  Vec3 scale;
-  for (int i = 0; i < 3; ++i) scale(i) = Scalar(1) / std::sqrt(W_[i * ld_ + first + i]);
-  Mat3 C;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) C(i, j) = scale(i) * scale(j) * W_[i * ld_ + first + j] + (i == j ? kRidge : Scalar(0));
-  const Mat3 inverse = C.inverse();
-  Scalar *U = W_ + 3 * ld_, *G = W_ + 6 * ld_;  // P += U^T U, as the downdate takes it: U^T G + G^T U with G = U / 2
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < ld_; ++j) {
-      Scalar sum = 0;
-      for (int k = 0; k < 3; ++k) sum += inverse(i, k) * scale(k) * W_[k * ld_ + j];
-      U[i * ld_ + j] = sigma(i) * scale(i) * sum;
-      G[i * ld_ + j] = U[i * ld_ + j] / 2;
-    }
-  kernels_->downdate(P_, W_, 0, U, G, 3, ld_, 0, 0);
-}
-
 /// Rows that go, kept in ascending order.
 void BlockFilter::list_gone(int first, int size, int* gone) {
   int at = (*gone)++;

@@ -81,6 +81,8 @@ class BlockFilter {
   /// Likewise diag(sigma^2) to a part of three rows, and to all other rows what they owe to that part:
   ///   P += G diag(sigma^2) G^T,   G = P_xp P_pp^-1, which is the identity on the part's own rows.
   void inflate_through(const Part& part, const Vec3& sigma);
+  /// P += P_xp M P_px, P_xp the columns of a part of three rows; M is symmetric and positive semidefinite.
+  void inflate_by(const Part& part, const Mat3& M);
   /// Likewise along one row h of a Jacobian: the variance of h x grows by so much.
   void inflate_along(const Rows& row, Scalar variance);
   /// P_ij <- f_i f_j P_ij: rows in other units.

@@ -32,20 +32,6 @@ int Filter::add_plane(const PlaneFit& fit, const int* slots, int count, Scalar r
   return slot;
 }
 
-int Filter::add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Scalar roughness) {
-  if (state_.planes >= state_.max_planes) return -1;
-  tell_gauge();
-  const int slot = take_slot(BlockKind::kPlane);
-  if (slot < 0) return -1;
-  Rows known;  // depends on nothing
-  known.rows = 3;
-  Scalar raw[9];
-  put<3, 3>(raw, 3, 0, covariance);
-  blocks_.augment(slot, known, raw);
-  place_plane(slot, frame, roughness);
-  return slot;
-}
-
 /// Puts a new plane's block at a = b = h = 0 of its frame.
 void Filter::place_plane(int slot, const PlaneFrame& frame, Scalar roughness) {
   Block& block = state_.block[slot];

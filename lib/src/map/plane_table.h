@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "base/arena.h"
+#include "base/small_count.h"
 #include "geometry/plane.h"
 #include "map/plane_outline.h"
 
@@ -20,28 +21,29 @@ struct PlanePrior {
 };
 
 struct PlaneEntry {
-  std::uint32_t id = 0;  ///< never used twice
-  int slot = -1;         ///< block in the filter; -1: this entry is free
-  int age = 0;           ///< frames since it was found
-  int weak = 0;          ///< of these, the last ones in a row with too few points
-  int max_points = 0;    ///< most points that it had at one time
-  int outliers = 0;      ///< points that were unfolded because they do not lie on it
-  int upheld = 0;        ///< patches that were measured on it for long
-  int refused = 0;       ///< patches that were dropped because they were found elsewhere
+  std::uint32_t id = 0;   ///< never used twice
+  int slot = -1;          ///< block in the filter; -1: this entry is free
+  SmallCount age;         ///< frames since it was found
+  SmallCount weak;        ///< of these, the last ones in a row with too few points
+  SmallCount max_points;  ///< most points that it had at one time
+  SmallCount outliers;    ///< points that were unfolded because they do not lie on it
+  SmallCount upheld;      ///< patches that were measured on it for long
+  SmallCount refused;     ///< patches that were dropped because they were found elsewhere
   PlaneOutline seen;     ///< of points that were on it when it was last tended to, many of them gone from the map since
   bool known = false;    ///< a wall: known beforehand, and never dissolved
   bool doubted = false;  ///< a wall that the gate refuses what should be on it; it takes no points
   bool two_sided = false;
   std::uint8_t vertical_mrad = 0;  ///< tilt's sigma before it was told to be vertical, 1 .. 255 [mrad]; 0: it was not
   Scalar roughness = 0;            ///< [m] of its surface
+  Scalar prior[6] = {};            ///< of a wall: covariance of (a, b, h), lower triangle; zero: it no longer counts
   PlaneOutline plan;               ///< of a wall, as it was given
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 
   static constexpr int kOutlierShare = 4;  ///< one in so many
-  /// Whether patches say that a wall is not where the plan has it.
+  /// Whether patches say that a wall is not where the plan has it. Things before a wall that is there refuse some as well.
   bool is_refused_by_patches() const {
-    constexpr int kMinRefused = 3;
-    return refused >= kMinRefused && refused > upheld;
+    constexpr int kMinRefused = 3, kShare = 4;
+    return refused >= kMinRefused && refused > kShare * upheld;
   }
   /// Whether points that nothing else is known of may begin on it: it was found, has had enough points for kProvenAge frames, and most
   /// kept to it.

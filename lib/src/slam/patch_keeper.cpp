@@ -224,7 +224,7 @@ void PatchKeeper::drop_failing(bool supported) {
       count(PatchStatus::kMissed, &patch.failures);
       count(PatchStatus::kOutlier, &patch.rejections);
       const bool refused = patch.rejections > kMaxRejections;
-      if (refused && wall >= 0) ++map_.planes[wall].refused;
+      if (refused && wall >= 0) note_refused(patch, wall);
       fails = fails || refused || patch.failures > (patch.is_proven() ? kMaxFailures : kMaxEarlyFailures);
     }
     if (fails) drop(i);

@@ -71,16 +71,34 @@ class PatchKeeper {
   bool linearise_near(const StoredPatch& patch, int plane);
   void set_pose(const Body& pose);
 
-  // patch_selection.cpp
   struct Square {
     int left, top, side;
     Scalar score;
   };
+
+  // patch_obstacles.cpp
+  struct Obstacles {
+    static constexpr int kMax = 128;
+    int count = 0;
+    Vec2 pixel[kMax];
+
+    /// Whether one is in the square, or just beside it.
+    bool are_in(const Square& square) const;
+  };
+  struct Refusal {
+    std::uint32_t plane = 0;  ///< id; 0: none
+    Vec3 middle_W;
+  };
+  static constexpr int kMaxRefusals = 16;
+  void list_obstacles(int wall, Obstacles* obstacles) const;
+  void note_refused(const StoredPatch& patch, int wall);
+
+  // patch_selection.cpp
   static constexpr int kMaxSquares = 6;
   static constexpr int kMaxWalls = 64;  ///< capacity.max_planes at most
   void begin_patches(const Pyramid& image);
   int wanted_on(int wall, int* youngest) const;
-  int list_squares(const Pyramid& image, int wall, int side, Square* square) const;
+  int list_squares(const Pyramid& image, int wall, int side, const Obstacles& obstacles, Square* square) const;
   bool is_on_wall(int wall, const Square& square, Scalar* cosine) const;
   bool is_free(const Square& square) const;
   bool begin_at(const ImageView& image, int wall, const Square& square, int* camera);
@@ -98,9 +116,11 @@ class PatchKeeper {
   ResidualTrace residuals_[kMaxPatches][4];  ///< of each entry's corners
   PatchSearch search_;
   PlaneAligner aligner_;
-  PatchMeasurement z_;            ///< scratch: the patch that is measured
-  std::uint32_t generation_ = 0;  ///< of the filter that the patches have blocks in
-  int in_vain_[kMaxWalls] = {};   ///< frame in which each plane's wall had no place for a patch that it wants
+  PatchMeasurement z_;              ///< scratch: the patch that is measured
+  std::uint32_t generation_ = 0;    ///< of the filter that the patches have blocks in
+  Refusal refusals_[kMaxRefusals];  ///< the last ones
+  int next_refusal_ = 0;
+  int in_vain_[kMaxWalls] = {};  ///< frame in which each plane's wall had no place for a patch that it wants
 };
 
 }  // namespace pf

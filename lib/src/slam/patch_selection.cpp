@@ -87,7 +87,8 @@ bool PatchKeeper::is_free(const Square& square) const {
 }
 
 /// The best squares of a lattice, the best first. Returns how many.
-int PatchKeeper::list_squares(const Pyramid& image, int wall, int side, Square* square) const {
+int PatchKeeper::list_squares(const Pyramid& image, int wall, int side, const Obstacles& obstacles,
+                              Square* square) const {
   const int level = std::min(side >= kCoarseSide ? 2 : 1, image.levels - 1), border = settings_.border_px;
   const int step = std::max(1, side / 4);
   int count = 0;
@@ -95,7 +96,7 @@ int PatchKeeper::list_squares(const Pyramid& image, int wall, int side, Square* 
     for (int left = border; left + side + border <= image.level[0].width; left += step) {
       Square candidate{left, top, side, 0};
       Scalar cosine = 0;
-      if (!is_free(candidate) || !is_on_wall(wall, candidate, &cosine)) continue;
+      if (!is_free(candidate) || obstacles.are_in(candidate) || !is_on_wall(wall, candidate, &cosine)) continue;
       candidate.score = cosine * texture(image.level[level], left >> level, top >> level, side >> level);
       int at = count;
       if (count == kMaxSquares) {
@@ -118,13 +119,15 @@ void PatchKeeper::begin_patches(const Pyramid& image) {
     int wanted = wanted_on(wall, &youngest);
     // The lattice costs as much as a patch: where it had no place, or the store no room, not again in the next frame.
     if (wanted > 0 && in_vain_[wall] > 0 && frame_.report.frames < in_vain_[wall] + kRetryFrames) continue;
+    Obstacles obstacles;
+    if (wanted > 0) list_obstacles(wall, &obstacles);
     for (int part = kSizes; part > kSmallest && wanted > 0; --part) {
       const int side = settings_.patch_side_px * part / kSizes;
       if (side < kMinSide) break;
       Square square[kMaxSquares];
       // After each one the lattice is searched again: places beside it are taken then.
       for (bool more = true; more && wanted > 0;) {
-        const int count = list_squares(image, wall, side, square);
+        const int count = list_squares(image, wall, side, obstacles, square);
         more = false;
         for (int k = 0; k < count && !more; ++k) more = begin_at(image.level[0], wall, square[k], &camera);
         wanted -= more;

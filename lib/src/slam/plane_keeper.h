@@ -84,7 +84,7 @@ class PlaneKeeper {
   unsigned find_wall_consensus(int plane_entry, const int* slots, int count, int* size);
   void fold_by_consensus(int plane_entry);
   void judge_wall(int plane_entry);
-  void doubt_wall(int plane_entry, Scalar off);
+  void doubt_wall(int plane_entry);
 
   const Settings& settings_;
   Filter& filter_;

@@ -146,12 +146,13 @@ bool PlaneKeeper::give_points(int from_entry, int to_entry) {
   return true;
 }
 
-/// Gives a plane that has rotated away from its frame a new frame, parallel to the plane.
+/// Gives a plane that has rotated away from its frame a new frame, parallel to the plane. A wall keeps the one that its prior is about.
 void PlaneKeeper::settle_frame(int plane_entry) {
   const int plane = map_.planes[plane_entry].slot;
   const State& state = filter_.state();
   const Block& block = state.block[plane];
   const Vec3 x = block.xyz();
+  if (map_.planes[plane_entry].prior[0] > Scalar(0)) return;
   const bool slanted = x(0) * x(0) + x(1) * x(1) > kMaxSlant * kMaxSlant;
   if (!slanted || filter_.group_of(plane) >= 0) return;
   PlaneFrame to = state.frame_of(block);
@@ -213,7 +214,7 @@ void PlaneKeeper::dissolve_weak() {
     if (!map_.planes.used(i) || map_.planes[i].known) continue;
     const PlanePoints on = outline_plane(filter_, map_, i, nullptr);
     const int points = on.folded - on.on_trial;
-    map_.planes[i].max_points = std::max(map_.planes[i].max_points, points);
+    map_.planes[i].max_points = std::max<int>(map_.planes[i].max_points, points);
     const bool proven = map_.planes[i].max_points > settings_.plane_min_points;
     map_.planes[i].weak = points < kMinPoints || !proven ? map_.planes[i].weak + 1 : 0;
     const bool denied = map_.planes[i].outliers > points;

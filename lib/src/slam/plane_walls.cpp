@@ -67,6 +67,8 @@ Status PlaneKeeper::add_wall(const PlanePrior& prior, int reserved_rows, bool ma
   filter_.set_owner(slot, entry);
   PlaneEntry& wall = map_.planes[entry];
   wall.known = true;
+  for (int i = 0, k = 0; i < kRows; ++i)
+    for (int j = 0; j <= i; ++j) wall.prior[k++] = covariance(i, j);
   wall.two_sided = prior.two_sided;
   wall.roughness = roughness;
   wall.plan = wall.seen = wall.support = prior.outline;
@@ -203,7 +205,6 @@ void PlaneKeeper::judge_wall(int plane_entry) {
   const FoldRule rule = fold_rule(plane_entry);
   const Scalar noise = rule.roughness * rule.roughness;
   int on_it = outline_plane(filter_, map_, plane_entry, nullptr).folded, refused = 0;
-  Scalar off = 0;
   for (int i = 0; i < map_.features.capacity(); ++i) {
     Scalar d, variance;
     Mat3 covariance;
@@ -215,17 +216,15 @@ void PlaneKeeper::judge_wall(int plane_entry) {
     if (!elsewhere && !(is_settled(i) && is_certain(i, &covariance))) continue;
     if (!is_before_wall(plane_entry, filter_.point(slot))) continue;
     if (!filter_.distance(wall.slot, slot, &d, &variance)) continue;
-    if (d * d > kRefusedGate * (variance + noise)) {
+    if (d * d > kRefusedGate * (variance + noise))
       ++refused;
-      off += d * d;
-    } else if (d * d < rule.gate * (variance + noise)) {
+    else if (d * d < rule.gate * (variance + noise))
       ++on_it;
-    }
   }
   const bool denied =
       (wall.outliers >= kMinRefused && wall.outliers > on_it) || (wall.is_refused_by_patches() && on_it < kMinRefused);
   if (!wall.doubted && (denied || (refused >= kMinRefused && refused > kRefusedShare * on_it))) {
-    doubt_wall(plane_entry, refused > 0 ? std::sqrt(off / static_cast<Scalar>(refused)) : Scalar(0));
+    doubt_wall(plane_entry);
   } else if (wall.doubted && on_it >= kMinRefused && on_it > refused) {
     wall.doubted = false;
     wall.outliers = wall.upheld = wall.refused = 0;
@@ -233,12 +232,18 @@ void PlaneKeeper::judge_wall(int plane_entry) {
   }
 }
 
-/// Takes back what a wall that is off by this much has taught, and gives its points a place of their own again.
-void PlaneKeeper::doubt_wall(int plane_entry, Scalar off) {
+/// Takes back what a wall's prior has taught, and gives its points a place of their own again.
+void PlaneKeeper::doubt_wall(int plane_entry) {
   PlaneEntry& wall = map_.planes[plane_entry];
   const int plane = wall.slot;
-  const Vec3 sigma(doubt().x(), doubt().y(), std::max(doubt().z(), off));
-  if (filter_.state().block[plane].children > 0 || wall.refused + wall.upheld > 0) filter_.forget_through(plane, sigma);
+  const bool has_taught = filter_.state().block[plane].children > 0 || wall.refused + wall.upheld + wall.outliers > 0;
+  if (has_taught && wall.prior[0] > Scalar(0)) {
+    Mat3 prior;
+    for (int i = 0, k = 0; i < 3; ++i)
+      for (int j = 0; j <= i; ++j) prior(i, j) = prior(j, i) = wall.prior[k++];
+    filter_.forget_prior(plane, prior, kDoubtedPrior);
+    for (Scalar& c : wall.prior) c = Scalar(0);
+  }
   filter_.state().for_each_planar(plane, [&](int slot) {
     const int feature = filter_.state().block[slot].owner;
     if (!filter_.unfold(slot, settings_.plane_distance)) features_.drop(&feature, 1);

@@ -220,6 +220,7 @@ inline constexpr int kTrials = 60;                    ///< triples of points
 inline constexpr Scalar kTripleGate = Scalar(11.34);  ///< chi-square of three degrees of freedom, 0.99
 inline constexpr Scalar kRefusedGate = Scalar(16);    ///< chi-square of a point that does not lie on a wall
 inline constexpr int kMinRefused = 8;                 ///< points, before a wall is doubted or believed again
+inline constexpr Scalar kDoubtedPrior = 100;          ///< times its covariance that a doubted wall's prior gets
 inline constexpr int kRefusedShare = 4;  ///< refused points for each on the wall, above which it is doubted
 }  // namespace plane_walls
 
@@ -259,7 +260,8 @@ inline constexpr int kRetryFrames = 5;          ///< likewise where the wall has
 inline constexpr int kSizes = 4;                ///< parts of the side: a patch has all, or
 inline constexpr int kSmallest = 1;             ///< fewer, but more than this
 inline constexpr int kMinSide = 32;             ///< [px]
-inline constexpr int kCoarseSide = 52;          ///< [px] from which texture is judged on level 2
+inline constexpr Scalar kObstacleGate = Scalar(6.63);  ///< chi-square, 0.99: above it a point is not on the wall
+inline constexpr int kCoarseSide = 52;                 ///< [px] from which texture is judged on level 2
 }  // namespace patch_selection
 
 /// Whole planes.

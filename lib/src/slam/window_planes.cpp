@@ -257,7 +257,7 @@ void WindowPlanes::dissolve_weak() {
     if (!table_.used(k)) continue;
     const int points = points_on(k);
     PlaneEntry& entry = table_[k];
-    entry.max_points = std::max(entry.max_points, points);
+    entry.max_points = std::max<int>(entry.max_points, points);
     const bool proven = entry.max_points > settings_.plane_min_points;
     entry.weak = points < same::kMinPoints || !proven ? entry.weak + 1 : 0;
     if (entry.outliers > points || entry.weak > tuning::window_planes::kMaxWeak) dissolve(k);

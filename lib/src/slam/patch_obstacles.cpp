@@ -1,0 +1,53 @@
+#include "filter/camera_at.h"
+#include "slam/patch_keeper.h"
+#include "slam/tuning.h"
+
+/// What stands before a wall: no patch begins where it is seen.
+
+namespace pf {
+
+using namespace tuning::patch_selection;
+
+/// Pixels of this frame's features that the gate refuses on the wall, and of places where patches of it were found elsewhere.
+void PatchKeeper::list_obstacles(int wall, Obstacles* obstacles) const {
+  const PlaneEntry& plane = map_.planes[wall];
+  const Scalar noise = plane.roughness * plane.roughness;
+  obstacles->count = 0;
+  const auto add = [&](const Vec2& pixel) {
+    if (obstacles->count < Obstacles::kMax) obstacles->pixel[obstacles->count++] = pixel;
+  };
+  const CameraAt camera = camera_at(filter_.state(), Scalar(0));
+  for (const Refusal& refusal : refusals_) {
+    Vec2 pixel;
+    if (refusal.plane == plane.id &&
+        project(filter_.lens(), Vec3(camera.q_WC.conjugate() * (refusal.middle_W - camera.p_W)), &pixel))
+      add(pixel);
+  }
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const Match& match = frame_.match(t);
+    Scalar d, variance;
+    if (match.feature < 0 || match.status != MatchStatus::kInlier) continue;
+    if (filter_.distance(plane.slot, map_.features[match.feature].slot, &d, &variance) &&
+        d * d > kObstacleGate * (variance + noise))
+      add(match.measured);
+  }
+}
+
+bool PatchKeeper::Obstacles::are_in(const Square& square) const {
+  const Scalar half = static_cast<Scalar>(square.side - 1) / 2, reach = half * (Scalar(1) + kMargin);
+  const Vec2 middle(static_cast<Scalar>(square.left) + half, static_cast<Scalar>(square.top) + half);
+  for (int k = 0; k < count; ++k)
+    if ((pixel[k] - middle).cwiseAbs().maxCoeff() < reach) return true;
+  return false;
+}
+
+/// Keeps where a patch was that the gate refuses.
+void PatchKeeper::note_refused(const StoredPatch& patch, int wall) {
+  ++map_.planes[wall].refused;
+  Sight sight;
+  if (!expect(patch, wall, &sight)) return;
+  refusals_[next_refusal_] = {patch.plane, sight.middle_W};
+  next_refusal_ = (next_refusal_ + 1) % kMaxRefusals;
+}
+
+}  // namespace pf
