@@ -11,7 +11,7 @@ import script  # noqa: E402
 script.skip_in_cross_builds()
 VERSION = script.cache("CMAKE_PROJECT_VERSION")
 seen = 0
-for name in ("pf-capture", "pf-sim", "pf-bench", "pf-calibrate", "pf-eval"):
+for name in ("pf-capture", "pf-sim", "pf-bench", "pf-calibrate", "pf-eval", "pf-replay", "pf-digest"):
     if (script.BIN / name).exists():
         seen += 1
         said = script.run(script.BIN / name, "--version").strip()

@@ -3,6 +3,7 @@
 
 #include <planefold_platform/sequence.h>
 #include <planefold_platform/sim.h>
+#include <planefold_platform/version.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -80,6 +81,7 @@ int run_sequence(const std::string& source, std::int64_t frames, bool at_target)
 
 int main(int argc, char** argv) {
   CLI::App app{"Tracks a source with the default config; PLANEFOLD_DIGEST names the file for the digest"};
+  app.set_version_flag("--version", "pf-digest " PF_VERSION_TEXT);
   std::string source;
   std::int64_t frames = INT64_MAX;
   bool start_auto = false;

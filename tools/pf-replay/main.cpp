@@ -5,11 +5,13 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "planefold_platform/version.h"
 #include "record.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"One session in double, and the same one in float"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", "pf-replay " PF_VERSION_TEXT);
   std::string file, json;
   int frames = 50000;
   std::uint64_t seed = 1;
