@@ -9,7 +9,7 @@
 #include "slam/plane_keeper.h"
 #include "slam/tuning.h"
 
-/// Planes known beforehand: how they enter the map, what is folded into them, and when they are doubted. Servant 2008, section 2.2
+/// Planes known beforehand: how they enter the map, and what is folded into them. Servant 2008, section 2.2
 /// (lib/docs/walls.md).
 
 namespace pf {
@@ -195,63 +195,6 @@ void PlaneKeeper::fold_by_consensus(int plane_entry) {
   if (filter_.fold(map_.planes[plane_entry].slot, chosen, size, fold_rule(plane_entry), folded) == 0) return;
   for (int j = 0; j < size; ++j)
     if (folded[j] != 0) support(plane_entry, chosen[j]);
-}
-
-/// Counts what is seen inside of the wall's outline: points that lie on it, and points that the gate refuses. Doubts the wall where far
-/// more are refused; believes a doubted one again when most of them lie on it.
-void PlaneKeeper::judge_wall(int plane_entry) {
-  PlaneEntry& wall = map_.planes[plane_entry];
-  const State& state = filter_.state();
-  const FoldRule rule = fold_rule(plane_entry);
-  const Scalar noise = rule.roughness * rule.roughness;
-  int on_it = outline_plane(filter_, map_, plane_entry, nullptr).folded, refused = 0;
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    Scalar d, variance;
-    Mat3 covariance;
-    // What is out of sight behind the wall lies on another one.
-    if (!map_.features.used(i) || map_.features[i].last_seen_ns != frame_.report.t_ns) continue;
-    const int slot = map_.features[i].slot;
-    // A point of another plane is known well enough, and is no less on that one than here.
-    const bool elsewhere = is_planar(state.block[slot].kind) && state.plane_of(slot) != wall.slot;
-    if (!elsewhere && !(is_settled(i) && is_certain(i, &covariance))) continue;
-    if (!is_before_wall(plane_entry, filter_.point(slot))) continue;
-    if (!filter_.distance(wall.slot, slot, &d, &variance)) continue;
-    if (d * d > kRefusedGate * (variance + noise))
-      ++refused;
-    else if (d * d < rule.gate * (variance + noise))
-      ++on_it;
-  }
-  const bool denied =
-      (wall.outliers >= kMinRefused && wall.outliers > on_it) || (wall.is_refused_by_patches() && on_it < kMinRefused);
-  if (!wall.doubted && (denied || (refused >= kMinRefused && refused > kRefusedShare * on_it))) {
-    doubt_wall(plane_entry);
-  } else if (wall.doubted && on_it >= kMinRefused && on_it > refused) {
-    wall.doubted = false;
-    wall.outliers = wall.upheld = wall.refused = 0;
-    settings_.hooks.say("points lie on a wall of the plan that was doubted: it counts again");
-  }
-}
-
-/// Takes back what a wall's prior has taught, and gives its points a place of their own again.
-void PlaneKeeper::doubt_wall(int plane_entry) {
-  PlaneEntry& wall = map_.planes[plane_entry];
-  const int plane = wall.slot;
-  const bool has_taught = filter_.state().block[plane].children > 0 || wall.refused + wall.upheld + wall.outliers > 0;
-  if (has_taught && wall.prior[0] > Scalar(0)) {
-    Mat3 prior;
-    for (int i = 0, k = 0; i < 3; ++i)
-      for (int j = 0; j <= i; ++j) prior(i, j) = prior(j, i) = wall.prior[k++];
-    filter_.forget_prior(plane, prior, kDoubtedPrior);
-    for (Scalar& c : wall.prior) c = Scalar(0);
-  }
-  filter_.state().for_each_planar(plane, [&](int slot) {
-    const int feature = filter_.state().block[slot].owner;
-    if (!filter_.unfold(slot, settings_.plane_distance)) features_.drop(&feature, 1);
-  });
-  wall.doubted = true;
-  wall.outliers = wall.upheld = wall.refused = 0;
-  wall.seen = wall.support = wall.plan;
-  settings_.hooks.say("a wall of the plan is not where it should be: it is doubted, and takes no points");
 }
 
 }  // namespace pf

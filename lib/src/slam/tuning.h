@@ -218,11 +218,16 @@ inline constexpr Scalar kKnownScale = Scalar(0.05);   ///< sigma of the log scal
 inline constexpr Scalar kOffWall = Scalar(0.5);       ///< sigma of a new point relative to the depth of its wall
 inline constexpr int kTrials = 60;                    ///< triples of points
 inline constexpr Scalar kTripleGate = Scalar(11.34);  ///< chi-square of three degrees of freedom, 0.99
-inline constexpr Scalar kRefusedGate = Scalar(16);    ///< chi-square of a point that does not lie on a wall
-inline constexpr int kMinRefused = 8;                 ///< points, before a wall is doubted or believed again
-inline constexpr Scalar kDoubtedPrior = 100;          ///< times its covariance that a doubted wall's prior gets
-inline constexpr int kRefusedShare = 4;  ///< refused points for each on the wall, above which it is doubted
 }  // namespace plane_walls
+
+/// Walls that are doubted.
+namespace plane_doubt {
+inline constexpr Scalar kRefusedGate = Scalar(16);  ///< chi-square of a point that does not lie on a wall
+inline constexpr int kMinRefused = 8;               ///< points, before a wall is doubted or believed again
+inline constexpr Scalar kDoubtedPrior = 100;        ///< times its covariance that a doubted wall's prior gets
+inline constexpr int kRefusedShare = 4;             ///< refused points for each on the wall, above which it is doubted
+inline constexpr int kCells = 5;                    ///< along each side of the image
+}  // namespace plane_doubt
 
 /// Planes that somebody says are vertical.
 namespace plane_vertical {
