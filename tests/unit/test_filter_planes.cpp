@@ -2,6 +2,7 @@
 // itself on moved states, and conditioning is the dense Kalman update.
 #include <memory>
 
+#include "filter/plane_from_camera.h"
 #include "support/plane_scene.h"
 
 using namespace pf;
@@ -334,22 +335,55 @@ void test_considered_points_should_keep_their_values_in_an_update() {
   TEST_ASSERT_TRUE(difference(plain.filter.P(), schmidt) < kExact);
 }
 
-/// What a wrong plane has taught is taken back along P_xp P_pp^-1, from the camera and all else, and nothing becomes more certain.
+/// A plane that is rotated and translated together with the camera stays where it was in the camera's axes.
+void test_rows_of_a_plane_seen_from_the_camera_should_not_see_what_both_share() {
+  SeededRandom random(32);
+  PlaneScene scene(random, 0.001);
+  scene.fold_all(PlaneScene::drop());
+  const int p = scene.filter.first(scene.plane);
+  const auto seen = [&] {  // normal and distance from the camera, in its axes
+    const State& state = scene.filter->state();
+    Vec3 n_W;
+    Scalar d_W;
+    plane_normal(state.frame_of(state.block[scene.plane]), state.block[scene.plane].xyz(), &n_W, &d_W);
+    Eigen::Vector4d out;
+    out << (state.body.q_WC.conjugate() * n_W).cast<double>(), static_cast<double>(d_W - n_W.dot(state.body.p_W));
+    return out;
+  };
+  constexpr double step = sizeof(Scalar) == 8 ? 1e-6 : 1e-3;
+  for (int k = 0; k < 6; ++k) {
+    const auto J = plane_from_camera(scene.filter->state(), scene.plane);
+    TEST_ASSERT_EQUAL_INT(2, J.parts);
+    std::vector<Scalar> dx(static_cast<std::size_t>(scene.filter.dim()), Scalar(0));
+    dx[static_cast<std::size_t>(k)] = static_cast<Scalar>(step);
+    for (int i = 0; i < 3; ++i) {
+      TEST_ASSERT_TRUE(J.h[9 * i + i] == 1);
+      dx[static_cast<std::size_t>(p + i)] = -static_cast<Scalar>(step) * J.h[9 * i + 3 + k];
+    }
+    const Eigen::Vector4d before = seen();
+    scene.filter.move(dx.data());
+    TEST_ASSERT_TRUE((seen() - before).norm() < (sizeof(Scalar) == 8 ? 1e-4 : 2e-2) * step);
+  }
+}
+
+/// What a wrong plane has taught is taken back along P J^T (J P J^T)^-1, from the camera and all else, and nothing becomes more certain.
 void test_forgetting_through_a_plane_should_reach_what_it_has_taught() {
   SeededRandom random(31);
   PlaneScene scene(random, 0.001);
   scene.fold_all(PlaneScene::drop());
   const Dense P = scene.filter.P();
-  const int p = scene.filter.first(scene.plane);
   const Vec3 sigma(Scalar(0.02), Scalar(0.03), Scalar(0.01));
+  const auto rows = plane_from_camera(scene.filter->state(), scene.plane);
+  const Dense J = dense_rows(*scene.filter, rows);
   scene.filter->forget_through(scene.plane, sigma);
-  const Dense G = P.middleCols(p, 3) * inverse_of(P.block(p, p, 3, 3));
+  const Dense G = P * J.transpose() * inverse_of(J * P * J.transpose());
   const Eigen::Vector3d s = sigma.cast<double>();
   const Dense expected = P + G * s.cwiseProduct(s).asDiagonal() * G.transpose();
   const Dense after = scene.filter.P();
   TEST_ASSERT_TRUE((after - expected).cwiseAbs().maxCoeff() <
                    (sizeof(Scalar) == 8 ? 1e-9 : 2e-3) * expected.cwiseAbs().maxCoeff());
-  TEST_ASSERT_TRUE(after(Body::kPosition, Body::kPosition) > P(Body::kPosition, Body::kPosition));
+  const Dense seen = J * (after - P) * J.transpose();
+  for (int i = 0; i < 3; ++i) TEST_ASSERT_FLOAT_WITHIN(0.05 * s(i) * s(i), s(i) * s(i), seen(i, i));
 }
 
 /// A prior of covariance C that is taken back but for one part in w leaves the information of a prior of (1 + w) C, and the step of the
@@ -422,6 +456,7 @@ int main(void) {
   RUN_TEST(test_fixed_points_should_lie_where_they_were);
   RUN_TEST(test_released_points_should_have_the_covariance_that_they_had);
   RUN_TEST(test_variance_in_a_drawing_should_be_that_of_the_fixed_point);
+  RUN_TEST(test_rows_of_a_plane_seen_from_the_camera_should_not_see_what_both_share);
   RUN_TEST(test_forgetting_through_a_plane_should_reach_what_it_has_taught);
   RUN_TEST(test_taking_back_a_prior_should_leave_what_a_wider_one_would_have_given);
   RUN_TEST(test_sigma_of_an_inverse_depth_should_have_room_for_the_longest_row_of_the_scale);

@@ -78,9 +78,9 @@ class BlockFilter {
   void remove(const int* blocks, int count);
   /// Adds Q (size x size, row-major) to the covariance of a part.
   void inflate(const Part& part, const Scalar* Q);
-  /// Likewise diag(sigma^2) to a part of three rows, and to all other rows what they owe to that part:
-  ///   P += G diag(sigma^2) G^T,   G = P_xp P_pp^-1, which is the identity on the part's own rows.
-  void inflate_through(const Part& part, const Vec3& sigma);
+  /// J x was wrong by sigma, J of three rows: that much is added to its covariance, and to all else what it owes to J x.
+  ///   P += G diag(sigma^2) G^T,   G = P J^T (J P J^T)^-1
+  void inflate_through(const Rows& J, const Vec3& sigma);
   /// P += P_xp M P_px, P_xp the columns of a part of three rows; M is symmetric and positive semidefinite.
   void inflate_by(const Part& part, const Mat3& M);
   /// Likewise along one row h of a Jacobian: the variance of h x grows by so much.

@@ -11,22 +11,15 @@ void BlockFilter::inflate(const Part& part, const Scalar* Q) {
     for (int j = 0; j <= i; ++j) P_.set(first + i, first + j, P_(first + i, first + j) + Q[i * part.size + j]);
 }
 
-void BlockFilter::inflate_through(const Part& part, const Vec3& sigma) {
-  PF_ASSERT(part.size == 3 && max_rows_ >= 9);
-  constexpr Scalar kRidge =
-      sizeof(Scalar) == 8 ? Scalar(1e-9) : Scalar(1e-4);  ///< of correlations: P_pp may be singular
-  RowsOf<3, 3, 1> J;
-  J.parts = 1;
-  J.part[0] = part;
-  put<3, 3>(J.h, 3, 0, Mat3::Identity());
-  const Rows rows = J;
-  gather(&rows, 1, W_);  // P_px
-  const int first = row(part);
+void BlockFilter::inflate_through(const Rows& J, const Vec3& sigma) {
+  PF_ASSERT(J.rows == 3 && max_rows_ >= 9);
+  constexpr Scalar kRidge = sizeof(Scalar) == 8 ? Scalar(1e-9) : Scalar(1e-4);  ///< of correlations: S may be singular
+  const Mat3 S = covariance_of<3>(J);
+  gather(&J, 1, W_);  // J P
   Vec3 scale;
-  for (int i = 0; i < 3; ++i) scale(i) = Scalar(1) / std::sqrt(W_[i * ld_ + first + i]);
-  Mat3 C;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) C(i, j) = scale(i) * scale(j) * W_[i * ld_ + first + j] + (i == j ? kRidge : Scalar(0));
+  for (int i = 0; i < 3; ++i) scale(i) = Scalar(1) / std::sqrt(S(i, i));
+  Mat3 C = scale.asDiagonal() * S * scale.asDiagonal();
+  C.diagonal().array() += kRidge;
   const Mat3 inverse = C.inverse();
   Scalar *U = W_ + 3 * ld_, *G = W_ + 6 * ld_;  // P += U^T U, as the downdate takes it: U^T G + G^T U with G = U / 2
   for (int i = 0; i < 3; ++i)

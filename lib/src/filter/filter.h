@@ -151,9 +151,8 @@ class Filter {
   void begin_distances(int plane, const int* slots, int count, Scalar noise, DistanceMeasurement* z);
   /// What is known of a plane shrinks: Q is added to the covariance of (a, b, h).
   void inflate(int plane, const Mat3& Q);
-  /// A plane was wrong by about sigma of (a, b, h): that much is added to its own covariance, and to that of the camera and of all else
-  /// what they have learnt from it.
-  void forget_through(int plane, const Vec3& sigma) { blocks_.inflate_through(Part::of(plane, 0, 3), sigma); }
+  /// A plane was wrong by about sigma of (a, b, h), seen from the camera: that much is added to it, and to all else what it has learnt.
+  void forget_through(int plane, const Vec3& sigma);
   /// A known plane was wrong: its prior's covariance becomes (1 + widening) times as large. False where it is tighter than the plane.
   bool forget_prior(int plane, const Mat3& prior, Scalar widening);
   /// What an update by this row has told of it is taken back: its variance grows by so much, and all else with what it has learnt.

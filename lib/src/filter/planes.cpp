@@ -2,6 +2,7 @@
 
 #include "filter/filter.h"
 #include "filter/model/kinds.h"
+#include "filter/plane_from_camera.h"
 
 /// Planes in the state: begun, points folded into them and out of them, moved to another frame.
 
@@ -252,6 +253,10 @@ bool Filter::reanchor(int plane, const PlaneFrame& frame) {
   block.set_xyz(x);
   state_.plane_frame[block.frame] = frame;
   return true;
+}
+
+void Filter::forget_through(int plane, const Vec3& sigma) {
+  blocks_.inflate_through(plane_from_camera(state_, plane), sigma);
 }
 
 }  // namespace pf
