@@ -35,7 +35,7 @@ void TimeOffsetEstimator::add_frame(const pf_pose_t& pose, bool tracked) {
   const Quaternion q = {pose.q_WC[0], pose.q_WC[1], pose.q_WC[2], pose.q_WC[3]};
   if (tracked && has_frame_ && pose.t_ns > last_t_ns_) {
     intervals_.push_back({last_t_ns_, pose.t_ns, angle_between(last_q_, q) / seconds(pose.t_ns - last_t_ns_)});
-    while (intervals_.front().begin_ns < pose.t_ns - kKept_ns) {
+    while (!intervals_.empty() && intervals_.front().begin_ns < pose.t_ns - kKept_ns) {
       intervals_.pop_front();
     }
   }
