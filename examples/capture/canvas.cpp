@@ -1,8 +1,15 @@
 #include "canvas.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pf::capture {
+
+namespace {
+
+constexpr double kMinAxis = 1e-3, kMaxAxis = 1e5;  ///< px, of an ellipse
+
+}  // namespace
 
 Canvas::Canvas(int width, int height)
     : width_(width),
@@ -42,7 +49,9 @@ void Canvas::ellipse(double x, double y, double a, double b, double angle) const
   cairo_save(pen());
   cairo_translate(pen(), x, y);
   cairo_rotate(pen(), angle);
-  cairo_scale(pen(), a > 1e-3 ? a : 1e-3, b > 1e-3 ? b : 1e-3);
+  // Cairo splits an arc into more pieces the larger it is, without end, and refuses infinity for good.
+  const auto drawable = [](double axis) { return axis > kMinAxis ? std::min(axis, kMaxAxis) : kMinAxis; };
+  cairo_scale(pen(), drawable(a), drawable(b));
   cairo_arc(pen(), 0.0, 0.0, 1.0, 0.0, 2.0 * M_PI);
   cairo_restore(pen());
   cairo_stroke(pen());
