@@ -21,7 +21,7 @@ constexpr double kSigmaDelayS = 0.01;  ///< of --estimate delay
 constexpr double kRadians = 3.14159265358979 / 180.0;
 constexpr size_t kPlanes = 64;  ///< the largest capacity.max_planes
 
-constexpr int64_t kPatience = 30;  ///< frames without any sample before them: worth a note
+constexpr int64_t kPatience = 30;  ///< frames without any sample between them: worth a note
 
 double rounded(double value) { return std::round(value * 1e6) / 1e6; }
 
@@ -192,10 +192,11 @@ void ImuFeed::push_until(int64_t t_ns, pf_slam_t* slam) {
   }
   samples_.clear();
   imu_->take(t_ns, samples_);
-  pushed_ += static_cast<int64_t>(samples_.size());
-  if (++frames_ == kPatience && pushed_ == 0) {
-    notices_.add(imu_->name() + ": no sample before any of " + std::to_string(kPatience) +
-                 " frames; are its times on the camera's clock? (--imu-offset)");
+  // All that came before the first frame tells nothing: they may be of another clock altogether.
+  between_ += frames_ > 0 ? static_cast<int64_t>(samples_.size()) : 0;
+  if (++frames_ == kPatience && between_ == 0) {
+    notices_.add(imu_->name() + ": no sample between the first " + std::to_string(kPatience) +
+                 " frames; are its times in the right unit, and on the camera's clock? (--imu-offset)");
   }
   // One at a time: what is wrong with one of them is no reason to do without the others.
   for (const pf_imu_sample_t& sample : samples_) {

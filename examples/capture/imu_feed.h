@@ -59,7 +59,7 @@ class ImuFeed {
   int64_t metric_frame_ = -1;     ///< the first one whose lengths the samples tell
   bool moving_ = false;           ///< .. from a camera that moved
   double offset_s_ = 0.0;
-  int64_t frames_ = 0, pushed_ = 0, refused_ = 0;
+  int64_t frames_ = 0, between_ = 0, refused_ = 0;  ///< between_: samples after the first frame
 };
 
 }  // namespace pf::capture
