@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "imu.h"
+#include "number_in.h"
 #include "source.h"
 
 namespace pf::capture {
@@ -13,12 +14,12 @@ void add_imu_options(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--imu-rate", options.imu_rate_hz, "samples per second to ask an iio: unit for")
-      ->check(CLI::Range(0.1, 100000.0))
+      ->check(number_in(0.1, 100000.0))
       ->group(group);
   app.add_option("--imu-offset", options.imu_offset_s,
                  "seconds to add to the unit's times, to be on the camera's clock")
       ->capture_default_str()
-      ->check(CLI::Range(-1e6, 1e6))
+      ->check(number_in(-1e6, 1e6))
       ->group(group);
   app.add_option("--imu-noise", options.imu_noise, "noise densities: Kalibr's imu.yaml or EuRoC's imu0/sensor.yaml")
       ->group(group);
@@ -32,7 +33,7 @@ void add_imu_options(CLI::App& app, Options& options) {
   app.add_option(
          "--vertical", options.vertical_deg,
          "degrees within which planes that are found to be vertical are told to be so, for walls that are built so")
-      ->check(CLI::Range(0.01, 28.0))
+      ->check(number_in(0.01, 28.0))
       ->group(group);
   app.add_flag("!--no-inertial", options.inertial, "count and record the samples; poses do not depend on them")
       ->group(group);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "imu.h"
+#include "number_in.h"
 
 namespace pf::capture {
 
@@ -50,10 +51,10 @@ void add_camera_options(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--rate", options.rate_hz, "frames per second to ask the camera for")
-      ->check(CLI::Range(0.1, 10000.0))
+      ->check(number_in(0.1, 10000.0))
       ->group(group);
   app.add_option("--exposure", options.exposure_us, "fixed time of exposure, microseconds")
-      ->check(CLI::Range(1.0, 1e6))
+      ->check(number_in(1.0, 1e6))
       ->group(group);
   app.add_option("--focus", options.focus, "autofocus off; the lens goes to this step, or stays (-1)")
       ->check(at_least(-1))
@@ -67,7 +68,7 @@ void add_camera_options(CLI::App& app, Options& options) {
       ->check(CLI::Range(1, 98))
       ->group(group);
   app.add_option("--delay", options.delay_ms, "milliseconds added to every frame, as if the processor were slower")
-      ->check(CLI::Range(0.0, 10000.0))
+      ->check(number_in(0.0, 10000.0))
       ->group(group);
 }
 
@@ -219,7 +220,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--calib", options.calibration,
                  "calibration file (Kalibr, EuRoC, ROS camera_info, ORB-SLAM3, KITTI or calib.yaml)");
   app.add_option("--readout", options.readout_s, "rolling shutter: seconds from the first row to the last; 0: global")
-      ->check(CLI::Range(0.0, 0.2));
+      ->check(number_in(0.0, 0.2));
   app.add_option("--start", options.start,
                  "auto, pose:FILE, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
       ->capture_default_str();
@@ -245,7 +246,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->check(at_least(1));
   app.add_option("--out", options.out, "folder for what is written; made when it is missing")->capture_default_str();
   app.add_option("--report-every", options.report_every_s, "seconds between refreshed report.json and map.ply")
-      ->check(CLI::Range(0.01, 1e9))
+      ->check(number_in(0.01, 1e9))
       ->capture_default_str();
   app.add_option("--gravity", gravity, "X,Y,Z in W, of any length: planes are called horizontal or vertical")
       ->delimiter(',')
@@ -262,7 +263,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->capture_default_str();
   app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
   app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(number_in(0.0, 1000.0));
   app.add_option("--max-features", options.max_features, "capacity of the map")->check(at_least(1));
   app.add_option("--max-planes", options.max_planes, "likewise")->check(at_least(1));
   app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(at_least(1));

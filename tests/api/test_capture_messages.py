@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import platform
 import random
 import subprocess
 import sys
@@ -84,6 +85,8 @@ def test_usage(root):
     expect("no source", 2, ["--source", "--help"])
     expect("unknown option", 2, ["--nonsense"], "--source", source, "--nonsense", "1")
     expect("number", 2, ["--frames"], "--source", source, "--frames", "many")
+    for option in ("--readout", "--report-every", "--delay", "--rest", "--rate", "--exposure", "--imu-rate", "--imu-offset", "--vertical"):
+        expect(f"no number for {option}", 2, [f"{option}: 'nan' is not a number from"], "--source", source, option, "nan", *out)
     expect("zero frames", 2, ["--frames"], "--source", source, "--frames", "0")
     expect("windows of no frames", 2, ["--relative"], "--source", source, "--relative", "0")
     expect("source kind", 2, ["film:x", "images:"], "--source", "film:x")
@@ -129,6 +132,8 @@ def test_usage(root):
     expect("mounting without samples", 2, ["--estimate", "--imu-noise"], "--source", source, "--estimate", "mount", *out)
     expect("timestamps", 2, ["--timestamps", "real or nominal"], "--source", source, "--timestamps", "counted", *out)
     expect("kernels", 2, ["--kernels"], "--source", source, "--kernels", "fast", *out)
+    foreign = "avx2" if platform.machine() in ("aarch64", "armv7l") else "neon"
+    expect("kernels of another processor", 2, ["--kernels", "--kernels auto"], "--source", source, "--kernels", foreign, *out)
     expect("capacity", 2, ["max_features"], "--source", source, "--max-features", "100000", *out)
     expect("skip", 2, ["--skip", "2 frames"], "--source", source, "--skip", "2", *out)
     if capture("--help", quiet=False).returncode != 0:
