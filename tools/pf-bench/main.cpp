@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "../lib/command_line.h"
 #include "planefold_platform/version.h"
 #include "suite.h"
 
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
                     "kernel set: reference, portable, avx2, avx512, neon (default: the fastest)");
     suites[sub] = s;
   }
-  CLI11_PARSE(app, argc, argv);
+  int code = 0;
+  if (!pf::tools::parse_command_line(app, "pf-bench", argc, argv, code)) return code;
   return suites.at(app.get_subcommands().front())->run(options);
 }

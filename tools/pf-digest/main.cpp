@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../lib/command_line.h"
 #include "context.h"
 
 namespace {
@@ -88,7 +89,8 @@ int main(int argc, char** argv) {
   app.add_option("source", source, "sim:NAME, images:DIR, euroc:DIR or tum:DIR")->required();
   app.add_option("--frames", frames, "at most so many");
   app.add_flag("--auto", start_auto, "start without the target");
-  CLI11_PARSE(app, argc, argv);
+  int code = 0;
+  if (!pf::tools::parse_command_line(app, "pf-digest", argc, argv, code)) return code;
   if (source.rfind("sim:", 0) == 0) return run_sim(source.substr(4), frames, !start_auto);
   return run_sequence(source, frames, !start_auto);
 }

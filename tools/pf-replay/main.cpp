@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "../lib/command_line.h"
 #include "planefold_platform/version.h"
 #include "record.h"
 
@@ -25,7 +26,8 @@ int main(int argc, char** argv) {
   CLI::App* follow = app.add_subcommand("follow", "run on the accepted observations and compare");
   follow->add_option("file", file, "tape to read")->required();
   follow->add_option("--json", json, "file for the result");
-  CLI11_PARSE(app, argc, argv);
+  int code = 0;
+  if (!pf::tools::parse_command_line(app, "pf-replay", argc, argv, code)) return code;
 
   if (record->parsed()) {
     if (replay::record(file, frames, seed, planes)) return 0;

@@ -1,8 +1,8 @@
 // pf-sim: rendered sequences on disk, and Monte Carlo runs of the filter against geometric truth.
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 
+#include "../lib/command_line.h"
 #include "commands.h"
 #include "planefold_platform/version.h"
 
@@ -21,13 +21,6 @@ int main(int argc, char** argv) {
   pfsim::add_street(app, result);
   pfsim::add_vio(app, result);
   pfsim::add_templates(app, result);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& done) {
-    return app.exit(done);
-  } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "pf-sim: %s; see pf-sim --help, and pf-sim COMMAND --help\n", error.what());
-    return 2;
-  }
-  return result;
+  int code = 0;
+  return pf::tools::parse_command_line(app, "pf-sim", argc, argv, code) ? result : code;
 }

@@ -1,0 +1,47 @@
+"""Every program says in one line what is wrong with its command line, and ends with 2; every tool has a --help."""
+
+import pathlib
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from script import BIN, SOURCE, fail, skip, skip_in_cross_builds  # noqa: E402
+
+NEED_NOTHING = ("adjust-tags", "compare-trees", "demo", "fuzz", "package", "sweep-tuning", "test", "update-golden")
+COMMANDS = ("pf-bench", "pf-replay", "pf-sim")
+failures = []
+
+
+def said(*words):
+    return subprocess.run([str(word) for word in words], text=True, capture_output=True, timeout=100, check=False, cwd=SOURCE)
+
+
+def expect_refusal(parts, program, *words):
+    result = said(BIN / program, *words)
+    lines = result.stderr.splitlines()
+    if result.returncode != 2 or len(lines) != 1 or not all(part in lines[0] for part in (f"{program}: ", "--help", *parts)) or result.stdout:
+        failures.append(f"{program} {' '.join(words)}: code {result.returncode}, {result.stderr!r}, without {parts}")
+    print(program, *words, result.returncode, result.stderr.strip())
+
+
+def main():
+    skip_in_cross_builds()
+    programs = [name for name in (*COMMANDS, "pf-capture", "pf-calibrate", "pf-digest") if (BIN / name).is_file()]
+    if not programs:
+        skip("no program is part of this build")
+    for program in programs:
+        expect_refusal([], program)
+        expect_refusal(["--nonsense"], program, "--nonsense")
+        if program in COMMANDS:
+            expect_refusal(["'nonsense'"], program, "nonsense")
+        if said(BIN / program, "--help").returncode != 0:
+            failures.append(f"{program} --help does not end with 0")
+    for tool in NEED_NOTHING:
+        result = said(SOURCE / "tools" / tool, "--help")
+        if result.returncode != 0 or tool not in result.stdout or result.stderr:
+            failures.append(f"tools/{tool} --help: code {result.returncode}, {result.stdout[:100]!r}, {result.stderr[:200]!r}")
+    if failures:
+        fail("\n  ".join([f"{len(failures)} found:", *failures]))
+
+
+main()
