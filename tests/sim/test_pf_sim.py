@@ -68,11 +68,24 @@ def test_many_starts_before_a_target_should_all_succeed(folder):
 
 
 def test_wrong_words_should_be_refused_in_one_line():
-    for words in (["render", "nowhere", "--out", "x"], ["room", "--case", "Z"], ["room", "--layout", "moon"],
+    wrong = [["render", "desk", "--out", "x", f"--{option}", value] for option, value in (
+        ("frames", "-3"), ("width", "3"), ("noise", "-3"), ("noise", "nan"), ("exposure", "-1"), ("exposure", "1"), ("blur", "0"),
+        ("readout", "nan"), ("exposure-step", "0"), ("drop", "3"), ("repeat", "-1"))]
+    for words in (*wrong, ["render", "nowhere", "--out", "x"], ["room", "--case", "Z"], ["room", "--layout", "moon"],
                   ["gee2007", "--motion", "dance"], ["room", "--sigma-px", "1000"]):
         result = subprocess.run([str(PF_SIM), *words], capture_output=True, text=True)
         if result.returncode == 0 or len(result.stderr.strip().splitlines()) != 1:
             fail(f"{words}: exit {result.returncode}, said: {result.stderr}")
+        if words in wrong and words[4] not in result.stderr:
+            fail(f"{words}: {words[4]} is not named: {result.stderr}")
+
+
+def test_every_scene_that_an_error_names_should_be_in_the_help():
+    scenes = subprocess.run([str(PF_SIM), "render", "nowhere", "--out", "x"], capture_output=True, text=True).stderr.split("there are", 1)[1]
+    said = run(PF_SIM, "render", "--help").split()
+    missing = [scene for scene in scenes.split() if scene not in said]
+    if missing:
+        fail(f"pf-sim render --help does not name {missing}")
 
 
 if not PF_SIM.exists():
@@ -82,4 +95,5 @@ with tempfile.TemporaryDirectory() as name:
     test_room_should_report_its_numbers_and_be_the_same_twice(pathlib.Path(name))
     test_many_starts_before_a_target_should_all_succeed(pathlib.Path(name))
 test_wrong_words_should_be_refused_in_one_line()
+test_every_scene_that_an_error_names_should_be_in_the_help()
 print("OK")

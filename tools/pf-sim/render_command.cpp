@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../../examples/capture/number_in.h"
 #include "commands.h"
 #include "planefold_platform/sequence.h"
 #include "planefold_platform/sim.h"
@@ -60,6 +61,12 @@ struct Choices {
   double noise = -1, readout = -1, exposure_step = 0, drop = 0, repeat = 0, exposure_s = -1;
 };
 
+std::string scene_names() {
+  std::string names;
+  for (int i = 0; pf_sim_scene_name(i); ++i) names += std::string(i > 0 ? " " : "") + pf_sim_scene_name(i);
+  return names;
+}
+
 int fail(const std::string& what) {
   std::fprintf(stderr, "pf-sim: %s\n", what.c_str());
   return 1;
@@ -92,7 +99,8 @@ int render(const Choices& c) {
   pf_sim_t* sim = pf_sim_open(c.scene.c_str(), &o);
   if (!sim)
     return fail(
-        "an option is out of its range; pf-sim render --help names them, and --readout ends at one frame's time");
+        "the picture is too small or too large for --width, or --exposure or --readout is longer than one frame's "
+        "time");
   const fs::path out(c.out);
   char message[PF_SEQUENCE_MESSAGE] = "";
   if (pf_open_output_folder(c.out.c_str(), "--out", message) != 0) return fail(message);
@@ -137,31 +145,30 @@ int render(const Choices& c) {
 
 }  // namespace
 
-std::string no_scene(const std::string& scene) {
-  std::string names;
-  for (int i = 0; pf_sim_scene_name(i); ++i) names += std::string(" ") + pf_sim_scene_name(i);
-  return "no scene '" + scene + "'; there are" + names;
-}
+std::string no_scene(const std::string& scene) { return "no scene '" + scene + "'; there are " + scene_names(); }
 
 void add_render(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("render", "Render a scene: images, times, calibration, target, truth");
-  command
-      ->add_option("scene", c->scene,
-                   "desk room corridor wall rotation person exposure repeat box checker clutter bushes road")
-      ->required();
+  command->add_option("scene", c->scene, scene_names())->required();
   command->add_option("--out", c->out, "folder to write")->required();
   command->add_option("--seed", c->seed, "of scene, path and noise");
-  command->add_option("--frames", c->frames, "how many (0: the scene's own)");
+  command->add_option("--frames", c->frames, "how many (0: the scene's own)")->check(CLI::Range(0, 1000000));
   command->add_option("--camera", c->camera, "pinhole, radtan, equidistant or division");
-  command->add_option("--width", c->width, "of the picture [px]; everything else scales with it");
-  command->add_option("--noise", c->noise, "standard deviation of a pixel [grey levels]");
-  command->add_option("--exposure", c->exposure_s, "[s]");
-  command->add_option("--blur", c->blur, "views averaged over the exposure");
-  command->add_option("--readout", c->readout, "rolling shutter, first to last row [s]");
-  command->add_option("--exposure-step", c->exposure_step, "factor by which gain jumps every two seconds");
-  command->add_option("--drop", c->drop, "probability that a frame never comes");
-  command->add_option("--repeat", c->repeat, "probability that a picture comes twice");
+  command->add_option("--width", c->width, "of the picture [px]; everything else scales with it")
+      ->check(CLI::Range(32, 4096));
+  command->add_option("--noise", c->noise, "standard deviation of a pixel [grey levels]")
+      ->check(pf::capture::number_in(0.0, 50.0));
+  command->add_option("--exposure", c->exposure_s, "[s]")->check(pf::capture::number_in(0.0, 1.0));
+  command->add_option("--blur", c->blur, "views averaged over the exposure")->check(CLI::Range(1, 64));
+  command->add_option("--readout", c->readout, "rolling shutter, first to last row [s]")
+      ->check(pf::capture::number_in(0.0, 0.2));
+  command->add_option("--exposure-step", c->exposure_step, "factor by which gain jumps every two seconds")
+      ->check(pf::capture::number_in(1.0, 100.0));
+  command->add_option("--drop", c->drop, "probability that a frame never comes")
+      ->check(pf::capture::number_in(0.0, 0.9));
+  command->add_option("--repeat", c->repeat, "probability that a picture comes twice")
+      ->check(pf::capture::number_in(0.0, 0.9));
   command->callback([c, &result] { result = render(*c); });
 }
 
