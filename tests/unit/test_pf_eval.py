@@ -190,7 +190,10 @@ class Command(unittest.TestCase):
     def pf_eval(self, *words):
         """(exit code, output, errors)"""
         with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
-            code = main([str(word) for word in words])
+            try:
+                code = main([str(word) for word in words])
+            except SystemExit as ended:  # of the command line
+                code = ended.code
         return code, out.getvalue(), err.getvalue()
 
     def test_json_should_have_the_agreed_names(self):
@@ -298,6 +301,19 @@ class Command(unittest.TestCase):
             self.assertEqual(code, 1, f"{words}: {out}")
             self.assertEqual(len(err.strip().splitlines()), 1, f"{words}: {err}")
             self.assertTrue(err.startswith("pf-eval: "), err)
+        for words in ([], [self.path, "--nonsense"], [self.path, "--align", "se2"], [self.path, "--corners", "x.csv"], [self.path, "--skip-frames", "x"]):
+            code, out, err = self.pf_eval(*words)
+            self.assertEqual((code, out, len(err.splitlines())), (2, "", 1), f"{words}: {out}{err}")
+            self.assertTrue(err.startswith("pf-eval: ") and "see pf-eval --help" in err, err)
+
+    def test_truth_should_be_asked_for_without_naming_a_report_that_is_not_there(self):
+        with tempfile.TemporaryDirectory() as empty:
+            trajectory = pathlib.Path(empty) / "alone.tum"
+            trajectory.write_text("0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 1 1 0 0 0 0 1\n")
+            code, out, err = self.pf_eval(trajectory)
+        self.assertEqual((code, out), (1, ""), err)
+        self.assertIn("--truth FILE", err)
+        self.assertIn("no report.json was read", err)
 
     def test_covariance_should_be_matched_by_time(self):
         times = curve().t[::-1]

@@ -13,6 +13,7 @@ import sys
 
 from . import Refused
 from .camera import camera_of_run
+from .command_line import OneLineParser
 from .corners import compare_corners, read_target
 from .errors import compare
 from .files import read_run, read_tum
@@ -52,8 +53,8 @@ COLUMNS = {
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="compare-runs", description=DESCRIPTION, epilog=NOTES,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = OneLineParser(prog="compare-runs", description=DESCRIPTION, epilog=NOTES,
+                           formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("variants", metavar="VARIANT", nargs="*")
     parser.add_argument("--out", metavar="DIR", help="folder for the runs")
     parser.add_argument("--show", metavar="DIR", nargs="+", help="print the tables of one or two such folders; runs nothing")

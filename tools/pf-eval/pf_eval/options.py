@@ -2,6 +2,8 @@
 
 import argparse
 
+from .command_line import OneLineParser
+
 DESCRIPTION = """Compares a run of pf-capture with ground truth.
 
   pf-eval RUN [--truth FILE] [--planes FILE.json] [--align none|se3|sim3] [--json [FILE]]
@@ -29,8 +31,8 @@ Exit code: 0 done, 1 something cannot be used (one line says what), 2 the comman
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="pf-eval", description=DESCRIPTION, epilog=NOTES,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = OneLineParser(prog="pf-eval", description=DESCRIPTION, epilog=NOTES,
+                           formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", metavar="RUN", nargs="?")
     parser.add_argument("--truth", metavar="FILE", help="TUM form, or EuRoC's state_groundtruth_estimate0/data.csv; default: report.json names it")
     parser.add_argument("--align", choices=["none", "se3", "sim3"],

@@ -7,6 +7,7 @@ import sys
 import numpy as np
 
 from . import Refused, plot_errors, plot_frames, plot_trajectory
+from .command_line import OneLineParser
 from .errors import compare, default_alignment
 from .files import read_run, read_table
 from .output_folder import LIST, add_output_files, open_output_folder
@@ -73,8 +74,8 @@ def plot(options):
 
 
 def main(words=None):
-    parser = argparse.ArgumentParser(prog="plot-run", description=DESCRIPTION,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = OneLineParser(prog="plot-run", description=DESCRIPTION,
+                           formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", metavar="RUN", help="output folder of pf-capture")
     parser.add_argument("--truth", metavar="FILE.tum", help="default: truth.tum in RUN, if it is there")
     parser.add_argument("--align", choices=["none", "se3", "sim3"], help="as in pf-eval")

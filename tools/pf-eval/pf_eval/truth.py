@@ -13,6 +13,8 @@ def named_truth(report, folder):
     """The file that a run's report names, or truth.tum of a scene."""
     if (folder / "truth.tum").exists():
         return folder / "truth.tum"
+    if not report:
+        raise Refused(f"{folder}: no report.json was read that would name the truth; give it with --truth FILE")
     if not report.get("truth"):
         raise Refused(f"{folder}/report.json: names no truth; give it with --truth FILE")
     if not pathlib.Path(report["truth"]).exists():
