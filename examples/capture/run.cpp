@@ -329,6 +329,12 @@ void Run::point_at(const double pixel[2]) {
   std::string line;
   progress_.end();
   append(line, "pixel %.1f, %.1f of frame %lld: ", pixel[0], pixel[1], static_cast<long long>(view_.index));
+  const pf_camera_t& camera = session_.config().camera;
+  if (!(pixel[0] >= -0.5 && pixel[1] >= -0.5 && pixel[0] < camera.width - 0.5 && pixel[1] < camera.height - 0.5)) {
+    append(line, "lies outside of the picture of %d x %d pixels", camera.width, camera.height);
+    note(line);
+    return;
+  }
   if (!cast_ray(session_.slam(), view_.index, view_.pose, pixel, hit)) {
     note(line + "no plane is there");
     return;
@@ -383,6 +389,11 @@ int Run::finish() {
     save("overlay_last.png");
     if (!saved_mid_) {
       save("overlay_mid.png");
+    }
+  }
+  for (const Options::Tap& tap : options_.taps) {
+    if (!done_any_ || tap.frame > view_.index) {
+      note("--tap: the run ended before frame " + std::to_string(tap.frame) + "; its first frame is 0");
     }
   }
   const bool filming = show_.is_filming();

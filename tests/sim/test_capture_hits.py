@@ -23,7 +23,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="planefold_") as name:
         out = pathlib.Path(name) / "out"
         command = [PROGRAM, "--source", "sim:desk", "--start", "target", "--headless", "--quiet", "--no-film", "--frames", 150, "--gravity",
-                   "0,9.81,0", "--tap", "120,150,215", "--tap", "140,150,25", "--tap", "140,1,1", "--out", out]
+                   "0,9.81,0", "--tap", "120,150,215", "--tap", "140,150,25", "--tap", "140,1,1", "--tap", "140,150,2000", "--tap", "150,9,9", "--out", out]
         result = subprocess.run([str(word) for word in command], text=True, capture_output=True, check=False)
         print(result.stderr)
         require(result.returncode == 0, f"pf-capture ended with {result.returncode}")
@@ -32,6 +32,8 @@ def main():
         hits = report["hits"]
         require([hit["frame"] for hit in hits] == [120, 140], f"hits: {hits}")
         require("frame 140: no plane is there" in result.stderr, "a ray into a corner hit something")
+        require("2000.0 of frame 140: lies outside of the picture" in result.stderr, "a place outside of the picture gets no note")
+        require("before frame 150" in result.stderr and "before frame 140" not in result.stderr, "a frame after the last one gets no note")
         for hit in hits:
             off = min(abs(sum(n * p for n, p in zip(plane["normal"], hit["p_W"])) - plane["distance"]) for plane in truth)
             print(f"frame {hit['frame']}: {hit['range']:.3f} m away, sigma {1e3 * hit['sigma_range']:.1f} mm, {1e3 * off:.1f} mm off a true plane")
