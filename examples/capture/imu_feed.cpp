@@ -114,9 +114,9 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
     model_ = *imu_->model();
     inertial_ = true;
   } else if (!options.imu_noise.empty()) {
-    code = kExitUsage;
     char message[PF_SEQUENCE_MESSAGE] = "";
     if (imu_ == nullptr) {
+      code = kExitUsage;
       error = "--imu-noise: there are no inertial samples beside these frames; add --imu";
     } else if (pf_read_imu_noise(options.imu_noise.c_str(), &model_, message) != 0) {
       error = std::string("--imu-noise ") + message;

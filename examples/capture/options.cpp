@@ -138,6 +138,12 @@ std::string check(const Options& options, const std::string& backend) {
   if (options.skip > 0 && is_camera) {
     return "--skip is for folders and scenes; a camera has no frames to leave out";
   }
+  if (options.rate_hz > 0.0 && !is_camera) {
+    return "--rate is for cameras; of images without times it is rate_hz in their calibration";
+  }
+  if (!is_camera && (options.exposure_us > 0.0 || options.focus >= -1 || options.format != "any" || options.dma_buf)) {
+    return "--format, --exposure, --focus and --dma-buf are for cameras";
+  }
   if (options.sim_rest_s > 0.0 && kind != "sim") {
     return "--rest is for sim: sources";
   }
@@ -162,6 +168,9 @@ std::string check(const Options& options, const std::string& backend) {
   if (options.start != "auto" && options.start != "target" && options.start.rfind("target:", 0) != 0 &&
       options.start.rfind("rectangle:", 0) != 0 && options.start.rfind("pose:", 0) != 0) {
     return "--start " + options.start + ": write auto, pose:FILE, target:FILE or rectangle:WxH (metres)";
+  }
+  if (options.start == "target:" || options.start == "pose:") {
+    return "--start " + options.start + " names no file; write " + options.start + "FILE";
   }
   if (options.withdraw_target_after >= 0 && (options.start == "auto" || options.start.rfind("pose:", 0) == 0)) {
     return "--withdraw-target-after needs a target: add --start target:FILE or --start rectangle:WxH";

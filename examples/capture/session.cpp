@@ -76,7 +76,6 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   if (!options.points) config_.map.features_in_view = 0;
   config_.capacity.max_patches = options.patches >= 0 ? options.patches : options.points ? 0 : kPatchesAlone;
   if (!plan_.open(options.walls, error)) {
-    code = kExitUsage;
     return false;
   }
   if (options.max_planes < 0) {  // room for all walls, and for as many found planes as without

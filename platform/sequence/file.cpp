@@ -72,7 +72,8 @@ void require_folder(const fs::path& path) {
     refuse(path.string() + ": no such folder; check the path after the colon of the source");
   }
   if (!fs::is_directory(path, error)) {
-    refuse(path.string() + ": is not a folder; give the folder that holds the sequence");
+    refuse(path.string() +
+           ": is not a folder; give the folder that holds the sequence (of a film: ffmpeg -i FILM FOLDER/%06d.png)");
   }
   fs::directory_iterator entries(path, error);
   if (error) {

@@ -202,8 +202,24 @@ std::vector<std::string> one_kind(const fs::path& images, const std::vector<std:
   return kept;
 }
 
+/// Refuses a folder of another layout, which has its images elsewhere.
+void refuse_other_layouts(const fs::path& root) {
+  if (is_file(root / "times.txt") || is_folder(root / "images") || is_folder(root / "image_0") ||
+      !list_images(root).empty()) {
+    return;
+  }
+  if (is_file(root / "rgb.txt")) {
+    refuse(root.string() + ": has no images itself but an rgb.txt, as TUM's sequences do; write tum:" + root.string());
+  }
+  if (is_file(root / "mav0" / "cam0" / "data.csv") || is_file(root / "cam0" / "data.csv")) {
+    refuse(root.string() +
+           ": has no images itself but cam0/data.csv, as EuRoC's sequences do; write euroc:" + root.string());
+  }
+}
+
 void open_images(Folder& folder, const std::string& calibration) {
   const fs::path& root = folder.root;
+  refuse_other_layouts(root);
   find_calibration(folder, calibration, root,
                    {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml", "calib.txt"});
   fs::path images = root;

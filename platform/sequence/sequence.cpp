@@ -330,11 +330,11 @@ static int read_imu_model(const char* path, const char* what, decltype(&pf_parse
 }
 
 int pf_read_imu_noise(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]) {
-  return read_imu_model(path, "noise of the inertial unit", pf_parse_imu_noise, imu, message);
+  return read_imu_model(path, "inertial noise", pf_parse_imu_noise, imu, message);
 }
 
 int pf_read_imu_mount(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]) {
-  return read_imu_model(path, "mounting of the inertial unit", pf_parse_imu_mount, imu, message);
+  return read_imu_model(path, "inertial mounting", pf_parse_imu_mount, imu, message);
 }
 
 void pf_free_imu(pf_imu_sample_t* samples) { delete[] samples; }

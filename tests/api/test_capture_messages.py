@@ -117,6 +117,10 @@ def test_usage(root):
     expect("as recorded", 2, ["--as-recorded", "euroc:"], "--source", source, "--as-recorded")
     expect("back end", 2, ["--backend", "filter"], "--source", source, "--backend", "magic")
     expect("start", 2, ["--start"], "--source", source, "--start", "somehow")
+    expect("target without a file", 2, ["target:FILE"], "--source", source, "--start", "target:", *out)
+    expect("pose without a file", 2, ["pose:FILE"], "--source", source, "--start", "pose:", *out)
+    expect("rate of images", 2, ["--rate", "rate_hz"], "--source", source, "--rate", "15", *out)
+    expect("exposure of images", 2, ["--exposure", "cameras"], "--source", source, "--exposure", "1000", *out)
     expect("rectangle", 2, ["rectangle:", "metres"], "--source", source, "--start", "rectangle:big", *out)
     expect("half a pose", 1, ["half.tum", "one line"], "--source", source, "--start", f"pose:{written(root, 'half.tum', '0 1 2 3')}", *out)
     expect("a long quaternion", 1, ["long.tum", "length 1"], "--source", source, "--start",
@@ -156,11 +160,11 @@ def test_walls(root):
         path = written(root, "plan.json", walls if isinstance(walls, str) else json.dumps({"planefold_walls": 1, "walls": walls}))
         expect(name, code, ["--walls", *parts], "--source", source, "--walls", path, *out, *start, *arguments)
 
-    refuse("a field is missing", 2, ["plan.json", "wall 'north'", "'height'", "missing"], [{k: v for k, v in wall.items() if k != "height"}])
-    refuse("a height of NaN", 2, ["plan.json", "wall 'north'", "'height'"], [wall | {"height": float("nan")}])
-    refuse("a wall of no length", 2, ["plan.json", "wall 'north'", "'to'", "no length"], [wall | {"to": [0, 4]}])
-    refuse("10,000 walls", 2, ["plan.json", "'walls'", "10000", "64"], [wall | {"name": f"wall {i}"} for i in range(10000)])
-    refuse("no JSON", 2, ["plan.json"], "walls:")
+    refuse("a field is missing", 1, ["plan.json", "wall 'north'", "'height'", "missing"], [{k: v for k, v in wall.items() if k != "height"}])
+    refuse("a height of NaN", 1, ["plan.json", "wall 'north'", "'height'"], [wall | {"height": float("nan")}])
+    refuse("a wall of no length", 1, ["plan.json", "wall 'north'", "'to'", "no length"], [wall | {"to": [0, 4]}])
+    refuse("10,000 walls", 1, ["plan.json", "'walls'", "10000", "64"], [wall | {"name": f"wall {i}"} for i in range(10000)])
+    refuse("no JSON", 1, ["plan.json"], "walls:")
     refuse("walls without a start in their frame", 2, ["--start pose:FILE", "q_WT"], [wall], start=[])
     refuse("walls without planes", 2, ["needs planes"], [wall], "--no-planes")
     refuse("too few planes", 2, ["'south'", "--max-planes"], [wall, wall | {"name": "south"}], "--max-planes", "1")
@@ -171,18 +175,25 @@ def test_walls(root):
         said = capture("--source", source, "--walls", path, *out, *start).stderr
         if ("wall 'board' from its back side" in said) != behind:
             failures.append(f"a wall whose back side is in view ({behind}): {said!r}")
-    expect("no such plan", 2, ["--walls", "none.json"], "--source", source, "--walls", root / "none.json", *start, *out)
+    expect("no such plan", 1, ["--walls", "none.json"], "--source", source, "--walls", root / "none.json", *start, *out)
 
 
 def test_sources(root):
     out = ["--out", root / "sources"]
     expect("missing folder", 1, ["nowhere", "no such folder"], "--source", f"images:{root}/nowhere", *out)
     (root / "file").write_text("x")
-    expect("file for a folder", 1, ["not a folder"], "--source", f"images:{root}/file", *out)
+    expect("file for a folder", 1, ["not a folder", "ffmpeg"], "--source", f"images:{root}/file", *out)
     (root / "empty").mkdir()
     expect("no calibration", 1, ["calibration", "--calib"], "--source", f"images:{root}/empty", *out)
     (root / "empty" / "calib.yaml").write_text(CALIBRATION)
     expect("no image", 1, ["no PNG"], "--source", f"images:{root}/empty", *out)
+    for layout, file, kind in (("TUM", "rgb.txt", "tum:"), ("EuRoC", "mav0/cam0/data.csv", "euroc:")):
+        (root / layout / file).parent.mkdir(parents=True)
+        (root / layout / file).write_text("# as downloaded\n")
+        expect(f"images in the layout of {layout}", 1, [file.split("/", 1)[-1], f"write {kind}{root}/{layout}"], "--source",
+               f"images:{root}/{layout}", *out)
+    unit = ["--imu", f"csv:{written(root, 'imu.csv', '1,0,0,0,0,0,9.8')}", "--imu-mount", root / "none.yaml", "--imu-noise", root / "none.yaml"]
+    expect("no noise", 1, ["none.yaml", "no such inertial noise file"], "--source", f"images:{folder(root, 'still', [pgm(noise())])}", *unit, *out)
     expect("tum", 1, ["rgb.txt"], "--source", f"tum:{root}/empty", *out)
     expect("euroc", 1, ["data.csv"], "--source", f"euroc:{root}", *out)
     frame = pgm(noise())
