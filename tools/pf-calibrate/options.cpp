@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include <planefold_platform/cameras.h>
 #include <planefold_platform/version.h>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "markers.h"
+#include "print_target.h"
 
 namespace pf::calibrate {
 
@@ -97,6 +99,22 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
   }
   if (options.source.empty() == options.print_target.empty()) {
     std::fprintf(stderr, "pf-calibrate: give either --source or --print-target; see --help\n");
+    code = 2;
+    return false;
+  }
+  const std::string kind = options.source.substr(0, options.source.find(':') + 1);
+  if (!options.source.empty() && kind != "images:" && kind != "euroc:" && kind != "tum:" &&
+      !platform::is_camera(options.source)) {
+    std::fprintf(stderr,
+                 "pf-calibrate: source '%s': write images:DIR, euroc:DIR, tum:DIR, v4l2:/dev/videoN or libcamera:0\n",
+                 options.source.c_str());
+    code = 2;
+    return false;
+  }
+  double width_mm = 0.0, height_mm = 0.0;
+  if (!page_size(options.page, width_mm, height_mm)) {
+    std::fprintf(stderr, "pf-calibrate: --page %s: write a4, a3, letter, or WIDTHxHEIGHT in millimetres, 50 to 5000\n",
+                 options.page.c_str());
     code = 2;
     return false;
   }

@@ -23,21 +23,6 @@ struct FreePen {
   void operator()(cairo_t* pen) const { cairo_destroy(pen); }
 };
 
-bool page_size(const std::string& page, double& width_mm, double& height_mm) {
-  if (page == "a4") {
-    width_mm = 210.0, height_mm = 297.0;
-  } else if (page == "a3") {
-    width_mm = 297.0, height_mm = 420.0;
-  } else if (page == "letter") {
-    width_mm = 215.9, height_mm = 279.4;
-  } else {
-    char rest = 0;
-    return std::sscanf(page.c_str(), "%lfx%lf%c", &width_mm, &height_mm, &rest) == 2 && width_mm >= 50.0 &&
-           height_mm >= 50.0 && width_mm <= 5000.0 && height_mm <= 5000.0;
-  }
-  return true;
-}
-
 void draw_squares(cairo_t* pen, const Board& board, double left_mm, double top_mm) {
   const double square_mm = 1000.0 * board.square_m;
   for (int y = 0; y < board.rows; ++y) {
@@ -134,10 +119,25 @@ const char* write_png(const Board& board, double width_mm, double height_mm, con
 
 }  // namespace
 
+bool page_size(const std::string& page, double& width_mm, double& height_mm) {
+  if (page == "a4") {
+    width_mm = 210.0, height_mm = 297.0;
+  } else if (page == "a3") {
+    width_mm = 297.0, height_mm = 420.0;
+  } else if (page == "letter") {
+    width_mm = 215.9, height_mm = 279.4;
+  } else {
+    char rest = 0;
+    return std::sscanf(page.c_str(), "%lfx%lf%c", &width_mm, &height_mm, &rest) == 2 && width_mm >= 50.0 &&
+           height_mm >= 50.0 && width_mm <= 5000.0 && height_mm <= 5000.0;
+  }
+  return true;
+}
+
 bool print_target(const Board& board, const std::string& page, const std::string& path, std::string& error) {
   double width_mm = 0.0, height_mm = 0.0;
   if (!page_size(page, width_mm, height_mm)) {
-    error = "page '" + page + "': write a4, a3, letter, or WIDTHxHEIGHT in millimetres";
+    error = "page '" + page + "': is none that is known";
     return false;
   }
   if ((board.width_m() > board.height_m()) != (width_mm > height_mm)) {
