@@ -140,6 +140,10 @@ def main():
         (root / "calib.yaml").write_text("".join(line for line in text.splitlines(True) if not line.startswith("sigma_")))
         capture(root / "g", "--frames", "40", "--no-film", "--record", root / "recorded")
         check_lens(root / "f", capture(root / "f", "--no-film", "--calib", root / "calib.yaml", source=f"euroc:{root / 'recorded'}"))
+        said = run(PROGRAM, "--help")
+        for folder in ("a", "f"):
+            for file in (path.name for path in (root / folder).iterdir() if not path.name.startswith(".")):
+                require(file in said, f"{file} was written, and pf-capture --help does not name it")
         # A target tells place, turn and scale; without, they are most of what is not known.
         capture(root / "e", "--frames", str(FRAMES), "--no-film")
         shares = share_within_map(root / "a"), share_within_map(root / "e")
