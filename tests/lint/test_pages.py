@@ -1,9 +1,14 @@
 """Pages and code find each other: links lead somewhere, pages that comments name exist, and every page that describes code links to a file
-that names the page."""
+that names the page. The sizes that a page tells are the golden ones."""
 
+import pathlib
 import re
+import sys
 
 import source
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import sizes  # noqa: E402
 
 DOCS = source.ROOT / "lib/docs"
 # Pages about the project as a whole, which no file implements.
@@ -32,4 +37,7 @@ for page in sorted(DOCS.glob("*.md")):
     elif not any(f"lib/docs/{page.name}" in path.read_text() for path in files):
         names = ", ".join(source.name(path) for path in files)
         problems.append(f"lib/docs/{page.name}: none of the files that it links to names it ({names})")
+
+if sizes.PAGE.read_text() != sizes.page_of(sizes.read_golden()):
+    problems.append(f"{source.name(sizes.PAGE)}: the table of sizes differs from tests/golden/sizes.txt; tools/update-golden writes both")
 source.report(problems)

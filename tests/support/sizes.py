@@ -10,6 +10,10 @@ import re
 import script
 
 GOLDEN = script.SOURCE / "tests" / "golden" / "sizes.txt"
+PAGE = script.SOURCE / "lib" / "docs" / "devices.md"
+# Rows of the page's table, by what they are called there, and its columns.
+PAGE_TARGETS = {"x86_64": "x86_64", "64-bit ARM": "aarch64", "ARMv7": "armhf", "Cortex-M7": "cortex-m7"}
+PAGE_COLUMNS = ("text", "block_tiny", "block_handheld", "block_room")
 BAND, SLACK = 0.05, 256
 KIB = 1024
 # What each profile may take, in the library that it is meant for. [bytes]
@@ -41,6 +45,17 @@ def read_golden():
     return {(target, library, what): int(value) for target, library, what, value in rows}
 
 
+def page_of(golden):
+    """The page with the golden numbers in its table."""
+    def row(found):
+        values = [golden.get((PAGE_TARGETS[found[1]], found[2], what)) for what in PAGE_COLUMNS]
+        cells = [f" {value:,} " if value is not None else " " for value in values]
+        return f"| {found[1]} | `{found[2]}` |" + "|".join(cells) + "|"
+
+    names = "|".join(PAGE_TARGETS)
+    return re.sub(rf"^\| ({names}) \| `(planefoldf?)` \|.*$", row, PAGE.read_text(), flags=re.M)
+
+
 def check(target, sizes):
     """sizes: by library and what, bytes. Ends the test where one is outside of its band or limit."""
     golden = read_golden() if GOLDEN.exists() else {}
@@ -50,6 +65,7 @@ def check(target, sizes):
         lines = [" ".join([*key, str(value)]) for key, value in sorted(golden.items())]
         head = "# target library what bytes; within 5 % or 256 bytes both ways. tools/update-golden rewrites this.\n"
         GOLDEN.write_text(head + "\n".join(lines) + "\n")
+        PAGE.write_text(page_of(golden))
     problems = []
     for (library, what), value in sorted(sizes.items()):
         expected = golden.get((target, library, what))
