@@ -9,6 +9,11 @@ from script import BIN, SOURCE, fail, skip, skip_in_cross_builds  # noqa: E402
 
 NEED_NOTHING = ("adjust-tags", "compare-trees", "demo", "fuzz", "package", "sweep-tuning", "test", "update-golden")
 COMMANDS = ("pf-bench", "pf-replay", "pf-sim")
+TOOLS = [  # words, and what the line says
+    (["demo", "--jobs", "many"], "'many'"), (["demo", "--jobs"], "--jobs"), (["demo", "--jobs", "0"], "'0'"), (["fuzz", "1", "--jobs", "x"], "'x'"),
+    (["fuzz"], "minutes"), (["package", "deb", "--jobs", "2.5"], "'2.5'"), (["package", "x86"], "aarch64, armhf or deb"),
+    (["package"], "aarch64, armhf or deb"), (["update-golden", "--all"], "--all"),
+]
 failures = []
 
 
@@ -16,8 +21,8 @@ def said(*words):
     return subprocess.run([str(word) for word in words], text=True, capture_output=True, timeout=100, check=False, cwd=SOURCE)
 
 
-def expect_refusal(parts, program, *words):
-    result = said(BIN / program, *words)
+def expect_refusal(parts, program, *words, folder=BIN):
+    result = said(folder / program, *words)
     lines = result.stderr.splitlines()
     if result.returncode != 2 or len(lines) != 1 or not all(part in lines[0] for part in (f"{program}: ", "--help", *parts)) or result.stdout:
         failures.append(f"{program} {' '.join(words)}: code {result.returncode}, {result.stderr!r}, without {parts}")
@@ -36,6 +41,8 @@ def main():
             expect_refusal(["'nonsense'"], program, "nonsense")
         if said(BIN / program, "--help").returncode != 0:
             failures.append(f"{program} --help does not end with 0")
+    for (tool, *words), part in TOOLS:
+        expect_refusal([part], tool, *words, folder=SOURCE / "tools")
     for tool in NEED_NOTHING:
         result = said(SOURCE / "tools" / tool, "--help")
         if result.returncode != 0 or tool not in result.stdout or result.stderr:

@@ -8,6 +8,13 @@ jobs_default() {
   nproc 2>/dev/null || echo 2
 }
 
+# need_number OPTION VALUE   ends the command where VALUE is no whole number above 0
+need_number() {
+  case "$2" in
+    '' | 0 | *[!0-9]*) echo "$0: $1 needs a whole number above 0, not '$2'; see $0 --help" >&2; exit 2 ;;
+  esac
+}
+
 # configure PRESET [-D...]   quiet unless it fails; compiles through ccache where that is installed
 configure() {
   local preset=$1 log
