@@ -181,7 +181,9 @@ bool Session::begin(std::string& error) {
   if (has_second_pose_) {
     const pf_status_t status = pf_set_second_pose(slam_, second_pose_.t_ns, &second_pose_);
     if (status < 0) {
-      error = std::string("--second-pose: the pose was refused: ") + pf_status_text(status);
+      error = std::string("--second-pose: the pose was refused: ") +
+              (status == PF_ERROR_RANGE ? "it lies nearer to the first place than its own sigma, and so tells no scale"
+                                        : pf_status_text(status));
       return false;
     }
   }

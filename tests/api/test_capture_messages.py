@@ -99,6 +99,8 @@ def test_usage(root):
     expect("second pose with a target", 2, ["--second-pose", "target"], "--source", source, "--second-pose", "x.tum", "--start", "rectangle:0.2x0.1",
            "--backend", "window")
     expect("no second pose", 1, ["x.tum"], "--source", source, "--second-pose", "/nowhere/x.tum", "--backend", "window")
+    expect("a second pose where the first one is", 1, ["--second-pose", "no scale"], "--source", source, "--second-pose",
+           written(root, "same.tum", "1 0 0 0 0 0 0 1"), "--backend", "window", *out)
     expect("every frame of a folder", 2, ["--every-frame", "--realtime"], "--source", source, "--every-frame")
     expect("skip of a camera", 2, ["--skip"], "--source", "v4l2:/dev/video0", "--skip", "3")
     expect("no direction", 2, ["--gravity", "0,1,0"], "--source", source, "--gravity", "0,0,0")
