@@ -3,12 +3,18 @@
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, SOURCE, fail, skip, skip_in_cross_builds  # noqa: E402
 
 NEED_NOTHING = ("adjust-tags", "compare-trees", "demo", "fuzz", "package", "sweep-tuning", "test", "update-golden")
 COMMANDS = ("pf-bench", "pf-replay", "pf-sim")
+WRITE = {  # what cannot be written
+    "pf-bench": [["frame", "--json", "/dev/null/x.json"]], "pf-replay": [["follow", "x", "--json", "/"]],
+    "pf-sim": [[name, "--json", "/dev/null/x.json"] for name in ("room", "rendered", "box", "street", "vio", "checker", "gee2007")]
+    + [[name, "--csv", "/dev/null/x"] for name in ("room", "rendered", "box", "street", "vio", "road")],
+}
 TOOLS = [  # words, and what the line says
     (["demo", "--jobs", "many"], "'many'"), (["demo", "--jobs"], "--jobs"), (["demo", "--jobs", "0"], "'0'"), (["fuzz", "1", "--jobs", "x"], "'x'"),
     (["fuzz"], "minutes"), (["package", "deb", "--jobs", "2.5"], "'2.5'"), (["package", "x86"], "aarch64, armhf or deb"),
@@ -37,10 +43,18 @@ def main():
     for program in programs:
         expect_refusal([], program)
         expect_refusal(["--nonsense"], program, "--nonsense")
+        # Known before a run of hours, and not after it.
+        for words in WRITE.get(program, []):
+            expect_refusal([], program, *words)
         if program in COMMANDS:
             expect_refusal(["'nonsense'"], program, "nonsense")
         if said(BIN / program, "--help").returncode != 0:
             failures.append(f"{program} --help does not end with 0")
+    with tempfile.TemporaryDirectory(prefix="planefold_") as name:
+        for words in (["room", "--seeds", "1", "--frames", "5"], ["rendered", "--seeds", "1", "--frames", "2"]):
+            report = pathlib.Path(name) / words[0] / "reports" / "x.json"
+            if "pf-sim" in programs and (said(BIN / "pf-sim", *words, "--json", report).returncode != 0 or not report.is_file()):
+                failures.append(f"pf-sim {words[0]} does not make the folder of its report")
     for (tool, *words), part in TOOLS:
         expect_refusal([part], tool, *words, folder=SOURCE / "tools")
     for tool in NEED_NOTHING:

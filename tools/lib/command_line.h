@@ -1,12 +1,53 @@
 #ifndef PLANEFOLD_TOOLS_COMMAND_LINE_H
 #define PLANEFOLD_TOOLS_COMMAND_LINE_H
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace pf::tools {
+
+/// What holds a path, or will hold it: the nearest folder, or file, above it that is there.
+inline std::filesystem::path nearest_above(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::path there = std::filesystem::absolute(path, error).lexically_normal();
+  while (!std::filesystem::exists(there, error) && there.has_relative_path()) {
+    there = there.parent_path();
+  }
+  return there;
+}
+
+inline bool is_writable_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::is_directory(path, error) && access(path.c_str(), W_OK) == 0;
+}
+
+/// Of a file that is written after a long run, whose folder is made where it is missing: that it can be written is known before.
+inline CLI::Validator writable_file() {
+  return CLI::Validator(
+      [](std::string& text) {
+        std::error_code error;
+        const bool exists = std::filesystem::exists(text, error);
+        const bool can = exists ? !std::filesystem::is_directory(text, error) && access(text.c_str(), W_OK) == 0
+                                : !text.empty() && is_writable_folder(nearest_above(text));
+        return can ? std::string() : "'" + text + "' is no file that can be written; name another";
+      },
+      "");
+}
+
+/// Likewise of a folder.
+inline CLI::Validator writable_folder() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const bool can = !text.empty() && is_writable_folder(nearest_above(text));
+        return can ? std::string() : "'" + text + "' is no folder that can be written; name another";
+      },
+      "");
+}
 
 /// Parses the command line of a program of this name. False where it must end, with code: 0 after --help or --version, else 2, after
 /// one line that says what is wrong.

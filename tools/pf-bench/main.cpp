@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   std::map<const CLI::App*, const bench::Suite*> suites;
   for (const bench::Suite* s = bench::Suite::first(); s != nullptr; s = s->next) {
     CLI::App* sub = app.add_subcommand(s->name, s->description);
-    sub->add_option("--json", options.json, "write the rows to this file");
+    sub->add_option("--json", options.json, "write the rows to this file")->check(pf::tools::writable_file());
     if (s->input == bench::Suite::kSeeds) {
       sub->add_option("--seeds", options.seeds, "runs of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
       sub->add_option("--frames", options.frames, "at most N of every run")->check(CLI::Range(2, 100000));

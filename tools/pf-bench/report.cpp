@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -57,10 +58,12 @@ int Report::finish() const {
     for (const auto& [name, value] : r.figures) row[name] = value;
     document["rows"].push_back(row);
   }
+  std::error_code error;  // that the file cannot be opened says enough
+  std::filesystem::create_directories(std::filesystem::path(options_.json).parent_path(), error);
   std::ofstream file(options_.json);
   file << document.dump(1) << '\n';
   if (file) return 0;
-  std::fprintf(stderr, "cannot write %s\n", options_.json.c_str());
+  std::fprintf(stderr, "pf-bench: cannot write %s\n", options_.json.c_str());
   return 1;
 }
 

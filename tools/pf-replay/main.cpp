@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "../lib/command_line.h"
@@ -27,7 +28,7 @@ int main(int argc, char** argv) {
   record->add_flag("--planes", planes, "fold points into planes");
   CLI::App* follow = app.add_subcommand("follow", "run on the accepted observations and compare");
   follow->add_option("file", file, "tape to read")->required();
-  follow->add_option("--json", json, "file for the result");
+  follow->add_option("--json", json, "file for the result")->check(pf::tools::writable_file());
   int code = 0;
   if (!pf::tools::parse_command_line(app, "pf-replay", argc, argv, code)) return code;
 
@@ -62,6 +63,8 @@ int main(int argc, char** argv) {
                                          {"us_per_frame", d.us_per_frame}};
   std::printf("%s\n", result.dump(2).c_str());
   if (!json.empty()) {
+    std::error_code error;  // that the file cannot be opened says enough
+    std::filesystem::create_directories(std::filesystem::path(json).parent_path(), error);
     std::FILE* out = std::fopen(json.c_str(), "w");
     if (out == nullptr) return 1;
     std::fputs(result.dump(2).c_str(), out);

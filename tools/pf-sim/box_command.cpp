@@ -5,6 +5,7 @@
 #include <iterator>
 #include <memory>
 
+#include "../lib/command_line.h"
 #include "box_run.h"
 #include "commands.h"
 #include "report.h"
@@ -347,8 +348,8 @@ void add_box(CLI::App& app, int& result) {
   command->add_option("--sigma-px", c->sigma_px, "noise of a pixel");
   command->add_option("--fov", c->fov_deg, "horizontal, of a camera of 640 x 480 [deg]");
   command->add_option("--jobs", c->jobs, "processes at a time");
-  command->add_option("--json", c->json_file, "report to write");
-  command->add_option("--csv", c->csv, "folder for per-frame tables");
+  command->add_option("--json", c->json_file, "report to write")->check(pf::tools::writable_file());
+  command->add_option("--csv", c->csv, "folder for per-frame tables")->check(pf::tools::writable_folder());
   command->callback([c, &result] { result = run(*c); });
 }
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "../lib/command_line.h"
 #include "commands.h"
 #include "kidnap_run.h"
 #include "report.h"
@@ -249,7 +250,7 @@ void add_kidnap(CLI::App& app, int& result) {
   command->add_option("--random-runs", c->random_runs, "runs in random order");
   command->add_option("--seed", c->seed, "of the random order");
   command->add_option("--jobs", c->jobs, "processes at a time");
-  command->add_option("--json", c->json_file, "report to write");
+  command->add_option("--json", c->json_file, "report to write")->check(pf::tools::writable_file());
   command->callback([c, &result] { result = run(*c); });
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "../lib/command_line.h"
 #include "commands.h"
 #include "gee2007/command.h"
 #include "report.h"
@@ -213,8 +214,8 @@ void add_common(CLI::App* command, Choices& c) {
   command->add_option("--first-seed", c.first_seed, "seed of the first run");
   command->add_option("--frames", c.frames, "of each run");
   command->add_option("--jobs", c.jobs, "processes at a time");
-  command->add_option("--json", c.json, "report to write");
-  command->add_option("--csv", c.csv, "folder for per-frame tables");
+  command->add_option("--json", c.json, "report to write")->check(pf::tools::writable_file());
+  command->add_option("--csv", c.csv, "folder for per-frame tables")->check(pf::tools::writable_folder());
   command->add_flag("--plain-ekf", c.plain, "the textbook filter, which does not keep the gauge");
   command->add_option("--gauge-every", c.gauge_every, "frames between readings of the gauge information, 0: never");
   command->add_option("--relative", c.relative, "frames of a window over which the motion is judged, 0: none");

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "../lib/command_line.h"
 #include "commands.h"
 #include "rendered_run.h"
 #include "report.h"
@@ -321,8 +322,8 @@ void add_rendered(CLI::App& app, int& result) {
   command->add_option("--first-seed", c->first_seed, "seed of the first run");
   command->add_option("--frames", c->frames, "of each run");
   command->add_option("--jobs", c->jobs, "processes at a time");
-  command->add_option("--json", c->json_file, "report to write");
-  command->add_option("--csv", c->csv, "folder for per-frame tables");
+  command->add_option("--json", c->json_file, "report to write")->check(pf::tools::writable_file());
+  command->add_option("--csv", c->csv, "folder for per-frame tables")->check(pf::tools::writable_folder());
   command->add_option("--noise", c->noise, "standard deviation of a pixel [grey levels]");
   command->add_option("--exposure", c->exposure_s, "[s]");
   command->add_option("--blur", c->blur, "views averaged over the exposure");

@@ -326,6 +326,8 @@ void print(const std::string& label, const json& j) {
 }
 
 bool write_json(const std::string& path, const json& j) {
+  std::error_code error;  // that the file cannot be opened says enough
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path(), error);
   std::ofstream out(path);
   out << j.dump(2) << "\n";
   return out.good();

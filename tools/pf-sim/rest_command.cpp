@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "../lib/command_line.h"
 #include "commands.h"
 #include "context.h"
 #include "film.h"
@@ -193,7 +194,7 @@ void add_rest(CLI::App& app, int& result) {
   command->add_option("--noise", c->noise, "standard deviation of the fresh noise [grey levels]");
   command->add_option("--seed", c->seed, "of the noise");
   command->add_option("--jobs", c->jobs, "processes at a time");
-  command->add_option("--json", c->json_file, "report to write");
+  command->add_option("--json", c->json_file, "report to write")->check(pf::tools::writable_file());
   command->callback([c, &result] { result = run(*c); });
 }
 

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <memory>
 
+#include "../lib/command_line.h"
 #include "commands.h"
 #include "report.h"
 #include "statistics.h"
@@ -214,8 +215,8 @@ void add_street(CLI::App& app, int& result) {
                       "of the plan's fronts about the vertical: standard deviation [deg]");
   command->add_option("--offset", c->street.sigma_offset, "of the plan's fronts: standard deviation [m]");
   command->add_option("--jobs", c->jobs, "processes at a time");
-  command->add_option("--json", c->json_file, "report to write");
-  command->add_option("--csv", c->csv, "folder for per-frame tables");
+  command->add_option("--json", c->json_file, "report to write")->check(pf::tools::writable_file());
+  command->add_option("--csv", c->csv, "folder for per-frame tables")->check(pf::tools::writable_folder());
   command->callback([c, &result] { result = run(*c); });
 }
 

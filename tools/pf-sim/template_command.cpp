@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "../lib/command_line.h"
 #include "commands.h"
 #include "report.h"
 #include "run.h"
@@ -246,9 +247,10 @@ void add(CLI::App& app, int& result, const std::string& scene, const std::string
   command->add_option("--template-px", c->template_px, "side of the templates, odd, 9 to 31");
   command->add_option("--misfit", c->misfit, "map.max_misfit of partial and whole");
   command->add_option("--backend", c->backend, "filter or window");
-  command->add_option("--csv", c->table, "folder for a table of each case of the first seed, frame by frame");
+  command->add_option("--csv", c->table, "folder for a table of each case of the first seed, frame by frame")
+      ->check(pf::tools::writable_folder());
   command->add_option("--jobs", c->jobs, "processes at a time");
-  command->add_option("--json", c->json_file, "report to write");
+  command->add_option("--json", c->json_file, "report to write")->check(pf::tools::writable_file());
   command->callback([c, &result] { result = run(*c); });
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "../lib/command_line.h"
 #include "commands.h"
 #include "planefold_platform/sim.h"
 #include "report.h"
@@ -452,8 +453,8 @@ void add_vio(CLI::App& app, int& result) {
   command->add_flag("--hand", c->vio.hand, "24 points of a hand wave 0.4 m before the lens");
   command->add_flag("--no-imu", c->no_imu, "the same walk with the constant-velocity model, up to scale");
   command->add_option("--jobs", c->jobs, "processes at a time");
-  command->add_option("--json", c->json_file, "report to write");
-  command->add_option("--csv", c->csv, "folder for per-frame tables");
+  command->add_option("--json", c->json_file, "report to write")->check(pf::tools::writable_file());
+  command->add_option("--csv", c->csv, "folder for per-frame tables")->check(pf::tools::writable_folder());
   command->callback([c, &result] { result = run(*c); });
 }
 
