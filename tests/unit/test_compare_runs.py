@@ -104,6 +104,17 @@ class CompareRuns(unittest.TestCase):
         self.assertIn("| old: a", out)
         self.assertIn("| new: a", out)
 
+    def test_runs_json_of_another_program_should_stay(self):
+        (self.folder / "out").mkdir()
+        for text in ("{}", "[1]", "by hand", '[{"variant": "a"}]'):
+            (self.folder / "out" / "runs.json").write_text(text)
+            for words in (["--data", self.folder / "data", "--out", self.folder / "out", f"a={self.program}"], ["--show", self.folder / "out"]):
+                code, out, err = compare_runs(*words)
+                self.assertEqual((code, out, len(err.splitlines())), (1, "", 1), f"{words}: {out}{err}")
+                self.assertIn("is no result of compare-runs", err)
+            self.assertEqual((self.folder / "out" / "runs.json").read_text(), text)
+        self.assertFalse(self.log.exists())
+
     def test_mistakes_should_get_one_line(self):
         data = ["--data", self.folder / "data", "--out", self.folder / "out"]
         for words, part in ((data + ["a=/no/such/program"], "is no program"), (data + [str(self.program)], "write NAME=PROGRAM"),

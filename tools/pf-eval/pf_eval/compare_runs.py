@@ -167,6 +167,11 @@ def run_all(options):
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise Refused(f"{out}: cannot be made ({error.strerror}); choose another --out") from error
+    if (out / "runs.json").exists():
+        try:
+            read_rows(out, "")
+        except Refused as refused:
+            raise Refused(f"{refused}, and would be overwritten; choose another --out") from refused
     jobs = [(variant, name, path, start) for start in range(options.starts) for name, path in sequences.items()
             for variant in variants]
     rows = []
@@ -192,6 +197,8 @@ def read_rows(folder, label):
         rows = json.loads(path.read_text())
     except (OSError, json.JSONDecodeError) as error:
         raise Refused(f"{path}: is no result of compare-runs ({error})") from error
+    if not isinstance(rows, list) or not all(isinstance(row, dict) and {"variant", "sequence", "start", "failure", "values"} <= row.keys() for row in rows):
+        raise Refused(f"{path}: is no result of compare-runs")
     for row in rows:
         row["variant"] = label + row["variant"]
     return rows
