@@ -1,8 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "checked_options.h"
 #include "imu.h"
-#include "number_in.h"
 #include "source.h"
 
 namespace pf::capture {
@@ -22,9 +22,11 @@ void add_imu_options(CLI::App& app, Options& options) {
       ->check(number_in(-1e6, 1e6))
       ->group(group);
   app.add_option("--imu-noise", options.imu_noise, "noise densities: Kalibr's imu.yaml or EuRoC's imu0/sensor.yaml")
+      ->check(not_empty())
       ->group(group);
   app.add_option("--imu-mount", options.imu_mount,
                  "where the unit is: T_BS (EuRoC's cam0/sensor.yaml), T_cam_imu (Kalibr's camchain) or T_imu_cam")
+      ->check(not_empty())
       ->group(group);
   app.add_option("--estimate", options.estimate,
                  "mount, delay: estimated from 2 degrees, 2 cm and 10 ms about what is given")

@@ -10,8 +10,8 @@
 #include <map>
 #include <vector>
 
+#include "checked_options.h"
 #include "imu.h"
-#include "number_in.h"
 
 namespace pf::capture {
 
@@ -41,6 +41,7 @@ CLI::Validator at_least(int64_t least) {
 void add_camera_options(CLI::App& app, Options& options) {
   const std::string group = "Cameras";
   app.add_option("--record", options.record, "every frame to a new folder in EuRoC layout, for euroc:DIR")
+      ->check(not_empty())
       ->group(group);
   app.add_flag("--as-recorded", options.as_recorded, "of a recording, only the frames that were tracked then")
       ->group(group);
@@ -229,16 +230,19 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, images:DIR, euroc:DIR, tum:DIR or sim:NAME");
   app.add_flag("--list", options.list, "name the cameras and IMUs of this machine, and do nothing else");
   app.add_option("--calib", options.calibration,
-                 "calibration file (Kalibr, EuRoC, ROS camera_info, ORB-SLAM3, KITTI or calib.yaml)");
+                 "calibration file (Kalibr, EuRoC, ROS camera_info, ORB-SLAM3, KITTI or calib.yaml)")
+      ->check(not_empty());
   app.add_option("--readout", options.readout_s, "rolling shutter: seconds from the first row to the last; 0: global")
       ->check(number_in(0.0, 0.2));
   app.add_option("--start", options.start,
                  "auto, pose:FILE, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
       ->capture_default_str();
-  app.add_option(
-      "--second-pose", options.second_pose,
-      "of the window: file (TUM) with the pose of a later frame at its time; its distance from the first is the scale");
-  app.add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start (JSON)");
+  app.add_option("--second-pose", options.second_pose,
+                 "of the window: file (TUM) with the pose of a later frame at its time; its distance from the first is "
+                 "the scale")
+      ->check(not_empty());
+  app.add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start (JSON)")
+      ->check(not_empty());
   app.add_option("--patches", options.patches, "patches of walls that are followed, beside points")
       ->check(CLI::Range(0, 32));
   app.add_flag("--no-points", no_points, "patches of walls alone");

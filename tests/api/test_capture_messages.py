@@ -87,6 +87,8 @@ def test_usage(root):
     expect("number", 2, ["--frames"], "--source", source, "--frames", "many")
     for option in ("--readout", "--report-every", "--delay", "--rest", "--rate", "--exposure", "--imu-rate", "--imu-offset", "--vertical"):
         expect(f"no number for {option}", 2, [f"{option}: 'nan' is not a number from"], "--source", source, option, "nan", *out)
+    for option in ("--calib", "--walls", "--second-pose", "--record", "--imu-noise", "--imu-mount"):
+        expect(f"no name for {option}", 2, [option, "is empty"], "--source", source, option, "", *out)
     expect("zero frames", 2, ["--frames"], "--source", source, "--frames", "0")
     expect("windows of no frames", 2, ["--relative"], "--source", source, "--relative", "0")
     expect("source kind", 2, ["film:x", "images:"], "--source", "film:x")

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../../examples/capture/number_in.h"
+#include "../../examples/capture/checked_options.h"
 #include "commands.h"
 #include "planefold_platform/sequence.h"
 #include "planefold_platform/sim.h"

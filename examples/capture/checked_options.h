@@ -1,5 +1,5 @@
-#ifndef PLANEFOLD_CAPTURE_NUMBER_IN_H
-#define PLANEFOLD_CAPTURE_NUMBER_IN_H
+#ifndef PLANEFOLD_CAPTURE_CHECKED_OPTIONS_H
+#define PLANEFOLD_CAPTURE_CHECKED_OPTIONS_H
 
 #include <CLI/CLI.hpp>
 #include <sstream>
@@ -20,6 +20,12 @@ inline CLI::Validator number_in(double low, double high) {
         return wrong.str();
       },
       CLI::Range(low, high).get_description());
+}
+
+/// A name that is empty is one that a variable of the shell should have held; without the option would be something else.
+inline CLI::Validator not_empty() {
+  return CLI::Validator(
+      [](std::string& text) { return text.empty() ? std::string("is empty; name a file, or leave it away") : ""; }, "");
 }
 
 }  // namespace pf::capture
