@@ -3,7 +3,9 @@
 import contextlib
 import io
 import json
+import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -305,6 +307,17 @@ class Command(unittest.TestCase):
             code, out, err = self.pf_eval(*words)
             self.assertEqual((code, out, len(err.splitlines())), (2, "", 1), f"{words}: {out}{err}")
             self.assertTrue(err.startswith("pf-eval: ") and "see pf-eval --help" in err, err)
+
+    def test_output_that_nobody_reads_should_end_it_without_a_traceback(self):
+        program = pathlib.Path(os.environ["PLANEFOLD_BIN"]) / "pf-eval"
+        if not program.is_file():
+            self.skipTest("pf-eval was not built")
+        end, begin = os.pipe()
+        os.close(end)
+        with os.fdopen(begin, "w") as closed:
+            ended = subprocess.run([program, self.path, "--truth", self.path / "truth.tum"], text=True, stdout=closed, stderr=subprocess.PIPE, check=False)
+        self.assertNotEqual(ended.returncode, 0)
+        self.assertNotIn("Traceback", ended.stderr)
 
     def test_truth_should_be_asked_for_without_naming_a_report_that_is_not_there(self):
         with tempfile.TemporaryDirectory() as empty:
