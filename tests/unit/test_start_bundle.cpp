@@ -181,6 +181,79 @@ void drift(SeededRandom& random, Start& start, Scalar drift_px) {
   }
 }
 
+/// Root mean square of the relative errors of depths up to scale, after a sideways move that was seen through another lens than the
+/// calibration's; `prior` null: the bundle takes that as exact.
+double solve_through_another_lens(const Camera& lens, const Camera& calibration, const LensPrior* prior,
+                                  Camera* adjusted) {
+  SeededRandom random(119);
+  Start start(random, lens, 48, 0);
+  start.camera = calibration;
+  if (prior != nullptr) {
+    TEST_ASSERT_TRUE(start.bundle.layout(*start.arena, prior->rows.count));
+    start.bundle.init();
+    start.bundle.free_lens(calibration, *prior);
+  }
+  for (int i = 0; i < start.record.features(); ++i) {
+    Vec2 z;
+    Vec3 ray;
+    TEST_ASSERT_TRUE(project(lens, start.record.ray(i), &z));
+    TEST_ASSERT_TRUE(unproject(calibration, z, &ray));
+    start.record.set_ray(i, ray);
+  }
+  StartOutcome outcome = StartOutcome::kWait;
+  for (int k = 1; k <= 25 && outcome != StartOutcome::kSettled; ++k) {
+    start.camera = lens;
+    start.see(random, on_the_way({1, 0, 0}, Scalar(0.012) * Scalar(k), Scalar(0.003) * Scalar(k)), 48);
+    start.camera = calibration;
+    outcome = start.solve();
+  }
+  TEST_ASSERT_TRUE(outcome == StartOutcome::kSettled);
+  if (prior != nullptr) *adjusted = *start.bundle.lens();
+  std::vector<double> ratio;
+  for (int i = 0; i < 48; ++i)
+    if (start.bundle.good(i))
+      ratio.push_back(static_cast<double>(start.points[static_cast<std::size_t>(i)].norm() * start.bundle.rho(i)));
+  TEST_ASSERT_GREATER_THAN_size_t(36, ratio.size());
+  std::sort(ratio.begin(), ratio.end());
+  double square = 0;
+  for (const double r : ratio) square += std::pow(r / ratio[ratio.size() / 2] - 1, 2);
+  return std::sqrt(square / static_cast<double>(ratio.size()));
+}
+
+void test_wrong_lens_should_be_found_with_the_depths_when_it_is_uncertain() {
+  const Camera lens = test_camera(CameraModel::kRadtan, 640, 480, 525, 525, 320, 240, -0.08);
+  Camera calibration = test_camera(CameraModel::kRadtan, 640, 480, 525, 525, 320, 240), adjusted;
+  LensSigmas sigmas;
+  sigmas.focal = Scalar(0.01);
+  sigmas.aspect = Scalar(0.001);
+  sigmas.centre = Scalar(3);
+  sigmas.distortion[0] = Scalar(0.1);
+  const LensPrior prior = make_lens_prior(sigmas, &calibration);
+  const double as_exact = solve_through_another_lens(lens, calibration, nullptr, nullptr);
+  const double with_lens = solve_through_another_lens(lens, calibration, &prior, &adjusted);
+  std::printf("depths rms %.4f with the wrong lens, %.4f with k1 of %.3f found\n", as_exact, with_lens,
+              static_cast<double>(adjusted.distortion[0]));
+  EXPECT_BELOW(0.5 * as_exact, with_lens);
+  EXPECT_BELOW(0.05, std::fabs(static_cast<double>(adjusted.distortion[0] - lens.distortion[0])));
+}
+
+void test_lens_should_be_left_alone_when_a_start_waits() {
+  SeededRandom random(120);
+  Camera calibration = radtan_camera();
+  LensSigmas sigmas;
+  sigmas.focal = Scalar(0.01);
+  const LensPrior prior = make_lens_prior(sigmas, &calibration);
+  Start start(random, calibration, 48);
+  TEST_ASSERT_TRUE(start.bundle.layout(*start.arena, prior.rows.count));
+  start.bundle.init();
+  start.bundle.free_lens(calibration, prior);
+  drift(random, start, Scalar(1.5));
+  const Vec3 ray = start.record.ray(7);
+  TEST_ASSERT_TRUE(start.solve() == StartOutcome::kWait);
+  TEST_ASSERT_EQUAL_DOUBLE(static_cast<double>(calibration.fx), static_cast<double>(start.bundle.lens()->fx));
+  EXPECT_BELOW(1e-5, static_cast<double>((start.record.ray(7) - ray).norm()));
+}
+
 void test_features_should_not_be_called_good_when_they_drift() {
   SeededRandom random(116);
   Start start(random, pinhole_camera(), 48);
@@ -210,6 +283,8 @@ int main(void) {
   RUN_TEST(test_start_should_wait_when_the_camera_only_turns);
   RUN_TEST(test_start_should_wait_when_the_camera_rests);
   RUN_TEST(test_start_should_begin_again_when_too_few_of_the_first_features_are_left);
+  RUN_TEST(test_wrong_lens_should_be_found_with_the_depths_when_it_is_uncertain);
+  RUN_TEST(test_lens_should_be_left_alone_when_a_start_waits);
   RUN_TEST(test_features_should_not_be_called_good_when_they_drift);
   RUN_TEST(test_start_should_wait_when_the_pixels_have_no_common_explanation);
   return UNITY_END();

@@ -1,7 +1,10 @@
 #include "geometry/lens.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "geometry/small_cholesky.h"
 
 namespace pf {
 namespace {
@@ -86,6 +89,20 @@ void lens_difference(const LensRows& rows, const Camera& from, const Camera& to,
 void move_lens(const LensRows& rows, const Scalar* e, Camera* camera) {
   for (int i = 0; i < rows.count; ++i) *parameter_of(camera, rows.parameter[i]) += e[i];
   init_camera(camera);
+}
+
+/// The covariance of a prior is positive definite.
+void lens_information(const LensPrior& prior, Scalar inflation, Scalar* information) {
+  const int n = prior.rows.count;
+  Scalar L[kLensParameters * kLensParameters];
+  std::copy(prior.covariance, prior.covariance + n * n, L);
+  factor_cholesky(L, n, n);
+  for (int c = 0; c < n; ++c) {
+    Scalar x[kLensParameters] = {};
+    x[c] = inflation;
+    solve_cholesky(L, n, n, x);
+    for (int a = 0; a < n; ++a) information[a * n + c] = x[a];
+  }
 }
 
 }  // namespace pf

@@ -53,6 +53,10 @@ struct LensSigmas {
 /// The prior of a camera. A pinhole whose first distortion coefficient is uncertain becomes a radial-tangential camera without distortion.
 LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera);
 
+/// Inverse of a prior's covariance, rows x rows. inflation: how many times too much an adjustment believes its pixels; it must believe the
+/// prior as many times too much.
+void lens_information(const LensPrior& prior, Scalar inflation, Scalar* information);
+
 /// Moves a camera's parameters by an error over these rows, and finds its domain anew.
 void move_lens(const LensRows& rows, const Scalar* e, Camera* camera);
 

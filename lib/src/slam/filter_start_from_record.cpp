@@ -20,6 +20,7 @@ void FilterStart::restart_from_record(Scalar unit) {
   body.q_WC = without_.base_q_WC();
   body.p_W = without_.base_p_W();
   clear_filter();
+  if (without_.bundle().lens() != nullptr) parts_.filter.set_lens(*without_.bundle().lens(), settings_.lens);
   begin_body(body, progress().checking && !data_.known.given);
   // The bundle's solution holds for the calibration as it was given, so residuals of zero say nothing about it.
   parts_.filter.consider_lens(true);

@@ -5,9 +5,9 @@
 
 namespace pf {
 
-bool StartWithoutTarget::layout(Arena& arena) {
+bool StartWithoutTarget::layout(Arena& arena, int lens_rows) {
   record_.layout(arena);
-  bundle_.layout(arena);
+  bundle_.layout(arena, lens_rows);
   return arena.ok();
 }
 

@@ -14,7 +14,8 @@ namespace pf {
 
 class StartWithoutTarget {
  public:
-  bool layout(Arena& arena);
+  /// lens_rows: of a lens that a start adjusts with its depths; 0: it is exact.
+  bool layout(Arena& arena, int lens_rows = 0);
   /// No start is under way.
   void init();
   /// Begins a start.
@@ -25,6 +26,8 @@ class StartWithoutTarget {
 
   /// Begins the record with this frame. Its camera is the record's frame of reference.
   void begin_record(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns);
+  /// The lens is as uncertain as the prior says, and is adjusted with the depths of this record.
+  void free_lens(const Camera& calibration, const LensPrior& prior) { bundle_.free_lens(calibration, prior); }
   /// Adds a feature of the first frame, by its ray there.
   void add_feature(std::uint32_t id, const Vec3& ray_C);
   /// Adds a later frame with its estimated pose in W. Its pixels follow, corrected to the frame's time.

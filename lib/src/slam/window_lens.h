@@ -28,8 +28,4 @@ class WindowLens {
   Scalar covariance_[kMaxEntries] = {};
 };
 
-/// Inverse of a prior's covariance, rows x rows. inflation: how many times too much an adjustment believes its pixels; it must believe the
-/// prior as many times too much.
-void lens_information(const LensPrior& prior, Scalar inflation, Scalar* information);
-
 }  // namespace pf

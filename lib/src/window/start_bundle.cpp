@@ -57,18 +57,35 @@ void StartRecord::add_pixel(int frame, int feature, const Vec2& pixel) {
   p.seen = true;
 }
 
-bool StartBundle::layout(Arena& arena) {
+bool StartBundle::layout(Arena& arena, int lens_rows) {
   static_assert(1 + kMaxCameras <= BundleAdjuster::kMaxPoses);
   rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
   best_rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
   last_rho_ = arena.take<Scalar>(StartRecord::kMaxFeatures);
-  return adjuster_.layout(arena, 1 + kMaxCameras, kMaxCameras, StartRecord::kMaxFeatures);
+  if (lens_rows > 0) lens_ = arena.take<Lens>(1);
+  return adjuster_.layout(arena, 1 + kMaxCameras, kMaxCameras, StartRecord::kMaxFeatures, 0, lens_rows);
 }
 
 void StartBundle::init() {
   for (int i = 0; i < StartRecord::kMaxFeatures; ++i) last_rho_[i] = Scalar(0);
   last_parallax_ = Scalar(0);
   random_ = kPoseSeed;
+  is_free_ = false;
+}
+
+void StartBundle::free_lens(const Camera& calibration, const LensPrior& prior) {
+  if (lens_ == nullptr) return;
+  is_free_ = true;
+  lens_->rows = prior.rows;
+  lens_->prior = lens_->camera = calibration;
+  lens_information(prior, kLensInflation, lens_->information);
+}
+
+/// The record's rays become those of the same pixels through another lens.
+void StartBundle::set_lens(const Camera& camera, StartRecord& record) {
+  lens_->camera = camera;
+  for (int i = 0; i < record.features(); ++i)
+    if (lens_->pixel[i].given) unproject(camera, lens_->pixel[i].pixel, &record.rays()[i]);
 }
 
 /// Parallax of a frame [px].
@@ -79,17 +96,38 @@ Scalar StartBundle::fit_rotation(const Camera& camera, const StartRecord& record
 
 /// Adjusts the poses of `frame` (pose_[1] and on) and all rho; returns the robust cost.
 Scalar StartBundle::adjust(const Camera& camera, const StartRecord& record, const int* frame, int cameras, int rounds,
-                           Scalar sigma_px) {
+                           Scalar sigma_px, const BundleLens* lens) {
   pose_[0] = {Quat::Identity(), Vec3::Zero(), false, nullptr};
   for (int c = 0; c < cameras; ++c) {
     pose_[1 + c].free = true;
     pose_[1 + c].pixel = record.pixels(frame[c]);
   }
   const AdjustOptions options = {sigma_px, kHuber, Scalar(1), kPriorSigma, kBehindWeight, kNoPixelPenalty, rounds};
-  return adjuster_.adjust(camera, options, {pose_, 1 + cameras, record.rays(), nullptr, rho_, record.features()});
+  Bundle bundle = {pose_, 1 + cameras, record.rays(), nullptr, rho_, record.features()};
+  bundle.lens = lens;
+  return adjuster_.adjust(camera, options, bundle);
 }
 
+/// Likewise of all cameras, and the lens with them. What a wrong lens does to depths would otherwise be left for the filter, which believes
+/// some of it: it cannot repeat what an adjustment has made of a record to the last digit.
+Scalar StartBundle::adjust_with_lens(StartRecord& record, const int* frame, int cameras, Scalar sigma_px) {
+  const BundleLens lens = {lens_->rows, lens_->information, lens_->prior, &lens_->camera, lens_->pixel, record.rays()};
+  return adjust(lens_->camera, record, frame, cameras, kRounds, sigma_px, &lens);
+}
+
+/// A solution that is not taken leaves the lens as it was.
 StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth) {
+  if (!is_free_) return solve_by(camera, record, sigma_px, median_depth);
+  const Camera before = lens_->camera;
+  for (int i = 0; i < record.features(); ++i)
+    lens_->pixel[i].given = project(before, record.ray(i), &lens_->pixel[i].pixel);
+  const StartOutcome outcome = solve_by(lens_->camera, record, sigma_px, median_depth);
+  if (outcome != StartOutcome::kSolved && outcome != StartOutcome::kSettled) set_lens(before, record);
+  return outcome;
+}
+
+/// camera: where the lens is adjusted, that which is.
+StartOutcome StartBundle::solve_by(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth) {
   const int last = record.frames() - 1;
   if (last < 0) return StartOutcome::kWait;
   int left = 0;
@@ -152,7 +190,8 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
     pose_[1 + c].p_W = best_pose.p_W * (static_cast<Scalar>(frame[c] + 1) / static_cast<Scalar>(last + 1));
     if (!locate(camera, record, frame[c], sigma_px, &pose_[1 + c])) return StartOutcome::kWait;
   }
-  const Scalar total = adjust(camera, record, frame, cameras, kRounds, sigma_px);
+  const Scalar total = is_free_ ? adjust_with_lens(record, frame, cameras, sigma_px)
+                                : adjust(camera, record, frame, cameras, kRounds, sigma_px);
   int pixels = 0;
   for (int c = 0; c < cameras; ++c)
     for (int i = 0; i < count; ++i) pixels += record.seen(frame[c], i) ? 1 : 0;
@@ -206,7 +245,8 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
   return parallax > kSettledParallax * sigma_px ? StartOutcome::kSettled : StartOutcome::kSolved;
 }
 
-void StartBundle::follow(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar depth, Scalar* rho) {
+void StartBundle::follow(const Camera& calibration, StartRecord& record, Scalar sigma_px, Scalar depth, Scalar* rho) {
+  const Camera& camera = is_free_ ? lens_->camera : calibration;
   const int last = record.frames() - 1;
   const int cameras = std::min(static_cast<int>(kMaxCameras), record.frames());
   int frame[kMaxCameras] = {};

@@ -42,6 +42,7 @@ class StartRecord {
   const Frame& frame(int k) const { return frame_[k]; }
   const Vec3& ray(int i) const { return ray_[i]; }
   const Vec3* rays() const { return ray_; }
+  Vec3* rays() { return ray_; }
   const BundlePixel* pixels(int k) const { return pixel_ + k * kMaxFeatures; }  ///< by feature
   bool seen(int k, int i) const { return pixels(k)[i].seen; }
   Vec2 pixel(int k, int i) const { return pixels(k)[i].pixel(); }
@@ -64,8 +65,13 @@ enum class StartOutcome {
 /// Poses of the record's frames and inverse depths of its features.
 class StartBundle {
  public:
-  bool layout(Arena& arena);
+  /// lens_rows: of the lens that a start may adjust with its depths; 0: it is exact.
+  bool layout(Arena& arena, int lens_rows = 0);
   void init();
+  /// The lens is uncertain, and is adjusted with all cameras of a solution; until the next init.
+  void free_lens(const Camera& calibration, const LensPrior& prior);
+  /// That of the last solution, and of the record's rays; null where it is exact.
+  const Camera* lens() const { return is_free_ ? &lens_->camera : nullptr; }
 
   /// On kSolved and kSettled the record's frames hold the poses (W is frame 0's camera), rho() the inverse depths and
   /// good() which features can be trusted. The first solution sets the unit of length so that the median depth is
@@ -83,9 +89,19 @@ class StartBundle {
  private:
   static constexpr int kMaxCameras = 8;  ///< of the adjustment
 
+  struct Lens {
+    LensRows rows;
+    Scalar information[kLensParameters * kLensParameters];  ///< of the prior
+    Camera prior, camera;
+    HostPixel pixel[StartRecord::kMaxFeatures];  ///< of frame 0
+  };
+
   Scalar fit_rotation(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const;
+  StartOutcome solve_by(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth);
   Scalar adjust(const Camera& camera, const StartRecord& record, const int* frame, int cameras, int rounds,
-                Scalar sigma_px);
+                Scalar sigma_px, const BundleLens* lens = nullptr);
+  Scalar adjust_with_lens(StartRecord& record, const int* frame, int cameras, Scalar sigma_px);
+  void set_lens(const Camera& camera, StartRecord& record);
   bool locate(const Camera& camera, const StartRecord& record, int frame, Scalar sigma_px, BundlePose* pose);
 
   BundleAdjuster adjuster_;
@@ -95,6 +111,8 @@ class StartBundle {
   Scalar* last_rho_ = nullptr;  ///< of the last solution, zero where it had none
   Scalar last_parallax_ = 0;    ///< [px]
   std::uint32_t random_ = 0;    ///< of the search for poses
+  Lens* lens_ = nullptr;        ///< null: no lens is ever adjusted
+  bool is_free_ = false;
 };
 
 }  // namespace pf

@@ -39,6 +39,7 @@ inline constexpr Scalar kHuber = Scalar(2);                ///< [standard deviat
 inline constexpr Scalar kFirstRotationScale = Scalar(20);  ///< residual that counts half at first [px]
 inline constexpr Scalar kMinGoodRho = Scalar(0.02);        ///< of a feature that is trusted, about a median of 1
 inline constexpr Scalar kMaxGoodResidual = Scalar(5);  ///< likewise, in every camera [standard deviations of a pixel]
+inline constexpr Scalar kLensInflation = Scalar(8);    ///< frames whose matches have about the same error
 inline constexpr int kGuessRounds = 25;                ///< of the adjustment from each direction of motion
 inline constexpr int kRounds = 30;                     ///< of the adjustment of all cameras
 inline constexpr int kPoseRounds = 8;                  ///< of a rotation or a pose alone
@@ -99,16 +100,17 @@ inline constexpr Scalar kMinKeyframeTurn = Scalar(0.04);    ///< likewise [rad]
 
 /// The adjustment of keyframes.
 namespace window_adjustment {
-inline constexpr int kMinPoints = 8;               ///< that an adjustment needs
-inline constexpr int kMinShared = 8;               ///< points that a fixed keyframe shares with the free ones
-inline constexpr int kRounds = 10;                 ///< of Levenberg-Marquardt
-inline constexpr int kFirstRounds = 30;            ///< likewise, while the window holds all keyframes
-inline constexpr int kMinPlanePoints = 4;          ///< of a plane that is adjusted
-inline constexpr int kMinScaleKeyframes = 2;       ///< held fixed, so that distances from planes do not shrink the map
-inline constexpr int kHeldKeyframes = 3;           ///< the oldest, where all others are adjusted
-inline constexpr int kMinTargetPoints = 4;         ///< of the target, that hold a keyframe
-inline constexpr Scalar kHuber = Scalar(2);        ///< residuals beyond count linearly [standard deviations]
-inline constexpr Scalar kMinSigma = Scalar(0.25);  ///< [px] of a pixel, at least
+inline constexpr int kMinPoints = 8;          ///< that an adjustment needs
+inline constexpr int kMinShared = 8;          ///< points that a fixed keyframe shares with the free ones
+inline constexpr int kRounds = 10;            ///< of Levenberg-Marquardt
+inline constexpr int kFirstRounds = 30;       ///< likewise, while the window holds all keyframes
+inline constexpr int kMinPlanePoints = 4;     ///< of a plane that is adjusted
+inline constexpr int kMinScaleKeyframes = 2;  ///< held fixed, so that distances from planes do not shrink the map
+inline constexpr int kHeldKeyframes = 3;      ///< the oldest, where all others are adjusted
+inline constexpr Scalar kHeldDistance = Scalar(1e-3);   ///< of a distance that holds the scale: its sigma
+inline constexpr int kMinTargetPoints = 4;              ///< of the target, that hold a keyframe
+inline constexpr Scalar kHuber = Scalar(2);             ///< residuals beyond count linearly [standard deviations]
+inline constexpr Scalar kMinSigma = Scalar(0.25);       ///< [px] of a pixel, at least
 inline constexpr Scalar kOutlierSigmas = Scalar(5);     ///< of a pixel that is forgotten afterwards
 inline constexpr Scalar kPriorSigma = Scalar(10);       ///< of the prior on inverse depths, in their mean
 inline constexpr Scalar kBehindWeight = Scalar(1e4);    ///< of the prior in addition, where a point is behind its host
