@@ -33,25 +33,13 @@ bool WindowAdjustment::layout(Arena& arena) {
                           lens_rows);
 }
 
-/// Whether two keyframes at least see points of the target, which then holds the map where it is.
-bool WindowAdjustment::is_held_by_target() const {
-  int keyframes = 0;
-  for (int k = 0; k < map_.keyframes.capacity(); ++k) {
-    if (!map_.keyframes.used(k)) continue;
-    int seen = 0;
-    for (int i = 0; i < map_.capacity(); ++i)
-      seen += map_.used(i) && map_.feature(i).is_target && map_.keyframes.pixels(k)[i].seen ? 1 : 0;
-    keyframes += seen >= kMinTargetPoints ? 1 : 0;
-  }
-  return keyframes > 1;
-}
-
-/// Of few keyframes, all but one, unless the target holds them; of more, all but the oldest three, the oldest first: what keyframes that
-/// are held fixed have taken in of errors, those of a wrong lens too, is taken as exact. While a record goes on, the newest. Returns how
-/// many.
+/// Of few keyframes, all but one, unless the target holds them; of more, all but the oldest three, the oldest first. Where the lens is
+/// uncertain, all but one always: keyframes that are held fixed say as if they knew it what lens they have been adjusted with. While a
+/// record goes on, the newest. Returns how many.
 int WindowAdjustment::choose_free(bool settled) {
   const KeyframeTable& keyframes = map_.keyframes;
-  const int others = is_held_by_target() ? 0 : settled && keyframes.count() >= 2 * kHeldKeyframes ? kHeldKeyframes : 1;
+  const bool three = settled && settings_.lens.rows.count == 0 && keyframes.count() >= 2 * kHeldKeyframes;
+  const int others = is_held_by_target() ? 0 : three ? kHeldKeyframes : 1;
   const int free =
       std::min(settled ? max_free_ : static_cast<int>(settings_.window_keyframes), keyframes.count() - others);
   for (int c = 0; c < free; ++c) {
@@ -125,31 +113,6 @@ void WindowAdjustment::fill(int seen_in, int points, int* poses) {
   }
 }
 
-/// The target's points have a fixed pose as host, and their inverse depths are known.
-///
-///   sigma_rho = sigma_m rho²
-void WindowAdjustment::add_target(int points, int* poses) {
-  const int host = *poses;
-  for (int p = 0; p < points; ++p) {
-    const Feature& f = map_.feature(row_[p]);
-    if (!f.is_target) continue;
-    const Vec3 at = target_view_.q_WC.conjugate() * (target_.point_W[f.external_id] - target_view_.c_W);
-    ray_[p] = at.normalized();
-    host_[p] = host;
-    rho_[p] = 1 / at.norm();
-    prior_[p] = {rho_[p], std::max(target_.sigma_m * rho_[p], kTargetSigma) * rho_[p]};
-    pose_[host] = {target_view_.q_WC, target_view_.c_W, false, nullptr};
-    keyframe_[host] = -1;
-    *poses = host + 1;
-  }
-}
-
-/// The keyframe that hosts the target's points has moved; they have not.
-void WindowAdjustment::put_target_back() {
-  for (int i = 0; i < map_.capacity(); ++i)
-    if (map_.used(i) && map_.feature(i).is_target) map_.place(i, target_.point_W[map_.feature(i).external_id]);
-}
-
 bool WindowAdjustment::run(bool settled) {
   const bool with_lens = settled && map_.lens().rows().count > 0;
   const int free = choose_free(settled);
@@ -157,13 +120,15 @@ bool WindowAdjustment::run(bool settled) {
   const int seen = choose_points(free);
   if (seen < kMinPoints) return false;
   const int seen_in = choose_fixed(free, seen, settled);
-  const bool has_scale = seen_in - free >= kMinScaleKeyframes || is_held_by_target();
-  const int points = has_scale ? add_plane_points(seen) : seen;
   int poses = seen_in;
   for (int c = 0; c < seen_in; ++c) {
     const Keyframe& k = map_.keyframes[keyframe_[c]];
     pose_[c] = {k.q_WC, k.p_W, c < free, pixel_ + c * settings_.max_features};
   }
+  BundleDistance held;
+  const bool holds_distance = settled && hold_distance(free, seen_in, &held);
+  const bool has_scale = holds_distance || seen_in - free >= kMinScaleKeyframes || is_held_by_target();
+  const int points = has_scale ? add_plane_points(seen) : seen;
   fill(seen_in, points, &poses);
 
   // A weak prior that leaves the scale where it is: it holds what nothing else does.
@@ -201,7 +166,8 @@ bool WindowAdjustment::run(bool settled) {
                          plane_,
                          planes,
                          planes > 0 ? plane_of_ : nullptr,
-                         with_lens ? &lens : nullptr};
+                         with_lens ? &lens : nullptr,
+                         holds_distance ? &held : nullptr};
   adjuster_.adjust(map_.camera(), options, bundle);
   // The last free pose is the newest keyframe's.
   Mat6 P;

@@ -49,6 +49,7 @@ class WindowAdjustment {
   bool is_held_by_target() const;
   int choose_free(bool settled);
   int choose_points(int free);
+  bool hold_distance(int free, int seen_in, BundleDistance* held) const;
   int choose_fixed(int free, int points, bool settled);
   int pose_of(int keyframe, int* poses);
   void fill(int seen_in, int points, int* poses);

@@ -421,6 +421,21 @@ Scalar BundleAdjuster::add_lens_prior(const Bundle& bundle, bool cost_alone) {
   return sum;
 }
 
+Scalar BundleAdjuster::add_held_distance(const Bundle& bundle, bool cost_alone) {
+  if (bundle.held == nullptr) return Scalar(0);
+  const BundleDistance& held = *bundle.held;
+  const Vec3 apart = bundle.pose[held.pose].p_W - held.from_W;
+  const Scalar distance = apart.norm(), e = (distance - held.distance) / held.sigma;
+  if (cost_alone || !(distance > Scalar(0))) return e * e;
+  const Vec3 J = apart / (distance * held.sigma);
+  const int column = pose_column(free_[held.pose]) + 3;
+  for (int a = 0; a < 3; ++a) {
+    for (int k = 0; k <= a; ++k) H_[(column + a) * ld_ + column + k] += J(a) * J(k);
+    b_[column + a] -= J(a) * e;
+  }
+  return e * e;
+}
+
 /// Cost and, unless kCostAlone, derivatives of what is measured and known of a point.
 template <bool kCostAlone>
 BundleAdjuster::Sums BundleAdjuster::add_point(const Camera& camera, const AdjustOptions& options, const Bundle& bundle,
@@ -475,7 +490,7 @@ void BundleAdjuster::set_rotations(const Bundle& bundle) {
 
 Scalar BundleAdjuster::cost(const Camera& camera, const AdjustOptions& options, const Bundle& bundle) {
   set_rotations(bundle);
-  Scalar sum = add_lens_prior(bundle, true);
+  Scalar sum = add_lens_prior(bundle, true) + add_held_distance(bundle, true);
   for (int i = 0; i < bundle.points; ++i) sum += add_point<true>(camera, options, bundle, i).cost;
   return sum;
 }
@@ -489,7 +504,7 @@ Scalar BundleAdjuster::linearise(const Camera& camera, const AdjustOptions& opti
     std::fill(H_ + a * ld_, H_ + a * ld_ + columns_, Scalar(0));
     b_[a] = Scalar(0);
   }
-  Scalar sum = add_lens_prior(bundle, false);
+  Scalar sum = add_lens_prior(bundle, false) + add_held_distance(bundle, false);
   for (int i = 0; i < bundle.points; ++i) {
     std::fill(W_ + i * w_ld_, W_ + i * w_ld_ + plane_part_ + columns_ - plane_columns_, Scalar(0));
     const Sums sums = add_point<false>(camera, options, bundle, i);

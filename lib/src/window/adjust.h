@@ -61,8 +61,17 @@ struct BundleLens {
   Vec3* ray;                        ///< the bundle's; becomes the unit ray of the host's pixel where one is given
 };
 
-/// What is adjusted; a view of the caller's arrays. Something must hold position, rotation and scale: fixed poses, or
-/// the prior on the inverse depths.
+/// The distance of a free pose from a place. It holds the scale where no two fixed poses do; pixels are blind to it.
+///
+///   e = (|p - from| - distance) / sigma,   de/dp = uᵀ / sigma,  u = (p - from) / |p - from|
+struct BundleDistance {
+  int pose;
+  Vec3 from_W;
+  Scalar distance, sigma;
+};
+
+/// What is adjusted; a view of the caller's arrays. Something must hold position, rotation and scale: fixed poses, a
+/// distance, or the prior on the inverse depths.
 struct Bundle {
   BundlePose* pose;
   int poses;
@@ -76,6 +85,7 @@ struct Bundle {
   int planes = 0;
   const int* plane_of = nullptr;     ///< plane of each point, -1 where it has none; null: of no point
   const BundleLens* lens = nullptr;  ///< null: the lens is exact
+  const BundleDistance* held = nullptr;
 };
 
 struct AdjustOptions {
@@ -130,7 +140,7 @@ Scalar huber_cost(Scalar r2, Scalar huber, Scalar* weight);
 ///
 /// The cost is, in squared standard deviations, with Huber's function h,
 ///
-///   sum h(|z - pi|² / sigma²) + sum h(e² / roughness²) + sum ((rho - mean) / sigma_rho)² + (c - prior)ᵀ Λ (c - prior)
+///   sum h(|z - pi|² / sigma²) + sum h(e² / roughness²) + sum ((rho - mean) / sigma_rho)² + (c - prior)ᵀ Λ (c - prior) + e_held²
 ///
 /// c are the parameters of the lens that are adjusted. A pixel outside the camera's domain, a pixel whose bearing is, and a point on a
 /// plane that is nearer to infinity than tuning says, cost no_pixel_penalty and have no derivative.
@@ -201,6 +211,7 @@ class BundleAdjuster {
   void add_plane(const AdjustOptions& options, const Bundle& bundle, int point, Sums* sums);
   bool set_ray(const Bundle& bundle, int point, RayByLens* J_ray_W) const;
   Scalar add_lens_prior(const Bundle& bundle, bool cost_alone);
+  Scalar add_held_distance(const Bundle& bundle, bool cost_alone);
   void eliminate(int point, const Sums& sums);
   bool solve(Scalar damping);
   bool take_step(const Bundle& bundle);
