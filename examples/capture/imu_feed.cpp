@@ -116,7 +116,6 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
   } else if (!options.imu_noise.empty()) {
     char message[PF_SEQUENCE_MESSAGE] = "";
     if (imu_ == nullptr) {
-      code = kExitUsage;
       error = "--imu-noise: there are no inertial samples beside these frames; add --imu";
     } else if (pf_read_imu_noise(options.imu_noise.c_str(), &model_, message) != 0) {
       error = std::string("--imu-noise ") + message;
@@ -129,6 +128,7 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
       }
     }
     inertial_ = error.empty();
+    code = inertial_ ? code : kExitUsage;
   } else if (imu_ != nullptr) {
     notices_.add(
         imu_->name() +

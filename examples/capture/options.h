@@ -13,7 +13,7 @@ namespace pf::capture {
 constexpr int kExitDone = 0;
 constexpr int kExitRun =
     1;  ///< the run could not begin, ended early, tracked nothing, or was lost at the end or most of the time
-constexpr int kExitUsage = 2;  ///< the command line is wrong
+constexpr int kExitUsage = 2;  ///< the command line is wrong, or a file that it names beside the frames
 
 /// What the command line asks for. Negative numbers mean that the library's default is kept.
 struct Options {

@@ -441,7 +441,7 @@ int run(const Options& options) {
   std::string error;
   const std::unique_ptr<Source> source = open_source(options, error);
   if (source == nullptr) {
-    return fail(error);
+    return fail(error, is_calibration_wrong(options) ? kExitUsage : kExitRun);
   }
   return Run(options, *source).go();
 }

@@ -76,6 +76,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   if (!options.points) config_.map.features_in_view = 0;
   config_.capacity.max_patches = options.patches >= 0 ? options.patches : options.points ? 0 : kPatchesAlone;
   if (!plan_.open(options.walls, error)) {
+    code = kExitUsage;
     return false;
   }
   if (options.max_planes < 0) {  // room for all walls, and for as many found planes as without
@@ -113,7 +114,6 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     has_target_ = pf_read_target(options.start.c_str() + 7, &target_, message) == 0;
   } else if (options.start.rfind("rectangle:", 0) == 0) {
     has_target_ = pf_parse_rectangle(options.start.c_str() + 10, &target_, message) == 0;
-    code = has_target_ ? code : kExitUsage;
   } else if (options.start.rfind("pose:", 0) == 0) {
     has_pose_ = pf_read_first_pose(options.start.c_str() + 5, &pose_, message) == 0;
   } else if (options.start == "target") {
@@ -122,12 +122,14 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   }
   if (!has_target_ && !has_pose_ && options.start != "auto") {
     error = message;
+    code = kExitUsage;
     return false;
   }
   has_second_pose_ =
       !options.second_pose.empty() && pf_read_first_pose(options.second_pose.c_str(), &second_pose_, message) == 0;
   if (!options.second_pose.empty() && !has_second_pose_) {
     error = message;
+    code = kExitUsage;
     return false;
   }
   pf_status_t status = pf_memory_query(&config_, &memory_);

@@ -153,4 +153,19 @@ std::unique_ptr<Source> open_source(const Options& options, std::string& error) 
   return std::make_unique<LiveSource>(open_paced_camera(options, std::move(stored)), options, info);
 }
 
+bool is_calibration_wrong(const Options& options) {
+  std::string path = options.calibration;
+  if (path.empty()) {
+    path = options.source.substr(options.source.find(':') + 1) + "/calib.yaml";
+    std::error_code failed;
+    if (!std::filesystem::exists(path, failed)) {
+      return false;
+    }
+  }
+  pf_camera_t camera;
+  double rate_hz = 0.0;
+  char message[PF_SEQUENCE_MESSAGE];
+  return pf_read_calibration(path.c_str(), &camera, &rate_hz, message) != 0;
+}
+
 }  // namespace pf::capture
