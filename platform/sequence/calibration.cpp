@@ -235,7 +235,8 @@ void read_plain(const Fields& fields, pf_camera_t& camera) {
   camera.width = fields.integer("width");
   camera.height = fields.integer("height");
   set_intrinsics(camera, fields.number("fx"), fields.number("fy"), fields.number("cx"), fields.number("cy"));
-  const std::string name = fields.text("distortion_model");
+  const std::string name =
+      fields.has("distortion") ? fields.text("distortion_model") : fields.text_or("distortion_model", "none");
   const std::vector<double> coefficients =
       fields.has("distortion") || name != "none" ? fields.numbers("distortion", 14) : std::vector<double>();
   set_distortion(fields, "distortion_model", "distortion", name, coefficients, camera);

@@ -235,6 +235,12 @@ static void test_plain_should_name_the_field_when_one_is_missing() {
   }
 }
 
+static void test_plain_should_be_without_distortion_when_it_names_none() {
+  const pf_camera_t c = read(with(kPlainCalibration, "distortion_model: none\ndistortion: []\n", ""));
+  TEST_ASSERT_EQUAL_INT(PF_CAMERA_PINHOLE, c.model);
+  TEST_ASSERT_EQUAL_DOUBLE(0.05, c.sigma_distortion[0]);
+}
+
 static void test_sigmas_should_be_read_in_every_form_and_be_typical_where_the_file_says_nothing() {
   const pf_camera_t typical = read(kPlainCalibration);
   TEST_ASSERT_EQUAL_INT(PF_CAMERA_EXACT, typical.estimate);
@@ -430,6 +436,7 @@ int main() {
   RUN_TEST(test_readout_should_be_read_in_every_form);
   RUN_TEST(test_timestamps_should_be_read_in_every_form_and_are_real_where_nothing_is_said);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_missing);
+  RUN_TEST(test_plain_should_be_without_distortion_when_it_names_none);
   RUN_TEST(test_sigmas_should_be_read_in_every_form_and_be_typical_where_the_file_says_nothing);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_absurd);
   RUN_TEST(test_other_forms_should_name_the_field_when_it_is_bad);

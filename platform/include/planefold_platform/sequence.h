@@ -72,6 +72,7 @@ const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t in
  * (Camera.), KITTI calib.txt (P0), or the plain form
  *   camera_model: pinhole / width / height / fx / fy / cx / cy /
  *   distortion_model: none | radtan | equidistant | harris_division / distortion: [..] / rate_hz (optional)
+ * (without distortion and its model there is none).
  * KITTI's file does not say the size of the images, and those of ORB-SLAM not always: such a file is read by pf_open_sequence only,
  * which takes the size of the first image.
  * Each may have readout_s, of a rolling shutter [s], timestamps: real | nominal (pf_timestamps_t; real), and say how well its numbers
