@@ -77,29 +77,43 @@ bool PlaneKeeper::is_certain(int entry, Mat3* covariance) const {
          largest_eigenvalue(*covariance) < limit;
 }
 
-/// Whether the pixels of a feature would show by now that it is kTrialDepth nearer or farther than the plane on which it began.
-bool PlaneKeeper::is_told_apart(int entry) const {
+/// What this frame's pixel of a feature says of the plane on which it began, against a depth that is kTrialDepth smaller or larger:
+///
+///   z nearer to pi(p) than to either of pi(p_1 + (1 +- kTrialDepth) (p - p_1)),   p_1: the camera's place when it began
+///
+/// kOpen: there is no pixel, or the three are less than kTrialPixels apart.
+PlaneKeeper::TrialVerdict PlaneKeeper::judge_depth(int entry) const {
   const Vec3 p_W = filter_.point(map_.features[entry].slot), first_W = map_.first_view(entry).c_W;
   const CameraAt camera = camera_at(filter_.state(), Scalar(0));
   const auto pixel = [&](Scalar depth, Vec2* at) {
     const Vec3 moved_W = first_W + depth * (p_W - first_W);
     return project(filter_.lens(), Vec3(camera.q_WC.conjugate() * (moved_W - camera.p_W)), at);
   };
+  const Match* match = nullptr;
+  for (int t = 0; t < frame_.match_count() && match == nullptr; ++t)
+    if (frame_.match(t).feature == entry && frame_.match(t).status == MatchStatus::kInlier) match = &frame_.match(t);
   Vec2 here, nearer, farther;
-  if (!pixel(1, &here) || !pixel(1 - kTrialDepth, &nearer) || !pixel(1 + kTrialDepth, &farther)) return false;
-  const Scalar apart = std::min((nearer - here).squaredNorm(), (farther - here).squaredNorm());
-  return apart > kTrialPixels * kTrialPixels;
+  if (match == nullptr || !pixel(1, &here) || !pixel(1 - kTrialDepth, &nearer) || !pixel(1 + kTrialDepth, &farther))
+    return TrialVerdict::kOpen;
+  const Scalar apart2 = std::min((nearer - here).squaredNorm(), (farther - here).squaredNorm());
+  if (apart2 <= kTrialPixels * kTrialPixels) return TrialVerdict::kOpen;
+  const Scalar off2 = (match->measured - here).squaredNorm();
+  const bool elsewhere =
+      (match->measured - nearer).squaredNorm() < off2 || (match->measured - farther).squaredNorm() < off2;
+  return elsewhere ? TrialVerdict::kElsewhere : TrialVerdict::kThere;
 }
 
 /// Features that began on a plane: believes those that were found there kTrialMatches times and from where another depth would show; drops
-/// those that were found elsewhere kTrialRejections times in a row. Their pixels are then free for a feature of open depth.
+/// those that were found elsewhere kTrialRejections times in a row, or where another depth puts them. Their pixels are then free for a
+/// feature of open depth.
 void PlaneKeeper::judge_trials() {
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!map_.features.used(i) || !map_.features[i].on_trial) continue;
     Feature& f = map_.features[i];
-    if (f.rejections >= kTrialRejections) {
+    const TrialVerdict verdict = judge_depth(i);
+    if (f.rejections >= kTrialRejections || verdict == TrialVerdict::kElsewhere) {
       features_.drop(&i, 1);
-    } else if (f.failures == 0 && f.observations > kTrialMatches && is_told_apart(i)) {
+    } else if (f.failures == 0 && f.observations > kTrialMatches && verdict == TrialVerdict::kThere) {
       f.on_trial = false;
       const int entry = map_.planes.entry_at(filter_.state().plane_of(f.slot));
       if (entry >= 0) support(entry, f.slot);

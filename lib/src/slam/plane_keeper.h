@@ -47,6 +47,8 @@ class PlaneKeeper {
   void maintain();
 
  private:
+  enum class TrialVerdict { kOpen, kThere, kElsewhere };
+
   /// What is kept between frames.
   struct Data {
     std::uint32_t random = 1;
@@ -54,7 +56,7 @@ class PlaneKeeper {
 
   // plane_keeper.cpp: points of planes
   void judge_trials();
-  bool is_told_apart(int entry) const;
+  TrialVerdict judge_depth(int entry) const;
   void unfold_outliers();
   void inflate(int plane_slot, int children);
   Vec3 doubt() const;

@@ -1,0 +1,125 @@
+// Features that began on a plane because their corner lies in its outline: what makes them believed, and what makes them go.
+#include "api/context.h"
+#include "slam/plane_keeper.h"
+#include "support/filter_cases.h"
+#include "support/test_cameras.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr Scalar kDepth = 2;  // of the plane
+
+/// A camera before a plane, and a feature that began on it.
+struct Bench {
+  Settings settings;
+  TestFilter filter{true};
+  Map map;
+  Frame frame;
+  FeatureKeeper features{settings, *filter, map, frame};
+  PlaneKeeper planes{settings, *filter, map, frame, features};
+  TestArena arena;
+  int entry = -1;
+  Vec3 ray_W = Vec3(Scalar(0.1), Scalar(-0.05), 1);
+
+  Bench() {
+    pf_config_t config;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
+    config.camera = {PF_CAMERA_PINHOLE,  640, 480, 525, 525, 320, 240, {0}, 0, PF_CAMERA_EXACT,
+                     PF_TIMESTAMPS_REAL, 0,   0,   0,   {0}};
+    TEST_ASSERT_TRUE(settings_from(config, &settings, nullptr) == Status::kOk);
+    TEST_ASSERT_TRUE(map.layout(*arena, 40, 4));
+    TEST_ASSERT_TRUE(frame.layout(*arena, 80));
+    TEST_ASSERT_TRUE(features.layout(*arena, 40));
+    TEST_ASSERT_TRUE(planes.layout(*arena, 40));
+    map.init();
+    frame.init();
+    planes.init();
+    filter->set_lens(settings.camera, LensPrior());
+    filter->set_mean(Body());
+    const int plane = add_plane();
+    Vec2 pixel;
+    TEST_ASSERT_TRUE(project(settings.camera, ray_W, &pixel));
+    entry = features.add_on_plane(plane, pixel, Mat2::Identity() * Scalar(0.1));
+    TEST_ASSERT_TRUE(entry >= 0);
+    TEST_ASSERT_TRUE(map.features[entry].on_trial);
+    map.first_view(entry) = {Quat::Identity(), Vec3::Zero()};
+  }
+
+  int add_plane() {
+    PlanePrior wall;
+    wall.frame.o_W = Vec3(0, 0, kDepth);
+    wall.frame.R_WP << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+    wall.covariance = Mat3::Identity() * Scalar(1e-6);
+    const Vec2 corners[4] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    wall.outline.count = 4;
+    for (int c = 0; c < 4; ++c) wall.outline.uv[c] = corners[c];
+    std::uint32_t id = 0;
+    TEST_ASSERT_TRUE(planes.add_wall(wall, 0, false, 0, &id) == Status::kOk);
+    for (int i = 0; i < map.planes.capacity(); ++i)
+      if (map.planes.used(i)) return map.planes[i].slot;
+    return -1;
+  }
+
+  /// The camera is so far aside, and finds the feature where a point at this part of the plane's depth is seen.
+  void see(Scalar aside, Scalar depth) {
+    Body body;
+    body.p_W = Vec3(aside, 0, 0);
+    filter->set_mean(body);
+    frame.begin(33000000 * (frame.report.frames + 1));
+    Feature& f = map.features[entry];
+    ++f.observations;
+    ++f.attempts;
+    f.failures = f.rejections = 0;
+    Vec2 z;
+    TEST_ASSERT_TRUE(project(settings.camera, Vec3(depth * kDepth * ray_W - body.p_W), &z));
+    frame.add({entry, f.id, MatchStatus::kInlier, BlockKind::kPlanePoint, true, z, Mat2::Identity(), z, Scalar(1)});
+    planes.maintain();
+  }
+};
+
+void test_feature_should_be_believed_when_its_pixels_keep_to_the_plane() {
+  Bench bench;
+  for (int k = 1; k <= 15; ++k) bench.see(Scalar(0.02) * Scalar(k), 1);
+  TEST_ASSERT_TRUE(bench.map.features.used(bench.entry));
+  TEST_ASSERT_FALSE(bench.map.features[bench.entry].on_trial);
+}
+
+void test_feature_should_stay_on_trial_when_another_depth_would_not_show() {
+  Bench bench;
+  for (int k = 1; k <= 30; ++k) bench.see(Scalar(0.001) * Scalar(k), Scalar(0.92));
+  TEST_ASSERT_TRUE(bench.map.features.used(bench.entry));
+  TEST_ASSERT_TRUE(bench.map.features[bench.entry].on_trial);
+}
+
+void test_feature_should_go_when_its_pixels_say_that_it_is_nearer_or_farther() {
+  for (const Scalar depth : {Scalar(0.92), Scalar(0.96), Scalar(1.04), Scalar(1.2)}) {
+    Bench bench;
+    for (int k = 1; k <= 15 && bench.map.features.used(bench.entry); ++k) bench.see(Scalar(0.02) * Scalar(k), depth);
+    TEST_ASSERT_FALSE(bench.map.features.used(bench.entry));
+  }
+}
+
+/// A plane that is rough by a tenth of the depth that would show.
+void test_feature_should_be_believed_when_it_is_hardly_off_the_plane() {
+  for (const Scalar depth : {Scalar(0.995), Scalar(1.005)}) {
+    Bench bench;
+    for (int k = 1; k <= 15; ++k) bench.see(Scalar(0.02) * Scalar(k), depth);
+    TEST_ASSERT_TRUE(bench.map.features.used(bench.entry));
+    TEST_ASSERT_FALSE(bench.map.features[bench.entry].on_trial);
+  }
+}
+
+}  // namespace
+
+int main(void) {
+  UNITY_BEGIN();
+  RUN_TEST(test_feature_should_be_believed_when_its_pixels_keep_to_the_plane);
+  RUN_TEST(test_feature_should_stay_on_trial_when_another_depth_would_not_show);
+  RUN_TEST(test_feature_should_go_when_its_pixels_say_that_it_is_nearer_or_farther);
+  RUN_TEST(test_feature_should_be_believed_when_it_is_hardly_off_the_plane);
+  return UNITY_END();
+}
