@@ -198,6 +198,11 @@ int FeatureKeeper::plane_at(const Vec2& pixel) const {
     nearest = map_.planes[i].slot;
     range2 = to2;
   }
+  // Behind a wall nothing is seen of it.
+  Scalar to_wall = 0;
+  if (nearest >= 0 && first_wall(filter_, map_, camera.p_W, ray_W, &to_wall) >= 0 &&
+      to_wall * to_wall * ray_W.squaredNorm() < range2)
+    return -1;
   return nearest;
 }
 
