@@ -102,6 +102,7 @@ json summarise_case(const Runs& runs, const StreetSummary* summaries) {
   std::vector<double> end, share, sigmas;
   int lost = 0, lost_runs = 0, tracked = 0, walls = 0, doubted = 0;
   double plan_deg = 0, plan_m = 0, end_deg = 0, end_m = 0, nees = 0, patches = 0;
+  int on_fronts = 0, off_fronts = 0, on_found = 0, off_found = 0;
   for (const StreetSummary* r = summaries; r != summaries + runs.seeds; ++r) {
     end.push_back(r->end_m >= 0 ? r->end_m : INFINITY);
     share.push_back(end.back() / std::max(r->path_m, 1e-9));
@@ -117,6 +118,10 @@ json summarise_case(const Runs& runs, const StreetSummary* summaries) {
     end_m += r->wall_end_m;
     nees += r->wall_nees;
     patches += r->patches;
+    on_fronts += r->on_fronts;
+    off_fronts += r->off_fronts;
+    on_found += r->on_found;
+    off_found += r->off_found;
   }
   const double frames = static_cast<double>(runs.seeds) * runs.frames, seen = std::max(1, walls);
   out["rmse_m"] = of_seeds(rmse_of(runs));
@@ -126,6 +131,8 @@ json summarise_case(const Runs& runs, const StreetSummary* summaries) {
   out["lost"] = {{"frames", lost}, {"runs", lost_runs}};
   out["tracked_share"] = tracked / frames;
   out["patches"] = patches / frames;
+  out["patch_surfaces"] = {
+      {"on_fronts", on_fronts}, {"off_fronts", off_fronts}, {"on_found", on_found}, {"off_found", off_found}};
   out["walls"] = {{"count", walls},
                   {"doubted", doubted},
                   {"plan_angle_deg", plan_deg / seen},
@@ -151,6 +158,10 @@ void print_case(const char* name, const json& j) {
       "  %.1f %% tracked, %g frames lost in %g runs; pose NEES %.1f (6 dof), state %g, %.1f patches in a frame\n",
       100 * number("/tracked_share"), number("/lost/frames"), number("/lost/runs"), number("/nees_pose/mean"),
       number("/state_dim/median"), number("/patches"));
+  if (number("/patch_surfaces/on_fronts") + number("/patch_surfaces/on_found") > 0)
+    std::printf("  patches in every tenth frame: %g on fronts, %g of them off; %g on planes that were found, %g off\n",
+                number("/patch_surfaces/on_fronts"), number("/patch_surfaces/off_fronts"),
+                number("/patch_surfaces/on_found"), number("/patch_surfaces/off_found"));
   if (number("/walls/count") > 0)
     std::printf(
         "  fronts that were seen: %g, %.2f deg, %.3f m in the plan; %.2f deg, %.3f m at the end, NEES %.1f (3 dof); %g "

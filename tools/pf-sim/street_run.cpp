@@ -23,6 +23,9 @@ constexpr double kExactSigma = 1e-6;  // [rad], [m]
 constexpr double kSigmaSpeed = 0.1;   // of the first velocities [m/s], [rad/s]
 constexpr double kMinTurn = 0.3;      // of a front's prior sigma: it was seen when less is left
 constexpr std::size_t kMaxPlanes = 64;
+constexpr int kJudgeEvery = 10;     // frames
+constexpr double kOffFront = 0.05;  // [m]
+constexpr double kOffFound = 5;     // [deg]
 
 enum Stream : std::uint64_t { kPlanStream = 61, kStartStream };
 
@@ -116,6 +119,43 @@ class StreetRunner {
     for (std::size_t i = 0; i < count; ++i) summary.patches += patches[i].status == PF_MATCH_INLIER;
   }
 
+  /// Whether the patches are on what they are taken to be on. surface, depth: as pf_sim_depth has them.
+  void judge_patches(const pf_sim_t* sim, const pf_camera_t& camera, const Pose& truth, const std::vector<float>& depth,
+                     const std::vector<std::int32_t>& surface) {
+    pf_patch_t patches[32];
+    pf_plane_t planes[kMaxPlanes];
+    std::size_t count = 0, num_planes = 0;
+    if (pf_get_patches(context_.slam, patches, 32, &count) < PF_OK ||
+        pf_get_planes(context_.slam, planes, kMaxPlanes, &num_planes) < PF_OK)
+      return;
+    for (const pf_patch_t* patch = patches; patch != patches + std::min<std::size_t>(count, 32); ++patch) {
+      if (patch->status != PF_MATCH_INLIER) continue;
+      double px = 0, py = 0;
+      for (const auto& corner : patch->corners_px) px += corner[0] / 4, py += corner[1] / 4;
+      const int x = static_cast<int>(std::lround(px)), y = static_cast<int>(std::lround(py));
+      if (x < 0 || y < 0 || x >= camera.width || y >= camera.height) continue;
+      const std::size_t at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(x);
+      double ray[3];
+      const double pixel[2] = {static_cast<double>(x), static_cast<double>(y)};
+      if (depth[at] <= 0 || pf_camera_unproject(&camera, pixel, ray) != PF_OK) continue;
+      const Vec3 p =
+          truth.p_WC + truth.R_WC * (Vec3{ray[0], ray[1], ray[2]} * (static_cast<double>(depth[at]) / ray[2]));
+      if (std::find(ids_.begin(), ids_.end(), patch->plane) != ids_.end()) {
+        ++summary.on_fronts;
+        summary.off_fronts += std::fabs(p.z - pf::sim::kStreetFar) > kOffFront;
+        continue;
+      }
+      for (const pf_plane_t* plane = planes; plane != planes + std::min(num_planes, kMaxPlanes); ++plane) {
+        double n[3], d;
+        if (plane->id != patch->plane || pf_sim_surface(sim, surface[at], n, &d) != PF_OK) continue;
+        const Vec3 a{n[0], n[1], n[2]}, b{plane->normal_W[0], plane->normal_W[1], plane->normal_W[2]};
+        ++summary.on_found;
+        summary.off_found += std::atan2(a.cross(b).norm(), std::fabs(a.dot(b))) > kOffFound * kDegree;
+      }
+    }
+  }
+
   void judge_walls() {
     pf_plane_t planes[kMaxPlanes];
     std::size_t count = 0;
@@ -176,11 +216,21 @@ void run_street(const StreetOptions& options, const std::vector<StreetVariant>& 
   pf_image_t image;
   double path_m = 0;
   Pose before = truth_at(sim.get(), 0);
+  pf_camera_t camera;
+  pf_sim_camera(sim.get(), &camera);
+  const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  std::vector<float> depth(pixels);
+  std::vector<std::int32_t> surface(pixels);
   for (int frame = 0; frame < options.frames && pf_sim_next(sim.get(), &image, nullptr); ++frame) {
     const Pose truth = truth_at(sim.get(), frame / options.rate_hz);
     path_m += (truth.p_WC - before.p_WC).norm();
     before = truth;
     for (std::size_t v = 0; v < runners.size(); ++v) runners[v]->push(image, truth, rows[v][frame]);
+    if (frame % kJudgeEvery != 0) continue;
+    pf_pose_t pose;
+    pf_sim_pose_at(sim.get(), image.t_ns, &pose);
+    pf_sim_depth(sim.get(), &pose, depth.data(), surface.data());
+    for (const auto& runner : runners) runner->judge_patches(sim.get(), camera, truth, depth, surface);
   }
   for (std::size_t v = 0; v < runners.size(); ++v) {
     runners[v]->judge_walls();

@@ -32,6 +32,9 @@ struct StreetSummary {
   double plan_deg = 0, plan_m = 0, end_deg = 0, wall_end_m = 0,
          wall_nees = 0;  ///< sums over fronts that patches or points lay on
   double patches = 0;    ///< measured, over all frames
+  /// Patches that were measured in every tenth frame: on fronts, and on planes that were found; off: what the camera sees there is more
+  /// than 5 cm from the front, or slanted against that plane by more than 5 degrees.
+  std::int32_t on_fronts = 0, off_fronts = 0, on_found = 0, off_found = 0;
 };
 
 struct StreetVariant {
