@@ -133,7 +133,7 @@ void test_a_wall_alone_should_be_tracked_and_refined() {
   int inliers = 0;
   for (const pf_patch_t& p : patches) {
     inliers += p.status == PF_MATCH_INLIER;
-    TEST_ASSERT_TRUE(p.status >= 0 && p.status <= PF_MATCH_NEW && p.weight >= 0 && p.weight <= 1);
+    TEST_ASSERT_TRUE(p.status >= 0 && p.status <= PF_PATCH_WAITING && p.weight >= 0 && p.weight <= 1);
     if (p.status == PF_MATCH_INLIER) TEST_ASSERT_TRUE(p.covariance_px[0] > 0 && p.covariance_px[0] < 1 && p.frames > 0);
   }
   TEST_ASSERT_EQUAL_INT(report.inliers, 8 * inliers);

@@ -635,13 +635,16 @@ typedef struct pf_match {
  * capacity was smaller. */
 PF_API pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t capacity, size_t* count);
 
-/* A patch of a wall that is followed in images (capacity.max_patches, lib/docs/homography.md). */
+/* Beside the values of pf_match_status_t: the patch was found, but it is not known yet which plane it lies on, so it was not used. */
+enum { PF_PATCH_WAITING = 5 };
+
+/* A patch of a wall, or of a plane that was found, that is followed in images (capacity.max_patches, lib/docs/homography.md). */
 typedef struct pf_patch {
   uint32_t id;    /* never used twice */
-  uint32_t plane; /* id of the wall that it lies on */
-  int32_t status; /* pf_match_status_t; 0: out of view, or too slanted to be looked for */
+  uint32_t plane; /* id of the wall or plane that it lies on; 0: not known yet */
+  int32_t status; /* pf_match_status_t, or PF_PATCH_WAITING; 0: out of view, or too slanted to be looked for */
   int32_t frames; /* in which it was measured */
-  /* Where its corners are in the last frame, in the order of a circle: measured (inlier, outlier, new), or else predicted. */
+  /* Where its corners are in the last frame, in the order of a circle: measured (inlier, outlier, new, waiting), or else predicted. */
   double corners_px[4][2];
   double covariance_px[64]; /* 8x8 of corners that were measured (x, y of each), from the noise of this frame's image */
   double weight;            /* share of its pixels that fit in the last frame, 0 .. 1 */

@@ -40,6 +40,7 @@ struct PlaneEntry {
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 
   static constexpr int kOutlierShare = 4;  ///< one in so many
+  static constexpr int kUpheldWorth = 8;   ///< points that a patch counts as which was measured on it for long
   /// Whether patches say that a wall is not where the plan has it. Things before a wall that is there refuse some as well.
   bool is_refused_by_patches() const {
     constexpr int kMinRefused = 3, kShare = 4;

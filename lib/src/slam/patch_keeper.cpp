@@ -8,7 +8,8 @@
 #include "geometry/symmetric_eigen.h"
 #include "slam/tuning.h"
 
-/// Patches that there are: found, measured, dropped. Where they are expected is in patch_sight.cpp, new ones in patch_selection.cpp.
+/// Patches that there are: found, measured, dropped. Where they are expected is in patch_sight.cpp, which plane they lie on in
+/// patch_waiting.cpp, new ones in patch_selection.cpp.
 
 namespace pf {
 namespace {
@@ -36,6 +37,7 @@ void PatchKeeper::init() {
   store_.init();
   noise_.init(kCornerSigma);
   std::fill(in_vain_, in_vain_ + kMaxWalls, 0);
+  in_vain_beside_ = 0;
   generation_ = filter_.generation();
 }
 
@@ -58,11 +60,11 @@ int PatchKeeper::list_in_order(int* order) const {
   return count;
 }
 
-/// Entry of the wall that a patch lies on; -1: it is gone or doubted.
+/// Entry of the plane that a patch lies on, which may have been merged; -1: it is gone or doubted.
 int PatchKeeper::wall_of(const StoredPatch& patch) const {
-  for (int k = 0; k < map_.planes.capacity(); ++k)
-    if (map_.planes.used(k) && map_.planes[k].id == patch.plane)
-      return map_.planes[k].known && !map_.planes[k].doubted ? k : -1;
+  const std::uint32_t id = map_.planes.find(patch.plane);
+  for (int k = 0; k < map_.planes.capacity() && id != 0; ++k)
+    if (map_.planes.used(k) && map_.planes[k].id == id) return map_.planes[k].doubted ? -1 : k;
   return -1;
 }
 
@@ -71,7 +73,13 @@ void PatchKeeper::measure(const Pyramid& image) {
   follow_filter();
   int order[kMaxPatches];
   const int count = list_in_order(order);
-  for (int k = 0; k < count; ++k) measure_patch(image, &store_[order[k]]);
+  for (int k = 0; k < count; ++k) {
+    StoredPatch* patch = &store_[order[k]];
+    if (patch->wait.waits())
+      measure_waiting(image, patch);
+    else
+      measure_patch(image, patch);
+  }
   learn_noise();
 }
 
@@ -110,28 +118,30 @@ void PatchKeeper::measure_patch(const Pyramid& image, StoredPatch* patch) {
   const int plane = map_.planes[wall].slot;
   patch->status = PatchStatus::kMissed;
   frame_.report.attempts += kWorth;
-  if (patch->is_proven()) {
-    if (!filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_)) return;
-    if (!find_from_afar(image, *patch, &sight)) return;
-  }
+  PlaneAlignment found;
+  if (!filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_) ||
+      !find_from_afar(image, *patch, &sight) || !align(image, sight, patch, &found))
+    return;
+  frame_.report.matches += kWorth;
+  put_measured(*patch);
+  update(patch, wall);
+}
+
+/// False where it is not found. Else the patch has its corners, their covariance and its light.
+bool PatchKeeper::align(const Pyramid& image, const Sight& sight, StoredPatch* patch, PlaneAlignment* found) {
   PlaneStart start;
   start.H_CK = sight.H_CK;
   start.gain = patch->gain;
   start.offset = patch->offset;
   start.slack_px = kWarpSlack;
-  const PlaneAlignment found = aligner_.align(image, filter_.lens(), patch->pixels, start, HomographyWarp());
-  patch->weight = found.weight;
-  if (!found.is_aligned()) return;
-  frame_.report.matches += kWorth;
-  patch->gain = found.gain;
-  patch->offset = found.offset;
-  std::copy(found.corner, found.corner + 4, patch->corner);
-  patch->covariance = found.covariance;
-  if (!patch->is_proven() && !(begin_block(patch, found.reference_covariance) &&
-                               filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_)))
-    return;
-  update(patch, plane, found);
-  if (patch->status == PatchStatus::kInlier && patch->frames == kUpheldFrames) ++map_.planes[wall].upheld;
+  *found = aligner_.align(image, filter_.lens(), patch->pixels, start, HomographyWarp());
+  patch->weight = found->weight;
+  if (!found->is_aligned()) return false;
+  patch->gain = found->gain;
+  patch->offset = found->offset;
+  std::copy(found->corner, found->corner + 4, patch->corner);
+  patch->covariance = found->covariance;
+  return true;
 }
 
 /// Where the patch is expected within more pixels than the aligner reaches: looks for it. False where it is not there.
@@ -153,18 +163,29 @@ bool PatchKeeper::begin_block(StoredPatch* patch, const Mat8& covariance) {
   return true;
 }
 
-/// Takes the corners in where they pass the gate: all eight rows or none.
-void PatchKeeper::update(StoredPatch* patch, int plane, const PlaneAlignment& found) {
-  for (int k = 0; k < 4; ++k) z_.measured.segment<2>(2 * k) = found.corner[k];
-  z_.R_gate = noise_of(*patch);
+/// The corners that were found, and their noise, into the measurement.
+void PatchKeeper::put_measured(const StoredPatch& patch) {
+  for (int k = 0; k < 4; ++k) z_.measured.segment<2>(2 * k) = patch.corner[k];
+  z_.R_gate = noise_of(patch);
   z_.R_update = noise_.correlation_frames() * z_.R_gate;
-  patch->status = PatchStatus::kOutlier;
+}
+
+/// Chi-square of the corners, which are predicted on a plane (block): eight degrees of freedom, with the gate's noise. Negative where it
+/// cannot be told.
+Scalar PatchKeeper::misfit(const StoredPatch& patch, int plane) {
   const bool is_far = (z_.measured - z_.predicted).cwiseAbs().maxCoeff() > kLinearReach;
-  if (is_far && !linearise_near(*patch, plane)) return;
+  if (is_far && !linearise_near(patch, plane)) return Scalar(-1);
   SmallCholesky<8> cholesky;
-  if (!cholesky.factor(filter_.covariance_of<8>(z_.H) + z_.R_gate)) return;
+  if (!cholesky.factor(filter_.covariance_of<8>(z_.H) + z_.R_gate)) return Scalar(-1);
   const Vec8 r = z_.measured - z_.predicted;
-  if (!(r.dot(cholesky.solve<1>(r)) < kCornersGate)) return;
+  return r.dot(cholesky.solve<1>(r));
+}
+
+/// Takes the corners in where they pass the gate: all eight rows or none.
+void PatchKeeper::update(StoredPatch* patch, int wall) {
+  patch->status = PatchStatus::kOutlier;
+  const Scalar chi2 = misfit(*patch, map_.planes[wall].slot);
+  if (!(chi2 >= Scalar(0) && chi2 < kCornersGate)) return;
   const Measurement view = z_.view();
   filter_.begin_update(&view, 1);
   Scalar nis = 0;
@@ -177,6 +198,7 @@ void PatchKeeper::update(StoredPatch* patch, int plane, const PlaneAlignment& fo
   frame_.report.inliers += kWorth;
   frame_.report.nis += static_cast<double>(nis);
   frame_.report.nis_dof += z_.kHeight;
+  if (patch->frames == kUpheldFrames) ++map_.planes[wall].upheld;
 }
 
 int PatchKeeper::inlier_depths(Scalar* depth) const {
@@ -197,6 +219,7 @@ void PatchKeeper::maintain(const Pyramid& image, bool supported, bool may_begin)
   follow_filter();
   drop_failing(supported);
   if (may_begin) begin_patches(image);
+  q_last_ = filter_.state().body.q_WC;
 }
 
 /// Its reference camera goes with the last patch that needs it.
@@ -209,15 +232,23 @@ void PatchKeeper::drop(int i) {
   store_.remove(i);
 }
 
+/// A plane that was found lives as long as its patches, however few points it has.
+void PatchKeeper::keep_plane(int entry) {
+  SmallCount& weak = map_.planes[entry].weak;
+  weak = std::min<int>(weak, tuning::plane_lifecycle::kMaxWeakFrames - 1);
+}
+
 void PatchKeeper::drop_failing(bool supported) {
   for (int i = 0; i < store_.capacity(); ++i) {
     if (!store_.used(i)) continue;
     StoredPatch& patch = store_[i];
     const int own = patch.is_proven() ? patch.block : patch.camera;
     const int wall = wall_of(patch);
-    bool fails = wall < 0 || !filter_.block_is_sound(own);
+    const bool waits = patch.wait.waits();
+    bool fails = (wall < 0 && !waits) || !filter_.block_is_sound(own);
+    if (wall >= 0 && !waits) keep_plane(wall);
     if (supported) {
-      const bool inlier = patch.status == PatchStatus::kInlier;
+      const bool inlier = patch.status == PatchStatus::kInlier || patch.status == PatchStatus::kWaiting;
       const auto count = [&](PatchStatus status, std::int16_t* in_a_row) {
         *in_a_row = static_cast<std::int16_t>(patch.status == status ? *in_a_row + 1 : inlier ? 0 : *in_a_row);
       };
@@ -225,7 +256,7 @@ void PatchKeeper::drop_failing(bool supported) {
       count(PatchStatus::kOutlier, &patch.rejections);
       const bool refused = patch.rejections > kMaxRejections;
       if (refused && wall >= 0) note_refused(patch, wall);
-      fails = fails || refused || patch.failures > (patch.is_proven() ? kMaxFailures : kMaxEarlyFailures);
+      fails = fails || refused || patch.failures > (waits ? kMaxEarlyFailures : kMaxFailures);
     }
     if (fails) drop(i);
   }

@@ -13,7 +13,8 @@
 #include "track/patch_search.h"
 #include "track/patch_store.h"
 
-/// Keeps the patches of walls: finds them in the image and updates the filter with them, begins new ones, and drops those that fail.
+/// Keeps the patches of walls: finds them in the image, tells which plane each lies on and updates the filter with it, begins new ones, and
+/// drops those that fail.
 /// Servant 2008, sections 2.3 and 2.4 (lib/docs/homography.md).
 
 namespace pf {
@@ -56,13 +57,35 @@ class PatchKeeper {
   int list_in_order(int* order) const;
   int wall_of(const StoredPatch& patch) const;
   void measure_patch(const Pyramid& image, StoredPatch* patch);
+  bool align(const Pyramid& image, const Sight& sight, StoredPatch* patch, PlaneAlignment* found);
   bool find_from_afar(const Pyramid& image, const StoredPatch& patch, Sight* sight);
   bool begin_block(StoredPatch* patch, const Mat8& covariance);
-  void update(StoredPatch* patch, int plane, const PlaneAlignment& found);
+  void put_measured(const StoredPatch& patch);
+  Scalar misfit(const StoredPatch& patch, int plane);
+  void update(StoredPatch* patch, int wall);
   Mat8 noise_of(const StoredPatch& patch) const;
   void learn_noise();
   void drop(int i);
+  void keep_plane(int entry);
   void drop_failing(bool supported);
+
+  // patch_waiting.cpp
+  void measure_waiting(const Pyramid& image, StoredPatch* patch);
+  bool expect_waiting(const StoredPatch& patch, Sight* sight) const;
+  bool may_lie_on(const StoredPatch& patch, int entry, Scalar* range) const;
+  int try_planes(StoredPatch* patch, bool counts);
+  bool has_parallax(const StoredPatch& patch, Scalar min_px) const;
+  bool is_seen_through(const StoredPatch& patch, int entry) const;
+  void join(StoredPatch* patch, int entry);
+  void refuse(StoredPatch* patch);
+  void give_up(StoredPatch* patch);
+
+  // patch_founding.cpp
+  bool fit_plane_to(const StoredPatch& patch, PlaneFit* fit, Scalar* range, Vec3* m) const;
+  void note_plane(StoredPatch* patch) const;
+  void found_or_wait(StoredPatch* patch);
+  bool found_plane(StoredPatch* patch);
+  void extend_plane(const StoredPatch& patch, int entry);
 
   // patch_sight.cpp
   bool expect(const StoredPatch& patch, int wall, Sight* sight) const;
@@ -101,6 +124,7 @@ class PatchKeeper {
   int list_squares(const Pyramid& image, int wall, int side, const Obstacles& obstacles, Square* square) const;
   bool is_on_wall(int wall, const Square& square, Scalar* cosine) const;
   bool is_free(const Square& square) const;
+  void begin_beside_walls(const Pyramid& image, int* camera);
   bool begin_at(const ImageView& image, int wall, const Square& square, int* camera);
   bool make_room(int rows, bool for_camera);
   bool drop_oldest_camera();
@@ -120,7 +144,9 @@ class PatchKeeper {
   std::uint32_t generation_ = 0;    ///< of the filter that the patches have blocks in
   Refusal refusals_[kMaxRefusals];  ///< the last ones
   int next_refusal_ = 0;
-  int in_vain_[kMaxWalls] = {};  ///< frame in which each plane's wall had no place for a patch that it wants
+  Quat q_last_ = Quat::Identity();  ///< q_WC of the last frame, where the corners were
+  int in_vain_[kMaxWalls] = {};     ///< frame in which each plane's wall had no place for a patch that it wants
+  int in_vain_beside_ = 0;          ///< likewise what no wall covers
 };
 
 }  // namespace pf

@@ -14,6 +14,8 @@ namespace {
 
 using namespace tuning::patch_selection;
 
+constexpr int kCameraRows = 6, kPlaneRows = 3;
+
 /// The weaker eigenvalue of the sum of g g^T over a square of a level, which says how well it can be aligned in the worse direction.
 Scalar texture(const ImageView& image, int left, int top, int side) {
   int xx = 0, xy = 0, yy = 0;
@@ -37,11 +39,10 @@ Scalar texture(const ImageView& image, int left, int top, int side) {
 int PatchKeeper::wanted_on(int wall, int* youngest) const {
   int good = 0, born = 0;
   for (int i = 0; i < store_.capacity(); ++i) {
-    if (!store_.used(i) || store_[i].plane != map_.planes[wall].id) continue;
+    if (!store_.used(i) || wall_of(store_[i]) != wall) continue;
     born = std::max(born, store_[i].born);
     Sight sight;
-    const bool seen = store_[i].status == PatchStatus::kInlier || store_[i].status == PatchStatus::kNew;
-    good += seen && expect(store_[i], wall, &sight) && sight.cosine > kLastingCosine;
+    good += store_[i].was_found() && expect(store_[i], wall, &sight) && sight.cosine > kLastingCosine;
   }
   *youngest = born;
   const int since = frame_.report.frames - born;
@@ -49,15 +50,17 @@ int PatchKeeper::wanted_on(int wall, int* youngest) const {
   return good < kOnWall && since >= kBetween ? 1 : 0;
 }
 
-/// Whether the wall is what is seen first in all of a square, and how slanted in its middle.
+/// Whether the wall (-1: no wall) is what is seen first in all of a square, and how slanted in its middle.
 bool PatchKeeper::is_on_wall(int wall, const Square& square, Scalar* cosine) const {
   const CameraAt camera = camera_at(filter_.state(), Scalar(0));
-  const Block& plane = filter_.state().block[map_.planes[wall].slot];
   const Scalar half = static_cast<Scalar>(square.side - 1) / 2;
   const Vec2 middle(static_cast<Scalar>(square.left) + half, static_cast<Scalar>(square.top) + half);
   Vec3 n_W;
   Scalar d_W;
-  plane_normal(filter_.state().frame_of(plane), plane.xyz(), &n_W, &d_W);
+  if (wall >= 0) {
+    const Block& plane = filter_.state().block[map_.planes[wall].slot];
+    plane_normal(filter_.state().frame_of(plane), plane.xyz(), &n_W, &d_W);
+  }
   const Scalar reach = half * (Scalar(1) + kMargin);
   constexpr int kPlaces = 5;
   const Scalar at[kPlaces][2] = {{0, 0}, {-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
@@ -68,6 +71,8 @@ bool PatchKeeper::is_on_wall(int wall, const Square& square, Scalar* cosine) con
     Scalar range = 0;
     if (first_wall(filter_, map_, camera.p_W, ray_W, &range) != wall) return false;
     if (k > 0) continue;
+    *cosine = Scalar(1);  // how slanted it is where there is no wall, nobody knows
+    if (wall < 0) continue;
     *cosine = std::abs(n_W.dot(ray_W)) / ray_W.norm();
     if (!(*cosine > kMinBirthCosine)) return false;
   }
@@ -135,10 +140,35 @@ void PatchKeeper::begin_patches(const Pyramid& image) {
     }
     in_vain_[wall] = wanted > 0 ? frame_.report.frames : 0;
   }
+  if (map_.planes.has_known()) begin_beside_walls(image, &camera);
+}
+
+/// One patch where the plan has no wall, which waits for the plane that it lies on. It takes nobody else's room.
+void PatchKeeper::begin_beside_walls(const Pyramid& image, int* camera) {
+  if (in_vain_beside_ > 0 && frame_.report.frames < in_vain_beside_ + kBetween) return;
+  int beside = 0, youngest = 0;
+  for (int i = 0; i < store_.capacity(); ++i) {
+    if (!store_.used(i)) continue;
+    const int entry = wall_of(store_[i]);
+    if (entry >= 0 && map_.planes[entry].known) continue;
+    beside += store_[i].was_found();
+    youngest = std::max(youngest, store_[i].born);
+  }
+  const bool has_room = store_.find_free() >= 0 && filter_.room() >= kCameraRows + z_.kHeight + kPlaneRows &&
+                        (*camera >= 0 || store_.cameras() < settings_.max_cameras);
+  if (!has_room || beside >= kOnWall || frame_.report.frames - youngest < kBetween) return;
+  in_vain_beside_ = frame_.report.frames;
+  Obstacles none;
+  const int side = settings_.patch_side_px;
+  for (int part = kSizes; part > kSmallest && side * part / kSizes >= kMinSide; --part) {
+    Square square[kMaxSquares];
+    const int count = list_squares(image, -1, side * part / kSizes, none, square);
+    for (int k = 0; k < count; ++k)
+      if (begin_at(image.level[0], -1, square[k], camera)) return;
+  }
 }
 
 bool PatchKeeper::begin_at(const ImageView& image, int wall, const Square& square, int* camera) {
-  constexpr int kCameraRows = 6;
   if (!make_room(z_.kHeight + (*camera < 0 ? kCameraRows : 0), *camera < 0)) return false;
   const int i = store_.find_free();
   if (i < 0 || !extract_plane_patch(image, square.left, square.top, square.side, &store_[i].pixels)) return false;
@@ -148,22 +178,26 @@ bool PatchKeeper::begin_at(const ImageView& image, int wall, const Square& squar
   for (ResidualTrace& trace : residuals_[i]) trace = ResidualTrace();
   *camera = patch.camera = slot;
   filter_.pin(slot);
-  patch.plane = map_.planes[wall].id;
+  patch.plane = wall < 0 ? 0 : map_.planes[wall].id;
   patch.born = frame_.report.frames;
   patch.last_seen_ns = frame_.report.t_ns;
   const Camera& lens = filter_.lens();
   if (lens.readout == Scalar(0) || !filter_.state().layout.has(BodyPart::kVelocity)) return true;
   // Rays of rows that were read out earlier or later go to where the camera at the frame's own time sees the same places.
-  const Block& plane = filter_.state().block[map_.planes[wall].slot];
   const CameraAt now = camera_at(filter_.state(), Scalar(0));
   for (int k = 0; k < 4; ++k) {
     const Vec2 pixel = patch.pixels.corner(k);
     const CameraAt then = camera_at(filter_.state(), row_time(lens, pixel.y()));
-    Vec3 ray_C, hit_W;
-    if (!unproject(lens, pixel, &ray_C) ||
-        !intersect_ray_plane(filter_.state().frame_of(plane), plane.xyz(), then.p_W, then.q_WC * ray_C, &hit_W))
-      continue;
-    project(lens, Vec3(now.q_WC.conjugate() * (hit_W - now.p_W)), &patch.reference_px[k]);
+    Vec3 ray_C, from_camera_W;
+    if (!unproject(lens, pixel, &ray_C)) continue;
+    from_camera_W = then.q_WC * ray_C;  // far away, where there is no wall
+    if (wall >= 0) {
+      const Block& plane = filter_.state().block[map_.planes[wall].slot];
+      Vec3 hit_W;
+      if (!intersect_ray_plane(filter_.state().frame_of(plane), plane.xyz(), then.p_W, from_camera_W, &hit_W)) continue;
+      from_camera_W = hit_W - now.p_W;
+    }
+    project(lens, Vec3(now.q_WC.conjugate() * from_camera_W), &patch.reference_px[k]);
   }
   return true;
 }
@@ -178,7 +212,7 @@ bool PatchKeeper::drop_oldest_camera() {
     bool in_view = false;
     for (int k = 0; k < store_.capacity(); ++k) {
       if (!store_.used(k) || store_[k].camera != store_[i].camera) continue;
-      in_view = in_view || store_[k].status == PatchStatus::kInlier || store_[k].status == PatchStatus::kNew;
+      in_view = in_view || store_[k].was_found();
       last_ns = std::max(last_ns, store_[k].last_seen_ns);
     }
     if (in_view || (oldest >= 0 && last_ns >= oldest_ns)) continue;

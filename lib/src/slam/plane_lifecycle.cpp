@@ -215,9 +215,10 @@ void PlaneKeeper::dissolve_weak() {
     const PlanePoints on = outline_plane(filter_, map_, i, nullptr);
     const int points = on.folded - on.on_trial;
     map_.planes[i].max_points = std::max<int>(map_.planes[i].max_points, points);
-    const bool proven = map_.planes[i].max_points > settings_.plane_min_points;
+    const int upheld = map_.planes[i].upheld;
+    const bool proven = map_.planes[i].max_points > settings_.plane_min_points || upheld > 0;
     map_.planes[i].weak = points < kMinPoints || !proven ? map_.planes[i].weak + 1 : 0;
-    const bool denied = map_.planes[i].outliers > points;
+    const bool denied = map_.planes[i].outliers > points + PlaneEntry::kUpheldWorth * upheld;
     if (!denied && map_.planes[i].weak <= kMaxWeakFrames) continue;
     if (denied || !proven) filter_.forget_through(map_.planes[i].slot, doubt());
     dissolve(i);

@@ -248,7 +248,7 @@ inline constexpr Scalar kLinearReach = Scalar(4);      ///< [px] of an innovatio
 inline constexpr Scalar kPoseSigma = Scalar(1);        ///< [px] of what is not the pose, where the pose is sought
 inline constexpr int kPoseSteps = 6;                   ///< of that search
 inline constexpr int kMaxFailures = 30;                ///< in a row, before a patch is dropped
-inline constexpr int kMaxEarlyFailures = 3;            ///< likewise of one that was never found
+inline constexpr int kMaxEarlyFailures = 3;            ///< likewise of one that waits for its plane
 inline constexpr int kMaxRejections = 4;               ///< in a row
 inline constexpr int kUpheldFrames = 30;               ///< that a patch was measured, for its wall to be upheld by it
 }  // namespace patch_keeper

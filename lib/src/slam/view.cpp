@@ -192,7 +192,8 @@ bool View::has_patch(int i) const { return loop_->patches()->patches().used(i); 
 
 PatchView View::patch(int i) const {
   const StoredPatch& p = loop_->patches()->patches()[i];
-  return {p.id, p.plane, static_cast<int>(p.status), p.frames, p.corner, &p.covariance, static_cast<Scalar>(p.weight)};
+  return {p.id,          p.wait.waits() ? 0 : p.plane, static_cast<int>(p.status), p.frames, p.corner,
+          &p.covariance, static_cast<Scalar>(p.weight)};
 }
 
 std::uint8_t TemplateView::grey(int x, int y) const {

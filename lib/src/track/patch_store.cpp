@@ -16,6 +16,8 @@ StoredPatch& PatchStore::begin(int i) {
   p.weight = 0;
   for (int k = 0; k < 4; ++k) p.reference_px[k] = p.corner[k] = p.pixels.corner(k);
   p.covariance.setZero();
+  p.wait.begin();
+  p.early_plane.setZero();
   return p;
 }
 

@@ -3,24 +3,26 @@
 #include <cstdint>
 
 #include "base/arena.h"
+#include "track/patch_wait.h"
 #include "vision/plane_patch.h"
 
 /// The patches on planes that are followed: pixels, and what is known of each beside its block in the filter. Rows hold no pointers.
 
 namespace pf {
 
-/// What became of a patch in the last frame. With the numbers of pf_match_status_t, and one for a patch that was not looked for.
-enum class PatchStatus : std::uint8_t { kUnseen = 0, kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4 };
+/// What became of a patch in the last frame. With the numbers of pf_match_status_t, one for a patch that was not looked for, and
+/// PF_PATCH_WAITING: found, and no measurement yet.
+enum class PatchStatus : std::uint8_t { kUnseen = 0, kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4, kWaiting = 5 };
 
 struct StoredPatch {
   using Mat8 = Eigen::Matrix<Scalar, 8, 8>;
 
-  std::uint32_t id = 0;         ///< never used twice; 0: this entry is free
-  std::uint32_t plane = 0;      ///< id of the plane that it lies on
-  int camera = -1;              ///< block of its reference camera
-  int block = -1;               ///< of what its reference's noise did to the corners; -1: it was not found again yet
-  int frames = 0;               ///< in which it was measured
-  int born = 0;                 ///< number of the frame in which it began
+  std::uint32_t id = 0;     ///< never used twice; 0: this entry is free
+  std::uint32_t plane = 0;  ///< id of the plane that it lies on; while it waits, of the wall that was seen there, or 0
+  int camera = -1;          ///< block of its reference camera
+  int block = -1;           ///< of what its reference's noise did to the corners; -1: it was not found again yet
+  int frames = 0;           ///< in which it was measured
+  int born = 0;             ///< number of the frame in which it began
   std::int16_t failures = 0;    ///< in a row: it should have been there and was not
   std::int16_t rejections = 0;  ///< in a row: it was found elsewhere
   PatchStatus status = PatchStatus::kUnseen;
@@ -30,9 +32,16 @@ struct StoredPatch {
   Vec2 reference_px[4];        ///< where its reference camera saw the corners at the frame's own time
   Vec2 corner[4];              ///< where they are: measured, or else predicted
   Mat8 covariance;             ///< of corners that were measured [px^2]
+  PatchWait wait;              ///< for the plane that it lies on
+  Vec3 early_plane =
+      Vec3::Zero();  ///< n / d in its reference camera, from an early view while it waits; zero: not known
   PlanePatch pixels;
 
   bool is_proven() const { return block >= 0; }
+  /// In the last frame.
+  bool was_found() const {
+    return status == PatchStatus::kInlier || status == PatchStatus::kNew || status == PatchStatus::kWaiting;
+  }
 };
 static_assert(sizeof(StoredPatch) <= 24 * 1024, "what the header says that a patch takes");
 

@@ -122,4 +122,10 @@ inline constexpr float kMinKept = 0.5f;                ///< of a mask's area tha
 inline constexpr float kMinArea = 30.0f;               ///< [px] of a mask
 }  // namespace template_match
 
+/// Which plane a patch lies on.
+namespace patch_wait {
+inline constexpr int kPersist = 3;     ///< frames in a row that say the same of a plane, before it counts
+inline constexpr int kMaxFrames = 30;  ///< before it joins without parallax; likewise of none, before one is founded
+}  // namespace patch_wait
+
 }  // namespace pf::tuning

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "base/scalar.h"
+
+/// Tuned numbers of patches that wait for the plane they lie on. Patches that are measured: slam/tuning.h
+
+namespace pf::tuning {
+
+/// Which plane a patch lies on.
+namespace patch_waiting {
+inline constexpr Scalar kMinParallax = 12;     ///< [px] of the corners: a tenth more depth moves them by one
+inline constexpr Scalar kReach = Scalar(0.5);  ///< beyond a found plane's outline, in square roots of its area
+inline constexpr int kFoundEvery = 20;         ///< frames, in the middle of which a patch may found a plane
+}  // namespace patch_waiting
+
+/// A plane that a patch founds.
+namespace patch_founding {
+inline constexpr Scalar kFoundingParallax = 40;      ///< [px] of the corners: errors of a lens are a few percent of it
+inline constexpr int kMaxFrames = 110;               ///< without a plane, after which a patch is dropped
+inline constexpr Scalar kPriorSlope = Scalar(0.5);   ///< sigma of its slopes before the patch is taken in
+inline constexpr Scalar kPriorRange = Scalar(0.3);   ///< likewise of its distance, of its range
+inline constexpr Scalar kMinLearnt = Scalar(0.25);   ///< of these sigmas that may be left behind it
+inline constexpr Scalar kMaxChange = Scalar(0.1);    ///< of n / d since it was noted
+inline constexpr Scalar kWidening = 100;             ///< times its covariance that the prior gets when it is taken back
+inline constexpr Scalar kMinCosine = Scalar(0.407);  ///< of the slant: 66 degrees
+}  // namespace patch_founding
+
+}  // namespace pf::tuning

@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <cmath>
+
+#include "filter/camera_at.h"
+#include "filter/model/reference_camera.h"
+#include "geometry/homography.h"
+#include "geometry/ray_plane.h"
+#include "slam/patch_keeper.h"
+#include "slam/patch_tuning.h"
+#include "slam/plane_walls.h"
+#include "slam/tuning.h"
+
+/// Which plane a patch lies on: until that is known it is followed, and is no measurement (lib/docs/walls.md). Servant 2008, section 2.5
+
+namespace pf {
+namespace {
+
+using namespace tuning::patch_waiting;
+using model::ReferenceCamera;
+
+}  // namespace
+
+/// Where a waiting patch is: as the plane has it that explains the last frame, or else where it was, rotated with the camera.
+bool PatchKeeper::expect_waiting(const StoredPatch& patch, Sight* sight) const {
+  const std::uint32_t likely = patch.is_proven() ? patch.wait.likely() : patch.plane;
+  for (int k = 0; k < map_.planes.capacity() && likely != 0; ++k)
+    if (map_.planes.used(k) && map_.planes[k].id == likely && !map_.planes[k].doubted && expect(patch, k, sight))
+      return true;
+  const Camera& lens = filter_.lens();
+  const Quat q_now_last = filter_.state().body.q_WC.conjugate() * q_last_;
+  Vec3 from[4], to[4], ray;
+  for (int k = 0; k < 4; ++k) {
+    if (!unproject(lens, patch.corner[k], &ray) || !project(lens, Vec3(q_now_last * ray), &sight->corner[k]) ||
+        !unproject(lens, patch.pixels.corner(k), &from[k]) || !unproject(lens, sight->corner[k], &to[k]))
+      return false;
+  }
+  sight->cosine = 0;
+  return homography_from_4(from, to, &sight->H_CK);
+}
+
+/// Whether a plane's outline holds the patch's middle as its reference camera saw it. What was found may be larger than what is known of
+/// it.
+bool PatchKeeper::may_lie_on(const StoredPatch& patch, int entry, Scalar* range) const {
+  const PlaneEntry& plane = map_.planes[entry];
+  if (!map_.planes.used(entry) || plane.doubted) return false;
+  const State& state = filter_.state();
+  const Block& camera = state.block[patch.camera];
+  Vec3 ray_K;
+  const Vec2 middle =
+      (patch.reference_px[0] + patch.reference_px[1] + patch.reference_px[2] + patch.reference_px[3]) / 4;
+  if (!unproject(filter_.lens(), middle, &ray_K)) return false;
+  const Vec3 p_W = ReferenceCamera::p_WC(camera), ray_W = ReferenceCamera::q_WC(camera) * ray_K;
+  if (plane.known) return meets_wall(filter_, map_, entry, p_W, ray_W, range);
+  const Block& block = state.block[plane.slot];
+  const PlaneFrame& frame = state.frame_of(block);
+  Vec3 hit_W;
+  if (plane.support.count < 3 || !(plane_distance(frame, block.xyz(), p_W) > Scalar(0)) ||
+      !intersect_ray_plane(frame, block.xyz(), p_W, ray_W, &hit_W))
+    return false;
+  *range = (hit_W - p_W).norm() / ray_W.norm();
+  return outline_contains(plane.support, plane_coordinates(frame, hit_W),
+                          kReach * std::sqrt(outline_area(plane.support)));
+}
+
+/// Tries the planes that the patch may lie on, at most kMaxTrials. counts: what this frame says is kept. Returns the nearest one that
+/// passes, or -1.
+int PatchKeeper::try_planes(StoredPatch* patch, bool counts) {
+  int nearest = -1, tried = 0;
+  Scalar least = 0;
+  for (int k = 0; k < map_.planes.capacity() && tried < PatchWait::kMaxTrials; ++k) {
+    Scalar range;
+    const int plane = map_.planes[k].slot;
+    if (!may_lie_on(*patch, k, &range) ||
+        !filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_))
+      continue;
+    ++tried;
+    put_measured(*patch);
+    const Scalar chi2 = misfit(*patch, plane);
+    if (!(chi2 >= Scalar(0))) continue;
+    if (counts)
+      patch->wait.try_plane(map_.planes[k].id, map_.planes[k].known, static_cast<float>(chi2),
+                            static_cast<float>(tuning::patch_keeper::kCornersGate));
+    if (!(chi2 < tuning::patch_keeper::kCornersGate) || (nearest >= 0 && range >= least)) continue;
+    nearest = k;
+    least = range;
+  }
+  return nearest;
+}
+
+/// Whether the corners are far enough from where they would be if the camera had only rotated since its reference.
+bool PatchKeeper::has_parallax(const StoredPatch& patch, Scalar min_px) const {
+  const Quat q_CK = filter_.state().body.q_WC.conjugate() * ReferenceCamera::q_WC(filter_.state().block[patch.camera]);
+  Scalar sum = 0;
+  for (int k = 0; k < 4; ++k) {
+    Vec3 ray_K;
+    Vec2 rotated;
+    if (!unproject(filter_.lens(), patch.reference_px[k], &ray_K) ||
+        !project(filter_.lens(), Vec3(q_CK * ray_K), &rotated))
+      return false;
+    sum += (patch.corner[k] - rotated).norm();
+  }
+  return sum > 4 * min_px;
+}
+
+/// Follows a patch, and decides whether it is known by now which plane it lies on. Where nothing else supports the pose, the nearest plane
+/// that passes counts at once, and nothing is held against the others.
+void PatchKeeper::measure_waiting(const Pyramid& image, StoredPatch* patch) {
+  Sight sight;
+  patch->status = PatchStatus::kMissed;
+  patch->weight = 0;
+  if (!expect_waiting(*patch, &sight)) return;
+  std::copy(sight.corner, sight.corner + 4, patch->corner);
+  PlaneAlignment found;
+  if (!align(image, sight, patch, &found) || (!patch->is_proven() && !begin_block(patch, found.reference_covariance)))
+    return;
+  patch->status = PatchStatus::kWaiting;
+  const bool supported = frame_.report.inliers >= settings_.min_inliers;
+  if (supported) patch->wait.begin_frame();
+  const int nearest = try_planes(patch, supported);
+  if (!supported) {
+    if (nearest >= 0) join(patch, nearest);
+    return;
+  }
+  std::uint32_t id = 0;
+  switch (patch->wait.decide(has_parallax(*patch, kMinParallax), &id)) {
+    case WaitVerdict::kWait:
+      if (patch->wait.frames_without() > tuning::patch_keeper::kMaxRejections) refuse(patch);
+      if (patch->wait.frames_without() == kFoundEvery) note_plane(patch);
+      break;
+    case WaitVerdict::kJoin:
+      for (int k = 0; k < map_.planes.capacity(); ++k) {
+        if (!map_.planes.used(k) || map_.planes[k].id != id) continue;
+        if (is_seen_through(*patch, k)) refuse(patch);
+        return join(patch, k);
+      }
+      break;
+    case WaitVerdict::kFound:
+      found_or_wait(patch);
+      break;
+    case WaitVerdict::kGiveUp:
+      give_up(patch);
+  }
+}
+
+/// Whether a plane that explains the patch is behind the wall that was seen there when it began.
+bool PatchKeeper::is_seen_through(const StoredPatch& patch, int entry) const {
+  const int wall = patch.plane != 0 ? wall_of(patch) : -1;
+  Scalar to_wall, to_plane;
+  return wall >= 0 && wall != entry && may_lie_on(patch, wall, &to_wall) && may_lie_on(patch, entry, &to_plane) &&
+         to_plane > to_wall;
+}
+
+/// From now on it is measured on this plane, and already in this frame.
+void PatchKeeper::join(StoredPatch* patch, int entry) {
+  const int plane = map_.planes[entry].slot;
+  patch->wait.end();
+  patch->plane = map_.planes[entry].id;
+  if (!map_.planes[entry].known) extend_plane(*patch, entry);
+  if (!filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_)) return;
+  frame_.report.attempts += kWorth;
+  frame_.report.matches += kWorth;
+  put_measured(*patch);
+  update(patch, entry);
+}
+
+/// It lies on nothing, and is dropped at the end of the frame.
+void PatchKeeper::give_up(StoredPatch* patch) {
+  patch->status = PatchStatus::kOutlier;
+  patch->rejections = tuning::patch_keeper::kMaxRejections;
+}
+
+/// The wall that was seen there when it began does not explain it.
+void PatchKeeper::refuse(StoredPatch* patch) {
+  const int wall = patch->plane != 0 ? wall_of(*patch) : -1;
+  if (wall >= 0) note_refused(*patch, wall);
+  patch->plane = 0;
+}
+
+}  // namespace pf
