@@ -124,7 +124,8 @@ void PatchKeeper::measure_waiting(const Pyramid& image, StoredPatch* patch) {
   std::uint32_t id = 0;
   switch (patch->wait.decide(has_parallax(*patch, kMinParallax), &id)) {
     case WaitVerdict::kWait:
-      if (patch->wait.frames_without() > tuning::patch_keeper::kMaxRejections) refuse(patch);
+      if (patch->wait.frames_without() > tuning::patch_keeper::kMaxRejections && has_parallax(*patch, kMinParallax))
+        refuse(patch);
       if (patch->wait.frames_without() == kFoundEvery) note_plane(patch);
       break;
     case WaitVerdict::kJoin:

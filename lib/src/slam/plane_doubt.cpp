@@ -84,8 +84,10 @@ void PlaneKeeper::judge_wall(int plane_entry) {
     }
   }
   const auto contradict = [on_it](int points) { return points >= kMinRefused && points > kRefusedShare * on_it; };
+  // Points vouch for a wall that patches are refused on, half as many where not one is off it.
+  const bool vouched = on_it >= (refused > 0 ? kMinRefused : kMinRefused / 2);
   const bool denied =
-      (wall.outliers >= kMinRefused && wall.outliers > on_it) || (wall.is_refused_by_patches() && on_it < kMinRefused);
+      (wall.outliers >= kMinRefused && wall.outliers > on_it) || (wall.is_refused_by_patches() && !vouched);
   if (!wall.doubted && (denied || contradict(behind) || (contradict(refused) && cover.is_wide()))) {
     doubt_wall(plane_entry);
   } else if (wall.doubted && on_it >= kMinRefused && on_it > refused) {
