@@ -55,6 +55,10 @@ def main():
             report = pathlib.Path(name) / words[0] / "reports" / "x.json"
             if "pf-sim" in programs and (said(BIN / "pf-sim", *words, "--json", report).returncode != 0 or not report.is_file()):
                 failures.append(f"pf-sim {words[0]} does not make the folder of its report")
+        mine = pathlib.Path(name) / "calib.yaml"
+        mine.write_text("mine\n")
+        if "pf-replay" in programs and (said(BIN / "pf-replay", "record", mine, "--frames", "20").returncode != 1 or mine.read_text() != "mine\n"):
+            failures.append("pf-replay record writes over a file that is there")
     for (tool, *words), part in TOOLS:
         expect_refusal([part], tool, *words, folder=SOURCE / "tools")
     for tool in NEED_NOTHING:

@@ -33,6 +33,12 @@ int main(int argc, char** argv) {
   if (!pf::tools::parse_command_line(app, "pf-replay", argc, argv, code)) return code;
 
   if (record->parsed()) {
+    std::error_code failed;
+    if (std::filesystem::exists(file, failed)) {
+      std::fprintf(stderr, "pf-replay: '%s' exists and is left as it is; give another name, or remove it\n",
+                   file.c_str());
+      return 1;
+    }
     if (replay::record(file, frames, seed, planes)) return 0;
     std::fprintf(stderr, "pf-replay: the session could not be run or '%s' not be written\n", file.c_str());
     return 1;
