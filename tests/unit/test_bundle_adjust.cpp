@@ -1,4 +1,5 @@
 // The bundle adjuster against dense normal equations, and on scenes whose truth is known.
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -167,6 +168,52 @@ void test_covariance_should_be_refused_when_nothing_is_free_or_a_pose_sees_nothi
   TEST_ASSERT_FALSE(scene.adjuster.last_pose_covariance(scene.camera, scene.options, scene.bundle, &covariance));
 }
 
+/// Nothing but the distance, in whose direction the error is linear: a few steps are enough, the first of them damped.
+void test_held_distance_should_bring_a_pose_there() {
+  SeededRandom random(77);
+  Scene scene(random, 0);
+  const Vec3 from_W(Scalar(0.2), Scalar(-0.1), Scalar(0.3)), along = Vec3(2, -1, 2).normalized();
+  BundlePose pose = {Quat::Identity(), from_W + Scalar(0.5) * along, true, nullptr};
+  const BundleDistance held = {0, from_W, Scalar(0.6), Scalar(0.01)};
+  Bundle bundle = {&pose, 1, scene.ray, nullptr, scene.rho, 0};
+  bundle.held = &held;
+  scene.options.max_rounds = 0;
+  TEST_ASSERT_DOUBLE_WITHIN(1e-3, 100, static_cast<double>(scene.adjuster.adjust(scene.camera, scene.options, bundle)));
+  scene.options.max_rounds = 4;
+  EXPECT_BELOW(1e-4, static_cast<double>(scene.adjuster.adjust(scene.camera, scene.options, bundle)));
+  EXPECT_BELOW(1e-4, std::fabs(static_cast<double>((pose.p_W - from_W).norm()) - 0.6));
+}
+
+/// With the pixels of a scene whose scale nothing else holds, the distance stays, and everything comes to the truth in its unit.
+void test_held_distance_should_hold_the_scale() {
+  SeededRandom random(78);
+  Scene scene(random, 0);
+  const Scalar wanted = Scalar(1.02) * (scene.truth[4].p_W - scene.truth[0].p_W).norm();
+  const BundleDistance held = {4, scene.truth[0].p_W, wanted, Scalar(1e-4) * wanted};
+  for (int c = 0; c < kPoses; ++c) {
+    scene.pose[c] = scene.truth[c];
+    scene.pose[c].free = c == 1 || c == 2 || c == 4;
+  }
+  std::copy(scene.true_rho, scene.true_rho + kPoints, scene.rho);
+  scene.pose[3].pixel = nullptr;  // fixed where it is, it would hold the scale
+  for (int i = 0; i < kPoints; ++i) scene.host[i] = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const BundlePose& h = scene.truth[i % 3 == 0 ? 4 - i % 2 * 3 : 0];
+    const Vec3 p_W = h.p_W + h.q_WC * (scene.ray[i] / scene.true_rho[i]);
+    const Vec3 d = scene.truth[0].q_WC.conjugate() * (p_W - scene.truth[0].p_W);
+    scene.ray[i] = d.normalized();
+    scene.rho[i] = Scalar(1) / d.norm();
+  }
+  scene.options.rho_sigma = 0;
+  scene.options.small_gain = Scalar(1e-9);
+  scene.bundle.held = &held;
+  scene.adjuster.adjust(scene.camera, scene.options, scene.bundle);
+  for (const int c : {1, 2, 4}) {
+    const Vec3 scaled = scene.truth[0].p_W + Scalar(1.02) * (scene.truth[c].p_W - scene.truth[0].p_W);
+    EXPECT_BELOW(1e-3, static_cast<double>((scene.pose[c].p_W - scaled).norm()));
+  }
+}
+
 void test_adjusting_should_find_the_truth_and_leave_fixed_poses_when_pixels_are_exact() {
   SeededRandom random(54);
   for (int trial = 0; trial < 5; ++trial) {
@@ -214,6 +261,8 @@ int main() {
   RUN_TEST(test_step_should_be_that_of_the_dense_normal_equations);
   RUN_TEST(test_covariance_of_the_last_pose_should_be_that_of_the_dense_inverse);
   RUN_TEST(test_covariance_should_be_refused_when_nothing_is_free_or_a_pose_sees_nothing);
+  RUN_TEST(test_held_distance_should_bring_a_pose_there);
+  RUN_TEST(test_held_distance_should_hold_the_scale);
   RUN_TEST(test_adjusting_should_find_the_truth_and_leave_fixed_poses_when_pixels_are_exact);
   RUN_TEST(test_adjusting_should_never_raise_the_cost_and_stop_after_its_rounds);
   RUN_TEST(test_more_poses_than_a_mask_has_bits_should_be_refused);

@@ -22,7 +22,7 @@ void FilterStart::restart_from_record(Scalar unit) {
   clear_filter();
   if (without_.bundle().lens() != nullptr) parts_.filter.set_lens(*without_.bundle().lens(), settings_.lens);
   begin_body(body, progress().checking && !data_.known.given);
-  // The bundle's solution holds for the calibration as it was given, so residuals of zero say nothing about it.
+  // Residuals of zero say nothing about the lens: the bundle's solution holds for the one that the filter begins with.
   parts_.filter.consider_lens(true);
   restart_features(unit);
   std::int64_t before_ns = without_.begin_ns();

@@ -84,16 +84,18 @@ bool PlaneKeeper::is_certain(int entry, Mat3* covariance) const {
 /// kOpen: there is no pixel, or the three are less than kTrialPixels apart.
 PlaneKeeper::TrialVerdict PlaneKeeper::judge_depth(int entry) const {
   const Vec3 p_W = filter_.point(map_.features[entry].slot), first_W = map_.first_view(entry).c_W;
-  const CameraAt camera = camera_at(filter_.state(), Scalar(0));
+  const Match* match = nullptr;
+  for (int t = 0; t < frame_.match_count() && match == nullptr; ++t)
+    if (frame_.match(t).feature == entry && frame_.match(t).status == MatchStatus::kInlier) match = &frame_.match(t);
+  if (match == nullptr) return TrialVerdict::kOpen;
+  const bool rolls = filter_.lens().readout != Scalar(0) && filter_.state().layout.has(BodyPart::kVelocity);
+  const CameraAt camera = camera_at(filter_.state(), rolls ? row_time(filter_.lens(), match->measured.y()) : Scalar(0));
   const auto pixel = [&](Scalar depth, Vec2* at) {
     const Vec3 moved_W = first_W + depth * (p_W - first_W);
     return project(filter_.lens(), Vec3(camera.q_WC.conjugate() * (moved_W - camera.p_W)), at);
   };
-  const Match* match = nullptr;
-  for (int t = 0; t < frame_.match_count() && match == nullptr; ++t)
-    if (frame_.match(t).feature == entry && frame_.match(t).status == MatchStatus::kInlier) match = &frame_.match(t);
   Vec2 here, nearer, farther;
-  if (match == nullptr || !pixel(1, &here) || !pixel(1 - kTrialDepth, &nearer) || !pixel(1 + kTrialDepth, &farther))
+  if (!pixel(1, &here) || !pixel(1 - kTrialDepth, &nearer) || !pixel(1 + kTrialDepth, &farther))
     return TrialVerdict::kOpen;
   const Scalar apart2 = std::min((nearer - here).squaredNorm(), (farther - here).squaredNorm());
   if (apart2 <= kTrialPixels * kTrialPixels) return TrialVerdict::kOpen;

@@ -83,9 +83,9 @@ struct Bundle {
   const RhoPrior* prior = nullptr;  ///< of each point; null: the options' for all
   BundlePlane* plane = nullptr;
   int planes = 0;
-  const int* plane_of = nullptr;     ///< plane of each point, -1 where it has none; null: of no point
-  const BundleLens* lens = nullptr;  ///< null: the lens is exact
-  const BundleDistance* held = nullptr;
+  const int* plane_of = nullptr;         ///< plane of each point, -1 where it has none; null: of no point
+  const BundleLens* lens = nullptr;      ///< null: the lens is exact
+  const BundleDistance* held = nullptr;  ///< null: no distance is held
 };
 
 struct AdjustOptions {
