@@ -1,18 +1,12 @@
 // Which wall a patch lies on, on rendered frames of one textured wall: of two walls of the plan, one before the other, patches join the one
 // that is there; and where the plan has none, a patch founds it.
-#include <planefold/planefold.h>
-#include <planefold_platform/sim.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <memory>
 #include <vector>
 
-#include "unity.h"
+#include "support/wall_walk.h"
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -21,87 +15,31 @@ namespace {
 
 constexpr int kFrames = 150, kPatches = 8;
 
-class Run {
+class Run : public WallWalk {
  public:
-  explicit Run(int features) : sim_(open(), pf_sim_close) {
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config_));
-    pf_sim_camera(sim_.get(), &config_.camera);
-    config_.capacity.max_patches = kPatches;
-    config_.capacity.patch_side_px = 64;
-    config_.map.features_in_view = features;
-    pf_memory_t need;
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config_, &need));
-    block_.reset(std::aligned_alloc(need.alignment, (need.bytes + need.alignment) / need.alignment * need.alignment));
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config_, block_.get(), need.bytes, &slam));
-    pf_pose_t first;
-    pf_sim_pose_at(sim_.get(), 0, &first);
-    double velocities[36] = {};
-    for (int i = 0; i < 6; ++i) {
-      first.covariance[7 * i] = 1e-6;
-      velocities[7 * i] = 1e-2;
-    }
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_pose(slam, &first, velocities));
-  }
+  explicit Run(int features) : WallWalk(kFrames, kPatches, features) {}
 
   /// A wall parallel to the one that is there, before it by so much; x: of its middle.
   std::uint32_t add_wall(double before, double x, double half_width) {
-    pf_plane_prior_t prior = {};
-    const double R[9] = {-1, 0, 0, 0, 1, 0, 0, 0, -1};  // z towards the camera, which looks along z of W
-    std::memcpy(prior.R_WP, R, sizeof R);
+    pf_plane_prior_t prior = wall(0, half_width);
     prior.p_WP[0] = x;
     prior.p_WP[2] = -before;
-    prior.covariance[0] = prior.covariance[4] = 1e-4;
-    prior.covariance[8] = 1e-4;
-    const double corner[4][2] = {{-half_width, -1.8}, {half_width, -1.8}, {half_width, 1.8}, {-half_width, 1.8}};
-    prior.outline_count = 4;
-    std::memcpy(prior.outline_P, corner, sizeof corner);
-    std::uint32_t id;
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &prior, &id));
-    return id;
+    prior.covariance[0] = prior.covariance[4] = prior.covariance[8] = 1e-4;
+    return add(prior);
   }
 
   void step() {
-    pf_image_t image;
-    pf_pose_t truth, pose;
-    TEST_ASSERT_EQUAL_INT(1, pf_sim_next(sim_.get(), &image, &truth));
-    TEST_ASSERT_TRUE(pf_push_frame(slam, &image) >= PF_OK);
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_pose(slam, &pose));
-    double square = 0;
-    for (int i = 0; i < 3; ++i) square += std::pow(pose.p_WC[i] - truth.p_WC[i], 2);
-    worst_m = std::max(worst_m, std::sqrt(square));
+    WallWalk::step();
+    worst_m = std::max(worst_m, error_m);
   }
 
-  std::vector<pf_patch_t> patches() const {
-    std::vector<pf_patch_t> all(kPatches);
-    std::size_t count;
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_patches(slam, all.data(), all.size(), &count));
-    all.resize(count);
-    return all;
-  }
   int inliers_on(std::uint32_t plane) const {
     const std::vector<pf_patch_t> all = patches();
     return static_cast<int>(std::count_if(
         all.begin(), all.end(), [&](const pf_patch_t& p) { return p.status == PF_MATCH_INLIER && p.plane == plane; }));
   }
 
-  pf_slam_t* slam = nullptr;
   double worst_m = 0;
-
- private:
-  static pf_sim_t* open() {
-    pf_sim_options_t options;
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_options_default("wall", &options));
-    options.seed = 5;
-    options.frames = kFrames;
-    options.samples = 1;
-    pf_sim_t* sim = pf_sim_open("wall", &options);
-    TEST_ASSERT_NOT_NULL(sim);
-    return sim;
-  }
-
-  std::unique_ptr<pf_sim_t, void (*)(pf_sim_t*)> sim_;
-  pf_config_t config_;
-  std::unique_ptr<void, void (*)(void*)> block_{nullptr, std::free};
 };
 
 void test_of_two_walls_patches_should_join_the_one_that_is_there() {
