@@ -14,26 +14,30 @@ using namespace tuning::moving_start;
 
 constexpr int kLinear = 7;   ///< s, v_0, g
 constexpr int kRefined = 9;  ///< log u, u v_0, d, b_a
-constexpr int kMaxRows = kMaxMovingPoses - 1;
+constexpr int kMaxRows = 32;
 
-/// The sums up to one pose.
+/// The sums up to one pose; or their means over neighbours.
 struct Sum {
-  Scalar t;
+  Scalar t, t2;     ///< t2: of t^2
+  Scalar variance;  ///< of the position
   Vec3 p, m, S;
   Mat3 B;
+
+  static Sum zero() { return {0, 0, 0, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Mat3::Zero()}; }
 };
 
 /// Cholesky factor of the covariance of positions along an axis, row-major.
 struct Whitener {
   Scalar L[kMaxRows][kMaxRows];
 
-  bool factor(const Sum* sum, int n, Scalar sigma_p, Scalar q_a, Scalar q_r) {
+  bool factor(const Sum* sum, int n, Scalar sigma_0, Scalar q_d, Scalar q_a, Scalar q_r) {
     for (int j = 0; j < n; ++j)
       for (int k = 0; k <= j; ++k) {
         const Scalar t = sum[k].t, u = sum[j].t;  // t <= u
         const Scalar G2 = t * t * (3 * u - t) / 6;
         const Scalar G3 = t * t * t * (t * t - 5 * t * u + 10 * u * u) / 120;
-        Scalar C = sigma_p * sigma_p * (j == k ? 2 : 1) + q_a * q_a * G2 + q_r * q_r * G3;
+        Scalar C = sigma_0 * sigma_0 + q_d * q_d * t + q_a * q_a * G2 + q_r * q_r * G3;
+        if (j == k) C += sum[k].variance;
         for (int i = 0; i < k; ++i) C -= L[j][i] * L[k][i];
         if (j == k && !(C > Scalar(0))) return false;
         L[j][k] = j == k ? std::sqrt(C) : C / L[k][k];
@@ -71,18 +75,32 @@ struct System {
 
 /// Returns how many sums there are.
 int accumulate(const MovingPose* pose, int count, Sum* sum) {
+  const int most = (count - 2) / kMaxRows + 1;  // poses in a mean
   Vec3 V = Vec3::Zero(), S = Vec3::Zero();
   Mat3 BV = Mat3::Zero(), B = Mat3::Zero();
   Scalar t = 0;
-  for (int k = 1; k < count; ++k) {
-    S += V * pose[k].dt + pose[k].Rp;
-    V += pose[k].Rv;
-    B += BV * pose[k].dt + pose[k].Rp_b;
-    BV += pose[k].Rv_b;
-    t += pose[k].dt;
-    sum[k - 1] = {t, pose[k].p_W - pose[0].p_W, pose[k].m_W - pose[0].m_W, S, B};
+  int n = 0;
+  for (int k = 1; k < count;) {
+    const int size = std::min(most, count - k);
+    const Scalar part = Scalar(1) / static_cast<Scalar>(size);
+    Sum& mean = sum[n++];
+    mean = Sum::zero();
+    for (const int end = k + size; k < end; ++k) {
+      S += V * pose[k].dt + pose[k].Rp;
+      V += pose[k].Rv;
+      B += BV * pose[k].dt + pose[k].Rp_b;
+      BV += pose[k].Rv_b;
+      t += pose[k].dt;
+      mean.t += part * t;
+      mean.t2 += part * t * t;
+      mean.variance += part * part * pose[k].sigma * pose[k].sigma;
+      mean.p += part * (pose[k].p_W - pose[0].p_W);
+      mean.m += part * (pose[k].m_W - pose[0].m_W);
+      mean.S += part * S;
+      mean.B += part * B;
+    }
   }
-  return count - 1;
+  return n;
 }
 
 bool solve_linear(const Sum* sum, int n, const Whitener& whitener, Scalar* units, Vec3* v_0, Vec3* g) {
@@ -93,7 +111,7 @@ bool solve_linear(const Sum* sum, int n, const Whitener& whitener, Scalar* units
       std::fill(row, row + kLinear, Scalar(0));
       row[0] = sum[k].S(axis) - sum[k].m(axis);
       row[1 + axis] = sum[k].t;
-      row[4 + axis] = sum[k].t * sum[k].t / 2;
+      row[4 + axis] = sum[k].t2 / 2;
       row[kLinear] = sum[k].p(axis);
     }
   system.whiten(whitener, n);
@@ -120,10 +138,10 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
   Vec3 v_0, g;
   const Scalar tilt = noise.gravity * noise.tilt_density;
   for (int pass = 0; pass < 2; ++pass)  // the second with the noise of the samples in units of the map
-    if (!whitener.factor(sum, n, noise.position, u * noise.accel_density, u * tilt) ||
+    if (!whitener.factor(sum, n, pose[0].sigma, noise.drift, u * noise.accel_density, u * tilt) ||
         !solve_linear(sum, n, whitener, &u, &v_0, &g) || !(u > Scalar(0)) || !(g.norm() > Scalar(0)))
       return false;
-  if (!whitener.factor(sum, n, noise.position, u * noise.accel_density, u * tilt)) return false;
+  if (!whitener.factor(sum, n, pose[0].sigma, noise.drift, u * noise.accel_density, u * tilt)) return false;
 
   Quat q_WG = turn_z_to(g.normalized());
   Vec3 bias = Vec3::Zero();
@@ -138,15 +156,15 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
     Mat32 E;
     E << -noise.gravity * R_WG.col(1), noise.gravity * R_WG.col(0);
     for (int k = 0; k < n; ++k) {
-      const Scalar t = sum[k].t;
-      const Vec3 moved = u * (sum[k].S - sum[k].m + g * (t * t / 2) + sum[k].B * bias);
+      const Scalar t = sum[k].t, t2 = sum[k].t2;
+      const Vec3 moved = u * (sum[k].S - sum[k].m + g * (t2 / 2) + sum[k].B * bias);
       const Vec3 r = sum[k].p - v_0 * t - moved;
       for (int axis = 0; axis < 3; ++axis) {
         Scalar* const row = system.a[3 * k + axis];
         std::fill(row, row + kRefined, Scalar(0));
         row[0] = moved(axis);  // by log u
         row[1 + axis] = t;
-        for (int j = 0; j < 2; ++j) row[4 + j] = u * t * t / 2 * E(axis, j);
+        for (int j = 0; j < 2; ++j) row[4 + j] = u * t2 / 2 * E(axis, j);
         for (int j = 0; j < 3; ++j) row[6 + j] = u * sum[k].B(axis, j);
         row[kRefined] = r(axis);
       }

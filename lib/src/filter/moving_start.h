@@ -10,6 +10,7 @@ namespace pf {
 struct MovingPose {
   Scalar dt = 0;             ///< since the one before [s]
   Vec3 p_W = Vec3::Zero();   ///< of the camera, in units of the map
+  Scalar sigma = 0;          ///< of each of its coordinates, white
   Vec3 m_W = Vec3::Zero();   ///< from the camera to the unit's origin [m]
   Vec3 Rv = Vec3::Zero();    ///< R dv
   Vec3 Rp = Vec3::Zero();    ///< R dp
@@ -19,7 +20,7 @@ struct MovingPose {
 
 struct MovingStartNoise {
   Scalar gravity = 0;        ///< [m/s^2]
-  Scalar position = 0;       ///< of p_W, in units of the map
+  Scalar drift = 0;          ///< of p_W, as the points that it is known by change, in units of the map [/sqrt(s)]
   Scalar accel_density = 0;  ///< white, of the accelerometer [m/s^2/sqrt(Hz)]
   Scalar tilt_density = 0;   ///< of the poses' rotations, which tilts gravity in them [rad/sqrt(s)]
   Scalar accel_bias = 0;     ///< prior sigma of each axis [m/s^2]
@@ -40,7 +41,7 @@ struct MovingSolution {
   Scalar sigma_gravity() const { return std::sqrt(covariance(1, 1) + covariance(2, 2)); }
 };
 
-inline constexpr int kMaxMovingPoses = 32;
+inline constexpr int kMaxMovingPoses = 96;
 
 /// With S_k, B_k the double sums over R dv, R dp and their Jacobians, t_k the time since the first pose, and u the units of the map in a
 /// metre:
@@ -51,9 +52,10 @@ inline constexpr int kMaxMovingPoses = 32;
 /// without b_a and with g of any length, then refined with |g| imposed and the prior of b_a: g = gravity R_WG e_z,
 /// dg = gravity (-R_WG e_y, R_WG e_x) d. Residuals are whitened by
 ///
-///   C_jk = sigma_p^2 (delta_jk + 1) + (u q_a)^2 G2_jk + (u gravity q_r)^2 G3_jk,   Gn: covariance of an n times integrated white noise
+///   C_jk = sigma_0^2 + sigma_k^2 delta_jk + q_d^2 min(t_j, t_k) + (u q_a)^2 G2_jk + (u gravity q_r)^2 G3_jk
 ///
-/// and a misfit above one widens the covariance. False where there are too few poses or the system is singular.
+/// Gn: covariance of an n times integrated white noise; of many poses, rows are means over a few neighbours. A misfit above one widens
+/// the covariance. False where there are too few poses or the system is singular.
 bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out);
 
 }  // namespace pf

@@ -57,19 +57,21 @@ inline constexpr Scalar kMaxStep = Scalar(20);  ///< of the log scale in one of 
 
 /// A start in metres from a moving camera.
 namespace moving_verdict {
-inline constexpr Scalar kInterval = Scalar(0.099);       ///< [s] between poses at least
+inline constexpr Scalar kInterval = Scalar(0.03);        ///< [s] between poses at least
+inline constexpr Scalar kMinSpan = Scalar(1.5);          ///< [s] of a solution's poses
 inline constexpr int kMinPoses = 16;                     ///< of a solution
+inline constexpr int kLocated = 32;                      ///< poses that are found anew in a frame
 inline constexpr Scalar kMaxDepthSigma = Scalar(0.3);    ///< of a feature's inverse depth, relative
 inline constexpr int kMinPixels = 8;                     ///< with a depth, in each of these frames
 inline constexpr Scalar kHuber = Scalar(3);              ///< sigmas of a pixel beyond which it counts linearly
 inline constexpr int kRounds = 5;                        ///< of a pose's refinement
-inline constexpr Scalar kPosition = Scalar(0.0005);      ///< sigma of a pose's position, of the median depth
+inline constexpr Scalar kDrift = Scalar(0.00015);        ///< of poses' positions, of the median depth [/sqrt(s)]
 inline constexpr Scalar kTiltDensity = Scalar(0.00005);  ///< [rad/sqrt(s)] of the drift of the poses' rotations
-inline constexpr Scalar kRotation = Scalar(0.0001);      ///< [rad/sqrt(Hz)] of their noise: 0.3 mrad ten times a second
-inline constexpr Scalar kMaxSigmaScale = Scalar(0.025);  ///< of the log scale
-inline constexpr Scalar kMaxSigmaGravity = Scalar(0.01);  ///< [rad] of its direction
-inline constexpr Scalar kMaxMisfit = Scalar(3);           ///< chi-square over its degrees of freedom
-inline constexpr Scalar kMaxApart = Scalar(9);            ///< of two halves, in the sum of their variances
+inline constexpr Scalar kRotation = Scalar(0.0001);  ///< [rad/sqrt(Hz)] of their noise: 0.1 mrad that last for a second
+inline constexpr Scalar kMaxSigmaScale = Scalar(0.025);    ///< of the log scale
+inline constexpr Scalar kMaxSigmaGravity = Scalar(0.015);  ///< [rad] of its direction
+inline constexpr Scalar kMaxMisfit = Scalar(3);            ///< chi-square over its degrees of freedom
+inline constexpr Scalar kMaxApart = Scalar(9);             ///< of two halves, in the sum of their variances
 }  // namespace moving_verdict
 
 /// Inertial samples.

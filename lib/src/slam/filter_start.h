@@ -76,7 +76,7 @@ class FilterStart {
   bool use_rest(const RestReading& rest, std::int64_t begin_ns);
   /// Likewise of a camera that moves: the map goes on in metres, under another id.
   bool use_motion(const MovingSolution& solution);
-  /// A map that samples may scale: of unknown scale, past its start and not too old for it.
+  /// A map that samples may scale, once its depths are known: of unknown scale, and not too old for it.
   bool may_become_metric() const;
   /// The next map begins with the unit's mounting and its delay as they are known now, and not with those of the config.
   void keep_mounting();

@@ -49,8 +49,8 @@ bool FilterStart::use_rest(const RestReading& rest, std::int64_t begin_ns) {
 
 bool FilterStart::may_become_metric() const {
   const std::int64_t age_ns = elapsed_ns(data_.begin_ns, parts_.frame.report.t_ns);
-  return !parts_.filter.is_metric() && !data_.knows_scale && !progress().pending() && !progress().recording &&
-         !parts_.map.planes.has_known() && seconds(age_ns) < static_cast<double>(tuning::inertial::kYoungMap);
+  return !parts_.filter.is_metric() && !data_.knows_scale && !parts_.map.planes.has_known() &&
+         seconds(age_ns) < static_cast<double>(tuning::inertial::kYoungMap);
 }
 
 bool FilterStart::use_motion(const MovingSolution& solution) {

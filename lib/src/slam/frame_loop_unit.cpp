@@ -22,9 +22,14 @@ bool FrameLoop::look_for_rest() {
 
 /// The same from a camera that moves, and a unit that was never doubted.
 bool FrameLoop::look_for_scale() {
-  const bool usable = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && watch_.doubted_ns() == 0;
+  MovingFrame told;
+  told.keep = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && watch_.doubted_ns() == 0;
+  told.judge = !start_.progress().recording;
+  told.map_id = tracking_.map_id();
+  told.depth = data_.median_depth;
+  told.correlation = data_.image_usable ? noise_.correlation_frames() : Scalar(1);
   MovingSolution solution;
-  if (!unit_->moving.note(usable, tracking_.map_id(), data_.median_depth, &solution)) return false;
+  if (!unit_->moving.note(told, &solution)) return false;
   start_.use_motion(solution);
   relocaliser_.init();
   return true;

@@ -7,6 +7,7 @@
 #include "filter/imu_path.h"
 #include "filter/tuning.h"
 #include "geometry/pnp.h"
+#include "geometry/so3.h"
 #include "slam/tuning.h"
 
 namespace pf {
@@ -16,7 +17,10 @@ using namespace tuning::moving_verdict;
 /// Keeps this frame: its inliers, and the samples since the last one that is kept. False where samples are missing.
 bool MovingStart::add() {
   const State& state = filter_.state();
-  if (data_.count == kMaxMovingPoses) std::copy(data_.view + 1, data_.view + data_.count--, data_.view);
+  if (data_.count == kMaxMovingPoses) {
+    std::copy(data_.view + 1, data_.view + data_.count--, data_.view);
+    for (int* index : {&data_.left, &data_.first, &data_.end}) *index = std::max(0, *index - 1);
+  }
   View& view = data_.view[data_.count];
   view = View();
   view.q_WC = state.body.q_WC;
@@ -30,9 +34,10 @@ bool MovingStart::add() {
       return false;
     view.dt = samples.dt();
     view.gyro_bias = state.body.gyro_bias;
+    view.dq_B = Quat(samples.R());
     view.v = samples.v();
     view.p = samples.p();
-    view.by_bias = samples.by_bias().bottomRows<6>();
+    view.by_bias = samples.by_bias().cast<float>();
   }
   for (int i = 0; i < frame_.match_count() && view.count < kMaxPixels; ++i) {
     const Match& match = frame_.match(i);
@@ -41,6 +46,7 @@ bool MovingStart::add() {
                                static_cast<float>(match.measured.y())};
   }
   data_.t_ns = t_ns;
+  data_.frames = 0;
   ++data_.count;
   return true;
 }
@@ -54,7 +60,7 @@ bool MovingStart::has_depth(int entry) const {
   return rho > Scalar(0) && std::sqrt(filter_.block_variance(slot, 2)) < kMaxDepthSigma * rho;
 }
 
-/// The pose of a view by what the map says of its features now.
+/// The pose of a view by what the map says of its features now, with the noise that its pixels show.
 bool MovingStart::locate(View* view) const {
   PnpPoint point[kMaxPixels];
   int count = 0;
@@ -74,28 +80,68 @@ bool MovingStart::locate(View* view) const {
   if (!refine_pnp(filter_.lens(), point, count, nullptr, {settings_.sigma_px, kHuber, kRounds}, &pose)) return false;
   view->q_WC = pose.q_WC;
   view->p_W = pose.p_WC;
+  const Scalar noise = pose.rms_px / settings_.sigma_px;
+  const Scalar pixels = static_cast<Scalar>(count);
+  view->covariance = (pose.covariance * (noise * noise * pixels / (pixels - 3))).cast<float>();
   return true;
 }
 
-/// Of the views behind the last one that sees too little of the map, as it is known now. Returns how many.
-int MovingStart::find_poses(MovingPose* pose) {
-  int first = data_.count;
-  while (first > 0 && locate(&data_.view[first - 1])) --first;
+/// Goes on with the sweep, or begins one: of all views behind the last one that sees too little of the map. True where it is through.
+bool MovingStart::sweep() {
+  if (data_.left == 0) data_.left = data_.first = data_.end = data_.count;
+  for (int i = 0; i < kLocated && data_.left > 0; ++i) {
+    if (!locate(&data_.view[data_.left - 1])) {
+      data_.left = 0;
+      break;
+    }
+    data_.first = --data_.left;
+  }
+  return data_.left == 0;
+}
+
+/// The rotations of the views by their pixels and by the gyro together.
+void MovingStart::smooth() {
+  const Quat q_CB(filter_.state().mounting.R_CB);
+  const Vec3 gyro_bias = filter_.state().body.gyro_bias;
+  const Scalar density = std::max(kTiltDensity, settings_.unit.noise.gyro_density);
+  for (int k = data_.first; k < data_.end; ++k) {
+    const View& view = data_.view[k];
+    RotationLink& link = data_.link[k];
+    const Vec3 turn = view.by_bias.topLeftCorner<3, 3>().cast<Scalar>() * (gyro_bias - view.gyro_bias);
+    link.q_WC = view.q_WC;
+    link.variance = data_.correlation * static_cast<Scalar>(view.covariance.topLeftCorner<3, 3>().trace()) / 3;
+    link.dq = q_CB * exp_so3(turn) * view.dq_B * q_CB.conjugate();
+    link.step_variance = density * density * view.dt;
+  }
+  smooth_rotations(data_.link + data_.first, data_.end - data_.first);
+}
+
+/// The poses of the sweep: positions given the smoothed rotations, e | theta = S_et S_tt^-1 theta. Returns how many.
+int MovingStart::collect() {
   const Mat3& R_CB = filter_.state().mounting.R_CB;
   const Vec3 gyro_bias = filter_.state().body.gyro_bias;
-  const int count = data_.count - first;
+  const int count = data_.end - data_.first;
+  smooth();
   for (int k = 0; k < count; ++k) {
-    const View& view = data_.view[first + k];
-    pose[k].p_W = view.p_W;
-    pose[k].m_W = view.q_WC * settings_.unit.mounting.p_C;
+    const View& view = data_.view[data_.first + k];
+    const RotationLink& link = data_.link[data_.first + k];
+    MovingPose& pose = data_.pose[k];
+    const Mat6 S = data_.correlation * view.covariance.cast<Scalar>();
+    const Mat3 of_rotation = S.topLeftCorner<3, 3>();
+    const Mat3 by_rotation = S.bottomLeftCorner<3, 3>() * of_rotation.inverse();
+    const Mat3 given = S.bottomRightCorner<3, 3>() - by_rotation * S.topRightCorner<3, 3>();
+    pose.p_W = view.p_W + by_rotation * log_so3(link.q_WC * view.q_WC.conjugate());
+    pose.sigma = std::sqrt((given.trace() + link.variance * by_rotation.squaredNorm()) / 3);
+    pose.m_W = link.q_WC * settings_.unit.mounting.p_C;
     if (k == 0) continue;
-    const Mat3 R_WB = data_.view[first + k - 1].q_WC.toRotationMatrix() * R_CB;
+    const Mat3 R_WB = data_.link[data_.first + k - 1].q_WC.toRotationMatrix() * R_CB;
+    const Eigen::Matrix<Scalar, 9, 6> by_bias = view.by_bias.cast<Scalar>();
     const Vec3 more = gyro_bias - view.gyro_bias;
-    pose[k].dt = view.dt;
-    pose[k].Rv = R_WB * (view.v + view.by_bias.block<3, 3>(0, 0) * more);
-    pose[k].Rp = R_WB * (view.p + view.by_bias.block<3, 3>(3, 0) * more);
-    pose[k].Rv_b = R_WB * view.by_bias.block<3, 3>(0, 3);
-    pose[k].Rp_b = R_WB * view.by_bias.block<3, 3>(3, 3);
+    pose.dt = view.dt;
+    pose.Rv = R_WB * (view.v + by_bias.block<3, 3>(3, 0) * more);
+    pose.Rp = R_WB * (view.p + by_bias.block<3, 3>(6, 0) * more);
+    pose.Rv_b = R_WB * by_bias.block<3, 3>(3, 3);
+    pose.Rp_b = R_WB * by_bias.block<3, 3>(6, 3);
   }
   return count;
 }
@@ -118,26 +164,29 @@ bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingSta
   return apart * apart < kMaxApart * of_scale && (g_0 - g_1).squaredNorm() < kMaxApart * of_gravity;
 }
 
-bool MovingStart::note(bool usable, std::uint32_t map_id, Scalar depth, MovingSolution* solution) {
-  if (!usable || map_id != data_.map_id) data_.count = 0;
-  data_.map_id = map_id;
-  if (!usable ||
+bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
+  if (!told.keep || told.map_id != data_.map_id) init();
+  data_.map_id = told.map_id;
+  ++data_.frames;
+  if (!told.keep ||
       (data_.count > 0 && seconds(elapsed_ns(data_.t_ns, frame_.report.t_ns)) < static_cast<double>(kInterval)))
     return false;
+  data_.correlation = std::max(Scalar(1), told.correlation / static_cast<Scalar>(data_.frames));
   if (!add()) {
-    data_.count = 0;
+    init();
     return false;
   }
-  MovingPose pose[kMaxMovingPoses];
-  const int count = data_.count < kMinPoses ? 0 : find_poses(pose);
-  if (count < kMinPoses) return false;
+  if (!told.judge || data_.count < kMinPoses || !sweep()) return false;
+  Scalar span = 0;
+  for (int k = data_.first + 1; k < data_.end; ++k) span += data_.view[k].dt;
+  if (data_.end - data_.first < kMinPoses || span < kMinSpan) return false;
   MovingStartNoise noise;
   noise.gravity = settings_.unit.gravity;
-  noise.position = kPosition * depth;
+  noise.drift = kDrift * told.depth;
   noise.accel_density = std::hypot(settings_.unit.noise.accel_density, settings_.unit.gravity * kRotation);
   noise.tilt_density = std::max(kTiltDensity, settings_.unit.noise.gyro_density);
   noise.accel_bias = tuning::inertial::kAccelBias;
-  return is_accepted(pose, count, noise, solution);
+  return is_accepted(data_.pose, collect(), noise, solution);
 }
 
 }  // namespace pf

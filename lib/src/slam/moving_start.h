@@ -3,16 +3,26 @@
 #include <cstdint>
 
 #include "filter/moving_start.h"
+#include "geometry/rotation_smoother.h"
 #include "map/map.h"
 #include "slam/body_motion.h"
 #include "slam/frame.h"
 #include "slam/settings.h"
 
-/// Looks for metres and gravity while the camera moves in a map up to scale: keeps the pixels of a frame every few, with what the samples
-/// say in between, finds the poses of these frames anew against the map as it is now, and solves for scale, gravity and the accelerometer's
-/// bias. See lib/docs/inertial.md.
+/// Looks for metres and gravity while the camera moves in a map up to scale: keeps the pixels of frames, with what the samples say in
+/// between, finds the poses of these frames anew against the map as it is now, and solves for scale, gravity and the accelerometer's bias.
+/// See lib/docs/inertial.md.
 
 namespace pf {
+
+/// What is told of a frame beside its matches.
+struct MovingFrame {
+  bool keep;             ///< it is tracked in a map that samples may scale
+  bool judge;            ///< depths of that map are known up to scale
+  std::uint32_t map_id;  ///< of that map
+  Scalar depth;          ///< the median one of what is seen
+  Scalar correlation;    ///< frames in a row whose pixels have the same errors: 1 where each has its own
+};
 
 class MovingStart {
  public:
@@ -20,15 +30,15 @@ class MovingStart {
               const BodyMotion& motion)
       : settings_(settings), filter_(filter), map_(map), frame_(frame), imu_(imu), motion_(motion) {}
 
-  void init() { data_ = Data(); }
-  /// After a frame. usable: it is tracked in a map whose depths are known up to scale. depth: the median one of what is seen. True where
-  /// *solution is sure of itself, fits, and both halves of the poses agree.
-  bool note(bool usable, std::uint32_t map_id, Scalar depth, MovingSolution* solution);
+  void init() { data_.count = data_.end = data_.left = 0; }
+  /// After a frame. True where *solution is sure of itself, fits, and both halves of the poses agree.
+  bool note(const MovingFrame& told, MovingSolution* solution);
 
  private:
-  static constexpr int kMaxPixels = 40;
+  static constexpr int kMaxPixels = 64;
+  using Float6 = Eigen::Matrix<float, 6, 6>;
 
-  /// A frame that is kept.
+  /// A frame that is kept. Floats where there are many numbers that need no more.
   struct View {
     struct Seen {
       std::uint32_t id;
@@ -36,26 +46,37 @@ class MovingStart {
     };
     Quat q_WC = Quat::Identity();
     Vec3 p_W = Vec3::Zero();
+    Float6 covariance = Float6::Zero();  ///< as of a PoseEstimate
     // Samples since the view before, in axes of the unit there, integrated without accelerometer bias.
     Scalar dt = 0;
     Vec3 gyro_bias = Vec3::Zero();
+    Quat dq_B = Quat::Identity();
     Vec3 v = Vec3::Zero(), p = Vec3::Zero();
-    Eigen::Matrix<Scalar, 6, 6> by_bias = Eigen::Matrix<Scalar, 6, 6>::Zero();  ///< of (v, p)
+    Eigen::Matrix<float, 9, 6> by_bias = Eigen::Matrix<float, 9, 6>::Zero();  ///< of (phi, v, p)
     int count = 0;
     Seen seen[kMaxPixels];
   };
 
   struct Data {
     int count = 0;
+    int frames = 0;         ///< since the last view
     std::int64_t t_ns = 0;  ///< of the last view
     std::uint32_t map_id = 0;
+    // Poses are found anew in sweeps over the views, from the last to the first, a part of them a frame.
+    int left = 0;            ///< views that the sweep has not reached
+    int first = 0, end = 0;  ///< those that it has given a pose
+    Scalar correlation = 1;  ///< of the pixels of neighbouring views
     View view[kMaxMovingPoses];
+    RotationLink link[kMaxMovingPoses];
+    MovingPose pose[kMaxMovingPoses];
   };
 
   bool add();
   bool has_depth(int entry) const;
   bool locate(View* view) const;
-  int find_poses(MovingPose* pose);
+  bool sweep();
+  void smooth();
+  int collect();
   bool is_accepted(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* solution) const;
 
   const Settings& settings_;
