@@ -88,6 +88,7 @@ double share_above(const Choices& c, const FrameRow* rows) {
 json of_starts(const VioSummary* s, int seeds) {
   constexpr double kScale = 0.05, kTilt = 2 * 3.14159265358979 / 180;
   int good = 0, accepted = 0, wrong = 0, poor = 0;
+  double nees = 0;
   std::vector<double> at, scale, tilt;
   for (int i = 0; i < seeds; ++i) {
     const bool yes = s[i].start_s >= 0;
@@ -97,7 +98,10 @@ json of_starts(const VioSummary* s, int seeds) {
     if (!yes) continue;
     wrong += s[i].start_scale_error > kScale || s[i].start_tilt_rad > kTilt;
     at.push_back(s[i].start_s);
-    scale.push_back(s[i].start_scale_error);
+    if (s[i].start_scale_error >= 0) {  // features enough have a depth
+      nees += std::pow(s[i].start_scale_error / s[i].start_scale_sigma, 2);
+      scale.push_back(s[i].start_scale_error);
+    }
     tilt.push_back(s[i].start_tilt_rad * 180 / 3.14159265358979);
   }
   return {
@@ -106,6 +110,7 @@ json of_starts(const VioSummary* s, int seeds) {
       {"accepted", accepted},
       {"accepted_poor", poor},
       {"wrong", wrong},
+      {"scale_nees", nees / std::max(1, static_cast<int>(scale.size()))},
       {"at_s", {{"median", quantile(at, 0.5)}, {"max", quantile(at, 1)}}},
       {"scale_error", {{"median", quantile(scale, 0.5)}, {"p95", quantile(scale, 0.95)}, {"max", quantile(scale, 1)}}},
       {"tilt_deg", {{"median", quantile(tilt, 0.5)}, {"p95", quantile(tilt, 0.95)}, {"max", quantile(tilt, 1)}}}};
@@ -282,11 +287,11 @@ bool print_starts(const json& j) {
   std::printf(
       "starts while it moves: yes for %g of %g, and for %g of %g that tell too little; %g yeses wrong; after %.2f s "
       "(at the "
-      "latest %.2f), scale off by %.2f %% (95 %%: %.2f, largest %.2f), gravity by %.2f degrees (%.2f, %.2f)\nverdict: "
-      "%s\n",
+      "latest %.2f), scale off by %.2f %% (95 %%: %.2f, largest %.2f; NEES %.2f of 1), gravity by %.2f degrees (%.2f, "
+      "%.2f)\nverdict: %s\n",
       accepted, number("/starts/good"), poor, number("/starts/tried") - number("/starts/good"), number("/starts/wrong"),
       number("/starts/at_s/median"), number("/starts/at_s/max"), 100 * number("/starts/scale_error/median"),
-      100 * number("/starts/scale_error/p95"), 100 * number("/starts/scale_error/max"),
+      100 * number("/starts/scale_error/p95"), 100 * number("/starts/scale_error/max"), number("/starts/scale_nees"),
       number("/starts/tilt_deg/median"), number("/starts/tilt_deg/p95"), number("/starts/tilt_deg/max"),
       good ? "yes" : "no");
   return good;
@@ -360,7 +365,7 @@ int run(Choices c) {
     return fail("--fault-at is 0 seconds or more, and at least 6 before the end");
   if (c.start != "rest" && c.start != "moving") return fail("--start " + c.start + ": write rest or moving");
   c.vio.moving = c.start == "moving";
-  if (c.vio.moving && (o.rendered || c.still)) return fail("--start moving goes with neither --rendered nor --still");
+  if (c.vio.moving && c.still) return fail("--start moving does not go with --still");
   if (c.still) c.vio.rest_s = o.seconds + 1;
   c.vio.use_imu = !c.no_imu;
   for (const std::string& what : c.estimate) {

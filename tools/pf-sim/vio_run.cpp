@@ -99,7 +99,7 @@ class Run {
 
  private:
   static VioWorld world(const VioOptions& o, std::uint64_t seed) {
-    if (o.rendered) return VioWorld(seed, o.scene, o.rest_s);
+    if (o.rendered) return VioWorld(seed, o.scene, o.moving ? 0 : o.rest_s);
     if (!o.moving) return VioWorld(seed, o.points, o.seconds, o.rest_s, o.turn_rad_s);
     const auto poor = seed / kPoorEvery % 2 == 0 ? VioWorld::Motion::kRotation : VioWorld::Motion::kEven;
     return VioWorld(seed, o.points, 1.4 * o.seconds, is_poor(o, seed) ? poor : VioWorld::Motion::kVaried);
@@ -201,6 +201,7 @@ class Run {
     rows_[k].nees_position = rows_[k].nees_pose = -1;
     if (o_.fault == VioFault::kFramesStop && t >= o_.fault_at_s && t < o_.fault_at_s + kStill) return true;
     const Pose sim_pose = world_.path()(t), truth = truth_at(t);
+    here_ = sim_pose;
     const bool dark = is_dark(t);
     const pf_status_t status = o_.rendered ? push_picture(sim_pose, t_ns, dark) : push_points(sim_pose, t_ns, dark);
     pf_pose_t pose;
@@ -273,7 +274,10 @@ class Run {
   bool note_unit(int k, const pf_report_t& report) {
     pf_inertial_t unit;
     if (pf_get_inertial(context_.slam, &unit) != PF_OK || unit.metric == 0) return false;
-    if (out_.metric_frame < 0) out_.metric_frame = k;
+    if (out_.metric_frame < 0) {
+      out_.metric_frame = k;
+      out_.start_scale_sigma = unit.sigma[16];
+    }
     out_.resting_frames += unit.resting != 0;
     const Vec3 g = (first_.R_WC.transposed() * o_.imu.gravity_W).unit();
     const Vec3 estimate = Vec3{unit.gravity_W[0], unit.gravity_W[1], unit.gravity_W[2]}.unit();
@@ -337,7 +341,7 @@ class Run {
 
   /// Relative error of the distances from the camera to the points that are known, with its sign; the median.
   double scale_error() const {
-    if (o_.rendered)
+    if (o_.rendered && !o_.moving)
       return squares_ > 0 ? std::fabs(along_ / squares_ - 1) : -1;  // of the way, since it knows no points
     std::vector<pf_feature_t> features(200);
     std::size_t count = 0;
@@ -346,8 +350,18 @@ class Run {
     if (pf_get_pose(context_.slam, &pose) != PF_OK) return -1;
     const Vec3 p{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
     std::vector<double> errors;
-    for (std::size_t i = 0; i < std::min(count, features.size()); ++i) {
-      const pf_feature_t& f = features[i];
+    features.resize(std::min(count, features.size()));
+    if (o_.rendered) {
+      const auto R_CW = pf::sim::rotation_of(pose.q_WC).transposed();
+      std::vector<Vec3> p_C;
+      for (const pf_feature_t& f : features)
+        if (f.kind == PF_FEATURE_POINT) p_C.push_back(R_CW * (Vec3{f.p_W[0], f.p_W[1], f.p_W[2]} - p));
+      const std::vector<double> truth = world_.distances(here_, p_C);
+      for (std::size_t i = 0; i < p_C.size(); ++i)
+        if (p_C[i].z > 0 && truth[i] > 0) errors.push_back(p_C[i].norm() / truth[i] - 1);
+      return errors.size() < 5 ? -1 : std::fabs(median(errors));
+    }
+    for (const pf_feature_t& f : features) {
       if (f.kind != PF_FEATURE_POINT) continue;
       const Vec3 point = first_.R_WC.transposed() * (world_.points()[f.external_id] - first_.p_WC);
       errors.push_back((Vec3{f.p_W[0], f.p_W[1], f.p_W[2]} - p).norm() / (point - last_.p_WC).norm() - 1);
@@ -367,7 +381,7 @@ class Run {
   const Pose first_;
   VioPlaneWatch planes_;
   double tilt_squares_ = 0;
-  Pose last_;
+  Pose last_, here_;
   std::vector<double> scratch_;
   std::vector<std::uint8_t> grey_;
   std::int64_t counted_ = 0;        ///< samples, towards the next one that comes too late
@@ -388,7 +402,9 @@ const char* name_of(VioFault fault) {
   return kNames[static_cast<int>(fault)];
 }
 
-bool is_poor(const VioOptions& options, std::uint64_t seed) { return options.moving && seed % kPoorEvery == 0; }
+bool is_poor(const VioOptions& options, std::uint64_t seed) {
+  return options.moving && !options.rendered && seed % kPoorEvery == 0;
+}
 
 int vio_frames(const VioOptions& options) { return static_cast<int>(options.seconds * options.rate_hz); }
 

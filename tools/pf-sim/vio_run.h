@@ -90,7 +90,7 @@ struct VioSummary {
   VioPlanes planes;
   // Of a start from a moving camera: whether the motion tells anything, when it was believed, and how wrong that is then.
   std::int32_t poor = 0;
-  double start_s = -1, start_scale_error = -1, start_tilt_rad = -1;
+  double start_s = -1, start_scale_error = -1, start_scale_sigma = 0, start_tilt_rad = -1;
   std::int32_t dark_end_frame = -1, tracked_again_frame = -1;
 };
 

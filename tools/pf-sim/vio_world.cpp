@@ -43,6 +43,16 @@ pf_camera_t camera_of_points() {
   return {PF_CAMERA_PINHOLE, 640, 480, f, f, 319.5, 239.5, {}, 0, PF_CAMERA_EXACT, PF_TIMESTAMPS_REAL, 0, 0, 0, {}};
 }
 
+pf_pose_t view_of(const Pose& pose) {
+  pf_pose_t view = {};
+  const auto q = pf::sim::quaternion_of(pose.R_WC);
+  std::copy(q.begin(), q.end(), view.q_WC);
+  view.p_WC[0] = pose.p_WC.x;
+  view.p_WC[1] = pose.p_WC.y;
+  view.p_WC[2] = pose.p_WC.z;
+  return view;
+}
+
 }  // namespace
 
 VioWorld::VioWorld(std::uint64_t seed, int points, double seconds, double rest_s, double turn_rad_s)
@@ -108,14 +118,28 @@ VioWorld::VioWorld(std::uint64_t seed, const std::string& scene, double rest_s) 
   path_ = pf::sim::after_rest(base, rest_s, kRamp);
 }
 
+std::vector<double> VioWorld::distances(const Pose& pose, const std::vector<Vec3>& p_C) const {
+  const auto width = static_cast<std::size_t>(camera_.width), height = static_cast<std::size_t>(camera_.height);
+  std::vector<float> depth(width * height);
+  const pf_pose_t view = view_of(pose);
+  pf_sim_depth(room_.get(), &view, depth.data(), nullptr);
+  std::vector<double> out;
+  for (const Vec3& p : p_C) {
+    const double point[3] = {p.x, p.y, p.z};
+    double pixel[2];
+    out.push_back(-1);
+    if (pf_camera_project(&camera_, point, pixel) != PF_OK) continue;
+    const double u = std::round(pixel[0]), v = std::round(pixel[1]);
+    if (!(u >= 0 && v >= 0 && u < camera_.width && v < camera_.height)) continue;
+    const float z = depth[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)];
+    if (z > 0) out.back() = z / p.z * p.norm();
+  }
+  return out;
+}
+
 bool VioWorld::draw(const Pose& pose, double noise_grey, Random& noise, std::vector<std::uint8_t>* grey) const {
   if (room_ == nullptr) return false;
-  pf_pose_t view = {};
-  const auto q = pf::sim::quaternion_of(pose.R_WC);
-  std::copy(q.begin(), q.end(), view.q_WC);
-  view.p_WC[0] = pose.p_WC.x;
-  view.p_WC[1] = pose.p_WC.y;
-  view.p_WC[2] = pose.p_WC.z;
+  const pf_pose_t view = view_of(pose);
   pf_image_t image;
   if (pf_sim_render(room_.get(), &view, &image) != PF_OK) return false;
   grey->resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));

@@ -29,6 +29,8 @@ class VioWorld {
   void wave(double t, double sigma_px, pf::sim::Random& noise, std::vector<pf_observation_t>* seen) const;
   /// Pixels with noise of the points that a camera sees.
   std::vector<pf_observation_t> observe(const pf::sim::Pose& pose, double sigma_px, pf::sim::Random& noise) const;
+  /// How far from the camera the rendered scene is along the rays of points in the camera's axes [m]; negative: nothing is seen there.
+  std::vector<double> distances(const pf::sim::Pose& pose, const std::vector<pf::sim::Vec3>& p_C) const;
   /// The picture that a camera sees, in `grey`. False where nothing is rendered.
   bool draw(const pf::sim::Pose& pose, double noise_grey, pf::sim::Random& noise,
             std::vector<std::uint8_t>* grey) const;

@@ -126,7 +126,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns, Scalar unit) {
   now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
   Transition transition;
   // Residuals of zero say nothing of how the unit is mounted either.
-  if (settings_.body.estimates_mounting())
+  if (settings_.inertial)
     motion_.predict_coasting(now, before_ns, frame.t_ns, &transition);
   else
     motion_.predict(now, before_ns, frame.t_ns, settings_.motion_noise, &transition);
