@@ -99,29 +99,33 @@ bool MovingStart::sweep() {
   return data_.left == 0;
 }
 
-/// The rotations of the views by their pixels and by the gyro together.
-void MovingStart::smooth() {
-  const Quat q_CB(filter_.state().mounting.R_CB);
+/// The rotations of the views by their pixels and by the gyro together. Returns the gyro's bias that they tell.
+Vec3 MovingStart::smooth() {
+  const Mat3& R_CB = filter_.state().mounting.R_CB;
+  const Quat q_CB(R_CB);
   const Vec3 gyro_bias = filter_.state().body.gyro_bias;
   const Scalar density = std::max(kTiltDensity, settings_.unit.noise.gyro_density);
   for (int k = data_.first; k < data_.end; ++k) {
     const View& view = data_.view[k];
     RotationLink& link = data_.link[k];
-    const Vec3 turn = view.by_bias.topLeftCorner<3, 3>().cast<Scalar>() * (gyro_bias - view.gyro_bias);
+    const Mat3 by_bias = view.by_bias.topLeftCorner<3, 3>().cast<Scalar>();
+    const Quat dq_B = exp_so3(Vec3(by_bias * (gyro_bias - view.gyro_bias))) * view.dq_B;
     link.q_WC = view.q_WC;
     link.variance = data_.correlation * static_cast<Scalar>(view.covariance.topLeftCorner<3, 3>().trace()) / 3;
-    link.dq = q_CB * exp_so3(turn) * view.dq_B * q_CB.conjugate();
+    link.dq = q_CB * dq_B * q_CB.conjugate();
     link.step_variance = density * density * view.dt;
+    link.by_bias = R_CB * dq_B.conjugate().toRotationMatrix() * by_bias;
   }
-  smooth_rotations(data_.link + data_.first, data_.end - data_.first);
+  const int row = settings_.body.row(BodyPart::kGyroBias);
+  const Scalar variance = (filter_.variance(row) + filter_.variance(row + 1) + filter_.variance(row + 2)) / 3;
+  return gyro_bias + smooth_rotations(data_.link + data_.first, data_.end - data_.first, variance);
 }
 
 /// The poses of the sweep: positions given the smoothed rotations, e | theta = S_et S_tt^-1 theta. Returns how many.
 int MovingStart::collect() {
   const Mat3& R_CB = filter_.state().mounting.R_CB;
-  const Vec3 gyro_bias = filter_.state().body.gyro_bias;
+  const Vec3 gyro_bias = smooth();
   const int count = data_.end - data_.first;
-  smooth();
   for (int k = 0; k < count; ++k) {
     const View& view = data_.view[data_.first + k];
     const RotationLink& link = data_.link[data_.first + k];

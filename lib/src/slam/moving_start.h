@@ -75,7 +75,7 @@ class MovingStart {
   bool has_depth(int entry) const;
   bool locate(View* view) const;
   bool sweep();
-  void smooth();
+  Vec3 smooth();
   int collect();
   bool is_accepted(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* solution) const;
 
