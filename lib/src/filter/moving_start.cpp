@@ -30,13 +30,15 @@ struct Sum {
 struct Whitener {
   Scalar L[kMaxRows][kMaxRows];
 
-  bool factor(const Sum* sum, int n, Scalar sigma_0, Scalar q_d, Scalar q_a, Scalar q_r) {
+  bool factor(const Sum* sum, int n, Scalar sigma_0, Scalar q_d, Scalar q_a, Scalar q_r, Scalar q_t) {
+    const Scalar T = sum[n - 1].t;
+    const auto h = [&](Scalar t) { return t * t * (t / 6 - T / 4); };
     for (int j = 0; j < n; ++j)
       for (int k = 0; k <= j; ++k) {
         const Scalar t = sum[k].t, u = sum[j].t;  // t <= u
         const Scalar G2 = t * t * (3 * u - t) / 6;
         const Scalar G3 = t * t * t * (t * t - 5 * t * u + 10 * u * u) / 120;
-        Scalar C = sigma_0 * sigma_0 + q_d * q_d * t + q_a * q_a * G2 + q_r * q_r * G3;
+        Scalar C = sigma_0 * sigma_0 + q_d * q_d * t + q_a * q_a * G2 + q_r * q_r * G3 + q_t * q_t * h(t) * h(u);
         if (j == k) C += sum[k].variance;
         for (int i = 0; i < k; ++i) C -= L[j][i] * L[k][i];
         if (j == k && !(C > Scalar(0))) return false;
@@ -136,12 +138,12 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
   Whitener whitener;
   Scalar u = 1;  // units of the map in a metre
   Vec3 v_0, g;
-  const Scalar tilt = noise.gravity * noise.tilt_density;
+  const Scalar tilt = noise.gravity * noise.tilt_density, turn = noise.gravity * noise.turn;
   for (int pass = 0; pass < 2; ++pass)  // the second with the noise of the samples in units of the map
-    if (!whitener.factor(sum, n, pose[0].sigma, noise.drift, u * noise.accel_density, u * tilt) ||
+    if (!whitener.factor(sum, n, pose[0].sigma, noise.drift, u * noise.accel_density, u * tilt, u * turn) ||
         !solve_linear(sum, n, whitener, &u, &v_0, &g) || !(u > Scalar(0)) || !(g.norm() > Scalar(0)))
       return false;
-  if (!whitener.factor(sum, n, pose[0].sigma, noise.drift, u * noise.accel_density, u * tilt)) return false;
+  if (!whitener.factor(sum, n, pose[0].sigma, noise.drift, u * noise.accel_density, u * tilt, u * turn)) return false;
 
   Quat q_WG = turn_z_to(g.normalized());
   Vec3 bias = Vec3::Zero();

@@ -23,6 +23,7 @@ struct MovingStartNoise {
   Scalar drift = 0;          ///< of p_W, as the points that it is known by change, in units of the map [/sqrt(s)]
   Scalar accel_density = 0;  ///< white, of the accelerometer [m/s^2/sqrt(Hz)]
   Scalar tilt_density = 0;   ///< of the poses' rotations, which tilts gravity in them [rad/sqrt(s)]
+  Scalar turn = 0;           ///< of the rate at which the poses' rotations turn away from the truth, constant [rad/s]
   Scalar accel_bias = 0;     ///< prior sigma of each axis [m/s^2]
 };
 
@@ -52,9 +53,9 @@ inline constexpr int kMaxMovingPoses = 96;
 /// without b_a and with g of any length, then refined with |g| imposed and the prior of b_a: g = gravity R_WG e_z,
 /// dg = gravity (-R_WG e_y, R_WG e_x) d. Residuals are whitened by
 ///
-///   C_jk = sigma_0^2 + sigma_k^2 delta_jk + q_d^2 min(t_j, t_k) + (u q_a)^2 G2_jk + (u gravity q_r)^2 G3_jk
+///   C_jk = sigma_0^2 + sigma_k^2 delta_jk + q_d^2 min(t_j, t_k) + (u q_a)^2 G2_jk + (u gravity)^2 (q_r^2 G3_jk + q_t^2 h_j h_k)
 ///
-/// Gn: covariance of an n times integrated white noise; of many poses, rows are means over a few neighbours. A misfit above one widens
+/// Gn: covariance of an n times integrated white noise; h = t^3 / 6 - T t^2 / 4: gravity in poses that turn, right at T / 2. Of many poses, rows are means over a few neighbours. A misfit above one widens
 /// the covariance. False where there are too few poses or the system is singular.
 bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out);
 

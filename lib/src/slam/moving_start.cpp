@@ -168,6 +168,15 @@ bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingSta
   return apart * apart < kMaxApart * of_scale && (g_0 - g_1).squaredNorm() < kMaxApart * of_gravity;
 }
 
+/// How well the rate at which the poses turn away from the truth is known: by the map, which turns with them, or by the gyro.
+Scalar MovingStart::turn_rate_sigma(Scalar span) const {
+  const auto variance_at = [&](int row) {
+    return (filter_.variance(row) + filter_.variance(row + 1) + filter_.variance(row + 2)) / 3;
+  };
+  return std::sqrt(
+      std::min(variance_at(Body::kTheta) / (span * span), variance_at(settings_.body.row(BodyPart::kGyroBias))));
+}
+
 bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
   if (!told.keep || told.map_id != data_.map_id) init();
   data_.map_id = told.map_id;
@@ -189,6 +198,7 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
   noise.drift = kDrift * told.depth;
   noise.accel_density = std::hypot(settings_.unit.noise.accel_density, settings_.unit.gravity * kRotation);
   noise.tilt_density = std::max(kTiltDensity, settings_.unit.noise.gyro_density);
+  noise.turn = turn_rate_sigma(span);
   noise.accel_bias = tuning::inertial::kAccelBias;
   return is_accepted(data_.pose, collect(), noise, solution);
 }
