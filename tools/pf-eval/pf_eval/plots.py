@@ -1,21 +1,16 @@
 """plot-run: the command."""
 
-import argparse
 import pathlib
 import sys
 
 import numpy as np
 
 from . import Refused, plot_errors, plot_frames, plot_trajectory
-from .command_line import OneLineParser
 from .errors import compare, default_alignment
 from .files import read_run, read_table
 from .output_folder import LIST, add_output_files, open_output_folder
+from .plot_options import arguments
 from .truth import read_truth
-
-DESCRIPTION = """Draws a run of pf-capture into RUN/plots: trajectory.png (from above and from the side, with the map), frames.png
-(matches, size of the state, milliseconds and innovations over time) and, where truth is known, errors.png: with 3-sigma
-bounds where the run is in the truth's own frame, after alignment otherwise."""
 
 
 def describe(run, report, comparison):
@@ -74,13 +69,7 @@ def plot(options):
 
 
 def main(words=None):
-    parser = OneLineParser(prog="plot-run", description=DESCRIPTION,
-                           formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", metavar="RUN", help="output folder of pf-capture")
-    parser.add_argument("--truth", metavar="FILE.tum", help="default: truth.tum in RUN, if it is there")
-    parser.add_argument("--align", choices=["none", "se3", "sim3"], help="as in pf-eval")
-    parser.add_argument("--out", metavar="DIR", help="default: RUN/plots")
-    options = parser.parse_args(words)
+    options = arguments(words)
     try:
         with np.errstate(all="ignore"):
             for path in plot(options):

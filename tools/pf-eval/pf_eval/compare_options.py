@@ -1,0 +1,44 @@
+"""compare-runs: what its command line may hold. Needs nothing but Python, so that --help does not either."""
+
+import argparse
+
+from .command_line import OneLineParser
+
+DESCRIPTION = """Runs one or several builds or sets of options of pf-capture on sequences from several starts (--skip 0, 1, ...),
+interleaved, and prints a table per sequence: the median over the starts, and the worst in brackets.
+
+  tools/compare-runs --out DIR [VARIANT ...] [--starts N] [--data DIR] [--only NAME]
+  tools/compare-runs --show DIR [DIR]
+
+VARIANT is "NAME=PROGRAM [options]" in one word, for example
+  now=build/release/bin/pf-capture  "no planes=build/release/bin/pf-capture --no-planes"
+Without any: now=build/release/bin/pf-capture."""
+
+NOTES = """A sequence is a folder with calib.yaml, times.txt and images/. With target.yaml it starts from that target, else with
+nothing known. groundtruth.tum gives the position error after Sim(3) alignment, target_corners.csv that of the target's corners;
+with --there-and-back among a variant's options the distance of each image's two poses is shown as well. The largest value counts
+as the worst, but for tracked frames, planes and folding the smallest; "share folded", "frames with a plane" and "rows saved" are
+means over tracked frames from frame 60 on; a run that failed is worse than any, and shows as
+"none". Runs that are already in DIR, made by the same program, are not made again.
+
+Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
+
+
+def arguments(words):
+    parser = OneLineParser(prog="compare-runs", description=DESCRIPTION, epilog=NOTES,
+                           formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("variants", metavar="VARIANT", nargs="*")
+    parser.add_argument("--out", metavar="DIR", help="folder for the runs")
+    parser.add_argument("--show", metavar="DIR", nargs="+", help="print the tables of one or two such folders; runs nothing")
+    parser.add_argument("--starts", metavar="N", type=int, default=5, help="starts per sequence (default 5)")
+    parser.add_argument("--data", metavar="DIR", help="folder of the sequences (default: $PLANEFOLD_DATA)")
+    parser.add_argument("--only", metavar="NAME", action="append", help="a sequence to run, may be repeated (default: all)")
+    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="runs at a time (default 1; more make times worthless)")
+    options = parser.parse_args(words)
+    if (options.out is None) == (options.show is None):
+        parser.error("give either --out or --show")
+    if options.show and (options.variants or len(options.show) > 2):
+        parser.error("--show takes one or two folders and no variants")
+    if options.starts < 1 or options.jobs < 1:
+        parser.error("--starts and --jobs must be at least 1")
+    return options
