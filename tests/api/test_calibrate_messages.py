@@ -67,6 +67,13 @@ def main():
             pixels = bytes([90]) * (width * height)
             (root / f"mixed/{i}.pgm").write_bytes(f"P5 {width} {height} 255\n".encode() + pixels)
             (root / f"grey/{i}.pgm").write_bytes(b"P5 320 240 255\n" + bytes([90]) * (320 * 240))
+        (root / "mine.pdf").write_text("mine\n")
+        for path in ("mine.pdf", "chessboard/0.png"):
+            before = (root / path).read_bytes()
+            if f"'{path}' exists and is left as it is" not in complaint(root, ["--print-target", path, "--target", "chessboard"], (1,)):
+                fail(f"{path} is there already")
+            if (root / path).read_bytes() != before:
+                fail(f"{path} was written over")
         for arguments, part in COMMAND_LINE:
             if part not in complaint(root, arguments, (2,)):
                 fail(f"expected: {part}")

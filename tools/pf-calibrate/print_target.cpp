@@ -3,6 +3,7 @@
 #include <cairo-pdf.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -152,6 +153,11 @@ bool print_target(const Board& board, const std::string& page, const std::string
                   "fewer squares, or a larger --page",
                   1000.0 * board.width_m(), 1000.0 * board.height_m(), width_mm, height_mm);
     error = text;
+    return false;
+  }
+  std::error_code failed;
+  if (std::filesystem::exists(std::filesystem::symlink_status(path, failed))) {
+    error = "'" + path + "' exists and is left as it is; give another name, or remove it";
     return false;
   }
   const char* failure =
