@@ -202,7 +202,8 @@ int run(const Choices& c) {
   Film film;
   std::string error;
   if (!read_start(c.start, &options.has_target, &options.target, &error)) return fail(error);
-  if (!film.open(c.source, &error) || !config_for(film, &options.config, &error)) return fail(error);
+  if (!film.open(c.source, &error)) return fail(error, 1);
+  if (!config_for(film, &options.config, &error)) return fail(error);
   options.config.camera.estimate = c.lens == "estimate" ? PF_CAMERA_ESTIMATE : PF_CAMERA_EXACT;
   Context context(options.config);
   Reference reference;
