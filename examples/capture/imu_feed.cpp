@@ -103,6 +103,10 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
   imu_ = open_imu(options, source, beside, error);
   offset_s_ = options.imu_offset_s;
   vertical_rad_ = options.vertical_deg * kRadians;
+  if (error.empty() && imu_ == nullptr && offset_s_ != 0.0) {
+    error = "--imu-offset: there are no inertial samples beside these frames; add --imu, or leave it away";
+    code = kExitUsage;
+  }
   for (const std::string& what : options.estimate) {
     estimate_mount_ |= what == "mount";
     estimate_delay_ |= what == "delay";

@@ -76,6 +76,12 @@ std::string check_imu_options(const Options& options) {
   if (options.vertical_deg > 0.0 && imu != "sim" && options.imu_noise.empty()) {
     return "--vertical: gravity is estimated only where the samples' noise is known; add --imu-noise FILE";
   }
+  if (options.imu_rate_hz > 0.0 && imu.rfind("iio:", 0) != 0) {
+    return "--imu-rate is for iio: units; samples of a file or scene are as they are";
+  }
+  if (imu == "none" && options.imu_offset_s != 0.0) {
+    return "--imu none: there are no samples; leave --imu-offset away";
+  }
   return std::isfinite(options.imu_offset_s) ? "" : "--imu-offset: not a finite number of seconds";
 }
 

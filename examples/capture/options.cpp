@@ -8,10 +8,12 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "checked_options.h"
 #include "imu.h"
+#include "realtime.h"
 
 namespace pf::capture {
 
@@ -147,6 +149,17 @@ std::string check(const Options& options, const std::string& backend) {
   if (!is_camera && (options.exposure_us > 0.0 || options.focus >= -1 || options.format != "any" || options.dma_buf)) {
     return "--format, --exposure, --focus and --dma-buf are for cameras";
   }
+  if (options.capture_processor >= 0 && !is_camera && !options.realtime) {
+    return "--capture-cpu is for cameras and --realtime; without these the tracker reads the frames itself";
+  }
+  for (const auto& [option, processor] :
+       {std::pair("--cpu", options.processor), std::pair("--capture-cpu", options.capture_processor)}) {
+    const std::string there = processors_there();
+    if (processor >= 0 && !names_processor(there, processor)) {
+      return std::string(option) + " " + std::to_string(processor) + ": there is no such processor here; there are " +
+             there;
+    }
+  }
   if (options.sim_rest_s > 0.0 && kind != "sim") {
     return "--rest is for sim: sources";
   }
@@ -276,7 +289,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_flag("--quiet", options.quiet, "no progress line");
   app.add_option("--backend", backend, "filter: a filter over pose and map; window: keyframes and bundle adjustment")
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
+  const CLI::Option* seed = app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
   app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
       ->check(number_in(0.0, 1000.0));
   app.add_option("--max-features", options.max_features, "capacity of the map")->check(at_least(1));
@@ -337,6 +350,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   }
   const auto set = kernel_names.find(kernels);
   std::string wrong = check(options, backend);
+  if (wrong.empty() && seed->count() > 0 && options.source.rfind("sim:", 0) != 0) {
+    wrong = "--seed is for sim: sources; images of a folder or camera are as they are";
+  }
   if (wrong.empty() && !timestamps.empty() && timestamps != "real" && timestamps != "nominal") {
     wrong = "--timestamps " + timestamps + ": write real or nominal";
   }

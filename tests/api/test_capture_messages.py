@@ -118,6 +118,14 @@ def test_usage(root):
            "csv:samples.csv")
     expect("there and back by rows", 1, ["--there-and-back", "--readout 0"], "--source", source, "--there-and-back",
            "--readout", "0.03", *out)
+    expect("seed of images", 2, ["--seed", "sim:"], "--source", source, "--seed", "3")
+    expect("seed of a camera", 2, ["--seed", "sim:"], "--source", "v4l2:/dev/video0", "--seed", "1")
+    expect("offset of no samples", 2, ["--imu-offset", "--imu"], "--source", source, "--imu-offset", "0.01", *out)
+    expect("offset of samples that are left alone", 2, ["--imu none", "--imu-offset"], "--source", source, "--imu", "none", "--imu-offset", "0.01")
+    expect("rate of a file", 2, ["--imu-rate", "iio:"], "--source", source, "--imu", "csv:x", "--imu-rate", "200")
+    expect("capture thread of a folder", 2, ["--capture-cpu", "--realtime"], "--source", source, "--capture-cpu", "0")
+    for option in ("--cpu", "--capture-cpu"):
+        expect(f"no such processor for {option}", 2, [f"{option} 987654", "no such processor", "there are 0"], "--source", source, "--realtime", option, "987654")
     expect("as recorded", 2, ["--as-recorded", "euroc:"], "--source", source, "--as-recorded")
     expect("back end", 2, ["--backend", "filter"], "--source", source, "--backend", "magic")
     expect("start", 2, ["--start"], "--source", source, "--start", "somehow")
