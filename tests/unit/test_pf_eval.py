@@ -217,6 +217,15 @@ class Command(unittest.TestCase):
         self.assertIn("position error, RMS", out)
         self.assertIn("ate_rmse_m", json.loads((self.path / "eval.json").read_text()))
 
+    def test_truth_should_be_read_as_other_systems_write_it(self):
+        rows = (self.path / "truth.tum").read_text().splitlines()
+        expected = self.pf_eval(self.path, "--truth", self.path / "truth.tum", "--json")[1]
+        other = self.path / "other.tum"
+        other.write_bytes(b"\xef\xbb\xbf" + "\r\n".join(["# t x y z", "", *reversed(rows)]).encode())
+        code, out, err = self.pf_eval(self.path, "--truth", other, "--json")
+        self.assertEqual(code, 0, err)
+        self.assertEqual(json.loads(out) | {"truth": ""}, json.loads(expected) | {"truth": ""})
+
     def test_truth_should_be_found_when_the_report_names_it(self):
         code, _, err = self.pf_eval(self.path)  # truth.tum of a scene
         self.assertEqual(code, 0, err)

@@ -43,7 +43,7 @@ def _text(path):
     if path.is_dir():
         raise Refused(f"{path}: is a folder, a file is needed")
     try:
-        return path.read_text()
+        return path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise Refused(f"{path}: cannot be read ({error})") from error
 
