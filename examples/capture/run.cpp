@@ -1,11 +1,14 @@
 #include "run.h"
 
+#include <planefold_platform/sequence.h>
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "imu_feed.h"
@@ -428,6 +431,29 @@ int Run::finish() {
   return lost.empty() ? kExitDone : fail(lost);
 }
 
+/// No file that is read may be one that an earlier run left in the folders that are written, and that goes.
+bool spares_inputs(const Options& options, std::string& error) {
+  std::vector<std::string> inputs = {options.calibration, options.second_pose, options.walls, options.imu_noise,
+                                     options.imu_mount};
+  for (const std::string* text : {&options.source, &options.start, &options.imu}) {
+    const std::string kind = text->substr(0, text->find(':'));
+    for (const char* reads : {"images", "euroc", "tum", "target", "pose", "csv"}) {
+      if (kind == reads && kind.size() < text->size()) inputs.push_back(text->substr(kind.size() + 1));
+    }
+  }
+  for (const auto& [option, folder] : {std::pair("--out", options.out), std::pair("--record", options.record)}) {
+    for (const std::string& input : inputs) {
+      char message[PF_SEQUENCE_MESSAGE] = "";
+      if (!folder.empty() && !input.empty() &&
+          pf_check_output_input(folder.c_str(), option, input.c_str(), message) != 0) {
+        error = message;
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 int run(const Options& options) {
@@ -439,6 +465,9 @@ int run(const Options& options) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   std::string error;
+  if (!spares_inputs(options, error)) {
+    return fail(error);
+  }
   const std::unique_ptr<Source> source = open_source(options, error);
   if (source == nullptr) {
     return fail(error, is_calibration_wrong(options) ? kExitUsage : kExitRun);

@@ -4,6 +4,7 @@
 /// ends in / is a folder. A later run deletes what the list names, and folders only when they are empty then.
 #include <planefold_platform/sequence.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -34,6 +35,10 @@ bool stays_inside(const fs::path& name) {
     inside = inside && part != "..";
   }
   return inside;
+}
+
+bool is_inside(const fs::path& path, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
 std::vector<std::string> read_list(const fs::path& folder) {
@@ -94,6 +99,24 @@ int pf_check_output_folder(const char* path, const char* option, char message[PF
   if (!empty && !fs::is_regular_file(folder / kList, failure)) {
     return say(message, folder.string() + ": holds files of others (it has no " + kList + " of an earlier run)" +
                             other + ", or empty it yourself");
+  }
+  return 0;
+}
+
+int pf_check_output_input(const char* path, const char* option, const char* input, char message[PF_SEQUENCE_MESSAGE]) {
+  if (path == nullptr || option == nullptr || input == nullptr) {
+    return say(message, "an output folder, its option and an input are needed");
+  }
+  std::error_code failure;
+  const fs::path folder = fs::weakly_canonical(path, failure), read = fs::weakly_canonical(input, failure);
+  if (!is_inside(read, folder)) {  // a folder for output may lie among the images
+    return 0;
+  }
+  for (const std::string& name : read_list(folder)) {
+    if (is_inside(fs::weakly_canonical(folder / name, failure), read)) {
+      return say(message, std::string(path) + ": an earlier run wrote " + input +
+                              ", which this run reads and would delete; choose another " + option);
+    }
   }
   return 0;
 }

@@ -39,6 +39,29 @@ def check_refusal(name, folder, *command):
     require(contents(folder) == before, f"{name}: the user's folder was changed")
 
 
+def check_inputs(root, images):
+    """What a program wrote into a folder, and is read now, is not deleted by --out or --record."""
+    before = contents(images)
+    read = [BIN / "pf-capture", "--source", f"images:{images}", "--headless", "--quiet", "--no-film"]
+    desk = [BIN / "pf-capture", "--source", "sim:desk", "--headless", "--quiet", "--no-film", "--frames", "2", "--out", images]
+    cases = [("--out of the source", [*read, "--out", images]), ("the same by another path", [*read, "--out", f"{images}/../{images.name}/"]),
+             ("--record of the source", [*read, "--out", root / "elsewhere", "--record", images]),
+             ("a calibration in --out", [*read[:1], "--source", "images:/nowhere", "--calib", images / "calib.yaml", "--out", images]),
+             ("a target in --out", [*desk, "--start", f"target:{images}/target.yaml"])]
+    if (BIN / "pf-calibrate").is_file():
+        cases.append(("pf-calibrate", [BIN / "pf-calibrate", "--source", f"images:{images}/images", "--out", images]))
+    for name, command in cases:
+        result = run(*command)
+        lines = result.stderr.strip().splitlines()
+        require(result.returncode == 1 and len(lines) == 1 and "would delete; choose another --" in lines[0], f"{name}: {result.stderr}")
+        require(contents(images) == before, f"{name}: what was read is gone")
+    result = run(*read, "--out", images / "run")  # beside the images
+    require(contents(images).keys() > before.keys(), f"--out inside of the source: {result.stderr}")
+    for path in sorted((images / "run").iterdir()):
+        path.unlink()
+    (images / "run").rmdir()
+
+
 def main():
     skip_in_cross_builds()
     if not CAPTURE[0].is_file():
@@ -54,6 +77,7 @@ def main():
                 result = run(BIN / "pf-sim", "render", "desk", "--frames", frames, "--out", images)
                 require(result.returncode == 0, f"pf-sim render: {result.stderr}")
                 require(len(list((images / "images").iterdir())) == frames, f"{frames} frames were asked for: {contents(images).keys()}")
+            check_inputs(root, images)
         if (BIN / "pf-calibrate").is_file():
             check_refusal("pf-calibrate", root / "e", BIN / "pf-calibrate", "--source", f"images:{root}", "--out", root / "e")
 

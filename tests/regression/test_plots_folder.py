@@ -18,6 +18,14 @@ with tempfile.TemporaryDirectory() as folder:
         add_output_files(plots, "frames.png")
         add_output_files(run, "plots/", "plots/frames.png", f"plots/{LIST}")
         (plots / "frames.png").write_text("picture")
+    before = (run / LIST).read_text()
+    try:
+        open_output_folder(f"{run}/plots/..", "--out", reads=run)
+        script.fail("the run itself was emptied for its plots")
+    except Refused:
+        pass
+    if (run / LIST).read_text() != before or not (plots / "frames.png").is_file():
+        script.fail("the refusal changed the run")
     (run / "notes.txt").write_text("the user's")
     try:
         add_output_files(run, "notes.txt")

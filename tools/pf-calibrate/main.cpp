@@ -31,7 +31,7 @@ void warn_about(const Fit& fit, double covered) {
 int calibrate(const Options& options) {
   Search search;
   std::string error;
-  if (!check_outputs(options.out, error)) {
+  if (!check_outputs(options.out, options.source, error)) {
     return complain(error);
   }
   if (!search_source(options, search, error)) {

@@ -98,9 +98,11 @@ const char* model_name(int32_t model) {
   return model == PF_CAMERA_PINHOLE ? "none" : model == PF_CAMERA_RADTAN ? "radtan" : "equidistant";
 }
 
-bool check_outputs(const std::string& folder, std::string& error) {
+bool check_outputs(const std::string& folder, const std::string& source, std::string& error) {
   char message[PF_SEQUENCE_MESSAGE] = "";
-  const bool usable = pf_check_output_folder(folder.c_str(), "--out", message) == 0;
+  const std::string images = source.substr(source.find(':') + 1);
+  const bool usable = pf_check_output_folder(folder.c_str(), "--out", message) == 0 &&
+                      pf_check_output_input(folder.c_str(), "--out", images.c_str(), message) == 0;
   error = message;
   return usable;
 }

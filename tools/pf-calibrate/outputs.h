@@ -9,7 +9,7 @@
 namespace pf::calibrate {
 
 /// false: the folder holds what no earlier run wrote, and error is one line. Asked before the search, which takes minutes.
-bool check_outputs(const std::string& folder, std::string& error);
+bool check_outputs(const std::string& folder, const std::string& source, std::string& error);
 
 /// Writes calib.yaml, calibration.json, corners.csv and coverage.png into a folder. false: error is one line.
 bool write_outputs(const std::string& folder, const Board& board, const Search& search, const Fit& fit,

@@ -121,8 +121,8 @@ int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_
                  char message[PF_SEQUENCE_MESSAGE]);
 
 /* Noise densities of an inertial unit: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml (gyroscope_noise_density and so on), or
- * gyro_noise_density, gyro_random_walk, accel_noise_density, accel_random_walk. Sets these four fields of *imu, and none when it is
- * refused. A density that no unit has (degrees, or the noise of single samples) is refused. With 0, message is a line on what was
+ * gyro_noise_density, gyro_random_walk, accel_noise_density, accel_random_walk; each may have gravity [m/s^2], 9 .. 11. Sets these fields of
+ * *imu, gravity only where the file has it, and none when it is refused. A density that no unit has (degrees, or the noise of single samples) is refused. With 0, message is a line on what was
  * ignored, or empty. */
 int pf_read_imu_noise(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]);
 
@@ -143,6 +143,9 @@ int pf_open_output_folder(const char* folder, const char* option, char message[P
 
 /* Says beforehand whether the folder would be refused, and changes nothing. */
 int pf_check_output_folder(const char* folder, const char* option, char message[PF_SEQUENCE_MESSAGE]);
+
+/* Refuses a folder from which pf_open_output_folder would delete what the program reads: input is a file, or a folder of images. */
+int pf_check_output_input(const char* folder, const char* option, const char* input, char message[PF_SEQUENCE_MESSAGE]);
 
 /* Adds a name to the list, before the file is made: relative to the folder; with a / at its end it is a folder. Refused where such a
  * file is there that is not on the list. */

@@ -16,9 +16,12 @@ def _names(folder):
     return [name for name in names if not name.is_absolute() and ".." not in name.parts]
 
 
-def open_output_folder(path, option):
-    """Makes the folder, or empties it of what its list names. Refused where it holds anything and has no list."""
+def open_output_folder(path, option, reads=None):
+    """Makes the folder, or empties it of what its list names. Refused where it holds anything and has no list, or is the folder that is
+    read."""
     path = pathlib.Path(path)
+    if reads is not None and path.resolve() == pathlib.Path(reads).resolve():
+        raise Refused(f"{path}: is the run itself, whose files would be deleted; choose another {option}")
     try:
         path.mkdir(parents=True, exist_ok=True)
         if any(path.iterdir()) and not (path / LIST).is_file():

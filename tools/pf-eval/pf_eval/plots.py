@@ -38,7 +38,7 @@ def plot(options):
             print(f"plot-run: without truth: {refused}", file=sys.stderr)
             truth = None
 
-    out = open_output_folder(options.out or folder / "plots", "--out")
+    out = open_output_folder(options.out or folder / "plots", "--out", reads=folder)
     pictures = ["trajectory.png", "frames.png", "errors.png"]
     add_output_files(out, *pictures)
     if not options.out and (folder / LIST).is_file():  # the next run into this folder takes them along
