@@ -60,12 +60,18 @@ class Walk {
     next_ = sample + 1;
   }
 
-  /// To the next sample, or to the end before it. What lies in a gap is a bridge between its ends: white accelerations over it.
+  /// To the next sample, or to the end before it. What lies in a gap is a bridge between its ends: white accelerations over it. None
+  /// reaches over a gap that is too long to coast through, as where the clock has jumped.
   void go_between(std::int64_t to_ns) {
     const ImuSample &a = log_[next_ - 1], &b = log_[next_];
     const Scalar interval = seconds_between(a.t_ns, b.t_ns);
     const auto at = [&](std::int64_t t_ns) { return between(a, b, seconds_between(a.t_ns, t_ns) / interval); };
     const std::int64_t end_ns = std::min(to_ns, b.t_ns);
+    if (interval > kMaxCoast) {
+      coast_to(end_ns);
+      if (end_ns == b.t_ns) take(next_);
+      return;
+    }
     Scalar gyro_more = 0, accel_more = 0;
     if (interval > kMaxGap * static_cast<Scalar>(seconds(log_.counts().median_ns))) {
       const Scalar b2 = coasting_.noise.angular * coasting_.noise.angular;
@@ -103,7 +109,8 @@ class Walk {
   }
 
   void coast_to(std::int64_t to_ns) {
-    const Scalar dt = std::min(seconds_between(t_ns_, to_ns), kMaxCoast);  // after it no motion is predictable
+    const Scalar left = std::max(kMaxCoast - coasted_, Scalar(0));  // after it no motion is predictable
+    const Scalar dt = std::min(seconds_between(t_ns_, to_ns), left);
     now_.accel = sum_->R().transpose() * coasting_.f_B + sum_->accel_bias();
     note_first(now_);
     sum_->coast(dt, now_.gyro - sum_->gyro_bias(), coasting_.f_B, coasting_.noise.angular, coasting_.noise.linear);

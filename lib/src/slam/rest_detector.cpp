@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "filter/tuning.h"
 #include "slam/tuning.h"
 
 namespace pf {
@@ -33,7 +34,7 @@ bool RestDetector::note(bool seen, RestReading* rest) {
     keep_first();
   const Scalar T = static_cast<Scalar>(seconds(elapsed_ns(data_->begin_ns, t_ns)));
   if (T < kTime) return false;
-  const bool at_rest = is_quiet();
+  const bool at_rest = covers(data_->count, T) && is_quiet();
   if (at_rest) {
     const ImuNoise& noise = settings_.unit.noise;
     const Scalar root = std::sqrt(T);
@@ -105,7 +106,7 @@ void RestDetector::compare_with_first() {
 
 Scalar RestDetector::motion_px() const { return std::max(data_->motion_px.norm(), kMinMeanMotionPx); }
 
-bool RestDetector::read_frame(StillReading* still) const {
+bool RestDetector::read_frame(Scalar dt, StillReading* still) const {
   if (!is_resting()) return false;
   Vec3 gyro = Vec3::Zero(), accel = Vec3::Zero();
   int count = 0;
@@ -116,7 +117,7 @@ bool RestDetector::read_frame(StillReading* still) const {
     accel += Vec3(sample.accel[0], sample.accel[1], sample.accel[2]);
     ++count;
   }
-  if (count == 0 || imu_.counts().median_ns <= 0) return false;
+  if (count == 0 || imu_.counts().median_ns <= 0 || !covers(count, dt)) return false;
   const ImuNoise& noise = settings_.unit.noise;
   const Scalar n = static_cast<Scalar>(count);
   const Scalar root = std::sqrt(n * static_cast<Scalar>(seconds(imu_.counts().median_ns)));
@@ -125,6 +126,12 @@ bool RestDetector::read_frame(StillReading* still) const {
   still->sigma_gyro = data_->scatter[0] * noise.gyro_density / root;
   still->sigma_accel = data_->scatter[1] * noise.accel_density / root;
   return true;
+}
+
+/// Whether so many samples tell of a time T [s]. Nobody saw what happened in a longer gap, and a clock may have jumped.
+bool RestDetector::covers(int count, Scalar T) const {
+  return T <=
+         static_cast<Scalar>(count) * static_cast<Scalar>(seconds(imu_.counts().median_ns)) + tuning::imu::kMaxCoast;
 }
 
 /// Welford's running mean and sum of squares.

@@ -26,9 +26,9 @@ class RestDetector {
   bool note(bool seen, RestReading* rest);
   /// When the last second at rest began, in the time of frames.
   std::int64_t begin_ns() const { return data_->rest_begin_ns; }
-  /// Before a frame is measured: what samples since the last frame say, where the camera has been at rest until then, for a second at
-  /// least. False where there are none.
-  bool read_frame(StillReading* still) const;
+  /// Before a frame is measured, dt [s] after the last one: what samples since then say, where the camera has been at rest until then, for
+  /// a second at least. False where there are none, or too few for that time.
+  bool read_frame(Scalar dt, StillReading* still) const;
   /// How far the picture has moved since this rest began, as a mean over some frames; what it can tell from none at least [px].
   Scalar motion_px() const;
   /// It moves, as something else says.
@@ -70,6 +70,7 @@ class RestDetector {
   void keep_first();
   void add(const ImuSample& sample);
   void compare_with_first();
+  bool covers(int count, Scalar T) const;
   bool is_quiet();
   bool has_moved();
   bool motion_since(const Seen* before, int count, Vec4* motion_px) const;

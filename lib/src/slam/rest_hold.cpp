@@ -19,9 +19,10 @@ bool RestHold::predict(bool follows, std::int64_t before_ns, std::int64_t t_ns, 
 
 bool RestHold::follow_rest(bool follows, std::int64_t before_ns, std::int64_t t_ns, Scalar depth) {
   const bool held = data_.holds;
+  const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(before_ns, t_ns)));
   data_.holds = false;
   if (!settings_.inertial || !follows || !filter_.is_metric() || !filter_.uses_samples() ||
-      !rest_.read_frame(&data_.still))
+      !rest_.read_frame(dt, &data_.still))
     return false;
   if (!filter_.take_still(data_.still, settings_.unit.gravity, kMaxNis, false)) {
     rest_.end_rest();
@@ -29,7 +30,7 @@ bool RestHold::follow_rest(bool follows, std::int64_t before_ns, std::int64_t t_
   }
   data_.holds = true;
   data_.before_ns = before_ns;
-  data_.dt = static_cast<Scalar>(seconds(elapsed_ns(before_ns, t_ns)));
+  data_.dt = dt;
   data_.m_per_px = depth / settings_.camera.fx;
   if (!held) begin_rest();
   const Scalar moved = rest_.motion_px();
