@@ -32,9 +32,10 @@ constexpr Density kDensities[] = {
     {"accelerometer_random_walk", "accel_random_walk", "m/s^3/sqrt(Hz)", 1e-7, 1e-1, &pf_imu_model_t::accel_walk},
 };
 
-constexpr double kMaxDelay = 0.5;   ///< [s] that the library takes
-constexpr double kMaxSkew = 1e-3;   ///< of a rotation's entries
-constexpr double kMaxLever = 10.0;  ///< [m] from camera to unit
+constexpr double kMinGravity = 9.0, kMaxGravity = 11.0;  ///< [m/s^2] that the library takes
+constexpr double kMaxDelay = 0.5;                        ///< [s] that the library takes
+constexpr double kMaxSkew = 1e-3;                        ///< of a rotation's entries
+constexpr double kMaxLever = 10.0;                       ///< [m] from camera to unit
 
 std::string format(double value) {
   char text[32];
@@ -131,7 +132,9 @@ std::string parse_imu_noise(const std::string& text, const std::string& file, pf
   for (const Density& density : kDensities) {
     known.read.emplace_back(plain ? density.plain_name : density.name);
   }
-  const std::string ignored = plain ? std::string() : fields.check_keys(known);
+  known.read.emplace_back("gravity");
+  // The plain fields may lie in the file of the camera, whose own are none of this function's business.
+  const std::string unknown = fields.check_keys(known), ignored = plain ? std::string() : unknown;
   for (const Density& density : kDensities) {
     const char* key = plain ? density.plain_name : density.name;
     const double value = fields.number(key);
@@ -141,6 +144,13 @@ std::string parse_imu_noise(const std::string& text, const std::string& file, pf
                                    ". Is it in degrees or g, or the noise of single samples?");
     }
     imu->*density.field = value;
+  }
+  if (fields.has("gravity")) {
+    const double gravity = fields.number("gravity");
+    if (!(gravity >= kMinGravity && gravity <= kMaxGravity)) {
+      fields.refuse_field("gravity", "is " + format(gravity) + " m/s^2; 9 to 11 are possible, and 9.81 without it");
+    }
+    imu->gravity = gravity;
   }
   return ignored;
 }

@@ -169,6 +169,28 @@ static void test_noise_should_be_read_from_every_known_form() {
   }
 }
 
+static void test_gravity_should_be_read_from_the_noise_of_a_unit() {
+  const std::string plain =
+      "accel_noise_density: 1.86e-03\naccel_random_walk: 4.33e-04\ngyro_noise_density: 1.87e-04\n"
+      "gyro_random_walk: 2.66e-05\nwidth: 752\n";
+  for (const std::string& text : {std::string(kKalibrNoise), plain}) {
+    pf_imu_model_t imu{};
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    imu.gravity = 9.81;
+    TEST_ASSERT_TRUE_MESSAGE(read_noise(text, &imu, message), message);
+    TEST_ASSERT_TRUE(imu.gravity == 9.81);
+    TEST_ASSERT_TRUE_MESSAGE(read_noise(text + "gravity: 9.7801\n", &imu, message), message);
+    TEST_ASSERT_TRUE(imu.gravity == 9.7801);
+    TEST_ASSERT_EQUAL_STRING("", message);
+    for (const char* wrong :
+         {"gravity: 1\n", "gravity: 11.5\n", "gravity: .nan\n", "gravity: [0, 0, 9.81]\n", "gravtiy: 9.8\n"}) {
+      TEST_ASSERT_FALSE_MESSAGE(read_noise(text + wrong, &imu, message), wrong);
+      require_message(message, "'grav");
+      TEST_ASSERT_TRUE(imu.gravity == 9.7801);
+    }
+  }
+}
+
 static void test_noise_should_be_refused_when_a_field_is_missing_or_in_other_units() {
   noise_refused("gyroscope_noise_density: 1.87e-04\n", "", "gyroscope_noise_density");
   noise_refused("1.87e-04", "1.87e-02", "degrees");
@@ -214,6 +236,7 @@ static void test_mounting_should_be_refused_when_it_is_no_rotation_or_nowhere() 
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_noise_should_be_read_from_every_known_form);
+  RUN_TEST(test_gravity_should_be_read_from_the_noise_of_a_unit);
   RUN_TEST(test_noise_should_be_refused_when_a_field_is_missing_or_in_other_units);
   RUN_TEST(test_mounting_should_be_the_same_in_every_known_form);
   RUN_TEST(test_mounting_should_be_refused_when_it_is_no_rotation_or_nowhere);
