@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "numbers.h"
 #include "refuse.h"
@@ -161,6 +162,39 @@ bool is_of_light(const std::string& kind) {
   return false;
 }
 
+/// Whether the number that ends a kind of names, or that follows "cam", is that of a camera: each frame has the same two to four of
+/// them, as 000012_10.png and 000012_11.png. Behind a point it is part of a time.
+bool names_cameras(const std::string& kind, const std::set<std::string>& digits) {
+  constexpr size_t kMinFrames = 4, kMaxCameras = 4;
+  std::string lower(kind);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto count = static_cast<size_t>(std::count(kind.begin(), kind.end(), '#'));
+  std::istringstream parts(lower);
+  std::string before;
+  for (size_t k = 0; k < count && std::getline(parts, before, '#'); ++k) {
+    const bool last = k > 0 && k + 1 == count && before.back() != '.';
+    if (!last && before.find("cam") == std::string::npos) {
+      continue;
+    }
+    std::map<std::string, std::set<std::string>> cameras_of;
+    for (const std::string& numbers : digits) {
+      std::istringstream words(numbers);
+      std::string frame, camera, number;
+      for (size_t i = 0; words >> number; ++i) {
+        (i == k ? camera : frame) += number + " ";
+      }
+      cameras_of[frame].insert(camera);
+    }
+    const std::set<std::string>& first = cameras_of.begin()->second;
+    if (cameras_of.size() >= kMinFrames && first.size() >= 2 && first.size() <= kMaxCameras &&
+        std::all_of(cameras_of.begin(), cameras_of.end(), [&](const auto& frame) { return frame.second == first; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Of images that lie side by side under the same numbers, those of one kind. The others are named in the folder's warning; where it
 /// cannot be told which are meant, all are refused.
 std::vector<std::string> one_kind(const fs::path& images, const std::vector<std::string>& names, std::string& warning) {
@@ -169,6 +203,12 @@ std::vector<std::string> one_kind(const fs::path& images, const std::vector<std:
   for (const std::string& name : names) {
     const std::string kind = kind_of(name, digits);
     kinds[kind].insert(digits);
+  }
+  for (const auto& [kind, numbers] : kinds) {
+    if (names_cameras(kind, numbers)) {
+      refuse(images.string() + ": images of several cameras lie side by side (" + names.front() + ", " + names.back() +
+             "); keep one camera in a folder, or name the images in times.txt");
+    }
   }
   std::set<std::string> side_by_side;
   for (auto a = kinds.begin(); a != kinds.end(); ++a) {

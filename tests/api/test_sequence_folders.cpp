@@ -5,6 +5,8 @@
 
 #include <unistd.h>
 
+#include <cstdio>
+
 #include "sequence_test.h"
 
 using namespace pf::test;
@@ -56,6 +58,34 @@ static void test_images_folder_should_warn_and_use_the_rate_when_it_has_no_times
   TEST_ASSERT_EQUAL_STRING((folder / "f2.PNG").c_str(), pf_get_sequence_frame_path(opened.sequence, 0));
   TEST_ASSERT_EQUAL_STRING((folder / "f10.png").c_str(), pf_get_sequence_frame_path(opened.sequence, 2));
   TEST_ASSERT_EQUAL_INT64(100000000, opened.read(2).t_ns);
+}
+
+static void test_images_folder_should_be_refused_when_it_holds_several_cameras() {
+  const auto opens = [](const char* name, const char* other, int numbers, std::string& said) {
+    TemporaryFolder folder;
+    folder.write("calib.yaml", kPlainCalibration);
+    for (int frame = 0; frame < 6; ++frame) {
+      for (int i = 0; i < numbers; ++i) {
+        char text[64];
+        std::snprintf(text, sizeof(text), i % 2 == 0 ? name : other, frame, i);
+        folder.write(text, grey_png(1));
+      }
+    }
+    Opened opened("images:" + folder.path());
+    said = opened.message;
+    return opened.sequence != nullptr;
+  };
+  std::string said;
+  for (const char* name : {"%06d_%d.png", "f%06d-1%d.png", "%03d_cam%d.png"}) {
+    TEST_ASSERT_FALSE_MESSAGE(opens(name, name, 2, said), name);
+    require_message(said.c_str(), "of several cameras");
+  }
+  TEST_ASSERT_FALSE(opens("cam0_%06d.png", "cam1_%06d.png", 2, said));
+  require_message(said.c_str(), "cam0_000000.png, cam1_000005.png");
+  // Times in seconds, and counts that begin anew.
+  for (const char* name : {"%d.%d.png", "%06d.png", "%d.5%d.png"})
+    TEST_ASSERT_TRUE_MESSAGE(opens(name, name, 2, said), said.c_str());
+  TEST_ASSERT_TRUE_MESSAGE(opens("%d_%02d.png", "%d_%02d.png", 12, said), said.c_str());
 }
 
 static void test_euroc_should_open_from_any_of_its_folders() {
@@ -202,6 +232,7 @@ int main() {
   UNITY_BEGIN();
   RUN_TEST(test_images_folder_should_give_frames_with_exact_times);
   RUN_TEST(test_images_folder_should_warn_and_use_the_rate_when_it_has_no_times);
+  RUN_TEST(test_images_folder_should_be_refused_when_it_holds_several_cameras);
   RUN_TEST(test_euroc_should_open_from_any_of_its_folders);
   RUN_TEST(test_kitti_should_open_with_the_size_of_its_images);
   RUN_TEST(test_tum_should_open_with_a_calibration_that_is_given);
