@@ -202,6 +202,10 @@ std::string check(const Options& options, const std::string& backend) {
     return std::string(options.window_keyframes >= 0 ? "--window-keyframes" : "--window-fixed") +
            " needs --backend window";
   }
+  if (backend == "window" && (options.max_state_dim >= 0 || options.max_observations >= 0)) {
+    return std::string(options.max_state_dim >= 0 ? "--max-state-dim" : "--max-observations") +
+           " is for --backend filter; the room of the window is --max-features and --window-keyframes";
+  }
   if (!options.second_pose.empty() && backend != "window") {
     return "--second-pose needs --backend window";
   }

@@ -84,6 +84,9 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   }
   if (options.max_observations < 0 && !has_window) {
     config_.capacity.max_observations = std::max(config_.capacity.max_observations, config_.map.features_in_view);
+  } else if (options.features_in_view < 0) {  // no more than there is room for
+    config_.map.features_in_view = std::min(
+        config_.map.features_in_view, has_window ? config_.capacity.window_points : config_.capacity.max_observations);
   }
   imu.configure(config_);
   config_.camera.estimate = options.lens.value_or(default_estimate(config_));

@@ -97,6 +97,11 @@ def test_usage(root):
     expect("format", 2, ["--format", "MJPEG"], "--source", "v4l2:/dev/video0", "--format", "RGB")
     expect("keyframes of the filter", 2, ["--window-keyframes", "--backend window"], "--source", source, "--window-keyframes", "4")
     expect("fixed keyframes of the filter", 2, ["--window-fixed", "--backend window"], "--source", source, "--window-fixed", "0")
+    expect("rows of the window", 2, ["--max-state-dim", "--backend filter"], "--source", source, "--backend", "window", "--max-state-dim", "100")
+    expect("observations of the window", 2, ["--max-observations", "--backend filter"], "--source", source, "--backend", "window",
+           "--max-observations", "30")
+    for words in (["--max-observations", "20"], ["--backend", "window", "--max-features", "60"]):
+        expect(f"room for few features: {words}", 1, ["same picture"], "--source", source, *words, *out)
     expect("second pose of the filter", 2, ["--second-pose", "--backend window"], "--source", source, "--second-pose", "x.tum")
     expect("second pose with a target", 2, ["--second-pose", "target"], "--source", source, "--second-pose", "x.tum", "--start", "rectangle:0.2x0.1",
            "--backend", "window")
