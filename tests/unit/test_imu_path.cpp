@@ -115,19 +115,17 @@ void test_without_samples_all_time_should_be_coasted_and_a_jump_of_the_clock_sho
 void test_samples_on_both_sides_of_a_jump_of_the_clock_should_be_coasted_between() {
   constexpr std::int64_t kYears = 44;
   for (const int jumps : {1, 20}) {
-    Path jump, coast;
+    Path jump;
     std::int64_t shift_ns = 0;
     for (int k = 0; k < 100; ++k) {
       if (k >= 20 && k < 20 + jumps) shift_ns += kYears * 31556952 * INT64_C(1000000000) / jumps;
       const std::int64_t t_ns = k * kIntervalNs + shift_ns;
       jump.log.add({t_ns, {kRate.x(), kRate.y(), kRate.z()}, {kForce.x(), kForce.y(), kForce.z()}});
-      if (k < 2) coast.add(k);
     }
     TEST_ASSERT_TRUE(jump.integrate(10 * kIntervalNs, 90 * kIntervalNs + shift_ns) == Scalar(2));
     TEST_ASSERT_TRUE(jump.sum.dt() < Scalar(2.5));
     TEST_ASSERT_TRUE((jump.end.gyro - kRate).norm() < Scalar(10) * kNear);
-    coast.integrate(kIntervalNs, INT64_MAX);
-    for (int i = 0; i < 9; ++i) TEST_ASSERT_TRUE(jump.sum.covariance()(i, i) < 10 * coast.sum.covariance()(i, i));
+    for (int i = 0; i < 9; ++i) TEST_ASSERT_TRUE(jump.sum.covariance()(i, i) < 1000);  // that of 2 s, and what follows
     TEST_ASSERT_TRUE(jump.sum.p().norm() < 100 && jump.sum.v().norm() < 100);
   }
 }
