@@ -121,9 +121,9 @@ int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_
                  char message[PF_SEQUENCE_MESSAGE]);
 
 /* Noise densities of an inertial unit: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml (gyroscope_noise_density and so on), or
- * gyro_noise_density, gyro_random_walk, accel_noise_density, accel_random_walk; each may have gravity [m/s^2], 9 .. 11. Sets these fields of
- * *imu, gravity only where the file has it, and none when it is refused. A density that no unit has (degrees, or the noise of single samples) is refused. With 0, message is a line on what was
- * ignored, or empty. */
+ * gyro_noise_density, gyro_random_walk, accel_noise_density, accel_random_walk; each may have gravity [m/s^2], 9 .. 11. Sets these fields
+ * of *imu, gravity only where the file has it, and none when it is refused. A density that no unit has (degrees, or the noise of single
+ * samples) is refused. With 0, message is a line on what was ignored, or empty. */
 int pf_read_imu_noise(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]);
 
 /* How the unit is mounted: T_BS of EuRoC's cam0/sensor.yaml (p_B = T_BS p_C), T_cam_imu of Kalibr's camchain (p_C = T_cam_imu p_B; its
