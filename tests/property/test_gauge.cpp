@@ -1,6 +1,7 @@
 // What one camera cannot observe: shifting, turning and scaling the whole world must not be seen by any measurement, must be
 // carried by every verb of the filter, and must gain no information over a run.
 #include "filter/gauge_information.h"
+#include "filter/tuning.h"
 #include "support/plane_scene.h"
 #include "support/test_cameras.h"
 
@@ -19,6 +20,33 @@ Dense information_of(const TestFilter& filter) {
   double out[49];
   TEST_ASSERT_TRUE(gauge_information(*filter, scratch.data(), out));
   return Eigen::Map<const Eigen::Matrix<double, 7, 7, Eigen::RowMajor>>(out);
+}
+
+/// Of a covariance whose correlations have about this smallest eigenvalue.
+void require_information(double smallest, bool expected) {
+  SeededRandom random(68);
+  TestFilter filter(true);
+  fill_map(random, filter, 3, 3);
+  Dense vectors;
+  Eigen::VectorXd values = eigenvalues_of(random_covariance(random, filter.dim(), 1), &vectors);
+  values(0) = smallest * values(filter.dim() - 1);
+  const Dense P = vectors * values.asDiagonal() * vectors.transpose();
+  filter.set_P(P);
+  std::vector<double> scratch(static_cast<std::size_t>(filter.dim() * (filter.dim() + 8)));
+  double out[49];
+  TEST_ASSERT_EQUAL_INT(expected, gauge_information(*filter, scratch.data(), out));
+  if (!expected) return;
+  Dense whole = P;
+  if (smallest < 0) whole.diagonal() *= 1 + static_cast<double>(tuning::soundness::kRounding);
+  const Dense N = filter.gauge(), A = Eigen::Map<const Eigen::Matrix<double, 7, 7, Eigen::RowMajor>>(out);
+  TEST_ASSERT_TRUE(largest(A - N.transpose() * whole.inverse() * N) < 1e-6 * largest(A));
+}
+
+void test_information_should_be_that_of_a_covariance_to_the_rounding_that_a_frame_allows() {
+  require_information(1e-3, true);
+  require_information(-1e-9, true);
+  require_information(-1e-7, true);
+  require_information(-1e-4, false);
 }
 
 void test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale() {
@@ -501,6 +529,7 @@ void test_information_about_the_gauge_should_grow_with_the_textbook_filter() {
 
 int main(void) {
   UNITY_BEGIN();
+  RUN_TEST(test_information_should_be_that_of_a_covariance_to_the_rounding_that_a_frame_allows);
   RUN_TEST(test_no_pixel_should_see_a_shift_a_turn_or_a_change_of_scale);
   RUN_TEST(test_prediction_should_carry_every_direction);
   RUN_TEST(test_damping_should_carry_every_direction);

@@ -781,9 +781,9 @@ PF_API pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertia
  * smaller. */
 PF_API pf_status_t pf_get_imu_samples(const pf_slam_t* slam, pf_imu_sample_t* samples, size_t capacity, size_t* count);
 
-/* Information that the filter holds about what a camera alone cannot observe: N^T P^-1 N, 7x7, row-major, in the order
- * translation, rotation, log scale of the whole world. It must never grow without absolute data. For tests and
- * simulations: cubic in the state's dimension. scratch needs scratch_count >= state_dim * (state_dim + 8) doubles. */
+/* Information that the filter holds about what a camera alone cannot observe: N^T P^-1 N, 7x7, row-major, in the order translation,
+ * rotation, log scale of the whole world. It must never grow without absolute data. For tests: cubic in the state's dimension. scratch
+ * needs state_dim * (state_dim + 8) doubles. PF_ERROR_RANGE: P is no covariance, by more than rounding leaves (lib/docs/float.md). */
 PF_API pf_status_t pf_get_gauge_information(const pf_slam_t* slam, double* scratch, size_t scratch_count,
                                             double information[49]);
 

@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filter/tuning.h"
+
 namespace pf {
 namespace {
 
 using gauge::kDirections;
 constexpr double kTolerance = sizeof(Scalar) == 8 ? 1e-10 : 1e-4;  ///< of a pivot, relative to its variance
-constexpr int kColumns = 8;                                        ///< of N: the last one holds the variances
+/// Of variances: what rounding may have left missing (below).
+constexpr double kMissing =
+    static_cast<double>(sizeof(Scalar) == 8 ? tuning::soundness::kRounding : tuning::soundness::kRoundingFloat);
+constexpr int kColumns = 8;  ///< of N: the last one holds the variances
 
 /// The directions as columns of N (n x 8, the last column zero), in double; zero where they are observable.
 void directions(const State& state, const BlockFilter& blocks, double* N) {
@@ -88,14 +93,12 @@ bool is_nothing(const double* S, const double* N, int n) {
   return true;
 }
 
-}  // namespace
-
 /// Eliminates one row after the other, that of the largest pivot first, so that rounding grows by nothing where P is nearly singular:
 ///
-///   A += N_p^T N_p / S_pp,   N_i -= (S_ip / S_pp) N_p,   S_ij -= S_ip S_pj / S_pp,   S = P at first
+///   A += N_p^T N_p / S_pp,   N_i -= (S_ip / S_pp) N_p,   S_ij -= S_ip S_pj / S_pp,   S = P with P_ii (1 + growth) at first
 ///
 /// A row that others determine (a new anchor is the body's position) says nothing new; one below zero is no covariance.
-bool gauge_information(const Filter& filter, double* scratch, double information[49]) {
+bool eliminate(const Filter& filter, double growth, double* scratch, double* information) {
   const int n = filter.dim();
   double* S = scratch;
   double* N = scratch + static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
@@ -104,6 +107,7 @@ bool gauge_information(const Filter& filter, double* scratch, double information
   directions(filter.state(), filter.blocks(), N);
   for (int i = 0; i < n; ++i) {
     if (!(S[i * n + i] > 0) && !is_exact(S, N, i, n)) return false;
+    S[i * n + i] += growth * S[i * n + i];
     N[i * kColumns + kDirections] = S[i * n + i];  // zero: nothing to eliminate
   }
   std::fill(information, information + kDirections * kDirections, 0.0);
@@ -120,7 +124,20 @@ bool gauge_information(const Filter& filter, double* scratch, double information
       for (int j = 0; j < n; ++j) S[i * n + j] -= factor * S[p * n + j];
     }
   }
-  if (!is_nothing(S, N, n)) return false;
+  return is_nothing(S, N, n);
+}
+
+}  // namespace
+
+/// Each update rounds P - W^T W by epsilon P_ii, of the variance before it. Where that was v times the one after it, as where absurdly wide
+/// priors meet good pixels, correlations are off by epsilon v, and P may have an eigenvalue below zero that no elimination can divide by.
+/// What the end of a frame allows of that (BlockFilter::repair), with correlations C,
+///
+///   C + r I >= 0,   r = kMissing:   v up to r / epsilon, 5e9 in double
+///
+/// is allowed here too: the information is that of the smallest P that is a covariance for certain, P_ii (1 + r).
+bool gauge_information(const Filter& filter, double* scratch, double information[49]) {
+  if (!eliminate(filter, 0.0, scratch, information) && !eliminate(filter, kMissing, scratch, information)) return false;
   if (filter.apart().any()) add_apart(filter.apart().V(), information);
   return true;
 }
