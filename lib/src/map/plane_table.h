@@ -39,6 +39,14 @@ struct PlaneEntry {
   PlaneOutline plan;               ///< of a wall, as it was given
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 
+  /// Of a wall whose prior counts.
+  Mat3 prior_covariance() const {
+    Mat3 covariance;
+    for (int i = 0, k = 0; i < 3; ++i)
+      for (int j = 0; j <= i; ++j) covariance(i, j) = covariance(j, i) = prior[k++];
+    return covariance;
+  }
+
   static constexpr int kOutlierShare = 4;  ///< one in so many
   static constexpr int kUpheldWorth = 8;   ///< points that a patch counts as which was measured on it for long
   /// Whether patches say that a wall is not where the plan has it. Things before a wall that is there refuse some as well.
@@ -70,6 +78,24 @@ class PlaneTable {
   /// Removes all planes. Their ids are not used again.
   void clear() {
     for (int i = 0; i < capacity_; ++i) entry_[i] = PlaneEntry();
+    for (int i = 0; i < capacity_ * kMergesPerPlane; ++i) merged_[i] = Merged();
+    next_merged_ = 0;
+  }
+
+  /// Removes planes that were found. Walls are what they were when they came, but for their blocks.
+  void keep_known() {
+    for (int i = 0; i < capacity_; ++i) {
+      const PlaneEntry was = entry_[i];
+      entry_[i] = PlaneEntry();
+      if (was.slot < 0 || !was.known) continue;
+      entry_[i].id = was.id;
+      entry_[i].slot = was.slot;
+      entry_[i].known = true;
+      entry_[i].two_sided = was.two_sided;
+      entry_[i].roughness = was.roughness;
+      for (int k = 0; k < 6; ++k) entry_[i].prior[k] = was.prior[k];
+      entry_[i].plan = entry_[i].seen = entry_[i].support = was.plan;
+    }
     for (int i = 0; i < capacity_ * kMergesPerPlane; ++i) merged_[i] = Merged();
     next_merged_ = 0;
   }

@@ -59,12 +59,16 @@ Mounting FilterStart::mounting() const {
 }
 
 void FilterStart::clear_filter() {
+  empty_filter();
+  parts_.map.planes.clear();
+}
+
+void FilterStart::empty_filter() {
   parts_.filter.init(settings_.kernels, settings_.body, settings_.keep_gauge);
   parts_.filter.set_lens(settings_.camera, settings_.lens);
   // Where the scale is not known, neither is the unit's place in it.
   parts_.filter.set_mounting({known_mounting().R_CB, Vec3::Zero(), known_mounting().delay, false});
   parts_.filter.set_roughness(settings_.fold.roughness);
-  parts_.map.planes.clear();
   parts_.map.mark = Mark();
 }
 
@@ -153,17 +157,6 @@ void FilterStart::note_covariance() {
   set_start_velocities(kStartSpeed * settings_.start_depth);
 }
 
-/// Depths come from a record of the first frames, unless walls or a known speed of the first pose tell them.
-bool FilterStart::needs_record() const {
-  if (!data_.known.given) return true;
-  if (parts_.map.planes.has_known()) return false;
-  if (!settings_.body.has(BodyPart::kVelocity)) return true;
-  const int dim = settings_.body.known_rows(), first = settings_.body.row(BodyPart::kVelocity);
-  Scalar variance = 0;
-  for (int i = first; i < first + 3; ++i) variance += data_.known.covariance[i * dim + i];
-  return data_.known.body.v_W.squaredNorm() < kKnownSpeed * kKnownSpeed * variance;
-}
-
 /// The pose before the first measurement: the one that the caller gave, or the one that defines the world.
 void FilterStart::set_known_pose(bool at_target, bool fitted_to_target) {
   data_.knows_scale = at_target || !needs_record();
@@ -211,7 +204,10 @@ bool FilterStart::start_in_image() {
   target_.note_begin();
   if (!seen) {
     set_known_pose(false);
-    if (needs_record()) without_.begin();
+    if (needs_record())
+      without_.begin();
+    else if (!settings_.inertial && !knows_speed())
+      without_.begin_check();
     return true;
   }
 

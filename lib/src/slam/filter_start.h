@@ -66,8 +66,8 @@ class FilterStart {
   const StartProgress& progress() const { return without_.progress(); }
 
   /// While a start without a target is under way: records the frame's pixels, and restarts the filter when the record gives better depths.
-  /// After one at a target: likewise, until the record's depths show that the filter's are right, or wrong. True: they were wrong, and
-  /// places and poses of before no longer hold.
+  /// After one at a target, or before walls: likewise, until the record shows that the filter's depths are right, or wrong. True: they were
+  /// wrong, and places and poses of before no longer hold.
   bool record_frame();
   /// Begins an empty record with the features that this frame has added.
   void begin_record();
@@ -91,6 +91,7 @@ class FilterStart {
   bool is_recording() const { return progress().recording || progress().checking; }
   void set_body(const Body& body, const Scalar* known, const Scalar* J_lens = nullptr);
   bool may_begin_anew(std::int64_t begin_ns) const;
+  bool knows_speed() const;
   bool needs_record() const;
   void set_start_velocities(Scalar speed);
   void note_covariance();
@@ -99,7 +100,12 @@ class FilterStart {
   void begin_body(const Body& body, bool fitted_to_target);
   bool check_depths(bool settled);
   Scalar unit_of_record() const;
+  Scalar unit_by_walls() const;
+  Scalar range_in_plan(const Vec3& ray_W) const;
   bool most_depths_agree(Scalar unit) const;
+  bool motion_agrees(Scalar unit) const;
+  void empty_filter();
+  void clear_all_but_walls();
   void restart_from_record(Scalar unit);
   void restart_features(Scalar unit);
   void restart_frame(int k, std::int64_t before_ns, Scalar unit);

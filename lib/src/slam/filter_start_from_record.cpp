@@ -19,7 +19,7 @@ void FilterStart::restart_from_record(Scalar unit) {
   Body body;
   body.q_WC = without_.base_q_WC();
   body.p_W = without_.base_p_W();
-  clear_filter();
+  clear_all_but_walls();
   if (without_.bundle().lens() != nullptr) parts_.filter.set_lens(*without_.bundle().lens(), settings_.lens);
   begin_body(body, progress().checking && !data_.known.given);
   // Residuals of zero say nothing about the lens: the bundle's solution holds for the one that the filter begins with.
@@ -33,50 +33,6 @@ void FilterStart::restart_from_record(Scalar unit) {
   parts_.filter.consider_lens(false);
   if (settings_.body.has(BodyPart::kVelocity)) restart_velocities(unit);
   if (progress().checking) restart_at_target();
-}
-
-/// After a start at a target: where the record tells other depths than the filter has found, the filter has settled in a wrong
-/// explanation of the first frames, and begins again with those of the record (lib/docs/starting.md). Returns whether it did.
-bool FilterStart::check_depths(bool settled) {
-  const Scalar unit = unit_of_record();
-  if (!(unit > Scalar(0))) return false;
-  const bool agree = most_depths_agree(unit);
-  if (!agree) {
-    restart_from_record(unit);
-    settings_.hooks.say(
-        "the first depths were wrong: the map begins again at the target, with those of all frames since");
-  }
-  if (agree || settled) without_.init();
-  return !agree;
-}
-
-/// W's lengths per length of the record: the ratio of the sums of distances of the target's points. Zero where the bundle has none of them.
-Scalar FilterStart::unit_of_record() const {
-  Scalar distances = 0, of_record = 0;
-  for (int i = 0; i < parts_.map.features.capacity(); ++i) {
-    const Feature& f = parts_.map.features[i];
-    const int index = parts_.map.features.used(i) && f.is_target ? without_.index_of(f.id) : -1;
-    if (index < 0 || !without_.bundle().good(index)) continue;
-    distances += (target_.target().point_W[f.external_id] - without_.base_p_W()).norm();
-    of_record += without_.record().ray(index).norm() / without_.bundle().rho(index);
-  }
-  return of_record > Scalar(0) ? distances / of_record : Scalar(0);
-}
-
-/// Whether for most features the filter and the record tell about the same distance from the first frame.
-bool FilterStart::most_depths_agree(Scalar unit) const {
-  int compared = 0, agree = 0;
-  for (int i = 0; i < parts_.map.features.capacity(); ++i) {
-    const Feature& f = parts_.map.features[i];
-    const int index = parts_.map.features.used(i) && !f.is_target ? without_.index_of(f.id) : -1;
-    if (index < 0 || !without_.bundle().good(index)) continue;
-    const Vec3 ray_W = without_.base_q_WC() * without_.record().ray(index);
-    const Scalar of_filter = ray_W.normalized().dot(parts_.filter.point(f.slot) - without_.base_p_W());
-    const Scalar of_record = unit * ray_W.norm() / without_.bundle().rho(index);
-    ++compared;
-    agree += of_filter * kSameDepth > of_record && of_filter < of_record * kSameDepth ? 1 : 0;
-  }
-  return 2 * agree >= compared;
 }
 
 /// Adds the record's features to the filter with its depths; removes all others.

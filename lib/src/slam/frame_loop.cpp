@@ -212,7 +212,7 @@ void FrameLoop::maintain_map(bool supported) {
   }
   features_.convert_linear();
   // During a start the filter may restart without planes; ids of planes found before would then name nothing.
-  if (settings_.planes && !start_.progress().recording) planes_.maintain();
+  if (settings_.planes && !start_.progress().recording) planes_.maintain(!start_.progress().checking);
   features_.drop_failing(true);
 }
 

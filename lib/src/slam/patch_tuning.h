@@ -2,9 +2,19 @@
 
 #include "base/scalar.h"
 
-/// Tuned numbers of patches that wait for the plane they lie on. Patches that are measured: slam/tuning.h
+/// Tuned numbers of walls and patches that are young. Patches that are measured: slam/tuning.h
 
 namespace pf::tuning {
+
+/// First depths against those of a record, where walls are known.
+namespace start_before_walls {
+inline constexpr int kMaxPlanes = 64;                   ///< the largest capacity.max_planes
+inline constexpr Scalar kOneWall = Scalar(1.12);        ///< ratio of distances of points that lie on walls of the plan
+inline constexpr Scalar kAnyRatio = Scalar(1e9);        ///< larger than any such ratio
+inline constexpr int kMinOnWall = 8;                    ///< points that tell the record's unit of length
+inline constexpr int kClearMajority = 2;                ///< of these to the points that tell another one
+inline constexpr Scalar kSameMotion = Scalar(0.5);      ///< of two motions: their difference relative to the record's
+}  // namespace start_before_walls
 
 /// Which plane a patch lies on.
 namespace patch_waiting {

@@ -103,10 +103,7 @@ void PlaneKeeper::doubt_wall(int plane_entry) {
   const int plane = wall.slot;
   const bool has_taught = filter_.state().block[plane].children > 0 || wall.refused + wall.upheld + wall.outliers > 0;
   if (has_taught && wall.prior[0] > Scalar(0)) {
-    Mat3 prior;
-    for (int i = 0, k = 0; i < 3; ++i)
-      for (int j = 0; j <= i; ++j) prior(i, j) = prior(j, i) = wall.prior[k++];
-    filter_.forget_prior(plane, prior, kDoubtedPrior);
+    filter_.forget_prior(plane, wall.prior_covariance(), kDoubtedPrior);
     for (Scalar& c : wall.prior) c = Scalar(0);
   }
   filter_.state().for_each_planar(plane, [&](int slot) {

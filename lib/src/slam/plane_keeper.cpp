@@ -29,7 +29,7 @@ bool PlaneKeeper::layout(Arena& arena, int max_features) {
   return arena.ok();
 }
 
-void PlaneKeeper::maintain() {
+void PlaneKeeper::maintain(bool may_doubt) {
   judge_trials();
   unfold_outliers();
   filter_.scale_row(&scale_);
@@ -39,14 +39,14 @@ void PlaneKeeper::maintain() {
     if (!map_.planes.used(i)) continue;
     ++map_.planes[i].age;
     // A wall that patches refuse does not wait for its turn: what begins on it misleads.
-    if (map_.planes[i].is_refused_by_patches() && !map_.planes[i].doubted) judge_wall(i);
+    if (may_doubt && map_.planes[i].is_refused_by_patches() && !map_.planes[i].doubted) judge_wall(i);
     if (maintained++ > 0) continue;
     fold_into(i);
     if (map_.planes[i].known) {
       filter_.scale_row(&scale_);  // its points may be planar since
       fold_by_consensus(i);
       filter_.scale_row(&scale_);
-      judge_wall(i);
+      if (may_doubt) judge_wall(i);
     }
     settle_frame(i);
     PlaneOutline now;

@@ -43,8 +43,9 @@ class PlaneKeeper {
   /// of both contradicts it; nothing has changed then.
   Status set_vertical(int plane_entry, Scalar sigma);
 
-  /// The work of one frame. Folds, fixes and merges one plane per frame, in turn, so that the work is bounded.
-  void maintain();
+  /// The work of one frame. Folds, fixes and merges one plane per frame, in turn, so that the work is bounded. may_doubt: the map's
+  /// depths are sure enough to doubt a wall by.
+  void maintain(bool may_doubt = true);
 
  private:
   enum class TrialVerdict { kOpen, kThere, kElsewhere };
