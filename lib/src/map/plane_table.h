@@ -122,6 +122,10 @@ class PlaneTable {
       if (used(i) && entry_[i].known) return true;
     return false;
   }
+  /// What patches have held against walls so far no longer counts.
+  void forget_refusals() {
+    for (int i = 0; i < capacity_; ++i) entry_[i].refused = 0;
+  }
   void remember_merge(std::uint32_t from, std::uint32_t into) {
     merged_[next_merged_] = {from, into};
     next_merged_ = (next_merged_ + 1) % (capacity_ * kMergesPerPlane);

@@ -91,7 +91,6 @@ class FilterStart {
   bool is_recording() const { return progress().recording || progress().checking; }
   void set_body(const Body& body, const Scalar* known, const Scalar* J_lens = nullptr);
   bool may_begin_anew(std::int64_t begin_ns) const;
-  bool knows_speed() const;
   bool needs_record() const;
   void set_start_velocities(Scalar speed);
   void note_covariance();

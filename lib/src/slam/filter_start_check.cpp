@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "geometry/ray_plane.h"
 #include "slam/filter_start.h"
@@ -13,25 +15,12 @@ namespace pf {
 using namespace tuning::filter_start;
 using namespace tuning::start_before_walls;
 
-/// Whether the given speed tells depths.
-bool FilterStart::knows_speed() const {
-  if (!data_.known.given || !settings_.body.has(BodyPart::kVelocity)) return false;
-  const int dim = settings_.body.known_rows(), first = settings_.body.row(BodyPart::kVelocity);
-  Scalar variance = 0;
-  for (int i = first; i < first + 3; ++i) variance += data_.known.covariance[i * dim + i];
-  return !(data_.known.body.v_W.squaredNorm() < kKnownSpeed * kKnownSpeed * variance);
-}
-
-/// Depths come from a record of the first frames, unless walls or a known speed of the first pose tell them.
-bool FilterStart::needs_record() const {
-  return !data_.known.given || !(parts_.map.planes.has_known() || knows_speed());
-}
-
 /// After a start at a target, or at a known pose before walls: where the record tells other depths than the filter has found, the filter
 /// has settled in a wrong explanation of the first frames, and begins again with those of the record. Returns whether it did.
 bool FilterStart::check_depths(bool settled) {
   const bool by_walls = data_.known.given;
   const Scalar unit = by_walls ? unit_by_walls() : unit_of_record();
+  if (std::getenv("PF_DBG")) std::printf("  CHECK frames %d settled %d unit %.3f agree %d motion %d\n", parts_.frame.report.frames, settled, double(unit), unit > 0 ? most_depths_agree(unit) : -1, unit > 0 ? motion_agrees(unit) : -1);
   if (!(unit > Scalar(0))) {
     if (by_walls && settled) without_.init();
     return false;
@@ -43,6 +32,8 @@ bool FilterStart::check_depths(bool settled) {
                                  : "the first depths were wrong: the map begins again at the target, with those of all frames since");
   }
   if (agree || settled) without_.init();
+  // Its points lie on walls of the plan. Until now the filter could not tell them from what stands before them.
+  if (agree && by_walls) parts_.map.planes.forget_refusals();
   return !agree;
 }
 
@@ -107,6 +98,7 @@ Scalar FilterStart::unit_by_walls() const {
   for (int from = 0; from < count; ++from)
     if (from < begin || from >= begin + best)
       second = std::max(second, width(from, from < begin ? ratio[begin] : kAnyRatio));
+  if (std::getenv("PF_DBG")) { std::printf("  RATIOS best %d second %d of %d:", best, second, count); for (int i = 0; i < count; ++i) std::printf(" %.3f", double(ratio[i])); std::printf("\n"); }
   if (best < kMinOnWall || best < kClearMajority * second) return Scalar(0);
   return ratio[begin + best / 2];
 }

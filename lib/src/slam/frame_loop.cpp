@@ -82,7 +82,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     measure_watched([&](bool) { images_.measure(rule, data_.median_depth); });
   }
   // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
-  if (patches_ != nullptr && !first) patches_->measure(images_.tracker().pyramid());
+  if (patches_ != nullptr && !first) patches_->measure(images_.tracker().pyramid(), start_.progress().checking);
   const bool supported = tracking_.is_tracked(frame_.report) || start_.progress().pending();
   if (!first && tracking_.is_tracked(frame_.report)) images_.learn_templates();
   {

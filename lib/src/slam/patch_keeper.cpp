@@ -68,7 +68,7 @@ int PatchKeeper::wall_of(const StoredPatch& patch) const {
   return -1;
 }
 
-void PatchKeeper::measure(const Pyramid& image) {
+void PatchKeeper::measure(const Pyramid& image, bool is_young) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPatch]);
   follow_filter();
   int order[kMaxPatches];
@@ -76,7 +76,7 @@ void PatchKeeper::measure(const Pyramid& image) {
   for (int k = 0; k < count; ++k) {
     StoredPatch* patch = &store_[order[k]];
     if (patch->wait.waits())
-      measure_waiting(image, patch);
+      measure_waiting(image, is_young, patch);
     else
       measure_patch(image, patch);
   }

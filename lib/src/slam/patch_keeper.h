@@ -31,8 +31,9 @@ class PatchKeeper {
   bool layout(Arena& arena);
   void init();
 
-  /// Finds the patches in the image, and updates the filter with each that passes its gate.
-  void measure(const Pyramid& image);
+  /// Finds the patches in the image, and updates the filter with each that passes its gate. is_young: the map's depths are not sure yet, and
+  /// no patch joins a wall for want of parallax.
+  void measure(const Pyramid& image, bool is_young);
   /// Drops patches that fail; supported: the frame's measurements support its pose. Begins new ones where it may.
   void maintain(const Pyramid& image, bool supported, bool may_begin);
 
@@ -70,7 +71,7 @@ class PatchKeeper {
   void drop_failing(bool supported);
 
   // patch_waiting.cpp
-  void measure_waiting(const Pyramid& image, StoredPatch* patch);
+  void measure_waiting(const Pyramid& image, bool is_young, StoredPatch* patch);
   bool expect_waiting(const StoredPatch& patch, Sight* sight) const;
   bool may_lie_on(const StoredPatch& patch, int entry, Scalar* range) const;
   int try_planes(StoredPatch* patch, bool counts);

@@ -104,7 +104,7 @@ bool PatchKeeper::has_parallax(const StoredPatch& patch, Scalar min_px) const {
 
 /// Follows a patch, and decides whether it is known by now which plane it lies on. Where nothing else supports the pose, the nearest plane
 /// that passes counts at once, and nothing is held against the others.
-void PatchKeeper::measure_waiting(const Pyramid& image, StoredPatch* patch) {
+void PatchKeeper::measure_waiting(const Pyramid& image, bool is_young, StoredPatch* patch) {
   Sight sight;
   patch->status = PatchStatus::kMissed;
   patch->weight = 0;
@@ -115,7 +115,7 @@ void PatchKeeper::measure_waiting(const Pyramid& image, StoredPatch* patch) {
     return;
   patch->status = PatchStatus::kWaiting;
   const bool supported = frame_.report.inliers >= settings_.min_inliers;
-  if (supported) patch->wait.begin_frame();
+  if (supported) patch->wait.begin_frame(!is_young);
   const int nearest = try_planes(patch, supported);
   if (!supported) {
     if (nearest >= 0) join(patch, nearest);

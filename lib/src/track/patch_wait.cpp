@@ -15,8 +15,8 @@ void count(std::uint8_t* n) {
 
 bool PatchWait::Trial::is_open() const { return over < kPersist; }
 
-void PatchWait::begin_frame() {
-  count(&frames_);
+void PatchWait::begin_frame(bool counts) {
+  if (counts) count(&frames_);
   for (int i = 0; i < count_; ++i) trial_[i].tried = false;
 }
 

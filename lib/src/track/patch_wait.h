@@ -24,7 +24,8 @@ class PatchWait {
   bool waits() const { return waits_; }
 
   /// A frame in which the patch was found: begin_frame, try_plane for each plane, decide.
-  void begin_frame();
+  /// counts: it waits no longer than for a number of such frames.
+  void begin_frame(bool counts = true);
   /// known: a wall of the plan. chi2 of the corners, eight degrees of freedom. The first ones to be tried are kept where they are too many.
   void try_plane(std::uint32_t plane, bool known, float chi2, float gate);
   /// has_parallax: another depth would show in this frame.
@@ -51,7 +52,7 @@ class PatchWait {
 
   Trial trial_[kMaxTrials];
   std::uint8_t count_ = 0;
-  std::uint8_t frames_ = 0;   ///< in which it was found
+  std::uint8_t frames_ = 0;   ///< in which it was found, that count
   std::uint8_t without_ = 0;  ///< of them in a row, without a plane that passed
   bool waits_ = false;
 };
