@@ -53,6 +53,19 @@ void test_the_only_plane_should_be_joined_without_parallax_after_a_second() {
   TEST_ASSERT_EQUAL_UINT32(7, joined);
 }
 
+void test_frames_that_do_not_count_should_not_let_it_join_without_parallax() {
+  PatchWait wait = begun();
+  std::uint32_t joined = 0;
+  for (int frame = 0; frame < 3 * kMaxFrames; ++frame) {
+    wait.begin_frame(false);
+    wait.try_plane(7, true, kUnder, kGate);
+    TEST_ASSERT_TRUE(wait.decide(false, &joined) == WaitVerdict::kWait);
+  }
+  for (int frame = 1; frame < kPersist; ++frame)
+    TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}}, true, &joined) == WaitVerdict::kWait);
+  TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}}, true, &joined) == WaitVerdict::kJoin);
+}
+
 void test_two_walls_that_pass_should_wait_until_one_of_them_does_not() {
   PatchWait wait = begun();
   std::uint32_t joined = 0;
@@ -121,6 +134,7 @@ int main() {
   UNITY_BEGIN();
   RUN_TEST(test_the_only_plane_that_passes_should_be_joined_when_there_is_parallax);
   RUN_TEST(test_the_only_plane_should_be_joined_without_parallax_after_a_second);
+  RUN_TEST(test_frames_that_do_not_count_should_not_let_it_join_without_parallax);
   RUN_TEST(test_two_walls_that_pass_should_wait_until_one_of_them_does_not);
   RUN_TEST(test_a_wall_should_go_before_a_plane_that_was_found_where_nothing_tells_them_apart);
   RUN_TEST(test_a_plane_that_is_gone_should_not_be_waited_for);

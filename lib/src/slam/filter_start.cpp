@@ -157,17 +157,6 @@ void FilterStart::note_covariance() {
   set_start_velocities(kStartSpeed * settings_.start_depth);
 }
 
-/// Depths come from a record of the first frames, unless walls or a known speed of the first pose tell them.
-bool FilterStart::needs_record() const {
-  if (!data_.known.given) return true;
-  if (parts_.map.planes.has_known()) return false;
-  if (!settings_.body.has(BodyPart::kVelocity)) return true;
-  const int dim = settings_.body.known_rows(), first = settings_.body.row(BodyPart::kVelocity);
-  Scalar variance = 0;
-  for (int i = first; i < first + 3; ++i) variance += data_.known.covariance[i * dim + i];
-  return data_.known.body.v_W.squaredNorm() < kKnownSpeed * kKnownSpeed * variance;
-}
-
 /// The pose before the first measurement: the one that the caller gave, or the one that defines the world.
 void FilterStart::set_known_pose(bool at_target, bool fitted_to_target) {
   data_.knows_scale = at_target || !needs_record();

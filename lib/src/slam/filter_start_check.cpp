@@ -1,26 +1,32 @@
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-
 #include "geometry/ray_plane.h"
+#include "slam/common_ratio.h"
 #include "slam/filter_start.h"
 #include "slam/patch_tuning.h"
 #include "slam/tuning.h"
 
-/// FilterStart: whether the filter's first depths are those of the record, which goes on beside it (lib/docs/starting.md).
+/// FilterStart: what a record is made for; whether the filter's first depths are those of the record, which goes on beside it (lib/docs/starting.md).
 
 namespace pf {
 
 using namespace tuning::filter_start;
 using namespace tuning::start_before_walls;
 
+/// Depths come from a record of the first frames, unless walls or a known speed of the first pose tell them.
+bool FilterStart::needs_record() const {
+  if (!data_.known.given) return true;
+  if (parts_.map.planes.has_known()) return false;
+  if (!settings_.body.has(BodyPart::kVelocity)) return true;
+  const int dim = settings_.body.known_rows(), first = settings_.body.row(BodyPart::kVelocity);
+  Scalar variance = 0;
+  for (int i = first; i < first + 3; ++i) variance += data_.known.covariance[i * dim + i];
+  return data_.known.body.v_W.squaredNorm() < kKnownSpeed * kKnownSpeed * variance;
+}
+
 /// After a start at a target, or at a known pose before walls: where the record tells other depths than the filter has found, the filter
 /// has settled in a wrong explanation of the first frames, and begins again with those of the record. Returns whether it did.
 bool FilterStart::check_depths(bool settled) {
-  const bool by_walls = data_.known.given;
+  const bool by_walls = parts_.map.planes.has_known();  // with a target there is no check beside them
   const Scalar unit = by_walls ? unit_by_walls() : unit_of_record();
-  if (std::getenv("PF_DBG")) std::printf("  CHECK frames %d settled %d unit %.3f agree %d motion %d\n", parts_.frame.report.frames, settled, double(unit), unit > 0 ? most_depths_agree(unit) : -1, unit > 0 ? motion_agrees(unit) : -1);
   if (!(unit > Scalar(0))) {
     if (by_walls && settled) without_.init();
     return false;
@@ -28,8 +34,9 @@ bool FilterStart::check_depths(bool settled) {
   const bool agree = most_depths_agree(unit) && (!by_walls || motion_agrees(unit));
   if (!agree) {
     restart_from_record(unit);
-    settings_.hooks.say(by_walls ? "the first depths were wrong: the map begins again at the first pose, with those of all frames since"
-                                 : "the first depths were wrong: the map begins again at the target, with those of all frames since");
+    settings_.hooks.say(
+        by_walls ? "the first depths were wrong: the map begins again at the first pose, with those of all frames since"
+                 : "the first depths were wrong: the map begins again at the target, with those of all frames since");
   }
   if (agree || settled) without_.init();
   // Its points lie on walls of the plan. Until now the filter could not tell them from what stands before them.
@@ -82,25 +89,9 @@ Scalar FilterStart::unit_by_walls() const {
     const Scalar range = range_in_plan(without_.base_q_WC() * without_.record().ray(i));
     if (range > Scalar(0)) ratio[count++] = range * without_.bundle().rho(i);
   }
-  std::sort(ratio, ratio + count);
-  const auto width = [&](int from, Scalar limit) {  // how many are within a ratio of kOneWall
-    int to = from;
-    while (to < count && ratio[to] < ratio[from] * kOneWall && ratio[to] < limit) ++to;
-    return to - from;
-  };
-  int best = 0, begin = 0;
-  for (int from = 0; from < count; ++from)
-    if (width(from, kAnyRatio) > best) {
-      best = width(from, kAnyRatio);
-      begin = from;
-    }
-  int second = 0;
-  for (int from = 0; from < count; ++from)
-    if (from < begin || from >= begin + best)
-      second = std::max(second, width(from, from < begin ? ratio[begin] : kAnyRatio));
-  if (std::getenv("PF_DBG")) { std::printf("  RATIOS best %d second %d of %d:", best, second, count); for (int i = 0; i < count; ++i) std::printf(" %.3f", double(ratio[i])); std::printf("\n"); }
-  if (best < kMinOnWall || best < kClearMajority * second) return Scalar(0);
-  return ratio[begin + best / 2];
+  const CommonRatio common = find_common_ratio(ratio, count, kOneWall);
+  const bool clear = common.votes >= kMinOnWall && common.votes >= kClearMajority * common.others;
+  return clear ? common.ratio : Scalar(0);
 }
 
 /// Whether for most features the filter and the record tell about the same distance from the first frame.

@@ -76,6 +76,7 @@ class PatchKeeper {
   bool may_lie_on(const StoredPatch& patch, int entry, Scalar* range) const;
   int try_planes(StoredPatch* patch, bool counts);
   bool has_parallax(const StoredPatch& patch, Scalar min_px) const;
+  bool is_off_most(const StoredPatch& patch, int entry) const;
   bool is_seen_through(const StoredPatch& patch, int entry) const;
   void join(StoredPatch* patch, int entry);
   void refuse(StoredPatch* patch);

@@ -8,19 +8,21 @@ namespace pf::tuning {
 
 /// First depths against those of a record, where walls are known.
 namespace start_before_walls {
-inline constexpr int kMaxPlanes = 64;                   ///< the largest capacity.max_planes
-inline constexpr Scalar kOneWall = Scalar(1.12);        ///< ratio of distances of points that lie on walls of the plan
-inline constexpr Scalar kAnyRatio = Scalar(1e9);        ///< larger than any such ratio
-inline constexpr int kMinOnWall = 8;                    ///< points that tell the record's unit of length
-inline constexpr int kClearMajority = 2;                ///< of these to the points that tell another one
-inline constexpr Scalar kSameMotion = Scalar(0.5);      ///< of two motions: their difference relative to the record's
+inline constexpr int kMaxPlanes = 64;               ///< the largest capacity.max_planes
+inline constexpr Scalar kOneWall = Scalar(1.12);    ///< ratio of distances of points that lie on walls of the plan
+inline constexpr int kMinOnWall = 8;                ///< points that tell the record's unit of length
+inline constexpr int kClearMajority = 2;            ///< of these to the points that tell another one
+inline constexpr Scalar kSameMotion = Scalar(0.5);  ///< of two motions: their difference relative to the record's
 }  // namespace start_before_walls
 
 /// Which plane a patch lies on.
 namespace patch_waiting {
-inline constexpr Scalar kMinParallax = 12;     ///< [px] of the corners: a tenth more depth moves them by one
-inline constexpr Scalar kReach = Scalar(0.5);  ///< beyond a found plane's outline, in square roots of its area
-inline constexpr int kFoundEvery = 20;         ///< frames, in the middle of which a patch may found a plane
+inline constexpr Scalar kMinParallax = 12;          ///< [px] of the corners: a tenth more depth moves them by one
+inline constexpr Scalar kReach = Scalar(0.5);       ///< beyond a found plane's outline, in square roots of its area
+inline constexpr Scalar kMostWidth = Scalar(1.06);  ///< ratio of distances of points that lie on one wall
+inline constexpr Scalar kFromMost = Scalar(1.05);   ///< likewise of a patch to theirs
+inline constexpr int kMinMost = 8;                  ///< such points, that tell where the wall is
+inline constexpr int kFoundEvery = 20;              ///< frames, in the middle of which a patch may found a plane
 }  // namespace patch_waiting
 
 /// A plane that a patch founds.

@@ -5,6 +5,7 @@
 #include "filter/model/reference_camera.h"
 #include "geometry/homography.h"
 #include "geometry/ray_plane.h"
+#include "slam/common_ratio.h"
 #include "slam/patch_keeper.h"
 #include "slam/patch_tuning.h"
 #include "slam/plane_walls.h"
@@ -17,6 +18,8 @@ namespace {
 
 using namespace tuning::patch_waiting;
 using model::ReferenceCamera;
+
+constexpr int kMaxMost = 128;  // points that are asked
 
 }  // namespace
 
@@ -132,6 +135,10 @@ void PatchKeeper::measure_waiting(const Pyramid& image, bool is_young, StoredPat
       for (int k = 0; k < map_.planes.capacity(); ++k) {
         if (!map_.planes.used(k) || map_.planes[k].id != id) continue;
         if (is_seen_through(*patch, k)) refuse(patch);
+        if (is_off_most(*patch, k)) {
+          refuse(patch);
+          return give_up(patch);
+        }
         return join(patch, k);
       }
       break;
@@ -141,6 +148,36 @@ void PatchKeeper::measure_waiting(const Pyramid& image, bool is_young, StoredPat
     case WaitVerdict::kGiveUp:
       give_up(patch);
   }
+}
+
+/// Whether the patch is nearer or farther than most points that are seen before a wall, which no point lies on yet. As long as the plan is
+/// all that tells how far the wall is from these points, what stands before the wall passes the gate as well, and would move it there.
+bool PatchKeeper::is_off_most(const StoredPatch& patch, int entry) const {
+  const PlaneEntry& wall = map_.planes[entry];
+  const State& state = filter_.state();
+  if (!wall.known || wall.upheld > 0 || state.block[wall.slot].children > 0) return false;
+  const CameraAt camera = camera_at(state, Scalar(0));
+  Scalar ratio[kMaxMost], range = 0, of_patch = 0;
+  int count = 0;
+  for (int i = 0; i < map_.features.capacity() && count < kMaxMost; ++i) {
+    if (!map_.features.used(i) || map_.features[i].last_seen_ns != frame_.report.t_ns) continue;
+    const int slot = map_.features[i].slot;
+    if (state.block[slot].kind == BlockKind::kPoint &&
+        first_wall(filter_, map_, camera.p_W, filter_.point(slot) - camera.p_W, &range) == entry)
+      ratio[count++] = range;
+  }
+  const CommonRatio most = find_common_ratio(ratio, count, kMostWidth);
+  if (most.votes < kMinMost || 2 * most.votes < count) return false;
+  PlaneFit fit;
+  Vec3 m, ray_C, hit_W;
+  const Vec2 middle = (patch.corner[0] + patch.corner[1] + patch.corner[2] + patch.corner[3]) / 4;
+  if (!fit_plane_to(patch, &fit, &of_patch, &m) || !unproject(filter_.lens(), middle, &ray_C)) return false;
+  const Vec3 ray_W = camera.q_WC * ray_C;
+  if (!meets_wall(filter_, map_, entry, camera.p_W, ray_W, &range) ||
+      !intersect_ray_plane(fit.frame, Vec3(Vec3::Zero()), camera.p_W, ray_W, &hit_W))
+    return false;
+  of_patch = range * ray_W.norm() / (hit_W - camera.p_W).norm();
+  return of_patch > kFromMost * most.ratio || most.ratio > kFromMost * of_patch;
 }
 
 /// Whether a plane that explains the patch is behind the wall that was seen there when it began.
