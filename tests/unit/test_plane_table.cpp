@@ -1,6 +1,6 @@
 // When a map begins again from a record of its first frames, walls of the plan stay as they came, and planes that were found go.
 #include "map/plane_table.h"
-#include "test_arena.h"
+#include "support/textured_images.h"
 #include "unity.h"
 
 using namespace pf;
@@ -22,7 +22,7 @@ PlaneOutline outline(Scalar side) {
 void test_walls_should_be_kept_as_the_plan_has_them() {
   TestArena arena;
   PlaneTable planes;
-  planes.layout(arena.arena, 4);
+  planes.layout(*arena, 4);
   planes.init();
   const int found = planes.add(5), wall = planes.add(6);
   const std::uint32_t id = planes[wall].id, id_found = planes[found].id;

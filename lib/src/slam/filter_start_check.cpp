@@ -4,7 +4,8 @@
 #include "slam/patch_tuning.h"
 #include "slam/tuning.h"
 
-/// FilterStart: what a record is made for; whether the filter's first depths are those of the record, which goes on beside it (lib/docs/starting.md).
+/// FilterStart: what a record is made for, and whether the filter's first depths are those of the record that goes on beside it
+/// (lib/docs/starting.md).
 
 namespace pf {
 
@@ -78,9 +79,9 @@ Scalar FilterStart::range_in_plan(const Vec3& ray_W) const {
   return nearest;
 }
 
-/// W's lengths per length of the record, so that most of its points that are seen before walls of the plan lie on them: the ratio of the two
-/// distances that most of these points have in common. Others lie before the wall, or the wall is not there. Zero where no ratio has a clear
-/// majority.
+/// W's lengths per length of the record, so that most of its points that are seen before walls of the plan lie on them: the ratio of the
+/// two distances that most of these points have in common. Others lie before the wall, or the wall is not there. Zero where no ratio has a
+/// clear majority.
 Scalar FilterStart::unit_by_walls() const {
   Scalar ratio[StartRecord::kMaxFeatures];
   int count = 0;

@@ -31,8 +31,8 @@ class PatchKeeper {
   bool layout(Arena& arena);
   void init();
 
-  /// Finds the patches in the image, and updates the filter with each that passes its gate. is_young: the map's depths are not sure yet, and
-  /// no patch joins a wall for want of parallax.
+  /// Finds the patches in the image, and updates the filter with each that passes its gate. is_young: the map's depths are not sure yet,
+  /// and no patch joins a wall for want of parallax.
   void measure(const Pyramid& image, bool is_young);
   /// Drops patches that fail; supported: the frame's measurements support its pose. Begins new ones where it may.
   void maintain(const Pyramid& image, bool supported, bool may_begin);
