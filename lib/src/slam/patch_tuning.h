@@ -22,6 +22,7 @@ inline constexpr Scalar kReach = Scalar(0.5);       ///< beyond a found plane's 
 inline constexpr Scalar kMostWidth = Scalar(1.06);  ///< ratio of distances of points that lie on one wall
 inline constexpr Scalar kFromMost = Scalar(1.05);   ///< likewise of a patch to theirs
 inline constexpr int kMinMost = 8;                  ///< such points, that tell where the wall is
+inline constexpr int kYoungEvery = 2;               ///< frame that counts before the first depths are sure
 inline constexpr int kFoundEvery = 20;              ///< frames, in the middle of which a patch may found a plane
 }  // namespace patch_waiting
 

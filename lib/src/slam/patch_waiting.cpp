@@ -118,7 +118,7 @@ void PatchKeeper::measure_waiting(const Pyramid& image, bool is_young, StoredPat
     return;
   patch->status = PatchStatus::kWaiting;
   const bool supported = frame_.report.inliers >= settings_.min_inliers;
-  if (supported) patch->wait.begin_frame(!is_young);
+  if (supported) patch->wait.begin_frame(!is_young || frame_.report.frames % kYoungEvery == 0);
   const int nearest = try_planes(patch, supported);
   if (!supported) {
     if (nearest >= 0) join(patch, nearest);
