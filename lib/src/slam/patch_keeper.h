@@ -32,7 +32,7 @@ class PatchKeeper {
   void init();
 
   /// Finds the patches in the image, and updates the filter with each that passes its gate. is_young: the map's depths are not sure yet,
-  /// and no patch joins a wall for want of parallax.
+  /// and a patch without parallax waits twice as long.
   void measure(const Pyramid& image, bool is_young);
   /// Drops patches that fail; supported: the frame's measurements support its pose. Begins new ones where it may.
   void maintain(const Pyramid& image, bool supported, bool may_begin);
