@@ -81,7 +81,7 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns, Scalar unit) {
   now.v_W = (p_W - now.p_W) / dt;
   now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
   Transition transition;
-  // Residuals of zero say nothing of how the unit is mounted either.
+  // Residuals of zero do not say how the gyro agrees with the bundle's rotations, which are those of the pixels alone.
   if (settings_.inertial)
     motion_.predict_coasting(now, before_ns, frame.t_ns, &transition);
   else
