@@ -1,0 +1,37 @@
+"""pf-sim vio --start moving: most walks tell metres within three seconds and few of them wrong ones; in pictures, whose map begins with
+the record of a start, poses, gravity and biases are as honest, and a healthy unit is not doubted."""
+
+import json
+import pathlib
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from script import BIN, fail, run  # noqa: E402
+
+
+def require(condition, message):
+    if not condition:
+        fail(message)
+
+
+def report(folder, *options):
+    path = folder / "vio.json"
+    print(run(BIN / "pf-sim", "vio", "--start", "moving", "--json", path, *options))
+    return json.loads(path.read_text())
+
+
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    walks = report(folder, "--seeds", "20", "--first-seed", "501", "--seconds", "3")["starts"]
+    require(walks["accepted"] >= 14 and walks["accepted_poor"] == 0 and walks["wrong"] <= 2, f"walks of 3 s: {walks}")
+    require(walks["scale_nees"] < 4, f"scale is more certain than right: NEES {walks['scale_nees']} of 1")
+
+    for scene, seconds in (("room", "5"), ("desk", "7")):
+        seen = report(folder, "--rendered", "--scene", scene, "--seeds", "2", "--seconds", seconds)
+        require(seen["starts"]["accepted"] >= 1 and seen["starts"]["wrong"] == 0, f"{scene}: {seen['starts']}")
+        require(seen["doubt"]["runs"] == 0 and seen["lost_runs"] == 0, f"{scene}: a healthy unit is doubted: {seen['doubt']}")
+        # Two runs: an average of fewer independent frames than it has, so three times what is expected.
+        require(seen["nees_pose"]["mean"] < 18, f"{scene}: pose NEES {seen['nees_pose']['mean']}, 6 expected")
+        require(seen["nees_gravity"] < 6 and seen["nees_gyro_bias"] < 9, f"{scene}: NEES {seen['nees_gravity']}, {seen['nees_gyro_bias']}")
+        require(seen["nees_accel_bias"] < 18, f"{scene}: NEES of the accelerometer's bias {seen['nees_accel_bias']}, 3 expected")
