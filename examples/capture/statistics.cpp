@@ -217,6 +217,9 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   for (int i = 0; i <= PF_STAGE_MAP; ++i) {
     stages[kStages[i]] = rounded(stage_ms_[i].quantile(0.5));
   }
+  if (session.config().motion.model == PF_MOTION_INERTIAL) {
+    stages["imu"] = rounded(stage_ms_[PF_STAGE_IMU].quantile(0.5));
+  }
   if (has_patches) stages["patch"] = rounded(stage_ms_[PF_STAGE_PATCH].quantile(0.5));
   if (session.config().map.masks != PF_MASKS_NONE) {
     stages["template"] = rounded(stage_ms_[PF_STAGE_TEMPLATE].quantile(0.5));
