@@ -55,6 +55,7 @@ with tempfile.TemporaryDirectory() as folder:
         if kind == "charuco" and not KNOWS_MARKERS:
             continue
         print(kind, board)
+        target.unlink(missing_ok=True)  # what is there is left as it is
         script.run(PROGRAM, "--print-target", target, "--target", kind, "--board", board, "--page", page)
         found_size, rectangles = page_and_squares(target)
         near("page width", found_size[0], size[0], 0.01)

@@ -424,8 +424,7 @@ void add_vio(CLI::App& app, int& result) {
   // As on a hand: beside the camera, other axes.
   c->vio.imu.R_BC = pf::sim::rotation_exp({0.02, -0.03, 1.55});
   c->vio.imu.p_BC = {0.05, -0.02, 0.03};
-  CLI::App* command =
-      app.add_subcommand("vio", "A hand-held walk with an inertial unit: honesty, scale and drift");
+  CLI::App* command = app.add_subcommand("vio", "A hand-held walk with an inertial unit: honesty, scale and drift");
   command->add_option("--seeds", c->seeds, "how many runs");
   command->add_option("--first-seed", c->first_seed, "seed of the first run");
   command->add_option("--seconds", c->vio.seconds, "of each run");

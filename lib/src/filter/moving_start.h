@@ -55,8 +55,9 @@ inline constexpr int kMaxMovingPoses = 96;
 ///
 ///   C_jk = sigma_0^2 + sigma_k^2 delta_jk + q_d^2 min(t_j, t_k) + (u q_a)^2 G2_jk + (u gravity)^2 (q_r^2 G3_jk + q_t^2 h_j h_k)
 ///
-/// Gn: covariance of an n times integrated white noise; h = t^3 / 6 - T t^2 / 4: gravity in poses that turn, right at T / 2. Of many poses, rows are means over a few neighbours. A misfit above one widens
-/// the covariance. False where there are too few poses or the system is singular.
+/// Gn: covariance of an n times integrated white noise; h = t^3 / 6 - T t^2 / 4: gravity in poses that turn, right at T / 2. Of many
+/// poses, rows are means over a few neighbours. A misfit above one widens the covariance. False where there are too few poses or the
+/// system is singular.
 bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out);
 
 }  // namespace pf
