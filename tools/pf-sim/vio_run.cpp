@@ -201,7 +201,6 @@ class Run {
     rows_[k].nees_position = rows_[k].nees_pose = -1;
     if (o_.fault == VioFault::kFramesStop && t >= o_.fault_at_s && t < o_.fault_at_s + kStill) return true;
     const Pose sim_pose = world_.path()(t), truth = truth_at(t);
-    here_ = sim_pose;
     const bool dark = is_dark(t);
     const pf_status_t status = o_.rendered ? push_picture(sim_pose, t_ns, dark) : push_points(sim_pose, t_ns, dark);
     pf_pose_t pose;
@@ -356,7 +355,8 @@ class Run {
       std::vector<Vec3> p_C;
       for (const pf_feature_t& f : features)
         if (f.kind == PF_FEATURE_POINT) p_C.push_back(R_CW * (Vec3{f.p_W[0], f.p_W[1], f.p_W[2]} - p));
-      const std::vector<double> truth = world_.distances(here_, p_C);
+      const Pose here{first_.R_WC * last_.R_WC, first_.R_WC * last_.p_WC + first_.p_WC};
+      const std::vector<double> truth = world_.distances(here, p_C);
       for (std::size_t i = 0; i < p_C.size(); ++i)
         if (p_C[i].z > 0 && truth[i] > 0) errors.push_back(p_C[i].norm() / truth[i] - 1);
       return errors.size() < 5 ? -1 : std::fabs(median(errors));
@@ -381,7 +381,7 @@ class Run {
   const Pose first_;
   VioPlaneWatch planes_;
   double tilt_squares_ = 0;
-  Pose last_, here_;
+  Pose last_;
   std::vector<double> scratch_;
   std::vector<std::uint8_t> grey_;
   std::int64_t counted_ = 0;        ///< samples, towards the next one that comes too late

@@ -100,7 +100,6 @@ class FilterStart {
   bool check_depths(bool settled);
   Scalar unit_of_record() const;
   Scalar unit_by_walls() const;
-  Scalar range_in_plan(const Vec3& ray_W) const;
   bool most_depths_agree(Scalar unit) const;
   bool motion_agrees(Scalar unit) const;
   void empty_filter();

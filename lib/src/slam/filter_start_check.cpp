@@ -1,7 +1,7 @@
-#include "geometry/ray_plane.h"
 #include "slam/common_ratio.h"
 #include "slam/filter_start.h"
 #include "slam/patch_tuning.h"
+#include "slam/plane_walls.h"
 #include "slam/tuning.h"
 
 /// FilterStart: what a record is made for, and whether the filter's first depths are those of the record that goes on beside it
@@ -58,27 +58,6 @@ Scalar FilterStart::unit_of_record() const {
   return of_record > Scalar(0) ? distances / of_record : Scalar(0);
 }
 
-/// How far along a ray from the record's first frame the plan has a wall, in lengths of the ray; zero where it has none there. The filter
-/// may have moved a wall to where its depths are, so the plan is asked.
-Scalar FilterStart::range_in_plan(const Vec3& ray_W) const {
-  const PlaneTable& planes = parts_.map.planes;
-  const State& state = parts_.filter.state();
-  Scalar nearest = 0;
-  for (int k = 0; k < planes.capacity(); ++k) {
-    Vec3 hit_W;
-    if (!planes.used(k) || !planes[k].known) continue;
-    const PlaneFrame& frame = state.frame_of(state.block[planes[k].slot]);
-    const Vec3 plan = Vec3::Zero();
-    if (!planes[k].two_sided && !(plane_distance(frame, plan, without_.base_p_W()) > Scalar(0))) continue;
-    if (!intersect_ray_plane(frame, plan, without_.base_p_W(), ray_W, &hit_W) ||
-        !outline_contains(planes[k].plan, plane_coordinates(frame, hit_W)))
-      continue;
-    const Scalar range = (hit_W - without_.base_p_W()).norm() / ray_W.norm();
-    if (nearest == Scalar(0) || range < nearest) nearest = range;
-  }
-  return nearest;
-}
-
 /// W's lengths per length of the record, so that most of its points that are seen before walls of the plan lie on them: the ratio of the
 /// two distances that most of these points have in common. Others lie before the wall, or the wall is not there. Zero where no ratio has a
 /// clear majority.
@@ -87,7 +66,8 @@ Scalar FilterStart::unit_by_walls() const {
   int count = 0;
   for (int i = 0; i < without_.record().features(); ++i) {
     if (!without_.bundle().good(i)) continue;
-    const Scalar range = range_in_plan(without_.base_q_WC() * without_.record().ray(i));
+    const Scalar range =
+        range_in_plan(parts_.filter, parts_.map, without_.base_p_W(), without_.base_q_WC() * without_.record().ray(i));
     if (range > Scalar(0)) ratio[count++] = range * without_.bundle().rho(i);
   }
   const CommonRatio common = find_common_ratio(ratio, count, kOneWall);

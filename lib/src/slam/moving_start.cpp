@@ -116,9 +116,8 @@ Vec3 MovingStart::smooth() {
     link.step_variance = density * density * view.dt;
     link.by_bias = R_CB * dq_B.conjugate().toRotationMatrix() * by_bias;
   }
-  const int row = settings_.body.row(BodyPart::kGyroBias);
-  const Scalar variance = (filter_.variance(row) + filter_.variance(row + 1) + filter_.variance(row + 2)) / 3;
-  return gyro_bias + smooth_rotations(data_.link + data_.first, data_.end - data_.first, variance);
+  const Scalar of_bias = mean_variance(settings_.body.row(BodyPart::kGyroBias));
+  return gyro_bias + smooth_rotations(data_.link + data_.first, data_.end - data_.first, of_bias);
 }
 
 /// The poses of the sweep: positions given the smoothed rotations, e | theta = S_et S_tt^-1 theta. Returns how many.
@@ -168,13 +167,15 @@ bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingSta
   return apart * apart < kMaxApart * of_scale && (g_0 - g_1).squaredNorm() < kMaxApart * of_gravity;
 }
 
+/// Of the filter's rows from `row` on, three of them.
+Scalar MovingStart::mean_variance(int row) const {
+  return (filter_.variance(row) + filter_.variance(row + 1) + filter_.variance(row + 2)) / 3;
+}
+
 /// How well the rate at which the poses turn away from the truth is known: by the map, which turns with them, or by the gyro.
 Scalar MovingStart::turn_rate_sigma(Scalar span) const {
-  const auto variance_at = [&](int row) {
-    return (filter_.variance(row) + filter_.variance(row + 1) + filter_.variance(row + 2)) / 3;
-  };
-  return std::sqrt(
-      std::min(variance_at(Body::kTheta) / (span * span), variance_at(settings_.body.row(BodyPart::kGyroBias))));
+  const Scalar by_map = mean_variance(Body::kTheta) / (span * span);
+  return std::sqrt(std::min(by_map, mean_variance(settings_.body.row(BodyPart::kGyroBias))));
 }
 
 bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {

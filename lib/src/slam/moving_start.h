@@ -77,6 +77,7 @@ class MovingStart {
   bool sweep();
   Vec3 smooth();
   int collect();
+  Scalar mean_variance(int row) const;
   Scalar turn_rate_sigma(Scalar span) const;
   bool is_accepted(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* solution) const;
 
