@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "small_context.h"
+#include "support/inertial_unit.h"
 
 #define KEPT 8
 #define IMU_NS INT64_C(5000000)
@@ -202,12 +203,7 @@ static void test_poses_should_be_the_same_with_and_without_samples(void) {
 
 /* A context that moves by its samples. */
 static void use_inertial_model(void) {
-  config.motion.model = PF_MOTION_INERTIAL;
-  config.capacity.max_imu_samples = 400;
-  config.imu.gyro_density = 2e-4;
-  config.imu.accel_density = 2e-3;
-  config.imu.gyro_walk = 2e-5;
-  config.imu.accel_walk = 3e-3;
+  use_inertial_unit(&config, 400);
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
   free_block(block);
   block = new_block(need.bytes, 0x55);

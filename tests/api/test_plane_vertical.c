@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/inertial_unit.h"
 #include "unity.h"
 
 #define MAX_POINTS 60
@@ -41,12 +42,7 @@ void setUp(void) {
   config.capacity.max_observations = MAX_POINTS;
   config.first_depth.depth = 2;
   config.plane.roughness = 1e-4;
-  config.motion.model = PF_MOTION_INERTIAL;
-  config.capacity.max_imu_samples = 400;
-  config.imu.gyro_density = 2e-4;
-  config.imu.accel_density = 2e-3;
-  config.imu.gyro_walk = 2e-5;
-  config.imu.accel_walk = 3e-3;
+  use_inertial_unit(&config, 400);
   random_state = 7;
   count = sample = 0;
   raw = NULL;

@@ -2,6 +2,7 @@
  * camera is lost or found again, and no variance is one that no camera could have. That of the rotation reached 1e17. */
 #include <stdio.h>
 
+#include "support/inertial_unit.h"
 #include "support/small_context.h"
 
 #define IMU_NS INT64_C(5000000)
@@ -12,12 +13,7 @@
 static const double largest_rad = 10, largest_m = 1e4; /* sigmas */
 
 static void use_inertial_model(void) {
-  config.motion.model = PF_MOTION_INERTIAL;
-  config.capacity.max_imu_samples = 100;
-  config.imu.gyro_density = 2e-4;
-  config.imu.accel_density = 2e-3;
-  config.imu.gyro_walk = 2e-5;
-  config.imu.accel_walk = 3e-3;
+  use_inertial_unit(&config, 100);
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
   free_block(block);
   block = new_block(need.bytes, 0x55);

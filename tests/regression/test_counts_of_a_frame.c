@@ -2,6 +2,7 @@
  * without them, and where the window finds too few features for its pose. */
 #include <stdio.h>
 
+#include "support/inertial_unit.h"
 #include "support/small_context.h"
 
 #define IMU_NS INT64_C(5000000)
@@ -15,13 +16,8 @@ static double uniform(void) {
 }
 
 static void use_inertial_model(void) {
-  config.motion.model = PF_MOTION_INERTIAL;
-  config.capacity.max_imu_samples = 100;
+  use_inertial_unit(&config, 100);
   config.capacity.max_observations = config.map.features_in_view = 8;
-  config.imu.gyro_density = 2e-4;
-  config.imu.accel_density = 2e-3;
-  config.imu.gyro_walk = 2e-5;
-  config.imu.accel_walk = 3e-3;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
   free_block(block);
   block = new_block(need.bytes, 0x55);
