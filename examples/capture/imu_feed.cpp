@@ -17,6 +17,7 @@ constexpr int32_t kKeptToMove = 2000;  ///< likewise where poses depend on them:
 constexpr double kSigmaMountRad = 0.035;  ///< of --estimate mount: 2 degrees
 constexpr double kSigmaMountM = 0.02;
 constexpr double kSigmaDelayS = 0.01;  ///< of --estimate delay
+constexpr double kSigmaReadoutS = 0.01;  ///< of --estimate readout
 
 constexpr double kRadians = 3.14159265358979 / 180.0;
 constexpr size_t kPlanes = 64;  ///< the largest capacity.max_planes
@@ -69,7 +70,7 @@ void add_inertial(const pf_slam_t* slam, int64_t metric_frame, bool moving, cons
     }
     return sigmas;
   };
-  constexpr int kTurn = 8, kPlace = 11, kDelay = 14;  // of pf_inertial_t.sigma
+  constexpr int kTurn = 8, kPlace = 11, kDelay = 14, kReadout = 15;  // of pf_inertial_t.sigma
   if (estimated(kTurn)) {
     json["mount"] = {{"q_BC", known.q_BC},
                      {"p_BC", known.p_BC},
@@ -81,6 +82,10 @@ void add_inertial(const pf_slam_t* slam, int64_t metric_frame, bool moving, cons
   json["delay_s"] = rounded(estimated(kDelay) ? known.delay_s : model.delay_s);
   if (estimated(kDelay)) {
     json["delay_sigma_s"] = rounded(known.sigma[kDelay]);
+  }
+  if (estimated(kReadout)) {
+    json["readout_s"] = rounded(known.readout_s);
+    json["readout_sigma_s"] = rounded(known.sigma[kReadout]);
   }
 }
 
@@ -110,6 +115,7 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
   for (const std::string& what : options.estimate) {
     estimate_mount_ |= what == "mount";
     estimate_delay_ |= what == "delay";
+    estimate_readout_ |= what == "readout";
   }
   if (!error.empty() || !options.inertial) {
     return error.empty();
@@ -154,6 +160,7 @@ void ImuFeed::configure(pf_config_t& config) const {
     config.imu.sigma_mount_rad = estimate_mount_ ? kSigmaMountRad : 0.0;
     config.imu.sigma_mount_m = estimate_mount_ ? kSigmaMountM : 0.0;
     config.imu.sigma_delay_s = estimate_delay_ ? kSigmaDelayS : 0.0;
+    config.imu.sigma_readout_s = estimate_readout_ ? kSigmaReadoutS : 0.0;
   }
   config.capacity.max_imu_samples = inertial_ ? kKeptToMove : kKept;
   config.imu.gyro_range = imu_->gyro_range();

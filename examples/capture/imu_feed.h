@@ -51,7 +51,7 @@ class ImuFeed {
   Notices notices_;
   std::string failure_;  ///< of the recording
   pf_imu_model_t model_{};
-  bool estimate_mount_ = false, estimate_delay_ = false;
+  bool estimate_mount_ = false, estimate_delay_ = false, estimate_readout_ = false;
   bool inertial_ = false;
   double vertical_rad_ = 0.0;     ///< to which planes are told to be vertical; 0: they are not
   std::set<uint32_t> looked_at_;  ///< planes that were told, or that contradict it

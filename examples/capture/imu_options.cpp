@@ -29,7 +29,7 @@ void add_imu_options(CLI::App& app, Options& options) {
       ->check(not_empty())
       ->group(group);
   app.add_option("--estimate", options.estimate,
-                 "mount, delay: estimated from 2 degrees, 2 cm and 10 ms about what is given")
+                 "mount, delay, readout: estimated from 2 degrees and 2 cm, 10 ms, 10 ms about what is given")
       ->delimiter(',')
       ->group(group);
   app.add_option(
@@ -60,8 +60,8 @@ std::string check_imu_options(const Options& options) {
     return "--imu-noise: where the unit is mounted is not known; add --imu-mount FILE (T_BS, T_cam_imu or T_imu_cam)";
   }
   for (const std::string& what : options.estimate) {
-    if (what != "mount" && what != "delay") {
-      return "--estimate " + what + ": write mount, delay or mount,delay";
+    if (what != "mount" && what != "delay" && what != "readout") {
+      return "--estimate " + what + ": write mount, delay, readout or some of them, as mount,delay";
     }
   }
   if (!options.estimate.empty() && !options.inertial) {

@@ -13,14 +13,22 @@ void tearDown(void) {}
 namespace {
 
 constexpr Scalar kRelativeSigma = Scalar(0.3);
+constexpr Scalar kReadout = Scalar(0.03);
 
 LensPrior prior_of(Camera* camera) {
   LensSigmas sigmas;
   sigmas.focal = Scalar(0.01);
   sigmas.centre = Scalar(2);
+  sigmas.readout = camera->readout / 10;
   sigmas.distortion[0] =
       static_cast<CameraModel>(camera->model) == CameraModel::kDivision ? Scalar(1e-7) : Scalar(0.01);
   return make_lens_prior(sigmas, camera);
+}
+
+/// Its rows take their time where one is asked for.
+Camera* rolling(Camera* camera, Scalar tau) {
+  if (tau != Scalar(0)) camera->readout = kReadout;
+  return camera;
 }
 
 BodyLayout layout_of(const LensPrior& prior) {
@@ -38,8 +46,10 @@ struct View {
   Scalar tau;
 
   View(SeededRandom& random, Camera camera, bool uncertain_lens, Scalar tau_)
-      : prior(uncertain_lens ? prior_of(&camera) : LensPrior()), filter(true, layout_of(prior)), tau(tau_) {
-    filter->set_lens(camera, prior);
+      : prior(uncertain_lens ? prior_of(rolling(&camera, tau_)) : LensPrior()),
+        filter(true, layout_of(prior)),
+        tau(tau_) {
+    filter->set_lens(*rolling(&camera, tau), prior);
     const Body body = random_body(random);
     filter->set_mean(body);
     PlaneFrame frame;
@@ -63,7 +73,7 @@ struct View {
     const State& state = filter->state();
     Vec3 ray, at;
     TEST_ASSERT_TRUE(unproject(state.lens, pixel, &ray));
-    const CameraAt camera = camera_at(state, tau);
+    const CameraAt camera = camera_at(state, tau == Scalar(0) ? tau : tau * state.lens.readout / kReadout);
     const Block& block = state.block[wall];
     TEST_ASSERT_TRUE(intersect_ray_plane(state.frame_of(block), block.xyz(), camera.p_W, camera.q_WC * ray, &at));
     return camera.p_W + (1 + off) * (at - camera.p_W) - state.body.p_W;

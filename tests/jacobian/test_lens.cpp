@@ -1,5 +1,6 @@
 // Jacobians by the numbers of the calibration: of a pixel, of a ray, of a predicted pixel, of a new bearing, and of a pose that was
 // fitted to known points; for every camera model.
+#include "filter/camera_at.h"
 #include "geometry/lens.h"
 #include "geometry/planar_pose.h"
 #include "geometry/so3.h"
@@ -23,6 +24,7 @@ LensPrior prior_of(Camera* camera) {
   sigmas.focal = Scalar(0.01);
   sigmas.aspect = Scalar(0.001);
   sigmas.centre = Scalar(2);
+  sigmas.readout = camera->readout / 10;
   const CameraModel model = static_cast<CameraModel>(camera->model);
   const int count = model == CameraModel::kRadtan ? 5 : model == CameraModel::kEquidistant ? 4 : 1;
   for (int i = 0; i < count; ++i) sigmas.distortion[i] = model == CameraModel::kDivision ? Scalar(1e-7) : Scalar(0.01);
@@ -159,6 +161,7 @@ void test_new_bearings_should_have_exact_jacobians_by_the_lens() {
   SeededRandom random(473);
   for (int trial = 0; trial < 40; ++trial) {
     Camera camera = test_camera_of(trial % kTestCameras);
+    camera.readout = trial / 4 % 2 == 0 ? Scalar(0) : Scalar(0.03);
     const LensPrior prior = prior_of(&camera);
     const BodyLayout layout = layout_of(prior);
     TestFilter filter(true, layout);
@@ -167,19 +170,23 @@ void test_new_bearings_should_have_exact_jacobians_by_the_lens() {
     filter->set_mean(body);
     Vec2 z;
     TEST_ASSERT_TRUE(project(camera, body.q_WC.conjugate() * (point_in_view(random, body) - body.p_W), &z));
-    const auto ray_of = [&](const Camera& c) {
+    constexpr Scalar kRho = Scalar(0.5);
+    /// From the anchor towards the point, whose pixel was read out at its row's own time.
+    const auto seen_from_anchor = [&](const Camera& c) -> Vec3 {
       Vec3 ray;
       TEST_ASSERT_TRUE(unproject(c, z, &ray));
-      return ray;
+      const CameraAt then = camera_at(filter->state(), row_time(c, z.y()));
+      return (then.q_WC * ray + kRho * (then.p_W - body.p_W)).normalized();
     };
     Vec3 ray;
     Mat32 J_ray_z;
     TEST_ASSERT_TRUE(unproject(camera, z, &ray, &J_ray_z));
     const int anchor = filter->add_anchor();
-    const int slot = filter->add_inverse_depth(anchor, ray, J_ray_z, Mat2::Identity(), Scalar(0.5), Scalar(0.1));
+    const int slot = filter->add_inverse_depth(anchor, ray, J_ray_z, Mat2::Identity(), kRho, Scalar(0.1),
+                                               row_time(camera, z.y()));
     const Mat3 R_b = filter->state().block[slot].inverse_depth().q_b.toRotationMatrix();
     const auto bearing_error = [&](const Parameters& e) -> Vec2 {
-      return R_b.leftCols<2>().transpose() * (body.q_WC * ray_of(with(camera, prior, e)));
+      return R_b.leftCols<2>().transpose() * seen_from_anchor(with(camera, prior, e));
     };
     const int first = layout.row(BodyPart::kLens), count = prior.rows.count;
     const Dense P = filter.P();

@@ -15,9 +15,15 @@ LensPrior prior_of(Camera* camera) {
   LensSigmas sigmas;
   sigmas.focal = Scalar(0.01);
   sigmas.centre = Scalar(2);
+  sigmas.readout = camera->readout / 10;
   sigmas.distortion[0] =
       static_cast<CameraModel>(camera->model) == CameraModel::kDivision ? Scalar(1e-7) : Scalar(0.01);
   return make_lens_prior(sigmas, camera);
+}
+
+Camera* rolling(Camera* camera, Scalar readout) {
+  camera->readout = readout;
+  return camera;
 }
 
 BodyLayout layout_of(const LensPrior& prior) {
@@ -34,7 +40,7 @@ struct View {
   Vec2 corner[4];
 
   View(SeededRandom& random, Camera lens, bool uncertain_lens, Scalar readout)
-      : prior(uncertain_lens ? prior_of(&lens) : LensPrior()), filter(true, layout_of(prior)) {
+      : prior(uncertain_lens ? prior_of(rolling(&lens, readout)) : LensPrior()), filter(true, layout_of(prior)) {
     lens.readout = readout;
     filter->set_lens(lens, prior);
     Body body = random_body(random);

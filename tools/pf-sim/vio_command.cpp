@@ -19,7 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kSigmaMountRad = 2 * 3.14159265358979 / 180, kSigmaMountM = 0.02, kSigmaDelayS = 0.01;
+constexpr double kSigmaMountRad = 2 * 3.14159265358979 / 180, kSigmaMountM = 0.02, kSigmaDelayS = 0.01,
+                 kSigmaReadoutS = 0.01;
 
 struct Choices {
   VioOptions vio;
@@ -175,7 +176,15 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
     out["mount_error_m"] = of_all(s, c.seeds, &VioSummary::mount_error_m);
   }
   if (c.vio.sigma_delay_s > 0) out["delay_error_ms"] = of_all(units.data(), c.seeds, &VioSummary::delay_error_s);
-  if (!c.estimate.empty()) out["mount_sigmas"] = of_all(s, c.seeds, &VioSummary::mount_sigmas);
+  if (c.vio.sigma_readout_s > 0) {
+    std::vector<VioSummary> readouts(s, s + c.seeds);
+    for (VioSummary& one : readouts)
+      if (one.readout_error_s >= 0) one.readout_error_s *= 1e3;
+    out["readout_error_ms"] = of_all(readouts.data(), c.seeds, &VioSummary::readout_error_s);
+    out["readout_sigmas"] = of_all(readouts.data(), c.seeds, &VioSummary::readout_sigmas);
+  }
+  if (c.vio.sigma_mount_rad > 0 || c.vio.sigma_delay_s > 0)
+    out["mount_sigmas"] = of_all(s, c.seeds, &VioSummary::mount_sigmas);
   for (VioSummary& one : units) {
     one.tilt_rad *= 180 / 3.14159265358979;
     one.tilt_rms_rad *= 180 / 3.14159265358979;
@@ -249,6 +258,9 @@ void print_vio(const json& j, bool with_imu) {
   if (j.contains("delay_error_ms"))
     std::printf("  delay off by %.3f ms (largest %.3f)\n", number("/delay_error_ms/median"),
                 number("/delay_error_ms/max"));
+  if (j.contains("readout_error_ms"))
+    std::printf("  readout off by %.3f ms (largest %.3f) 10 s after the scale is known, at most %.1f of its sigma\n",
+                number("/readout_error_ms/median"), number("/readout_error_ms/max"), number("/readout_sigmas/max"));
   if (j.contains("mount_sigmas"))
     std::printf("  of these an axis is at most %.1f of its sigma off (median of runs %.1f)\n",
                 number("/mount_sigmas/max"), number("/mount_sigmas/median"));
@@ -374,10 +386,16 @@ int run(Choices c) {
       c.vio.sigma_mount_m = kSigmaMountM;
     } else if (what == "delay") {
       c.vio.sigma_delay_s = kSigmaDelayS;
+    } else if (what == "readout") {
+      c.vio.sigma_readout_s = kSigmaReadoutS;
     } else {
-      return fail("--estimate " + what + ": write mount, delay or mount,delay");
+      return fail("--estimate " + what + ": write mount, delay, readout or some of them, as mount,delay");
     }
   }
+  if (!(o.readout_s >= 0 && o.readout_s <= 0.1)) return fail("--readout is 0 to 0.1 seconds");
+  if (o.readout_s > 0 && o.rendered) return fail("--readout is for points; leave --rendered away");
+  if (o.sigma_readout_s > 0 && o.readout_s <= kSigmaReadoutS)
+    return fail("--estimate readout: the rows of a camera that is known to take 10 ms less; add --readout S above 0.01");
   pf_sim_options_t scene;
   if (o.rendered && pf_sim_options_default(o.scene.c_str(), &scene) != PF_OK)
     return fail("--scene " + o.scene + ": there is no such scene");
@@ -400,7 +418,7 @@ int run(Choices c) {
                      {"noise_scale", c.noise_scale}, {"rest_s", o.rest_s},         {"sigma_px", o.sigma_px},
                      {"rendered", o.rendered},       {"delay_s", o.imu.delay_s},   {"estimate", c.estimate},
                      {"imu", c.vio.use_imu},         {"first_seed", c.first_seed}, {"blackout_at_s", o.blackout_at_s},
-                     {"blackout_s", o.blackout_s}};
+                     {"blackout_s", o.blackout_s},   {"readout_s", o.readout_s}};
   if (c.vio.fault != VioFault::kNone) out["fault"] = of_fault(c, job.summaries);
   if (!c.still) print_vio(out, c.vio.use_imu);
   if (c.vio.fault != VioFault::kNone) print_fault(out);
@@ -434,12 +452,14 @@ void add_vio(CLI::App& app, int& result) {
   command->add_option("--delay", c->vio.imu.delay_s, "of frames against samples, known [s]");
   command
       ->add_option("--estimate", c->estimate,
-                   "mount, delay: drawn with 2 degrees, 2 cm and 10 ms, and estimated from there on")
+                   "mount, delay: drawn with 2 degrees, 2 cm and 10 ms, and estimated from there on; readout: known as "
+                   "10 ms less than --readout, and estimated")
       ->delimiter(',');
   command->add_option(
       "--start", c->start,
       "rest; or moving: it moves from the first frame on, in every tenth run too evenly to tell the scale");
   command->add_option("--rest", c->vio.rest_s, "at the beginning [s]");
+  command->add_option("--readout", c->vio.readout_s, "of a rolling shutter, from the first row to the last [s]");
   command->add_option("--sigma-px", c->vio.sigma_px, "measurement noise [px]");
   command->add_option("--points", c->vio.points, "of the room");
   command->add_option("--blackout-at", c->vio.blackout_at_s, "when the lens is covered [s]");

@@ -21,6 +21,7 @@ using pf::sim::Vec3;
 constexpr std::uint64_t kPoorEvery = 10;  // runs
 constexpr int kGaugeEvery = 50;           // frames
 constexpr double kScaleAfter = 5;         // [s] of motion, when the scale is judged first
+constexpr double kReadoutAfter = 10;      // [s] likewise the readout
 
 constexpr double kAfter = 5;          // [s] from the beginning of a fault, when all should be well again
 constexpr double kStill = 1;          // [s] that a unit or a camera stops
@@ -37,6 +38,7 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   pf_config_t config;
   pf_config_default(&config);
   config.camera = camera;
+  config.camera.readout_s = o.readout_s - o.sigma_readout_s;
   config.capacity.max_imu_samples = 2000;
   config.clock_ns = thread_clock;
   if (!o.rendered) {
@@ -67,6 +69,7 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   config.imu.sigma_mount_rad = o.sigma_mount_rad;
   config.imu.sigma_mount_m = o.sigma_mount_m;
   config.imu.sigma_delay_s = o.sigma_delay_s;
+  config.imu.sigma_readout_s = o.sigma_readout_s;
   return config;
 }
 
@@ -95,6 +98,7 @@ class Run {
       if (!frame(k)) return;
     out_.scale_error_end = scale_error();
     note_mounting();
+    if (out_.readout_error_s < 0) note_readout();
   }
 
  private:
@@ -179,9 +183,10 @@ class Run {
         out_.refused_samples += pf_push_imu(context_.slam, &sample, 1) != PF_OK;
   }
 
-  pf_status_t push_points(const Pose& pose, std::int64_t t_ns, bool dark) {
-    auto seen = world_.observe(pose, o_.sigma_px, noise_);
-    if (o_.hand) world_.wave(1e-9 * static_cast<double>(t_ns), o_.sigma_px, noise_, &seen);
+  pf_status_t push_points(std::int64_t t_ns, bool dark) {
+    const double t = 1e-9 * static_cast<double>(t_ns);
+    auto seen = world_.observe(t, o_.readout_s, o_.sigma_px, noise_);
+    if (o_.hand) world_.wave(t, o_.sigma_px, noise_, &seen);
     if (dark) seen.clear();
     return pf_push_observations(context_.slam, t_ns, seen.data(), seen.size());
   }
@@ -202,7 +207,7 @@ class Run {
     if (o_.fault == VioFault::kFramesStop && t >= o_.fault_at_s && t < o_.fault_at_s + kStill) return true;
     const Pose sim_pose = world_.path()(t), truth = truth_at(t);
     const bool dark = is_dark(t);
-    const pf_status_t status = o_.rendered ? push_picture(sim_pose, t_ns, dark) : push_points(sim_pose, t_ns, dark);
+    const pf_status_t status = o_.rendered ? push_picture(sim_pose, t_ns, dark) : push_points(t_ns, dark);
     pf_pose_t pose;
     pf_report_t report;
     FrameRow& row = rows_[k];
@@ -251,6 +256,7 @@ class Run {
     const Vec3 e = truth.p_WC - Vec3{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
     out_.end_error_m = e.norm();
     if (out_.scale_error_5s < 0 && t >= begin_s() + kScaleAfter) out_.scale_error_5s = scale_error();
+    if (out_.readout_error_s < 0 && t >= begin_s() + kReadoutAfter) note_readout();
     return true;
   }
 
@@ -316,6 +322,13 @@ class Run {
     const double e[7] = {turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, delay};
     for (int i = 0; i < 7; ++i)
       if (unit.sigma[8 + i] > 0) out_.mount_sigmas = std::max(out_.mount_sigmas, std::fabs(e[i]) / unit.sigma[8 + i]);
+  }
+
+  void note_readout() {
+    pf_inertial_t unit;
+    if (o_.sigma_readout_s <= 0 || pf_get_inertial(context_.slam, &unit) != PF_OK) return;
+    out_.readout_error_s = std::fabs(unit.readout_s - o_.readout_s);
+    out_.readout_sigmas = out_.readout_error_s / unit.sigma[15];
   }
 
   void note_wander(const pf_pose_t& pose) {

@@ -40,6 +40,8 @@ struct VioOptions {
   double sigma_accel_bias = 0.1;  ///< [m/s^2]
   /// From which the errors of the unit's mounting and delay are drawn, and with which they are estimated [rad], [m], [s]; 0: exact.
   double sigma_mount_rad = 0, sigma_mount_m = 0, sigma_delay_s = 0;
+  double readout_s = 0;        ///< of the frames' rows; of points only
+  double sigma_readout_s = 0;  ///< known as that much less, and estimated; 0: known exactly
   int points = 300;
   double turn_rad_s = 0;  ///< of a camera on a turntable that rests otherwise
   bool hand = false;      ///< moves before the lens
@@ -81,6 +83,7 @@ struct VioSummary {
   double worst_bias_sigmas = 0;         ///< largest error of a bias in its own sigma
   std::int32_t tracked_after = 0, judged_after = 0, refused_samples = 0;
   double mount_error_rad = -1, mount_error_m = -1, delay_error_s = -1;  ///< at the end, where they are estimated
+  double readout_error_s = -1, readout_sigmas = -1;  ///< of the rows, 10 s after the scale is known or at the end: likewise
   double mount_sigmas = -1;  ///< the largest of their errors along an axis, in its own sigma
   double doubted_at_s = -1;  ///< when the unit first came into doubt, negative: never
   double doubted_s = 0;      ///< for how long it was

@@ -22,6 +22,7 @@ constexpr double kBorder = 4;                           // nothing is measured t
 constexpr double kIntoWalk = 2;                         // of a camera that moves from the first frame on [s]
 constexpr int kHand = 24;                               // points of a hand
 constexpr double kNearest = 0.3;                        // nor nearer [m]
+constexpr int kRowTurns = 3;                            // in which a pixel's row is found
 
 /// Points on the walls, the floor and the ceiling, and every third one inside.
 Vec3 place(Random& random, int k) {
@@ -150,16 +151,23 @@ bool VioWorld::draw(const Pose& pose, double noise_grey, Random& noise, std::vec
   return true;
 }
 
-std::vector<pf_observation_t> VioWorld::observe(const Pose& pose, double sigma_px, Random& noise) const {
-  const pf_camera_t& lens = camera_;
+bool VioWorld::project(const Pose& pose, const Vec3& point, double pixel[2]) const {
+  const Vec3 p_C = pose.R_WC.transposed() * (point - pose.p_WC);
+  const double p[3] = {p_C.x, p_C.y, p_C.z};
+  return p_C.z >= kNearest && pf_camera_project(&camera_, p, pixel) == PF_OK && pixel[0] >= kBorder &&
+         pixel[1] >= kBorder && pixel[0] <= camera_.width - 1 - kBorder && pixel[1] <= camera_.height - 1 - kBorder;
+}
+
+std::vector<pf_observation_t> VioWorld::observe(double t, double readout_s, double sigma_px, Random& noise) const {
+  const Pose pose = path_(t);
   std::vector<pf_observation_t> seen;
   for (std::size_t id = 0; id < points_.size(); ++id) {
-    const Vec3 p_C = pose.R_WC.transposed() * (points_[id] - pose.p_WC);
-    const double p[3] = {p_C.x, p_C.y, p_C.z};
     double pixel[2];
-    if (p_C.z < kNearest || pf_camera_project(&lens, p, pixel) != PF_OK || pixel[0] < kBorder || pixel[1] < kBorder ||
-        pixel[0] > lens.width - 1 - kBorder || pixel[1] > lens.height - 1 - kBorder)
-      continue;
+    bool in_view = project(pose, points_[id], pixel);
+    // A row's time says where the point is, and that says which row it is in: the camera moves little in between.
+    for (int turn = 0; readout_s > 0 && in_view && turn < kRowTurns; ++turn)
+      in_view = project(path_(t + readout_s * ((pixel[1] + 0.5) / camera_.height - 0.5)), points_[id], pixel);
+    if (!in_view) continue;
     const double e[2] = {noise.normal(), noise.normal()};
     seen.push_back(
         {static_cast<std::uint32_t>(id), {pixel[0] + sigma_px * e[0], pixel[1] + sigma_px * e[1]}, sigma_px});

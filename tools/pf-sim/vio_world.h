@@ -27,8 +27,8 @@ class VioWorld {
   const std::vector<pf::sim::Vec3>& points() const { return points_; }
   /// A hand of kHand points, 0.4 m before the camera, that waves about: pixels with noise, their ids behind those of the points.
   void wave(double t, double sigma_px, pf::sim::Random& noise, std::vector<pf_observation_t>* seen) const;
-  /// Pixels with noise of the points that a camera sees.
-  std::vector<pf_observation_t> observe(const pf::sim::Pose& pose, double sigma_px, pf::sim::Random& noise) const;
+  /// Pixels with noise of the points that the camera sees at time t, each row at its own time: the whole picture takes readout_s.
+  std::vector<pf_observation_t> observe(double t, double readout_s, double sigma_px, pf::sim::Random& noise) const;
   /// How far from the camera the rendered scene is along the rays of points in the camera's axes [m]; negative: nothing is seen there.
   std::vector<double> distances(const pf::sim::Pose& pose, const std::vector<pf::sim::Vec3>& p_C) const;
   /// The picture that a camera sees, in `grey`. False where nothing is rendered.
@@ -36,6 +36,8 @@ class VioWorld {
             std::vector<std::uint8_t>* grey) const;
 
  private:
+  bool project(const pf::sim::Pose& pose, const pf::sim::Vec3& point, double pixel[2]) const;
+
   pf_camera_t camera_;
   std::shared_ptr<pf_sim_t> room_;
   pf::sim::Trajectory path_;

@@ -215,6 +215,9 @@ typedef struct pf_imu_model {
   double sigma_mount_rad; /* of the unit's axes, up to 0.5. Three rows of the state */
   double sigma_mount_m;   /* of its origin in C, up to 1. Three rows */
   double sigma_delay_s;   /* up to 0.1. One row */
+  /* Of camera.readout_s, which must be above 0 then; up to 0.1. One more row of the lens, which is considered where
+   * camera.estimate says so, and else estimated. */
+  double sigma_readout_s;
 } pf_imu_model_t;
 
 /* Fill with pf_config_default, then change what you know better. pf_config_check names a bad field as it is written
@@ -768,7 +771,7 @@ typedef struct pf_inertial {
   uint32_t rests; /* begun since the beginning */
   /* Mounting and delay as they are known now; those of the config where they are not estimated. */
   double q_BC[4], p_BC[3], delay_s;
-  double readout_s; /* of the camera's rows: that of the config */
+  double readout_s; /* of the camera's rows */
   /* Standard deviations: gravity 2, biases 6 (as in covariance), rotation of the mounting 3 (about the axes of B), p_BC 3,
    * delay, readout, log scale of the best known length. Negative: not estimated, or not known yet. */
   double sigma[17];

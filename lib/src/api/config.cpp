@@ -88,6 +88,7 @@ constexpr Range kUnitSigmas[] = {
     PF_FIELD(imu.sigma_mount_rad, 1e-6, 0.5),
     PF_FIELD(imu.sigma_mount_m, 1e-6, 1),
     PF_FIELD(imu.sigma_delay_s, 1e-6, 0.1),
+    PF_FIELD(imu.sigma_readout_s, 1e-6, 0.1),
 };
 
 #undef PF_FIELD
@@ -99,27 +100,35 @@ constexpr double kMaxLever = 10;         // [m] between unit and camera
 constexpr double kLongestReadout = 0.2;  // [s]
 constexpr std::int32_t kScalar = sizeof(Scalar);
 
-/// What is uncertain of the camera. Null, or the name of the first field that makes no sense.
-const char* lens_from(const pf_camera_t& c, const pf_config_t& config, Settings* settings) {
-  if (c.estimate < PF_CAMERA_EXACT || c.estimate > PF_CAMERA_ESTIMATE) return "camera.estimate";
-  settings->lens = LensPrior();
-  if (c.estimate == PF_CAMERA_EXACT) return nullptr;
+/// What is uncertain of the shape of its pictures. Null, or the name of the first field that makes no sense.
+const char* shape_from(const pf_camera_t& c, const pf_config_t& config, LensSigmas* sigmas) {
   for (const Range& r : kLens) {
     const double value = field_at<double>(config, r.offset);
     if (!(value >= r.low && value <= r.high)) return r.name;
   }
   constexpr int kUsed[5] = {0, 1, 5, 4, 1};  // a pinhole may get k1
-  LensSigmas sigmas;
   for (int i = 0; i < 8; ++i) {
     const double sigma = c.sigma_distortion[i];
     if (!(sigma >= 0 && sigma <= 1) || (i >= kUsed[c.model] && sigma != 0)) return "camera.sigma_distortion";
-    if (i < 5) sigmas.distortion[i] = static_cast<Scalar>(sigma);
+    if (i < 5) sigmas->distortion[i] = static_cast<Scalar>(sigma);
   }
-  sigmas.focal = static_cast<Scalar>(c.sigma_focal);
-  sigmas.aspect = static_cast<Scalar>(c.sigma_aspect);
-  sigmas.centre = static_cast<Scalar>(c.sigma_centre_px);
+  sigmas->focal = static_cast<Scalar>(c.sigma_focal);
+  sigmas->aspect = static_cast<Scalar>(c.sigma_aspect);
+  sigmas->centre = static_cast<Scalar>(c.sigma_centre_px);
+  return nullptr;
+}
+
+/// What is uncertain of the camera. Null, or the name of the first field that makes no sense.
+const char* lens_from(const pf_camera_t& c, const pf_config_t& config, Settings* settings) {
+  if (c.estimate < PF_CAMERA_EXACT || c.estimate > PF_CAMERA_ESTIMATE) return "camera.estimate";
+  settings->lens = LensPrior();
+  LensSigmas sigmas;
+  const char* bad = c.estimate == PF_CAMERA_EXACT ? nullptr : shape_from(c, config, &sigmas);
+  if (bad != nullptr) return bad;
+  if (config.motion.model == PF_MOTION_INERTIAL) sigmas.readout = static_cast<Scalar>(config.imu.sigma_readout_s);
+  if (sigmas.readout > Scalar(0) && !(c.readout_s > 0)) return "imu.sigma_readout_s";
   settings->lens = make_lens_prior(sigmas, &settings->camera);
-  if (config.backend != PF_BACKEND_WINDOW)
+  if (settings->lens.rows.count > 0 && config.backend != PF_BACKEND_WINDOW)
     settings->body.add_constant(BodyPart::kLens, settings->lens.rows.count, c.estimate == PF_CAMERA_CONSIDER);
   return nullptr;
 }
@@ -227,9 +236,10 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
     return *field = "capacity.max_state_dim", Status::kConfig;
   if (c.timestamps != PF_TIMESTAMPS_REAL && c.timestamps != PF_TIMESTAMPS_NOMINAL)
     return *field = "camera.timestamps", Status::kConfig;
-  const bool nominal = c.timestamps == PF_TIMESTAMPS_NOMINAL;
-  settings->camera.readout = nominal ? Scalar(0) : static_cast<Scalar>(c.readout_s);
-  settings->readout_ignored = nominal && c.readout_s > 0;
+  // Rows hang on the camera's speeds, and these on the frames' times; but with an inertial unit on its samples.
+  const bool timeless = c.timestamps == PF_TIMESTAMPS_NOMINAL && !settings->inertial;
+  settings->camera.readout = timeless ? Scalar(0) : static_cast<Scalar>(c.readout_s);
+  settings->readout_ignored = timeless && c.readout_s > 0;
 
   settings->backend = static_cast<BackEnd>(config.backend);
   settings->window_keyframes = static_cast<std::uint8_t>(config.capacity.window_keyframes);

@@ -84,7 +84,7 @@ pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial) {
   for (int i = 0; i < 4; ++i) inertial->q_BC[i] = q[0] < 0 ? -q[i] : q[i];
   pf::copy(unit.p_BC, 3, inertial->p_BC);
   inertial->delay_s = unit.delay_s;
-  inertial->readout_s = slam->config.camera.readout_s;
+  inertial->readout_s = unit.readout_s;
   for (int i = 0; i < 17; ++i) inertial->sigma[i] = static_cast<double>(unit.sigma[i]);
   return PF_OK;
 }

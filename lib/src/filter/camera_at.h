@@ -34,6 +34,16 @@ struct CameraAt {
   int columns() const { return tau == Scalar(0) ? Body::kPoseDim : rate_row + 3; }
   Part part() const { return Part::body(0, columns()); }
 
+  /// What J over (theta, p) of this camera says of the readout that tau is a part of:
+  ///
+  ///   d(theta_tau, p_tau) = (R_tau w, v) tau / readout d_readout
+  template <int kRows>
+  Eigen::Matrix<Scalar, kRows, 1> by_readout(const Eigen::Matrix<Scalar, kRows, 6>& J, Scalar readout) const {
+    Vec6 rate = Vec6::Zero();
+    if (tau != Scalar(0) && readout != Scalar(0)) rate << (q_WC * w_C) * (tau / readout), v_W * (tau / readout);
+    return J * rate;
+  }
+
   /// J over (theta, p) of this camera, by its rows of `kRows` values, becomes J over the rows of the body; h is row-major.
   template <int kRows>
   void chain(const Eigen::Matrix<Scalar, kRows, 6>& J, Scalar* h, int stride) const {

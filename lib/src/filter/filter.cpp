@@ -113,7 +113,11 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   }
   if (lens > 0) {  // the ray of a given pixel: J_z_lens e + J_z_ray e_ray = 0
     J.part[1] = Part::body(state_.layout.row(BodyPart::kLens), lens);
-    put_lens<2>(-J_z * lens_jacobian(state_.lens, ray_C), state_.lens_rows, J.part[0].size, columns, J.h);
+    LensJacobian J_lens = -J_z * lens_jacobian(state_.lens, ray_C);
+    Mat26 J_camera;
+    J_camera << J_theta, J_c;
+    J_lens.col(kReadoutParameter) = camera.by_readout<2>(J_camera, state_.lens.readout);
+    put_lens<2>(J_lens, state_.lens_rows, J.part[0].size, columns, J.h);
   }
   // Of the pixel, and of the inverse depth, which rotates the bearing too where the anchor is not where the ray begins.
   Mat3 noise = Mat3::Zero();

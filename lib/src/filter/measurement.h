@@ -37,14 +37,14 @@ struct MeasurementOf {
 };
 
 /// A feature's pixel [px], over body, lens, plane, point group and feature at most.
-struct PixelMeasurement : MeasurementOf<2, 30, 5> {
+struct PixelMeasurement : MeasurementOf<2, 31, 5> {
   Scalar bend = 0;  ///< of the noise, what a wide pose takes off the linearisation: bend I [px^2]
   Mat2 second_order =
       Mat2::Zero();  ///< what the linearisation leaves out, and a surface's roughness [px^2]; belongs into the noise
 };
 
 /// Corners of a patch on a plane [px], x and y of each, over body, reference camera, plane, patch and lens: a homography.
-using PatchMeasurement = MeasurementOf<8, 38, 5>;
+using PatchMeasurement = MeasurementOf<8, 39, 5>;
 
 /// Distance of a feature from a plane [m], over plane, feature and the row of the scale.
 using DistanceMeasurement = MeasurementOf<1, 24, 8>;

@@ -54,7 +54,11 @@ bool Filter::predict_patch(const Camera& lens, int patch, int plane, const Vec2*
     put<2, 6>(h, columns, at_reference, M * point.J_reference);
     put<2, 3>(h, columns, at_plane, M * point.J_plane);
     put<2, 2>(h, columns, at_own + 2 * k, M * point.J_own);
-    if (lens_rows > 0) put_lens<2>(M * point.J_lens, state_.lens_rows, at_lens, columns, h);
+    if (lens_rows > 0) {
+      LensJacobian J_lens = point.J_lens;
+      J_lens.col(kReadoutParameter) = camera.by_readout<2>(point.J_camera, lens.readout);
+      put_lens<2>(M * J_lens, state_.lens_rows, at_lens, columns, h);
+    }
     out->predicted.segment<2>(2 * k) = point.z;
   }
   out->block = patch;

@@ -95,7 +95,9 @@ bool Filter::predict_at(const Camera& lens, const CameraAt& camera, int slot, Pi
   out->H.part[out->H.parts++] = camera.part();
   if (lens_rows > 0) {
     const Vec3 d_W = at.w * (at.o - camera.p_W) + at.b;
-    put_lens(lens_jacobian(lens, camera.q_WC.conjugate() * d_W), state_.lens_rows, camera.columns(), columns, out->H.h);
+    LensJacobian J_lens = lens_jacobian(lens, camera.q_WC.conjugate() * d_W);
+    J_lens.col(kReadoutParameter) = camera.by_readout<2>(*J_camera, lens.readout);
+    put_lens(J_lens, state_.lens_rows, camera.columns(), columns, out->H.h);
     out->H.part[out->H.parts++] = Part::body(state_.layout.row(BodyPart::kLens), lens_rows);
   }
   for (int p = 0; p < at.parts; ++p) out->H.part[out->H.parts++] = at.part[p];

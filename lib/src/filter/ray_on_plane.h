@@ -44,8 +44,10 @@ struct RayOnPlane {
     put<kRows, 3>(J->h, columns, own, Eigen::Matrix<Scalar, kRows, 3>(A * J_x));
     if (lens == 0) return;
     J->part[2] = Part::body(state.layout.row(BodyPart::kLens), lens);
-    put_lens<kRows>(by_ray<kRows>(A).lazyProduct(ray_lens_jacobian(state.lens, ray_C, J_ray_z)), state.lens_rows,
-                    own + 3, columns, J->h);
+    Eigen::Matrix<Scalar, kRows, kLensParameters> J_lens =
+        by_ray<kRows>(A).lazyProduct(ray_lens_jacobian(state.lens, ray_C, J_ray_z));
+    J_lens.col(kReadoutParameter) = camera.by_readout<kRows>(J_camera, state.lens.readout);
+    put_lens<kRows>(J_lens, state.lens_rows, own + 3, columns, J->h);
   }
 };
 

@@ -9,6 +9,7 @@ namespace {
 
 constexpr Scalar kMaxValue = Scalar(1e9);                           ///< of any entry of the state
 constexpr Scalar kMaxVariance = Scalar(1e18);                       ///< and of any variance
+constexpr Scalar kMaxReadout = Scalar(0.5);                         ///< [s]
 constexpr Scalar kMaxDelay = Scalar(1);                             ///< [s] beside that of the config
 constexpr Scalar kMinNorm2 = Scalar(0.9), kMaxNorm2 = Scalar(1.1);  ///< of a quaternion
 
@@ -32,7 +33,8 @@ bool Filter::body_is_sound() const {
   if (!is_value(m.p_C.squaredNorm()) || !(std::abs(m.delay) < kMaxDelay)) return false;
   const Scalar norm2 = b.q_WC.squaredNorm();
   return norm2 > kMinNorm2 && norm2 < kMaxNorm2 && are_variances(covariance(), 0, state_.layout.rows()) &&
-         (state_.lens_rows.count == 0 || check_camera(state_.lens) == nullptr);
+         (state_.lens_rows.count == 0 ||
+          (check_camera(state_.lens) == nullptr && std::abs(state_.lens.readout) <= kMaxReadout));
 }
 
 bool Filter::block_is_sound(int slot) const {

@@ -11,6 +11,7 @@ namespace {
 
 Scalar* parameter_of(Camera* camera, int index) {
   Scalar* const intrinsics[4] = {&camera->fx, &camera->fy, &camera->cx, &camera->cy};
+  if (index == kReadoutParameter) return &camera->readout;
   return index < 4 ? intrinsics[index] : &camera->distortion[index - 4];
 }
 
@@ -65,6 +66,7 @@ LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera) {
   LensPrior prior;
   Scalar sigma[kLensParameters] = {0, 0, sigmas.centre, sigmas.centre};
   for (int i = 0; i < 5; ++i) sigma[4 + i] = sigmas.distortion[i];
+  sigma[kReadoutParameter] = sigmas.readout;
   const Scalar common = sigmas.focal * sigmas.focal, between = sigmas.aspect * sigmas.aspect / 4;
   sigma[0] = camera->fx * std::sqrt(common + between);
   sigma[1] = camera->fy * std::sqrt(common + between);
@@ -78,6 +80,14 @@ LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera) {
       prior.covariance[a * prior.rows.count + b] = covariance;
     }
   return prior;
+}
+
+LensPrior shape_prior(const LensPrior& prior) {
+  LensPrior out = prior;  // the readout is the last row
+  const int n = out.rows.count = prior.rows.shape_count();
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b) out.covariance[a * n + b] = prior.covariance[a * prior.rows.count + b];
+  return out;
 }
 
 void lens_difference(const LensRows& rows, const Camera& from, const Camera& to, Scalar* e) {

@@ -8,12 +8,13 @@
 
 namespace pf {
 
-inline constexpr int kLensParameters = 9;  ///< fx fy cx cy, distortion[0 .. 4]
+inline constexpr int kLensParameters = 10;  ///< fx fy cx cy, distortion[0 .. 4], readout
+inline constexpr int kReadoutParameter = 9;
 
 using LensJacobian = Eigen::Matrix<Scalar, 2, kLensParameters>;
 
-/// Derivative of a point's pixel with respect to all of a camera's parameters, [px] each by its unit; those that the model lacks are zero.
-/// The point must project.
+/// Derivative of a point's pixel with respect to all of a camera's parameters, [px] each by its unit; those that the model lacks are zero,
+/// and so is the readout, which moves the camera of a row and not the pixel of a camera (CameraAt::by_readout). The point must project.
 ///
 ///   pixel = (fx m'x + cx, fy m'y + cy):   by fx (m'x, 0), by cx (1, 0), by k  (fx dm'x/dk, fy dm'y/dk)
 ///   radtan       dm'/dk1 = m r²,  k2 m r⁴,  p1 (2 mx my, r² + 2 my²),  p2 (r² + 2 mx², 2 mx my),  k3 m r⁶
@@ -32,6 +33,10 @@ inline Eigen::Matrix<Scalar, 3, kLensParameters> ray_lens_jacobian(const Camera&
 struct LensRows {
   int count = 0;                                ///< 0: the calibration is exact
   std::int8_t parameter[kLensParameters] = {};  ///< of each row, ascending
+
+  bool has_readout() const { return count > 0 && parameter[count - 1] == kReadoutParameter; }
+  /// Of them, those that shape a picture.
+  int shape_count() const { return count - (has_readout() ? 1 : 0); }
 };
 
 /// And how much they are.
@@ -48,10 +53,14 @@ struct LensSigmas {
   Scalar aspect = 0;          ///< of fx against fy, relative
   Scalar centre = 0;          ///< of cx and of cy [px]
   Scalar distortion[5] = {};  ///< 0: exact, and no row
+  Scalar readout = 0;         ///< likewise [s]
 };
 
 /// The prior of a camera. A pinhole whose first distortion coefficient is uncertain becomes a radial-tangential camera without distortion.
 LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera);
+
+/// The same without the readout: for who compares pictures that are taken at once.
+LensPrior shape_prior(const LensPrior& prior);
 
 /// Inverse of a prior's covariance, rows x rows. inflation: how many times too much an adjustment believes its pixels; it must believe the
 /// prior as many times too much.

@@ -11,7 +11,7 @@ using namespace tuning::filter_start;
 
 bool FilterStart::layout(Arena& arena, int width, int height) {
   target_.layout(arena, width, height);
-  without_.layout(arena, adjusts_lens() ? settings_.lens.rows.count : 0);
+  without_.layout(arena, adjusts_lens() ? settings_.lens.rows.shape_count() : 0);
   if (settings_.body.estimates_mounting()) mounting_ = arena.take<KnownMounting>(1);
   return arena.ok();
 }
@@ -236,7 +236,7 @@ void FilterStart::begin_record() {
   if (data_.known.given) note_covariance();
   const CameraAt camera = camera_at(parts_.filter.state(), Scalar(0));
   without_.begin_record(camera.q_WC, camera.p_W, parts_.frame.report.t_ns);
-  if (adjusts_lens() && !progress().checking) without_.free_lens(settings_.camera, settings_.lens);
+  if (adjusts_lens() && !progress().checking) without_.free_lens(settings_.camera, shape_prior(settings_.lens));
   for (int t = 0; t < parts_.frame.match_count(); ++t) {
     const Match& match = parts_.frame.match(t);
     Vec3 ray_C;

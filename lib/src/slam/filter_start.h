@@ -87,7 +87,7 @@ class FilterStart {
 
  private:
   /// The lens of a start without a target is estimated with its depths, and not only considered.
-  bool adjusts_lens() const { return settings_.body.has(BodyPart::kLens) && settings_.body.considered_rows() == 0; }
+  bool adjusts_lens() const { return settings_.lens.rows.shape_count() > 0 && settings_.body.considered_rows() == 0; }
   bool is_recording() const { return progress().recording || progress().checking; }
   void set_body(const Body& body, const Scalar* known, const Scalar* J_lens = nullptr);
   bool may_begin_anew(std::int64_t begin_ns) const;

@@ -108,6 +108,10 @@ void View::describe_mounting(InertialView* out) const {
   if (place >= 0) put_sigmas(11, turn >= 0 ? &by_turn : nullptr, &minus);
   if (layout.has(BodyPart::kDelay))
     out->sigma[14] = std::sqrt(std::max(Scalar(0), filter().variance(layout.row(BodyPart::kDelay))));
+  out->readout_s = static_cast<double>(filter().lens().readout);
+  const LensRows& lens = filter().state().lens_rows;
+  if (lens.has_readout())
+    out->sigma[15] = std::sqrt(std::max(Scalar(0), filter().variance(layout.row(BodyPart::kLens) + lens.count - 1)));
 }
 
 bool View::unit_doubted() const { return loop_ != nullptr && loop_->watch().doubted(); }

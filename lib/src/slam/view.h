@@ -74,7 +74,7 @@ struct InertialView {
   int rests;
   Quat q_BC;
   Vec3 p_BC;
-  double delay_s;
+  double delay_s, readout_s;
   Scalar sigma[17];  ///< as pf_inertial_t says
 };
 
