@@ -24,8 +24,12 @@ void put_unit(const Body& body, const Mounting& mounting, CameraAt* camera) {
   camera->beside = true;
   const Mat3 J_theta_w = camera->J_theta_w;
   camera->J_theta_w = -J_theta_w.lazyProduct(mounting.R_CB);
-  camera->J_p_theta = camera->tau * hat(body.v_W - camera->v_W);
+  const Vec3 bend_W = R * (camera->tau * camera->tau / 2 * body.a_C);
+  camera->p_W += bend_W;
+  camera->J_p_theta = camera->tau * hat(body.v_W - camera->v_W) - hat(bend_W);
   camera->J_p_w = -camera->tau * R.lazyProduct(hat(mounting.p_C)).lazyProduct(mounting.R_CB);
+  camera->v_W += camera->tau * (R * body.a_C);
+  camera->w_C += camera->tau * body.alpha_C;
 }
 
 CameraAt camera_at(const State& state, Scalar tau) {
@@ -37,7 +41,8 @@ CameraAt camera_at(const State& state, Scalar tau) {
   camera.tau = tau;
   camera.velocity_row = state.layout.row(BodyPart::kVelocity);
   camera.rate_row = state.layout.row(has_unit ? BodyPart::kGyroBias : BodyPart::kAngularVelocity);
-  const Vec3 rotation = body.w_C * tau;
+  Vec3 rotation = body.w_C * tau;
+  if (has_unit) rotation += tau * tau / 2 * body.alpha_C;
   camera.q_WC = body.q_WC * exp_so3(rotation);
   camera.q_WC.normalize();
   camera.p_W = body.p_W + camera.v_W * tau;

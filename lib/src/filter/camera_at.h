@@ -17,6 +17,10 @@ namespace pf {
 /// that of the unit's origin, at m in C (lib/docs/inertial.md):
 ///
 ///   v = v_B - R (w x m),   e_v = e_v_B + [R (w x m)]x theta + R [m]x e_w
+///
+/// Its samples tell accelerations too, of which the errors do not matter over half a readout:
+///
+///   R_tau = R Exp(w tau + alpha tau^2 / 2),   p_tau = p + v tau + R a tau^2 / 2
 struct CameraAt {
   static constexpr int kMaxColumns = 12;
 
@@ -24,7 +28,7 @@ struct CameraAt {
   Quat q_WC = Quat::Identity();
   Vec3 p_W = Vec3::Zero();
   Vec3 v_W = Vec3::Zero();
-  Vec3 w_C = Vec3::Zero();
+  Vec3 w_C = Vec3::Zero();  ///< at tau, as v_W
   Mat3 J_theta_w;                      ///< R J_l(w tau) tau, by the rows at rate_row; only where tau is not 0
   bool beside = false;                 ///< the state's velocity is that of another point; the two below only then
   Mat3 J_p_theta, J_p_w;               ///< of p_tau, beside the identity and tau
