@@ -247,6 +247,26 @@ static void test_a_second_at_rest_should_tell_gravity_and_the_gyro_s_bias(void) 
   TEST_ASSERT_DOUBLE_WITHIN(1e-2, 9.81 * sqrt(force), up);
 }
 
+static void test_an_uncertain_readout_should_be_a_number_of_the_camera(void) {
+  const double known = config.camera.readout_s;
+  double covariance[100];
+  pf_camera_t camera;
+  pf_inertial_t inertial;
+  config.camera.readout_s = 0.02;
+  config.imu.sigma_readout_s = 0.01;
+  use_inertial_model();
+  stand_still(40); /* which tells nothing of it */
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_camera(slam, &camera, covariance));
+  TEST_ASSERT_DOUBLE_WITHIN(2e-3, 0.02, camera.readout_s);
+  TEST_ASSERT_DOUBLE_WITHIN(2e-3, 0.01, sqrt(covariance[99]));
+  TEST_ASSERT_EQUAL_DOUBLE(0, covariance[0]);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_inertial(slam, &inertial));
+  TEST_ASSERT_DOUBLE_WITHIN(1e-9, camera.readout_s, inertial.readout_s);
+  TEST_ASSERT_DOUBLE_WITHIN(1e-9, sqrt(covariance[99]), inertial.sigma[15]);
+  config.camera.readout_s = known;
+  config.imu.sigma_readout_s = 0;
+}
+
 static void test_poses_should_go_on_with_the_samples_when_no_frame_shows_anything(void) {
   pf_pose_t before, after, predicted;
   use_inertial_model();
@@ -339,6 +359,7 @@ int main(void) {
   RUN_TEST(test_extreme_times_should_neither_overflow_nor_stop_what_follows);
   RUN_TEST(test_poses_should_be_the_same_with_and_without_samples);
   RUN_TEST(test_a_second_at_rest_should_tell_gravity_and_the_gyro_s_bias);
+  RUN_TEST(test_an_uncertain_readout_should_be_a_number_of_the_camera);
   RUN_TEST(test_poses_should_go_on_with_the_samples_when_no_frame_shows_anything);
   RUN_TEST(test_asking_for_the_unit_should_leave_the_block_as_it_was);
   RUN_TEST(test_reset_should_forget_the_samples);

@@ -258,7 +258,10 @@ void test_pixels_of_late_rows_should_be_exact_by_every_row_of_the_body() {
     const Mounting mounting = random_mounting(random);
     filter->set_mounting(mounting);
     const Body body = random_inertial_body(random);
-    const int slot = filter->add_point(point_in_view(random, body), Mat3::Identity());
+    const Bend bend = {random.normals<3>(10), random.normals<3>(5)};
+    bend_to(body, bend, &*filter);
+    const Vec3 p_W = point_in_view(random, body);
+    const int slot = filter->add_point(p_W, Mat3::Identity());
     const auto seen = [&](const Vec17& e) -> Vec2 {
       Body other = moved_inertial(body, e);
       other.w_C -= mounting.R_CB * e.segment<3>(9);
@@ -270,6 +273,14 @@ void test_pixels_of_late_rows_should_be_exact_by_every_row_of_the_body() {
     filter->set_mean(body);
     PixelMeasurement o;
     TEST_ASSERT_TRUE(filter->predict_pixel(camera, slot, &o));
+    // Where the camera of the row sees the point: its speed is that of the unit's origin less what the rotation adds, and it accelerates.
+    const Scalar tau = row_time(camera, o.predicted.y());
+    const Vec3 v_W = body.v_W - body.q_WC * body.w_C.cross(mounting.p_C);
+    const Quat q_WC = body.q_WC * exp_so3(Vec3(body.w_C * tau + tau * tau / 2 * bend.alpha_C));
+    const Vec3 camera_W = body.p_W + v_W * tau + body.q_WC * (tau * tau / 2 * bend.a_C);
+    Vec2 expected;
+    TEST_ASSERT_TRUE(project(camera, q_WC.conjugate() * (p_W - camera_W), &expected));
+    TEST_ASSERT_TRUE((o.predicted - expected).norm() < Scalar(0.05));
     const Eigen::Matrix<Scalar, 2, kInertialRows> J = dense_rows(*filter, o.H).leftCols<kInertialRows>().cast<Scalar>();
     check_jacobian<2, kInertialRows>(J, seen, "J_z_body", Scalar(0.5), Scalar(4e-3));
   }

@@ -34,7 +34,7 @@ LensPrior prior_of(Camera* camera) {
 Parameters sigmas_of(const LensPrior& prior) {
   Parameters sigma = Parameters::Zero();
   for (int i = 0; i < prior.rows.count; ++i)
-    sigma(prior.rows.parameter[i]) = std::sqrt(prior.covariance[i * (prior.rows.count + 1)]);
+    sigma(prior.rows.parameter[i]) = std::sqrt(prior.variance[i]);
   return sigma;
 }
 

@@ -87,7 +87,7 @@ void test_corners_should_have_exact_jacobians_over_the_whole_state() {
       double step = 1e-5;
       for (int i = 0; i < view.prior.rows.count; ++i)
         if (row == state.layout.row(BodyPart::kLens) + i)
-          step = 1e-2 * static_cast<double>(std::sqrt(view.prior.covariance[i * (view.prior.rows.count + 1)]));
+          step = 1e-2 * static_cast<double>(std::sqrt(view.prior.variance[i]));
       Eigen::Matrix<double, 8, 1> z[2];
       for (int side = 0; side < 2; ++side) {
         std::vector<Scalar> dx(static_cast<std::size_t>(n), Scalar(0));

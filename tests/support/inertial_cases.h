@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "filter/inertial_motion.h"
+#include "filter/inertial_rows.h"
 #include "support/filter_cases.h"
 
 namespace pf {
@@ -32,6 +32,14 @@ inline Body random_inertial_body(SeededRandom& random) {
 
 inline Mounting random_mounting(SeededRandom& random) {
   return {random_turn(random, 1.5).toRotationMatrix(), random.normals<3>(0.2)};
+}
+
+/// A filter goes to a body whose camera accelerates.
+inline void bend_to(const Body& body, const Bend& bend, Filter* filter) {
+  Transition transition;
+  inertial_rows::clear(&transition, body, BodyLayout::with_inertial_unit().dynamic_rows());
+  transition.bend = bend;
+  filter->predict(transition);
 }
 
 /// Of a hand that waves a unit about.

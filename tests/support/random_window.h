@@ -112,7 +112,7 @@ inline void adjust_lens(SeededRandom& random, double off, RandomWindow* w, Bundl
   w->lens_information.assign(n * n, 0);
   std::vector<Scalar> e(n);
   for (std::size_t k = 0; k < n; ++k) {
-    const Scalar sigma = std::sqrt(prior.covariance[k * (n + 1)]);
+    const Scalar sigma = std::sqrt(prior.variance[k]);
     w->lens_information[k * (n + 1)] = 1 / (sigma * sigma);
     e[k] = sigma * static_cast<Scalar>(off * random.normal());
   }

@@ -120,7 +120,7 @@ void test_a_new_map_should_begin_at_the_calibration() {
   TEST_ASSERT_TRUE(bench.map.camera().distortion[0] != Scalar(0));
   bench.map.init();
   TEST_ASSERT_TRUE(bench.map.camera().distortion[0] == Scalar(0));
-  TEST_ASSERT_TRUE(bench.map.lens().covariance()[24] == bench.settings.lens.covariance[24]);
+  TEST_ASSERT_TRUE(bench.map.lens().covariance()[24] == bench.settings.lens.covariance(4, 4));
 }
 
 }  // namespace

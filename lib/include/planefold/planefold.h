@@ -119,14 +119,15 @@ typedef struct pf_camera {
   double fx, fy, cx, cy; /* [px] */
   double distortion[8];  /* as the model says; unused entries are zero */
   /* Rolling shutter: from the first row to the last, 0 .. 0.2; 0 is a global shutter. A frame has the time of its
-   * middle row. Needs constant velocity: rows differ by how the camera moves. */
+   * middle row. Needs constant velocity or the inertial model: rows differ by how the camera moves. */
   double readout_s;
 
   /* What a context makes of the numbers above, and how uncertain they are. Each uncertain one is a row of the filter's
-   * state, up to nine: count them in capacity.max_state_dim. Only read where estimate is not PF_CAMERA_EXACT. */
+   * state, up to nine (ten with imu.sigma_readout_s): count them in capacity.max_state_dim. Only read where estimate is
+   * not PF_CAMERA_EXACT. */
   int32_t estimate; /* pf_camera_estimate_t */
   /* pf_timestamps_t. With nominal ones readout_s counts as 0, since the rows hang on a velocity that such times do not
-   * give; the log says so. */
+   * give; the log says so. Not so with PF_MOTION_INERTIAL, where they hang on the gyro. */
   int32_t timestamps;
   double sigma_focal;     /* of fx and fy together, relative: 1e-5 .. 0.2. Typical 0.01 */
   double sigma_aspect;    /* of fx against fy, relative: 1e-6 .. 0.2. Typical 0.001 */

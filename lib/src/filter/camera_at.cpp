@@ -19,17 +19,19 @@ Vec3 camera_velocity(const Body& body, const Mounting& mounting) {
   return body.v_W - body.q_WC * body.w_C.cross(mounting.p_C);
 }
 
-void put_unit(const Body& body, const Mounting& mounting, CameraAt* camera) {
+void put_unit(const State& state, CameraAt* camera) {
+  const Body& body = state.body;
+  const Mounting& mounting = state.mounting;
   const Mat3 R = body.q_WC.toRotationMatrix();
   camera->beside = true;
   const Mat3 J_theta_w = camera->J_theta_w;
   camera->J_theta_w = -J_theta_w.lazyProduct(mounting.R_CB);
-  const Vec3 bend_W = R * (camera->tau * camera->tau / 2 * body.a_C);
+  const Vec3 bend_W = R * (camera->tau * camera->tau / 2 * state.bend.a_C);
   camera->p_W += bend_W;
   camera->J_p_theta = camera->tau * hat(body.v_W - camera->v_W) - hat(bend_W);
   camera->J_p_w = -camera->tau * R.lazyProduct(hat(mounting.p_C)).lazyProduct(mounting.R_CB);
-  camera->v_W += camera->tau * (R * body.a_C);
-  camera->w_C += camera->tau * body.alpha_C;
+  camera->v_W += camera->tau * (R * state.bend.a_C);
+  camera->w_C += camera->tau * state.bend.alpha_C;
 }
 
 CameraAt camera_at(const State& state, Scalar tau) {
@@ -42,12 +44,12 @@ CameraAt camera_at(const State& state, Scalar tau) {
   camera.velocity_row = state.layout.row(BodyPart::kVelocity);
   camera.rate_row = state.layout.row(has_unit ? BodyPart::kGyroBias : BodyPart::kAngularVelocity);
   Vec3 rotation = body.w_C * tau;
-  if (has_unit) rotation += tau * tau / 2 * body.alpha_C;
+  if (has_unit) rotation += tau * tau / 2 * state.bend.alpha_C;
   camera.q_WC = body.q_WC * exp_so3(rotation);
   camera.q_WC.normalize();
   camera.p_W = body.p_W + camera.v_W * tau;
   camera.J_theta_w = tau * body.q_WC.toRotationMatrix().lazyProduct(left_jacobian_so3(rotation));
-  if (has_unit) put_unit(body, state.mounting, &camera);
+  if (has_unit) put_unit(state, &camera);
   return camera;
 }
 

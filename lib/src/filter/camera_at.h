@@ -77,7 +77,7 @@ CameraAt camera_at(const Body& body);
 Vec3 camera_velocity(const Body& body, const Mounting& mounting);
 
 /// What follows from the unit's place and axes, for a camera tau seconds from the frame's time.
-void put_unit(const Body& body, const Mounting& mounting, CameraAt* camera);
+void put_unit(const State& state, CameraAt* camera);
 
 /// The camera tau seconds from the frame's time; at the frame's time where the body has no velocities.
 CameraAt camera_at(const State& state, Scalar tau);

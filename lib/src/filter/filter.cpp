@@ -27,6 +27,7 @@ void Filter::init(const Kernels* kernels, const BodyLayout& layout, bool keep_ga
   ++generation_;
   for (int s = 0; s < state_.slots; ++s) state_.block[s] = Block();
   state_.body = Body();
+  state_.bend = Bend();
   state_.layout = layout;
   state_.unobservable = gauge::kBareCamera;
   state_.metric = false;
@@ -45,7 +46,11 @@ void Filter::set_lens(const Camera& camera, const LensPrior& prior) {
   state_.lens = camera;
   state_.lens_rows = prior.rows;
   PF_ASSERT(state_.layout.rows() - state_.layout.dynamic_rows() == prior.rows.count);
-  if (prior.rows.count > 0) blocks_.set_constants(state_.layout.row(BodyPart::kLens), prior.covariance);
+  const int n = prior.rows.count;
+  Scalar C[kLensParameters * kLensParameters];
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b) C[a * n + b] = prior.covariance(a, b);
+  if (n > 0) blocks_.set_constants(state_.layout.row(BodyPart::kLens), C);
 }
 
 void Filter::set_metric() {
@@ -59,6 +64,7 @@ void Filter::consider_lens(bool only_considered) {
 
 void Filter::predict(const Transition& transition) {
   state_.body = transition.mean;
+  state_.bend = transition.bend;
   blocks_.predict(transition.F, transition.Q, transition.dim);
 }
 

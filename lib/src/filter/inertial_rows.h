@@ -23,8 +23,6 @@ struct PartRows {
 
 inline void clear(Transition* t, const Body& body, int dim) {
   t->mean = body;
-  t->mean.alpha_C.setZero();
-  t->mean.a_C.setZero();
   t->dim = dim;
   for (int i = 0; i < dim * dim; ++i) t->F[i] = t->Q[i] = Scalar(0);
   for (int i = 0; i < dim; ++i) t->F[i * dim + i] = Scalar(1);

@@ -14,6 +14,7 @@ struct MotionNoise {
 /// dim: the rows of the parts that move.
 struct Transition {
   Body mean;
+  Bend bend;  ///< at its time
   int dim;
   Scalar F[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
   Scalar Q[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];

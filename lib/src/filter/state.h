@@ -20,6 +20,7 @@ inline bool is_planar(BlockKind kind) { return info(kind).planar; }
 /// Blocks live in slots that do not move.
 struct State {
   Body body;
+  Bend bend;
   BodyLayout layout;
   gauge::Set unobservable = gauge::kBareCamera;  ///< directions about which no measurement says anything
   bool metric = false;                           ///< samples of the inertial unit tell lengths and gravity

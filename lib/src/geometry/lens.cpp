@@ -70,23 +70,18 @@ LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera) {
   const Scalar common = sigmas.focal * sigmas.focal, between = sigmas.aspect * sigmas.aspect / 4;
   sigma[0] = camera->fx * std::sqrt(common + between);
   sigma[1] = camera->fy * std::sqrt(common + between);
-  for (int i = 0; i < kLensParameters; ++i)
-    if (sigma[i] > Scalar(0)) prior.rows.parameter[prior.rows.count++] = static_cast<std::int8_t>(i);
-  for (int a = 0; a < prior.rows.count; ++a)
-    for (int b = 0; b < prior.rows.count; ++b) {
-      const int i = prior.rows.parameter[a], j = prior.rows.parameter[b];
-      Scalar covariance = i == j ? sigma[i] * sigma[i] : Scalar(0);
-      if (i + j == 1) covariance = camera->fx * camera->fy * (common - between);  // fx with fy
-      prior.covariance[a * prior.rows.count + b] = covariance;
-    }
+  for (int i = 0; i < kLensParameters; ++i) {
+    if (!(sigma[i] > Scalar(0))) continue;
+    prior.variance[prior.rows.count] = sigma[i] * sigma[i];
+    prior.rows.parameter[prior.rows.count++] = static_cast<std::int8_t>(i);
+  }
+  prior.between_focal = camera->fx * camera->fy * (common - between);
   return prior;
 }
 
 LensPrior shape_prior(const LensPrior& prior) {
-  LensPrior out = prior;  // the readout is the last row
-  const int n = out.rows.count = prior.rows.shape_count();
-  for (int a = 0; a < n; ++a)
-    for (int b = 0; b < n; ++b) out.covariance[a * n + b] = prior.covariance[a * prior.rows.count + b];
+  LensPrior out = prior;
+  out.rows.count = prior.rows.shape_count();  // the readout is the last row
   return out;
 }
 
@@ -105,7 +100,8 @@ void move_lens(const LensRows& rows, const Scalar* e, Camera* camera) {
 void lens_information(const LensPrior& prior, Scalar inflation, Scalar* information) {
   const int n = prior.rows.count;
   Scalar L[kLensParameters * kLensParameters];
-  std::copy(prior.covariance, prior.covariance + n * n, L);
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b) L[a * n + b] = prior.covariance(a, b);
   factor_cholesky(L, n, n);
   for (int c = 0; c < n; ++c) {
     Scalar x[kLensParameters] = {};

@@ -42,7 +42,10 @@ struct LensRows {
 /// And how much they are.
 struct LensPrior {
   LensRows rows;
-  Scalar covariance[kLensParameters * kLensParameters] = {};  ///< rows x rows, row-major
+  Scalar variance[kLensParameters] = {};  ///< of each row
+  Scalar between_focal = 0;               ///< covariance of the first two, fx and fy; all others are independent
+
+  Scalar covariance(int a, int b) const { return a == b ? variance[a] : a + b == 1 ? between_focal : Scalar(0); }
 };
 
 /// Standard deviations that a calibration states.

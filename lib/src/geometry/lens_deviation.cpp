@@ -6,14 +6,10 @@
 namespace pf {
 
 Scalar lens_deviation(const LensPrior& prior, const Camera& calibration, const Camera& now) {
-  const Scalar moved[4] = {now.fx - calibration.fx, now.fy - calibration.fy, now.cx - calibration.cx,
-                           now.cy - calibration.cy};
-  Scalar largest = 0;
-  for (int i = 0; i < prior.rows.count; ++i) {
-    const int k = prior.rows.parameter[i];
-    const Scalar by = k < 4 ? moved[k] : now.distortion[k - 4] - calibration.distortion[k - 4];
-    largest = std::max(largest, std::abs(by) / std::sqrt(prior.covariance[i * (prior.rows.count + 1)]));
-  }
+  Scalar moved[kLensParameters], largest = 0;
+  lens_difference(prior.rows, calibration, now, moved);
+  for (int i = 0; i < prior.rows.count; ++i)
+    largest = std::max(largest, std::abs(moved[i]) / std::sqrt(prior.variance[i]));
   return largest;
 }
 

@@ -78,24 +78,26 @@ void BodyMotion::predict_by_samples(const Body& body, std::int64_t before_ns, st
   integrate_samples(imu_, on_unit_clock(before_ns), on_unit_clock(t_ns), coasting(body, noise), &samples, &now);
   predict_by(body, samples, noise, transition);
   transition->mean.w_C = mounting.R_CB * (now.gyro - body.gyro_bias);
-  bend_readout(on_unit_clock(t_ns), now, &transition->mean);
+  transition->bend = bend_of_readout(on_unit_clock(t_ns), now, transition->mean);
 }
 
 /// How the camera accelerates while the frame's rows are read out, as it did in the half of that time before the frame's:
 ///
-///   alpha = R_CB (gyro - gyro_before) / T,   a = R_CB (accel - b_a) + g - alpha x m - w x (w x m)
-void BodyMotion::bend_readout(std::int64_t unit_ns, const ImuReading& now, Body* body) const {
+///   alpha = R_CB (gyro - gyro_before) / T,   a = R_CB (accel - b_a) + R_CW g_W - alpha x m - w x (w x m)
+Bend BodyMotion::bend_of_readout(std::int64_t unit_ns, const ImuReading& now, const Body& body) const {
+  Bend bend;
   const double readout = static_cast<double>(filter_.lens().readout), interval = seconds(imu_.counts().median_ns);
-  if (readout == 0) return;
+  if (readout == 0) return bend;
   const double T = std::max(std::abs(readout) / 2, kLeastSpan * interval);
   ImuReading before;
-  if (!reading_at(imu_, unit_ns - nanoseconds(T), &before)) return;
+  if (!reading_at(imu_, unit_ns - nanoseconds(T), &before)) return bend;
   const Mounting& mounting = filter_.state().mounting;
-  body->alpha_C = mounting.R_CB * ((now.gyro - before.gyro) / static_cast<Scalar>(T));
-  if (!filter_.is_metric()) return;
-  const Vec3 &w = body->w_C, &m = mounting.p_C, accel = (now.accel + before.accel) / 2 - body->accel_bias;
-  body->a_C = mounting.R_CB * accel + body->q_WC.conjugate() * (settings_.unit.gravity * body->gravity_W()) -
-              body->alpha_C.cross(m) - w.cross(w.cross(m));
+  bend.alpha_C = mounting.R_CB * ((now.gyro - before.gyro) / static_cast<Scalar>(T));
+  if (!filter_.is_metric()) return bend;
+  const Vec3 &w = body.w_C, &m = mounting.p_C, accel = (now.accel + before.accel) / 2 - body.accel_bias;
+  bend.a_C = mounting.R_CB * accel + body.q_WC.conjugate() * (settings_.unit.gravity * body.gravity_W()) -
+             bend.alpha_C.cross(m) - w.cross(w.cross(m));
+  return bend;
 }
 
 void BodyMotion::predict_coasting(const Body& body, std::int64_t before_ns, std::int64_t t_ns,

@@ -47,7 +47,7 @@ class BodyMotion {
 
   void predict_by_samples(const Body& body, std::int64_t before_ns, std::int64_t t_ns, const MotionNoise& noise,
                           Transition* transition) const;
-  void bend_readout(std::int64_t unit_ns, const ImuReading& now, Body* body) const;
+  Bend bend_of_readout(std::int64_t unit_ns, const ImuReading& now, const Body& body) const;
   Coasting coasting(const Body& body, const MotionNoise& noise) const;
   void predict_by(const Body& body, const Preintegral& samples, const MotionNoise& noise, Transition* transition) const;
   void predict_after(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;

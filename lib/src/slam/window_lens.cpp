@@ -1,13 +1,12 @@
 #include "slam/window_lens.h"
 
-#include <algorithm>
-
 namespace pf {
 
 void WindowLens::init(const Camera& calibration, const LensPrior& prior) {
   rows_ = prior.rows;
   camera_ = calibration;
-  std::copy(prior.covariance, prior.covariance + kMaxEntries, covariance_);
+  for (int a = 0; a < rows_.count; ++a)
+    for (int b = 0; b < rows_.count; ++b) covariance_[a * rows_.count + b] = prior.covariance(a, b);
 }
 
 void WindowLens::set_covariance(const Scalar* covariance, Scalar inflation) {

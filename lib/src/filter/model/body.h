@@ -104,12 +104,16 @@ struct Body {
   Vec3 p_W = Vec3::Zero();         ///< [m]
   Vec3 v_W = Vec3::Zero();         ///< [m/s]
   Vec3 w_C = Vec3::Zero();         ///< [rad/s]; with an inertial unit no state, but what its samples say at the frame
-  Vec3 alpha_C = Vec3::Zero();     ///< [rad/s^2] likewise, for rows that are read out earlier and later; zero without samples
-  Vec3 a_C = Vec3::Zero();         ///< [m/s^2] of the camera, likewise; zero too where lengths have no unit
   Vec3 gyro_bias = Vec3::Zero();   ///< [rad/s], in the unit's axes
   Vec3 accel_bias = Vec3::Zero();  ///< [m/s^2], likewise
   Quat q_WG = Quat::Identity();    ///< z is where gravity points
   Vec3 gravity_W() const;
+};
+
+/// How the camera accelerates about the frame's time, as its samples say: for rows that are read out earlier and later. No state.
+struct Bend {
+  Vec3 alpha_C = Vec3::Zero();  ///< [rad/s^2]; zero without samples
+  Vec3 a_C = Vec3::Zero();      ///< [m/s^2]; zero too where lengths have no unit
 };
 
 /// Where the inertial unit B is on the camera, and how its clock runs. Error, where it is estimated: R_CB_true = Exp(mu) R_CB, the others
