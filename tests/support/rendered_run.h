@@ -4,6 +4,7 @@
 
 #include <planefold_platform/sim.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -89,6 +90,19 @@ class RenderedRun {
       for (std::uint8_t& grey : seen_) grey = static_cast<std::uint8_t>(std::lround(110 + contrast * (grey - 110)));
       image.pixels = seen_.data();
     }
+    if (smear > 1) {
+      smeared_ = seen_;
+      for (int v = 0; v < image.height; ++v)
+        for (int u = 0; u < image.width; ++u) {
+          int sum = 0;
+          for (int k = 0; k < smear; ++k)
+            sum +=
+                seen_[static_cast<std::size_t>(v * image.stride + std::clamp(u + k - smear / 2, 0, image.width - 1))];
+          smeared_[static_cast<std::size_t>(v * image.stride + u)] =
+              static_cast<std::uint8_t>((sum + smear / 2) / smear);
+        }
+      image.pixels = smeared_.data();
+    }
     if (cover >= 0) {
       covered_.assign(static_cast<std::size_t>(image.stride * image.height), static_cast<std::uint8_t>(cover));
       image.pixels = covered_.data();
@@ -122,6 +136,7 @@ class RenderedRun {
   }
 
   double contrast = 1;  ///< of what is left of it
+  int smear = 1;        ///< [px] along the rows, of a camera that turns while it exposes
   pf_config_t config;
   pf_memory_t need;
   pf_slam_t* slam = nullptr;
@@ -145,7 +160,7 @@ class RenderedRun {
   pf_sim_t* sim_;
   void* block_ = nullptr;
   pf_pose_t truth_ = {};
-  std::vector<std::uint8_t> covered_, seen_;
+  std::vector<std::uint8_t> covered_, seen_, smeared_;
 };
 
 }  // namespace pf

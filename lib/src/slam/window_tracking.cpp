@@ -25,7 +25,7 @@ bool WindowTracking::layout(Arena& arena) {
 void WindowTracking::init() {
   search_.init(settings_);
   pose_.init();
-  listed_ = 0;
+  listed_ = found_ = 0;
 }
 
 Scalar WindowTracking::bound_px() const {
@@ -171,20 +171,25 @@ int WindowTracking::find_pose(int found, const PosePrior& prior, CameraPose* pos
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int c = 0; c < found; ++c) make_pose_match(c, prior, Scalar(1), 0);
   const int inliers = pose_.find(map_.camera(), found, prior, bound_px(), settings_.min_inliers, pose, information);
-  return is_believed(inliers, found) ? inliers : 0;
+  const Scalar circle = ellipse_area(Mat2::Identity() * (bound_px() * bound_px()), Scalar(1));
+  Scalar shares = 0;
+  for (int c = 0; c < found; ++c) shares += chance_share(circle, candidate_[c].searched);
+  return is_believed(inliers, found, shares) ? inliers : 0;
 }
 
-/// Half of what was searched for agrees, or far more than chance would give: with n of m matches within the bound, by chance each with the
-/// share of the searched area that the bound fills.
-bool WindowTracking::is_believed(int inliers, int found) const {
+/// Probability that a search finds something by chance, and within this area [px^2].
+Scalar WindowTracking::chance_share(Scalar area, Scalar searched) {
+  using namespace tuning::chance;
+  return kMaxFindShare * std::min(Scalar(1), area / std::max(searched, kMinArea));
+}
+
+/// Half of what was searched for agrees, or far more than chance would give: with n of m matches within the bound, by chance each with its
+/// chance_share(); shares: their sum.
+bool WindowTracking::is_believed(int inliers, int found, Scalar shares) const {
+  using namespace tuning::chance;
   if (inliers == 0) return false;
   if (2 * inliers >= frame_.report.attempts) return true;
-  const Scalar circle = ellipse_area(Mat2::Identity() * (bound_px() * bound_px()), Scalar(1));
-  Scalar share = 0;
-  for (int c = 0; c < found; ++c)
-    share += std::clamp(tuning::chance::kMaxFindShare * circle / candidate_[c].searched, tuning::chance::kMinShare,
-                        tuning::chance::kMaxShare);
-  share /= static_cast<Scalar>(found);
+  const Scalar share = std::clamp(shares / static_cast<Scalar>(found), kMinShare, kMaxShare);
   return log_false_planes(inliers, frame_.report.attempts, share, found) < tuning::tracking::kMaxLogFalse;
 }
 
@@ -249,6 +254,7 @@ int WindowTracking::measure_about(const PosePrior& about, CameraPose* pose, Mat6
     moving.v_W = scouted.v_W;
     moving.w_C = scouted.w_C;
   }
+  found_ = found;
   return find_pose(found, moving, pose, information);
 }
 
@@ -256,7 +262,7 @@ void WindowTracking::measure(Scalar median_depth) {
   const PosePrior prior = now();
   CameraPose pose;
   Mat6 information;
-  if (measure_about(prior, &pose, &information) == 0) return;
+  if (measure_about(prior, &pose, &information) == 0) return measure_all(median_depth);
   if (has_rows())
     correct_by_rows(prior, pose, information);
   else

@@ -27,11 +27,12 @@ class WindowTracking {
   bool layout(Arena& arena);
   void init();
   bool begin_frame(const ImageView& image) {
-    listed_ = 0;
+    listed_ = found_ = 0;
     return search_.begin_frame(image);
   }
 
-  /// Finds points with a depth about the predicted pose, and corrects the body by the pose that they say; then finds those without.
+  /// Finds points with a depth about the predicted pose, and corrects the body by the pose that they say; then finds those without. Where
+  /// those with a depth say none, all say it together.
   void measure(Scalar median_depth);
   /// So few points have a depth that those without must help.
   bool is_young() const { return map_.placed() < tuning::window_tracking::kYoung; }
@@ -85,7 +86,11 @@ class WindowTracking {
   int search_for(int first, int count, const PosePrior& at, Scalar depth);
   void make_pose_match(int c, const PosePrior& prior, Scalar depth, int shared);
   int find_pose(int found, const PosePrior& prior, CameraPose* pose, Mat6* information);
-  bool is_believed(int inliers, int found) const;
+  bool is_believed(int inliers, int found, Scalar shares) const;
+  static Scalar chance_share(Scalar area, Scalar searched);
+  Scalar agreeing_area(int c) const;
+  void measure_all(Scalar median_depth);
+  void fit_all(int found, const PosePrior& prior, Scalar median_depth);
   void mark(int found, const PosePrior& at);
   bool apply(const CameraPose& pose, Mat6 information, PosePrior* now);
   void measure_unplaced(Scalar depth);
@@ -108,6 +113,7 @@ class WindowTracking {
   };
   Candidate* candidate_ = nullptr;  ///< one for each point
   int listed_ = 0;                  ///< with a depth
+  int found_ = 0;                   ///< of these, at the front
 };
 
 }  // namespace pf

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/elapsed.h"
+#include "slam/ellipse.h"
 #include "slam/window_depth.h"
 #include "slam/window_tracking.h"
 #include "window/tuning.h"
@@ -47,7 +50,30 @@ void WindowTracking::measure_young(Scalar median_depth) {
   listed_ = 0;
   listed_ = list(prior, true, median_depth);
   const int count = listed_ + list(prior, false, median_depth);
-  const int found = search_for(0, count, prior, median_depth);
+  fit_all(search_for(0, count, prior, median_depth), prior, median_depth);
+}
+
+/// After measure_about() found no pose: the points without a depth are searched for as well.
+void WindowTracking::measure_all(Scalar median_depth) {
+  const PosePrior prior = now();
+  const int count = list(prior, false, median_depth);
+  const int more = search_for(listed_, count, prior, median_depth);
+  int found = found_;
+  for (int k = 0; k < more; ++k, ++found)
+    if (found != listed_ + k) std::swap(candidate_[found], candidate_[listed_ + k]);
+  fit_all(found, prior, median_depth);
+}
+
+/// Area within the searched ellipse in which a match agrees with the pose, by its own noise: along its epipolar line that may be all of it.
+Scalar WindowTracking::agreeing_area(int c) const {
+  const Mat2 S = pose_.match(c).noise + NoiseModel::search();
+  const Mat2& searched = frame_.match(candidate_[c].match).innovation;
+  const Scalar inside = S.determinant() * searched.determinant() / Mat2(S + searched).determinant();
+  return ellipse_area(Mat2(Mat2::Identity() * std::sqrt(std::max(inside, Scalar(0)))), settings_.gate);
+}
+
+/// Corrects the body by the pose that the first `found` candidates say together, those without a depth as well.
+void WindowTracking::fit_all(int found, const PosePrior& prior, Scalar median_depth) {
   int inliers = found;
   CameraPose pose = {prior.q_WC, prior.p_W};
   Mat6 information;
@@ -61,8 +87,10 @@ void WindowTracking::measure_young(Scalar median_depth) {
     }
     inliers = pose_.fit(map_.camera(), found, prior, settings_.gate, &pose, &information);
   }
+  Scalar shares = 0;
+  for (int c = 0; c < found; ++c) shares += chance_share(agreeing_area(c), candidate_[c].searched);
   PosePrior at;
-  if (inliers < settings_.min_inliers || 2 * inliers < frame_.report.attempts || !apply(pose, information, &at)) return;
+  if (inliers < settings_.min_inliers || !is_believed(inliers, found, shares) || !apply(pose, information, &at)) return;
   for (int c = 0; c < found; ++c) {
     Match& match = frame_.match(candidate_[c].match);
     if (!pose_.is_inlier(c)) continue;
