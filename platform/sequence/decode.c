@@ -45,6 +45,7 @@ void pf_decode_free(pf_decoded_t* image) {
 
 int pf_decode_image(const uint8_t* bytes, size_t size, pf_decoded_t* image, char why[PF_DECODE_WHY]) {
   static const uint8_t png[8] = {0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a};
+  image->brightest = image->orientation = 0;
   if (size >= 8 && memcmp(bytes, png, 8) == 0) {
     return pf_decode_png(bytes, size, image, why);
   }

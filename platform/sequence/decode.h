@@ -19,6 +19,8 @@ typedef struct pf_decoded {
   size_t pixels_capacity, scratch_capacity;
   int32_t width, height;
   int32_t channels, bits; /* as the file has them: 1 grey or 3 colour; 8 or 16 for each */
+  int32_t brightest;      /* where 65535 is white: the largest number; else 0 */
+  int32_t orientation;    /* of a JPEG: by EXIF, 1 (as stored) .. 8; 0 where it says nothing */
 } pf_decoded_t;
 
 /* By the first bytes: PNG, JPEG or binary PGM. 0, or -1 with the reason in why; the buffers stay valid either way. */
@@ -30,7 +32,7 @@ int pf_decode_png(const uint8_t* bytes, size_t size, pf_decoded_t* image, char w
 int pf_decode_jpeg(const uint8_t* bytes, size_t size, pf_decoded_t* image, char why[PF_DECODE_WHY]);
 int pf_decode_pgm(const uint8_t* bytes, size_t size, pf_decoded_t* image, char why[PF_DECODE_WHY]);
 
-/* Sets the size after checking it, and makes room; scratch_channels is 0 .. 4 bytes of scratch per pixel. */
+/* Sets the size after checking it, and makes room; scratch_channels is 0 .. 6 bytes of scratch per pixel. */
 int pf_decode_reserve(pf_decoded_t* image, uint64_t width, uint64_t height, unsigned scratch_channels,
                       char why[PF_DECODE_WHY]);
 

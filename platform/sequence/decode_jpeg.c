@@ -58,14 +58,56 @@ static void on_message(j_common_ptr info, int level) {
   on_error(info);
 }
 
+static unsigned number(const uint8_t* at, int count, int big) {
+  unsigned value = 0;
+  int i;
+  for (i = 0; i < count; ++i) {
+    value = 256 * value + at[big ? i : count - 1 - i];
+  }
+  return value;
+}
+
+/* Orientation (tag 0x0112) in the first directory of a segment "Exif\0\0", TIFF header, directories. 0: there is none. */
+static int exif_orientation(const uint8_t* data, size_t size) {
+  size_t at, entries, i;
+  int big;
+  if (size < 14 || memcmp(data, "Exif\0", 6) != 0) {
+    return 0;
+  }
+  data += 6;
+  size -= 6;
+  big = data[0] == 'M';
+  at = number(data + 4, 4, big);
+  if (at > size || size - at < 2) {
+    return 0;
+  }
+  entries = number(data + at, 2, big);
+  for (i = 0, at += 2; i < entries && size - at >= 12; ++i, at += 12) {
+    if (number(data + at, 2, big) == 0x0112) {
+      const unsigned value = number(data + at + 8, 2, big);
+      return value >= 1 && value <= 8 ? (int)value : 0;
+    }
+  }
+  return 0;
+}
+
 static int decode(struct jpeg_decompress_struct* info, errors_t* errors, const uint8_t* bytes, size_t size,
                   pf_decoded_t* image) {
+  jpeg_saved_marker_ptr marker;
   if (setjmp(errors->back)) {
     return -1;
   }
   jpeg_create_decompress(info);
   jpeg_mem_src(info, bytes, (unsigned long)size);
+  jpeg_save_markers(info, JPEG_APP0 + 1, 0xffff);
   jpeg_read_header(info, TRUE);
+  for (marker = info->marker_list; marker != NULL && image->orientation == 0; marker = marker->next) {
+    image->orientation = exif_orientation(marker->data, marker->data_length);
+  }
+  if (info->num_components == 4) {
+    snprintf(errors->why, PF_DECODE_WHY, "is in CMYK, as for printing; convert it to grey or RGB");
+    return -1;
+  }
   info->out_color_space = JCS_GRAYSCALE;
   if (pf_decode_reserve(image, info->image_width, info->image_height, 0, errors->why) != 0) {
     return -1;

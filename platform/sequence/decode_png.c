@@ -34,6 +34,19 @@ static void on_read(png_structp png, png_bytep out, size_t count) {
   reader->at += count;
 }
 
+/* Numbers of 16 bits in scratch, of which the high byte stays, rounded as png_set_scale_16 does. */
+static void to_bytes(pf_decoded_t* image, unsigned channels) {
+  const size_t count = (size_t)image->width * (size_t)image->height * channels;
+  size_t i;
+  for (i = 0; i < count; ++i) {
+    const uint32_t value = 256u * image->scratch[2 * i] + image->scratch[2 * i + 1];
+    if ((int32_t)value > image->brightest) {
+      image->brightest = (int32_t)value;
+    }
+    image->scratch[i] = (uint8_t)((value * 255u + 32895u) >> 16);
+  }
+}
+
 /* Rows of 1 or 3 bytes per pixel in scratch to grey: 0.299 R + 0.587 G + 0.114 B, no gamma (as Rec. 601). */
 static void to_grey(pf_decoded_t* image, unsigned channels) {
   const size_t area = (size_t)image->width * (size_t)image->height;
@@ -50,7 +63,7 @@ static void to_grey(pf_decoded_t* image, unsigned channels) {
 
 static int decode(png_structp png, png_infop info, reader_t* reader, pf_decoded_t* image) {
   png_uint_32 y, height, width;
-  unsigned channels;
+  unsigned channels, depth;
   if (setjmp(png_jmpbuf(png))) {
     return -1;
   }
@@ -60,24 +73,27 @@ static int decode(png_structp png, png_infop info, reader_t* reader, pf_decoded_
   width = png_get_image_width(png, info);
   height = png_get_image_height(png, info);
   image->bits = png_get_bit_depth(png, info) == 16 ? 16 : 8;
-  png_set_scale_16(png);
+  depth = (unsigned)image->bits / 8;
   png_set_expand(png);
   png_set_strip_alpha(png);
   png_set_interlace_handling(png);
   png_read_update_info(png, info);
   channels = png_get_channels(png, info);
-  if ((channels != 1 && channels != 3) || png_get_rowbytes(png, info) != (size_t)width * channels) {
+  if ((channels != 1 && channels != 3) || png_get_rowbytes(png, info) != (size_t)width * channels * depth) {
     png_error(png, "unexpected pixel layout");
   }
-  if (pf_decode_reserve(image, width, height, channels, reader->why) != 0) {
+  if (pf_decode_reserve(image, width, height, channels * depth, reader->why) != 0) {
     return -1;
   }
   image->channels = (int32_t)channels;
   for (y = 0; y < height; ++y) {
-    reader->rows[y] = image->scratch + (size_t)y * width * channels;
+    reader->rows[y] = image->scratch + (size_t)y * width * channels * depth;
   }
   png_read_image(png, reader->rows);
   png_read_end(png, NULL);
+  if (depth == 2) {
+    to_bytes(image, channels);
+  }
   to_grey(image, channels);
   return 0;
 }

@@ -113,6 +113,33 @@ pf::sequence::ImageSize size_of_images(pf_sequence& sequence) {
   return {sequence.image.width, sequence.image.height};
 }
 
+/// What the numbers of an image, or its file, say that its user may not know; empty: nothing.
+std::string doubt_of(const pf_decoded_t& image, const std::string& name) {
+  constexpr int kTwelveBits = 4095;
+  if (image.brightest > 0 && image.brightest <= kTwelveBits) {
+    return name + ": has 16 bits, but no number above " + std::to_string(image.brightest) +
+           ": data of 12 bits or fewer come out dark, so scale them up to 65535 (ImageMagick, of 12 bits: mogrify "
+           "-evaluate multiply 16)";
+  }
+  if (image.orientation > 1) {
+    return name + ": says by EXIF that it is shown rotated or mirrored (orientation " +
+           std::to_string(image.orientation) +
+           "); pixels are taken as stored, so the calibration must be of images as stored";
+  }
+  return "";
+}
+
+/// A warning about the first image that can be read; what cannot is told when it is its turn.
+std::string doubt_of_first(pf_sequence& sequence) {
+  try {
+    const pf::sequence::Frame& frame = sequence.folder.frames.front();
+    decode(sequence, frame);
+    return doubt_of(sequence.image, frame.path.string());
+  } catch (const pf::sequence::ImageError&) {
+    return "";
+  }
+}
+
 /// A camera of which only the size is known.
 pf_camera_t uncalibrated_camera(pf::sequence::ImageSize size) {
   pf_camera_t camera{};
@@ -152,6 +179,10 @@ int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t*
     }
     if (opened->folder.warning.empty()) {
       opened->folder.warning = opened->folder.calibration.warning;
+    }
+    const std::string doubt = doubt_of_first(*opened);
+    if (!doubt.empty()) {
+      opened->folder.warning += (opened->folder.warning.empty() ? "" : "; ") + doubt;
     }
     *sequence = opened.release();
   });

@@ -140,6 +140,76 @@ static void test_image_should_be_refused_when_its_size_is_wrong_or_huge() {
   image_refused(jpeg, "pixels");
 }
 
+/// Cameras of 12 bits often store their numbers as they are: 4095 of 65535 is grey level 16.
+static void test_opening_should_warn_when_images_of_16_bits_have_data_of_12() {
+  Bytes dark(2048, 0), bright(2048, 0);
+  for (size_t i = 0; i < 1024; ++i) {
+    dark[2 * i] = static_cast<uint8_t>(i % 16);
+    dark[2 * i + 1] = bright[2 * i] = 255;
+  }
+  const auto warning = [](const Bytes& bytes) {
+    TemporaryFolder folder;
+    folder.write("calib.yaml", kPlainCalibration);
+    folder.write("times.txt", "0 0.0 a.png\n");
+    folder.write("images/a.png", bytes);
+    Opened opened("images:" + folder.path());
+    TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+    opened.read(0);
+    return std::string(opened.info.warning);
+  };
+  for (const Bytes& bytes : {make_png(32, 32, 16, 0, dark), make_pgm(32, 32, dark, 65535)}) {
+    require_message(warning(bytes).c_str(), "no number above 4095");
+    require_message(warning(bytes).c_str(), "a.png");
+  }
+  TEST_ASSERT_EQUAL_STRING("", warning(make_png(32, 32, 16, 0, bright)).c_str());
+  TEST_ASSERT_EQUAL_STRING("", warning(make_pgm(32, 32, dark, 4095)).c_str());  // the file says what is white
+  TEST_ASSERT_EQUAL_STRING("", warning(grey_png(3)).c_str());
+}
+
+/// A segment of EXIF that says nothing but an orientation, behind the first marker of a JPEG.
+static Bytes with_orientation(uint8_t value, bool big_endian, uint8_t entries = 1) {
+  const Bytes big = {'M', 'M', 0, 42, 0, 0, 0, 8, 0, entries, 1, 0x12, 0, 3, 0, 0, 0, 1, 0, value, 0, 0};
+  const Bytes little = {'I', 'I', 42, 0, 8, 0, 0, 0, entries, 0, 0x12, 1, 3, 0, 1, 0, 0, 0, value, 0, 0, 0};
+  Bytes segment = {0xff, 0xe1, 0, 30, 'E', 'x', 'i', 'f', 0, 0};
+  const Bytes& directory = big_endian ? big : little;
+  segment.insert(segment.end(), directory.begin(), directory.end());
+  Bytes jpeg = make_jpeg();
+  jpeg.insert(jpeg.begin() + 2, segment.begin(), segment.end());
+  return jpeg;
+}
+
+static void test_pixels_should_be_taken_as_stored_with_a_warning_when_exif_turns_them() {
+  TemporaryFolder folder;
+  folder.write("calib.yaml", kPlainCalibration);
+  folder.write("times.txt", "0 0.0 a.jpg\n");
+  const auto check = [&](const Bytes& bytes, const char* warning) {
+    folder.write("images/a.jpg", bytes);
+    Opened opened("images:" + folder.path());
+    TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+    TEST_ASSERT_UINT8_WITHIN(6, 8 * 20, opened.read(0).pixels[32 * 10 + 20]);
+    if (warning[0] != '\0')
+      require_message(opened.info.warning, warning);
+    else
+      TEST_ASSERT_EQUAL_STRING("", opened.info.warning);
+  };
+  check(with_orientation(6, true), "orientation 6");
+  check(with_orientation(3, false), "as stored");
+  check(with_orientation(1, true), "");
+  check(with_orientation(9, true), "");
+  check(with_orientation(1, true, 255), "");  // entries that are not there
+}
+
+static void test_jpeg_should_be_refused_by_name_when_it_is_in_cmyk() {
+  Bytes jpeg = make_jpeg();
+  size_t frame = 0;
+  while (!(jpeg[frame] == 0xff && jpeg[frame + 1] == 0xc0)) ++frame;
+  jpeg[frame + 3] = 0x14;  // bytes of a header with a fourth component
+  jpeg[frame + 9] = 4;
+  const Bytes fourth = {4, 0x12, 0};
+  jpeg.insert(jpeg.begin() + static_cast<std::ptrdiff_t>(frame) + 19, fourth.begin(), fourth.end());
+  image_refused(jpeg, "CMYK");
+}
+
 static void test_image_should_be_named_when_it_is_missing() {
   TemporaryFolder folder;
   folder.write("calib.yaml", kPlainCalibration);
@@ -159,6 +229,9 @@ int main() {
   RUN_TEST(test_image_should_be_named_when_it_is_truncated_or_damaged);
   RUN_TEST(test_jpeg_should_be_refused_when_libjpeg_warns_of_it);
   RUN_TEST(test_image_should_be_refused_when_its_size_is_wrong_or_huge);
+  RUN_TEST(test_opening_should_warn_when_images_of_16_bits_have_data_of_12);
+  RUN_TEST(test_pixels_should_be_taken_as_stored_with_a_warning_when_exif_turns_them);
+  RUN_TEST(test_jpeg_should_be_refused_by_name_when_it_is_in_cmyk);
   RUN_TEST(test_image_should_be_named_when_it_is_missing);
   return UNITY_END();
 }

@@ -49,7 +49,9 @@ typedef struct pf_sequence_info {
  *   euroc:DIR   mav0/cam0/data, data.csv and sensor.yaml; DIR may also be mav0 or cam0, or of the layout above.
  *   tum:DIR     rgb.txt and rgb/; the calibration is calib.yaml inside, or given.
  * Inertial samples are looked for in imu.csv (images:) and in imu0/data.csv beside cam0 (euroc:).
- * PNG, JPEG and binary PGM; colour becomes grey, 16 bits become 8. Times must grow from frame to frame.
+ * PNG, JPEG and binary PGM; colour becomes grey, 16 bits become 8 (of a PNG, 65535 is white; a warning where the first one has
+ * data of 12 bits or fewer). Pixels are taken as stored, whatever EXIF says of the orientation, and so must the calibration.
+ * Times must grow from frame to frame.
  * calibration  a file in one of the forms of pf_read_calibration; null: the one inside DIR */
 int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t** sequence,
                      char message[PF_SEQUENCE_MESSAGE]);
