@@ -62,6 +62,25 @@ def check_inputs(root, images):
     (images / "run").rmdir()
 
 
+def check_reports(root):
+    """A report takes the place of an earlier one, and of nothing else of the user's."""
+    report, tables = root / "report.json", root / "tables"
+    room = [BIN / "pf-sim", "room", "--seeds", "1", "--frames", "12", "--json", report, "--csv", tables]
+    for _ in range(2):
+        result = run(*room)
+        require(result.returncode == 0, f"a report and an earlier one: {result.stderr}")
+    report.write_text('{"name": "package.json of a user"}')
+    programs = [room, [BIN / "pf-bench", "covariance", "--json", report]] if (BIN / "pf-bench").is_file() else [room]
+    for command in programs:
+        result = run(*command)
+        require(result.returncode == 2 and "is there and is no earlier report" in result.stderr, f"{command[0]}: {result.stderr}")
+        require("package.json" in report.read_text(), f"{command[0]}: the user's report was overwritten")
+    (tables / "checker_none.csv").write_text("measured by hand")
+    result = run(BIN / "pf-sim", "checker", "--seeds", "1", "--frames", "2", "--csv", tables)
+    require(result.returncode == 1 and "checker_none.csv: is there already" in result.stderr, f"pf-sim checker: {result.stderr}")
+    require((tables / "checker_none.csv").read_text() == "measured by hand", "pf-sim checker: the user's table was overwritten")
+
+
 def main():
     skip_in_cross_builds()
     if not CAPTURE[0].is_file():
@@ -78,6 +97,7 @@ def main():
                 require(result.returncode == 0, f"pf-sim render: {result.stderr}")
                 require(len(list((images / "images").iterdir())) == frames, f"{frames} frames were asked for: {contents(images).keys()}")
             check_inputs(root, images)
+            check_reports(root)
         if (BIN / "pf-calibrate").is_file():
             check_refusal("pf-calibrate", root / "e", BIN / "pf-calibrate", "--source", f"images:{root}", "--out", root / "e")
 

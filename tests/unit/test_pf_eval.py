@@ -217,6 +217,17 @@ class Command(unittest.TestCase):
         self.assertIn("position error, RMS", out)
         self.assertIn("ate_rmse_m", json.loads((self.path / "eval.json").read_text()))
 
+    def test_files_should_be_replaced_when_pf_eval_wrote_them_and_never_otherwise(self):
+        for option, name in (("--json", "own.json"), ("--per-frame", "own.csv")):
+            words = (self.path, "--truth", self.path / "truth.tum", option, self.path / name)
+            self.assertEqual(self.pf_eval(*words)[0], 0)
+            self.assertEqual(self.pf_eval(*words)[0], 0)
+            (self.path / name).write_text('{"years": "of work"}\n')
+            code, _, err = self.pf_eval(*words)
+            self.assertEqual(code, 1)
+            self.assertIn(f"{name}: is there and was not written by pf-eval; name another file", err)
+            self.assertEqual((self.path / name).read_text(), '{"years": "of work"}\n')
+
     def test_truth_should_be_read_as_other_systems_write_it(self):
         rows = (self.path / "truth.tum").read_text().splitlines()
         expected = self.pf_eval(self.path, "--truth", self.path / "truth.tum", "--json")[1]

@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -26,7 +28,17 @@ inline bool is_writable_folder(const std::filesystem::path& path) {
   return std::filesystem::is_directory(path, error) && access(path.c_str(), W_OK) == 0;
 }
 
-/// Of a file that is written after a long run, whose folder is made where it is missing: that it can be written is known before.
+/// Whether a file holds what no program of this project wrote: neither a report with written_by, nor nothing.
+inline bool is_foreign_report(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) return false;
+  std::ifstream file(path, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  return text.find("\"written_by\": \"pf-") == std::string::npos;
+}
+
+/// Of a report that is written after a long run, whose folder is made where it is missing: that it can be written, and that no file of the
+/// user's is in its place, is known before.
 inline CLI::Validator writable_file() {
   return CLI::Validator(
       [](std::string& text) {
@@ -34,6 +46,7 @@ inline CLI::Validator writable_file() {
         const bool exists = std::filesystem::exists(text, error);
         const bool can = exists ? !std::filesystem::is_directory(text, error) && access(text.c_str(), W_OK) == 0
                                 : !text.empty() && is_writable_folder(nearest_above(text));
+        if (can && is_foreign_report(text)) return "'" + text + "' is there and is no earlier report; name another";
         return can ? std::string() : "'" + text + "' is no file that can be written; name another";
       },
       "");

@@ -58,7 +58,8 @@ int Report::finish() const {
     for (const auto& [name, value] : r.figures) row[name] = value;
     document["rows"].push_back(row);
   }
-  std::error_code error;  // that the file cannot be opened says enough
+  document["written_by"] = "pf-bench";  // so that a later run may take its place (command_line.h)
+  std::error_code error;                // that the file cannot be opened says enough
   std::filesystem::create_directories(std::filesystem::path(options_.json).parent_path(), error);
   std::ofstream file(options_.json);
   file << document.dump(1) << '\n';

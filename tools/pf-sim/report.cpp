@@ -245,16 +245,20 @@ json summarise(const Experiment& x) {
   return out;
 }
 
-bool write_csv(const Runs& x, const std::string& directory, const std::string& label) {
+bool claim_files(const std::string& directory, const std::vector<std::string>& names) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   char message[PF_SEQUENCE_MESSAGE] = "";
-  for (const char* end : {".csv", "_runs.csv"}) {
-    if (pf_add_output_file(directory.c_str(), (label + end).c_str(), message) != 0) {
-      std::fprintf(stderr, "pf-sim: %s\n", message);
-      return false;
-    }
+  for (const std::string& name : names) {
+    if (pf_add_output_file(directory.c_str(), name.c_str(), message) == 0) continue;
+    std::fprintf(stderr, "pf-sim: %s\n", message);
+    return false;
   }
+  return true;
+}
+
+bool write_csv(const Runs& x, const std::string& directory, const std::string& label) {
+  if (!claim_files(directory, {label + ".csv", label + "_runs.csv"})) return false;
   std::ofstream means(directory + "/" + label + ".csv"), runs(directory + "/" + label + "_runs.csv");
   means << "frame,nees_position,nees_pose,bound_low,bound_high,rmse_m,sigma_m,state_dim,inliers,runs\n";
   runs << "seed,frame,nees_position,nees_pose,error_m,sigma_m,state_dim,inliers\n";
@@ -328,8 +332,10 @@ void print(const std::string& label, const json& j) {
 bool write_json(const std::string& path, const json& j) {
   std::error_code error;  // that the file cannot be opened says enough
   std::filesystem::create_directories(std::filesystem::path(path).parent_path(), error);
+  json signed_report = j;
+  signed_report["written_by"] = "pf-sim";  // so that a later run may take its place (command_line.h)
   std::ofstream out(path);
-  out << j.dump(2) << "\n";
+  out << signed_report.dump(2) << "\n";
   return out.good();
 }
 

@@ -37,6 +37,9 @@ bool run_all(Experiment& experiment, int processes, const char* title);
 nlohmann::json summarise(const Experiment& experiment);
 
 /// DIR/LABEL.csv: per frame the run averages and the bounds; DIR/LABEL_runs.csv: position NEES of every run.
+/// Makes the folder and puts names of files on its list of what was written there; false, after one line, where one of them is a file of
+/// the user's.
+bool claim_files(const std::string& directory, const std::vector<std::string>& names);
 bool write_csv(const Runs& runs, const std::string& directory, const std::string& label);
 
 /// One line on summarise_frames()'s "motion"; nothing where there are no windows.

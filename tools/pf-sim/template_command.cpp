@@ -172,6 +172,12 @@ int run(const Choices& c) {
   if (chooses) cases.push_back({"whole-best", config_of(camera, c, PF_MASKS_WHOLE, best_misfit)});
   if (!c.table.empty()) options.table = c.table + "/" + c.scene + "_";
   if (!c.table.empty() && c.scene == "checker") options.templates = c.table + "/checker_templates.csv";
+  if (!c.table.empty()) {
+    std::vector<std::string> names;
+    for (const TemplateCase& one : cases) names.push_back(c.scene + "_" + one.name + ".csv");
+    if (!options.templates.empty()) names.emplace_back("checker_templates.csv");
+    if (!claim_files(c.table, names)) return 1;
+  }
   std::vector<std::vector<Means>> by_seed;
   const std::vector<Means> means = run_cases(options, cases, c.seed, c, &by_seed);
   if (means.empty()) return fail("a run did not come to its end", 1);

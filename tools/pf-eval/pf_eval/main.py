@@ -122,15 +122,24 @@ def evaluate(options):
     return evaluate_truth(options)
 
 
-def write(path, text):
+def is_foreign(path, mark):
+    """Whether a file is there that holds something, and not the mark of what pf-eval writes."""
+    path = pathlib.Path(path)
+    return path.is_file() and path.stat().st_size > 0 and mark.encode() not in path.read_bytes()
+
+
+def write(path, text, mark):
+    """mark: a part of the text by which a later run knows that it may take the place of this file."""
     try:
+        if is_foreign(path, mark):
+            raise Refused(f"{path}: is there and was not written by pf-eval; name another file")
         pathlib.Path(path).write_text(text)
     except OSError as error:
         raise Refused(f"{path}: cannot be written ({error.strerror})") from error
 
 
 def write_rows(path, names, rows):
-    write(path, names + "\n" + "".join(",".join(f"{value:.9g}" for value in row) + "\n" for row in rows))
+    write(path, names + "\n" + "".join(",".join(f"{value:.9g}" for value in row) + "\n" for row in rows), names.rsplit(",nees_position", 1)[0])
 
 
 def finite(summary):
@@ -157,7 +166,8 @@ def main(words=None):
             sys.stdout.write(text)
         else:
             if options.json:
-                write(options.json, text)
+                mark = {"written_by": "pf-eval"}
+                write(options.json, json.dumps(dict(summary, **mark), indent=2) + "\n", json.dumps(mark)[1:-1])
             print(f"{options.run}\n{table(summary)}")
     except Refused as refused:
         print(f"pf-eval: {refused}", file=sys.stderr)
