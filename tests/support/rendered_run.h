@@ -9,12 +9,64 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "planefold/planefold.h"
 #include "unity.h"
 
 namespace pf {
+
+/// A film of a scene, rendered once for all runs of a program that play it: a frame does not depend on how many follow it.
+class Film {
+ public:
+  struct Frame {
+    std::vector<std::uint8_t> pixels;
+    pf_image_t image;  ///< of these pixels
+    pf_pose_t truth;
+  };
+
+  static Film& of(const std::string& scene, const pf_sim_options_t& options) {
+    static std::map<std::string, std::unique_ptr<Film>> films;
+    pf_sim_options_t key = options;
+    key.frames = 0;
+    std::unique_ptr<Film>& film =
+        films[scene + std::string(static_cast<const char*>(static_cast<const void*>(&key)), sizeof(key))];
+    if (!film) film = std::make_unique<Film>(scene, options);
+    return *film;
+  }
+
+  Film(const std::string& scene, pf_sim_options_t options) {
+    options.frames = 1000000;
+    sim_ = pf_sim_open(scene.c_str(), &options);
+    TEST_ASSERT_NOT_NULL(sim_);
+  }
+  Film(const Film&) = delete;
+  Film& operator=(const Film&) = delete;
+  ~Film() { pf_sim_close(sim_); }
+
+  const pf_sim_t* scene() const { return sim_; }
+
+  const Frame& at(std::size_t i) {
+    while (frames_.size() <= i) {
+      Frame frame = {};
+      TEST_ASSERT_EQUAL_INT(1, pf_sim_next(sim_, &frame.image, &frame.truth));
+      frame.pixels.assign(frame.image.pixels, frame.image.pixels + frame.image.stride * frame.image.height);
+      frames_.push_back(std::move(frame));
+      frames_.back().image.pixels = frames_.back().pixels.data();
+    }
+    return frames_[i];
+  }
+
+ private:
+  pf_sim_t* sim_;
+  std::deque<Frame> frames_;
+};
 
 class RenderedRun {
  public:
@@ -38,14 +90,15 @@ class RenderedRun {
   RenderedRun(const char* scene, int length, Start start, void (*change)(pf_sim_options_t*) = nullptr) {
     std::printf("scene %s, seed %llu\n", scene, static_cast<unsigned long long>(kSeed));
     pf_sim_options_t options;
+    std::memset(&options, 0, sizeof(options));
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_options_default(scene, &options));
     options.seed = kSeed;
     options.frames = length;
     if (change != nullptr) change(&options);
-    sim_ = pf_sim_open(scene, &options);
-    TEST_ASSERT_NOT_NULL(sim_);
+    length_ = static_cast<std::size_t>(length);
+    film_ = &Film::of(scene, options);
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
-    pf_sim_camera(sim_, &config.camera);
+    pf_sim_camera(film_->scene(), &config.camera);
     config.backend = backend;
     if (backend == PF_BACKEND_WINDOW) config.map.features_in_view = 150;
     create();
@@ -53,10 +106,7 @@ class RenderedRun {
   }
   RenderedRun(const RenderedRun&) = delete;
   RenderedRun& operator=(const RenderedRun&) = delete;
-  ~RenderedRun() {
-    pf_sim_close(sim_);
-    std::free(block_);
-  }
+  ~RenderedRun() { std::free(block_); }
 
   /// A context as config says, in a block of its own.
   void create() {
@@ -69,7 +119,7 @@ class RenderedRun {
 
   void start_at_rectangle() {
     pf_target_t target;
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_target(sim_, PF_TARGET_RECTANGLE, &target));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_target(film_->scene(), PF_TARGET_RECTANGLE, &target));
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
   }
 
@@ -79,7 +129,13 @@ class RenderedRun {
     for (int i = 0; i < count; ++i) TEST_ASSERT_TRUE(next_image(&image));
   }
 
-  bool next_image(pf_image_t* image) { return pf_sim_next(sim_, image, &truth_) == 1; }
+  bool next_image(pf_image_t* image) {
+    if (shown_ == length_) return false;
+    const Film::Frame& frame = film_->at(shown_++);
+    *image = frame.image;
+    truth_ = frame.truth;
+    return true;
+  }
 
   /// The next frame goes in, under `cover` if that is not negative: then all its pixels have that grey level.
   bool step(int cover = -1) {
@@ -157,7 +213,8 @@ class RenderedRun {
     frames.push_back(f);
   }
 
-  pf_sim_t* sim_;
+  Film* film_ = nullptr;
+  std::size_t length_ = 0, shown_ = 0;  ///< frames
   void* block_ = nullptr;
   pf_pose_t truth_ = {};
   std::vector<std::uint8_t> covered_, seen_, smeared_;
