@@ -656,7 +656,8 @@ class Run {
     require(report.features <= (has_window ? config_.capacity.window_points : config_.capacity.max_features) &&
                 report.patches <= config_.capacity.max_patches && report.cameras <= config_.capacity.max_cameras,
             "features and patches keep to their capacity");
-    require(report.planes <= config_.capacity.max_planes && report.state_dim <= config_.capacity.max_state_dim,
+    require(report.planes <= config_.capacity.max_planes &&
+                (has_window || report.state_dim <= config_.capacity.max_state_dim),
             "the map keeps to its capacity");
     require(report.attempts >= report.matches && report.matches >= report.inliers &&
                 report.features == report.features_point + report.features_inverse_depth + report.features_folded +

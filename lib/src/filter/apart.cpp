@@ -49,10 +49,8 @@ void Filter::tell_gauge() {
   apart_.clear();
 }
 
-/// After an update: in float the diagonal gets back what rounding may have taken from it, and the scale leaves P where l, the best known
-/// log length, says that it is known too little.
+/// After an update: the scale leaves P where l, the best known log length, says that it is known too little.
 void Filter::end_update_apart(const ScaleRow& l) {
-  if constexpr (sizeof(Scalar) == sizeof(float)) blocks_.grow(kGrowth * std::sqrt(static_cast<Scalar>(blocks_.dim())));
   if (l.parts > 0 && blocks_.variance(l) > kMaxScaleVariance) apart_.add_scale(replace_scale(kLeftScaleVariance));
 }
 

@@ -1,4 +1,7 @@
+#include <cmath>
+
 #include "filter/filter.h"
+#include "filter/tuning.h"
 #include "geometry/small_cholesky.h"
 
 /// The update.
@@ -28,6 +31,9 @@ void Filter::commit_update() {
   apply_error(state_, blocks_, blocks_.step());
   if (keep_gauge_) transport_.finish(state_, blocks_);
   blocks_.downdate(transport_.U(), transport_.G(), transport_.rows());
+  // In float the diagonal gets back what rounding may have taken from it (lib/docs/float.md).
+  if constexpr (sizeof(Scalar) == sizeof(float))
+    blocks_.grow(tuning::apart::kGrowth * std::sqrt(static_cast<Scalar>(blocks_.dim())));
   if (keeps_apart()) end_update_apart(l);
 }
 
