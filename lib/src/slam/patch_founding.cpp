@@ -4,6 +4,7 @@
 #include "filter/camera_at.h"
 #include "filter/model/reference_camera.h"
 #include "geometry/ray_plane.h"
+#include "geometry/small_cholesky.h"
 #include "geometry/two_view_plane.h"
 #include "slam/patch_keeper.h"
 #include "slam/patch_tuning.h"
@@ -57,6 +58,23 @@ void PatchKeeper::note_plane(StoredPatch* patch) const {
   fit_plane_to(*patch, &fit, &range, &patch->early_plane);
 }
 
+/// Whether the corners tell all of a plane that has this prior, and nothing else does: P_left = P - P H^T S^-1 H P over its three rows. Asked
+/// before they are taken in, since a prior that nothing takes back says where the world is.
+bool PatchKeeper::would_tell(const StoredPatch& patch, int plane, const Mat3& prior) {
+  SmallCholesky<8> cholesky;
+  if (!filter_.predict_patch(filter_.lens(), patch.block, plane, patch.reference_px, &z_)) return false;
+  put_measured(patch);
+  if (!cholesky.factor(filter_.covariance_of<8>(z_.H) + z_.R_update)) return false;
+  const int columns = z_.H.columns(), at = z_.H.part[0].size + z_.H.part[1].size;
+  for (int i = 0; i < prior.cols(); ++i) {
+    Vec8 HP = Vec8::Zero();
+    for (int a = 0; a < z_.kHeight; ++a)
+      for (int c = 0; c < prior.rows(); ++c) HP(a) += z_.H.h[a * columns + at + c] * prior(c, i);
+    if (!(prior(i, i) - HP.dot(cholesky.solve<1>(HP)) < kMinLearnt * kMinLearnt * prior(i, i))) return false;
+  }
+  return true;
+}
+
 /// A plane with a wide prior, which this frame's corners are taken in on. Then the prior is taken back, so that what remains of the plane
 /// is what the patch says with all that this depends on. False where that is too little, or no plane explains the corners.
 bool PatchKeeper::found_plane(StoredPatch* patch) {
@@ -76,11 +94,9 @@ bool PatchKeeper::found_plane(StoredPatch* patch) {
   const int entry = map_.planes.add(slot);
   filter_.set_owner(slot, entry);
   map_.planes[entry].roughness = settings_.fold.roughness;
-  join(patch, entry);
-  bool told = patch->status == PatchStatus::kInlier;
-  const int row = filter_.first_row(slot);
-  for (int i = 0; i < kRows; ++i) told = told && filter_.variance(row + i) < kMinLearnt * kMinLearnt * prior(i, i);
-  if (told && filter_.forget_prior(slot, prior, kWidening)) {
+  const bool told = would_tell(*patch, slot, prior);
+  if (told) join(patch, entry);
+  if (told && patch->status == PatchStatus::kInlier && filter_.forget_prior(slot, prior, kWidening)) {
     settings_.hooks.say("found a plane by a patch that no wall explains");
     return true;
   }

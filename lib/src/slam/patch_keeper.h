@@ -86,6 +86,7 @@ class PatchKeeper {
   bool fit_plane_to(const StoredPatch& patch, PlaneFit* fit, Scalar* range, Vec3* m) const;
   void note_plane(StoredPatch* patch) const;
   void found_or_wait(StoredPatch* patch);
+  bool would_tell(const StoredPatch& patch, int plane, const Mat3& prior);
   bool found_plane(StoredPatch* patch);
   void extend_plane(const StoredPatch& patch, int entry);
 
