@@ -186,6 +186,7 @@ void PatchKeeper::update(StoredPatch* patch, int wall) {
   patch->status = PatchStatus::kOutlier;
   const Scalar chi2 = misfit(*patch, map_.planes[wall].slot);
   if (!(chi2 >= Scalar(0) && chi2 < kCornersGate)) return;
+  if (!take_bent(*patch, map_.planes[wall].slot)) return;
   const Measurement view = z_.view();
   filter_.begin_update(&view, 1);
   Scalar nis = 0;

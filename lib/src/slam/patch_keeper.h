@@ -63,6 +63,8 @@ class PatchKeeper {
   bool begin_block(StoredPatch* patch, const Mat8& covariance);
   void put_measured(const StoredPatch& patch);
   Scalar misfit(const StoredPatch& patch, int plane);
+  Scalar bend_of(const StoredPatch& patch) const;
+  bool take_bent(const StoredPatch& patch, int plane);
   void update(StoredPatch* patch, int wall);
   Mat8 noise_of(const StoredPatch& patch) const;
   void learn_noise();
@@ -75,6 +77,7 @@ class PatchKeeper {
   bool expect_waiting(const StoredPatch& patch, Sight* sight) const;
   bool may_lie_on(const StoredPatch& patch, int entry, Scalar* range) const;
   int try_planes(StoredPatch* patch, bool counts);
+  Scalar parallax_of(const StoredPatch& patch) const;
   bool has_parallax(const StoredPatch& patch, Scalar min_px) const;
   bool is_off_most(const StoredPatch& patch, int entry) const;
   bool is_seen_through(const StoredPatch& patch, int entry) const;

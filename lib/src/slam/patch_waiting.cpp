@@ -90,8 +90,9 @@ int PatchKeeper::try_planes(StoredPatch* patch, bool counts) {
   return nearest;
 }
 
-/// Whether the corners are far enough from where they would be if the camera had only rotated since its reference.
-bool PatchKeeper::has_parallax(const StoredPatch& patch, Scalar min_px) const {
+/// How far the corners are on average from where they would be if the camera had only rotated since its reference [px]; negative where
+/// that cannot be told.
+Scalar PatchKeeper::parallax_of(const StoredPatch& patch) const {
   const Quat q_CK = filter_.state().body.q_WC.conjugate() * ReferenceCamera::q_WC(filter_.state().block[patch.camera]);
   Scalar sum = 0;
   for (int k = 0; k < 4; ++k) {
@@ -99,11 +100,13 @@ bool PatchKeeper::has_parallax(const StoredPatch& patch, Scalar min_px) const {
     Vec2 rotated;
     if (!unproject(filter_.lens(), patch.reference_px[k], &ray_K) ||
         !project(filter_.lens(), Vec3(q_CK * ray_K), &rotated))
-      return false;
+      return Scalar(-1);
     sum += (patch.corner[k] - rotated).norm();
   }
-  return sum > 4 * min_px;
+  return sum / 4;
 }
+
+bool PatchKeeper::has_parallax(const StoredPatch& patch, Scalar min_px) const { return parallax_of(patch) > min_px; }
 
 /// Follows a patch, and decides whether it is known by now which plane it lies on. Where nothing else supports the pose, the nearest plane
 /// that passes counts at once, and nothing is held against the others.
