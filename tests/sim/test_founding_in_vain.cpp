@@ -1,5 +1,5 @@
-// A patch that does not tell the plane that it lies on, since the world's scale is hardly known, on rendered frames of one textured wall of which
-// the plan has the left half: what is tried with it must not say where the world is.
+// A patch that does not tell the plane that it lies on, since the world's scale is hardly known, on rendered frames of one textured wall
+// of which the plan has the left half: what is tried with it must not say where the world is.
 #include <algorithm>
 #include <cstdio>
 #include <vector>

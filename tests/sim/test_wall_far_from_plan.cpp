@@ -1,5 +1,5 @@
-// A wall that the plan has two standard deviations from its place, on rendered frames of one textured wall, beside one that is where the plan
-// has it. The first patch moves it by a fifth of its distance: what the linearisation leaves out there must not count as known.
+// A wall that the plan has a standard deviation from its place, on rendered frames of one textured wall, beside one that is where the
+// plan has it. The first patch moves it by a tenth or more of its distance: what the linearisation leaves out must not count as known.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

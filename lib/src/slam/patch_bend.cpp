@@ -2,18 +2,21 @@
 
 #include "geometry/small_cholesky.h"
 #include "slam/patch_keeper.h"
+#include "slam/patch_tuning.h"
 #include "slam/tuning.h"
 
 /// A patch whose plane is far from where the filter has it: the linearisation at the estimate is bad, and counts for less.
 
 namespace pf {
 
-using namespace tuning::patch_keeper;
+using namespace tuning::patch_bend;
+using tuning::patch_keeper::kCornersGate;
+using tuning::patch_keeper::kLinearReach;
 
 /// Variance of what the linearisation leaves out where the innovation r is the plane's fault: corners move with the parallax p as with
 /// 1 / depth, so r says that the depth is wrong by r / p of itself, and the rows that say so are wrong by as much: (r r / p)^2.   [px^2]
 Scalar PatchKeeper::bend_of(const StoredPatch& patch) const {
-  const Scalar parallax = std::max(parallax_of(patch), kMinBendParallax);
+  const Scalar parallax = std::max(parallax_of(patch), kMinParallax);
   const Scalar r2 = (z_.measured - z_.predicted).cwiseAbs2().maxCoeff();
   return r2 * r2 / (parallax * parallax);
 }
@@ -25,10 +28,10 @@ Scalar PatchKeeper::bend_of(const StoredPatch& patch) const {
 ///
 /// False where the rest does not pass the gate.
 bool PatchKeeper::take_bent(const StoredPatch& patch, int plane) {
-  for (int round = 0; round < kBentRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     if ((z_.measured - z_.predicted).cwiseAbs().maxCoeff() > kLinearReach) break;  // linearised elsewhere
     const Scalar bend = bend_of(patch);
-    if (!(kBentShare * bend * z_.kHeight > z_.R_update.trace())) break;
+    if (!(bend * z_.kHeight > kMinShare * z_.R_update.trace())) break;
     const Mat8 R = z_.R_update, R_gate = z_.R_gate;
     const Vec8 measured = z_.measured;
     z_.R_update += bend * Mat8::Identity();

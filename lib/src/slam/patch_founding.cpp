@@ -58,8 +58,8 @@ void PatchKeeper::note_plane(StoredPatch* patch) const {
   fit_plane_to(*patch, &fit, &range, &patch->early_plane);
 }
 
-/// Whether the corners tell all of a plane that has this prior, and nothing else does: P_left = P - P H^T S^-1 H P over its three rows. Asked
-/// before they are taken in, since a prior that nothing takes back says where the world is.
+/// Whether the corners tell enough of a plane that has this prior, on which nothing else depends: P_left = P - P H^T S^-1 H P over its
+/// three rows. Asked before they are taken in, since a prior that nothing takes back says where the world is.
 bool PatchKeeper::would_tell(const StoredPatch& patch, int plane, const Mat3& prior) {
   SmallCholesky<8> cholesky;
   if (!filter_.predict_patch(filter_.lens(), patch.block, plane, patch.reference_px, &z_)) return false;

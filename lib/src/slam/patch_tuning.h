@@ -26,6 +26,14 @@ inline constexpr int kYoungEvery = 2;               ///< frame that counts befor
 inline constexpr int kFoundEvery = 20;              ///< frames, in the middle of which a patch may found a plane
 }  // namespace patch_waiting
 
+/// A patch on a wall that is far from its plan.
+namespace patch_bend {
+inline constexpr Scalar kMinParallax = Scalar(1);  ///< [px] from which an innovation may be the plane's fault
+inline constexpr Scalar kMinShare =
+    Scalar(0.5);                      ///< of R, below which what the linearisation leaves out does not matter
+inline constexpr int kMaxRounds = 3;  ///< in which it is mended
+}  // namespace patch_bend
+
 /// A plane that a patch founds.
 namespace patch_founding {
 inline constexpr Scalar kFoundingParallax = 40;      ///< [px] of the corners: errors of a lens are a few percent of it
