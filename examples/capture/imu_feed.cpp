@@ -16,7 +16,7 @@ constexpr int32_t kKeptToMove = 2000;  ///< likewise where poses depend on them:
 
 constexpr double kSigmaMountRad = 0.035;  ///< of --estimate mount: 2 degrees
 constexpr double kSigmaMountM = 0.02;
-constexpr double kSigmaDelayS = 0.01;  ///< of --estimate delay
+constexpr double kSigmaDelayS = 0.01;    ///< of --estimate delay
 constexpr double kSigmaReadoutS = 0.01;  ///< of --estimate readout
 
 constexpr double kRadians = 3.14159265358979 / 180.0;

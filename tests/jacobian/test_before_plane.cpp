@@ -128,8 +128,7 @@ void test_a_new_point_should_have_an_exact_jacobian_over_the_state_and_its_noise
     about.q_b = turn_z_to(e.normalized());
     Dense J(3, n), unit = Dense::Ones(1, n);
     for (int i = 0; i < view.prior.rows.count; ++i)
-      unit(0, state.layout.row(BodyPart::kLens) + i) =
-          1e3 * static_cast<double>(std::sqrt(view.prior.variance[i]));
+      unit(0, state.layout.row(BodyPart::kLens) + i) = 1e3 * static_cast<double>(std::sqrt(view.prior.variance[i]));
     for (int row = 0; row < n; ++row) {
       Eigen::Vector3d moved[2];
       std::vector<Scalar> dx(static_cast<std::size_t>(n), Scalar(0));

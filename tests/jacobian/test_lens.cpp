@@ -33,8 +33,7 @@ LensPrior prior_of(Camera* camera) {
 
 Parameters sigmas_of(const LensPrior& prior) {
   Parameters sigma = Parameters::Zero();
-  for (int i = 0; i < prior.rows.count; ++i)
-    sigma(prior.rows.parameter[i]) = std::sqrt(prior.variance[i]);
+  for (int i = 0; i < prior.rows.count; ++i) sigma(prior.rows.parameter[i]) = std::sqrt(prior.variance[i]);
   return sigma;
 }
 
@@ -182,8 +181,8 @@ void test_new_bearings_should_have_exact_jacobians_by_the_lens() {
     Mat32 J_ray_z;
     TEST_ASSERT_TRUE(unproject(camera, z, &ray, &J_ray_z));
     const int anchor = filter->add_anchor();
-    const int slot = filter->add_inverse_depth(anchor, ray, J_ray_z, Mat2::Identity(), kRho, Scalar(0.1),
-                                               row_time(camera, z.y()));
+    const int slot =
+        filter->add_inverse_depth(anchor, ray, J_ray_z, Mat2::Identity(), kRho, Scalar(0.1), row_time(camera, z.y()));
     const Mat3 R_b = filter->state().block[slot].inverse_depth().q_b.toRotationMatrix();
     const auto bearing_error = [&](const Parameters& e) -> Vec2 {
       return R_b.leftCols<2>().transpose() * seen_from_anchor(with(camera, prior, e));

@@ -123,8 +123,7 @@ void test_a_new_plane_point_should_have_an_exact_jacobian_over_the_state() {
     Dense numeric(2, n), unit = Dense::Ones(1, n);
     // A distortion in pixels^-2 needs a step of its own.
     for (int i = 0; i < view.prior.rows.count; ++i)
-      unit(0, state.layout.row(BodyPart::kLens) + i) =
-          static_cast<double>(std::sqrt(view.prior.variance[i]));
+      unit(0, state.layout.row(BodyPart::kLens) + i) = static_cast<double>(std::sqrt(view.prior.variance[i]));
     for (int row = 0; row < n; ++row) {
       Eigen::Vector2d uv[2];
       std::vector<Scalar> dx(static_cast<std::size_t>(n), Scalar(0));

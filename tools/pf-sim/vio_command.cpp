@@ -395,7 +395,8 @@ int run(Choices c) {
   if (!(o.readout_s >= 0 && o.readout_s <= 0.1)) return fail("--readout is 0 to 0.1 seconds");
   if (o.readout_s > 0 && o.rendered) return fail("--readout is for points; leave --rendered away");
   if (o.sigma_readout_s > 0 && o.readout_s <= kSigmaReadoutS)
-    return fail("--estimate readout: the rows of a camera that is known to take 10 ms less; add --readout S above 0.01");
+    return fail(
+        "--estimate readout: the rows of a camera that is known to take 10 ms less; add --readout S above 0.01");
   pf_sim_options_t scene;
   if (o.rendered && pf_sim_options_default(o.scene.c_str(), &scene) != PF_OK)
     return fail("--scene " + o.scene + ": there is no such scene");

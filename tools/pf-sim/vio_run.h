@@ -83,11 +83,12 @@ struct VioSummary {
   double worst_bias_sigmas = 0;         ///< largest error of a bias in its own sigma
   std::int32_t tracked_after = 0, judged_after = 0, refused_samples = 0;
   double mount_error_rad = -1, mount_error_m = -1, delay_error_s = -1;  ///< at the end, where they are estimated
-  double readout_error_s = -1, readout_sigmas = -1;  ///< of the rows, 10 s after the scale is known or at the end: likewise
-  double mount_sigmas = -1;  ///< the largest of their errors along an axis, in its own sigma
-  double doubted_at_s = -1;  ///< when the unit first came into doubt, negative: never
-  double doubted_s = 0;      ///< for how long it was
-  std::int32_t maps = 1;     ///< begun
+  double readout_error_s = -1,
+         readout_sigmas = -1;  ///< of the rows, 10 s after the scale is known or at the end: likewise
+  double mount_sigmas = -1;    ///< the largest of their errors along an axis, in its own sigma
+  double doubted_at_s = -1;    ///< when the unit first came into doubt, negative: never
+  double doubted_s = 0;        ///< for how long it was
+  std::int32_t maps = 1;       ///< begun
   double tilt_rad = -1,
          tilt_rms_rad = -1;  ///< of gravity's direction: at the end, and over all frames in which it is known
   VioPlanes planes;

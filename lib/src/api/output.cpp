@@ -205,8 +205,7 @@ pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, double cov
   if (slam->session.settings().lens.rows.has_readout()) camera->readout_s = static_cast<double>(lens.readout);
   if (covariance == nullptr) return PF_OK;
   for (int i = 0; i < 10; ++i)
-    for (int j = 0; j < 10; ++j)
-      covariance[10 * i + j] = static_cast<double>(C[i][j]);
+    for (int j = 0; j < 10; ++j) covariance[10 * i + j] = static_cast<double>(C[i][j]);
   pf::repair_covariance(covariance, 10);
   return PF_OK;
 }

@@ -28,7 +28,7 @@ struct CameraAt {
   Quat q_WC = Quat::Identity();
   Vec3 p_W = Vec3::Zero();
   Vec3 v_W = Vec3::Zero();
-  Vec3 w_C = Vec3::Zero();  ///< at tau, as v_W
+  Vec3 w_C = Vec3::Zero();             ///< at tau, as v_W
   Mat3 J_theta_w;                      ///< R J_l(w tau) tau, by the rows at rate_row; only where tau is not 0
   bool beside = false;                 ///< the state's velocity is that of another point; the two below only then
   Mat3 J_p_theta, J_p_w;               ///< of p_tau, beside the identity and tau
