@@ -59,6 +59,27 @@ void put_lens(std::string& rows, int64_t t_ns, const pf_camera_t& camera) {
   rows += '\n';
 }
 
+constexpr const char* kInertialHeader =
+    "t_s,map,metric,resting,gravity_x,gravity_y,gravity_z,gyro_bias_x,gyro_bias_y,gyro_bias_z,accel_bias_x,accel_bias_"
+    "y,"
+    "accel_bias_z,delay_s,readout_s,sigma_gravity_1,sigma_gravity_2,sigma_gyro_x,sigma_gyro_y,sigma_gyro_z,"
+    "sigma_accel_x,sigma_accel_y,sigma_accel_z,sigma_delay_s,sigma_readout_s\n";
+
+/// Standard deviations as pf_inertial_t says; negative: not estimated.
+void put_inertial(std::string& rows, const FrameView& view) {
+  const pf_inertial_t& unit = view.inertial;
+  put_seconds(rows, view.pose.t_ns);
+  append(rows, ",%d,%u,%u", view.map, unit.metric, unit.resting);
+  for (const double* vector : {unit.gravity_W, unit.gyro_bias, unit.accel_bias}) {
+    append(rows, ",%.9g,%.9g,%.9g", vector[0], vector[1], vector[2]);
+  }
+  append(rows, ",%.9g,%.9g", unit.delay_s, unit.readout_s);
+  for (int i = 0; i < 8; ++i) {
+    append(rows, ",%.6g", unit.sigma[i]);
+  }
+  append(rows, ",%.6g,%.6g\n", unit.sigma[14], unit.sigma[15]);
+}
+
 const char* match_name(int32_t status) {
   constexpr const char* kNames[] = {"unknown", "inlier", "outlier", "missed", "new"};
   return kNames[status >= 0 && status <= 4 ? status : 0];
@@ -102,7 +123,7 @@ bool Outputs::create(TextFile& file, const std::string& name, std::string& error
 }
 
 bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool truth, bool relative,
-                   const pf_camera_t& camera, std::string& error) {
+                   const pf_camera_t& camera, bool inertial, std::string& error) {
   folder_ = folder;
   char message[PF_SEQUENCE_MESSAGE] = "";
   if (pf_open_output_folder(folder.c_str(), "--out", message) != 0) {
@@ -112,7 +133,8 @@ bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool tr
   if (!open_map(1, error) || !create(frames_, "frames.csv", error) ||
       (tracks && !create(tracks_, "tracks.csv", error)) || (patches && !create(patches_, "patches.csv", error)) ||
       (truth && !create(truth_, "truth.tum", error)) || (relative && !create(relative_, "relative.csv", error)) ||
-      (camera.estimate == PF_CAMERA_ESTIMATE && !create(lens_, "lens.csv", error))) {
+      (camera.estimate == PF_CAMERA_ESTIMATE && !create(lens_, "lens.csv", error)) ||
+      (inertial && !create(inertial_, "inertial.csv", error))) {
     return false;
   }
   for (const char* name : {"calib.yaml", "map.ply", "map.ply.part", "report.json", "report.json.part"}) {
@@ -136,6 +158,7 @@ bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool tr
   relative_.rows() += ",nees,nees_dof\n";
   lens_.rows() =
       "# lens of the poses of tracked frames: timestamp, fx, fy, cx, cy [px], distortion[0] .. distortion[4]\n";
+  inertial_.rows() = kInertialHeader;
   truth_.rows() = "# true T_WC: timestamp tx ty tz qx qy qz qw\n";
   return true;
 }
@@ -179,6 +202,9 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, const MotionW
     covariance += '\n';
     if (lens_.is_open()) put_lens(lens_.rows(), view.pose.t_ns, view.camera);
   }
+  if (inertial_.is_open() && view.has_pose && view.has_inertial) {
+    put_inertial(inertial_.rows(), view);
+  }
   if (truth != nullptr) {
     put_tum(truth_.rows(), *truth);
   }
@@ -203,8 +229,8 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, const MotionW
   }
   bool written = true;
   // The covariance before the trajectory, so that whatever ends the program leaves one for every pose.
-  for (TextFile* file :
-       {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &patches_, &truth_, &relative_, &lens_, &frames_}) {
+  for (TextFile* file : {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &patches_, &truth_, &relative_, &lens_,
+                         &inertial_, &frames_}) {
     written = file->write_rows(error) && written;
   }
   return written;

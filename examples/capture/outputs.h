@@ -19,12 +19,13 @@ class Outputs {
  public:
   /// Makes the folder, opens the files and writes calib.yaml. false: error is one line.
   bool open(const std::string& folder, bool tracks, bool patches, bool truth, bool relative, const pf_camera_t& camera,
-            std::string& error);
+            bool inertial, std::string& error);
 
   /// trajectory.txt and covariance.csv where the frame was tracked, trajectory_all.txt wherever there is a pose; of the second map
   /// trajectory_2.txt and so on, since each map has a world of its own;
   /// frames.csv in every frame, tracks.csv, patches.csv; truth.tum where truth is not null. false: error is one line (disk full, say).
-  /// A row of relative.csv where window is not null; of lens.csv where the frame was tracked and the lens is estimated.
+  /// A row of relative.csv where window is not null; of lens.csv where the frame was tracked and the lens is estimated;
+  /// of inertial.csv where there is a pose that depends on a unit's samples.
   bool write(const FrameView& view, const pf_pose_t* truth, const MotionWindow* window, std::string& error);
   /// truth_planes.json, where the source knows them.
   bool write_true_planes(const std::vector<std::array<double, 4>>& planes, std::string& error) const;
@@ -41,7 +42,7 @@ class Outputs {
   bool open_map(int map, std::string& error);
 
   std::filesystem::path folder_;
-  TextFile trajectory_, trajectory_all_, covariance_, frames_, tracks_, patches_, truth_, relative_, lens_;
+  TextFile trajectory_, trajectory_all_, covariance_, frames_, tracks_, patches_, truth_, relative_, lens_, inertial_;
   int map_ = 0;  ///< whose files are open
 };
 

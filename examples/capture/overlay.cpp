@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "horizon.h"
 #include "maths.h"
 #include "plane_drawing.h"
 #include "rows.h"
@@ -106,6 +107,7 @@ const Canvas& Overlay::draw(const FrameView& view) {
   draw_patches(view);
   draw_tracks(view);
   draw_hits(view);
+  draw_horizon(canvas_, view, zoom_, zoom_ * view.image.height);
   cairo_restore(pen);
   map_.draw(canvas_, view, image_width_, 0, panel_width_, panel_width_);
   draw_numbers(view, image_width_, panel_width_, panel_width_);

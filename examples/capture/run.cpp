@@ -104,7 +104,7 @@ bool Run::open(std::string& error, int& code) {
   relative_.open(options_.relative, session_.target() != nullptr);
   const bool patches = options_.tracks && session_.config().capacity.max_patches > 0;
   if (!outputs_.open(options_.out, options_.tracks, patches, info.knows_truth, options_.relative > 0,
-                     session_.config().camera, error) ||
+                     session_.config().camera, imu_.is_inertial(), error) ||
       !outputs_.write_true_planes(source_.planes(), error)) {
     return false;
   }

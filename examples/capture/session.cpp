@@ -230,6 +230,7 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   pf_get_report(slam_, &view.report);
   view.has_pose = pf_get_pose(slam_, &view.pose) == PF_OK;
   pf_get_camera(slam_, &view.camera, nullptr);
+  view.has_inertial = pf_get_inertial(slam_, &view.inertial) == PF_OK;
   // Tracked: the library says so (in the frame of the start the target alone carries the pose), or, while the depths are not known
   // yet, a pose from at least 8 gated inliers of this very frame.
   view.tracked =

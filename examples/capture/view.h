@@ -31,8 +31,10 @@ struct FrameView {
   bool has_pose = false;
   bool tracked = false;  ///< at least 8 inliers in this frame, and a pose that comes from them
   pf_pose_t pose{};
-  pf_camera_t camera{};  ///< the lens that the pose belongs to: the calibration, as it is known now
-  int map = 1;           ///< of the run, from 1; a map in which nothing was tracked leaves its number to the next
+  pf_camera_t camera{};       ///< the lens that the pose belongs to: the calibration, as it is known now
+  bool has_inertial = false;  ///< poses depend on a unit's samples, and it has begun
+  pf_inertial_t inertial{};
+  int map = 1;  ///< of the run, from 1; a map in which nothing was tracked leaves its number to the next
   double ms = 0.0;
   std::vector<pf_match_t> tracks;
   std::vector<pf_feature_t> features;

@@ -76,6 +76,18 @@ class PlotRun(unittest.TestCase):
         self.assertEqual(self.plot(self.path), (0, ""))
         self.assertEqual(self.pictures(), ["errors.png", "frames.png", "trajectory.png"])
 
+    def test_run_with_a_unit_should_give_its_biases_once_gravity_is_known(self):
+        names = ["t_s", "map", "metric", "resting"] + [f"{v}_{x}" for v in ("gravity", "gyro_bias", "accel_bias") for x in "xyz"]
+        names += ["delay_s", "readout_s", "sigma_gravity_1", "sigma_gravity_2"] + [f"sigma_{v}_{x}" for v in ("gyro", "accel") for x in "xyz"]
+        names += ["sigma_delay_s", "sigma_readout_s"]
+        for metric, expected in ((0, False), (1, True)):
+            rows = [",".join(names)] + [f"{0.1 * i:.3f},1,{metric},{int(i < 3)}," + ",".join(["0.01"] * 20 + ["-1"]) for i in range(8)]
+            (self.path / "inertial.csv").write_text("\n".join(rows) + "\n")
+            self.assertEqual(self.plot(self.path), (0, ""))
+            self.assertEqual("inertial.png" in self.pictures(), expected)
+        (self.path / "inertial.csv").write_text(",".join(names) + "\n")
+        self.assertEqual(self.plot(self.path), (0, ""))
+
     def test_run_should_be_aligned_when_it_chose_its_own_frame(self):
         (self.path / "report.json").write_text(json.dumps({"start": "auto"}))
         self.assertEqual(self.plot(self.path), (0, ""))

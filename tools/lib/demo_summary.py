@@ -34,6 +34,13 @@ def main():
           + f"; {report['features']['median']:.0f} were measured in a frame. The state had {report['state_dim']['max']:.0f} rows at most, "
           f"with their full covariance, in a block of {report['memory_bytes'] / 2**20:.2f} MiB that never grows.")
 
+    unit = report.get("imu") or {}
+    if unit.get("metric"):
+        start = unit["start_frame"]
+        turn = max(unit["gravity_W"]["sigma"])
+        print(f"Unit:   lengths are in metres from frame {start} on, by a {'rest' if unit['start'] == 'rest' else 'motion'}; gravity is known to "
+              f"{57.2957795 * turn:.2f} degrees at the end (the dashed line in the film is the horizon).")
+
     files = [name for name in ("overlay.mp4", "trajectory.png", "trajectory.tum", "map.ply") if (run / name).exists()]
     others = len([entry for entry in run.iterdir() if entry.is_file()]) - len(files)
     where = f"See {run}: {', '.join(files)} and {others} more."

@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 
-from . import Refused, plot_errors, plot_frames, plot_trajectory
+from . import Refused, plot_errors, plot_frames, plot_inertial, plot_trajectory
 from .errors import compare, default_alignment
 from .files import read_run, read_table
 from .output_folder import LIST, add_output_files, open_output_folder
@@ -39,7 +39,7 @@ def plot(options):
             truth = None
 
     out = open_output_folder(options.out or folder / "plots", "--out", reads=folder)
-    pictures = ["trajectory.png", "frames.png", "errors.png"]
+    pictures = ["trajectory.png", "frames.png", "inertial.png", "errors.png"]
     add_output_files(out, *pictures)
     if not options.out and (folder / LIST).is_file():  # the next run into this folder takes them along
         add_output_files(folder, "plots/", *[f"plots/{name}" for name in [*pictures, LIST]])
@@ -64,6 +64,11 @@ def plot(options):
         table = read_table(folder / "frames.csv")
         start = table["t_s"][0]
         yield plot_frames.draw(out / "frames.png", table, title)
+    unit = folder / "inertial.csv"
+    if unit.exists() and unit.read_text().count("\n") > 1:  # a unit that never began leaves the names of the columns only
+        picture = plot_inertial.draw(out / "inertial.png", read_table(unit), start, title)
+        if picture:
+            yield picture
     if comparison:
         yield plot_errors.draw(out / "errors.png", comparison, start, title)
 
