@@ -1,6 +1,7 @@
 """pf-capture --imu: samples of a file reach the library in order with the frames, the report counts them, a recording holds them,
 and replaying it pushes the same; poses depend on them only where their noise is known."""
 
+import csv
 import json
 import math
 import pathlib
@@ -116,6 +117,13 @@ def inertial(root):
     report = capture(root / "vio", *still, "--record", root / "unit", start=FREE)
     imu = report["imu"]
     expect(imu["used"] is True and imu["start"] == "rest" and imu["metric"] is True, f"no start from rest: {imu}")
+    with open(root / "vio" / "inertial.csv", newline="", encoding="ascii") as file:
+        rows = list(csv.DictReader(file))
+    expect(len(rows) == 100 and rows[0]["metric"] == "0", f"inertial.csv has {len(rows)} rows")
+    expect([row["metric"] for row in rows].index("1") == imu["start_frame"], "inertial.csv becomes metric in another frame")
+    for axis, value in zip("xyz", imu["gyro_bias"]["value"]):
+        expect(abs(float(rows[-1][f"gyro_bias_{axis}"]) - value) < 1e-5, f"inertial.csv ends with another bias: {rows[-1]}")
+    expect(float(rows[-1]["sigma_delay_s"]) < 0, "a delay that is not estimated has a sigma")
     expect(report["ms_by_stage"]["imu"] > 0, f"the samples take no time: {report['ms_by_stage']}")
     expect(30 <= imu["start_frame"] <= 45, f"at rest for 1.5 s, and metric from frame {imu['start_frame']} on")
     expect(abs(math.hypot(*imu["gravity_W"]["value"]) - 9.81) < 1e-3 and max(imu["gravity_W"]["sigma"]) < 0.1, f"{imu['gravity_W']}")

@@ -109,6 +109,8 @@ class Alignment(unittest.TestCase):
         self.assertEqual(default_alignment({"start": "target:a.yaml"}), "none")
         self.assertEqual(default_alignment({"start": "rectangle:0.2x0.1"}), "none")
         self.assertEqual(default_alignment({"start": "auto"}), "sim3")
+        self.assertEqual(default_alignment({"start": "auto", "imu": {"used": True, "metric": False}}), "sim3")
+        self.assertEqual(default_alignment({"start": "auto", "imu": {"used": True, "metric": True}}), "se3")
         self.assertEqual(default_alignment({}), "sim3")
 
 

@@ -38,9 +38,12 @@ def nees(error, covariance):
 
 
 def default_alignment(report):
-    """Runs from a known target or pose are in the frame of that target; others choose their own frame and scale."""
+    """Runs from a known target or pose are in the frame of that target; others choose their own frame, and their own scale too unless an
+    inertial unit has told it."""
     start = str(report.get("start", ""))
-    return "none" if start.startswith(("target", "rectangle", "points", "pose")) else "sim3"
+    if start.startswith(("target", "rectangle", "points", "pose")):
+        return "none"
+    return "se3" if (report.get("imu") or {}).get("metric") else "sim3"
 
 
 def is_degenerate(p, position_error):

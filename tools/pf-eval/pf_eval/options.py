@@ -36,7 +36,8 @@ def arguments(words):
     parser.add_argument("run", metavar="RUN", nargs="?")
     parser.add_argument("--truth", metavar="FILE", help="TUM form, or EuRoC's state_groundtruth_estimate0/data.csv; default: report.json names it")
     parser.add_argument("--align", choices=["none", "se3", "sim3"],
-                        help="default: none where report.json says that the run started from a target, else sim3")
+                        help="default: none where report.json says that the run started from a target, se3 where an inertial unit told "
+                             "its lengths, else sim3")
     parser.add_argument("--planes", metavar="FILE.json", help="true planes: {\"planes\": [{\"name\", \"normal\", \"distance\"}]}")
     parser.add_argument("--corners", metavar="FILE.csv", help="frame,t,u_TL,v_TL,u_TR,v_TR,u_BR,v_BR,u_BL,v_BL")
     parser.add_argument("--target", metavar="FILE.yaml", help="the target that the run was started from")

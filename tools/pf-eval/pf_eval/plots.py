@@ -44,7 +44,7 @@ def plot(options):
     if not options.out and (folder / LIST).is_file():  # the next run into this folder takes them along
         add_output_files(folder, "plots/", *[f"plots/{name}" for name in [*pictures, LIST]])
     title = describe(run, report, comparison)
-    known_scale = default_alignment(report) == "none" or truth is not None
+    known_scale = default_alignment(report) != "sim3" or truth is not None
 
     points, sigma, inverse_depth, target, in_map = plot_trajectory.read_map(folder / "map.ply")
     p, rotations = run.p, run.rotations()

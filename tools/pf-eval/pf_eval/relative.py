@@ -41,7 +41,7 @@ def compare_motions(folder, report, truth, align):
     known = table["t_s"] <= turn["turn_s"] + 1e-4 if turn else np.ones(len(table["t_s"]), dtype=bool)
     R_WK, p_WK, at_mark = truth_at(truth, table["mark_t_s"])
     R_WC, p_WC, at_end = truth_at(truth, table["t_s"])
-    free = align != "none"
+    free = align == "sim3"
     sums = {}  # of each map: |a|^2, a.b, |b|^2
     per_dof, rotations, dof = [], [], []
     for i in np.flatnonzero(known & at_mark & at_end):
