@@ -178,6 +178,13 @@ std::string check(const Options& options, const std::string& backend) {
   if (options.there_and_back && options.imu != "auto" && options.imu != "none") {
     return "--there-and-back: inertial samples have no way back; leave --imu away";
   }
+  const std::vector<double>& cover = options.cover_s;
+  if (!cover.empty() && is_camera) {
+    return "--cover is for folders and scenes: cover the camera's lens with a hand";
+  }
+  if (!cover.empty() && !(cover.size() == 2 && cover[0] >= 0.0 && cover[1] > cover[0] && cover[1] < 1e6)) {
+    return "--cover needs two times in seconds, as in 7,8: from 7 s to 8 s after the first frame";
+  }
   if (options.as_recorded && kind != "euroc") {
     return "--as-recorded is for a recording: --source euroc:DIR";
   }
@@ -270,6 +277,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--loop", options.loop,
                  "the first N images there and back, again and again, from memory: for runs of a day")
       ->check(at_least(2));
+  app.add_option("--cover", options.cover_s, "FROM,TO: frames are black from FROM to TO seconds after the first")
+      ->delimiter(',')
+      ->expected(1, -1);
   app.add_flag("--there-and-back", options.there_and_back,
                "all frames forwards, then backwards; pf-eval --there-and-back compares the two poses of each image");
   app.add_option(

@@ -71,6 +71,7 @@ struct Options {
   bool as_recorded = false;
   int64_t loop = -1;  ///< images of a lap; negative: no laps
   bool there_and_back = false;
+  std::vector<double> cover_s;  ///< from and to, after the first frame; empty: the lens is never covered
   bool dma_buf = false;
   bool list = false;
 

@@ -78,10 +78,13 @@ bool is_calibration_wrong(const Options& options);
 
 std::unique_ptr<Source> open_camera_source(const Options& options, std::string& error);
 
-/// The frames of source forwards, then backwards. null: error is one line.
+/// The frames of source, black for the time of --cover.
+std::unique_ptr<Source> open_cover(const Options& options, std::unique_ptr<Source> source);
+
 /// The first options.loop images of the source there and back, again and again. null: error is one line.
 std::unique_ptr<Source> open_loop(const Options& options, std::unique_ptr<Source> source, std::string& error);
 
+/// The frames of source forwards, then backwards. null: error is one line.
 std::unique_ptr<Source> open_there_and_back(const Options& options, std::unique_ptr<Source> source, std::string& error);
 
 std::unique_ptr<Source> open_sim_source(const Options& options, std::string& error);

@@ -116,6 +116,9 @@ def test_usage(root):
     expect("laps of a camera", 2, ["--loop"], "--source", "v4l2:/dev/video0", "--loop", "10")
     expect("laps of one image", 2, ["--loop"], "--source", source, "--loop", "1")
     expect("laps with an IMU", 2, ["--loop", "--imu"], "--source", source, "--loop", "10", "--imu", "csv:x")
+    expect("cover of a camera", 2, ["--cover", "hand"], "--source", "v4l2:/dev/video0", "--cover", "1,2")
+    for times in ("1", "2,1", "1,2,3", "-1,2", "nan,2"):
+        expect(f"cover {times}", 2, ["--cover", "7,8"], "--source", source, f"--cover={times}", *out)
     expect("there and back of a camera", 2, ["--there-and-back", "cannot go back"], "--source", "v4l2:/dev/video0",
            "--there-and-back")
     expect("there and back at its pace", 2, ["--there-and-back"], "--source", source, "--there-and-back", "--realtime")
