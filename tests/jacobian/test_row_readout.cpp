@@ -85,12 +85,42 @@ void test_speeds_should_not_matter_to_a_camera_that_reads_out_at_once() {
   TEST_ASSERT_EQUAL_INT(9, o.H.columns());
 }
 
+/// The camera was off by c = v tau when the row of a new point was read out, which turns its bearing by rho c. With independent errors of rho
+/// and v about a speed of zero, (rho^2 + sigma^2) cov c.
+void test_a_new_point_of_a_late_row_should_not_know_its_bearing_better_than_depth_and_speed_together() {
+  SeededRandom random(144);
+  constexpr Scalar kRho = Scalar(0.5), kSigma = Scalar(0.4), kTau = Scalar(0.012);
+  for (int trial = 0; trial < 10; ++trial) {
+    Dense bearing[2];
+    Body body = random_body(random);
+    body.v_W.setZero();
+    const Dense cov_v = random_covariance(random, 3, 1);
+    for (const bool open_depth : {false, true}) {
+      TestFilter filter(true);
+      filter->set_mean(body);
+      const int anchor = filter->add_anchor();
+      Dense P = Dense::Zero(filter.dim(), filter.dim());
+      P.block(6, 6, 3, 3) = cov_v;
+      filter.set_P(P);
+      const Vec3 ray = Vec3(Scalar(0.1), Scalar(-0.2), 1).normalized();
+      const int slot = filter->add_inverse_depth(anchor, ray, Mat32::Zero(), Mat2::Zero(), kRho,
+                                                 open_depth ? kSigma : Scalar(0), kTau);
+      bearing[open_depth] = filter.P().block(filter.first(slot), filter.first(slot), 2, 2);
+    }
+    const double expected = static_cast<double>(1 + kSigma * kSigma / (kRho * kRho));
+    TEST_ASSERT_TRUE(bearing[0].cwiseAbs().maxCoeff() > 1e-7);
+    TEST_ASSERT_TRUE((bearing[1] - expected * bearing[0]).cwiseAbs().maxCoeff() <
+                     1e-9 * bearing[0].cwiseAbs().maxCoeff());
+  }
+}
+
 }  // namespace
 
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_pixel_should_be_what_its_own_row_sees);
   RUN_TEST(test_jacobians_should_be_exact_by_pose_speeds_and_point);
+  RUN_TEST(test_a_new_point_of_a_late_row_should_not_know_its_bearing_better_than_depth_and_speed_together);
   RUN_TEST(test_speeds_should_not_matter_to_a_camera_that_reads_out_at_once);
   return UNITY_END();
 }

@@ -1,5 +1,7 @@
 #include "filter/filter.h"
 
+#include <algorithm>
+
 #include "filter/camera_at.h"
 #include "filter/model/kinds.h"
 #include "filter/observe/inverse_depth.h"
@@ -130,6 +132,16 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   const Mat2 Jn = J_z * noise_px;
   const Vec2 J_rho = J_c.lazyProduct(c_W) / rho;
   noise.topLeftCorner<2, 2>() = Jn * J_z.transpose() + sigma_rho * sigma_rho * J_rho * J_rho.transpose();
+  // What neither Jacobian shows is the product of both where the camera's speed is open: as for parallax, e_rho e_c.
+  if (camera.tau != Scalar(0)) {
+    const Mat23 J_speed = J_c * (camera.tau * sigma_rho / rho);
+    const Triangle& P = covariance();
+    const int v = camera.velocity_row;
+    Mat3 P_v;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) P_v(i, j) = P(v + std::max(i, j), v + std::min(i, j));
+    noise.topLeftCorner<2, 2>() += J_speed * P_v * J_speed.transpose();
+  }
   noise.topRightCorner<2, 1>() = sigma_rho * sigma_rho * J_rho;
   noise.bottomLeftCorner<1, 2>() = noise.topRightCorner<2, 1>().transpose();
   noise(2, 2) = sigma_rho * sigma_rho;

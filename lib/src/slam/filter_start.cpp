@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "filter/camera_at.h"
+#include "slam/frame_pixels.h"
 #include "slam/tuning.h"
 
 namespace pf {
@@ -247,19 +248,6 @@ void FilterStart::begin_record() {
   if (progress().checking && without_.empty()) end_record();
 }
 
-/// A measured pixel, corrected to the frame's time for the readout of its row. The correction is the image's motion there, which is
-/// known long before depths and speeds are.
-Vec2 FilterStart::at_frame_time(int slot, const Vec2& measured) const {
-  const Camera& lens = parts_.filter.lens();
-  Camera at_once = lens;
-  at_once.readout = Scalar(0);
-  PixelMeasurement by_rows, still;
-  if (lens.readout == Scalar(0) || !parts_.filter.predict_pixel(lens, slot, &by_rows) ||
-      !parts_.filter.predict_pixel(at_once, slot, &still))
-    return measured;
-  return measured - (by_rows.predicted - still.predicted);
-}
-
 bool FilterStart::record_frame() {
   if (!is_recording() || without_.empty() || parts_.frame.report.inliers < settings_.min_inliers) return false;
   const CameraAt camera = camera_at(parts_.filter.state(), Scalar(0));
@@ -269,7 +257,7 @@ bool FilterStart::record_frame() {
     // The gate judges by the depths of the last solution. What it refuses, the next one may explain, and that adjustment is robust.
     if (match.feature < 0 || (match.status != MatchStatus::kInlier && match.status != MatchStatus::kOutlier)) continue;
     without_.add_pixel(settings_.camera, match.id,
-                       at_frame_time(parts_.map.features[match.feature].slot, match.measured));
+                       at_frame_time(parts_.filter, parts_.map.features[match.feature].slot, match.measured));
   }
   const bool first = !progress().depth_known, checks = progress().checking;
   const StartOutcome outcome = without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth);

@@ -95,7 +95,6 @@ class FilterStart {
   void set_start_velocities(Scalar speed);
   void note_covariance();
   void set_known_pose(bool at_target, bool fitted_to_target = false);
-  Vec2 at_frame_time(int slot, const Vec2& measured) const;
   void begin_body(const Body& body, bool fitted_to_target);
   bool check_depths(bool settled);
   Scalar unit_of_record() const;

@@ -89,12 +89,15 @@ void FilterStart::restart_frame(int k, std::int64_t before_ns, Scalar unit) {
   transition.mean.q_WC = q_WC;
   transition.mean.p_W = p_W;
   filter.predict(transition);
+  // Its pixels are those of the frame's own time: rows would say how it moves, which nothing has told.
+  Camera at_once = filter.lens();
+  at_once.readout = Scalar(0);
   int count = 0;
   for (int i = 0; i < parts_.map.features.capacity() && count < settings_.max_observations; ++i) {
     const Feature& f = parts_.map.features[i];
     if (!parts_.map.features.used(i) || f.is_target || !record.seen(k, without_.index_of(f.id))) continue;
     PixelMeasurement& o = parts_.update.observation(count);
-    if (!filter.predict_pixel(filter.lens(), f.slot, &o)) continue;
+    if (!filter.predict_pixel(at_once, f.slot, &o)) continue;
     o.measured = o.predicted;
     o.set_noise(NoiseModel::search_update());
     ++count;

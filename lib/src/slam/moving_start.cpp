@@ -8,6 +8,7 @@
 #include "filter/tuning.h"
 #include "geometry/pnp.h"
 #include "geometry/so3.h"
+#include "slam/frame_pixels.h"
 #include "slam/tuning.h"
 
 namespace pf {
@@ -42,8 +43,8 @@ bool MovingStart::add() {
   for (int i = 0; i < frame_.match_count() && view.count < kMaxPixels; ++i) {
     const Match& match = frame_.match(i);
     if (match.status != MatchStatus::kInlier) continue;
-    view.seen[view.count++] = {match.id, static_cast<float>(match.measured.x()),
-                               static_cast<float>(match.measured.y())};
+    const Vec2 pixel = at_frame_time(filter_, map_.features[match.feature].slot, match.measured);
+    view.seen[view.count++] = {match.id, static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
   }
   data_.t_ns = t_ns;
   data_.frames = 0;
