@@ -85,8 +85,8 @@ void test_speeds_should_not_matter_to_a_camera_that_reads_out_at_once() {
   TEST_ASSERT_EQUAL_INT(9, o.H.columns());
 }
 
-/// The camera was off by c = v tau when the row of a new point was read out, which turns its bearing by rho c. With independent errors of rho
-/// and v about a speed of zero, (rho^2 + sigma^2) cov c.
+/// The camera was off by c = v tau when the row of a new point was read out, which turns its bearing by rho c. With independent errors of
+/// rho and v about a speed of zero, (rho^2 + sigma^2) cov c.
 void test_a_new_point_of_a_late_row_should_not_know_its_bearing_better_than_depth_and_speed_together() {
   SeededRandom random(144);
   constexpr Scalar kRho = Scalar(0.5), kSigma = Scalar(0.4), kTau = Scalar(0.012);

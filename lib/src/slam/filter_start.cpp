@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "filter/camera_at.h"
-#include "slam/frame_pixels.h"
+#include "filter/frame_pixels.h"
 #include "slam/tuning.h"
 
 namespace pf {

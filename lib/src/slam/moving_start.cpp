@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "filter/frame_pixels.h"
 #include "filter/imu_path.h"
 #include "filter/tuning.h"
 #include "geometry/pnp.h"
 #include "geometry/so3.h"
-#include "slam/frame_pixels.h"
 #include "slam/tuning.h"
 
 namespace pf {

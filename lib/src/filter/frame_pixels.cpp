@@ -1,4 +1,4 @@
-#include "slam/frame_pixels.h"
+#include "filter/frame_pixels.h"
 
 namespace pf {
 
