@@ -60,9 +60,9 @@ void put_lens(std::string& rows, int64_t t_ns, const pf_camera_t& camera) {
 }
 
 constexpr const char* kInertialHeader =
-    "t_s,map,metric,resting,gravity_x,gravity_y,gravity_z,gyro_bias_x,gyro_bias_y,gyro_bias_z,accel_bias_x,accel_bias_"
-    "y,"
-    "accel_bias_z,delay_s,readout_s,sigma_gravity_1,sigma_gravity_2,sigma_gyro_x,sigma_gyro_y,sigma_gyro_z,"
+    "t_s,map,metric,resting,gravity_x,gravity_y,gravity_z,gyro_bias_x,gyro_bias_y,gyro_bias_z,"
+    "accel_bias_x,accel_bias_y,accel_bias_z,delay_s,readout_s,"
+    "sigma_gravity_1,sigma_gravity_2,sigma_gyro_x,sigma_gyro_y,sigma_gyro_z,"
     "sigma_accel_x,sigma_accel_y,sigma_accel_z,sigma_delay_s,sigma_readout_s\n";
 
 /// Standard deviations as pf_inertial_t says; negative: not estimated.

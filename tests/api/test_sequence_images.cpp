@@ -15,12 +15,17 @@ void tearDown() {}
 
 namespace {
 
+/// A sequence of one image.
+void write_sequence(const TemporaryFolder& folder, const Bytes& bytes, const std::string& name = "a.png") {
+  folder.write("calib.yaml", kPlainCalibration);
+  folder.write("times.txt", "0 0.0 " + name + "\n");
+  folder.write("images/" + name, bytes);
+}
+
 /// One image under a name; the reader's answer to reading it must be a refusal that names the file and says part.
 void image_refused(const Bytes& bytes, const std::string& part) {
   TemporaryFolder folder;
-  folder.write("calib.yaml", kPlainCalibration);
-  folder.write("times.txt", "0 0.0 a.png\n");
-  folder.write("images/a.png", bytes);
+  write_sequence(folder, bytes);
   Opened opened("images:" + folder.path());
   TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
   pf_image_t image{};
@@ -149,9 +154,7 @@ static void test_opening_should_warn_when_images_of_16_bits_have_data_of_12() {
   }
   const auto warning = [](const Bytes& bytes) {
     TemporaryFolder folder;
-    folder.write("calib.yaml", kPlainCalibration);
-    folder.write("times.txt", "0 0.0 a.png\n");
-    folder.write("images/a.png", bytes);
+    write_sequence(folder, bytes);
     Opened opened("images:" + folder.path());
     TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
     opened.read(0);
@@ -180,10 +183,8 @@ static Bytes with_orientation(uint8_t value, bool big_endian, uint8_t entries = 
 
 static void test_pixels_should_be_taken_as_stored_with_a_warning_when_exif_turns_them() {
   TemporaryFolder folder;
-  folder.write("calib.yaml", kPlainCalibration);
-  folder.write("times.txt", "0 0.0 a.jpg\n");
   const auto check = [&](const Bytes& bytes, const char* warning) {
-    folder.write("images/a.jpg", bytes);
+    write_sequence(folder, bytes, "a.jpg");
     Opened opened("images:" + folder.path());
     TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
     TEST_ASSERT_UINT8_WITHIN(6, 8 * 20, opened.read(0).pixels[32 * 10 + 20]);

@@ -18,7 +18,7 @@ constexpr int kFrames = 400, kPoints = 400;
 constexpr double kStep = 0.005, kNoise = 0.1;  // [m] of a frame, [px]
 constexpr int64_t kFrame_ns = 33333333;
 
-/// A walk sideways past points; how many frames had a repair, and how often P was no covariance.
+/// A walk sideways past points, in which P needs no repair and stays a covariance.
 void walk(double sigma_speed) {
   SeededRandom random(17);
   pf_config_t config;

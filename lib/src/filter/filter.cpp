@@ -1,7 +1,5 @@
 #include "filter/filter.h"
 
-#include <algorithm>
-
 #include "filter/camera_at.h"
 #include "filter/model/kinds.h"
 #include "filter/observe/inverse_depth.h"
@@ -135,12 +133,11 @@ int Filter::add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_
   // What neither Jacobian shows is the product of both where the camera's speed is open: as for parallax, e_rho e_c.
   if (camera.tau != Scalar(0)) {
     const Mat23 J_speed = J_c * (camera.tau * sigma_rho / rho);
-    const Triangle& P = covariance();
-    const int v = camera.velocity_row;
-    Mat3 P_v;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) P_v(i, j) = P(v + std::max(i, j), v + std::min(i, j));
-    noise.topLeftCorner<2, 2>() += J_speed * P_v * J_speed.transpose();
+    RowsOf<2, 3, 1> by_speed;
+    by_speed.parts = 1;
+    by_speed.part[0] = Part::body(camera.velocity_row, 3);
+    put<2, 3>(by_speed.h, 3, 0, J_speed);
+    noise.topLeftCorner<2, 2>() += blocks_.covariance_of<2>(by_speed);
   }
   noise.topRightCorner<2, 1>() = sigma_rho * sigma_rho * J_rho;
   noise.bottomLeftCorner<1, 2>() = noise.topRightCorner<2, 1>().transpose();
