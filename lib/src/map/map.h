@@ -21,7 +21,8 @@ class Map {
   FeatureTable features;
   PlaneTable planes;
   Mark mark;
-  bool target_withdrawn = false;  ///< the target's points are no longer measured
+  Vec3 target_normal_W = Vec3::Zero();  ///< of the plane of the target's points; zero: they have none
+  bool target_withdrawn = false;        ///< the target's points are no longer measured
 
   /// template_px: side of templates with masks; 0: there are none, and they take no memory.
   bool layout(Arena& arena, int max_features, int max_planes, int template_px = 0) {
@@ -40,6 +41,7 @@ class Map {
     features.init();
     planes.init();
     mark = Mark();
+    target_normal_W.setZero();
     target_withdrawn = false;
   }
 

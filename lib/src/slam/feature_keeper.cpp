@@ -7,6 +7,7 @@
 #include "geometry/ray_plane.h"
 #include "slam/feature_upkeep.h"
 #include "slam/plane_walls.h"
+#include "slam/target_surface.h"
 #include "slam/tuning.h"
 
 namespace pf {
@@ -236,6 +237,7 @@ int FeatureKeeper::add_target_point(const Target& target, int index) {
 }
 
 void FeatureKeeper::add_target_points(const Target& target) {
+  map_.target_normal_W = target_normal(target);
   for (int i = 0; i < target.count; ++i) {
     const int slot = add_target_point(target, i);
     if (slot < 0) return;

@@ -157,6 +157,7 @@ SearchTask ImageFrontEnd::task_of(int feature) const {
     Scalar d;
     plane_normal(state.frame_of(plane), plane.xyz(), &task.normal_W, &d);
   }
+  if (map_.features[feature].is_target) task.normal_W = map_.target_normal_W;
   const CameraAt camera = camera_at(state, Scalar(0));
   task.q_WC = camera.q_WC;
   task.c_W = camera.p_W;

@@ -5,6 +5,7 @@
 
 #include "base/elapsed.h"
 #include "geometry/so3.h"
+#include "slam/target_surface.h"
 #include "slam/tuning.h"
 #include "slam/window_depth.h"
 #include "window/rotation_fit.h"
@@ -115,6 +116,7 @@ bool WindowStart::start_in_image() {
     return true;
   }
   const Target& target = target_.target();
+  parts_.map.tables().target_normal_W = target_normal(target);
   for (int i = 0; i < target.count; ++i) {
     const int row = parts_.map.add_placed(keyframe, target.point_W[i]);
     if (row < 0) continue;

@@ -103,7 +103,10 @@ SearchTask WindowTracking::task_of(int i, const PosePrior& at, Scalar depth) con
     ImageSearch::use_template(tables, i, &task);
   task.gate = settings_.gate;
   task.p_W = host.p_W + map_.ray_W(i) * (point.has_depth ? 1 / point.rho : depth);
-  if (point.has_depth && point.plane >= 0) task.normal_W = planes_.plane(point.plane).frame.R_WP.col(2);
+  if (tables.features[i].is_target)
+    task.normal_W = tables.target_normal_W;
+  else if (point.has_depth && point.plane >= 0)
+    task.normal_W = planes_.plane(point.plane).frame.R_WP.col(2);
   task.q_WC = at.q_WC;
   task.c_W = at.p_W;
   return task;
