@@ -30,27 +30,27 @@ Target rectangle(Scalar out) {
 
 }  // namespace
 
-void test_coplanar_points_have_the_normal_of_their_plane(void) {
+void test_target_normal_should_be_that_of_the_plane_when_points_are_coplanar(void) {
   const Target target = rectangle(0);
   const Vec3 expected = target.q_WT * Vec3(0, 0, 1);
   TEST_ASSERT_TRUE(std::abs(target_normal(target).dot(expected)) > Scalar(1) - Scalar(1e-5));
 }
 
-void test_points_that_a_tape_measured_are_still_on_their_plane(void) {
+void test_target_normal_should_be_given_when_points_are_off_by_a_tape(void) {
   TEST_ASSERT_TRUE(std::abs(target_normal(rectangle(Scalar(0.002))).norm() - 1) < Scalar(1e-5));
 }
 
-void test_corners_of_a_step_have_no_plane(void) {
+void test_target_normal_should_be_zero_when_points_are_those_of_a_step(void) {
   TEST_ASSERT_TRUE(target_normal(rectangle(Scalar(0.1))).isZero(0));
 }
 
-void test_three_points_say_nothing_of_their_surface(void) {
+void test_target_normal_should_be_zero_when_there_are_three_points(void) {
   Target target = rectangle(0);
   target.count = 3;
   TEST_ASSERT_TRUE(target_normal(target).isZero(0));
 }
 
-void test_points_on_a_line_have_no_plane(void) {
+void test_target_normal_should_be_zero_when_points_are_on_a_line(void) {
   Target target = rectangle(0);
   for (int i = 0; i < 4; ++i) target.point_W[i] = Vec3(static_cast<Scalar>(i), 0, 1);
   TEST_ASSERT_TRUE(target_normal(target).isZero(0));
@@ -58,10 +58,10 @@ void test_points_on_a_line_have_no_plane(void) {
 
 int main(void) {
   UNITY_BEGIN();
-  RUN_TEST(test_coplanar_points_have_the_normal_of_their_plane);
-  RUN_TEST(test_points_that_a_tape_measured_are_still_on_their_plane);
-  RUN_TEST(test_corners_of_a_step_have_no_plane);
-  RUN_TEST(test_three_points_say_nothing_of_their_surface);
-  RUN_TEST(test_points_on_a_line_have_no_plane);
+  RUN_TEST(test_target_normal_should_be_that_of_the_plane_when_points_are_coplanar);
+  RUN_TEST(test_target_normal_should_be_given_when_points_are_off_by_a_tape);
+  RUN_TEST(test_target_normal_should_be_zero_when_points_are_those_of_a_step);
+  RUN_TEST(test_target_normal_should_be_zero_when_there_are_three_points);
+  RUN_TEST(test_target_normal_should_be_zero_when_points_are_on_a_line);
   return UNITY_END();
 }
