@@ -7,6 +7,7 @@ namespace pf::sim {
 namespace {
 
 constexpr float kBackground = 90;
+constexpr float kGrazing = 1e-4f;  // cosine from which on a surface is seen
 
 std::size_t index(int a) { return static_cast<std::size_t>(a); }
 
@@ -118,7 +119,69 @@ void Renderer::cull(const Scene& scene, const Pose& pose, double extra_slack, in
   }
 }
 
-void Renderer::render(const Scene& scene, const std::vector<Pose>& row_poses, float weight, std::vector<float>& sum) {
+float Renderer::look_once(const Scene& scene, const std::vector<View>& views, const std::vector<int>& list,
+                          const Ray& ray) {
+  float best = 1e30f, best_u = 0, best_v = 0, best_cos = 1;
+  int hit = -1;
+  for (const int k : list) {
+    const View& w = views[index(k)];
+    const float c = w.R[6] * ray.x + w.R[7] * ray.y + w.R[8] * ray.z;
+    if (w.o[2] >= 0 || c < kGrazing) continue;
+    const float t = -w.o[2] / c;
+    if (t >= best) continue;
+    const float u = w.o[0] + t * (w.R[0] * ray.x + w.R[1] * ray.y + w.R[2] * ray.z);
+    const float v = w.o[1] + t * (w.R[3] * ray.x + w.R[4] * ray.y + w.R[5] * ray.z);
+    if (u < 0 || v < 0 || u > w.width || v > w.height) continue;
+    if (scene.quads[index(k)].shape != Shape::kRectangle &&
+        !inside_shape(scene.quads[index(k)].shape, u, v, w.width, w.height))
+      continue;
+    best = t;
+    best_u = u;
+    best_v = v;
+    best_cos = c;
+    hit = k;
+  }
+  if (hit < 0) return kBackground;
+  // The footprint of a slanted surface is longer one way than the other; the mean of the two is used.
+  return scene.quads[index(hit)].texture->sample(best_u, best_v, best * ray.angle / std::sqrt(best_cos));
+}
+
+Four Renderer::look(const Scene& scene, const std::vector<View>& views, const std::vector<int>& list, const Ray* rays) {
+  const Four x = {rays[0].x, rays[1].x, rays[2].x, rays[3].x}, y = {rays[0].y, rays[1].y, rays[2].y, rays[3].y};
+  const Four z = {rays[0].z, rays[1].z, rays[2].z, rays[3].z};
+  Four best = four(1e30f), best_u = four(0.0f), best_v = four(0.0f), best_cos = four(1.0f);
+  FourInts hit = four(-1);
+  for (const int k : list) {
+    const View& w = views[index(k)];
+    if (w.o[2] >= 0) continue;
+    const Four c = w.R[6] * x + w.R[7] * y + w.R[8] * z;
+    const Four t = -w.o[2] / c;
+    FourInts nearer = (c >= four(kGrazing)) & (t < best);
+    if (!any(nearer)) continue;
+    const Four u = w.o[0] + t * (w.R[0] * x + w.R[1] * y + w.R[2] * z);
+    const Four v = w.o[1] + t * (w.R[3] * x + w.R[4] * y + w.R[5] * z);
+    nearer &= (u >= four(0.0f)) & (v >= four(0.0f)) & (u <= four(w.width)) & (v <= four(w.height));
+    if (scene.quads[index(k)].shape != Shape::kRectangle)
+      for (int lane = 0; lane < 4; ++lane)
+        if (nearer[lane] != 0 && !inside_shape(scene.quads[index(k)].shape, u[lane], v[lane], w.width, w.height))
+          nearer[lane] = 0;
+    best = nearer ? t : best;
+    best_u = nearer ? u : best_u;
+    best_v = nearer ? v : best_v;
+    best_cos = nearer ? c : best_cos;
+    hit = nearer ? four(k) : hit;
+  }
+  const Four root = {std::sqrt(best_cos[0]), std::sqrt(best_cos[1]), std::sqrt(best_cos[2]), std::sqrt(best_cos[3])};
+  const Four footprint = best * Four{rays[0].angle, rays[1].angle, rays[2].angle, rays[3].angle} / root;
+  if (hit[0] >= 0 && all_equal(hit)) return scene.quads[index(hit[0])].texture->sample(best_u, best_v, footprint);
+  const auto grey = [&](int k) {
+    return hit[k] < 0 ? kBackground : scene.quads[index(hit[k])].texture->sample(best_u[k], best_v[k], footprint[k]);
+  };
+  return Four{grey(0), grey(1), grey(2), grey(3)};
+}
+
+void Renderer::render(const Scene& scene, const std::vector<Pose>& row_poses, float weight,
+                      std::vector<float>& sum) const {
   const bool rolling = row_poses.size() > 1;
   const std::size_t quads = scene.quads.size();
   std::vector<View> views(quads);
@@ -159,32 +222,12 @@ void Renderer::render(const Scene& scene, const std::vector<Pose>& row_poses, fl
         const std::size_t at = index(j) * index(width_) + index(i);
         const Ray* ray = &rays_[at * index(per_pixel)];
         float grey = 0;
-        for (int s = 0; s < per_pixel; ++s, ++ray) {
-          float best = 1e30f, best_u = 0, best_v = 0, best_cos = 1;
-          int hit = -1;
-          for (const int k : list) {
-            const View& w = views[index(k)];
-            const float c = w.R[6] * ray->x + w.R[7] * ray->y + w.R[8] * ray->z;
-            if (w.o[2] >= 0 || c < 1e-4f) continue;
-            const float t = -w.o[2] / c;
-            if (t >= best) continue;
-            const float u = w.o[0] + t * (w.R[0] * ray->x + w.R[1] * ray->y + w.R[2] * ray->z);
-            const float v = w.o[1] + t * (w.R[3] * ray->x + w.R[4] * ray->y + w.R[5] * ray->z);
-            if (u < 0 || v < 0 || u > w.width || v > w.height) continue;
-            if (scene.quads[index(k)].shape != Shape::kRectangle &&
-                !inside_shape(scene.quads[index(k)].shape, u, v, w.width, w.height))
-              continue;
-            best = t;
-            best_u = u;
-            best_v = v;
-            best_cos = c;
-            hit = k;
-          }
-          // The footprint of a slanted surface is longer one way than the other; the mean of the two is used.
-          grey += hit < 0 ? kBackground
-                          : scene.quads[index(hit)].texture->sample(best_u, best_v,
-                                                                    best * ray->angle / std::sqrt(best_cos));
+        int s = 0;
+        for (; s + 4 <= per_pixel && !one_by_one; s += 4) {
+          const Four seen = look(scene, views, list, ray + s);
+          for (int k = 0; k < 4; ++k) grey += seen[k];
         }
+        for (; s < per_pixel; ++s) grey += look_once(scene, views, list, ray[s]);
         sum[at] += share * grey;
       }
     }
@@ -195,14 +238,24 @@ void Renderer::truth(const Scene& scene, const Pose& pose, std::vector<float>* d
                      std::vector<std::int32_t>* quad) const {
   if (depth) depth->assign(centre_rays_.size(), 0.0f);
   if (quad) quad->assign(centre_rays_.size(), -1);
+  struct Facing {
+    Vec3 normal;
+    double distance;  // of the camera's centre [m]
+    std::size_t quad;
+  };
+  std::vector<Facing> facing;
+  for (std::size_t k = 0; k < scene.quads.size(); ++k) {
+    const Vec3 n = scene.quads[k].normal_W();
+    const double distance = n.dot(scene.quads[k].corner_W - pose.p_WC);
+    if (distance > 0) facing.push_back({n, distance, k});
+  }
   for (std::size_t at = 0; at < centre_rays_.size(); ++at) {
     const Vec3 ray = pose.R_WC * centre_rays_[at];
     double best = 1e30;
-    for (std::size_t k = 0; k < scene.quads.size(); ++k) {
+    for (const auto& [n, distance, k] : facing) {
       const Quad& q = scene.quads[k];
-      const Vec3 n = q.normal_W();
-      const double distance = n.dot(q.corner_W - pose.p_WC), c = n.dot(ray);
-      if (distance <= 0 || c < 1e-4 || distance >= best * c) continue;
+      const double c = n.dot(ray);
+      if (c < 1e-4 || distance >= best * c) continue;
       const double t = distance / c;
       const Vec3 p = pose.p_WC + ray * t - q.corner_W;
       if (!inside_shape(q.shape, static_cast<float>(p.dot(q.u_W)), static_cast<float>(p.dot(q.v_W)),

@@ -18,7 +18,9 @@ class Renderer {
 
   /// Add the grey levels of one view, times `weight`, to `sum` (width x height).
   /// row_poses: one pose for the whole image, or one for each row (rolling readout).
-  void render(const Scene& scene, const std::vector<Pose>& row_poses, float weight, std::vector<float>& sum);
+  void render(const Scene& scene, const std::vector<Pose>& row_poses, float weight, std::vector<float>& sum) const;
+
+  bool one_by_one = false;  ///< samples by themselves, not by fours: the same to the bit, and slower
 
   /// Exact depth along z_C [m] (0: nothing) and index of the quad (-1: nothing) at the centres of the pixels.
   void truth(const Scene& scene, const Pose& pose, std::vector<float>* depth, std::vector<std::int32_t>* quad) const;
@@ -38,6 +40,11 @@ class Renderer {
     float o[3];
     float width, height;
   };
+
+  /// Grey level along a ray, and along four of them: the same to the bit.
+  static float look_once(const Scene& scene, const std::vector<View>& views, const std::vector<int>& list,
+                         const Ray& ray);
+  static Four look(const Scene& scene, const std::vector<View>& views, const std::vector<int>& list, const Ray* rays);
 
   void cull(const Scene& scene, const Pose& pose, double extra_slack, int tile_row,
             std::vector<std::vector<int>>& lists) const;

@@ -1,6 +1,7 @@
 #include "sim/texture.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 namespace pf::sim {
@@ -61,6 +62,51 @@ float Texture::sample(float u_m, float v_m, float footprint_m) const {
   if (share < 0.05f) return a;
   const float b = bilinear(levels_[static_cast<std::size_t>(fine + 1)], x * scale * 0.5f, y * scale * 0.5f);
   return a + share * (b - a);
+}
+
+Four Texture::bilinear(const Level& level, Four x, Four y) {
+  const Four zero = four(0.0f);
+  const Four right = four(static_cast<float>(level.width - 1)), low = four(static_cast<float>(level.height - 1));
+  x -= 0.5f;
+  y -= 0.5f;
+  x = x < zero ? zero : (right < x ? right : x);
+  y = y < zero ? zero : (low < y ? low : y);
+  FourInts i = __builtin_convertvector(x, FourInts), j = __builtin_convertvector(y, FourInts);
+  const FourInts last_i = four(level.width - 2), last_j = four(level.height - 2);
+  i = last_i < i ? last_i : i;
+  j = last_j < j ? last_j : j;
+  const Four a = x - __builtin_convertvector(i, Four), b = y - __builtin_convertvector(j, Four);
+  const auto texel = [&](int k) {
+    return level.grey.data() + static_cast<std::size_t>(j[k]) * static_cast<std::size_t>(level.width) + i[k];
+  };
+  const std::uint8_t *p = texel(0), *q = texel(1), *r = texel(2), *s = texel(3);
+  const std::ptrdiff_t w = level.width;
+  const FourInts p0 = {p[0], q[0], r[0], s[0]}, p1 = {p[1], q[1], r[1], s[1]};
+  const FourInts q0 = {p[w], q[w], r[w], s[w]}, q1 = {p[w + 1], q[w + 1], r[w + 1], s[w + 1]};
+  const Four top = __builtin_convertvector(p0, Four) + a * __builtin_convertvector(p1 - p0, Four);
+  const Four bottom = __builtin_convertvector(q0, Four) + a * __builtin_convertvector(q1 - q0, Four);
+  return top + b * (bottom - top);
+}
+
+Four Texture::sample(Four u_m, Four v_m, Four footprint_m) const {
+  const Four one = four(1.0f);
+  Four texels = footprint_m * texels_per_m_;
+  texels = texels < one ? one : texels;
+  FourInts bits;
+  std::memcpy(&bits, &texels, sizeof bits);
+  const FourInts level = (bits >> 23) - 127;
+  const int fine = level[0], last = static_cast<int>(levels_.size()) - 1;
+  if (!all_equal(level) || fine >= last)
+    return Four{sample(u_m[0], v_m[0], footprint_m[0]), sample(u_m[1], v_m[1], footprint_m[1]),
+                sample(u_m[2], v_m[2], footprint_m[2]), sample(u_m[3], v_m[3], footprint_m[3])};
+  const Four share = __builtin_convertvector(bits & 0x7fffff, Four) * 0x1p-23f;
+  const float scale = 1.0f / static_cast<float>(1 << fine);
+  const Four x = u_m * texels_per_m_ * scale, y = v_m * texels_per_m_ * scale;
+  const Four a = bilinear(levels_[static_cast<std::size_t>(fine)], x, y);
+  const FourInts near = share < four(0.05f);
+  if (!any(~near)) return a;
+  const Four b = bilinear(levels_[static_cast<std::size_t>(fine + 1)], x * 0.5f, y * 0.5f);
+  return near ? a : a + share * (b - a);
 }
 
 }  // namespace pf::sim

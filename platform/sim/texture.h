@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/four.h"
 #include "sim/random.h"
 
 namespace pf::sim {
@@ -31,6 +32,9 @@ class Texture {
   /// Grey level at (u, v) [m] as seen through a window of the given width [m].
   float sample(float u_m, float v_m, float footprint_m) const;
 
+  /// The same of four places at once, to the bit.
+  Four sample(Four u_m, Four v_m, Four footprint_m) const;
+
  private:
   struct Level {
     int width, height;
@@ -38,6 +42,7 @@ class Texture {
   };
 
   static float bilinear(const Level& level, float x, float y);
+  static Four bilinear(const Level& level, Four x, Four y);
 
   std::vector<Level> levels_;
   float texels_per_m_;

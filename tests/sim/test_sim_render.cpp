@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "planefold_platform/sim.h"
+#include "sim/paths.h"
 #include "sim/render.h"
 #include "unity.h"
 
@@ -112,6 +113,56 @@ std::vector<std::uint8_t> frame_of(const char* scene, const pf_sim_options_t& op
   return copy;
 }
 
+void test_four_places_of_a_texture_should_be_the_same_as_each_by_itself_to_the_bit() {
+  Random random(kSeed);
+  Canvas canvas(0.5, 0.3, 0.001, 128);
+  paint_noise(canvas, random, 60, 0.1, 6, 0.7);
+  const Texture texture(canvas);
+  int alike = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const float size = static_cast<float>(0.0005 * std::pow(2.0, random.uniform(0, 10)));
+    const float spread = i % 3 == 0 ? 2.0f : i % 3 == 1 ? 0.1f : 0.001f;
+    Four u, v, footprint;
+    for (int k = 0; k < 4; ++k) {
+      u[k] = static_cast<float>(random.uniform(-0.1, 0.6));
+      v[k] = static_cast<float>(random.uniform(-0.1, 0.4));
+      footprint[k] = size * (1 + spread * static_cast<float>(random.uniform()));
+    }
+    const Four four_greys = texture.sample(u, v, footprint);
+    for (int k = 0; k < 4; ++k) {
+      const float grey = four_greys[k], alone = texture.sample(u[k], v[k], footprint[k]);
+      alike += std::memcmp(&grey, &alone, sizeof grey) == 0 ? 1 : 0;
+    }
+  }
+  TEST_ASSERT_EQUAL_INT(4 * 20000, alike);
+}
+
+void test_four_rays_at_a_time_should_see_what_each_sees_by_itself_to_the_bit() {
+  const struct {
+    Scene (*make)(Random&, const SceneOptions&);
+    Trajectory (*path)(Random&);
+    bool person;
+  } kinds[] = {{make_room, room_path, true}, {make_bushes, bushes_path, false}};
+  for (const auto& kind : kinds) {
+    Random scenery(kSeed), way(kSeed + 1);
+    const Scene scene = kind.make(scenery, SceneOptions{true, false, kind.person});
+    const Trajectory path = kind.path(way);
+    const pf_camera_t camera{PF_CAMERA_PINHOLE,  96, 72, 62, 61, 47.3, 36.2, {}, 0, PF_CAMERA_EXACT,
+                             PF_TIMESTAMPS_REAL, 0,  0,  0,  {}};
+    Renderer renderer(camera, 3);  // nine samples: two fours, and one by itself
+    for (int view = 0; view < 3; ++view) {
+      std::vector<Pose> rows;
+      for (int j = 0; j < (view == 0 ? 1 : 72); ++j) rows.push_back(path(3.0 * view + 1e-4 * j));
+      std::vector<float> fours(96 * 72, 0.0f), ones(96 * 72, 0.0f);
+      renderer.render(scene, rows, 1.0f, fours);
+      renderer.one_by_one = true;
+      renderer.render(scene, rows, 1.0f, ones);
+      renderer.one_by_one = false;
+      TEST_ASSERT_EQUAL_MEMORY(ones.data(), fours.data(), ones.size() * sizeof(float));
+    }
+  }
+}
+
 void test_pixels_should_be_the_same_for_the_same_seed_and_not_for_another() {
   pf_sim_options_t options;
   pf_sim_options_default("wall", &options);
@@ -198,6 +249,8 @@ int main(void) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
   UNITY_BEGIN();
   RUN_TEST(test_checker_corners_should_appear_where_they_project_with_every_camera_model);
+  RUN_TEST(test_four_places_of_a_texture_should_be_the_same_as_each_by_itself_to_the_bit);
+  RUN_TEST(test_four_rays_at_a_time_should_see_what_each_sees_by_itself_to_the_bit);
   RUN_TEST(test_pixels_should_be_the_same_for_the_same_seed_and_not_for_another);
   RUN_TEST(test_target_edges_should_lie_where_the_truth_puts_them);
   RUN_TEST(test_depth_should_satisfy_the_plane_of_its_surface_at_every_pixel);

@@ -31,10 +31,24 @@ namespace {
 constexpr int kFrames = 300;
 constexpr uint64_t kSeed = 11;
 
-std::string program() {
+std::string program(const char* name) {
   const char* bin = std::getenv("PLANEFOLD_BIN");
-  return std::string(bin != nullptr ? bin : ".") + "/pf-capture";
+  return std::string(bin != nullptr ? bin : ".") + "/" + name;
 }
+
+/// The pictures that all runs see, rendered once.
+class Film {
+ public:
+  Film() {
+    const std::string command =
+        program("pf-sim") + " render desk --seed 1 --frames " + std::to_string(kFrames) + " --out " + path();
+    TEST_ASSERT_EQUAL_INT(0, std::system(command.c_str()));
+  }
+  std::string path() const { return folder_ / "film"; }
+
+ private:
+  TemporaryFolder folder_;
+};
 
 using Rates = std::function<Eigen::Vector3d(int64_t)>;
 
@@ -66,18 +80,19 @@ struct Report {
 };
 
 /// given_s: of --imu-offset, besides what makes the times positive.
-Report run(const std::string& scene, const Rates& rates, double behind_s, double given_s) {
+Report run(const Rates& rates, double behind_s, double given_s) {
+  static const Film film;
   TemporaryFolder folder;
   write_samples(folder / "imu.csv", behind_s, rates, static_cast<int64_t>(1e9 * (kFrames / 30.0 + 1.0)));
-  const std::string command = program() + " --headless --no-film --quiet --source sim:" + scene + " --frames " +
-                              std::to_string(kFrames) + " --imu csv:" + (folder / "imu.csv") + " --imu-offset " +
-                              std::to_string(given_s - 10.0) + " --out " + (folder / "out");
+  const std::string command = program("pf-capture") + " --headless --no-film --quiet --source images:" + film.path() +
+                              " --imu csv:" + (folder / "imu.csv") + " --imu-offset " + std::to_string(given_s - 10.0) +
+                              " --out " + (folder / "out");
   TEST_ASSERT_EQUAL_INT(0, std::system(command.c_str()));
   std::ifstream file(folder / "out/report.json");
   return {std::string((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>())};
 }
 
-/// How the simulated camera turns; pf-capture's scene is the same, with the same seed.
+/// How the simulated camera turns; the film is of the same scene, with the same seed.
 class Scene {
  public:
   explicit Scene(const char* name) {
@@ -112,7 +127,7 @@ class Scene {
 
 void check_finds(double behind_s, double given_s) {
   const Scene scene("desk");
-  const Report report = run("desk", scene.rates(), behind_s, given_s);
+  const Report report = run(scene.rates(), behind_s, given_s);
   const double found = report.number("offset_s") + 10.0, sigma = report.number("sigma_s");
   std::printf("clock behind by %.1f ms, found %.2f ms, sigma %.2f ms, correlation %.3f, first frame at %" PRId64 "\n",
               1e3 * behind_s, 1e3 * found, 1e3 * sigma, report.number("correlation"), scene.first_ns());
@@ -126,15 +141,14 @@ void test_time_offset_should_be_found_when_the_clock_of_the_unit_is_ahead() { ch
 void test_time_offset_should_add_to_one_that_is_given() { check_finds(0.85, 0.8); }
 
 void test_time_offset_should_be_refused_when_the_unit_does_not_turn() {
-  const Report report = run(
-      "desk", [](int64_t) { return Eigen::Vector3d(0, 0, 0); }, 0.0, 0.0);
+  const Report report = run([](int64_t) { return Eigen::Vector3d(0, 0, 0); }, 0.0, 0.0);
   TEST_ASSERT_TRUE(report.says("\"offset_s\": null"));
   TEST_ASSERT_TRUE(report.says("do not turn alike"));
 }
 
 void test_time_offset_should_be_refused_when_the_unit_turns_as_another_camera_does() {
   const Scene scene("rotation");
-  const Report report = run("desk", scene.rates(), 0.0, 0.0);
+  const Report report = run(scene.rates(), 0.0, 0.0);
   std::printf("correlation %.3f\n", report.number("correlation"));
   TEST_ASSERT_TRUE(report.says("\"offset_s\": null"));
 }
@@ -142,8 +156,8 @@ void test_time_offset_should_be_refused_when_the_unit_turns_as_another_camera_do
 }  // namespace
 
 int main() {
-  if (access(program().c_str(), X_OK) != 0) {
-    SKIP_PROGRAM("pf-capture is not built");
+  if (access(program("pf-capture").c_str(), X_OK) != 0 || access(program("pf-sim").c_str(), X_OK) != 0) {
+    SKIP_PROGRAM("pf-capture or pf-sim is not built");
   }
   UNITY_BEGIN();
   RUN_TEST(test_time_offset_should_be_found_when_the_clock_of_the_unit_is_behind);
