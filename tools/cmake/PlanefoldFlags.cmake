@@ -35,6 +35,11 @@ if(PLANEFOLD_COVERAGE)
   add_link_options(--coverage)
 endif()
 
+if(PLANEFOLD_UNITY)
+  # The compiler otherwise spends a tenth of its time collecting garbage, in memory that it gives back at once.
+  add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=1048576>)
+endif()
+
 # For programs, platform and tests, which may use the C++ runtime.
 add_library(planefold_warnings INTERFACE)
 target_compile_options(planefold_warnings INTERFACE -Wall -Wextra -Wshadow
