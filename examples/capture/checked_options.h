@@ -22,6 +22,17 @@ inline CLI::Validator number_in(double low, double high) {
       CLI::Range(low, high).get_description());
 }
 
+/// CLI::Range for whole numbers says neither that it wants one, nor the number that it was given.
+inline CLI::Validator whole_number_in(int low, int high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        int value = 0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
+        return "'" + text + "' is not a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+      },
+      "INT in [" + std::to_string(low) + " - " + std::to_string(high) + "]");
+}
+
 /// A name that is empty is one that a variable of the shell should have held; without the option would be something else.
 inline CLI::Validator not_empty() {
   return CLI::Validator(

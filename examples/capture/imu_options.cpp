@@ -37,7 +37,9 @@ void add_imu_options(CLI::App& app, Options& options) {
          "degrees within which planes that are found to be vertical are told to be so, for walls that are built so")
       ->check(number_in(0.01, 28.0))
       ->group(group);
-  app.add_flag("!--no-inertial", options.inertial, "count and record the samples; poses do not depend on them")
+  app.add_flag_callback(
+         "--no-inertial", [&options] { options.inertial = false; },
+         "count and record the samples; poses do not depend on them")
       ->group(group);
 }
 

@@ -305,11 +305,14 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   const CLI::Option* seed = app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
   app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
       ->check(number_in(0.0, 1000.0));
-  app.add_option("--max-features", options.max_features, "capacity of the map")->check(at_least(1));
-  app.add_option("--max-planes", options.max_planes, "likewise")->check(at_least(1));
-  app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(at_least(1));
-  app.add_option("--max-observations", options.max_observations, "features measured in one frame")->check(at_least(1));
-  app.add_option("--features-in-view", options.features_in_view, "features to keep in view")->check(at_least(1));
+  app.add_option("--max-features", options.max_features, "capacity of the map; of the window at least 50")
+      ->check(whole_number_in(8, 1000));
+  app.add_option("--max-planes", options.max_planes, "likewise")->check(whole_number_in(1, 64));
+  app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(whole_number_in(32, 2000));
+  app.add_option("--max-observations", options.max_observations, "features measured in one frame")
+      ->check(whole_number_in(8, 200));
+  app.add_option("--features-in-view", options.features_in_view, "features to keep in view; with the filter up to 200")
+      ->check(whole_number_in(8, 1000));
   app.add_option(
          "--window-keyframes", options.window_keyframes,
          "of the window: keyframes that are adjusted together during its start, 2 to 8; its points are --max-features")
@@ -339,7 +342,10 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     if (error.get_exit_code() == 0) {
       code = app.exit(error);
     } else {
-      code = refuse(std::string(error.what()) + "; see pf-capture --help");
+      // Of what it does not know CLI11 says all words, the last one first.
+      const std::vector<std::string> unknown = app.remaining();
+      code = refuse((unknown.empty() ? error.what() : "'" + unknown.front() + "' is no option that is known here") +
+                    "; see pf-capture --help");
     }
     return Parsed::kExit;
   }

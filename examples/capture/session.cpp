@@ -43,6 +43,23 @@ pf_camera_estimate_t default_estimate(const pf_config_t& config) {
   return can && config.camera.sigma_focal > kExactFocal ? PF_CAMERA_ESTIMATE : PF_CAMERA_EXACT;
 }
 
+/// What is wrong with an option that set a capacity, where the library refuses what only together is too much or too little.
+std::string wrong_capacity(const std::string& field, const Options& options, const pf_config_t& config) {
+  const auto number = [](int32_t value) { return std::to_string(value); };
+  if (field == "capacity.window_points") {
+    return "--max-features " + number(options.max_features) + ": the window holds at least 50 points";
+  }
+  if (options.features_in_view > 0 && (field == "capacity.max_observations" || field == "map.features_in_view")) {
+    const bool has_window = config.backend == PF_BACKEND_WINDOW;
+    const bool named = options.max_observations > 0;
+    return "--features-in-view " + number(options.features_in_view) + ": more than the " +
+           (has_window ? number(config.capacity.window_points) + " points of the map; --max-features sets them"
+            : named    ? number(options.max_observations) + " of --max-observations"
+                       : "200 that the filter measures in one frame");
+  }
+  return "";
+}
+
 }  // namespace
 
 Session::~Session() { std::free(block_); }
@@ -100,7 +117,10 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     pf_config_t by_filter = config_;
     by_filter.backend = PF_BACKEND_FILTER;
     by_filter.map.features_in_view = std::min(by_filter.map.features_in_view, by_filter.capacity.max_observations);
-    if (has_window && pf_config_check(&by_filter, nullptr) == PF_OK) {
+    const std::string wrong = wrong_capacity(name, options, config_);
+    if (!wrong.empty()) {
+      error = wrong;
+    } else if (has_window && pf_config_check(&by_filter, nullptr) == PF_OK) {
       error = "--backend window cannot have this " + name + " yet: leave away what sets it, or take --backend filter";
     } else if (name == "imu.sigma_readout_s" && config_.camera.readout_s == 0.0) {
       error =

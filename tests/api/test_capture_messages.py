@@ -160,7 +160,20 @@ def test_usage(root):
     expect("kernels", 2, ["--kernels"], "--source", source, "--kernels", "fast", *out)
     foreign = "avx2" if platform.machine() in ("aarch64", "armv7l") else "neon"
     expect("kernels of another processor", 2, ["--kernels", "--kernels auto"], "--source", source, "--kernels", foreign, *out)
-    expect("capacity", 2, ["max_features"], "--source", source, "--max-features", "100000", *out)
+    for option, low, high in (("--max-features", 8, 1000), ("--max-planes", 1, 64), ("--max-state-dim", 32, 2000), ("--max-observations", 8, 200),
+                              ("--features-in-view", 8, 1000)):
+        for number in (low - 1, high + 1, "many"):
+            expect(f"{option} {number}", 2, [f"{option}: '{number}' is not a whole number from {low} to {high}"], "--source", source, option, number,
+                   *out)
+    expect("few points of the window", 2, ["--max-features 49", "at least 50"], "--source", source, "--backend", "window", "--max-features", "49", *out)
+    expect("many features in view", 2, ["--features-in-view 201", "200"], "--source", source, "--features-in-view", "201", *out)
+    expect("more in view than are measured", 2, ["--features-in-view 60", "50 of --max-observations"], "--source", source, "--features-in-view", "60",
+           "--max-observations", "50", *out)
+    expect("more in view than in the map", 2, ["--features-in-view 300", "200 points", "--max-features"], "--source", source, "--backend", "window",
+           "--features-in-view", "300", "--max-features", "200", *out)
+    expect("a typing error", 2, ["'--calb' is no option that is known here"], "--source", source, "--calb", "x.yaml")
+    if "false" in capture("--help", quiet=False).stdout:
+        failures.append("--help shows how a flag is stored")
     expect("skip", 2, ["--skip", "2 frames"], "--source", source, "--skip", "2", *out)
     if capture("--help", quiet=False).returncode != 0:
         failures.append("--help does not end with 0")

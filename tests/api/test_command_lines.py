@@ -20,7 +20,8 @@ WRITE = {  # what cannot be written
 }
 TOOLS = [  # words, and what the line says
     (["demo", "--jobs", "many"], "'many'"), (["demo", "--jobs"], "--jobs"), (["demo", "--jobs", "0"], "'0'"), (["fuzz", "1", "--jobs", "x"], "'x'"),
-    (["fuzz"], "minutes"), (["package", "deb", "--jobs", "2.5"], "'2.5'"), (["package", "x86"], "aarch64, armhf or deb"),
+    (["fuzz"], "minutes"), (["fuzz", "3x"], "'3x'"), (["test", "--budget", "much"], "'much'"),
+    (["package", "deb", "--jobs", "2.5"], "'2.5'"), (["package", "x86"], "aarch64, armhf or deb"),
     (["package"], "aarch64, armhf or deb"), (["update-golden", "--all"], "--all"),
 ]
 failures = []

@@ -76,7 +76,11 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
     code = app.exit(done);
     return false;
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "pf-calibrate: %s; see pf-calibrate --help\n", error.what());
+    // Of what it does not know CLI11 says all words, the last one first.
+    const std::vector<std::string> unknown = app.remaining();
+    const std::string what =
+        unknown.empty() ? error.what() : "'" + unknown.front() + "' is no option that is known here";
+    std::fprintf(stderr, "pf-calibrate: %s; see pf-calibrate --help\n", what.c_str());
     code = 2;
     return false;
   }
