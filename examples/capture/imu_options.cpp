@@ -21,7 +21,8 @@ void add_imu_options(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(number_in(-1e6, 1e6))
       ->group(group);
-  app.add_option("--imu-noise", options.imu_noise, "noise densities: Kalibr's imu.yaml or EuRoC's imu0/sensor.yaml")
+  app.add_option("--imu-noise", options.imu_noise,
+                 "noise densities: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml or calib.yaml")
       ->check(not_empty())
       ->group(group);
   app.add_option("--imu-mount", options.imu_mount,

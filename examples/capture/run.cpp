@@ -399,6 +399,9 @@ int Run::finish() {
       note("--tap: the run ended before frame " + std::to_string(tap.frame) + "; its first frame is 0");
     }
   }
+  if (options_.relative > 0 && relative_.windows() == 0) {
+    note("--relative " + std::to_string(options_.relative) + ": no motion over so many frames was tracked");
+  }
   const bool filming = show_.is_filming();
   if (!show_.close_film() && !told_film_failed_) {
     note("ffmpeg failed; " + outputs_.path("overlay.mp4") + " is not complete");

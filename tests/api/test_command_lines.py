@@ -64,6 +64,11 @@ def main():
         if "pf-replay" in programs and (said(BIN / "pf-replay", "record", mine, "--frames", "20").returncode != 1 or mine.read_text() != "mine\n"):
             failures.append("pf-replay record writes over a file that is there")
     if "pf-sim" in programs:
+        for words in (["room", "--seeds", "0"], ["room", "--lens", "x"], ["rendered", "--scene", "x"], ["rendered", "--frames", "0"],
+                      ["gee2007", "--jobs", "0"], ["render", "x", "--out", "/tmp/x"], ["box", "--cases", "x"], ["street", "--seeds", "0"]):
+            result = said(BIN / "pf-sim", *words)
+            if result.returncode != 2 or result.stderr.count("\n") != 1 or result.stdout:
+                failures.append(f"pf-sim {' '.join(words)}: code {result.returncode}, {result.stderr!r}")
         result = said(BIN / "pf-sim", "kidnap", "--source", "images:/nowhere")
         if result.returncode != 1 or "/nowhere" not in result.stderr:
             failures.append(f"pf-sim kidnap of a missing folder: code {result.returncode}, {result.stderr!r}")

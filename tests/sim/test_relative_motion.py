@@ -3,6 +3,7 @@
 import csv
 import json
 import pathlib
+import subprocess
 import sys
 import tempfile
 
@@ -63,6 +64,12 @@ def test_capture_without_a_length_should_leave_the_scale_free(folder):
     rows, summary = capture(folder / "auto", CAPTURED_AUTO)
     require(rows and all(row["nees_dof"] == "5" for row in rows), f"degrees of freedom: {[row['nees_dof'] for row in rows]}")
     require(0 < summary["nees_per_dof"] < 20, f"{summary}")
+
+
+def test_capture_should_say_so_when_no_window_came_to_its_end(folder):
+    words = [BIN / "pf-capture", "--source", "sim:desk", "--frames", 8, "--relative", 9, "--headless", "--no-film", "--quiet", "--out", folder / "few"]
+    said = subprocess.run([str(word) for word in words], text=True, capture_output=True, check=True).stderr
+    require("note: --relative 9" in said, f"not a word of it: {said}")
 
 
 with tempfile.TemporaryDirectory() as temporary:

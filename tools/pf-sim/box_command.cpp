@@ -275,7 +275,7 @@ int run(const Choices& c) {
   if (c.box.black_s < 0 || c.box.black_from_s < 0) return fail("--black: from when on, and how long, in seconds");
   if (!(c.box.gross >= 0 && c.box.gross <= 1)) return fail("--gross: a share from 0 to 1");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.box.frames < 1 || c.box.frames > 100000)
-    return fail("seeds, jobs and frames must be positive");
+    return fail("--seeds, --jobs and --frames must be positive");
   Job job{&c, config_of(c), {}, nullptr, nullptr};
   for (const std::string& name : c.cases) {
     const auto* found =

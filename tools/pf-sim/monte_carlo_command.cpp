@@ -28,6 +28,12 @@ int fail(const std::string& what) {
   return 1;
 }
 
+/// Of a command line that is wrong.
+int refuse(const std::string& what) {
+  fail(what);
+  return 2;
+}
+
 void set_if(double& field, double value) {
   if (value > 0) field = value;
 }
@@ -155,20 +161,20 @@ nlohmann::json describe(const Experiment& x) {
 
 int run(const Choices& c, bool gee) {
   for (const char name : c.cases)
-    if (!find_case(name)) return fail(std::string("there is no case ") + name + "; the cases are A to F");
-  if (c.cases.empty()) return fail("no case was given");
-  if (c.fold != "condition" && c.fold != "drop") return fail("the fold is condition or drop");
+    if (!find_case(name)) return refuse(std::string("there is no case ") + name + "; the cases are A to F");
+  if (c.cases.empty()) return refuse("no case was given");
+  if (c.fold != "condition" && c.fold != "drop") return refuse("the fold is condition or drop");
   if (c.fix != "consider" && c.fix != "inflate" && c.fix != "error-free")
-    return fail("the form of fixing is consider, inflate or error-free");
-  if (!c.layout.empty() && c.layout != "model" && c.layout != "room") return fail("the layout is model or room");
+    return refuse("the form of fixing is consider, inflate or error-free");
+  if (!c.layout.empty() && c.layout != "model" && c.layout != "room") return refuse("the layout is model or room");
   if (!c.lens.empty() && c.lens != "exact" && c.lens != "consider" && c.lens != "estimate")
-    return fail("--lens " + c.lens + ": write exact, consider or estimate");
-  if (!(c.lens_scale > 0 && c.lens_scale <= 2)) return fail("--lens-scale must be above 0 and at most 2");
-  if (c.motion != "walk" && c.motion != "velocity") return fail("the motion is walk or velocity");
-  if (c.look != "inward" && c.look != "outward") return fail("the camera looks inward or outward");
+    return refuse("--lens " + c.lens + ": write exact, consider or estimate");
+  if (!(c.lens_scale > 0 && c.lens_scale <= 2)) return refuse("--lens-scale must be above 0 and at most 2");
+  if (c.motion != "walk" && c.motion != "velocity") return refuse("the motion is walk or velocity");
+  if (c.look != "inward" && c.look != "outward") return refuse("the camera looks inward or outward");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 0)
-    return fail("seeds, jobs and frames must be positive");
-  if (c.relative < 0) return fail("--relative is a number of frames, or 0");
+    return refuse("--seeds, --jobs and --frames must be positive");
+  if (c.relative < 0) return refuse("--relative is a number of frames, or 0");
   const std::string name = gee ? "gee2007" : "room";
   nlohmann::json out;
   out["experiment"] = name;
@@ -185,7 +191,7 @@ int run(const Choices& c, bool gee) {
       set_case(c, *find_case(letter), x.config);
       x.config.keep_gauge = keep_gauge;
       const char* field = nullptr;
-      if (pf_config_check(&x.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
+      if (pf_config_check(&x.config, &field) != PF_OK) return refuse(std::string("option out of range: ") + field);
       const std::string label = std::string(1, letter) + (keep_gauge ? "" : "_plain_ekf");
       if (!run_all(x, c.jobs, (name + " " + label).c_str())) return fail("a run did not come to its end");
       out["settings"][label] = describe(x);

@@ -72,11 +72,17 @@ int fail(const std::string& what) {
   return 1;
 }
 
+/// Of a command line that is wrong.
+int refuse(const std::string& what) {
+  fail(what);
+  return 2;
+}
+
 int render(const Choices& c) {
   pf_sim_options_t o;
-  if (pf_sim_options_default(c.scene.c_str(), &o) != PF_OK) return fail(no_scene(c.scene));
+  if (pf_sim_options_default(c.scene.c_str(), &o) != PF_OK) return refuse(no_scene(c.scene));
   o.seed = c.seed;
-  if (!choose_camera(c.camera, o.camera)) return fail("no camera model '" + c.camera + "'");
+  if (!choose_camera(c.camera, o.camera)) return refuse("no camera model '" + c.camera + "'");
   if (c.width > 0) {
     const double scale = static_cast<double>(c.width) / o.camera.width;
     o.camera.width = c.width;
@@ -98,7 +104,7 @@ int render(const Choices& c) {
 
   pf_sim_t* sim = pf_sim_open(c.scene.c_str(), &o);
   if (!sim)
-    return fail(
+    return refuse(
         "the picture is too small or too large for --width, or --exposure or --readout is longer than one frame's "
         "time");
   const fs::path out(c.out);

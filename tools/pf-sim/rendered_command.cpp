@@ -45,6 +45,12 @@ int fail(const std::string& what) {
   return 1;
 }
 
+/// Of a command line that is wrong.
+int refuse(const std::string& what) {
+  fail(what);
+  return 2;
+}
+
 void run_one(int index, void* context) {
   const Job& job = *static_cast<Job*>(context);
   const std::size_t variants = job.options->variants.size(), frames = static_cast<std::size_t>(job.options->sim.frames);
@@ -253,26 +259,26 @@ std::string label_of(const Choices& c, const Variant& variant, const std::string
 int run(const Choices& c) {
   for (const std::string& start : c.starts)
     if (start != "rectangle" && start != "points" && start != "pose")
-      return fail("the start is rectangle, points or pose");
+      return refuse("the start is rectangle, points or pose");
   for (const std::string& lens : c.lenses)
     if (lens != "right" && lens != "exact" && lens != "consider" && lens != "estimate")
-      return fail("the lens is right, exact, consider or estimate");
-  if (c.backend != "filter" && c.backend != "window") return fail("--backend is filter or window");
+      return refuse("the lens is right, exact, consider or estimate");
+  if (c.backend != "filter" && c.backend != "window") return refuse("--backend is filter or window");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
-    return fail("seeds, jobs and frames must be positive");
-  if (c.relative < 0) return fail("--relative is a number of frames, or 0");
+    return refuse("--seeds, --jobs and --frames must be positive");
+  if (c.relative < 0) return refuse("--relative is a number of frames, or 0");
   if (c.draw_lens && (c.focal_error != 0 || c.k1 != 0 || c.as_global || c.readout_s != 0))
-    return fail("--draw-lens draws the whole lens: leave --focal-error, --k1, --readout and --as-global away");
+    return refuse("--draw-lens draws the whole lens: leave --focal-error, --k1, --readout and --as-global away");
   RenderedOptions options;
-  if (!prepare(c, options)) return fail(no_scene(c.scene));
+  if (!prepare(c, options)) return refuse(no_scene(c.scene));
   const char* field = nullptr;
   for (const Variant& v : options.variants)
-    if (pf_config_check(&v.config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
+    if (pf_config_check(&v.config, &field) != PF_OK) return refuse(std::string("option out of range: ") + field);
   pf_sim_t* probe = pf_sim_open(c.scene.c_str(), &options.sim);
   pf_target_t target;
   const bool possible = probe && pf_sim_target(probe, PF_TARGET_RECTANGLE, &target) == PF_OK;
   pf_sim_close(probe);
-  if (!possible) return fail("an option is out of its range, or the scene has no target");
+  if (!possible) return refuse("an option is out of its range, or the scene has no target");
 
   const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(c.frames);
   const std::size_t count = seeds * options.variants.size();

@@ -172,7 +172,7 @@ void print_case(const char* name, const json& j) {
 
 int run(const Choices& c) {
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.street.frames < 1 || c.street.frames > 100000)
-    return fail("seeds, jobs and frames must be positive");
+    return fail("--seeds, --jobs and --frames must be positive");
   Job job{&c, {}, nullptr, nullptr};
   for (const std::string& name : c.cases) {
     const auto* found =

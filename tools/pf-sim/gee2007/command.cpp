@@ -40,6 +40,12 @@ int fail(const std::string& what) {
   return 1;
 }
 
+/// Of a command line that is wrong.
+int refuse(const std::string& what) {
+  fail(what);
+  return 2;
+}
+
 nlohmann::json describe(const WorldOptions& w, const SlamOptions& s) {
   return {{"look", w.look_inward ? "inward" : "outward"},
           {"upright", w.upright},
@@ -88,17 +94,17 @@ std::shared_ptr<PaperChoices> add_paper_options(CLI::App* command) {
 }
 
 int run_paper_command(const CLI::App& command, const PaperChoices& paper, const SharedChoices& c) {
-  if (paper.filter != "paper") return fail("the filter is paper or library");
+  if (paper.filter != "paper") return refuse("the filter is paper or library");
   for (const CLI::Option* option : command.get_options())
     if (option->count() > 0 && option->get_group() != kGroup && !kShared.count(option->get_name()))
-      return fail(option->get_name() + " is an option of --filter library");
+      return refuse(option->get_name() + " is an option of --filter library");
   Job job{paper.world, paper.slam, c.first_seed, "", nullptr, nullptr};
-  if (!c.look.empty() && c.look != "inward" && c.look != "outward") return fail("the camera looks inward or outward");
+  if (!c.look.empty() && c.look != "inward" && c.look != "outward") return refuse("the camera looks inward or outward");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 0 || job.world.frames_per_loop < 1)
-    return fail("seeds, jobs and frames must be positive");
+    return refuse("--seeds, --jobs and --frames must be positive");
   const bool noise = c.sigma_px > 0 && c.sigma_px <= 10, prior = job.slam.rho > 0 && job.slam.sigma_rho > 0;
   if (!noise || !prior || job.slam.sigma_turn < 0 || job.slam.sigma_step < 0 || c.fov < 0 || c.fov > 150)
-    return fail("noise, prior or field of view out of range");
+    return refuse("noise, prior or field of view out of range");
   if (!c.look.empty()) job.world.look_inward = c.look == "inward";
   job.world.frames = c.frames > 0 ? c.frames : 2 * job.world.frames_per_loop;
   job.world.sigma_px = job.slam.sigma_px = c.sigma_px;
@@ -108,7 +114,7 @@ int run_paper_command(const CLI::App& command, const PaperChoices& paper, const 
   if (c.linearity > 0) job.slam.linearity = c.linearity;
   job.slam.first_birth = c.first_birth;
   for (const char letter : c.cases)
-    if (!choose_case(letter, &job.slam)) return fail("there is no case " + c.cases + "; cases are A to F");
+    if (!choose_case(letter, &job.slam)) return refuse("there is no case " + c.cases + "; cases are A to F");
 
   if (!c.csv.empty()) {
     std::error_code error;
