@@ -96,10 +96,12 @@ std::unique_ptr<Source> open_sim_source(const Options& options, std::string& err
       return nullptr;
     }
     sim_options.rate_hz = rate_hz > 0.0 ? rate_hz : sim_options.rate_hz;
+    sim_options.readout_s = sim_options.camera.readout_s;
   }
   pf_sim_t* sim = pf_sim_open(scene.c_str(), &sim_options);
   if (sim == nullptr) {
-    error = "source '" + options.source + "': the scene could not be made with this camera (--calib) or this memory";
+    error = "source '" + options.source + "': the scene could not be made with this camera (--calib: its readout at most a frame's time) or "
+            "this memory";
     return nullptr;
   }
   return std::make_unique<SimSource>(sim, sim_options, scene);

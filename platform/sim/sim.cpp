@@ -81,6 +81,10 @@ enum Stream : std::uint64_t { kSceneStream, kPathStream, kNoiseStream, kFaultStr
 
 constexpr double kUnderWay = 0.5;  // from rest to the path's own speed [s]
 
+Pose view_from(const pf_pose_t& pose) {
+  return {rotation_of(pose.q_WC), {pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]}};
+}
+
 bool in_range(double v, double low, double high) { return v >= low && v <= high; }
 
 bool valid(const pf_sim_options_t& o) {
@@ -150,6 +154,14 @@ struct pf_sim {
       renderer->render(scene_at(sub), poses, 1.0f / static_cast<float>(options.blur_samples), light);
     }
     sensor->expose(light, gain_at(t), options.bias, options.noise_grey, noise, grey);
+  }
+
+  /// One view for all rows or one for each, without noise and blur.
+  void draw_from(const std::vector<Pose>& views, std::int64_t t_ns, pf_image_t* image) {
+    light.assign(light.size(), 0.0f);
+    renderer->render(scene_at(static_cast<double>(t_ns) * 1e-9), views, 1.0f, light);
+    sensor->expose(light, options.gain, options.bias, 0, noise, grey);
+    fill(*image, t_ns);
   }
 };
 
@@ -276,17 +288,20 @@ pf_status_t pf_sim_target(const pf_sim_t* sim, uint32_t kind, pf_target_t* targe
 }
 
 pf_status_t pf_sim_render(pf_sim_t* sim, const pf_pose_t* pose, pf_image_t* image) {
-  const double t = static_cast<double>(pose->t_ns) * 1e-9;
-  const Pose view{rotation_of(pose->q_WC), {pose->p_WC[0], pose->p_WC[1], pose->p_WC[2]}};
-  sim->light.assign(sim->light.size(), 0.0f);
-  sim->renderer->render(sim->scene_at(t), {view}, 1.0f, sim->light);
-  sim->sensor->expose(sim->light, sim->options.gain, sim->options.bias, 0, sim->noise, sim->grey);
-  sim->fill(*image, pose->t_ns);
+  sim->draw_from({view_from(*pose)}, pose->t_ns, image);
+  return PF_OK;
+}
+
+pf_status_t pf_sim_render_rows(pf_sim_t* sim, const pf_pose_t* poses, pf_image_t* image) {
+  const int rows = sim->options.camera.height;
+  std::vector<Pose> views;
+  for (int j = 0; j < rows; ++j) views.push_back(view_from(poses[j]));
+  sim->draw_from(views, poses[rows / 2].t_ns, image);
   return PF_OK;
 }
 
 pf_status_t pf_sim_depth(const pf_sim_t* sim, const pf_pose_t* pose, float* depth, int32_t* surface) {
-  const Pose view{rotation_of(pose->q_WC), {pose->p_WC[0], pose->p_WC[1], pose->p_WC[2]}};
+  const Pose view = view_from(*pose);
   std::vector<float> d;
   std::vector<std::int32_t> s;
   sim->renderer->truth(sim->scene_at(static_cast<double>(pose->t_ns) * 1e-9), view, depth ? &d : nullptr,

@@ -243,6 +243,65 @@ void test_depth_should_satisfy_the_plane_of_its_surface_at_every_pixel() {
   pf_sim_close(sim);
 }
 
+/// Through a rolling shutter each row is what a camera sees that stands where the camera is when the row is read out. What is left is the
+/// motion within a row: half a row's time on each side of its middle.
+void test_rows_should_each_be_seen_from_the_pose_of_their_own_time() {
+  constexpr double kReadout = 0.03, kMaxPixels = 0.05;
+  for (const char* scene : {"room", "desk"}) {
+    pf_sim_options_t options;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_options_default(scene, &options));
+    options.seed = kSeed;
+    pf_sim_t* sim = pf_sim_open(scene, &options);
+    TEST_ASSERT_NOT_NULL(sim);
+    const int width = options.camera.width, height = options.camera.height;
+    const auto pose_of = [&](double t, double row) {
+      pf_pose_t pose;
+      const double tau = kReadout * ((row + 0.5) / height - 0.5);
+      pf_sim_pose_at(sim, static_cast<std::int64_t>(std::llround(1e9 * (t + tau))), &pose);
+      return pose;
+    };
+    const auto camera_of_pose = [](const pf_pose_t& p) {
+      return Pose{rotation_of(p.q_WC), {p.p_WC[0], p.p_WC[1], p.p_WC[2]}};
+    };
+    double within = 0, sheared = 0;
+    for (const double t : {1.0, 4.2, 7.7, 11.3}) {
+      std::vector<pf_pose_t> poses;
+      for (int j = 0; j < height; ++j) poses.push_back(pose_of(t, j));
+      pf_image_t image;
+      TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_render_rows(sim, poses.data(), &image));
+      TEST_ASSERT_EQUAL_INT64(poses[static_cast<std::size_t>(height / 2)].t_ns, image.t_ns);
+      const std::vector<std::uint8_t> rows(image.pixels, image.pixels + width * height);
+      for (int j = 3; j < height; j += 29) {
+        const pf_pose_t& pose = poses[static_cast<std::size_t>(j)];
+        TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_render(sim, &pose, &image));
+        TEST_ASSERT_EQUAL_UINT8_ARRAY(image.pixels + j * width, rows.data() + j * width, width);
+        std::vector<float> depth(rows.size());
+        TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_depth(sim, &pose, depth.data(), nullptr));
+        for (int i = 5; i < width; i += 31) {
+          const double pixel[2] = {static_cast<double>(i), static_cast<double>(j)};
+          const float z = depth[static_cast<std::size_t>(j * width + i)];
+          double ray[3];
+          if (z <= 0 || pf_camera_unproject(&options.camera, pixel, ray) != PF_OK) continue;
+          const Pose here = camera_of_pose(pose);
+          const Vec3 p_W = here.R_WC * (Vec3{ray[0], ray[1], ray[2]} * (z / ray[2])) + here.p_WC;
+          for (const double edge : {-0.5, 0.5}) {
+            double seen[2];
+            TEST_ASSERT_TRUE(project(options.camera, camera_of_pose(pose_of(t, j + edge)), p_W, seen));
+            within = std::max(within, std::hypot(seen[0] - pixel[0], seen[1] - pixel[1]));
+          }
+          double at_once[2];
+          if (project(options.camera, camera_of_pose(pose_of(t, 0.5 * height - 0.5)), p_W, at_once))
+            sheared = std::max(sheared, std::hypot(at_once[0] - pixel[0], at_once[1] - pixel[1]));
+        }
+      }
+    }
+    std::printf("%s: %.2f px between rows at once and over 30 ms, %.4f px within a row\n", scene, sheared, within);
+    TEST_ASSERT_TRUE(within < kMaxPixels);
+    TEST_ASSERT_TRUE(sheared > 20 * within);  // and rows differ
+    pf_sim_close(sim);
+  }
+}
+
 }  // namespace
 
 int main(void) {
@@ -254,5 +313,6 @@ int main(void) {
   RUN_TEST(test_pixels_should_be_the_same_for_the_same_seed_and_not_for_another);
   RUN_TEST(test_target_edges_should_lie_where_the_truth_puts_them);
   RUN_TEST(test_depth_should_satisfy_the_plane_of_its_surface_at_every_pixel);
+  RUN_TEST(test_rows_should_each_be_seen_from_the_pose_of_their_own_time);
   return UNITY_END();
 }

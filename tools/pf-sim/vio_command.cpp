@@ -393,13 +393,14 @@ int run(Choices c) {
     }
   }
   if (!(o.readout_s >= 0 && o.readout_s <= 0.1)) return fail("--readout is 0 to 0.1 seconds");
-  if (o.readout_s > 0 && o.rendered) return fail("--readout is for points; leave --rendered away");
+  if (o.as_global && o.sigma_readout_s > 0) return fail("--as-global does not go with --estimate readout");
   if (o.sigma_readout_s > 0 && o.readout_s <= kSigmaReadoutS)
     return fail(
         "--estimate readout: the rows of a camera that is known to take 10 ms less; add --readout S above 0.01");
   pf_sim_options_t scene;
   if (o.rendered && pf_sim_options_default(o.scene.c_str(), &scene) != PF_OK)
     return fail("--scene " + o.scene + ": there is no such scene");
+  if (!(o.shake >= 0 && o.shake <= 10)) return fail("--shake is 0 to 10 times what a scene's hand does");
   if (!(c.vertical_deg >= 0 && c.vertical_deg < 28)) return fail("--vertical is 0 to 28 degrees");
   c.vio.sigma_vertical_rad = c.vertical_deg * 3.14159265358979 / 180;
   c.vio.turn_rad_s = c.turn_deg_s * 3.14159265358979 / 180;
@@ -461,6 +462,7 @@ void add_vio(CLI::App& app, int& result) {
       "rest; or moving: it moves from the first frame on, in every tenth run too evenly to tell the scale");
   command->add_option("--rest", c->vio.rest_s, "at the beginning [s]");
   command->add_option("--readout", c->vio.readout_s, "of a rolling shutter, from the first row to the last [s]");
+  command->add_flag("--as-global", c->vio.as_global, "the filter knows nothing of the readout, for comparison");
   command->add_option("--sigma-px", c->vio.sigma_px, "measurement noise [px]");
   command->add_option("--points", c->vio.points, "of the room");
   command->add_option("--blackout-at", c->vio.blackout_at_s, "when the lens is covered [s]");
@@ -471,6 +473,7 @@ void add_vio(CLI::App& app, int& result) {
   command->add_option("--fault-at", c->vio.fault_at_s, "when it begins, where it has a beginning [s]");
   command->add_flag("--rendered", c->vio.rendered, "pictures of a scene, in place of points");
   command->add_option("--scene", c->vio.scene, "of --rendered: room, desk, street, ...");
+  command->add_option("--shake", c->vio.shake, "times what the hand of that scene shakes");
   command->add_option("--vertical", c->vertical_deg,
                       "planes found to be vertical are told to be so within this [degrees]; 0: they are not");
   command->add_flag("--still", c->still, "the camera rests to the end");

@@ -38,7 +38,7 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   pf_config_t config;
   pf_config_default(&config);
   config.camera = camera;
-  config.camera.readout_s = o.readout_s - o.sigma_readout_s;
+  config.camera.readout_s = o.as_global ? 0 : o.readout_s - o.sigma_readout_s;
   config.capacity.max_imu_samples = 2000;
   config.clock_ns = thread_clock;
   if (!o.rendered) {
@@ -103,7 +103,7 @@ class Run {
 
  private:
   static VioWorld world(const VioOptions& o, std::uint64_t seed) {
-    if (o.rendered) return VioWorld(seed, o.scene, o.moving ? 0 : o.rest_s);
+    if (o.rendered) return VioWorld(seed, o.scene, o.moving ? 0 : o.rest_s, o.shake);
     if (!o.moving) return VioWorld(seed, o.points, o.seconds, o.rest_s, o.turn_rad_s);
     const auto poor = seed / kPoorEvery % 2 == 0 ? VioWorld::Motion::kRotation : VioWorld::Motion::kEven;
     return VioWorld(seed, o.points, 1.4 * o.seconds, is_poor(o, seed) ? poor : VioWorld::Motion::kVaried);
@@ -191,8 +191,9 @@ class Run {
     return pf_push_observations(context_.slam, t_ns, seen.data(), seen.size());
   }
 
-  pf_status_t push_picture(const Pose& pose, std::int64_t t_ns, bool dark) {
-    if (!world_.draw(pose, o_.noise_grey, noise_, &grey_)) return PF_ERROR_STATE;
+  pf_status_t push_picture(std::int64_t t_ns, bool dark) {
+    if (!world_.draw(1e-9 * static_cast<double>(t_ns), o_.readout_s, o_.noise_grey, noise_, &grey_))
+      return PF_ERROR_STATE;
     if (dark) std::fill(grey_.begin(), grey_.end(), static_cast<std::uint8_t>(0));
     const pf_camera_t& camera = world_.camera();
     const pf_image_t image = {grey_.data(), camera.width, camera.height, camera.width, t_ns};
@@ -205,9 +206,9 @@ class Run {
     push_samples(t_ns);
     rows_[k].nees_position = rows_[k].nees_pose = -1;
     if (o_.fault == VioFault::kFramesStop && t >= o_.fault_at_s && t < o_.fault_at_s + kStill) return true;
-    const Pose sim_pose = world_.path()(t), truth = truth_at(t);
+    const Pose truth = truth_at(t);
     const bool dark = is_dark(t);
-    const pf_status_t status = o_.rendered ? push_picture(sim_pose, t_ns, dark) : push_points(t_ns, dark);
+    const pf_status_t status = o_.rendered ? push_picture(t_ns, dark) : push_points(t_ns, dark);
     pf_pose_t pose;
     pf_report_t report;
     FrameRow& row = rows_[k];

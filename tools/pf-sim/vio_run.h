@@ -40,14 +40,16 @@ struct VioOptions {
   double sigma_accel_bias = 0.1;  ///< [m/s^2]
   /// From which the errors of the unit's mounting and delay are drawn, and with which they are estimated [rad], [m], [s]; 0: exact.
   double sigma_mount_rad = 0, sigma_mount_m = 0, sigma_delay_s = 0;
-  double readout_s = 0;        ///< of the frames' rows; of points only
+  double readout_s = 0;        ///< of the frames' rows
   double sigma_readout_s = 0;  ///< known as that much less, and estimated; 0: known exactly
+  bool as_global = false;      ///< the readout is not known at all
   int points = 300;
   double turn_rad_s = 0;  ///< of a camera on a turntable that rests otherwise
   bool hand = false;      ///< moves before the lens
   bool use_imu = true;
   bool rendered = false;          ///< pictures of the room of 4 m, in place of points
   std::string scene = "room";     ///< of the pictures
+  double shake = 1;               ///< times what the hand of that scene shakes
   double noise_grey = 2;          ///< of the pictures
   double sigma_vertical_rad = 0;  ///< planes of that class are told to be vertical; 0: they are not
   VioFault fault = VioFault::kNone;

@@ -105,10 +105,12 @@ void VioWorld::wave(double t, double sigma_px, Random& noise, std::vector<pf_obs
   }
 }
 
-VioWorld::VioWorld(std::uint64_t seed, const std::string& scene, double rest_s) {
+VioWorld::VioWorld(std::uint64_t seed, const std::string& scene, double rest_s, double shake) {
   pf_sim_options_t options;
   pf_sim_options_default(scene.c_str(), &options);
   options.seed = seed;
+  options.shake_m *= shake;
+  options.shake_rad *= shake;
   room_.reset(pf_sim_open(scene.c_str(), &options), pf_sim_close);
   pf_sim_camera(room_.get(), &camera_);
   const auto base = [room = room_](double t) {
@@ -138,17 +140,27 @@ std::vector<double> VioWorld::distances(const Pose& pose, const std::vector<Vec3
   return out;
 }
 
-bool VioWorld::draw(const Pose& pose, double noise_grey, Random& noise, std::vector<std::uint8_t>* grey) const {
+bool VioWorld::draw(double t, double readout_s, double noise_grey, Random& noise,
+                    std::vector<std::uint8_t>* grey) const {
   if (room_ == nullptr) return false;
-  const pf_pose_t view = view_of(pose);
+  std::vector<pf_pose_t> views;
+  for (int j = 0; readout_s > 0 && j < camera_.height; ++j)
+    views.push_back(view_of(path_(t + row_time(readout_s, j))));
+  const pf_pose_t view = view_of(path_(t));
   pf_image_t image;
-  if (pf_sim_render(room_.get(), &view, &image) != PF_OK) return false;
+  const pf_status_t status = views.empty() ? pf_sim_render(room_.get(), &view, &image)
+                                           : pf_sim_render_rows(room_.get(), views.data(), &image);
+  if (status != PF_OK) return false;
   grey->resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   for (std::size_t i = 0; i < grey->size(); ++i) {
     const double value = image.pixels[i] + noise_grey * noise.normal();
     (*grey)[i] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
   }
   return true;
+}
+
+double VioWorld::row_time(double readout_s, double row) const {
+  return readout_s * ((row + 0.5) / camera_.height - 0.5);
 }
 
 bool VioWorld::project(const Pose& pose, const Vec3& point, double pixel[2]) const {
@@ -166,7 +178,7 @@ std::vector<pf_observation_t> VioWorld::observe(double t, double readout_s, doub
     bool in_view = project(pose, points_[id], pixel);
     // A row's time says where the point is, and that says which row it is in: the camera moves little in between.
     for (int turn = 0; readout_s > 0 && in_view && turn < kRowTurns; ++turn)
-      in_view = project(path_(t + readout_s * ((pixel[1] + 0.5) / camera_.height - 0.5)), points_[id], pixel);
+      in_view = project(path_(t + row_time(readout_s, pixel[1])), points_[id], pixel);
     if (!in_view) continue;
     const double e[2] = {noise.normal(), noise.normal()};
     seen.push_back(

@@ -42,7 +42,7 @@ bool MovingStart::add() {
   }
   for (int i = 0; i < frame_.match_count() && view.count < kMaxPixels; ++i) {
     const Match& match = frame_.match(i);
-    if (match.status != MatchStatus::kInlier) continue;
+    if (match.status != MatchStatus::kInlier || match.feature < 0) continue;  // it may have left the map since
     const Vec2 pixel = at_frame_time(filter_, map_.features[match.feature].slot, match.measured);
     view.seen[view.count++] = {match.id, static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
   }

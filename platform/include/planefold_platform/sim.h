@@ -97,6 +97,10 @@ pf_status_t pf_sim_target(const pf_sim_t* sim, uint32_t kind, pf_target_t* targe
 /* A picture from any pose, with the sensor's settings but no noise, blur or readout. The pixels stay valid until the next call. */
 pf_status_t pf_sim_render(pf_sim_t* sim, const pf_pose_t* pose, pf_image_t* image);
 
+/* The same through a rolling shutter: row i from poses[i], of which there are as many as rows. The scene and the image have the time of
+ * the middle row's pose, poses[height / 2]. */
+pf_status_t pf_sim_render_rows(pf_sim_t* sim, const pf_pose_t* poses, pf_image_t* image);
+
 /* For each pixel's centre, seen from a pose at its t_ns: depth along z [m] (0: nothing) and the surface's number (-1:
  * nothing). Either may be null; both are width * height. */
 pf_status_t pf_sim_depth(const pf_sim_t* sim, const pf_pose_t* pose, float* depth, int32_t* surface);
