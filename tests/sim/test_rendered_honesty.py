@@ -58,3 +58,18 @@ print(f"window, rows over 30 ms: innovations per degree of freedom {known['nis_p
       f"RMSE {known['camera_rmse_m']:.4f}, {ignored['camera_rmse_m']:.4f} m")
 require(known["lost_frames"] == 0, "the window lost a camera with a rolling shutter")
 require(known["nis_per_dof"] < 0.85 * ignored["nis_per_dof"], "knowing the readout explains the window's pixels no better")
+
+# A bare camera from nothing known, on frames of a sim: source whose calibration has rows.
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    run(BIN / "pf-sim", "render", "room", "--frames", 1, "--readout", 0.03, "--out", folder / "scene")
+    reports = []
+    for told in ((), ("--readout", 0)):
+        out = folder / f"out{len(reports)}"
+        run(BIN / "pf-capture", "--source", "sim:room", "--calib", folder / "scene" / "calib.yaml", "--frames", ROLLING_FRAMES, "--headless",
+            "--no-film", "--quiet", "--out", out, *told)
+        reports.append(json.loads((out / "report.json").read_text()))
+    told, untold = (report["nis_per_dof"] for report in reports)
+    print(f"sim:room with rows: innovations per degree of freedom {told:.2f} told, {untold:.2f} untold")
+    require(all(report["lost"] == 0 for report in reports), "a bare camera with a rolling shutter was lost")
+    require(told < 0.7 * untold, "telling a sim: source's readout explains its pixels no better: its frames have no rows")

@@ -53,6 +53,16 @@ with tempfile.TemporaryDirectory() as name:
     require(rows["readout_error_ms"]["max"] < 2 and rows["readout_sigmas"]["max"] < 5, f"{rows['readout_error_ms']}")
     require(3.5 < rows["nees_pose"]["mean"] < 12, f"pose NEES {rows['nees_pose']['mean']} with rows")
 
+    # The same in pictures, whose rows are drawn from the poses of their own times; without being told the unit comes into doubt.
+    path = folder / "rows.json"
+    run(BIN / "pf-sim", "vio", "--rendered", "--seeds", "2", "--seconds", "14", "--readout", "0.03", "--estimate", "readout", "--json", path)
+    drawn = json.loads(path.read_text())
+    require(drawn["lost_runs"] == 0 and drawn["doubt"]["runs"] == 0, f"rows in pictures: {drawn['doubt']}")
+    require(drawn["readout_error_ms"]["max"] < 2 and drawn["readout_sigmas"]["max"] < 5, f"{drawn['readout_error_ms']}")
+    require(1.5 < drawn["nees_pose"]["mean"] < 12, f"pose NEES {drawn['nees_pose']['mean']} with rows in pictures")
+    run(BIN / "pf-sim", "vio", "--rendered", "--seeds", "1", "--seconds", "14", "--readout", "0.03", "--as-global", "--json", path)
+    require(json.loads(path.read_text())["doubt"]["runs"] == 1, "rows that nobody tells of pass for none")
+
     dark, _ = report(folder, "--seconds", "12", "--blackout-at", "7", "--blackout", "1")
     require(dark["lost_runs"] == 0, "lost behind a covered lens")
     require(dark["frames_until_tracked_again"]["runs"] == SEEDS, "not tracked again")
