@@ -100,7 +100,8 @@ std::unique_ptr<Source> open_sim_source(const Options& options, std::string& err
   }
   pf_sim_t* sim = pf_sim_open(scene.c_str(), &sim_options);
   if (sim == nullptr) {
-    error = "source '" + options.source + "': the scene could not be made with this camera (--calib: its readout at most a frame's time) or "
+    error = "source '" + options.source +
+            "': the scene could not be made with this camera (--calib: its readout at most a frame's time) or "
             "this memory";
     return nullptr;
   }

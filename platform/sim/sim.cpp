@@ -81,9 +81,7 @@ enum Stream : std::uint64_t { kSceneStream, kPathStream, kNoiseStream, kFaultStr
 
 constexpr double kUnderWay = 0.5;  // from rest to the path's own speed [s]
 
-Pose view_from(const pf_pose_t& pose) {
-  return {rotation_of(pose.q_WC), {pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]}};
-}
+Pose view_from(const pf_pose_t& pose) { return {rotation_of(pose.q_WC), {pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]}}; }
 
 bool in_range(double v, double low, double high) { return v >= low && v <= high; }
 

@@ -157,7 +157,8 @@ void test_no_vertical_plane_should_see_a_shift_a_turn_or_a_change_of_scale() {
 }
 
 /// A map of points, a plane and inverse depths that becomes metric: pixels stay where they were, the scale is as known as the start says,
-/// together with gravity, and shifts and turns stay as open as they were.
+/// together with gravity, and shifts and turns stay as open as they were. So do pixels of a rolling shutter, which see the camera's speed,
+/// while the state's becomes that of the unit: with what is open of the rotation's rate.
 void test_a_map_that_becomes_metric_should_look_the_same_and_know_its_scale() {
   SeededRandom random(319);
   for (int trial = 0; trial < 10; ++trial) {
@@ -168,11 +169,17 @@ void test_a_map_that_becomes_metric_should_look_the_same_and_know_its_scale() {
     scene.filter->set_mounting(none);
     random_plane(random, scene.filter);
     scene.filter.set_P(random_covariance(random, scene.filter.dim(), 0.05));
-    std::vector<Vec2> before;
+    Camera rolling = pinhole_camera();
+    rolling.readout = Scalar(0.03);
+    std::vector<Vec2> before, rows_before;
+    std::vector<Mat2> spread_before;
     for (const int slot : scene.slots) {
       PixelMeasurement o;
       TEST_ASSERT_TRUE(scene.filter->predict_pixel(pinhole_camera(), slot, &o));
       before.push_back(o.predicted);
+      TEST_ASSERT_TRUE(scene.filter->predict_pixel(rolling, slot, &o));
+      rows_before.push_back(o.predicted);
+      spread_before.push_back(scene.filter->innovation(o));
     }
     MovingSolution start;
     start.scale = Scalar(2.5);
@@ -184,6 +191,10 @@ void test_a_map_that_becomes_metric_should_look_the_same_and_know_its_scale() {
       PixelMeasurement o;
       TEST_ASSERT_TRUE(scene.filter->predict_pixel(pinhole_camera(), scene.slots[i], &o));
       TEST_ASSERT_TRUE((o.predicted - before[i]).norm() < Scalar(1e-6));
+      TEST_ASSERT_TRUE(scene.filter->predict_pixel(rolling, scene.slots[i], &o));
+      TEST_ASSERT_TRUE((o.predicted - rows_before[i]).norm() < Scalar(1e-6));
+      const Mat2 more = scene.filter->innovation(o) - spread_before[i];
+      TEST_ASSERT_TRUE(more.norm() < Scalar(1e-6) * spread_before[i].norm());
     }
     ScaleRow l;
     TEST_ASSERT_TRUE(scene.filter->scale_row(&l));

@@ -144,12 +144,11 @@ bool VioWorld::draw(double t, double readout_s, double noise_grey, Random& noise
                     std::vector<std::uint8_t>* grey) const {
   if (room_ == nullptr) return false;
   std::vector<pf_pose_t> views;
-  for (int j = 0; readout_s > 0 && j < camera_.height; ++j)
-    views.push_back(view_of(path_(t + row_time(readout_s, j))));
+  for (int j = 0; readout_s > 0 && j < camera_.height; ++j) views.push_back(view_of(path_(t + row_time(readout_s, j))));
   const pf_pose_t view = view_of(path_(t));
   pf_image_t image;
-  const pf_status_t status = views.empty() ? pf_sim_render(room_.get(), &view, &image)
-                                           : pf_sim_render_rows(room_.get(), views.data(), &image);
+  const pf_status_t status =
+      views.empty() ? pf_sim_render(room_.get(), &view, &image) : pf_sim_render_rows(room_.get(), views.data(), &image);
   if (status != PF_OK) return false;
   grey->resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   for (std::size_t i = 0; i < grey->size(); ++i) {

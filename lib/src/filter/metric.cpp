@@ -3,6 +3,7 @@
 #include "filter/filter.h"
 #include "filter/inertial_rows.h"
 #include "filter/moving_start.h"
+#include "geometry/so3.h"
 
 /// A map up to scale becomes one in metres (lib/docs/inertial.md).
 
@@ -58,7 +59,7 @@ void scale_block(Block* block, Scalar s, Scalar* factor) {
 ///
 ///   P <- (I - N_s l) P (I - N_s l)^T + C_ss N_s N_s^T + N_s c^T + c N_s^T       c: C_(g a)s over the rows of gravity and bias
 ///
-/// Gravity's direction was read off the poses' rotations, d = E^T theta + n. The velocity becomes that of the unit's origin.
+/// Gravity's direction was read off the poses' rotations, d = E^T theta + n. The velocity becomes that of the unit's origin, v = v_C + R (w x m), with what is open of w.
 void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
   using namespace inertial_rows;
   const Scalar s = start.scale;
@@ -87,6 +88,15 @@ void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
   clear(&transition, body, rows.dim);
   transition.mean.accel_bias += start.accel_bias;
   transition.mean.q_WG = start.q_WG;
+  // e_v = e_v_C - [R (w x m)]x theta - R [m]x e_w,   e_w = -R_CB e_b
+  const Mat3 R = body.q_WC.toRotationMatrix();
+  const Mat3 by_theta = -hat(Vec3(R * body.w_C.cross(mounting.p_C)));
+  const Mat3 by_bias = R.lazyProduct(hat(mounting.p_C)).lazyProduct(mounting.R_CB);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      transition.F[(rows.velocity + i) * rows.dim + Body::kTheta + j] = by_theta(i, j);
+      transition.F[(rows.velocity + i) * rows.dim + rows.gyro + j] = by_bias(i, j);
+    }
   forget_rows(&transition, rows.accel, 5);  // gravity follows
   set_gravity_by_rotation(rows, false, &transition);
   constexpr int kAt[5] = {3, 4, 0, 1, 2};  // (d, b_a) behind the scale: rows from accel on
