@@ -59,7 +59,8 @@ void scale_block(Block* block, Scalar s, Scalar* factor) {
 ///
 ///   P <- (I - N_s l) P (I - N_s l)^T + C_ss N_s N_s^T + N_s c^T + c N_s^T       c: C_(g a)s over the rows of gravity and bias
 ///
-/// Gravity's direction was read off the poses' rotations, d = E^T theta + n. The velocity becomes that of the unit's origin, v = v_C + R (w x m), with what is open of w.
+/// Gravity's direction was read off the poses' rotations, d = E^T theta + n. The velocity becomes that of the unit's origin,
+/// v = v_C + R (w x m), with what is open of w.
 void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
   using namespace inertial_rows;
   const Scalar s = start.scale;
