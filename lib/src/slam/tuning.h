@@ -294,7 +294,7 @@ inline constexpr Scalar kCornerSigma = Scalar(0.25);  ///< [px] of a corner: the
 inline constexpr Scalar kMaxRmsPx = Scalar(2);        ///< [px] of the reprojection errors of known points
 inline constexpr Scalar kMinReach = Scalar(6);        ///< [px] search radius of a known point, at least
 inline constexpr Scalar kMaxReach = Scalar(60);       ///< [px] likewise, at most
-inline constexpr Scalar kFlatness = Scalar(0.01);     ///< of points on a plane: their spread across it over their largest
+inline constexpr Scalar kFlatness = Scalar(0.01);  ///< of points on a plane: their spread across it over their largest
 }  // namespace start_at_target
 
 }  // namespace pf::tuning
