@@ -258,13 +258,15 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   count_map(view);
   view.map = map_;
   size_t count = 0;
-  view.tracks.resize(static_cast<size_t>(config_.capacity.max_observations + config_.capacity.max_features));
+  const bool has_window = config_.backend == PF_BACKEND_WINDOW;
+  const int features = has_window ? config_.capacity.window_points : config_.capacity.max_features;
+  view.tracks.resize(static_cast<size_t>(features + (has_window ? features : config_.capacity.max_observations)));
   if (pf_get_matches(slam_, view.tracks.data(), view.tracks.size(), &count) < 0) {
     count = 0;
   }
   view.tracks.resize(std::min(count, view.tracks.size()));
   count = 0;
-  view.features.resize(static_cast<size_t>(config_.capacity.max_features));
+  view.features.resize(static_cast<size_t>(features));
   if (pf_get_features(slam_, view.features.data(), view.features.size(), &count) < 0) {
     count = 0;
   }

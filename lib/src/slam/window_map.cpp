@@ -128,6 +128,17 @@ void WindowMap::drop(int i) {
   ++frame_.report.evicted;
 }
 
+void WindowMap::move_views(const CameraView& newest_before) {
+  const Keyframe& newest = keyframes[keyframes.newest()];
+  const Quat q = newest.q_WC * newest_before.q_WC.conjugate();
+  for (int i = 0; i < capacity(); ++i) {
+    if (!used(i) || point_[i].has_depth) continue;
+    CameraView& seen_from = point_[i].seen_from;
+    seen_from.c_W = newest.p_W + q * (seen_from.c_W - newest_before.c_W);
+    seen_from.q_WC = (q * seen_from.q_WC).normalized();
+  }
+}
+
 void WindowMap::drop_failing() {
   for (int i = 0; i < capacity(); ++i) {
     if (!used(i) || map_.features[i].is_target) continue;

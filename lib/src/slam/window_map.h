@@ -71,6 +71,8 @@ class WindowMap {
   /// Says where a point is, seen from its host.
   void place(int i, const Vec3& p_W);
   void drop(int i);
+  /// An adjustment has moved the newest keyframe from this view: the views from which points without a depth were last seen move with it.
+  void move_views(const CameraView& newest_before);
   /// Drops points that fail too often, and those that are not in front of their hosts.
   void drop_failing();
 

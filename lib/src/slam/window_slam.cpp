@@ -187,8 +187,10 @@ void WindowSlam::add_keyframe() {
 void WindowSlam::adjust() {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kAdjust]);
   // A record is solved by one lens, which changes no more until it ends.
-  if (!adjustment_.run(!start_.progress().recording)) return;
   const Keyframe& newest = map_.keyframes[map_.keyframes.newest()];
+  const CameraView before = {newest.q_WC, newest.p_W};
+  if (!adjustment_.run(!start_.progress().recording)) return;
+  map_.move_views(before);
   motion_.move(newest.q_WC, newest.p_W);
   // During a start the map may begin again; ids of planes found before would then name nothing.
   if (settings_.planes && !start_.progress().recording) planes_.maintain(newest.p_W);
@@ -246,6 +248,7 @@ Status WindowSlam::end_frame() {
     start_.start_over();
     motion_.init();
     relocaliser_.init();
+    measuring_.forget_view();
     tracking_.start_over();
     settings_.hooks.say("the estimate is no longer finite: starting again without it");
   }
@@ -255,6 +258,8 @@ Status WindowSlam::end_frame() {
     else if (frame_.report.attempts > 0)
       relocaliser_.remember_view();
   }
+  if (tracking_.has_pose() && (tracking_.is_tracked(frame_.report) || start_.progress().pending()))
+    measuring_.keep_view();
   return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
 }
 
@@ -263,6 +268,7 @@ void WindowSlam::begin_new_map(const char* why) {
   start_.start_over();
   motion_.init();
   relocaliser_.init();
+  measuring_.forget_view();
   adjustment_.init();
   data_.mark = Mark();
   tracking_.begin_map();

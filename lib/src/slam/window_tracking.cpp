@@ -25,6 +25,8 @@ bool WindowTracking::layout(Arena& arena) {
 void WindowTracking::init() {
   search_.init(settings_);
   pose_.init();
+  followed_.init();
+  is_following_ = false;
   listed_ = found_ = 0;
 }
 
@@ -124,6 +126,7 @@ int WindowTracking::search_for(int first, int count, const PosePrior& at, Scalar
     task.innovation = match.innovation;
     if (settings_.gate * symmetric_eigenvalues(match.innovation)(1) > kTemplateEllipse * kTemplateEllipse)
       task.shape = nullptr;
+    if (is_following_ && !aim(match.feature, &task)) continue;
     const SearchOutcome outcome = search_.search(task);
     if (!outcome.comparable) continue;
     match.searched = true;
@@ -134,7 +137,7 @@ int WindowTracking::search_for(int first, int count, const PosePrior& at, Scalar
     match.measured = outcome.pixel;
     match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
     candidate_[c].noise = noise_.match(outcome.noise, outcome.level_scale);
-    candidate_[c].searched = std::min(image, ellipse_area(match.innovation, settings_.gate));
+    candidate_[c].searched = std::min(image, ellipse_area(task.innovation, settings_.gate));
     std::swap(candidate_[found++], candidate_[c]);
   }
   return found - first;
@@ -259,39 +262,6 @@ int WindowTracking::measure_about(const PosePrior& about, CameraPose* pose, Mat6
   }
   found_ = found;
   return find_pose(found, moving, pose, information);
-}
-
-void WindowTracking::measure(Scalar median_depth) {
-  const PosePrior prior = now();
-  CameraPose pose;
-  Mat6 information;
-  if (measure_about(prior, &pose, &information) == 0) return measure_all(median_depth);
-  if (has_rows())
-    correct_by_rows(prior, pose, information);
-  else
-    correct(pose, information);
-  measure_unplaced(median_depth);
-}
-
-void WindowTracking::correct(const CameraPose& pose, const Mat6& information) {
-  PosePrior now;
-  if (apply(pose, information, &now)) mark(frame_.report.matches, now);
-}
-
-/// Corrects the body by a measured pose. False where its covariance is none. now: the pose with the covariance that the matches leave.
-bool WindowTracking::apply(const CameraPose& pose, Mat6 information, PosePrior* now) {
-  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
-  SmallCholesky<6> factored;
-  // What the matches do not determine, the prediction does.
-  if (!factored.factor(information)) {
-    SmallCholesky<6> prior;
-    if (!prior.factor(motion_.pose_covariance())) return false;
-    information += kWeakPrior * prior.inverse();
-    if (!factored.factor(information)) return false;
-  }
-  const bool corrected = motion_.correct(pose.q_WC, pose.p_WC, factored.inverse());
-  *now = {pose.q_WC, pose.p_WC, factored.inverse(), motion_.body().v_W, motion_.body().w_C};
-  return corrected;
 }
 
 }  // namespace pf

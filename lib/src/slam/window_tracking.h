@@ -1,5 +1,6 @@
 #pragma once
 
+#include "slam/followed_view.h"
 #include "slam/image_search.h"
 #include "slam/noise_model.h"
 #include "slam/window_motion.h"
@@ -54,6 +55,10 @@ class WindowTracking {
   Vec2 at_frame_time(const Match& match, Scalar depth) const;
   /// The same by how far its pixel has moved since it was last accepted, where velocities are not known yet.
   Vec2 followed_at_frame_time(const Match& match) const;
+  /// After a frame that supported its pose: the next one may be followed from it.
+  void keep_view();
+  /// The map is given up, and with it all poses.
+  void forget_view() { followed_.init(); }
   /// Updates the noise model with the residuals of this frame's inliers.
   void learn_noise();
   /// Updates masks and normals of templates with this frame's inliers.
@@ -70,6 +75,9 @@ class WindowTracking {
   const Camera& camera() const { return map_.camera(); }
 
  private:
+  bool is_wide(const Mat2& innovation) const;
+  bool begin_following();
+  bool aim(int i, SearchTask* task) const;
   bool expect_placed(int i, const PosePrior& at, ExpectedPixel* out) const;
   bool has_rows() const { return map_.camera().readout != Scalar(0); }
   bool expect_row(const PosePrior& at, const Vec3& m, Scalar w, ExpectedPixel* out) const;
@@ -104,6 +112,8 @@ class WindowTracking {
   NoiseModel& noise_;
   ImageSearch search_;
   WindowPose pose_;
+  FollowedView followed_;
+  bool is_following_ = false;  ///< searches go about the followed view's pixels
 
   /// A point that is searched for.
   struct Candidate {

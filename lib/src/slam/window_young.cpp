@@ -12,8 +12,9 @@
 
 namespace pf {
 
-/// About the last pixel, for depths about the median: rho = (1 +- 1) / depth along the ray on which it was last seen.
+/// About the last pixel, for depths about the median: rho = (1 +- kOpenSpread) / depth along the ray on which it was last seen.
 bool WindowTracking::expect_unplaced(int i, const PosePrior& at, Scalar depth, ExpectedPixel* out) const {
+  using tuning::window_tracking::kOpenSpread;
   const WindowPoint& point = map_.point(i);
   Vec3 ray_C;
   if (!unproject(map_.camera(), point.pixel, &ray_C)) return false;
@@ -23,10 +24,11 @@ bool WindowTracking::expect_unplaced(int i, const PosePrior& at, Scalar depth, E
                        point.seen_from.c_W - at.p_W, 1 / depth, &out->pixel, &J_C, nullptr, &J_rho))
     return false;
   const Mat26 JP = J_C.lazyProduct(at.covariance);
-  out->spread = JP.lazyProduct(J_C.transpose()) + J_rho * J_rho.transpose() / (depth * depth);
+  out->spread =
+      JP.lazyProduct(J_C.transpose()) + kOpenSpread * kOpenSpread * J_rho * J_rho.transpose() / (depth * depth);
   if (!has_rows()) return true;
   if (!expect_row(at, point.seen_from.q_WC * ray_C + point.seen_from.c_W / depth, 1 / depth, out)) return false;
-  out->spread += J_rho * J_rho.transpose() / (depth * depth);
+  out->spread += kOpenSpread * kOpenSpread * J_rho * J_rho.transpose() / (depth * depth);
   return true;
 }
 
@@ -103,7 +105,12 @@ int WindowTracking::follow(Scalar depth) {
   listed_ = 0;
   const PosePrior at = now();
   const int count = list(at, false, depth);
-  const int found = search_for(0, count, at, depth);
+  int found = search_for(0, count, at, depth);
+  if (2 * found < frame_.report.attempts && begin_following()) {
+    frame_.forget_searches();
+    found = search_for(0, list(at, false, depth), at, depth);
+    is_following_ = false;
+  }
   return found;
 }
 

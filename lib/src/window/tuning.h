@@ -82,6 +82,7 @@ inline constexpr Scalar kWideEllipse = Scalar(12);       ///< [px] largest semi-
 inline constexpr Scalar kTemplateEllipse = Scalar(4.5);  ///< [px] largest semi-axis in which templates are tried
 inline constexpr int kRowPasses = 2;                     ///< of consensus with velocities that its pose tells
 inline constexpr int kYoung = 16;                        ///< points with a depth, below which the others help
+inline constexpr Scalar kOpenSpread = Scalar(2);         ///< of an inverse depth not known yet, in the median one
 inline constexpr Scalar kWeakPrior = Scalar(1);          ///< weight of the prediction where matches leave a pose open
 inline constexpr Scalar kMaxParallel = Scalar(0.0087);  ///< [rad] between rays that need no depth to fit: half a degree
 }  // namespace window_tracking

@@ -1,0 +1,92 @@
+#include "base/elapsed.h"
+#include "geometry/small_cholesky.h"
+#include "slam/ellipse.h"
+#include "slam/tuning.h"
+#include "slam/window_tracking.h"
+#include "window/tuning.h"
+
+/// WindowTracking: the pose of a frame, and where to search when the motion model cannot tell (followed_view.h).
+
+namespace pf {
+
+using namespace tuning::window_tracking;
+
+void WindowTracking::keep_view() {
+  followed_.keep(search_.tracker().pyramid(), motion_.body().q_WC, motion_.body().p_W);
+}
+
+bool WindowTracking::is_wide(const Mat2& innovation) const {
+  const Mat2 followed = Mat2::Identity() * FollowedView::variance(map_.camera());
+  return ellipse_area(innovation, settings_.gate) >
+         tuning::image_front_end::kFollowArea * ellipse_area(followed, settings_.gate);
+}
+
+/// Where most ellipses are wide, searches go about the places where the picture as a whole has gone, from now on. False: they are not, or
+/// the picture does not say it.
+bool WindowTracking::begin_following() {
+  int wide = 0;
+  for (int t = 0; t < frame_.match_count(); ++t) wide += is_wide(frame_.match(t).innovation) ? 1 : 0;
+  if (wide == 0 || 2 * wide < frame_.match_count()) return false;
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
+  is_following_ = followed_.find(map_.camera(), search_.tracker().pyramid());
+  return is_following_;
+}
+
+/// Directs a search to where the followed view has the point, unless its own ellipse says as much. False where that has no place for it.
+bool WindowTracking::aim(int i, SearchTask* task) const {
+  if (!is_wide(task->innovation)) return true;
+  task->q_WC = followed_.q_WC();
+  task->c_W = followed_.p_W();
+  task->innovation = Mat2::Identity() * FollowedView::variance(map_.camera());
+  const WindowPoint& point = map_.point(i);
+  Vec3 at_W = task->p_W;
+  if (!point.has_depth) {
+    Vec3 ray_C;
+    if (!unproject(map_.camera(), point.pixel, &ray_C)) return false;
+    at_W = followed_.p_W() + point.seen_from.q_WC * ray_C;
+  }
+  return followed_.pixel_of(map_.camera(), at_W, &task->predicted);
+}
+
+void WindowTracking::measure(Scalar median_depth) {
+  const PosePrior prior = now();
+  CameraPose pose;
+  Mat6 information;
+  if (measure_about(prior, &pose, &information) == 0) {
+    measure_all(median_depth);
+    if (frame_.report.inliers > 0 || !begin_following()) return;
+    frame_.forget_searches();
+    const bool found = measure_about(prior, &pose, &information) > 0;
+    if (!found) measure_all(median_depth);
+    is_following_ = false;
+    if (!found) return;
+  }
+  if (has_rows())
+    correct_by_rows(prior, pose, information);
+  else
+    correct(pose, information);
+  measure_unplaced(median_depth);
+}
+
+void WindowTracking::correct(const CameraPose& pose, const Mat6& information) {
+  PosePrior now;
+  if (apply(pose, information, &now)) mark(frame_.report.matches, now);
+}
+
+/// Corrects the body by a measured pose. False where its covariance is none. now: the pose with the covariance that the matches leave.
+bool WindowTracking::apply(const CameraPose& pose, Mat6 information, PosePrior* now) {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
+  SmallCholesky<6> factored;
+  // What the matches do not determine, the prediction does.
+  if (!factored.factor(information)) {
+    SmallCholesky<6> prior;
+    if (!prior.factor(motion_.pose_covariance())) return false;
+    information += kWeakPrior * prior.inverse();
+    if (!factored.factor(information)) return false;
+  }
+  const bool corrected = motion_.correct(pose.q_WC, pose.p_WC, factored.inverse());
+  *now = {pose.q_WC, pose.p_WC, factored.inverse(), motion_.body().v_W, motion_.body().w_C};
+  return corrected;
+}
+
+}  // namespace pf
