@@ -1,5 +1,6 @@
 #include "slam/followed_view.h"
 
+#include "slam/ellipse.h"
 #include "slam/tuning.h"
 #include "track/image_rotation.h"
 
@@ -22,13 +23,20 @@ bool FollowedView::find(const Camera& camera, const Pyramid& image) {
   return true;
 }
 
-bool FollowedView::pixel_of(const Camera& camera, const Vec3& point_W, Vec2* pixel) const {
-  return project(camera, data_.q_now_WC.conjugate() * (point_W - data_.p_W), pixel);
+bool FollowedView::aim(const Camera& camera, const Vec3& point_W, SearchTask* task) const {
+  task->q_WC = data_.q_now_WC;
+  task->c_W = data_.p_W;
+  task->innovation = covariance(camera);
+  return project(camera, data_.q_now_WC.conjugate() * (point_W - data_.p_W), &task->predicted);
 }
 
-Scalar FollowedView::variance(const Camera& camera) {
+Mat2 FollowedView::covariance(const Camera& camera) {
   const Scalar sigma = tuning::followed_view::kSigma * static_cast<Scalar>(camera.width) / Thumbnail::kWidth;
-  return sigma * sigma;
+  return Mat2::Identity() * (sigma * sigma);
+}
+
+bool FollowedView::is_wide(const Camera& camera, const Mat2& innovation, Scalar gate) {
+  return ellipse_area(innovation, gate) > tuning::followed_view::kWideArea * ellipse_area(covariance(camera), gate);
 }
 
 }  // namespace pf

@@ -2,6 +2,7 @@
 
 #include "geometry/camera.h"
 #include "track/thumbnail.h"
+#include "track/tracker.h"
 #include "vision/pyramid.h"
 
 /// Where to look in an image when the motion model cannot tell: by how the whole picture has moved since the last frame that supported its
@@ -20,13 +21,14 @@ class FollowedView {
   /// Finds the kept view in an image. False if there is none, or the pictures do not match.
   bool find(const Camera& camera, const Pyramid& image);
 
-  /// Camera of the image in which the view was found, as if it had only turned.
-  const Quat& q_WC() const { return data_.q_now_WC; }
+  /// Centre of the camera in whose image the view was found: that of the kept one, as if it had only turned.
   const Vec3& p_W() const { return data_.p_W; }
-  /// Pixel of a point there. False where it is not in front of the camera.
-  bool pixel_of(const Camera& camera, const Vec3& point_W, Vec2* pixel) const;
-  /// Of that pixel, per axis [px^2].
-  static Scalar variance(const Camera& camera);
+  /// Directs a search to where that camera has a point. False where it is not in front of it.
+  bool aim(const Camera& camera, const Vec3& point_W, SearchTask* task) const;
+  /// Covariance of the pixel there [px^2].
+  static Mat2 covariance(const Camera& camera);
+  /// Whether the ellipse of a search is several times as large as that about such a pixel, so that aiming helps.
+  static bool is_wide(const Camera& camera, const Mat2& innovation, Scalar gate);
 
  private:
   struct Data {

@@ -127,17 +127,12 @@ Scalar ImageFrontEnd::widest_ellipse(int count) const {
 
 /// Whether a search ellipse is several times as large as that about a followed pixel.
 bool ImageFrontEnd::is_wide(const Mat2& innovation) const {
-  const Mat2 followed = Mat2::Identity() * FollowedView::variance(filter_.lens());
-  return ellipse_area(innovation, settings_.gate) > kFollowArea * ellipse_area(followed, settings_.gate);
+  return FollowedView::is_wide(filter_.lens(), innovation, settings_.gate);
 }
 
 /// Directs a search to where the followed view has the feature, unless its own ellipse says as much. False where that has no place for it.
 bool ImageFrontEnd::aim(SearchTask* task) const {
-  if (!is_following_ || !is_wide(task->innovation)) return true;
-  task->q_WC = followed_.q_WC();
-  task->c_W = followed_.p_W();
-  task->innovation = Mat2::Identity() * FollowedView::variance(filter_.lens());
-  return followed_.pixel_of(filter_.lens(), task->p_W, &task->predicted);
+  return !is_following_ || !is_wide(task->innovation) || followed_.aim(filter_.lens(), task->p_W, task);
 }
 
 /// What the tracker needs to search for a feature, but for where it is predicted.
@@ -156,8 +151,9 @@ SearchTask ImageFrontEnd::task_of(int feature) const {
     const Block& plane = state.block[state.plane_of(slot)];
     Scalar d;
     plane_normal(state.frame_of(plane), plane.xyz(), &task.normal_W, &d);
+  } else if (map_.features[feature].is_target) {
+    task.normal_W = map_.target_normal_W;
   }
-  if (map_.features[feature].is_target) task.normal_W = map_.target_normal_W;
   const CameraAt camera = camera_at(state, Scalar(0));
   task.q_WC = camera.q_WC;
   task.c_W = camera.p_W;
@@ -261,8 +257,7 @@ bool ImageFrontEnd::is_beyond_chance(int first, int found) {
 Scalar ImageFrontEnd::searched_area(int i) const {
   const Mat2& S = frame_.match(update_.candidate(i).match).innovation;
   Scalar most = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
-  if (is_following_ && is_wide(S))
-    most = ellipse_area(Mat2::Identity() * FollowedView::variance(filter_.lens()), settings_.gate);
+  if (is_following_ && is_wide(S)) most = ellipse_area(FollowedView::covariance(filter_.lens()), settings_.gate);
   return std::min(most, ellipse_area(S, settings_.gate));
 }
 

@@ -151,12 +151,12 @@ inline constexpr int kScouts = 12;            ///< candidates that are measured 
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
 inline constexpr int kSettled = 5;  ///< measurements of a feature whose residuals are those of its matches
-inline constexpr Scalar kFollowArea = Scalar(4);  ///< least area of an ellipse in those about followed pixels
 }  // namespace image_front_end
 
 /// Where the picture as a whole has gone.
 namespace followed_view {
-inline constexpr Scalar kSigma = Scalar(0.3);  ///< [px of a thumbnail] of a pixel, for a shift is taken as a turn
+inline constexpr Scalar kSigma = Scalar(0.3);   ///< [px of a thumbnail] of a pixel, for a shift is taken as a turn
+inline constexpr Scalar kWideArea = Scalar(4);  ///< least area of a wide ellipse in those about followed pixels
 }  // namespace followed_view
 
 /// Matches that enter the update.

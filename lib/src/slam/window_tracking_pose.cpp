@@ -1,6 +1,5 @@
 #include "base/elapsed.h"
 #include "geometry/small_cholesky.h"
-#include "slam/ellipse.h"
 #include "slam/tuning.h"
 #include "slam/window_tracking.h"
 #include "window/tuning.h"
@@ -16,9 +15,7 @@ void WindowTracking::keep_view() {
 }
 
 bool WindowTracking::is_wide(const Mat2& innovation) const {
-  const Mat2 followed = Mat2::Identity() * FollowedView::variance(map_.camera());
-  return ellipse_area(innovation, settings_.gate) >
-         tuning::image_front_end::kFollowArea * ellipse_area(followed, settings_.gate);
+  return FollowedView::is_wide(map_.camera(), innovation, settings_.gate);
 }
 
 /// Where most ellipses are wide, searches go about the places where the picture as a whole has gone, from now on. False: they are not, or
@@ -35,9 +32,6 @@ bool WindowTracking::begin_following() {
 /// Directs a search to where the followed view has the point, unless its own ellipse says as much. False where that has no place for it.
 bool WindowTracking::aim(int i, SearchTask* task) const {
   if (!is_wide(task->innovation)) return true;
-  task->q_WC = followed_.q_WC();
-  task->c_W = followed_.p_W();
-  task->innovation = Mat2::Identity() * FollowedView::variance(map_.camera());
   const WindowPoint& point = map_.point(i);
   Vec3 at_W = task->p_W;
   if (!point.has_depth) {
@@ -45,7 +39,7 @@ bool WindowTracking::aim(int i, SearchTask* task) const {
     if (!unproject(map_.camera(), point.pixel, &ray_C)) return false;
     at_W = followed_.p_W() + point.seen_from.q_WC * ray_C;
   }
-  return followed_.pixel_of(map_.camera(), at_W, &task->predicted);
+  return followed_.aim(map_.camera(), at_W, task);
 }
 
 void WindowTracking::measure(Scalar median_depth) {
