@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace pf::capture {
 
@@ -31,6 +32,12 @@ inline CLI::Validator whole_number_in(int low, int high) {
         return "'" + text + "' is not a whole number from " + std::to_string(low) + " to " + std::to_string(high);
       },
       "INT in [" + std::to_string(low) + " - " + std::to_string(high) + "]");
+}
+
+/// What is wrong with a command line. Of what it does not know CLI11 says all words, the last one first.
+inline std::string what_is_wrong(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> unknown = app.remaining();
+  return unknown.empty() ? error.what() : "'" + unknown.front() + "' is no option that is known here";
 }
 
 /// A name that is empty is one that a variable of the shell should have held; without the option would be something else.

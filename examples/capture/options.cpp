@@ -342,10 +342,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     if (error.get_exit_code() == 0) {
       code = app.exit(error);
     } else {
-      // Of what it does not know CLI11 says all words, the last one first.
-      const std::vector<std::string> unknown = app.remaining();
-      code = refuse((unknown.empty() ? error.what() : "'" + unknown.front() + "' is no option that is known here") +
-                    "; see pf-capture --help");
+      code = refuse(what_is_wrong(app, error) + "; see pf-capture --help");
     }
     return Parsed::kExit;
   }

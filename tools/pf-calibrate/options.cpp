@@ -8,6 +8,7 @@
 #include <map>
 #include <vector>
 
+#include "../../examples/capture/checked_options.h"
 #include "markers.h"
 #include "print_target.h"
 
@@ -76,11 +77,7 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
     code = app.exit(done);
     return false;
   } catch (const CLI::ParseError& error) {
-    // Of what it does not know CLI11 says all words, the last one first.
-    const std::vector<std::string> unknown = app.remaining();
-    const std::string what =
-        unknown.empty() ? error.what() : "'" + unknown.front() + "' is no option that is known here";
-    std::fprintf(stderr, "pf-calibrate: %s; see pf-calibrate --help\n", what.c_str());
+    std::fprintf(stderr, "pf-calibrate: %s; see pf-calibrate --help\n", capture::what_is_wrong(app, error).c_str());
     code = 2;
     return false;
   }
