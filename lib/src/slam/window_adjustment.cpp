@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slam/window_covisible.h"
 #include "window/tuning.h"
 
 namespace pf {
@@ -17,6 +18,7 @@ bool WindowAdjustment::layout(Arena& arena) {
   max_free_ = lens_rows > 0 ? keyframes : keyframes - kHeldKeyframes;
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
   const std::size_t poses = static_cast<std::size_t>(keyframes + 1);  // and the target's host
+  is_connected_ = arena.take<bool>(static_cast<std::size_t>(keyframes));
   pose_ = arena.take<BundlePose>(poses);
   keyframe_ = arena.take<int>(poses);
   pixel_ = arena.take<BundlePixel>(static_cast<std::size_t>(keyframes) * points);
@@ -33,23 +35,27 @@ bool WindowAdjustment::layout(Arena& arena) {
                           lens_rows);
 }
 
-/// Of few keyframes, all but one, unless the target holds them; of more, all but the oldest three, the oldest first. Where the lens is
-/// uncertain, all but one always: keyframes that are held fixed say as if they knew it what lens they have been adjusted with. While a
-/// record goes on, the newest. Returns how many.
+/// Of the keyframes that hang together with the newest: of few, all but one, unless the target holds them; of more, all but the oldest
+/// three, the oldest first. Where the lens is uncertain, all but one always: keyframes that are held fixed say as if they knew it what lens
+/// they have been adjusted with. While a record goes on, the newest of all. Returns how many.
 int WindowAdjustment::choose_free(bool settled) {
   const KeyframeTable& keyframes = map_.keyframes;
-  const bool three = settled && settings_.lens.rows.count == 0 && keyframes.count() >= 2 * kHeldKeyframes;
+  connected_ = settled ? connected_keyframes(map_, kMinShared, is_connected_) : 0;
+  if (connected_ < kMinConnected) {
+    for (int k = 0; k < keyframes.capacity(); ++k) is_connected_[k] = keyframes.used(k);
+    connected_ = keyframes.count();
+  }
+  const bool three = settled && settings_.lens.rows.count == 0 && connected_ >= 2 * kHeldKeyframes;
   const int others = is_held_by_target() ? 0 : three ? kHeldKeyframes : 1;
-  const int free =
-      std::min(settled ? max_free_ : static_cast<int>(settings_.window_keyframes), keyframes.count() - others);
+  const int free = std::min(settled ? max_free_ : static_cast<int>(settings_.window_keyframes), connected_ - others);
   for (int c = 0; c < free; ++c) {
     // The (free - c)-th newest.
     int at = -1;
     for (int k = 0; k < keyframes.capacity(); ++k) {
-      if (!keyframes.used(k)) continue;
+      if (!is_connected_[k]) continue;
       int newer = 0;
       for (int other = 0; other < keyframes.capacity(); ++other)
-        newer += keyframes.used(other) && keyframes[other].number > keyframes[k].number ? 1 : 0;
+        newer += is_connected_[other] && keyframes[other].number > keyframes[k].number ? 1 : 0;
       if (newer == free - 1 - c) at = k;
     }
     keyframe_[c] = at;

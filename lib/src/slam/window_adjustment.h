@@ -73,6 +73,10 @@ class WindowAdjustment {
   Target target_;
   int max_free_ = 0;  ///< keyframes that are adjusted at once
 
+  // Keyframes that hang together with the newest one.
+  bool* is_connected_ = nullptr;
+  int connected_ = 0;
+
   // Of the bundle.
   BundlePose* pose_ = nullptr;
   int* keyframe_ = nullptr;  ///< of each pose, -1 of the target's host

@@ -9,11 +9,11 @@ namespace pf {
 
 using namespace tuning::window_adjustment;
 
-/// Whether two keyframes at least see points of the target, which then holds the map where it is.
+/// Whether two keyframes at least, of those that hang together, see points of the target, which then holds the map where it is.
 bool WindowAdjustment::is_held_by_target() const {
   int keyframes = 0;
   for (int k = 0; k < map_.keyframes.capacity(); ++k) {
-    if (!map_.keyframes.used(k)) continue;
+    if (!is_connected_[k]) continue;
     int seen = 0;
     for (int i = 0; i < map_.capacity(); ++i)
       seen += map_.used(i) && map_.feature(i).is_target && map_.keyframes.pixels(k)[i].seen ? 1 : 0;
@@ -44,7 +44,7 @@ void WindowAdjustment::add_target(int points, int* poses) {
 /// Of many keyframes of which but one is fixed: the distance from that one of the farthest of the older half of the others. False where
 /// other keyframes, or the target, hold the scale.
 bool WindowAdjustment::hold_distance(int free, int seen_in, BundleDistance* held) const {
-  if (seen_in != free + 1 || is_held_by_target() || map_.keyframes.count() < 2 * kHeldKeyframes) return false;
+  if (seen_in != free + 1 || is_held_by_target() || connected_ < 2 * kHeldKeyframes) return false;
   held->pose = -1;
   held->from_W = pose_[free].p_W;
   held->distance = Scalar(0);

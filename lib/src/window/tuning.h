@@ -107,6 +107,7 @@ inline constexpr int kRounds = 10;            ///< of Levenberg-Marquardt
 inline constexpr int kFirstRounds = 30;       ///< likewise, while the window holds all keyframes
 inline constexpr int kMinPlanePoints = 4;     ///< of a plane that is adjusted
 inline constexpr int kMinScaleKeyframes = 2;  ///< held fixed, so that distances from planes do not shrink the map
+inline constexpr int kMinConnected = 3;        ///< keyframes that are adjusted without those that they share no points with
 inline constexpr int kHeldKeyframes = 3;      ///< the oldest, where all others are adjusted
 inline constexpr Scalar kHeldDistance = Scalar(1e-3);   ///< of a distance that holds the scale: its sigma
 inline constexpr int kMinTargetPoints = 4;              ///< of the target, that hold a keyframe
