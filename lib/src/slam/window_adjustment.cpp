@@ -25,6 +25,7 @@ bool WindowAdjustment::layout(Arena& arena) {
   ray_ = arena.take<Vec3>(points);
   host_ = arena.take<int>(points);
   rho_ = arena.take<Scalar>(points);
+  rho_before_ = arena.take<Scalar>(points);
   prior_ = arena.take<RhoPrior>(points);
   row_ = arena.take<int>(points);
   plane_ = arena.take<BundlePlane>(static_cast<std::size_t>(settings_.max_planes));
@@ -115,7 +116,7 @@ void WindowAdjustment::fill(int seen_in, int points, int* poses) {
       pixel_[c * settings_.max_features + p] = map_.keyframes.pixels(keyframe_[c])[row_[p]];
     ray_[p] = point.ray_K;
     host_[p] = pose_of(point.host, poses);
-    rho_[p] = point.rho;
+    rho_[p] = rho_before_[p] = point.rho;
   }
 }
 
@@ -172,6 +173,7 @@ bool WindowAdjustment::run(bool settled) {
                          plane_,
                          planes,
                          planes > 0 ? plane_of_ : nullptr,
+                         rho_before_,
                          with_lens ? &lens : nullptr,
                          holds_distance ? &held : nullptr};
   adjuster_.adjust(map_.camera(), options, bundle);

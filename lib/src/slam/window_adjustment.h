@@ -84,6 +84,7 @@ class WindowAdjustment {
   Vec3* ray_ = nullptr;
   int* host_ = nullptr;
   Scalar* rho_ = nullptr;
+  Scalar* rho_before_ = nullptr;
   RhoPrior* prior_ = nullptr;
   int* row_ = nullptr;  ///< of each point in the map
   BundlePlane* plane_ = nullptr;

@@ -297,7 +297,7 @@ void BundleAdjuster::add_pixels(const Camera& camera, const AdjustOptions& optio
   *sums = {cost, D, g, seen_by, false};
 }
 
-/// Adds the distance from its plane of a point that has one.
+/// Adds the distance from its plane of a point that has one, in units of the length that its depth has become, where the bundle asks for it.
 template <bool kCostAlone>
 void BundleAdjuster::add_plane(const AdjustOptions& options, const Bundle& bundle, int point, Sums* sums) {
   const int index = bundle.plane_of[point];
@@ -312,8 +312,16 @@ void BundleAdjuster::add_plane(const AdjustOptions& options, const Bundle& bundl
   Mat13 J_plane;
   Mat16 J_H;
   Scalar J_rho, weight;
-  const Scalar e = bearing_plane_distance(plane, R_CW_[host].transpose() * bundle.ray[point], bundle.pose[host].p_W,
-                                          rho, &J_plane, &J_H, &J_rho);
+  Scalar e = bearing_plane_distance(plane, R_CW_[host].transpose() * bundle.ray[point], bundle.pose[host].p_W, rho,
+                                    &J_plane, &J_H, &J_rho);
+  Scalar u = 1;
+  if (bundle.rho_before != nullptr) {
+    u = rho / bundle.rho_before[point];
+    J_rho = u * J_rho + e / bundle.rho_before[point];
+    e *= u;
+    J_plane *= u;
+    J_H *= u;
+  }
   const Scalar information = Scalar(1) / (plane.roughness * plane.roughness);
   sums->cost += huber_cost(e * e * information, options.huber, &weight);
   if (kCostAlone) return;

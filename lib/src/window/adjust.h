@@ -84,6 +84,9 @@ struct Bundle {
   BundlePlane* plane = nullptr;
   int planes = 0;
   const int* plane_of = nullptr;         ///< plane of each point, -1 where it has none; null: of no point
+  /// Inverse depth that each point had before. Then a distance from a plane is e rho / rho_before, and does not change where everything is
+  /// multiplied by the same factor; a distance e is the smaller the smaller the map is, and draws it together. Null: e.
+  const Scalar* rho_before = nullptr;
   const BundleLens* lens = nullptr;      ///< null: the lens is exact
   const BundleDistance* held = nullptr;  ///< null: no distance is held
 };
