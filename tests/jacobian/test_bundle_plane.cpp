@@ -46,10 +46,58 @@ void test_bundle_plane_jacobians_should_be_exact() {
   }
 }
 
+void test_relative_plane_distance_should_have_exact_jacobians() {
+  SeededRandom random(43);
+  using Vec1 = Eigen::Matrix<Scalar, 1, 1>;
+  for (int trial = 0; trial < 40; ++trial) {
+    BundlePlane plane = {
+        {exp_so3(random.normals<3>(1)).toRotationMatrix(), random.normals<3>(1)}, random.normals<3>(0.2), 1, true};
+    const Vec3 p_H = random.normals<3>(1);
+    Vec3 ray = random.normals<3>(0.3);
+    ray.z() = 1;
+    const Scalar rho = static_cast<Scalar>(random.uniform(0.5, 2));
+    const Scalar before = rho * static_cast<Scalar>(random.uniform(0.8, 1.2));
+    const auto distance = [&](const Vec3& x, const Vec6& h, Scalar e) {
+      BundlePlane moved = plane;
+      moved.x += x;
+      const Mat3 R = exp_so3(h.head<3>()).toRotationMatrix();
+      return Vec1(relative_plane_distance(moved, R.lazyProduct(ray), p_H + h.tail<3>(), rho + e, before));
+    };
+    Mat13 J_plane;
+    Mat16 J_H;
+    Vec1 J_rho;
+    const Scalar e = relative_plane_distance(plane, ray, p_H, rho, before, &J_plane, &J_H, &J_rho(0));
+    TEST_ASSERT_TRUE(std::abs(e - rho / before * bearing_plane_distance(plane, ray, p_H, rho)) < Scalar(1e-5));
+    check_jacobian<1, 3>(
+        J_plane, [&](const Vec3& x) { return distance(x, Vec6::Zero(), 0); }, "J_e_plane");
+    check_jacobian<1, 6>(
+        J_H, [&](const Vec6& h) { return distance(Vec3::Zero(), h, 0); }, "J_e_H");
+    check_jacobian<1, 1>(
+        J_rho, [&](const Vec1& s) { return distance(Vec3::Zero(), Vec6::Zero(), s(0)); }, "J_e_rho", Scalar(0.3));
+  }
+}
+
+void test_relative_plane_distance_should_not_change_with_the_size_of_the_map() {
+  SeededRandom random(44);
+  for (int trial = 0; trial < 40; ++trial) {
+    const BundlePlane plane = {
+        {exp_so3(random.normals<3>(1)).toRotationMatrix(), random.normals<3>(1)}, random.normals<3>(0.2), 1, true};
+    const Vec3 p_H = random.normals<3>(1), ray(Scalar(0.1), Scalar(-0.2), 1);
+    const Scalar rho = static_cast<Scalar>(random.uniform(0.5, 2)), s = static_cast<Scalar>(random.uniform(0.5, 2));
+    BundlePlane scaled = plane;
+    scaled.frame.o_W *= s;
+    scaled.x.z() *= s;
+    const Scalar e = relative_plane_distance(plane, ray, p_H, rho, rho);
+    TEST_ASSERT_TRUE(std::abs(e - relative_plane_distance(scaled, ray, s * p_H, rho / s, rho)) < Scalar(1e-5));
+  }
+}
+
 }  // namespace
 
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_bundle_plane_jacobians_should_be_exact);
+  RUN_TEST(test_relative_plane_distance_should_have_exact_jacobians);
+  RUN_TEST(test_relative_plane_distance_should_not_change_with_the_size_of_the_map);
   return UNITY_END();
 }

@@ -188,7 +188,7 @@ typedef enum pf_backend {
   PF_BACKEND_FILTER = 1, /* a filter over pose, points and planes (Gee 2007); the default */
   /* Keyframes that are adjusted with the points that they see (lib/docs/window.md; Masoud 2015). Images only. PF_ERROR_CONFIG with
    * motion.model inertial, camera.estimate consider, plane.fix_sigma above 0 and capacity.max_patches above 0.
-   * The pose's covariance takes the oldest keyframes as exact, those of points and planes all keyframes and the lens. The block at its
+   * The pose's covariance takes the map's first keyframes as exact, those of points and planes all keyframes and the lens. The block at its
    * defaults is 2.0 MiB, with camera.estimate estimate 2.1. */
   PF_BACKEND_WINDOW = 2
 } pf_backend_t;

@@ -14,6 +14,8 @@ struct Keyframe {
   std::int64_t t_ns = 0;
   Quat q_WC = Quat::Identity();
   Vec3 p_W = Vec3::Zero();
+  Mat6 covariance =
+      Mat6::Zero();  ///< of (theta, p) in W when it was the newest; it was hardly adjusted against W's origin since
   /// With which pixels of points without a depth were taken to the frame's time (window_rows.h): velocities, and a depth, 0: none were.
   /// matches_by_motion: those of points that were seen before too, and not the new points' alone.
   Vec3 v_W = Vec3::Zero(), w_C = Vec3::Zero();
@@ -50,7 +52,7 @@ class KeyframeTable {
   int add(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W) {
     for (int k = 0; k < capacity_; ++k) {
       if (used(k)) continue;
-      keyframe_[k] = {++last_number_, t_ns, q_WC, p_W};
+      keyframe_[k] = {++last_number_, t_ns, q_WC, p_W, Mat6::Zero()};
       for (int i = 0; i < points_; ++i) pixels(k)[i].seen = false;
       ++count_;
       return newest_ = k;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/so3.h"
 #include "slam/window_covisible.h"
 #include "window/tuning.h"
 
@@ -180,7 +181,7 @@ bool WindowAdjustment::run(bool settled) {
   // The last free pose is the newest keyframe's.
   Mat6 P;
   const bool determined = adjuster_.last_pose_covariance(map_.camera(), options, bundle, &P);
-  if (determined) map_covariance_ = inflation * (P + P.transpose()) / 2;
+  if (determined) note_covariance(inflation * (P + P.transpose()) / 2, free, seen_in);
   if (with_lens) {
     map_.move_lens(camera);
     Scalar covariance[WindowLens::kMaxEntries];
@@ -192,6 +193,23 @@ bool WindowAdjustment::run(bool settled) {
   take_back(free, points);
   take_planes_back(planes, determined);
   return true;
+}
+
+/// The newest keyframe's covariance given those that are held fixed, and with it that of the oldest of these, H, which moves everything:
+///
+///   theta = theta_H + dtheta,  p = p_H + R_H dp:   P = P_dd + A P_H Aᵀ,   A = [I 0; -[p - p_H]x I]
+void WindowAdjustment::note_covariance(const Mat6& given_held, int free, int seen_in) {
+  Keyframe& newest = map_.keyframes[keyframe_[free - 1]];
+  map_covariance_ = given_held;
+  int held = -1;
+  for (int c = free; c < seen_in; ++c)
+    if (held < 0 || map_.keyframes[keyframe_[c]].number < map_.keyframes[held].number) held = keyframe_[c];
+  if (held >= 0) {
+    Mat6 A = Mat6::Identity();
+    A.bottomLeftCorner<3, 3>() = -hat(Vec3(pose_[free - 1].p_W - map_.keyframes[held].p_W));
+    map_covariance_ += A * map_.keyframes[held].covariance * A.transpose();
+  }
+  newest.covariance = map_covariance_;
 }
 
 void WindowAdjustment::take_back(int free, int points) {

@@ -25,7 +25,7 @@ class WindowAdjustment {
   /// Adjusts all keyframes of a map that is settled, with the lens where the settings let it be estimated; before, while a record of its
   /// start goes on, the newest ones with the lens as it is. False: there is nothing to adjust yet.
   bool run(bool settled);
-  /// Of the newest keyframe's (theta, p), and with it of the map about it, given the keyframes that were held fixed.
+  /// Of the newest keyframe's (theta, p) in W, and with it of the map about it, given the map's first keyframe.
   const Mat6& map_covariance() const { return map_covariance_; }
   /// The map's lengths were multiplied by s.
   void scale(Scalar s) {
@@ -59,6 +59,7 @@ class WindowAdjustment {
   bool fits_plane(const BundlePlane& plane, int i) const;
   int add_planes(int points);
   void hold_by_pixels(int first, int points);
+  void note_covariance(const Mat6& given_held, int free, int seen_in);
   void take_back(int free, int points);
   void take_planes_back(int planes, bool determined);
   void reject_outliers(int i);

@@ -4,8 +4,13 @@ namespace pf {
 
 void scale_window(Scalar s, const Vec3& c_W, WindowMap* map, WindowPlanes* planes, WindowMotion* motion) {
   const auto move = [&](Vec3* p_W) { *p_W = c_W + s * (*p_W - c_W); };
-  for (int k = 0; k < map->keyframes.capacity(); ++k)
-    if (map->keyframes.used(k)) move(&map->keyframes[k].p_W);
+  for (int k = 0; k < map->keyframes.capacity(); ++k) {
+    if (!map->keyframes.used(k)) continue;
+    Keyframe& keyframe = map->keyframes[k];
+    move(&keyframe.p_W);
+    keyframe.covariance.bottomRows<3>() *= s;
+    keyframe.covariance.rightCols<3>() *= s;
+  }
   for (int i = 0; i < map->capacity(); ++i) {
     if (!map->used(i)) continue;
     WindowPoint& point = map->point(i);

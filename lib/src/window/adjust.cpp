@@ -153,6 +153,16 @@ Scalar bearing_plane_distance(const BundlePlane& plane, const Vec3& ray_W, const
   return e;
 }
 
+Scalar relative_plane_distance(const BundlePlane& plane, const Vec3& ray_W, const Vec3& p_H, Scalar rho,
+                               Scalar rho_before, Mat13* J_e_plane, Mat16* J_e_H, Scalar* J_e_rho) {
+  const Scalar e = bearing_plane_distance(plane, ray_W, p_H, rho, J_e_plane, J_e_H, J_e_rho);
+  const Scalar ratio = rho / rho_before;
+  if (J_e_plane != nullptr) *J_e_plane *= ratio;
+  if (J_e_H != nullptr) *J_e_H *= ratio;
+  if (J_e_rho != nullptr) *J_e_rho = ratio * *J_e_rho + e / rho_before;
+  return ratio * e;
+}
+
 bool BundleAdjuster::layout(Arena& arena, int max_poses, int max_free_poses, int max_points, int max_planes,
                             int max_lens_rows) {
   if (max_poses > kMaxPoses) return false;
@@ -297,7 +307,7 @@ void BundleAdjuster::add_pixels(const Camera& camera, const AdjustOptions& optio
   *sums = {cost, D, g, seen_by, false};
 }
 
-/// Adds the distance from its plane of a point that has one, in units of the length that its depth has become, where the bundle asks for it.
+/// Adds the distance from its plane of a point that has one.
 template <bool kCostAlone>
 void BundleAdjuster::add_plane(const AdjustOptions& options, const Bundle& bundle, int point, Sums* sums) {
   const int index = bundle.plane_of[point];
@@ -312,16 +322,11 @@ void BundleAdjuster::add_plane(const AdjustOptions& options, const Bundle& bundl
   Mat13 J_plane;
   Mat16 J_H;
   Scalar J_rho, weight;
-  Scalar e = bearing_plane_distance(plane, R_CW_[host].transpose() * bundle.ray[point], bundle.pose[host].p_W, rho,
-                                    &J_plane, &J_H, &J_rho);
-  Scalar u = 1;
-  if (bundle.rho_before != nullptr) {
-    u = rho / bundle.rho_before[point];
-    J_rho = u * J_rho + e / bundle.rho_before[point];
-    e *= u;
-    J_plane *= u;
-    J_H *= u;
-  }
+  const Vec3 ray_W = R_CW_[host].transpose() * bundle.ray[point], &p_H = bundle.pose[host].p_W;
+  const Scalar e =
+      bundle.rho_before != nullptr
+          ? relative_plane_distance(plane, ray_W, p_H, rho, bundle.rho_before[point], &J_plane, &J_H, &J_rho)
+          : bearing_plane_distance(plane, ray_W, p_H, rho, &J_plane, &J_H, &J_rho);
   const Scalar information = Scalar(1) / (plane.roughness * plane.roughness);
   sums->cost += huber_cost(e * e * information, options.huber, &weight);
   if (kCostAlone) return;

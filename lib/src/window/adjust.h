@@ -83,10 +83,9 @@ struct Bundle {
   const RhoPrior* prior = nullptr;  ///< of each point; null: the options' for all
   BundlePlane* plane = nullptr;
   int planes = 0;
-  const int* plane_of = nullptr;         ///< plane of each point, -1 where it has none; null: of no point
-  /// Inverse depth that each point had before. Then a distance from a plane is e rho / rho_before, and does not change where everything is
-  /// multiplied by the same factor; a distance e is the smaller the smaller the map is, and draws it together. Null: e.
-  const Scalar* rho_before = nullptr;
+  const int* plane_of = nullptr;  ///< plane of each point, -1 where it has none; null: of no point
+  const Scalar* rho_before =
+      nullptr;  ///< of each point, for relative_plane_distance; null: a plane's distances are lengths
   const BundleLens* lens = nullptr;      ///< null: the lens is exact
   const BundleDistance* held = nullptr;  ///< null: no distance is held
 };
@@ -122,6 +121,16 @@ bool project_bearing(const Camera& camera, const Mat3& R_WC, const Vec3& ray_W, 
 /// x_H    (theta, p) of the host, rotation on the world side; q turns with it: n . (theta x q) = theta . (q x n)
 Scalar bearing_plane_distance(const BundlePlane& plane, const Vec3& ray_W, const Vec3& p_H, Scalar rho,
                               Mat13* J_e_plane = nullptr, Mat16* J_e_H = nullptr, Scalar* J_e_rho = nullptr);
+
+/// The same distance in units of a length that grows with the point's depth, and its Jacobians:
+///
+///   e' = e rho / rho_before,   de'/drho = (rho de/drho + e) / rho_before,   the others multiplied by rho / rho_before
+///
+/// A distance is the smaller the smaller the map is, and draws it together where little holds its scale; this one does not change where all
+/// lengths are multiplied by the same factor, and is the distance where nothing has moved.
+Scalar relative_plane_distance(const BundlePlane& plane, const Vec3& ray_W, const Vec3& p_H, Scalar rho,
+                               Scalar rho_before, Mat13* J_e_plane = nullptr, Mat16* J_e_H = nullptr,
+                               Scalar* J_e_rho = nullptr);
 
 using RayByLens = Eigen::Matrix<Scalar, 3, kLensParameters>;
 
