@@ -127,8 +127,15 @@ void InnovationWatch::read(const pf_slam_t* slam, const pf_pose_t& truth, FrameD
       sums.innovation.add(before.innovation, now.innovation);
       if (before.match_valid && now.match_valid) sums.match.add(before.match, now.match);
     }
+    now.frames = before.frames + 1;
     before = now;
   }
+}
+
+double InnovationWatch::track_length() const {
+  double frames = 0;
+  for (const auto& [id, past] : past_) frames += past.frames;
+  return past_.empty() ? 0 : frames / static_cast<double>(past_.size());
 }
 
 }  // namespace pfsim

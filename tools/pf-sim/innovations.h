@@ -62,10 +62,12 @@ class InnovationWatch {
   InnovationWatch(const pf_config_t& config, const pf_target_t& points);
   void read(const pf_slam_t* slam, const pf_pose_t& truth, FrameDepth& depth);
   const InnovationSums& sums(TrackKind kind) const { return sums_[static_cast<std::size_t>(kind)]; }
+  /// Frames in which a feature was measured, as mean over those that were measured at all. 0: none was.
+  double track_length() const;
 
  private:
   struct Past {
-    int frame = -2;
+    int frame = -2, frames = 0;
     double innovation[2] = {}, match[2] = {};
     bool match_valid = false;
   };

@@ -24,7 +24,7 @@ struct Choices {
   std::uint64_t first_seed = 1;
   double noise = 2, exposure_s = 0.008, readout_s = 0;
   bool as_global = false;
-  std::vector<std::string> lenses{"right"};
+  std::vector<std::string> lenses{"right"}, masks{"none"};
   double focal_error = 0, k1 = 0;
   bool draw_lens = false;
   bool no_planes = false;
@@ -101,9 +101,11 @@ json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
   InnovationSums sums[kTrackKinds], all;
   FoldSums folds;
   json each = json::array();
+  double track_length = 0;
   for (int s = 0; s < runs.seeds; ++s) {
     const RenderedSummary& r = summaries[s];
     folds.add(r.folds);
+    track_length += r.track_length / runs.seeds;
     lost_frames += r.lost_frames;
     const bool lost = r.lost_frames > 0 || !r.done;
     lost_runs += lost;
@@ -119,12 +121,14 @@ json summarise_runs(const Runs& runs, const RenderedSummary* summaries) {
                     {"nees_position", numbers["nees_position"]["mean"]},
                     {"nees_pose", numbers["nees_pose"]["mean"]},
                     {"camera_rmse_m", numbers["camera_rmse_m"]},
+                    {"track_length", r.track_length},
                     {"motion", numbers["motion"]},
                     {"folds", folds_json(r.folds)},
                     {"lens_error", r.lens_error},
                     {"lens_sigma", r.lens_sigma}});
   }
   const double frames = static_cast<double>(runs.seeds) * runs.frames;
+  out["track_length"] = track_length;
   out["lost_runs"] = lost_runs;
   out["lost_frames"] = lost_frames;
   out["tracked_share"] = tracked / frames;
@@ -159,9 +163,10 @@ void print_runs(const json& j) {
       number("/camera_rmse_m"), number("/camera_sigma_m"), number("/claimed_over_real"), number("/state_dim/median"),
       number("/inliers_median"), number("/nis_per_dof"));
   print_motion(j["motion"]);
-  std::printf("%g runs of %g frames: %g lost runs, %g lost frames, %.2f %% tracked, %.2f %% coasting\n",
-              number("/runs"), number("/frames"), number("/lost_runs"), number("/lost_frames"),
-              100 * number("/tracked_share"), 100 * number("/coasting_share"));
+  std::printf(
+      "%g runs of %g frames: %g lost runs, %g lost frames, %.2f %% tracked, %.2f %% coasting; tracks of %.1f frames\n",
+      number("/runs"), number("/frames"), number("/lost_runs"), number("/lost_frames"), 100 * number("/tracked_share"),
+      100 * number("/coasting_share"), number("/track_length"));
   std::printf(
       "planes: %g true (NEES %.1f, median %.1f, 3 dof), %g false, %g twice; of %g surfaces seen well %g found, %g "
       "within 2 deg and 2 cm (worst %.2f "
@@ -192,6 +197,11 @@ void print_runs(const json& j) {
   }
 }
 
+/// pf_masks_t by its name; -1: there is none.
+int masks_by_name(const std::string& name) {
+  return name == "none" ? PF_MASKS_NONE : name == "partial" ? PF_MASKS_PARTIAL : name == "whole" ? PF_MASKS_WHOLE : -1;
+}
+
 /// What a filter is told of a camera when its calibration is wrong: the focal length, and nothing of the distortion.
 pf_camera_t wrong_camera(const pf_camera_t& truth, double focal_error, const std::string& lens) {
   pf_camera_t camera = truth;
@@ -219,26 +229,29 @@ bool prepare(const Choices& c, RenderedOptions& o) {
   }
   for (const std::string& start : c.starts)
     for (const std::string& lens : c.lenses)
-      for (const double sigma : c.sigma_pixels) {
-        Variant v;
-        pf_config_default(&v.config);
-        v.lens = lens;
-        v.config.camera = lens == "right" ? o.sim.camera : wrong_camera(o.sim.camera, c.focal_error, lens);
-        v.config.camera.readout_s = c.as_global ? 0 : c.readout_s;
-        if (sigma > 0) v.config.measurement.sigma_px = sigma;
-        if (c.backend == "window") {
-          v.config.backend = PF_BACKEND_WINDOW;
-          v.config.map.features_in_view = kWindowFeatures;
+      for (const double sigma : c.sigma_pixels)
+        for (const std::string& masks : c.masks) {
+          Variant v;
+          pf_config_default(&v.config);
+          v.lens = lens;
+          v.masks = masks;
+          v.config.map.masks = masks_by_name(masks);
+          v.config.camera = lens == "right" ? o.sim.camera : wrong_camera(o.sim.camera, c.focal_error, lens);
+          v.config.camera.readout_s = c.as_global ? 0 : c.readout_s;
+          if (sigma > 0) v.config.measurement.sigma_px = sigma;
+          if (c.backend == "window") {
+            v.config.backend = PF_BACKEND_WINDOW;
+            v.config.map.features_in_view = kWindowFeatures;
+          }
+          if (c.no_planes) v.config.plane.enabled = 0;
+          if (c.max_features > 0) v.config.capacity.max_features = c.max_features;
+          if (c.max_state_dim > 0) v.config.capacity.max_state_dim = c.max_state_dim;
+          if (c.max_planes > 0) v.config.capacity.max_planes = c.max_planes;
+          v.start = start == "rectangle" ? RenderedStart::kRectangle
+                    : start == "points"  ? RenderedStart::kPoints
+                                         : RenderedStart::kPose;
+          o.variants.push_back(v);
         }
-        if (c.no_planes) v.config.plane.enabled = 0;
-        if (c.max_features > 0) v.config.capacity.max_features = c.max_features;
-        if (c.max_state_dim > 0) v.config.capacity.max_state_dim = c.max_state_dim;
-        if (c.max_planes > 0) v.config.capacity.max_planes = c.max_planes;
-        v.start = start == "rectangle" ? RenderedStart::kRectangle
-                  : start == "points"  ? RenderedStart::kPoints
-                                       : RenderedStart::kPose;
-        o.variants.push_back(v);
-      }
   return true;
 }
 
@@ -253,6 +266,7 @@ std::string label_of(const Choices& c, const Variant& variant, const std::string
     std::snprintf(text, sizeof text, "_%g_px", sigma);
     label += text;
   }
+  if (c.masks.size() > 1) label += "_" + variant.masks;
   return label;
 }
 
@@ -263,6 +277,8 @@ int run(const Choices& c) {
   for (const std::string& lens : c.lenses)
     if (lens != "right" && lens != "exact" && lens != "consider" && lens != "estimate")
       return refuse("the lens is right, exact, consider or estimate");
+  for (const std::string& masks : c.masks)
+    if (masks_by_name(masks) < 0) return refuse("--masks is none, partial or whole");
   if (c.backend != "filter" && c.backend != "window") return refuse("--backend is filter or window");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
     return refuse("--seeds, --jobs and --frames must be positive");
@@ -301,7 +317,7 @@ int run(const Choices& c) {
                 {"k1", c.k1}}}};
   for (std::size_t v = 0; v < options.variants.size(); ++v) {
     const double sigma = options.variants[v].config.measurement.sigma_px;
-    const std::string start = c.starts[v / (c.sigma_pixels.size() * c.lenses.size())];
+    const std::string start = c.starts[v / (c.sigma_pixels.size() * c.lenses.size() * c.masks.size())];
     const std::string label = label_of(c, options.variants[v], start);
     const Runs runs{c.seeds, c.frames, c.first_seed, job.rows + v * seeds * frames};
     json& numbers = out["cases"][label] = summarise_runs(runs, job.summaries + v * seeds);
@@ -338,6 +354,7 @@ void add_rendered(CLI::App& app, int& result) {
   command->add_option(
       "--lens", c->lenses,
       "one or more: right, or with a wrong calibration that the library takes as exact, considers or estimates");
+  command->add_option("--masks", c->masks, "one or more of map.masks: none, partial, whole");
   command->add_option("--focal-error", c->focal_error, "of a wrong calibration, relative");
   command->add_flag("--draw-lens", c->draw_lens,
                     "each run's true lens is drawn from the prior (1 %, centre 1 % of the width, k1 0.05), which only "

@@ -148,6 +148,7 @@ void run_rendered(const RenderedOptions& options, std::uint64_t seed, const std:
   for (std::size_t v = 0; v < runners.size(); ++v) {
     for (int k = 0; k < kTrackKinds; ++k)
       summaries[v]->innovations[k] = runners[v]->watch.sums(static_cast<TrackKind>(k));
+    summaries[v]->track_length = runners[v]->watch.track_length();
     summaries[v]->folds = runners[v]->folds.sums();
     read_lens(runners[v]->context.slam, sim_options.camera, summaries[v]);
     summaries[v]->planes = surfaces.judge(runners[v]->context.slam);

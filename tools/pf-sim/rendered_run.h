@@ -18,7 +18,7 @@ enum class RenderedStart {
 };
 
 struct Variant {
-  std::string lens = "right";  ///< for its label
+  std::string lens = "right", masks = "none";  ///< for its label
   RenderedStart start = RenderedStart::kRectangle;
   pf_config_t config;
 };
@@ -38,7 +38,8 @@ struct RenderedSummary {
   std::int32_t lost_frames = 0;  ///< also those that were refused or have no valid covariance
   std::int32_t coasting_frames = 0, tracked_frames = 0, starting_frames = 0;
   InnovationSums innovations[kTrackKinds];
-  PlanesVerdict planes;  ///< at the end of the run
+  double track_length = 0;  ///< InnovationWatch::track_length
+  PlanesVerdict planes;     ///< at the end of the run
   FoldSums folds;
   double lens_error[5] = {},
          lens_sigma[5] = {};  ///< of fx, fy, cx, cy and k1 at the end; no sigma where the filter took them as exact

@@ -28,7 +28,7 @@ COLUMNS = {
     "start": ("start frame", 1, 0, False), "nis": ("NIS per dof", 1, 2, False), "planes": ("planes", 1, 0, True),
     "folded": ("folded", 1, 0, True), "in_view": ("searched", 1, 0, True), "share": ("share folded [%]", 100, 1, True),
     "with_plane": ("frames with a plane [%]", 100, 0, True), "saved": ("rows saved [%]", 100, 1, True),
-    "lost": ("lost", 1, 0, False), "ms": ("ms", 1, 2, False),
+    "lost": ("lost", 1, 0, False), "track": ("track [frames]", 1, 1, True), "ms": ("ms", 1, 2, False),
 }
 
 
@@ -73,6 +73,7 @@ def measure(folder, sequence):
         "lost": report["lost"], "ms": report["ms_per_frame"]["median"],
     }
     folding = report.get("folding") or {}
+    row["track"] = (report.get("track_length") or {}).get("mean")
     row["share"], row["with_plane"] = folding.get("share_folded"), folding.get("frames_with_plane")
     row["saved"] = folding.get("share_rows_saved")
     row["in_view"] = report.get("features_in_view", {}).get("median")
