@@ -91,6 +91,9 @@ class FrameSuite {
     config.camera = frames.camera;
     config.kernels = kernels_by_name(options_.kernels);
     config.clock_ns = clock_ns;
+    if (options_.window) config.backend = PF_BACKEND_WINDOW;
+    config.map.masks = options_.masks;
+    if (options_.features > 0) config.map.features_in_view = options_.features;
     if (!frames.walls.empty()) {
       config.capacity.max_patches = options_.patches;
       config.capacity.max_planes += static_cast<int32_t>(frames.walls.size());

@@ -30,6 +30,10 @@ int main(int argc, char** argv) {
       sub->add_option("--patches", options.patches, "capacity for patches of these walls")
           ->check(CLI::Range(0, 32))
           ->capture_default_str();
+      sub->add_flag("--window", options.window, "the back end with keyframes");
+      sub->add_option("--masks", options.masks, "map.masks: 0 none, 1 partial, 2 whole")->check(CLI::Range(0, 2));
+      sub->add_option("--features", options.features, "map.features_in_view (default: the library's)")
+          ->check(CLI::Range(0, 1000));
       sub->add_option("--passes", options.passes, "through every sequence")
           ->check(CLI::Range(1, 1000))
           ->capture_default_str();

@@ -27,6 +27,9 @@ struct SuiteOptions {
   std::string start, calibration;
   std::string walls;    ///< file of walls known beforehand; none where it is empty
   int patches = 4;      ///< capacity for patches, where there are walls
+  bool window = false;  ///< the back end
+  int masks = 0;        ///< pf_masks_t
+  int features = 0;     ///< in view; 0: the library's default
   int passes = 3;       ///< through every sequence
   int seeds = 10;       ///< of suites that draw what they run on
   int frames = 100000;  ///< at most, of every sequence

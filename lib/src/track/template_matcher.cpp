@@ -13,8 +13,8 @@ namespace {
 using namespace tuning::template_match;
 
 constexpr int kPatchSide = SourcePatch::kSize;
-constexpr int kBandwidth = 2 * PlanarTemplate::kMaxSide;
 constexpr int kWindow = 2 * kReach + 1;
+constexpr int kRegionRow = (PlanarTemplate::kMaxSide + 3) / 4 * 4 + kWindow - 1;
 constexpr float kPerByte = 1.0f / 255.0f;
 constexpr float kNoiseKept =
     0.8f;  ///< of a pixel's variance, what interpolation and blur leave in residuals, both images together
@@ -63,6 +63,7 @@ bool TemplateMatcher::layout(Arena& arena, int side) {
   PlanePatch* patch = arena.take<PlanePatch>(1);
   if (patch != nullptr) patch_ = new (patch) PlanePatch();
   learnt_ = arena.take<std::uint8_t>(static_cast<std::size_t>(side * side));
+  region_ = arena.take<float>(static_cast<std::size_t>(kRegionRow * (side + kWindow - 1)));
   const std::size_t pattern = static_cast<std::size_t>(side * ((side + 3) / 4 * 4));
   grey_ = arena.take<float>(pattern);
   weight_ = arena.take<float>(pattern);
@@ -153,13 +154,11 @@ void TemplateMatcher::make_pattern(const SearchTask& task, const Mat2& A, Patter
 
 /// Zero-mean normalised correlation with the mask as weights. Its square is 1 less the weighted mean square residual, gain and bias
 /// projected out, over the image's own.
-float TemplateMatcher::score(const ImageView& image, const Pattern& pattern, int x, int y) const {
-  const int left = x - pattern.size / 2, top = y - pattern.size / 2;
+/// x, y: first pixel in region_.
+float TemplateMatcher::score(const Pattern& pattern, int x, int y) const {
   F32x4 v = {}, vv = {}, tv = {};
-  float row[kBandwidth] = {};
   for (int j = 0; j < pattern.size; ++j) {
-    const std::uint8_t* from = image.pixel(left, top + j);
-    for (int i = 0; i < pattern.size; ++i) row[i] = static_cast<float>(static_cast<int>(from[i]) - 128);
+    const float* row = region_ + (y + j) * kRegionRow + x;
     for (int i = 0; i < pattern.row; i += 4) {
       const F32x4 value = load<F32x4>(row + i), weighted = value * load<F32x4>(weight_ + j * pattern.row + i);
       v += weighted;
@@ -171,9 +170,26 @@ float TemplateMatcher::score(const ImageView& image, const Pattern& pattern, int
   return energy > 0.0f && pattern.grey2 > 0.0f ? sum(tv) / std::sqrt(energy * pattern.grey2) : 0.0f;
 }
 
+/// Grey levels about 128 of all pixels that a pattern meets in its search, its first at (left, top); zero outside of the image.
+void TemplateMatcher::fill_region(const ImageView& image, const Pattern& pattern, int left, int top) {
+  const int rows = pattern.size + kWindow - 1, columns = pattern.row + kWindow - 1;
+  for (int j = 0; j < rows; ++j) {
+    float* to = region_ + j * kRegionRow;
+    const int y = top + j;
+    const int begin = std::clamp(-left, 0, columns), end = std::clamp(image.width - left, begin, columns);
+    if (y < 0 || y >= image.height) {
+      std::fill(to, to + columns, 0.0f);
+      continue;
+    }
+    std::fill(to, to + begin, 0.0f);
+    const std::uint8_t* from = image.row(y);
+    for (int i = begin; i < end; ++i) to[i] = static_cast<float>(static_cast<int>(from[left + i]) - 128);
+    std::fill(to + end, to + columns, 0.0f);
+  }
+}
+
 /// Best whole pixel of the ellipse. False where none is good enough, or another is nearly as good.
-bool TemplateMatcher::find(const ImageView& image, const SearchTask& task, const Pattern& pattern,
-                           Vec2* position) const {
+bool TemplateMatcher::find(const ImageView& image, const SearchTask& task, const Pattern& pattern, Vec2* position) {
   float all[kWindow * kWindow];
   const int cx = static_cast<int>(std::lround(task.predicted.x())),
             cy = static_cast<int>(std::lround(task.predicted.y()));
@@ -183,13 +199,14 @@ bool TemplateMatcher::find(const ImageView& image, const SearchTask& task, const
   S(1, 1) += kFloor;
   const Mat2 M = S.inverse();
   int best = -1;
+  fill_region(image, pattern, cx - kReach - half, cy - kReach - half);
   for (int k = 0; k < kWindow * kWindow; ++k) {
     const int x = cx + k % kWindow - kReach, y = cy + k / kWindow - kReach;
     const Vec2 off = Vec2(x, y) - task.predicted;
     const bool centre = x == cx && y == cy;
     all[k] = -1.0f;
     if (!image.contains(x, y, half) || !(centre || off.dot(M * off) <= task.gate)) continue;
-    all[k] = score(image, pattern, x, y);
+    all[k] = score(pattern, k % kWindow, k / kWindow);
     if (best < 0 || all[k] > all[best]) best = k;
   }
   if (best < 0 || all[best] < kMinPeak) return false;

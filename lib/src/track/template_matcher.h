@@ -43,8 +43,9 @@ class TemplateMatcher {
 
   void fill_patch(const SourcePatch& patch, const PlanarTemplate& shape);
   void make_pattern(const SearchTask& task, const Mat2& A, Pattern* pattern);
-  float score(const ImageView& image, const Pattern& pattern, int x, int y) const;
-  bool find(const ImageView& image, const SearchTask& task, const Pattern& pattern, Vec2* position) const;
+  void fill_region(const ImageView& image, const Pattern& pattern, int left, int top);
+  float score(const Pattern& pattern, int x, int y) const;
+  bool find(const ImageView& image, const SearchTask& task, const Pattern& pattern, Vec2* position);
   bool judge(const PlanarTemplate& shape, const std::uint8_t* mask, float gain, Scalar shift_sigma,
              const Vec2& slope_sigma);
 
@@ -57,6 +58,7 @@ class TemplateMatcher {
   PlanePatch* patch_ = nullptr;                ///< the pixels of a template with one more on each side
   std::uint8_t* learnt_ = nullptr;             ///< mask after the frame
   float *grey_ = nullptr, *weight_ = nullptr;  ///< of a pattern
+  float* region_ = nullptr;                    ///< of the image, about where it is searched
 };
 
 }  // namespace pf
