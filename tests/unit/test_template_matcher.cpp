@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
+#include "planefold/planefold.h"
 #include "support/bounds.h"
 #include "support/template_scene.h"
 #include "track/template_matcher.h"
@@ -216,6 +218,42 @@ void test_mask_with_a_wrong_normal_should_come_back_with_the_right_one() {
   EXPECT_NOT_BELOW(0.85 * 225, scene.shape.area);
 }
 
+void test_smeared_template_should_be_found_and_keep_its_mask() {
+  // Motion of five pixels during the exposure: residuals on the plane are then about sigma_plane. With a bound of 1 half are refused.
+  pf_config_t config;
+  pf_config_default(&config);
+  constexpr int kTrials = 20;
+  int found = 0;
+  double area = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    TemplateScene scene(900 + static_cast<std::uint64_t>(trial));
+    scene.learn_first(MaskMode::kPartial);
+    scene.matcher.init(scene.camera, MaskMode::kPartial, static_cast<float>(config.map.max_misfit));
+    double worst = 0;
+    follow(scene, 6, Scalar(-0.006), &worst);
+    const float before = scene.shape.area;
+    const Vec3 c_W(Scalar(-0.03), 0, 0);
+    const TestImage sharp = scene.see(c_W);
+    const ImageView view = sharp.view();
+    const TestImage smeared(TemplateScene::kWidth, TemplateScene::kHeight, [&](int x, int y) {
+      double sum = 0;
+      for (int k = -2; k <= 2; ++k) sum += *view.pixel(std::clamp(x + k, 0, TemplateScene::kWidth - 1), y);
+      return sum / 5;
+    });
+    scene.tracker.begin_frame(smeared.view());
+    scene.matcher.begin_frame();
+    const SearchTask task = scene.task(c_W);
+    const SearchOutcome outcome = scene.matcher.search(scene.tracker, task);
+    if (!outcome.found) continue;
+    ++found;
+    scene.matcher.learn(scene.tracker, task, outcome.pixel, &scene.shape, scene.mask);
+    area += static_cast<double>(scene.shape.area / before) / kTrials;
+  }
+  std::printf("found %d of %d, mean area kept %.3f\n", found, kTrials, area);
+  EXPECT_NOT_BELOW(kTrials - 2, found);
+  EXPECT_NOT_BELOW(0.85, area);
+}
+
 }  // namespace
 
 int main() {
@@ -227,5 +265,6 @@ int main() {
   RUN_TEST(test_covariance_of_a_normal_should_not_be_too_small);
   RUN_TEST(test_normal_should_stay_where_it_is_not_observable);
   RUN_TEST(test_mask_with_a_wrong_normal_should_come_back_with_the_right_one);
+  RUN_TEST(test_smeared_template_should_be_found_and_keep_its_mask);
   return UNITY_END();
 }

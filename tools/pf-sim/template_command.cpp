@@ -25,7 +25,7 @@ struct Choices {
   std::string scene, json_file, table, backend = "filter";
   int seeds = 5, frames = 0, jobs = 2, template_px = 15;
   std::uint64_t seed = 1;
-  double misfit = 1;
+  double misfit = 0;  // 0: the default of map.max_misfit
 };
 
 struct Job {
@@ -136,7 +136,13 @@ pf_config_t config_of(const pf_camera_t& camera, const Choices& c, int masks, do
   return config;
 }
 
-int run(const Choices& c) {
+int run(const Choices& wanted) {
+  Choices c = wanted;
+  if (c.misfit == 0) {
+    pf_config_t config;
+    pf_config_default(&config);
+    c.misfit = config.map.max_misfit;
+  }
   if (c.seeds < 1 || c.jobs < 1 || c.frames < 0)
     return fail(c.scene + ": --seeds and --jobs must be positive, --frames must not be negative");
   TemplateOptions options;
@@ -251,7 +257,7 @@ void add(CLI::App& app, int& result, const std::string& scene, const std::string
   command->add_option("--seed", c->seed, "of the first run");
   command->add_option("--frames", c->frames, "of each run (0: the scene's own)");
   command->add_option("--template-px", c->template_px, "side of the templates, odd, 9 to 31");
-  command->add_option("--misfit", c->misfit, "map.max_misfit of partial and whole");
+  command->add_option("--misfit", c->misfit, "map.max_misfit of partial and whole (0: its default)");
   command->add_option("--backend", c->backend, "filter or window");
   command->add_option("--csv", c->table, "folder for a table of each case of the first seed, frame by frame")
       ->check(pf::tools::writable_folder());

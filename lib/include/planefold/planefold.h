@@ -300,7 +300,7 @@ typedef struct pf_config {
     int32_t border_px; /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
     int32_t masks;     /* pf_masks_t. Default none. Other than none, it adds memory */
     /* With masks: mean square of a match's residuals, in that of a pixel on the dominant plane, at most. 0.01 .. 100.
-     * Default 1 */
+     * Default 2 */
     double max_misfit;
   } map;
 

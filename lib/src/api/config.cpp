@@ -335,7 +335,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->map.features_in_view = 45;
   config->map.border_px = 8;
   config->map.masks = PF_MASKS_NONE;
-  config->map.max_misfit = 1;
+  config->map.max_misfit = 2;
   config->motion.coast_s = 1.0;
   config->motion.restart_s = 3.0;
   config->keep_gauge = 1;

@@ -221,7 +221,7 @@ bool TemplateMatcher::find(const ImageView& image, const SearchTask& task, const
 
 /// Updates the mask, into learnt_, by the residuals that the aligner holds. Whether the template with that mask fits.
 bool TemplateMatcher::judge(const PlanarTemplate& shape, const std::uint8_t* mask, float gain, Scalar shift_sigma,
-                            const Vec2& slope_sigma) {
+                            const Vec2& slope_sigma, float max_misfit) {
   const PlaneSamples& s = aligner_->samples();
   const float per_half = 1.0f / static_cast<float>(aligner_->half_px()), per_gain = 1.0f / gain;
   const float shift = static_cast<float>(shift_sigma) + kWarpSlack;
@@ -244,7 +244,7 @@ bool TemplateMatcher::judge(const PlanarTemplate& shape, const std::uint8_t* mas
   }
   const float area = mask_area(learnt_, s.count);
   return area >= kMinKept * shape.area && area >= kMinArea &&
-         squares <= max_misfit_ * shape.sigma_plane * shape.sigma_plane * weight;
+         squares <= max_misfit * shape.sigma_plane * shape.sigma_plane * weight;
 }
 
 SearchOutcome TemplateMatcher::search(const Tracker& tracker, const SearchTask& task) {
@@ -294,7 +294,8 @@ SearchOutcome TemplateMatcher::search(const Tracker& tracker, const SearchTask& 
   const Mat2 noise =
       (found.covariance + found.reference_covariance).topLeftCorner<2, 2>() * static_cast<Scalar>(misfit);
   outcome.score = found.correlation;
-  if (!judge(*task.shape, task.mask, found.gain, std::sqrt(noise.trace() / 2), Vec2::Zero())) return outcome;
+  if (!judge(*task.shape, task.mask, found.gain, std::sqrt(noise.trace() / 2), Vec2::Zero(), max_misfit_))
+    return outcome;
   outcome.found = true;
   outcome.pixel = pixel;
   outcome.level_scale = 1;
@@ -344,7 +345,7 @@ bool TemplateMatcher::learn(const Tracker& tracker, const SearchTask& task, cons
   const Scalar leverage = task.normal_W.isZero(0) ? slope_leverage(warp, patch_->side) : Scalar(0);
   const Vec2 slope_sigma(leverage * std::min(std::sqrt(normal.covariance(0, 0)), Scalar(kMaxSlopeSigma)),
                          leverage * std::min(std::sqrt(normal.covariance(1, 1)), Scalar(kMaxSlopeSigma)));
-  if (!judge(*shape, mask, gain, Scalar(0), slope_sigma)) return false;
+  if (!judge(*shape, mask, gain, Scalar(0), slope_sigma, std::min(max_misfit_, kMaxLearntMisfit))) return false;
   std::memcpy(mask, learnt_, static_cast<std::size_t>(shape->side * shape->side));
   shape->area = mask_area(mask, shape->side * shape->side);
   if (shape->frames < INT16_MAX) ++shape->frames;

@@ -47,7 +47,7 @@ class TemplateMatcher {
   float score(const Pattern& pattern, int x, int y) const;
   bool find(const ImageView& image, const SearchTask& task, const Pattern& pattern, Vec2* position);
   bool judge(const PlanarTemplate& shape, const std::uint8_t* mask, float gain, Scalar shift_sigma,
-             const Vec2& slope_sigma);
+             const Vec2& slope_sigma, float max_misfit);
 
   Camera camera_;
   MaskMode mode_ = MaskMode::kNone;

@@ -119,6 +119,7 @@ inline constexpr float kSlackSigmas = 1.0f;            ///< of the warp, as far 
 inline constexpr float kDark = 1.0f;                   ///< [grey levels]; what is darker may be cut off
 inline constexpr float kBright = 254.0f;               ///< [grey levels]; what is brighter may be cut off
 inline constexpr float kMinKept = 0.5f;                ///< of a mask's area that one frame may leave
+inline constexpr float kMaxLearntMisfit = 1.0f;        ///< of a match that a mask learns from [sigma_plane^2]
 inline constexpr float kMinArea = 30.0f;               ///< [px] of a mask
 }  // namespace template_match
 
