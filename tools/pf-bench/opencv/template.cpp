@@ -25,7 +25,7 @@ extern "C" {
 const char* pf_bench_match_name() { return "OpenCV " CV_VERSION " matchTemplate, TM_CCOEFF_NORMED"; }
 
 /// Microseconds for `count` templates of side x side, one after the other: each at the whole pixels within `reach` of its centre (x, y).
-/// masks: side x side weights of each, 0 .. 1; null: OpenCV's way without masks. found: best place of each (x, y). Negative: OpenCV refused.
+/// masks: side x side weights of each, 0 .. 1; null: OpenCV's way without masks. found: best (x, y) of each. Negative: OpenCV refused.
 double pf_bench_match_us(const uint8_t* image, int width, int height, const uint8_t* templates, const float* masks,
                          const int* centres, int count, int side, int reach, int* found) {
   try {
