@@ -35,11 +35,12 @@ Vec3 column(const pf_plane_prior_t& wall, size_t axis) {
 
 Vec3 difference(const double a[3], const double b[3]) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
-/// Whether the wall stands between two points with a side that can be seen towards the first.
+/// Whether the wall stands between two points, whichever of its sides is towards the first: one whose corners go the wrong way round must
+/// not show all that stands behind it.
 bool hides(const pf_plane_prior_t& wall, const double from_W[3], const double to_W[3]) {
   const Vec3 n = column(wall, 2);
   const double a = dot(n, difference(from_W, wall.p_WP)), b = dot(n, difference(to_W, wall.p_WP));
-  if (a * b >= 0.0 || (a < 0.0 && wall.two_sided == 0)) return false;
+  if (a * b >= 0.0) return false;
   double hit_W[3];
   for (size_t i = 0; i < 3; ++i) hit_W[i] = from_W[i] + (to_W[i] - from_W[i]) * a / (a - b);
   const Vec3 at = difference(hit_W, wall.p_WP);
@@ -62,10 +63,30 @@ bool shows_its_back(const pf_plane_prior_t& wall, const pf_pose_t& pose, const p
          pixel[0] < camera.width && pixel[1] < camera.height;
 }
 
+/// Whether a ray of the image, of a grid of them, meets the wall on a side that can be seen.
+bool is_in_view(const pf_plane_prior_t& wall, const pf_pose_t& pose, const pf_camera_t& camera) {
+  constexpr int kSide = 16;
+  constexpr double kFar = 1e4;  // [m]
+  if (wall.two_sided == 0 && dot(column(wall, 2), difference(pose.p_WC, wall.p_WP)) <= 0.0) return false;
+  for (int cell = 0; cell < kSide * kSide; ++cell) {
+    const double pixel[2] = {(cell % kSide + 0.5) * camera.width / kSide, (cell / kSide + 0.5) * camera.height / kSide};
+    double ray_C[3];
+    if (pf_camera_unproject(&camera, pixel, ray_C) != PF_OK) continue;
+    Vec3 far_W = {pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 column_W = rotation_column(pose.q_WC, axis);
+      for (size_t i = 0; i < 3; ++i) far_W[i] += kFar * ray_C[axis] * column_W[i];
+    }
+    if (hides(wall, pose.p_WC, far_W.data())) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-bool Plan::open(const std::string& path, std::string& error) {
+bool Plan::open(const std::string& path, bool tell_depths, std::string& error) {
   if (path.empty()) return true;
+  must_see_wall_ = tell_depths;
   char message[PF_WALLS_MESSAGE] = "";
   const auto read = std::make_unique<pf_walls_t>();
   if (pf_read_walls(path.c_str(), read.get(), message) != 0) {
@@ -103,11 +124,20 @@ bool Plan::take_notice(const FrameView& view, const pf_camera_t& camera, std::st
                                     [&](const pf_wall_t& w) { return hides(w.prior, view.pose.p_WC, wall.p_WP); });
     if (hidden) continue;
     told_[static_cast<size_t>(i)] = true;
+    must_see_wall_ = false;  // this line says why
     line = std::string("--walls: the camera sees wall '") + walls_.wall[i].name +
            "' from its back side, where it does not count; turn its corners (or seen_from) round if it looks this way";
     return true;
   }
-  return false;
+  if (!must_see_wall_ || !view.has_pose) return false;
+  must_see_wall_ = false;
+  if (std::any_of(walls_.wall, walls_.wall + walls_.count,
+                  [&](const pf_wall_t& w) { return is_in_view(w.prior, view.pose, camera); }))
+    return false;
+  line =
+      "--walls: the camera sees no wall at the first pose, so that nothing tells how far away anything is; begin where "
+      "it sees one";
+  return true;
 }
 
 nlohmann::ordered_json Plan::to_json(const pf_slam_t* slam) const {

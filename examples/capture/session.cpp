@@ -92,7 +92,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   set(config_.map.features_in_view, options.features_in_view);
   if (!options.points) config_.map.features_in_view = 0;
   config_.capacity.max_patches = options.patches >= 0 ? options.patches : options.points ? 0 : kPatchesAlone;
-  if (!plan_.open(options.walls, error)) {
+  if (!plan_.open(options.walls, options.start.rfind("pose:", 0) == 0, error)) {
     code = kExitUsage;
     return false;
   }

@@ -210,6 +210,19 @@ def test_walls(root):
         said = capture("--source", source, "--walls", path, *out, *start).stderr
         if ("wall 'board' from its back side" in said) != behind:
             failures.append(f"a wall whose back side is in view ({behind}): {said!r}")
+    faces = [{"name": name, "corners": [[x, y, far] for x, y, _ in corners], "sigma_rotation_deg": 2, "sigma_vertical_deg": 2,
+              "sigma_offset_m": 0.1} for name, far in (("board", 3), ("behind it", 5))]
+    path = written(root, "plan.json", json.dumps({"planefold_walls": 1, "faces": faces}))
+    said = capture("--source", source, "--walls", path, *out, *start).stderr
+    if "wall 'board'" not in said or "behind it" in said:
+        failures.append(f"one wall the wrong way round, and another behind it: {said!r}")
+    for far, seen in ((-3, False), (3, True)):  # the first pose looks along z
+        face = {"name": "board", "corners": [[x, y, far] for x, y, _ in corners[::-1]], "sigma_rotation_deg": 2, "sigma_vertical_deg": 2,
+                "sigma_offset_m": 0.1}
+        path = written(root, "plan.json", json.dumps({"planefold_walls": 1, "faces": [face]}))
+        said = capture("--source", source, "--walls", path, *out, *start).stderr
+        if ("sees no wall at the first pose" in said) == seen or said.count("--walls") > 1:
+            failures.append(f"a plan whose wall is in view at the first pose ({seen}): {said!r}")
     expect("no such plan", 2, ["--walls", "none.json"], "--source", source, "--walls", root / "none.json", *start, *out)
 
 
