@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <opencv2/calib3d.hpp>
 
 namespace pf::calibrate {
 
 namespace {
+
+constexpr double kMostOfSide = 0.2;  // reprojection error, of a square's side
 
 struct Solution {
   cv::Mat K, distortion, sigma;
@@ -79,6 +82,24 @@ FittedView judge(const View& view, const Board& board, const Solution& s, size_t
   return fitted;
 }
 
+/// Side of a square in the pictures, the median.
+double side_px(const std::vector<FittedView>& views, const Board& board) {
+  const int across = board.corners().width;
+  std::vector<double> sides;
+  for (const FittedView& fitted : views) {
+    const View& view = fitted.view;
+    for (size_t i = 1; i < view.numbers.size(); ++i) {
+      if (view.numbers[i] == view.numbers[i - 1] + 1 && view.numbers[i] % across != 0) {
+        sides.push_back(cv::norm(view.corners[i] - view.corners[i - 1]));
+      }
+    }
+  }
+  if (sides.empty()) return 0.0;
+  const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
+  std::nth_element(sides.begin(), middle, sides.end());
+  return *middle;
+}
+
 double median_rms(const std::vector<FittedView>& views) {
   std::vector<double> values;
   for (const FittedView& view : views) {
@@ -149,6 +170,15 @@ bool fit_camera(const std::vector<View>& all, const Board& board, cv::Size image
     }
   }
   summarise(fit, model);
+  if (fit.rms_px > kMostOfSide * side_px(fit.views, board)) {
+    char text[200];
+    std::snprintf(text, sizeof(text),
+                  "what was found is no board of %d x %d squares: no lens explains its corners, the reprojection error "
+                  "is %.1f px",
+                  board.columns, board.rows, fit.rms_px);
+    error = text;
+    return false;
+  }
   return true;
 }
 

@@ -13,6 +13,8 @@ namespace pf::calibrate {
 
 namespace {
 
+constexpr double kMostBend = 0.25;  // RMS change of a square's side to the next one's, in sides
+
 double distance(const cv::Point2f& a, const cv::Point2f& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 int cell_of(const cv::Point2f& corner, cv::Size image) {
@@ -32,6 +34,26 @@ std::vector<View> sharp_ones(const std::vector<View>& views) {
   std::vector<View> sharp;
   std::copy_if(views.begin(), views.end(), std::back_inserter(sharp), [&](const View& v) { return v.blur_px <= most; });
   return sharp;
+}
+
+/// Whether a grid of corners (row by row, so many across) changes from one to the next as little as that of most views of a board.
+/// Other things with many corners, such as tags, give grids that jump: 0.42 to 1.1, where a board has less unless it is very slanted.
+bool is_regular(const std::vector<cv::Point2f>& corners, int across) {
+  const int count = static_cast<int>(corners.size());
+  double squares = 0.0;
+  int triples = 0;
+  const auto add = [&](int before, int at, int after) {
+    const auto a = corners[static_cast<size_t>(before)], b = corners[static_cast<size_t>(at)],
+               c = corners[static_cast<size_t>(after)];
+    const double bend = 2.0 * distance(a + c, b + b) / std::max(1e-3, distance(a, c));
+    squares += bend * bend;
+    ++triples;
+  };
+  for (int i = 0; i < count; ++i) {
+    if (i % across > 0 && i % across + 1 < across) add(i - 1, i, i + 1);
+    if (i >= across && i + across < count) add(i - across, i, i + across);
+  }
+  return triples > 0 && std::sqrt(squares / triples) < kMostBend;
 }
 
 bool find_chessboard(const cv::Mat& grey, const Board& board, View& view) {
@@ -77,11 +99,12 @@ bool find_board(const cv::Mat& grey, const Board& board, View& view, Sighting& f
 }
 
 cv::Size size_of_chessboard(const cv::Mat& grey) {
-  cv::Mat small, corners, meta;
+  cv::Mat small, meta;
+  std::vector<cv::Point2f> corners;
   const double scale = std::min(1.0, 640.0 / grey.cols);
   cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
   const int flags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_LARGER;
-  if (!cv::findChessboardCornersSB(small, {3, 3}, corners, flags, meta)) {
+  if (!cv::findChessboardCornersSB(small, {3, 3}, corners, flags, meta) || !is_regular(corners, meta.cols)) {
     return {};
   }
   return {std::max(meta.cols, meta.rows) + 1, std::min(meta.cols, meta.rows) + 1};
