@@ -162,6 +162,15 @@ std::string check(const Options& options, const std::string& backend) {
   if (options.sim_rest_s > 0.0 && kind != "sim") {
     return "--rest is for sim: sources";
   }
+  const std::vector<double>& swing = options.sim_swing;
+  if (!swing.empty() && kind != "sim") {
+    return "--swing is for sim: sources";
+  }
+  if (!swing.empty() && !(swing.size() == 3 && swing[0] >= 0.0 && swing[1] >= swing[0] + 1.0 && swing[1] <= 1e6 &&
+                          swing[2] > 0.0 && swing[2] <= 1000.0)) {
+    return "--swing needs two times in seconds, at least 1 apart, and a rate of up to 1000 degrees a second, as in "
+           "8,11,200";
+  }
   if (options.imu == "sim" && (kind != "sim" || options.realtime)) {
     return "--imu sim is for sim: sources, without --realtime";
   }
@@ -297,6 +306,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_flag("--headless", options.headless, "no window");
+  app.add_option("--title", options.title,
+                 "what window, film and pictures say at the lower edge, in place of the source")
+      ->check(not_empty());
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
   app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame; patches.csv likewise");
   app.add_flag("--quiet", options.quiet, "no progress line");
@@ -305,6 +317,12 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   const CLI::Option* seed = app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
   app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
       ->check(number_in(0.0, 1000.0));
+  app.add_option("--swing", options.sim_swing,
+                 "FROM,TO,RATE, of a sim: source: from FROM to TO seconds the camera also swings left and right, at up "
+                 "to RATE\n"
+                 "degrees a second; frames are then blurred over their exposure")
+      ->delimiter(',')
+      ->expected(1, -1);
   app.add_option("--max-features", options.max_features, "capacity of the map; of the window at least 50")
       ->check(whole_number_in(8, 1000));
   app.add_option("--max-planes", options.max_planes, "likewise")->check(whole_number_in(1, 64));

@@ -26,6 +26,7 @@ struct Options {
   int patches = -1;         ///< of walls that are followed; negative: none beside points, kPatchesAlone without
   bool points = true;       ///< false: patches of walls alone
   std::string out = "out/capture";
+  std::string title;  ///< of window and film; "": the source
   int64_t withdraw_target_after = -1;
   int64_t frames = -1;
   int64_t skip = 0;
@@ -53,6 +54,7 @@ struct Options {
   double vertical_deg = 0.0;          ///< to which planes of that class are told to be vertical; 0: they are not
   bool inertial = true;               ///< where samples and their noise are there
   double sim_rest_s = 0.0;            ///< of a sim: source, at its beginning
+  std::vector<double> sim_swing;      ///< likewise: from and to [s], and the rate [degrees/s]; empty: it does not swing
 
   // Cameras, and what is played as if it came from one.
   std::string record;

@@ -105,7 +105,7 @@ void Overlay::draw_strip(const FrameView& view) {
   const double used = badge_width + 24.0 + canvas_.text_width(text, 13.0);
   const double title_width = canvas_.text_width(title_, 13.0);
   if (used + 30.0 + title_width < width) {
-    canvas_.colour(kDim);
+    canvas_.colour(kText);
     canvas_.text(width - title_width - 14.0, top + 20.5, title_, 13.0);
   }
   draw_time_line(view);

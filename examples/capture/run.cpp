@@ -124,8 +124,8 @@ bool Run::open(std::string& error, int& code) {
     return false;
   }
   std::vector<std::string> notes;
-  show_.open(options_, session_, "planefold   " + short_name(options_.source), outputs_.path("overlay.mp4"),
-             info.rate_hz, notes);
+  const std::string title = options_.title.empty() ? short_name(options_.source) : options_.title;
+  show_.open(options_, session_, "planefold   " + title, outputs_.path("overlay.mp4"), info.rate_hz, notes);
   if (!place_thread(options_.processor, options_.priority)) {
     notes.emplace_back("--cpu or --priority was refused by the system (needs root, or RLIMIT_RTPRIO)");
   }

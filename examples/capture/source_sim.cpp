@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "imu.h"
 #include "source.h"
@@ -13,6 +14,8 @@ namespace pf::capture {
 #ifdef PLANEFOLD_HAVE_SIM
 
 namespace {
+
+constexpr int32_t kBlurSamples = 4;  ///< of a camera that swings: 200 degrees a second and 6 ms are 4 px
 
 class SimSource : public Source {
  public:
@@ -85,6 +88,12 @@ std::unique_ptr<Source> open_sim_source(const Options& options, std::string& err
   }
   sim_options.seed = options.seed;
   sim_options.rest_s = options.sim_rest_s;
+  if (!options.sim_swing.empty()) {
+    sim_options.swing_from_s = options.sim_swing[0];
+    sim_options.swing_to_s = options.sim_swing[1];
+    sim_options.swing_rad_s = options.sim_swing[2] * M_PI / 180.0;
+    sim_options.blur_samples = kBlurSamples;
+  }
   if (options.frames > 0 && options.loop < 0) {
     sim_options.frames = static_cast<int32_t>(std::min<int64_t>(options.skip + options.frames, 1000000));
   }

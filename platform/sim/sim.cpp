@@ -94,7 +94,9 @@ bool valid(const pf_sim_options_t& o) {
          in_range(o.bias, -255, 255) && in_range(o.exposure_step, 1, 100) && o.exposure_every > 0 &&
          in_range(o.vignetting, 0, 1) && in_range(o.drop_probability, 0, 0.9) &&
          in_range(o.repeat_probability, 0, 0.9) && in_range(o.shake_m, 0, 1) && in_range(o.shake_rad, 0, 1) &&
-         in_range(o.rest_s, 0, 1000);
+         in_range(o.rest_s, 0, 1000) && in_range(o.swing_rad_s, 0, 20) &&
+         (o.swing_rad_s == 0 ||
+          (in_range(o.swing_from_s, 0, 1e6) && in_range(o.swing_to_s, o.swing_from_s + kSwingPeriod, 1e6)));
 }
 
 }  // namespace
@@ -208,6 +210,8 @@ pf_sim_t* pf_sim_open(const char* scene, const pf_sim_options_t* options) {
   sim->path = kind.path(way);
   sim->path = shaken(std::move(sim->path), way, own.shake_m, own.shake_rad);
   if (own.rest_s > 0) sim->path = after_rest(std::move(sim->path), own.rest_s, kUnderWay);
+  if (own.swing_rad_s > 0)
+    sim->path = swinging(std::move(sim->path), own.swing_from_s, own.swing_to_s, own.swing_rad_s);
   sim->renderer = std::make_unique<Renderer>(own.camera, own.samples);
   if (!sim->renderer->ok()) return nullptr;
   sim->sensor = std::make_unique<Sensor>(own.camera.width, own.camera.height, own.vignetting);

@@ -74,6 +74,18 @@ Trajectory shaken(Trajectory base, Random& random, double sigma_m, double sigma_
   };
 }
 
+Trajectory swinging(Trajectory base, double from_s, double to_s, double rate) {
+  const double pulse = 2 * kPi / kSwingPeriod;
+  return [=, base = std::move(base)](double t) {
+    Pose pose = base(t);
+    // Cubic steps of half a period at both ends.
+    const double u = std::clamp(2 * std::min(t - from_s, to_s - t) / kSwingPeriod, 0.0, 1.0);
+    const double angle = rate / pulse * u * u * (3 - 2 * u) * std::sin(pulse * (t - from_s));
+    pose.R_WC = pose.R_WC * rotation_exp({0, angle, 0});
+    return pose;
+  };
+}
+
 Trajectory turning(const Pose& start, Random& random, double pan, double tilt, double seconds) {
   const double a = random.uniform(0.9, 1.1), b = random.uniform(1.4, 1.8);
   return [=](double t) {

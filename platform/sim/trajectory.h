@@ -35,6 +35,11 @@ Trajectory spline(std::vector<Waypoint> points, double interval);
 /// Like a hand: sums of sines between 0.7 and 6 Hz on top of another trajectory.
 Trajectory shaken(Trajectory base, Random& random, double sigma_m, double sigma_rad);
 
+/// Another trajectory that also swings left and right about the camera's vertical axis from one time to another, with an angular
+/// velocity of up to rate [rad/s]. Swings take kSwingPeriod and begin and end within half of that, without a jump of the velocity.
+constexpr double kSwingPeriod = 0.8;  // [s]
+Trajectory swinging(Trajectory base, double from_s, double to_s, double rate);
+
 /// The pose at time 0 of another trajectory, turning only: pan and tilt within the given amplitudes [rad].
 Trajectory turning(const Pose& start, Random& random, double pan, double tilt, double seconds);
 

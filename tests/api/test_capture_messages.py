@@ -119,6 +119,9 @@ def test_usage(root):
     expect("cover of a camera", 2, ["--cover", "hand"], "--source", "v4l2:/dev/video0", "--cover", "1,2")
     for times in ("1", "2,1", "1,2,3", "-1,2", "nan,2"):
         expect(f"cover {times}", 2, ["--cover", "7,8"], "--source", source, f"--cover={times}", *out)
+    expect("swing of a folder", 2, ["--swing", "sim:"], "--source", source, "--swing", "8,11,200", *out)
+    for swing in ("8,11", "8,8.5,200", "11,8,200", "8,11,0", "8,11,1e9", "-1,3,200", "8,11,nan", "nan,11,200"):
+        expect(f"swing {swing}", 2, ["--swing", "8,11,200"], "--source", "sim:desk", f"--swing={swing}", *out)
     expect("there and back of a camera", 2, ["--there-and-back", "cannot go back"], "--source", "v4l2:/dev/video0",
            "--there-and-back")
     expect("there and back at its pace", 2, ["--there-and-back"], "--source", source, "--there-and-back", "--realtime")

@@ -302,6 +302,44 @@ void test_rows_should_each_be_seen_from_the_pose_of_their_own_time() {
   }
 }
 
+void test_swing_should_reach_its_rate_between_its_times_and_leave_the_rest_of_the_path() {
+  constexpr double kFrom = 2.0, kTo = 4.5, kRate = 3.5;  // [s], [rad/s]
+  pf_sim_options_t options;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_sim_options_default("room", &options));
+  options.shake_m = options.shake_rad = 0;
+  pf_sim_t* still = pf_sim_open("room", &options);
+  options.swing_rad_s = kRate;
+  options.swing_from_s = kFrom;
+  options.swing_to_s = kTo;
+  pf_sim_t* swings = pf_sim_open("room", &options);
+  TEST_ASSERT_NOT_NULL(still);
+  TEST_ASSERT_NOT_NULL(swings);
+  double fastest = 0, jump = 0, before = 0;
+  constexpr int kSteps = 6000;
+  for (int k = 0; k <= kSteps; ++k) {
+    const std::int64_t t_ns = 1000000LL * k;
+    pf_pose_t a, b;
+    pf_sim_pose_at(still, t_ns, &a);
+    pf_sim_pose_at(swings, t_ns, &b);
+    for (int i = 0; i < 3; ++i) TEST_ASSERT_EQUAL_DOUBLE(a.p_WC[i], b.p_WC[i]);
+    // The swing is the last rotation, so its rate is a difference along y but for the path's own rate, turned by the angle.
+    const double rate = b.w_C[1] - a.w_C[1];
+    const bool outside = t_ns <= 1e9 * kFrom || t_ns >= 1e9 * kTo;
+    for (int i = 0; i < 4 && outside; ++i) TEST_ASSERT_DOUBLE_WITHIN(1e-12, a.q_WC[i], b.q_WC[i]);
+    fastest = std::max(fastest, std::fabs(rate));
+    jump = std::max(jump, std::fabs(rate - before));
+    before = rate;
+  }
+  std::printf("swing: %.3f rad/s at most of %.1f, its rate changes by %.3f rad/s within a millisecond\n", fastest,
+              kRate, jump);
+  TEST_ASSERT_DOUBLE_WITHIN(0.02 * kRate, kRate, fastest);
+  TEST_ASSERT_TRUE(jump < 0.02 * kRate);  // without a jump
+  pf_sim_close(still);
+  pf_sim_close(swings);
+  options.swing_to_s = kFrom + 0.5;  // less than a swing
+  TEST_ASSERT_NULL(pf_sim_open("room", &options));
+}
+
 }  // namespace
 
 int main(void) {
@@ -314,5 +352,6 @@ int main(void) {
   RUN_TEST(test_target_edges_should_lie_where_the_truth_puts_them);
   RUN_TEST(test_depth_should_satisfy_the_plane_of_its_surface_at_every_pixel);
   RUN_TEST(test_rows_should_each_be_seen_from_the_pose_of_their_own_time);
+  RUN_TEST(test_swing_should_reach_its_rate_between_its_times_and_leave_the_rest_of_the_path);
   return UNITY_END();
 }

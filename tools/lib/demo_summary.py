@@ -41,7 +41,7 @@ def main():
         print(f"Unit:   lengths are in metres from frame {start} on, by a {'rest' if unit['start'] == 'rest' else 'motion'}; gravity is known to "
               f"{57.2957795 * turn:.2f} degrees at the end (the dashed line in the film is the horizon).")
 
-    files = [name for name in ("overlay.mp4", "trajectory.png", "trajectory.tum", "map.ply") if (run / name).exists()]
+    files = [name for name in ("side_by_side.mp4", "overlay.mp4", "trajectory.png", "trajectory.tum", "map.ply") if (run / name).exists()]
     others = len([entry for entry in run.iterdir() if entry.is_file()]) - len(files)
     where = f"See {run}: {', '.join(files)} and {others} more."
     if evaluation:

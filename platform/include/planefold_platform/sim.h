@@ -65,6 +65,9 @@ typedef struct pf_sim_options {
   int32_t person;            /* somebody walks through */
   double shake_m, shake_rad; /* of the hand, standard deviations */
   double rest_s;             /* the camera stands still at first, then gets under way within half a second, 0 .. 1000 */
+  /* The camera also swings left and right, to and fro within 0.8 s, at up to this rate .. */
+  double swing_rad_s;              /* 0 .. 20; 0: it does not */
+  double swing_from_s, swing_to_s; /* .. between these times, a swing or more apart, 0 .. 1e6 */
 } pf_sim_options_t;
 
 /* PF_ERROR_RANGE: there is no such scene. */
