@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "plane_colour.h"
+#include <iterator>
 
 namespace pf::capture {
 
@@ -41,9 +40,26 @@ std::array<double, 3> project(const double* c, int stride, const Vec3& a, const 
   return out;
 }
 
-Colour colour_of_plane(uint32_t id) {
-  const PlaneColour c = plane_colour(id);
+Colour plane_in(const FrameView& view, uint32_t id) {
+  const PlaneColour c = colour_of_plane(view, id);
   return {c.r, c.g, c.b};
+}
+
+/// The classes of planes and their colours, in the lower right corner.
+void draw_legend(const Canvas& canvas, double right, double bottom) {
+  constexpr double kRow = 15.0, kSwatch = 9.0, kSize = 11.0;
+  double width = 0.0;
+  for (const PlaneClass& one : kPlaneClasses) width = std::max(width, canvas.text_width(one.name, kSize));
+  const double height = kRow * static_cast<double>(std::size(kPlaneClasses));
+  const double x = std::round(right - width - kSwatch - 20.0), y = std::round(bottom - height - 10.0);
+  canvas.rectangle(x, y, right - x - 5.0, height + 6.0, kGround, 0.8);
+  double row = y + 6.0;
+  for (const PlaneClass& one : kPlaneClasses) {
+    canvas.rectangle(x + 5.0, row, kSwatch, kSwatch, {one.colour.r, one.colour.g, one.colour.b});
+    canvas.colour(kText);
+    canvas.text(x + kSwatch + 10.0, row + kSwatch, one.name, kSize);
+    row += kRow;
+  }
 }
 
 }  // namespace
@@ -153,7 +169,7 @@ void MapPanel::draw(const Canvas& canvas, const FrameView& view, double x, doubl
     };
     draw_scale(canvas, x, y, width, height, pixels);
     for (const PlaneView& plane : view.planes) {
-      const Colour colour = colour_of_plane(plane.id);
+      const Colour colour = plane_in(view, plane.id);
       cairo_new_path(pen);
       for (const Vec3& corner : plane.outline) {
         const auto at = place(corner);
@@ -176,7 +192,7 @@ void MapPanel::draw(const Canvas& canvas, const FrameView& view, double x, doubl
       const bool inlier = found != measured.end() && found->second;
       const Colour colour = f.is_target != 0                     ? kTarget
                             : !inlier                            ? kDim
-                            : f.plane != 0                       ? colour_of_plane(f.plane)
+                            : f.plane != 0                       ? plane_in(view, f.plane)
                             : f.kind == PF_FEATURE_INVERSE_DEPTH ? kInverseDepth
                                                                  : kPoint;
       const auto c = project(f.covariance, 3, right_, forward_);
@@ -204,6 +220,7 @@ void MapPanel::draw(const Canvas& canvas, const FrameView& view, double x, doubl
                    0.8);
   canvas.colour(kDim);
   canvas.text(x + 12.0, y + 20.0, "map from above", 12.0);
+  if (view.has_gravity) draw_legend(canvas, x + width, y + height);
   cairo_restore(pen);
   canvas.rectangle(x, y, 1.0, height, kGrid);
   canvas.rectangle(x, y + height - 1.0, width, 1.0, kGrid);

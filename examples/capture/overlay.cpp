@@ -233,7 +233,7 @@ void Overlay::draw_tracks(const FrameView& view) {
     if (track.status != PF_MATCH_INLIER || plane == plane_of.end()) {
       return track_colour(track);
     }
-    const PlaneColour c = plane_colour(plane->second);
+    const PlaneColour c = colour_of_plane(view, plane->second);
     return Colour{c.r, c.g, c.b};
   };
   const auto at = [&](double pixel) { return zoom_ * (pixel + 0.5); };

@@ -79,12 +79,11 @@ double grid_step(double area) {
   return power * (part >= 5.0 ? 5.0 : part >= 2.0 ? 2.0 : 1.0);
 }
 
-void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane, bool metric) {
+void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane, const PlaneColour& c, bool metric) {
   const std::vector<Vec3> corners = pen.visible(plane.outline);
   if (corners.size() < 3) {
     return;
   }
-  const PlaneColour c = plane_colour(plane.id);
   const Colour colour{c.r, c.g, c.b};
   cairo_t* cairo = canvas.pen();
   pen.path(corners, true);
@@ -127,7 +126,7 @@ void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane, bo
     const double x = std::clamp(0.5 * (x0 + x1 - width), left + 4.0, std::max(left + 4.0, right - width - 4.0));
     const double y = std::clamp(0.5 * (y0 + y1), top + 14.0, std::max(top + 14.0, bottom - 6.0));
     canvas.rectangle(x - 3.0, y - 11.0, width + 6.0, 15.0, colours::kGround, 0.6);
-    canvas.colour(colour);
+    canvas.colour(colours::kText);
     canvas.text(x, y, words, 11.0, true);
   }
 }
@@ -153,7 +152,7 @@ void draw_planes(const Canvas& canvas, const FrameView& view, const pf_camera_t&
   std::sort(order.begin(), order.end(),
             [&](const PlaneView* a, const PlaneView* b) { return distance(a) > distance(b); });
   for (const PlaneView* plane : order) {
-    draw_plane(canvas, pen, *plane, metric);
+    draw_plane(canvas, pen, *plane, colour_of_plane(view, plane->id), metric);
   }
   for (const std::vector<Vec3>& wall : plan) {
     const std::vector<Vec3> corners = pen.visible(wall);

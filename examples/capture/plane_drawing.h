@@ -2,7 +2,6 @@
 #define PLANEFOLD_CAPTURE_PLANE_DRAWING_H
 
 #include "canvas.h"
-#include "plane_colour.h"
 #include "view.h"
 
 namespace pf::capture {

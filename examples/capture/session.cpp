@@ -276,6 +276,8 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   pf_get_patches(slam_, view.patches.data(), view.patches.size(), &count);
   view.patches.resize(std::min(count, view.patches.size()));
   view.planes = read_planes(slam_);
+  // A new map forgets the direction that the user gave.
+  view.has_gravity = (has_gravity_ && view.map == 1) || (view.has_inertial && view.inertial.metric != 0);
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hits.h"
+#include "plane_colour.h"
 #include "plane_view.h"
 
 namespace pf::capture {
@@ -34,7 +35,8 @@ struct FrameView {
   pf_camera_t camera{};       ///< the lens that the pose belongs to: the calibration, as it is known now
   bool has_inertial = false;  ///< poses depend on a unit's samples, and it has begun
   pf_inertial_t inertial{};
-  int map = 1;  ///< of the run, from 1; a map in which nothing was tracked leaves its number to the next
+  bool has_gravity = false;  ///< by the user or by the unit: planes have classes
+  int map = 1;               ///< of the run, from 1; a map in which nothing was tracked leaves its number to the next
   double ms = 0.0;
   std::vector<pf_match_t> tracks;
   std::vector<pf_feature_t> features;
@@ -42,6 +44,9 @@ struct FrameView {
   std::vector<PlaneView> planes;
   std::vector<Hit> hits;  ///< what the user pointed at so far
 };
+
+/// Of a plane in this frame: that of its class where gravity is known, else that of its number.
+PlaneColour colour_of_plane(const FrameView& view, uint32_t id);
 
 inline const char* state_name(int32_t state) {
   switch (state) {
