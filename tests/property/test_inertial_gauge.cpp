@@ -207,6 +207,37 @@ void test_a_map_that_becomes_metric_should_look_the_same_and_know_its_scale() {
   }
 }
 
+void test_a_start_from_motion_should_hang_gravity_and_bias_on_the_rotation_that_its_poses_had() {
+  SeededRandom random(339);
+  for (int trial = 0; trial < 10; ++trial) {
+    InertialScene scene(random);
+    random_plane(random, scene.filter);
+    scene.filter.set_P(random_covariance(random, scene.filter.dim(), 0.05));
+    MovingSolution start;
+    start.q_WG = random_turn(random, 1);
+    start.by_turn = Eigen::Matrix<double, 6, 3>(0.5 * Eigen::Matrix<double, 6, 3>::Ones()).cast<Scalar>();
+    start.by_turn.row(4) = random.normals<3>(10).cast<Scalar>();
+    start.span = Scalar(3);
+    Scalar theta = 0;
+    for (int i = 0; i < 3; ++i) theta += scene.filter->variance(Body::kTheta + i) / 3;
+    start.turn_variance = theta / (start.span * start.span);  // theta is rho T
+    start.covariance = random_covariance(random, 6, 0.02).cast<Scalar>();
+    start.covariance += start.turn_variance * start.by_turn * start.by_turn.transpose();
+    const Dense before = scene.filter.P();
+    scene.filter->set_metric(start, scene.mounting);
+    const Dense P = scene.filter.P();
+    TEST_ASSERT_TRUE(Eigen::SelfAdjointEigenSolver<Dense>(P, Eigen::EigenvaluesOnly).eigenvalues()(0) > -1e-12);
+    const int gravity = scene.filter->state().layout.row(BodyPart::kGravity), accel = gravity - 3;
+    const Dense J = start.by_turn.cast<double>() / static_cast<double>(start.span);
+    const Dense E_t = start.q_WG.toRotationMatrix().leftCols<2>().transpose().cast<double>();
+    const Dense of_theta = before.block(Body::kTheta, Body::kTheta, 3, 3);
+    // Nothing of theta is scale, so what the scale is replaced by changes none of this.
+    const Dense of_bias = P.block(accel, Body::kTheta, 3, 3) - J.bottomRows(3) * of_theta;
+    const Dense of_gravity = P.block(gravity, Body::kTheta, 2, 3) - (E_t / 2 + J.middleRows(1, 2)) * of_theta;
+    TEST_ASSERT_TRUE(of_bias.norm() < 1e-9 && of_gravity.norm() < 1e-9);
+  }
+}
+
 double information_growth(bool keep_gauge) {
   SeededRandom random(316);
   double growth = 0;
@@ -254,5 +285,6 @@ int main(void) {
   RUN_TEST(test_no_vertical_plane_should_see_a_shift_a_turn_or_a_change_of_scale);
   RUN_TEST(test_a_map_that_becomes_metric_should_look_the_same_and_know_its_scale);
   RUN_TEST(test_pixels_should_gain_nothing_about_the_gauge);
+  RUN_TEST(test_a_start_from_motion_should_hang_gravity_and_bias_on_the_rotation_that_its_poses_had);
   return UNITY_END();
 }

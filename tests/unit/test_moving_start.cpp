@@ -1,4 +1,5 @@
 // Scale, gravity and the accelerometer's bias from poses up to scale and exact samples of a moving unit, and from noisy ones.
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct Clip {
   }
   Vec3 p_B(double t) const {
     if (even) return Vec3(Scalar(0.5 * t), Scalar(0.1 * t), 0);
-    return Vec3(Scalar(0.3 * std::sin(2 * t)), Scalar(0.2 * std::cos(3 * t)), Scalar(0.4 * t + 0.1 * std::sin(4 * t)));
+    return Scalar(reach) *
+           Vec3(Scalar(0.3 * std::sin(2 * t)), Scalar(0.2 * std::cos(3 * t)), Scalar(0.4 * t + 0.1 * std::sin(4 * t)));
   }
   ImuReading reading(double t) const {
     constexpr double h = 1e-3;
@@ -65,6 +67,7 @@ struct Clip {
   }
 
   bool even = false;
+  double reach = 1;          ///< of the hand
   Vec3 turn = Vec3::Zero();  ///< of the poses' rotations, away from the truth [rad/s]
   Scalar scale = Scalar(2.5);
   Vec3 down = Vec3(Scalar(0.2), Scalar(0.9), Scalar(-0.3)).normalized();
@@ -149,6 +152,43 @@ void test_poses_that_turn_away_should_be_allowed_for() {
   TEST_ASSERT_TRUE(blind.nees > 12);
 }
 
+/// What the solution is off by: truth less estimate, as by_turn has it.
+Eigen::Matrix<double, 6, 1> error_of(const Clip& clip, const MovingSolution& found) {
+  Eigen::Matrix<double, 6, 1> e;
+  e(0) = std::log(static_cast<double>(clip.scale / found.scale));
+  const Mat3 R_WG = found.q_WG.toRotationMatrix();
+  const Vec3 turn = R_WG.col(2).cross(clip.down);
+  e(1) = static_cast<double>(turn.dot(R_WG.col(0)));
+  e(2) = static_cast<double>(turn.dot(R_WG.col(1)));
+  e.tail<3>() = (clip.bias - found.accel_bias).cast<double>();
+  return e;
+}
+
+void test_solution_should_know_what_poses_that_turn_away_put_it_off_by() {
+  MovingStartNoise noise = kNoise;
+  noise.turn = Scalar(1.5e-3);
+  MovingSolution found, straight;
+  Clip clip;
+  clip.reach = 0.1;  // gravity is most of what the unit feels, and all that by_turn has
+  SeededRandom random(337);
+  TEST_ASSERT_TRUE(solve_moving_start(clip.poses(84, 1 / 30.0, 0, random).data(), 84, noise, &straight));
+  const Eigen::Matrix<double, 6, 1> before = error_of(clip, straight);
+  for (int axis = 0; axis < 3; ++axis) {
+    clip.turn = Vec3::Zero();
+    clip.turn(axis) = Scalar(1.5e-3);
+    TEST_ASSERT_TRUE(solve_moving_start(clip.poses(84, 1 / 30.0, 0, random).data(), 84, noise, &found));
+    // The poses are Exp(turn t) of the truth, so the truth is Exp(-turn t) of the poses.
+    const Eigen::Matrix<double, 6, 1> e = error_of(clip, found) - before;
+    const Eigen::Matrix<double, 6, 1> told = -1.5e-3 * straight.by_turn.col(axis).cast<double>();
+    TEST_ASSERT_TRUE((e - told).norm() < 0.15 * e.norm() + 6e-4);
+  }
+  // Its share of the covariance is within that.
+  const Eigen::Matrix<double, 6, 6> rest =
+      (found.covariance - found.turn_variance * found.by_turn * found.by_turn.transpose()).cast<double>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(rest, Eigen::EigenvaluesOnly);
+  TEST_ASSERT_TRUE(eigen.eigenvalues()(0) > -1e-9);
+}
+
 void test_a_camera_at_constant_velocity_should_know_that_it_tells_nothing() {
   SeededRandom random(333);
   Clip clip;
@@ -173,6 +213,7 @@ int main(void) {
   RUN_TEST(test_exact_samples_should_give_the_exact_scale_gravity_and_bias);
   RUN_TEST(test_noise_of_poses_should_be_that_of_the_solution);
   RUN_TEST(test_poses_that_turn_away_should_be_allowed_for);
+  RUN_TEST(test_solution_should_know_what_poses_that_turn_away_put_it_off_by);
   RUN_TEST(test_a_camera_at_constant_velocity_should_know_that_it_tells_nothing);
   RUN_TEST(test_too_few_poses_should_be_refused);
   return UNITY_END();

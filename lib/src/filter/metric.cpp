@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "filter/filter.h"
@@ -52,6 +53,35 @@ void scale_block(Block* block, Scalar s, Scalar* factor) {
   }
 }
 
+/// Gravity and the accelerometer's bias, and what they have in common with the camera's rotation now.
+struct TurnedStart {
+  Eigen::Matrix<Scalar, 5, 3> by_theta;  ///< beside d = E^T theta
+  Eigen::Matrix<Scalar, 5, 5> covariance;
+  Eigen::Matrix<Scalar, 5, 1> of_scale;  ///< covariance with the log scale, but for the part by theta
+};
+
+/// The rate rho at which the poses of a start turned away from the truth is what the camera's rotation has in common with them:
+/// theta = rho T and what was there before, so rho = a theta + rho', a = s_rho^2 T / s_theta^2, at most 1 / T. Gravity is right at T / 2:
+///
+///   d = E^T (theta - rho T / 2) + J_d rho + n,   b_a = J_b rho + n
+TurnedStart apart_from_rotation(const MovingSolution& start, const Mat3& R_WG, Scalar variance_theta) {
+  TurnedStart out;
+  Eigen::Matrix<Scalar, 5, 3> J = start.by_turn.bottomRows<5>();
+  const Eigen::Matrix<Scalar, 1, 3> J_s = start.by_turn.row(0);
+  const Scalar of_rate = start.turn_variance;
+  out.covariance = start.covariance.bottomRightCorner<5, 5>() - of_rate * J.lazyProduct(J.transpose());
+  out.of_scale = start.covariance.block<5, 1>(1, 0) - of_rate * J.lazyProduct(J_s.transpose());
+  J.topRows<2>() -= start.span / 2 * R_WG.leftCols<2>().transpose();
+  const Scalar a = variance_theta > Scalar(0) && start.span > Scalar(0)
+                       ? std::min(of_rate * start.span / variance_theta, 1 / start.span)
+                       : Scalar(0);
+  const Scalar left = std::max(Scalar(0), of_rate - a * a * variance_theta);
+  out.by_theta = a * J;
+  out.covariance += left * J.lazyProduct(J.transpose());
+  out.of_scale += left * J.lazyProduct(J_s.transpose());
+  return out;
+}
+
 }  // namespace
 
 /// Mean and P in metres; then the log scale, gravity and the accelerometer's bias are as known as `start` says, the scale in place of what
@@ -59,8 +89,8 @@ void scale_block(Block* block, Scalar s, Scalar* factor) {
 ///
 ///   P <- (I - N_s l) P (I - N_s l)^T + C_ss N_s N_s^T + N_s c^T + c N_s^T       c: C_(g a)s over the rows of gravity and bias
 ///
-/// Gravity's direction was read off the poses' rotations, d = E^T theta + n. The velocity becomes that of the unit's origin,
-/// v = v_C + R (w x m), with what is open of w.
+/// Gravity and bias hang on the rotation that the poses had (above); had they not turned: d = E^T theta + n. The velocity is that
+/// of the unit's origin, v = v_C + R (w x m), with what is open of w.
 void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
   using namespace inertial_rows;
   const Scalar s = start.scale;
@@ -100,11 +130,15 @@ void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
     }
   forget_rows(&transition, rows.accel, 5);  // gravity follows
   set_gravity_by_rotation(rows, false, &transition);
+  const Scalar variance_theta = (variance(Body::kTheta) + variance(Body::kTheta + 1) + variance(Body::kTheta + 2)) / 3;
+  const TurnedStart turned = apart_from_rotation(start, transition.mean.q_WG.toRotationMatrix(), variance_theta);
   constexpr int kAt[5] = {3, 4, 0, 1, 2};  // (d, b_a) behind the scale: rows from accel on
   Scalar* const Q = transition.Q;
   for (int i = 0; i < 5; ++i)
-    for (int j = 0; j < 5; ++j)
-      Q[(rows.accel + kAt[i]) * rows.dim + rows.accel + kAt[j]] = start.covariance(1 + i, 1 + j);
+    for (int j = 0; j < 5; ++j) Q[(rows.accel + kAt[i]) * rows.dim + rows.accel + kAt[j]] = turned.covariance(i, j);
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 3; ++j)
+      transition.F[(rows.accel + kAt[i]) * rows.dim + Body::kTheta + j] += turned.by_theta(i, j);
   predict(transition);
   state_.mounting = mounting;
 
@@ -112,7 +146,7 @@ void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
   const Scalar* const N = transport_.scale_direction(state_, blocks_);
   Scalar* const shared = blocks_.row_factors();
   for (int i = 0; i < blocks_.ld(); ++i) shared[i] = Scalar(0);
-  for (int i = 0; i < 5; ++i) shared[rows.accel + kAt[i]] = start.covariance(0, 1 + i);
+  for (int i = 0; i < 5; ++i) shared[rows.accel + kAt[i]] = turned.of_scale(i);
   blocks_.add_shared(N, shared, 1);
   set_metric();
 }

@@ -129,6 +129,27 @@ bool solve_linear(const Sum* sum, int n, const Whitener& whitener, Scalar* units
   return true;
 }
 
+/// h of a row, as the whitener has it.
+Scalar turned_by(const Sum* sum, int n, int k) {
+  const Scalar t = sum[k].t;
+  return t * t * (t / 6 - sum[n - 1].t / 4);
+}
+
+/// A^T C^-1 u h [g]x of the whitened system.
+Eigen::Matrix<Scalar, kRefined, 3> turned_side(const System<kRefined>& system, const Whitener& whitener, const Sum* sum,
+                                               int n, const Vec3& ug) {
+  const Mat3 by_rate = hat(ug);
+  Eigen::Matrix<Scalar, kRefined, 3> side = Eigen::Matrix<Scalar, kRefined, 3>::Zero();
+  Scalar h[kMaxRows];
+  for (int k = 0; k < n; ++k) h[k] = turned_by(sum, n, k);
+  whitener.apply(h, n, 1);
+  for (int k = 0; k < n; ++k)
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < kRefined; ++i)
+        for (int j = 0; j < 3; ++j) side(i, j) += system.a[3 * k + axis][i] * h[k] * by_rate(axis, j);
+  return side;
+}
+
 }  // namespace
 
 bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out) {
@@ -150,6 +171,7 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
   Eigen::Matrix<Scalar, kRefined, kRefined> A;
   Eigen::Matrix<Scalar, kRefined, 1> b;
   SmallCholesky<kRefined> cholesky;
+  Eigen::Matrix<Scalar, kRefined, 3> turned;
   Scalar chi2 = 0;
   for (int step = 0; step <= kSteps; ++step) {
     System<kRefined> system;
@@ -181,7 +203,10 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
       b(6 + i) -= prior * bias(i);
     }
     if (!cholesky.factor(A)) return false;
-    if (step == kSteps) break;
+    if (step == kSteps) {
+      turned = turned_side(system, whitener, sum, n, u * g);
+      break;
+    }
     const Eigen::Matrix<Scalar, kRefined, 1> x = cholesky.solve(b);
     if (!x.allFinite() || !(std::abs(x(0)) < kMaxStep)) return false;
     u *= std::exp(x(0));
@@ -199,6 +224,12 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
   const Scalar widen = std::max(Scalar(1), out->misfit);
   for (int i = 0; i < MovingSolution::kRows; ++i)
     for (int j = 0; j < MovingSolution::kRows; ++j) out->covariance(i, j) = widen * C(kAt[i], kAt[j]);
+  // Errors are what is missing: r = A e + u h [g]x rho, so e = -C A^T .. rho.
+  const Eigen::Matrix<Scalar, kRefined, 3> by_turn = -C.lazyProduct(turned);
+  for (int i = 0; i < MovingSolution::kRows; ++i) out->by_turn.row(i) = by_turn.row(kAt[i]);
+  out->by_turn.row(0) = -out->by_turn.row(0);
+  out->turn_variance = noise.turn * noise.turn;
+  out->span = sum[n - 1].t;
   for (int i = 1; i < MovingSolution::kRows; ++i)
     out->covariance(0, i) = out->covariance(i, 0) = -out->covariance(i, 0);  // log scale = -log u
   return true;

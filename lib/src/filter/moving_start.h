@@ -36,7 +36,11 @@ struct MovingSolution {
   Quat q_WG = Quat::Identity();
   Vec3 accel_bias = Vec3::Zero();  ///< beside the one that the samples were integrated with
   Covariance covariance = Covariance::Zero();
-  Scalar misfit = 0;  ///< chi-square over its degrees of freedom
+  /// Its errors by the rate at which the poses turn away from the truth; the covariance has their share, with turn_variance.
+  Eigen::Matrix<Scalar, kRows, 3> by_turn = Eigen::Matrix<Scalar, kRows, 3>::Zero();
+  Scalar turn_variance = 0;  ///< of each axis [rad^2/s^2]
+  Scalar span = 0;           ///< of the poses [s]
+  Scalar misfit = 0;         ///< chi-square over its degrees of freedom
 
   Scalar sigma_scale() const { return std::sqrt(covariance(0, 0)); }  ///< relative
   Scalar sigma_gravity() const { return std::sqrt(covariance(1, 1) + covariance(2, 2)); }
@@ -55,9 +59,9 @@ inline constexpr int kMaxMovingPoses = 96;
 ///
 ///   C_jk = sigma_0^2 + sigma_k^2 delta_jk + q_d^2 min(t_j, t_k) + (u q_a)^2 G2_jk + (u gravity)^2 (q_r^2 G3_jk + q_t^2 h_j h_k)
 ///
-/// Gn: covariance of an n times integrated white noise; h = t^3 / 6 - T t^2 / 4: gravity in poses that turn, right at T / 2. Of many
-/// poses, rows are means over a few neighbours. A misfit above one widens the covariance. False where there are too few poses or the
-/// system is singular.
+/// Gn: covariance of an n times integrated white noise; h = t^3 / 6 - T t^2 / 4: gravity in poses that turn, right at T / 2. A rate rho of
+/// that, theta = rho (t - T / 2), leaves r = u h [g]x rho, and the solution off by by_turn rho. Of many poses, rows are means over a few
+/// neighbours. A misfit above one widens the covariance. False where there are too few poses or the system is singular.
 bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out);
 
 }  // namespace pf
