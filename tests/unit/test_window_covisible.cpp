@@ -28,19 +28,17 @@ void join(WindowBench* bench, int keyframe, int points) {
   for (int i = 0; i < points; ++i) bench->map.keyframes.pixels(keyframe)[i].seen = true;
 }
 
-void test_keyframes_should_hang_together_by_chains() {
+void test_keyframes_should_hang_together_by_points_that_they_share() {
   WindowBench bench(1);
   split(&bench, 2);
-  bool connected[kKeyframes + 30];
-  TEST_ASSERT_EQUAL_INT(kKeyframes - 2, connected_keyframes(bench.map, 8, connected));
+  bool connected[kKeyframes + 30], seen[WindowBench::kPoints];
+  TEST_ASSERT_EQUAL_INT(kKeyframes - 2, connected_keyframes(bench.map, 8, connected, seen));
   for (int k = 0; k < kKeyframes; ++k) TEST_ASSERT_EQUAL_INT(k >= 2, connected[k]);
-  TEST_ASSERT_EQUAL_INT(0, shared_points(bench.map, 1, 2));
-  TEST_ASSERT_EQUAL_INT(kInGroup, shared_points(bench.map, 0, 1));
-  // The newest keyframe shares nothing with the first two, but one shares enough with both.
   join(&bench, 3, 7);
-  TEST_ASSERT_EQUAL_INT(kKeyframes - 2, connected_keyframes(bench.map, 8, connected));
-  join(&bench, 3, 8);
-  TEST_ASSERT_EQUAL_INT(kKeyframes, connected_keyframes(bench.map, 8, connected));
+  TEST_ASSERT_EQUAL_INT(kKeyframes - 2, connected_keyframes(bench.map, 8, connected, seen));
+  // One that sees enough of both connects them, and so do two that see a part each.
+  for (int i = 7; i < 9; ++i) bench.map.keyframes.pixels(4)[i].seen = true;
+  TEST_ASSERT_EQUAL_INT(kKeyframes, connected_keyframes(bench.map, 8, connected, seen));
 }
 
 void test_points_without_a_depth_should_connect_nothing() {
@@ -48,8 +46,8 @@ void test_points_without_a_depth_should_connect_nothing() {
   split(&bench, 2);
   join(&bench, 3, kInGroup);
   for (int i = 0; i < kInGroup; ++i) bench.map.point(i).has_depth = false;
-  bool connected[kKeyframes + 30];
-  TEST_ASSERT_EQUAL_INT(kKeyframes - 2, connected_keyframes(bench.map, 8, connected));
+  bool connected[kKeyframes + 30], seen[WindowBench::kPoints];
+  TEST_ASSERT_EQUAL_INT(kKeyframes - 2, connected_keyframes(bench.map, 8, connected, seen));
 }
 
 /// They have a place and a scale of their own. Held fixed in the adjustment of the others they would hold neither.
@@ -70,12 +68,30 @@ void test_what_shares_no_points_should_neither_move_nor_hold_the_others() {
   }
 }
 
+/// Turning the keyframe that is held turns the newest one about it, 0.2 m away along x.
+void test_a_keyframe_that_is_held_should_pass_on_its_own_covariance() {
+  WindowBench bench(4), exact(4);
+  split(&bench, 3);
+  split(&exact, 3);
+  Mat6& P = bench.map.keyframes[3].covariance;
+  P(2, 2) = Scalar(0.01);
+  P(3, 3) = Scalar(0.04);
+  TEST_ASSERT_TRUE(bench.adjustment.run(true) && exact.adjustment.run(true));
+  const Mat6 added = bench.adjustment.map_covariance() - exact.adjustment.map_covariance();
+  Mat6 wanted = P;
+  wanted(4, 4) = Scalar(0.01 * 0.2 * 0.2);
+  wanted(2, 4) = wanted(4, 2) = Scalar(0.01 * 0.2);
+  TEST_ASSERT_TRUE((added - wanted).cwiseAbs().maxCoeff() < Scalar(1e-4));
+  TEST_ASSERT_TRUE(bench.map.keyframes[5].covariance == bench.adjustment.map_covariance());
+}
+
 }  // namespace
 
 int main() {
   UNITY_BEGIN();
-  RUN_TEST(test_keyframes_should_hang_together_by_chains);
+  RUN_TEST(test_keyframes_should_hang_together_by_points_that_they_share);
   RUN_TEST(test_points_without_a_depth_should_connect_nothing);
   RUN_TEST(test_what_shares_no_points_should_neither_move_nor_hold_the_others);
+  RUN_TEST(test_a_keyframe_that_is_held_should_pass_on_its_own_covariance);
   return UNITY_END();
 }

@@ -20,6 +20,7 @@ bool WindowAdjustment::layout(Arena& arena) {
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
   const std::size_t poses = static_cast<std::size_t>(keyframes + 1);  // and the target's host
   is_connected_ = arena.take<bool>(static_cast<std::size_t>(keyframes));
+  is_seen_ = arena.take<bool>(points);
   pose_ = arena.take<BundlePose>(poses);
   keyframe_ = arena.take<int>(poses);
   pixel_ = arena.take<BundlePixel>(static_cast<std::size_t>(keyframes) * points);
@@ -39,16 +40,26 @@ bool WindowAdjustment::layout(Arena& arena) {
 
 /// Of the keyframes that hang together with the newest: of few, all but one, unless the target holds them; of more, all but the oldest
 /// three, the oldest first. Where the lens is uncertain, all but one always: keyframes that are held fixed say as if they knew it what lens
-/// they have been adjusted with. While a record goes on, the newest of all. Returns how many.
+/// they have been adjusted with. Away from the first keyframe, all but the oldest six, since one keyframe and a distance would force their
+/// own errors on all others. While a record goes on, the newest of all. Returns how many.
 int WindowAdjustment::choose_free(bool settled) {
   const KeyframeTable& keyframes = map_.keyframes;
-  connected_ = settled ? connected_keyframes(map_, kMinShared, is_connected_) : 0;
+  connected_ = settled ? connected_keyframes(map_, kMinShared, is_connected_, is_seen_) : 0;
   if (connected_ < kMinConnected) {
     for (int k = 0; k < keyframes.capacity(); ++k) is_connected_[k] = keyframes.used(k);
     connected_ = keyframes.count();
   }
-  const bool three = settled && settings_.lens.rows.count == 0 && connected_ >= 2 * kHeldKeyframes;
-  const int others = is_held_by_target() ? 0 : three ? kHeldKeyframes : 1;
+  bool has_first = false;
+  for (int k = 0; k < keyframes.capacity(); ++k)
+    has_first = has_first || (is_connected_[k] && keyframes[k].number == 1);
+  is_away_ = settled && !has_first;
+  int others = 1;
+  if (is_held_by_target())
+    others = 0;
+  else if (is_away_ && connected_ >= 2 * kHeldAway)
+    others = kHeldAway;
+  else if (settled && settings_.lens.rows.count == 0 && connected_ >= 2 * kHeldKeyframes)
+    others = kHeldKeyframes;
   const int free = std::min(settled ? max_free_ : static_cast<int>(settings_.window_keyframes), connected_ - others);
   for (int c = 0; c < free; ++c) {
     // The (free - c)-th newest.
@@ -82,7 +93,7 @@ int WindowAdjustment::choose_points(int free) {
 /// The older keyframes that see most of these points. Returns how many there are with the free ones.
 int WindowAdjustment::choose_fixed(int free, int points, bool settled) {
   int poses = free;
-  const int most_fixed = settled ? kHeldKeyframes : settings_.window_fixed;
+  const int most_fixed = settled ? kHeldAway : settings_.window_fixed;
   for (int f = 0; f < most_fixed; ++f) {
     int best = -1, most = kMinShared - 1;
     for (int k = 0; k < map_.keyframes.capacity(); ++k) {
@@ -195,21 +206,21 @@ bool WindowAdjustment::run(bool settled) {
   return true;
 }
 
-/// The newest keyframe's covariance given those that are held fixed, and with it that of the oldest of these, H, which moves everything:
+/// The newest keyframe's covariance given those that are held fixed, and away from the first keyframe with it that of the newest of these,
+/// H, which moves everything:
 ///
 ///   theta = theta_H + dtheta,  p = p_H + R_H dp:   P = P_dd + A P_H Aᵀ,   A = [I 0; -[p - p_H]x I]
 void WindowAdjustment::note_covariance(const Mat6& given_held, int free, int seen_in) {
-  Keyframe& newest = map_.keyframes[keyframe_[free - 1]];
   map_covariance_ = given_held;
   int held = -1;
-  for (int c = free; c < seen_in; ++c)
-    if (held < 0 || map_.keyframes[keyframe_[c]].number < map_.keyframes[held].number) held = keyframe_[c];
+  for (int c = free; c < seen_in && is_away_; ++c)
+    if (held < 0 || map_.keyframes[keyframe_[c]].number > map_.keyframes[held].number) held = keyframe_[c];
   if (held >= 0) {
     Mat6 A = Mat6::Identity();
     A.bottomLeftCorner<3, 3>() = -hat(Vec3(pose_[free - 1].p_W - map_.keyframes[held].p_W));
     map_covariance_ += A * map_.keyframes[held].covariance * A.transpose();
   }
-  newest.covariance = map_covariance_;
+  map_.keyframes[keyframe_[free - 1]].covariance = map_covariance_;
 }
 
 void WindowAdjustment::take_back(int free, int points) {

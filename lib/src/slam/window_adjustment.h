@@ -76,7 +76,9 @@ class WindowAdjustment {
 
   // Keyframes that hang together with the newest one.
   bool* is_connected_ = nullptr;
+  bool* is_seen_ = nullptr;  ///< points, by one of them
   int connected_ = 0;
+  bool is_away_ = false;  ///< the map's first keyframe is not one of them
 
   // Of the bundle.
   BundlePose* pose_ = nullptr;

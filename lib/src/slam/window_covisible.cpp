@@ -2,32 +2,43 @@
 
 #include <algorithm>
 
-#include "window/tuning.h"
-
 namespace pf {
+namespace {
 
-int shared_points(const WindowMap& map, int a, int b) {
-  const BundlePixel* in_a = map.keyframes.pixels(a);
-  const BundlePixel* in_b = map.keyframes.pixels(b);
-  int shared = 0;
+/// Points with a depth that a keyframe saw.
+template <typename Use>
+void for_each_point(const WindowMap& map, int keyframe, const Use& use) {
+  const BundlePixel* pixels = map.keyframes.pixels(keyframe);
   for (int i = 0; i < map.capacity(); ++i)
-    shared += in_a[i].seen && in_b[i].seen && map.used(i) && map.point(i).has_depth ? 1 : 0;
-  return shared;
+    if (pixels[i].seen && map.used(i) && map.point(i).has_depth) use(i);
 }
 
-int connected_keyframes(const WindowMap& map, int least, bool* connected) {
+}  // namespace
+
+int connected_keyframes(const WindowMap& map, int least, bool* connected, bool* scratch) {
   const KeyframeTable& keyframes = map.keyframes;
   std::fill(connected, connected + keyframes.capacity(), false);
+  std::fill(scratch, scratch + map.capacity(), false);
   if (keyframes.newest() < 0) return 0;
-  int reached[tuning::window_map::kKeyframes] = {keyframes.newest()};
+  bool* seen = scratch;  // by those that are connected
+  const auto add = [&](int k) {
+    connected[k] = true;
+    for_each_point(map, k, [&](int i) { seen[i] = true; });
+  };
+  add(keyframes.newest());
   int count = 1;
-  connected[keyframes.newest()] = true;
-  for (int at = 0; at < count; ++at)
+  for (bool grows = true; grows;) {
+    grows = false;
     for (int k = 0; k < keyframes.capacity(); ++k) {
-      if (!keyframes.used(k) || connected[k] || shared_points(map, reached[at], k) < least) continue;
-      connected[k] = true;
-      reached[count++] = k;
+      if (!keyframes.used(k) || connected[k]) continue;
+      int shared = 0;
+      for_each_point(map, k, [&](int i) { shared += seen[i] ? 1 : 0; });
+      if (shared < least) continue;
+      add(k);
+      ++count;
+      grows = true;
     }
+  }
   return count;
 }
 

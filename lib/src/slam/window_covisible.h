@@ -6,16 +6,14 @@
 
 namespace pf {
 
-/// Points with a depth that both keyframes saw.
-int shared_points(const WindowMap& map, int a, int b);
-
-/// The keyframes that a chain connects with the newest one, in which each shares at least `least` points with the one before.
+/// The keyframes that hang together with the newest one: each shares at least `least` points that have a depth with the others of them.
 ///
 /// connected  gets one entry for each of the table
+/// scratch    one for each point
 /// returns    how many they are, the newest one included
 ///
 /// What is connected no other way has a scale and a place of its own: nothing that is adjusted says how long its lengths are in those of
 /// the rest.
-int connected_keyframes(const WindowMap& map, int least, bool* connected);
+int connected_keyframes(const WindowMap& map, int least, bool* connected, bool* scratch);
 
 }  // namespace pf

@@ -109,6 +109,7 @@ inline constexpr int kMinPlanePoints = 4;     ///< of a plane that is adjusted
 inline constexpr int kMinScaleKeyframes = 2;  ///< held fixed, so that distances from planes do not shrink the map
 inline constexpr int kMinConnected = 3;   ///< keyframes that are adjusted without those that they share no points with
 inline constexpr int kHeldKeyframes = 3;  ///< the oldest, where all others are adjusted
+inline constexpr int kHeldAway = 6;       ///< likewise, where the first keyframe of the map is not among them
 inline constexpr Scalar kHeldDistance = Scalar(1e-3);   ///< of a distance that holds the scale: its sigma
 inline constexpr int kMinTargetPoints = 4;              ///< of the target, that hold a keyframe
 inline constexpr Scalar kHuber = Scalar(2);             ///< residuals beyond count linearly [standard deviations]
