@@ -172,7 +172,9 @@ void project(const Scalar* X, int m, int ld, const SparseRows* J, int count, Sca
 }
 
 /// out (J.rows x J.rows, leading dimension kMaxRows) = J P J^T
-inline void square(const Triangle& P, const SparseRows& J, Scalar* out) {
+///
+/// Neither this nor who has a panel is inlined, since both, 20 and 31 KiB, would lie on the stack together.
+__attribute__((noinline)) void square(const Triangle& P, const SparseRows& J, Scalar* out) {
   constexpr int kMaxColumns = SparseRows::kMaxColumns;
   const int width = columns_of(J);
   int at[kMaxColumns];

@@ -13,12 +13,9 @@ PF_INLINE void clear_behind(const Triangle& P, int i, int from) {
   for (int j = from; j < stride_of(i); ++j) row[j] = 0;
 }
 
-/// Twin: reference::augment. New rows are gathered strip by strip and copied to where they belong; a new group starts clean.
-void augment(Triangle& P, const SparseRows& J, const Scalar* noise) {
+/// J P, strip by strip, into the rows behind those that there are.
+__attribute__((noinline)) void append_rows(const Triangle& P, const SparseRows& J) {
   const int n = P.n;
-  Scalar JPJ[kMaxRows * kMaxRows];
-  square(P, J, JPJ);
-
   Panel panel;
   Scalar strip[kMaxRows * kStrip];
   for (int j0 = 0; j0 < n; j0 += kStrip) {
@@ -30,6 +27,14 @@ void augment(Triangle& P, const SparseRows& J, const Scalar* noise) {
       copy_groups(row_of(P, n + a) + j0, strip + a * kStrip, round_up(columns, kGroup));
     }
   }
+}
+
+/// Twin: reference::augment. New rows are gathered strip by strip and copied to where they belong; a new group starts clean.
+void augment(Triangle& P, const SparseRows& J, const Scalar* noise) {
+  const int n = P.n;
+  Scalar JPJ[kMaxRows * kMaxRows];
+  square(P, J, JPJ);
+  append_rows(P, J);
   for (int a = 0; a < J.rows; ++a) {
     Scalar* row = row_of(P, n + a) + n;
     for (int b = 0; b <= a; ++b) row[b] = JPJ[a * kMaxRows + b] + noise[a * J.rows + b];
@@ -39,12 +44,8 @@ void augment(Triangle& P, const SparseRows& J, const Scalar* noise) {
   for (int i = P.n; i % kGroup != 0; ++i) clear_behind(P, i, 0);
 }
 
-/// Twin: reference::replace. A row outside of the block takes its new entries from its own old ones alone, so strips may go one
-/// after the other in place; the block with itself is formed before anything moves.
-void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise) {
-  Scalar JPJ[kMaxRows * kMaxRows];
-  square(P, J, JPJ);
-
+/// J P, strip by strip, into the rows and columns of a block, but for the block with itself.
+__attribute__((noinline)) void replace_rows(const Triangle& P, int first, int size, const SparseRows& J) {
   Panel panel;
   Scalar strip[kMaxRows * kStrip];
   for (int j0 = 0; j0 < P.n; j0 += kStrip) {
@@ -65,6 +66,14 @@ void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar
       }
     }
   }
+}
+
+/// Twin: reference::replace. A row outside of the block takes its new entries from its own old ones alone, so strips may go one
+/// after the other in place; the block with itself is formed before anything moves.
+void replace(Triangle& P, int first, int size, const SparseRows& J, const Scalar* noise) {
+  Scalar JPJ[kMaxRows * kMaxRows];
+  square(P, J, JPJ);
+  replace_rows(P, first, size, J);
   for (int a = 0; a < J.rows; ++a) {
     Scalar* row = row_of(P, first + a) + first;
     for (int b = 0; b <= a; ++b) {
