@@ -7,6 +7,10 @@ import math
 import pathlib
 import sys
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "pf-eval"))
+
+from pf_eval.command_line import OneLineParser  # noqa: E402
+
 MAX_WALLS, MAX_NAME = 64, 63  # of a file; bytes
 
 
@@ -22,7 +26,7 @@ def positive(text):
 
 
 def parser(about, kind):
-    options = argparse.ArgumentParser(description=about)
+    options = OneLineParser(description=about)
     options.add_argument("file", type=pathlib.Path, metavar="FILE", help=f"{kind} to read")
     options.add_argument("--out", type=pathlib.Path, metavar="WALLS.json", help="file to write, which must not be there yet; default: print")
     options.add_argument("--metres", action="store_true", help="the coordinates are metres; such files do not say it, so it is asked for")
