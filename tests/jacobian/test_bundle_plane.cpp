@@ -12,6 +12,19 @@ void tearDown(void) {}
 
 namespace {
 
+/// Compares the derivatives by plane, host and inverse depth with differences. distance(x, h, e) moves them by as much.
+template <typename Distance>
+void check_by_differences(const Distance& distance, const Mat13& J_plane, const Mat16& J_H,
+                          const Eigen::Matrix<Scalar, 1, 1>& J_rho) {
+  check_jacobian<1, 3>(
+      J_plane, [&](const Vec3& x) { return distance(x, Vec6::Zero(), 0); }, "J_e_plane");
+  check_jacobian<1, 6>(
+      J_H, [&](const Vec6& h) { return distance(Vec3::Zero(), h, 0); }, "J_e_H");
+  check_jacobian<1, 1>(
+      J_rho, [&](const Eigen::Matrix<Scalar, 1, 1>& s) { return distance(Vec3::Zero(), Vec6::Zero(), s(0)); },
+      "J_e_rho", Scalar(0.3));
+}
+
 void test_bundle_plane_jacobians_should_be_exact() {
   SeededRandom random(42);
   using Vec1 = Eigen::Matrix<Scalar, 1, 1>;
@@ -37,12 +50,7 @@ void test_bundle_plane_jacobians_should_be_exact() {
     Scalar d;
     plane_normal(plane.frame, plane.x, &n, &d);
     TEST_ASSERT_TRUE(std::abs(e - (n.dot(p_H + R_WH * ray / rho) - d)) < Scalar(1e-5));
-    check_jacobian<1, 3>(
-        J_plane, [&](const Vec3& x) { return distance(x, Vec6::Zero(), 0); }, "J_e_plane");
-    check_jacobian<1, 6>(
-        J_H, [&](const Vec6& h) { return distance(Vec3::Zero(), h, 0); }, "J_e_H");
-    check_jacobian<1, 1>(
-        J_rho, [&](const Vec1& s) { return distance(Vec3::Zero(), Vec6::Zero(), s(0)); }, "J_e_rho", Scalar(0.3));
+    check_by_differences(distance, J_plane, J_H, J_rho);
   }
 }
 
@@ -68,12 +76,7 @@ void test_relative_plane_distance_should_have_exact_jacobians() {
     Vec1 J_rho;
     const Scalar e = relative_plane_distance(plane, ray, p_H, rho, before, &J_plane, &J_H, &J_rho(0));
     TEST_ASSERT_TRUE(std::abs(e - rho / before * bearing_plane_distance(plane, ray, p_H, rho)) < Scalar(1e-5));
-    check_jacobian<1, 3>(
-        J_plane, [&](const Vec3& x) { return distance(x, Vec6::Zero(), 0); }, "J_e_plane");
-    check_jacobian<1, 6>(
-        J_H, [&](const Vec6& h) { return distance(Vec3::Zero(), h, 0); }, "J_e_H");
-    check_jacobian<1, 1>(
-        J_rho, [&](const Vec1& s) { return distance(Vec3::Zero(), Vec6::Zero(), s(0)); }, "J_e_rho", Scalar(0.3));
+    check_by_differences(distance, J_plane, J_H, J_rho);
   }
 }
 

@@ -1,6 +1,4 @@
 // Whole frames: pf_push_frame on real sequences beside OpenCV's optical flow on the same frames, interleaved frame by frame.
-#include <time.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +9,7 @@
 #include "flow_peer.h"
 #include "frame_source.h"
 #include "suite.h"
+#include "thread_time.h"
 
 namespace bench {
 namespace {
@@ -18,12 +17,8 @@ namespace {
 constexpr const char* kStages[] = {"pyramid", "predict", "search", "gate", "update", "map"};
 constexpr int kStageCount = PF_STAGE_MAP + 1;
 
-/// Processor time of this thread: what other programs take from it does not count. For both sides, which have one thread.
-int64_t clock_ns(void*) {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return int64_t{1000000000} * now.tv_sec + now.tv_nsec;
-}
+/// For both sides, which have one thread.
+int64_t clock_ns(void*) { return thread_ns(); }
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0;

@@ -1,7 +1,6 @@
 // Alignment of a patch on a plane: the library's own aligner beside OpenCV's, on rendered frames with exact homographies. What is lost in a
 // frame counts 10 px, and goes on from where it was last.
 #include <dlfcn.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,18 +16,13 @@
 #include "homography_frames.h"
 #include "slam/tuning.h"
 #include "suite.h"
+#include "thread_time.h"
 #include "track/align_plane.h"
 
 namespace bench {
 namespace {
 
 constexpr double kLostPx = 10;
-
-double now_us() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -92,9 +86,9 @@ class OwnTracker : public PatchTracker {
     if (!unfinished_) start_.H_CK = K_.inverse() * H_px * K_;
     // Every frame has a pyramid already, for the points.
     pyramid_.build({image, camera_.width, camera_.height, camera_.width});
-    const double begin = now_us();
+    const double begin = thread_us();
     const pf::PlaneAlignment found = aligner_.align(pyramid_, camera_, patch_, start_, pf::HomographyWarp());
-    out.us = now_us() - begin;
+    out.us = thread_us() - begin;
     out.found = found.is_aligned();
     unfinished_ = found.iterations == pf::PlaneAligner::kMaxIterations && !out.found;
     if (unfinished_) start_.H_CK = found.H_CK;

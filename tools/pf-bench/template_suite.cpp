@@ -1,7 +1,6 @@
 // Templates with masks: a whole search (warp, correlation at up to 9 x 9 pixels, sub-pixel alignment, judgement) beside OpenCV's
 // matchTemplate, which correlates at the same 81 pixels and does none of the rest.
 #include <dlfcn.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 
 #include "base/arena.h"
 #include "suite.h"
+#include "thread_time.h"
 #include "track/template_matcher.h"
 
 namespace bench {
@@ -27,12 +27,6 @@ constexpr double kNoise = 2;                   // [grey levels]
 constexpr int kOffPlane = 6;                   // columns of a template that are not on its plane
 constexpr std::uint8_t kOn = 250, kOff = 5;    // in a mask
 constexpr double kCell = 3.5;                  // of the texture [px]
-
-double now_us() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -199,9 +193,9 @@ class TemplateSuite {
       task.c_W = pf::Vec3(-moved.x() / camera_.fx, -moved.y() / camera_.fy, 0);
       task.innovation = pf::Mat2::Identity() * static_cast<pf::Scalar>(kVariance);
       task.predicted = predicted_of(one);
-      const double begin = now_us();
+      const double begin = thread_us();
       const pf::SearchOutcome outcome = matcher_.search(tracker_, task);
-      us += now_us() - begin;
+      us += thread_us() - begin;
       found_ += outcome.found && (outcome.pixel - one.pixel - moved).norm() < pf::Scalar(0.3);
     }
     return us;

@@ -1,7 +1,5 @@
 // The peer of a whole frame: OpenCV's pyramidal Lucas-Kanade on 100 points. A module of its own, because OpenCV brings an OpenBLAS
 // that must not be loaded before the covariance suite has chosen its core type.
-#include <time.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <exception>
@@ -10,18 +8,13 @@
 #include <opencv2/video.hpp>
 #include <vector>
 
+#include "../thread_time.h"
+
 namespace {
 
 constexpr int kPoints = 100;
 constexpr double kQuality = 0.01;   // goodFeaturesToTrack: share of the best corner's score
 constexpr double kDistance = 10.0;  // goodFeaturesToTrack: [px]
-
-/// Processor time of this thread.
-double now_us() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
 
 }  // namespace
 
@@ -45,9 +38,9 @@ double pf_bench_flow_us(const uint8_t* previous, const uint8_t* next, int width,
     if (corners.empty()) return -1;
     std::vector<uint8_t> status;
     std::vector<float> error;
-    const double begin = now_us();
+    const double begin = thread_us();
     cv::calcOpticalFlowPyrLK(from, to, corners, moved, status, error);
-    const double us = now_us() - begin;
+    const double us = thread_us() - begin;
     *tracked = static_cast<int>(std::count(status.begin(), status.end(), 1));
     return us;
   } catch (const std::exception&) {

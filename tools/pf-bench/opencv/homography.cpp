@@ -1,7 +1,5 @@
 // The peers of the patch aligner: OpenCV's ECC, and its pyramidal Lucas-Kanade against the template warped to where the patch was last. A
 // module of its own, as flow.cpp.
-#include <time.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <exception>
@@ -10,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video.hpp>
 #include <vector>
+
+#include "../thread_time.h"
 
 namespace {
 
@@ -22,13 +22,6 @@ constexpr int kMinPoints = 8;
 constexpr double kRansacPx = 1.0;
 constexpr int kFlowLevel = 1;    // coarsest: half of its window there is inside of the margin
 constexpr int kFlowWindow = 21;  // [px]
-
-/// Processor time of this thread.
-double now_us() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
 
 cv::Matx33d matrix_of(const double* H) { return cv::Matx33d(H); }
 
@@ -115,9 +108,9 @@ double pf_bench_homography(int method, const uint8_t* reference, int left, int t
     const cv::Rect patch(left, top, side, side);
     cv::Matx33d now = matrix_of(H);
     if (first != 0) find_points(from, patch);
-    const double begin = now_us();
+    const double begin = thread_us();
     const bool found = method == 0 ? ecc(from, patch, to, &now) : flow(from, patch, to, &now);
-    const double us = now_us() - begin;
+    const double us = thread_us() - begin;
     if (!found) return -us;
     std::copy(now.val, now.val + 9, H);
     return us;

@@ -1,6 +1,4 @@
 // The peer of a search with a masked template: OpenCV's matchTemplate about the same predicted pixels. A module of its own, as flow.cpp.
-#include <time.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -8,16 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-namespace {
-
-/// Processor time of this thread.
-double now_us() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
-
-}  // namespace
+#include "../thread_time.h"
 
 extern "C" {
 
@@ -39,7 +28,7 @@ double pf_bench_match_us(const uint8_t* image, int width, int height, const uint
       if (masks != nullptr) mask.emplace_back(side, side, CV_32F, const_cast<float*>(masks + at));
     }
     cv::Mat scores;
-    const double begin = now_us();
+    const double begin = thread_us();
     for (int k = 0; k < count; ++k) {
       const int left = centres[2 * k] - size / 2, top = centres[2 * k + 1] - size / 2;
       const cv::Mat region = whole(cv::Rect(left, top, size, size));
@@ -53,7 +42,7 @@ double pf_bench_match_us(const uint8_t* image, int width, int height, const uint
       found[2 * k] = left + best.x + side / 2;
       found[2 * k + 1] = top + best.y + side / 2;
     }
-    return now_us() - begin;
+    return thread_us() - begin;
   } catch (const std::exception&) {
     return -1;
   }
