@@ -274,6 +274,9 @@ bool FilterStart::record_frame() {
       // Only rotation so far, or too few features in view: the world stays, and the record begins again with this frame.
       if (first && !checks) parts_.features.drop_all();
       break;
+    case StartOutcome::kStill:
+      stay_at_base();
+      break;
   }
   return false;
 }

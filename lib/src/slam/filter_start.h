@@ -103,8 +103,10 @@ class FilterStart {
   bool motion_agrees(Scalar unit) const;
   void empty_filter();
   void clear_all_but_walls();
+  void stay_at_base();
   void restart_from_record(Scalar unit);
-  void restart_features(Scalar unit);
+  template <typename Rho>
+  void restart_features(Rho&& rho_of, Scalar relative_sigma);
   void restart_frame(int k, std::int64_t before_ns, Scalar unit);
   void restart_velocities(Scalar unit);
   void restart_at_target();

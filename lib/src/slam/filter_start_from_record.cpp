@@ -24,7 +24,9 @@ void FilterStart::restart_from_record(Scalar unit) {
   begin_body(body, progress().checking && !data_.known.given);
   // Residuals of zero say nothing about the lens: the bundle's solution holds for the one that the filter begins with.
   parts_.filter.consider_lens(true);
-  restart_features(unit);
+  restart_features(
+      [&](int index) { return without_.bundle().good(index) ? without_.bundle().rho(index) / unit : Scalar(0); },
+      kWideDepth);
   std::int64_t before_ns = without_.begin_ns();
   for (int k = 0; k < without_.record().frames(); ++k) {
     restart_frame(k, before_ns, unit);
@@ -35,8 +37,22 @@ void FilterStart::restart_from_record(Scalar unit) {
   if (progress().checking) restart_at_target();
 }
 
-/// Adds the record's features to the filter with its depths; removes all others.
-void FilterStart::restart_features(Scalar unit) {
+/// What moves before a camera that stands still has drawn its pose along, since no depth is known: it is again that of the record's first
+/// frame, and of the map what has not moved stays.
+void FilterStart::stay_at_base() {
+  Body body;
+  body.q_WC = without_.base_q_WC();
+  body.p_W = without_.base_p_W();
+  clear_all_but_walls();
+  begin_body(body, false);
+  const Scalar rho = Scalar(1) / settings_.start_depth;
+  restart_features([&](int index) { return without_.stays(settings_.camera, index) ? rho : Scalar(0); },
+                   settings_.inverse_depth_relative_sigma);
+}
+
+/// Adds the record's features to the filter; removes all others. rho(index): inverse depth of a feature of the record; 0: none.
+template <typename Rho>
+void FilterStart::restart_features(Rho&& rho_of, Scalar relative_sigma) {
   Filter& filter = parts_.filter;
   const int anchor = filter.add_anchor();
   const Mat2 noise = NoiseModel::search();
@@ -55,13 +71,13 @@ void FilterStart::restart_features(Scalar unit) {
     Vec3 ray_C;
     Mat32 J_ray_pixel;
     Vec2 pixel;
-    if (index < 0 || !without_.bundle().good(index) || !project(filter.lens(), without_.record().ray(index), &pixel) ||
+    const Scalar rho = index < 0 ? Scalar(0) : rho_of(index);
+    if (!(rho > Scalar(0)) || !project(filter.lens(), without_.record().ray(index), &pixel) ||
         !unproject(filter.lens(), pixel, &ray_C, &J_ray_pixel)) {
       parts_.features.release(i);
       continue;
     }
-    const Scalar rho = without_.bundle().rho(index) / unit;
-    f.slot = filter.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, kWideDepth * rho);
+    f.slot = filter.add_inverse_depth(anchor, ray_C, J_ray_pixel, noise, rho, relative_sigma * rho);
     if (f.slot < 0)
       parts_.features.release(i);
     else

@@ -55,6 +55,8 @@ void StartWithoutTarget::move_ray(const Camera& camera, int index, const Vec2& p
 }
 
 StartOutcome StartWithoutTarget::solve(const Camera& camera, Scalar sigma_px, Scalar median_depth) {
+  if (stands_still(lens_of_record(camera), record_))
+    return data_.progress.checking || data_.progress.depth_known ? StartOutcome::kWait : StartOutcome::kStill;
   const StartOutcome outcome = bundle_.solve(camera, record_, sigma_px, median_depth);
   StartProgress& progress = data_.progress;
   if (progress.checking) {

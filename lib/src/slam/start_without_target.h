@@ -6,6 +6,7 @@
 #include "slam/tracking_state.h"
 #include "vision/appearance.h"
 #include "window/start_bundle.h"
+#include "window/start_still.h"
 
 /// Start with nothing known: records the pixels of the first frames until a bundle adjustment has a unique solution for them.
 /// Knows no filter: it is given poses and pixels, and its solution is read from it.
@@ -33,7 +34,8 @@ class StartWithoutTarget {
   /// Adds a later frame with its estimated pose in W. Its pixels follow, corrected to the frame's time.
   void begin_frame(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns);
   void add_pixel(const Camera& camera, std::uint32_t id, const Vec2& pixel);
-  /// Tries to solve the record. kTooFew empties it, unless depths are known already; then the start is over, and so is a check.
+  /// Tries to solve the record. kTooFew empties it, unless depths are known already; then the start is over, and so is a check. kStill
+  /// comes only as long as no depths are known.
   StartOutcome solve(const Camera& camera, Scalar sigma_px, Scalar median_depth);
 
   /// Improves the last frame's pose while the depths are open (StartBundle::follow). rho: of each feature, about one.
@@ -44,6 +46,8 @@ class StartWithoutTarget {
   const StartBundle& bundle() const { return bundle_; }
   /// Index of a feature in the record; -1 where it is not in it.
   int index_of(std::uint32_t id) const;
+  /// Whether it has not moved since the record's first frame.
+  bool stays(const Camera& camera, int index) const { return is_still(lens_of_record(camera), record_, index); }
   /// The record's first frame in W.
   const Quat& base_q_WC() const { return data_.base_q_WC; }
   const Vec3& base_p_W() const { return data_.base_p_W; }
@@ -62,6 +66,9 @@ class StartWithoutTarget {
     std::uint32_t id[StartRecord::kMaxFeatures] = {};
   };
 
+  const Camera& lens_of_record(const Camera& camera) const {
+    return bundle_.lens() != nullptr ? *bundle_.lens() : camera;
+  }
   void move_ray(const Camera& camera, int index, const Vec2& pixel);
 
   Data data_;

@@ -225,10 +225,14 @@ bool WindowStart::follow_record() {
     parts_.motion.move(now.q_WC, now.c_W);
     return false;
   }
-  if (outcome != StartOutcome::kTooFew) {
+  if (outcome == StartOutcome::kSolved || outcome == StartOutcome::kSettled) {
     take_record();
     settings_.hooks.say("started without a target: the first depths are known");
     return true;
+  }
+  if (outcome == StartOutcome::kStill) {  // what moves has drawn the pose along
+    parts_.motion.move(without_.base_q_WC(), without_.base_p_W());
+    return false;
   }
   // Only rotation so far, or too few features in view: the world stays, and the record begins again with this frame.
   clear_map();

@@ -60,6 +60,7 @@ enum class StartOutcome {
   kSolved,   ///< solved; more frames may improve it
   kSettled,  ///< solved, with enough parallax to stop
   kTooFew,   ///< too few of frame 0's features are left: start again
+  kStill,    ///< the camera is where it was in frame 0, and something moves before it
 };
 
 /// Poses of the record's frames and inverse depths of its features.

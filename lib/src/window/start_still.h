@@ -1,0 +1,15 @@
+#pragma once
+
+#include "geometry/camera.h"
+#include "window/start_bundle.h"
+
+namespace pf {
+
+/// Whether the record's last frame shows that the camera stands where it stood in the first one, while something moves before it: at least
+/// a third of the features are where they were, all over the picture, and others are not, or the frame's estimated pose has turned with
+/// what is not in the record (lib/docs/starting.md).
+bool stands_still(const Camera& camera, const StartRecord& record);
+/// Whether a feature is in the last frame where it was in the first one.
+bool is_still(const Camera& camera, const StartRecord& record, int feature);
+
+}  // namespace pf
