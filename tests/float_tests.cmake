@@ -8,6 +8,7 @@ set(PLANEFOLD_FLOAT_TESTS
     regression/test_absurd_cameras.c
     regression/test_clock_that_jumps_by_years.c
     regression/test_known_speed.cpp
+    regression/test_long_loss.cpp
     regression/test_unequal_covariances.c
     jacobian/test_inverse_depth_conversion.cpp
     jacobian/test_motion.cpp

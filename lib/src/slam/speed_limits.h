@@ -24,14 +24,16 @@ inline MotionNoise limited_noise(MotionNoise noise, bool has_velocity, Scalar ro
 /// Factor by which a speed that is not measured decays in dt [s].
 inline Scalar speed_decay(Scalar dt) { return std::exp(-dt / tuning::body_motion::kSpeedDecay); }
 
-/// Beyond any position and any rotation the speeds decay without noise that keeps them up. P: of (v, w).
+/// Beyond any position and any rotation the speeds decay to kLeastSpeedSigma, without noise that keeps them up: a variance that halves in
+/// each frame would be no normal number after some seconds. P: of (v, w).
 inline void limit_speed(Scalar rotation_variance, Scalar position_variance, Mat6* P) {
   using namespace tuning::body_motion;
   const bool any_rotation = rotation_variance > kAnyRotation * kAnyRotation;
   const bool any_position = position_variance > kAnyPosition * kAnyPosition;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j)
-      if ((any_position && (i < 3 || j < 3)) || (any_rotation && (i >= 3 || j >= 3))) (*P)(i, j) = Scalar(0);
+      if ((any_position && (i < 3 || j < 3)) || (any_rotation && (i >= 3 || j >= 3)))
+        (*P)(i, j) = i == j ? kLeastSpeedSigma * kLeastSpeedSigma : Scalar(0);
 }
 
 }  // namespace pf

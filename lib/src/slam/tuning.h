@@ -62,6 +62,7 @@ inline constexpr Scalar kMaxRotationSigma = Scalar(0.5);  ///< [rad] of an axis;
 inline constexpr Scalar kMaxSpeedSigma = Scalar(1);       ///< [m/s] of an axis; beyond, linear noise is left out
 inline constexpr Scalar kAnyRotation = Scalar(1.8);       ///< [rad] uniform over a full rotation: the most that grows
 inline constexpr Scalar kAnyPosition = Scalar(100);       ///< [m] likewise
+inline constexpr Scalar kLeastSpeedSigma = Scalar(1e-3);  ///< [m/s, rad/s] of an axis whose speed has decayed
 }  // namespace body_motion
 
 /// An inertial unit before anything is known of it.
@@ -72,8 +73,7 @@ inline constexpr Scalar kGravity = Scalar(1);      ///< [rad] sigma of its direc
 inline constexpr Scalar kYoungMap = Scalar(15);    ///< [s] age of a map of unknown scale that gives way to a metric one
 }  // namespace inertial
 
-/// Whether samples and pictures agree. The slack and the bound were taken from six healthy runs of 60 s (largest sum 38) and from units
-/// that are wrong (pf-sim vio --fault).
+/// Whether samples and pictures agree. Slack and bound are from six healthy runs of 60 s (largest sum 38) and wrong units (pf-sim --fault).
 namespace unit_watch {
 inline constexpr Scalar kSlack = Scalar(9);              ///< that a frame may add to the sum, of a chi-square of six
 inline constexpr Scalar kBound = Scalar(100);            ///< of the sum, above which the unit is doubted
