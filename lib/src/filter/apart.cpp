@@ -12,7 +12,7 @@ using namespace tuning::apart;
 
 /// Whether nothing tells the place or the scale of W, as an inertial unit would, so that what is not known of them may be kept apart.
 bool Filter::keeps_apart() const {
-  return keep_gauge_ && !gauge_is_told_ && state_.unobservable == gauge::kBareCamera &&
+  return keep_gauge_ && told_updates_ == 0 && state_.unobservable == gauge::kBareCamera &&
          !state_.layout.has(BodyPart::kGravity);
 }
 
@@ -20,7 +20,7 @@ void Filter::set_body(const Body& body, const Scalar* covariance, const Scalar* 
   const int rows = state_.layout.dynamic_rows();
   state_.body = body;
   apart_.clear();
-  if (body.v_W != Vec3::Zero()) tell_gauge();
+  if (body.v_W != Vec3::Zero() && told_updates_ == 0) told_updates_ = kSpeedTells;
   Scalar largest = 0;
   for (int i = 0; i < Body::kPoseDim; ++i) largest = std::max(largest, covariance[i * rows + i]);
   if (!keeps_apart() || J_lens != nullptr || largest < kMinPoseSigma * kMinPoseSigma) {
@@ -42,7 +42,7 @@ void Filter::body_covariance(int rows, Scalar* out) const {
 }
 
 void Filter::tell_gauge() {
-  gauge_is_told_ = true;
+  told_updates_ = -1;
   if (!apart_.any()) return;
   transport_.spread(state_, blocks_, apart_.V());
   blocks_.add_shared(transport_.U(), transport_.G(), transport_.rows());

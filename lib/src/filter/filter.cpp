@@ -37,7 +37,7 @@ void Filter::init(const Kernels* kernels, const BodyLayout& layout, bool keep_ga
   state_.planes = 0;
   roughness_ = Scalar(0);
   apart_.clear();
-  gauge_is_told_ = false;
+  told_updates_ = 0;
   blocks_.init(kernels, layout.rows() - layout.considered_rows(), layout.considered_rows());
   transport_.init();
 }

@@ -98,7 +98,8 @@ class Filter {
   /// does. Only while nothing in the map depends on the body.
   void set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens = nullptr);
 
-  /// From now on something tells the place or the scale of W. What is apart goes into P, and stays there.
+  /// From now on something tells the place or the scale of W. What is apart goes into P, and stays there. (The speed of a start does so
+  /// for kSpeedTells updates: then the noise of the motion has replaced it.)
   void tell_gauge();
 
   /// Which entry of the map's table a block belongs to.
@@ -288,7 +289,7 @@ class Filter {
   Transport transport_;
   GaugePrior apart_;
   bool keep_gauge_ = true;
-  bool gauge_is_told_ = false;  ///< tell_gauge()
+  int told_updates_ = 0;  ///< for which something still tells the gauge; -1: for good
   std::uint32_t generation_ = 0;
   Scalar roughness_ = 0;
   Measurement* view_ = nullptr;  ///< observations; of pixels

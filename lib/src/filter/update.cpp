@@ -35,6 +35,7 @@ void Filter::commit_update() {
   if constexpr (sizeof(Scalar) == sizeof(float))
     blocks_.grow(tuning::apart::kGrowth * std::sqrt(static_cast<Scalar>(blocks_.dim())));
   if (keeps_apart()) end_update_apart(l);
+  if (told_updates_ > 0) --told_updates_;
 }
 
 bool Filter::pose_nis(Scalar* nis) const {
