@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <unordered_map>
 
 #include "context.h"
 #include "record.h"
@@ -49,6 +50,35 @@ void compare(const std::vector<pf_feature_t>& recorded, const std::vector<pf_fea
   }
 }
 
+/// Which decisions about features the two runs have taken by now.
+class Decisions {
+ public:
+  void compare(const Frame& recorded, const std::vector<pf_feature_t>& here, Distance* d) {
+    for (const Decision& decision : recorded.decisions) kind_[decision.external_id] = decision.kind;
+    for (const pf_feature_t& f : here) {
+      const auto known = kind_.find(f.external_id);
+      if (known == kind_.end()) continue;
+      const bool open = known->second == PF_FEATURE_INVERSE_DEPTH;
+      ++(open ? d->open_depths : d->places);
+      if (open != (f.kind == PF_FEATURE_INVERSE_DEPTH))
+        ++d->converted_apart;
+      else if (known->second != f.kind)
+        ++d->folded_apart;
+    }
+  }
+
+ private:
+  std::unordered_map<std::uint32_t, std::int32_t> kind_;
+};
+
+/// Counts a frame whose state has another number of rows. run: of such frames before this one.
+void compare_state(bool other, int* run, Distance* d) {
+  *run = other ? *run + 1 : 0;
+  d->other_state += other;
+  d->longest_other = std::max(d->longest_other, *run);
+  d->other_end = other;
+}
+
 }  // namespace
 
 bool follow(const std::string& file, Distance* d) {
@@ -67,7 +97,9 @@ bool follow(const std::string& file, Distance* d) {
     return false;
   }
   Frame frame;
+  Decisions decisions;
   double us = 0;
+  int run = 0;
   for (int i = 0; i < frames; ++i) {
     if (!tape.read(frame)) return false;
     if (i > 0) pf_push_control(slam, frame.dv_C, frame.dw_C);
@@ -88,7 +120,8 @@ bool follow(const std::string& file, Distance* d) {
     d->refused += frame.offered - static_cast<long>(frame.observations.size());
     d->refused_again += std::max(0, frame.inliers - report.inliers);
     d->other_map += report.features != frame.features;
-    d->other_state += report.state_dim != frame.state_dim;
+    compare_state(report.state_dim != frame.state_dim, &run, d);
+    decisions.compare(frame, map_of(slam), d);
     compare(frame.pose, pose, d);
     if (i % 1000 == 999) {
       std::fprintf(stderr, "\r%d of %d frames: %.3f sigma, sigma off by %.2f %%, %ld refused", i + 1, frames,

@@ -25,6 +25,7 @@ bool record(const std::string& file, int frames, std::uint64_t seed, bool planes
   frame.pose = bed.start();
   std::vector<pf_match_t> tracks(1000);
   std::unordered_map<std::uint32_t, std::uint32_t> observation_of;  // by id of the feature
+  std::unordered_map<std::uint32_t, std::int32_t> kind_of;          // by the observations' id
   for (int i = 0; i < frames && written; ++i) {
     if (i > 0) {
       bed.steer(i - 1, frame.pose, frame.dv_C, frame.dw_C);
@@ -44,8 +45,12 @@ bool record(const std::string& file, int frames, std::uint64_t seed, bool planes
     frame.state_dim = report.state_dim;
 
     // A feature may leave the map in the frame that refuses its measurement.
-    if (i == 0 || report.new_features > 0) {
-      for (const pf_feature_t& f : map_of(slam)) observation_of[f.id] = f.external_id;
+    frame.decisions.clear();
+    for (const pf_feature_t& f : map_of(slam)) {
+      observation_of[f.id] = f.external_id;
+      std::int32_t& kind = kind_of[f.external_id];
+      if (kind != f.kind) frame.decisions.push_back({f.external_id, f.kind});
+      kind = f.kind;
     }
     std::size_t count = 0;
     pf_get_matches(slam, tracks.data(), tracks.size(), &count);

@@ -18,7 +18,14 @@ struct Distance {
   long refused_again = 0;  ///< measurements of the recorded run that this one did not use
   int other_map = 0;       ///< frames whose map has another number of features
   int other_state = 0;     ///< frames whose state has another number of rows
-  double position = 0;     ///< largest difference of a coordinate, in the recorded run's sigma
+  int longest_other = 0;   ///< of them in a row
+  bool other_end = false;  ///< the last frame is one of them
+  long open_depths = 0;    ///< features of the recorded run with an inverse depth, summed over its frames
+  long places = 0;         ///< those with a place, likewise
+  long converted_apart =
+      0;  ///< features that have an inverse depth in one run and a place in the other, summed over frames
+  long folded_apart = 0;  ///< those that are folded in one run alone, likewise
+  double position = 0;    ///< largest difference of a coordinate, in the recorded run's sigma
   double rotation = 0;
   double sigma = 0;         ///< largest relative difference of a sigma of the pose
   double map_position = 0;  ///< of points at the end, likewise

@@ -30,14 +30,14 @@ pf_config_t session_config(const pfsim::BedOptions& bed, bool planes) {
 
 bool Tape::write(const Frame& frame) {
   return write(frame.t_ns) && write(frame.dv_C) && write(frame.dw_C) && write(frame.observations) &&
-         write(frame.tracked) && write(frame.offered) && write(frame.inliers) && write(frame.features) &&
-         write(frame.state_dim) && write(frame.pose);
+         write(frame.decisions) && write(frame.tracked) && write(frame.offered) && write(frame.inliers) &&
+         write(frame.features) && write(frame.state_dim) && write(frame.pose);
 }
 
 bool Tape::read(Frame& frame) {
-  return read(frame.t_ns) && read(frame.dv_C) && read(frame.dw_C) && read(frame.observations) && read(frame.tracked) &&
-         read(frame.offered) && read(frame.inliers) && read(frame.features) && read(frame.state_dim) &&
-         read(frame.pose);
+  return read(frame.t_ns) && read(frame.dv_C) && read(frame.dw_C) && read(frame.observations) &&
+         read(frame.decisions) && read(frame.tracked) && read(frame.offered) && read(frame.inliers) &&
+         read(frame.features) && read(frame.state_dim) && read(frame.pose);
 }
 
 std::vector<pf_feature_t> map_of(const pf_slam_t* slam) {

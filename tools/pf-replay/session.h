@@ -13,11 +13,18 @@ namespace replay {
 pfsim::BedOptions session_bed(int frames);
 pf_config_t session_config(const pfsim::BedOptions& bed, bool planes);
 
+/// A feature is of this kind from here on.
+struct Decision {
+  std::uint32_t external_id = 0;
+  std::int32_t kind = 0;
+};
+
 /// What one frame of the recorded run was given and gave. `observations` are those that it accepted.
 struct Frame {
   std::int64_t t_ns = 0;
   double dv_C[3] = {}, dw_C[3] = {};
   std::vector<pf_observation_t> observations;
+  std::vector<Decision> decisions;
   std::int32_t tracked = 0, offered = 0, inliers = 0, features = 0, state_dim = 0;
   pf_pose_t pose = {};
 };
