@@ -88,6 +88,7 @@ class FrameSuite {
     config.clock_ns = clock_ns;
     if (options_.window) config.backend = PF_BACKEND_WINDOW;
     config.map.masks = options_.masks;
+    config.plane.enabled = options_.planes ? 1 : 0;
     if (options_.features > 0) config.map.features_in_view = options_.features;
     if (!frames.walls.empty()) {
       config.capacity.max_patches = options_.patches;

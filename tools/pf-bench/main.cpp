@@ -31,6 +31,8 @@ int main(int argc, char** argv) {
           ->check(CLI::Range(0, 32))
           ->capture_default_str();
       sub->add_flag("--window", options.window, "the back end with keyframes");
+      sub->add_flag(
+          "--no-planes", [&](std::int64_t count) { options.planes = count == 0; }, "points only");
       sub->add_option("--masks", options.masks, "map.masks: 0 none, 1 partial, 2 whole")->check(CLI::Range(0, 2));
       sub->add_option("--features", options.features, "map.features_in_view (default: the library's)")
           ->check(CLI::Range(0, 1000));

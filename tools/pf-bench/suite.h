@@ -28,6 +28,7 @@ struct SuiteOptions {
   std::string walls;    ///< file of walls known beforehand; none where it is empty
   int patches = 4;      ///< capacity for patches, where there are walls
   bool window = false;  ///< the back end
+  bool planes = true;   ///< false: points only
   int masks = 0;        ///< pf_masks_t
   int features = 0;     ///< in view; 0: the library's default
   int passes = 3;       ///< through every sequence
