@@ -113,6 +113,27 @@ void test_feature_should_be_believed_when_it_is_hardly_off_the_plane() {
   }
 }
 
+/// A point of the map that lies on the plane, as certain as the plane is: folded in the next frame or not.
+bool is_folded(int failures, int rejections) {
+  Bench bench;
+  const int slot = bench.filter->add_point(Vec3(Scalar(0.3), Scalar(0.2), kDepth), Mat3::Identity() * Scalar(1e-6));
+  const int entry = bench.map.features.add(slot);
+  TEST_ASSERT_TRUE(slot >= 0 && entry >= 0);
+  bench.filter->set_owner(slot, entry);
+  Feature& f = bench.map.features[entry];
+  f.observations = f.attempts = 20;
+  f.failures = failures;
+  f.rejections = static_cast<std::uint8_t>(rejections);
+  bench.planes.maintain();
+  return is_planar(bench.filter->state().block[slot].kind);
+}
+
+void test_point_should_be_folded_when_it_was_missed_but_not_when_it_was_found_elsewhere() {
+  TEST_ASSERT_TRUE(is_folded(0, 0));
+  TEST_ASSERT_TRUE(is_folded(3, 0));
+  TEST_ASSERT_FALSE(is_folded(3, 1));
+}
+
 }  // namespace
 
 int main(void) {
@@ -121,5 +142,6 @@ int main(void) {
   RUN_TEST(test_feature_should_stay_on_trial_when_another_depth_would_not_show);
   RUN_TEST(test_feature_should_go_when_its_pixels_say_that_it_is_nearer_or_farther);
   RUN_TEST(test_feature_should_be_believed_when_it_is_hardly_off_the_plane);
+  RUN_TEST(test_point_should_be_folded_when_it_was_missed_but_not_when_it_was_found_elsewhere);
   return UNITY_END();
 }

@@ -61,12 +61,16 @@ void PlaneKeeper::maintain(bool may_doubt) {
   discover();
 }
 
-/// Whether a feature is a converged 3-D point. Points of the target are not folded: their place is known.
-bool PlaneKeeper::is_settled(int entry) const {
+/// Whether a feature is a converged 3-D point that was not found elsewhere since. That it was missed, or has left the view, says nothing
+/// against its place. Points of the target are not folded: their place is known.
+bool PlaneKeeper::is_converged(int entry) const {
   if (!map_.features.used(entry) || map_.features[entry].is_target) return false;
   const Feature& f = map_.features[entry];
-  return filter_.state().block[f.slot].kind == BlockKind::kPoint && f.failures == 0 && f.observations >= kConverged;
+  return filter_.state().block[f.slot].kind == BlockKind::kPoint && f.rejections == 0 && f.observations >= kConverged;
 }
+
+/// Whether it was found when it was last looked for as well. What decides about whole planes asks for that.
+bool PlaneKeeper::is_settled(int entry) const { return is_converged(entry) && map_.features[entry].failures == 0; }
 
 /// Whether a converged point is known well enough to be folded or to support a new plane. The covariance is relative to the camera and to
 /// the global scale.
@@ -191,7 +195,7 @@ void PlaneKeeper::fold_into(int plane_entry) {
   int count = 0;
   for (int i = 0; i < map_.features.capacity() && count < Filter::kMaxFolded && count < settings_.max_observations;
        ++i) {
-    if (!is_settled(i)) continue;
+    if (!is_converged(i)) continue;
     const int slot = map_.features[i].slot;
     const Vec3 p_W = filter_.point(slot);
     if (!is_in_reach(plane_entry, p_W)) continue;

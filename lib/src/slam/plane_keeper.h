@@ -66,6 +66,7 @@ class PlaneKeeper {
   void fold_into(int plane_entry);
   void support(int plane_entry, int slot);
   void fix_on(int plane_entry);
+  bool is_converged(int entry) const;
   bool is_settled(int entry) const;
   bool is_certain(int entry, Mat3* covariance) const;
 
