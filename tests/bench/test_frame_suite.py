@@ -35,6 +35,8 @@ with tempfile.TemporaryDirectory() as folder:
     if with_peer and not median["ratio"] > 0:
         script.fail("the peer was there and has no ratio")
 
+script.run(PROGRAM, "frame", "--source", "sim:desk", "--start", "auto", "--frames", "20", "--passes", "1", "--no-planes")
+
 for words in (["--source", "images:/nowhere"], ["--source", "desk"], ["--source", "sim:nowhere"],
               ["--source", "sim:desk", "--start", "somewhere", "--frames", "2"]):
     result = subprocess.run([PROGRAM, "frame", *words], text=True, capture_output=True)
