@@ -1,6 +1,7 @@
 """A camera that has not moved yet stands still while somebody walks through the picture: its pose does not go with them, and no map
 begins from their motion. (The filter's pose had turned by 6.3 and 6.4 degrees.)"""
 
+import json
 import math
 import pathlib
 import sys
@@ -22,8 +23,11 @@ with tempfile.TemporaryDirectory() as folder:
             poses = [[float(x) for x in line.split()] for line in (out / "trajectory.txt").read_text().splitlines() if line[0] != "#"]
             far = max(math.hypot(*pose[1:4]) for pose in poses)
             turned = max(math.degrees(2 * math.asin(min(1, math.hypot(*pose[4:7])))) for pose in poses)
+            log = json.loads((out / "report.json").read_text())["log"]
             print(f"{backend}, seed {seed}: {len(poses)} poses, at most {turned:.2f} degrees and {far:.3f} depths from the first")
             if set(states) != {"starting"} or len(poses) < FRAMES - 1:
                 fail(f"a map began at rest, or poses are missing: {len(poses)}, {sorted(set(states))}")
             if turned > MAX_DEG or far > MAX_DEPTHS:
                 fail("the pose has gone with the person")
+            if backend == "filter" and (len(log) != 1 or "stands still" not in log[0]):
+                fail(f"the log does not say that it waits: {log}")

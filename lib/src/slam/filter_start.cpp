@@ -276,6 +276,7 @@ bool FilterStart::record_frame() {
       break;
     case StartOutcome::kStill:
       stay_at_base();
+      if (without_.is_first_still()) settings_.hooks.say(kStandsStill);
       break;
   }
   return false;

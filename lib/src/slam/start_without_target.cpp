@@ -1,5 +1,7 @@
 #include "slam/start_without_target.h"
 
+#include <algorithm>
+
 #include "base/elapsed.h"
 #include "filter/camera_at.h"
 
@@ -55,8 +57,11 @@ void StartWithoutTarget::move_ray(const Camera& camera, int index, const Vec2& p
 }
 
 StartOutcome StartWithoutTarget::solve(const Camera& camera, Scalar sigma_px, Scalar median_depth) {
-  if (stands_still(lens_of_record(camera), record_))
-    return data_.progress.checking || data_.progress.depth_known ? StartOutcome::kWait : StartOutcome::kStill;
+  if (stands_still(lens_of_record(camera), record_)) {
+    if (data_.progress.checking || data_.progress.depth_known) return StartOutcome::kWait;
+    data_.stills = std::min(data_.stills + 1, 2);
+    return StartOutcome::kStill;
+  }
   const StartOutcome outcome = bundle_.solve(camera, record_, sigma_px, median_depth);
   StartProgress& progress = data_.progress;
   if (progress.checking) {

@@ -13,6 +13,9 @@
 
 namespace pf {
 
+/// What the log says of StartOutcome::kStill.
+inline constexpr const char* kStandsStill = "the camera stands still while something moves before it: the start waits";
+
 class StartWithoutTarget {
  public:
   /// lens_rows: of a lens that a start adjusts with its depths; 0: it is exact.
@@ -21,6 +24,8 @@ class StartWithoutTarget {
   void init();
   /// Begins a start.
   void begin() { data_.progress.recording = true; }
+  /// Whether the last solve() gave kStill for the first time since init().
+  bool is_first_still() const { return data_.stills == 1; }
   /// Begins a record beside a filter that has a scale, to check its depths.
   void begin_check() { data_.progress.checking = true; }
   const StartProgress& progress() const { return data_.progress; }
@@ -63,6 +68,7 @@ class StartWithoutTarget {
     int frame = 0;           ///< that pixels are added to
     std::int64_t t_ns = 0;   ///< its time
     bool is_second = false;  ///< it is the first one after the record's first frame
+    int stills = 0;          ///< how often a solution was kStill
     std::uint32_t id[StartRecord::kMaxFeatures] = {};
   };
 

@@ -232,6 +232,7 @@ bool WindowStart::follow_record() {
   }
   if (outcome == StartOutcome::kStill) {  // what moves has drawn the pose along
     parts_.motion.move(without_.base_q_WC(), without_.base_p_W());
+    if (without_.is_first_still()) settings_.hooks.say(kStandsStill);
     return false;
   }
   // Only rotation so far, or too few features in view: the world stays, and the record begins again with this frame.
