@@ -11,7 +11,7 @@ from script import BIN, fail, run, skip_in_cross_builds  # noqa: E402
 
 skip_in_cross_builds()
 refused = subprocess.run([BIN / "pf-sim", "street", "--cases", "absent"], text=True, stderr=subprocess.PIPE, check=False)
-if refused.returncode != 2 or "refined exact points" not in refused.stderr:
+if refused.returncode != 2 or "refined exact points plain" not in refused.stderr:
     fail(f"a case that the street has not: {refused.returncode}, {refused.stderr!r}")
 
 with tempfile.TemporaryDirectory() as folder:

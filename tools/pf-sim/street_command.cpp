@@ -18,14 +18,18 @@ using nlohmann::json;
 struct Case {
   const char* name;
   StreetPlan plan;
+  bool planes;  ///< are looked for
 };
 
 constexpr double kDepth = 5;  // of the fronts, roughly: what a point without a wall begins with [m]
-const Case kCases[] = {{"refined", StreetPlan::kRefined}, {"exact", StreetPlan::kExact}, {"points", StreetPlan::kNone}};
+const Case kCases[] = {{"refined", StreetPlan::kRefined, true},
+                       {"exact", StreetPlan::kExact, true},
+                       {"points", StreetPlan::kNone, true},
+                       {"plain", StreetPlan::kNone, false}};
 
 struct Choices {
   std::vector<std::string> cases = {"refined", "exact", "points"};
-  int seeds = 5, jobs = 1, patches = 16, cameras = 8, max_state_dim = 500;
+  int seeds = 5, jobs = 1, patches = 16, cameras = 8, max_state_dim = 500, max_features = 0;
   std::uint64_t first_seed = 1;
   bool no_points = false;
   StreetOptions street;
@@ -34,7 +38,7 @@ struct Choices {
 
 struct Job {
   const Choices* choices;
-  std::vector<StreetPlan> plans;
+  std::vector<Case> cases;
   StreetSummary* summaries;
   FrameRow* rows;
 };
@@ -45,7 +49,7 @@ int fail(const std::string& what) {
 }
 
 /// Patches on the walls beside points, or alone. Without walls there are points alone.
-pf_config_t config_of(const Choices& c, StreetPlan plan) {
+pf_config_t config_of(const Choices& c, const Case& of) {
   pf_config_t config;
   pf_config_default(&config);
   const double f = 601.8;
@@ -53,8 +57,10 @@ pf_config_t config_of(const Choices& c, StreetPlan plan) {
                    PF_TIMESTAMPS_REAL, 0,   0,   0, {}};
   config.first_depth.depth = kDepth;
   config.capacity.max_state_dim = c.max_state_dim;
-  config.capacity.max_features = std::max(config.capacity.max_features, c.max_state_dim / 3);
-  if (plan == StreetPlan::kNone) return config;
+  config.capacity.max_features =
+      c.max_features > 0 ? c.max_features : std::max(config.capacity.max_features, c.max_state_dim / 3);
+  config.plane.enabled = of.planes;
+  if (of.plan == StreetPlan::kNone) return config;
   config.capacity.max_patches = c.patches;
   config.capacity.max_cameras = c.cameras;
   if (c.no_points) config.map.features_in_view = 0;
@@ -67,9 +73,9 @@ void run_one_seed(int index, void* context) {
   std::vector<StreetVariant> variants;
   std::vector<StreetSummary*> summaries;
   std::vector<FrameRow*> rows;
-  for (std::size_t k = 0; k < job.plans.size(); ++k) {
+  for (std::size_t k = 0; k < job.cases.size(); ++k) {
     const std::size_t run = k * static_cast<std::size_t>(job.choices->seeds) + static_cast<std::size_t>(index);
-    variants.push_back({config_of(*job.choices, job.plans[k]), job.plans[k]});
+    variants.push_back({config_of(*job.choices, job.cases[k]), job.cases[k].plan});
     summaries.push_back(job.summaries + run);
     rows.push_back(job.rows + run * static_cast<std::size_t>(job.choices->street.frames));
   }
@@ -177,14 +183,14 @@ int run(const Choices& c) {
   for (const std::string& name : c.cases) {
     const auto* found =
         std::find_if(std::begin(kCases), std::end(kCases), [&](const Case& x) { return name == x.name; });
-    if (found == std::end(kCases)) return fail("no case " + name + "; they are refined exact points");
-    job.plans.push_back(found->plan);
+    if (found == std::end(kCases)) return fail("no case " + name + "; they are refined exact points plain");
+    job.cases.push_back(*found);
   }
   const char* field = nullptr;
-  const pf_config_t config = config_of(c, StreetPlan::kRefined);
+  const pf_config_t config = config_of(c, kCases[0]);
   if (pf_config_check(&config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
   const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(c.street.frames);
-  const std::size_t count = seeds * job.plans.size();
+  const std::size_t count = seeds * job.cases.size();
   job.summaries = static_cast<StreetSummary*>(shared_memory(count * sizeof(StreetSummary)));
   job.rows = static_cast<FrameRow*>(shared_memory(count * frames * sizeof(FrameRow)));
   if (!job.summaries || !job.rows) return fail("no memory");
@@ -196,9 +202,10 @@ int run(const Choices& c) {
                 {"frames", c.street.frames},
                 {"rate_hz", c.street.rate_hz},
                 {"max_state_dim", c.max_state_dim},
+                {"max_features", config.capacity.max_features},
                 {"sigma_rotation_deg", c.street.sigma_rotation_deg},
                 {"sigma_offset_m", c.street.sigma_offset}}}};
-  for (std::size_t k = 0; k < job.plans.size(); ++k) {
+  for (std::size_t k = 0; k < job.cases.size(); ++k) {
     const Runs runs{c.seeds, c.street.frames, c.first_seed, job.rows + k * seeds * frames};
     json& numbers = out["cases"][c.cases[k]] = summarise_case(runs, job.summaries + k * seeds);
     print_case(c.cases[k].c_str(), numbers);
@@ -217,7 +224,9 @@ void add_street(CLI::App& app, int& result) {
   command->add_option("--patches", c->patches, "that are followed at a time, at most");
   command->add_option("--cameras", c->cameras, "reference cameras of patches, at most");
   command->add_option("--max-state-dim", c->max_state_dim, "rows of the covariance");
-  command->add_option("--cases", c->cases, "one or more: refined, exact, points");
+  command->add_option("--max-features", c->max_features,
+                      "points of the map (0: a third of the rows, and at least 100)");
+  command->add_option("--cases", c->cases, "one or more: refined, exact, points, plain (points without planes)");
   command->add_option("--seeds", c->seeds, "how many runs of each case");
   command->add_option("--first-seed", c->first_seed, "seed of the first run");
   command->add_option("--frames", c->street.frames, "of each run");
