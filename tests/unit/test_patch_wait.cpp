@@ -38,6 +38,7 @@ void test_the_only_plane_that_passes_should_be_joined_when_there_is_parallax() {
   std::uint32_t joined = 0;
   for (int frame = 0; frame < 10; ++frame)
     TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}}, false, &joined) == WaitVerdict::kWait);
+  TEST_ASSERT_TRUE(wait.passes(7) && !wait.passes(8));
   for (int frame = 1; frame < kPersist; ++frame)
     TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}}, true, &joined) == WaitVerdict::kWait);
   TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}}, true, &joined) == WaitVerdict::kJoin);

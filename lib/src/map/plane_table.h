@@ -28,7 +28,7 @@ struct PlaneEntry {
   SmallCount max_points;  ///< most points that it had at one time
   SmallCount outliers;    ///< points that were unfolded because they do not lie on it
   SmallCount upheld;      ///< patches that were measured on it for long
-  SmallCount refused;     ///< patches that were dropped because they were found elsewhere
+  SmallCount refused;     ///< patches that were dropped because they were found elsewhere, in parts: see refuse()
   PlaneOutline seen;     ///< of points that were on it when it was last tended to, many of them gone from the map since
   bool known = false;    ///< a wall: known beforehand, and never dissolved
   bool doubted = false;  ///< a wall that the gate refuses what should be on it; it takes no points
@@ -48,11 +48,16 @@ struct PlaneEntry {
   }
 
   static constexpr int kOutlierShare = 4;  ///< one in so many
+  static constexpr int kRefusedParts = 4;  ///< of a patch that is found behind a wall; before it: one
   static constexpr int kUpheldWorth = 8;   ///< points that a patch counts as which was measured on it for long
+  /// A patch of it was found elsewhere. What is behind a wall says that it is not where the plan has it. What is before it may stand there,
+  /// and is only a part of that: many of these leave nothing else to be seen.
+  void refuse(bool is_before) { refused = refused + (is_before ? 1 : kRefusedParts); }
   /// Whether patches say that a wall is not where the plan has it. Things before a wall that is there refuse some as well.
   bool is_refused_by_patches() const {
     constexpr int kMinRefused = 3, kShare = 4;
-    return refused >= kMinRefused && refused > kShare * upheld;
+    const int patches = refused / kRefusedParts;
+    return patches >= kMinRefused && patches > kShare * upheld;
   }
   /// Whether points that nothing else is known of may begin on it: it was found, has had enough points for kProvenAge frames, and most
   /// kept to it.

@@ -79,7 +79,10 @@ class PatchKeeper {
   int try_planes(StoredPatch* patch, bool counts);
   Scalar parallax_of(const StoredPatch& patch) const;
   bool has_parallax(const StoredPatch& patch, Scalar min_px) const;
+  bool is_told_by_plan_alone(int entry) const;
   bool is_off_most(const StoredPatch& patch, int entry) const;
+  bool wall_to_patch(const StoredPatch& patch, const Vec3& m, int entry, Scalar* ratio) const;
+  bool is_before_another(const StoredPatch& patch, int entry) const;
   bool is_seen_through(const StoredPatch& patch, int entry) const;
   void join(StoredPatch* patch, int entry);
   void refuse(StoredPatch* patch);
@@ -120,6 +123,7 @@ class PatchKeeper {
   };
   static constexpr int kMaxRefusals = 16;
   void list_obstacles(int wall, Obstacles* obstacles) const;
+  bool is_before(const StoredPatch& patch, int wall) const;
   void note_refused(const StoredPatch& patch, int wall);
 
   // patch_selection.cpp

@@ -1,5 +1,6 @@
 #include "filter/camera_at.h"
 #include "slam/patch_keeper.h"
+#include "slam/patch_tuning.h"
 #include "slam/tuning.h"
 
 /// What stands before a wall: no patch begins where it is seen.
@@ -41,9 +42,19 @@ bool PatchKeeper::Obstacles::are_in(const Square& square) const {
   return false;
 }
 
+/// Whether two views of the patch tell that it is before the wall.
+bool PatchKeeper::is_before(const StoredPatch& patch, int wall) const {
+  PlaneFit fit;
+  Vec3 m = Vec3::Zero();  // set however slanted the plane is
+  Scalar range, ratio;
+  fit_plane_to(patch, &fit, &range, &m);
+  return has_parallax(patch, tuning::patch_waiting::kMinParallax) && wall_to_patch(patch, m, wall, &ratio) &&
+         ratio > Scalar(1);
+}
+
 /// Keeps where a patch was that the gate refuses.
 void PatchKeeper::note_refused(const StoredPatch& patch, int wall) {
-  ++map_.planes[wall].refused;
+  map_.planes[wall].refuse(is_before(patch, wall));
   Sight sight;
   if (!expect(patch, wall, &sight)) return;
   refusals_[next_refusal_] = {patch.plane, sight.middle_W};

@@ -128,17 +128,20 @@ void PatchKeeper::measure_waiting(const Pyramid& image, bool is_young, StoredPat
     return;
   }
   std::uint32_t id = 0;
-  switch (patch->wait.decide(has_parallax(*patch, kMinParallax), &id)) {
+  const bool parallax = has_parallax(*patch, kMinParallax);
+  PlaneFit fit;
+  Scalar range;
+  if (!parallax || !fit_plane_to(*patch, &fit, &range, &patch->last_plane)) patch->last_plane.setZero();
+  switch (patch->wait.decide(parallax, &id)) {
     case WaitVerdict::kWait:
-      if (patch->wait.frames_without() > tuning::patch_keeper::kMaxRejections && has_parallax(*patch, kMinParallax))
-        refuse(patch);
+      if (patch->wait.frames_without() > tuning::patch_keeper::kMaxRejections && parallax) refuse(patch);
       if (patch->wait.frames_without() == kFoundEvery) note_plane(patch);
       break;
     case WaitVerdict::kJoin:
       for (int k = 0; k < map_.planes.capacity(); ++k) {
         if (!map_.planes.used(k) || map_.planes[k].id != id) continue;
         if (is_seen_through(*patch, k)) refuse(patch);
-        if (is_off_most(*patch, k)) {
+        if (is_off_most(*patch, k) || is_before_another(*patch, k)) {
           refuse(patch);
           return give_up(patch);
         }
@@ -153,12 +156,44 @@ void PatchKeeper::measure_waiting(const Pyramid& image, bool is_young, StoredPat
   }
 }
 
+/// How far the wall is along the ray of the patch's middle, relative to the plane that two views of the patch tell: m, n / d in its
+/// reference camera. False where they tell none.
+bool PatchKeeper::wall_to_patch(const StoredPatch& patch, const Vec3& m, int entry, Scalar* ratio) const {
+  Vec3 ray_K;
+  Scalar range = 0;
+  const Vec2 middle =
+      (patch.reference_px[0] + patch.reference_px[1] + patch.reference_px[2] + patch.reference_px[3]) / 4;
+  if (!unproject(filter_.lens(), middle, &ray_K) || !may_lie_on(patch, entry, &range)) return false;
+  *ratio = range * m.dot(ray_K) / ray_K.norm();
+  return *ratio > Scalar(0);
+}
+
+/// Whether another patch is farther, that waits and that the same wall explains, while nothing lies on the wall yet: the plan alone tells
+/// then how far the wall is, and what stands before it passes the gate as well. Nothing stands behind it.
+bool PatchKeeper::is_before_another(const StoredPatch& patch, int entry) const {
+  Scalar own, other;
+  if (!is_told_by_plan_alone(entry) || !wall_to_patch(patch, patch.last_plane, entry, &own)) return false;
+  for (int i = 0; i < store_.capacity(); ++i) {
+    const StoredPatch& another = store_[i];
+    if (!store_.used(i) || another.id == patch.id || !another.wait.waits() || !another.was_found()) continue;
+    if (another.wait.passes(map_.planes[entry].id) && wall_to_patch(another, another.last_plane, entry, &other) &&
+        own > kFromMost * other)
+      return true;
+  }
+  return false;
+}
+
+/// A wall that nothing lies on yet.
+bool PatchKeeper::is_told_by_plan_alone(int entry) const {
+  const PlaneEntry& wall = map_.planes[entry];
+  return wall.known && wall.upheld == 0 && filter_.state().block[wall.slot].children == 0;
+}
+
 /// Whether the patch is nearer or farther than most points that are seen before a wall, which no point lies on yet. As long as the plan is
 /// all that tells how far the wall is from these points, what stands before the wall passes the gate as well, and would move it there.
 bool PatchKeeper::is_off_most(const StoredPatch& patch, int entry) const {
-  const PlaneEntry& wall = map_.planes[entry];
   const State& state = filter_.state();
-  if (!wall.known || wall.upheld > 0 || state.block[wall.slot].children > 0) return false;
+  if (!is_told_by_plan_alone(entry)) return false;
   const CameraAt camera = camera_at(state, Scalar(0));
   Scalar ratio[kMaxMost], range = 0, of_patch = 0;
   int count = 0;

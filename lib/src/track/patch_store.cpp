@@ -18,6 +18,7 @@ StoredPatch& PatchStore::begin(int i) {
   p.covariance.setZero();
   p.wait.begin();
   p.early_plane.setZero();
+  p.last_plane.setZero();
   return p;
 }
 

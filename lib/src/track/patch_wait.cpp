@@ -47,6 +47,12 @@ int PatchWait::open() const {
   return n;
 }
 
+bool PatchWait::passes(std::uint32_t plane) const {
+  for (int i = 0; i < count_; ++i)
+    if (trial_[i].plane == plane) return trial_[i].over == 0;
+  return false;
+}
+
 std::uint32_t PatchWait::likely() const {
   const Trial* best = nullptr;
   for (int i = 0; i < count_; ++i)

@@ -35,6 +35,8 @@ class PatchWait {
   int frames_without() const { return without_; }
   /// The plane that explains the last frame best; 0: none passed.
   std::uint32_t likely() const;
+  /// Whether this plane explains the last frame.
+  bool passes(std::uint32_t plane) const;
   /// How many planes are not refused.
   int open() const;
 
