@@ -25,5 +25,5 @@ if refined["lost"]["frames"] > 0 or refined["tracked_share"] < 0.98:
 if not (refined["end_error_m"]["worst"] < 0.6 and refined["end_error_in_sigmas"]["worst"] < 3):
     fail(f"the end: {refined['end_error_m']}, {refined['end_error_in_sigmas']}")
 walls = refined["walls"]
-if walls["count"] < 1 or walls["doubted"] > 0 or not walls["angle_deg"] < 1:
+if walls["count"] < 1 or walls["doubted_ever"] > 0 or not walls["angle_deg"] < 1:
     fail(f"fronts: {walls}")

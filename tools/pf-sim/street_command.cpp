@@ -106,7 +106,7 @@ json of_seeds(const std::vector<double>& values) {
 json summarise_case(const Runs& runs, const StreetSummary* summaries) {
   json out = summarise_frames(runs);
   std::vector<double> end, share, sigmas;
-  int lost = 0, lost_runs = 0, tracked = 0, walls = 0, doubted = 0;
+  int lost = 0, lost_runs = 0, tracked = 0, walls = 0, doubted = 0, doubted_ever = 0;
   double plan_deg = 0, plan_m = 0, end_deg = 0, end_m = 0, nees = 0, patches = 0;
   int on_fronts = 0, off_fronts = 0, on_found = 0, off_found = 0;
   for (const StreetSummary* r = summaries; r != summaries + runs.seeds; ++r) {
@@ -118,6 +118,7 @@ json summarise_case(const Runs& runs, const StreetSummary* summaries) {
     tracked += r->tracked_frames;
     walls += r->walls;
     doubted += r->doubted;
+    doubted_ever += r->doubted_ever;
     plan_deg += r->plan_deg;
     plan_m += r->plan_m;
     end_deg += r->end_deg;
@@ -141,6 +142,7 @@ json summarise_case(const Runs& runs, const StreetSummary* summaries) {
       {"on_fronts", on_fronts}, {"off_fronts", off_fronts}, {"on_found", on_found}, {"off_found", off_found}};
   out["walls"] = {{"count", walls},
                   {"doubted", doubted},
+                  {"doubted_ever", doubted_ever},
                   {"plan_angle_deg", plan_deg / seen},
                   {"plan_offset_m", plan_m / seen},
                   {"angle_deg", end_deg / seen},
@@ -171,9 +173,10 @@ void print_case(const char* name, const json& j) {
   if (number("/walls/count") > 0)
     std::printf(
         "  fronts that were seen: %g, %.2f deg, %.3f m in the plan; %.2f deg, %.3f m at the end, NEES %.1f (3 dof); %g "
-        "doubted\n",
+        "doubted, %g at any time\n",
         number("/walls/count"), number("/walls/plan_angle_deg"), number("/walls/plan_offset_m"),
-        number("/walls/angle_deg"), number("/walls/offset_m"), number("/walls/nees"), number("/walls/doubted"));
+        number("/walls/angle_deg"), number("/walls/offset_m"), number("/walls/nees"), number("/walls/doubted"),
+        number("/walls/doubted_ever"));
 }
 
 int run(const Choices& c) {

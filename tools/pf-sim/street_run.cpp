@@ -84,7 +84,7 @@ pf_pose_t draw_start(const StreetOptions& options, const pf_sim_t* sim, std::uin
 class StreetRunner {
  public:
   StreetRunner(const StreetVariant& variant, const pf_pose_t& start, std::vector<pf_plane_prior_t> walls)
-      : walls_(std::move(walls)), ids_(walls_.size()), context_(variant.config) {
+      : walls_(std::move(walls)), ids_(walls_.size()), ever_(walls_.size()), context_(variant.config) {
     double velocities[36] = {};
     for (int i = 0; i < 6; ++i) velocities[7 * i] = kSigmaSpeed * kSigmaSpeed;
     if (variant.plan == StreetPlan::kNone) {
@@ -117,6 +117,7 @@ class StreetRunner {
     std::size_t count = 0;
     pf_get_patches(context_.slam, patches, 32, &count);
     for (std::size_t i = 0; i < count; ++i) summary.patches += patches[i].status == PF_MATCH_INLIER;
+    note_doubts();
   }
 
   /// Whether the patches are on what they are taken to be on. surface, depth: as pf_sim_depth has them.
@@ -161,6 +162,7 @@ class StreetRunner {
     std::size_t count = 0;
     if (pf_get_planes(context_.slam, planes, kMaxPlanes, &count) < PF_OK) return;
     const Vec3 n = axis_of_truth();
+    summary.doubted_ever = static_cast<std::int32_t>(std::count(ever_.begin(), ever_.end(), true));
     for (std::size_t i = 0; i < ids_.size(); ++i)
       for (const pf_plane_t* plane = planes; plane != planes + std::min(count, kMaxPlanes); ++plane) {
         if (plane->id != ids_[i]) continue;
@@ -186,8 +188,18 @@ class StreetRunner {
     return {R(0, 2), R(1, 2), R(2, 2)};
   }
 
+  void note_doubts() {
+    pf_plane_t planes[kMaxPlanes];
+    std::size_t count = 0;
+    if (ids_.empty() || pf_get_planes(context_.slam, planes, kMaxPlanes, &count) < PF_OK) return;
+    for (std::size_t i = 0; i < ids_.size(); ++i)
+      for (const pf_plane_t* plane = planes; plane != planes + std::min(count, kMaxPlanes); ++plane)
+        if (plane->id == ids_[i] && plane->doubted != 0) ever_[i] = true;
+  }
+
   std::vector<pf_plane_prior_t> walls_;
   std::vector<std::uint32_t> ids_;
+  std::vector<bool> ever_;  ///< doubted in any frame
   Context context_;
 };
 

@@ -28,7 +28,8 @@ struct StreetSummary {
   std::int32_t done = 0, tracked_frames = 0, lost_frames = 0;
   double end_m = -1, end_sigma_m = -1, end_nees = -1;  ///< of the last frame's position; negative: it had none
   double path_m = 0;
-  std::int32_t walls = 0, doubted = 0;
+  std::int32_t walls = 0;
+  std::int32_t doubted = 0, doubted_ever = 0;  ///< fronts: at the end, and in any frame
   double plan_deg = 0, plan_m = 0, end_deg = 0, wall_end_m = 0,
          wall_nees = 0;  ///< sums over fronts that patches or points lay on
   double patches = 0;    ///< measured, over all frames
