@@ -119,6 +119,7 @@ class PatchKeeper {
   };
   struct Refusal {
     std::uint32_t plane = 0;  ///< id; 0: none
+    int born = 0;             ///< frame in which the patch began
     Vec3 middle_W;
   };
   static constexpr int kMaxRefusals = 16;

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "filter/camera_at.h"
 #include "slam/patch_keeper.h"
 #include "slam/patch_tuning.h"
@@ -54,10 +56,14 @@ bool PatchKeeper::is_before(const StoredPatch& patch, int wall) const {
 
 /// Keeps where a patch was that the gate refuses.
 void PatchKeeper::note_refused(const StoredPatch& patch, int wall) {
-  map_.planes[wall].refuse(is_before(patch, wall));
+  // Those that began in one frame share its camera: where that is wrong, all are.
+  const bool is_same = std::any_of(refusals_, refusals_ + kMaxRefusals, [&](const Refusal& other) {
+    return other.plane == patch.plane && other.born == patch.born;
+  });
+  if (!is_same) map_.planes[wall].refuse(is_before(patch, wall));
   Sight sight;
   if (!expect(patch, wall, &sight)) return;
-  refusals_[next_refusal_] = {patch.plane, sight.middle_W};
+  refusals_[next_refusal_] = {patch.plane, patch.born, sight.middle_W};
   next_refusal_ = (next_refusal_ + 1) % kMaxRefusals;
 }
 
