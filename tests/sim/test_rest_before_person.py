@@ -11,7 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, fail, run  # noqa: E402
 
 REST_S, FRAMES = 5, 140
-MAX_DEG, MAX_DEPTHS = 1, 0.03
+MAX_DEG, MAX_DEPTHS = 1.5, 0.03
 
 with tempfile.TemporaryDirectory() as folder:
     for backend in ("filter", "window"):

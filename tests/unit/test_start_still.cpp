@@ -37,11 +37,11 @@ struct Grid {
 
   /// way(i): how far feature i has moved [px].
   template <typename Way>
-  bool stands_still_after(Way&& way, Scalar turned_px = 0) {
+  bool stands_still_after(Way&& way, Scalar turned_px = 0, int others = 0) {
     const Quat turned = exp_so3(Vec3(0, turned_px / camera.fx, 0));
     const int k = record.add_frame(33000000, turned, Vec3::Zero());
     for (int i = 0; i < kColumns * kRows; ++i) record.add_pixel(k, i, first(i) + Vec2(way(i), 0));
-    return stands_still(camera, record);
+    return stands_still(camera, record, others);
   }
 };
 
@@ -55,13 +55,19 @@ void test_camera_before_what_moves_should_stand_still() {
 void test_pose_that_turns_before_a_picture_that_does_not_should_be_told() {
   Grid grid;
   TEST_ASSERT_FALSE(grid.stands_still_after([](int) { return Scalar(0.3); }));
-  TEST_ASSERT_TRUE(grid.stands_still_after([](int) { return Scalar(0.3); }, 4));
+  TEST_ASSERT_TRUE(grid.stands_still_after([](int) { return Scalar(0.3); }, 4, 3));
+}
+
+void test_pose_that_turns_by_itself_should_not_be_told() {
+  Grid grid;
+  TEST_ASSERT_FALSE(grid.stands_still_after([](int) { return Scalar(0.3); }, 4, 2));
 }
 
 void test_camera_that_moves_should_not_stand_still() {
   Grid grid;
   // Sideways: farther features move less, and none not at all.
-  TEST_ASSERT_FALSE(grid.stands_still_after([](int i) { return Scalar(1) + Scalar(0.5) * static_cast<Scalar>(i); }, 4));
+  TEST_ASSERT_FALSE(
+      grid.stands_still_after([](int i) { return Scalar(1) + Scalar(0.5) * static_cast<Scalar>(i); }, 4, 3));
 }
 
 void test_few_features_that_stay_should_not_hold_a_camera() {
@@ -77,7 +83,7 @@ void test_horizon_that_stays_should_not_hold_a_camera() {
   const int k = row.record.add_frame(33000000, Quat::Identity(), Vec3::Zero());
   for (int i = 0; i < 3 * kColumns / 2; ++i)
     row.record.add_pixel(k, i, row.first(i) + Vec2(i < kColumns ? Scalar(0.3) : Scalar(10), 0));
-  TEST_ASSERT_FALSE(stands_still(row.camera, row.record));
+  TEST_ASSERT_FALSE(stands_still(row.camera, row.record, 0));
 }
 
 void test_empty_record_should_tell_nothing() {
@@ -85,7 +91,7 @@ void test_empty_record_should_tell_nothing() {
   StartRecord record;
   TEST_ASSERT_TRUE(record.layout(*arena));
   record.init();
-  TEST_ASSERT_FALSE(stands_still(pinhole_camera(), record));
+  TEST_ASSERT_FALSE(stands_still(pinhole_camera(), record, 0));
   TEST_ASSERT_FALSE(is_still(pinhole_camera(), record, 0));
 }
 
@@ -95,6 +101,7 @@ int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_camera_before_what_moves_should_stand_still);
   RUN_TEST(test_pose_that_turns_before_a_picture_that_does_not_should_be_told);
+  RUN_TEST(test_pose_that_turns_by_itself_should_not_be_told);
   RUN_TEST(test_camera_that_moves_should_not_stand_still);
   RUN_TEST(test_few_features_that_stay_should_not_hold_a_camera);
   RUN_TEST(test_horizon_that_stays_should_not_hold_a_camera);

@@ -34,13 +34,17 @@ void StartWithoutTarget::add_feature(std::uint32_t id, const Vec3& ray_C) {
 void StartWithoutTarget::begin_frame(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns) {
   const Quat q_KW = data_.base_q_WC.conjugate();
   data_.is_second = record_.frames() == 0;
+  data_.others = 0;
   data_.t_ns = t_ns;
   data_.frame = record_.add_frame(t_ns, q_KW * q_WC, q_KW * (p_W - data_.base_p_W));
 }
 
 void StartWithoutTarget::add_pixel(const Camera& camera, std::uint32_t id, const Vec2& pixel) {
   const int index = index_of(id);
-  if (index < 0) return;
+  if (index < 0) {
+    ++data_.others;
+    return;
+  }
   if (data_.is_second && camera.readout != Scalar(0)) move_ray(camera, index, pixel);
   record_.add_pixel(data_.frame, index, pixel);
 }
@@ -57,7 +61,7 @@ void StartWithoutTarget::move_ray(const Camera& camera, int index, const Vec2& p
 }
 
 StartOutcome StartWithoutTarget::solve(const Camera& camera, Scalar sigma_px, Scalar median_depth) {
-  if (stands_still(lens_of_record(camera), record_)) {
+  if (stands_still(lens_of_record(camera), record_, data_.others)) {
     if (data_.progress.checking || data_.progress.depth_known) return StartOutcome::kWait;
     data_.stills = std::min(data_.stills + 1, 2);
     return StartOutcome::kStill;

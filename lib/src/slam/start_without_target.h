@@ -68,6 +68,7 @@ class StartWithoutTarget {
     int frame = 0;           ///< that pixels are added to
     std::int64_t t_ns = 0;   ///< its time
     bool is_second = false;  ///< it is the first one after the record's first frame
+    int others = 0;          ///< matches of the frame that are of no feature of the record
     int stills = 0;          ///< how often a solution was kStill
     std::uint32_t id[StartRecord::kMaxFeatures] = {};
   };

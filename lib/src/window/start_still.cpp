@@ -16,7 +16,7 @@ bool is_still(const Camera& camera, const StartRecord& record, int feature) {
          (record.pixel(last, feature) - first).squaredNorm() <= kStillPx * kStillPx;
 }
 
-bool stands_still(const Camera& camera, const StartRecord& record) {
+bool stands_still(const Camera& camera, const StartRecord& record, int others) {
   const int last = record.frames() - 1;
   if (last < 0) return false;
   const auto cell_along = [](Scalar at, int size, int cells) {
@@ -40,8 +40,8 @@ bool stands_still(const Camera& camera, const StartRecord& record) {
     count_once(&row_has_still[row], &rows);
   }
   if (kShare * still < seen || cells < kMinCells || rows < 2) return false;
-  const Scalar turned = log_so3(record.frame(last).q_WC).norm();
-  return moved >= kMinMoved || turned * camera.fx > kTurnedPx;
+  if (moved >= kMinMoved) return true;
+  return others >= kMinMoved && log_so3(record.frame(last).q_WC).norm() * camera.fx > kTurnedPx;
 }
 
 }  // namespace pf

@@ -56,7 +56,7 @@ namespace start_still {
 inline constexpr Scalar kStillPx = Scalar(0.7);  ///< from where a feature was in the first frame
 inline constexpr Scalar kMovedPx = Scalar(3);    ///< likewise, of a feature that has moved
 inline constexpr Scalar kTurnedPx = Scalar(2);   ///< of an estimated rotation
-inline constexpr int kMinMoved = 3;              ///< features
+inline constexpr int kMinMoved = 3;              ///< features that have moved, or that are not in the record
 inline constexpr int kShare = 3;                 ///< one of so many that are seen has not moved
 inline constexpr int kColumns = 4;               ///< of cells that the picture is divided into
 inline constexpr int kRows = 3;                  ///< likewise
