@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "owned_context.h"
 #include "seeded_random.h"
 #include "unity.h"
 
@@ -22,20 +23,9 @@ constexpr int64_t kFrame_ns = 33333333;
 /// A walk sideways past points, step [m] in each frame, in which P needs no repair and stays a covariance.
 void walk(double step, double sigma_speed) {
   SeededRandom random(17);
-  pf_config_t config;
-  pf_memory_t need;
-  pf_slam_t* slam = nullptr;
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
-  config.camera.model = PF_CAMERA_PINHOLE;
-  config.camera.width = 320;
-  config.camera.height = 240;
-  config.camera.fx = config.camera.fy = 280;
-  config.camera.cx = 159.5;
-  config.camera.cy = 119.5;
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
-  std::vector<unsigned char> block(need.bytes + need.alignment);
-  unsigned char* begin = block.data() + need.alignment - reinterpret_cast<uintptr_t>(block.data()) % need.alignment;
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, begin, need.bytes, &slam));
+  const pf_config_t config = pinhole_config();
+  OwnedContext context(config);
+  pf_slam_t* slam = context.slam;
   pf_pose_t pose = {};
   double velocity_covariance[36] = {};
   pose.q_WC[0] = 1;

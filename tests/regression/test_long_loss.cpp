@@ -3,8 +3,8 @@
 #include <planefold/planefold.h>
 
 #include <cstdio>
-#include <vector>
 
+#include "owned_context.h"
 #include "unity.h"
 
 void setUp() {}
@@ -17,16 +17,7 @@ constexpr int64_t kFrame_ns = 33333333;
 constexpr double kAnyRotation = 1.8;  // [rad] as in lib/src/slam/tuning.h
 
 void lose(int motion, const char* name) {
-  pf_config_t config;
-  pf_memory_t need;
-  pf_slam_t* slam = nullptr;
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
-  config.camera.model = PF_CAMERA_PINHOLE;
-  config.camera.width = 320;
-  config.camera.height = 240;
-  config.camera.fx = config.camera.fy = 280;
-  config.camera.cx = 159.5;
-  config.camera.cy = 119.5;
+  pf_config_t config = pinhole_config();
   config.motion.model = motion;
   if (motion == PF_MOTION_INERTIAL) {
     config.capacity.max_imu_samples = 100;
@@ -35,10 +26,8 @@ void lose(int motion, const char* name) {
     config.imu.gyro_walk = 1e-5;
     config.imu.accel_walk = 1e-4;
   }
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &need));
-  std::vector<unsigned char> block(need.bytes + need.alignment);
-  unsigned char* begin = block.data() + need.alignment - reinterpret_cast<uintptr_t>(block.data()) % need.alignment;
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_create(&config, begin, need.bytes, &slam));
+  OwnedContext context(config);
+  pf_slam_t* slam = context.slam;
   pf_pose_t pose = {};
   double velocity_covariance[36] = {};
   pose.q_WC[0] = 1;
