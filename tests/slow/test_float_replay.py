@@ -1,9 +1,10 @@
 """Sessions of 50,000 frames that ran in double, of points alone and with planes, run in float on the observations that were accepted
-there, and come to the same: the same map, sigma within 2 %, states within 0.1 sigma, and no update refused.
+there, and come to the same: the same map and the same rows in every frame, sigma within 2 %, states within 0.1 sigma, and no update
+refused.
 
-What is decided about a feature (its conversion to a place, its fold into a plane) may fall a few frames earlier or later, since it depends on
-numbers that differ by as much as is allowed above; at the end all is decided alike. How much of that is allowed follows from what is allowed
-of the numbers:
+The rows are not the same in all frames (lib/docs/kernels.md), and the test says so. Beside that it bounds by how much they differ. What is
+decided about a feature (its conversion to a place, its fold into a plane) falls a few frames earlier or later where it depends on numbers
+that differ by as much as is allowed above; at the end all is decided alike. The bounds follow from what is allowed of the numbers:
 
 - A feature is converted when its linearity index, which is proportional to its sigma, has fallen to a bound. It falls at least as the
   root of the number of its frames, so a sigma that is off by a share s comes to the bound 2 s of the feature's age earlier or later.
@@ -45,7 +46,8 @@ def follow_session(planes):
 
     problems = []
     for name, wanted in (("scalar", "float"), ("frames", FRAMES), ("not_tracked", 0), ("starts_again", 0), ("refused_again", 0),
-                         ("frames_with_another_map", 0), ("another_state_at_the_end", False), ("map_points_of_another_kind", 0)):
+                         ("frames_with_another_map", 0), ("frames_with_another_state", 0), ("another_state_at_the_end", False),
+                         ("map_points_of_another_kind", 0)):
         if found[name] != wanted:
             problems.append(f"{name} is {found[name]}, not {wanted}")
     for name, most in (("position_in_sigma", POSITION), ("rotation_in_sigma", POSITION), ("map_position_in_sigma", POSITION),
