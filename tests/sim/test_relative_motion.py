@@ -42,6 +42,15 @@ def test_planes_should_leave_them_honest(folder):
     require(0.85 < motion["nees_per_dof"] < 1.25, f"with planes: {motion}")
 
 
+def test_a_lens_that_is_learnt_beside_the_first_depths_should_leave_them_honest(folder):
+    report = folder / "rendered.json"
+    run(BIN / "pf-sim", "rendered", "--scene", "room", "--draw-lens", "--lens", "estimate", "--seeds", 4, "--frames", 100, "--relative", WINDOW,
+        "--jobs", 2, "--json", report)
+    motion = json.loads(report.read_text())["cases"]["room"]["motion"]
+    print(f"room, lens drawn and estimated: {motion}")
+    require(motion["nees_per_dof"] < 2, f"with a lens that is estimated: {motion}")
+
+
 def capture(folder, frames, *options):
     run(BIN / "pf-capture", "--source", "sim:desk", "--frames", frames, "--relative", WINDOW, "--headless", "--no-film", "--quiet",
         "--out", folder, *options)

@@ -64,6 +64,8 @@ class FilterStart {
   bool start_in_image();
   void start_with_observations();
   const StartProgress& progress() const { return without_.progress(); }
+  /// The lens is estimated while the record has yet to show that the first depths are right.
+  bool learns_lens_from_first_depths() const { return progress().checking && adjusts_lens(); }
 
   /// While a start without a target is under way: records the frame's pixels, and restarts the filter when the record gives better depths.
   /// After one at a target, or before walls: likewise, until the record shows that the filter's depths are right, or wrong. True: they were

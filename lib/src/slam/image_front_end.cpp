@@ -34,7 +34,8 @@ bool ImageFrontEnd::begin_frame(const ImageView& image) {
   return search_.begin_frame(image);
 }
 
-void ImageFrontEnd::measure(ConsensusRule rule, Scalar median_depth) {
+void ImageFrontEnd::measure(ConsensusRule rule, Scalar median_depth, bool parallax_lasts) {
+  parallax_lasts_ = parallax_lasts;
   is_learnt_ = rule != ConsensusRule::kStart && same_view_.is_learnt(filter_.state().body, median_depth,
                                                                      settings_.camera.fx, noise_.correlation_frames());
   filter_.estimate_motion_only(is_learnt_);
@@ -183,9 +184,7 @@ int ImageFrontEnd::search(int first, int count) {
     const Mat2 noise = noise_.match(outcome.noise, outcome.level_scale);
     update_.candidate(i).noise = noise;
     o.R_gate = noise + o.second_order;
-    o.R_update =
-        (is_averaged(map_.features[update_.candidate(i).feature]) ? noise_.correlation_frames() : Scalar(1)) * noise +
-        o.second_order;
+    o.R_update = update_noise(map_.features[update_.candidate(i).feature], o, noise);
     if (found != i) update_.swap(found, i);
     ++found;
   }
@@ -265,6 +264,16 @@ Scalar ImageFrontEnd::searched_area(int i) const {
 /// target's coordinates are given, and an inverse depth has been seen from about its first view only, which its matches are compared with.
 bool ImageFrontEnd::is_averaged(const Feature& f) const {
   return !f.is_target && filter_.state().block[f.slot].kind != BlockKind::kInverseDepth;
+}
+
+/// R_update of a match with this noise. What the linearisation leaves out is new in each frame, but for the product of an open depth and a
+/// baseline that is wrong for as long (lib/docs/lens.md).
+Mat2 ImageFrontEnd::update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise) const {
+  const Scalar tau = noise_.correlation_frames();
+  Mat2 R = (is_averaged(f) ? tau : Scalar(1)) * noise + o.second_order;
+  if (parallax_lasts_ && filter_.state().block[f.slot].kind == BlockKind::kInverseDepth)
+    R += (tau - Scalar(1)) * (o.second_order - o.bend * Mat2::Identity());
+  return R;
 }
 
 void ImageFrontEnd::learn_noise() {

@@ -41,8 +41,9 @@ class ImageFrontEnd {
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);
   /// Finds the map's features in the image and updates the filter with them.
-  /// median_depth: of the last tracked frame's inliers.
-  void measure(ConsensusRule rule, Scalar median_depth);
+  /// median_depth: of the last tracked frame's inliers. parallax_lasts: what baseline and open depth make wrong together counts as an error
+  /// that stays with its feature.
+  void measure(ConsensusRule rule, Scalar median_depth, bool parallax_lasts);
   /// Where the camera is after a frame, and whether that taught the map. SameView
   void note_view(bool taught, Scalar median_depth) {
     if (taught)
@@ -91,6 +92,7 @@ class ImageFrontEnd {
   SearchTask task_of(int feature) const;
   bool update_with_consensus(int first, int found, ConsensusRule rule);
   bool is_averaged(const Feature& f) const;
+  Mat2 update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise) const;
 
   // image_corners.cpp
   bool add_in(const Rect& rect, const CornerStrength& least, int* anchor);
@@ -105,6 +107,7 @@ class ImageFrontEnd {
   SameView same_view_;
   FollowedView followed_;
   bool is_following_ = false;  ///< searches go about the followed view's pixels
+  bool parallax_lasts_ = false;
   bool is_learnt_ = false;     ///< the map has learnt from this frame's view already
   bool is_measured_ = false;   ///< by measure(), so that candidates and matches are this frame's
   int listed_ = 0;             ///< candidates of this frame
