@@ -267,12 +267,11 @@ bool ImageFrontEnd::is_averaged(const Feature& f) const {
 }
 
 /// R_update of a match with this noise. What the linearisation leaves out is new in each frame, but for the product of an open depth and a
-/// baseline that is wrong for as long (lib/docs/lens.md).
+/// baseline that is wrong for as long: where that lasts, it counts twice (lib/docs/lens.md).
 Mat2 ImageFrontEnd::update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise) const {
-  const Scalar tau = noise_.correlation_frames();
-  Mat2 R = (is_averaged(f) ? tau : Scalar(1)) * noise + o.second_order;
+  Mat2 R = (is_averaged(f) ? noise_.correlation_frames() : Scalar(1)) * noise + o.second_order;
   if (parallax_lasts_ && filter_.state().block[f.slot].kind == BlockKind::kInverseDepth)
-    R += (tau - Scalar(1)) * (o.second_order - o.bend * Mat2::Identity());
+    R += o.second_order - o.bend * Mat2::Identity();
   return R;
 }
 

@@ -106,11 +106,11 @@ class ImageFrontEnd {
   NoiseModel& noise_;
   SameView same_view_;
   FollowedView followed_;
-  bool is_following_ = false;  ///< searches go about the followed view's pixels
-  bool parallax_lasts_ = false;
-  bool is_learnt_ = false;     ///< the map has learnt from this frame's view already
-  bool is_measured_ = false;   ///< by measure(), so that candidates and matches are this frame's
-  int listed_ = 0;             ///< candidates of this frame
+  bool is_following_ = false;    ///< searches go about the followed view's pixels
+  bool parallax_lasts_ = false;  ///< measure()
+  bool is_learnt_ = false;       ///< the map has learnt from this frame's view already
+  bool is_measured_ = false;     ///< by measure(), so that candidates and matches are this frame's
+  int listed_ = 0;               ///< candidates of this frame
   ImageSearch search_;
   Scalar* scratch_ = nullptr;  ///< max_observations: rates of candidates, then the areas that were searched
 };
