@@ -17,6 +17,7 @@ set(PLANEFOLD_FLOAT_TESTS
     jacobian/test_planar_pose.cpp
     jacobian/test_plane.cpp
     jacobian/test_ray_plane.cpp
+    jacobian/test_vertical.cpp
     unit/test_bundle_adjust.cpp
     unit/test_bundle_planes.cpp
     unit/test_camera.cpp

@@ -71,11 +71,11 @@ void test_a_vertical_plane_should_turn_gravity_by_its_share_and_be_forgotten() {
   VerticalMeasurement z;
   predict_vertical(filter->state(), plane, &z);
   TEST_ASSERT_TRUE(std::abs(z.predicted(0) + std::sin(Scalar(0.02))) < Scalar(1e-6));
-  Scalar before = 0;
-  TEST_ASSERT_FALSE(
-      take_vertical(*filter, plane, kSigma, Scalar(1), &before));  // two sigma off are above a gate of one
-  TEST_ASSERT_TRUE(take_vertical(*filter, plane, kSigma, Scalar(9), &before));
-  TEST_ASSERT_TRUE(std::abs(before - Scalar(std::sqrt(2.0)) * kGravity) < Scalar(1e-4));
+  VerticalRow told;
+  TEST_ASSERT_FALSE(take_vertical(*filter, plane, kSigma, Scalar(1), &told));  // two sigma off are above a gate of one
+  TEST_ASSERT_FALSE(told.is_told());
+  TEST_ASSERT_TRUE(take_vertical(*filter, plane, kSigma, Scalar(9), &told));
+  TEST_ASSERT_TRUE(std::abs(told.before - Scalar(std::sqrt(2.0)) * kGravity) < Scalar(1e-4));
   predict_vertical(filter->state(), plane, &z);
   TEST_ASSERT_TRUE(std::abs(z.predicted(0)) < Scalar(2e-4));
   // Half of it each: 0.01 of gravity's tilt, which is about W's x.
@@ -83,10 +83,79 @@ void test_a_vertical_plane_should_turn_gravity_by_its_share_and_be_forgotten() {
   TEST_ASSERT_TRUE(std::abs(std::abs(tilt) - Scalar(0.01)) < Scalar(3e-4));
   TEST_ASSERT_TRUE(std::abs(filter->variance_of(z.H) - kSigma * kSigma) < Scalar(0.1) * kSigma * kSigma);
   TEST_ASSERT_TRUE(filter->variance(gravity) < Scalar(0.6) * kGravity * kGravity);
-  forget_vertical(*filter, plane, before);
+  forget_vertical(*filter, plane, told);
   const Scalar of_row = filter->variance_of(z.H);
-  TEST_ASSERT_TRUE(std::abs(of_row / (before * before) - 1) < Scalar(0.01));
+  TEST_ASSERT_TRUE(std::abs(of_row / (told.before * told.before) - 1) < Scalar(0.01));
   TEST_ASSERT_TRUE(std::abs(filter->variance(gravity) / (kGravity * kGravity) - 1) < Scalar(0.02));
+}
+
+/// Gravity as it points (z up), and walls whose normal is y, with the variances of their tilts.
+struct Walls {
+  static constexpr Scalar kGravity = Scalar(0.15), kPlane = Scalar(0.001);
+
+  Walls() : filter(true, BodyLayout::with_inertial_unit()) {
+    filter->set_mean(Body());
+    PlaneFrame frame;
+    frame.R_WP << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+    for (int& p : plane) p = filter->add_known_plane(frame, Mat3::Identity() * kPlane * kPlane, Scalar(0));
+    P = filter.P();
+    gravity = filter->state().layout.row(BodyPart::kGravity);
+    for (int i = 0; i < filter->state().layout.rows(); ++i) P(i, i) = 1e-6;
+    for (int i = 0; i < 2; ++i) P(gravity + i, gravity + i) = static_cast<double>(kGravity * kGravity);
+  }
+  /// Of gravity's tilt as the walls see it.
+  Scalar variance() {
+    VerticalMeasurement z;
+    predict_vertical(filter->state(), plane[0], &z);
+    return filter->variance_of(z.H);
+  }
+
+  TestFilter filter;
+  int plane[2], gravity;
+  Dense P;
+};
+
+/// One wall was told loosely, another then told gravity well: what the loose one is worth is little, and no more goes with it. (All that
+/// the other had told went, 0.15 rad in place of 0.001.)
+void test_forgetting_a_plane_should_leave_what_another_has_told() {
+  Walls walls;
+  walls.filter.set_P(walls.P);
+  VerticalRow loose, tight;
+  TEST_ASSERT_TRUE(take_vertical(*walls.filter, walls.plane[0], Scalar(0.3), Scalar(9), &loose));
+  TEST_ASSERT_TRUE(take_vertical(*walls.filter, walls.plane[1], Scalar(0.001), Scalar(9), &tight));
+  const Scalar both = walls.variance();
+  TEST_ASSERT_TRUE(both < Scalar(4e-6));
+  forget_vertical(*walls.filter, walls.plane[0], loose);
+  TEST_ASSERT_TRUE(walls.variance() >= Scalar(0.999) * both);
+  TEST_ASSERT_TRUE(walls.variance() < Scalar(1.1) * both);
+  allow_for_forgotten(loose, &tight);
+  forget_vertical(*walls.filter, walls.plane[1], tight);
+  TEST_ASSERT_TRUE(std::abs(walls.variance() / (Walls::kGravity * Walls::kGravity) - 1) < Scalar(0.1));
+}
+
+/// Between telling and forgetting gravity moves by 0.002 rad about the walls' normal, with the transport of a rotation that is as
+/// open as 0.17 rad. What is given back is tilt; heading, of which the row says next to nothing, stays as it was.
+void test_forgetting_a_plane_should_not_open_heading() {
+  constexpr double kHeading = 0.17, kMoved = 0.002;
+  Walls walls;
+  Dense N = Dense::Zero(walls.P.rows(), 1);  // of a rotation about z: of the body alone, as long as gravity is along z
+  N(2, 0) = 1;
+  walls.filter.set_P(walls.P + kHeading * kHeading * N * N.transpose());
+  VerticalRow told;
+  TEST_ASSERT_TRUE(take_vertical(*walls.filter, walls.plane[0], Scalar(0.001), Scalar(9), &told));
+  Body body = walls.filter->state().body;
+  const Mat3 R0_WG = body.q_WG.toRotationMatrix();
+  body.q_WG = exp_so3(Vec3(0, Scalar(kMoved), 0)) * body.q_WG;
+  walls.filter->set_mean(body);
+  // What the body's rotation shares with gravity moves by N(x+) - N(x-).
+  Dense P = walls.filter.P(), T = Dense::Identity(P.rows(), P.rows());
+  const Mat3 R_WG = body.q_WG.toRotationMatrix();
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 3; ++j) T(walls.gravity + i, j) += static_cast<double>(R_WG(j, i) - R0_WG(j, i));
+  walls.filter.set_P(T * P * T.transpose());
+  forget_vertical(*walls.filter, walls.plane[0], told);
+  TEST_ASSERT_TRUE(std::abs(walls.variance() / (Walls::kGravity * Walls::kGravity) - 1) < Scalar(0.1));
+  TEST_ASSERT_TRUE(std::sqrt(walls.filter->variance(2)) < Scalar(1.01 * kHeading));
 }
 
 }  // namespace
@@ -95,5 +164,7 @@ int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_row_of_a_vertical_plane_should_be_exact);
   RUN_TEST(test_a_vertical_plane_should_turn_gravity_by_its_share_and_be_forgotten);
+  RUN_TEST(test_forgetting_a_plane_should_leave_what_another_has_told);
+  RUN_TEST(test_forgetting_a_plane_should_not_open_heading);
   return UNITY_END();
 }

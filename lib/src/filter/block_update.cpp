@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -117,7 +118,7 @@ void BlockFilter::downdate(const Scalar* U, const Scalar* G, int rows) {
 /// With k = P h^T / (h P h^T), which is along the gain of an update by h, whether before it or after it: P + variance k k^T.
 void BlockFilter::inflate_along(const Rows& row, Scalar variance) {
   PF_ASSERT(row.rows == 1 && max_rows_ >= 3);
-  const Scalar of_row = covariance_of<1>(row)(0, 0);
+  const Scalar of_row = std::max(covariance_of<1>(row)(0, 0), rounding_of(row, 0));
   if (!(of_row > Scalar(0))) return;
   gather(&row, 1, W_);                      // h P
   Scalar *U = W_ + ld_, *G = W_ + 2 * ld_;  // U^T G + G^T U with G = U / 2

@@ -85,4 +85,10 @@ inline constexpr Scalar kBridge = Scalar(12);    ///< of a bridge: the integral 
 inline constexpr int kAdaptSteps = 16;  ///< the median interval moves by this fraction of itself towards each new one
 }  // namespace imu
 
+/// Forgetting that a plane is vertical.
+namespace vertical {
+inline constexpr Scalar kMaxShrink =
+    Scalar(1.05);  ///< of a variance, by rounding and by linearisation since it was told
+}  // namespace vertical
+
 }  // namespace pf::tuning

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "filter/measurement.h"
+#include "geometry/plane.h"
 
 namespace pf {
 
@@ -19,10 +20,14 @@ using VerticalMeasurement = MeasurementOf<1, 5, 2>;
 void predict_vertical(const State& state, int plane, VerticalMeasurement* out);
 
 /// Updates the filter with a plane that is vertical within sigma [rad]. False, with nothing changed, where the plane's NIS is above
-/// max_nis. *sigma_before: the standard deviation of z before [rad].
-bool take_vertical(Filter& filter, int plane, Scalar sigma, Scalar max_nis, Scalar* sigma_before);
+/// max_nis. *told: what forget_vertical needs.
+bool take_vertical(Filter& filter, int plane, Scalar sigma, Scalar max_nis, VerticalRow* told);
 
-/// Adds back to a plane's tilt against gravity, and to all that has learnt from it, the variance that it had before take_vertical.
-void forget_vertical(Filter& filter, int plane, Scalar sigma_before);
+/// Takes back what take_vertical has told of a plane's tilt against gravity, and of all that has learnt from it, and nothing that others have
+/// told of them since.
+void forget_vertical(Filter& filter, int plane, const VerticalRow& told);
+
+/// After `gone` was forgotten: what was known before another plane was told may have come from it.
+void allow_for_forgotten(const VerticalRow& gone, VerticalRow* other);
 
 }  // namespace pf

@@ -33,10 +33,10 @@ struct PlaneEntry {
   bool known = false;    ///< a wall: known beforehand, and never dissolved
   bool doubted = false;  ///< a wall that the gate refuses what should be on it; it takes no points
   bool two_sided = false;
-  std::uint8_t vertical_mrad = 0;  ///< tilt's sigma before it was told to be vertical, 1 .. 255 [mrad]; 0: it was not
-  Scalar roughness = 0;            ///< [m] of its surface
-  Scalar prior[6] = {};            ///< of a wall: covariance of (a, b, h), lower triangle; zero: it no longer counts
-  PlaneOutline plan;               ///< of a wall, as it was given
+  VerticalRow vertical;  ///< whether somebody said that it is vertical
+  Scalar roughness = 0;  ///< [m] of its surface
+  Scalar prior[6] = {};  ///< of a wall: covariance of (a, b, h), lower triangle; zero: it no longer counts
+  PlaneOutline plan;     ///< of a wall, as it was given
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 
   /// Of a wall whose prior counts.

@@ -109,8 +109,7 @@ void PlaneKeeper::merge_into(int plane_entry) {
       const Vec2 uv = plane_coordinates(state.frame_of(to), p_W);
       extend_outline(&map_.planes[plane_entry].seen, &uv, 1);
     }
-    map_.planes[plane_entry].vertical_mrad =
-        std::max(map_.planes[plane_entry].vertical_mrad, map_.planes[k].vertical_mrad);
+    if (!map_.planes[plane_entry].vertical.is_told()) map_.planes[plane_entry].vertical = map_.planes[k].vertical;
     map_.planes.remember_merge(map_.planes[k].id, map_.planes[plane_entry].id);
     dissolve(k);
     settings_.hooks.say("merged two planes");

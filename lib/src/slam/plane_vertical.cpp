@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-
 #include "filter/vertical.h"
 #include "slam/plane_keeper.h"
 #include "slam/tuning.h"
@@ -14,14 +11,14 @@ Status PlaneKeeper::set_vertical(int plane_entry, Scalar sigma) {
   using namespace tuning::plane_vertical;
   PlaneEntry& plane = map_.planes[plane_entry];
   if (sigma > Scalar(0)) {
-    if (plane.vertical_mrad != 0) return Status::kOk;
-    Scalar before = 0;
-    if (!take_vertical(filter_, plane.slot, sigma, kVerticalGate, &before)) return Status::kRange;
-    plane.vertical_mrad =
-        static_cast<std::uint8_t>(std::clamp(std::ceil(before / kTiltUnit), Scalar(1), kMaxTiltUnits));
-  } else if (plane.vertical_mrad != 0) {
-    forget_vertical(filter_, plane.slot, kTiltUnit * static_cast<Scalar>(plane.vertical_mrad));
-    plane.vertical_mrad = 0;
+    if (plane.vertical.is_told()) return Status::kOk;
+    if (!take_vertical(filter_, plane.slot, sigma, kVerticalGate, &plane.vertical)) return Status::kRange;
+  } else if (plane.vertical.is_told()) {
+    const VerticalRow gone = plane.vertical;
+    forget_vertical(filter_, plane.slot, gone);
+    plane.vertical = VerticalRow();
+    for (int i = 0; i < map_.planes.capacity(); ++i)
+      if (map_.planes.used(i) && map_.planes[i].vertical.is_told()) allow_for_forgotten(gone, &map_.planes[i].vertical);
   }
   return Status::kOk;
 }

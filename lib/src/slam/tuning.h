@@ -232,8 +232,6 @@ inline constexpr int kCells = 5;                    ///< along each side of the 
 /// Planes that somebody says are vertical.
 namespace plane_vertical {
 inline constexpr Scalar kVerticalGate = Scalar(15.1);  ///< chi-square of one degree of freedom, 0.9999
-inline constexpr Scalar kTiltUnit = Scalar(0.001);     ///< [rad] in which the tilt's sigma is kept
-inline constexpr Scalar kMaxTiltUnits = Scalar(255);   ///< that a byte holds
 }  // namespace plane_vertical
 
 /// Patches on walls: finding them again.
