@@ -135,9 +135,10 @@ void test_forgetting_a_plane_should_leave_what_another_has_told() {
 
 /// Between telling and forgetting gravity moves by 0.002 rad about the walls' normal, with the transport of a rotation that is as
 /// open as 0.17 rad. What is given back is tilt; heading, of which the row says next to nothing, stays as it was.
-void test_forgetting_a_plane_should_not_open_heading() {
+void forget_after_a_move(bool keep_gauge) {
   constexpr double kHeading = 0.17, kMoved = 0.002;
   Walls walls;
+  walls.filter->keep_gauge(keep_gauge);
   Dense N = Dense::Zero(walls.P.rows(), 1);  // of a rotation about z: of the body alone, as long as gravity is along z
   N(2, 0) = 1;
   walls.filter.set_P(walls.P + kHeading * kHeading * N * N.transpose());
@@ -150,12 +151,17 @@ void test_forgetting_a_plane_should_not_open_heading() {
   // What the body's rotation shares with gravity moves by N(x+) - N(x-).
   Dense P = walls.filter.P(), T = Dense::Identity(P.rows(), P.rows());
   const Mat3 R_WG = body.q_WG.toRotationMatrix();
-  for (int i = 0; i < 2; ++i)
+  for (int i = 0; i < 2 && keep_gauge; ++i)
     for (int j = 0; j < 3; ++j) T(walls.gravity + i, j) += static_cast<double>(R_WG(j, i) - R0_WG(j, i));
   walls.filter.set_P(T * P * T.transpose());
   forget_vertical(*walls.filter, walls.plane[0], told);
   TEST_ASSERT_TRUE(std::abs(walls.variance() / (Walls::kGravity * Walls::kGravity) - 1) < Scalar(0.1));
   TEST_ASSERT_TRUE(std::sqrt(walls.filter->variance(2)) < Scalar(1.01 * kHeading));
+}
+
+void test_forgetting_a_plane_should_not_open_heading() {
+  forget_after_a_move(true);
+  forget_after_a_move(false);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ class Filter {
   /// Noise of a folded point's pixel: surfaces of planes added from now on are uneven by this much [m].
   void set_roughness(Scalar roughness) { roughness_ = roughness; }
   void keep_gauge(bool keep) { keep_gauge_ = keep; }
-
+  bool keeps_gauge() const { return keep_gauge_; }
   /// Another number after each init(): what others know of blocks does not hold any more.
   std::uint32_t generation() const { return generation_; }
   const State& state() const { return state_; }

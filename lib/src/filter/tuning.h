@@ -87,8 +87,7 @@ inline constexpr int kAdaptSteps = 16;  ///< the median interval moves by this f
 
 /// Forgetting that a plane is vertical.
 namespace vertical {
-inline constexpr Scalar kMaxShrink =
-    Scalar(1.05);  ///< of a variance, by rounding and by linearisation since it was told
+inline constexpr Scalar kMaxShrink = Scalar(1.05);  ///< of a variance, by rounding and by linearisation since
 }  // namespace vertical
 
 }  // namespace pf::tuning

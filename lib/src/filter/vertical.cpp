@@ -90,7 +90,8 @@ void forget_vertical(Filter& filter, int plane, const VerticalRow& told) {
   row.parts = 3;
   put_row(state, plane, J_n_x, n0_W, told.g_W, kColumns, row.h, row.part);
   row.part[2] = Part::body(Body::kTheta, 3);
-  const Mat13 by_world = -(g_W.cross(n0_W) + n_W.cross(told.g_W)).transpose();
+  Mat13 by_world = Mat13::Zero();  // without transport P holds h0
+  if (filter.keeps_gauge()) by_world = -(g_W.cross(n0_W) + n_W.cross(told.g_W)).transpose();
   put<1, 3>(row.h, kColumns, kRowColumns, by_world);
   const Scalar now = std::max(Scalar(0), filter.variance_of(row)) + filter.blocks().rounding_of(row, 0);
   const Scalar known = Scalar(1) / (told.before * told.before);

@@ -23,8 +23,8 @@ void predict_vertical(const State& state, int plane, VerticalMeasurement* out);
 /// max_nis. *told: what forget_vertical needs.
 bool take_vertical(Filter& filter, int plane, Scalar sigma, Scalar max_nis, VerticalRow* told);
 
-/// Takes back what take_vertical has told of a plane's tilt against gravity, and of all that has learnt from it, and nothing that others have
-/// told of them since.
+/// Takes back what take_vertical has told of a plane's tilt against gravity, and of all that has learnt from it, and nothing that others
+/// have told of them since.
 void forget_vertical(Filter& filter, int plane, const VerticalRow& told);
 
 /// After `gone` was forgotten: what was known before another plane was told may have come from it.
