@@ -33,7 +33,6 @@ struct PlaneEntry {
   bool known = false;    ///< a wall: known beforehand, and never dissolved
   bool doubted = false;  ///< a wall that the gate refuses what should be on it; it takes no points
   bool two_sided = false;
-  VerticalRow vertical;  ///< whether somebody said that it is vertical
   Scalar roughness = 0;  ///< [m] of its surface
   Scalar prior[6] = {};  ///< of a wall: covariance of (a, b, h), lower triangle; zero: it no longer counts
   PlaneOutline plan;     ///< of a wall, as it was given

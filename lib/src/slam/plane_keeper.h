@@ -32,7 +32,10 @@ class PlaneKeeper {
       : settings_(settings), filter_(filter), map_(map), frame_(frame), features_(features) {}
 
   bool layout(Arena& arena, int max_features);
-  void init() { data_ = Data(); }
+  void init() {
+    data_ = Data();
+    for (int i = 0; told_ != nullptr && i < map_.planes.capacity(); ++i) told_[i] = Told();
+  }
 
   /// Adds a wall; so many rows stay free beside it. Rows are made free by evicting features that were not seen since not_since_ns, where
   /// features may go. kFull: no room for it; nothing has changed then.
@@ -51,6 +54,13 @@ class PlaneKeeper {
   enum class TrialVerdict { kOpen, kThere, kElsewhere };
 
   /// What is kept between frames.
+  /// That a plane is vertical.
+  struct Told {
+    std::uint32_t id = 0, generation = 0;  ///< of the plane, and of the filter then
+    VerticalRow row;
+  };
+  VerticalRow* told_row(int plane_entry);
+
   struct Data {
     std::uint32_t random = 1;
   };
@@ -96,6 +106,7 @@ class PlaneKeeper {
   Frame& frame_;
   FeatureKeeper& features_;
   Data data_;
+  Told* told_ = nullptr;                 ///< of each entry; null where gravity is not estimated
   PlaneCandidate* candidate_ = nullptr;  ///< max_features
   int* candidate_entry_ = nullptr;       ///< feature table entry of each
   ScaleRow scale_;                       ///< scratch: picks the log scale out of an error

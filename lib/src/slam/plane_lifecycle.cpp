@@ -109,7 +109,7 @@ void PlaneKeeper::merge_into(int plane_entry) {
       const Vec2 uv = plane_coordinates(state.frame_of(to), p_W);
       extend_outline(&map_.planes[plane_entry].seen, &uv, 1);
     }
-    if (!map_.planes[plane_entry].vertical.is_told()) map_.planes[plane_entry].vertical = map_.planes[k].vertical;
+    if (told_ != nullptr && !told_row(plane_entry)->is_told()) *told_row(plane_entry) = *told_row(k);
     map_.planes.remember_merge(map_.planes[k].id, map_.planes[plane_entry].id);
     dissolve(k);
     settings_.hooks.say("merged two planes");
