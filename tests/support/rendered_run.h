@@ -13,6 +13,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -159,6 +160,10 @@ class RenderedRun {
         }
       image.pixels = smeared_.data();
     }
+    if (flicker > 0) {
+      flicker_of(image);
+      image.pixels = smeared_.data();
+    }
     if (cover >= 0) {
       covered_.assign(static_cast<std::size_t>(image.stride * image.height), static_cast<std::uint8_t>(cover));
       image.pixels = covered_.data();
@@ -192,6 +197,7 @@ class RenderedRun {
   }
 
   double contrast = 1;  ///< of what is left of it
+  double flicker = 0;   ///< share of the picture, from its right side, whose texture is another one in every frame
   int smear = 1;        ///< [px] along the rows, of a camera that turns while it exposes
   pf_config_t config;
   pf_memory_t need;
@@ -199,6 +205,20 @@ class RenderedRun {
   std::vector<Frame> frames;
 
  private:
+  static constexpr int kFlickerSide = 3;  ///< [px] of a patch of one grey level
+
+  void flicker_of(const pf_image_t& image) {
+    std::vector<std::uint8_t> out(image.pixels, image.pixels + image.stride * image.height);
+    std::minstd_rand random(static_cast<unsigned>(shown_));
+    for (int v = 0; v + kFlickerSide <= image.height; v += kFlickerSide)
+      for (int u = static_cast<int>((1 - flicker) * image.width); u + kFlickerSide <= image.width; u += kFlickerSide) {
+        const std::uint8_t grey = static_cast<std::uint8_t>(60 + random() % 130);
+        for (int i = 0; i < kFlickerSide * kFlickerSide; ++i)
+          out[static_cast<std::size_t>((v + i / kFlickerSide) * image.stride + u + i % kFlickerSide)] = grey;
+      }
+    smeared_ = std::move(out);
+  }
+
   void push(const pf_image_t& image) {
     Frame f = {};
     f.status = pf_push_frame(slam, &image);

@@ -97,6 +97,7 @@ class WindowTracking {
   bool is_believed(int inliers, int found, Scalar shares) const;
   static Scalar chance_share(Scalar area, Scalar searched);
   Scalar agreeing_area(int c) const;
+  bool most_agree(int found) const;
   void measure_all(Scalar median_depth);
   void fit_all(int found, const PosePrior& prior, Scalar median_depth);
   void mark(int found, const PosePrior& at);

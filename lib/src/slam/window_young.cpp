@@ -74,6 +74,19 @@ Scalar WindowTracking::agreeing_area(int c) const {
   return ellipse_area(Mat2(Mat2::Identity() * std::sqrt(std::max(inside, Scalar(0)))), settings_.gate);
 }
 
+/// Whether of enough points that earlier frames have found at least half agree. Half of all corners are never found again, so new ones say
+/// little by being missed.
+bool WindowTracking::most_agree(int found) const {
+  int searched = 0, agree = 0;
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    const Match& match = frame_.match(t);
+    searched += match.searched && match.feature >= 0 && map_.feature(match.feature).observations > 1 ? 1 : 0;
+  }
+  for (int c = 0; c < found; ++c)
+    agree += pose_.is_inlier(c) && map_.feature(frame_.match(candidate_[c].match).feature).observations > 1 ? 1 : 0;
+  return searched >= settings_.min_inliers && 2 * agree >= searched;
+}
+
 /// Corrects the body by the pose that the first `found` candidates say together, those without a depth as well.
 void WindowTracking::fit_all(int found, const PosePrior& prior, Scalar median_depth) {
   int inliers = found;
@@ -92,7 +105,8 @@ void WindowTracking::fit_all(int found, const PosePrior& prior, Scalar median_de
   Scalar shares = 0;
   for (int c = 0; c < found; ++c) shares += chance_share(agreeing_area(c), candidate_[c].searched);
   PosePrior at;
-  if (inliers < settings_.min_inliers || !is_believed(inliers, found, shares) || !apply(pose, information, &at)) return;
+  if (inliers < settings_.min_inliers || !(is_believed(inliers, found, shares) || most_agree(found))) return;
+  if (!apply(pose, information, &at)) return;
   for (int c = 0; c < found; ++c) {
     Match& match = frame_.match(candidate_[c].match);
     if (!pose_.is_inlier(c)) continue;
