@@ -32,6 +32,9 @@ def main():
         # Behind the second corner, where points of the side that was left stay in the map.
         run(BIN / "pf-sim", "box", "--seeds", 1, "--first-seed", 62, "--frames", 440, "--json", file, "--cases", "refined")
         both = json.loads(file.read_text())["cases"]["refined"]
+        # The hand moves by more from the first frame to the second than the aligner reaches.
+        run(BIN / "pf-sim", "box", "--no-points", "--seeds", 1, "--first-seed", 17, "--frames", 60, "--json", file, "--cases", "refined")
+        begun = json.loads(file.read_text())["cases"]["refined"]
         # Where the second side comes into view patches begin in a frame that a gross one spoils: they are one witness, however many.
         run(BIN / "pf-sim", "box", "--no-points", "--seeds", 1, "--first-seed", 63, "--frames", 240, "--gross", 0.05, "--json", file, "--cases", "refined")
         gross = json.loads(file.read_text())["cases"]["refined"]
@@ -54,6 +57,8 @@ def main():
         fail(f"patches alone, a wall that is not there: {alone['absent']['rmse_m']}, {wrong}")
     if not (both["rmse_m"]["worst"] < 0.025 and both["walls"]["doubted"] == 0):
         fail(f"points and patches: {both['rmse_m']}, {both['walls']}")
+    if not (begun["rmse_m"]["worst"] < 0.025 and begun["tracked_share"] > 0.95):
+        fail(f"patches of a hand that is moving when they begin: {begun['rmse_m']}, {begun['tracked_share']}")
     if not (gross["rmse_m"]["worst"] < 0.025 and gross["walls"]["doubted"] == 0 and gross["lost"]["frames"] == 0):
         fail(f"gross patches: {gross['rmse_m']}, {gross['walls']}, {gross['lost']}")
     wrong = absent["wrong_wall"]

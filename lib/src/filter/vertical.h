@@ -1,7 +1,6 @@
 #pragma once
 
 #include "filter/measurement.h"
-#include "geometry/plane.h"
 
 namespace pf {
 
@@ -18,6 +17,16 @@ using VerticalMeasurement = MeasurementOf<1, 5, 2>;
 /// x is the plane's (a, b, h), d the error of gravity's direction (model/body.h). The state has gravity. A rotation of the world with
 /// gravity, a translation and a change of scale do not change z. src lib/docs/inertial.md
 void predict_vertical(const State& state, int plane, VerticalMeasurement* out);
+
+/// What a plane that was told to be vertical was told, and about which directions.
+struct VerticalRow {
+  Scalar sigma = 0;         ///< [rad] of what was told; 0: nothing was
+  Scalar before = 0;        ///< [rad] of the plane's tilt before
+  Vec3 n_W = Vec3::Zero();  ///< the plane's normal, as it was estimated then
+  Vec3 g_W = Vec3::Zero();  ///< gravity's direction, likewise
+
+  bool is_told() const { return sigma > Scalar(0); }
+};
 
 /// Updates the filter with a plane that is vertical within sigma [rad]. False, with nothing changed, where the plane's NIS is above
 /// max_nis. *told: what forget_vertical needs.

@@ -13,16 +13,6 @@ struct PlaneFrame {
   Vec3 o_W = Vec3::Zero();
 };
 
-/// What a plane that was told to be vertical was told, and about which directions: see filter/vertical.h.
-struct VerticalRow {
-  Scalar sigma = 0;         ///< [rad] of what was told; 0: nothing was
-  Scalar before = 0;        ///< [rad] of the plane's tilt before
-  Vec3 n_W = Vec3::Zero();  ///< the plane's normal, as it was estimated then
-  Vec3 g_W = Vec3::Zero();  ///< gravity's direction, likewise
-
-  bool is_told() const { return sigma > Scalar(0); }
-};
-
 /// A plane is three numbers x = (a, b, h) about its frame, without singularities as long as a and b are small:
 ///
 ///   p_W = o_W + R_WP [u  v  h + a u + b v]ᵀ          point with the coordinates (u, v)

@@ -107,7 +107,7 @@ class ImageFrontEnd {
   SameView same_view_;
   FollowedView followed_;
   bool is_following_ = false;    ///< searches go about the followed view's pixels
-  bool parallax_lasts_ = false;  ///< measure()
+  bool parallax_lasts_ = false;  ///< in this frame, as measure() was told
   bool is_learnt_ = false;       ///< the map has learnt from this frame's view already
   bool is_measured_ = false;     ///< by measure(), so that candidates and matches are this frame's
   int listed_ = 0;               ///< candidates of this frame

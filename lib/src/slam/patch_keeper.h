@@ -73,6 +73,7 @@ class PatchKeeper {
   void drop_failing(bool supported);
 
   // patch_waiting.cpp
+  bool follow_waiting(const Pyramid& image, bool supported, Sight* sight, StoredPatch* patch, PlaneAlignment* found);
   void measure_waiting(const Pyramid& image, bool is_young, StoredPatch* patch);
   bool expect_waiting(const StoredPatch& patch, Sight* sight) const;
   bool may_lie_on(const StoredPatch& patch, int entry, Scalar* range) const;

@@ -6,6 +6,7 @@
 #include "geometry/homography.h"
 #include "geometry/ray_plane.h"
 #include "slam/common_ratio.h"
+#include "slam/followed_view.h"
 #include "slam/patch_keeper.h"
 #include "slam/patch_tuning.h"
 #include "slam/plane_walls.h"
@@ -108,6 +109,18 @@ Scalar PatchKeeper::parallax_of(const StoredPatch& patch) const {
 
 bool PatchKeeper::has_parallax(const StoredPatch& patch, Scalar min_px) const { return parallax_of(patch) > min_px; }
 
+/// As align(). Where nothing else supports the pose, that of a camera that has just begun to move is uncertain by more than the aligner
+/// reaches: then the patch is looked for as far as from one frame to the next.
+bool PatchKeeper::follow_waiting(const Pyramid& image, bool supported, Sight* sight, StoredPatch* patch,
+                                 PlaneAlignment* found) {
+  if (align(image, *sight, patch, found)) return true;
+  Vec2 shift;
+  return !supported &&
+         search_.find(image, filter_.lens(), patch->pixels, sight->H_CK, FollowedView::covariance(filter_.lens()),
+                      settings_.gate, &shift) &&
+         move_to(*patch, shift, sight) && align(image, *sight, patch, found);
+}
+
 /// Follows a patch, and decides whether it is known by now which plane it lies on. Where nothing else supports the pose, the nearest plane
 /// that passes counts at once, and nothing is held against the others.
 void PatchKeeper::measure_waiting(const Pyramid& image, bool is_young, StoredPatch* patch) {
@@ -117,10 +130,11 @@ void PatchKeeper::measure_waiting(const Pyramid& image, bool is_young, StoredPat
   if (!expect_waiting(*patch, &sight)) return;
   std::copy(sight.corner, sight.corner + 4, patch->corner);
   PlaneAlignment found;
-  if (!align(image, sight, patch, &found) || (!patch->is_proven() && !begin_block(patch, found.reference_covariance)))
+  const bool supported = frame_.report.inliers >= settings_.min_inliers;
+  if (!follow_waiting(image, supported, &sight, patch, &found) ||
+      (!patch->is_proven() && !begin_block(patch, found.reference_covariance)))
     return;
   patch->status = PatchStatus::kWaiting;
-  const bool supported = frame_.report.inliers >= settings_.min_inliers;
   if (supported) patch->wait.begin_frame(!is_young || frame_.report.frames % kYoungEvery == 0);
   const int nearest = try_planes(patch, supported);
   if (!supported) {

@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 #include "filter/filter.h"
+#include "filter/vertical.h"
 #include "map/map.h"
 #include "map/plane_search.h"
 #include "slam/feature_keeper.h"
@@ -54,15 +55,13 @@ class PlaneKeeper {
   enum class TrialVerdict { kOpen, kThere, kElsewhere };
 
   /// What is kept between frames.
+  struct Data {
+    std::uint32_t random = 1;
+  };
   /// That a plane is vertical.
   struct Told {
     std::uint32_t id = 0, generation = 0;  ///< of the plane, and of the filter then
     VerticalRow row;
-  };
-  VerticalRow* told_row(int plane_entry);
-
-  struct Data {
-    std::uint32_t random = 1;
   };
 
   // plane_keeper.cpp: points of planes
@@ -99,6 +98,9 @@ class PlaneKeeper {
   void fold_by_consensus(int plane_entry);
   void judge_wall(int plane_entry);
   void doubt_wall(int plane_entry);
+
+  // plane_vertical.cpp: planes that somebody says are vertical
+  VerticalRow* told_row(int plane_entry);
 
   const Settings& settings_;
   Filter& filter_;
