@@ -34,7 +34,7 @@ double distance_to(int wall, const Vec3& p) {
 class Room {
  public:
   Room(std::uint64_t seed, double sigma, const PlaneSearchSettings& settings)
-      : random_(seed), state_(static_cast<std::uint32_t>(seed)), sigma_(sigma), settings_(settings) {
+      : random_(seed), searches_(1000 * static_cast<std::uint32_t>(seed)), sigma_(sigma), settings_(settings) {
     for (int i = 0; i < kPoints; ++i) {
       const bool on_wall = i < kPoints / 2;
       const double u = random_.uniform(on_wall ? -2 : -1.9, on_wall ? 2 : 1.9), v = random_.uniform(-1.9, 1.9);
@@ -82,13 +82,13 @@ class Room {
         if (std::abs(q.z()) < settings_.distance && q.norm() < 2 * settings_.radius) taken_[i] = true;
       }
       if (!seen_[i] || taken_[i]) continue;
-      candidates.push_back({known_[i], Mat3::Identity() * static_cast<Scalar>(sigma_ * sigma_)});
+      candidates.push_back({known_[i], Mat3::Identity() * static_cast<Scalar>(sigma_ * sigma_), i});
       index.push_back(i);
     }
     PlaneFit fit;
     int members[kMaxPlaneMembers], count = 0;
-    if (!search_plane(candidates.data(), static_cast<int>(candidates.size()), settings_, camera, &state_, &fit, members,
-                      &count))
+    if (!search_plane(candidates.data(), static_cast<int>(candidates.size()), settings_, camera, searches_++, &fit,
+                      members, &count))
       return;
     int best = 0, on[4] = {};
     for (int k = 0; k < count; ++k) {
@@ -106,7 +106,7 @@ class Room {
   }
 
   SeededRandom random_;
-  std::uint32_t state_;
+  std::uint32_t searches_;
   double sigma_;
   PlaneSearchSettings settings_;
   Vec3 truth_[kPoints], known_[kPoints];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/draw_by_name.h"
 #include "map/plane_refit.h"
 #include "map/tuning.h"
 
@@ -11,35 +12,36 @@ namespace {
 
 using namespace tuning::plane_search;
 
-/// xorshift32. A state of zero, which it would never leave, becomes another.
-std::uint32_t next_random(std::uint32_t* state) {
-  std::uint32_t x = *state != 0 ? *state : 0x9e3779b9u;
-  x ^= x << 13;
-  x ^= x >> 17;
-  x ^= x << 5;
-  *state = x;
-  return x;
-}
-
-int random_below(std::uint32_t* state, int limit) {
-  return static_cast<int>((static_cast<std::uint64_t>(next_random(state)) * static_cast<std::uint64_t>(limit)) >> 32);
-}
-
-/// A point, and two others near it that are about a triangle with it.
-bool draw_set(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings, std::uint32_t* random,
+/// A point, and two others near it that are about a triangle with it: in the order of their priorities, the first of all, and the first two
+/// that lie near it. So each point, and each pair near it, is as likely as any other.
+bool draw_set(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings, const DrawByName& draw,
               PlaneHypothesis* hypothesis) {
-  const int first = random_below(random, count);
+  int first = 0;
+  std::uint32_t least = draw.priority(candidates[0].name);
+  for (int i = 1; i < count; ++i) {
+    const std::uint32_t priority = draw.priority(candidates[i].name);
+    if (priority >= least) continue;
+    first = i;
+    least = priority;
+  }
   const Vec3& p = candidates[first].p_W;
   const Scalar reach2 = settings.radius * settings.radius / 4;
-  int chosen[2] = {-1, -1}, seen = 0;
+  int chosen[2] = {-1, -1};
+  std::uint32_t of_chosen[2] = {0, 0};
   for (int i = 0; i < count; ++i) {
     if (i == first || !((candidates[i].p_W - p).squaredNorm() < reach2)) continue;
-    // Two out of all that come, each pair as likely as any other.
-    const int place = seen < 2 ? seen : random_below(random, seen + 1);
-    if (place < 2) chosen[place] = i;
-    ++seen;
+    const std::uint32_t priority = draw.priority(candidates[i].name);
+    if (chosen[0] < 0 || priority < of_chosen[0]) {
+      chosen[1] = chosen[0];
+      of_chosen[1] = of_chosen[0];
+      chosen[0] = i;
+      of_chosen[0] = priority;
+    } else if (chosen[1] < 0 || priority < of_chosen[1]) {
+      chosen[1] = i;
+      of_chosen[1] = priority;
+    }
   }
-  if (seen < 2) return false;
+  if (chosen[1] < 0) return false;
   const Vec3 u = candidates[chosen[0]].p_W - p, v = candidates[chosen[1]].p_W - p;
   const Vec3 n = u.cross(v);
   const Scalar longest = std::max(std::max(u.norm(), v.norm()), (u - v).norm()), size = n.norm();
@@ -73,11 +75,12 @@ void keep_best(const PlaneHypothesis& made, const PlaneSearchSettings& settings,
 }  // namespace
 
 bool search_plane(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings,
-                  const Vec3& viewer_W, std::uint32_t* random, PlaneFit* fit, int* members, int* member_count) {
+                  const Vec3& viewer_W, std::uint32_t search, PlaneFit* fit, int* members, int* member_count) {
   if (count < 3 || count <= settings.min_points) return false;
   PlaneHypothesis kept[kKept], made;
   for (int trial = 0; trial < settings.trials; ++trial) {
-    if (!draw_set(candidates, count, settings, random, &made)) continue;
+    const DrawByName draw(search * static_cast<std::uint32_t>(settings.trials) + static_cast<std::uint32_t>(trial));
+    if (!draw_set(candidates, count, settings, draw, &made)) continue;
     const PlaneLayers layers = count_layers(candidates, count, settings, made.o_W, made.n_W);
     if (layers.on <= settings.min_points / 2) continue;
     made.score = score_of(layers);

@@ -12,6 +12,7 @@ namespace pf {
 struct PlaneCandidate {
   Vec3 p_W;         ///< [m]
   Mat3 covariance;  ///< of p_W itself [m²]
+  int name;         ///< in all searches: the caller's row of it
 };
 
 /// When points are called a plane. In the words of Gee 2007, section 3.3: l_T, d_T, d_max, lambda_T.
@@ -37,13 +38,14 @@ inline constexpr int kMaxPlaneMembers = 64;
 ///   the points hang together                                             steps of at most radius / 2
 ///   the plane stands out of what is around it, and chance cannot explain it    plane_chance.h
 ///
-/// random        state of the generator, changed by each call; any seed
+/// search        number of this search: another one draws other sets. A set depends on it and on the names of points, not on how many
+///               candidates there are, so that one point more or less changes few of them (base/draw_by_name.h)
 /// members       room for kMaxPlaneMembers indices of candidates, which belong to the plane; the fit is theirs
 /// false         nothing passed; outputs untouched
 /// work          at most about trials x count steps, and no memory but some 3 kB of stack
 /// src           Gee 2007, section 3.3. There the origin's set decides; here sets far from all others do not, points that
 ///               decide the plane alone are left out, and planes that clutter makes by chance are refused
 bool search_plane(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings,
-                  const Vec3& viewer_W, std::uint32_t* random, PlaneFit* fit, int* members, int* member_count);
+                  const Vec3& viewer_W, std::uint32_t search, PlaneFit* fit, int* members, int* member_count);
 
 }  // namespace pf

@@ -25,7 +25,6 @@ Scalar largest_eigenvalue(const Mat3& C) {
 
 bool PlaneKeeper::layout(Arena& arena, int max_features) {
   candidate_ = arena.take<PlaneCandidate>(static_cast<std::size_t>(max_features));
-  candidate_entry_ = arena.take<int>(static_cast<std::size_t>(max_features));
   told_ = nullptr;
   if (settings_.inertial) told_ = arena.take<Told>(static_cast<std::size_t>(map_.planes.capacity()));
   return arena.ok();

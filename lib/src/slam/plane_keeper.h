@@ -56,7 +56,8 @@ class PlaneKeeper {
 
   /// What is kept between frames.
   struct Data {
-    std::uint32_t random = 1;
+    std::uint32_t random = 1;    ///< of what is drawn before walls
+    std::uint32_t searches = 0;  ///< for new planes, so far
   };
   /// That a plane is vertical.
   struct Told {
@@ -109,8 +110,7 @@ class PlaneKeeper {
   FeatureKeeper& features_;
   Data data_;
   Told* told_ = nullptr;                 ///< of each entry; null where gravity is not estimated
-  PlaneCandidate* candidate_ = nullptr;  ///< max_features
-  int* candidate_entry_ = nullptr;       ///< feature table entry of each
+  PlaneCandidate* candidate_ = nullptr;  ///< max_features; their names are entries of the feature table
   ScaleRow scale_;                       ///< scratch: picks the log scale out of an error
 };
 

@@ -29,13 +29,14 @@ int PlaneKeeper::list_candidates() {
     }
     if (taken || !is_certain(i, &candidate_[count].covariance)) continue;
     candidate_[count].p_W = p_W;
-    candidate_entry_[count++] = i;
+    candidate_[count++].name = i;
   }
   return count;
 }
 
 /// Looks for one new plane among these points.
 void PlaneKeeper::discover() {
+  const std::uint32_t number = data_.searches++;  // whatever is found, and whether there is anything to search
   if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
   const int count = list_candidates();
   if (count <= settings_.plane_min_points) return;
@@ -43,8 +44,8 @@ void PlaneKeeper::discover() {
   PlaneFit fit;
   int member[kMaxPlaneMembers];
   int members = 0;
-  if (!search_plane(candidate_, count, search, filter_.state().body.p_W, &data_.random, &fit, member, &members)) return;
-  for (int k = 0; k < members; ++k) member[k] = map_.features[candidate_entry_[member[k]]].slot;
+  if (!search_plane(candidate_, count, search, filter_.state().body.p_W, number, &fit, member, &members)) return;
+  for (int k = 0; k < members; ++k) member[k] = map_.features[candidate_[member[k]].name].slot;
   const int slot = filter_.add_plane(fit, member, members, settings_.fold.roughness);
   if (slot < 0) return;
   // By the filter's own covariance, enough members must lie on it.

@@ -198,6 +198,7 @@ void WindowPlanes::outline(int k) {
 
 /// Looks for one new plane among points that lie on none yet.
 void WindowPlanes::discover(const Vec3& viewer_W) {
+  const std::uint32_t search_number = searches_++;
   int count = 0;
   const Scalar near = 2 * settings_.plane_distance;
   for (int i = 0; i < map_.capacity(); ++i) {
@@ -209,15 +210,15 @@ void WindowPlanes::discover(const Vec3& viewer_W) {
               outline_contains(table_[k].support, plane_coordinates(plane_[k].frame, p_W), settings_.plane_radius);
     if (taken) continue;
     candidate_[count].p_W = p_W;
-    row_[count++] = i;
+    candidate_[count++].name = i;
   }
   if (count <= settings_.plane_min_points) return;
   const PlaneSearchSettings search = plane_search_settings(settings_);
   PlaneFit fit;
   int members[kMaxPlaneMembers];
   int number = 0;
-  if (!search_plane(candidate_, count, search, viewer_W, &random_, &fit, members, &number)) return;
-  for (int m = 0; m < number; ++m) members[m] = row_[members[m]];
+  if (!search_plane(candidate_, count, search, viewer_W, search_number, &fit, members, &number)) return;
+  for (int m = 0; m < number; ++m) members[m] = candidate_[members[m]].name;
   const int k = table_.add(0);
   if (k < 0) return;
   plane_[k] = {fit.frame, Mat3::Identity() * (settings_.plane_distance * settings_.plane_distance), false};

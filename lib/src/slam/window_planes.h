@@ -22,7 +22,7 @@ class WindowPlanes {
       : settings_(settings), map_(map), table_(map.tables().planes) {}
 
   bool layout(Arena& arena);
-  void init() { random_ = 1; }
+  void init() { searches_ = 0; }
 
   /// The work of one keyframe, after its adjustment.
   void maintain(const Vec3& viewer_W);
@@ -60,7 +60,7 @@ class WindowPlanes {
   PlaneCandidate* candidate_ = nullptr;  ///< one for each point
   int* row_ = nullptr;                   ///< likewise
   Vec3* point_W_ = nullptr;              ///< likewise
-  std::uint32_t random_ = 1;
+  std::uint32_t searches_ = 0;           ///< for new planes, so far
 };
 
 }  // namespace pf
