@@ -16,6 +16,11 @@ Scalar predicted_seconds(std::int64_t before_ns, std::int64_t t_ns) {
   return static_cast<Scalar>(seconds(gap_ns < BodyMotion::kMaxGapNs ? gap_ns : BodyMotion::kMaxGapNs));
 }
 
+/// Of three axes of the body.
+Scalar largest_variance(const Filter& filter, int first_row) {
+  return std::max({filter.variance(first_row), filter.variance(first_row + 1), filter.variance(first_row + 2)});
+}
+
 constexpr double kLeastSpan = 2;  ///< sample intervals, of which a difference of readings is taken
 
 }  // namespace
@@ -53,8 +58,8 @@ bool BodyMotion::has_rate() const {
 MotionNoise BodyMotion::limited_noise() const {
   const bool has_velocity = settings_.body.has(BodyPart::kVelocity);
   const int linear = has_velocity ? settings_.body.row(BodyPart::kVelocity) : Body::kPosition;
-  return pf::limited_noise(settings_.motion_noise, has_velocity, filter_.variance(Body::kTheta),
-                           filter_.variance(linear));
+  return pf::limited_noise(settings_.motion_noise, has_velocity, largest_variance(filter_, Body::kTheta),
+                           largest_variance(filter_, linear));
 }
 
 void BodyMotion::predict(const Body& body, std::int64_t before_ns, std::int64_t t_ns, const MotionNoise& noise,
@@ -137,11 +142,11 @@ void BodyMotion::damp(Scalar dt) {
   const int first = settings_.body.row(BodyPart::kVelocity);  // the angular velocity follows
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) P_speed(i, j) = filter_.covariance()(first + i, first + j);
-  limit_speed(filter_.variance(Body::kTheta), filter_.variance(Body::kPosition), &P_speed);
-  Transition transition;
   const Body& body = filter_.state().body;
-  const Vec3 rate =
+  Vec3 rate =
       settings_.inertial ? Vec3(-(filter_.state().mounting.R_CB.transpose() * body.w_C)) : body.w_C;  // e_b = -e_w
+  limit_speed(dt, largest_variance(filter_, Body::kTheta), largest_variance(filter_, Body::kPosition), &rate, &P_speed);
+  Transition transition;
   damp_speed(body, settings_.body, speed_decay(dt), rate, P_speed, &transition);
   filter_.predict(transition);
 }

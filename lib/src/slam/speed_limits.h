@@ -6,7 +6,8 @@
 #include "slam/tuning.h"
 
 /// A hand does not keep its speed for long, and half a radian of rotation uncertainty already means searching everywhere. Without these
-/// limits, one second without an image would predict the camera out of the room.
+/// limits, one second without an image would predict the camera out of the room. A variance of three axes is that of the least known one:
+/// a camera that turns about one axis alone is as lost as one that turns about all.
 
 namespace pf {
 
@@ -26,7 +27,10 @@ inline Scalar speed_decay(Scalar dt) { return std::exp(-dt / tuning::body_motion
 
 /// Beyond any position and any rotation the speeds decay to kLeastSpeedSigma, without noise that keeps them up: a variance that halves in
 /// each frame would be no normal number after some seconds. P: of (v, w).
-inline void limit_speed(Scalar rotation_variance, Scalar position_variance, Mat6* P) {
+///
+/// rate: w, which counts up to what leads to any rotation in dt [s], and for nothing beyond that. What decays of a faster one would give
+/// the rotation a variance beside which float cannot hold what the next images tell.
+inline void limit_speed(Scalar dt, Scalar rotation_variance, Scalar position_variance, Vec3* rate, Mat6* P) {
   using namespace tuning::body_motion;
   const bool any_rotation = rotation_variance > kAnyRotation * kAnyRotation;
   const bool any_position = position_variance > kAnyPosition * kAnyPosition;
@@ -34,6 +38,11 @@ inline void limit_speed(Scalar rotation_variance, Scalar position_variance, Mat6
     for (int j = 0; j < 6; ++j)
       if ((any_position && (i < 3 || j < 3)) || (any_rotation && (i >= 3 || j >= 3)))
         (*P)(i, j) = i == j ? kLeastSpeedSigma * kLeastSpeedSigma : Scalar(0);
+  const Scalar way = rate->norm() * dt;
+  if (any_rotation)
+    rate->setZero();
+  else if (way > kAnyRotation)
+    *rate *= kAnyRotation / way;
 }
 
 }  // namespace pf

@@ -14,6 +14,11 @@ namespace {
 constexpr std::int64_t kMaxGapNs = 2000000000;  // [ns] longest time between frames that a prediction covers
 constexpr int kVelocity = 6;                    // first row of (v, w)
 
+/// Of three axes.
+Scalar largest_variance(const WindowMotion::Covariance& P, int first_row) {
+  return P.diagonal().segment<3>(first_row).maxCoeff();
+}
+
 }  // namespace
 
 void WindowMotion::set(const Body& body, const Mat6& pose, Scalar speed, Scalar rate) {
@@ -63,7 +68,8 @@ void WindowMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coast
   if (coasting_or_lost) {
     if (settings_.constant_velocity && nothing_measured) damp(dt);
     const int linear = settings_.constant_velocity ? kVelocity : Body::kPosition;
-    noise = limited_noise(noise, settings_.constant_velocity, data_.P(0, 0), data_.P(linear, linear));
+    noise = limited_noise(noise, settings_.constant_velocity, largest_variance(data_.P, Body::kTheta),
+                          largest_variance(data_.P, linear));
   }
   Transition transition;
   predict(data_.body, dt, noise, &transition);
@@ -73,9 +79,10 @@ void WindowMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coast
 /// Lets the speed decay while nothing is measured.
 void WindowMotion::damp(Scalar dt) {
   Mat6 P_speed = data_.P.bottomRightCorner<6, 6>();
-  limit_speed(data_.P(0, 0), data_.P(Body::kPosition, Body::kPosition), &P_speed);
+  Vec3 rate = data_.body.w_C;
+  limit_speed(dt, largest_variance(data_.P, Body::kTheta), largest_variance(data_.P, Body::kPosition), &rate, &P_speed);
   Transition transition;
-  damp_speed(data_.body, settings_.body, speed_decay(dt), data_.body.w_C, P_speed, &transition);
+  damp_speed(data_.body, settings_.body, speed_decay(dt), rate, P_speed, &transition);
   apply(transition, &data_);
 }
 
