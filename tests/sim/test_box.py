@@ -38,6 +38,9 @@ def main():
         # Where the second side comes into view patches begin in a frame that a gross one spoils: they are one witness, however many.
         run(BIN / "pf-sim", "box", "--no-points", "--seeds", 1, "--first-seed", 63, "--frames", 240, "--gross", 0.05, "--json", file, "--cases", "refined")
         gross = json.loads(file.read_text())["cases"]["refined"]
+        # Three frames are spoilt by the one patch that is taken in first, and what begins in them is refused for good.
+        run(BIN / "pf-sim", "box", "--no-points", "--seeds", 1, "--first-seed", 1, "--frames", 240, "--gross", 0.05, "--json", file, "--cases", "refined")
+        first = json.loads(file.read_text())["cases"]["refined"]
     rendered = alone["refined"]
     refined, exact, absent = cases["refined"], cases["exact"], cases["absent"]
     rmse = [case["rmse_m"]["worst"] for case in (refined, exact, absent)]
@@ -59,8 +62,9 @@ def main():
         fail(f"points and patches: {both['rmse_m']}, {both['walls']}")
     if not (begun["rmse_m"]["worst"] < 0.025 and begun["tracked_share"] > 0.95):
         fail(f"patches of a hand that is moving when they begin: {begun['rmse_m']}, {begun['tracked_share']}")
-    if not (gross["rmse_m"]["worst"] < 0.025 and gross["walls"]["doubted"] == 0 and gross["lost"]["frames"] == 0):
-        fail(f"gross patches: {gross['rmse_m']}, {gross['walls']}, {gross['lost']}")
+    for run_of in (gross, first):
+        if not (run_of["rmse_m"]["worst"] < 0.025 and run_of["walls"]["doubted"] == 0 and run_of["lost"]["frames"] == 0):
+            fail(f"gross patches: {run_of['rmse_m']}, {run_of['walls']}, {run_of['lost']}")
     wrong = absent["wrong_wall"]
     if wrong["doubted_runs"] != SEEDS or not wrong["seen_before_s"]["worst"] < 2:
         fail(f"the wall that is not there: {wrong}")

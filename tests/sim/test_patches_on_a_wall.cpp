@@ -81,6 +81,34 @@ void test_patches_should_be_found_again_after_the_dark() {
   TEST_ASSERT_TRUE(since < 10 && run.error_m < 0.03);
 }
 
+/// The first patch that is taken in has no gate but the motion's, which is wider than what it is moved by.
+void test_a_gross_patch_should_be_refused_by_the_others_though_it_is_the_most_proven() {
+  constexpr int kFrames = 150;
+  Run run(kFrames, kPatches, false, true);
+  int told = 0;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const std::vector<pf_patch_t> before = run.patches();
+    const auto most = std::max_element(before.begin(), before.end(),
+                                       [](const auto& a, const auto& b) { return a.frames < b.frames; });
+    const auto inliers = std::count_if(before.begin(), before.end(),
+                                       [](const auto& p) { return p.status == PF_MATCH_INLIER && p.frames > 10; });
+    const bool spoils = frame % 7 == 0 && inliers >= 3 && most->status == PF_MATCH_INLIER;
+    const pf_status_t status = run.step(false, spoils ? &*most : nullptr);
+    if (!spoils) continue;
+    TEST_ASSERT_EQUAL_INT(PF_OK, status);
+    int refused = 0, taken = 0;
+    for (const pf_patch_t& p : run.patches()) {
+      refused += p.id == most->id && p.status != PF_MATCH_INLIER;
+      taken += p.id != most->id && p.status == PF_MATCH_INLIER;
+    }
+    std::printf("frame %d: %d of %d others taken, %.4f m off\n", frame, taken, static_cast<int>(inliers) - 1,
+                run.error_m);
+    TEST_ASSERT_TRUE(refused == 1 && taken >= 1 && run.error_m < 0.03);
+    ++told;
+  }
+  TEST_ASSERT_TRUE(told >= 2);
+}
+
 void test_patches_without_a_wall_should_change_nothing() {
   Run with(25, kPatches, true, false), without(25, 0, true, false);
   for (int frame = 0; frame < 25; ++frame) {
@@ -108,6 +136,7 @@ int main() {
   UNITY_BEGIN();
   RUN_TEST(test_a_wall_alone_should_be_tracked_and_refined);
   RUN_TEST(test_patches_should_be_found_again_after_the_dark);
+  RUN_TEST(test_a_gross_patch_should_be_refused_by_the_others_though_it_is_the_most_proven);
   RUN_TEST(test_patches_without_a_wall_should_change_nothing);
   RUN_TEST(test_reset_should_drop_patches_and_begin_the_same_again);
   return UNITY_END();

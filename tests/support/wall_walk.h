@@ -61,13 +61,15 @@ class WallWalk {
     return id;
   }
 
-  /// The next frame, or darkness in its place.
-  pf_status_t step(bool dark = false) {
+  /// The next frame, or darkness in its place. gross: what surrounds this patch is moved in the image.
+  pf_status_t step(bool dark = false, const pf_patch_t* gross = nullptr) {
     pf_image_t image;
     pf_pose_t truth;
     TEST_ASSERT_EQUAL_INT(1, pf_sim_next(sim_.get(), &image, &truth));
     const std::vector<std::uint8_t> black(static_cast<std::size_t>(image.stride * image.height));
-    if (dark) image.pixels = black.data();
+    std::vector<std::uint8_t> pixels(image.pixels, image.pixels + black.size());
+    if (gross != nullptr) move(*gross, image, &pixels);
+    image.pixels = dark ? black.data() : pixels.data();
     const pf_status_t status = pf_push_frame(slam, &image);
     TEST_ASSERT_TRUE(status >= PF_OK);
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_pose(slam, &pose));
@@ -100,6 +102,23 @@ class WallWalk {
     pf_sim_t* sim = pf_sim_open("wall", &options);
     TEST_ASSERT_NOT_NULL(sim);
     return sim;
+  }
+
+  /// By less than the aligner reaches, and far more than noise.
+  static void move(const pf_patch_t& patch, const pf_image_t& image, std::vector<std::uint8_t>* pixels) {
+    constexpr int kDown = 6, kRight = 5, kMargin = 10;  // [px]
+    double low[2] = {patch.corners_px[0][0], patch.corners_px[0][1]}, high[2] = {low[0], low[1]};
+    for (const double* corner : patch.corners_px)
+      for (int a = 0; a < 2; ++a) {
+        low[a] = std::fmin(low[a], corner[a] - kMargin);
+        high[a] = std::fmax(high[a], corner[a] + kMargin);
+      }
+    for (int y = static_cast<int>(low[1]); y <= high[1]; ++y)
+      for (int x = static_cast<int>(low[0]); x <= high[0]; ++x) {
+        if (x < kRight || y < kDown || x >= image.width || y >= image.height) continue;
+        (*pixels)[static_cast<std::size_t>(y * image.stride + x)] =
+            image.pixels[(y - kDown) * image.stride + x - kRight];
+      }
   }
 
   std::unique_ptr<pf_sim_t, void (*)(pf_sim_t*)> sim_;

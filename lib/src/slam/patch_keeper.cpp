@@ -37,7 +37,9 @@ void PatchKeeper::init() {
   store_.init();
   noise_.init(kCornerSigma);
   std::fill(in_vain_, in_vain_ + kMaxWalls, 0);
-  in_vain_beside_ = 0;
+  std::fill(refusals_, refusals_ + kMaxRefusals, Refusal());
+  in_vain_beside_ = next_refusal_ = 0;
+  is_contested_ = false;
   generation_ = filter_.generation();
 }
 
@@ -73,12 +75,15 @@ void PatchKeeper::measure(const Pyramid& image, bool is_young) {
   follow_filter();
   int order[kMaxPatches];
   const int count = list_in_order(order);
+  is_contested_ = false;
+  std::fill(is_found_, is_found_ + kMaxPatches, false);
+  if (frame_.report.inliers < settings_.min_inliers) put_agreeing_first(image, order, count);
   for (int k = 0; k < count; ++k) {
     StoredPatch* patch = &store_[order[k]];
     if (patch->wait.waits())
       measure_waiting(image, is_young, patch);
     else
-      measure_patch(image, patch);
+      measure_patch(image, order[k]);
   }
   learn_noise();
 }
@@ -107,20 +112,21 @@ void PatchKeeper::learn_noise() {
   noise_.end_frame();
 }
 
-void PatchKeeper::measure_patch(const Pyramid& image, StoredPatch* patch) {
+void PatchKeeper::measure_patch(const Pyramid& image, int i) {
+  StoredPatch* patch = &store_[i];
   patch->status = PatchStatus::kUnseen;
-  patch->weight = 0;
+  if (!is_found_[i]) patch->weight = 0;
   Sight sight;
   const int wall = wall_of(*patch);
   if (wall < 0 || !expect(*patch, wall, &sight)) return;
-  std::copy(sight.corner, sight.corner + 4, patch->corner);
+  if (!is_found_[i]) std::copy(sight.corner, sight.corner + 4, patch->corner);
   if (!is_visible(wall, sight)) return;
   const int plane = map_.planes[wall].slot;
   patch->status = PatchStatus::kMissed;
   frame_.report.attempts += kWorth;
   PlaneAlignment found;
   if (!filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_) ||
-      !find_from_afar(image, *patch, &sight) || !align(image, sight, patch, &found))
+      (!is_found_[i] && (!find_from_afar(image, *patch, &sight) || !align(image, sight, patch, &found))))
     return;
   frame_.report.matches += kWorth;
   put_measured(*patch);
@@ -174,7 +180,8 @@ void PatchKeeper::put_measured(const StoredPatch& patch) {
 /// cannot be told.
 Scalar PatchKeeper::misfit(const StoredPatch& patch, int plane) {
   const bool is_far = (z_.measured - z_.predicted).cwiseAbs().maxCoeff() > kLinearReach;
-  if (is_far && !linearise_near(patch, plane)) return Scalar(-1);
+  Body near;
+  if (is_far && !linearise_near(patch, plane, &near)) return Scalar(-1);
   SmallCholesky<8> cholesky;
   if (!cholesky.factor(filter_.covariance_of<8>(z_.H) + z_.R_gate)) return Scalar(-1);
   const Vec8 r = z_.measured - z_.predicted;
@@ -219,7 +226,7 @@ void PatchKeeper::maintain(const Pyramid& image, bool supported, bool may_begin)
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPatch]);
   follow_filter();
   drop_failing(supported);
-  if (may_begin) begin_patches(image);
+  if (may_begin && !is_contested_) begin_patches(image);
   q_last_ = filter_.state().body.q_WC;
 }
 

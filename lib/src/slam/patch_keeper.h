@@ -57,7 +57,7 @@ class PatchKeeper {
   void follow_filter();
   int list_in_order(int* order) const;
   int wall_of(const StoredPatch& patch) const;
-  void measure_patch(const Pyramid& image, StoredPatch* patch);
+  void measure_patch(const Pyramid& image, int i);
   bool align(const Pyramid& image, const Sight& sight, StoredPatch* patch, PlaneAlignment* found);
   bool find_from_afar(const Pyramid& image, const StoredPatch& patch, Sight* sight);
   bool begin_block(StoredPatch* patch, const Mat8& covariance);
@@ -71,6 +71,18 @@ class PatchKeeper {
   void drop(int i);
   void keep_plane(int entry);
   void drop_failing(bool supported);
+
+  // patch_consensus.cpp
+  /// Patches that were found before any was taken in.
+  struct Witnesses {
+    static constexpr int kMax = 8;
+    int count = 0;
+    int entry[kMax];
+    Body near[kMax];  ///< the pose that the prior and this patch's corners make most likely
+  };
+  Witnesses find_witnesses(const Pyramid& image, const int* order, int count);
+  bool agree(const StoredPatch& a, const StoredPatch& b, const Body& near);
+  void put_agreeing_first(const Pyramid& image, int* order, int count);
 
   // patch_waiting.cpp
   bool follow_waiting(const Pyramid& image, bool supported, Sight* sight, StoredPatch* patch, PlaneAlignment* found);
@@ -101,7 +113,8 @@ class PatchKeeper {
   bool expect(const StoredPatch& patch, int wall, Sight* sight) const;
   bool is_visible(int wall, const Sight& sight) const;
   bool move_to(const StoredPatch& patch, const Vec2& shift, Sight* sight) const;
-  bool linearise_near(const StoredPatch& patch, int plane);
+  bool predict_near(const StoredPatch& patch, int plane, const Body& near, PatchMeasurement* z);
+  bool linearise_near(const StoredPatch& patch, int plane, Body* near);
   void set_pose(const Body& pose);
 
   struct Square {
@@ -152,9 +165,12 @@ class PatchKeeper {
   ResidualTrace residuals_[kMaxPatches][4];  ///< of each entry's corners
   PatchSearch search_;
   PlaneAligner aligner_;
-  PatchMeasurement z_;              ///< scratch: the patch that is measured
-  std::uint32_t generation_ = 0;    ///< of the filter that the patches have blocks in
-  Refusal refusals_[kMaxRefusals];  ///< the last ones
+  PatchMeasurement z_;               ///< scratch: the patch that is measured
+  PatchMeasurement of_another_;      ///< scratch: one that it is compared with
+  bool is_found_[kMaxPatches] = {};  ///< each entry has corners of this frame already
+  bool is_contested_ = false;        ///< nothing supports the pose of this frame but patches of which no two agree
+  std::uint32_t generation_ = 0;     ///< of the filter that the patches have blocks in
+  Refusal refusals_[kMaxRefusals];   ///< the last ones
   int next_refusal_ = 0;
   Quat q_last_ = Quat::Identity();  ///< q_WC of the last frame, where the corners were
   int in_vain_[kMaxWalls] = {};     ///< frame in which each plane's wall had no place for a patch that it wants

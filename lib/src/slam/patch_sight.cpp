@@ -16,6 +16,19 @@ namespace pf {
 
 using namespace tuning::patch_keeper;
 
+namespace {
+
+/// Of a patch's corners by the pose.
+Eigen::Matrix<Scalar, 8, 6> pose_jacobian(const PatchMeasurement& z) {
+  Eigen::Matrix<Scalar, 8, 6> J;
+  const int columns = z.H.columns();
+  for (int a = 0; a < J.rows(); ++a)
+    for (int c = 0; c < J.cols(); ++c) J(a, c) = z.H.h[a * columns + c];
+  return J;
+}
+
+}  // namespace
+
 /// False where a corner cannot be projected.
 bool PatchKeeper::expect(const StoredPatch& patch, int wall, Sight* sight) const {
   using model::ReferenceCamera;
@@ -86,12 +99,24 @@ void PatchKeeper::set_pose(const Body& pose) {
   filter_.set_mean(body);
 }
 
+/// Prediction of a patch's corners for the estimate, linearised at another pose: h(x) + H (x^ [-] x).
+bool PatchKeeper::predict_near(const StoredPatch& patch, int plane, const Body& near, PatchMeasurement* z) {
+  const Body estimate = filter_.state().body;
+  set_pose(near);
+  const bool ok = filter_.predict_patch(filter_.lens(), patch.block, plane, patch.reference_px, z);
+  set_pose(estimate);
+  Vec6 e;
+  e << log_so3(estimate.q_WC * near.q_WC.conjugate()), estimate.p_W - near.p_W;
+  if (ok) z->predicted += pose_jacobian(*z).lazyProduct(e);
+  return ok;
+}
+
 /// Prediction and Jacobian of a patch that is far from where it was expected, at the pose that the prior and its corners make most likely:
 ///
 ///   z = h(x_k) + H (x [-] x_k),   x_k+1 = x^ [+] P H^T (H P H^T + R)^-1 (z - h(x_k) - H (x^ [-] x_k))      over the pose alone
 ///
-/// so that the prediction at the estimate is h(x_k) + H (x^ [-] x_k). src  Bell and Cathey 1993
-bool PatchKeeper::linearise_near(const StoredPatch& patch, int plane) {
+/// so that the prediction at the estimate is h(x_k) + H (x^ [-] x_k). near gets x_k. src  Bell and Cathey 1993
+bool PatchKeeper::linearise_near(const StoredPatch& patch, int plane, Body* near) {
   const Body estimate = filter_.state().body;
   Body at = estimate;
   Scalar covariance[Body::kPoseDim * Body::kPoseDim];
@@ -100,17 +125,9 @@ bool PatchKeeper::linearise_near(const StoredPatch& patch, int plane) {
   const Vec8 measured = z_.measured;
   bool ok = true;
   for (int step = 0;; ++step) {
-    set_pose(at);
-    ok = filter_.predict_patch(filter_.lens(), patch.block, plane, patch.reference_px, &z_);
-    if (!ok) break;
-    Eigen::Matrix<Scalar, 8, 6> J;
-    const int columns = z_.H.columns();
-    for (int a = 0; a < J.rows(); ++a)
-      for (int c = 0; c < J.cols(); ++c) J(a, c) = z_.H.h[a * columns + c];
-    Vec6 e;
-    e << log_so3(estimate.q_WC * at.q_WC.conjugate()), estimate.p_W - at.p_W;
-    z_.predicted += J.lazyProduct(e);
-    if (step == kPoseSteps) break;
+    ok = predict_near(patch, plane, at, &z_);
+    if (!ok || step == kPoseSteps) break;
+    const Eigen::Matrix<Scalar, 8, 6> J = pose_jacobian(z_);
     const Eigen::Matrix<Scalar, 6, 8> PJ = P.lazyProduct(J.transpose());
     SmallCholesky<8> cholesky;
     ok = cholesky.factor(J.lazyProduct(PJ) + z_.R_gate + Mat8(Mat8::Identity() * (kPoseSigma * kPoseSigma)));
@@ -120,8 +137,8 @@ bool PatchKeeper::linearise_near(const StoredPatch& patch, int plane) {
     at.q_WC.normalize();
     at.p_W = estimate.p_W + d.tail<3>();
   }
-  set_pose(estimate);
   z_.measured = measured;
+  *near = at;
   return ok;
 }
 

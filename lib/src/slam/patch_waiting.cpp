@@ -135,6 +135,7 @@ void PatchKeeper::measure_waiting(const Pyramid& image, bool is_young, StoredPat
       (!patch->is_proven() && !begin_block(patch, found.reference_covariance)))
     return;
   patch->status = PatchStatus::kWaiting;
+  if (is_contested_) return;
   if (supported) patch->wait.begin_frame(!is_young || frame_.report.frames % kYoungEvery == 0);
   const int nearest = try_planes(patch, supported);
   if (!supported) {
