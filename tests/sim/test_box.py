@@ -27,7 +27,7 @@ def main():
         file = pathlib.Path(name) / "box.json"
         run(BIN / "pf-sim", "box", "--geometric", "--seeds", SEEDS, "--jobs", 2, "--json", file, "--cases", "refined", "exact", "absent")
         cases = json.loads(file.read_text())["cases"]
-        run(BIN / "pf-sim", "box", "--no-points", "--seeds", SEEDS, "--jobs", 2, "--first-seed", 41, "--frames", 300, "--json", file, "--cases", "refined", "absent")
+        run(BIN / "pf-sim", "box", "--no-points", "--seeds", SEEDS, "--jobs", 2, "--first-seed", 41, "--frames", 300, "--json", file, "--cases", "refined", "absent", "shifted")
         alone = json.loads(file.read_text())["cases"]
         # Behind the second corner, where points of the side that was left stay in the map.
         run(BIN / "pf-sim", "box", "--seeds", 1, "--first-seed", 62, "--frames", 440, "--json", file, "--cases", "refined")
@@ -58,6 +58,10 @@ def main():
     wrong = alone["absent"]["wrong_wall"]
     if not (alone["absent"]["rmse_m"]["worst"] < 0.025 and wrong["doubted_runs"] == SEEDS and wrong["seen_before_s"]["worst"] < 2.5):
         fail(f"patches alone, a wall that is not there: {alone['absent']['rmse_m']}, {wrong}")
+    # The wall that is 1 m off comes to stand before all that is measured, which is seen through it.
+    wrong = alone["shifted"]["wrong_wall"]
+    if not (alone["shifted"]["rmse_m"]["worst"] < 0.025 and alone["shifted"]["lost"]["frames"] == 0 and wrong["doubted_runs"] == SEEDS):
+        fail(f"patches alone, a wall that is 1 m off: {alone['shifted']['rmse_m']}, {alone['shifted']['lost']}, {wrong}")
     if not (both["rmse_m"]["worst"] < 0.025 and both["walls"]["doubted"] == 0):
         fail(f"points and patches: {both['rmse_m']}, {both['walls']}")
     if not (begun["rmse_m"]["worst"] < 0.025 and begun["tracked_share"] > 0.95):

@@ -22,7 +22,7 @@ PatchKeeper::Witnesses PatchKeeper::find_witnesses(const Pyramid& image, const i
     if (patch->wait.waits() || wall < 0 || patch->status == PatchStatus::kMissed) continue;
     Sight sight;
     PlaneAlignment alignment;
-    if (!expect(*patch, wall, &sight) || !is_visible(wall, sight)) continue;
+    if (!expect(*patch, wall, &sight) || !is_in_view(sight) || !is_looked_for(hiding_wall(wall, sight))) continue;
     const int plane = map_.planes[wall].slot;
     if (!filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_) ||
         (found.count == 0 && !find_from_afar(image, *patch, &sight)) || !align(image, sight, patch, &alignment))

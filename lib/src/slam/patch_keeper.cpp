@@ -120,17 +120,23 @@ void PatchKeeper::measure_patch(const Pyramid& image, int i) {
   const int wall = wall_of(*patch);
   if (wall < 0 || !expect(*patch, wall, &sight)) return;
   if (!is_found_[i]) std::copy(sight.corner, sight.corner + 4, patch->corner);
-  if (!is_visible(wall, sight)) return;
+  const int hiding = is_in_view(sight) ? hiding_wall(wall, sight) : -1;
+  if (!is_in_view(sight) || !is_looked_for(hiding)) return;
   const int plane = map_.planes[wall].slot;
-  patch->status = PatchStatus::kMissed;
-  frame_.report.attempts += kWorth;
+  if (hiding < 0) patch->status = PatchStatus::kMissed;
+  frame_.report.attempts += hiding < 0 ? kWorth : 0;
   PlaneAlignment found;
   if (!filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_) ||
       (!is_found_[i] && (!find_from_afar(image, *patch, &sight) || !align(image, sight, patch, &found))))
     return;
+  frame_.report.attempts += hiding < 0 ? 0 : kWorth;
   frame_.report.matches += kWorth;
+  const bool is_through = hiding >= 0 && !explains(*patch, hiding);
+  if (is_through && !filter_.predict_patch(filter_.lens(), patch->block, plane, patch->reference_px, &z_)) return;
   put_measured(*patch);
   update(patch, wall);
+  if (hiding >= 0 && patch->status != PatchStatus::kInlier) patch->status = PatchStatus::kUnseen;
+  count_through(patch, is_through && patch->status == PatchStatus::kInlier ? hiding : -1, sight.middle_W);
 }
 
 /// False where it is not found. Else the patch has its corners, their covariance and its light.

@@ -90,6 +90,7 @@ class PatchKeeper {
   bool expect_waiting(const StoredPatch& patch, Sight* sight) const;
   bool may_lie_on(const StoredPatch& patch, int entry, Scalar* range) const;
   int try_planes(StoredPatch* patch, bool counts);
+  bool explains(const StoredPatch& patch, int entry);
   Scalar parallax_of(const StoredPatch& patch) const;
   bool has_parallax(const StoredPatch& patch, Scalar min_px) const;
   bool is_told_by_plan_alone(int entry) const;
@@ -111,7 +112,9 @@ class PatchKeeper {
 
   // patch_sight.cpp
   bool expect(const StoredPatch& patch, int wall, Sight* sight) const;
-  bool is_visible(int wall, const Sight& sight) const;
+  bool is_in_view(const Sight& sight) const;
+  int hiding_wall(int wall, const Sight& sight) const;
+  bool is_looked_for(int hiding) const { return hiding < 0 || is_told_by_plan_alone(hiding); }
   bool move_to(const StoredPatch& patch, const Vec2& shift, Sight* sight) const;
   bool predict_near(const StoredPatch& patch, int plane, const Body& near, PatchMeasurement* z);
   bool linearise_near(const StoredPatch& patch, int plane, Body* near);
@@ -140,6 +143,8 @@ class PatchKeeper {
   void list_obstacles(int wall, Obstacles* obstacles) const;
   bool is_before(const StoredPatch& patch, int wall) const;
   void note_refused(const StoredPatch& patch, int wall);
+  bool is_told_already(std::uint32_t plane, int born) const;
+  void count_through(StoredPatch* patch, int hiding, const Vec3& middle_W);
 
   // patch_selection.cpp
   static constexpr int kMaxSquares = 6;

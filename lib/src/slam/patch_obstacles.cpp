@@ -54,16 +54,31 @@ bool PatchKeeper::is_before(const StoredPatch& patch, int wall) const {
          ratio > Scalar(1);
 }
 
+/// Whether a patch that began in the same frame has refused the plane: they share its camera, and where that is wrong, all are.
+bool PatchKeeper::is_told_already(std::uint32_t plane, int born) const {
+  return std::any_of(refusals_, refusals_ + kMaxRefusals,
+                     [&](const Refusal& other) { return other.plane == plane && other.born == born; });
+}
+
 /// Keeps where a patch was that the gate refuses.
 void PatchKeeper::note_refused(const StoredPatch& patch, int wall) {
-  // Those that began in one frame share its camera: where that is wrong, all are.
-  const bool is_same = std::any_of(refusals_, refusals_ + kMaxRefusals, [&](const Refusal& other) {
-    return other.plane == patch.plane && other.born == patch.born;
-  });
-  if (!is_same) map_.planes[wall].refuse(is_before(patch, wall));
+  if (!is_told_already(patch.plane, patch.born)) map_.planes[wall].refuse(is_before(patch, wall));
   Sight sight;
   if (!expect(patch, wall, &sight)) return;
   refusals_[next_refusal_] = {patch.plane, patch.born, sight.middle_W};
+  next_refusal_ = (next_refusal_ + 1) % kMaxRefusals;
+}
+
+/// A patch that is measured on another plane, though the plan has a wall before it, -1: none. Five frames in a row refuse this wall; it is seen
+/// through.
+void PatchKeeper::count_through(StoredPatch* patch, int hiding, const Vec3& middle_W) {
+  patch->through = static_cast<std::int16_t>(hiding >= 0 ? patch->through + 1 : 0);
+  if (patch->through <= tuning::patch_keeper::kMaxRejections || is_contested_) return;
+  patch->through = 0;
+  const std::uint32_t id = map_.planes[hiding].id;
+  if (is_told_already(id, patch->born)) return;
+  map_.planes[hiding].refuse(false);
+  refusals_[next_refusal_] = {id, patch->born, middle_W};
   next_refusal_ = (next_refusal_ + 1) % kMaxRefusals;
 }
 

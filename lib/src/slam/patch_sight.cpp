@@ -67,17 +67,20 @@ bool PatchKeeper::expect(const StoredPatch& patch, int wall, Sight* sight) const
   return homography_from_4(from, to, &sight->H_CK);
 }
 
-/// Whether the camera sees the patch's middle, not too slanted and with no wall before it.
-bool PatchKeeper::is_visible(int wall, const Sight& sight) const {
+/// Whether the patch's middle is in the image, and not too slanted.
+bool PatchKeeper::is_in_view(const Sight& sight) const {
   const Vec2 middle = (sight.corner[0] + sight.corner[1] + sight.corner[2] + sight.corner[3]) / 4;
   const Camera& lens = filter_.lens();
-  if (!(sight.cosine > kMinCosine) || !(middle.x() > Scalar(0)) || !(middle.y() > Scalar(0)) ||
-      !(middle.x() < static_cast<Scalar>(lens.width)) || !(middle.y() < static_cast<Scalar>(lens.height)))
-    return false;
+  return sight.cosine > kMinCosine && middle.x() > Scalar(0) && middle.y() > Scalar(0) &&
+         middle.x() < static_cast<Scalar>(lens.width) && middle.y() < static_cast<Scalar>(lens.height);
+}
+
+/// The wall that the plan has between the camera and a patch on another one, or -1.
+int PatchKeeper::hiding_wall(int wall, const Sight& sight) const {
   const Vec3& c_W = filter_.state().body.p_W;
-  Scalar range = 0;
+  Scalar range = 0;  // relative to the patch's own
   const int first = first_wall(filter_, map_, c_W, sight.middle_W - c_W, &range);
-  return first < 0 || first == wall || range > (sight.middle_W - c_W).norm();
+  return first == wall || range > Scalar(1) ? -1 : first;
 }
 
 /// The same homography, with a shift in the image behind it.

@@ -91,6 +91,18 @@ int PatchKeeper::try_planes(StoredPatch* patch, bool counts) {
   return nearest;
 }
 
+/// Whether the patch may lie on this plane as well, for all that its corners in this frame tell. Overwrites z_.
+bool PatchKeeper::explains(const StoredPatch& patch, int entry) {
+  Scalar range;
+  const int plane = map_.planes[entry].slot;
+  if (!may_lie_on(patch, entry, &range) ||
+      !filter_.predict_patch(filter_.lens(), patch.block, plane, patch.reference_px, &z_))
+    return false;
+  put_measured(patch);
+  const Scalar chi2 = misfit(patch, plane);
+  return !(chi2 >= tuning::patch_keeper::kCornersGate);
+}
+
 /// How far the corners are on average from where they would be if the camera had only rotated since its reference [px]; negative where
 /// that cannot be told.
 Scalar PatchKeeper::parallax_of(const StoredPatch& patch) const {

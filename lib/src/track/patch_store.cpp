@@ -8,7 +8,7 @@ StoredPatch& PatchStore::begin(int i) {
   p.plane = 0;
   p.camera = p.block = -1;
   p.frames = p.born = 0;
-  p.failures = p.rejections = 0;
+  p.failures = p.rejections = p.through = 0;
   p.status = PatchStatus::kNew;
   p.last_seen_ns = 0;
   p.gain = 1;

@@ -25,6 +25,7 @@ struct StoredPatch {
   int born = 0;             ///< number of the frame in which it began
   std::int16_t failures = 0;    ///< in a row: it should have been there and was not
   std::int16_t rejections = 0;  ///< in a row: it was found elsewhere
+  std::int16_t through = 0;     ///< in a row: it was measured through a wall that should hide it
   PatchStatus status = PatchStatus::kUnseen;
   std::int64_t last_seen_ns = 0;
   float gain = 1, offset = 0;  ///< of light against the reference
