@@ -69,8 +69,8 @@ void PatchKeeper::note_refused(const StoredPatch& patch, int wall) {
   next_refusal_ = (next_refusal_ + 1) % kMaxRefusals;
 }
 
-/// A patch that is measured on another plane, though the plan has a wall before it, -1: none. Five frames in a row refuse this wall; it is seen
-/// through.
+/// A patch that is measured on another plane, though the plan has a wall before it (-1: none). Five frames in a row refuse this wall: it is
+/// seen through.
 void PatchKeeper::count_through(StoredPatch* patch, int hiding, const Vec3& middle_W) {
   patch->through = static_cast<std::int16_t>(hiding >= 0 ? patch->through + 1 : 0);
   if (patch->through <= tuning::patch_keeper::kMaxRejections || is_contested_) return;
