@@ -62,8 +62,7 @@ bool PatchKeeper::agree(const StoredPatch& a, const StoredPatch& b, const Body& 
   return cholesky.factor(S_b) && r_b.dot(cholesky.solve<1>(r_b)) < kCornersGate;
 }
 
-/// Puts the largest set of patches that agree with one of them first, and the others behind what else there is. The first one in order that
-/// most agree with decides.
+/// Where most do not agree with the first patch, puts the largest set that agrees with one of them before the others.
 void PatchKeeper::put_agreeing_first(const Pyramid& image, int* order, int count) {
   const Witnesses found = find_witnesses(image, order, count);
   for (int i = 0; i < found.count; ++i) is_found_[found.entry[i]] = true;
@@ -83,7 +82,7 @@ void PatchKeeper::put_agreeing_first(const Pyramid& image, int* order, int count
     best = set;
   }
   is_contested_ = most < 2;
-  if (is_contested_) return;
+  if ((best & 1u) != 0 || is_contested_) return;
   const auto is_outside = [&](int entry) {
     for (int i = 0; i < found.count; ++i)
       if (found.entry[i] == entry) return (best >> i & 1u) == 0;
