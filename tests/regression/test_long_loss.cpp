@@ -59,8 +59,8 @@ void test_the_covariance_should_need_no_repair_when_lost_for_minutes() {
   lose(PF_MOTION_INERTIAL, "inertial, without samples");
 }
 
-/// A control input of 4,000 rad/s, and nothing seen after it. The square of a speed that decays became variance without end: thousands of rad,
-/// beside which float cannot hold what the next images tell. It may be what leads to any rotation in a frame, and then decays.
+/// A control input of 4,000 rad/s, and nothing seen after it. The square of a speed that decays became variance without end: thousands of
+/// rad, beside which float cannot hold what the next images tell. It may be what leads to any rotation in a frame, and then decays.
 void test_a_rotation_should_stay_any_rotation_when_an_absurd_speed_decays() {
   OwnedContext context(pinhole_config());
   pf_slam_t* slam = context.slam;
