@@ -75,7 +75,6 @@ class Room {
 
   void search(const Vec3& camera, Totals* totals) {
     std::vector<PlaneCandidate> candidates;
-    std::vector<int> index;
     for (int i = 0; i < kPoints; ++i) {
       for (const PlaneFrame& plane : planes_) {
         const Vec3 q = plane.R_WP.transpose() * (known_[i] - plane.o_W);
@@ -83,7 +82,6 @@ class Room {
       }
       if (!seen_[i] || taken_[i]) continue;
       candidates.push_back({known_[i], Mat3::Identity() * static_cast<Scalar>(sigma_ * sigma_), i});
-      index.push_back(i);
     }
     PlaneFit fit;
     int members[kMaxPlaneMembers], count = 0;
@@ -92,7 +90,7 @@ class Room {
       return;
     int best = 0, on[4] = {};
     for (int k = 0; k < count; ++k) {
-      const int i = index[static_cast<std::size_t>(members[k])];
+      const int i = candidates[static_cast<std::size_t>(members[k])].name;
       taken_[i] = true;
       for (int wall = 0; wall < 4; ++wall)
         on[wall] += distance_to(wall, truth_[i]) < std::max(0.01, 3 * sigma_) ? 1 : 0;

@@ -143,6 +143,7 @@ class PatchKeeper {
   void list_obstacles(int wall, Obstacles* obstacles) const;
   bool is_before(const StoredPatch& patch, int wall) const;
   void note_refused(const StoredPatch& patch, int wall);
+  void keep_refusal(const Refusal& refusal);
   bool is_told_already(std::uint32_t plane, int born) const;
   void count_through(StoredPatch* patch, int hiding, const Vec3& middle_W);
 

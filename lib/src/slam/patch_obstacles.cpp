@@ -64,8 +64,12 @@ bool PatchKeeper::is_told_already(std::uint32_t plane, int born) const {
 void PatchKeeper::note_refused(const StoredPatch& patch, int wall) {
   if (!is_told_already(patch.plane, patch.born)) map_.planes[wall].refuse(is_before(patch, wall));
   Sight sight;
-  if (!expect(patch, wall, &sight)) return;
-  refusals_[next_refusal_] = {patch.plane, patch.born, sight.middle_W};
+  if (expect(patch, wall, &sight)) keep_refusal({patch.plane, patch.born, sight.middle_W});
+}
+
+/// In place of the oldest.
+void PatchKeeper::keep_refusal(const Refusal& refusal) {
+  refusals_[next_refusal_] = refusal;
   next_refusal_ = (next_refusal_ + 1) % kMaxRefusals;
 }
 
@@ -78,8 +82,7 @@ void PatchKeeper::count_through(StoredPatch* patch, int hiding, const Vec3& midd
   const std::uint32_t id = map_.planes[hiding].id;
   if (is_told_already(id, patch->born)) return;
   map_.planes[hiding].refuse(false);
-  refusals_[next_refusal_] = {id, patch->born, middle_W};
-  next_refusal_ = (next_refusal_ + 1) % kMaxRefusals;
+  keep_refusal({id, patch->born, middle_W});
 }
 
 }  // namespace pf
