@@ -82,8 +82,12 @@ StartOutcome StartWithoutTarget::solve(const Camera& camera, Scalar sigma_px, Sc
 
 CameraView StartWithoutTarget::follow(const Camera& camera, Scalar sigma_px, Scalar depth, Scalar* rho) {
   bundle_.follow(camera, record_, sigma_px, depth, rho);
-  const StartRecord::Frame& last = record_.frame(record_.frames() - 1);
-  return {data_.base_q_WC * last.q_WC, data_.base_p_W + data_.base_q_WC * last.p_W};
+  return view(record_.frames() - 1);
+}
+
+CameraView StartWithoutTarget::view(int k) const {
+  const StartRecord::Frame& frame = record_.frame(k);
+  return {data_.base_q_WC * frame.q_WC, data_.base_p_W + data_.base_q_WC * frame.p_W};
 }
 
 int StartWithoutTarget::index_of(std::uint32_t id) const {

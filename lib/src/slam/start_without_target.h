@@ -56,6 +56,8 @@ class StartWithoutTarget {
   /// The record's first frame in W.
   const Quat& base_q_WC() const { return data_.base_q_WC; }
   const Vec3& base_p_W() const { return data_.base_p_W; }
+  /// Frame k of the record in W.
+  CameraView view(int k) const;
   std::int64_t begin_ns() const { return data_.begin_ns; }
 
  private:

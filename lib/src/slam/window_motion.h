@@ -35,6 +35,11 @@ class WindowMotion {
     data_.body.q_WC = q_WC;
     data_.body.p_W = p_W;
   }
+  /// Sets the velocities alone, and leaves their covariance.
+  void set_velocities(const Vec3& v_W, const Vec3& w_C) {
+    data_.body.v_W = v_W;
+    data_.body.w_C = w_C;
+  }
   /// Multiplies lengths by s about a place that stays.
   void scale(Scalar s, const Vec3& c_W);
   /// Sets the pose's covariance alone, and forgets how it hangs on the velocities.

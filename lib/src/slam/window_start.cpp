@@ -215,6 +215,19 @@ bool WindowStart::record_more() {
   return true;
 }
 
+/// Points were last seen from poses of the record, which have just been adjusted: the next frame searches for them from there.
+void WindowStart::move_views() {
+  const StartRecord& record = without_.record();
+  for (int i = 0; i < parts_.map.capacity(); ++i) {
+    if (!parts_.map.used(i)) continue;
+    for (int k = record.frames() - 1; k >= 0; --k) {
+      if (record.frame(k).t_ns != parts_.map.feature(i).last_seen_ns) continue;
+      parts_.map.point(i).seen_from = without_.view(k);
+      break;
+    }
+  }
+}
+
 bool WindowStart::follow_record() {
   Frame& frame = parts_.frame;
   const int found = parts_.measuring.follow(settings_.start_depth);
@@ -223,6 +236,10 @@ bool WindowStart::follow_record() {
     const CameraView now =
         without_.follow(parts_.map.camera(), tuning::noise::kSearchSigma, settings_.start_depth, record_rho_);
     parts_.motion.move(now.q_WC, now.c_W);
+    move_views();
+    Body body = parts_.motion.body();
+    set_speeds(&body);
+    parts_.motion.set_velocities(body.v_W, body.w_C);
     return false;
   }
   if (outcome == StartOutcome::kSolved || outcome == StartOutcome::kSettled) {

@@ -60,6 +60,8 @@ class WindowStart {
   bool accept_rotation(int found);
   Vec2 pixel_of(const Match& match) const;
   StartOutcome record_frame();
+  void move_views();
+  void set_speeds(Body* body) const;
   void take_record();
 
   struct Data {

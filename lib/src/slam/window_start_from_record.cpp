@@ -13,20 +13,27 @@ namespace pf {
 using namespace tuning::window_start;
 namespace assumed = tuning::filter_start;
 
+/// Velocities between the last frames of the record.
+void WindowStart::set_speeds(Body* body) const {
+  const StartRecord& record = without_.record();
+  const int last = record.frames() - 1, before = std::max(0, last - kSpeedFrames);
+  if (!settings_.constant_velocity || before >= last) return;
+  const CameraView then = without_.view(before), now = without_.view(last);
+  const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(record.frame(before).t_ns, record.frame(last).t_ns)));
+  body->v_W = (now.c_W - then.c_W) / dt;
+  body->w_C = log_so3(then.q_WC.conjugate() * now.q_WC) / dt;
+}
+
 /// Depths and poses of the solved record. The frame becomes a keyframe, and velocities are those of the record's last frames.
 void WindowStart::take_record() {
   data_.solved_before = 0;
   const StartRecord& record = without_.record();
   const int last = record.frames() - 1;
-  const auto pose_of = [&](int k) {
-    return CameraView{without_.base_q_WC() * record.frame(k).q_WC,
-                      without_.base_p_W() + without_.base_q_WC() * record.frame(k).p_W};
-  };
-  const CameraView now = pose_of(last);
+  const CameraView now = without_.view(last);
   for (int k = 0; k <= last && data_.second.given; ++k) {
     if (!data_.second.is_frame(record.frame(k).t_ns)) continue;
     data_.second.estimated = true;
-    data_.second.estimate_W = pose_of(k).c_W;
+    data_.second.estimate_W = without_.view(k).c_W;
   }
   WindowMap& map = parts_.map;
   for (int i = 0; i < map.capacity(); ++i) {
@@ -45,20 +52,14 @@ void WindowStart::take_record() {
     }
     for (int k = last; k >= 0; --k) {
       if (record.frame(k).t_ns != map.feature(i).last_seen_ns) continue;
-      point.seen_from = pose_of(k);
+      point.seen_from = without_.view(k);
       break;
     }
   }
   Body body = parts_.motion.body();
   body.q_WC = now.q_WC;
   body.p_W = now.c_W;
-  const int before = std::max(0, last - kSpeedFrames);
-  if (settings_.constant_velocity && before < last) {
-    const CameraView then = pose_of(before);
-    const Scalar dt = static_cast<Scalar>(seconds(elapsed_ns(record.frame(before).t_ns, record.frame(last).t_ns)));
-    body.v_W = (now.c_W - then.c_W) / dt;
-    body.w_C = log_so3(then.q_WC.conjugate() * now.q_WC) / dt;
-  }
+  set_speeds(&body);
   Mat6 P = Mat6::Identity() * (kRotationSigma * kRotationSigma);
   P.bottomRightCorner<3, 3>() *= settings_.start_depth * settings_.start_depth;
   parts_.motion.set(body, P, kSpeedSigma * settings_.start_depth, assumed::kStartRate);
