@@ -23,8 +23,9 @@ int CornerCells::count(const Frame& frame) {
     const int row = cell_along(match.predicted.y(), height_, kRows);
     ++in_cell_[row * kColumns + cell_along(match.predicted.x(), width_, kColumns)];
     if (match.status == MatchStatus::kInlier) ++inliers;
+    if (match.status == MatchStatus::kNew) ++in_view_;
   }
-  in_view_ = inliers;
+  in_view_ += inliers;
   return inliers;
 }
 

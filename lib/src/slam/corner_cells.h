@@ -34,7 +34,7 @@ class CornerCells {
   Rect rect_of(int row, int column) const;
 
   int width_, height_, border_;
-  int in_view_ = 0;  ///< inliers and what was added
+  int in_view_ = 0;  ///< inliers and what this frame has added
   int in_cell_[kCells] = {};
   bool on_plane_[kCells] = {};
 };

@@ -248,6 +248,21 @@ void FilterStart::begin_record() {
   if (progress().checking && without_.empty()) end_record();
 }
 
+/// The world stays, and a record begins with this frame. Features that were found in several frames begin again where they are now: where
+/// most corners are never found again (speckles, leaves), a record of corners alone would run out of features before there is parallax.
+void FilterStart::begin_anew() {
+  Vec2 proven[StartRecord::kMaxFeatures];
+  int count = 0;
+  for (int t = 0; t < parts_.frame.match_count() && count < StartRecord::kMaxFeatures; ++t) {
+    const Match& match = parts_.frame.match(t);
+    if (match.feature >= 0 && match.status == MatchStatus::kInlier &&
+        parts_.map.features[match.feature].observations >= kProven)
+      proven[count++] = Vec2(match.measured.array().round());
+  }
+  parts_.features.drop_all();
+  parts_.images.add_features_at(proven, count);
+}
+
 bool FilterStart::record_frame() {
   if (!is_recording() || without_.empty() || parts_.frame.report.inliers < settings_.min_inliers) return false;
   const CameraAt camera = camera_at(parts_.filter.state(), Scalar(0));
@@ -271,8 +286,8 @@ bool FilterStart::record_frame() {
       if (first) settings_.hooks.say("started without a target: the first depths are known");
       break;
     case StartOutcome::kTooFew:
-      // Only rotation so far, or too few features in view: the world stays, and the record begins again with this frame.
-      if (first && !checks) parts_.features.drop_all();
+      // Only rotation so far, or too few features in view.
+      if (first && !checks) begin_anew();
       break;
     case StartOutcome::kStill:
       stay_at_base();

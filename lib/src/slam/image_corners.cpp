@@ -17,24 +17,34 @@ void ImageFrontEnd::add_features() {
   if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children
 }
 
+void ImageFrontEnd::add_features_at(const Vec2* pixel, int count) {
+  int anchor = -1;
+  for (int i = 0; i < count; ++i)
+    if (is_free(frame_, settings_.camera.width, pixel[i])) add_at(pixel[i], &anchor);
+  if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children
+}
+
 /// Adds a feature at the best corner of this rectangle that is not near another feature. False: no such corner, or no room.
 bool ImageFrontEnd::add_in(const Rect& rect, const CornerStrength& least, int* anchor) {
-  return take_corner(search_.tracker(), rect, least, frame_, settings_.camera.width, [&](const Vec2& pixel) {
-    if (frame_.full()) return CornerUse::kNoRoom;
-    const int plane = features_.plane_at(pixel);
-    if (!(plane >= 0 ? features_.make_room_on_plane() : features_.make_room_at(anchor))) return CornerUse::kNoRoom;
-    const int entry = plane >= 0 ? features_.add_on_plane(plane, pixel, NoiseModel::reference())
-                                 : features_.add(*anchor, pixel, NoiseModel::reference());
-    if (entry < 0) return CornerUse::kNotHere;
-    const CameraAt camera = camera_at(filter_.state(), Scalar(0));
-    if (!remember(entry, pixel, {camera.q_WC, camera.p_W})) {
-      features_.drop(&entry, 1);
-      return CornerUse::kNotHere;
-    }
-    frame_.add({entry, map_.features[entry].id, MatchStatus::kNew,
-                filter_.state().block[map_.features[entry].slot].kind, false, pixel, Mat2::Zero(), pixel, Scalar(0)});
-    return CornerUse::kTaken;
-  });
+  return take_corner(search_.tracker(), rect, least, frame_, settings_.camera.width,
+                     [&](const Vec2& pixel) { return add_at(pixel, anchor); });
+}
+
+CornerUse ImageFrontEnd::add_at(const Vec2& pixel, int* anchor) {
+  if (frame_.full()) return CornerUse::kNoRoom;
+  const int plane = features_.plane_at(pixel);
+  if (!(plane >= 0 ? features_.make_room_on_plane() : features_.make_room_at(anchor))) return CornerUse::kNoRoom;
+  const int entry = plane >= 0 ? features_.add_on_plane(plane, pixel, NoiseModel::reference())
+                               : features_.add(*anchor, pixel, NoiseModel::reference());
+  if (entry < 0) return CornerUse::kNotHere;
+  const CameraAt camera = camera_at(filter_.state(), Scalar(0));
+  if (!remember(entry, pixel, {camera.q_WC, camera.p_W})) {
+    features_.drop(&entry, 1);
+    return CornerUse::kNotHere;
+  }
+  frame_.add({entry, map_.features[entry].id, MatchStatus::kNew, filter_.state().block[map_.features[entry].slot].kind,
+              false, pixel, Mat2::Zero(), pixel, Scalar(0)});
+  return CornerUse::kTaken;
 }
 
 }  // namespace pf

@@ -61,6 +61,8 @@ class ImageFrontEnd {
   void learn_templates();
   /// Adds features in the emptiest cells of the image until enough are in view.
   void add_features();
+  /// Adds features at these pixels, which are those of others that have just left the map.
+  void add_features_at(const Vec2* pixel, int count);
   /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
   bool remember(int feature, const Vec2& pixel, const CameraView& view);
 
@@ -96,6 +98,7 @@ class ImageFrontEnd {
 
   // image_corners.cpp
   bool add_in(const Rect& rect, const CornerStrength& least, int* anchor);
+  CornerUse add_at(const Vec2& pixel, int* anchor);
 
   const Settings& settings_;
   Filter& filter_;

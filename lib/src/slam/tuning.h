@@ -129,6 +129,7 @@ inline constexpr Scalar kStartRate = Scalar(0.5);      ///< [rad/s] sigma
 inline constexpr Scalar kKnownSpeed = Scalar(2);       ///< sigmas of a given speed above which it tells the scale
 inline constexpr Scalar kDefinedSigma = Scalar(1e-5);  ///< [rad, m] of a pose that defines the world
 inline constexpr Scalar kWideDepth = Scalar(0.5);      ///< relative sigma of the depths with which the filter restarts
+inline constexpr int kProven = 4;                      ///< frames that found a feature: in none of them by chance
 inline constexpr Scalar kSameDepth = Scalar(1.25);     ///< ratio of two; right: 0.91 .. 1.06, wrong: 0.3 .. 0.4
 }  // namespace filter_start
 
