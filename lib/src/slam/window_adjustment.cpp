@@ -29,7 +29,7 @@ bool WindowAdjustment::layout(Arena& arena) {
   rho_ = arena.take<Scalar>(points);
   rho_before_ = arena.take<Scalar>(points);
   prior_ = arena.take<RhoPrior>(points);
-  row_ = arena.take<int>(points);
+  row_ = arena.take<std::int16_t>(points);
   plane_ = arena.take<BundlePlane>(static_cast<std::size_t>(settings_.max_planes));
   plane_row_ = arena.take<int>(static_cast<std::size_t>(settings_.max_planes));
   plane_of_ = arena.take<int>(points);
@@ -85,7 +85,7 @@ int WindowAdjustment::choose_points(int free) {
     for (int c = 0; c < free; ++c) in_free += map_.keyframes.pixels(keyframe_[c])[i].seen ? 1 : 0;
     for (int k = 0; k < map_.keyframes.capacity(); ++k)
       in_all += map_.keyframes.used(k) && map_.keyframes.pixels(k)[i].seen ? 1 : 0;
-    if (in_free > 0 && in_all > 1) row_[points++] = i;
+    if (in_free > 0 && in_all > 1) row_[points++] = static_cast<std::int16_t>(i);
   }
   return points;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "slam/noise_model.h"
 #include "slam/start.h"
 #include "slam/window_map.h"
@@ -89,7 +91,7 @@ class WindowAdjustment {
   Scalar* rho_ = nullptr;
   Scalar* rho_before_ = nullptr;
   RhoPrior* prior_ = nullptr;
-  int* row_ = nullptr;  ///< of each point in the map
+  std::int16_t* row_ = nullptr;  ///< of each point in the map
   BundlePlane* plane_ = nullptr;
   int* plane_row_ = nullptr;         ///< of each plane in the table
   int* plane_of_ = nullptr;          ///< plane of each point, or -1

@@ -18,7 +18,7 @@ int WindowAdjustment::add_plane_points(int points) {
     if (!map_.used(i) || !map_.point(i).has_depth || map_.point(i).plane < 0) continue;
     if (std::find(row_, row_ + seen, i) != row_ + seen) continue;
     const auto is_on_same = [&](int row) { return map_.point(row).plane == map_.point(i).plane; };
-    if (std::any_of(row_, row_ + seen, is_on_same)) row_[points++] = i;
+    if (std::any_of(row_, row_ + seen, is_on_same)) row_[points++] = static_cast<std::int16_t>(i);
   }
   return points;
 }

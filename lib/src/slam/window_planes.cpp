@@ -16,7 +16,6 @@ bool WindowPlanes::layout(Arena& arena) {
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
   plane_ = arena.take<WindowPlane>(static_cast<std::size_t>(settings_.max_planes));
   candidate_ = arena.take<PlaneCandidate>(points);
-  row_ = arena.take<int>(points);
   point_W_ = arena.take<Vec3>(points);
   return arena.ok();
 }
@@ -43,7 +42,7 @@ int WindowPlanes::list_points(int k) {
   int count = 0;
   for (int i = 0; i < map_.capacity(); ++i) {
     if (!map_.used(i) || !map_.point(i).has_depth || map_.point(i).plane != k) continue;
-    row_[count] = i;
+    candidate_[count].name = i;
     point_W_[count++] = map_.position(i);
   }
   return count;
@@ -125,11 +124,11 @@ int WindowPlanes::drop_distant_points(int k) {
   int kept = 0;
   for (int c = 0; c < count; ++c) {
     if (std::abs(plane_distance(frame, Vec3::Zero(), point_W_[c])) > 3 * settings_.plane_distance) {
-      map_.point(row_[c]).plane = -1;
+      map_.point(candidate_[c].name).plane = -1;
       ++table_[k].outliers;
       continue;
     }
-    row_[kept] = row_[c];
+    candidate_[kept].name = candidate_[c].name;
     point_W_[kept++] = point_W_[c];
   }
   return kept;
@@ -151,7 +150,7 @@ void WindowPlanes::refit(int k) {
   const Scalar roughness2 = settings_.fold.roughness * settings_.fold.roughness;
   for (int c = 0; c < kept; ++c) {
     const Mat3 J = fit_plane_jacobian(fit, point_W_[c]);
-    const Mat3 S = map_.covariance(row_[c]) + roughness2 * n * n.transpose();
+    const Mat3 S = map_.covariance(candidate_[c].name) + roughness2 * n * n.transpose();
     P += J.lazyProduct(S).lazyProduct(J.transpose());
   }
   PlaneFrame frame = fit.frame;
@@ -240,7 +239,7 @@ void WindowPlanes::merge() {
       for (int c = 0; c < count; ++c)
         close += std::abs(plane_distance(to, Vec3::Zero(), point_W_[c])) < 3 * settings_.plane_distance ? 1 : 0;
       if (count < same::kMinPoints || 10 * close < 9 * count) continue;
-      for (int c = 0; c < count; ++c) put_on(k, row_[c]);
+      for (int c = 0; c < count; ++c) put_on(k, candidate_[c].name);
       for (int i = 0; i < table_[other].seen.count; ++i) {
         const Vec2 uv = plane_coordinates(to, plane_point(from, Vec3::Zero(), table_[other].seen.uv[i]));
         extend_outline(&table_[k].seen, &uv, 1);

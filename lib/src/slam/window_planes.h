@@ -57,8 +57,7 @@ class WindowPlanes {
   WindowMap& map_;
   PlaneTable& table_;
   WindowPlane* plane_ = nullptr;         ///< max_planes
-  PlaneCandidate* candidate_ = nullptr;  ///< one for each point
-  int* row_ = nullptr;                   ///< likewise
+  PlaneCandidate* candidate_ = nullptr;  ///< one for each point that is listed; its name is its row
   Vec3* point_W_ = nullptr;              ///< likewise
   std::uint32_t searches_ = 0;           ///< for new planes, so far
 };
