@@ -1,4 +1,5 @@
 // Masks of templates: the Bayes filter by hand, what teaches nothing, and what is taken from the image.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -17,30 +18,48 @@ constexpr float kPlane = 8, kOther = 45;
 
 double density(double r, double sigma) { return std::exp(-0.5 * r * r / (sigma * sigma)) / sigma; }
 
-void test_probability_should_follow_bayes() {
-  for (const int p : {5, 60, 128, 200, 250})
+double odds_of(double p) { return std::log(p / (1 - p)); }
+
+void test_odds_should_follow_bayes() {
+  for (const int byte : {1, 60, 173, 212, 240, 251})
     for (const double r : {-70.0, -20.0, -12.0, 0.0, 3.0, 15.0, 18.0, 200.0}) {
-      const double on = p / 255.0 * density(r, 8), off = (1 - p / 255.0) * density(r, 45);
-      double next = on / (on + off);
-      next = next < 0.02 ? 0.02 : next > 0.98 ? 0.98 : next;
-      TEST_ASSERT_INT_WITHIN(1, static_cast<int>(std::lround(255 * next)),
-                             updated_probability(static_cast<std::uint8_t>(p), static_cast<float>(r), kPlane, kOther));
+      const double p = 1 / (1 + std::exp(-0.1 * (byte - 212)));
+      const double on = p * density(r, 8), off = (1 - p) * density(r, 45);
+      const double next = std::clamp(212 + 10 * std::log(on / off), 1.0, 251.0);
+      TEST_ASSERT_INT_WITHIN(1, static_cast<int>(std::lround(next)),
+                             updated_odds(static_cast<std::uint8_t>(byte), static_cast<float>(r), kPlane, kOther));
     }
   // By hand: 1/2 and no residual, (1/8) / (1/8 + 1/45) = 0.849.
-  TEST_ASSERT_INT_WITHIN(1, 217, updated_probability(128, 0, kPlane, kOther));
+  TEST_ASSERT_INT_WITHIN(1, static_cast<int>(std::lround(212 + 10 * odds_of(0.849))),
+                         updated_odds(kMaskUnknown, 0, kPlane, kOther));
+  TEST_ASSERT_INT_WITHIN(1, 217, mask_probability(updated_odds(kMaskUnknown, 0, kPlane, kOther)));
 }
 
-void test_pixel_should_change_its_side_again() {
-  std::uint8_t p = 128;
-  for (int k = 0; k < 50; ++k) p = updated_probability(p, 90, kPlane, kOther);
-  TEST_ASSERT_EQUAL_INT(5, p);
+void test_probability_should_be_zero_only_where_there_is_no_image() {
+  TEST_ASSERT_EQUAL_INT(0, mask_probability(0));
+  TEST_ASSERT_EQUAL_INT(128, mask_probability(kMaskUnknown));
+  TEST_ASSERT_EQUAL_INT(250, mask_probability(kMaskMost));
+  TEST_ASSERT_EQUAL_INT(255, mask_probability(kMaskFull));
+  for (int byte = 1; byte < 255; ++byte) {
+    const int p = mask_probability(static_cast<std::uint8_t>(byte));
+    TEST_ASSERT_TRUE(p >= 1 && p <= 255 && p >= mask_probability(static_cast<std::uint8_t>(byte - 1)));
+  }
+}
+
+void test_pixel_should_leave_at_once_and_come_back_late() {
+  std::uint8_t odds = kMaskUnknown;
+  for (int k = 0; k < 50; ++k) odds = updated_odds(odds, 0, kPlane, kOther);
+  TEST_ASSERT_EQUAL_INT(kMaskMost, odds);
+  TEST_ASSERT_TRUE(updated_odds(odds, 30, kPlane, kOther) < kMaskUnknown);
+  for (int k = 0; k < 50; ++k) odds = updated_odds(odds, 90, kPlane, kOther);
+  TEST_ASSERT_EQUAL_INT(kMaskLeast, odds);
   int frames = 0;
-  for (; p < 128 && frames < 100; ++frames) p = updated_probability(p, 2, kPlane, kOther);
-  TEST_ASSERT_TRUE(frames >= 2 && frames <= 5);
+  for (; odds < kMaskUnknown && frames < 100; ++frames) odds = updated_odds(odds, 2, kPlane, kOther);
+  TEST_ASSERT_TRUE(frames >= 10 && frames <= 20);
   // No numbers beyond the range, whatever comes.
   for (const float r : {1e30f, -1e30f, 0.0f}) {
-    const int next = updated_probability(128, r, kPlane, kOther);
-    TEST_ASSERT_TRUE(next >= 5 && next <= 250);
+    const int next = updated_odds(kMaskUnknown, r, kPlane, kOther);
+    TEST_ASSERT_TRUE(next >= kMaskLeast && next <= kMaskMost);
   }
 }
 
@@ -48,14 +67,14 @@ void test_saturated_pixels_and_explained_residuals_should_teach_nothing() {
   MaskEvidence evidence;
   evidence.residual = 60;
   evidence.valid = true;
-  TEST_ASSERT_TRUE(learn_pixel(128, evidence, kPlane, kOther) < 20);
+  TEST_ASSERT_TRUE(mask_probability(learn_pixel(kMaskUnknown, evidence, kPlane, kOther)) < 20);
   evidence.slack = 61;
-  TEST_ASSERT_EQUAL_INT(128, learn_pixel(128, evidence, kPlane, kOther));
+  TEST_ASSERT_EQUAL_INT(kMaskUnknown, learn_pixel(kMaskUnknown, evidence, kPlane, kOther));
   // Slack excuses what speaks against the plane; what speaks for it counts.
   evidence.residual = 1;
-  TEST_ASSERT_TRUE(learn_pixel(128, evidence, kPlane, kOther) > 200);
+  TEST_ASSERT_TRUE(mask_probability(learn_pixel(kMaskUnknown, evidence, kPlane, kOther)) > 200);
   evidence.valid = false;
-  TEST_ASSERT_EQUAL_INT(128, learn_pixel(128, evidence, kPlane, kOther));
+  TEST_ASSERT_EQUAL_INT(kMaskUnknown, learn_pixel(kMaskUnknown, evidence, kPlane, kOther));
   evidence.valid = true;
   TEST_ASSERT_EQUAL_INT(0, learn_pixel(0, evidence, kPlane, kOther));  // no image there
 }
@@ -80,7 +99,7 @@ void test_template_should_know_its_place_and_what_is_outside_of_the_image() {
     for (int j = 0; j < side; ++j)
       for (int i = 0; i < side; ++i) {
         const bool inside = shape.top + j >= 0;
-        TEST_ASSERT_EQUAL_INT(inside ? 128 : 0, mask[j * side + i]);
+        TEST_ASSERT_EQUAL_INT(inside ? kMaskUnknown : 0, mask[j * side + i]);
         there += inside;
       }
     TEST_ASSERT_FLOAT_WITHIN(0.01f * static_cast<float>(there), 0.502f * static_cast<float>(there), shape.area);
@@ -104,8 +123,9 @@ void test_image_noise_should_be_that_of_the_image() {
 
 int main() {
   UNITY_BEGIN();
-  RUN_TEST(test_probability_should_follow_bayes);
-  RUN_TEST(test_pixel_should_change_its_side_again);
+  RUN_TEST(test_odds_should_follow_bayes);
+  RUN_TEST(test_probability_should_be_zero_only_where_there_is_no_image);
+  RUN_TEST(test_pixel_should_leave_at_once_and_come_back_late);
   RUN_TEST(test_saturated_pixels_and_explained_residuals_should_teach_nothing);
   RUN_TEST(test_template_should_know_its_place_and_what_is_outside_of_the_image);
   RUN_TEST(test_image_noise_should_be_that_of_the_image);

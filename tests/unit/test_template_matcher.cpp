@@ -45,7 +45,8 @@ void test_mask_should_keep_the_pixels_of_the_plane() {
     double worst = 0;
     EXPECT_NOT_BELOW(24, follow(scene, 30, Scalar(-0.006), &worst));
     EXPECT_BELOW(0.4, worst);
-    for (int at = 0; at < 225; ++at) right += (scene.mask[at] >= 128) == (scene.shape.left + at % 15 < scene.rim);
+    for (int at = 0; at < 225; ++at)
+      right += (scene.mask[at] >= kMaskUnknown) == (scene.shape.left + at % 15 < scene.rim);
   }
   EXPECT_NOT_BELOW(0.93, right / (225 * kTrials));
 }

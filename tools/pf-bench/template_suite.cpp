@@ -25,8 +25,8 @@ constexpr double kOffX = 0.9, kOffY = -0.7;    // of the prediction [px]
 constexpr double kVariance = 2.0;              // of the prediction [px^2]: its ellipse is 4.2 px wide
 constexpr double kNoise = 2;                   // [grey levels]
 constexpr int kOffPlane = 6;                   // columns of a template that are not on its plane
-constexpr std::uint8_t kOn = 250, kOff = 5;    // in a mask
-constexpr double kCell = 3.5;                  // of the texture [px]
+constexpr std::uint8_t kOn = pf::kMaskMost, kOff = pf::kMaskLeast;  // in a mask
+constexpr double kCell = 3.5;                                       // of the texture [px]
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -163,7 +163,7 @@ class TemplateSuite {
         const int x = static_cast<int>(one.pixel.x()) - kSide / 2 + at % kSide;
         const int y = static_cast<int>(one.pixel.y()) - kSide / 2 + at / kSide;
         templates_.push_back(first_[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)]);
-        masks_.push_back(static_cast<float>(one.mask[at]) / 255.0f);
+        masks_.push_back(static_cast<float>(pf::mask_probability(one.mask[at])) / 255.0f);
       }
       one.shape.area = pf::mask_area(one.mask, kSide * kSide);
       const pf::Vec2 predicted = predicted_of(one);

@@ -54,7 +54,7 @@ void run_one(int index, void* context) {
 /// Means over seeds, of one case.
 struct Means {
   double track = 0, median_track = 0, inliers = 0, translation = 0, rotation = 0;
-  double straddling = 0, mask = 0, all_on = 0, surface = 0, judged = 0, area = 0, tracked = 0;
+  double straddling = 0, mask = 0, all_on = 0, surface = 0, visible = 0, judged = 0, area = 0, tracked = 0;
   int lost = 0;
 };
 
@@ -75,10 +75,11 @@ Means means_of(const std::vector<const TemplateSums*>& runs) {
     m.mask += s->mask;
     m.all_on += s->all_on;
     m.surface += s->surface;
+    m.visible += s->visible;
     m.area += s->area;
     areas += s->area_frames;
   }
-  for (double* each : {&m.mask, &m.all_on, &m.surface}) *each /= std::max(m.judged, 1.0);
+  for (double* each : {&m.mask, &m.all_on, &m.surface, &m.visible}) *each /= std::max(m.judged, 1.0);
   m.area /= std::max(areas, 1.0);
   return m;
 }
@@ -116,6 +117,7 @@ json report_of(const Means& m) {
           {"mask_agreement", m.mask},
           {"all_on_agreement", m.all_on},
           {"surface_agreement", m.surface},
+          {"visible_agreement", m.visible},
           {"templates", {{"straddling", m.straddling}, {"judged", m.judged}, {"area", m.area}}}};
 }
 
@@ -237,10 +239,11 @@ int run(const Choices& wanted) {
                   partial.translation / whole.translation, partial.rotation / whole.rotation, partial.lost, whole.lost);
   } else {
     good = partial.mask >= kGoal && partial.judged > 0;
-    std::snprintf(
-        verdict, sizeof verdict,
-        "%s: %.1f %% of the pixels of %.0f straddling templates right after %d frames (goal 95; all on: %.1f %%)",
-        good ? "good" : "missed", 100 * partial.mask, partial.judged, options.judge_after, 100 * partial.all_on);
+    std::snprintf(verdict, sizeof verdict,
+                  "%s: %.1f %% of the pixels of %.0f straddling templates right after %d frames (goal 95; all on: %.1f "
+                  "%%; of those in view then %.1f %%)",
+                  good ? "good" : "missed", 100 * partial.mask, partial.judged, options.judge_after,
+                  100 * partial.all_on, 100 * partial.visible);
   }
   out["verdict"] = verdict;
   out["good"] = good;

@@ -100,7 +100,7 @@ struct Runner {
       sums->area += report.template_area;
       sums->area_frames += 1;
     }
-    judge(pose, judge_after, sums);
+    judge(pose, judge_after, looked, sums);
   }
 
   /// A straddling template with its mask, and the image about where it was found, in every fifth frame.
@@ -127,7 +127,7 @@ struct Runner {
   }
 
   /// Templates whose masks have learnt long enough, once each.
-  void judge(const pf_pose_t& pose, int judge_after, TemplateSums* sums) {
+  void judge(const pf_pose_t& pose, int judge_after, bool* looked, TemplateSums* sums) {
     std::size_t count = 0;
     pf_get_features(context.slam, features.data(), features.size(), &count);
     for (std::size_t k = 0; k < count && k < features.size(); ++k) {
@@ -136,13 +136,16 @@ struct Runner {
       if (patch == patches.end() || pf_get_template(context.slam, features[k].id, &mask) != PF_OK ||
           mask.frames < judge_after)
         continue;
-      const TemplateTruth::Agreement agreement = truth->judge(patch->second, mask, features[k].p_W, pose);
+      if (!*looked) truth->look(pose);
+      *looked = true;
+      const TemplateTruth::Agreement agreement = truth->judge(patch->second, mask, features[k].p_W);
       patches.erase(patch);
       if (agreement.pixels == 0) continue;
       sums->judged += 1;
       sums->mask += agreement.mask;
       sums->all_on += agreement.all_on;
       sums->surface += agreement.surface;
+      sums->visible += agreement.visible;
     }
   }
 

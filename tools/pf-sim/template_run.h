@@ -32,7 +32,7 @@ struct TemplateSums {
   double inliers = 0;                   ///< with a depth, sum over frames
   double position2 = 0, rotation2 = 0;  ///< sums over frames with a pose [m^2], [rad^2]
   double begun = 0, straddling = 0;     ///< templates
-  double judged = 0, mask = 0, all_on = 0, surface = 0;  ///< of straddling ones
+  double judged = 0, mask = 0, all_on = 0, surface = 0, visible = 0;  ///< of straddling ones
   double area = 0, area_frames = 0;
 };
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "sim/linear.h"
-
 namespace pfsim {
 namespace {
 
@@ -15,6 +13,7 @@ using pf::sim::Vec3;
 constexpr int kMinPixels = 12;    // of a surface that counts
 constexpr double kSamePlace = 1;  // [px]
 constexpr double kSamePlane = 1e-3;
+constexpr double kNearer = 0.98;  // what hides a place, of its depth
 
 Vec3 vec(const double p[3]) { return {p[0], p[1], p[2]}; }
 
@@ -83,8 +82,17 @@ TemplateTruth::Patch TemplateTruth::cut(const double centre_px[2], int side) con
   return patch;
 }
 
-TemplateTruth::Agreement TemplateTruth::judge(const Patch& patch, const pf_template_t& mask, const double p_W[3],
-                                              const pf_pose_t& now) const {
+/// Whether the frame that look() saw shows something nearer at a place's pixel.
+bool TemplateTruth::is_hidden(const Vec3& p_W, const double pixel[2]) const {
+  const long x = std::lround(pixel[0]), y = std::lround(pixel[1]);
+  if (x < 0 || y < 0 || x >= camera_.width || y >= camera_.height) return true;
+  const double z = (pf::sim::rotation_of(pose_.q_WC).transposed() * (p_W - vec(pose_.p_WC))).z;
+  const double seen = static_cast<double>(depth_[static_cast<std::size_t>(y * camera_.width + x)]);
+  return seen > 0 && seen < kNearer * z;
+}
+
+TemplateTruth::Agreement TemplateTruth::judge(const Patch& patch, const pf_template_t& mask,
+                                              const double p_W[3]) const {
   const Mat3 R_WK = pf::sim::rotation_of(patch.pose.q_WC);
   const Vec3 c_W = vec(patch.pose.p_WC);
   const double depth = (R_WK.transposed() * (vec(p_W) - c_W)).z;
@@ -117,8 +125,9 @@ TemplateTruth::Agreement TemplateTruth::judge(const Patch& patch, const pf_templ
         !ray_at_depth_1(camera_, patch.left + at % patch.side, patch.top + at / patch.side, &ray))
       continue;
     const double z = depth_on(dominant, ray);
-    if (!(z > 0) || !pixel_of(camera_, now, c_W + R_WK * (ray * patch.depth[k]), true_px) ||
-        !pixel_of(camera_, now, c_W + R_WK * (ray * z), plane_px))
+    const Vec3 place_W = c_W + R_WK * (ray * patch.depth[k]);
+    if (!(z > 0) || !pixel_of(camera_, pose_, place_W, true_px) ||
+        !pixel_of(camera_, pose_, c_W + R_WK * (ray * z), plane_px))
       continue;
     const bool on = std::hypot(true_px[0] - plane_px[0], true_px[1] - plane_px[1]) <= kSamePlace;
     const bool says = mask.mask[k] >= 128;
@@ -126,12 +135,16 @@ TemplateTruth::Agreement TemplateTruth::judge(const Patch& patch, const pf_templ
     out.mask += says == on;
     out.all_on += on;
     out.surface += says == (patch.surface[k] == dominant);
+    if (is_hidden(place_W, true_px)) continue;
+    ++out.visible_pixels;
+    out.visible += says == on;
   }
   if (out.pixels > 0) {
     out.mask /= out.pixels;
     out.all_on /= out.pixels;
     out.surface /= out.pixels;
   }
+  if (out.visible_pixels > 0) out.visible /= out.visible_pixels;
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "planefold_platform/sim.h"
+#include "sim/linear.h"
 
 namespace pfsim {
 
@@ -13,7 +14,7 @@ class TemplateTruth {
  public:
   TemplateTruth(const pf_sim_t* sim, const pf_camera_t& camera);
 
-  /// Looks at a frame in which templates begin.
+  /// Looks at a frame in which templates begin, or are judged.
   void look(const pf_pose_t& pose);
 
   struct Patch {
@@ -29,18 +30,22 @@ class TemplateTruth {
   struct Agreement {
     int pixels = 0;
     double mask = 0, all_on = 0, surface = 0;  ///< shares of pixels that are right
+    int visible_pixels = 0;
+    double visible = 0;
   };
-  /// A pixel is on the plane if its place is, in the view from `now`, within 1 px of where the dominant plane puts it. The dominant
-  /// plane is that of the template's surfaces, with at least 12 pixels, which the feature's point is nearest to.
+  /// Of the frame that look() saw. A pixel is on the plane if its place is in it within 1 px of where the dominant plane puts it. The
+  /// dominant plane is that of the template's surfaces, with at least 12 pixels, which the feature's point is nearest to.
   ///
   /// mask     a pixel is right where the mask's probability of 1/2 says so
   /// all_on   likewise with all pixels on
   /// surface  the mask against the number of the surface alone
+  /// visible  as mask, of pixels whose place is not hidden by something nearer
   /// pixels 0: there is no such plane
-  Agreement judge(const Patch& patch, const pf_template_t& mask, const double p_W[3], const pf_pose_t& now) const;
+  Agreement judge(const Patch& patch, const pf_template_t& mask, const double p_W[3]) const;
 
  private:
   std::int32_t plane_of(std::int32_t surface) const;
+  bool is_hidden(const pf::sim::Vec3& p_W, const double pixel[2]) const;
 
   const pf_sim_t* sim_;
   pf_camera_t camera_;

@@ -2,6 +2,7 @@
 #include "api/copy.h"
 #include "base/elapsed.h"
 #include "covariance/select.h"
+#include "vision/template_mask.h"
 
 namespace {
 
@@ -178,7 +179,7 @@ pf_status_t pf_get_template(const pf_slam_t* slam, uint32_t feature, pf_template
     for (int x = 0; x < t.shape->side; ++x) {
       const int at = y * t.shape->side + x;
       out->grey[at] = t.grey(x, y);
-      out->mask[at] = t.mask[at];
+      out->mask[at] = pf::mask_probability(t.mask[at]);
     }
   copy(t.normal_W, 3, out->normal_W);
   out->sigma_normal_rad = static_cast<double>(t.sigma_normal);

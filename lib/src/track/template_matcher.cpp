@@ -16,6 +16,7 @@ constexpr int kPatchSide = SourcePatch::kSize;
 constexpr int kWindow = 2 * kReach + 1;
 constexpr int kRegionRow = (PlanarTemplate::kMaxSide + 3) / 4 * 4 + kWindow - 1;
 constexpr float kPerByte = 1.0f / 255.0f;
+constexpr std::uint8_t kOffPlane = 5;  ///< probability up to which a pixel counts for nothing in a judgement, 1/255
 constexpr float kNoiseKept =
     0.8f;  ///< of a pixel's variance, what interpolation and blur leave in residuals, both images together
 
@@ -63,6 +64,7 @@ bool TemplateMatcher::layout(Arena& arena, int side) {
   PlanePatch* patch = arena.take<PlanePatch>(1);
   if (patch != nullptr) patch_ = new (patch) PlanePatch();
   learnt_ = arena.take<std::uint8_t>(static_cast<std::size_t>(side * side));
+  probability_ = arena.take<std::uint8_t>(static_cast<std::size_t>(side * side));
   region_ = arena.take<float>(static_cast<std::size_t>(kRegionRow * (side + kWindow - 1)));
   const std::size_t pattern = static_cast<std::size_t>(side * ((side + 3) / 4 * 4));
   grey_ = arena.take<float>(pattern);
@@ -104,6 +106,10 @@ void TemplateMatcher::fill_patch(const SourcePatch& from, const PlanarTemplate& 
   to.mean = static_cast<float>(sum) / static_cast<float>(side * side);
 }
 
+void TemplateMatcher::fill_mask(const PlanarTemplate& shape, const std::uint8_t* mask) {
+  for (int i = 0; i < shape.side * shape.side; ++i) probability_[i] = mask_probability(mask[i]);
+}
+
 Vec2 TemplateMatcher::slope_of(const SearchTask& task, const TemplateWarp& warp) {
   Vec2 slope;
   if (!task.normal_W.isZero(0) && warp.slope_of(task.first_view.q_WC.conjugate() * task.normal_W, &slope)) return slope;
@@ -138,7 +144,7 @@ void TemplateMatcher::make_pattern(const SearchTask& task, const Mat2& A, Patter
       if (!in) continue;
       grey_[at] = sample(patch.pixels[0], kPatchSide, kPatchSide - 1, x, y);
       weight_[at] =
-          kPerByte * sample(task.mask, side, side - 1, std::clamp(mx, 0.0f, last), std::clamp(my, 0.0f, last));
+          kPerByte * sample(probability_, side, side - 1, std::clamp(mx, 0.0f, last), std::clamp(my, 0.0f, last));
       p.weight += weight_[at];
       p.grey += weight_[at] * grey_[at];
     }
@@ -238,7 +244,8 @@ bool TemplateMatcher::judge(const PlanarTemplate& shape, const std::uint8_t* mas
         mode_ == MaskMode::kPartial ? learn_pixel(mask[i], evidence, shape.sigma_plane, shape.sigma_other) : mask[i];
     if (!(s.valid[i] > 0.0f)) continue;
     // Without what the least probability leaves: a few pixels far off the plane would count more than all that are on it.
-    const float p = kPerByte * static_cast<float>(learnt_[i] - std::min(learnt_[i], kMaskLeast));
+    const std::uint8_t on = mask_probability(learnt_[i]);
+    const float p = kPerByte * static_cast<float>(on - std::min(on, kOffPlane));
     weight += p;
     squares += p * evidence.residual * evidence.residual;
   }
@@ -257,6 +264,7 @@ SearchOutcome TemplateMatcher::search(const Tracker& tracker, const SearchTask& 
   if (!(scale >= kMinScale && scale <= kMaxScale) ||
       !make_template_warp(camera_, *task.shape, task.first_view, task.p_W, task.q_WC, task.c_W, &warp))
     return tracker.search(task);
+  fill_mask(*task.shape, task.mask);
   Vec2 position;
   if (radius_of(task) <= static_cast<Scalar>(kReach) + Scalar(0.5)) {
     outcome.comparable = true;
@@ -281,7 +289,7 @@ SearchOutcome TemplateMatcher::search(const Tracker& tracker, const SearchTask& 
   PlaneStart start;
   start.level = 0;
   start.H_CK = shift.lazyProduct(H);
-  const PlaneAlignment found = aligner_->align(tracker.pyramid(), camera_, *patch_, start, ShiftWarp(), task.mask);
+  const PlaneAlignment found = aligner_->align(tracker.pyramid(), camera_, *patch_, start, ShiftWarp(), probability_);
   if (found.verdict == PlaneVerdict::kNotConverged || found.verdict == PlaneVerdict::kSlanted) return outcome;
   const Vec3 p = found.H_CK * Vec3(warp.ray_0.x(), warp.ray_0.y(), 1);
   Vec2 pixel;
@@ -314,6 +322,7 @@ bool TemplateMatcher::learn(const Tracker& tracker, const SearchTask& task, cons
     return false;
   const SourcePatch& source = task.appearance->patch;
   fill_patch(source, *shape);
+  fill_mask(*shape, mask);
   const Vec2 middle(std::floor(source.centre_x[0] + 0.5f) - source.centre_x[0],
                     std::floor(source.centre_y[0] + 0.5f) - source.centre_y[0]);
   const Vec2 at = pixel + A.inverse() * middle;
@@ -324,7 +333,7 @@ bool TemplateMatcher::learn(const Tracker& tracker, const SearchTask& task, cons
       static_cast<Scalar>(shape->covariance[1]), static_cast<Scalar>(shape->covariance[2]);
   TemplateNormal measured;
   if (task.normal_W.isZero(0) &&
-      measure_slopes(tracker.pyramid(), camera_, *patch_, mask, warp, slope, at, aligner_, &measured)) {
+      measure_slopes(tracker.pyramid(), camera_, *patch_, probability_, warp, slope, at, aligner_, &measured)) {
     fuse_slopes(measured, &normal);
     slope = normal.slope;
     shape->has_normal = true;
@@ -341,7 +350,7 @@ bool TemplateMatcher::learn(const Tracker& tracker, const SearchTask& task, cons
   start.level = 0;
   start.H_CK = shift.lazyProduct(H);
   float gain = 1;
-  if (!aligner_->compare(tracker.pyramid(), camera_, *patch_, start, mask, &gain)) return false;
+  if (!aligner_->compare(tracker.pyramid(), camera_, *patch_, start, probability_, &gain)) return false;
   const Scalar leverage = task.normal_W.isZero(0) ? slope_leverage(warp, patch_->side) : Scalar(0);
   const Vec2 slope_sigma(leverage * std::min(std::sqrt(normal.covariance(0, 0)), Scalar(kMaxSlopeSigma)),
                          leverage * std::min(std::sqrt(normal.covariance(1, 1)), Scalar(kMaxSlopeSigma)));

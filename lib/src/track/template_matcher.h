@@ -42,6 +42,7 @@ class TemplateMatcher {
   };
 
   void fill_patch(const SourcePatch& patch, const PlanarTemplate& shape);
+  void fill_mask(const PlanarTemplate& shape, const std::uint8_t* mask);
   void make_pattern(const SearchTask& task, const Mat2& A, Pattern* pattern);
   void fill_region(const ImageView& image, const Pattern& pattern, int left, int top);
   float score(const Pattern& pattern, int x, int y) const;
@@ -57,6 +58,7 @@ class TemplateMatcher {
   PlaneAligner* aligner_ = nullptr;            ///< all of these null without templates
   PlanePatch* patch_ = nullptr;                ///< the pixels of a template with one more on each side
   std::uint8_t* learnt_ = nullptr;             ///< mask after the frame
+  std::uint8_t* probability_ = nullptr;        ///< of each pixel before it
   float *grey_ = nullptr, *weight_ = nullptr;  ///< of a pattern
   float* region_ = nullptr;                    ///< of the image, about where it is searched
 };

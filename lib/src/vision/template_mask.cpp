@@ -12,7 +12,7 @@ namespace {
 using namespace tuning::template_mask;
 
 constexpr float kByte = 255.0f;
-constexpr float kMinProbability = 0.02f, kMaxProbability = 0.98f;
+constexpr float kOddsStep = 0.1f;          ///< log odds of one in a byte
 constexpr int kStrideX = 5, kStrideY = 3;  ///< of the pixels that say how noisy an image is
 constexpr int kBins = 512;                 ///< of |L|, L = [1 -2 1; -2 4 -2; 1 -2 1] * I
 constexpr float kNoiseGain = 6.0f;         ///< standard deviation of L, of noise of unit variance
@@ -23,24 +23,30 @@ int inside(int at) { return std::clamp(at, 0, kSide - 1); }
 
 }  // namespace
 
-std::uint8_t updated_probability(std::uint8_t p, float residual, float sigma_plane, float sigma_other) {
-  // Odds, and what the two densities make of them: on the plane they fall faster, so the power is never above 0.
-  const float power = 0.5f * (1.0f / (sigma_other * sigma_other) - 1.0f / (sigma_plane * sigma_plane));
-  const float on = static_cast<float>(p) * sigma_other * std::exp(residual * residual * power);
-  const float off = (kByte - static_cast<float>(p)) * sigma_plane;
-  const float next = std::clamp(on / (on + off), kMinProbability, kMaxProbability);
-  return static_cast<std::uint8_t>(kByte * next + 0.5f);
+std::uint8_t mask_probability(std::uint8_t odds) {
+  if (odds == 0 || odds == kMaskFull) return odds;
+  const float p = 1.0f / (1.0f + std::exp(-kOddsStep * static_cast<float>(odds - kMaskUnknown)));
+  return static_cast<std::uint8_t>(std::max(kByte * p + 0.5f, 1.0f));
 }
 
-std::uint8_t learn_pixel(std::uint8_t p, const MaskEvidence& evidence, float sigma_plane, float sigma_other) {
-  if (!evidence.valid || p == 0) return p;
-  const std::uint8_t next = updated_probability(p, evidence.residual, sigma_plane, sigma_other);
-  return next < p && std::fabs(evidence.residual) <= evidence.slack ? p : next;
+std::uint8_t updated_odds(std::uint8_t odds, float residual, float sigma_plane, float sigma_other) {
+  // On the plane the density falls faster, so the power is never above 0.
+  const float power = 0.5f * (1.0f / (sigma_other * sigma_other) - 1.0f / (sigma_plane * sigma_plane));
+  const float said = std::log(sigma_other / sigma_plane) + residual * residual * power;
+  const float next = static_cast<float>(odds) + said / kOddsStep;
+  return static_cast<std::uint8_t>(std::clamp(next, static_cast<float>(kMaskLeast), static_cast<float>(kMaskMost)) +
+                                   0.5f);
+}
+
+std::uint8_t learn_pixel(std::uint8_t odds, const MaskEvidence& evidence, float sigma_plane, float sigma_other) {
+  if (!evidence.valid || odds == 0) return odds;
+  const std::uint8_t next = updated_odds(odds, evidence.residual, sigma_plane, sigma_other);
+  return next < odds && std::fabs(evidence.residual) <= evidence.slack ? odds : next;
 }
 
 float mask_area(const std::uint8_t* mask, int count) {
   int sum = 0;
-  for (int i = 0; i < count; ++i) sum += mask[i];
+  for (int i = 0; i < count; ++i) sum += mask_probability(mask[i]);
   return static_cast<float>(sum) / kByte;
 }
 

@@ -5,19 +5,25 @@
 #include "vision/patch.h"
 #include "vision/planar_template.h"
 
-/// Which pixels of a template belong to its dominant plane: a probability for each, in 1/255 (lib/docs/templates.md).
+/// Which pixels of a template belong to its dominant plane (lib/docs/templates.md). What is learnt of a pixel, in a byte:
+///
+///   0: there is no image   255: on the plane, whatever it shows (whole templates)   else its log odds, ln(p / (1 - p)) = (byte - 212) / 10
 
 namespace pf {
 
-constexpr std::uint8_t kMaskLeast = 5, kMaskUnknown = 128, kMaskFull = 255;
+constexpr std::uint8_t kMaskLeast = 1, kMaskUnknown = 212, kMaskMost = 251, kMaskFull = 255;
+
+/// Probability of belonging to the plane, in 1/255: 0 where there is no image, and nowhere else.
+std::uint8_t mask_probability(std::uint8_t odds);
 
 /// One step of the discrete Bayes filter.
 ///
-///   p' = p N(r; 0, sigma_D) / (p N(r; 0, sigma_D) + (1 - p) N(r; 0, sigma_B)),   kept in .02 .. .98
+///   p' = p N(r; 0, sigma_D) / (p N(r; 0, sigma_D) + (1 - p) N(r; 0, sigma_B)),   log odds kept in -21 .. 3.9
 ///
-/// p, and the return value, are in 1/255.   sigma_D < sigma_B
-/// src  Masoud 2015 (7)-(8); the bounds let a pixel change its side again
-std::uint8_t updated_probability(std::uint8_t p, float residual, float sigma_plane, float sigma_other);
+/// A pixel on the plane (.98) leaves it by one frame; one that has been off it for long comes back by ten or more in a row, since what is
+/// behind looks like the template in some frames.   sigma_D < sigma_B
+/// src  Masoud 2015 (7)-(8), which has no bounds
+std::uint8_t updated_odds(std::uint8_t odds, float residual, float sigma_plane, float sigma_other);
 
 /// What one frame says of one pixel.
 struct MaskEvidence {
@@ -26,10 +32,11 @@ struct MaskEvidence {
   bool valid = false;  ///< in the image, and saturated in neither
 };
 
-/// p after a frame. Unchanged where the pixel is not valid, and where the slack explains a residual that would speak against the plane.
-std::uint8_t learn_pixel(std::uint8_t p, const MaskEvidence& evidence, float sigma_plane, float sigma_other);
+/// Log odds after a frame. Unchanged where the pixel is not valid, and where the slack explains a residual that would speak against the
+/// plane.
+std::uint8_t learn_pixel(std::uint8_t odds, const MaskEvidence& evidence, float sigma_plane, float sigma_other);
 
-/// Sum over a mask [px].
+/// Sum of the probabilities [px].
 float mask_area(const std::uint8_t* mask, int count);
 
 /// Begins a template on pixels that were remembered: an unknown mask (or a full one), zero where there is no image, and how large residuals
