@@ -144,6 +144,12 @@ class BlockFilter {
   const Scalar* gain(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
   /// dx of the last gain.
   const Scalar* step() const { return dx_; }
+  /// From another estimate than it was gained for, which differs by e in the leading rows.
+  void shift_step(const Vec6& e) {
+    for (int i = 0; i < 6; ++i) dx_[i] += e(i);
+  }
+  /// There is no last gain.
+  void forget_gain() { gained_ = 0; }
   /// Rows of L^-1 H P that the gain left, S + R = L L^T.
   const Scalar* whitened(int row) const { return W_ + row * ld_; }
   /// Likewise of L^-1 (measured - predicted): white where model and noise are right.

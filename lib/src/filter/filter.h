@@ -210,6 +210,9 @@ class Filter {
     return solve_update(views_of(z, count), count, keep, nis);
   }
   void commit_update();
+  /// The same of a measurement that is linearised at another pose, near, and predicted for the estimate: h(near) + H (x [-] near). Before
+  /// it, what the pose shares with the gauge moves to near, so that H N = 0 there too.
+  bool finish_update_near(const Measurement& z, const Body& near, Scalar* nis);
   /// Of the update that solve_update has just solved: the part of its innovation that says something of the pose. With L L^T = S + R,
   /// A = L^-1 H P_x and y = L^-1 (measured - predicted), x the rows of the pose,
   ///
@@ -267,20 +270,16 @@ class Filter {
   Mat2 parallax_noise(int slot, Scalar rho, const Mat23& J_z_anchor) const;
   bool predict_at(const Camera& lens, const struct CameraAt& camera, int slot, PixelMeasurement* out,
                   Mat26* J_camera) const;
-
   // scale_row.cpp
   bool scale_candidate(int slot, int* places, ScaleRow* row) const;
-
   // apart.cpp
   bool keeps_apart() const;
   void end_update_apart(const ScaleRow& l);
   Scalar replace_scale(Scalar left);
-
   // planes.cpp
   void place_plane(int slot, const PlaneFrame& frame, Scalar roughness);
   bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded);
   void predict_distance(int plane, const struct Place& at, DistanceMeasurement* out) const;
-
   // point_groups.cpp
   int add_group(int plane, const int* members, int count);
 

@@ -3,6 +3,7 @@
 #include "filter/filter.h"
 #include "filter/tuning.h"
 #include "geometry/small_cholesky.h"
+#include "geometry/so3.h"
 
 /// The update.
 
@@ -44,6 +45,37 @@ void Filter::commit_update() {
   blocks_.grow(growth(blocks_.dim()));
   if (keeps_apart()) end_update_apart(l);
   if (told_updates_ > 0) --told_updates_;
+}
+
+/// The pose moves to near and back with its mean alone: what is known of it against the estimate stays,
+///
+///   dx = K (z - h(near) - H e),   x = near [+] (e + dx),   e = estimate [-] near
+bool Filter::finish_update_near(const Measurement& z, const Body& near, Scalar* nis) {
+  const Body estimate = state_.body;
+  const auto move_to = [&](const Body& pose) {
+    ScaleRow l;
+    if (keep_gauge_) {
+      scale_row(&l);
+      transport_.begin(state_, blocks_, l);
+    }
+    state_.body.q_WC = pose.q_WC;
+    state_.body.p_W = pose.p_W;
+    if (!keep_gauge_) return;
+    blocks_.forget_gain();
+    transport_.finish(state_, blocks_);
+    blocks_.add_shared(transport_.U(), transport_.G(), transport_.rows());
+  };
+  move_to(near);
+  begin_update(&z, 1);
+  if (!solve_update(&z, 1, nullptr, nis)) {
+    move_to(estimate);
+    return false;
+  }
+  Vec6 e;
+  e << log_so3(estimate.q_WC * near.q_WC.conjugate()), estimate.p_W - near.p_W;
+  blocks_.shift_step(e);
+  commit_update();
+  return true;
 }
 
 bool Filter::pose_nis(Scalar* nis) const {

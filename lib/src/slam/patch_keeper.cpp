@@ -184,10 +184,10 @@ void PatchKeeper::put_measured(const StoredPatch& patch) {
 
 /// Chi-square of the corners, which are predicted on a plane (block): eight degrees of freedom, with the gate's noise. Negative where it
 /// cannot be told.
-Scalar PatchKeeper::misfit(const StoredPatch& patch, int plane) {
+Scalar PatchKeeper::misfit(const StoredPatch& patch, int plane, Body* near) {
+  *near = filter_.state().body;
   const bool is_far = (z_.measured - z_.predicted).cwiseAbs().maxCoeff() > kLinearReach;
-  Body near;
-  if (is_far && !linearise_near(patch, plane, &near)) return Scalar(-1);
+  if (is_far && !linearise_near(patch, plane, near)) return Scalar(-1);
   SmallCholesky<8> cholesky;
   if (!cholesky.factor(filter_.covariance_of<8>(z_.H) + z_.R_gate)) return Scalar(-1);
   const Vec8 r = z_.measured - z_.predicted;
@@ -197,13 +197,17 @@ Scalar PatchKeeper::misfit(const StoredPatch& patch, int plane) {
 /// Takes the corners in where they pass the gate: all eight rows or none.
 void PatchKeeper::update(StoredPatch* patch, int wall) {
   patch->status = PatchStatus::kOutlier;
-  const Scalar chi2 = misfit(*patch, map_.planes[wall].slot);
+  Body near;
+  const Scalar chi2 = misfit(*patch, map_.planes[wall].slot, &near);
   if (!(chi2 >= Scalar(0) && chi2 < kCornersGate)) return;
-  if (!take_bent(*patch, map_.planes[wall].slot)) return;
-  const Measurement view = z_.view();
-  filter_.begin_update(&view, 1);
+  const Body& estimate = filter_.state().body;
+  const bool is_far = near.p_W != estimate.p_W || near.q_WC.coeffs() != estimate.q_WC.coeffs();
+  if (!is_far && !take_bent(*patch, map_.planes[wall].slot)) return;
   Scalar nis = 0;
-  const bool done = filter_.finish_update(&view, 1, nullptr, &nis);
+  const Measurement view = z_.view();
+  if (!is_far) filter_.begin_update(&view, 1);
+  const bool done =
+      is_far ? filter_.finish_update_near(view, near, &nis) : filter_.finish_update(&view, 1, nullptr, &nis);
   tracking_.note_update(done);
   if (!done) return;
   patch->status = PatchStatus::kInlier;

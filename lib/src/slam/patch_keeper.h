@@ -62,7 +62,7 @@ class PatchKeeper {
   bool find_from_afar(const Pyramid& image, const StoredPatch& patch, Sight* sight);
   bool begin_block(StoredPatch* patch, const Mat8& covariance);
   void put_measured(const StoredPatch& patch);
-  Scalar misfit(const StoredPatch& patch, int plane);
+  Scalar misfit(const StoredPatch& patch, int plane, Body* near);
   Scalar bend_of(const StoredPatch& patch) const;
   bool take_bent(const StoredPatch& patch, int plane);
   void update(StoredPatch* patch, int wall);

@@ -79,7 +79,8 @@ int PatchKeeper::try_planes(StoredPatch* patch, bool counts) {
       continue;
     ++tried;
     put_measured(*patch);
-    const Scalar chi2 = misfit(*patch, plane);
+    Body near;
+    const Scalar chi2 = misfit(*patch, plane, &near);
     if (!(chi2 >= Scalar(0))) continue;
     if (counts)
       patch->wait.try_plane(map_.planes[k].id, map_.planes[k].known, static_cast<float>(chi2),
@@ -99,7 +100,8 @@ bool PatchKeeper::explains(const StoredPatch& patch, int entry) {
       !filter_.predict_patch(filter_.lens(), patch.block, plane, patch.reference_px, &z_))
     return false;
   put_measured(patch);
-  const Scalar chi2 = misfit(patch, plane);
+  Body near;
+  const Scalar chi2 = misfit(patch, plane, &near);
   return !(chi2 >= tuning::patch_keeper::kCornersGate);
 }
 
