@@ -189,7 +189,7 @@ void Filter::remove(const int* slots, int count) {
     PF_ASSERT(block.kind != BlockKind::kPlane || block.children == 0);
     state_.leave_parent(slots[i]);
     state_.leave_second_parent(slots[i]);
-    if (block.kind == BlockKind::kPlane) --state_.planes;
+    if (is_plane(block.kind)) --state_.planes;
     block.kind = BlockKind::kNone;
   }
   for (int s = 0; s < state_.slots; ++s) {

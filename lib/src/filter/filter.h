@@ -6,6 +6,7 @@
 
 #include "base/arena.h"
 #include "filter/block_filter.h"
+#include "filter/fold_rule.h"
 #include "filter/gauge_prior.h"
 #include "filter/inertial_motion.h"
 #include "filter/motion.h"
@@ -16,20 +17,6 @@
 /// The extended Kalman filter: holds the state and the covariance, and alone changes them together. Gee 2007, section 3.1.
 
 namespace pf {
-
-/// How points enter a plane.
-struct FoldRule {
-  Scalar roughness = 0;   ///< of real surfaces: standard deviation of a point's distance from its plane [m]
-  Scalar gate = 0;        ///< chi-square bound of the distance, one degree of freedom
-  bool condition = true;  ///< take the distance in as a measurement of zero; else only drop it (Gee 2007, eq 4 and 6)
-};
-
-/// What becomes of a point that is known well enough in its point group.
-enum class FixForm {
-  kConsider,  ///< keeps its rows, without gain of its own (Schmidt)
-  kInflate,   ///< loses its rows; its variance stays as noise of its pixels
-  kErrorFree  ///< loses its rows and its variance (Gee 2007, section 3.4)
-};
 
 struct FilterCapacity {
   int state_dim;
@@ -130,7 +117,12 @@ class Filter {
   /// of a rough surface leave in it. Nothing is folded yet.
   int add_plane(const PlaneFit& fit, const int* slots, int count, Scalar roughness);
   /// Plane known beforehand, independent of all else. covariance is of (a, b, h) about the frame; roughness is of its surface [m].
-  int add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Scalar roughness);
+  /// apart: nothing is compared with it until join_planes_apart, and until then it tells nothing of the gauge.
+  int add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Scalar roughness, bool apart = false);
+  /// The map becomes so many times as large, about pivot, and planes that are apart are planes like all others from now on.
+  void join_planes_apart(Scalar scale, const Vec3& pivot);
+  /// The log scale is less known by this variance, with pivot as the place that does not depend on it.
+  void open_scale(Scalar variance, const Vec3& pivot) { apart_.add_scale(variance, pivot); }
 
   // --- transform
   /// Inverse depth to 3-D point, in its slot; the anchor goes when nothing needs it.
@@ -276,6 +268,8 @@ class Filter {
   bool keeps_apart() const;
   void end_update_apart(const ScaleRow& l);
   Scalar replace_scale(Scalar left);
+  void scale_map(Scalar s, Scalar* factor);
+  void translate(const Vec3& t);
   // planes.cpp
   void place_plane(int slot, const PlaneFrame& frame, Scalar roughness);
   bool condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded);

@@ -32,8 +32,11 @@ void GaugePrior::clear() {
   any_ = false;
 }
 
-void GaugePrior::add_scale(Scalar variance) {
-  V_(gauge::kScale, gauge::kScale) += variance;
+void GaugePrior::add_scale(Scalar variance, const Vec3& pivot) {
+  Eigen::Matrix<Scalar, gauge::kDirections, 1> u = Eigen::Matrix<Scalar, gauge::kDirections, 1>::Zero();
+  u.segment<3>(gauge::kTranslation) = -pivot;
+  u(gauge::kScale) = 1;
+  V_ += variance * u * u.transpose();
   any_ = true;
 }
 

@@ -19,8 +19,8 @@ class GaugePrior {
   bool any() const { return any_; }
   const Matrix& V() const { return V_; }
   void clear();
-  /// The log scale is less known by this variance, independently of all else.
-  void add_scale(Scalar variance);
+  /// The log scale is less known by this variance, independently of all else; pivot: the place in W that it leaves where it is.
+  void add_scale(Scalar variance, const Vec3& pivot = Vec3::Zero());
   /// Pose of the body (theta, p; row-major with leading dimension ld), which nothing else depends on yet: all of it becomes an error of W.
   void set_pose(const State& state, const Scalar* covariance, int ld);
 

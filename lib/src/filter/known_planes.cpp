@@ -5,10 +5,10 @@
 
 namespace pf {
 
-int Filter::add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Scalar roughness) {
+int Filter::add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Scalar roughness, bool apart) {
   if (state_.planes >= state_.max_planes) return -1;
-  tell_gauge();
-  const int slot = take_slot(BlockKind::kPlane);
+  if (!apart) tell_gauge();
+  const int slot = take_slot(apart ? BlockKind::kPlaneApart : BlockKind::kPlane);
   if (slot < 0) return -1;
   Rows known;  // depends on nothing
   known.rows = 3;
@@ -17,6 +17,35 @@ int Filter::add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Sca
   blocks_.augment(slot, known, raw);
   place_plane(slot, frame, roughness);
   return slot;
+}
+
+/// Means and P in the new lengths; what is apart is of W's directions and stays. Then the planes see what the map has of the gauge.
+void Filter::join_planes_apart(Scalar scale, const Vec3& pivot) {
+  Scalar* factor = blocks_.row_factors();
+  for (int i = 0; i < 3; ++i) factor[Body::kPosition + i] = scale;
+  state_.body.p_W *= scale;
+  if (state_.layout.has(BodyPart::kVelocity)) {
+    for (int i = 0; i < 3; ++i) factor[state_.layout.row(BodyPart::kVelocity) + i] = scale;
+    state_.body.v_W *= scale;
+  }
+  scale_map(scale, factor);
+  blocks_.scale_rows(factor);
+  translate((Scalar(1) - scale) * pivot);
+  tell_gauge();
+  for (int s = 0; s < state_.slots; ++s)
+    if (state_.block[s].kind == BlockKind::kPlaneApart) state_.block[s].kind = BlockKind::kPlane;
+}
+
+/// All places but those of planes that are apart; no error changes.
+void Filter::translate(const Vec3& t) {
+  state_.body.p_W += t;
+  for (int s = 0; s < state_.slots; ++s) {
+    Block& block = state_.block[s];
+    if (block.kind == BlockKind::kAnchor || block.kind == BlockKind::kPoint) block.set_xyz(block.xyz() + t);
+    if (block.kind == BlockKind::kReferenceCamera)
+      for (int i = 0; i < 3; ++i) block.value[4 + i] += t(i);
+    if (block.kind == BlockKind::kPlane) state_.plane_frame[block.frame].o_W += t;
+  }
 }
 
 /// What the prior of the plane, zero with covariance C, has taught is taken back but for 1 / widening of it. Information D goes,

@@ -84,6 +84,23 @@ TurnedStart apart_from_rotation(const MovingSolution& start, const Mat3& R_WG, S
 
 }  // namespace
 
+/// Values of all but the body, and what their rows are multiplied by. Planes that are apart stay where they are.
+void Filter::scale_map(Scalar s, Scalar* factor) {
+  for (int k = 0; k < state_.slots; ++k) {
+    Block& block = state_.block[k];
+    if (block.kind == BlockKind::kPlane) state_.plane_frame[block.frame].o_W *= s;
+    if (block.kind == BlockKind::kReferenceCamera) {
+      const int first = first_row(k) + Body::kPosition;
+      for (int i = 0; i < 3; ++i) {
+        block.value[4 + i] *= s;
+        factor[first + i] = s;
+      }
+    } else if (block.size > 0) {
+      scale_block(&block, s, factor + first_row(k));
+    }
+  }
+}
+
 /// Mean and P in metres; then the log scale, gravity and the accelerometer's bias are as known as `start` says, the scale in place of what
 /// P held of it:
 ///
@@ -100,19 +117,7 @@ void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
   Body body = state_.body;
   body.p_W *= s;
   body.v_W = s * body.v_W + body.q_WC * (body.w_C.cross(mounting.p_C));
-  for (int k = 0; k < state_.slots; ++k) {
-    Block& block = state_.block[k];
-    if (block.kind == BlockKind::kReferenceCamera) {
-      const int first = first_row(k) + Body::kPosition;
-      for (int i = 0; i < 3; ++i) {
-        block.value[4 + i] *= s;
-        factor[first + i] = s;
-      }
-    } else if (block.size > 0) {
-      scale_block(&block, s, factor + first_row(k));
-    }
-  }
-  for (int f = 0; f < state_.max_planes; ++f) state_.plane_frame[f].o_W *= s;
+  scale_map(s, factor);
   blocks_.scale_rows(factor);
 
   Transition transition;

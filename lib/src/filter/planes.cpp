@@ -41,7 +41,7 @@ void Filter::place_plane(int slot, const PlaneFrame& frame, Scalar roughness) {
   for (int f = 0; f < state_.max_planes && block.frame < 0; ++f) {
     bool free = true;
     for (int s = 0; s < state_.slots; ++s)
-      if (s != slot && state_.block[s].kind == BlockKind::kPlane && state_.block[s].frame == f) free = false;
+      if (s != slot && is_plane(state_.block[s].kind) && state_.block[s].frame == f) free = false;
     if (free) block.frame = static_cast<std::int16_t>(f);
   }
   PF_ASSERT(block.frame >= 0);

@@ -32,12 +32,15 @@ struct PlaneEntry {
   PlaneOutline seen;     ///< of points that were on it when it was last tended to, many of them gone from the map since
   bool known = false;    ///< a wall: known beforehand, and never dissolved
   bool doubted = false;  ///< a wall that the gate refuses what should be on it; it takes no points
+  bool apart = false;    ///< a wall that nothing in the map has been compared with yet, since the scale is not known
   bool two_sided = false;
   Scalar roughness = 0;  ///< [m] of its surface
   Scalar prior[6] = {};  ///< of a wall: covariance of (a, b, h), lower triangle; zero: it no longer counts
   PlaneOutline plan;     ///< of a wall, as it was given
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 
+  /// Whether points and patches may lie on it, and it hides what is behind it.
+  bool counts() const { return !doubted && !apart; }
   /// Of a wall whose prior counts.
   Mat3 prior_covariance() const {
     Mat3 covariance;
@@ -95,6 +98,7 @@ class PlaneTable {
       entry_[i].id = was.id;
       entry_[i].slot = was.slot;
       entry_[i].known = true;
+      entry_[i].apart = was.apart;
       entry_[i].two_sided = was.two_sided;
       entry_[i].roughness = was.roughness;
       for (int k = 0; k < 6; ++k) entry_[i].prior[k] = was.prior[k];
@@ -124,6 +128,11 @@ class PlaneTable {
   bool has_known() const {
     for (int i = 0; i < capacity_; ++i)
       if (used(i) && entry_[i].known) return true;
+    return false;
+  }
+  bool has_apart() const {
+    for (int i = 0; i < capacity_; ++i)
+      if (used(i) && entry_[i].apart) return true;
     return false;
   }
   /// What patches have held against walls so far no longer counts.

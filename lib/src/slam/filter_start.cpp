@@ -204,6 +204,7 @@ bool FilterStart::start_in_image() {
   if (!seen && expected && !parts_.tracking.may_skip_target()) return false;
   target_.note_begin();
   if (!seen) {
+    if (!sees_walls()) keep_walls_apart();
     set_known_pose(false);
     if (needs_record())
       without_.begin();
@@ -246,21 +247,6 @@ void FilterStart::begin_record() {
     if (unproject(settings_.camera, match.measured, &ray_C)) without_.add_feature(match.id, ray_C);
   }
   if (progress().checking && without_.empty()) end_record();
-}
-
-/// The world stays, and a record begins with this frame. Features that were found in several frames begin again where they are now: where
-/// most corners are never found again (speckles, leaves), a record of corners alone would run out of features before there is parallax.
-void FilterStart::begin_anew() {
-  Vec2 proven[StartRecord::kMaxFeatures];
-  int count = 0;
-  for (int t = 0; t < parts_.frame.match_count() && count < StartRecord::kMaxFeatures; ++t) {
-    const Match& match = parts_.frame.match(t);
-    if (match.feature >= 0 && match.status == MatchStatus::kInlier &&
-        parts_.map.features[match.feature].observations >= kProven)
-      proven[count++] = Vec2(match.measured.array().round());
-  }
-  parts_.features.drop_all();
-  parts_.images.add_features_at(proven, count);
 }
 
 bool FilterStart::record_frame() {

@@ -84,6 +84,11 @@ class FilterStart {
   void keep_mounting();
   /// Where the unit is on the camera, as far as it is known.
   Mounting mounting() const;
+  /// Nothing in the map has been compared with the walls of the plan yet (filter_start_away.cpp).
+  bool has_walls_apart() const { return parts_.map.planes.has_apart(); }
+  /// Where most points that this frame saw before such walls have one ratio of distances in common: the map gets the size that the plan
+  /// says, and the walls count from now on. Returns the factor; 0: not yet.
+  Scalar look_for_walls();
   /// Ends a record, where something else tells the depths from now on.
   void end_record() { without_.init(); }
 
@@ -94,6 +99,10 @@ class FilterStart {
   void set_body(const Body& body, const Scalar* known, const Scalar* J_lens = nullptr);
   bool may_begin_anew(std::int64_t begin_ns) const;
   bool needs_record() const;
+  bool sees_walls() const;
+  void keep_walls_apart();
+  void open_scale();
+  void scale_tables(Scalar scale, const Vec3& pivot);
   void set_start_velocities(Scalar speed);
   void note_covariance();
   void set_known_pose(bool at_target, bool fitted_to_target = false);

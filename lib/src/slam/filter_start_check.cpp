@@ -15,7 +15,7 @@ using namespace tuning::start_before_walls;
 /// Depths come from a record of the first frames, unless walls or a known speed of the first pose tell them.
 bool FilterStart::needs_record() const {
   if (!data_.known.given) return true;
-  if (parts_.map.planes.has_known()) return false;
+  if (parts_.map.planes.has_known() && !has_walls_apart()) return false;
   if (!settings_.body.has(BodyPart::kVelocity)) return true;
   const int dim = settings_.body.known_rows(), first = settings_.body.row(BodyPart::kVelocity);
   Scalar variance = 0;
@@ -114,7 +114,8 @@ void FilterStart::clear_all_but_walls() {
     for (int k = 0; k < planes.capacity(); ++k) {
       if (frame[k] != f) continue;
       const PlaneFrame plan = state.plane_frame[f];
-      planes[k].slot = parts_.filter.add_known_plane(plan, planes[k].prior_covariance(), planes[k].roughness);
+      planes[k].slot =
+          parts_.filter.add_known_plane(plan, planes[k].prior_covariance(), planes[k].roughness, planes[k].apart);
       parts_.filter.set_owner(planes[k].slot, k);
     }
 }

@@ -34,6 +34,7 @@ void FilterStart::restart_from_record(Scalar unit) {
   }
   parts_.filter.consider_lens(false);
   if (settings_.body.has(BodyPart::kVelocity)) restart_velocities(unit);
+  if (has_walls_apart()) open_scale();
   if (progress().checking) restart_at_target();
 }
 
@@ -48,6 +49,21 @@ void FilterStart::stay_at_base() {
   const Scalar rho = Scalar(1) / settings_.start_depth;
   restart_features([&](int index) { return without_.stays(settings_.camera, index) ? rho : Scalar(0); },
                    settings_.inverse_depth_relative_sigma);
+}
+
+/// The world stays, and a record begins with this frame. Features that were found in several frames begin again where they are now: where
+/// most corners are never found again (speckles, leaves), a record of corners alone would run out of features before there is parallax.
+void FilterStart::begin_anew() {
+  Vec2 proven[StartRecord::kMaxFeatures];
+  int count = 0;
+  for (int t = 0; t < parts_.frame.match_count() && count < StartRecord::kMaxFeatures; ++t) {
+    const Match& match = parts_.frame.match(t);
+    if (match.feature >= 0 && match.status == MatchStatus::kInlier &&
+        parts_.map.features[match.feature].observations >= kProven)
+      proven[count++] = Vec2(match.measured.array().round());
+  }
+  parts_.features.drop_all();
+  parts_.images.add_features_at(proven, count);
 }
 
 /// Adds the record's features to the filter; removes all others. rho(index): inverse depth of a feature of the record; 0: none.

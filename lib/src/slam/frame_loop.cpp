@@ -92,6 +92,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     if (supported && tracking_.state() == SlamState::kTracking && !start_.progress().recording) learn_noise();
     maintain_map(supported);
     if (start_.record_frame()) relocaliser_.init();  // its views have poses of the wrong map
+    if (supported && !first) look_for_walls();
     const bool begins_anew = look_for_rest() && map_.features.count() == 0;
     // A frame that does not support its pose adds features only to a map that has none to lose.
     const bool empty = first || start_.progress().pending() || map_.features.count() == 0;
@@ -125,12 +126,21 @@ Status FrameLoop::mark_pose() {
   return mark_.set(frame_.report.t_ns, tracking_.state() == SlamState::kTracking, data_.filter_ns);
 }
 
+/// The map becomes as large as the first wall that is seen says it is: places and lengths of before no longer hold.
+void FrameLoop::look_for_walls() {
+  const Scalar scale = start_.look_for_walls();
+  if (!(scale > Scalar(0))) return;
+  planes_.meet_walls();
+  data_.median_depth *= scale;
+  relocaliser_.init();
+}
+
 Status FrameLoop::add_wall(const PlanePrior& prior, std::uint32_t* id) {
   if (!settings_.planes || !start_.has_place()) return Status::kState;
   const int reserved = tracking_.has_pose() ? 0 : start_.target_rows();
   const Status status =
       planes_.add_wall(prior, reserved, tracking_.state() == SlamState::kTracking, data_.filter_ns, id);
-  if (status == Status::kOk) start_.end_record();
+  if (status == Status::kOk && !start_.has_walls_apart()) start_.end_record();
   return status;
 }
 

@@ -88,6 +88,7 @@ class FrameLoop {
   Status end_frame();
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
   bool look_for_rest();
+  void look_for_walls();
   bool look_for_scale();
   void layout_unit(Arena& arena);
   void init_unit();

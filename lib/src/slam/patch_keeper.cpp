@@ -66,7 +66,7 @@ int PatchKeeper::list_in_order(int* order) const {
 int PatchKeeper::wall_of(const StoredPatch& patch) const {
   const std::uint32_t id = map_.planes.find(patch.plane);
   for (int k = 0; k < map_.planes.capacity() && id != 0; ++k)
-    if (map_.planes.used(k) && map_.planes[k].id == id) return map_.planes[k].doubted ? -1 : k;
+    if (map_.planes.used(k) && map_.planes[k].id == id) return map_.planes[k].counts() ? k : -1;
   return -1;
 }
 

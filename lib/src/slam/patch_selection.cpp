@@ -119,7 +119,7 @@ int PatchKeeper::list_squares(const Pyramid& image, int wall, int side, const Ob
 void PatchKeeper::begin_patches(const Pyramid& image) {
   int camera = -1;
   for (int wall = 0; wall < map_.planes.capacity(); ++wall) {
-    if (!map_.planes.used(wall) || !map_.planes[wall].known || map_.planes[wall].doubted) continue;
+    if (!map_.planes.used(wall) || !map_.planes[wall].known || !map_.planes[wall].counts()) continue;
     int youngest = 0;
     int wanted = wanted_on(wall, &youngest);
     // The lattice costs as much as a patch: where it had no place, or the store no room, not again in the next frame.
@@ -140,7 +140,7 @@ void PatchKeeper::begin_patches(const Pyramid& image) {
     }
     in_vain_[wall] = wanted > 0 ? frame_.report.frames : 0;
   }
-  if (map_.planes.has_known()) begin_beside_walls(image, &camera);
+  if (map_.planes.has_known() && !map_.planes.has_apart()) begin_beside_walls(image, &camera);
 }
 
 /// One patch where the plan has no wall, which waits for the plane that it lies on. It takes nobody else's room.

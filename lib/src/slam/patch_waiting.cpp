@@ -28,7 +28,7 @@ constexpr int kMaxMost = 128;  // points that are asked
 bool PatchKeeper::expect_waiting(const StoredPatch& patch, Sight* sight) const {
   const std::uint32_t likely = patch.is_proven() ? patch.wait.likely() : patch.plane;
   for (int k = 0; k < map_.planes.capacity() && likely != 0; ++k)
-    if (map_.planes.used(k) && map_.planes[k].id == likely && !map_.planes[k].doubted && expect(patch, k, sight))
+    if (map_.planes.used(k) && map_.planes[k].id == likely && map_.planes[k].counts() && expect(patch, k, sight))
       return true;
   const Camera& lens = filter_.lens();
   const Quat q_now_last = filter_.state().body.q_WC.conjugate() * q_last_;
@@ -46,7 +46,7 @@ bool PatchKeeper::expect_waiting(const StoredPatch& patch, Sight* sight) const {
 /// it.
 bool PatchKeeper::may_lie_on(const StoredPatch& patch, int entry, Scalar* range) const {
   const PlaneEntry& plane = map_.planes[entry];
-  if (!map_.planes.used(entry) || plane.doubted) return false;
+  if (!map_.planes.used(entry) || !plane.counts()) return false;
   const State& state = filter_.state();
   const Block& camera = state.block[patch.camera];
   Vec3 ray_K;

@@ -37,7 +37,7 @@ void PlaneKeeper::maintain(bool may_doubt) {
   const int turn = frame_.report.frames % map_.planes.capacity();
   for (int k = 0, maintained = 0; k < map_.planes.capacity(); ++k) {
     const int i = (turn + k) % map_.planes.capacity();
-    if (!map_.planes.used(i)) continue;
+    if (!map_.planes.used(i) || map_.planes[i].apart) continue;
     ++map_.planes[i].age;
     // A wall that patches refuse does not wait for its turn: what begins on it misleads.
     if (may_doubt && map_.planes[i].is_refused_by_patches() && !map_.planes[i].doubted) judge_wall(i);

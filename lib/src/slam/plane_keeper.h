@@ -50,6 +50,9 @@ class PlaneKeeper {
   /// The work of one frame. Folds, fixes and merges one plane per frame, in turn, so that the work is bounded. may_doubt: the map's
   /// depths are sure enough to doubt a wall by.
   void maintain(bool may_doubt = true);
+  /// Walls are compared with the map for the first time: planes that were found in a map of another size end, since their points would
+  /// not fold into walls, and those before a wall fold into it.
+  void meet_walls();
 
  private:
   enum class TrialVerdict { kOpen, kThere, kElsewhere };
@@ -95,6 +98,8 @@ class PlaneKeeper {
   bool is_before_wall(int plane_entry, const Vec3& p_W) const;
   int list_before_wall(int plane_entry, int* slots, int capacity);
   bool may_set_scale(int plane_entry) const;
+  bool knows_scale() const;
+  bool is_on_found_plane(int entry) const;
   unsigned find_wall_consensus(int plane_entry, const int* slots, int count, int* size);
   void fold_by_consensus(int plane_entry);
   void judge_wall(int plane_entry);

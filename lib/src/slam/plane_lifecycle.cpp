@@ -22,7 +22,7 @@ int PlaneKeeper::list_candidates() {
     const Vec3 p_W = filter_.point(map_.features[i].slot);
     bool taken = false;
     for (int k = 0; k < map_.planes.capacity() && !taken; ++k) {
-      if (!map_.planes.used(k)) continue;
+      if (!map_.planes.used(k) || map_.planes[k].apart) continue;
       const Block& plane = filter_.state().block[map_.planes[k].slot];
       const PlaneFrame& frame = filter_.state().frame_of(plane);
       taken = std::abs(plane_distance(frame, plane.xyz(), p_W)) < limit && is_in_reach(k, p_W);

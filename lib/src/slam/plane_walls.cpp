@@ -47,7 +47,7 @@ int first_wall(const Filter& filter, const Map& map, const Vec3& origin_W, const
   int first = -1;
   for (int k = 0; k < map.planes.capacity(); ++k) {
     Scalar at = 0;
-    if (!map.planes.used(k) || !map.planes[k].known || map.planes[k].doubted) continue;
+    if (!map.planes.used(k) || !map.planes[k].known || !map.planes[k].counts()) continue;
     if (!meets_wall(filter, map, k, origin_W, direction_W, &at) || (first >= 0 && at >= *range)) continue;
     first = k;
     *range = at;
@@ -108,16 +108,32 @@ bool PlaneKeeper::is_before_wall(int plane_entry, const Vec3& p_W) const {
   return first < 0 || first == plane_entry || range <= nearest;
 }
 
+bool PlaneKeeper::knows_scale() const {
+  return scale_.parts > 0 && filter_.variance_of(scale_) < kKnownScale * kKnownScale;
+}
+
+/// Whether a point is one of a plane that was found, which cannot merge into a wall while the scale is open: it is where the wall is only
+/// in a map of the right size.
+bool PlaneKeeper::is_on_found_plane(int entry) const {
+  if (!map_.features.used(entry) || map_.features[entry].on_trial || map_.features[entry].rejections > 0) return false;
+  const int slot = map_.features[entry].slot;
+  if (!is_planar(filter_.state().block[slot].kind)) return false;
+  const int plane = map_.planes.entry_at(filter_.state().plane_of(slot));
+  return plane >= 0 && !map_.planes[plane].known;
+}
+
 /// Converged points before the wall that are known well enough, in random order. Returns how many.
 int PlaneKeeper::list_before_wall(int plane_entry, int* slots, int capacity) {
   const int features = map_.features.capacity();
   const int from = draw(&data_.random, features);
+  const bool takes_planar = !knows_scale();
   int count = 0;
   for (int k = 0; k < features && count < capacity; ++k) {
     const int i = (from + k) % features;
     Mat3 covariance;
-    if (!is_settled(i) || !is_before_wall(plane_entry, filter_.point(map_.features[i].slot))) continue;
-    if (is_certain(i, &covariance)) slots[count++] = map_.features[i].slot;
+    const bool is_planar = takes_planar && is_on_found_plane(i);
+    if ((!is_planar && !is_settled(i)) || !is_before_wall(plane_entry, filter_.point(map_.features[i].slot))) continue;
+    if (is_planar || is_certain(i, &covariance)) slots[count++] = map_.features[i].slot;
   }
   return count;
 }
@@ -126,7 +142,7 @@ int PlaneKeeper::list_before_wall(int plane_entry, int* slots, int capacity) {
 /// known, points before a wall that is not there agree with it as well as with one that is, only in a world of another size; so the wall
 /// that most points are before decides.
 bool PlaneKeeper::may_set_scale(int plane_entry) const {
-  if (scale_.parts > 0 && filter_.variance_of(scale_) < kKnownScale * kKnownScale) return true;
+  if (knows_scale()) return true;
   const Vec3 c_W = camera_at(filter_.state(), Scalar(0)).p_W;
   int before_this = 0, before_other[kMaxOthers] = {};
   for (int i = 0; i < map_.features.capacity(); ++i) {
@@ -192,6 +208,25 @@ unsigned PlaneKeeper::find_wall_consensus(int plane_entry, const int* slots, int
     best = inliers;
   }
   return best;
+}
+
+void PlaneKeeper::meet_walls() {
+  for (int i = 0; i < map_.planes.capacity(); ++i) {
+    if (!map_.planes.used(i) || map_.planes[i].known) continue;
+    const int plane = map_.planes[i].slot;
+    filter_.state().for_each_planar(plane, [&](int slot) {
+      const int feature = filter_.state().block[slot].owner;
+      if (map_.features[feature].on_trial || !filter_.unfold(slot, settings_.fold.roughness))
+        features_.drop(&feature, 1);
+    });
+    filter_.remove(&plane, 1);
+    map_.planes.remove(i);
+  }
+  for (int i = 0; i < map_.planes.capacity(); ++i) {
+    if (!map_.planes.used(i)) continue;
+    filter_.scale_row(&scale_);
+    fold_by_consensus(i);
+  }
 }
 
 /// Folds points onto a wall that none of them alone is known to lie on.

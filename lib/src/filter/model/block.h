@@ -23,8 +23,12 @@ enum class BlockKind : std::uint8_t {
   kGroupedPoint = 7,
   kReferenceCamera = 8,
   kPatchCorners = 9,
+  kPlaneApart = 10,
 };
-inline constexpr int kBlockKinds = 10;
+inline constexpr int kBlockKinds = 11;
+
+/// Whether blocks of this kind have a frame and a place among the planes.
+inline bool is_plane(BlockKind kind) { return kind == BlockKind::kPlane || kind == BlockKind::kPlaneApart; }
 
 /// What a feature is to the caller of the library.
 enum class FeatureForm : std::uint8_t { kNone, kPoint, kInverseDepth, kFolded, kFixed };

@@ -5,6 +5,7 @@
 #include "filter/model/inverse_depth.h"
 #include "filter/model/patch_corners.h"
 #include "filter/model/plane.h"
+#include "filter/model/plane_apart.h"
 #include "filter/model/plane_point.h"
 #include "filter/model/point.h"
 #include "filter/model/point_group.h"
@@ -22,7 +23,8 @@ namespace pf {
   X(model::Group)             \
   X(model::GroupedPoint)      \
   X(model::ReferenceCamera)   \
-  X(model::PatchCorners)
+  X(model::PatchCorners)      \
+  X(model::PlaneApart)
 
 /// Calls f with an object of the kind's type; with none, does nothing.
 template <typename F>
