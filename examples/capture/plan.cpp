@@ -135,8 +135,8 @@ bool Plan::take_notice(const FrameView& view, const pf_camera_t& camera, std::st
                   [&](const pf_wall_t& w) { return is_in_view(w.prior, view.pose, camera); }))
     return false;
   line =
-      "--walls: the camera sees no wall at the first pose, so that nothing tells how far away anything is; begin where "
-      "it sees one";
+      "--walls: the camera sees no wall at the first pose, so that nothing tells how large the map is until one comes "
+      "into view";
   return true;
 }
 

@@ -61,6 +61,7 @@ class PlaneKeeper {
   struct Data {
     std::uint32_t random = 1;    ///< of what is drawn before walls
     std::uint32_t searches = 0;  ///< for new planes, so far
+    bool met_late = false;       ///< walls came into view in a map of unknown size
   };
   /// That a plane is vertical.
   struct Told {

@@ -112,8 +112,8 @@ bool PlaneKeeper::knows_scale() const {
   return scale_.parts > 0 && filter_.variance_of(scale_) < kKnownScale * kKnownScale;
 }
 
-/// Whether a point is one of a plane that was found, which cannot merge into a wall while the scale is open: it is where the wall is only
-/// in a map of the right size.
+/// Whether a point is one of a plane that was found, which cannot merge into a wall that came into view late while the scale is open: it is
+/// where the wall is only in a map of the right size.
 bool PlaneKeeper::is_on_found_plane(int entry) const {
   if (!map_.features.used(entry) || map_.features[entry].on_trial || map_.features[entry].rejections > 0) return false;
   const int slot = map_.features[entry].slot;
@@ -126,7 +126,7 @@ bool PlaneKeeper::is_on_found_plane(int entry) const {
 int PlaneKeeper::list_before_wall(int plane_entry, int* slots, int capacity) {
   const int features = map_.features.capacity();
   const int from = draw(&data_.random, features);
-  const bool takes_planar = !knows_scale();
+  const bool takes_planar = data_.met_late && !knows_scale();
   int count = 0;
   for (int k = 0; k < features && count < capacity; ++k) {
     const int i = (from + k) % features;
@@ -211,6 +211,7 @@ unsigned PlaneKeeper::find_wall_consensus(int plane_entry, const int* slots, int
 }
 
 void PlaneKeeper::meet_walls() {
+  data_.met_late = true;
   for (int i = 0; i < map_.planes.capacity(); ++i) {
     if (!map_.planes.used(i) || map_.planes[i].known) continue;
     const int plane = map_.planes[i].slot;
