@@ -264,6 +264,7 @@ bool FilterStart::record_frame() {
   const StartOutcome outcome = without_.solve(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth);
   switch (outcome) {
     case StartOutcome::kWait:
+      if (progress().pending()) bound_baseline();
       break;
     case StartOutcome::kSolved:
     case StartOutcome::kSettled:
@@ -272,8 +273,7 @@ bool FilterStart::record_frame() {
       if (first) settings_.hooks.say("started without a target: the first depths are known");
       break;
     case StartOutcome::kTooFew:
-      // Only rotation so far, or too few features in view.
-      if (first && !checks) begin_anew();
+      if (first && !checks) begin_anew();  // only rotation so far, or too few features in view
       break;
     case StartOutcome::kStill:
       stay_at_base();

@@ -116,6 +116,7 @@ class FilterStart {
   void clear_all_but_walls();
   void stay_at_base();
   void begin_anew();
+  void bound_baseline();
   void restart_from_record(Scalar unit);
   template <typename Rho>
   void restart_features(Rho&& rho_of, Scalar relative_sigma);

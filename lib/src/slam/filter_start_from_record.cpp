@@ -1,11 +1,12 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "filter/baseline.h"
 #include "geometry/so3.h"
 #include "slam/filter_start.h"
 #include "slam/tuning.h"
 
-/// FilterStart: the filter begins again from the record of a start.
+/// FilterStart: what the record of a start tells the filter, and how the filter begins again from it.
 
 namespace pf {
 
@@ -36,6 +37,21 @@ void FilterStart::restart_from_record(Scalar unit) {
   if (settings_.body.has(BodyPart::kVelocity)) restart_velocities(unit);
   if (has_walls_apart()) open_scale();
   if (progress().checking) restart_at_target();
+}
+
+/// As long as depths are open, no pixel's linearisation tells the baseline (Filter::parallax_noise), and it would grow with the unknown
+/// speed, and with it search ellipses and what passes for a rotation. That a rotation explains all pixels does tell it.
+void FilterStart::bound_baseline() {
+  Mat3 covariance;
+  if (!without_.baseline_covariance(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth, &covariance))
+    return;
+  for (int i = 0; i < parts_.map.features.capacity(); ++i) {
+    if (!parts_.map.features.used(i) || without_.index_of(parts_.map.features[i].id) < 0) continue;
+    const Block& block = parts_.filter.state().block[parts_.map.features[i].slot];
+    if (block.kind != BlockKind::kInverseDepth) continue;
+    take_baseline(parts_.filter, block.parent, covariance);
+    return;
+  }
 }
 
 /// What moves before a camera that stands still has drawn its pose along, since no depth is known: it is again that of the record's first

@@ -39,12 +39,13 @@ void ImageFrontEnd::measure(ConsensusRule rule, Scalar median_depth, bool parall
   is_learnt_ = rule != ConsensusRule::kStart && same_view_.is_learnt(filter_.state().body, median_depth,
                                                                      settings_.camera.fx, noise_.correlation_frames());
   filter_.estimate_motion_only(is_learnt_);
-  measure_visible(rule);
-  if (frame_.report.inliers == 0 && begin_following()) {
-    frame_.forget_searches();
-    measure_visible(rule);
-    is_following_ = false;
+  measure_visible(rule, rule == ConsensusRule::kStart);
+  const bool followed = is_following_;
+  if (frame_.report.inliers == 0 && (followed || begin_following())) {
+    is_following_ = !followed;
+    measure_visible(rule, false);
   }
+  is_following_ = false;
   filter_.estimate_motion_only(false);
 }
 
@@ -60,8 +61,9 @@ bool ImageFrontEnd::begin_following() {
 }
 
 /// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
-/// anything is used.
-void ImageFrontEnd::measure_visible(ConsensusRule rule) {
+/// anything is used. follows: where few of those first ones are found, searches go about the places where the picture as a whole has gone.
+void ImageFrontEnd::measure_visible(ConsensusRule rule, bool follows) {
+  frame_.forget_searches();
   const int count = list_visible();
   listed_ = count;
   is_measured_ = true;
@@ -71,6 +73,8 @@ void ImageFrontEnd::measure_visible(ConsensusRule rule) {
   }
   const int scouts = widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
   int found = search(0, scouts > 0 ? scouts : count);
+  if (follows && kFoundOf * found < kLeastFound * frame_.report.attempts && begin_following())
+    return measure_visible(rule, false);
   if (scouts > 0) {
     const bool scouted = update_with_consensus(0, found, rule);
     if (scouted) {

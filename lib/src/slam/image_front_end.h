@@ -81,7 +81,7 @@ class ImageFrontEnd {
   Scalar searched_area(int i) const;
 
  private:
-  void measure_visible(ConsensusRule rule);
+  void measure_visible(ConsensusRule rule, bool follows);
   bool begin_following();
   // image_candidates.cpp
   bool is_visible(int feature, Vec2* pixel) const;

@@ -85,6 +85,14 @@ CameraView StartWithoutTarget::follow(const Camera& camera, Scalar sigma_px, Sca
   return view(record_.frames() - 1);
 }
 
+bool StartWithoutTarget::baseline_covariance(const Camera& camera, Scalar sigma_px, Scalar median_depth,
+                                             Mat3* covariance) const {
+  if (!bundle_.baseline_covariance(camera, record_, sigma_px, median_depth, covariance)) return false;
+  const Mat3 R_WK = data_.base_q_WC.toRotationMatrix();
+  *covariance = (R_WK * *covariance * R_WK.transpose()).eval();
+  return true;
+}
+
 CameraView StartWithoutTarget::view(int k) const {
   const StartRecord::Frame& frame = record_.frame(k);
   return {data_.base_q_WC * frame.q_WC, data_.base_p_W + data_.base_q_WC * frame.p_W};

@@ -46,6 +46,10 @@ class StartWithoutTarget {
   /// Improves the last frame's pose while the depths are open (StartBundle::follow). rho: of each feature, about one.
   CameraView follow(const Camera& camera, Scalar sigma_px, Scalar depth, Scalar* rho);
 
+  /// Covariance in W of the last frame's place about that of the record's first frame, as long as depths are open
+  /// (StartBundle::baseline_covariance).
+  bool baseline_covariance(const Camera& camera, Scalar sigma_px, Scalar median_depth, Mat3* covariance) const;
+
   bool empty() const { return record_.features() == 0; }
   const StartRecord& record() const { return record_; }
   const StartBundle& bundle() const { return bundle_; }

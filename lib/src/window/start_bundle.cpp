@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/pnp.h"
+#include "geometry/small_cholesky.h"
 #include "window/rotation_fit.h"
 #include "window/tuning.h"
 
@@ -243,6 +244,25 @@ StartOutcome StartBundle::solve_by(const Camera& camera, StartRecord& record, Sc
   }
   last_parallax_ = parallax;
   return parallax > kSettledParallax * sigma_px ? StartOutcome::kSettled : StartOutcome::kSolved;
+}
+
+bool StartBundle::baseline_covariance(const Camera& calibration, const StartRecord& record, Scalar sigma_px,
+                                      Scalar median_depth, Mat3* covariance) const {
+  const Camera& camera = is_free_ ? lens_->camera : calibration;
+  const int last = record.frames() - 1;
+  if (last < 0) return false;
+  int left = 0;
+  for (int i = 0; i < record.features(); ++i) left += record.seen(last, i) ? 1 : 0;
+  if (left < kMinFeatures) return false;
+  Quat q_WC = record.frame(last).q_WC;
+  const Scalar parallax = std::max(sigma_px, fit_rotation(camera, record, last, &q_WC));
+  Mat3 A;
+  if (!translation_left(camera, record.rays(), record.pixels(last), record.features(), q_WC, &A)) return false;
+  A += Mat3::Identity() * (parallax * parallax / (kMaxBaseline * kMaxBaseline));
+  SmallCholesky<3> cholesky;
+  if (!cholesky.factor(A)) return false;
+  *covariance = cholesky.inverse() * (parallax * parallax * median_depth * median_depth);
+  return true;
 }
 
 void StartBundle::follow(const Camera& calibration, StartRecord& record, Scalar sigma_px, Scalar depth, Scalar* rho) {

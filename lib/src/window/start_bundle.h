@@ -84,6 +84,11 @@ class StartBundle {
   /// depth: of an inverse depth of one.
   void follow(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar depth, Scalar* rho);
 
+  /// Covariance of the camera's place in the record's last frame, about that of frame 0 and in its axes, as what a rotation leaves of its
+  /// pixels tells it: how far the camera may have moved for that. False where it tells nothing.
+  bool baseline_covariance(const Camera& camera, const StartRecord& record, Scalar sigma_px, Scalar median_depth,
+                           Mat3* covariance) const;
+
   Scalar rho(int feature) const { return rho_[feature]; }
   bool good(int feature) const { return last_rho_[feature] > Scalar(0); }
 

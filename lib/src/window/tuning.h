@@ -48,6 +48,7 @@ inline constexpr int kPoseTrials = 50;                 ///< sets of three featur
 inline constexpr int kMinPoseInliers = 6;              ///< features that must agree with a frame's pose
 inline constexpr int kPoseSeed = 1;                    ///< of the generator that draws these sets
 inline constexpr Scalar kStepRegularisation = Scalar(1e-6);  ///< likewise, on the diagonal [1/rad², 1/m²]
+inline constexpr Scalar kMaxBaseline = Scalar(3);            ///< [median depths] sigma where pixels tell nothing of it
 }  // namespace start
 
 /// A camera that stands still while something moves before it. In 20 starts on four real sequences a moving camera leaves at most one

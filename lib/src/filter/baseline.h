@@ -1,0 +1,24 @@
+#pragma once
+
+#include "filter/measurement.h"
+
+namespace pf {
+
+class Filter;
+struct State;
+
+/// How far the camera is from an anchor, over the body and the anchor.
+using BaselineMeasurement = MeasurementOf<3, 6, 2>;
+
+/// The baseline between an anchor and the camera, measured as zero:
+///
+///   z = p - o_W,   e_z = e_p - e_o
+///
+/// anchor      its block
+/// covariance  of the baseline, as far as something else than the pixels' linearisation tells it [m^2]
+void predict_baseline(const State& state, int anchor, const Mat3& covariance, BaselineMeasurement* out);
+
+/// Updates the filter with it. False, with nothing changed, where that is impossible.
+bool take_baseline(Filter& filter, int anchor, const Mat3& covariance);
+
+}  // namespace pf
