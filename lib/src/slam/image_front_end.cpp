@@ -73,7 +73,7 @@ void ImageFrontEnd::measure_visible(ConsensusRule rule, bool follows) {
   }
   const int scouts = widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
   int found = search(0, scouts > 0 ? scouts : count);
-  if (follows && kFoundOf * found < kLeastFound * frame_.report.attempts && begin_following())
+  if (follows && Scalar(found) < kFewFound * Scalar(frame_.report.attempts) && begin_following())
     return measure_visible(rule, false);
   if (scouts > 0) {
     const bool scouted = update_with_consensus(0, found, rule);

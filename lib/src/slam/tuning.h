@@ -149,9 +149,9 @@ inline constexpr int kPlaneAhead = 2;            ///< features that do not count
 namespace image_front_end {
 inline constexpr float kIncomparable = 1000;  ///< taken off the rate of what cannot be compared: more than any rate
 inline constexpr int kScouts = 12;            ///< candidates that are measured first when the pose is uncertain
-inline constexpr Scalar kWideEllipse = Scalar(6);    ///< [px] largest semi-axis above which scouts are measured first
-inline constexpr int kMinConsensus = 5;              ///< inliers that a consensus needs during a start
-inline constexpr int kLeastFound = 3, kFoundOf = 4;  ///< share below which searches of a start follow the picture
+inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
+inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
+inline constexpr Scalar kFewFound = Scalar(0.75);  ///< share below which searches of a start follow the picture
 inline constexpr int kSettled = 5;  ///< measurements of a feature whose residuals are those of its matches
 }  // namespace image_front_end
 
