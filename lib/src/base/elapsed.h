@@ -14,7 +14,11 @@ inline std::int64_t elapsed_ns(std::int64_t from, std::int64_t to) {
 }
 
 inline double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
-inline std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(s * 1e9); }
+/// Cut off at 292 years either way.
+inline std::int64_t nanoseconds(double s) {
+  constexpr double kMost = 9.2e18;
+  return static_cast<std::int64_t>(std::clamp(s * 1e9, -kMost, kMost));
+}
 
 /// A frame counter that stops before it would overflow (after about seven months at 60 Hz; smaller types at their largest value).
 template <class Int>

@@ -27,8 +27,9 @@ constexpr double kLeastSpan = 2;  ///< sample intervals, of which a difference o
 
 std::int64_t BodyMotion::on_unit_clock(std::int64_t t_ns) const {
   std::int64_t shifted, delay_ns = settings_.unit.delay_ns;
-  if (settings_.body.has(BodyPart::kDelay))
-    delay_ns += nanoseconds(static_cast<double>(filter_.state().mounting.delay));
+  if (settings_.body.has(BodyPart::kDelay) &&
+      __builtin_add_overflow(delay_ns, nanoseconds(static_cast<double>(filter_.state().mounting.delay)), &delay_ns))
+    return t_ns;
   return __builtin_sub_overflow(t_ns, delay_ns, &shifted) ? t_ns : shifted;
 }
 
@@ -95,7 +96,8 @@ Bend BodyMotion::bend_of_readout(std::int64_t unit_ns, const ImuReading& now, co
   if (readout == 0) return bend;
   const double T = std::max(std::abs(readout) / 2, kLeastSpan * interval);
   ImuReading before;
-  if (!reading_at(imu_, unit_ns - nanoseconds(T), &before)) return bend;
+  std::int64_t before_ns;
+  if (__builtin_sub_overflow(unit_ns, nanoseconds(T), &before_ns) || !reading_at(imu_, before_ns, &before)) return bend;
   const Mounting& mounting = filter_.state().mounting;
   bend.alpha_C = mounting.R_CB * ((now.gyro - before.gyro) / static_cast<Scalar>(T));
   if (!filter_.is_metric()) return bend;
