@@ -34,7 +34,7 @@ inline constexpr int kMaxTried = 12;  ///< log lengths, the best known of which 
 namespace apart {
 inline constexpr Scalar kMaxScaleVariance = Scalar(4e-4);     ///< of the log scale in P; beyond it the scale leaves P
 inline constexpr Scalar kLeftScaleVariance = Scalar(2.5e-6);  ///< that stays in P. With 0 -2e-4, with 1e-4 -2e-5
-inline constexpr Scalar kGrowth = Scalar(6e-9);  ///< of a variance, by update and root of rows; 2e-9: -1e-5 in float
+inline constexpr Scalar kGrowth = Scalar(6e-9);  ///< of a variance in float, by update and root of rows; 2e-9: -1e-5
 inline constexpr int kSpeedTells = 30;  ///< updates after which the speed of a start says nothing of the scale any more
 inline constexpr Scalar kMinPoseSigma = Scalar(1e-3);  ///< [rad, m] of a given pose, below which it stays in P
 inline constexpr Scalar kLeftSigma = Scalar(1e-5);     ///< [rad, m] of a given pose, that stays in P in any case

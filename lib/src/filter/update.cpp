@@ -8,16 +8,6 @@
 /// The update.
 
 namespace pf {
-namespace {
-
-/// By which the variances grow in an update: what rounding in float may have taken from them, and rounded as float does. Double, whose
-/// rounding asks for nothing of the kind, has the same, since else it decides otherwise about features and planes (lib/docs/float.md).
-Scalar growth(int rows) {
-  const float factor = 1.0f + static_cast<float>(tuning::apart::kGrowth) * std::sqrt(static_cast<float>(rows));
-  return static_cast<Scalar>(factor - 1.0f);
-}
-
-}  // namespace
 
 const Measurement* Filter::views_of(const PixelMeasurement* z, int count) {
   for (int i = 0; i < count; ++i) view_[i] = z[i].view();
@@ -42,7 +32,10 @@ void Filter::commit_update() {
   apply_error(state_, blocks_, blocks_.step());
   if (keep_gauge_) transport_.finish(state_, blocks_);
   blocks_.downdate(transport_.U(), transport_.G(), transport_.rows());
-  blocks_.grow(growth(blocks_.dim()));
+  // In float the diagonal gets back what rounding may have taken from it. Not in double: a part of a variance against W, which may be metres
+  // along a street, is much of what is known of a point against its neighbours (lib/docs/float.md).
+  if constexpr (sizeof(Scalar) == sizeof(float))
+    blocks_.grow(tuning::apart::kGrowth * std::sqrt(static_cast<Scalar>(blocks_.dim())));
   if (keeps_apart()) end_update_apart(l);
   if (told_updates_ > 0) --told_updates_;
 }
