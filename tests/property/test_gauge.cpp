@@ -14,14 +14,6 @@ namespace {
 
 constexpr int kShiftAndTurn = 6, kAll = 7;
 
-/// N^T P^-1 N of a scene, 7 x 7.
-Dense information_of(const TestFilter& filter) {
-  std::vector<double> scratch(static_cast<std::size_t>(filter.dim() * (filter.dim() + 8)));
-  double out[49];
-  TEST_ASSERT_TRUE(gauge_information(*filter, scratch.data(), out));
-  return Eigen::Map<const Eigen::Matrix<double, 7, 7, Eigen::RowMajor>>(out);
-}
-
 /// Of a covariance whose correlations have about this smallest eigenvalue.
 void require_information(double smallest, bool expected) {
   SeededRandom random(68);
@@ -334,20 +326,20 @@ void test_folds_and_updates_should_gain_nothing_about_the_gauge() {
     const Dense N = scene.filter.gauge();
     const Dense A = random_covariance(random, kAll, 0.3);
     scene.filter.set_P(N * A * N.transpose() + random_covariance(random, scene.filter.dim(), 0.02));
-    Dense before = information_of(scene.filter);
+    Dense before = scene.filter.gauge_information();
     unsigned char in[Filter::kMaxFolded];
     TEST_ASSERT_EQUAL_INT(
         8, scene.filter->fold(scene.plane, scene.on_wall.data(), 8, {Scalar(0.002), Scalar(1e6), true}, in));
-    Dense now = information_of(scene.filter);
+    Dense now = scene.filter.gauge_information();
     for (int i = 0; i < kAll; ++i) {
       if (!(now(i, i) < before(i, i) * (1 + 1e-9)))
         std::printf("fold, direction %d: %.3g\n", i, now(i, i) / before(i, i) - 1);
       TEST_ASSERT_TRUE(now(i, i) < before(i, i) * (1 + 1e-9));
     }
     TEST_ASSERT_TRUE(scene.filter->fix(scene.on_wall.data(), 5, FixForm::kConsider, scene.on_wall.data(), 8));
-    before = information_of(scene.filter);
+    before = scene.filter.gauge_information();
     update_with_wall(scene, random);
-    now = information_of(scene.filter);
+    now = scene.filter.gauge_information();
     for (int i = 0; i < kAll; ++i) {
       if (!(now(i, i) < before(i, i) * (1 + 1e-9)))
         std::printf("update, direction %d: %.3g\n", i, now(i, i) / before(i, i) - 1);
@@ -381,7 +373,7 @@ void test_a_known_wall_should_bring_its_own_information_once() {
     const Dense N = scene.filter.gauge();
     scene.filter.set_P(N * random_covariance(random, kAll, 0.3) * N.transpose() +
                        random_covariance(random, scene.filter.dim(), 0.02));
-    const Dense before = information_of(scene.filter);
+    const Dense before = scene.filter.gauge_information();
     PlaneFrame frame = scene.fit.frame;
     frame.R_WP = random_turn(random, 0.1).toRotationMatrix() * frame.R_WP;
     const Dense C = random_covariance(random, 3, 0.05);
@@ -389,15 +381,15 @@ void test_a_known_wall_should_bring_its_own_information_once() {
     TEST_ASSERT_TRUE(wall >= 0);
     const Dense N_w = plane_gauge(frame, Vec3::Zero()).cast<double>();
     const Dense expected = before + N_w.transpose() * inverse_of(C) * N_w;
-    Dense now = information_of(scene.filter);
+    Dense now = scene.filter.gauge_information();
     TEST_ASSERT_TRUE(largest(now - expected) < 1e-9 * largest(expected));
 
     unsigned char in[Filter::kMaxFolded];
     TEST_ASSERT_EQUAL_INT(8, scene.filter->fold(wall, scene.on_wall.data(), 8, {Scalar(0.002), Scalar(1e6), true}, in));
-    const Dense folded = information_of(scene.filter);
+    const Dense folded = scene.filter.gauge_information();
     for (int i = 0; i < kAll; ++i) TEST_ASSERT_TRUE(folded(i, i) < now(i, i) * (1 + 1e-9));
     for (int k = 0; k < 3; ++k) update_with_wall(scene, random);
-    now = information_of(scene.filter);
+    now = scene.filter.gauge_information();
     for (int i = 0; i < kAll; ++i) TEST_ASSERT_TRUE(now(i, i) < folded(i, i) * (1 + 1e-9));
   }
 }
@@ -468,7 +460,7 @@ Growth run(bool keep_gauge, SeededRandom& random) {
       points += filter->state().block[slot[i]].kind == BlockKind::kPoint ? 1 : 0;
     }
 
-    const Dense now = information_of(filter);
+    const Dense now = filter.gauge_information();
     // Where the camera is seen from a state that is far from W's origin, turns and shifts mix: compare along the axes.
     for (int i = 0; i < kAll && k > 0; ++i) {
       const double grown = (now(i, i) - before(i, i)) / before(i, i);
@@ -493,17 +485,17 @@ void test_a_direction_that_is_observable_should_be_zero_and_leave_the_others() {
     const Dense N = scene.filter.gauge();
     scene.filter.set_P(N * random_covariance(random, kAll, 0.3) * N.transpose() +
                        random_covariance(random, scene.filter.dim(), 0.02));
-    const Dense all = information_of(scene.filter);
+    const Dense all = scene.filter.gauge_information();
     scene.filter.set_unobservable(gauge::kMetric);
     TEST_ASSERT_TRUE(largest(scene.filter.gauge().leftCols(kShiftAndTurn) - N.leftCols(kShiftAndTurn)) == 0);
     TEST_ASSERT_TRUE(largest(scene.filter.gauge().col(gauge::kScale)) == 0);
-    const Dense before = information_of(scene.filter);
+    const Dense before = scene.filter.gauge_information();
     TEST_ASSERT_TRUE(largest(before.topLeftCorner(6, 6) - all.topLeftCorner(6, 6)) == 0);
     TEST_ASSERT_TRUE(largest(before.row(gauge::kScale)) == 0 && largest(before.col(gauge::kScale)) == 0);
     ScaleRow l;
     TEST_ASSERT_FALSE(scene.filter->scale_row(&l));
     update_with_wall(scene, random);
-    const Dense now = information_of(scene.filter);
+    const Dense now = scene.filter.gauge_information();
     for (int i = 0; i < kShiftAndTurn; ++i) TEST_ASSERT_TRUE(now(i, i) < before(i, i) * (1 + 1e-9));
   }
 }

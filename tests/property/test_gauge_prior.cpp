@@ -1,5 +1,4 @@
 // What is kept apart from P: P + N V N^T is the same covariance, through every operation, as one that holds all of it.
-#include "filter/gauge_information.h"
 #include "filter/observe/inverse_depth.h"
 #include "support/filter_scene.h"
 
@@ -144,11 +143,7 @@ void test_the_information_of_the_gauge_should_be_the_same() {
   Pair pair(9);
   Dense found[2];
   for (Scene* scene : {&pair.split, &pair.direct}) {
-    const int n = scene->filter.dim();
-    std::vector<double> scratch(static_cast<std::size_t>(n * (n + 8)));
-    double out[49];
-    TEST_ASSERT_TRUE(gauge_information(*scene->filter, scratch.data(), out));
-    found[scene == &pair.split ? 0 : 1] = Eigen::Map<const Eigen::Matrix<double, 7, 7, Eigen::RowMajor>>(out);
+    found[scene == &pair.split ? 0 : 1] = scene->filter.gauge_information();
   }
   TEST_ASSERT_TRUE(largest(found[0] - found[1]) < 1e-6 * largest(found[1]));
 }

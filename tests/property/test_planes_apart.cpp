@@ -1,5 +1,4 @@
 // Known planes that nothing in the map has been compared with: they tell nothing of the gauge, until the map gets its size from them.
-#include "filter/gauge_information.h"
 #include "support/plane_scene.h"
 #include "support/test_cameras.h"
 
@@ -11,13 +10,6 @@ void tearDown(void) {}
 namespace {
 
 constexpr int kAll = 7;
-
-Dense information_of(const TestFilter& filter) {
-  std::vector<double> scratch(static_cast<std::size_t>(filter.dim() * (filter.dim() + 8)));
-  double out[kAll * kAll];
-  TEST_ASSERT_TRUE(gauge_information(*filter, scratch.data(), out));
-  return Eigen::Map<const Eigen::Matrix<double, kAll, kAll, Eigen::RowMajor>>(out);
-}
 
 PlaneFrame some_frame() {
   PlaneFrame frame;
@@ -36,14 +28,14 @@ void test_a_plane_apart_should_tell_nothing_and_one_that_is_not_should() {
   PlaneScene scene(random, 0.01);
   spread_with_gauge(scene, random);
   scene.filter->open_scale(Scalar(1), Vec3(1, 2, 3));
-  const Dense before = information_of(scene.filter);
+  const Dense before = scene.filter.gauge_information();
   TEST_ASSERT_TRUE(scene.filter->add_known_plane(some_frame(), Mat3::Identity() * Scalar(1e-4), Scalar(0.01), true) >=
                    0);
   TEST_ASSERT_TRUE(scene.filter->apart().any());
-  TEST_ASSERT_TRUE(largest(information_of(scene.filter) - before) < 1e-9 * largest(before));
+  TEST_ASSERT_TRUE(largest(scene.filter.gauge_information() - before) < 1e-9 * largest(before));
   scene.filter->join_planes_apart(Scalar(1), Vec3::Zero());
   TEST_ASSERT_FALSE(scene.filter->apart().any());
-  const Dense now = information_of(scene.filter);
+  const Dense now = scene.filter.gauge_information();
   for (int i = 0; i < kAll; ++i) TEST_ASSERT_TRUE(now(i, i) > before(i, i) * (1 - 1e-6));
   TEST_ASSERT_TRUE(now(2, 2) > before(2, 2) * 1.01);  // along its normal
 }

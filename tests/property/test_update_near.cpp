@@ -1,6 +1,5 @@
 // An update that is linearised at another pose than the estimate, where the innovation is large: the pose's prior says nothing about the
 // gauge there either.
-#include "filter/gauge_information.h"
 #include "geometry/so3.h"
 #include "support/plane_scene.h"
 #include "support/test_cameras.h"
@@ -13,14 +12,6 @@ void tearDown(void) {}
 namespace {
 
 constexpr int kAll = 7;
-
-/// N^T P^-1 N of a scene, 7 x 7.
-Dense information_of(const TestFilter& filter) {
-  std::vector<double> scratch(static_cast<std::size_t>(filter.dim() * (filter.dim() + 8)));
-  double out[kAll * kAll];
-  TEST_ASSERT_TRUE(gauge_information(*filter, scratch.data(), out));
-  return Eigen::Map<const Eigen::Matrix<double, kAll, kAll, Eigen::RowMajor>>(out);
-}
 
 /// The pose of a camera that was predicted wrongly by some degrees and decimetres.
 Body far_from(const Body& estimate, double angle, double way) {
@@ -67,9 +58,9 @@ double growth_over(SeededRandom& random, Update update) {
     for (const int slot : scene.on_wall) {
       PixelMeasurement z;
       if (!predict_near(scene.filter, slot, near, &z)) continue;
-      const Dense before = information_of(scene.filter);
+      const Dense before = scene.filter.gauge_information();
       update(scene.filter, z, near);
-      const Dense now = information_of(scene.filter);
+      const Dense now = scene.filter.gauge_information();
       for (int i = 0; i < kAll; ++i) worst = std::max(worst, (now(i, i) - before(i, i)) / before(i, i));
       break;
     }

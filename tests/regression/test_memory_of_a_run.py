@@ -11,22 +11,12 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, SOURCE, c_compiler, fail, run, skip, skip_unless_plain_native_build  # noqa: E402
+from small_camera import CALIBRATION  # noqa: E402
 
 PROGRAM = BIN / "pf-capture"
 FRAMES = 40000
 FIRST, LAST = (20500, 25000), (35500, 40000)  # four laps each: how many features are in view makes some kilobytes
 BYTES_PER_FRAME = 0.4  # a megabyte in a day of 30 frames a second
-CALIBRATION = """camera_model: pinhole
-width: 160
-height: 120
-fx: 102.5
-fy: 102.5
-cx: 79.5
-cy: 59.5
-distortion_model: none
-distortion: []
-rate_hz: 30
-"""
 
 
 def main():

@@ -16,24 +16,13 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, fail, skip, skip_unless_plain_native_build  # noqa: E402
+from small_camera import CALIBRATION, RATE  # noqa: E402
 
 PROGRAM = BIN / "pf-capture"
 FRAMES = int(os.environ.get("PLANEFOLD_DAY_FRAMES", "2592000"))
 HOUR = 108000  # [frames]
 FILLED = 10000  # [frames] what the pictures remember of a run is full: 8,192 places of the path, 4,096 columns of the time line
 GROWTH = 1 << 20  # [bytes]
-RATE = 30  # [Hz]
-CALIBRATION = f"""camera_model: pinhole
-width: 160
-height: 120
-fx: 102.5
-fy: 102.5
-cx: 79.5
-cy: 59.5
-distortion_model: none
-distortion: []
-rate_hz: {RATE}
-"""
 problems = []
 
 

@@ -3,8 +3,10 @@
 // Random states for the tests of the filter, a filter with memory of its own, and dense views of what it holds.
 
 #include <cstring>
+#include <vector>
 
 #include "filter/filter.h"
+#include "filter/gauge_information.h"
 #include "geometry/so3.h"
 #include "support/dense.h"
 #include "support/seeded_random.h"
@@ -100,6 +102,13 @@ class TestFilter {
                    n);
     const Dense N = rows.transpose().cast<double>();
     return N;
+  }
+  /// What P says of them: N^T P^-1 N, 7 x 7.
+  Dense gauge_information() const {
+    std::vector<double> scratch(static_cast<std::size_t>(dim() * (dim() + 8)));
+    double out[49];
+    TEST_ASSERT_TRUE(pf::gauge_information(filter_, scratch.data(), out));
+    return Eigen::Map<const Eigen::Matrix<double, 7, 7, Eigen::RowMajor>>(out);
   }
 
  private:

@@ -54,14 +54,9 @@ bool FilterStart::may_become_metric() const {
 }
 
 bool FilterStart::use_motion(const MovingSolution& solution) {
-  Map& map = parts_.map;
   parts_.filter.set_metric(solution, mounting());
   data_.from_motion = true;
-  for (int i = 0; i < map.features.capacity(); ++i)
-    if (map.features.used(i) && map.features[i].has_appearance) map.first_view(i).c_W *= solution.scale;
-  for (int i = 0; i < map.planes.capacity(); ++i)
-    for (PlaneOutline* outline : {&map.planes[i].seen, &map.planes[i].support})
-      for (int k = 0; k < outline->count; ++k) outline->uv[k] *= solution.scale;
+  scale_tables(solution.scale, Vec3::Zero());
   parts_.tracking.rename_map();
   settings_.hooks.say("from motion: gravity and the biases are known, lengths are in metres from here on");
   return true;

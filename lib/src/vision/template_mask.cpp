@@ -19,15 +19,29 @@ constexpr float kNoiseGain = 6.0f;         ///< standard deviation of L, of nois
 constexpr float kQuarter = 0.31864f;       ///< of |x|, x of unit variance, below which a quarter lies
 constexpr int kSide = SourcePatch::kSize;
 
+/// 255 p by log odds, for all bytes.
+struct Probabilities {
+  std::uint8_t of[256] = {};
+  constexpr Probabilities() {
+    constexpr double kStep = 1.1051709180756477;  // e^0.1, of kOddsStep
+    double odds = 1;
+    for (int byte = kMaskUnknown; byte < kMaskFull; ++byte, odds *= kStep) put(byte, odds);
+    odds = 1;
+    for (int byte = kMaskUnknown; byte > 0; --byte, odds /= kStep) put(byte, odds);
+    of[kMaskFull] = kMaskFull;
+  }
+  constexpr void put(int byte, double odds) {
+    const double p = 255 * odds / (1 + odds) + 0.5;
+    of[byte] = p < 1 ? std::uint8_t{1} : static_cast<std::uint8_t>(p);
+  }
+};
+constexpr Probabilities kProbability;
+
 int inside(int at) { return std::clamp(at, 0, kSide - 1); }
 
 }  // namespace
 
-std::uint8_t mask_probability(std::uint8_t odds) {
-  if (odds == 0 || odds == kMaskFull) return odds;
-  const float p = 1.0f / (1.0f + std::exp(-kOddsStep * static_cast<float>(odds - kMaskUnknown)));
-  return static_cast<std::uint8_t>(std::max(kByte * p + 0.5f, 1.0f));
-}
+std::uint8_t mask_probability(std::uint8_t odds) { return kProbability.of[odds]; }
 
 std::uint8_t updated_odds(std::uint8_t odds, float residual, float sigma_plane, float sigma_other) {
   // On the plane the density falls faster, so the power is never above 0.
