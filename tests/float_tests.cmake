@@ -25,6 +25,7 @@ set(PLANEFOLD_FLOAT_TESTS
     unit/test_planar_pose.cpp
     unit/test_plane_search.cpp
     unit/test_small_geometry.cpp
+    unit/test_window_pose.cpp
     unit/test_covariance_reference.cpp
     unit/test_covariance_sets.cpp
     unit/test_copied_covariance.cpp
@@ -33,5 +34,6 @@ set(PLANEFOLD_FLOAT_TESTS
     property/test_slow_walk.cpp
     property/test_covariance_repair.cpp
     slow/test_adjust_many.cpp
+    slow/test_contract_episodes.cpp
     slow/test_slow_walks.cpp
 )

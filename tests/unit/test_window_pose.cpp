@@ -5,6 +5,7 @@
 #include "geometry/so3.h"
 #include "slam/window_motion.h"
 #include "slam/window_pose.h"
+#include "support/dense.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
 #include "unity.h"
@@ -142,6 +143,42 @@ void test_motion_should_learn_velocities_from_poses() {
   TEST_ASSERT_TRUE(covariance.trace() > motion.pose_covariance().trace());
 }
 
+/// Largest difference as correlations.
+double difference(const WindowMotion::Covariance& P, const Eigen::MatrixXd& expected) {
+  double largest = 0;
+  for (int i = 0; i < WindowMotion::kMaxRows; ++i)
+    for (int j = 0; j < WindowMotion::kMaxRows; ++j)
+      largest = std::max(largest, std::abs(static_cast<double>(P(i, j)) - expected(i, j)) /
+                                      std::sqrt(expected(i, i) * expected(j, j)));
+  return largest;
+}
+
+void test_motion_should_keep_a_covariance_where_the_pose_was_hardly_known() {
+  Settings settings;
+  settings.constant_velocity = true;
+  settings.body = BodyLayout::with_constant_velocity();
+  settings.motion_noise = {Scalar(1), Scalar(1)};
+  SeededRandom random(7);
+  for (int k = 0; k < 50; ++k) {
+    WindowMotion motion(settings);
+    motion.init();
+    Body body;
+    body.v_W = random.normals<3>(300.0);
+    body.w_C = random.normals<3>(300.0);
+    motion.set(body, Mat6(Mat6::Identity() * Scalar(50)), 1, 1);
+    for (int step = 1; step < 5; ++step) motion.advance((step - 1) * 40000000, step * 40000000, false, false);
+    Mat6 half, R;
+    for (int i = 0; i < 36; ++i) half(i / 6, i % 6) = static_cast<Scalar>(random.normal() * 0.003);
+    R = half * half.transpose() + Mat6(Mat6::Identity() * Scalar(1e-6));
+    const Eigen::MatrixXd P = motion.covariance().cast<double>();
+    const Eigen::MatrixXd gain = solved(P.topLeftCorner(6, 6) + R.cast<double>(), P.topRows(6)).transpose();
+    const Eigen::MatrixXd kept = Eigen::MatrixXd::Identity(12, 12) - gain * Eigen::MatrixXd::Identity(6, 12);
+    const Eigen::MatrixXd expected = kept * P * kept.transpose() + gain * R.cast<double>() * gain.transpose();
+    TEST_ASSERT_TRUE(motion.correct(Quat::Identity(), Vec3::Zero(), R));
+    TEST_ASSERT_TRUE(difference(motion.covariance(), expected) < (kFloat ? 1e-3 : 1e-9));
+  }
+}
+
 }  // namespace
 
 int main() {
@@ -150,5 +187,6 @@ int main() {
   RUN_TEST(test_fit_pose_should_end_where_the_cost_has_no_slope);
   RUN_TEST(test_fit_pose_should_stay_at_the_prediction_without_matches);
   RUN_TEST(test_motion_should_learn_velocities_from_poses);
+  RUN_TEST(test_motion_should_keep_a_covariance_where_the_pose_was_hardly_known);
   return UNITY_END();
 }

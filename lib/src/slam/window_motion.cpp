@@ -87,20 +87,27 @@ void WindowMotion::damp(Scalar dt) {
 }
 
 bool WindowMotion::correct(const Quat& q_WC, const Vec3& p_W, const Mat6& R) {
+  const Mat6 A = data_.P.topLeftCorner<6, 6>(), B = data_.P.bottomLeftCorner<6, 6>();
   SmallCholesky<6> S;
-  if (!S.factor(Mat6(data_.P.topLeftCorner<6, 6>() + R))) return false;
+  if (!S.factor(Mat6(A + R))) return false;
   Vec6 e;
   e << log_so3(q_WC * data_.body.q_WC.conjugate()), p_W - data_.body.p_W;
-  const Eigen::Matrix<Scalar, 6, kMaxRows> HP = data_.P.topRows<6>();
-  const Eigen::Matrix<Scalar, 6, kMaxRows> K_transposed = S.solve<kMaxRows>(HP);
-  const Eigen::Matrix<Scalar, kMaxRows, 1> dx = K_transposed.transpose().lazyProduct(e);
-  const Covariance P = data_.P - Covariance(HP.transpose().lazyProduct(K_transposed));
-  data_.P = (P + P.transpose()) / 2;
+  // K_p = A S⁻¹, I - K_p = R S⁻¹, and K_v = B S⁻¹.
+  const Mat6 K_p = S.solve<6>(A).transpose(), rest = S.solve<6>(R).transpose(),
+             K_v = S.solve<6>(B.transpose()).transpose();
+  const Mat6 pose = rest.lazyProduct(A).lazyProduct(rest.transpose()) + K_p.lazyProduct(R).lazyProduct(K_p.transpose());
+  const Mat6 speed = data_.P.bottomRightCorner<6, 6>() - K_v.lazyProduct(B.transpose());
+  const Mat6 across = K_v.lazyProduct(R);
+  data_.P.topLeftCorner<6, 6>() = (pose + pose.transpose()) / 2;
+  data_.P.bottomRightCorner<6, 6>() = (speed + speed.transpose()) / 2;
+  data_.P.bottomLeftCorner<6, 6>() = across;
+  data_.P.topRightCorner<6, 6>() = across.transpose();
+  const Vec6 dv = K_v.lazyProduct(e);
   data_.body.q_WC = q_WC;
   data_.body.p_W = p_W;
   if (settings_.constant_velocity) {
-    data_.body.v_W += dx.segment<3>(kVelocity);
-    data_.body.w_C += dx.segment<3>(kVelocity + 3);
+    data_.body.v_W += dv.head<3>();
+    data_.body.w_C += dv.tail<3>();
   }
   return true;
 }

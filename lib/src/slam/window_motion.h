@@ -25,8 +25,10 @@ class WindowMotion {
   /// Corrects the body by a pose that was measured with covariance R. The pose becomes the measured one, which allows for the prediction
   /// already; velocities and covariance follow by Kalman's gain
   ///
-  ///   K = P Hᵀ (P_pp + R)⁻¹,   P+ = P - K (P_pp + R) Kᵀ,   H = (I 0)
+  ///   K = P Hᵀ S⁻¹,   P+ = P - K S Kᵀ,   S = P_pp + R,   H = (I 0)
   ///
+  /// where the pose's part is (I - K_p) P_pp (I - K_p)ᵀ + K_p R K_pᵀ with I - K_p = R S⁻¹, and its covariance with the velocities
+  /// K_v R: of a pose that was hardly known before, float leaves nothing in the difference.
   /// False where P_pp + R is no covariance; nothing has changed then.
   bool correct(const Quat& q_WC, const Vec3& p_W, const Mat6& R);
   /// Puts the body in another place, where the map was moved by an adjustment. The velocities turn and scale with it.
