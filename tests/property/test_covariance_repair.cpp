@@ -65,6 +65,19 @@ void test_what_two_far_rows_hold_should_be_found_in_time() {
   TEST_ASSERT_TRUE(slow_walk::smallest_correlation(filter->covariance()) > -1e-4);
 }
 
+/// Of a map with few rows, in float: each share rounds to nothing beside 1.
+void test_small_growth_should_add_up() {
+  SeededRandom random(95);
+  TestFilter filter(true);
+  fill_map(random, filter, 5, 6);
+  filter.set_P(random_covariance(random, filter.dim(), 0.1));
+  const Eigen::VectorXd before = filter.P().diagonal();
+  for (int k = 0; k < 200; ++k) const_cast<BlockFilter&>(filter->blocks()).grow(Scalar(4e-8));
+  const Eigen::VectorXd growth = filter.P().diagonal().cwiseQuotient(before).array() - 1;
+  TEST_ASSERT_TRUE(growth.minCoeff() > 4e-6);
+  TEST_ASSERT_TRUE(growth.maxCoeff() < 16e-6);
+}
+
 void test_what_is_not_finite_should_not_be_repaired() {
   SeededRandom random(94);
   TestFilter filter(true);
@@ -82,6 +95,7 @@ int main() {
   RUN_TEST(test_a_sound_covariance_should_stay_bit_for_bit);
   RUN_TEST(test_a_negative_eigenvalue_should_be_repaired);
   RUN_TEST(test_what_two_far_rows_hold_should_be_found_in_time);
+  RUN_TEST(test_small_growth_should_add_up);
   RUN_TEST(test_what_is_not_finite_should_not_be_repaired);
   return UNITY_END();
 }

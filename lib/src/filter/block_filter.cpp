@@ -41,6 +41,7 @@ void BlockFilter::init(const Kernels* kernels, int leading_dim, int considered) 
   P_.n = leading_dim + considered;
   only_ = 0;
   gained_ = 0;
+  owed_ = 0;
   for (int b = 0; b < blocks_; ++b) at_[b] = {-1, 0};
   std::memset(P_.data, 0, sizeof(Scalar) * Triangle::size_for(P_.capacity));
   std::memset(W_, 0, sizeof(Scalar) * static_cast<std::size_t>(max_rows_) * static_cast<std::size_t>(ld_));

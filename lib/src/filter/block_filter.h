@@ -114,9 +114,13 @@ class BlockFilter {
   }
 
   // --- soundness
-  /// Variances grow by this share of themselves.
+  /// Variances grow by this share of themselves. What rounds to nothing beside 1 is owed until it does not.
   void grow(Scalar share) {
-    for (int i = 0; i < P_.n; ++i) P_.set(i, i, (Scalar(1) + share) * P_(i, i));
+    owed_ += share;
+    const Scalar factor = Scalar(1) + owed_;
+    if (factor == Scalar(1)) return;
+    owed_ = 0;
+    for (int i = 0; i < P_.n; ++i) P_.set(i, i, factor * P_(i, i));
   }
   enum class Repair { kNone, kDone, kImpossible };
   /// Checks a sample of P, another one for each turn: the leading rows with some of the others. Where it is not positive semidefinite,
@@ -195,6 +199,7 @@ class BlockFilter {
   int max_rows_ = 0;    ///< of one update
   int ld_ = 0, lds_ = 0;
   int gained_ = 0;
+  Scalar owed_ = 0;      ///< growth that is too small for a Scalar
   Scalar* W_ = nullptr;  ///< max_rows x ld: H P, then L^-1 H P
   Scalar* S_ = nullptr;  ///< max_rows x lds
   Scalar *dx_ = nullptr, *y_ = nullptr;
