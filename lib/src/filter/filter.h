@@ -259,9 +259,8 @@ class Filter {
   bool is_step(const Scalar* dx) const;
 
   // pixels.cpp
-  Mat2 parallax_noise(int slot, Scalar rho, const Mat23& J_z_anchor) const;
-  bool predict_at(const Camera& lens, const struct CameraAt& camera, int slot, PixelMeasurement* out,
-                  Mat26* J_camera) const;
+  Mat2 parallax_noise(const struct CameraAt& camera, int slot, Scalar rho, const Mat23& J_z_anchor) const;
+  bool predict_at(const Camera& lens, const CameraAt& camera, int slot, PixelMeasurement* out, Mat26* J_camera) const;
   // scale_row.cpp
   bool scale_candidate(int slot, int* places, ScaleRow* row) const;
   // apart.cpp

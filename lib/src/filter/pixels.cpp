@@ -48,8 +48,9 @@ Mat2 mounting_noise(const State& state, const CameraAt& camera, const Mat26& J_c
 }  // namespace
 
 /// Parallax is the product of inverse depth and baseline. Where both are uncertain, what neither Jacobian shows is their product, with
-/// covariance sigma_rho^2 J P_baseline J^T (second-order term; zero first-order Jacobian at a baseline of zero).
-Mat2 Filter::parallax_noise(int slot, Scalar rho, const Mat23& J_z_anchor) const {
+/// covariance sigma_rho^2 J P_baseline J^T (second-order term; zero first-order Jacobian at a baseline of zero). Of a rolling shutter's row
+/// the baseline ends at p + v tau.
+Mat2 Filter::parallax_noise(const CameraAt& camera, int slot, Scalar rho, const Mat23& J_z_anchor) const {
   if (!(rho > tuning::inverse_depth::kMinRho)) return Mat2::Zero();
   const Triangle& P = covariance();
   const int from = first_row(state_.block[slot].parent);
@@ -59,6 +60,14 @@ Mat2 Filter::parallax_noise(int slot, Scalar rho, const Mat23& J_z_anchor) const
     for (int j = 0; j < 3; ++j)
       baseline(i, j) = P(Body::kPosition + i, Body::kPosition + j) + P(from + i, from + j) -
                        P(Body::kPosition + i, from + j) - P(from + i, Body::kPosition + j);
+  if (camera.tau != Scalar(0)) {
+    const int v = camera.velocity_row;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        baseline(i, j) += camera.tau * (P(v + i, Body::kPosition + j) + P(v + j, Body::kPosition + i) -
+                                        P(from + i, v + j) - P(from + j, v + i)) +
+                          camera.tau * camera.tau * P(v + i, v + j);
+  }
   const Mat23 JP = J_z_anchor.lazyProduct(baseline);
   return factor * JP.lazyProduct(J_z_anchor.transpose());
 }
@@ -88,7 +97,7 @@ bool Filter::predict_at(const Camera& lens, const CameraAt& camera, int slot, Pi
       return false;
     put<2, 3>(out->H.h, columns, first, J_o);
     put<2, 3>(out->H.h, columns, first + 3, J_feature);
-    out->second_order = parallax_noise(slot, at.w, J_o);
+    out->second_order = parallax_noise(camera, slot, at.w, J_o);
   }
   camera.chain(*J_camera, out->H.h, columns);
   out->H.parts = 0;
