@@ -27,10 +27,12 @@ with tempfile.TemporaryDirectory() as name:
     require(walks["accepted"] >= 14 and walks["accepted_poor"] == 0 and walks["wrong"] <= 2, f"walks of 3 s: {walks}")
     require(walks["scale_nees"] < 4, f"scale is more certain than right: NEES {walks['scale_nees']} of 1")
 
-    # Over 30 ms: pixels are taken to the frame's time, and the first bearings know that speeds and depths were open together.
+    # Over 30 ms: pixels are taken to the frame's time, and the first bearings know that speeds and depths were open together. The rate of
+    # the first frame was zero: pose NEES 15.2.
     rows = report(folder, "--seeds", "10", "--first-seed", "101", "--seconds", "5", "--readout", "0.03")
     require(rows["starts"]["accepted"] >= 7 and rows["starts"]["wrong"] <= 1, f"with rows: {rows['starts']}")
     require(rows["doubt"]["runs"] == 0 and rows["nees_gyro_bias"] < 9, f"with rows: {rows['doubt']}, gyro {rows['nees_gyro_bias']}")
+    require(rows["nees_pose"]["mean"] < 9, f"with rows: pose NEES {rows['nees_pose']['mean']}, 6 expected")
 
     # The same in pictures, where an inlier of a frame may leave the map in that frame.
     rows = report(folder, "--rendered", "--seeds", "2", "--first-seed", "21", "--seconds", "5", "--readout", "0.03")

@@ -87,6 +87,19 @@ void BodyMotion::predict_by_samples(const Body& body, std::int64_t before_ns, st
   transition->bend = bend_of_readout(on_unit_clock(t_ns), now, transition->mean);
 }
 
+void BodyMotion::begin(std::int64_t t_ns, Body* body) const {
+  if (!settings_.inertial || !filter_.uses_samples() || imu_.held() == 0) return;
+  const std::int64_t unit_ns = on_unit_clock(t_ns);
+  ImuReading now;
+  if (!reading_at(imu_, unit_ns, &now)) {  // the first sample of all, where the rows were read out about its time
+    const ImuSample& last = imu_[imu_.held() - 1];
+    const double half = std::abs(static_cast<double>(filter_.lens().readout)) / 2;
+    if (imu_.held() > 1 || std::abs(seconds(elapsed_ns(last.t_ns, unit_ns))) > half) return;
+    now.gyro = Vec3(last.gyro[0], last.gyro[1], last.gyro[2]);
+  }
+  body->w_C = filter_.state().mounting.R_CB * (now.gyro - body->gyro_bias);
+}
+
 /// How the camera accelerates while the frame's rows are read out, as it did in the half of that time before the frame's:
 ///
 ///   alpha = R_CB (gyro - gyro_before) / T,   a = R_CB (accel - b_a) + R_CW g_W - alpha x m - w x (w x m)

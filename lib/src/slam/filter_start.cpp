@@ -130,7 +130,9 @@ void FilterStart::set_body(const Body& body, const Scalar* known, const Scalar* 
       for (int j = 0; j < rows; ++j) all[(first + i) * dim + first + j] = mounting_->covariance[i * rows + j];
     known = all;
   }
-  parts_.filter.set_body(body, known, J_lens);
+  Body now = body;
+  motion_.begin(parts_.frame.report.t_ns, &now);
+  parts_.filter.set_body(now, known, J_lens);
   parts_.tracking.set_has_pose(parts_.frame.report.t_ns);
 }
 
