@@ -10,8 +10,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, SOURCE, fail, skip, skip_in_cross_builds  # noqa: E402
 
 NEED_NOTHING = ("adjust-tags", "compare-runs", "compare-trees", "demo", "fuzz", "package", "plot-gee2007", "plot-masoud", "plot-run", "plot-sim",
-                "sweep-tuning", "test", "update-golden", "walls-from-geojson", "walls-from-obj")
-IN_ENVIRONMENT = ("compare-runs", "plot-gee2007", "plot-masoud", "plot-run", "plot-sim")
+                "ray-sequence", "sweep-tuning", "test", "update-golden", "walls-from-geojson", "walls-from-obj")
+IN_ENVIRONMENT = ("compare-runs", "plot-gee2007", "plot-masoud", "plot-run", "plot-sim", "ray-sequence")
 COMMANDS = ("pf-bench", "pf-replay", "pf-sim")
 WRITE = {  # what cannot be written
     "pf-bench": [["frame", "--json", "/dev/null/x.json"]], "pf-replay": [["follow", "x", "--json", "/"]],
@@ -24,6 +24,7 @@ TOOLS = [  # words, and what the line says
     (["package", "deb", "--jobs", "2.5"], "'2.5'"), (["package", "x86"], "aarch64, armhf or deb"),
     (["package"], "aarch64, armhf or deb"), (["update-golden", "--all"], "--all"),
     (["walls-from-geojson"], "FILE"), (["walls-from-obj", "x", "--sigma-offset", "0"], "0 is not above zero"),
+    (["ray-sequence", "desk"], "OUT"), (["ray-sequence", "moon", "x"], "moon"), (["ray-sequence", "desk", "x", "--fov", "180"], "--fov 180"),
 ]
 failures = []
 
