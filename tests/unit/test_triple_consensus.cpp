@@ -1,6 +1,7 @@
 // Consensus over triples: right matches are far beyond chance, matches at random places in the searched areas are not.
 #include "slam/consensus.h"
 #include "slam/triple_consensus.h"
+#include "slam/tuning.h"
 #include "support/filter_scene.h"
 
 using namespace pf;
@@ -22,21 +23,22 @@ struct Matches {
   PixelMeasurement match[kMatches];
   Scalar searched_px2[kMatches];
 
-  Matches(SeededRandom& random, int right) {
+  /// sigma_px: what the gate allows a match, whose error is 0.5 px. sigma_pose: of the camera, in rad and m.
+  Matches(SeededRandom& random, int right, Scalar sigma_px = 1, double sigma_pose = 0.03) {
     const std::vector<int> slots = fill_map(random, filter, kMatches, 0);
     Dense P = Dense::Identity(filter.dim(), filter.dim()) * 1e-8;
-    P.block(Body::kTheta, Body::kTheta, 3, 3) = Dense::Identity(3, 3) * (0.03 * 0.03);
-    P.block(Body::kPosition, Body::kPosition, 3, 3) = Dense::Identity(3, 3) * (0.03 * 0.03);
+    P.block(Body::kTheta, Body::kTheta, 3, 3) = Dense::Identity(3, 3) * (sigma_pose * sigma_pose);
+    P.block(Body::kPosition, Body::kPosition, 3, 3) = Dense::Identity(3, 3) * (sigma_pose * sigma_pose);
     filter.set_P(P);
     const Camera camera = pinhole_camera();
     Body truth = filter->state().body;
-    truth.q_WC = exp_so3(random.normals<3>(0.03)) * truth.q_WC;
-    truth.p_W += random.normals<3>(0.03);
+    truth.q_WC = exp_so3(random.normals<3>(sigma_pose)) * truth.q_WC;
+    truth.p_W += random.normals<3>(sigma_pose);
     for (int i = 0; i < kMatches; ++i) {
       PixelMeasurement& o = match[i];
       TEST_ASSERT_TRUE(filter->predict_pixel(camera, slots[static_cast<std::size_t>(i)], &o));
       // Second-order errors of a rotation of 0.03 rad are about half a pixel.
-      o.set_noise(Mat2::Identity());
+      o.set_noise(sigma_px * sigma_px * Mat2::Identity());
       const Mat2 S = filter->innovation(o) + o.R_gate;
       searched_px2[i] = Scalar(3.14159265) * kGate * std::sqrt(S.determinant());
       Vec2 z;
@@ -57,7 +59,8 @@ struct Matches {
   }
 
   TripleConsensus find(int found, int attempts, unsigned char* keep) const {
-    return find_triple_consensus(*filter, match, searched_px2, found, attempts, kGate, kTriples, nullptr, keep);
+    return find_triple_consensus(*filter, match, searched_px2, found, attempts, kGate, kTriples,
+                                 tuning::chance::kLevels, nullptr, keep);
   }
 };
 
@@ -95,6 +98,22 @@ void test_random_matches_should_not_be_beyond_chance() {
   TEST_ASSERT_TRUE(smallest > kFramesPlace);
 }
 
+void test_close_matches_should_be_beyond_chance_although_most_searches_are_in_vain() {
+  SeededRandom random(115);
+  constexpr int kFound = 15, kAttempts = 42, kTrials = 40;
+  constexpr Scalar kOpenPx = 3;        // of features whose depths are open
+  constexpr double kFollowed = 0.003;  // after a tracked frame
+  int close = 0, anywhere = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Matches right(random, kFound, kOpenPx, kFollowed), wrong(random, 0, kOpenPx, kFollowed);
+    close += right.find(kFound, kAttempts, nullptr).log_false < kFramesPlace ? 1 : 0;
+    anywhere += wrong.find(kFound, kAttempts, nullptr).log_false < kFramesPlace ? 1 : 0;
+  }
+  std::printf("beyond chance: %d of %d close, %d of %d anywhere\n", close, kTrials, anywhere, kTrials);
+  TEST_ASSERT_GREATER_OR_EQUAL_INT(9 * kTrials / 10, close);
+  TEST_ASSERT_EQUAL_INT(0, anywhere);
+}
+
 void test_the_same_inliers_should_say_less_when_more_was_searched_in_vain() {
   SeededRandom random(113);
   const Matches m(random, 20);
@@ -119,6 +138,7 @@ int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_right_matches_should_be_far_beyond_chance_also_when_half_are_wrong);
   RUN_TEST(test_random_matches_should_not_be_beyond_chance);
+  RUN_TEST(test_close_matches_should_be_beyond_chance_although_most_searches_are_in_vain);
   RUN_TEST(test_the_same_inliers_should_say_less_when_more_was_searched_in_vain);
   RUN_TEST(test_fewer_than_four_matches_should_say_nothing);
   return UNITY_END();

@@ -251,9 +251,9 @@ bool ImageFrontEnd::most_agree(int first, int found) const {
 /// Whether chance would hardly let as many matches agree as keep says.
 bool ImageFrontEnd::is_beyond_chance(int first, int found) {
   for (int i = 0; i < found; ++i) scratch_[i] = searched_area(first + i);
-  const TripleConsensus consensus =
-      find_triple_consensus(filter_, update_.observations() + first, scratch_, found, frame_.report.attempts,
-                            settings_.gate, tuning::tracking::kTriples, update_.keep() + first, nullptr);
+  const TripleConsensus consensus = find_triple_consensus(
+      filter_, update_.observations() + first, scratch_, found, frame_.report.attempts, settings_.gate,
+      tuning::tracking::kTriples, tuning::chance::kLevels, update_.keep() + first, nullptr);
   return consensus.log_false < tuning::tracking::kMaxLogFalse;
 }
 

@@ -117,7 +117,7 @@ void Relocaliser::recover_nearby(int found) {
   const int inliers = find_inliers(filter_, update_.observations(), found, settings_.gate, update_.keep());
   const TripleConsensus consensus =
       find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
-                            settings_.gate, kTriples, update_.keep(), nullptr);
+                            settings_.gate, kTriples, 1, update_.keep(), nullptr);
   if (!is_beyond_chance({inliers, consensus.log_false}, found)) return;
   if (before + 1 < kFramesNearby) {
     data_.frames_nearby = before + 1;
@@ -146,7 +146,7 @@ void Relocaliser::recover_anywhere(const SearchPose& about, int found, std::int6
   update_.begin(0, found);
   const TripleConsensus consensus =
       find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
-                            settings_.gate, kTriples, nullptr, update_.keep());
+                            settings_.gate, kTriples, 1, nullptr, update_.keep());
   if (!is_beyond_chance(consensus, found)) return;
   const Scalar depth = median_depth(pose, found);
   const bool follows = before > 0 && depth > 0 && follows_last_proposal(pose, depth, dt_ns);

@@ -17,8 +17,8 @@ constexpr int kMaxMatches = 200;  // capacity.max_observations at most
 }  // namespace
 
 TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement* matches, const Scalar* searched_px2,
-                                      int found, int attempts, Scalar gate, int triples, const unsigned char* among,
-                                      unsigned char* keep) {
+                                      int found, int attempts, Scalar gate, int triples, int levels,
+                                      const unsigned char* among, unsigned char* keep) {
   using namespace tuning::chance;
   TripleConsensus best;
   short pool[kMaxMatches];
@@ -48,8 +48,9 @@ TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasureme
     if (!cholesky.factor(S_T)) continue;
     const Vec6 a_T = cholesky.solve<1>(r_T);
     if (!(r_T.dot(a_T) < kGateOfThree)) continue;
-    int inliers = 3;
-    Scalar share = 0;
+    int inliers[kLevels];
+    Scalar share[kLevels] = {};
+    std::fill(inliers, inliers + kLevels, 3);
     unsigned char is_inlier[kMaxMatches] = {};
     for (int j = 0; j < found; ++j) {
       if (j == three[0] || j == three[1] || j == three[2]) {
@@ -61,15 +62,24 @@ TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasureme
       const Eigen::Matrix<Scalar, 6, 2> X = cholesky.solve<2>(S_Tj);
       const Vec2 r = matches[j].measured - matches[j].predicted - S_Tj.transpose().lazyProduct(a_T);
       const Mat2 S = filter.innovation_block(j, j) + matches[j].R_gate - S_Tj.transpose().lazyProduct(X);
-      share += kMaxFindShare * std::min(Scalar(1), ellipse_area(S, gate) / std::max(searched_px2[j], kMinArea));
-      is_inlier[j] = squared_distance(r, S) < gate ? 1 : 0;
-      inliers += is_inlier[j];
+      const Scalar distance2 = squared_distance(r, S), area = ellipse_area(S, gate);
+      is_inlier[j] = distance2 < gate ? 1 : 0;
+      Scalar part = 1;
+      for (int level = 0; level < levels; ++level, part /= 2) {
+        share[level] += kMaxFindShare * std::min(Scalar(1), part * area / std::max(searched_px2[j], kMinArea));
+        inliers[level] += distance2 < part * gate ? 1 : 0;
+      }
     }
-    share = std::clamp(share / static_cast<Scalar>(std::max(1, found - 3)), kMinShare, kMaxShare);
-    const Scalar log_false = log_false_planes(inliers, std::max(attempts, found), share, found);
+    Scalar log_false = 0;
+    for (int level = 0; level < levels; ++level) {
+      const Scalar mean = std::clamp(share[level] / static_cast<Scalar>(std::max(1, found - 3)), kMinShare, kMaxShare);
+      Scalar at_level = log_false_planes(inliers[level], std::max(attempts, found), mean, found);
+      if (level > 0) at_level -= tuning::tracking::kMaxLogFalse;
+      if (level == 0 || at_level < log_false) log_false = at_level;
+    }
     if (any && log_false >= best.log_false) continue;
     any = true;
-    best.inliers = inliers;
+    best.inliers = inliers[0];
     best.log_false = log_false;
     if (keep != nullptr) std::copy(is_inlier, is_inlier + found, keep);
   }

@@ -2,8 +2,7 @@
 
 #include "base/scalar.h"
 
-/// Tuned numbers of the back end: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no
-/// sweep has measured has no figure here.
+/// Tuned numbers of the back end, with units. tools/sweep-tuning halves and doubles them; what no sweep has measured has no figure here.
 
 namespace pf::tuning {
 
@@ -13,7 +12,8 @@ inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that fin
 inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in small ellipses, times kMaxFindShare
 inline constexpr Scalar kMinShare = Scalar(1e-6);      ///< of a search that chance lets agree, at least
 inline constexpr Scalar kMaxShare = Scalar(0.99);      ///< likewise, at most
-inline constexpr Scalar kGateOfThree = Scalar(22.5);   ///< chi-square of six degrees of freedom, 0.999
+inline constexpr int kLevels = 4;  ///< areas in which matches may agree: the gate's, 1/2, 1/4, 1/8 of it
+inline constexpr Scalar kGateOfThree = Scalar(22.5);  ///< chi-square of six degrees of freedom, 0.999
 }  // namespace chance
 
 /// A frame while tracking.
