@@ -176,7 +176,8 @@ ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
   int known = 0;
   for (int i = 0; i < map_.features.capacity() && known < settings_.min_inliers; ++i)
     known += map_.features.used(i) && filter_.state().block[map_.features[i].slot].kind != BlockKind::kInverseDepth;
-  return known < settings_.min_inliers ? ConsensusRule::kMostAgree : ConsensusRule::kBeyondChance;
+  if (known < settings_.min_inliers) return ConsensusRule::kMostAgree;
+  return tracking_.is_followed() ? ConsensusRule::kFollowed : ConsensusRule::kBeyondChance;
 }
 
 /// As for features: a frame that does not support its pose begins patches only where there is nothing that could be found again.

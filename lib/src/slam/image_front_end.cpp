@@ -213,8 +213,8 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
       least = std::min(kMinConsensus, map_.features.count());
     } else if (frame_.report.inliers == 0) {
       least = settings_.min_inliers;
-      accepted = inliers >= least &&
-                 ((rule == ConsensusRule::kMostAgree && most_agree(first, found)) || is_beyond_chance(first, found));
+      accepted = inliers >= least && ((rule == ConsensusRule::kMostAgree && most_agree(first, found)) ||
+                                      is_beyond_chance(first, found, rule));
     }
     // A match that all the others contradict supports nothing.
     if (accepted) accepted = update_.reject_contradicted(first, found, &nis) >= least;
@@ -249,11 +249,12 @@ bool ImageFrontEnd::most_agree(int first, int found) const {
 }
 
 /// Whether chance would hardly let as many matches agree as keep says.
-bool ImageFrontEnd::is_beyond_chance(int first, int found) {
+bool ImageFrontEnd::is_beyond_chance(int first, int found, ConsensusRule rule) {
   for (int i = 0; i < found; ++i) scratch_[i] = searched_area(first + i);
   const TripleConsensus consensus = find_triple_consensus(
       filter_, update_.observations() + first, scratch_, found, frame_.report.attempts, settings_.gate,
-      tuning::tracking::kTriples, tuning::chance::kLevels, update_.keep() + first, nullptr);
+      tuning::tracking::kTriples, rule == ConsensusRule::kFollowed ? tuning::chance::kLevels : 1,
+      update_.keep() + first, nullptr);
   return consensus.log_false < tuning::tracking::kMaxLogFalse;
 }
 

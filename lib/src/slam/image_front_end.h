@@ -21,6 +21,7 @@ enum class ConsensusRule {
   kStart,         ///< five agree: there is no map yet that could be spoilt
   kMostAgree,     ///< as below, or at least eight and half of what was searched for: the map is too young to show more
   kBeyondChance,  ///< at least eight, far more than chance would give
+  kFollowed,      ///< likewise, where what agrees closely says more: of a camera that was tracked up to here
 };
 
 class ImageFrontEnd {
@@ -76,7 +77,7 @@ class ImageFrontEnd {
   /// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
   int search(int first, int count);
   bool most_agree(int first, int found) const;
-  bool is_beyond_chance(int first, int found);
+  bool is_beyond_chance(int first, int found, ConsensusRule rule);
   /// Area that was searched for a candidate [px^2], at most that of the image.
   Scalar searched_area(int i) const;
 

@@ -1,5 +1,7 @@
 #include "slam/tracking_state.h"
 
+#include <algorithm>
+
 #include "base/elapsed.h"
 
 namespace pf {
@@ -8,6 +10,7 @@ Status TrackingState::conclude(const FrameReport& report, const StartProgress& s
                                const Hooks& hooks) {
   Data& d = data_;
   if (!d.has_pose) return Status::kStarting;
+  d.followed = is_tracked(report) ? std::min(d.followed + 1, kFollowed) : 0;
   if (is_tracked(report)) {
     if (d.lost) hooks.say("found the map again");
     d.lost = false;

@@ -83,11 +83,14 @@ class TrackingState {
   std::uint32_t map_id() const { return data_.map_id; }
   /// Time of the last frame that supported its pose.
   std::int64_t last_tracked_ns() const { return data_.last_tracked_ns; }
+  /// The last frames all supported their pose: the next one is where they lead to, and in no other place.
+  bool is_followed() const { return data_.followed >= kFollowed; }
   bool may_skip_target() const { return data_.may_skip_target; }
 
  private:
   const Settings& settings_;
   static constexpr int kMaxFailedUpdates = 10;  ///< in a row
+  static constexpr int kFollowed = 10;          ///< frames in a row; hardly ever two in random order
 
   struct Data {
     SlamState state = SlamState::kStarting;
@@ -100,6 +103,7 @@ class TrackingState {
     std::int64_t usable_ns = 0;  ///< of usable images while lost
     bool started_over = false;   ///< in this frame
     int failed_updates = 0;      ///< in a row
+    int followed = 0;            ///< frames in a row that supported their pose, to kFollowed
     std::int64_t last_tracked_ns = 0;
   };
   Data data_;
