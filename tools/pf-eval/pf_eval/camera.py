@@ -111,7 +111,8 @@ class EstimatedCamera:
 
     def __init__(self, last, rows):
         """last: the Camera at the end; rows of lens.csv: t, fx, fy, cx, cy, distortion."""
-        self.width, self.height, self.model, self.rows = last.width, last.height, last.model, rows
+        self.width, self.height, self.rows = last.width, last.height, rows
+        self.model = "radtan" if last.model == "none" else last.model  # a calibration without distortion gets a k1
 
     def at(self, t):
         row = self.rows[int(np.argmin(np.abs(self.rows[:, 0] - t)))]
