@@ -3,6 +3,7 @@
 
 #include <planefold/planefold.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -18,41 +19,14 @@ inline bool finite(const double* values, int count) {
   return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
 }
 
-/// Smallest eigenvalue of the correlations of a covariance, by Jacobi rotations.
+/// Smallest eigenvalue of the correlations of a covariance of up to 6 rows.
 inline double smallest_eigenvalue(const double* covariance, int n) {
-  double A[36], scale[6];
-  for (int i = 0; i < n; ++i) scale[i] = covariance[i * n + i] > 0 ? 1 / std::sqrt(covariance[i * n + i]) : 0;
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j)
-      A[i * n + j] = (covariance[i * n + j] + covariance[j * n + i]) / 2 * scale[i] * scale[j];
-  for (int sweep = 0; sweep < 30; ++sweep) {
-    double rest = 0;
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < i; ++j) rest += A[i * n + j] * A[i * n + j];
-    if (rest < 1e-24) break;
-    for (int p = 0; p < n; ++p) {
-      for (int q = p + 1; q < n; ++q) {
-        const double a = A[p * n + q];
-        if (std::fabs(a) < 1e-300) continue;
-        const double theta = (A[q * n + q] - A[p * n + p]) / (2 * a);
-        const double t = (theta >= 0 ? 1 : -1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
-        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-        for (int k = 0; k < n; ++k) {
-          const double x = A[k * n + p], y = A[k * n + q];
-          A[k * n + p] = c * x - s * y;
-          A[k * n + q] = s * x + c * y;
-        }
-        for (int k = 0; k < n; ++k) {
-          const double x = A[p * n + k], y = A[q * n + k];
-          A[p * n + k] = c * x - s * y;
-          A[q * n + k] = s * x + c * y;
-        }
-      }
-    }
-  }
-  double smallest = A[0];
-  for (int i = 1; i < n; ++i) smallest = std::min(smallest, A[i * n + i]);
-  return smallest;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 6, 6>;
+  Matrix P = Eigen::Map<const Matrix>(covariance, n, n);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scale(n);
+  for (int i = 0; i < n; ++i) scale(i) = P(i, i) > 0 ? 1 / std::sqrt(P(i, i)) : 0;
+  P = scale.asDiagonal() * Matrix((P + P.transpose()) / 2) * scale.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Matrix>(P, Eigen::EigenvaluesOnly).eigenvalues()(0);
 }
 
 inline void require_covariance(const double* covariance, int n, const char* of) {

@@ -101,15 +101,18 @@ class AdjustRun(unittest.TestCase):
         lens = EstimatedCamera(CAMERA, np.array([[0.0, 500, 500, 320, 240, -0.1, 0, 0, 0, 0]])).at(0.0)
         np.testing.assert_allclose(lens.project(np.array([[0.5, 0.0, 1.0]])), [[500 * 0.5 * (1 - 0.1 * 0.25) + 320, 240]])
 
-    def test_a_run_without_tracks_should_get_one_line(self):
+    def test_what_cannot_be_used_should_get_one_line(self):
         with tempfile.TemporaryDirectory(prefix="planefold_") as name:
             folder = pathlib.Path(name)
             (folder / "trajectory.txt").write_text("0 0 0 0 0 0 0 1\n")
-            for words, part in (([folder], "--tracks"), ([folder / "none"], "no such file"), ([folder, "--rounds", "0"], "--rounds 0")):
+            (folder / "mine.txt").write_text("mine")
+            for words, code, part in (([folder], 1, "--tracks"), ([folder / "none"], 1, "no such file"), ([folder, "--rounds", "0"], 2, "--rounds 0"),
+                                      ([folder, "--out", folder / "mine.txt"], 1, "name another file")):
                 result = subprocess.run([script.SOURCE / "tools" / "adjust-run", *words], text=True, capture_output=True, check=False)
-                self.assertEqual(result.returncode, 2)
+                self.assertEqual(result.returncode, code)
                 self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
                 self.assertIn(part, result.stderr)
+            self.assertEqual((folder / "mine.txt").read_text(), "mine")
 
 
 if __name__ == "__main__":

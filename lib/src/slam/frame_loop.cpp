@@ -177,7 +177,8 @@ ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
   for (int i = 0; i < map_.features.capacity() && known < settings_.min_inliers; ++i)
     known += map_.features.used(i) && filter_.state().block[map_.features[i].slot].kind != BlockKind::kInverseDepth;
   if (known < settings_.min_inliers) return ConsensusRule::kMostAgree;
-  return tracking_.is_followed() ? ConsensusRule::kFollowed : ConsensusRule::kBeyondChance;
+  const bool follows = tracking_.is_followed() && gap_s <= static_cast<double>(tuning::tracking::kMaxYoungGap);
+  return follows ? ConsensusRule::kFollowed : ConsensusRule::kBeyondChance;
 }
 
 /// As for features: a frame that does not support its pose begins patches only where there is nothing that could be found again.

@@ -206,8 +206,7 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
     const PixelMeasurement* observations = update_.observations() + first;
     const int inliers = find_inliers(filter_, observations, found, settings_.gate, keep + first);
-    // If an earlier range has given inliers, any consensus is accepted.
-    int least = 1;
+    int least = 1;  // if an earlier range has given inliers, any consensus is accepted
     accepted = inliers > 0;
     if (frame_.report.inliers == 0 && rule == ConsensusRule::kStart) {
       least = std::min(kMinConsensus, map_.features.count());
@@ -251,11 +250,12 @@ bool ImageFrontEnd::most_agree(int first, int found) const {
 /// Whether chance would hardly let as many matches agree as keep says.
 bool ImageFrontEnd::is_beyond_chance(int first, int found, ConsensusRule rule) {
   for (int i = 0; i < found; ++i) scratch_[i] = searched_area(first + i);
-  const TripleConsensus consensus = find_triple_consensus(
-      filter_, update_.observations() + first, scratch_, found, frame_.report.attempts, settings_.gate,
-      tuning::tracking::kTriples, rule == ConsensusRule::kFollowed ? tuning::chance::kLevels : 1,
-      update_.keep() + first, nullptr);
-  return consensus.log_false < tuning::tracking::kMaxLogFalse;
+  const auto is_beyond = [&](int levels) {
+    return find_triple_consensus(filter_, update_.observations() + first, scratch_, found, frame_.report.attempts,
+                                 settings_.gate, tuning::tracking::kTriples, levels, update_.keep() + first, nullptr)
+               .log_false < tuning::tracking::kMaxLogFalse;
+  };
+  return is_beyond(1) || (rule == ConsensusRule::kFollowed && is_beyond(tuning::chance::kLevels));
 }
 
 Scalar ImageFrontEnd::searched_area(int i) const {

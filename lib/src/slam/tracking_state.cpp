@@ -10,8 +10,9 @@ Status TrackingState::conclude(const FrameReport& report, const StartProgress& s
                                const Hooks& hooks) {
   Data& d = data_;
   if (!d.has_pose) return Status::kStarting;
-  d.followed = is_tracked(report) ? std::min(d.followed + 1, kFollowed) : 0;
-  if (is_tracked(report)) {
+  const bool tracked = is_tracked(report);
+  d.followed = tracked ? std::min(d.followed + 1, kFollowed) : 0;
+  if (tracked) {
     if (d.lost) hooks.say("found the map again");
     d.lost = false;
     d.usable_ns = 0;

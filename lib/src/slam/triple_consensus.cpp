@@ -12,7 +12,8 @@
 namespace pf {
 namespace {
 
-constexpr int kMaxMatches = 200;  // capacity.max_observations at most
+constexpr Scalar kLogLevelCost = Scalar(6.9);  // ln 1,000, of a smaller ellipse
+constexpr int kMaxMatches = 200;               // capacity.max_observations at most
 
 }  // namespace
 
@@ -74,7 +75,7 @@ TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasureme
     for (int level = 0; level < levels; ++level) {
       const Scalar mean = std::clamp(share[level] / static_cast<Scalar>(std::max(1, found - 3)), kMinShare, kMaxShare);
       Scalar at_level = log_false_planes(inliers[level], std::max(attempts, found), mean, found);
-      if (level > 0) at_level -= tuning::tracking::kMaxLogFalse;
+      if (level > 0) at_level += kLogLevelCost;
       if (level == 0 || at_level < log_false) log_false = at_level;
     }
     if (any && log_false >= best.log_false) continue;

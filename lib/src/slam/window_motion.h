@@ -29,6 +29,7 @@ class WindowMotion {
   ///
   /// where the pose's part is (I - K_p) P_pp (I - K_p)ᵀ + K_p R K_pᵀ with I - K_p = R S⁻¹, and its covariance with the velocities
   /// K_v R: of a pose that was hardly known before, float leaves nothing in the difference.
+  ///
   /// False where P_pp + R is no covariance; nothing has changed then.
   bool correct(const Quat& q_WC, const Vec3& p_W, const Mat6& R);
   /// Puts the body in another place, where the map was moved by an adjustment. The velocities turn and scale with it.

@@ -128,11 +128,11 @@ def is_foreign(path, mark):
     return path.is_file() and path.stat().st_size > 0 and mark.encode() not in path.read_bytes()
 
 
-def write(path, text, mark):
+def write(path, text, mark, program="pf-eval"):
     """mark: a part of the text by which a later run knows that it may take the place of this file."""
     try:
         if is_foreign(path, mark):
-            raise Refused(f"{path}: is there and was not written by pf-eval; name another file")
+            raise Refused(f"{path}: is there and was not written by {program}; name another file")
         pathlib.Path(path).write_text(text)
     except OSError as error:
         raise Refused(f"{path}: cannot be written ({error.strerror})") from error
