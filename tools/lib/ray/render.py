@@ -39,7 +39,7 @@ def _run(folder, views, scene, size):
     text = "".join(_array(name, column) for name, column in zip(("Times", "Places", "Directions", "Rights", "Ups"), zip(*views)))
     (folder / "scene.pov").write_text(text + HEAD + scene)
     result = subprocess.run([program(), "+Iscene.pov", "+Olight.png", f"+W{size[0]}", f"+H{size[1]}", f"+KFF{len(views)}", "+KFI1", "+FN",
-                             "Bits_Per_Color=16", "Grayscale_Output=on", "File_Gamma=1.0", "-D", "-A", "+WT1", "-GA", "+GF"],
+                             "Bits_Per_Color=16", "Grayscale_Output=on", "File_Gamma=1.0", "-D", "+A0.05", "+AM2", "+R2", "+WT1", "-GA", "+GF"],
                             cwd=folder, text=True, capture_output=True, check=False)
     files = sorted(folder.glob("light*.png"))
     if result.returncode != 0 or len(files) != len(views):
