@@ -15,11 +15,16 @@ namespace {
 
 constexpr int kSize = 60, kMiddle = 30;
 
-/// A step between two grey levels, not smoothed at all, through the middle at this angle.
+/// A step between two grey levels through the middle at this angle, averaged over each pixel.
 TestImage edge(double angle, double low, double high, double noise, SeededRandom* random) {
+  constexpr int kParts = 4;
   return TestImage(kSize, kSize, [&](int x, int y) {
-    const double across = (x - kMiddle) * std::sin(angle) - (y - kMiddle) * std::cos(angle);
-    return (across > 0.2 ? high : low) + noise * random->normal();
+    int bright = 0;
+    for (int k = 0; k < kParts * kParts; ++k) {
+      const double u = x - kMiddle + (k % kParts + 0.5) / kParts, v = y - kMiddle + (k / kParts + 0.5) / kParts;
+      bright += u * std::sin(angle) > v * std::cos(angle) ? 1 : 0;
+    }
+    return low + (high - low) * bright / (kParts * kParts) + noise * random->normal();
   });
 }
 

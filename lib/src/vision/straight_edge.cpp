@@ -9,8 +9,8 @@ namespace {
 constexpr int kHalf = 5;              ///< of the window
 constexpr int kWide = 2 * kHalf + 3;  ///< pixels that its central differences read
 constexpr int kTall = kWide + 4;      ///< and that the binomial reads for those
-// Of the eigenvalues of a corner. An edge that is not smoothed at all has up to 0.025.
-constexpr float kLeastRatio = 0.03f;
+// Of the eigenvalues of a corner. An edge that pixels average has up to 0.004, one that nothing smooths up to 0.025.
+constexpr float kLeastRatio = 0.02f;
 
 /// 16 times the mean of five pixels, step apart, with the weights 1 4 6 4 1.
 template <typename T>
