@@ -35,9 +35,9 @@ if not PROGRAM.is_file():
     script.skip("pf-digest was not built")
 with tempfile.TemporaryDirectory(prefix="planefold_") as name:
     folder = pathlib.Path(name)
-    once = digest(folder / "once", "sim:desk", "--frames", "120")
-    again = digest(folder / "again", "sim:desk", "--frames", "120")
-    expect("the same run", compare_trees.compare_digests(once, again), (120, None))
+    once = digest(folder / "once", "sim:desk", "--frames", "60")
+    again = digest(folder / "again", "sim:desk", "--frames", "60")
+    expect("the same run", compare_trees.compare_digests(once, again), (60, None))
 
     lines = once.read_text().splitlines()
     kinds = lines[1].split()[1:]
@@ -53,9 +53,9 @@ with tempfile.TemporaryDirectory(prefix="planefold_") as name:
         changed.write_text("\n".join(lines[:22] + [" ".join(words)] + lines[23:]) + "\n")
         expect("one value", compare_trees.compare_digests(once, changed), (20, f"run 1, frame 21: {kind}"))
 
-    short = digest(folder / "short", "sim:desk", "--frames", "119")
-    expect("a shorter run", compare_trees.compare_digests(once, short), (119, "run 1: NEW ends after frame 119"))
-    other = digest(folder / "other", "sim:desk", "--frames", "120", "--auto")
+    short = digest(folder / "short", "sim:desk", "--frames", "59")
+    expect("a shorter run", compare_trees.compare_digests(once, short), (59, "run 1: NEW ends after frame 59"))
+    other = digest(folder / "other", "sim:desk", "--frames", "60", "--auto")
     first = compare_trees.compare_digests(once, other)[1] or ""
     print("a start without the target", first)
     if not first.startswith("run 1, frame 1: state, pose"):

@@ -51,8 +51,8 @@ constexpr CornerStrength kPlainCorner = {tuning::image_corners::kCornerThreshold
 /// Of a picture that has too few others: a dim one, or one of a bare wall.
 constexpr CornerStrength kFaintCorner = {tuning::image_corners::kFaintThreshold, tuning::image_corners::kFaintScore};
 
-/// Offers the corners of a cell that are near no feature of the frame and on no straight edge, the best first, to take(pixel), until it
-/// takes one. False: it took none.
+/// Offers the corners of a cell that are near no feature of the frame, the best first, to take(pixel), until it takes one. False: it took
+/// none.
 template <typename F>
 bool take_corner(const Tracker& tracker, const Rect& cell, const CornerStrength& least, const Frame& frame, int width,
                  F&& take);
@@ -100,13 +100,13 @@ void CornerCells::fill_cells(int in_view, int turn, int max_in_cell, F&& add_in)
 template <typename F>
 bool take_corner(const Tracker& tracker, const Rect& cell, const CornerStrength& least, const Frame& frame, int width,
                  F&& take) {
-  constexpr int kCorners = 16;
+  constexpr int kCorners = 8;
   Corner corner[kCorners];
   const int corners = tracker.corners(cell, least.threshold, corner, kCorners);
   for (int c = 0; c < corners; ++c) {
     if (corner[c].score < least.score) return false;
     const Vec2 pixel(static_cast<Scalar>(corner[c].x), static_cast<Scalar>(corner[c].y));
-    if (!is_free(frame, width, pixel) || tracker.is_on_straight_edge(pixel)) continue;
+    if (!is_free(frame, width, pixel)) continue;
     const CornerUse use = take(pixel);
     if (use != CornerUse::kNotHere) return use == CornerUse::kTaken;
   }

@@ -8,7 +8,6 @@
 #include "vision/align.h"
 #include "vision/blur.h"
 #include "vision/search.h"
-#include "vision/straight_edge.h"
 
 namespace pf {
 namespace {
@@ -144,10 +143,6 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
 
 int Tracker::corners(const Rect& cell, int threshold, Corner* out, int capacity) const {
   return detect_corners(pyramid_.level[0], cell, threshold, out, capacity, corner_workspace_);
-}
-
-bool Tracker::is_on_straight_edge(const Vec2& pixel) const {
-  return pf::is_on_straight_edge(pyramid_.level[0], static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
 }
 
 }  // namespace pf

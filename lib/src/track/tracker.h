@@ -58,8 +58,6 @@ class Tracker {
   /// Corners of one cell of the image, best first. Returns how many.
   int corners(const Rect& cell, int threshold, Corner* out, int capacity) const;
 
-  bool is_on_straight_edge(const Vec2& pixel) const;
-
   /// Source pixels per current pixel at a task's feature. False where either camera does not see it.
   bool warp(const SearchTask& task, Mat2* A) const;
 
