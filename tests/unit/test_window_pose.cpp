@@ -1,6 +1,7 @@
 // The window's fit of a pose to matches and prediction, and its motion.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "geometry/so3.h"
 #include "slam/window_motion.h"
@@ -179,6 +180,46 @@ void test_motion_should_keep_a_covariance_where_the_pose_was_hardly_known() {
   }
 }
 
+double smallest_correlation(const Eigen::MatrixXd& P) {
+  const Eigen::VectorXd scale = P.diagonal().cwiseSqrt().cwiseInverse();
+  return eigenvalues_of(scale.asDiagonal() * P * scale.asDiagonal())(0);
+}
+
+/// A speed along one line that decays leaves variances along that line beside which float rounds what is known across it.
+void test_motion_should_keep_a_covariance_while_an_absurd_speed_decays() {
+  SeededRandom random(8);
+  double smallest = 1, smallest_corrected = 1;
+  int refused = 0;
+  for (int k = 0; k < 200; ++k) {
+    Settings settings;
+    settings.constant_velocity = true;
+    settings.body = BodyLayout::with_constant_velocity();
+    settings.motion_noise = {static_cast<Scalar>(std::pow(10, random.uniform(-2, 1))),
+                             static_cast<Scalar>(std::pow(10, random.uniform(-2, 1)))};
+    WindowMotion motion(settings);
+    motion.init();
+    Body body;
+    body.v_W = random.normals<3>(std::pow(10, random.uniform(0, 4)));
+    body.w_C = random.normals<3>(std::pow(10, random.uniform(0, 5)));
+    motion.set(body, Mat6(Mat6::Identity() * Scalar(1e-4)), 5, Scalar(0.05));
+    std::int64_t t_ns = 0;
+    for (int step = 0; step < 20; ++step) {
+      const std::int64_t before_ns = t_ns;
+      t_ns += step == 10 ? 2000000000 : 33333333;
+      motion.advance(before_ns, t_ns, true, true);
+      smallest = std::min(smallest, smallest_correlation(motion.covariance().cast<double>()));
+    }
+    const Mat6 R = Mat6::Identity() * static_cast<Scalar>(std::pow(10, random.uniform(-6, -2)));
+    refused += motion.correct(body.q_WC, body.p_W, R) ? 0 : 1;
+    smallest_corrected = std::min(smallest_corrected, smallest_correlation(motion.pose_covariance().cast<double>()));
+  }
+  std::printf("smallest eigenvalue %.3g, of corrected poses %.3g; %d corrections refused\n", smallest,
+              smallest_corrected, refused);
+  TEST_ASSERT_EQUAL_INT(0, refused);
+  TEST_ASSERT_TRUE(smallest > -1e-12);
+  TEST_ASSERT_TRUE(smallest_corrected > 0);
+}
+
 }  // namespace
 
 int main() {
@@ -188,5 +229,6 @@ int main() {
   RUN_TEST(test_fit_pose_should_stay_at_the_prediction_without_matches);
   RUN_TEST(test_motion_should_learn_velocities_from_poses);
   RUN_TEST(test_motion_should_keep_a_covariance_where_the_pose_was_hardly_known);
+  RUN_TEST(test_motion_should_keep_a_covariance_while_an_absurd_speed_decays);
   return UNITY_END();
 }

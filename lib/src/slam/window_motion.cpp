@@ -7,6 +7,7 @@
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
 #include "slam/speed_limits.h"
+#include "window/tuning.h"
 
 namespace pf {
 namespace {
@@ -45,7 +46,7 @@ void WindowMotion::predict(const Body& body, Scalar dt, const MotionNoise& noise
     predict_constant_position(body, settings_.body, dt, noise, transition);
 }
 
-/// P+ = F P Fᵀ + Q over the rows that move.
+/// P+ = F P Fᵀ + Q over the rows that move. In float the diagonal gets back what rounding may have taken from it (lib/docs/float.md).
 void WindowMotion::apply(const Transition& transition, Data* data) {
   const int dim = transition.dim;
   Covariance FP = Covariance::Zero(), P = Covariance::Zero();
@@ -59,6 +60,7 @@ void WindowMotion::apply(const Transition& transition, Data* data) {
       P(i, j) = sum;
     }
   data->P = (P + P.transpose()) / 2;
+  if constexpr (sizeof(Scalar) == sizeof(float)) data->P.diagonal() *= 1 + tuning::window_motion::kGrowth;
   data->body = transition.mean;
 }
 

@@ -75,6 +75,11 @@ inline constexpr Scalar kMinSin2 = Scalar(1e-8);  ///< of the angle between two 
 inline constexpr int kRounds = 3;                 ///< of Gauss-Newton
 }  // namespace window_depth
 
+/// Prediction of the window's body.
+namespace window_motion {
+inline constexpr Scalar kGrowth = Scalar(2e-6);  ///< of a variance in float, by prediction
+}  // namespace window_motion
+
 /// Pose of a frame of the window.
 namespace window_pose {
 inline constexpr int kSeed = 1;                       ///< of the generator that draws triples
