@@ -8,6 +8,10 @@
 
 #include "bytes.h"
 
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/asan_interface.h>
+#endif
+
 constexpr size_t kPage = 4096;
 
 /// Memory that ends, or begins, at a page that nobody may touch.
@@ -22,7 +26,12 @@ class Guarded {
   }
   Guarded(const Guarded&) = delete;
   Guarded& operator=(const Guarded&) = delete;
-  ~Guarded() { munmap(map_, all_); }
+  ~Guarded() {
+#if defined(__SANITIZE_ADDRESS__)
+    ASAN_UNPOISON_MEMORY_REGION(map_, all_);  // the next mapping may be at this address
+#endif
+    munmap(map_, all_);
+  }
   uint8_t* begin() const { return begin_; }
 
   /// Red zones of the arena are read too, so that no sanitizer may look.

@@ -87,6 +87,9 @@ with tempfile.TemporaryDirectory() as name:
     require(gap["lost_runs"] == 0 and gap["refused"] == 0, "lost by a unit that stops for a second")
     require(gap["fault"]["tracked_after"] > 0.99 and gap["fault"]["worst_sigmas_after"] < 4, f"after a gap: {gap['fault']}")
 
+    # Nor does the second of rest behind the one that began the map: the camera is held in it.
+    require(vio["resting_share"] * vio["settings"]["seconds"] > 0.9, f"of 2 s at rest held: {vio['resting_share']}")
+
     # A longer rest tells nothing new of depths, and must not seem to.
     rested, _ = report(folder, "--seconds", "28", "--rest", "20")
     require(rested["doubt"]["runs"] == 0 and rested["scale_error"]["max"] < 0.03, f"after a long rest: {rested['scale_error']}")

@@ -9,13 +9,13 @@ void tearDown(void) {}
 namespace {
 
 /// What the textbook makes of the kept observations: dx = K y and (I - K H) P (I - K H)^T + K R K^T. Only the first `estimated` rows of K
-/// are used, where that is not 0 (Schmidt).
+/// are used, where that is not 0 (Schmidt), or those behind the first `considered`.
 struct Textbook {
   Eigen::VectorXd dx;
   Dense P;
   double nis;
 
-  Textbook(const Scene& scene, const unsigned char* keep, int estimated = 0) {
+  Textbook(const Scene& scene, const unsigned char* keep, int estimated = 0, int considered = 0) {
     const int n = scene.filter.dim();
     std::vector<int> taken;
     for (int i = 0; i < scene.count(); ++i)
@@ -33,6 +33,7 @@ struct Textbook {
     const Dense S_inverse = inverse_of(H * before * H.transpose() + R);
     Dense K = before * H.transpose() * S_inverse;
     if (estimated > 0) K.bottomRows(n - estimated).setZero();
+    K.topRows(considered).setZero();
     const Dense A = Dense::Identity(n, n) - K * H;
     dx = K * y;
     P = A * before * A.transpose() + K * R * K.transpose();
@@ -65,8 +66,9 @@ void check_state(const State& before, const TestFilter& filter, const std::vecto
   }
 }
 
-void check_update(Scene& scene, const unsigned char* keep, bool textbook_covariance, int estimated = 0) {
-  const Textbook expected(scene, keep, estimated);
+void check_update(Scene& scene, const unsigned char* keep, bool textbook_covariance, int estimated = 0,
+                  int considered = 0) {
+  const Textbook expected(scene, keep, estimated, considered);
   const State before = scene.filter->state();
   const std::vector<Block> blocks(before.block, before.block + before.slots);
   scene.filter->begin_update(scene.observations.data(), scene.count());
@@ -118,6 +120,18 @@ void test_update_should_be_schmidts_when_only_motion_is_estimated() {
   }
 }
 
+void test_update_should_be_schmidts_when_only_the_map_is_estimated() {
+  SeededRandom random(88);
+  for (int trial = 0; trial < 20; ++trial) {
+    Scene scene(random, false);
+    const Dense before = scene.filter.P();
+    const int body = scene.filter->state().layout.rows();
+    scene.filter->estimate_map_only(true);
+    check_update(scene, nullptr, true, 0, body);
+    TEST_ASSERT_TRUE(difference(scene.filter.P().topLeftCorner(body, body), before.topLeftCorner(body, body)) == 0);
+  }
+}
+
 void test_update_should_move_the_mean_like_the_textbook_when_the_gauge_is_kept() {
   SeededRandom random(83);
   for (int trial = 0; trial < 20; ++trial) {
@@ -131,9 +145,11 @@ void test_update_should_only_move_the_gauge_of_the_textbook_covariance_when_it_i
   SeededRandom random(84);
   for (int trial = 0; trial < 20; ++trial) {
     Scene scene(random, true);
-    const bool only_motion = trial % 2 == 1;
-    const Textbook expected(scene, nullptr, only_motion ? scene.filter->state().layout.dynamic_rows() : 0);
+    const bool only_motion = trial % 3 == 1, only_map = trial % 3 == 2;
+    const BodyLayout& layout = scene.filter->state().layout;
+    const Textbook expected(scene, nullptr, only_motion ? layout.dynamic_rows() : 0, only_map ? layout.rows() : 0);
     scene.filter->estimate_motion_only(only_motion);
+    scene.filter->estimate_map_only(only_map);
     const Dense before = scene.filter.gauge();
     scene.filter->begin_update(scene.observations.data(), scene.count());
     TEST_ASSERT_TRUE(scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr));
@@ -212,6 +228,7 @@ int main(void) {
   RUN_TEST(test_update_should_be_the_textbook_ekf_when_all_is_taken_in);
   RUN_TEST(test_update_should_be_the_textbook_ekf_of_what_is_kept_when_some_is_rejected);
   RUN_TEST(test_update_should_be_schmidts_when_only_motion_is_estimated);
+  RUN_TEST(test_update_should_be_schmidts_when_only_the_map_is_estimated);
   RUN_TEST(test_update_should_move_the_mean_like_the_textbook_when_the_gauge_is_kept);
   RUN_TEST(test_update_should_only_move_the_gauge_of_the_textbook_covariance_when_it_is_kept);
   RUN_TEST(test_joint_innovation_should_be_h_p_ht_in_any_order);

@@ -47,8 +47,14 @@ class BlockFilter {
   void set_leading(const Scalar* covariance, int rows, const Scalar* J);
   /// Updates estimate the first `rows` rows and consider all others, until the next call. 0: those that are not held, as after init().
   void estimate_only(int rows) { only_ = rows; }
+  /// Updates consider the leading block too, until the next call.
+  void consider_leading(bool considered) { considers_leading_ = considered; }
+  bool considers_leading() const { return considers_leading_; }
   /// What updates consider: rows from the first of these to before the second.
-  int considered_begin() const { return only_ > 0 && only_ < leading_dim_ ? only_ : leading_dim_; }
+  int considered_begin() const {
+    if (considers_leading_) return 0;
+    return only_ > 0 && only_ < leading_dim_ ? only_ : leading_dim_;
+  }
   int considered_end() const { return only_ > 0 ? P_.n : held_end(); }
 
   /// So many of the leading block's last rows are considered from now on, and those before them estimated.
@@ -195,8 +201,9 @@ class BlockFilter {
   int leading_dim_ = 0, held_dim_ = 0;
   int considered_ = 0;  ///< of the held rows: those of the leading block
   int only_ = 0;        ///< estimate_only()
-  int max_dim_ = 0;     ///< of the state; P_ has room for a few more
-  int max_rows_ = 0;    ///< of one update
+  bool considers_leading_ = false;
+  int max_dim_ = 0;   ///< of the state; P_ has room for a few more
+  int max_rows_ = 0;  ///< of one update
   int ld_ = 0, lds_ = 0;
   int gained_ = 0;
   Scalar owed_ = 0;      ///< growth that is too small for a Scalar

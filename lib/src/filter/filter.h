@@ -78,6 +78,9 @@ class Filter {
   void consider_lens(bool only_considered);
   /// Updates estimate what moves, the body without its constants, and consider the map and the lens (Schmidt), until the next call.
   void estimate_motion_only(bool only) { blocks_.estimate_only(only ? state_.layout.dynamic_rows() : 0); }
+  /// Likewise: they estimate the map, and consider the body.
+  void estimate_map_only(bool only) { blocks_.consider_leading(only); }
+  bool estimates_map_only() const { return blocks_.considers_leading(); }
   /// The calibration as it is known now.
   const Camera& lens() const { return state_.lens; }
 

@@ -1,5 +1,6 @@
 #include "filter/transport.h"
 
+#include <climits>
 #include <cstring>
 
 #include "geometry/so3.h"
@@ -10,14 +11,14 @@ namespace {
 constexpr int kRotation = 0, kScale = 3, kTranslation = 4;
 static_assert(kTranslation == Kernels::kDenseRows);
 
-/// A row of a Jacobian times a dense row, of which columns before `begin` count as zero.
-Scalar dot(const BlockFilter& blocks, const ScaleRow& row, const Scalar* dense, int begin = 0) {
+/// A row of a Jacobian times a dense row, of which columns before `begin` and from `end` on count as zero.
+Scalar dot(const BlockFilter& blocks, const ScaleRow& row, const Scalar* dense, int begin = 0, int end = INT_MAX) {
   Scalar v = 0;
   int c = 0;
   for (int p = 0; p < row.parts; ++p) {
     const int first = blocks.row(row.part[p]);
     for (int i = 0; i < row.part[p].size; ++i, ++c)
-      if (first + i >= begin) v += row.h[c] * dense[first + i];
+      if (first + i >= begin && first + i < end) v += row.h[c] * dense[first + i];
   }
   return v;
 }
@@ -97,7 +98,7 @@ void Transport::finish(const State& state, const BlockFilter& blocks) {
     if (which < kScale) return row[Body::kTheta + which];
     return which == kScale ? dot(blocks, l_, row) : row[Body::kPosition + which - kTranslation];
   };
-  // Of P1: less (V W^T) W, as long as V touches no considered row. Only l may, in an update that considers all of the map.
+  // Of P1: less (V W^T) W, as long as V touches no considered row, as it does in an update that considers all of the map, or the body.
   constexpr int kChunk = 64;
   Scalar A[kMaxRows * kChunk];
   for (int first = 0; first < m; first += kChunk) {
@@ -128,15 +129,21 @@ void Transport::finish(const State& state, const BlockFilter& blocks) {
   kernels.add_product(G_, rows, A, kMaxRows, U_, rows, n, ld_);
 }
 
-/// P1 takes nothing from P between considered rows c: G_l there is less (l_e W_e^T) W_c only, with the other rows e.
+/// P1 takes nothing from P between considered rows c: row v of V there is less (v_e W_e^T) W_c only, with the other rows e.
 void Transport::add_considered(const BlockFilter& blocks) {
-  if (blocks.considered_end() <= blocks.held_end() || rows_ < kTranslation) return;
   const int begin = blocks.considered_begin(), end = blocks.considered_end();
-  Scalar* const G_l = G_ + kScale * ld_;
+  const bool considers_body = begin == 0;
+  if (end <= blocks.held_end() && !considers_body) return;
   for (int j = 0; j < blocks.gained_rows(); ++j) {
     const Scalar* const W_j = blocks.whitened(j);
-    const Scalar l_W = dot(blocks, l_, W_j, begin);
-    for (int c = begin; c < end; ++c) G_l[c] += l_W * W_j[c];
+    const auto add = [&](int row, Scalar v_W) {
+      for (int c = begin; c < end; ++c) G_[row * ld_ + c] += v_W * W_j[c];
+    };
+    for (int axis = 0; axis < 3 && considers_body; ++axis) {
+      add(kRotation + axis, W_j[Body::kTheta + axis]);
+      if (rows_ == kMaxRows) add(kTranslation + axis, W_j[Body::kPosition + axis]);
+    }
+    if (rows_ >= kTranslation) add(kScale, dot(blocks, l_, W_j, begin, end));
   }
 }
 

@@ -162,7 +162,7 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[settings_.inertial ? kImu : kPredict]);
   watch_.begin_frame(before_ns, t_ns);
   if (unit_ == nullptr || !unit_->hold.predict(data_.follows, before_ns, t_ns, data_.median_depth))
-    motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
+    advance(before_ns, tracking_.coasting_or_lost(), nothing_measured);
   if (!filter_.body_is_sound()) start_over();
 }
 
@@ -197,12 +197,16 @@ void FrameLoop::measure_watched(F&& measure) {
     measure(again);
     if (!watch_.is_refused()) return;
     unit_->hold.take_back();
-    motion_.advance(unit_->hold.before_ns(), frame_.report.t_ns, false, false);
+    advance(unit_->hold.before_ns(), false, false);
     frame_.begin_again();
     again = true;
   }
   watch_.begin_measuring(data_.follows);
+  const bool just_moved = unit_ != nullptr && unit_->hold.has_just_ended(frame_.report.t_ns);
+  update_.put_depths_first(just_moved);
   measure(again);
+  if (just_moved && !update_.puts_depths_first()) unit_->hold.forget();
+  update_.put_depths_first(false);
   if (!watch_.is_refused()) return;
   watch_.leave_prediction();
   frame_.begin_again();

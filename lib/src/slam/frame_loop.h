@@ -69,6 +69,8 @@ class FrameLoop {
   const Relocaliser& relocaliser() const { return relocaliser_; }
   /// Time that the filter's body was predicted to: that of the last frame, or of the one that it repeats.
   std::int64_t filter_ns() const { return data_.filter_ns; }
+  /// From when on a prediction has to go through samples.
+  std::int64_t motion_begin_ns(std::int64_t now_ns) const;
   const NoiseModel& noise() const { return noise_; }
   /// Null where the config has no room for patches.
   const PatchKeeper* patches() const { return patches_; }
@@ -87,6 +89,7 @@ class FrameLoop {
   void begin_frame(std::int64_t t_ns);
   Status end_frame();
   ConsensusRule consensus_rule(std::int64_t t_ns) const;
+  void advance(std::int64_t before_ns, bool coasting_or_lost, bool nothing_measured);
   bool look_for_rest();
   void look_for_walls();
   bool look_for_scale();

@@ -13,10 +13,12 @@ bool FrameLoop::look_for_rest() {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kImu]);
   RestReading rest;
   if (rest_.note(tracking_.is_tracked(frame_.report), &rest) && start_.use_rest(rest, rest_.begin_ns())) {
-    if (map_.features.count() == 0) relocaliser_.init();
+    if (map_.features.count() > 0) return true;
+    relocaliser_.init();
+    rest_.begin_pixels_anew();
     return true;
   }
-  unit_->hold.end_frame();
+  unit_->hold.end_frame(frame_.report.t_ns);
   return look_for_scale();
 }
 
@@ -35,11 +37,24 @@ bool FrameLoop::look_for_scale() {
   return true;
 }
 
+std::int64_t FrameLoop::motion_begin_ns(std::int64_t now_ns) const {
+  return unit_ != nullptr ? unit_->hold.motion_begin_ns(now_ns) : now_ns;
+}
+
+/// Predicts the body to this frame.
+void FrameLoop::advance(std::int64_t before_ns, bool coasting_or_lost, bool nothing_measured) {
+  const std::int64_t begin_ns = motion_begin_ns(before_ns);
+  watch_.keep_prior(begin_ns);
+  motion_.advance(begin_ns, frame_.report.t_ns, coasting_or_lost, nothing_measured);
+  if (unit_ != nullptr) unit_->hold.note_motion();
+}
+
 void FrameLoop::layout_unit(Arena& arena) {
   if (!settings_.inertial) return;
   UnitParts* const place = arena.take<UnitParts>(1);
   if (place != nullptr)
-    unit_ = new (place) UnitParts{{settings_, filter_, rest_}, {settings_, filter_, map_, frame_, imu_, motion_}};
+    unit_ = new (place)
+        UnitParts{{settings_, filter_, rest_, imu_, motion_}, {settings_, filter_, map_, frame_, imu_, motion_}};
 }
 
 void FrameLoop::init_unit() {

@@ -10,9 +10,11 @@
 namespace pf {
 namespace {
 
-constexpr int kMaxRounds = 3;              ///< of relinearisation
-constexpr int kOldest = 255;               ///< [frames] that are told apart
-constexpr Scalar kMinBend = Scalar(1e-6);  ///< [px^2] that R^2 is divided by
+constexpr int kMaxRounds = 3;                ///< of relinearisation
+constexpr int kOldest = 255;                 ///< [frames] that are told apart
+constexpr Scalar kOpenDepth = Scalar(0.1);   ///< relative sigma from which a depth is open, and comes first
+constexpr Scalar kMaxFirstNis = Scalar(30);  ///< chi-square of six, 1 - 4e-5: pixels contradict such a pose
+constexpr Scalar kMinBend = Scalar(1e-6);    ///< [px^2] that R^2 is divided by
 
 }  // namespace
 
@@ -43,11 +45,39 @@ int PixelUpdate::reject_contradicted(int first, int count, double* nis) {
   return static_cast<int>(std::count(keep_ + first, keep_ + first + count, static_cast<unsigned char>(1)));
 }
 
+/// Of most of the kept ones, in metres.
+bool PixelUpdate::are_depths_open(int first, int count) const {
+  int open = 0, all = 0;
+  for (int i = first; i < first + count; ++i) {
+    if (keep_[i] == 0) continue;
+    const int slot = map_.features[candidate_[i].feature].slot;
+    const Block& block = filter_.state().block[slot];
+    ++all;
+    if (block.kind == BlockKind::kInverseDepth)
+      open += !(std::sqrt(filter_.block_variance(slot, 2)) < kOpenDepth * block.inverse_depth().rho);
+  }
+  return 2 * open > all;
+}
+
 bool PixelUpdate::apply(int first, int count, double* nis) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
+  const bool depths_only = puts_depths_first_ && are_depths_open(first, count);
+  filter_.estimate_map_only(depths_only);
+  const bool applied = apply_to(first, count, nis);
+  filter_.estimate_map_only(false);
+  return applied;
+}
+
+bool PixelUpdate::apply_to(int first, int count, double* nis) {
   Scalar sum = 0, pose_nis = 0;
-  const bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum);
+  bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum);
   const bool says_pose = solved && settings_.inertial && filter_.pose_nis(&pose_nis);
+  if (says_pose && filter_.estimates_map_only() && pose_nis > kMaxFirstNis) {
+    puts_depths_first_ = false;
+    filter_.estimate_map_only(false);
+    filter_.begin_update(observation_ + first, count);
+    solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum);
+  }
   is_contradicted_ = is_contradicted_ || (says_pose && contradicts(pose_nis));
   if (!is_contradicted_) tracking_.note_update(solved);
   if (!solved || is_contradicted_) {
@@ -56,7 +86,8 @@ bool PixelUpdate::apply(int first, int count, double* nis) {
   }
   filter_.commit_update();
   if (nis != nullptr) *nis += static_cast<double>(sum);
-  if (says_pose) {
+  // What the pose is off stays while depths come first: a frame says nothing that the one before had not said.
+  if (says_pose && !filter_.estimates_map_only()) {
     frame_.report.pose_nis += static_cast<double>(pose_nis);
     frame_.report.pose_nis_dof += Body::kPoseDim;
   }

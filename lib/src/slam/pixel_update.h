@@ -55,6 +55,11 @@ class PixelUpdate {
   bool limits_pose_nis() const { return max_pose_nis_ > Scalar(0); }
   /// It has done so.
   bool is_contradicted() const { return is_contradicted_; }
+  /// Until the next call: while the depths of most of what a frame measures are open, apply() tells the map alone by it, and the pose not
+  /// (lib/docs/inertial.md, "Starting").
+  void put_depths_first(bool first) { puts_depths_first_ = first; }
+  /// False once pixels have contradicted the pose that this relies on.
+  bool puts_depths_first() const { return puts_depths_first_; }
   /// Updates with the kept ones of the range that begin() got. False if the update could not be made; then nothing has changed.
   /// Adds their normalised innovation squared to *nis where it is not null.
   bool apply(int first, int count, double* nis);
@@ -63,6 +68,8 @@ class PixelUpdate {
   bool contradicts(Scalar pose_nis) const {
     return limits_pose_nis() && frame_.report.inliers == 0 && pose_nis > max_pose_nis_;
   }
+  bool apply_to(int first, int count, double* nis);
+  bool are_depths_open(int first, int count) const;
   void relinearise_update(int first, int count);
 
   const Settings& settings_;
@@ -77,6 +84,7 @@ class PixelUpdate {
       nullptr;  ///< scratch behind keep_: frames in which the feature of each match was measured, up to 255
   LeaveOneOut others_;
   Scalar max_pose_nis_ = 0;
+  bool puts_depths_first_ = false;
   bool is_contradicted_ = false;
 };
 

@@ -25,13 +25,15 @@ bool RestDetector::note(bool seen, RestReading* rest) {
     return false;
   }
   if (!has_pixels) keep_pixels();  // a map's first frame has none yet
+  if (data_->anew && data_->seen > 0) {
+    data_->anew = false;
+    data_->mean_ns = t_ns;
+  }
   for (int i = 0; i < imu_.held(); ++i)
     if (imu_[i].t_ns > data_->sample_ns) add(imu_[i]);
-  compare_with_first();
-  if (data_->rested > Scalar(0))
-    data_->rested = static_cast<Scalar>(seconds(elapsed_ns(data_->first_ns, t_ns)));
-  else
-    keep_first();
+  if (data_->first > 0) compare_with_first();
+  if (data_->rested > Scalar(0)) data_->rested = static_cast<Scalar>(seconds(elapsed_ns(data_->first_ns, t_ns)));
+  if (!data_->anew && seconds(elapsed_ns(data_->mean_ns, t_ns)) < static_cast<double>(kTime)) keep_first();
   const Scalar T = static_cast<Scalar>(seconds(elapsed_ns(data_->begin_ns, t_ns)));
   if (T < kTime) return false;
   const bool at_rest = covers(data_->count, T) && is_quiet();
@@ -60,8 +62,9 @@ void RestDetector::begin(bool rests_on) {
   const Data before = *data_;
   *data_ = Data();
   data_->begun = true;
-  data_->first_ns = frame_.report.t_ns;
+  data_->first_ns = data_->mean_ns = frame_.report.t_ns;
   if (rests_on) {
+    data_->mean_ns = before.mean_ns;
     data_->first_ns = before.first_ns;
     data_->rested = static_cast<Scalar>(seconds(elapsed_ns(before.first_ns, frame_.report.t_ns)));
     data_->first = before.first;
@@ -102,6 +105,12 @@ void RestDetector::compare_with_first() {
   if (!motion_since(seen_ + kMaxPixels, data_->first, &motion)) return end_rest();
   data_->motion_px += kMeanGain * (motion - data_->motion_px);
   if (motion_px() > kMaxMeanMotionPx) end_rest();
+}
+
+void RestDetector::begin_pixels_anew() {
+  data_->anew = true;
+  data_->seen = data_->first = 0;
+  data_->motion_px.setZero();
 }
 
 Scalar RestDetector::motion_px() const { return std::max(data_->motion_px.norm(), kMinMeanMotionPx); }

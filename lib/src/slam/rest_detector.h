@@ -31,6 +31,8 @@ class RestDetector {
   bool read_frame(Scalar dt, StillReading* still) const;
   /// How far the picture has moved since this rest began, as a mean over some frames; what it can tell from none at least [px].
   Scalar motion_px() const;
+  /// The map has begun anew while the rest goes on: the picture is compared with that of the next second from now on.
+  void begin_pixels_anew();
   /// It moves, as something else says.
   void end_rest() { data_->rested = 0; }
   bool is_resting() const { return data_ != nullptr && data_->rested > Scalar(0); }
@@ -40,7 +42,7 @@ class RestDetector {
 
   using Vec4 = Eigen::Matrix<Scalar, 4, 1>;
 
-  /// Where a feature was at the beginning of this second, or in the mean of the first second of this rest.
+  /// Where a feature was at the beginning of this second, or in the mean of the first second of this rest or of this map.
   struct Seen {
     std::uint32_t id;
     int count;
@@ -60,7 +62,9 @@ class RestDetector {
     // Of the whole rest.
     Scalar rested = 0;              ///< [s] since it began, once its first second has passed
     std::int64_t first_ns = 0;      ///< when it began
-    int first = 0;                  ///< pixels of its first second
+    std::int64_t mean_ns = 0;       ///< when the second began whose mean pixels it is compared with
+    int first = 0;                  ///< these pixels
+    bool anew = false;              ///< they begin with the next frame
     Vec4 motion_px = Vec4::Zero();  ///< of the picture since then, a running mean over frames
     Scalar scatter[2] = {1, 1};     ///< of the samples in the last second, in that of their densities; at least 1
   };

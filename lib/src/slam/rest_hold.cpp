@@ -11,6 +11,15 @@ namespace pf {
 
 using namespace tuning::rest;
 
+namespace {
+
+constexpr double kLate = 0.2;                         ///< [s] for which a motion may begin unseen
+constexpr double kBySamples = 3;                      ///< [s] for which samples alone tell motion well,
+constexpr Scalar kRotationBySamples = Scalar(0.002);  ///< [rad] and as long as the rotation is known so well
+constexpr Scalar kSpeedBySamples = Scalar(0.02);      ///< [m/s] and the velocity
+
+}  // namespace
+
 bool RestHold::predict(bool follows, std::int64_t before_ns, std::int64_t t_ns, Scalar depth) {
   const bool held = data_.holds, holds = follow_rest(follows, before_ns, t_ns, depth);
   if (held && !holds) leave();
@@ -45,9 +54,26 @@ bool RestHold::follow_rest(bool follows, std::int64_t before_ns, std::int64_t t_
 void RestHold::begin_rest() {
   data_.moved_px = Scalar(0);
   count_frame(&rests_);
+  data_.late_count = 0;
   Transition transition;
   begin_speed(filter_.state().body, settings_.body, kHidden * data_.still.sigma_accel * data_.dt, &transition);
   filter_.predict(transition);
+}
+
+/// What the oldest late frame said is taken in: it was one of a rest.
+void RestHold::take_late() {
+  filter_.take_still(data_.late[0].still, settings_.unit.gravity, kAnyNis, true);
+  std::copy(data_.late + 1, data_.late + data_.late_count, data_.late);
+  --data_.late_count;
+}
+
+/// A hand begins to move by less than a frame's samples can tell from their noise, for some frames, and the samples of all of these
+/// together tell it: the body goes through them again as one that moves, from the velocity of the rest on.
+std::int64_t RestHold::motion_begin_ns(std::int64_t now_ns) const {
+  if (!filter_.uses_samples() || imu_.held() == 0) return now_ns;
+  for (int i = 0; i < data_.late_count; ++i)
+    if (motion_.on_unit_clock(data_.late[i].before_ns) >= imu_[0].t_ns) return data_.late[i].before_ns;
+  return now_ns;
 }
 
 /// Gravity was read in axes that motion may yet show to be others.
@@ -84,12 +110,27 @@ void RestHold::take_back() {
   end_rest();
 }
 
-void RestHold::end_frame() {
+bool RestHold::has_just_ended(std::int64_t t_ns) {
+  if (data_.holds || data_.last_ns == INT64_MIN || !filter_.is_metric() || !filter_.uses_samples()) return false;
+  const auto known = [&](int first, Scalar sigma) {
+    for (int i = first; i < first + 3; ++i)
+      if (!(filter_.variance(i) < sigma * sigma)) return false;
+    return true;
+  };
+  if (seconds(elapsed_ns(data_.last_ns, t_ns)) < kBySamples && known(Body::kTheta, kRotationBySamples) &&
+      known(settings_.body.row(BodyPart::kVelocity), kSpeedBySamples))
+    return true;
+  forget();
+  return false;
+}
+
+void RestHold::end_frame(std::int64_t t_ns) {
   if (!data_.holds) return;
-  if (rest_.is_resting())
-    filter_.take_still(data_.still, settings_.unit.gravity, kAnyNis, true);
-  else
-    end_rest();
+  data_.last_ns = t_ns;
+  if (data_.late_count == kMaxLate) take_late();
+  data_.late[data_.late_count++] = {data_.before_ns, data_.still};
+  if (!rest_.is_resting()) return end_rest();
+  while (data_.late_count > 1 && seconds(elapsed_ns(data_.late[1].before_ns, t_ns)) > kLate) take_late();
 }
 
 }  // namespace pf

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "filter/filter.h"
+#include "filter/imu_log.h"
 #include "slam/body_motion.h"
 #include "slam/rest_detector.h"
 #include "slam/settings.h"
@@ -14,8 +15,8 @@ namespace pf {
 
 class RestHold {
  public:
-  RestHold(const Settings& settings, Filter& filter, RestDetector& rest)
-      : settings_(settings), filter_(filter), rest_(rest) {}
+  RestHold(const Settings& settings, Filter& filter, RestDetector& rest, const ImuLog& imu, const BodyMotion& motion)
+      : settings_(settings), filter_(filter), rest_(rest), imu_(imu), motion_(motion) {}
 
   void init() { data_ = Data(); }
   /// Predicts the body from one frame's time to the next where it is at rest. follows: the frame before was tracked. depth: the median
@@ -25,33 +26,55 @@ class RestHold {
   /// The picture contradicts that: nothing is predicted yet.
   void take_back();
   /// After the detector has seen the frame too.
-  void end_frame();
+  void end_frame(std::int64_t t_ns);
   /// In this frame.
   bool holds() const { return data_.holds; }
+  /// Where motion has to begin for who predicts from now_ns on: there, or as much earlier as it may have begun unseen.
+  std::int64_t motion_begin_ns(std::int64_t now_ns) const;
+  /// The body has been predicted from there.
+  void note_motion() { data_.late_count = 0; }
+  /// The rest has ended, and samples alone know well where the camera has gone since then.
+  bool has_just_ended(std::int64_t t_ns);
+  /// Samples do not know that well, as something else says.
+  void forget() { data_.last_ns = INT64_MIN; }
   /// When its prediction began.
   std::int64_t before_ns() const { return data_.before_ns; }
   /// Rests that have begun, in all.
   int rests() const { return rests_; }
 
  private:
+  static constexpr int kMaxLate = 8;
+
+  /// What the samples of a held frame said, which no later one has yet shown to be of a body at rest.
+  struct Late {
+    std::int64_t before_ns;
+    StillReading still;
+  };
+
   struct Data {
     bool holds = false;
     std::int64_t before_ns = 0;
-    Scalar moved_px = 0;           ///< that the pose has been allowed since the rest began
-    Scalar sigma_rad = 0, dt = 0;  ///< of this frame's prediction
+    std::int64_t last_ns = INT64_MIN;  ///< of the last frame that was held; INT64_MIN: there was none
+    Scalar moved_px = 0;               ///< that the pose has been allowed since the rest began
+    Scalar sigma_rad = 0, dt = 0;      ///< of this frame's prediction
     Scalar m_per_px = 0;
     StillReading still;
+    Late late[kMaxLate];
+    int late_count = 0;
   };
 
   bool follow_rest(bool follows, std::int64_t before_ns, std::int64_t t_ns, Scalar depth);
   void begin_rest();
   void leave();
   void end_rest();
+  void take_late();
   void move(Scalar sign);
 
   const Settings& settings_;
   Filter& filter_;
   RestDetector& rest_;
+  const ImuLog& imu_;
+  const BodyMotion& motion_;
   int rests_ = 0;
   Data data_;
 };

@@ -37,9 +37,14 @@ void UnitWatch::begin_frame(std::int64_t before_ns, std::int64_t t_ns) {
     return_to_samples(reading);
   }
   data_->fresh = false;
+  data_->follows = data_->contradicted = data_->taken_back = false;
+  keep_prior(before_ns);
+}
+
+void UnitWatch::keep_prior(std::int64_t before_ns) {
+  if (data_ == nullptr) return;
   data_->prior = filter_.state().body;
   data_->prior_ns = before_ns;
-  data_->follows = data_->contradicted = data_->taken_back = false;
 }
 
 void UnitWatch::begin_measuring(bool follows) {

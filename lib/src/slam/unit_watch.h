@@ -27,6 +27,8 @@ class UnitWatch {
   void init();
   /// Before the body goes from one frame to the next: whether samples move it, which it is prepared for.
   void begin_frame(std::int64_t before_ns, std::int64_t t_ns);
+  /// The body as it is now is what this frame's prediction begins from.
+  void keep_prior(std::int64_t before_ns);
   /// Before the frame is measured. follows: the frame before was tracked, and so was the pose that this one's prediction begins at.
   void begin_measuring(bool follows);
   /// After it was measured. True where nothing was used of it, since it says so much against the prediction or since hardly anything was

@@ -47,7 +47,8 @@ int View::kept_views() const { return window_ != nullptr ? window_->kept_views()
 void View::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
   if (window_ != nullptr) return window_pose_at(t_ns, body, covariance);
   // Of a frame that repeats the one before, the pose is that one's.
-  loop_->motion().predict_pose(t_ns > last_ns() ? loop_->filter_ns() : t_ns, t_ns, body, covariance);
+  loop_->motion().predict_pose(t_ns > last_ns() ? loop_->motion_begin_ns(loop_->filter_ns()) : t_ns, t_ns, body,
+                               covariance);
   if (settings_.inertial) body->v_W = camera_velocity(*body, filter().state().mounting);
 }
 
