@@ -17,6 +17,7 @@ constexpr int32_t kKeptToMove = 2000;  ///< likewise where poses depend on them:
 constexpr double kSigmaMountRad = 0.035;  ///< of --estimate mount: 2 degrees
 constexpr double kSigmaMountM = 0.02;
 constexpr double kSigmaDelayS = 0.01;    ///< of --estimate delay
+constexpr int64_t kAheadNs = 30000000;   ///< three times that
 constexpr double kSigmaReadoutS = 0.01;  ///< of --estimate readout
 
 constexpr double kRadians = 3.14159265358979 / 180.0;
@@ -202,7 +203,8 @@ void ImuFeed::push_until(int64_t t_ns, pf_slam_t* slam) {
     tell_vertical(slam);
   }
   samples_.clear();
-  imu_->take(t_ns, samples_);
+  // Where the delay is not known, a frame hangs on samples that may be as much later.
+  imu_->take(t_ns + (inertial_ && estimate_delay_ ? kAheadNs : 0), samples_);
   // All that came before the first frame tells nothing: they may be of another clock altogether.
   between_ += frames_ > 0 ? static_cast<int64_t>(samples_.size()) : 0;
   if (++frames_ == kPatience && between_ == 0) {

@@ -21,6 +21,7 @@ using pf::sim::Vec3;
 constexpr std::uint64_t kPoorEvery = 10;  // runs
 constexpr int kGaugeEvery = 50;           // frames
 constexpr double kScaleAfter = 5;         // [s] of motion, when the scale is judged first
+constexpr double kAhead = 3;              // sigmas of the delay by which samples are ahead of their frame
 constexpr double kReadoutAfter = 10;      // [s] likewise the readout
 
 constexpr double kAfter = 5;          // [s] from the beginning of a fault, when all should be well again
@@ -159,13 +160,13 @@ class Run {
     }
   }
 
-  /// Samples up to a frame's time, on their own clock.
+  /// Samples up to a frame's time, on their own clock; of a delay that is not known three sigma more, which have come when the picture has.
   void push_samples(std::int64_t t_ns) {
     const auto in_ns = [](double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); };
     const bool wrong = o_.fault != VioFault::kNone && t_ns >= in_ns(o_.fault_at_s);
     const std::int64_t until_ns = wrong && o_.fault == VioFault::kLate ? t_ns - in_ns(kLateBy) : t_ns;
     std::vector<pf_imu_sample_t> samples;
-    while (sensor_.next_ns() <= until_ns) {
+    while (sensor_.next_ns() <= until_ns + in_ns(kAhead * o_.sigma_delay_s)) {
       samples.push_back(sensor_.next());
       if (wrong && o_.fault == VioFault::kClockJump) samples.back().t_ns += in_ns(kClockJump);
       if (wrong && o_.fault == VioFault::kReversed && t_ns < in_ns(o_.fault_at_s + kReversed)) reverse(&samples.back());
