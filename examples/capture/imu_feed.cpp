@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace pf::capture {
@@ -16,8 +17,8 @@ constexpr int32_t kKeptToMove = 2000;  ///< likewise where poses depend on them:
 
 constexpr double kSigmaMountRad = 0.035;  ///< of --estimate mount: 2 degrees
 constexpr double kSigmaMountM = 0.02;
-constexpr double kSigmaDelayS = 0.01;    ///< of --estimate delay
-constexpr int64_t kAheadNs = 30000000;   ///< three times that
+constexpr double kSigmaDelayS = 0.01;  ///< of --estimate delay
+constexpr auto kAheadNs = static_cast<int64_t>(3e9 * kSigmaDelayS);
 constexpr double kSigmaReadoutS = 0.01;  ///< of --estimate readout
 
 constexpr double kRadians = 3.14159265358979 / 180.0;
@@ -204,7 +205,8 @@ void ImuFeed::push_until(int64_t t_ns, pf_slam_t* slam) {
   }
   samples_.clear();
   // Where the delay is not known, a frame hangs on samples that may be as much later.
-  imu_->take(t_ns + (inertial_ && estimate_delay_ ? kAheadNs : 0), samples_);
+  const int64_t ahead_ns = inertial_ && estimate_delay_ ? kAheadNs : 0;
+  imu_->take(std::min(t_ns, std::numeric_limits<int64_t>::max() - ahead_ns) + ahead_ns, samples_);
   // All that came before the first frame tells nothing: they may be of another clock altogether.
   between_ += frames_ > 0 ? static_cast<int64_t>(samples_.size()) : 0;
   if (++frames_ == kPatience && between_ == 0) {

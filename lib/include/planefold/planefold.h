@@ -215,9 +215,9 @@ typedef struct pf_imu_model {
    * (pf_get_inertial). 0: taken as exact; else at least 1e-6. Defaults 0 */
   double sigma_mount_rad; /* of the unit's axes, up to 0.5. Three rows of the state */
   double sigma_mount_m;   /* of its origin in C, up to 1. Three rows */
-  double
-      sigma_delay_s; /* up to 0.1. One row. A frame then hangs on samples that may be as much later: push those of up to three
-                           * sigma behind its time before it, as far as they have come */
+  /* Of the delay, up to 0.1. One row. A frame then hangs on samples that may be as much later: push those of up to three sigma
+   * behind its time before it, as far as they have come. */
+  double sigma_delay_s;
   /* Of camera.readout_s, which must be above 0 then; up to 0.1. One more row of the lens, which is considered where
    * camera.estimate says so, and else estimated. */
   double sigma_readout_s;
