@@ -130,7 +130,7 @@ void test_motion_should_learn_velocities_from_poses() {
   for (int k = 1; k <= 10; ++k) {
     const Scalar t = static_cast<Scalar>(k) * Scalar(0.05);
     motion.advance((k - 1) * kStepNs, k * kStepNs, false, false);
-    TEST_ASSERT_TRUE(motion.correct(exp_so3(Vec3(w * t)), v * t, R));
+    TEST_ASSERT_TRUE(motion.correct(exp_so3(Vec3(w * t)), v * t, R.cast<double>()));
     TEST_ASSERT_TRUE(motion.is_sound());
   }
   TEST_ASSERT_TRUE((motion.body().v_W - v).norm() < 0.01);
@@ -175,7 +175,7 @@ void test_motion_should_keep_a_covariance_where_the_pose_was_hardly_known() {
     const Eigen::MatrixXd gain = solved(P.topLeftCorner(6, 6) + R.cast<double>(), P.topRows(6)).transpose();
     const Eigen::MatrixXd kept = Eigen::MatrixXd::Identity(12, 12) - gain * Eigen::MatrixXd::Identity(6, 12);
     const Eigen::MatrixXd expected = kept * P * kept.transpose() + gain * R.cast<double>() * gain.transpose();
-    TEST_ASSERT_TRUE(motion.correct(Quat::Identity(), Vec3::Zero(), R));
+    TEST_ASSERT_TRUE(motion.correct(Quat::Identity(), Vec3::Zero(), R.cast<double>()));
     TEST_ASSERT_TRUE(difference(motion.covariance(), expected) < (kFloat ? 1e-3 : 1e-9));
   }
 }
@@ -183,6 +183,31 @@ void test_motion_should_keep_a_covariance_where_the_pose_was_hardly_known() {
 double smallest_correlation(const Eigen::MatrixXd& P) {
   const Eigen::VectorXd scale = P.diagonal().cwiseSqrt().cwiseInverse();
   return eigenvalues_of(scale.asDiagonal() * P * scale.asDiagonal())(0);
+}
+
+/// Matches that leave one direction open, however they lie to the axes: their covariance is 1e8 times as large there.
+void test_motion_should_keep_a_covariance_where_matches_leave_a_direction_open() {
+  SeededRandom random(9);
+  double smallest = 1, largest_gain = 0;
+  for (int k = 0; k < 200; ++k) {
+    Settings settings;
+    settings.body = BodyLayout::with_constant_position();
+    WindowMotion motion(settings);
+    motion.init();
+    Eigen::Matrix<double, 6, 6> half, spread = Eigen::Matrix<double, 6, 6>::Identity() * 1e-6;
+    for (int i = 0; i < 36; ++i) half(i / 6, i % 6) = random.normal() * 0.1;
+    spread += half * half.transpose();
+    motion.set(Body(), spread.cast<Scalar>(), 0, 0);
+    const Eigen::Matrix<double, 6, 1> open = random.normals<6>(1.0).cast<double>().normalized();
+    const WindowMotion::Wide6 R = WindowMotion::Wide6::Identity() * 1e-6 + 100 * open * open.transpose();
+    const double before = static_cast<double>(motion.pose_covariance().trace());
+    TEST_ASSERT_TRUE(motion.correct(Quat::Identity(), Vec3::Zero(), R));
+    smallest = std::min(smallest, smallest_correlation(motion.pose_covariance().cast<double>()));
+    largest_gain = std::max(largest_gain, static_cast<double>(motion.pose_covariance().trace()) / before);
+  }
+  std::printf("smallest eigenvalue %.3g; at most %.3g of the variance is left\n", smallest, largest_gain);
+  TEST_ASSERT_TRUE(smallest > -1e-6);
+  TEST_ASSERT_TRUE(largest_gain < 1);
 }
 
 /// A speed along one line that decays leaves variances along that line beside which float rounds what is known across it.
@@ -210,7 +235,7 @@ void test_motion_should_keep_a_covariance_while_an_absurd_speed_decays() {
       smallest = std::min(smallest, smallest_correlation(motion.covariance().cast<double>()));
     }
     const Mat6 R = Mat6::Identity() * static_cast<Scalar>(std::pow(10, random.uniform(-6, -2)));
-    refused += motion.correct(body.q_WC, body.p_W, R) ? 0 : 1;
+    refused += motion.correct(body.q_WC, body.p_W, R.cast<double>()) ? 0 : 1;
     smallest_corrected = std::min(smallest_corrected, smallest_correlation(motion.pose_covariance().cast<double>()));
   }
   std::printf("smallest eigenvalue %.3g, of corrected poses %.3g; %d corrections refused\n", smallest,
@@ -229,6 +254,7 @@ int main() {
   RUN_TEST(test_fit_pose_should_stay_at_the_prediction_without_matches);
   RUN_TEST(test_motion_should_learn_velocities_from_poses);
   RUN_TEST(test_motion_should_keep_a_covariance_where_the_pose_was_hardly_known);
+  RUN_TEST(test_motion_should_keep_a_covariance_where_matches_leave_a_direction_open);
   RUN_TEST(test_motion_should_keep_a_covariance_while_an_absurd_speed_decays);
   return UNITY_END();
 }

@@ -14,21 +14,21 @@ namespace pf {
 ///
 /// A is scaled to a unit diagonal first, so that rows in different units are judged alike:
 /// A = D U D, D² = diag(A), U = L Lᵀ.
-template <int N>
+template <int N, typename T = Scalar>
 class SmallCholesky {
  public:
-  using Matrix = Eigen::Matrix<Scalar, N, N>;
+  using Matrix = Eigen::Matrix<T, N, N>;
 
   /// False when A is not positive definite to working precision; nothing else may then be called.
   bool factor(const Matrix& A) {
-    constexpr Scalar kTiny = N * std::numeric_limits<Scalar>::epsilon();
+    constexpr T kTiny = N * std::numeric_limits<T>::epsilon();
     for (int i = 0; i < N; ++i) {
-      if (!(A(i, i) > 0) || !(A(i, i) <= std::numeric_limits<Scalar>::max())) return false;
+      if (!(A(i, i) > 0) || !(A(i, i) <= std::numeric_limits<T>::max())) return false;
       scale_(i) = 1 / std::sqrt(A(i, i));
     }
     for (int j = 0; j < N; ++j) {
       for (int i = j; i < N; ++i) {
-        Scalar sum = A(i, j) * scale_(i) * scale_(j);
+        T sum = A(i, j) * scale_(i) * scale_(j);
         for (int k = 0; k < j; ++k) sum -= L_(i, k) * L_(j, k);
         if (i == j) {
           if (!(sum > kTiny)) return false;
@@ -43,16 +43,16 @@ class SmallCholesky {
 
   /// A⁻¹ B.
   template <int M>
-  Eigen::Matrix<Scalar, N, M> solve(const Eigen::Matrix<Scalar, N, M>& B) const {
-    Eigen::Matrix<Scalar, N, M> X;
+  Eigen::Matrix<T, N, M> solve(const Eigen::Matrix<T, N, M>& B) const {
+    Eigen::Matrix<T, N, M> X;
     for (int c = 0; c < M; ++c) {
       for (int i = 0; i < N; ++i) {
-        Scalar sum = B(i, c) * scale_(i);
+        T sum = B(i, c) * scale_(i);
         for (int k = 0; k < i; ++k) sum -= L_(i, k) * X(k, c);
         X(i, c) = sum / L_(i, i);
       }
       for (int i = N - 1; i >= 0; --i) {
-        Scalar sum = X(i, c);
+        T sum = X(i, c);
         for (int k = i + 1; k < N; ++k) sum -= L_(k, i) * X(k, c);
         X(i, c) = sum / L_(i, i);
       }
@@ -73,7 +73,7 @@ class SmallCholesky {
 
  private:
   Matrix L_ = Matrix::Zero();
-  Eigen::Matrix<Scalar, N, 1> scale_;
+  Eigen::Matrix<T, N, 1> scale_;
 };
 
 /// A = L Lᵀ in place (n x n, leading dimension ld), unscaled. False where a pivot is not positive; A is lost then.

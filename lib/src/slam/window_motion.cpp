@@ -88,23 +88,23 @@ void WindowMotion::damp(Scalar dt) {
   apply(transition, &data_);
 }
 
-bool WindowMotion::correct(const Quat& q_WC, const Vec3& p_W, const Mat6& R) {
-  const Mat6 A = data_.P.topLeftCorner<6, 6>(), B = data_.P.bottomLeftCorner<6, 6>();
-  SmallCholesky<6> S;
-  if (!S.factor(Mat6(A + R))) return false;
+bool WindowMotion::correct(const Quat& q_WC, const Vec3& p_W, const Wide6& R) {
+  const Wide6 A = data_.P.topLeftCorner<6, 6>().cast<double>(), B = data_.P.bottomLeftCorner<6, 6>().cast<double>();
+  SmallCholesky<6, double> S;
+  if (!S.factor(Wide6(A + R))) return false;
   Vec6 e;
   e << log_so3(q_WC * data_.body.q_WC.conjugate()), p_W - data_.body.p_W;
   // K_p = A S⁻¹, I - K_p = R S⁻¹, and K_v = B S⁻¹.
-  const Mat6 K_p = S.solve<6>(A).transpose(), rest = S.solve<6>(R).transpose(),
-             K_v = S.solve<6>(B.transpose()).transpose();
-  const Mat6 pose = rest.lazyProduct(A).lazyProduct(rest.transpose()) + K_p.lazyProduct(R).lazyProduct(K_p.transpose());
-  const Mat6 speed = data_.P.bottomRightCorner<6, 6>() - K_v.lazyProduct(B.transpose());
-  const Mat6 across = K_v.lazyProduct(R);
-  data_.P.topLeftCorner<6, 6>() = (pose + pose.transpose()) / 2;
-  data_.P.bottomRightCorner<6, 6>() = (speed + speed.transpose()) / 2;
+  const Wide6 K_p = S.solve<6>(A).transpose(), rest = S.solve<6>(R).transpose(),
+              K_v = S.solve<6>(B.transpose()).transpose();
+  const Wide6 pose = rest.lazyProduct(A).lazyProduct(rest.transpose()) + K_p.lazyProduct(R).lazyProduct(K_p.transpose());
+  const Wide6 speed = data_.P.bottomRightCorner<6, 6>().cast<double>() - K_v.lazyProduct(B.transpose());
+  const Mat6 across = K_v.lazyProduct(R).cast<Scalar>();
+  data_.P.topLeftCorner<6, 6>() = ((pose + pose.transpose()) / 2).cast<Scalar>();
+  data_.P.bottomRightCorner<6, 6>() = ((speed + speed.transpose()) / 2).cast<Scalar>();
   data_.P.bottomLeftCorner<6, 6>() = across;
   data_.P.topRightCorner<6, 6>() = across.transpose();
-  const Vec6 dv = K_v.lazyProduct(e);
+  const Vec6 dv = K_v.lazyProduct(e.cast<double>()).cast<Scalar>();
   data_.body.q_WC = q_WC;
   data_.body.p_W = p_W;
   if (settings_.constant_velocity) {

@@ -13,6 +13,7 @@ class WindowMotion {
  public:
   static constexpr int kMaxRows = BodyLayout::kVelocityRows;
   using Covariance = Eigen::Matrix<Scalar, kMaxRows, kMaxRows>;
+  using Wide6 = Eigen::Matrix<double, 6, 6>;  ///< of a measured pose
 
   explicit WindowMotion(const Settings& settings) : settings_(settings) {}
 
@@ -28,10 +29,11 @@ class WindowMotion {
   ///   K = P Hᵀ S⁻¹,   P+ = P - K S Kᵀ,   S = P_pp + R,   H = (I 0)
   ///
   /// where the pose's part is (I - K_p) P_pp (I - K_p)ᵀ + K_p R K_pᵀ with I - K_p = R S⁻¹, and its covariance with the velocities
-  /// K_v R: of a pose that was hardly known before, float leaves nothing in the difference.
+  /// K_v R: of a pose that was hardly known before, rounding leaves nothing in the difference. In double in both libraries, and R with
+  /// it: where matches leave a direction open, float inverts their information to what is no covariance.
   ///
   /// False where P_pp + R is no covariance; nothing has changed then.
-  bool correct(const Quat& q_WC, const Vec3& p_W, const Mat6& R);
+  bool correct(const Quat& q_WC, const Vec3& p_W, const Wide6& R);
   /// Puts the body in another place, where the map was moved by an adjustment. The velocities turn and scale with it.
   void move(const Quat& q_WC, const Vec3& p_W) {
     data_.body.v_W = q_WC * (data_.body.q_WC.conjugate() * data_.body.v_W);

@@ -70,16 +70,17 @@ void WindowTracking::correct(const CameraPose& pose, const Mat6& information) {
 /// Corrects the body by a measured pose. False where its covariance is none. now: the pose with the covariance that the matches leave.
 bool WindowTracking::apply(const CameraPose& pose, Mat6 information, PosePrior* now) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
-  SmallCholesky<6> factored;
+  SmallCholesky<6, double> factored;
   // What the matches do not determine, the prediction does.
-  if (!factored.factor(information)) {
+  if (!factored.factor(information.cast<double>())) {
     SmallCholesky<6> prior;
     if (!prior.factor(motion_.pose_covariance())) return false;
     information += kWeakPrior * prior.inverse();
-    if (!factored.factor(information)) return false;
+    if (!factored.factor(information.cast<double>())) return false;
   }
-  const bool corrected = motion_.correct(pose.q_WC, pose.p_WC, factored.inverse());
-  *now = {pose.q_WC, pose.p_WC, factored.inverse(), motion_.body().v_W, motion_.body().w_C};
+  const WindowMotion::Wide6 R = factored.inverse();
+  const bool corrected = motion_.correct(pose.q_WC, pose.p_WC, R);
+  *now = {pose.q_WC, pose.p_WC, R.cast<Scalar>(), motion_.body().v_W, motion_.body().w_C};
   return corrected;
 }
 

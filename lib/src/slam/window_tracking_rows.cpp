@@ -87,8 +87,8 @@ void WindowTracking::correct_first_pixel(const Match& match) {
 
 /// The pose with the velocities that follow from it: how far the camera is from where it was predicted tells them.
 bool WindowTracking::follow_velocities(const CameraPose& pose, const Mat6& information, WindowMotion* after) const {
-  SmallCholesky<6> factored;
-  return factored.factor(information) && after->correct(pose.q_WC, pose.p_WC, factored.inverse());
+  SmallCholesky<6, double> factored;
+  return factored.factor(information.cast<double>()) && after->correct(pose.q_WC, pose.p_WC, factored.inverse());
 }
 
 /// Pixels at the frame's time were found with the predicted velocities; a jerk is found once more with those that the pose tells.

@@ -142,7 +142,7 @@ void WindowTracking::settle_followed(int found, const Quat& q_WC, const Vec3& p_
   Mat6 information;
   if (pose_.fit(map_.camera(), found, about, settings_.gate, &pose, &information) < settings_.min_inliers)
     pose = {q_WC, p_W};
-  motion_.correct(pose.q_WC, pose.p_WC, about.covariance);
+  motion_.correct(pose.q_WC, pose.p_WC, about.covariance.cast<double>());
 }
 
 }  // namespace pf
