@@ -78,6 +78,31 @@ void test_small_growth_should_add_up() {
   TEST_ASSERT_TRUE(growth.maxCoeff() < 16e-6);
 }
 
+/// A pose of which hardly anything was known is seen to a part in a million and better: what float leaves of its variances is rounding.
+void test_an_update_should_leave_variances_where_rounding_takes_most() {
+  SeededRandom random(96);
+  int taken = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    Scene scene(random, false);
+    Dense P = Dense::Identity(scene.filter.dim(), scene.filter.dim()) * 1e-14;
+    for (int i = 0; i < 6; ++i) P(i, i) = std::pow(10, random.uniform(-2, 1));
+    scene.filter.set_P(P);
+    for (PixelMeasurement& o : scene.observations) {
+      const Vec2 measured = o.predicted;
+      TEST_ASSERT_TRUE(scene.filter->predict_pixel(pinhole_camera(), o.block, &o));
+      o.measured = measured;
+      o.set_noise(Mat2(Mat2::Identity() * Scalar(0.3)));
+    }
+    scene.filter->begin_update(scene.observations.data(), scene.count());
+    if (!scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr)) continue;
+    ++taken;
+    const Eigen::VectorXd left = scene.filter.P().diagonal().cwiseQuotient(P.diagonal()).head(6);
+    TEST_ASSERT_TRUE(left.minCoeff() > (sizeof(Scalar) == sizeof(float) ? 4e-7 : 0));
+    TEST_ASSERT_TRUE(scene.filter.P().diagonal().head(6).maxCoeff() < 1e-4);
+  }
+  TEST_ASSERT_TRUE(taken > 20);
+}
+
 void test_what_is_not_finite_should_not_be_repaired() {
   SeededRandom random(94);
   TestFilter filter(true);
@@ -96,6 +121,7 @@ int main() {
   RUN_TEST(test_a_negative_eigenvalue_should_be_repaired);
   RUN_TEST(test_what_two_far_rows_hold_should_be_found_in_time);
   RUN_TEST(test_small_growth_should_add_up);
+  RUN_TEST(test_an_update_should_leave_variances_where_rounding_takes_most);
   RUN_TEST(test_what_is_not_finite_should_not_be_repaired);
   return UNITY_END();
 }

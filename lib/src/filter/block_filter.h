@@ -128,6 +128,8 @@ class BlockFilter {
     owed_ = 0;
     for (int i = 0; i < P_.n; ++i) P_.set(i, i, factor * P_(i, i));
   }
+  /// A variance of which a downdate has left less than what its rounding hides is as large as that. Spends the step.
+  void keep_rounding();
   enum class Repair { kNone, kDone, kImpossible };
   /// Checks a sample of P, another one for each turn: the leading rows with some of the others. Where it is not positive semidefinite,
   /// beyond rounding, the variances of its rows grow until it is. Needs neither project() nor gain() kept.

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "filter/located.h"
+#include "filter/tuning.h"
 
 /// The update of the covariance: projection, gain, downdate.
 
@@ -113,6 +115,17 @@ const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned 
 
 void BlockFilter::downdate(const Scalar* U, const Scalar* G, int rows) {
   kernels_->downdate(P_, W_, gained_, U, G, rows, ld_, considered_begin(), considered_end());
+}
+
+/// What the downdate took of a variance is w^T w, w its column of L^-1 H P.
+void BlockFilter::keep_rounding() {
+  constexpr Scalar kLeast = tuning::soundness::kDigits * std::numeric_limits<Scalar>::epsilon();
+  Scalar* taken = dx_;
+  std::fill(taken, taken + P_.n, Scalar(0));
+  for (int k = 0; k < gained_; ++k)
+    for (int i = 0; i < P_.n; ++i) taken[i] += W_[k * ld_ + i] * W_[k * ld_ + i];
+  for (int i = 0; i < P_.n; ++i)
+    if (P_(i, i) < kLeast * taken[i]) P_.set(i, i, kLeast * taken[i]);
 }
 
 /// With k = P h^T / (h P h^T), which is along the gain of an update by h, whether before it or after it: P + variance k k^T.

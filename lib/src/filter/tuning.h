@@ -44,6 +44,7 @@ inline constexpr Scalar kLeftSigma = Scalar(1e-5);     ///< [rad, m] of a given 
 namespace soundness {
 inline constexpr Scalar kRounding = Scalar(1e-6);       ///< that an eigenvalue of correlations may be below 0
 inline constexpr Scalar kRoundingFloat = Scalar(5e-5);  ///< likewise in float
+inline constexpr Scalar kDigits = Scalar(4);            ///< last digits of a variance that an update's rounding hides
 inline constexpr int kSample = 48;                      ///< rows of P that are checked in a frame
 inline constexpr Scalar kStep = Scalar(4);              ///< factor by which a repair grows until it is enough
 inline constexpr Scalar kMaxRepair = Scalar(64);  ///< of a variance; more than the rows of a sample is never needed

@@ -34,8 +34,10 @@ void Filter::commit_update() {
   blocks_.downdate(transport_.U(), transport_.G(), transport_.rows());
   // In float the diagonal gets back what rounding may have taken from it. Not in double: a part of a variance against W, which may be
   // metres along a street, is much of what is known of a point against its neighbours (lib/docs/float.md).
-  if constexpr (sizeof(Scalar) == sizeof(float))
+  if constexpr (sizeof(Scalar) == sizeof(float)) {
+    blocks_.keep_rounding();
     blocks_.grow(tuning::apart::kGrowth * std::sqrt(static_cast<Scalar>(blocks_.dim())));
+  }
   if (keeps_apart()) end_update_apart(l);
   if (told_updates_ > 0) --told_updates_;
 }
