@@ -145,6 +145,11 @@ class Filter {
   /// Gathers S = H P H^T (without noise) of the distances of features from a plane, measured as zero. Then innovation_of<1> of blocks()
   /// is valid until the state changes. Every feature must have a place.
   void begin_distances(int plane, const int* slots, int count, Scalar noise, DistanceMeasurement* z);
+  /// Likewise, and it is farther along its ray from the camera, by so much [m], which is known to sigma_along [m]: its pixel stays.
+  bool unfold_along(int slot, Scalar along, Scalar sigma_along);
+  /// A plane without a point group is elsewhere: (a, b, h) is x, known to Q beside what P had. Its points follow along their rays, and are
+  /// as unsure as the plane, and by sigma_uv [m] each. False where Q is no covariance; nothing has changed then.
+  bool slide_plane(int plane, const Vec3& x, const Mat3& Q, Scalar sigma_uv);
   /// What is known of a plane shrinks: Q is added to the covariance of (a, b, h).
   void inflate(int plane, const Mat3& Q);
   /// A plane was wrong by about sigma of (a, b, h), seen from the camera: that much is added to it, and to all else what it has learnt.

@@ -97,7 +97,8 @@ bool WindowMotion::correct(const Quat& q_WC, const Vec3& p_W, const Wide6& R) {
   // K_p = A S⁻¹, I - K_p = R S⁻¹, and K_v = B S⁻¹.
   const Wide6 K_p = S.solve<6>(A).transpose(), rest = S.solve<6>(R).transpose(),
               K_v = S.solve<6>(B.transpose()).transpose();
-  const Wide6 pose = rest.lazyProduct(A).lazyProduct(rest.transpose()) + K_p.lazyProduct(R).lazyProduct(K_p.transpose());
+  const Wide6 pose =
+      rest.lazyProduct(A).lazyProduct(rest.transpose()) + K_p.lazyProduct(R).lazyProduct(K_p.transpose());
   const Wide6 speed = data_.P.bottomRightCorner<6, 6>().cast<double>() - K_v.lazyProduct(B.transpose());
   const Mat6 across = K_v.lazyProduct(R).cast<Scalar>();
   data_.P.topLeftCorner<6, 6>() = ((pose + pose.transpose()) / 2).cast<Scalar>();
