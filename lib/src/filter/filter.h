@@ -243,16 +243,14 @@ class Filter {
   Scalar relative_sigma_rho(int slot, const ScaleRow& l) const;
   /// A feature's place in W; an inverse depth that is not positive counts as far away.
   Vec3 point(int slot) const;
-  /// First row of a block in the covariance.
-  int first_row(int slot) const { return blocks_.first(slot); }
+  int first_row(int slot) const { return blocks_.first(slot); }  ///< of a block in the covariance
   Scalar variance(int row) const { return covariance()(row, row); }
   /// Of the rotation of the unit's axes, a mean over them [rad^2]; 0 where it is not estimated.
   Scalar unit_turn_variance() const;
   /// Variance of one row of a block.
   Scalar block_variance(int slot, int offset) const { return variance(first_row(slot) + offset); }
   int dim() const { return blocks_.dim(); }
-  /// Rows that are still free.
-  int room() const { return blocks_.room(); }
+  int room() const { return blocks_.room(); }  ///< rows that are still free
 
   // --- soundness: finite, bounded, and no variance below zero
   /// Checks a part of P, another one for each turn, and repairs it where it is no covariance.
@@ -265,6 +263,8 @@ class Filter {
   int take_slot(BlockKind kind);
   const Measurement* views_of(const PixelMeasurement* z, int count);
   bool is_step(const Scalar* dx) const;
+  void begin_move();
+  void end_move();
 
   // pixels.cpp
   Mat2 parallax_noise(const struct CameraAt& camera, int slot, Scalar rho, const Mat23& J_z_anchor) const;

@@ -25,13 +25,6 @@ Vec3 about_frame(const PlaneFrame& frame, const MajorityPlane& plane, Mat3* T) {
   return Vec3(-m.x() / m.z(), -m.y() / m.z(), plane.n_W.dot(plane.c_W - frame.o_W) / m.z());
 }
 
-/// Of a plane from the majority's, in variances of the latter.
-Scalar squared_distance(const MajorityPlane& plane, const Vec3& n_W, Scalar d_W) {
-  const Scalar slant = n_W.dot(plane.n_W);
-  const Vec3 error = Vec3(d_W - n_W.dot(plane.c_W), -n_W.dot(plane.e_W[0]), -n_W.dot(plane.e_W[1])) / slant;
-  return error.cwiseProduct(error).cwiseQuotient(plane.variance).sum();
-}
-
 }  // namespace
 
 /// Lists points of a plane with what their own pixels say of where they are. Returns how many.
@@ -66,12 +59,11 @@ void PlaneKeeper::judge_places(int plane_entry) {
   majority.roughness = settings_.fold.roughness;
   MajorityPlane found;
   const auto seed = static_cast<std::uint32_t>(frame_.report.frames);
-  if (!find_majority(points, count, n_W, majority, seed, &found)) return;
-  if (found.off == 0 && squared_distance(found, n_W, d_W) < kAnother) return;
+  if (!find_majority(points, count, n_W, majority, seed, &found) || found.off == 0) return;
   for (int k = 0; k < count; ++k)
     if (points[k].is_off) leave(plane_entry, slots[k], points[k].p_W, found.n_W);
   turn(plane_entry, found);
-  settings_.hooks.say("points that were folded into a plane lie elsewhere: it is another one");
+  settings_.hooks.say("some points of a plane do not lie on it: they leave it, and it turns to where the others are");
 }
 
 /// A point that lies elsewhere becomes a point of its own, where its ray has the height that its pixels say.
