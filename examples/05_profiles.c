@@ -22,7 +22,7 @@ typedef struct profile {
 } profile_t;
 
 static const profile_t profiles[] = {
-    {"tiny", 320, 240, 30, 120, 20, 4, 0},
+    {"tiny", 320, 240, 30, 112, 20, 4, 0},
     {"handheld", 320, 240, 60, 260, 40, 8, 24},
     {"room", 640, 480, 200, 700, 60, 16, 60},
 };

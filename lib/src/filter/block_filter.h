@@ -84,6 +84,10 @@ class BlockFilter {
   void remove(const int* blocks, int count);
   /// Adds Q (size x size, row-major) to the covariance of a part.
   void inflate(const Part& part, const Scalar* Q);
+  /// P += B B^T, with rows of B (size x 3, row-major) set for some parts between begin and end, and zero elsewhere.
+  void begin_spread();
+  void set_spread(const Part& part, const Scalar* rows);
+  void end_spread();
   /// J x was wrong by sigma, J of three rows: that much is added to its covariance, and to all else what it owes to J x.
   ///   P += G diag(sigma^2) G^T,   G = P J^T (J P J^T)^-1
   void inflate_through(const Rows& J, const Vec3& sigma);

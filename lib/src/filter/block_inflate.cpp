@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "filter/block_filter.h"
 #include "filter/located.h"
 
@@ -9,6 +11,22 @@ void BlockFilter::inflate(const Part& part, const Scalar* Q) {
   const int first = row(part);
   for (int i = 0; i < part.size; ++i)
     for (int j = 0; j <= i; ++j) P_.set(first + i, first + j, P_(first + i, first + j) + Q[i * part.size + j]);
+}
+
+void BlockFilter::begin_spread() {
+  PF_ASSERT(max_rows_ >= 6);
+  std::fill(W_, W_ + 3 * ld_, Scalar(0));
+}
+
+void BlockFilter::set_spread(const Part& part, const Scalar* rows) {
+  for (int i = 0; i < part.size; ++i)
+    for (int k = 0; k < 3; ++k) W_[k * ld_ + row(part) + i] = rows[3 * i + k];
+}
+
+void BlockFilter::end_spread() {
+  Scalar* G = W_ + 3 * ld_;  // U^T G + G^T U with G = U / 2, as the downdate takes it
+  for (int j = 0; j < 3 * ld_; ++j) G[j] = W_[j] / 2;
+  kernels_->downdate(P_, W_, 0, W_, G, 3, ld_, 0, 0);
 }
 
 void BlockFilter::inflate_through(const Rows& J, const Vec3& sigma) {

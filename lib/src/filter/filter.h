@@ -145,6 +145,11 @@ class Filter {
   /// Gathers S = H P H^T (without noise) of the distances of features from a plane, measured as zero. Then innovation_of<1> of blocks()
   /// is valid until the state changes. Every feature must have a place.
   void begin_distances(int plane, const int* slots, int count, Scalar noise, DistanceMeasurement* z);
+  /// Likewise, and it is farther along its ray from the camera, by so much [m], which is known to sigma_along [m]: its pixel stays.
+  bool unfold_along(int slot, Scalar along, Scalar sigma_along);
+  /// A plane without a point group is elsewhere: (a, b, h) is x, known to Q beside what P had. Its points follow along their rays, and are
+  /// as unsure as the plane, and by sigma_uv [m] each. False where Q is no covariance; nothing has changed then.
+  bool slide_plane(int plane, const Vec3& x, const Mat3& Q, Scalar sigma_uv);
   /// What is known of a plane shrinks: Q is added to the covariance of (a, b, h).
   void inflate(int plane, const Mat3& Q);
   /// A plane was wrong by about sigma of (a, b, h), seen from the camera: that much is added to it, and to all else what it has learnt.
@@ -238,16 +243,14 @@ class Filter {
   Scalar relative_sigma_rho(int slot, const ScaleRow& l) const;
   /// A feature's place in W; an inverse depth that is not positive counts as far away.
   Vec3 point(int slot) const;
-  /// First row of a block in the covariance.
-  int first_row(int slot) const { return blocks_.first(slot); }
+  int first_row(int slot) const { return blocks_.first(slot); }  ///< of a block in the covariance
   Scalar variance(int row) const { return covariance()(row, row); }
   /// Of the rotation of the unit's axes, a mean over them [rad^2]; 0 where it is not estimated.
   Scalar unit_turn_variance() const;
   /// Variance of one row of a block.
   Scalar block_variance(int slot, int offset) const { return variance(first_row(slot) + offset); }
   int dim() const { return blocks_.dim(); }
-  /// Rows that are still free.
-  int room() const { return blocks_.room(); }
+  int room() const { return blocks_.room(); }  ///< rows that are still free
 
   // --- soundness: finite, bounded, and no variance below zero
   /// Checks a part of P, another one for each turn, and repairs it where it is no covariance.
@@ -260,6 +263,8 @@ class Filter {
   int take_slot(BlockKind kind);
   const Measurement* views_of(const PixelMeasurement* z, int count);
   bool is_step(const Scalar* dx) const;
+  void begin_move();
+  void end_move();
 
   // pixels.cpp
   Mat2 parallax_noise(const struct CameraAt& camera, int slot, Scalar rho, const Mat23& J_z_anchor) const;

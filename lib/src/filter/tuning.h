@@ -25,6 +25,12 @@ inline constexpr Scalar kMinSpread = Scalar(0.01);  ///< of the points of a grou
 inline constexpr Scalar kOwnNoise = Scalar(1e-10);  ///< relative variance of its own, which keeps P positive definite
 }  // namespace point_group
 
+/// A plane, or a point of one, that is somewhere else.
+namespace plane_slide {
+inline constexpr Scalar kMinSlant = Scalar(0.02);  ///< sine between plane and ray that still says where a point is
+inline constexpr Scalar kLateral = Scalar(1e-5);   ///< [m] a point that moves along its ray is unsure across it
+}  // namespace plane_slide
+
 /// The row that picks the log scale.
 namespace scale {
 inline constexpr int kMaxTried = 12;  ///< log lengths, the best known of which is taken

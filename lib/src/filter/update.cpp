@@ -42,23 +42,31 @@ void Filter::commit_update() {
   if (told_updates_ > 0) --told_updates_;
 }
 
+/// The mean alone moves between these two: the gauge of the covariance goes with it (transport.h).
+void Filter::begin_move() {
+  if (!keep_gauge_) return;
+  ScaleRow l;
+  scale_row(&l);
+  transport_.begin(state_, blocks_, l);
+}
+
+void Filter::end_move() {
+  if (!keep_gauge_) return;
+  blocks_.forget_gain();
+  transport_.finish(state_, blocks_);
+  blocks_.add_shared(transport_.U(), transport_.G(), transport_.rows());
+}
+
 /// The pose moves to near and back with its mean alone: what is known of it against the estimate stays,
 ///
 ///   dx = K (z - h(near) - H e),   x = near [+] (e + dx),   e = estimate [-] near
 bool Filter::finish_update_near(const Measurement& z, const Body& near, Scalar* nis) {
   const Body estimate = state_.body;
   const auto move_to = [&](const Body& pose) {
-    ScaleRow l;
-    if (keep_gauge_) {
-      scale_row(&l);
-      transport_.begin(state_, blocks_, l);
-    }
+    begin_move();
     state_.body.q_WC = pose.q_WC;
     state_.body.p_W = pose.p_W;
-    if (!keep_gauge_) return;
-    blocks_.forget_gain();
-    transport_.finish(state_, blocks_);
-    blocks_.add_shared(transport_.U(), transport_.G(), transport_.rows());
+    end_move();
   };
   move_to(near);
   begin_update(&z, 1);

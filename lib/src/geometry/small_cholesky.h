@@ -61,6 +61,14 @@ class SmallCholesky {
     return X;
   }
 
+  /// L of A = L Lᵀ, without the scaling.
+  Matrix lower() const {
+    Matrix L = Matrix::Zero();
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j <= i; ++j) L(i, j) = L_(i, j) / scale_(i);
+    return L;
+  }
+
   /// A⁻¹, symmetric.
   Matrix inverse() const {
     const Matrix X = solve<N>(Matrix::Identity());

@@ -20,3 +20,14 @@ inline constexpr Scalar kMinHeight = Scalar(0.15);   ///< of a triangle of point
 inline constexpr Scalar kSameNormal = Scalar(0.98);  ///< cosine between hypotheses of one plane
 
 }  // namespace pf::tuning::plane_search
+
+/// The plane of most points, and those that are off it.
+namespace pf::tuning::plane_majority {
+
+inline constexpr int kTrials = 100;  ///< sets of three that are drawn; those of badly known points are passed over
+inline constexpr int kRounds = 3;    ///< of fitting
+inline constexpr Scalar kNear = 3;   ///< standard deviations of a point that takes part in the fit
+inline constexpr Scalar kOff = 4;    ///< likewise, of one that is off
+inline constexpr Scalar kSameSide = Scalar(0.9);  ///< cosine between the plane and the one that is judged
+
+}  // namespace pf::tuning::plane_majority

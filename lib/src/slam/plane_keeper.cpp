@@ -27,10 +27,11 @@ bool PlaneKeeper::layout(Arena& arena, int max_features) {
   candidate_ = arena.take<PlaneCandidate>(static_cast<std::size_t>(max_features));
   told_ = nullptr;
   if (settings_.inertial) told_ = arena.take<Told>(static_cast<std::size_t>(map_.planes.capacity()));
-  return arena.ok();
+  return places_.layout(arena, max_features);
 }
 
 void PlaneKeeper::maintain(bool may_doubt) {
+  places_.update();
   judge_trials();
   unfold_outliers();
   filter_.scale_row(&scale_);
@@ -42,6 +43,7 @@ void PlaneKeeper::maintain(bool may_doubt) {
     // A wall that patches refuse does not wait for its turn: what begins on it misleads.
     if (may_doubt && map_.planes[i].is_refused_by_patches() && !map_.planes[i].doubted) judge_wall(i);
     if (maintained++ > 0) continue;
+    judge_places(i);
     fold_into(i);
     if (map_.planes[i].known) {
       filter_.scale_row(&scale_);  // its points may be planar since

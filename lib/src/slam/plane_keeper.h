@@ -6,9 +6,11 @@
 #include "filter/filter.h"
 #include "filter/vertical.h"
 #include "map/map.h"
+#include "map/plane_majority.h"
 #include "map/plane_search.h"
 #include "slam/feature_keeper.h"
 #include "slam/frame.h"
+#include "slam/plane_own_places.h"
 #include "slam/settings.h"
 
 /// Keeps the planes of the map: unfolds outliers, folds and fixes points; discovers, merges and dissolves planes. Gee 2007, section 3
@@ -30,11 +32,17 @@ PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry,
 class PlaneKeeper {
  public:
   PlaneKeeper(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features)
-      : settings_(settings), filter_(filter), map_(map), frame_(frame), features_(features) {}
+      : settings_(settings),
+        filter_(filter),
+        map_(map),
+        frame_(frame),
+        features_(features),
+        places_(filter, map, frame) {}
 
   bool layout(Arena& arena, int max_features);
   void init() {
     data_ = Data();
+    places_.init();
     for (int i = 0; told_ != nullptr && i < map_.planes.capacity(); ++i) told_[i] = Told();
   }
 
@@ -94,6 +102,12 @@ class PlaneKeeper {
   void dissolve(int plane_entry);
   void dissolve_weak();
 
+  // plane_places.cpp: points that lie elsewhere
+  int list_places(int plane, const Vec3& n_W, JudgedPoint* points, int* slots) const;
+  void judge_places(int plane_entry);
+  void leave(int plane_entry, int slot, const Vec3& p_W, const Vec3& n_W);
+  void turn(int plane_entry, const MajorityPlane& to);
+
   // plane_walls.cpp: planes known beforehand
   FoldRule fold_rule(int plane_entry) const;
   bool is_before_wall(int plane_entry, const Vec3& p_W) const;
@@ -114,6 +128,7 @@ class PlaneKeeper {
   Map& map_;
   Frame& frame_;
   FeatureKeeper& features_;
+  OwnPlaces places_;
   Data data_;
   Told* told_ = nullptr;                 ///< of each entry; null where gravity is not estimated
   PlaneCandidate* candidate_ = nullptr;  ///< max_features; their names are entries of the feature table

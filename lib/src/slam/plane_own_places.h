@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "filter/filter.h"
+#include "map/map.h"
+#include "slam/frame.h"
+
+/// Where folded points are by themselves. A fold takes a point's depth from it: from then on its pixels tell of the plane, and a point that
+/// does not lie on it bends the plane until they fit. So the depth is estimated on the side as well, along the ray on which the point was
+/// seen when it was folded, from its pixels alone, at the poses that the filter has:
+///
+///   p(s) = x + s d,   d = (x - c) / |x - c|            x, c  places of point and camera at the fold
+///   N += J^T J,   b += J^T (z - pi(p(s_k)) + J s_k),   J = d pi(p(s)) / ds,   s = b / N [m],  its variance sigma_z^2 / N
+///
+/// Poses that have drifted move all of these places alike; who compares them with each other does not notice (map/plane_majority.h).
+
+namespace pf {
+
+class OwnPlaces {
+ public:
+  OwnPlaces(const Filter& filter, const Map& map, const Frame& frame) : filter_(filter), map_(map), frame_(frame) {}
+
+  bool layout(Arena& arena, int max_features);
+  void init();
+
+  /// Takes in this frame's matches of folded points.
+  void update();
+  /// Begins again with the points of a plane, which has moved.
+  void forget(int plane_slot);
+  /// Place of a folded feature, and the variance of its distance from a plane with this normal, for pixels that are known to one pixel.
+  /// False where its pixels have told nothing yet.
+  bool find(int feature, const Vec3& n_W, Vec3* p_W, Scalar* variance) const;
+
+ private:
+  /// In float in both libraries.
+  struct Own {
+    std::uint32_t id = 0, plane = 0;  ///< of the feature and its plane; 0: there is none
+    float place_W[3] = {0, 0, 0};     ///< x
+    float ray_W[3] = {0, 0, 0};       ///< x - c
+    float N = 0, b = 0;               ///< [px²/m², px²/m]
+  };
+
+  void begin(int feature, std::uint32_t plane);
+  void add(const Match& match);
+
+  const Filter& filter_;
+  const Map& map_;
+  const Frame& frame_;
+  Own* own_ = nullptr;  ///< of each row of the feature table
+};
+
+}  // namespace pf

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <cmath>
+
+#include "map/plane_majority.h"
+#include "slam/plane_keeper.h"
+#include "slam/plane_tuning.h"
+
+/// Planes whose points, each by itself, lie elsewhere (lib/docs/planes.md, "What points say by themselves").
+
+namespace pf {
+namespace {
+
+using namespace tuning::plane_places;
+
+/// (a, b, h) of a plane about a frame, and how its error (h, t1, t2) about the majority's middle tells theirs.
+Vec3 about_frame(const PlaneFrame& frame, const MajorityPlane& plane, Mat3* T) {
+  const Vec3 m = frame.R_WP.transpose() * plane.n_W;
+  T->setZero();
+  (*T)(2, 0) = 1;
+  for (int k = 0; k < 2; ++k) {
+    (*T)(0, 1 + k) = plane.e_W[k].dot(frame.R_WP.col(0));
+    (*T)(1, 1 + k) = plane.e_W[k].dot(frame.R_WP.col(1));
+    (*T)(2, 1 + k) = plane.e_W[k].dot(frame.o_W - plane.c_W);
+  }
+  return Vec3(-m.x() / m.z(), -m.y() / m.z(), plane.n_W.dot(plane.c_W - frame.o_W) / m.z());
+}
+
+}  // namespace
+
+/// Lists points of a plane with what their own pixels say of where they are. Returns how many.
+int PlaneKeeper::list_places(int plane, const Vec3& n_W, JudgedPoint* points, int* slots) const {
+  const State& state = filter_.state();
+  const Scalar limit = kMaxSigma * settings_.plane_distance;
+  int count = 0;
+  state.for_each_planar(plane, [&](int slot) {
+    JudgedPoint* p = points + count;
+    if (count == kMaxJudged || !places_.find(state.block[slot].owner, n_W, &p->p_W, &p->variance)) return;
+    p->variance *= kPixel * kPixel;
+    if (p->variance < limit * limit) slots[count++] = slot;
+  });
+  return count;
+}
+
+/// Points that do not lie on the plane of the others leave it, and it turns to where the others are.
+void PlaneKeeper::judge_places(int plane_entry) {
+  PlaneEntry& entry = map_.planes[plane_entry];
+  const int plane = entry.slot;
+  const State& state = filter_.state();
+  if (entry.known || filter_.group_of(plane) >= 0) return;
+  Vec3 n_W;
+  Scalar d_W;
+  plane_normal(state.frame_of(state.block[plane]), state.block[plane].xyz(), &n_W, &d_W);
+  JudgedPoint points[kMaxJudged];
+  int slots[kMaxJudged];
+  const int count = list_places(plane, n_W, points, slots);
+  MajoritySettings majority;
+  majority.min_points = std::max<int>(settings_.plane_min_points, (state.block[plane].children - 1) / 2);
+  majority.distance = settings_.plane_distance;
+  majority.roughness = settings_.fold.roughness;
+  MajorityPlane found;
+  const auto seed = static_cast<std::uint32_t>(frame_.report.frames);
+  if (!find_majority(points, count, n_W, majority, seed, &found) || found.off == 0) return;
+  for (int k = 0; k < count; ++k)
+    if (points[k].is_off) leave(plane_entry, slots[k], points[k].p_W, found.n_W);
+  turn(plane_entry, found);
+  settings_.hooks.say("some points of a plane do not lie on it: they leave it, and it turns to where the others are");
+}
+
+/// A point that lies elsewhere becomes a point of its own, where its ray has the height that its pixels say.
+void PlaneKeeper::leave(int plane_entry, int slot, const Vec3& p_W, const Vec3& n_W) {
+  const State& state = filter_.state();
+  const Vec3 on_W = filter_.point(slot), ray_W = (on_W - state.body.p_W).normalized();
+  const Scalar slant = n_W.dot(ray_W), height = n_W.dot(p_W - on_W);
+  if (!(std::abs(slant) > kMinSlant)) return;
+  const Scalar sigma = settings_.plane_distance / std::abs(slant);
+  if (!filter_.unfold_along(slot, height / slant, sigma)) return;
+  Feature& f = map_.features[state.block[slot].owner];
+  f.rejections = 0;
+  f.observations = 1;  // has to converge again before it may be folded
+  ++map_.planes[plane_entry].outliers;
+}
+
+/// The plane becomes that of most of its points, and is as unsure as that is and as it was wrong.
+void PlaneKeeper::turn(int plane_entry, const MajorityPlane& to) {
+  PlaneEntry& entry = map_.planes[plane_entry];
+  const State& state = filter_.state();
+  const Block& block = state.block[entry.slot];
+  Mat3 T;
+  const Vec3 x = about_frame(state.frame_of(block), to, &T);
+  const Vec3 step = x - block.xyz();
+  const Mat3 Q = kTwoSigma2 * T * to.variance.asDiagonal() * T.transpose() + step * step.transpose();
+  if (!filter_.slide_plane(entry.slot, x, Q, settings_.fold.roughness)) return;
+  places_.forget(entry.slot);
+  entry.seen = entry.support = PlaneOutline();
+  state.for_each_planar(entry.slot, [&](int slot) {
+    if (!map_.features[state.block[slot].owner].on_trial) support(plane_entry, slot);
+  });
+}
+
+}  // namespace pf

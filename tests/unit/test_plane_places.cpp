@@ -1,0 +1,159 @@
+// Folded points whose pixels say that they lie elsewhere leave their plane, and it turns to where the others are.
+#include "api/context.h"
+#include "slam/plane_keeper.h"
+#include "support/filter_cases.h"
+#include "support/test_cameras.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr int kPoints = 16;
+
+/// A camera over a table, y downwards: 0.4 m below it. The first `off` points stand 25 mm above it, at this distance, and all are
+/// folded: at the table's far end into a plane that they tilt, else into the table's.
+struct Table {
+  Settings settings;
+  TestFilter filter{true};
+  Map map;
+  Frame frame;
+  FeatureKeeper features{settings, *filter, map, frame};
+  PlaneKeeper planes{settings, *filter, map, frame, features};
+  TestArena arena;
+  Vec3 truth[kPoints];
+  int entry[kPoints];
+  int plane = -1;
+
+  Table(SeededRandom& random, int off, Scalar distance) {
+    pf_config_t config;
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
+    config.camera = {PF_CAMERA_PINHOLE,  640, 480, 525, 525, 320, 240, {0}, 0, PF_CAMERA_EXACT,
+                     PF_TIMESTAMPS_REAL, 0,   0,   0,   {0}};
+    TEST_ASSERT_TRUE(settings_from(config, &settings, nullptr) == Status::kOk);
+    TEST_ASSERT_TRUE(map.layout(*arena, 40, 4));
+    TEST_ASSERT_TRUE(frame.layout(*arena, 80));
+    TEST_ASSERT_TRUE(features.layout(*arena, 40));
+    TEST_ASSERT_TRUE(planes.layout(*arena, 40));
+    map.init();
+    frame.init();
+    planes.init();
+    filter->set_lens(settings.camera, LensPrior());
+    filter->set_mean(Body());
+    for (int i = 0; i < kPoints; ++i)
+      truth[i] = i < off ? Vec3(Scalar(0.1) * static_cast<Scalar>(i), Scalar(0.375), distance)
+                         : Vec3(static_cast<Scalar>(random.uniform(-0.4, 0.4)), Scalar(0.4),
+                                static_cast<Scalar>(random.uniform(0.8, 1.2)));
+    fold(distance > Scalar(1.2));
+  }
+
+  /// Points move along their rays, as pixels want it.
+  void fold(bool is_tilted) {
+    PlaneFrame about;
+    about.o_W = Vec3(0, Scalar(0.4), 1);
+    const Vec3 n = Vec3(0, -1, is_tilted ? Scalar(-0.06) : Scalar(0)).normalized();
+    about.R_WP.col(0) = Vec3(1, 0, 0);
+    about.R_WP.col(1) = n.cross(Vec3(1, 0, 0));
+    about.R_WP.col(2) = n;
+    int slots[kPoints];
+    for (int i = 0; i < kPoints; ++i) {
+      const Vec3 ray = truth[i];
+      const Vec3 p_W = ray * (n.dot(about.o_W) / n.dot(ray));
+      slots[i] = filter->add_point(p_W, Mat3(Mat3::Identity() * Scalar(1e-4)));
+      TEST_ASSERT_TRUE(slots[i] >= 0);
+      entry[i] = map.features.add(slots[i]);
+      filter->set_owner(slots[i], entry[i]);
+    }
+    PlaneFit fit;
+    fit.frame = about;
+    fit.lambda = Vec3(Scalar(1e-6), Scalar(0.1), Scalar(0.2));
+    fit.count = kPoints;
+    plane = filter->add_plane(fit, slots, kPoints, Scalar(0.002));
+    TEST_ASSERT_TRUE(plane >= 0);
+    const int at = map.planes.add(plane);
+    filter->set_owner(plane, at);
+    unsigned char folded[Filter::kMaxFolded];
+    TEST_ASSERT_EQUAL_INT(kPoints, filter->fold(plane, slots, kPoints, settings.fold, folded));
+  }
+
+  void see(Scalar aside, SeededRandom& random, double sigma_px) {
+    Body body;
+    body.p_W = Vec3(aside, Scalar(-0.3) * aside, 0);
+    filter->set_mean(body);
+    frame.begin(33000000 * (frame.report.frames + 1));
+    for (int i = 0; i < kPoints; ++i) {
+      Feature& f = map.features[entry[i]];
+      ++f.observations;
+      f.failures = f.rejections = 0;
+      f.last_seen_ns = frame.report.t_ns;
+      Vec2 z;
+      TEST_ASSERT_TRUE(project(settings.camera, Vec3(truth[i] - body.p_W), &z));
+      z += random.normals<2>(sigma_px);
+      frame.add(
+          {entry[i], f.id, MatchStatus::kInlier, BlockKind::kPlanePoint, true, z, Mat2::Identity(), z, Scalar(1)});
+    }
+    planes.maintain();
+  }
+  bool is_folded(int i) const {
+    return (*filter).state().block[map.features[entry[i]].slot].kind == BlockKind::kPlanePoint;
+  }
+  double tilt_deg() const {
+    Vec3 n;
+    Scalar d;
+    const Block& block = (*filter).state().block[plane];
+    plane_normal((*filter).state().frame_of(block), block.xyz(), &n, &d);
+    return std::acos(std::min(1.0, std::abs(static_cast<double>(n.y())))) * 57.29578;
+  }
+};
+
+/// No filter corrects the points here, so they are looked at when something has happened.
+void test_points_should_leave_the_plane_that_they_do_not_lie_on() {
+  for (int seed = 1; seed <= 10; ++seed) {
+    SeededRandom random(static_cast<unsigned>(seed));
+    Table table(random, 3, 1);
+    for (int k = 0; k <= 60 && table.map.planes[0].outliers == 0; ++k)
+      table.see(Scalar(0.008) * static_cast<Scalar>(k), random, 0.1);
+    for (int i = 0; i < kPoints; ++i) TEST_ASSERT_TRUE(table.is_folded(i) == (i >= 3));
+    std::printf("%.2f degrees then\n", table.tilt_deg());
+    TEST_ASSERT_TRUE(table.tilt_deg() < 1);
+    for (int i = 0; i < 3; ++i)
+      TEST_ASSERT_TRUE(std::abs(table.filter->point(table.map.features[table.entry[i]].slot).y() - table.truth[i].y()) <
+                       0.01);
+  }
+}
+
+void test_plane_should_turn_to_where_most_of_its_points_are() {
+  for (int seed = 1; seed <= 10; ++seed) {
+    SeededRandom random(static_cast<unsigned>(seed));
+    Table table(random, 3, Scalar(1.5));
+    const double before = table.tilt_deg();
+    TEST_ASSERT_TRUE(before > 3);
+    for (int k = 0; k <= 60 && std::abs(table.tilt_deg() - before) < 1e-6; ++k)
+      table.see(Scalar(0.008) * static_cast<Scalar>(k), random, 0.1);
+    std::printf("%.2f degrees, then %.2f\n", before, table.tilt_deg());
+    TEST_ASSERT_TRUE(table.tilt_deg() < before / 2);
+  }
+}
+
+void test_points_should_stay_on_a_plane_on_which_they_lie() {
+  for (int seed = 1; seed <= 10; ++seed) {
+    SeededRandom random(static_cast<unsigned>(seed));
+    Table table(random, 0, 1);
+    const Vec3 before = table.filter->state().block[table.plane].xyz();
+    for (int k = 0; k <= 40; ++k) table.see(Scalar(0.008) * static_cast<Scalar>(k), random, 0.2);
+    for (int i = 0; i < kPoints; ++i) TEST_ASSERT_TRUE(table.is_folded(i));
+    TEST_ASSERT_TRUE((table.filter->state().block[table.plane].xyz() - before).norm() < 1e-6);
+  }
+}
+
+}  // namespace
+
+int main() {
+  UNITY_BEGIN();
+  RUN_TEST(test_points_should_leave_the_plane_that_they_do_not_lie_on);
+  RUN_TEST(test_plane_should_turn_to_where_most_of_its_points_are);
+  RUN_TEST(test_points_should_stay_on_a_plane_on_which_they_lie);
+  return UNITY_END();
+}
