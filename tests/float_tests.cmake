@@ -6,6 +6,7 @@ set(PLANEFOLD_FLOAT_TESTS
     api/test_lens.c
     api/test_mark.c
     regression/test_absurd_cameras.c
+    regression/test_bent_pixels.cpp
     regression/test_clock_that_jumps_by_years.c
     regression/test_known_speed.cpp
     regression/test_long_loss.cpp

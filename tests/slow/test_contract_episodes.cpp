@@ -5,9 +5,8 @@
 
 #include <chrono>
 #include <csignal>
-#include <random>
 
-#include "../fuzz/contract_run.h"
+#include "../fuzz/contract_episode.h"
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -27,30 +26,12 @@ void say_where(int) {
   std::_Exit(1);
 }
 
-/// Half a megabyte, of which an episode takes what it needs.
 void play(long episode, ContractRun::Seen* all) {
   now_at = episode;
-  std::seed_seq start{static_cast<unsigned>(seed), static_cast<unsigned>(episode)};
-  std::mt19937_64 draw(start);
-  const bool calm = draw() % 2 == 0;
-  const int steps = static_cast<int>(calm ? 100 + draw() % 900 : 5 + draw() % 400);
-  std::vector<uint8_t> drawn(size_t{1} << 19);
-  for (uint8_t& b : drawn) b = static_cast<uint8_t>(draw() >> 32);
-  Bytes bytes(drawn.data(), drawn.size());
-  ContractRun run(bytes, calm);
-  if (!run.usable()) return;
-  if (sizeof(pf::Scalar) == sizeof(float)) run.trust_told_repairs();
-  run.play(steps);
-  const ContractRun::Seen& seen = run.seen();
-  all->frames += seen.frames;
-  all->tracked += seen.tracked;
-  all->metric += seen.metric;
-  all->planes += seen.planes;
-  all->patches += seen.patches;
-  all->repaired += seen.repaired;
-  all->refused_gauge += seen.refused_gauge;
-  if (seen.refused_gauge > 0)
-    std::printf("episode %ld: %ld readings of the gauge refused\n", episode, seen.refused_gauge);
+  const long refused_before = all->refused_gauge;
+  play_episode(seed, episode, all);
+  if (all->refused_gauge > refused_before)
+    std::printf("episode %ld: %ld readings of the gauge refused\n", episode, all->refused_gauge - refused_before);
 }
 
 void test_long_episodes_should_keep_the_contract() {

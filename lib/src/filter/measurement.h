@@ -38,9 +38,18 @@ struct MeasurementOf {
 
 /// A feature's pixel [px], over body, lens, plane, point group and feature at most.
 struct PixelMeasurement : MeasurementOf<2, 31, 5> {
-  Scalar bend = 0;  ///< of the noise, what a wide pose takes off the linearisation: bend I [px^2]
+  Scalar bend = 0;  ///< what the linearisation leaves out where the pose is wide: bend I [px^2], part of both noises
   Mat2 second_order =
-      Mat2::Zero();  ///< what the linearisation leaves out, and a surface's roughness [px^2]; belongs into the noise
+      Mat2::Zero();  ///< what else it leaves out, and a surface's roughness [px^2]; belongs into the noise
+  Mat2 R_straight = Mat2::Identity();  ///< R_update without bend; as a difference of both, float might not have it
+
+  /// Noises without bend, which is added.
+  void set_noises(const Matrix& gate, const Matrix& update) {
+    R_straight = update;
+    R_gate = gate + bend * Matrix::Identity();
+    R_update = update + bend * Matrix::Identity();
+  }
+  void set_noise(const Matrix& R) { set_noises(R, R); }
 };
 
 /// Corners of a patch on a plane [px], x and y of each, over body, reference camera, plane, patch and lens: a homography.

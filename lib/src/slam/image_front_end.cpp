@@ -187,8 +187,7 @@ int ImageFrontEnd::search(int first, int count) {
     o.measured = outcome.pixel;
     const Mat2 noise = noise_.match(outcome.noise, outcome.level_scale);
     update_.candidate(i).noise = noise;
-    o.R_gate = noise + o.second_order;
-    o.R_update = update_noise(map_.features[update_.candidate(i).feature], o, noise);
+    o.set_noises(noise + o.second_order, update_noise(map_.features[update_.candidate(i).feature], o, noise));
     if (found != i) update_.swap(found, i);
     ++found;
   }
@@ -271,12 +270,11 @@ bool ImageFrontEnd::is_averaged(const Feature& f) const {
   return !f.is_target && filter_.state().block[f.slot].kind != BlockKind::kInverseDepth;
 }
 
-/// R_update of a match with this noise. What the linearisation leaves out is new in each frame, but for the product of an open depth and a
+/// R_update of a match with this noise, without bend. What the linearisation leaves out is new in each frame, but for the product of an open depth and a
 /// baseline that is wrong for as long: where that lasts, it counts twice (lib/docs/lens.md).
 Mat2 ImageFrontEnd::update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise) const {
   Mat2 R = (is_averaged(f) ? noise_.correlation_frames() : Scalar(1)) * noise + o.second_order;
-  if (parallax_lasts_ && filter_.state().block[f.slot].kind == BlockKind::kInverseDepth)
-    R += o.second_order - o.bend * Mat2::Identity();
+  if (parallax_lasts_ && filter_.state().block[f.slot].kind == BlockKind::kInverseDepth) R += o.second_order;
   return R;
 }
 

@@ -113,8 +113,6 @@ Mat2 PixelUpdate::expected_innovation(PixelMeasurement* o) const {
   const Scalar half = (S(0, 0) - S(1, 1)) / 2;
   const Scalar lambda = (S(0, 0) + S(1, 1)) / 2 - std::sqrt(half * half + S(0, 1) * S(0, 1));
   const Scalar bend = lambda * lambda / (2 * filter_.lens().fx * filter_.lens().fy);
-  o->second_order(0, 0) += bend;
-  o->second_order(1, 1) += bend;
   o->bend = bend;
   return S;
 }
@@ -133,12 +131,12 @@ void PixelUpdate::relinearise_update(int first, int count) {
       PixelMeasurement& o = observation_[i];
       const Vec2 measured = o.measured;
       const Scalar bend = std::max(o.bend, kMinBend);
-      const Mat2 R = o.R_update - Mat2::Identity() * bend;
+      const Mat2 R = o.R_straight;
       keep_[i] = filter_.predict_pixel(filter_.lens(), o.block, &o) ? 1 : 0;
       if (keep_[i] == 0) continue;
       const Mat2 spread = expected_innovation(&o);
       o.measured = measured;
-      o.set_noise(R + R.lazyProduct(R) / bend + Mat2::Identity() * o.bend);
+      o.set_noise(R + R.lazyProduct(R) / bend);
       keep_[i] = squared_distance(o.measured - o.predicted, spread + o.R_update) < settings_.gate ? 1 : 0;
     }
     filter_.begin_update(observation_ + first, count);

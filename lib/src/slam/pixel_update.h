@@ -40,7 +40,7 @@ class PixelUpdate {
     std::swap(observation_[a], observation_[b]);
   }
 
-  /// H P H^T of a predicted pixel. Adds the projection's second-order error over the pose uncertainty to the pixel's second_order noise.
+  /// H P H^T of a predicted pixel. Sets `bend`, the projection's second-order error over the pose uncertainty.
   Mat2 expected_innovation(PixelMeasurement* o) const;
   /// Computes H P H^T of `count` observations from `first` on.
   void begin(int first, int count);

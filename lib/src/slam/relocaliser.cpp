@@ -193,7 +193,7 @@ int Relocaliser::linearise_at(const Body& pose, int found) {
   for (int i = 0; i < found; ++i) {
     PixelMeasurement& o = update_.observation(i);
     const Vec2 measured = o.measured;
-    const Mat2 R = o.R_gate - o.second_order;
+    const Mat2 R = update_.candidate(i).noise;
     const int slot = o.block;
     if (!filter_.predict_pixel(filter_.lens(), slot, &o)) continue;
     o.predicted += pose_columns(o).lazyProduct(e);

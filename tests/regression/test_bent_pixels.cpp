@@ -1,0 +1,38 @@
+// Pixels of a pose so wide that they are taken in twice, linearised again: in float the noise that was left for the second time was a
+// difference of numbers a million times as large, nothing or 1/32 px^2, and the map lost its covariance (lib/docs/float.md).
+#include <unity.h>
+
+#include "../fuzz/contract_episode.h"
+#include "filter/measurement.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+void test_noise_without_bend_should_not_depend_on_bend() {
+  pf::PixelMeasurement z;
+  z.bend = pf::Scalar(2.2e5);
+  const pf::Mat2 R = (pf::Mat2() << 0.09, 0.01, 0.01, 0.3).finished().cast<pf::Scalar>();
+  z.set_noises(R, 7 * R);
+  TEST_ASSERT_TRUE(z.R_straight == pf::Mat2(7 * R));
+  TEST_ASSERT_TRUE(z.R_gate(0, 0) >= z.bend && z.R_update(1, 1) >= z.bend + 2);
+  TEST_ASSERT_TRUE(z.R_gate(0, 1) == R(0, 1));
+}
+
+/// Both ended in a map whose smallest correlation eigenvalue was -3.5 and -0.008, without a repair.
+void test_maps_found_again_from_far_should_keep_their_covariance() {
+  ContractRun::Seen seen{};
+  play_episode(455001, 129, &seen);
+  play_episode(455004, 40, &seen);
+  TEST_ASSERT_TRUE(seen.frames > 400 && seen.tracked > 200);
+}
+
+}  // namespace
+
+int main() {
+  UNITY_BEGIN();
+  RUN_TEST(test_noise_without_bend_should_not_depend_on_bend);
+  RUN_TEST(test_maps_found_again_from_far_should_keep_their_covariance);
+  return UNITY_END();
+}
