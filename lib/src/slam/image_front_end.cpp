@@ -270,8 +270,8 @@ bool ImageFrontEnd::is_averaged(const Feature& f) const {
   return !f.is_target && filter_.state().block[f.slot].kind != BlockKind::kInverseDepth;
 }
 
-/// R_update of a match with this noise, without bend. What the linearisation leaves out is new in each frame, but for the product of an open depth and a
-/// baseline that is wrong for as long: where that lasts, it counts twice (lib/docs/lens.md).
+/// R_update of a match with this noise, without bend. What the linearisation leaves out is new in each frame, but for the product of an
+/// open depth and a baseline that is wrong for as long: where that lasts, it counts twice (lib/docs/lens.md).
 Mat2 ImageFrontEnd::update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise) const {
   Mat2 R = (is_averaged(f) ? noise_.correlation_frames() : Scalar(1)) * noise + o.second_order;
   if (parallax_lasts_ && filter_.state().block[f.slot].kind == BlockKind::kInverseDepth) R += o.second_order;
