@@ -1,5 +1,5 @@
-// Pixels of a pose so wide that they are taken in twice, linearised again: in float the noise that was left for the second time was a
-// difference of numbers a million times as large, nothing or 1/32 px^2, and the map lost its covariance (lib/docs/float.md).
+// Pixels of a pose so wide that they are taken in twice, linearised again: what float makes of their noise and of the map's covariance
+// (lib/docs/float.md).
 #include <unity.h>
 
 #include "../fuzz/contract_episode.h"
@@ -20,17 +20,14 @@ void test_noise_without_bend_should_not_depend_on_bend() {
   TEST_ASSERT_TRUE(z.R_gate(0, 1) == R(0, 1));
 }
 
-/// Both ended in a map whose smallest correlation eigenvalue was -3.5 and -0.008, without a repair.
+/// Float told the first one its pixels as exact, and then all at once, to a pose that these know 1e7 times better: a feature's smallest
+/// eigenvalue was -0.0066. The second had -0.0077.
 void test_maps_found_again_from_far_should_keep_their_covariance() {
-#if defined(__arm__)
-  TEST_IGNORE_MESSAGE(
-      "32-bit ARM rounds otherwise and comes to another map, which loses a feature's covariance (-0.01) in float: "
-      "open");
-#endif
   ContractRun::Seen seen{};
   play_episode(455001, 129, &seen);
   play_episode(455004, 40, &seen);
   TEST_ASSERT_TRUE(seen.frames > 400 && seen.tracked > 200);
+  TEST_ASSERT_EQUAL_INT(0, seen.repaired);
 }
 
 }  // namespace

@@ -1,8 +1,5 @@
 // Folded points whose pixels say that they lie elsewhere leave their plane, and it turns to where the others are.
-#include "api/context.h"
-#include "slam/plane_keeper.h"
-#include "support/filter_cases.h"
-#include "support/test_cameras.h"
+#include "support/plane_keeper_bench.h"
 
 using namespace pf;
 
@@ -15,33 +12,12 @@ constexpr int kPoints = 16;
 
 /// A camera over a table, y downwards: 0.4 m below it. The first `off` points stand 25 mm above it, at this distance, and all are
 /// folded: at the table's far end into a plane that they tilt, else into the table's.
-struct Table {
-  Settings settings;
-  TestFilter filter{true};
-  Map map;
-  Frame frame;
-  FeatureKeeper features{settings, *filter, map, frame};
-  PlaneKeeper planes{settings, *filter, map, frame, features};
-  TestArena arena;
+struct Table : PlaneKeeperBench {
   Vec3 truth[kPoints];
   int entry[kPoints];
   int plane = -1;
 
   Table(SeededRandom& random, int off, Scalar distance) {
-    pf_config_t config;
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
-    config.camera = {PF_CAMERA_PINHOLE,  640, 480, 525, 525, 320, 240, {0}, 0, PF_CAMERA_EXACT,
-                     PF_TIMESTAMPS_REAL, 0,   0,   0,   {0}};
-    TEST_ASSERT_TRUE(settings_from(config, &settings, nullptr) == Status::kOk);
-    TEST_ASSERT_TRUE(map.layout(*arena, 40, 4));
-    TEST_ASSERT_TRUE(frame.layout(*arena, 80));
-    TEST_ASSERT_TRUE(features.layout(*arena, 40));
-    TEST_ASSERT_TRUE(planes.layout(*arena, 40));
-    map.init();
-    frame.init();
-    planes.init();
-    filter->set_lens(settings.camera, LensPrior());
-    filter->set_mean(Body());
     for (int i = 0; i < kPoints; ++i)
       truth[i] = i < off ? Vec3(Scalar(0.1) * static_cast<Scalar>(i), Scalar(0.375), distance)
                          : Vec3(static_cast<Scalar>(random.uniform(-0.4, 0.4)), Scalar(0.4),

@@ -1,8 +1,5 @@
 // Features that began on a plane because their corner lies in its outline: what makes them believed, and what makes them go.
-#include "api/context.h"
-#include "slam/plane_keeper.h"
-#include "support/filter_cases.h"
-#include "support/test_cameras.h"
+#include "support/plane_keeper_bench.h"
 
 using namespace pf;
 
@@ -14,32 +11,11 @@ namespace {
 constexpr Scalar kDepth = 2;  // of the plane
 
 /// A camera before a plane, and a feature that began on it.
-struct Bench {
-  Settings settings;
-  TestFilter filter{true};
-  Map map;
-  Frame frame;
-  FeatureKeeper features{settings, *filter, map, frame};
-  PlaneKeeper planes{settings, *filter, map, frame, features};
-  TestArena arena;
+struct Bench : PlaneKeeperBench {
   int entry = -1;
   Vec3 ray_W = Vec3(Scalar(0.1), Scalar(-0.05), 1);
 
   Bench() {
-    pf_config_t config;
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
-    config.camera = {PF_CAMERA_PINHOLE,  640, 480, 525, 525, 320, 240, {0}, 0, PF_CAMERA_EXACT,
-                     PF_TIMESTAMPS_REAL, 0,   0,   0,   {0}};
-    TEST_ASSERT_TRUE(settings_from(config, &settings, nullptr) == Status::kOk);
-    TEST_ASSERT_TRUE(map.layout(*arena, 40, 4));
-    TEST_ASSERT_TRUE(frame.layout(*arena, 80));
-    TEST_ASSERT_TRUE(features.layout(*arena, 40));
-    TEST_ASSERT_TRUE(planes.layout(*arena, 40));
-    map.init();
-    frame.init();
-    planes.init();
-    filter->set_lens(settings.camera, LensPrior());
-    filter->set_mean(Body());
     const int plane = add_plane();
     Vec2 pixel;
     TEST_ASSERT_TRUE(project(settings.camera, ray_W, &pixel));

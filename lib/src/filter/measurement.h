@@ -50,6 +50,11 @@ struct PixelMeasurement : MeasurementOf<2, 31, 5> {
     R_update = update + bend * Matrix::Identity();
   }
   void set_noise(const Matrix& R) { set_noises(R, R); }
+  /// An update takes it in with so much more noise; what gates it stays.
+  void hold_back(Scalar noise) {
+    bend = noise;
+    R_update = R_straight + noise * Matrix::Identity();
+  }
 };
 
 /// Corners of a patch on a plane [px], x and y of each, over body, reference camera, plane, patch and lens: a homography.

@@ -12,17 +12,14 @@ namespace {
 
 using namespace tuning::plane_places;
 
-/// (a, b, h) of a plane about a frame, and how its error (h, t1, t2) about the majority's middle tells theirs.
-Vec3 about_frame(const PlaneFrame& frame, const MajorityPlane& plane, Mat3* T) {
-  const Vec3 m = frame.R_WP.transpose() * plane.n_W;
-  T->setZero();
-  (*T)(2, 0) = 1;
-  for (int k = 0; k < 2; ++k) {
-    (*T)(0, 1 + k) = plane.e_W[k].dot(frame.R_WP.col(0));
-    (*T)(1, 1 + k) = plane.e_W[k].dot(frame.R_WP.col(1));
-    (*T)(2, 1 + k) = plane.e_W[k].dot(frame.o_W - plane.c_W);
-  }
-  return Vec3(-m.x() / m.z(), -m.y() / m.z(), plane.n_W.dot(plane.c_W - frame.o_W) / m.z());
+/// Its plane is (a, b, h) = 0 about it, and an error of (a, b, h) is one of (t1, t2, h).
+PlaneFrame frame_of(const MajorityPlane& plane) {
+  PlaneFrame frame;
+  frame.o_W = plane.c_W;
+  frame.R_WP.col(0) = plane.e_W[0];
+  frame.R_WP.col(1) = plane.e_W[1];
+  frame.R_WP.col(2) = plane.n_W;
+  return frame;
 }
 
 }  // namespace
@@ -85,10 +82,11 @@ void PlaneKeeper::turn(int plane_entry, const MajorityPlane& to) {
   PlaneEntry& entry = map_.planes[plane_entry];
   const State& state = filter_.state();
   const Block& block = state.block[entry.slot];
-  Mat3 T;
-  const Vec3 x = about_frame(state.frame_of(block), to, &T);
-  const Vec3 step = x - block.xyz();
-  const Mat3 Q = kTwoSigma2 * T * to.variance.asDiagonal() * T.transpose() + step * step.transpose();
+  Vec3 x;
+  Mat3 J;
+  if (!reframe_plane(frame_of(to), Vec3::Zero(), state.frame_of(block), &x, &J)) return;
+  const Vec3 step = x - block.xyz(), variance(to.variance(1), to.variance(2), to.variance(0));
+  const Mat3 Q = kTwoSigma2 * J * variance.asDiagonal() * J.transpose() + step * step.transpose();
   if (!filter_.slide_plane(entry.slot, x, Q, settings_.fold.roughness)) return;
   places_.forget(entry.slot);
   entry.seen = entry.support = PlaneOutline();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/elapsed.h"
 #include "geometry/so3.h"
@@ -153,6 +154,7 @@ void Relocaliser::recover_anywhere(const SearchPose& about, int found, std::int6
   data_.proposal = {follows ? before + 1 : 1, pose.q_WC, pose.p_W, depth};
   if (data_.proposal.frames < kFramesAnywhere) return;
   mark_matches(found);
+  hold_back(found);
   update_.apply(0, found, &frame_.report.nis);
   data_.proposal.frames = 0;
 }
@@ -264,6 +266,16 @@ Scalar Relocaliser::median_depth(const Body& pose, int found) const {
   if (count == 0) return 0;
   std::nth_element(depth, depth + count / 2, depth + count);
   return depth[count / 2];
+}
+
+/// An update that knows a pose 1e7 times better leaves rounding of its covariance. Half of the digits now, at the proposal; the rest is
+/// taken in with the pixels linearised again (PixelUpdate::apply; lib/docs/float.md).
+void Relocaliser::hold_back(int found) {
+  const Scalar share = std::sqrt(std::numeric_limits<Scalar>::epsilon());
+  Scalar largest = 0;
+  for (int i = 0; i < found; ++i)
+    if (update_.keep()[i] != 0) largest = std::max(largest, filter_.innovation_block(i, i).trace());
+  for (int i = 0; i < found; ++i) update_.observation(i).hold_back(share * largest);
 }
 
 void Relocaliser::mark_matches(int found) {

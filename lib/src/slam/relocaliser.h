@@ -70,6 +70,7 @@ class Relocaliser {
   bool is_spread(int found) const;
   Scalar median_depth(const Body& pose, int found) const;
   void mark_matches(int found);
+  void hold_back(int found);
 
   const Settings& settings_;
   Filter& filter_;
