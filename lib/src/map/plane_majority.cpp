@@ -38,13 +38,14 @@ bool find_hypothesis(const JudgedPoint* points, int count, const Vec3& n_W, std:
     const Scalar length = cross.norm();
     if (!(length > 0) || std::abs(cross.dot(n_W)) < kSameSide * length) continue;
     const Vec3 n = cross / length;
-    for (int i = 0; i < count; ++i) {
+    int beyond = 0;  // so many that the median is no smaller than the least one
+    for (int i = 0; i < count && beyond < count - count / 2; ++i) {
       const Scalar r = n.dot(points[i].p_W - o);
       value[i] = r * r / points[i].variance;
+      beyond += *median >= 0 && value[i] >= *median ? 1 : 0;
     }
-    const Scalar m = median_of(value, count);
-    if (*median >= 0 && m >= *median) continue;
-    *median = m;
+    if (beyond >= count - count / 2) continue;
+    *median = median_of(value, count);
     plane->n_W = n;
     plane->c_W = o;
   }

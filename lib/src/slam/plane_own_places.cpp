@@ -52,16 +52,18 @@ void OwnPlaces::update() {
       if (map_.features[i].last_seen_ns == frame_.report.t_ns) begin(i, plane);
     }
   }
+  const bool rolls = filter_.lens().readout != Scalar(0) && state.layout.has(BodyPart::kVelocity);
+  CameraAt camera = camera_at(state, Scalar(0));
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
-    if (match.feature >= 0 && match.status == MatchStatus::kInlier && own_[match.feature].plane != 0) add(match);
+    if (match.feature < 0 || match.status != MatchStatus::kInlier || own_[match.feature].plane == 0) continue;
+    if (rolls) camera = camera_at(state, row_time(filter_.lens(), match.measured.y()));
+    add(match, camera);
   }
 }
 
-void OwnPlaces::add(const Match& match) {
+void OwnPlaces::add(const Match& match, const CameraAt& camera) {
   Own& own = own_[match.feature];
-  const bool rolls = filter_.lens().readout != Scalar(0) && filter_.state().layout.has(BodyPart::kVelocity);
-  const CameraAt camera = camera_at(filter_.state(), rolls ? row_time(filter_.lens(), match.measured.y()) : Scalar(0));
   const Vec3 x = vector(own.place_W), ray = vector(own.ray_W);
   const Scalar range = ray.norm();
   const Vec3 d = ray / range;

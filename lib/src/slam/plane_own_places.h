@@ -43,7 +43,7 @@ class OwnPlaces {
   };
 
   void begin(int feature, std::uint32_t plane);
-  void add(const Match& match);
+  void add(const Match& match, const struct CameraAt& camera);
 
   const Filter& filter_;
   const Map& map_;
