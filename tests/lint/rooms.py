@@ -45,7 +45,7 @@ ONLY_FOR = {
     # Starts and the state that the caller sees know no filter; nor do the frame's results.
     "filter/filter.h": ["filter/*", "slam/body_motion*", "slam/consensus*", "slam/feature_keeper*", "slam/filter_start*", "slam/frame_loop*",
                         "slam/image_front_end*", "slam/leave_one_out*", "slam/observation_front_end*", "slam/pixel_update*", "slam/patch_*", "slam/plane_*",
-                        "slam/pose_mark*", "slam/relocaliser*", "slam/rest_hold*", "slam/settings.h", "slam/triple_consensus*", "slam/unit_watch*",
+                        "slam/pose_mark*", "slam/proposed_poses*", "slam/relocaliser*", "slam/rest_hold*", "slam/settings.h", "slam/triple_consensus*", "slam/unit_watch*",
                         "slam/usable_pose*"],
     "slam/patch_keeper.h": ["slam/patch_*", "slam/frame_loop*", "slam/view*"],
     "slam/plane_keeper.h": ["slam/plane_*", "slam/frame_loop*", "slam/view*"],

@@ -46,10 +46,45 @@ void test_a_start_that_begins_anew_should_be_starting_in_status_and_state() {
   }
 }
 
+/// States of frames that all support their pose while a start that is under way gets its depths in the second of them.
+void start_with_depths(TrackingState* tracking, const Settings& settings, SlamState* state, int frames) {
+  tracking->set_has_pose(0);
+  for (int i = 0; i < frames; ++i) {
+    FrameReport report;
+    report.t_ns = i * kFrame;
+    report.inliers = settings.min_inliers;
+    StartProgress start;
+    start.recording = true;
+    start.depth_known = i > 0;
+    tracking->begin_frame();
+    tracking->conclude(report, start, kMaxCoast, settings.hooks);
+    state[i] = tracking->state();
+  }
+}
+
+void test_a_map_after_a_loss_should_be_tracked_one_frame_after_its_depths() {
+  Settings settings;
+  settings.min_inliers = 8;
+  for (const bool after_loss : {false, true}) {
+    TrackingState tracking(settings);
+    tracking.init();
+    if (after_loss) {
+      unsupported_frames(&tracking, settings.hooks, 20);
+      tracking.begin_map();
+    }
+    SlamState state[3];
+    start_with_depths(&tracking, settings, state, 3);
+    TEST_ASSERT_TRUE(state[0] == SlamState::kStarting);
+    TEST_ASSERT_TRUE(state[1] == (after_loss ? SlamState::kStarting : SlamState::kTracking));
+    TEST_ASSERT_TRUE(state[2] == SlamState::kTracking);
+  }
+}
+
 }  // namespace
 
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_a_start_that_begins_anew_should_be_starting_in_status_and_state);
+  RUN_TEST(test_a_map_after_a_loss_should_be_tracked_one_frame_after_its_depths);
   return UNITY_END();
 }

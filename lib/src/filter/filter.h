@@ -204,11 +204,12 @@ class Filter {
   bool finish_update(const PixelMeasurement* z, int count, const unsigned char* keep, Scalar* nis) {
     return finish_update(views_of(z, count), count, keep, nis);
   }
-  /// finish_update in two steps. The first changes neither the state nor P, and the second need not follow.
+  /// finish_update in two steps. The first changes neither the state nor P, and the second need not follow; solved_step: dx, all rows.
   bool solve_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
   bool solve_update(const PixelMeasurement* z, int count, const unsigned char* keep, Scalar* nis) {
     return solve_update(views_of(z, count), count, keep, nis);
   }
+  const Scalar* solved_step() const { return blocks_.step(); }
   void commit_update();
   /// The same of a measurement that is linearised at another pose, near, and predicted for the estimate: h(near) + H (x [-] near). Before
   /// it, what the pose shares with the gauge moves to near, so that H N = 0 there too.
@@ -265,7 +266,6 @@ class Filter {
   bool is_step(const Scalar* dx) const;
   void begin_move();
   void end_move();
-
   // pixels.cpp
   Mat2 parallax_noise(const struct CameraAt& camera, int slot, Scalar rho, const Mat23& J_z_anchor) const;
   bool predict_at(const Camera& lens, const CameraAt& camera, int slot, PixelMeasurement* out, Mat26* J_camera) const;

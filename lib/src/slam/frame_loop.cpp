@@ -72,13 +72,15 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   if (tracking_.needs_new_map(settings_.restart_ns) && !map_.planes.has_known())
     begin_new_map("not found again for too long: the old map is discarded, a new map begins");
   const bool first = !tracking_.has_pose();
+  update_.proposals().begin_frame(data_.since_last_ns);
   const ConsensusRule rule = consensus_rule(t_ns);
   if (first) {
     if (!start_.start_in_image()) return end_frame();
   } else if (tracking_.is_relocalising(start_.progress()) && rule == ConsensusRule::kBeyondChance) {
-    relocaliser_.recover(data_.since_last_ns);
+    relocaliser_.recover();
   } else {
-    relocaliser_.clear_proposals();
+    update_.ask_frames(tracking_.is_relocalising(start_.progress()) ? tuning::relocaliser::kFramesNearby : 0,
+                       data_.median_depth);
     measure_watched([&](bool) { images_.measure(rule, data_.median_depth, start_.learns_lens_from_first_depths()); });
   }
   // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
@@ -170,7 +172,8 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
 /// depth of their own than a tracked frame needs. A map as young as that is tracked from frame to frame, and not found again after a gap.
 ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
   if (start_.progress().pending()) return ConsensusRule::kStart;
-  const double gap_s = seconds(elapsed_ns(tracking_.last_tracked_ns(), t_ns));
+  const std::int64_t proposed_ns = update_.proposals().last().frames > 0 ? data_.since_last_ns : 0;
+  const double gap_s = seconds(elapsed_ns(tracking_.last_tracked_ns(), t_ns) - proposed_ns);
   if (tracking_.is_relocalising(start_.progress()) && gap_s > static_cast<double>(tuning::tracking::kMaxYoungGap))
     return ConsensusRule::kBeyondChance;
   int known = 0;

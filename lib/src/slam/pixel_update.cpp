@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "geometry/so3.h"
 #include "slam/consensus.h"
 #include "slam/tuning.h"
 
@@ -59,8 +60,23 @@ bool PixelUpdate::are_depths_open(int first, int count) const {
   return 2 * open > all;
 }
 
+int PixelUpdate::propose(int first, int count, Scalar depth) {
+  const bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, nullptr);
+  const Scalar* dx = filter_.solved_step();
+  const Body& body = filter_.state().body;
+  const Vec3 e_theta(dx[Body::kTheta], dx[Body::kTheta + 1], dx[Body::kTheta + 2]);
+  const Vec3 e_p(dx[Body::kPosition], dx[Body::kPosition + 1], dx[Body::kPosition + 2]);
+  filter_.begin_update(observation_ + first, count);  // what was gathered is used up by solving
+  if (!solved) return 0;
+  return proposals_.propose(exp_so3(e_theta) * body.q_WC, body.p_W + e_p, depth);
+}
+
 bool PixelUpdate::apply(int first, int count, double* nis) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
+  if (asked_frames_ > 0 && frame_.report.inliers == 0 && propose(first, count, depth_) < asked_frames_) {
+    reject(first, count);
+    return false;
+  }
   const bool depths_only = puts_depths_first_ && are_depths_open(first, count);
   filter_.estimate_map_only(depths_only);
   const bool applied = apply_to(first, count, nis);
@@ -81,7 +97,7 @@ bool PixelUpdate::apply_to(int first, int count, double* nis) {
   is_contradicted_ = is_contradicted_ || (says_pose && contradicts(pose_nis));
   if (!is_contradicted_) tracking_.note_update(solved);
   if (!solved || is_contradicted_) {
-    for (int i = first; i < first + count; ++i) frame_.match(candidate_[i].match).status = MatchStatus::kOutlier;
+    reject(first, count);
     return false;
   }
   filter_.commit_update();
@@ -104,6 +120,10 @@ bool PixelUpdate::apply_to(int first, int count, double* nis) {
   }
   relinearise_update(first, count);
   return true;
+}
+
+void PixelUpdate::reject(int first, int count) {
+  for (int i = first; i < first + count; ++i) frame_.match(candidate_[i].match).status = MatchStatus::kOutlier;
 }
 
 /// Over an angle of s = sqrt(lambda / f^2) the linearisation neglects about f s^2 pixels; as noise, f^2 s^4 / 2. lambda is the smaller

@@ -6,6 +6,7 @@
 #include "map/map.h"
 #include "slam/frame.h"
 #include "slam/leave_one_out.h"
+#include "slam/proposed_poses.h"
 #include "slam/settings.h"
 #include "slam/tracking_state.h"
 
@@ -60,6 +61,17 @@ class PixelUpdate {
   void put_depths_first(bool first) { puts_depths_first_ = first; }
   /// False once pixels have contradicted the pose that this relies on.
   bool puts_depths_first() const { return puts_depths_first_; }
+  /// Until the next call: apply() refuses the first update of a frame while the poses that frames in a row propose are fewer than this.
+  /// depth: of what is seen, median.
+  void ask_frames(int frames, Scalar depth) {
+    asked_frames_ = frames;
+    depth_ = depth;
+  }
+  ProposedPoses& proposals() { return proposals_; }
+  const ProposedPoses& proposals() const { return proposals_; }
+  /// Proposes the pose that an update with the kept ones of the range that begin() got would give. Returns how many frames in a row have
+  /// proposed poses that follow each other; 0 where the update cannot be made.
+  int propose(int first, int count, Scalar depth);
   /// Updates with the kept ones of the range that begin() got. False if the update could not be made; then nothing has changed.
   /// Adds their normalised innovation squared to *nis where it is not null.
   bool apply(int first, int count, double* nis);
@@ -69,6 +81,7 @@ class PixelUpdate {
     return limits_pose_nis() && frame_.report.inliers == 0 && pose_nis > max_pose_nis_;
   }
   bool apply_to(int first, int count, double* nis);
+  void reject(int first, int count);
   bool are_depths_open(int first, int count) const;
   void relinearise_update(int first, int count);
 
@@ -83,6 +96,9 @@ class PixelUpdate {
   unsigned char* age_ =
       nullptr;  ///< scratch behind keep_: frames in which the feature of each match was measured, up to 255
   LeaveOneOut others_;
+  ProposedPoses proposals_{settings_, filter_};
+  int asked_frames_ = 0;
+  Scalar depth_ = 1;
   Scalar max_pose_nis_ = 0;
   bool puts_depths_first_ = false;
   bool is_contradicted_ = false;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/elapsed.h"
-#include "geometry/so3.h"
 #include "slam/consensus.h"
 #include "slam/pose_proposal.h"
 #include "slam/tracking_state.h"
@@ -39,6 +37,7 @@ bool Relocaliser::layout(Arena& arena, int max_observations, int max_kept_views)
 
 void Relocaliser::init() {
   data_ = Data();
+  update_.proposals().init();
   views_.init();
 }
 
@@ -47,7 +46,7 @@ void Relocaliser::remember_view(Scalar median_depth) {
   views_.keep_if_new(images_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W);
 }
 
-void Relocaliser::recover(std::int64_t dt_ns) {
+void Relocaliser::recover() {
   const SearchPose about = choose_search_pose();
   const bool anywhere = about.given || !is_prediction_narrow();
   const Body estimate = filter_.state().body;
@@ -58,7 +57,7 @@ void Relocaliser::recover(std::int64_t dt_ns) {
   const int found = images_.search(0, count);
   set_pose(estimate);
   if (anywhere)
-    recover_anywhere(about, found, dt_ns);
+    recover_anywhere(about, found);
   else
     recover_nearby(found);
 }
@@ -78,10 +77,11 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) about.P(i, j) = filter_.covariance()(std::max(i, j), std::min(i, j));
   Scalar rotation = kAboutProposal, position = kAboutProposal;
-  if (data_.proposal.frames > 0) {
-    about.body.q_WC = data_.proposal.q_WC;
-    about.body.p_W = data_.proposal.p_W;
-    position *= data_.proposal.depth;
+  const ProposedPoses::Proposal& last = update_.proposals().last();
+  if (last.frames > 0) {
+    about.body.q_WC = last.q_WC;
+    about.body.p_W = last.p_W;
+    position *= last.depth;
   } else {
     if (is_prediction_narrow()) return about;
     const Recognition place = views_.recognise(images_.tracker().pyramid(), filter_.lens());
@@ -109,8 +109,6 @@ void Relocaliser::set_pose(const Body& pose) {
 
 /// After a short gap: a consensus about the prediction, in which features of unknown depth count as well.
 void Relocaliser::recover_nearby(int found) {
-  const int before = data_.frames_nearby;
-  data_.frames_nearby = 0;
   if (found < settings_.min_inliers) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int i = 0; i < found; ++i) searched_px2_[i] = images_.searched_area(i);
@@ -120,18 +118,13 @@ void Relocaliser::recover_nearby(int found) {
       find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
                             settings_.gate, kTriples, 1, update_.keep(), nullptr);
   if (!is_beyond_chance({inliers, consensus.log_false}, found)) return;
-  if (before + 1 < kFramesNearby) {
-    data_.frames_nearby = before + 1;
-    return;
-  }
+  if (update_.propose(0, found, data_.depth) < kFramesNearby) return;
   mark_matches(found);
   update_.apply(0, found, &frame_.report.nis);
 }
 
 /// Proposes a pose from the matches of a search about another pose, and tests it in the filter's own covariance.
-void Relocaliser::recover_anywhere(const SearchPose& about, int found, std::int64_t dt_ns) {
-  const int before = data_.proposal.frames;
-  data_.proposal.frames = 0;
+void Relocaliser::recover_anywhere(const SearchPose& about, int found) {
   if (found < settings_.min_inliers) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int i = 0; i < found; ++i) {
@@ -150,13 +143,10 @@ void Relocaliser::recover_anywhere(const SearchPose& about, int found, std::int6
                             settings_.gate, kTriples, 1, nullptr, update_.keep());
   if (!is_beyond_chance(consensus, found)) return;
   const Scalar depth = median_depth(pose, found);
-  const bool follows = before > 0 && depth > 0 && follows_last_proposal(pose, depth, dt_ns);
-  data_.proposal = {follows ? before + 1 : 1, pose.q_WC, pose.p_W, depth};
-  if (data_.proposal.frames < kFramesAnywhere) return;
+  if (update_.proposals().propose(pose.q_WC, pose.p_W, depth) < kFramesAnywhere) return;
   mark_matches(found);
   hold_back(found);
   update_.apply(0, found, &frame_.report.nis);
-  data_.proposal.frames = 0;
 }
 
 /// Keeps the candidates that can tell where the camera is, and sets the search ellipses about a given pose. Returns how many.
@@ -215,28 +205,6 @@ int Relocaliser::linearise_at(const Body& pose, int found) {
 /// Whether inliers are enough, far beyond chance, and not in one corner of the image.
 bool Relocaliser::is_beyond_chance(const TripleConsensus& consensus, int found) const {
   return consensus.inliers >= settings_.min_inliers && consensus.log_false < kMaxLogFalse && is_spread(found);
-}
-
-/// Whether the camera can have moved here from the last frame's proposal.
-bool Relocaliser::follows_last_proposal(const Body& pose, Scalar depth, std::int64_t dt_ns) const {
-  const Scalar dt = static_cast<Scalar>(seconds(dt_ns));
-  const Body& body = filter_.state().body;
-  Scalar max_rotation = kProposalRotation, max_shift = kProposalShift * depth;
-  if (settings_.body.has(BodyPart::kVelocity)) {
-    const int rate = settings_.body.row(settings_.inertial ? BodyPart::kGyroBias : BodyPart::kAngularVelocity);
-    Scalar v = 0, w = 0;
-    for (int i = 0; i < 3; ++i) {
-      v += filter_.variance(settings_.body.row(BodyPart::kVelocity) + i);
-      w += filter_.variance(rate + i);
-    }
-    max_rotation += (kMotionGate * std::min(std::sqrt(w), kMaxRateSigma) + body.w_C.norm()) * dt;
-    max_shift += (kMotionGate * std::min(std::sqrt(v), kMaxSpeedSigma * depth) + body.v_W.norm()) * dt;
-  } else {
-    max_rotation += kMotionGate * settings_.motion_noise.angular * std::sqrt(3 * dt);
-    max_shift += kMotionGate * settings_.motion_noise.linear * std::sqrt(3 * dt);
-  }
-  return log_so3(pose.q_WC * data_.proposal.q_WC.conjugate()).norm() < max_rotation &&
-         (pose.p_W - data_.proposal.p_W).norm() < max_shift;
 }
 
 /// Whether inliers are in enough cells of the image.

@@ -28,22 +28,12 @@ class Relocaliser {
 
   /// Keeps the view of a tracked frame, and how far away its features are.
   void remember_view(Scalar median_depth);
-  /// The map is tracked: forgets what earlier frames proposed.
-  void clear_proposals() { data_ = {Proposal(), 0, data_.depth}; }
-  /// Searches where the pose may be. dt_ns: since the frame before.
-  void recover(std::int64_t dt_ns);
+  /// Searches where the pose may be.
+  void recover();
 
   int kept_views() const { return views_.count(); }
 
  private:
-  /// Pose that the last frame's matches proposed.
-  struct Proposal {
-    int frames = 0;  ///< in a row that are consistent with it
-    Quat q_WC = Quat::Identity();
-    Vec3 p_W = Vec3::Zero();
-    Scalar depth = 1;  ///< median, of its inliers
-  };
-
   /// Where to search, instead of about the prediction.
   struct SearchPose {
     bool given = false;
@@ -53,20 +43,17 @@ class Relocaliser {
 
   /// What is kept between frames.
   struct Data {
-    Proposal proposal;
-    int frames_nearby = 0;  ///< in a row with a consensus about the prediction
-    Scalar depth = 1;       ///< median, of the last tracked frame
+    Scalar depth = 1;  ///< median, of the last tracked frame
   };
 
   bool is_prediction_narrow() const;
   SearchPose choose_search_pose() const;
   void recover_nearby(int found);
-  void recover_anywhere(const SearchPose& about, int found, std::int64_t dt_ns);
+  void recover_anywhere(const SearchPose& about, int found);
   void set_pose(const Body& pose);
   int keep_placed(const SearchPose& about, int count);
   int linearise_at(const Body& pose, int found);
   bool is_beyond_chance(const TripleConsensus& consensus, int found) const;
-  bool follows_last_proposal(const Body& pose, Scalar depth, std::int64_t dt_ns) const;
   bool is_spread(int found) const;
   Scalar median_depth(const Body& pose, int found) const;
   void mark_matches(int found);

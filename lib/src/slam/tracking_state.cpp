@@ -17,8 +17,11 @@ Status TrackingState::conclude(const FrameReport& report, const StartProgress& s
     d.lost = false;
     d.usable_ns = 0;
     d.last_tracked_ns = report.t_ns;
-    d.state = start.pending() ? SlamState::kStarting : SlamState::kTracking;
-    return start.pending() ? Status::kStarting : Status::kOk;
+    // A map that begins after a loss is believed when a frame agrees with the one that gave it its depths.
+    const bool starting = start.pending() || (d.may_skip_target && !d.depths_known);
+    d.depths_known = !start.pending();
+    d.state = starting ? SlamState::kStarting : SlamState::kTracking;
+    return starting ? Status::kStarting : Status::kOk;
   }
   if (start.recording && d.last_tracked_ns == report.t_ns) {  // the start has just begun, perhaps anew
     d.lost = false;

@@ -99,6 +99,7 @@ class TrackingState {
     bool lost = false;
     bool unusable = false;  ///< this frame's pose
     bool may_skip_target = false;
+    bool depths_known = false;  ///< in the last frame
     std::uint32_t map_id = 1;
     std::int64_t usable_ns = 0;  ///< of usable images while lost
     bool started_over = false;   ///< in this frame
