@@ -80,11 +80,29 @@ void test_a_map_after_a_loss_should_be_tracked_one_frame_after_its_depths() {
   }
 }
 
+void test_a_map_that_no_frame_has_tracked_yet_should_have_no_gap() {
+  Settings settings;
+  settings.min_inliers = 8;
+  TrackingState tracking(settings);
+  unsupported_frames(&tracking, settings.hooks, 1);
+  TEST_ASSERT_TRUE(tracking.is_relocalising(StartProgress()));
+  TEST_ASSERT_FALSE(tracking.is_after_gap(StartProgress()));
+  FrameReport report;
+  for (const int inliers : {settings.min_inliers, 0}) {
+    report.inliers = inliers;
+    report.t_ns += 2 * kFrame;
+    tracking.begin_frame();
+    tracking.conclude(report, StartProgress(), kMaxCoast, settings.hooks);
+    TEST_ASSERT_TRUE(tracking.is_after_gap(StartProgress()) == (inliers == 0));
+  }
+}
+
 }  // namespace
 
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_a_start_that_begins_anew_should_be_starting_in_status_and_state);
   RUN_TEST(test_a_map_after_a_loss_should_be_tracked_one_frame_after_its_depths);
+  RUN_TEST(test_a_map_that_no_frame_has_tracked_yet_should_have_no_gap);
   return UNITY_END();
 }

@@ -79,7 +79,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   } else if (tracking_.is_relocalising(start_.progress()) && rule == ConsensusRule::kBeyondChance) {
     relocaliser_.recover();
   } else {
-    update_.ask_frames(tracking_.is_relocalising(start_.progress()) ? tuning::relocaliser::kFramesNearby : 0,
+    update_.ask_frames(tracking_.is_after_gap(start_.progress()) ? tuning::relocaliser::kFramesNearby : 0,
                        data_.median_depth);
     measure_watched([&](bool) { images_.measure(rule, data_.median_depth, start_.learns_lens_from_first_depths()); });
   }

@@ -17,6 +17,7 @@ Status TrackingState::conclude(const FrameReport& report, const StartProgress& s
     d.lost = false;
     d.usable_ns = 0;
     d.last_tracked_ns = report.t_ns;
+    d.was_tracked = true;
     // A map that begins after a loss is believed when a frame agrees with the one that gave it its depths.
     const bool starting = start.pending() || (d.may_skip_target && !d.depths_known);
     d.depths_known = !start.pending();

@@ -76,6 +76,8 @@ class TrackingState {
   }
   /// The last frame did not support its pose: the map has to be found again before anything is measured.
   bool is_relocalising(const StartProgress& start) const { return coasting_or_lost() && !start.pending(); }
+  /// Likewise, and frames before it did: there is a gap, and not a map whose features began in the last frame.
+  bool is_after_gap(const StartProgress& start) const { return is_relocalising(start) && data_.was_tracked; }
   bool needs_new_map(std::int64_t restart_ns) const {
     return restart_ns > 0 && data_.lost && data_.usable_ns >= restart_ns;
   }
@@ -100,6 +102,7 @@ class TrackingState {
     bool unusable = false;  ///< this frame's pose
     bool may_skip_target = false;
     bool depths_known = false;  ///< in the last frame
+    bool was_tracked = false;   ///< by any frame of this map
     std::uint32_t map_id = 1;
     std::int64_t usable_ns = 0;  ///< of usable images while lost
     bool started_over = false;   ///< in this frame
