@@ -82,6 +82,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
     update_.ask_frames(tracking_.is_after_gap(start_.progress()) ? tuning::relocaliser::kFramesNearby : 0,
                        data_.median_depth);
     measure_watched([&](bool) { images_.measure(rule, data_.median_depth, start_.learns_lens_from_first_depths()); });
+    update_.ask_frames(0, data_.median_depth);
   }
   // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
   if (patches_ != nullptr && !first) patches_->measure(images_.tracker().pyramid(), start_.progress().checking);

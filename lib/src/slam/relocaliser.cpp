@@ -36,13 +36,13 @@ bool Relocaliser::layout(Arena& arena, int max_observations, int max_kept_views)
 }
 
 void Relocaliser::init() {
-  data_ = Data();
+  depth_ = 1;
   update_.proposals().init();
   views_.init();
 }
 
 void Relocaliser::remember_view(Scalar median_depth) {
-  data_.depth = median_depth;
+  depth_ = median_depth;
   views_.keep_if_new(images_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W);
 }
 
@@ -69,13 +69,14 @@ bool Relocaliser::is_prediction_narrow() const {
   return variance < kNearbySigma * kNearbySigma;
 }
 
-/// About the last frame's proposal; where the rotation is hardly known, about a kept view that looks like this image; otherwise about the
-/// prediction.
+/// About the prediction where its rotation is known well enough; otherwise about the last frame's proposal, or about a kept view that looks
+/// like this image.
 Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
   SearchPose about;
   about.body = filter_.state().body;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) about.P(i, j) = filter_.covariance()(std::max(i, j), std::min(i, j));
+  if (is_prediction_narrow()) return about;
   Scalar rotation = kAboutProposal, position = kAboutProposal;
   const ProposedPoses::Proposal& last = update_.proposals().last();
   if (last.frames > 0) {
@@ -83,13 +84,12 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
     about.body.p_W = last.p_W;
     position *= last.depth;
   } else {
-    if (is_prediction_narrow()) return about;
     const Recognition place = views_.recognise(images_.tracker().pyramid(), filter_.lens());
     if (place.score < kMinRecognition) return about;
     about.body.q_WC = place.q_WC;
     about.body.p_W = place.p_W;
     rotation = kAboutView;
-    position = kAboutView * data_.depth;
+    position = kAboutView * depth_;
   }
   about.given = true;
   about.P.setZero();
@@ -118,7 +118,7 @@ void Relocaliser::recover_nearby(int found) {
       find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
                             settings_.gate, kTriples, 1, update_.keep(), nullptr);
   if (!is_beyond_chance({inliers, consensus.log_false}, found)) return;
-  if (update_.propose(0, found, data_.depth) < kFramesNearby) return;
+  if (update_.propose(0, found, depth_) < kFramesNearby) return;
   mark_matches(found);
   update_.apply(0, found, &frame_.report.nis);
 }

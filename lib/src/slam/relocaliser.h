@@ -41,11 +41,6 @@ class Relocaliser {
     Mat6 P = Mat6::Zero();  ///< of (theta, p)
   };
 
-  /// What is kept between frames.
-  struct Data {
-    Scalar depth = 1;  ///< median, of the last tracked frame
-  };
-
   bool is_prediction_narrow() const;
   SearchPose choose_search_pose() const;
   void recover_nearby(int found);
@@ -66,7 +61,7 @@ class Relocaliser {
   ImageFrontEnd& images_;
   PixelUpdate& update_;
   ViewMemory views_;
-  Data data_;
+  Scalar depth_ = 1;                ///< median, of the last tracked frame
   Scalar* searched_px2_ = nullptr;  ///< max_observations each
   Vec3* point_W_ = nullptr;
   Vec2* pixel_ = nullptr;
