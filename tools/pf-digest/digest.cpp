@@ -30,12 +30,28 @@ pf_status_t __wrap_pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_
 
 namespace {
 
-constexpr int kFormat = 2;  // grows when what is hashed changes: files of different formats cannot be compared
+constexpr int kFormat = 3;  // grows when what is hashed changes: files of different formats cannot be compared
 constexpr int kGaugeEvery = 100;
 
-enum Kind { kState, kPose, kPredicted, kFeatures, kPlanes, kMatches, kReport, kHits, kImu, kGauge, kKinds };
-constexpr const char* kNames[kKinds] = {"state",   "pose",   "predicted", "features", "planes",
-                                        "matches", "report", "hits",      "imu",      "gauge"};
+enum Kind {
+  kState,
+  kPose,
+  kPredicted,
+  kFeatures,
+  kPlanes,
+  kMatches,
+  kReport,
+  kHits,
+  kImu,
+  kGauge,
+  kPatches,
+  kTemplates,
+  kLens,
+  kInertial,
+  kKinds
+};
+constexpr const char* kNames[kKinds] = {"state", "pose", "predicted", "features", "planes",    "matches", "report",
+                                        "hits",  "imu",  "gauge",     "patches",  "templates", "lens",    "inertial"};
 
 /// FNV-1a over whole numbers; all zeros are one number, and so are all NaN.
 class Hash {
@@ -72,7 +88,7 @@ void add(Hash& h, const pf_feature_t& f) {
 
 void add(Hash& h, const pf_plane_t& p) {
   h << p.id << p.orientation << p.points << p.fixed_points << p.map_id << p.normal_W << p.distance << p.R_WP << p.p_WP
-    << p.covariance << p.outline_count;
+    << p.covariance << p.known << p.doubted << p.outline_count;
   for (int i = 0; i < p.outline_count; ++i) h << p.outline_P[i];
   h << p.area;
 }
@@ -85,14 +101,28 @@ void add(Hash& h, const pf_report_t& r) {  // without the cost of stages
   h << static_cast<double>(r.t_ns) << r.state << r.frames << r.attempts << r.matches << r.inliers << r.new_features
     << r.evicted << r.features << r.features_point << r.features_inverse_depth << r.features_folded << r.features_fixed
     << r.planes << r.state_dim << r.state_dim_held << r.state_dim_points_only << r.map_id << r.kept_views << r.nis
-    << r.nis_dof << r.kernels;
+    << r.nis_dof << r.kernels << r.patches << r.cameras << static_cast<double>(r.duplicates) << r.sigma_gate_px
+    << r.sigma_info_px << r.correlation_frames << static_cast<double>(r.covariance_repairs) << r.templates
+    << r.keyframes << r.template_area;
+}
+
+void add(Hash& h, const pf_patch_t& p) {
+  h << p.id << p.plane << p.status << p.frames;
+  for (const auto& corner : p.corners_px) h << corner;
+  h << p.covariance_px << p.weight;
+}
+
+void add(Hash& h, const pf_inertial_t& i) {
+  h << i.gravity_W << i.gyro_bias << i.accel_bias << i.covariance << i.gravity_axes_W[0] << i.gravity_axes_W[1]
+    << i.metric << i.from_motion << i.map_id << i.resting << i.rests << i.q_BC << i.p_BC << i.delay_s << i.readout_s
+    << i.sigma;
 }
 
 void add(Hash& h, const pf_imu_report_t& r) {
   const std::int64_t counts[] = {r.samples, r.since_frame, r.last_frame, r.late,      r.saturated,
                                  r.gaps,    r.missing,     r.first_t_ns, r.last_t_ns, r.longest_ns};
   for (const std::int64_t count : counts) h << static_cast<double>(count);
-  h << r.rate_hz << r.median_s << r.kept << r.used;
+  h << r.rate_hz << r.median_s << r.kept << r.used << r.doubted << r.doubted_s;
 }
 
 void add(Hash& h, const pf_imu_sample_t& s) { h << static_cast<double>(s.t_ns) << s.gyro << s.accel; }
@@ -144,6 +174,27 @@ void add_gauge(Hash& h, const pf_slam_t* slam, int state_dim) {
   std::vector<double> scratch(n * (n + 8));
   double information[49] = {};
   h << pf_get_gauge_information(slam, scratch.data(), scratch.size(), information) << information;
+}
+
+void add_templates(Hash& h, const pf_slam_t* slam) {
+  std::vector<pf_feature_t> features(1000);
+  std::size_t count = 0;
+  pf_get_features(slam, features.data(), features.size(), &count);
+  for (std::size_t i = 0; i < count && i < features.size(); ++i) {
+    pf_template_t t{};
+    const pf_status_t status = pf_get_template(slam, features[i].id, &t);
+    h << status;
+    if (status != PF_OK) continue;
+    h << t.feature << t.side << t.normal_W << t.sigma_normal_rad << t.centre_px << t.frames;
+    for (std::int32_t k = 0; k < t.side * t.side; ++k) h << t.grey[k] << t.mask[k];
+  }
+}
+
+void add_lens(Hash& h, const pf_slam_t* slam) {
+  pf_camera_t camera{};
+  double covariance[100] = {};
+  h << pf_get_camera(slam, &camera, covariance);
+  h << camera.fx << camera.fy << camera.cx << camera.cy << camera.distortion << camera.readout_s << covariance;
 }
 
 std::map<const pf_slam_t*, pf_camera_t>& cameras() {
@@ -200,6 +251,13 @@ void write_digest(const pf_slam_t* slam, pf_status_t pushed) {
   add(h[kImu], imu);
   add_all(h[kImu], slam, pf_get_imu_samples);
   if (report.frames % kGaugeEvery == 0) add_gauge(h[kGauge], slam, report.state_dim);
+  add_all(h[kPatches], slam, pf_get_patches);
+  add_templates(h[kTemplates], slam);
+  add_lens(h[kLens], slam);
+  pf_inertial_t inertial{};
+  const pf_status_t has_inertial = pf_get_inertial(slam, &inertial);
+  h[kInertial] << has_inertial;
+  if (has_inertial == PF_OK) add(h[kInertial], inertial);
 
   std::string line;
   if (hashes.is_empty()) {

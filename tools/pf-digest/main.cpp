@@ -1,11 +1,12 @@
-// pf-digest SOURCE [--frames N] [--auto]: tracks the images of a source with the default config, for the digest of what comes out.
-// Sources are sim:NAME and those of pf_open_sequence. It starts at the source's target where there is one, unless --auto is given.
+// pf-digest SOURCE [OPTIONS]: tracks the images of a source, for the digest of what comes out. Sources are sim:NAME and those of
+// pf_open_sequence. It starts at the source's target where there is one, unless --auto is given.
 
 #include <planefold_platform/sequence.h>
 #include <planefold_platform/sim.h>
 #include <planefold_platform/version.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -21,57 +22,128 @@ int fail(const std::string& what) {
   return 1;
 }
 
-pf_config_t config_for(const pf_camera_t& camera) {
+struct Options {
+  std::int64_t frames = INT64_MAX;
+  std::int64_t black_from = INT64_MAX, black_frames = 0;
+  bool start_auto = false, window = false, masks = false, imu = false, lens = false;
+  int patches = 0;
+};
+
+pf_config_t config_for(const pf_camera_t& camera, const Options& options) {
   pf_config_t config;
   pf_config_default(&config);
   config.camera = camera;
   config.capacity.max_imu_samples = 100;
+  if (options.window) config.backend = PF_BACKEND_WINDOW;
+  if (options.masks) config.map.masks = PF_MASKS_PARTIAL;
+  config.capacity.max_patches = options.patches;
+  if (options.lens) {
+    config.camera.estimate = PF_CAMERA_ESTIMATE;
+    config.camera.sigma_focal = 0.01;
+    config.camera.sigma_aspect = 0.001;
+    config.camera.sigma_centre_px = 5;
+  }
   return config;
 }
 
-int run_sim(const std::string& scene, std::int64_t frames, bool at_target) {
-  pf_sim_t* sim = pf_sim_open(scene.c_str(), nullptr);
-  if (sim == nullptr) return fail("there is no scene '" + scene + "'");
+void use_imu(pf_config_t* config, const pf_imu_model_t& model) {
+  config->motion.model = PF_MOTION_INERTIAL;
+  config->capacity.max_imu_samples = 2000;
+  config->imu = model;
+}
+
+/// Pushes a source's frames, some of them with the lens covered.
+class Frames {
+ public:
+  Frames(pf_slam_t* slam, const Options& options) : slam_(slam), options_(options) {}
+
+  bool push(std::int64_t index, pf_image_t image) {
+    if (index >= options_.black_from && index - options_.black_from < options_.black_frames) {
+      black_.assign(static_cast<std::size_t>(image.stride) * static_cast<std::size_t>(image.height), 0);
+      black_[0] = static_cast<std::uint8_t>(index & 1);  // an image that repeats the last one is not measured
+      image.pixels = black_.data();
+    }
+    return pf_push_frame(slam_, &image) >= 0;
+  }
+
+ private:
+  pf_slam_t* slam_;
+  const Options& options_;
+  std::vector<std::uint8_t> black_;
+};
+
+bool start_sim(const pfsim::Context& context, pf_sim_t* sim, const Options& options) {
+  pf_target_t target;
+  if (options.start_auto || pf_sim_target(sim, PF_TARGET_RECTANGLE, &target) != PF_OK) return true;
+  return pf_start_from_target(context.slam, &target) == PF_OK;
+}
+
+int run_sim(const std::string& scene, const Options& options) {
+  pf_sim_options_t scene_options;
+  if (pf_sim_options_default(scene.c_str(), &scene_options) != PF_OK) return fail("there is no scene '" + scene + "'");
+  if (options.imu) scene_options.rest_s = 2;
+  pf_sim_t* sim = pf_sim_open(scene.c_str(), &scene_options);
+  if (sim == nullptr) return fail("the scene '" + scene + "' could not be opened");
   pf_camera_t camera;
   pf_sim_camera(sim, &camera);
-  const pfsim::Context context(config_for(camera));
-  pf_target_t target;
-  bool good = context.slam != nullptr;
-  if (good && at_target && pf_sim_target(sim, PF_TARGET_RECTANGLE, &target) == PF_OK) {
-    good = pf_start_from_target(context.slam, &target) == PF_OK;
-  }
+  pf_config_t config = config_for(camera, options);
+  pf_sim_imu_options_t unit;
+  pf_sim_imu_options_default(&unit);
+  if (options.imu) use_imu(&config, unit.model);
+  pf_sim_imu_t* imu = options.imu ? pf_sim_imu_open(sim, &unit) : nullptr;
+  const pfsim::Context context(config);
+  bool good = context.slam != nullptr && start_sim(context, sim, options);
+  Frames frames(context.slam, options);
   pf_image_t image;
-  for (std::int64_t i = 0; good && i < frames && pf_sim_next(sim, &image, nullptr); ++i) {
-    good = pf_push_frame(context.slam, &image) >= 0;
+  for (std::int64_t i = 0; good && i < options.frames && pf_sim_next(sim, &image, nullptr); ++i) {
+    while (imu != nullptr && pf_sim_imu_next_ns(imu) <= image.t_ns) {
+      pf_imu_sample_t sample;
+      pf_sim_imu_next(imu, &sample);
+      pf_push_imu(context.slam, &sample, 1);
+    }
+    good = frames.push(i, image);
   }
+  if (imu != nullptr) pf_sim_imu_close(imu);
   pf_sim_close(sim);
   return good ? 0 : fail("sim:" + scene + " was refused by the library");
 }
 
-int run_sequence(const std::string& source, std::int64_t frames, bool at_target) {
+bool start_sequence(pf_slam_t* slam, const std::string& folder, const Options& options, char* message) {
+  const std::string file = folder + "/target.yaml";
+  if (options.start_auto || !std::filesystem::exists(file)) return true;
+  pf_target_t target;
+  return pf_read_target(file.c_str(), &target, message) == 0 && pf_start_from_target(slam, &target) == PF_OK;
+}
+
+int run_sequence(const std::string& source, const Options& options) {
   char message[PF_SEQUENCE_MESSAGE] = "";
   pf_sequence_t* sequence = nullptr;
   if (pf_open_sequence(source.c_str(), nullptr, &sequence, message) != 0) return fail(message);
   pf_sequence_info_t info;
   pf_get_sequence_info(sequence, &info);
-  const pfsim::Context context(config_for(info.camera));
-  bool good = context.slam != nullptr;
-  const std::string target_file = std::string(info.folder) + "/target.yaml";
-  if (good && at_target && std::filesystem::exists(target_file)) {
-    pf_target_t target;
-    good = pf_read_target(target_file.c_str(), &target, message) == 0 &&
-           pf_start_from_target(context.slam, &target) == PF_OK;
+  pf_config_t config = config_for(info.camera, options);
+  if (options.imu) {
+    pf_imu_model_t model = config.imu;
+    const std::string file = std::string(info.folder) + "/calib.yaml";
+    if (pf_read_imu_noise(file.c_str(), &model, message) != 0 ||
+        pf_read_imu_mount(file.c_str(), &model, message) != 0) {
+      return fail(message);
+    }
+    use_imu(&config, model);
   }
+  const pfsim::Context context(config);
+  bool good = context.slam != nullptr && start_sequence(context.slam, info.folder, options, message);
   pf_imu_sample_t* samples = nullptr;
   std::size_t count = 0, next = 0;
   if (good && info.imu_path[0] != '\0') good = pf_read_imu(info.imu_path, &samples, &count, message) == 0;
+  Frames frames(context.slam, options);
   pf_image_t image;
-  for (std::int64_t i = 0; good && i < std::min(frames, info.count); ++i) {
+  for (std::int64_t i = 0; good && i < std::min(options.frames, info.count); ++i) {
     good = pf_read_sequence_frame(sequence, i, &image, message) == 0;
     const std::size_t first = next;
     while (next < count && samples[next].t_ns <= image.t_ns) ++next;
     if (good && next > first) good = pf_push_imu(context.slam, samples + first, next - first) >= 0;
-    good = good && pf_push_frame(context.slam, &image) >= 0;
+    good = good && frames.push(i, image);
   }
   pf_free_imu(samples);
   pf_close_sequence(sequence);
@@ -81,16 +153,23 @@ int run_sequence(const std::string& source, std::int64_t frames, bool at_target)
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Tracks a source with the default config; PLANEFOLD_DIGEST names the file for the digest"};
+  CLI::App app{"Tracks a source; PLANEFOLD_DIGEST names the file for the digest"};
   app.set_version_flag("--version", "pf-digest " PF_VERSION_TEXT);
-  std::string source;
-  std::int64_t frames = INT64_MAX;
-  bool start_auto = false;
+  std::string source, backend = "filter";
+  Options options;
   app.add_option("source", source, "sim:NAME, images:DIR, euroc:DIR or tum:DIR")->required();
-  app.add_option("--frames", frames, "at most so many");
-  app.add_flag("--auto", start_auto, "start without the target");
+  app.add_option("--frames", options.frames, "at most so many");
+  app.add_flag("--auto", options.start_auto, "start without the target");
+  app.add_option("--backend", backend, "filter or window")->check(CLI::IsMember({"filter", "window"}));
+  app.add_option("--patches", options.patches, "on planes, at most");
+  app.add_flag("--masks", options.masks, "templates with masks");
+  app.add_flag("--imu", options.imu, "the inertial model: a scene's own unit, or the samples beside the images");
+  app.add_flag("--lens", options.lens, "the lens is estimated");
+  app.add_option("--black-from", options.black_from, "the first frame with the lens covered");
+  app.add_option("--black", options.black_frames, "and for how many frames");
   int code = 0;
   if (!pf::tools::parse_command_line(app, "pf-digest", argc, argv, code)) return code;
-  if (source.rfind("sim:", 0) == 0) return run_sim(source.substr(4), frames, !start_auto);
-  return run_sequence(source, frames, !start_auto);
+  options.window = backend == "window";
+  if (source.rfind("sim:", 0) == 0) return run_sim(source.substr(4), options);
+  return run_sequence(source, options);
 }
