@@ -1,9 +1,9 @@
 // The distance of a bundle's point from a plane: Jacobians by plane, host and inverse depth, in double and in float.
+#include "bundle/adjust.h"
 #include "geometry/so3.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"
 #include "unity.h"
-#include "window/adjust.h"
 
 using namespace pf;
 

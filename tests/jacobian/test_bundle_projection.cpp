@@ -1,10 +1,10 @@
 // The bundle's projection: Jacobians by pose, host and inverse depth, for every camera model, in double and in float.
+#include "bundle/adjust.h"
 #include "geometry/so3.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
 #include "unity.h"
-#include "window/adjust.h"
 
 using namespace pf;
 

@@ -1,7 +1,7 @@
 // The inertial motion model: preintegrated samples by the biases, a frame's transition by every row of the body, the begin at rest,
 // and the pixels of a rolling shutter whose rows hang on the gyro. All against central differences.
 #include "filter/inertial_motion.h"
-#include "filter/observe/point.h"
+#include "observe/point.h"
 #include "support/filter_cases.h"
 #include "support/inertial_cases.h"
 #include "support/numeric_jacobian.h"

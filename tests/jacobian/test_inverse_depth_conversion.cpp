@@ -1,5 +1,5 @@
 // From inverse depth to a 3-D point: the Jacobians, and the measure of how linear the depth is.
-#include "filter/observe/inverse_depth.h"
+#include "observe/inverse_depth.h"
 #include "support/filter_cases.h"
 #include "support/numeric_jacobian.h"
 

@@ -1,5 +1,5 @@
 // Where each kind of feature is, d = w (o - c) + b: every Jacobian against central differences of the state itself.
-#include "filter/model/kinds.h"
+#include "model/kinds.h"
 #include "support/plane_scene.h"
 
 using namespace pf;

@@ -1,13 +1,13 @@
 // Jacobians by the numbers of the calibration: of a pixel, of a ray, of a predicted pixel, of a new bearing, and of a pose that was
 // fitted to known points; for every camera model.
-#include "filter/camera_at.h"
+#include "bundle/adjust.h"
 #include "geometry/lens.h"
 #include "geometry/planar_pose.h"
 #include "geometry/so3.h"
+#include "model/camera_at.h"
 #include "support/filter_cases.h"
 #include "support/numeric_jacobian.h"
 #include "support/test_cameras.h"
-#include "window/adjust.h"
 
 using namespace pf;
 

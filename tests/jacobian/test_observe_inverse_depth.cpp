@@ -1,5 +1,5 @@
 // Jacobians of an inverse-depth point's pixel, for every camera model, near, far and at infinity, in double and in float.
-#include "filter/observe/inverse_depth.h"
+#include "observe/inverse_depth.h"
 #include "support/filter_cases.h"
 #include "support/numeric_jacobian.h"
 #include "support/test_cameras.h"

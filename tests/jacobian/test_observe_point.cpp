@@ -1,5 +1,5 @@
 // Jacobians of a 3-D point's pixel, for every camera model, in double and in float.
-#include "filter/observe/point.h"
+#include "observe/point.h"
 #include "support/filter_cases.h"
 #include "support/numeric_jacobian.h"
 #include "support/test_cameras.h"

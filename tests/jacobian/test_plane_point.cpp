@@ -1,6 +1,6 @@
 // A new point of a plane, where the ray of its pixel meets it: its Jacobian over camera, plane, lens and pixel, for every camera model.
-#include "filter/camera_at.h"
 #include "geometry/ray_plane.h"
+#include "model/camera_at.h"
 #include "support/filter_cases.h"
 #include "support/numeric_jacobian.h"
 #include "support/test_cameras.h"

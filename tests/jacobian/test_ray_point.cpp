@@ -1,6 +1,6 @@
 // Corners of a patch on a plane: their Jacobians over the whole state for four lens models and rolling rows, the homography that they are
 // for a pinhole, and what they do not observe.
-#include "filter/model/reference_camera.h"
+#include "model/reference_camera.h"
 #include "support/filter_cases.h"
 #include "support/test_cameras.h"
 

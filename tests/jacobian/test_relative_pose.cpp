@@ -1,6 +1,6 @@
 // The camera now in the frame of a camera before: its Jacobians, and those of the motion since a reference camera in the state.
-#include "filter/model/reference_camera.h"
 #include "geometry/relative_pose.h"
+#include "model/reference_camera.h"
 #include "support/filter_scene.h"
 #include "support/numeric_jacobian.h"
 

@@ -1,5 +1,5 @@
 // Spread of a pose against points: its linear map against displacements of the state, what the gauge does to it, and the limits.
-#include "slam/usable_pose.h"
+#include "filter_slam/pose/usable_pose.h"
 #include "support/filter_scene.h"
 
 using namespace pf;

@@ -1,7 +1,7 @@
 // Pixels of the window's camera whose rows are read out one after the other: where they lie, and their Jacobians.
-#include "filter/camera_at.h"
 #include "geometry/so3.h"
-#include "slam/window_rows.h"
+#include "keyframe_slam/map/rows.h"
+#include "model/camera_at.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"

@@ -16,16 +16,16 @@ def complain(path, number, why):
 
 def library(path):
     inside = path.relative_to(LIB).as_posix()
-    room = inside.split("/")[0]
-    if room not in rooms.LIBRARY:
-        complain(path, 1, f"{room} is no room of the house; see tests/lint/rooms.py")
+    room = rooms.room_of(inside)
+    if not room:
+        complain(path, 1, f"{inside} lies in no room of the house; see tests/lint/rooms.py")
         return
     for number, bracket, what in source.includes(path):
-        other = what.split("/")[0]
+        other = rooms.room_of(what)
         if what.startswith("planefold/"):
             if room not in rooms.SEE_PUBLIC_HEADER:
                 complain(path, number, f"{room} may not see the public header")
-        elif other == "Eigen":
+        elif what.split("/")[0] == "Eigen":
             if source.name(path) != "lib/src/base/eigen.h" and not (LIB / "base/eigen.h") in closure(path):
                 complain(path, number, "Eigen is included without base/eigen.h, which sets it up")
         elif bracket == '"':
@@ -55,9 +55,14 @@ for what in rooms.ONLY_FOR:
     if not (LIB / what).is_file():
         problems.append(f"tests/lint/rooms.py: ONLY_FOR names {what}, which does not exist")
 
+for room, allowed in rooms.LIBRARY.items():
+    for other in allowed:
+        if room == other or room in rooms.LIBRARY[other]:
+            problems.append(f"tests/lint/rooms.py: {room} and {other} may not include each other")
+
 for path in source.files("lib/src"):
     library(path)
-    room = path.relative_to(LIB).parts[0]
+    room = rooms.room_of(path.relative_to(LIB).as_posix())
     lines = path.read_text().count("\n")
     if lines > rooms.MAX_LINES.get(room, lines):
         complain(path, lines, f"a file of {room} has at most {rooms.MAX_LINES[room]} lines: one job each")

@@ -8,7 +8,7 @@ import re
 
 import source
 
-MODULES = ["slam", "track", "window", "map", "filter"]
+MODULES = ["session", "filter_slam", "keyframe_slam", "frame", "track", "bundle", "map", "filter", "model", "observe"]
 COEFFICIENTS = {0, 1, 2, 3, 4, 0.5, 0.25}
 NUMBER = r"\d+\.\d*(?:e[-+]?\d+)?|\.\d+(?:e[-+]?\d+)?|\d+e[-+]?\d+"
 LITERAL = re.compile(rf"\bScalar\(\s*-?(?P<scalar>\d+|{NUMBER})f?\s*\)|(?<![\w.])(?P<plain>{NUMBER})f?(?![\w.])")

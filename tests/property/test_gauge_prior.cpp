@@ -1,5 +1,5 @@
 // What is kept apart from P: P + N V N^T is the same covariance, through every operation, as one that holds all of it.
-#include "filter/observe/inverse_depth.h"
+#include "observe/inverse_depth.h"
 #include "support/filter_scene.h"
 
 using namespace pf;

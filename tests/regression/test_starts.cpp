@@ -1,8 +1,8 @@
 // Faults that a start once had.
 #include <cmath>
 
-#include "filter/observe/inverse_depth.h"
 #include "geometry/symmetric_eigen.h"
+#include "observe/inverse_depth.h"
 #include "support/small_context.h"
 
 static void test_control_input_before_the_first_pose_should_have_no_effect() {

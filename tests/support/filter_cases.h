@@ -7,6 +7,7 @@
 
 #include "filter/filter.h"
 #include "filter/gauge_information.h"
+#include "filter/state_rows.h"
 #include "geometry/so3.h"
 #include "support/dense.h"
 #include "support/seeded_random.h"

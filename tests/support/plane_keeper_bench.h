@@ -1,7 +1,7 @@
 #pragma once
 
 #include "api/context.h"
-#include "slam/plane_keeper.h"
+#include "filter_slam/planes/plane_keeper.h"
 #include "support/filter_cases.h"
 #include "support/test_cameras.h"
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "bundle/adjust.h"
 #include "geometry/so3.h"
 #include "support/filter_cases.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
-#include "window/adjust.h"
 
 namespace pf {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "api/context.h"
-#include "slam/frame_loop.h"
+#include "filter_slam/filter_slam.h"
 #include "support/filter_cases.h"
 
 namespace pf {
@@ -63,7 +63,7 @@ inline void SlowWalk::run(std::uint64_t seed) {
   ImuLog imu;
   imu.layout(*arena, settings.imu_buffer);
   imu.init(settings.imu_buffer, settings.imu_ranges);
-  FrameLoop loop(settings, map, imu);
+  FilterSlam loop(settings, map, imu);
   TEST_ASSERT_TRUE(loop.layout(*arena));
   loop.init();
   if (pose_sigma > 0) {

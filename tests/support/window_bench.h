@@ -2,7 +2,7 @@
 
 // The map of the window with keyframes and points at known places, without images.
 
-#include "slam/window_adjustment.h"
+#include "keyframe_slam/adjustment/adjustment.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
 #include "support/textured_images.h"
@@ -10,7 +10,7 @@
 namespace pf {
 
 /// Keyframes side by side that look along z, 0.1 m apart, and points in front of them.
-struct WindowBench {
+struct KeyframeBench {
   static constexpr int kPoints = 60, kKeyframes = 6;
 
   SeededRandom random;
@@ -18,13 +18,13 @@ struct WindowBench {
   Map tables;
   Frame frame;
   NoiseModel noise;
-  WindowMap map{settings, tables, frame};
-  WindowPlanes planes{settings, map};
-  WindowAdjustment adjustment{settings, map, planes, noise};
+  KeyframeMap map{settings, tables, frame};
+  KeyframePlanes planes{settings, map};
+  KeyframeAdjustment adjustment{settings, map, planes, noise};
   TestArena arena;
   Vec3 truth_W[kPoints];
 
-  explicit WindowBench(std::uint64_t seed) : random(seed) {
+  explicit KeyframeBench(std::uint64_t seed) : random(seed) {
     settings.camera = pinhole_camera();
     settings.max_features = kPoints;
     settings.max_planes = 2;

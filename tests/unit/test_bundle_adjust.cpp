@@ -3,13 +3,13 @@
 #include <cmath>
 #include <vector>
 
+#include "bundle/adjust.h"
 #include "geometry/so3.h"
 #include "support/bounds.h"
 #include "support/filter_cases.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
 #include "unity.h"
-#include "window/adjust.h"
 
 using namespace pf;
 

@@ -1,5 +1,5 @@
 // The ratio that most have in common: its median, its votes, and the best of the others.
-#include "slam/common_ratio.h"
+#include "geometry/common_ratio.h"
 #include "unity.h"
 
 using namespace pf;

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "slam/consensus.h"
+#include "filter_slam/pose/consensus.h"
 #include "support/filter_scene.h"
 
 using namespace pf;

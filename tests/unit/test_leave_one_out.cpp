@@ -1,6 +1,6 @@
 // One match against all the others: as brute force says, and what moves is found although its depth is open.
-#include "slam/consensus.h"
-#include "slam/leave_one_out.h"
+#include "filter_slam/pose/consensus.h"
+#include "filter_slam/pose/leave_one_out.h"
 #include "support/filter_scene.h"
 
 using namespace pf;

@@ -3,7 +3,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "slam/noise_model.h"
+#include "frame/noise_model.h"
+#include "frame/tuning.h"
 #include "support/seeded_random.h"
 #include "unity.h"
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "map/plane_chance.h"
+#include "base/false_alarms.h"
 #include "map/plane_search.h"
 #include "support/seeded_random.h"
 #include "unity.h"
@@ -237,11 +237,11 @@ void test_false_planes_should_be_counted_as_by_hand_when_numbers_are_small() {
   // On 5 of 7, share 1/4: P(X >= 2), X ~ Binomial(4, 1/4) = 1 - (3/4)^4 - 4 (1/4)(3/4)^3 = 67/256; C(10, 3) = 120 sets.
   const Scalar tolerance = sizeof(Scalar) == 4 ? Scalar(1e-5) : Scalar(1e-12);
   const Scalar expected = static_cast<Scalar>(std::log(67.0 / 256 * 120));
-  TEST_ASSERT_TRUE(std::abs(log_false_planes(5, 7, Scalar(0.25), 10) - expected) < tolerance);
+  TEST_ASSERT_TRUE(std::abs(log_false_alarms(5, 7, Scalar(0.25), 10) - expected) < tolerance);
   // All of 8: share^5.
   const Scalar all = static_cast<Scalar>(std::log(std::pow(0.05, 5) * 56));
-  TEST_ASSERT_TRUE(std::abs(log_false_planes(8, 8, Scalar(0.05), 8) - all) < 100 * tolerance);
-  TEST_ASSERT_TRUE(log_false_planes(3, 8, Scalar(0.05), 8) == 0);
+  TEST_ASSERT_TRUE(std::abs(log_false_alarms(8, 8, Scalar(0.05), 8) - all) < 100 * tolerance);
+  TEST_ASSERT_TRUE(log_false_alarms(3, 8, Scalar(0.05), 8) == 0);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // A plane that moves with its points along their rays: pixels stay, and the covariance grows by what differences of the move itself say.
 #include <memory>
 
-#include "filter/camera_at.h"
+#include "model/camera_at.h"
 #include "support/plane_scene.h"
 
 using namespace pf;

@@ -1,5 +1,5 @@
 // A pose from matches with known points of which half are wrong, and what the prior does where matches say little.
-#include "slam/pose_proposal.h"
+#include "filter_slam/recovery/pose_proposal.h"
 #include "support/filter_scene.h"
 
 using namespace pf;

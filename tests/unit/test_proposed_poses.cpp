@@ -1,5 +1,5 @@
 // Poses that frames in a row propose: which of them a hand can have moved the camera between, and when the row begins anew.
-#include "slam/proposed_poses.h"
+#include "filter_slam/pose/proposed_poses.h"
 #include "support/filter_cases.h"
 
 using namespace pf;

@@ -1,5 +1,5 @@
 // A reference camera: begun with all that the camera has in common with the rest, kept while it is needed, removed without a trace.
-#include "filter/model/reference_camera.h"
+#include "model/reference_camera.h"
 #include "support/filter_scene.h"
 
 using namespace pf;

@@ -1,8 +1,8 @@
 // When a frame shows what the map has learnt from already: after enough frames in one view, and until the camera leaves it.
 #include <cmath>
 
+#include "filter_slam/features/same_view.h"
 #include "geometry/so3.h"
-#include "slam/same_view.h"
 #include "unity.h"
 
 using namespace pf;

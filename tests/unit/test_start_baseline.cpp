@@ -1,11 +1,11 @@
 // How far a camera may have moved for what a rotation leaves of its pixels, and what the filter makes of it.
+#include "bundle/rotation_fit.h"
+#include "bundle/start_bundle.h"
 #include "filter/baseline.h"
 #include "geometry/so3.h"
 #include "support/bounds.h"
 #include "support/filter_cases.h"
 #include "support/test_cameras.h"
-#include "window/rotation_fit.h"
-#include "window/start_bundle.h"
 
 using namespace pf;
 

@@ -1,10 +1,10 @@
 // The first depths from synthetic pixels of known poses and points.
 #include <algorithm>
 
+#include "bundle/start_bundle.h"
 #include "support/bounds.h"
 #include "support/filter_cases.h"
 #include "support/test_cameras.h"
-#include "window/start_bundle.h"
 
 using namespace pf;
 

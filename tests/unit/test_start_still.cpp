@@ -1,9 +1,9 @@
 // Whether a camera stands still while something moves before it, from the record of a start.
+#include "bundle/start_still.h"
 #include "geometry/so3.h"
 #include "support/bounds.h"
 #include "support/filter_cases.h"
 #include "support/test_cameras.h"
-#include "window/start_still.h"
 
 using namespace pf;
 

@@ -1,8 +1,8 @@
 // The plane of a target's points: rectangles and coplanar points have one, three points and the corners of a step do not.
 #include <cmath>
 
+#include "frame/start/target_surface.h"
 #include "geometry/so3.h"
-#include "slam/target_surface.h"
 #include "unity.h"
 
 using namespace pf;

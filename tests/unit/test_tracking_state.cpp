@@ -1,5 +1,5 @@
 // The state of the tracking and the status of the frame say the same.
-#include "slam/tracking_state.h"
+#include "frame/tracking_state.h"
 #include "unity.h"
 
 using namespace pf;

@@ -1,7 +1,7 @@
 // Consensus over triples: right matches are far beyond chance, matches at random places in the searched areas are not.
-#include "slam/consensus.h"
-#include "slam/triple_consensus.h"
-#include "slam/tuning.h"
+#include "filter_slam/pose/consensus.h"
+#include "filter_slam/pose/triple_consensus.h"
+#include "frame/tuning.h"
 #include "support/filter_scene.h"
 
 using namespace pf;

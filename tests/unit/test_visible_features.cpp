@@ -1,6 +1,6 @@
 // Which of the visible features are measured when there are more than a frame takes: those that this view can be compared with first.
 // Where new features are taken when not every cell of the image gets one: where a proven plane is.
-#include "slam/image_front_end.h"
+#include "filter_slam/features/image_front_end.h"
 #include "support/filter_cases.h"
 #include "support/test_cameras.h"
 

@@ -19,7 +19,7 @@ const Scalar kDistance = Scalar(-2.2);
 
 Scalar height(const Vec3& p_W) { return kNormal.dot(p_W) - kDistance; }
 
-Vec3 point_on_plane(WindowBench* bench) {
+Vec3 point_on_plane(KeyframeBench* bench) {
   const Scalar x = static_cast<Scalar>(bench->random.uniform(-0.3, 0.5));
   const Scalar y = static_cast<Scalar>(bench->random.uniform(-0.4, 0.4));
   const Vec3 ray(x, y, 1);
@@ -27,9 +27,9 @@ Vec3 point_on_plane(WindowBench* bench) {
 }
 
 /// Points on the plane, which is found among them.
-void find_plane(WindowBench* bench) {
+void find_plane(KeyframeBench* bench) {
   for (int c = 0; c < kOnPlane; ++c) bench->place(bench->add(point_on_plane(bench), kSigma));
-  for (int c = kOnPlane; c < WindowBench::kPoints; ++c) {
+  for (int c = kOnPlane; c < KeyframeBench::kPoints; ++c) {
     const Vec3 p_W = point_on_plane(bench) * static_cast<Scalar>(bench->random.uniform(0.5, 0.8));
     bench->place(bench->add(p_W, kSigma));
   }
@@ -38,7 +38,7 @@ void find_plane(WindowBench* bench) {
   TEST_ASSERT_TRUE(10 * bench->planes.points_on(0) >= 9 * kOnPlane);
 }
 
-double mean_square_height(const WindowBench& bench) {
+double mean_square_height(const KeyframeBench& bench) {
   double sum = 0;
   for (int i = 0; i < kOnPlane; ++i) {
     const double e = static_cast<double>(height(bench.map.position(i)));
@@ -51,10 +51,10 @@ void test_points_on_a_plane_should_be_held_to_it() {
   constexpr int kRuns = 20;
   double held = 0, loose = 0;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    WindowBench with(seed), without(seed);
+    KeyframeBench with(seed), without(seed);
     find_plane(&with);
     find_plane(&without);
-    for (int i = 0; i < WindowBench::kPoints; ++i) without.map.point(i).plane = -1;
+    for (int i = 0; i < KeyframeBench::kPoints; ++i) without.map.point(i).plane = -1;
     TEST_ASSERT_TRUE(with.adjustment.run(false));
     TEST_ASSERT_TRUE(without.adjustment.run(false));
     TEST_ASSERT_TRUE(with.planes.plane(0).adjusted);
@@ -70,10 +70,10 @@ void test_error_of_an_adjusted_plane_should_be_as_its_covariance_says() {
   constexpr int kRuns = 30;
   double nees = 0;
   for (int run = 0; run < kRuns; ++run) {
-    WindowBench bench(static_cast<std::uint64_t>(100 + run));
+    KeyframeBench bench(static_cast<std::uint64_t>(100 + run));
     find_plane(&bench);
     TEST_ASSERT_TRUE(bench.adjustment.run(false));
-    const WindowPlane& plane = bench.planes.plane(0);
+    const KeyframePlane& plane = bench.planes.plane(0);
     // The true plane about the frame that the adjusted one lies in.
     const Vec3 n = plane.frame.R_WP.transpose() * kNormal;
     const Vec3 x(-n.x() / n.z(), -n.y() / n.z(), -height(plane.frame.o_W) / n.z());
@@ -85,7 +85,7 @@ void test_error_of_an_adjusted_plane_should_be_as_its_covariance_says() {
 }
 
 void test_a_point_that_its_pixels_place_elsewhere_should_not_be_held() {
-  WindowBench bench(2);
+  KeyframeBench bench(2);
   find_plane(&bench);
   const int i = kOnPlane;
   const Vec3 before = bench.map.position(i);
@@ -98,7 +98,7 @@ void test_a_point_that_its_pixels_place_elsewhere_should_not_be_held() {
 }
 
 void test_planes_should_not_be_adjusted_where_nothing_holds_the_scale() {
-  WindowBench bench(3);
+  KeyframeBench bench(3);
   find_plane(&bench);
   bench.settings.window_fixed = 1;
   TEST_ASSERT_TRUE(bench.adjustment.run(false));
@@ -106,7 +106,7 @@ void test_planes_should_not_be_adjusted_where_nothing_holds_the_scale() {
 }
 
 void test_a_plane_that_is_rotated_far_should_be_left_as_it_is() {
-  WindowBench bench(4);
+  KeyframeBench bench(4);
   find_plane(&bench);
   const PlaneFrame before = bench.planes.plane(0).frame;
   TEST_ASSERT_FALSE(bench.planes.take_adjusted(0, Vec3(1, 0, 0), Mat3::Identity()));

@@ -1,5 +1,5 @@
 // Which keyframes of the window hang together by points that they share.
-#include "slam/window_covisible.h"
+#include "keyframe_slam/map/covisible.h"
 #include "support/window_bench.h"
 
 using namespace pf;
@@ -9,10 +9,10 @@ void tearDown(void) {}
 
 namespace {
 
-constexpr int kInGroup = 12, kKeyframes = WindowBench::kKeyframes;
+constexpr int kInGroup = 12, kKeyframes = KeyframeBench::kKeyframes;
 
 /// Points that all keyframes saw, of which one half stays with the first `cut` keyframes and the other with the rest.
-void split(WindowBench* bench, int cut) {
+void split(KeyframeBench* bench, int cut) {
   for (int n = 0; n < 2 * kInGroup; ++n) {
     const double x = bench->random.uniform(-0.3, 0.5), y = bench->random.uniform(-0.4, 0.4);
     const double z = bench->random.uniform(1.5, 3);
@@ -24,14 +24,14 @@ void split(WindowBench* bench, int cut) {
 }
 
 /// Lets a keyframe see points of the other half.
-void join(WindowBench* bench, int keyframe, int points) {
+void join(KeyframeBench* bench, int keyframe, int points) {
   for (int i = 0; i < points; ++i) bench->map.keyframes.pixels(keyframe)[i].seen = true;
 }
 
 void test_keyframes_should_hang_together_by_points_that_they_share() {
-  WindowBench bench(1);
+  KeyframeBench bench(1);
   split(&bench, 2);
-  bool connected[kKeyframes + 30], seen[WindowBench::kPoints];
+  bool connected[kKeyframes + 30], seen[KeyframeBench::kPoints];
   TEST_ASSERT_EQUAL_INT(kKeyframes - 2, connected_keyframes(bench.map, 8, connected, seen));
   for (int k = 0; k < kKeyframes; ++k) TEST_ASSERT_EQUAL_INT(k >= 2, connected[k]);
   join(&bench, 3, 7);
@@ -42,17 +42,17 @@ void test_keyframes_should_hang_together_by_points_that_they_share() {
 }
 
 void test_points_without_a_depth_should_connect_nothing() {
-  WindowBench bench(2);
+  KeyframeBench bench(2);
   split(&bench, 2);
   join(&bench, 3, kInGroup);
   for (int i = 0; i < kInGroup; ++i) bench.map.point(i).has_depth = false;
-  bool connected[kKeyframes + 30], seen[WindowBench::kPoints];
+  bool connected[kKeyframes + 30], seen[KeyframeBench::kPoints];
   TEST_ASSERT_EQUAL_INT(kKeyframes - 2, connected_keyframes(bench.map, 8, connected, seen));
 }
 
 /// They have a place and a scale of their own. Held fixed in the adjustment of the others they would hold neither.
 void test_what_shares_no_points_should_neither_move_nor_hold_the_others() {
-  WindowBench bench(3);
+  KeyframeBench bench(3);
   split(&bench, 3);
   const Vec3 first = bench.map.keyframes[0].p_W, held = bench.map.keyframes[3].p_W;
   const Scalar held_rho = bench.map.point(0).rho;
@@ -70,7 +70,7 @@ void test_what_shares_no_points_should_neither_move_nor_hold_the_others() {
 
 /// Turning the keyframe that is held turns the newest one about it, 0.2 m away along x.
 void test_a_keyframe_that_is_held_should_pass_on_its_own_covariance() {
-  WindowBench bench(4), exact(4);
+  KeyframeBench bench(4), exact(4);
   split(&bench, 3);
   split(&exact, 3);
   Mat6& P = bench.map.keyframes[3].covariance;

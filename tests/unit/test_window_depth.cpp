@@ -1,7 +1,7 @@
 // Depths of the window's points from the pixels of their keyframes and of a frame.
 #include <cmath>
 
-#include "slam/window_depth.h"
+#include "keyframe_slam/map/depth.h"
 #include "support/window_bench.h"
 
 using namespace pf;
@@ -16,14 +16,14 @@ constexpr double kTight = sizeof(Scalar) == 4 ? 1e-4 : 1e-9;
 /// A frame beyond the last keyframe.
 const CameraView kNow = {Quat::Identity(), Vec3(Scalar(0.8), 0, 0)};
 
-Vec2 pixel_of(const WindowBench& bench, const Vec3& p_W) {
+Vec2 pixel_of(const KeyframeBench& bench, const Vec3& p_W) {
   Vec2 z;
   TEST_ASSERT_TRUE(project(bench.settings.camera, p_W - kNow.c_W, &z));
   return z;
 }
 
 void test_depth_should_be_that_of_exact_pixels() {
-  WindowBench bench(1);
+  KeyframeBench bench(1);
   const Vec3 p_W(Scalar(0.3), Scalar(-0.2), 2);
   const int i = bench.add(p_W, 0);
   DepthFit fit;
@@ -38,7 +38,7 @@ void test_depth_should_be_that_of_exact_pixels() {
 void test_error_of_a_depth_should_be_as_its_information_says() {
   constexpr int kRuns = 200;
   constexpr double kSigma = 0.5;
-  WindowBench bench(2);
+  KeyframeBench bench(2);
   double nees = 0;
   for (int run = 0; run < kRuns; ++run) {
     const Vec3 p_W = Vec3(static_cast<Scalar>(bench.random.uniform(-0.3, 0.5)),
@@ -57,7 +57,7 @@ void test_error_of_a_depth_should_be_as_its_information_says() {
 }
 
 void test_a_pixel_that_no_depth_explains_should_show_in_the_residual() {
-  WindowBench bench(3);
+  KeyframeBench bench(3);
   const Vec3 p_W(Scalar(0.3), 0, 2);
   const int i = bench.add(p_W, 0);
   DepthFit fit;
@@ -67,7 +67,7 @@ void test_a_pixel_that_no_depth_explains_should_show_in_the_residual() {
 }
 
 void test_rays_without_parallax_or_behind_should_give_no_depth() {
-  WindowBench bench(4);
+  KeyframeBench bench(4);
   const Vec3 p_W(Scalar(0.3), 0, 2);
   const int i = bench.add(p_W, 0);
   DepthFit fit;

@@ -12,11 +12,11 @@ void tearDown(void) {}
 namespace {
 
 /// Pixels of a camera with k1, about a calibration that names no distortion.
-struct LensBench : WindowBench {
+struct LensBench : KeyframeBench {
   static constexpr double kK1 = -0.06, kSigma = 0.3;  // [px]
   Camera truth;
 
-  explicit LensBench(std::uint64_t seed, double sigma_k1) : WindowBench(seed) {
+  explicit LensBench(std::uint64_t seed, double sigma_k1) : KeyframeBench(seed) {
     LensSigmas sigmas;
     sigmas.focal = Scalar(0.01);
     sigmas.aspect = Scalar(0.001);
@@ -71,7 +71,7 @@ void test_a_distortion_that_the_calibration_lacks_should_be_found() {
     LensBench bench(static_cast<std::uint64_t>(10 + run), 0.05);
     bench.fill();
     for (int again = 0; again < 3; ++again) TEST_ASSERT_TRUE(bench.adjustment.run(true));
-    const WindowLens& lens = bench.map.lens();
+    const KeyframeLens& lens = bench.map.lens();
     const int n = lens.rows().count;
     TEST_ASSERT_EQUAL_INT(5, n);
     const double off = static_cast<double>(lens.camera().distortion[0]) - LensBench::kK1;

@@ -3,14 +3,14 @@
 #include <cmath>
 #include <cstdio>
 
+#include "bundle/adjust.h"
 #include "geometry/so3.h"
-#include "slam/window_motion.h"
-#include "slam/window_pose.h"
+#include "keyframe_slam/tracking/motion.h"
+#include "keyframe_slam/tracking/pose.h"
 #include "support/dense.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
 #include "unity.h"
-#include "window/adjust.h"
 
 using namespace pf;
 
@@ -121,7 +121,7 @@ void test_motion_should_learn_velocities_from_poses() {
   settings.constant_velocity = true;
   settings.body = BodyLayout::with_constant_velocity();
   settings.motion_noise = {Scalar(0.01), Scalar(0.01)};
-  WindowMotion motion(settings);
+  KeyframeMotion motion(settings);
   motion.init();
   const Mat6 R = Mat6::Identity() * Scalar(1e-6);
   motion.set(Body(), R, 1, 1);
@@ -145,10 +145,10 @@ void test_motion_should_learn_velocities_from_poses() {
 }
 
 /// Largest difference as correlations.
-double difference(const WindowMotion::Covariance& P, const Eigen::MatrixXd& expected) {
+double difference(const KeyframeMotion::Covariance& P, const Eigen::MatrixXd& expected) {
   double largest = 0;
-  for (int i = 0; i < WindowMotion::kMaxRows; ++i)
-    for (int j = 0; j < WindowMotion::kMaxRows; ++j)
+  for (int i = 0; i < KeyframeMotion::kMaxRows; ++i)
+    for (int j = 0; j < KeyframeMotion::kMaxRows; ++j)
       largest = std::max(largest, std::abs(static_cast<double>(P(i, j)) - expected(i, j)) /
                                       std::sqrt(expected(i, i) * expected(j, j)));
   return largest;
@@ -161,7 +161,7 @@ void test_motion_should_keep_a_covariance_where_the_pose_was_hardly_known() {
   settings.motion_noise = {Scalar(1), Scalar(1)};
   SeededRandom random(7);
   for (int k = 0; k < 50; ++k) {
-    WindowMotion motion(settings);
+    KeyframeMotion motion(settings);
     motion.init();
     Body body;
     body.v_W = random.normals<3>(300.0);
@@ -192,14 +192,14 @@ void test_motion_should_keep_a_covariance_where_matches_leave_a_direction_open()
   for (int k = 0; k < 200; ++k) {
     Settings settings;
     settings.body = BodyLayout::with_constant_position();
-    WindowMotion motion(settings);
+    KeyframeMotion motion(settings);
     motion.init();
     Eigen::Matrix<double, 6, 6> half, spread = Eigen::Matrix<double, 6, 6>::Identity() * 1e-6;
     for (int i = 0; i < 36; ++i) half(i / 6, i % 6) = random.normal() * 0.1;
     spread += half * half.transpose();
     motion.set(Body(), spread.cast<Scalar>(), 0, 0);
     const Eigen::Matrix<double, 6, 1> open = random.normals<6>(1.0).cast<double>().normalized();
-    const WindowMotion::Wide6 R = WindowMotion::Wide6::Identity() * 1e-6 + 100 * open * open.transpose();
+    const KeyframeMotion::Wide6 R = KeyframeMotion::Wide6::Identity() * 1e-6 + 100 * open * open.transpose();
     const double before = static_cast<double>(motion.pose_covariance().trace());
     TEST_ASSERT_TRUE(motion.correct(Quat::Identity(), Vec3::Zero(), R));
     smallest = std::min(smallest, smallest_correlation(motion.pose_covariance().cast<double>()));
@@ -221,7 +221,7 @@ void test_motion_should_keep_a_covariance_while_an_absurd_speed_decays() {
     settings.body = BodyLayout::with_constant_velocity();
     settings.motion_noise = {static_cast<Scalar>(std::pow(10, random.uniform(-2, 1))),
                              static_cast<Scalar>(std::pow(10, random.uniform(-2, 1)))};
-    WindowMotion motion(settings);
+    KeyframeMotion motion(settings);
     motion.init();
     Body body;
     body.v_W = random.normals<3>(std::pow(10, random.uniform(0, 4)));

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "adjust_peer.h"
+#include "bundle/adjust.h"
 #include "geometry/so3.h"
 #include "sim/random.h"
 #include "suite.h"
-#include "window/adjust.h"
 
 namespace bench {
 namespace {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "base/arena.h"
+#include "filter_slam/patches/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "homography_frames.h"
-#include "slam/tuning.h"
 #include "suite.h"
 #include "thread_time.h"
 #include "track/align_plane.h"

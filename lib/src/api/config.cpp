@@ -5,7 +5,7 @@
 #include "api/checks.h"
 #include "api/context.h"
 #include "covariance/select.h"
-#include "slam/tuning.h"
+#include "frame/tuning.h"
 
 namespace pf {
 namespace {

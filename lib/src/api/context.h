@@ -3,7 +3,7 @@
 #include "api/checks.h"
 #include "base/status.h"
 #include "planefold/planefold.h"
-#include "slam/session.h"
+#include "session/session.h"
 
 /// What a pf_slam_t is, and the checks that every call begins with.
 

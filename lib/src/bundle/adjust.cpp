@@ -1,10 +1,11 @@
-#include "window/adjust.h"
+#include "bundle/adjust.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "bundle/tuning.h"
 #include "geometry/camera_distortion.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"

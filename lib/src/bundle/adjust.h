@@ -3,10 +3,10 @@
 #include <cstdint>
 
 #include "base/arena.h"
+#include "bundle/tuning.h"
 #include "geometry/camera.h"
 #include "geometry/lens.h"
 #include "geometry/plane.h"
-#include "window/tuning.h"
 
 /// A small bundle adjustment: poses, points by their bearing and inverse depth in a host pose, planes on which some
 /// of the points lie, and the lens that all poses share (lib/docs/window.md, lib/docs/starting.md).

@@ -1,10 +1,10 @@
-#include "window/rotation_fit.h"
+#include "bundle/rotation_fit.h"
 
 #include <algorithm>
 
+#include "bundle/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
-#include "window/tuning.h"
 
 namespace pf {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "bundle/adjust.h"
 #include "geometry/camera.h"
-#include "window/adjust.h"
 
 namespace pf {
 

@@ -1,12 +1,12 @@
-#include "window/start_bundle.h"
+#include "bundle/start_bundle.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "bundle/rotation_fit.h"
+#include "bundle/tuning.h"
 #include "geometry/pnp.h"
 #include "geometry/small_cholesky.h"
-#include "window/rotation_fit.h"
-#include "window/tuning.h"
 
 namespace pf {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/arena.h"
+#include "bundle/adjust.h"
 #include "geometry/camera.h"
-#include "window/adjust.h"
 
 /// The first depths, when nothing is known beforehand: a bundle adjustment over the first frames, from several first
 /// guesses (lib/docs/starting.md).

@@ -1,9 +1,9 @@
-#include "window/start_still.h"
+#include "bundle/start_still.h"
 
 #include <algorithm>
 
+#include "bundle/tuning.h"
 #include "geometry/so3.h"
-#include "window/tuning.h"
 
 namespace pf {
 

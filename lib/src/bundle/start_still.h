@@ -1,7 +1,7 @@
 #pragma once
 
+#include "bundle/start_bundle.h"
 #include "geometry/camera.h"
-#include "window/start_bundle.h"
 
 namespace pf {
 

@@ -2,8 +2,8 @@
 
 #include "base/scalar.h"
 
-/// Tuned numbers of the window: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no
-/// sweep has measured has no figure here.
+/// Tuned numbers of the bundle adjuster and the first depths, each with its meaning and unit. tools/sweep-tuning halves and doubles them;
+/// what no sweep has measured has no figure here.
 
 namespace pf::tuning {
 
@@ -63,96 +63,5 @@ inline constexpr int kColumns = 4;               ///< of cells that the picture 
 inline constexpr int kRows = 3;                  ///< likewise
 inline constexpr int kMinCells = 4;  ///< that hold features which have not moved; of two rows, or it may be the horizon
 }  // namespace start_still
-
-/// Tables of the window.
-namespace window_map {
-inline constexpr int kKeyframes = 30;  ///< that are kept; the adjuster takes 32 poses, and one is the target's host
-}  // namespace window_map
-
-/// Depths of the window's points.
-namespace window_depth {
-inline constexpr Scalar kMinSin2 = Scalar(1e-8);  ///< of the angle between two rays that are not parallel
-inline constexpr int kRounds = 3;                 ///< of Gauss-Newton
-}  // namespace window_depth
-
-/// Prediction of the window's body.
-namespace window_motion {
-inline constexpr Scalar kGrowth = Scalar(2e-6);  ///< of a variance in float, by prediction
-}  // namespace window_motion
-
-/// Pose of a frame of the window.
-namespace window_pose {
-inline constexpr int kSeed = 1;                       ///< of the generator that draws triples
-inline constexpr int kTrials = 100;                   ///< triples, at most
-inline constexpr int kRefinementRounds = 6;           ///< of the consensus
-inline constexpr Scalar kBoundSigmas = Scalar(3);     ///< of a match that make the bound of an inlier
-inline constexpr Scalar kHuber = Scalar(2);           ///< residuals beyond count linearly [standard deviations]
-inline constexpr int kRounds = 5;                     ///< of Gauss-Newton with each match's own noise
-inline constexpr Scalar kSmallStep2 = Scalar(1e-12);  ///< [rad^2, m^2] squared step that ends the fit
-}  // namespace window_pose
-
-/// A frame of the window.
-namespace window_tracking {
-inline constexpr Scalar kMapSigma = Scalar(1);           ///< [px] of a point of the map beside its depth, in a search
-inline constexpr Scalar kBoundWidth = Scalar(0.004);     ///< of a match that supports a pose, in image widths
-inline constexpr Scalar kBoundSigmas = Scalar(4);        ///< likewise, in standard deviations of a match
-inline constexpr int kScouts = 30;                       ///< candidates that are measured first in wide ellipses
-inline constexpr Scalar kWideEllipse = Scalar(12);       ///< [px] largest semi-axis of those
-inline constexpr Scalar kTemplateEllipse = Scalar(4.5);  ///< [px] largest semi-axis in which templates are tried
-inline constexpr int kRowPasses = 2;                     ///< of consensus with velocities that its pose tells
-inline constexpr int kYoung = 16;                        ///< points with a depth, below which the others help
-inline constexpr Scalar kOpenSpread = Scalar(2);         ///< of an inverse depth not known yet, in the median one
-inline constexpr Scalar kWeakPrior = Scalar(1);          ///< weight of the prediction where matches leave a pose open
-inline constexpr Scalar kMaxParallel = Scalar(0.0087);  ///< [rad] between rays that need no depth to fit: half a degree
-}  // namespace window_tracking
-
-/// Keyframes and triangulation.
-namespace window_slam {
-inline constexpr Scalar kMinParallax = Scalar(0.0349);      ///< [rad] 2 degrees, Masoud 2015
-inline constexpr Scalar kKeyframeShift = Scalar(0.06);      ///< since the last keyframe, in median depths
-inline constexpr Scalar kKeyframeTurn = Scalar(0.15);       ///< likewise [rad]
-inline constexpr int kMaxSecondNs = 1000000;                ///< [ns] of a second pose from its frame, as files round
-inline constexpr Scalar kMinSecondShift = Scalar(0.015);    ///< of a second pose from the first, in median depths
-inline constexpr Scalar kFewPoints = Scalar(0.6);           ///< of map.features_in_view
-inline constexpr Scalar kMinKeyframeShift = Scalar(0.015);  ///< of a keyframe that comes for few points
-inline constexpr Scalar kMinKeyframeTurn = Scalar(0.04);    ///< likewise [rad]
-}  // namespace window_slam
-
-/// The adjustment of keyframes.
-namespace window_adjustment {
-inline constexpr int kMinPoints = 8;          ///< that an adjustment needs
-inline constexpr int kMinShared = 8;          ///< points that a fixed keyframe shares with the free ones
-inline constexpr int kRounds = 10;            ///< of Levenberg-Marquardt
-inline constexpr int kFirstRounds = 30;       ///< likewise, while the window holds all keyframes
-inline constexpr int kMinPlanePoints = 4;     ///< of a plane that is adjusted
-inline constexpr int kMinScaleKeyframes = 2;  ///< held fixed, so that distances from planes do not shrink the map
-inline constexpr int kMinConnected = 3;   ///< keyframes that are adjusted without those that they share no points with
-inline constexpr int kHeldKeyframes = 3;  ///< the oldest, where all others are adjusted
-inline constexpr int kHeldAway = 6;       ///< likewise, where the first keyframe of the map is not among them
-inline constexpr Scalar kHeldDistance = Scalar(1e-3);   ///< of a distance that holds the scale: its sigma
-inline constexpr int kMinTargetPoints = 4;              ///< of the target, that hold a keyframe
-inline constexpr Scalar kHuber = Scalar(2);             ///< residuals beyond count linearly [standard deviations]
-inline constexpr Scalar kMinSigma = Scalar(0.25);       ///< [px] of a pixel, at least
-inline constexpr Scalar kOutlierSigmas = Scalar(5);     ///< of a pixel that is forgotten afterwards
-inline constexpr Scalar kPriorSigma = Scalar(10);       ///< of the prior on inverse depths, in their mean
-inline constexpr Scalar kBehindWeight = Scalar(1e4);    ///< of the prior in addition, where a point is behind its host
-inline constexpr Scalar kNoPixelPenalty = Scalar(100);  ///< of a seen point that does not project [chi-square]
-inline constexpr Scalar kTargetSigma = Scalar(1e-4);    ///< of the distance of a target's point, in distances, at least
-}  // namespace window_adjustment
-
-/// Planes of the window.
-namespace window_planes {
-inline constexpr int kMaxWeak = 6;  ///< keyframes in a row, before a plane without enough points is dissolved
-}  // namespace window_planes
-
-/// What a start of the window assumes.
-namespace window_start {
-inline constexpr Scalar kParallaxes = Scalar(4);        ///< of a match from the rotation that explains the picture best
-inline constexpr Scalar kRotationSigma = Scalar(0.01);  ///< [rad] of that rotation
-inline constexpr Scalar kPositionSigma = Scalar(0.1);   ///< [depths] while nothing is known of the position
-inline constexpr Scalar kSpeedSigma = Scalar(0.2);      ///< [depths/s] of the speed that a record tells
-inline constexpr int kPatience = 8;     ///< frames without a better solution that end a record at the next keyframe
-inline constexpr int kSpeedFrames = 3;  ///< that tell it
-}  // namespace window_start
 
 }  // namespace pf::tuning

@@ -1,4 +1,4 @@
-#include "filter/model/gauge.h"
+#include "model/gauge.h"
 
 namespace pf {
 

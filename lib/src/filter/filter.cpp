@@ -1,8 +1,9 @@
 #include "filter/filter.h"
 
-#include "filter/camera_at.h"
-#include "filter/model/kinds.h"
-#include "filter/observe/inverse_depth.h"
+#include "model/camera_at.h"
+#include "model/kinds.h"
+#include "model/tuning.h"
+#include "observe/inverse_depth.h"
 
 namespace pf {
 

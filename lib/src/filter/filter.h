@@ -10,9 +10,9 @@
 #include "filter/gauge_prior.h"
 #include "filter/inertial_motion.h"
 #include "filter/motion.h"
-#include "filter/state.h"
 #include "filter/transport.h"
 #include "geometry/camera.h"
+#include "model/state.h"
 
 /// The extended Kalman filter: holds the state and the covariance, and alone changes them together. Gee 2007, section 3.1.
 

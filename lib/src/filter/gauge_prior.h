@@ -1,7 +1,7 @@
 #pragma once
 
 #include "filter/block_filter.h"
-#include "filter/state.h"
+#include "model/state.h"
 
 namespace pf {
 

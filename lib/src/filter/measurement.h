@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/rows.h"
+#include "model/rows.h"
 
 /// What the filter is told: a few rows with what was measured, what was predicted, and the noise of both.
 

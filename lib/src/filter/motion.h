@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/state.h"
+#include "model/state.h"
 
 namespace pf {
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 
 #include "filter/filter.h"
-#include "filter/model/reference_camera.h"
-#include "filter/observe/ray_point.h"
 #include "filter/row_follow.h"
+#include "model/reference_camera.h"
+#include "observe/ray_point.h"
 
 /// Patches on planes: corners that a reference camera saw, as the camera sees them now (lib/docs/homography.md).
 

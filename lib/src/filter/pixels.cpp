@@ -1,9 +1,9 @@
 #include "filter/filter.h"
-#include "filter/model/kinds.h"
-#include "filter/observe/inverse_depth.h"
-#include "filter/observe/point.h"
 #include "filter/row_follow.h"
-#include "filter/tuning.h"
+#include "model/kinds.h"
+#include "model/tuning.h"
+#include "observe/inverse_depth.h"
+#include "observe/point.h"
 
 /// Pixels: what is expected of them, each at the pose of its own row (lib/docs/rolling_shutter.md).
 

@@ -1,8 +1,8 @@
 #include "filter/plane_from_camera.h"
 
-#include "filter/model/gauge.h"
 #include "geometry/plane.h"
 #include "geometry/so3.h"
+#include "model/gauge.h"
 
 namespace pf {
 

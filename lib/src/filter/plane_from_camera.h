@@ -1,7 +1,7 @@
 #pragma once
 
-#include "filter/rows.h"
-#include "filter/state.h"
+#include "model/rows.h"
+#include "model/state.h"
 
 namespace pf {
 

@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "filter/camera_at.h"
 #include "filter/filter.h"
 #include "filter/tuning.h"
 #include "geometry/small_cholesky.h"
+#include "model/camera_at.h"
 
 /// A plane, or a point of one, is somewhere else than it was taken for. What pixels have told of it is its ray.
 

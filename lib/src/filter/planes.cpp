@@ -1,8 +1,8 @@
 #include <cstring>
 
 #include "filter/filter.h"
-#include "filter/model/kinds.h"
 #include "filter/plane_from_camera.h"
+#include "model/kinds.h"
 
 /// Planes in the state: begun, points folded into them and out of them, moved to another frame.
 

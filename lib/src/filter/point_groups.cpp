@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "filter/filter.h"
-#include "filter/model/kinds.h"
 #include "filter/tuning.h"
+#include "model/kinds.h"
 
 /// Fixed points. What is known well of a point on a plane is not where it is, for that carries the whole map's drift, but how it lies
 /// among the other points of its plane. So these are fixed in a point group, which moves as one and stays in the state.

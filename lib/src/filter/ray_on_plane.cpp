@@ -1,6 +1,6 @@
 #include "filter/ray_on_plane.h"
 
-#include "filter/model/kinds.h"
+#include "model/kinds.h"
 
 namespace pf {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "filter/camera_at.h"
-#include "filter/model/kinds.h"
 #include "geometry/ray_plane.h"
+#include "model/camera_at.h"
+#include "model/kinds.h"
 
 /// Where the ray of a pixel meets a plane of the state, with what it depends on: for points that begin there.
 

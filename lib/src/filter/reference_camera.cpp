@@ -1,8 +1,8 @@
-#include "filter/model/reference_camera.h"
+#include "model/reference_camera.h"
 
-#include "filter/camera_at.h"
 #include "filter/filter.h"
 #include "geometry/relative_pose.h"
+#include "model/camera_at.h"
 
 /// Reference cameras: copies of the camera that stay in the state.
 

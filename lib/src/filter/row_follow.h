@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/camera_at.h"
+#include "model/camera_at.h"
 
 namespace pf {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/model/kinds.h"
 #include "filter/tuning.h"
+#include "model/kinds.h"
 
 /// The row that picks the world's log scale out of an error, and what is known against it.
 

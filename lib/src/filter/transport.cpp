@@ -3,6 +3,7 @@
 #include <climits>
 #include <cstring>
 
+#include "filter/state_rows.h"
 #include "geometry/so3.h"
 
 namespace pf {

@@ -2,7 +2,7 @@
 
 #include "filter/block_filter.h"
 #include "filter/gauge_prior.h"
-#include "filter/state.h"
+#include "model/state.h"
 
 namespace pf {
 

@@ -2,8 +2,8 @@
 
 #include "base/scalar.h"
 
-/// Tuned numbers of the filter: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no
-/// sweep has measured has no figure here.
+/// Tuned numbers of the filter, each with its meaning and unit. tools/sweep-tuning halves and doubles them;
+/// what no sweep has measured has no figure here.
 
 namespace pf::tuning {
 
@@ -11,13 +11,6 @@ namespace pf::tuning {
 namespace pixel {
 inline constexpr Scalar kMinRowRate = Scalar(0.1);  ///< least factor by which motion along the readout slows the rows
 }  // namespace pixel
-
-/// Inverse depths.
-namespace inverse_depth {
-inline constexpr Scalar kMinRho = Scalar(1e-6);       ///< [1/m] below which a point has no place
-inline constexpr Scalar kMinShownRho = Scalar(1e-3);  ///< [1/m] what is farther, or not positive, is shown here
-inline constexpr Scalar kNever = Scalar(1e6);         ///< linearity index of a depth that is not well above zero
-}  // namespace inverse_depth
 
 /// Point groups.
 namespace point_group {
@@ -62,25 +55,6 @@ inline constexpr int kMinPoses = 8;             ///< that are solved
 inline constexpr int kSteps = 6;                ///< of the refinement
 inline constexpr Scalar kMaxStep = Scalar(20);  ///< of the log scale in one of them
 }  // namespace moving_start
-
-/// A start in metres from a moving camera.
-namespace moving_verdict {
-inline constexpr Scalar kInterval = Scalar(0.03);        ///< [s] between poses at least
-inline constexpr Scalar kMinSpan = Scalar(1.5);          ///< [s] of a solution's poses
-inline constexpr int kMinPoses = 16;                     ///< of a solution
-inline constexpr int kLocated = 32;                      ///< poses that are found anew in a frame
-inline constexpr Scalar kMaxDepthSigma = Scalar(0.3);    ///< of a feature's inverse depth, relative
-inline constexpr int kMinPixels = 8;                     ///< with a depth, in each of these frames
-inline constexpr Scalar kHuber = Scalar(3);              ///< sigmas of a pixel beyond which it counts linearly
-inline constexpr int kRounds = 5;                        ///< of a pose's refinement
-inline constexpr Scalar kDrift = Scalar(0.0001);         ///< of poses' positions, of the median depth [/sqrt(s)]
-inline constexpr Scalar kTiltDensity = Scalar(0.00005);  ///< [rad/sqrt(s)] of the drift of the poses' rotations
-inline constexpr Scalar kRotation = Scalar(0.0001);  ///< [rad/sqrt(Hz)] of their noise: 0.1 mrad that last for a second
-inline constexpr Scalar kMaxSigmaScale = Scalar(0.025);    ///< of the log scale
-inline constexpr Scalar kMaxSigmaGravity = Scalar(0.015);  ///< [rad] of its direction
-inline constexpr Scalar kMaxMisfit = Scalar(3);            ///< chi-square over its degrees of freedom
-inline constexpr Scalar kMaxApart = Scalar(9);             ///< of two halves, in the sum of their variances
-}  // namespace moving_verdict
 
 /// Inertial samples.
 namespace imu {

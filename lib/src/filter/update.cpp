@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "filter/filter.h"
+#include "filter/state_rows.h"
 #include "filter/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"

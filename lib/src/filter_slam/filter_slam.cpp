@@ -1,17 +1,17 @@
-#include "slam/frame_loop.h"
+#include "filter_slam/filter_slam.h"
 
 #include <algorithm>
 #include <new>
 
 #include "base/elapsed.h"
-#include "slam/feature_upkeep.h"
-#include "slam/frame_entry.h"
-#include "slam/tuning.h"
-#include "slam/usable_pose.h"
+#include "filter_slam/pose/usable_pose.h"
+#include "frame/feature_upkeep.h"
+#include "frame/frame_entry.h"
+#include "frame/tuning.h"
 
 namespace pf {
 
-bool FrameLoop::layout(Arena& arena) {
+bool FilterSlam::layout(Arena& arena) {
   const Settings& settings = settings_;
   filter_.layout(arena,
                  {settings.max_state_dim, settings.max_features, settings.max_observations, settings.max_planes});
@@ -30,7 +30,7 @@ bool FrameLoop::layout(Arena& arena) {
 }
 
 /// Patches take nothing where there are none.
-bool FrameLoop::layout_patches(Arena& arena) {
+bool FilterSlam::layout_patches(Arena& arena) {
   if (settings_.max_patches == 0) return arena.ok();
   PatchKeeper* place = arena.take<PatchKeeper>(1);
   if (place == nullptr) return PatchKeeper(settings_, filter_, map_, frame_, features_, tracking_).layout(arena);
@@ -38,7 +38,7 @@ bool FrameLoop::layout_patches(Arena& arena) {
   return patches_->layout(arena);
 }
 
-void FrameLoop::init() {
+void FilterSlam::init() {
   frame_.init();
   tracking_.init();
   frozen_.init();
@@ -55,7 +55,7 @@ void FrameLoop::init() {
   if (patches_ != nullptr) patches_->init();
 }
 
-Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
+Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   const FrameEntry entry = enter_frame(settings_, image, t_ns, &frozen_, &frame_, &tracking_);
   if (entry == FrameEntry::kLate || entry == FrameEntry::kRepeated) return entry_status(entry, tracking_);
   begin_frame(t_ns);
@@ -107,7 +107,7 @@ Status FrameLoop::push_frame(const ImageView& image, std::int64_t t_ns) {
   return end_frame();
 }
 
-Status FrameLoop::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
+Status FilterSlam::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
   if (start_.takes_images_only()) return Status::kState;
   if (!is_next_frame(frame_, t_ns)) return Status::kTime;
   begin_frame(t_ns);
@@ -123,14 +123,14 @@ Status FrameLoop::push_observations(const PixelObservation* observations, int co
   return end_frame();
 }
 
-Status FrameLoop::mark_pose() {
+Status FilterSlam::mark_pose() {
   if (!tracking_.has_pose()) return Status::kState;
   // A frame that does not support its pose changes nothing in the map.
   return mark_.set(frame_.report.t_ns, tracking_.state() == SlamState::kTracking, data_.filter_ns);
 }
 
 /// The map becomes as large as the first wall that is seen says it is: places and lengths of before no longer hold.
-void FrameLoop::look_for_walls() {
+void FilterSlam::look_for_walls() {
   const Scalar scale = start_.look_for_walls();
   if (!(scale > Scalar(0))) return;
   planes_.meet_walls();
@@ -138,7 +138,7 @@ void FrameLoop::look_for_walls() {
   relocaliser_.init();
 }
 
-Status FrameLoop::add_wall(const PlanePrior& prior, std::uint32_t* id) {
+Status FilterSlam::add_wall(const PlanePrior& prior, std::uint32_t* id) {
   if (!settings_.planes || !start_.has_place()) return Status::kState;
   const int reserved = tracking_.has_pose() ? 0 : start_.target_rows();
   const Status status =
@@ -148,7 +148,7 @@ Status FrameLoop::add_wall(const PlanePrior& prior, std::uint32_t* id) {
 }
 
 /// Begins the report and predicts the body to the new time.
-void FrameLoop::begin_frame(std::int64_t t_ns) {
+void FilterSlam::begin_frame(std::int64_t t_ns) {
   const std::int64_t before_ns = data_.filter_ns;
   data_.filter_ns = t_ns;
   data_.since_last_ns = frame_.report.frames > 0 ? std::min(elapsed_ns(before_ns, t_ns), BodyMotion::kMaxGapNs) : 0;
@@ -171,7 +171,7 @@ void FrameLoop::begin_frame(std::int64_t t_ns) {
 
 /// A match along a ray whose depth is open passes nearly everywhere, so not every right frame is beyond chance while fewer features have a
 /// depth of their own than a tracked frame needs. A map as young as that is tracked from frame to frame, and not found again after a gap.
-ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
+ConsensusRule FilterSlam::consensus_rule(std::int64_t t_ns) const {
   if (start_.progress().pending()) return ConsensusRule::kStart;
   const std::int64_t proposed_ns = update_.proposals().last().frames > 0 ? data_.since_last_ns : 0;
   const double gap_s = seconds(elapsed_ns(tracking_.last_tracked_ns(), t_ns) - proposed_ns);
@@ -186,7 +186,7 @@ ConsensusRule FrameLoop::consensus_rule(std::int64_t t_ns) const {
 }
 
 /// As for features: a frame that does not support its pose begins patches only where there is nothing that could be found again.
-bool FrameLoop::may_begin_patches(bool first) const {
+bool FilterSlam::may_begin_patches(bool first) const {
   if (start_.progress().recording) return false;
   const bool empty = first || (map_.features.count() == 0 && patches_->patches().count() == 0);
   return tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0);
@@ -194,7 +194,7 @@ bool FrameLoop::may_begin_patches(bool first) const {
 
 /// measure(again): where a rest or samples may have led the prediction astray, once more from one without them.
 template <typename F>
-void FrameLoop::measure_watched(F&& measure) {
+void FilterSlam::measure_watched(F&& measure) {
   bool again = false;
   if (holds()) {
     watch_.begin_measuring(data_.follows);
@@ -218,13 +218,13 @@ void FrameLoop::measure_watched(F&& measure) {
   watch_.settle(tracking_.is_tracked(frame_.report));
 }
 
-void FrameLoop::learn_noise() {
+void FilterSlam::learn_noise() {
   images_.learn_noise();
   data_.warnings.check(settings_, noise_, filter_.lens());
 }
 
 /// If the frame does not support its pose, nothing is decided about the map.
-void FrameLoop::maintain_map(bool supported) {
+void FilterSlam::maintain_map(bool supported) {
   mark_.drop_unsound();
   if (!supported) {
     features_.drop_failing(false);
@@ -237,7 +237,7 @@ void FrameLoop::maintain_map(bool supported) {
 }
 
 /// Returns the status of the frame.
-Status FrameLoop::end_frame() {
+Status FilterSlam::end_frame() {
   watch_unit();
   if (tracking_.has_pose() && (tracking_.updates_fail() || !repair_covariance() || !filter_.body_is_sound()))
     start_over();
@@ -255,14 +255,14 @@ Status FrameLoop::end_frame() {
 }
 
 /// False where P is no covariance and nothing helps.
-bool FrameLoop::repair_covariance() {
+bool FilterSlam::repair_covariance() {
   const BlockFilter::Repair repair = filter_.repair(frame_.report.frames);
   if (repair == BlockFilter::Repair::kDone) count_frame(&frame_.report.repairs);
   return repair != BlockFilter::Repair::kImpossible;
 }
 
 /// The estimate is not finite or P is no covariance: clears everything that came from it.
-void FrameLoop::start_over() {
+void FilterSlam::start_over() {
   clear_estimate();
   tracking_.start_over();
   settings_.hooks.say("the estimate is no longer finite: starting again without it");
@@ -270,7 +270,7 @@ void FrameLoop::start_over() {
 
 /// The map was not found again for too long, although the images were usable, or its scale is discredited: a new one begins with this
 /// frame.
-void FrameLoop::begin_new_map(const char* why) {
+void FilterSlam::begin_new_map(const char* why) {
   if (!data_.map_discredited) start_.keep_mounting();
   clear_estimate();
   tracking_.begin_map();
@@ -278,7 +278,7 @@ void FrameLoop::begin_new_map(const char* why) {
   settings_.hooks.say(why);
 }
 
-void FrameLoop::clear_estimate() {
+void FilterSlam::clear_estimate() {
   start_.start_over();
   map_.features.clear();
   motion_.init();

@@ -5,27 +5,27 @@
 #include "base/arena.h"
 #include "base/status.h"
 #include "filter/filter.h"
+#include "filter_slam/features/feature_keeper.h"
+#include "filter_slam/features/image_front_end.h"
+#include "filter_slam/features/observation_front_end.h"
+#include "filter_slam/inertial/moving_start.h"
+#include "filter_slam/inertial/rest_detector.h"
+#include "filter_slam/inertial/rest_hold.h"
+#include "filter_slam/inertial/unit_watch.h"
+#include "filter_slam/patches/patch_keeper.h"
+#include "filter_slam/planes/plane_keeper.h"
+#include "filter_slam/pose/body_motion.h"
+#include "filter_slam/pose/pixel_update.h"
+#include "filter_slam/pose_mark.h"
+#include "filter_slam/recovery/relocaliser.h"
+#include "filter_slam/start/filter_start.h"
+#include "frame/fit_warnings.h"
+#include "frame/frame.h"
+#include "frame/frozen_camera.h"
+#include "frame/noise_model.h"
+#include "frame/settings.h"
+#include "frame/tracking_state.h"
 #include "map/map.h"
-#include "slam/body_motion.h"
-#include "slam/feature_keeper.h"
-#include "slam/filter_start.h"
-#include "slam/fit_warnings.h"
-#include "slam/frame.h"
-#include "slam/frozen_camera.h"
-#include "slam/image_front_end.h"
-#include "slam/moving_start.h"
-#include "slam/noise_model.h"
-#include "slam/observation_front_end.h"
-#include "slam/patch_keeper.h"
-#include "slam/pixel_update.h"
-#include "slam/plane_keeper.h"
-#include "slam/pose_mark.h"
-#include "slam/relocaliser.h"
-#include "slam/rest_detector.h"
-#include "slam/rest_hold.h"
-#include "slam/settings.h"
-#include "slam/tracking_state.h"
-#include "slam/unit_watch.h"
 
 /// The order of work of one frame with the filter as back end (Gee 2007), and nothing else:
 ///
@@ -35,11 +35,11 @@
 
 namespace pf {
 
-class FrameLoop {
+class FilterSlam {
  public:
-  FrameLoop(const Settings& settings, Map& map, const ImuLog& imu) : settings_(settings), map_(map), imu_(imu) {}
-  FrameLoop(const FrameLoop&) = delete;
-  FrameLoop& operator=(const FrameLoop&) = delete;
+  FilterSlam(const Settings& settings, Map& map, const ImuLog& imu) : settings_(settings), map_(map), imu_(imu) {}
+  FilterSlam(const FilterSlam&) = delete;
+  FilterSlam& operator=(const FilterSlam&) = delete;
 
   bool layout(Arena& arena);
   void init();

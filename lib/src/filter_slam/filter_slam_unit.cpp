@@ -1,14 +1,14 @@
 #include <new>
 
 #include "base/elapsed.h"
-#include "slam/frame_loop.h"
+#include "filter_slam/filter_slam.h"
 
-/// FrameLoop: what a frame says of the inertial unit (lib/docs/inertial.md).
+/// FilterSlam: what a frame says of the inertial unit (lib/docs/inertial.md).
 
 namespace pf {
 
 /// True where this frame is the first one whose samples tell the scale.
-bool FrameLoop::look_for_rest() {
+bool FilterSlam::look_for_rest() {
   if (!settings_.inertial || !tracking_.has_pose() || !filter_.uses_samples()) return false;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kImu]);
   RestReading rest;
@@ -23,7 +23,7 @@ bool FrameLoop::look_for_rest() {
 }
 
 /// The same from a camera that moves, and a unit that was never doubted.
-bool FrameLoop::look_for_scale() {
+bool FilterSlam::look_for_scale() {
   MovingFrame told;
   told.keep = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && watch_.doubted_ns() == 0;
   told.judge = !start_.progress().recording;
@@ -37,19 +37,19 @@ bool FrameLoop::look_for_scale() {
   return true;
 }
 
-std::int64_t FrameLoop::motion_begin_ns(std::int64_t now_ns) const {
+std::int64_t FilterSlam::motion_begin_ns(std::int64_t now_ns) const {
   return unit_ != nullptr ? unit_->hold.motion_begin_ns(now_ns) : now_ns;
 }
 
 /// Predicts the body to this frame.
-void FrameLoop::advance(std::int64_t before_ns, bool coasting_or_lost, bool nothing_measured) {
+void FilterSlam::advance(std::int64_t before_ns, bool coasting_or_lost, bool nothing_measured) {
   const std::int64_t begin_ns = motion_begin_ns(before_ns);
   watch_.keep_prior(begin_ns);
   motion_.advance(begin_ns, frame_.report.t_ns, coasting_or_lost, nothing_measured);
   if (unit_ != nullptr) unit_->hold.note_motion();
 }
 
-void FrameLoop::layout_unit(Arena& arena) {
+void FilterSlam::layout_unit(Arena& arena) {
   if (!settings_.inertial) return;
   UnitParts* const place = arena.take<UnitParts>(1);
   if (place != nullptr)
@@ -57,21 +57,21 @@ void FrameLoop::layout_unit(Arena& arena) {
         UnitParts{{settings_, filter_, rest_, imu_, motion_}, {settings_, filter_, map_, frame_, imu_, motion_}};
 }
 
-void FrameLoop::init_unit() {
+void FilterSlam::init_unit() {
   if (unit_ == nullptr) return;
   unit_->hold.init();
   unit_->moving.init();
 }
 
 /// A map in metres that hangs on a unit in doubt is given up, for nothing tells how wrong it is.
-void FrameLoop::watch_unit() {
+void FilterSlam::watch_unit() {
   if (!settings_.inertial || !tracking_.has_pose()) return;
   if (!watch_.note(data_.follows && !holds(), tracking_.is_tracked(frame_.report), data_.since_last_ns)) return;
   data_.map_discredited = watch_.is_map_on_trial() && !start_.knows_scale() && !map_.planes.has_known();
   if (data_.map_discredited) watch_.begin_without();
 }
 
-Status FrameLoop::set_plane_vertical(std::uint32_t id, Scalar sigma) {
+Status FilterSlam::set_plane_vertical(std::uint32_t id, Scalar sigma) {
   if (!settings_.inertial || !tracking_.has_pose() || !filter_.is_metric()) return Status::kState;
   for (int i = 0; i < map_.planes.capacity(); ++i)
     if (map_.planes.used(i) && map_.planes[i].id == id) return planes_.set_vertical(i, sigma);

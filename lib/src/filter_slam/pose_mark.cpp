@@ -1,4 +1,4 @@
-#include "slam/pose_mark.h"
+#include "filter_slam/pose_mark.h"
 
 namespace pf {
 

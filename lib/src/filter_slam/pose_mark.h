@@ -2,8 +2,8 @@
 
 #include "base/status.h"
 #include "filter/filter.h"
+#include "filter_slam/features/feature_keeper.h"
 #include "map/map.h"
-#include "slam/feature_keeper.h"
 
 /// The pose that the caller marked: a reference camera of the filter that stays until the next mark or the end of the map.
 

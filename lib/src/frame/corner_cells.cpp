@@ -1,4 +1,4 @@
-#include "slam/corner_cells.h"
+#include "frame/corner_cells.h"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "slam/frame.h"
-#include "slam/tuning.h"
+#include "frame/frame.h"
+#include "frame/tuning.h"
 #include "track/tracker.h"
 
 /// Where new features begin: at corners, in the cells of the image that hold the fewest. Knows no back end.

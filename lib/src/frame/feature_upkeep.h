@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "frame/frame.h"
+#include "frame/tuning.h"
 #include "map/map.h"
-#include "slam/frame.h"
-#include "slam/tuning.h"
 
 /// What both back ends count of features, and what follows from it.
 

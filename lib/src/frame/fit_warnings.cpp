@@ -1,7 +1,7 @@
-#include "slam/fit_warnings.h"
+#include "frame/fit_warnings.h"
 
+#include "frame/tuning.h"
 #include "geometry/lens_deviation.h"
-#include "slam/tuning.h"
 
 namespace pf {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "slam/noise_model.h"
-#include "slam/settings.h"
+#include "frame/noise_model.h"
+#include "frame/settings.h"
 
 namespace pf {
 

@@ -1,7 +1,7 @@
-#include "slam/followed_view.h"
+#include "frame/followed_view.h"
 
-#include "slam/ellipse.h"
-#include "slam/tuning.h"
+#include "frame/ellipse.h"
+#include "frame/tuning.h"
 #include "track/image_rotation.h"
 
 namespace pf {

@@ -5,7 +5,7 @@
 #include "base/arena.h"
 #include "base/eigen.h"
 #include "base/elapsed.h"
-#include "filter/state.h"
+#include "model/state.h"
 
 /// Results of the current frame: its report and its matches, as the caller reads them.
 

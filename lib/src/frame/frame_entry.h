@@ -1,9 +1,9 @@
 #pragma once
 
-#include "slam/frame.h"
-#include "slam/frozen_camera.h"
-#include "slam/settings.h"
-#include "slam/tracking_state.h"
+#include "frame/frame.h"
+#include "frame/frozen_camera.h"
+#include "frame/settings.h"
+#include "frame/tracking_state.h"
 
 /// What both back ends do with an image before its frame begins, and what an image without use ends with.
 

@@ -1,4 +1,4 @@
-#include "slam/image_search.h"
+#include "frame/image_search.h"
 
 #include <new>
 

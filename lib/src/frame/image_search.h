@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/arena.h"
+#include "frame/settings.h"
 #include "map/map.h"
-#include "slam/settings.h"
 #include "track/tracker.h"
 
 /// Comparing features with an image, by the tracker or by templates with masks. Knows no back end.

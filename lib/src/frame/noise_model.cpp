@@ -1,7 +1,9 @@
-#include "slam/noise_model.h"
+#include "frame/noise_model.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "frame/tuning.h"
 
 namespace pf {
 namespace {

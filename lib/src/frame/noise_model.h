@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/eigen.h"
+#include "frame/tuning.h"
 #include "map/feature_table.h"
-#include "slam/tuning.h"
 
 /// All pixel noise of matches in images: how wrong a match is, and for how many frames it stays wrong.
 

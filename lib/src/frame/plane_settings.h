@@ -1,7 +1,7 @@
 #pragma once
 
+#include "frame/settings.h"
 #include "map/plane_search.h"
-#include "slam/settings.h"
 
 namespace pf {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "filter/motion.h"
-#include "slam/tuning.h"
+#include "frame/tuning.h"
 
 /// A hand does not keep its speed for long, and half a radian of rotation uncertainty already means searching everywhere. Without these
 /// limits, one second without an image would predict the camera out of the room. A variance of three axes is that of the least known one:

@@ -1,4 +1,4 @@
-#include "slam/tracking_state.h"
+#include "frame/tracking_state.h"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 
 #include "base/hooks.h"
 #include "base/status.h"
-#include "slam/frame.h"
-#include "slam/settings.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
 
 /// State of the tracking (starting, tracking, coasting, lost), and the status that a frame returns.
 

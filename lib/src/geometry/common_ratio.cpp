@@ -1,4 +1,4 @@
-#include "slam/common_ratio.h"
+#include "geometry/common_ratio.h"
 
 #include <algorithm>
 

@@ -1,22 +1,23 @@
-#include "slam/window_slam.h"
+#include "keyframe_slam/keyframe_slam.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "slam/feature_upkeep.h"
-#include "slam/frame_entry.h"
-#include "slam/tuning.h"
-#include "slam/window_corners.h"
-#include "slam/window_depth.h"
-#include "slam/window_scale.h"
-#include "window/tuning.h"
+#include "frame/feature_upkeep.h"
+#include "frame/frame_entry.h"
+#include "frame/tuning.h"
+#include "keyframe_slam/adjustment/scale.h"
+#include "keyframe_slam/map/depth.h"
+#include "keyframe_slam/start/tuning.h"
+#include "keyframe_slam/tracking/corners.h"
+#include "keyframe_slam/tuning.h"
 
 namespace pf {
 
-using namespace tuning::window_slam;
+using namespace tuning::keyframe_slam;
 
-bool WindowSlam::layout(Arena& arena) {
+bool KeyframeSlam::layout(Arena& arena) {
   frame_.layout(arena, 2 * settings_.max_features);
   map_.layout(arena);
   measuring_.layout(arena);
@@ -26,7 +27,7 @@ bool WindowSlam::layout(Arena& arena) {
   return start_.layout(arena);
 }
 
-void WindowSlam::init() {
+void KeyframeSlam::init() {
   frame_.init();
   noise_.init(settings_.sigma_px);
   tracking_.init();
@@ -41,7 +42,7 @@ void WindowSlam::init() {
   data_ = Data();
 }
 
-Status WindowSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
+Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   const FrameEntry entry = enter_frame(settings_, image, t_ns, &frozen_, &frame_, &tracking_);
   if (entry == FrameEntry::kLate || entry == FrameEntry::kRepeated) return entry_status(entry, tracking_);
   begin_frame(t_ns);
@@ -61,7 +62,7 @@ Status WindowSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   return end_frame();
 }
 
-Status WindowSlam::mark_pose() {
+Status KeyframeSlam::mark_pose() {
   if (!tracking_.has_pose()) return Status::kState;
   const Body& body = motion_.body();
   data_.mark = {true, frame_.report.t_ns, body.q_WC, body.p_W, motion_.pose_covariance()};
@@ -69,7 +70,7 @@ Status WindowSlam::mark_pose() {
 }
 
 /// Begins the report and predicts the body to the new time.
-void WindowSlam::begin_frame(std::int64_t t_ns) {
+void KeyframeSlam::begin_frame(std::int64_t t_ns) {
   const std::int64_t before_ns = data_.body_ns;
   data_.body_ns = t_ns;
   data_.since_last_ns = frame_.report.frames > 0 ? elapsed_ns(before_ns, t_ns) : 0;
@@ -82,7 +83,7 @@ void WindowSlam::begin_frame(std::int64_t t_ns) {
 }
 
 /// Finds the pose of the frame, in the way that the state asks for.
-void WindowSlam::measure() {
+void KeyframeSlam::measure() {
   data_.young = measuring_.is_young();
   if (!tracking_.has_pose()) {
     start_.start_in_image();
@@ -102,7 +103,7 @@ void WindowSlam::measure() {
 }
 
 /// A frame that does not support its pose changes nothing in the map.
-void WindowSlam::maintain_map() {
+void KeyframeSlam::maintain_map() {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
   const bool pending = start_.progress().pending();
   const bool tracked = tracking_.is_tracked(frame_.report);
@@ -130,7 +131,7 @@ void WindowSlam::maintain_map() {
 }
 
 /// Gives points a depth whose rays from host and frame differ by enough; strict: drops those that no depth explains.
-void WindowSlam::triangulate(bool strict) {
+void KeyframeSlam::triangulate(bool strict) {
   const CameraView now = {motion_.body().q_WC, motion_.body().p_W};
   const Scalar cos_parallax = std::cos(kMinParallax);
   for (int t = 0; t < frame_.match_count(); ++t) {
@@ -143,7 +144,7 @@ void WindowSlam::triangulate(bool strict) {
       if (strict) map_.drop(match.feature);
       continue;
     }
-    WindowPoint& point = map_.point(match.feature);
+    KeyframePoint& point = map_.point(match.feature);
     if (map_.camera().readout != Scalar(0)) correct_rows(match, now, &fit);
     point.rho = fit.rho;
     point.variance = noise_.sigma_info() * noise_.sigma_info() / fit.information;
@@ -152,16 +153,16 @@ void WindowSlam::triangulate(bool strict) {
 }
 
 /// Rows of a point whose depth has become known, and so its depth once more.
-void WindowSlam::correct_rows(const Match& match, const CameraView& now, DepthFit* fit) {
+void KeyframeSlam::correct_rows(const Match& match, const CameraView& now, DepthFit* fit) {
   map_.correct_rows(match.feature, fit->rho);
-  WindowPoint& point = map_.point(match.feature);
+  KeyframePoint& point = map_.point(match.feature);
   if (!data_.young) point.pixel = measuring_.at_frame_time(match, 1 / fit->rho);
   DepthFit again;
   if (fit_depth(map_.camera(), map_, match.feature, now, point.pixel, &again)) *fit = again;
 }
 
 /// The camera has moved far enough since the last keyframe, in depths of what it sees, or sees too little of what is known.
-bool WindowSlam::wants_keyframe() const {
+bool KeyframeSlam::wants_keyframe() const {
   const Keyframe& last = map_.keyframes[map_.keyframes.newest()];
   if (last.t_ns == frame_.report.t_ns) return false;
   const Body& body = motion_.body();
@@ -176,7 +177,7 @@ bool WindowSlam::wants_keyframe() const {
           (moved > kMinKeyframeShift || turned > kMinKeyframeTurn));
 }
 
-void WindowSlam::add_keyframe() {
+void KeyframeSlam::add_keyframe() {
   start_.note_keyframe();
   map_.add_keyframe(frame_.report.t_ns, motion_.body().q_WC, motion_.body().p_W);
   map_.keyframes[map_.keyframes.newest()].matches_by_motion = !data_.young;
@@ -184,7 +185,7 @@ void WindowSlam::add_keyframe() {
   adjust();
 }
 
-void WindowSlam::adjust() {
+void KeyframeSlam::adjust() {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kAdjust]);
   // A record is solved by one lens, which changes no more until it ends.
   const Keyframe& newest = map_.keyframes[map_.keyframes.newest()];
@@ -196,7 +197,7 @@ void WindowSlam::adjust() {
   if (settings_.planes && !start_.progress().recording) planes_.maintain(newest.p_W);
 }
 
-Status WindowSlam::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
+Status KeyframeSlam::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
   if (!is_next_frame(frame_, t_ns)) return Status::kTime;
   if (!((p_W - start_.first_place_W()).norm() > sigma)) return Status::kRange;
   return start_.use_second_pose(t_ns, p_W);
@@ -204,7 +205,7 @@ Status WindowSlam::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar si
 
 /// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known, its
 /// place is the solved record's.
-void WindowSlam::scale_by_second_pose() {
+void KeyframeSlam::scale_by_second_pose() {
   const SecondPose second = start_.second_pose();
   if (start_.progress().pending()) return;
   const Vec3 first_W = start_.first_place_W();
@@ -213,7 +214,8 @@ void WindowSlam::scale_by_second_pose() {
   const Scalar moved = (at_W - first_W).norm();
   const Scalar scale = (second.p_W - first_W).norm() / moved;
   start_.end_second_pose();
-  if (!(is_now || second.estimated) || !(moved > kMinSecondShift * data_.median_depth) || !std::isfinite(scale)) {
+  if (!(is_now || second.estimated) || !(moved > tuning::second_pose::kMinSecondShift * data_.median_depth) ||
+      !std::isfinite(scale)) {
     settings_.hooks.say("the second pose gives no scale: its frame was not tracked, or the camera had not moved");
     return;
   }
@@ -225,13 +227,13 @@ void WindowSlam::scale_by_second_pose() {
   settings_.hooks.say("the scale is that of the second pose");
 }
 
-void WindowSlam::learn_noise() {
+void KeyframeSlam::learn_noise() {
   measuring_.learn_noise();
   data_.warnings.check(settings_, noise_, map_.camera());
 }
 
 /// Whether rotation and position are known well enough against the map (lib/docs/states.md).
-bool WindowSlam::is_pose_usable() {
+bool KeyframeSlam::is_pose_usable() {
   using namespace tuning::usable_pose;
   const Scalar depth = map_.median_depth(motion_.body().q_WC, motion_.body().p_W);
   if (!(depth > Scalar(0))) return false;
@@ -243,7 +245,7 @@ bool WindowSlam::is_pose_usable() {
 }
 
 /// Returns the status of the frame.
-Status WindowSlam::end_frame() {
+Status KeyframeSlam::end_frame() {
   if (tracking_.has_pose() && !motion_.is_sound()) {
     start_.start_over();
     motion_.init();
@@ -264,7 +266,7 @@ Status WindowSlam::end_frame() {
 }
 
 /// The map was not found again for too long, although the images were usable: a new one begins with this frame.
-void WindowSlam::begin_new_map(const char* why) {
+void KeyframeSlam::begin_new_map(const char* why) {
   start_.start_over();
   motion_.init();
   relocaliser_.init();

@@ -4,14 +4,14 @@
 
 #include "base/arena.h"
 #include "base/status.h"
-#include "slam/fit_warnings.h"
-#include "slam/frozen_camera.h"
-#include "slam/window_adjustment.h"
-#include "slam/window_depth.h"
-#include "slam/window_planes.h"
-#include "slam/window_relocaliser.h"
-#include "slam/window_start.h"
-#include "slam/window_tracking.h"
+#include "frame/fit_warnings.h"
+#include "frame/frozen_camera.h"
+#include "keyframe_slam/adjustment/adjustment.h"
+#include "keyframe_slam/map/depth.h"
+#include "keyframe_slam/planes/planes.h"
+#include "keyframe_slam/start/start.h"
+#include "keyframe_slam/tracking/relocaliser.h"
+#include "keyframe_slam/tracking/tracking.h"
 
 /// The order of work of one frame with the window as back end (Masoud and Hoff 2015, Figure 4), and nothing else:
 ///
@@ -21,11 +21,11 @@
 
 namespace pf {
 
-class WindowSlam {
+class KeyframeSlam {
  public:
-  WindowSlam(const Settings& settings, Map& map) : settings_(settings), tables_(map) {}
-  WindowSlam(const WindowSlam&) = delete;
-  WindowSlam& operator=(const WindowSlam&) = delete;
+  KeyframeSlam(const Settings& settings, Map& map) : settings_(settings), tables_(map) {}
+  KeyframeSlam(const KeyframeSlam&) = delete;
+  KeyframeSlam& operator=(const KeyframeSlam&) = delete;
 
   bool layout(Arena& arena);
   void init();
@@ -34,16 +34,16 @@ class WindowSlam {
   /// Marks the pose of the last frame. kState: there is none.
   Status mark_pose();
 
-  WindowStart& start() { return start_; }
+  KeyframeStart& start() { return start_; }
   /// Of the frame that comes at t_ns. kTime: it has been. kState: the scale is known. kRange: it is where the camera was first.
   Status use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma);
 
   const Frame& frame() const { return frame_; }
   const TrackingState& tracking() const { return tracking_; }
   const NoiseModel& noise() const { return noise_; }
-  const WindowMap& map() const { return map_; }
-  const WindowPlanes& planes() const { return planes_; }
-  const WindowMotion& motion() const { return motion_; }
+  const KeyframeMap& map() const { return map_; }
+  const KeyframePlanes& planes() const { return planes_; }
+  const KeyframeMotion& motion() const { return motion_; }
   /// Time of the body: that of the last frame, or of the one that it repeats.
   std::int64_t body_ns() const { return data_.body_ns; }
   /// Covariance of the map about the last frame, given the keyframes that the last adjustment held fixed.
@@ -68,7 +68,7 @@ class WindowSlam {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     Mark mark;
-    bool young = false;  ///< in this frame, WindowTracking::is_young
+    bool young = false;  ///< in this frame, KeyframeTracking::is_young
     FitWarnings warnings;
   };
 
@@ -92,13 +92,13 @@ class WindowSlam {
   NoiseModel noise_;
   TrackingState tracking_{settings_};
   FrozenCamera frozen_;
-  WindowMap map_{settings_, tables_, frame_};
-  WindowMotion motion_{settings_};
-  WindowPlanes planes_{settings_, map_};
-  WindowTracking measuring_{settings_, map_, planes_, frame_, motion_, noise_};
-  WindowAdjustment adjustment_{settings_, map_, planes_, noise_};
-  WindowRelocaliser relocaliser_{settings_, motion_, measuring_};
-  WindowStart start_{settings_, {map_, frame_, tracking_, motion_, measuring_, adjustment_}};
+  KeyframeMap map_{settings_, tables_, frame_};
+  KeyframeMotion motion_{settings_};
+  KeyframePlanes planes_{settings_, map_};
+  KeyframeTracking measuring_{settings_, map_, planes_, frame_, motion_, noise_};
+  KeyframeAdjustment adjustment_{settings_, map_, planes_, noise_};
+  KeyframeRelocaliser relocaliser_{settings_, motion_, measuring_};
+  KeyframeStart start_{settings_, {map_, frame_, tracking_, motion_, measuring_, adjustment_}};
   Data data_;
 };
 

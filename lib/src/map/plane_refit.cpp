@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "map/plane_chance.h"
+#include "base/false_alarms.h"
 #include "map/tuning.h"
 
 namespace pf {
@@ -159,7 +159,7 @@ bool PlaneRefit::passes() const {
 /// A small plane that nothing stands beside, such as a screen, does not show in the first: there are too many points elsewhere.
 bool PlaneRefit::chance_explains(const PlaneLayers& layers) const {
   const int near = layers.near - layers.on + member_count_;
-  if (log_false_planes(member_count_, near, Scalar(1) / kSurroundings, layers.around) < kLogFalsePlanes) return false;
+  if (log_false_alarms(member_count_, near, Scalar(1) / kSurroundings, layers.around) < kLogFalsePlanes) return false;
   const Vec3& o_W = fit_.frame.o_W;
   const Vec3 n_W = fit_.frame.R_WP.col(2);
   const Scalar bound = kLogFalseLocalPlanes - std::log(Scalar(2 * kBalls));
@@ -177,7 +177,7 @@ bool PlaneRefit::chance_explains(const PlaneLayers& layers) const {
       if (std::abs(n_W.dot(r)) <= settings_.distance / 2) ++close;
     }
     const auto log_false = [&](int inside, Scalar h) {
-      return log_false_planes(inside, beside + on, (3 * h - h * h * h) / 2, layers.around);
+      return log_false_alarms(inside, beside + on, (3 * h - h * h * h) / 2, layers.around);
     };
     const Scalar h = settings_.distance / rho;
     if (log_false(on, h) < bound || log_false(close, h / 2) < bound) return false;

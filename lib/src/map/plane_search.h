@@ -36,7 +36,7 @@ inline constexpr int kMaxPlaneMembers = 64;
 ///   count > min_points,  λ0 / count < normal_variance,  the points span an area and not a line
 ///   every point is where the plane through the *other* points says      |r| / (1 - leverage) < distance
 ///   the points hang together                                             steps of at most radius / 2
-///   the plane stands out of what is around it, and chance cannot explain it    plane_chance.h
+///   the plane stands out of what is around it, and chance cannot explain it    false_alarms.h
 ///
 /// search        number of this search: another one draws other sets. A set depends on it and on the names of points, not on how many
 ///               candidates there are, so that one point more or less changes few of them (base/draw_by_name.h)

@@ -2,8 +2,8 @@
 
 #include "base/scalar.h"
 
-/// Tuned numbers of the map: what each one means and its unit. tools/sweep-tuning halves and doubles them; what no
-/// sweep has measured has no figure here.
+/// Tuned numbers of the map, each with its meaning and unit. tools/sweep-tuning halves and doubles them;
+/// what no sweep has measured has no figure here.
 
 namespace pf::tuning::plane_search {
 

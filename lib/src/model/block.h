@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "base/eigen.h"
-#include "filter/rows.h"
 #include "geometry/plane.h"
+#include "model/rows.h"
 
 /// A block of the state: its kind, its values, and how it hangs on other blocks.
 

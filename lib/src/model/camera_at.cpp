@@ -1,4 +1,4 @@
-#include "filter/camera_at.h"
+#include "model/camera_at.h"
 
 #include <algorithm>
 

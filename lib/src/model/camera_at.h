@@ -1,7 +1,7 @@
 #pragma once
 
-#include "filter/state.h"
 #include "geometry/camera.h"
+#include "model/state.h"
 
 namespace pf {
 

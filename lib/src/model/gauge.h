@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "filter/model/block.h"
-#include "filter/model/body.h"
 #include "geometry/so3.h"
+#include "model/block.h"
+#include "model/body.h"
 
 namespace pf {
 

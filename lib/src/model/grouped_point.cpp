@@ -1,4 +1,4 @@
-#include "filter/model/grouped_point.h"
+#include "model/grouped_point.h"
 
 namespace pf::model {
 

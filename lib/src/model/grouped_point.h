@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/model/point_group.h"
+#include "model/point_group.h"
 
 namespace pf::model {
 

@@ -1,7 +1,7 @@
-#include "filter/model/inverse_depth.h"
+#include "model/inverse_depth.h"
 
-#include "filter/tuning.h"
 #include "geometry/so3.h"
+#include "model/tuning.h"
 
 namespace pf::model {
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "filter/model/kind.h"
-#include "filter/observe/inverse_depth.h"
+#include "model/kind.h"
 
 namespace pf::model {
 

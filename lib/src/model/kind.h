@@ -1,8 +1,8 @@
 #pragma once
 
-#include "filter/model/gauge.h"
-#include "filter/model/place.h"
-#include "filter/state.h"
+#include "model/gauge.h"
+#include "model/place.h"
+#include "model/state.h"
 
 namespace pf::model {
 

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "filter/model/anchor.h"
-#include "filter/model/grouped_point.h"
-#include "filter/model/inverse_depth.h"
-#include "filter/model/patch_corners.h"
-#include "filter/model/plane.h"
-#include "filter/model/plane_apart.h"
-#include "filter/model/plane_point.h"
-#include "filter/model/point.h"
-#include "filter/model/point_group.h"
-#include "filter/model/reference_camera.h"
+#include "model/anchor.h"
+#include "model/grouped_point.h"
+#include "model/inverse_depth.h"
+#include "model/patch_corners.h"
+#include "model/plane.h"
+#include "model/plane_apart.h"
+#include "model/plane_point.h"
+#include "model/point.h"
+#include "model/point_group.h"
+#include "model/reference_camera.h"
 
 namespace pf {
 

@@ -1,6 +1,6 @@
-#include "filter/model/place.h"
+#include "model/place.h"
 
-#include "filter/tuning.h"
+#include "model/tuning.h"
 
 namespace pf {
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "filter/rows.h"
-#include "filter/tuning.h"
+#include "model/rows.h"
 
 namespace pf {
 

@@ -1,4 +1,4 @@
-#include "filter/model/planar_rows.h"
+#include "model/planar_rows.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/model/gauge.h"
+#include "model/gauge.h"
 
 namespace pf::model {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "filter/model/kind.h"
-#include "filter/model/planar_rows.h"
+#include "model/kind.h"
+#include "model/planar_rows.h"
 
 namespace pf::model {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/model/kind.h"
+#include "model/kind.h"
 
 namespace pf::model {
 

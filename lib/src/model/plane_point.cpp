@@ -1,4 +1,4 @@
-#include "filter/model/plane_point.h"
+#include "model/plane_point.h"
 
 namespace pf::model {
 

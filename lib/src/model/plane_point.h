@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/model/plane.h"
+#include "model/plane.h"
 
 namespace pf::model {
 

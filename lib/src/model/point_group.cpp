@@ -1,4 +1,4 @@
-#include "filter/model/point_group.h"
+#include "model/point_group.h"
 
 namespace pf::model {
 

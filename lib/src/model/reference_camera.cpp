@@ -1,4 +1,4 @@
-#include "filter/model/reference_camera.h"
+#include "model/reference_camera.h"
 
 #include "geometry/so3.h"
 

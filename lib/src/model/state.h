@@ -1,15 +1,13 @@
 #pragma once
 
-#include "filter/model/block.h"
-#include "filter/model/body.h"
-#include "filter/model/gauge.h"
 #include "geometry/lens.h"
+#include "model/block.h"
+#include "model/body.h"
+#include "model/gauge.h"
 
 /// What the filter estimates: kinds and values of blocks, and how they hang on each other. Where their rows lie, BlockFilter knows.
 
 namespace pf {
-
-class BlockFilter;
 
 /// What the kinds say of themselves (kinds.h), for who need not know them.
 extern const KindInfo kKindInfo[kBlockKinds];
@@ -91,15 +89,7 @@ struct State {
   void take_out(int parent, int child);
 };
 
-/// x <- x [+] dx: every block moves by its rows of dx.
-void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx);
-
 /// Gauge rows of a block (model/gauge.h), for every direction. Rows beyond the block's size are zero.
 GaugeRows gauge_rows(const State& state, const Block& block);
-
-/// Adds sign times the gauge rows at x over the whole state to one row per direction, leading dimension ld. Rows of directions that
-/// are observable become zero. N_T may be null: translations are the same at every x but for planes.
-void add_gauge_rows(const State& state, const BlockFilter& blocks, Scalar sign, Scalar* N_T, Scalar* N_R, Scalar* N_s,
-                    int ld);
 
 }  // namespace pf

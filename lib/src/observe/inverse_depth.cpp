@@ -1,9 +1,9 @@
-#include "filter/observe/inverse_depth.h"
+#include "observe/inverse_depth.h"
 
 #include <cmath>
 
-#include "filter/tuning.h"
 #include "geometry/so3.h"
+#include "model/tuning.h"
 
 namespace pf {
 

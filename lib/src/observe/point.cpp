@@ -1,4 +1,4 @@
-#include "filter/observe/point.h"
+#include "observe/point.h"
 
 #include "geometry/so3.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "filter/camera_at.h"
-#include "filter/observe/point.h"
 #include "geometry/ray_plane.h"
+#include "model/camera_at.h"
+#include "observe/point.h"
 
 namespace pf {
 

@@ -1,4 +1,4 @@
-#include "slam/session.h"
+#include "session/session.h"
 
 #include <new>
 
@@ -28,9 +28,9 @@ bool Session::layout(Arena& arena, const Settings& settings) {
               settings.masks == MaskMode::kNone ? 0 : settings.template_px);
   imu_.layout(arena, settings.imu_buffer);
   if (has_window)
-    window_ = place<WindowSlam>(arena, settings_, map_);
+    window_ = place<KeyframeSlam>(arena, settings_, map_);
   else
-    filter_ = place<FrameLoop>(arena, settings_, map_, imu_);
+    filter_ = place<FilterSlam>(arena, settings_, map_, imu_);
   return arena.ok();
 }
 

@@ -5,11 +5,11 @@
 #include "base/arena.h"
 #include "base/status.h"
 #include "filter/imu_log.h"
+#include "filter_slam/filter_slam.h"
+#include "frame/settings.h"
+#include "keyframe_slam/keyframe_slam.h"
 #include "map/map.h"
-#include "slam/frame_loop.h"
-#include "slam/settings.h"
-#include "slam/view.h"
-#include "slam/window_slam.h"
+#include "session/view.h"
 
 /// What the API calls act on: input, choice of the start, and the back end that does the work.
 
@@ -89,8 +89,8 @@ class Session {
   Map map_;
   ImuLog imu_;
   Data data_;
-  FrameLoop* filter_ = nullptr;  ///< the back end: one of the two is null
-  WindowSlam* window_ = nullptr;
+  FilterSlam* filter_ = nullptr;  ///< the back end: one of the two is null
+  KeyframeSlam* window_ = nullptr;
 };
 
 }  // namespace pf

@@ -1,20 +1,20 @@
-#include "slam/view.h"
+#include "session/view.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
 #include "filter/gauge_information.h"
-#include "filter/observe/point.h"
 #include "filter/scale_row.h"
+#include "filter_slam/filter_slam.h"
 #include "geometry/so3.h"
-#include "slam/frame_loop.h"
-#include "slam/window_slam.h"
+#include "keyframe_slam/keyframe_slam.h"
+#include "observe/point.h"
 #include "track/template_warp.h"
 
 namespace pf {
 
-View::View(const Settings& settings, const Map& map, const FrameLoop& loop)
+View::View(const Settings& settings, const Map& map, const FilterSlam& loop)
     : settings_(settings),
       map_(map),
       frame_(loop.frame()),
@@ -22,7 +22,7 @@ View::View(const Settings& settings, const Map& map, const FrameLoop& loop)
       noise_(loop.noise()),
       loop_(&loop) {}
 
-View::View(const Settings& settings, const Map& map, const WindowSlam& window)
+View::View(const Settings& settings, const Map& map, const KeyframeSlam& window)
     : settings_(settings),
       map_(map),
       frame_(window.frame()),

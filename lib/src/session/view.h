@@ -2,20 +2,20 @@
 
 #include <cstdint>
 
-#include "filter/state.h"
+#include "frame/frame.h"
+#include "frame/noise_model.h"
+#include "frame/settings.h"
+#include "frame/tracking_state.h"
 #include "map/map.h"
-#include "slam/frame.h"
-#include "slam/noise_model.h"
-#include "slam/settings.h"
-#include "slam/tracking_state.h"
+#include "model/state.h"
 
 /// Read-only view of a session: state, pose, features, planes, matches, report. Only this class knows which back end it reads.
 
 namespace pf {
 
-class FrameLoop;
+class FilterSlam;
 class Filter;
-class WindowSlam;
+class KeyframeSlam;
 
 /// Current estimate of a feature.
 struct FeatureView {
@@ -110,8 +110,8 @@ struct MapCounts {
 
 class View {
  public:
-  View(const Settings& settings, const Map& map, const FrameLoop& loop);
-  View(const Settings& settings, const Map& map, const WindowSlam& window);
+  View(const Settings& settings, const Map& map, const FilterSlam& loop);
+  View(const Settings& settings, const Map& map, const KeyframeSlam& window);
 
   // view.cpp
   bool used() const;
@@ -186,8 +186,8 @@ class View {
   const Frame& frame_;
   const TrackingState& tracking_;
   const NoiseModel& noise_;
-  const FrameLoop* loop_ = nullptr;  ///< one of these two is null
-  const WindowSlam* window_ = nullptr;
+  const FilterSlam* loop_ = nullptr;  ///< one of these two is null
+  const KeyframeSlam* window_ = nullptr;
 };
 
 }  // namespace pf

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/camera_at.h"
 #include "filter/vertical.h"
+#include "filter_slam/filter_slam.h"
 #include "geometry/ray_plane.h"
 #include "geometry/so3.h"
-#include "slam/frame_loop.h"
-#include "slam/view.h"
+#include "model/camera_at.h"
+#include "session/view.h"
 
 /// Planes of the view, and intersections of rays with them.
 

@@ -2,8 +2,8 @@
 
 #include "geometry/ray_plane.h"
 #include "geometry/so3.h"
-#include "slam/view.h"
-#include "slam/window_slam.h"
+#include "keyframe_slam/keyframe_slam.h"
+#include "session/view.h"
 
 /// What the view shows of the window.
 
@@ -18,7 +18,7 @@ void View::window_pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const
 
 ///   q_KC = q_Kᵀ q_C,   p_KC = R_Kᵀ (p_C - p_K);   both poses are taken as independent, which overstates the covariance
 bool View::window_motion_since_mark(MotionView* out) const {
-  const WindowSlam::Mark& mark = window_->mark();
+  const KeyframeSlam::Mark& mark = window_->mark();
   if (!mark.is_set) return false;
   Body body;
   Mat6 now;
@@ -52,7 +52,7 @@ bool View::window_project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const 
 }
 
 const Camera& View::window_lens(Scalar covariance[kLensParameters][kLensParameters]) const {
-  const WindowLens& lens = window_->map().lens();
+  const KeyframeLens& lens = window_->map().lens();
   const LensRows& rows = lens.rows();
   for (int i = 0; i < rows.count; ++i)
     for (int j = 0; j < rows.count; ++j)
@@ -62,9 +62,9 @@ const Camera& View::window_lens(Scalar covariance[kLensParameters][kLensParamete
 
 /// A point without a depth is shown at the median one, with as much again as standard deviation.
 FeatureView View::window_feature(int i) const {
-  const WindowMap& map = window_->map();
+  const KeyframeMap& map = window_->map();
   const Feature& f = map.feature(i);
-  const WindowPoint& point = map.point(i);
+  const KeyframePoint& point = map.point(i);
   FeatureView out;
   out.id = f.id;
   out.external_id = f.external_id;
@@ -81,7 +81,7 @@ FeatureView View::window_feature(int i) const {
 }
 
 bool View::window_surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const {
-  const WindowPoint& point = window_->map().point(i);
+  const KeyframePoint& point = window_->map().point(i);
   if (!point.has_depth || point.plane < 0) return false;
   *normal_W = window_->planes().plane(point.plane).frame.R_WP.col(2);
   if (normal_W->dot(viewer_W - window_->map().position(i)) < 0) *normal_W = -*normal_W;
@@ -89,7 +89,7 @@ bool View::window_surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const 
 }
 
 MapCounts View::window_counts() const {
-  const WindowMap& map = window_->map();
+  const KeyframeMap& map = window_->map();
   MapCounts counts;
   for (int i = 0; i < map.capacity(); ++i) {
     if (!map.used(i)) continue;
@@ -109,7 +109,7 @@ MapCounts View::window_counts() const {
 
 ///   (alpha, beta, delta) = (-a, -b, h)
 PlaneView View::window_plane(int i) const {
-  const WindowPlane& plane = window_->planes().plane(i);
+  const KeyframePlane& plane = window_->planes().plane(i);
   PlaneView out;
   out.id = map_.planes[i].id;
   out.points = window_->planes().points_on(i);
@@ -136,7 +136,7 @@ bool View::window_hit(const Vec2& pixel, HitView* hit) const {
   *hit = HitView();
   for (int k = 0; k < map_.planes.capacity(); ++k) {
     if (!map_.planes.used(k)) continue;
-    const WindowPlane& plane = window_->planes().plane(k);
+    const KeyframePlane& plane = window_->planes().plane(k);
     Vec3 at;
     Mat3 J_origin, J_direction, J_plane;
     if (!intersect_ray_plane(plane.frame, Vec3::Zero(), body.p_W, direction, &at, &J_origin, &J_direction, &J_plane))

@@ -1,14 +1,15 @@
-#include "slam/feature_keeper.h"
+#include "filter_slam/features/feature_keeper.h"
 
 #include <algorithm>
 
-#include "filter/camera_at.h"
-#include "filter/observe/inverse_depth.h"
+#include "filter_slam/features/tuning.h"
+#include "filter_slam/features/wall_rays.h"
+#include "frame/feature_upkeep.h"
+#include "frame/start/target_surface.h"
+#include "frame/tuning.h"
 #include "geometry/ray_plane.h"
-#include "slam/feature_upkeep.h"
-#include "slam/plane_walls.h"
-#include "slam/target_surface.h"
-#include "slam/tuning.h"
+#include "model/camera_at.h"
+#include "observe/inverse_depth.h"
 
 namespace pf {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "filter/filter.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
+#include "frame/start/start.h"
 #include "map/map.h"
-#include "slam/frame.h"
-#include "slam/settings.h"
-#include "slam/start.h"
 
 /// Keeps the features of the map: adds, converts, drops and evicts them, each together with its block in the filter.
 

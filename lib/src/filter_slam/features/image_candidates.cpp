@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "slam/feature_upkeep.h"
-#include "slam/image_front_end.h"
-#include "slam/tuning.h"
+#include "filter_slam/features/image_front_end.h"
+#include "frame/feature_upkeep.h"
+#include "frame/tuning.h"
 
 /// Which features a frame searches for.
 

@@ -1,7 +1,7 @@
-#include "filter/camera_at.h"
-#include "slam/corner_cells.h"
-#include "slam/image_front_end.h"
-#include "slam/tuning.h"
+#include "filter_slam/features/image_front_end.h"
+#include "frame/corner_cells.h"
+#include "frame/tuning.h"
+#include "model/camera_at.h"
 
 /// New features at corners of the image.
 

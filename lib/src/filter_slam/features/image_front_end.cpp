@@ -1,15 +1,15 @@
-#include "slam/image_front_end.h"
+#include "filter_slam/features/image_front_end.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "filter/camera_at.h"
+#include "filter_slam/pose/consensus.h"
+#include "filter_slam/pose/triple_consensus.h"
+#include "frame/tracking_state.h"
+#include "frame/tuning.h"
 #include "geometry/symmetric_eigen.h"
-#include "slam/consensus.h"
-#include "slam/tracking_state.h"
-#include "slam/triple_consensus.h"
-#include "slam/tuning.h"
+#include "model/camera_at.h"
 
 namespace pf {
 namespace {

@@ -1,16 +1,16 @@
 #pragma once
 
 #include "filter/filter.h"
+#include "filter_slam/features/feature_keeper.h"
+#include "filter_slam/features/same_view.h"
+#include "filter_slam/pose/pixel_update.h"
+#include "frame/corner_cells.h"
+#include "frame/followed_view.h"
+#include "frame/frame.h"
+#include "frame/image_search.h"
+#include "frame/noise_model.h"
+#include "frame/settings.h"
 #include "map/map.h"
-#include "slam/corner_cells.h"
-#include "slam/feature_keeper.h"
-#include "slam/followed_view.h"
-#include "slam/frame.h"
-#include "slam/image_search.h"
-#include "slam/noise_model.h"
-#include "slam/pixel_update.h"
-#include "slam/same_view.h"
-#include "slam/settings.h"
 
 /// Measures an image: predicts which features are in it and where, finds them, updates the filter, and adds features at corners.
 

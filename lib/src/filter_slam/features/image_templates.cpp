@@ -1,5 +1,5 @@
 #include "base/elapsed.h"
-#include "slam/image_front_end.h"
+#include "filter_slam/features/image_front_end.h"
 
 namespace pf {
 

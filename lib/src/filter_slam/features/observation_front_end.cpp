@@ -1,7 +1,7 @@
-#include "slam/observation_front_end.h"
+#include "filter_slam/features/observation_front_end.h"
 
 #include "base/elapsed.h"
-#include "slam/consensus.h"
+#include "filter_slam/pose/consensus.h"
 
 namespace pf {
 

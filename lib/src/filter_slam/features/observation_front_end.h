@@ -3,11 +3,11 @@
 #include <cstdint>
 
 #include "filter/filter.h"
+#include "filter_slam/features/feature_keeper.h"
+#include "filter_slam/pose/pixel_update.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
 #include "map/map.h"
-#include "slam/feature_keeper.h"
-#include "slam/frame.h"
-#include "slam/pixel_update.h"
-#include "slam/settings.h"
 
 /// Measures a frame of pixels that the caller has matched: gates them, updates the filter, and adds features for unknown ids.
 

@@ -1,7 +1,7 @@
-#include "slam/same_view.h"
+#include "filter_slam/features/same_view.h"
 
 #include "base/elapsed.h"
-#include "slam/tuning.h"
+#include "filter_slam/features/tuning.h"
 
 namespace pf {
 

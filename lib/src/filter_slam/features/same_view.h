@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/model/body.h"
+#include "model/body.h"
 
 /// Whether a frame shows what the map has learnt from already: lib/docs/noise.md, "At rest".
 

@@ -1,4 +1,4 @@
-#include "slam/moving_start.h"
+#include "filter_slam/inertial/moving_start.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,9 @@
 #include "base/elapsed.h"
 #include "filter/frame_pixels.h"
 #include "filter/imu_path.h"
-#include "filter/tuning.h"
+#include "filter_slam/inertial/tuning.h"
 #include "geometry/pnp.h"
 #include "geometry/so3.h"
-#include "slam/tuning.h"
 
 namespace pf {
 

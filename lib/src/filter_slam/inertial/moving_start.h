@@ -3,11 +3,11 @@
 #include <cstdint>
 
 #include "filter/moving_start.h"
+#include "filter_slam/pose/body_motion.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
 #include "geometry/rotation_smoother.h"
 #include "map/map.h"
-#include "slam/body_motion.h"
-#include "slam/frame.h"
-#include "slam/settings.h"
 
 /// Looks for metres and gravity while the camera moves in a map up to scale: keeps the pixels of frames, with what the samples say in
 /// between, finds the poses of these frames anew against the map as it is now, and solves for scale, gravity and the accelerometer's bias.

@@ -4,8 +4,8 @@
 
 #include "filter/imu_log.h"
 #include "filter/inertial_motion.h"
-#include "slam/frame.h"
-#include "slam/settings.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
 
 /// Detects that the camera lies still, from the samples of its inertial unit and from the picture together: a slow turntable is quiet to
 /// the samples, and a wall that moves along is quiet to the picture. See lib/docs/inertial.md.

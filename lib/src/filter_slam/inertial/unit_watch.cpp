@@ -1,11 +1,11 @@
-#include "slam/unit_watch.h"
+#include "filter_slam/inertial/unit_watch.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
 #include "filter/inertial_motion.h"
-#include "slam/tuning.h"
+#include "filter_slam/inertial/tuning.h"
 
 namespace pf {
 

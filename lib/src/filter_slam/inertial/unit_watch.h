@@ -4,10 +4,10 @@
 
 #include "filter/filter.h"
 #include "filter/imu_log.h"
-#include "slam/body_motion.h"
-#include "slam/frame.h"
-#include "slam/pixel_update.h"
-#include "slam/settings.h"
+#include "filter_slam/pose/body_motion.h"
+#include "filter_slam/pose/pixel_update.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
 
 /// Watches whether the samples of the inertial unit agree with the pictures, and decides whether they move the body. See
 /// lib/docs/inertial.md.

@@ -1,9 +1,8 @@
 #include <algorithm>
 
+#include "filter_slam/patches/patch_keeper.h"
+#include "filter_slam/patches/tuning.h"
 #include "geometry/small_cholesky.h"
-#include "slam/patch_keeper.h"
-#include "slam/patch_tuning.h"
-#include "slam/tuning.h"
 
 /// A patch whose plane is far from where the filter has it: the linearisation at the estimate is bad, and counts for less.
 

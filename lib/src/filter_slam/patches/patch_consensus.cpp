@@ -1,8 +1,8 @@
 #include <algorithm>
 
+#include "filter_slam/patches/patch_keeper.h"
+#include "filter_slam/patches/tuning.h"
 #include "geometry/small_cholesky.h"
-#include "slam/patch_keeper.h"
-#include "slam/tuning.h"
 
 /// Patches against each other, where nothing else supports the pose. The first one that is taken in would have no gate but the motion's,
 /// which is pixels wide: a gross one passes it, the right ones are refused behind it, and what begins in that frame has a wrong camera.

@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/camera_at.h"
-#include "filter/model/reference_camera.h"
+#include "filter_slam/patches/patch_keeper.h"
+#include "filter_slam/patches/tuning.h"
 #include "geometry/ray_plane.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/two_view_plane.h"
-#include "slam/patch_keeper.h"
-#include "slam/patch_tuning.h"
-#include "slam/tuning.h"
+#include "model/camera_at.h"
+#include "model/reference_camera.h"
 
 /// A patch that no plane of the map explains founds one (lib/docs/walls.md).
 

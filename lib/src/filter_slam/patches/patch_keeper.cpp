@@ -1,12 +1,13 @@
-#include "slam/patch_keeper.h"
+#include "filter_slam/patches/patch_keeper.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "filter_slam/patches/tuning.h"
+#include "frame/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/symmetric_eigen.h"
-#include "slam/tuning.h"
 
 /// Patches that there are: found, measured, dropped. Where they are expected is in patch_sight.cpp, which plane they lie on in
 /// patch_waiting.cpp, new ones in patch_selection.cpp.

@@ -3,12 +3,12 @@
 #include <cstdint>
 
 #include "filter/filter.h"
+#include "filter_slam/features/feature_keeper.h"
+#include "frame/frame.h"
+#include "frame/noise_model.h"
+#include "frame/settings.h"
+#include "frame/tracking_state.h"
 #include "map/map.h"
-#include "slam/feature_keeper.h"
-#include "slam/frame.h"
-#include "slam/noise_model.h"
-#include "slam/settings.h"
-#include "slam/tracking_state.h"
 #include "track/align_plane.h"
 #include "track/patch_search.h"
 #include "track/patch_store.h"

@@ -1,9 +1,8 @@
 #include <algorithm>
 
-#include "filter/camera_at.h"
-#include "slam/patch_keeper.h"
-#include "slam/patch_tuning.h"
-#include "slam/tuning.h"
+#include "filter_slam/patches/patch_keeper.h"
+#include "filter_slam/patches/tuning.h"
+#include "model/camera_at.h"
 
 /// What stands before a wall: no patch begins where it is seen.
 

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/camera_at.h"
+#include "filter_slam/features/wall_rays.h"
+#include "filter_slam/patches/patch_keeper.h"
+#include "filter_slam/patches/tuning.h"
 #include "geometry/ray_plane.h"
-#include "slam/patch_keeper.h"
-#include "slam/plane_walls.h"
-#include "slam/tuning.h"
+#include "model/camera_at.h"
 
 /// New patches: where on the walls in view, and when.
 

@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/camera_at.h"
-#include "filter/model/reference_camera.h"
-#include "filter/observe/ray_point.h"
+#include "filter_slam/features/wall_rays.h"
+#include "filter_slam/patches/patch_keeper.h"
+#include "filter_slam/patches/tuning.h"
 #include "geometry/homography.h"
 #include "geometry/small_cholesky.h"
-#include "slam/patch_keeper.h"
-#include "slam/plane_walls.h"
-#include "slam/tuning.h"
+#include "model/camera_at.h"
+#include "model/reference_camera.h"
+#include "observe/ray_point.h"
 
 /// Where the filter expects a patch.
 

@@ -1,16 +1,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/camera_at.h"
-#include "filter/model/reference_camera.h"
+#include "filter_slam/features/wall_rays.h"
+#include "filter_slam/patches/patch_keeper.h"
+#include "filter_slam/patches/tuning.h"
+#include "frame/followed_view.h"
+#include "geometry/common_ratio.h"
 #include "geometry/homography.h"
 #include "geometry/ray_plane.h"
-#include "slam/common_ratio.h"
-#include "slam/followed_view.h"
-#include "slam/patch_keeper.h"
-#include "slam/patch_tuning.h"
-#include "slam/plane_walls.h"
-#include "slam/tuning.h"
+#include "model/camera_at.h"
+#include "model/reference_camera.h"
 
 /// Which plane a patch lies on: until that is known it is followed, and is no measurement (lib/docs/walls.md). Servant 2008, section 2.5
 

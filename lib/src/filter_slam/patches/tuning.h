@@ -2,21 +2,43 @@
 
 #include "base/scalar.h"
 
-/// Tuned numbers of walls and patches that are young. Patches that are measured: slam/tuning.h
+/// Tuned numbers of patches on walls, each with its meaning and unit. tools/sweep-tuning halves and doubles them;
+/// what no sweep has measured has no figure here.
 
 namespace pf::tuning {
 
-/// First depths against those of a record, where walls are known.
-namespace start_before_walls {
-inline constexpr int kMaxPlanes = 64;             ///< the largest capacity.max_planes
-inline constexpr Scalar kOneWall = Scalar(1.12);  ///< ratio of distances of points that lie on walls of the plan
-inline constexpr int kMinOnWall = 8;              ///< points that tell the record's unit of length
-inline constexpr int kClearMajority = 2;          ///< of these to the points that tell another one
-inline constexpr int kCells = 9;                  ///< of the first image, a side, whose middles are looked at for walls
-inline constexpr int kMaxRatios = 256;            ///< that are compared
-inline constexpr Scalar kOpenScale = 1;           ///< sigma of the log scale until a wall is seen
-inline constexpr Scalar kSameMotion = Scalar(0.5);  ///< of two motions: their difference relative to the record's
-}  // namespace start_before_walls
+/// Patches on walls: finding them again.
+namespace patch_keeper {
+inline constexpr Scalar kMinCosine = Scalar(0.407);    ///< of the slant at which a patch is looked for: 66 degrees
+inline constexpr Scalar kCornersGate = Scalar(26.12);  ///< chi-square of eight degrees of freedom, 0.999
+inline constexpr Scalar kCornerSigma = Scalar(0.05);   ///< [px] of a corner, beside the noise: warp and interpolation
+inline constexpr float kWarpSlack = 0.1f;              ///< [px] of pixels, as far as it excuses residuals
+inline constexpr int kSettledFrames = 5;               ///< of a patch, before its residuals say what the noise is
+inline constexpr Scalar kAlignerReach = Scalar(12);    ///< [px] of the gate, beyond which a patch is searched for first
+inline constexpr Scalar kLinearReach = Scalar(4);      ///< [px] of an innovation that is taken in as it is
+inline constexpr Scalar kPoseSigma = Scalar(1);        ///< [px] of what is not the pose, where the pose is sought
+inline constexpr int kPoseSteps = 6;                   ///< of that search
+inline constexpr int kMaxFailures = 30;                ///< in a row, before a patch is dropped
+inline constexpr int kMaxEarlyFailures = 3;            ///< likewise of one that waits for its plane
+inline constexpr int kMaxRejections = 4;               ///< in a row
+inline constexpr int kUpheldFrames = 30;               ///< that a patch was measured, for its wall to be upheld by it
+}  // namespace patch_keeper
+
+/// Patches on walls: new ones.
+namespace patch_selection {
+inline constexpr Scalar kMinBirthCosine = Scalar(0.616);  ///< of the slant at birth: 52 degrees
+inline constexpr Scalar kLastingCosine = Scalar(0.515);   ///< of the slant of a patch that will last: 59 degrees
+inline constexpr Scalar kMargin = Scalar(0.1);  ///< around a patch that must be on the wall too, of half its side
+inline constexpr Scalar kApart = Scalar(0.6);   ///< of the middles of two patches, in sides
+inline constexpr int kOnWall = 3;               ///< patches of a wall in view
+inline constexpr int kBetween = 15;             ///< frames from one that begins on a wall to the next
+inline constexpr int kRetryFrames = 5;          ///< likewise where the wall has none in view, or had no place
+inline constexpr int kSizes = 4;                ///< parts of the side: a patch has all, or
+inline constexpr int kSmallest = 1;             ///< fewer, but more than this
+inline constexpr int kMinSide = 32;             ///< [px]
+inline constexpr Scalar kObstacleGate = Scalar(6.63);  ///< chi-square, 0.99: above it a point is not on the wall
+inline constexpr int kCoarseSide = 52;                 ///< [px] from which texture is judged on level 2
+}  // namespace patch_selection
 
 /// Which plane a patch lies on.
 namespace patch_waiting {
@@ -32,9 +54,8 @@ inline constexpr int kFoundEvery = 20;              ///< frames, in the middle o
 /// A patch on a wall that is far from its plan.
 namespace patch_bend {
 inline constexpr Scalar kMinParallax = Scalar(1);  ///< [px] from which an innovation may be the plane's fault
-inline constexpr Scalar kMinShare =
-    Scalar(0.5);                      ///< of R, below which what the linearisation leaves out does not matter
-inline constexpr int kMaxRounds = 3;  ///< in which it is mended
+inline constexpr Scalar kMinShare = Scalar(0.5);   ///< of R, below which the rest of the linearisation does not matter
+inline constexpr int kMaxRounds = 3;               ///< in which it is mended
 }  // namespace patch_bend
 
 /// A plane that a patch founds.

@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "filter/camera_at.h"
-#include "slam/plane_keeper.h"
-#include "slam/plane_walls.h"
-#include "slam/tuning.h"
+#include "filter_slam/features/wall_rays.h"
+#include "filter_slam/planes/plane_keeper.h"
+#include "filter_slam/planes/tuning.h"
+#include "model/camera_at.h"
 
 /// When a wall of the plan is doubted, and when it counts again (lib/docs/walls.md).
 

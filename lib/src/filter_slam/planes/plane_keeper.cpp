@@ -1,11 +1,11 @@
-#include "slam/plane_keeper.h"
+#include "filter_slam/planes/plane_keeper.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "filter/camera_at.h"
+#include "frame/tuning.h"
 #include "geometry/symmetric_eigen.h"
-#include "slam/tuning.h"
+#include "model/camera_at.h"
 
 /// Points of planes: unfold, fold, fix. Whole planes are in plane_lifecycle.cpp. Gee 2007, sections 3.3 and 3.4.
 

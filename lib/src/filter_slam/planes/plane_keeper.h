@@ -5,13 +5,13 @@
 #include "base/status.h"
 #include "filter/filter.h"
 #include "filter/vertical.h"
+#include "filter_slam/features/feature_keeper.h"
+#include "filter_slam/planes/plane_own_places.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
 #include "map/map.h"
 #include "map/plane_majority.h"
 #include "map/plane_search.h"
-#include "slam/feature_keeper.h"
-#include "slam/frame.h"
-#include "slam/plane_own_places.h"
-#include "slam/settings.h"
 
 /// Keeps the planes of the map: unfolds outliers, folds and fixes points; discovers, merges and dissolves planes. Gee 2007, section 3
 /// (lib/docs/planes.md).

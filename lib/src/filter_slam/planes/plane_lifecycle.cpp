@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slam/plane_keeper.h"
-#include "slam/plane_settings.h"
-#include "slam/tuning.h"
+#include "filter_slam/planes/plane_keeper.h"
+#include "frame/plane_settings.h"
+#include "frame/tuning.h"
 
 /// Whole planes: discover, merge, change the frame, outline, dissolve. Gee 2007, section 3.3.
 

@@ -1,10 +1,10 @@
-#include "slam/plane_own_places.h"
+#include "filter_slam/planes/plane_own_places.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "filter/camera_at.h"
-#include "slam/plane_tuning.h"
+#include "filter_slam/planes/tuning.h"
+#include "model/camera_at.h"
 
 namespace pf {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "base/arena.h"
 #include "filter/filter.h"
+#include "frame/frame.h"
 #include "map/map.h"
-#include "slam/frame.h"
 
 /// Where folded points are by themselves. A fold takes a point's depth from it: from then on its pixels tell of the plane, and a point that
 /// does not lie on it bends the plane until they fit. So the depth is estimated on the side as well, along the ray on which the point was

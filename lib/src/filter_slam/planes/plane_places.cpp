@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filter_slam/planes/plane_keeper.h"
+#include "filter_slam/planes/tuning.h"
 #include "map/plane_majority.h"
-#include "slam/plane_keeper.h"
-#include "slam/plane_tuning.h"
 
 /// Planes whose points, each by itself, lie elsewhere (lib/docs/planes.md, "What points say by themselves").
 

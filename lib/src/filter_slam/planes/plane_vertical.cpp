@@ -1,6 +1,6 @@
 #include "filter/vertical.h"
-#include "slam/plane_keeper.h"
-#include "slam/tuning.h"
+#include "filter_slam/planes/plane_keeper.h"
+#include "filter_slam/planes/tuning.h"
 
 /// Planes that somebody says are vertical (lib/docs/inertial.md).
 

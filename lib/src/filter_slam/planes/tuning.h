@@ -2,15 +2,31 @@
 
 #include "base/scalar.h"
 
-/// Tuned numbers about what pixels of folded points tell of where these are (lib/docs/planes.md).
+/// Tuned numbers of planes of the filter back end, each with its meaning and unit. tools/sweep-tuning halves and doubles them;
+/// what no sweep has measured has no figure here.
 
 namespace pf::tuning {
+
+/// Walls that are doubted.
+namespace plane_doubt {
+inline constexpr Scalar kRefusedGate = Scalar(16);  ///< chi-square of a point that does not lie on a wall
+inline constexpr int kMinRefused = 8;               ///< points, before a wall is doubted or believed again
+inline constexpr Scalar kDoubtedPrior = 100;        ///< times its covariance that a doubted wall's prior gets
+inline constexpr int kRefusedShare = 4;             ///< refused points for each on the wall, above which it is doubted
+inline constexpr int kCells = 5;                    ///< along each side of the image
+}  // namespace plane_doubt
+
+/// Planes that somebody says are vertical.
+namespace plane_vertical {
+inline constexpr Scalar kVerticalGate = Scalar(15.1);  ///< chi-square of one degree of freedom, 0.9999
+}  // namespace plane_vertical
 
 namespace own_places {
 inline constexpr Scalar kMaxMove = Scalar(0.25);  ///< along the ray, of the distance of the camera that saw it
 inline constexpr Scalar kTold = Scalar(1000);     ///< N range^2: a hundredth of the distance is a third of a pixel
 inline constexpr Scalar kElsewhere = Scalar(10);  ///< [px] of a match from there, where that says nothing any more
 }  // namespace own_places
+
 namespace plane_places {
 inline constexpr Scalar kPixel = 1;              ///< [px] of a match, before the points have said what it is
 inline constexpr Scalar kMaxSigma = Scalar(30);  ///< of a height at one pixel that is looked at, in plane.max_distance

@@ -1,11 +1,11 @@
-#include "slam/body_motion.h"
+#include "filter_slam/pose/body_motion.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
 #include "filter/inertial_motion.h"
-#include "slam/speed_limits.h"
+#include "frame/speed_limits.h"
 
 namespace pf {
 namespace {

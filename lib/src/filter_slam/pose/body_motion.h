@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "filter/filter.h"
-#include "slam/settings.h"
+#include "frame/settings.h"
 
 /// Predicts the body: to the time of each frame in the filter, and to later times for display.
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "filter/filter.h"
+#include "frame/ellipse.h"
 #include "geometry/small_cholesky.h"
-#include "slam/ellipse.h"
 
 /// One-point consensus of measurements of any height.
 

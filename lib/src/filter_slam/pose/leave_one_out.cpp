@@ -1,10 +1,10 @@
-#include "slam/leave_one_out.h"
+#include "filter_slam/pose/leave_one_out.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "slam/consensus.h"
-#include "slam/tuning.h"
+#include "filter_slam/pose/consensus.h"
+#include "filter_slam/pose/tuning.h"
 
 namespace pf {
 namespace {

@@ -1,12 +1,12 @@
-#include "slam/pixel_update.h"
+#include "filter_slam/pose/pixel_update.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "filter_slam/pose/consensus.h"
+#include "filter_slam/pose/tuning.h"
 #include "geometry/so3.h"
-#include "slam/consensus.h"
-#include "slam/tuning.h"
 
 namespace pf {
 namespace {

@@ -3,12 +3,12 @@
 #include <utility>
 
 #include "filter/filter.h"
+#include "filter_slam/pose/leave_one_out.h"
+#include "filter_slam/pose/proposed_poses.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
+#include "frame/tracking_state.h"
 #include "map/map.h"
-#include "slam/frame.h"
-#include "slam/leave_one_out.h"
-#include "slam/proposed_poses.h"
-#include "slam/settings.h"
-#include "slam/tracking_state.h"
 
 /// Updates the filter with a frame's pixels: expected innovations, the update, and its relinearisation.
 

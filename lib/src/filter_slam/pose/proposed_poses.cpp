@@ -1,11 +1,11 @@
-#include "slam/proposed_poses.h"
+#include "filter_slam/pose/proposed_poses.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "frame/tuning.h"
 #include "geometry/so3.h"
-#include "slam/tuning.h"
 
 namespace pf {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "filter/filter.h"
-#include "slam/settings.h"
+#include "frame/settings.h"
 
 /// Poses that the matches of frames in a row propose before any of them is believed.
 

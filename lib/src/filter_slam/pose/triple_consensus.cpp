@@ -1,13 +1,13 @@
-#include "slam/triple_consensus.h"
+#include "filter_slam/pose/triple_consensus.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/false_alarms.h"
 #include "base/random_triples.h"
+#include "filter_slam/pose/consensus.h"
+#include "frame/tuning.h"
 #include "geometry/small_cholesky.h"
-#include "map/plane_chance.h"
-#include "slam/consensus.h"
-#include "slam/tuning.h"
 
 namespace pf {
 namespace {
@@ -74,7 +74,7 @@ TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasureme
     Scalar log_false = 0;
     for (int level = 0; level < levels; ++level) {
       const Scalar mean = std::clamp(share[level] / static_cast<Scalar>(std::max(1, found - 3)), kMinShare, kMaxShare);
-      Scalar at_level = log_false_planes(inliers[level], std::max(attempts, found), mean, found);
+      Scalar at_level = log_false_alarms(inliers[level], std::max(attempts, found), mean, found);
       if (level > 0) at_level += kLogLevelCost;
       if (level == 0 || at_level < log_false) log_false = at_level;
     }

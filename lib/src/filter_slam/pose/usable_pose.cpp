@@ -1,11 +1,11 @@
-#include "slam/usable_pose.h"
+#include "filter_slam/pose/usable_pose.h"
 
 #include <algorithm>
 
-#include "filter/model/kinds.h"
+#include "frame/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
-#include "slam/tuning.h"
+#include "model/kinds.h"
 
 namespace pf {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "filter/filter.h"
+#include "frame/frame.h"
 #include "map/map.h"
-#include "slam/frame.h"
 
 /// Whether a measured pose is known well enough to be used. See lib/docs/states.md.
 

@@ -1,12 +1,12 @@
-#include "slam/pose_proposal.h"
+#include "filter_slam/recovery/pose_proposal.h"
 
 #include <algorithm>
 
 #include "base/random_triples.h"
-#include "filter/observe/point.h"
+#include "filter_slam/recovery/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
-#include "slam/tuning.h"
+#include "observe/point.h"
 
 namespace pf {
 namespace {

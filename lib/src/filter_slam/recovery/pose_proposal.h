@@ -1,7 +1,7 @@
 #pragma once
 
-#include "filter/state.h"
 #include "geometry/camera.h"
+#include "model/state.h"
 
 /// A pose from matches with known points, of which many may be wrong.
 

@@ -1,13 +1,13 @@
-#include "slam/relocaliser.h"
+#include "filter_slam/recovery/relocaliser.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "slam/consensus.h"
-#include "slam/pose_proposal.h"
-#include "slam/tracking_state.h"
-#include "slam/tuning.h"
+#include "filter_slam/pose/consensus.h"
+#include "filter_slam/recovery/pose_proposal.h"
+#include "frame/tracking_state.h"
+#include "frame/tuning.h"
 
 namespace pf {
 

@@ -4,12 +4,12 @@
 
 #include "base/arena.h"
 #include "filter/filter.h"
+#include "filter_slam/features/image_front_end.h"
+#include "filter_slam/pose/pixel_update.h"
+#include "filter_slam/pose/triple_consensus.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
 #include "map/map.h"
-#include "slam/frame.h"
-#include "slam/image_front_end.h"
-#include "slam/pixel_update.h"
-#include "slam/settings.h"
-#include "slam/triple_consensus.h"
 #include "track/view_memory.h"
 
 /// Finds the map again after frames that did not support the pose. Updates the filter only after frames in a row were consistent with the

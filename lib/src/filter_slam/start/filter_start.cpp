@@ -1,10 +1,12 @@
-#include "slam/filter_start.h"
+#include "filter_slam/start/filter_start.h"
 
 #include <algorithm>
 
-#include "filter/camera_at.h"
 #include "filter/frame_pixels.h"
-#include "slam/tuning.h"
+#include "filter_slam/inertial/tuning.h"
+#include "frame/start/tuning.h"
+#include "frame/tuning.h"
+#include "model/camera_at.h"
 
 namespace pf {
 

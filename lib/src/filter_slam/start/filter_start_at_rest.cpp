@@ -1,6 +1,6 @@
 #include "base/elapsed.h"
-#include "slam/filter_start.h"
-#include "slam/tuning.h"
+#include "filter_slam/inertial/tuning.h"
+#include "filter_slam/start/filter_start.h"
 
 /// FilterStart: what a camera at rest, or one that moves, says of gravity, of the biases of its inertial unit, and so of the
 /// scale (lib/docs/inertial.md).

@@ -1,8 +1,8 @@
-#include "filter/camera_at.h"
-#include "slam/common_ratio.h"
-#include "slam/filter_start.h"
-#include "slam/patch_tuning.h"
-#include "slam/plane_walls.h"
+#include "filter_slam/features/wall_rays.h"
+#include "filter_slam/start/filter_start.h"
+#include "filter_slam/start/tuning.h"
+#include "geometry/common_ratio.h"
+#include "model/camera_at.h"
 
 /// FilterStart: at a known pose that sees no wall of the plan. The map is one of points until a wall comes into view (lib/docs/walls.md).
 

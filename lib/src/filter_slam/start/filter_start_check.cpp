@@ -1,8 +1,8 @@
-#include "slam/common_ratio.h"
-#include "slam/filter_start.h"
-#include "slam/patch_tuning.h"
-#include "slam/plane_walls.h"
-#include "slam/tuning.h"
+#include "filter_slam/features/wall_rays.h"
+#include "filter_slam/start/filter_start.h"
+#include "filter_slam/start/tuning.h"
+#include "frame/start/tuning.h"
+#include "geometry/common_ratio.h"
 
 /// FilterStart: what a record is made for, and whether the filter's first depths are those of the record that goes on beside it
 /// (lib/docs/starting.md).

@@ -2,9 +2,10 @@
 
 #include "base/elapsed.h"
 #include "filter/baseline.h"
+#include "filter_slam/start/filter_start.h"
+#include "frame/start/tuning.h"
+#include "frame/tuning.h"
 #include "geometry/so3.h"
-#include "slam/filter_start.h"
-#include "slam/tuning.h"
 
 /// FilterStart: what the record of a start tells the filter, and how the filter begins again from it.
 

@@ -1,10 +1,10 @@
-#include "slam/start_at_target.h"
+#include "frame/start/start_at_target.h"
 
 #include <algorithm>
 #include <limits>
 
+#include "frame/start/tuning.h"
 #include "geometry/symmetric_eigen.h"
-#include "slam/tuning.h"
 
 namespace pf {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/arena.h"
-#include "slam/start.h"
+#include "frame/start/start.h"
 #include "track/quad_refine.h"
 #include "track/tracker.h"
 

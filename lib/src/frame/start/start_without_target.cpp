@@ -1,9 +1,9 @@
-#include "slam/start_without_target.h"
+#include "frame/start/start_without_target.h"
 
 #include <algorithm>
 
 #include "base/elapsed.h"
-#include "filter/camera_at.h"
+#include "model/camera_at.h"
 
 namespace pf {
 

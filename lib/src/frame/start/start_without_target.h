@@ -3,10 +3,10 @@
 #include <cstdint>
 
 #include "base/arena.h"
-#include "slam/tracking_state.h"
+#include "bundle/start_bundle.h"
+#include "bundle/start_still.h"
+#include "frame/tracking_state.h"
 #include "vision/appearance.h"
-#include "window/start_bundle.h"
-#include "window/start_still.h"
 
 /// Start with nothing known: records the pixels of the first frames until a bundle adjustment has a unique solution for them.
 /// Knows no filter: it is given poses and pixels, and its solution is read from it.

@@ -1,7 +1,7 @@
-#include "slam/target_surface.h"
+#include "frame/start/target_surface.h"
 
+#include "frame/start/tuning.h"
 #include "geometry/plane.h"
-#include "slam/tuning.h"
 
 namespace pf {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slam/start.h"
+#include "frame/start/start.h"
 
 /// The surface that a target is on.
 

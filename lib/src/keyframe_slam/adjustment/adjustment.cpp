@@ -1,20 +1,21 @@
-#include "slam/window_adjustment.h"
+#include "keyframe_slam/adjustment/adjustment.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/so3.h"
-#include "slam/window_covisible.h"
-#include "window/tuning.h"
+#include "keyframe_slam/adjustment/tuning.h"
+#include "keyframe_slam/map/covisible.h"
+#include "keyframe_slam/map/tuning.h"
 
 namespace pf {
 
-using namespace tuning::window_adjustment;
+using namespace tuning::keyframe_adjustment;
 
-static_assert(tuning::window_map::kKeyframes + 1 <= BundleAdjuster::kMaxPoses, "keyframes and the target's host");
+static_assert(tuning::keyframe_map::kKeyframes + 1 <= BundleAdjuster::kMaxPoses, "keyframes and the target's host");
 
-bool WindowAdjustment::layout(Arena& arena) {
-  const int keyframes = tuning::window_map::kKeyframes;
+bool KeyframeAdjustment::layout(Arena& arena) {
+  const int keyframes = tuning::keyframe_map::kKeyframes;
   const int lens_rows = settings_.lens.rows.count;
   max_free_ = lens_rows > 0 ? keyframes : keyframes - kHeldKeyframes;
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
@@ -42,7 +43,7 @@ bool WindowAdjustment::layout(Arena& arena) {
 /// three, the oldest first. Where the lens is uncertain, all but one always: keyframes that are held fixed say as if they knew it what lens
 /// they have been adjusted with. Away from the first keyframe, all but the oldest six, since one keyframe and a distance would force their
 /// own errors on all others. While a record goes on, the newest of all. Returns how many.
-int WindowAdjustment::choose_free(bool settled) {
+int KeyframeAdjustment::choose_free(bool settled) {
   const KeyframeTable& keyframes = map_.keyframes;
   connected_ = settled ? connected_keyframes(map_, kMinShared, is_connected_, is_seen_) : 0;
   if (connected_ < kMinConnected) {
@@ -77,7 +78,7 @@ int WindowAdjustment::choose_free(bool settled) {
 }
 
 /// Points with a depth that the free keyframes see, and another one. Returns how many.
-int WindowAdjustment::choose_points(int free) {
+int KeyframeAdjustment::choose_points(int free) {
   int points = 0;
   for (int i = 0; i < map_.capacity(); ++i) {
     if (!map_.used(i) || !map_.point(i).has_depth) continue;
@@ -91,7 +92,7 @@ int WindowAdjustment::choose_points(int free) {
 }
 
 /// The older keyframes that see most of these points. Returns how many there are with the free ones.
-int WindowAdjustment::choose_fixed(int free, int points, bool settled) {
+int KeyframeAdjustment::choose_fixed(int free, int points, bool settled) {
   int poses = free;
   const int most_fixed = settled ? kHeldAway : settings_.window_fixed;
   for (int f = 0; f < most_fixed; ++f) {
@@ -112,7 +113,7 @@ int WindowAdjustment::choose_fixed(int free, int points, bool settled) {
 }
 
 /// Pose of a keyframe in the bundle, which becomes a fixed one without pixels where it is in there no other way.
-int WindowAdjustment::pose_of(int keyframe, int* poses) {
+int KeyframeAdjustment::pose_of(int keyframe, int* poses) {
   const int at = static_cast<int>(std::find(keyframe_, keyframe_ + *poses, keyframe) - keyframe_);
   if (at < *poses) return at;
   const Keyframe& k = map_.keyframes[keyframe];
@@ -121,9 +122,9 @@ int WindowAdjustment::pose_of(int keyframe, int* poses) {
   return (*poses)++;
 }
 
-void WindowAdjustment::fill(int seen_in, int points, int* poses) {
+void KeyframeAdjustment::fill(int seen_in, int points, int* poses) {
   for (int p = 0; p < points; ++p) {
-    const WindowPoint& point = map_.point(row_[p]);
+    const KeyframePoint& point = map_.point(row_[p]);
     for (int c = 0; c < seen_in; ++c)
       pixel_[c * settings_.max_features + p] = map_.keyframes.pixels(keyframe_[c])[row_[p]];
     ray_[p] = point.ray_K;
@@ -132,7 +133,7 @@ void WindowAdjustment::fill(int seen_in, int points, int* poses) {
   }
 }
 
-bool WindowAdjustment::run(bool settled) {
+bool KeyframeAdjustment::run(bool settled) {
   const bool with_lens = settled && map_.lens().rows().count > 0;
   const int free = choose_free(settled);
   if (free < 1) return false;
@@ -171,7 +172,7 @@ bool WindowAdjustment::run(bool settled) {
                                  rounds};
   const Scalar inflation = noise_.correlation_frames();
   Camera camera = map_.camera();
-  Scalar information[WindowLens::kMaxEntries];
+  Scalar information[KeyframeLens::kMaxEntries];
   lens_information(settings_.lens, inflation, information);
   const BundleLens lens = {map_.lens().rows(), information, settings_.camera, &camera, host_pixel_, ray_};
   for (int p = 0; p < points && with_lens; ++p) host_pixel_[p] = map_.host_pixel(row_[p]);
@@ -195,7 +196,7 @@ bool WindowAdjustment::run(bool settled) {
   if (determined) note_covariance(inflation * (P + P.transpose()) / 2, free, seen_in);
   if (with_lens) {
     map_.move_lens(camera);
-    Scalar covariance[WindowLens::kMaxEntries];
+    Scalar covariance[KeyframeLens::kMaxEntries];
     if (determined) {
       adjuster_.lens_covariance(covariance);
       map_.lens().set_covariance(covariance, inflation);
@@ -210,7 +211,7 @@ bool WindowAdjustment::run(bool settled) {
 /// H, which moves everything:
 ///
 ///   theta = theta_H + dtheta,  p = p_H + R_H dp:   P = P_dd + A P_H Aᵀ,   A = [I 0; -[p - p_H]x I]
-void WindowAdjustment::note_covariance(const Mat6& given_held, int free, int seen_in) {
+void KeyframeAdjustment::note_covariance(const Mat6& given_held, int free, int seen_in) {
   map_covariance_ = given_held;
   int held = -1;
   for (int c = free; c < seen_in && is_away_; ++c)
@@ -223,7 +224,7 @@ void WindowAdjustment::note_covariance(const Mat6& given_held, int free, int see
   map_.keyframes[keyframe_[free - 1]].covariance = map_covariance_;
 }
 
-void WindowAdjustment::take_back(int free, int points) {
+void KeyframeAdjustment::take_back(int free, int points) {
   for (int c = 0; c < free; ++c) {
     Keyframe& k = map_.keyframes[keyframe_[c]];
     k.q_WC = pose_[c].q_WC;
@@ -231,7 +232,7 @@ void WindowAdjustment::take_back(int free, int points) {
   }
   put_target_back();
   for (int p = 0; p < points; ++p) {
-    WindowPoint& point = map_.point(row_[p]);
+    KeyframePoint& point = map_.point(row_[p]);
     if (!map_.feature(row_[p]).is_target) {
       point.rho = rho_[p];
       point.variance = variance_of(row_[p]);
@@ -245,8 +246,8 @@ void WindowAdjustment::take_back(int free, int points) {
 }
 
 /// Forgets pixels of a point that are not where it is.
-void WindowAdjustment::reject_outliers(int i) {
-  const WindowPoint& point = map_.point(i);
+void KeyframeAdjustment::reject_outliers(int i) {
+  const KeyframePoint& point = map_.point(i);
   const Keyframe& host = map_.keyframes[point.host];
   const Vec3 ray_W = map_.ray_W(i);
   const Scalar bound = kOutlierSigmas * std::max(noise_.sigma_gate(), kMinSigma);
@@ -263,8 +264,8 @@ void WindowAdjustment::reject_outliers(int i) {
 }
 
 /// By one step of Gauss-Newton from where the point is:  rho + sum J.r / sum J²,  variance sigma² / sum J².
-WindowAdjustment::PixelDepth WindowAdjustment::depth_by_pixels(int i) const {
-  const WindowPoint& point = map_.point(i);
+KeyframeAdjustment::PixelDepth KeyframeAdjustment::depth_by_pixels(int i) const {
+  const KeyframePoint& point = map_.point(i);
   const Keyframe& host = map_.keyframes[point.host];
   const Vec3 ray_W = map_.ray_W(i);
   Scalar information = 0, gradient = 0;

@@ -2,20 +2,20 @@
 
 #include <cstdint>
 
-#include "slam/noise_model.h"
-#include "slam/start.h"
-#include "slam/window_map.h"
-#include "slam/window_planes.h"
-#include "window/adjust.h"
+#include "bundle/adjust.h"
+#include "frame/noise_model.h"
+#include "frame/start/start.h"
+#include "keyframe_slam/map/keyframe_map.h"
+#include "keyframe_slam/planes/planes.h"
 
 /// Adjusts keyframes and the points that they see, with a few older keyframes that see the same points held fixed. Points on a plane are
 /// held to it, and the plane is adjusted with them; so is the lens, where the settings say that it is uncertain.
 
 namespace pf {
 
-class WindowAdjustment {
+class KeyframeAdjustment {
  public:
-  WindowAdjustment(const Settings& settings, WindowMap& map, WindowPlanes& planes, const NoiseModel& noise)
+  KeyframeAdjustment(const Settings& settings, KeyframeMap& map, KeyframePlanes& planes, const NoiseModel& noise)
       : settings_(settings), map_(map), planes_(planes), noise_(noise) {}
 
   bool layout(Arena& arena);
@@ -67,8 +67,8 @@ class WindowAdjustment {
   void reject_outliers(int i);
 
   const Settings& settings_;
-  WindowMap& map_;
-  WindowPlanes& planes_;
+  KeyframeMap& map_;
+  KeyframePlanes& planes_;
   const NoiseModel& noise_;
   BundleAdjuster adjuster_;
   Mat6 map_covariance_ = Mat6::Zero();

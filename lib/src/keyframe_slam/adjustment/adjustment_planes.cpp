@@ -1,18 +1,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slam/window_adjustment.h"
-#include "window/tuning.h"
+#include "bundle/tuning.h"
+#include "keyframe_slam/adjustment/adjustment.h"
+#include "keyframe_slam/adjustment/tuning.h"
 
-/// The planes of WindowAdjustment, and the points on them.
+/// The planes of KeyframeAdjustment, and the points on them.
 
 namespace pf {
 
-using namespace tuning::window_adjustment;
+using namespace tuning::keyframe_adjustment;
 
 /// Points of the planes in sight that the keyframes of the bundle do not see: what they say of their planes belongs there. Returns how many
 /// points there are with them.
-int WindowAdjustment::add_plane_points(int points) {
+int KeyframeAdjustment::add_plane_points(int points) {
   const int seen = points;
   for (int i = 0; i < map_.capacity(); ++i) {
     if (!map_.used(i) || !map_.point(i).has_depth || map_.point(i).plane < 0) continue;
@@ -24,7 +25,7 @@ int WindowAdjustment::add_plane_points(int points) {
 }
 
 /// Holds a point that the bundle has no pixels of, from one row on, by what those of its keyframes say.
-void WindowAdjustment::hold_by_pixels(int first, int points) {
+void KeyframeAdjustment::hold_by_pixels(int first, int points) {
   for (int p = first; p < points; ++p) {
     const PixelDepth depth = depth_by_pixels(row_[p]);
     prior_[p] = depth.variance > Scalar(0) ? RhoPrior{depth.rho, std::sqrt(depth.variance)} : RhoPrior{rho_[p], 0};
@@ -34,7 +35,7 @@ void WindowAdjustment::hold_by_pixels(int first, int points) {
 /// Whether a point's own pixels place it on a plane, within its roughness.
 ///
 ///   e² < gate (roughness² + (de/drho)² variance)
-bool WindowAdjustment::fits_plane(const BundlePlane& plane, int i) const {
+bool KeyframeAdjustment::fits_plane(const BundlePlane& plane, int i) const {
   const PixelDepth depth = depth_by_pixels(i);
   if (!(depth.rho > tuning::adjust::kMinPlaneRho)) return false;
   Mat13 J_plane;
@@ -46,7 +47,7 @@ bool WindowAdjustment::fits_plane(const BundlePlane& plane, int i) const {
 }
 
 /// Planes with enough points in the bundle; points that do not fit are not held to them. Returns how many planes.
-int WindowAdjustment::add_planes(int points) {
+int KeyframeAdjustment::add_planes(int points) {
   int planes = 0;
   std::fill(plane_of_, plane_of_ + points, -1);
   for (int k = 0; k < planes_.capacity(); ++k) {
@@ -67,7 +68,7 @@ int WindowAdjustment::add_planes(int points) {
   return planes;
 }
 
-void WindowAdjustment::take_planes_back(int planes, bool determined) {
+void KeyframeAdjustment::take_planes_back(int planes, bool determined) {
   for (int j = 0; j < planes && determined; ++j)
     planes_.take_adjusted(plane_row_[j], plane_[j].x, adjuster_.plane_covariance(j));
 }

@@ -1,16 +1,16 @@
 #include <algorithm>
 
-#include "slam/window_adjustment.h"
-#include "window/tuning.h"
+#include "keyframe_slam/adjustment/adjustment.h"
+#include "keyframe_slam/adjustment/tuning.h"
 
-/// What holds the scale of WindowAdjustment, where fixed keyframes do not: the target's points, or a distance.
+/// What holds the scale of KeyframeAdjustment, where fixed keyframes do not: the target's points, or a distance.
 
 namespace pf {
 
-using namespace tuning::window_adjustment;
+using namespace tuning::keyframe_adjustment;
 
 /// Whether two keyframes at least, of those that hang together, see points of the target, which then holds the map where it is.
-bool WindowAdjustment::is_held_by_target() const {
+bool KeyframeAdjustment::is_held_by_target() const {
   int keyframes = 0;
   for (int k = 0; k < map_.keyframes.capacity(); ++k) {
     if (!is_connected_[k]) continue;
@@ -25,7 +25,7 @@ bool WindowAdjustment::is_held_by_target() const {
 /// The target's points have a fixed pose as host, and their inverse depths are known.
 ///
 ///   sigma_rho = sigma_m rho²
-void WindowAdjustment::add_target(int points, int* poses) {
+void KeyframeAdjustment::add_target(int points, int* poses) {
   const int host = *poses;
   for (int p = 0; p < points; ++p) {
     const Feature& f = map_.feature(row_[p]);
@@ -43,7 +43,7 @@ void WindowAdjustment::add_target(int points, int* poses) {
 
 /// Of many keyframes of which but one is fixed: the distance from that one of the farthest of the older half of the others. False where
 /// other keyframes, or the target, hold the scale.
-bool WindowAdjustment::hold_distance(int free, int seen_in, BundleDistance* held) const {
+bool KeyframeAdjustment::hold_distance(int free, int seen_in, BundleDistance* held) const {
   if (seen_in != free + 1 || is_held_by_target() || connected_ < 2 * kHeldKeyframes) return false;
   held->pose = -1;
   held->from_W = pose_[free].p_W;
@@ -59,7 +59,7 @@ bool WindowAdjustment::hold_distance(int free, int seen_in, BundleDistance* held
 }
 
 /// The keyframe that hosts the target's points has moved; they have not.
-void WindowAdjustment::put_target_back() {
+void KeyframeAdjustment::put_target_back() {
   for (int i = 0; i < map_.capacity(); ++i)
     if (map_.used(i) && map_.feature(i).is_target) map_.place(i, target_.point_W[map_.feature(i).external_id]);
 }

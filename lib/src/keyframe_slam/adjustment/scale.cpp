@@ -1,8 +1,8 @@
-#include "slam/window_scale.h"
+#include "keyframe_slam/adjustment/scale.h"
 
 namespace pf {
 
-void scale_window(Scalar s, const Vec3& c_W, WindowMap* map, WindowPlanes* planes, WindowMotion* motion) {
+void scale_window(Scalar s, const Vec3& c_W, KeyframeMap* map, KeyframePlanes* planes, KeyframeMotion* motion) {
   const auto move = [&](Vec3* p_W) { *p_W = c_W + s * (*p_W - c_W); };
   for (int k = 0; k < map->keyframes.capacity(); ++k) {
     if (!map->keyframes.used(k)) continue;
@@ -13,7 +13,7 @@ void scale_window(Scalar s, const Vec3& c_W, WindowMap* map, WindowPlanes* plane
   }
   for (int i = 0; i < map->capacity(); ++i) {
     if (!map->used(i)) continue;
-    WindowPoint& point = map->point(i);
+    KeyframePoint& point = map->point(i);
     point.rho /= s;
     point.variance /= s * s;
     move(&point.seen_from.c_W);

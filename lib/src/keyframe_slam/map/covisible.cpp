@@ -1,4 +1,4 @@
-#include "slam/window_covisible.h"
+#include "keyframe_slam/map/covisible.h"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@ namespace {
 
 /// Points with a depth that a keyframe saw.
 template <typename Use>
-void for_each_point(const WindowMap& map, int keyframe, const Use& use) {
+void for_each_point(const KeyframeMap& map, int keyframe, const Use& use) {
   const BundlePixel* pixels = map.keyframes.pixels(keyframe);
   for (int i = 0; i < map.capacity(); ++i)
     if (pixels[i].seen && map.used(i) && map.point(i).has_depth) use(i);
@@ -15,7 +15,7 @@ void for_each_point(const WindowMap& map, int keyframe, const Use& use) {
 
 }  // namespace
 
-int connected_keyframes(const WindowMap& map, int least, bool* connected, bool* scratch) {
+int connected_keyframes(const KeyframeMap& map, int least, bool* connected, bool* scratch) {
   const KeyframeTable& keyframes = map.keyframes;
   std::fill(connected, connected + keyframes.capacity(), false);
   std::fill(scratch, scratch + map.capacity(), false);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slam/window_map.h"
+#include "keyframe_slam/map/keyframe_map.h"
 
 /// Which keyframes hang together.
 
@@ -14,6 +14,6 @@ namespace pf {
 ///
 /// What is connected no other way has a scale and a place of its own: nothing that is adjusted says how long its lengths are in those of
 /// the rest.
-int connected_keyframes(const WindowMap& map, int least, bool* connected, bool* scratch);
+int connected_keyframes(const KeyframeMap& map, int least, bool* connected, bool* scratch);
 
 }  // namespace pf

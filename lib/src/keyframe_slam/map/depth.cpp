@@ -1,15 +1,15 @@
-#include "slam/window_depth.h"
+#include "keyframe_slam/map/depth.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "window/adjust.h"
-#include "window/tuning.h"
+#include "bundle/adjust.h"
+#include "keyframe_slam/map/tuning.h"
 
 namespace pf {
 namespace {
 
-using namespace tuning::window_depth;
+using namespace tuning::keyframe_depth;
 
 /// Sums of one view's pixel. False where the point does not project.
 struct DepthSums {
@@ -30,9 +30,9 @@ struct DepthSums {
 
 }  // namespace
 
-bool fit_depth(const Camera& camera, const WindowMap& map, int i, const CameraView& now, const Vec2& pixel,
+bool fit_depth(const Camera& camera, const KeyframeMap& map, int i, const CameraView& now, const Vec2& pixel,
                DepthFit* fit) {
-  const WindowPoint& point = map.point(i);
+  const KeyframePoint& point = map.point(i);
   const Keyframe& host = map.keyframes[point.host];
   const Vec3 ray_W = map.ray_W(i);
   Vec3 ray_C;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slam/window_map.h"
+#include "keyframe_slam/map/keyframe_map.h"
 
 /// Depth of a point from the pixels of its keyframes and of this frame, their poses taken as exact.
 
@@ -19,7 +19,7 @@ struct DepthFit {
 ///
 /// r, d   unit rays in W of the host and of the frame
 /// false  the rays are parallel or meet behind the host, or the fit is not in front of a camera; fit->cos_parallax is set all the same
-bool fit_depth(const Camera& camera, const WindowMap& map, int i, const CameraView& now, const Vec2& pixel,
+bool fit_depth(const Camera& camera, const KeyframeMap& map, int i, const CameraView& now, const Vec2& pixel,
                DepthFit* fit);
 
 }  // namespace pf

@@ -1,36 +1,36 @@
-#include "slam/window_map.h"
+#include "keyframe_slam/map/keyframe_map.h"
 
 #include <algorithm>
 
-#include "slam/feature_upkeep.h"
-#include "slam/tuning.h"
-#include "slam/window_rows.h"
-#include "window/tuning.h"
+#include "frame/feature_upkeep.h"
+#include "frame/tuning.h"
+#include "keyframe_slam/map/rows.h"
+#include "keyframe_slam/map/tuning.h"
 
 namespace pf {
 
-using namespace tuning::window_map;
+using namespace tuning::keyframe_map;
 
-bool WindowMap::layout(Arena& arena) {
+bool KeyframeMap::layout(Arena& arena) {
   const int points = settings_.max_features;
-  point_ = arena.take<WindowPoint>(static_cast<std::size_t>(points));
+  point_ = arena.take<KeyframePoint>(static_cast<std::size_t>(points));
   scratch_ = arena.take<Scalar>(static_cast<std::size_t>(points));
   return keyframes.layout(arena, kKeyframes, points);
 }
 
-void WindowMap::init() {
+void KeyframeMap::init() {
   lens_.init(settings_.camera, settings_.lens);
   keyframes.init();
-  for (int i = 0; i < capacity(); ++i) point_[i] = WindowPoint();
+  for (int i = 0; i < capacity(); ++i) point_[i] = KeyframePoint();
 }
 
-HostPixel WindowMap::host_pixel(int i) const {
+HostPixel KeyframeMap::host_pixel(int i) const {
   HostPixel host = {Vec2::Zero(), false};
   host.given = !map_.features[i].is_target && project(camera(), point_[i].ray_K, &host.pixel);
   return host;
 }
 
-void WindowMap::move_lens(const Camera& camera) {
+void KeyframeMap::move_lens(const Camera& camera) {
   for (int i = 0; i < capacity(); ++i) {
     if (!used(i)) continue;
     const HostPixel host = host_pixel(i);
@@ -39,15 +39,15 @@ void WindowMap::move_lens(const Camera& camera) {
   lens_.move(camera);
 }
 
-int WindowMap::placed() const {
+int KeyframeMap::placed() const {
   int placed = 0;
   for (int i = 0; i < capacity(); ++i) placed += used(i) && point_[i].has_depth ? 1 : 0;
   return placed;
 }
 
 ///   p = c + r / rho:   Sigma = r rᵀ var(rho) / rho^4 + (I - r rᵀ) sigma_b² / rho²
-Mat3 WindowMap::covariance(int i) const {
-  const WindowPoint& point = point_[i];
+Mat3 KeyframeMap::covariance(int i) const {
+  const KeyframePoint& point = point_[i];
   const Vec3 ray = ray_W(i);
   const Scalar depth = 1 / point.rho;
   const Scalar across = tuning::noise::kReferenceSigma / camera().fx * depth;
@@ -55,12 +55,12 @@ Mat3 WindowMap::covariance(int i) const {
   return along * ray * ray.transpose() + across * across * (Mat3::Identity() - Mat3(ray * ray.transpose()));
 }
 
-BlockKind WindowMap::kind(int i) const {
+BlockKind KeyframeMap::kind(int i) const {
   if (!point_[i].has_depth) return BlockKind::kInverseDepth;
   return point_[i].plane >= 0 ? BlockKind::kPlanePoint : BlockKind::kPoint;
 }
 
-Scalar WindowMap::median_depth(const Quat& q_WC, const Vec3& p_W) const {
+Scalar KeyframeMap::median_depth(const Quat& q_WC, const Vec3& p_W) const {
   const Vec3 forward = q_WC.toRotationMatrix().col(2);
   int count = 0;
   for (int t = 0; t < frame_.match_count(); ++t) {
@@ -73,7 +73,7 @@ Scalar WindowMap::median_depth(const Quat& q_WC, const Vec3& p_W) const {
   return scratch_[count / 2];
 }
 
-int WindowMap::add(int host, const Vec2& pixel) {
+int KeyframeMap::add(int host, const Vec2& pixel) {
   Vec3 ray_C;
   if (!unproject(camera(), pixel, &ray_C)) return -1;
   if (map_.features.count() >= capacity()) {
@@ -87,8 +87,8 @@ int WindowMap::add(int host, const Vec2& pixel) {
   f.observations = f.attempts = 1;
   f.last_seen_ns = frame_.report.t_ns;
   const Keyframe& keyframe = keyframes[host];
-  WindowPoint& point = point_[i];
-  point = WindowPoint();
+  KeyframePoint& point = point_[i];
+  point = KeyframePoint();
   point.host = host;
   point.ray_K = ray_C.normalized();
   point.faces_host = true;
@@ -100,7 +100,7 @@ int WindowMap::add(int host, const Vec2& pixel) {
   return i;
 }
 
-int WindowMap::add_placed(int host, const Vec3& p_W) {
+int KeyframeMap::add_placed(int host, const Vec3& p_W) {
   const Keyframe& keyframe = keyframes[host];
   const Vec3 at = keyframe.q_WC.conjugate() * (p_W - keyframe.p_W);
   Vec2 pixel;
@@ -111,8 +111,8 @@ int WindowMap::add_placed(int host, const Vec3& p_W) {
   return i;
 }
 
-void WindowMap::place(int i, const Vec3& p_W) {
-  WindowPoint& point = point_[i];
+void KeyframeMap::place(int i, const Vec3& p_W) {
+  KeyframePoint& point = point_[i];
   const Keyframe& host = keyframes[point.host];
   const Vec3 at = host.q_WC.conjugate() * (p_W - host.p_W);
   point.ray_K = at.normalized();
@@ -120,15 +120,15 @@ void WindowMap::place(int i, const Vec3& p_W) {
   point.has_depth = true;
 }
 
-void WindowMap::drop(int i) {
+void KeyframeMap::drop(int i) {
   frame_.forget(i);
   map_.features.remove(i);
-  point_[i] = WindowPoint();
+  point_[i] = KeyframePoint();
   keyframes.forget_point(i);
   ++frame_.report.evicted;
 }
 
-void WindowMap::move_views(const CameraView& newest_before) {
+void KeyframeMap::move_views(const CameraView& newest_before) {
   const Keyframe& newest = keyframes[keyframes.newest()];
   const Quat q = newest.q_WC * newest_before.q_WC.conjugate();
   for (int i = 0; i < capacity(); ++i) {
@@ -139,15 +139,15 @@ void WindowMap::move_views(const CameraView& newest_before) {
   }
 }
 
-void WindowMap::drop_failing() {
+void KeyframeMap::drop_failing() {
   for (int i = 0; i < capacity(); ++i) {
     if (!used(i) || map_.features[i].is_target) continue;
-    const WindowPoint& point = point_[i];
+    const KeyframePoint& point = point_[i];
     if (fails_too_often(map_.features[i]) || (point.has_depth && !(point.rho > Scalar(0)))) drop(i);
   }
 }
 
-int WindowMap::add_keyframe(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W) {
+int KeyframeMap::add_keyframe(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W) {
   if (keyframes.count() >= keyframes.capacity()) remove_keyframe(least_useful_keyframe());
   const int k = keyframes.add(t_ns, q_WC, p_W);
   for (int t = 0; t < frame_.match_count(); ++t) {
@@ -158,8 +158,8 @@ int WindowMap::add_keyframe(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W
   return k;
 }
 
-void WindowMap::correct_rows(int i, Scalar rho) {
-  WindowPoint& point = point_[i];
+void KeyframeMap::correct_rows(int i, Scalar rho) {
+  KeyframePoint& point = point_[i];
   const Vec3 at_W = position_at(i, rho);
   for (int k = 0; k < keyframes.capacity(); ++k) {
     const Keyframe& keyframe = keyframes[k];
@@ -183,7 +183,7 @@ void WindowMap::correct_rows(int i, Scalar rho) {
   }
 }
 
-void WindowMap::keep_first_keyframe() {
+void KeyframeMap::keep_first_keyframe() {
   for (int k = 0; k < keyframes.capacity(); ++k) {
     if (!keyframes.used(k) || keyframes[k].number == 1) continue;
     for (int i = 0; i < capacity(); ++i)
@@ -193,7 +193,7 @@ void WindowMap::keep_first_keyframe() {
 }
 
 /// The one that saw the fewest of the points that there are, and is not in the window; the older one among equals.
-int WindowMap::least_useful_keyframe() const {
+int KeyframeMap::least_useful_keyframe() const {
   int worst = -1, fewest = 0;
   for (int k = 0; k < keyframes.capacity(); ++k) {
     if (!keyframes.used(k) || keyframes[k].number > keyframes.numbered() - settings_.window_keyframes) continue;
@@ -207,7 +207,7 @@ int WindowMap::least_useful_keyframe() const {
 }
 
 /// Its points go to the newest keyframe that saw them; where there is none they are dropped.
-void WindowMap::remove_keyframe(int k) {
+void KeyframeMap::remove_keyframe(int k) {
   for (int i = 0; i < capacity(); ++i) {
     if (!used(i) || point_[i].host != k) continue;
     int host = -1;
@@ -215,7 +215,7 @@ void WindowMap::remove_keyframe(int k) {
       if (other == k || !keyframes.used(other) || !keyframes.pixels(other)[i].seen) continue;
       if (host < 0 || keyframes[other].number > keyframes[host].number) host = other;
     }
-    WindowPoint& point = point_[i];
+    KeyframePoint& point = point_[i];
     const bool stays = host >= 0 && point.has_depth;
     const Vec3 at = stays ? Vec3(keyframes[host].q_WC.conjugate() * (position(i) - keyframes[host].p_W)) : Vec3::Zero();
     if (!stays || !(at.squaredNorm() > Scalar(0))) {

@@ -1,17 +1,17 @@
 #pragma once
 
+#include "frame/frame.h"
+#include "frame/settings.h"
+#include "keyframe_slam/map/keyframe_table.h"
+#include "keyframe_slam/map/lens.h"
 #include "map/map.h"
-#include "slam/frame.h"
-#include "slam/keyframe_table.h"
-#include "slam/settings.h"
-#include "slam/window_lens.h"
 
 /// Points and keyframes of the window. A point is a bearing and an inverse depth in the keyframe that saw it first, its host.
 
 namespace pf {
 
 /// Beside its row in the feature table, with the same number.
-struct WindowPoint {
+struct KeyframePoint {
   int host = -1;  ///< keyframe
   Vec3 ray_K = Vec3::UnitZ();
   Scalar rho = 0;             ///< [1/m] along ray_K, which has length 1
@@ -23,9 +23,9 @@ struct WindowPoint {
   CameraView seen_from;
 };
 
-class WindowMap {
+class KeyframeMap {
  public:
-  WindowMap(const Settings& settings, Map& map, Frame& frame) : settings_(settings), map_(map), frame_(frame) {}
+  KeyframeMap(const Settings& settings, Map& map, Frame& frame) : settings_(settings), map_(map), frame_(frame) {}
 
   bool layout(Arena& arena);
   void init();
@@ -34,8 +34,8 @@ class WindowMap {
 
   /// As it is known now.
   const Camera& camera() const { return lens_.camera(); }
-  WindowLens& lens() { return lens_; }
-  const WindowLens& lens() const { return lens_; }
+  KeyframeLens& lens() { return lens_; }
+  const KeyframeLens& lens() const { return lens_; }
   /// Another estimate of the lens: bearings become those of the same pixels of their hosts. Points of the target stay where they are.
   void move_lens(const Camera& camera);
   /// Where a point's host saw it, by the lens as it is known now.
@@ -43,8 +43,8 @@ class WindowMap {
 
   int capacity() const { return map_.features.capacity(); }
   bool used(int i) const { return map_.features.used(i); }
-  WindowPoint& point(int i) { return point_[i]; }
-  const WindowPoint& point(int i) const { return point_[i]; }
+  KeyframePoint& point(int i) { return point_[i]; }
+  const KeyframePoint& point(int i) const { return point_[i]; }
   Feature& feature(int i) { return map_.features[i]; }
   const Feature& feature(int i) const { return map_.features[i]; }
   Map& tables() { return map_; }
@@ -91,8 +91,8 @@ class WindowMap {
   const Settings& settings_;
   Map& map_;
   Frame& frame_;
-  WindowLens lens_;
-  WindowPoint* point_ = nullptr;
+  KeyframeLens lens_;
+  KeyframePoint* point_ = nullptr;
   Scalar* scratch_ = nullptr;  ///< one for each point
 };
 

@@ -6,7 +6,7 @@
 
 namespace pf {
 
-class WindowLens {
+class KeyframeLens {
  public:
   static constexpr int kMaxEntries = kLensParameters * kLensParameters;  ///< of a matrix of its rows, row-major
 

@@ -1,26 +1,26 @@
-#include "slam/window_planes.h"
+#include "keyframe_slam/planes/planes.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "slam/plane_settings.h"
-#include "slam/tuning.h"
-#include "window/tuning.h"
+#include "frame/plane_settings.h"
+#include "frame/tuning.h"
+#include "keyframe_slam/planes/tuning.h"
 
 namespace pf {
 
 namespace same = tuning::plane_lifecycle;
 namespace member = tuning::plane_keeper;
 
-bool WindowPlanes::layout(Arena& arena) {
+bool KeyframePlanes::layout(Arena& arena) {
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
-  plane_ = arena.take<WindowPlane>(static_cast<std::size_t>(settings_.max_planes));
+  plane_ = arena.take<KeyframePlane>(static_cast<std::size_t>(settings_.max_planes));
   candidate_ = arena.take<PlaneCandidate>(points);
   point_W_ = arena.take<Vec3>(points);
   return arena.ok();
 }
 
-void WindowPlanes::maintain(const Vec3& viewer_W) {
+void KeyframePlanes::maintain(const Vec3& viewer_W) {
   for (int k = 0; k < table_.capacity(); ++k) {
     if (!table_.used(k)) continue;
     ++table_[k].age;
@@ -38,7 +38,7 @@ void WindowPlanes::maintain(const Vec3& viewer_W) {
 }
 
 /// Lists the points on a plane. Returns how many.
-int WindowPlanes::list_points(int k) {
+int KeyframePlanes::list_points(int k) {
   int count = 0;
   for (int i = 0; i < map_.capacity(); ++i) {
     if (!map_.used(i) || !map_.point(i).has_depth || map_.point(i).plane != k) continue;
@@ -48,14 +48,14 @@ int WindowPlanes::list_points(int k) {
   return count;
 }
 
-int WindowPlanes::points_on(int k) const {
+int KeyframePlanes::points_on(int k) const {
   int count = 0;
   for (int i = 0; i < map_.capacity(); ++i) count += map_.used(i) && map_.point(i).plane == k ? 1 : 0;
   return count;
 }
 
 /// Whether a point is known well enough to be put on a plane.
-bool WindowPlanes::is_settled(int i, Mat3* covariance) const {
+bool KeyframePlanes::is_settled(int i, Mat3* covariance) const {
   if (!map_.used(i) || !map_.point(i).has_depth || map_.point(i).plane >= 0) return false;
   const Feature& f = map_.feature(i);
   if (f.is_target || f.failures > 0 || f.observations < member::kConverged) return false;
@@ -65,8 +65,8 @@ bool WindowPlanes::is_settled(int i, Mat3* covariance) const {
 }
 
 ///   d² < gate (nᵀ Sigma n + roughness² + variance of the plane there),   |d| < 2 max_distance,   nᵀ Sigma n <= max_distance²
-bool WindowPlanes::lies_on(int k, const Vec3& p_W, const Mat3& covariance) const {
-  const WindowPlane& plane = plane_[k];
+bool KeyframePlanes::lies_on(int k, const Vec3& p_W, const Mat3& covariance) const {
+  const KeyframePlane& plane = plane_[k];
   const Vec3 n = plane.frame.R_WP.col(2);
   const Vec3 r = plane.frame.R_WP.transpose() * (p_W - plane.frame.o_W);
   const Vec3 J(-r.x(), -r.y(), -1);  // of the distance by (a, b, h)
@@ -78,7 +78,7 @@ bool WindowPlanes::lies_on(int k, const Vec3& p_W, const Mat3& covariance) const
 }
 
 /// Gives a plane another frame, with the first axis along the old one's, and its outlines in it.
-void WindowPlanes::set_frame(int k, const PlaneFrame& frame) {
+void KeyframePlanes::set_frame(int k, const PlaneFrame& frame) {
   const PlaneFrame from = plane_[k].frame;
   plane_[k].frame = frame;
   for (PlaneOutline* known : {&table_[k].seen, &table_[k].support})
@@ -86,7 +86,7 @@ void WindowPlanes::set_frame(int k, const PlaneFrame& frame) {
       known->uv[i] = plane_coordinates(frame, plane_point(from, Vec3::Zero(), known->uv[i]));
 }
 
-bool WindowPlanes::take_adjusted(int k, const Vec3& x, const Mat3& covariance) {
+bool KeyframePlanes::take_adjusted(int k, const Vec3& x, const Mat3& covariance) {
   const PlaneFrame& old = plane_[k].frame;
   PlaneFrame frame;
   Vec3 n, zero;
@@ -105,10 +105,10 @@ bool WindowPlanes::take_adjusted(int k, const Vec3& x, const Mat3& covariance) {
   return true;
 }
 
-void WindowPlanes::scale(Scalar s, const Vec3& c_W) {
+void KeyframePlanes::scale(Scalar s, const Vec3& c_W) {
   for (int k = 0; k < table_.capacity(); ++k) {
     if (!table_.used(k)) continue;
-    WindowPlane& plane = plane_[k];
+    KeyframePlane& plane = plane_[k];
     plane.frame.o_W = c_W + s * (plane.frame.o_W - c_W);
     plane.covariance.row(2) *= s;
     plane.covariance.col(2) *= s;
@@ -118,7 +118,7 @@ void WindowPlanes::scale(Scalar s, const Vec3& c_W) {
 }
 
 /// Takes points off a plane that they have left, and lists the others. Returns how many stay.
-int WindowPlanes::drop_distant_points(int k) {
+int KeyframePlanes::drop_distant_points(int k) {
   const PlaneFrame& frame = plane_[k].frame;
   const int count = list_points(k);
   int kept = 0;
@@ -137,7 +137,7 @@ int WindowPlanes::drop_distant_points(int k) {
 /// Fits a plane to its points again, without those that have left it.
 ///
 ///   covariance of (a, b, h) = sum J_i (Sigma_i + roughness² n nᵀ) J_iᵀ,   J_i of fit_plane_jacobian
-void WindowPlanes::refit(int k) {
+void KeyframePlanes::refit(int k) {
   const PlaneFrame old = plane_[k].frame;
   const Vec3 n_old = old.R_WP.col(2);
   const int kept = drop_distant_points(k);
@@ -165,14 +165,14 @@ void WindowPlanes::refit(int k) {
   set_frame(k, frame);
 }
 
-void WindowPlanes::put_on(int k, int i) {
+void KeyframePlanes::put_on(int k, int i) {
   map_.point(i).plane = static_cast<std::int8_t>(k);
   const Vec2 uv = plane_coordinates(plane_[k].frame, map_.position(i));
   extend_outline(&table_[k].support, &uv, 1);
 }
 
 /// Points that lie on the plane, near to what is known of it.
-void WindowPlanes::take_points(int k) {
+void KeyframePlanes::take_points(int k) {
   const Scalar reach = std::min(member::kReach * std::sqrt(outline_area(table_[k].support)), settings_.plane_radius);
   for (int i = 0; i < map_.capacity(); ++i) {
     Mat3 covariance;
@@ -185,7 +185,7 @@ void WindowPlanes::take_points(int k) {
 }
 
 /// Extends what was seen of a plane by the points that are on it now.
-void WindowPlanes::outline(int k) {
+void KeyframePlanes::outline(int k) {
   const int count = list_points(k);
   Vec2 uv[kOutlineBatch];
   for (int c = 0; c < count;) {
@@ -196,7 +196,7 @@ void WindowPlanes::outline(int k) {
 }
 
 /// Looks for one new plane among points that lie on none yet.
-void WindowPlanes::discover(const Vec3& viewer_W) {
+void KeyframePlanes::discover(const Vec3& viewer_W) {
   const std::uint32_t search_number = searches_++;
   int count = 0;
   const Scalar near = 2 * settings_.plane_distance;
@@ -228,7 +228,7 @@ void WindowPlanes::discover(const Vec3& viewer_W) {
 }
 
 /// Merges one plane into another that its points lie on as well.
-void WindowPlanes::merge() {
+void KeyframePlanes::merge() {
   for (int k = 0; k < table_.capacity(); ++k)
     for (int other = 0; other < table_.capacity(); ++other) {
       if (k == other || !table_.used(k) || !table_.used(other) || points_on(other) > points_on(k)) continue;
@@ -252,7 +252,7 @@ void WindowPlanes::merge() {
     }
 }
 
-void WindowPlanes::dissolve_weak() {
+void KeyframePlanes::dissolve_weak() {
   for (int k = 0; k < table_.capacity(); ++k) {
     if (!table_.used(k)) continue;
     const int points = points_on(k);
@@ -260,11 +260,11 @@ void WindowPlanes::dissolve_weak() {
     entry.max_points = std::max<int>(entry.max_points, points);
     const bool proven = entry.max_points > settings_.plane_min_points;
     entry.weak = points < same::kMinPoints || !proven ? entry.weak + 1 : 0;
-    if (entry.outliers > points || entry.weak > tuning::window_planes::kMaxWeak) dissolve(k);
+    if (entry.outliers > points || entry.weak > tuning::keyframe_planes::kMaxWeak) dissolve(k);
   }
 }
 
-void WindowPlanes::dissolve(int k) {
+void KeyframePlanes::dissolve(int k) {
   for (int i = 0; i < map_.capacity(); ++i)
     if (map_.used(i) && map_.point(i).plane == k) map_.point(i).plane = -1;
   table_.remove(k);

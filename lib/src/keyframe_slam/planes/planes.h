@@ -2,23 +2,23 @@
 
 #include <cstdint>
 
+#include "keyframe_slam/map/keyframe_map.h"
 #include "map/plane_search.h"
-#include "slam/window_map.h"
 
 /// Planes of the window: found among its points, fitted again with every adjustment, merged and dissolved (lib/docs/window.md).
 
 namespace pf {
 
 /// Beside its row in the plane table, with the same number. The plane lies in its frame.
-struct WindowPlane {
+struct KeyframePlane {
   PlaneFrame frame;
   Mat3 covariance = Mat3::Zero();  ///< of (a, b, h), given the keyframes that the last adjustment held fixed
   bool adjusted = false;           ///< the adjustment of this keyframe has set it
 };
 
-class WindowPlanes {
+class KeyframePlanes {
  public:
-  WindowPlanes(const Settings& settings, WindowMap& map)
+  KeyframePlanes(const Settings& settings, KeyframeMap& map)
       : settings_(settings), map_(map), table_(map.tables().planes) {}
 
   bool layout(Arena& arena);
@@ -27,7 +27,7 @@ class WindowPlanes {
   /// The work of one keyframe, after its adjustment.
   void maintain(const Vec3& viewer_W);
 
-  const WindowPlane& plane(int k) const { return plane_[k]; }
+  const KeyframePlane& plane(int k) const { return plane_[k]; }
   int points_on(int k) const;
   bool used(int k) const { return table_.used(k); }
   int capacity() const { return table_.capacity(); }
@@ -54,9 +54,9 @@ class WindowPlanes {
   int list_points(int k);
 
   const Settings& settings_;
-  WindowMap& map_;
+  KeyframeMap& map_;
   PlaneTable& table_;
-  WindowPlane* plane_ = nullptr;         ///< max_planes
+  KeyframePlane* plane_ = nullptr;       ///< max_planes
   PlaneCandidate* candidate_ = nullptr;  ///< one for each point that is listed; its name is its row
   Vec3* point_W_ = nullptr;              ///< likewise
   std::uint32_t searches_ = 0;           ///< for new planes, so far

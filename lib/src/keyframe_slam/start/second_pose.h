@@ -4,7 +4,7 @@
 
 #include "base/eigen.h"
 #include "base/elapsed.h"
-#include "window/tuning.h"
+#include "keyframe_slam/start/tuning.h"
 
 namespace pf {
 
@@ -18,10 +18,10 @@ struct SecondPose {
 
   /// Whether a frame of this time is the one, or comes after it.
   bool has_come(std::int64_t frame_ns) const {
-    return frame_ns >= t_ns || elapsed_ns(frame_ns, t_ns) <= tuning::window_slam::kMaxSecondNs;
+    return frame_ns >= t_ns || elapsed_ns(frame_ns, t_ns) <= tuning::second_pose::kMaxSecondNs;
   }
   bool is_frame(std::int64_t frame_ns) const {
-    return has_come(frame_ns) && (frame_ns <= t_ns || elapsed_ns(t_ns, frame_ns) <= tuning::window_slam::kMaxSecondNs);
+    return has_come(frame_ns) && (frame_ns <= t_ns || elapsed_ns(t_ns, frame_ns) <= tuning::second_pose::kMaxSecondNs);
   }
 };
 

@@ -1,22 +1,23 @@
-#include "slam/window_start.h"
+#include "keyframe_slam/start/start.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "bundle/rotation_fit.h"
+#include "frame/start/target_surface.h"
+#include "frame/start/tuning.h"
+#include "frame/tuning.h"
 #include "geometry/so3.h"
-#include "slam/target_surface.h"
-#include "slam/tuning.h"
-#include "slam/window_depth.h"
-#include "window/rotation_fit.h"
-#include "window/tuning.h"
+#include "keyframe_slam/map/depth.h"
+#include "keyframe_slam/tracking/tuning.h"
 
 namespace pf {
 
-using namespace tuning::window_start;
+using namespace tuning::keyframe_start;
 namespace assumed = tuning::filter_start;
 
-bool WindowStart::layout(Arena& arena) {
+bool KeyframeStart::layout(Arena& arena) {
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
   ray_ = arena.take<Vec3>(points);
   pixel_ = arena.take<BundlePixel>(points);
@@ -26,13 +27,13 @@ bool WindowStart::layout(Arena& arena) {
   return without_.layout(arena);
 }
 
-void WindowStart::init() {
+void KeyframeStart::init() {
   data_ = Data();
   target_.init();
   without_.init();
 }
 
-void WindowStart::start_over() {
+void KeyframeStart::start_over() {
   clear_map();
   without_.init();
   data_.known = KnownBody();
@@ -40,28 +41,28 @@ void WindowStart::start_over() {
   if (parts_.map.tables().target_withdrawn) target_.init();
 }
 
-void WindowStart::clear_map() {
+void KeyframeStart::clear_map() {
   parts_.frame.forget_all();
   parts_.map.tables().features.clear();
   parts_.map.tables().planes.clear();
   parts_.map.init();
 }
 
-Status WindowStart::use_target(const Target& target) {
+Status KeyframeStart::use_target(const Target& target) {
   if (data_.second.given) return Status::kState;
   if (data_.known.given && target.kind == TargetKind::kRectangle) return Status::kState;
   target_.set_target(target);
   return Status::kOk;
 }
 
-Status WindowStart::use_pose(const KnownBody& known) {
+Status KeyframeStart::use_pose(const KnownBody& known) {
   if (target_.target().kind == TargetKind::kRectangle) return Status::kState;
   data_.known = known;
   data_.known.given = true;
   return Status::kOk;
 }
 
-Status WindowStart::use_second_pose(std::int64_t t_ns, const Vec3& p_W) {
+Status KeyframeStart::use_second_pose(std::int64_t t_ns, const Vec3& p_W) {
   if (target_.target().kind != TargetKind::kNone || data_.second.given) return Status::kState;
   data_.second = SecondPose();
   data_.second.given = true;
@@ -70,13 +71,13 @@ Status WindowStart::use_second_pose(std::int64_t t_ns, const Vec3& p_W) {
   return Status::kOk;
 }
 
-void WindowStart::end_second_pose() {
+void KeyframeStart::end_second_pose() {
   data_.second = SecondPose();
   without_.init();
 }
 
 /// The pose before the first measurement: the one that the caller gave, that of the target, or the one that defines the world.
-void WindowStart::set_pose(bool at_target) {
+void KeyframeStart::set_pose(bool at_target) {
   const int dim = settings_.body.known_rows();
   Body body = at_target ? target_.target().first_pose : Body();
   Mat6 P = at_target ? target_.target().first_covariance
@@ -100,7 +101,7 @@ void WindowStart::set_pose(bool at_target) {
   parts_.tracking.set_has_pose(parts_.frame.report.t_ns);
 }
 
-bool WindowStart::start_in_image() {
+bool KeyframeStart::start_in_image() {
   FrameReport& report = parts_.frame.report;
   TargetSighting sighting;
   const bool expected = target_.is_expected();
@@ -138,7 +139,7 @@ bool WindowStart::start_in_image() {
   return true;
 }
 
-void WindowStart::begin_record() {
+void KeyframeStart::begin_record() {
   if (!progress().recording || !without_.empty()) return;
   const Body& body = parts_.motion.body();
   std::fill(record_rho_, record_rho_ + StartRecord::kMaxFeatures, Scalar(1));
@@ -153,7 +154,7 @@ void WindowStart::begin_record() {
 
 /// The rotation that explains the picture best, from the first frame's rays. Accepts matches that are within a few times the typical
 /// parallax of it. False: too few.
-bool WindowStart::accept_rotation(int found) {
+bool KeyframeStart::accept_rotation(int found) {
   Frame& frame = parts_.frame;
   int count = 0;
   for (int t = 0; t < frame.match_count(); ++t) {
@@ -182,14 +183,14 @@ bool WindowStart::accept_rotation(int found) {
 }
 
 /// Of a match of the record, at the frame's time. An accepted one has it already.
-Vec2 WindowStart::pixel_of(const Match& match) const {
+Vec2 KeyframeStart::pixel_of(const Match& match) const {
   if (parts_.map.camera().readout == Scalar(0)) return match.measured;
   if (match.status == MatchStatus::kInlier) return parts_.map.point(match.feature).pixel;
   return progress().depth_known ? parts_.measuring.at_frame_time(match, settings_.start_depth)
                                 : parts_.measuring.followed_at_frame_time(match);
 }
 
-StartOutcome WindowStart::record_frame() {
+StartOutcome KeyframeStart::record_frame() {
   const Frame& frame = parts_.frame;
   const Body& body = parts_.motion.body();
   without_.begin_frame(body.q_WC, body.p_W, frame.report.t_ns);
@@ -202,11 +203,11 @@ StartOutcome WindowStart::record_frame() {
   return without_.solve(parts_.map.camera(), tuning::noise::kSearchSigma, settings_.start_depth);
 }
 
-void WindowStart::note_keyframe() {
+void KeyframeStart::note_keyframe() {
   if (progress().depth_known && data_.solved_before > kPatience) without_.init();
 }
 
-bool WindowStart::record_more() {
+bool KeyframeStart::record_more() {
   ++data_.solved_before;
   const StartOutcome outcome = record_frame();
   if (outcome != StartOutcome::kSolved && outcome != StartOutcome::kSettled) return false;
@@ -216,7 +217,7 @@ bool WindowStart::record_more() {
 }
 
 /// Points were last seen from poses of the record, which have just been adjusted: the next frame searches for them from there.
-void WindowStart::move_views() {
+void KeyframeStart::move_views() {
   const StartRecord& record = without_.record();
   for (int i = 0; i < parts_.map.capacity(); ++i) {
     if (!parts_.map.used(i)) continue;
@@ -228,7 +229,7 @@ void WindowStart::move_views() {
   }
 }
 
-bool WindowStart::follow_record() {
+bool KeyframeStart::follow_record() {
   Frame& frame = parts_.frame;
   const int found = parts_.measuring.follow(settings_.start_depth);
   const StartOutcome outcome = accept_rotation(found) ? record_frame() : StartOutcome::kTooFew;

@@ -1,30 +1,30 @@
 #pragma once
 
 #include "base/status.h"
-#include "slam/second_pose.h"
-#include "slam/start.h"
-#include "slam/start_at_target.h"
-#include "slam/start_without_target.h"
-#include "slam/window_adjustment.h"
-#include "slam/window_tracking.h"
+#include "frame/start/start.h"
+#include "frame/start/start_at_target.h"
+#include "frame/start/start_without_target.h"
+#include "keyframe_slam/adjustment/adjustment.h"
+#include "keyframe_slam/start/second_pose.h"
+#include "keyframe_slam/tracking/tracking.h"
 
 /// Starts the window in the way that the caller chose: at a known pose, at a target, or from a record of the first frames.
 
 namespace pf {
 
 /// The parts of the window that a start writes to.
-struct WindowParts {
-  WindowMap& map;
+struct KeyframeParts {
+  KeyframeMap& map;
   Frame& frame;
   TrackingState& tracking;
-  WindowMotion& motion;
-  WindowTracking& measuring;
-  WindowAdjustment& adjustment;
+  KeyframeMotion& motion;
+  KeyframeTracking& measuring;
+  KeyframeAdjustment& adjustment;
 };
 
-class WindowStart {
+class KeyframeStart {
  public:
-  WindowStart(const Settings& settings, const WindowParts& parts) : settings_(settings), parts_(parts) {}
+  KeyframeStart(const Settings& settings, const KeyframeParts& parts) : settings_(settings), parts_(parts) {}
 
   bool layout(Arena& arena);
   void init();
@@ -71,7 +71,7 @@ class WindowStart {
   };
 
   const Settings& settings_;
-  const WindowParts parts_;
+  const KeyframeParts parts_;
   Data data_;
   StartAtTarget target_;
   StartWithoutTarget without_;

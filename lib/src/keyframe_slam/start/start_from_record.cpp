@@ -1,20 +1,20 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "frame/start/tuning.h"
 #include "geometry/so3.h"
-#include "slam/tuning.h"
-#include "slam/window_start.h"
-#include "window/tuning.h"
+#include "keyframe_slam/start/start.h"
+#include "keyframe_slam/tracking/tuning.h"
 
-/// WindowStart where a record has been solved.
+/// KeyframeStart where a record has been solved.
 
 namespace pf {
 
-using namespace tuning::window_start;
+using namespace tuning::keyframe_start;
 namespace assumed = tuning::filter_start;
 
 /// Velocities between the last frames of the record.
-void WindowStart::set_speeds(Body* body) const {
+void KeyframeStart::set_speeds(Body* body) const {
   const StartRecord& record = without_.record();
   const int last = record.frames() - 1, before = std::max(0, last - kSpeedFrames);
   if (!settings_.constant_velocity || before >= last) return;
@@ -25,7 +25,7 @@ void WindowStart::set_speeds(Body* body) const {
 }
 
 /// Depths and poses of the solved record. The frame becomes a keyframe, and velocities are those of the record's last frames.
-void WindowStart::take_record() {
+void KeyframeStart::take_record() {
   data_.solved_before = 0;
   const StartRecord& record = without_.record();
   const int last = record.frames() - 1;
@@ -35,11 +35,11 @@ void WindowStart::take_record() {
     data_.second.estimated = true;
     data_.second.estimate_W = without_.view(k).c_W;
   }
-  WindowMap& map = parts_.map;
+  KeyframeMap& map = parts_.map;
   for (int i = 0; i < map.capacity(); ++i) {
     if (!map.used(i)) continue;
     const int index = without_.index_of(map.feature(i).id);
-    WindowPoint& point = map.point(i);
+    KeyframePoint& point = map.point(i);
     if (index >= 0 && without_.bundle().good(index)) {
       point.ray_K = record.ray(index).normalized();
       point.rho = without_.bundle().rho(index) / record.ray(index).norm();

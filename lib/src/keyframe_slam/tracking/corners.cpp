@@ -1,13 +1,12 @@
-#include "slam/window_corners.h"
+#include "keyframe_slam/tracking/corners.h"
 
-#include "slam/corner_cells.h"
-#include "slam/tuning.h"
-#include "slam/window_rows.h"
+#include "frame/corner_cells.h"
+#include "keyframe_slam/map/rows.h"
 
 namespace pf {
 
 void add_corners(const Settings& settings, const ImageSearch& search, int keyframe, const Body& body, Scalar depth,
-                 WindowMap* map, Frame* frame) {
+                 KeyframeMap* map, Frame* frame) {
   CornerCells cells(settings.camera.width, settings.camera.height, settings.border_px);
   if (cells.count(*frame) >= settings.features_in_view) return;
   const Keyframe& host = map->keyframes[keyframe];

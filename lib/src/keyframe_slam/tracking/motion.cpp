@@ -1,13 +1,13 @@
-#include "slam/window_motion.h"
+#include "keyframe_slam/tracking/motion.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "frame/speed_limits.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
-#include "slam/speed_limits.h"
-#include "window/tuning.h"
+#include "keyframe_slam/tracking/tuning.h"
 
 namespace pf {
 namespace {
@@ -16,13 +16,13 @@ constexpr std::int64_t kMaxGapNs = 2000000000;  // [ns] longest time between fra
 constexpr int kVelocity = 6;                    // first row of (v, w)
 
 /// Of three axes.
-Scalar largest_variance(const WindowMotion::Covariance& P, int first_row) {
+Scalar largest_variance(const KeyframeMotion::Covariance& P, int first_row) {
   return P.diagonal().segment<3>(first_row).maxCoeff();
 }
 
 }  // namespace
 
-void WindowMotion::set(const Body& body, const Mat6& pose, Scalar speed, Scalar rate) {
+void KeyframeMotion::set(const Body& body, const Mat6& pose, Scalar speed, Scalar rate) {
   data_.body = body;
   data_.P.setZero();
   data_.P.topLeftCorner<6, 6>() = pose;
@@ -33,13 +33,13 @@ void WindowMotion::set(const Body& body, const Mat6& pose, Scalar speed, Scalar 
   }
 }
 
-void WindowMotion::set_pose_covariance(const Mat6& pose) {
+void KeyframeMotion::set_pose_covariance(const Mat6& pose) {
   data_.P.topRightCorner<6, 6>().setZero();
   data_.P.bottomLeftCorner<6, 6>().setZero();
   data_.P.topLeftCorner<6, 6>() = pose;
 }
 
-void WindowMotion::predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const {
+void KeyframeMotion::predict(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const {
   if (settings_.constant_velocity)
     predict_constant_velocity(body, settings_.body, dt, noise, transition);
   else
@@ -47,7 +47,7 @@ void WindowMotion::predict(const Body& body, Scalar dt, const MotionNoise& noise
 }
 
 /// P+ = F P Fᵀ + Q over the rows that move. In float the diagonal gets back what rounding may have taken from it (lib/docs/float.md).
-void WindowMotion::apply(const Transition& transition, Data* data) {
+void KeyframeMotion::apply(const Transition& transition, Data* data) {
   const int dim = transition.dim;
   Covariance FP = Covariance::Zero(), P = Covariance::Zero();
   for (int i = 0; i < dim; ++i)
@@ -60,11 +60,11 @@ void WindowMotion::apply(const Transition& transition, Data* data) {
       P(i, j) = sum;
     }
   data->P = (P + P.transpose()) / 2;
-  if constexpr (sizeof(Scalar) == sizeof(float)) data->P.diagonal() *= 1 + tuning::window_motion::kGrowth;
+  if constexpr (sizeof(Scalar) == sizeof(float)) data->P.diagonal() *= 1 + tuning::keyframe_motion::kGrowth;
   data->body = transition.mean;
 }
 
-void WindowMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured) {
+void KeyframeMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured) {
   const Scalar dt = static_cast<Scalar>(seconds(std::min(elapsed_ns(before_ns, t_ns), kMaxGapNs)));
   MotionNoise noise = settings_.motion_noise;
   if (coasting_or_lost) {
@@ -79,7 +79,7 @@ void WindowMotion::advance(std::int64_t before_ns, std::int64_t t_ns, bool coast
 }
 
 /// Lets the speed decay while nothing is measured.
-void WindowMotion::damp(Scalar dt) {
+void KeyframeMotion::damp(Scalar dt) {
   Mat6 P_speed = data_.P.bottomRightCorner<6, 6>();
   Vec3 rate = data_.body.w_C;
   limit_speed(dt, largest_variance(data_.P, Body::kTheta), largest_variance(data_.P, Body::kPosition), &rate, &P_speed);
@@ -88,7 +88,7 @@ void WindowMotion::damp(Scalar dt) {
   apply(transition, &data_);
 }
 
-bool WindowMotion::correct(const Quat& q_WC, const Vec3& p_W, const Wide6& R) {
+bool KeyframeMotion::correct(const Quat& q_WC, const Vec3& p_W, const Wide6& R) {
   const Wide6 A = data_.P.topLeftCorner<6, 6>().cast<double>(), B = data_.P.bottomLeftCorner<6, 6>().cast<double>();
   SmallCholesky<6, double> S;
   if (!S.factor(Wide6(A + R))) return false;
@@ -115,7 +115,7 @@ bool WindowMotion::correct(const Quat& q_WC, const Vec3& p_W, const Wide6& R) {
   return true;
 }
 
-bool WindowMotion::is_sound() const {
+bool KeyframeMotion::is_sound() const {
   const Body& b = data_.body;
   Scalar sum = b.q_WC.coeffs().sum() + b.p_W.sum() + b.v_W.sum() + b.w_C.sum();
   for (int i = 0; i < kMaxRows; ++i) {
@@ -125,7 +125,7 @@ bool WindowMotion::is_sound() const {
   return std::isfinite(sum);
 }
 
-void WindowMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const {
+void KeyframeMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const {
   Data data = data_;
   if (t_ns > now_ns) {
     Transition transition;
@@ -136,7 +136,7 @@ void WindowMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* bo
   *covariance = data.P.topLeftCorner<6, 6>();
 }
 
-void WindowMotion::scale(Scalar s, const Vec3& c_W) {
+void KeyframeMotion::scale(Scalar s, const Vec3& c_W) {
   data_.body.p_W = c_W + s * (data_.body.p_W - c_W);
   data_.body.v_W *= s;
   for (int part : {3, 6}) {  // p and v

@@ -3,19 +3,19 @@
 #include <cstdint>
 
 #include "filter/motion.h"
-#include "slam/settings.h"
+#include "frame/settings.h"
 
 /// The body of the window: pose and velocities with their covariance, predicted by the motion model and corrected by measured poses.
 
 namespace pf {
 
-class WindowMotion {
+class KeyframeMotion {
  public:
   static constexpr int kMaxRows = BodyLayout::kVelocityRows;
   using Covariance = Eigen::Matrix<Scalar, kMaxRows, kMaxRows>;
   using Wide6 = Eigen::Matrix<double, 6, 6>;  ///< of a measured pose
 
-  explicit WindowMotion(const Settings& settings) : settings_(settings) {}
+  explicit KeyframeMotion(const Settings& settings) : settings_(settings) {}
 
   void init() { data_ = Data(); }
   /// Sets the body. pose: covariance of (theta, p); speed, rate: standard deviations of the velocities [m/s, rad/s].

@@ -1,19 +1,19 @@
-#include "slam/window_pose.h"
+#include "keyframe_slam/tracking/pose.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "bundle/adjust.h"
+#include "frame/ellipse.h"
+#include "frame/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
-#include "slam/ellipse.h"
-#include "slam/tuning.h"
-#include "window/adjust.h"
-#include "window/tuning.h"
+#include "keyframe_slam/tracking/tuning.h"
 
 namespace pf {
 namespace {
 
-using namespace tuning::window_pose;
+using namespace tuning::keyframe_pose;
 
 Mat2 inverse2(const Mat2& S) {
   Mat2 inverse;
@@ -61,7 +61,7 @@ bool fit_pose(const Camera& camera, const PoseMatch* matches, int count, const u
   return true;
 }
 
-bool WindowPose::layout(Arena& arena, int capacity) {
+bool KeyframePose::layout(Arena& arena, int capacity) {
   const std::size_t count = static_cast<std::size_t>(capacity);
   match_ = arena.take<PoseMatch>(count);
   point_ = arena.take<PnpPoint>(count);
@@ -69,10 +69,10 @@ bool WindowPose::layout(Arena& arena, int capacity) {
   return arena.ok();
 }
 
-void WindowPose::init() { random_ = kSeed; }
+void KeyframePose::init() { random_ = kSeed; }
 
-int WindowPose::find(const Camera& camera, int count, const PosePrior& prior, Scalar bound_px, int least,
-                     CameraPose* pose, Mat6* information) {
+int KeyframePose::find(const Camera& camera, int count, const PosePrior& prior, Scalar bound_px, int least,
+                       CameraPose* pose, Mat6* information) {
   PoseEstimate estimate;
   estimate.q_WC = prior.q_WC;
   estimate.p_WC = prior.p_W;
@@ -88,8 +88,8 @@ int WindowPose::find(const Camera& camera, int count, const PosePrior& prior, Sc
   return inliers;
 }
 
-int WindowPose::fit(const Camera& camera, int count, const PosePrior& prior, Scalar gate, CameraPose* pose,
-                    Mat6* information) {
+int KeyframePose::fit(const Camera& camera, int count, const PosePrior& prior, Scalar gate, CameraPose* pose,
+                      Mat6* information) {
   std::fill(inlier_, inlier_ + count, static_cast<unsigned char>(1));
   CameraPose found = {prior.q_WC, prior.p_W};
   int inliers = 0;

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "base/arena.h"
+#include "frame/settings.h"
 #include "geometry/p3p.h"
 #include "geometry/pnp.h"
-#include "slam/settings.h"
 
 /// Pose of a frame from matches with known points: the consensus, and the fit with the noise of each.
 
@@ -36,7 +36,7 @@ bool fit_pose(const Camera& camera, const PoseMatch* matches, int count, const u
               const PosePrior& prior, Scalar huber, CameraPose* inout, Mat6* information);
 
 /// Finds the pose that most matches support (geometry/pnp.h), from the prior's and from triples of them.
-class WindowPose {
+class KeyframePose {
  public:
   bool layout(Arena& arena, int capacity);
   void init();

@@ -1,7 +1,7 @@
-#include "slam/window_relocaliser.h"
+#include "keyframe_slam/tracking/relocaliser.h"
 
+#include "frame/tuning.h"
 #include "geometry/so3.h"
-#include "slam/tuning.h"
 
 namespace pf {
 
@@ -20,14 +20,14 @@ Mat6 sphere(Scalar rotation, Scalar position) {
 
 }  // namespace
 
-bool WindowRelocaliser::is_prediction_narrow(Scalar median_depth) const {
+bool KeyframeRelocaliser::is_prediction_narrow(Scalar median_depth) const {
   const Mat6 P = motion_.pose_covariance();
   const Scalar position = kNearbySigma * median_depth;
   return P(0, 0) + P(1, 1) + P(2, 2) < kNearbySigma * kNearbySigma && P(3, 3) + P(4, 4) + P(5, 5) < position * position;
 }
 
 /// Where to search; false where nothing says it.
-bool WindowRelocaliser::choose(Scalar median_depth, PosePrior* about) const {
+bool KeyframeRelocaliser::choose(Scalar median_depth, PosePrior* about) const {
   if (data_.frames > 0) {
     *about = {data_.q_WC, data_.p_W, sphere(kAboutProposal, kAboutProposal * median_depth)};
     return true;
@@ -40,7 +40,7 @@ bool WindowRelocaliser::choose(Scalar median_depth, PosePrior* about) const {
   return true;
 }
 
-void WindowRelocaliser::recover(Scalar median_depth) {
+void KeyframeRelocaliser::recover(Scalar median_depth) {
   const bool nearby = data_.frames == 0 && is_prediction_narrow(median_depth);
   const Data before = data_;
   PosePrior about;

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "slam/window_tracking.h"
+#include "keyframe_slam/tracking/tracking.h"
 #include "track/view_memory.h"
 
 /// Finds the window's map again after frames that did not support the pose (lib/docs/states.md).
 
 namespace pf {
 
-class WindowRelocaliser {
+class KeyframeRelocaliser {
  public:
-  WindowRelocaliser(const Settings& settings, WindowMotion& motion, WindowTracking& measuring)
+  KeyframeRelocaliser(const Settings& settings, KeyframeMotion& motion, KeyframeTracking& measuring)
       : settings_(settings), motion_(motion), measuring_(measuring) {}
 
   bool layout(Arena& arena) { return views_.layout(arena, settings_.max_kept_views); }
@@ -40,8 +40,8 @@ class WindowRelocaliser {
   bool is_prediction_narrow(Scalar median_depth) const;
 
   const Settings& settings_;
-  WindowMotion& motion_;
-  WindowTracking& measuring_;
+  KeyframeMotion& motion_;
+  KeyframeTracking& measuring_;
   ViewMemory views_;
   Data data_;
 };

@@ -1,28 +1,28 @@
-#include "slam/window_tracking.h"
+#include "keyframe_slam/tracking/tracking.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "base/false_alarms.h"
+#include "frame/ellipse.h"
+#include "frame/feature_upkeep.h"
+#include "frame/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/symmetric_eigen.h"
-#include "map/plane_chance.h"
-#include "slam/ellipse.h"
-#include "slam/feature_upkeep.h"
-#include "slam/tuning.h"
-#include "window/tuning.h"
+#include "keyframe_slam/tracking/tuning.h"
 
 namespace pf {
 
-using namespace tuning::window_tracking;
+using namespace tuning::keyframe_tracking;
 
-bool WindowTracking::layout(Arena& arena) {
+bool KeyframeTracking::layout(Arena& arena) {
   candidate_ = arena.take<Candidate>(static_cast<std::size_t>(settings_.max_features));
   pose_.layout(arena, settings_.max_features);
   return search_.layout(arena, settings_);
 }
 
-void WindowTracking::init() {
+void KeyframeTracking::init() {
   search_.init(settings_);
   pose_.init();
   followed_.init();
@@ -30,19 +30,19 @@ void WindowTracking::init() {
   listed_ = found_ = 0;
 }
 
-Scalar WindowTracking::bound_px() const {
+Scalar KeyframeTracking::bound_px() const {
   return std::max(kBoundWidth * static_cast<Scalar>(settings_.camera.width), kBoundSigmas * noise_.sigma_gate());
 }
 
-bool WindowTracking::is_inside(const Vec2& pixel) const {
+bool KeyframeTracking::is_inside(const Vec2& pixel) const {
   const Scalar margin = static_cast<Scalar>(settings_.border_px);
   return !(pixel.x() < margin || pixel.y() < margin ||
            pixel.x() > static_cast<Scalar>(settings_.camera.width - 1) - margin ||
            pixel.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
 }
 
-bool WindowTracking::expect_placed(int i, const PosePrior& at, ExpectedPixel* out) const {
-  const WindowPoint& point = map_.point(i);
+bool KeyframeTracking::expect_placed(int i, const PosePrior& at, ExpectedPixel* out) const {
+  const KeyframePoint& point = map_.point(i);
   Mat26 J_C;
   Vec2 J_rho;
   if (!project_bearing(map_.camera(), at.q_WC.toRotationMatrix(), map_.ray_W(i),
@@ -58,7 +58,7 @@ bool WindowTracking::expect_placed(int i, const PosePrior& at, ExpectedPixel* ou
 }
 
 /// Lists the points that should be in view, the most reliable first. Returns how many.
-int WindowTracking::list(const PosePrior& at, bool placed, Scalar depth) {
+int KeyframeTracking::list(const PosePrior& at, bool placed, Scalar depth) {
   const int first = placed ? 0 : listed_;
   int count = 0;
   for (int i = 0; i < map_.capacity() && first + count < map_.capacity() && !frame_.full(); ++i) {
@@ -82,7 +82,7 @@ int WindowTracking::list(const PosePrior& at, bool placed, Scalar depth) {
 }
 
 /// Predicts candidates again, from a pose that is known better.
-void WindowTracking::expect(int first, int count, const PosePrior& at) {
+void KeyframeTracking::expect(int first, int count, const PosePrior& at) {
   for (int c = first; c < first + count; ++c) {
     Match& match = frame_.match(candidate_[c].match);
     ExpectedPixel expected;
@@ -94,8 +94,8 @@ void WindowTracking::expect(int first, int count, const PosePrior& at) {
   }
 }
 
-SearchTask WindowTracking::task_of(int i, const PosePrior& at, Scalar depth) const {
-  const WindowPoint& point = map_.point(i);
+SearchTask KeyframeTracking::task_of(int i, const PosePrior& at, Scalar depth) const {
+  const KeyframePoint& point = map_.point(i);
   const Map& tables = map_.tables();
   const Keyframe& host = map_.keyframes[point.host];
   SearchTask task;
@@ -115,7 +115,7 @@ SearchTask WindowTracking::task_of(int i, const PosePrior& at, Scalar depth) con
 }
 
 /// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
-int WindowTracking::search_for(int first, int count, const PosePrior& at, Scalar depth) {
+int KeyframeTracking::search_for(int first, int count, const PosePrior& at, Scalar depth) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   const Scalar image = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
   int found = first;
@@ -150,9 +150,9 @@ int WindowTracking::search_for(int first, int count, const PosePrior& at, Scalar
 ///
 /// shared: points without a depth in the fit, which may all be nearer or farther together, so that their mean is no better known than one;
 /// 0: their median is the unit of length, and each is wrong by itself.
-void WindowTracking::make_pose_match(int c, const PosePrior& prior, Scalar depth, int shared) {
+void KeyframeTracking::make_pose_match(int c, const PosePrior& prior, Scalar depth, int shared) {
   const Match& match = frame_.match(candidate_[c].match);
-  const WindowPoint& point = map_.point(match.feature);
+  const KeyframePoint& point = map_.point(match.feature);
   const Vec3& host_W = map_.keyframes[point.host].p_W;
   const Vec3 ray_W = map_.ray_W(match.feature);
   const Scalar rho = point.has_depth ? point.rho : 1 / depth;
@@ -173,7 +173,7 @@ void WindowTracking::make_pose_match(int c, const PosePrior& prior, Scalar depth
 }
 
 /// Pose that the first `found` candidates support. Returns the number of inliers, 0 where the pose may be chance.
-int WindowTracking::find_pose(int found, const PosePrior& prior, CameraPose* pose, Mat6* information) {
+int KeyframeTracking::find_pose(int found, const PosePrior& prior, CameraPose* pose, Mat6* information) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int c = 0; c < found; ++c) make_pose_match(c, prior, Scalar(1), 0);
   const int inliers = pose_.find(map_.camera(), found, prior, bound_px(), settings_.min_inliers, pose, information);
@@ -184,23 +184,23 @@ int WindowTracking::find_pose(int found, const PosePrior& prior, CameraPose* pos
 }
 
 /// Probability that a search finds something by chance, and within this area [px^2].
-Scalar WindowTracking::chance_share(Scalar area, Scalar searched) {
+Scalar KeyframeTracking::chance_share(Scalar area, Scalar searched) {
   using namespace tuning::chance;
   return kMaxFindShare * std::min(Scalar(1), area / std::max(searched, kMinArea));
 }
 
 /// Half of what was searched for agrees, or far more than chance would give: with n of m matches within the bound, by chance each with its
 /// chance_share(); shares: their sum.
-bool WindowTracking::is_believed(int inliers, int found, Scalar shares) const {
+bool KeyframeTracking::is_believed(int inliers, int found, Scalar shares) const {
   using namespace tuning::chance;
   if (inliers == 0) return false;
   if (2 * inliers >= frame_.report.attempts) return true;
   const Scalar share = std::clamp(shares / static_cast<Scalar>(found), kMinShare, kMaxShare);
-  return log_false_planes(inliers, frame_.report.attempts, share, found) < tuning::tracking::kMaxLogFalse;
+  return log_false_alarms(inliers, frame_.report.attempts, share, found) < tuning::tracking::kMaxLogFalse;
 }
 
 /// Says of each match whether it is where the pose has it, within its own noise and that of the pose.
-void WindowTracking::mark(int found, const PosePrior& at) {
+void KeyframeTracking::mark(int found, const PosePrior& at) {
   for (int c = 0; c < found; ++c) {
     Match& match = frame_.match(candidate_[c].match);
     ExpectedPixel expected;
@@ -217,7 +217,7 @@ void WindowTracking::mark(int found, const PosePrior& at) {
   }
 }
 
-void WindowTracking::accept(Match* match, const Vec2& pixel) {
+void KeyframeTracking::accept(Match* match, const Vec2& pixel) {
   match->status = MatchStatus::kInlier;
   Feature& f = map_.feature(match->feature);
   if (has_rows() && is_seen_again(*match)) correct_first_pixel(*match);
@@ -225,12 +225,12 @@ void WindowTracking::accept(Match* match, const Vec2& pixel) {
   f.failures = 0;
   f.rejections = 0;
   f.last_seen_ns = frame_.report.t_ns;
-  WindowPoint& point = map_.point(match->feature);
+  KeyframePoint& point = map_.point(match->feature);
   point.pixel = pixel;
   point.seen_from = {motion_.body().q_WC, motion_.body().p_W};
 }
 
-int WindowTracking::measure_about(const PosePrior& about, CameraPose* pose, Mat6* information) {
+int KeyframeTracking::measure_about(const PosePrior& about, CameraPose* pose, Mat6* information) {
   listed_ = list(about, true, Scalar(1));
   Scalar widest = 0;
   for (int c = 0; c < listed_; ++c)
@@ -244,7 +244,7 @@ int WindowTracking::measure_about(const PosePrior& about, CameraPose* pose, Mat6
     PosePrior scouted = about;
     inliers = find_pose(found, about, pose, information);
     SmallCholesky<6> factored, prior;
-    WindowMotion after = motion_;
+    KeyframeMotion after = motion_;
     if (inliers > 0 && has_rows() && about.with_velocities != nullptr &&
         follow_velocities(*pose, *information, &after)) {
       scouted = {pose->q_WC,       pose->p_WC,       after.pose_covariance(),

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "slam/followed_view.h"
-#include "slam/image_search.h"
-#include "slam/noise_model.h"
-#include "slam/window_motion.h"
-#include "slam/window_planes.h"
-#include "slam/window_pose.h"
-#include "slam/window_rows.h"
-#include "window/tuning.h"
+#include "frame/followed_view.h"
+#include "frame/image_search.h"
+#include "frame/noise_model.h"
+#include "keyframe_slam/map/rows.h"
+#include "keyframe_slam/planes/planes.h"
+#include "keyframe_slam/tracking/motion.h"
+#include "keyframe_slam/tracking/pose.h"
+#include "keyframe_slam/tracking/tuning.h"
 
 /// Measures an image with the window's map: where its points should be, where they are, and the pose that this says.
 
@@ -19,10 +19,10 @@ struct ExpectedPixel {
   Mat2 spread;  ///< by pose and depth, without the noise of a match [px^2]
 };
 
-class WindowTracking {
+class KeyframeTracking {
  public:
-  WindowTracking(const Settings& settings, WindowMap& map, const WindowPlanes& planes, Frame& frame,
-                 WindowMotion& motion, NoiseModel& noise)
+  KeyframeTracking(const Settings& settings, KeyframeMap& map, const KeyframePlanes& planes, Frame& frame,
+                   KeyframeMotion& motion, NoiseModel& noise)
       : settings_(settings), map_(map), planes_(planes), frame_(frame), motion_(motion), noise_(noise) {}
 
   bool layout(Arena& arena);
@@ -36,7 +36,7 @@ class WindowTracking {
   /// those with a depth say none, all say it together.
   void measure(Scalar median_depth);
   /// So few points have a depth that those without must help.
-  bool is_young() const { return map_.placed() < tuning::window_tracking::kYoung; }
+  bool is_young() const { return map_.placed() < tuning::keyframe_tracking::kYoung; }
   /// Finds all points about the predicted pose, and corrects the body by the pose that they say together: a point without a depth says
   /// where the camera is but for a shift along its epipolar line.
   void measure_young(Scalar median_depth);
@@ -82,7 +82,7 @@ class WindowTracking {
   bool has_rows() const { return map_.camera().readout != Scalar(0); }
   bool expect_row(const PosePrior& at, const Vec3& m, Scalar w, ExpectedPixel* out) const;
   Vec2 match_at_frame_time(const Match& match, const PosePrior& at, Scalar depth) const;
-  bool follow_velocities(const CameraPose& pose, const Mat6& information, WindowMotion* after) const;
+  bool follow_velocities(const CameraPose& pose, const Mat6& information, KeyframeMotion* after) const;
   void correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information);
   Vec2 image_motion(const Match& match) const;
   bool is_seen_again(const Match& match) const;
@@ -106,13 +106,13 @@ class WindowTracking {
   bool is_inside(const Vec2& pixel) const;
 
   const Settings& settings_;
-  WindowMap& map_;
-  const WindowPlanes& planes_;
+  KeyframeMap& map_;
+  const KeyframePlanes& planes_;
   Frame& frame_;
-  WindowMotion& motion_;
+  KeyframeMotion& motion_;
   NoiseModel& noise_;
   ImageSearch search_;
-  WindowPose pose_;
+  KeyframePose pose_;
   FollowedView followed_;
   bool is_following_ = false;  ///< searches go about the followed view's pixels
 

@@ -1,12 +1,12 @@
 #include "base/elapsed.h"
-#include "slam/tuning.h"
-#include "slam/window_tracking.h"
+#include "frame/tuning.h"
+#include "keyframe_slam/tracking/tracking.h"
 
-/// What WindowTracking learns from a tracked frame: the noise of matches, and templates.
+/// What KeyframeTracking learns from a tracked frame: the noise of matches, and templates.
 
 namespace pf {
 
-void WindowTracking::learn_noise() {
+void KeyframeTracking::learn_noise() {
   const PosePrior at = now();
   for (int c = 0; c < listed_; ++c) {
     const Match& match = frame_.match(candidate_[c].match);
@@ -21,7 +21,7 @@ void WindowTracking::learn_noise() {
   noise_.end_frame();
 }
 
-void WindowTracking::learn_templates() {
+void KeyframeTracking::learn_templates() {
   if (!search_.has_templates()) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kTemplate]);
   const PosePrior at = now();

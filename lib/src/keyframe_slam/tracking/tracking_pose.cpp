@@ -1,26 +1,25 @@
 #include "base/elapsed.h"
 #include "geometry/small_cholesky.h"
-#include "slam/tuning.h"
-#include "slam/window_tracking.h"
-#include "window/tuning.h"
+#include "keyframe_slam/tracking/tracking.h"
+#include "keyframe_slam/tracking/tuning.h"
 
-/// WindowTracking: the pose of a frame, and where to search when the motion model cannot tell (followed_view.h).
+/// KeyframeTracking: the pose of a frame, and where to search when the motion model cannot tell (followed_view.h).
 
 namespace pf {
 
-using namespace tuning::window_tracking;
+using namespace tuning::keyframe_tracking;
 
-void WindowTracking::keep_view() {
+void KeyframeTracking::keep_view() {
   followed_.keep(search_.tracker().pyramid(), motion_.body().q_WC, motion_.body().p_W);
 }
 
-bool WindowTracking::is_wide(const Mat2& innovation) const {
+bool KeyframeTracking::is_wide(const Mat2& innovation) const {
   return FollowedView::is_wide(map_.camera(), innovation, settings_.gate);
 }
 
 /// Where most ellipses are wide, searches go about the places where the picture as a whole has gone, from now on. False: they are not, or
 /// the picture does not say it.
-bool WindowTracking::begin_following() {
+bool KeyframeTracking::begin_following() {
   int wide = 0;
   for (int t = 0; t < frame_.match_count(); ++t) wide += is_wide(frame_.match(t).innovation) ? 1 : 0;
   if (wide == 0 || 2 * wide < frame_.match_count()) return false;
@@ -30,9 +29,9 @@ bool WindowTracking::begin_following() {
 }
 
 /// Directs a search to where the followed view has the point, unless its own ellipse says as much. False where that has no place for it.
-bool WindowTracking::aim(int i, SearchTask* task) const {
+bool KeyframeTracking::aim(int i, SearchTask* task) const {
   if (!is_wide(task->innovation)) return true;
-  const WindowPoint& point = map_.point(i);
+  const KeyframePoint& point = map_.point(i);
   Vec3 at_W = task->p_W;
   if (!point.has_depth) {
     Vec3 ray_C;
@@ -42,7 +41,7 @@ bool WindowTracking::aim(int i, SearchTask* task) const {
   return followed_.aim(map_.camera(), at_W, task);
 }
 
-void WindowTracking::measure(Scalar median_depth) {
+void KeyframeTracking::measure(Scalar median_depth) {
   const PosePrior prior = now();
   CameraPose pose;
   Mat6 information;
@@ -62,13 +61,13 @@ void WindowTracking::measure(Scalar median_depth) {
   measure_unplaced(median_depth);
 }
 
-void WindowTracking::correct(const CameraPose& pose, const Mat6& information) {
+void KeyframeTracking::correct(const CameraPose& pose, const Mat6& information) {
   PosePrior now;
   if (apply(pose, information, &now)) mark(frame_.report.matches, now);
 }
 
 /// Corrects the body by a measured pose. False where its covariance is none. now: the pose with the covariance that the matches leave.
-bool WindowTracking::apply(const CameraPose& pose, Mat6 information, PosePrior* now) {
+bool KeyframeTracking::apply(const CameraPose& pose, Mat6 information, PosePrior* now) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
   SmallCholesky<6, double> factored;
   // What the matches do not determine, the prediction does.
@@ -78,7 +77,7 @@ bool WindowTracking::apply(const CameraPose& pose, Mat6 information, PosePrior* 
     information += kWeakPrior * prior.inverse();
     if (!factored.factor(information.cast<double>())) return false;
   }
-  const WindowMotion::Wide6 R = factored.inverse();
+  const KeyframeMotion::Wide6 R = factored.inverse();
   const bool corrected = motion_.correct(pose.q_WC, pose.p_WC, R);
   *now = {pose.q_WC, pose.p_WC, R.cast<Scalar>(), motion_.body().v_W, motion_.body().w_C};
   return corrected;

@@ -1,10 +1,10 @@
 #include "base/elapsed.h"
-#include "filter/camera_at.h"
 #include "geometry/small_cholesky.h"
-#include "slam/window_tracking.h"
-#include "window/tuning.h"
+#include "keyframe_slam/tracking/tracking.h"
+#include "keyframe_slam/tracking/tuning.h"
+#include "model/camera_at.h"
 
-/// WindowTracking with the rows of a rolling shutter (window_rows.h).
+/// KeyframeTracking with the rows of a rolling shutter (window_rows.h).
 
 namespace pf {
 namespace {
@@ -20,13 +20,13 @@ Body body_of(const PosePrior& at) {
 
 }  // namespace
 
-PosePrior WindowTracking::now() const {
+PosePrior KeyframeTracking::now() const {
   const Body& body = motion_.body();
   return {body.q_WC, body.p_W, motion_.pose_covariance(), body.v_W, body.w_C, &motion_.covariance()};
 }
 
 /// Pixel and spread by the pose alone, in the pixel's own row.
-bool WindowTracking::expect_row(const PosePrior& at, const Vec3& m, Scalar w, ExpectedPixel* out) const {
+bool KeyframeTracking::expect_row(const PosePrior& at, const Vec3& m, Scalar w, ExpectedPixel* out) const {
   Mat212 J;
   if (!project_row(map_.camera(), body_of(at), m, w, &out->pixel, &J)) return false;
   if (at.with_velocities != nullptr) {
@@ -40,15 +40,15 @@ bool WindowTracking::expect_row(const PosePrior& at, const Vec3& m, Scalar w, Ex
   return true;
 }
 
-Vec2 WindowTracking::match_at_frame_time(const Match& match, const PosePrior& at, Scalar depth) const {
+Vec2 KeyframeTracking::match_at_frame_time(const Match& match, const PosePrior& at, Scalar depth) const {
   if (!has_rows()) return match.measured;
-  const WindowPoint& point = map_.point(match.feature);
+  const KeyframePoint& point = map_.point(match.feature);
   const Scalar rho = point.has_depth ? point.rho : 1 / depth;
   return pf::at_frame_time(map_.camera(), body_of(at), map_.ray_W(match.feature) + rho * map_.keyframes[point.host].p_W,
                            rho, match.measured);
 }
 
-Vec2 WindowTracking::at_frame_time(const Match& match, Scalar depth) const {
+Vec2 KeyframeTracking::at_frame_time(const Match& match, Scalar depth) const {
   return has_rows() ? match_at_frame_time(match, now(), depth) : match.measured;
 }
 
@@ -56,8 +56,8 @@ Vec2 WindowTracking::at_frame_time(const Match& match, Scalar depth) const {
 /// its row:
 ///
 ///   z2 - z1 = u (dt + tau2 - tau1),   tau1 = 0 where z1 is at its frame's time
-Vec2 WindowTracking::image_motion(const Match& match) const {
-  const WindowPoint& point = map_.point(match.feature);
+Vec2 KeyframeTracking::image_motion(const Match& match) const {
+  const KeyframePoint& point = map_.point(match.feature);
   const Feature& f = map_.feature(match.feature);
   const Scalar tau = row_time(map_.camera(), match.measured.y());
   const Scalar before = is_seen_again(match) ? row_time(map_.camera(), point.pixel.y()) : Scalar(0);
@@ -66,18 +66,18 @@ Vec2 WindowTracking::image_motion(const Match& match) const {
 }
 
 /// Whether this is the second sight of a point of the first keyframe.
-bool WindowTracking::is_seen_again(const Match& match) const {
+bool KeyframeTracking::is_seen_again(const Match& match) const {
   return map_.feature(match.feature).observations == 1 && map_.keyframes[map_.point(match.feature).host].number == 1;
 }
 
-Vec2 WindowTracking::followed_at_frame_time(const Match& match) const {
+Vec2 KeyframeTracking::followed_at_frame_time(const Match& match) const {
   if (!has_rows()) return match.measured;
   return match.measured - row_time(map_.camera(), match.measured.y()) * image_motion(match);
 }
 
 /// A point of the first keyframe is seen again: its pixel there is taken to the frame's time by how far it has moved since.
-void WindowTracking::correct_first_pixel(const Match& match) {
-  WindowPoint& point = map_.point(match.feature);
+void KeyframeTracking::correct_first_pixel(const Match& match) {
+  KeyframePoint& point = map_.point(match.feature);
   const Vec2 first = point.pixel - row_time(map_.camera(), point.pixel.y()) * image_motion(match);
   Vec3 ray_C;
   if (!unproject(map_.camera(), first, &ray_C)) return;
@@ -86,16 +86,16 @@ void WindowTracking::correct_first_pixel(const Match& match) {
 }
 
 /// The pose with the velocities that follow from it: how far the camera is from where it was predicted tells them.
-bool WindowTracking::follow_velocities(const CameraPose& pose, const Mat6& information, WindowMotion* after) const {
+bool KeyframeTracking::follow_velocities(const CameraPose& pose, const Mat6& information, KeyframeMotion* after) const {
   SmallCholesky<6, double> factored;
   return factored.factor(information.cast<double>()) && after->correct(pose.q_WC, pose.p_WC, factored.inverse());
 }
 
 /// Pixels at the frame's time were found with the predicted velocities; a jerk is found once more with those that the pose tells.
-void WindowTracking::correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information) {
+void KeyframeTracking::correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information) {
   const int found = frame_.report.matches;
-  for (int pass = 0; pass < tuning::window_tracking::kRowPasses; ++pass) {
-    WindowMotion after = motion_;
+  for (int pass = 0; pass < tuning::keyframe_tracking::kRowPasses; ++pass) {
+    KeyframeMotion after = motion_;
     if (!follow_velocities(pose, information, &after)) break;
     PosePrior at = before;
     at.v_W = after.body().v_W;

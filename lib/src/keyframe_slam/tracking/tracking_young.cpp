@@ -3,19 +3,19 @@
 #include <utility>
 
 #include "base/elapsed.h"
-#include "slam/ellipse.h"
-#include "slam/window_depth.h"
-#include "slam/window_tracking.h"
-#include "window/tuning.h"
+#include "frame/ellipse.h"
+#include "keyframe_slam/map/depth.h"
+#include "keyframe_slam/tracking/tracking.h"
+#include "keyframe_slam/tracking/tuning.h"
 
-/// WindowTracking where depths are not known: of some points, of most while the map is young, of none.
+/// KeyframeTracking where depths are not known: of some points, of most while the map is young, of none.
 
 namespace pf {
 
 /// About the last pixel, for depths about the median: rho = (1 +- kOpenSpread) / depth along the ray on which it was last seen.
-bool WindowTracking::expect_unplaced(int i, const PosePrior& at, Scalar depth, ExpectedPixel* out) const {
-  using tuning::window_tracking::kOpenSpread;
-  const WindowPoint& point = map_.point(i);
+bool KeyframeTracking::expect_unplaced(int i, const PosePrior& at, Scalar depth, ExpectedPixel* out) const {
+  using tuning::keyframe_tracking::kOpenSpread;
+  const KeyframePoint& point = map_.point(i);
   Vec3 ray_C;
   if (!unproject(map_.camera(), point.pixel, &ray_C)) return false;
   Mat26 J_C;
@@ -33,7 +33,7 @@ bool WindowTracking::expect_unplaced(int i, const PosePrior& at, Scalar depth, E
 }
 
 /// Points without a depth: where the corrected pose leaves no depth that explains their pixel, it is wrong.
-void WindowTracking::measure_unplaced(Scalar depth) {
+void KeyframeTracking::measure_unplaced(Scalar depth) {
   const PosePrior at = now();
   const int count = list(at, false, depth), first = listed_;
   const int found = search_for(first, count, at, depth);
@@ -42,12 +42,13 @@ void WindowTracking::measure_unplaced(Scalar depth) {
     const Vec2 pixel = match_at_frame_time(match, at, depth);
     DepthFit fit;
     const bool fits = fit_depth(map_.camera(), map_, match.feature, {at.q_WC, at.p_W}, pixel, &fit);
-    if (fits ? fit.worst_px > bound_px() : fit.cos_parallax < std::cos(tuning::window_tracking::kMaxParallel)) continue;
+    if (fits ? fit.worst_px > bound_px() : fit.cos_parallax < std::cos(tuning::keyframe_tracking::kMaxParallel))
+      continue;
     accept(&match, pixel);
   }
 }
 
-void WindowTracking::measure_young(Scalar median_depth) {
+void KeyframeTracking::measure_young(Scalar median_depth) {
   const PosePrior prior = now();
   listed_ = 0;
   listed_ = list(prior, true, median_depth);
@@ -56,7 +57,7 @@ void WindowTracking::measure_young(Scalar median_depth) {
 }
 
 /// After measure_about() found no pose: the points without a depth are searched for as well.
-void WindowTracking::measure_all(Scalar median_depth) {
+void KeyframeTracking::measure_all(Scalar median_depth) {
   const PosePrior prior = now();
   const int count = list(prior, false, median_depth);
   const int more = search_for(listed_, count, prior, median_depth);
@@ -67,7 +68,7 @@ void WindowTracking::measure_all(Scalar median_depth) {
 }
 
 /// Area within the searched ellipse in which a match agrees with the pose, by its own noise: along its epipolar line that may be all of it.
-Scalar WindowTracking::agreeing_area(int c) const {
+Scalar KeyframeTracking::agreeing_area(int c) const {
   const Mat2 S = pose_.match(c).noise + NoiseModel::search();
   const Mat2& searched = frame_.match(candidate_[c].match).innovation;
   const Scalar inside = S.determinant() * searched.determinant() / Mat2(S + searched).determinant();
@@ -76,7 +77,7 @@ Scalar WindowTracking::agreeing_area(int c) const {
 
 /// Whether of enough points that earlier frames have found at least half agree. Half of all corners are never found again, so new ones say
 /// little by being missed.
-bool WindowTracking::most_agree(int found) const {
+bool KeyframeTracking::most_agree(int found) const {
   int searched = 0, agree = 0;
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
@@ -88,7 +89,7 @@ bool WindowTracking::most_agree(int found) const {
 }
 
 /// Corrects the body by the pose that the first `found` candidates say together, those without a depth as well.
-void WindowTracking::fit_all(int found, const PosePrior& prior, Scalar median_depth) {
+void KeyframeTracking::fit_all(int found, const PosePrior& prior, Scalar median_depth) {
   int inliers = found;
   CameraPose pose = {prior.q_WC, prior.p_W};
   Mat6 information;
@@ -115,7 +116,7 @@ void WindowTracking::fit_all(int found, const PosePrior& prior, Scalar median_de
   }
 }
 
-int WindowTracking::follow(Scalar depth) {
+int KeyframeTracking::follow(Scalar depth) {
   listed_ = 0;
   const PosePrior at = now();
   const int count = list(at, false, depth);
@@ -128,8 +129,8 @@ int WindowTracking::follow(Scalar depth) {
   return found;
 }
 
-void WindowTracking::settle_followed(int found, const Quat& q_WC, const Vec3& p_W, Scalar depth) {
-  using namespace tuning::window_start;
+void KeyframeTracking::settle_followed(int found, const Quat& q_WC, const Vec3& p_W, Scalar depth) {
+  using namespace tuning::keyframe_start;
   PosePrior about = {q_WC, p_W, Mat6(Mat6::Identity() * (kRotationSigma * kRotationSigma))};
   about.covariance.bottomRightCorner<3, 3>() = Mat3::Identity() * (kPositionSigma * kPositionSigma * depth * depth);
   about.v_W = motion_.body().v_W;

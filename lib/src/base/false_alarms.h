@@ -14,6 +14,6 @@ namespace pf {
 /// around   points that minimal sets are drawn from, >= 3
 /// 0 when on < 4
 /// src      a-contrario detection (Desolneux, Moisan and Morel 2000), applied to planes
-Scalar log_false_planes(int on, int near, Scalar share, int around);
+Scalar log_false_alarms(int on, int near, Scalar share, int around);
 
 }  // namespace pf

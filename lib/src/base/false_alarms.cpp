@@ -1,4 +1,4 @@
-#include "map/plane_chance.h"
+#include "base/false_alarms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ constexpr Scalar kNegligible = Scalar(1e-6);  ///< of a sum; terms below it are 
 
 }  // namespace
 
-Scalar log_false_planes(int on, int near, Scalar share, int around) {
+Scalar log_false_alarms(int on, int near, Scalar share, int around) {
   if (on < 4) return 0;
   const int n = std::max(near, on) - 3, k = on - 3;
   // ln of the first term of the tail, C(n, k) share^k (1 - share)^(n - k), and the others relative to it.

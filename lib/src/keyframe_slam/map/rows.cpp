@@ -1,8 +1,8 @@
-#include "slam/window_rows.h"
+#include "keyframe_slam/map/rows.h"
 
-#include "filter/camera_at.h"
 #include "geometry/pnp.h"
 #include "geometry/so3.h"
+#include "model/camera_at.h"
 
 namespace pf {
 

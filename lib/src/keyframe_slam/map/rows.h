@@ -1,7 +1,7 @@
 #pragma once
 
-#include "filter/model/body.h"
 #include "geometry/camera.h"
+#include "model/body.h"
 
 /// Rows of a rolling shutter in the window (lib/docs/rolling_shutter.md): row y is read out tau = row_time(y) after the frame's time, when
 /// the camera is at

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "base/scalar.h"
+
+/// Tuned numbers of features of the filter back end, each with its meaning and unit. tools/sweep-tuning halves and doubles them;
+/// what no sweep has measured has no figure here.
+
+namespace pf::tuning {
+
+/// A camera at rest.
+namespace same_view {
+inline constexpr Scalar kMaxMotionPx = Scalar(2);   ///< [px] of points near the median depth; errors come again
+inline constexpr Scalar kDepthRatio = Scalar(1.5);  ///< how near: the median depth divided by it, and times it
+inline constexpr Scalar kCorner = Scalar(0.4);      ///< tangent of the angles at which such points are looked at
+}  // namespace same_view
+
+/// Planes known beforehand.
+namespace plane_walls {
+inline constexpr int kMaxOthers = 64;                 ///< walls: the largest capacity.max_planes
+inline constexpr Scalar kKnownScale = Scalar(0.05);   ///< sigma of the log scale, below which any wall may take points
+inline constexpr Scalar kOffWall = Scalar(0.5);       ///< sigma of a new point relative to the depth of its wall
+inline constexpr int kTrials = 60;                    ///< triples of points
+inline constexpr Scalar kTripleGate = Scalar(11.34);  ///< chi-square of three degrees of freedom, 0.99
+}  // namespace plane_walls
+
+}  // namespace pf::tuning

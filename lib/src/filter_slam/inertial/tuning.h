@@ -1,0 +1,76 @@
+#pragma once
+
+#include "base/scalar.h"
+
+/// Tuned numbers of the inertial unit, each with its meaning and unit. tools/sweep-tuning halves and doubles them;
+/// what no sweep has measured has no figure here.
+
+namespace pf::tuning {
+
+/// An inertial unit before anything is known of it.
+namespace inertial {
+inline constexpr Scalar kGyroBias = Scalar(0.1);   ///< [rad/s] sigma of each axis
+inline constexpr Scalar kAccelBias = Scalar(0.2);  ///< [m/s^2] sigma of each axis
+inline constexpr Scalar kGravity = Scalar(1);      ///< [rad] sigma of its direction: nothing is known
+inline constexpr Scalar kYoungMap = Scalar(15);    ///< [s] age of a map of unknown scale that gives way to a metric one
+}  // namespace inertial
+
+/// Whether samples and pictures agree. Slack and bound are from six healthy runs of 60 s (largest sum 38) and wrong units (pf-sim --fault).
+namespace unit_watch {
+inline constexpr Scalar kSlack = Scalar(9);              ///< that a frame may add to the sum, of a chi-square of six
+inline constexpr Scalar kBound = Scalar(100);            ///< of the sum, above which the unit is doubted
+inline constexpr Scalar kBoundOnProbation = Scalar(30);  ///< in the first kTrial of its use after a doubt
+inline constexpr Scalar kMaxOfFrame = Scalar(50);        ///< no single frame is enough
+inline constexpr Scalar kMaxPoseNis = Scalar(38.3);      ///< chi-square of six, 1 - 1e-6: samples are not used for it
+inline constexpr Scalar kSilence = Scalar(0.1);          ///< [s] without a sample, after which none is waited for
+inline constexpr Scalar kRate = Scalar(1);               ///< [rad/s] sigma of the rate where samples were wrong
+inline constexpr Scalar kSpeed = Scalar(1);              ///< [m/s] sigma of the velocity likewise, or in units of W
+inline constexpr Scalar kTime = Scalar(0.2);             ///< [s] for which the pose may have followed wrong samples
+inline constexpr Scalar kTrial = Scalar(5);              ///< [s] in metres, before which a map hangs on the unit alone
+inline constexpr Scalar kWindow = Scalar(3);  ///< [s] for which a doubted gyro must agree; doubles with each doubt
+inline constexpr int kMaxDoublings = 8;       ///< of that
+inline constexpr Scalar kMaxScatter = Scalar(1.5);  ///< of gyro less rate, in variances
+inline constexpr Scalar kMaxShare = Scalar(0.1);    ///< of the rate's own scatter that gyro less rate may have
+inline constexpr Scalar kMinPower = Scalar(100);    ///< of the rate over its variance, summed: rest proves nothing
+inline constexpr int kMinFrames = 30;               ///< that such a test wants
+}  // namespace unit_watch
+
+/// Standing still.
+namespace rest {
+inline constexpr Scalar kTime = Scalar(1);                ///< [s] at rest before it counts
+inline constexpr int kMinSamples = 20;                    ///< in that time
+inline constexpr Scalar kMaxScatter = Scalar(2);          ///< standard deviations that the densities allow
+inline constexpr Scalar kMaxGyroBias = Scalar(0.3);       ///< [rad/s] that a gyro at rest may show
+inline constexpr Scalar kMaxGravityError = Scalar(1);     ///< [m/s^2] of the mean specific force
+inline constexpr Scalar kMaxMotionPx = Scalar(1);         ///< [px] of the picture as a whole, root mean square
+inline constexpr int kMinPixels = 8;                      ///< features by which that is judged
+inline constexpr Scalar kMaxApartPx = Scalar(3);          ///< [px] of these from their median displacement
+inline constexpr Scalar kMinMotionPx = Scalar(0.2);       ///< [px] least motion that the picture can tell from none
+inline constexpr Scalar kMinMeanMotionPx = Scalar(0.05);  ///< [px] likewise of its mean over kMeanGain's frames
+inline constexpr Scalar kMaxMeanMotionPx = Scalar(0.3);   ///< [px] of that since the rest began
+inline constexpr Scalar kMeanGain = Scalar(0.1);          ///< of that running mean, per frame
+inline constexpr Scalar kMaxNis = Scalar(38.3);  ///< chi-square of six, 1 - 1e-6: beyond it samples say it moves
+inline constexpr Scalar kAnyNis = Scalar(1e9);   ///< the same, once the frame has shown no motion
+inline constexpr Scalar kHidden = Scalar(2);     ///< sigmas of a frame's mean acceleration that pass for none
+}  // namespace rest
+
+/// A start in metres from a moving camera.
+namespace moving_verdict {
+inline constexpr Scalar kInterval = Scalar(0.03);        ///< [s] between poses at least
+inline constexpr Scalar kMinSpan = Scalar(1.5);          ///< [s] of a solution's poses
+inline constexpr int kMinPoses = 16;                     ///< of a solution
+inline constexpr int kLocated = 32;                      ///< poses that are found anew in a frame
+inline constexpr Scalar kMaxDepthSigma = Scalar(0.3);    ///< of a feature's inverse depth, relative
+inline constexpr int kMinPixels = 8;                     ///< with a depth, in each of these frames
+inline constexpr Scalar kHuber = Scalar(3);              ///< sigmas of a pixel beyond which it counts linearly
+inline constexpr int kRounds = 5;                        ///< of a pose's refinement
+inline constexpr Scalar kDrift = Scalar(0.0001);         ///< of poses' positions, of the median depth [/sqrt(s)]
+inline constexpr Scalar kTiltDensity = Scalar(0.00005);  ///< [rad/sqrt(s)] of the drift of the poses' rotations
+inline constexpr Scalar kRotation = Scalar(0.0001);  ///< [rad/sqrt(Hz)] of their noise: 0.1 mrad that last for a second
+inline constexpr Scalar kMaxSigmaScale = Scalar(0.025);    ///< of the log scale
+inline constexpr Scalar kMaxSigmaGravity = Scalar(0.015);  ///< [rad] of its direction
+inline constexpr Scalar kMaxMisfit = Scalar(3);            ///< chi-square over its degrees of freedom
+inline constexpr Scalar kMaxApart = Scalar(9);             ///< of two halves, in the sum of their variances
+}  // namespace moving_verdict
+
+}  // namespace pf::tuning
