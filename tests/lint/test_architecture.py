@@ -1,6 +1,8 @@
 """The architecture page names what there is: the modules of rooms.py, the folders of platform/, the folders of tests."""
 
 import re
+import subprocess
+import sys
 
 import rooms
 import source
@@ -24,14 +26,18 @@ def table(heading):
 
 
 platform = {path.parent.name for path in (source.ROOT / "platform").glob("*/CMakeLists.txt")}
-on_disk = {path.name for path in (source.ROOT / "lib/src").iterdir() if path.is_dir()}
+LIB = source.ROOT / "lib/src"
+on_disk = {rooms.room_of(path.relative_to(LIB).as_posix()) for path in source.files("lib/src")}
 compare("rooms.py", set(rooms.LIBRARY), on_disk)
 compare("the table of modules", table("module"), set(rooms.LIBRARY) | {f"platform/{name}" for name in platform})
 
 drawing = re.search(r"```\n(.*?)```", text, re.S).group(1)
-library = drawing[drawing.index("lib/src/api"):]
-drawn = set(re.findall(r"\blib/src/(\w+)", library)) | {name for name in rooms.LIBRARY if re.search(rf"(?m)^[ |]*(?:\w+ +)*{name}\b", library)}
-compare("the drawing", drawn, set(rooms.LIBRARY))
+library = re.sub(r"[|+/\\\\-]", " ", drawing[drawing.index("lib/src/api"):].replace("lib/src/", ""))
+top = {name for name in rooms.LIBRARY if "/" not in name}
+compare("the drawing", {name for name in top if re.search(rf"(?m)^ *(?:\w+ +)*{name}\b", library)}, top)
+drawn = subprocess.run([sys.executable, source.ROOT / "tools/draw-rooms", "--print"], capture_output=True, text=True, check=True).stdout
+if drawn != (source.ROOT / "lib/docs/images/rooms.dot").read_text():
+    problems.append("lib/docs/images/rooms.dot is not what the includes say: run tools/draw-rooms")
 line = re.search(r"> platform/ +([\w ]+)", drawing)
 compare("the drawing's platform/", set(line.group(1).split()) if line else set(), platform)
 
