@@ -64,30 +64,30 @@ void add_inertial(const pf_slam_t* slam, int64_t metric_frame, bool moving, cons
   json["gravity_W"] = with_sigma(known.gravity_W, 3, 0, 2);  // of its direction, about two axes [rad]
   json["gyro_bias"] = with_sigma(known.gyro_bias, 3, 2, 3);
   json["accel_bias"] = with_sigma(known.accel_bias, 3, 5, 3);
-  const auto estimated = [&](int first) { return known_at_all && known.sigma[first] >= 0.0; };
-  const auto three_sigmas = [&](int first) {
+  const auto estimated = [&](double sigma) { return known_at_all && sigma >= 0.0; };
+  const auto three_sigmas = [&](const double(&of)[3]) {
     nlohmann::ordered_json sigmas;
-    for (int i = first; i < first + 3 && estimated(first); ++i) {
-      sigmas.push_back(rounded(known.sigma[i]));
+    for (int i = 0; i < 3 && estimated(of[0]); ++i) {
+      sigmas.push_back(rounded(of[i]));
     }
     return sigmas;
   };
-  constexpr int kTurn = 8, kPlace = 11, kDelay = 14, kReadout = 15;  // of pf_inertial_t.sigma
-  if (estimated(kTurn)) {
+  const auto& sigma = known.sigma;
+  if (estimated(sigma.mount_rad[0])) {
     json["mount"] = {{"q_BC", known.q_BC},
                      {"p_BC", known.p_BC},
-                     {"sigma_rad", three_sigmas(kTurn)},
-                     {"sigma_m", three_sigmas(kPlace)}};
+                     {"sigma_rad", three_sigmas(sigma.mount_rad)},
+                     {"sigma_m", three_sigmas(sigma.mount_m)}};
   } else {
     json["mount"] = {{"q_BC", model.q_BC}, {"p_BC", model.p_BC}};
   }
-  json["delay_s"] = rounded(estimated(kDelay) ? known.delay_s : model.delay_s);
-  if (estimated(kDelay)) {
-    json["delay_sigma_s"] = rounded(known.sigma[kDelay]);
+  json["delay_s"] = rounded(estimated(sigma.delay_s) ? known.delay_s : model.delay_s);
+  if (estimated(sigma.delay_s)) {
+    json["delay_sigma_s"] = rounded(sigma.delay_s);
   }
-  if (estimated(kReadout)) {
+  if (estimated(sigma.readout_s)) {
     json["readout_s"] = rounded(known.readout_s);
-    json["readout_sigma_s"] = rounded(known.sigma[kReadout]);
+    json["readout_sigma_s"] = rounded(sigma.readout_s);
   }
 }
 
@@ -252,8 +252,10 @@ std::string ImuFeed::report(const pf_slam_t* slam, std::string& advice) const {
     json["saturated"] = nullptr;  // the ranges are not known
   }
   if (inertial_) {
-    json["doubted"] = r.doubted != 0;
-    json["doubted_s"] = rounded(r.doubted_s);
+    json["rejected"] = r.rejected != 0;
+    json["rejected_s"] = rounded(r.rejected_s);
+    json["doubted"] = json["rejected"];  // the names until 0.2
+    json["doubted_s"] = json["rejected_s"];
     json["vertical_planes"] = vertical_;
     add_inertial(slam, metric_frame_, moving_, model_, json);
   }

@@ -1,5 +1,7 @@
 #include "map_shape.h"
 
+#include <planefold/planefold_research.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include <planefold/planefold_research.h>
 #include <planefold_platform/cameras.h>
 #include <planefold_platform/version.h>
 
@@ -251,7 +252,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   bool no_points = false;
   const std::map<std::string, pf_camera_estimate_t> lens_names = {
       {"exact", PF_CAMERA_EXACT}, {"consider", PF_CAMERA_CONSIDER}, {"estimate", PF_CAMERA_ESTIMATE}};
-  const std::map<std::string, pf_masks_t> mask_names = {
+  const std::map<std::string, int32_t> mask_names = {
       {"none", PF_MASKS_NONE}, {"partial", PF_MASKS_PARTIAL}, {"whole", PF_MASKS_WHOLE}};
   const std::map<std::string, pf_kernels_t> kernel_names = {
       {"auto", PF_KERNELS_AUTO}, {"reference", PF_KERNELS_REFERENCE}, {"portable", PF_KERNELS_PORTABLE},

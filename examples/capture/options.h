@@ -42,7 +42,7 @@ struct Options {
   bool planes = true;
   std::optional<pf_camera_estimate_t> lens;  ///< none: what Session makes of the calibration
   pf_backend_t backend = PF_BACKEND_FILTER;
-  pf_masks_t masks = PF_MASKS_NONE;
+  int32_t masks = PF_MASKS_NONE;
   bool keep_gauge = true;
 
   std::string imu = "auto";

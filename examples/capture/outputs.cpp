@@ -74,10 +74,11 @@ void put_inertial(std::string& rows, const FrameView& view) {
     append(rows, ",%.9g,%.9g,%.9g", vector[0], vector[1], vector[2]);
   }
   append(rows, ",%.9g,%.9g", unit.delay_s, unit.readout_s);
-  for (int i = 0; i < 8; ++i) {
-    append(rows, ",%.6g", unit.sigma[i]);
+  append(rows, ",%.6g,%.6g", unit.sigma.gravity_rad[0], unit.sigma.gravity_rad[1]);
+  for (const double* three : {unit.sigma.gyro_bias, unit.sigma.accel_bias}) {
+    append(rows, ",%.6g,%.6g,%.6g", three[0], three[1], three[2]);
   }
-  append(rows, ",%.6g,%.6g\n", unit.sigma[14], unit.sigma[15]);
+  append(rows, ",%.6g,%.6g\n", unit.sigma.delay_s, unit.sigma.readout_s);
 }
 
 const char* match_name(int32_t status) {

@@ -15,7 +15,7 @@ constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 double rounded(double value) { return std::round(1e6 * value) / 1e6; }
 
 /// Angle between the normals of the plan and of the map [deg].
-double rotation_deg(const pf_plane_prior_t& prior, const pf_plane_t& plane) {
+double rotation_deg(const pf_wall_prior_t& prior, const pf_plane_t& plane) {
   const Vec3 a = {prior.R_WP[2], prior.R_WP[5], prior.R_WP[8]};
   const Vec3 b = {plane.normal_W[0], plane.normal_W[1], plane.normal_W[2]};
   const Vec3 c = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -23,13 +23,13 @@ double rotation_deg(const pf_plane_prior_t& prior, const pf_plane_t& plane) {
 }
 
 /// How far the plane now is from the wall's own centre in the plan, along its normal [m].
-double offset_m(const pf_plane_prior_t& prior, const pf_plane_t& plane) {
+double offset_m(const pf_wall_prior_t& prior, const pf_plane_t& plane) {
   double at = -plane.distance;
   for (size_t i = 0; i < 3; ++i) at += plane.normal_W[i] * prior.p_WP[i];
   return -at;
 }
 
-Vec3 column(const pf_plane_prior_t& wall, size_t axis) {
+Vec3 column(const pf_wall_prior_t& wall, size_t axis) {
   return {wall.R_WP[axis], wall.R_WP[3 + axis], wall.R_WP[6 + axis]};
 }
 
@@ -37,7 +37,7 @@ Vec3 difference(const double a[3], const double b[3]) { return {a[0] - b[0], a[1
 
 /// Whether the wall stands between two points, whichever of its sides is towards the first: one whose corners go the wrong way round must
 /// not show all that stands behind it.
-bool hides(const pf_plane_prior_t& wall, const double from_W[3], const double to_W[3]) {
+bool hides(const pf_wall_prior_t& wall, const double from_W[3], const double to_W[3]) {
   const Vec3 n = column(wall, 2);
   const double a = dot(n, difference(from_W, wall.p_WP)), b = dot(n, difference(to_W, wall.p_WP));
   if (a * b >= 0.0) return false;
@@ -53,7 +53,7 @@ bool hides(const pf_plane_prior_t& wall, const double from_W[3], const double to
 }
 
 /// Whether the middle of the wall is in the image, seen from behind.
-bool shows_its_back(const pf_plane_prior_t& wall, const pf_pose_t& pose, const pf_camera_t& camera) {
+bool shows_its_back(const pf_wall_prior_t& wall, const pf_pose_t& pose, const pf_camera_t& camera) {
   constexpr double kSigmas = 3.0;
   const double ahead = dot(column(wall, 2), difference(pose.p_WC, wall.p_WP));
   if (wall.two_sided != 0 || ahead > -kSigmas * std::sqrt(wall.covariance[8])) return false;
@@ -64,7 +64,7 @@ bool shows_its_back(const pf_plane_prior_t& wall, const pf_pose_t& pose, const p
 }
 
 /// Whether a ray of the image, of a grid of them, meets the wall on a side that can be seen.
-bool is_in_view(const pf_plane_prior_t& wall, const pf_pose_t& pose, const pf_camera_t& camera) {
+bool is_in_view(const pf_wall_prior_t& wall, const pf_pose_t& pose, const pf_camera_t& camera) {
   constexpr int kSide = 16;
   constexpr double kFar = 1e4;  // [m]
   if (wall.two_sided == 0 && dot(column(wall, 2), difference(pose.p_WC, wall.p_WP)) <= 0.0) return false;
@@ -100,7 +100,7 @@ bool Plan::open(const std::string& path, bool tell_depths, std::string& error) {
 bool Plan::add_to(pf_slam_t* slam, std::string& error) {
   id_.assign(static_cast<size_t>(walls_.count), 0);
   for (int32_t i = 0; i < walls_.count; ++i) {
-    const pf_status_t status = pf_add_plane_prior(slam, &walls_.wall[i].prior, &id_[static_cast<size_t>(i)]);
+    const pf_status_t status = pf_add_wall(slam, &walls_.wall[i].prior, &id_[static_cast<size_t>(i)]);
     if (status >= PF_OK) continue;
     error = std::string("--walls: wall '") + walls_.wall[i].name + "' was refused: " + pf_status_text(status);
     if (status == PF_ERROR_STATE)
@@ -118,7 +118,7 @@ bool Plan::add_to(pf_slam_t* slam, std::string& error) {
 bool Plan::take_notice(const FrameView& view, const pf_camera_t& camera, std::string& line) {
   told_.resize(static_cast<size_t>(walls_.count));
   for (int32_t i = 0; i < walls_.count && view.has_pose; ++i) {
-    const pf_plane_prior_t& wall = walls_.wall[i].prior;
+    const pf_wall_prior_t& wall = walls_.wall[i].prior;
     if (told_[static_cast<size_t>(i)] || !shows_its_back(wall, view.pose, camera)) continue;
     const bool hidden = std::any_of(walls_.wall, walls_.wall + walls_.count,
                                     [&](const pf_wall_t& w) { return hides(w.prior, view.pose.p_WC, wall.p_WP); });
@@ -156,7 +156,8 @@ nlohmann::ordered_json Plan::to_json(const pf_slam_t* slam) const {
       json.push_back(row);
       continue;
     }
-    row["doubted"] = plane->doubted != 0;
+    row["rejected"] = plane->rejected != 0;
+    row["doubted"] = row["rejected"];  // the name until 0.2
     row["points"] = plane->points;
     row["rotation_deg"] = rounded(rotation_deg(wall.prior, *plane));
     row["offset_m"] = rounded(offset_m(wall.prior, *plane));
@@ -170,7 +171,7 @@ nlohmann::ordered_json Plan::to_json(const pf_slam_t* slam) const {
 std::vector<std::vector<Vec3>> Plan::outlines() const {
   std::vector<std::vector<Vec3>> outlines;
   for (int32_t i = 0; i < walls_.count; ++i) {
-    const pf_plane_prior_t& prior = walls_.wall[i].prior;
+    const pf_wall_prior_t& prior = walls_.wall[i].prior;
     std::vector<Vec3>& outline = outlines.emplace_back();
     for (int32_t k = 0; k < prior.outline_count; ++k) {
       Vec3& p = outline.emplace_back();

@@ -92,7 +92,7 @@ void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane, co
   double x0, y0, x1, y1;
   cairo_path_extents(cairo, &x0, &y0, &x1, &y1);
   canvas.colour(colour, 0.95);
-  cairo_set_line_width(cairo, plane.known ? kWallWidth : kPlaneWidth);
+  cairo_set_line_width(cairo, plane.is_wall ? kWallWidth : kPlaneWidth);
   cairo_stroke(cairo);
   const double area = plane.area();
   if (area > 0.0) {
@@ -115,7 +115,7 @@ void draw_plane(const Canvas& canvas, const Pen& pen, const PlaneView& plane, co
       std::snprintf(text + length, sizeof(text) - static_cast<size_t>(length), ", %.2g m\xc2\xb2", area);
     }
     std::string words(text);
-    if (plane.known) words = (plane.doubted ? "doubted wall " : "wall ") + words;
+    if (plane.is_wall) words = (plane.rejected ? "rejected wall " : "wall ") + words;
     if (std::string(plane.orientation) != "unknown") {
       words += std::string(", ") + plane.orientation;
       std::replace(words.begin(), words.end(), '_', ' ');

@@ -59,8 +59,8 @@ PlaneView view_of(const pf_plane_t& plane) {
   view.distance = plane.distance;
   view.points = plane.points;
   view.fixed_points = plane.fixed_points;
-  view.known = plane.known != 0;
-  view.doubted = plane.doubted != 0;
+  view.is_wall = plane.is_wall != 0;
+  view.rejected = plane.rejected != 0;
   view.orientation = kOrientations[plane.orientation <= 4 ? plane.orientation : 0];
   for (size_t i = 0; i < 3; ++i) {
     view.normal[i] = plane.normal_W[i];

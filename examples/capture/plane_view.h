@@ -19,8 +19,8 @@ struct PlaneView {
   double sigma_normal = 0.0;  ///< of the normal, along its worst direction [rad]
   int points = 0;
   int fixed_points = 0;
-  bool known = false;    ///< a wall of the plan
-  bool doubted = false;  ///< a wall that is not where the plan has it
+  bool is_wall = false;   ///< a wall of the plan
+  bool rejected = false;  ///< a wall that is not where the plan has it
   const char* orientation = "unknown";
   Vec3 origin{}, u{}, v{};    ///< a frame in the plane
   std::vector<Vec3> outline;  ///< convex, in W

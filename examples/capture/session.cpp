@@ -1,5 +1,6 @@
 #include "session.h"
 
+#include <planefold/planefold_research.h>
 #include <planefold_platform/sequence.h>
 
 #include <algorithm>
@@ -46,14 +47,14 @@ pf_camera_estimate_t default_estimate(const pf_config_t& config) {
 /// What is wrong with an option that set a capacity, where the library refuses what only together is too much or too little.
 std::string wrong_capacity(const std::string& field, const Options& options, const pf_config_t& config) {
   const auto number = [](int32_t value) { return std::to_string(value); };
-  if (field == "capacity.window_points") {
+  if (field == "window.points") {
     return "--max-features " + number(options.max_features) + ": the window holds at least 50 points";
   }
   if (options.features_in_view > 0 && (field == "capacity.max_observations" || field == "map.features_in_view")) {
     const bool has_window = config.backend == PF_BACKEND_WINDOW;
     const bool named = options.max_observations > 0;
     return "--features-in-view " + number(options.features_in_view) + ": more than the " +
-           (has_window ? number(config.capacity.window_points) + " points of the map; --max-features sets them"
+           (has_window ? number(config.window.points) + " points of the map; --max-features sets them"
             : named    ? number(options.max_observations) + " of --max-observations"
                        : "200 that the filter measures in one frame");
   }
@@ -80,12 +81,15 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   config_.backend = options.backend;
   const bool has_window = options.backend == PF_BACKEND_WINDOW;
   if (has_window) config_.map.features_in_view = kWindowFeatures;
-  config_.keep_gauge = options.keep_gauge ? 1 : 0;
+  pf_research_t research;
+  pf_research_default(&research);
+  research.keep_gauge = options.keep_gauge ? 1 : 0;
+  if (!options.keep_gauge || options.masks == PF_MASKS_WHOLE) pf_config_set_research(&config_, &research);
   config_.plane.enabled = options.planes ? 1 : 0;
   const auto set = [](int32_t& field, int32_t value) { field = value > 0 ? value : field; };
-  set(has_window ? config_.capacity.window_points : config_.capacity.max_features, options.max_features);
-  set(config_.capacity.window_keyframes, options.window_keyframes);
-  if (options.window_fixed >= 0) config_.capacity.window_fixed = options.window_fixed;
+  set(has_window ? config_.window.points : config_.capacity.max_features, options.max_features);
+  set(config_.window.keyframes, options.window_keyframes);
+  if (options.window_fixed >= 0) config_.window.fixed_keyframes = options.window_fixed;
   set(config_.capacity.max_planes, options.max_planes);
   set(config_.capacity.max_state_dim, options.max_state_dim);
   set(config_.capacity.max_observations, options.max_observations);
@@ -102,8 +106,8 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   if (options.max_observations < 0 && !has_window) {
     config_.capacity.max_observations = std::max(config_.capacity.max_observations, config_.map.features_in_view);
   } else if (options.features_in_view < 0) {  // no more than there is room for
-    config_.map.features_in_view = std::min(
-        config_.map.features_in_view, has_window ? config_.capacity.window_points : config_.capacity.max_observations);
+    config_.map.features_in_view =
+        std::min(config_.map.features_in_view, has_window ? config_.window.points : config_.capacity.max_observations);
   }
   imu.configure(config_);
   config_.camera.estimate = options.lens.value_or(default_estimate(config_));
@@ -259,7 +263,7 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   view.map = map_;
   size_t count = 0;
   const bool has_window = config_.backend == PF_BACKEND_WINDOW;
-  const int features = has_window ? config_.capacity.window_points : config_.capacity.max_features;
+  const int features = has_window ? config_.window.points : config_.capacity.max_features;
   view.tracks.resize(static_cast<size_t>(features + (has_window ? features : config_.capacity.max_observations)));
   if (pf_get_matches(slam_, view.tracks.data(), view.tracks.size(), &count) < 0) {
     count = 0;

@@ -1,5 +1,6 @@
 #include "statistics.h"
 
+#include <planefold/planefold_research.h>
 #include <sys/utsname.h>
 
 #include <algorithm>
@@ -308,10 +309,12 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["scalar"] = config.scalar == PF_SCALAR_FLOAT ? "float" : "double";
   json["camera"] = camera_json(config.camera);
   json["lens"] = lens_json(session.slam());
+  pf_research_t research;
+  pf_config_get_research(&config, &research);
   json["config"] = {
       {"max_state_dim", config.capacity.max_state_dim},       {"max_features", config.capacity.max_features},
       {"max_observations", config.capacity.max_observations}, {"features_in_view", config.map.features_in_view},
-      {"sigma_pixel", config.measurement.sigma_px},           {"keep_gauge", config.keep_gauge}};
+      {"sigma_pixel", config.measurement.sigma_px},           {"keep_gauge", research.keep_gauge}};
   json["withdraw_target_after"] = options.withdraw_target_after >= 0 ? Json(options.withdraw_target_after) : Json();
   json["truth"] =
       source.truth_path.empty() ? "" : std::filesystem::absolute(source.truth_path).lexically_normal().string();

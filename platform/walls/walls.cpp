@@ -36,7 +36,7 @@ Vec3 scaled(const Vec3& a, double s) { return {s * a[0], s * a[1], s * a[2]}; }
 Vec3 unit(const Vec3& a) { return scaled(a, 1.0 / std::sqrt(dot(a, a))); }
 
 /// Sets the frame: z the normal, x horizontal, y up where that means anything.
-void set_frame(const Vec3& normal, const Vec3& up, const Vec3& centre, pf_plane_prior_t& prior) {
+void set_frame(const Vec3& normal, const Vec3& up, const Vec3& centre, pf_wall_prior_t& prior) {
   Vec3 x = cross(up, normal);
   if (dot(x, x) < 1e-6) x = cross(std::fabs(normal[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, normal);
   x = unit(x);
@@ -50,7 +50,7 @@ void set_frame(const Vec3& normal, const Vec3& up, const Vec3& centre, pf_plane_
 }
 
 /// alpha tilts the normal along x, which is a rotation about up; beta out of the vertical.
-void set_sigmas(const Fields& fields, pf_plane_prior_t& prior) {
+void set_sigmas(const Fields& fields, pf_wall_prior_t& prior) {
   const double rotation = kDegree * fields.positive("sigma_rotation_deg", kLargestAngle);
   const double vertical = kDegree * fields.positive("sigma_vertical_deg", kLargestAngle);
   const double offset = fields.positive("sigma_offset_m", kLargestOffset);
@@ -62,7 +62,7 @@ void set_sigmas(const Fields& fields, pf_plane_prior_t& prior) {
   if (prior.roughness < 1e-6) fields.refuse("roughness_m", "is less than a thousandth of a millimetre");
 }
 
-pf_plane_prior_t wall_of(const Fields& fields, const Vec3& up) {
+pf_wall_prior_t wall_of(const Fields& fields, const Vec3& up) {
   fields.check_keys({"name", "from", "to", "base", "height", "seen_from", "sigma_rotation_deg", "sigma_vertical_deg",
                      "sigma_offset_m"},
                     {"roughness_m"});
@@ -75,7 +75,7 @@ pf_plane_prior_t wall_of(const Fields& fields, const Vec3& up) {
   if (!(length >= kSmallestSize)) fields.refuse("to", "is where 'from' is; the wall has no length");
   if (length > kLargestSize) fields.refuse("to", "makes the wall longer than 10 km; the unit is the metre");
   if (height < kSmallestSize) fields.refuse("height", "is less than a millimetre");
-  pf_plane_prior_t prior{};
+  pf_wall_prior_t prior{};
   const Vec3 left = unit(cross(up, along));
   const Vec3 centre = {0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1]), base + 0.5 * height};
   set_frame(side == "right" ? scaled(left, -1.0) : left, up, centre, prior);
@@ -103,7 +103,7 @@ bool is_convex(const double (*uv)[2], size_t count) {
   return around < 1.5 * 360.0 * kDegree;
 }
 
-pf_plane_prior_t face_of(const Fields& fields, const Vec3& up) {
+pf_wall_prior_t face_of(const Fields& fields, const Vec3& up) {
   fields.check_keys({"name", "corners", "sigma_rotation_deg", "sigma_vertical_deg", "sigma_offset_m"},
                     {"seen_from", "roughness_m"});
   const Json& list = fields.at("corners");
@@ -114,7 +114,7 @@ pf_plane_prior_t face_of(const Fields& fields, const Vec3& up) {
     const std::vector<double> p = fields.numbers_of(point, "corners", 3);
     corner.push_back({p[0], p[1], p[2]});
   }
-  pf_plane_prior_t prior{};
+  pf_wall_prior_t prior{};
   prior.two_sided = fields.has("seen_from") && fields.word("seen_from", {"front", "both"}) == "both" ? 1u : 0u;
   set_sigmas(fields, prior);
   // Twice the area along the normal, and the centre of the area, by triangles about the first corner.

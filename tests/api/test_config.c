@@ -1,6 +1,6 @@
 /* Every field of the config: its default works, and a bad value is refused by name. */
 #include <math.h>
-#include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 
 #include "small_context.h"
 
@@ -29,6 +29,56 @@ static void names(pf_status_t status, const char* expected) {
     NAMES(field, -INFINITY);         \
   } while (0)
 
+static void allow_research(void) {
+  pf_research_t research;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_research_default(&research));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_set_research(&config, &research));
+}
+
+static void test_forms_for_comparison_should_be_refused_by_name_without_research(void) {
+  NAMES(motion.model, PF_MOTION_CONSTANT_POSITION);
+  NAMES(plane.fix, PF_FIX_ERROR_FREE);
+  NAMES(map.masks, PF_MASKS_WHOLE);
+  allow_research();
+  config.motion.model = PF_MOTION_CONSTANT_POSITION;
+  config.plane.fix = PF_FIX_ERROR_FREE;
+  config.map.masks = PF_MASKS_WHOLE;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_set_research(&config, NULL));
+  names(PF_ERROR_CONFIG, "motion.model");
+}
+
+#define NAMES_RESEARCH(field, value)                                           \
+  do {                                                                         \
+    pf_research_t research_;                                                   \
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_research_default(&research_));             \
+    research_.field = value;                                                   \
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_set_research(&config, &research_)); \
+    names(PF_ERROR_CONFIG, "research." #field);                                \
+  } while (0)
+
+static void test_check_should_name_the_field_of_research_that_is_out_of_range(void) {
+  NAMES_RESEARCH(keep_gauge, 2);
+  NAMES_RESEARCH(keep_gauge, -1);
+  NAMES_RESEARCH(fold, 0);
+  NAMES_RESEARCH(fold, 3);
+  NAMES_RESEARCH(linear_walk, 0);
+  NAMES_RESEARCH(linear_walk, NAN);
+  NAMES_RESEARCH(angular_walk, 1e5);
+  NAMES_RESEARCH(angular_walk, -INFINITY);
+}
+
+static void test_research_of_another_release_should_be_refused(void) {
+  pf_research_t research;
+  allow_research();
+  config.research[0] ^= 1;
+  names(PF_ERROR_VERSION, "research");
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_VERSION, pf_config_get_research(&config, &research));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_config_set_research(NULL, &research));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_config_get_research(&config, NULL));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_research_default(NULL));
+}
+
 static void test_check_should_say_nothing_when_the_config_is_good(void) {
   const char* field = "unset";
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, &field));
@@ -44,26 +94,22 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES(capacity.max_observations, 201);
   NAMES(backend, 0);
   NAMES(backend, 3);
-  NAMES(capacity.window_keyframes, 1);
-  NAMES(capacity.window_keyframes, 9);
-  NAMES(capacity.window_fixed, -1);
-  NAMES(capacity.window_fixed, 17);
-  NAMES(capacity.window_points, 49);
-  NAMES(capacity.window_points, 1001);
+  NAMES(window.keyframes, 1);
+  NAMES(window.keyframes, 9);
+  NAMES(window.fixed_keyframes, -1);
+  NAMES(window.fixed_keyframes, 17);
+  NAMES(window.points, 49);
+  NAMES(window.points, 1001);
   NAMES(map.features_in_view, 7);
   NAMES(map.features_in_view, 31); /* more than max_observations */
   NAMES(map.border_px, 3);
   NAMES(map.border_px, 65);
   NAMES(motion.model, 0);
   NAMES(motion.model, 3);
-  NAMES(keep_gauge, 2);
-  NAMES(keep_gauge, -1);
   NAMES(first_depth.from_map, 2);
   NAMES(first_depth.from_map, -1);
   NAMES(plane.enabled, 2);
   NAMES(plane.enabled, -1);
-  NAMES(plane.fold, 0);
-  NAMES(plane.fold, 3);
   NAMES(plane.fix, 0);
   NAMES(plane.fix, 4);
   NAMES(plane.min_points, 3);
@@ -74,8 +120,6 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES(kernels, 99);
   NAMES_REAL(motion.linear_acceleration_density, 0, 1e5);
   NAMES_REAL(motion.angular_acceleration_density, 0, 1e5);
-  NAMES_REAL(motion.linear_walk, -1, 1e5);
-  NAMES_REAL(motion.angular_walk, -1, 1e5);
   NAMES_REAL(measurement.sigma_px, 0.009, 10.1);
   NAMES_REAL(measurement.gate_probability, 0.89, 1);
   NAMES_REAL(first_depth.depth, 0, 1e9);
@@ -198,6 +242,7 @@ static void test_check_should_name_the_number_of_the_camera_that_makes_no_sense(
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
   config.camera.timestamps = PF_TIMESTAMPS_REAL;
   config.camera.readout_s = 0;
+  allow_research();
   config.motion.model = PF_MOTION_CONSTANT_POSITION; /* rows cannot differ without a speed */
   NAMES(camera.readout_s, 0.03);
   config.motion.model = PF_MOTION_CONSTANT_VELOCITY;
@@ -278,6 +323,9 @@ static void test_every_status_should_have_a_line_of_text(void) {
 
 int main(void) {
   UNITY_BEGIN();
+  RUN_TEST(test_forms_for_comparison_should_be_refused_by_name_without_research);
+  RUN_TEST(test_check_should_name_the_field_of_research_that_is_out_of_range);
+  RUN_TEST(test_research_of_another_release_should_be_refused);
   RUN_TEST(test_check_should_say_nothing_when_the_config_is_good);
   RUN_TEST(test_check_should_name_the_field_that_is_out_of_range);
   RUN_TEST(test_patches_should_take_at_most_24_kib_each_and_nothing_where_there_are_none);

@@ -1,6 +1,6 @@
 /* The door as a caller sees it: what is refused, with which status, and that a refusal changes nothing. */
 #include <math.h>
-#include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 #include <string.h>
 
 #include "small_context.h"

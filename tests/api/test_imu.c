@@ -262,7 +262,7 @@ static void test_an_uncertain_readout_should_be_a_number_of_the_camera(void) {
   TEST_ASSERT_EQUAL_DOUBLE(0, covariance[0]);
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_inertial(slam, &inertial));
   TEST_ASSERT_DOUBLE_WITHIN(1e-9, camera.readout_s, inertial.readout_s);
-  TEST_ASSERT_DOUBLE_WITHIN(1e-9, sqrt(covariance[99]), inertial.sigma[15]);
+  TEST_ASSERT_DOUBLE_WITHIN(1e-9, sqrt(covariance[99]), inertial.sigma.readout_s);
   config.camera.readout_s = known;
   config.imu.sigma_readout_s = 0;
 }
@@ -328,7 +328,7 @@ static void test_asking_for_the_unit_should_leave_the_block_as_it_was(void) {
   copy_block(before, block, need.bytes);
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_inertial(slam, &inertial));
   TEST_ASSERT_EQUAL_UINT32(1, inertial.metric);
-  TEST_ASSERT_TRUE(inertial.sigma[16] > 0);
+  TEST_ASSERT_TRUE(inertial.sigma.log_scale > 0);
   copy_block(after, block, need.bytes);
   TEST_ASSERT_EQUAL_MEMORY(before, after, need.bytes);
   free_block(before);

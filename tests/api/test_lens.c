@@ -1,6 +1,6 @@
 /* The calibration as a part of the state: what pf_get_camera says of it when it is exact, considered and estimated. */
 #include <math.h>
-#include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 
 #include "small_context.h"
 

@@ -1,7 +1,7 @@
 /* Walls known beforehand, as a caller gives them: refused where they are no walls, refined by what is seen, doubted where that
  * contradicts them. */
 #include <math.h>
-#include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -105,8 +105,8 @@ static void run(int first, int end) {
 }
 
 /* A rectangle of 2 x 1.6 m that faces the camera at this distance, rotated about its own vertical axis. */
-static pf_plane_prior_t wall_at(double z, double angle) {
-  pf_plane_prior_t wall;
+static pf_wall_prior_t wall_at(double z, double angle) {
+  pf_wall_prior_t wall;
   memset(&wall, 0, sizeof wall);
   const double c = cos(angle), s = sin(angle);
   const double R[9] = {c, 0, s, 0, -1, 0, s, 0, -c}; /* x to the right, y up, z to the camera */
@@ -128,7 +128,7 @@ static pf_plane_t the_wall(uint32_t id) {
   for (size_t i = 0; i < number; ++i)
     if (planes[i].id == id) found = planes[i];
   TEST_ASSERT_EQUAL_UINT32(id, found.id);
-  TEST_ASSERT_EQUAL_INT(1, found.known);
+  TEST_ASSERT_EQUAL_INT(1, found.is_wall);
   return found;
 }
 
@@ -143,21 +143,21 @@ static void points_on_front(int number) {
 }
 
 static void test_a_wall_before_a_start_in_its_frame_should_be_refused(void) {
-  const pf_plane_prior_t wall = wall_at(2, 0);
+  const pf_wall_prior_t wall = wall_at(2, 0);
   uint32_t id = 77;
   open_slam();
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &wall, &id));
   /* A rectangle without a place is W itself: where the plan is in it, nobody has said. */
   pf_target_t target;
   memset(&target, 0, sizeof target);
   target.kind = PF_TARGET_RECTANGLE;
   target.width = target.height = target.sigma = 0.2;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &wall, &id));
   target.q_WT[0] = 1;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
   TEST_ASSERT_EQUAL_UINT32(77, id);
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &wall, &id));
   /* And that place cannot be taken back. */
   target.q_WT[0] = 0;
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_start_from_target(slam, &target));
@@ -168,24 +168,24 @@ static void test_a_wall_before_a_start_in_its_frame_should_be_refused(void) {
 
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));
   TEST_ASSERT_EQUAL_size_t(0, num_planes());
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &wall, &id));
   points_on_front(30);
   run(0, 3); /* W is the first camera now */
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &wall, &id));
 }
 
 static void test_without_planes_a_wall_should_be_refused(void) {
-  const pf_plane_prior_t wall = wall_at(2, 0);
+  const pf_wall_prior_t wall = wall_at(2, 0);
   uint32_t id;
   config.plane.enabled = 0;
   open_slam();
   start();
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &wall, &id));
 }
 
-static void refuses(pf_status_t status, pf_plane_prior_t wall, const char* why) {
+static void refuses(pf_status_t status, pf_wall_prior_t wall, const char* why) {
   uint32_t id = 77;
-  TEST_ASSERT_EQUAL_INT_MESSAGE(status, pf_add_plane_prior(slam, &wall, &id), why);
+  TEST_ASSERT_EQUAL_INT_MESSAGE(status, pf_add_wall(slam, &wall, &id), why);
   TEST_ASSERT_EQUAL_UINT32_MESSAGE(77, id, why);
   TEST_ASSERT_EQUAL_size_t_MESSAGE(0, num_planes(), why);
   pf_report_t report;
@@ -194,14 +194,14 @@ static void refuses(pf_status_t status, pf_plane_prior_t wall, const char* why) 
 }
 
 static void test_what_is_no_wall_should_be_refused_with_nothing_changed(void) {
-  const pf_plane_prior_t good = wall_at(2, 0.3);
-  pf_plane_prior_t wall;
+  const pf_wall_prior_t good = wall_at(2, 0.3);
+  pf_wall_prior_t wall;
   uint32_t id;
   open_slam();
   start();
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_add_plane_prior(slam, NULL, &id));
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_add_plane_prior(slam, &good, NULL));
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_add_plane_prior(NULL, &good, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_add_wall(slam, NULL, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_add_wall(slam, &good, NULL));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_NULL, pf_add_wall(NULL, &good, &id));
 
   double* const numbers[5] = {&wall.R_WP[4], &wall.p_WP[1], &wall.covariance[8], &wall.outline_P[2][1],
                               &wall.roughness};
@@ -269,17 +269,17 @@ static void test_what_is_no_wall_should_be_refused_with_nothing_changed(void) {
   wall = good;
   wall.two_sided = 2;
   refuses(PF_ERROR_RANGE, wall, "two_sided");
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &good, &id));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &good, &id));
 }
 
 static void test_a_wall_should_be_as_it_was_given(void) {
-  const pf_plane_prior_t wall = wall_at(2, 0.3);
+  const pf_wall_prior_t wall = wall_at(2, 0.3);
   uint32_t id = 0;
   open_slam();
   start();
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &wall, &id));
   const pf_plane_t plane = the_wall(id);
-  TEST_ASSERT_EQUAL_INT(0, plane.doubted);
+  TEST_ASSERT_EQUAL_INT(0, plane.rejected);
   TEST_ASSERT_EQUAL_INT(0, plane.points);
   for (int i = 0; i < 9; ++i) {
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, wall.R_WP[i], plane.R_WP[i]);
@@ -296,11 +296,11 @@ static void test_more_walls_than_planes_should_be_refused(void) {
   open_slam();
   start();
   for (int i = 0; i < 3; ++i) {
-    const pf_plane_prior_t wall = wall_at(2 + i, 0);
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &wall, &id));
+    const pf_wall_prior_t wall = wall_at(2 + i, 0);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &wall, &id));
   }
-  const pf_plane_prior_t wall = wall_at(8, 0);
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_FULL, pf_add_plane_prior(slam, &wall, &last));
+  const pf_wall_prior_t wall = wall_at(8, 0);
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_FULL, pf_add_wall(slam, &wall, &last));
   TEST_ASSERT_EQUAL_UINT32(77, last);
   TEST_ASSERT_EQUAL_size_t(3, num_planes());
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(slam));
@@ -308,7 +308,7 @@ static void test_more_walls_than_planes_should_be_refused(void) {
 }
 
 static void test_a_full_state_should_refuse_a_wall_where_everything_is_in_view(void) {
-  const pf_plane_prior_t wall = wall_at(2, 0);
+  const pf_wall_prior_t wall = wall_at(2, 0);
   uint32_t id = 0;
   config.capacity.max_state_dim = 60;
   points_on_front(40);
@@ -318,7 +318,7 @@ static void test_a_full_state_should_refuse_a_wall_where_everything_is_in_view(v
   pf_report_t before, after;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(slam, &before));
   TEST_ASSERT_TRUE(before.state_dim + 3 > 60);
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_FULL, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_FULL, pf_add_wall(slam, &wall, &id));
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(slam, &after));
   TEST_ASSERT_EQUAL_MEMORY(&before, &after, sizeof before);
 }
@@ -345,15 +345,15 @@ static void require_front(const pf_plane_t* plane, double max_angle, double max_
 
 /* Six degrees and 5 cm wrong. A plane in the corner and nothing else says how far away anything is. */
 static void test_a_wrong_wall_should_be_refined_and_give_the_world_its_scale(void) {
-  const pf_plane_prior_t wall = wall_at(2.05, 0.105);
+  const pf_wall_prior_t wall = wall_at(2.05, 0.105);
   uint32_t id = 0;
   points_on_front(40);
   open_slam();
   start();
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &wall, &id));
   run(0, 300);
   const pf_plane_t plane = the_wall(id);
-  TEST_ASSERT_EQUAL_INT(0, plane.doubted);
+  TEST_ASSERT_EQUAL_INT(0, plane.rejected);
   TEST_ASSERT_GREATER_OR_EQUAL_INT(25, plane.points);
   TEST_ASSERT_TRUE(plane.area > 2.9);
   require_front(&plane, 0.03, 0.1);
@@ -364,7 +364,7 @@ static void test_a_wrong_wall_should_be_refined_and_give_the_world_its_scale(voi
 }
 
 static void test_a_plane_that_was_found_should_merge_into_a_wall_that_comes_later(void) {
-  const pf_plane_prior_t wall = wall_at(2.01, 0.05);
+  const pf_wall_prior_t wall = wall_at(2.01, 0.05);
   uint32_t id = 0, found = 0, now = 0;
   config.first_depth.depth = 2; /* before the wall comes nothing else says how far away things are */
   points_on_front(40);
@@ -377,7 +377,7 @@ static void test_a_plane_that_was_found_should_merge_into_a_wall_that_comes_late
     if (found == 0 && pf_get_planes(slam, &plane, 1, &number) == PF_OK && number == 1) found = plane.id;
   }
   TEST_ASSERT_TRUE_MESSAGE(found != 0, "no plane was found to begin with");
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &wall, &id));
   run(200, 400);
   const pf_plane_t plane = the_wall(id);
   TEST_ASSERT_GREATER_OR_EQUAL_INT(25, plane.points);
@@ -389,24 +389,24 @@ static void test_a_plane_that_was_found_should_merge_into_a_wall_that_comes_late
 }
 
 static void test_a_wall_that_is_not_there_should_be_doubted_and_a_good_one_not(void) {
-  const pf_plane_prior_t good = wall_at(2.01, 0.03);
-  pf_plane_prior_t wrong = wall_at(1.4, 0); /* the camera sees through it */
+  const pf_wall_prior_t good = wall_at(2.01, 0.03);
+  pf_wall_prior_t wrong = wall_at(1.4, 0); /* the camera sees through it */
   uint32_t id = 0, not_there = 0;
   for (int i = 0; i < 4; ++i) wrong.outline_P[i][0] *= 0.2; /* before a part of the good one */
   points_on_front(80);
   for (int late = 0; late < 2; ++late) {
     open_slam();
     start();
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &good, &id));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &good, &id));
     if (late) run(0, 100);
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &wrong, &not_there));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &wrong, &not_there));
     run(100 * late, 100 * late + 60);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(1, the_wall(not_there).doubted, "not within two seconds");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(1, the_wall(not_there).rejected, "not within two seconds");
     run(100 * late + 60, 300);
-    TEST_ASSERT_EQUAL_INT(1, the_wall(not_there).doubted);
+    TEST_ASSERT_EQUAL_INT(1, the_wall(not_there).rejected);
     TEST_ASSERT_EQUAL_INT(0, the_wall(not_there).points);
     const pf_plane_t plane = the_wall(id);
-    TEST_ASSERT_EQUAL_INT(0, plane.doubted);
+    TEST_ASSERT_EQUAL_INT(0, plane.rejected);
     TEST_ASSERT_GREATER_OR_EQUAL_INT(late ? 50 : 10, plane.points);
     if (late) require_front(&plane, 0.03, 0.1);
     free(raw);
@@ -415,12 +415,12 @@ static void test_a_wall_that_is_not_there_should_be_doubted_and_a_good_one_not(v
 }
 
 static void test_a_wall_should_stay_without_points(void) {
-  const pf_plane_prior_t wall = wall_at(5, 0);
+  const pf_wall_prior_t wall = wall_at(5, 0);
   uint32_t id = 0;
   points_on_front(40);
   open_slam();
   start();
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &wall, &id));
   run(0, 200);
   TEST_ASSERT_EQUAL_INT(0, the_wall(id).points);
 }
@@ -430,7 +430,7 @@ static void test_a_wall_should_add_information_about_the_gauge_in_its_own_frame_
   static double scratch[400 * 408];
   double before[49], now[49];
   uint32_t id = 0;
-  const pf_plane_prior_t wall = wall_at(2.02, 0.05);
+  const pf_wall_prior_t wall = wall_at(2.02, 0.05);
   config.capacity.max_state_dim = 390;
   config.first_depth.depth = 2;
   points_on_front(40);
@@ -439,7 +439,7 @@ static void test_a_wall_should_add_information_about_the_gauge_in_its_own_frame_
   run(0, 10);
   const size_t room = sizeof scratch / sizeof *scratch;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_gauge_information(slam, scratch, room, before));
-  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &wall, &id));
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &wall, &id));
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_gauge_information(slam, scratch, room, now));
   /* Along its normal 1 / 0.05^2; it is rotated about the point under W's origin by 1 / 0.1^2. */
   TEST_ASSERT_DOUBLE_WITHIN(1, 400 * cos(0.05) * cos(0.05), now[8 * 2] - before[8 * 2]);

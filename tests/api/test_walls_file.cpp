@@ -55,7 +55,7 @@ void test_walls_and_faces_should_become_priors_at_their_own_centre() {
   TEST_ASSERT_EQUAL_INT(2, walls.count);
   TEST_ASSERT_EQUAL_INT(1, walls.has_up);
   TEST_ASSERT_EQUAL_DOUBLE(1, walls.up_W[2]);
-  const pf_plane_prior_t& north = walls.wall[0].prior;
+  const pf_wall_prior_t& north = walls.wall[0].prior;
   TEST_ASSERT_EQUAL_STRING("north", walls.wall[0].name);
   const double centre[3] = {3, 4, 2}, normal[3] = {0, -1, 0}, up[3] = {0, 0, 1};
   for (int i = 0; i < 3; ++i) {
@@ -72,7 +72,7 @@ void test_walls_and_faces_should_become_priors_at_their_own_centre() {
   TEST_ASSERT_EQUAL_DOUBLE(-3, north.outline_P[0][0]);
   TEST_ASSERT_EQUAL_DOUBLE(-1.5, north.outline_P[0][1]);
 
-  const pf_plane_prior_t& board = walls.wall[1].prior;
+  const pf_wall_prior_t& board = walls.wall[1].prior;
   const double middle[3] = {0.5, 1, 1};
   for (int i = 0; i < 3; ++i) {
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, middle[i], board.p_WP[i]);
@@ -113,7 +113,7 @@ void test_priors_from_a_file_should_be_added() {
   TEST_ASSERT_EQUAL_INT(0, parse(kPlan));
   for (int i = 0; i < walls.count; ++i) {
     uint32_t id = 0;
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &walls.wall[i].prior, &id));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &walls.wall[i].prior, &id));
     TEST_ASSERT_TRUE(id > 0);
   }
 }
@@ -206,7 +206,7 @@ void test_a_damaged_plan_should_be_a_plan_or_one_line() {
     ++accepted;
     TEST_ASSERT_TRUE(walls.count > 0 && walls.count <= PF_WALLS_MAX);
     for (int i = 0; i < walls.count; ++i) {
-      const pf_plane_prior_t& prior = walls.wall[i].prior;
+      const pf_wall_prior_t& prior = walls.wall[i].prior;
       for (const double x : prior.R_WP) TEST_ASSERT_TRUE(std::fabs(x) <= 1 + 1e-12);
       for (int k = 0; k < 9; k += 4) TEST_ASSERT_TRUE(prior.covariance[k] > 0);
       TEST_ASSERT_TRUE(prior.outline_count >= 3 && prior.outline_count <= PF_OUTLINE_MAX);

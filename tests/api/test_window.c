@@ -1,6 +1,6 @@
 /* The window: what it refuses, what its block takes, and that it repeats itself. */
 #include <math.h>
-#include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 #include <string.h>
 
 #include "unity.h"
@@ -82,7 +82,7 @@ static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) 
   const double none[3] = {0, 0, 0};
   double scratch[8], information[49];
   pf_observation_t observation;
-  pf_plane_prior_t prior;
+  pf_wall_prior_t prior;
   uint32_t id = 0;
   pf_memory_t need;
   pf_slam_t* slam = NULL;
@@ -100,7 +100,7 @@ static void test_calls_of_the_filter_should_be_refused_and_change_nothing(void) 
   prior.outline_P[2][1] = 1;
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_push_observations(slam, 1, &observation, 1));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_push_control(slam, none, none));
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_plane_prior(slam, &prior, &id));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_wall(slam, &prior, &id));
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_get_gauge_information(slam, scratch, 8, information));
   /* A picture without a corner: starting, and no crash. */
   memset(pixels, 128, sizeof(pixels));

@@ -1,7 +1,7 @@
 // One context from its creation to its end, with calls that are drawn from bytes: most of them mean something, some are hostile.
 #pragma once
 
-#include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 
 #include <algorithm>
 #include <cmath>
@@ -233,7 +233,7 @@ class ContractRun {
   }
 
   pf_status_t add_wall(bool is_hostile) {
-    pf_plane_prior_t wall;
+    pf_wall_prior_t wall;
     std::memset(static_cast<void*>(&wall), 0, sizeof(wall));
     const double slant = 0.05 * unit(bytes_), c = std::cos(slant), s = std::sin(slant);
     const double R[9] = {1, 0, 0, 0, -c, -s, 0, s, -c};
@@ -271,7 +271,7 @@ class ContractRun {
       }
     }
     uint32_t id = 0, current = 0;
-    const pf_status_t result = pf_add_plane_prior(slam_, &wall, &id);
+    const pf_status_t result = pf_add_wall(slam_, &wall, &id);
     if (result == PF_OK)
       require(pf_find_plane(slam_, id, &current) == PF_OK && current == id, "a wall is found by its id");
     return result;
@@ -430,7 +430,7 @@ class ContractRun {
     require(pf_get_report(slam_, &report) == PF_OK && pf_get_state(slam_, &state) == PF_OK, "a report and a state");
     require(report.state == static_cast<int32_t>(state), "state and report agree");
     const bool has_window = config_.backend == PF_BACKEND_WINDOW;
-    require(report.features <= (has_window ? config_.capacity.window_points : config_.capacity.max_features) &&
+    require(report.features <= (has_window ? config_.window.points : config_.capacity.max_features) &&
                 report.patches <= config_.capacity.max_patches && report.cameras <= config_.capacity.max_cameras,
             "features and patches keep to their capacity");
     require(report.planes <= config_.capacity.max_planes &&
@@ -482,7 +482,7 @@ class ContractRun {
 
   void look_at_map(const pf_report_t& report) const {
     std::vector<pf_feature_t> features(
-        static_cast<size_t>(std::max(config_.capacity.max_features, config_.capacity.window_points)));
+        static_cast<size_t>(std::max(config_.capacity.max_features, config_.window.points)));
     std::vector<pf_match_t> matches(features.size() + static_cast<size_t>(config_.capacity.max_observations));
     std::vector<pf_plane_t> planes(static_cast<size_t>(config_.capacity.max_planes));
     size_t count = 0;

@@ -1,7 +1,7 @@
 // Numbers, times and whole configs that are drawn from a fuzzer's bytes.
 #pragma once
 
-#include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 
 #include <algorithm>
 #include <cfloat>
@@ -58,9 +58,9 @@ inline void extend(Bytes& bytes, pf_config_t* config) {
   const uint8_t more = bytes.take<uint8_t>();
   if ((more & 1) != 0) {
     config->backend = PF_BACKEND_WINDOW;
-    config->capacity.window_keyframes = 2 + bytes.take<uint8_t>() % 7;
-    config->capacity.window_fixed = bytes.take<uint8_t>() % 17;
-    config->capacity.window_points = 50 + bytes.take<uint8_t>();
+    config->window.keyframes = 2 + bytes.take<uint8_t>() % 7;
+    config->window.fixed_keyframes = bytes.take<uint8_t>() % 17;
+    config->window.points = 50 + bytes.take<uint8_t>();
     config->plane.fix_sigma = 0;
     if (config->motion.model == PF_MOTION_INERTIAL) config->motion.model = PF_MOTION_CONSTANT_VELOCITY;
     if ((more & 4) != 0) make_lens_uncertain(bytes, PF_CAMERA_ESTIMATE, config);
@@ -115,12 +115,15 @@ inline pf_config_t config_from(Bytes& bytes, bool calm, bool* extended) {
   config.plane.max_distance = between(bytes, 0.005, 0.05);
   config.plane.fold_sigma = between(bytes, 0.02, 0.3);
   config.plane.fix_sigma = (what & 4) != 0 ? between(bytes, 5e-4, 0.05) : 0.0;
+  pf_research_t research;
+  pf_research_default(&research);
   const uint8_t forms = bytes.take<uint8_t>();
   if (forms >= 192) {
     config.plane.fix = 1 + forms % 3;
-    config.plane.fold = 1 + forms / 3 % 2;
-    config.keep_gauge = forms / 6 % 2;
+    research.fold = 1 + forms / 3 % 2;
+    research.keep_gauge = forms / 6 % 2;
   }
+  pf_config_set_research(&config, &research);
   config.kernels = bytes.take<uint8_t>() % 3;
   if ((what & kOdd) != 0) {
     config.motion.linear_acceleration_density = between(bytes, 1e-3, 1e2);

@@ -49,7 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   for (int32_t i = 0; i < walls->count; ++i) {
     uint32_t id = 0;
     require(std::memchr(walls->wall[i].name, '\0', PF_WALLS_NAME) != nullptr, "a name ends");
-    const pf_status_t status = pf_add_plane_prior(slam, &walls->wall[i].prior, &id);
+    const pf_status_t status = pf_add_wall(slam, &walls->wall[i].prior, &id);
     require(status == PF_OK || status == PF_ERROR_FULL, "a wall of a plan is a wall");
   }
   return 0;

@@ -1,5 +1,5 @@
 // What pf_memory_query says for three configs, against golden numbers, and the limit of the default at 640x480.
-#include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 
 #include <cmath>
 #include <cstdio>
@@ -72,7 +72,10 @@ void test_memory_should_depend_on_capacities_and_image_size_alone() {
   config.measurement.sigma_px = 1;
   config.motion.coast_s = 5;
   config.motion.restart_s = 0;
-  config.keep_gauge = 0;
+  pf_research_t research;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_research_default(&research));
+  research.keep_gauge = 0;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_set_research(&config, &research));
   config.motion.model = PF_MOTION_CONSTANT_POSITION;
   config.map.features_in_view = 20;
   config.camera.fx = config.camera.fy = 400;

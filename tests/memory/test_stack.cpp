@@ -1,4 +1,6 @@
 // The stack that each call uses on real work stays within what pf_memory_query says.
+#include <planefold/planefold_research.h>
+
 #include "support/rendered_run.h"
 #include "support/skip.h"
 #include "support/stack_meter.h"

@@ -85,9 +85,9 @@ static void paint(double shift_px, int shown) {
 /* Motion that is known far too well, so that the pose follows late and fewer matches than it took are inliers at last. */
 static void test_a_frame_that_does_not_support_the_window_s_pose_should_count_what_it_takes(void) {
   config.backend = PF_BACKEND_WINDOW;
-  config.capacity.window_points = 102;
-  config.capacity.window_keyframes = 7;
-  config.capacity.window_fixed = 6;
+  config.window.points = 102;
+  config.window.keyframes = 7;
+  config.window.fixed_keyframes = 6;
   config.map.features_in_view = 26;
   config.measurement.gate_probability = 0.917593;
   config.measurement.sigma_px = 0.0217054;

@@ -1,7 +1,7 @@
 // A start from a known pose with its speed tells the gauge. In float the covariance then lost positive definiteness: nothing gave back what
 // rounding took from its diagonal, as it does while the gauge is kept apart. Where the walk goes on, the scale is soon open again, and
 // stayed in P nevertheless: the covariance broke, and the map with it.
-#include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 
 #include <vector>
 

@@ -124,7 +124,7 @@ class Run {
  private:
   /// The side of the box that carries the target: z = 0, seen from -z.
   void add_wall_of_target() {
-    pf_plane_prior_t prior = {};
+    pf_wall_prior_t prior = {};
     prior.R_WP[0] = 1;
     prior.R_WP[4] = prior.R_WP[8] = -1;
     prior.covariance[0] = prior.covariance[4] = 1e-3;
@@ -132,7 +132,7 @@ class Run {
     prior.outline_count = 4;
     const double corner[4][2] = {{-0.2, -0.15}, {0.2, -0.15}, {0.2, 0.15}, {-0.2, 0.15}};
     std::copy(&corner[0][0], &corner[0][0] + 8, &prior.outline_P[0][0]);
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &prior, &wall));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &prior, &wall));
   }
 
   void* block_ = nullptr;
@@ -333,7 +333,7 @@ void test_no_new_map_should_begin_as_long_as_a_wall_is_known() {
   const pf_plane_t* wall = std::find_if(planes, planes + count, [&](const pf_plane_t& p) { return p.id == run.wall; });
   TEST_ASSERT_TRUE(wall != planes + count);
   TEST_ASSERT_EQUAL_INT(1, wall->known);
-  TEST_ASSERT_EQUAL_INT(0, wall->doubted);
+  TEST_ASSERT_EQUAL_INT(0, wall->rejected);
 }
 
 void test_a_short_gap_should_be_recovered_without_kept_views() {

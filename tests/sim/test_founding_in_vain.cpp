@@ -1,5 +1,7 @@
 // A patch that does not tell the plane that it lies on, since the world's scale is hardly known, on rendered frames of one textured wall
 // of which the plan has the left half: what is tried with it must not say where the world is.
+#include <planefold/planefold_research.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <vector>
@@ -16,7 +18,7 @@ constexpr double kRounding = 1e-6;  // of the information
 
 void test_a_plane_that_is_not_founded_should_tell_nothing_of_the_gauge() {
   WallWalk run(kFrames, kPatches, 40);
-  pf_plane_prior_t half = WallWalk::wall(0, 1.25);
+  pf_wall_prior_t half = WallWalk::wall(0, 1.25);
   half.p_WP[0] = -1.3;
   half.covariance[0] = half.covariance[4] = 0.0025;
   half.covariance[8] = 0.09;

@@ -36,7 +36,7 @@ class Run : public WallWalk {
 
  private:
   void add_wall() {
-    pf_plane_prior_t prior = wall(kWrongRad, 2.5);
+    pf_wall_prior_t prior = wall(kWrongRad, 2.5);
     prior.covariance[0] = prior.covariance[4] = kWrongRad * kWrongRad;
     prior.covariance[8] = 1e-6;
     wall_ = add(prior);

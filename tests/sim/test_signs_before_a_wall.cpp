@@ -44,8 +44,8 @@ Scene make_signs(const std::vector<Vec3>& signs, const std::vector<Vec3>& poster
 }
 
 /// A half of the wall, as the plan has it.
-pf_plane_prior_t half_of(double x, double sigma_rad, double sigma_m) {
-  pf_plane_prior_t prior = {};
+pf_wall_prior_t half_of(double x, double sigma_rad, double sigma_m) {
+  pf_wall_prior_t prior = {};
   const double R[9] = {-1, 0, 0, 0, 1, 0, 0, 0, -1}, corner[4][2] = {{-1.2, -2}, {1.2, -2}, {1.2, 2}, {-1.2, 2}};
   std::copy(R, R + 9, prior.R_WP);
   prior.p_WP[0] = x;
@@ -84,9 +84,9 @@ class Walk {
       velocities[7 * i] = 1e-2;
     }
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_pose(slam_, &first, velocities));
-    const pf_plane_prior_t left = half_of(-kMiddle, 1e-3, 1e-3), right = half_of(kMiddle, sigma_rad, sigma_m);
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam_, &left, &left_));
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam_, &right, &right_));
+    const pf_wall_prior_t left = half_of(-kMiddle, 1e-3, 1e-3), right = half_of(kMiddle, sigma_rad, sigma_m);
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam_, &left, &left_));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam_, &right, &right_));
   }
 
   void step(int frame) {
@@ -108,7 +108,7 @@ class Walk {
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_planes(slam_, planes, 16, &count));
     const auto* found = std::find_if(planes, planes + count, [&](const pf_plane_t& p) { return p.id == right_; });
     TEST_ASSERT_TRUE(found != planes + count);
-    doubted += found->doubted != 0;
+    doubted += found->rejected != 0;
     wall_m = found->distance;
     pf_patch_t patches[32];
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_patches(slam_, patches, 32, &count));

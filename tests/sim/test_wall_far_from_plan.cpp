@@ -39,7 +39,7 @@ double chi2_of(const pf_plane_t& plane) {
 void test_wall_far_from_the_plan_should_be_found_without_refusing_its_patches() {
   for (const double sign : {1.0, -1.0}) {
     WallWalk run(kFrames, kPatches, 0);
-    pf_plane_prior_t there = WallWalk::wall(0, 1.25), far = WallWalk::wall(sign * kTurn, 1.25);
+    pf_wall_prior_t there = WallWalk::wall(0, 1.25), far = WallWalk::wall(sign * kTurn, 1.25);
     there.p_WP[0] = -1.3;
     there.covariance[0] = there.covariance[4] = there.covariance[8] = 1e-6;
     far.p_WP[0] = 1.3;

@@ -21,7 +21,7 @@ class Run : public WallWalk {
 
   /// A wall parallel to the one that is there, before it by so much; x: of its middle.
   std::uint32_t add_wall(double before, double x, double half_width) {
-    pf_plane_prior_t prior = wall(0, half_width);
+    pf_wall_prior_t prior = wall(0, half_width);
     prior.p_WP[0] = x;
     prior.p_WP[2] = -before;
     prior.covariance[0] = prior.covariance[4] = prior.covariance[8] = 1e-4;

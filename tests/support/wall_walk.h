@@ -44,8 +44,8 @@ class WallWalk {
   }
 
   /// A wall at W's origin, turned about the vertical; z towards the camera, which looks along z of W. Its covariance is the caller's.
-  static pf_plane_prior_t wall(double turn_rad, double half_width) {
-    pf_plane_prior_t prior = {};
+  static pf_wall_prior_t wall(double turn_rad, double half_width) {
+    pf_wall_prior_t prior = {};
     const double c = std::cos(turn_rad), s = std::sin(turn_rad);
     const double R[9] = {-c, 0, s, 0, 1, 0, -s, 0, -c};
     const double corner[4][2] = {{-half_width, -1.8}, {half_width, -1.8}, {half_width, 1.8}, {-half_width, 1.8}};
@@ -55,9 +55,9 @@ class WallWalk {
     return prior;
   }
 
-  std::uint32_t add(const pf_plane_prior_t& prior) {
+  std::uint32_t add(const pf_wall_prior_t& prior) {
     std::uint32_t id;
-    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_plane_prior(slam, &prior, &id));
+    TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_wall(slam, &prior, &id));
     return id;
   }
 

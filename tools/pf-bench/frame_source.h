@@ -16,9 +16,9 @@ struct Frames {
   bool has_target = false;
   pf_target_t target{};
   bool has_pose = false;
-  pf_pose_t pose{};                     ///< of the first frame
-  std::vector<pf_plane_prior_t> walls;  ///< known beforehand, in the frame of that pose or target
-  std::string start;                    ///< "auto", or what it starts from
+  pf_pose_t pose{};                    ///< of the first frame
+  std::vector<pf_wall_prior_t> walls;  ///< known beforehand, in the frame of that pose or target
+  std::string start;                   ///< "auto", or what it starts from
 
   pf_image_t image(size_t index) const {
     return {pixels[index].data(), camera.width, camera.height, camera.width, t_ns[index]};

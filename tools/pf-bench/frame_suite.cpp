@@ -111,9 +111,9 @@ class FrameSuite {
       if (pass > 0) status = pf_reset(slam);
       if (status >= 0 && frames.has_target) status = pf_start_from_target(slam, &frames.target);
       if (status >= 0 && frames.has_pose) status = pf_start_from_pose(slam, &frames.pose, kHandCovariance);
-      for (const pf_plane_prior_t& wall : frames.walls) {
+      for (const pf_wall_prior_t& wall : frames.walls) {
         uint32_t id = 0;
-        if (status >= 0) status = pf_add_plane_prior(slam, &wall, &id);
+        if (status >= 0) status = pf_add_wall(slam, &wall, &id);
       }
       for (size_t i = 0; i < frames.pixels.size() && status >= 0; ++i) status = step(slam, frames, i, samples);
     }

@@ -5,7 +5,7 @@
 // order of this file and not as structures, so that names and layouts may change. The file is appended to in whole lines.
 
 #include <fcntl.h>
-#include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 #include <unistd.h>
 
 #include <cinttypes>
@@ -88,7 +88,7 @@ void add(Hash& h, const pf_feature_t& f) {
 
 void add(Hash& h, const pf_plane_t& p) {
   h << p.id << p.orientation << p.points << p.fixed_points << p.map_id << p.normal_W << p.distance << p.R_WP << p.p_WP
-    << p.covariance << p.known << p.doubted << p.outline_count;
+    << p.covariance << p.is_wall << p.rejected << p.outline_count;
   for (int i = 0; i < p.outline_count; ++i) h << p.outline_P[i];
   h << p.area;
 }
@@ -115,14 +115,15 @@ void add(Hash& h, const pf_patch_t& p) {
 void add(Hash& h, const pf_inertial_t& i) {
   h << i.gravity_W << i.gyro_bias << i.accel_bias << i.covariance << i.gravity_axes_W[0] << i.gravity_axes_W[1]
     << i.metric << i.from_motion << i.map_id << i.resting << i.rests << i.q_BC << i.p_BC << i.delay_s << i.readout_s
-    << i.sigma;
+    << i.sigma.gravity_rad << i.sigma.gyro_bias << i.sigma.accel_bias << i.sigma.mount_rad << i.sigma.mount_m
+    << i.sigma.delay_s << i.sigma.readout_s << i.sigma.log_scale;
 }
 
 void add(Hash& h, const pf_imu_report_t& r) {
   const std::int64_t counts[] = {r.samples, r.since_frame, r.last_frame, r.late,      r.saturated,
                                  r.gaps,    r.missing,     r.first_t_ns, r.last_t_ns, r.longest_ns};
   for (const std::int64_t count : counts) h << static_cast<double>(count);
-  h << r.rate_hz << r.median_s << r.kept << r.used << r.doubted << r.doubted_s;
+  h << r.rate_hz << r.median_s << r.kept << r.used << r.rejected << r.rejected_s;
 }
 
 void add(Hash& h, const pf_imu_sample_t& s) { h << static_cast<double>(s.t_ns) << s.gyro << s.accel; }

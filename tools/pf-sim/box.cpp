@@ -26,19 +26,19 @@ constexpr double kShift = 1.0;        // of the wall that is elsewhere [m]
 
 enum Stream : std::uint64_t { kPointStream = 51, kPathStream, kNoiseStream, kPlanStream, kStartStream };
 
-void set(const Mat3& R, const Vec3& p, pf_plane_prior_t* wall) {
+void set(const Mat3& R, const Vec3& p, pf_wall_prior_t* wall) {
   for (int i = 0; i < 9; ++i) wall->R_WP[i] = R.m[static_cast<std::size_t>(i)];
   wall->p_WP[0] = p.x;
   wall->p_WP[1] = p.y;
   wall->p_WP[2] = p.z;
 }
 
-Vec3 origin_of(const pf_plane_prior_t& wall) { return {wall.p_WP[0], wall.p_WP[1], wall.p_WP[2]}; }
-Vec3 axis_of(const pf_plane_prior_t& wall, int axis) {
+Vec3 origin_of(const pf_wall_prior_t& wall) { return {wall.p_WP[0], wall.p_WP[1], wall.p_WP[2]}; }
+Vec3 axis_of(const pf_wall_prior_t& wall, int axis) {
   return {wall.R_WP[axis], wall.R_WP[3 + axis], wall.R_WP[6 + axis]};
 }
 
-void move_along_normal(double metres, pf_plane_prior_t* wall) {
+void move_along_normal(double metres, pf_wall_prior_t* wall) {
   for (int i = 0; i < 3; ++i) wall->p_WP[i] += metres * wall->R_WP[3 * i + 2];
 }
 
@@ -62,7 +62,7 @@ Box::Box(const BoxOptions& options, const pf_camera_t& camera, double sigma_px, 
     const double angle = options.max_angle_deg * kDegree * std::sqrt(plan.uniform());
     const double direction = plan.uniform(0, 2 * kPi);
     const Mat3 wrong = R * rotation_exp(Vec3{std::cos(direction), std::sin(direction), 0} * angle);
-    pf_plane_prior_t& wall = plan_[side];
+    pf_wall_prior_t& wall = plan_[side];
     set(wrong, centre(side), &wall);
     move_along_normal(options.sigma_offset * plan.normal(), &wall);
     const double sigma = 0.5 * options.max_angle_deg * kDegree;
@@ -105,11 +105,11 @@ Box::Box(const BoxOptions& options, const pf_camera_t& camera, double sigma_px, 
   }
 }
 
-std::vector<pf_plane_prior_t> Box::walls(Plan plan) const {
+std::vector<pf_wall_prior_t> Box::walls(Plan plan) const {
   if (plan == Plan::kNone) return {};
-  std::vector<pf_plane_prior_t> walls(plan_, plan_ + kBoxSides);
+  std::vector<pf_wall_prior_t> walls(plan_, plan_ + kBoxSides);
   if (plan == Plan::kExact)
-    for (pf_plane_prior_t& wall : walls)
+    for (pf_wall_prior_t& wall : walls)
       for (int i = 0; i < 9; i += 4) wall.covariance[i] = kExactSigma * kExactSigma;
   if (plan == Plan::kAbsent) {
     walls.push_back(plan_[1]);
@@ -144,7 +144,7 @@ std::vector<pf_observation_t> Box::observe(int frame) {
   return seen;
 }
 
-int Box::count_behind(const pf_plane_prior_t& wall, int frame) const {
+int Box::count_behind(const pf_wall_prior_t& wall, int frame) const {
   const Pose pose = truth(frame);
   const Vec3 o = origin_of(wall), n = axis_of(wall, 2);
   const double height = n.dot(pose.p_WC - o);

@@ -53,14 +53,14 @@ class Box {
   const pf_pose_t& start() const { return start_; }
   const double* velocity_covariance() const { return velocity_covariance_; }
   pf::sim::Pose truth(int frame) const { return path_(frame / options_.rate_hz); }
-  std::vector<pf_plane_prior_t> walls(Plan plan) const;
+  std::vector<pf_wall_prior_t> walls(Plan plan) const;
   /// The wall of walls(plan) that is not where the plan has it, or -1.
   static int wrong_wall(Plan plan) { return plan == Plan::kAbsent ? kBoxSides : plan == Plan::kShifted ? 1 : -1; }
 
   /// Pixels of the frame; frames must come in order.
   std::vector<pf_observation_t> observe(int frame);
   /// Points of the posters that are seen through the outline of a wall in this frame, if it stood there.
-  int count_behind(const pf_plane_prior_t& wall, int frame) const;
+  int count_behind(const pf_wall_prior_t& wall, int frame) const;
 
  private:
   struct Point {
@@ -75,7 +75,7 @@ class Box {
   pf::sim::Random noise_;
   pf::sim::Trajectory path_;
   std::vector<Point> points_;
-  pf_plane_prior_t plan_[kBoxSides] = {};
+  pf_wall_prior_t plan_[kBoxSides] = {};
   pf_pose_t start_{};
   double velocity_covariance_[36] = {};
 };

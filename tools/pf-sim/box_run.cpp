@@ -37,27 +37,27 @@ bool find_plane(const pf_slam_t* slam, std::uint32_t id, pf_plane_t* plane) {
 /// How long the wrong wall is in view until it is doubted.
 class WrongWall {
  public:
-  WrongWall(const Box& box, const pf_plane_prior_t* prior, std::uint32_t id, double rate_hz)
+  WrongWall(const Box& box, const pf_wall_prior_t* prior, std::uint32_t id, double rate_hz)
       : box_(box), prior_(prior), id_(id), rate_hz_(rate_hz) {}
 
   void look(const pf_slam_t* slam, int frame, BoxSummary& summary) {
     pf_plane_t plane;
     if (prior_ == nullptr || !find_plane(slam, id_, &plane)) return;
     summary.wrong_points = std::max(summary.wrong_points, plane.points);
-    if (plane.doubted != 0 && summary.wrong_seen_s < 0) summary.wrong_seen_s = seen_ / rate_hz_;
+    if (plane.rejected != 0 && summary.wrong_seen_s < 0) summary.wrong_seen_s = seen_ / rate_hz_;
     seen_ += box_.count_behind(*prior_, frame) >= kInView;
   }
 
  private:
   const Box& box_;
-  const pf_plane_prior_t* prior_;
+  const pf_wall_prior_t* prior_;
   std::uint32_t id_;
   double rate_hz_;
   int seen_ = 0;
 };
 
 /// Side of the box that a wall of the plan stands for.
-int side_of(const pf_plane_prior_t& wall) {
+int side_of(const pf_wall_prior_t& wall) {
   int best = 0;
   const Vec3 n{wall.R_WP[2], wall.R_WP[5], wall.R_WP[8]};
   for (int side = 1; side < kBoxSides; ++side)
@@ -65,7 +65,7 @@ int side_of(const pf_plane_prior_t& wall) {
   return best;
 }
 
-void judge_wall(const pf_slam_t* slam, const pf_plane_prior_t& prior, std::uint32_t id, BoxSummary& summary) {
+void judge_wall(const pf_slam_t* slam, const pf_wall_prior_t& prior, std::uint32_t id, BoxSummary& summary) {
   const int side = side_of(prior), k = summary.walls++;
   const Vec3 n = Box::normal(side), c = Box::centre(side);
   const Vec3 planned{prior.R_WP[2], prior.R_WP[5], prior.R_WP[8]};
@@ -80,7 +80,7 @@ void judge_wall(const pf_slam_t* slam, const pf_plane_prior_t& prior, std::uint3
   summary.end_m[k] = std::fabs(now.dot(c) - plane.distance);
   summary.end_nees[k] = normalised_plane_error(plane, n, n.dot(c));
   summary.points[k] = plane.points;
-  summary.doubted += plane.doubted != 0;
+  summary.doubted += plane.rejected != 0;
 }
 
 /// The plane that was found of a side that the plan does not have: the nearest in angle.
@@ -94,7 +94,7 @@ void judge_missing(const pf_slam_t* slam, int side, BoxSummary& summary) {
   for (const pf_plane_t* plane = planes; plane != planes + std::min<std::size_t>(count, kMaxPlanes); ++plane) {
     const Vec3 now{plane->normal_W[0], plane->normal_W[1], plane->normal_W[2]};
     const double angle = angle_deg(now, n), off = std::fabs(now.dot(c) - plane->distance);
-    if (plane->known != 0 || angle > kFoundDeg || off > kFoundM) continue;
+    if (plane->is_wall != 0 || angle > kFoundDeg || off > kFoundM) continue;
     if (summary.found_deg[k] >= 0 && summary.found_deg[k] < angle) continue;
     summary.found_deg[k] = angle;
     summary.found_m[k] = off;
@@ -109,7 +109,7 @@ class BoxRunner {
     pf_slam_t* slam = context_.slam;
     if (!slam || pf_start_from_pose(slam, &box.start(), box.velocity_covariance()) != PF_OK) return;
     for (std::size_t i = 0; i < walls_.size(); ++i)
-      if (pf_add_plane_prior(slam, &walls_[i], &ids_[i]) != PF_OK) return;
+      if (pf_add_wall(slam, &walls_[i], &ids_[i]) != PF_OK) return;
     const int wrong = Box::wrong_wall(plan);
     const auto at = static_cast<std::size_t>(std::max(wrong, 0));
     watch_ = std::make_unique<WrongWall>(box, wrong < 0 ? nullptr : &walls_[at], wrong < 0 ? 0 : ids_[at], rate_hz);
@@ -166,7 +166,7 @@ class BoxRunner {
 
   Box& box_;
   Plan plan_;
-  std::vector<pf_plane_prior_t> walls_;
+  std::vector<pf_wall_prior_t> walls_;
   std::vector<std::uint32_t> ids_;
   Context context_;
   std::unique_ptr<WrongWall> watch_;

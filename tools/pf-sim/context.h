@@ -5,9 +5,16 @@
 #include <memory>
 #include <vector>
 
-#include "planefold/planefold.h"
+#include "planefold/planefold_research.h"
 
 namespace pfsim {
+
+/// Lets a config have the values of planefold_research.h.
+inline void allow_research(pf_config_t* config) {
+  pf_research_t research;
+  pf_research_default(&research);
+  pf_config_set_research(config, &research);
+}
 
 /// A context of the library in its own block; slam is null when the config is not possible.
 class Context {

@@ -1,5 +1,7 @@
 // pf-sim room, pf-sim gee2007: Monte Carlo runs of the filter against geometric truth, with perfect association.
 
+#include <planefold/planefold_research.h>
+
 #include <cstdio>
 #include <memory>
 
@@ -62,8 +64,21 @@ void set_case(const Choices& c, const Case& one, pf_config_t& config) {
   set_if(config.plane.roughness, c.roughness);
   set_if(config.plane.max_distance, c.plane_distance);
   set_if(config.plane.max_radius, c.plane_radius);
-  config.plane.fold = c.fold == "drop" ? PF_FOLD_DROP : PF_FOLD_CONDITION;
   config.plane.fix = c.fix == "inflate" ? PF_FIX_INFLATE : c.fix == "error-free" ? PF_FIX_ERROR_FREE : PF_FIX_CONSIDER;
+}
+
+/// Forms for comparison, and a walk for the paper's bed.
+pf_research_t research_of(const Choices& c, const BedOptions& bed, bool gee) {
+  pf_research_t research;
+  pf_research_default(&research);
+  research.fold = c.fold == "drop" ? PF_FOLD_DROP : PF_FOLD_CONDITION;
+  if (!gee) return research;
+  // The circle's own speed, as the steps of a walk: v sqrt(dt).
+  const double speed = 2 * 3.14159265358979 / bed.circle_seconds, dt = 1 / bed.rate_hz;
+  research.linear_walk = research.angular_walk = speed * std::sqrt(dt);
+  set_if(research.linear_walk, c.linear);
+  set_if(research.angular_walk, c.angular);
+  return research;
 }
 
 /// What the two commands share: the filter's settings, and the bed from the options.
@@ -117,12 +132,7 @@ Experiment prepare(const Choices& c, bool gee) {
   set_if(config.first_depth.linearity_index, c.linearity);
   if (gee) {
     config.motion.model = c.motion == "walk" ? PF_MOTION_CONSTANT_POSITION : PF_MOTION_CONSTANT_VELOCITY;
-    // The circle's own speed, as the steps of a walk: v sqrt(dt); and its small accelerations, generously.
-    const double speed = 2 * 3.14159265358979 / x.bed.circle_seconds, dt = 1 / x.bed.rate_hz;
-    config.motion.linear_walk = config.motion.angular_walk = speed * std::sqrt(dt);
     config.motion.linear_acceleration_density = config.motion.angular_acceleration_density = 0.02;
-    set_if(config.motion.linear_walk, c.linear);
-    set_if(config.motion.angular_walk, c.angular);
   }
   set_if(config.motion.linear_acceleration_density, c.linear);
   set_if(config.motion.angular_acceleration_density, c.angular);
@@ -131,14 +141,16 @@ Experiment prepare(const Choices& c, bool gee) {
 
 nlohmann::json describe(const Experiment& x) {
   const pf_config_t& c = x.config;
+  pf_research_t research;
+  pf_config_get_research(&c, &research);
   return {{"layout", x.bed.layout == Layout::kRoom ? "room" : "model"},
           {"motion", c.motion.model == PF_MOTION_CONSTANT_POSITION ? "walk" : "velocity"},
           {"fov_deg", x.bed.fov_deg},
           {"sigma_pixel", c.measurement.sigma_px},
           {"linear_acceleration_density", c.motion.linear_acceleration_density},
           {"angular_acceleration_density", c.motion.angular_acceleration_density},
-          {"linear_walk", c.motion.linear_walk},
-          {"angular_walk", c.motion.angular_walk},
+          {"linear_walk", research.linear_walk},
+          {"angular_walk", research.angular_walk},
           {"start_depth", c.first_depth.depth},
           {"depth_from_map", c.first_depth.from_map},
           {"inverse_depth_relative_sigma", c.first_depth.relative_sigma},
@@ -151,7 +163,7 @@ nlohmann::json describe(const Experiment& x) {
           {"plane_roughness", c.plane.roughness},
           {"fold_sigma", c.plane.fold_sigma},
           {"fix_sigma", c.plane.fix_sigma},
-          {"fold", c.plane.fold == PF_FOLD_DROP ? "drop" : "condition"},
+          {"fold", research.fold == PF_FOLD_DROP ? "drop" : "condition"},
           {"fix", c.plane.fix == PF_FIX_CONSIDER  ? "consider"
                   : c.plane.fix == PF_FIX_INFLATE ? "inflate"
                                                   : "error-free"},
@@ -189,7 +201,9 @@ int run(const Choices& c, bool gee) {
     for (const bool keep_gauge : keep) {
       Experiment x = prepare(c, gee);
       set_case(c, *find_case(letter), x.config);
-      x.config.keep_gauge = keep_gauge;
+      pf_research_t research = research_of(c, x.bed, gee);
+      research.keep_gauge = keep_gauge;
+      pf_config_set_research(&x.config, &research);
       const char* field = nullptr;
       if (pf_config_check(&x.config, &field) != PF_OK) return refuse(std::string("option out of range: ") + field);
       const std::string label = std::string(1, letter) + (keep_gauge ? "" : "_plain_ekf");

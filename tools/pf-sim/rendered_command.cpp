@@ -1,11 +1,14 @@
 // pf-sim rendered: Monte Carlo runs of the whole library on rendered frames, in the truth's own frame.
 
+#include <planefold/planefold_research.h>
+
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
 #include "../lib/command_line.h"
 #include "commands.h"
+#include "context.h"
 #include "rendered_run.h"
 #include "report.h"
 
@@ -236,6 +239,7 @@ bool prepare(const Choices& c, RenderedOptions& o) {
           v.lens = lens;
           v.masks = masks;
           v.config.map.masks = masks_by_name(masks);
+          if (v.config.map.masks == PF_MASKS_WHOLE) allow_research(&v.config);
           v.config.camera = lens == "right" ? o.sim.camera : wrong_camera(o.sim.camera, c.focal_error, lens);
           v.config.camera.readout_s = c.as_global ? 0 : c.readout_s;
           if (sigma > 0) v.config.measurement.sigma_px = sigma;

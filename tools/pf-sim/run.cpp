@@ -1,5 +1,7 @@
 #include "run.h"
 
+#include <planefold/planefold_research.h>
+
 #include <algorithm>
 #include <cmath>
 

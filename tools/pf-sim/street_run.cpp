@@ -29,13 +29,13 @@ constexpr double kOffFound = 5;     // [deg]
 
 enum Stream : std::uint64_t { kPlanStream = 61, kStartStream };
 
-Vec3 axis(const pf_plane_prior_t& wall, int k) { return {wall.R_WP[k], wall.R_WP[3 + k], wall.R_WP[6 + k]}; }
+Vec3 axis(const pf_wall_prior_t& wall, int k) { return {wall.R_WP[k], wall.R_WP[3 + k], wall.R_WP[6 + k]}; }
 
-std::vector<pf_plane_prior_t> draw_plan(const StreetOptions& options, std::uint64_t seed) {
+std::vector<pf_wall_prior_t> draw_plan(const StreetOptions& options, std::uint64_t seed) {
   pf::sim::Random plan(seed, kPlanStream);
-  std::vector<pf_plane_prior_t> walls;
+  std::vector<pf_wall_prior_t> walls;
   for (int k = 0; k < pf::sim::kStreetFronts; ++k) {
-    pf_plane_prior_t wall{};
+    pf_wall_prior_t wall{};
     const double turn = options.sigma_rotation_deg * kDegree, lean = options.sigma_vertical_deg * kDegree;
     const Mat3 R = pf::sim::street_axes() * rotation_exp(Vec3{-lean * plan.normal(), turn * plan.normal(), 0});
     std::copy(R.m.begin(), R.m.end(), wall.R_WP);
@@ -83,7 +83,7 @@ pf_pose_t draw_start(const StreetOptions& options, const pf_sim_t* sim, std::uin
 /// One context on its way through the frames.
 class StreetRunner {
  public:
-  StreetRunner(const StreetVariant& variant, const pf_pose_t& start, std::vector<pf_plane_prior_t> walls)
+  StreetRunner(const StreetVariant& variant, const pf_pose_t& start, std::vector<pf_wall_prior_t> walls)
       : walls_(std::move(walls)), ids_(walls_.size()), ever_(walls_.size()), context_(variant.config) {
     double velocities[36] = {};
     for (int i = 0; i < 6; ++i) velocities[7 * i] = kSigmaSpeed * kSigmaSpeed;
@@ -92,11 +92,11 @@ class StreetRunner {
       ids_.clear();
     }
     if (variant.plan == StreetPlan::kExact)
-      for (pf_plane_prior_t& wall : walls_)
+      for (pf_wall_prior_t& wall : walls_)
         for (int i = 0; i < 9; i += 4) wall.covariance[i] = kExactSigma * kExactSigma;
     if (!context_.slam || pf_start_from_pose(context_.slam, &start, velocities) != PF_OK) return;
     for (std::size_t i = 0; i < walls_.size(); ++i)
-      if (pf_add_plane_prior(context_.slam, &walls_[i], &ids_[i]) != PF_OK) return;
+      if (pf_add_wall(context_.slam, &walls_[i], &ids_[i]) != PF_OK) return;
     summary.done = 1;
   }
 
@@ -166,7 +166,7 @@ class StreetRunner {
     for (std::size_t i = 0; i < ids_.size(); ++i)
       for (const pf_plane_t* plane = planes; plane != planes + std::min(count, kMaxPlanes); ++plane) {
         if (plane->id != ids_[i]) continue;
-        summary.doubted += plane->doubted != 0;
+        summary.doubted += plane->rejected != 0;
         if (plane->covariance[0] > kMinTurn * kMinTurn * walls_[i].covariance[0]) continue;  // never seen for long
         const Vec3 planned = axis(walls_[i], 2), c = pf::sim::street_front(static_cast<int>(i));
         const Vec3 now{plane->normal_W[0], plane->normal_W[1], plane->normal_W[2]};
@@ -194,10 +194,10 @@ class StreetRunner {
     if (ids_.empty() || pf_get_planes(context_.slam, planes, kMaxPlanes, &count) < PF_OK) return;
     for (std::size_t i = 0; i < ids_.size(); ++i)
       for (const pf_plane_t* plane = planes; plane != planes + std::min(count, kMaxPlanes); ++plane)
-        if (plane->id == ids_[i] && plane->doubted != 0) ever_[i] = true;
+        if (plane->id == ids_[i] && plane->rejected != 0) ever_[i] = true;
   }
 
-  std::vector<pf_plane_prior_t> walls_;
+  std::vector<pf_wall_prior_t> walls_;
   std::vector<std::uint32_t> ids_;
   std::vector<bool> ever_;  ///< doubted in any frame
   Context context_;
@@ -217,7 +217,7 @@ void run_street(const StreetOptions& options, const std::vector<StreetVariant>& 
   sim_options.rate_hz = options.rate_hz;
   const std::unique_ptr<pf_sim_t, void (*)(pf_sim_t*)> sim(pf_sim_open("street", &sim_options), pf_sim_close);
   if (!sim) return;
-  const std::vector<pf_plane_prior_t> plan = draw_plan(options, seed);
+  const std::vector<pf_wall_prior_t> plan = draw_plan(options, seed);
   const pf_pose_t start = draw_start(options, sim.get(), seed);
   std::vector<std::unique_ptr<StreetRunner>> runners;
   for (StreetVariant variant : variants) {

@@ -1,5 +1,7 @@
 // pf-sim checker, clutter, road: templates that fill more than one surface, with masks, without, and with all pixels on the plane.
 
+#include <planefold/planefold_research.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,6 +9,7 @@
 
 #include "../lib/command_line.h"
 #include "commands.h"
+#include "context.h"
 #include "report.h"
 #include "run.h"
 #include "template_run.h"
@@ -133,6 +136,7 @@ pf_config_t config_of(const pf_camera_t& camera, const Choices& c, int masks, do
   config.camera = camera;
   config.capacity.template_px = c.template_px;
   config.map.masks = masks;
+  if (masks == PF_MASKS_WHOLE) allow_research(&config);
   config.map.max_misfit = misfit;
   config.backend = c.backend == "window" ? PF_BACKEND_WINDOW : PF_BACKEND_FILTER;
   return config;

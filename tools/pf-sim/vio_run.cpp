@@ -1,5 +1,7 @@
 #include "vio_run.h"
 
+#include <planefold/planefold_research.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -271,8 +273,8 @@ class Run {
   void note_doubt(double t, const pf_pose_t& pose) {
     pf_imu_report_t imu;
     if (pf_get_imu_report(context_.slam, &imu) != PF_OK) return;
-    if (imu.doubted != 0 && out_.doubted_at_s < 0) out_.doubted_at_s = t;
-    out_.doubted_s = imu.doubted_s;
+    if (imu.rejected != 0 && out_.doubted_at_s < 0) out_.doubted_at_s = t;
+    out_.doubted_s = imu.rejected_s;
     if (pose.map_id != map_id_) out_.maps += map_id_ != 0;
     map_id_ = pose.map_id;
   }
@@ -283,7 +285,7 @@ class Run {
     if (pf_get_inertial(context_.slam, &unit) != PF_OK || unit.metric == 0) return false;
     if (out_.metric_frame < 0) {
       out_.metric_frame = k;
-      out_.start_scale_sigma = unit.sigma[16];
+      out_.start_scale_sigma = unit.sigma.log_scale;
     }
     out_.resting_frames += unit.resting != 0;
     const Vec3 g = (first_.R_WC.transposed() * o_.imu.gravity_W).unit();
@@ -322,15 +324,18 @@ class Run {
     if (o_.sigma_mount_m > 0) out_.mount_error_m = shift.norm();
     if (o_.sigma_delay_s > 0) out_.delay_error_s = std::fabs(delay);
     const double e[7] = {turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, delay};
+    const auto& s = unit.sigma;
+    const double sigma[7] = {s.mount_rad[0], s.mount_rad[1], s.mount_rad[2], s.mount_m[0],
+                             s.mount_m[1],   s.mount_m[2],   s.delay_s};
     for (int i = 0; i < 7; ++i)
-      if (unit.sigma[8 + i] > 0) out_.mount_sigmas = std::max(out_.mount_sigmas, std::fabs(e[i]) / unit.sigma[8 + i]);
+      if (sigma[i] > 0) out_.mount_sigmas = std::max(out_.mount_sigmas, std::fabs(e[i]) / sigma[i]);
   }
 
   void note_readout() {
     pf_inertial_t unit;
     if (o_.sigma_readout_s <= 0 || pf_get_inertial(context_.slam, &unit) != PF_OK) return;
     out_.readout_error_s = std::fabs(unit.readout_s - o_.readout_s);
-    out_.readout_sigmas = out_.readout_error_s / unit.sigma[15];
+    out_.readout_sigmas = out_.readout_error_s / unit.sigma.readout_s;
   }
 
   void note_wander(const pf_pose_t& pose) {

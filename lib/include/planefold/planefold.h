@@ -1,4 +1,5 @@
-/* planefold: a camera's pose and a map, from its frames, in one block of memory that the caller owns.
+/* planefold: a camera's pose and a map, from its frames, in one block of memory that the caller
+ * owns.
  *
  *   pf_config_t config;
  *   pf_config_default(&config);              every field gets a value that works
@@ -8,30 +9,37 @@
  *   pf_push_frame(slam, &image);             once per frame
  *   pf_get_pose(slam, &pose);                where the camera is, with its covariance
  *
- * There is no destroy: forget the block when you are done. pf_reset() starts over in the same block.
+ * There is no destroy: forget the block when you are done. pf_reset() starts over in the same
+ * block.
  *
- * FRAMES. W is the world, C the camera (x right, y down, z forward). p_W = R_WC p_C + p_WC. Pixels: (0, 0) is the
- * centre of the top-left one. Quaternions are (w, x, y, z), of unit length.
- * LENGTHS are in one unit throughout, written [m]. It is the unit of the target or of the start pose: give those in
- * metres. After a start with neither, no length is known: the unit is then the one in which the features of the
- * first frame have a median depth of first_depth.depth (default 1).
+ * FRAMES. W is the world, C the camera (x right, y down, z forward). p_W = R_WC p_C + p_WC. Pixels:
+ * (0, 0) is the centre of the top-left one. Quaternions are (w, x, y, z), of unit length.
+ * LENGTHS are in one unit throughout, written [m]. It is the unit of the target or of the start
+ * pose: give those in metres. After a start with neither, no length is known: the unit is then the
+ * one in which the features of the first frame have a median depth of first_depth.depth (default
+ * 1).
  * ERRORS of a pose are (theta, p): R_true = Exp(theta) R, p_true = p + e, both in W.
- * COVARIANCES are row-major, finite and positive semidefinite. A row is zero only where something is exactly known: where
- * rounding has left nothing of a variance, or less, it is given as large as rounding may be, and 1e12 stands for unknown.
+ * COVARIANCES are row-major, finite and positive semidefinite. A row is zero only where something
+ * is exactly known: where rounding has left nothing of a variance, or less, it is given as large as
+ * rounding may be, and 1e12 stands for unknown.
  * UNITS. SI and radians. Times, pixels and angles in other units say so in the name (_s, _ns, _px).
- * TYPES. In a structure, kinds and switches are int32_t, and the comment names the enum; a switch is 0 or 1. Ids are
- * uint32_t.
+ * TYPES. In a structure, kinds and switches are int32_t, and the comment names the enum; a switch
+ * is 0 or 1. Ids are uint32_t.
  *
- * STATUS. 0 is done. Positive: done, with something to know. Negative: refused, and nothing was changed.
- * THREADS. A context belongs to one thread at a time. Contexts are independent. There are no globals.
- * TIME. Work per call is bounded by the capacities in the config. No clock is read unless you give one.
- * STATES. Tracking means: a pose in this map that this frame's own measurements support, by at least 8 gated inliers
- * that are consistent beyond chance, or, in the frame of a start at a target, by the target; rotation sigma below 20
- * degrees and position sigma below half the median depth, both against the points in view. Otherwise the pose coasts,
- * and nothing is added to the map until it was found again; after motion.coast_s it is lost.
- * MAPS. There is one map at a time, with a map_id. If it is lost for motion.restart_s of usable images, it is
- * discarded and a new one begins: a new map_id, a new W, and, without a target in view, a new unit of length. With
- * walls (pf_add_plane_prior) it is searched for until it is found.
+ * STATUS. 0 is done. Positive: done, with something to know. Negative: refused, and nothing was
+ * changed.
+ * THREADS. A context belongs to one thread at a time. Contexts are independent. There are no
+ * globals.
+ * TIME. Work per call is bounded by the capacities in the config. No clock is read unless you give
+ * one.
+ * STATES. Tracking means: a pose in this map that this frame's own measurements support, by at
+ * least 8 gated inliers that are consistent beyond chance, or, in the frame of a start at a target,
+ * by the target; rotation sigma below 20 degrees and position sigma below half the median depth,
+ * both against the points in view. Otherwise the pose coasts, and nothing is added to the map until
+ * it was found again; after motion.coast_s it is lost.
+ * MAPS. There is one map at a time, with a map_id. If it is lost for motion.restart_s of usable
+ * images, it is discarded and a new one begins: a new map_id, a new W, and, without a target in
+ * view, a new unit of length. With walls (pf_add_wall) it is searched for until it is found.
  */
 #ifndef PLANEFOLD_PLANEFOLD_H
 #define PLANEFOLD_PLANEFOLD_H
@@ -54,63 +62,78 @@ extern "C" {
 #define PF_VERSION_PATCH 0
 #define PF_VERSION ((PF_VERSION_MAJOR << 16) | (PF_VERSION_MINOR << 8) | PF_VERSION_PATCH)
 
-/* PF_VERSION of the library that is linked, which may be another patch release than this header's. Patch releases of
- * one minor version fit together; any other difference is PF_ERROR_VERSION. */
+/* PF_VERSION of the library that is linked, which may be another patch release than this header's.
+ * Patch releases of one minor version fit together; any other difference is PF_ERROR_VERSION. */
 PF_API uint32_t pf_version(void);
 
-/* ---------------------------------------------------------------------------------------------------- status -- */
+/* -------------------------------------------------------------------------------- status -- */
 
 typedef enum pf_status {
   PF_OK = 0,
 
-  /* Taken. There is no pose yet, or known depths do not support it yet. Also after an estimate that was no longer
-   * finite was given up, and when a new map begins: a new start follows, with a new W (the log says so). */
+  /* Taken. There is no pose yet, or known depths do not support it yet. Also after an estimate that
+   * was no longer finite was given up, and when a new map begins: a new start follows, with a new W
+   * (the log says so). */
   PF_NOTE_STARTING = 1,
-  PF_NOTE_COASTING = 2,  /* taken; too few measurements, the pose is a prediction with growing covariance */
-  PF_NOTE_LOST = 3,      /* taken; the pose is no longer usable; the map is searched for in every frame (MAPS) */
-  PF_NOTE_UNUSABLE = 4,  /* taken; the image shows nothing usable (black, white, blurred, frozen); pose coasts */
-  PF_NOTE_TRUNCATED = 5, /* done; there was more than your array holds, *count says how many there are */
-  PF_NOTE_NOTHING = 6,   /* done; there is nothing (no plane under the pixel or with that id any more, no mark) */
+  /* taken; too few measurements, the pose is a prediction with growing covariance */
+  PF_NOTE_COASTING = 2,
+  /* taken; the pose is no longer usable; the map is searched for in every frame (MAPS) */
+  PF_NOTE_LOST = 3,
+  /* taken; the image shows nothing usable (black, white, blurred, frozen); pose coasts */
+  PF_NOTE_UNUSABLE = 4,
+  /* done; there was more than your array holds, *count says how many there are */
+  PF_NOTE_TRUNCATED = 5,
+  /* done; there is nothing (no plane under the pixel or with that id any more, no mark) */
+  PF_NOTE_NOTHING = 6,
 
-  PF_ERROR_NULL = -1,      /* a pointer that must not be null is null */
-  PF_ERROR_CONFIG = -2,    /* a field of the config is out of its range; pf_config_check names it */
-  PF_ERROR_VERSION = -3,   /* the structure's size or version belongs to another release of this header */
-  PF_ERROR_SCALAR = -4,    /* the config was made for the other library (planefold: double, planefoldf: float) */
+  PF_ERROR_NULL = -1,   /* a pointer that must not be null is null */
+  PF_ERROR_CONFIG = -2, /* a field of the config is out of its range; pf_config_check names it */
+  /* the structure's size or version belongs to another release of this header */
+  PF_ERROR_VERSION = -3,
+  /* the config was made for the other library (planefold: double, planefoldf: float) */
+  PF_ERROR_SCALAR = -4,
   PF_ERROR_MEMORY = -5,    /* the block is smaller than pf_memory_query said */
   PF_ERROR_ALIGNMENT = -6, /* the block does not begin at a multiple of pf_memory_t.alignment */
   PF_ERROR_SIZE = -7,      /* width, height or stride of the image do not fit the calibration */
   PF_ERROR_TIME = -8,      /* the timestamp is not after the last one */
   PF_ERROR_NONFINITE = -9, /* a number that was passed in is NaN or infinite */
-  /* Not possible in this state (a start after the first frame; a pose before the start), or a call that changes the
-   * context from inside its own log or clock. */
+  /* Not possible in this state (a start after the first frame; a pose before the start), or a call
+   * that changes the context from inside its own log or clock. */
   PF_ERROR_STATE = -10,
   PF_ERROR_RANGE = -11,   /* a number that was passed in is outside of its domain */
   PF_ERROR_CONTEXT = -12, /* not a context, or one whose block was overwritten */
-  PF_ERROR_FULL = -13     /* there is no room for it, see capacity.max_state_dim and capacity.max_planes */
+  /* there is no room for it, see capacity.max_state_dim and capacity.max_planes */
+  PF_ERROR_FULL = -13
 } pf_status_t;
 
 /* One line in English for a status; never null. */
 PF_API const char* pf_status_text(pf_status_t status);
 
-/* ---------------------------------------------------------------------------------------------------- camera -- */
+/* -------------------------------------------------------------------------------- camera -- */
 
 typedef enum pf_camera_model {
-  PF_CAMERA_PINHOLE = 1,     /* no distortion */
-  PF_CAMERA_RADTAN = 2,      /* distortion = k1 k2 p1 p2 k3 (Brown-Conrady; OpenCV and ROS plumb_bob order) */
+  PF_CAMERA_PINHOLE = 1, /* no distortion */
+  /* distortion = k1 k2 p1 p2 k3 (Brown-Conrady; OpenCV and ROS plumb_bob order) */
+  PF_CAMERA_RADTAN = 2,
   PF_CAMERA_EQUIDISTANT = 3, /* distortion = k1 k2 k3 k4 (Kannala-Brandt; OpenCV fisheye) */
-  PF_CAMERA_DIVISION = 4 /* distortion = k [1/px^2]: r_d = r_u / sqrt(1 + 2 k r_u^2), r in pixels (Harris; MonoSLAM) */
+  /* distortion = k [1/px^2]: r_d = r_u / sqrt(1 + 2 k r_u^2), r in pixels (Harris; MonoSLAM) */
+  PF_CAMERA_DIVISION = 4
 } pf_camera_model_t;
 
-/* What a context makes of the numbers of a calibration (lib/docs/lens.md). The window cannot consider them. */
+/* What a context makes of the numbers of a calibration (lib/docs/lens.md). The window cannot
+ * consider them. */
 typedef enum pf_camera_estimate {
-  PF_CAMERA_EXACT = 0,    /* takes them as exact; the default */
-  PF_CAMERA_CONSIDER = 1, /* allows for their errors in every covariance, and does not correct them (Schmidt) */
-  PF_CAMERA_ESTIMATE = 2  /* estimates them with pose and map: better wherever nobody has measured them well */
+  PF_CAMERA_EXACT = 0, /* takes them as exact; the default */
+  /* allows for their errors in every covariance, and does not correct them (Schmidt) */
+  PF_CAMERA_CONSIDER = 1,
+  /* estimates them with pose and map: better wherever nobody has measured them well */
+  PF_CAMERA_ESTIMATE = 2
 } pf_camera_estimate_t;
 /* Where the times of frames come from. */
 typedef enum pf_timestamps {
-  PF_TIMESTAMPS_REAL = 0,   /* measured: when each image was exposed */
-  PF_TIMESTAMPS_NOMINAL = 1 /* counted: frame number over rate, as in many recordings, which know no lost frames */
+  PF_TIMESTAMPS_REAL = 0, /* measured: when each image was exposed */
+  /* counted: frame number over rate, as in many recordings, which know no lost frames */
+  PF_TIMESTAMPS_NOMINAL = 1
 } pf_timestamps_t;
 
 typedef struct pf_camera {
@@ -118,39 +141,44 @@ typedef struct pf_camera {
   int32_t width, height; /* [px] 32 .. 4096 */
   double fx, fy, cx, cy; /* [px] */
   double distortion[8];  /* as the model says; unused entries are zero */
-  /* Rolling shutter: from the first row to the last, 0 .. 0.2; 0 is a global shutter. A frame has the time of its
-   * middle row. Needs constant velocity or the inertial model: rows differ by how the camera moves. */
+  /* Rolling shutter: from the first row to the last, 0 .. 0.2; 0 is a global shutter. A frame has
+   * the time of its middle row. Needs constant velocity or the inertial model: rows differ by how
+   * the camera moves. */
   double readout_s;
 
-  /* What a context makes of the numbers above, and how uncertain they are. Each uncertain one is a row of the filter's
-   * state, up to nine (ten with imu.sigma_readout_s): count them in capacity.max_state_dim. Only read where estimate is
-   * not PF_CAMERA_EXACT. */
+  /* What a context makes of the numbers above, and how uncertain they are. Each uncertain one is a
+   * row of the filter's state, up to nine (ten with imu.sigma_readout_s): count them in
+   * capacity.max_state_dim. Only read where estimate is not PF_CAMERA_EXACT. */
   int32_t estimate; /* pf_camera_estimate_t */
-  /* pf_timestamps_t. With nominal ones readout_s counts as 0, since the rows hang on a velocity that such times do not
-   * give; the log says so. Not so with PF_MOTION_INERTIAL, where they hang on the gyro. */
+  /* pf_timestamps_t. With nominal ones readout_s counts as 0, since the rows hang on a velocity
+   * that such times do not give; the log says so. Not so with PF_MOTION_INERTIAL, where they hang
+   * on the gyro. */
   int32_t timestamps;
   double sigma_focal;     /* of fx and fy together, relative: 1e-5 .. 0.2. Typical 0.01 */
   double sigma_aspect;    /* of fx against fy, relative: 1e-6 .. 0.2. Typical 0.001 */
   double sigma_centre_px; /* of cx and of cy, 0.001 .. 1000. Typical 0.01 of the width */
-  /* Of each entry of distortion, 0 (exact) .. 1. A pinhole whose first one is not zero is a radial-tangential camera
-   * with an uncertain k1. Typical 0.05 where no distortion was calibrated. */
+  /* Of each entry of distortion, 0 (exact) .. 1. A pinhole whose first one is not zero is a
+   * radial-tangential camera with an uncertain k1. Typical 0.05 where no distortion was calibrated.
+   * */
   double sigma_distortion[8];
 } pf_camera_t;
 
 /* Pixel of a point in C, z > 0 (equidistant: anywhere but the optical centre).
- * PF_ERROR_RANGE: behind the camera or where the model is not one to one; the pixel may lie outside of the image. */
-PF_API pf_status_t pf_camera_project(const pf_camera_t* camera, const double p_C[3], double pixel[2]);
+ * PF_ERROR_RANGE: behind the camera or where the model is not one to one; the pixel may lie outside
+ * of the image. */
+PF_API pf_status_t pf_camera_project(const pf_camera_t* camera, const double p_C[3],
+                                     double pixel[2]);
 
 /* Unit ray in C that projects to a pixel. PF_ERROR_RANGE where the model has none. */
-PF_API pf_status_t pf_camera_unproject(const pf_camera_t* camera, const double pixel[2], double ray_C[3]);
+PF_API pf_status_t pf_camera_unproject(const pf_camera_t* camera, const double pixel[2],
+                                       double ray_C[3]);
 
-/* ---------------------------------------------------------------------------------------------------- config -- */
+/* -------------------------------------------------------------------------------- config -- */
 
 typedef enum pf_motion_model {
   PF_MOTION_CONSTANT_VELOCITY = 1, /* white accelerations; the default */
-  PF_MOTION_CONSTANT_POSITION = 2, /* random walk of the pose (Gee 2007, eq 1); for reproducing that paper */
-  /* By the samples of pf_push_imu (lib/docs/inertial.md). Wants imu and capacity.max_imu_samples >= 64: as many as come in
-   * the longest time between frames that is to be bridged. */
+  /* By the samples of pf_push_imu (lib/docs/inertial.md). Wants imu and capacity.max_imu_samples >=
+   * 64: as many as come in the longest time between frames that is to be bridged. */
   PF_MOTION_INERTIAL = 4
 } pf_motion_model_t;
 
@@ -163,33 +191,30 @@ typedef enum pf_kernels {
   PF_KERNELS_NEON = 5
 } pf_kernels_t;
 
-/* How a point enters a plane. */
-typedef enum pf_fold {
-  PF_FOLD_CONDITION = 1, /* its distance from the plane is measured as zero, within the roughness; then it is dropped */
-  PF_FOLD_DROP = 2       /* its distance is dropped (Gee 2007, eq 4 and 6); for comparison */
-} pf_fold_t;
-
 /* What becomes of a folded point that is known well enough among the others of its plane. */
 typedef enum pf_fix {
-  PF_FIX_CONSIDER = 1,  /* keeps its covariance and is estimated no more (Schmidt) */
-  PF_FIX_INFLATE = 2,   /* leaves the state; its variance becomes noise of its pixels. Saves memory, costs honesty */
-  PF_FIX_ERROR_FREE = 3 /* leaves the state, as if known exactly (Gee 2007, section 3.4); for comparison */
+  PF_FIX_CONSIDER = 1, /* keeps its covariance and is estimated no more (Schmidt) */
+  /* leaves the state; its variance becomes noise of its pixels. Saves memory, costs honesty */
+  PF_FIX_INFLATE = 2
 } pf_fix_t;
 
-/* Templates that learn which of their pixels belong to their dominant plane (lib/docs/templates.md; Masoud 2015). */
+/* Templates that learn which of their pixels belong to their dominant plane (lib/docs/templates.md;
+ * Masoud 2015). */
 typedef enum pf_masks {
-  PF_MASKS_NONE = 0,    /* every pixel of a feature counts, and one in five may be wrong; the default */
-  PF_MASKS_PARTIAL = 1, /* a mask for each feature whose depth is known, and the normal of its plane */
-  PF_MASKS_WHOLE = 2    /* as PARTIAL with all pixels on the plane; for comparison */
+  /* every pixel of a feature counts, and one in five may be wrong; the default */
+  PF_MASKS_NONE = 0,
+  /* a mask for each feature whose depth is known, and the normal of its plane */
+  PF_MASKS_PARTIAL = 1
 } pf_masks_t;
 
 /* What estimates pose and map. */
 typedef enum pf_backend {
   PF_BACKEND_FILTER = 1, /* a filter over pose, points and planes (Gee 2007); the default */
-  /* Keyframes that are adjusted with the points that they see (lib/docs/window.md; Masoud 2015). Images only. PF_ERROR_CONFIG with
-   * motion.model inertial, camera.estimate consider, plane.fix_sigma above 0 and capacity.max_patches above 0.
-   * The pose's covariance takes the map's first keyframes as exact, those of points and planes all keyframes and the lens. The block at its
-   * defaults is 2.0 MiB, with camera.estimate estimate 2.1. */
+  /* Keyframes that are adjusted with the points that they see (lib/docs/window.md; Masoud 2015).
+   * Images only. PF_ERROR_CONFIG with motion.model inertial, camera.estimate consider,
+   * plane.fix_sigma above 0 and capacity.max_patches above 0. The pose's covariance takes the map's
+   * first keyframes as exact, those of points and planes all keyframes and the lens. The block at
+   * its defaults is 2.0 MiB, with camera.estimate estimate 2.1. */
   PF_BACKEND_WINDOW = 2
 } pf_backend_t;
 
@@ -200,36 +225,38 @@ typedef struct pf_imu_model {
   double gyro_range;  /* that it can measure [rad/s], 0 (not known) .. 1000. Default 0 */
   double accel_range; /* [m/s^2] 0 (not known) .. 1e5. Default 0 */
 
-  /* Only read with PF_MOTION_INERTIAL. Noise as Kalibr and EuRoC state it; no default fits a unit, and 0 is refused. */
+  /* Only read with PF_MOTION_INERTIAL. Noise as Kalibr and EuRoC state it; no default fits a unit,
+   * and 0 is refused. */
   double gyro_density;  /* white noise [rad/s/sqrt(Hz)], up to 1 */
   double accel_density; /* likewise [m/s^2/sqrt(Hz)], up to 10 */
   double gyro_walk;     /* of its bias [rad/s^2/sqrt(Hz)], up to 1 */
   double accel_walk;    /* likewise [m/s^3/sqrt(Hz)], up to 10 */
-  /* Mounting, p_B = R_BC p_C + p_BC: EuRoC's T_BS of the camera, the inverse of Kalibr's T_cam_imu. Default: axes and origin
-   * of the camera. */
+  /* Mounting, p_B = R_BC p_C + p_BC: EuRoC's T_BS of the camera, the inverse of Kalibr's T_cam_imu.
+   * Default: axes and origin of the camera. */
   double q_BC[4]; /* w x y z */
   double p_BC[3]; /* [m] */
   double delay_s; /* t_frame = t_sample + delay, -0.5 .. 0.5. Default 0 */
   double gravity; /* [m/s^2] 9 .. 11. Default 9.81 */
-  /* How far the mounting and the delay may be off, of each axis: standard deviations, from which they are then estimated
-   * (pf_get_inertial). 0: taken as exact; else at least 1e-6. Defaults 0 */
+  /* How far the mounting and the delay may be off, of each axis: standard deviations, from which
+   * they are then estimated (pf_get_inertial). 0: taken as exact; else at least 1e-6. Defaults 0 */
   double sigma_mount_rad; /* of the unit's axes, up to 0.5. Three rows of the state */
   double sigma_mount_m;   /* of its origin in C, up to 1. Three rows */
-  /* Of the delay, up to 0.1. One row. A frame then hangs on samples that may be as much later: push those of up to three sigma
-   * behind its time before it, as far as they have come. */
+  /* Of the delay, up to 0.1. One row. A frame then hangs on samples that may be as much later: push
+   * those of up to three sigma behind its time before it, as far as they have come. */
   double sigma_delay_s;
-  /* Of camera.readout_s, which must be above 0 then; up to 0.1. One more row of the lens, which is considered where
-   * camera.estimate says so, and else estimated. */
+  /* Of camera.readout_s, which must be above 0 then; up to 0.1. One more row of the lens, which is
+   * considered where camera.estimate says so, and else estimated. */
   double sigma_readout_s;
 } pf_imu_model_t;
 
-/* Fill with pf_config_default, then change what you know better. pf_config_check names a bad field as it is written
- * here: "capacity.max_state_dim". */
+/* Fill with pf_config_default, then change what you know better. pf_config_check names a bad field
+ * as it is written here: "capacity.max_state_dim". */
 typedef struct pf_config {
   uint32_t size;    /* sizeof(pf_config_t), set by pf_config_default */
   uint32_t version; /* PF_VERSION, set by pf_config_default */
   int32_t scalar;   /* pf_scalar_t of the library that filled this in */
-  int32_t kernels;  /* pf_kernels_t; a set that this processor cannot run is PF_ERROR_CONFIG. Default auto */
+  /* pf_kernels_t; a set that this processor cannot run is PF_ERROR_CONFIG. Default auto */
+  int32_t kernels;
 
   pf_camera_t camera; /* no default: the calibration of your camera */
 
@@ -237,112 +264,130 @@ typedef struct pf_config {
 
   /* The only fields, beside the image size, that change the memory. */
   struct {
-    int32_t max_state_dim;    /* rows of the covariance, 32 .. 2000. Memory grows with its square. Default 300 */
+    /* rows of the covariance, 32 .. 2000. Memory grows with its square. Default 300 */
+    int32_t max_state_dim;
     int32_t max_features;     /* features in the map, 8 .. 1000. Default 100 */
     int32_t max_observations; /* features measured in one frame, 8 .. 200. Default 60 */
     int32_t max_planes;       /* planes in the map, 1 .. 64. Default 8 */
-    int32_t max_imu_samples;  /* inertial samples that are kept, the newest, 0 .. 10000. Default 0 */
-    /* Views (thumbnails of tracked frames with their poses) by which a lost camera recognises where it is, 0 .. 200, of
-     * about 1.3 kB each. 0: it searches about its last pose only. Default 24 */
+    int32_t max_imu_samples; /* inertial samples that are kept, the newest, 0 .. 10000. Default 0 */
+    /* Views (thumbnails of tracked frames with their poses) by which a lost camera recognises where
+     * it is, 0 .. 200, of about 1.3 kB each. 0: it searches about its last pose only. Default 24 */
     int32_t max_kept_views;
-    /* Patches of known walls (pf_add_plane_prior) that are followed in images, 0 .. 32, of at most 24 KiB each. They are
-     * squares of patch_side_px pixels, 32 .. 128, and less where a wall is seen at a slant. A patch takes eight rows of the
-     * state, and the camera that first saw it six, which is shared by all that began in its frame: of such cameras there
-     * are at most max_cameras, 0 .. 64. Defaults 0 (none), 100, 8 */
+    /* Patches of known walls (pf_add_wall) that are followed in images, 0 .. 32, of at most 24 KiB
+     * each. They are squares of patch_side_px pixels, 32 .. 128, and less where a wall is seen at a
+     * slant. A patch takes eight rows of the state, and the camera that first saw it six, which is
+     * shared by all that began in its frame: of such cameras there are at most max_cameras, 0 ..
+     * 64. Defaults 0 (none), 100, 8 */
     int32_t max_patches, patch_side_px, max_cameras;
-    /* Side of a feature's template with map.masks, odd, 9 .. 31 px; without, it takes no memory. Default 15 */
+    /* Side of a feature's template with map.masks, odd, 9 .. 31 px; without, it takes no memory.
+     * Default 15 */
     int32_t template_px;
-    /* Of the window, and of no meaning with the filter: keyframes that are adjusted together while a start without a target still
-     * improves its first depths, 2 .. 8, default 3; older ones that see the same points and are held fixed then, 0 .. 16, default 5
-     * (afterwards all keyframes but the oldest are adjusted); points in the map, 50 .. 1000, default 300. In the window max_state_dim,
-     * max_features, max_observations, max_patches and max_cameras take nothing. */
-    int32_t window_keyframes, window_fixed, window_points;
   } capacity;
 
-  /* How the camera may move between frames. Densities are those of white noise: over a time dt the velocity's
-   * variance grows by density^2 dt. */
+  /* Capacities of PF_BACKEND_WINDOW, of no meaning with the filter. With the window, max_state_dim,
+   * max_features, max_observations, max_patches and max_cameras above take nothing. */
+  struct {
+    /* Keyframes that are adjusted together while a start without a target still improves its first
+     * depths, 2 .. 8, and older ones that see the same points and are held fixed then, 0 .. 16.
+     * Afterwards all but the oldest are adjusted. Defaults 3, 5 */
+    int32_t keyframes, fixed_keyframes;
+    int32_t points; /* in the map, 50 .. 1000. Default 300 */
+  } window;
+
+  /* How the camera may move between frames. Densities are those of white noise: over a time dt the
+   * velocity's variance grows by density^2 dt. */
   struct {
     int32_t model;                       /* pf_motion_model_t. Default constant velocity */
     double linear_acceleration_density;  /* [m/s^2/sqrt(Hz)] > 0. Default 1 */
     double angular_acceleration_density; /* [rad/s^2/sqrt(Hz)] > 0. Default 2 */
-    double linear_walk;                  /* [m/sqrt(s)] > 0, constant position only. Default 0.1 */
-    double angular_walk;                 /* [rad/sqrt(s)] > 0, constant position only. Default 0.2 */
-    double coast_s;                      /* after this time without tracking the state is lost, 0.05 .. 10. Default 1 */
-    /* After this time of usable images without finding the map again, counted from when the state was lost, the map is
-     * discarded and a new one begins; 0: never. 0 .. 1e4. Default 3 */
+    double coast_s; /* after this time without tracking the state is lost, 0.05 .. 10. Default 1 */
+    /* After this time of usable images without finding the map again, counted from when the state
+     * was lost, the map is discarded and a new one begins; 0: never. 0 .. 1e4. Default 3 */
     double restart_s;
   } motion;
 
   struct {
-    /* Of a match in an image: least standard deviation (lens, warp, interpolation) on top of the image noise; both are
-     * scaled up together where the residuals are larger. The prior of sigma_gate_px in the report.
-     * Of an observation that gives no sigma_px: its standard deviation. 0.01 .. 10. Default 0.1 */
+    /* Of a match in an image: least standard deviation (lens, warp, interpolation) on top of the
+     * image noise; both are scaled up together where the residuals are larger. The prior of
+     * sigma_gate_px in the report. Of an observation that gives no sigma_px: its standard
+     * deviation. 0.01 .. 10. Default 0.1 */
     double sigma_px;
     double gate_probability; /* that a true match passes the gate, 0.9 .. 0.9999. Default 0.99 */
   } measurement;
 
-  /* Depth of a feature that was seen once: rho = 1/depth has mean rho0 and standard deviation relative_sigma * rho0. */
+  /* Depth of a feature that was seen once: rho = 1/depth has mean rho0 and standard deviation
+   * relative_sigma * rho0. */
   struct {
-    /* rho0 is 1/depth until the map knows better. > 0. Default 1. After a start with neither target nor pose it is
-     * also the unit of length, see LENGTHS. */
+    /* rho0 is 1/depth until the map knows better. > 0. Default 1. After a start with neither target
+     * nor pose it is also the unit of length, see LENGTHS. */
     double depth;
-    /* 1: rho0 becomes the median of what is in view; where only a target is in view, half of the target's, since a
-     * target stands in front of its scene. 0: it stays 1/depth. Default 1 */
+    /* 1: rho0 becomes the median of what is in view; where only a target is in view, half of the
+     * target's, since a target stands in front of its scene. 0: it stays 1/depth. Default 1 */
     int32_t from_map;
-    /* 0.05 .. 5. Default 2: hardly a prior. A prior that is wrong in the same way for many features bends the scale. */
+    /* 0.05 .. 5. Default 2: hardly a prior. A prior that is wrong in the same way for many features
+     * bends the scale. */
     double relative_sigma;
-    /* An inverse-depth point whose index of linearity is below this becomes a 3-D point, 0.001 .. 1. Default 0.1 */
+    /* An inverse-depth point whose index of linearity is below this becomes a 3-D point, 0.001 ..
+     * 1. Default 0.1 */
     double linearity_index;
   } first_depth;
 
   struct {
-    /* Features to keep in view, 8 .. capacity.max_observations; 0 with capacity.max_patches: none begin, and patches of
-     * walls alone are followed. Default 45 */
+    /* Features to keep in view, 8 .. capacity.max_observations; 0 with capacity.max_patches: none
+     * begin, and patches of walls alone are followed. Default 45 */
     int32_t features_in_view;
     int32_t border_px; /* no feature nearer to the image's edge than this, 4 .. 64. Default 8 */
     int32_t masks;     /* pf_masks_t. Default none. Other than none, it adds memory */
-    /* With masks: mean square of a match's residuals, in that of a pixel on the dominant plane, at most. 0.01 .. 100.
-     * Default 2 */
+    /* With masks: mean square of a match's residuals, in that of a pixel on the dominant plane, at
+     * most. 0.01 .. 100. Default 2 */
     double max_misfit;
   } map;
 
-  /* Finding planes and folding points into them (lib/docs/planes.md). Names of Gee 2007, section 3, in brackets. */
+  /* Finding planes and folding points into them (lib/docs/planes.md). Names of Gee 2007, section 3,
+   * in brackets. */
   struct {
     int32_t enabled;     /* 1: finds planes and folds points into them. 0: points only. Default 1 */
     int32_t min_points;  /* a new plane has more points than this (l_T), 4 .. 60. Default 7 */
     double max_distance; /* [m] of a point from a new plane (d_T), 1e-5 .. 10. Default 0.01 */
-    double max_radius;   /* [m] of a point from a new plane's origin (d_max), 0.01 .. 1e4. Default 1.5 */
-    double roughness; /* [m] of real surfaces: standard deviation of a point from its plane, 1e-6 .. 1. Default 0.002 */
-    /* [m] A point can be folded when its standard deviation relative to the camera is below this (sigma_T), 1e-5 .. 10.
-     * Default 0.05 */
+    double
+        max_radius; /* [m] of a point from a new plane's origin (d_max), 0.01 .. 1e4. Default 1.5 */
+    /* [m] of real surfaces: standard deviation of a point from its plane, 1e-6 .. 1. Default
+         * 0.002 */
+    double roughness;
+    /* [m] A point can be folded when its standard deviation relative to the camera is below this
+     * (sigma_T), 1e-5 .. 10. Default 0.05 */
     double fold_sigma;
-    /* [m] A folded point is fixed when its standard deviation among the points of its plane is below this (sigma_fix),
-     * 0 (never) .. 10. Default 0 */
+    /* [m] A folded point is fixed when its standard deviation among the points of its plane is
+     * below this (sigma_fix), 0 (never) .. 10. Default 0 */
     double fix_sigma;
-    int32_t fold; /* pf_fold_t. Default condition */
-    int32_t fix;  /* pf_fix_t. Default consider */
+    int32_t fix; /* pf_fix_t. Default consider */
   } plane;
 
   pf_imu_model_t imu;
 
-  /* 1: keeps the covariance consistent with what a camera alone cannot observe (lib/docs/gauge.md). 0: the textbook
-   * EKF, which is overconfident, for comparison. Default 1 */
-  int32_t keep_gauge;
+  /* Comparisons that no product needs; written by pf_config_set_research (planefold_research.h)
+   * alone. Default zeros: none */
+  uint64_t research[8];
 
-  /* Nanoseconds of any steady clock, for the cost of each stage in the report; null reads no clock. Default null */
+  /* Nanoseconds of any steady clock, for the cost of each stage in the report; null reads no clock.
+   * Default null */
   int64_t (*clock_ns)(void* user);
-  /* One line of plain text on what the library decided (a start, a reset, a loss); null: no log. Default null */
+  /* One line of plain text on what the library decided (a start, a reset, a loss); null: no log.
+   * Default null */
   void (*log)(void* user, const char* line);
-  void* user; /* handed to both. Both may call what only asks (const pf_slam_t*); what changes is PF_ERROR_STATE */
+  void*
+      /* handed to both. Both may call what only asks (const pf_slam_t*); what changes is
+       * PF_ERROR_STATE */
+      user;
 } pf_config_t;
 
 PF_API pf_status_t pf_config_default(pf_config_t* config);
 
-/* PF_OK, or an error; *field (may be null) then points to the name of the first bad field, a constant string, else
- * it is null. */
+/* PF_OK, or an error; *field (may be null) then points to the name of the first bad field, a
+ * constant string, else it is null. */
 PF_API pf_status_t pf_config_check(const pf_config_t* config, const char** field);
 
-/* ---------------------------------------------------------------------------------------------------- memory -- */
+/* -------------------------------------------------------------------------------- memory -- */
 
 typedef struct pf_memory {
   size_t bytes;       /* that the block must have at least */
@@ -354,14 +399,16 @@ PF_API pf_status_t pf_memory_query(const pf_config_t* config, pf_memory_t* memor
 
 typedef struct pf_slam pf_slam_t; /* lives in your block */
 
-/* Makes a context in the block. On an error *slam is null and the block may be reused. What the block held before
- * does not matter. */
-PF_API pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes, pf_slam_t** slam);
+/* Makes a context in the block. On an error *slam is null and the block may be reused. What the
+ * block held before does not matter. */
+PF_API pf_status_t pf_create(const pf_config_t* config, void* block, size_t bytes,
+                             pf_slam_t** slam);
 
-/* Back to the moment after pf_create: same config, no map, no pose, and any timestamp may come next. */
+/* Back to the moment after pf_create: same config, no map, no pose, and any timestamp may come
+ * next. */
 PF_API pf_status_t pf_reset(pf_slam_t* slam);
 
-/* ---------------------------------------------------------------------------------------------------- starting -- */
+/* ------------------------------------------------------------------------------ starting -- */
 
 typedef struct pf_pose {
   int64_t t_ns;
@@ -370,8 +417,9 @@ typedef struct pf_pose {
   double covariance[36]; /* 6x6 of (theta, p) [rad, m] */
   double v_W[3];         /* velocity [m/s]; zero with the constant-position model */
   double w_C[3];         /* angular velocity [rad/s], in C; likewise */
-  uint32_t map_id;       /* of the map that W belongs to; never used twice. Ignored in a pose that you pass in */
-  uint32_t reserved;     /* 0 */
+  /* of the map that W belongs to; never used twice. Ignored in a pose that you pass in */
+  uint32_t map_id;
+  uint32_t reserved; /* 0 */
 } pf_pose_t;
 
 #define PF_TARGET_MAX_POINTS 16
@@ -384,73 +432,87 @@ typedef enum pf_target_kind {
 
 typedef struct pf_target {
   int32_t kind; /* pf_target_kind_t */
-  /* Rectangle: its frame T is at its centre, x right and y down as seen upright, z into the wall. */
+  /* Rectangle: its frame T is at its centre, x right and y down as seen upright, z into the wall.
+   * */
   double width, height; /* [m] > 0, of the outer edge of the dark area */
   /* Rectangle: where that frame is in W, p_W = R_WT p_T + p_WT, q_WT w x y z. All zero: it is W. */
   double q_WT[4], p_WT[3];
   /* Points. */
   int32_t count;                            /* 4 .. PF_TARGET_MAX_POINTS */
   double points_W[PF_TARGET_MAX_POINTS][3]; /* [m] */
-  /* About where the camera is at first, with its covariance; t_ns is unused. Images of later maps begin without the points. */
+  /* About where the camera is at first, with its covariance; t_ns is unused. Images of later maps
+   * begin without the points. */
   pf_pose_t first_pose;
   /* Both. */
   double sigma; /* [m] 1e-9 .. 1e3, standard deviation of the target's points */
 } pf_target_t;
 
-/* Start in front of a known target. Before the first frame only. Until the target is seen the state is starting. */
+/* Start in front of a known target. Before the first frame only. Until the target is seen the state
+ * is starting. */
 PF_API pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target);
 
-/* Start from a known pose, with its covariance and velocity; velocity_covariance is 6x6 of (v_W, w_C). Before the
- * first frame. In images the state is starting until the first frames have told the depths, unless walls or a speed
- * above twice its sigma tell them; the scale is that of first_depth where nothing else says it. PF_ERROR_STATE together
- * with a rectangle as target, which gives the pose itself. With a target of points both may be given: the known pose
- * then counts if the points are seen in the first frame, and their own sighting later. With neither start, W is the
- * first camera. PF_ERROR_RANGE: a standard deviation below 1e-9, or numbers that are no covariance. */
-PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose, const double velocity_covariance[36]);
+/* Start from a known pose, with its covariance and velocity; velocity_covariance is 6x6 of (v_W,
+ * w_C). Before the first frame. In images the state is starting until the first frames have told
+ * the depths, unless walls or a speed above twice its sigma tell them; the scale is that of
+ * first_depth where nothing else says it. PF_ERROR_STATE together with a rectangle as target, which
+ * gives the pose itself. With a target of points both may be given: the known pose then counts if
+ * the points are seen in the first frame, and their own sighting later. With neither start, W is
+ * the first camera. PF_ERROR_RANGE: a standard deviation below 1e-9, or numbers that are no
+ * covariance. */
+PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose,
+                                      const double velocity_covariance[36]);
 
-/* Says where the camera is in the frame at t_ns (to a millisecond), which is still to come: its distance from the first camera (that of
- * pf_start_from_pose, else the origin of W) is the scale, and the map is scaled about the first camera in that frame, or when the depths
- * are known. Of the pose the position counts. Poses that were told before keep the old scale, and a mark (pf_mark_pose) is lost. Nothing is
- * scaled, and the log says so, where the frame does not come, is not tracked, or the camera has hardly moved. PF_ERROR_STATE: with
- * PF_BACKEND_FILTER, with a target, or while another one is waited for. PF_ERROR_TIME: the frame is not after the last one.
+/* Says where the camera is in the frame at t_ns (to a millisecond), which is still to come: its
+ * distance from the first camera (that of pf_start_from_pose, else the origin of W) is the scale,
+ * and the map is scaled about the first camera in that frame, or when the depths are known. Of the
+ * pose the position counts. Poses that were told before keep the old scale, and a mark
+ * (pf_mark_pose) is lost. Nothing is scaled, and the log says so, where the frame does not come, is
+ * not tracked, or the camera has hardly moved. PF_ERROR_STATE: with PF_BACKEND_FILTER, with a
+ * target, or while another one is waited for. PF_ERROR_TIME: the frame is not after the last one.
  * PF_ERROR_RANGE: it is nearer to the first place than its own standard deviation. */
 PF_API pf_status_t pf_set_second_pose(pf_slam_t* slam, int64_t t_ns, const pf_pose_t* pose);
 
 /* Stops measuring the target's own points; they stay in the map. */
 PF_API pf_status_t pf_withdraw_target(pf_slam_t* slam);
 
-/* ---------------------------------------------------------------------------------------------------- walls -- */
+/* --------------------------------------------------------------------------------- walls -- */
 
 #define PF_OUTLINE_MAX 24
 
-/* A wall: a plane that is known beforehand, from a building plan, with how uncertain it is (lib/docs/walls.md). Fields
- * as in pf_plane_t. */
-typedef struct pf_plane_prior {
-  double R_WP[9]; /* the plane's frame, row-major: x and y in the plane, z towards the side that can be seen */
+/* A wall: a plane that is known beforehand, from a building plan, with how uncertain it is
+ * (lib/docs/walls.md). Fields as in pf_plane_t. */
+typedef struct pf_wall_prior {
+  double R_WP
+      /* the plane's frame, row-major: x and y in the plane, z towards the side that can be seen */
+      [9];
   double p_WP[3]; /* its origin: the wall's own centre, inside of the outline [m] */
-  /* 3x3 of (alpha, beta, delta) at that origin: n_true = n + alpha x_W + beta y_W, n_true . (p - p_WP) = delta.
-   * Standard deviations of 1e-9 at least.   [rad, rad, m] */
+  /* 3x3 of (alpha, beta, delta) at that origin: n_true = n + alpha x_W + beta y_W, n_true . (p -
+   * p_WP) = delta. Standard deviations of 1e-9 at least.   [rad, rad, m] */
   double covariance[9];
   int32_t outline_count; /* 3 .. PF_OUTLINE_MAX */
-  /* x y in the plane's frame, counter-clockwise seen from the z side, convex: every vertex is a corner */
+  /* x y in the plane's frame, counter-clockwise seen from the z side, convex: every vertex is a
+   * corner */
   double outline_P[PF_OUTLINE_MAX][2];
   double roughness;   /* [m] as plane.roughness of the config, 1e-6 .. 1; 0: that one */
   uint32_t two_sided; /* 1: can be seen from both sides, 0: only from the z side */
   uint32_t reserved;  /* 0 */
-} pf_plane_prior_t;
+} pf_wall_prior_t;
 
-/* Adds a wall to the map, before the first frame or later; *id is that of a pf_plane_t. It takes three rows of the
- * state (capacity.max_state_dim), for which features that were not seen in the last frame are evicted while tracking.
- * Points that lie on it fold into it, and planes that are found merge into it. It is refined by what is seen, and never
- * dissolved. Where what is seen contradicts it, it is doubted: it takes no points then. As long as there are walls no
- * new map begins after a loss; pf_reset drops them, and so does an estimate that is no longer finite.
- * PF_ERROR_STATE where the place of W is not known to you: before pf_start_from_pose, or pf_start_from_target with points or
- * with a place, and in a map that began after that start's; with plane.enabled 0. PF_ERROR_FULL: more planes than
- * capacity.max_planes, or no rows. PF_ERROR_RANGE: R_WP is no rotation, covariance has a negative eigenvalue or a standard
- * deviation below 1e-9, or the outline is not convex, crosses itself, is not counter-clockwise or does not hold the origin. */
-PF_API pf_status_t pf_add_plane_prior(pf_slam_t* slam, const pf_plane_prior_t* prior, uint32_t* id);
+/* Adds a wall to the map, before the first frame or later; *id is that of a pf_plane_t. It takes
+ * three rows of the state (capacity.max_state_dim), for which features that were not seen in the
+ * last frame are evicted while tracking. Points that lie on it fold into it, and planes that are
+ * found merge into it. It is refined by what is seen, and never dissolved. Where what is seen
+ * contradicts it, it is rejected: it takes no points then. As long as there are walls no new map
+ * begins after a loss; pf_reset drops them, and so does an estimate that is no longer finite.
+ * PF_ERROR_STATE where the place of W is not known to you: before pf_start_from_pose, or
+ * pf_start_from_target with points or with a place, and in a map that began after that start's;
+ * with plane.enabled 0. PF_ERROR_FULL: more planes than capacity.max_planes, or no rows.
+ * PF_ERROR_RANGE: R_WP is no rotation, covariance has a negative eigenvalue or a standard deviation
+ * below 1e-9, or the outline is not convex, crosses itself, is not counter-clockwise or does not
+ * hold the origin. */
+PF_API pf_status_t pf_add_wall(pf_slam_t* slam, const pf_wall_prior_t* wall, uint32_t* id);
 
-/* ---------------------------------------------------------------------------------------------------- input -- */
+/* --------------------------------------------------------------------------------- input -- */
 
 typedef struct pf_image {
   const uint8_t* pixels; /* grey levels; read during the call only */
@@ -459,27 +521,29 @@ typedef struct pf_image {
   int64_t t_ns;          /* middle of the exposure, after that of every earlier frame */
 } pf_image_t;
 
-/* Track one frame. PF_OK means tracked. An image that is byte for byte the one before repeats that one's pose and
- * status under its own time and is counted; nothing is measured, and the next prediction begins at the image's first
- * time. A camera that is frozen for longer than motion.coast_s coasts. */
+/* Track one frame. PF_OK means tracked. An image that is byte for byte the one before repeats that
+ * one's pose and status under its own time and is counted; nothing is measured, and the next
+ * prediction begins at the image's first time. A camera that is frozen for longer than
+ * motion.coast_s coasts. */
 PF_API pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image);
 
-/* A feature that something else has found and recognised: for trackers in hardware and for simulations. A new id
- * begins a feature (if the map has room for it), a known one measures it. With a target of points, the ids 0 ..
- * count-1 are its points. Of an id that comes twice in a call, the first counts. PF_ERROR_STATE with a rectangle as
- * target, which is found in images only. A context takes frames or observations, not both. */
+/* A feature that something else has found and recognised: for trackers in hardware and for
+ * simulations. A new id begins a feature (if the map has room for it), a known one measures it.
+ * With a target of points, the ids 0 .. count-1 are its points. Of an id that comes twice in a
+ * call, the first counts. PF_ERROR_STATE with a rectangle as target, which is found in images only.
+ * A context takes frames or observations, not both. */
 typedef struct pf_observation {
   uint32_t id;
   double pixel[2];
   double sigma_px; /* 0: measurement.sigma_px of the config */
 } pf_observation_t;
 
-PF_API pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observation_t* observations,
-                                        size_t count);
+PF_API pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns,
+                                        const pf_observation_t* observations, size_t count);
 
-/* Control input: a change of velocity that is known beforehand (a motor, a thruster, a simulation). The next frame's
- * prediction adds it to the velocities, in camera axes: v_W += R_WC dv_C [m/s], w_C += dw_C [rad/s]. Calls add up.
- * PF_ERROR_STATE with the other motion models. */
+/* Control input: a change of velocity that is known beforehand (a motor, a thruster, a simulation).
+ * The next frame's prediction adds it to the velocities, in camera axes: v_W += R_WC dv_C [m/s],
+ * w_C += dw_C [rad/s]. Calls add up. PF_ERROR_STATE with the other motion models. */
 PF_API pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]);
 
 /* A sample of an inertial measurement unit, in the unit's own axes. */
@@ -489,16 +553,17 @@ typedef struct pf_imu_sample {
   double accel[3]; /* specific force [m/s^2], at most 1e5 each: 9.8 upwards when it lies still */
 } pf_imu_sample_t;
 
-/* Samples, the oldest first, each after every earlier one; those up to a frame's time belong before that frame. All
- * or none are taken: PF_ERROR_TIME where a time is not after the one before, PF_ERROR_NONFINITE, PF_ERROR_RANGE
- * beyond what any unit measures. They are kept (capacity.max_imu_samples) and reported; poses depend on them with
- * PF_MOTION_INERTIAL only. */
+/* Samples, the oldest first, each after every earlier one; those up to a frame's time belong before
+ * that frame. All or none are taken: PF_ERROR_TIME where a time is not after the one before,
+ * PF_ERROR_NONFINITE, PF_ERROR_RANGE beyond what any unit measures. They are kept
+ * (capacity.max_imu_samples) and reported; poses depend on them with PF_MOTION_INERTIAL only. */
 PF_API pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count);
 
-/* ---------------------------------------------------------------------------------------------------- output -- */
+/* -------------------------------------------------------------------------------- output -- */
 
 typedef enum pf_state {
-  PF_STATE_STARTING = 0, /* no pose yet, or a pose whose depths are not yet known (nothing but rotation so far) */
+  /* no pose yet, or a pose whose depths are not yet known (nothing but rotation so far) */
+  PF_STATE_STARTING = 0,
   PF_STATE_TRACKING = 1,
   PF_STATE_COASTING = 2, /* the pose is a prediction; covariance grows */
   PF_STATE_LOST = 3
@@ -512,33 +577,38 @@ PF_API pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose);
 /* Pose predicted to a time not before the last frame, for display; the state does not change. */
 PF_API pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose);
 
-/* How the camera moved between two frames of one map. Unlike the pose in W, which drifts as a whole, this is as good as
- * the measurements in between: for odometry, and to check how honest the covariance is over short times. */
+/* How the camera moved between two frames of one map. Unlike the pose in W, which drifts as a
+ * whole, this is as good as the measurements in between: for odometry, and to check how honest the
+ * covariance is over short times. */
 typedef struct pf_motion {
   int64_t mark_t_ns; /* of the frame whose pose was marked: K is the camera there */
   int64_t t_ns;      /* of the last frame: C is the camera there */
   double q_KC[4];    /* w x y z */
-  double p_KC[3];    /* of C in K [m]; in the map's own unit where no length is known, see LENGTHS */
-  /* 6x6 of (theta, p) [rad, m], both in K: R_true = Exp(theta) R_KC, p_true = p_KC + e. From all that both poses have in
-   * common; zero in the frame of the mark. */
+  double p_KC[3]; /* of C in K [m]; in the map's own unit where no length is known, see LENGTHS */
+  /* 6x6 of (theta, p) [rad, m], both in K: R_true = Exp(theta) R_KC, p_true = p_KC + e. From all
+   * that both poses have in common; zero in the frame of the mark. */
   double covariance[36];
   uint32_t map_id;   /* as in pf_pose_t */
   uint32_t reserved; /* 0 */
 } pf_motion_t;
 
-/* Marks the pose of the last frame, whatever the state: a copy of the camera becomes part of the state. There is one mark;
- * a new one replaces it. It goes with its map: with a new map_id, after pf_reset, and when a start without a target begins
- * its map again with better depths. It takes six rows of the state (capacity.max_state_dim). While tracking, features that
- * were not seen in the last frame are evicted for them. PF_ERROR_STATE before the first pose, PF_ERROR_FULL without room. */
+/* Marks the pose of the last frame, whatever the state: a copy of the camera becomes part of the
+ * state. There is one mark; a new one replaces it. It goes with its map: with a new map_id, after
+ * pf_reset, and when a start without a target begins its map again with better depths. It takes six
+ * rows of the state (capacity.max_state_dim). While tracking, features that were not seen in the
+ * last frame are evicted for them. PF_ERROR_STATE before the first pose, PF_ERROR_FULL without
+ * room. */
 PF_API pf_status_t pf_mark_pose(pf_slam_t* slam);
 
-/* Motion from the mark to the last frame. PF_NOTE_NOTHING, and *motion is as it was, when there is no mark. */
+/* Motion from the mark to the last frame. PF_NOTE_NOTHING, and *motion is as it was, when there is
+ * no mark. */
 PF_API pf_status_t pf_get_motion_since_mark(const pf_slam_t* slam, pf_motion_t* motion);
 
-/* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be null). Of a
- * rolling shutter it is the one at the frame's own time, which its row does not share: lib/docs/rolling_shutter.md
- * says how to go on to that. */
-PF_API pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double pixel[2], double covariance[4]);
+/* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be
+ * null). Of a rolling shutter it is the one at the frame's own time, which its row does not share:
+ * lib/docs/rolling_shutter.md says how to go on to that. */
+PF_API pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double pixel[2],
+                                    double covariance[4]);
 
 typedef enum pf_feature_kind {
   PF_FEATURE_INVERSE_DEPTH = 1, /* direction known, depth not yet */
@@ -548,8 +618,9 @@ typedef enum pf_feature_kind {
 } pf_feature_kind_t;
 
 typedef struct pf_feature {
-  uint32_t id;          /* never used twice */
-  uint32_t external_id; /* pf_observation_t.id; of a point of the target: its index. 0 of what an image began */
+  uint32_t id; /* never used twice */
+  /* pf_observation_t.id; of a point of the target: its index. 0 of what an image began */
+  uint32_t external_id;
   int32_t kind;         /* pf_feature_kind_t */
   int32_t is_target;    /* 1 for a point of the target */
   uint32_t plane;       /* id of the plane that it is folded into, or 0 */
@@ -561,10 +632,12 @@ typedef struct pf_feature {
 } pf_feature_t;
 
 /* Copy of the map. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
-PF_API pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_t capacity, size_t* count);
+PF_API pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_t capacity,
+                                   size_t* count);
 
-/* Of a plane, once the direction of gravity is known (pf_set_gravity, pf_get_inertial): within 15 degrees with a probability of 95 %, by
- * the covariance of the plane and, where it is estimated, of gravity. Up and down: which way the side looks that was seen. */
+/* Of a plane, once the direction of gravity is known (pf_set_gravity, pf_get_inertial): within 15
+ * degrees with a probability of 95 %, by the covariance of the plane and, where it is estimated, of
+ * gravity. Up and down: which way the side looks that was seen. */
 typedef enum pf_orientation {
   PF_ORIENTATION_UNKNOWN = 0,         /* gravity is not known, or which of the others it is */
   PF_ORIENTATION_HORIZONTAL_UP = 1,   /* floor, table top */
@@ -578,34 +651,40 @@ typedef struct pf_plane {
   int32_t orientation; /* pf_orientation_t */
   int32_t points;      /* folded into it, fixed ones among them */
   int32_t fixed_points;
-  uint32_t map_id;       /* as in pf_pose_t */
-  int32_t outline_count; /* of the convex outline of its points, 0 .. PF_OUTLINE_MAX; of a wall, with the plan's */
-  int32_t known;         /* 1: a wall, see pf_add_plane_prior */
-  int32_t doubted;       /* 1: a wall, and the gate refuses what should be on it */
-  double normal_W[3];    /* unit, towards the side that was seen */
-  double distance;       /* n . p of its points */
-  double R_WP[9];        /* the plane's frame, row-major: x and y in the plane, z the normal */
-  double p_WP[3];        /* its origin, in the plane and about in the middle */
-  /* 3x3 of (alpha, beta, delta): n_true = n + alpha x_W + beta y_W, n_true . (p - p_WP) = delta.   [rad, rad, m] */
+  uint32_t map_id; /* as in pf_pose_t */
+  /* of the convex outline of its points, 0 .. PF_OUTLINE_MAX; of a wall, with the plan's */
+  int32_t outline_count;
+  int32_t is_wall;    /* 1: a wall, see pf_add_wall */
+  int32_t rejected;   /* 1: a wall, and the gate refuses what should be on it */
+  double normal_W[3]; /* unit, towards the side that was seen */
+  double distance;    /* n . p of its points */
+  double R_WP[9];     /* the plane's frame, row-major: x and y in the plane, z the normal */
+  double p_WP[3];     /* its origin, in the plane and about in the middle */
+  /* 3x3 of (alpha, beta, delta): n_true = n + alpha x_W + beta y_W, n_true . (p - p_WP) = delta.  
+   * [rad, rad, m] */
   double covariance[9];
-  double outline_P[PF_OUTLINE_MAX][2]; /* x y in the plane's frame, counter-clockwise seen from the normal's side */
-  double area;                         /* [m^2] of the outline */
+  double outline_P[PF_OUTLINE_MAX]
+                  [2]; /* x y in the plane's frame, counter-clockwise seen from the normal's side */
+  double area;         /* [m^2] of the outline */
 } pf_plane_t;
 
 /* Copy of the planes. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
-PF_API pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size_t capacity, size_t* count);
+PF_API pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size_t capacity,
+                                 size_t* count);
 
-/* The plane that an id stands for now: itself, or the one that it was merged into. PF_NOTE_NOTHING (*current_id is
- * 0) when it is gone. */
+/* The plane that an id stands for now: itself, or the one that it was merged into. PF_NOTE_NOTHING
+ * (*current_id is 0) when it is gone. */
 PF_API pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* current_id);
 
-/* The direction of gravity in W, of any length; zero forgets it, and so does a new map. Only pf_plane_t.orientation
- * depends on it. With PF_MOTION_INERTIAL gravity is known without it (pf_get_inertial), and this goes before that. */
+/* The direction of gravity in W, of any length; zero forgets it, and so does a new map. Only
+ * pf_plane_t.orientation depends on it. With PF_MOTION_INERTIAL gravity is known without it
+ * (pf_get_inertial), and this goes before that. */
 PF_API pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]);
 
-/* Says that a plane is vertical within a standard deviation of sigma_rad, 1e-6 .. 0.5, which tells gravity's direction and the plane's.
- * It counts once: to say it again changes nothing, until 0 has forgotten it, which adds back what it took from the plane's tilt.
- * PF_ERROR_STATE where gravity is not estimated and known (pf_inertial_t.metric). PF_NOTE_NOTHING: no plane has this id.
+/* Says that a plane is vertical within a standard deviation of sigma_rad, 1e-6 .. 0.5, which tells
+ * gravity's direction and the plane's. It counts once: to say it again changes nothing, until 0 has
+ * forgotten it, which adds back what it took from the plane's tilt. PF_ERROR_STATE where gravity is
+ * not estimated and known (pf_inertial_t.metric). PF_NOTE_NOTHING: no plane has this id.
  * PF_ERROR_RANGE too where gravity and plane contradict it by their covariances (1 in 10,000). */
 PF_API pf_status_t pf_set_plane_vertical(pf_slam_t* slam, uint32_t plane, double sigma_rad);
 
@@ -616,8 +695,8 @@ typedef struct pf_hit {
   double range;         /* from the camera [m] */
 } pf_hit_t;
 
-/* Where the ray through a pixel of the last frame meets the nearest plane, inside of its outline. PF_NOTE_NOTHING
- * when it meets none. */
+/* Where the ray through a pixel of the last frame meets the nearest plane, inside of its outline.
+ * PF_NOTE_NOTHING when it meets none. */
 PF_API pf_status_t pf_hit_test(const pf_slam_t* slam, const double pixel[2], pf_hit_t* hit);
 
 typedef enum pf_match_status {
@@ -634,39 +713,48 @@ typedef struct pf_match {
   double predicted_px[2];
   double covariance_px[4]; /* 2x2 of the innovation: the search ellipse */
   double measured_px[2];   /* inliers, outliers and new ones */
-  double nis;              /* of inliers and outliers: normalised innovation squared, 2 degrees of freedom */
+  double nis; /* of inliers and outliers: normalised innovation squared, 2 degrees of freedom */
 } pf_match_t;
 
-/* What was looked for in the last frame, and what was found. *count is how many there are; PF_NOTE_TRUNCATED if
- * capacity was smaller. */
-PF_API pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t capacity, size_t* count);
+/* What was looked for in the last frame, and what was found. *count is how many there are;
+ * PF_NOTE_TRUNCATED if capacity was smaller. */
+PF_API pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t capacity,
+                                  size_t* count);
 
-/* Beside the values of pf_match_status_t: the patch was found, but it is not known yet which plane it lies on, so it was not used. */
+/* Beside the values of pf_match_status_t: the patch was found, but it is not known yet which plane
+ * it lies on, so it was not used. */
 enum { PF_PATCH_WAITING = 5 };
 
-/* A patch of a wall, or of a plane that was found, that is followed in images (capacity.max_patches, lib/docs/homography.md). */
+/* A patch of a wall, or of a plane that was found, that is followed in images
+ * (capacity.max_patches, lib/docs/homography.md). */
 typedef struct pf_patch {
   uint32_t id;    /* never used twice */
   uint32_t plane; /* id of the wall or plane that it lies on; 0: not known yet */
-  int32_t status; /* pf_match_status_t, or PF_PATCH_WAITING; 0: out of view, or too slanted to be looked for */
+  /* pf_match_status_t, or PF_PATCH_WAITING; 0: out of view, or too slanted to be looked for */
+  int32_t status;
   int32_t frames; /* in which it was measured */
-  /* Where its corners are in the last frame, in the order of a circle: measured (inlier, outlier, new, waiting), or else predicted. */
+  /* Where its corners are in the last frame, in the order of a circle: measured (inlier, outlier,
+   * new, waiting), or else predicted. */
   double corners_px[4][2];
-  double covariance_px[64]; /* 8x8 of corners that were measured (x, y of each), from the noise of this frame's image */
-  double weight;            /* share of its pixels that fit in the last frame, 0 .. 1 */
+  double covariance_px
+      /* 8x8 of corners that were measured (x, y of each), from the noise of this frame's image */
+      [64];
+  double weight; /* share of its pixels that fit in the last frame, 0 .. 1 */
 } pf_patch_t;
 
 /* Copy of the patches. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
-PF_API pf_status_t pf_get_patches(const pf_slam_t* slam, pf_patch_t* patches, size_t capacity, size_t* count);
+PF_API pf_status_t pf_get_patches(const pf_slam_t* slam, pf_patch_t* patches, size_t capacity,
+                                  size_t* count);
 
 /* Template of a feature, with map.masks. */
 typedef struct pf_template {
   uint32_t feature; /* id */
   int32_t side;     /* [px] capacity.template_px */
-  /* side * side, row by row, in the image where the feature was first seen. mask: probability of belonging to the dominant
-   * plane in 1/255; 0 where there was no image. */
+  /* side * side, row by row, in the image where the feature was first seen. mask: probability of
+   * belonging to the dominant plane in 1/255; 0 where there was no image. */
   uint8_t grey[31 * 31], mask[31 * 31];
-  double normal_W[3];      /* unit, of the dominant plane, towards the camera; a folded feature has its plane's */
+  double normal_W
+      [3]; /* unit, of the dominant plane, towards the camera; a folded feature has its plane's */
   double sigma_normal_rad; /* of the template's own normal; 0 of a folded feature */
   double centre_px[2];     /* of the middle pixel, in the image where the feature was first seen */
   int32_t frames;          /* that the mask has learnt from */
@@ -689,39 +777,45 @@ enum {
   PF_STAGE_COUNT = 10
 };
 
-/* The calibration as it is known now, and the covariance of its numbers (may be null): 10x10, row-major, of (fx, fy, cx,
- * cy, distortion[0] .. distortion[4], readout_s); zero in the rows of what is exact. */
-PF_API pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, double covariance[100]);
+/* The calibration as it is known now, and the covariance of its numbers (may be null): 10x10,
+ * row-major, of (fx, fy, cx, cy, distortion[0] .. distortion[4], readout_s); zero in the rows of
+ * what is exact. */
+PF_API pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera,
+                                 double covariance[100]);
 
 typedef struct pf_report {
   int64_t t_ns;
-  int32_t state;                                             /* pf_state_t */
-  int32_t frames;                                            /* frames pushed since create or reset */
-  int32_t attempts, matches, inliers, new_features, evicted; /* a patch counts as eight of the first three */
+  int32_t state;  /* pf_state_t */
+  int32_t frames; /* frames pushed since create or reset */
+  int32_t attempts, matches, inliers, new_features,
+      evicted; /* a patch counts as eight of the first three */
   int32_t features, features_point, features_inverse_depth, features_folded, features_fixed;
   int32_t planes;
   int32_t state_dim;
-  int32_t state_dim_held;           /* rows of the state that are considered only: without gain */
-  int32_t state_dim_points_only;    /* rows that the same map would need with 3-D points in place of folded ones */
-  uint32_t map_id;                  /* as in pf_pose_t; of the first map 1, and one more for each new one */
-  int32_t kept_views;               /* of capacity.max_kept_views */
-  double nis;                       /* normalised innovation squared of this frame's inliers, jointly; of matches in
+  int32_t state_dim_held; /* rows of the state that are considered only: without gain */
+  /* rows that the same map would need with 3-D points in place of folded ones */
+  int32_t state_dim_points_only;
+  uint32_t map_id;    /* as in pf_pose_t; of the first map 1, and one more for each new one */
+  int32_t kept_views; /* of capacity.max_kept_views */
+  double nis;      /* normalised innovation squared of this frame's inliers, jointly; of matches in
                                        images with the noise that one match has by itself */
-  int32_t nis_dof;                  /* and its degrees of freedom */
-  int32_t kernels;                  /* pf_kernels_t in use */
-  int32_t patches, cameras;         /* patches on walls, and the reference cameras that saw them first */
-  int64_t duplicates;               /* of `frames`: images that were byte for byte the one before, see pf_push_frame */
+  int32_t nis_dof; /* and its degrees of freedom */
+  int32_t kernels; /* pf_kernels_t in use */
+  int32_t patches, cameras; /* patches on walls, and the reference cameras that saw them first */
+  /* of `frames`: images that were byte for byte the one before, see pf_push_frame */
+  int64_t duplicates;
   int64_t stage_ns[PF_STAGE_COUNT]; /* all zero without a clock */
-  /* Noise of matches in images, as estimated so far (lib/docs/noise.md): of one match by itself, root mean square over
-   * recent inliers [px]; of what it adds to those of other frames, sigma_gate_px * sqrt(correlation_frames) [px]; and for
-   * how many frames an error stays with its feature. Pushed observations have the sigma_px that they state. */
+  /* Noise of matches in images, as estimated so far (lib/docs/noise.md): of one match by itself,
+   * root mean square over recent inliers [px]; of what it adds to those of other frames,
+   * sigma_gate_px * sqrt(correlation_frames) [px]; and for how many frames an error stays with its
+   * feature. Pushed observations have the sigma_px that they state. */
   double sigma_gate_px, sigma_info_px, correlation_frames;
-  /* Of `frames`: those at whose end a part of the estimate's covariance was not positive semidefinite, beyond rounding,
-   * and its variances were raised until it was (lib/docs/float.md). 0 is normal; where it grows, the poses deserve less
-   * trust than their covariances say. */
+  /* Of `frames`: those at whose end a part of the estimate's covariance was not positive
+   * semidefinite, beyond rounding, and its variances were raised until it was (lib/docs/float.md).
+   * 0 is normal; where it grows, the poses deserve less trust than their covariances say. */
   int64_t covariance_repairs;
-  /* With map.masks: templates that learnt from this frame, and the mean share of their pixels on the dominant plane (0
-   * without any). */
+  /* With map.masks: templates that learnt from this frame, and the mean share of their pixels on
+   * the dominant plane (0 without any). */
   int32_t templates;
   int32_t keyframes; /* of the window: that are kept */
   double template_area;
@@ -734,21 +828,22 @@ typedef struct pf_imu_report {
   int64_t samples;
   int64_t since_frame; /* of them after the last frame was pushed */
   int64_t last_frame;  /* of them between the last frame and the one before (or the beginning) */
-  int64_t late;        /* of them with a time that is not after that of the frame pushed before them */
-  int64_t saturated;   /* of them with a number at the end of the ranges in the config */
-  int64_t gaps;        /* intervals longer than 1.5 medians */
-  int64_t missing;     /* samples that would fill the gaps */
+  int64_t late; /* of them with a time that is not after that of the frame pushed before them */
+  int64_t saturated; /* of them with a number at the end of the ranges in the config */
+  int64_t gaps;      /* intervals longer than 1.5 medians */
+  int64_t missing;   /* samples that would fill the gaps */
   int64_t first_t_ns, last_t_ns;
   int64_t longest_ns; /* interval */
   double rate_hz;     /* mean from the first sample to the last; 0 of fewer than two */
   double median_s;    /* interval, a running median; 0 of fewer than two */
   int32_t kept;       /* samples in the buffer */
-  int32_t used;       /* 1 when poses hang on the samples: PF_MOTION_INERTIAL, and samples have come */
-  /* With PF_MOTION_INERTIAL. 1: pictures contradict the samples, which this map does not use any more (up to scale: until
-   * the gyro agrees again); the motion is that of PF_MOTION_CONSTANT_VELOCITY. A map that had been in metres for less than
-   * 5 s begins anew, up to scale. */
-  int32_t doubted;
-  double doubted_s; /* for how long in all */
+  int32_t used; /* 1 when poses hang on the samples: PF_MOTION_INERTIAL, and samples have come */
+  /* With PF_MOTION_INERTIAL. 1: pictures contradict the samples, which this map does not use any
+   * more (up to scale: until the gyro agrees again); the motion is that of
+   * PF_MOTION_CONSTANT_VELOCITY. A map that had been in metres for less than 5 s begins anew, up to
+   * scale. */
+  int32_t rejected;
+  double rejected_s; /* for how long in all */
 } pf_imu_report_t;
 
 PF_API pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report);
@@ -762,36 +857,38 @@ typedef struct pf_inertial {
    * gravity_true = Exp(g1 axis1 + g2 axis2) gravity_W. */
   double covariance[64];
   double gravity_axes_W[2][3]; /* unit, across gravity and each other */
-  /* 1: the samples tell lengths, which are metres; 0: gravity is not known yet, and only the gyro is used. It becomes 1 when
-   * the camera has been at rest for a second: a map of unknown scale that is younger than 15 s begins anew then; or when such a map
-   * has seen enough motion to tell: it goes on in metres, under another map_id. */
+  /* 1: the samples tell lengths, which are metres; 0: gravity is not known yet, and only the gyro
+   * is used. It becomes 1 when the camera has been at rest for a second: a map of unknown scale
+   * that is younger than 15 s begins anew then; or when such a map has seen enough motion to tell:
+   * it goes on in metres, under another map_id. */
   uint32_t metric;
   uint32_t from_motion; /* 1: it became 1 by motion, 0: at rest, or not yet */
   uint32_t map_id;      /* as in pf_pose_t */
-  /* 1: in this frame the pose is held, since samples and pictures have been at rest for a second at least. A picture alone or
-   * samples alone never say so. */
+  /* 1: in this frame the pose is held, since samples and pictures have been at rest for a second at
+   * least. A picture alone or samples alone never say so. */
   uint32_t resting;
   uint32_t rests; /* begun since the beginning */
   /* Mounting and delay as they are known now; those of the config where they are not estimated. */
   double q_BC[4], p_BC[3], delay_s;
   double readout_s; /* of the camera's rows */
-  /* Standard deviations: gravity 2, biases 6 (as in covariance), rotation of the mounting 3 (about the axes of B), p_BC 3,
-   * delay, readout, log scale of the best known length. Negative: not estimated, or not known yet. */
-  double sigma[17];
+  /* Standard deviations. Negative: not estimated, or not known yet. */
+  struct {
+    double gravity_rad[2];           /* about gravity_axes_W */
+    double gyro_bias[3];             /* [rad/s] */
+    double accel_bias[3];            /* [m/s^2] */
+    double mount_rad[3], mount_m[3]; /* of q_BC about the axes of B, and of p_BC */
+    double delay_s, readout_s;
+    double log_scale; /* of the best known length */
+  } sigma;
 } pf_inertial_t;
 
 /* PF_NOTE_NOTHING, and *inertial is as it was, before the start and without PF_MOTION_INERTIAL. */
 PF_API pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial);
 
-/* Copy of the kept samples, the oldest first. *count is how many there are; PF_NOTE_TRUNCATED if capacity was
- * smaller. */
-PF_API pf_status_t pf_get_imu_samples(const pf_slam_t* slam, pf_imu_sample_t* samples, size_t capacity, size_t* count);
-
-/* Information that the filter holds about what a camera alone cannot observe: N^T P^-1 N, 7x7, row-major, in the order translation,
- * rotation, log scale of the whole world. It must never grow without absolute data. For tests: cubic in the state's dimension. scratch
- * needs state_dim * (state_dim + 8) doubles. PF_ERROR_RANGE: P is no covariance, by more than rounding leaves (lib/docs/float.md). */
-PF_API pf_status_t pf_get_gauge_information(const pf_slam_t* slam, double* scratch, size_t scratch_count,
-                                            double information[49]);
+/* Copy of the kept samples, the oldest first. *count is how many there are; PF_NOTE_TRUNCATED if
+ * capacity was smaller. */
+PF_API pf_status_t pf_get_imu_samples(const pf_slam_t* slam, pf_imu_sample_t* samples,
+                                      size_t capacity, size_t* count);
 
 #ifdef __cplusplus
 }

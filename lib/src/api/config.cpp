@@ -4,6 +4,7 @@
 
 #include "api/checks.h"
 #include "api/context.h"
+#include "api/research.h"
 #include "covariance/select.h"
 #include "frame/tuning.h"
 
@@ -20,7 +21,6 @@ struct Range {
   { #field, low, high, offsetof(pf_config_t, field) }
 
 constexpr Range kIntegers[] = {
-    PF_FIELD(keep_gauge, 0, 1),
     PF_FIELD(first_depth.from_map, 0, 1),
     PF_FIELD(plane.enabled, 0, 1),
     PF_FIELD(capacity.max_state_dim, 32, 2000),
@@ -32,9 +32,9 @@ constexpr Range kIntegers[] = {
     PF_FIELD(capacity.patch_side_px, 32, 128),
     PF_FIELD(capacity.max_cameras, 0, 64),
     PF_FIELD(capacity.template_px, pf::PlanarTemplate::kMinSide, pf::PlanarTemplate::kMaxSide),
-    PF_FIELD(capacity.window_keyframes, 2, 8),
-    PF_FIELD(capacity.window_fixed, 0, 16),
-    PF_FIELD(capacity.window_points, 50, 1000),
+    PF_FIELD(window.keyframes, 2, 8),
+    PF_FIELD(window.fixed_keyframes, 0, 16),
+    PF_FIELD(window.points, 50, 1000),
     PF_FIELD(backend, PF_BACKEND_FILTER, PF_BACKEND_WINDOW),
     PF_FIELD(map.masks, PF_MASKS_NONE, PF_MASKS_WHOLE),
     PF_FIELD(plane.min_points, 4, 60),
@@ -44,11 +44,10 @@ constexpr Range kIntegers[] = {
 };
 
 constexpr double kTiny = 1e-9;
+constexpr double kMaxWalk = 1e4;
 constexpr Range kReals[] = {
     PF_FIELD(motion.linear_acceleration_density, kTiny, 1e4),
     PF_FIELD(motion.angular_acceleration_density, kTiny, 1e4),
-    PF_FIELD(motion.linear_walk, kTiny, 1e4),
-    PF_FIELD(motion.angular_walk, kTiny, 1e4),
     PF_FIELD(measurement.sigma_px, 0.01, 10),
     PF_FIELD(measurement.gate_probability, 0.9, 0.9999),
     PF_FIELD(first_depth.depth, 1e-4, 1e5),
@@ -162,8 +161,24 @@ const char* unit_from(const pf_config_t& config, ImuUnit* unit, BodyLayout* layo
   return nullptr;
 }
 
+/// Values and forms of planefold_research.h. Null, or the name of the first field that makes no sense or that only a config with research
+/// may have.
+const char* refused_of_research(const pf_config_t& config, const pf_research_t& research) {
+  if (!holds_research(config)) {
+    if (config.motion.model == PF_MOTION_CONSTANT_POSITION) return "motion.model";
+    if (config.plane.fix == PF_FIX_ERROR_FREE) return "plane.fix";
+    if (config.map.masks == PF_MASKS_WHOLE) return "map.masks";
+    return nullptr;
+  }
+  if (research.keep_gauge != 0 && research.keep_gauge != 1) return "research.keep_gauge";
+  if (research.fold != PF_FOLD_CONDITION && research.fold != PF_FOLD_DROP) return "research.fold";
+  if (!(research.linear_walk >= kTiny && research.linear_walk <= kMaxWalk)) return "research.linear_walk";
+  if (!(research.angular_walk >= kTiny && research.angular_walk <= kMaxWalk)) return "research.angular_walk";
+  return nullptr;
+}
+
 /// The motion model and what it needs. Null, or the name of the first field that makes no sense.
-const char* motion_from(const pf_config_t& config, Settings* settings) {
+const char* motion_from(const pf_config_t& config, const pf_research_t& research, Settings* settings) {
   const bool moves = config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
   settings->constant_velocity = moves;
   settings->inertial = config.motion.model == PF_MOTION_INERTIAL;
@@ -173,9 +188,9 @@ const char* motion_from(const pf_config_t& config, Settings* settings) {
                                         : BodyLayout::with_constant_position();
   const bool walks = !settings->body.has(BodyPart::kVelocity);
   settings->motion_noise.linear =
-      static_cast<Scalar>(walks ? config.motion.linear_walk : config.motion.linear_acceleration_density);
+      static_cast<Scalar>(walks ? research.linear_walk : config.motion.linear_acceleration_density);
   settings->motion_noise.angular =
-      static_cast<Scalar>(walks ? config.motion.angular_walk : config.motion.angular_acceleration_density);
+      static_cast<Scalar>(walks ? research.angular_walk : config.motion.angular_acceleration_density);
   return unit_from(config, &settings->unit, &settings->body);
 }
 
@@ -198,6 +213,10 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   if (config.size != sizeof(pf_config_t)) return *field = "size", Status::kVersion;
   if ((config.version ^ PF_VERSION) >> 8 != 0) return *field = "version", Status::kVersion;
   if (config.scalar != kScalar) return *field = "scalar", Status::kScalar;
+  pf_research_t research;
+  if (research_from(config, &research) != Status::kOk) return *field = "research", Status::kVersion;
+  *field = refused_of_research(config, research);
+  if (*field != nullptr) return Status::kConfig;
   for (const Range& r : kIntegers) {
     const double value = field_at<std::int32_t>(config, r.offset);
     if (!(value >= r.low && value <= r.high)) return *field = r.name, Status::kConfig;
@@ -209,15 +228,13 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   if (config.capacity.template_px % 2 == 0) return *field = "capacity.template_px", Status::kConfig;
   const bool has_window = config.backend == PF_BACKEND_WINDOW;
   const bool patches_alone = config.map.features_in_view == 0 && config.capacity.max_patches > 0 && !has_window;
-  if (config.map.features_in_view > (has_window ? config.capacity.window_points : config.capacity.max_observations) ||
+  if (config.map.features_in_view > (has_window ? config.window.points : config.capacity.max_observations) ||
       (config.map.features_in_view < kMinFeaturesInView && !patches_alone))
     return *field = "map.features_in_view", Status::kConfig;
   *field = refused_by_window(config);
   if (*field != nullptr) return Status::kConfig;
-  *field = motion_from(config, settings);
+  *field = motion_from(config, research, settings);
   if (*field != nullptr) return Status::kConfig;
-  if (config.plane.fold != PF_FOLD_CONDITION && config.plane.fold != PF_FOLD_DROP)
-    return *field = "plane.fold", Status::kConfig;
   if (config.plane.fix < PF_FIX_CONSIDER || config.plane.fix > PF_FIX_ERROR_FREE)
     return *field = "plane.fix", Status::kConfig;
 
@@ -242,10 +259,10 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->readout_ignored = timeless && c.readout_s > 0;
 
   settings->backend = static_cast<BackEnd>(config.backend);
-  settings->window_keyframes = static_cast<std::uint8_t>(config.capacity.window_keyframes);
-  settings->window_fixed = static_cast<std::uint8_t>(config.capacity.window_fixed);
+  settings->window_keyframes = static_cast<std::uint8_t>(config.window.keyframes);
+  settings->window_fixed = static_cast<std::uint8_t>(config.window.fixed_keyframes);
   settings->max_state_dim = config.capacity.max_state_dim;
-  settings->max_features = has_window ? config.capacity.window_points : config.capacity.max_features;
+  settings->max_features = has_window ? config.window.points : config.capacity.max_features;
   settings->max_observations = config.capacity.max_observations;
   settings->max_planes = config.capacity.max_planes;
   settings->max_kept_views = config.capacity.max_kept_views;
@@ -262,7 +279,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->fold_sigma = static_cast<Scalar>(config.plane.fold_sigma);
   settings->fix_sigma = static_cast<Scalar>(config.plane.fix_sigma);
   // chi-square with one degree of freedom: 1 % of the points of a plane stay out
-  settings->fold = {static_cast<Scalar>(config.plane.roughness), Scalar(6.63), config.plane.fold == PF_FOLD_CONDITION};
+  settings->fold = {static_cast<Scalar>(config.plane.roughness), Scalar(6.63), research.fold == PF_FOLD_CONDITION};
   settings->fix = config.plane.fix == PF_FIX_CONSIDER  ? FixForm::kConsider
                   : config.plane.fix == PF_FIX_INFLATE ? FixForm::kInflate
                                                        : FixForm::kErrorFree;
@@ -279,7 +296,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->border_px = config.map.border_px;
   settings->max_coast_ns = static_cast<std::int64_t>(config.motion.coast_s * 1e9);
   settings->restart_ns = static_cast<std::int64_t>(config.motion.restart_s * 1e9);
-  settings->keep_gauge = config.keep_gauge != 0;
+  settings->keep_gauge = research.keep_gauge != 0;
   settings->imu_buffer = config.capacity.max_imu_samples;
   settings->imu_ranges = {static_cast<Scalar>(config.imu.gyro_range), static_cast<Scalar>(config.imu.accel_range)};
   settings->hooks.clock_ns = config.clock_ns;
@@ -309,9 +326,9 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->capacity.max_cameras = 8;
   config->capacity.template_px = pf::PlanarTemplate::kDefaultSide;
   config->backend = PF_BACKEND_FILTER;
-  config->capacity.window_keyframes = 3;
-  config->capacity.window_fixed = 5;
-  config->capacity.window_points = 300;
+  config->window.keyframes = 3;
+  config->window.fixed_keyframes = 5;
+  config->window.points = 300;
   config->plane.enabled = 1;
   config->plane.min_points = 7;
   config->plane.max_distance = 0.01;
@@ -319,13 +336,10 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->plane.roughness = 0.002;
   config->plane.fold_sigma = 0.05;
   config->plane.fix_sigma = 0;
-  config->plane.fold = PF_FOLD_CONDITION;
   config->plane.fix = PF_FIX_CONSIDER;
   config->motion.model = PF_MOTION_CONSTANT_VELOCITY;
   config->motion.linear_acceleration_density = 1.0;
   config->motion.angular_acceleration_density = 2.0;
-  config->motion.linear_walk = 0.1;
-  config->motion.angular_walk = 0.2;
   config->measurement.sigma_px = 0.1;
   config->measurement.gate_probability = 0.99;
   config->first_depth.depth = 1.0;
@@ -338,7 +352,6 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->map.max_misfit = 2;
   config->motion.coast_s = 1.0;
   config->motion.restart_s = 3.0;
-  config->keep_gauge = 1;
   config->capacity.max_imu_samples = 0;
   config->imu.gyro_range = 0;
   config->imu.accel_range = 0;

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstring>
 
 #include "api/context.h"
 #include "api/copy.h"
@@ -55,8 +56,8 @@ pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report) {
   report->kept = slam->session.imu().held();
   report->used = slam->session.settings().inertial && slam->session.imu().any() ? 1 : 0;
   const pf::View view = slam->session.view();
-  report->doubted = view.unit_doubted() ? 1 : 0;
-  report->doubted_s = 1e-9 * static_cast<double>(view.unit_doubted_ns());
+  report->rejected = view.unit_doubted() ? 1 : 0;
+  report->rejected_s = 1e-9 * static_cast<double>(view.unit_doubted_ns());
   return PF_OK;
 }
 
@@ -85,7 +86,10 @@ pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial) {
   pf::copy(unit.p_BC, 3, inertial->p_BC);
   inertial->delay_s = unit.delay_s;
   inertial->readout_s = unit.readout_s;
-  for (int i = 0; i < 17; ++i) inertial->sigma[i] = static_cast<double>(unit.sigma[i]);
+  static_assert(sizeof inertial->sigma == 17 * sizeof(double));
+  double sigma[17];
+  for (int i = 0; i < 17; ++i) sigma[i] = static_cast<double>(unit.sigma[i]);
+  std::memcpy(&inertial->sigma, sigma, sizeof sigma);
   return PF_OK;
 }
 

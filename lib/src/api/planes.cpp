@@ -37,8 +37,8 @@ void describe(const pf::PlaneView& plane, std::uint32_t map_id, const pf::TiltVi
   pf::copy_matrix(plane.R_WP, out->R_WP);
   pf::copy(plane.p_WP, 3, out->p_WP);
   pf::copy_covariance(plane.covariance, out->covariance);
-  out->known = plane.known ? 1 : 0;
-  out->doubted = plane.doubted ? 1 : 0;
+  out->is_wall = plane.known ? 1 : 0;
+  out->rejected = plane.doubted ? 1 : 0;
   out->outline_count = plane.outline.count;
   for (int i = 0; i < plane.outline.count; ++i) pf::copy(plane.outline.uv[i], 2, out->outline_P[i]);
   out->area = static_cast<double>(pf::outline_area(plane.outline));

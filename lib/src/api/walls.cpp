@@ -45,7 +45,7 @@ bool outline_from(const double (*uv)[2], int count, pf::PlaneOutline* out) {
   return true;
 }
 
-pf_status_t prior_from(const pf_plane_prior_t& prior, pf::PlanePrior* out) {
+pf_status_t prior_from(const pf_wall_prior_t& prior, pf::PlanePrior* out) {
   if (!pf::finite(prior.R_WP, 9) || !pf::finite(prior.p_WP, 3) || !pf::finite(prior.covariance, 9) ||
       !pf::finite(&prior.roughness, 1))
     return PF_ERROR_NONFINITE;
@@ -69,7 +69,7 @@ pf_status_t prior_from(const pf_plane_prior_t& prior, pf::PlanePrior* out) {
 
 }  // namespace
 
-pf_status_t pf_add_plane_prior(pf_slam_t* slam, const pf_plane_prior_t* prior, uint32_t* id) {
+pf_status_t pf_add_wall(pf_slam_t* slam, const pf_wall_prior_t* prior, uint32_t* id) {
   PF_REQUIRE_IDLE(slam);
   if (prior == nullptr || id == nullptr) return PF_ERROR_NULL;
   pf::PlanePrior wall;

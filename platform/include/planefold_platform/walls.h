@@ -3,7 +3,7 @@
  *   static pf_walls_t walls;
  *   char message[PF_WALLS_MESSAGE];
  *   if (pf_read_walls("plan.json", &walls, message) != 0) puts(message);
- *   for (int i = 0; i < walls.count; ++i) pf_add_plane_prior(slam, &walls.wall[i].prior, &id[i]);
+ *   for (int i = 0; i < walls.count; ++i) pf_add_wall(slam, &walls.wall[i].prior, &id[i]);
  *
  * Every function returns 0, or -1 with one line of plain text in message that names the file, the wall and the field, and
  * says what is wrong. Files are not trusted: whatever they hold, the answer is one of the two.
@@ -23,7 +23,7 @@ extern "C" {
 
 typedef struct pf_wall {
   char name[PF_WALLS_NAME]; /* no two are the same */
-  pf_plane_prior_t prior;
+  pf_wall_prior_t prior;
 } pf_wall_t;
 
 typedef struct pf_walls {
