@@ -1,0 +1,33 @@
+#pragma once
+
+#include "filter/filter.h"
+#include "frame/noise_model.h"
+#include "track/patch_store.h"
+
+namespace pf {
+
+/// Noise of the corners of patches, learnt from the residuals of all patches together. Each corner has its own trace of residuals.
+class PatchNoise {
+ public:
+  static constexpr int kMaxPatches = 32;  ///< capacity.max_patches at most
+
+  void init();
+  /// Forgets the residuals of an entry of the store, which gets another patch.
+  void forget(int entry);
+
+  /// Sets R_gate and R_update of the corners of a patch that was found.
+  void set_noise(const StoredPatch& patch, PatchMeasurement* z) const;
+
+  /// Takes in an inlier's residuals after the update. z: its corners, predicted then. trace_HPH: of their covariance [px^2].
+  void learn(int frame, int entry, const StoredPatch& patch, const PatchMeasurement& z, Scalar trace_HPH);
+  /// Uses what learn() has gathered from this frame.
+  void end_frame() { model_.end_frame(); }
+
+ private:
+  PatchMeasurement::Matrix gate_noise(const StoredPatch& patch) const;
+
+  NoiseModel model_;
+  ResidualTrace residuals_[kMaxPatches][4];  ///< of each entry's corners
+};
+
+}  // namespace pf

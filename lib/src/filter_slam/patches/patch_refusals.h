@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "filter/filter.h"
+#include "map/map.h"
+#include "track/patch_store.h"
+
+namespace pf {
+
+/// Remembers where patches of a plane were found elsewhere, and counts that against the plane.
+class PatchRefusals {
+ public:
+  PatchRefusals(const Filter& filter, Map& map) : filter_(filter), map_(map) {}
+
+  void init();
+
+  /// The gate refuses a patch of this wall.
+  void note(const StoredPatch& patch, int wall);
+  /// The patch is measured on another plane, though the plan has a wall before it (hiding; -1: none). Five such frames in a row refuse this
+  /// wall, since it is seen through. is_contested: nothing supports the pose of this frame, and no wall is refused.
+  void count_through(StoredPatch* patch, int hiding, const Vec3& middle_W, bool is_contested);
+
+  /// Calls f(middle_W) for each patch that has refused the plane with this id, as far back as is remembered.
+  template <typename F>
+  void for_each(std::uint32_t plane, F&& f) const {
+    for (const Refusal& refusal : refusals_)
+      if (refusal.plane == plane) f(refusal.middle_W);
+  }
+
+ private:
+  static constexpr int kMaxRefusals = 16;
+  struct Refusal {
+    std::uint32_t plane = 0;  ///< id; 0: none
+    int born = 0;             ///< frame in which the patch began
+    Vec3 middle_W;
+  };
+
+  /// Whether a patch that began in the same frame has refused the plane: they share its camera, and where that is wrong, all are.
+  bool is_told_already(std::uint32_t plane, int born) const;
+  /// Whether two views of the patch tell that it is before the wall.
+  bool is_before(const StoredPatch& patch, int wall) const;
+  /// Keeps it in place of the oldest.
+  void keep(const Refusal& refusal);
+
+  const Filter& filter_;
+  Map& map_;
+  Refusal refusals_[kMaxRefusals];  ///< the last ones
+  int next_refusal_ = 0;
+};
+
+}  // namespace pf

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "filter/filter.h"
+#include "filter_slam/patches/patch_noise.h"
+#include "frame/frame.h"
+#include "frame/tracking_state.h"
+#include "map/map.h"
+#include "track/patch_store.h"
+
+namespace pf {
+
+/// Measures one patch at a time: predicts its corners on a plane, gates them, and updates the filter with all eight rows or none. Planes
+/// are entries of the table.
+class PatchUpdate {
+ public:
+  static constexpr int kWorth = 8;  ///< inliers that a patch counts as
+
+  PatchUpdate(Filter& filter, Map& map, Frame& frame, TrackingState& tracking, const PatchNoise& noise)
+      : filter_(filter), map_(map), frame_(frame), tracking_(tracking), noise_(noise) {}
+
+  /// Predicts the corners on a plane. False where one does not project.
+  bool predict(const StoredPatch& patch, int entry);
+  /// Sets the corners that were found, with their noise, as what was measured.
+  void set_measured(const StoredPatch& patch);
+  /// Both. False where a corner does not project.
+  bool predict_measured(const StoredPatch& patch, int entry);
+  /// Likewise for the estimate, linearised at the pose `near`.
+  bool predict_measured_near(const StoredPatch& patch, int entry, const Body& near);
+  /// Finds the pose that the prior and this patch's corners make most likely.
+  bool find_pose(const StoredPatch& patch, int entry, Body* near);
+  /// Of the patch that was predicted last.
+  const PatchMeasurement& measurement() const { return z_; }
+
+  /// Chi-square of the corners after predict_measured(): eight degrees of freedom, with the gate's noise. Negative where it cannot be
+  /// told. *near: the pose that they are linearised at.
+  Scalar misfit(const StoredPatch& patch, int entry, Body* near);
+  /// Whether the patch may lie on this plane, for all that its corners in this frame tell. Predicts it there.
+  bool may_explain(const StoredPatch& patch, int entry);
+
+  /// Updates the filter where the corners pass the gate, after predict_measured().
+  void update(StoredPatch* patch, int entry);
+  /// From now on the patch is measured on this plane, and already in this frame.
+  void join(StoredPatch* patch, int entry);
+
+ private:
+  using Mat8 = PatchMeasurement::Matrix;
+  using Vec8 = PatchMeasurement::Vector;
+
+  /// Variance of what the linearisation leaves out where the innovation r is the plane's fault: corners move with the parallax p as with
+  /// 1 / depth, so r says that the depth is wrong by r / p of itself, and the rows that say so are wrong by as much: (r r / p)^2.   [px^2]
+  Scalar nonlinearity(const StoredPatch& patch) const;
+  /// For a plane that is far from where the filter has it. Updates with a part of the information, as much as it is worth where the
+  /// linearisation is bad, and predicts the corners again; z_ has the rest of the information then: with B = nonlinearity I
+  ///
+  ///   R^-1 = (R + B)^-1 + (R + R B^-1 R)^-1
+  ///
+  /// False where the rest does not pass the gate.
+  bool update_in_parts(const StoredPatch& patch, int entry);
+  /// Chi-square of the innovation with this noise; negative where it cannot be told.
+  Scalar chi_square(const Mat8& R) const;
+
+  Filter& filter_;
+  Map& map_;
+  Frame& frame_;
+  TrackingState& tracking_;
+  const PatchNoise& noise_;
+  PatchMeasurement z_;
+};
+
+}  // namespace pf
