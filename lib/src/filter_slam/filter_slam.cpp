@@ -52,6 +52,7 @@ void FilterSlam::init() {
   relocaliser_.init();
   noise_.init(settings_.sigma_px);
   start_.init();
+  metric_.init();
   if (patches_ != nullptr) patches_->init();
 }
 
@@ -76,32 +77,35 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   const ConsensusRule rule = consensus_rule(t_ns);
   if (first) {
     if (!start_.start_in_image()) return end_frame();
-  } else if (tracking_.is_relocalising(start_.progress()) && rule == ConsensusRule::kBeyondChance) {
+  } else if (tracking_.is_relocalising(start_.recorder().progress()) && rule == ConsensusRule::kBeyondChance) {
     relocaliser_.recover();
   } else {
-    update_.ask_frames(tracking_.is_after_gap(start_.progress()) ? tuning::relocaliser::kFramesNearby : 0,
+    update_.ask_frames(tracking_.is_after_gap(start_.recorder().progress()) ? tuning::relocaliser::kFramesNearby : 0,
                        data_.median_depth);
-    measure_watched([&](bool) { images_.measure(rule, data_.median_depth, start_.learns_lens_from_first_depths()); });
+    measure_watched(
+        [&](bool) { images_.measure(rule, data_.median_depth, start_.recorder().learns_lens_from_first_depths()); });
     update_.ask_frames(0, data_.median_depth);
   }
   // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
-  if (patches_ != nullptr && !first) patches_->measure(images_.tracker().pyramid(), start_.progress().checking);
-  const bool supported = tracking_.is_tracked(frame_.report) || start_.progress().pending();
+  if (patches_ != nullptr && !first)
+    patches_->measure(images_.tracker().pyramid(), start_.recorder().progress().checking);
+  const bool supported = tracking_.is_tracked(frame_.report) || start_.recorder().progress().pending();
   if (!first && tracking_.is_tracked(frame_.report)) images_.learn_templates();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     if (supported) count_searches(frame_, &map_.features);
     // While the map starts, residuals are those of a coarse map.
-    if (supported && tracking_.state() == SlamState::kTracking && !start_.progress().recording) learn_noise();
+    if (supported && tracking_.state() == SlamState::kTracking && !start_.recorder().progress().recording)
+      learn_noise();
     maintain_map(supported);
-    if (start_.record_frame()) relocaliser_.init();  // its views have poses of the wrong map
+    if (start_.recorder().record_frame()) relocaliser_.init();  // its views have poses of the wrong map
     if (supported && !first) look_for_walls();
     const bool begins_anew = look_for_rest() && map_.features.count() == 0;
     // A frame that does not support its pose adds features only to a map that has none to lose.
-    const bool empty = first || start_.progress().pending() || map_.features.count() == 0;
+    const bool empty = first || start_.recorder().progress().pending() || map_.features.count() == 0;
     if (tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0) || begins_anew)
       images_.add_features();
-    start_.begin_record();
+    start_.recorder().begin_record();
   }
   if (patches_ != nullptr) patches_->maintain(images_.tracker().pyramid(), supported, may_begin_patches(first));
   return end_frame();
@@ -143,7 +147,7 @@ Status FilterSlam::add_wall(const PlanePrior& prior, std::uint32_t* id) {
   const int reserved = tracking_.has_pose() ? 0 : start_.target_rows();
   const Status status =
       planes_.add_wall(prior, reserved, tracking_.state() == SlamState::kTracking, data_.filter_ns, id);
-  if (status == Status::kOk && !start_.has_walls_apart()) start_.end_record();
+  if (status == Status::kOk && !map_.planes.has_apart()) start_.recorder().init();
   return status;
 }
 
@@ -154,7 +158,7 @@ void FilterSlam::begin_frame(std::int64_t t_ns) {
   data_.since_last_ns = frame_.report.frames > 0 ? std::min(elapsed_ns(before_ns, t_ns), BodyMotion::kMaxGapNs) : 0;
   data_.image_usable = false;
   const bool nothing_measured = frame_.report.inliers == 0;
-  data_.follows = tracking_.has_pose() && !tracking_.coasting_or_lost() && !start_.progress().pending();
+  data_.follows = tracking_.has_pose() && !tracking_.coasting_or_lost() && !start_.recorder().progress().pending();
   frame_.begin(t_ns);
   if (data_.map_discredited) begin_new_map("the map's scale came from a unit that is doubted: a new map begins");
   tracking_.begin_frame();
@@ -172,10 +176,11 @@ void FilterSlam::begin_frame(std::int64_t t_ns) {
 /// A match along a ray whose depth is open passes nearly everywhere, so not every right frame is beyond chance while fewer features have a
 /// depth of their own than a tracked frame needs. A map as young as that is tracked from frame to frame, and not found again after a gap.
 ConsensusRule FilterSlam::consensus_rule(std::int64_t t_ns) const {
-  if (start_.progress().pending()) return ConsensusRule::kStart;
+  if (start_.recorder().progress().pending()) return ConsensusRule::kStart;
   const std::int64_t proposed_ns = update_.proposals().last().frames > 0 ? data_.since_last_ns : 0;
   const double gap_s = seconds(elapsed_ns(tracking_.last_tracked_ns(), t_ns) - proposed_ns);
-  if (tracking_.is_relocalising(start_.progress()) && gap_s > static_cast<double>(tuning::tracking::kMaxYoungGap))
+  if (tracking_.is_relocalising(start_.recorder().progress()) &&
+      gap_s > static_cast<double>(tuning::tracking::kMaxYoungGap))
     return ConsensusRule::kBeyondChance;
   int known = 0;
   for (int i = 0; i < map_.features.capacity() && known < settings_.min_inliers; ++i)
@@ -187,7 +192,7 @@ ConsensusRule FilterSlam::consensus_rule(std::int64_t t_ns) const {
 
 /// As for features: a frame that does not support its pose begins patches only where there is nothing that could be found again.
 bool FilterSlam::may_begin_patches(bool first) const {
-  if (start_.progress().recording) return false;
+  if (start_.recorder().progress().recording) return false;
   const bool empty = first || (map_.features.count() == 0 && patches_->patches().count() == 0);
   return tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0);
 }
@@ -232,7 +237,8 @@ void FilterSlam::maintain_map(bool supported) {
   }
   features_.convert_linear();
   // During a start the filter may restart without planes; ids of planes found before would then name nothing.
-  if (settings_.planes && !start_.progress().recording) planes_.maintain(!start_.progress().checking);
+  if (settings_.planes && !start_.recorder().progress().recording)
+    planes_.maintain(!start_.recorder().progress().checking);
   features_.drop_failing(true);
 }
 
@@ -241,7 +247,7 @@ Status FilterSlam::end_frame() {
   watch_unit();
   if (tracking_.has_pose() && (tracking_.updates_fail() || !repair_covariance() || !filter_.body_is_sound()))
     start_over();
-  if (tracking_.is_tracked(frame_.report) && !start_.progress().pending()) {
+  if (tracking_.is_tracked(frame_.report) && !start_.recorder().progress().pending()) {
     Scalar patch_depth[PatchKeeper::kMaxPatches];
     const int patches = patches_ != nullptr ? patches_->inlier_depths(patch_depth) : 0;
     if (!is_pose_usable(filter_, map_, frame_, patch_depth, patches, &data_.median_depth))
@@ -249,9 +255,9 @@ Status FilterSlam::end_frame() {
     else if (data_.image_usable)
       relocaliser_.remember_view(data_.median_depth);
   }
-  images_.note_view(tracking_.is_tracked(frame_.report) && !start_.progress().recording, data_.median_depth);
+  images_.note_view(tracking_.is_tracked(frame_.report) && !start_.recorder().progress().recording, data_.median_depth);
   if (data_.image_usable && frame_.report.inliers > 0) images_.keep_view();
-  return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
+  return tracking_.conclude(frame_.report, start_.recorder().progress(), settings_.max_coast_ns, settings_.hooks);
 }
 
 /// False where P is no covariance and nothing helps.
@@ -271,7 +277,7 @@ void FilterSlam::start_over() {
 /// The map was not found again for too long, although the images were usable, or its scale is discredited: a new one begins with this
 /// frame.
 void FilterSlam::begin_new_map(const char* why) {
-  if (!data_.map_discredited) start_.keep_mounting();
+  if (!data_.map_discredited && tracking_.has_pose()) start_.mounting().keep();
   clear_estimate();
   tracking_.begin_map();
   data_.map_discredited = false;
@@ -280,6 +286,7 @@ void FilterSlam::begin_new_map(const char* why) {
 
 void FilterSlam::clear_estimate() {
   start_.start_over();
+  metric_.init();
   map_.features.clear();
   motion_.init();
   rest_.init();

@@ -19,6 +19,7 @@
 #include "filter_slam/pose_mark.h"
 #include "filter_slam/recovery/relocaliser.h"
 #include "filter_slam/start/filter_start.h"
+#include "filter_slam/start/metric_start.h"
 #include "frame/fit_warnings.h"
 #include "frame/frame.h"
 #include "frame/frozen_camera.h"
@@ -62,6 +63,7 @@ class FilterSlam {
   const UnitWatch& watch() const { return watch_; }
   const RestHold* hold() const { return &unit_->hold; }
   const FilterStart& start() const { return start_; }
+  const MetricStart& metric() const { return metric_; }
   const BodyMotion& motion() const { return motion_; }
   const Filter& filter() const { return filter_; }
   const Frame& frame() const { return frame_; }
@@ -133,7 +135,8 @@ class FilterSlam {
   Relocaliser relocaliser_{settings_, filter_, map_, frame_, images_, update_};
   ObservationFrontEnd observations_{settings_, filter_, map_, frame_, features_, update_};
   PatchKeeper* patches_ = nullptr;  ///< in the block behind this, where the config has room for patches
-  FilterStart start_{settings_, motion_, {filter_, map_, frame_, tracking_, features_, images_, update_}};
+  FilterStart start_{settings_, motion_, filter_, map_, frame_, tracking_, features_, images_, update_};
+  MetricStart metric_{settings_, filter_, map_, tracking_, start_};
   Data data_;
 };
 

@@ -12,7 +12,7 @@ bool FilterSlam::look_for_rest() {
   if (!settings_.inertial || !tracking_.has_pose() || !filter_.uses_samples()) return false;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kImu]);
   RestReading rest;
-  if (rest_.note(tracking_.is_tracked(frame_.report), &rest) && start_.use_rest(rest, rest_.begin_ns())) {
+  if (rest_.note(tracking_.is_tracked(frame_.report), &rest) && metric_.use_rest(rest, rest_.begin_ns())) {
     if (map_.features.count() > 0) return true;
     relocaliser_.init();
     rest_.begin_pixels_anew();
@@ -26,13 +26,13 @@ bool FilterSlam::look_for_rest() {
 bool FilterSlam::look_for_scale() {
   MovingFrame told;
   told.keep = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && watch_.doubted_ns() == 0;
-  told.judge = !start_.progress().recording;
+  told.judge = !start_.recorder().progress().recording;
   told.map_id = tracking_.map_id();
   told.depth = data_.median_depth;
   told.correlation = data_.image_usable ? noise_.correlation_frames() : Scalar(1);
   MovingSolution solution;
   if (!unit_->moving.note(told, &solution)) return false;
-  start_.use_motion(solution);
+  metric_.use_motion(solution);
   relocaliser_.init();
   return true;
 }

@@ -65,7 +65,7 @@ bool View::inertial(InertialView* out) const {
     for (int j = 0; j < 8; ++j)
       out->covariance[i][j] = filter().covariance()(std::max(row(i), row(j)), std::min(row(i), row(j)));
   out->metric = filter().is_metric();
-  out->from_motion = out->metric && loop_->start().is_from_motion();
+  out->from_motion = out->metric && loop_->metric().is_from_motion();
   out->resting = loop_->hold()->holds();
   out->rests = loop_->hold()->rests();
   for (int i = 0; i < 8; ++i) out->sigma[i] = std::sqrt(std::max(Scalar(0), out->covariance[i][i]));
@@ -80,7 +80,7 @@ bool View::inertial(InertialView* out) const {
 ///
 ///   R_BC_true = Exp(-R_BC mu) R_BC,   p_BC = -R_BC m:   e = -R_BC e_m - R_BC [m]x mu
 void View::describe_mounting(InertialView* out) const {
-  const Mounting mounting = loop_->start().mounting();
+  const Mounting mounting = loop_->start().mounting().now();
   const BodyLayout& layout = settings_.body;
   const Mat3 R_BC = mounting.R_CB.transpose();
   out->q_BC = Quat(R_BC);
