@@ -8,12 +8,10 @@ namespace pf {
 FilterReader::FilterReader(const Settings& settings, const Map& map, const FilterSlam& slam)
     : settings_(settings), map_(map), slam_(slam), filter_(slam.filter()) {}
 
-int FilterReader::kept_views() const { return slam_.relocaliser().kept_views(); }
+int FilterReader::kept_views() const { return slam_.images().relocaliser().kept_views(); }
 
 void FilterReader::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
-  // Of a frame that repeats the one before, the pose is that one's.
-  const std::int64_t now_ns = t_ns > slam_.frame().report.t_ns ? slam_.motion_begin_ns(slam_.filter_ns()) : t_ns;
-  slam_.motion().predict_pose(now_ns, t_ns, body, covariance);
+  slam_.predict_pose(t_ns, body, covariance);
   if (settings_.inertial) body->v_W = camera_velocity(*body, filter_.state().mounting);
 }
 
@@ -109,9 +107,9 @@ MapCounts FilterReader::counts() const {
   for (int s = 0; s < state.slots; ++s)
     if (info(state.block[s].kind).carries_points) unfolded_rows -= state.block[s].size;
   counts.planes = state.planes;
-  if (slam_.patches() != nullptr) {
-    counts.patches = slam_.patches()->patches().count();
-    counts.cameras = slam_.patches()->patches().cameras();
+  if (const PatchKeeper* const keeper = slam_.upkeep().patches()) {
+    counts.patches = keeper->patches().count();
+    counts.cameras = keeper->patches().cameras();
   }
   counts.state_dim = filter_.dim();
   counts.state_dim_held = filter_.blocks().held_dim();

@@ -17,7 +17,7 @@ namespace {
 ///   R_BC_true = Exp(-R_BC mu) R_BC,   p_BC = -R_BC m:   e = -R_BC e_m - R_BC [m]x mu
 void describe_mounting(const Settings& settings, const FilterSlam& slam, InertialView* out) {
   const Filter& filter = slam.filter();
-  const Mounting mounting = slam.start().mounting().now();
+  const Mounting mounting = slam.unit().mounting();
   const BodyLayout& layout = settings.body;
   const Mat3 R_BC = mounting.R_CB.transpose();
   out->q_BC = Quat(R_BC);
@@ -68,9 +68,9 @@ bool read_inertial(const Settings& settings, const FilterSlam& slam, InertialVie
     for (int j = 0; j < 8; ++j)
       out->covariance[i][j] = filter.covariance()(std::max(row(i), row(j)), std::min(row(i), row(j)));
   out->metric = filter.is_metric();
-  out->from_motion = out->metric && slam.metric().is_from_motion();
-  out->resting = slam.hold()->holds();
-  out->rests = slam.hold()->rests();
+  out->from_motion = out->metric && slam.unit().metric().is_from_motion();
+  out->resting = slam.unit().hold().holds();
+  out->rests = slam.unit().hold().rests();
   for (int i = 0; i < 8; ++i) out->sigma[i] = std::sqrt(std::max(Scalar(0), out->covariance[i][i]));
   describe_mounting(settings, slam, out);
   ScaleRow l;

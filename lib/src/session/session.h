@@ -69,7 +69,7 @@ class Session {
 
   /// kState: gravity is not estimated, or not known yet. kNothing: no such plane.
   Status set_plane_vertical(std::uint32_t plane, Scalar sigma) {
-    return filter_ != nullptr ? filter_->set_plane_vertical(plane, sigma) : Status::kState;
+    return filter_ != nullptr ? filter_->upkeep().set_plane_vertical(plane, sigma) : Status::kState;
   }
 
   // --- what can be read

@@ -34,7 +34,7 @@ View::View(const Settings& settings, const Map& map, const FilterSlam& slam)
       map_(map),
       frame_(slam.frame()),
       tracking_(slam.tracking()),
-      noise_(slam.noise()),
+      noise_(slam.images().noise()),
       filter_(&slam) {}
 
 View::View(const Settings& settings, const Map& map, const KeyframeSlam& slam)
@@ -131,7 +131,8 @@ bool View::template_of(std::uint32_t id, TemplateView* out) const {
 bool View::inertial(InertialView* out) const { return filter_ != nullptr && read_inertial(settings_, *filter_, out); }
 
 UnitDoubt View::unit_doubt() const {
-  return filter_ != nullptr ? UnitDoubt{filter_->watch().doubted(), filter_->watch().doubted_ns()} : UnitDoubt();
+  return filter_ != nullptr ? UnitDoubt{filter_->unit().watch().doubted(), filter_->unit().watch().doubted_ns()}
+                            : UnitDoubt();
 }
 
 bool View::gauge_information(double* scratch, double* information) const {
@@ -139,7 +140,8 @@ bool View::gauge_information(double* scratch, double* information) const {
 }
 
 const PatchStore* View::patches() const {
-  return filter_ != nullptr && filter_->patches() != nullptr ? &filter_->patches()->patches() : nullptr;
+  return filter_ != nullptr && filter_->upkeep().patches() != nullptr ? &filter_->upkeep().patches()->patches()
+                                                                      : nullptr;
 }
 
 std::uint8_t TemplateView::grey(int x, int y) const {
