@@ -63,14 +63,15 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   }
   // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
   PatchKeeper* const patches = upkeep_.patches();
-  if (patches != nullptr && !first) patches->measure(images_.front_end().tracker().pyramid(), progress.checking);
+  if (patches != nullptr && !first)
+    patches->measure(images_.front_end().search().tracker().pyramid(), progress.checking);
   const bool supported = tracking_.is_tracked(frame_.report) || progress.pending();
   if (!first && tracking_.is_tracked(frame_.report)) images_.front_end().learn_templates();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     maintain(supported, first);
   }
-  upkeep_.maintain_patches(images_.front_end().tracker().pyramid(), supported, progress, first);
+  upkeep_.maintain_patches(images_.front_end().search().tracker().pyramid(), supported, progress, first);
   return end_frame();
 }
 
@@ -99,7 +100,7 @@ void FilterSlam::maintain(bool supported, bool is_first) {
   // A frame that does not support its pose adds features only to a map that has none to lose.
   const bool empty = is_first || progress.pending() || map_.features.count() == 0;
   if (tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0) || begins_anew)
-    images_.front_end().add_features();
+    images_.front_end().corners().add();
   recorder.begin_record();
 }
 

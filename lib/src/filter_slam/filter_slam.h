@@ -37,7 +37,8 @@ class FilterSlam {
         upkeep_(settings, filter_, map, frame_, tracking_),
         images_(settings, filter_, map, frame_, tracking_, upkeep_.features(), update_),
         observations_(settings, filter_, map, frame_, upkeep_.features(), update_),
-        start_(settings, motion_, filter_, map, frame_, tracking_, upkeep_.features(), images_.front_end(), update_),
+        start_(settings, motion_, filter_, map, frame_, tracking_, upkeep_.features(), images_.front_end().search(),
+               images_.front_end().corners(), update_),
         unit_(settings, filter_, map, frame_, tracking_, imu, motion_, update_, start_) {}
   FilterSlam(const FilterSlam&) = delete;
   FilterSlam& operator=(const FilterSlam&) = delete;

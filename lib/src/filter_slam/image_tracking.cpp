@@ -18,7 +18,7 @@ void ImageTracking::init() {
 }
 
 void ImageTracking::forget_map() {
-  front_end_.forget_map();
+  front_end_.search().forget_view();
   relocaliser_.init();
 }
 
@@ -45,7 +45,7 @@ void ImageTracking::learn_noise() {
 
 void ImageTracking::keep_view(bool image_usable, const StartProgress& start, Scalar median_depth) {
   front_end_.note_view(tracking_.is_tracked(frame_.report) && !start.recording, median_depth);
-  if (image_usable && frame_.report.inliers > 0) front_end_.keep_view();
+  if (image_usable && frame_.report.inliers > 0) front_end_.search().keep_view();
 }
 
 }  // namespace pf

@@ -31,7 +31,7 @@ class ImageTracking {
         tracking_(tracking),
         update_(update),
         front_end_(settings, filter, map, frame, features, update, noise_),
-        relocaliser_(settings, filter, map, frame, front_end_, update) {}
+        relocaliser_(settings, filter, map, frame, front_end_.search(), update) {}
 
   bool layout(Arena& arena);
   void init();

@@ -78,7 +78,7 @@ void FilterStart::start_with_observations() {
 bool FilterStart::start_in_image() {
   TargetSighting sighting;
   const bool expected = target_.is_expected();
-  const bool seen = expected && target_.find(settings_.camera, images_.tracker(), &sighting);
+  const bool seen = expected && target_.find(settings_.camera, search_.tracker(), &sighting);
   if (!seen && expected && !tracking_.may_skip_target()) return false;
   target_.note_begin();
   if (!seen) {
@@ -117,7 +117,7 @@ void FilterStart::add_target_matches(const TargetSighting& sighting) {
     if (!map_.features.used(i) || !map_.features[i].is_target) continue;
     Feature& f = map_.features[i];
     const Vec2 z = sighting.pixel[f.external_id];
-    images_.remember(i, z, {sighting.pose.q_WC, sighting.pose.p_WC});
+    search_.remember(i, z, {sighting.pose.q_WC, sighting.pose.p_WC});
     f.observations = f.attempts = 1;
     ++report.inliers;
     frame_.add({i, f.id, MatchStatus::kInlier, BlockKind::kPoint, false, z, Mat2::Zero(), z, Scalar(0)});

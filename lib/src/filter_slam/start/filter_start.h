@@ -2,8 +2,9 @@
 
 #include "base/status.h"
 #include "filter/filter.h"
+#include "filter_slam/features/corner_features.h"
 #include "filter_slam/features/feature_keeper.h"
-#include "filter_slam/features/image_front_end.h"
+#include "filter_slam/features/feature_search.h"
 #include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "filter_slam/start/kept_mounting.h"
@@ -24,17 +25,18 @@ class FilterStart {
  public:
   /// update: for its scratch.
   FilterStart(const Settings& settings, const BodyMotion& motion, Filter& filter, Map& map, Frame& frame,
-              TrackingState& tracking, FeatureKeeper& features, ImageFrontEnd& images, PixelUpdate& update)
+              TrackingState& tracking, FeatureKeeper& features, FeatureSearch& search, CornerFeatures& corners,
+              PixelUpdate& update)
       : settings_(settings),
         filter_(filter),
         map_(map),
         frame_(frame),
         tracking_(tracking),
         features_(features),
-        images_(images),
+        search_(search),
         mounting_(settings.body, settings.unit, filter),
         beginning_(settings, motion, mounting_, filter, map, frame, tracking),
-        recorder_(settings, motion, target_, beginning_, filter, map, frame, features, images, update) {}
+        recorder_(settings, motion, target_, beginning_, filter, map, frame, features, corners, update) {}
 
   bool layout(Arena& arena, int width, int height);
   void init();
@@ -94,7 +96,7 @@ class FilterStart {
   Frame& frame_;
   TrackingState& tracking_;
   FeatureKeeper& features_;
-  ImageFrontEnd& images_;
+  FeatureSearch& search_;
   Data data_;
   StartAtTarget target_;
   KeptMounting mounting_;

@@ -101,7 +101,7 @@ void StartRecorder::begin_anew() {
       proven[count++] = Vec2(match.measured.array().round());
   }
   features_.drop_all();
-  images_.add_features_at(proven, count);
+  corners_.add_at(proven, count);
 }
 
 }  // namespace pf

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "filter/filter.h"
+#include "filter_slam/features/corner_features.h"
 #include "filter_slam/features/feature_keeper.h"
-#include "filter_slam/features/image_front_end.h"
 #include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "filter_slam/start/map_beginning.h"
@@ -21,7 +21,7 @@ class StartRecorder {
   /// update: for its scratch. target: that the map may have begun at.
   StartRecorder(const Settings& settings, const BodyMotion& motion, const StartAtTarget& target,
                 MapBeginning& beginning, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features,
-                ImageFrontEnd& images, PixelUpdate& update)
+                CornerFeatures& corners, PixelUpdate& update)
       : settings_(settings),
         motion_(motion),
         target_(target),
@@ -30,7 +30,7 @@ class StartRecorder {
         map_(map),
         frame_(frame),
         features_(features),
-        images_(images),
+        corners_(corners),
         update_(update) {}
 
   bool layout(Arena& arena);
@@ -76,7 +76,7 @@ class StartRecorder {
   Map& map_;
   Frame& frame_;
   FeatureKeeper& features_;
-  ImageFrontEnd& images_;
+  CornerFeatures& corners_;
   PixelUpdate& update_;
   StartWithoutTarget record_;
 };
