@@ -452,16 +452,16 @@ class ContractRun {
   /// Covariances before the getters mend what rounding has left of them.
   void look_inside() const {
     const pf::View view = slam_->session.view();
-    if (!view.has_pose()) return;
+    if (!view.tracking().has_pose()) return;
     pf::Body body;
     pf::Mat6 pose;
     view.pose_at(view.last_ns(), &body, &pose);
     require_nearly(pose, kSmallestOfBody, "a pose has a covariance before it is mended");
-    for (int i = 0; i < view.feature_capacity(); ++i)
-      if (view.has_feature(i))
+    for (int i = 0; i < view.map().features.capacity(); ++i)
+      if (view.map().features.used(i))
         require_nearly(view.feature(i).covariance, kSmallestOfOthers, "a feature has a covariance before it is mended");
-    for (int i = 0; i < view.plane_capacity(); ++i)
-      if (view.has_plane(i))
+    for (int i = 0; i < view.map().planes.capacity(); ++i)
+      if (view.map().planes.used(i))
         require_nearly(view.plane(i).covariance, kSmallestOfOthers, "a plane has a covariance before it is mended");
   }
 

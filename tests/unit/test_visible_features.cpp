@@ -66,7 +66,7 @@ struct Bench {
       view.q_WC = Quat(Eigen::AngleAxis<Scalar>(Scalar(3.14159265), up)) * body.q_WC;
       view.c_W = p_W + (p_W - body.p_W);
     }
-    TEST_ASSERT_TRUE(images.remember(entry, pixel, view));
+    TEST_ASSERT_TRUE(images.search().remember(entry, pixel, view));
     map.features[entry].observations = map.features[entry].attempts = observations;
     return entry;
   }
@@ -77,7 +77,7 @@ void test_features_of_another_side_should_not_take_the_place_of_new_ones() {
   for (int i = 0; i < 2 * kMost; ++i) bench.add(100, i % 2 == 0 ? Bench::First::kBehind : Bench::First::kAfar);
   int added[3];
   for (int& entry : added) entry = bench.add(1, Bench::First::kHere);
-  TEST_ASSERT_EQUAL_INT(kMost, bench.images.list_visible());
+  TEST_ASSERT_EQUAL_INT(kMost, bench.images.search().list_visible());
   for (int i = 0; i < 3; ++i) TEST_ASSERT_EQUAL_INT(added[i], bench.update.candidate(i).feature);
   for (int i = 3; i < kMost; ++i)
     TEST_ASSERT_EQUAL_INT(100, bench.map.features[bench.update.candidate(i).feature].observations);
@@ -87,7 +87,7 @@ void test_proven_features_should_be_measured_first() {
   Bench bench;
   for (int i = 0; i < kMost; ++i) bench.add(1, Bench::First::kHere);
   const int proven = bench.add(10, Bench::First::kHere), better = bench.add(30, Bench::First::kHere);
-  TEST_ASSERT_EQUAL_INT(kMost, bench.images.list_visible());
+  TEST_ASSERT_EQUAL_INT(kMost, bench.images.search().list_visible());
   TEST_ASSERT_EQUAL_INT(better, bench.update.candidate(0).feature);
   TEST_ASSERT_EQUAL_INT(proven, bench.update.candidate(1).feature);
 }
@@ -121,7 +121,7 @@ int new_features_on_the_left(int age) {
   const Vec2 outline[4] = {Vec2(0, 0), Vec2(at(right, 0).x() - corner.x(), 0), Vec2(0, corner.y() - at(0, low).y()),
                            Vec2(at(right, 0).x() - corner.x(), corner.y() - at(0, low).y())};
   extend_outline(&plane.seen, outline, 4);
-  bench.images.add_features();
+  bench.images.corners().add();
   int added = 0, left = 0;
   for (int t = 0; t < bench.frame.match_count(); ++t) {
     ++added;

@@ -55,9 +55,9 @@ pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report) {
   report->median_s = 1e-9 * static_cast<double>(c.median_ns);
   report->kept = slam->session.imu().held();
   report->used = slam->session.settings().inertial && slam->session.imu().any() ? 1 : 0;
-  const pf::View view = slam->session.view();
-  report->rejected = view.unit_doubted() ? 1 : 0;
-  report->rejected_s = 1e-9 * static_cast<double>(view.unit_doubted_ns());
+  const pf::UnitDoubt doubt = slam->session.view().unit_doubt();
+  report->rejected = doubt.doubted ? 1 : 0;
+  report->rejected_s = 1e-9 * static_cast<double>(doubt.doubted_ns);
   return PF_OK;
 }
 
@@ -79,7 +79,7 @@ pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial) {
   inertial->from_motion = unit.from_motion ? 1 : 0;
   inertial->resting = unit.resting ? 1 : 0;
   inertial->rests = static_cast<uint32_t>(unit.rests);
-  inertial->map_id = view.map_id();
+  inertial->map_id = view.tracking().map_id();
   const double q[4] = {static_cast<double>(unit.q_BC.w()), static_cast<double>(unit.q_BC.x()),
                        static_cast<double>(unit.q_BC.y()), static_cast<double>(unit.q_BC.z())};
   for (int i = 0; i < 4; ++i) inertial->q_BC[i] = q[0] < 0 ? -q[i] : q[i];

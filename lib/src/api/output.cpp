@@ -20,7 +20,7 @@ void pose_at(const pf::View& view, int64_t t_ns, pf_pose_t* pose) {
   pf::Mat6 covariance;
   view.pose_at(t_ns, &body, &covariance);
   pose->t_ns = t_ns;
-  pose->map_id = view.map_id();
+  pose->map_id = view.tracking().map_id();
   pose->reserved = 0;
   copy_quaternion(body.q_WC, pose->q_WC);
   copy(body.p_W, 3, pose->p_WC);
@@ -47,7 +47,7 @@ int32_t feature_kind(pf::BlockKind kind) {
 pf_status_t pf_get_state(const pf_slam_t* slam, pf_state_t* state) {
   PF_REQUIRE_CONTEXT(slam);
   if (state == nullptr) return PF_ERROR_NULL;
-  *state = static_cast<pf_state_t>(slam->session.view().state());
+  *state = static_cast<pf_state_t>(slam->session.view().tracking().state());
   return PF_OK;
 }
 
@@ -55,7 +55,7 @@ pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose) {
   PF_REQUIRE_CONTEXT(slam);
   if (pose == nullptr) return PF_ERROR_NULL;
   const pf::View view = slam->session.view();
-  if (!view.has_pose()) return PF_ERROR_STATE;
+  if (!view.tracking().has_pose()) return PF_ERROR_STATE;
   pose_at(view, view.last_ns(), pose);
   return PF_OK;
 }
@@ -63,7 +63,7 @@ pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose) {
 pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose) {
   PF_REQUIRE_CONTEXT(slam);
   if (pose == nullptr) return PF_ERROR_NULL;
-  if (!slam->session.view().has_pose()) return PF_ERROR_STATE;
+  if (!slam->session.view().tracking().has_pose()) return PF_ERROR_STATE;
   if (t_ns < slam->session.view().last_ns()) return PF_ERROR_TIME;
   if (pf::elapsed_ns(slam->session.view().last_ns(), t_ns) > INT64_C(10000000000)) return PF_ERROR_RANGE;
   pose_at(slam->session.view(), t_ns, pose);
@@ -81,7 +81,7 @@ pf_status_t pf_get_motion_since_mark(const pf_slam_t* slam, pf_motion_t* motion)
   copy_quaternion(since.q_KC, motion->q_KC);
   copy(since.p_KC, 3, motion->p_KC);
   copy_covariance(since.covariance, motion->covariance);
-  motion->map_id = view.map_id();
+  motion->map_id = view.tracking().map_id();
   motion->reserved = 0;
   return PF_OK;
 }
@@ -90,7 +90,7 @@ pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double 
   PF_REQUIRE_CONTEXT(slam);
   if (p_W == nullptr || pixel == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(p_W, 3)) return PF_ERROR_NONFINITE;
-  if (!slam->session.view().has_pose()) return PF_ERROR_STATE;
+  if (!slam->session.view().tracking().has_pose()) return PF_ERROR_STATE;
   pf::Vec2 z;
   pf::Mat2 C;
   const pf::Vec3 p(static_cast<pf::Scalar>(p_W[0]), static_cast<pf::Scalar>(p_W[1]), static_cast<pf::Scalar>(p_W[2]));
@@ -105,8 +105,8 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
   if (count == nullptr || (features == nullptr && capacity > 0)) return PF_ERROR_NULL;
   const pf::View view = slam->session.view();
   *count = 0;
-  for (int i = 0; i < view.feature_capacity(); ++i) {
-    if (!view.has_feature(i)) continue;
+  for (int i = 0; i < view.map().features.capacity(); ++i) {
+    if (!view.map().features.used(i)) continue;
     const size_t at = (*count)++;
     if (at >= capacity) continue;
     const pf::FeatureView f = view.feature(i);
@@ -119,7 +119,7 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
     out.attempts = f.attempts;
     out.kind = feature_kind(f.kind);
     out.plane = f.plane;
-    out.map_id = view.map_id();
+    out.map_id = view.tracking().map_id();
     copy(f.p_W, 3, out.p_W);
     copy_covariance(f.covariance, out.covariance);
   }
@@ -129,9 +129,10 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
 pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, size_t capacity, size_t* count) {
   PF_REQUIRE_CONTEXT(slam);
   if (count == nullptr || (matches == nullptr && capacity > 0)) return PF_ERROR_NULL;
-  *count = static_cast<size_t>(slam->session.view().match_count());
+  const pf::View view = slam->session.view();
+  *count = static_cast<size_t>(view.frame().match_count());
   for (size_t i = 0; i < *count && i < capacity; ++i) {
-    const pf::Match& t = slam->session.view().match(static_cast<int>(i));
+    const pf::Match& t = view.frame().match(static_cast<int>(i));
     pf_match_t& out = matches[i];
     out.id = t.id;
     out.status = static_cast<int32_t>(t.status);
@@ -149,19 +150,20 @@ pf_status_t pf_get_patches(const pf_slam_t* slam, pf_patch_t* patches, size_t ca
   if (count == nullptr || (patches == nullptr && capacity > 0)) return PF_ERROR_NULL;
   const pf::View view = slam->session.view();
   *count = 0;
-  for (int i = 0; i < view.patch_capacity(); ++i) {
-    if (!view.has_patch(i)) continue;
+  const pf::PatchStore* const stored = view.patches();
+  for (int i = 0; stored != nullptr && i < stored->capacity(); ++i) {
+    if (!stored->used(i)) continue;
     const size_t at = (*count)++;
     if (at >= capacity) continue;
-    const pf::PatchView p = view.patch(i);
+    const pf::StoredPatch& p = (*stored)[i];
     pf_patch_t& out = patches[at];
     out = pf_patch_t();
     out.id = p.id;
-    out.plane = view.find_plane(p.plane);
-    out.status = p.status;
+    out.plane = p.wait.waits() ? 0 : view.map().planes.find(p.plane);
+    out.status = static_cast<int32_t>(p.status);
     out.frames = p.frames;
     for (int k = 0; k < 4; ++k) copy(p.corner[k], 2, out.corners_px[k]);
-    pf::copy_covariance(*p.covariance, out.covariance_px);
+    pf::copy_covariance(p.covariance, out.covariance_px);
     out.weight = static_cast<double>(p.weight);
   }
   return *count > capacity ? PF_NOTE_TRUNCATED : PF_OK;
@@ -215,11 +217,11 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   PF_REQUIRE_CONTEXT(slam);
   if (report == nullptr) return PF_ERROR_NULL;
   const pf::View view = slam->session.view();
-  const pf::FrameReport& r = view.report();
+  const pf::FrameReport& r = view.frame().report;
   const pf::MapCounts map = view.counts();
   *report = pf_report_t();
   report->t_ns = r.t_ns;
-  report->state = static_cast<int32_t>(view.state());
+  report->state = static_cast<int32_t>(view.tracking().state());
   report->frames = r.frames;
   report->attempts = r.attempts;
   report->matches = r.matches;
@@ -235,7 +237,7 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->state_dim = map.state_dim;
   report->state_dim_held = map.state_dim_held;
   report->state_dim_points_only = map.state_dim_points_only;
-  report->map_id = view.map_id();
+  report->map_id = view.tracking().map_id();
   report->kept_views = view.kept_views();
   report->patches = map.patches;
   report->cameras = map.cameras;

@@ -51,11 +51,11 @@ pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size_t capa
   if (count == nullptr || (planes == nullptr && capacity > 0)) return PF_ERROR_NULL;
   *count = 0;
   const pf::View view = slam->session.view();
-  for (int i = 0; i < view.plane_capacity(); ++i) {
-    if (!view.has_plane(i)) continue;
+  for (int i = 0; i < view.map().planes.capacity(); ++i) {
+    if (!view.map().planes.used(i)) continue;
     if (*count < capacity) {
       const pf::PlaneView plane = view.plane(i);
-      describe(plane, view.map_id(), view.tilt(i, plane, slam->session.given_gravity_W()), &planes[*count]);
+      describe(plane, view.tracking().map_id(), view.tilt(i, plane, slam->session.given_gravity_W()), &planes[*count]);
     }
     ++*count;
   }
@@ -65,7 +65,7 @@ pf_status_t pf_get_planes(const pf_slam_t* slam, pf_plane_t* planes, size_t capa
 pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* current_id) {
   PF_REQUIRE_CONTEXT(slam);
   if (current_id == nullptr) return PF_ERROR_NULL;
-  *current_id = slam->session.view().find_plane(id);
+  *current_id = slam->session.view().map().planes.find(id);
   return *current_id == 0 ? PF_NOTE_NOTHING : PF_OK;
 }
 
@@ -93,7 +93,7 @@ pf_status_t pf_hit_test(const pf_slam_t* slam, const double pixel[2], pf_hit_t* 
   if (pixel == nullptr || hit == nullptr) return PF_ERROR_NULL;
   if (!pf::finite(pixel, 2)) return PF_ERROR_NONFINITE;
   const pf::View view = slam->session.view();
-  if (!view.has_pose()) return PF_ERROR_STATE;
+  if (!view.tracking().has_pose()) return PF_ERROR_STATE;
   pf::HitView found;
   if (!view.hit(Vec2(static_cast<Scalar>(pixel[0]), static_cast<Scalar>(pixel[1])), &found)) return PF_ERROR_RANGE;
   *hit = pf_hit_t();

@@ -54,7 +54,9 @@ Status Session::start_from_pose(const KnownBody& known) {
   return filter_ != nullptr ? filter_->start().use_pose(known) : window_->start().use_pose(known);
 }
 
-Vec3 Session::given_gravity_W() const { return data_.gravity_map == view().map_id() ? data_.gravity_W : Vec3::Zero(); }
+Vec3 Session::given_gravity_W() const {
+  return data_.gravity_map == view().tracking().map_id() ? data_.gravity_W : Vec3::Zero();
+}
 
 Status Session::push_frame(const ImageView& image, std::int64_t t_ns) {
   data_.kind = FrameKind::kImages;

@@ -63,11 +63,13 @@ class Session {
   void push_control(const Vec3& dv_C, const Vec3& dw_C) { filter_->motion().push_control(dv_C, dw_C); }
   Status mark_pose() { return filter_ != nullptr ? filter_->mark_pose() : window_->mark_pose(); }
   void push_imu(const ImuSample& sample) { imu_.add(sample); }
-  void set_gravity(const Vec3& gravity_W) { data_.gravity_W = gravity_W, data_.gravity_map = view().map_id(); }
+  void set_gravity(const Vec3& gravity_W) {
+    data_.gravity_W = gravity_W, data_.gravity_map = view().tracking().map_id();
+  }
 
   /// kState: gravity is not estimated, or not known yet. kNothing: no such plane.
   Status set_plane_vertical(std::uint32_t plane, Scalar sigma) {
-    return filter_ != nullptr ? filter_->set_plane_vertical(plane, sigma) : Status::kState;
+    return filter_ != nullptr ? filter_->upkeep().set_plane_vertical(plane, sigma) : Status::kState;
   }
 
   // --- what can be read

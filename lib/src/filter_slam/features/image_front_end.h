@@ -1,18 +1,19 @@
 #pragma once
 
+#include "base/arena.h"
 #include "filter/filter.h"
+#include "filter_slam/features/corner_features.h"
 #include "filter_slam/features/feature_keeper.h"
+#include "filter_slam/features/feature_search.h"
+#include "filter_slam/features/match_noise.h"
 #include "filter_slam/features/same_view.h"
 #include "filter_slam/pose/pixel_update.h"
-#include "frame/corner_cells.h"
-#include "frame/followed_view.h"
 #include "frame/frame.h"
-#include "frame/image_search.h"
 #include "frame/noise_model.h"
 #include "frame/settings.h"
 #include "map/map.h"
 
-/// Measures an image: predicts which features are in it and where, finds them, updates the filter, and adds features at corners.
+/// Measures an image: searches for the map's features, decides by their consensus, and updates the filter.
 
 namespace pf {
 
@@ -32,9 +33,10 @@ class ImageFrontEnd {
         filter_(filter),
         map_(map),
         frame_(frame),
-        features_(features),
         update_(update),
-        noise_(noise) {}
+        noise_(filter, map, frame, update, noise),
+        search_(settings, filter, map, frame, update, noise_),
+        corners_(settings, filter, map, frame, features, search_) {}
 
   bool layout(Arena& arena, int max_observations);
   void init();
@@ -46,77 +48,33 @@ class ImageFrontEnd {
   /// that stays with its feature.
   void measure(ConsensusRule rule, Scalar median_depth, bool parallax_lasts);
   /// Where the camera is after a frame, and whether that taught the map. SameView
-  void note_view(bool taught, Scalar median_depth) {
-    if (taught)
-      same_view_.note(filter_.state().body, median_depth, settings_.camera.fx);
-    else
-      same_view_.forget();
-  }
-  /// After a frame that used matches: the next one may be followed from it.
-  void keep_view() { followed_.keep(search_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W); }
-  /// The map is given up, and with it all poses.
-  void forget_map() { followed_.init(); }
+  void note_view(bool taught, Scalar median_depth);
   /// Updates the noise model with the inliers' residuals after measure().
   void learn_noise();
-  /// Updates masks and normals of templates with this frame's inliers.
+  /// Updates masks and normals of templates with the inliers of measure().
   void learn_templates();
-  /// Adds features in the emptiest cells of the image until enough are in view.
-  void add_features();
-  /// Adds features at these pixels, which are those of others that have just left the map.
-  void add_features_at(const Vec2* pixel, int count);
-  /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
-  bool remember(int feature, const Vec2& pixel, const CameraView& view);
 
-  const Tracker& tracker() const { return search_.tracker(); }
-
-  // --- steps of a search
-  /// Lists visible features as candidates and matches, the most reliable first. Returns how many.
-  int list_visible();
-  /// Predicts pixel and search ellipse of candidates.
-  void predict_pixels(int first, int count);
-  /// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
-  int search(int first, int count);
-  bool most_agree(int first, int found) const;
-  bool is_beyond_chance(int first, int found, ConsensusRule rule);
-  /// Area that was searched for a candidate [px^2], at most that of the image.
-  Scalar searched_area(int i) const;
+  FeatureSearch& search() { return search_; }
+  CornerFeatures& corners() { return corners_; }
 
  private:
   void measure_visible(ConsensusRule rule, bool follows);
-  bool begin_following();
-  // image_candidates.cpp
-  bool is_visible(int feature, Vec2* pixel) const;
-  float rate(int feature, const Vec2& pixel) const;
-
-  // image_front_end.cpp
-  Scalar widest_ellipse(int count) const;
-  bool is_wide(const Mat2& innovation) const;
-  bool aim(SearchTask* task) const;
-  SearchTask task_of(int feature) const;
   bool update_with_consensus(int first, int found, ConsensusRule rule);
-  bool is_averaged(const Feature& f) const;
-  Mat2 update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise) const;
-
-  // image_corners.cpp
-  bool add_in(const Rect& rect, const CornerStrength& least, int* anchor);
-  CornerUse add_at(const Vec2& pixel, int* anchor);
+  bool most_agree(int first, int found) const;
+  bool is_beyond_chance(int first, int found, ConsensusRule rule);
 
   const Settings& settings_;
   Filter& filter_;
   Map& map_;
   Frame& frame_;
-  FeatureKeeper& features_;
   PixelUpdate& update_;
-  NoiseModel& noise_;
+  MatchNoise noise_;
+  FeatureSearch search_;
+  CornerFeatures corners_;
   SameView same_view_;
-  FollowedView followed_;
-  bool is_following_ = false;    ///< searches go about the followed view's pixels
-  bool parallax_lasts_ = false;  ///< in this frame, as measure() was told
-  bool is_learnt_ = false;       ///< the map has learnt from this frame's view already
-  bool is_measured_ = false;     ///< by measure(), so that candidates and matches are this frame's
-  int listed_ = 0;               ///< candidates of this frame
-  ImageSearch search_;
-  Scalar* scratch_ = nullptr;  ///< max_observations: rates of candidates, then the areas that were searched
+  bool is_learnt_ = false;    ///< the map has learnt from this frame's view already
+  bool is_measured_ = false;  ///< by measure(), so that candidates and matches are this frame's
+  int listed_ = 0;            ///< candidates of the last frame that measure() has measured
 };
 
 }  // namespace pf

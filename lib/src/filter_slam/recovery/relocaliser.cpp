@@ -43,7 +43,7 @@ void Relocaliser::init() {
 
 void Relocaliser::remember_view(Scalar median_depth) {
   depth_ = median_depth;
-  views_.keep_if_new(images_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W);
+  views_.keep_if_new(search_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W);
 }
 
 void Relocaliser::recover() {
@@ -51,10 +51,10 @@ void Relocaliser::recover() {
   const bool anywhere = about.given || !is_prediction_narrow();
   const Body estimate = filter_.state().body;
   set_pose(about.body);
-  int count = images_.list_visible();
-  images_.predict_pixels(0, count);
+  int count = search_.list_visible();
+  search_.predict_pixels(0, count);
   if (anywhere) count = keep_placed(about, count);
-  const int found = images_.search(0, count);
+  const int found = search_.search(0, count);
   set_pose(estimate);
   if (anywhere)
     recover_anywhere(about, found);
@@ -84,7 +84,7 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
     about.body.p_W = last.p_W;
     position *= last.depth;
   } else {
-    const Recognition place = views_.recognise(images_.tracker().pyramid(), filter_.lens());
+    const Recognition place = views_.recognise(search_.tracker().pyramid(), filter_.lens());
     if (place.score < kMinRecognition) return about;
     about.body.q_WC = place.q_WC;
     about.body.p_W = place.p_W;
@@ -111,7 +111,7 @@ void Relocaliser::set_pose(const Body& pose) {
 void Relocaliser::recover_nearby(int found) {
   if (found < settings_.min_inliers) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
-  for (int i = 0; i < found; ++i) searched_px2_[i] = images_.searched_area(i);
+  for (int i = 0; i < found; ++i) searched_px2_[i] = search_.searched_area(i);
   update_.begin(0, found);
   const int inliers = find_inliers(filter_, update_.observations(), found, settings_.gate, update_.keep());
   const TripleConsensus consensus =
@@ -130,7 +130,7 @@ void Relocaliser::recover_anywhere(const SearchPose& about, int found) {
   for (int i = 0; i < found; ++i) {
     point_W_[i] = filter_.point(map_.features[update_.candidate(i).feature].slot);
     pixel_[i] = update_.observation(i).measured;
-    searched_px2_[i] = images_.searched_area(i);
+    searched_px2_[i] = search_.searched_area(i);
   }
   Body pose = about.body;
   const Scalar sigma = std::max(Scalar(1), kProposalPixels * static_cast<Scalar>(settings_.camera.width));

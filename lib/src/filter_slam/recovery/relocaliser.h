@@ -4,7 +4,7 @@
 
 #include "base/arena.h"
 #include "filter/filter.h"
-#include "filter_slam/features/image_front_end.h"
+#include "filter_slam/features/feature_search.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "filter_slam/pose/triple_consensus.h"
 #include "frame/frame.h"
@@ -19,9 +19,9 @@ namespace pf {
 
 class Relocaliser {
  public:
-  Relocaliser(const Settings& settings, Filter& filter, Map& map, Frame& frame, ImageFrontEnd& images,
+  Relocaliser(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureSearch& search,
               PixelUpdate& update)
-      : settings_(settings), filter_(filter), map_(map), frame_(frame), images_(images), update_(update) {}
+      : settings_(settings), filter_(filter), map_(map), frame_(frame), search_(search), update_(update) {}
 
   bool layout(Arena& arena, int max_observations, int max_kept_views);
   void init();
@@ -58,7 +58,7 @@ class Relocaliser {
   Filter& filter_;
   Map& map_;
   Frame& frame_;
-  ImageFrontEnd& images_;
+  FeatureSearch& search_;
   PixelUpdate& update_;
   ViewMemory views_;
   Scalar depth_ = 1;                ///< median, of the last tracked frame

@@ -6,15 +6,14 @@
 #include "geometry/ray_plane.h"
 #include "geometry/so3.h"
 #include "model/camera_at.h"
-#include "session/view.h"
+#include "session/filter_reader.h"
 
-/// Planes of the view, and intersections of rays with them.
+/// FilterReader: planes, and intersections of rays with them.
 
 namespace pf {
 
-PlaneView View::plane(int i) const {
-  if (window_ != nullptr) return window_plane(i);
-  const State& state = filter().state();
+PlaneView FilterReader::plane(int i) const {
+  const State& state = filter_.state();
   const Block& block = state.block[map_.planes[i].slot];
   const PlaneFrame& frame = state.frame_of(block);
   const Vec3 x = block.xyz();
@@ -37,9 +36,9 @@ PlaneView View::plane(int i) const {
   J.parts = 1;
   J.part[0] = Part::of(map_.planes[i].slot, 0, 3);
   put<3, 3>(J.h, 3, 0, J_out_x);
-  out.covariance = filter().rounded_covariance_of<3>(J);
+  out.covariance = filter_.rounded_covariance_of<3>(J);
   PlaneOutline outline;
-  const PlanePoints points = outline_plane(filter(), map_, i, &outline);
+  const PlanePoints points = outline_plane(filter_, map_, i, &outline);
   out.points = points.folded;
   out.fixed_points = points.fixed;
   out.outline = outline;
@@ -50,28 +49,16 @@ PlaneView View::plane(int i) const {
   return out;
 }
 
-/// Where gravity is given, it is exact, and the normal's error is alpha x_W + beta y_W. Where it is estimated, with n about s g, s = 1
-/// or -1, and E of VerticalMeasurement: the tilt's error is e_n - s E d.
-TiltView View::tilt(int i, const PlaneView& plane, const Vec3& given_W) const {
+/// With n about s g, s = 1 or -1, and E of VerticalMeasurement: the tilt's error is e_n - s E d.
+TiltView FilterReader::tilt(int i) const {
   TiltView out;
-  const Scalar length = given_W.norm();
-  if (length > Scalar(0)) {
-    const Vec3 g_W = given_W / length;
-    const Mat2 C = plane.covariance.topLeftCorner<2, 2>();
-    const Vec2 h(g_W.dot(plane.R_WP.col(0)), g_W.dot(plane.R_WP.col(1)));
-    out.known = true;
-    out.up = -plane.normal_W.dot(g_W);
-    out.sigma_up = std::sqrt(std::max(Scalar(0), h.dot(C * h)));
-    out.sigma_tilt = std::sqrt(std::max(Scalar(0), C.trace()));
-    return out;
-  }
-  if (!settings_.inertial || !has_pose() || !filter().is_metric()) return out;
-  const State& state = filter().state();
+  if (!settings_.inertial || !slam_.tracking().has_pose() || !filter_.is_metric()) return out;
+  const State& state = filter_.state();
   VerticalMeasurement z;
   predict_vertical(state, map_.planes[i].slot, &z);
   out.known = true;
   out.up = -z.predicted(0);
-  out.sigma_up = std::sqrt(std::max(Scalar(0), filter().rounded_covariance_of<1>(z.H)(0, 0)));
+  out.sigma_up = std::sqrt(std::max(Scalar(0), filter_.rounded_covariance_of<1>(z.H)(0, 0)));
   constexpr int kColumns = 5;
   RowsOf<3, kColumns, 2> J;
   J.parts = z.H.parts;
@@ -87,17 +74,16 @@ TiltView View::tilt(int i, const PlaneView& plane, const Vec3& given_W) const {
   E << s * R_WG.col(1), -s * R_WG.col(0);
   put<3, 3>(J.h, kColumns, 0, J_n_x);
   put<3, 2>(J.h, kColumns, 3, E);
-  out.sigma_tilt = std::sqrt(std::max(Scalar(0), filter().rounded_covariance_of<3>(J).trace()));
+  out.sigma_tilt = std::sqrt(std::max(Scalar(0), filter_.rounded_covariance_of<3>(J).trace()));
   return out;
 }
 
-bool View::hit(const Vec2& pixel, HitView* hit) const {
-  if (window_ != nullptr) return window_hit(pixel, hit);
-  const Camera& lens = filter().lens();
+bool FilterReader::hit(const Vec2& pixel, HitView* hit) const {
+  const Camera& lens = filter_.lens();
   Vec3 ray_C;
   Mat32 J_ray_pixel;
   if (!unproject(lens, pixel, &ray_C, &J_ray_pixel)) return false;
-  const State& state = filter().state();
+  const State& state = filter_.state();
   const CameraAt camera = camera_at(state, Scalar(0));
   const Vec3 direction = camera.q_WC * ray_C;
   *hit = HitView();
@@ -111,7 +97,7 @@ bool View::hit(const Vec2& pixel, HitView* hit) const {
       continue;
     const Scalar range = (at - camera.p_W).norm();
     PlaneOutline outline;
-    outline_plane(filter(), map_, i, &outline);
+    outline_plane(filter_, map_, i, &outline);
     if (!outline_contains(outline, plane_coordinates(frame, at))) continue;
     if (hit->plane != 0 && range >= hit->range) continue;
     RowsOf<3, 9 + kLensParameters, 3> J;  // by the camera's pose, the plane, the lens
@@ -127,7 +113,7 @@ bool View::hit(const Vec2& pixel, HitView* hit) const {
       const Mat3 J_ray = J_direction * camera.q_WC.toRotationMatrix();
       put_lens<3>(J_ray.lazyProduct(ray_lens_jacobian(lens, ray_C, J_ray_pixel)), state.lens_rows, 9, columns, J.h);
     }
-    *hit = {map_.planes[i].id, range, at, filter().rounded_covariance_of<3>(J)};
+    *hit = {map_.planes[i].id, range, at, filter_.rounded_covariance_of<3>(J)};
   }
   return true;
 }

@@ -1,13 +1,12 @@
-#include "filter_slam/features/image_front_end.h"
+#include "filter_slam/features/corner_features.h"
+
 #include "frame/corner_cells.h"
 #include "frame/tuning.h"
 #include "model/camera_at.h"
 
-/// New features at corners of the image.
-
 namespace pf {
 
-void ImageFrontEnd::add_features() {
+void CornerFeatures::add() {
   CornerCells cells(settings_.camera.width, settings_.camera.height, settings_.border_px);
   if (settings_.features_in_view - cells.count(frame_) < tuning::image_corners::kMinNewFeatures) return;
   if (filter_.state().planes > 0) cells.mark_planes([&](const Vec2& pixel) { return features_.plane_at(pixel) >= 0; });
@@ -17,20 +16,20 @@ void ImageFrontEnd::add_features() {
   if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children
 }
 
-void ImageFrontEnd::add_features_at(const Vec2* pixel, int count) {
+void CornerFeatures::add_at(const Vec2* pixel, int count) {
   int anchor = -1;
   for (int i = 0; i < count; ++i)
-    if (is_free(frame_, settings_.camera.width, pixel[i])) add_at(pixel[i], &anchor);
+    if (is_free(frame_, settings_.camera.width, pixel[i])) add_one(pixel[i], &anchor);
   if (anchor >= 0) filter_.remove(nullptr, 0);  // removes an anchor without children
 }
 
 /// Adds a feature at the best corner of this rectangle that is not near another feature. False: no such corner, or no room.
-bool ImageFrontEnd::add_in(const Rect& rect, const CornerStrength& least, int* anchor) {
+bool CornerFeatures::add_in(const Rect& rect, const CornerStrength& least, int* anchor) {
   return take_corner(search_.tracker(), rect, least, frame_, settings_.camera.width,
-                     [&](const Vec2& pixel) { return add_at(pixel, anchor); });
+                     [&](const Vec2& pixel) { return add_one(pixel, anchor); });
 }
 
-CornerUse ImageFrontEnd::add_at(const Vec2& pixel, int* anchor) {
+CornerUse CornerFeatures::add_one(const Vec2& pixel, int* anchor) {
   if (frame_.full()) return CornerUse::kNoRoom;
   const int plane = features_.plane_at(pixel);
   if (!(plane >= 0 ? features_.make_room_on_plane() : features_.make_room_at(anchor))) return CornerUse::kNoRoom;
@@ -38,7 +37,7 @@ CornerUse ImageFrontEnd::add_at(const Vec2& pixel, int* anchor) {
                                : features_.add(*anchor, pixel, NoiseModel::reference());
   if (entry < 0) return CornerUse::kNotHere;
   const CameraAt camera = camera_at(filter_.state(), Scalar(0));
-  if (!remember(entry, pixel, {camera.q_WC, camera.p_W})) {
+  if (!search_.remember(entry, pixel, {camera.q_WC, camera.p_W})) {
     features_.drop(&entry, 1);
     return CornerUse::kNotHere;
   }

@@ -1,28 +1,29 @@
+#include "session/keyframe_reader.h"
+
 #include <algorithm>
 
 #include "geometry/ray_plane.h"
 #include "geometry/so3.h"
 #include "keyframe_slam/keyframe_slam.h"
-#include "session/view.h"
-
-/// What the view shows of the window.
 
 namespace pf {
 
+int KeyframeReader::kept_views() const { return slam_.kept_views(); }
+
 /// That of the camera against the map, and that of the map against the keyframes that were held fixed.
-void View::window_pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
+void KeyframeReader::pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const {
   // Of a frame that repeats the one before, the pose is that one's.
-  window_->motion().predict_pose(t_ns > last_ns() ? window_->body_ns() : t_ns, t_ns, body, covariance);
-  *covariance += window_->map_covariance();
+  slam_.motion().predict_pose(t_ns > slam_.frame().report.t_ns ? slam_.body_ns() : t_ns, t_ns, body, covariance);
+  *covariance += slam_.map_covariance();
 }
 
 ///   q_KC = q_Kᵀ q_C,   p_KC = R_Kᵀ (p_C - p_K);   both poses are taken as independent, which overstates the covariance
-bool View::window_motion_since_mark(MotionView* out) const {
-  const KeyframeSlam::Mark& mark = window_->mark();
+bool KeyframeReader::motion_since_mark(MotionView* out) const {
+  const KeyframeSlam::Mark& mark = slam_.mark();
   if (!mark.is_set) return false;
   Body body;
   Mat6 now;
-  window_pose_at(last_ns(), &body, &now);
+  pose_at(slam_.frame().report.t_ns, &body, &now);
   const Mat3 R_KW = mark.q_WC.conjugate().toRotationMatrix();
   const Vec3 d = body.p_W - mark.p_W;
   out->mark_ns = mark.t_ns;
@@ -37,22 +38,22 @@ bool View::window_motion_since_mark(MotionView* out) const {
   return true;
 }
 
-bool View::window_project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const {
+bool KeyframeReader::project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const {
   Body body;
   Mat6 P;
-  window_pose_at(last_ns(), &body, &P);
+  pose_at(slam_.frame().report.t_ns, &body, &P);
   Mat26 J;
   const Mat3 R_WC = body.q_WC.toRotationMatrix();
-  if (!project_bearing(window_->map().camera(), R_WC, Vec3(p_W - body.p_W), Vec3::Zero(), Scalar(0), pixel, &J))
+  if (!project_bearing(slam_.map().camera(), R_WC, Vec3(p_W - body.p_W), Vec3::Zero(), Scalar(0), pixel, &J))
     return false;
   if (covariance == nullptr) return true;
-  project_bearing(window_->map().camera(), R_WC, p_W, Vec3(-body.p_W), Scalar(1), pixel, &J);
+  project_bearing(slam_.map().camera(), R_WC, p_W, Vec3(-body.p_W), Scalar(1), pixel, &J);
   *covariance = J.lazyProduct(P).lazyProduct(J.transpose());
   return true;
 }
 
-const Camera& View::window_lens(Scalar covariance[kLensParameters][kLensParameters]) const {
-  const KeyframeLens& lens = window_->map().lens();
+const Camera& KeyframeReader::lens(Scalar covariance[kLensParameters][kLensParameters]) const {
+  const KeyframeLens& lens = slam_.map().lens();
   const LensRows& rows = lens.rows();
   for (int i = 0; i < rows.count; ++i)
     for (int j = 0; j < rows.count; ++j)
@@ -61,35 +62,27 @@ const Camera& View::window_lens(Scalar covariance[kLensParameters][kLensParamete
 }
 
 /// A point without a depth is shown at the median one, with as much again as standard deviation.
-FeatureView View::window_feature(int i) const {
-  const KeyframeMap& map = window_->map();
-  const Feature& f = map.feature(i);
+void KeyframeReader::place_feature(int i, FeatureView* out) const {
+  const KeyframeMap& map = slam_.map();
   const KeyframePoint& point = map.point(i);
-  FeatureView out;
-  out.id = f.id;
-  out.external_id = f.external_id;
-  out.is_target = f.is_target;
-  out.observations = f.observations;
-  out.attempts = f.attempts;
-  out.kind = map.kind(i);
-  out.plane = point.has_depth && point.plane >= 0 ? map_.planes[point.plane].id : 0;
-  const Scalar depth = point.has_depth ? 1 / point.rho : window_->median_depth();
+  out->kind = map.kind(i);
+  out->plane = point.has_depth && point.plane >= 0 ? map_.planes[point.plane].id : 0;
+  const Scalar depth = point.has_depth ? 1 / point.rho : slam_.median_depth();
   const Vec3 ray_W = map.ray_W(i);
-  out.p_W = map.keyframes[point.host].p_W + depth * ray_W;
-  out.covariance = point.has_depth ? map.covariance(i) : Mat3(depth * depth * Mat3::Identity());
-  return out;
+  out->p_W = map.keyframes[point.host].p_W + depth * ray_W;
+  out->covariance = point.has_depth ? map.covariance(i) : Mat3(depth * depth * Mat3::Identity());
 }
 
-bool View::window_surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const {
-  const KeyframePoint& point = window_->map().point(i);
+bool KeyframeReader::surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) const {
+  const KeyframePoint& point = slam_.map().point(i);
   if (!point.has_depth || point.plane < 0) return false;
-  *normal_W = window_->planes().plane(point.plane).frame.R_WP.col(2);
-  if (normal_W->dot(viewer_W - window_->map().position(i)) < 0) *normal_W = -*normal_W;
+  *normal_W = slam_.planes().plane(point.plane).frame.R_WP.col(2);
+  if (normal_W->dot(viewer_W - slam_.map().position(i)) < 0) *normal_W = -*normal_W;
   return true;
 }
 
-MapCounts View::window_counts() const {
-  const KeyframeMap& map = window_->map();
+MapCounts KeyframeReader::counts() const {
+  const KeyframeMap& map = slam_.map();
   MapCounts counts;
   for (int i = 0; i < map.capacity(); ++i) {
     if (!map.used(i)) continue;
@@ -108,11 +101,11 @@ MapCounts View::window_counts() const {
 }
 
 ///   (alpha, beta, delta) = (-a, -b, h)
-PlaneView View::window_plane(int i) const {
-  const KeyframePlane& plane = window_->planes().plane(i);
+PlaneView KeyframeReader::plane(int i) const {
+  const KeyframePlane& plane = slam_.planes().plane(i);
   PlaneView out;
   out.id = map_.planes[i].id;
-  out.points = window_->planes().points_on(i);
+  out.points = slam_.planes().points_on(i);
   out.fixed_points = 0;
   out.known = out.doubted = false;
   out.R_WP = plane.frame.R_WP;
@@ -125,18 +118,18 @@ PlaneView View::window_plane(int i) const {
   return out;
 }
 
-bool View::window_hit(const Vec2& pixel, HitView* hit) const {
+bool KeyframeReader::hit(const Vec2& pixel, HitView* hit) const {
   Vec3 ray_C;
   Mat32 J_ray_pixel;
-  if (!unproject(window_->map().camera(), pixel, &ray_C, &J_ray_pixel)) return false;
+  if (!unproject(slam_.map().camera(), pixel, &ray_C, &J_ray_pixel)) return false;
   Body body;
   Mat6 P;
-  window_pose_at(last_ns(), &body, &P);
+  pose_at(slam_.frame().report.t_ns, &body, &P);
   const Vec3 direction = body.q_WC * ray_C;
   *hit = HitView();
   for (int k = 0; k < map_.planes.capacity(); ++k) {
     if (!map_.planes.used(k)) continue;
-    const KeyframePlane& plane = window_->planes().plane(k);
+    const KeyframePlane& plane = slam_.planes().plane(k);
     Vec3 at;
     Mat3 J_origin, J_direction, J_plane;
     if (!intersect_ray_plane(plane.frame, Vec3::Zero(), body.p_W, direction, &at, &J_origin, &J_direction, &J_plane))

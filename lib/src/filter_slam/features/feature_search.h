@@ -1,0 +1,80 @@
+#pragma once
+
+#include "base/arena.h"
+#include "filter/filter.h"
+#include "filter_slam/features/match_noise.h"
+#include "filter_slam/pose/pixel_update.h"
+#include "frame/followed_view.h"
+#include "frame/frame.h"
+#include "frame/image_search.h"
+#include "frame/settings.h"
+#include "map/map.h"
+
+/// Finds the map's features in an image: lists those in view, predicts where they are, and searches there.
+
+namespace pf {
+
+class FeatureSearch {
+ public:
+  FeatureSearch(const Settings& settings, Filter& filter, Map& map, Frame& frame, PixelUpdate& update,
+                const MatchNoise& noise)
+      : settings_(settings), filter_(filter), map_(map), frame_(frame), update_(update), noise_(noise) {}
+
+  bool layout(Arena& arena, int max_observations);
+  void init();
+
+  /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
+  bool begin_frame(const ImageView& image) { return search_.begin_frame(image); }
+
+  /// Lists visible features as candidates and matches, the most reliable first. Returns how many.
+  int list_visible();
+  /// Predicts pixel and search ellipse of candidates.
+  void predict_pixels(int first, int count);
+  /// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
+  int search(int first, int count);
+  /// Largest semi-axis of the gates of the first `count` candidates [px].
+  Scalar widest_ellipse(int count) const;
+  /// Area that was searched for a candidate [px^2], at most that of the image.
+  Scalar searched_area(int i) const;
+  /// The same of a range of candidates; valid until the next call and the next list.
+  const Scalar* searched_areas(int first, int count);
+
+  /// Where the prediction of the `count` listed candidates is vague: lets searches go about the places where the picture as a whole has
+  /// gone. A match still has to pass the gate about its prediction. False where the prediction is not vague, or the picture does not tell.
+  bool begin_following(int count);
+  void set_following(bool is_following) { is_following_ = is_following; }
+  bool is_following() const { return is_following_; }
+  /// After a frame that used matches: the next one may be followed from it.
+  void keep_view() { followed_.keep(search_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W); }
+  /// The map is given up, and with it all poses.
+  void forget_view() { followed_.init(); }
+
+  /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
+  bool remember(int feature, const Vec2& pixel, const CameraView& view) {
+    return search_.remember(&map_, feature, pixel, view);
+  }
+  /// Updates masks and normals of templates with the inliers among the first `count` candidates, after the update.
+  void learn_templates(int count);
+
+  const Tracker& tracker() const { return search_.tracker(); }
+
+ private:
+  bool is_visible(int feature, Vec2* pixel) const;
+  float rate(int feature, const Vec2& pixel) const;
+  bool is_wide(const Mat2& innovation) const;
+  bool aim(SearchTask* task) const;
+  SearchTask task_of(int feature) const;
+
+  const Settings& settings_;
+  Filter& filter_;
+  Map& map_;
+  Frame& frame_;
+  PixelUpdate& update_;
+  const MatchNoise& noise_;
+  ImageSearch search_;
+  FollowedView followed_;
+  bool is_following_ = false;  ///< searches go about the followed view's pixels
+  Scalar* scratch_ = nullptr;  ///< max_observations: rates of candidates, then the areas that were searched
+};
+
+}  // namespace pf

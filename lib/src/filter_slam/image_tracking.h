@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "filter/filter.h"
+#include "filter_slam/features/feature_keeper.h"
+#include "filter_slam/features/image_front_end.h"
+#include "filter_slam/pose/pixel_update.h"
+#include "filter_slam/recovery/relocaliser.h"
+#include "frame/fit_warnings.h"
+#include "frame/frame.h"
+#include "frame/noise_model.h"
+#include "frame/settings.h"
+#include "frame/tracking_state.h"
+#include "map/map.h"
+
+/// Tracks the camera in images: decides how sure a consensus has to be, whether the map has to be found again, and learns from what was
+/// found.
+
+namespace pf {
+
+class ImageTracking {
+ public:
+  ImageTracking(const Settings& settings, Filter& filter, Map& map, Frame& frame, TrackingState& tracking,
+                FeatureKeeper& features, PixelUpdate& update)
+      : settings_(settings),
+        filter_(filter),
+        map_(map),
+        frame_(frame),
+        tracking_(tracking),
+        update_(update),
+        front_end_(settings, filter, map, frame, features, update, noise_),
+        relocaliser_(settings, filter, map, frame, front_end_.search(), update) {}
+
+  bool layout(Arena& arena);
+  void init();
+  /// The map is given up, and with it all poses.
+  void forget_map();
+
+  /// Which consensus of this frame is believed. since_last_ns: from the frame before this one.
+  ConsensusRule consensus_rule(const StartProgress& start, std::int64_t since_last_ns) const;
+  /// Learns the noise of matches from the inliers' residuals, and warns where they fit badly.
+  void learn_noise();
+  /// After a frame of any kind. image_usable: it is an image that shows something to track.
+  void keep_view(bool image_usable, const StartProgress& start, Scalar median_depth);
+
+  ImageFrontEnd& front_end() { return front_end_; }
+  Relocaliser& relocaliser() { return relocaliser_; }
+  const Relocaliser& relocaliser() const { return relocaliser_; }
+  const NoiseModel& noise() const { return noise_; }
+
+ private:
+  const Settings& settings_;
+  Filter& filter_;
+  Map& map_;
+  Frame& frame_;
+  TrackingState& tracking_;
+  PixelUpdate& update_;
+  NoiseModel noise_;
+  FitWarnings warnings_;  ///< kept between frames
+  ImageFrontEnd front_end_;
+  Relocaliser relocaliser_;
+};
+
+}  // namespace pf

@@ -1,0 +1,54 @@
+#include "filter_slam/map_upkeep.h"
+
+#include <new>
+
+namespace pf {
+
+bool MapUpkeep::layout(Arena& arena) {
+  features_.layout(arena, settings_.max_features);
+  planes_.layout(arena, settings_.max_features);
+  return layout_patches(arena);
+}
+
+/// Patches take nothing where there are none.
+bool MapUpkeep::layout_patches(Arena& arena) {
+  if (settings_.max_patches == 0) return arena.ok();
+  PatchKeeper* place = arena.take<PatchKeeper>(1);
+  if (place == nullptr) return PatchKeeper(settings_, filter_, map_, frame_, features_, tracking_).layout(arena);
+  patches_ = new (place) PatchKeeper(settings_, filter_, map_, frame_, features_, tracking_);
+  return patches_->layout(arena);
+}
+
+void MapUpkeep::init() {
+  planes_.init();
+  if (patches_ != nullptr) patches_->init();
+}
+
+void MapUpkeep::maintain(bool supported, const StartProgress& start) {
+  mark_.drop_unsound();
+  if (!supported) {
+    features_.drop_failing(false);
+    return;
+  }
+  features_.convert_linear();
+  // During a start the filter may restart without planes; ids of planes found before would then name nothing.
+  if (settings_.planes && !start.recording) planes_.maintain(!start.checking);
+  features_.drop_failing(true);
+}
+
+/// As for features: a frame that does not support its pose begins patches only where there is nothing that could be found again.
+void MapUpkeep::maintain_patches(const Pyramid& image, bool supported, const StartProgress& start, bool is_first) {
+  if (patches_ == nullptr) return;
+  const bool empty = is_first || (map_.features.count() == 0 && patches_->patches().count() == 0);
+  const bool may_begin = tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0);
+  patches_->maintain(image, supported, may_begin && !start.recording);
+}
+
+Status MapUpkeep::set_plane_vertical(std::uint32_t id, Scalar sigma) {
+  if (!settings_.inertial || !tracking_.has_pose() || !filter_.is_metric()) return Status::kState;
+  for (int i = 0; i < map_.planes.capacity(); ++i)
+    if (map_.planes.used(i) && map_.planes[i].id == id) return planes_.set_vertical(i, sigma);
+  return Status::kNothing;
+}
+
+}  // namespace pf

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "base/arena.h"
+#include "base/status.h"
+#include "filter/filter.h"
+#include "filter_slam/features/feature_keeper.h"
+#include "filter_slam/patches/patch_keeper.h"
+#include "filter_slam/planes/plane_keeper.h"
+#include "filter_slam/pose_mark.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
+#include "frame/tracking_state.h"
+#include "map/map.h"
+
+/// Maintains what the map holds: features, planes, patches and the marked pose.
+
+namespace pf {
+
+class MapUpkeep {
+ public:
+  MapUpkeep(const Settings& settings, Filter& filter, Map& map, Frame& frame, TrackingState& tracking)
+      : settings_(settings),
+        filter_(filter),
+        map_(map),
+        frame_(frame),
+        tracking_(tracking),
+        features_(settings, filter, map, frame),
+        planes_(settings, filter, map, frame, features_),
+        mark_(filter, map, features_) {}
+
+  bool layout(Arena& arena);
+  void init();
+
+  /// After a frame is measured. supported: its measurements support its pose; else nothing is decided about the map.
+  void maintain(bool supported, const StartProgress& start);
+  /// The same for patches, of which the frame may begin new ones where is_first, or where it is tracked, or where there is nothing to lose.
+  void maintain_patches(const Pyramid& image, bool supported, const StartProgress& start, bool is_first);
+
+  /// Plane with this id is vertical within sigma [rad], PlaneKeeper::set_vertical. kState: gravity is not known. kNothing: no such plane.
+  Status set_plane_vertical(std::uint32_t id, Scalar sigma);
+
+  FeatureKeeper& features() { return features_; }
+  PlaneKeeper& planes() { return planes_; }
+  PoseMark& mark() { return mark_; }
+  /// Null where the config has no room for patches.
+  PatchKeeper* patches() { return patches_; }
+  const PatchKeeper* patches() const { return patches_; }
+
+ private:
+  bool layout_patches(Arena& arena);
+
+  const Settings& settings_;
+  Filter& filter_;
+  Map& map_;
+  Frame& frame_;
+  TrackingState& tracking_;
+  FeatureKeeper features_;
+  PlaneKeeper planes_;
+  PoseMark mark_;
+  PatchKeeper* patches_ = nullptr;  ///< in the block, where the config has room for patches
+};
+
+}  // namespace pf

@@ -1,0 +1,33 @@
+#include "filter_slam/start/metric_start.h"
+
+#include "filter_slam/start/walls_apart.h"
+
+namespace pf {
+
+bool MetricStart::use_rest(const RestReading& rest, std::int64_t begin_ns) {
+  if (filter_.is_metric()) return false;
+  if (!start_.knows_scale() && !start_.begin_anew_at_rest(begin_ns)) return false;
+  Transition transition;
+  const Mounting known = start_.mounting().now();
+  begin_at_rest(filter_.state().body, settings_.body, known, rest, &transition);
+  filter_.predict(transition);
+  filter_.set_mounting(known);
+  if (settings_.body.has(BodyPart::kMountRotation)) {
+    allow_for_turned_gravity(filter_.state().body, settings_.body, filter_.unit_turn_variance(), &transition);
+    filter_.predict(transition);
+  }
+  filter_.set_metric();
+  is_from_motion_ = false;
+  settings_.hooks.say("at rest: gravity and the biases are known, lengths are in metres from here on");
+  return true;
+}
+
+void MetricStart::use_motion(const MovingSolution& solution) {
+  filter_.set_metric(solution, start_.mounting().now());
+  is_from_motion_ = true;
+  scale_tables(solution.scale, Vec3::Zero(), &map_);
+  tracking_.rename_map();
+  settings_.hooks.say("from motion: gravity and the biases are known, lengths are in metres from here on");
+}
+
+}  // namespace pf

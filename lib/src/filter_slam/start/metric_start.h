@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+
+#include "filter/filter.h"
+#include "filter/inertial_motion.h"
+#include "filter/moving_start.h"
+#include "filter_slam/start/filter_start.h"
+#include "frame/settings.h"
+#include "frame/tracking_state.h"
+#include "map/map.h"
+
+/// What a camera at rest, or one that moves, says of gravity, of the biases of its inertial unit, and so of the scale
+/// (lib/docs/inertial.md).
+
+namespace pf {
+
+class MetricStart {
+ public:
+  MetricStart(const Settings& settings, Filter& filter, Map& map, TrackingState& tracking, FilterStart& start)
+      : settings_(settings), filter_(filter), map_(map), tracking_(tracking), start_(start) {}
+
+  void init() { is_from_motion_ = false; }
+
+  /// Whether lengths are in metres since the samples of a moving camera told them.
+  bool is_from_motion() const { return is_from_motion_; }
+  /// The camera has been at rest since begin_ns. The first time that samples can tell the scale from here on: true, and gravity and biases
+  /// are known. A map whose scale is unknown begins anew with this frame.
+  bool use_rest(const RestReading& rest, std::int64_t begin_ns);
+  /// The same for a camera that moves: the map goes on in metres, under another id.
+  void use_motion(const MovingSolution& solution);
+
+ private:
+  const Settings& settings_;
+  Filter& filter_;
+  Map& map_;
+  TrackingState& tracking_;
+  FilterStart& start_;
+  bool is_from_motion_ = false;  ///< kept between frames
+};
+
+}  // namespace pf

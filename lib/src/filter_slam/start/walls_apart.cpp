@@ -1,0 +1,69 @@
+#include "filter_slam/start/walls_apart.h"
+
+#include "filter_slam/features/wall_rays.h"
+#include "filter_slam/start/tuning.h"
+#include "geometry/common_ratio.h"
+#include "model/camera_at.h"
+
+namespace pf {
+
+using namespace tuning::start_before_walls;
+
+bool sees_walls(const Filter& filter, const Map& map, const Body& body) {
+  const Camera& lens = filter.lens();
+  for (int k = 0; k < kCells * kCells; ++k) {
+    const Vec2 pixel((static_cast<Scalar>(k % kCells) + Scalar(0.5)) * static_cast<Scalar>(lens.width) / kCells,
+                     (static_cast<Scalar>(k / kCells) + Scalar(0.5)) * static_cast<Scalar>(lens.height) / kCells);
+    Vec3 ray_C;
+    if (unproject(lens, pixel, &ray_C) && range_in_plan(filter, map, body.p_W, body.q_WC * ray_C) > Scalar(0))
+      return true;
+  }
+  return false;
+}
+
+void set_walls_apart(PlaneTable* planes) {
+  for (int k = 0; k < planes->capacity(); ++k)
+    if (planes->used(k)) (*planes)[k].apart = (*planes)[k].known;
+}
+
+///   u = n . (o - c0) / n . (f - c0)      a wall through o, a point at f: c0 + u (f - c0) lies on it
+Scalar find_scale_by_walls(const Filter& filter, const Map& map, std::int64_t t_ns, const Vec3& c0_W) {
+  const State& state = filter.state();
+  const Vec3 c_W = camera_at(state, Scalar(0)).p_W;
+  Scalar ratio[kMaxRatios];
+  int count = 0;
+  for (int k = 0; k < map.planes.capacity(); ++k) {
+    if (!map.planes.used(k) || !map.planes[k].apart) continue;
+    const PlaneFrame& frame = state.frame_of(state.block[map.planes[k].slot]);
+    const Vec3 n_W = frame.R_WP.col(2);
+    for (int i = 0; i < map.features.capacity() && count < kMaxRatios; ++i) {
+      const Feature& f = map.features[i];
+      if (!map.features.used(i) || f.last_seen_ns != t_ns) continue;
+      if (state.block[f.slot].kind == BlockKind::kInverseDepth) continue;
+      const Vec3 to_W = filter.point(f.slot) - c0_W;
+      const Scalar u = n_W.dot(frame.o_W - c0_W) / n_W.dot(to_W);
+      if (!(u > Scalar(0)) || !outline_contains(map.planes[k].plan, plane_coordinates(frame, Vec3(c0_W + u * to_W))))
+        continue;
+      const Scalar before = n_W.dot(Vec3(c0_W + u * (c_W - c0_W)) - frame.o_W);
+      if (before > Scalar(0) || map.planes[k].two_sided) ratio[count++] = u;
+    }
+  }
+  const CommonRatio common = find_common_ratio(ratio, count, kOneWall);
+  const bool clear = common.votes >= kMinOnWall && common.votes >= kClearMajority * common.others;
+  return clear ? common.ratio : Scalar(0);
+}
+
+void scale_tables(Scalar scale, const Vec3& pivot_W, Map* map) {
+  for (int i = 0; i < map->features.capacity(); ++i)
+    if (map->features.used(i) && map->features[i].has_appearance) {
+      Vec3& c_W = map->first_view(i).c_W;
+      c_W = pivot_W + scale * (c_W - pivot_W);
+    }
+  for (int i = 0; i < map->planes.capacity(); ++i) {
+    if (map->planes[i].known) continue;
+    for (PlaneOutline* outline : {&map->planes[i].seen, &map->planes[i].support})
+      for (int k = 0; k < outline->count; ++k) outline->uv[k] *= scale;
+  }
+}
+
+}  // namespace pf

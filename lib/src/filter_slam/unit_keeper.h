@@ -1,0 +1,129 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "filter/filter.h"
+#include "filter/imu_log.h"
+#include "filter_slam/inertial/moving_start.h"
+#include "filter_slam/inertial/rest_detector.h"
+#include "filter_slam/inertial/rest_hold.h"
+#include "filter_slam/inertial/unit_watch.h"
+#include "filter_slam/pose/body_motion.h"
+#include "filter_slam/pose/pixel_update.h"
+#include "filter_slam/start/filter_start.h"
+#include "filter_slam/start/metric_start.h"
+#include "frame/frame.h"
+#include "frame/settings.h"
+#include "frame/tracking_state.h"
+#include "map/map.h"
+
+/// The inertial unit in the work of a frame: what it says of the body's motion, whether images agree with that, and what it says of the
+/// scale (lib/docs/inertial.md). Without the inertial motion model this only predicts the body.
+
+namespace pf {
+
+/// What has become of the map's scale in a frame.
+enum class ScaleChange : std::uint8_t {
+  kNone,
+  kMetric,   ///< gravity is known, and lengths are in metres; places and lengths are as before
+  kNewMap,   ///< likewise, and a new map begins with this frame
+  kRescaled  ///< likewise, and the map has been scaled
+};
+
+class UnitKeeper {
+ public:
+  UnitKeeper(const Settings& settings, Filter& filter, Map& map, Frame& frame, TrackingState& tracking,
+             const ImuLog& imu, BodyMotion& motion, PixelUpdate& update, FilterStart& start)
+      : settings_(settings),
+        filter_(filter),
+        map_(map),
+        frame_(frame),
+        tracking_(tracking),
+        imu_(imu),
+        motion_(motion),
+        update_(update),
+        start_(start),
+        rest_(settings, frame, imu),
+        watch_(settings, filter, frame, imu, motion, update),
+        metric_(settings, filter, map, tracking, start) {}
+
+  void layout(Arena& arena);
+  void init();
+  /// The map is given up.
+  void begin_map();
+
+  /// Predicts the body to this frame. before_ns: time of the frame before. follows: that one was tracked, and so was the pose that the
+  /// prediction begins at. nothing_measured: that one had no inlier. depth: median, of what is seen.
+  void predict(std::int64_t before_ns, bool follows, bool nothing_measured, Scalar depth);
+  /// Measures the frame by measure(again). Where a rest or samples may have led the prediction astray: once more, from a prediction without
+  /// them, with again = true.
+  template <typename F>
+  void measure(bool follows, F&& measure);
+  /// After a frame: whether the camera has been at rest, or has moved enough, for samples to tell the scale. correlation_frames: in a row
+  /// whose pixels have the same errors.
+  ScaleChange look_for_scale(Scalar depth, Scalar correlation_frames);
+  /// At the end of a frame, dt_ns after the one before: true where images contradict the unit, and the map is in metres by that unit alone.
+  /// Nothing tells how wrong such a map is.
+  bool discredits_map(bool follows, std::int64_t dt_ns);
+
+  /// From when on a prediction from now_ns has to go through samples.
+  std::int64_t motion_begin_ns(std::int64_t now_ns) const;
+  const UnitWatch& watch() const { return watch_; }
+  /// With the inertial motion model.
+  const RestHold& hold() const { return parts_->hold; }
+  const MetricStart& metric() const { return metric_; }
+  /// Where the unit is on the camera, as far as it is known.
+  Mounting mounting() const { return start_.mounting().now(); }
+
+ private:
+  struct Parts {
+    RestHold hold;
+    MovingStart moving;
+  };
+
+  bool holds() const { return parts_ != nullptr && parts_->hold.holds(); }
+  void advance(std::int64_t before_ns, bool coasting_or_lost, bool nothing_measured);
+  ScaleChange look_for_scale_in_motion(Scalar depth, Scalar correlation_frames);
+
+  const Settings& settings_;
+  Filter& filter_;
+  Map& map_;
+  Frame& frame_;
+  TrackingState& tracking_;
+  const ImuLog& imu_;
+  BodyMotion& motion_;
+  PixelUpdate& update_;
+  FilterStart& start_;
+  RestDetector rest_;
+  UnitWatch watch_;
+  MetricStart metric_;
+  Parts* parts_ = nullptr;  ///< with the inertial motion model, in the block
+};
+
+template <typename F>
+void UnitKeeper::measure(bool follows, F&& measure) {
+  bool again = false;
+  if (holds()) {
+    watch_.begin_measuring(follows);
+    measure(again);
+    if (!watch_.is_refused()) return;
+    parts_->hold.take_back();
+    advance(parts_->hold.before_ns(), false, false);
+    frame_.begin_again();
+    again = true;
+  }
+  watch_.begin_measuring(follows);
+  const bool just_moved = parts_ != nullptr && parts_->hold.has_just_ended(frame_.report.t_ns);
+  update_.put_depths_first(just_moved);
+  measure(again);
+  if (just_moved && !update_.puts_depths_first()) parts_->hold.forget();
+  update_.put_depths_first(false);
+  if (!watch_.is_refused()) return;
+  watch_.leave_prediction();
+  frame_.begin_again();
+  measure(true);
+  watch_.settle(tracking_.is_tracked(frame_.report));
+}
+
+}  // namespace pf

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+
+#include "frame/settings.h"
+#include "geometry/so3.h"
+
+/// What the filter back end knows of its inertial unit.
+
+namespace pf {
+
+class FilterSlam;
+
+/// What is known of the inertial unit and of gravity.
+struct InertialView {
+  Vec3 gravity_W, gyro_bias, accel_bias;
+  Vec3 axis_W[2];           ///< about which gravity's error rotates it
+  Scalar covariance[8][8];  ///< of (gravity, gyro bias, accelerometer bias)
+  bool metric, from_motion, resting;
+  int rests;
+  Quat q_BC;
+  Vec3 p_BC;
+  double delay_s, readout_s;
+  Scalar sigma[17];  ///< as pf_inertial_t says
+};
+
+/// Whether images contradict the inertial unit, and for how long they have in all.
+struct UnitDoubt {
+  bool doubted = false;
+  std::int64_t doubted_ns = 0;
+};
+
+/// False without the inertial motion model, or without a pose.
+bool read_inertial(const Settings& settings, const FilterSlam& slam, InertialView* out);
+
+}  // namespace pf
