@@ -9,9 +9,9 @@
 #include "keyframe_slam/adjustment/adjustment.h"
 #include "keyframe_slam/map/depth.h"
 #include "keyframe_slam/planes/planes.h"
-#include "keyframe_slam/start/start.h"
+#include "keyframe_slam/start/keyframe_start.h"
+#include "keyframe_slam/tracking/keyframe_tracking.h"
 #include "keyframe_slam/tracking/relocaliser.h"
-#include "keyframe_slam/tracking/tracking.h"
 
 /// The order of work of one frame with the window as back end (Masoud and Hoff 2015, Figure 4), and nothing else:
 ///
@@ -23,7 +23,7 @@ namespace pf {
 
 class KeyframeSlam {
  public:
-  KeyframeSlam(const Settings& settings, Map& map) : settings_(settings), tables_(map) {}
+  KeyframeSlam(const Settings& settings, Map& map) : settings_(settings), map_{settings, map, frame_} {}
   KeyframeSlam(const KeyframeSlam&) = delete;
   KeyframeSlam& operator=(const KeyframeSlam&) = delete;
 
@@ -68,7 +68,9 @@ class KeyframeSlam {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     Mark mark;
-    bool young = false;  ///< in this frame, KeyframeTracking::is_young
+    bool young = false;  ///< in this frame so few points have a depth that those without must help
+    SecondPose second;
+    FrozenCamera frozen;
     FitWarnings warnings;
   };
 
@@ -87,19 +89,21 @@ class KeyframeSlam {
   void begin_new_map(const char* why);
 
   const Settings& settings_;
-  Map& tables_;
   Frame frame_;
   NoiseModel noise_;
   TrackingState tracking_{settings_};
-  FrozenCamera frozen_;
-  KeyframeMap map_{settings_, tables_, frame_};
+  Data data_;
+  KeyframeMap map_;
   KeyframeMotion motion_{settings_};
   KeyframePlanes planes_{settings_, map_};
-  KeyframeTracking measuring_{settings_, map_, planes_, frame_, motion_, noise_};
+  PointSearch search_{settings_, map_, planes_, frame_, noise_};
+  PoseMeasurement pose_{settings_, map_, frame_, noise_, search_};
+  KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_};
   KeyframeAdjustment adjustment_{settings_, map_, planes_, noise_};
-  KeyframeRelocaliser relocaliser_{settings_, motion_, measuring_};
-  KeyframeStart start_{settings_, {map_, frame_, tracking_, motion_, measuring_, adjustment_}};
-  Data data_;
+  KeyframeRelocaliser relocaliser_{settings_, map_, motion_, search_.images().tracker(), measuring_};
+  KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
+  KeyframeStart start_{settings_,        map_,        frame_,  tracking_,   motion_,
+                       search_.images(), adjustment_, record_, data_.second};
 };
 
 }  // namespace pf

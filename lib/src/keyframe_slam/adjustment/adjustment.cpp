@@ -6,6 +6,7 @@
 #include "geometry/so3.h"
 #include "keyframe_slam/adjustment/tuning.h"
 #include "keyframe_slam/map/covisible.h"
+#include "keyframe_slam/map/depth.h"
 #include "keyframe_slam/map/tuning.h"
 
 namespace pf {
@@ -235,7 +236,7 @@ void KeyframeAdjustment::take_back(int free, int points) {
     KeyframePoint& point = map_.point(row_[p]);
     if (!map_.feature(row_[p]).is_target) {
       point.rho = rho_[p];
-      point.variance = variance_of(row_[p]);
+      point.variance = depth_by_pixels(map_, row_[p], noise_.sigma_info()).variance;
     }
     reject_outliers(row_[p]);
     if (point.faces_host) {
@@ -261,29 +262,6 @@ void KeyframeAdjustment::reject_outliers(int i) {
         (pixel.pixel() - z).squaredNorm() > bound * bound)
       pixel.seen = false;
   }
-}
-
-/// By one step of Gauss-Newton from where the point is:  rho + sum J.r / sum J²,  variance sigma² / sum J².
-KeyframeAdjustment::PixelDepth KeyframeAdjustment::depth_by_pixels(int i) const {
-  const KeyframePoint& point = map_.point(i);
-  const Keyframe& host = map_.keyframes[point.host];
-  const Vec3 ray_W = map_.ray_W(i);
-  Scalar information = 0, gradient = 0;
-  for (int k = 0; k < map_.keyframes.capacity(); ++k) {
-    const BundlePixel& pixel = map_.keyframes.pixels(k)[i];
-    if (k == point.host || !map_.keyframes.used(k) || !pixel.seen) continue;
-    const Keyframe& keyframe = map_.keyframes[k];
-    Vec2 z, J_rho;
-    Mat26 J_C;
-    if (!project_bearing(map_.camera(), keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, point.rho, &z,
-                         &J_C, nullptr, &J_rho))
-      continue;
-    information += J_rho.squaredNorm();
-    gradient += J_rho.dot(pixel.pixel() - z);
-  }
-  if (!(information > Scalar(0))) return {point.rho, Scalar(0)};
-  const Scalar sigma = noise_.sigma_info();
-  return {point.rho + gradient / information, sigma * sigma / information};
 }
 
 }  // namespace pf

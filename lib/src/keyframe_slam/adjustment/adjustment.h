@@ -39,15 +39,8 @@ class KeyframeAdjustment {
     target_view_ = seen_from;
     target_ = target;
   }
-  /// Variance of a point's inverse depth by the pixels of the keyframes, which are taken as exact; 0 where none says anything.
-  Scalar variance_of(int i) const { return depth_by_pixels(i).variance; }
 
  private:
-  struct PixelDepth {
-    Scalar rho, variance;
-  };
-
-  PixelDepth depth_by_pixels(int i) const;
   bool is_held_by_target() const;
   int choose_free(bool settled);
   int choose_points(int free);

@@ -4,6 +4,7 @@
 #include "bundle/tuning.h"
 #include "keyframe_slam/adjustment/adjustment.h"
 #include "keyframe_slam/adjustment/tuning.h"
+#include "keyframe_slam/map/depth.h"
 
 /// The planes of KeyframeAdjustment, and the points on them.
 
@@ -27,7 +28,7 @@ int KeyframeAdjustment::add_plane_points(int points) {
 /// Holds a point that the bundle has no pixels of, from one row on, by what those of its keyframes say.
 void KeyframeAdjustment::hold_by_pixels(int first, int points) {
   for (int p = first; p < points; ++p) {
-    const PixelDepth depth = depth_by_pixels(row_[p]);
+    const PixelDepth depth = depth_by_pixels(map_, row_[p], noise_.sigma_info());
     prior_[p] = depth.variance > Scalar(0) ? RhoPrior{depth.rho, std::sqrt(depth.variance)} : RhoPrior{rho_[p], 0};
   }
 }
@@ -36,7 +37,7 @@ void KeyframeAdjustment::hold_by_pixels(int first, int points) {
 ///
 ///   e² < gate (roughness² + (de/drho)² variance)
 bool KeyframeAdjustment::fits_plane(const BundlePlane& plane, int i) const {
-  const PixelDepth depth = depth_by_pixels(i);
+  const PixelDepth depth = depth_by_pixels(map_, i, noise_.sigma_info());
   if (!(depth.rho > tuning::adjust::kMinPlaneRho)) return false;
   Mat13 J_plane;
   Mat16 J_H;

@@ -24,6 +24,13 @@ void KeyframeMap::init() {
   for (int i = 0; i < capacity(); ++i) point_[i] = KeyframePoint();
 }
 
+void KeyframeMap::clear() {
+  frame_.forget_all();
+  map_.features.clear();
+  map_.planes.clear();
+  init();
+}
+
 HostPixel KeyframeMap::host_pixel(int i) const {
   HostPixel host = {Vec2::Zero(), false};
   host.given = !map_.features[i].is_target && project(camera(), point_[i].ray_K, &host.pixel);

@@ -29,6 +29,8 @@ class KeyframeMap {
 
   bool layout(Arena& arena);
   void init();
+  /// Removes all points, planes and keyframes.
+  void clear();
 
   KeyframeTable keyframes;
 
