@@ -2,7 +2,7 @@
 
 // The map of the window with keyframes and points at known places, without images.
 
-#include "keyframe_slam/adjustment/adjustment.h"
+#include "keyframe_slam/adjustment/keyframe_adjustment.h"
 #include "keyframe_slam/map/depth.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"

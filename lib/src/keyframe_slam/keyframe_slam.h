@@ -6,7 +6,7 @@
 #include "base/status.h"
 #include "frame/fit_warnings.h"
 #include "frame/frozen_camera.h"
-#include "keyframe_slam/adjustment/adjustment.h"
+#include "keyframe_slam/adjustment/keyframe_adjustment.h"
 #include "keyframe_slam/map/depth.h"
 #include "keyframe_slam/planes/planes.h"
 #include "keyframe_slam/start/keyframe_start.h"
@@ -102,8 +102,8 @@ class KeyframeSlam {
   KeyframeAdjustment adjustment_{settings_, map_, planes_, noise_};
   KeyframeRelocaliser relocaliser_{settings_, map_, motion_, search_.images().tracker(), measuring_};
   KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
-  KeyframeStart start_{settings_,        map_,        frame_,  tracking_,   motion_,
-                       search_.images(), adjustment_, record_, data_.second};
+  KeyframeStart start_{settings_, map_,        frame_, tracking_, motion_, search_.images(), adjustment_.target(),
+                       record_,   data_.second};
 };
 
 }  // namespace pf

@@ -84,7 +84,7 @@ bool KeyframeStart::start_in_image() {
     return true;
   }
   add_target(keyframe, sighting);
-  adjustment_.hold_target({body.q_WC, body.p_W}, target_.target());
+  held_.hold({body.q_WC, body.p_W}, target_.target());
   tracking_.set_from_target();
   settings_.hooks.say("started at the target");
   return true;

@@ -3,7 +3,7 @@
 #include "base/status.h"
 #include "frame/start/start.h"
 #include "frame/start/start_at_target.h"
-#include "keyframe_slam/adjustment/adjustment.h"
+#include "keyframe_slam/adjustment/held_target.h"
 #include "keyframe_slam/start/keyframe_record.h"
 
 /// Starts the window in the way that the caller chose: at a known pose, at a target, or from a record of the first frames.
@@ -13,15 +13,15 @@ namespace pf {
 class KeyframeStart {
  public:
   KeyframeStart(const Settings& settings, KeyframeMap& map, Frame& frame, TrackingState& tracking,
-                KeyframeMotion& motion, const ImageSearch& images, KeyframeAdjustment& adjustment,
-                KeyframeRecord& record, SecondPose& second)
+                KeyframeMotion& motion, const ImageSearch& images, HeldTarget& held, KeyframeRecord& record,
+                SecondPose& second)
       : settings_(settings),
         map_(map),
         frame_(frame),
         tracking_(tracking),
         motion_(motion),
         images_(images),
-        adjustment_(adjustment),
+        held_(held),
         record_(record),
         second_(second) {}
 
@@ -50,7 +50,7 @@ class KeyframeStart {
   TrackingState& tracking_;
   KeyframeMotion& motion_;
   const ImageSearch& images_;
-  KeyframeAdjustment& adjustment_;
+  HeldTarget& held_;
   KeyframeRecord& record_;
   SecondPose& second_;
   KnownBody known_;
