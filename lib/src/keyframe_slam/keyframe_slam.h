@@ -6,8 +6,7 @@
 #include "base/status.h"
 #include "frame/fit_warnings.h"
 #include "frame/frozen_camera.h"
-#include "keyframe_slam/adjustment/keyframe_adjustment.h"
-#include "keyframe_slam/map/depth.h"
+#include "keyframe_slam/keyframe_mapping.h"
 #include "keyframe_slam/planes/planes.h"
 #include "keyframe_slam/start/keyframe_start.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
@@ -47,7 +46,7 @@ class KeyframeSlam {
   /// Time of the body: that of the last frame, or of the one that it repeats.
   std::int64_t body_ns() const { return data_.body_ns; }
   /// Covariance of the map about the last frame, given the keyframes that the last adjustment held fixed.
-  const Mat6& map_covariance() const { return adjustment_.map_covariance(); }
+  const Mat6& map_covariance() const { return mapping_.adjustment().map_covariance(); }
   int kept_views() const { return relocaliser_.kept_views(); }
   /// Of the inliers of the last tracked frame.
   Scalar median_depth() const { return data_.median_depth; }
@@ -77,16 +76,10 @@ class KeyframeSlam {
   void begin_frame(std::int64_t t_ns);
   Status end_frame();
   void measure();
-  void maintain_map();
-  void triangulate(bool strict);
-  void correct_rows(const Match& match, const CameraView& now, DepthFit* fit);
-  bool wants_keyframe() const;
-  void add_keyframe();
-  void adjust();
+  void learn();
   void scale_by_second_pose();
-  void learn_noise();
   bool is_pose_usable();
-  void begin_new_map(const char* why);
+  void discard_map();
 
   const Settings& settings_;
   Frame frame_;
@@ -99,11 +92,12 @@ class KeyframeSlam {
   PointSearch search_{settings_, map_, planes_, frame_, noise_};
   PoseMeasurement pose_{settings_, map_, frame_, noise_, search_};
   KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_};
-  KeyframeAdjustment adjustment_{settings_, map_, planes_, noise_};
   KeyframeRelocaliser relocaliser_{settings_, map_, motion_, search_.images().tracker(), measuring_};
   KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
-  KeyframeStart start_{settings_, map_,        frame_, tracking_, motion_, search_.images(), adjustment_.target(),
-                       record_,   data_.second};
+  KeyframeMapping mapping_{settings_, map_, frame_, motion_, planes_, noise_, search_, pose_, record_};
+  KeyframeStart start_{
+      settings_, map_,        frame_, tracking_, motion_, search_.images(), mapping_.adjustment().target(),
+      record_,   data_.second};
 };
 
 }  // namespace pf

@@ -144,10 +144,7 @@ void KeyframeAdjustment::take_points() {
       point.variance = depth_by_pixels(map_, i, noise_.sigma_info()).variance;
     }
     reject_outliers(i);
-    if (point.faces_host) {
-      const Keyframe& host = map_.keyframes[point.host];
-      map_.tables().first_view(i) = {host.q_WC, host.p_W};
-    }
+    if (point.faces_host) map_.tables().first_view(i) = map_.keyframes[point.host].view();
   }
 }
 

@@ -37,8 +37,8 @@ bool add_keyframes(const Camera& camera, const KeyframeMap& map, int i, Scalar r
   for (int k = 0; k < map.keyframes.capacity(); ++k) {
     const BundlePixel& seen = map.keyframes.pixels(k)[i];
     if (k == host || !map.keyframes.used(k) || !seen.seen) continue;
-    const CameraView view = {map.keyframes[k].q_WC, map.keyframes[k].p_W};
-    if (!sums->add(camera, view, ray_W, map.keyframes[host].p_W, rho, seen.pixel()) && strict) return false;
+    if (!sums->add(camera, map.keyframes[k].view(), ray_W, map.keyframes[host].p_W, rho, seen.pixel()) && strict)
+      return false;
   }
   return true;
 }

@@ -7,6 +7,7 @@
 #include "frame/tuning.h"
 #include "geometry/so3.h"
 #include "keyframe_slam/map/depth.h"
+#include "keyframe_slam/map/keyframe_upkeep.h"
 #include "keyframe_slam/map/rows.h"
 #include "keyframe_slam/start/tuning.h"
 #include "keyframe_slam/tracking/frame_time.h"
@@ -70,7 +71,7 @@ bool KeyframeRecord::improve() {
   ++solved_before_;
   const StartOutcome outcome = record_frame();
   if (outcome != StartOutcome::kSolved && outcome != StartOutcome::kSettled) return false;
-  map_.keep_first_keyframe();
+  keep_first_keyframe(&map_);
   take_solution();
   return true;
 }
@@ -117,7 +118,7 @@ void KeyframeRecord::begin_again() {
   frame_.report.inliers = 0;
   begin();
   tracking_.set_has_pose(frame_.report.t_ns);
-  map_.add_keyframe(frame_.report.t_ns, motion_.body().q_WC, motion_.body().p_W);
+  add_keyframe(frame_, motion_.view(), settings_.window_keyframes, &map_);
 }
 
 /// A point that was last seen in a frame of the record was seen from that frame's adjusted pose.
@@ -184,7 +185,7 @@ void KeyframeRecord::take_solution() {
   Mat6 P = Mat6::Identity() * (kRotationSigma * kRotationSigma);
   P.bottomRightCorner<3, 3>() *= settings_.start_depth * settings_.start_depth;
   motion_.set(body, P, kSpeedSigma * settings_.start_depth, tuning::filter_start::kStartRate);
-  map_.add_keyframe(frame_.report.t_ns, now.q_WC, now.c_W);
+  add_keyframe(frame_, now, settings_.window_keyframes, &map_);
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
     if (match.feature >= 0 && match.status == MatchStatus::kInlier) map_.point(match.feature).seen_from = now;

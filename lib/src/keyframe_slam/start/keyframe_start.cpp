@@ -4,10 +4,25 @@
 
 #include "frame/start/target_surface.h"
 #include "frame/start/tuning.h"
+#include "keyframe_slam/map/keyframe_upkeep.h"
 
 namespace pf {
 
 using namespace tuning::filter_start;
+
+namespace {
+
+/// Adds a point at a known place. Returns its row, or -1.
+int add_placed(const Vec3& p_W, int host, KeyframeMap* map) {
+  const CameraView view = map->keyframes[host].view();
+  Vec2 pixel;
+  if (!project(map->camera(), view.q_WC.conjugate() * (p_W - view.c_W), &pixel)) return -1;
+  const int i = map->add(host, pixel);
+  if (i >= 0) map->place(i, p_W);
+  return i;
+}
+
+}  // namespace
 
 void KeyframeStart::init() {
   known_ = KnownBody();
@@ -77,14 +92,13 @@ bool KeyframeStart::start_in_image() {
   target_.note_begin();
   if (seen && frame_.report.frames > 1) known_ = KnownBody();  // it was the pose of the first frame
   set_pose(seen);
-  const Body& body = motion_.body();
-  const int keyframe = map_.add_keyframe(frame_.report.t_ns, body.q_WC, body.p_W);
+  const int keyframe = add_keyframe(frame_, motion_.view(), settings_.window_keyframes, &map_);
   if (!seen) {
     record_.begin();
     return true;
   }
   add_target(keyframe, sighting);
-  held_.hold({body.q_WC, body.p_W}, target_.target());
+  held_.hold(motion_.view(), target_.target());
   tracking_.set_from_target();
   settings_.hooks.say("started at the target");
   return true;
@@ -94,16 +108,15 @@ bool KeyframeStart::start_in_image() {
 void KeyframeStart::add_target(int keyframe, const TargetSighting& sighting) {
   const Target& target = target_.target();
   FrameReport& report = frame_.report;
-  const CameraView view = {motion_.body().q_WC, motion_.body().p_W};
   map_.tables().target_normal_W = target_normal(target);
   for (int i = 0; i < target.count; ++i) {
-    const int row = map_.add_placed(keyframe, target.point_W[i]);
+    const int row = add_placed(target.point_W[i], keyframe, &map_);
     if (row < 0) continue;
     Feature& f = map_.feature(row);
     f.is_target = true;
     f.external_id = static_cast<std::uint32_t>(i);
     const Vec2 z = sighting.pixel[i];
-    images_.remember(&map_.tables(), row, z, view);
+    images_.remember(&map_.tables(), row, z, motion_.view());
     map_.keyframes.set_pixel(keyframe, row, z);
     map_.point(row).pixel = z;
     ++report.inliers;

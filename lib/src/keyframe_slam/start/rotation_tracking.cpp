@@ -56,7 +56,7 @@ bool RotationTracking::measure(const Vec3& base_W) {
   const Scalar parallax = fit_rotation(map_.camera(), ray_, pixel_, list_rays(), scratch_, &q_WC);
   const Scalar bound = kParallaxes * parallax + pose_.bound_px();
   correct_body(found, q_WC, base_W);
-  const CameraView seen_from = {motion_.body().q_WC, motion_.body().p_W};
+  const CameraView seen_from = motion_.view();
   for (int t = 0; t < frame_.match_count(); ++t) {
     Match& match = frame_.match(t);
     Vec2 z;

@@ -117,7 +117,7 @@ void KeyframeTracking::mark(const PosePrior& at) {
 }
 
 void KeyframeTracking::accept(const Vec2& pixel, Match* match) {
-  accept_match({motion_.body().q_WC, motion_.body().p_W}, pixel, frame_.report.t_ns, &map_, match);
+  accept_match(motion_.view(), pixel, frame_.report.t_ns, &map_, match);
 }
 
 /// Points without a depth: where the corrected pose leaves no depth that explains their pixel, it is wrong.

@@ -97,7 +97,7 @@ SearchTask PointSearch::task_of(int i, const PosePrior& at, Scalar depth) const 
   const Keyframe& host = map_.keyframes[point.host];
   SearchTask task;
   task.appearance = &tables.appearance(i);
-  task.first_view = point.faces_host ? CameraView{host.q_WC, host.p_W} : tables.first_view(i);
+  task.first_view = point.faces_host ? host.view() : tables.first_view(i);
   if (tables.has_templates() && !tables.features[i].is_target && point.has_depth)
     ImageSearch::use_template(tables, i, &task);
   task.gate = settings_.gate;
