@@ -12,6 +12,17 @@
 #include "keyframe_slam/tracking/tuning.h"
 
 namespace pf {
+namespace {
+
+/// Whether rotation and position are known well enough against the map (lib/docs/states.md).
+bool is_usable(const Mat6& P, Scalar median_depth) {
+  using namespace tuning::usable_pose;
+  const Scalar position = kMaxPositionSigma * median_depth;
+  return P(0, 0) + P(1, 1) + P(2, 2) < kMaxRotationSigma * kMaxRotationSigma &&
+         P(3, 3) + P(4, 4) + P(5, 5) < position * position;
+}
+
+}  // namespace
 
 bool KeyframeSlam::layout(Arena& arena) {
   frame_.layout(arena, 2 * settings_.max_features);
@@ -119,12 +130,6 @@ void KeyframeSlam::learn() {
   mapping_.keep(tracked, data_.young, data_.median_depth);
 }
 
-Status KeyframeSlam::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
-  if (!is_next_frame(frame_, t_ns)) return Status::kTime;
-  if (!((p_W - start_.first_place_W()).norm() > sigma)) return Status::kRange;
-  return start_.use_second_pose(t_ns, p_W);
-}
-
 /// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known, its
 /// place is the solved record's.
 void KeyframeSlam::scale_by_second_pose() {
@@ -150,18 +155,6 @@ void KeyframeSlam::scale_by_second_pose() {
   settings_.hooks.say("the scale is that of the second pose");
 }
 
-/// Whether rotation and position are known well enough against the map (lib/docs/states.md).
-bool KeyframeSlam::is_pose_usable() {
-  using namespace tuning::usable_pose;
-  const Scalar depth = map_.median_depth(motion_.body().q_WC, motion_.body().p_W);
-  if (!(depth > Scalar(0))) return false;
-  data_.median_depth = depth;
-  const Mat6 P = motion_.pose_covariance();
-  const Scalar position = kMaxPositionSigma * depth;
-  return P(0, 0) + P(1, 1) + P(2, 2) < kMaxRotationSigma * kMaxRotationSigma &&
-         P(3, 3) + P(4, 4) + P(5, 5) < position * position;
-}
-
 /// Returns the status of the frame.
 Status KeyframeSlam::end_frame() {
   if (tracking_.has_pose() && !motion_.is_sound()) {
@@ -170,7 +163,10 @@ Status KeyframeSlam::end_frame() {
     settings_.hooks.say("the estimate is no longer finite: starting again without it");
   }
   if (tracking_.is_tracked(frame_.report) && !record_.progress().pending()) {
-    if (!is_pose_usable())
+    const Scalar depth = map_.median_depth(motion_.body().q_WC, motion_.body().p_W);
+    const bool has_depth = depth > Scalar(0);
+    if (has_depth) data_.median_depth = depth;
+    if (!has_depth || !is_usable(motion_.pose_covariance(), depth))
       tracking_.set_unusable();
     else if (frame_.report.attempts > 0)
       relocaliser_.remember_view();

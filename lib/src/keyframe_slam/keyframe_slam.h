@@ -34,8 +34,6 @@ class KeyframeSlam {
   Status mark_pose();
 
   KeyframeStart& start() { return start_; }
-  /// Of the frame that comes at t_ns. kTime: it has been. kState: the scale is known. kRange: it is where the camera was first.
-  Status use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma);
 
   const Frame& frame() const { return frame_; }
   const TrackingState& tracking() const { return tracking_; }
@@ -78,7 +76,6 @@ class KeyframeSlam {
   void measure();
   void learn();
   void scale_by_second_pose();
-  bool is_pose_usable();
   void discard_map();
 
   const Settings& settings_;

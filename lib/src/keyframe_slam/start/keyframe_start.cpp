@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "frame/frame_entry.h"
 #include "frame/start/target_surface.h"
 #include "frame/start/tuning.h"
 #include "keyframe_slam/map/keyframe_upkeep.h"
@@ -51,7 +52,9 @@ Status KeyframeStart::use_pose(const KnownBody& known) {
   return Status::kOk;
 }
 
-Status KeyframeStart::use_second_pose(std::int64_t t_ns, const Vec3& p_W) {
+Status KeyframeStart::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
+  if (!is_next_frame(frame_, t_ns)) return Status::kTime;
+  if (!((p_W - first_place_W()).norm() > sigma)) return Status::kRange;
   if (target_.target().kind != TargetKind::kNone || second_.given) return Status::kState;
   second_ = SecondPose();
   second_.given = true;

@@ -32,8 +32,8 @@ class KeyframeStart {
 
   Status use_target(const Target& target);
   Status use_pose(const KnownBody& known);
-  /// kState: the scale is known already.
-  Status use_second_pose(std::int64_t t_ns, const Vec3& p_W);
+  /// Of the frame that comes at t_ns. kTime: it has been. kState: the scale is known. kRange: it is where the camera was first.
+  Status use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma);
   /// Where the camera was first, as the caller knows it or as it defines W.
   Vec3 first_place_W() const { return known_.given ? known_.body.p_W : Vec3::Zero(); }
 
