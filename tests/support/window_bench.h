@@ -2,7 +2,8 @@
 
 // The map of the window with keyframes and points at known places, without images.
 
-#include "keyframe_slam/adjustment/adjustment.h"
+#include "keyframe_slam/adjustment/keyframe_adjustment.h"
+#include "keyframe_slam/map/depth.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
 #include "support/textured_images.h"
@@ -69,7 +70,7 @@ struct KeyframeBench {
   /// Gives a point its true depth.
   void place(int i) {
     map.place(i, truth_W[i]);
-    map.point(i).variance = adjustment.variance_of(i);
+    map.point(i).variance = depth_by_pixels(map, i, noise.sigma_info()).variance;
   }
 };
 

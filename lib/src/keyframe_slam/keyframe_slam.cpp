@@ -4,26 +4,35 @@
 #include <cmath>
 
 #include "base/elapsed.h"
-#include "frame/feature_upkeep.h"
 #include "frame/frame_entry.h"
 #include "frame/tuning.h"
 #include "keyframe_slam/adjustment/scale.h"
-#include "keyframe_slam/map/depth.h"
+#include "keyframe_slam/map/keyframe_upkeep.h"
 #include "keyframe_slam/start/tuning.h"
-#include "keyframe_slam/tracking/corners.h"
-#include "keyframe_slam/tuning.h"
+#include "keyframe_slam/tracking/tuning.h"
 
 namespace pf {
+namespace {
 
-using namespace tuning::keyframe_slam;
+/// Whether rotation and position are known well enough against the map (lib/docs/states.md).
+bool is_usable(const Mat6& P, Scalar median_depth) {
+  using namespace tuning::usable_pose;
+  const Scalar position = kMaxPositionSigma * median_depth;
+  return P(0, 0) + P(1, 1) + P(2, 2) < kMaxRotationSigma * kMaxRotationSigma &&
+         P(3, 3) + P(4, 4) + P(5, 5) < position * position;
+}
+
+}  // namespace
 
 bool KeyframeSlam::layout(Arena& arena) {
   frame_.layout(arena, 2 * settings_.max_features);
   map_.layout(arena);
-  measuring_.layout(arena);
-  adjustment_.layout(arena);
+  search_.layout(arena);
+  pose_.layout(arena);
+  mapping_.layout(arena);
   planes_.layout(arena);
   relocaliser_.layout(arena);
+  record_.layout(arena);
   return start_.layout(arena);
 }
 
@@ -31,34 +40,40 @@ void KeyframeSlam::init() {
   frame_.init();
   noise_.init(settings_.sigma_px);
   tracking_.init();
-  frozen_.init();
   map_.init();
   motion_.init();
-  measuring_.init();
-  adjustment_.init();
+  search_.init();
+  pose_.init();
+  mapping_.init();
   planes_.init();
   relocaliser_.init();
+  record_.init();
   start_.init();
   data_ = Data();
 }
 
 Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
-  const FrameEntry entry = enter_frame(settings_, image, t_ns, &frozen_, &frame_, &tracking_);
+  const FrameEntry entry = enter_frame(settings_, image, t_ns, &data_.frozen, &frame_, &tracking_);
   if (entry == FrameEntry::kLate || entry == FrameEntry::kRepeated) return entry_status(entry, tracking_);
   begin_frame(t_ns);
   if (tracking_.started_over()) return end_frame();
   bool usable = entry == FrameEntry::kNew;
   if (usable) {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPyramid]);
-    usable = measuring_.begin_frame(image);
+    usable = search_.begin_frame(image);
   }
   if (!usable) return unusable_status(end_frame());
   tracking_.note_usable_image(data_.since_last_ns);
-  if (tracking_.needs_new_map(settings_.restart_ns))
-    begin_new_map("not found again for too long: the old map is discarded, a new map begins");
+  if (tracking_.needs_new_map(settings_.restart_ns)) {
+    discard_map();
+    mapping_.init();
+    data_.mark = Mark();
+    tracking_.begin_map();
+    settings_.hooks.say("not found again for too long: the old map is discarded, a new map begins");
+  }
   measure();
-  maintain_map();
-  if (start_.second_pose().given && start_.second_pose().has_come(t_ns)) scale_by_second_pose();
+  learn();
+  if (data_.second.given && data_.second.has_come(t_ns)) scale_by_second_pose();
   return end_frame();
 }
 
@@ -84,197 +99,89 @@ void KeyframeSlam::begin_frame(std::int64_t t_ns) {
 
 /// Finds the pose of the frame, in the way that the state asks for.
 void KeyframeSlam::measure() {
-  data_.young = measuring_.is_young();
+  data_.young = num_placed(map_) < tuning::keyframe_tracking::kYoung;
   if (!tracking_.has_pose()) {
     start_.start_in_image();
-  } else if (start_.progress().pending()) {
-    if (start_.follow_record()) adjust();
+  } else if (record_.progress().pending()) {
+    if (record_.follow()) mapping_.adjust();
   } else if (data_.young) {
     measuring_.measure_young(data_.median_depth);
-  } else if (tracking_.is_relocalising(start_.progress())) {
+  } else if (tracking_.is_relocalising(record_.progress())) {
     relocaliser_.recover(data_.median_depth);
   } else {
     relocaliser_.clear_proposal();
     measuring_.measure(data_.median_depth);
   }
-  if (start_.progress().recording && start_.progress().depth_known && tracking_.is_tracked(frame_.report) &&
-      start_.record_more())
-    adjust();
+  if (record_.progress().recording && record_.progress().depth_known && tracking_.is_tracked(frame_.report) &&
+      record_.improve())
+    mapping_.adjust();
 }
 
-/// A frame that does not support its pose changes nothing in the map.
-void KeyframeSlam::maintain_map() {
-  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
-  const bool pending = start_.progress().pending();
-  const bool tracked = tracking_.is_tracked(frame_.report);
+/// What the frame says of noise, templates and the map. A frame that does not support its pose changes nothing in the map.
+void KeyframeSlam::learn() {
   if (!tracking_.has_pose()) return;
-  if (tracked && !pending) {
-    measuring_.learn_templates();
-    learn_noise();
-    // A young map's poses are too coarse for depths of their own: a keyframe's are adjusted with it.
-    if (!data_.young) triangulate(true);
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
+  const bool tracked = tracking_.is_tracked(frame_.report);
+  if (tracked && !record_.progress().pending()) {
+    search_.learn_templates(prior_of(motion_));
+    measuring_.learn_noise();
+    data_.warnings.check(settings_, noise_, map_.camera());
   }
-  count_searches(frame_, &tables_.features, tracked || pending);
-  if (tracked || pending) map_.drop_failing();
-  if (tracked && !pending && wants_keyframe()) add_keyframe();
-  // The first frame, one in which a record began anew, and every other keyframe.
-  const int newest = map_.keyframes.newest();
-  if (newest < 0 || map_.keyframes[newest].t_ns != frame_.report.t_ns) return;
-  Keyframe& keyframe = map_.keyframes[newest];
-  if (keyframe.number > 1) {
-    keyframe.v_W = motion_.body().v_W;
-    keyframe.w_C = motion_.body().w_C;
-    keyframe.row_depth = pending ? settings_.start_depth : data_.median_depth;
-  }
-  add_corners(settings_, measuring_.search(), newest, motion_.body(), keyframe.row_depth, &map_, &frame_);
-  start_.begin_record();
-}
-
-/// Gives points a depth whose rays from host and frame differ by enough; strict: drops those that no depth explains.
-void KeyframeSlam::triangulate(bool strict) {
-  const CameraView now = {motion_.body().q_WC, motion_.body().p_W};
-  const Scalar cos_parallax = std::cos(kMinParallax);
-  for (int t = 0; t < frame_.match_count(); ++t) {
-    const Match& match = frame_.match(t);
-    if (match.feature < 0 || match.status != MatchStatus::kInlier || map_.point(match.feature).has_depth) continue;
-    DepthFit fit;
-    const bool fits = fit_depth(map_.camera(), map_, match.feature, now, map_.point(match.feature).pixel, &fit);
-    if (fit.cos_parallax > cos_parallax) continue;
-    if (!fits || (strict && fit.worst_px > measuring_.bound_px())) {
-      if (strict) map_.drop(match.feature);
-      continue;
-    }
-    KeyframePoint& point = map_.point(match.feature);
-    if (map_.camera().readout != Scalar(0)) correct_rows(match, now, &fit);
-    point.rho = fit.rho;
-    point.variance = noise_.sigma_info() * noise_.sigma_info() / fit.information;
-    point.has_depth = true;
-  }
-}
-
-/// Rows of a point whose depth has become known, and so its depth once more.
-void KeyframeSlam::correct_rows(const Match& match, const CameraView& now, DepthFit* fit) {
-  map_.correct_rows(match.feature, fit->rho);
-  KeyframePoint& point = map_.point(match.feature);
-  if (!data_.young) point.pixel = measuring_.at_frame_time(match, 1 / fit->rho);
-  DepthFit again;
-  if (fit_depth(map_.camera(), map_, match.feature, now, point.pixel, &again)) *fit = again;
-}
-
-/// The camera has moved far enough since the last keyframe, in depths of what it sees, or sees too little of what is known.
-bool KeyframeSlam::wants_keyframe() const {
-  const Keyframe& last = map_.keyframes[map_.keyframes.newest()];
-  if (last.t_ns == frame_.report.t_ns) return false;
-  const Body& body = motion_.body();
-  const Scalar moved = (body.p_W - last.p_W).norm() / data_.median_depth;
-  const Scalar turned = body.q_WC.angularDistance(last.q_WC);
-  int inliers = 0;
-  for (int t = 0; t < frame_.match_count(); ++t) inliers += frame_.match(t).status == MatchStatus::kInlier ? 1 : 0;
-  // A record that goes on makes the others itself.
-  return moved > kKeyframeShift || turned > kKeyframeTurn ||
-         ((!data_.young || map_.keyframes.count() > 1) && !start_.progress().recording &&
-          static_cast<Scalar>(inliers) < kFewPoints * static_cast<Scalar>(settings_.features_in_view) &&
-          (moved > kMinKeyframeShift || turned > kMinKeyframeTurn));
-}
-
-void KeyframeSlam::add_keyframe() {
-  start_.note_keyframe();
-  map_.add_keyframe(frame_.report.t_ns, motion_.body().q_WC, motion_.body().p_W);
-  map_.keyframes[map_.keyframes.newest()].matches_by_motion = !data_.young;
-  if (data_.young) triangulate(false);
-  adjust();
-}
-
-void KeyframeSlam::adjust() {
-  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kAdjust]);
-  // A record is solved by one lens, which changes no more until it ends.
-  const Keyframe& newest = map_.keyframes[map_.keyframes.newest()];
-  const CameraView before = {newest.q_WC, newest.p_W};
-  if (!adjustment_.run(!start_.progress().recording)) return;
-  map_.move_views(before);
-  motion_.move(newest.q_WC, newest.p_W);
-  // During a start the map may begin again; ids of planes found before would then name nothing.
-  if (settings_.planes && !start_.progress().recording) planes_.maintain(newest.p_W);
-}
-
-Status KeyframeSlam::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
-  if (!is_next_frame(frame_, t_ns)) return Status::kTime;
-  if (!((p_W - start_.first_place_W()).norm() > sigma)) return Status::kRange;
-  return start_.use_second_pose(t_ns, p_W);
+  mapping_.keep(tracked, data_.young, data_.median_depth);
 }
 
 /// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known, its
 /// place is the solved record's.
 void KeyframeSlam::scale_by_second_pose() {
-  const SecondPose second = start_.second_pose();
-  if (start_.progress().pending()) return;
+  const SecondPose second = data_.second;
+  if (record_.progress().pending()) return;
   const Vec3 first_W = start_.first_place_W();
   const bool is_now = second.is_frame(frame_.report.t_ns) && tracking_.is_tracked(frame_.report);
   const Vec3 at_W = is_now ? motion_.body().p_W : second.estimate_W;
   const Scalar moved = (at_W - first_W).norm();
   const Scalar scale = (second.p_W - first_W).norm() / moved;
-  start_.end_second_pose();
+  data_.second = SecondPose();
+  record_.init();
   if (!(is_now || second.estimated) || !(moved > tuning::second_pose::kMinSecondShift * data_.median_depth) ||
       !std::isfinite(scale)) {
     settings_.hooks.say("the second pose gives no scale: its frame was not tracked, or the camera had not moved");
     return;
   }
   scale_window(scale, first_W, &map_, &planes_, &motion_);
-  adjustment_.scale(scale);
+  mapping_.adjustment().scale(scale);
   relocaliser_.init();
   data_.median_depth *= scale;
   if (data_.mark.is_set) data_.mark = Mark();
   settings_.hooks.say("the scale is that of the second pose");
 }
 
-void KeyframeSlam::learn_noise() {
-  measuring_.learn_noise();
-  data_.warnings.check(settings_, noise_, map_.camera());
-}
-
-/// Whether rotation and position are known well enough against the map (lib/docs/states.md).
-bool KeyframeSlam::is_pose_usable() {
-  using namespace tuning::usable_pose;
-  const Scalar depth = map_.median_depth(motion_.body().q_WC, motion_.body().p_W);
-  if (!(depth > Scalar(0))) return false;
-  data_.median_depth = depth;
-  const Mat6 P = motion_.pose_covariance();
-  const Scalar position = kMaxPositionSigma * depth;
-  return P(0, 0) + P(1, 1) + P(2, 2) < kMaxRotationSigma * kMaxRotationSigma &&
-         P(3, 3) + P(4, 4) + P(5, 5) < position * position;
-}
-
 /// Returns the status of the frame.
 Status KeyframeSlam::end_frame() {
   if (tracking_.has_pose() && !motion_.is_sound()) {
-    start_.start_over();
-    motion_.init();
-    relocaliser_.init();
-    measuring_.forget_view();
+    discard_map();
     tracking_.start_over();
     settings_.hooks.say("the estimate is no longer finite: starting again without it");
   }
-  if (tracking_.is_tracked(frame_.report) && !start_.progress().pending()) {
-    if (!is_pose_usable())
+  if (tracking_.is_tracked(frame_.report) && !record_.progress().pending()) {
+    const Scalar depth = map_.median_depth(motion_.body().q_WC, motion_.body().p_W);
+    const bool has_depth = depth > Scalar(0);
+    if (has_depth) data_.median_depth = depth;
+    if (!has_depth || !is_usable(motion_.pose_covariance(), depth))
       tracking_.set_unusable();
     else if (frame_.report.attempts > 0)
       relocaliser_.remember_view();
   }
-  if (tracking_.has_pose() && (tracking_.is_tracked(frame_.report) || start_.progress().pending()))
-    measuring_.keep_view();
-  return tracking_.conclude(frame_.report, start_.progress(), settings_.max_coast_ns, settings_.hooks);
+  if (tracking_.has_pose() && (tracking_.is_tracked(frame_.report) || record_.progress().pending()))
+    search_.keep_view(motion_.view());
+  return tracking_.conclude(frame_.report, record_.progress(), settings_.max_coast_ns, settings_.hooks);
 }
 
-/// The map was not found again for too long, although the images were usable: a new one begins with this frame.
-void KeyframeSlam::begin_new_map(const char* why) {
+/// Clears the map, and all that refers to poses in it.
+void KeyframeSlam::discard_map() {
   start_.start_over();
   motion_.init();
   relocaliser_.init();
-  measuring_.forget_view();
-  adjustment_.init();
-  data_.mark = Mark();
-  tracking_.begin_map();
-  settings_.hooks.say(why);
+  search_.forget_view();
 }
 
 }  // namespace pf

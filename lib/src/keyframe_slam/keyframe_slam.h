@@ -6,12 +6,11 @@
 #include "base/status.h"
 #include "frame/fit_warnings.h"
 #include "frame/frozen_camera.h"
-#include "keyframe_slam/adjustment/adjustment.h"
-#include "keyframe_slam/map/depth.h"
+#include "keyframe_slam/keyframe_mapping.h"
 #include "keyframe_slam/planes/planes.h"
-#include "keyframe_slam/start/start.h"
+#include "keyframe_slam/start/keyframe_start.h"
+#include "keyframe_slam/tracking/keyframe_tracking.h"
 #include "keyframe_slam/tracking/relocaliser.h"
-#include "keyframe_slam/tracking/tracking.h"
 
 /// The order of work of one frame with the window as back end (Masoud and Hoff 2015, Figure 4), and nothing else:
 ///
@@ -23,7 +22,7 @@ namespace pf {
 
 class KeyframeSlam {
  public:
-  KeyframeSlam(const Settings& settings, Map& map) : settings_(settings), tables_(map) {}
+  KeyframeSlam(const Settings& settings, Map& map) : settings_(settings), map_{settings, map, frame_} {}
   KeyframeSlam(const KeyframeSlam&) = delete;
   KeyframeSlam& operator=(const KeyframeSlam&) = delete;
 
@@ -35,8 +34,6 @@ class KeyframeSlam {
   Status mark_pose();
 
   KeyframeStart& start() { return start_; }
-  /// Of the frame that comes at t_ns. kTime: it has been. kState: the scale is known. kRange: it is where the camera was first.
-  Status use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma);
 
   const Frame& frame() const { return frame_; }
   const TrackingState& tracking() const { return tracking_; }
@@ -47,7 +44,7 @@ class KeyframeSlam {
   /// Time of the body: that of the last frame, or of the one that it repeats.
   std::int64_t body_ns() const { return data_.body_ns; }
   /// Covariance of the map about the last frame, given the keyframes that the last adjustment held fixed.
-  const Mat6& map_covariance() const { return adjustment_.map_covariance(); }
+  const Mat6& map_covariance() const { return mapping_.adjustment().map_covariance(); }
   int kept_views() const { return relocaliser_.kept_views(); }
   /// Of the inliers of the last tracked frame.
   Scalar median_depth() const { return data_.median_depth; }
@@ -68,38 +65,36 @@ class KeyframeSlam {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     Mark mark;
-    bool young = false;  ///< in this frame, KeyframeTracking::is_young
+    bool young = false;  ///< in this frame so few points have a depth that those without must help
+    SecondPose second;
+    FrozenCamera frozen;
     FitWarnings warnings;
   };
 
   void begin_frame(std::int64_t t_ns);
   Status end_frame();
   void measure();
-  void maintain_map();
-  void triangulate(bool strict);
-  void correct_rows(const Match& match, const CameraView& now, DepthFit* fit);
-  bool wants_keyframe() const;
-  void add_keyframe();
-  void adjust();
+  void learn();
   void scale_by_second_pose();
-  void learn_noise();
-  bool is_pose_usable();
-  void begin_new_map(const char* why);
+  void discard_map();
 
   const Settings& settings_;
-  Map& tables_;
   Frame frame_;
   NoiseModel noise_;
   TrackingState tracking_{settings_};
-  FrozenCamera frozen_;
-  KeyframeMap map_{settings_, tables_, frame_};
+  Data data_;
+  KeyframeMap map_;
   KeyframeMotion motion_{settings_};
   KeyframePlanes planes_{settings_, map_};
-  KeyframeTracking measuring_{settings_, map_, planes_, frame_, motion_, noise_};
-  KeyframeAdjustment adjustment_{settings_, map_, planes_, noise_};
-  KeyframeRelocaliser relocaliser_{settings_, motion_, measuring_};
-  KeyframeStart start_{settings_, {map_, frame_, tracking_, motion_, measuring_, adjustment_}};
-  Data data_;
+  PointSearch search_{settings_, map_, planes_, frame_, noise_};
+  PoseMeasurement pose_{settings_, map_, frame_, noise_, search_};
+  KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_};
+  KeyframeRelocaliser relocaliser_{settings_, map_, motion_, search_.images().tracker(), measuring_};
+  KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
+  KeyframeMapping mapping_{settings_, map_, frame_, motion_, planes_, noise_, search_, pose_, record_};
+  KeyframeStart start_{
+      settings_, map_,        frame_, tracking_, motion_, search_.images(), mapping_.adjustment().target(),
+      record_,   data_.second};
 };
 
 }  // namespace pf

@@ -38,7 +38,7 @@ class Session {
   }
   /// kState: with the filter, or the scale is known already.
   Status set_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
-    return window_ != nullptr ? window_->use_second_pose(t_ns, p_W, sigma) : Status::kState;
+    return window_ != nullptr ? window_->start().use_second_pose(t_ns, p_W, sigma) : Status::kState;
   }
   void withdraw_target() { map_.target_withdrawn = true; }
 

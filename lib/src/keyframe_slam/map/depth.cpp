@@ -15,11 +15,12 @@ using namespace tuning::keyframe_depth;
 struct DepthSums {
   Scalar information = 0, gradient = 0, worst2 = 0;
 
-  bool add(const Camera& camera, const Mat3& R_WC, const Vec3& ray_W, const Vec3& p_HC_W, Scalar rho,
+  bool add(const Camera& camera, const CameraView& view, const Vec3& ray_W, const Vec3& host_W, Scalar rho,
            const Vec2& pixel) {
     Vec2 z, J;
     Mat26 J_C;
-    if (!project_bearing(camera, R_WC, ray_W, p_HC_W, rho, &z, &J_C, nullptr, &J)) return false;
+    if (!project_bearing(camera, view.q_WC.toRotationMatrix(), ray_W, host_W - view.c_W, rho, &z, &J_C, nullptr, &J))
+      return false;
     const Vec2 r = pixel - z;
     information += J.squaredNorm();
     gradient += J.dot(r);
@@ -28,12 +29,25 @@ struct DepthSums {
   }
 };
 
+/// Adds all pixels of a point in keyframes that are not its host. strict: false as soon as one does not project; else such a pixel is left
+/// out.
+bool add_keyframes(const Camera& camera, const KeyframeMap& map, int i, Scalar rho, bool strict, DepthSums* sums) {
+  const int host = map.point(i).host;
+  const Vec3 ray_W = map.ray_W(i);
+  for (int k = 0; k < map.keyframes.capacity(); ++k) {
+    const BundlePixel& seen = map.keyframes.pixels(k)[i];
+    if (k == host || !map.keyframes.used(k) || !seen.seen) continue;
+    if (!sums->add(camera, map.keyframes[k].view(), ray_W, map.keyframes[host].p_W, rho, seen.pixel()) && strict)
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool fit_depth(const Camera& camera, const KeyframeMap& map, int i, const CameraView& now, const Vec2& pixel,
                DepthFit* fit) {
-  const KeyframePoint& point = map.point(i);
-  const Keyframe& host = map.keyframes[point.host];
+  const Vec3& host_W = map.keyframes[map.point(i).host].p_W;
   const Vec3 ray_W = map.ray_W(i);
   Vec3 ray_C;
   fit->cos_parallax = Scalar(1);
@@ -42,20 +56,14 @@ bool fit_depth(const Camera& camera, const KeyframeMap& map, int i, const Camera
   const Scalar c = ray_W.dot(d), sin2 = 1 - c * c;
   fit->cos_parallax = c;
   if (!(sin2 > kMinSin2)) return false;
-  const Scalar s = (ray_W - c * d).dot(now.c_W - host.p_W) / sin2;
+  const Scalar s = (ray_W - c * d).dot(now.c_W - host_W) / sin2;
   if (!(s > Scalar(0))) return false;
   Scalar rho = 1 / s;
   DepthSums sums;
   for (int round = 0; round <= kRounds; ++round) {
     sums = DepthSums();
-    if (!sums.add(camera, now.q_WC.toRotationMatrix(), ray_W, host.p_W - now.c_W, rho, pixel)) return false;
-    for (int k = 0; k < map.keyframes.capacity(); ++k) {
-      const BundlePixel& seen = map.keyframes.pixels(k)[i];
-      if (k == point.host || !map.keyframes.used(k) || !seen.seen) continue;
-      const Keyframe& keyframe = map.keyframes[k];
-      if (!sums.add(camera, keyframe.q_WC.toRotationMatrix(), ray_W, host.p_W - keyframe.p_W, rho, seen.pixel()))
-        return false;
-    }
+    if (!sums.add(camera, now, ray_W, host_W, rho, pixel)) return false;
+    if (!add_keyframes(camera, map, i, rho, true, &sums)) return false;
     if (!(sums.information > Scalar(0))) return false;
     if (round < kRounds) rho += sums.gradient / sums.information;
     if (!(rho > Scalar(0))) return false;
@@ -64,6 +72,14 @@ bool fit_depth(const Camera& camera, const KeyframeMap& map, int i, const Camera
   fit->information = sums.information;
   fit->worst_px = std::sqrt(sums.worst2);
   return std::isfinite(rho);
+}
+
+PixelDepth depth_by_pixels(const KeyframeMap& map, int i, Scalar sigma_px) {
+  const Scalar rho = map.point(i).rho;
+  DepthSums sums;
+  add_keyframes(map.camera(), map, i, rho, false, &sums);
+  if (!(sums.information > Scalar(0))) return {rho, Scalar(0)};
+  return {rho + sums.gradient / sums.information, sigma_px * sigma_px / sums.information};
 }
 
 }  // namespace pf

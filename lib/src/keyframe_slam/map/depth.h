@@ -22,4 +22,14 @@ struct DepthFit {
 bool fit_depth(const Camera& camera, const KeyframeMap& map, int i, const CameraView& now, const Vec2& pixel,
                DepthFit* fit);
 
+struct PixelDepth {
+  Scalar rho;       ///< [1/m]
+  Scalar variance;  ///< 0: no pixel says anything
+};
+
+/// By the pixels of the keyframes alone, in one step of Gauss-Newton from where the point is:
+///
+///   rho + sum J.r / sum J²,   variance sigma² / sum J²
+PixelDepth depth_by_pixels(const KeyframeMap& map, int i, Scalar sigma_px);
+
 }  // namespace pf

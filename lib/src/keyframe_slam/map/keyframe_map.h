@@ -29,6 +29,8 @@ class KeyframeMap {
 
   bool layout(Arena& arena);
   void init();
+  /// Removes all points, planes and keyframes.
+  void clear();
 
   KeyframeTable keyframes;
 
@@ -50,13 +52,10 @@ class KeyframeMap {
   Map& tables() { return map_; }
   const Map& tables() const { return map_; }
 
-  /// Numbers of points with a depth.
-  int placed() const;
   /// Bearing in W, of length 1.
   Vec3 ray_W(int i) const { return keyframes[point_[i].host].q_WC * point_[i].ray_K; }
   /// Of a point with a depth.
-  Vec3 position(int i) const { return position_at(i, point_[i].rho); }
-  Vec3 position_at(int i, Scalar rho) const { return keyframes[point_[i].host].p_W + ray_W(i) / rho; }
+  Vec3 position(int i) const { return keyframes[point_[i].host].p_W + ray_W(i) / point_[i].rho; }
   /// Of its position, keyframes taken as exact: along the ray by the depth, across it by a pixel of the host.
   Mat3 covariance(int i) const;
   BlockKind kind(int i) const;
@@ -66,28 +65,11 @@ class KeyframeMap {
   /// Adds a point without a depth at a pixel of a keyframe; evicts one that was not seen in this frame where there is no room. Returns its
   /// row, or -1.
   int add(int host, const Vec2& pixel);
-  /// Adds a point at a known place. Returns its row, or -1.
-  int add_placed(int host, const Vec3& p_W);
   /// Says where a point is, seen from its host.
   void place(int i, const Vec3& p_W);
   void drop(int i);
-  /// An adjustment has moved the newest keyframe from this view: the views from which points without a depth were last seen move with it.
-  void move_views(const CameraView& newest_before);
-  /// Drops points that fail too often, and those that are not in front of their hosts.
-  void drop_failing();
-
-  /// A point's inverse depth has become known: its pixels were taken to their frames' times with that of their keyframes.
-  void correct_rows(int i, Scalar rho);
-
-  /// Adds the pose as a keyframe with this frame's inliers; where there is no room, the one with the fewest points leaves.
-  int add_keyframe(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);
-  /// Removes all keyframes but the first, and the points that they host.
-  void keep_first_keyframe();
 
  private:
-  int least_useful_keyframe() const;
-  void remove_keyframe(int k);
-
   const Settings& settings_;
   Map& map_;
   Frame& frame_;

@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "bundle/adjust.h"
+#include "vision/appearance.h"
 
 /// Table of keyframes: poses whose images the map was measured in, with the pixels of its points.
 
@@ -21,6 +22,8 @@ struct Keyframe {
   Vec3 v_W = Vec3::Zero(), w_C = Vec3::Zero();
   Scalar row_depth = 0;
   bool matches_by_motion = false;
+
+  CameraView view() const { return {q_WC, p_W}; }
 };
 
 class KeyframeTable {

@@ -31,7 +31,7 @@ bool project_row(const Camera& camera, const Body& body, const Vec3& m, Scalar w
 
 Vec2 at_frame_time(const Camera& camera, const Body& body, const Vec3& m, Scalar w, const Vec2& measured) {
   Vec2 by_row, still;
-  if (camera.readout == Scalar(0) || !project_moving(camera, body, row_time(camera, measured.y()), m, w, &by_row) ||
+  if (!has_rows(camera) || !project_moving(camera, body, row_time(camera, measured.y()), m, w, &by_row) ||
       !project_moving(camera, body, Scalar(0), m, w, &still))
     return measured;
   return measured - (by_row - still);

@@ -14,6 +14,9 @@ namespace pf {
 
 using Mat212 = Eigen::Matrix<Scalar, 2, BodyLayout::kVelocityRows>;
 
+/// Whether the camera reads its rows out one after the other.
+inline bool has_rows(const Camera& camera) { return camera.readout != Scalar(0); }
+
 /// Pixel of the direction m - w p, seen tau seconds after the frame's time, and its Jacobian by (theta, p, v, w) of the body (null to
 /// skip):
 ///

@@ -4,6 +4,7 @@
 
 #include "filter/motion.h"
 #include "frame/settings.h"
+#include "vision/appearance.h"
 
 /// The body of the window: pose and velocities with their covariance, predicted by the motion model and corrected by measured poses.
 
@@ -51,6 +52,7 @@ class KeyframeMotion {
   void set_pose_covariance(const Mat6& pose);
 
   const Body& body() const { return data_.body; }
+  CameraView view() const { return {data_.body.q_WC, data_.body.p_W}; }
   Mat6 pose_covariance() const { return data_.P.topLeftCorner<6, 6>(); }
   /// Of (theta, p, v, w).
   const Covariance& covariance() const { return data_.P; }

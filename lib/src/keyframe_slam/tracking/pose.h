@@ -4,6 +4,7 @@
 #include "frame/settings.h"
 #include "geometry/p3p.h"
 #include "geometry/pnp.h"
+#include "keyframe_slam/tracking/pose_prior.h"
 
 /// Pose of a frame from matches with known points: the consensus, and the fit with the noise of each.
 
@@ -13,16 +14,6 @@ namespace pf {
 struct PoseMatch {
   PnpPoint point;
   Mat2 noise;  ///< covariance of the pixel, the point's depth included [px^2]
-};
-
-/// A pose with what is known of it.
-struct PosePrior {
-  Quat q_WC = Quat::Identity();
-  Vec3 p_W = Vec3::Zero();
-  Mat6 covariance = Mat6::Zero();  ///< of (theta, p)
-  /// Velocities, which matter to the rows of a rolling shutter alone; covariance of (theta, p, v, w), null: velocities taken as exact.
-  Vec3 v_W = Vec3::Zero(), w_C = Vec3::Zero();
-  const Eigen::Matrix<Scalar, 12, 12>* with_velocities = nullptr;
 };
 
 /// Fits the pose to the matches that count, and to the prior:

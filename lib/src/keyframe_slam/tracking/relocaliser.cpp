@@ -32,9 +32,9 @@ bool KeyframeRelocaliser::choose(Scalar median_depth, PosePrior* about) const {
     *about = {data_.q_WC, data_.p_W, sphere(kAboutProposal, kAboutProposal * median_depth)};
     return true;
   }
-  *about = measuring_.now();
+  *about = prior_of(motion_);
   if (is_prediction_narrow(median_depth)) return true;
-  const Recognition place = views_.recognise(measuring_.tracker().pyramid(), measuring_.camera());
+  const Recognition place = views_.recognise(tracker_.pyramid(), map_.camera());
   if (place.score < kMinRecognition) return false;
   *about = {place.q_WC, place.p_W, sphere(kAboutView, kAboutView * median_depth)};
   return true;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "keyframe_slam/tracking/tracking.h"
+#include "keyframe_slam/tracking/keyframe_tracking.h"
 #include "track/view_memory.h"
 
 /// Finds the window's map again after frames that did not support the pose (lib/docs/states.md).
@@ -9,8 +9,9 @@ namespace pf {
 
 class KeyframeRelocaliser {
  public:
-  KeyframeRelocaliser(const Settings& settings, KeyframeMotion& motion, KeyframeTracking& measuring)
-      : settings_(settings), motion_(motion), measuring_(measuring) {}
+  KeyframeRelocaliser(const Settings& settings, const KeyframeMap& map, KeyframeMotion& motion, const Tracker& tracker,
+                      KeyframeTracking& measuring)
+      : settings_(settings), map_(map), motion_(motion), tracker_(tracker), measuring_(measuring) {}
 
   bool layout(Arena& arena) { return views_.layout(arena, settings_.max_kept_views); }
   void init() {
@@ -19,7 +20,7 @@ class KeyframeRelocaliser {
   }
 
   /// Keeps the view of a tracked frame.
-  void remember_view() { views_.keep_if_new(measuring_.tracker().pyramid(), motion_.body().q_WC, motion_.body().p_W); }
+  void remember_view() { views_.keep_if_new(tracker_.pyramid(), motion_.body().q_WC, motion_.body().p_W); }
   /// The map is tracked: forgets what earlier frames proposed.
   void clear_proposal() { data_ = Data(); }
   /// Searches where the pose may be: about the prediction as long as it is narrow, else about a kept view that looks like this image. A
@@ -40,7 +41,9 @@ class KeyframeRelocaliser {
   bool is_prediction_narrow(Scalar median_depth) const;
 
   const Settings& settings_;
+  const KeyframeMap& map_;
   KeyframeMotion& motion_;
+  const Tracker& tracker_;
   KeyframeTracking& measuring_;
   ViewMemory views_;
   Data data_;

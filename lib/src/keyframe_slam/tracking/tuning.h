@@ -38,14 +38,4 @@ inline constexpr Scalar kWeakPrior = Scalar(1);          ///< weight of the pred
 inline constexpr Scalar kMaxParallel = Scalar(0.0087);  ///< [rad] between rays that need no depth to fit: half a degree
 }  // namespace keyframe_tracking
 
-/// What a start of the window assumes.
-namespace keyframe_start {
-inline constexpr Scalar kParallaxes = Scalar(4);        ///< of a match from the rotation that explains the picture best
-inline constexpr Scalar kRotationSigma = Scalar(0.01);  ///< [rad] of that rotation
-inline constexpr Scalar kPositionSigma = Scalar(0.1);   ///< [depths] while nothing is known of the position
-inline constexpr Scalar kSpeedSigma = Scalar(0.2);      ///< [depths/s] of the speed that a record tells
-inline constexpr int kPatience = 8;     ///< frames without a better solution that end a record at the next keyframe
-inline constexpr int kSpeedFrames = 3;  ///< that tell it
-}  // namespace keyframe_start
-
 }  // namespace pf::tuning

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "bundle/adjust.h"
+#include "frame/noise_model.h"
+#include "keyframe_slam/adjustment/held_target.h"
+#include "keyframe_slam/adjustment/keyframe_bundle.h"
+#include "keyframe_slam/adjustment/keyframe_choice.h"
+#include "keyframe_slam/planes/planes.h"
+
+/// Adjusts keyframes and the points that they see, with a few older keyframes that see the same points held fixed. Points on a plane are
+/// held to it, and the plane is adjusted with them; so is the lens, where the settings say that it is uncertain.
+
+namespace pf {
+
+class KeyframeAdjustment {
+ public:
+  KeyframeAdjustment(const Settings& settings, KeyframeMap& map, KeyframePlanes& planes, const NoiseModel& noise)
+      : settings_(settings), map_(map), planes_(planes), noise_(noise) {}
+
+  bool layout(Arena& arena);
+  void init() {
+    map_covariance_.setZero();
+    target_.init();
+  }
+
+  /// Adjusts all keyframes of a map that is settled, with the lens where the settings let it be estimated; before, while a record of its
+  /// start goes on, the newest ones with the lens as it is. False: there is nothing to adjust yet.
+  bool run(bool settled);
+  /// Of the newest keyframe's (theta, p) in W, and with it of the map about it, given the map's first keyframe.
+  const Mat6& map_covariance() const { return map_covariance_; }
+  /// The map's lengths were multiplied by s.
+  void scale(Scalar s) {
+    map_covariance_.bottomRows<3>() *= s;
+    map_covariance_.rightCols<3>() *= s;
+  }
+  HeldTarget& target() { return target_; }
+
+ private:
+  Scalar sigma_px() const;
+  void adjust(bool with_lens, const RhoPrior& prior, const BundleDistance* held);
+  void note_covariance(const Mat6& given_held);
+  void take_keyframes();
+  void take_points();
+  void reject_outliers(int i);
+
+  const Settings& settings_;
+  KeyframeMap& map_;
+  KeyframePlanes& planes_;
+  const NoiseModel& noise_;
+  BundleAdjuster adjuster_;
+  KeyframeChoice choice_{settings_, map_};
+  HeldTarget target_;
+  KeyframeBundle bundle_;
+  Mat6 map_covariance_ = Mat6::Zero();
+};
+
+}  // namespace pf

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "keyframe_slam/adjustment/keyframe_adjustment.h"
+#include "keyframe_slam/start/keyframe_record.h"
+#include "keyframe_slam/tracking/point_search.h"
+#include "keyframe_slam/tracking/pose_measurement.h"
+
+/// Keeps the map of the window: gives points depths, adds keyframes and adjusts them, and adds new points.
+
+namespace pf {
+
+class KeyframeMapping {
+ public:
+  KeyframeMapping(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion,
+                  KeyframePlanes& planes, const NoiseModel& noise, const PointSearch& search,
+                  const PoseMeasurement& pose, KeyframeRecord& record)
+      : settings_(settings),
+        map_(map),
+        frame_(frame),
+        motion_(motion),
+        planes_(planes),
+        noise_(noise),
+        search_(search),
+        pose_(pose),
+        record_(record),
+        adjustment_(settings, map, planes, noise) {}
+
+  bool layout(Arena& arena) { return adjustment_.layout(arena); }
+  void init() { adjustment_.init(); }
+
+  /// The work of one frame. tracked: its matches support its pose; a frame that does not changes nothing in the map, but for a first one.
+  /// young: so few points have a depth that those without helped with the pose.
+  void keep(bool tracked, bool young, Scalar median_depth);
+  /// Adjusts the map about the newest keyframe, which is this frame, and moves the body with it.
+  void adjust();
+
+  KeyframeAdjustment& adjustment() { return adjustment_; }
+  const KeyframeAdjustment& adjustment() const { return adjustment_; }
+
+ private:
+  void triangulate_inliers(bool young);
+  bool wants_keyframe(bool young, Scalar median_depth) const;
+  void add_frame(bool young);
+  void add_points(bool pending, Scalar median_depth);
+
+  const Settings& settings_;
+  KeyframeMap& map_;
+  Frame& frame_;
+  KeyframeMotion& motion_;
+  KeyframePlanes& planes_;
+  const NoiseModel& noise_;
+  const PointSearch& search_;
+  const PoseMeasurement& pose_;
+  KeyframeRecord& record_;
+  KeyframeAdjustment adjustment_;
+};
+
+}  // namespace pf

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "keyframe_slam/map/keyframe_map.h"
+
+/// Keyframes that come and go, and the points that go with them.
+
+namespace pf {
+
+/// Adds the pose as a keyframe with the frame's inliers. Where there is no room, the one that sees the fewest points leaves, but none of
+/// the newest `kept` ones; its points go to other keyframes. Returns the entry of the new one.
+int add_keyframe(const Frame& frame, const CameraView& view, int kept, KeyframeMap* map);
+/// Removes all keyframes but the first, and the points that they host.
+void keep_first_keyframe(KeyframeMap* map);
+
+/// Drops points that fail too often, and those that are not in front of their hosts.
+void drop_failing(KeyframeMap* map);
+/// An adjustment has moved the newest keyframe from this view: the views from which points without a depth were last seen move with it.
+void move_views(const CameraView& newest_before, KeyframeMap* map);
+/// How many points have a depth.
+int num_placed(const KeyframeMap& map);
+
+}  // namespace pf

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "base/status.h"
+#include "frame/start/start.h"
+#include "frame/start/start_at_target.h"
+#include "keyframe_slam/adjustment/held_target.h"
+#include "keyframe_slam/start/keyframe_record.h"
+
+/// Starts the window in the way that the caller chose: at a known pose, at a target, or from a record of the first frames.
+
+namespace pf {
+
+class KeyframeStart {
+ public:
+  KeyframeStart(const Settings& settings, KeyframeMap& map, Frame& frame, TrackingState& tracking,
+                KeyframeMotion& motion, const ImageSearch& images, HeldTarget& held, KeyframeRecord& record,
+                SecondPose& second)
+      : settings_(settings),
+        map_(map),
+        frame_(frame),
+        tracking_(tracking),
+        motion_(motion),
+        images_(images),
+        held_(held),
+        record_(record),
+        second_(second) {}
+
+  bool layout(Arena& arena) { return target_.layout(arena, settings_.camera.width, settings_.camera.height); }
+  void init();
+  /// Clears the map and what came from it, and the poses that the caller gave. A target that was not withdrawn may be found again.
+  void start_over();
+
+  Status use_target(const Target& target);
+  Status use_pose(const KnownBody& known);
+  /// Of the frame that comes at t_ns. kTime: it has been. kState: the scale is known. kRange: it is where the camera was first.
+  Status use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma);
+  /// Where the camera was first, as the caller knows it or as it defines W.
+  Vec3 first_place_W() const { return known_.given ? known_.body.p_W : Vec3::Zero(); }
+
+  /// Sets the pose of the first frame and makes it a keyframe. False: not possible in this frame.
+  bool start_in_image();
+
+ private:
+  void set_pose(bool at_target);
+  void add_target(int keyframe, const TargetSighting& sighting);
+
+  const Settings& settings_;
+  KeyframeMap& map_;
+  Frame& frame_;
+  TrackingState& tracking_;
+  KeyframeMotion& motion_;
+  const ImageSearch& images_;
+  HeldTarget& held_;
+  KeyframeRecord& record_;
+  SecondPose& second_;
+  KnownBody known_;
+  StartAtTarget target_;
+};
+
+}  // namespace pf

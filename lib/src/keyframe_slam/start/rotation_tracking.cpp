@@ -1,0 +1,85 @@
+#include "keyframe_slam/start/rotation_tracking.h"
+
+#include "bundle/rotation_fit.h"
+#include "keyframe_slam/start/tuning.h"
+#include "keyframe_slam/tracking/frame_time.h"
+
+namespace pf {
+
+using namespace tuning::keyframe_start;
+
+namespace {
+
+/// Found in this frame, and not accepted yet.
+bool is_found(const Match& match) { return match.status == MatchStatus::kOutlier && match.feature >= 0; }
+
+}  // namespace
+
+bool RotationTracking::layout(Arena& arena) {
+  const std::size_t points = static_cast<std::size_t>(settings_.max_features);
+  ray_ = arena.take<Vec3>(points);
+  pixel_ = arena.take<BundlePixel>(points);
+  scratch_ = arena.take<Scalar>(points);
+  return arena.ok();
+}
+
+/// Returns how many are found.
+int RotationTracking::find_points() {
+  const Scalar depth = settings_.start_depth;
+  const PosePrior at = prior_of(motion_);
+  int found = search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
+  if (2 * found < frame_.report.attempts && search_.begin_following()) {
+    frame_.forget_searches();
+    found = search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
+    search_.end_following();
+  }
+  return found;
+}
+
+/// Rays and pixels of what was found. Returns how many.
+int RotationTracking::list_rays() {
+  int count = 0;
+  for (int t = 0; t < frame_.match_count() && count < settings_.max_features; ++t) {
+    const Match& match = frame_.match(t);
+    if (!is_found(match)) continue;
+    ray_[count] = map_.ray_W(match.feature);
+    const Vec2 pixel = followed_at_frame_time(map_, match, frame_.report.t_ns);
+    pixel_[count++] = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), true};
+  }
+  return count;
+}
+
+bool RotationTracking::measure(const Vec3& base_W) {
+  const int found = find_points();
+  if (found < settings_.min_inliers) return false;
+  Quat q_WC = motion_.body().q_WC;
+  const Scalar parallax = fit_rotation(map_.camera(), ray_, pixel_, list_rays(), scratch_, &q_WC);
+  const Scalar bound = kParallaxes * parallax + pose_.bound_px();
+  correct_body(found, q_WC, base_W);
+  const CameraView seen_from = motion_.view();
+  for (int t = 0; t < frame_.match_count(); ++t) {
+    Match& match = frame_.match(t);
+    Vec2 z;
+    if (!is_found(match) || !project(map_.camera(), q_WC.conjugate() * map_.ray_W(match.feature), &z)) continue;
+    const Vec2 pixel = followed_at_frame_time(map_, match, frame_.report.t_ns);
+    if ((pixel - z).squaredNorm() > bound * bound) continue;
+    accept_match(seen_from, pixel, frame_.report.t_ns, &map_, &match);
+    ++frame_.report.inliers;
+  }
+  return frame_.report.inliers >= settings_.min_inliers;
+}
+
+/// By the pose that all found points say together, about a rotation that is known; where they say none, by that.
+void RotationTracking::correct_body(int found, const Quat& q_WC, const Vec3& p_W) {
+  const Scalar depth = settings_.start_depth;
+  PosePrior about = {q_WC, p_W, Mat6(Mat6::Identity() * (kRotationSigma * kRotationSigma))};
+  about.covariance.bottomRightCorner<3, 3>() = Mat3::Identity() * (kPositionSigma * kPositionSigma * depth * depth);
+  about.v_W = motion_.body().v_W;
+  about.w_C = motion_.body().w_C;
+  CameraPose pose;
+  Mat6 information;
+  if (pose_.fit(found, about, depth, 0, &pose, &information) < settings_.min_inliers) pose = {q_WC, p_W};
+  motion_.correct(pose.q_WC, pose.p_WC, about.covariance.cast<double>());
+}
+
+}  // namespace pf

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "bundle/adjust.h"
+#include "keyframe_slam/tracking/pose_measurement.h"
+
+/// Follows the points of the first frame while no depths are known.
+
+namespace pf {
+
+class RotationTracking {
+ public:
+  RotationTracking(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion,
+                   PointSearch& search, PoseMeasurement& pose)
+      : settings_(settings), map_(map), frame_(frame), motion_(motion), search_(search), pose_(pose) {}
+
+  bool layout(Arena& arena);
+
+  /// Finds points about where they were last, as if the camera had only rotated. Corrects the body by the pose that they say together about
+  /// the rotation that explains the image best, and accepts those that are within a few times the typical parallax of that rotation.
+  /// base_W: place of the record's first frame. False: too few.
+  bool measure(const Vec3& base_W);
+
+ private:
+  int find_points();
+  int list_rays();
+  void correct_body(int found, const Quat& q_WC, const Vec3& p_W);
+
+  const Settings& settings_;
+  KeyframeMap& map_;
+  Frame& frame_;
+  KeyframeMotion& motion_;
+  PointSearch& search_;
+  PoseMeasurement& pose_;
+  // One for each point.
+  Vec3* ray_ = nullptr;  ///< in W
+  BundlePixel* pixel_ = nullptr;
+  Scalar* scratch_ = nullptr;
+};
+
+}  // namespace pf

@@ -1,0 +1,186 @@
+#include "keyframe_slam/tracking/keyframe_tracking.h"
+
+#include <cmath>
+
+#include "base/elapsed.h"
+#include "frame/ellipse.h"
+#include "frame/tuning.h"
+#include "geometry/small_cholesky.h"
+#include "keyframe_slam/map/depth.h"
+#include "keyframe_slam/map/rows.h"
+#include "keyframe_slam/tracking/body_correction.h"
+#include "keyframe_slam/tracking/frame_time.h"
+#include "keyframe_slam/tracking/tuning.h"
+
+namespace pf {
+
+using namespace tuning::keyframe_tracking;
+
+void KeyframeTracking::measure(Scalar median_depth) {
+  const PosePrior prior = prior_of(motion_);
+  CameraPose pose;
+  Mat6 information;
+  if (measure_about(prior, &pose, &information) == 0) {
+    measure_all(median_depth);
+    if (frame_.report.inliers > 0 || !search_.begin_following()) return;
+    frame_.forget_searches();
+    const bool found = measure_about(prior, &pose, &information) > 0;
+    if (!found) measure_all(median_depth);
+    search_.end_following();
+    if (!found) return;
+  }
+  if (has_rows(map_.camera()))
+    correct_by_rows(prior, pose, information);
+  else
+    correct(pose, information);
+  measure_unplaced(median_depth);
+}
+
+int KeyframeTracking::measure_about(const PosePrior& about, CameraPose* pose, Mat6* information) {
+  const int listed = search_.list_placed(about);
+  PosePrior moving = about;  // with the velocities that are known best
+  if (settings_.gate * search_.widest(listed) > kWideEllipse * kWideEllipse && listed > kScouts)
+    found_ = search_by_scouts(about, pose, information, &moving);
+  else
+    found_ = search_.search(0, 0, listed, about, Scalar(1));
+  return pose_.find(found_, moving, pose, information);
+}
+
+/// Searches for a few points first: with their pose the others are searched for in small ellipses. moving gets the velocities that follow
+/// from it. Returns how many are found.
+int KeyframeTracking::search_by_scouts(const PosePrior& about, CameraPose* pose, Mat6* information, PosePrior* moving) {
+  const int others = search_.placed() - kScouts;
+  const int found = search_.search(0, 0, kScouts, about, Scalar(1));
+  PosePrior scouted = about;
+  const int inliers = pose_.find(found, about, pose, information);
+  SmallCholesky<6> factored, prior;
+  KeyframeMotion after = motion_;
+  if (inliers > 0 && has_rows(map_.camera()) && about.with_velocities != nullptr &&
+      follow_velocities(*pose, *information, &after)) {
+    scouted = {pose->q_WC,       pose->p_WC,       after.pose_covariance(),
+               after.body().v_W, after.body().w_C, &after.covariance()};
+    search_.predict_again(kScouts, others, scouted);
+  } else if (inliers > 0 && prior.factor(about.covariance) && factored.factor(Mat6(*information + prior.inverse()))) {
+    scouted = {pose->q_WC, pose->p_WC, factored.inverse(), about.v_W, about.w_C};
+    search_.predict_again(kScouts, others, scouted);
+  }
+  moving->v_W = scouted.v_W;
+  moving->w_C = scouted.w_C;
+  return search_.search(found, kScouts, others, scouted, Scalar(1));
+}
+
+/// Pixels at the frame's time were found with the predicted velocities; a jerk is found once more with those that the pose tells.
+void KeyframeTracking::correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information) {
+  const int found = frame_.report.matches;
+  for (int pass = 0; pass < kRowPasses; ++pass) {
+    KeyframeMotion after = motion_;
+    if (!follow_velocities(pose, information, &after)) break;
+    PosePrior at = before;
+    at.v_W = after.body().v_W;
+    at.w_C = after.body().w_C;
+    if (pose_.find(found, at, &pose, &information) > 0) continue;
+    pose_.find(found, before, &pose, &information);  // the consensus of before counts
+    break;
+  }
+  correct(pose, information);
+}
+
+void KeyframeTracking::correct(const CameraPose& pose, const Mat6& information) {
+  PosePrior now;
+  if (apply(pose, information, &now)) mark(now);
+}
+
+bool KeyframeTracking::apply(const CameraPose& pose, const Mat6& information, PosePrior* now) {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
+  return correct_body(pose, information, &motion_, now);
+}
+
+/// Says of each match whether it is where the pose has it, within its own noise and that of the pose.
+void KeyframeTracking::mark(const PosePrior& at) {
+  const int found = frame_.report.matches;
+  const PosePrior now = prior_of(motion_);
+  for (int c = 0; c < found; ++c) {
+    Match& match = search_.match(c);
+    const Mat2& noise = search_.point(c).noise;
+    ExpectedPixel expected;
+    match.status = MatchStatus::kOutlier;
+    if (!pose_.is_inlier(c) || !expect_placed(map_, match.feature, at, &expected)) continue;
+    const Vec2 r = match.measured - expected.pixel;
+    match.nis = squared_distance(r, Mat2(noise + expected.spread));
+    const Mat2 S = noise + NoiseModel::search() + expected.spread;
+    if (squared_distance(r, S) > settings_.gate) continue;
+    frame_.report.nis += static_cast<double>(match.nis);
+    frame_.report.nis_dof += 2;
+    ++frame_.report.inliers;
+    accept(match_at_frame_time(map_, match, now, Scalar(1)), &match);
+  }
+}
+
+void KeyframeTracking::accept(const Vec2& pixel, Match* match) {
+  accept_match(motion_.view(), pixel, frame_.report.t_ns, &map_, match);
+}
+
+/// Points without a depth: where the corrected pose leaves no depth that explains their pixel, it is wrong.
+void KeyframeTracking::measure_unplaced(Scalar depth) {
+  const PosePrior at = prior_of(motion_);
+  const int count = search_.list_unplaced(at, depth), first = search_.placed();
+  const int end = search_.search(first, first, count, at, depth);
+  for (int c = first; c < end; ++c) {
+    Match& match = search_.match(c);
+    const Vec2 pixel = match_at_frame_time(map_, match, at, depth);
+    DepthFit fit;
+    const bool fits = fit_depth(map_.camera(), map_, match.feature, {at.q_WC, at.p_W}, pixel, &fit);
+    if (fits ? fit.worst_px > pose_.bound_px() : fit.cos_parallax < std::cos(kMaxParallel)) continue;
+    accept(pixel, &match);
+  }
+}
+
+void KeyframeTracking::measure_young(Scalar median_depth) {
+  const PosePrior prior = prior_of(motion_);
+  const int placed = search_.list_placed(prior);
+  const int count = placed + search_.list_unplaced(prior, median_depth);
+  fit_all(search_.search(0, 0, count, prior, median_depth), prior, median_depth);
+}
+
+/// After measure_about() found no pose: the points without a depth are searched for as well.
+void KeyframeTracking::measure_all(Scalar median_depth) {
+  const PosePrior prior = prior_of(motion_);
+  const int count = search_.list_unplaced(prior, median_depth);
+  fit_all(search_.search(found_, search_.placed(), count, prior, median_depth), prior, median_depth);
+}
+
+/// Corrects the body by the pose that the first `found` points say together, those without a depth as well.
+void KeyframeTracking::fit_all(int found, const PosePrior& prior, Scalar median_depth) {
+  CameraPose pose = {prior.q_WC, prior.p_W};
+  Mat6 information;
+  int open = 0;
+  for (int c = 0; c < found; ++c) open += map_.point(search_.match(c).feature).has_depth ? 0 : 1;
+  const int inliers = pose_.fit(found, prior, median_depth, open, &pose, &information);
+  PosePrior at;
+  if (!pose_.is_supported(inliers, found) || !apply(pose, information, &at)) return;
+  for (int c = 0; c < found; ++c) {
+    Match& match = search_.match(c);
+    if (!pose_.is_inlier(c)) continue;
+    ++frame_.report.inliers;
+    accept(followed_at_frame_time(map_, match, frame_.report.t_ns), &match);
+  }
+}
+
+void KeyframeTracking::learn_noise() {
+  const PosePrior at = prior_of(motion_);
+  for (int c = 0; c < search_.placed(); ++c) {
+    const Match& match = search_.match(c);
+    const Mat2& noise = search_.point(c).noise;
+    ExpectedPixel expected;
+    if (match.status != MatchStatus::kInlier || match.feature < 0) continue;
+    Feature& f = map_.feature(match.feature);
+    if (f.observations < tuning::image_front_end::kSettled || !expect_placed(map_, match.feature, at, &expected))
+      continue;
+    const Scalar leverage = expected.spread.trace() / (noise_.correlation_frames() * noise.trace());
+    noise_.learn(frame_.report.frames, match.measured - expected.pixel, noise, leverage,
+                 f.is_target ? nullptr : &f.residuals);
+  }
+  noise_.end_frame();
+}
+
+}  // namespace pf

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "keyframe_slam/tracking/motion.h"
+#include "keyframe_slam/tracking/point_search.h"
+#include "keyframe_slam/tracking/pose_measurement.h"
+
+/// Measures an image with the window's map: which points are searched for about which pose, and how the body is corrected by what is found.
+
+namespace pf {
+
+class KeyframeTracking {
+ public:
+  KeyframeTracking(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion, NoiseModel& noise,
+                   PointSearch& search, PoseMeasurement& pose)
+      : settings_(settings), map_(map), frame_(frame), motion_(motion), noise_(noise), search_(search), pose_(pose) {}
+
+  /// Finds points with a depth about the predicted pose, and corrects the body by the pose that they say; then finds those without. Where
+  /// those with a depth say none, all say it together.
+  void measure(Scalar median_depth);
+  /// While few points have a depth: finds all points about the predicted pose, and corrects the body by the pose that they say together. A
+  /// point without a depth says where the camera is but for a translation along its epipolar line.
+  void measure_young(Scalar median_depth);
+  /// Finds points with a depth about another pose than the predicted one. Changes nothing but the frame's matches. Returns the number of
+  /// inliers, and the pose with its information.
+  int measure_about(const PosePrior& about, CameraPose* pose, Mat6* information);
+  /// Corrects the body by a pose that measure_about() returned, and says which matches agree with it.
+  void correct(const CameraPose& pose, const Mat6& information);
+  /// Updates the noise model with the residuals of this frame's inliers.
+  void learn_noise();
+
+ private:
+  int search_by_scouts(const PosePrior& about, CameraPose* pose, Mat6* information, PosePrior* moving);
+  void correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information);
+  bool apply(const CameraPose& pose, const Mat6& information, PosePrior* now);
+  void mark(const PosePrior& at);
+  void accept(const Vec2& pixel, Match* match);
+  void measure_all(Scalar median_depth);
+  void fit_all(int found, const PosePrior& prior, Scalar median_depth);
+  void measure_unplaced(Scalar depth);
+
+  const Settings& settings_;
+  KeyframeMap& map_;
+  Frame& frame_;
+  KeyframeMotion& motion_;
+  NoiseModel& noise_;
+  PointSearch& search_;
+  PoseMeasurement& pose_;
+  int found_ = 0;  ///< points with a depth, by the last measure_about(), at the front of the search's list
+};
+
+}  // namespace pf

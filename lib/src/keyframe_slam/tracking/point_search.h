@@ -1,0 +1,83 @@
+#pragma once
+
+#include "frame/followed_view.h"
+#include "frame/image_search.h"
+#include "frame/noise_model.h"
+#include "keyframe_slam/planes/planes.h"
+#include "keyframe_slam/tracking/expected_pixel.h"
+
+/// Lists the points of the map that should be in view, and searches for them in the image.
+
+namespace pf {
+
+/// A point that is searched for in this frame.
+struct SearchedPoint {
+  int match;        ///< of the frame
+  Mat2 noise;       ///< of its match
+  Scalar searched;  ///< area [px^2]
+};
+
+/// The list has points with a depth first, and behind them those without. What a search finds moves to the front.
+class PointSearch {
+ public:
+  PointSearch(const Settings& settings, KeyframeMap& map, const KeyframePlanes& planes, Frame& frame,
+              const NoiseModel& noise)
+      : settings_(settings), map_(map), planes_(planes), frame_(frame), noise_(noise) {}
+
+  bool layout(Arena& arena);
+  void init();
+  /// Prepares an image, with an empty list. False if it shows nothing to track.
+  bool begin_frame(const ImageView& image);
+
+  /// Lists the points with a depth, the most reliable first, in place of all that was listed. Returns how many.
+  int list_placed(const PosePrior& at);
+  /// Lists points without a depth behind those with one that this frame has listed. Returns how many. depth: the median one.
+  int list_unplaced(const PosePrior& at, Scalar depth);
+  /// Listed points with a depth.
+  int placed() const { return placed_; }
+  /// Predicts points with a depth again, from a pose that is known better.
+  void predict_again(int first, int count, const PosePrior& at);
+  /// Searches for a range of the list, and moves what is found behind the first `found` points of the list, which were found before.
+  /// Returns how many there are then.
+  int search(int found, int first, int count, const PosePrior& at, Scalar depth);
+
+  const SearchedPoint& point(int c) const { return point_[c]; }
+  Match& match(int c) { return frame_.match(point_[c].match); }
+  const Match& match(int c) const { return frame_.match(point_[c].match); }
+  /// Largest variance of the first `count` points along any direction [px^2].
+  Scalar widest(int count) const;
+
+  /// Where most ellipses are wide, searches go about the places where the picture as a whole has gone, until end_following(). False: they
+  /// are not wide, or the picture does not say it.
+  bool begin_following();
+  void end_following() { is_following_ = false; }
+  /// After a frame that supported its pose: the next one may be followed from it.
+  void keep_view(const CameraView& view) { followed_.keep(images_.tracker().pyramid(), view.q_WC, view.c_W); }
+  /// The map is given up, and with it all poses.
+  void forget_view() { followed_.init(); }
+
+  /// Updates masks and normals of templates with this frame's inliers.
+  void learn_templates(const PosePrior& at);
+
+  const ImageSearch& images() const { return images_; }
+
+ private:
+  int list(const PosePrior& at, bool placed, Scalar depth);
+  bool is_inside(const Vec2& pixel) const;
+  bool is_wide(const Mat2& innovation) const;
+  bool aim(int i, SearchTask* task) const;
+  SearchTask task_of(int i, const PosePrior& at, Scalar depth) const;
+
+  const Settings& settings_;
+  KeyframeMap& map_;
+  const KeyframePlanes& planes_;
+  Frame& frame_;
+  const NoiseModel& noise_;
+  ImageSearch images_;
+  FollowedView followed_;
+  bool is_following_ = false;       ///< searches go about the followed view's pixels
+  SearchedPoint* point_ = nullptr;  ///< one for each point of the map
+  int placed_ = 0;
+};
+
+}  // namespace pf

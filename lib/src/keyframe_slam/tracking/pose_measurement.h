@@ -1,0 +1,47 @@
+#pragma once
+
+#include "keyframe_slam/tracking/point_search.h"
+#include "keyframe_slam/tracking/pose.h"
+
+/// The pose of a frame that its found points say, and whether it may be chance.
+
+namespace pf {
+
+/// All functions work on the first `found` points of the search's list, which were found.
+class PoseMeasurement {
+ public:
+  PoseMeasurement(const Settings& settings, const KeyframeMap& map, Frame& frame, const NoiseModel& noise,
+                  const PointSearch& search)
+      : settings_(settings), map_(map), frame_(frame), noise_(noise), search_(search) {}
+
+  bool layout(Arena& arena) { return pose_.layout(arena, settings_.max_features); }
+  void init() { pose_.init(); }
+
+  /// Pose that most of the points support, all of which have a depth. Returns the number of inliers, 0 where the pose may be chance.
+  int find(int found, const PosePrior& prior, CameraPose* pose, Mat6* information);
+  /// Pose that all points say together, those without a depth as well. Pixels are taken to the frame's time by how far they have moved.
+  /// depth: of points without one. shared: how many these are; they may all be nearer or farther together, and then their mean is known no
+  /// better than one of them. 0: their median is the unit of length, and each is wrong by itself. Returns the number of inliers.
+  int fit(int found, const PosePrior& prior, Scalar depth, int shared, CameraPose* pose, Mat6* information);
+  /// Whether the pose of the last fit() is more than chance.
+  bool is_supported(int inliers, int found) const;
+
+  bool is_inlier(int c) const { return pose_.is_inlier(c); }
+  /// Within which a match supports a pose [px].
+  Scalar bound_px() const;
+
+ private:
+  void make_match(int c, const PosePrior& prior, Scalar depth, int shared);
+  bool is_believed(int inliers, int found, Scalar shares) const;
+  Scalar agreeing_area(int c) const;
+  bool most_agree(int found) const;
+
+  const Settings& settings_;
+  const KeyframeMap& map_;
+  Frame& frame_;
+  const NoiseModel& noise_;
+  const PointSearch& search_;
+  KeyframePose pose_;
+};
+
+}  // namespace pf
