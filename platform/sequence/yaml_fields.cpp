@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "file.h"
+#include "meaning.h"
 #include "numbers.h"
 #include "refuse.h"
 
@@ -108,27 +110,87 @@ bool matches(const std::vector<std::string>& patterns, const std::string& word) 
 
 }  // namespace
 
-Fields::Fields(const std::string& text, const std::string& file) : file_(file) {
+Fields::Fields(const std::string& text, const std::string& file) : Fields(documents(text, file).front()) {}
+
+std::vector<Fields> Fields::documents(const std::string& text, const std::string& file) {
   if (text.size() > kMaxYamlBytes || text.find('\0') != std::string::npos || too_deep(text)) {
     refuse(file + ": is not a YAML file of the expected kind (too large, too deep, or binary)");
   }
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && text[first] == '<') {
+    refuse(file + ": is XML, and only YAML is read; OpenCV writes it to a name that ends in .yml");
+  }
+  std::vector<YAML::Node> nodes;
   try {
-    node_ = YAML::Load(from_opencv(text));
+    nodes = YAML::LoadAll(from_opencv(text));
   } catch (const YAML::Exception& error) {
     refuse(file + ": is not valid YAML: " + one_line(error.what()));
   }
-  if (!node_.IsMap()) {
+  std::vector<Fields> all;
+  for (const YAML::Node& node : nodes) {
+    if (node.IsMap()) {
+      all.push_back(Fields(node, file, {}));
+    } else if (node.IsDefined() && !node.IsNull()) {
+      all.clear();
+      break;
+    }
+  }
+  if (all.empty()) {
     refuse(file + ": holds no fields (\"name: value\" lines); is it the right file?");
   }
+  return all;
+}
+
+Fields Fields::edited(const std::vector<std::string>& above, const std::string& key, const std::string& name) const {
+  YAML::Node copy(YAML::NodeType::Map);
+  for (const auto& entry : node_) {
+    const std::string found = entry.first.IsScalar() ? entry.first.Scalar() : std::string();
+    if (above.empty() && found == key) {
+      if (!name.empty()) {
+        copy.force_insert(name, entry.second);
+      }
+    } else if (!above.empty() && found == above.front() && entry.second.IsMap()) {
+      const Fields inner(entry.second, file_, {});
+      copy.force_insert(found, inner.edited({above.begin() + 1, above.end()}, key, name).node_);
+    } else {
+      copy.force_insert(entry.first, entry.second);
+    }
+  }
+  return Fields(copy, file_, above_);
+}
+
+std::string Fields::name_of(const std::string& key) const {
+  std::string name;
+  for (const std::string& above : above_) {
+    name += above + ".";
+  }
+  return name + key;
+}
+
+std::string Fields::names_of(const std::vector<std::string>& keys) const {
+  std::string names;
+  for (const std::string& key : keys) {
+    names += (names.empty() ? "'" : ", '") + name_of(key) + "'";
+  }
+  return names;
 }
 
 void Fields::refuse_field(const std::string& key, const std::string& why) const {
-  refuse(file_ + ": field '" + prefix_ + key + "' " + one_line(why));
+  refuse(file_ + ": field '" + name_of(key) + "' " + one_line(why));
 }
 
-std::string Fields::check_keys(const Known& known) const {
-  std::vector<std::string> found;
-  std::string ignored;
+void Fields::refuse_unknown(const std::string& key, const Known& known, const char* why) const {
+  const auto nearest = std::min_element(known.read.begin(), known.read.end(), [&](const auto& a, const auto& b) {
+    return unlikeness(key, a) < unlikeness(key, b);
+  });
+  const bool is_near = nearest != known.read.end() && unlikeness(key, *nearest) <= kMisspelled;
+  throw UnknownField(file_ + ": field '" + name_of(one_line(key)) + "' is not known here" + why + ". Known are " +
+                         names_of(known.read),
+                     above_, key, is_near ? *nearest : "");
+}
+
+void Fields::check_keys(const Known& known, std::vector<std::string>& notes) const {
+  std::vector<std::string> found, ignored;
   for (const auto& entry : node_) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : std::string("?");
     const bool read = contains(known.read, key);
@@ -142,22 +204,20 @@ std::string Fields::check_keys(const Known& known) const {
     if (read || matches(known.unused, key)) {
       continue;
     }
-    const auto nearest = std::min_element(known.read.begin(), known.read.end(), [&](const auto& a, const auto& b) {
-      return unlikeness(key, a) < unlikeness(key, b);
-    });
-    if (nearest != known.read.end() && unlikeness(key, *nearest) <= kMisspelled) {
-      refuse_field(key, "is not known; is '" + prefix_ + *nearest + "' meant?");
+    const Meaning meaning = meaning_of(key, entry.second);
+    const bool misspelled = std::any_of(known.read.begin(), known.read.end(),
+                                        [&](const auto& name) { return unlikeness(key, name) <= kMisspelled; });
+    if (meaning == Meaning::kChanged) {
+      refuse_unknown(key, known, ", and may change what other fields mean");
     }
-    if (known.ours) {
-      std::string names;
-      for (const std::string& name : known.read) {
-        names += (names.empty() ? "'" : ", '") + name + "'";
-      }
-      refuse_field(key, "is not known here; correct or remove it. Known are " + names);
+    if (known.ours || (misspelled && meaning != Meaning::kNeutral)) {
+      refuse_unknown(key, known, "");
     }
-    ignored += (ignored.empty() ? "'" : ", '") + prefix_ + key + "'";
+    ignored.push_back(key);
   }
-  return ignored.empty() ? ignored : file_ + ": ignored, because not known here: " + one_line(ignored);
+  if (!ignored.empty()) {
+    notes.push_back(file_ + ": ignored, because not known here: " + one_line(names_of(ignored)));
+  }
 }
 
 YAML::Node Fields::at(const std::string& key) const {
@@ -173,6 +233,18 @@ YAML::Node Fields::at(const std::string& key) const {
   return found;
 }
 
+std::vector<std::string> Fields::keys() const {
+  std::vector<std::string> all;
+  for (const auto& entry : node_) {
+    all.push_back(entry.first.IsScalar() ? entry.first.Scalar() : std::string());
+  }
+  return all;
+}
+
+bool Fields::is_map(const std::string& key) const { return has(key) && at(key).IsMap(); }
+
+bool Fields::is_scalar(const std::string& key) const { return has(key) && at(key).IsScalar(); }
+
 bool Fields::has(const std::string& key) const {
   const YAML::Node found = static_cast<const YAML::Node&>(node_)[key];
   return found.IsDefined() && !found.IsNull();
@@ -187,7 +259,9 @@ Fields Fields::below(const std::string& key) const {
   if (!node.IsMap()) {
     refuse_field(key, "must hold fields of its own");
   }
-  return Fields(node, file_, prefix_ + key + ".");
+  std::vector<std::string> above = above_;
+  above.push_back(key);
+  return Fields(node, file_, above);
 }
 
 std::string Fields::text(const std::string& key) const {
@@ -232,6 +306,75 @@ int Fields::integer(const std::string& key) const {
   return static_cast<int>(value);
 }
 
+bool Fields::flag_or(const std::string& key, bool otherwise) const {
+  if (!has(key)) {
+    return otherwise;
+  }
+  const std::string word = lower_case(text(key));
+  if (word != "0" && word != "1" && word != "false" && word != "true" && word != "no" && word != "yes") {
+    refuse_field(key, "is '" + text(key) + "'; known are 0 and 1");
+  }
+  return word == "1" || word == "true" || word == "yes";
+}
+
+std::vector<double> Fields::numbers_in_text(const std::string& key) const {
+  std::vector<double> values;
+  const std::string words = text(key);
+  for (const Row& row : split_rows(words)) {
+    for (const std::string_view word : row.words) {
+      double value = 0.0;
+      if (!parse_double(word, value) || !std::isfinite(value)) {
+        refuse_field(key, "holds '" + std::string(word) + "', which is not a finite number");
+      }
+      values.push_back(value);
+    }
+  }
+  return values;
+}
+
+std::vector<double> Fields::vector(const std::string& key, size_t limit) const { return flat(key, limit, 0); }
+
+std::vector<double> Fields::flat(const std::string& key, size_t limit, size_t columns) const {
+  const YAML::Node node = at(key);
+  if (node.IsMap()) {
+    const Fields inside = below(key);
+    const std::vector<double> values = inside.numbers("data", limit);
+    const auto sides = std::pair(inside.number_or("rows", 1.0), inside.number_or("cols", 1.0));
+    const bool has_sides = inside.has("rows") && inside.has("cols");
+    if (has_sides && sides.first * sides.second != static_cast<double>(values.size())) {
+      inside.refuse_field("data", "has " + std::to_string(values.size()) + " numbers, which rows and cols do not say");
+    }
+    return values;
+  }
+  std::vector<double> values;
+  for (const YAML::Node& entry : node) {
+    if (entry.IsSequence() && columns > 0 && entry.size() != columns) {
+      refuse_field(key, "must have " + std::to_string(columns) + " numbers in every row");
+    }
+    const std::vector<double> row =
+        entry.IsSequence() ? to_numbers(entry, key, limit) : std::vector<double>{to_number(entry, key)};
+    values.insert(values.end(), row.begin(), row.end());
+    if (values.size() > limit) {
+      break;
+    }
+  }
+  if (!node.IsSequence() || values.size() > limit) {
+    refuse_field(key, "must be a list of at most " + std::to_string(limit) + " numbers");
+  }
+  return values;
+}
+
+std::vector<double> Fields::matrix(const std::string& key, size_t rows, size_t columns) const {
+  const std::vector<double> values = flat(key, rows * columns, columns);
+  const std::string size = std::to_string(rows) + " x " + std::to_string(columns);
+  const Fields inside = is_map(key) ? below(key) : *this;
+  if (values.size() != rows * columns ||
+      (is_map(key) && inside.has("rows") && inside.number("rows") != static_cast<double>(rows))) {
+    inside.refuse_field(is_map(key) ? "data" : key, "must be a matrix of " + size + " numbers");
+  }
+  return values;
+}
+
 std::vector<double> Fields::to_numbers(const YAML::Node& node, const std::string& key, size_t limit) const {
   if (!node.IsSequence() || node.size() > limit) {
     refuse_field(key, "must be a list of at most " + std::to_string(limit) + " numbers");
@@ -260,6 +403,42 @@ std::vector<std::vector<double>> Fields::rows(const std::string& key, size_t lim
     }
   }
   return values;
+}
+
+namespace {
+
+/// Whether the fields can be read, as they are or with other fields that are not known renamed or left out.
+bool would_be_read(const Fields& fields, const std::function<void(const Fields&)>& read, int edits) {
+  try {
+    read(fields);
+    return true;
+  } catch (const UnknownField& unknown) {
+    return edits > 0 &&
+           ((!unknown.nearest().empty() &&
+             would_be_read(fields.edited(unknown.above(), unknown.key(), unknown.nearest()), read, edits - 1)) ||
+            would_be_read(fields.edited(unknown.above(), unknown.key(), ""), read, edits - 1));
+  } catch (const ReadError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void read_with_hints(const Fields& fields, const std::function<void(const Fields&)>& read) {
+  constexpr int kMaxEdits = 4;
+  try {
+    read(fields);
+  } catch (const UnknownField& unknown) {
+    const std::string line = unknown.what();
+    if (!unknown.nearest().empty() &&
+        would_be_read(fields.edited(unknown.above(), unknown.key(), unknown.nearest()), read, kMaxEdits)) {
+      refuse(line + "; is '" + unknown.nearest() + "' meant?");
+    }
+    if (would_be_read(fields.edited(unknown.above(), unknown.key(), ""), read, kMaxEdits)) {
+      refuse(line + "; remove it if it says nothing of these images");
+    }
+    refuse(line);
+  }
 }
 
 }  // namespace pf::sequence

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../lib/calibration_options.h"
 #include "../lib/command_line.h"
 #include "context.h"
 
@@ -48,12 +49,16 @@ int run_sim(const std::string& scene, std::int64_t frames, bool at_target) {
   return good ? 0 : fail("sim:" + scene + " was refused by the library");
 }
 
-int run_sequence(const std::string& source, std::int64_t frames, bool at_target) {
+int run_sequence(const std::string& source, const pf::tools::CalibrationOptions& calibration, std::int64_t frames,
+                 bool at_target) {
   char message[PF_SEQUENCE_MESSAGE] = "";
   pf_sequence_t* sequence = nullptr;
-  if (pf_open_sequence(source.c_str(), nullptr, &sequence, message) != 0) return fail(message);
+  if (pf_open_sequence_of(source.c_str(), calibration.file_or_null(), calibration.camera.c_str(), &sequence, message) !=
+      0)
+    return fail(message);
   pf_sequence_info_t info;
   pf_get_sequence_info(sequence, &info);
+  pf::tools::print_notes("pf-digest", info.warning);
   const pfsim::Context context(config_for(info.camera));
   bool good = context.slam != nullptr;
   const std::string target_file = std::string(info.folder) + "/target.yaml";
@@ -87,10 +92,12 @@ int main(int argc, char** argv) {
   std::int64_t frames = INT64_MAX;
   bool start_auto = false;
   app.add_option("source", source, "sim:NAME, images:DIR, euroc:DIR or tum:DIR")->required();
+  pf::tools::CalibrationOptions calibration;
+  calibration.add_to(app);
   app.add_option("--frames", frames, "at most so many");
   app.add_flag("--auto", start_auto, "start without the target");
   int code = 0;
   if (!pf::tools::parse_command_line(app, "pf-digest", argc, argv, code)) return code;
   if (source.rfind("sim:", 0) == 0) return run_sim(source.substr(4), frames, !start_auto);
-  return run_sequence(source, frames, !start_auto);
+  return run_sequence(source, calibration, frames, !start_auto);
 }
