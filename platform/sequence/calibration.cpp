@@ -88,10 +88,11 @@ Calibration read_fields(const Fields& fields, const Asked& asked) {
   }
   Calibration calibration{};
   calibration.form = form->name;
-  calibration.camera.readout_s = read_readout(fields);
-  calibration.camera.timestamps = read_timestamps(fields);
   form->read(fields, asked, calibration);
-  read_sigmas(fields, calibration.camera);
+  const Fields settings = calibration.section.empty() ? fields : fields.with_those_below(calibration.section);
+  calibration.camera.readout_s = read_readout(settings);
+  calibration.camera.timestamps = read_timestamps(settings);
+  read_sigmas(settings, calibration.camera);
   if (!asked.camera.empty() && calibration.camera_name.empty()) {
     refuse(fields.file() + ": holds one camera, which has no name to choose it by; leave --camera away");
   }

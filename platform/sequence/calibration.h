@@ -14,6 +14,7 @@ struct Calibration {
   const char* form;                ///< as in the table of sequence.h
   const char* size_hint;           ///< what to do where the size of the images stays unknown
   std::string camera_name;         ///< of the one that was taken, where the form names its cameras
+  std::string section;             ///< key of a map that has readout_s and such too; "": none
   std::vector<std::string> notes;  ///< what was ignored or assumed, one line each
 };
 

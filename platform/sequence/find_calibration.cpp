@@ -71,7 +71,23 @@ fs::path first_there(const fs::path& where, const std::vector<std::string>& name
   return {};
 }
 
+void refuse_missing(const fs::path& where, const std::vector<std::string>& names, const char* others) {
+  std::string list;
+  for (const std::string& name : names) {
+    list += (list.empty() ? "" : ", ") + name;
+  }
+  refuse(where.string() + ": no calibration inside (looked for " + list + others + "); give one with --calib FILE");
+}
+
 }  // namespace
+
+fs::path named_calibration(const fs::path& where, const std::vector<std::string>& names) {
+  const fs::path found = first_there(where, names, names.size());
+  if (found.empty()) {
+    refuse_missing(where, names, "");
+  }
+  return found;
+}
 
 fs::path find_calibration(const fs::path& where, const fs::path& images, const std::vector<std::string>& names,
                           const Asked& asked, std::vector<std::string>& notes) {
@@ -95,12 +111,7 @@ fs::path find_calibration(const fs::path& where, const fs::path& images, const s
     if (!named.empty()) {
       return named;
     }
-    std::string list;
-    for (const std::string& name : names) {
-      list += name + ", ";
-    }
-    refuse(where.string() + ": no calibration inside (looked for " + list +
-           "or another file of a known layout); give one with --calib FILE");
+    refuse_missing(where, names, " or another file of a known layout");
   }
   for (const fs::path& path : found) {
     if (path != found.front() && !agree(path, found.front(), asked)) {

@@ -121,9 +121,10 @@ fs::path first_file(const fs::path& folder, std::initializer_list<const char*> n
   return {};
 }
 
-/// images  folder that they lie in
+/// images    folder that they lie in
+/// any_name  whether a file of a known form will do whose name is not one of those
 void set_calibration(Folder& folder, const std::string& given, const fs::path& where, const fs::path& images,
-                     const std::vector<std::string>& names) {
+                     const std::vector<std::string>& names, bool any_name) {
   if (given == PF_SEQUENCE_UNCALIBRATED) {
     folder.calibration.form = "none";
     return;
@@ -133,8 +134,9 @@ void set_calibration(Folder& folder, const std::string& given, const fs::path& w
     folder.asked.folders.insert(folder.asked.folders.begin(), part.string());
   }
   folder.asked.folders.resize(std::min<size_t>(folder.asked.folders.size(), kFoldersThatName));
-  folder.calibration_path =
-      given.empty() ? find_calibration(where, images, names, folder.asked, folder.notes) : fs::path(given);
+  folder.calibration_path = !given.empty() ? fs::path(given)
+                            : any_name     ? find_calibration(where, images, names, folder.asked, folder.notes)
+                                           : named_calibration(where, names);
   read_calibration_of(folder);
 }
 
@@ -269,7 +271,7 @@ void open_images(Folder& folder, const std::string& calibration) {
     images = is_folder(root / below) ? root / below : images;
   }
   set_calibration(folder, calibration, root, images,
-                  {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml", "calib.txt"});
+                  {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml", "calib.txt"}, true);
   const fs::path times = root / "times.txt";
   if (is_file(times)) {
     const std::string text = read_text(times, kMaxTableBytes, "times");
@@ -307,7 +309,7 @@ void open_tum(Folder& folder, const std::string& calibration) {
     refuse(table.string() + ": missing; a tum: folder holds rgb.txt and rgb/ (use images: for other layouts)");
   }
   set_calibration(folder, calibration, folder.root, folder.root / "rgb",
-                  {"calib.yaml", "calib.yml", "camchain.yaml", "camera_info.yaml"});
+                  {"calib.yaml", "calib.yml", "camchain.yaml", "camera_info.yaml"}, false);
   folder.frames = read_table(table, folder.root, Times::kSeconds);
   folder.truth_path = first_file(folder.root, {"groundtruth.txt", "groundtruth.tum"});
 }
@@ -316,7 +318,7 @@ void open_euroc(Folder& folder, const std::string& calibration) {
   for (const char* below : {"mav0/cam0", "cam0", "."}) {
     const fs::path camera = folder.root / below;
     if (is_file(camera / "data.csv")) {
-      set_calibration(folder, calibration, camera, camera / "data", {"sensor.yaml", "calib.yaml"});
+      set_calibration(folder, calibration, camera, camera / "data", {"sensor.yaml", "calib.yaml"}, false);
       folder.frames = read_table(camera / "data.csv", camera / "data", Times::kNanoseconds);
       folder.truth_path = first_file(folder.root, {"groundtruth.tum"});
       if (folder.truth_path.empty()) {

@@ -264,6 +264,20 @@ Fields Fields::below(const std::string& key) const {
   return Fields(node, file_, above);
 }
 
+Fields Fields::with_those_below(const std::string& key) const {
+  YAML::Node all(YAML::NodeType::Map);
+  for (const auto& entry : below(key).node_) {
+    if (entry.first.IsScalar() && has(entry.first.Scalar())) {
+      below(key).refuse_field(entry.first.Scalar(), "is there above '" + key + "' too; remove one of them");
+    }
+    all.force_insert(entry.first, entry.second);
+  }
+  for (const auto& entry : node_) {
+    all.force_insert(entry.first, entry.second);
+  }
+  return Fields(all, file_, above_);
+}
+
 std::string Fields::text(const std::string& key) const {
   const YAML::Node node = at(key);
   if (!node.IsScalar()) {
@@ -337,14 +351,7 @@ std::vector<double> Fields::vector(const std::string& key, size_t limit) const {
 std::vector<double> Fields::flat(const std::string& key, size_t limit, size_t columns) const {
   const YAML::Node node = at(key);
   if (node.IsMap()) {
-    const Fields inside = below(key);
-    const std::vector<double> values = inside.numbers("data", limit);
-    const auto sides = std::pair(inside.number_or("rows", 1.0), inside.number_or("cols", 1.0));
-    const bool has_sides = inside.has("rows") && inside.has("cols");
-    if (has_sides && sides.first * sides.second != static_cast<double>(values.size())) {
-      inside.refuse_field("data", "has " + std::to_string(values.size()) + " numbers, which rows and cols do not say");
-    }
-    return values;
+    return below(key).numbers("data", limit);
   }
   std::vector<double> values;
   for (const YAML::Node& entry : node) {

@@ -52,6 +52,8 @@ class Fields {
   bool has_any(const std::vector<std::string>& keys) const;
   /// The map below a key; its fields are named "key.field" in messages.
   Fields below(const std::string& key) const;
+  /// The fields of this map and of the one below a key. One that is in both is refused.
+  Fields with_those_below(const std::string& key) const;
   std::string text(const std::string& key) const;
   std::string text_or(const std::string& key, const std::string& otherwise) const;
   double number(const std::string& key) const;

@@ -57,8 +57,8 @@ typedef struct pf_sequence_info {
  * PNG, JPEG and binary PGM; colour becomes grey, 16 bits become 8 (of a PNG, 65535 is white; a warning where the first one has
  * data of 12 bits or fewer). Pixels are taken as stored, whatever EXIF says of the orientation, and so must the calibration.
  * Times must grow from frame to frame.
- * calibration  a file in one of the forms of pf_read_calibration; null: the one inside DIR, which is calib.yaml (calib.yml, and sensor.yaml
- *              of euroc:), or else the one file of such a form, beside the images if it is not in DIR itself
+ * calibration  a file in one of the forms of pf_read_calibration; null: the one inside DIR, calib.yaml or another name that the layout has;
+ *              of images: also the one file of such a form there or else beside the images, refused where several differ
  * camera       of a calibration of several: its name there or the number that ends it; null: the one that the folder of the images is
  *              named after, or the first, and then a note names the others */
 int pf_open_sequence_of(const char* source, const char* calibration, const char* camera, pf_sequence_t** sequence,

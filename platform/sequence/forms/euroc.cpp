@@ -6,7 +6,10 @@ namespace pf::sequence {
 
 namespace {
 
-bool is_euroc(const Fields& fields) { return fields.has_any({"intrinsics", "resolution"}); }
+bool is_euroc(const Fields& fields) {
+  return fields.has_any({"intrinsics", "resolution"}) ||
+         (fields.has("camera_model") && fields.has("distortion_coefficients"));
+}
 
 void read_euroc(const Fields& fields, const Asked&, Calibration& calibration) {
   fields.check_keys(known_fields({"camera_model", "distortion_coefficients", "distortion_model", "intrinsics",

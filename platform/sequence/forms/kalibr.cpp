@@ -50,7 +50,7 @@ void read_kalibr(const Fields& fields, const Asked& asked, Calibration& calibrat
   }
   fields.check_keys(above, calibration.notes);
   const std::string name = cameras[choose_camera(fields, cameras, asked, false, calibration.notes)].name;
-  calibration.camera_name = name;
+  calibration.camera_name = calibration.section = name;
   const Fields chosen = fields.below(name);
   chosen.check_keys(known_fields(kCamera, kBeside), calibration.notes);
   read_lists(chosen, "distortion_coeffs", camera);

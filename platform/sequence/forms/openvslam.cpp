@@ -51,6 +51,7 @@ void read_openvslam(const Fields& top, const Asked& asked, Calibration& calibrat
   }
   fields.check_keys(known_prefixed(names, coefficients, unused), calibration.notes);
   if (nested) {
+    calibration.section = "Camera";
     unused.emplace_back("Camera");
     top.check_keys(known_fields({"Camera"}, unused), calibration.notes);
   }

@@ -7,9 +7,7 @@ namespace pf::sequence {
 
 namespace {
 
-bool is_plain(const Fields& fields) {
-  return fields.has_any({"fx", "fy", "cx", "cy", "camera_model", "distortion_model"});
-}
+bool is_plain(const Fields& fields) { return fields.has_any({"fx", "fy", "cx", "cy"}); }
 
 void read_plain(const Fields& fields, const Asked&, Calibration& calibration) {
   // Those that are not used belong to other sensors of the same device.
