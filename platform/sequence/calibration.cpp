@@ -132,7 +132,7 @@ Calibration parse_calibration(const std::string& text, const std::string& file, 
 bool is_calibration(const std::string& text) {
   try {
     return form_of(Fields(from_colmap(text), "")) != nullptr;
-  } catch (const ReadError&) {
+  } catch (const std::exception&) {
     return false;
   }
 }

@@ -27,7 +27,7 @@ bool is_of_known_form(const fs::path& path) {
   }
   try {
     return is_calibration(read_text(path, kMaxBytes, "calibration"));
-  } catch (const ReadError&) {
+  } catch (const std::exception&) {
     return false;
   }
 }
@@ -49,7 +49,7 @@ std::vector<fs::path> calibrations_in(const fs::path& folder) {
 bool agree(const fs::path& a, const fs::path& b, const Asked& asked) {
   try {
     return is_same_lens(read_calibration(a.string(), asked).camera, read_calibration(b.string(), asked).camera);
-  } catch (const ReadError&) {
+  } catch (const std::exception&) {
     return false;
   }
 }

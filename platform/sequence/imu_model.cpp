@@ -38,6 +38,9 @@ std::string format(double value) {
 
 void read_imu_noise(const Fields& top, pf_imu_model_t* imu, std::vector<std::string>& notes) {
   const Fields fields = top.has("imu0") ? top.below("imu0") : top;
+  if (top.has("imu0") && top.has("imu1")) {
+    notes.push_back(top.file() + ": has several units; the noise of imu0 is taken");
+  }
   const bool plain = fields.has(kDensities[0].plain_name) || fields.has(kDensities[1].plain_name);
   Fields::Known known{
       {}, {"rostopic", "update_rate", "rate_hz", "sensor_type", "comment", "T_BS", "T_i_b", "time_offset", "model"}};

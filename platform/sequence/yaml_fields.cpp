@@ -8,107 +8,9 @@
 #include "meaning.h"
 #include "numbers.h"
 #include "refuse.h"
+#include "yaml_text.h"
 
 namespace pf::sequence {
-
-namespace {
-
-/// Nesting that text could reach, counted without parsing: brackets, and the blanks or dashes that a line begins with.
-/// yaml-cpp recurses once per level, so that this bounds the stack.
-bool too_deep(const std::string& text) {
-  int brackets = 0;
-  int dashes = 0;
-  bool beginning = true;
-  for (char c : text) {
-    if (c == '\n') {
-      beginning = true;
-      dashes = 0;
-      continue;
-    }
-    if (beginning && (c == '-' || c == '?' || c == ':')) {
-      ++dashes;
-    } else if (c != ' ' && c != '\t') {
-      beginning = false;
-    }
-    brackets += (c == '[' || c == '{') ? 1 : 0;
-    brackets -= ((c == ']' || c == '}') && brackets > 0) ? 1 : 0;
-    if (brackets > kMaxYamlDepth || dashes > kMaxYamlDepth) {
-      return true;
-    }
-  }
-  return false;
-}
-
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    c = static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
-  return text.size() > 200 ? text.substr(0, 200) + ".." : text;
-}
-
-/// Letters to insert, remove or change until a becomes b.
-size_t edits(const std::string& a, const std::string& b) {
-  std::vector<size_t> row(b.size() + 1);
-  for (size_t j = 0; j <= b.size(); ++j) {
-    row[j] = j;
-  }
-  for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
-    }
-  }
-  return row[b.size()];
-}
-
-/// Unlikeness of a key to one that is read: 0 for readout or readout_ms and readout_s, Fx and fx; 1 for heigth and height. More than
-/// kMisspelled: another word.
-constexpr size_t kMisspelled = 2;
-size_t unlikeness(const std::string& found, const std::string& known) {
-  std::string lower = found.substr(0, 64);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  const size_t unit = known.rfind('_');
-  if (unit != std::string::npos && known.size() - unit <= 3 && lower.compare(0, unit, known, 0, unit) == 0) {
-    return 0;
-  }
-  return edits(lower, known) + (known.size() < 4 ? 1 : 0);
-}
-
-/// Text of OpenCV's FileStorage, which begins with %YAML:1.0, as YAML: there "name:2" is a field, and files of ORB-SLAM2 have such.
-std::string from_opencv(const std::string& text) {
-  if (text.compare(0, 6, "%YAML:") != 0) {
-    return text;
-  }
-  std::string yaml;
-  bool in_name = true;  // since the line began, only letters that names have
-  for (size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    yaml += c;
-    if (c == ':' && in_name && i > 0 && i + 1 < text.size() && text[i - 1] != '\n' &&
-        std::isspace(static_cast<unsigned char>(text[i + 1])) == 0) {
-      yaml += ' ';
-    }
-    in_name = c == '\n' ||
-              (in_name && (c == ' ' || c == '_' || c == '.' || std::isalnum(static_cast<unsigned char>(c)) != 0));
-  }
-  return yaml;
-}
-
-bool contains(const std::vector<std::string>& list, const std::string& word) {
-  return std::find(list.begin(), list.end(), word) != list.end();
-}
-
-bool matches(const std::vector<std::string>& patterns, const std::string& word) {
-  return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
-    return pattern.back() == '*' ? word.compare(0, pattern.size() - 1, pattern, 0, pattern.size() - 1) == 0
-                                 : word == pattern;
-  });
-}
-
-}  // namespace
 
 Fields::Fields(const std::string& text, const std::string& file) : Fields(documents(text, file).front()) {}
 
@@ -141,24 +43,6 @@ std::vector<Fields> Fields::documents(const std::string& text, const std::string
   return all;
 }
 
-Fields Fields::edited(const std::vector<std::string>& above, const std::string& key, const std::string& name) const {
-  YAML::Node copy(YAML::NodeType::Map);
-  for (const auto& entry : node_) {
-    const std::string found = entry.first.IsScalar() ? entry.first.Scalar() : std::string();
-    if (above.empty() && found == key) {
-      if (!name.empty()) {
-        copy.force_insert(name, entry.second);
-      }
-    } else if (!above.empty() && found == above.front() && entry.second.IsMap()) {
-      const Fields inner(entry.second, file_, {});
-      copy.force_insert(found, inner.edited({above.begin() + 1, above.end()}, key, name).node_);
-    } else {
-      copy.force_insert(entry.first, entry.second);
-    }
-  }
-  return Fields(copy, file_, above_);
-}
-
 std::string Fields::name_of(const std::string& key) const {
   std::string name;
   for (const std::string& above : above_) {
@@ -177,47 +61,6 @@ std::string Fields::names_of(const std::vector<std::string>& keys) const {
 
 void Fields::refuse_field(const std::string& key, const std::string& why) const {
   refuse(file_ + ": field '" + name_of(key) + "' " + one_line(why));
-}
-
-void Fields::refuse_unknown(const std::string& key, const Known& known, const char* why) const {
-  const auto nearest = std::min_element(known.read.begin(), known.read.end(), [&](const auto& a, const auto& b) {
-    return unlikeness(key, a) < unlikeness(key, b);
-  });
-  const bool is_near = nearest != known.read.end() && unlikeness(key, *nearest) <= kMisspelled;
-  throw UnknownField(file_ + ": field '" + name_of(one_line(key)) + "' is not known here" + why + ". Known are " +
-                         names_of(known.read),
-                     above_, key, is_near ? *nearest : "");
-}
-
-void Fields::check_keys(const Known& known, std::vector<std::string>& notes) const {
-  std::vector<std::string> found, ignored;
-  for (const auto& entry : node_) {
-    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : std::string("?");
-    const bool read = contains(known.read, key);
-    if (contains(found, key)) {
-      if (read || known.ours) {
-        refuse_field(key, "is there twice; remove the wrong one");
-      }
-      continue;
-    }
-    found.push_back(key);
-    if (read || matches(known.unused, key)) {
-      continue;
-    }
-    const Meaning meaning = meaning_of(key, entry.second);
-    const bool misspelled = std::any_of(known.read.begin(), known.read.end(),
-                                        [&](const auto& name) { return unlikeness(key, name) <= kMisspelled; });
-    if (meaning == Meaning::kChanged) {
-      refuse_unknown(key, known, ", and may change what other fields mean");
-    }
-    if (known.ours || (misspelled && meaning != Meaning::kNeutral)) {
-      refuse_unknown(key, known, "");
-    }
-    ignored.push_back(key);
-  }
-  if (!ignored.empty()) {
-    notes.push_back(file_ + ": ignored, because not known here: " + one_line(names_of(ignored)));
-  }
 }
 
 YAML::Node Fields::at(const std::string& key) const {
@@ -410,42 +253,6 @@ std::vector<std::vector<double>> Fields::rows(const std::string& key, size_t lim
     }
   }
   return values;
-}
-
-namespace {
-
-/// Whether the fields can be read, as they are or with other fields that are not known renamed or left out.
-bool would_be_read(const Fields& fields, const std::function<void(const Fields&)>& read, int edits) {
-  try {
-    read(fields);
-    return true;
-  } catch (const UnknownField& unknown) {
-    return edits > 0 &&
-           ((!unknown.nearest().empty() &&
-             would_be_read(fields.edited(unknown.above(), unknown.key(), unknown.nearest()), read, edits - 1)) ||
-            would_be_read(fields.edited(unknown.above(), unknown.key(), ""), read, edits - 1));
-  } catch (const ReadError&) {
-    return false;
-  }
-}
-
-}  // namespace
-
-void read_with_hints(const Fields& fields, const std::function<void(const Fields&)>& read) {
-  constexpr int kMaxEdits = 4;
-  try {
-    read(fields);
-  } catch (const UnknownField& unknown) {
-    const std::string line = unknown.what();
-    if (!unknown.nearest().empty() &&
-        would_be_read(fields.edited(unknown.above(), unknown.key(), unknown.nearest()), read, kMaxEdits)) {
-      refuse(line + "; is '" + unknown.nearest() + "' meant?");
-    }
-    if (would_be_read(fields.edited(unknown.above(), unknown.key(), ""), read, kMaxEdits)) {
-      refuse(line + "; remove it if it says nothing of these images");
-    }
-    refuse(line);
-  }
 }
 
 }  // namespace pf::sequence

@@ -9,9 +9,9 @@
  *   pf_close_sequence(sequence);
  *
  * Every function that can fail returns 0, or -1 with one line of plain text in message that names the file, says what is
- * wrong with it and what to do (pf_open_sequence and pf_read_sequence_frame know one more value each). What a calibration has to be noted comes with 0, in lines
- * below each other. Files are not trusted: whatever they hold, the answer is
- * one of the two. This is the desktop side: it uses the heap and the file system. A sequence belongs to one thread at a time.
+ * wrong with it and what to do (pf_open_sequence and pf_read_sequence_frame know one more value each). Files are not trusted: whatever
+ * they hold, the answer is one of the two. What is to be noted of a calibration comes with 0, each note on a line of its own. This is the
+ * desktop side: it uses the heap and the file system. A sequence belongs to one thread at a time.
  */
 #ifndef PLANEFOLD_PLATFORM_SEQUENCE_H
 #define PLANEFOLD_PLATFORM_SEQUENCE_H
