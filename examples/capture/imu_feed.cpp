@@ -8,6 +8,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "source.h"
+
 namespace pf::capture {
 
 namespace {
@@ -135,8 +137,11 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
       if (message[0] != '\0') {
         notices_.add(message);
       }
-      if (pf_read_imu_mount(options.imu_mount.c_str(), &model_, message) != 0) {
+      const std::string& camera = options.camera.empty() ? source.info().camera_name : options.camera;
+      if (pf_read_imu_mount_of(options.imu_mount.c_str(), camera.c_str(), &model_, message) != 0) {
         error = std::string("--imu-mount ") + message;
+      } else if (message[0] != '\0') {
+        notices_.add(message);
       }
     }
     inertial_ = error.empty();

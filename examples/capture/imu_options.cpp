@@ -25,8 +25,10 @@ void add_imu_options(CLI::App& app, Options& options) {
                  "noise densities: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml or calib.yaml")
       ->check(not_empty())
       ->group(group);
-  app.add_option("--imu-mount", options.imu_mount,
-                 "where the unit is: T_BS (EuRoC's cam0/sensor.yaml), T_cam_imu (Kalibr's camchain) or T_imu_cam")
+  app.add_option(
+         "--imu-mount", options.imu_mount,
+         "where the unit is: T_BS (EuRoC's cam0/sensor.yaml), T_cam_imu (Kalibr's camchain), T_imu_cam (OpenVINS),\n"
+         "or that of VINS-Fusion, VINS-Mono or ORB-SLAM")
       ->check(not_empty())
       ->group(group);
   app.add_option("--estimate", options.estimate,

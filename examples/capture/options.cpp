@@ -140,6 +140,9 @@ std::string check(const Options& options, const std::string& backend) {
   if (options.every_frame && !is_camera && !options.realtime) {
     return "--every-frame is for cameras and --realtime; without these every frame is tracked anyway";
   }
+  if (!options.camera.empty() && kind == "sim" && options.calibration.empty()) {
+    return "--camera chooses from a calibration file: add --calib FILE";
+  }
   if (options.skip > 0 && is_camera) {
     return "--skip is for folders and scenes; a camera has no frames to leave out";
   }
@@ -262,8 +265,16 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       "--source", options.source,
       "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, images:DIR, euroc:DIR, tum:DIR or sim:NAME");
   app.add_flag("--list", options.list, "name the cameras and IMUs of this machine, and do nothing else");
-  app.add_option("--calib", options.calibration,
-                 "calibration file (Kalibr, EuRoC, ROS camera_info, ORB-SLAM3, KITTI or calib.yaml)")
+  app.add_option(
+         "--calib", options.calibration,
+         "calibration file: Kalibr and OpenVINS (camchain), EuRoC, ROS camera_info (a file, or as printed), OpenCV,\n"
+         "VINS-Fusion, OpenVSLAM and stella_vslam, ORB-SLAM, KITTI, COLMAP (cameras.txt) or calib.yaml; without it\n"
+         "the one file of these that lies beside the images")
+      ->check(not_empty());
+  app.add_option("--camera", options.camera,
+                 "of a calibration file of several cameras: the name there or its number, as cam1 or 1; of a camchain "
+                 "that\n"
+                 "--imu-mount names too (the first, or the one that the folder of the images is named after)")
       ->check(not_empty());
   app.add_option("--readout", options.readout_s, "rolling shutter: seconds from the first row to the last; 0: global")
       ->check(number_in(0.0, 0.2));

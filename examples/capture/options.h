@@ -20,6 +20,7 @@ struct Options {
   std::string command;  ///< the whole command line
   std::string source;
   std::string calibration;
+  std::string camera;  ///< of a calibration of several; "": the first, or the one that the folder is named after
   std::string start = "auto";
   std::string second_pose;  ///< file of a second known pose; "": none
   std::string walls;        ///< file of a plan; "": none

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <sstream>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -40,7 +41,13 @@ int fail(const std::string& line, int code = kExitRun) {
   return code;
 }
 
-void note(const std::string& line) { std::fprintf(stderr, "pf-capture: note: %s\n", line.c_str()); }
+/// Each of the lines.
+void note(const std::string& lines) {
+  std::istringstream rest(lines);
+  for (std::string line; std::getline(rest, line);) {
+    std::fprintf(stderr, "pf-capture: note: %s\n", line.c_str());
+  }
+}
 
 /// "images:/data/desk/" to "desk"; a scene keeps its "sim:".
 std::string short_name(const std::string& source) {

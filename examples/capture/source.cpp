@@ -29,6 +29,7 @@ class FolderSource : public Source {
     info_.rate_hz = info.rate_hz;
     info_.truth_path = info.truth_path;
     info_.warning = info.warning;
+    info_.camera_name = info.camera_name;
     info_.imu_path = info.imu_path;
   }
 
@@ -98,7 +99,7 @@ std::unique_ptr<Source> open_stored(const Options& options, std::string& error) 
   char message[PF_SEQUENCE_MESSAGE];
   pf_sequence_t* sequence = nullptr;
   const char* calibration = options.calibration.empty() ? nullptr : options.calibration.c_str();
-  if (pf_open_sequence(options.source.c_str(), calibration, &sequence, message) != 0) {
+  if (pf_open_sequence_of(options.source.c_str(), calibration, options.camera.c_str(), &sequence, message) != 0) {
     error = message;
     return nullptr;
   }
@@ -119,11 +120,13 @@ std::unique_ptr<Source> open_camera_source(const Options& options, std::string& 
     return nullptr;
   }
   char message[PF_SEQUENCE_MESSAGE];
-  if (pf_read_calibration(options.calibration.c_str(), &info.camera, &info.rate_hz, message) != 0) {
+  if (pf_read_calibration_of(options.calibration.c_str(), options.camera.c_str(), &info.camera, &info.rate_hz,
+                             message) != 0) {
     error = message;
     return nullptr;
   }
   info.warning = message;
+  info.camera_name = options.camera;
   std::unique_ptr<Camera> camera = open_device_camera(options, info.camera, info.rate_hz, error);
   if (camera == nullptr) {
     return nullptr;
@@ -157,18 +160,19 @@ std::unique_ptr<Source> open_source(const Options& options, std::string& error) 
 }
 
 bool is_calibration_wrong(const Options& options) {
-  std::string path = options.calibration;
-  if (path.empty()) {
-    path = options.source.substr(options.source.find(':') + 1) + "/calib.yaml";
-    std::error_code failed;
-    if (!std::filesystem::exists(path, failed)) {
-      return false;
-    }
+  const std::string kind = options.source.substr(0, options.source.find(':'));
+  const char* calibration = options.calibration.empty() ? nullptr : options.calibration.c_str();
+  char message[PF_SEQUENCE_MESSAGE];
+  if (kind == "images" || kind == "euroc" || kind == "tum") {
+    pf_sequence_t* sequence = nullptr;
+    const int done =
+        pf_open_sequence_of(options.source.c_str(), calibration, options.camera.c_str(), &sequence, message);
+    pf_close_sequence(sequence);
+    return done == PF_SEQUENCE_WRONG_CALIBRATION;
   }
   pf_camera_t camera;
-  double rate_hz = 0.0;
-  char message[PF_SEQUENCE_MESSAGE];
-  return pf_read_calibration(path.c_str(), &camera, &rate_hz, message) != 0;
+  return calibration != nullptr &&
+         pf_read_calibration_of(calibration, options.camera.c_str(), &camera, nullptr, message) != 0;
 }
 
 }  // namespace pf::capture

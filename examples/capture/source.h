@@ -23,9 +23,10 @@ struct SourceInfo {
   int64_t count = 0;  ///< at most; a simulated camera that drops frames gives fewer, and a camera has no end
   bool endless = false;
   double rate_hz = 30.0;
-  std::string truth_path;  ///< a trajectory that lies beside the source; "" where there is none
-  std::string imu_path;    ///< inertial samples that lie beside the source; likewise
-  std::string warning;
+  std::string truth_path;    ///< a trajectory that lies beside the source; "" where there is none
+  std::string imu_path;      ///< inertial samples that lie beside the source; likewise
+  std::string warning;       ///< lines that the user should know; "" where there are none
+  std::string camera_name;   ///< in a calibration of several cameras; "" where it is not known
   std::string device;        ///< of a camera
   bool knows_truth = false;  ///< by truth() for every frame that was read
 };

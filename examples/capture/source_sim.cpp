@@ -19,12 +19,13 @@ constexpr int32_t kBlurSamples = 4;  ///< of a camera that swings: 200 degrees a
 
 class SimSource : public Source {
  public:
-  SimSource(pf_sim_t* sim, const pf_sim_options_t& options, const std::string& scene)
+  SimSource(pf_sim_t* sim, const pf_sim_options_t& options, const std::string& scene, const std::string& notes)
       : sim_(sim, pf_sim_close), scene_(scene), seed_(options.seed) {
     pf_sim_camera(sim, &info_.camera);
     info_.count = options.frames;
     info_.rate_hz = options.rate_hz;
     info_.knows_truth = true;
+    info_.warning = notes;
   }
 
   const SourceInfo& info() const override { return info_; }
@@ -97,13 +98,16 @@ std::unique_ptr<Source> open_sim_source(const Options& options, std::string& err
   if (options.frames > 0 && options.loop < 0) {
     sim_options.frames = static_cast<int32_t>(std::min<int64_t>(options.skip + options.frames, 1000000));
   }
+  std::string notes;
   if (!options.calibration.empty()) {
     char message[PF_SEQUENCE_MESSAGE];
     double rate_hz = 0.0;
-    if (pf_read_calibration(options.calibration.c_str(), &sim_options.camera, &rate_hz, message) != 0) {
+    if (pf_read_calibration_of(options.calibration.c_str(), options.camera.c_str(), &sim_options.camera, &rate_hz,
+                               message) != 0) {
       error = message;
       return nullptr;
     }
+    notes = message;
     sim_options.rate_hz = rate_hz > 0.0 ? rate_hz : sim_options.rate_hz;
     sim_options.readout_s = sim_options.camera.readout_s;
   }
@@ -114,7 +118,7 @@ std::unique_ptr<Source> open_sim_source(const Options& options, std::string& err
             "this memory";
     return nullptr;
   }
-  return std::make_unique<SimSource>(sim, sim_options, scene);
+  return std::make_unique<SimSource>(sim, sim_options, scene, notes);
 }
 
 #else

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "find_calibration.h"
 #include "numbers.h"
 #include "refuse.h"
 
@@ -18,6 +19,9 @@ namespace pf::sequence {
 namespace {
 
 constexpr size_t kMaxTableBytes = size_t{256} << 20;
+
+/// Folders above the images whose names may be that of a camera: cam1/data.
+constexpr size_t kFoldersThatName = 2;
 
 enum class Times { kSeconds, kNanoseconds };
 
@@ -117,21 +121,23 @@ fs::path first_file(const fs::path& folder, std::initializer_list<const char*> n
   return {};
 }
 
-void find_calibration(Folder& folder, const std::string& given, const fs::path& where,
-                      std::initializer_list<const char*> names) {
+/// images    folder that they lie in
+/// any_name  whether a file of a known form will do whose name is not one of those
+void set_calibration(Folder& folder, const std::string& given, const fs::path& where, const fs::path& images,
+                     const std::vector<std::string>& names, bool any_name) {
   if (given == PF_SEQUENCE_UNCALIBRATED) {
     folder.calibration.form = "none";
     return;
   }
-  folder.calibration_path = given.empty() ? first_file(where, names) : fs::path(given);
-  if (folder.calibration_path.empty()) {
-    std::string list;
-    for (const char* name : names) {
-      list += (list.empty() ? "" : ", ") + std::string(name);
-    }
-    refuse(where.string() + ": no calibration inside (looked for " + list + "); give one with --calib FILE");
+  const fs::path absolute = fs::absolute(images).lexically_normal();
+  for (const fs::path& part : absolute) {
+    folder.asked.folders.insert(folder.asked.folders.begin(), part.string());
   }
-  folder.calibration = read_calibration(folder.calibration_path.string());
+  folder.asked.folders.resize(std::min<size_t>(folder.asked.folders.size(), kFoldersThatName));
+  folder.calibration_path = !given.empty() ? fs::path(given)
+                            : any_name     ? find_calibration(where, images, names, folder.asked, folder.notes)
+                                           : named_calibration(where, names);
+  read_calibration_of(folder);
 }
 
 /// "frame-000012.color.png" to "frame-#.color.png" and the digits "000012 ".
@@ -260,19 +266,21 @@ void refuse_other_layouts(const fs::path& root) {
 void open_images(Folder& folder, const std::string& calibration) {
   const fs::path& root = folder.root;
   refuse_other_layouts(root);
-  find_calibration(folder, calibration, root,
-                   {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml", "calib.txt"});
   fs::path images = root;
   for (const char* below : {"image_0", "images"}) {
     images = is_folder(root / below) ? root / below : images;
   }
+  set_calibration(folder, calibration, root, images,
+                  {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml", "calib.txt"}, true);
   const fs::path times = root / "times.txt";
   if (is_file(times)) {
     const std::string text = read_text(times, kMaxTableBytes, "times");
     if (has_times_alone(text)) {
       std::string choice;
       folder.frames = read_times_alone(times, text, images, one_kind(images, list_images(images), choice));
-      folder.warning = choice.empty() ? "" : times.string() + ": names no images" + choice;
+      if (!choice.empty()) {
+        folder.notes.push_back(times.string() + ": names no images" + choice);
+      }
     } else {
       folder.frames = read_table(times, text, images, Times::kSeconds);
     }
@@ -288,8 +296,8 @@ void open_images(Folder& folder, const std::string& calibration) {
     }
     char text[64];
     std::snprintf(text, sizeof(text), "%g frames per second", rate);
-    folder.warning =
-        root.string() + ": no times.txt; the images are taken in the order of their names at " + text + choice;
+    folder.notes.push_back(root.string() + ": no times.txt; the images are taken in the order of their names at " +
+                           text + choice);
   }
   folder.truth_path = first_file(root, {"groundtruth.tum", "groundtruth.txt"});
   folder.imu_path = first_file(root, {"imu.csv"});
@@ -300,7 +308,8 @@ void open_tum(Folder& folder, const std::string& calibration) {
   if (!is_file(table)) {
     refuse(table.string() + ": missing; a tum: folder holds rgb.txt and rgb/ (use images: for other layouts)");
   }
-  find_calibration(folder, calibration, folder.root, {"calib.yaml", "calib.yml", "camchain.yaml", "camera_info.yaml"});
+  set_calibration(folder, calibration, folder.root, folder.root / "rgb",
+                  {"calib.yaml", "calib.yml", "camchain.yaml", "camera_info.yaml"}, false);
   folder.frames = read_table(table, folder.root, Times::kSeconds);
   folder.truth_path = first_file(folder.root, {"groundtruth.txt", "groundtruth.tum"});
 }
@@ -309,7 +318,7 @@ void open_euroc(Folder& folder, const std::string& calibration) {
   for (const char* below : {"mav0/cam0", "cam0", "."}) {
     const fs::path camera = folder.root / below;
     if (is_file(camera / "data.csv")) {
-      find_calibration(folder, calibration, camera, {"sensor.yaml", "calib.yaml"});
+      set_calibration(folder, calibration, camera, camera / "data", {"sensor.yaml", "calib.yaml"}, false);
       folder.frames = read_table(camera / "data.csv", camera / "data", Times::kNanoseconds);
       folder.truth_path = first_file(folder.root, {"groundtruth.tum"});
       if (folder.truth_path.empty()) {
@@ -329,7 +338,15 @@ void open_euroc(Folder& folder, const std::string& calibration) {
 
 }  // namespace
 
-Folder open_folder(const std::string& source, const std::string& calibration) {
+void read_calibration_of(Folder& folder) {
+  try {
+    folder.calibration = read_calibration(folder.calibration_path.string(), folder.asked);
+  } catch (const ReadError& error) {
+    throw CalibrationError(error.what());
+  }
+}
+
+Folder open_folder(const std::string& source, const std::string& calibration, const std::string& camera) {
   const size_t colon = source.find(':');
   const std::string kind = source.substr(0, colon);
   const std::string where = colon == std::string::npos ? "" : source.substr(colon + 1);
@@ -341,6 +358,7 @@ Folder open_folder(const std::string& source, const std::string& calibration) {
   }
   Folder folder{};
   folder.root = where;
+  folder.asked.camera = camera;
   require_folder(folder.root);
   if (kind == "images") {
     open_images(folder, calibration);

@@ -21,13 +21,18 @@ struct Folder {
   fs::path truth_path;  ///< empty where there is none
   fs::path imu_path;    ///< likewise
   Calibration calibration;
+  Asked asked;  ///< with which it was read
   std::vector<Frame> frames;
-  std::string warning;
+  std::vector<std::string> notes;  ///< what had to be assumed, one line each, without those of the calibration
 };
 
 /// Lists what "kind:DIR" names; opens no image. Throws ReadError.
 /// calibration  file to use, or "" for the one inside
-Folder open_folder(const std::string& source, const std::string& calibration);
+/// camera       of a calibration of several; "": the one that the folder is named after, or the first
+Folder open_folder(const std::string& source, const std::string& calibration, const std::string& camera);
+
+/// Reads folder.calibration anew, with what folder.asked says by now. Throws CalibrationError.
+void read_calibration_of(Folder& folder);
 
 }  // namespace pf::sequence
 

@@ -19,6 +19,12 @@ class ImageError : public ReadError {
   using ReadError::ReadError;
 };
 
+/// The calibration of a folder, which is not that of its images or not to be read.
+class CalibrationError : public ReadError {
+ public:
+  using ReadError::ReadError;
+};
+
 [[noreturn]] inline void refuse(const std::string& line) { throw ReadError(line); }
 
 }  // namespace pf::sequence

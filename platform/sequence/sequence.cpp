@@ -16,10 +16,12 @@
 #include "imu_model.h"
 #include "refuse.h"
 #include "target.h"
+#include "yaml_fields.h"
 
 struct pf_sequence {
   pf::sequence::Folder folder;
   std::string root, calibration_path, truth_path, imu_path;
+  std::string warning;  ///< all notes, one a line
   std::vector<unsigned char> bytes;
   pf_decoded_t image{};
   std::string first_name;  ///< of the first image that was decoded, "" before
@@ -43,6 +45,23 @@ void put(char message[PF_SEQUENCE_MESSAGE], const char* text) {
   }
 }
 
+/// Notes below each other: as many whole lines as fit, and how many more there are.
+void put_notes(char message[PF_SEQUENCE_MESSAGE], const std::vector<std::string>& notes) {
+  constexpr size_t kRoomForRest = 40;
+  std::string lines;
+  for (size_t i = 0; i < notes.size(); ++i) {
+    const std::string line = (lines.empty() ? "" : "\n") + notes[i];
+    if (lines.size() + line.size() + kRoomForRest >= PF_SEQUENCE_MESSAGE) {
+      lines += (lines.empty() ? "" : "\n") + std::to_string(notes.size() - i) + " more notes do not fit here";
+      break;
+    }
+    lines += line;
+  }
+  put(message, lines.c_str());
+}
+
+std::string or_empty(const char* text) { return text != nullptr ? text : ""; }
+
 /// Runs a function that may throw; nothing passes the C boundary.
 template <typename Function>
 int guarded(char message[PF_SEQUENCE_MESSAGE], const Function& function) {
@@ -55,6 +74,9 @@ int guarded(char message[PF_SEQUENCE_MESSAGE], const Function& function) {
   } catch (const pf::sequence::ImageError& error) {
     put(message, error.what());
     return PF_SEQUENCE_UNUSABLE_IMAGE;
+  } catch (const pf::sequence::CalibrationError& error) {
+    put(message, error.what());
+    return PF_SEQUENCE_WRONG_CALIBRATION;
   } catch (const std::exception& error) {
     put(message, error.what());
   } catch (...) {
@@ -162,27 +184,36 @@ void require(const void* pointer, const char* name) {
 
 int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t** sequence,
                      char message[PF_SEQUENCE_MESSAGE]) {
+  return pf_open_sequence_of(source, calibration, nullptr, sequence, message);
+}
+
+int pf_open_sequence_of(const char* source, const char* calibration, const char* camera, pf_sequence_t** sequence,
+                        char message[PF_SEQUENCE_MESSAGE]) {
   return guarded(message, [&] {
     require(source, "source");
     require(sequence, "sequence");
     *sequence = nullptr;
     auto opened = std::make_unique<pf_sequence>();
-    opened->folder = pf::sequence::open_folder(source, calibration != nullptr ? calibration : "");
-    opened->root = opened->folder.root.string();
-    opened->calibration_path = opened->folder.calibration_path.string();
-    opened->truth_path = opened->folder.truth_path.string();
-    opened->imu_path = opened->folder.imu_path.string();
-    if (calibration != nullptr && std::string(calibration) == PF_SEQUENCE_UNCALIBRATED) {
-      opened->folder.calibration.camera = uncalibrated_camera(size_of_images(*opened));
-    } else if (opened->folder.calibration.camera.width == 0) {
-      opened->folder.calibration = pf::sequence::read_calibration(opened->calibration_path, size_of_images(*opened));
+    pf::sequence::Folder& folder = opened->folder;
+    folder = pf::sequence::open_folder(source, or_empty(calibration), or_empty(camera));
+    opened->root = folder.root.string();
+    opened->calibration_path = folder.calibration_path.string();
+    opened->truth_path = folder.truth_path.string();
+    opened->imu_path = folder.imu_path.string();
+    if (or_empty(calibration) == PF_SEQUENCE_UNCALIBRATED) {
+      folder.calibration.camera = uncalibrated_camera(size_of_images(*opened));
+    } else if (folder.calibration.camera.width == 0) {
+      folder.asked.images = size_of_images(*opened);
+      pf::sequence::read_calibration_of(folder);
     }
-    if (opened->folder.warning.empty()) {
-      opened->folder.warning = opened->folder.calibration.warning;
-    }
+    std::vector<std::string> notes = folder.notes;
+    notes.insert(notes.end(), folder.calibration.notes.begin(), folder.calibration.notes.end());
     const std::string doubt = doubt_of_first(*opened);
     if (!doubt.empty()) {
-      opened->folder.warning += (opened->folder.warning.empty() ? "" : "; ") + doubt;
+      notes.push_back(doubt);
+    }
+    for (const std::string& line : notes) {
+      opened->warning += (opened->warning.empty() ? "" : "\n") + line;
     }
     *sequence = opened.release();
   });
@@ -207,9 +238,10 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
   info->folder = sequence->root.c_str();
   info->calibration_path = sequence->calibration_path.c_str();
   info->calibration_form = folder.calibration.form;
+  info->camera_name = folder.calibration.camera_name.c_str();
   info->truth_path = sequence->truth_path.c_str();
   info->imu_path = sequence->imu_path.c_str();
-  info->warning = folder.warning.c_str();
+  info->warning = sequence->warning.c_str();
 }
 
 int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,
@@ -249,32 +281,39 @@ const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t in
 
 int pf_parse_calibration(const char* text, size_t size, const char* name, pf_camera_t* camera, double* rate_hz,
                          char message[PF_SEQUENCE_MESSAGE]) {
+  return pf_parse_calibration_of(text, size, name, nullptr, camera, rate_hz, message);
+}
+
+int pf_parse_calibration_of(const char* text, size_t size, const char* name, const char* which, pf_camera_t* camera,
+                            double* rate_hz, char message[PF_SEQUENCE_MESSAGE]) {
   return guarded(message, [&] {
     require(text, "text");
     require(camera, "camera");
-    const auto calibration =
-        pf::sequence::parse_calibration(std::string(text, size), name != nullptr ? name : "calibration");
-    pf::sequence::require_image_size(calibration, name != nullptr ? name : "calibration");
+    const std::string file = name != nullptr ? name : "calibration";
+    pf::sequence::Asked asked;
+    asked.camera = or_empty(which);
+    const auto calibration = pf::sequence::parse_calibration(std::string(text, size), file, asked);
+    pf::sequence::require_image_size(calibration, file);
     *camera = calibration.camera;
     if (rate_hz != nullptr) {
       *rate_hz = calibration.rate_hz;
     }
-    put(message, calibration.warning.c_str());
+    put_notes(message, calibration.notes);
   });
 }
 
 int pf_read_calibration(const char* path, pf_camera_t* camera, double* rate_hz, char message[PF_SEQUENCE_MESSAGE]) {
-  return guarded(message, [&] {
+  return pf_read_calibration_of(path, nullptr, camera, rate_hz, message);
+}
+
+int pf_read_calibration_of(const char* path, const char* which, pf_camera_t* camera, double* rate_hz,
+                           char message[PF_SEQUENCE_MESSAGE]) {
+  std::string text;
+  const int done = guarded(message, [&] {
     require(path, "path");
-    require(camera, "camera");
-    const auto calibration = pf::sequence::read_calibration(path);
-    pf::sequence::require_image_size(calibration, path);
-    *camera = calibration.camera;
-    if (rate_hz != nullptr) {
-      *rate_hz = calibration.rate_hz;
-    }
-    put(message, calibration.warning.c_str());
+    text = pf::sequence::read_text(path, pf::sequence::kMaxYamlBytes, "calibration");
   });
+  return done != 0 ? done : pf_parse_calibration_of(text.data(), text.size(), path, which, camera, rate_hz, message);
 }
 
 int pf_read_target(const char* path, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]) {
@@ -332,40 +371,54 @@ int pf_parse_imu_noise(const char* text, size_t size, const char* name, pf_imu_m
     require(text, "text");
     require(imu, "imu");
     pf_imu_model_t read = *imu;
-    const std::string ignored =
-        pf::sequence::parse_imu_noise(std::string(text, size), name != nullptr ? name : "text", &read);
+    std::vector<std::string> notes;
+    pf::sequence::parse_imu_noise(std::string(text, size), name != nullptr ? name : "text", &read, notes);
     *imu = read;
-    put(message, ignored.c_str());
+    put_notes(message, notes);
   });
 }
 
 int pf_parse_imu_mount(const char* text, size_t size, const char* name, pf_imu_model_t* imu,
                        char message[PF_SEQUENCE_MESSAGE]) {
+  return pf_parse_imu_mount_of(text, size, name, nullptr, imu, message);
+}
+
+int pf_parse_imu_mount_of(const char* text, size_t size, const char* name, const char* camera, pf_imu_model_t* imu,
+                          char message[PF_SEQUENCE_MESSAGE]) {
   return guarded(message, [&] {
     require(text, "text");
     require(imu, "imu");
     pf_imu_model_t read = *imu;
-    pf::sequence::parse_imu_mount(std::string(text, size), name != nullptr ? name : "text", &read);
+    std::vector<std::string> notes;
+    pf::sequence::parse_imu_mount(std::string(text, size), name != nullptr ? name : "text", or_empty(camera), &read,
+                                  notes);
     *imu = read;
+    put_notes(message, notes);
   });
 }
 
-static int read_imu_model(const char* path, const char* what, decltype(&pf_parse_imu_noise) parse, pf_imu_model_t* imu,
-                          char* message) {
-  std::string text;
-  const int done = guarded(message, [&] {
+/// The text of a file that one of the functions above parses. 0: text is filled.
+static int read_imu_text(const char* path, const char* what, std::string& text, char* message) {
+  return guarded(message, [&] {
     require(path, "path");
     text = pf::sequence::read_text(path, pf::sequence::kMaxImuModelBytes, what);
   });
-  return done != 0 ? done : parse(text.data(), text.size(), path, imu, message);
 }
 
 int pf_read_imu_noise(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]) {
-  return read_imu_model(path, "inertial noise", pf_parse_imu_noise, imu, message);
+  std::string text;
+  const int done = read_imu_text(path, "inertial noise", text, message);
+  return done != 0 ? done : pf_parse_imu_noise(text.data(), text.size(), path, imu, message);
 }
 
 int pf_read_imu_mount(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]) {
-  return read_imu_model(path, "inertial mounting", pf_parse_imu_mount, imu, message);
+  return pf_read_imu_mount_of(path, nullptr, imu, message);
+}
+
+int pf_read_imu_mount_of(const char* path, const char* camera, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]) {
+  std::string text;
+  const int done = read_imu_text(path, "inertial mounting", text, message);
+  return done != 0 ? done : pf_parse_imu_mount_of(text.data(), text.size(), path, camera, imu, message);
 }
 
 void pf_free_imu(pf_imu_sample_t* samples) { delete[] samples; }

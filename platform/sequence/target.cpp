@@ -131,16 +131,15 @@ void turn_scenelib_camera(double q[4]) {
   q[3] = w;
 }
 
-}  // namespace
-
-pf_target_t parse_target(const std::string& text, const std::string& file) {
-  const Fields fields(text, file);
+pf_target_t read_fields(const Fields& fields) {
+  std::vector<std::string> ignored;  // none: the forms are ours
   pf_target_t target = rectangle_of(0.0, 0.0, kPointSigma);
   if (fields.has("features")) {
     fields.check_keys(
         {{"features", "start_camera_position", "start_camera_quat_wxyz", "sigma", "sigma_position", "sigma_rotation"},
          {},
-         true});
+         true},
+        ignored);
     target.kind = PF_TARGET_POINTS;
     set_points(fields, "features", target);
     set_first_pose(fields, "start_camera_position", "start_camera_quat_wxyz", target);
@@ -148,20 +147,30 @@ pf_target_t parse_target(const std::string& text, const std::string& file) {
   } else if (fields.has("points")) {
     target.kind = PF_TARGET_POINTS;
     const char* pose = fields.has("T_WC") ? "T_WC" : "first_pose";
-    fields.check_keys({{"points", pose, "sigma"}, {"comment"}, true});
-    fields.below(pose).check_keys({{"position", "quaternion_wxyz", "sigma_position", "sigma_rotation"}, {}, true});
+    fields.check_keys({{"points", pose, "sigma"}, {"comment"}, true}, ignored);
+    fields.below(pose).check_keys({{"position", "quaternion_wxyz", "sigma_position", "sigma_rotation"}, {}, true},
+                                  ignored);
     set_points(fields, "points", target);
     set_first_pose(fields.below(pose), "position", "quaternion_wxyz", target);
   } else if (fields.has("width") || fields.has("height")) {
-    fields.check_keys({{"width", "height", "sigma", "q_WT", "p_WT"}, {"comment"}, true});
+    fields.check_keys({{"width", "height", "sigma", "q_WT", "p_WT"}, {"comment"}, true}, ignored);
     set_place(fields, target);
     target.width = positive(fields, "width", fields.number("width"), kLargest);
     target.height = positive(fields, "height", fields.number("height"), kLargest);
     target.sigma = kRectangleSigma;
   } else {
-    refuse(file + ": is no target; it needs width and height [m] of a dark rectangle, or points and first_pose");
+    refuse(fields.file() +
+           ": is no target; it needs width and height [m] of a dark rectangle, or points and first_pose");
   }
   target.sigma = positive(fields, "sigma", fields.number_or("sigma", target.sigma), 1.0);
+  return target;
+}
+
+}  // namespace
+
+pf_target_t parse_target(const std::string& text, const std::string& file) {
+  pf_target_t target{};
+  read_with_hints(Fields(text, file), [&](const Fields& fields) { target = read_fields(fields); });
   return target;
 }
 

@@ -228,6 +228,17 @@ static void test_timestamps_should_be_read_in_every_form_and_are_real_where_noth
                         read(with(kKalibr, "  camera_model", "  timestamps: nominal\n  camera_model")).timestamps);
 }
 
+static void test_settings_of_a_camera_of_a_chain_should_count_and_not_be_there_twice() {
+  const auto inside = [](const char* line) {
+    return with(kKalibr, "  camera_model", "  " + std::string(line) + "\n  camera_model");
+  };
+  TEST_ASSERT_EQUAL_DOUBLE(0.002, read(inside("sigma_focal: 0.002")).sigma_focal);
+  TEST_ASSERT_EQUAL_DOUBLE(0.02, read(inside("sigma_distortion: [0.02]")).sigma_distortion[0]);
+  refused(inside("sigma_focal: 2"), "'sigma_focal'");
+  refused(inside("readout_s: 0.02") + "readout_s: 0.03\n", "'cam0.readout_s'");
+  refused(inside("timestamps: nominal") + "timestamps: real\n", "'cam0.timestamps'");
+}
+
 static void test_plain_should_name_the_field_when_one_is_missing() {
   for (const char* field : {"width", "height", "fx", "fy", "cx", "cy", "distortion_model"}) {
     const std::string key = std::string("\n") + field + ":";
@@ -435,6 +446,7 @@ int main() {
   RUN_TEST(test_layout_should_be_refused_with_the_list_of_known_ones_when_nobody_knows_it);
   RUN_TEST(test_readout_should_be_read_in_every_form);
   RUN_TEST(test_timestamps_should_be_read_in_every_form_and_are_real_where_nothing_is_said);
+  RUN_TEST(test_settings_of_a_camera_of_a_chain_should_count_and_not_be_there_twice);
   RUN_TEST(test_plain_should_name_the_field_when_one_is_missing);
   RUN_TEST(test_plain_should_be_without_distortion_when_it_names_none);
   RUN_TEST(test_sigmas_should_be_read_in_every_form_and_be_typical_where_the_file_says_nothing);

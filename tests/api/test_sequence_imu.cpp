@@ -169,6 +169,19 @@ static void test_noise_should_be_read_from_every_known_form() {
   }
 }
 
+static void test_noise_should_be_that_of_the_first_unit_with_a_note_when_a_file_has_several() {
+  std::string inside;
+  for (const char c : std::string(kKalibrNoise)) inside += c == '\n' ? std::string("\n  ") : std::string(1, c);
+  const std::string one = "imu0:\n  " + inside + "model: calibrated\n";
+  pf_imu_model_t imu{};
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  TEST_ASSERT_TRUE_MESSAGE(read_noise(one, &imu, message), message);
+  TEST_ASSERT_EQUAL_STRING("", message);
+  TEST_ASSERT_TRUE_MESSAGE(read_noise(one + "imu1:\n  gyroscope_noise_density: 1e-3\n", &imu, message), message);
+  require_message(message, "imu0 is taken");
+  TEST_ASSERT_TRUE(imu.gyro_density == 1.87e-4);
+}
+
 static void test_gravity_should_be_read_from_the_noise_of_a_unit() {
   const std::string plain =
       "accel_noise_density: 1.86e-03\naccel_random_walk: 4.33e-04\ngyro_noise_density: 1.87e-04\n"
@@ -216,6 +229,62 @@ static void test_mounting_should_be_the_same_in_every_known_form() {
   }
 }
 
+static void test_mounting_should_be_read_in_the_forms_of_other_programs() {
+  const std::string to_imu = "[0, -1, 0, 0.1], [1, 0, 0, 0.2], [0, 0, 1, 0.3], [0, 0, 0, 1]";
+  const std::string in_rows = "[0, -1, 0, 0.1, 1, 0, 0, 0.2, 0, 0, 1, 0.3, 0, 0, 0, 1]";
+  const std::string opencv = " !!opencv-matrix\n   rows: 4\n   cols: 4\n   dt: d\n   data: " + in_rows + "\n";
+  const std::string openvins = "%YAML:1.0\n\ncam0:\n  T_imu_cam: [" + to_imu + "]\n  timeshift_cam_imu: 0.004\n";
+  const std::string other = "cam1:\n  T_imu_cam: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n";
+  const std::string parts =
+      "%YAML:1.0\nestimate_extrinsic: 0\nextrinsicRotation: [0, -1, 0, 1, 0, 0, 0, 0, 1]\nextrinsicTranslation: [0.1, "
+      "0.2, 0.3]\ntd: -0.002\n";
+  const std::string both =
+      "cam0:\n  T_imu_cam: [" + to_imu +
+      "]\n  T_cam_imu:\n  - [0, 1, 0, -0.2]\n  - [-1, 0, 0, 0.1]\n  - [0, 0, 1, -0.3]\n  - [0, 0, 0, 1]\n";
+  for (const auto& [text, delay_s] : {std::pair<std::string, double>{openvins, -0.004},
+                                      {"T_imu_cam: [" + to_imu + "]\n", 0.0},
+                                      {parts, 0.002},
+                                      {"%YAML:1.0\nbody_T_cam0:" + opencv + "td: 0.01\n", -0.01},
+                                      {"%YAML:1.0\nTbc:" + opencv, 0.0},
+                                      {"%YAML:1.0\nIMU.T_b_c1:" + opencv, 0.0},
+                                      {"T_cam_imu: [0, 1, 0, -0.2, -1, 0, 0, 0.1, 0, 0, 1, -0.3, 0, 0, 0, 1]\n", 0.0},
+                                      {both, 0.0}}) {
+    pf_imu_model_t imu{};
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    TEST_ASSERT_TRUE_MESSAGE(read_mount(text, &imu, message), message);
+    TEST_ASSERT_EQUAL_STRING("", message);
+    require_mount(imu, delay_s);
+  }
+  // Of several cameras.
+  pf_imu_model_t imu{};
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  TEST_ASSERT_TRUE_MESSAGE(read_mount(openvins + other, &imu, message), message);
+  require_message(message, "cam0 and cam1");
+  require_mount(imu, -0.004);
+  const std::string text = other + "cam2" + openvins.substr(openvins.find("cam0") + 4);
+  for (const char* camera : {"cam2", "2"}) {
+    pf_parse_imu_mount_of(text.data(), text.size(), "cam.yaml", camera, &imu, message);
+    require_mount(imu, -0.004);
+  }
+}
+
+static void test_mounting_should_be_refused_when_two_fields_of_it_differ() {
+  const auto refused_mount = [](const std::string& text, const char* part) {
+    pf_imu_model_t imu{};
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    TEST_ASSERT_FALSE_MESSAGE(read_mount(text, &imu, message), text.c_str());
+    require_message(message, part);
+  };
+  const std::string there = "[0, -1, 0, 0.1, 1, 0, 0, 0.2, 0, 0, 1, 0.3, 0, 0, 0, 1]\n";
+  refused_mount("T_imu_cam: " + there + "T_cam_imu: " + there, "different mountings");
+  refused_mount("T_imu_cam: [[1, 0, 0, 0, 0, 1, 0, 0], [0, 0, 1, 0, 0, 0, 0, 1]]\n", "in every row");
+  refused_mount("T_cam_to_imu: " + there, "T_cam_imu (Kalibr)");
+  refused_mount(
+      "extrinsicRotation: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nextrinsicTranslation: [0, 0, 0]\nestimate_extrinsic: 2\n",
+      "'estimate_extrinsic'");
+  refused_mount("T_imu_cam: " + there + "timeshift_cam_imu: 4\n", "'timeshift_cam_imu'");
+}
+
 static void test_mounting_should_be_refused_when_it_is_no_rotation_or_nowhere() {
   const auto refused_mount = [](const std::string& text, const char* part) {
     pf_imu_model_t imu{};
@@ -236,9 +305,12 @@ static void test_mounting_should_be_refused_when_it_is_no_rotation_or_nowhere() 
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_noise_should_be_read_from_every_known_form);
+  RUN_TEST(test_noise_should_be_that_of_the_first_unit_with_a_note_when_a_file_has_several);
   RUN_TEST(test_gravity_should_be_read_from_the_noise_of_a_unit);
   RUN_TEST(test_noise_should_be_refused_when_a_field_is_missing_or_in_other_units);
   RUN_TEST(test_mounting_should_be_the_same_in_every_known_form);
+  RUN_TEST(test_mounting_should_be_read_in_the_forms_of_other_programs);
+  RUN_TEST(test_mounting_should_be_refused_when_two_fields_of_it_differ);
   RUN_TEST(test_mounting_should_be_refused_when_it_is_no_rotation_or_nowhere);
   RUN_TEST(test_rows_should_be_read_to_the_last_digit_when_times_are_nanoseconds);
   RUN_TEST(test_times_should_be_seconds_when_a_row_has_a_decimal_point);

@@ -118,6 +118,21 @@ class Corners(unittest.TestCase):
         for other in pixels[1:]:
             np.testing.assert_array_equal(other, pixels[0])
 
+    def test_calibration_should_be_refused_when_a_field_changes_what_others_mean(self):
+        opencv = ("%YAML:1.0\nimage_width: 640\nimage_height: 480\ncamera_matrix: {rows: 3, cols: 3, data: [300, 0, 320, 0, 300, 240, 0, 0, 1]}\n"
+                  "distortion_coefficients: {data: [0.1, 0.01, 0, 0]}\n")
+        (self.path / "fish.yaml").write_text(opencv + "fisheye_model: 1\n")
+        self.assertEqual(read_camera(self.path / "fish.yaml").model, "equidistant")
+        (self.path / "flat.yaml").write_text(opencv + "fisheye_model: 0\n")
+        self.assertEqual(read_camera(self.path / "flat.yaml").model, "radtan")
+        chain = "  resolution: [640, 480]\n  intrinsics: [300, 300, 320, 240]\n  distortion_model: radtan\n  distortion_coeffs: [0, 0, 0, 0]\n"
+        for name, text in (("four coefficients", opencv), ("skew", opencv.replace("[300, 0,", "[300, 2,") + "fisheye_model: 0\n"),
+                           ("cam0, cam1", "cam0:\n" + chain + "cam1:\n" + chain), ("camera_model", "cam0:\n  camera_model: omni\n" + chain),
+                           ("behind", opencv.replace("0, 0]", "0, 0, 0, 0.2]")), ("binning_x", opencv + "distortion_model: plumb_bob\nbinning_x: 2\n")):
+            (self.path / "c.yaml").write_text(text)
+            with self.assertRaisesRegex(Refused, name):
+                read_camera(self.path / "c.yaml")
+
     def test_unknown_layout_should_be_refused_with_the_known_ones(self):
         (self.path / "other.yaml").write_text("lens: 8 mm\n")
         with self.assertRaisesRegex(Refused, "other.yaml.*Kalibr.*EuRoC.*ROS.*ORB-SLAM3"):

@@ -55,18 +55,18 @@ bool load_sim(const std::string& scene, const std::string& start, int limit, Fra
 #endif
 }
 
-bool load_sequence(const std::string& source, const std::string& start, const std::string& calibration, int limit,
-                   Frames& frames, std::string& message) {
+bool load_sequence(const std::string& source, const std::string& start,
+                   const pf::tools::CalibrationOptions& calibration, int limit, Frames& frames, std::string& message) {
   char line[PF_SEQUENCE_MESSAGE] = "";
-  const char* file = calibration.empty() ? nullptr : calibration.c_str();
   pf_sequence_t* opened = nullptr;
-  if (pf_open_sequence(source.c_str(), file, &opened, line) != 0) {
+  if (pf_open_sequence_of(source.c_str(), calibration.file_or_null(), calibration.camera.c_str(), &opened, line) != 0) {
     message = line;
     return false;
   }
   const std::unique_ptr<pf_sequence_t, void (*)(pf_sequence_t*)> sequence(opened, pf_close_sequence);
   pf_sequence_info_t info{};
   pf_get_sequence_info(opened, &info);
+  pf::tools::print_notes("pf-bench", info.warning);
   frames.camera = info.camera;
   const int64_t count = std::min<int64_t>(info.count, limit);
   for (int64_t i = 0; i < count; ++i) {
@@ -89,8 +89,8 @@ bool load_sequence(const std::string& source, const std::string& start, const st
 
 }  // namespace
 
-bool load_frames(const std::string& source, const std::string& start, const std::string& calibration, int limit,
-                 Frames& frames, std::string& message) {
+bool load_frames(const std::string& source, const std::string& start, const pf::tools::CalibrationOptions& calibration,
+                 int limit, Frames& frames, std::string& message) {
   frames = Frames();
   frames.start = start.empty() ? "auto" : start;
   const size_t colon = source.find(':');

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "../lib/calibration_options.h"
+
 namespace bench {
 
 /// A whole sequence, decoded into memory.
@@ -27,8 +29,8 @@ struct Frames {
 
 /// Read images:DIR, euroc:DIR, tum:DIR or sim:NAME. start: auto, pose:FILE, target:FILE, rectangle:WxH, or "" for the target.yaml that
 /// lies beside the images, and auto where there is none. false: message is one line.
-bool load_frames(const std::string& source, const std::string& start, const std::string& calibration, int limit,
-                 Frames& frames, std::string& message);
+bool load_frames(const std::string& source, const std::string& start, const pf::tools::CalibrationOptions& calibration,
+                 int limit, Frames& frames, std::string& message);
 
 /// Read the walls of a plan. false: message is one line.
 bool load_walls(const std::string& file, Frames& frames, std::string& message);

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
       sub->add_option(
           "--start", options.start,
           "auto, pose:FILE, target:FILE or rectangle:WxH (default: target.yaml beside the images, else auto)");
-      sub->add_option("--calib", options.calibration, "calibration file (default: the one beside the images)");
+      options.calibration.add_to(*sub);
       sub->add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start");
       sub->add_option("--patches", options.patches, "capacity for patches of these walls")
           ->check(CLI::Range(0, 32))

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "../lib/calibration_options.h"
+
 namespace bench {
 
 /// One measurement. ratio = us / (the peer's us in the same run).
@@ -24,7 +26,8 @@ struct SuiteOptions {
 
   /// Of suites that run on sequences.
   std::vector<std::string> sources;
-  std::string start, calibration;
+  std::string start;
+  pf::tools::CalibrationOptions calibration;
   std::string walls;    ///< file of walls known beforehand; none where it is empty
   int patches = 4;      ///< capacity for patches, where there are walls
   bool window = false;  ///< the back end

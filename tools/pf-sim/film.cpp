@@ -13,16 +13,18 @@ struct CloseSequence {
 
 }  // namespace
 
-bool Film::open(const std::string& source, std::string* error) {
+bool Film::open(const std::string& source, const pf::tools::CalibrationOptions& calibration, std::string* error) {
   char message[PF_SEQUENCE_MESSAGE] = "";
   pf_sequence_t* opened = nullptr;
-  if (pf_open_sequence(source.c_str(), nullptr, &opened, message) != 0) {
+  if (pf_open_sequence_of(source.c_str(), calibration.file_or_null(), calibration.camera.c_str(), &opened, message) !=
+      0) {
     *error = message;
     return false;
   }
   const std::unique_ptr<pf_sequence_t, CloseSequence> sequence(opened);
   pf_sequence_info_t info;
   pf_get_sequence_info(opened, &info);
+  pf::tools::print_notes("pf-sim", info.warning);
   camera_ = info.camera;
   interval_ns_ = static_cast<std::int64_t>(1e9 / info.rate_hz);
   const std::size_t size = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);

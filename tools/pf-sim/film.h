@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "../lib/calibration_options.h"
 #include "planefold/planefold.h"
 
 namespace pfsim {
@@ -12,7 +13,7 @@ namespace pfsim {
 class Film {
  public:
   /// Reads all frames of a source of platform_sequence. False, with one line that says why, when that is not possible.
-  bool open(const std::string& source, std::string* error);
+  bool open(const std::string& source, const pf::tools::CalibrationOptions& calibration, std::string* error);
 
   const pf_camera_t& camera() const { return camera_; }
   int frames() const { return static_cast<int>(times_ns_.size()); }

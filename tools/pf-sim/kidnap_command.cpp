@@ -21,6 +21,7 @@ constexpr double kFiveSigma = 5.733e-7;  // probability that a normal variable l
 constexpr double kRounding = 1e-6;       // of a ratio of standard deviations
 
 struct Choices {
+  pf::tools::CalibrationOptions calibration;
   std::string source, start = "auto", lens = "estimate", json_file;
   int every = 8, jobs = 2, random_frames = 700, random_runs = 4;
   std::uint64_t seed = 1;
@@ -202,7 +203,7 @@ int run(const Choices& c) {
   Film film;
   std::string error;
   if (!read_start(c.start, &options.has_target, &options.target, &error)) return fail(error);
-  if (!film.open(c.source, &error)) return fail(error, 1);
+  if (!film.open(c.source, c.calibration, &error)) return fail(error, 1);
   if (!config_for(film, &options.config, &error)) return fail(error);
   options.config.camera.estimate = c.lens == "estimate" ? PF_CAMERA_ESTIMATE : PF_CAMERA_EXACT;
   Context context(options.config);
@@ -242,6 +243,7 @@ void add_kidnap(CLI::App& app, int& result) {
   CLI::App* command = app.add_subcommand(
       "kidnap", "Black pictures, other places and random order on real frames: what is believed after them");
   command->add_option("--source", c->source, "images:DIR, euroc:DIR or tum:DIR")->required();
+  c->calibration.add_to(*command);
   command->add_option("--start", c->start, "auto or target:FILE");
   command->add_option("--lens", c->lens, "exact, or estimate as pf-capture does by default")
       ->check(CLI::IsMember({"exact", "estimate"}))

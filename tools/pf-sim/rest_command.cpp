@@ -25,6 +25,7 @@ constexpr std::uint64_t kNoiseStream = 41;
 constexpr double kMaxSeconds = 86400;
 
 struct Choices {
+  pf::tools::CalibrationOptions calibration;
   std::string source, start = "auto", json_file;
   std::vector<int> at;
   double seconds = 60, noise = 2;
@@ -147,7 +148,7 @@ int run(Choices c) {
   Film film;
   std::string error;
   if (!read_start(c.start, &has_target, &target, &error)) return fail(error);
-  if (!film.open(c.source, &error) || !config_for(film, &config, &error)) return fail(error);
+  if (!film.open(c.source, c.calibration, &error) || !config_for(film, &config, &error)) return fail(error);
   if (c.at.empty()) c.at = places(film);
   for (const int frame : c.at)
     if (frame < 0 || frame >= film.frames())
@@ -188,6 +189,7 @@ void add_rest(CLI::App& app, int& result) {
   CLI::App* command = app.add_subcommand(
       "rest", "The camera stops on real frames: the same picture with fresh noise, and how far the pose drifts");
   command->add_option("--source", c->source, "images:DIR, euroc:DIR or tum:DIR")->required();
+  c->calibration.add_to(*command);
   command->add_option("--start", c->start, "auto or target:FILE");
   command->add_option("--at", c->at, "frames at which it stops, A,B,.. (default: three places)")->delimiter(',');
   command->add_option("--seconds", c->seconds, "at rest");

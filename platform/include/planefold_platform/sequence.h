@@ -9,8 +9,9 @@
  *   pf_close_sequence(sequence);
  *
  * Every function that can fail returns 0, or -1 with one line of plain text in message that names the file, says what is
- * wrong with it and what to do (pf_read_sequence_frame knows one more value). Files are not trusted: whatever they hold, the answer is
- * one of the two. This is the desktop side: it uses the heap and the file system. A sequence belongs to one thread at a time.
+ * wrong with it and what to do (pf_open_sequence and pf_read_sequence_frame know one more value each). Files are not trusted: whatever
+ * they hold, the answer is one of the two. What is to be noted of a calibration comes with 0, each note on a line of its own. This is the
+ * desktop side: it uses the heap and the file system. A sequence belongs to one thread at a time.
  */
 #ifndef PLANEFOLD_PLATFORM_SEQUENCE_H
 #define PLANEFOLD_PLATFORM_SEQUENCE_H
@@ -21,7 +22,7 @@
 extern "C" {
 #endif
 
-#define PF_SEQUENCE_MESSAGE 1024 /* bytes of a message, with its terminating zero */
+#define PF_SEQUENCE_MESSAGE 4096 /* bytes of a message, with its terminating zero */
 
 /* As a calibration: none is read. Only the size in the camera means something then, which is that of the first image. */
 #define PF_SEQUENCE_UNCALIBRATED "uncalibrated"
@@ -33,17 +34,21 @@ typedef struct pf_sequence_info {
   int64_t count; /* frames */
   int64_t first_t_ns, last_t_ns;
   double rate_hz;     /* as the calibration says, or else from the times */
-  const char* folder; /* these six are valid until the sequence is closed; "" where there is none */
+  const char* folder; /* these seven are valid until the sequence is closed; "" where there is none */
   const char* calibration_path;
-  const char* calibration_form; /* "kalibr", "euroc", "ros", "orb-slam3", "orb-slam", "kitti", "plain" or "none" */
+  const char* calibration_form; /* as in the table at pf_read_calibration, or "none" */
+  const char* camera_name;      /* of the camera that was taken, where the calibration names its cameras: "cam0" */
   const char* truth_path;       /* a trajectory beside the images: TUM, or EuRoC's data.csv of the body */
-  const char* warning;          /* one line on what had to be assumed */
+  const char* warning;          /* what had to be assumed: each on a line of its own, with '\n' between them */
   const char* imu_path;         /* inertial samples beside the images, for pf_read_imu */
 } pf_sequence_info_t;
 
+/* What pf_open_sequence returns where it is the calibration that is refused. */
+#define PF_SEQUENCE_WRONG_CALIBRATION (-3)
+
 /* Sources:
  *   images:DIR  images/ (or image_0/, or the images themselves), times.txt (index seconds name, seconds name, or seconds alone in
- *               the order of the images' names), calib.yaml or KITTI's calib.txt. Without
+ *               the order of the images' names), and a calibration. Without
  *               times.txt the names are taken in natural order at the calibration's rate_hz, or 30 Hz, with a warning. Where images of
  *               several kinds lie side by side (frame-000000.color.png, frame-000000.depth.png), those in colour or grey are taken.
  *   euroc:DIR   mav0/cam0/data, data.csv and sensor.yaml; DIR may also be mav0 or cam0, or of the layout above.
@@ -52,7 +57,13 @@ typedef struct pf_sequence_info {
  * PNG, JPEG and binary PGM; colour becomes grey, 16 bits become 8 (of a PNG, 65535 is white; a warning where the first one has
  * data of 12 bits or fewer). Pixels are taken as stored, whatever EXIF says of the orientation, and so must the calibration.
  * Times must grow from frame to frame.
- * calibration  a file in one of the forms of pf_read_calibration; null: the one inside DIR */
+ * calibration  a file in one of the forms of pf_read_calibration; null: the one inside DIR, calib.yaml or another name that the layout has;
+ *              of images: also the one file of such a form there or else beside the images, refused where several differ
+ * camera       of a calibration of several: its name there or the number that ends it; null: the one that the folder of the images is
+ *              named after, or the first, and then a note names the others */
+int pf_open_sequence_of(const char* source, const char* calibration, const char* camera, pf_sequence_t** sequence,
+                        char message[PF_SEQUENCE_MESSAGE]);
+/* The same with camera null. */
 int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t** sequence,
                      char message[PF_SEQUENCE_MESSAGE]);
 void pf_close_sequence(pf_sequence_t* sequence); /* null is welcome */
@@ -70,21 +81,45 @@ int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* i
 /* File of a frame, for messages. */
 const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t index);
 
-/* A calibration file: Kalibr camchain (cam0), EuRoC sensor.yaml, ROS camera_info, settings of ORB-SLAM3 (Camera1.) or ORB-SLAM
- * (Camera.), KITTI calib.txt (P0), or the plain form
- *   camera_model: pinhole / width / height / fx / fy / cx / cy /
- *   distortion_model: none | radtan | equidistant | harris_division / distortion: [..] / rate_hz (optional)
- * (without distortion and its model there is none).
- * KITTI's file does not say the size of the images, and those of ORB-SLAM not always: such a file is read by pf_open_sequence only,
- * which takes the size of the first image.
+/* A calibration file, in one of these forms:
+ *
+ *   form        whose                                 known by            read as                                cameras
+ *   kalibr      Kalibr's camchain, OpenVINS           cam0:               pinhole: radtan, equidistant, none     cam0, cam1, ..
+ *   euroc       EuRoC's sensor.yaml                   intrinsics:         the same
+ *   ros         ROS camera_info, as a file or as      camera_matrix: with plumb_bob, equidistant, rational_
+ *               rostopic and ros2 topic print it      distortion_model:,  polynomial with zeros behind k3; roi is
+ *                                                     K: or k:            applied, binning refused
+ *   opencv      OpenCV's calibration sample           camera_matrix:      5 coefficients; 4 with fisheye_model
+ *   vins        VINS-Fusion, VINS-Mono (camodocal)    model_type:         PINHOLE, KANNALA_BRANDT, MEI with xi 0
+ *   openvslam   OpenVSLAM, stella_vslam               Camera.model:       perspective, fisheye
+ *   orb-slam3   ORB-SLAM3                             Camera1.fx:         PinHole, KannalaBrandt8, Rectified     Camera1, Camera2
+ *   orb-slam    ORB-SLAM, ORB-SLAM2                   Camera.fx:          the same                               Camera, LEFT, RIGHT
+ *   kitti       KITTI's calib.txt                     P0:                 rectified pinhole                      P0 .. P3
+ *               and calib_cam_to_cam.txt              P_rect_00:          the same                               P_rect_00 .. P_rect_03
+ *   colmap      COLMAP's cameras.txt                  its rows            (SIMPLE_)PINHOLE, (SIMPLE_)RADIAL,     camera 1, ..
+ *                                                                         OPENCV, OPENCV_FISHEYE
+ *   plain       this project, and files by hand       fx:                 none, radtan, equidistant,
+ *                                                                         harris_division
+ *
+ * The plain form is camera_model: pinhole / width / height / fx / fy / cx / cy / distortion_model / distortion: [..] / rate_hz (optional);
+ * without distortion and its model there is none. COLMAP's centre of the first pixel is 0.5, 0.5; it becomes 0, 0, as in the others.
+ * KITTI's calib.txt does not say the size of the images, and those of ORB-SLAM, OpenVSLAM and OpenCV not always: such a file is read by
+ * pf_open_sequence only, which takes the size of the first image.
  * Each may have readout_s, of a rolling shutter [s], timestamps: real | nominal (pf_timestamps_t; real), and say how well its numbers
  * are known (pf_camera_t): sigma_focal, sigma_aspect, sigma_centre_px, sigma_distortion: [..]; where one is missing, a typical value
  * is filled in: 0.01, 0.001, 1 % of the width, and for distortion zeros, or 0.05 where the file names none. rate_hz (may be null) is 0
- * where the file does not say it. A field that is there twice or looks like a misspelled one is refused, and so is an unknown one of
- * the plain form; with 0, message is a line on what else was ignored, or empty. */
+ * where the file does not say it.
+ * A field is refused that is there twice, looks misspelled, or may change what others mean (another model, further coefficients,
+ * images of another size), and so is any unknown one of the plain form; other unknown fields are ignored with a note.
+ * which  as camera of pf_open_sequence_of; null: the first, with a note that names the others */
+int pf_read_calibration_of(const char* path, const char* which, pf_camera_t* camera, double* rate_hz,
+                           char message[PF_SEQUENCE_MESSAGE]);
+/* The same with which null. */
 int pf_read_calibration(const char* path, pf_camera_t* camera, double* rate_hz, char message[PF_SEQUENCE_MESSAGE]);
 
 /* The same from text in memory; name stands for the file in messages. */
+int pf_parse_calibration_of(const char* text, size_t size, const char* name, const char* which, pf_camera_t* camera,
+                            double* rate_hz, char message[PF_SEQUENCE_MESSAGE]);
 int pf_parse_calibration(const char* text, size_t size, const char* name, pf_camera_t* camera, double* rate_hz,
                          char message[PF_SEQUENCE_MESSAGE]);
 
@@ -125,16 +160,25 @@ int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_
 /* Noise densities of an inertial unit: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml (gyroscope_noise_density and so on), or
  * gyro_noise_density, gyro_random_walk, accel_noise_density, accel_random_walk; each may have gravity [m/s^2], 9 .. 11. Sets these fields
  * of *imu, gravity only where the file has it, and none when it is refused. A density that no unit has (degrees, or the noise of single
- * samples) is refused. With 0, message is a line on what was ignored, or empty. */
+ * samples) is refused. With 0, message is a note on what was ignored, or empty. */
 int pf_read_imu_noise(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]);
 
-/* How the unit is mounted: T_BS of EuRoC's cam0/sensor.yaml (p_B = T_BS p_C), T_cam_imu of Kalibr's camchain (p_C = T_cam_imu p_B; its
- * timeshift_cam_imu becomes delay_s), or T_imu_cam, 16 numbers in rows (p_B = T_imu_cam p_C). Sets q_BC, p_BC and delay_s of *imu. */
+/* How the unit B is mounted, by one of these fields; matrices are of 4 x 4 numbers in rows, one list or four.
+ *   p_B = T p_C: T_BS (EuRoC's cam0/sensor.yaml), T_imu_cam (OpenVINS, plain), body_T_cam0 (VINS-Fusion), IMU.T_b_c1 and Tbc (ORB-SLAM),
+ *                extrinsicRotation and extrinsicTranslation (VINS-Mono)
+ *   p_C = T p_B: T_cam_imu (Kalibr)
+ * timeshift_cam_imu (Kalibr, OpenVINS) or td (VINS) beside it becomes delay_s. Fields that say the same must agree. Sets q_BC, p_BC and
+ * delay_s of *imu.
+ * camera  of a file of several: its name or number; null, or where it is not there: the first, with a note that names the others */
+int pf_read_imu_mount_of(const char* path, const char* camera, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]);
+/* The same with camera null. */
 int pf_read_imu_mount(const char* path, pf_imu_model_t* imu, char message[PF_SEQUENCE_MESSAGE]);
 
 /* The same from text in memory; name stands for the file in messages. */
 int pf_parse_imu_noise(const char* text, size_t size, const char* name, pf_imu_model_t* imu,
                        char message[PF_SEQUENCE_MESSAGE]);
+int pf_parse_imu_mount_of(const char* text, size_t size, const char* name, const char* camera, pf_imu_model_t* imu,
+                          char message[PF_SEQUENCE_MESSAGE]);
 int pf_parse_imu_mount(const char* text, size_t size, const char* name, pf_imu_model_t* imu,
                        char message[PF_SEQUENCE_MESSAGE]);
 

@@ -1,5 +1,7 @@
 """Calibration files and projection, for comparing with what was measured in the images."""
 
+import re
+
 import numpy as np
 
 from . import Refused
@@ -69,6 +71,9 @@ ORB_SLAM_MODELS = {"PinHole": ("radtan", ("k1", "k2", "p1", "p2", "k3")), "Kanna
 
 def _orb_slam(path, fields, prefix):
     """Settings of ORB-SLAM3 (prefix Camera1.) or ORB-SLAM (prefix Camera.)."""
+    _refuse_changes(path, {name: value for name, value in fields.items() if str(name).startswith(prefix)}, {"Camera.imageScale", prefix + "k4"})
+    if "LEFT.K" in fields or "Camera.model" in fields:
+        raise Refused(f"{path}: {'LEFT.K' if 'LEFT.K' in fields else 'Camera.model'} says that Camera.fx may be of another kind; {OWN_CALIBRATION}")
     kind = fields.get("Camera.type", "PinHole")
     if kind not in ORB_SLAM_MODELS:
         raise Refused(f"{path}: Camera.type {kind} is none of {', '.join(ORB_SLAM_MODELS)}")
@@ -78,30 +83,82 @@ def _orb_slam(path, fields, prefix):
                   [float(fields.get(prefix + name, 0.0)) for name in names])
 
 
+# Words in names of fields that may change what others mean; pf-capture has the full list (platform/sequence/meaning.cpp).
+CHANGING = re.compile(r"fisheye|omni|(^|_)xi$|mirror|skew|binning|(^|_)roi$|scale|rectified|unit|rotated|flip|crop|prism|tilt|(^|[_.])k[4-9]$")
+OWN_CALIBRATION = "the calib.yaml that pf-capture writes into its --out has the camera that it took"
+
+
+def _is_neutral(name, value):
+    if isinstance(value, dict):
+        return all(_is_neutral(name, inner) for inner in value.values())
+    if isinstance(value, (list, tuple)):
+        return all(_is_neutral(name, inner) for inner in value)
+    return value in (None, 0, False, "", "none", "px") or (value == 1 and re.search("binning|scale", name) is not None)
+
+
+def _refuse_changes(path, fields, read):
+    """Fields that may change what others mean, other than those that are read."""
+    for name, value in fields.items():
+        if name == "camera_model" and value != "pinhole":
+            raise Refused(f"{path}: camera_model {value} is not known, pinhole is; {OWN_CALIBRATION}")
+        if name not in read and not str(name).startswith("depth_") and CHANGING.search(str(name)) and not _is_neutral(str(name), value):
+            raise Refused(f"{path}: field {name} may change what others mean, and is not known here; {OWN_CALIBRATION}")
+
+
+def _model_without_name(path, fields, distortion):
+    """OpenCV's files say the model by a flag, or by the number of coefficients alone."""
+    if not any(distortion or []):
+        return "fisheye" if fields.get("fisheye_model") else "none"
+    if fields.get("fisheye_model"):
+        return "fisheye"
+    if len(distortion) == 4 and "fisheye_model" not in fields:
+        raise Refused(f"{path}: has four coefficients, and nothing says of which model; add distortion_model")
+    return "radtan"
+
+
+def _checked(path, model, distortion):
+    """Coefficients of a model, of which those that the model does not have must be zero."""
+    count = {"none": 0, "radtan": 5, "equidistant": 4, "division": 1}[model]
+    if any(distortion[count:]):
+        raise Refused(f"{path}: has coefficients behind the {count} that the model {model} has; {OWN_CALIBRATION}")
+    return distortion[:count]
+
+
 def read_camera(path):
-    """The plain form, Kalibr's camchain (cam0), EuRoC's sensor.yaml, ROS camera_info, or settings of ORB-SLAM3 or ORB-SLAM."""
+    """The plain form, Kalibr's camchain of one camera (cam0), EuRoC's sensor.yaml, ROS camera_info, OpenCV, or settings of ORB-SLAM3 or
+    ORB-SLAM."""
     fields = read_yaml(path)
+    model_name = None
     try:
         for prefix in ("Camera1.", "Camera."):
             if prefix + "fx" in fields:
                 return _orb_slam(path, fields, prefix)
         if "cam0" in fields:
+            others = [name for name in fields if re.fullmatch(r"cam[1-9]\d*", str(name))]
+            if others:
+                raise Refused(f"{path}: has the cameras cam0, {', '.join(others)}; {OWN_CALIBRATION}")
             fields = fields["cam0"]
+        _refuse_changes(path, fields, {"fisheye_model"} if "camera_matrix" in fields else ())
         if "fx" in fields:
             intrinsics = [fields[name] for name in ("fx", "fy", "cx", "cy")]
             size, distortion = (fields["width"], fields["height"]), fields.get("distortion")
         elif "camera_matrix" in fields:
             K = fields["camera_matrix"]["data"]
+            if K[1] or K[3]:
+                raise Refused(f"{path}: camera_matrix has skew, which is not known here")
             intrinsics = [K[0], K[4], K[2], K[5]]
             size, distortion = (fields["image_width"], fields["image_height"]), fields["distortion_coefficients"]["data"]
+            model_name = fields.get("distortion_model") or _model_without_name(path, fields, distortion)
         elif "intrinsics" in fields:
             intrinsics, size = fields["intrinsics"], fields["resolution"]
             distortion = fields.get("distortion_coefficients", fields.get("distortion_coeffs"))
         else:
             raise Refused(f"{path}: is a calibration of no known layout; known are the plain form (fx), Kalibr's camchain (cam0), EuRoC's "
-                          "sensor.yaml (intrinsics), ROS camera_info (camera_matrix), ORB-SLAM3 (Camera1.fx) and ORB-SLAM (Camera.fx)")
-        return Camera(_model(path, fields.get("distortion_model")), int(size[0]), int(size[1]),
-                      [float(value) for value in intrinsics], [float(value) for value in distortion or []])
+                          "sensor.yaml (intrinsics), ROS camera_info and OpenCV (camera_matrix), ORB-SLAM3 (Camera1.fx) and ORB-SLAM "
+                          f"(Camera.fx); {OWN_CALIBRATION}")
+        model = _model(path, model_name or fields.get("distortion_model"))
+        return Camera(model, int(size[0]), int(size[1]), [float(value) for value in intrinsics],
+                      _checked(path, model, [float(value) for value in distortion or []]))
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise Refused(f"{path}: a field of the calibration is missing or wrong ({error})") from error
 
