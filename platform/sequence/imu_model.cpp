@@ -48,7 +48,8 @@ void read_imu_noise(const Fields& top, pf_imu_model_t* imu, std::vector<std::str
     known.read.emplace_back(plain ? density.plain_name : density.name);
   }
   known.read.emplace_back("gravity");
-  // The plain fields may lie in the file of the camera, whose own are none of this function's business.
+  // The plain fields may lie in the calibration of the camera, whose own fields say nothing of the unit.
+  if (plain && fields.has("camera_model")) known.unused.push_back("*");
   std::vector<std::string> ignored;
   fields.check_keys(known, plain ? ignored : notes);
   for (const Density& density : kDensities) {

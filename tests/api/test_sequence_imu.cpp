@@ -159,7 +159,10 @@ static void test_noise_should_be_read_from_every_known_form() {
   for (const std::string& text :
        {std::string(kKalibrNoise), "sensor_type: imu\ncomment: x\nrate_hz: 200\n" + std::string(kKalibrNoise),
         std::string("accel_noise_density: 1.86e-03\naccel_random_walk: 4.33e-04\ngyro_noise_density: 1.87e-04\n"
-                    "gyro_random_walk: 2.66e-05\nwidth: 752\n")}) {
+                    "gyro_random_walk: 2.66e-05\nwidth: 752\n"),
+        std::string("camera_model: pinhole\ndistortion_model: radtan\ndistortion: [0.1, 0, 0, 0]\nrate_hz: 20\n"
+                    "accel_noise_density: 1.86e-03\naccel_random_walk: 4.33e-04\ngyro_noise_density: 1.87e-04\n"
+                    "gyro_random_walk: 2.66e-05\n")}) {
     pf_imu_model_t imu{};
     char message[PF_SEQUENCE_MESSAGE] = "";
     TEST_ASSERT_TRUE_MESSAGE(read_noise(text, &imu, message), message);
