@@ -161,6 +161,16 @@ const char* unit_from(const pf_config_t& config, ImuUnit* unit, BodyLayout* layo
   return nullptr;
 }
 
+/// A field that asks for a part that this build lacks: its name with the option that would bring it. Null: there is none.
+const char* refused_by_build(const pf_config_t& config) {
+  if (!kHasWindow && config.backend == PF_BACKEND_WINDOW) return "backend (built without PLANEFOLD_WINDOW)";
+  if (!kHasInertial && config.motion.model == PF_MOTION_INERTIAL)
+    return "motion.model (built without PLANEFOLD_INERTIAL)";
+  if (!kHasWalls && config.capacity.max_patches > 0) return "capacity.max_patches (built without PLANEFOLD_WALLS)";
+  if (!kHasMasks && config.map.masks != PF_MASKS_NONE) return "map.masks (built without PLANEFOLD_MASKS)";
+  return nullptr;
+}
+
 /// Values and forms of planefold_research.h. Null, or the name of the first field that makes no sense or that only a config with research
 /// may have.
 const char* refused_of_research(const pf_config_t& config, const pf_research_t& research) {
@@ -231,6 +241,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   if (config.map.features_in_view > (has_window ? config.window.points : config.capacity.max_observations) ||
       (config.map.features_in_view < kMinFeaturesInView && !patches_alone))
     return *field = "map.features_in_view", Status::kConfig;
+  *field = refused_by_build(config);
+  if (*field != nullptr) return Status::kConfig;
   *field = refused_by_window(config);
   if (*field != nullptr) return Status::kConfig;
   *field = motion_from(config, research, settings);

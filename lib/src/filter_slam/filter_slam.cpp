@@ -127,7 +127,7 @@ Status FilterSlam::mark_pose() {
 }
 
 Status FilterSlam::add_wall(const PlanePrior& prior, std::uint32_t* id) {
-  if (!settings_.planes || !start_.has_place()) return Status::kState;
+  if (!kHasWalls || !settings_.planes || !start_.has_place()) return Status::kState;
   const int reserved = tracking_.has_pose() ? 0 : start_.target_rows();
   const Status status =
       upkeep_.planes().add_wall(prior, reserved, tracking_.state() == SlamState::kTracking, data_.filter_ns, id);

@@ -12,7 +12,7 @@ bool MapUpkeep::layout(Arena& arena) {
 
 /// Patches take nothing where there are none.
 bool MapUpkeep::layout_patches(Arena& arena) {
-  if (settings_.max_patches == 0) return arena.ok();
+  if (!kHasWalls || settings_.max_patches == 0) return arena.ok();
   PatchKeeper* place = arena.take<PatchKeeper>(1);
   if (place == nullptr) return PatchKeeper(settings_, filter_, map_, frame_, features_, tracking_).layout(arena);
   patches_ = new (place) PatchKeeper(settings_, filter_, map_, frame_, features_, tracking_);

@@ -57,7 +57,7 @@ class MapUpkeep {
   FeatureKeeper features_;
   PlaneKeeper planes_;
   PoseMark mark_;
-  PatchKeeper* patches_ = nullptr;  ///< in the block, where the config has room for patches
+  PartPointer<PatchKeeper, kHasWalls> patches_;  ///< in the block, where the config has room for patches
 };
 
 }  // namespace pf

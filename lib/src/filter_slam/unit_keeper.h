@@ -98,7 +98,7 @@ class UnitKeeper {
   RestDetector rest_;
   UnitWatch watch_;
   MetricStart metric_;
-  Parts* parts_ = nullptr;  ///< with the inertial motion model, in the block
+  PartPointer<Parts, kHasInertial> parts_;  ///< with the inertial motion model, in the block
 };
 
 template <typename F>

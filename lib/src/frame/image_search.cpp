@@ -7,7 +7,7 @@
 namespace pf {
 
 bool ImageSearch::layout(Arena& arena, const Settings& settings) {
-  if (settings.masks != MaskMode::kNone) {
+  if (kHasMasks && settings.masks != MaskMode::kNone) {
     TemplateMatcher* place = arena.take<TemplateMatcher>(1);
     if (place == nullptr) {
       TemplateMatcher().layout(arena, settings.template_px);
@@ -21,11 +21,11 @@ bool ImageSearch::layout(Arena& arena, const Settings& settings) {
 
 void ImageSearch::init(const Settings& settings) {
   tracker_.init(settings.camera);
-  if (templates_ != nullptr) templates_->init(settings.camera, settings.masks, settings.max_misfit);
+  if (has_templates()) templates_->init(settings.camera, settings.masks, settings.max_misfit);
 }
 
 bool ImageSearch::begin_frame(const ImageView& image) {
-  if (templates_ != nullptr) templates_->begin_frame();
+  if (has_templates()) templates_->begin_frame();
   return tracker_.begin_frame(image);
 }
 
@@ -33,7 +33,7 @@ bool ImageSearch::remember(Map* map, int feature, const Vec2& pixel, const Camer
   Feature& f = map->features[feature];
   f.has_appearance = tracker_.remember(pixel, &map->appearance(feature));
   map->first_view(feature) = view;
-  if (f.has_appearance && map->has_templates())
+  if (f.has_appearance && has_templates())
     templates_->begin(tracker_.image(), map->appearance(feature).patch, pixel, &map->shape(feature),
                       map->mask(feature));
   return f.has_appearance;
@@ -45,11 +45,12 @@ void ImageSearch::use_template(const Map& map, int feature, SearchTask* task) {
 }
 
 SearchOutcome ImageSearch::search(const SearchTask& task) const {
-  return task.shape != nullptr ? templates_->search(tracker_, task) : tracker_.search(task);
+  return has_templates() && task.shape != nullptr ? templates_->search(tracker_, task) : tracker_.search(task);
 }
 
 bool ImageSearch::learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const {
-  return task.shape != nullptr && templates_->learn(tracker_, task, pixel, &map->shape(feature), map->mask(feature));
+  return has_templates() && task.shape != nullptr &&
+         templates_->learn(tracker_, task, pixel, &map->shape(feature), map->mask(feature));
 }
 
 }  // namespace pf

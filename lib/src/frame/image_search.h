@@ -32,7 +32,7 @@ class ImageSearch {
 
  private:
   Tracker tracker_;
-  TemplateMatcher* templates_ = nullptr;  ///< in the block, with masks alone
+  PartPointer<TemplateMatcher, kHasMasks> templates_;  ///< in the block, with masks alone
 };
 
 }  // namespace pf

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "base/hooks.h"
+#include "base/parts.h"
 #include "covariance/kernels.h"
 #include "filter/filter.h"
 #include "filter/imu_log.h"
@@ -29,7 +30,8 @@ struct Settings {
   int max_kept_views = 0;
 
   bool constant_velocity = true;
-  bool inertial = false;  ///< the samples of an inertial unit move the body; else one of the other two models
+  PartSwitch<kHasInertial>
+      inertial;  ///< the samples of an inertial unit move the body; else one of the other two models
   ImuUnit unit;
   BodyLayout body;
   MotionNoise motion_noise = {};

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "base/arena.h"
+#include "base/parts.h"
 #include "base/small_count.h"
 #include "geometry/plane.h"
 #include "map/plane_outline.h"
@@ -29,10 +30,11 @@ struct PlaneEntry {
   SmallCount outliers;    ///< points that were unfolded because they do not lie on it
   SmallCount upheld;      ///< patches that were measured on it for long
   SmallCount refused;     ///< patches that were dropped because they were found elsewhere, in parts: see refuse()
-  PlaneOutline seen;     ///< of points that were on it when it was last tended to, many of them gone from the map since
-  bool known = false;    ///< a wall: known beforehand, and never dissolved
-  bool doubted = false;  ///< a wall that the gate refuses what should be on it; it takes no points
-  bool apart = false;    ///< a wall that nothing in the map has been compared with yet, since the scale is not known
+  PlaneOutline seen;  ///< of points that were on it when it was last tended to, many of them gone from the map since
+  PartSwitch<kHasWalls> known;  ///< a wall: known beforehand, and never dissolved
+  bool doubted = false;         ///< a wall that the gate refuses what should be on it; it takes no points
+  PartSwitch<kHasWalls>
+      apart;  ///< a wall that nothing in the map has been compared with yet, since the scale is not known
   bool two_sided = false;
   Scalar roughness = 0;  ///< [m] of its surface
   Scalar prior[6] = {};  ///< of a wall: covariance of (a, b, h), lower triangle; zero: it no longer counts
@@ -126,11 +128,13 @@ class PlaneTable {
   }
   void remove(int i) { entry_[i] = PlaneEntry(); }
   bool has_known() const {
+    if (!kHasWalls) return false;
     for (int i = 0; i < capacity_; ++i)
       if (used(i) && entry_[i].known) return true;
     return false;
   }
   bool has_apart() const {
+    if (!kHasWalls) return false;
     for (int i = 0; i < capacity_; ++i)
       if (used(i) && entry_[i].apart) return true;
     return false;

@@ -23,7 +23,7 @@ BackEndT* place(Arena& arena, Arguments&... arguments) {
 
 bool Session::layout(Arena& arena, const Settings& settings) {
   settings_ = settings;
-  const bool has_window = settings.backend == BackEnd::kWindow;
+  const bool has_window = kHasWindow && settings.backend == BackEnd::kWindow;
   map_.layout(arena, settings.max_features, settings.max_planes,
               settings.masks == MaskMode::kNone ? 0 : settings.template_px);
   imu_.layout(arena, settings.imu_buffer);
@@ -38,20 +38,22 @@ void Session::init() {
   data_ = Data();
   map_.init();
   imu_.init(settings_.imu_buffer, settings_.imu_ranges);
-  if (filter_ != nullptr) filter_->init();
-  if (window_ != nullptr) window_->init();
+  if (has_filter())
+    filter_->init();
+  else
+    window_->init();
   if (settings_.readout_ignored)
     settings_.hooks.say("nominal timestamps give rows no time of their own: the rolling shutter counts as global");
 }
 
 Status Session::start_from_target(const Target& target) {
   if (view().used()) return Status::kState;
-  return filter_ != nullptr ? filter_->start().use_target(target) : window_->start().use_target(target);
+  return has_filter() ? filter_->start().use_target(target) : window_->start().use_target(target);
 }
 
 Status Session::start_from_pose(const KnownBody& known) {
   if (view().used()) return Status::kState;
-  return filter_ != nullptr ? filter_->start().use_pose(known) : window_->start().use_pose(known);
+  return has_filter() ? filter_->start().use_pose(known) : window_->start().use_pose(known);
 }
 
 Vec3 Session::given_gravity_W() const {
@@ -61,7 +63,7 @@ Vec3 Session::given_gravity_W() const {
 Status Session::push_frame(const ImageView& image, std::int64_t t_ns) {
   data_.kind = FrameKind::kImages;
   imu_.mark_frame(t_ns);
-  return filter_ != nullptr ? filter_->push_frame(image, t_ns) : window_->push_frame(image, t_ns);
+  return has_filter() ? filter_->push_frame(image, t_ns) : window_->push_frame(image, t_ns);
 }
 
 Status Session::push_observations(int count, std::int64_t t_ns) {

@@ -34,22 +34,22 @@ class Session {
   Status start_from_pose(const KnownBody& known);
   /// kState: there are no walls with the window.
   Status add_wall(const PlanePrior& prior, std::uint32_t* id) {
-    return filter_ != nullptr ? filter_->add_wall(prior, id) : Status::kState;
+    return has_filter() ? filter_->add_wall(prior, id) : Status::kState;
   }
   /// kState: with the filter, or the scale is known already.
   Status set_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
-    return window_ != nullptr ? window_->start().use_second_pose(t_ns, p_W, sigma) : Status::kState;
+    return !has_filter() ? window_->start().use_second_pose(t_ns, p_W, sigma) : Status::kState;
   }
   void withdraw_target() { map_.target_withdrawn = true; }
 
   // --- what comes in
   bool takes_images() const { return data_.kind != FrameKind::kObservations; }
-  bool takes_observations() const { return filter_ != nullptr && data_.kind != FrameKind::kImages; }
-  bool takes_control() const { return filter_ != nullptr && settings_.constant_velocity; }
+  bool takes_observations() const { return has_filter() && data_.kind != FrameKind::kImages; }
+  bool takes_control() const { return has_filter() && settings_.constant_velocity; }
   /// There is a state whose covariance can be asked for.
-  bool has_state() const { return filter_ != nullptr; }
+  bool has_state() const { return has_filter(); }
   /// The start that was chosen needs images.
-  bool needs_images() const { return filter_ == nullptr || filter_->start().takes_images_only(); }
+  bool needs_images() const { return !has_filter() || filter_->start().takes_images_only(); }
   /// Whether a frame of this time may come next.
   bool is_next(std::int64_t t_ns) const { return !view().used() || t_ns > view().last_ns(); }
 
@@ -61,7 +61,7 @@ class Session {
   Status push_observations(int count, std::int64_t t_ns);
   /// Known change of the velocities in camera axes, until the next frame.
   void push_control(const Vec3& dv_C, const Vec3& dw_C) { filter_->motion().push_control(dv_C, dw_C); }
-  Status mark_pose() { return filter_ != nullptr ? filter_->mark_pose() : window_->mark_pose(); }
+  Status mark_pose() { return has_filter() ? filter_->mark_pose() : window_->mark_pose(); }
   void push_imu(const ImuSample& sample) { imu_.add(sample); }
   void set_gravity(const Vec3& gravity_W) {
     data_.gravity_W = gravity_W, data_.gravity_map = view().tracking().map_id();
@@ -69,11 +69,11 @@ class Session {
 
   /// kState: gravity is not estimated, or not known yet. kNothing: no such plane.
   Status set_plane_vertical(std::uint32_t plane, Scalar sigma) {
-    return filter_ != nullptr ? filter_->upkeep().set_plane_vertical(plane, sigma) : Status::kState;
+    return has_filter() ? filter_->upkeep().set_plane_vertical(plane, sigma) : Status::kState;
   }
 
   // --- what can be read
-  View view() const { return filter_ != nullptr ? View(settings_, map_, *filter_) : View(settings_, map_, *window_); }
+  View view() const { return has_filter() ? View(settings_, map_, *filter_) : View(settings_, map_, *window_); }
   const Settings& settings() const { return settings_; }
   const ImuLog& imu() const { return imu_; }
   /// Gravity in the W of the current map as the caller said it; zero: not said.
@@ -91,6 +91,8 @@ class Session {
   Map map_;
   ImuLog imu_;
   Data data_;
+  bool has_filter() const { return !kHasWindow || filter_ != nullptr; }
+
   FilterSlam* filter_ = nullptr;  ///< the back end: one of the two is null
   KeyframeSlam* window_ = nullptr;
 };

@@ -48,8 +48,8 @@ View::View(const Settings& settings, const Map& map, const KeyframeSlam& slam)
 /// f(reader of the back end that there is)
 template <typename F>
 decltype(auto) View::read(F&& f) const {
-  return filter_ != nullptr ? f(FilterReader(settings_, map_, *filter_))
-                            : f(KeyframeReader(settings_, map_, *keyframes_));
+  return !kHasWindow || filter_ != nullptr ? f(FilterReader(settings_, map_, *filter_))
+                                           : f(KeyframeReader(settings_, map_, *keyframes_));
 }
 
 int View::kept_views() const {

@@ -92,7 +92,7 @@ class UnitWatch {
   const ImuLog& imu_;
   const BodyMotion& motion_;
   PixelUpdate& update_;
-  Data* data_ = nullptr;  ///< null without the inertial motion model, which needs no room then
+  PartPointer<Data, kHasInertial> data_;  ///< null without the inertial motion model, which needs no room then
 };
 
 }  // namespace pf
