@@ -52,7 +52,7 @@ class FilterSlam {
   /// Adds a wall. kState: planes are off, or W is not the plan's; kFull: there is no room for it.
   Status add_wall(const PlanePrior& prior, std::uint32_t* id);
 
-  /// Plane with this id is vertical within sigma [rad], PlaneKeeper::set_vertical. kState: gravity is not known. kNothing: no such plane.
+  /// Plane with this id is vertical within sigma [rad], VerticalTable::tell. kState: gravity is not known. kNothing: no such plane.
   Status set_plane_vertical(std::uint32_t id, Scalar sigma);
 
   FilterStart& start() { return start_; }
