@@ -47,7 +47,7 @@ void MapUpkeep::maintain_patches(const Pyramid& image, bool supported, const Sta
 Status MapUpkeep::set_plane_vertical(std::uint32_t id, Scalar sigma) {
   if (!settings_.inertial || !tracking_.has_pose() || !filter_.is_metric()) return Status::kState;
   for (int i = 0; i < map_.planes.capacity(); ++i)
-    if (map_.planes.used(i) && map_.planes[i].id == id) return planes_.set_vertical(i, sigma);
+    if (map_.planes.used(i) && map_.planes[i].id == id) return planes_.verticals().tell(i, sigma);
   return Status::kNothing;
 }
 

@@ -36,7 +36,7 @@ class MapUpkeep {
   /// The same for patches, of which the frame may begin new ones where is_first, or where it is tracked, or where there is nothing to lose.
   void maintain_patches(const Pyramid& image, bool supported, const StartProgress& start, bool is_first);
 
-  /// Plane with this id is vertical within sigma [rad], PlaneKeeper::set_vertical. kState: gravity is not known. kNothing: no such plane.
+  /// Plane with this id is vertical within sigma [rad], VerticalTable::tell. kState: gravity is not known. kNothing: no such plane.
   Status set_plane_vertical(std::uint32_t id, Scalar sigma);
 
   FeatureKeeper& features() { return features_; }

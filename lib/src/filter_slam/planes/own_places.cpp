@@ -1,4 +1,4 @@
-#include "filter_slam/planes/plane_own_places.h"
+#include "filter_slam/planes/own_places.h"
 
 #include <algorithm>
 #include <cmath>

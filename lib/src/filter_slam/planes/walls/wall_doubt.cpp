@@ -1,11 +1,9 @@
-#include <algorithm>
+#include "filter_slam/planes/walls/wall_doubt.h"
 
 #include "filter_slam/features/wall_rays.h"
-#include "filter_slam/planes/plane_keeper.h"
+#include "filter_slam/planes/plane_points.h"
 #include "filter_slam/planes/tuning.h"
 #include "model/camera_at.h"
-
-/// When a wall of the plan is doubted, and when it counts again (lib/docs/walls.md).
 
 namespace pf {
 namespace {
@@ -52,14 +50,11 @@ class Cover {
 
 }  // namespace
 
-/// Counts what is seen inside of the wall's outline: points that lie on it, and points that the gate refuses. Doubts the wall where far
-/// more are refused; believes a doubted one again when most of them lie on it. Points behind it are seen through it. Points before it
-/// may be things that stand there, and say something only where they leave too little of it to be seen.
-void PlaneKeeper::judge_wall(int plane_entry) {
+void WallDoubt::judge(int plane_entry) {
   PlaneEntry& wall = map_.planes[plane_entry];
   const State& state = filter_.state();
   const Block& block = state.block[wall.slot];
-  const FoldRule rule = fold_rule(plane_entry);
+  const FoldRule rule = fold_rule(settings_, wall);
   const Scalar noise = rule.roughness * rule.roughness;
   const Scalar side = plane_distance(state.frame_of(block), block.xyz(), camera_at(state, Scalar(0)).p_W);
   Cover cover(filter_, map_, plane_entry);
@@ -72,8 +67,8 @@ void PlaneKeeper::judge_wall(int plane_entry) {
     const int slot = map_.features[i].slot;
     // A point of another plane is known well enough, and is no less on that one than here.
     const bool elsewhere = is_planar(state.block[slot].kind) && state.plane_of(slot) != wall.slot;
-    if (!elsewhere && !(is_settled(i) && is_certain(i, &covariance))) continue;
-    if (!is_before_wall(plane_entry, filter_.point(slot))) continue;
+    if (!elsewhere && !(certain_.is_settled(i) && certain_.is_certain(i, &covariance))) continue;
+    if (!is_before_wall(filter_, map_, plane_entry, filter_.point(slot))) continue;
     if (!filter_.distance(wall.slot, slot, &d, &variance)) continue;
     if (d * d > kRefusedGate * (variance + noise)) {
       ++refused;
@@ -89,7 +84,7 @@ void PlaneKeeper::judge_wall(int plane_entry) {
   const bool denied =
       (wall.outliers >= kMinRefused && wall.outliers > on_it) || (wall.is_refused_by_patches() && !vouched);
   if (!wall.doubted && (denied || contradict(behind) || (contradict(refused) && cover.is_wide()))) {
-    doubt_wall(plane_entry);
+    doubt(plane_entry);
   } else if (wall.doubted && on_it >= kMinRefused && on_it > refused) {
     wall.doubted = false;
     wall.outliers = wall.upheld = wall.refused = 0;
@@ -97,8 +92,7 @@ void PlaneKeeper::judge_wall(int plane_entry) {
   }
 }
 
-/// Takes back what a wall's prior has taught, and gives its points a place of their own again.
-void PlaneKeeper::doubt_wall(int plane_entry) {
+void WallDoubt::doubt(int plane_entry) {
   PlaneEntry& wall = map_.planes[plane_entry];
   const int plane = wall.slot;
   const bool has_taught = filter_.state().block[plane].children > 0 || wall.refused + wall.upheld + wall.outliers > 0;

@@ -1,11 +1,10 @@
+#include "filter_slam/planes/plane_revision.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "filter_slam/planes/plane_keeper.h"
+#include "filter_slam/planes/plane_points.h"
 #include "filter_slam/planes/tuning.h"
-#include "map/plane_majority.h"
-
-/// Planes whose points, each by itself, lie elsewhere (lib/docs/planes.md, "What points say by themselves").
 
 namespace pf {
 namespace {
@@ -24,8 +23,7 @@ PlaneFrame frame_of(const MajorityPlane& plane) {
 
 }  // namespace
 
-/// Lists points of a plane with what their own pixels say of where they are. Returns how many.
-int PlaneKeeper::list_places(int plane, const Vec3& n_W, JudgedPoint* points, int* slots) const {
+int PlaneRevision::list_places(int plane, const Vec3& n_W, JudgedPoint* points, int* slots) const {
   const State& state = filter_.state();
   const Scalar limit = kMaxSigma * settings_.plane_distance;
   int count = 0;
@@ -38,8 +36,7 @@ int PlaneKeeper::list_places(int plane, const Vec3& n_W, JudgedPoint* points, in
   return count;
 }
 
-/// Points that do not lie on the plane of the others leave it, and it turns to where the others are.
-void PlaneKeeper::judge_places(int plane_entry) {
+void PlaneRevision::revise(int plane_entry) {
   PlaneEntry& entry = map_.planes[plane_entry];
   const int plane = entry.slot;
   const State& state = filter_.state();
@@ -59,12 +56,11 @@ void PlaneKeeper::judge_places(int plane_entry) {
   if (!find_majority(points, count, n_W, majority, seed, &found) || found.off == 0) return;
   for (int k = 0; k < count; ++k)
     if (points[k].is_off) leave(plane_entry, slots[k], points[k].p_W, found.n_W);
-  turn(plane_entry, found);
+  move_to(plane_entry, found);
   settings_.hooks.say("some points of a plane do not lie on it: they leave it, and it turns to where the others are");
 }
 
-/// A point that lies elsewhere becomes a point of its own, where its ray has the height that its pixels say.
-void PlaneKeeper::leave(int plane_entry, int slot, const Vec3& p_W, const Vec3& n_W) {
+void PlaneRevision::leave(int plane_entry, int slot, const Vec3& p_W, const Vec3& n_W) {
   const State& state = filter_.state();
   const Vec3 on_W = filter_.point(slot), ray_W = (on_W - state.body.p_W).normalized();
   const Scalar slant = n_W.dot(ray_W), height = n_W.dot(p_W - on_W);
@@ -77,8 +73,7 @@ void PlaneKeeper::leave(int plane_entry, int slot, const Vec3& p_W, const Vec3& 
   ++map_.planes[plane_entry].outliers;
 }
 
-/// The plane becomes that of most of its points, and is as unsure as that is and as it was wrong.
-void PlaneKeeper::turn(int plane_entry, const MajorityPlane& to) {
+void PlaneRevision::move_to(int plane_entry, const MajorityPlane& to) {
   PlaneEntry& entry = map_.planes[plane_entry];
   const State& state = filter_.state();
   const Block& block = state.block[entry.slot];
@@ -91,7 +86,7 @@ void PlaneKeeper::turn(int plane_entry, const MajorityPlane& to) {
   places_.forget(entry.slot);
   entry.seen = entry.support = PlaneOutline();
   state.for_each_planar(entry.slot, [&](int slot) {
-    if (!map_.features[state.block[slot].owner].on_trial) support(plane_entry, slot);
+    if (!map_.features[state.block[slot].owner].on_trial) support(filter_, map_, plane_entry, slot);
   });
 }
 

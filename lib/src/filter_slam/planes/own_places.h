@@ -7,14 +7,14 @@
 #include "frame/frame.h"
 #include "map/map.h"
 
-/// Where folded points are by themselves. A fold takes a point's depth from it: from then on its pixels tell of the plane, and a point that
-/// does not lie on it bends the plane until they fit. So the depth is estimated on the side as well, along the ray on which the point was
-/// seen when it was folded, from its pixels alone, at the poses that the filter has:
+/// Where folded points are by themselves. A folded point has no depth of its own: from then on its pixels update the plane, and a point not
+/// on the plane bends it until they fit. So the depth is estimated beside the filter as well, along the ray on which the point
+/// was seen when it was folded, from its pixels alone, at the poses that the filter has:
 ///
 ///   p(s) = x + s d,   d = (x - c) / |x - c|            x, c  places of point and camera at the fold
 ///   N += J^T J,   b += J^T (z - pi(p(s_k)) + J s_k),   J = d pi(p(s)) / ds,   s = b / N [m],  its variance sigma_z^2 / N
 ///
-/// Poses that have drifted move all of these places alike; who compares them with each other does not notice (map/plane_majority.h).
+/// Drifted poses move all of these places alike, so a comparison of the places with each other is not affected (map/plane_majority.h).
 
 namespace pf {
 
