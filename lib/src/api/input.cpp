@@ -2,6 +2,7 @@
 
 #include "api/checks.h"
 #include "api/context.h"
+#include "frame/frame_entry.h"
 
 namespace {
 
@@ -140,7 +141,7 @@ pf_status_t pf_push_frame(pf_slam_t* slam, const pf_image_t* image) {
   const pf_camera_t& camera = slam->config.camera;
   if (image->width != camera.width || image->height != camera.height || image->stride < image->width)
     return PF_ERROR_SIZE;
-  if (!slam->session.is_next(image->t_ns)) return PF_ERROR_TIME;
+  if (!pf::is_next_frame(slam->session.view().frame(), image->t_ns)) return PF_ERROR_TIME;
   const pf::InCall in_call(slam);
   return pf::to_c(slam->session.push_frame({image->pixels, image->width, image->height, image->stride}, image->t_ns));
 }
@@ -149,7 +150,7 @@ pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns, const pf_observa
   PF_REQUIRE_IDLE(slam);
   if (observations == nullptr && count > 0) return PF_ERROR_NULL;
   if (!slam->session.takes_observations()) return PF_ERROR_STATE;
-  if (!slam->session.is_next(t_ns)) return PF_ERROR_TIME;
+  if (!pf::is_next_frame(slam->session.view().frame(), t_ns)) return PF_ERROR_TIME;
   for (size_t i = 0; i < count; ++i) {
     const pf_observation_t& o = observations[i];
     if (!pf::finite(o.pixel, 2) || !pf::finite(&o.sigma_px, 1)) return PF_ERROR_NONFINITE;

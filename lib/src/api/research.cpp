@@ -48,7 +48,7 @@ pf_status_t pf_get_gauge_information(const pf_slam_t* slam, double* scratch, siz
                                      double information[49]) {
   PF_REQUIRE_CONTEXT(slam);
   if (scratch == nullptr || information == nullptr) return PF_ERROR_NULL;
-  if (!slam->session.has_state() || !slam->session.view().tracking().has_pose()) return PF_ERROR_STATE;
+  if (!slam->session.view().has_state()) return PF_ERROR_STATE;
   const size_t n = static_cast<size_t>(slam->session.view().counts().state_dim);
   if (scratch_count < n * (n + 8)) return PF_ERROR_MEMORY;
   return slam->session.view().gauge_information(scratch, information) ? PF_OK : PF_ERROR_RANGE;

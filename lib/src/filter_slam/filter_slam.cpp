@@ -59,7 +59,8 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   } else if (tracking_.is_relocalising(progress) && rule == ConsensusRule::kBeyondChance) {
     images_.relocaliser().recover();
   } else {
-    measure_image(rule);
+    const bool parallax_lasts = start_.recorder().learns_lens_from_first_depths();
+    unit_.measure(data_.follows, [&](bool) { images_.measure(rule, progress, data_.median_depth, parallax_lasts); });
   }
   // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
   PatchKeeper* const patches = upkeep_.patches();
@@ -75,17 +76,6 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   return end_frame();
 }
 
-/// After a gap, poses of frames in a row have to follow each other.
-void FilterSlam::measure_image(ConsensusRule rule) {
-  const StartRecorder& recorder = start_.recorder();
-  update_.ask_frames(tracking_.is_after_gap(recorder.progress()) ? tuning::relocaliser::kFramesNearby : 0,
-                     data_.median_depth);
-  unit_.measure(data_.follows, [&](bool) {
-    images_.front_end().measure(rule, data_.median_depth, recorder.learns_lens_from_first_depths());
-  });
-  update_.ask_frames(0, data_.median_depth);
-}
-
 /// Maintains the map with an image that has been measured.
 void FilterSlam::maintain(bool supported, bool is_first) {
   StartRecorder& recorder = start_.recorder();
@@ -95,7 +85,12 @@ void FilterSlam::maintain(bool supported, bool is_first) {
   if (supported && tracking_.state() == SlamState::kTracking && !progress.recording) images_.learn_noise();
   upkeep_.maintain(supported, progress);
   if (recorder.record_frame()) images_.relocaliser().init();  // its views have poses of the wrong map
-  if (supported && !is_first) meet_walls();
+  const Scalar scale = supported && !is_first ? start_.look_for_walls() : Scalar(0);
+  if (scale > Scalar(0)) {  // places and lengths of before no longer hold
+    upkeep_.planes().meet_walls();
+    data_.median_depth *= scale;
+    images_.relocaliser().init();
+  }
   const bool begins_anew = look_for_scale() && map_.features.count() == 0;
   // A frame that does not support its pose adds features only to a map that has none to lose.
   const bool empty = is_first || progress.pending() || map_.features.count() == 0;
@@ -161,15 +156,6 @@ void FilterSlam::begin_frame(std::int64_t t_ns) {
   if (!filter_.body_is_sound()) start_over();
 }
 
-/// The map becomes as large as the first wall that is seen says it is: places and lengths of before no longer hold.
-void FilterSlam::meet_walls() {
-  const Scalar scale = start_.look_for_walls();
-  if (!(scale > Scalar(0))) return;
-  upkeep_.planes().meet_walls();
-  data_.median_depth *= scale;
-  images_.relocaliser().init();
-}
-
 /// True where this frame is the first one whose samples tell the scale.
 bool FilterSlam::look_for_scale() {
   if (!settings_.inertial) return false;
@@ -183,7 +169,7 @@ bool FilterSlam::look_for_scale() {
 /// Returns the status of the frame.
 Status FilterSlam::end_frame() {
   if (unit_.discredits_map(data_.follows, data_.since_last_ns)) data_.map_discredited = true;
-  if (tracking_.has_pose() && !is_sound()) start_over();
+  if (tracking_.has_pose() && !upkeep_.repair_estimate()) start_over();
   const StartProgress& progress = start_.recorder().progress();
   if (tracking_.is_tracked(frame_.report) && !progress.pending()) {
     Scalar patch_depth[PatchKeeper::kMaxPatches];
@@ -195,14 +181,6 @@ Status FilterSlam::end_frame() {
   }
   images_.keep_view(data_.image_usable, progress, data_.median_depth);
   return tracking_.conclude(frame_.report, progress, settings_.max_coast_ns, settings_.hooks);
-}
-
-/// Repairs the covariance where it has to. False where the estimate is not finite, or P is no covariance and nothing helps.
-bool FilterSlam::is_sound() {
-  if (tracking_.updates_fail()) return false;
-  const BlockFilter::Repair repair = filter_.repair(frame_.report.frames);
-  if (repair == BlockFilter::Repair::kDone) count_frame(&frame_.report.repairs);
-  return repair != BlockFilter::Repair::kImpossible && filter_.body_is_sound();
 }
 
 /// The estimate is not finite or P is no covariance: clears everything that came from it.

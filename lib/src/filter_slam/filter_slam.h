@@ -81,11 +81,8 @@ class FilterSlam {
 
   void begin_frame(std::int64_t t_ns);
   Status end_frame();
-  void measure_image(ConsensusRule rule);
   void maintain(bool supported, bool is_first);
-  void meet_walls();
   bool look_for_scale();
-  bool is_sound();
   void start_over();
   void begin_new_map(const char* why);
   void clear_estimate();

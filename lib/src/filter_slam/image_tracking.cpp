@@ -38,6 +38,12 @@ ConsensusRule ImageTracking::consensus_rule(const StartProgress& start, std::int
   return follows ? ConsensusRule::kFollowed : ConsensusRule::kBeyondChance;
 }
 
+void ImageTracking::measure(ConsensusRule rule, const StartProgress& start, Scalar median_depth, bool parallax_lasts) {
+  update_.ask_frames(tracking_.is_after_gap(start) ? tuning::relocaliser::kFramesNearby : 0, median_depth);
+  front_end_.measure(rule, median_depth, parallax_lasts);
+  update_.ask_frames(0, median_depth);
+}
+
 void ImageTracking::learn_noise() {
   front_end_.learn_noise();
   warnings_.check(settings_, noise_, filter_.lens());

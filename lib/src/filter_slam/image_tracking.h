@@ -40,6 +40,8 @@ class ImageTracking {
 
   /// Which consensus of this frame is believed. since_last_ns: from the frame before this one.
   ConsensusRule consensus_rule(const StartProgress& start, std::int64_t since_last_ns) const;
+  /// Measures the frame, ImageFrontEnd::measure. After a gap, poses of frames in a row have to follow each other before one is used.
+  void measure(ConsensusRule rule, const StartProgress& start, Scalar median_depth, bool parallax_lasts);
   /// Learns the noise of matches from the inliers' residuals, and warns where they fit badly.
   void learn_noise();
   /// After a frame of any kind. image_usable: it is an image that shows something to track.

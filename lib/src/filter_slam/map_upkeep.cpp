@@ -44,6 +44,13 @@ void MapUpkeep::maintain_patches(const Pyramid& image, bool supported, const Sta
   patches_->maintain(image, supported, may_begin && !start.recording);
 }
 
+bool MapUpkeep::repair_estimate() {
+  if (tracking_.updates_fail()) return false;
+  const BlockFilter::Repair repair = filter_.repair(frame_.report.frames);
+  if (repair == BlockFilter::Repair::kDone) count_frame(&frame_.report.repairs);
+  return repair != BlockFilter::Repair::kImpossible && filter_.body_is_sound();
+}
+
 Status MapUpkeep::set_plane_vertical(std::uint32_t id, Scalar sigma) {
   if (!settings_.inertial || !tracking_.has_pose() || !filter_.is_metric()) return Status::kState;
   for (int i = 0; i < map_.planes.capacity(); ++i)

@@ -46,12 +46,8 @@ class Session {
   bool takes_images() const { return data_.kind != FrameKind::kObservations; }
   bool takes_observations() const { return has_filter() && data_.kind != FrameKind::kImages; }
   bool takes_control() const { return has_filter() && settings_.constant_velocity; }
-  /// There is a state whose covariance can be asked for.
-  bool has_state() const { return has_filter(); }
   /// The start that was chosen needs images.
   bool needs_images() const { return !has_filter() || filter_->start().takes_images_only(); }
-  /// Whether a frame of this time may come next.
-  bool is_next(std::int64_t t_ns) const { return !view().used() || t_ns > view().last_ns(); }
 
   Status push_frame(const ImageView& image, std::int64_t t_ns);
   /// Of a session that takes observations: where those of the next frame are written, as many as inbox_size().

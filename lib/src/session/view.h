@@ -54,11 +54,13 @@ class View {
   bool template_of(std::uint32_t id, TemplateView* out) const;
 
   // --- of the filter alone
+  /// There is a state whose covariance can be asked for.
+  bool has_state() const { return filter_ != nullptr && tracking_.has_pose(); }
   /// False without the inertial motion model, or without a pose.
   bool inertial(InertialView* out) const;
   /// Whether images contradict the inertial unit, and for how long they have in all.
   UnitDoubt unit_doubt() const;
-  /// scratch: n (n + 8), of n = MapCounts::state_dim. Needs the filter.
+  /// scratch: n (n + 8), of n = MapCounts::state_dim. Needs a state.
   bool gauge_information(double* scratch, double* information) const;
   /// Null where there is no room for patches.
   const PatchStore* patches() const;
