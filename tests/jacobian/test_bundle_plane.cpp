@@ -1,5 +1,5 @@
 // The distance of a bundle's point from a plane: Jacobians by plane, host and inverse depth, in double and in float.
-#include "bundle/adjust.h"
+#include "bundle/bearing.h"
 #include "geometry/so3.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"

@@ -1,5 +1,5 @@
 // The bundle's projection: Jacobians by pose, host and inverse depth, for every camera model, in double and in float.
-#include "bundle/adjust.h"
+#include "bundle/bearing.h"
 #include "geometry/so3.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"

@@ -1,6 +1,6 @@
 // Jacobians by the numbers of the calibration: of a pixel, of a ray, of a predicted pixel, of a new bearing, and of a pose that was
 // fitted to known points; for every camera model.
-#include "bundle/adjust.h"
+#include "bundle/bearing.h"
 #include "geometry/lens.h"
 #include "geometry/planar_pose.h"
 #include "geometry/so3.h"

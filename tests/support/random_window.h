@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "bundle/adjust.h"
+#include "bundle/bundle_adjuster.h"
 #include "geometry/so3.h"
 #include "support/filter_cases.h"
 #include "support/seeded_random.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "bundle/adjust.h"
+#include "bundle/bundle_adjuster.h"
 #include "geometry/so3.h"
 #include "support/bounds.h"
 #include "support/filter_cases.h"
@@ -108,7 +108,7 @@ struct Scene {
   }
 };
 
-/// The damped step by the definition in adjust.h, from the dense system.
+/// The damped step by the definition in normal_equations.h, from the dense system.
 Eigen::VectorXd dense_step(Dense H, const Eigen::VectorXd& g, double damping) {
   const int points = static_cast<int>(H.rows()) - 18;
   for (int i = 18; i < H.rows(); ++i) H(i, i) *= 1 + damping;

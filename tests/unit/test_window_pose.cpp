@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "bundle/adjust.h"
+#include "bundle/bundle_adjuster.h"
 #include "geometry/so3.h"
 #include "keyframe_slam/tracking/motion.h"
 #include "keyframe_slam/tracking/pose.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "adjust_peer.h"
-#include "bundle/adjust.h"
+#include "bundle/bundle_adjuster.h"
 #include "geometry/so3.h"
 #include "sim/random.h"
 #include "suite.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bundle/bearing.h"
 #include "bundle/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"

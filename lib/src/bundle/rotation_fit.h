@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bundle/adjust.h"
+#include "bundle/bundle.h"
 #include "geometry/camera.h"
 
 namespace pf {

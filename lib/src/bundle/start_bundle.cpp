@@ -16,47 +16,14 @@ using namespace tuning::start;
 constexpr int kDirections = 6;                 // there and back along each axis
 constexpr Scalar kBehindCamera = Scalar(1e6);  ///< [px^2] error of what does not project: larger than any other
 
+/// Features that the last frame still sees.
+int num_left(const StartRecord& record) {
+  int left = 0;
+  for (int i = 0; i < record.features(); ++i) left += record.seen(record.frames() - 1, i) ? 1 : 0;
+  return left;
+}
+
 }  // namespace
-
-bool StartRecord::layout(Arena& arena) {
-  frame_ = arena.take<Frame>(kMaxFrames);
-  ray_ = arena.take<Vec3>(kMaxFeatures);
-  pixel_ = arena.take<BundlePixel>(kMaxFrames * kMaxFeatures);
-  return arena.ok();
-}
-
-void StartRecord::init() {
-  frames_ = 0;
-  features_ = 0;
-}
-
-int StartRecord::add_feature(const Vec3& ray) {
-  if (features_ == kMaxFeatures) return -1;
-  ray_[features_] = ray;
-  return features_++;
-}
-
-int StartRecord::add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W) {
-  if (frames_ == kMaxFrames) {
-    for (int k = 1; 2 * k < kMaxFrames; ++k) {
-      frame_[k] = frame_[2 * k];
-      std::copy(pixel_ + 2 * k * kMaxFeatures, pixel_ + (2 * k + 1) * kMaxFeatures, pixel_ + k * kMaxFeatures);
-    }
-    frames_ = kMaxFrames / 2;
-  }
-  frame_[frames_].t_ns = t_ns;
-  frame_[frames_].q_WC = q_WC;
-  frame_[frames_].p_W = p_W;
-  for (int i = 0; i < kMaxFeatures; ++i) pixel_[frames_ * kMaxFeatures + i].seen = false;
-  return frames_++;
-}
-
-void StartRecord::add_pixel(int frame, int feature, const Vec2& pixel) {
-  BundlePixel& p = pixel_[frame * kMaxFeatures + feature];
-  p.x = static_cast<float>(pixel.x());
-  p.y = static_cast<float>(pixel.y());
-  p.seen = true;
-}
 
 bool StartBundle::layout(Arena& arena, int lens_rows) {
   static_assert(1 + kMaxCameras <= BundleAdjuster::kMaxPoses);
@@ -129,39 +96,63 @@ StartOutcome StartBundle::solve(const Camera& camera, StartRecord& record, Scala
 
 /// camera: where the lens is adjusted, that which is.
 StartOutcome StartBundle::solve_by(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth) {
-  const int last = record.frames() - 1;
+  const int last = record.frames() - 1, count = record.features();
   if (last < 0) return StartOutcome::kWait;
-  int left = 0;
-  for (int i = 0; i < record.features(); ++i) left += record.seen(last, i) ? 1 : 0;
-  if (left < kMinFeatures) return StartOutcome::kTooFew;
+  if (num_left(record) < kMinFeatures) return StartOutcome::kTooFew;
 
   Quat q_last = record.frame(last).q_WC;
   const Scalar parallax = fit_rotation(camera, record, last, &q_last);
   if (!(parallax >= kMinParallax * sigma_px && parallax >= kGrowth * last_parallax_)) return StartOutcome::kWait;
+  BundlePose motion;
+  if (!find_motion(camera, record, q_last, parallax, sigma_px, median_depth, &motion)) return StartOutcome::kWait;
+  const Spread spread = spread_over(record);
+  if (!adjust_spread(camera, record, spread, sigma_px, motion)) return StartOutcome::kWait;
 
-  // Adjust frame 0 and the last frame from six directions of motion, with the turn that explains most by itself; the parallax gives the
-  // distance at a depth of one. A camera that looks at one place while it moves about it has a turn that none of them comes near, so the
-  // last solution, where there is one, is the seventh.
-  const int count = record.features();
+  bool is_good[StartRecord::kMaxFeatures] = {};
+  if (list_good(camera, record, spread, sigma_px, is_good) < kMinFeatures) return StartOutcome::kWait;
+  const Scalar unit = unit_of_length(is_good, count, median_depth);
+  if (!place_frames(camera, record, spread, sigma_px, unit)) return StartOutcome::kWait;
+  for (int i = 0; i < count; ++i) {
+    rho_[i] *= unit;
+    last_rho_[i] = is_good[i] ? rho_[i] : Scalar(0);
+  }
+  last_parallax_ = parallax;
+  return parallax > kSettledParallax * sigma_px ? StartOutcome::kSettled : StartOutcome::kSolved;
+}
+
+/// The motion of the last frame, and all rho, from which an adjustment begins. length: of a motion at a depth of one.
+void StartBundle::set_guess(int guess, const StartRecord& record, const Quat& q_last, Scalar length,
+                            Scalar median_depth) {
+  const int last = record.frames() - 1, count = record.features();
+  if (guess < kDirections) {
+    Vec3 direction = Vec3::Zero();
+    direction[guess / 2] = guess % 2 == 0 ? Scalar(1) : Scalar(-1);
+    pose_[1].q_WC = q_last;
+    pose_[1].p_W = direction * length * Scalar(2);
+    for (int i = 0; i < count; ++i) rho_[i] = Scalar(1);
+  } else {
+    pose_[1].q_WC = record.frame(last).q_WC;
+    pose_[1].p_W = record.frame(last).p_W / median_depth;
+    for (int i = 0; i < count; ++i) rho_[i] = last_rho_[i] > Scalar(0) ? last_rho_[i] * median_depth : Scalar(1);
+  }
+}
+
+/// Adjusts frame 0 and the last frame from six directions of motion, with the rotation that explains most by itself; the parallax gives the
+/// distance at a depth of one. A camera that looks at one place while it moves about it has a rotation that none of them comes near, so the
+/// last solution, where there is one, is the seventh. The best motion, with its rho in best_rho_. False where two solutions fit about
+/// equally well (a scene and its inverted twin): wait for parallax up to kAmpleParallax.
+bool StartBundle::find_motion(const Camera& camera, const StartRecord& record, const Quat& q_last, Scalar parallax,
+                              Scalar sigma_px, Scalar median_depth, BundlePose* motion) {
+  const int last = record.frames() - 1;
   const Scalar length = parallax / camera.fx;
   const int guesses = kDirections + (last_parallax_ > Scalar(0) ? 1 : 0);
-  BundlePose best_pose = {Quat::Identity(), Vec3::Zero(), true, nullptr};
+  *motion = {Quat::Identity(), Vec3::Zero(), true, nullptr};
   Scalar best = -1, second = -1;
   for (int guess = 0; guess < guesses; ++guess) {
-    if (guess < kDirections) {
-      Vec3 direction = Vec3::Zero();
-      direction[guess / 2] = guess % 2 == 0 ? Scalar(1) : Scalar(-1);
-      pose_[1].q_WC = q_last;
-      pose_[1].p_W = direction * length * Scalar(2);
-      for (int i = 0; i < count; ++i) rho_[i] = Scalar(1);
-    } else {
-      pose_[1].q_WC = record.frame(last).q_WC;
-      pose_[1].p_W = record.frame(last).p_W / median_depth;
-      for (int i = 0; i < count; ++i) rho_[i] = last_rho_[i] > Scalar(0) ? last_rho_[i] * median_depth : Scalar(1);
-    }
+    set_guess(guess, record, q_last, length, median_depth);
     const Scalar c = adjust(camera, record, &last, 1, kGuessRounds, sigma_px);
     if (best >= Scalar(0)) {
-      const Scalar cosine = pose_[1].p_W.dot(best_pose.p_W) / (pose_[1].p_W.norm() * best_pose.p_W.norm());
+      const Scalar cosine = pose_[1].p_W.dot(motion->p_W) / (pose_[1].p_W.norm() * motion->p_W.norm());
       if (cosine > kSameDirection) {  // the same explanation again
         if (c >= best) continue;
       } else if (c >= best) {
@@ -172,78 +163,95 @@ StartOutcome StartBundle::solve_by(const Camera& camera, StartRecord& record, Sc
       }
     }
     best = c;
-    best_pose = pose_[1];
-    std::copy(rho_, rho_ + count, best_rho_);
+    *motion = pose_[1];
+    std::copy(rho_, rho_ + record.features(), best_rho_);
   }
-  // Two solutions that fit about equally well (a scene and its inverted twin): wait for parallax up to kAmpleParallax.
-  if (second >= Scalar(0) && second - best < kMinMargin && parallax < kAmpleParallax * sigma_px)
-    return StartOutcome::kWait;
+  return !(second >= Scalar(0) && second - best < kMinMargin && parallax < kAmpleParallax * sigma_px);
+}
 
-  // Adjust the last frame together with others spread over the record.
+StartBundle::Spread StartBundle::spread_over(const StartRecord& record) {
+  const int last = record.frames() - 1;
+  Spread spread = {std::min(static_cast<int>(kMaxCameras), record.frames()), {}};
+  for (int c = 0; c < spread.count; ++c) spread.frame[c] = last - c * (last + 1) / spread.count;
+  return spread;
+}
+
+/// Adjusts the last frame together with others. False where one cannot be located, or where the solution does not fit: a pixel has two
+/// numbers, so noise alone leaves a cost of 2; at three times that the solution is rejected.
+bool StartBundle::adjust_spread(const Camera& camera, StartRecord& record, const Spread& spread, Scalar sigma_px,
+                                const BundlePose& motion) {
+  const int last = record.frames() - 1, count = record.features();
+  const int* frame = spread.frame;
   std::copy(best_rho_, best_rho_ + count, rho_);
-  int frame[kMaxCameras] = {};
-  int cameras = std::min(static_cast<int>(kMaxCameras), record.frames());
-  for (int c = 0; c < cameras; ++c) frame[c] = last - c * (last + 1) / cameras;
-  pose_[1] = best_pose;
-  for (int c = 1; c < cameras; ++c) {
+  pose_[1] = motion;
+  for (int c = 1; c < spread.count; ++c) {
     pose_[1 + c].q_WC = record.frame(frame[c]).q_WC;
     fit_rotation(camera, record, frame[c], &pose_[1 + c].q_WC);
-    pose_[1 + c].p_W = best_pose.p_W * (static_cast<Scalar>(frame[c] + 1) / static_cast<Scalar>(last + 1));
-    if (!locate(camera, record, frame[c], sigma_px, &pose_[1 + c])) return StartOutcome::kWait;
+    pose_[1 + c].p_W = motion.p_W * (static_cast<Scalar>(frame[c] + 1) / static_cast<Scalar>(last + 1));
+    if (!locate(camera, record, frame[c], sigma_px, &pose_[1 + c])) return false;
   }
-  const Scalar total = is_free_ ? adjust_with_lens(record, frame, cameras, sigma_px)
-                                : adjust(camera, record, frame, cameras, kRounds, sigma_px);
+  const Scalar total = is_free_ ? adjust_with_lens(record, frame, spread.count, sigma_px)
+                                : adjust(camera, record, frame, spread.count, kRounds, sigma_px);
   int pixels = 0;
-  for (int c = 0; c < cameras; ++c)
+  for (int c = 0; c < spread.count; ++c)
     for (int i = 0; i < count; ++i) pixels += record.seen(frame[c], i) ? 1 : 0;
-  // A pixel has two numbers, so noise alone leaves a cost of 2; at three times that the solution is rejected.
-  if (!(total <= kMaxCost * static_cast<Scalar>(pixels))) return StartOutcome::kWait;
+  return total <= kMaxCost * static_cast<Scalar>(pixels);
+}
 
-  // Select the depths that can be trusted, and set the unit of length.
-  Scalar sorted[StartRecord::kMaxFeatures];
-  bool is_good[StartRecord::kMaxFeatures] = {};
+/// Which depths can be trusted. Returns how many.
+int StartBundle::list_good(const Camera& camera, const StartRecord& record, const Spread& spread, Scalar sigma_px,
+                           bool* is_good) const {
   int good = 0;
-  for (int i = 0; i < count; ++i) {
-    if (!record.seen(last, i) || !(rho_[i] > kMinGoodRho)) continue;
+  for (int i = 0; i < record.features(); ++i) {
+    if (!record.seen(record.frames() - 1, i) || !(rho_[i] > kMinGoodRho)) continue;
     Scalar worst = 0;
-    for (int c = 0; c < cameras; ++c) {
-      if (!record.seen(frame[c], i)) continue;
+    for (int c = 0; c < spread.count; ++c) {
+      if (!record.seen(spread.frame[c], i)) continue;
       Vec2 z;
       const BundlePose& pose = pose_[1 + c];
       if (!project_bearing(camera, pose.q_WC.toRotationMatrix(), record.ray(i), -pose.p_W, rho_[i], &z))
         worst = kBehindCamera;
       else
-        worst = std::max(worst, (record.pixel(frame[c], i) - z).squaredNorm());
+        worst = std::max(worst, (record.pixel(spread.frame[c], i) - z).squaredNorm());
     }
-    if (worst > kMaxGoodResidual * kMaxGoodResidual * sigma_px * sigma_px) continue;
-    is_good[i] = true;
-    sorted[good++] = rho_[i];
+    is_good[i] = !(worst > kMaxGoodResidual * kMaxGoodResidual * sigma_px * sigma_px);
+    good += is_good[i] ? 1 : 0;
   }
-  if (good < kMinFeatures) return StartOutcome::kWait;
-  std::nth_element(sorted, sorted + good / 2, sorted + good);
-  Scalar unit = Scalar(1) / (sorted[good / 2] * median_depth);
-  int common = 0;
+  return good;
+}
+
+/// What lengths are divided by: so that those of the last solution stay where both have enough depths, else so that the median depth is as
+/// asked for.
+Scalar StartBundle::unit_of_length(const bool* is_good, int count, Scalar median_depth) const {
+  Scalar sorted[StartRecord::kMaxFeatures];
+  int good = 0, common = 0;
   for (int i = 0; i < count; ++i)
     if (is_good[i] && last_rho_[i] > Scalar(0)) sorted[common++] = last_rho_[i] / rho_[i];
   if (common >= kMinFeatures) {
     std::nth_element(sorted, sorted + common / 2, sorted + common);
-    unit = sorted[common / 2];
+    return sorted[common / 2];
   }
-  for (int k = 0; k <= last; ++k) {
+  for (int i = 0; i < count; ++i)
+    if (is_good[i]) sorted[good++] = rho_[i];
+  std::nth_element(sorted, sorted + good / 2, sorted + good);
+  return Scalar(1) / (sorted[good / 2] * median_depth);
+}
+
+/// Gives all frames of the record their poses: those that were adjusted, the others by the depths from the nearest one. False where one
+/// cannot be located.
+bool StartBundle::place_frames(const Camera& camera, StartRecord& record, const Spread& spread, Scalar sigma_px,
+                               Scalar unit) {
+  const int* frame = spread.frame;
+  for (int k = 0; k < record.frames(); ++k) {
     int nearest = 0;
-    for (int c = 1; c < cameras; ++c)
+    for (int c = 1; c < spread.count; ++c)
       if (std::abs(frame[c] - k) < std::abs(frame[nearest] - k)) nearest = c;
     BundlePose pose = pose_[1 + nearest];
-    if (frame[nearest] != k && !locate(camera, record, k, sigma_px, &pose)) return StartOutcome::kWait;
+    if (frame[nearest] != k && !locate(camera, record, k, sigma_px, &pose)) return false;
     record.frame(k).q_WC = pose.q_WC;
     record.frame(k).p_W = pose.p_W / unit;
   }
-  for (int i = 0; i < count; ++i) {
-    rho_[i] *= unit;
-    last_rho_[i] = is_good[i] ? rho_[i] : Scalar(0);
-  }
-  last_parallax_ = parallax;
-  return parallax > kSettledParallax * sigma_px ? StartOutcome::kSettled : StartOutcome::kSolved;
+  return true;
 }
 
 bool StartBundle::baseline_covariance(const Camera& calibration, const StartRecord& record, Scalar sigma_px,
@@ -251,9 +259,7 @@ bool StartBundle::baseline_covariance(const Camera& calibration, const StartReco
   const Camera& camera = is_free_ ? lens_->camera : calibration;
   const int last = record.frames() - 1;
   if (last < 0) return false;
-  int left = 0;
-  for (int i = 0; i < record.features(); ++i) left += record.seen(last, i) ? 1 : 0;
-  if (left < kMinFeatures) return false;
+  if (num_left(record) < kMinFeatures) return false;
   Quat q_WC = record.frame(last).q_WC;
   const Scalar parallax = std::max(sigma_px, fit_rotation(camera, record, last, &q_WC));
   Mat3 A;
@@ -267,11 +273,10 @@ bool StartBundle::baseline_covariance(const Camera& calibration, const StartReco
 
 void StartBundle::follow(const Camera& calibration, StartRecord& record, Scalar sigma_px, Scalar depth, Scalar* rho) {
   const Camera& camera = is_free_ ? lens_->camera : calibration;
-  const int last = record.frames() - 1;
-  const int cameras = std::min(static_cast<int>(kMaxCameras), record.frames());
-  int frame[kMaxCameras] = {};
+  const Spread spread = spread_over(record);
+  const int cameras = spread.count;
+  const int* frame = spread.frame;
   for (int c = 0; c < cameras; ++c) {
-    frame[c] = last - c * (last + 1) / cameras;
     pose_[1 + c].q_WC = record.frame(frame[c]).q_WC;
     pose_[1 + c].p_W = record.frame(frame[c]).p_W / depth;
   }

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "base/arena.h"
-#include "bundle/adjust.h"
-#include "geometry/camera.h"
+#include "bundle/bundle_adjuster.h"
+#include "bundle/start_record.h"
 
 /// The first depths, when nothing is known beforehand: a bundle adjustment over the first frames, from several first
 /// guesses (lib/docs/starting.md).
@@ -12,48 +11,6 @@
 /// until there is enough parallax, and then adjusted together.
 
 namespace pf {
-
-/// Pixels of up to kMaxFeatures features, all first seen in frame 0, over up to kMaxFrames frames. When full, every
-/// second frame is dropped, so that a resting camera does not fill it.
-class StartRecord {
- public:
-  static constexpr int kMaxFrames = 32;
-  static constexpr int kMaxFeatures = 64;
-
-  struct Frame {
-    std::int64_t t_ns;
-    Quat q_WC;  ///< W is frame 0's camera
-    Vec3 p_W;
-  };
-
-  bool layout(Arena& arena);
-  void init();
-
-  /// Feature of frame 0, by the ray on which it was first seen; its index, or -1 when there are kMaxFeatures.
-  int add_feature(const Vec3& ray);
-  void set_ray(int feature, const Vec3& ray) { ray_[feature] = ray; }
-  /// Adds a later frame with its estimated pose; add_pixel adds its pixels. Returns its index.
-  int add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);
-  void add_pixel(int frame, int feature, const Vec2& pixel);
-
-  int frames() const { return frames_; }
-  int features() const { return features_; }
-  Frame& frame(int k) { return frame_[k]; }
-  const Frame& frame(int k) const { return frame_[k]; }
-  const Vec3& ray(int i) const { return ray_[i]; }
-  const Vec3* rays() const { return ray_; }
-  Vec3* rays() { return ray_; }
-  const BundlePixel* pixels(int k) const { return pixel_ + k * kMaxFeatures; }  ///< by feature
-  bool seen(int k, int i) const { return pixels(k)[i].seen; }
-  Vec2 pixel(int k, int i) const { return pixels(k)[i].pixel(); }
-
- private:
-  Frame* frame_ = nullptr;  ///< frame 0 itself is not stored: its pose is the identity
-  Vec3* ray_ = nullptr;
-  BundlePixel* pixel_ = nullptr;
-  int frames_ = 0;
-  int features_ = 0;
-};
 
 enum class StartOutcome {
   kWait,     ///< not enough parallax (more than last time), or more than one solution
@@ -103,7 +60,23 @@ class StartBundle {
   };
 
   Scalar fit_rotation(const Camera& camera, const StartRecord& record, int frame, Quat* q_WC) const;
+  /// Frames of the record that are adjusted together, the last one first.
+  struct Spread {
+    int count;
+    int frame[kMaxCameras];
+  };
+
+  static Spread spread_over(const StartRecord& record);
   StartOutcome solve_by(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth);
+  void set_guess(int guess, const StartRecord& record, const Quat& q_last, Scalar length, Scalar median_depth);
+  bool find_motion(const Camera& camera, const StartRecord& record, const Quat& q_last, Scalar parallax,
+                   Scalar sigma_px, Scalar median_depth, BundlePose* motion);
+  bool adjust_spread(const Camera& camera, StartRecord& record, const Spread& spread, Scalar sigma_px,
+                     const BundlePose& motion);
+  int list_good(const Camera& camera, const StartRecord& record, const Spread& spread, Scalar sigma_px,
+                bool* is_good) const;
+  Scalar unit_of_length(const bool* is_good, int count, Scalar median_depth) const;
+  bool place_frames(const Camera& camera, StartRecord& record, const Spread& spread, Scalar sigma_px, Scalar unit);
   Scalar adjust(const Camera& camera, const StartRecord& record, const int* frame, int cameras, int rounds,
                 Scalar sigma_px, const BundleLens* lens = nullptr);
   Scalar adjust_with_lens(StartRecord& record, const int* frame, int cameras, Scalar sigma_px);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bundle/bearing.h"
 #include "bundle/tuning.h"
 #include "keyframe_slam/adjustment/tuning.h"
 #include "keyframe_slam/map/depth.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bundle/bearing.h"
 #include "geometry/so3.h"
 #include "keyframe_slam/adjustment/bundle_planes.h"
 #include "keyframe_slam/adjustment/tuning.h"

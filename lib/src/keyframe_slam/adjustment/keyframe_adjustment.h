@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bundle/adjust.h"
+#include "bundle/bundle_adjuster.h"
 #include "frame/noise_model.h"
 #include "keyframe_slam/adjustment/held_target.h"
 #include "keyframe_slam/adjustment/keyframe_bundle.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bundle/bundle_adjuster.h"
 #include "keyframe_slam/adjustment/tuning.h"
 #include "keyframe_slam/map/depth.h"
 #include "keyframe_slam/map/tuning.h"

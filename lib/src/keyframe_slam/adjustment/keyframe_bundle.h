@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "base/arena.h"
-#include "bundle/adjust.h"
+#include "bundle/bundle.h"
 #include "keyframe_slam/map/keyframe_map.h"
 
 /// The keyframes, points and planes of one adjustment, as the bundle adjustment wants them.

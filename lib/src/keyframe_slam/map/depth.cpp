@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bundle/adjust.h"
+#include "bundle/bearing.h"
 #include "keyframe_slam/map/tuning.h"
 
 namespace pf {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "base/arena.h"
-#include "bundle/adjust.h"
+#include "bundle/bundle.h"
 #include "vision/appearance.h"
 
 /// Table of keyframes: poses whose images the map was measured in, with the pixels of its points.

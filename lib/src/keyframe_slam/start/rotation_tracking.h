@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bundle/adjust.h"
+#include "bundle/bundle.h"
 #include "keyframe_slam/tracking/pose_measurement.h"
 
 /// Follows the points of the first frame while no depths are known.

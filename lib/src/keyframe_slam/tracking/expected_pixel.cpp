@@ -1,5 +1,6 @@
 #include "keyframe_slam/tracking/expected_pixel.h"
 
+#include "bundle/bearing.h"
 #include "keyframe_slam/map/rows.h"
 #include "keyframe_slam/tracking/tuning.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bundle/adjust.h"
+#include "bundle/bearing.h"
 #include "frame/ellipse.h"
 #include "frame/tuning.h"
 #include "geometry/small_cholesky.h"

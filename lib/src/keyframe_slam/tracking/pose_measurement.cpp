@@ -5,6 +5,7 @@
 
 #include "base/elapsed.h"
 #include "base/false_alarms.h"
+#include "bundle/bearing.h"
 #include "frame/ellipse.h"
 #include "frame/tuning.h"
 #include "keyframe_slam/map/rows.h"

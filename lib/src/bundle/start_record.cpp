@@ -1,0 +1,47 @@
+#include "bundle/start_record.h"
+
+#include <algorithm>
+
+namespace pf {
+
+bool StartRecord::layout(Arena& arena) {
+  frame_ = arena.take<Frame>(kMaxFrames);
+  ray_ = arena.take<Vec3>(kMaxFeatures);
+  pixel_ = arena.take<BundlePixel>(kMaxFrames * kMaxFeatures);
+  return arena.ok();
+}
+
+void StartRecord::init() {
+  frames_ = 0;
+  features_ = 0;
+}
+
+int StartRecord::add_feature(const Vec3& ray) {
+  if (features_ == kMaxFeatures) return -1;
+  ray_[features_] = ray;
+  return features_++;
+}
+
+int StartRecord::add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W) {
+  if (frames_ == kMaxFrames) {
+    for (int k = 1; 2 * k < kMaxFrames; ++k) {
+      frame_[k] = frame_[2 * k];
+      std::copy(pixel_ + 2 * k * kMaxFeatures, pixel_ + (2 * k + 1) * kMaxFeatures, pixel_ + k * kMaxFeatures);
+    }
+    frames_ = kMaxFrames / 2;
+  }
+  frame_[frames_].t_ns = t_ns;
+  frame_[frames_].q_WC = q_WC;
+  frame_[frames_].p_W = p_W;
+  for (int i = 0; i < kMaxFeatures; ++i) pixel_[frames_ * kMaxFeatures + i].seen = false;
+  return frames_++;
+}
+
+void StartRecord::add_pixel(int frame, int feature, const Vec2& pixel) {
+  BundlePixel& p = pixel_[frame * kMaxFeatures + feature];
+  p.x = static_cast<float>(pixel.x());
+  p.y = static_cast<float>(pixel.y());
+  p.seen = true;
+}
+
+}  // namespace pf

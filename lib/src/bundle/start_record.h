@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/arena.h"
+#include "bundle/bundle.h"
+
+namespace pf {
+
+/// Pixels of up to kMaxFeatures features, all first seen in frame 0, over up to kMaxFrames frames. When full, every
+/// second frame is dropped, so that a resting camera does not fill it.
+class StartRecord {
+ public:
+  static constexpr int kMaxFrames = 32;
+  static constexpr int kMaxFeatures = 64;
+
+  struct Frame {
+    std::int64_t t_ns;
+    Quat q_WC;  ///< W is frame 0's camera
+    Vec3 p_W;
+  };
+
+  bool layout(Arena& arena);
+  void init();
+
+  /// Feature of frame 0, by the ray on which it was first seen; its index, or -1 when there are kMaxFeatures.
+  int add_feature(const Vec3& ray);
+  void set_ray(int feature, const Vec3& ray) { ray_[feature] = ray; }
+  /// Adds a later frame with its estimated pose; add_pixel adds its pixels. Returns its index.
+  int add_frame(std::int64_t t_ns, const Quat& q_WC, const Vec3& p_W);
+  void add_pixel(int frame, int feature, const Vec2& pixel);
+
+  int frames() const { return frames_; }
+  int features() const { return features_; }
+  Frame& frame(int k) { return frame_[k]; }
+  const Frame& frame(int k) const { return frame_[k]; }
+  const Vec3& ray(int i) const { return ray_[i]; }
+  const Vec3* rays() const { return ray_; }
+  Vec3* rays() { return ray_; }
+  const BundlePixel* pixels(int k) const { return pixel_ + k * kMaxFeatures; }  ///< by feature
+  bool seen(int k, int i) const { return pixels(k)[i].seen; }
+  Vec2 pixel(int k, int i) const { return pixels(k)[i].pixel(); }
+
+ private:
+  Frame* frame_ = nullptr;  ///< frame 0 itself is not stored: its pose is the identity
+  Vec3* ray_ = nullptr;
+  BundlePixel* pixel_ = nullptr;
+  int frames_ = 0;
+  int features_ = 0;
+};
+
+}  // namespace pf
