@@ -40,7 +40,13 @@ int fail(const std::string& line, int code = kExitRun) {
   return code;
 }
 
-void note(const std::string& line) { std::fprintf(stderr, "pf-capture: note: %s\n", line.c_str()); }
+void note(const std::string& lines) {
+  for (size_t begin = 0; begin < lines.size();) {
+    const size_t end = std::min(lines.find('\n', begin), lines.size());
+    std::fprintf(stderr, "pf-capture: note: %s\n", lines.substr(begin, end - begin).c_str());
+    begin = end + 1;
+  }
+}
 
 /// "images:/data/desk/" to "desk"; a scene keeps its "sim:".
 std::string short_name(const std::string& source) {
@@ -434,6 +440,16 @@ int Run::finish() {
   return lost.empty() ? kExitDone : fail(lost);
 }
 
+/// The folder of "DIR/left_*.png"; another path as it is.
+std::string without_pattern(const std::string& path) {
+  const size_t slash = path.find_last_of('/');
+  const size_t star = path.find_last_of('*');
+  if (star == std::string::npos || (slash != std::string::npos && star < slash)) {
+    return path;
+  }
+  return slash == std::string::npos ? "." : path.substr(0, slash);
+}
+
 /// No file that is read may be one that an earlier run left in the folders that are written, and that goes.
 bool spares_inputs(const Options& options, std::string& error) {
   std::vector<std::string> inputs = {options.calibration, options.second_pose, options.walls, options.imu_noise,
@@ -441,7 +457,7 @@ bool spares_inputs(const Options& options, std::string& error) {
   for (const std::string* text : {&options.source, &options.start, &options.imu}) {
     const std::string kind = text->substr(0, text->find(':'));
     for (const char* reads : {"images", "euroc", "tum", "target", "pose", "csv"}) {
-      if (kind == reads && kind.size() < text->size()) inputs.push_back(text->substr(kind.size() + 1));
+      if (kind == reads && kind.size() < text->size()) inputs.push_back(without_pattern(text->substr(kind.size() + 1)));
     }
   }
   for (const auto& [option, folder] : {std::pair("--out", options.out), std::pair("--record", options.record)}) {

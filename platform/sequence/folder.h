@@ -1,19 +1,14 @@
 #ifndef PLANEFOLD_PLATFORM_SEQUENCE_FOLDER_H
 #define PLANEFOLD_PLATFORM_SEQUENCE_FOLDER_H
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "calibration.h"
 #include "file.h"
+#include "frame_table.h"
 
 namespace pf::sequence {
-
-struct Frame {
-  int64_t t_ns;
-  fs::path path;
-};
 
 struct Folder {
   fs::path root;
@@ -22,10 +17,10 @@ struct Folder {
   fs::path imu_path;    ///< likewise
   Calibration calibration;
   std::vector<Frame> frames;
-  std::string warning;
+  std::vector<std::string> notes;  ///< one line each on what had to be assumed
 };
 
-/// Lists what "kind:DIR" names; opens no image. Throws ReadError.
+/// Lists what "kind:DIR" names, or "images:DIR/PATTERN" with a *; opens no image. Throws ReadError.
 /// calibration  file to use, or "" for the one inside
 Folder open_folder(const std::string& source, const std::string& calibration);
 

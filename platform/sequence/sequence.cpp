@@ -19,7 +19,7 @@
 
 struct pf_sequence {
   pf::sequence::Folder folder;
-  std::string root, calibration_path, truth_path, imu_path;
+  std::string root, calibration_path, truth_path, imu_path, warning;
   std::vector<unsigned char> bytes;
   pf_decoded_t image{};
   std::string first_name;  ///< of the first image that was decoded, "" before
@@ -177,12 +177,11 @@ int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t*
     } else if (opened->folder.calibration.camera.width == 0) {
       opened->folder.calibration = pf::sequence::read_calibration(opened->calibration_path, size_of_images(*opened));
     }
-    if (opened->folder.warning.empty()) {
-      opened->folder.warning = opened->folder.calibration.warning;
-    }
-    const std::string doubt = doubt_of_first(*opened);
-    if (!doubt.empty()) {
-      opened->folder.warning += (opened->folder.warning.empty() ? "" : "; ") + doubt;
+    std::vector<std::string>& notes = opened->folder.notes;
+    notes.push_back(opened->folder.calibration.warning);
+    notes.push_back(doubt_of_first(*opened));
+    for (const std::string& line : notes) {
+      opened->warning += (opened->warning.empty() || line.empty() ? "" : "\n") + line;
     }
     *sequence = opened.release();
   });
@@ -209,7 +208,7 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
   info->calibration_form = folder.calibration.form;
   info->truth_path = sequence->truth_path.c_str();
   info->imu_path = sequence->imu_path.c_str();
-  info->warning = folder.warning.c_str();
+  info->warning = sequence->warning.c_str();
 }
 
 int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,
