@@ -152,7 +152,8 @@ def evaluate(options):
     if options.relative:
         run, report, folder = read_run(options.run)
         truth_path = options.truth or named_truth(report, folder)
-        return compare_motions(folder, report, read_truth(truth_path, options.calib)[0], options.align or default_alignment(report))
+        truth = on_one_clock(run, read_truth(truth_path, options.calib)[0], times_of_frames(frames_of_run(folder, report), report))[1]
+        return compare_motions(folder, report, truth, options.align or default_alignment(report))
     if options.corners:
         return evaluate_corners(options)
     return evaluate_truth(options)

@@ -29,8 +29,8 @@ given as a share of the path's extent, the largest distance between two places o
 (1 is honest). No alignment of frames is needed. With --align none a motion has 6 degrees of freedom. With sim3 it has 5, since the
 scale of each is free; with one scale for each map (one_scale) all of a map's motions have 6 each less one.
 
-"coverage" is the share of the sequence's frames whose poses were compared or could have been, "first_pose_s" the time from the first frame to
-the first tracked pose; both need frames.csv of the run.
+"coverage" is the share of the sequence's frames that have a tracked pose in the map that is compared, "first_pose_s" the time from the
+first frame to the first tracked pose; both need frames.csv of the run.
 
 Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
 
