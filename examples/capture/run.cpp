@@ -17,12 +17,14 @@
 #include "progress.h"
 #include "realtime.h"
 #include "recorder.h"
+#include "rejections.h"
 #include "relative_motion.h"
 #include "session.h"
 #include "show.h"
 #include "source.h"
 #include "statistics.h"
 #include "steady.h"
+#include "target_distance.h"
 #include "text_file.h"
 
 namespace pf::capture {
@@ -74,6 +76,8 @@ class Run {
   bool refresh_report();
   int finish();
   std::string why_nothing_was_tracked() const;
+  std::vector<Rejection> find_rejections() const;
+  static void tell_rejections(const std::vector<Rejection>& rejections);
 
   const Options& options_;
   Source& source_;
@@ -91,7 +95,8 @@ class Run {
   bool done_any_ = false;
   bool quit_ = false;
   bool paused_ = false;
-  bool withdrawn_ = false;  ///< the target
+  bool withdrawn_ = false;    ///< the target
+  bool told_target_ = false;  ///< how far away it is
   bool saved_mid_ = false;
   bool told_film_failed_ = false;
   int64_t reported_ns_ = 0;  ///< when report.json was written
@@ -206,6 +211,10 @@ Read Run::step(int64_t index) {
   }
   for (std::string line; session_.take_notice(view_, line);) {
     note(line);
+  }
+  if (view_.tracked && session_.target() != nullptr && !told_target_) {
+    told_target_ = true;
+    note(doubt_of_target(*session_.target(), options_.start, view_.pose));
   }
   imu_.add_frame(index, session_.slam(), view_.pose, view_.tracked);
   follow_planes(session_.slam(), view_.hits);
@@ -424,20 +433,42 @@ int Run::finish() {
   }
   std::string error, advice;
   const std::string imu = imu_.report(session_.slam(), advice);
+  const std::vector<Rejection> rejections = find_rejections();
+  const std::string rejected = summary_of(rejections);
   const std::string report = statistics_.to_json(session_, options_, source_.info(), relative_, live, imu, failure_);
   const std::vector<double> in_map = sigmas_in_map(session_.slam(), view_.features);
   if (!outputs_.write_state(view_, in_map, report, error)) {
     return fail(failure_.empty() ? error : failure_);
   }
   if (!failure_.empty()) {
-    return fail(failure_);
+    tell_rejections(rejections);
+    return fail(failure_ + (rejected.empty() ? "" : " (" + rejected + ")"));
   }
   if (!advice.empty()) {
     std::printf("%s\n", advice.c_str());
   }
   std::printf("%s\nwritten to %s%s\n", statistics_.summary(session_).c_str(), options_.out.c_str(),
               filming ? " (overlay.mp4 is the film)" : "");
-  return lost.empty() ? kExitDone : fail(lost);
+  std::fflush(stdout);
+  tell_rejections(rejections);
+  return lost.empty() ? kExitDone : fail(lost + (rejected.empty() ? "" : " (" + rejected + ")"));
+}
+
+std::vector<Rejection> Run::find_rejections() const {
+  std::vector<Rejection> rejections;
+  if (done_any_) {
+    imu_.add_rejections(session_.slam(), rejections);
+    session_.plan().add_rejections(session_.slam(), rejections);
+    add_rejected_calibration(session_.slam(), session_.config().camera, rejections);
+  }
+  return rejections;
+}
+
+/// The last lines that the user sees.
+void Run::tell_rejections(const std::vector<Rejection>& rejections) {
+  for (const Rejection& rejection : rejections) {
+    note(rejection.line);
+  }
 }
 
 /// The folder of "DIR/left_*.png"; another path as it is.

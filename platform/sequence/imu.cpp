@@ -8,6 +8,7 @@
 #include "numbers.h"
 #include "refuse.h"
 #include "table.h"
+#include "time_unit.h"
 
 namespace pf::sequence {
 
@@ -66,32 +67,49 @@ std::array<size_t, kColumns> columns_of(const Table& table) {
   return table.header().size() == kColumns && known == kColumns ? found : in_order;
 }
 
-/// Times in another unit give a rate that no unit has.
-void require_possible_rate(const Table& table, const std::vector<pf_imu_sample_t>& samples, bool in_seconds) {
+/// The unit of times: seconds with a decimal point anywhere, else nanoseconds; another where no unit samples at such a rate.
+/// note  becomes what was taken then
+TimeUnit unit_of_samples(const Table& table, size_t time, std::string& note) {
   constexpr size_t kMinSamples = 20;
-  constexpr double kSlowest = 2.0, kFastest = 20000.0;  // [1/s]
-  if (samples.size() < kMinSamples) {
-    return;
+  constexpr double kSlowest = 2.0, kFastest = 20000.0;      // [1/s]
+  constexpr double kSlowestSure = 20.0, kPerUnit = 1000.0;  // from one unit to the next
+  const std::vector<TableRow>& rows = table.rows();
+  const auto has_point = [&](const TableRow& row) {
+    return time < row.fields.size() && row.fields[time].find('.') != std::string_view::npos;
+  };
+  TimeUnit unit = std::any_of(rows.begin(), rows.end(), has_point) ? TimeUnit::kSeconds : TimeUnit::kNanoseconds;
+  double first = 0.0, last = 0.0;
+  if (rows.size() < kMinSamples || rows.back().fields.size() <= time || !parse_double(rows[0].fields[time], first) ||
+      !parse_double(rows.back().fields[time], last) || !(last > first)) {
+    return unit;
   }
-  const double seconds = 1e-9 * static_cast<double>(samples.back().t_ns - samples.front().t_ns);
-  const double rate = static_cast<double>(samples.size() - 1) / seconds;
-  if (rate < kSlowest || rate > kFastest) {
-    char text[64];
-    std::snprintf(text, sizeof(text), "%.3g", rate);
-    refuse(table.name() + ": in " + (in_seconds ? "seconds" : "nanoseconds") + " its samples come at " + text +
-           " Hz, which is no unit's rate; times must be whole nanoseconds, or seconds with a decimal point");
+  const double per_unit = static_cast<double>(rows.size() - 1) / (last - first);
+  const double rate = per_unit * (unit == TimeUnit::kSeconds ? 1.0 : 1e9);
+  if (rate >= kSlowest && rate <= kFastest) {
+    return unit;
   }
+  double found = per_unit;
+  for (const TimeUnit candidate :
+       {TimeUnit::kSeconds, TimeUnit::kMilliseconds, TimeUnit::kMicroseconds, TimeUnit::kNanoseconds}) {
+    if (found >= kSlowestSure && found <= kFastest) {
+      char text[160];
+      std::snprintf(text, sizeof(text), ": in %s its samples come at %.3g Hz; they are taken as %s (%.4g Hz)",
+                    name_of(unit), rate, name_of(candidate), found);
+      note = table.name() + text;
+      return candidate;
+    }
+    found *= kPerUnit;
+  }
+  return unit;
 }
 
 }  // namespace
 
-std::vector<pf_imu_sample_t> parse_imu(std::string_view text, const std::string& name) {
+std::vector<pf_imu_sample_t> parse_imu(std::string_view text, const std::string& name, std::string& note) {
   const Table table{std::string(text), name};
   const std::vector<TableRow>& rows = table.rows();
-  // A whole number alone could be either; a decimal point anywhere says that the file is in seconds.
-  const bool in_seconds = std::any_of(
-      rows.begin(), rows.end(), [](const TableRow& row) { return row.fields[0].find('.') != std::string_view::npos; });
   const std::array<size_t, kColumns> column = columns_of(table);
+  const TimeUnit unit = unit_of_samples(table, column[0], note);
   std::vector<pf_imu_sample_t> samples;
   samples.reserve(rows.size());
   for (const TableRow& row : rows) {
@@ -102,8 +120,9 @@ std::vector<pf_imu_sample_t> parse_imu(std::string_view text, const std::string&
     }
     pf_imu_sample_t sample{};
     const std::string_view time = row.fields[column[0]];
-    if (!(in_seconds ? parse_seconds(time, sample.t_ns) : parse_integer(time, sample.t_ns))) {
-      refuse(where + "'" + std::string(time) + "' is not a time in " + (in_seconds ? "seconds" : "whole nanoseconds"));
+    if (!parse_time(time, unit, 0.0, sample.t_ns)) {
+      refuse(where + "'" + std::string(time) + "' is not a time in " +
+             (unit == TimeUnit::kNanoseconds ? "whole nanoseconds" : name_of(unit)));
     }
     if (!samples.empty() && sample.t_ns <= samples.back().t_ns) {
       refuse(where + "the time " + std::string(time) +
@@ -119,7 +138,6 @@ std::vector<pf_imu_sample_t> parse_imu(std::string_view text, const std::string&
   if (samples.empty()) {
     refuse(name + ": holds no sample");
   }
-  require_possible_rate(table, samples, in_seconds);
   return samples;
 }
 

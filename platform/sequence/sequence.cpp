@@ -345,11 +345,13 @@ int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_
     require(count, "count");
     *samples = nullptr;
     *count = 0;
-    const auto read = pf::sequence::parse_imu(std::string_view(text, size), name != nullptr ? name : "text");
+    std::string note;
+    const auto read = pf::sequence::parse_imu(std::string_view(text, size), name != nullptr ? name : "text", note);
     auto copy = std::make_unique<pf_imu_sample_t[]>(read.size());
     std::copy(read.begin(), read.end(), copy.get());
     *count = read.size();
     *samples = copy.release();
+    put(message, note.c_str());
   });
 }
 

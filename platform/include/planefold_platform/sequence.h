@@ -122,7 +122,8 @@ int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SE
 
 /* Inertial samples in the layout of EuRoC's imu0/data.csv: rows of time, wx, wy, wz [rad/s], ax, ay, az [m/s^2], cut by commas or
  * blanks, or in the order that a header names. Times are whole nanoseconds, or seconds with a decimal point, and must
- * grow. *samples is to be given to pf_free_imu. */
+ * grow; where no unit samples at such a rate they are taken as milliseconds or microseconds. With 0, message says so, or is
+ * empty. *samples is to be given to pf_free_imu. */
 int pf_read_imu(const char* path, pf_imu_sample_t** samples, size_t* count, char message[PF_SEQUENCE_MESSAGE]);
 void pf_free_imu(pf_imu_sample_t* samples); /* null is welcome */
 
