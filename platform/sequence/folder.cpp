@@ -3,9 +3,13 @@
 #include <planefold_platform/sequence.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <utility>
 
+#include "frame_names.h"
 #include "image_folder.h"
 #include "image_list.h"
 #include "refuse.h"
@@ -25,13 +29,17 @@ fs::path first_file(const fs::path& folder, std::initializer_list<const char*> n
   return {};
 }
 
+/// beside  a file elsewhere that is taken where none of the names is there; "" for none
 void find_calibration(Folder& folder, const std::string& given, const fs::path& where,
-                      std::initializer_list<const char*> names) {
+                      std::initializer_list<const char*> names, const fs::path& beside = {}) {
   if (given == PF_SEQUENCE_UNCALIBRATED) {
     folder.calibration.form = "none";
     return;
   }
   folder.calibration_path = given.empty() ? first_file(where, names) : fs::path(given);
+  if (folder.calibration_path.empty() && is_file(beside)) {
+    folder.calibration_path = beside;
+  }
   if (folder.calibration_path.empty()) {
     std::string list;
     for (const char* name : names) {
@@ -43,18 +51,61 @@ void find_calibration(Folder& folder, const std::string& given, const fs::path& 
 }
 
 /// Refuses a folder of another layout, which has its images elsewhere.
-void refuse_other_layouts(const fs::path& root) {
+/// kind  that the user wrote
+void refuse_other_layouts(const fs::path& root, const std::string& kind) {
   if (is_file(root / "times.txt") || is_folder(root / "images") || is_folder(root / "image_0") ||
       !list_images(root).empty()) {
     return;
   }
-  if (is_file(root / "rgb.txt")) {
+  if (kind != "tum" && is_file(root / "rgb.txt")) {
     refuse(root.string() + ": has no images itself but an rgb.txt, as TUM's sequences do; write tum:" + root.string());
   }
-  if (is_file(root / "mav0" / "cam0" / "data.csv") || is_file(root / "cam0" / "data.csv")) {
+  if (kind != "euroc" && (is_file(root / "mav0" / "cam0" / "data.csv") || is_file(root / "cam0" / "data.csv"))) {
     refuse(root.string() +
            ": has no images itself but cam0/data.csv, as EuRoC's sequences do; write euroc:" + root.string());
   }
+}
+
+/// The first file of the folder whose name ends so; empty: none.
+fs::path file_that_ends(const fs::path& folder, const std::string& end) {
+  fs::path found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), last; !error && entry != last; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.size() > end.size() && name[0] != '.' && name.compare(name.size() - end.size(), end.size(), end) == 0 &&
+        (found.empty() || entry->path() < found)) {
+      found = entry->path();
+    }
+  }
+  return found;
+}
+
+/// What a folder without images may hold in their place, and what to do.
+std::string what_it_holds(const fs::path& folder) {
+  for (const char* end : {".bmp", ".tif", ".tiff", ".webp", ".ppm", ".heic", ".exr", ".dng", ".jp2", ".gif"}) {
+    const fs::path other = file_that_ends(folder, end);
+    if (!other.empty()) {
+      std::string format(end + 1);
+      std::transform(format.begin(), format.end(), format.begin(), [](unsigned char c) { return std::toupper(c); });
+      return " but " + format + " (" + other.filename().string() +
+             "); convert them (ImageMagick: mogrify -format png *" + end + ")";
+    }
+  }
+  return "; check the path";
+}
+
+/// KITTI's odometry poses, or a pose file for each image; empty: none.
+fs::path truth_of_images(const fs::path& root, const fs::path& images) {
+  const fs::path inside = first_file(root, {"groundtruth.tum", "groundtruth.txt"});
+  if (!inside.empty()) {
+    return inside;
+  }
+  const fs::path whole = fs::absolute(root / ".").lexically_normal().parent_path();
+  const fs::path poses = whole.parent_path().parent_path() / "poses" / (whole.filename().string() + ".txt");
+  if (whole.parent_path().filename() == "sequences" && is_file(poses)) {
+    return poses;
+  }
+  return file_that_ends(images, "pose.txt").empty() ? fs::path() : images;
 }
 
 /// Frames of a table, with names below images or root.
@@ -70,7 +121,7 @@ void count_frames(Folder& folder, const fs::path& images, const std::string& pat
   const std::vector<std::string> names = one_sequence(images, list_images(images, pattern), folder.notes);
   if (names.empty()) {
     refuse(images.string() + ": holds no PNG, JPEG or PGM image" + (pattern.empty() ? "" : " of the name " + pattern) +
-           "; check the path");
+           what_it_holds(images));
   }
   const double rate = folder.calibration.rate_hz > 0.0 ? folder.calibration.rate_hz : kAssumedRate;
   folder.frames = frames_by_names(images, names, folder.calibration.rate_hz, folder.notes);
@@ -90,7 +141,7 @@ void count_frames(Folder& folder, const fs::path& images, const std::string& pat
 
 void open_images(Folder& folder, const std::string& calibration, const std::string& pattern) {
   const fs::path& root = folder.root;
-  refuse_other_layouts(root);
+  refuse_other_layouts(root, "images");
   find_calibration(folder, calibration, root,
                    {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml", "calib.txt"});
   const fs::path times = first_file(root, {"times.txt", "timestamps.txt", "times.csv", "timestamps.csv"});
@@ -100,29 +151,72 @@ void open_images(Folder& folder, const std::string& calibration, const std::stri
   } else {
     read_frames(folder, times, images, pattern, TimeUnit::kSeconds);
   }
-  folder.truth_path = first_file(root, {"groundtruth.tum", "groundtruth.txt"});
+  folder.truth_path = truth_of_images(root, images);
   folder.imu_path = first_file(root, {"imu.csv"});
 }
 
-void open_tum(Folder& folder, const std::string& calibration) {
-  const fs::path table = folder.root / "rgb.txt";
-  if (!is_file(table)) {
-    refuse(table.string() + ": missing; a tum: folder holds rgb.txt and rgb/ (use images: for other layouts)");
+/// Rows "time depth time rgb" of an associations.txt as a table of the images in colour.
+std::unique_ptr<Table> colour_of(const fs::path& associations) {
+  const Table pairs(read_text(associations, kMaxTableBytes, "times"), associations.string());
+  std::string text;
+  size_t lines = 0;
+  for (const TableRow& row : pairs.rows()) {
+    const size_t first = row.fields.size() != 4                                ? row.fields.size()
+                         : row.fields[1].find("rgb") != std::string_view::npos ? 0
+                         : row.fields[3].find("rgb") != std::string_view::npos ? 2
+                                                                               : 4;
+    if (first >= row.fields.size()) {
+      refuse(pairs.where(row) + "expected two times, each with a name, one of them in rgb/; found '" +
+             std::string(row.line) + "'");
+    }
+    for (; lines + 1 < row.number; ++lines) {
+      text += '\n';  // so that rows keep their numbers
+    }
+    text += std::string(row.fields[first]) + ",\"" + std::string(row.fields[first + 1]) + "\"";
   }
-  find_calibration(folder, calibration, folder.root, {"calib.yaml", "calib.yml", "camchain.yaml", "camera_info.yaml"});
-  read_frames(folder, table, folder.root, "", TimeUnit::kSeconds);
-  folder.truth_path = first_file(folder.root, {"groundtruth.txt", "groundtruth.tum"});
+  return std::make_unique<Table>(std::move(text), associations.string());
+}
+
+void open_tum(Folder& folder, const std::string& calibration) {
+  const fs::path& root = folder.root;
+  const fs::path table = root / "rgb.txt";
+  const fs::path pairs =
+      first_file(root, {"associations.txt", "association.txt", "associate.txt", "associated.txt", "assoc.txt"});
+  if (!is_file(table) && pairs.empty()) {
+    refuse_other_layouts(root, "tum");
+    if (!is_folder(root / "rgb")) {
+      refuse(table.string() + ": missing; a tum: folder holds rgb.txt and rgb/ (use images: for other layouts)");
+    }
+  }
+  find_calibration(folder, calibration, root, {"calib.yaml", "calib.yml", "camchain.yaml", "camera_info.yaml"});
+  if (is_file(table)) {
+    read_frames(folder, table, root, "", TimeUnit::kSeconds);
+  } else if (!pairs.empty()) {
+    folder.frames = read_frame_table(*colour_of(pairs),
+                                     {root, "", root, TimeUnit::kSeconds, folder.calibration.rate_hz}, folder.notes);
+    folder.notes.push_back(root.string() + ": has no rgb.txt; the images in colour of " + pairs.filename().string() +
+                           " are taken");
+  } else {
+    count_frames(folder, root / "rgb", "");
+  }
+  folder.truth_path = first_file(root, {"groundtruth.txt", "groundtruth.tum"});
+  if (folder.truth_path.empty()) {
+    folder.truth_path = file_that_ends(root, ".gt.freiburg");  // as the synthetic rooms of ICL and NUIM have it
+  }
 }
 
 void open_euroc(Folder& folder, const std::string& calibration) {
   for (const char* below : {"mav0/cam0", "cam0", "."}) {
     const fs::path camera = folder.root / below;
     if (is_file(camera / "data.csv")) {
-      find_calibration(folder, calibration, camera, {"sensor.yaml", "calib.yaml"});
+      const fs::path recording = (camera / ".." / "..").lexically_normal();  // the folder that holds mav0
+      find_calibration(folder, calibration, camera, {"sensor.yaml", "calib.yaml"}, recording / "dso" / "camchain.yaml");
       read_frames(folder, camera / "data.csv", camera / "data", "", TimeUnit::kNanoseconds);
       folder.truth_path = first_file(folder.root, {"groundtruth.tum"});
-      if (folder.truth_path.empty()) {
-        folder.truth_path = first_file(camera / ".." / "state_groundtruth_estimate0", {"data.csv"}).lexically_normal();
+      for (const char* truth : {"state_groundtruth_estimate0", "mocap0", "vicon0"}) {
+        if (folder.truth_path.empty()) {
+          folder.truth_path = first_file(camera / ".." / truth, {"data.csv"}).lexically_normal();
+        }
       }
       folder.imu_path = first_file(camera / ".." / "imu0", {"data.csv"}).lexically_normal();
       return;
@@ -132,6 +226,7 @@ void open_euroc(Folder& folder, const std::string& calibration) {
     open_images(folder, calibration, "");
     return;
   }
+  refuse_other_layouts(folder.root, "euroc");
   refuse(folder.root.string() +
          ": no mav0/cam0/data.csv inside; give the folder that holds mav0, or mav0 or cam0 itself");
 }

@@ -34,11 +34,6 @@ struct FrameTablePlace {
 /// notes  get what had to be assumed
 std::vector<Frame> read_frame_table(const Table& table, const FrameTablePlace& place, std::vector<std::string>& notes);
 
-/// Times in the names of images, as 12.05.png (seconds) or 1403636579763555584.png: frames in order of time. Empty where the names hold
-/// no times.
-std::vector<Frame> frames_by_names(const fs::path& images, const std::vector<std::string>& names, double rate_hz,
-                                   std::vector<std::string>& notes);
-
 }  // namespace pf::sequence
 
 #endif
