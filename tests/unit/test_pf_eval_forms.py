@@ -175,7 +175,7 @@ class Evaluation(unittest.TestCase):
     def test_truth_in_another_unit_should_be_recognised_with_a_note(self):
         for factor, name in ((1e3, "milliseconds"), (1e6, "microseconds"), (1e9, "nanoseconds")):
             self.require_same_path(rows_of([factor * self.t, self.p, self.R.as_quat()]), "truth.tum", f"as {name}")
-        self.require_same_path(rows_of([np.arange(COUNT), self.p, self.R.as_quat()]), "truth.tum", "by their numbers")
+        self.require_same_path(rows_of([np.arange(COUNT), self.p, self.R.as_quat()]), "truth.tum", "has frame numbers and no times; they are taken at 20 Hz")
 
     def test_a_run_without_times_should_be_refused_unless_it_has_the_rows_of_the_truth(self):
         truth = self.path / "truth.tum"

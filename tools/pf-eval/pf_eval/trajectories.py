@@ -253,23 +253,29 @@ def _in_rows_of(run, truth):
 
 
 def _count(truth, run, frame_times):
-    """Times of a truth that is numbered by frames."""
+    """Times of a truth that is numbered by frames: those of the run's frames by their number, or else at the rate of the run from 0 s on.
+
+    Numbers in a column of times (a truth that does not count by rows) mean the latter first: frame k of such a sequence is at k times the
+    step, wherever the sequence begins.
+    """
     numbers = truth.t.astype(int)
-    timed = truth.select(slice(None))
-    timed.counts = False
-    if frame_times is not None:
-        known = np.full(numbers.max() + 1, np.nan)
+    step = float(np.median(np.diff(run.t))) if len(run) > 1 else 0.0
+
+    def timed(t):
+        found = truth.select(np.isfinite(t))
+        found.t, found.counts = t[np.isfinite(t)], False
+        return found
+
+    at_rate = timed(step * truth.t)
+    fits = step > 0 and len(at_rate) > 1 and _overlap(at_rate.t, run.t) > 0.5
+    if frame_times is not None and not (fits and not truth.counts):
+        known = np.full(max(numbers.max() + 1, 0), np.nan)
         known[:len(frame_times)] = frame_times[:len(known)]
-        timed.t = known[numbers]
-        timed = timed.select(np.isfinite(timed.t))
-        if len(timed):
+        by_number = timed(np.where(numbers >= 0, known[numbers], np.nan))
+        if len(by_number):
             note(f"{truth.source}: has no times; its rows are taken as the frames of the run by their numbers")
-            return timed
-        timed = truth.select(slice(None))
-        timed.counts = False
-    if len(run) < 2:
+            return by_number
+    if not step > 0:
         raise Refused(f"{truth.source}: has no times, and {run.source} has too few poses to tell the rate of frames")
-    step = float(np.median(np.diff(run.t)))
-    timed.t = step * truth.t
-    note(f"{truth.source}: has no times; its rows are taken as frames at {1 / step:.4g} Hz from 0 s on; a times.txt beside it can say them")
-    return timed
+    note(f"{truth.source}: has frame numbers and no times; they are taken at {1 / step:.4g} Hz from 0 s on; a times.txt beside it can say them")
+    return at_rate
