@@ -168,6 +168,21 @@ nlohmann::ordered_json Plan::to_json(const pf_slam_t* slam) const {
   return json;
 }
 
+/// Walls that are doubted, and those that went with an estimate that was given up.
+void Plan::add_rejections(const pf_slam_t* slam, std::vector<Rejection>& rejections) const {
+  for (const nlohmann::ordered_json& row : to_json(slam)) {
+    const std::string what = "wall '" + row["name"].get<std::string>() + "'";
+    if (row.contains("gone")) {
+      rejections.push_back({what, "--walls: " + what +
+                                      " is not in the map any more: the estimate was given up, and the plan's frame "
+                                      "with it; check the first pose and the plan"});
+    } else if (row["doubted"].get<bool>()) {
+      rejections.push_back({what, "--walls: the pictures contradict " + what +
+                                      ", which takes no points any more; check its corners, and the first pose"});
+    }
+  }
+}
+
 std::vector<std::vector<Vec3>> Plan::outlines() const {
   std::vector<std::vector<Vec3>> outlines;
   for (int32_t i = 0; i < walls_.count; ++i) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "maths.h"
+#include "rejections.h"
 #include "view.h"
 
 namespace pf::capture {
@@ -28,6 +29,9 @@ class Plan {
   /// round, or lacks what hides it. Once for each wall; or, at the first pose, that no wall is in view that could tell depths. false: there
   /// is none.
   bool take_notice(const FrameView& view, const pf_camera_t& camera, std::string& line);
+
+  /// Walls that the pictures contradict, or that went with the map.
+  void add_rejections(const pf_slam_t* slam, std::vector<Rejection>& rejections) const;
 
   /// For report.json: of each wall how far it has gone from the plan, and how well it is known now.
   nlohmann::ordered_json to_json(const pf_slam_t* slam) const;

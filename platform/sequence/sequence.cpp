@@ -14,6 +14,7 @@
 #include "folder.h"
 #include "imu.h"
 #include "imu_model.h"
+#include "levels.h"
 #include "refuse.h"
 #include "target.h"
 #include "yaml_fields.h"
@@ -26,6 +27,8 @@ struct pf_sequence {
   pf_decoded_t image{};
   std::string first_name;  ///< of the first image that was decoded, "" before
   int32_t first_channels = 0, first_bits = 0;
+  pf::sequence::Levels levels;
+  bool most_have_size = false;  ///< a single image of another size is left out
 
   pf_sequence() = default;
   pf_sequence(const pf_sequence&) = delete;
@@ -135,14 +138,8 @@ pf::sequence::ImageSize size_of_images(pf_sequence& sequence) {
   return {sequence.image.width, sequence.image.height};
 }
 
-/// What the numbers of an image, or its file, say that its user may not know; empty: nothing.
+/// What the file of an image says that its user may not know; empty: nothing.
 std::string doubt_of(const pf_decoded_t& image, const std::string& name) {
-  constexpr int kTwelveBits = 4095;
-  if (image.brightest > 0 && image.brightest <= kTwelveBits) {
-    return name + ": has 16 bits, but no number above " + std::to_string(image.brightest) +
-           ": data of 12 bits or fewer come out dark, so scale them up to 65535 (ImageMagick, of 12 bits: mogrify "
-           "-evaluate multiply 16)";
-  }
   if (image.orientation > 1) {
     return name + ": says by EXIF that it is shown rotated or mirrored (orientation " +
            std::to_string(image.orientation) +
@@ -151,14 +148,48 @@ std::string doubt_of(const pf_decoded_t& image, const std::string& name) {
   return "";
 }
 
-/// A warning about the first image that can be read; what cannot is told when it is its turn.
-std::string doubt_of_first(pf_sequence& sequence) {
-  try {
-    const pf::sequence::Frame& frame = sequence.folder.frames.front();
+bool has_size_of(const pf_decoded_t& image, const pf_camera_t& camera) {
+  return image.width == camera.width && image.height == camera.height;
+}
+
+/// Looks at a few images over the sequence: which numbers are black and white, and whether most have the camera's size. What cannot be
+/// read is told when it is its turn.
+void look_at_some(pf_sequence& sequence, std::vector<std::string>& notes) {
+  constexpr size_t kLooks = 5;
+  const std::vector<pf::sequence::Frame>& frames = sequence.folder.frames;
+  std::vector<uint32_t> histogram(pf::sequence::kNumbersOf16Bits, 0);
+  sequence.image.histogram = histogram.data();
+  size_t seen = 0, of_size = 0, before = frames.size();
+  for (size_t look = 0; look < kLooks; ++look) {
+    const size_t at = look * (frames.size() - 1) / (kLooks - 1);
+    if (at == before) {
+      continue;
+    }
+    before = at;
+    try {
+      decode(sequence, frames[at]);
+    } catch (const pf::sequence::ImageError&) {
+      continue;
+    }
+    if (seen == 0) {
+      notes.push_back(doubt_of(sequence.image, frames[at].path.string()));
+    }
+    ++seen;
+    of_size += has_size_of(sequence.image, sequence.folder.calibration.camera) ? 1 : 0;
+  }
+  sequence.image.histogram = nullptr;
+  sequence.most_have_size = 2 * of_size > seen && seen > 2;
+  sequence.levels = pf::sequence::levels_of(histogram, frames.front().path.string());
+  sequence.image.black = sequence.levels.black;
+  sequence.image.white = sequence.levels.white;
+  notes.push_back(sequence.levels.note);
+}
+
+/// Of data of fewer bits than 16, a number beyond what the first images had: white moves up.
+void follow_white(pf_sequence& sequence, const pf::sequence::Frame& frame) {
+  if (!sequence.levels.stretched && sequence.image.white > 0 && sequence.image.brightest > sequence.image.white) {
+    sequence.image.white = pf::sequence::white_for(sequence.image.brightest);
     decode(sequence, frame);
-    return doubt_of(sequence.image, frame.path.string());
-  } catch (const pf::sequence::ImageError&) {
-    return "";
   }
 }
 
@@ -208,12 +239,9 @@ int pf_open_sequence_of(const char* source, const char* calibration, const char*
     }
     std::vector<std::string> notes = folder.notes;
     notes.insert(notes.end(), folder.calibration.notes.begin(), folder.calibration.notes.end());
-    const std::string doubt = doubt_of_first(*opened);
-    if (!doubt.empty()) {
-      notes.push_back(doubt);
-    }
+    look_at_some(*opened, notes);
     for (const std::string& line : notes) {
-      opened->warning += (opened->warning.empty() ? "" : "\n") + line;
+      opened->warning += (opened->warning.empty() || line.empty() ? "" : "\n") + line;
     }
     *sequence = opened.release();
   });
@@ -256,10 +284,16 @@ int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* i
     }
     const pf::sequence::Frame& frame = folder.frames[static_cast<size_t>(index)];
     decode(*sequence, frame);
-    require_type(*sequence, frame);
     const pf_decoded_t& decoded = sequence->image;
     const pf_camera_t& camera = folder.calibration.camera;
-    if (decoded.width != camera.width || decoded.height != camera.height) {
+    if (!has_size_of(decoded, camera) && sequence->most_have_size) {
+      throw pf::sequence::ImageError(frame.path.string() + ": is " + std::to_string(decoded.width) + " x " +
+                                     std::to_string(decoded.height) + " pixels among images of " +
+                                     std::to_string(camera.width) + " x " + std::to_string(camera.height));
+    }
+    require_type(*sequence, frame);
+    follow_white(*sequence, frame);
+    if (!has_size_of(decoded, camera)) {
       const std::string expected =
           sequence->calibration_path.empty() ? "first image" : "calibration " + sequence->calibration_path;
       refuse(
@@ -348,11 +382,13 @@ int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_
     require(count, "count");
     *samples = nullptr;
     *count = 0;
-    const auto read = pf::sequence::parse_imu(std::string_view(text, size), name != nullptr ? name : "text");
+    std::string note;
+    const auto read = pf::sequence::parse_imu(std::string_view(text, size), name != nullptr ? name : "text", note);
     auto copy = std::make_unique<pf_imu_sample_t[]>(read.size());
     std::copy(read.begin(), read.end(), copy.get());
     *count = read.size();
     *samples = copy.release();
+    put(message, note.c_str());
   });
 }
 
