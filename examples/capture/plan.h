@@ -44,6 +44,7 @@ class Plan {
   std::vector<uint32_t> id_;  ///< of each wall in the map
   std::vector<bool> told_;    ///< of each wall, that it is seen from behind
   bool must_see_wall_ = false;
+  bool told_size_ = false;  ///< of walls that are too large
 };
 
 }  // namespace pf::capture

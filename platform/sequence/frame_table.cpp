@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "date_time.h"
 #include "image_list.h"
 #include "numbers.h"
 #include "refuse.h"
@@ -28,7 +29,8 @@ struct Layout {
 
 bool is_number(std::string_view word) {
   double value = 0.0;
-  return parse_double(word, value);
+  int64_t t_ns = 0;
+  return parse_double(word, value) || parse_date_time(word, t_ns);
 }
 
 bool is_whole(std::string_view word) {
@@ -82,9 +84,28 @@ std::string row_text(const TableRow& row) {
   return row.line.size() <= kShown ? std::string(row.line) : std::string(row.line.substr(0, kShown)) + "..";
 }
 
+/// Fields of a row, with a date and the time of day behind it as one.
+std::vector<std::string_view> with_dates(const TableRow& row) {
+  std::vector<std::string_view> fields;
+  for (const std::string_view field : row.fields) {
+    const bool follows = !fields.empty() && is_date(fields.back());
+    const std::string_view both =
+        follows ? std::string_view(fields.back().data(),
+                                   static_cast<size_t>(field.data() + field.size() - fields.back().data()))
+                : field;
+    int64_t t_ns = 0;
+    if (follows && parse_date_time(both, t_ns)) {
+      fields.back() = both;
+    } else {
+      fields.push_back(field);
+    }
+  }
+  return fields;
+}
+
 /// Names with blanks in a row that is cut at blanks: what follows the time is one name where such an image is there.
 std::vector<std::string_view> joined(const TableRow& row, const FrameTablePlace& place) {
-  const std::vector<std::string_view>& fields = row.fields;
+  const std::vector<std::string_view> fields = with_dates(row);
   if (fields.size() < 3 || row.line.find_first_of(",;\"") != std::string_view::npos || !is_image_name(fields.back())) {
     return fields;
   }

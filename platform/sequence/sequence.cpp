@@ -2,6 +2,7 @@
 #include <planefold_platform/sequence.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -205,6 +206,21 @@ pf_camera_t uncalibrated_camera(pf::sequence::ImageSize size) {
   return camera;
 }
 
+/// A first pose whose rotation is not known within a quarter of a turn: its sigma is hardly in radians.
+std::string doubt_of_angles(const pf_target_t& target, const std::string& path) {
+  constexpr double kMost = 0.5, kDegree = 3.14159265358979323846 / 180.0;
+  const double sigma = target.kind == PF_TARGET_POINTS ? std::sqrt(target.first_pose.covariance[0]) : 0.0;
+  if (sigma <= kMost) {
+    return "";
+  }
+  char text[200];
+  std::snprintf(
+      text, sizeof(text),
+      ": sigma_rotation of %.4g is in radians, and so %.3g degrees; were degrees meant, write sigma_rotation: %.4g",
+      sigma, sigma / kDegree, sigma * kDegree);
+  return path + text;
+}
+
 void require(const void* pointer, const char* name) {
   if (pointer == nullptr) {
     refuse(std::string(name) + " is null");
@@ -355,6 +371,7 @@ int pf_read_target(const char* path, pf_target_t* target, char message[PF_SEQUEN
     require(path, "path");
     require(target, "target");
     *target = pf::sequence::read_target(path);
+    put(message, doubt_of_angles(*target, path).c_str());
   });
 }
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "date_time.h"
 #include "numbers.h"
 
 namespace pf::sequence {
@@ -153,6 +154,9 @@ bool parse_unit(std::string_view text, TimeUnit& unit) {
 }
 
 bool parse_time(std::string_view word, TimeUnit unit, double rate_hz, int64_t& t_ns) {
+  if (parse_date_time(word, t_ns)) {
+    return true;
+  }
   if (unit != TimeUnit::kFrames) {
     return parse_decimal(word, 9 - digits_of(unit), t_ns);
   }

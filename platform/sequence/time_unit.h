@@ -16,7 +16,7 @@ const char* short_name_of(TimeUnit unit);  ///< as parse_unit reads it
 /// "s", "sec", "ms", "us", "ns" and their long names. false: none of them.
 bool parse_unit(std::string_view text, TimeUnit& unit);
 
-/// A time as it is written. Frames: at rate_hz. false: it is no number, or does not fit.
+/// A time as it is written, or a date and time. Frames: at rate_hz. false: it is no number, or does not fit.
 bool parse_time(std::string_view word, TimeUnit unit, double rate_hz, int64_t& t_ns);
 
 /// Where the times of frames come from, and what is known of them.

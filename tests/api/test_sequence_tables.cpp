@@ -83,6 +83,21 @@ static void test_times_should_be_read_in_the_forms_that_people_have() {
   require_read("1.00\r1.05\r1.10\r1.15");  // of old Macs, without names
 }
 
+static void test_dates_should_be_read_as_times() {
+  require_read("2011-09-26 13:02:25.90\n2011-09-26 13:02:25.95\n2011-09-26 13:02:26\n2011-09-26 13:02:26.05\n");
+  require_read(
+      "2023-12-31T23:59:59.95Z,00000.png\n2024-01-01T00:00:00Z,00001.png\n2024-01-01T01:00:00.05+01:00,00002.png\n"
+      "2023-12-31T19:00:00.1-05:00,00003.png\n");
+  require_read(
+      "00000.png 2024-02-28 23:59:59.95\n00001.png 2024-02-29 00:00:00\n00002.png 2024-02-29 00:00:00.05\n"
+      "00003.png 2024-02-29 00:00:00.1\n");
+  const Timed dated("1970-01-02 00:00:01 00000.png\n");
+  TEST_ASSERT_EQUAL_INT64(86401 * 1000 * kMs, dated.opened->info.first_t_ns);
+  require_refused("2024-13-01 00:00:00 00000.png\n", "columns");
+  require_refused("2024-01-01 25:00:00 00000.png\n", "columns");
+  require_refused("2024-01-01 00000.png\n", "not a time");
+}
+
 static void test_columns_should_be_taken_by_their_header() {
   require_read(
       "name,exposure [ms],timestamp [us]\n00000.png,3,0\n00001.png,3,50000\n00002.png,3,100000\n00003.png,3,150000\n");
@@ -168,6 +183,7 @@ static void test_names_should_give_times_when_they_are_times() {
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_times_should_be_read_in_the_forms_that_people_have);
+  RUN_TEST(test_dates_should_be_read_as_times);
   RUN_TEST(test_columns_should_be_taken_by_their_header);
   RUN_TEST(test_tables_should_be_read_with_marks_quotes_and_blanks);
   RUN_TEST(test_columns_should_be_refused_by_name_when_they_are_not_known);

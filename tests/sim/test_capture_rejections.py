@@ -90,6 +90,10 @@ def walls(root):
     said = capture("a wall that is elsewhere", "--source", "sim:street", "--walls", root / "plan.json", "--start", f"pose:{root}/first.tum", "--frames", 120,
                    "--out", root / "out")
     expect("a wall that is elsewhere", said, "--walls: the pictures contradict wall 'north'")
+    (root / "plan.json").write_text((root / "plan.json").read_text().replace(str(corners), str([[1000 * x for x in corner] for corner in corners])))
+    said = capture("a wall in millimetres", "--source", "sim:street", "--walls", root / "plan.json", "--start", f"pose:{root}/first.tum", "--frames", 20,
+                   "--out", root / "out")
+    expect("a wall in millimetres", said, "wall 'north' measures 13416 m across", "write them times 0.001", last=False)
 
 
 def main():

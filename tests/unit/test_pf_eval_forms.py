@@ -177,6 +177,18 @@ class Evaluation(unittest.TestCase):
             self.require_same_path(rows_of([factor * self.t, self.p, self.R.as_quat()]), "truth.tum", f"as {name}")
         self.require_same_path(rows_of([np.arange(COUNT), self.p, self.R.as_quat()]), "truth.tum", "has frame numbers and no times; they are taken at 20 Hz")
 
+    def test_truth_in_millimetres_should_get_a_note_that_can_be_typed(self):
+        truth = self.path / "truth.tum"
+        rows = rows_of([self.t, 500 * self.p, self.R.as_quat()])
+        truth.write_text(rows)
+        (self.run / "report.json").write_text(json.dumps({"start": "target:desk.yaml"}))
+        _, said = self.evaluate(truth)
+        line = said.split("say the unit: ")[1].splitlines()[0]
+        truth.write_text(line + "\n" + rows)
+        result, said = self.evaluate(truth)
+        self.assertLess(result["ate_rmse_m"], 1e-5)
+        self.assertEqual(said, "")
+
     def test_a_run_without_times_should_be_refused_unless_it_has_the_rows_of_the_truth(self):
         truth = self.path / "truth.tum"
         truth.write_text(rows_of([self.t, self.p, self.R.as_quat()]))

@@ -137,7 +137,7 @@ typedef enum pf_calibration_form { PF_CALIBRATION_PLAIN = 0, PF_CALIBRATION_EURO
 int pf_write_calibration(const char* path, uint32_t form, const pf_camera_t* camera, double rate_hz,
                          char message[PF_SEQUENCE_MESSAGE]);
 
-/* A target file:
+/* A target file (with 0, message is a line on what is hardly meant, or empty):
  *   width, height [m], sigma [m] (optional, 0.0005), and where it is in W:
  *     q_WT: [w, x, y, z], p_WT: [x, y, z] [m] (both or neither)                     a dark rectangle
  *   points: [[x, y, z], ..] [m], first_pose: {position: [x, y, z], quaternion_wxyz: [w, x, y, z],
