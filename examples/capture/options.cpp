@@ -128,9 +128,9 @@ std::string check(const Options& options, const std::string& backend) {
   const std::string kind = options.source.substr(0, options.source.find(':'));
   const bool is_camera = platform::is_camera(options.source);
   if (options.source.find(':') == std::string::npos ||
-      (kind != "images" && kind != "euroc" && kind != "tum" && kind != "sim" && !is_camera)) {
+      (kind != "images" && kind != "euroc" && kind != "tum" && kind != "video" && kind != "sim" && !is_camera)) {
     return "source '" + options.source +
-           "': write v4l2:DEVICE, libcamera:NUMBER, images:DIR, euroc:DIR, tum:DIR or sim:NAME";
+           "': write v4l2:DEVICE, libcamera:NUMBER, video:FILE, images:DIR, euroc:DIR, tum:DIR or sim:NAME";
   }
   std::string wrong = check_format(options.format, kind);
   if (!wrong.empty()) {
@@ -259,7 +259,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.set_version_flag("--version", "pf-capture " PF_VERSION_TEXT);
   app.add_option(
       "--source", options.source,
-      "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, images:DIR, euroc:DIR, tum:DIR or sim:NAME");
+      "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, video:FILE, images:DIR, euroc:DIR, tum:DIR or "
+      "sim:NAME");
   app.add_flag("--list", options.list, "name the cameras and IMUs of this machine, and do nothing else");
   app.add_option("--calib", options.calibration,
                  "calibration file (Kalibr, EuRoC, ROS camera_info, ORB-SLAM3, KITTI or calib.yaml)")

@@ -440,7 +440,7 @@ bool spares_inputs(const Options& options, std::string& error) {
                                      options.imu_mount};
   for (const std::string* text : {&options.source, &options.start, &options.imu}) {
     const std::string kind = text->substr(0, text->find(':'));
-    for (const char* reads : {"images", "euroc", "tum", "target", "pose", "csv"}) {
+    for (const char* reads : {"images", "euroc", "tum", "video", "target", "pose", "csv"}) {
       if (kind == reads && kind.size() < text->size()) inputs.push_back(text->substr(kind.size() + 1));
     }
   }

@@ -30,6 +30,7 @@ class FolderSource : public Source {
     info_.truth_path = info.truth_path;
     info_.warning = info.warning;
     info_.imu_path = info.imu_path;
+    in_order_ = info.in_order != 0;
   }
 
   const SourceInfo& info() const override { return info_; }
@@ -71,11 +72,21 @@ class FolderSource : public Source {
   Read read(int64_t index, pf_image_t& image, std::string& error) override {
     char message[PF_SEQUENCE_MESSAGE];
     const int result = pf_read_sequence_frame(sequence_.get(), number(index), &image, message);
+    if (result == PF_SEQUENCE_END) {
+      notice_ = message;
+      return Read::kEnd;
+    }
     error = message;
     return result == 0 ? Read::kDone : result == PF_SEQUENCE_UNUSABLE_IMAGE ? Read::kUnusable : Read::kFailed;
   }
 
-  bool reads_in_any_order() const override { return true; }
+  bool reads_in_any_order() const override { return !in_order_; }
+
+  bool take_notice(std::string& line) override {
+    line.swap(notice_);
+    notice_.clear();
+    return !line.empty();
+  }
 
   std::string name(int64_t index) const override { return pf_get_sequence_frame_path(sequence_.get(), number(index)); }
 
@@ -83,6 +94,8 @@ class FolderSource : public Source {
   int64_t number(int64_t index) const { return kept_.empty() ? index : kept_[static_cast<size_t>(index)]; }
 
   std::vector<int64_t> kept_;
+  bool in_order_ = false;
+  std::string notice_;  ///< not told yet
   std::unique_ptr<pf_sequence_t, void (*)(pf_sequence_t*)> sequence_;
   SourceInfo info_;
 };

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "film_facts.h"
 #include "numbers.h"
 #include "refuse.h"
 
@@ -327,20 +328,41 @@ void open_euroc(Folder& folder, const std::string& calibration) {
          ": no mav0/cam0/data.csv inside; give the folder that holds mav0, or mav0 or cam0 itself");
 }
 
+/// A film lies beside anything, so no calibration is looked for.
+void open_film(Folder& folder, const std::string& calibration) {
+  const FilmFacts facts = probe_film(folder.root);
+  if (calibration.empty()) {
+    refuse(folder.root.string() + ": a film says nothing of its camera's lens; give its calibration with --calib FILE");
+  }
+  find_calibration(folder, calibration, {}, {});
+  for (const int64_t t_ns : facts.t_ns) {
+    folder.frames.push_back({t_ns, folder.root});
+  }
+  folder.is_film = true;
+  folder.film_rate_hz = facts.rate_hz;
+  folder.warning = facts.warning;
+}
+
 }  // namespace
 
 Folder open_folder(const std::string& source, const std::string& calibration) {
   const size_t colon = source.find(':');
   const std::string kind = source.substr(0, colon);
   const std::string where = colon == std::string::npos ? "" : source.substr(colon + 1);
-  if (kind != "images" && kind != "euroc" && kind != "tum") {
-    refuse("source '" + source + "': begins with none of images:, euroc:, tum:");
+  const bool is_film = kind == "video";
+  if (kind != "images" && kind != "euroc" && kind != "tum" && !is_film) {
+    refuse("source '" + source + "': begins with none of images:, euroc:, tum:, video:");
   }
   if (where.empty()) {
-    refuse("source '" + source + "': names no folder; write " + kind + ":DIR");
+    refuse("source '" + source + "': names no " +
+           (is_film ? "film; write video:FILE" : "folder; write " + kind + ":DIR"));
   }
   Folder folder{};
   folder.root = where;
+  if (is_film) {
+    open_film(folder, calibration);
+    return folder;
+  }
   require_folder(folder.root);
   if (kind == "images") {
     open_images(folder, calibration);

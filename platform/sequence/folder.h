@@ -23,9 +23,11 @@ struct Folder {
   Calibration calibration;
   std::vector<Frame> frames;
   std::string warning;
+  bool is_film = false;       ///< root is a file, and so is the path of every frame
+  double film_rate_hz = 0.0;  ///< 0: not known
 };
 
-/// Lists what "kind:DIR" names; opens no image. Throws ReadError.
+/// Lists what "kind:DIR" or "video:FILE" names; decodes no image. Throws ReadError.
 /// calibration  file to use, or "" for the one inside
 Folder open_folder(const std::string& source, const std::string& calibration);
 

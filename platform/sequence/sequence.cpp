@@ -11,6 +11,7 @@
 
 #include "calibration.h"
 #include "decode.h"
+#include "film.h"
 #include "folder.h"
 #include "imu.h"
 #include "imu_model.h"
@@ -24,6 +25,7 @@ struct pf_sequence {
   pf_decoded_t image{};
   std::string first_name;  ///< of the first image that was decoded, "" before
   int32_t first_channels = 0, first_bits = 0;
+  std::unique_ptr<pf::sequence::Film> film;  ///< null: a folder of images
 
   pf_sequence() = default;
   pf_sequence(const pf_sequence&) = delete;
@@ -97,6 +99,9 @@ void require_type(pf_sequence& sequence, const pf::sequence::Frame& frame) {
 
 /// Size of the first image that can be used.
 pf::sequence::ImageSize size_of_images(pf_sequence& sequence) {
+  if (sequence.film != nullptr) {
+    return sequence.film->size();
+  }
   std::string first_error;
   for (const pf::sequence::Frame& frame : sequence.folder.frames) {
     try {
@@ -131,6 +136,9 @@ std::string doubt_of(const pf_decoded_t& image, const std::string& name) {
 
 /// A warning about the first image that can be read; what cannot is told when it is its turn.
 std::string doubt_of_first(pf_sequence& sequence) {
+  if (sequence.film != nullptr) {
+    return "";
+  }
   try {
     const pf::sequence::Frame& frame = sequence.folder.frames.front();
     decode(sequence, frame);
@@ -138,6 +146,33 @@ std::string doubt_of_first(pf_sequence& sequence) {
   } catch (const pf::sequence::ImageError&) {
     return "";
   }
+}
+
+/// Refuses an image of another size than the calibration's.
+void require_size(const pf_sequence& sequence, const pf::sequence::Frame& frame, int32_t width, int32_t height) {
+  const pf_camera_t& camera = sequence.folder.calibration.camera;
+  if (width == camera.width && height == camera.height) {
+    return;
+  }
+  const bool calibrated = !sequence.calibration_path.empty();
+  refuse(frame.path.string() + ": is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, but the " +
+         (calibrated ? "calibration " + sequence.calibration_path : "first image") + " is for " +
+         std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+         (calibrated ? "; use the calibration of these images" : "; use images of one size"));
+}
+
+/// A frame of a film. Throws ReadError; false: it ended before, and message says where.
+bool read_film_frame(pf_sequence& sequence, int64_t index, pf_image_t& image, char message[PF_SEQUENCE_MESSAGE]) {
+  const unsigned char* pixels = nullptr;
+  int64_t t_ns = 0;
+  if (!sequence.film->read(index, pixels, t_ns)) {
+    put(message, sequence.film->how_it_ended().c_str());
+    return false;
+  }
+  const pf::sequence::ImageSize size = sequence.film->size();
+  require_size(sequence, sequence.folder.frames.front(), size.width, size.height);
+  image = pf_image_t{pixels, size.width, size.height, size.width, t_ns};
+  return true;
 }
 
 /// A camera of which only the size is known.
@@ -172,6 +207,9 @@ int pf_open_sequence(const char* source, const char* calibration, pf_sequence_t*
     opened->calibration_path = opened->folder.calibration_path.string();
     opened->truth_path = opened->folder.truth_path.string();
     opened->imu_path = opened->folder.imu_path.string();
+    if (opened->folder.is_film) {
+      opened->film = std::make_unique<pf::sequence::Film>(opened->folder.root);
+    }
     if (calibration != nullptr && std::string(calibration) == PF_SEQUENCE_UNCALIBRATED) {
       opened->folder.calibration.camera = uncalibrated_camera(size_of_images(*opened));
     } else if (opened->folder.calibration.camera.width == 0) {
@@ -199,11 +237,12 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
   info->count = static_cast<int64_t>(folder.frames.size());
   info->first_t_ns = folder.frames.front().t_ns;
   info->last_t_ns = folder.frames.back().t_ns;
-  info->rate_hz = folder.calibration.rate_hz;
+  info->rate_hz = folder.is_film ? folder.film_rate_hz : folder.calibration.rate_hz;
   if (!(info->rate_hz > 0.0)) {
     const double seconds = 1e-9 * static_cast<double>(info->last_t_ns - info->first_t_ns);
     info->rate_hz = seconds > 0.0 ? static_cast<double>(info->count - 1) / seconds : 30.0;
   }
+  info->in_order = folder.is_film ? 1 : 0;
   info->folder = sequence->root.c_str();
   info->calibration_path = sequence->calibration_path.c_str();
   info->calibration_form = folder.calibration.form;
@@ -214,7 +253,8 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
 
 int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,
                            char message[PF_SEQUENCE_MESSAGE]) {
-  return guarded(message, [&] {
+  bool ended = false;
+  const int result = guarded(message, [&] {
     require(sequence, "sequence");
     require(image, "image");
     const pf::sequence::Folder& folder = sequence->folder;
@@ -222,22 +262,18 @@ int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* i
       refuse(sequence->root + ": frame " + std::to_string(index) + " is not one of its " +
              std::to_string(folder.frames.size()));
     }
+    if (sequence->film != nullptr) {
+      ended = !read_film_frame(*sequence, index, *image, message);
+      return;
+    }
     const pf::sequence::Frame& frame = folder.frames[static_cast<size_t>(index)];
     decode(*sequence, frame);
     require_type(*sequence, frame);
     const pf_decoded_t& decoded = sequence->image;
-    const pf_camera_t& camera = folder.calibration.camera;
-    if (decoded.width != camera.width || decoded.height != camera.height) {
-      const std::string expected =
-          sequence->calibration_path.empty() ? "first image" : "calibration " + sequence->calibration_path;
-      refuse(
-          frame.path.string() + ": is " + std::to_string(decoded.width) + " x " + std::to_string(decoded.height) +
-          " pixels, but the " + expected + " is for " + std::to_string(camera.width) + " x " +
-          std::to_string(camera.height) +
-          (sequence->calibration_path.empty() ? "; use images of one size" : "; use the calibration of these images"));
-    }
+    require_size(*sequence, frame, decoded.width, decoded.height);
     *image = pf_image_t{decoded.pixels, decoded.width, decoded.height, decoded.width, frame.t_ns};
   });
+  return ended ? PF_SEQUENCE_END : result;
 }
 
 const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t index) {

@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
   std::string source;
   std::int64_t frames = INT64_MAX;
   bool start_auto = false;
-  app.add_option("source", source, "sim:NAME, images:DIR, euroc:DIR or tum:DIR")->required();
+  app.add_option("source", source, "sim:NAME, video:FILE, images:DIR, euroc:DIR or tum:DIR")->required();
   app.add_option("--frames", frames, "at most so many");
   app.add_flag("--auto", start_auto, "start without the target");
   int code = 0;
