@@ -50,8 +50,10 @@ void add_camera_options(CLI::App& app, Options& options) {
       ->group(group);
   app.add_flag("--realtime", options.realtime, "play a folder or scene at its own pace, as a camera would")
       ->group(group);
-  app.add_option("--format", options.format,
-                 "any, GREY, NV12, YUYV, Y16 or MJPEG; of libcamera also YUV420, RGB888 or BGR888")
+  app.add_option(
+         "--format", options.format,
+         "any, GREY, NV12, YUYV, UYVY, YU12, NV21, Y10, Y12, Y16, MJPEG or others (a wrong one names them all); of\n"
+         "libcamera also YUV420, RGB888 or BGR888")
       ->capture_default_str()
       ->group(group);
   app.add_option("--rate", options.rate_hz, "frames per second to ask the camera for")
@@ -82,7 +84,9 @@ int refuse(const std::string& line) {
 }
 
 std::string check_format(const std::string& format, const std::string& kind) {
-  const std::vector<std::string> by_v4l2 = {"any", "GREY", "NV12", "YUYV", "Y16", "MJPEG"};
+  const std::vector<std::string> by_v4l2 = {"any",  "GREY", "NV12", "NV21", "YU12", "YV12", "NV16",
+                                            "NV61", "422P", "YUYV", "UYVY", "YVYU", "VYUY", "Y10P",
+                                            "Y10",  "Y12",  "Y14",  "Y16",  "MJPEG"};
   const std::vector<std::string> by_libcamera = {"any", "GREY", "YUV420", "NV12", "YUYV", "RGB888", "BGR888"};
   const std::vector<std::string>& known = kind == "libcamera" ? by_libcamera : by_v4l2;
   if (std::find(known.begin(), known.end(), format) != known.end()) {
