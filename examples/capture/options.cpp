@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "checked_options.h"
+#include "focal_search.h"
 #include "imu.h"
 #include "realtime.h"
 
@@ -139,6 +140,12 @@ std::string check(const Options& options, const std::string& backend) {
   std::string wrong = check_format(options.format, kind);
   if (!wrong.empty()) {
     return wrong;
+  }
+  if (options.fov_deg > 0.0 && (is_camera || kind == "sim")) {
+    return "--fov is for films and folders: a camera needs its calibration, and a scene has its own";
+  }
+  if (options.fov_deg > 0.0 && !options.calibration.empty()) {
+    return "--fov and --calib: a calibration says the focal length; leave one of them away";
   }
   if (options.every_frame && !is_camera && !options.realtime) {
     return "--every-frame is for cameras and --realtime; without these every frame is tracked anyway";
@@ -269,6 +276,11 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--calib", options.calibration,
                  "calibration file (Kalibr, EuRoC, ROS camera_info, ORB-SLAM3, KITTI or calib.yaml)")
       ->check(not_empty());
+  app.add_option("--fov", options.fov_deg,
+                 "of a film or folder without a calibration: degrees across, to begin with (of a film 65); focal "
+                 "length and\n"
+                 "distortion are then estimated, with --backend window where it is not given")
+      ->check(number_in(10.0, 150.0));
   app.add_option("--readout", options.readout_s, "rolling shutter: seconds from the first row to the last; 0: global")
       ->check(number_in(0.0, 0.2));
   app.add_option("--start", options.start,
@@ -317,8 +329,10 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
   app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame; patches.csv likewise");
   app.add_flag("--quiet", options.quiet, "no progress line");
-  app.add_option("--backend", backend, "filter: a filter over pose and map; window: keyframes and bundle adjustment")
-      ->capture_default_str();
+  const CLI::Option* given_backend =
+      app.add_option("--backend", backend,
+                     "filter: a filter over pose and map; window: keyframes and bundle adjustment")
+          ->capture_default_str();
   const CLI::Option* seed = app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
   app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
       ->check(number_in(0.0, 1000.0));
@@ -387,6 +401,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     code = refuse("--no-points follows patches and no features: leave --patches 0 and --features-in-view away");
     return Parsed::kExit;
   }
+  if (given_backend->count() == 0 && is_uncalibrated(options)) backend = "window";
   const auto set = kernel_names.find(kernels);
   std::string wrong = check(options, backend);
   if (wrong.empty() && seed->count() > 0 && options.source.rfind("sim:", 0) != 0) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera.h"
+#include "focal_search.h"
 #include "imu.h"
 #include "live_source.h"
 
@@ -21,10 +22,12 @@ namespace {
 
 class FolderSource : public Source {
  public:
-  explicit FolderSource(pf_sequence_t* sequence) : sequence_(sequence, pf_close_sequence) {
+  /// guess  of the camera, where there is no calibration
+  FolderSource(pf_sequence_t* sequence, const std::optional<pf_camera_t>& guess)
+      : sequence_(sequence, pf_close_sequence) {
     pf_sequence_info_t info{};
     pf_get_sequence_info(sequence, &info);
-    info_.camera = info.camera;
+    info_.camera = guess.value_or(info.camera);
     info_.count = info.count;
     info_.rate_hz = info.rate_hz;
     info_.truth_path = info.truth_path;
@@ -110,12 +113,14 @@ std::unique_ptr<Source> open_stored(const Options& options, std::string& error) 
   }
   char message[PF_SEQUENCE_MESSAGE];
   pf_sequence_t* sequence = nullptr;
-  const char* calibration = options.calibration.empty() ? nullptr : options.calibration.c_str();
+  const char* calibration = is_uncalibrated(options)      ? PF_SEQUENCE_UNCALIBRATED
+                            : options.calibration.empty() ? nullptr
+                                                          : options.calibration.c_str();
   if (pf_open_sequence(options.source.c_str(), calibration, &sequence, message) != 0) {
     error = message;
     return nullptr;
   }
-  auto folder = std::make_unique<FolderSource>(sequence);
+  auto folder = std::make_unique<FolderSource>(sequence, options.guess);
   if (options.as_recorded && !folder->keep_tracked(options.source, error)) {
     return nullptr;
   }

@@ -332,7 +332,9 @@ void open_euroc(Folder& folder, const std::string& calibration) {
 void open_film(Folder& folder, const std::string& calibration) {
   const FilmFacts facts = probe_film(folder.root);
   if (calibration.empty()) {
-    refuse(folder.root.string() + ": a film says nothing of its camera's lens; give its calibration with --calib FILE");
+    refuse(folder.root.string() +
+           ": a film says nothing of its camera's lens; give its calibration with --calib FILE (pf-capture can do "
+           "without)");
   }
   find_calibration(folder, calibration, {}, {});
   for (const int64_t t_ns : facts.t_ns) {

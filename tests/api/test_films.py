@@ -100,7 +100,6 @@ def refusals(root, film, folder, calibration):
     refused("no such film", f"video:{root}/none.mp4", ["none.mp4", "no such film"], calibration, *out)
     refused("no name", "video:", ["write video:FILE"], calibration, *out)
     refused("no film", f"video:{calibration}", [calibration.name, "finds no film"], calibration, *out)
-    refused("no calibration", f"video:{film}", ["--calib FILE"], None, *out)
     (root / "empty.mp4").write_bytes(b"")
     refused("an empty file", f"video:{root}/empty.mp4", ["empty.mp4", "0 bytes"], calibration, *out)
     if not hasattr(os, "geteuid") or os.geteuid() != 0:

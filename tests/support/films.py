@@ -30,9 +30,9 @@ def passthrough():
     return ("-fps_mode" if "-fps_mode" in text else "-vsync", "passthrough")
 
 
-def make_folder(root):
+def make_folder(root, frames=FRAMES):
     """images:FOLDER of a rendered scene, with its calibration."""
-    subprocess.run([str(word) for word in (BIN / "pf-capture", "--source", "sim:desk", "--frames", FRAMES, "--record", root / "record",
+    subprocess.run([str(word) for word in (BIN / "pf-capture", "--source", "sim:desk", "--frames", frames, "--record", root / "record",
                                            "--out", root / "made", "--headless", "--no-film", "--quiet")],
                    check=True, timeout=120, stdout=subprocess.DEVNULL)
     folder = root / "folder"
