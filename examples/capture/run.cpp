@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "focal_search.h"
 #include "imu_feed.h"
 #include "map_shape.h"
 #include "outputs.h"
@@ -61,7 +62,9 @@ std::string short_name(const std::string& source) {
 /// A run from the first frame to the last: one step per frame, and what is kept between them.
 class Run {
  public:
-  Run(const Options& options, Source& source) : options_(options), source_(source), progress_(options.quiet) {}
+  /// guess  of the focal length; null where the source has a calibration
+  Run(const Options& options, Source& source, const FocalGuess* guess)
+      : options_(options), source_(source), guess_(guess), progress_(options.quiet) {}
 
   int go();
 
@@ -79,9 +82,11 @@ class Run {
   std::string why_nothing_was_tracked() const;
   std::vector<Rejection> find_rejections() const;
   static void tell_rejections(const std::vector<Rejection>& rejections);
+  void tell_focal();
 
   const Options& options_;
   Source& source_;
+  const FocalGuess* guess_;
   Session session_;
   Outputs outputs_;
   Statistics statistics_;
@@ -385,6 +390,28 @@ std::string Run::why_nothing_was_tracked() const {
   return "none of the " + frames + " frames was tracked; the camera has to move sideways past something with texture";
 }
 
+/// The last words on a source without a calibration: what was found, and where it was written.
+void Run::tell_focal() {
+  const double sigma_px = guess_ != nullptr ? focal_sigma_px(session_.slam(), *guess_) : -1.0;
+  if (sigma_px < 0.0) {
+    return;
+  }
+  pf_camera_t camera{};
+  pf_get_camera(session_.slam(), &camera, nullptr);
+  std::printf("%s\n", describe_focal(camera, sigma_px).c_str());
+  camera.sigma_focal = std::min(sigma_px / camera.fx, 0.2);
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  std::string error;
+  const std::string path = outputs_.path("calib_found.yaml");
+  if (!outputs_.claim("calib_found.yaml", error)) {
+    note(error);
+  } else if (pf_write_calibration(path.c_str(), PF_CALIBRATION_PLAIN, &camera, 0.0, message) != 0) {
+    note(message);
+  } else {
+    std::printf("the camera as it was found: %s, for --calib\n", path.c_str());
+  }
+}
+
 int Run::finish() {
   progress_.end();
   tell_notices();
@@ -450,6 +477,7 @@ int Run::finish() {
   }
   std::printf("%s\nwritten to %s%s\n", statistics_.summary(session_).c_str(), options_.out.c_str(),
               filming ? " (overlay.mp4 is the film)" : "");
+  tell_focal();
   std::fflush(stdout);
   tell_rejections(rejections);
   return lost.empty() ? kExitDone : fail(lost + (rejected.empty() ? "" : " (" + rejected + ")"));
@@ -460,7 +488,9 @@ std::vector<Rejection> Run::find_rejections() const {
   if (done_any_) {
     imu_.add_rejections(session_.slam(), rejections);
     session_.plan().add_rejections(session_.slam(), rejections);
-    add_rejected_calibration(session_.slam(), session_.config().camera, rejections);
+    if (guess_ == nullptr) {
+      add_rejected_calibration(session_.slam(), session_.config().camera, rejections);
+    }
   }
   return rejections;
 }
@@ -488,7 +518,7 @@ bool spares_inputs(const Options& options, std::string& error) {
                                      options.imu_mount};
   for (const std::string* text : {&options.source, &options.start, &options.imu}) {
     const std::string kind = text->substr(0, text->find(':'));
-    for (const char* reads : {"images", "euroc", "tum", "target", "pose", "csv"}) {
+    for (const char* reads : {"images", "euroc", "tum", "video", "target", "pose", "csv"}) {
       if (kind == reads && kind.size() < text->size()) inputs.push_back(without_pattern(text->substr(kind.size() + 1)));
     }
   }
@@ -519,11 +549,22 @@ int run(const Options& options) {
   if (!spares_inputs(options, error)) {
     return fail(error);
   }
-  const std::unique_ptr<Source> source = open_source(options, error);
+  FocalGuess guess;
+  Options chosen = options;
+  const bool guesses = is_uncalibrated(options);
+  if (guesses) {
+    if (!search_focal(
+            options, [] { return g_interrupted != 0; }, guess, error)) {
+      return fail(error);
+    }
+    note(describe(guess));
+    chosen.guess = guess.camera;
+  }
+  const std::unique_ptr<Source> source = open_source(chosen, error);
   if (source == nullptr) {
     return fail(error, is_calibration_wrong(options) ? kExitUsage : kExitRun);
   }
-  return Run(options, *source).go();
+  return Run(chosen, *source, guesses ? &guess : nullptr).go();
 }
 
 }  // namespace pf::capture

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 
+#include "film_facts.h"
 #include "refuse.h"
 
 namespace pf::sequence {
@@ -25,8 +26,9 @@ void require_folder(const fs::path& path) {
     refuse(path.string() + ": no such folder; check the path after the colon of the source");
   }
   if (!fs::is_directory(path, error)) {
-    refuse(path.string() +
-           ": is not a folder; give the folder that holds the sequence (of a film: ffmpeg -i FILM FOLDER/%06d.png)");
+    refuse(path.string() + (looks_like_film(path) ? ": is a film; write video:" + path.string()
+                                                  : ": is not a folder; give the folder that holds the sequence (of a "
+                                                    "film write video:FILE)"));
   }
   fs::directory_iterator entries(path, error);
   if (error) {

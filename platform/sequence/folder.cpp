@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "film_facts.h"
 #include "find_calibration.h"
 #include "frame_names.h"
 #include "image_folder.h"
@@ -237,6 +238,26 @@ void open_euroc(Folder& folder, const std::string& calibration) {
          ": no mav0/cam0/data.csv inside; give the folder that holds mav0, or mav0 or cam0 itself");
 }
 
+/// A film lies beside anything, so no calibration is looked for.
+void open_film(Folder& folder, const std::string& calibration) {
+  const FilmFacts facts = probe_film(folder.root);
+  if (calibration.empty()) {
+    refuse(folder.root.string() +
+           ": a film says nothing of its camera's lens; give its calibration with --calib FILE (pf-capture can do "
+           "without)");
+  }
+  const fs::path beside = folder.root.parent_path();
+  set_calibration(folder, calibration, beside, beside, {}, false);
+  for (const int64_t t_ns : facts.t_ns) {
+    folder.frames.push_back({t_ns, folder.root});
+  }
+  folder.is_film = true;
+  folder.film_rate_hz = facts.rate_hz;
+  if (!facts.warning.empty()) {
+    folder.notes.push_back(facts.warning);
+  }
+}
+
 }  // namespace
 
 void read_calibration_of(Folder& folder) {
@@ -251,15 +272,21 @@ Folder open_folder(const std::string& source, const std::string& calibration, co
   const size_t colon = source.find(':');
   const std::string kind = source.substr(0, colon);
   const std::string where = colon == std::string::npos ? "" : source.substr(colon + 1);
-  if (kind != "images" && kind != "euroc" && kind != "tum") {
-    refuse("source '" + source + "': begins with none of images:, euroc:, tum:");
+  const bool is_film = kind == "video";
+  if (kind != "images" && kind != "euroc" && kind != "tum" && !is_film) {
+    refuse("source '" + source + "': begins with none of images:, euroc:, tum:, video:");
   }
   if (where.empty()) {
-    refuse("source '" + source + "': names no folder; write " + kind + ":DIR");
+    refuse("source '" + source + "': names no " +
+           (is_film ? "film; write video:FILE" : "folder; write " + kind + ":DIR"));
   }
   Folder folder{};
   folder.root = where;
   folder.asked.camera = camera;
+  if (is_film) {
+    open_film(folder, calibration);
+    return folder;
+  }
   std::string pattern;
   if (kind == "images" && !is_folder(folder.root) && folder.root.filename().string().find('*') != std::string::npos) {
     pattern = folder.root.filename().string();

@@ -12,6 +12,7 @@
 
 #include "calibration.h"
 #include "decode.h"
+#include "film.h"
 #include "folder.h"
 #include "imu.h"
 #include "imu_model.h"
@@ -29,7 +30,8 @@ struct pf_sequence {
   std::string first_name;  ///< of the first image that was decoded, "" before
   int32_t first_channels = 0, first_bits = 0;
   pf::sequence::Levels levels;
-  bool most_have_size = false;  ///< a single image of another size is left out
+  bool most_have_size = false;               ///< a single image of another size is left out
+  std::unique_ptr<pf::sequence::Film> film;  ///< null: a folder of images
 
   pf_sequence() = default;
   pf_sequence(const pf_sequence&) = delete;
@@ -123,6 +125,9 @@ void require_type(pf_sequence& sequence, const pf::sequence::Frame& frame) {
 
 /// Size of the first image that can be used.
 pf::sequence::ImageSize size_of_images(pf_sequence& sequence) {
+  if (sequence.film != nullptr) {
+    return sequence.film->size();
+  }
   std::string first_error;
   for (const pf::sequence::Frame& frame : sequence.folder.frames) {
     try {
@@ -157,6 +162,9 @@ bool has_size_of(const pf_decoded_t& image, const pf_camera_t& camera) {
 /// read is told when it is its turn.
 void look_at_some(pf_sequence& sequence, std::vector<std::string>& notes) {
   constexpr size_t kLooks = 5;
+  if (sequence.film != nullptr) {
+    return;
+  }
   const std::vector<pf::sequence::Frame>& frames = sequence.folder.frames;
   std::vector<uint32_t> histogram(pf::sequence::kNumbersOf16Bits, 0);
   sequence.image.histogram = histogram.data();
@@ -192,6 +200,33 @@ void follow_white(pf_sequence& sequence, const pf::sequence::Frame& frame) {
     sequence.image.white = pf::sequence::white_for(sequence.image.brightest);
     decode(sequence, frame);
   }
+}
+
+/// Refuses an image of another size than the calibration's.
+void require_size(const pf_sequence& sequence, const pf::sequence::Frame& frame, int32_t width, int32_t height) {
+  const pf_camera_t& camera = sequence.folder.calibration.camera;
+  if (width == camera.width && height == camera.height) {
+    return;
+  }
+  const bool calibrated = !sequence.calibration_path.empty();
+  refuse(frame.path.string() + ": is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, but the " +
+         (calibrated ? "calibration " + sequence.calibration_path : "first image") + " is for " +
+         std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+         (calibrated ? "; use the calibration of these images" : "; use images of one size"));
+}
+
+/// A frame of a film. Throws ReadError; false: it ended before, and message says where.
+bool read_film_frame(pf_sequence& sequence, int64_t index, pf_image_t& image, char message[PF_SEQUENCE_MESSAGE]) {
+  const unsigned char* pixels = nullptr;
+  int64_t t_ns = 0;
+  if (!sequence.film->read(index, pixels, t_ns)) {
+    put(message, sequence.film->how_it_ended().c_str());
+    return false;
+  }
+  const pf::sequence::ImageSize size = sequence.film->size();
+  require_size(sequence, sequence.folder.frames.front(), size.width, size.height);
+  image = pf_image_t{pixels, size.width, size.height, size.width, t_ns};
+  return true;
 }
 
 /// A camera of which only the size is known.
@@ -247,6 +282,9 @@ int pf_open_sequence_of(const char* source, const char* calibration, const char*
     opened->calibration_path = folder.calibration_path.string();
     opened->truth_path = folder.truth_path.string();
     opened->imu_path = folder.imu_path.string();
+    if (folder.is_film) {
+      opened->film = std::make_unique<pf::sequence::Film>(folder.root);
+    }
     if (or_empty(calibration) == PF_SEQUENCE_UNCALIBRATED) {
       folder.calibration.camera = uncalibrated_camera(size_of_images(*opened));
     } else if (folder.calibration.camera.width == 0) {
@@ -274,11 +312,12 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
   info->count = static_cast<int64_t>(folder.frames.size());
   info->first_t_ns = folder.frames.front().t_ns;
   info->last_t_ns = folder.frames.back().t_ns;
-  info->rate_hz = folder.calibration.rate_hz;
+  info->rate_hz = folder.is_film ? folder.film_rate_hz : folder.calibration.rate_hz;
   if (!(info->rate_hz > 0.0)) {
     const double seconds = 1e-9 * static_cast<double>(info->last_t_ns - info->first_t_ns);
     info->rate_hz = seconds > 0.0 ? static_cast<double>(info->count - 1) / seconds : 30.0;
   }
+  info->in_order = folder.is_film ? 1 : 0;
   info->folder = sequence->root.c_str();
   info->calibration_path = sequence->calibration_path.c_str();
   info->calibration_form = folder.calibration.form;
@@ -290,13 +329,18 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
 
 int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,
                            char message[PF_SEQUENCE_MESSAGE]) {
-  return guarded(message, [&] {
+  bool ended = false;
+  const int result = guarded(message, [&] {
     require(sequence, "sequence");
     require(image, "image");
     const pf::sequence::Folder& folder = sequence->folder;
     if (index < 0 || index >= static_cast<int64_t>(folder.frames.size())) {
       refuse(sequence->root + ": frame " + std::to_string(index) + " is not one of its " +
              std::to_string(folder.frames.size()));
+    }
+    if (sequence->film != nullptr) {
+      ended = !read_film_frame(*sequence, index, *image, message);
+      return;
     }
     const pf::sequence::Frame& frame = folder.frames[static_cast<size_t>(index)];
     decode(*sequence, frame);
@@ -309,17 +353,10 @@ int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* i
     }
     require_type(*sequence, frame);
     follow_white(*sequence, frame);
-    if (!has_size_of(decoded, camera)) {
-      const std::string expected =
-          sequence->calibration_path.empty() ? "first image" : "calibration " + sequence->calibration_path;
-      refuse(
-          frame.path.string() + ": is " + std::to_string(decoded.width) + " x " + std::to_string(decoded.height) +
-          " pixels, but the " + expected + " is for " + std::to_string(camera.width) + " x " +
-          std::to_string(camera.height) +
-          (sequence->calibration_path.empty() ? "; use images of one size" : "; use the calibration of these images"));
-    }
+    require_size(*sequence, frame, decoded.width, decoded.height);
     *image = pf_image_t{decoded.pixels, decoded.width, decoded.height, decoded.width, frame.t_ns};
   });
+  return ended ? PF_SEQUENCE_END : result;
 }
 
 const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t index) {

@@ -233,7 +233,7 @@ def test_sources(root):
     out = ["--out", root / "sources"]
     expect("missing folder", 1, ["nowhere", "no such folder"], "--source", f"images:{root}/nowhere", *out)
     (root / "file").write_text("x")
-    expect("file for a folder", 1, ["not a folder", "ffmpeg"], "--source", f"images:{root}/file", *out)
+    expect("file for a folder", 1, ["not a folder", "video:FILE"], "--source", f"images:{root}/file", *out)
     (root / "empty").mkdir()
     expect("no calibration", 1, ["calibration", "--calib"], "--source", f"images:{root}/empty", *out)
     (root / "empty" / "calib.yaml").write_text(CALIBRATION)

@@ -57,6 +57,10 @@ bool search_sequence(const Options& options, Search& search, std::string& error)
       std::fprintf(stderr, "pf-calibrate: note: left out: %s\n", message);
       continue;
     }
+    if (result == PF_SEQUENCE_END) {
+      std::fprintf(stderr, "pf-calibrate: note: %s\n", message);
+      break;
+    }
     if (result != 0) {
       error = message;
       return false;

@@ -157,7 +157,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "pf-digest " PF_VERSION_TEXT);
   std::string source, backend = "filter";
   Options options;
-  app.add_option("source", source, "sim:NAME, images:DIR, euroc:DIR or tum:DIR")->required();
+  app.add_option("source", source, "sim:NAME, video:FILE, images:DIR, euroc:DIR or tum:DIR")->required();
   app.add_option("--frames", options.frames, "at most so many");
   app.add_flag("--auto", options.start_auto, "start without the target");
   app.add_option("--backend", backend, "filter or window")->check(CLI::IsMember({"filter", "window"}));

@@ -1,4 +1,4 @@
-/* Image sequences on disk, their calibration and their targets, as the structures of planefold.h.
+/* Image sequences and films on disk, their calibration and their targets, as the structures of planefold.h.
  *
  *   char message[PF_SEQUENCE_MESSAGE];
  *   pf_sequence_t *sequence;
@@ -9,7 +9,7 @@
  *   pf_close_sequence(sequence);
  *
  * Every function that can fail returns 0, or -1 with one line of plain text in message that names the file, says what is
- * wrong with it and what to do (pf_open_sequence and pf_read_sequence_frame know one more value each). Files are not trusted: whatever
+ * wrong with it and what to do (pf_open_sequence and pf_read_sequence_frame know more values). Files are not trusted: whatever
  * they hold, the answer is one of the two. What is to be noted of a calibration comes with 0, each note on a line of its own. This is the
  * desktop side: it uses the heap and the file system. A sequence belongs to one thread at a time.
  */
@@ -31,10 +31,12 @@ typedef struct pf_sequence pf_sequence_t;
 
 typedef struct pf_sequence_info {
   pf_camera_t camera;
-  int64_t count; /* frames */
+  int64_t count; /* frames; of a film at most */
   int64_t first_t_ns, last_t_ns;
-  double rate_hz;     /* as the calibration says, or else from the times */
-  const char* folder; /* these seven are valid until the sequence is closed; "" where there is none */
+  double rate_hz;   /* as the calibration says, or else from the times */
+  int32_t in_order; /* 1: a film. Frames are read in their order; to go back costs all that came before */
+  const char*
+      folder; /* of a film its file. These seven are valid until the sequence is closed; "" where there is none */
   const char* calibration_path;
   const char* calibration_form; /* as in the table at pf_read_calibration, or "none" */
   const char* camera_name;      /* of the camera that was taken, where the calibration names its cameras: "cam0" */
@@ -47,6 +49,9 @@ typedef struct pf_sequence_info {
 #define PF_SEQUENCE_WRONG_CALIBRATION (-3)
 
 /* Sources:
+ *   video:FILE  a film in any form that ffmpeg reads; the programs ffprobe and ffmpeg must be installed. Its frames become grey as ffmpeg
+ *               shows them (rotated and cropped where the film says so), at the film's own times; none is dropped or repeated. The
+ *               calibration is of the pictures as shown, and is always given.
  *   images:DIR  images/ (or KITTI's image_0/ or image_2/, the images themselves, or the only folder inside that holds images), times.txt
  *               (or timestamps.txt, or either as .csv), calib.yaml or KITTI's calib.txt. Without a table, times in the names are taken
  *               (12.05.png, 1403636579763555584.png), or else the names in natural order at the calibration's rate_hz, or 30 Hz, with a
@@ -77,6 +82,8 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
 
 /* What pf_read_sequence_frame returns where this image alone cannot be used: it is missing, empty or damaged. The next may be read. */
 #define PF_SEQUENCE_UNUSABLE_IMAGE (-2)
+/* Likewise where a film has fewer frames than its file lists: there is no frame of this number, and message says where it ended. */
+#define PF_SEQUENCE_END (-4)
 
 /* Frame number index of 0 .. count-1. The pixels are valid until the next call with this sequence. An image of another
  * size than the calibration's is an error (but a single one among images of the right size is unusable), and so is one
