@@ -1,0 +1,70 @@
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <vector>
+
+#include "arrays.h"
+#include "context.h"
+#include "docs.h"
+
+namespace pf::python {
+
+namespace {
+
+using Times = nb::ndarray<const int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Rows = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+
+pf_status_t push_samples(Context& self, const std::vector<pf_imu_sample_t>& samples) {
+  return self.run("push_imu",
+                  [&](pf_slam_t* context) { return pf_push_imu(context, samples.data(), samples.size()); });
+}
+
+pf_status_t push_arrays(Context& self, const Times& t_ns, const Rows& gyro, const Rows& accel) {
+  if (gyro.shape(0) != t_ns.shape(0) || accel.shape(0) != t_ns.shape(0)) {
+    throw nb::value_error("push_imu: t_ns, gyro and accel have different numbers of rows");
+  }
+  std::vector<pf_imu_sample_t> samples(t_ns.shape(0));
+  for (size_t i = 0; i < samples.size(); ++i) {
+    samples[i].t_ns = t_ns(i);
+    for (size_t k = 0; k < 3; ++k) {
+      samples[i].gyro[k] = gyro(i, k);
+      samples[i].accel[k] = accel(i, k);
+    }
+  }
+  return push_samples(self, samples);
+}
+
+}  // namespace
+
+void add_inputs(nb::class_<Context>& slam) {
+  slam.def(
+      "push_frame",
+      [](Context& self, const AnyArray& image, int64_t t_ns) {
+        const pf_image_t pixels = to_image(image, t_ns);
+        return self.run_released("push_frame", [&](pf_slam_t* context) { return pf_push_frame(context, &pixels); });
+      },
+      nb::arg("image").noconvert(), nb::arg("t_ns"),
+      nb::sig("def push_frame(self, image: numpy.typing.NDArray[numpy.uint8], t_ns: int) -> Status"),
+      doc::pf_push_frame);
+  slam.def(
+      "push_observations",
+      [](Context& self, int64_t t_ns, const std::vector<pf_observation_t>& observations) {
+        return self.run_released("push_observations", [&](pf_slam_t* context) {
+          return pf_push_observations(context, t_ns, observations.data(), observations.size());
+        });
+      },
+      nb::arg("t_ns"), nb::arg("observations"), doc::pf_push_observations);
+  slam.def(
+      "push_control",
+      [](Context& self, const ArrayLike& dv_C, const ArrayLike& dw_C) {
+        const auto dv = numbers<3>(dv_C, "dv_C"), dw = numbers<3>(dw_C, "dw_C");
+        return self.run("push_control",
+                        [&](pf_slam_t* context) { return pf_push_control(context, dv.data(), dw.data()); });
+      },
+      nb::arg("dv_C"), nb::arg("dw_C"), doc::pf_push_control);
+  slam.def("push_imu", push_samples, nb::arg("samples"), doc::pf_push_imu);
+  slam.def("push_imu", push_arrays, nb::arg("t_ns"), nb::arg("gyro"), nb::arg("accel"),
+           "The same from arrays: times (n,), angular velocities and specific forces (n, 3).");
+}
+
+}  // namespace pf::python
