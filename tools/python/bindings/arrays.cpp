@@ -7,6 +7,8 @@ namespace pf::python {
 
 namespace {
 
+using AnyArray = nb::ndarray<nb::ro, nb::device::cpu>;
+
 std::string shape_text(const AnyArray& array) {
   std::string text;
   for (size_t i = 0; i < array.ndim(); ++i) text += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
@@ -47,7 +49,20 @@ Matrix to_matrix(const double* values, size_t rows, size_t columns) {
   return Matrix(copy, {rows, columns}, owner_of(copy));
 }
 
-pf_image_t to_image(const AnyArray& pixels, int64_t t_ns) {
+int64_t to_time(nb::handle t_ns) {
+  int64_t time = 0;
+  if (!nb::try_cast<int64_t>(t_ns, time)) {
+    throw nb::type_error("t_ns: takes whole nanoseconds; of seconds take round(1e9 * seconds)");
+  }
+  return time;
+}
+
+pf_image_t to_image(nb::handle image, int64_t t_ns) {
+  AnyArray pixels;
+  if (!nb::try_cast<AnyArray>(image, pixels)) {
+    const std::string given = nb::str(image.type().attr("__name__")).c_str();
+    throw nb::type_error(("image: is a " + given + "; a grey image is an array of uint8, rows by columns").c_str());
+  }
   if (pixels.dtype() != nb::dtype<uint8_t>()) {
     throw nb::type_error("image: its pixels are not uint8; scale them to 0 .. 255 and take image.astype(numpy.uint8)");
   }

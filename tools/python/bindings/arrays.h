@@ -35,8 +35,10 @@ Matrix to_matrix(const double* values, size_t rows, size_t columns);
 
 /// A grey image in the caller's own memory. Refused in one line: another type than uint8, another number of dimensions, and columns that
 /// do not lie side by side. Rows may lie apart.
-using AnyArray = nb::ndarray<nb::ro, nb::device::cpu>;
-pf_image_t to_image(const AnyArray& pixels, int64_t t_ns);
+pf_image_t to_image(nb::handle image, int64_t t_ns);
+
+/// Whole nanoseconds. A number with a fraction, which would be seconds, is refused.
+int64_t to_time(nb::handle t_ns);
 
 using GreyImage = nb::ndarray<nb::numpy, uint8_t, nb::ndim<2>>;
 GreyImage copy_image(const pf_image_t& image);

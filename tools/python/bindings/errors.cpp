@@ -1,5 +1,7 @@
 #include "errors.h"
 
+#include <nanobind/stl/string.h>
+
 namespace pf::python {
 
 namespace {
@@ -13,8 +15,11 @@ namespace {
 
 void check(pf_status_t status, const char* call, const char* field) {
   if (status >= PF_OK) return;
-  std::string line = std::string(call) + ": " + (field != nullptr ? std::string(field) + ": " : "");
-  raise_error(status, line + pf_status_text(status), field);
+  const std::string line =
+      field != nullptr
+          ? std::string(field) + " is out of its range; the documentation of this field says what is possible"
+          : pf_status_text(status);
+  raise_error(status, std::string(call) + ": " + line, field);
 }
 
 void raise_error(pf_status_t status, const std::string& line, const char* field) {

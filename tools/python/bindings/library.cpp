@@ -51,7 +51,8 @@ void add_library(nb::module_& module) {
       nb::arg("status"), doc::pf_status_text);
   module.def("check_config", check_config, nb::arg("config"),
              "Raises planefold.Error where a field is out of its range; its .field names it.");
-  module.def("query_memory", query_memory, nb::arg("config"), "Block and stack that a Slam with this configuration takes.");
+  module.def("query_memory", query_memory, nb::arg("config"),
+             "Block and stack that a Slam with this configuration takes.");
   module.def("project", project, nb::arg("camera"), nb::arg("p_C"), doc::pf_camera_project);
   module.def("unproject", unproject, nb::arg("camera"), nb::arg("pixel"), doc::pf_camera_unproject);
 }

@@ -68,7 +68,7 @@ nb::object number(const Field& field, const void* at) {
 }
 
 [[noreturn]] void refuse(const RecordTable& table, const Field& field, nb::handle value, const std::string& takes) {
-  const std::string given = nb::repr(value.type().attr("__name__")).c_str();
+  const std::string given = nb::str(value.type().attr("__name__")).c_str();
   throw nb::type_error((table.name + "." + field.name + ": takes " + takes + ", and not a " + given).c_str());
 }
 
@@ -139,15 +139,13 @@ void add_attribute(const RecordTable& table, const Field& field) {
         check_type(*owner, self);
         return get_field(*owner, *what, nb::inst_ptr<void>(self), self);
       },
-      nb::is_method(), nb::sig(getter_text.c_str()),
-      field.doc.c_str());
+      nb::is_method(), nb::sig(getter_text.c_str()), field.doc.c_str());
   const nb::object setter = nb::cpp_function(
       [owner, what](nb::handle self, nb::handle value) {
         check_type(*owner, self);
         set_field(*owner, *what, nb::inst_ptr<void>(self), value);
       },
-      nb::is_method(), nb::sig(setter_text.c_str()),
-      nb::arg("value").none());
+      nb::is_method(), nb::sig(setter_text.c_str()), nb::arg("value").none());
   nb::setattr(table.type, field.name.c_str(),
               nb::module_::import_("builtins").attr("property")(getter, setter, nb::none(), field.doc));
 }
@@ -212,7 +210,7 @@ std::string describe(const RecordTable& table, nb::handle self) {
   std::string text;
   for (const Field& field : table.fields) {
     void* at = nb::inst_ptr<char>(self) + field.offset;
-    const std::string value = !field.shape.empty()         ? describe_array(field, at)
+    const std::string value = !field.shape.empty()          ? describe_array(field, at)
                               : field.kind == Kind::kRecord ? field.type + "(...)"
                                                             : std::string(nb::str(number(field, at)).c_str());
     text += (text.empty() ? "" : ", ") + field.name + "=" + value;

@@ -88,11 +88,12 @@ class Record {
     using Element = std::remove_all_extents_t<Type>;
     Field field{name, doc, offset, sizeof(Type), kind_of<Element>(), {}, 0, enum_name != nullptr ? enum_name : ""};
     std::vector<size_t> extents;
-    if constexpr (std::rank_v<Type> > 0) extents.push_back(std::extent_v<Type, 0>);
-    if constexpr (std::rank_v<Type> > 1) extents.push_back(std::extent_v<Type, 1>);
+    if constexpr (std::rank_v < Type >> 0) extents.push_back(std::extent_v<Type, 0>);
+    if constexpr (std::rank_v < Type >> 1) extents.push_back(std::extent_v<Type, 1>);
     field.shape = shape_of(name, extents);
     if (field.shape == extents && !extents.empty() && extents[0] >= 8) field.min_rows = 1;
-    if constexpr (kind_of<Element>() == Kind::kRecord) field.type = nb::cast<std::string>(nb::type<Type>().attr("__name__"));
+    if constexpr (kind_of<Element>() == Kind::kRecord)
+      field.type = nb::cast<std::string>(nb::type<Type>().attr("__name__"));
     table_->fields.push_back(field);
   }
 
@@ -109,7 +110,8 @@ class Record {
         },
         nb::sig(signature.c_str()));
     class_.def("__repr__", [table](nb::handle self) { return describe(*table, self); });
-    class_.def("copy", [](const T& self) { return T(self); }, "A structure of its own with the same contents.");
+    class_.def(
+        "copy", [](const T& self) { return T(self); }, "A structure of its own with the same contents.");
     class_.def("__copy__", [](const T& self) { return T(self); });
     class_.def("__deepcopy__", [](const T& self, nb::handle) { return T(self); });
   }

@@ -42,9 +42,8 @@ class Sequence {
   Frame at(int64_t index) {
     const int64_t from_start = index < 0 ? index + info_.count : index;
     if (from_start < 0 || from_start >= info_.count) {
-      throw nb::index_error(("there are " + std::to_string(info_.count) + " frames, and no number " +
-                             std::to_string(index))
-                                .c_str());
+      throw nb::index_error(
+          ("there are " + std::to_string(info_.count) + " frames, and no number " + std::to_string(index)).c_str());
     }
     char message[PF_SEQUENCE_MESSAGE] = "";
     pf_image_t image{};
@@ -83,29 +82,36 @@ struct Frames {
 
 template <class Ask>
 void add_text(nb::class_<Sequence>& type, const char* name, const char* what, const Ask& ask) {
-  type.def_prop_ro(name, [ask](const Sequence& self) { return std::string(ask(self.info())); }, what);
+  type.def_prop_ro(
+      name, [ask](const Sequence& self) { return std::string(ask(self.info())); }, what);
 }
 
 }  // namespace
 
 void add_sequences(nb::module_& module) {
   nb::class_<Frames>(module, "SequenceFrames", "Goes through a sequence once.")
-      .def("__iter__", [](nb::handle self) { return nb::borrow(self); }, nb::sig("def __iter__(self) -> SequenceFrames"))
+      .def(
+          "__iter__", [](nb::handle self) { return nb::borrow(self); }, nb::sig("def __iter__(self) -> SequenceFrames"))
       .def("__next__", &Frames::next);
-  nb::class_<Sequence> sequence(module, "Sequence",
-                                "Images on disk with their times and calibration: iterates over (image, t_ns). Images that cannot be "
-                                "used are passed over, with a warning.");
+  nb::class_<Sequence> sequence(
+      module, "Sequence",
+      "Images on disk with their times and calibration: iterates over (image, t_ns). Images that cannot be "
+      "used are passed over, with a warning.");
   sequence.def(nb::init<const std::string&, const std::optional<std::string>&>(), nb::arg("source"),
                nb::arg("calibration") = nb::none(), doc::pf_open_sequence);
   sequence.def("__len__", &Sequence::count);
   sequence.def("__getitem__", &Sequence::at, nb::arg("index"), doc::pf_read_sequence_frame);
   sequence.def("__iter__", [](nb::object self) { return Frames{self, nb::inst_ptr<Sequence>(self)}; });
   sequence.def("path", &Sequence::path, nb::arg("index"), doc::pf_get_sequence_frame_path);
-  sequence.def_prop_ro("camera", [](const Sequence& self) { return self.info().camera; }, "The calibration.");
-  sequence.def_prop_ro("rate_hz", [](const Sequence& self) { return self.info().rate_hz; },
-                       "As the calibration says, or else from the times.");
-  sequence.def_prop_ro("first_t_ns", [](const Sequence& self) { return self.info().first_t_ns; }, "Time of the first frame.");
-  sequence.def_prop_ro("last_t_ns", [](const Sequence& self) { return self.info().last_t_ns; }, "Time of the last frame.");
+  sequence.def_prop_ro(
+      "camera", [](const Sequence& self) { return self.info().camera; }, "The calibration.");
+  sequence.def_prop_ro(
+      "rate_hz", [](const Sequence& self) { return self.info().rate_hz; },
+      "As the calibration says, or else from the times.");
+  sequence.def_prop_ro(
+      "first_t_ns", [](const Sequence& self) { return self.info().first_t_ns; }, "Time of the first frame.");
+  sequence.def_prop_ro(
+      "last_t_ns", [](const Sequence& self) { return self.info().last_t_ns; }, "Time of the last frame.");
   add_text(sequence, "folder", "Where the images lie.", [](const pf_sequence_info_t& info) { return info.folder; });
   add_text(sequence, "calibration_path", "The file that was read; empty where there is none.",
            [](const pf_sequence_info_t& info) { return info.calibration_path; });

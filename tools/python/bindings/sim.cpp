@@ -130,7 +130,8 @@ void add_sim(nb::module_& module) {
   nb::class_<Sim> sim(module, "Sim", "A built-in scene with exact truth: iterates over (image, t_ns).");
   sim.def(nb::init<const std::string&, const std::optional<pf_sim_options_t>&>(), nb::arg("scene"),
           nb::arg("options") = nb::none(), doc::pf_sim_open);
-  sim.def("__iter__", [](nb::handle self) { return nb::borrow(self); }, nb::sig("def __iter__(self) -> Sim"));
+  sim.def(
+      "__iter__", [](nb::handle self) { return nb::borrow(self); }, nb::sig("def __iter__(self) -> Sim"));
   sim.def("__next__", &Sim::next);
   sim.def("rewind", &Sim::rewind, doc::pf_sim_rewind);
   sim.def("target", &Sim::target, nb::arg("kind") = PF_TARGET_RECTANGLE, doc::pf_sim_target);
@@ -139,15 +140,19 @@ void add_sim(nb::module_& module) {
   sim.def("surface", &Sim::surface, nb::arg("number"), doc::pf_sim_surface);
   sim.def_prop_ro(
       "camera", [](const Sim& self) { return self.camera(); }, doc::pf_sim_camera);
-  sim.def_prop_ro("options", [](const Sim& self) { return self.options(); }, "A copy of the options.");
-  sim.def_prop_ro("truth", [](const Sim& self) { return self.truth(); }, "True pose in the frame that came last.");
+  sim.def_prop_ro(
+      "options", [](const Sim& self) { return self.options(); }, "A copy of the options.");
+  sim.def_prop_ro(
+      "truth", [](const Sim& self) { return self.truth(); }, "True pose in the frame that came last.");
 
   nb::class_<SimImu> imu(module, "SimImu", "An inertial unit beside the camera of a scene.");
   imu.def(nb::init<const Sim&, const std::optional<pf_sim_imu_options_t>&>(), nb::arg("sim"),
           nb::arg("options") = nb::none(), doc::pf_sim_imu_open);
-  imu.def("until", &SimImu::until, nb::arg("t_ns"), "The samples that are measured up to a time, from where the last call ended.");
+  imu.def("until", &SimImu::until, nb::arg("t_ns"),
+          "The samples that are measured up to a time, from where the last call ended.");
   imu.def("biases", &SimImu::biases, doc::pf_sim_imu_biases);
-  imu.def_prop_ro("options", [](const SimImu& self) { return self.options(); }, "A copy of the options.");
+  imu.def_prop_ro(
+      "options", [](const SimImu& self) { return self.options(); }, "A copy of the options.");
 }
 
 }  // namespace pf::python

@@ -22,15 +22,15 @@ int clear(PyObject* self) {
   return 0;
 }
 
-PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(visit)},
-                       {Py_tp_clear, reinterpret_cast<void*>(clear)},
-                       {0, nullptr}};
+PyType_Slot slots[] = {
+    {Py_tp_traverse, reinterpret_cast<void*>(visit)}, {Py_tp_clear, reinterpret_cast<void*>(clear)}, {0, nullptr}};
 
 constexpr char kDoc[] =
     "A camera's pose and a map, from its frames, in one block of memory that NumPy allocates.\n\n"
     "log    called with each line on what the library decided; it may ask this object, and change nothing\n"
     "clock  True: reports say how long each stage took (stage_ns)\n\n"
-    "A context belongs to one thread at a time: a call from a second one, while the first is inside, raises. Other threads of "
+    "A context belongs to one thread at a time: a call from a second one, while the first is inside, raises. Other "
+    "threads of "
     "Python go on during push_frame.";
 
 pf_config_t config_of(const Context& context) {
@@ -55,7 +55,8 @@ void add_slam(nb::module_& module) {
               "clock: bool = False) -> None"),
       doc::pf_create);
   slam.def(
-      "reset", [](Context& self) { self.run("reset", [](pf_slam_t* context) { return pf_reset(context); }); }, doc::pf_reset);
+      "reset", [](Context& self) { self.run("reset", [](pf_slam_t* context) { return pf_reset(context); }); },
+      doc::pf_reset);
   slam.def_prop_ro("config", config_of, "A copy of the configuration.");
   slam.def_prop_ro(
       "memory_bytes", [](const Context& self) { return self.memory().bytes; }, "Size of the block.");

@@ -15,8 +15,7 @@ using Times = nb::ndarray<const int64_t, nb::ndim<1>, nb::c_contig, nb::device::
 using Rows = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
 pf_status_t push_samples(Context& self, const std::vector<pf_imu_sample_t>& samples) {
-  return self.run("push_imu",
-                  [&](pf_slam_t* context) { return pf_push_imu(context, samples.data(), samples.size()); });
+  return self.run("push_imu", [&](pf_slam_t* context) { return pf_push_imu(context, samples.data(), samples.size()); });
 }
 
 pf_status_t push_arrays(Context& self, const Times& t_ns, const Rows& gyro, const Rows& accel) {
@@ -39,11 +38,11 @@ pf_status_t push_arrays(Context& self, const Times& t_ns, const Rows& gyro, cons
 void add_inputs(nb::class_<Context>& slam) {
   slam.def(
       "push_frame",
-      [](Context& self, const AnyArray& image, int64_t t_ns) {
-        const pf_image_t pixels = to_image(image, t_ns);
+      [](Context& self, nb::handle image, nb::handle t_ns) {
+        const pf_image_t pixels = to_image(image, to_time(t_ns));
         return self.run_released("push_frame", [&](pf_slam_t* context) { return pf_push_frame(context, &pixels); });
       },
-      nb::arg("image").noconvert(), nb::arg("t_ns"),
+      nb::arg("image"), nb::arg("t_ns"),
       nb::sig("def push_frame(self, image: numpy.typing.NDArray[numpy.uint8], t_ns: int) -> Status"),
       doc::pf_push_frame);
   slam.def(

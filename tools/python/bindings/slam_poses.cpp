@@ -54,7 +54,8 @@ void add_poses(nb::class_<Context>& slam) {
       doc::pf_get_pose);
   slam.def("predict_pose", predict, nb::arg("t_ns"), doc::pf_predict_pose);
   slam.def(
-      "mark_pose", [](Context& self) { self.run("mark_pose", [](pf_slam_t* context) { return pf_mark_pose(context); }); },
+      "mark_pose",
+      [](Context& self) { self.run("mark_pose", [](pf_slam_t* context) { return pf_mark_pose(context); }); },
       doc::pf_mark_pose);
   slam.def_prop_ro(
       "motion_since_mark",

@@ -27,7 +27,9 @@ void add_starts(nb::class_<Context>& slam) {
       nb::arg("t_ns"), nb::arg("pose"), doc::pf_set_second_pose);
   slam.def(
       "withdraw_target",
-      [](Context& self) { self.run("withdraw_target", [](pf_slam_t* context) { return pf_withdraw_target(context); }); },
+      [](Context& self) {
+        self.run("withdraw_target", [](pf_slam_t* context) { return pf_withdraw_target(context); });
+      },
       doc::pf_withdraw_target);
   slam.def(
       "add_plane_prior",
