@@ -7,6 +7,8 @@
 from __future__ import annotations
 
 import contextlib
+import io
+import itertools
 import os
 import pathlib
 import warnings
@@ -65,19 +67,25 @@ def _connections(reader: Any, path: str | os.PathLike[str], topic: str | None, t
     return [connection for connection in reader.connections if connection.topic == topic]
 
 
-def _messages(path: str | os.PathLike[str], topic: str | None, types: tuple[str, ...], what: str) -> Iterator[tuple[str, Any, int]]:
-    """(topic, message, t_ns). Times are those of the messages' headers, unless the first header has none."""
+def _stored(path: str | os.PathLike[str], topic: str | None, types: tuple[str, ...], what: str) -> Iterator[tuple[str, Any, int, int]]:
+    """(topic, message, time in its header, time of recording)"""
     with _reader(path) as reader:
-        stamped = None
         for connection, recorded_ns, data in reader.messages(_connections(reader, path, topic, types, what)):
             message = reader.deserialize(data, connection.msgtype)
-            t_ns = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
-            if stamped is None:
-                stamped = t_ns != 0
-                if not stamped:
-                    warnings.warn(f"{os.fspath(path)}: {connection.topic} has no times in its headers; the times of recording are taken",
-                                  RuntimeWarning, stacklevel=3)
-            yield connection.topic, message, t_ns if stamped else recorded_ns
+            stamp = message.header.stamp
+            yield connection.topic, message, stamp.sec * 1_000_000_000 + stamp.nanosec, recorded_ns
+
+
+def _messages(path: str | os.PathLike[str], topic: str | None, types: tuple[str, ...], what: str) -> Iterator[tuple[str, Any, int]]:
+    """(topic, message, t_ns). Times are those of the headers, unless the first two have none (a simulation may begin at 0)."""
+    stored = _stored(path, topic, types, what)
+    first = list(itertools.islice(stored, 2))
+    stamped = any(stamp_ns != 0 for _, _, stamp_ns, _ in first)
+    if first and not stamped:
+        warnings.warn(f"{os.fspath(path)}: {first[0][0]} has no times in its headers; the times of recording are taken", RuntimeWarning,
+                      stacklevel=3)
+    for name, message, stamp_ns, recorded_ns in itertools.chain(first, stored):
+        yield name, message, stamp_ns if stamped else recorded_ns
 
 
 def _grey(colour: npt.NDArray[np.uint8], order: tuple[int, int, int]) -> Grey:
@@ -100,8 +108,6 @@ def _raw(topic: str, message: Any) -> Grey:
 
 
 def _compressed(topic: str, message: Any) -> Grey:
-    import io
-
     if "compressedDepth" in message.format or "bayer" in message.format:
         raise Refused(f"{topic}: its images are {message.format}; known are PNG and JPEG of grey or colour")
     picture = load("PIL.Image", "bags")

@@ -53,7 +53,7 @@ def _trajectory(poses: Iterable[Pose], source: str) -> Any:
     if not found:
         raise Refused(f"{source}: there are no poses")
     covariance = np.array([pose.covariance for pose in found])
-    return load("._pf_eval.files", "eval").Trajectory(
+    return load(".pf_eval.files", "eval").Trajectory(
         np.array([1e-9 * pose.t_ns for pose in found]), np.array([pose.p_WC for pose in found]),
         np.array([pose.q_WC for pose in found]), covariance if covariance.any() else None, source)
 
@@ -66,8 +66,8 @@ def compare(run: Run, truth: Run, align: str | None = None, calibration: str | o
     align        "none", "se3" or "sim3"; without, what the run's report suggests, and "sim3" where there is none
     calibration  the camera's sensor.yaml, where the truth is of the body and it does not lie beside it
     """
-    errors, files = load("._pf_eval.errors", "eval"), load("._pf_eval.files", "eval")
-    refused = load("._pf_eval", "eval").Refused
+    errors, files = load(".pf_eval.errors", "eval"), load(".pf_eval.files", "eval")
+    refused = load(".pf_eval", "eval").Refused
     if align not in (None, "none", "se3", "sim3"):
         raise Refused(f"align: {align} is none of none, se3, sim3")
     report: dict[str, Any] = {}
@@ -77,7 +77,7 @@ def compare(run: Run, truth: Run, align: str | None = None, calibration: str | o
         else:
             estimate = _trajectory(run, "run")
         if isinstance(truth, (str, os.PathLike)):
-            true = load("._pf_eval.truth", "eval").read_truth(truth, calibration)[0]
+            true = load(".pf_eval.truth", "eval").read_truth(truth, calibration)[0]
         else:
             true = _trajectory(truth, "truth")
         how = align or errors.default_alignment(report)

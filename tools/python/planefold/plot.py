@@ -48,13 +48,13 @@ def trajectory(path: str | os.PathLike[str], poses: Iterable[Pose], features: It
         rotations = turn @ rotations
         covariance = None if covariance is None else scale * scale * turn @ covariance @ turn.T
         truth = comparison.truth
-    draw = load("._pf_eval.plot_trajectory", "eval").draw
+    draw = load(".pf_eval.plot_trajectory", "eval").draw
     return _written(path, draw, p, rotations, covariance, truth, (points, sigma, loose, target, in_map), unit, title)
 
 
 def errors(path: str | os.PathLike[str], comparison: Comparison, title: str = "") -> pathlib.Path:
     """Errors against truth over time, with 3-sigma bounds where the run is in the truth's own frame."""
-    return _written(path, load("._pf_eval.plot_errors", "eval").draw, comparison, comparison.t[0], title)
+    return _written(path, load(".pf_eval.plot_errors", "eval").draw, comparison, comparison.t[0], title)
 
 
 def _written(path: str | os.PathLike[str], draw: Any, *what: Any) -> pathlib.Path:
