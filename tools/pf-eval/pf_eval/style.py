@@ -4,7 +4,7 @@ import sys
 
 import matplotlib
 
-if "matplotlib.pyplot" not in sys.modules:  # a notebook has chosen how it shows pictures
+if "IPython" not in sys.modules:  # a notebook has chosen how it shows pictures
     matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 

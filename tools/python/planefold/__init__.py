@@ -13,8 +13,9 @@ planefold.eval, planefold.plot and planefold.bags need more packages: pip instal
 
 from ._core import *  # noqa: F403
 from ._core import version as _version
-from ._errors import Error, Refused
-from ._sources import open_sequence
+from ._errors import Error as Error
+from ._errors import Refused as Refused
+from ._sources import open_sequence as open_sequence
 
 __version__ = _version()
 __all__ = [name for name in dir() if not name.startswith("_")]
