@@ -36,7 +36,7 @@ def run_notebook(folder):
     display = types.ModuleType("IPython.display")
     display.Image = lambda path: path
     shell = types.ModuleType("IPython")
-    shell.get_ipython = lambda: None
+    shell.get_ipython, shell.version_info = lambda: None, (9, 0)
     sys.modules.update({"IPython": shell, "IPython.display": display})
     os.chdir(folder)
     names = {}
