@@ -23,8 +23,11 @@ def run_script(folder):
     scene = planefold.Sim("desk")
     planefold.write_calibration(str(folder / "calib.yaml"), scene.camera, 30.0)
     (folder / "images").mkdir()
-    for number, (image, _) in zip(range(FRAMES), scene):
+    times = []
+    for number, (image, t_ns) in zip(range(FRAMES), scene):
         Image.fromarray(image).save(folder / "images" / f"{number:04d}.png")
+        times.append(f"{1e-9 * t_ns:.9f}\n")
+    (folder / "times.txt").write_text("".join(times))
     environment = {**os.environ, "PYTHONPATH": str(python_package.PACKAGE), "PYTHONWARNINGS": "error"}
     output = script.run(sys.executable, EXAMPLES / "track_film.py", f"images:{folder}", cwd=folder, env=environment)
     print(output)

@@ -49,11 +49,11 @@ Matrix to_matrix(const double* values, size_t rows, size_t columns) {
   return Matrix(copy, {rows, columns}, owner_of(copy));
 }
 
+void refuse_seconds() { throw nb::type_error("t_ns: takes whole nanoseconds; of seconds take round(1e9 * seconds)"); }
+
 int64_t to_time(nb::handle t_ns) {
   int64_t time = 0;
-  if (!nb::try_cast<int64_t>(t_ns, time)) {
-    throw nb::type_error("t_ns: takes whole nanoseconds; of seconds take round(1e9 * seconds)");
-  }
+  if (!nb::try_cast<int64_t>(t_ns, time)) refuse_seconds();
   return time;
 }
 

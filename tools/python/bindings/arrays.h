@@ -39,6 +39,7 @@ pf_image_t to_image(nb::handle image, int64_t t_ns);
 
 /// Whole nanoseconds. A number with a fraction, which would be seconds, is refused.
 int64_t to_time(nb::handle t_ns);
+[[noreturn]] void refuse_seconds();
 
 using GreyImage = nb::ndarray<nb::numpy, uint8_t, nb::ndim<2>>;
 GreyImage copy_image(const pf_image_t& image);

@@ -9,12 +9,15 @@
 #endif
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "arrays.h"
 #include "docs.h"
 #include "errors.h"
 #include "functions.h"
+#include "path.h"
 
 namespace pf::python {
 
@@ -23,7 +26,7 @@ namespace {
 /// One of the readers that fill in a structure from a file, as a function that returns it.
 template <class T>
 auto reader(int (*read)(const char*, T*, char*)) {
-  return [read](const std::string& path) {
+  return [read](const Path& path) {
     T value{};
     char message[PF_SEQUENCE_MESSAGE] = "";
     if (read(path.c_str(), &value, message) != 0) raise_refused(message);
@@ -31,7 +34,7 @@ auto reader(int (*read)(const char*, T*, char*)) {
   };
 }
 
-std::pair<pf_camera_t, double> read_calibration(const std::string& path) {
+std::pair<pf_camera_t, double> read_calibration(const Path& path) {
   pf_camera_t camera{};
   double rate_hz = 0.0;
   char message[PF_SEQUENCE_MESSAGE] = "";
@@ -40,12 +43,12 @@ std::pair<pf_camera_t, double> read_calibration(const std::string& path) {
   return {camera, rate_hz};
 }
 
-void write_calibration(const std::string& path, const pf_camera_t& camera, double rate_hz, pf_calibration_form_t form) {
+void write_calibration(const Path& path, const pf_camera_t& camera, double rate_hz, pf_calibration_form_t form) {
   char message[PF_SEQUENCE_MESSAGE] = "";
   if (pf_write_calibration(path.c_str(), form, &camera, rate_hz, message) != 0) raise_refused(message);
 }
 
-std::vector<pf_imu_sample_t> read_imu(const std::string& path) {
+std::vector<pf_imu_sample_t> read_imu(const Path& path) {
   char message[PF_SEQUENCE_MESSAGE] = "";
   pf_imu_sample_t* samples = nullptr;
   size_t count = 0;
@@ -56,20 +59,22 @@ std::vector<pf_imu_sample_t> read_imu(const std::string& path) {
 
 /// What a file says about the unit, on top of what is known of it already.
 auto imu_reader(int (*read)(const char*, pf_imu_model_t*, char*)) {
-  return [read](const std::string& path, pf_imu_model_t& imu) {
+  return [read](const Path& path, pf_imu_model_t& imu) {
     char message[PF_SEQUENCE_MESSAGE] = "";
     if (read(path.c_str(), &imu, message) != 0) raise_refused(message);
   };
 }
 
 #ifdef PLANEFOLD_HAVE_WALLS
-std::vector<std::pair<std::string, pf_plane_prior_t>> read_walls(const std::string& path) {
+using Walls = std::vector<std::pair<std::string, pf_plane_prior_t>>;
+
+std::pair<Walls, std::optional<Vector>> read_walls(const Path& path) {
   const auto walls = std::make_unique<pf_walls_t>();
   char message[PF_WALLS_MESSAGE] = "";
   if (pf_read_walls(path.c_str(), walls.get(), message) != 0) raise_refused(message);
-  std::vector<std::pair<std::string, pf_plane_prior_t>> all;
+  Walls all;
   for (int32_t i = 0; i < walls->count; ++i) all.emplace_back(walls->wall[i].name, walls->wall[i].prior);
-  return all;
+  return {all, walls->has_up != 0 ? std::optional<Vector>(to_vector(walls->up_W, 3)) : std::nullopt};
 }
 #endif
 
@@ -81,7 +86,9 @@ void add_files(nb::module_& module) {
              nb::arg("form") = PF_CALIBRATION_PLAIN, doc::pf_write_calibration);
   module.def("read_target", reader<pf_target_t>(pf_read_target), nb::arg("path"), doc::pf_read_target);
   module.def("read_first_pose", reader<pf_pose_t>(pf_read_first_pose), nb::arg("path"), doc::pf_read_first_pose);
-  module.def("parse_rectangle", reader<pf_target_t>(pf_parse_rectangle), nb::arg("text"), doc::pf_parse_rectangle);
+  module.def(
+      "parse_rectangle", [](const std::string& text) { return reader<pf_target_t>(pf_parse_rectangle)(Path{text}); },
+      nb::arg("text"), doc::pf_parse_rectangle);
   module.def("read_imu", read_imu, nb::arg("path"), doc::pf_read_imu);
   module.def("read_imu_noise", imu_reader(pf_read_imu_noise), nb::arg("path"), nb::arg("imu"), doc::pf_read_imu_noise);
   module.def("read_imu_mount", imu_reader(pf_read_imu_mount), nb::arg("path"), nb::arg("imu"), doc::pf_read_imu_mount);

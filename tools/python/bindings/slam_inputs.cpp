@@ -1,6 +1,7 @@
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <cmath>
+#include <string>
 #include <vector>
 
 #include "arrays.h"
@@ -14,20 +15,40 @@ namespace {
 using Times = nb::ndarray<const int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Rows = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
+nb::object made_of(const ArrayLike& given, const char* type) {
+  return nb::module_::import_("numpy").attr("ascontiguousarray")(given.given, type);
+}
+
+Times times_of(const ArrayLike& given) {
+  const nb::object kind = nb::module_::import_("numpy").attr("asarray")(given.given).attr("dtype").attr("kind");
+  Times times;
+  if (nb::cast<std::string>(kind) == "f") refuse_seconds();
+  if (!nb::try_cast<Times>(made_of(given, "int64"), times)) throw nb::value_error("t_ns: takes a list of times");
+  return times;
+}
+
+Rows rows_of(const ArrayLike& given, const char* name, size_t count) {
+  Rows rows;
+  if (!nb::try_cast<Rows>(made_of(given, "float64"), rows) || rows.shape(0) != count) {
+    throw nb::value_error(
+        (std::string(name) + ": takes three numbers for each of the " + std::to_string(count) + " times").c_str());
+  }
+  return rows;
+}
+
 pf_status_t push_samples(Context& self, const std::vector<pf_imu_sample_t>& samples) {
   return self.run("push_imu", [&](pf_slam_t* context) { return pf_push_imu(context, samples.data(), samples.size()); });
 }
 
-pf_status_t push_arrays(Context& self, const Times& t_ns, const Rows& gyro, const Rows& accel) {
-  if (gyro.shape(0) != t_ns.shape(0) || accel.shape(0) != t_ns.shape(0)) {
-    throw nb::value_error("push_imu: t_ns, gyro and accel have different numbers of rows");
-  }
-  std::vector<pf_imu_sample_t> samples(t_ns.shape(0));
+pf_status_t push_arrays(Context& self, const ArrayLike& t_ns, const ArrayLike& gyro, const ArrayLike& accel) {
+  const Times times = times_of(t_ns);
+  std::vector<pf_imu_sample_t> samples(times.shape(0));
+  const Rows rates = rows_of(gyro, "gyro", samples.size()), forces = rows_of(accel, "accel", samples.size());
   for (size_t i = 0; i < samples.size(); ++i) {
-    samples[i].t_ns = t_ns(i);
+    samples[i].t_ns = times(i);
     for (size_t k = 0; k < 3; ++k) {
-      samples[i].gyro[k] = gyro(i, k);
-      samples[i].accel[k] = accel(i, k);
+      samples[i].gyro[k] = rates(i, k);
+      samples[i].accel[k] = forces(i, k);
     }
   }
   return push_samples(self, samples);

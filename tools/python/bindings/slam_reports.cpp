@@ -53,7 +53,7 @@ void add_reports(nb::class_<Context>& slam) {
                  [&](const pf_slam_t* context) { return pf_get_camera(context, &camera, covariance); });
         return to_matrix(covariance, 10, 10);
       },
-      doc::pf_get_camera);
+      nb::rv_policy::move, doc::pf_get_camera);
   slam.def("gauge_information", gauge_information, doc::pf_get_gauge_information);
 }
 

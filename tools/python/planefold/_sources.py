@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 
 from . import _core
 from ._errors import Refused
@@ -19,4 +20,7 @@ def open_sequence(source: str, calibration: str | os.PathLike[str] | None = None
         return _core.Sim(source[4:])
     if not hasattr(_core, "Sequence"):
         raise Refused(f"{source}: this build reads no images; it was made without libpng, libjpeg or yaml-cpp")
-    return _core.Sequence(source, None if calibration is None else os.fspath(calibration))
+    sequence = _core.Sequence(source, None if calibration is None else os.fspath(calibration))
+    if sequence.warning:
+        warnings.warn(sequence.warning, RuntimeWarning, stacklevel=2)
+    return sequence
