@@ -94,13 +94,13 @@ class Words(unittest.TestCase):
 
     def test_every_field_and_value_is_offered(self):
         text = re.sub(r"/\*.*?\*/", "", "\n".join(self.library), flags=re.S)
-        for name, body in re.findall(r"typedef struct \w+ \{(.*?)\n\} (\w+);", text, re.S):
-            if body == "pf_image_t":
+        for body, name in re.findall(r"typedef struct \w+ \{(.*?)\n\} (\w+);", text, re.S):
+            if name == "pf_image_t":
                 continue
-            kind = getattr(planefold, "".join(word.capitalize() for word in body[3:-2].split("_")))
-            names = re.findall(r"^  (?:int32_t|uint32_t|int64_t|double|uint8_t|size_t|pf_\w+) ([^;(]*);", name, re.M)
-            for field in ",".join(names).split(","):
-                self.assertTrue(hasattr(kind, re.match(r"\s*(\w*)", field).group(1)), f"{body}: {field}")
+            kind = getattr(planefold, "".join(word.capitalize() for word in name[3:-2].split("_")))
+            declared = re.findall(r"^  (?:int32_t|uint32_t|int64_t|double|uint8_t|size_t|pf_\w+) ([^;(]*);", body, re.M)
+            for field in ",".join(declared).split(","):
+                self.assertTrue(hasattr(kind, re.match(r"\s*(\w*)", field).group(1)), f"{name}: {field}")
         values = {str(value) for kind in vars(planefold).values() if isinstance(kind, type) and issubclass(kind, int) for value in kind}
         for value in re.findall(r"^\s*PF_(ERROR|NOTE)_(\w+) = ", text, re.M):
             self.assertIn("Status." + "_".join(value), values)

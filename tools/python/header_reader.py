@@ -9,14 +9,12 @@ COMMENT = re.compile(r"/\*.*?\*/", re.S)
 
 @dataclasses.dataclass
 class Item:
-    """name: as in C; comment: its text; members: fields of a structure, or values of an enum; inner: of a structure without a name
-    of its own, its members; declared: the type and what stands around the name of a field."""
+    """name: as in C; comment: its text; members: fields of a structure, or values of an enum."""
 
     kind: str
     name: str
     comment: str = ""
     members: list = dataclasses.field(default_factory=list)
-    declared: str = ""
 
 
 def plain(comment):
@@ -79,9 +77,8 @@ def fields(body):
             continue
         if "(*" in declaration or re.match(r"(void|const uint8_t)\s*\*", declaration):
             continue
-        kind, names = re.match(r"((?:const )?\w+\s*\*?)\s*(.*)", declaration, re.S).groups()
-        for name in names.split(","):
-            found.append(Item("field", re.match(r"\w+", name.strip()).group(), comment, declared=kind.strip()))
+        names = re.match(r"(?:const )?\w+\s*\*?\s*(.*)", declaration, re.S).group(1)
+        found += [Item("field", re.match(r"\w+", name.strip()).group(), comment) for name in names.split(",")]
     return found
 
 

@@ -12,7 +12,8 @@ import sys
 import header_reader
 
 # Not of Python: what only describes memory of the caller, or is given as text, lists and arrays there.
-LEFT_OUT = {"pf_image_t", "pf_walls_t", "pf_wall_t", "pf_sequence_info_t"}
+LEFT_OUT = {"pf_image_t", "pf_walls_t", "pf_wall_t", "pf_sequence_info_t", "PF_SEQUENCE_MESSAGE", "PF_WALLS_MESSAGE", "PF_WALLS_MAX",
+            "PF_WALLS_NAME"}
 
 
 def camel(name):
@@ -66,11 +67,13 @@ def tables(headers):
     items = [item for header in headers for item in header_reader.read(header)]
     enums = {item.name for item in items if item.kind == "enum"}
     for item in items:
+        if item.name in LEFT_OUT:
+            continue
         if item.kind == "enum":
             rows += enum_rows(item)
         elif item.kind == "constant":
             rows.append(f'  module.attr("{item.name.removeprefix("PF_")}") = {item.name};')
-        elif item.kind == "struct" and item.members and item.name not in LEFT_OUT:
+        elif item.kind == "struct" and item.members:
             records += record_rows(item, item.name, camel(item.name), enums)
         elif item.kind == "function":
             docs.append(f"inline constexpr char {item.name}[] = {text(item.comment)};")
