@@ -43,9 +43,10 @@ typedef struct pf_thing {
   struct {
     int32_t depth; /* of it */
   } inner;
-  double points[PF_THING_MAX][2];
+  double points[PF_THING_MAX][2 * 3];
   int64_t (*clock_ns)(void* user); /* not of Python */
   void* user;
+  const pf_other_t* other;
 } pf_thing_t;
 
 /* Does it; not with b[1], 2 or (3). */

@@ -67,7 +67,7 @@ def declaration_end(text, position):
 
 
 def fields(body):
-    """Members of a structure, without pointers to functions and to what the caller owns."""
+    """Members of a structure, without pointers."""
     found = []
     for comment, declaration in scan(body):
         declaration = declaration.rstrip(";").strip()
@@ -75,9 +75,9 @@ def fields(body):
         if inner:
             found.append(Item("struct", inner.group(2), comment, fields(inner.group(1))))
             continue
-        if "(*" in declaration or re.match(r"(void|const uint8_t)\s*\*", declaration):
+        if "(*" in declaration or re.match(r"(const )?\w+\s*\*", declaration):
             continue
-        names = re.match(r"(?:const )?\w+\s*\*?\s*(.*)", declaration, re.S).group(1)
+        names = re.match(r"\w+\s+(.*)", declaration, re.S).group(1)
         found += [Item("field", re.match(r"\w+", name.strip()).group(), comment) for name in names.split(",")]
     return found
 

@@ -92,10 +92,10 @@ def main(out, *headers):
     enums, records, docs = tables(headers)
     mark = "// Made by tables_from_headers.py; a change here is lost."
     includes = [f"#include <{pathlib.Path(header).parent.name}/{pathlib.Path(header).name}>" for header in headers]
-    write(out / "tables.cpp", [mark, '#include "tables.h"', "", *includes, "", "#include <cstddef>", "", '#include "record.h"', "",
+    write(out / "tables.cpp", [mark, '#include "tables.h"', "", "#include <cstddef>", "", '#include "docs.h"', '#include "record.h"', "",
                                "namespace pf::python {", "", "void add_enums(nb::module_& module) {", *enums, "}", "",
                                "void add_records(nb::module_& module) {", *records, "}", "", "}  // namespace pf::python"])
-    write(out / "docs.h", [mark, "#pragma once", "", "namespace pf::python::doc {", "", *docs, "", "}  // namespace pf::python::doc"])
+    write(out / "docs.h", [mark, "#pragma once", "", *includes, "", "namespace pf::python::doc {", "", *docs, "", "}  // namespace pf::python::doc"])
 
 
 if __name__ == "__main__":
