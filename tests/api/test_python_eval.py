@@ -55,6 +55,17 @@ class AsPfEval(unittest.TestCase):
         self.assertEqual(ours.summary["pairs"], len(self.poses))
         self.assertEqual(ours.estimate.shape, (len(self.poses), 3))
 
+    def test_covariances_are_judged_alike(self):
+        folder = pathlib.Path(self.folder.name) / "target"
+        script.run(script.BIN / "pf-capture", "--source", "sim:desk", "--start", "target", "--frames", 40, "--headless", "--no-film", "--quiet",
+                   "--out", folder)
+        theirs = planefold.eval.compare(folder, folder / "truth.tum").summary
+        scene = planefold.Sim("desk")
+        _, poses = python_package.track(planefold, scene, count=40, target=scene.target())
+        ours = planefold.eval.compare(poses, [scene.pose_at(pose.t_ns) for pose in poses], align="none").summary
+        for name in ("nees_pose", "nees_position", "nees_frames"):
+            self.assertAlmostEqual(ours[name], theirs[name], delta=1e-4 * theirs[name], msg=name)
+
     def test_what_cannot_be_compared_is_refused_in_one_line(self):
         for run, truth, align, line in (([], self.truth, None, "run: there are no poses"), (self.poses, "/nowhere.tum", None, "no such file"),
                                         (self.poses, self.truth, "sim2", "sim2 is none of")):

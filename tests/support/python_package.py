@@ -18,13 +18,14 @@ def enter():
     return planefold
 
 
-def track(planefold, frames, config=None, count=None):
+def track(planefold, frames, count=None, target=None):
     """(slam, poses of the tracked frames), as pf-capture runs and counts them."""
-    config = config or planefold.Config()
-    config.camera = frames.camera
+    config = planefold.Config(camera=frames.camera)
     if config.camera.sigma_focal > 1e-4:  # the calibration is of files, which pf-capture then improves
         config.camera.estimate = planefold.CameraEstimate.ESTIMATE
     slam = planefold.Slam(config)
+    if target is not None:
+        slam.start_from_target(target)
     poses = []
     for number, (image, t_ns) in enumerate(frames):
         if number == count:
@@ -46,3 +47,8 @@ def tum(pose):
 def covariance(pose):
     """A line as covariance.csv of pf-capture has it."""
     return f"{pose.t_ns // 10**9}.{pose.t_ns % 10**9:09d}," + ",".join(f"{value:.9g}" for value in pose.covariance.ravel())
+
+
+def desk(planefold):
+    """A configuration for the scene sim:desk."""
+    return planefold.Config(camera=planefold.Sim("desk").camera)
