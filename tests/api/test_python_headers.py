@@ -95,6 +95,17 @@ class Structures(unittest.TestCase):
         camera = planefold.Camera(distortion=[0.1, 0.2])
         self.assertEqual(list(camera.distortion), [0.1, 0.2, 0, 0, 0, 0, 0, 0])
 
+    def test_classes_may_be_derived_from(self):
+        class Lens(planefold.Camera):
+            pass
+
+        lens = Lens(fx=300.0)
+        lens.fy = 310.0
+        self.assertEqual((planefold.Config(camera=lens).camera.fy, lens.copy().fx), (310.0, 300.0))
+        for wrong in (planefold.Camera.__new__(planefold.Camera), planefold.Pose(), 3):
+            with self.assertRaisesRegex(TypeError, "this is no planefold.Camera"):
+                planefold.Camera.fx.fget(wrong)
+
     def test_kinds_are_enums(self):
         config = planefold.Config()
         self.assertIs(config.motion.model, planefold.MotionModel.CONSTANT_VELOCITY)

@@ -110,8 +110,14 @@ void set_array(const RecordTable& table, const Field& field, void* at, nb::handl
   std::memcpy(at, rows.data(), rows.nbytes());
 }
 
+/// An object of the class or of one derived from it, made by its __init__.
+bool holds(nb::handle type, nb::handle object) {
+  return PyType_IsSubtype(Py_TYPE(object.ptr()), reinterpret_cast<PyTypeObject*>(type.ptr())) != 0 &&
+         nb::inst_ready(object);
+}
+
 void set_record(const RecordTable& table, const Field& field, void* at, nb::handle value) {
-  if (!value.type().is(table.module.attr(field.type.c_str()))) refuse(table, field, value, "a planefold." + field.type);
+  if (!holds(table.module.attr(field.type.c_str()), value)) refuse(table, field, value, "a planefold." + field.type);
   std::memmove(at, nb::inst_ptr<void>(value), field.bytes);
 }
 
@@ -126,7 +132,7 @@ std::string python_type(const Field& field, bool setter) {
 }
 
 void check_type(const RecordTable& table, nb::handle self) {
-  if (!self.type().is(table.type)) throw nb::type_error(("this is no planefold." + table.name).c_str());
+  if (!holds(table.type, self)) throw nb::type_error(("this is no planefold." + table.name).c_str());
 }
 
 void add_attribute(const RecordTable& table, const Field& field) {
