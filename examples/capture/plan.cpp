@@ -87,7 +87,7 @@ bool is_in_view(const pf_wall_prior_t& wall, const pf_pose_t& pose, const pf_cam
 std::string doubt_of_size(const pf_walls_t& walls) {
   constexpr double kLongest = 300.0;  // [m]
   for (int32_t i = 0; i < walls.count; ++i) {
-    const pf_plane_prior_t& wall = walls.wall[i].prior;
+    const pf_wall_prior_t& wall = walls.wall[i].prior;
     double size = 0.0;
     for (int32_t k = 0; k < wall.outline_count; ++k) {
       for (int32_t j = 0; j < k; ++j) {

@@ -41,7 +41,7 @@ class Words(unittest.TestCase):
 
     def test_docstring_of_a_function_is_its_comment(self):
         for function, comment in ((planefold.Slam.hit_test, "pf_hit_test"), (planefold.Slam.push_imu, "pf_push_imu"),
-                                  (planefold.read_target, "pf_read_target"), (planefold.Slam.add_plane_prior, "pf_add_plane_prior")):
+                                  (planefold.read_target, "pf_read_target"), (planefold.Slam.add_wall, "pf_add_wall")):
             text = "\n".join(self.library + self.platform)
             end = re.search(rf"\*/\n[^*\n]*\b{comment}\(", text).start()
             self.assertIn(words(text[text.rindex("/*", 0, end) + 2:end]), words(function.__doc__), comment)

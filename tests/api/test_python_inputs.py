@@ -55,15 +55,24 @@ class Scenes(unittest.TestCase):
         scene = planefold.Sim("room")
         slam = planefold.Slam(planefold.Config(camera=scene.camera))
         slam.start_from_pose(planefold.Pose(covariance=1e-4 * np.eye(6)), 0.01 * np.eye(6))
-        prior = planefold.PlanePrior(R_WP=np.diag([1.0, -1.0, -1.0]), p_WP=[0, 0, 2], covariance=1e-4 * np.eye(3), outline_count=4,
+        prior = planefold.WallPrior(R_WP=np.diag([1.0, -1.0, -1.0]), p_WP=[0, 0, 2], covariance=1e-4 * np.eye(3), outline_count=4,
                                      outline_P=[[-1, -1], [1, -1], [1, 1], [-1, 1]])
-        with self.assertRaisesRegex(planefold.Error, "add_plane_prior"):
-            slam.add_plane_prior(planefold.PlanePrior())
-        number = slam.add_plane_prior(prior)
-        self.assertEqual([(plane.id, plane.known) for plane in slam.planes], [(number, 1)])
+        with self.assertRaisesRegex(planefold.Error, "add_wall"):
+            slam.add_wall(planefold.WallPrior())
+        number = slam.add_wall(prior)
+        self.assertEqual([(plane.id, plane.is_wall) for plane in slam.planes], [(number, 1)])
         self.assertEqual(slam.planes[0].outline_count, 4)
         slam.set_gravity([0, 9.81, 0])
         self.assertEqual(slam.planes[0].orientation, planefold.Orientation.VERTICAL)
+
+    def test_research_goes_into_a_config_and_out_again(self):
+        config = planefold.Config()
+        self.assertEqual(planefold.get_research(config).keep_gauge, 1)
+        planefold.set_research(config, planefold.Research(keep_gauge=0, fold=planefold.Fold.DROP))
+        self.assertEqual((planefold.get_research(config).keep_gauge, planefold.get_research(config).fold), (0, planefold.Fold.DROP))
+        self.assertEqual(planefold.get_research(config.copy()).keep_gauge, 0)
+        planefold.set_research(config)
+        self.assertEqual(planefold.get_research(config).keep_gauge, 1)
 
     def test_inertial_samples(self):
         scene = planefold.Sim("desk")

@@ -31,6 +31,15 @@ typedef enum pf_thing_kind {
 
 enum { PF_THING_WAITING = 5, PF_THING_COUNT = 6 };
 
+typedef enum pf_thing_way {
+  PF_THING_OVER =
+      /* the long one, which
+       * takes its time
+       * */
+  1,
+  PF_THING_UNDER = 2 /* the short one */
+} pf_thing_way_t;
+
 typedef struct pf_other pf_other_t; /* nobody sees inside */
 
 /* A thing,
@@ -73,6 +82,9 @@ class Tables(unittest.TestCase):
         kind = self.items["enum", "pf_thing_kind_t"]
         self.assertEqual([(value.name, value.comment) for value in kind.members],
                          [("PF_THING_SMALL", "fits\nanywhere"), ("PF_THING_LARGE", "Does not.")])
+        way = self.items["enum", "pf_thing_way_t"]
+        self.assertEqual([(value.name, value.comment) for value in way.members],
+                         [("PF_THING_OVER", "the long one, which\ntakes its time"), ("PF_THING_UNDER", "the short one")])
         self.assertEqual([value.name for value in self.items["enum", ""].members], ["PF_THING_WAITING", "PF_THING_COUNT"])
         self.assertEqual([name for kind, name in self.items if kind == "constant"], ["PF_THING_MAX"])
 

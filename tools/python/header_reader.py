@@ -52,7 +52,7 @@ def declaration_end(text, position):
     while position < len(text):
         comment = COMMENT.match(text, position)
         if comment:
-            if depth == 0:  # of the last value of an enum, which has no comma
+            if depth == 0 and not text[:position].rstrip().endswith("="):  # of the last value of an enum, which has no comma
                 return position
             position = comment.end()
             continue
@@ -83,7 +83,12 @@ def fields(body):
 
 
 def values(body):
-    return [Item("value", re.match(r"\w+", declaration).group(), comment) for comment, declaration in scan(body)]
+    """Values of an enum; a comment may stand behind the equals sign."""
+    found = []
+    for comment, declaration in scan(body):
+        inside = [plain(match) for match in COMMENT.findall(declaration)]
+        found.append(Item("value", re.match(r"\w+", declaration).group(), "\n\n".join(filter(None, [comment, *inside]))))
+    return found
 
 
 def read(path):

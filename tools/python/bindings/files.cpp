@@ -66,7 +66,7 @@ auto imu_reader(int (*read)(const char*, pf_imu_model_t*, char*)) {
 }
 
 #ifdef PLANEFOLD_HAVE_WALLS
-using Walls = std::vector<std::pair<std::string, pf_plane_prior_t>>;
+using Walls = std::vector<std::pair<std::string, pf_wall_prior_t>>;
 
 std::pair<Walls, std::optional<Vector>> read_walls(const Path& path) {
   const auto walls = std::make_unique<pf_walls_t>();

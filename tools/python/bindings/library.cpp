@@ -23,6 +23,16 @@ void check_config(const pf_config_t& config) {
   check(status, "check_config", field);
 }
 
+void set_research(pf_config_t& config, const std::optional<pf_research_t>& research) {
+  check(pf_config_set_research(&config, research ? &*research : nullptr), "set_research");
+}
+
+pf_research_t get_research(const pf_config_t& config) {
+  pf_research_t research{};
+  check(pf_config_get_research(&config, &research), "get_research");
+  return research;
+}
+
 Vector project(const pf_camera_t& camera, const ArrayLike& p_C) {
   double pixel[2] = {};
   check(pf_camera_project(&camera, numbers<3>(p_C, "p_C").data(), pixel), "project");
@@ -51,6 +61,9 @@ void add_library(nb::module_& module) {
       nb::arg("status"), doc::pf_status_text);
   module.def("check_config", check_config, nb::arg("config"),
              "Raises planefold.Error where a field is out of its range; its .field names it.");
+  module.def("set_research", set_research, nb::arg("config"), nb::arg("research") = nb::none(),
+             doc::pf_config_set_research);
+  module.def("get_research", get_research, nb::arg("config"), doc::pf_config_get_research);
   module.def("query_memory", query_memory, nb::arg("config"),
              "Block and stack that a Slam with this configuration takes.");
   module.def("project", project, nb::arg("camera"), nb::arg("p_C"), doc::pf_camera_project);

@@ -240,6 +240,11 @@ void initialise(pf_config_t& config) {
 }
 
 template <>
+void initialise(pf_research_t& research) {
+  pf_research_default(&research);
+}
+
+template <>
 void initialise(pf_pose_t& pose) {
   pose.q_WC[0] = 1.0;
 }

@@ -4,6 +4,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 #include <planefold/planefold.h>
+#include <planefold/planefold_research.h>
 #include <planefold_platform/sim.h>
 
 #include <cstddef>
@@ -54,6 +55,8 @@ template <class T>
 void initialise(T&) {}
 template <>
 void initialise(pf_config_t& config);
+template <>
+void initialise(pf_research_t& research);
 template <>
 void initialise(pf_pose_t& pose);
 template <>

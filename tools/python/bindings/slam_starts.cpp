@@ -32,13 +32,13 @@ void add_starts(nb::class_<Context>& slam) {
       },
       doc::pf_withdraw_target);
   slam.def(
-      "add_plane_prior",
-      [](Context& self, const pf_plane_prior_t& prior) {
+      "add_wall",
+      [](Context& self, const pf_wall_prior_t& wall) {
         uint32_t id = 0;
-        self.run("add_plane_prior", [&](pf_slam_t* context) { return pf_add_plane_prior(context, &prior, &id); });
+        self.run("add_wall", [&](pf_slam_t* context) { return pf_add_wall(context, &wall, &id); });
         return id;
       },
-      nb::arg("prior"), doc::pf_add_plane_prior);
+      nb::arg("wall"), doc::pf_add_wall);
   slam.def(
       "set_gravity",
       [](Context& self, const ArrayLike& gravity_W) {
