@@ -25,6 +25,7 @@ constexpr const char* kFooter =
     "In the window: space pauses, r resets, s saves the picture, q quits; a click or tap shows which plane it hits.\n"
     "Writes into --out: report.json, trajectory.txt (TUM), covariance.csv, trajectory_all.txt, frames.csv, map.ply,\n"
     "calib.yaml, overlay.mp4, overlay_mid.png, overlay_last.png, lens.csv where the lens is estimated,\n"
+    "calib_found.yaml where there was no calibration,\n"
     "inertial.csv where a unit's samples are used, and truth.tum and truth_planes.json where the source knows them.\n"
     "Poses in a second map, which has a world of its own, go into trajectory_2.txt and so on.\n"
     "Exit code: 0 done, 1 the run failed, ended early, tracked nothing, or was lost at the end or most of the time,\n"
