@@ -106,8 +106,8 @@ class Trajectories(unittest.TestCase):
                     grey = next(iter(planefold.bags._grey(colour[None], (0, 1, 2))))
                     padded = np.zeros((grey.shape[0], grey.shape[1] + 9), np.uint8)
                     padded[:, :-9] = grey
-                    bag.add("/mono", "sensor_msgs/msg/Image", t_ns, height=grey.shape[0], width=grey.shape[1], encoding="mono8", is_bigendian=0,
-                            step=padded.shape[1], data=padded.reshape(-1))
+                    bag.add("/mono", "sensor_msgs/msg/Image", t_ns, height=grey.shape[0], width=grey.shape[1], encoding="mono8",
+                            is_bigendian=0, step=padded.shape[1], data=padded.reshape(-1))
                     bag.image("/bgr", colour[..., ::-1], t_ns, "bgr8")
                     bag.image("/rgb", colour, t_ns, "rgb8")
                     bag.compressed("/png", encoded(Image.fromarray(colour), "PNG"), t_ns, "rgb8; png compressed bgr8")

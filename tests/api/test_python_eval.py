@@ -57,8 +57,8 @@ class AsPfEval(unittest.TestCase):
 
     def test_covariances_are_judged_alike(self):
         folder = pathlib.Path(self.folder.name) / "target"
-        script.run(script.BIN / "pf-capture", "--source", "sim:desk", "--start", "target", "--frames", 40, "--headless", "--no-film", "--quiet",
-                   "--out", folder)
+        script.run(script.BIN / "pf-capture", "--source", "sim:desk", "--start", "target", "--frames", 40, "--headless", "--no-film",
+                   "--quiet", "--out", folder)
         theirs = planefold.eval.compare(folder, folder / "truth.tum").summary
         scene = planefold.Sim("desk")
         _, poses = python_package.track(planefold, scene, count=40, target=scene.target())
@@ -67,7 +67,8 @@ class AsPfEval(unittest.TestCase):
             self.assertAlmostEqual(ours[name], theirs[name], delta=1e-4 * theirs[name], msg=name)
 
     def test_what_cannot_be_compared_is_refused_in_one_line(self):
-        for run, truth, align, line in (([], self.truth, None, "run: there are no poses"), (self.poses, "/nowhere.tum", None, "no such file"),
+        for run, truth, align, line in (([], self.truth, None, "run: there are no poses"),
+                                        (self.poses, "/nowhere.tum", None, "no such file"),
                                         (self.poses, self.truth, "sim2", "sim2 is none of")):
             with self.assertRaisesRegex(planefold.Refused, line):
                 planefold.eval.compare(run, truth, align)

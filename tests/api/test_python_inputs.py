@@ -91,7 +91,8 @@ class Scenes(unittest.TestCase):
             slam.push_frame(image, t_ns)
             if number == 30:
                 break
-        for times, rates, line in (([0.5], [[0, 0, 0]], "whole nanoseconds"), ([10**12], [[0, 0]], "gyro: takes three numbers for each of the 1"),
+        for times, rates, line in (([0.5], [[0, 0, 0]], "whole nanoseconds"),
+                                   ([10**12], [[0, 0]], "gyro: takes three numbers for each of the 1"),
                                    ([10**12, 2 * 10**12], [[0, 0, 0]], "for each of the 2")):
             with self.assertRaisesRegex((TypeError, ValueError), line):
                 slam.push_imu(times, rates, rates)

@@ -192,7 +192,8 @@ class Importing(unittest.TestCase):
     def test_import_takes_at_most_half_again_as_long_as_numpy(self):
         def seconds(module):
             began = time.perf_counter()
-            subprocess.run([sys.executable, "-c", f"import {module}"], check=True, env={**os.environ, "PYTHONPATH": str(python_package.PACKAGE)})
+            subprocess.run([sys.executable, "-c", f"import {module}"], check=True,
+                           env={**os.environ, "PYTHONPATH": str(python_package.PACKAGE)})
             return time.perf_counter() - began
 
         pairs = [(seconds("planefold"), seconds("numpy")) for _ in range(7)][2:]

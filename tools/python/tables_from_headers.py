@@ -95,7 +95,8 @@ def main(out, *headers):
     write(out / "tables.cpp", [mark, '#include "tables.h"', "", "#include <cstddef>", "", '#include "docs.h"', '#include "record.h"', "",
                                "namespace pf::python {", "", "void add_enums(nb::module_& module) {", *enums, "}", "",
                                "void add_records(nb::module_& module) {", *records, "}", "", "}  // namespace pf::python"])
-    write(out / "docs.h", [mark, "#pragma once", "", *includes, "", "namespace pf::python::doc {", "", *docs, "", "}  // namespace pf::python::doc"])
+    write(out / "docs.h", [mark, "#pragma once", "", *includes, "", "namespace pf::python::doc {", "", *docs, "",
+                           "}  // namespace pf::python::doc"])
 
 
 if __name__ == "__main__":
