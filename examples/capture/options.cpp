@@ -274,8 +274,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       {"avx2", PF_KERNELS_AVX2}, {"avx512", PF_KERNELS_AVX512},       {"neon", PF_KERNELS_NEON}};
   app.set_version_flag("--version", "pf-capture " PF_VERSION_TEXT);
   app.add_option("--source", options.source,
-                 "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, video:FILE, images:DIR (or
-                 "
+                 "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, video:FILE, images:DIR (or\n"
                  "images:DIR/left_*.png), euroc:DIR, tum:DIR or sim:NAME");
   app.add_flag("--list", options.list, "name the cameras and IMUs of this machine, and do nothing else");
   app.add_option(

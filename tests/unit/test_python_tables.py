@@ -55,7 +55,13 @@ typedef struct pf_thing {
   double points[PF_THING_MAX][2 * 3];
   int64_t (*clock_ns)(void* user); /* not of Python */
   void* user;
-  const pf_other_t* other;
+  const pf_other_t*
+      /* which may
+       * be long */
+      other;
+  int32_t
+      /* at last */
+      last;
 } pf_thing_t;
 
 /* Does it; not with b[1], 2 or (3). */
@@ -90,9 +96,9 @@ class Tables(unittest.TestCase):
 
     def test_fields_are_those_of_the_structure(self):
         fields = self.items["struct", "pf_thing_t"].members
-        self.assertEqual([field.name for field in fields], ["kind", "state", "a", "b", "inner", "points"])
+        self.assertEqual([field.name for field in fields], ["kind", "state", "a", "b", "inner", "points", "last"])
         self.assertEqual([field.comment for field in fields], ["pf_thing_kind_t", "pf_thing_kind_t, or PF_THING_WAITING", "both of them",
-                                                               "both of them", "Inside.", ""])
+                                                               "both of them", "Inside.", "", "at last"])
         self.assertEqual(fields[4].members[0].comment, "of it")
 
     def test_a_field_is_of_an_enum_that_its_comment_begins_with(self):

@@ -5,6 +5,7 @@ import pathlib
 import re
 
 COMMENT = re.compile(r"/\*.*?\*/", re.S)
+LAST_VALUE = re.compile(r"[A-Z][A-Z0-9_]*(\s*=\s*[^\s=].*)?", re.S)  # of an enum, which has no comma
 
 
 @dataclasses.dataclass
@@ -48,11 +49,11 @@ def scan(text):
 
 
 def declaration_end(text, position):
-    depth = 0
+    begin, depth = position, 0
     while position < len(text):
         comment = COMMENT.match(text, position)
         if comment:
-            if depth == 0 and not text[:position].rstrip().endswith("="):  # of the last value of an enum, which has no comma
+            if depth == 0 and LAST_VALUE.fullmatch(text[begin:position].strip()):
                 return position
             position = comment.end()
             continue
@@ -66,10 +67,18 @@ def declaration_end(text, position):
     return position
 
 
+def with_inner_comments(comment, declaration):
+    """The comment with those that stand inside of the declaration, and the declaration without them."""
+    inside = [plain(match) for match in COMMENT.findall(declaration)]
+    return "\n\n".join(filter(None, [comment, *inside])), re.sub(r"\s+", " ", COMMENT.sub(" ", declaration)) if inside else declaration
+
+
 def fields(body):
     """Members of a structure, without pointers."""
     found = []
     for comment, declaration in scan(body):
+        if not declaration.startswith("struct"):
+            comment, declaration = with_inner_comments(comment, declaration)
         declaration = declaration.rstrip(";").strip()
         inner = re.fullmatch(r"struct\s*\{(.*)\}\s*(\w+)", declaration, re.S)
         if inner:
@@ -83,12 +92,8 @@ def fields(body):
 
 
 def values(body):
-    """Values of an enum; a comment may stand behind the equals sign."""
-    found = []
-    for comment, declaration in scan(body):
-        inside = [plain(match) for match in COMMENT.findall(declaration)]
-        found.append(Item("value", re.match(r"\w+", declaration).group(), "\n\n".join(filter(None, [comment, *inside]))))
-    return found
+    found = [with_inner_comments(comment, declaration) for comment, declaration in scan(body)]
+    return [Item("value", re.match(r"\w+", declaration).group(), comment) for comment, declaration in found]
 
 
 def read(path):

@@ -178,7 +178,12 @@ nb::object get_field(const RecordTable& table, const Field& field, void* base, n
   if (field.kind == Kind::kRecord) return nb::inst_reference(table.module.attr(field.type.c_str()), at, owner);
   if (!field.shape.empty()) return array(field, at, owner);
   const nb::object value = number(field, at);
-  return field.type.empty() ? value : table.module.attr(field.type.c_str())(value);
+  if (field.type.empty()) return value;
+  try {
+    return table.module.attr(field.type.c_str())(value);
+  } catch (const nb::python_error&) {
+    return value;  // of planefold_research.h, beside the enum's own
+  }
 }
 
 void set_field(const RecordTable& table, const Field& field, void* base, nb::handle value) {
