@@ -246,7 +246,7 @@ void open_film(Folder& folder, const std::string& calibration) {
            ": a film says nothing of its camera's lens; give its calibration with --calib FILE (pf-capture can do "
            "without)");
   }
-  const fs::path beside = folder.root.parent_path();
+  const fs::path beside = fs::absolute(folder.root).parent_path();
   set_calibration(folder, calibration, beside, beside, {}, false);
   for (const int64_t t_ns : facts.t_ns) {
     folder.frames.push_back({t_ns, folder.root});

@@ -35,7 +35,7 @@ SCENE = ["--source", "sim:desk", "--frames", "5"]
 
 # What the user did, the files, the words of pf-capture, and what the last line must say: what was met, and what to do.
 CASES = [
-    ("a film", {"walk.mp4": b"\0\0\0\x20ftypisom"}, ["--source", f"images:{DIR}/walk.mp4"], ["walk.mp4", "ffmpeg -i FILM"]),
+    ("a film", {"walk.mp4": b"\0\0\0\x20ftypisom"}, ["--source", f"images:{DIR}/walk.mp4"], ["walk.mp4", "is a film; write video:"]),
     ("an archive", {"walk.zip": b"PK\3\4"}, ["--source", f"images:{DIR}/walk.zip"], ["walk.zip", "give the folder"]),
     ("a source without its kind", GOOD, ["--source", DIR], [DIR, "images:"]),
     ("an unknown kind of source", GOOD, ["--source", f"folder:{DIR}"], ["folder:", "images:"]),

@@ -53,7 +53,7 @@ def _trajectory(poses: Iterable[Pose], source: str) -> Any:
     if not found:
         raise Refused(f"{source}: there are no poses")
     covariance = np.array([pose.covariance for pose in found])
-    return load(".pf_eval.files", "eval").Trajectory(
+    return load(".pf_eval.trajectories", "eval").Trajectory(
         np.array([1e-9 * pose.t_ns for pose in found]), np.array([pose.p_WC for pose in found]),
         np.array([pose.q_WC for pose in found]), covariance if covariance.any() else None, source)
 
@@ -80,6 +80,7 @@ def compare(run: Run, truth: Run, align: str | None = None, calibration: str | o
             true = load(".pf_eval.truth", "eval").read_truth(truth, calibration)[0]
         else:
             true = _trajectory(truth, "truth")
+        estimate, true = load(".pf_eval.trajectories", "eval").on_one_clock(estimate, true)
         how = align or errors.default_alignment(report)
         return cast(Comparison, errors.compare(estimate, true, how, own_frame=report.get("start") != "auto"))
     except refused as line:
