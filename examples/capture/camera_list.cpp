@@ -36,7 +36,10 @@ int list_v4l2() {
       refused = true;
       std::printf("camera  v4l2:%-14s this user may not open it\n", device.path);
     } else {
-      std::printf("camera  v4l2:%-14s %s (%s)  %s\n", device.path, device.name, device.bus, formats.c_str());
+      const std::string others =
+          device.formats == 0 && device.others[0] != '\0' ? std::string(": ") + device.others : "";
+      std::printf("camera  v4l2:%-14s %s (%s)  %s%s\n", device.path, device.name, device.bus, formats.c_str(),
+                  others.c_str());
     }
   }
   if (refused) {

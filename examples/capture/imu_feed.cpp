@@ -274,4 +274,14 @@ std::string ImuFeed::report(const pf_slam_t* slam, std::string& advice) const {
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
+void ImuFeed::add_rejections(const pf_slam_t* slam, std::vector<Rejection>& rejections) const {
+  const TimeOffset offset = offset_.estimate();
+  pf_inertial_t known{};
+  const bool estimated = pf_get_inertial(slam, &known) == PF_OK && known.sigma.delay_s >= 0.0;
+  add_rejected_unit(slam,
+                    {inertial_, offset.offset_s, offset.known ? offset.sigma_s : 0.0,
+                     estimated ? known.delay_s : model_.delay_s, offset_s_},
+                    rejections);
+}
+
 }  // namespace pf::capture

@@ -9,6 +9,7 @@
 #include "imu.h"
 #include "imu_recorder.h"
 #include "notices.h"
+#include "rejections.h"
 #include "time_offset.h"
 
 namespace pf::capture {
@@ -40,6 +41,8 @@ class ImuFeed {
   bool is_inertial() const { return inertial_; }
   /// JSON for report.json. advice: one line on the unit's clock, or "".
   std::string report(const pf_slam_t* slam, std::string& advice) const;
+  /// What of the unit the pictures contradict.
+  void add_rejections(const pf_slam_t* slam, std::vector<Rejection>& rejections) const;
 
  private:
   void tell_vertical(pf_slam_t* slam);

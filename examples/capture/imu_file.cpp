@@ -1,6 +1,7 @@
 #include <planefold_platform/sequence.h>
 
 #include <limits>
+#include <utility>
 
 #include "imu.h"
 
@@ -10,8 +11,13 @@ namespace {
 
 class ImuFile : public Imu {
  public:
-  ImuFile(std::string path, pf_imu_sample_t* samples, size_t count, int64_t offset_ns)
-      : path_(std::move(path)), samples_(samples, pf_free_imu), count_(count), offset_ns_(offset_ns) {}
+  /// note  a line about the file, or ""
+  ImuFile(std::string path, pf_imu_sample_t* samples, size_t count, int64_t offset_ns, std::string note)
+      : path_(std::move(path)),
+        samples_(samples, pf_free_imu),
+        count_(count),
+        offset_ns_(offset_ns),
+        note_(std::move(note)) {}
 
   bool start(std::string&) override { return true; }
 
@@ -24,11 +30,17 @@ class ImuFile : public Imu {
 
   std::string name() const override { return path_; }
 
+  bool take_notice(std::string& line) override {
+    line = std::exchange(note_, "");
+    return !line.empty();
+  }
+
  private:
   std::string path_;
   std::unique_ptr<pf_imu_sample_t, void (*)(pf_imu_sample_t*)> samples_;
   size_t count_;
   int64_t offset_ns_;
+  std::string note_;
   size_t at_ = 0;
 };
 
@@ -42,7 +54,7 @@ std::unique_ptr<Imu> open_imu_file(const std::string& path, int64_t offset_ns, s
     error = message;
     return nullptr;
   }
-  auto file = std::make_unique<ImuFile>(path, samples, count, offset_ns);
+  auto file = std::make_unique<ImuFile>(path, samples, count, offset_ns, message);
   constexpr int64_t kMost = std::numeric_limits<int64_t>::max();
   if ((offset_ns > 0 && samples[count - 1].t_ns > kMost - offset_ns) ||
       (offset_ns < 0 && samples[0].t_ns < -kMost - offset_ns)) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "checked_options.h"
+#include "focal_search.h"
 #include "imu.h"
 #include "realtime.h"
 
@@ -24,6 +25,7 @@ constexpr const char* kFooter =
     "In the window: space pauses, r resets, s saves the picture, q quits; a click or tap shows which plane it hits.\n"
     "Writes into --out: report.json, trajectory.txt (TUM), covariance.csv, trajectory_all.txt, frames.csv, map.ply,\n"
     "calib.yaml, overlay.mp4, overlay_mid.png, overlay_last.png, lens.csv where the lens is estimated,\n"
+    "calib_found.yaml where there was no calibration,\n"
     "inertial.csv where a unit's samples are used, and truth.tum and truth_planes.json where the source knows them.\n"
     "Poses in a second map, which has a world of its own, go into trajectory_2.txt and so on.\n"
     "Exit code: 0 done, 1 the run failed, ended early, tracked nothing, or was lost at the end or most of the time,\n"
@@ -51,8 +53,10 @@ void add_camera_options(CLI::App& app, Options& options) {
       ->group(group);
   app.add_flag("--realtime", options.realtime, "play a folder or scene at its own pace, as a camera would")
       ->group(group);
-  app.add_option("--format", options.format,
-                 "any, GREY, NV12, YUYV, Y16 or MJPEG; of libcamera also YUV420, RGB888 or BGR888")
+  app.add_option(
+         "--format", options.format,
+         "any, GREY, NV12, YUYV, UYVY, YU12, NV21, Y10, Y12, Y16, MJPEG or others (a wrong one names them all); of\n"
+         "libcamera also YUV420, RGB888 or BGR888")
       ->capture_default_str()
       ->group(group);
   app.add_option("--rate", options.rate_hz, "frames per second to ask the camera for")
@@ -83,7 +87,9 @@ int refuse(const std::string& line) {
 }
 
 std::string check_format(const std::string& format, const std::string& kind) {
-  const std::vector<std::string> by_v4l2 = {"any", "GREY", "NV12", "YUYV", "Y16", "MJPEG"};
+  const std::vector<std::string> by_v4l2 = {"any",  "GREY", "NV12", "NV21", "YU12", "YV12", "NV16",
+                                            "NV61", "422P", "YUYV", "UYVY", "YVYU", "VYUY", "Y10P",
+                                            "Y10",  "Y12",  "Y14",  "Y16",  "MJPEG"};
   const std::vector<std::string> by_libcamera = {"any", "GREY", "YUV420", "NV12", "YUYV", "RGB888", "BGR888"};
   const std::vector<std::string>& known = kind == "libcamera" ? by_libcamera : by_v4l2;
   if (std::find(known.begin(), known.end(), format) != known.end()) {
@@ -129,13 +135,19 @@ std::string check(const Options& options, const std::string& backend) {
   const std::string kind = options.source.substr(0, options.source.find(':'));
   const bool is_camera = platform::is_camera(options.source);
   if (options.source.find(':') == std::string::npos ||
-      (kind != "images" && kind != "euroc" && kind != "tum" && kind != "sim" && !is_camera)) {
+      (kind != "images" && kind != "euroc" && kind != "tum" && kind != "video" && kind != "sim" && !is_camera)) {
     return "source '" + options.source +
-           "': write v4l2:DEVICE, libcamera:NUMBER, images:DIR, euroc:DIR, tum:DIR or sim:NAME";
+           "': write v4l2:DEVICE, libcamera:NUMBER, video:FILE, images:DIR, euroc:DIR, tum:DIR or sim:NAME";
   }
   std::string wrong = check_format(options.format, kind);
   if (!wrong.empty()) {
     return wrong;
+  }
+  if (options.fov_deg > 0.0 && (is_camera || kind == "sim")) {
+    return "--fov is for films and folders: a camera needs its calibration, and a scene has its own";
+  }
+  if (options.fov_deg > 0.0 && !options.calibration.empty()) {
+    return "--fov and --calib: a calibration says the focal length; leave one of them away";
   }
   if (options.every_frame && !is_camera && !options.realtime) {
     return "--every-frame is for cameras and --realtime; without these every frame is tracked anyway";
@@ -261,9 +273,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       {"auto", PF_KERNELS_AUTO}, {"reference", PF_KERNELS_REFERENCE}, {"portable", PF_KERNELS_PORTABLE},
       {"avx2", PF_KERNELS_AVX2}, {"avx512", PF_KERNELS_AVX512},       {"neon", PF_KERNELS_NEON}};
   app.set_version_flag("--version", "pf-capture " PF_VERSION_TEXT);
-  app.add_option(
-      "--source", options.source,
-      "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, images:DIR, euroc:DIR, tum:DIR or sim:NAME");
+  app.add_option("--source", options.source,
+                 "v4l2:/dev/videoN, v4l2:NAME, libcamera:NUMBER, libcamera:NAME, video:FILE, images:DIR (or\n"
+                 "images:DIR/left_*.png), euroc:DIR, tum:DIR or sim:NAME");
   app.add_flag("--list", options.list, "name the cameras and IMUs of this machine, and do nothing else");
   app.add_option(
          "--calib", options.calibration,
@@ -276,6 +288,11 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "that\n"
                  "--imu-mount names too (the first, or the one that the folder of the images is named after)")
       ->check(not_empty());
+  app.add_option("--fov", options.fov_deg,
+                 "of a film or folder without a calibration: degrees across, to begin with (of a film 65); focal "
+                 "length and\n"
+                 "distortion are then estimated, with --backend window where it is not given")
+      ->check(number_in(10.0, 150.0));
   app.add_option("--readout", options.readout_s, "rolling shutter: seconds from the first row to the last; 0: global")
       ->check(number_in(0.0, 0.2));
   app.add_option("--start", options.start,
@@ -324,8 +341,10 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
   app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame; patches.csv likewise");
   app.add_flag("--quiet", options.quiet, "no progress line");
-  app.add_option("--backend", backend, "filter: a filter over pose and map; window: keyframes and bundle adjustment")
-      ->capture_default_str();
+  const CLI::Option* given_backend =
+      app.add_option("--backend", backend,
+                     "filter: a filter over pose and map; window: keyframes and bundle adjustment")
+          ->capture_default_str();
   const CLI::Option* seed = app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
   app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
       ->check(number_in(0.0, 1000.0));
@@ -394,6 +413,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     code = refuse("--no-points follows patches and no features: leave --patches 0 and --features-in-view away");
     return Parsed::kExit;
   }
+  if (given_backend->count() == 0 && is_uncalibrated(options)) backend = "window";
   const auto set = kernel_names.find(kernels);
   std::string wrong = check(options, backend);
   if (wrong.empty() && seed->count() > 0 && options.source.rfind("sim:", 0) != 0) {

@@ -15,12 +15,16 @@ constexpr int kExitRun =
     1;  ///< the run could not begin, ended early, tracked nothing, or was lost at the end or most of the time
 constexpr int kExitUsage = 2;  ///< the command line is wrong, or a file that it names beside the frames
 
+constexpr double kDefaultFovDeg = 65.0;  ///< of films without a calibration
+
 /// What the command line asks for. Negative numbers mean that the library's default is kept.
 struct Options {
   std::string command;  ///< the whole command line
   std::string source;
   std::string calibration;
-  std::string camera;  ///< of a calibration of several; "": the first, or the one that the folder is named after
+  std::string camera;    ///< of a calibration of several; "": the first, or the one that the folder is named after
+  double fov_deg = 0.0;  ///< horizontal, of a source that is tracked without its calibration; 0: not given
+  std::optional<pf_camera_t> guess;  ///< in place of a calibration, once the size of the images is known
   std::string start = "auto";
   std::string second_pose;  ///< file of a second known pose; "": none
   std::string walls;        ///< file of a plan; "": none

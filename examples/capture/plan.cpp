@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 
 #include "rows.h"
@@ -82,6 +83,29 @@ bool is_in_view(const pf_wall_prior_t& wall, const pf_pose_t& pose, const pf_cam
   return false;
 }
 
+/// A wall that is longer or higher than any: its lengths are hardly metres.
+std::string doubt_of_size(const pf_walls_t& walls) {
+  constexpr double kLongest = 300.0;  // [m]
+  for (int32_t i = 0; i < walls.count; ++i) {
+    const pf_wall_prior_t& wall = walls.wall[i].prior;
+    double size = 0.0;
+    for (int32_t k = 0; k < wall.outline_count; ++k) {
+      for (int32_t j = 0; j < k; ++j) {
+        size = std::max(
+            size, std::hypot(wall.outline_P[k][0] - wall.outline_P[j][0], wall.outline_P[k][1] - wall.outline_P[j][1]));
+      }
+    }
+    if (size > kLongest) {
+      char text[160];
+      std::snprintf(text, sizeof(text),
+                    "' measures %.5g m across; lengths are metres: were they millimetres, write them times 0.001",
+                    size);
+      return std::string("--walls: wall '") + walls.wall[i].name + text;
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 bool Plan::open(const std::string& path, bool tell_depths, std::string& error) {
@@ -116,6 +140,11 @@ bool Plan::add_to(pf_slam_t* slam, std::string& error) {
 }
 
 bool Plan::take_notice(const FrameView& view, const pf_camera_t& camera, std::string& line) {
+  if (!told_size_) {
+    told_size_ = true;
+    line = doubt_of_size(walls_);
+    if (!line.empty()) return true;
+  }
   told_.resize(static_cast<size_t>(walls_.count));
   for (int32_t i = 0; i < walls_.count && view.has_pose; ++i) {
     const pf_wall_prior_t& wall = walls_.wall[i].prior;
@@ -166,6 +195,21 @@ nlohmann::ordered_json Plan::to_json(const pf_slam_t* slam) const {
     json.push_back(row);
   }
   return json;
+}
+
+/// Walls that are doubted, and those that went with an estimate that was given up.
+void Plan::add_rejections(const pf_slam_t* slam, std::vector<Rejection>& rejections) const {
+  for (const nlohmann::ordered_json& row : to_json(slam)) {
+    const std::string what = "wall '" + row["name"].get<std::string>() + "'";
+    if (row.contains("gone")) {
+      rejections.push_back({what, "--walls: " + what +
+                                      " is not in the map any more: the estimate was given up, and the plan's frame "
+                                      "with it; check the first pose and the plan"});
+    } else if (row["doubted"].get<bool>()) {
+      rejections.push_back({what, "--walls: the pictures contradict " + what +
+                                      ", which takes no points any more; check its corners, and the first pose"});
+    }
+  }
 }
 
 std::vector<std::vector<Vec3>> Plan::outlines() const {

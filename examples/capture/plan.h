@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "maths.h"
+#include "rejections.h"
 #include "view.h"
 
 namespace pf::capture {
@@ -29,6 +30,9 @@ class Plan {
   /// is none.
   bool take_notice(const FrameView& view, const pf_camera_t& camera, std::string& line);
 
+  /// Walls that the pictures contradict, or that went with the map.
+  void add_rejections(const pf_slam_t* slam, std::vector<Rejection>& rejections) const;
+
   /// For report.json: of each wall how far it has gone from the plan, and how well it is known now.
   nlohmann::ordered_json to_json(const pf_slam_t* slam) const;
 
@@ -40,6 +44,7 @@ class Plan {
   std::vector<uint32_t> id_;  ///< of each wall in the map
   std::vector<bool> told_;    ///< of each wall, that it is seen from behind
   bool must_see_wall_ = false;
+  bool told_size_ = false;  ///< of walls that are too large
 };
 
 }  // namespace pf::capture

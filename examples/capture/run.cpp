@@ -12,18 +12,21 @@
 #include <utility>
 #include <vector>
 
+#include "focal_search.h"
 #include "imu_feed.h"
 #include "map_shape.h"
 #include "outputs.h"
 #include "progress.h"
 #include "realtime.h"
 #include "recorder.h"
+#include "rejections.h"
 #include "relative_motion.h"
 #include "session.h"
 #include "show.h"
 #include "source.h"
 #include "statistics.h"
 #include "steady.h"
+#include "target_distance.h"
 #include "text_file.h"
 
 namespace pf::capture {
@@ -59,7 +62,9 @@ std::string short_name(const std::string& source) {
 /// A run from the first frame to the last: one step per frame, and what is kept between them.
 class Run {
  public:
-  Run(const Options& options, Source& source) : options_(options), source_(source), progress_(options.quiet) {}
+  /// guess  of the focal length; null where the source has a calibration
+  Run(const Options& options, Source& source, const FocalGuess* guess)
+      : options_(options), source_(source), guess_(guess), progress_(options.quiet) {}
 
   int go();
 
@@ -75,9 +80,13 @@ class Run {
   bool refresh_report();
   int finish();
   std::string why_nothing_was_tracked() const;
+  std::vector<Rejection> find_rejections() const;
+  static void tell_rejections(const std::vector<Rejection>& rejections);
+  void tell_focal();
 
   const Options& options_;
   Source& source_;
+  const FocalGuess* guess_;
   Session session_;
   Outputs outputs_;
   Statistics statistics_;
@@ -92,7 +101,8 @@ class Run {
   bool done_any_ = false;
   bool quit_ = false;
   bool paused_ = false;
-  bool withdrawn_ = false;  ///< the target
+  bool withdrawn_ = false;    ///< the target
+  bool told_target_ = false;  ///< how far away it is
   bool saved_mid_ = false;
   bool told_film_failed_ = false;
   int64_t reported_ns_ = 0;  ///< when report.json was written
@@ -207,6 +217,10 @@ Read Run::step(int64_t index) {
   }
   for (std::string line; session_.take_notice(view_, line);) {
     note(line);
+  }
+  if (view_.tracked && session_.target() != nullptr && !told_target_) {
+    told_target_ = true;
+    note(doubt_of_target(*session_.target(), options_.start, view_.pose));
   }
   imu_.add_frame(index, session_.slam(), view_.pose, view_.tracked);
   follow_planes(session_.slam(), view_.hits);
@@ -376,6 +390,28 @@ std::string Run::why_nothing_was_tracked() const {
   return "none of the " + frames + " frames was tracked; the camera has to move sideways past something with texture";
 }
 
+/// The last words on a source without a calibration: what was found, and where it was written.
+void Run::tell_focal() {
+  const double sigma_px = guess_ != nullptr ? focal_sigma_px(session_.slam(), *guess_) : -1.0;
+  if (sigma_px < 0.0) {
+    return;
+  }
+  pf_camera_t camera{};
+  pf_get_camera(session_.slam(), &camera, nullptr);
+  std::printf("%s\n", describe_focal(camera, sigma_px).c_str());
+  camera.sigma_focal = std::min(sigma_px / camera.fx, 0.2);
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  std::string error;
+  const std::string path = outputs_.path("calib_found.yaml");
+  if (!outputs_.claim("calib_found.yaml", error)) {
+    note(error);
+  } else if (pf_write_calibration(path.c_str(), PF_CALIBRATION_PLAIN, &camera, 0.0, message) != 0) {
+    note(message);
+  } else {
+    std::printf("the camera as it was found: %s, for --calib\n", path.c_str());
+  }
+}
+
 int Run::finish() {
   progress_.end();
   tell_notices();
@@ -425,20 +461,55 @@ int Run::finish() {
   }
   std::string error, advice;
   const std::string imu = imu_.report(session_.slam(), advice);
+  const std::vector<Rejection> rejections = find_rejections();
+  const std::string rejected = summary_of(rejections);
   const std::string report = statistics_.to_json(session_, options_, source_.info(), relative_, live, imu, failure_);
   const std::vector<double> in_map = sigmas_in_map(session_.slam(), view_.features);
   if (!outputs_.write_state(view_, in_map, report, error)) {
     return fail(failure_.empty() ? error : failure_);
   }
   if (!failure_.empty()) {
-    return fail(failure_);
+    tell_rejections(rejections);
+    return fail(failure_ + (rejected.empty() ? "" : " (" + rejected + ")"));
   }
   if (!advice.empty()) {
     std::printf("%s\n", advice.c_str());
   }
   std::printf("%s\nwritten to %s%s\n", statistics_.summary(session_).c_str(), options_.out.c_str(),
               filming ? " (overlay.mp4 is the film)" : "");
-  return lost.empty() ? kExitDone : fail(lost);
+  tell_focal();
+  std::fflush(stdout);
+  tell_rejections(rejections);
+  return lost.empty() ? kExitDone : fail(lost + (rejected.empty() ? "" : " (" + rejected + ")"));
+}
+
+std::vector<Rejection> Run::find_rejections() const {
+  std::vector<Rejection> rejections;
+  if (done_any_) {
+    imu_.add_rejections(session_.slam(), rejections);
+    session_.plan().add_rejections(session_.slam(), rejections);
+    if (guess_ == nullptr) {
+      add_rejected_calibration(session_.slam(), session_.config().camera, rejections);
+    }
+  }
+  return rejections;
+}
+
+/// The last lines that the user sees.
+void Run::tell_rejections(const std::vector<Rejection>& rejections) {
+  for (const Rejection& rejection : rejections) {
+    note(rejection.line);
+  }
+}
+
+/// The folder of "DIR/left_*.png"; another path as it is.
+std::string without_pattern(const std::string& path) {
+  const size_t slash = path.find_last_of('/');
+  const size_t star = path.find_last_of('*');
+  if (star == std::string::npos || (slash != std::string::npos && star < slash)) {
+    return path;
+  }
+  return slash == std::string::npos ? "." : path.substr(0, slash);
 }
 
 /// No file that is read may be one that an earlier run left in the folders that are written, and that goes.
@@ -447,8 +518,8 @@ bool spares_inputs(const Options& options, std::string& error) {
                                      options.imu_mount};
   for (const std::string* text : {&options.source, &options.start, &options.imu}) {
     const std::string kind = text->substr(0, text->find(':'));
-    for (const char* reads : {"images", "euroc", "tum", "target", "pose", "csv"}) {
-      if (kind == reads && kind.size() < text->size()) inputs.push_back(text->substr(kind.size() + 1));
+    for (const char* reads : {"images", "euroc", "tum", "video", "target", "pose", "csv"}) {
+      if (kind == reads && kind.size() < text->size()) inputs.push_back(without_pattern(text->substr(kind.size() + 1)));
     }
   }
   for (const auto& [option, folder] : {std::pair("--out", options.out), std::pair("--record", options.record)}) {
@@ -478,11 +549,22 @@ int run(const Options& options) {
   if (!spares_inputs(options, error)) {
     return fail(error);
   }
-  const std::unique_ptr<Source> source = open_source(options, error);
+  FocalGuess guess;
+  Options chosen = options;
+  const bool guesses = is_uncalibrated(options);
+  if (guesses) {
+    if (!search_focal(
+            options, [] { return g_interrupted != 0; }, guess, error)) {
+      return fail(error);
+    }
+    note(describe(guess));
+    chosen.guess = guess.camera;
+  }
+  const std::unique_ptr<Source> source = open_source(chosen, error);
   if (source == nullptr) {
     return fail(error, is_calibration_wrong(options) ? kExitUsage : kExitRun);
   }
-  return Run(options, *source).go();
+  return Run(chosen, *source, guesses ? &guess : nullptr).go();
 }
 
 }  // namespace pf::capture

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "steady.h"
 
@@ -155,6 +156,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     code = kExitUsage;
     return false;
   }
+  start_note_ = has_target_ ? message : "";
   has_second_pose_ =
       !options.second_pose.empty() && pf_read_first_pose(options.second_pose.c_str(), &second_pose_, message) == 0;
   if (!options.second_pose.empty() && !has_second_pose_) {
@@ -179,6 +181,14 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     return false;
   }
   return true;
+}
+
+bool Session::take_notice(const FrameView& view, std::string& line) {
+  if (!start_note_.empty()) {
+    line = std::exchange(start_note_, "");
+    return true;
+  }
+  return !plan_.empty() && plan_.take_notice(view, config_.camera, line);
 }
 
 bool Session::is_metric() const {

@@ -43,9 +43,7 @@ class Session {
   bool is_metric() const;
   const Plan& plan() const { return plan_; }
   /// A line for the user about what this frame has shown. false: there is none.
-  bool take_notice(const FrameView& view, std::string& line) {
-    return !plan_.empty() && plan_.take_notice(view, config_.camera, line);
-  }
+  bool take_notice(const FrameView& view, std::string& line);
   const std::vector<std::string>& log() const { return log_; }
 
  private:
@@ -66,6 +64,7 @@ class Session {
   bool has_gravity_ = false;
   double gravity_W_[3] = {0.0, 0.0, 0.0};
   std::string start_;
+  std::string start_note_;  ///< of the target's file, until it was told
   std::vector<std::string> log_;
   int map_ = 1;               ///< of the run
   uint32_t map_id_ = 1;       ///< the library's, since the last reset

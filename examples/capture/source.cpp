@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera.h"
+#include "focal_search.h"
 #include "imu.h"
 #include "live_source.h"
 
@@ -21,16 +22,19 @@ namespace {
 
 class FolderSource : public Source {
  public:
-  explicit FolderSource(pf_sequence_t* sequence) : sequence_(sequence, pf_close_sequence) {
+  /// guess  of the camera, where there is no calibration
+  FolderSource(pf_sequence_t* sequence, const std::optional<pf_camera_t>& guess)
+      : sequence_(sequence, pf_close_sequence) {
     pf_sequence_info_t info{};
     pf_get_sequence_info(sequence, &info);
-    info_.camera = info.camera;
+    info_.camera = guess.value_or(info.camera);
     info_.count = info.count;
     info_.rate_hz = info.rate_hz;
     info_.truth_path = info.truth_path;
     info_.warning = info.warning;
     info_.camera_name = info.camera_name;
     info_.imu_path = info.imu_path;
+    in_order_ = info.in_order != 0;
   }
 
   const SourceInfo& info() const override { return info_; }
@@ -72,11 +76,21 @@ class FolderSource : public Source {
   Read read(int64_t index, pf_image_t& image, std::string& error) override {
     char message[PF_SEQUENCE_MESSAGE];
     const int result = pf_read_sequence_frame(sequence_.get(), number(index), &image, message);
+    if (result == PF_SEQUENCE_END) {
+      notice_ = message;
+      return Read::kEnd;
+    }
     error = message;
     return result == 0 ? Read::kDone : result == PF_SEQUENCE_UNUSABLE_IMAGE ? Read::kUnusable : Read::kFailed;
   }
 
-  bool reads_in_any_order() const override { return true; }
+  bool reads_in_any_order() const override { return !in_order_; }
+
+  bool take_notice(std::string& line) override {
+    line.swap(notice_);
+    notice_.clear();
+    return !line.empty();
+  }
 
   std::string name(int64_t index) const override { return pf_get_sequence_frame_path(sequence_.get(), number(index)); }
 
@@ -84,6 +98,8 @@ class FolderSource : public Source {
   int64_t number(int64_t index) const { return kept_.empty() ? index : kept_[static_cast<size_t>(index)]; }
 
   std::vector<int64_t> kept_;
+  bool in_order_ = false;
+  std::string notice_;  ///< not told yet
   std::unique_ptr<pf_sequence_t, void (*)(pf_sequence_t*)> sequence_;
   SourceInfo info_;
 };
@@ -98,12 +114,14 @@ std::unique_ptr<Source> open_stored(const Options& options, std::string& error) 
   }
   char message[PF_SEQUENCE_MESSAGE];
   pf_sequence_t* sequence = nullptr;
-  const char* calibration = options.calibration.empty() ? nullptr : options.calibration.c_str();
+  const char* calibration = is_uncalibrated(options)      ? PF_SEQUENCE_UNCALIBRATED
+                            : options.calibration.empty() ? nullptr
+                                                          : options.calibration.c_str();
   if (pf_open_sequence_of(options.source.c_str(), calibration, options.camera.c_str(), &sequence, message) != 0) {
     error = message;
     return nullptr;
   }
-  auto folder = std::make_unique<FolderSource>(sequence);
+  auto folder = std::make_unique<FolderSource>(sequence, options.guess);
   if (options.as_recorded && !folder->keep_tracked(options.source, error)) {
     return nullptr;
   }

@@ -38,6 +38,7 @@ class Cover : public Source {
   bool target(pf_target_t& target) const override { return source_->target(target); }
   std::vector<std::array<double, 4>> planes() const override { return source_->planes(); }
   std::unique_ptr<Imu> imu(int64_t offset_ns) const override { return source_->imu(offset_ns); }
+  bool take_notice(std::string& line) override { return source_->take_notice(line); }
   std::string report() override { return source_->report(); }
   std::string finish() override { return source_->finish(); }
 

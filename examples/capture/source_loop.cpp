@@ -75,6 +75,7 @@ class Loop : public Source {
     return info_.knows_truth;
   }
 
+  bool take_notice(std::string& line) override { return source_->take_notice(line); }
   bool target(pf_target_t& target) const override { return source_->target(target); }
   std::vector<std::array<double, 4>> planes() const override { return source_->planes(); }
 

@@ -71,6 +71,7 @@ class ThereAndBack : public Source {
   bool target(pf_target_t& target) const override { return source_->target(target); }
   std::vector<std::array<double, 4>> planes() const override { return source_->planes(); }
 
+  bool take_notice(std::string& line) override { return source_->take_notice(line); }
   std::string finish() override { return source_->finish(); }
   bool turn(int64_t& t_ns, int64_t& images) const override {
     images = static_cast<int64_t>(frames_.size());

@@ -258,6 +258,8 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["start"] = session.start();
   json["unusable"] = unusable_ + unreadable_;
   json["unreadable"] = unreadable_lines_;
+  json["unreadable_frames"] = unreadable_;
+  json["skip"] = options.skip;
   json["flat"] = flat_;
   json["duplicates"] = duplicates_;
   json["covariance_repairs"] = repairs_;

@@ -73,18 +73,26 @@ const Form* form_of(const Fields& fields) {
   return nullptr;
 }
 
-void refuse_form(const std::string& file) {
+std::string known_forms() {
   std::string labels;
   for (const Form* form : all_forms()) {
     labels += (labels.empty() ? "" : ", ") + std::string(form->label);
   }
-  refuse(file + ": is a calibration of no known layout; known are " + labels);
+  return labels;
+}
+
+std::vector<Fields> documents_of(const std::string& text, const std::string& file) {
+  try {
+    return Fields::documents(from_colmap(text), file);
+  } catch (const NoFields& error) {
+    refuse(error.what() + std::string(" Known are ") + known_forms());
+  }
 }
 
 Calibration read_fields(const Fields& fields, const Asked& asked) {
   const Form* form = form_of(fields);
   if (form == nullptr) {
-    refuse_form(fields.file());
+    refuse(fields.file() + ": is a calibration of no known layout; known are " + known_forms());
   }
   Calibration calibration{};
   calibration.form = form->name;
@@ -97,6 +105,15 @@ Calibration read_fields(const Fields& fields, const Asked& asked) {
     refuse(fields.file() + ": holds one camera, which has no name to choose it by; leave --camera away");
   }
   return calibration;
+}
+
+/// Whether a further document says the same camera again.
+bool repeats(const Fields& fields, const Asked& asked, const pf_camera_t& camera) {
+  try {
+    return is_same_lens(read_fields(fields, asked).camera, camera);
+  } catch (const ReadError&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -116,14 +133,14 @@ double read_rate(const Fields& fields, const char* key) {
 }
 
 Calibration parse_calibration(const std::string& text, const std::string& file, const Asked& asked) {
-  const std::vector<Fields> documents = Fields::documents(from_colmap(text), file);
+  const std::vector<Fields> documents = documents_of(text, file);
   Calibration calibration{};
   read_with_hints(documents.front(), [&](const Fields& fields) { calibration = read_fields(fields, asked); });
   // A stream of messages repeats the camera.
   for (size_t i = 1; i < documents.size(); ++i) {
-    if (!is_same_lens(read_fields(documents[i], asked).camera, calibration.camera)) {
+    if (!repeats(documents[i], asked, calibration.camera)) {
       refuse(file + ": holds several documents, and number " + std::to_string(i + 1) +
-             " has another camera than the first; keep one in a file");
+             " has not the camera of the first; keep one in a file");
     }
   }
   return calibration;

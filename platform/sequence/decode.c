@@ -37,6 +37,26 @@ int pf_decode_reserve(pf_decoded_t* image, uint64_t width, uint64_t height, unsi
   return 0;
 }
 
+uint8_t pf_decode_level(pf_decoded_t* image, uint32_t value) {
+  const int32_t number = (int32_t)value;
+  if (number > image->brightest) {
+    image->brightest = number;
+  }
+  if (image->histogram != NULL) {
+    ++image->histogram[value];
+  }
+  if (image->white == 0) {
+    return (uint8_t)((value * 255u + 32895u) >> 16); /* as png_set_scale_16 rounds */
+  }
+  if (number <= image->black) {
+    return 0;
+  }
+  if (number >= image->white) {
+    return 255;
+  }
+  return (uint8_t)((255 * (number - image->black) + (image->white - image->black) / 2) / (image->white - image->black));
+}
+
 void pf_decode_free(pf_decoded_t* image) {
   free(image->pixels);
   free(image->scratch);

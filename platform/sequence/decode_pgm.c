@@ -45,8 +45,9 @@ int pf_decode_pgm(const uint8_t* bytes, size_t size, pf_decoded_t* image, char w
   }
   for (i = 0; i < area; ++i) {
     long value = depth == 1 ? bytes[at + i] : 256L * bytes[at + 2 * i] + bytes[at + 2 * i + 1];
-    if (top == 65535 && value > image->brightest) {
-      image->brightest = (int32_t)value;
+    if (top == 65535) {
+      image->pixels[i] = pf_decode_level(image, (uint32_t)value);
+      continue;
     }
     if (value > top) {
       value = top;

@@ -34,16 +34,12 @@ static void on_read(png_structp png, png_bytep out, size_t count) {
   reader->at += count;
 }
 
-/* Numbers of 16 bits in scratch, of which the high byte stays, rounded as png_set_scale_16 does. */
+/* Numbers of 16 bits in scratch to grey levels. */
 static void to_bytes(pf_decoded_t* image, unsigned channels) {
   const size_t count = (size_t)image->width * (size_t)image->height * channels;
   size_t i;
   for (i = 0; i < count; ++i) {
-    const uint32_t value = 256u * image->scratch[2 * i] + image->scratch[2 * i + 1];
-    if ((int32_t)value > image->brightest) {
-      image->brightest = (int32_t)value;
-    }
-    image->scratch[i] = (uint8_t)((value * 255u + 32895u) >> 16);
+    image->scratch[i] = pf_decode_level(image, 256u * image->scratch[2 * i] + image->scratch[2 * i + 1]);
   }
 }
 

@@ -52,7 +52,7 @@ void read_with_hints(const Fields& fields, const std::function<void(const Fields
       refuse(line + "; is '" + unknown.nearest() + "' meant?");
     }
     if (would_be_read(fields.edited(unknown.above(), unknown.key(), ""), read, kMaxEdits)) {
-      refuse(line + "; remove it if it says nothing of these images");
+      refuse(line + "; remove it only if it says nothing of the lens or the size of these images");
     }
     refuse(line);
   }

@@ -32,9 +32,6 @@ struct Row {
 /// Lines of text cut at blanks and commas; empty lines and those that begin with # are left out. The words point into text.
 std::vector<Row> split_rows(std::string_view text);
 
-/// PNG, JPEG and PGM files of a folder in natural order (frame 2 before frame 10).
-std::vector<std::string> list_images(const fs::path& folder);
-
 }  // namespace pf::sequence
 
 #endif

@@ -1,19 +1,14 @@
 #ifndef PLANEFOLD_PLATFORM_SEQUENCE_FOLDER_H
 #define PLANEFOLD_PLATFORM_SEQUENCE_FOLDER_H
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "calibration.h"
 #include "file.h"
+#include "frame_table.h"
 
 namespace pf::sequence {
-
-struct Frame {
-  int64_t t_ns;
-  fs::path path;
-};
 
 struct Folder {
   fs::path root;
@@ -24,9 +19,11 @@ struct Folder {
   Asked asked;  ///< with which it was read
   std::vector<Frame> frames;
   std::vector<std::string> notes;  ///< what had to be assumed, one line each, without those of the calibration
+  bool is_film = false;            ///< root is a file, and so is the path of every frame
+  double film_rate_hz = 0.0;       ///< 0: not known
 };
 
-/// Lists what "kind:DIR" names; opens no image. Throws ReadError.
+/// Lists what "kind:DIR" or "video:FILE" names, or "images:DIR/PATTERN" with a *; decodes no image. Throws ReadError.
 /// calibration  file to use, or "" for the one inside
 /// camera       of a calibration of several; "": the one that the folder is named after, or the first
 Folder open_folder(const std::string& source, const std::string& calibration, const std::string& camera);

@@ -12,7 +12,8 @@ namespace pf::sequence {
 constexpr size_t kMaxImuBytes = size_t{1} << 30;
 
 /// Rows of time, angular velocity and specific force, in order of time. Throws ReadError; name stands for the file.
-std::vector<pf_imu_sample_t> parse_imu(std::string_view text, const std::string& name);
+/// note  becomes a line where the times are in another unit than expected
+std::vector<pf_imu_sample_t> parse_imu(std::string_view text, const std::string& name, std::string& note);
 
 }  // namespace pf::sequence
 

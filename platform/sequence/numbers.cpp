@@ -30,41 +30,51 @@ bool parse_integer(std::string_view text, int64_t& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-bool parse_seconds(std::string_view text, int64_t& t_ns) {
-  constexpr int64_t kSecond = 1000000000;
+bool parse_decimal(std::string_view text, int digits, int64_t& value) {
+  constexpr int64_t kMaxExponent = 64;
+  constexpr int64_t kLargest = std::numeric_limits<int64_t>::max() / 10 - 1;
   text = without_plus(text);
   const bool negative = !text.empty() && text[0] == '-';
   if (negative) {
     text.remove_prefix(1);
   }
-  const size_t dot = text.find('.');
-  const std::string_view whole = text.substr(0, dot);
-  const std::string_view part = dot == std::string_view::npos ? "" : text.substr(dot + 1);
-  if (whole.empty() && part.empty()) {
+  const size_t e = text.find_first_of("eE");
+  int64_t exponent = 0;
+  if (e != std::string_view::npos &&
+      (!parse_integer(text.substr(e + 1), exponent) || exponent > kMaxExponent || exponent < -kMaxExponent)) {
     return false;
   }
-  int64_t seconds = 0;
-  for (char c : whole) {
-    if (!is_digit(c) || seconds > std::numeric_limits<int64_t>::max() / kSecond / 10 - 1) {
+  text = text.substr(0, e);
+  const size_t dot = text.find('.');
+  const size_t before = dot == std::string_view::npos ? text.size() : dot;
+  if (text.empty() || text == ".") {
+    return false;
+  }
+  int64_t place = static_cast<int64_t>(before) + exponent + digits;  // of digits before the point of the result
+  int64_t result = 0;
+  bool up = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (i == dot) {
+      continue;
+    }
+    if (!is_digit(text[i]) || (place > 0 && result > kLargest)) {
       return false;
     }
-    seconds = 10 * seconds + (c - '0');
+    if (place > 0) {
+      result = 10 * result + (text[i] - '0');
+    } else if (place == 0) {
+      up = text[i] >= '5';
+    }
+    --place;
   }
-  int64_t nanoseconds = 0;
-  int64_t unit = kSecond / 10;
-  for (size_t i = 0; i < part.size(); ++i) {
-    if (!is_digit(part[i])) {
+  for (; place > 0 && result != 0; --place) {
+    if (result > kLargest) {
       return false;
     }
-    if (i < 9) {
-      nanoseconds += unit * (part[i] - '0');
-      unit /= 10;
-    } else if (i == 9) {
-      nanoseconds += part[i] >= '5' ? 1 : 0;
-    }
+    result *= 10;
   }
-  t_ns = seconds * kSecond + nanoseconds;
-  t_ns = negative ? -t_ns : t_ns;
+  result += up ? 1 : 0;
+  value = negative ? -result : result;
   return true;
 }
 

@@ -12,9 +12,12 @@ bool parse_double(std::string_view text, double& value);
 /// The whole text is one integer.
 bool parse_integer(std::string_view text, int64_t& value);
 
-/// Seconds in decimal text to nanoseconds, exactly: digits beyond the ninth are rounded, nothing goes through a double.
-/// No exponent. false when the text is something else or the time does not fit.
-bool parse_seconds(std::string_view text, int64_t& t_ns);
+/// Decimal text, with or without an exponent, times 10^digits, exactly: digits beyond are rounded, nothing goes through a double.
+/// digits  0 .. 9; false when the text is something else or the number does not fit.
+bool parse_decimal(std::string_view text, int digits, int64_t& value);
+
+/// Seconds in decimal text to nanoseconds, exactly.
+inline bool parse_seconds(std::string_view text, int64_t& t_ns) { return parse_decimal(text, 9, t_ns); }
 
 }  // namespace pf::sequence
 

@@ -2,6 +2,7 @@
 #include <planefold_platform/sequence.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -11,9 +12,11 @@
 
 #include "calibration.h"
 #include "decode.h"
+#include "film.h"
 #include "folder.h"
 #include "imu.h"
 #include "imu_model.h"
+#include "levels.h"
 #include "refuse.h"
 #include "target.h"
 #include "yaml_fields.h"
@@ -26,6 +29,9 @@ struct pf_sequence {
   pf_decoded_t image{};
   std::string first_name;  ///< of the first image that was decoded, "" before
   int32_t first_channels = 0, first_bits = 0;
+  pf::sequence::Levels levels;
+  bool most_have_size = false;               ///< a single image of another size is left out
+  std::unique_ptr<pf::sequence::Film> film;  ///< null: a folder of images
 
   pf_sequence() = default;
   pf_sequence(const pf_sequence&) = delete;
@@ -119,6 +125,9 @@ void require_type(pf_sequence& sequence, const pf::sequence::Frame& frame) {
 
 /// Size of the first image that can be used.
 pf::sequence::ImageSize size_of_images(pf_sequence& sequence) {
+  if (sequence.film != nullptr) {
+    return sequence.film->size();
+  }
   std::string first_error;
   for (const pf::sequence::Frame& frame : sequence.folder.frames) {
     try {
@@ -135,14 +144,8 @@ pf::sequence::ImageSize size_of_images(pf_sequence& sequence) {
   return {sequence.image.width, sequence.image.height};
 }
 
-/// What the numbers of an image, or its file, say that its user may not know; empty: nothing.
+/// What the file of an image says that its user may not know; empty: nothing.
 std::string doubt_of(const pf_decoded_t& image, const std::string& name) {
-  constexpr int kTwelveBits = 4095;
-  if (image.brightest > 0 && image.brightest <= kTwelveBits) {
-    return name + ": has 16 bits, but no number above " + std::to_string(image.brightest) +
-           ": data of 12 bits or fewer come out dark, so scale them up to 65535 (ImageMagick, of 12 bits: mogrify "
-           "-evaluate multiply 16)";
-  }
   if (image.orientation > 1) {
     return name + ": says by EXIF that it is shown rotated or mirrored (orientation " +
            std::to_string(image.orientation) +
@@ -151,15 +154,79 @@ std::string doubt_of(const pf_decoded_t& image, const std::string& name) {
   return "";
 }
 
-/// A warning about the first image that can be read; what cannot is told when it is its turn.
-std::string doubt_of_first(pf_sequence& sequence) {
-  try {
-    const pf::sequence::Frame& frame = sequence.folder.frames.front();
-    decode(sequence, frame);
-    return doubt_of(sequence.image, frame.path.string());
-  } catch (const pf::sequence::ImageError&) {
-    return "";
+bool has_size_of(const pf_decoded_t& image, const pf_camera_t& camera) {
+  return image.width == camera.width && image.height == camera.height;
+}
+
+/// Looks at a few images over the sequence: which numbers are black and white, and whether most have the camera's size. What cannot be
+/// read is told when it is its turn.
+void look_at_some(pf_sequence& sequence, std::vector<std::string>& notes) {
+  constexpr size_t kLooks = 5;
+  if (sequence.film != nullptr) {
+    return;
   }
+  const std::vector<pf::sequence::Frame>& frames = sequence.folder.frames;
+  std::vector<uint32_t> histogram(pf::sequence::kNumbersOf16Bits, 0);
+  sequence.image.histogram = histogram.data();
+  size_t seen = 0, of_size = 0, before = frames.size();
+  for (size_t look = 0; look < kLooks; ++look) {
+    const size_t at = look * (frames.size() - 1) / (kLooks - 1);
+    if (at == before) {
+      continue;
+    }
+    before = at;
+    try {
+      decode(sequence, frames[at]);
+    } catch (const pf::sequence::ImageError&) {
+      continue;
+    }
+    if (seen == 0) {
+      notes.push_back(doubt_of(sequence.image, frames[at].path.string()));
+    }
+    ++seen;
+    of_size += has_size_of(sequence.image, sequence.folder.calibration.camera) ? 1 : 0;
+  }
+  sequence.image.histogram = nullptr;
+  sequence.most_have_size = 2 * of_size > seen && seen > 2;
+  sequence.levels = pf::sequence::levels_of(histogram, frames.front().path.string());
+  sequence.image.black = sequence.levels.black;
+  sequence.image.white = sequence.levels.white;
+  notes.push_back(sequence.levels.note);
+}
+
+/// Of data of fewer bits than 16, a number beyond what the first images had: white moves up.
+void follow_white(pf_sequence& sequence, const pf::sequence::Frame& frame) {
+  if (!sequence.levels.stretched && sequence.image.white > 0 && sequence.image.brightest > sequence.image.white) {
+    sequence.image.white = pf::sequence::white_for(sequence.image.brightest);
+    decode(sequence, frame);
+  }
+}
+
+/// Refuses an image of another size than the calibration's.
+void require_size(const pf_sequence& sequence, const pf::sequence::Frame& frame, int32_t width, int32_t height) {
+  const pf_camera_t& camera = sequence.folder.calibration.camera;
+  if (width == camera.width && height == camera.height) {
+    return;
+  }
+  const bool calibrated = !sequence.calibration_path.empty();
+  refuse(frame.path.string() + ": is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, but the " +
+         (calibrated ? "calibration " + sequence.calibration_path : "first image") + " is for " +
+         std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+         (calibrated ? "; use the calibration of these images" : "; use images of one size"));
+}
+
+/// A frame of a film. Throws ReadError; false: it ended before, and message says where.
+bool read_film_frame(pf_sequence& sequence, int64_t index, pf_image_t& image, char message[PF_SEQUENCE_MESSAGE]) {
+  const unsigned char* pixels = nullptr;
+  int64_t t_ns = 0;
+  if (!sequence.film->read(index, pixels, t_ns)) {
+    put(message, sequence.film->how_it_ended().c_str());
+    return false;
+  }
+  const pf::sequence::ImageSize size = sequence.film->size();
+  require_size(sequence, sequence.folder.frames.front(), size.width, size.height);
+  image = pf_image_t{pixels, size.width, size.height, size.width, t_ns};
+  return true;
 }
 
 /// A camera of which only the size is known.
@@ -172,6 +239,21 @@ pf_camera_t uncalibrated_camera(pf::sequence::ImageSize size) {
   camera.cx = 0.5 * (camera.width - 1);
   camera.cy = 0.5 * (camera.height - 1);
   return camera;
+}
+
+/// A first pose whose rotation is not known within a quarter of a turn: its sigma is hardly in radians.
+std::string doubt_of_angles(const pf_target_t& target, const std::string& path) {
+  constexpr double kMost = 0.5, kDegree = 3.14159265358979323846 / 180.0;
+  const double sigma = target.kind == PF_TARGET_POINTS ? std::sqrt(target.first_pose.covariance[0]) : 0.0;
+  if (sigma <= kMost) {
+    return "";
+  }
+  char text[200];
+  std::snprintf(
+      text, sizeof(text),
+      ": sigma_rotation of %.4g is in radians, and so %.3g degrees; were degrees meant, write sigma_rotation: %.4g",
+      sigma, sigma / kDegree, sigma * kDegree);
+  return path + text;
 }
 
 void require(const void* pointer, const char* name) {
@@ -200,6 +282,9 @@ int pf_open_sequence_of(const char* source, const char* calibration, const char*
     opened->calibration_path = folder.calibration_path.string();
     opened->truth_path = folder.truth_path.string();
     opened->imu_path = folder.imu_path.string();
+    if (folder.is_film) {
+      opened->film = std::make_unique<pf::sequence::Film>(folder.root);
+    }
     if (or_empty(calibration) == PF_SEQUENCE_UNCALIBRATED) {
       folder.calibration.camera = uncalibrated_camera(size_of_images(*opened));
     } else if (folder.calibration.camera.width == 0) {
@@ -208,12 +293,9 @@ int pf_open_sequence_of(const char* source, const char* calibration, const char*
     }
     std::vector<std::string> notes = folder.notes;
     notes.insert(notes.end(), folder.calibration.notes.begin(), folder.calibration.notes.end());
-    const std::string doubt = doubt_of_first(*opened);
-    if (!doubt.empty()) {
-      notes.push_back(doubt);
-    }
+    look_at_some(*opened, notes);
     for (const std::string& line : notes) {
-      opened->warning += (opened->warning.empty() ? "" : "\n") + line;
+      opened->warning += (opened->warning.empty() || line.empty() ? "" : "\n") + line;
     }
     *sequence = opened.release();
   });
@@ -230,11 +312,12 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
   info->count = static_cast<int64_t>(folder.frames.size());
   info->first_t_ns = folder.frames.front().t_ns;
   info->last_t_ns = folder.frames.back().t_ns;
-  info->rate_hz = folder.calibration.rate_hz;
+  info->rate_hz = folder.is_film ? folder.film_rate_hz : folder.calibration.rate_hz;
   if (!(info->rate_hz > 0.0)) {
     const double seconds = 1e-9 * static_cast<double>(info->last_t_ns - info->first_t_ns);
     info->rate_hz = seconds > 0.0 ? static_cast<double>(info->count - 1) / seconds : 30.0;
   }
+  info->in_order = folder.is_film ? 1 : 0;
   info->folder = sequence->root.c_str();
   info->calibration_path = sequence->calibration_path.c_str();
   info->calibration_form = folder.calibration.form;
@@ -246,7 +329,8 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
 
 int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,
                            char message[PF_SEQUENCE_MESSAGE]) {
-  return guarded(message, [&] {
+  bool ended = false;
+  const int result = guarded(message, [&] {
     require(sequence, "sequence");
     require(image, "image");
     const pf::sequence::Folder& folder = sequence->folder;
@@ -254,22 +338,25 @@ int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* i
       refuse(sequence->root + ": frame " + std::to_string(index) + " is not one of its " +
              std::to_string(folder.frames.size()));
     }
+    if (sequence->film != nullptr) {
+      ended = !read_film_frame(*sequence, index, *image, message);
+      return;
+    }
     const pf::sequence::Frame& frame = folder.frames[static_cast<size_t>(index)];
     decode(*sequence, frame);
-    require_type(*sequence, frame);
     const pf_decoded_t& decoded = sequence->image;
     const pf_camera_t& camera = folder.calibration.camera;
-    if (decoded.width != camera.width || decoded.height != camera.height) {
-      const std::string expected =
-          sequence->calibration_path.empty() ? "first image" : "calibration " + sequence->calibration_path;
-      refuse(
-          frame.path.string() + ": is " + std::to_string(decoded.width) + " x " + std::to_string(decoded.height) +
-          " pixels, but the " + expected + " is for " + std::to_string(camera.width) + " x " +
-          std::to_string(camera.height) +
-          (sequence->calibration_path.empty() ? "; use images of one size" : "; use the calibration of these images"));
+    if (!has_size_of(decoded, camera) && sequence->most_have_size) {
+      throw pf::sequence::ImageError(frame.path.string() + ": is " + std::to_string(decoded.width) + " x " +
+                                     std::to_string(decoded.height) + " pixels among images of " +
+                                     std::to_string(camera.width) + " x " + std::to_string(camera.height));
     }
+    require_type(*sequence, frame);
+    follow_white(*sequence, frame);
+    require_size(*sequence, frame, decoded.width, decoded.height);
     *image = pf_image_t{decoded.pixels, decoded.width, decoded.height, decoded.width, frame.t_ns};
   });
+  return ended ? PF_SEQUENCE_END : result;
 }
 
 const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t index) {
@@ -321,6 +408,7 @@ int pf_read_target(const char* path, pf_target_t* target, char message[PF_SEQUEN
     require(path, "path");
     require(target, "target");
     *target = pf::sequence::read_target(path);
+    put(message, doubt_of_angles(*target, path).c_str());
   });
 }
 
@@ -348,11 +436,13 @@ int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_
     require(count, "count");
     *samples = nullptr;
     *count = 0;
-    const auto read = pf::sequence::parse_imu(std::string_view(text, size), name != nullptr ? name : "text");
+    std::string note;
+    const auto read = pf::sequence::parse_imu(std::string_view(text, size), name != nullptr ? name : "text", note);
     auto copy = std::make_unique<pf_imu_sample_t[]>(read.size());
     std::copy(read.begin(), read.end(), copy.get());
     *count = read.size();
     *samples = copy.release();
+    put(message, note.c_str());
   });
 }
 

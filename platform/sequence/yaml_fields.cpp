@@ -38,7 +38,7 @@ std::vector<Fields> Fields::documents(const std::string& text, const std::string
     }
   }
   if (all.empty()) {
-    refuse(file + ": holds no fields (\"name: value\" lines); is it the right file?");
+    throw NoFields(file + ": holds no fields (\"name: value\" lines); is it the right file?");
   }
   return all;
 }

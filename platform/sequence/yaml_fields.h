@@ -33,6 +33,12 @@ class UnknownField : public ReadError {
   std::string key_, nearest_;
 };
 
+/// Text that holds no map.
+class NoFields : public ReadError {
+ public:
+  using ReadError::ReadError;
+};
+
 /// A YAML map whose fields are asked for by name. Every refusal is a ReadError that begins with the file and names the field.
 class Fields {
  public:

@@ -16,27 +16,39 @@ void pf_v4l2_sync(const pf_v4l2_buffer_t* buffer, int begin) {
   }
 }
 
+void pf_v4l2_name_buffer(const pf_v4l2_t* camera, uint32_t index, pf_v4l2_named_t* named) {
+  memset(named, 0, sizeof(*named));
+  named->buffer.index = index;
+  named->buffer.type = (uint32_t)camera->type;
+  named->buffer.memory = V4L2_MEMORY_MMAP;
+  if (camera->type == V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE) {
+    named->buffer.m.planes = named->planes;
+    named->buffer.length = camera->planes;
+  }
+}
+
 static int map_one(pf_v4l2_t* camera, uint32_t index, char message[PF_V4L2_MESSAGE]) {
   const pf_v4l2_device_t* device = &camera->info.device;
   pf_v4l2_buffer_t* buffer = &camera->buffers[index];
-  struct v4l2_buffer asked;
+  const int has_planes = camera->type == V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE;
+  pf_v4l2_named_t asked;
+  uint32_t length, offset;
   void* memory;
-  memset(&asked, 0, sizeof(asked));
-  asked.index = index;
-  asked.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  asked.memory = V4L2_MEMORY_MMAP;
-  if (pf_v4l2_call(camera->fd, VIDIOC_QUERYBUF, &asked) != 0) {
+  pf_v4l2_name_buffer(camera, index, &asked);
+  if (pf_v4l2_call(camera->fd, VIDIOC_QUERYBUF, &asked.buffer) != 0) {
     return pf_v4l2_refuse(message, "%s (%s): does not tell where its buffers are (%s)", device->path, device->name,
                           strerror(errno));
   }
-  if (asked.length < camera->image_bytes) {
+  length = has_planes ? asked.planes[0].length : asked.buffer.length;
+  offset = has_planes ? asked.planes[0].m.mem_offset : asked.buffer.m.offset;
+  if (length < camera->image_bytes) {
     return pf_v4l2_refuse(message, "%s (%s): its buffers of %u bytes are too small for a picture", device->path,
-                          device->name, asked.length);
+                          device->name, length);
   }
   if (camera->options.dma_buf != 0) {
     struct v4l2_exportbuffer exported;
     memset(&exported, 0, sizeof(exported));
-    exported.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    exported.type = (uint32_t)camera->type;
     exported.index = index;
     exported.flags = O_CLOEXEC | O_RDWR;
     if (pf_v4l2_call(camera->fd, VIDIOC_EXPBUF, &exported) != 0) {
@@ -44,16 +56,16 @@ static int map_one(pf_v4l2_t* camera, uint32_t index, char message[PF_V4L2_MESSA
                             device->name, strerror(errno));
     }
     buffer->dma_fd = exported.fd;
-    memory = mmap(NULL, asked.length, PROT_READ, MAP_SHARED, exported.fd, 0);
+    memory = mmap(NULL, length, PROT_READ, MAP_SHARED, exported.fd, 0);
   } else {
-    memory = mmap(NULL, asked.length, PROT_READ | PROT_WRITE, MAP_SHARED, camera->fd, (off_t)asked.m.offset);
+    memory = mmap(NULL, length, PROT_READ | PROT_WRITE, MAP_SHARED, camera->fd, (off_t)offset);
   }
   if (memory == MAP_FAILED) {
     return pf_v4l2_refuse(message, "%s (%s): its buffers cannot be mapped (%s)", device->path, device->name,
                           strerror(errno));
   }
   buffer->mapped = (uint8_t*)memory;
-  buffer->length = asked.length;
+  buffer->length = length;
   return 0;
 }
 
@@ -67,7 +79,7 @@ int pf_v4l2_map(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
   }
   memset(&request, 0, sizeof(request));
   request.count = (uint32_t)camera->options.buffers;
-  request.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  request.type = (uint32_t)camera->type;
   request.memory = V4L2_MEMORY_MMAP;
   if (pf_v4l2_call(camera->fd, VIDIOC_REQBUFS, &request) != 0) {
     return pf_v4l2_refuse(
@@ -116,7 +128,7 @@ void pf_v4l2_unmap(pf_v4l2_t* camera) {
   free(camera->own);
   camera->own = NULL;
   memset(&none, 0, sizeof(none));
-  none.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  none.type = (uint32_t)camera->type;
   none.memory = V4L2_MEMORY_MMAP;
   pf_v4l2_call(camera->fd, VIDIOC_REQBUFS, &none);
 }

@@ -69,10 +69,9 @@ static int open_as(pf_v4l2_t* camera, const char* path, char message[PF_V4L2_MES
   if (camera->fd < 0) {
     return pf_v4l2_refuse_open(message, path, errno);
   }
-  if (pf_v4l2_describe(camera->fd, path, &device) != 0) {
-    pf_v4l2_refuse(message,
-                   "%s: is no camera that gives frames through V4L2's single-planar interface; pf-capture --list names "
-                   "those that do",
+  camera->type = pf_v4l2_describe(camera->fd, path, &device);
+  if (camera->type < 0) {
+    pf_v4l2_refuse(message, "%s: is no camera that gives frames through V4L2; pf-capture --list names those that do",
                    path);
   } else {
     camera->info.device = device;
@@ -143,7 +142,7 @@ int pf_v4l2_open(const char* path, const pf_v4l2_options_t* options, pf_v4l2_t**
 static void leave(pf_v4l2_t* camera) {
   if (camera->fd >= 0) {
     if (camera->streaming) {
-      int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+      int type = camera->type;
       pf_v4l2_call(camera->fd, VIDIOC_STREAMOFF, &type);
       camera->streaming = 0;
     }

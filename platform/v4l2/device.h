@@ -6,6 +6,12 @@
 #include <planefold_platform/stamps.h>
 #include <planefold_platform/v4l2.h>
 
+/* A buffer as calls of the driver name it; planes is unused by cameras of the single-planar interface. */
+typedef struct pf_v4l2_named {
+  struct v4l2_buffer buffer;
+  struct v4l2_plane planes[VIDEO_MAX_PLANES];
+} pf_v4l2_named_t;
+
 typedef struct pf_v4l2_buffer {
   uint8_t* mapped; /* null: not mapped */
   size_t length;
@@ -21,6 +27,8 @@ struct pf_v4l2 {
   int gone;
   pf_v4l2_options_t options;
   pf_v4l2_info_t info;
+  int type;        /* V4L2_BUF_TYPE_VIDEO_CAPTURE or its _MPLANE, in every call */
+  uint32_t planes; /* of a buffer, of which the first is the grey one; single-planar: 1 */
   uint32_t bytes_per_line, image_bytes;
   pf_v4l2_buffer_t buffers[PF_V4L2_MAX_BUFFERS];
   uint8_t* own; /* the memory of all buffers[].own */
@@ -43,13 +51,14 @@ int pf_v4l2_refuse(char message[PF_V4L2_MESSAGE], const char* form, ...) __attri
 
 int64_t pf_v4l2_now_ns(void);
 
-/* Fills in a device from an open node; 0, or -1 where it is no camera of the kind that this room knows. */
+/* Fills in a device from an open node; its buffer type, or -1 where it is no camera. */
 int pf_v4l2_describe(int fd, const char* path, pf_v4l2_device_t* device);
+
+/* For a call that names buffer number index, or any buffer. named stays where it is: it points into itself. */
+void pf_v4l2_name_buffer(const pf_v4l2_t* camera, uint32_t index, pf_v4l2_named_t* named);
 
 /* One line on why a node could not be opened, and which group or rule would help. */
 int pf_v4l2_refuse_open(char message[PF_V4L2_MESSAGE], const char* path, int error);
-
-uint32_t pf_v4l2_fourcc(uint32_t format);
 
 /* Chooses and sets size, format and rate, then exposure and focus. Nothing streams yet. */
 int pf_v4l2_negotiate(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]);

@@ -7,10 +7,12 @@
 #include <unistd.h>
 
 #include "device.h"
+#include "formats.h"
 
 int pf_v4l2_describe(int fd, const char* path, pf_v4l2_device_t* device) {
   struct v4l2_capability capability;
   uint32_t can;
+  int type;
   memset(device, 0, sizeof(*device));
   memset(&capability, 0, sizeof(capability));
   snprintf(device->path, sizeof(device->path), "%s", path);
@@ -18,9 +20,10 @@ int pf_v4l2_describe(int fd, const char* path, pf_v4l2_device_t* device) {
     return -1;
   }
   can = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? capability.device_caps : capability.capabilities;
-  if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0) {
+  if ((can & (V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_VIDEO_CAPTURE_MPLANE)) == 0 || (can & V4L2_CAP_STREAMING) == 0) {
     return -1;
   }
+  type = (can & V4L2_CAP_VIDEO_CAPTURE) != 0 ? V4L2_BUF_TYPE_VIDEO_CAPTURE : V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE;
   snprintf(device->name, sizeof(device->name), "%.*s", (int)sizeof(capability.card), (const char*)capability.card);
   snprintf(device->bus, sizeof(device->bus), "%.*s", (int)sizeof(capability.bus_info),
            (const char*)capability.bus_info);
@@ -28,18 +31,21 @@ int pf_v4l2_describe(int fd, const char* path, pf_v4l2_device_t* device) {
            (const char*)capability.driver);
   for (uint32_t index = 0; index < 256; ++index) {
     struct v4l2_fmtdesc description;
+    uint32_t format;
     memset(&description, 0, sizeof(description));
     description.index = index;
-    description.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    description.type = (uint32_t)type;
     if (pf_v4l2_call(fd, VIDIOC_ENUM_FMT, &description) != 0) {
       break;
     }
-    for (uint32_t format = 1; format < PF_V4L2_FORMATS; ++format) {
-      device->formats |= description.pixelformat == pf_v4l2_fourcc(format) ? 1u << format : 0u;
+    format = pf_v4l2_format_of(description.pixelformat);
+    if (format != PF_V4L2_ANY) {
+      device->formats |= 1u << format;
+    } else {
+      pf_v4l2_add_fourcc(device->others, sizeof(device->others), description.pixelformat);
     }
-    device->formats |= description.pixelformat == V4L2_PIX_FMT_JPEG ? 1u << PF_V4L2_MJPEG : 0u;
   }
-  return 0;
+  return type;
 }
 
 static int by_number(const void* a, const void* b) {
@@ -75,7 +81,7 @@ int pf_v4l2_list(pf_v4l2_device_t* devices, int capacity) {
     snprintf(path, sizeof(path), "/dev/video%d", numbers[i]);
     fd = open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC);
     if (fd >= 0) {
-      const int camera = pf_v4l2_describe(fd, path, &device) == 0;
+      const int camera = pf_v4l2_describe(fd, path, &device) >= 0;
       close(fd);
       if (!camera) {
         continue;

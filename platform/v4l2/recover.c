@@ -1,5 +1,4 @@
 #include <errno.h>
-#include <string.h>
 
 #include "device.h"
 
@@ -13,13 +12,10 @@ static const double kRetryS = 0.1;
 enum { kMaxRestarts = 8 }; /* without a buffer: the camera is opened anew */
 
 int pf_v4l2_queue(pf_v4l2_t* camera, int32_t index) {
-  struct v4l2_buffer buffer;
+  pf_v4l2_named_t named;
   int result;
-  memset(&buffer, 0, sizeof(buffer));
-  buffer.index = (uint32_t)index;
-  buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  buffer.memory = V4L2_MEMORY_MMAP;
-  result = pf_v4l2_call(camera->fd, VIDIOC_QBUF, &buffer);
+  pf_v4l2_name_buffer(camera, (uint32_t)index, &named);
+  result = pf_v4l2_call(camera->fd, VIDIOC_QBUF, &named.buffer);
   camera->buffers[index].stranded = result != 0;
   if (result != 0) {
     const int error = errno;
@@ -51,7 +47,7 @@ static int queue_stranded(pf_v4l2_t* camera) {
 
 /* Off and on again: the driver then has no buffer, and is given all that the caller does not hold. */
 static int restart(pf_v4l2_t* camera) {
-  int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  int type = camera->type;
   int stranded;
   ++camera->info.restarts;
   ++camera->restarts;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "device.h"
+#include "formats.h"
 
 static int start(void* context, char* message) { return pf_v4l2_start((pf_v4l2_t*)context, message); }
 
@@ -80,8 +81,9 @@ int pf_v4l2_open_source(const char* name, const pf_camera_source_options_t* opti
       ++format;
     }
     if (format == PF_V4L2_FORMATS) {
-      return pf_v4l2_refuse(message, "format '%s': is not known here; known are GREY, NV12, YUYV, Y16 and MJPEG",
-                            options->format);
+      char known[256];
+      pf_v4l2_name_formats(~0u, known, sizeof(known));
+      return pf_v4l2_refuse(message, "format '%s': is not known here; known are %s", options->format, known);
     }
     wanted.format = format;
   }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "device.h"
+#include "formats.h"
 #include "grey.h"
 
 /* Memory that takes longer to read than this, compared with ordinary memory, is copied once instead of being read many times. */
@@ -16,10 +17,11 @@ enum {
 
 int pf_v4l2_start(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
   const pf_v4l2_device_t* device;
-  int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  int type;
   if (camera == NULL || camera->fd < 0) {
     return pf_v4l2_refuse(message, "no camera is open");
   }
+  type = camera->type;
   device = &camera->info.device;
   if (camera->streaming) {
     return 0;
@@ -53,11 +55,11 @@ int pf_v4l2_start(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
 }
 
 int pf_v4l2_stop(pf_v4l2_t* camera, char message[PF_V4L2_MESSAGE]) {
-  int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  int result;
+  int type, result;
   if (camera == NULL || !camera->streaming) {
     return 0;
   }
+  type = camera->type;
   result = pf_v4l2_call(camera->fd, VIDIOC_STREAMOFF, &type);
   camera->streaming = 0;
   pf_v4l2_unmap(camera);
@@ -86,8 +88,8 @@ static uint32_t count_lost(pf_v4l2_t* camera, uint32_t sequence) {
 }
 
 static void decide_hand_over(pf_v4l2_t* camera, const pf_v4l2_buffer_t* buffer) {
-  const int grey = camera->info.format == PF_V4L2_GREY || camera->info.format == PF_V4L2_NV12;
-  if (!grey || camera->options.hand_over == PF_V4L2_COPIED) {
+  if (pf_v4l2_format_row(camera->info.format)->layout != PF_LAYOUT_PLANE ||
+      camera->options.hand_over == PF_V4L2_COPIED) {
     camera->info.direct = 0;
   } else if (camera->options.hand_over == PF_V4L2_DIRECT) {
     camera->info.direct = 1;
@@ -97,34 +99,61 @@ static void decide_hand_over(pf_v4l2_t* camera, const pf_v4l2_buffer_t* buffer) 
   }
 }
 
-/* Grey pixels of a buffer, as an image; 0, or -1 where it cannot be decoded. */
-static int to_image(pf_v4l2_t* camera, pf_v4l2_buffer_t* buffer, uint32_t used, pf_image_t* image) {
+/* Bits of the samples: those of the format, or as many as a picture has shown so far. */
+static uint32_t learn_bits(pf_v4l2_t* camera, const uint8_t* in, const pf_v4l2_format_row_t* row) {
+  if (row->detail != 0) {
+    camera->info.bits = row->detail;
+  } else if (camera->info.bits < 16) {
+    const uint32_t bits = pf_bits_of_samples(in, camera->bytes_per_line, camera->info.width, camera->info.height);
+    camera->info.bits = bits > camera->info.bits ? bits : camera->info.bits;
+  }
+  return camera->info.bits;
+}
+
+/* Grey pixels from used bytes in a buffer, as an image; 0, or -1 where it cannot be decoded. */
+static int to_image(pf_v4l2_t* camera, const pf_v4l2_buffer_t* buffer, const uint8_t* in, uint32_t used,
+                    pf_image_t* image) {
+  const pf_v4l2_format_row_t* row = pf_v4l2_format_row(camera->info.format);
   const int32_t width = camera->info.width;
   const int32_t height = camera->info.height;
   const size_t stride = camera->bytes_per_line;
-  int result = 0;
   image->width = width;
   image->height = height;
   image->stride = camera->info.direct ? (int32_t)stride : width;
-  image->pixels = camera->info.direct ? buffer->mapped : buffer->own;
+  image->pixels = camera->info.direct ? in : buffer->own;
   if (camera->info.direct) {
     return 0;
   }
-  switch (camera->info.format) {
-    case PF_V4L2_YUYV:
-      pf_grey_from_yuyv(buffer->mapped, stride, width, height, buffer->own);
+  switch (row->layout) {
+    case PF_LAYOUT_PLANE:
+      pf_grey_from_grey(in, stride, width, height, buffer->own);
       break;
-    case PF_V4L2_Y16:
-      pf_grey_from_y16(buffer->mapped, stride, width, height, buffer->own);
+    case PF_LAYOUT_PAIRS:
+      pf_grey_from_pairs(in, stride, width, height, row->detail, buffer->own);
       break;
-    case PF_V4L2_MJPEG:
-      result = pf_grey_from_jpeg(buffer->mapped, used, width, height, buffer->own);
+    case PF_LAYOUT_SAMPLE:
+      pf_grey_from_samples(in, stride, width, height, learn_bits(camera, in, row), buffer->own);
       break;
-    default:
-      pf_grey_from_grey(buffer->mapped, stride, width, height, buffer->own);
+    case PF_LAYOUT_MIPI10:
+      pf_grey_from_mipi10(in, stride, width, height, buffer->own);
       break;
+    case PF_LAYOUT_JPEG:
+      return pf_grey_from_jpeg(in, used, width, height, buffer->own);
   }
-  return result;
+  return 0;
+}
+
+/* What a filled buffer holds: where its picture begins, and how many bytes it has; null where that cannot be true. */
+static const uint8_t* picture_in(const pf_v4l2_t* camera, const pf_v4l2_named_t* taken, uint32_t* used) {
+  const int has_planes = camera->type == V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE;
+  const pf_v4l2_buffer_t* buffer = &camera->buffers[taken->buffer.index];
+  const uint32_t end = has_planes ? taken->planes[0].bytesused : taken->buffer.bytesused;
+  const uint32_t begin = has_planes ? taken->planes[0].data_offset : 0;
+  if (end > buffer->length || begin > end || end - begin < camera->image_bytes) {
+    return NULL;
+  }
+  *used = end - begin;
+  return buffer->mapped + begin;
 }
 
 /* Nothing came because the driver failed; the pause keeps a driver that always fails from taking the whole processor. */
@@ -136,13 +165,13 @@ static int wait_after_fault(pf_v4l2_t* camera, int timeout_ms) {
 
 /* Takes the next filled buffer, if there is one. */
 static int take(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char message[PF_V4L2_MESSAGE]) {
-  struct v4l2_buffer taken;
+  pf_v4l2_named_t named;
+  const struct v4l2_buffer* taken = &named.buffer;
   pf_v4l2_buffer_t* buffer;
-  uint32_t lost;
-  memset(&taken, 0, sizeof(taken));
-  taken.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  taken.memory = V4L2_MEMORY_MMAP;
-  if (pf_v4l2_call(camera->fd, VIDIOC_DQBUF, &taken) != 0) {
+  const uint8_t* picture;
+  uint32_t lost, used = 0;
+  pf_v4l2_name_buffer(camera, 0, &named);
+  if (pf_v4l2_call(camera->fd, VIDIOC_DQBUF, &named.buffer) != 0) {
     if (errno == EAGAIN) {
       return PF_V4L2_NOTHING;
     }
@@ -152,11 +181,11 @@ static int take(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char 
     camera->info.damaged += errno == EIO; /* a frame that the driver cannot hand over marked as damaged */
     return wait_after_fault(camera, timeout_ms);
   }
-  if (taken.index >= (uint32_t)camera->info.buffers || camera->buffers[taken.index].held) {
+  if (taken->index >= (uint32_t)camera->info.buffers || camera->buffers[taken->index].held) {
     ++camera->info.damaged; /* a buffer that the driver does not have */
     return wait_after_fault(camera, timeout_ms);
   }
-  buffer = &camera->buffers[taken.index];
+  buffer = &camera->buffers[taken->index];
   frame->arrived_ns = pf_v4l2_now_ns();
   camera->alive_ns = frame->arrived_ns;
   camera->restarts = 0;
@@ -164,9 +193,9 @@ static int take(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char 
   if (camera->start_took_ns == 0) {
     camera->start_took_ns = frame->arrived_ns - camera->started_ns;
   }
-  frame->buffer = (int32_t)taken.index;
-  frame->sequence = taken.sequence;
-  lost = count_lost(camera, taken.sequence);
+  frame->buffer = (int32_t)taken->index;
+  frame->sequence = taken->sequence;
+  lost = count_lost(camera, taken->sequence);
   camera->info.lost += lost;
   frame->lost_before = lost;
   pf_v4l2_sync(buffer, 1);
@@ -174,9 +203,10 @@ static int take(pf_v4l2_t* camera, int timeout_ms, pf_v4l2_frame_t* frame, char 
     decide_hand_over(camera, buffer);
     camera->hand_over_known = 1;
   }
-  if ((taken.flags & V4L2_BUF_FLAG_ERROR) != 0 || taken.bytesused < camera->image_bytes ||
-      taken.bytesused > buffer->length || pf_v4l2_stamp(camera, &taken, frame->arrived_ns, &frame->image.t_ns) != 0 ||
-      to_image(camera, buffer, taken.bytesused, &frame->image) != 0) {
+  picture = picture_in(camera, &named, &used);
+  if ((taken->flags & V4L2_BUF_FLAG_ERROR) != 0 || picture == NULL ||
+      pf_v4l2_stamp(camera, taken, frame->arrived_ns, &frame->image.t_ns) != 0 ||
+      to_image(camera, buffer, picture, used, &frame->image) != 0) {
     ++camera->info.damaged;
     pf_v4l2_sync(buffer, 0);
     pf_v4l2_queue(camera, frame->buffer); /* what the driver refuses is tried again at the next read */

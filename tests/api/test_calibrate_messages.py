@@ -13,8 +13,8 @@ PROGRAM = BIN / "pf-calibrate"
 PAGE = ["--page", "130x100"]
 COMMAND_LINE = [
     (["--sorce", "images:grey"], "'--sorce' is no option that is known here"),
-    (["--source", "cloud:7"], "write images:DIR, euroc:DIR, tum:DIR, v4l2:/dev/videoN or libcamera:0"),
-    (["--source", "grey"], "write images:DIR"),
+    (["--source", "cloud:7"], "write video:FILE, images:DIR, euroc:DIR, tum:DIR, v4l2:/dev/videoN or libcamera:0"),
+    (["--source", "grey"], "write video:FILE, images:DIR"),
     (["--print-target", "target.pdf", "--page", "a5"], "50 to 5000"),
     (["--print-target", "target.pdf", "--page", "20x20"], "50 to 5000"),
 ]

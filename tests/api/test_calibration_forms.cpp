@@ -140,6 +140,11 @@ static void test_ros_messages_should_be_read_as_either_ros_prints_them() {
   const std::string stream = kRosEcho + "---\n" + replaced(kRosEcho, "seq: 7", "seq: 8") + "---\n";
   TEST_ASSERT_EQUAL_INT(PF_CAMERA_RADTAN, camera_of(stream).model);
   require_refused(kRosEcho + "---\n" + replaced(kRosEcho, "K: [500.0", "K: [505.0"), "documents");
+  require_refused(kRosEcho + "---\nheight: 480\n", "number 2");
+  require_refused(
+      replaced(kRosEcho, "K: [500.0, 0.0, 320.0, 0.0, 501.0, 240.0, 0.0, 0.0, 1.0]", "K: [0, 0, 0, 0, 0, 0, 0, 0, 0]"),
+      "not calibrated");
+  require_refused("# oST version 5.0 parameters\n[image]\nwidth\n640\n", "ROS camera_info");
   const std::string fish = replaced(replaced(kRosEcho, "plumb_bob", "equidistant"), ", 0.03]", "]");
   TEST_ASSERT_EQUAL_INT(PF_CAMERA_EQUIDISTANT, camera_of(fish).model);
   const std::string rational = replaced(kRosEcho, "plumb_bob", "rational_polynomial");

@@ -233,7 +233,7 @@ def test_sources(root):
     out = ["--out", root / "sources"]
     expect("missing folder", 1, ["nowhere", "no such folder"], "--source", f"images:{root}/nowhere", *out)
     (root / "file").write_text("x")
-    expect("file for a folder", 1, ["not a folder", "ffmpeg"], "--source", f"images:{root}/file", *out)
+    expect("file for a folder", 1, ["not a folder", "video:FILE"], "--source", f"images:{root}/file", *out)
     (root / "empty").mkdir()
     expect("no calibration", 1, ["calibration", "--calib"], "--source", f"images:{root}/empty", *out)
     (root / "empty" / "calib.yaml").write_text(CALIBRATION)
@@ -284,7 +284,7 @@ def test_unusable_images(root):
     """One of them does not end a run: it is left out, counted and named."""
     frame, other = pgm(noise()), pgm(list(reversed(noise())))
     cases = [("truncated image", frame[:-100], "ends after"), ("empty image", b"", "0 bytes"), ("no image at all", b"hello, world", "neither PNG"),
-             ("missing image", None, "no such image")]
+             ("missing image", None, "no such image"), ("single image of another size", pgm([0] * 64 * 64, 64, 64), "64 x 64 pixels among")]
     for name, bad, why in cases:
         path = folder(root, name, [frame, other, bad if bad is not None else frame, frame])
         if bad is None:
@@ -304,10 +304,12 @@ def test_unusable_images(root):
 
 
 def test_wrong_images(root):
-    """Images of another size or type are no damage but a mistake."""
+    """Images of another type, and many of another size, are no damage but a mistake."""
     frame, other = pgm(noise()), pgm(list(reversed(noise())))
-    cases = [("wrong size", pgm([0] * 64 * 64, 64, 64), ["002.pgm", "64 x 64"]),
-             ("wrong type", f"P5\n{WIDTH} {HEIGHT}\n65535\n".encode() + bytes(2 * WIDTH * HEIGHT), ["002.pgm", "16 bits", "000.pgm"])]
+    small = pgm([0] * 64 * 64, 64, 64)
+    path = folder(root, "wrong sizes", [frame, small, small, frame])
+    expect("wrong sizes", 1, ["frame 1", "001.pgm", "64 x 64", "calib.yaml"], "--source", f"images:{path}", "--out", root / "wrong sizes out")
+    cases = [("wrong type", f"P5\n{WIDTH} {HEIGHT}\n65535\n".encode() + bytes(2 * WIDTH * HEIGHT), ["002.pgm", "16 bits", "000.pgm"])]
     for name, bad, parts in cases:
         path = folder(root, name, [frame, other, bad, frame])
         out = root / (name + " out")

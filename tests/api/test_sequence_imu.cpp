@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <memory>
 #include <utility>
 
@@ -63,6 +65,44 @@ static void test_times_should_be_seconds_when_a_row_has_a_decimal_point() {
   TEST_ASSERT_TRUE_MESSAGE(parsed.done, parsed.message);
   TEST_ASSERT_EQUAL_INT64(1000000000, parsed.samples[0].t_ns);
   TEST_ASSERT_EQUAL_INT64(1005000000, parsed.samples[1].t_ns);
+}
+
+static void test_samples_should_be_read_with_marks_and_in_the_order_of_a_header() {
+  const Parsed marked("\xef\xbb\xbf\"10\",1,2,3,4,5,6\r20, 1 , 2 ,3,4,5,6,\n");
+  TEST_ASSERT_TRUE_MESSAGE(marked.done, marked.message);
+  TEST_ASSERT_EQUAL_INT64(20, marked.samples[1].t_ns);
+  for (const char* header :
+       {"timestamp,accel_x,accel_y,accel_z,gyro_x,gyro_y,gyro_z\n", "#t [ns], ax, ay, az, wx, wy, wz\n",
+        "# time;a_x;a_y;a_z;angular_velocity_x;angular_velocity_y;angular_velocity_z\n"}) {
+    const Parsed swapped(std::string(header) + "10,4,5,6,1,2,3\n20,4,5,6,1,2,3\n");
+    TEST_ASSERT_TRUE_MESSAGE(swapped.done, swapped.message);
+    TEST_ASSERT_TRUE(swapped.samples[1].gyro[0] == 1.0 && swapped.samples[1].gyro[2] == 3.0);
+    TEST_ASSERT_TRUE(swapped.samples[1].accel[0] == 4.0 && swapped.samples[1].accel[2] == 6.0);
+  }
+}
+
+static void test_units_of_times_should_be_recognised_by_the_rate_with_a_note() {
+  const struct {
+    double step;
+    const char *form, *taken;
+  } cases[] = {{5e6, "%.0f", ""},
+               {5e3, "%.0f", "microseconds (200 Hz)"},
+               {5, "%.0f", "milliseconds (200 Hz)"},
+               {0.005, "%.3f", ""},
+               {5, "%.1f", "milliseconds (200 Hz)"}};
+  for (const auto& c : cases) {
+    std::string text;
+    for (int i = 0; i < 50; ++i) {
+      char time[40];
+      std::snprintf(time, sizeof(time), c.form, 1000.0 * c.step + i * c.step);
+      text += std::string(time) + ",0,0,0,0,0,9.8\n";
+    }
+    const Parsed parsed(text);
+    TEST_ASSERT_TRUE_MESSAGE(parsed.done, parsed.message);
+    TEST_ASSERT_EQUAL_INT64(5000000, parsed.samples[1].t_ns - parsed.samples[0].t_ns);
+    TEST_ASSERT_NOT_NULL_MESSAGE(std::strstr(parsed.message, c.taken), parsed.message);
+    TEST_ASSERT_EQUAL_INT(c.taken[0] == '\0', parsed.message[0] == '\0');
+  }
 }
 
 static void test_rows_should_be_refused_by_line_when_they_are_wrong() {
@@ -317,6 +357,8 @@ int main() {
   RUN_TEST(test_mounting_should_be_refused_when_it_is_no_rotation_or_nowhere);
   RUN_TEST(test_rows_should_be_read_to_the_last_digit_when_times_are_nanoseconds);
   RUN_TEST(test_times_should_be_seconds_when_a_row_has_a_decimal_point);
+  RUN_TEST(test_samples_should_be_read_with_marks_and_in_the_order_of_a_header);
+  RUN_TEST(test_units_of_times_should_be_recognised_by_the_rate_with_a_note);
   RUN_TEST(test_rows_should_be_refused_by_line_when_they_are_wrong);
   RUN_TEST(test_files_should_be_refused_when_they_are_missing_or_folders);
   RUN_TEST(test_sequences_should_name_the_samples_that_lie_beside_the_images);

@@ -66,6 +66,22 @@ static void test_rectangle_should_be_read_from_a_file_and_from_text() {
   }
 }
 
+static void test_sigma_in_degrees_should_get_a_note_that_can_be_typed() {
+  for (const auto& [written, note] : {std::pair("3", "write sigma_rotation: 0.05236"), std::pair("0.1", "")}) {
+    std::string text = kPoints;
+    text.replace(text.find("sigma_rotation: 0.1") + 16, 3, written);
+    TemporaryFolder folder;
+    folder.write("target.yaml", text);
+    pf_target_t target;
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    TEST_ASSERT_EQUAL_INT(0, pf_read_target((folder / "target.yaml").c_str(), &target, message));
+    if (note[0] == '\0')
+      TEST_ASSERT_EQUAL_STRING("", message);
+    else
+      require_message(message, note);
+  }
+}
+
 static void test_points_should_be_read_with_their_first_pose() {
   pf_target_t target;
   char message[PF_SEQUENCE_MESSAGE];
@@ -131,6 +147,7 @@ static void test_target_should_be_refused_when_a_field_is_there_twice_or_misspel
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_rectangle_should_be_read_from_a_file_and_from_text);
+  RUN_TEST(test_sigma_in_degrees_should_get_a_note_that_can_be_typed);
   RUN_TEST(test_points_should_be_read_with_their_first_pose);
   RUN_TEST(test_scenelib_camera_should_be_turned_to_right_down_forward);
   RUN_TEST(test_target_should_be_refused_when_a_number_is_nan_or_absurd);

@@ -43,7 +43,7 @@ static void test_yuyv_should_give_its_luma(void) {
       in[y * kStride + 2 * x] = level(x, y);
     }
   }
-  pf_grey_from_yuyv(in, kStride, kWidth, kHeight, out);
+  pf_grey_from_pairs(in, kStride, kWidth, kHeight, 0, out);
   expect_levels(out);
 }
 
@@ -56,7 +56,7 @@ static void test_y16_should_give_its_upper_bytes(void) {
       in[y * kStride + 2 * x + 1] = level(x, y);
     }
   }
-  pf_grey_from_y16(in, kStride, kWidth, kHeight, out);
+  pf_grey_from_samples(in, kStride, kWidth, kHeight, 16, out);
   expect_levels(out);
 }
 

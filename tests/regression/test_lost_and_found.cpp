@@ -332,7 +332,7 @@ void test_no_new_map_should_begin_as_long_as_a_wall_is_known() {
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_planes(run.slam, planes, 16, &count));
   const pf_plane_t* wall = std::find_if(planes, planes + count, [&](const pf_plane_t& p) { return p.id == run.wall; });
   TEST_ASSERT_TRUE(wall != planes + count);
-  TEST_ASSERT_EQUAL_INT(1, wall->known);
+  TEST_ASSERT_EQUAL_INT(1, wall->is_wall);
   TEST_ASSERT_EQUAL_INT(0, wall->rejected);
 }
 

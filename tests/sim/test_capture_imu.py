@@ -102,12 +102,16 @@ def offset(root, times):
                                                    "--imu", f"csv:{root}/imu.csv", "--imu-offset", "1000"]],
                            text=True, capture_output=True, check=False)
     expect(ahead.returncode == 0 and "--imu-offset" in ahead.stderr, f"a clock that is far ahead: {ahead.stderr}")
-    # As where microseconds were taken for nanoseconds: every sample lies before the first frame.
-    (root / "earlier.csv").write_text("".join(f"{i * STEP_NS // 1000},0,0,0,0,-9.81,0\n" for i in range(1, 400)))
+    (root / "earlier.csv").write_text("".join(f"{i * STEP_NS},0,0,0,0,-9.81,0\n" for i in range(1, 400)))
     before = subprocess.run([str(word) for word in [PROGRAM, *QUIET, "--source", "sim:desk", "--frames", FRAMES, "--out", root / "before",
-                                                    "--imu", f"csv:{root}/earlier.csv", "--imu-offset", "-1"]],
+                                                    "--imu", f"csv:{root}/earlier.csv", "--imu-offset", "-1000"]],
                             text=True, capture_output=True, check=False)
     expect("earlier.csv: no sample between the first 30 frames" in before.stderr, f"samples before all frames: {before.stderr}")
+    (root / "micro.csv").write_text("".join(f"{i * STEP_NS // 1000},0,0,0,0,-9.81,0\n" for i in range(1, 400)))
+    micro = subprocess.run([str(word) for word in [PROGRAM, *QUIET, "--source", "sim:desk", "--frames", FRAMES, "--out", root / "micro",
+                                                   "--imu", f"csv:{root}/micro.csv"]], text=True, capture_output=True, check=False)
+    expect("micro.csv: in nanoseconds its samples come at" in micro.stderr and "taken as microseconds" in micro.stderr and
+           "no sample between" not in micro.stderr, f"samples in microseconds: {micro.stderr}")
     expect(len(times) == FRAMES, f"{len(times)} frames")
 
 

@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation  # noqa: E402
 from pf_eval.adjust_run import adjust, jacobians, make_problem, rays, residuals, with_lens  # noqa: E402
 from pf_eval.camera import Camera, EstimatedCamera  # noqa: E402
 from pf_eval.errors import compare  # noqa: E402
-from pf_eval.files import Trajectory  # noqa: E402
+from pf_eval.trajectories import Trajectory  # noqa: E402
 
 FRAMES, POINTS, SEED = 25, 120, 5
 CAMERA = Camera("none", 640, 480, (500.0, 500.0, 320.0, 240.0), [])

@@ -20,8 +20,9 @@ from scipy.spatial.transform import Rotation  # noqa: E402
 from pf_eval import Refused  # noqa: E402
 from pf_eval.association import associate  # noqa: E402
 from pf_eval.errors import compare, default_alignment, nees  # noqa: E402
-from pf_eval.files import Trajectory, read_run, read_tum  # noqa: E402
+from pf_eval.files import read_run  # noqa: E402
 from pf_eval.main import main  # noqa: E402
+from pf_eval.trajectories import Trajectory, read_trajectory  # noqa: E402
 
 SEED = 20240611
 print(f"seed {SEED}", flush=True)
@@ -358,7 +359,7 @@ class Command(unittest.TestCase):
         np.testing.assert_allclose(run.covariance[:, 0, 0], 1 + run.t, atol=1e-8)
 
     def test_trajectory_should_be_read_as_written(self):
-        np.testing.assert_allclose(read_tum(self.path / "trajectory.txt").p, curve().p, atol=1e-8)
+        np.testing.assert_allclose(read_trajectory(self.path / "trajectory.txt").p, curve().p, atol=1e-8)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import numpy as np  # noqa: E402
 from pf_eval import Refused  # noqa: E402
 from pf_eval.camera import Camera, camera_of_run, read_camera  # noqa: E402
 from pf_eval.corners import compare_corners, read_target  # noqa: E402
-from pf_eval.files import Trajectory  # noqa: E402
+from pf_eval.trajectories import Trajectory  # noqa: E402
 
 
 class Corners(unittest.TestCase):

@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation  # noqa: E402
 
 from pf_eval import Refused  # noqa: E402
 from pf_eval.errors import compare  # noqa: E402
-from pf_eval.files import Trajectory  # noqa: E402
+from pf_eval.trajectories import Trajectory  # noqa: E402
 from pf_eval.planes import compare_planes, folding, read_planes  # noqa: E402
 
 TRUTH = (np.array([[0.0, 0, 1], [1.0, 0, 0]]), np.array([2.0, 3.0]), ["front", "side"])

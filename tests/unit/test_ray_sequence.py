@@ -14,7 +14,7 @@ sys.path.insert(0, str(script.SOURCE / "tools" / "lib"))
 import numpy as np  # noqa: E402
 from scipy.spatial.transform import Rotation  # noqa: E402
 
-from pf_eval.files import read_tum  # noqa: E402
+from pf_eval.trajectories import read_trajectory  # noqa: E402
 from ray import scenes, sensor  # noqa: E402
 from ray.camera import MARGIN, Camera, pov_vectors, rows_of_strip  # noqa: E402
 from ray.options import SCENES, arguments  # noqa: E402
@@ -42,7 +42,7 @@ class RaySequence(unittest.TestCase):
         with tempfile.TemporaryDirectory(prefix="planefold_") as name:
             file = pathlib.Path(name) / "groundtruth.tum"
             file.write_text(tum_rows(times, p, R))
-            read = read_tum(file)
+            read = read_trajectory(file)
         np.testing.assert_allclose(read.p, p, atol=1e-8)
         np.testing.assert_allclose(read.rotations(), R.as_matrix(), atol=1e-7)
 

@@ -5,7 +5,7 @@ packages_build=(cmake ninja-build gcc g++ binutils libeigen3-dev pkg-config dpkg
 packages_programs=(libpng-dev libjpeg62-turbo-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
   libsdl2-dev libcairo2-dev ffmpeg python3 python3-venv)
 packages_package=(help2man) # man pages
-packages_test=(libbenchmark-dev clang-format "${packages_package[@]}")
+packages_test=(libbenchmark-dev clang-format python3-dev "${packages_package[@]}") # python3-dev: headers for the Python package
 
 # Without these some tests and comparisons are left out: the peers in pf-bench, pf-calibrate and (of libopencv-contrib-dev) its
 # ChArUco, the fuzzers and the checker of names, the cross builds.

@@ -71,7 +71,9 @@ bool load_sequence(const std::string& source, const std::string& start,
   const int64_t count = std::min<int64_t>(info.count, limit);
   for (int64_t i = 0; i < count; ++i) {
     pf_image_t image{};
-    if (pf_read_sequence_frame(opened, i, &image, line) != 0) {
+    const int result = pf_read_sequence_frame(opened, i, &image, line);
+    if (result == PF_SEQUENCE_END) break;
+    if (result != 0) {
       message = line;
       return false;
     }
@@ -95,7 +97,7 @@ bool load_frames(const std::string& source, const std::string& start, const pf::
   frames.start = start.empty() ? "auto" : start;
   const size_t colon = source.find(':');
   if (colon == std::string::npos) {
-    message = source + ": write images:DIR, euroc:DIR, tum:DIR or sim:NAME";
+    message = source + ": write video:FILE, images:DIR, euroc:DIR, tum:DIR or sim:NAME";
     return false;
   }
   const std::string what = source.substr(colon + 1);

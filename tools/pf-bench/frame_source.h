@@ -27,8 +27,8 @@ struct Frames {
   }
 };
 
-/// Read images:DIR, euroc:DIR, tum:DIR or sim:NAME. start: auto, pose:FILE, target:FILE, rectangle:WxH, or "" for the target.yaml that
-/// lies beside the images, and auto where there is none. false: message is one line.
+/// Read video:FILE, images:DIR, euroc:DIR, tum:DIR or sim:NAME. start: auto, pose:FILE, target:FILE, rectangle:WxH, or ""
+/// for the target.yaml that lies beside the images, and auto where there is none. false: message is one line.
 bool load_frames(const std::string& source, const std::string& start, const pf::tools::CalibrationOptions& calibration,
                  int limit, Frames& frames, std::string& message);
 

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
       sub->add_option("--frames", options.frames, "at most N of every run")->check(CLI::Range(2, 100000));
     } else if (s->input == bench::Suite::kSequences) {
       sub->add_option("--source", options.sources,
-                      "images:DIR, euroc:DIR, tum:DIR or sim:NAME (default: what lies in $PLANEFOLD_DATA)");
+                      "video:FILE, images:DIR, euroc:DIR, tum:DIR or sim:NAME (default: what lies in $PLANEFOLD_DATA)");
       sub->add_option(
           "--start", options.start,
           "auto, pose:FILE, target:FILE or rectangle:WxH (default: target.yaml beside the images, else auto)");

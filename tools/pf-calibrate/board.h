@@ -15,11 +15,13 @@ struct Board {
   Target target = Target::kChessboard;
   int columns = 10, rows = 7;  ///< squares
   double square_m = 0.025;
+  bool light_first =
+      false;  ///< the square at the top left is white, as in OpenCV's boards of before 4.6 with an even number of rows
 
   cv::Size corners() const { return {columns - 1, rows - 1}; }
   double width_m() const { return columns * square_m; }
   double height_m() const { return rows * square_m; }
-  bool is_dark(int column, int row) const { return (column + row) % 2 == 0; }
+  bool is_dark(int column, int row) const { return (column + row) % 2 == (light_first ? 1 : 0); }
   int markers() const { return columns * rows / 2; }
   /// An inner corner by its number, row by row: where it lies in the plane z = 0 [m].
   cv::Point3f point(int corner) const;

@@ -89,6 +89,20 @@ std::vector<Candidate> find_candidates(const std::map<int, MarkerFrame>& frames,
   return candidates;
 }
 
+/// The corners that markers give if they lie where this board has them.
+std::vector<Candidate> place(const std::vector<Marker>& markers, const Board& board, Sighting& found) {
+  std::map<int, MarkerFrame> frames;
+  found = {};
+  for (const Marker& marker : markers) {
+    ++found.markers;
+    found.highest_marker = std::max(found.highest_marker, marker.number);
+    if (marker.number < board.markers()) {
+      frames.emplace(marker.number, MarkerFrame(marker, square_of_marker(board, marker.number)));
+    }
+  }
+  return find_candidates(frames, board, found);
+}
+
 /// A view whose corners lie on few rows or columns says little and bends the fit.
 bool is_wide(const View& view, const Board& board) {
   std::set<int> columns, rows;
@@ -101,20 +115,26 @@ bool is_wide(const View& view, const Board& board) {
 
 }  // namespace
 
-bool find_charuco(const cv::Mat& grey, const Board& board, View& view, Sighting& found) {
-  found = {};
-  std::map<int, MarkerFrame> frames;
-  for (const Marker& marker : find_markers(grey, board)) {
-    ++found.markers;
-    found.highest_marker = std::max(found.highest_marker, marker.number);
-    if (marker.number < board.markers()) {
-      frames.emplace(marker.number, MarkerFrame(marker, square_of_marker(board, marker.number)));
+bool find_charuco(const cv::Mat& grey, const Board& given, View& view, Sighting& found) {
+  const std::vector<Marker> markers = find_markers(grey, given);
+  Board board = given;
+  std::vector<Candidate> candidates = place(markers, board, found);
+  if (given.rows % 2 == 0) {  // of an odd number of rows both kinds of board are the same
+    Board other = given;
+    Sighting found_other;
+    other.light_first = !given.light_first;
+    std::vector<Candidate> others = place(markers, other, found_other);
+    if (found_other.agreeing_pairs > found.agreeing_pairs) {
+      board = other;
+      found = found_other;
+      candidates.swap(others);
     }
   }
+  view.light_first = board.light_first;
   view.corners.clear();
   view.numbers.clear();
   const cv::TermCriteria until(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 60, 1e-4);
-  for (const Candidate& c : find_candidates(frames, board, found)) {
+  for (const Candidate& c : candidates) {
     // The window of the refinement ends before the markers begin.
     const int half = std::clamp(static_cast<int>(0.7F * c.margin_px), 2, 12);
     const auto edge = static_cast<float>(half + 2);

@@ -1,7 +1,9 @@
 // pf-calibrate --print-target FILE.pdf, then pf-calibrate --source images:DIR: a camera's calibration from views of a
 // board of squares.
+#include <algorithm>
 #include <cstdio>
 
+#include "advice.h"
 #include "options.h"
 #include "outputs.h"
 #include "print_target.h"
@@ -16,15 +18,20 @@ int complain(const std::string& line) {
   return 1;
 }
 
-void warn_about(const Fit& fit, double covered) {
-  if (covered < 0.6) {
-    std::printf(
-        "warning: corners cover only %.0f %% of the picture; what lies outside is extrapolated. See coverage.png\n",
-        100.0 * covered);
+void warn_about(const Fit& fit, const Board& board) {
+  const Verdict verdict = judge_fit(fit, board);
+  for (const std::string& lack : verdict.lacks) {
+    std::printf("warning: %s\n", lack.c_str());
   }
-  if (fit.sigma_px[0] > 0.002 * fit.camera.fx) {
-    std::printf("warning: the focal length is known to %.1f %% only; add slanted views\n",
-                100.0 * fit.sigma_px[0] / fit.camera.fx);
+  std::printf("%s%s\n", verdict_line(verdict).c_str(), verdict.good ? "" : " (see also coverage.png)");
+}
+
+/// Boards that another version of OpenCV printed.
+void tell_kind(const Fit& fit, const Board& board) {
+  const auto light = std::count_if(fit.views.begin(), fit.views.end(),
+                                   [](const FittedView& fitted) { return fitted.view.light_first; });
+  if (board.target == Target::kCharuco && 2 * static_cast<size_t>(light) > fit.views.size()) {
+    std::printf("the board begins with a white square, as OpenCV before 4.6 printed it\n");
   }
 }
 
@@ -55,7 +62,8 @@ int calibrate(const Options& options) {
               100.0 * covered);
   std::printf("fx %.3f  fy %.3f  cx %.3f  cy %.3f px\n", fit.camera.fx, fit.camera.fy, fit.camera.cx, fit.camera.cy);
   std::printf("reprojection error %.4f px; %s/calib.yaml\n", fit.rms_px, options.out.c_str());
-  warn_about(fit, covered);
+  tell_kind(fit, options.board);
+  warn_about(fit, options.board);
   return 0;
 }
 

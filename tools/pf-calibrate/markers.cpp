@@ -32,12 +32,16 @@ const Dictionary& dictionary_of(const Board& board) {
 
 const char* dictionary_name(const Board& board) { return dictionary_of(board).name; }
 
-// Numbers run over the white squares row by row: of two neighbours one is white, beginning with the second.
+/// Of a row: the first white square, and how many there are.
+static int first_white(const Board& board, int row) { return board.is_dark(0, row) ? 1 : 0; }
+static int whites(const Board& board, int row) { return (board.columns - first_white(board, row) + 1) / 2; }
+
+// Numbers run over the white squares row by row.
 cv::Point square_of_marker(const Board& board, int number) {
   for (int row = 0, first = 0; row < board.rows; ++row) {
-    const int here = (board.columns + row % 2) / 2;
+    const int here = whites(board, row);
     if (number < first + here) {
-      return {2 * (number - first) + 1 - row % 2, row};
+      return {2 * (number - first) + first_white(board, row), row};
     }
     first += here;
   }
@@ -50,7 +54,7 @@ int marker_in_square(const Board& board, int column, int row) {
   }
   int first = 0;
   for (int y = 0; y < row; ++y) {
-    first += (board.columns + y % 2) / 2;
+    first += whites(board, y);
   }
   return first + column / 2;
 }

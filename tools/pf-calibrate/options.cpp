@@ -35,9 +35,9 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
   std::string board = "10x7:0.025";
   std::string target = target_name(have_markers() ? Target::kCharuco : Target::kChessboard), model = "radtan";
   app.set_version_flag("--version", "pf-calibrate " PF_VERSION_TEXT);
-  app.add_option(
-      "--source", options.source,
-      "images:DIR, euroc:DIR, tum:DIR (a calibration inside is not read), or a camera: v4l2:/dev/videoN, libcamera:0");
+  app.add_option("--source", options.source,
+                 "video:FILE, images:DIR, euroc:DIR, tum:DIR (a calibration inside is not read), or a camera: "
+                 "v4l2:/dev/videoN, libcamera:0");
   app.add_option("--target", target,
                  have_markers() ? "charuco (with a marker in every white square) or chessboard"
                                 : "chessboard; this build has no charuco: it was made without OpenCV's aruco module")
@@ -104,10 +104,11 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
     return false;
   }
   const std::string kind = options.source.substr(0, options.source.find(':') + 1);
-  if (!options.source.empty() && kind != "images:" && kind != "euroc:" && kind != "tum:" &&
+  if (!options.source.empty() && kind != "images:" && kind != "euroc:" && kind != "tum:" && kind != "video:" &&
       !platform::is_camera(options.source)) {
     std::fprintf(stderr,
-                 "pf-calibrate: source '%s': write images:DIR, euroc:DIR, tum:DIR, v4l2:/dev/videoN or libcamera:0\n",
+                 "pf-calibrate: source '%s': write video:FILE, images:DIR, euroc:DIR, tum:DIR, v4l2:/dev/videoN or "
+                 "libcamera:0\n",
                  options.source.c_str());
     code = 2;
     return false;

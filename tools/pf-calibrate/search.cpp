@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <opencv2/core.hpp>
 
 #include "cameras.h"
 #include "markers.h"
@@ -29,6 +30,11 @@ void look_for_others(const cv::Mat& grey, const Board& board, Search& search) {
   if (board.target == Target::kChessboard && have_markers() && board.markers() <= kMostMarkers) {
     other.target = Target::kCharuco;
     search.found_other = search.found_other || find_board(grey, other, view, sighting);
+  }
+  if (board.target == Target::kCharuco && !search.found_mirrored) {  // markers are not read from a mirror image
+    cv::Mat mirrored;
+    cv::flip(grey, mirrored, 1);
+    search.found_mirrored = find_board(mirrored, board, view, sighting);
   }
   const cv::Size squares = size_of_chessboard(grey);
   if (squares.area() > search.other_squares.area()) {
@@ -56,6 +62,10 @@ bool search_sequence(const Options& options, Search& search, std::string& error)
     if (result == PF_SEQUENCE_UNUSABLE_IMAGE) {
       std::fprintf(stderr, "pf-calibrate: note: left out: %s\n", message);
       continue;
+    }
+    if (result == PF_SEQUENCE_END) {
+      std::fprintf(stderr, "pf-calibrate: note: %s\n", message);
+      break;
     }
     if (result != 0) {
       error = message;
@@ -108,6 +118,11 @@ std::string why_nothing_was_found(const Options& options, const Search& search) 
   const std::string nothing =
       options.source + ": the " + (board.target == Target::kCharuco ? "ChArUco board" : "chessboard") + " of " +
       size(board.columns, board.rows) + " squares is in none of " + std::to_string(search.looked_at) + " frames";
+  if (search.found_mirrored) {
+    return nothing +
+           ", but its mirror image is: the camera mirrors its pictures; switch that off, or mirror them back "
+           "(ffmpeg -vf hflip)";
+  }
   const Sighting& best = search.best;
   if (search.found_other) {
     return nothing + ", but a ChArUco board is; use --target charuco";

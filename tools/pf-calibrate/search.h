@@ -15,10 +15,11 @@ struct Search {
   std::vector<View> found;
 
   // As long as nothing was found:
-  int64_t in_vain = 0;       ///< frames
-  Sighting best;             ///< of the frame with most markers
-  bool found_other = false;  ///< the other kind of target
-  cv::Size other_squares;    ///< a chessboard of so many squares, none: 0 x 0
+  int64_t in_vain = 0;          ///< frames
+  Sighting best;                ///< of the frame with most markers
+  bool found_other = false;     ///< the other kind of target
+  bool found_mirrored = false;  ///< the board as a mirror shows it
+  cv::Size other_squares;       ///< a chessboard of so many squares, none: 0 x 0
 };
 
 /// Looks for the board: in frames that lie evenly over a recording, or in what a camera shows until the time is over

@@ -16,6 +16,7 @@ struct View {
   std::vector<cv::Point2f> corners;  ///< row by row [px]
   std::vector<int> numbers;          ///< which of the board's inner corners they are
   double blur_px = 0.0;              ///< how far an edge spreads
+  bool light_first = false;          ///< the board is of that kind, whatever the command line says
 };
 
 /// A view of part of a board has at least so many corners.

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "../lib/calibration_options.h"
 #include "../lib/command_line.h"
 #include "context.h"
 
@@ -27,6 +28,7 @@ struct Options {
   std::int64_t black_from = INT64_MAX, black_frames = 0;
   bool start_auto = false, window = false, masks = false, imu = false, lens = false;
   int patches = 0;
+  pf::tools::CalibrationOptions calibration;  ///< of a sequence
 };
 
 pf_config_t config_for(const pf_camera_t& camera, const Options& options) {
@@ -118,9 +120,13 @@ bool start_sequence(pf_slam_t* slam, const std::string& folder, const Options& o
 int run_sequence(const std::string& source, const Options& options) {
   char message[PF_SEQUENCE_MESSAGE] = "";
   pf_sequence_t* sequence = nullptr;
-  if (pf_open_sequence(source.c_str(), nullptr, &sequence, message) != 0) return fail(message);
+  const pf::tools::CalibrationOptions& given = options.calibration;
+  if (pf_open_sequence_of(source.c_str(), given.file_or_null(), given.camera.c_str(), &sequence, message) != 0) {
+    return fail(message);
+  }
   pf_sequence_info_t info;
   pf_get_sequence_info(sequence, &info);
+  pf::tools::print_notes("pf-digest", info.warning);
   pf_config_t config = config_for(info.camera, options);
   if (options.imu) {
     pf_imu_model_t model = config.imu;
@@ -139,7 +145,9 @@ int run_sequence(const std::string& source, const Options& options) {
   Frames frames(context.slam, options);
   pf_image_t image;
   for (std::int64_t i = 0; good && i < std::min(options.frames, info.count); ++i) {
-    good = pf_read_sequence_frame(sequence, i, &image, message) == 0;
+    const int result = pf_read_sequence_frame(sequence, i, &image, message);
+    if (result == PF_SEQUENCE_END) break;
+    good = result == 0;
     const std::size_t first = next;
     while (next < count && samples[next].t_ns <= image.t_ns) ++next;
     if (good && next > first) good = pf_push_imu(context.slam, samples + first, next - first) >= 0;
@@ -157,7 +165,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "pf-digest " PF_VERSION_TEXT);
   std::string source, backend = "filter";
   Options options;
-  app.add_option("source", source, "sim:NAME, images:DIR, euroc:DIR or tum:DIR")->required();
+  app.add_option("source", source, "sim:NAME, video:FILE, images:DIR, euroc:DIR or tum:DIR")->required();
+  options.calibration.add_to(app);
   app.add_option("--frames", options.frames, "at most so many");
   app.add_flag("--auto", options.start_auto, "start without the target");
   app.add_option("--backend", backend, "filter or window")->check(CLI::IsMember({"filter", "window"}));

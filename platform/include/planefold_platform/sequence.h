@@ -1,4 +1,4 @@
-/* Image sequences on disk, their calibration and their targets, as the structures of planefold.h.
+/* Image sequences and films on disk, their calibration and their targets, as the structures of planefold.h.
  *
  *   char message[PF_SEQUENCE_MESSAGE];
  *   pf_sequence_t *sequence;
@@ -9,7 +9,7 @@
  *   pf_close_sequence(sequence);
  *
  * Every function that can fail returns 0, or -1 with one line of plain text in message that names the file, says what is
- * wrong with it and what to do (pf_open_sequence and pf_read_sequence_frame know one more value each). Files are not trusted: whatever
+ * wrong with it and what to do (pf_open_sequence and pf_read_sequence_frame know more values). Files are not trusted: whatever
  * they hold, the answer is one of the two. What is to be noted of a calibration comes with 0, each note on a line of its own. This is the
  * desktop side: it uses the heap and the file system. A sequence belongs to one thread at a time.
  */
@@ -31,10 +31,12 @@ typedef struct pf_sequence pf_sequence_t;
 
 typedef struct pf_sequence_info {
   pf_camera_t camera;
-  int64_t count; /* frames */
+  int64_t count; /* frames; of a film at most */
   int64_t first_t_ns, last_t_ns;
-  double rate_hz;     /* as the calibration says, or else from the times */
-  const char* folder; /* these seven are valid until the sequence is closed; "" where there is none */
+  double rate_hz;   /* as the calibration says, or else from the times */
+  int32_t in_order; /* 1: a film. Frames are read in their order; to go back costs all that came before */
+  const char*
+      folder; /* of a film its file. These seven are valid until the sequence is closed; "" where there is none */
   const char* calibration_path;
   const char* calibration_form; /* as in the table at pf_read_calibration, or "none" */
   const char* camera_name;      /* of the camera that was taken, where the calibration names its cameras: "cam0" */
@@ -47,16 +49,25 @@ typedef struct pf_sequence_info {
 #define PF_SEQUENCE_WRONG_CALIBRATION (-3)
 
 /* Sources:
- *   images:DIR  images/ (or image_0/, or the images themselves), times.txt (index seconds name, seconds name, or seconds alone in
- *               the order of the images' names), and a calibration. Without
- *               times.txt the names are taken in natural order at the calibration's rate_hz, or 30 Hz, with a warning. Where images of
- *               several kinds lie side by side (frame-000000.color.png, frame-000000.depth.png), those in colour or grey are taken.
+ *   video:FILE  a film in any form that ffmpeg reads; the programs ffprobe and ffmpeg must be installed. Its frames become grey as ffmpeg
+ *               shows them (rotated and cropped where the film says so), at the film's own times; none is dropped or repeated. The
+ *               calibration is of the pictures as shown, and is always given.
+ *   images:DIR  images/ (or KITTI's image_0/ or image_2/, the images themselves, or the only folder inside that holds images), times.txt
+ *               (or timestamps.txt, or either as .csv), calib.yaml or KITTI's calib.txt. Without a table, times in the names are taken
+ *               (12.05.png, 1403636579763555584.png), or else the names in natural order at the calibration's rate_hz, or 30 Hz, with a
+ *               warning. Where images of several kinds lie side by side (frame-000000.color.png, frame-000000.depth.png), those in colour
+ *               or grey are taken; previews and single files of another name are left out; what is ambiguous is refused.
+ *   images:DIR/left_*.png   the images of that name only
  *   euroc:DIR   mav0/cam0/data, data.csv and sensor.yaml; DIR may also be mav0 or cam0, or of the layout above.
  *   tum:DIR     rgb.txt and rgb/; the calibration is calib.yaml inside, or given.
+ * A table of frames has the columns that its header names (time, name, index, exposure; units as in "time [us]" or timestamp_ns), or one
+ * of the forms time | time name | name time | index time name | name or index, time, exposure. It is cut at commas, semicolons or blanks,
+ * and may have quotes and byte order marks. Times are seconds (euroc: nanoseconds); where that gives no camera's rate, they are taken in
+ * the unit, or as frame numbers, that gives the calibration's rate_hz, with a warning. Other columns are refused.
  * Inertial samples are looked for in imu.csv (images:) and in imu0/data.csv beside cam0 (euroc:).
- * PNG, JPEG and binary PGM; colour becomes grey, 16 bits become 8 (of a PNG, 65535 is white; a warning where the first one has
- * data of 12 bits or fewer). Pixels are taken as stored, whatever EXIF says of the orientation, and so must the calibration.
- * Times must grow from frame to frame.
+ * PNG, JPEG and binary PGM; colour becomes grey, 16 bits become 8 (of a PNG, 65535 is white, but data of 14 bits or fewer are scaled up and
+ * raw thermal images stretched, with a warning). Pixels are taken as stored, whatever EXIF says of the orientation, and so must the
+ * calibration. Hidden files are left out. Times must grow from frame to frame.
  * calibration  a file in one of the forms of pf_read_calibration; null: the one inside DIR, calib.yaml or another name that the layout has;
  *              of images: also the one file of such a form there or else beside the images, refused where several differ
  * camera       of a calibration of several: its name there or the number that ends it; null: the one that the folder of the images is
@@ -71,9 +82,12 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
 
 /* What pf_read_sequence_frame returns where this image alone cannot be used: it is missing, empty or damaged. The next may be read. */
 #define PF_SEQUENCE_UNUSABLE_IMAGE (-2)
+/* Likewise where a film has fewer frames than its file lists: there is no frame of this number, and message says where it ended. */
+#define PF_SEQUENCE_END (-4)
 
 /* Frame number index of 0 .. count-1. The pixels are valid until the next call with this sequence. An image of another
- * size than the calibration's is an error, and so is one of another type than the first that was read (grey or colour, 8 or 16 bits). A
+ * size than the calibration's is an error (but a single one among images of the right size is unusable), and so is one
+ * of another type than the first that was read (grey or colour, 8 or 16 bits). A
  * JPEG of which libjpeg warns counts as damaged. */
 int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,
                            char message[PF_SEQUENCE_MESSAGE]);
@@ -130,7 +144,7 @@ typedef enum pf_calibration_form { PF_CALIBRATION_PLAIN = 0, PF_CALIBRATION_EURO
 int pf_write_calibration(const char* path, uint32_t form, const pf_camera_t* camera, double rate_hz,
                          char message[PF_SEQUENCE_MESSAGE]);
 
-/* A target file:
+/* A target file (with 0, message is a line on what is hardly meant, or empty):
  *   width, height [m], sigma [m] (optional, 0.0005), and where it is in W:
  *     q_WT: [w, x, y, z], p_WT: [x, y, z] [m] (both or neither)                     a dark rectangle
  *   points: [[x, y, z], ..] [m], first_pose: {position: [x, y, z], quaternion_wxyz: [w, x, y, z],
@@ -149,7 +163,9 @@ int pf_read_first_pose(const char* path, pf_pose_t* pose, char message[PF_SEQUEN
 int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]);
 
 /* Inertial samples in the layout of EuRoC's imu0/data.csv: rows of time, wx, wy, wz [rad/s], ax, ay, az [m/s^2], cut by commas or
- * blanks. Times are whole nanoseconds, or seconds with a decimal point, and must grow. *samples is to be given to pf_free_imu. */
+ * blanks, or in the order that a header names. Times are whole nanoseconds, or seconds with a decimal point, and must
+ * grow; where no unit samples at such a rate they are taken as milliseconds or microseconds. With 0, message says so, or is
+ * empty. *samples is to be given to pf_free_imu. */
 int pf_read_imu(const char* path, pf_imu_sample_t** samples, size_t* count, char message[PF_SEQUENCE_MESSAGE]);
 void pf_free_imu(pf_imu_sample_t* samples); /* null is welcome */
 

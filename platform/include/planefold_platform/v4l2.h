@@ -14,7 +14,7 @@
  *
  * Functions that can fail return 0, or -1 with one line of plain text in message that says what is wrong and what to do.
  * A camera belongs to one thread at a time. It uses the heap when it is opened and started, not while it streams.
- * Cameras of the single-planar interface are known; the multi-planar one of some image processors is not.
+ * Cameras of the single-planar interface are known, and those of the multi-planar one whose first plane is the grey one.
  */
 #ifndef PLANEFOLD_PLATFORM_V4L2_H
 #define PLANEFOLD_PLATFORM_V4L2_H
@@ -32,13 +32,26 @@ extern "C" {
 typedef struct pf_v4l2 pf_v4l2_t;
 
 typedef enum pf_v4l2_format {
-  PF_V4L2_ANY = 0,  /* the cheapest of these that the camera has in this size and at this rate, in this order */
-  PF_V4L2_GREY = 1, /* 8 bits; nothing is converted */
-  PF_V4L2_NV12 = 2, /* a plane of 8-bit grey in front; nothing is converted */
-  PF_V4L2_YUYV = 3,
-  PF_V4L2_Y16 = 4, /* 16 bits, of which the upper 8 are kept */
+  PF_V4L2_ANY = 0,  /* the cheapest that the camera has in this size and at this rate: planes, pairs, samples, JPEG */
+  PF_V4L2_GREY = 1, /* a plane of 8-bit grey; nothing is converted */
+  PF_V4L2_NV12 = 2, /* likewise, with colour behind it */
+  PF_V4L2_YUYV = 3, /* every second byte is grey */
+  PF_V4L2_Y16 = 4,  /* samples of 10 to 16 bits in 16: how many, the pictures say (pf_v4l2_info_t.bits) */
   PF_V4L2_MJPEG = 5,
-  PF_V4L2_FORMATS = 6
+  PF_V4L2_NV21 = 6, /* planes */
+  PF_V4L2_NV16 = 7,
+  PF_V4L2_NV61 = 8,
+  PF_V4L2_YU12 = 9,
+  PF_V4L2_YV12 = 10,
+  PF_V4L2_422P = 11,
+  PF_V4L2_UYVY = 12, /* pairs */
+  PF_V4L2_YVYU = 13,
+  PF_V4L2_VYUY = 14,
+  PF_V4L2_Y10 = 15, /* samples of so many bits in 16 */
+  PF_V4L2_Y12 = 16,
+  PF_V4L2_Y14 = 17,
+  PF_V4L2_Y10P = 18, /* samples of 10 bits, four in five bytes */
+  PF_V4L2_FORMATS = 19
 } pf_v4l2_format_t;
 
 typedef enum pf_v4l2_hand_over {
@@ -70,6 +83,7 @@ typedef struct pf_v4l2_device {
   char bus[64];            /* where it is plugged in; stays the same when the camera leaves and returns */
   char driver[32];
   uint32_t formats; /* bit 1 << f for every pf_v4l2_format_t f that it has */
+  char others[64];  /* names of what it has and this does not read: "H264, BA81" */
   int32_t refused;  /* 1: there is a node, and this user may not open it; only path is filled in */
 } pf_v4l2_device_t;
 
@@ -86,8 +100,9 @@ typedef enum pf_v4l2_stamp {
 typedef struct pf_v4l2_info {
   pf_v4l2_device_t device;
   int32_t width, height;
-  uint32_t format;   /* pf_v4l2_format_t */
-  double rate_hz;    /* 0: the driver does not say */
+  uint32_t format; /* pf_v4l2_format_t */
+  uint32_t bits;  /* of a sample. Of Y16 10, 12, 14 or 16, as the pictures so far show; the upper 8 of these are kept */
+  double rate_hz; /* 0: the driver does not say */
   double exposure_s; /* where it is fixed; 0: automatic or not known */
   int32_t buffers;
   uint32_t stamp;       /* pf_v4l2_stamp_t, known with the first frame */

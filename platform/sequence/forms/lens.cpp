@@ -45,6 +45,9 @@ void set_pinhole(const Pinhole& pinhole, pf_camera_t& camera) {
 }
 
 Pinhole pinhole_of(const Fields& fields, const std::string& key, const std::vector<double>& K) {
+  if (std::all_of(K.begin(), K.end(), [](double value) { return value == 0.0; })) {
+    fields.refuse_field(key, "is all zeros: the camera was not calibrated");
+  }
   if (K[1] != 0.0 || K[3] != 0.0 || K[6] != 0.0 || K[7] != 0.0 || K[8] != 1.0) {
     fields.refuse_field(key, "must have the form fx 0 cx, 0 fy cy, 0 0 1 (no skew)");
   }

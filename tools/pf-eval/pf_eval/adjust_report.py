@@ -9,8 +9,9 @@ from . import Refused
 from .adjust_run import adjust, make_problem, residuals
 from .camera import camera_of_run, read_camera
 from .errors import compare
-from .files import Trajectory, read_run, read_table, read_tum
+from .files import read_run, read_table
 from .main import is_foreign, write
+from .trajectories import Trajectory, read_trajectory
 
 MARK = "# T_WC of all tracked frames, adjusted together"
 
@@ -41,7 +42,7 @@ def run(options):
     tracks = folder / "tracks.csv"
     if not tracks.exists():
         raise Refused(f"{folder}: has no tracks.csv; make the run with pf-capture --tracks")
-    truth = read_tum(options.truth) if options.truth else None
+    truth = read_trajectory(options.truth) if options.truth else None
     calibration = options.calib or folder / "calib.yaml"
     camera = read_camera(calibration) if options.calib else camera_of_run(report, folder, calibration).at(trajectory.t[-1])
     problem = make_problem(trajectory, dict(enumerate(read_table(folder / "frames.csv")["t_s"])), read_table(tracks), camera)

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from . import Refused
-from .files import Trajectory
+from .trajectories import Trajectory
 
 TOLERANCE = 0.010  # [s]
 

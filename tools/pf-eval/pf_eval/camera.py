@@ -5,7 +5,8 @@ import re
 import numpy as np
 
 from . import Refused
-from .files import read_numbers, read_yaml
+from .files import read_yaml
+from .tables import read_numbers
 
 
 class Camera:
@@ -180,4 +181,4 @@ def camera_of_run(report, folder, calibration):
     """The lens that a run has estimated, or that of the calibration file."""
     if (report.get("lens") or {}).get("estimate") != "estimate":
         return read_camera(calibration)
-    return EstimatedCamera(read_camera(folder / "calib.yaml"), read_numbers(folder / "lens.csv", 10, ","))
+    return EstimatedCamera(read_camera(folder / "calib.yaml"), read_numbers(folder / "lens.csv", 10))

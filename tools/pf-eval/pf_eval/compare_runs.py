@@ -15,8 +15,9 @@ from .camera import camera_of_run
 from .compare_options import arguments
 from .corners import compare_corners, read_target
 from .errors import compare
-from .files import read_run, read_tum
+from .files import read_run
 from .there_and_back import compare_passes, forward
+from .trajectories import read_trajectory
 
 SOURCE = pathlib.Path(__file__).resolve().parents[3]
 START_TIMEOUT = 3600  # [s]
@@ -78,7 +79,7 @@ def measure(folder, sequence):
     row["saved"] = folding.get("share_rows_saved")
     row["in_view"] = report.get("features_in_view", {}).get("median")
     if (sequence / "groundtruth.tum").exists():
-        row["ate"] = compare(forward(run, report), read_tum(sequence / "groundtruth.tum"), "sim3").summary["ate_rmse_m"]
+        row["ate"] = compare(forward(run, report), read_trajectory(sequence / "groundtruth.tum"), "sim3").summary["ate_rmse_m"]
     if (sequence / "target.yaml").exists() and (sequence / "target_corners.csv").exists():
         target_W = read_target(sequence / "target.yaml")
         camera = camera_of_run(report, folder, folder / "calib.yaml")

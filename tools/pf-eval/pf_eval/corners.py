@@ -3,7 +3,8 @@
 import numpy as np
 
 from . import Refused
-from .files import read_numbers, read_yaml
+from .files import read_yaml
+from .tables import read_numbers
 
 TOLERANCE = 0.010  # [s]
 
@@ -39,7 +40,7 @@ def compare_corners(run, camera, target_W, corners_path, skip_frames=0):
     corner_rms_px is the root of the mean squared distance over all corners of all frames. A corner that would lie behind
     the camera counts with the length of the image's diagonal.
     """
-    measured = read_numbers(corners_path, 10, ",")
+    measured = read_numbers(corners_path, 10)
     measured = measured[np.isfinite(measured).all(axis=1)]
     measured = measured[measured[:, 0] >= skip_frames]
     diagonal = float(np.hypot(camera.width, camera.height))

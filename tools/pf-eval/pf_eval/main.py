@@ -8,18 +8,23 @@ import sys
 import numpy as np
 
 from . import Refused
+from .association import associate
 from .camera import camera_of_run, read_camera
 from .corners import compare_corners, read_target
 from .errors import compare, default_alignment
-from .files import list_maps, read_map, read_run
+from .files import list_maps, read_map, read_run, read_table
+from .notes import note
 from .options import arguments
 from .planes import compare_planes, folding, read_planes
 from .relative import compare_motions
 from .there_and_back import compare_passes, forward
+from .trajectories import on_one_clock
 from .truth import named_truth, read_truth
 
 TABLE = {
-    "ate_rmse_m": ("position error, RMS", "m"), "ate_max_m": ("position error, largest", "m"),
+    "ate_rmse_m": ("position error, RMS", "m"),
+    "coverage": ("of it: share of the sequence's frames tracked", ""), "first_pose_s": ("time to the first pose", "s"),
+    "ate_max_m": ("position error, largest", "m"),
     "rpe_rmse_m": ("position error frame to frame, RMS", "m"), "rpe_1s_rmse_m": ("position error over 1 s, RMS", "m"),
     "rot_rmse_deg": ("rotation error, RMS", "deg"), "rot_max_deg": ("rotation error, largest", "deg"),
     "rot_by_positions_rmse_deg": ("rotation error, aligned by the positions", "deg"),
@@ -52,6 +57,50 @@ TABLE = {
 }
 
 
+def frames_of_run(folder, report):
+    """frames.csv of a run, on the way there; None where there is none."""
+    if not (folder / "frames.csv").is_file():
+        return None
+    frames = read_table(folder / "frames.csv")
+    turn = report.get("there_and_back")
+    kept = frames["t_s"] <= turn["turn_s"] + 1e-4 if turn else np.ones(len(frames["t_s"]), dtype=bool)
+    return {name: column[kept] for name, column in frames.items()}
+
+
+def number_of_unreadable(report):
+    return int(report.get("unreadable_frames") or 0)
+
+
+def coverage(run, frames, report):
+    """How much of the sequence an error speaks of: nothing is known of a trajectory alone."""
+    if frames is None or len(frames["t_s"]) == 0:
+        return {"coverage": None, "first_pose_s": None}
+    tracked = frames["t_s"][frames["tracked"] == 1] if "tracked" in frames else run.t
+    first = float(tracked[0] - frames["t_s"][0]) if len(tracked) else None
+    known = int((run.t <= frames["t_s"][-1] + 1e-4).sum())
+    return {"coverage": known / (len(frames["t_s"]) + number_of_unreadable(report)), "first_pose_s": first}
+
+
+def times_of_frames(frames, report):
+    """Times by the number of a frame in the sequence; None where they are not known."""
+    if frames is None or number_of_unreadable(report) > 0:
+        return None
+    return np.concatenate([np.full(int(report.get("skip") or 0), np.nan), frames["t_s"]])
+
+
+def tell_lengths(run, truth, align):
+    """A note where a run in metres and its truth differ by a unit of length."""
+    estimate, matched, _ = associate(run, truth)
+    spreads = [np.linalg.norm(poses.p - poses.p.mean(axis=0)) for poses in (matched, estimate)]
+    if align == "sim3" or not min(spreads) > 0:
+        return
+    for unit, factor in (("mm", 1000.0), ("cm", 100.0)):
+        for ratio, file in ((spreads[0] / spreads[1], truth), (spreads[1] / spreads[0], run)):
+            if 0.7 < ratio / factor < 1.4:
+                note(f"{file.source}: its path is {ratio:.3g} times as large as the other; lengths are metres: a first line can say the unit: "
+                     f"# timestamp, x [{unit}], y [{unit}], z [{unit}], qx, qy, qz, qw")
+
+
 def compare_maps(report, folder, truth, align):
     """Each map of a run by itself, aligned by itself; nothing where there is one map only. The frames of all but the largest map count as
     untracked."""
@@ -77,8 +126,11 @@ def evaluate_truth(options):
     truth, frame = read_truth(truth_path, options.calib)
     if pathlib.Path(truth_path).resolve() != (folder / "truth.tum").resolve():  # a scene knows the way back, too
         run = forward(run, report)
+    frames = frames_of_run(folder, report) if pathlib.Path(options.run).is_dir() else None
+    run, truth = on_one_clock(run, truth, times_of_frames(frames, report))
     align = options.align or default_alignment(report)
     result = compare(run, truth, align, own_frame=report.get("start") != "auto")
+    tell_lengths(run, truth, align)
     if options.per_frame:
         columns = [result.t[:, None], result.position_error, result.rotation_error]
         names = "t_s,e_x_m,e_y_m,e_z_m,theta_x_rad,theta_y_rad,theta_z_rad"
@@ -86,7 +138,7 @@ def evaluate_truth(options):
             columns += [result.nees_position[:, None], result.nees_pose[:, None]]
             names += ",nees_position,nees_pose"
         write_rows(options.per_frame, names, np.hstack(columns))
-    summary = dict(result.summary, frame=frame, **folding(report))
+    summary = dict(result.summary, frame=frame, **coverage(run, frames, report), **folding(report))
     if result.summary["alignment_degenerate"]:
         print("pf-eval: note: the path is nearly straight, so the rotation of the alignment about it is not known; rot_rmse_deg is "
               "aligned by the rotations", file=sys.stderr)
@@ -116,7 +168,8 @@ def evaluate(options):
     if options.relative:
         run, report, folder = read_run(options.run)
         truth_path = options.truth or named_truth(report, folder)
-        return compare_motions(folder, report, read_truth(truth_path, options.calib)[0], options.align or default_alignment(report))
+        truth = on_one_clock(run, read_truth(truth_path, options.calib)[0], times_of_frames(frames_of_run(folder, report), report))[1]
+        return compare_motions(folder, report, truth, options.align or default_alignment(report))
     if options.corners:
         return evaluate_corners(options)
     return evaluate_truth(options)

@@ -11,7 +11,9 @@ DESCRIPTION = """Compares a run of pf-capture with ground truth.
   pf-eval RUN --there-and-back [--json [FILE]]
   pf-eval RUN --relative [--truth FILE] [--align none|sim3] [--json [FILE]]
 
-RUN is an output folder of pf-capture, or a trajectory in the TUM form (timestamp tx ty tz qx qy qz qw)."""
+RUN is an output folder of pf-capture, or a trajectory. Trajectories (RUN and --truth) are read in these forms, with blanks, commas or
+semicolons, byte order marks and quotes: TUM (timestamp tx ty tz qx qy qz qw), EuRoC's CSV, KITTI's rows of twelve (with the times.txt
+beside them or in sequences/NN), folders of frame-000000.pose.txt, and columns that a header names."""
 
 NOTES = """Truth is taken within 10 ms of a frame: the nearest pose, or interpolated where truth comes at least 1.5 times as
 often as the frames ("association" says which). Errors are those of evo after Umeyama alignment of positions; rpe_rmse_m is
@@ -27,6 +29,9 @@ given as a share of the path's extent, the largest distance between two places o
 (1 is honest). No alignment of frames is needed. With --align none a motion has 6 degrees of freedom. With sim3 it has 5, since the
 scale of each is free; with one scale for each map (one_scale) all of a map's motions have 6 each less one.
 
+"coverage" is the share of the sequence's frames that have a tracked pose in the map that is compared, "first_pose_s" the time from the
+first frame to the first tracked pose; both need frames.csv of the run.
+
 Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
 
 
@@ -34,7 +39,7 @@ def arguments(words):
     parser = OneLineParser(prog="pf-eval", description=DESCRIPTION, epilog=NOTES,
                            formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", metavar="RUN", nargs="?")
-    parser.add_argument("--truth", metavar="FILE", help="TUM form, or EuRoC's state_groundtruth_estimate0/data.csv; default: report.json names it")
+    parser.add_argument("--truth", metavar="FILE", help="a file in one of the forms, or a folder of poses; default: report.json names it")
     parser.add_argument("--align", choices=["none", "se3", "sim3"],
                         help="default: none where report.json says that the run started from a target, se3 where an inertial unit told "
                              "its lengths, else sim3")

@@ -7,7 +7,7 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.lines import Line2D
 
 from . import style
-from .files import _text
+from .tables import read_text
 
 AXES = "xyz"
 
@@ -17,7 +17,7 @@ def read_map(path):
     its faces, which are planes; empty where there is none. in_map: sigma is without what the whole map shares."""
     if not path.exists():
         return np.zeros((0, 3)), np.zeros(0), np.zeros(0, bool), np.zeros(0, bool), False
-    head, _, body = _text(path).partition("end_header\n")
+    head, _, body = read_text(path).partition("end_header\n")
     of_vertices = head.partition("element vertex ")[2].partition("element ")[0]
     count = int(of_vertices.split()[0])
     names = re.findall(r"^property \S+ (\S+)$", of_vertices, re.M)

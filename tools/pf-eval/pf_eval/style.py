@@ -1,8 +1,11 @@
 """The look of the plots."""
 
+import sys
+
 import matplotlib
 
-matplotlib.use("Agg")
+if "IPython" not in sys.modules:  # a notebook has chosen how it shows pictures
+    matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 INK, GREY, LIGHT = "#22262b", "#8a929c", "#e6e9ed"

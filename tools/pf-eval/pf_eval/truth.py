@@ -6,7 +6,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from . import Refused
-from .files import Trajectory, read_numbers, read_tum, read_yaml
+from .files import read_yaml
+from .trajectories import Trajectory, read_trajectory
 
 
 def named_truth(report, folder):
@@ -20,17 +21,6 @@ def named_truth(report, folder):
     if not pathlib.Path(report["truth"]).exists():
         raise Refused(f"{report['truth']}: the truth that {folder}/report.json names is not there; give it with --truth FILE")
     return pathlib.Path(report["truth"])
-
-
-def _is_euroc(path):
-    """Rows of whole nanoseconds cut by commas, of at least 8 numbers."""
-    try:
-        with open(path) as file:
-            rows = [line.split("#", 1)[0].strip() for _, line in zip(range(20), file)]
-    except (OSError, UnicodeDecodeError):
-        return False  # read_tum says what is wrong
-    rows = [row.split(",") for row in rows if row]
-    return bool(rows) and len(rows[0]) >= 8 and rows[0][0].strip().isdigit()
 
 
 def _matrix(path, fields, name):
@@ -65,32 +55,27 @@ def to_camera(body, T_BC):
     return Trajectory(body.t, body.p + R_WB.apply(T_BC[:3, 3]), q[:, [3, 0, 1, 2]], source=body.source)
 
 
-def read_euroc(path):
-    """Poses T_WB of EuRoC's state_groundtruth_estimate0/data.csv: t [ns], p, q as w x y z, and more."""
-    rows = read_numbers(path, 8, ",")
-    if not np.isfinite(rows).all():
-        raise Refused(f"{path}: has a number that is not finite")
-    rows = rows[np.argsort(rows[:, 0], kind="stable")]
-    rows = rows[np.concatenate([[True], np.diff(rows[:, 0]) > 0])]
-    length = np.linalg.norm(rows[:, 4:8], axis=1)
-    if (np.abs(length - 1) > 0.01).any():
-        raise Refused(f"{path}: has a quaternion that is not of unit length (the columns are t x y z qw qx qy qz)")
-    return Trajectory(1e-9 * rows[:, 0], rows[:, 1:4], rows[:, 4:8] / length[:, None], source=str(path))
+def _sensor_beside(path):
+    """The file that says where the camera is on the body: cam0/sensor.yaml of EuRoC's layout, or a camchain of its recording."""
+    mav0 = path.parent.parent
+    places = [mav0 / "cam0" / "sensor.yaml", mav0.parent / "dso" / "camchain.yaml", mav0.parent / "camchain.yaml"]
+    return next((place for place in places if place.exists()), places[0])
 
 
 def read_truth(path, calibration=None):
     """(poses of the camera, a phrase that says how they became that).
 
-    calibration  the camera's sensor.yaml, for a body's truth; None: cam0/sensor.yaml beside the truth's folder
+    calibration  the camera's sensor.yaml, for a body's truth; None: the one beside the truth's folder
     """
     path = pathlib.Path(path)
-    if not _is_euroc(path):
-        return read_tum(path), "camera, as the truth has it"
-    sensor = pathlib.Path(calibration) if calibration else path.parent.parent / "cam0" / "sensor.yaml"
+    truth = read_trajectory(path)
+    if not truth.of_body:
+        return truth, "camera, as the truth has it"
+    sensor = pathlib.Path(calibration) if calibration else _sensor_beside(path)
     if not sensor.exists():
         raise Refused(f"{path}: holds poses of the body, and there is no {sensor} that says where the camera is on it; give it with --calib")
     T_BC = camera_on_body(sensor)
     own = path.parent / "sensor.yaml"  # the body's frame may be another than that of the poses
     if own.exists() and "T_BS" in read_yaml(own):
         T_BC = np.linalg.inv(_matrix(own, read_yaml(own), "T_BS")) @ T_BC
-    return to_camera(read_euroc(path), T_BC), f"camera, from the body's poses by T_BS of {sensor}"
+    return to_camera(truth, T_BC), f"camera, from the body's poses by T_BS of {sensor}"

@@ -1,0 +1,29 @@
+#ifndef PLANEFOLD_PLATFORM_SEQUENCE_FILM_FACTS_H
+#define PLANEFOLD_PLATFORM_SEQUENCE_FILM_FACTS_H
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "file.h"
+
+namespace pf::sequence {
+
+/// What a film says of itself, without a frame being decoded.
+struct FilmFacts {
+  std::vector<int64_t>
+      t_ns;  ///< of its frames, in their order; they may turn out to be fewer, and times are rounded to microseconds
+  double rate_hz = 0.0;  ///< median; 0 where it cannot be told
+  std::string warning;   ///< one line, or empty
+};
+
+/// Asks ffprobe. Throws ReadError that names the file and says why it cannot be used as a film.
+FilmFacts probe_film(const fs::path& path);
+
+/// Whether a file is a film, by what it begins with or by its name.
+bool looks_like_film(const fs::path& path);
+
+}  // namespace pf::sequence
+
+#endif
