@@ -32,7 +32,7 @@ def symbols(path):
             yield match.group(2), match.group(3)
 
 
-declared = set(re.findall(r"PF_API[^;{]*?\b(pf_\w+)\(", (script.SOURCE / "lib/include/planefold/planefold.h").read_text()))
+declared = set(re.findall(r"PF_API[^;{]*?\b(pf_\w+)\(", "".join(path.read_text() for path in sorted((script.SOURCE / "lib/include/planefold").glob("*.h")))))
 for archive in ("libplanefold.a", "libplanefoldf.a"):
     path = script.BUILD / "lib" / archive
     if archive == "libplanefoldf.a" and not path.exists():

@@ -7,7 +7,8 @@ import sys
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-HEADERS = sorted((SOURCE / "lib" / "src").glob("*/tuning.h"))
+SRC = SOURCE / "lib" / "src"
+HEADERS = sorted(SRC.glob("**/tuning.h"))
 
 
 def sweep(*words):
@@ -22,7 +23,7 @@ class SweepTuning(unittest.TestCase):
         self.assertEqual(len(names), len(set(names)))
         for header in HEADERS:
             written = re.findall(r"\b(k[A-Z]\w*)\s*=", header.read_text())
-            listed = [n.split(".")[2] for n in names if n.startswith(header.parent.name + ".")]
+            listed = [n.split(".")[2] for n in names if n.split(".")[0] == header.parent.relative_to(SRC).as_posix()]
             self.assertEqual(written, listed, header)
             self.assertTrue(written, header)
 

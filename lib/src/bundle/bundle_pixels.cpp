@@ -117,7 +117,7 @@ void BundleTerms::add_pixels(const Camera& camera, const AdjustOptions& options,
   Scalar D = sums->D, g = sums->g, cost = sums->cost;
   std::uint32_t seen_by = 0;
   Scalar information = Scalar(1) / (options.sigma_px * options.sigma_px);
-  PixelTerm term;
+  PixelTerm term{};  // of a pose or host that is held, nothing else is written
   term.point = point;
   term.free_host = free_[host];
   for (std::uint32_t left = seen(point); left != 0; left &= left - 1) {
