@@ -27,7 +27,6 @@ struct Options {
   std::int64_t frames = INT64_MAX;
   std::int64_t black_from = INT64_MAX, black_frames = 0;
   bool start_auto = false, window = false, masks = false, imu = false, lens = false;
-  int patches = 0;
   pf::tools::CalibrationOptions calibration;  ///< of a sequence
 };
 
@@ -38,7 +37,6 @@ pf_config_t config_for(const pf_camera_t& camera, const Options& options) {
   config.capacity.max_imu_samples = 100;
   if (options.window) config.backend = PF_BACKEND_WINDOW;
   if (options.masks) config.map.masks = PF_MASKS_PARTIAL;
-  config.capacity.max_patches = options.patches;
   if (options.lens) {
     config.camera.estimate = PF_CAMERA_ESTIMATE;
     config.camera.sigma_focal = 0.01;
@@ -170,7 +168,6 @@ int main(int argc, char** argv) {
   app.add_option("--frames", options.frames, "at most so many");
   app.add_flag("--auto", options.start_auto, "start without the target");
   app.add_option("--backend", backend, "filter or window")->check(CLI::IsMember({"filter", "window"}));
-  app.add_option("--patches", options.patches, "on planes, at most");
   app.add_flag("--masks", options.masks, "templates with masks");
   app.add_flag("--imu", options.imu, "the inertial model: a scene's own unit, or the samples beside the images");
   app.add_flag("--lens", options.lens, "the lens is estimated");
