@@ -78,12 +78,24 @@ TimeUnit unit_of_samples(const Table& table, size_t time, std::string& note) {
     return time < row.fields.size() && row.fields[time].find('.') != std::string_view::npos;
   };
   TimeUnit unit = std::any_of(rows.begin(), rows.end(), has_point) ? TimeUnit::kSeconds : TimeUnit::kNanoseconds;
-  double first = 0.0, last = 0.0;
-  if (rows.size() < kMinSamples || rows.back().fields.size() <= time || !parse_double(rows[0].fields[time], first) ||
-      !parse_double(rows.back().fields[time], last) || !(last > first)) {
+  std::vector<double> steps;  // their median, since a clock may jump
+  double before = 0.0;
+  for (const TableRow& row : rows) {
+    double now = 0.0;
+    if (row.fields.size() <= time || !parse_double(row.fields[time], now)) {
+      return unit;
+    }
+    if (&row != &rows.front() && now > before) {
+      steps.push_back(now - before);
+    }
+    before = now;
+  }
+  if (steps.size() + 1 < kMinSamples) {
     return unit;
   }
-  const double per_unit = static_cast<double>(rows.size() - 1) / (last - first);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  const double per_unit = 1.0 / *middle;
   const double rate = per_unit * (unit == TimeUnit::kSeconds ? 1.0 : 1e9);
   if (rate >= kSlowest && rate <= kFastest) {
     return unit;
