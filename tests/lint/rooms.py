@@ -84,17 +84,9 @@ ONLY_FOR = {
     "filter/filter.h": ["filter/*", "filter_slam/*", "frame/settings.h"],
 }
 
-# What a folder and a class may have at most, for the folders that hold the back ends and what they share.
-LIMITED = ("session", "frame", "filter_slam", "keyframe_slam", "model", "observe", "bundle")
-MAX_FILES = 25        # .h and .cpp of a folder, without those of folders in it
-MAX_METHODS = 25      # declared in a class
-MAX_MEMBERS = 15      # data members of a class
-MAX_PARTS = 2         # .cpp files with methods of one class
-MAX_STATEMENTS = 60   # lines of a function's body
+# Folders of these rooms hold at most so many files (.h and .cpp, without those of folders in them).
+LIMITED = ("session", "frame", "filter_slam", "keyframe_slam", "observe", "bundle")
+MAX_FILES = 25
 
-# What is above a limit, with the reason; a name that no longer is above one is taken out.
-ABOVE = {
-}
-
-# Files of these folders have at most so many lines, beside the limits on classes.
+# Files of these folders have at most so many lines.
 MAX_LINES = {"filter": 300}

@@ -60,6 +60,11 @@ for room, allowed in rooms.LIBRARY.items():
         if room == other or room in rooms.LIBRARY[other]:
             problems.append(f"tests/lint/rooms.py: {room} and {other} may not include each other")
 
+for folder in sorted({path.parent for path in source.files("lib/src")}):
+    count = sum(path.suffix in source.CODE for path in folder.iterdir())
+    if folder.relative_to(LIB).parts[0] in rooms.LIMITED and count > rooms.MAX_FILES:
+        problems.append(f"{source.name(folder)} has {count} files, {rooms.MAX_FILES} at most: a room in it for those that belong together")
+
 for path in source.files("lib/src"):
     library(path)
     room = rooms.room_of(path.relative_to(LIB).as_posix())
