@@ -32,7 +32,7 @@ ConsensusRule ImageTracking::consensus_rule(const StartProgress& start, std::int
     return ConsensusRule::kBeyondChance;
   int known = 0;
   for (int i = 0; i < map_.features.capacity() && known < settings_.min_inliers; ++i)
-    known += map_.features.used(i) && filter_.state().block[map_.features[i].slot].kind != BlockKind::kInverseDepth;
+    known += map_.features.used(i) && !filter_.state().has_inverse_depth(map_.features[i].slot);
   if (known < settings_.min_inliers) return ConsensusRule::kMostAgree;
   const bool follows = tracking_.is_followed() && gap_s <= static_cast<double>(tuning::tracking::kMaxYoungGap);
   return follows ? ConsensusRule::kFollowed : ConsensusRule::kBeyondChance;

@@ -121,9 +121,9 @@ bool ImageFrontEnd::most_agree(int first, int found) const {
     ++searched;
     agree += i >= first && i < first + found && update_.keep()[i] != 0 ? 1 : 0;
   }
-  if (searched >= settings_.min_inliers) return 2 * agree >= searched;
+  if (searched >= settings_.min_inliers) return kMinAgreeing * agree >= searched;
   const int inliers = static_cast<int>(std::count(update_.keep() + first, update_.keep() + first + found, 1));
-  return 2 * inliers >= frame_.report.attempts;
+  return kMinAgreeing * inliers >= frame_.report.attempts;
 }
 
 /// Whether chance would hardly let as many matches agree as keep says.

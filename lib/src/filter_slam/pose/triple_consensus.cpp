@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/false_alarms.h"
+#include "base/limits.h"
 #include "base/random_triples.h"
 #include "filter_slam/pose/consensus.h"
 #include "frame/tuning.h"
@@ -13,7 +14,6 @@ namespace pf {
 namespace {
 
 constexpr Scalar kLogLevelCost = Scalar(6.9);  // ln 1,000, of a smaller ellipse
-constexpr int kMaxMatches = 200;               // capacity.max_observations at most
 
 }  // namespace
 
@@ -22,9 +22,9 @@ TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasureme
                                       const unsigned char* among, unsigned char* keep) {
   using namespace tuning::chance;
   TripleConsensus best;
-  short pool[kMaxMatches];
+  short pool[kMaxObservations];
   int size = 0;
-  found = std::min(found, kMaxMatches);
+  found = std::min(found, kMaxObservations);
   for (int i = 0; i < found; ++i)
     if (among == nullptr || among[i] != 0) pool[size++] = static_cast<short>(i);
   if (size < 4) {
@@ -52,7 +52,7 @@ TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasureme
     int inliers[kLevels];
     Scalar share[kLevels] = {};
     std::fill(inliers, inliers + kLevels, 3);
-    unsigned char is_inlier[kMaxMatches] = {};
+    unsigned char is_inlier[kMaxObservations] = {};
     for (int j = 0; j < found; ++j) {
       if (j == three[0] || j == three[1] || j == three[2]) {
         is_inlier[j] = 1;

@@ -88,7 +88,7 @@ bool PoseMeasurement::is_supported(int inliers, int found) const {
 bool PoseMeasurement::is_believed(int inliers, int found, Scalar shares) const {
   using namespace tuning::chance;
   if (inliers == 0) return false;
-  if (2 * inliers >= frame_.report.attempts) return true;
+  if (tuning::image_front_end::kMinAgreeing * inliers >= frame_.report.attempts) return true;
   const Scalar share = std::clamp(shares / static_cast<Scalar>(found), kMinShare, kMaxShare);
   return log_false_alarms(inliers, frame_.report.attempts, share, found) < tuning::tracking::kMaxLogFalse;
 }
@@ -111,7 +111,7 @@ bool PoseMeasurement::most_agree(int found) const {
     searched += match.searched && match.feature >= 0 && is_old(match) ? 1 : 0;
   }
   for (int c = 0; c < found; ++c) agree += pose_.is_inlier(c) && is_old(search_.match(c)) ? 1 : 0;
-  return searched >= settings_.min_inliers && 2 * agree >= searched;
+  return searched >= settings_.min_inliers && tuning::image_front_end::kMinAgreeing * agree >= searched;
 }
 
 }  // namespace pf
