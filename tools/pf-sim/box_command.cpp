@@ -134,26 +134,6 @@ pf_config_t rendered_config(const Choices& c, Plan plan) {
   return config;
 }
 
-/// Root mean square of the positions' errors of each run.
-std::vector<double> rmse_of(const Runs& runs) {
-  std::vector<double> all;
-  for (int s = 0; s < runs.seeds; ++s) {
-    double square = 0, count = 0;
-    for (int f = 0; f < runs.frames; ++f) {
-      const FrameRow& row = runs.row(s, f);
-      if (!(row.nees_position >= 0)) continue;
-      square += static_cast<double>(row.error_m) * static_cast<double>(row.error_m);
-      count += 1;
-    }
-    all.push_back(std::sqrt(square / std::max(1.0, count)));
-  }
-  return all;
-}
-
-json of_seeds(const std::vector<double>& values) {
-  return {{"median", median(values)}, {"worst", *std::max_element(values.begin(), values.end())}, {"seeds", values}};
-}
-
 json walls_json(const BoxSummary* summaries, int seeds) {
   double plan_deg = 0, plan_m = 0, end_deg = 0, end_m = 0, nees = 0, points = 0, worst_deg = 0;
   int count = 0, doubted = 0;

@@ -5,6 +5,7 @@
 #include "api/checks.h"
 #include "api/context.h"
 #include "api/research.h"
+#include "base/limits.h"
 #include "covariance/select.h"
 #include "frame/tuning.h"
 
@@ -25,10 +26,10 @@ constexpr Range kIntegers[] = {
     PF_FIELD(plane.enabled, 0, 1),
     PF_FIELD(capacity.max_state_dim, 32, 2000),
     PF_FIELD(capacity.max_features, 8, 1000),
-    PF_FIELD(capacity.max_observations, 8, 200),
-    PF_FIELD(capacity.max_planes, 1, 64),
+    PF_FIELD(capacity.max_observations, 8, pf::kMaxObservations),
+    PF_FIELD(capacity.max_planes, 1, pf::kMaxPlanes),
     PF_FIELD(capacity.max_kept_views, 0, 200),
-    PF_FIELD(capacity.max_patches, 0, 32),
+    PF_FIELD(capacity.max_patches, 0, pf::kMaxPatches),
     PF_FIELD(capacity.patch_side_px, 32, 128),
     PF_FIELD(capacity.max_cameras, 0, 64),
     PF_FIELD(capacity.template_px, pf::PlanarTemplate::kMinSide, pf::PlanarTemplate::kMaxSide),

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "base/limits.h"
 #include "filter_slam/pose/usable_pose.h"
 #include "frame/feature_upkeep.h"
 #include "frame/frame_entry.h"
@@ -172,7 +173,7 @@ Status FilterSlam::end_frame() {
   if (tracking_.has_pose() && !upkeep_.repair_estimate()) start_over();
   const StartProgress& progress = start_.recorder().progress();
   if (tracking_.is_tracked(frame_.report) && !progress.pending()) {
-    Scalar patch_depth[PatchKeeper::kMaxPatches];
+    Scalar patch_depth[kMaxPatches];
     const int patches = upkeep_.patches() != nullptr ? upkeep_.patches()->inlier_depths(patch_depth) : 0;
     if (!is_pose_usable(filter_, map_, frame_, patch_depth, patches, &data_.median_depth))
       tracking_.set_unusable();

@@ -1,21 +1,12 @@
 #include "frame/image_search.h"
 
-#include <new>
-
 #include "track/template_matcher.h"
 
 namespace pf {
 
 bool ImageSearch::layout(Arena& arena, const Settings& settings) {
-  if (kHasMasks && settings.masks != MaskMode::kNone) {
-    TemplateMatcher* place = arena.take<TemplateMatcher>(1);
-    if (place == nullptr) {
-      TemplateMatcher().layout(arena, settings.template_px);
-    } else {
-      templates_ = new (place) TemplateMatcher();
-      templates_->layout(arena, settings.template_px);
-    }
-  }
+  if (kHasMasks && settings.masks != MaskMode::kNone)
+    templates_ = arena.place<TemplateMatcher>([&](TemplateMatcher& made) { made.layout(arena, settings.template_px); });
   return tracker_.layout(arena, settings.camera.width, settings.camera.height);
 }
 

@@ -55,6 +55,7 @@ inline constexpr int kMaxEarlyFailures = 4;     ///< in a row, of a feature with
 inline constexpr int kMinDepths = 8;            ///< for a median
 inline constexpr Scalar kBehindTarget = 2;      ///< assumed depth of the scene, in depths of the target
 inline constexpr Scalar kSureSign = Scalar(9);  ///< chi-square of an inverse depth, above which its sign is certain
+inline constexpr int kMaxAttempts = 2;          ///< for each measurement of a feature that is kept
 }  // namespace feature_keeper
 
 /// New features.
@@ -76,7 +77,9 @@ inline constexpr int kScouts = 12;            ///< candidates that are measured 
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
 inline constexpr Scalar kFewFound = Scalar(0.75);  ///< share below which searches of a start follow the picture
-inline constexpr int kSettled = 5;  ///< measurements of a feature whose residuals are those of its matches
+inline constexpr int kSettled = 5;      ///< measurements of a feature whose residuals are those of its matches
+inline constexpr int kMinWide = 2;      ///< one in so many ellipses is wide where searches follow the picture
+inline constexpr int kFewPassing = 2;   ///< matches for each that passes a gate, above which chance lets those pass
 }  // namespace image_front_end
 
 /// Where the picture as a whole has gone.
@@ -127,6 +130,7 @@ inline constexpr Scalar kMaxSlant = Scalar(0.05);  ///< of a plane against its f
 inline constexpr Scalar kMinNormalCosine = Scalar(0.97);  ///< of the largest angle between planes that are merged
 inline constexpr Scalar kSamePlaneGate = Scalar(9);       ///< chi-square of a point of one plane against the other
 inline constexpr Scalar kMergeGate = Scalar(16);  ///< chi-square of a point that moves to a plane merged with its own
+inline constexpr int kPerOutlier = 10;  ///< points of a plane, of which one may be off another that it is merged with
 }  // namespace plane_lifecycle
 
 }  // namespace pf::tuning

@@ -84,7 +84,7 @@ bool collect(const ImageView& image, const Camera& camera, const Vec3& a, const 
     if (!find_rise(image, p, outwards, min_rise, &offset)) continue;
     if (unproject(camera, p + offset * outwards, &side->rays[side->count])) ++side->count;
   }
-  return side->count >= 4 && 2 * side->count >= places;
+  return side->count >= 4 && kMinRises * side->count >= places;
 }
 
 /// Plane through the optical centre, n · ray = 0: small turns of the first n about the two directions in it.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/table_entries.h"
 #include "filter_slam/planes/plane_points.h"
 #include "frame/tuning.h"
 #include "model/camera_at.h"
@@ -29,8 +30,7 @@ TrialVerdict judge_depth(const Filter& filter, const Map& map, const Frame& fram
   const Vec3 p_W = filter.point(map.features[entry].slot), first_W = map.first_view(entry).c_W;
   const Match* match = find_inlier(frame, entry);
   if (match == nullptr) return TrialVerdict::kOpen;
-  const bool rolls = filter.lens().readout != Scalar(0) && filter.state().layout.has(BodyPart::kVelocity);
-  const CameraAt camera = camera_at(filter.state(), rolls ? row_time(filter.lens(), match->measured.y()) : Scalar(0));
+  const CameraAt camera = camera_of_row(filter.state(), filter.lens(), match->measured.y());
   const auto pixel = [&](Scalar depth, Vec2* at) {
     const Vec3 moved_W = first_W + depth * (p_W - first_W);
     return project(filter.lens(), Vec3(camera.q_WC.conjugate() * (moved_W - camera.p_W)), at);
@@ -49,8 +49,8 @@ TrialVerdict judge_depth(const Filter& filter, const Map& map, const Frame& fram
 }  // namespace
 
 void judge_trials(const Filter& filter, Map& map, const Frame& frame, FeatureKeeper& features) {
-  for (int i = 0; i < map.features.capacity(); ++i) {
-    if (!map.features.used(i) || !map.features[i].on_trial) continue;
+  for (const int i : used_entries(map.features)) {
+    if (!map.features[i].on_trial) continue;
     Feature& f = map.features[i];
     const TrialVerdict verdict = judge_depth(filter, map, frame, i);
     if (f.rejections >= kTrialRejections || verdict == TrialVerdict::kElsewhere) {

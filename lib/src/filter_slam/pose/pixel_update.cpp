@@ -56,7 +56,7 @@ bool PixelUpdate::are_depths_open(int first, int count) const {
     if (block.kind == BlockKind::kInverseDepth)
       open += !(std::sqrt(filter_.block_variance(slot, 2)) < kOpenDepth * block.inverse_depth().rho);
   }
-  return 2 * open > all;
+  return tuning::pixel_update::kMinOpen * open > all;
 }
 
 Scalar PixelUpdate::propose(int first, int count, Scalar depth, Scalar before, Scalar evidence) {

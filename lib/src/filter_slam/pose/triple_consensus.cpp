@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/limits.h"
 #include "base/random_triples.h"
 #include "filter_slam/pose/consensus.h"
 #include "filter_slam/pose/tuning.h"
@@ -10,8 +11,6 @@
 
 namespace pf {
 namespace {
-
-constexpr int kMaxMatches = 200;  // capacity.max_observations at most
 
 /// Three matches, and what all pixels are given them.
 struct Triple {
@@ -57,7 +56,7 @@ PoseConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement
                                     unsigned char* keep) {
   PoseConsensus best;
   best.searched = attempts;
-  found = std::min(found, kMaxMatches);
+  found = std::min(found, kMaxObservations);
   std::fill(keep, keep + found, static_cast<unsigned char>(0));
   if (found < 4) return best;
   RandomTriples random(found, 1);
@@ -70,7 +69,7 @@ PoseConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement
     PoseConsensus consensus;
     consensus.searched = attempts;
     consensus.inliers = 3;
-    unsigned char is_inlier[kMaxMatches] = {};
+    unsigned char is_inlier[kMaxObservations] = {};
     for (int j = 0; j < found; ++j) {
       const bool is_of_three = j == three[0] || j == three[1] || j == three[2];
       Scalar log_density;

@@ -10,6 +10,7 @@ namespace pf::tuning {
 /// Matches that enter the update.
 namespace pixel_update {
 inline constexpr Scalar kOthersGate = Scalar(1.5);  ///< gates, of one match against all others: (1/100)^1.5 is 1/1000
+inline constexpr int kMinOpen = 2;  ///< more than one in so many depths is open where pixels tell the map first
 }  // namespace pixel_update
 
 /// Groups of young features against the older ones.

@@ -185,11 +185,10 @@ int Relocaliser::linearise_at(const Body& pose, int found) {
 
 /// Of the inliers, seen from a pose; 0 without any.
 Scalar Relocaliser::median_depth(const Body& pose, int found) const {
-  constexpr int kMaxMatches = 200;  // capacity.max_observations at most
-  Scalar depth[kMaxMatches];
+  Scalar depth[kMaxObservations];
   int count = 0;
   const Vec3 forward = pose.q_WC.toRotationMatrix().col(2);
-  for (int i = 0; i < found && count < kMaxMatches; ++i)
+  for (int i = 0; i < found && count < kMaxObservations; ++i)
     if (update_.keep()[i] != 0)
       depth[count++] = forward.dot(filter_.point(map_.features[update_.candidate(i).feature].slot) - pose.p_W);
   if (count == 0) return 0;
