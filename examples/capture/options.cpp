@@ -339,7 +339,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "what window, film and pictures say at the lower edge, in place of the source")
       ->check(not_empty());
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
-  app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame; patches.csv likewise");
+  app.add_flag("--tracks", options.tracks,
+               "write tracks.csv and planes.csv, every feature and plane in every frame; patches.csv likewise");
   app.add_flag("--quiet", options.quiet, "no progress line");
   const CLI::Option* given_backend =
       app.add_option("--backend", backend,

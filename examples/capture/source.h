@@ -47,6 +47,9 @@ class Source {
   /// The target that the source itself knows, for --start target.
   virtual bool target(pf_target_t&) const { return false; }
 
+  /// Depth along z [m] and number of the surface (0 and -1: nothing) at each pixel of the frame that was read last, where the source knows
+  /// them.
+  virtual bool depth(std::vector<float>& /*z*/, std::vector<int32_t>& /*surface*/) const { return false; }
   /// The true planes, n . p = d as (n, d), where the source knows them.
   virtual std::vector<std::array<double, 4>> planes() const { return {}; }
 

@@ -621,9 +621,11 @@ typedef struct pf_feature {
   uint32_t id; /* never used twice */
   /* pf_observation_t.id; of a point of the target: its index. 0 of what an image began */
   uint32_t external_id;
-  int32_t kind;         /* pf_feature_kind_t */
-  int32_t is_target;    /* 1 for a point of the target */
-  uint32_t plane;       /* id of the plane that it is folded into, or 0 */
+  int32_t kind;      /* pf_feature_kind_t */
+  int32_t is_target; /* 1 for a point of the target */
+  uint32_t plane;    /* id of the plane that it is folded into, or began on, or 0 */
+  int32_t
+      on_trial; /* 1: began on that plane, and has not shown by its own parallax that it lies there */
   uint32_t map_id;      /* as in pf_pose_t */
   double p_W[3];        /* [m] inverse depth: at the mean inverse depth */
   double covariance[9]; /* 3x3; inverse depth: to first order */
@@ -649,7 +651,9 @@ typedef enum pf_orientation {
 typedef struct pf_plane {
   uint32_t id;         /* never used twice */
   int32_t orientation; /* pf_orientation_t */
-  int32_t points;      /* folded into it, fixed ones among them */
+  int32_t points;      /* that began on it or were folded into it: members + trial */
+  int32_t members;     /* of these, those whose own parallax has shown it; fixed ones among them */
+  int32_t trial;       /* and those that began on it, and have not shown it yet */
   int32_t fixed_points;
   uint32_t map_id; /* as in pf_pose_t */
   /* of the convex outline of its points, 0 .. PF_OUTLINE_MAX; of a wall, with the plan's */
@@ -790,6 +794,7 @@ typedef struct pf_report {
   int32_t attempts, matches, inliers, new_features,
       evicted; /* a patch counts as eight of the first three */
   int32_t features, features_point, features_inverse_depth, features_folded, features_fixed;
+  int32_t features_trial; /* that began on a plane, and count among none of the kinds before */
   int32_t planes;
   int32_t state_dim;
   int32_t state_dim_held; /* rows of the state that are considered only: without gain */

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/limits.h"
 #include "filter_slam/pose/triple_consensus.h"
 #include "filter_slam/recovery/pose_proposal.h"
 #include "frame/ellipse.h"
