@@ -282,6 +282,9 @@ typedef struct pf_config {
     /* Side of a feature's template with map.masks, odd, 9 .. 31 px; without, it takes no memory.
      * Default 15 */
     int32_t template_px;
+    /* Pixels of the mask that pf_set_mask may set: 0 (none), or camera.width * camera.height at
+     * least. It is kept as one bit for 4x4 of them: 2.4 kB for 640x480. Default 0 */
+    int32_t mask;
   } capacity;
 
   /* Capacities of PF_BACKEND_WINDOW, of no meaning with the filter. With the window, max_state_dim,
@@ -520,6 +523,33 @@ typedef struct pf_image {
   int32_t stride;        /* bytes from row to row, >= width */
   int64_t t_ns;          /* middle of the exposure, after that of every earlier frame */
 } pf_image_t;
+
+/* Pixels from (x, y) on, which may reach beyond the image. */
+typedef struct pf_rectangle {
+  int32_t x, y, width, height; /* [px] width and height >= 0 */
+} pf_rectangle_t;
+
+/* What in the images is not the scene: the carrier's own body, a date or a frame that a recorder
+ * has drawn. By pixels, by rectangles or both. */
+typedef struct pf_mask {
+  /* One byte a pixel, row by row: 0 is masked, all else is scene. Null: rectangles alone */
+  const uint8_t* pixels;
+  int32_t width, height; /* [px] those of the calibration */
+  int32_t stride;        /* bytes from row to row, >= width; not read without pixels */
+  int32_t num_rectangles;
+  const pf_rectangle_t* rectangles; /* that are masked; null with num_rectangles 0 */
+} pf_mask_t;
+
+/* Masks a part of all images from the next one on, in place of the mask before; a mask in which all
+ * is scene ends it, and so does pf_reset. What is masked is never searched, and nothing begins, is
+ * aligned or is recognised there (lib/docs/mask.md). Of each 4x4 px a masked pixel masks all. Bytes
+ * and rectangles are read during the call only. Pushed observations are not masked.
+ * PF_NOTE_UNUSABLE: done, but of the 8x6 equal parts of the image, in which features begin, fewer
+ * than eight hold any scene, which is too little for tracking.
+ * PF_ERROR_FULL: capacity.mask is 0. PF_ERROR_NULL: neither pixels nor rectangles. PF_ERROR_SIZE:
+ * not the size of the images. PF_ERROR_RANGE: everything would be masked, or a rectangle has a
+ * negative side. */
+PF_API pf_status_t pf_set_mask(pf_slam_t* slam, const pf_mask_t* mask);
 
 /* Track one frame. PF_OK means tracked. An image that is byte for byte the one before repeats that
  * one's pose and status under its own time and is counted; nothing is measured, and the next
