@@ -819,6 +819,10 @@ typedef struct pf_report {
   int32_t templates;
   int32_t keyframes; /* of the window: that are kept */
   double template_area;
+  /* ln(p / (1 - p)) of the probability that the map's pose in this frame is right, with what the
+   * frame says for it (lib/docs/belief.md): 3 is wrong once in 20, and a frame is tracked from 6.2
+   * on, once in 500. -3 .. 13.8; 0 before there is a pose. */
+  double log_odds;
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

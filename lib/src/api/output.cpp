@@ -245,6 +245,7 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->nis_dof = r.nis_dof;
   report->duplicates = r.duplicates;
   report->covariance_repairs = r.repairs;
+  report->log_odds = view.tracking().has_pose() ? static_cast<double>(view.tracking().belief().log_odds()) : 0.0;
   report->sigma_gate_px = static_cast<double>(view.noise().sigma_gate());
   report->sigma_info_px = static_cast<double>(view.noise().sigma_info());
   report->correlation_frames = static_cast<double>(view.noise().correlation_frames());

@@ -7,23 +7,11 @@
 
 namespace pf::tuning {
 
-/// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/states.md).
-namespace chance {
-inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that find something; found: 0.04 .. 0.24
-inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in small ellipses, times kMaxFindShare
-inline constexpr Scalar kMinShare = Scalar(1e-6);      ///< of a search that chance lets agree, at least
-inline constexpr Scalar kMaxShare = Scalar(0.99);      ///< likewise, at most
-inline constexpr int kLevels = 4;  ///< areas in which matches may agree: the gate's, 1/2, 1/4, 1/8 of it
-inline constexpr Scalar kGateOfThree = Scalar(22.5);  ///< chi-square of six degrees of freedom, 0.999
-}  // namespace chance
-
 /// A frame while tracking.
 namespace tracking {
 inline constexpr int kMinInliers = 8;       ///< of a tracked frame, or half of map.features_in_view if that is less
 inline constexpr int kMinInliersOfFew = 5;  ///< and never fewer than that
-inline constexpr Scalar kMaxLogFalse = Scalar(-6.9);  ///< ln 0.001 consensuses as good that chance gives per frame
-inline constexpr int kTriples = 8;                    ///< of inliers, with which that number is computed
-inline constexpr Scalar kMaxYoungGap = Scalar(0.2);   ///< [s] untracked, after which a young map is no longer followed
+inline constexpr Scalar kMaxLogFalse = Scalar(-6.9);    ///< ln 0.001 consensuses as good that chance gives per frame
 inline constexpr Scalar kMaxLensDeviation = Scalar(3);  ///< prior sigmas of an estimated lens without a warning
 }  // namespace tracking
 
@@ -35,8 +23,7 @@ inline constexpr Scalar kMaxPositionSigma = Scalar(0.5);    ///< in median depth
 
 /// Finding the map again.
 namespace relocaliser {
-inline constexpr Scalar kMaxLogFalse = Scalar(-13.8);  ///< ln 1e-6 consensuses as good that chance gives per frame
-inline constexpr int kTriples = 40;                    ///< of inliers, with which that number is computed
+inline constexpr int kTriples = 40;        ///< of matches, each of which may fix the pose
 inline constexpr int kFramesNearby = 2;    ///< in a row with a consensus about the prediction, after a short gap
 inline constexpr int kFramesAnywhere = 3;  ///< in a row that agree; in random order one in 20 shows a neighbour
 inline constexpr Scalar kNearbySigma = Scalar(0.1);  ///< [rad] rotation sigma of a prediction that is searched linearly
@@ -96,10 +83,9 @@ inline constexpr int kScouts = 12;            ///< candidates that are measured 
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
 inline constexpr Scalar kFewFound = Scalar(0.75);  ///< share below which searches of a start follow the picture
-inline constexpr int kSettled = 5;      ///< measurements of a feature whose residuals are those of its matches
-inline constexpr int kMinAgreeing = 2;  ///< one in so many of what was searched for agrees where the pose is believed
-inline constexpr int kMinWide = 2;      ///< one in so many ellipses is wide where searches follow the picture
-inline constexpr int kFewPassing = 2;   ///< matches for each that passes a gate, above which chance lets those pass
+inline constexpr int kSettled = 5;     ///< measurements of a feature whose residuals are those of its matches
+inline constexpr int kMinWide = 2;     ///< one in so many ellipses is wide where searches follow the picture
+inline constexpr int kFewPassing = 2;  ///< matches for each that passes a gate, above which chance lets those pass
 }  // namespace image_front_end
 
 /// Where the picture as a whole has gone.

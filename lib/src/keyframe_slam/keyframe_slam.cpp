@@ -91,7 +91,7 @@ void KeyframeSlam::begin_frame(std::int64_t t_ns) {
   data_.since_last_ns = frame_.report.frames > 0 ? elapsed_ns(before_ns, t_ns) : 0;
   const bool nothing_measured = frame_.report.inliers == 0;
   frame_.begin(t_ns);
-  tracking_.begin_frame();
+  tracking_.begin_frame(data_.since_last_ns);
   if (!tracking_.has_pose()) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
   motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
@@ -106,7 +106,8 @@ void KeyframeSlam::measure() {
     if (record_.follow()) mapping_.adjust();
   } else if (data_.young) {
     measuring_.measure_young(data_.median_depth);
-  } else if (tracking_.is_relocalising(record_.progress())) {
+  } else if (tracking_.is_relocalising(record_.progress()) && !relocaliser_.is_prediction_narrow(data_.median_depth)) {
+    tracking_.belief().spend();
     relocaliser_.recover(data_.median_depth);
   } else {
     relocaliser_.clear_proposal();

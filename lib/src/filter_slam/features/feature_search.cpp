@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "belief/pose_evidence.h"
 #include "frame/ellipse.h"
 #include "frame/feature_upkeep.h"
 #include "frame/tuning.h"
@@ -120,6 +121,8 @@ int FeatureSearch::search(int first, int count) {
     match.measured = outcome.pixel;
     match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
     o.measured = outcome.pixel;
+    const Scalar nis = squared_distance(outcome.pixel - task.predicted, task.innovation);
+    update_.candidate(i).log_density = log_normal_density(nis, std::log(task.innovation.determinant()), 1);
     noise_.set(i, outcome);
     if (found != i) update_.swap(found, i);
     ++found;
