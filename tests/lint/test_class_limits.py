@@ -6,7 +6,7 @@ number in the list may only fall: the test asks for the lower one as soon as the
 import classes
 import source
 
-ROOMS = ("session", "filter_slam", "keyframe_slam", "frame", "model", "observe", "bundle")
+ROOMS = ("session", "filter_slam", "keyframe_slam", "frame", "model", "observe", "bundle", "belief")
 MAX_METHODS, MAX_MEMBERS, MAX_SOURCES, MAX_LINES = 25, 15, 2, 60
 
 # (class or function, what is counted): (how many, why).
@@ -15,8 +15,6 @@ ABOVE = {
     ("FrameReport", "data members"): (16, "the counts of pf_report_t, each by itself"),
     ("RestDetector::Data", "data members"): (16, "running sums over the samples of a rest, which begin and end together"),
     ("UnitWatch::Data", "data members"): (17, "all evidence for and against the unit, which is reset together"),
-    ("PixelUpdate", "data members"): (16, "three of them are options of the next update alone and could be its arguments"),
-    ("find_triple_consensus", "lines"): (70, "one loop over drawn triples: innovation given the triple, and inliers at each level of the ellipse"),
 }
 
 found = {}

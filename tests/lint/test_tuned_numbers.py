@@ -16,7 +16,7 @@ LITERAL = re.compile(rf"\bScalar\(\s*-?(?P<scalar>\d+|{NUMBER})f?\s*\)|(?<![\w.]
 NAMED = re.compile(r"\bconstexpr\b[^=;]*=|^\s*(?:Scalar|float|double)\s+\w+ =", re.MULTILINE)
 # Of counts and lengths: `2 * agree >= searched` says that half is enough, which is a number that decides.
 RATIO = re.compile(r"(?<![\w.)])(?:[2-9]|\d\d+) \* [a-z][\w.>()-]* (?:<|>|<=|>=) |(?:<|>|<=|>=) (?:[2-9]|\d\d+) \* (?!k[A-Z])[a-z]")
-TUNED = re.compile(r"(?:inline|static) constexpr (?:Scalar|float|int) k\w+ = [^;]+; +///< \S.*")
+TUNED = re.compile(r"(?:inline|static) constexpr (?:Scalar|float|double|int) k\w+ = [^;]+; +///< \S.*")
 
 
 def bare_numbers(path):
