@@ -11,7 +11,7 @@ bool ImageSearch::layout(Arena& arena, const Settings& settings) {
 }
 
 void ImageSearch::init(const Settings& settings) {
-  tracker_.init(settings.camera, settings.mask);
+  tracker_.init(settings.camera, settings.mask.mask);
   if (has_templates()) templates_->init(settings.camera, settings.masks, settings.max_misfit);
 }
 
