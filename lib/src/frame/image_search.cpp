@@ -12,7 +12,7 @@ bool ImageSearch::layout(Arena& arena, const Settings& settings) {
 }
 
 void ImageSearch::init(const Settings& settings) {
-  fixed_.init(settings.mask);
+  fixed_.init(settings.mask.mask);
   tracker_.init(settings.camera, fixed_.mask());
   if (has_templates()) templates_->init(settings.camera, settings.masks, settings.max_misfit);
 }

@@ -173,7 +173,7 @@ bool is_in_scene(const Quad& quad, const ImageMask* mask) {
     int clear = 0;
     for (int k = 0; k < kPlaces; ++k)
       clear += mask->is_clear(Vec2(from + (to - from) * (static_cast<Scalar>(k) / kPlaces)), kAround);
-    if (2 * clear < kPlaces) return false;
+    if (kMinClear * clear < kPlaces) return false;
   }
   return true;
 }
