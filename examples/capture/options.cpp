@@ -339,7 +339,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "what window, film and pictures say at the lower edge, in place of the source")
       ->check(not_empty());
   app.add_flag("--no-film", no_film, "no overlay.mp4; the two pictures are still written");
-  app.add_flag("--tracks", options.tracks, "write tracks.csv, every feature in every frame; patches.csv likewise");
+  app.add_flag("--tracks", options.tracks,
+               "write tracks.csv and planes.csv, every feature and plane in every frame; patches.csv likewise");
   app.add_flag("--quiet", options.quiet, "no progress line");
   const CLI::Option* given_backend =
       app.add_option("--backend", backend,
@@ -380,6 +381,12 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->capture_default_str();
   app.add_option("--masks", masks,
                  "none, partial or whole: templates that learn which of their pixels belong to one plane")
+      ->capture_default_str();
+  app.add_option("--mask", options.mask,
+                 "PNG of the images' size, 0 where they do not show the scene (the carrier's body, a date), else 255; "
+                 "auto:\n"
+                 "mask.png beside the frames, where there is one; or none")
+      ->check(not_empty())
       ->capture_default_str();
   app.add_flag("--no-planes", no_planes, "points only");
   app.add_flag("--plain-ekf", no_gauge, "the textbook filter, which is overconfident; for comparison");

@@ -81,11 +81,6 @@ void put_inertial(std::string& rows, const FrameView& view) {
   append(rows, ",%.6g,%.6g\n", unit.sigma.delay_s, unit.sigma.readout_s);
 }
 
-const char* match_name(int32_t status) {
-  constexpr const char* kNames[] = {"unknown", "inlier", "outlier", "missed", "new"};
-  return kNames[status >= 0 && status <= 4 ? status : 0];
-}
-
 /// Corners that were measured, or else predicted.
 void put_patch(std::string& rows, int64_t frame, const pf_patch_t& patch) {
   append(rows, "%" PRId64 ",%u,%u,%s,%d,%.3f", frame, patch.id, patch.plane,
@@ -94,11 +89,6 @@ void put_patch(std::string& rows, int64_t frame, const pf_patch_t& patch) {
     append(rows, ",%.3f,%.3f", corner[0], corner[1]);
   }
   rows += '\n';
-}
-
-const char* kind_name(int32_t kind) {
-  constexpr const char* kNames[] = {"unknown", "inverse_depth", "point", "folded", "fixed"};
-  return kNames[kind >= 0 && kind <= 4 ? kind : 0];
 }
 
 }  // namespace
@@ -132,8 +122,9 @@ bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool tr
     return false;
   }
   if (!open_map(1, error) || !create(frames_, "frames.csv", error) ||
-      (tracks && !create(tracks_, "tracks.csv", error)) || (patches && !create(patches_, "patches.csv", error)) ||
-      (truth && !create(truth_, "truth.tum", error)) || (relative && !create(relative_, "relative.csv", error)) ||
+      (tracks && !(create(tracks_, "tracks.csv", error) && create(planes_, "planes.csv", error))) ||
+      (patches && !create(patches_, "patches.csv", error)) || (truth && !create(truth_, "truth.tum", error)) ||
+      (relative && !create(relative_, "relative.csv", error)) ||
       (camera.estimate == PF_CAMERA_ESTIMATE && !create(lens_, "lens.csv", error)) ||
       (inertial && !create(inertial_, "inertial.csv", error))) {
     return false;
@@ -148,9 +139,10 @@ bool Outputs::open(const std::string& folder, bool tracks, bool patches, bool tr
     return false;
   }
   frames_.rows() =
-      "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof,planes,folded,fixed,rows_points_only,"
+      "t_s,state,attempts,matches,inliers,features,state_dim,ms,nis,nis_dof,planes,folded,trial,fixed,rows_points_only,"
       "tracked,log_odds\n";
-  tracks_.rows() = "frame,id,status,kind,predicted_u,predicted_v,s_uu,s_uv,s_vv,measured_u,measured_v\n";
+  tracks_.rows() = TrackRows::kTracksHeader;
+  planes_.rows() = TrackRows::kPlanesHeader;
   patches_.rows() = "frame,id,wall,status,frames,weight,u0,v0,u1,v1,u2,v2,u3,v3\n";
   relative_.rows() = "mark_t_s,t_s,map,qw,qx,qy,qz,px,py,pz";
   for (int i = 0; i < 36; ++i) {
@@ -179,17 +171,18 @@ bool Outputs::open_map(int map, std::string& error) {
   return true;
 }
 
-bool Outputs::write(const FrameView& view, const pf_pose_t* truth, const MotionWindow* window, std::string& error) {
+bool Outputs::write(const FrameView& view, Source& source, const MotionWindow* window, std::string& error) {
+  pf_pose_t truth{};
   const pf_report_t& report = view.report;
   if (view.map != map_ && !open_map(view.map, error)) {
     return false;
   }
   std::string& frames = frames_.rows();
   put_seconds(frames, view.image.t_ns);
-  append(frames, ",%s,%d,%d,%d,%d,%d,%.4f,%.6g,%d,%d,%d,%d,%d,%d,%.2f\n", state_name(report.state), report.attempts,
+  append(frames, ",%s,%d,%d,%d,%d,%d,%.4f,%.6g,%d,%d,%d,%d,%d,%d,%d,%.2f\n", state_name(report.state), report.attempts,
          report.matches, report.inliers, report.features, report.state_dim, view.ms, report.nis, report.nis_dof,
-         report.planes, report.features_folded, report.features_fixed, report.state_dim_points_only,
-         view.tracked ? 1 : 0, report.log_odds);
+         report.planes, report.features_folded, report.features_trial, report.features_fixed,
+         report.state_dim_points_only, view.tracked ? 1 : 0, report.log_odds);
   if (view.has_pose) {
     put_tum(trajectory_all_.rows(), view.pose);
   }
@@ -206,32 +199,22 @@ bool Outputs::write(const FrameView& view, const pf_pose_t* truth, const MotionW
   if (inertial_.is_open() && view.has_pose && view.has_inertial) {
     put_inertial(inertial_.rows(), view);
   }
-  if (truth != nullptr) {
-    put_tum(truth_.rows(), *truth);
+  if (source.truth(truth)) {
+    put_tum(truth_.rows(), truth);
   }
   if (window != nullptr) {
     put_window(relative_.rows(), *window);
   }
   if (tracks_.is_open()) {
-    std::string& tracks = tracks_.rows();
-    for (const pf_match_t& t : view.tracks) {
-      append(tracks, "%" PRId64 ",%u,%s,%s,%.3f,%.3f,%.4g,%.4g,%.4g", view.index, t.id, match_name(t.status),
-             kind_name(t.kind), t.predicted_px[0], t.predicted_px[1], t.covariance_px[0], t.covariance_px[1],
-             t.covariance_px[3]);
-      if (t.status == PF_MATCH_MISSED) {
-        tracks += ",,\n";
-      } else {
-        append(tracks, ",%.3f,%.3f\n", t.measured_px[0], t.measured_px[1]);
-      }
-    }
+    track_rows_.add(view, source, tracks_.rows(), planes_.rows());
   }
   if (patches_.is_open()) {
     for (const pf_patch_t& patch : view.patches) put_patch(patches_.rows(), view.index, patch);
   }
   bool written = true;
   // The covariance before the trajectory, so that whatever ends the program leaves one for every pose.
-  for (TextFile* file : {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &patches_, &truth_, &relative_, &lens_,
-                         &inertial_, &frames_}) {
+  for (TextFile* file : {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &planes_, &patches_, &truth_,
+                         &relative_, &lens_, &inertial_, &frames_}) {
     written = file->write_rows(error) && written;
   }
   return written;

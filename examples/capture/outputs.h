@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "source.h"
 #include "text_file.h"
+#include "track_rows.h"
 #include "view.h"
 
 namespace pf::capture {
@@ -23,10 +25,10 @@ class Outputs {
 
   /// trajectory.txt and covariance.csv where the frame was tracked, trajectory_all.txt wherever there is a pose; of the second map
   /// trajectory_2.txt and so on, since each map has a world of its own;
-  /// frames.csv in every frame, tracks.csv, patches.csv; truth.tum where truth is not null. false: error is one line (disk full, say).
+  /// frames.csv in every frame, tracks.csv and planes.csv, patches.csv; truth.tum where the source knows the truth of its last frame. false: error is one line (disk full, say).
   /// A row of relative.csv where window is not null; of lens.csv where the frame was tracked and the lens is estimated;
   /// of inertial.csv where there is a pose that depends on a unit's samples.
-  bool write(const FrameView& view, const pf_pose_t* truth, const MotionWindow* window, std::string& error);
+  bool write(const FrameView& view, Source& source, const MotionWindow* window, std::string& error);
   /// truth_planes.json, where the source knows them.
   bool write_true_planes(const std::vector<std::array<double, 4>>& planes, std::string& error) const;
   /// map.ply and report.json, in the place of earlier ones. false: error is one line. sigmas_in_map as in to_ply.
@@ -42,7 +44,9 @@ class Outputs {
   bool open_map(int map, std::string& error);
 
   std::filesystem::path folder_;
-  TextFile trajectory_, trajectory_all_, covariance_, frames_, tracks_, patches_, truth_, relative_, lens_, inertial_;
+  TextFile trajectory_, trajectory_all_, covariance_, frames_, tracks_, planes_, patches_, truth_, relative_, lens_,
+      inertial_;
+  TrackRows track_rows_;
   int map_ = 0;  ///< whose files are open
 };
 

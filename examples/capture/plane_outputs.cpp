@@ -85,6 +85,8 @@ nlohmann::ordered_json planes_json(const std::vector<PlaneView>& planes) {
     one["sigma_normal_deg"] = plane.sigma_normal * 57.29577951308232;
     one["points"] = plane.points;
     one["fixed_points"] = plane.fixed_points;
+    one["members"] = plane.points - plane.trial;
+    one["trial"] = plane.trial;
     one["area_m2"] = plane.area();
     one["orientation"] = plane.orientation;
     one["outline"] = plane.outline;

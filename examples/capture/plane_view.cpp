@@ -59,6 +59,7 @@ PlaneView view_of(const pf_plane_t& plane) {
   view.distance = plane.distance;
   view.points = plane.points;
   view.fixed_points = plane.fixed_points;
+  view.trial = plane.trial;
   view.is_wall = plane.is_wall != 0;
   view.rejected = plane.rejected != 0;
   view.orientation = kOrientations[plane.orientation <= 4 ? plane.orientation : 0];

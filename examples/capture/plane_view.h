@@ -19,7 +19,8 @@ struct PlaneView {
   double sigma_normal = 0.0;  ///< of the normal, along its worst direction [rad]
   int points = 0;
   int fixed_points = 0;
-  bool is_wall = false;   ///< a wall of the plan
+  int trial = 0;         ///< of the points, those that began on it and have not shown by themselves that they lie there
+  bool is_wall = false;  ///< a wall of the plan
   bool rejected = false;  ///< a wall that is not where the plan has it
   const char* orientation = "unknown";
   Vec3 origin{}, u{}, v{};    ///< a frame in the plane

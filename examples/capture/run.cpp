@@ -265,7 +265,7 @@ bool Run::write_down(std::string& error) {
   const bool has_truth = source_.truth(truth);
   const pf_pose_t* true_pose = has_truth ? &truth : nullptr;
   const bool window = relative_.add(session_.slam(), view_, true_pose);
-  if (!outputs_.write(view_, true_pose, window ? &relative_.window() : nullptr, error)) {
+  if (!outputs_.write(view_, source_, window ? &relative_.window() : nullptr, error)) {
     return false;
   }
   return !recorder_.failed(error) && !imu_.failed(error);

@@ -25,6 +25,7 @@ struct SourceInfo {
   double rate_hz = 30.0;
   std::string truth_path;    ///< a trajectory that lies beside the source; "" where there is none
   std::string imu_path;      ///< inertial samples that lie beside the source; likewise
+  std::string mask_path;     ///< a mask of its images; likewise
   std::string warning;       ///< lines that the user should know; "" where there are none
   std::string camera_name;   ///< in a calibration of several cameras; "" where it is not known
   std::string device;        ///< of a camera
@@ -47,6 +48,9 @@ class Source {
   /// The target that the source itself knows, for --start target.
   virtual bool target(pf_target_t&) const { return false; }
 
+  /// Depth along z [m] and number of the surface (0 and -1: nothing) at each pixel of the frame that was read last, where the source knows
+  /// them.
+  virtual bool depth(std::vector<float>& /*z*/, std::vector<int32_t>& /*surface*/) const { return false; }
   /// The true planes, n . p = d as (n, d), where the source knows them.
   virtual std::vector<std::array<double, 4>> planes() const { return {}; }
 

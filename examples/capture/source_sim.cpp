@@ -46,6 +46,13 @@ class SimSource : public Source {
     return true;
   }
 
+  bool depth(std::vector<float>& z, std::vector<int32_t>& surface) const override {
+    const size_t pixels = static_cast<size_t>(info_.camera.width) * static_cast<size_t>(info_.camera.height);
+    z.resize(pixels);
+    surface.resize(pixels);
+    return pf_sim_depth(sim_.get(), &truth_, z.data(), surface.data()) == PF_OK;
+  }
+
   bool target(pf_target_t& target) const override {
     return pf_sim_target(sim_.get(), PF_TARGET_RECTANGLE, &target) == PF_OK;
   }

@@ -172,6 +172,7 @@ void Statistics::add_folding(const FrameView& view) {
   ++folding_.frames;
   folding_.frames_plane += report.planes > 0 ? 1 : 0;
   folding_.share_folded += static_cast<double>(folded) / report.features;
+  folding_.share_trial += static_cast<double>(report.features_trial) / report.features;
   folding_.share_saved += 1.0 - static_cast<double>(report.state_dim) / report.state_dim_points_only;
   planes_.add(report.planes);
   folded_.add(folded);
@@ -273,7 +274,8 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
   json["features_in_map"] = {{"points", last_report_.features_point},
                              {"inverse_depth", last_report_.features_inverse_depth},
                              {"folded", last_report_.features_folded},
-                             {"fixed", last_report_.features_fixed}};
+                             {"fixed", last_report_.features_fixed},
+                             {"trial", last_report_.features_trial}};
   json["new_features"] = new_features_;
   json["evicted"] = evicted_;
   json["track_length"] = {
@@ -291,6 +293,7 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
                      {"folded_median", folded_.quantile(0.5)},
                      {"frames_with_plane", mean_of(static_cast<double>(folding_.frames_plane))},
                      {"share_folded", mean_of(folding_.share_folded)},
+                     {"share_trial", mean_of(folding_.share_trial)},
                      {"share_rows_saved", mean_of(folding_.share_saved)}};
   json["state_dim_held"] = last_report_.state_dim_held;
   json["planes"] = planes_json(last_planes_);

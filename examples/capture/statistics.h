@@ -78,6 +78,7 @@ class Statistics {
     int64_t frames = 0;         ///< tracked, from kFoldingFrom on
     int64_t frames_plane = 0;   ///< of these, with a plane
     double share_folded = 0.0;  ///< sum over them: folded and fixed among the features of the map
+    double share_trial = 0.0;   ///< likewise, those that are on trial on a plane
     double share_saved = 0.0;   ///< sum over them: rows that folding saves among those of points only
   };
   FoldingCount folding_;

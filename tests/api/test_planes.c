@@ -172,16 +172,19 @@ static void test_planes_should_be_found_where_the_walls_are(void) {
   pf_report_t report;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(slam, &report));
   TEST_ASSERT_EQUAL_INT(2, report.planes);
-  int folded = 0;
+  int folded = 0, trial = 0;
   for (int w = 0; w < 2; ++w) {
     const pf_plane_t* plane = plane_like(planes, number, walls[w]);
     require_true(plane, walls[w]);
     TEST_ASSERT_GREATER_OR_EQUAL_INT(15, plane->points);
     TEST_ASSERT_GREATER_OR_EQUAL_INT(3, plane->outline_count);
     TEST_ASSERT_TRUE(plane->area > 0.2 && plane->area < (w == 0 ? 2.2 * 1.6 : 1.6 * 0.4) * 1.05);
-    folded += plane->points;
+    TEST_ASSERT_EQUAL_INT(plane->points, plane->members + plane->trial);
+    folded += plane->members;
+    trial += plane->trial;
   }
   TEST_ASSERT_EQUAL_INT(folded, report.features_folded + report.features_fixed);
+  TEST_ASSERT_EQUAL_INT(trial, report.features_trial);
 
   /* An array that is too small, and none. */
   size_t told = 0;

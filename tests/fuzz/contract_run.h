@@ -438,7 +438,7 @@ class ContractRun {
             "the map keeps to its capacity");
     require(report.attempts >= report.matches && report.matches >= report.inliers &&
                 report.features == report.features_point + report.features_inverse_depth + report.features_folded +
-                                       report.features_fixed,
+                                       report.features_fixed + report.features_trial,
             "the report's numbers add up");
     require(std::isfinite(report.nis) && report.nis >= 0, "the NIS is a number");
     const pf_status_t posed = status(pf_get_pose(slam_, &pose));

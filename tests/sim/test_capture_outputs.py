@@ -63,7 +63,7 @@ def share_within_map(out):
 
 def check_folding(table, report):
     """report.json says what the rows of frames.csv add up to."""
-    head = "t_s state attempts matches inliers features state_dim ms nis nis_dof planes folded fixed rows_points_only tracked".split()
+    head = "t_s state attempts matches inliers features state_dim ms nis nis_dof planes folded trial fixed rows_points_only tracked".split()
     table = [dict(zip(head, row)) for row in table]
     require(int(table[-1]["folded"]) == report["features_in_map"]["folded"] and int(table[-1]["planes"]) == len(report["planes"])
             and int(table[-1]["rows_points_only"]) == report["state_dim_points_only"], f"the last row is {table[-1]}")

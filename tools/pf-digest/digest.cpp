@@ -99,11 +99,11 @@ void add(Hash& h, const pf_match_t& t) {
 
 void add(Hash& h, const pf_report_t& r) {  // without the cost of stages
   h << static_cast<double>(r.t_ns) << r.state << r.frames << r.attempts << r.matches << r.inliers << r.new_features
-    << r.evicted << r.features << r.features_point << r.features_inverse_depth << r.features_folded << r.features_fixed
-    << r.planes << r.state_dim << r.state_dim_held << r.state_dim_points_only << r.map_id << r.kept_views << r.nis
-    << r.nis_dof << r.kernels << r.patches << r.cameras << static_cast<double>(r.duplicates) << r.sigma_gate_px
-    << r.sigma_info_px << r.correlation_frames << static_cast<double>(r.covariance_repairs) << r.templates
-    << r.keyframes << r.template_area;
+    << r.evicted << r.features << r.features_point << r.features_inverse_depth << r.features_folded + r.features_trial
+    << r.features_fixed << r.planes << r.state_dim << r.state_dim_held << r.state_dim_points_only << r.map_id
+    << r.kept_views << r.nis << r.nis_dof << r.kernels << r.patches << r.cameras << static_cast<double>(r.duplicates)
+    << r.sigma_gate_px << r.sigma_info_px << r.correlation_frames << static_cast<double>(r.covariance_repairs)
+    << r.templates << r.keyframes << r.template_area;
 }
 
 void add(Hash& h, const pf_patch_t& p) {

@@ -114,7 +114,7 @@ FrameRow judge(const pf::sim::Pose& truth, const pf_pose_t& pose, const pf_repor
   row.state_dim = static_cast<float>(report.state_dim);
   row.active_dim = static_cast<float>(report.state_dim - report.state_dim_held);
   row.points_only_dim = static_cast<float>(report.state_dim_points_only);
-  row.plane_points = static_cast<float>(report.features_folded + report.features_fixed);
+  row.plane_points = static_cast<float>(report.features_folded + report.features_fixed + report.features_trial);
   row.planes = static_cast<float>(report.planes);
   row.inliers = static_cast<float>(report.inliers);
   row.nis = static_cast<float>(report.nis);

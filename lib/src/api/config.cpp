@@ -42,6 +42,7 @@ constexpr Range kIntegers[] = {
     PF_FIELD(plane.min_points, 4, 60),
     PF_FIELD(map.features_in_view, 0, 1000),
     PF_FIELD(map.border_px, 4, 64),
+    PF_FIELD(capacity.mask, 0, INT32_MAX),
     PF_FIELD(capacity.max_imu_samples, 0, 10000),
 };
 
@@ -258,6 +259,9 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   const double intrinsics[4] = {c.fx, c.fy, c.cx, c.cy};
   const char* bad = make_camera(c.model, c.width, c.height, intrinsics, c.distortion, &settings->camera);
   if (bad != nullptr) return *field = bad, Status::kConfig;
+  if (config.capacity.mask != 0 && config.capacity.mask < c.width * c.height)
+    return *field = "capacity.mask", Status::kConfig;
+  settings->has_mask_room = config.capacity.mask != 0;
   const bool moves = settings->body.has(BodyPart::kVelocity);
   if (!(c.readout_s >= 0 && c.readout_s <= (moves ? kLongestReadout : 0)))
     return *field = "camera.readout_s", Status::kConfig;
@@ -367,6 +371,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->motion.coast_s = 1.0;
   config->motion.restart_s = 3.0;
   config->capacity.max_imu_samples = 0;
+  config->capacity.mask = 0;
   config->imu.gyro_range = 0;
   config->imu.accel_range = 0;
   config->imu.q_BC[0] = 1;

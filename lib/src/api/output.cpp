@@ -119,6 +119,7 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
     out.attempts = f.attempts;
     out.kind = feature_kind(f.kind);
     out.plane = f.plane;
+    out.on_trial = f.on_trial ? 1 : 0;
     out.map_id = view.tracking().map_id();
     copy(f.p_W, 3, out.p_W);
     copy_covariance(f.covariance, out.covariance);
@@ -234,6 +235,7 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->features_inverse_depth = map.inverse_depths;
   report->features_folded = map.folded;
   report->features_fixed = map.fixed;
+  report->features_trial = map.trial;
   report->planes = map.planes;
   report->state_dim = map.state_dim;
   report->state_dim_held = map.state_dim_held;

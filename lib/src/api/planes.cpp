@@ -30,6 +30,8 @@ void describe(const pf::PlaneView& plane, std::uint32_t map_id, const pf::TiltVi
   out->id = plane.id;
   out->orientation = orientation_of(tilt);
   out->points = plane.points;
+  out->members = plane.points - plane.trial;
+  out->trial = plane.trial;
   out->fixed_points = plane.fixed_points;
   out->map_id = map_id;
   pf::copy(plane.normal_W, 3, out->normal_W);

@@ -22,8 +22,8 @@ Scalar log_chance_density(Scalar searched_px2);
 /// ln N(r; 0, S) of 2n residuals from their normalised square r^T S^-1 r and ln det S.
 Scalar log_normal_density(Scalar nis, Scalar log_det, int n);
 
-/// Chance that a feature in view is found where it is. It is the picture's and not the feature's: under smear all are missed alike, so that a
-/// frame's own share counts more than what earlier ones say, Beta(kWeight m, kWeight (1 - m)) about their mean m.
+/// Chance that a feature in view is found where it is. It is the picture's and not the feature's: under smear all are missed alike, so a
+/// frame's own share counts more than what earlier ones say: Beta(kWeight m, kWeight (1 - m)) about their mean m.
 class FindShare {
  public:
   void init();

@@ -12,8 +12,8 @@ namespace pose_belief {
 inline constexpr Scalar kTracked = Scalar(6.2);  ///< from which a pose is used: wrong in 0.2 %
 inline constexpr Scalar kMost = Scalar(13.8);    ///< that a pose can have: wrong once in a million
 inline constexpr Scalar kMaxFrame =
-    Scalar(6.9);                             ///< that one frame says: one place in 1,000 looks exactly like another
-inline constexpr Scalar kAnew = Scalar(-3);  ///< of a prediction that nothing supports: right once in 20
+    Scalar(6.9);                               ///< that one frame says: one place in 1,000 looks exactly like another
+inline constexpr Scalar kAnew = Scalar(-6.9);  ///< of a prediction that nothing supports: right once in 1,000
 inline constexpr Scalar kElsewhere = Scalar(-13.8);  ///< of any other pose: pictures may be of another place altogether
 inline constexpr double kHazard = 0.005;  ///< [1/s] that what a prediction relies on ends: a cut, a grip, a blow
 }  // namespace pose_belief
@@ -22,10 +22,6 @@ inline constexpr double kHazard = 0.005;  ///< [1/s] that what a prediction reli
 namespace chance {
 inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that find something; found: 0.04 .. 0.24
 inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in small ellipses, times kMaxFindShare
-inline constexpr Scalar kMinShare = Scalar(1e-6);      ///< of a search that chance lets agree, at least
-inline constexpr Scalar kMaxShare = Scalar(0.99);      ///< likewise, at most
-inline constexpr int kLevels = 4;  ///< areas in which matches may agree: the gate's, 1/2, 1/4, 1/8 of it
-inline constexpr Scalar kGateOfThree = Scalar(22.5);  ///< chi-square of six degrees of freedom, 0.999
 }  // namespace chance
 
 /// Chance that a feature which is in view is found.

@@ -11,7 +11,7 @@ bool ImageSearch::layout(Arena& arena, const Settings& settings) {
 }
 
 void ImageSearch::init(const Settings& settings) {
-  tracker_.init(settings.camera);
+  tracker_.init(settings.camera, settings.mask);
   if (has_templates()) templates_->init(settings.camera, settings.masks, settings.max_misfit);
 }
 
@@ -36,7 +36,10 @@ void ImageSearch::use_template(const Map& map, int feature, SearchTask* task) {
 }
 
 SearchOutcome ImageSearch::search(const SearchTask& task) const {
-  return has_templates() && task.shape != nullptr ? templates_->search(tracker_, task) : tracker_.search(task);
+  if (!tracker_.is_in_scene(task.predicted)) return SearchOutcome();
+  const bool has_template = has_templates() && task.shape != nullptr;
+  const SearchOutcome outcome = has_template ? templates_->search(tracker_, task) : tracker_.search(task);
+  return outcome.found && !tracker_.is_in_scene(outcome.pixel, outcome.level_scale) ? SearchOutcome() : outcome;
 }
 
 bool ImageSearch::learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const {

@@ -23,6 +23,7 @@ class ImageSearch {
   bool remember(Map* map, int feature, const Vec2& pixel, const CameraView& view) const;
   /// Lets a task search with the feature's template. Its point has a depth.
   static void use_template(const Map& map, int feature, SearchTask* task);
+  /// What is expected at something that is masked, or found there, cannot be compared.
   SearchOutcome search(const SearchTask& task) const;
   /// Updates mask and normal of a feature's template, which was found at this pixel. False where nothing was learnt.
   bool learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const;

@@ -10,6 +10,7 @@
 #include "filter/imu_path.h"
 #include "filter/motion.h"
 #include "geometry/lens.h"
+#include "vision/image_mask.h"
 #include "vision/planar_template.h"
 
 namespace pf {
@@ -28,6 +29,8 @@ struct Settings {
   int max_observations = 0;
   int max_planes = 0;
   int max_kept_views = 0;
+  bool has_mask_room = false;
+  const ImageMask* mask = nullptr;  ///< the session's, of the images; null: no room for one
 
   bool constant_velocity = true;
   PartSwitch<kHasInertial>

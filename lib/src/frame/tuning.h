@@ -11,7 +11,6 @@ namespace pf::tuning {
 namespace tracking {
 inline constexpr int kMinInliers = 8;       ///< of a tracked frame, or half of map.features_in_view if that is less
 inline constexpr int kMinInliersOfFew = 5;  ///< and never fewer than that
-inline constexpr Scalar kMaxLogFalse = Scalar(-6.9);    ///< ln 0.001 consensuses as good that chance gives per frame
 inline constexpr Scalar kMaxLensDeviation = Scalar(3);  ///< prior sigmas of an estimated lens without a warning
 }  // namespace tracking
 
@@ -24,8 +23,6 @@ inline constexpr Scalar kMaxPositionSigma = Scalar(0.5);    ///< in median depth
 /// Finding the map again.
 namespace relocaliser {
 inline constexpr int kTriples = 40;        ///< of matches, each of which may fix the pose
-inline constexpr int kFramesNearby = 2;    ///< in a row with a consensus about the prediction, after a short gap
-inline constexpr int kFramesAnywhere = 3;  ///< in a row that agree; in random order one in 20 shows a neighbour
 inline constexpr Scalar kNearbySigma = Scalar(0.1);  ///< [rad] rotation sigma of a prediction that is searched linearly
 inline constexpr Scalar kMaxDepthSigma = Scalar(0.3);  ///< relative sigma of an inverse depth that may place the camera
 inline constexpr Scalar kProposalPixels = Scalar(0.004);  ///< sigma of a match against the map, in image widths
@@ -33,9 +30,6 @@ inline constexpr float kMinRecognition = 0.5f;            ///< correlation of a 
 inline constexpr Scalar kAboutView = Scalar(0.1);         ///< sigma of the pose about a kept view [rad], and in depths
 inline constexpr Scalar kAboutProposal = Scalar(0.03);    ///< likewise about the last frame's proposal
 inline constexpr Scalar kMapSigma = Scalar(2);            ///< [px] of a point of the map in a search about such a pose
-inline constexpr int kColumns = 4;                        ///< cells of the image
-inline constexpr int kRows = 3;                           ///< cells of the image
-inline constexpr int kMinCells = 4;                       ///< that hold inliers
 inline constexpr Scalar kProposalRotation = Scalar(0.035);  ///< [rad] of proposals apart, on top of the motion
 inline constexpr Scalar kProposalShift = Scalar(0.05);      ///< likewise, in depths
 inline constexpr Scalar kMotionGate = Scalar(3);            ///< sigmas of the velocities
@@ -83,9 +77,9 @@ inline constexpr int kScouts = 12;            ///< candidates that are measured 
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
 inline constexpr Scalar kFewFound = Scalar(0.75);  ///< share below which searches of a start follow the picture
-inline constexpr int kSettled = 5;     ///< measurements of a feature whose residuals are those of its matches
-inline constexpr int kMinWide = 2;     ///< one in so many ellipses is wide where searches follow the picture
-inline constexpr int kFewPassing = 2;  ///< matches for each that passes a gate, above which chance lets those pass
+inline constexpr int kSettled = 5;      ///< measurements of a feature whose residuals are those of its matches
+inline constexpr int kMinWide = 2;      ///< one in so many ellipses is wide where searches follow the picture
+inline constexpr int kFewPassing = 2;   ///< matches for each that passes a gate, above which chance lets those pass
 }  // namespace image_front_end
 
 /// Where the picture as a whole has gone.

@@ -94,7 +94,7 @@ MapCounts FilterReader::counts() const {
         ++counts.points;
         break;
       case FeatureForm::kFolded:
-        ++counts.folded;
+        ++(map_.features[i].on_trial ? counts.trial : counts.folded);
         break;
       case FeatureForm::kFixed:
         ++counts.fixed;

@@ -42,6 +42,7 @@ PlaneView FilterReader::plane(int i) const {
   const PlanePoints points = outline_plane(filter_, map_, i, &outline);
   out.points = points.folded;
   out.fixed_points = points.fixed;
+  out.trial = points.on_trial;
   out.outline = outline;
   for (int k = 0; k < outline.count; ++k) {
     const Vec3 d = plane_point(frame, x, outline.uv[k]) - out.p_WP;

@@ -106,7 +106,7 @@ PlaneView KeyframeReader::plane(int i) const {
   PlaneView out;
   out.id = map_.planes[i].id;
   out.points = slam_.planes().points_on(i);
-  out.fixed_points = 0;
+  out.fixed_points = out.trial = 0;  // every point on it has a depth of its own
   out.known = out.doubted = false;
   out.R_WP = plane.frame.R_WP;
   out.p_WP = plane.frame.o_W;

@@ -18,6 +18,7 @@ struct FeatureView {
   int observations, attempts;
   BlockKind kind;
   std::uint32_t plane;  ///< id of the plane that it lies on, or 0
+  bool on_trial;        ///< it began on that plane, and nothing else says yet that it lies there
   Vec3 p_W;
   Mat3 covariance;
 };
@@ -26,6 +27,7 @@ struct FeatureView {
 struct PlaneView {
   std::uint32_t id;
   int points, fixed_points;
+  int trial;            ///< of `points`, those that began on it and are on trial
   bool known, doubted;  ///< a wall, and one that its points contradict
   Vec3 normal_W;
   Scalar distance;
@@ -72,7 +74,7 @@ struct TemplateView {
 
 /// Numbers of features by kind, of planes and of rows.
 struct MapCounts {
-  int features = 0, points = 0, inverse_depths = 0, folded = 0, fixed = 0;
+  int features = 0, points = 0, inverse_depths = 0, folded = 0, fixed = 0, trial = 0;
   int planes = 0;
   int patches = 0, cameras = 0, keyframes = 0;
   int state_dim = 0, state_dim_held = 0;

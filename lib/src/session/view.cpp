@@ -86,6 +86,7 @@ FeatureView View::feature(int i) const {
   out.is_target = f.is_target;
   out.observations = f.observations;
   out.attempts = f.attempts;
+  out.on_trial = f.on_trial;
   read([&](const auto& reader) { reader.place_feature(i, &out); });
   return out;
 }

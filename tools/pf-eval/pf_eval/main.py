@@ -16,6 +16,7 @@ from .files import list_maps, read_map, read_run, read_table
 from .notes import note
 from .options import arguments
 from .planes import compare_planes, folding, read_planes
+from .planes_truth import compare_planes_with_truth
 from .relative import compare_motions
 from .there_and_back import compare_passes, forward
 from .trajectories import on_one_clock
@@ -43,6 +44,12 @@ TABLE = {
     "plane_offset_median_m": ("offset of a plane, median", "m"), "plane_offset_max_m": ("offset, largest", "m"),
     "state_dim_end": ("rows of the state at the end", ""), "state_dim_points_only": ("the same map without folding", ""),
     "state_dim_saved": ("share of the state saved by folding", ""), "points_on_planes": ("points on planes", ""),
+    "truth_source": ("truth taken from", ""), "found": ("features found in a frame", ""), "judged": ("of them: judged", ""),
+    "could_fold": ("on a true plane with eight or more", ""), "could_tell": ("likewise, and turned by 3 degrees", ""),
+    "earned": ("on a plane by their own parallax", ""), "on_trial": ("began on a plane", ""),
+    "power": ("of those that could tell: earned", ""), "false_members": ("earned ones on a wrong surface", ""),
+    "false_trial": ("those on trial on a wrong surface", ""), "planes_lived": ("planes that lived for 30 frames", ""),
+    "planes_lived_false": ("of them: false", ""), "planes_lived_not_judged": ("of them: not judged", ""),
     "motion_nees_per_dof": ("NEES of a motion per degree of freedom (1 is honest)", ""),
     "motion_nees_per_dof_median": ("likewise, median (0.9 is honest)", ""),
     "motion_rotation_nees_per_dof": ("likewise, of its rotation", ""),
@@ -162,7 +169,22 @@ def evaluate_corners(options):
     return summary
 
 
+def evaluate_planes(options):
+    run, report, folder = read_run(options.run)
+    try:
+        truth = read_truth(options.truth or named_truth(report, folder), options.calib)[0]
+    except Refused:
+        if options.truth:
+            raise
+        truth = None  # a scene tells without it
+    if truth is not None:
+        truth = on_one_clock(run, truth, times_of_frames(frames_of_run(folder, report), report))[1]
+    return compare_planes_with_truth(folder, report, truth, options)
+
+
 def evaluate(options):
+    if options.planes_truth:
+        return evaluate_planes(options)
     if options.there_and_back:
         return compare_passes(*read_run(options.run))
     if options.relative:

@@ -8,6 +8,7 @@ DESCRIPTION = """Compares a run of pf-capture with ground truth.
 
   pf-eval RUN [--truth FILE] [--planes FILE.json] [--align none|se3|sim3] [--json [FILE]]
   pf-eval RUN --corners FILE.csv --target FILE.yaml [--calib FILE] [--json [FILE]]
+  pf-eval RUN --planes-truth [--truth FILE] [--depth DIR [--depth-unit M]] [--json [FILE]]
   pf-eval RUN --there-and-back [--json [FILE]]
   pf-eval RUN --relative [--truth FILE] [--align none|sim3] [--json [FILE]]
 
@@ -23,6 +24,12 @@ rot_by_positions_rmse_deg uses the one that the positions gave, which is not kno
 applied ("frame" says which was compared). Without --truth the one that report.json names is taken. NEES is given for runs in the truth's own
 frame only, so with --align none; nees_position has 3 degrees of freedom, nees_pose 6. A plane of the run is a true one when it is
 within 10 degrees and, in the middle of its outline, 10 cm of it, after an alignment by the rotations of the trajectory.
+--planes-truth reads a run of pf-capture --tracks and says which members of its planes are right: by the surfaces of a scene (sim:), by
+depth images (--depth: PNG of 16 bits, one for each frame of the sequence in the order of their names), or else by the run's own tracks,
+triangulated with the true poses (3 degrees of parallax, 0.5 px). Shares are of the features found in a frame: could_fold lie on a true
+plane with eight or more of them, could_tell have turned by 3 degrees as well; earned are on a plane of the run by their own parallax,
+on_trial only began on it. power: of those that could tell, how many are earned. A plane is false where fewer than 70 % of its earned
+members lie on one true plane.
 --there-and-back reads a run of pf-capture --there-and-back, where each image has two poses that should be one: their distance is
 given as a share of the path's extent, the largest distance between two places of the way there.
 --relative reads a run of pf-capture --relative N: the NEES of its motions over N frames against the truth, per degree of freedom
@@ -44,6 +51,9 @@ def arguments(words):
                         help="default: none where report.json says that the run started from a target, se3 where an inertial unit told "
                              "its lengths, else sim3")
     parser.add_argument("--planes", metavar="FILE.json", help="true planes: {\"planes\": [{\"name\", \"normal\", \"distance\"}]}")
+    parser.add_argument("--planes-truth", action="store_true", help="which members of the run's planes are right")
+    parser.add_argument("--depth", metavar="DIR", help="depth images, for --planes-truth")
+    parser.add_argument("--depth-unit", metavar="M", type=float, default=0.001, help="of one grey level; 0.0002 of TUM and ICL-NUIM")
     parser.add_argument("--corners", metavar="FILE.csv", help="frame,t,u_TL,v_TL,u_TR,v_TR,u_BR,v_BR,u_BL,v_BL")
     parser.add_argument("--target", metavar="FILE.yaml", help="the target that the run was started from")
     parser.add_argument("--calib", metavar="FILE", help="of --corners: default calib.yaml in RUN, or beside the corners; of a body's truth: "
@@ -63,6 +73,12 @@ def arguments(words):
         parser.error("--relative goes with --truth and --align none or sim3")
     if [options.truth is not None, options.corners is not None, options.there_and_back].count(True) > 1:
         parser.error("give one of --truth, --corners and --there-and-back")
+    if options.planes_truth and (options.corners or options.there_and_back or options.planes or options.relative):
+        parser.error("--planes-truth goes with --truth and --depth")
+    if options.depth and not options.planes_truth:
+        parser.error("--depth needs --planes-truth")
+    if not 0 < options.depth_unit < 1:
+        parser.error("--depth-unit is in metres, above 0 and below 1")
     if options.planes and (options.corners or options.there_and_back):
         parser.error("--planes needs a truth")
     if options.corners and not options.target:

@@ -68,25 +68,26 @@ void ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows) {
   }
   const int scouted = frame_.report.attempts;
   if (scouts > 0) {
-    const bool used = update_with_consensus(0, found, scouted, mode);
+    const bool used = update_with_consensus({0, found, scouted, false}, mode);
     if (used) {
       StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
       search_.predict_pixels(scouts, count - scouts);
     }
     const int more = search_.search(scouts, count - scouts);
     if (used) {
-      update_with_consensus(scouts, more, frame_.report.attempts - scouted, mode);
+      update_with_consensus({scouts, more, frame_.report.attempts - scouted, true}, mode);
       return;
     }
     for (int k = 0; k < more; ++k, ++found)
       if (found != scouts + k) update_.swap(found, scouts + k);
   }
-  update_with_consensus(0, found, frame_.report.attempts, mode);
+  update_with_consensus({0, found, frame_.report.attempts, true}, mode);
 }
 
-/// Finds the consensus of the matches of `searched` features, and updates the filter with it. False if that is not enough to believe the
+/// Finds the consensus of the matches of a range, and updates the filter with it. False if that is not enough to believe the
 /// pose; nothing is used then.
-bool ImageFrontEnd::update_with_consensus(int first, int found, int searched, const MeasureMode& mode) {
+bool ImageFrontEnd::update_with_consensus(const Range& range, const MeasureMode& mode) {
+  const int first = range.first, found = range.found;
   const bool is_first = frame_.report.inliers == 0;
   update_.begin(first, found);
   unsigned char* keep = update_.keep();
@@ -99,10 +100,10 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, int searched, co
     find_inliers(filter_, update_.observations() + first, found, settings_.gate, keep + first);
     // A match that all the others contradict supports nothing.
     const int inliers = found > 0 ? update_.reject_contradicted(first, found, &fit) : 0;
-    consensus = consensus_of(first, found, searched, inliers, fit);
+    consensus = consensus_of(range, inliers, fit);
     const Scalar evidence = belief_.evidence(consensus);
     if (is_first) {
-      log_odds = weigh(first, found, inliers, evidence, mode.median_depth);
+      log_odds = weigh(range, inliers, evidence, mode.median_depth);
       accepted = mode.starts ? inliers >= std::min(kMinConsensus, map_.features.count())
                              : inliers >= settings_.min_inliers && PoseBelief::is_enough(log_odds);
     } else {  // beside those that were believed, any consensus is
@@ -126,9 +127,10 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, int searched, co
 }
 
 /// Where the picture as a whole says where it has gone, that is where the pose of this hypothesis has each pixel, and not the prediction.
-PoseConsensus ImageFrontEnd::consensus_of(int first, int found, int searched, int inliers, const JointFit& fit) {
+PoseConsensus ImageFrontEnd::consensus_of(const Range& range, int inliers, const JointFit& fit) {
+  const int first = range.first, found = range.found;
   PoseConsensus consensus;
-  consensus.searched = searched;
+  consensus.searched = range.searched;
   consensus.inliers = inliers;
   consensus.log_density = log_normal_density(fit.nis, fit.log_det, inliers);
   if (search_.is_following()) consensus.log_density = 0;
@@ -141,13 +143,15 @@ PoseConsensus ImageFrontEnd::consensus_of(int first, int found, int searched, in
   return consensus;
 }
 
-/// Log-odds of the pose with the evidence of the frame's first consensus. A pose that is not believed yet is proposed to the next frame.
-Scalar ImageFrontEnd::weigh(int first, int found, int inliers, Scalar evidence, Scalar depth) {
+/// Log-odds of the pose with the evidence of the frame's first consensus. A pose that is not believed yet is proposed to the next frame, once
+/// all features have been searched for.
+Scalar ImageFrontEnd::weigh(const Range& range, int inliers, Scalar evidence, Scalar depth) {
   evidence -= std::log(static_cast<Scalar>(hypotheses_));
   Scalar log_odds = PoseBelief::updated(belief_.predicted(), evidence);
   const bool is_enough = PoseBelief::is_enough(log_odds);
+  if (!range.is_last && !is_enough) return log_odds;
   if (inliers >= settings_.min_inliers && evidence > Scalar(0) && (!is_enough || update_.proposals().last().is_set))
-    log_odds = update_.propose(first, found, depth, belief_.predicted(), evidence);
+    log_odds = update_.propose(range.first, range.found, depth, belief_.predicted(), evidence);
   belief_.note(log_odds);
   return log_odds;
 }

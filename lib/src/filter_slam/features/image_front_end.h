@@ -61,9 +61,14 @@ class ImageFrontEnd {
  private:
   int list_candidates();
   void measure_listed(const MeasureMode& mode, bool follows);
-  bool update_with_consensus(int first, int found, int searched, const MeasureMode& mode);
-  PoseConsensus consensus_of(int first, int found, int searched, int inliers, const JointFit& fit);
-  Scalar weigh(int first, int found, int inliers, Scalar evidence, Scalar depth);
+  /// Of the listed candidates, those that were searched for at once; what was found stands first.
+  struct Range {
+    int first, found, searched;
+    bool is_last;  ///< all have been searched for
+  };
+  bool update_with_consensus(const Range& range, const MeasureMode& mode);
+  PoseConsensus consensus_of(const Range& range, int inliers, const JointFit& fit);
+  Scalar weigh(const Range& range, int inliers, Scalar evidence, Scalar depth);
 
   const Settings& settings_;
   Filter& filter_;

@@ -3,6 +3,7 @@
 #include "base/elapsed.h"
 #include "base/table_entries.h"
 #include "filter_slam/pose/consensus.h"
+#include "frame/tuning.h"
 
 namespace pf {
 

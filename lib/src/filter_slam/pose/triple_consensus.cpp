@@ -5,8 +5,8 @@
 
 #include "base/limits.h"
 #include "base/random_triples.h"
-#include "belief/tuning.h"
 #include "filter_slam/pose/consensus.h"
+#include "filter_slam/pose/tuning.h"
 #include "geometry/small_cholesky.h"
 
 namespace pf {
@@ -32,7 +32,7 @@ bool condition_on(const Filter& filter, const PixelMeasurement* matches, const i
   out->index = index;
   if (!out->S.factor(S)) return false;
   out->a = out->S.solve<1>(r);
-  return r.dot(out->a) < tuning::chance::kGateOfThree;
+  return r.dot(out->a) < tuning::triple_consensus::kGateOfThree;
 }
 
 /// Compares a match with what the three predict. False outside of the gate.
@@ -59,7 +59,6 @@ PoseConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement
   found = std::min(found, kMaxObservations);
   std::fill(keep, keep + found, static_cast<unsigned char>(0));
   if (found < 4) return best;
-  const Scalar n = static_cast<Scalar>(found), log_triples = std::log(n * (n - 1) * (n - 2) / 6);
   RandomTriples random(found, 1);
   Scalar best_evidence = 0;
   for (int trial = 0; trial < triples; ++trial) {
@@ -70,7 +69,6 @@ PoseConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement
     PoseConsensus consensus;
     consensus.searched = attempts;
     consensus.inliers = 3;
-    consensus.log_density = -log_triples;
     unsigned char is_inlier[kMaxObservations] = {};
     for (int j = 0; j < found; ++j) {
       const bool is_of_three = j == three[0] || j == three[1] || j == three[2];

@@ -19,4 +19,9 @@ inline constexpr Scalar kGroupDeviations = Scalar(4);  ///< standard deviations 
 inline constexpr int kYoung = 20;  ///< [frames] that a feature of such a group was measured in, fewer
 }  // namespace leave_one_out
 
+/// Three matches that fix a pose.
+namespace triple_consensus {
+inline constexpr Scalar kGateOfThree = Scalar(22.5);  ///< chi-square of six degrees of freedom, 0.999
+}  // namespace triple_consensus
+
 }  // namespace pf::tuning

@@ -55,6 +55,7 @@ bool KeyframeRecord::follow() {
     case StartOutcome::kSolved:
     case StartOutcome::kSettled:
       take_solution();
+      tracking_.belief().trust();
       settings_.hooks.say("started without a target: the first depths are known");
       return true;
     case StartOutcome::kStill:  // what moves has drawn the pose along

@@ -75,7 +75,9 @@ int KeyframeTracking::search_by_scouts(const PosePrior& about, CameraPose* pose,
   const int others = search_.placed() - kScouts;
   const int found = search_.search(0, 0, kScouts, about, Scalar(1));
   PosePrior scouted = about;
-  const int inliers = pose_.find(found, about, pose, information);
+  int inliers = pose_.find(found, about, pose, information);
+  if (!PoseBelief::is_enough(belief_.evidence(pose_.consensus(inliers, found, about, *pose, *information))))
+    inliers = 0;
   SmallCholesky<6> factored, prior;
   KeyframeMotion after = motion_;
   if (inliers > 0 && has_rows(map_.camera()) && about.with_velocities != nullptr &&

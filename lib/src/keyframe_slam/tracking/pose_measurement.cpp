@@ -21,30 +21,38 @@ Scalar PoseMeasurement::bound_px() const {
   return std::max(kBoundWidth * static_cast<Scalar>(settings_.camera.width), kBoundSigmas * noise_.sigma_gate());
 }
 
-/// A point as a match for the pose: m = R r + rho p_host, w = rho. Without a depth it has the median one, and as much again as standard
-/// deviation; its noise has that times the baseline, the prior's and the uncertain part of it:
-///
-///   R += var(rho) (J_rho J_rhoᵀ + J_p P_p J_pᵀ / rho²)
+/// A point as a match for the pose: m = R r + rho p_host, w = rho. Without a depth it has the median one.
 void PoseMeasurement::make_match(int c, const PosePrior& prior, Scalar depth, int shared) {
   const Match& match = search_.match(c);
   const KeyframePoint& point = map_.point(match.feature);
+  const Scalar rho = point.has_depth ? point.rho : 1 / depth;
+  PoseMatch& out = pose_.match(c);
+  out.point = {map_.ray_W(match.feature) + rho * map_.keyframes[point.host].p_W, rho,
+               match_at_frame_time(map_, match, prior, depth)};
+  out.noise = noise_of(c, prior, depth, shared);
+}
+
+/// Of a point with the median depth for want of its own, as much again as standard deviation, times the baseline, the prior's and the
+/// uncertain part of it:
+///
+///   R += var(rho) (J_rho J_rhoᵀ + J_p P_p J_pᵀ / rho²)
+Mat2 PoseMeasurement::noise_of(int c, const PosePrior& prior, Scalar depth, int shared) const {
+  const int feature = search_.match(c).feature;
+  const KeyframePoint& point = map_.point(feature);
   const Vec3& host_W = map_.keyframes[point.host].p_W;
-  const Vec3 ray_W = map_.ray_W(match.feature);
   const Scalar rho = point.has_depth ? point.rho : 1 / depth;
   const Scalar variance = point.has_depth ? point.variance : static_cast<Scalar>(std::max(shared, 1)) * rho * rho;
+  Mat2 noise = noise_.correlation_frames() * search_.point(c).noise;
   Vec2 z, J_rho;
   Mat26 J_C;
-  PoseMatch& out = pose_.match(c);
-  out.point = {ray_W + rho * host_W, rho, match_at_frame_time(map_, match, prior, depth)};
-  out.noise = noise_.correlation_frames() * search_.point(c).noise;
-  if (project_bearing(map_.camera(), prior.q_WC.toRotationMatrix(), ray_W, host_W - prior.p_W, rho, &z, &J_C, nullptr,
-                      &J_rho)) {
-    out.noise += variance * J_rho * J_rho.transpose();
-    if (point.has_depth || shared == 0) return;
-    const Mat23 J_p = J_C.rightCols<3>() / rho;
-    const Mat3 P_p = prior.covariance.bottomRightCorner<3, 3>();
-    out.noise += variance * J_p.lazyProduct(P_p).lazyProduct(J_p.transpose());
-  }
+  if (!project_bearing(map_.camera(), prior.q_WC.toRotationMatrix(), map_.ray_W(feature), host_W - prior.p_W, rho, &z,
+                       &J_C, nullptr, &J_rho))
+    return noise;
+  noise += variance * J_rho * J_rho.transpose();
+  if (point.has_depth || shared == 0) return noise;
+  const Mat23 J_p = J_C.rightCols<3>() / rho;
+  const Mat3 P_p = prior.covariance.bottomRightCorner<3, 3>();
+  return noise + variance * J_p.lazyProduct(P_p).lazyProduct(J_p.transpose());
 }
 
 int PoseMeasurement::find(int found, const PosePrior& prior, CameraPose* pose, Mat6* information) {
@@ -61,7 +69,10 @@ int PoseMeasurement::fit(int found, const PosePrior& prior, Scalar depth, int sh
     if (has_rows(map_.camera()))
       pose_.match(c).point.pixel = followed_at_frame_time(map_, search_.match(c), frame_.report.t_ns);
   }
-  return pose_.fit(map_.camera(), found, prior, settings_.gate, pose, information);
+  const int inliers = pose_.fit(map_.camera(), found, prior, settings_.gate, pose, information);
+  // How likely the pixels are is a question of each one's own depth.
+  for (int c = 0; c < found && shared > 1; ++c) pose_.match(c).noise = noise_of(c, prior, depth, 1);
+  return inliers;
 }
 
 PoseConsensus PoseMeasurement::consensus(int inliers, int found, const PosePrior& prior, const CameraPose& pose,

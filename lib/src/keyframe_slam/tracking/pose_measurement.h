@@ -34,6 +34,7 @@ class PoseMeasurement {
 
  private:
   void make_match(int c, const PosePrior& prior, Scalar depth, int shared);
+  Mat2 noise_of(int c, const PosePrior& prior, Scalar depth, int shared) const;
 
   const Settings& settings_;
   const KeyframeMap& map_;

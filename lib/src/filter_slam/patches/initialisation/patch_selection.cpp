@@ -95,9 +95,11 @@ int PatchSelection::list_squares(const Pyramid& image, int wall, int side, const
                                  PatchSquare* square) const {
   const int level = std::min(side >= kCoarseSide ? 2 : 1, image.levels - 1), border = settings_.border_px;
   const int step = std::max(1, side / 4);
+  const ImageMask* mask = in_use(image.mask);
   int count = 0;
   for (int top = border; top + side + border <= image.level[0].height; top += step)
     for (int left = border; left + side + border <= image.level[0].width; left += step) {
+      if (mask != nullptr && !mask->is_clear(Rect{left, top, side, side})) continue;
       PatchSquare candidate{left, top, side, 0};
       Scalar cosine = 0;
       if (!is_free(candidate) || obstacles.are_in(candidate) || !is_on_wall(wall, candidate, &cosine)) continue;
