@@ -22,7 +22,7 @@ inline constexpr Scalar kMaxPositionSigma = Scalar(0.5);    ///< in median depth
 
 /// Finding the map again.
 namespace relocaliser {
-inline constexpr int kTriples = 40;        ///< of matches, each of which may fix the pose
+inline constexpr int kTriples = 40;                  ///< of matches, each of which may fix the pose
 inline constexpr Scalar kNearbySigma = Scalar(0.1);  ///< [rad] rotation sigma of a prediction that is searched linearly
 inline constexpr Scalar kMaxDepthSigma = Scalar(0.3);  ///< relative sigma of an inverse depth that may place the camera
 inline constexpr Scalar kProposalPixels = Scalar(0.004);  ///< sigma of a match against the map, in image widths
@@ -77,9 +77,9 @@ inline constexpr int kScouts = 12;            ///< candidates that are measured 
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
 inline constexpr Scalar kFewFound = Scalar(0.75);  ///< share below which searches of a start follow the picture
-inline constexpr int kSettled = 5;      ///< measurements of a feature whose residuals are those of its matches
-inline constexpr int kMinWide = 2;      ///< one in so many ellipses is wide where searches follow the picture
-inline constexpr int kFewPassing = 2;   ///< matches for each that passes a gate, above which chance lets those pass
+inline constexpr int kSettled = 5;     ///< measurements of a feature whose residuals are those of its matches
+inline constexpr int kMinWide = 2;     ///< one in so many ellipses is wide where searches follow the picture
+inline constexpr int kFewPassing = 2;  ///< matches for each that passes a gate, above which chance lets those pass
 }  // namespace image_front_end
 
 /// Where the picture as a whole has gone.
