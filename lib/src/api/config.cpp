@@ -8,6 +8,7 @@
 #include "base/limits.h"
 #include "covariance/select.h"
 #include "frame/tuning.h"
+#include "geometry/camera_distortion.h"
 
 namespace pf {
 namespace {
@@ -107,11 +108,11 @@ const char* shape_from(const pf_camera_t& c, const pf_config_t& config, LensSigm
     const double value = field_at<double>(config, r.offset);
     if (!(value >= r.low && value <= r.high)) return r.name;
   }
-  constexpr int kUsed[5] = {0, 1, 5, 4, 1};  // a pinhole may get k1
+  const int used = num_uncertain_distortion(static_cast<CameraModel>(c.model));
   for (int i = 0; i < 8; ++i) {
     const double sigma = c.sigma_distortion[i];
-    if (!(sigma >= 0 && sigma <= 1) || (i >= kUsed[c.model] && sigma != 0)) return "camera.sigma_distortion";
-    if (i < 5) sigmas->distortion[i] = static_cast<Scalar>(sigma);
+    if (!(sigma >= 0 && sigma <= 1) || (i >= used && sigma != 0)) return "camera.sigma_distortion";
+    if (i < kLensDistortion) sigmas->distortion[i] = static_cast<Scalar>(sigma);
   }
   sigmas->focal = static_cast<Scalar>(c.sigma_focal);
   sigmas->aspect = static_cast<Scalar>(c.sigma_aspect);

@@ -38,7 +38,7 @@ class PoseBelief {
   void note(Scalar log_odds);
   /// Replaces what was noted: this pose has been used.
   void use(Scalar log_odds, const PoseConsensus& consensus);
-  /// The pose comes from a target, from the record of a start that has been solved as a whole, or from pixels that somebody else has matched.
+  /// The pose comes from a target, from the record of a start that has been solved as a whole, or from pixels that the caller has matched.
   void trust() { use(most(), PoseConsensus()); }
   /// Log-odds of the pose, with what this frame has said so far.
   Scalar log_odds() const { return is_noted_ ? log_odds_ : predicted_; }

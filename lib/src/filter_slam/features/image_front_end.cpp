@@ -143,8 +143,8 @@ PoseConsensus ImageFrontEnd::consensus_of(const Range& range, int inliers, const
   return consensus;
 }
 
-/// Log-odds of the pose with the evidence of the frame's first consensus. A pose that is not believed yet is proposed to the next frame, once
-/// all features have been searched for.
+/// Log-odds of the pose with the evidence of the frame's first consensus. A pose that is not believed yet is proposed to the next frame,
+/// once all features have been searched for.
 Scalar ImageFrontEnd::weigh(const Range& range, int inliers, Scalar evidence, Scalar depth) {
   evidence -= std::log(static_cast<Scalar>(hypotheses_));
   Scalar log_odds = PoseBelief::updated(belief_.predicted(), evidence);
