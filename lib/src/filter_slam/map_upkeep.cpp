@@ -31,8 +31,8 @@ void MapUpkeep::maintain(bool supported, const StartProgress& start) {
     return;
   }
   features_.convert_linear();
-  // During a start the filter may restart without planes; ids of planes found before would then name nothing.
-  if (settings_.planes && !start.recording) planes_.maintain(!start.checking);
+  // From the first depths on. While a start's record goes on the filter may restart, which removes the planes.
+  if (settings_.planes && !start.pending()) planes_.maintain(!start.checking);
   features_.drop_failing(true);
 }
 

@@ -21,8 +21,9 @@ PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry,
   state.for_each_planar(plane, [&](int slot) {
     ++points.folded;
     if (state.block[slot].kind == BlockKind::kGroupedPoint) ++points.fixed;
-    if (map.features[state.block[slot].owner].on_trial) ++points.on_trial;
-    if (outline == nullptr) return;
+    const bool on_trial = map.features[state.block[slot].owner].on_trial;
+    points.on_trial += on_trial ? 1 : 0;
+    if (outline == nullptr || on_trial) return;
     uv[count++] = plane_coordinates(state.frame_of(state.block[plane]), filter.point(slot));
     if (count < kBatch) return;
     extend_outline(outline, uv, reject_isolated(uv, count));

@@ -16,7 +16,7 @@ struct PlanePoints {
 };
 
 /// Outline of a plane (entry of the table) in the coordinates of its frame: the part that was seen before, extended by the points that
-/// are on it now, without isolated ones. outline may be null.
+/// are on it now, without isolated ones and those on trial. outline may be null.
 PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry, PlaneOutline* outline);
 
 /// Extends a plane's support to a point that has been folded.
