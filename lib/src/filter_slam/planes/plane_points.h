@@ -34,7 +34,7 @@ bool is_before_wall(const Filter& filter, const Map& map, int plane_entry, const
 bool is_in_reach(const Settings& settings, const Filter& filter, const Map& map, int plane_entry, const Vec3& p_W);
 
 /// Whether a point is near the plane (block), its distance is known, and it passes the gate of folding. A passed gate means little if the
-/// variance of the distance is large, so that is bounded by plane_distance.
+/// variance of the distance is large, so that is bounded by distance_at its range.
 bool lies_on(const Settings& settings, const Filter& filter, const Map& map, int plane, int slot);
 
 }  // namespace pf
