@@ -40,7 +40,7 @@ void PlaneTrials::judge() {
     Feature& f = map_.features[i];
     const int entry = map_.planes.entry_at(filter_.state().plane_of(f.slot));
     const Scalar odds = entry < 0 ? Scalar(0) : log_odds(i, entry);
-    const bool elsewhere = odds < -kSure;
+    const bool elsewhere = odds < -kDoubt;
     if (elsewhere) ++map_.planes[entry].outliers;
     if (f.rejections >= tuning::plane_keeper::kTrialRejections || elsewhere) {
       features_.drop(&i, 1);

@@ -30,7 +30,9 @@ inline constexpr Scalar kElsewhere = Scalar(10);  ///< [px] of a match from ther
 /// Features that began on a plane.
 namespace plane_trials {
 inline constexpr Scalar kPixel = 1;           ///< [px] of a match, with what it has in common with other frames'
-inline constexpr Scalar kSure = Scalar(4.6);  ///< log-odds by which a feature is believed or dropped: ln 100
+inline constexpr Scalar kSure = Scalar(4.6);  ///< log-odds from which on a feature is believed: ln 100
+inline constexpr Scalar kDoubt =
+    Scalar(1);  ///< against it, from which on it goes: what is not there bends the plane, and a new one costs little
 inline constexpr Scalar kMinSlant =
     Scalar(0.05);  ///< sine between plane and ray, below which a depth says nothing of the plane
 }  // namespace plane_trials
