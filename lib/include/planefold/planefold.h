@@ -625,7 +625,7 @@ typedef struct pf_feature {
   int32_t is_target; /* 1 for a point of the target */
   uint32_t plane;    /* id of the plane that it is folded into, or began on, or 0 */
   int32_t
-      on_trial; /* 1: began on that plane, and has not shown by its own parallax that it lies there */
+  uint32_t plane;       /* id of the plane that it was folded into or began on, or 0 */
   uint32_t map_id;      /* as in pf_pose_t */
   double p_W[3];        /* [m] inverse depth: at the mean inverse depth */
   double covariance[9]; /* 3x3; inverse depth: to first order */

@@ -19,8 +19,8 @@ namespace pf {
 Scalar log_odds_of_depth(Scalar s, Scalar v, Scalar t, Scalar w);
 
 /// Judges features that began on planes: believes those whose own parallax shows that they lie there, and drops those that it shows
-/// elsewhere, or that were found elsewhere kTrialRejections times in a row. Their pixels are then free for a feature of open depth. What is shown
-/// elsewhere counts as an outlier of the plane, and what is believed takes one of these back.
+/// elsewhere, or that were found elsewhere kTrialRejections times in a row. Their pixels are then free for a feature of open depth.
+/// What is elsewhere counts as an outlier of the plane; what is believed takes one of these back.
 class PlaneTrials {
  public:
   PlaneTrials(const Settings& settings, const Filter& filter, Map& map, FeatureKeeper& features,
