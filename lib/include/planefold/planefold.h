@@ -621,11 +621,10 @@ typedef struct pf_feature {
   uint32_t id; /* never used twice */
   /* pf_observation_t.id; of a point of the target: its index. 0 of what an image began */
   uint32_t external_id;
-  int32_t kind;      /* pf_feature_kind_t */
-  int32_t is_target; /* 1 for a point of the target */
-  uint32_t plane;    /* id of the plane that it is folded into, or began on, or 0 */
-  int32_t
+  int32_t kind;         /* pf_feature_kind_t */
+  int32_t is_target;    /* 1 for a point of the target */
   uint32_t plane;       /* id of the plane that it was folded into or began on, or 0 */
+  int32_t on_trial;     /* 1: began on that plane, and its own parallax has not shown it */
   uint32_t map_id;      /* as in pf_pose_t */
   double p_W[3];        /* [m] inverse depth: at the mean inverse depth */
   double covariance[9]; /* 3x3; inverse depth: to first order */
