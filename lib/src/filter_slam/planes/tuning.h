@@ -11,9 +11,29 @@ namespace pf::tuning {
 namespace plane_doubt {
 inline constexpr Scalar kRefusedGate = Scalar(16);  ///< chi-square of a point that does not lie on a wall
 inline constexpr int kMinRefused = 8;               ///< points, before a wall is doubted or believed again
-inline constexpr Scalar kDoubt = 1;  ///< log-odds against it from which on it goes, since it bends the plane
-inline constexpr Scalar kMinSlant = Scalar(0.05);  ///< sine between plane and ray, below which a depth tells nothing
+inline constexpr Scalar kDoubtedPrior = 100;        ///< times its covariance that a doubted wall's prior gets
+inline constexpr int kRefusedShare = 4;             ///< refused points for each on the wall, above which it is doubted
+inline constexpr int kCells = 5;                    ///< along each side of the image
 }  // namespace plane_doubt
+
+/// Planes that somebody says are vertical.
+namespace plane_vertical {
+inline constexpr Scalar kVerticalGate = Scalar(15.1);  ///< chi-square of one degree of freedom, 0.9999
+}  // namespace plane_vertical
+
+namespace own_places {
+inline constexpr Scalar kMaxMove = Scalar(0.25);  ///< along the ray, of the distance of the camera that saw it
+inline constexpr Scalar kTold = Scalar(1000);     ///< N range^2: a hundredth of the distance is a third of a pixel
+inline constexpr Scalar kElsewhere = Scalar(10);  ///< [px] of a match from there, where that says nothing any more
+}  // namespace own_places
+
+/// Features that began on a plane.
+namespace plane_trials {
+inline constexpr Scalar kPixel = 1;           ///< [px] of a match, with what it has in common with other frames'
+inline constexpr Scalar kSure = Scalar(4.6);  ///< log-odds from which on a feature is believed: ln 100
+inline constexpr Scalar kDoubt = Scalar(1);   ///< log-odds against it from which on it goes, since it bends the plane
+inline constexpr Scalar kMinSlant = Scalar(0.05);  ///< sine between plane and ray, below which a depth tells nothing
+}  // namespace plane_trials
 
 namespace plane_places {
 inline constexpr Scalar kPixel = 1;              ///< [px] of a match, before the points have said what it is
