@@ -382,6 +382,12 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--masks", masks,
                  "none, partial or whole: templates that learn which of their pixels belong to one plane")
       ->capture_default_str();
+  app.add_option("--mask", options.mask,
+                 "PNG of the images' size, 0 where they do not show the scene (the carrier's body, a date), else 255; "
+                 "auto:\n"
+                 "mask.png beside the frames, where there is one; or none")
+      ->check(not_empty())
+      ->capture_default_str();
   app.add_flag("--no-planes", no_planes, "points only");
   app.add_flag("--plain-ekf", no_gauge, "the textbook filter, which is overconfident; for comparison");
   add_camera_options(app, options);

@@ -50,6 +50,7 @@ struct Options {
   int32_t masks = PF_MASKS_NONE;
   bool keep_gauge = true;
 
+  std::string mask = "auto";  ///< file; auto: the one beside the frames, if any; none: none
   std::string imu = "auto";
   double imu_rate_hz = 0.0;  ///< 0: as the unit has it
   double imu_offset_s = 0.0;

@@ -25,8 +25,8 @@ class Outputs {
 
   /// trajectory.txt and covariance.csv where the frame was tracked, trajectory_all.txt wherever there is a pose; of the second map
   /// trajectory_2.txt and so on, since each map has a world of its own;
-  /// frames.csv in every frame, tracks.csv and planes.csv, patches.csv; truth.tum where the source knows it.
-  /// false: error is one line (disk full, say).
+  /// frames.csv in every frame, tracks.csv and planes.csv, patches.csv; truth.tum where the source knows the truth
+  /// of its last frame. false: error is one line (disk full, say).
   /// A row of relative.csv where window is not null; of lens.csv where the frame was tracked and the lens is estimated;
   /// of inertial.csv where there is a pose that depends on a unit's samples.
   bool write(const FrameView& view, Source& source, const MotionWindow* window, std::string& error);

@@ -110,6 +110,10 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     config_.map.features_in_view =
         std::min(config_.map.features_in_view, has_window ? config_.window.points : config_.capacity.max_observations);
   }
+  if (!mask_.read(options.mask, source.info(), config_, error)) {
+    code = kExitUsage;
+    return false;
+  }
   imu.configure(config_);
   config_.camera.estimate = options.lens.value_or(default_estimate(config_));
   config_.clock_ns = clock_ns;
@@ -177,7 +181,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     return false;
   }
   if (!begin(error)) {
-    code = plan_.empty() ? code : kExitUsage;
+    code = plan_.empty() && mask_.empty() ? code : kExitUsage;
     return false;
   }
   return true;
@@ -197,6 +201,9 @@ bool Session::is_metric() const {
 }
 
 bool Session::begin(std::string& error) {
+  if (!mask_.set(slam_, start_note_, error)) {
+    return false;
+  }
   if (has_gravity_ && pf_set_gravity(slam_, gravity_W_) < PF_OK) {
     error = "--gravity: the library refused this direction";
     return false;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "imu_feed.h"
+#include "mask.h"
 #include "options.h"
 #include "plan.h"
 #include "source.h"
@@ -60,11 +61,12 @@ class Session {
   bool has_pose_ = false;
   bool has_second_pose_ = false;
   pf_pose_t second_pose_{};
+  FrameMask mask_;
   Plan plan_;
   bool has_gravity_ = false;
   double gravity_W_[3] = {0.0, 0.0, 0.0};
   std::string start_;
-  std::string start_note_;  ///< of the target's file, until it was told
+  std::string start_note_;  ///< of the target's file or the mask, until it was told
   std::vector<std::string> log_;
   int map_ = 1;               ///< of the run
   uint32_t map_id_ = 1;       ///< the library's, since the last reset

@@ -34,6 +34,7 @@ class FolderSource : public Source {
     info_.warning = info.warning;
     info_.camera_name = info.camera_name;
     info_.imu_path = info.imu_path;
+    info_.mask_path = info.mask_path;
     in_order_ = info.in_order != 0;
   }
 

@@ -25,6 +25,7 @@ struct SourceInfo {
   double rate_hz = 30.0;
   std::string truth_path;    ///< a trajectory that lies beside the source; "" where there is none
   std::string imu_path;      ///< inertial samples that lie beside the source; likewise
+  std::string mask_path;     ///< a mask of its images; likewise
   std::string warning;       ///< lines that the user should know; "" where there are none
   std::string camera_name;   ///< in a calibration of several cameras; "" where it is not known
   std::string device;        ///< of a camera

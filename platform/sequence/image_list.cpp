@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "mask.h"
 #include "refuse.h"
 
 namespace pf::sequence {
@@ -222,7 +223,7 @@ std::vector<std::string> list_images(const fs::path& folder, const std::string& 
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (is_image_name(entry->path()) && (pattern.empty() || matches(name, pattern))) {
+    if (is_image_name(entry->path()) && name != kMaskName && (pattern.empty() || matches(name, pattern))) {
       names.push_back(name);
     }
   }

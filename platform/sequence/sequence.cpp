@@ -17,13 +17,14 @@
 #include "imu.h"
 #include "imu_model.h"
 #include "levels.h"
+#include "mask.h"
 #include "refuse.h"
 #include "target.h"
 #include "yaml_fields.h"
 
 struct pf_sequence {
   pf::sequence::Folder folder;
-  std::string root, calibration_path, truth_path, imu_path;
+  std::string root, calibration_path, truth_path, imu_path, mask_path;
   std::string warning;  ///< all notes, one a line
   std::vector<unsigned char> bytes;
   pf_decoded_t image{};
@@ -282,6 +283,9 @@ int pf_open_sequence_of(const char* source, const char* calibration, const char*
     opened->calibration_path = folder.calibration_path.string();
     opened->truth_path = folder.truth_path.string();
     opened->imu_path = folder.imu_path.string();
+    if (!folder.is_film) {
+      opened->mask_path = pf::sequence::find_mask(folder.frames.front().path, folder.root).string();
+    }
     if (folder.is_film) {
       opened->film = std::make_unique<pf::sequence::Film>(folder.root);
     }
@@ -324,7 +328,17 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
   info->camera_name = folder.calibration.camera_name.c_str();
   info->truth_path = sequence->truth_path.c_str();
   info->imu_path = sequence->imu_path.c_str();
+  info->mask_path = sequence->mask_path.c_str();
   info->warning = sequence->warning.c_str();
+}
+
+int pf_read_mask(const char* path, int32_t width, int32_t height, uint8_t* pixels, char message[PF_SEQUENCE_MESSAGE]) {
+  return guarded(message, [&] {
+    require(path, "path");
+    require(pixels, "pixels");
+    const std::vector<uint8_t> mask = pf::sequence::read_mask(path, width, height);
+    std::copy(mask.begin(), mask.end(), pixels);
+  });
 }
 
 int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,

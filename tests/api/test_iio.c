@@ -52,11 +52,11 @@ static void test_mounting_matrices_should_be_read_and_bad_ones_refused(void) {
   double mount[9] = {7};
   for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); ++i) {
     TEST_ASSERT_EQUAL_INT_MESSAGE(-1, pf_iio_parse_mount(bad[i], mount), bad[i]);
-    TEST_ASSERT_TRUE(mount[0] == 7.0);
+    TEST_ASSERT_DOUBLE_WITHIN(0, 7, mount[0]);
   }
   TEST_ASSERT_EQUAL_INT(0, pf_iio_parse_mount("0, 1, 0; -1, 0, 0; 0, 0, 1\n", mount));
   for (int i = 0; i < 9; ++i) {
-    TEST_ASSERT_TRUE(mount[i] == expected[i]);
+    TEST_ASSERT_DOUBLE_WITHIN(0, expected[i], mount[i]);
   }
   TEST_ASSERT_EQUAL_INT(0, pf_iio_parse_mount("1,0,0;0,-1,0;0,0,1", mount));
 }

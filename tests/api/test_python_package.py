@@ -48,6 +48,39 @@ class SameAsPfCapture(unittest.TestCase):
         self.same(f"images:{data}/monoslam_desk_a")
 
 
+class Masks(unittest.TestCase):
+    def matches_below(self, row, **mask):
+        config = python_package.desk(planefold)
+        config.capacity.mask = config.camera.width * config.camera.height
+        slam = planefold.Slam(config)
+        if mask:
+            self.assertEqual(slam.set_mask(**mask), planefold.Status.OK)
+        count = 0
+        for number, (image, t_ns) in enumerate(planefold.Sim("desk")):
+            if number == 12:
+                break
+            slam.push_frame(image, t_ns)
+            count += sum(match.status != planefold.MatchStatus.MISSED and match.measured_px[1] >= row - 1 for match in slam.matches)
+        return count
+
+    def test_what_is_masked_should_not_be_measured(self):
+        camera = python_package.desk(planefold).camera
+        row = camera.height // 2
+        pixels = np.full((camera.height, camera.width), 255, np.uint8)
+        pixels[row:] = 0
+        self.assertGreater(self.matches_below(row), 0)
+        self.assertEqual(self.matches_below(row, pixels=pixels), 0)
+        self.assertEqual(self.matches_below(row, rectangles=[(0, row, camera.width, camera.height)]), 0)
+
+    def test_a_wrong_mask_should_raise(self):
+        config = python_package.desk(planefold)
+        config.capacity.mask = config.camera.width * config.camera.height
+        slam = planefold.Slam(config)
+        for mask in ({}, {"pixels": np.zeros((3, 3), np.uint8)}, {"rectangles": [(0, 0, 10000, 10000)]}):
+            with self.assertRaises(planefold.Error):
+                slam.set_mask(**mask)
+
+
 class Images(unittest.TestCase):
     def test_rows_may_lie_apart(self):
         whole, cut = planefold.Slam(python_package.desk(planefold)), planefold.Slam(python_package.desk(planefold))

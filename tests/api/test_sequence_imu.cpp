@@ -1,4 +1,5 @@
 // Inertial samples in files: what is read, exactly, and everything that can be wrong with them.
+#include "same.h"
 #include "skip.h"
 
 #if __has_include(<planefold_platform/sequence.h>)
@@ -53,11 +54,12 @@ static void test_rows_should_be_read_to_the_last_digit_when_times_are_nanosecond
   TEST_ASSERT_TRUE_MESSAGE(parsed.done, parsed.message);
   TEST_ASSERT_EQUAL_size_t(2, parsed.count);
   TEST_ASSERT_EQUAL_INT64(1403636579758555392, parsed.samples[0].t_ns);
-  TEST_ASSERT_TRUE(parsed.samples[0].gyro[0] == -0.099134701513277898);
-  TEST_ASSERT_TRUE(parsed.samples[0].accel[2] == -2.4026292499999999);
+  TEST_ASSERT_SAME(-0.099134701513277898, parsed.samples[0].gyro[0]);
+  TEST_ASSERT_SAME(-2.4026292499999999, parsed.samples[0].accel[2]);
   TEST_ASSERT_EQUAL_INT64(1403636579763555584, parsed.samples[1].t_ns);
-  TEST_ASSERT_TRUE(parsed.samples[1].gyro[2] == 3.0 && parsed.samples[1].accel[0] == 4.0);
-  TEST_ASSERT_TRUE(parsed.samples[1].accel[2] == 0.6);
+  TEST_ASSERT_SAME(3.0, parsed.samples[1].gyro[2]);
+  TEST_ASSERT_SAME(4.0, parsed.samples[1].accel[0]);
+  TEST_ASSERT_SAME(0.6, parsed.samples[1].accel[2]);
 }
 
 static void test_times_should_be_seconds_when_a_row_has_a_decimal_point() {
@@ -76,8 +78,10 @@ static void test_samples_should_be_read_with_marks_and_in_the_order_of_a_header(
         "# time;a_x;a_y;a_z;angular_velocity_x;angular_velocity_y;angular_velocity_z\n"}) {
     const Parsed swapped(std::string(header) + "10,4,5,6,1,2,3\n20,4,5,6,1,2,3\n");
     TEST_ASSERT_TRUE_MESSAGE(swapped.done, swapped.message);
-    TEST_ASSERT_TRUE(swapped.samples[1].gyro[0] == 1.0 && swapped.samples[1].gyro[2] == 3.0);
-    TEST_ASSERT_TRUE(swapped.samples[1].accel[0] == 4.0 && swapped.samples[1].accel[2] == 6.0);
+    TEST_ASSERT_SAME(1.0, swapped.samples[1].gyro[0]);
+    TEST_ASSERT_SAME(3.0, swapped.samples[1].gyro[2]);
+    TEST_ASSERT_SAME(4.0, swapped.samples[1].accel[0]);
+    TEST_ASSERT_SAME(6.0, swapped.samples[1].accel[2]);
   }
 }
 
@@ -182,7 +186,8 @@ void noise_refused(const std::string& from, const std::string& to, const char* p
   char message[PF_SEQUENCE_MESSAGE] = "";
   TEST_ASSERT_FALSE_MESSAGE(read_noise(text, &imu, message), text.c_str());
   require_message(message, part);
-  TEST_ASSERT_TRUE(imu.gyro_density == 0.0 && imu.accel_density == 0.0);
+  TEST_ASSERT_SAME(0.0, imu.gyro_density);
+  TEST_ASSERT_SAME(0.0, imu.accel_density);
 }
 
 void require_mount(const pf_imu_model_t& imu, double delay_s) {
@@ -206,9 +211,12 @@ static void test_noise_should_be_read_from_every_known_form() {
     pf_imu_model_t imu{};
     char message[PF_SEQUENCE_MESSAGE] = "";
     TEST_ASSERT_TRUE_MESSAGE(read_noise(text, &imu, message), message);
-    TEST_ASSERT_TRUE(imu.accel_density == 1.86e-3 && imu.accel_walk == 4.33e-4);
-    TEST_ASSERT_TRUE(imu.gyro_density == 1.87e-4 && imu.gyro_walk == 2.66e-5);
-    TEST_ASSERT_TRUE(imu.delay_s == 0.0 && imu.q_BC[0] == 0.0);
+    TEST_ASSERT_SAME(1.86e-3, imu.accel_density);
+    TEST_ASSERT_SAME(4.33e-4, imu.accel_walk);
+    TEST_ASSERT_SAME(1.87e-4, imu.gyro_density);
+    TEST_ASSERT_SAME(2.66e-5, imu.gyro_walk);
+    TEST_ASSERT_SAME(0.0, imu.delay_s);
+    TEST_ASSERT_SAME(0.0, imu.q_BC[0]);
   }
 }
 
@@ -222,7 +230,7 @@ static void test_noise_should_be_that_of_the_first_unit_with_a_note_when_a_file_
   TEST_ASSERT_EQUAL_STRING("", message);
   TEST_ASSERT_TRUE_MESSAGE(read_noise(one + "imu1:\n  gyroscope_noise_density: 1e-3\n", &imu, message), message);
   require_message(message, "imu0 is taken");
-  TEST_ASSERT_TRUE(imu.gyro_density == 1.87e-4);
+  TEST_ASSERT_SAME(1.87e-4, imu.gyro_density);
 }
 
 static void test_gravity_should_be_read_from_the_noise_of_a_unit() {
@@ -234,15 +242,15 @@ static void test_gravity_should_be_read_from_the_noise_of_a_unit() {
     char message[PF_SEQUENCE_MESSAGE] = "";
     imu.gravity = 9.81;
     TEST_ASSERT_TRUE_MESSAGE(read_noise(text, &imu, message), message);
-    TEST_ASSERT_TRUE(imu.gravity == 9.81);
+    TEST_ASSERT_SAME(9.81, imu.gravity);
     TEST_ASSERT_TRUE_MESSAGE(read_noise(text + "gravity: 9.7801\n", &imu, message), message);
-    TEST_ASSERT_TRUE(imu.gravity == 9.7801);
+    TEST_ASSERT_SAME(9.7801, imu.gravity);
     TEST_ASSERT_EQUAL_STRING("", message);
     for (const char* wrong :
          {"gravity: 1\n", "gravity: 11.5\n", "gravity: .nan\n", "gravity: [0, 0, 9.81]\n", "gravtiy: 9.8\n"}) {
       TEST_ASSERT_FALSE_MESSAGE(read_noise(text + wrong, &imu, message), wrong);
       require_message(message, "'grav");
-      TEST_ASSERT_TRUE(imu.gravity == 9.7801);
+      TEST_ASSERT_SAME(9.7801, imu.gravity);
     }
   }
 }

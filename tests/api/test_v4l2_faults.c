@@ -696,7 +696,8 @@ static void test_camera_source_should_hand_on_frames_faults_and_what_is_known(vo
   TEST_ASSERT_EQUAL_STRING("GREY", info.format);
   TEST_ASSERT_EQUAL_STRING("/dev/video7", info.id);
   TEST_ASSERT_EQUAL_STRING("end of exposure", info.timestamps);
-  TEST_ASSERT_TRUE(info.frames == 6 && info.departures == 1);
+  TEST_ASSERT_EQUAL_INT64(6, info.frames);
+  TEST_ASSERT_EQUAL_INT64(1, info.departures);
   camera.close(camera.context);
   expect_nothing_left("a source");
 }

@@ -1,6 +1,7 @@
 // The bundle's projection: Jacobians by pose, host and inverse depth, for every camera model, in double and in float.
 #include "bundle/bearing.h"
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
@@ -52,7 +53,8 @@ void test_bundle_projection_should_leave_its_outputs_when_the_point_is_behind() 
   Mat26 J = Mat26::Constant(9);
   const Vec3 behind(0, 0, -1);
   TEST_ASSERT_FALSE(project_bearing(camera, Mat3::Identity(), behind, Vec3::Zero(), 1, &z, &J));
-  TEST_ASSERT_TRUE(z == Vec2(7, 8) && J == Mat26::Constant(9));
+  TEST_ASSERT_SAME(Vec2(7, 8), z);
+  TEST_ASSERT_SAME(Mat26::Constant(9), J);
 }
 
 }  // namespace

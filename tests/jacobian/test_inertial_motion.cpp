@@ -2,6 +2,7 @@
 // and the pixels of a rolling shutter whose rows hang on the gyro. All against central differences.
 #include "filter/inertial_motion.h"
 #include "observe/point.h"
+#include "same.h"
 #include "support/filter_cases.h"
 #include "support/inertial_cases.h"
 #include "support/numeric_jacobian.h"
@@ -126,7 +127,7 @@ void test_transition_that_is_replaced_should_leave_nothing_of_itself() {
                      Scalar(kNumericJacobianIsFloat ? 1e-5 : 1e-12));
     TEST_ASSERT_TRUE((matrix17(replacing.F) * matrix17(made.F) - matrix17(alone.F)).cwiseAbs().maxCoeff() <
                      Scalar(kNumericJacobianIsFloat ? 1e-5 : 1e-13));
-    TEST_ASSERT_TRUE(inertial_difference(replacing.mean, alone.mean).norm() == Scalar(0));
+    TEST_ASSERT_SAME(Scalar(0), inertial_difference(replacing.mean, alone.mean).norm());
   }
 }
 

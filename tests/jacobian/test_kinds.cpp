@@ -1,5 +1,6 @@
 // Where each kind of feature is, d = w (o - c) + b: every Jacobian against central differences of the state itself.
 #include "model/kinds.h"
+#include "same.h"
 #include "support/plane_scene.h"
 
 using namespace pf;
@@ -102,7 +103,7 @@ void test_an_inverse_depth_should_have_a_direction_and_no_point_when_it_is_not_p
     Place at;
     TEST_ASSERT_TRUE(find_place(state, slots[0], &at));
     TEST_ASSERT_FALSE(at.resolve());
-    TEST_ASSERT_TRUE(at.w == static_cast<Scalar>(rho));
+    TEST_ASSERT_SAME(static_cast<Scalar>(rho), at.w);
   }
 }
 

@@ -1,5 +1,6 @@
 // Transitions of both motion models: F against central differences, the noise a covariance, two half steps one whole one.
 #include "filter/motion.h"
+#include "same.h"
 #include "support/filter_cases.h"
 #include "support/numeric_jacobian.h"
 
@@ -78,8 +79,8 @@ void test_transition_of_constant_position_should_be_the_identity() {
   Transition transition;
   predict_constant_position(before, BodyLayout::with_constant_position(), Scalar(0.1), kNoise, &transition);
   TEST_ASSERT_EQUAL_INT(Body::kPoseDim, transition.dim);
-  TEST_ASSERT_TRUE(minus(transition.mean, before).norm() == 0);
-  for (int i = 0; i < 36; ++i) TEST_ASSERT_TRUE(transition.F[i] == (i % 7 == 0 ? Scalar(1) : Scalar(0)));
+  TEST_ASSERT_SAME(0, minus(transition.mean, before).norm());
+  for (int i = 0; i < 36; ++i) TEST_ASSERT_SAME((i % 7 == 0 ? Scalar(1) : Scalar(0)), transition.F[i]);
 }
 
 /// Symmetric to rounding, and positive definite, by elimination.

@@ -2,6 +2,7 @@
 // as it is read at rest, and the preintegrated samples by a delay. All against central differences.
 #include "filter/imu_path.h"
 #include "filter/inertial_motion.h"
+#include "same.h"
 #include "support/inertial_cases.h"
 #include "support/numeric_jacobian.h"
 
@@ -179,7 +180,7 @@ void test_gravity_at_rest_should_be_exact_by_the_axes_of_the_unit() {
     check_jacobian<2, 6>(J, tilts, "gravity by mounting", Scalar(1), kLoose);
     // What is known of the mounting stays.
     for (int i = kTurn; i < kRows; ++i)
-      for (int j = 0; j < kRows; ++j) TEST_ASSERT_TRUE(transition.F[i * kRows + j] == Scalar(i == j ? 1 : 0));
+      for (int j = 0; j < kRows; ++j) TEST_ASSERT_SAME(Scalar(i == j ? 1 : 0), transition.F[i * kRows + j]);
   }
 }
 
@@ -200,7 +201,7 @@ void test_error_of_the_mounting_should_move_the_state() {
   const Mounting expected = moved_mounting(mounting, e), &now = filter->state().mounting;
   const Scalar near = kNumericJacobianIsFloat ? Scalar(1e-5) : Scalar(1e-12);
   TEST_ASSERT_TRUE((now.R_CB - expected.R_CB).norm() < near && (now.p_C - expected.p_C).norm() < near);
-  TEST_ASSERT_TRUE(now.delay == Scalar(0.004));
+  TEST_ASSERT_SAME(Scalar(0.004), now.delay);
   const Vec3 w_B = mounting.R_CB.transpose() * body.w_C;
   TEST_ASSERT_TRUE((now.R_CB.transpose() * filter->state().body.w_C - w_B).norm() < near);
 }

@@ -1,5 +1,6 @@
 // Jacobians of an inverse-depth point's pixel, for every camera model, near, far and at infinity, in double and in float.
 #include "observe/inverse_depth.h"
+#include "same.h"
 #include "support/filter_cases.h"
 #include "support/numeric_jacobian.h"
 #include "support/test_cameras.h"
@@ -101,7 +102,7 @@ void test_first_bearing_jacobians_should_be_exact_with_every_camera_model() {
     };
     TEST_ASSERT_TRUE((R_b.col(2) - from_anchor(body.q_WC * ray, c_W, rho)).norm() <
                      (kNumericJacobianIsFloat ? Scalar(1e-5) : Scalar(1e-13)));
-    TEST_ASSERT_TRUE(feature.rho == Scalar(0.5));
+    TEST_ASSERT_SAME(Scalar(0.5), feature.rho);
     const auto bearing_error = [&](const Vec3& b) -> Vec2 { return R_b.leftCols<2>().transpose() * b; };
     check_jacobian<2, 3>(
         J_theta, [&](const Vec3& e) { return bearing_error(from_anchor(exp_so3(e) * body.q_WC * ray, c_W, rho)); },

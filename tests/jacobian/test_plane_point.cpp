@@ -1,6 +1,7 @@
 // A new point of a plane, where the ray of its pixel meets it: its Jacobian over camera, plane, lens and pixel, for every camera model.
 #include "geometry/ray_plane.h"
 #include "model/camera_at.h"
+#include "same.h"
 #include "support/filter_cases.h"
 #include "support/numeric_jacobian.h"
 #include "support/test_cameras.h"
@@ -179,7 +180,7 @@ void test_no_plane_point_should_begin_where_the_ray_meets_no_plane() {
   const Dense P = view.filter.P();
   TEST_ASSERT_EQUAL_INT(-1, view.filter->add_plane_point(view.plane, Vec3(0, 0, -1), Mat32::Zero(), Mat2::Identity()));
   TEST_ASSERT_EQUAL_INT(n, view.filter.dim());
-  TEST_ASSERT_TRUE(view.filter.P() == P);
+  TEST_ASSERT_SAME(P, view.filter.P());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "geometry/ray_plane.h"
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"
 #include "unity.h"
@@ -61,7 +62,7 @@ void test_hit_should_be_refused_when_the_plane_is_behind() {
   Vec3 hit(7, 7, 7);
   TEST_ASSERT_FALSE(intersect_ray_plane(frame, Vec3::Zero(), Vec3(0, 0, 1), Vec3(0, 0, 1), &hit));
   TEST_ASSERT_FALSE(intersect_ray_plane(frame, Vec3::Zero(), Vec3(0, 0, -1), Vec3(0, 0, -1), &hit));
-  TEST_ASSERT_TRUE(hit == Vec3(7, 7, 7));
+  TEST_ASSERT_SAME(Vec3(7, 7, 7), hit);
   TEST_ASSERT_TRUE(intersect_ray_plane(frame, Vec3::Zero(), Vec3(0, 0, -1), Vec3(0, 0, 1), &hit));
   TEST_ASSERT_TRUE(hit.norm() < Scalar(1e-6));
 }

@@ -1,6 +1,7 @@
 // Corners of a patch on a plane: their Jacobians over the whole state for four lens models and rolling rows, the homography that they are
 // for a pinhole, and what they do not observe.
 #include "model/reference_camera.h"
+#include "same.h"
 #include "support/filter_cases.h"
 #include "support/test_cameras.h"
 
@@ -153,9 +154,9 @@ void test_a_patch_should_keep_its_reference_camera() {
   const int n = view.filter.dim();
   const int other = view.filter->add_point(Vec3(0, 0, 1), Mat3::Identity());
   view.filter->remove(&other, 1);
-  TEST_ASSERT_TRUE(state.block[view.camera].kind == BlockKind::kReferenceCamera);
+  TEST_ASSERT_SAME(BlockKind::kReferenceCamera, state.block[view.camera].kind);
   view.filter->remove(&view.patch, 1);
-  TEST_ASSERT_TRUE(state.block[view.camera].kind == BlockKind::kNone);
+  TEST_ASSERT_SAME(BlockKind::kNone, state.block[view.camera].kind);
   TEST_ASSERT_EQUAL_INT(n - 14, view.filter.dim());
 }
 

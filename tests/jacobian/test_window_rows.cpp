@@ -2,6 +2,7 @@
 #include "geometry/so3.h"
 #include "keyframe_slam/map/rows.h"
 #include "model/camera_at.h"
+#include "same.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
@@ -88,7 +89,7 @@ void test_pixel_should_stay_where_it_is_when_all_rows_are_read_out_at_once() {
   SeededRandom random(153);
   const Body body = random_moving_body(random);
   const Vec2 z(100, 20);
-  TEST_ASSERT_TRUE(at_frame_time(test_camera_of(0), body, point_before(body, random), Scalar(1), z) == z);
+  TEST_ASSERT_SAME(z, at_frame_time(test_camera_of(0), body, point_before(body, random), Scalar(1), z));
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 GROUND = ["base", "covariance", "geometry", "vision"]
 BLOCKS = GROUND[:3] + ["model", "observe"]
 SHARED = GROUND + ["model", "observe", "filter", "bundle", "track", "map"]
-FRAME = SHARED + ["frame", "frame/start"]
+FRAME = SHARED + ["belief", "frame", "frame/start"]
 POSE = FRAME + ["filter_slam/pose"]
 FEATURES = POSE + ["filter_slam/features"]
 KEYFRAME_MAP = FRAME + ["keyframe_slam/map"]
@@ -22,8 +22,9 @@ LIBRARY = {
     "bundle": BLOCKS,
     "track": GROUND,
     "map": GROUND,
-    "frame": SHARED,
-    "frame/start": SHARED + ["frame"],
+    "belief": ["base"],
+    "frame": SHARED + ["belief"],
+    "frame/start": SHARED + ["belief", "frame"],
     "filter_slam/pose": FRAME,
     "filter_slam/features": POSE,
     "filter_slam/planes": FEATURES,

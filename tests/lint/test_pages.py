@@ -12,7 +12,7 @@ import sizes  # noqa: E402
 
 DOCS = source.ROOT / "lib/docs"
 # Pages about the project as a whole, which no file implements.
-OVERVIEW = {"architecture.md", "notation.md", "results.md", "devices.md", "where_to_change.md"}
+OVERVIEW = {"architecture.md", "decisions.md", "notation.md", "results.md", "devices.md", "where_to_change.md"}
 problems = []
 
 for page in [*sorted(DOCS.rglob("*.md")), source.ROOT / "README.md"]:

@@ -2,7 +2,8 @@
 
 A coefficient is a whole number from 0 to 4, a half or a quarter: what formulas are made of. Every other number with a fraction or an
 exponent, and every other Scalar(number), is the value of a constant (constexpr) or the default of a member of a struct. Tuned ones
-stand in the module's tuning.h, one to a line, with a comment that says what it is and its unit."""
+stand in the module's tuning.h, one to a line, with a comment that says what it is and its unit. Static are those that the compiler has to
+know, such as the size of an array: a build with PLANEFOLD_TUNABLE cannot set them."""
 
 import re
 
@@ -13,7 +14,9 @@ COEFFICIENTS = {0, 1, 2, 3, 4, 0.5, 0.25}
 NUMBER = r"\d+\.\d*(?:e[-+]?\d+)?|\.\d+(?:e[-+]?\d+)?|\d+e[-+]?\d+"
 LITERAL = re.compile(rf"\bScalar\(\s*-?(?P<scalar>\d+|{NUMBER})f?\s*\)|(?<![\w.])(?P<plain>{NUMBER})f?(?![\w.])")
 NAMED = re.compile(r"\bconstexpr\b[^=;]*=|^\s*(?:Scalar|float|double)\s+\w+ =", re.MULTILINE)
-TUNED = re.compile(r"inline constexpr (?:Scalar|float|int) k\w+ = [^;]+; +///< \S.*")
+# Of counts and lengths: `2 * agree >= searched` says that half is enough, which is a number that decides.
+RATIO = re.compile(r"(?<![\w.)])(?:[2-9]|\d\d+) \* [a-z][\w.>()-]* (?:<|>|<=|>=) |(?:<|>|<=|>=) (?:[2-9]|\d\d+) \* (?!k[A-Z])[a-z]")
+TUNED = re.compile(r"(?:inline|static) constexpr (?:Scalar|float|double|int) k\w+ = [^;]+; +///< \S.*")
 
 
 def bare_numbers(path):
@@ -28,9 +31,17 @@ def bare_numbers(path):
             yield text.count("\n", 0, match.start()) + 1, match.group(0)
 
 
+def bare_ratios(path):
+    """(line number, text) of comparisons with so many times something."""
+    for number, line in enumerate(source.code(path.read_text()).splitlines(), 1):
+        if (match := RATIO.search(line)) and not re.match(r"\s*(?:for \(|PF_ASSERT)", line):
+            yield number, match.group(0).strip()
+
+
 problems = []
 for module in MODULES:
     for path in source.files(f"lib/src/{module}"):
+        problems += [f"{source.name(path)}:{line}: the ratio in '{text}' has no name" for line, text in bare_ratios(path)]
         problems += [f"{source.name(path)}:{line}: {literal} has no name" for line, literal in bare_numbers(path)]
 for path in source.files("lib/src"):
     if path.name != "tuning.h":

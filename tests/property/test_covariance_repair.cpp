@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "filter/tuning.h"
+#include "same.h"
 #include "support/filter_scene.h"
 #include "support/slow_walk.h"
 
@@ -28,7 +29,7 @@ void test_a_sound_covariance_should_stay_bit_for_bit() {
   fill_map(random, filter, 5, 6);
   filter.set_P(random_covariance(random, filter.dim(), 0.1));
   const std::vector<Scalar> before = bits_of(filter);
-  for (int turn = 0; turn < kTurns; ++turn) TEST_ASSERT_TRUE(filter->repair(turn) == BlockFilter::Repair::kNone);
+  for (int turn = 0; turn < kTurns; ++turn) TEST_ASSERT_SAME(BlockFilter::Repair::kNone, filter->repair(turn));
   const std::vector<Scalar> after = bits_of(filter);
   TEST_ASSERT_EQUAL_INT(0, std::memcmp(before.data(), after.data(), before.size() * sizeof(Scalar)));
 }
@@ -43,9 +44,9 @@ void test_a_negative_eigenvalue_should_be_repaired() {
     const double largest_before = filter.P().diagonal().maxCoeff();
     const double found = slow_walk::smallest_correlation(filter->covariance());
     TEST_ASSERT_TRUE(found < -1e-4);
-    TEST_ASSERT_TRUE(filter->repair(0) == BlockFilter::Repair::kDone);
+    TEST_ASSERT_SAME(BlockFilter::Repair::kDone, filter->repair(0));
     TEST_ASSERT_TRUE(slow_walk::smallest_correlation(filter->covariance()) > -1e-6);
-    TEST_ASSERT_TRUE(filter->repair(1) == BlockFilter::Repair::kNone);
+    TEST_ASSERT_SAME(BlockFilter::Repair::kNone, filter->repair(1));
     // By no more than the step beyond what was missing.
     TEST_ASSERT_TRUE(filter.P().diagonal().maxCoeff() <= largest_before * (1 + 5 * std::fabs(found) + 1e-3));
   }
@@ -110,7 +111,7 @@ void test_what_is_not_finite_should_not_be_repaired() {
   Dense P = random_covariance(random, filter.dim(), 0.1);
   P(1, 0) = P(0, 1) = std::nan("");
   filter.set_P(P);
-  TEST_ASSERT_TRUE(filter->repair(0) == BlockFilter::Repair::kImpossible);
+  TEST_ASSERT_SAME(BlockFilter::Repair::kImpossible, filter->repair(0));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // carried by every verb of the filter, and must gain no information over a run.
 #include "filter/gauge_information.h"
 #include "filter/tuning.h"
+#include "same.h"
 #include "support/plane_scene.h"
 #include "support/test_cameras.h"
 
@@ -487,11 +488,12 @@ void test_a_direction_that_is_observable_should_be_zero_and_leave_the_others() {
                        random_covariance(random, scene.filter.dim(), 0.02));
     const Dense all = scene.filter.gauge_information();
     scene.filter.set_unobservable(gauge::kMetric);
-    TEST_ASSERT_TRUE(largest(scene.filter.gauge().leftCols(kShiftAndTurn) - N.leftCols(kShiftAndTurn)) == 0);
-    TEST_ASSERT_TRUE(largest(scene.filter.gauge().col(gauge::kScale)) == 0);
+    TEST_ASSERT_SAME(0, largest(scene.filter.gauge().leftCols(kShiftAndTurn) - N.leftCols(kShiftAndTurn)));
+    TEST_ASSERT_SAME(0, largest(scene.filter.gauge().col(gauge::kScale)));
     const Dense before = scene.filter.gauge_information();
-    TEST_ASSERT_TRUE(largest(before.topLeftCorner(6, 6) - all.topLeftCorner(6, 6)) == 0);
-    TEST_ASSERT_TRUE(largest(before.row(gauge::kScale)) == 0 && largest(before.col(gauge::kScale)) == 0);
+    TEST_ASSERT_SAME(0, largest(before.topLeftCorner(6, 6) - all.topLeftCorner(6, 6)));
+    TEST_ASSERT_SAME(0, largest(before.row(gauge::kScale)));
+    TEST_ASSERT_SAME(0, largest(before.col(gauge::kScale)));
     ScaleRow l;
     TEST_ASSERT_FALSE(scene.filter->scale_row(&l));
     update_with_wall(scene, random);

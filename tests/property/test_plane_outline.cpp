@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "map/plane_outline.h"
+#include "same.h"
 #include "support/seeded_random.h"
 #include "unity.h"
 
@@ -62,7 +63,7 @@ void test_outline_should_not_depend_on_the_order_when_nothing_is_simplified() {
     PlaneOutline one_by_one;
     for (std::size_t i = points.size(); i > 0; --i) extend_outline(&one_by_one, &points[i - 1], 1);
     TEST_ASSERT_EQUAL_INT(all.count, one_by_one.count);
-    for (int i = 0; i < all.count; ++i) TEST_ASSERT_TRUE(all.uv[i] == one_by_one.uv[i]);
+    for (int i = 0; i < all.count; ++i) TEST_ASSERT_SAME(one_by_one.uv[i], all.uv[i]);
   }
 }
 
@@ -102,10 +103,11 @@ void test_outline_should_have_no_area_when_points_are_in_line_or_the_same() {
   for (int i = 0; i < 70; ++i)
     line.emplace_back(static_cast<Scalar>((i * 13) % 70), static_cast<Scalar>((i * 26) % 140));
   PlaneOutline outline = outline_of(line);
-  TEST_ASSERT_TRUE(outline_area(outline) == 0);
+  TEST_ASSERT_SAME(0, outline_area(outline));
   TEST_ASSERT_FALSE(outline_contains(outline, Vec2(1, 2)));
   outline = outline_of(std::vector<Vec2>(90, Vec2(3, 4)));
-  TEST_ASSERT_TRUE(outline.count <= 2 && outline_area(outline) == 0);
+  TEST_ASSERT_TRUE(outline.count <= 2);
+  TEST_ASSERT_SAME(0, outline_area(outline));
   outline = outline_of({Vec2(0, 0), Vec2(1, 0)});
   TEST_ASSERT_EQUAL_INT(2, outline.count);
   outline = outline_of({});

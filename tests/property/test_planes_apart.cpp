@@ -1,4 +1,5 @@
 // Known planes that nothing in the map has been compared with: they tell nothing of the gauge, until the map gets its size from them.
+#include "same.h"
 #include "support/plane_scene.h"
 #include "support/test_cameras.h"
 
@@ -79,8 +80,8 @@ void test_a_map_that_gets_its_size_should_show_the_same_pixels() {
     TEST_ASSERT_TRUE((S - s.S).norm() < Scalar(1e-8) * s.S.norm());
   }
   const Block& block = scene.filter->state().block[plane];
-  TEST_ASSERT_TRUE(block.kind == BlockKind::kPlane);
-  TEST_ASSERT_TRUE((scene.filter->state().frame_of(block).o_W - some_frame().o_W).norm() == Scalar(0));
+  TEST_ASSERT_SAME(BlockKind::kPlane, block.kind);
+  TEST_ASSERT_SAME(Scalar(0), (scene.filter->state().frame_of(block).o_W - some_frame().o_W).norm());
   TEST_ASSERT_TRUE(std::abs(scene.filter->block_variance(plane, 2) - Scalar(1e-4)) < Scalar(1e-12));
 }
 

@@ -4,6 +4,7 @@
 
 #include "../fuzz/contract_episode.h"
 #include "filter/measurement.h"
+#include "same.h"
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -15,9 +16,9 @@ void test_noise_without_bend_should_not_depend_on_bend() {
   z.bend = pf::Scalar(2.2e5);
   const pf::Mat2 R = (pf::Mat2() << 0.09, 0.01, 0.01, 0.3).finished().cast<pf::Scalar>();
   z.set_noises(R, 7 * R);
-  TEST_ASSERT_TRUE(z.R_straight == pf::Mat2(7 * R));
+  TEST_ASSERT_SAME(pf::Mat2(7 * R), z.R_straight);
   TEST_ASSERT_TRUE(z.R_gate(0, 0) >= z.bend && z.R_update(1, 1) >= z.bend + 2);
-  TEST_ASSERT_TRUE(z.R_gate(0, 1) == R(0, 1));
+  TEST_ASSERT_SAME(R(0, 1), z.R_gate(0, 1));
 }
 
 /// Float told the first one its pixels as exact, and then all at once, to a pose that these know 1e7 times better: a feature's smallest

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "same.h"
 #include "support/wall_walk.h"
 
 void setUp(void) {}
@@ -30,7 +31,9 @@ class Run : public WallWalk {
   double wall_error() const {
     pf_plane_t plane;
     std::size_t count;
-    TEST_ASSERT_TRUE(pf_get_planes(slam, &plane, 1, &count) >= PF_OK && count >= 1 && plane.id == wall_);
+    TEST_ASSERT_TRUE(pf_get_planes(slam, &plane, 1, &count) >= PF_OK);
+    TEST_ASSERT_TRUE(count >= 1);
+    TEST_ASSERT_SAME(wall_, plane.id);
     return std::acos(std::fabs(plane.normal_W[2]));
   }
 
@@ -61,7 +64,9 @@ void test_a_wall_alone_should_be_tracked_and_refined() {
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_report(run.slam, &report));
   const std::vector<pf_patch_t> patches = run.patches();
   TEST_ASSERT_EQUAL_INT(report.patches, static_cast<int>(patches.size()));
-  TEST_ASSERT_TRUE(report.features == 0 && report.cameras > 0 && report.cameras <= report.patches);
+  TEST_ASSERT_SAME(0, report.features);
+  TEST_ASSERT_TRUE(report.cameras > 0);
+  TEST_ASSERT_TRUE(report.cameras <= report.patches);
   int inliers = 0;
   for (const pf_patch_t& p : patches) {
     inliers += p.status == PF_MATCH_INLIER;
@@ -103,7 +108,9 @@ void test_a_gross_patch_should_be_refused_by_the_others_though_it_is_the_most_pr
     }
     std::printf("frame %d: %d of %d others taken, %.4f m off\n", frame, taken, static_cast<int>(inliers) - 1,
                 run.error_m);
-    TEST_ASSERT_TRUE(refused == 1 && taken >= 1 && run.error_m < 0.03);
+    TEST_ASSERT_SAME(1, refused);
+    TEST_ASSERT_TRUE(taken >= 1);
+    TEST_ASSERT_TRUE(run.error_m < 0.03);
     ++told;
   }
   TEST_ASSERT_TRUE(told >= 2);

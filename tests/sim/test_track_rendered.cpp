@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "same.h"
 #include "support/rendered_run.h"
 
 using namespace pf;
@@ -190,7 +191,8 @@ void test_a_repeated_image_should_repeat_pose_and_status_and_the_next_one_should
     TEST_ASSERT_EQUAL_INT(PF_OK, f.status);
     TEST_ASSERT_EQUAL_INT(PF_STATE_TRACKING, f.state);
     TEST_ASSERT_EQUAL_INT64(k + 1, f.report.duplicates);
-    TEST_ASSERT_TRUE(f.pose.t_ns == f.report.t_ns && f.pose.t_ns > before.pose.t_ns);
+    TEST_ASSERT_SAME(f.report.t_ns, f.pose.t_ns);
+    TEST_ASSERT_TRUE(f.pose.t_ns > before.pose.t_ns);
     TEST_ASSERT_EQUAL_MEMORY(before.pose.p_WC, f.pose.p_WC, sizeof(f.pose.p_WC));
     TEST_ASSERT_EQUAL_MEMORY(before.pose.covariance, f.pose.covariance, sizeof(f.pose.covariance));
     TEST_ASSERT_EQUAL_INT(0, f.report.attempts);

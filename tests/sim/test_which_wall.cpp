@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "same.h"
 #include "support/wall_walk.h"
 
 void setUp(void) {}
@@ -61,7 +62,9 @@ void test_of_two_walls_patches_should_join_the_one_that_is_there() {
   }
   std::printf("%d frames of patches waited, %d on the wall, %d off it, worst error %.4f m\n", waited, on_it, off,
               run.worst_m);
-  TEST_ASSERT_TRUE(waited > 0 && on_it > kFrames && off == 0);
+  TEST_ASSERT_TRUE(waited > 0);
+  TEST_ASSERT_TRUE(on_it > kFrames);
+  TEST_ASSERT_SAME(0, off);
   TEST_ASSERT_TRUE(run.worst_m < 0.03);
 }
 

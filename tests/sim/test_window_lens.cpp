@@ -1,6 +1,7 @@
 // A wrong calibration with the window: its lens is estimated, says honestly how well, and a new map begins at the calibration.
 #include <cmath>
 
+#include "same.h"
 #include "support/rendered_run.h"
 
 using namespace pf;
@@ -69,7 +70,8 @@ void test_window_should_estimate_a_wrong_lens_and_be_honest_about_it() {
   TEST_ASSERT_TRUE(estimated.rms() < exact.rms());
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_reset(estimated.run.slam));
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_camera(estimated.run.slam, &lens, covariance));
-  TEST_ASSERT_TRUE(lens.fx == estimated.run.config.camera.fx && lens.distortion[0] == 0);
+  TEST_ASSERT_SAME(estimated.run.config.camera.fx, lens.fx);
+  TEST_ASSERT_SAME(0, lens.distortion[0]);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "api/context.h"
 #include "filter_slam/planes/plane_keeper.h"
+#include "same.h"
 #include "support/filter_cases.h"
 #include "support/test_cameras.h"
 
@@ -22,7 +23,7 @@ struct PlaneKeeperBench {
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
     config.camera = {PF_CAMERA_PINHOLE,  640, 480, 525, 525, 320, 240, {0}, 0, PF_CAMERA_EXACT,
                      PF_TIMESTAMPS_REAL, 0,   0,   0,   {0}};
-    TEST_ASSERT_TRUE(settings_from(config, &settings, nullptr) == Status::kOk);
+    TEST_ASSERT_SAME(Status::kOk, settings_from(config, &settings, nullptr));
     TEST_ASSERT_TRUE(map.layout(*arena, 40, 4));
     TEST_ASSERT_TRUE(frame.layout(*arena, 80));
     TEST_ASSERT_TRUE(features.layout(*arena, 40));

@@ -7,6 +7,7 @@
 
 #include "bundle/bundle_adjuster.h"
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/filter_cases.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
@@ -174,15 +175,15 @@ inline void check_random_windows(std::uint64_t seed, int windows) {
     const Scalar last = adjuster.adjust(window.camera, window.options, bundle);
     const Scalar again = adjuster.adjust(window.camera, none, bundle);
     TEST_ASSERT_TRUE(std::isfinite(first) && std::isfinite(last) && last <= first);
-    TEST_ASSERT_TRUE(again == last);
+    TEST_ASSERT_SAME(last, again);
     lowered += last < first ? 1 : 0;
     for (std::size_t c = 0; c < window.pose.size(); ++c) {
       TEST_ASSERT_TRUE(window.pose[c].q_WC.coeffs().allFinite() && window.pose[c].p_W.allFinite());
-      if (!window.pose[c].free) TEST_ASSERT_TRUE(window.pose[c].p_W == before[c].p_W);
+      if (!window.pose[c].free) TEST_ASSERT_SAME(before[c].p_W, window.pose[c].p_W);
     }
     for (const Scalar rho : window.rho) TEST_ASSERT_TRUE(std::isfinite(rho));
     for (const BundlePlane& p : window.plane) TEST_ASSERT_TRUE(p.x.allFinite());
-    if (bundle.lens != nullptr) TEST_ASSERT_TRUE(check_camera(window.lens) == nullptr);
+    if (bundle.lens != nullptr) TEST_ASSERT_SAME(nullptr, check_camera(window.lens));
     if (!adjuster.begin_covariances(window.camera, window.options, bundle)) continue;
     ++determined;
     for (int c = 0; c < poses; ++c) TEST_ASSERT_TRUE(adjuster.pose_covariance(c).allFinite());

@@ -7,6 +7,7 @@
 
 #include "api/context.h"
 #include "filter_slam/filter_slam.h"
+#include "same.h"
 #include "support/filter_cases.h"
 
 namespace pf {
@@ -55,14 +56,14 @@ inline void SlowWalk::run(std::uint64_t seed) {
   config.camera = {PF_CAMERA_PINHOLE,  320, 240, 280, 280, 159.5, 119.5, {0}, 0, PF_CAMERA_EXACT,
                    PF_TIMESTAMPS_REAL, 0,   0,   0,   {0}};
   Settings settings;
-  TEST_ASSERT_TRUE(settings_from(config, &settings, nullptr) == Status::kOk);
+  TEST_ASSERT_SAME(Status::kOk, settings_from(config, &settings, nullptr));
   TestArena arena(std::size_t{16} << 20);
   Map map;
   map.layout(*arena, settings.max_features, settings.max_planes);
   map.init();
   ImuLog imu;
-  imu.layout(*arena, settings.imu_buffer);
-  imu.init(settings.imu_buffer, settings.imu_ranges);
+  imu.layout(*arena, settings.imu.buffer);
+  imu.init(settings.imu.buffer, settings.imu.ranges);
   FilterSlam loop(settings, map, imu);
   TEST_ASSERT_TRUE(loop.layout(*arena));
   loop.init();
@@ -71,7 +72,7 @@ inline void SlowWalk::run(std::uint64_t seed) {
     const int rows = settings.body.known_rows();
     for (int i = 0; i < rows; ++i)
       known.covariance[i * rows + i] = i < 6 ? static_cast<Scalar>(pose_sigma * pose_sigma) : 1;
-    TEST_ASSERT_TRUE(loop.start().use_pose(known) == Status::kOk);
+    TEST_ASSERT_SAME(Status::kOk, loop.start().use_pose(known));
   }
   std::vector<slow_walk::Point> point(kPoints), found, truth;
   for (slow_walk::Point& p : point) p = {random.uniform(-2, 10), random.uniform(-1.2, 1.2), random.uniform(2, 5)};

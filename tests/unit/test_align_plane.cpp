@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "geometry/small_cholesky.h"
+#include "same.h"
 #include "support/bounds.h"
 #include "support/test_cameras.h"
 #include "support/textured_images.h"
@@ -183,7 +184,7 @@ void test_flat_and_grazing_patches_should_be_refused() {
     Mat3 grazing = Mat3::Identity();
     grazing(0, 0) = static_cast<Scalar>(factor);
     const PlaneAlignment found = view.find(view.see(grazing, 0), grazing);
-    TEST_ASSERT_TRUE(found.verdict == PlaneVerdict::kSlanted);
+    TEST_ASSERT_SAME(PlaneVerdict::kSlanted, found.verdict);
   }
   const TestImage image = view.see(Mat3::Identity(), 0);
   TEST_ASSERT_FALSE(extract_plane_patch(image.view(), kWidth - kSide + 1, kTop, kSide, &view.patch));

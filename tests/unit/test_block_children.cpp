@@ -1,6 +1,7 @@
 // The lists of children that blocks keep: the same as a search through all blocks, by ascending owner, after every operation.
 #include <algorithm>
 
+#include "same.h"
 #include "support/plane_scene.h"
 
 using namespace pf;
@@ -24,7 +25,7 @@ void check_lists(const State& state) {
     for (std::size_t i = 1; i < listed.size(); ++i)
       TEST_ASSERT_TRUE(state.block[listed[i - 1]].owner <= state.block[listed[i]].owner);
     std::sort(listed.begin(), listed.end());
-    TEST_ASSERT_TRUE(listed == found);
+    TEST_ASSERT_SAME(found, listed);
   }
 }
 
@@ -62,7 +63,7 @@ struct OwnedScene : PlaneScene {
     const State& state = filter->state();
     check_lists(state);
     for (const int p : {plane, other_plane})
-      if (p >= 0) TEST_ASSERT_TRUE(walked(state, p) == searched(state, p, kOwners));
+      if (p >= 0) TEST_ASSERT_SAME(searched(state, p, kOwners), walked(state, p));
   }
 };
 
@@ -116,7 +117,7 @@ void test_every_feature_should_be_visited_when_each_is_unfolded_on_the_way() {
     TEST_ASSERT_TRUE(scene.filter->unfold(slot, Scalar(0)));
   });
   TEST_ASSERT_EQUAL_size_t(8, visited.size());
-  TEST_ASSERT_TRUE(visited == expected);
+  TEST_ASSERT_SAME(expected, visited);
   check_lists(scene.filter->state());
 }
 

@@ -5,6 +5,7 @@
 
 #include "bundle/bundle_adjuster.h"
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/bounds.h"
 #include "support/filter_cases.h"
 #include "support/seeded_random.h"
@@ -227,7 +228,7 @@ void test_adjusting_should_find_the_truth_and_leave_fixed_poses_when_pixels_are_
       EXPECT_BELOW(1e-3, static_cast<double>((scene.pose[c].p_W - scene.truth[c].p_W).norm()));
       EXPECT_BELOW(1e-3, static_cast<double>(scene.pose[c].q_WC.angularDistance(scene.truth[c].q_WC)));
     }
-    TEST_ASSERT_TRUE(scene.pose[3].p_W == fixed);
+    TEST_ASSERT_SAME(fixed, scene.pose[3].p_W);
     for (int i = 0; i < kPoints; ++i)
       EXPECT_BELOW(5e-3, std::fabs(static_cast<double>(scene.rho[i] / scene.true_rho[i] - 1)));
   }

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "geometry/camera.h"
+#include "same.h"
 #include "support/numeric_jacobian.h"
 #include "support/test_cameras.h"
 #include "unity.h"
@@ -91,7 +92,8 @@ void test_projection_should_refuse_when_the_point_is_behind_the_camera_or_not_fi
     TEST_ASSERT_FALSE(project(camera, Vec3(0, 0, infinity), &pixel));
     TEST_ASSERT_FALSE(unproject(camera, Vec2(nan, 3), &ray));
     TEST_ASSERT_FALSE(unproject(camera, Vec2(3, infinity), &ray));
-    TEST_ASSERT_TRUE(pixel == Vec2(-7, -7) && ray == Vec3(-7, -7, -7));
+    TEST_ASSERT_SAME(Vec2(-7, -7), pixel);
+    TEST_ASSERT_SAME(Vec3(-7, -7, -7), ray);
     if (k != 2) TEST_ASSERT_FALSE(project(camera, Vec3(1, 0, Scalar(-0.1)), &pixel));
   }
 }

@@ -1,5 +1,6 @@
 // The ratio that most have in common: its median, its votes, and the best of the others.
 #include "geometry/common_ratio.h"
+#include "same.h"
 #include "unity.h"
 
 using namespace pf;
@@ -14,7 +15,7 @@ void test_the_ratio_of_most_should_be_found_in_any_order() {
   const CommonRatio common = find_common_ratio(ratios, 7, Scalar(1.06));
   TEST_ASSERT_EQUAL_INT(4, common.votes);
   TEST_ASSERT_EQUAL_INT(2, common.others);
-  TEST_ASSERT_TRUE(common.ratio == Scalar(1.02));
+  TEST_ASSERT_SAME(Scalar(1.02), common.ratio);
 }
 
 void test_the_others_should_not_share_votes_with_most() {
@@ -27,7 +28,7 @@ void test_the_others_should_not_share_votes_with_most() {
 void test_no_ratios_should_have_nothing_in_common() {
   const CommonRatio common = find_common_ratio(nullptr, 0, Scalar(1.06));
   TEST_ASSERT_EQUAL_INT(0, common.votes);
-  TEST_ASSERT_TRUE(common.ratio == Scalar(0));
+  TEST_ASSERT_SAME(Scalar(0), common.ratio);
 }
 
 }  // namespace

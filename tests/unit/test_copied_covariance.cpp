@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "api/copy.h"
+#include "same.h"
 #include "support/filter_cases.h"
 
 using namespace pf;
@@ -86,7 +87,7 @@ void test_two_sides_that_differ_should_become_their_mean() {
   repair_covariance(C, 3);
   TEST_ASSERT_EQUAL_DOUBLE(1 + 1e-9, C[1]);
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < i; ++j) TEST_ASSERT_TRUE(C[3 * i + j] == C[3 * j + i]);
+    for (int j = 0; j < i; ++j) TEST_ASSERT_SAME(C[3 * j + i], C[3 * i + j]);
 }
 
 void test_any_symmetric_numbers_should_become_a_covariance() {

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "covariance_cases.h"
+#include "same.h"
 #include "unity.h"
 
 namespace {
@@ -224,7 +225,7 @@ void test_augment_should_begin_a_state_when_the_triangle_is_empty() {
   kernels.augment(empty.P, J, noise);
   TEST_ASSERT_EQUAL_INT(3, empty.P.n);
   for (int a = 0; a < 3; ++a) {
-    for (int b = 0; b < 3; ++b) TEST_ASSERT_TRUE(empty.P(a, b) == noise[3 * a + b]);
+    for (int b = 0; b < 3; ++b) TEST_ASSERT_SAME(noise[3 * a + b], empty.P(a, b));
   }
   assert_padding_is_finite(empty.P);
 }
@@ -329,7 +330,7 @@ void test_remove_should_keep_the_other_rows_bit_for_bit_when_several_segments_go
     kernels.remove(r.P, gone.data(), static_cast<int>(gone.size()));
     TEST_ASSERT_EQUAL_INT(static_cast<int>(kept.size()), r.P.n);
     for (int a = 0; a < r.P.n; ++a) {
-      for (int b = 0; b <= a; ++b) TEST_ASSERT_TRUE(before(kept[a], kept[b]) == static_cast<double>(r.P(a, b)));
+      for (int b = 0; b <= a; ++b) TEST_ASSERT_SAME(static_cast<double>(r.P(a, b)), before(kept[a], kept[b]));
     }
     assert_padding_is_finite(r.P);
   }

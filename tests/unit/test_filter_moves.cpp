@@ -1,4 +1,5 @@
 // Predict, remove and convert against the dense formulas, on small maps.
+#include "same.h"
 #include "support/filter_scene.h"
 
 using namespace pf;
@@ -38,7 +39,7 @@ void test_remove_should_leave_the_covariance_of_what_stays() {
     const Dense expected = select(before, rows_left(scene.filter.dim(), first));
     scene.filter->remove(gone, 3);
     TEST_ASSERT_EQUAL_INT(before.rows() - 9, scene.filter.dim());
-    TEST_ASSERT_TRUE(largest(scene.filter.P() - expected) == 0);
+    TEST_ASSERT_SAME(0, largest(scene.filter.P() - expected));
   }
 }
 
@@ -55,8 +56,8 @@ void test_an_anchor_should_go_with_the_last_feature_that_needs_it() {
   }
   const Dense expected = select(scene.filter.P(), rows_left(scene.filter.dim(), first));
   scene.filter->remove(gone.data(), static_cast<int>(gone.size()));
-  TEST_ASSERT_TRUE(state.block[anchor].kind == BlockKind::kNone);
-  TEST_ASSERT_TRUE(largest(scene.filter.P() - expected) == 0);
+  TEST_ASSERT_SAME(BlockKind::kNone, state.block[anchor].kind);
+  TEST_ASSERT_SAME(0, largest(scene.filter.P() - expected));
   PixelMeasurement o;  // the others are where they say that they are
   for (const int slot : scene.slots)
     if (state.block[slot].kind != BlockKind::kNone)
@@ -80,7 +81,7 @@ void test_conversion_should_leave_the_covariance_that_its_jacobians_say() {
     const Dense expected = F * scene.filter.P() * F.transpose();
     const Vec3 f_W = state.block[block.parent].xyz() + R.col(2) / d.rho;
     scene.filter->convert_to_point(slot);
-    TEST_ASSERT_TRUE(state.block[slot].kind == BlockKind::kPoint);
+    TEST_ASSERT_SAME(BlockKind::kPoint, state.block[slot].kind);
     TEST_ASSERT_TRUE((state.block[slot].xyz() - f_W).norm() < Scalar(1e-12));
     TEST_ASSERT_TRUE(difference(scene.filter.P(), expected) < kExact);
   }

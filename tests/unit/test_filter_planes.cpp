@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "filter/plane_from_camera.h"
+#include "same.h"
 #include "support/plane_scene.h"
 
 using namespace pf;
@@ -357,7 +358,7 @@ void test_rows_of_a_plane_seen_from_the_camera_should_not_see_what_both_share() 
     std::vector<Scalar> dx(static_cast<std::size_t>(scene.filter.dim()), Scalar(0));
     dx[static_cast<std::size_t>(k)] = static_cast<Scalar>(step);
     for (int i = 0; i < 3; ++i) {
-      TEST_ASSERT_TRUE(J.h[9 * i + i] == 1);
+      TEST_ASSERT_SAME(1, J.h[9 * i + i]);
       dx[static_cast<std::size_t>(p + i)] = -static_cast<Scalar>(step) * J.h[9 * i + 3 + k];
     }
     const Eigen::Vector4d before = seen();
@@ -410,7 +411,7 @@ void test_taking_back_a_prior_should_leave_what_a_wider_one_would_have_given() {
   // What is tighter than the plane is now was never its prior.
   const Dense tight = Ppp / 2;
   TEST_ASSERT_FALSE(scene.filter->forget_prior(scene.plane, tight.cast<Scalar>(), Scalar(w)));
-  TEST_ASSERT_TRUE((scene.filter.P() - after).cwiseAbs().maxCoeff() == 0);
+  TEST_ASSERT_SAME(0, (scene.filter.P() - after).cwiseAbs().maxCoeff());
 }
 
 /// The scale may hang on two points of two planes, which fills its row; an inverse depth against it needs room for one column more.

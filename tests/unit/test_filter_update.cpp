@@ -1,4 +1,5 @@
 // The filter's update against the dense formulas of the textbook, on small maps.
+#include "same.h"
 #include "support/filter_scene.h"
 
 using namespace pf;
@@ -53,7 +54,7 @@ void check_state(const State& before, const TestFilter& filter, const std::vecto
   for (int s = 0; s < after.slots; ++s) {
     const Block& old = blocks[static_cast<std::size_t>(s)];
     const Block& now = after.block[s];
-    TEST_ASSERT_TRUE(old.kind == now.kind);
+    TEST_ASSERT_SAME(now.kind, old.kind);
     if (old.kind == BlockKind::kNone) continue;
     const Vec3 e = dx.segment(filter.first(s), 3).cast<Scalar>();
     if (old.kind != BlockKind::kInverseDepth) {
@@ -128,7 +129,7 @@ void test_update_should_be_schmidts_when_only_the_map_is_estimated() {
     const int body = scene.filter->state().layout.rows();
     scene.filter->estimate_map_only(true);
     check_update(scene, nullptr, true, 0, body);
-    TEST_ASSERT_TRUE(difference(scene.filter.P().topLeftCorner(body, body), before.topLeftCorner(body, body)) == 0);
+    TEST_ASSERT_SAME(0, difference(scene.filter.P().topLeftCorner(body, body), before.topLeftCorner(body, body)));
   }
 }
 
@@ -193,7 +194,7 @@ void test_update_should_change_nothing_when_the_innovation_cannot_be_factored() 
     scene.filter->begin_update(scene.observations.data(), scene.count());
     Scalar nis = -1;
     TEST_ASSERT_FALSE(scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, &nis));
-    TEST_ASSERT_TRUE(nis == Scalar(-1));
+    TEST_ASSERT_SAME(Scalar(-1), nis);
     const std::vector<Scalar> after = bits_of(scene.filter);
     TEST_ASSERT_EQUAL_MEMORY(before.data(), after.data(), before.size() * sizeof(Scalar));
   }

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "same.h"
 #include "support/seeded_random.h"
 #include "unity.h"
 #include "vision/fingerprint.h"
@@ -34,7 +35,7 @@ void test_fingerprint_should_change_with_each_pixel_and_with_the_size() {
         TEST_ASSERT_TRUE(fingerprint(image) != before);
         pixel = static_cast<std::uint8_t>(pixel ^ 1);
       }
-    TEST_ASSERT_TRUE(fingerprint(image) == before);
+    TEST_ASSERT_SAME(before, fingerprint(image));
     TEST_ASSERT_TRUE(fingerprint({pixels.data(), width - 1, height, kStride}) != before);
     TEST_ASSERT_TRUE(fingerprint({pixels.data(), width, height - 1, kStride}) != before);
   }
@@ -45,7 +46,7 @@ void test_fingerprint_should_not_depend_on_what_lies_between_the_rows() {
   const std::uint64_t before = fingerprint({pixels.data(), 45, 9, 64});
   for (int y = 0; y < 9; ++y)
     for (int x = 45; x < 64; ++x) pixels[static_cast<std::size_t>(y * 64 + x)] = 0;
-  TEST_ASSERT_TRUE(fingerprint({pixels.data(), 45, 9, 64}) == before);
+  TEST_ASSERT_SAME(before, fingerprint({pixels.data(), 45, 9, 64}));
 }
 
 void test_fingerprint_should_see_when_rows_change_places() {

@@ -2,6 +2,7 @@
 #include "base/eigen.h"
 // The program's source comes after the library's door to Eigen, which sets it up, and is taken in whole.
 #include "../../tools/pf-sim/gee2007/ekf.cpp"
+#include "same.h"
 #include "support/seeded_random.h"
 #include "unity.h"
 
@@ -45,7 +46,8 @@ struct Filled {
 };
 
 void assert_equal(const MatX& a, const MatX& b) {
-  TEST_ASSERT_TRUE(a.rows() == b.rows() && a.cols() == b.cols());
+  TEST_ASSERT_SAME(b.rows(), a.rows());
+  TEST_ASSERT_SAME(b.cols(), a.cols());
   TEST_ASSERT_TRUE((a - b).cwiseAbs().maxCoeff() < 1e-9 * (1 + b.cwiseAbs().maxCoeff()));
 }
 
@@ -80,7 +82,7 @@ void test_update_should_change_nothing_when_a_residual_is_no_number() {
   Filled f(random);
   const MatX P = f.dense();
   TEST_ASSERT_FALSE(f.ekf.update({{Vec2(std::nan(""), 0), {{f.block[0], draw(random, 2, 7)}}}}, 1));
-  TEST_ASSERT_TRUE(f.dense() == P);
+  TEST_ASSERT_SAME(P, f.dense());
 }
 
 void test_transform_should_equal_the_plain_formula_when_the_block_lies_between_others() {
@@ -102,7 +104,8 @@ void test_transform_should_equal_the_plain_formula_when_the_block_lies_between_o
       got.block(at, to, sizes[a], sizes[b]) = f.ekf.covariance(f.block[a], f.block[b]);
   assert_equal(got, expected);
   TEST_ASSERT_EQUAL_INT(16, f.ekf.dimension());
-  TEST_ASSERT_TRUE(f.ekf.value(f.block[1]) == value && f.ekf.value(f.block[3]) == last);
+  TEST_ASSERT_SAME(value, f.ekf.value(f.block[1]));
+  TEST_ASSERT_SAME(last, f.ekf.value(f.block[3]));
 }
 
 void test_map_first_should_equal_the_plain_formula() {

@@ -1,5 +1,6 @@
 // How a camera has turned between two images: against the rotation by which one was rendered from the other.
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/filter_cases.h"
 #include "support/panorama.h"
 #include "support/test_cameras.h"
@@ -55,7 +56,7 @@ void test_no_turn_should_be_found_between_other_places_or_without_content() {
   TEST_ASSERT_FALSE(find_rotation(camera, here, elsewhere.thumbnail(camera, q), &found));
   TEST_ASSERT_FALSE(find_rotation(camera, flat, here, &found));
   TEST_ASSERT_FALSE(find_rotation(camera, here, flat, &found));
-  TEST_ASSERT_TRUE(found.w() == Scalar(0.5));
+  TEST_ASSERT_SAME(Scalar(0.5), found.w());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Samples between two times: ends between samples, samples that are late, missing or not there at all.
 #include "filter/imu_path.h"
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/textured_images.h"
 #include "unity.h"
 
@@ -42,7 +43,7 @@ struct Path {
 void test_ends_between_samples_should_be_on_the_line_between_them() {
   Path path;
   for (int k = 0; k < 40; ++k) path.add(k, Scalar(2));
-  TEST_ASSERT_TRUE(path.integrate(21500000, 57200000) == Scalar(0));
+  TEST_ASSERT_SAME(Scalar(0), path.integrate(21500000, 57200000));
   const Scalar a = Scalar(0.0215), b = Scalar(0.0572);
   TEST_ASSERT_TRUE(std::abs(path.sum.dt() - (b - a)) < kNear);
   // All rotations are about one axis: the angle is the integral of 1 + 2 t.
@@ -69,7 +70,7 @@ void test_a_frame_behind_the_last_sample_should_go_on_along_the_last_two() {
   Path path;
   for (int k = 0; k < 40; ++k) path.add(k, Scalar(2));
   const std::int64_t to_ns = 39 * kIntervalNs + 4000000;
-  TEST_ASSERT_TRUE(path.integrate(20 * kIntervalNs, to_ns) == Scalar(0));
+  TEST_ASSERT_SAME(Scalar(0), path.integrate(20 * kIntervalNs, to_ns));
   const Scalar b = Scalar(0.199);
   TEST_ASSERT_TRUE((path.end.gyro - kRate * (1 + 2 * b)).norm() < Scalar(10) * kNear);
 }
@@ -81,7 +82,7 @@ void test_a_frame_far_behind_the_last_sample_should_coast() {
   const std::int64_t to_ns = 39 * kIntervalNs + 50000000;
   const Scalar coasted = path.integrate(20 * kIntervalNs, to_ns);
   TEST_ASSERT_TRUE(std::abs(coasted - Scalar(0.0425)) < Scalar(1e-6));
-  TEST_ASSERT_TRUE(there.integrate(20 * kIntervalNs, to_ns) == Scalar(0));
+  TEST_ASSERT_SAME(Scalar(0), there.integrate(20 * kIntervalNs, to_ns));
   // The rate goes on, and is far less certain.
   TEST_ASSERT_TRUE((path.sum.R() - there.sum.R()).norm() < Scalar(1e-4));
   TEST_ASSERT_TRUE(path.sum.covariance()(0, 0) > 100 * there.sum.covariance()(0, 0));
@@ -93,8 +94,8 @@ void test_missing_samples_should_be_bridged_with_more_noise() {
     whole.add(k);
     if (k < 20 || k >= 28) gap.add(k);
   }
-  TEST_ASSERT_TRUE(whole.integrate(10 * kIntervalNs, 35 * kIntervalNs) == Scalar(0));
-  TEST_ASSERT_TRUE(gap.integrate(10 * kIntervalNs, 35 * kIntervalNs) == Scalar(0));
+  TEST_ASSERT_SAME(Scalar(0), whole.integrate(10 * kIntervalNs, 35 * kIntervalNs));
+  TEST_ASSERT_SAME(Scalar(0), gap.integrate(10 * kIntervalNs, 35 * kIntervalNs));
   TEST_ASSERT_TRUE((whole.sum.R() - gap.sum.R()).norm() < Scalar(1e-4));
   for (int i = 0; i < 9; ++i) TEST_ASSERT_TRUE(gap.sum.covariance()(i, i) > 2 * whole.sum.covariance()(i, i));
 }
@@ -122,7 +123,7 @@ void test_samples_on_both_sides_of_a_jump_of_the_clock_should_be_coasted_between
       const std::int64_t t_ns = k * kIntervalNs + shift_ns;
       jump.log.add({t_ns, {kRate.x(), kRate.y(), kRate.z()}, {kForce.x(), kForce.y(), kForce.z()}});
     }
-    TEST_ASSERT_TRUE(jump.integrate(10 * kIntervalNs, 90 * kIntervalNs + shift_ns) == Scalar(2));
+    TEST_ASSERT_SAME(Scalar(2), jump.integrate(10 * kIntervalNs, 90 * kIntervalNs + shift_ns));
     TEST_ASSERT_TRUE(jump.sum.dt() < Scalar(2.5));
     TEST_ASSERT_TRUE((jump.end.gyro - kRate).norm() < Scalar(10) * kNear);
     for (int i = 0; i < 9; ++i) TEST_ASSERT_TRUE(jump.sum.covariance()(i, i) < 1000);  // that of 2 s, and what follows

@@ -70,6 +70,15 @@ struct Matches {
   PixelMeasurement& at(int i) { return observation[static_cast<std::size_t>(i)]; }
   int count() const { return static_cast<int>(observation.size()); }
 
+  /// Of the kept ones' S.
+  double log_det(const std::vector<unsigned char>& keep) {
+    std::vector<int> rows;
+    for (int i = 0; i < count(); ++i)
+      if (keep[static_cast<std::size_t>(i)] != 0) rows.insert(rows.end(), {2 * i, 2 * i + 1});
+    const Dense L = lower_factor(S(rows, rows));
+    return 2 * L.diagonal().array().log().sum();
+  }
+
   /// Innovation and covariance of match `left` (none: -1) given the other kept ones, by a solution of its own.
   double distance(int left, const std::vector<unsigned char>& keep) {
     std::vector<int> rows;
@@ -111,12 +120,13 @@ void test_rejection_should_be_that_of_one_match_at_a_time_by_brute_force() {
       expected[static_cast<std::size_t>(worst)] = 0;
       ++rejected;
     }
-    Scalar nis = -1;
-    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
+    JointFit fit;
+    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &fit));
     for (int i = 0; i < m.count(); ++i)
       TEST_ASSERT_EQUAL_INT(expected[static_cast<std::size_t>(i)], keep[static_cast<std::size_t>(i)]);
     const double exact = m.distance(-1, expected);
-    TEST_ASSERT_TRUE(std::fabs(static_cast<double>(nis) - exact) < kTolerance * (1 + exact));
+    TEST_ASSERT_TRUE(std::fabs(static_cast<double>(fit.nis) - exact) < kTolerance * (1 + exact));
+    TEST_ASSERT_DOUBLE_WITHIN(kTolerance * 100, m.log_det(expected), static_cast<double>(fit.log_det));
   }
   std::printf("%d rejected\n", rejected);
   TEST_ASSERT_GREATER_THAN_INT(20, rejected);
@@ -130,11 +140,11 @@ void test_matches_should_be_kept_as_the_gate_says_when_all_are_right() {
   for (int trial = 0; trial < 100; ++trial) {
     Matches m(random, 12, 8);
     std::vector<unsigned char> keep(static_cast<std::size_t>(m.count()), 1);
-    Scalar nis;
-    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
+    JointFit fit;
+    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &fit));
     for (const unsigned char k : keep) kept += k;
     all += m.count();
-    nis_sum += static_cast<double>(nis);
+    nis_sum += static_cast<double>(fit.nis);
   }
   std::printf("kept %.4f, NIS per degree of freedom %.3f\n", kept / double(all), nis_sum / (2 * kept));
   TEST_ASSERT_TRUE(kept >= 0.997 * all);
@@ -157,8 +167,8 @@ void test_a_moving_feature_should_be_rejected_when_its_depth_is_open() {
     o.measured += 3 * Vec2(-along.y(), along.x());
     within += squared_distance(o.measured - o.predicted, m.S.block<2, 2>(2 * young, 2 * young).cast<Scalar>()) < kGate;
     std::vector<unsigned char> keep(static_cast<std::size_t>(m.count()), 1);
-    Scalar nis;
-    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
+    JointFit fit;
+    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &fit));
     caught += 1 - keep[static_cast<std::size_t>(young)];
     for (int i = 0; i < young; ++i) kept += keep[static_cast<std::size_t>(i)];
   }
@@ -180,10 +190,10 @@ void test_a_group_of_young_features_should_be_rejected_when_the_older_ones_contr
   for (int trial = 0; trial < kTrials; ++trial) {
     Matches m(random, kPoints, kYoung, true);
     const std::vector<unsigned char> all(kAll, 1);
-    Scalar nis;
+    JointFit fit;
     std::vector<unsigned char> keep = all;
     TEST_ASSERT_TRUE(
-        tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {ages, 8}, keep.data(), &nis));
+        tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {ages, 8}, keep.data(), &fit));
     for (int i = kPoints; i < kAll; ++i) still += keep[static_cast<std::size_t>(i)];
     for (int i = kPoints; i < kAll; ++i) {
       const int columns = m.at(i).H.columns();
@@ -191,14 +201,15 @@ void test_a_group_of_young_features_should_be_rejected_when_the_older_ones_contr
       m.at(i).measured += Scalar(1.2) * Vec2(-along.y(), along.x());
     }
     keep = all;
-    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
+    TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &fit));
     for (int i = kPoints; i < kAll; ++i) alone += keep[static_cast<std::size_t>(i)];
     keep = all;
     TEST_ASSERT_TRUE(
-        tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {ages, 8}, keep.data(), &nis));
+        tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {ages, 8}, keep.data(), &fit));
     const std::vector<unsigned char> left = keep;
     const double exact = m.distance(-1, left);
-    TEST_ASSERT_TRUE(std::fabs(static_cast<double>(nis) - exact) < kTolerance * (1 + exact));
+    TEST_ASSERT_TRUE(std::fabs(static_cast<double>(fit.nis) - exact) < kTolerance * (1 + exact));
+    TEST_ASSERT_DOUBLE_WITHIN(kTolerance * 100, m.log_det(left), static_cast<double>(fit.log_det));
     for (int i = 0; i < kAll; ++i) (i < kPoints ? older : group) += keep[static_cast<std::size_t>(i)];
   }
   std::printf(
@@ -215,14 +226,14 @@ void test_nothing_should_change_when_there_is_nothing_to_test() {
   Tester tester;
   Matches m(random, 5, 0);
   std::vector<unsigned char> keep(5, 0);
-  Scalar nis = 7;
-  TEST_ASSERT_FALSE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
-  TEST_ASSERT_TRUE(nis == Scalar(7));
+  JointFit fit = {7, 8};
+  TEST_ASSERT_FALSE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &fit));
+  TEST_ASSERT_TRUE(fit.nis == Scalar(7) && fit.log_det == Scalar(8));
   keep[2] = 1;  // one match has no others: its own ellipse
   m.at(2).measured = m.at(2).predicted + Vec2(Scalar(1000), Scalar(0));
-  TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &nis));
+  TEST_ASSERT_TRUE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &fit));
   TEST_ASSERT_EQUAL_INT(0, keep[2]);
-  TEST_ASSERT_TRUE(nis >= Scalar(0) && nis < Scalar(1e-3));
+  TEST_ASSERT_TRUE(fit.nis >= Scalar(0) && fit.nis < Scalar(1e-3));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "frame/noise_model.h"
 #include "frame/tuning.h"
+#include "same.h"
 #include "support/seeded_random.h"
 #include "unity.h"
 
@@ -92,7 +93,7 @@ void test_correlation_should_stay_at_its_prior_when_no_match_has_a_trace() {
       noise.learn(frame, Vec2(Scalar(0.3), 0), noise.match(kFit, Scalar(1)), Scalar(0), nullptr);
     noise.end_frame();
   }
-  TEST_ASSERT_TRUE(noise.correlation_frames() == tuning::noise::kPriorFrames);
+  TEST_ASSERT_SAME(tuning::noise::kPriorFrames, noise.correlation_frames());
   TEST_ASSERT_TRUE(noise.sigma_gate() > Scalar(0.15));
 }
 

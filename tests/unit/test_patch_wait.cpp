@@ -1,4 +1,5 @@
 // Which plane a patch lies on: only one that passes is joined, two wait, and where none passes it founds one or is given up.
+#include "same.h"
 #include "track/patch_wait.h"
 #include "track/tuning.h"
 #include "unity.h"
@@ -37,11 +38,11 @@ void test_the_only_plane_that_passes_should_be_joined_when_there_is_parallax() {
   PatchWait wait = begun();
   std::uint32_t joined = 0;
   for (int frame = 0; frame < 10; ++frame)
-    TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}}, false, &joined) == WaitVerdict::kWait);
+    TEST_ASSERT_SAME(WaitVerdict::kWait, see(&wait, {{7, true, kUnder}}, false, &joined));
   TEST_ASSERT_TRUE(wait.passes(7) && !wait.passes(8));
   for (int frame = 1; frame < kPersist; ++frame)
-    TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}}, true, &joined) == WaitVerdict::kWait);
-  TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}}, true, &joined) == WaitVerdict::kJoin);
+    TEST_ASSERT_SAME(WaitVerdict::kWait, see(&wait, {{7, true, kUnder}}, true, &joined));
+  TEST_ASSERT_SAME(WaitVerdict::kJoin, see(&wait, {{7, true, kUnder}}, true, &joined));
   TEST_ASSERT_EQUAL_UINT32(7, joined);
 }
 
@@ -60,26 +61,26 @@ void test_frames_that_do_not_count_should_not_let_it_join_without_parallax() {
   for (int frame = 0; frame < 3 * kMaxFrames; ++frame) {
     wait.begin_frame(false);
     wait.try_plane(7, true, kUnder, kGate);
-    TEST_ASSERT_TRUE(wait.decide(false, &joined) == WaitVerdict::kWait);
+    TEST_ASSERT_SAME(WaitVerdict::kWait, wait.decide(false, &joined));
   }
   for (int frame = 1; frame < kPersist; ++frame)
-    TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}}, true, &joined) == WaitVerdict::kWait);
-  TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}}, true, &joined) == WaitVerdict::kJoin);
+    TEST_ASSERT_SAME(WaitVerdict::kWait, see(&wait, {{7, true, kUnder}}, true, &joined));
+  TEST_ASSERT_SAME(WaitVerdict::kJoin, see(&wait, {{7, true, kUnder}}, true, &joined));
 }
 
 void test_two_walls_that_pass_should_wait_until_one_of_them_does_not() {
   PatchWait wait = begun();
   std::uint32_t joined = 0;
   for (int frame = 0; frame < 3 * kMaxFrames; ++frame)
-    TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}, {8, true, kUnder + 1}}, true, &joined) == WaitVerdict::kWait);
+    TEST_ASSERT_SAME(WaitVerdict::kWait, see(&wait, {{7, true, kUnder}, {8, true, kUnder + 1}}, true, &joined));
   TEST_ASSERT_EQUAL_INT(2, wait.open());
   TEST_ASSERT_EQUAL_UINT32(7, wait.likely());
   // A single frame says nothing.
-  TEST_ASSERT_TRUE(see(&wait, {{7, true, kOver}, {8, true, kUnder}}, true, &joined) == WaitVerdict::kWait);
-  TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}, {8, true, kUnder}}, true, &joined) == WaitVerdict::kWait);
+  TEST_ASSERT_SAME(WaitVerdict::kWait, see(&wait, {{7, true, kOver}, {8, true, kUnder}}, true, &joined));
+  TEST_ASSERT_SAME(WaitVerdict::kWait, see(&wait, {{7, true, kUnder}, {8, true, kUnder}}, true, &joined));
   for (int frame = 1; frame < kPersist; ++frame)
-    TEST_ASSERT_TRUE(see(&wait, {{7, true, kOver}, {8, true, kUnder}}, true, &joined) == WaitVerdict::kWait);
-  TEST_ASSERT_TRUE(see(&wait, {{7, true, kOver}, {8, true, kUnder}}, true, &joined) == WaitVerdict::kJoin);
+    TEST_ASSERT_SAME(WaitVerdict::kWait, see(&wait, {{7, true, kOver}, {8, true, kUnder}}, true, &joined));
+  TEST_ASSERT_SAME(WaitVerdict::kJoin, see(&wait, {{7, true, kOver}, {8, true, kUnder}}, true, &joined));
   TEST_ASSERT_EQUAL_UINT32(8, joined);
 }
 
@@ -96,8 +97,8 @@ void test_a_plane_that_is_gone_should_not_be_waited_for() {
   PatchWait wait = begun();
   std::uint32_t joined = 0;
   for (int frame = 0; frame < kPersist; ++frame)
-    TEST_ASSERT_TRUE(see(&wait, {{7, true, kUnder}, {8, true, kUnder}}, true, &joined) == WaitVerdict::kWait);
-  TEST_ASSERT_TRUE(see(&wait, {{8, true, kUnder}}, true, &joined) == WaitVerdict::kJoin);
+    TEST_ASSERT_SAME(WaitVerdict::kWait, see(&wait, {{7, true, kUnder}, {8, true, kUnder}}, true, &joined));
+  TEST_ASSERT_SAME(WaitVerdict::kJoin, see(&wait, {{8, true, kUnder}}, true, &joined));
   TEST_ASSERT_EQUAL_UINT32(8, joined);
 }
 
@@ -112,7 +113,7 @@ void test_a_patch_that_nothing_explains_should_found_a_plane_only_with_parallax(
       TEST_ASSERT_EQUAL_INT(frames + 1, wait.frames_without());
     }
     TEST_ASSERT_EQUAL_INT(kMaxFrames, frames);
-    TEST_ASSERT_TRUE(verdict == (has_parallax ? WaitVerdict::kFound : WaitVerdict::kGiveUp));
+    TEST_ASSERT_SAME((has_parallax ? WaitVerdict::kFound : WaitVerdict::kGiveUp), verdict);
     TEST_ASSERT_EQUAL_UINT32(0, joined);
   }
 }
@@ -124,7 +125,7 @@ void test_more_planes_than_there_is_room_for_should_be_left_out() {
     wait.begin_frame();
     for (std::uint32_t plane = 1; plane <= 2 * PatchWait::kMaxTrials; ++plane)
       wait.try_plane(plane, true, kUnder, kGate);
-    TEST_ASSERT_TRUE(wait.decide(true, &joined) == WaitVerdict::kWait);
+    TEST_ASSERT_SAME(WaitVerdict::kWait, wait.decide(true, &joined));
   }
   TEST_ASSERT_EQUAL_INT(PatchWait::kMaxTrials, wait.open());
 }

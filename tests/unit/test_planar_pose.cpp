@@ -6,6 +6,7 @@
 #include "geometry/planar_pose.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
 #include "unity.h"
@@ -160,7 +161,8 @@ void test_pose_should_be_refused_when_the_input_makes_no_sense() {
   TEST_ASSERT_FALSE(rectangle_pose(camera, -kWidth, kHeight, good, 1, &estimate, &second));
   TEST_ASSERT_FALSE(rectangle_pose(camera, nan, kHeight, good, 1, &estimate, &second));
   TEST_ASSERT_FALSE(rectangle_pose(camera, kMost, kMost, good, 1, &estimate, &second));
-  TEST_ASSERT_TRUE(second == Scalar(-7) && estimate.p_WC == Vec3::Zero());
+  TEST_ASSERT_SAME(Scalar(-7), second);
+  TEST_ASSERT_SAME(Vec3::Zero(), estimate.p_WC);
   Vec3 points[4];
   rectangle_points(kWidth, kHeight, points);
   TEST_ASSERT_FALSE(refine_pose(camera, points, good, 2, 1, &estimate));

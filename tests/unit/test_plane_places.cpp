@@ -1,4 +1,5 @@
 // Folded points whose pixels say that they lie elsewhere leave their plane, and it turns to where the others are.
+#include "same.h"
 #include "support/plane_keeper_bench.h"
 
 using namespace pf;
@@ -91,7 +92,7 @@ void test_points_should_leave_the_plane_that_they_do_not_lie_on() {
     Table table(random, 3, 1);
     for (int k = 0; k <= 60 && table.map.planes[0].outliers == 0; ++k)
       table.see(Scalar(0.008) * static_cast<Scalar>(k), random, 0.1);
-    for (int i = 0; i < kPoints; ++i) TEST_ASSERT_TRUE(table.is_folded(i) == (i >= 3));
+    for (int i = 0; i < kPoints; ++i) TEST_ASSERT_SAME((i >= 3), table.is_folded(i));
     std::printf("%.2f degrees then\n", table.tilt_deg());
     TEST_ASSERT_TRUE(table.tilt_deg() < 1);
     for (int i = 0; i < 3; ++i)

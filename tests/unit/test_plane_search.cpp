@@ -6,6 +6,7 @@
 
 #include "base/false_alarms.h"
 #include "map/plane_search.h"
+#include "same.h"
 #include "support/seeded_random.h"
 #include "unity.h"
 
@@ -147,7 +148,7 @@ void test_search_should_keep_to_one_group_when_two_lie_in_the_same_plane_far_apa
   }
   const Found found(points, PlaneSearchSettings{});
   TEST_ASSERT_TRUE(found.any);
-  for (int k = 0; k < found.count; ++k) TEST_ASSERT_TRUE((found.members[k] < 14) == (found.members[0] < 14));
+  for (int k = 0; k < found.count; ++k) TEST_ASSERT_SAME((found.members[0] < 14), (found.members[k] < 14));
 }
 
 void test_search_should_need_more_points_than_the_least_when_they_are_few() {
@@ -176,8 +177,11 @@ void test_search_should_answer_the_same_when_the_seed_is_the_same() {
   add_wall(random, 20, &points);
   for (int i = 0; i < 30; ++i) points.push_back(candidate(random.normals<3>(0.5)));
   const Found a(points, PlaneSearchSettings{}, 0), b(points, PlaneSearchSettings{}, 0);
-  TEST_ASSERT_TRUE(a.any && b.any && a.count == b.count);
-  TEST_ASSERT_TRUE(a.fit.frame.R_WP == b.fit.frame.R_WP && a.fit.frame.o_W == b.fit.frame.o_W);
+  TEST_ASSERT_TRUE(a.any);
+  TEST_ASSERT_TRUE(b.any);
+  TEST_ASSERT_SAME(b.count, a.count);
+  TEST_ASSERT_SAME(b.fit.frame.R_WP, a.fit.frame.R_WP);
+  TEST_ASSERT_SAME(b.fit.frame.o_W, a.fit.frame.o_W);
   TEST_ASSERT_EQUAL_INT(0, std::memcmp(a.members, b.members, sizeof(int) * static_cast<std::size_t>(a.count)));
 }
 
@@ -241,7 +245,7 @@ void test_false_planes_should_be_counted_as_by_hand_when_numbers_are_small() {
   // All of 8: share^5.
   const Scalar all = static_cast<Scalar>(std::log(std::pow(0.05, 5) * 56));
   TEST_ASSERT_TRUE(std::abs(log_false_alarms(8, 8, Scalar(0.05), 8) - all) < 100 * tolerance);
-  TEST_ASSERT_TRUE(log_false_alarms(3, 8, Scalar(0.05), 8) == 0);
+  TEST_ASSERT_SAME(0, log_false_alarms(3, 8, Scalar(0.05), 8));
 }
 
 }  // namespace

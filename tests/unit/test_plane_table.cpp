@@ -1,5 +1,6 @@
 // When a map begins again from a record of its first frames, walls of the plan stay as they came, and planes that were found go.
 #include "map/plane_table.h"
+#include "same.h"
 #include "support/textured_images.h"
 #include "unity.h"
 
@@ -41,13 +42,18 @@ void test_walls_should_be_kept_as_the_plan_has_them() {
   TEST_ASSERT_EQUAL_UINT32(0, planes.find(77));
   const PlaneEntry& kept = planes[wall];
   TEST_ASSERT_EQUAL_UINT32(id, kept.id);
-  TEST_ASSERT_TRUE(kept.known && kept.two_sided && kept.roughness == Scalar(0.02));
-  TEST_ASSERT_TRUE(kept.seen.uv[1].x() == Scalar(1) && kept.support.uv[1].x() == Scalar(1));
+  TEST_ASSERT_TRUE(kept.known);
+  TEST_ASSERT_TRUE(kept.two_sided);
+  TEST_ASSERT_SAME(Scalar(0.02), kept.roughness);
+  TEST_ASSERT_SAME(Scalar(1), kept.seen.uv[1].x());
+  TEST_ASSERT_SAME(Scalar(1), kept.support.uv[1].x());
   TEST_ASSERT_EQUAL_INT(0, kept.refused);
   TEST_ASSERT_EQUAL_INT(0, kept.age);
   const Mat3 covariance = kept.prior_covariance();
-  TEST_ASSERT_TRUE(covariance(0, 0) == Scalar(0.25) && covariance(2, 2) == Scalar(0.25));
-  TEST_ASSERT_TRUE(covariance(0, 1) == Scalar(0.1) && covariance(1, 0) == Scalar(0.1));
+  TEST_ASSERT_SAME(Scalar(0.25), covariance(0, 0));
+  TEST_ASSERT_SAME(Scalar(0.25), covariance(2, 2));
+  TEST_ASSERT_SAME(Scalar(0.1), covariance(0, 1));
+  TEST_ASSERT_SAME(Scalar(0.1), covariance(1, 0));
   // Ids are not used twice.
   TEST_ASSERT_TRUE(planes[planes.add(9)].id > id);
 }

@@ -1,5 +1,6 @@
 // Features that began on a plane because their corner lies in its outline: what makes them believed, and what makes them go.
 #include "filter_slam/planes/plane_trials.h"
+#include "same.h"
 #include "support/plane_keeper_bench.h"
 
 using namespace pf;
@@ -35,7 +36,7 @@ struct Bench : PlaneKeeperBench {
     wall.outline.count = 4;
     for (int c = 0; c < 4; ++c) wall.outline.uv[c] = corners[c];
     std::uint32_t id = 0;
-    TEST_ASSERT_TRUE(planes.add_wall(wall, 0, false, 0, &id) == Status::kOk);
+    TEST_ASSERT_SAME(Status::kOk, planes.add_wall(wall, 0, false, 0, &id));
     for (int i = 0; i < map.planes.capacity(); ++i)
       if (map.planes.used(i)) return map.planes[i].slot;
     return -1;

@@ -7,6 +7,7 @@
 #include "geometry/pnp.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/seeded_random.h"
 #include "support/test_cameras.h"
 #include "unity.h"
@@ -236,7 +237,8 @@ void test_find_pose_should_say_so_when_nothing_agrees() {
     if (find_pose(camera, points, kPoints, kSearch, &seed, &pose, inliers) != 0)
       ++found;
     else
-      TEST_ASSERT_TRUE(pose.p_WC == Vec3::Zero() && pose.q_WC.w() == Scalar(1));
+      TEST_ASSERT_SAME(Vec3::Zero(), pose.p_WC);
+    TEST_ASSERT_SAME(Scalar(1), pose.q_WC.w());
   }
   TEST_ASSERT_EQUAL_INT(0, found);
   std::uint32_t seed = 1;
@@ -256,7 +258,8 @@ void test_find_pose_should_repeat_itself_for_the_same_seed() {
     std::uint32_t seed = 7;
     TEST_ASSERT_GREATER_THAN_INT(0, find_pose(camera, points, kPoints, kSearch, &seed, &p, inliers));
   }
-  TEST_ASSERT_TRUE(pose[0].p_WC == pose[1].p_WC && pose[0].q_WC.coeffs() == pose[1].q_WC.coeffs());
+  TEST_ASSERT_SAME(pose[1].p_WC, pose[0].p_WC);
+  TEST_ASSERT_SAME(pose[1].q_WC.coeffs(), pose[0].q_WC.coeffs());
 }
 
 void test_refine_pnp_should_refuse_what_fixes_no_pose() {
@@ -270,7 +273,7 @@ void test_refine_pnp_should_refuse_what_fixes_no_pose() {
   TEST_ASSERT_FALSE(refine_pnp(camera, points, kPoints, two, options, &pose));
   for (PnpPoint& p : points) p.w = Scalar(0);  // directions alone say nothing of the position
   TEST_ASSERT_FALSE(refine_pnp(camera, points, kPoints, nullptr, options, &pose));
-  TEST_ASSERT_TRUE(pose.p_WC == before.p_WC);
+  TEST_ASSERT_SAME(before.p_WC, pose.p_WC);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // A pose from matches with known points of which half are wrong, and what the prior does where matches say little.
 #include "filter_slam/recovery/pose_proposal.h"
+#include "same.h"
 #include "support/filter_scene.h"
 
 using namespace pf;
@@ -48,7 +49,8 @@ void test_pose_should_be_found_when_half_of_the_matches_are_wrong() {
     TEST_ASSERT_GREATER_OR_EQUAL_INT(kCount / 2 - 1, inliers);
     TEST_ASSERT_LESS_OR_EQUAL_INT(kCount / 2 + 3, inliers);
     TEST_ASSERT_TRUE(error(pose, m.truth) < Scalar(0.02));
-    TEST_ASSERT_TRUE(pose.v_W == m.prior.v_W && pose.w_C == m.prior.w_C);
+    TEST_ASSERT_SAME(m.prior.v_W, pose.v_W);
+    TEST_ASSERT_SAME(m.prior.w_C, pose.w_C);
   }
 }
 
@@ -98,7 +100,7 @@ void test_fewer_than_four_matches_should_give_no_pose() {
   const Matches m(random, kCount);
   Body pose = m.prior;
   TEST_ASSERT_EQUAL_INT(0, propose_pose(m.camera, m.P, m.f_W, m.pixel, 3, kSigma, &pose));
-  TEST_ASSERT_TRUE(pose.p_W == m.prior.p_W);
+  TEST_ASSERT_SAME(m.prior.p_W, pose.p_W);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // A reference camera: begun with all that the camera has in common with the rest, kept while it is needed, removed without a trace.
 #include "model/reference_camera.h"
+#include "same.h"
 #include "support/filter_scene.h"
 
 using namespace pf;
@@ -28,11 +29,11 @@ void test_a_new_one_should_be_the_camera_with_its_full_correlation() {
     TEST_ASSERT_EQUAL_INT(n + 6, scene.filter.dim());
     const int first = scene.filter.first(camera);
     const Dense P = scene.filter.P();
-    TEST_ASSERT_TRUE(largest(P.topLeftCorner(n, n) - before) == 0);
+    TEST_ASSERT_SAME(0, largest(P.topLeftCorner(n, n) - before));
     TEST_ASSERT_TRUE(difference(P.block(first, first, 6, 6), before.topLeftCorner(6, 6)) < kExact);
     TEST_ASSERT_TRUE(largest(P.block(first, 0, 6, n) - before.topRows(6)) < kExact);
     const Block& block = scene.filter->state().block[camera];
-    TEST_ASSERT_TRUE((model::ReferenceCamera::p_WC(block) - scene.filter->state().body.p_W).norm() == Scalar(0));
+    TEST_ASSERT_SAME(Scalar(0), (model::ReferenceCamera::p_WC(block) - scene.filter->state().body.p_W).norm());
     TEST_ASSERT_TRUE((model::ReferenceCamera::q_WC(block).coeffs() - scene.filter->state().body.q_WC.coeffs()).norm() <
                      Scalar(1e-15));
     TEST_ASSERT_TRUE(largest(motion_covariance(scene.filter, camera)) < 1e-12);
@@ -48,7 +49,7 @@ void test_a_prediction_should_leave_it_and_give_the_motion_the_noise() {
   predict_constant_position(scene.filter->state().body, BodyLayout::with_constant_velocity(), Scalar(0.05), {1, 2}, &t);
   scene.filter->predict(t);
   const Block& block = scene.filter->state().block[camera];
-  for (int i = 0; i < 7; ++i) TEST_ASSERT_TRUE(block.value[i] == before.value[i]);
+  for (int i = 0; i < 7; ++i) TEST_ASSERT_SAME(before.value[i], block.value[i]);
   // A walk has no F but the identity on the pose, so the motion is its noise, turned into K.
   const Mat3 R = model::ReferenceCamera::q_WC(block).toRotationMatrix().transpose();
   Dense Q(6, 6), J = Dense::Zero(6, 6);
@@ -69,20 +70,20 @@ void test_it_should_stay_while_it_is_pinned_and_go_without_a_trace() {
   scene.filter->pin(camera);
   const int gone[2] = {scene.slots[1], scene.slots[7]};
   scene.filter->remove(gone, 2);
-  TEST_ASSERT_TRUE(state.block[camera].kind == BlockKind::kReferenceCamera);
+  TEST_ASSERT_SAME(BlockKind::kReferenceCamera, state.block[camera].kind);
   TEST_ASSERT_EQUAL_INT(n, scene.filter.dim());  // less two features of three rows
   scene.filter->pin(camera);
   scene.filter->unpin(camera);
-  TEST_ASSERT_TRUE(state.block[camera].kind == BlockKind::kReferenceCamera);
+  TEST_ASSERT_SAME(BlockKind::kReferenceCamera, state.block[camera].kind);
   scene.filter->unpin(camera);
-  TEST_ASSERT_TRUE(state.block[camera].kind == BlockKind::kNone);
+  TEST_ASSERT_SAME(BlockKind::kNone, state.block[camera].kind);
   TEST_ASSERT_EQUAL_INT(n - 6, scene.filter.dim());
   PixelMeasurement o;  // the others are where they say that they are
   for (const int slot : scene.slots)
     if (state.block[slot].kind != BlockKind::kNone) {
       TEST_ASSERT_TRUE(scene.filter->predict_pixel(pinhole_camera(), slot, &o));
       const int first = scene.filter.first(slot);
-      TEST_ASSERT_TRUE(std::fabs(before(0, 0) - scene.filter.P()(0, 0)) == 0);
+      TEST_ASSERT_SAME(0, std::fabs(before(0, 0) - scene.filter.P()(0, 0)));
       TEST_ASSERT_TRUE(first + 3 <= scene.filter.dim());
     }
 }
@@ -92,7 +93,7 @@ void test_one_that_nothing_needs_should_go_with_the_next_removal() {
   Scene scene(random, true);
   const int camera = scene.filter->add_reference_camera();
   scene.filter->remove(scene.slots.data(), 1);
-  TEST_ASSERT_TRUE(scene.filter->state().block[camera].kind == BlockKind::kNone);
+  TEST_ASSERT_SAME(BlockKind::kNone, scene.filter->state().block[camera].kind);
 }
 
 void test_an_update_should_move_it_by_its_own_rows() {
@@ -134,7 +135,7 @@ void test_a_full_filter_should_refuse_it_and_stay_as_it_is() {
   while (filter->room() >= 6) filter->add_point(random.normals<3>(1), Mat3::Identity());
   const std::vector<Scalar> before = bits_of(filter);
   TEST_ASSERT_EQUAL_INT(-1, filter->add_reference_camera());
-  TEST_ASSERT_TRUE(before == bits_of(filter));
+  TEST_ASSERT_SAME(bits_of(filter), before);
 }
 
 }  // namespace

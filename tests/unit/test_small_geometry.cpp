@@ -4,6 +4,7 @@
 #include "geometry/homography.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/seeded_random.h"
 #include "unity.h"
 
@@ -79,7 +80,7 @@ void test_homography_should_refuse_when_points_are_in_line_or_change_side() {
   TEST_ASSERT_FALSE(homography_from_4(square, line, &H));
   TEST_ASSERT_FALSE(homography_from_4(square, line_late, &H));
   TEST_ASSERT_FALSE(homography_from_4(square, behind, &H));
-  TEST_ASSERT_TRUE(H == Mat3::Zero());
+  TEST_ASSERT_SAME(Mat3::Zero(), H);
   TEST_ASSERT_TRUE(homography_from_4(square, square, &H));
 }
 
@@ -90,9 +91,10 @@ void test_turn_should_take_z_to_the_vector_the_shortest_way_when_it_is_of_unit_l
     const Vec3 b = random.normals<3>(1).normalized();
     const Quat q = turn_z_to(b);
     TEST_ASSERT_TRUE((q.toRotationMatrix().col(2) - b).norm() < kClose / (Scalar(1) + b.z()));
-    TEST_ASSERT_TRUE(q.z() == Scalar(0) && q.w() >= Scalar(0));  // no turn about z or about b
+    TEST_ASSERT_SAME(Scalar(0), q.z());
+    TEST_ASSERT_TRUE(q.w() >= Scalar(0));  // no turn about z or about b
   }
-  TEST_ASSERT_TRUE(turn_z_to(Vec3::UnitZ()).toRotationMatrix() == Mat3::Identity());
+  TEST_ASSERT_SAME(Mat3::Identity(), turn_z_to(Vec3::UnitZ()).toRotationMatrix());
   TEST_ASSERT_TRUE((turn_z_to(-Vec3::UnitZ()).toRotationMatrix().col(2) + Vec3::UnitZ()).norm() < kClose);
 }
 

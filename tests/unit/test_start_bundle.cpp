@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "bundle/start_bundle.h"
+#include "same.h"
 #include "support/bounds.h"
 #include "support/filter_cases.h"
 #include "support/test_cameras.h"
@@ -135,7 +136,7 @@ void test_median_depth_should_be_the_one_that_was_asked_for() {
   SeededRandom random(112);
   Start start(random, pinhole_camera(), 40);
   for (int k = 1; k <= 20; ++k) start.see(random, on_the_way({1, 0, 0}, Scalar(0.012) * Scalar(k), 0), 40);
-  TEST_ASSERT_TRUE(start.solve(Scalar(2.5)) == StartOutcome::kSettled);
+  TEST_ASSERT_SAME(StartOutcome::kSettled, start.solve(Scalar(2.5)));
   std::vector<double> rho;
   for (int i = 0; i < 40; ++i)
     if (start.bundle.good(i)) rho.push_back(static_cast<double>(start.bundle.rho(i)));
@@ -149,7 +150,7 @@ void test_start_should_wait_when_the_camera_only_turns() {
     Start start(random, pinhole_camera(), 48);
     for (int k = 1; k <= 30; ++k) {
       start.see(random, on_the_way(Vec3::Zero(), 0, Scalar(0.004) * Scalar(k)), 48);
-      TEST_ASSERT_TRUE(start.solve() == StartOutcome::kWait);
+      TEST_ASSERT_SAME(StartOutcome::kWait, start.solve());
     }
   }
 }
@@ -159,7 +160,7 @@ void test_start_should_wait_when_the_camera_rests() {
   Start start(random, radtan_camera(), 48);
   for (int k = 1; k <= 70; ++k) {  // longer than the record is
     start.see(random, Body(), 48);
-    TEST_ASSERT_TRUE(start.solve() == StartOutcome::kWait);
+    TEST_ASSERT_SAME(StartOutcome::kWait, start.solve());
     TEST_ASSERT_LESS_OR_EQUAL_INT(static_cast<int>(StartRecord::kMaxFrames), start.record.frames());
   }
 }
@@ -169,7 +170,7 @@ void test_start_should_begin_again_when_too_few_of_the_first_features_are_left()
   Start start(random, pinhole_camera(), 30);
   start.see(random, on_the_way({1, 0, 0}, Scalar(0.2), 0), 30);
   start.see(random, on_the_way({1, 0, 0}, Scalar(0.25), 0), 11);
-  TEST_ASSERT_TRUE(start.solve() == StartOutcome::kTooFew);
+  TEST_ASSERT_SAME(StartOutcome::kTooFew, start.solve());
 }
 
 /// A sideways move in which four features drift away on their own, so many pixels a frame.
@@ -207,7 +208,7 @@ double solve_through_another_lens(const Camera& lens, const Camera& calibration,
     start.camera = calibration;
     outcome = start.solve();
   }
-  TEST_ASSERT_TRUE(outcome == StartOutcome::kSettled);
+  TEST_ASSERT_SAME(StartOutcome::kSettled, outcome);
   if (prior != nullptr) *adjusted = *start.bundle.lens();
   std::vector<double> ratio;
   for (int i = 0; i < 48; ++i)
@@ -249,7 +250,7 @@ void test_lens_should_be_left_alone_when_a_start_waits() {
   start.bundle.free_lens(calibration, prior);
   drift(random, start, Scalar(1.5));
   const Vec3 ray = start.record.ray(7);
-  TEST_ASSERT_TRUE(start.solve() == StartOutcome::kWait);
+  TEST_ASSERT_SAME(StartOutcome::kWait, start.solve());
   TEST_ASSERT_EQUAL_DOUBLE(static_cast<double>(calibration.fx), static_cast<double>(start.bundle.lens()->fx));
   EXPECT_BELOW(1e-5, static_cast<double>((start.record.ray(7) - ray).norm()));
 }
@@ -270,7 +271,7 @@ void test_start_should_wait_when_the_pixels_have_no_common_explanation() {
   SeededRandom random(117);
   Start start(random, pinhole_camera(), 48);
   drift(random, start, Scalar(1.5));
-  TEST_ASSERT_TRUE(start.solve() == StartOutcome::kWait);
+  TEST_ASSERT_SAME(StartOutcome::kWait, start.solve());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "planefold/planefold.h"
+#include "same.h"
 #include "support/bounds.h"
 #include "support/template_scene.h"
 #include "track/template_matcher.h"
@@ -204,7 +205,7 @@ void test_normal_should_stay_where_it_is_not_observable() {
   TemplateNormal untouched;
   untouched.slope = Vec2(7, 7);
   TEST_ASSERT_FALSE(bed.measure(Vec2::Zero(), &untouched));
-  TEST_ASSERT_TRUE(untouched.slope == Vec2(7, 7));
+  TEST_ASSERT_SAME(Vec2(7, 7), untouched.slope);
 }
 
 void test_mask_with_a_wrong_normal_should_come_back_with_the_right_one() {

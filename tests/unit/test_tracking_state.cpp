@@ -19,7 +19,7 @@ Status unsupported_frames(TrackingState* tracking, const Hooks& hooks, int frame
   for (int i = 1; i <= frames; ++i) {
     FrameReport report;
     report.t_ns = i * kFrame;
-    tracking->begin_frame();
+    tracking->begin_frame(kFrame);
     status = tracking->conclude(report, StartProgress(), kMaxCoast, hooks);
   }
   return status;
@@ -34,14 +34,14 @@ void test_a_start_that_begins_anew_should_be_starting_in_status_and_state() {
     TEST_ASSERT_TRUE(before == (frames == 3 ? Status::kCoasting : Status::kLost));
     FrameReport report;
     report.t_ns = (frames + 1) * kFrame;
-    tracking.begin_frame();
+    tracking.begin_frame(kFrame);
     tracking.set_has_pose(report.t_ns);
     StartProgress start;
     start.recording = true;
     TEST_ASSERT_TRUE(tracking.conclude(report, start, kMaxCoast, settings.hooks) == Status::kStarting);
     TEST_ASSERT_TRUE(tracking.state() == SlamState::kStarting);
     report.t_ns += kFrame;  // and what was lost before is not lost now
-    tracking.begin_frame();
+    tracking.begin_frame(kFrame);
     TEST_ASSERT_TRUE(tracking.conclude(report, start, kMaxCoast, settings.hooks) == Status::kCoasting);
   }
 }
@@ -56,7 +56,7 @@ void start_with_depths(TrackingState* tracking, const Settings& settings, SlamSt
     StartProgress start;
     start.recording = true;
     start.depth_known = i > 0;
-    tracking->begin_frame();
+    tracking->begin_frame(kFrame);
     tracking->conclude(report, start, kMaxCoast, settings.hooks);
     state[i] = tracking->state();
   }
@@ -80,29 +80,11 @@ void test_a_map_after_a_loss_should_be_tracked_one_frame_after_its_depths() {
   }
 }
 
-void test_a_map_that_no_frame_has_tracked_yet_should_have_no_gap() {
-  Settings settings;
-  settings.min_inliers = 8;
-  TrackingState tracking(settings);
-  unsupported_frames(&tracking, settings.hooks, 1);
-  TEST_ASSERT_TRUE(tracking.is_relocalising(StartProgress()));
-  TEST_ASSERT_FALSE(tracking.is_after_gap(StartProgress()));
-  FrameReport report;
-  for (const int inliers : {settings.min_inliers, 0}) {
-    report.inliers = inliers;
-    report.t_ns += 2 * kFrame;
-    tracking.begin_frame();
-    tracking.conclude(report, StartProgress(), kMaxCoast, settings.hooks);
-    TEST_ASSERT_TRUE(tracking.is_after_gap(StartProgress()) == (inliers == 0));
-  }
-}
-
 }  // namespace
 
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_a_start_that_begins_anew_should_be_starting_in_status_and_state);
   RUN_TEST(test_a_map_after_a_loss_should_be_tracked_one_frame_after_its_depths);
-  RUN_TEST(test_a_map_that_no_frame_has_tracked_yet_should_have_no_gap);
   return UNITY_END();
 }

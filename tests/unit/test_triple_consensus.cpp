@@ -1,7 +1,6 @@
-// Consensus over triples: right matches are far beyond chance, matches at random places in the searched areas are not.
+// Consensus over triples: right matches speak for the pose that they give, matches at random places in the searched areas against it.
 #include "filter_slam/pose/consensus.h"
 #include "filter_slam/pose/triple_consensus.h"
-#include "frame/tuning.h"
 #include "support/filter_scene.h"
 
 using namespace pf;
@@ -12,9 +11,8 @@ void tearDown(void) {}
 namespace {
 
 constexpr int kMatches = 30, kTriples = 40;
-constexpr Scalar kGate = Scalar(9.2103);       // 99 % with two degrees of freedom
-constexpr Scalar kFoundAgain = Scalar(-13.8);  // ln 1e-6, as the relocaliser asks for
-constexpr Scalar kFramesPlace = Scalar(-6.9);  // ln 1e-3, as a tracked frame needs
+constexpr Scalar kGate = Scalar(9.2103);  // 99 % with two degrees of freedom
+constexpr Scalar kEnough = Scalar(6.9);   // that one frame can say
 
 /// A known map, a camera whose pose is hardly known, and matches of which every one beyond the first `right` is at a random place in
 /// its own search ellipse.
@@ -58,21 +56,29 @@ struct Matches {
     }
   }
 
-  TripleConsensus find(int found, int attempts, unsigned char* keep) const {
-    return find_triple_consensus(*filter, match, searched_px2, found, attempts, kGate, kTriples,
-                                 tuning::chance::kLevels, nullptr, keep);
+  PoseConsensus find(int found, int attempts, unsigned char* keep) const {
+    return find_triple_consensus(*filter, match, searched_px2, found, attempts, prior_share(), kGate, kTriples, keep);
+  }
+  Scalar evidence(int found, int attempts) const {
+    unsigned char keep[kMatches];
+    return pose_evidence(find(found, attempts, keep), prior_share());
+  }
+  static FindShare prior_share() {
+    FindShare share;
+    share.init();
+    return share;
   }
 };
 
-void test_right_matches_should_be_far_beyond_chance_also_when_half_are_wrong() {
+void test_right_matches_should_speak_for_a_pose_also_when_half_are_wrong() {
   SeededRandom random(111);
   int far = 0, right_kept = 0, wrong_kept = 0;
   constexpr int kTrials = 40, kRight = kMatches / 2;
   for (int trial = 0; trial < kTrials; ++trial) {
     const Matches m(random, kRight);
     unsigned char keep[kMatches];
-    const TripleConsensus consensus = m.find(kMatches, kMatches, keep);
-    far += consensus.log_false < kFoundAgain && consensus.inliers >= 8 ? 1 : 0;
+    const PoseConsensus consensus = m.find(kMatches, kMatches, keep);
+    far += pose_evidence(consensus, Matches::prior_share()) > kEnough && consensus.inliers >= 8 ? 1 : 0;
     int kept = 0;
     for (int i = 0; i < kMatches; ++i) {
       kept += keep[i];
@@ -80,25 +86,23 @@ void test_right_matches_should_be_far_beyond_chance_also_when_half_are_wrong() {
     }
     TEST_ASSERT_EQUAL_INT(kept, consensus.inliers);
   }
-  std::printf("beyond chance %d of %d, kept %d of %d right and %d of %d wrong\n", far, kTrials, right_kept,
-              kTrials * kRight, wrong_kept, kTrials * (kMatches - kRight));
+  std::printf("enough %d of %d, kept %d of %d right and %d of %d wrong\n", far, kTrials, right_kept, kTrials * kRight,
+              wrong_kept, kTrials * (kMatches - kRight));
   TEST_ASSERT_GREATER_OR_EQUAL_INT(kTrials - 1, far);
   TEST_ASSERT_TRUE(right_kept > 0.9 * kTrials * kRight);
   TEST_ASSERT_TRUE(wrong_kept < 0.05 * kTrials * (kMatches - kRight));
 }
 
-void test_random_matches_should_not_be_beyond_chance() {
+void test_random_matches_should_speak_against_it() {
   SeededRandom random(112);
-  Scalar smallest = 1000;
-  for (int trial = 0; trial < 200; ++trial) {
-    const Matches m(random, 0);
-    smallest = std::min(smallest, m.find(kMatches, kMatches, nullptr).log_false);
-  }
-  std::printf("smallest ln NFA of 200: %.2f\n", static_cast<double>(smallest));
-  TEST_ASSERT_TRUE(smallest > kFramesPlace);
+  Scalar greatest = -1000;
+  for (int trial = 0; trial < 200; ++trial)
+    greatest = std::max(greatest, Matches(random, 0).evidence(kMatches, kMatches));
+  std::printf("greatest evidence of 200: %.2f\n", static_cast<double>(greatest));
+  TEST_ASSERT_TRUE(greatest < Scalar(0));
 }
 
-void test_close_matches_should_be_beyond_chance_although_most_searches_are_in_vain() {
+void test_close_matches_should_speak_for_it_although_most_searches_are_in_vain() {
   SeededRandom random(115);
   constexpr int kFound = 15, kAttempts = 42, kTrials = 40;
   constexpr Scalar kOpenPx = 3;        // of features whose depths are open
@@ -106,10 +110,10 @@ void test_close_matches_should_be_beyond_chance_although_most_searches_are_in_va
   int close = 0, anywhere = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
     const Matches right(random, kFound, kOpenPx, kFollowed), wrong(random, 0, kOpenPx, kFollowed);
-    close += right.find(kFound, kAttempts, nullptr).log_false < kFramesPlace ? 1 : 0;
-    anywhere += wrong.find(kFound, kAttempts, nullptr).log_false < kFramesPlace ? 1 : 0;
+    close += right.evidence(kFound, kAttempts) > Scalar(0) ? 1 : 0;
+    anywhere += wrong.evidence(kFound, kAttempts) > Scalar(0) ? 1 : 0;
   }
-  std::printf("beyond chance: %d of %d close, %d of %d anywhere\n", close, kTrials, anywhere, kTrials);
+  std::printf("for it: %d of %d close, %d of %d anywhere\n", close, kTrials, anywhere, kTrials);
   TEST_ASSERT_GREATER_OR_EQUAL_INT(9 * kTrials / 10, close);
   TEST_ASSERT_EQUAL_INT(0, anywhere);
 }
@@ -117,18 +121,14 @@ void test_close_matches_should_be_beyond_chance_although_most_searches_are_in_va
 void test_the_same_inliers_should_say_less_when_more_was_searched_in_vain() {
   SeededRandom random(113);
   const Matches m(random, 20);
-  const Scalar few = m.find(kMatches, kMatches, nullptr).log_false;
-  const Scalar many = m.find(kMatches, 4 * kMatches, nullptr).log_false;
-  TEST_ASSERT_TRUE(many > few + 1);
+  TEST_ASSERT_TRUE(m.evidence(kMatches, 4 * kMatches) < m.evidence(kMatches, kMatches) - 1);
 }
 
-void test_fewer_than_four_matches_should_say_nothing() {
+void test_fewer_than_four_matches_should_have_no_inliers() {
   SeededRandom random(114);
   const Matches m(random, kMatches);
   unsigned char keep[3] = {1, 1, 1};
-  const TripleConsensus consensus = m.find(3, 3, keep);
-  TEST_ASSERT_EQUAL_INT(0, consensus.inliers);
-  TEST_ASSERT_TRUE(consensus.log_false == 0);
+  TEST_ASSERT_EQUAL_INT(0, m.find(3, 3, keep).inliers);
   for (const unsigned char k : keep) TEST_ASSERT_EQUAL_INT(0, k);
 }
 
@@ -136,10 +136,10 @@ void test_fewer_than_four_matches_should_say_nothing() {
 
 int main(void) {
   UNITY_BEGIN();
-  RUN_TEST(test_right_matches_should_be_far_beyond_chance_also_when_half_are_wrong);
-  RUN_TEST(test_random_matches_should_not_be_beyond_chance);
-  RUN_TEST(test_close_matches_should_be_beyond_chance_although_most_searches_are_in_vain);
+  RUN_TEST(test_right_matches_should_speak_for_a_pose_also_when_half_are_wrong);
+  RUN_TEST(test_random_matches_should_speak_against_it);
+  RUN_TEST(test_close_matches_should_speak_for_it_although_most_searches_are_in_vain);
   RUN_TEST(test_the_same_inliers_should_say_less_when_more_was_searched_in_vain);
-  RUN_TEST(test_fewer_than_four_matches_should_say_nothing);
+  RUN_TEST(test_fewer_than_four_matches_should_have_no_inliers);
   return UNITY_END();
 }

@@ -1,6 +1,7 @@
 // The plane of points that two cameras with known poses see: exact without noise, and refused where nothing tells it.
 #include "geometry/so3.h"
 #include "geometry/two_view_plane.h"
+#include "same.h"
 #include "support/numeric_jacobian.h"
 #include "support/seeded_random.h"
 #include "unity.h"
@@ -51,7 +52,7 @@ void test_a_camera_that_has_only_turned_should_tell_nothing() {
   const Views views(&random, Scalar(0));
   Vec3 m = Vec3::Constant(Scalar(5));
   TEST_ASSERT_FALSE(two_view_plane(views.ray_K, views.ray_C, views.R_CK, views.t_CK, kRays, &m));
-  TEST_ASSERT_TRUE(m == Vec3::Constant(Scalar(5)));
+  TEST_ASSERT_SAME(Vec3::Constant(Scalar(5)), m);
 }
 
 void test_points_behind_a_camera_should_be_refused() {

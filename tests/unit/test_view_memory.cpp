@@ -1,5 +1,6 @@
 // Kept views: their correlation against a plain one in double, which are kept, and the rotation that a shifted image gives.
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/filter_cases.h"
 #include "support/panorama.h"
 #include "support/test_cameras.h"
@@ -59,8 +60,8 @@ void test_correlation_should_not_overflow_and_be_zero_of_a_flat_picture() {
     flat.pixels[i] = 200;
   }
   TEST_ASSERT_TRUE(correlate(a, b, 0, 0) < -0.9999f);
-  TEST_ASSERT_TRUE(correlate(a, flat, 0, 0) == 0);
-  TEST_ASSERT_TRUE(correlate(flat, flat, 0, 0) == 0);
+  TEST_ASSERT_SAME(0, correlate(a, flat, 0, 0));
+  TEST_ASSERT_SAME(0, correlate(flat, flat, 0, 0));
 }
 
 /// A memory of some capacity, and the pictures that it is shown.
@@ -101,7 +102,7 @@ void test_a_view_should_be_recognised_and_turned_as_the_picture_is() {
   panorama.look(camera, kept * turn);
   const Recognition found = memory.recognise(panorama.pyramid, camera);
   TEST_ASSERT_TRUE(found.score > 0.7f);
-  TEST_ASSERT_TRUE((found.p_W - place).norm() == 0);
+  TEST_ASSERT_SAME(0, (found.p_W - place).norm());
   const double off = static_cast<double>(log_so3(found.q_WC * (kept * turn).conjugate()).norm());
   std::printf("off by %.4f rad\n", off);
   TEST_ASSERT_TRUE(off < 0.004);  // a pixel of the thumbnail is 0.03
@@ -122,7 +123,7 @@ void test_only_new_views_should_be_kept_and_the_oldest_replaced() {
   }
   TEST_ASSERT_EQUAL_INT(2, s.memory.count());
   s.show(8000, 0);
-  TEST_ASSERT_TRUE(s.memory.recognise(s.pyramid, s.camera).p_W.x() == 20);
+  TEST_ASSERT_SAME(20, s.memory.recognise(s.pyramid, s.camera).p_W.x());
   s.show(0, 0);  // replaced
   TEST_ASSERT_TRUE(s.memory.recognise(s.pyramid, s.camera).score < 0.8f);
 }
@@ -133,7 +134,7 @@ void test_a_memory_without_room_should_recognise_nothing() {
   s.show(0, 0);
   s.memory.keep_if_new(s.pyramid, Quat::Identity(), Vec3::Zero());
   TEST_ASSERT_EQUAL_INT(0, s.memory.count());
-  TEST_ASSERT_TRUE(s.memory.recognise(s.pyramid, s.camera).score == 0);
+  TEST_ASSERT_SAME(0, s.memory.recognise(s.pyramid, s.camera).score);
 }
 
 }  // namespace

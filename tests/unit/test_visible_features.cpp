@@ -24,7 +24,7 @@ struct Bench {
   FeatureKeeper features{settings, *filter, map, frame};
   PixelUpdate update{settings, *filter, map, frame, tracking};
   NoiseModel noise;
-  ImageFrontEnd images{settings, *filter, map, frame, features, update, noise};
+  ImageFrontEnd images{settings, *filter, map, frame, features, update, tracking.belief(), noise};
   TestArena arena;
   TestImage image = noise_image(pinhole_camera().width, pinhole_camera().height, &random);
 

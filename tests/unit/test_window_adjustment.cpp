@@ -1,6 +1,7 @@
 // Planes in the adjustment of the window's keyframes: points are held to them, and they come back with their covariance.
 #include <cmath>
 
+#include "same.h"
 #include "support/window_bench.h"
 
 using namespace pf;
@@ -110,7 +111,7 @@ void test_a_plane_that_is_rotated_far_should_be_left_as_it_is() {
   find_plane(&bench);
   const PlaneFrame before = bench.planes.plane(0).frame;
   TEST_ASSERT_FALSE(bench.planes.take_adjusted(0, Vec3(1, 0, 0), Mat3::Identity()));
-  TEST_ASSERT_TRUE(before.o_W == bench.planes.plane(0).frame.o_W);
+  TEST_ASSERT_SAME(bench.planes.plane(0).frame.o_W, before.o_W);
   TEST_ASSERT_FALSE(bench.planes.plane(0).adjusted);
 }
 

@@ -1,5 +1,6 @@
 // Which keyframes of the window hang together by points that they share.
 #include "keyframe_slam/map/covisible.h"
+#include "same.h"
 #include "support/window_bench.h"
 
 using namespace pf;
@@ -58,10 +59,10 @@ void test_what_shares_no_points_should_neither_move_nor_hold_the_others() {
   const Scalar held_rho = bench.map.point(0).rho;
   for (int k = 4; k < kKeyframes; ++k) bench.map.keyframes[k].p_W.y() += Scalar(0.01);
   TEST_ASSERT_TRUE(bench.adjustment.run(true));
-  TEST_ASSERT_TRUE(first == bench.map.keyframes[0].p_W);
-  TEST_ASSERT_TRUE(held_rho == bench.map.point(0).rho);
+  TEST_ASSERT_SAME(bench.map.keyframes[0].p_W, first);
+  TEST_ASSERT_SAME(bench.map.point(0).rho, held_rho);
   // The oldest of those that hang together stays, and brings the others back to where their pixels are.
-  TEST_ASSERT_TRUE(held == bench.map.keyframes[3].p_W);
+  TEST_ASSERT_SAME(bench.map.keyframes[3].p_W, held);
   for (int k = 4; k < kKeyframes; ++k) {
     std::printf("keyframe %d: %.2f mm\n", k, 1e3 * static_cast<double>(bench.map.keyframes[k].p_W.y()));
     TEST_ASSERT_TRUE(std::abs(bench.map.keyframes[k].p_W.y()) < Scalar(0.002));
@@ -82,7 +83,7 @@ void test_a_keyframe_that_is_held_should_pass_on_its_own_covariance() {
   wanted(4, 4) = Scalar(0.01 * 0.2 * 0.2);
   wanted(2, 4) = wanted(4, 2) = Scalar(0.01 * 0.2);
   TEST_ASSERT_TRUE((added - wanted).cwiseAbs().maxCoeff() < Scalar(1e-4));
-  TEST_ASSERT_TRUE(bench.map.keyframes[5].covariance == bench.adjustment.map_covariance());
+  TEST_ASSERT_SAME(bench.adjustment.map_covariance(), bench.map.keyframes[5].covariance);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "geometry/so3.h"
+#include "same.h"
 #include "support/window_bench.h"
 
 using namespace pf;
@@ -102,15 +103,15 @@ void test_a_point_of_the_target_should_not_follow_the_lens() {
   bench.tables.features[7].is_target = true;
   const Vec3 ray = bench.map.point(7).ray_K;
   bench.map.move_lens(bench.truth);
-  TEST_ASSERT_TRUE(bench.map.point(7).ray_K == ray);
+  TEST_ASSERT_SAME(ray, bench.map.point(7).ray_K);
 }
 
 void test_the_lens_should_stay_where_the_caller_does_not_want_it_adjusted() {
   LensBench bench(5, 0.05);
   bench.fill();
   TEST_ASSERT_TRUE(bench.adjustment.run(false));
-  TEST_ASSERT_TRUE(bench.map.camera().distortion[0] == Scalar(0));
-  TEST_ASSERT_TRUE(bench.map.camera().fx == bench.settings.camera.fx);
+  TEST_ASSERT_SAME(Scalar(0), bench.map.camera().distortion[0]);
+  TEST_ASSERT_SAME(bench.settings.camera.fx, bench.map.camera().fx);
 }
 
 void test_a_new_map_should_begin_at_the_calibration() {
@@ -119,8 +120,8 @@ void test_a_new_map_should_begin_at_the_calibration() {
   TEST_ASSERT_TRUE(bench.adjustment.run(true));
   TEST_ASSERT_TRUE(bench.map.camera().distortion[0] != Scalar(0));
   bench.map.init();
-  TEST_ASSERT_TRUE(bench.map.camera().distortion[0] == Scalar(0));
-  TEST_ASSERT_TRUE(bench.map.lens().covariance()[24] == bench.settings.lens.covariance(4, 4));
+  TEST_ASSERT_SAME(Scalar(0), bench.map.camera().distortion[0]);
+  TEST_ASSERT_SAME(bench.settings.lens.covariance(4, 4), bench.map.lens().covariance()[24]);
 }
 
 }  // namespace

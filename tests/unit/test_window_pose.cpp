@@ -116,6 +116,44 @@ void test_fit_pose_should_stay_at_the_prediction_without_matches() {
   TEST_ASSERT_TRUE(information.isZero(0));
 }
 
+/// With a large Huber bound, so that no match is cut off: ln N(r; 0, J P Jᵀ + R) by a dense factor.
+void test_log_density_should_be_that_of_the_joint_covariance() {
+  if (kFloat) return;  // differences of densities of 60 numbers
+  SeededRandom random(4);
+  const Camera camera = pinhole_camera();
+  for (int run = 0; run < 20; ++run) {
+    Matches all = random_matches(camera, random, 0.02);
+    all.prior.q_WC = all.truth.q_WC * exp_so3(random.normals<3>(1e-4));
+    all.prior.p_W = all.truth.p_WC + random.normals<3>(1e-4);
+    all.prior.covariance *= static_cast<Scalar>(1e-6);
+    all.use[run] = 0;
+    Dense S = Dense::Zero(2 * kMatches - 2, 2 * kMatches - 2), J(2 * kMatches - 2, 6);
+    Eigen::VectorXd r(2 * kMatches - 2);
+    for (int i = 0, row = 0; i < kMatches; ++i) {
+      if (all.use[i] == 0) continue;
+      const PnpPoint& point = all.match[i].point;
+      Vec2 z;
+      Mat26 J_i;
+      TEST_ASSERT_TRUE(
+          project_from_pose(camera, all.prior.q_WC, all.prior.p_W, point.m, point.w, all.prior.p_W, &z, &J_i));
+      J.middleRows(row, 2) = J_i.cast<double>();
+      S.block(row, row, 2, 2) = all.match[i].noise.cast<double>();
+      r.segment<2>(row) = (point.pixel - z).cast<double>();
+      row += 2;
+    }
+    S += J * all.prior.covariance.cast<double>() * J.transpose();
+    const Dense L = lower_factor(S);
+    const double expected = -r.dot(solved(S, r).col(0)) / 2 - L.diagonal().array().log().sum() -
+                            static_cast<double>(kMatches - 1) * std::log(6.283185307179586);
+    CameraPose pose = {all.prior.q_WC, all.prior.p_W};
+    Mat6 information;
+    TEST_ASSERT_TRUE(fit_pose(camera, all.match, kMatches, all.use, all.prior, 1000, &pose, &information));
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-3, expected,
+        static_cast<double>(log_density(camera, all.match, kMatches, all.use, all.prior, pose, information)));
+  }
+}
+
 void test_motion_should_learn_velocities_from_poses() {
   Settings settings;
   settings.constant_velocity = true;
@@ -252,6 +290,7 @@ int main() {
   RUN_TEST(test_fit_pose_should_find_the_pose_that_made_the_pixels);
   RUN_TEST(test_fit_pose_should_end_where_the_cost_has_no_slope);
   RUN_TEST(test_fit_pose_should_stay_at_the_prediction_without_matches);
+  RUN_TEST(test_log_density_should_be_that_of_the_joint_covariance);
   RUN_TEST(test_motion_should_learn_velocities_from_poses);
   RUN_TEST(test_motion_should_keep_a_covariance_where_the_pose_was_hardly_known);
   RUN_TEST(test_motion_should_keep_a_covariance_where_matches_leave_a_direction_open);

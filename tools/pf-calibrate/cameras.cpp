@@ -31,6 +31,9 @@ bool search_camera(const Options& options, Search& search, std::string& error) {
     const int read = camera.read(200, frame, error);
     if (read == PF_CAMERA_SOURCE_FRAME) {
       search.image = {frame.image.width, frame.image.height};
+      if (search.mask.empty() && !read_mask(options, "", search, error)) {
+        return false;
+      }
       look_at(frame.image, options, search.frames, search);
       ++search.frames;
       ++search.looked_at;

@@ -50,6 +50,11 @@ bool parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--out", options.out,
                  "folder for calib.yaml (Kalibr's form), calibration.json, corners.csv and coverage.png")
       ->capture_default_str();
+  app.add_option(
+         "--mask", options.mask,
+         "PNG of the pictures' size, 0 where they do not show the scene (the carrier's body), else 255: corners "
+         "there do not count;\nauto: mask.png beside the frames, where there is one; or none")
+      ->capture_default_str();
   app.add_option("--views", options.views, "fit at most N views, the ones that differ most")
       ->check(CLI::Range(6, 200))
       ->capture_default_str();

@@ -14,7 +14,8 @@ struct Options {
   Board board;
   std::string source;
   std::string out = "out/calibrate";
-  std::string print_target;  ///< a file: write the target and do nothing else
+  std::string mask = "auto";  ///< file; auto: the one beside the frames, if any; none: none
+  std::string print_target;   ///< a file: write the target and do nothing else
   std::string page = "a4";
   pf_camera_model_t model = PF_CAMERA_RADTAN;
   int views = 40;                 ///< at most, in the fit

@@ -42,6 +42,25 @@ void look_for_others(const cv::Mat& grey, const Board& board, Search& search) {
   }
 }
 
+/// Takes the corners out that lie on what is masked, or as near to it as what a corner is found by. false: too few are left of a view.
+bool leave_out_masked(const cv::Mat& mask, View& view) {
+  constexpr int kAround = 5;  // [px]
+  const cv::Rect image(0, 0, mask.cols, mask.rows);
+  size_t left = 0;
+  for (size_t i = 0; i < view.corners.size(); ++i) {
+    const cv::Point at(cvRound(view.corners[i].x), cvRound(view.corners[i].y));
+    const cv::Rect around(at.x - kAround, at.y - kAround, 2 * kAround + 1, 2 * kAround + 1);
+    if (cv::countNonZero(mask(around & image)) < (around & image).area()) {
+      continue;
+    }
+    view.corners[left] = view.corners[i];
+    view.numbers[left++] = view.numbers[i];
+  }
+  view.corners.resize(left);
+  view.numbers.resize(left);
+  return left >= kFewestCorners;
+}
+
 bool search_sequence(const Options& options, Search& search, std::string& error) {
   char message[PF_SEQUENCE_MESSAGE] = "";
   pf_sequence_t* opened = nullptr;
@@ -53,6 +72,9 @@ bool search_sequence(const Options& options, Search& search, std::string& error)
   pf_sequence_info_t info;
   pf_get_sequence_info(sequence.get(), &info);
   search.image = {info.camera.width, info.camera.height};
+  if (!read_mask(options, info.mask_path, search, error)) {
+    return false;
+  }
   search.frames = info.count;
   search.looked_at = std::min(info.count, options.look_at);
   for (int64_t k = 0; k < search.looked_at; ++k) {
@@ -79,13 +101,31 @@ bool search_sequence(const Options& options, Search& search, std::string& error)
 
 }  // namespace
 
+bool read_mask(const Options& options, const std::string& beside, Search& search, std::string& error) {
+  const std::string path = options.mask == "auto" ? beside : options.mask == "none" ? "" : options.mask;
+  if (path.empty()) {
+    return true;
+  }
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  search.mask.create(search.image, CV_8U);
+  if (pf_read_mask(path.c_str(), search.image.width, search.image.height, search.mask.data, message) != 0) {
+    error = message;
+    return false;
+  }
+  return true;
+}
+
 void look_at(const pf_image_t& image, const Options& options, int64_t number, Search& search) {
   const cv::Mat grey(image.height, image.width, CV_8U, const_cast<uint8_t*>(image.pixels),
                      static_cast<size_t>(image.stride));
   View view;
   Sighting sighting;
   view.frame = number;
-  if (find_board(grey, options.board, view, sighting)) {
+  const bool found = find_board(grey, options.board, view, sighting);
+  if (found && !search.mask.empty() && !leave_out_masked(search.mask, view)) {
+    return;
+  }
+  if (found) {
     search.found.push_back(view);
   } else if (search.found.empty()) {
     if (sighting.markers > search.best.markers) {

@@ -13,6 +13,7 @@ struct Search {
   cv::Size image;
   int64_t frames = 0, looked_at = 0;
   std::vector<View> found;
+  cv::Mat mask;  ///< 0: not the scene; empty: all is
 
   // As long as nothing was found:
   int64_t in_vain = 0;          ///< frames
@@ -25,6 +26,9 @@ struct Search {
 /// Looks for the board: in frames that lie evenly over a recording, or in what a camera shows until the time is over
 /// or the program is interrupted. false: error is one line.
 bool search_source(const Options& options, Search& search, std::string& error);
+
+/// The mask of pictures of search.image: of --mask, or the one beside the frames ("": there is none). false: error is one line.
+bool read_mask(const Options& options, const std::string& beside, Search& search, std::string& error);
 
 /// One frame of it, and how far it is.
 void look_at(const pf_image_t& image, const Options& options, int64_t number, Search& search);

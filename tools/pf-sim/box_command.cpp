@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "../lib/command_line.h"
+#include "backend_option.h"
 #include "box_run.h"
 #include "commands.h"
 #include "report.h"
@@ -21,6 +22,7 @@ struct Case {
   Plan plan;
 };
 
+const std::vector<std::string> kDefaultCases = {"refined", "exact", "points"};
 constexpr double kGoodDeg = 2;  // of a wall that was discovered
 constexpr double kDepth =
     1.6;  // of the sides when they are first seen, roughly: what a point without a wall begins with [m]
@@ -30,7 +32,8 @@ const Case kCases[] = {{"refined", Plan::kRefined}, {"exact", Plan::kExact},    
                        {"half", Plan::kHalf}};
 
 struct Choices {
-  std::vector<std::string> cases = {"refined", "exact", "points"};
+  BackendOption backend;
+  std::vector<std::string> cases;  ///< none: all that the back end can do of kDefaultCases
   int seeds = 10;
   std::uint64_t first_seed = 1;
   int jobs = 1;
@@ -101,6 +104,17 @@ pf_config_t config_of(const Choices& c) {
   return config;
 }
 
+/// What the window has not of what is asked for; empty: nothing.
+std::string refused_by_window(const Choices& c) {
+  if (c.geometric) return "--geometric pushes points, and the window takes pictures alone";
+  if (c.no_points) return "--no-points measures patches on walls, which the window has not";
+  if (c.box.gross > 0) return "--gross moves patches on walls, which the window has not";
+  for (const std::string& name : c.cases)
+    if (name != "points")
+      return "case " + name + " has walls of a plan, which the window does not take; points has none";
+  return "";
+}
+
 /// Patches on the walls beside points, or alone. Without walls there are points alone.
 pf_config_t rendered_config(const Choices& c, Plan plan) {
   pf_config_t config;
@@ -111,32 +125,13 @@ pf_config_t rendered_config(const Choices& c, Plan plan) {
   config.first_depth.depth = kDepth;
   config.capacity.max_state_dim = 500;
   config.clock_ns = clock_ns;
+  c.backend.apply(config);
   if (plan == Plan::kNone) return config;
   config.capacity.max_patches = c.patches;
   config.capacity.max_cameras = c.cameras;
   config.capacity.patch_side_px = c.patch_side_px;
   if (c.no_points) config.map.features_in_view = 0;
   return config;
-}
-
-/// Root mean square of the positions' errors of each run.
-std::vector<double> rmse_of(const Runs& runs) {
-  std::vector<double> all;
-  for (int s = 0; s < runs.seeds; ++s) {
-    double square = 0, count = 0;
-    for (int f = 0; f < runs.frames; ++f) {
-      const FrameRow& row = runs.row(s, f);
-      if (!(row.nees_position >= 0)) continue;
-      square += static_cast<double>(row.error_m) * static_cast<double>(row.error_m);
-      count += 1;
-    }
-    all.push_back(std::sqrt(square / std::max(1.0, count)));
-  }
-  return all;
-}
-
-json of_seeds(const std::vector<double>& values) {
-  return {{"median", median(values)}, {"worst", *std::max_element(values.begin(), values.end())}, {"seeds", values}};
 }
 
 json walls_json(const BoxSummary* summaries, int seeds) {
@@ -270,7 +265,10 @@ void print_case(const char* name, const json& j) {
   std::printf("; it had at most %g points\n", number("/wrong_wall/most_points"));
 }
 
-int run(const Choices& c) {
+int run(Choices c) {
+  const std::string refused = c.backend.is_window() ? refused_by_window(c) : "";
+  if (!refused.empty()) return fail("--backend window: " + refused);
+  if (c.cases.empty()) c.cases = c.backend.is_window() ? std::vector<std::string>{"points"} : kDefaultCases;
   if (c.geometric && c.no_points) return fail("--no-points is for rendered frames: --geometric has nothing but points");
   if (c.box.black_s < 0 || c.box.black_from_s < 0) return fail("--black: from when on, and how long, in seconds");
   if (!(c.box.gross >= 0 && c.box.gross <= 1)) return fail("--gross: a share from 0 to 1");
@@ -285,7 +283,7 @@ int run(const Choices& c) {
     job.plans.push_back(found->plan);
   }
   const char* field = nullptr;
-  const pf_config_t config = c.geometric ? job.config : rendered_config(c, Plan::kRefined);
+  const pf_config_t config = c.geometric ? job.config : rendered_config(c, job.plans.front());
   if (pf_config_check(&config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
   const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(c.box.frames);
   const std::size_t count = seeds * job.plans.size();
@@ -297,7 +295,8 @@ int run(const Choices& c) {
     return fail("a run did not come to its end");
   json out = {{"experiment", "box"},
               {"settings",
-               {{"geometric", c.geometric},
+               {{"backend", c.backend.name},
+                {"geometric", c.geometric},
                 {"points", !c.no_points},
                 {"first_seed", c.first_seed},
                 {"frames", c.box.frames},
@@ -324,6 +323,7 @@ int run(const Choices& c) {
 void add_box(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("box", "A box with posters and a wrong plan of its sides, circled by hand");
+  c->backend.add_to(*command);
   command->add_flag("--geometric", c->geometric, "points of the posters and no pictures");
   command->add_flag("--no-points", c->no_points, "patches on the walls alone, without points");
   command->add_option("--patches", c->patches, "that are followed at a time, at most");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -14,6 +15,13 @@ inline void allow_research(pf_config_t* config) {
   pf_research_t research;
   pf_research_default(&research);
   pf_config_set_research(config, &research);
+}
+
+/// The window as back end, with as many features in view as pf-capture gives it.
+inline void use_window(pf_config_t& config) {
+  constexpr std::int32_t kWindowFeatures = 150;
+  config.backend = PF_BACKEND_WINDOW;
+  config.map.features_in_view = std::min(kWindowFeatures, config.window.points);
 }
 
 /// A context of the library in its own block; slam is null when the config is not possible.

@@ -28,20 +28,32 @@ std::vector<pf_feature_t> map_of(const Context& context) {
   return map;
 }
 
-/// Median depth of what was measured in the last frame; 0 where nothing was.
-double median_depth(const Context& context, const pf_pose_t& pose) {
+/// Ids of the features that were inliers in the last frame.
+std::vector<std::uint32_t> measured_in(const Context& context) {
   std::size_t count = 0;
   pf_get_matches(context.slam, nullptr, 0, &count);
   std::vector<pf_match_t> tracks(count);
   if (count > 0) pf_get_matches(context.slam, tracks.data(), tracks.size(), &count);
+  std::vector<std::uint32_t> ids;
+  for (const pf_match_t& track : tracks)
+    if (track.status == PF_MATCH_INLIER) ids.push_back(track.id);
+  return ids;
+}
+
+int count_measured(const std::vector<pf_feature_t>& map, const std::vector<std::uint32_t>& measured) {
+  return static_cast<int>(std::count_if(map.begin(), map.end(), [&](const pf_feature_t& f) {
+    return std::find(measured.begin(), measured.end(), f.id) != measured.end();
+  }));
+}
+
+/// Median depth of what was measured in the last frame; 0 where nothing was.
+double median_depth(const Context& context, const Reference::Frame& frame) {
   const std::vector<pf_feature_t> map = map_of(context);
-  const pf::sim::Mat3 R_CW = pf::sim::rotation_of(pose.q_WC).transposed();
+  const pf::sim::Mat3 R_CW = pf::sim::rotation_of(frame.pose.q_WC).transposed();
   std::vector<double> depths;
-  for (const pf_match_t& track : tracks) {
-    if (track.status != PF_MATCH_INLIER) continue;
+  for (const std::uint32_t id : frame.measured)
     for (const pf_feature_t& f : map)
-      if (f.id == track.id) depths.push_back((R_CW * (vector_of(f.p_W) - vector_of(pose.p_WC))).z);
-  }
+      if (f.id == id) depths.push_back((R_CW * (vector_of(f.p_W) - vector_of(frame.pose.p_WC))).z);
   return depths.empty() ? 0 : median(depths);
 }
 
@@ -232,7 +244,10 @@ bool play_reference(const Film& film, const KidnapOptions& options, Context& con
     Reference::Frame frame;
     const pf_status_t status = pf_push_frame(context.slam, &image);
     frame.tracked = status == PF_OK && pf_get_pose(context.slam, &frame.pose) == PF_OK;
-    if (frame.tracked) frame.depth = median_depth(context, frame.pose);
+    if (frame.tracked) {
+      frame.measured = measured_in(context);
+      frame.depth = median_depth(context, frame);
+    }
     frame.tracked = frame.tracked && frame.depth > 0;
     frame.is_truth = frame.tracked && is_truth(frame);
     reference->frames.push_back(frame);
@@ -260,6 +275,7 @@ void play_trials(const Film& film, const KidnapOptions& options, const Reference
     trial->old_ids = static_cast<std::int32_t>(from.map.size());
     const Reference::Frame& first = reference.frames[static_cast<std::size_t>(shown[0])];
     if (first.tracked) trial->old_in_view = count_in_view(film, options, from.map, first.pose);
+    if (first.tracked) trial->old_measured = count_measured(from.map, first.measured);
     for (int k = 0; k < follow; ++k)
       if (player.show(shown[static_cast<std::size_t>(k)]) && trial->tracked_after < 0) trial->tracked_after = k;
     trial->kept_ids = count_kept(context, from.map);

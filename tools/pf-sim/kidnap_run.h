@@ -44,7 +44,8 @@ struct Reference {
     bool tracked = false;
     bool is_truth = false;  ///< known well enough to call another pose wrong
     pf_pose_t pose{};
-    double depth = 0;  ///< median, along the axis, of what was measured
+    double depth = 0;                     ///< median, along the axis, of what was measured
+    std::vector<std::uint32_t> measured;  ///< ids of the features that were inliers
   };
   struct Start {
     int frame;
@@ -59,6 +60,7 @@ struct Reference {
 struct Trial {
   std::int32_t done = 0;
   std::int32_t old_in_view = 0;     ///< features of the old map that the truth has in the first picture after the gap
+  std::int32_t old_measured = 0;    ///< of them, those that the run without a gap measures in that picture
   std::int32_t tracked_after = -1;  ///< frames after the gap until the state is tracking in the old map; -1: never
   std::int32_t judged = 0;          ///< frames in state tracking, in the old map, where the truth is known
   double worst_normalised = 0;      ///< of them: e^T (P + P_truth)^-1 e, 6 dof

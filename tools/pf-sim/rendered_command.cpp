@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "../lib/command_line.h"
+#include "backend_option.h"
 #include "commands.h"
 #include "context.h"
 #include "rendered_run.h"
@@ -17,10 +18,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::int32_t kWindowFeatures = 150;  // in view, as pf-capture has them with the window
-
 struct Choices {
-  std::string scene = "desk", backend = "filter", json_file, csv;
+  std::string scene = "desk", json_file, csv;
+  BackendOption backend;
   std::vector<std::string> starts{"rectangle"};
   std::vector<double> sigma_pixels{0};
   int seeds = 20, frames = 300, jobs = 2, blur = 2, relative = 0;
@@ -243,12 +243,8 @@ bool prepare(const Choices& c, RenderedOptions& o) {
           v.config.camera = lens == "right" ? o.sim.camera : wrong_camera(o.sim.camera, c.focal_error, lens);
           v.config.camera.readout_s = c.as_global ? 0 : c.readout_s;
           if (sigma > 0) v.config.measurement.sigma_px = sigma;
-          if (c.backend == "window") {
-            v.config.backend = PF_BACKEND_WINDOW;
-            v.config.map.features_in_view = kWindowFeatures;
-          }
+          c.backend.apply(v.config, c.max_features);
           if (c.no_planes) v.config.plane.enabled = 0;
-          if (c.max_features > 0) v.config.capacity.max_features = c.max_features;
           if (c.max_state_dim > 0) v.config.capacity.max_state_dim = c.max_state_dim;
           if (c.max_planes > 0) v.config.capacity.max_planes = c.max_planes;
           v.start = start == "rectangle" ? RenderedStart::kRectangle
@@ -283,7 +279,6 @@ int run(const Choices& c) {
       return refuse("the lens is right, exact, consider or estimate");
   for (const std::string& masks : c.masks)
     if (masks_by_name(masks) < 0) return refuse("--masks is none, partial or whole");
-  if (c.backend != "filter" && c.backend != "window") return refuse("--backend is filter or window");
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.frames < 1 || c.frames > 100000)
     return refuse("--seeds, --jobs and --frames must be positive");
   if (c.relative < 0) return refuse("--relative is a number of frames, or 0");
@@ -309,7 +304,7 @@ int run(const Choices& c) {
   json out = {{"experiment", "rendered"},
               {"settings",
                {{"scene", c.scene},
-                {"backend", c.backend},
+                {"backend", c.backend.name},
                 {"first_seed", c.first_seed},
                 {"noise_grey", c.noise},
                 {"exposure_s", c.exposure_s},
@@ -341,7 +336,7 @@ void add_rendered(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("rendered", "Honesty of the whole library on rendered frames");
   command->add_option("--scene", c->scene, "desk room corridor wall person exposure repeat bushes road");
-  command->add_option("--backend", c->backend, "filter or window");
+  c->backend.add_to(*command);
   command->add_option("--start", c->starts,
                       "rectangle: found by itself; points: its corners, about a pose from its prior");
   command->add_option("--seeds", c->seeds, "how many runs");

@@ -119,6 +119,25 @@ void run_one(int index, void* context) {
 
 }  // namespace
 
+std::vector<double> rmse_of(const Runs& runs) {
+  std::vector<double> all;
+  for (int s = 0; s < runs.seeds; ++s) {
+    double square = 0, count = 0;
+    for (int f = 0; f < runs.frames; ++f) {
+      const FrameRow& row = runs.row(s, f);
+      if (!(row.nees_position >= 0)) continue;
+      square += static_cast<double>(row.error_m) * static_cast<double>(row.error_m);
+      count += 1;
+    }
+    all.push_back(std::sqrt(square / std::max(1.0, count)));
+  }
+  return all;
+}
+
+json of_seeds(const std::vector<double>& values) {
+  return {{"median", median(values)}, {"worst", *std::max_element(values.begin(), values.end())}, {"seeds", values}};
+}
+
 bool run_all(Experiment& x, int processes, const char* title) {
   x.frames = x.bed.frames;
   const auto seeds = static_cast<std::size_t>(x.seeds), frames = static_cast<std::size_t>(x.frames);

@@ -30,6 +30,12 @@ struct Experiment : Runs {
 /// nees_position, nees_pose, camera_rmse_m, state_dim, NIS and inliers of the frames that have a valid covariance.
 nlohmann::json summarise_frames(const Runs& runs);
 
+/// Root mean square of the positions' errors of each run.
+std::vector<double> rmse_of(const Runs& runs);
+
+/// Median and worst of one value per seed, and all of them.
+nlohmann::json of_seeds(const std::vector<double>& values);
+
 /// Runs all seeds, in that many processes. False when one of them died.
 bool run_all(Experiment& experiment, int processes, const char* title);
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "../lib/command_line.h"
+#include "backend_option.h"
 #include "commands.h"
 #include "report.h"
 #include "statistics.h"
@@ -21,15 +22,18 @@ struct Case {
   bool planes;  ///< are looked for
 };
 
-constexpr double kDepth = 5;  // of the fronts, roughly: what a point without a wall begins with [m]
+const std::vector<std::string> kDefaultCases = {"refined", "exact", "points"};
+constexpr double kDepth = 5;    // of the fronts, roughly: what a point without a wall begins with [m]
+constexpr int kStateDim = 500;  // rows of the filter, where none are asked for
 const Case kCases[] = {{"refined", StreetPlan::kRefined, true},
                        {"exact", StreetPlan::kExact, true},
                        {"points", StreetPlan::kNone, true},
                        {"plain", StreetPlan::kNone, false}};
 
 struct Choices {
-  std::vector<std::string> cases = {"refined", "exact", "points"};
-  int seeds = 5, jobs = 1, patches = 16, cameras = 8, max_state_dim = 500, max_features = 0;
+  BackendOption backend;
+  std::vector<std::string> cases;  ///< none: all that the back end can do of kDefaultCases
+  int seeds = 5, jobs = 1, patches = 16, cameras = 8, max_state_dim = 0, max_features = 0;
   std::uint64_t first_seed = 1;
   bool no_points = false;
   StreetOptions street;
@@ -48,6 +52,16 @@ int fail(const std::string& what) {
   return 2;
 }
 
+/// What the window has not of what is asked for; empty: nothing.
+std::string refused_by_window(const Choices& c) {
+  if (c.no_points) return "--no-points measures patches on walls, which the window has not";
+  if (c.max_state_dim > 0) return "--max-state-dim sizes a filter; the room of the window is --max-features";
+  for (const std::string& name : c.cases)
+    if (name != "points" && name != "plain")
+      return "case " + name + " has walls of a plan, which the window does not take; points and plain have none";
+  return "";
+}
+
 /// Patches on the walls beside points, or alone. Without walls there are points alone.
 pf_config_t config_of(const Choices& c, const Case& of) {
   pf_config_t config;
@@ -56,9 +70,9 @@ pf_config_t config_of(const Choices& c, const Case& of) {
   config.camera = {PF_CAMERA_PINHOLE,  640, 480, f, f, 319.5, 239.5, {}, 0, PF_CAMERA_EXACT,
                    PF_TIMESTAMPS_REAL, 0,   0,   0, {}};
   config.first_depth.depth = kDepth;
-  config.capacity.max_state_dim = c.max_state_dim;
-  config.capacity.max_features =
-      c.max_features > 0 ? c.max_features : std::max(config.capacity.max_features, c.max_state_dim / 3);
+  config.capacity.max_state_dim = c.max_state_dim > 0 ? c.max_state_dim : kStateDim;
+  config.capacity.max_features = std::max(config.capacity.max_features, config.capacity.max_state_dim / 3);
+  c.backend.apply(config, c.max_features);
   config.plane.enabled = of.planes;
   if (of.plan == StreetPlan::kNone) return config;
   config.capacity.max_patches = c.patches;
@@ -81,26 +95,6 @@ void run_one_seed(int index, void* context) {
   }
   run_street(job.choices->street, variants, job.choices->first_seed + static_cast<std::uint64_t>(index), summaries,
              rows);
-}
-
-/// Root mean square of the positions' errors of each run.
-std::vector<double> rmse_of(const Runs& runs) {
-  std::vector<double> all;
-  for (int s = 0; s < runs.seeds; ++s) {
-    double square = 0, count = 0;
-    for (int f = 0; f < runs.frames; ++f) {
-      const FrameRow& row = runs.row(s, f);
-      if (!(row.nees_position >= 0)) continue;
-      square += static_cast<double>(row.error_m) * static_cast<double>(row.error_m);
-      count += 1;
-    }
-    all.push_back(std::sqrt(square / std::max(1.0, count)));
-  }
-  return all;
-}
-
-json of_seeds(const std::vector<double>& values) {
-  return {{"median", median(values)}, {"worst", *std::max_element(values.begin(), values.end())}, {"seeds", values}};
 }
 
 json summarise_case(const Runs& runs, const StreetSummary* summaries) {
@@ -179,7 +173,10 @@ void print_case(const char* name, const json& j) {
         number("/walls/doubted_ever"));
 }
 
-int run(const Choices& c) {
+int run(Choices c) {
+  const std::string refused = c.backend.is_window() ? refused_by_window(c) : "";
+  if (!refused.empty()) return fail("--backend window: " + refused);
+  if (c.cases.empty()) c.cases = c.backend.is_window() ? std::vector<std::string>{"points"} : kDefaultCases;
   if (c.seeds < 1 || c.seeds > 10000 || c.jobs < 1 || c.street.frames < 1 || c.street.frames > 100000)
     return fail("--seeds, --jobs and --frames must be positive");
   Job job{&c, {}, nullptr, nullptr};
@@ -190,7 +187,7 @@ int run(const Choices& c) {
     job.cases.push_back(*found);
   }
   const char* field = nullptr;
-  const pf_config_t config = config_of(c, kCases[0]);
+  const pf_config_t config = config_of(c, job.cases.front());
   if (pf_config_check(&config, &field) != PF_OK) return fail(std::string("option out of range: ") + field);
   const auto seeds = static_cast<std::size_t>(c.seeds), frames = static_cast<std::size_t>(c.street.frames);
   const std::size_t count = seeds * job.cases.size();
@@ -200,11 +197,12 @@ int run(const Choices& c) {
   if (!in_processes(c.seeds, c.jobs, "street", run_one_seed, &job)) return fail("a run did not come to its end");
   json out = {{"experiment", "street"},
               {"settings",
-               {{"points", !c.no_points},
+               {{"backend", c.backend.name},
+                {"points", !c.no_points},
                 {"first_seed", c.first_seed},
                 {"frames", c.street.frames},
                 {"rate_hz", c.street.rate_hz},
-                {"max_state_dim", c.max_state_dim},
+                {"max_state_dim", config.capacity.max_state_dim},
                 {"max_features", config.capacity.max_features},
                 {"sigma_rotation_deg", c.street.sigma_rotation_deg},
                 {"sigma_offset_m", c.street.sigma_offset}}}};
@@ -223,10 +221,11 @@ int run(const Choices& c) {
 void add_street(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("street", "A walk of 72 m along fronts that a coarse plan knows");
+  c->backend.add_to(*command);
   command->add_flag("--no-points", c->no_points, "patches on the fronts alone, without points");
   command->add_option("--patches", c->patches, "that are followed at a time, at most");
   command->add_option("--cameras", c->cameras, "reference cameras of patches, at most");
-  command->add_option("--max-state-dim", c->max_state_dim, "rows of the covariance");
+  command->add_option("--max-state-dim", c->max_state_dim, "rows of the covariance (default 500)");
   command->add_option("--max-features", c->max_features,
                       "points of the map (0: a third of the rows, and at least 100)");
   command->add_option("--cases", c->cases, "one or more: refined, exact, points, plain (points without planes)");

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "../lib/command_line.h"
+#include "backend_option.h"
 #include "commands.h"
 #include "context.h"
 #include "report.h"
@@ -25,7 +26,8 @@ constexpr double kGoal = 0.95;                          // of pixels right
 constexpr double kRoadLostError = 7.2;                  // [m] a tenth of the way
 
 struct Choices {
-  std::string scene, json_file, table, backend = "filter";
+  std::string scene, json_file, table;
+  BackendOption backend;
   int seeds = 5, frames = 0, jobs = 2, template_px = 15;
   std::uint64_t seed = 1;
   double misfit = 0;  // 0: the default of map.max_misfit
@@ -138,7 +140,7 @@ pf_config_t config_of(const pf_camera_t& camera, const Choices& c, int masks, do
   config.map.masks = masks;
   if (masks == PF_MASKS_WHOLE) allow_research(&config);
   config.map.max_misfit = misfit;
-  config.backend = c.backend == "window" ? PF_BACKEND_WINDOW : PF_BACKEND_FILTER;
+  config.backend = c.backend.is_window() ? PF_BACKEND_WINDOW : PF_BACKEND_FILTER;
   return config;
 }
 
@@ -162,7 +164,6 @@ int run(const Choices& wanted) {
     return fail(c.scene + ": " + (field != nullptr ? field : "the config") +
                 " is out of its range: --template-px odd, 9 to 31, --misfit 0.01 to 100");
 
-  if (c.backend != "filter" && c.backend != "window") return fail(c.scene + ": --backend is filter or window");
   const bool chooses = c.scene == "clutter", is_road = c.scene == "road";
   if (is_road) options.lost_error = kRoadLostError;
   double best_misfit = c.misfit;
@@ -200,7 +201,7 @@ int run(const Choices& wanted) {
                 {"first_seed", c.seed},
                 {"frames", options.sim.frames},
                 {"template_px", c.template_px},
-                {"backend", c.backend},
+                {"backend", c.backend.name},
                 {"misfit", c.misfit},
                 {"whole_best_misfit", best_misfit}}},
               {"tried", tried}};
@@ -265,7 +266,7 @@ void add(CLI::App& app, int& result, const std::string& scene, const std::string
   command->add_option("--frames", c->frames, "of each run (0: the scene's own)");
   command->add_option("--template-px", c->template_px, "side of the templates, odd, 9 to 31");
   command->add_option("--misfit", c->misfit, "map.max_misfit of partial and whole (0: its default)");
-  command->add_option("--backend", c->backend, "filter or window");
+  c->backend.add_to(*command);
   command->add_option("--csv", c->table, "folder for a table of each case of the first seed, frame by frame")
       ->check(pf::tools::writable_folder());
   command->add_option("--jobs", c->jobs, "processes at a time");

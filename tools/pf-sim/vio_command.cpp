@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../lib/command_line.h"
+#include "backend_option.h"
 #include "commands.h"
 #include "planefold_platform/sim.h"
 #include "report.h"
@@ -23,6 +24,7 @@ constexpr double kSigmaMountRad = 2 * 3.14159265358979 / 180, kSigmaMountM = 0.0
                  kSigmaReadoutS = 0.01;
 
 struct Choices {
+  BackendOption backend;
   VioOptions vio;
   int seeds = 20, jobs = 2;
   std::uint64_t first_seed = 1;
@@ -355,8 +357,18 @@ json of_fault(const Choices& c, const VioSummary* s) {
           {"refused_samples", refused}};
 }
 
+/// What the window has not of what is asked for; empty: nothing.
+std::string refused_by_window(const Choices& c) {
+  if (!c.no_imu) return "it takes no samples of an inertial unit; --no-imu is the same walk without";
+  if (!c.vio.rendered) return "it takes pictures alone; add --rendered";
+  return "";
+}
+
 int run(Choices c) {
   const VioOptions& o = c.vio;
+  const std::string refused = c.backend.is_window() ? refused_by_window(c) : "";
+  if (!refused.empty()) return fail("--backend window: " + refused);
+  c.vio.window = c.backend.is_window();
   if (c.seeds < 1 || c.seeds > 10000) return fail("--seeds is 1 to 10000");
   if (c.jobs < 1) return fail("--jobs is 1 or more");
   if (!(o.seconds > 1 && o.seconds <= 3600)) return fail("--seconds is above 1 and at most 3600");
@@ -416,11 +428,21 @@ int run(Choices c) {
     if (job.summaries[i].done == 0) return fail("the library refused the config", 1);
   json out = summarise_vio(c, job.rows, job.summaries);
   out["experiment"] = "vio";
-  out["settings"] = {{"seconds", o.seconds},         {"rate_hz", o.rate_hz},       {"imu_rate_hz", o.imu.rate_hz},
-                     {"noise_scale", c.noise_scale}, {"rest_s", o.rest_s},         {"sigma_px", o.sigma_px},
-                     {"rendered", o.rendered},       {"delay_s", o.imu.delay_s},   {"estimate", c.estimate},
-                     {"imu", c.vio.use_imu},         {"first_seed", c.first_seed}, {"blackout_at_s", o.blackout_at_s},
-                     {"blackout_s", o.blackout_s},   {"readout_s", o.readout_s}};
+  out["settings"] = {{"seconds", o.seconds},
+                     {"rate_hz", o.rate_hz},
+                     {"imu_rate_hz", o.imu.rate_hz},
+                     {"noise_scale", c.noise_scale},
+                     {"rest_s", o.rest_s},
+                     {"sigma_px", o.sigma_px},
+                     {"rendered", o.rendered},
+                     {"delay_s", o.imu.delay_s},
+                     {"estimate", c.estimate},
+                     {"imu", c.vio.use_imu},
+                     {"backend", c.backend.name},
+                     {"first_seed", c.first_seed},
+                     {"blackout_at_s", o.blackout_at_s},
+                     {"blackout_s", o.blackout_s},
+                     {"readout_s", o.readout_s}};
   if (c.vio.fault != VioFault::kNone) out["fault"] = of_fault(c, job.summaries);
   if (!c.still) print_vio(out, c.vio.use_imu);
   if (c.vio.fault != VioFault::kNone) print_fault(out);
@@ -445,6 +467,7 @@ void add_vio(CLI::App& app, int& result) {
   c->vio.imu.R_BC = pf::sim::rotation_exp({0.02, -0.03, 1.55});
   c->vio.imu.p_BC = {0.05, -0.02, 0.03};
   CLI::App* command = app.add_subcommand("vio", "A hand-held walk with an inertial unit: honesty, scale and drift");
+  c->backend.add_to(*command);
   command->add_option("--seeds", c->seeds, "how many runs");
   command->add_option("--first-seed", c->first_seed, "seed of the first run");
   command->add_option("--seconds", c->vio.seconds, "of each run");

@@ -52,6 +52,7 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
     config.first_depth.depth = 2;
     config.plane.enabled = 0;
   }
+  if (o.window) use_window(config);
   if (!o.use_imu) return config;
   if (o.fault == VioFault::kSaturated) {
     config.imu.gyro_range = kGyroRange;

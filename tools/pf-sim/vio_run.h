@@ -47,6 +47,7 @@ struct VioOptions {
   double turn_rad_s = 0;  ///< of a camera on a turntable that rests otherwise
   bool hand = false;      ///< moves before the lens
   bool use_imu = true;
+  bool window = false;            ///< the back end; pictures without samples alone
   bool rendered = false;          ///< pictures of the room of 4 m, in place of points
   std::string scene = "room";     ///< of the pictures
   double shake = 1;               ///< times what the hand of that scene shakes

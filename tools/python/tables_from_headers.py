@@ -12,7 +12,7 @@ import sys
 import header_reader
 
 # Not of Python: what only describes memory of the caller, or is given as text, lists and arrays there.
-LEFT_OUT = {"pf_image_t", "pf_walls_t", "pf_wall_t", "pf_sequence_info_t", "PF_SEQUENCE_MESSAGE", "PF_WALLS_MESSAGE", "PF_WALLS_MAX",
+LEFT_OUT = {"pf_image_t", "pf_mask_t", "pf_rectangle_t", "pf_walls_t", "pf_wall_t", "pf_sequence_info_t", "PF_SEQUENCE_MESSAGE", "PF_WALLS_MESSAGE", "PF_WALLS_MAX",
             "PF_WALLS_NAME"}
 
 

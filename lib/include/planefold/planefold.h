@@ -282,6 +282,9 @@ typedef struct pf_config {
     /* Side of a feature's template with map.masks, odd, 9 .. 31 px; without, it takes no memory.
      * Default 15 */
     int32_t template_px;
+    /* Pixels of the mask that pf_set_mask may set: 0 (none), or camera.width * camera.height at
+     * least. It is kept as one bit for 4x4 of them: 2.4 kB for 640x480. Default 0 */
+    int32_t mask;
   } capacity;
 
   /* Capacities of PF_BACKEND_WINDOW, of no meaning with the filter. With the window, max_state_dim,
@@ -521,6 +524,33 @@ typedef struct pf_image {
   int64_t t_ns;          /* middle of the exposure, after that of every earlier frame */
 } pf_image_t;
 
+/* Pixels from (x, y) on, which may reach beyond the image. */
+typedef struct pf_rectangle {
+  int32_t x, y, width, height; /* [px] width and height >= 0 */
+} pf_rectangle_t;
+
+/* What in the images is not the scene: the carrier's own body, a date or a frame that a recorder
+ * has drawn. By pixels, by rectangles or both. */
+typedef struct pf_mask {
+  /* One byte a pixel, row by row: 0 is masked, all else is scene. Null: rectangles alone */
+  const uint8_t* pixels;
+  int32_t width, height; /* [px] those of the calibration */
+  int32_t stride;        /* bytes from row to row, >= width; not read without pixels */
+  int32_t num_rectangles;
+  const pf_rectangle_t* rectangles; /* that are masked; null with num_rectangles 0 */
+} pf_mask_t;
+
+/* Masks a part of all images from the next one on, in place of the mask before; a mask in which all
+ * is scene ends it, and so does pf_reset. What is masked is never searched, and nothing begins, is
+ * aligned or is recognised there (lib/docs/mask.md). Of each 4x4 px a masked pixel masks all. Bytes
+ * and rectangles are read during the call only. Pushed observations are not masked.
+ * PF_NOTE_UNUSABLE: done, but of the 8x6 equal parts of the image, in which features begin, fewer
+ * than eight hold any scene, which is too little for tracking.
+ * PF_ERROR_FULL: capacity.mask is 0. PF_ERROR_NULL: neither pixels nor rectangles. PF_ERROR_SIZE:
+ * not the size of the images. PF_ERROR_RANGE: everything would be masked, or a rectangle has a
+ * negative side. */
+PF_API pf_status_t pf_set_mask(pf_slam_t* slam, const pf_mask_t* mask);
+
 /* Track one frame. PF_OK means tracked. An image that is byte for byte the one before repeats that
  * one's pose and status under its own time and is counted; nothing is measured, and the next
  * prediction begins at the image's first time. A camera that is frozen for longer than
@@ -621,10 +651,11 @@ typedef struct pf_feature {
   uint32_t id; /* never used twice */
   /* pf_observation_t.id; of a point of the target: its index. 0 of what an image began */
   uint32_t external_id;
-  int32_t kind;         /* pf_feature_kind_t */
-  int32_t is_target;    /* 1 for a point of the target */
-  uint32_t plane;       /* id of the plane that it was folded into or began on, or 0 */
-  int32_t on_trial;     /* 1: began on that plane, and its own parallax has not shown it */
+  int32_t kind;      /* pf_feature_kind_t */
+  int32_t is_target; /* 1 for a point of the target */
+  uint32_t plane;    /* id of the plane that it is folded into, or began on, or 0 */
+  /* 1: began on that plane, and has not shown by its own parallax that it lies there. */
+  int32_t on_trial;
   uint32_t map_id;      /* as in pf_pose_t */
   double p_W[3];        /* [m] inverse depth: at the mean inverse depth */
   double covariance[9]; /* 3x3; inverse depth: to first order */
@@ -823,6 +854,10 @@ typedef struct pf_report {
   int32_t templates;
   int32_t keyframes; /* of the window: that are kept */
   double template_area;
+  /* ln(p / (1 - p)) of the probability that the map's pose in this frame is right, with what the
+   * frame says for it (lib/docs/belief.md): 3 is wrong once in 20, and a frame is tracked from 6.2
+   * on, once in 500. -13.8 .. 13.8; 0 before there is a pose. */
+  double log_odds;
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

@@ -5,8 +5,10 @@
 #include "api/checks.h"
 #include "api/context.h"
 #include "api/research.h"
+#include "base/limits.h"
 #include "covariance/select.h"
 #include "frame/tuning.h"
+#include "geometry/camera_distortion.h"
 
 namespace pf {
 namespace {
@@ -25,10 +27,10 @@ constexpr Range kIntegers[] = {
     PF_FIELD(plane.enabled, 0, 1),
     PF_FIELD(capacity.max_state_dim, 32, 2000),
     PF_FIELD(capacity.max_features, 8, 1000),
-    PF_FIELD(capacity.max_observations, 8, 200),
-    PF_FIELD(capacity.max_planes, 1, 64),
+    PF_FIELD(capacity.max_observations, 8, pf::kMaxObservations),
+    PF_FIELD(capacity.max_planes, 1, pf::kMaxPlanes),
     PF_FIELD(capacity.max_kept_views, 0, 200),
-    PF_FIELD(capacity.max_patches, 0, 32),
+    PF_FIELD(capacity.max_patches, 0, pf::kMaxPatches),
     PF_FIELD(capacity.patch_side_px, 32, 128),
     PF_FIELD(capacity.max_cameras, 0, 64),
     PF_FIELD(capacity.template_px, pf::PlanarTemplate::kMinSide, pf::PlanarTemplate::kMaxSide),
@@ -40,6 +42,7 @@ constexpr Range kIntegers[] = {
     PF_FIELD(plane.min_points, 4, 60),
     PF_FIELD(map.features_in_view, 0, 1000),
     PF_FIELD(map.border_px, 4, 64),
+    PF_FIELD(capacity.mask, 0, INT32_MAX),
     PF_FIELD(capacity.max_imu_samples, 0, 10000),
 };
 
@@ -105,11 +108,11 @@ const char* shape_from(const pf_camera_t& c, const pf_config_t& config, LensSigm
     const double value = field_at<double>(config, r.offset);
     if (!(value >= r.low && value <= r.high)) return r.name;
   }
-  constexpr int kUsed[5] = {0, 1, 5, 4, 1};  // a pinhole may get k1
+  const int used = num_uncertain_distortion(static_cast<CameraModel>(c.model));
   for (int i = 0; i < 8; ++i) {
     const double sigma = c.sigma_distortion[i];
-    if (!(sigma >= 0 && sigma <= 1) || (i >= kUsed[c.model] && sigma != 0)) return "camera.sigma_distortion";
-    if (i < 5) sigmas->distortion[i] = static_cast<Scalar>(sigma);
+    if (!(sigma >= 0 && sigma <= 1) || (i >= used && sigma != 0)) return "camera.sigma_distortion";
+    if (i < kLensDistortion) sigmas->distortion[i] = static_cast<Scalar>(sigma);
   }
   sigmas->focal = static_cast<Scalar>(c.sigma_focal);
   sigmas->aspect = static_cast<Scalar>(c.sigma_aspect);
@@ -256,6 +259,9 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   const double intrinsics[4] = {c.fx, c.fy, c.cx, c.cy};
   const char* bad = make_camera(c.model, c.width, c.height, intrinsics, c.distortion, &settings->camera);
   if (bad != nullptr) return *field = bad, Status::kConfig;
+  if (config.capacity.mask != 0 && config.capacity.mask < c.width * c.height)
+    return *field = "capacity.mask", Status::kConfig;
+  settings->mask.is_asked_for = config.capacity.mask != 0;
   const bool moves = settings->body.has(BodyPart::kVelocity);
   if (!(c.readout_s >= 0 && c.readout_s <= (moves ? kLongestReadout : 0)))
     return *field = "camera.readout_s", Status::kConfig;
@@ -309,8 +315,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->max_coast_ns = static_cast<std::int64_t>(config.motion.coast_s * 1e9);
   settings->restart_ns = static_cast<std::int64_t>(config.motion.restart_s * 1e9);
   settings->keep_gauge = research.keep_gauge != 0;
-  settings->imu_buffer = config.capacity.max_imu_samples;
-  settings->imu_ranges = {static_cast<Scalar>(config.imu.gyro_range), static_cast<Scalar>(config.imu.accel_range)};
+  settings->imu.buffer = config.capacity.max_imu_samples;
+  settings->imu.ranges = {static_cast<Scalar>(config.imu.gyro_range), static_cast<Scalar>(config.imu.accel_range)};
   settings->hooks.clock_ns = config.clock_ns;
   settings->hooks.log = config.log;
   settings->hooks.user = config.user;
@@ -365,6 +371,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->motion.coast_s = 1.0;
   config->motion.restart_s = 3.0;
   config->capacity.max_imu_samples = 0;
+  config->capacity.mask = 0;
   config->imu.gyro_range = 0;
   config->imu.accel_range = 0;
   config->imu.q_BC[0] = 1;

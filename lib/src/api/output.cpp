@@ -192,7 +192,7 @@ pf_status_t pf_get_template(const pf_slam_t* slam, uint32_t feature, pf_template
   return PF_OK;
 }
 
-pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, double covariance[100]) {
+pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, double* covariance) {
   PF_REQUIRE_CONTEXT(slam);
   if (camera == nullptr) return PF_ERROR_NULL;
   pf::Scalar C[pf::kLensParameters][pf::kLensParameters];
@@ -208,9 +208,10 @@ pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera, double cov
   }
   if (slam->session.settings().lens.rows.has_readout()) camera->readout_s = static_cast<double>(lens.readout);
   if (covariance == nullptr) return PF_OK;
-  for (int i = 0; i < 10; ++i)
-    for (int j = 0; j < 10; ++j) covariance[10 * i + j] = static_cast<double>(C[i][j]);
-  pf::repair_covariance(covariance, 10);
+  for (int i = 0; i < pf::kLensParameters; ++i)
+    for (int j = 0; j < pf::kLensParameters; ++j)
+      covariance[pf::kLensParameters * i + j] = static_cast<double>(C[i][j]);
+  pf::repair_covariance(covariance, pf::kLensParameters);
   return PF_OK;
 }
 
@@ -247,6 +248,7 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->nis_dof = r.nis_dof;
   report->duplicates = r.duplicates;
   report->covariance_repairs = r.repairs;
+  report->log_odds = view.tracking().has_pose() ? static_cast<double>(view.tracking().belief().log_odds()) : 0.0;
   report->sigma_gate_px = static_cast<double>(view.noise().sigma_gate());
   report->sigma_info_px = static_cast<double>(view.noise().sigma_info());
   report->correlation_frames = static_cast<double>(view.noise().correlation_frames());

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <new>
 
 #include "base/assert.h"
 
@@ -40,6 +41,21 @@ class Arena {
     (void)zone;
 #endif
     return reinterpret_cast<T*>(block_ + begin);
+  }
+
+  /// Constructs a T in a piece of the block and calls layout(T&), which takes the pieces that it holds. Null when counting: layout is then
+  /// called with a T that goes away again.
+  template <typename T, typename Layout, typename... Arguments>
+  T* place(Layout&& layout, Arguments&... arguments) {
+    T* const at = take<T>(1);
+    if (at == nullptr) {
+      T counted(arguments...);
+      layout(counted);
+      return nullptr;
+    }
+    T* const made = new (at) T(arguments...);
+    layout(*made);
+    return made;
   }
 
   std::size_t used() const { return used_; }

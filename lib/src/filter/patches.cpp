@@ -27,7 +27,7 @@ bool Filter::predict_patch(const Camera& lens, int patch, int plane, const Vec2*
   using model::ReferenceCamera;
   const Block &corners = state_.block[patch], &reference = state_.block[corners.parent], &wall = state_.block[plane];
   PF_ASSERT(corners.kind == BlockKind::kPatchCorners);
-  const bool rolls = lens.readout != Scalar(0) && state_.layout.has(BodyPart::kVelocity);
+  const bool rolls = rows_roll(state_, lens);
   const int lens_rows = state_.lens_rows.count;
   CameraAt camera = camera_at(state_, Scalar(0));
   const Part body = rolls ? camera_at(state_, lens.readout).part() : camera.part();

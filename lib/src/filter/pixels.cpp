@@ -116,11 +116,11 @@ bool Filter::predict_at(const Camera& lens, const CameraAt& camera, int slot, Pi
 bool Filter::predict_pixel(const Camera& lens, int slot, PixelMeasurement* out) const {
   Mat26 J_camera;
   if (!predict_at(lens, camera_at(state_, Scalar(0)), slot, out, &J_camera)) return false;
-  if (lens.readout == Scalar(0) || !state_.layout.has(BodyPart::kVelocity)) return true;
+  if (!rows_roll(state_, lens)) return true;
   // Where the pixel is says when it was read out, which says where it is: the camera moves little in that time.
   CameraAt camera;
   for (int round = 0; round < 2; ++round) {
-    camera = camera_at(state_, row_time(lens, out->predicted.y()));
+    camera = camera_of_row(state_, lens, out->predicted.y());
     if (!predict_at(lens, camera, slot, out, &J_camera)) return false;
   }
   if (camera.tau != Scalar(0) && state_.layout.has(BodyPart::kMountRotation))

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "base/limits.h"
 #include "filter_slam/pose/usable_pose.h"
 #include "frame/feature_upkeep.h"
 #include "frame/frame_entry.h"
@@ -53,14 +54,13 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   const StartProgress& progress = start_.recorder().progress();
   const bool first = !tracking_.has_pose();
   update_.proposals().begin_frame(data_.since_last_ns);
-  const ConsensusRule rule = images_.consensus_rule(progress, data_.since_last_ns);
   if (first) {
     if (!start_.start_in_image()) return end_frame();
-  } else if (tracking_.is_relocalising(progress) && rule == ConsensusRule::kBeyondChance) {
-    images_.relocaliser().recover();
   } else {
-    const bool parallax_lasts = start_.recorder().learns_lens_from_first_depths();
-    unit_.measure(data_.follows, [&](bool) { images_.measure(rule, progress, data_.median_depth, parallax_lasts); });
+    const MeasureMode mode = {progress.pending(), false, data_.median_depth,
+                              start_.recorder().learns_lens_from_first_depths()};
+    const bool is_lost = tracking_.is_relocalising(progress);
+    unit_.measure(data_.follows, [&](bool) { images_.recover_or_measure(mode, is_lost); });
   }
   // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
   PatchKeeper* const patches = upkeep_.patches();
@@ -106,6 +106,7 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
   if (tracking_.started_over()) return end_frame();
   if (!tracking_.has_pose()) start_.start_with_observations();
   unit_.measure(data_.follows, [&](bool again) { observations_.measure(observations, count, again); });
+  if (frame_.report.inliers > 0) tracking_.belief().trust();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     upkeep_.maintain(true, start_.recorder().progress());
@@ -146,7 +147,9 @@ void FilterSlam::begin_frame(std::int64_t t_ns) {
   data_.follows = tracking_.has_pose() && !tracking_.coasting_or_lost() && !start_.recorder().progress().pending();
   frame_.begin(t_ns);
   if (data_.map_discredited) begin_new_map("the map's scale came from a unit that is doubted: a new map begins");
-  tracking_.begin_frame();
+  if (images_.is_map_fixed() && tracking_.has_pose() && !map_.planes.has_known())
+    begin_new_map("part of the picture stands still while the rest moves: it is masked, and a new map begins");
+  tracking_.begin_frame(data_.since_last_ns);
   if (!tracking_.has_pose()) {
     motion_.init();  // control input is for one frame only
     return;
@@ -172,7 +175,7 @@ Status FilterSlam::end_frame() {
   if (tracking_.has_pose() && !upkeep_.repair_estimate()) start_over();
   const StartProgress& progress = start_.recorder().progress();
   if (tracking_.is_tracked(frame_.report) && !progress.pending()) {
-    Scalar patch_depth[PatchKeeper::kMaxPatches];
+    Scalar patch_depth[kMaxPatches];
     const int patches = upkeep_.patches() != nullptr ? upkeep_.patches()->inlier_depths(patch_depth) : 0;
     if (!is_pose_usable(filter_, map_, frame_, patch_depth, patches, &data_.median_depth))
       tracking_.set_unusable();

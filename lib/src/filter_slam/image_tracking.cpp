@@ -15,33 +15,24 @@ void ImageTracking::init() {
   relocaliser_.init();
   noise_.init(settings_.sigma_px);
   warnings_ = FitWarnings();
+  is_map_fixed_ = false;
 }
 
 void ImageTracking::forget_map() {
+  is_map_fixed_ = false;
   front_end_.search().forget_view();
   relocaliser_.init();
 }
 
-/// A match along a ray whose depth is open passes nearly everywhere, so not every right frame is beyond chance while fewer features have a
-/// depth of their own than a tracked frame needs. A map as young as that is tracked from frame to frame, and not found again after a gap.
-ConsensusRule ImageTracking::consensus_rule(const StartProgress& start, std::int64_t since_last_ns) const {
-  if (start.pending()) return ConsensusRule::kStart;
-  const std::int64_t proposed_ns = update_.proposals().last().frames > 0 ? since_last_ns : 0;
-  const double gap_s = seconds(elapsed_ns(tracking_.last_tracked_ns(), frame_.report.t_ns) - proposed_ns);
-  if (tracking_.is_relocalising(start) && gap_s > static_cast<double>(tuning::tracking::kMaxYoungGap))
-    return ConsensusRule::kBeyondChance;
-  int known = 0;
-  for (int i = 0; i < map_.features.capacity() && known < settings_.min_inliers; ++i)
-    known += map_.features.used(i) && filter_.state().block[map_.features[i].slot].kind != BlockKind::kInverseDepth;
-  if (known < settings_.min_inliers) return ConsensusRule::kMostAgree;
-  const bool follows = tracking_.is_followed() && gap_s <= static_cast<double>(tuning::tracking::kMaxYoungGap);
-  return follows ? ConsensusRule::kFollowed : ConsensusRule::kBeyondChance;
-}
-
-void ImageTracking::measure(ConsensusRule rule, const StartProgress& start, Scalar median_depth, bool parallax_lasts) {
-  update_.ask_frames(tracking_.is_after_gap(start) ? tuning::relocaliser::kFramesNearby : 0, median_depth);
-  front_end_.measure(rule, median_depth, parallax_lasts);
-  update_.ask_frames(0, median_depth);
+void ImageTracking::recover_or_measure(const MeasureMode& mode, bool is_lost) {
+  MeasureMode now = mode;
+  now.is_vague = is_lost && !relocaliser_.is_prediction_narrow();
+  if (now.is_vague) tracking_.belief().spend();
+  front_end_.measure(now);
+  if (now.is_vague && frame_.report.inliers == 0) relocaliser_.recover();
+  is_map_fixed_ = front_end_.search().note_fixed();
+  // What was measured first may have been believed, and the rest of the frame contradicts it.
+  if (!mode.starts && frame_.report.inliers > 0 && !tracking_.belief().is_tracked()) tracking_.set_unusable();
 }
 
 void ImageTracking::learn_noise() {

@@ -15,8 +15,7 @@
 #include "frame/tracking_state.h"
 #include "map/map.h"
 
-/// Tracks the camera in images: decides how sure a consensus has to be, whether the map has to be found again, and learns from what was
-/// found.
+/// Tracks the camera in images: measures them, finds the map again, and learns from what was found.
 
 namespace pf {
 
@@ -26,22 +25,21 @@ class ImageTracking {
                 FeatureKeeper& features, PixelUpdate& update)
       : settings_(settings),
         filter_(filter),
-        map_(map),
         frame_(frame),
         tracking_(tracking),
-        update_(update),
-        front_end_(settings, filter, map, frame, features, update, noise_),
-        relocaliser_(settings, filter, map, frame, front_end_.search(), update) {}
+        front_end_(settings, filter, map, frame, features, update, tracking.belief(), noise_),
+        relocaliser_(settings, filter, map, frame, front_end_.search(), update, tracking.belief()) {}
 
   bool layout(Arena& arena);
   void init();
   /// The map is given up, and with it all poses.
   void forget_map();
 
-  /// Which consensus of this frame is believed. since_last_ns: from the frame before this one.
-  ConsensusRule consensus_rule(const StartProgress& start, std::int64_t since_last_ns) const;
-  /// Measures the frame, ImageFrontEnd::measure. After a gap, poses of frames in a row have to follow each other before one is used.
-  void measure(ConsensusRule rule, const StartProgress& start, Scalar median_depth, bool parallax_lasts);
+  /// Measures the frame, ImageFrontEnd::measure. is_lost: the last frame did not support its pose; the map is then searched for about other
+  /// poses too where the prediction is vague.
+  void recover_or_measure(const MeasureMode& mode, bool is_lost);
+  /// The last frame has shown that the map comes from what stands still in the picture (FixedFeatures).
+  bool is_map_fixed() const { return is_map_fixed_; }
   /// Learns the noise of matches from the inliers' residuals, and warns where they fit badly.
   void learn_noise();
   /// After a frame of any kind. image_usable: it is an image that shows something to track.
@@ -55,12 +53,11 @@ class ImageTracking {
  private:
   const Settings& settings_;
   Filter& filter_;
-  Map& map_;
   Frame& frame_;
   TrackingState& tracking_;
-  PixelUpdate& update_;
   NoiseModel noise_;
   FitWarnings warnings_;  ///< kept between frames
+  bool is_map_fixed_ = false;
   ImageFrontEnd front_end_;
   Relocaliser relocaliser_;
 };

@@ -1,7 +1,5 @@
 #include "filter_slam/map_upkeep.h"
 
-#include <new>
-
 namespace pf {
 
 bool MapUpkeep::layout(Arena& arena) {
@@ -13,10 +11,9 @@ bool MapUpkeep::layout(Arena& arena) {
 /// Patches take nothing where there are none.
 bool MapUpkeep::layout_patches(Arena& arena) {
   if (!kHasWalls || settings_.max_patches == 0) return arena.ok();
-  PatchKeeper* place = arena.take<PatchKeeper>(1);
-  if (place == nullptr) return PatchKeeper(settings_, filter_, map_, frame_, features_, tracking_).layout(arena);
-  patches_ = new (place) PatchKeeper(settings_, filter_, map_, frame_, features_, tracking_);
-  return patches_->layout(arena);
+  patches_ = arena.place<PatchKeeper>([&](PatchKeeper& made) { made.layout(arena); }, settings_, filter_, map_, frame_,
+                                      features_, tracking_);
+  return arena.ok();
 }
 
 void MapUpkeep::init() {
@@ -55,9 +52,8 @@ bool MapUpkeep::repair_estimate() {
 
 Status MapUpkeep::set_plane_vertical(std::uint32_t id, Scalar sigma) {
   if (!settings_.inertial || !tracking_.has_pose() || !filter_.is_metric()) return Status::kState;
-  for (int i = 0; i < map_.planes.capacity(); ++i)
-    if (map_.planes.used(i) && map_.planes[i].id == id) return planes_.verticals().tell(i, sigma);
-  return Status::kNothing;
+  const int entry = map_.planes.entry_of(id);
+  return entry < 0 ? Status::kNothing : planes_.verticals().tell(entry, sigma);
 }
 
 }  // namespace pf

@@ -20,7 +20,7 @@ inline float reliability(const Feature& f) {
 /// Whether a feature is found too seldom to be kept, or was not found too many times in a row.
 inline bool fails_too_often(const Feature& f) {
   using namespace tuning::feature_keeper;
-  const bool seldom = f.attempts >= kMinAttempts && 2 * f.observations < f.attempts;
+  const bool seldom = f.attempts >= kMinAttempts && kMaxAttempts * f.observations < f.attempts;
   const bool in_a_row = f.failures >= (f.observations < kMinAttempts ? kMaxEarlyFailures : kMaxFailures);
   return (f.failures > 0 && seldom) || in_a_row;
 }

@@ -17,8 +17,10 @@ bool FollowedView::find(const Camera& camera, const Pyramid& image) {
   if (!data_.is_kept) return false;
   Thumbnail now;
   make_thumbnail(image, &now);
+  ThumbnailMask mask;
+  make_thumbnail_mask(image, &mask);
   Quat q_before_now;
-  if (!find_rotation(camera, data_.thumbnail, now, &q_before_now)) return false;
+  if (!find_rotation(camera, data_.thumbnail, now, mask, &q_before_now)) return false;
   data_.q_now_WC = (data_.q_WC * q_before_now).normalized();
   return true;
 }

@@ -1,26 +1,19 @@
 #include "frame/image_search.h"
 
-#include <new>
-
 #include "track/template_matcher.h"
 
 namespace pf {
 
 bool ImageSearch::layout(Arena& arena, const Settings& settings) {
-  if (kHasMasks && settings.masks != MaskMode::kNone) {
-    TemplateMatcher* place = arena.take<TemplateMatcher>(1);
-    if (place == nullptr) {
-      TemplateMatcher().layout(arena, settings.template_px);
-    } else {
-      templates_ = new (place) TemplateMatcher();
-      templates_->layout(arena, settings.template_px);
-    }
-  }
+  if (kHasMasks && settings.masks != MaskMode::kNone)
+    templates_ = arena.place<TemplateMatcher>([&](TemplateMatcher& made) { made.layout(arena, settings.template_px); });
+  fixed_.layout(arena, settings.camera.width, settings.camera.height, settings.max_features);
   return tracker_.layout(arena, settings.camera.width, settings.camera.height);
 }
 
 void ImageSearch::init(const Settings& settings) {
-  tracker_.init(settings.camera);
+  fixed_.init(settings.mask.mask);
+  tracker_.init(settings.camera, fixed_.mask());
   if (has_templates()) templates_->init(settings.camera, settings.masks, settings.max_misfit);
 }
 
@@ -45,7 +38,10 @@ void ImageSearch::use_template(const Map& map, int feature, SearchTask* task) {
 }
 
 SearchOutcome ImageSearch::search(const SearchTask& task) const {
-  return has_templates() && task.shape != nullptr ? templates_->search(tracker_, task) : tracker_.search(task);
+  if (!tracker_.is_in_scene(task.predicted)) return SearchOutcome();
+  const bool has_template = has_templates() && task.shape != nullptr;
+  const SearchOutcome outcome = has_template ? templates_->search(tracker_, task) : tracker_.search(task);
+  return outcome.found && !tracker_.is_in_scene(outcome.pixel, outcome.level_scale) ? SearchOutcome() : outcome;
 }
 
 bool ImageSearch::learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const {

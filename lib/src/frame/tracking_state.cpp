@@ -1,7 +1,5 @@
 #include "frame/tracking_state.h"
 
-#include <algorithm>
-
 #include "base/elapsed.h"
 
 namespace pf {
@@ -11,13 +9,11 @@ Status TrackingState::conclude(const FrameReport& report, const StartProgress& s
   Data& d = data_;
   if (!d.has_pose) return Status::kStarting;
   const bool tracked = is_tracked(report);
-  d.followed = tracked ? std::min(d.followed + 1, kFollowed) : 0;
   if (tracked) {
     if (d.lost) hooks.say("found the map again");
     d.lost = false;
     d.usable_ns = 0;
     d.last_tracked_ns = report.t_ns;
-    d.was_tracked = true;
     // A map that begins after a loss is believed when a frame agrees with the one that gave it its depths.
     const bool starting = start.pending() || (d.may_skip_target && !d.depths_known);
     d.depths_known = !start.pending();

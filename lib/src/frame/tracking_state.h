@@ -2,8 +2,10 @@
 
 #include <cstdint>
 
+#include "base/elapsed.h"
 #include "base/hooks.h"
 #include "base/status.h"
+#include "belief/pose_belief.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
 
@@ -29,16 +31,24 @@ class TrackingState {
   explicit TrackingState(const Settings& settings) : settings_(settings) {}
 
   void init() { data_ = Data(); }
-  void begin_frame() { data_.from_target = data_.started_over = data_.unusable = false; }
+  /// dt_ns: since the frame before.
+  void begin_frame(std::int64_t dt_ns) {
+    data_.from_target = data_.started_over = data_.unusable = false;
+    data_.belief.begin_frame(seconds(dt_ns));
+  }
   /// This frame shows something to track; dt_ns since the frame before.
   void note_usable_image(std::int64_t dt_ns) { data_.usable_ns += data_.lost ? dt_ns : 0; }
-  /// The filter has a pose from this time on.
+  /// There is a pose from this time on. The first one is where W is; after a loss the pictures have to show that they go on from one to the next.
   void set_has_pose(std::int64_t t_ns) {
     data_.has_pose = true;
+    if (!data_.may_skip_target) data_.belief.trust();
     data_.last_tracked_ns = t_ns;
   }
   /// This frame's pose comes from the target.
-  void set_from_target() { data_.from_target = true; }
+  void set_from_target() {
+    data_.from_target = true;
+    data_.belief.trust();
+  }
   /// The frame repeats the one before.
   void repeat(std::int64_t t_ns) { data_.last_tracked_ns = t_ns; }
   void note_update(bool done) { data_.failed_updates = done ? 0 : data_.failed_updates + 1; }
@@ -63,6 +73,8 @@ class TrackingState {
   /// Decides the state at the end of a frame. Returns the status of the frame.
   Status conclude(const FrameReport& report, const StartProgress& start, std::int64_t max_coast_ns, const Hooks& hooks);
 
+  PoseBelief& belief() { return data_.belief; }
+  const PoseBelief& belief() const { return data_.belief; }
   SlamState state() const { return data_.state; }
   bool has_pose() const { return data_.has_pose; }
   bool started_over() const { return data_.started_over; }
@@ -76,8 +88,6 @@ class TrackingState {
   }
   /// The last frame did not support its pose: the map has to be found again before anything is measured.
   bool is_relocalising(const StartProgress& start) const { return coasting_or_lost() && !start.pending(); }
-  /// Likewise, and frames before it did: there is a gap, and not a map whose features began in the last frame.
-  bool is_after_gap(const StartProgress& start) const { return is_relocalising(start) && data_.was_tracked; }
   bool needs_new_map(std::int64_t restart_ns) const {
     return restart_ns > 0 && data_.lost && data_.usable_ns >= restart_ns;
   }
@@ -85,14 +95,11 @@ class TrackingState {
   std::uint32_t map_id() const { return data_.map_id; }
   /// Time of the last frame that supported its pose.
   std::int64_t last_tracked_ns() const { return data_.last_tracked_ns; }
-  /// The last frames all supported their pose: the next one is where they lead to, and in no other place.
-  bool is_followed() const { return data_.followed >= kFollowed; }
   bool may_skip_target() const { return data_.may_skip_target; }
 
  private:
   const Settings& settings_;
   static constexpr int kMaxFailedUpdates = 10;  ///< in a row
-  static constexpr int kFollowed = 10;          ///< frames in a row; hardly ever two in random order
 
   struct Data {
     SlamState state = SlamState::kStarting;
@@ -102,13 +109,12 @@ class TrackingState {
     bool unusable = false;  ///< this frame's pose
     bool may_skip_target = false;
     bool depths_known = false;  ///< in the last frame
-    bool was_tracked = false;   ///< by any frame of this map
     std::uint32_t map_id = 1;
     std::int64_t usable_ns = 0;  ///< of usable images while lost
     bool started_over = false;   ///< in this frame
     int failed_updates = 0;      ///< in a row
-    int followed = 0;            ///< frames in a row that supported their pose, to kFollowed
     std::int64_t last_tracked_ns = 0;
+    PoseBelief belief;  ///< that the pose is right
   };
   Data data_;
 };

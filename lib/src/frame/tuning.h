@@ -7,23 +7,10 @@
 
 namespace pf::tuning {
 
-/// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/states.md).
-namespace chance {
-inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that find something; found: 0.04 .. 0.24
-inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in small ellipses, times kMaxFindShare
-inline constexpr Scalar kMinShare = Scalar(1e-6);      ///< of a search that chance lets agree, at least
-inline constexpr Scalar kMaxShare = Scalar(0.99);      ///< likewise, at most
-inline constexpr int kLevels = 4;  ///< areas in which matches may agree: the gate's, 1/2, 1/4, 1/8 of it
-inline constexpr Scalar kGateOfThree = Scalar(22.5);  ///< chi-square of six degrees of freedom, 0.999
-}  // namespace chance
-
 /// A frame while tracking.
 namespace tracking {
 inline constexpr int kMinInliers = 8;       ///< of a tracked frame, or half of map.features_in_view if that is less
 inline constexpr int kMinInliersOfFew = 5;  ///< and never fewer than that
-inline constexpr Scalar kMaxLogFalse = Scalar(-6.9);  ///< ln 0.001 consensuses as good that chance gives per frame
-inline constexpr int kTriples = 8;                    ///< of inliers, with which that number is computed
-inline constexpr Scalar kMaxYoungGap = Scalar(0.2);   ///< [s] untracked, after which a young map is no longer followed
 inline constexpr Scalar kMaxLensDeviation = Scalar(3);  ///< prior sigmas of an estimated lens without a warning
 }  // namespace tracking
 
@@ -35,10 +22,7 @@ inline constexpr Scalar kMaxPositionSigma = Scalar(0.5);    ///< in median depth
 
 /// Finding the map again.
 namespace relocaliser {
-inline constexpr Scalar kMaxLogFalse = Scalar(-13.8);  ///< ln 1e-6 consensuses as good that chance gives per frame
-inline constexpr int kTriples = 40;                    ///< of inliers, with which that number is computed
-inline constexpr int kFramesNearby = 2;    ///< in a row with a consensus about the prediction, after a short gap
-inline constexpr int kFramesAnywhere = 3;  ///< in a row that agree; in random order one in 20 shows a neighbour
+inline constexpr int kTriples = 40;                  ///< of matches, each of which may fix the pose
 inline constexpr Scalar kNearbySigma = Scalar(0.1);  ///< [rad] rotation sigma of a prediction that is searched linearly
 inline constexpr Scalar kMaxDepthSigma = Scalar(0.3);  ///< relative sigma of an inverse depth that may place the camera
 inline constexpr Scalar kProposalPixels = Scalar(0.004);  ///< sigma of a match against the map, in image widths
@@ -46,9 +30,6 @@ inline constexpr float kMinRecognition = 0.5f;            ///< correlation of a 
 inline constexpr Scalar kAboutView = Scalar(0.1);         ///< sigma of the pose about a kept view [rad], and in depths
 inline constexpr Scalar kAboutProposal = Scalar(0.03);    ///< likewise about the last frame's proposal
 inline constexpr Scalar kMapSigma = Scalar(2);            ///< [px] of a point of the map in a search about such a pose
-inline constexpr int kColumns = 4;                        ///< cells of the image
-inline constexpr int kRows = 3;                           ///< cells of the image
-inline constexpr int kMinCells = 4;                       ///< that hold inliers
 inline constexpr Scalar kProposalRotation = Scalar(0.035);  ///< [rad] of proposals apart, on top of the motion
 inline constexpr Scalar kProposalShift = Scalar(0.05);      ///< likewise, in depths
 inline constexpr Scalar kMotionGate = Scalar(3);            ///< sigmas of the velocities
@@ -74,6 +55,7 @@ inline constexpr int kMaxEarlyFailures = 4;     ///< in a row, of a feature with
 inline constexpr int kMinDepths = 8;            ///< for a median
 inline constexpr Scalar kBehindTarget = 2;      ///< assumed depth of the scene, in depths of the target
 inline constexpr Scalar kSureSign = Scalar(9);  ///< chi-square of an inverse depth, above which its sign is certain
+inline constexpr int kMaxAttempts = 2;          ///< for each measurement of a feature that is kept
 }  // namespace feature_keeper
 
 /// New features.
@@ -95,8 +77,24 @@ inline constexpr int kScouts = 12;            ///< candidates that are measured 
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
 inline constexpr Scalar kFewFound = Scalar(0.75);  ///< share below which searches of a start follow the picture
-inline constexpr int kSettled = 5;  ///< measurements of a feature whose residuals are those of its matches
+inline constexpr int kSettled = 5;     ///< measurements of a feature whose residuals are those of its matches
+inline constexpr int kMinWide = 2;     ///< one in so many ellipses is wide where searches follow the picture
+inline constexpr int kFewPassing = 2;  ///< matches for each that passes a gate, above which chance lets those pass
 }  // namespace image_front_end
+
+/// What is fixed to the picture (FixedFeatures).
+namespace fixed_features {
+inline constexpr int kEvery = 3;                  ///< [frames] in which the picture is compared with the reference once
+inline constexpr int kMaxAge = 90;                ///< [frames] of a reference while the picture stands still
+inline constexpr Scalar kMinFlow = Scalar(2);     ///< [px] by which the picture has moved before features are judged
+inline constexpr Scalar kStill = Scalar(0.25);    ///< [px] sigma of the shift of what is fixed
+inline constexpr Scalar kParallax = Scalar(0.7);  ///< sigma of the scene's shift, in that of the picture as a whole
+inline constexpr Scalar kMaxStep = Scalar(4);     ///< log-odds of one comparison, at most
+inline constexpr Scalar kScene = Scalar(50);      ///< features of the scene for each fixed one, before any was judged
+inline constexpr Scalar kFixed = Scalar(6.2);     ///< log-odds from which a feature is masked: wrong in 0.2 %
+inline constexpr int kMargin = 16;                ///< [px] about such a feature
+inline constexpr int kDiscredits = 3;  ///< one in so many inliers, from which the map comes from what is fixed
+}  // namespace fixed_features
 
 /// Where the picture as a whole has gone.
 namespace followed_view {
@@ -143,6 +141,7 @@ inline constexpr Scalar kMaxSlant = Scalar(0.05);  ///< of a plane against its f
 inline constexpr Scalar kMinNormalCosine = Scalar(0.97);  ///< of the largest angle between planes that are merged
 inline constexpr Scalar kSamePlaneGate = Scalar(9);       ///< chi-square of a point of one plane against the other
 inline constexpr Scalar kMergeGate = Scalar(16);  ///< chi-square of a point that moves to a plane merged with its own
+inline constexpr int kPerOutlier = 10;  ///< points of a plane, of which one may be off another that it is merged with
 }  // namespace plane_lifecycle
 
 }  // namespace pf::tuning

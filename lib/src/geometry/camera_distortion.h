@@ -16,6 +16,18 @@ constexpr Scalar kMaxTheta = Scalar(3.13);
 /// Slope below which a model counts as folding back.
 constexpr Scalar kMinSlope = Scalar(0.01);
 
+/// How many distortion coefficients of a model can be uncertain; a pinhole may get k1.
+inline int num_uncertain_distortion(CameraModel model) {
+  switch (model) {
+    case CameraModel::kRadtan:
+      return 5;
+    case CameraModel::kEquidistant:
+      return 4;
+    default:
+      return 1;
+  }
+}
+
 /// Radial-tangential distortion of m and its Jacobian, which is symmetric.
 inline Vec2 distort_radtan(const Scalar k[8], const Vec2& m, Mat2* J) {
   const Scalar x = m.x(), y = m.y(), r2 = x * x + y * y;
@@ -28,6 +40,21 @@ inline Vec2 distort_radtan(const Scalar k[8], const Vec2& m, Mat2* J) {
   }
   return Vec2(x * radial + 2 * k[2] * x * y + k[3] * (r2 + 2 * x * x),
               y * radial + k[2] * (r2 + 2 * y * y) + 2 * k[3] * x * y);
+}
+
+/// Smallest slope of the radial-tangential model on the circle of radius r. In radial and tangential directions
+///
+///   J = [a + 6 r s    2 r t  ]     a = 1 + 3 k1 r² + 5 k2 r⁴ + 7 k3 r⁶     s² + t² = p1² + p2²
+///       [  2 r t    b + 2 r s]     b = 1 +   k1 r² +   k2 r⁴ +   k3 r⁶
+///
+/// J is symmetric, so that a disc on which it is positive definite is mapped one to one. The bound takes s and t at their
+/// worst, which costs a little of the domain and nothing where p is small.
+inline Scalar radtan_slope(const Scalar k[8], Scalar r) {
+  const Scalar r2 = r * r, p = std::hypot(k[2], k[3]);
+  const Scalar a = 1 + r2 * (3 * k[0] + r2 * (5 * k[1] + r2 * 7 * k[4]));
+  const Scalar b = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+  const Scalar radial = a - 8 * r * p, tangential = b - 4 * r * p;
+  return radial < tangential ? radial : tangential;
 }
 
 /// Kannala-Brandt polynomial θd(θ) and its slope.

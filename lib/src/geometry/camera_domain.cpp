@@ -6,21 +6,6 @@
 namespace pf {
 namespace {
 
-/// Smallest slope of the radial-tangential model on the circle of radius r. In radial and tangential directions
-///
-///   J = [a + 6 r s    2 r t  ]     a = 1 + 3 k1 r² + 5 k2 r⁴ + 7 k3 r⁶     s² + t² = p1² + p2²
-///       [  2 r t    b + 2 r s]     b = 1 +   k1 r² +   k2 r⁴ +   k3 r⁶
-///
-/// J is symmetric, so that a disc on which it is positive definite is mapped one to one. The bound takes s and t at their
-/// worst, which costs a little of the domain and nothing where p is small.
-Scalar radtan_slope(const Scalar k[8], Scalar r) {
-  const Scalar r2 = r * r, p = std::hypot(k[2], k[3]);
-  const Scalar a = 1 + r2 * (3 * k[0] + r2 * (5 * k[1] + r2 * 7 * k[4]));
-  const Scalar b = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
-  const Scalar radial = a - 8 * r * p, tangential = b - 4 * r * p;
-  return radial < tangential ? radial : tangential;
-}
-
 /// Largest x in [0, 1] up to which slope(x) stays above kMinSlope: steps, then bisection of the last one.
 template <typename Slope>
 Scalar last_good(Slope slope) {

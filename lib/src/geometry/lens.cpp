@@ -65,7 +65,7 @@ LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera) {
   }
   LensPrior prior;
   Scalar sigma[kLensParameters] = {0, 0, sigmas.centre, sigmas.centre};
-  for (int i = 0; i < 5; ++i) sigma[4 + i] = sigmas.distortion[i];
+  for (int i = 0; i < kLensDistortion; ++i) sigma[4 + i] = sigmas.distortion[i];
   sigma[kReadoutParameter] = sigmas.readout;
   const Scalar common = sigmas.focal * sigmas.focal, between = sigmas.aspect * sigmas.aspect / 4;
   sigma[0] = camera->fx * std::sqrt(common + between);

@@ -8,8 +8,9 @@
 
 namespace pf {
 
-inline constexpr int kLensParameters = 10;  ///< fx fy cx cy, distortion[0 .. 4], readout
-inline constexpr int kReadoutParameter = 9;
+inline constexpr int kLensDistortion = 5;                        ///< distortion[0 .. 4]
+inline constexpr int kLensParameters = 4 + kLensDistortion + 1;  ///< fx fy cx cy, distortion, readout
+inline constexpr int kReadoutParameter = kLensParameters - 1;
 
 using LensJacobian = Eigen::Matrix<Scalar, 2, kLensParameters>;
 
@@ -52,11 +53,11 @@ struct LensPrior {
 ///
 ///   e_fx = fx (e_focal + e_aspect / 2),   e_fy = fy (e_focal - e_aspect / 2)
 struct LensSigmas {
-  Scalar focal = 0;           ///< common to fx and fy, relative
-  Scalar aspect = 0;          ///< of fx against fy, relative
-  Scalar centre = 0;          ///< of cx and of cy [px]
-  Scalar distortion[5] = {};  ///< 0: exact, and no row
-  Scalar readout = 0;         ///< likewise [s]
+  Scalar focal = 0;                         ///< common to fx and fy, relative
+  Scalar aspect = 0;                        ///< of fx against fy, relative
+  Scalar centre = 0;                        ///< of cx and of cy [px]
+  Scalar distortion[kLensDistortion] = {};  ///< 0: exact, and no row
+  Scalar readout = 0;                       ///< likewise [s]
 };
 
 /// The prior of a camera. A pinhole whose first distortion coefficient is uncertain becomes a radial-tangential camera without distortion.

@@ -61,6 +61,13 @@ class SmallCholesky {
     return X;
   }
 
+  /// ln det A.
+  T log_det() const {
+    T sum = 0;
+    for (int i = 0; i < N; ++i) sum += 2 * std::log(L_(i, i) / scale_(i));
+    return sum;
+  }
+
   /// L of A = L Lᵀ, without the scaling.
   Matrix lower() const {
     Matrix L = Matrix::Zero();

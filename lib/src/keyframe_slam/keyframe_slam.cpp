@@ -64,14 +64,12 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   }
   if (!usable) return unusable_status(end_frame());
   tracking_.note_usable_image(data_.since_last_ns);
-  if (tracking_.needs_new_map(settings_.restart_ns)) {
-    discard_map();
-    mapping_.init();
-    data_.mark = Mark();
-    tracking_.begin_map();
-    settings_.hooks.say("not found again for too long: the old map is discarded, a new map begins");
-  }
+  if (tracking_.needs_new_map(settings_.restart_ns))
+    begin_new_map("not found again for too long: the old map is discarded, a new map begins");
+  else if (data_.is_map_fixed && tracking_.has_pose())
+    begin_new_map("part of the picture stands still while the rest moves: it is masked, and a new map begins");
   measure();
+  data_.is_map_fixed = search_.note_fixed();
   learn();
   if (data_.second.given && data_.second.has_come(t_ns)) scale_by_second_pose();
   return end_frame();
@@ -84,6 +82,14 @@ Status KeyframeSlam::mark_pose() {
   return Status::kOk;
 }
 
+void KeyframeSlam::begin_new_map(const char* why) {
+  discard_map();
+  mapping_.init();
+  data_.mark = Mark();
+  tracking_.begin_map();
+  settings_.hooks.say(why);
+}
+
 /// Begins the report and predicts the body to the new time.
 void KeyframeSlam::begin_frame(std::int64_t t_ns) {
   const std::int64_t before_ns = data_.body_ns;
@@ -91,7 +97,7 @@ void KeyframeSlam::begin_frame(std::int64_t t_ns) {
   data_.since_last_ns = frame_.report.frames > 0 ? elapsed_ns(before_ns, t_ns) : 0;
   const bool nothing_measured = frame_.report.inliers == 0;
   frame_.begin(t_ns);
-  tracking_.begin_frame();
+  tracking_.begin_frame(data_.since_last_ns);
   if (!tracking_.has_pose()) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
   motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
@@ -106,7 +112,8 @@ void KeyframeSlam::measure() {
     if (record_.follow()) mapping_.adjust();
   } else if (data_.young) {
     measuring_.measure_young(data_.median_depth);
-  } else if (tracking_.is_relocalising(record_.progress())) {
+  } else if (tracking_.is_relocalising(record_.progress()) && !relocaliser_.is_prediction_narrow(data_.median_depth)) {
+    tracking_.belief().spend();
     relocaliser_.recover(data_.median_depth);
   } else {
     relocaliser_.clear_proposal();

@@ -65,13 +65,15 @@ class KeyframeSlam {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     Mark mark;
-    bool young = false;  ///< in this frame so few points have a depth that those without must help
+    bool is_map_fixed = false;  ///< it comes from what stands still in the picture
+    bool young = false;         ///< in this frame so few points have a depth that those without must help
     SecondPose second;
     FrozenCamera frozen;
     FitWarnings warnings;
   };
 
   void begin_frame(std::int64_t t_ns);
+  void begin_new_map(const char* why);
   Status end_frame();
   void measure();
   void learn();
@@ -88,8 +90,9 @@ class KeyframeSlam {
   KeyframePlanes planes_{settings_, map_};
   PointSearch search_{settings_, map_, planes_, frame_, noise_};
   PoseMeasurement pose_{settings_, map_, frame_, noise_, search_};
-  KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_};
-  KeyframeRelocaliser relocaliser_{settings_, map_, motion_, search_.images().tracker(), measuring_};
+  KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_, tracking_.belief()};
+  KeyframeRelocaliser relocaliser_{settings_,         map_, motion_, search_.images().tracker(), measuring_,
+                                   tracking_.belief()};
   KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
   KeyframeMapping mapping_{settings_, map_, frame_, motion_, planes_, noise_, search_, pose_, record_};
   KeyframeStart start_{

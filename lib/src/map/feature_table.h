@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "base/eigen.h"
+#include "base/table_entries.h"
 
 /// Table of features: what is kept about each beside its block in the filter.
 
@@ -71,6 +72,8 @@ class FeatureTable {
     --count_;
   }
 
+  /// Entry of the feature with this id, or -1.
+  int entry_of(std::uint32_t id) const { return entry_with_id(*this, id); }
   /// Whether a feature may be evicted: not one of the target, nor one that was seen since this time.
   bool may_evict(int i, std::int64_t not_since_ns) const {
     return used(i) && !feature_[i].is_target && feature_[i].last_seen_ns < not_since_ns;

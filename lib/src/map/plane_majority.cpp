@@ -109,7 +109,7 @@ bool find_majority(JudgedPoint* points, int count, const Vec3& n_W, const Majori
     if (!refit(points, sigma2, count, &found, &chi2)) return false;
     if (round + 1 < kRounds) factor *= std::min(Scalar(1), chi2 / static_cast<Scalar>(std::max(1, found.members - 3)));
   }
-  if (3 * found.members < 2 * count) return false;
+  if (kPerOff * (count - found.members) > count) return false;
   const Scalar scale = std::max(Scalar(1), chi2 / static_cast<Scalar>(std::max(1, found.members - 3)));
   found.variance *= scale;
   for (int i = 0; i < count; ++i) {

@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "base/parts.h"
 #include "base/small_count.h"
+#include "base/table_entries.h"
 #include "geometry/plane.h"
 #include "map/plane_outline.h"
 
@@ -154,6 +155,8 @@ class PlaneTable {
       if (used(i) && entry_[i].slot == slot) return i;
     return -1;
   }
+  /// Entry of the plane with this id, or -1.
+  int entry_of(std::uint32_t id) const { return entry_with_id(*this, id); }
   /// Id of the plane in this block, or 0.
   std::uint32_t id_at(int slot) const {
     const int entry = entry_at(slot);
@@ -162,8 +165,7 @@ class PlaneTable {
   /// Current id of a plane that may have been merged; 0 if it is gone, or its merge is no longer remembered.
   std::uint32_t find(std::uint32_t id) const {
     for (int step = 0; step <= capacity_ * kMergesPerPlane; ++step) {
-      for (int i = 0; i < capacity_; ++i)
-        if (used(i) && entry_[i].id == id) return id;
+      if (entry_of(id) >= 0) return id;
       std::uint32_t next = 0;
       for (int i = 0; i < capacity_ * kMergesPerPlane; ++i)
         if (merged_[i].from == id && id != 0) next = merged_[i].into;

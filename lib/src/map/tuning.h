@@ -30,4 +30,5 @@ inline constexpr Scalar kNear = 3;   ///< standard deviations of a point that ta
 inline constexpr Scalar kOff = 4;    ///< likewise, of one that is off
 inline constexpr Scalar kSameSide = Scalar(0.9);  ///< cosine between the plane and the one that is judged
 
+inline constexpr int kPerOff = 3;  ///< points that are judged, of which one may be off the plane
 }  // namespace pf::tuning::plane_majority

@@ -94,4 +94,14 @@ inline void put_lens(const Eigen::Matrix<Scalar, kRows, kLensParameters>& J, con
 /// is taken to be just outside of it.
 Scalar row_time(const Camera& camera, Scalar y);
 
+/// Whether rows have cameras of their own: they are read out one after the other, and the body's velocities are known.
+inline bool rows_roll(const State& state, const Camera& lens) {
+  return lens.readout != Scalar(0) && state.layout.has(BodyPart::kVelocity);
+}
+
+/// The camera at the time when row y is read out.
+inline CameraAt camera_of_row(const State& state, const Camera& lens, Scalar y) {
+  return camera_at(state, row_time(lens, y));
+}
+
 }  // namespace pf

@@ -38,6 +38,9 @@ struct State {
   const PlaneFrame& frame_of(const Block& plane) const { return plane_frame[plane.frame]; }
   Scalar roughness_of(const Block& plane) const { return plane_roughness[plane.frame]; }
 
+  /// Whether a feature's depth is estimated as an inverse depth, since it is not known well enough for a point.
+  bool has_inverse_depth(int slot) const { return block[slot].kind == BlockKind::kInverseDepth; }
+
   /// A free slot, or -1.
   int find_free() const {
     for (int i = 0; i < slots; ++i)

@@ -1,5 +1,6 @@
 #include "session/filter_reader.h"
 
+#include "base/table_entries.h"
 #include "filter_slam/filter_slam.h"
 #include "observe/point.h"
 
@@ -85,8 +86,7 @@ MapCounts FilterReader::counts() const {
   const State& state = filter_.state();
   MapCounts counts;
   int unfolded_rows = 0;
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i)) continue;
+  for (const int i : used_entries(map_.features)) {
     ++counts.features;
     const Block& block = state.block[map_.features[i].slot];
     switch (info(block.kind).form) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/table_entries.h"
 #include "filter/vertical.h"
 #include "filter_slam/filter_slam.h"
 #include "geometry/ray_plane.h"
@@ -88,8 +89,7 @@ bool FilterReader::hit(const Vec2& pixel, HitView* hit) const {
   const CameraAt camera = camera_at(state, Scalar(0));
   const Vec3 direction = camera.q_WC * ray_C;
   *hit = HitView();
-  for (int i = 0; i < map_.planes.capacity(); ++i) {
-    if (!map_.planes.used(i)) continue;
+  for (const int i : used_entries(map_.planes)) {
     const Block& block = state.block[map_.planes[i].slot];
     const PlaneFrame& frame = state.frame_of(block);
     Vec3 at;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/table_entries.h"
 #include "geometry/ray_plane.h"
 #include "geometry/so3.h"
 #include "keyframe_slam/keyframe_slam.h"
@@ -84,8 +85,7 @@ bool KeyframeReader::surface_of(int i, const Vec3& viewer_W, Vec3* normal_W) con
 MapCounts KeyframeReader::counts() const {
   const KeyframeMap& map = slam_.map();
   MapCounts counts;
-  for (int i = 0; i < map.capacity(); ++i) {
-    if (!map.used(i)) continue;
+  for (const int i : used_entries(map)) {
     ++counts.features;
     const BlockKind kind = map.kind(i);
     ++(kind == BlockKind::kPoint          ? counts.points
@@ -127,8 +127,7 @@ bool KeyframeReader::hit(const Vec2& pixel, HitView* hit) const {
   pose_at(slam_.frame().report.t_ns, &body, &P);
   const Vec3 direction = body.q_WC * ray_C;
   *hit = HitView();
-  for (int k = 0; k < map_.planes.capacity(); ++k) {
-    if (!map_.planes.used(k)) continue;
+  for (const int k : used_entries(map_.planes)) {
     const KeyframePlane& plane = slam_.planes().plane(k);
     Vec3 at;
     Mat3 J_origin, J_direction, J_plane;

@@ -1,43 +1,28 @@
 #include "session/session.h"
 
-#include <new>
-
 namespace pf {
-
-namespace {
-
-/// Lays out a back end in the block, or only counts it.
-template <typename BackEndT, typename... Arguments>
-BackEndT* place(Arena& arena, Arguments&... arguments) {
-  BackEndT* const at = arena.take<BackEndT>(1);
-  if (at == nullptr) {
-    BackEndT(arguments...).layout(arena);
-    return nullptr;
-  }
-  BackEndT* const made = new (at) BackEndT(arguments...);
-  made->layout(arena);
-  return made;
-}
-
-}  // namespace
 
 bool Session::layout(Arena& arena, const Settings& settings) {
   settings_ = settings;
   const bool has_window = kHasWindow && settings.backend == BackEnd::kWindow;
   map_.layout(arena, settings.max_features, settings.max_planes,
               settings.masks == MaskMode::kNone ? 0 : settings.template_px);
-  imu_.layout(arena, settings.imu_buffer);
+  imu_.layout(arena, settings.imu.buffer);
+  if (settings.mask.is_asked_for) mask_.layout(arena, settings.camera.width, settings.camera.height);
+  settings_.mask.mask = settings.mask.is_asked_for ? &mask_ : nullptr;
+  const auto lay_out = [&](auto& back_end) { back_end.layout(arena); };
   if (has_window)
-    window_ = place<KeyframeSlam>(arena, settings_, map_);
+    window_ = arena.place<KeyframeSlam>(lay_out, settings_, map_);
   else
-    filter_ = place<FilterSlam>(arena, settings_, map_, imu_);
+    filter_ = arena.place<FilterSlam>(lay_out, settings_, map_, imu_);
   return arena.ok();
 }
 
 void Session::init() {
   data_ = Data();
   map_.init();
-  imu_.init(settings_.imu_buffer, settings_.imu_ranges);
+  if (settings_.mask.mask != nullptr) mask_.init();
+  imu_.init(settings_.imu.buffer, settings_.imu.ranges);
   if (has_filter())
     filter_->init();
   else

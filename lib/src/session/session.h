@@ -86,6 +86,7 @@ class Session {
   Settings settings_;
   Map map_;
   ImuLog imu_;
+  ImageMask mask_;
   Data data_;
   bool has_filter() const { return !kHasWindow || filter_ != nullptr; }
 

@@ -106,9 +106,8 @@ bool View::hit(const Vec2& pixel, HitView* hit) const {
 
 bool View::template_of(std::uint32_t id, TemplateView* out) const {
   if (!map_.has_templates()) return false;
-  int i = 0;
-  while (i < map_.features.capacity() && !(map_.features.used(i) && map_.features[i].id == id)) ++i;
-  if (i == map_.features.capacity() || !map_.features[i].has_appearance) return false;
+  const int i = map_.features.entry_of(id);
+  if (i < 0 || !map_.features[i].has_appearance) return false;
   const PlanarTemplate& shape = map_.shape(i);
   const Camera& camera = settings_.camera;
   Vec3 ray;

@@ -70,6 +70,7 @@ struct PlaneAligner::Progress {
   Mat3 H;  ///< patch's own coordinates to rays of the image
   PlaneReading reading;
   PlaneCounts counts;
+  const ImageMask* mask = nullptr;  ///< of the image; null: none
   int iterations = 0;
 };
 
@@ -184,6 +185,7 @@ bool PlaneAligner::read(const ImageView& image, const Camera& camera, int level,
     }
   }
   progress->counts = read_samples(image, reading, &samples_);
+  if (progress->mask != nullptr) leave_out_masked(*progress->mask, level, reading, &samples_, &progress->counts);
   return progress->counts.valid > 0.0f && progress->counts.valid >= kMinWeight * all_weight_;
 }
 
@@ -273,6 +275,7 @@ PlaneAlignment PlaneAligner::align(const Pyramid& image, const Camera& camera, c
   for (int k = 0; k < 4; ++k) out.corner[k].setZero();
   if (!begin(camera, patch)) return out;
   Progress progress;
+  progress.mask = in_use(image.mask);
   progress.H = start.H_CK * to_ray_;
   progress.reading.gain = start.gain;
   progress.reading.bias = start.gain * patch.mean + start.offset;
@@ -306,6 +309,7 @@ bool PlaneAligner::compare(const Pyramid& image, const Camera& camera, const Pla
                            const std::uint8_t* mask, float* gain) {
   if (!begin(camera, patch)) return false;
   Progress progress;
+  progress.mask = in_use(image.mask);
   progress.H = start.H_CK * to_ray_;
   progress.reading.gain = start.gain;
   progress.reading.bias = start.gain * patch.mean + start.offset;

@@ -15,10 +15,13 @@ namespace {
 constexpr int kUnknowns = 5;  // phi, gain, bias
 using Unknowns = Eigen::Matrix<Scalar, kUnknowns, 1>;
 
-/// Grey level between pixels and its slopes. False outside.
-bool sample(const Thumbnail& t, const Vec2& p, Scalar* grey, Scalar* slope_x, Scalar* slope_y) {
+/// Grey level between pixels and its slopes. False outside, and where one of them is masked.
+bool sample(const Thumbnail& t, const ThumbnailMask& mask, const Vec2& p, Scalar* grey, Scalar* slope_x,
+            Scalar* slope_y) {
   if (!(p.x() >= 0 && p.y() >= 0 && p.x() < Thumbnail::kWidth - 1 && p.y() < Thumbnail::kHeight - 1)) return false;
   const int x = static_cast<int>(p.x()), y = static_cast<int>(p.y());
+  if (mask.has_masked && (mask.at(x, y) || mask.at(x + 1, y) || mask.at(x, y + 1) || mask.at(x + 1, y + 1)))
+    return false;
   const Scalar u = p.x() - static_cast<Scalar>(x), v = p.y() - static_cast<Scalar>(y);
   const Scalar a = static_cast<Scalar>(t.at(x, y)), b = static_cast<Scalar>(t.at(x + 1, y));
   const Scalar c = static_cast<Scalar>(t.at(x, y + 1)), d = static_cast<Scalar>(t.at(x + 1, y + 1));
@@ -42,12 +45,13 @@ struct Sums {
 };
 
 /// Normal equations of  now(x) = gain before(w(x)) + bias + gain J phi,  J = slopes J_w_p (-[R ray]x).
-bool linearise(const Camera& camera, const Thumbnail& before, const Thumbnail& now, const Quat& q, Scalar gain,
-               Scalar bias, Sums* sums) {
+bool linearise(const Camera& camera, const Thumbnail& before, const Thumbnail& now, const ThumbnailMask& mask,
+               const Quat& q, Scalar gain, Scalar bias, Sums* sums) {
   const Scalar sx = static_cast<Scalar>(Thumbnail::kWidth) / static_cast<Scalar>(camera.width);
   const Scalar sy = static_cast<Scalar>(Thumbnail::kHeight) / static_cast<Scalar>(camera.height);
   for (int y = 0; y < Thumbnail::kHeight; ++y) {
     for (int x = 0; x < Thumbnail::kWidth; ++x) {
+      if (mask.has_masked && mask.at(x, y)) continue;
       Vec3 ray;
       Vec2 pixel;
       Mat23 J_pixel_p;
@@ -56,7 +60,7 @@ bool linearise(const Camera& camera, const Thumbnail& before, const Thumbnail& n
       if (!unproject(camera, centre, &ray)) continue;
       ray = q * ray;
       if (!project(camera, ray, &pixel, &J_pixel_p)) continue;
-      if (!sample(before, to_thumbnail(camera, pixel), &grey, &slope_x, &slope_y)) continue;
+      if (!sample(before, mask, to_thumbnail(camera, pixel), &grey, &slope_x, &slope_y)) continue;
       const Scalar mine = static_cast<Scalar>(now.at(x, y));
       // d(R ray) = phi x (R ray), so that  s . (phi x r) = (r x s) . phi.
       const Vec3 s = slope_x * sx * J_pixel_p.row(0).transpose() + slope_y * sy * J_pixel_p.row(1).transpose();
@@ -80,11 +84,11 @@ bool linearise(const Camera& camera, const Thumbnail& before, const Thumbnail& n
 }
 
 /// Where the second image lies over the first, to a pixel of the thumbnail.
-float best_shift(const Thumbnail& now, const Thumbnail& before, Vec2* shift) {
+float best_shift(const Thumbnail& now, const Thumbnail& before, const ThumbnailMask& mask, Vec2* shift) {
   float best = 0;
   int best_dx = 0, best_dy = 0;
   const auto compare = [&](int dx, int dy) {
-    const float score = correlate(now, before, dx, dy);
+    const float score = correlate(now, before, dx, dy, mask);
     if (score <= best) return;
     best = score;
     best_dx = dx;
@@ -130,14 +134,15 @@ Quat rotation_of_shift(const Camera& camera, const Vec2& shift) {
   return shortest_rotation(now_C, then_C);
 }
 
-bool find_rotation(const Camera& camera, const Thumbnail& before, const Thumbnail& now, Quat* q_before_now) {
+bool find_rotation(const Camera& camera, const Thumbnail& before, const Thumbnail& now, const ThumbnailMask& mask,
+                   Quat* q_before_now) {
   Vec2 shift;
-  if (best_shift(now, before, &shift) < kMinShiftScore) return false;
+  if (best_shift(now, before, mask, &shift) < kMinShiftScore) return false;
   Quat q = rotation_of_shift(camera, shift);
   Scalar gain = 1, bias = 0;
   for (int round = 0; round < kMaxRounds; ++round) {
     Sums sums;
-    if (!linearise(camera, before, now, q, gain, bias, &sums)) return false;
+    if (!linearise(camera, before, now, mask, q, gain, bias, &sums)) return false;
     SmallCholesky<kUnknowns> cholesky;
     if (!cholesky.factor(sums.A)) return false;
     const Unknowns step = cholesky.solve<1>(sums.b);
@@ -149,7 +154,8 @@ bool find_rotation(const Camera& camera, const Thumbnail& before, const Thumbnai
     if (phi.norm() < kSmallTurn) break;
   }
   Sums last;
-  if (!linearise(camera, before, now, q, gain, bias, &last) || last.correlation() < kMinOverlapScore) return false;
+  if (!linearise(camera, before, now, mask, q, gain, bias, &last) || last.correlation() < kMinOverlapScore)
+    return false;
   *q_before_now = q;
   return true;
 }

@@ -23,6 +23,11 @@ Quat rotation_of_shift(const Camera& camera, const Vec2& shift);
 ///   sum_x (now(x) - g before(w(x)) - b)^2,   w(x) = pixel of R ray(x)
 ///
 /// First the best shift, then Gauss-Newton on SO(3), R <- Exp(phi) R. False where the images do not match.
-bool find_rotation(const Camera& camera, const Thumbnail& before, const Thumbnail& now, Quat* q_before_now);
+/// mask: pixels that count in neither.
+bool find_rotation(const Camera& camera, const Thumbnail& before, const Thumbnail& now, const ThumbnailMask& mask,
+                   Quat* q_before_now);
+inline bool find_rotation(const Camera& camera, const Thumbnail& before, const Thumbnail& now, Quat* q_before_now) {
+  return find_rotation(camera, before, now, ThumbnailMask(), q_before_now);
+}
 
 }  // namespace pf

@@ -84,7 +84,7 @@ bool collect(const ImageView& image, const Camera& camera, const Vec3& a, const 
     if (!find_rise(image, p, outwards, min_rise, &offset)) continue;
     if (unproject(camera, p + offset * outwards, &side->rays[side->count])) ++side->count;
   }
-  return side->count >= 4 && 2 * side->count >= places;
+  return side->count >= 4 && kMinRises * side->count >= places;
 }
 
 /// Plane through the optical centre, n · ray = 0: small turns of the first n about the two directions in it.
@@ -163,8 +163,23 @@ bool refine_quad(const ImageView& image, const Camera& camera, Quad* quad) {
   return true;
 }
 
+bool is_in_scene(const Quad& quad, const ImageMask* mask) {
+  mask = in_use(mask);
+  if (mask == nullptr) return true;
+  constexpr int kPlaces = 20, kAround = 2;  // of a side; [px]
+  for (int i = 0; i < 4; ++i) {
+    const Vec2 &from = quad.corners[i], &to = quad.corners[(i + 1) % 4];
+    if (!mask->is_clear(from, kAround)) return false;
+    int clear = 0;
+    for (int k = 0; k < kPlaces; ++k)
+      clear += mask->is_clear(Vec2(from + (to - from) * (static_cast<Scalar>(k) / kPlaces)), kAround);
+    if (kMinClear * clear < kPlaces) return false;
+  }
+  return true;
+}
+
 bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar width, Scalar height, Scalar sigma_px,
-                         const QuadWorkspace& workspace, RectangleSighting* out) {
+                         const QuadWorkspace& workspace, RectangleSighting* out, const ImageMask* mask) {
   constexpr int kCandidates = 16;
   Quad quads[kCandidates];
   const int count = find_dark_quads(image, workspace, quads, kCandidates);
@@ -172,7 +187,7 @@ bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar wi
   for (int i = 0; i < count; ++i) {
     RectangleSighting found;
     found.quad = quads[i];
-    if (!refine_quad(image, camera, &found.quad)) continue;
+    if (!is_in_scene(found.quad, mask) || !refine_quad(image, camera, &found.quad)) continue;
     if (!rectangle_pose(camera, width, height, found.quad.corners, sigma_px, &found.pose, &found.second_rms_px))
       continue;
     const Scalar misfit = found.pose.rms_px / (kMisfitSigmas * sigma_px + kMisfitShare * diagonal(found.quad));

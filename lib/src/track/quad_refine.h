@@ -3,6 +3,7 @@
 #include "base/eigen.h"
 #include "geometry/camera.h"
 #include "geometry/planar_pose.h"
+#include "vision/image_mask.h"
 #include "vision/quad.h"
 
 namespace pf {
@@ -31,8 +32,12 @@ struct RectangleSighting {
 ///
 /// width, height  of the outer edge of the dark area [m]
 /// sigma_px       of a corner's coordinate [px]
+/// mask           none with a corner, or more than half of a side, on what it masks; may be null
 /// false when there is none
 bool find_dark_rectangle(const ImageView& image, const Camera& camera, Scalar width, Scalar height, Scalar sigma_px,
-                         const QuadWorkspace& workspace, RectangleSighting* out);
+                         const QuadWorkspace& workspace, RectangleSighting* out, const ImageMask* mask = nullptr);
+
+/// Whether no corner of a quadrilateral and at most half of each side lie on what is masked. True without a mask.
+bool is_in_scene(const Quad& quad, const ImageMask* mask);
 
 }  // namespace pf

@@ -54,13 +54,7 @@ float mean_square(const PlaneSamples& s) {
 bool TemplateMatcher::layout(Arena& arena, int side) {
   side_ = side;
   if (side == 0) return arena.ok();
-  PlaneAligner* aligner = arena.take<PlaneAligner>(1);
-  if (aligner != nullptr) {
-    aligner_ = new (aligner) PlaneAligner();
-    aligner_->layout(arena, side * side);
-  } else {
-    PlaneAligner().layout(arena, side * side);
-  }
+  aligner_ = arena.place<PlaneAligner>([&](PlaneAligner& made) { made.layout(arena, side * side); });
   PlanePatch* patch = arena.take<PlanePatch>(1);
   if (patch != nullptr) patch_ = new (patch) PlanePatch();
   learnt_ = arena.take<std::uint8_t>(static_cast<std::size_t>(side * side));

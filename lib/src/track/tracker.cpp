@@ -37,7 +37,10 @@ bool Tracker::layout(Arena& arena, int width, int height) {
 bool Tracker::begin_frame(const ImageView& image) {
   pyramid_.build(image);
   const int level = pyramid_.levels > 2 ? 2 : pyramid_.levels - 1;
-  return judge_frame(frame_statistics(pyramid_.level[level])) == FrameUse::kUsable;
+  const ImageMask* mask = in_use(pyramid_.mask);
+  const ImageView& small = pyramid_.level[level];
+  return judge_frame(mask == nullptr ? frame_statistics(small) : frame_statistics(small, level, *mask)) ==
+         FrameUse::kUsable;
 }
 
 bool Tracker::remember(const Vec2& pixel, Appearance* appearance) const {
@@ -80,10 +83,15 @@ bool Tracker::choose_level(const SearchTask& task, Mat2* A, int* finest) const {
   return true;
 }
 
+bool Tracker::is_in_scene(const Vec2& pixel, Scalar level_scale) const {
+  const ImageMask* mask = in_use(pyramid_.mask);
+  return mask == nullptr || mask->is_clear(pixel, kMaskMargin * static_cast<int>(level_scale));
+}
+
 bool Tracker::is_comparable(const SearchTask& task) const {
   Mat2 A;
   int finest;
-  return choose_level(task, &A, &finest) &&
+  return is_in_scene(task.predicted) && choose_level(task, &A, &finest) &&
          has_template(task.appearance->patch, A * static_cast<Scalar>(1 << finest), kWarpSize);
 }
 
@@ -142,7 +150,7 @@ SearchOutcome Tracker::search(const SearchTask& task) const {
 }
 
 int Tracker::corners(const Rect& cell, int threshold, Corner* out, int capacity) const {
-  return detect_corners(pyramid_.level[0], cell, threshold, out, capacity, corner_workspace_);
+  return detect_corners(pyramid_.level[0], cell, threshold, out, capacity, corner_workspace_, pyramid_.mask);
 }
 
 }  // namespace pf

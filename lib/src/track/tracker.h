@@ -43,7 +43,11 @@ class Tracker {
   static constexpr int kLevels = 4;
 
   bool layout(Arena& arena, int width, int height);
-  void init(const Camera& camera) { camera_ = camera; }
+  /// mask: what is not the scene; null: all is. It is read in every frame.
+  void init(const Camera& camera, const ImageMask* mask = nullptr) {
+    camera_ = camera;
+    pyramid_.mask = mask;
+  }
 
   /// Builds the pyramid of an image. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);
@@ -52,6 +56,8 @@ class Tracker {
   bool remember(const Vec2& pixel, Appearance* appearance) const;
 
   SearchOutcome search(const SearchTask& task) const;
+  /// Whether a pixel is far enough from what is masked for a template. level_scale: pixels for each of the template's.
+  bool is_in_scene(const Vec2& pixel, Scalar level_scale = 1) const;
   /// Whether this view of a feature can be compared with the first one. Reads neither innovation nor gate of the task.
   bool is_comparable(const SearchTask& task) const;
 

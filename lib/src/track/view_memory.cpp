@@ -13,8 +13,10 @@ void ViewMemory::keep_if_new(const Pyramid& image, const Quat& q_WC, const Vec3&
   if (capacity_ == 0) return;
   Thumbnail now;
   make_thumbnail(image, &now);
+  ThumbnailMask mask;
+  make_thumbnail_mask(image, &mask);
   for (int i = 0; i < count_; ++i)
-    if (correlate(now, view_[i].thumbnail, 0, 0) > kKnownView) return;
+    if (correlate(now, view_[i].thumbnail, 0, 0, mask) > kKnownView) return;
   view_[next_] = {now, q_WC, p_W};
   count_ = std::min(count_ + 1, capacity_);
   next_ = (next_ + 1) % capacity_;
@@ -25,9 +27,11 @@ Recognition ViewMemory::recognise(const Pyramid& image, const Camera& camera) co
   if (count_ == 0) return best;
   Thumbnail now;
   make_thumbnail(image, &now);
+  ThumbnailMask mask;
+  make_thumbnail_mask(image, &mask);
   int best_view = -1, best_dx = 0, best_dy = 0;
   const auto compare = [&](int i, int dx, int dy) {
-    const float score = correlate(now, view_[i].thumbnail, dx, dy);
+    const float score = correlate(now, view_[i].thumbnail, dx, dy, mask);
     if (score <= best.score) return;
     best.score = score;
     best_view = i;
@@ -44,7 +48,7 @@ Recognition ViewMemory::recognise(const Pyramid& image, const Camera& camera) co
   const View& view = view_[best_view];
   best.p_W = view.p_W;
   Quat turn;
-  if (!find_rotation(camera, view.thumbnail, now, &turn))
+  if (!find_rotation(camera, view.thumbnail, now, mask, &turn))
     turn = rotation_of_shift(camera, Vec2(static_cast<Scalar>(best_dx), static_cast<Scalar>(best_dy)));
   best.q_WC = view.q_WC * turn;
   return best;

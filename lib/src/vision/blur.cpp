@@ -57,6 +57,27 @@ FrameStatistics frame_statistics(const ImageView& image) {
   return out;
 }
 
+FrameStatistics frame_statistics(const ImageView& image, int level, const ImageMask& mask) {
+  FrameStatistics out;
+  std::uint64_t total = 0, square = 0, gradient = 0, pixels = 0;
+  const int side = 2 << level;  // of a pixel with its lower right neighbours, in level 0
+  for (int y = 0; y + 1 < image.height; ++y)
+    for (int x = 0; x + 1 < image.width; ++x) {
+      if (!mask.is_clear(Rect{x << level, y << level, side, side})) continue;
+      const int value = image.at(x, y), dx = image.at(x + 1, y) - value, dy = image.at(x, y + 1) - value;
+      ++pixels;
+      total += static_cast<std::uint64_t>(value);
+      square += static_cast<std::uint64_t>(value * value);
+      gradient += static_cast<std::uint64_t>(dx * dx + dy * dy);
+    }
+  if (pixels == 0) return out;
+  const float n = static_cast<float>(pixels);
+  out.mean = static_cast<float>(total) / n;
+  out.deviation = std::sqrt(static_cast<float>(pixels * square - total * total)) / n;
+  out.gradient_energy = static_cast<float>(gradient) / n;
+  return out;
+}
+
 FrameUse judge_frame(const FrameStatistics& statistics) {
   if (statistics.deviation >= kMinDeviation && statistics.gradient_energy >= kMinGradient) {
     return FrameUse::kUsable;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vision/image.h"
+#include "vision/image_mask.h"
 
 namespace pf {
 
@@ -13,6 +14,8 @@ struct FrameStatistics {
 
 /// Meant for level 2 of a pyramid. Zero throughout for images below 2x2. About 0.3 ns per pixel.
 FrameStatistics frame_statistics(const ImageView& image);
+/// The same of what a mask leaves of level `level` of a pyramid; deviation from the mean of the squares.
+FrameStatistics frame_statistics(const ImageView& image, int level, const ImageMask& mask);
 
 /// Whether features can be found and measured in a frame.
 enum class FrameUse { kUsable, kDark, kBright, kFlat };

@@ -74,7 +74,8 @@ bool is_peak(const float* above, const float* here, const float* below, int i) {
 }  // namespace
 
 int detect_corners(const ImageView& image, const Rect& roi, int threshold, Corner* out, int capacity,
-                   const CornerWorkspace& workspace) {
+                   const CornerWorkspace& workspace, const ImageMask* mask) {
+  mask = in_use(mask);
   const Rect r = clip(roi, image, kCornerBorder);
   if (r.empty() || capacity <= 0 || r.width > workspace.width) return 0;
   const int t = threshold < 1 ? 1 : threshold > 254 ? 254 : threshold;
@@ -103,6 +104,8 @@ int detect_corners(const ImageView& image, const Rect& roi, int threshold, Corne
     for (int k = 0; k < count[here]; ++k) {
       const int i = workspace.candidate[here][k] + 1;
       if (!is_peak(workspace.score[above], workspace.score[here], score, i)) continue;
+      const Vec2 place(static_cast<Scalar>(r.x + i - 1), static_cast<Scalar>(r.y + y - 1));
+      if (mask != nullptr && !mask->is_clear(place, kMaskMargin)) continue;
       best.add(Corner{static_cast<float>(r.x + i - 1), static_cast<float>(r.y + y - 1), workspace.score[here][i]});
     }
   }

@@ -2,6 +2,7 @@
 
 #include "base/arena.h"
 #include "vision/image.h"
+#include "vision/image_mask.h"
 
 namespace pf {
 
@@ -13,6 +14,9 @@ struct Corner {
 
 /// Minimum distance of a corner from the image's edge [px], which the score of a 7x7 window needs.
 constexpr int kCornerBorder = 5;
+
+/// Likewise from what a mask leaves out [px]: half of the template that is cut there.
+constexpr int kMaskMargin = 6;
 
 /// Scratch for detect_corners: three rows of scores and of candidates, about 18 bytes per column.
 struct CornerWorkspace {
@@ -30,10 +34,11 @@ struct CornerWorkspace {
 /// roi         any; it is clipped to the image less kCornerBorder
 /// threshold   grey levels, clamped to 1 .. 254
 /// out         the best `capacity` of them, best first
+/// mask        none nearer to what it masks than kMaskMargin; may be null
 /// returns how many
 /// Time and scratch are proportional to the rectangle. src: Rosten and Drummond 2006 (segment test), Shi and Tomasi 1994.
 int detect_corners(const ImageView& image, const Rect& roi, int threshold, Corner* out, int capacity,
-                   const CornerWorkspace& workspace);
+                   const CornerWorkspace& workspace, const ImageMask* mask = nullptr);
 
 /// The segment test at one pixel, at least 3 from the edge: the plain twin of what detect_corners runs on 16 at once.
 bool is_segment_corner(const ImageView& image, int x, int y, int threshold);

@@ -95,6 +95,32 @@ PlaneCounts read_samples(const ImageView& image, const PlaneReading& reading, Pl
   return {sum(count), sum(kept)};
 }
 
+void leave_out_masked(const ImageMask& mask, int level, const PlaneReading& reading, PlaneSamples* samples,
+                      PlaneCounts* counts) {
+  const PlaneSamples& s = *samples;
+  const float* G = reading.G;
+  const int size = 1 << level;
+  float left = 0;
+  for (int i = 0; i < s.count; ++i) {
+    if (!(s.valid[i] > 0.0f)) continue;
+    const float per_depth = 1.0f / (G[6] * s.X[i] + G[7] * s.Y[i] + G[8]);
+    float x = (G[0] * s.X[i] + G[1] * s.Y[i] + G[2]) * per_depth;
+    float y = (G[3] * s.X[i] + G[4] * s.Y[i] + G[5]) * per_depth;
+    if (reading.has_lens) {
+      x += s.ex[i];
+      y += s.ey[i];
+    }
+    // A sample is read between four pixels of its level.
+    const Rect read{static_cast<int>(x) * size, static_cast<int>(y) * size, 2 * size, 2 * size};
+    if (mask.is_clear(read))
+      left += s.valid[i];
+    else
+      s.valid[i] = 0;
+  }
+  if (counts->valid > 0.0f) counts->kept *= left / counts->valid;
+  counts->valid = left;
+}
+
 void fit_light(PlaneSamples* samples, PlaneReading* reading) {
   const PlaneSamples& s = *samples;
   const auto image_at = [&](int i) { return s.r[i] + reading->gain * s.grey[i] + reading->bias; };

@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "vision/image.h"
+#include "vision/image_mask.h"
 #include "vision/plane_warps.h"
 
 /// The pixels of a patch that are compared, and the sums over them that an alignment needs. Numbers by fours; those that fill up have no
@@ -46,6 +47,10 @@ struct PlaneCounts {
 
 /// Reads the image at all samples: r, valid, jx and jy.
 PlaneCounts read_samples(const ImageView& image, const PlaneReading& reading, PlaneSamples* samples);
+
+/// Leaves out the samples that were read where a mask of level 0 has something: they are not valid.
+void leave_out_masked(const ImageMask& mask, int level, const PlaneReading& reading, PlaneSamples* samples,
+                      PlaneCounts* counts);
 
 /// Takes gain and bias from mean and standard deviation of all valid samples where that makes the residuals much smaller; they are changed
 /// with it. What begins with the light of another frame would else settle on the few grey levels that both share.

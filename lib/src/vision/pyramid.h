@@ -3,6 +3,7 @@
 #include "base/arena.h"
 #include "base/eigen.h"
 #include "vision/image.h"
+#include "vision/image_mask.h"
 
 namespace pf {
 
@@ -18,6 +19,7 @@ struct Pyramid {
 
   int levels = 0;
   ImageView level[kMaxLevels];
+  const ImageMask* mask = nullptr;  ///< of level 0, what is not the scene; null: all is
 
   /// Takes about width * height / 3 bytes. No level is made with a side below kSmallestSide, so `levels` may end up
   /// smaller than asked for. False: a side or the count of levels is not positive.

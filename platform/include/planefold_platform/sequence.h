@@ -36,13 +36,14 @@ typedef struct pf_sequence_info {
   double rate_hz;   /* as the calibration says, or else from the times */
   int32_t in_order; /* 1: a film. Frames are read in their order; to go back costs all that came before */
   const char*
-      folder; /* of a film its file. These seven are valid until the sequence is closed; "" where there is none */
+      folder; /* of a film its file. These eight are valid until the sequence is closed; "" where there is none */
   const char* calibration_path;
   const char* calibration_form; /* as in the table at pf_read_calibration, or "none" */
   const char* camera_name;      /* of the camera that was taken, where the calibration names its cameras: "cam0" */
   const char* truth_path;       /* a trajectory beside the images: TUM, or EuRoC's data.csv of the body */
   const char* warning;          /* what had to be assumed: each on a line of its own, with '\n' between them */
   const char* imu_path;         /* inertial samples beside the images, for pf_read_imu */
+  const char* mask_path;        /* mask.png beside the images, for pf_read_mask */
 } pf_sequence_info_t;
 
 /* What pf_open_sequence returns where it is the calibration that is refused. */
@@ -91,6 +92,10 @@ void pf_get_sequence_info(const pf_sequence_t* sequence, pf_sequence_info_t* inf
  * JPEG of which libjpeg warns counts as damaged. */
 int pf_read_sequence_frame(pf_sequence_t* sequence, int64_t index, pf_image_t* image,
                            char message[PF_SEQUENCE_MESSAGE]);
+
+/* A mask of images of this size, as pf_mask_t has it: a PNG of grey levels 0 (ignored) and 255 (scene) alone. Sets width * height bytes of
+ * pixels, row by row. One beside the images is called mask.png, in their folder or the one above, and is none of them. */
+int pf_read_mask(const char* path, int32_t width, int32_t height, uint8_t* pixels, char message[PF_SEQUENCE_MESSAGE]);
 
 /* File of a frame, for messages. */
 const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t index);

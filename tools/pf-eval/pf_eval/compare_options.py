@@ -9,6 +9,7 @@ interleaved, and prints a table per sequence: the median over the starts, and th
 
   tools/compare-runs --out DIR [VARIANT ...] [--starts N] [--data DIR] [--only NAME]
   tools/compare-runs --show DIR [DIR]
+  tools/compare-runs --copies COPIES --out DIR [VARIANT ...]
 
 VARIANT is "NAME=PROGRAM [options]" in one word, for example
   now=build/release/bin/pf-capture  "no planes=build/release/bin/pf-capture --no-planes"
@@ -19,7 +20,10 @@ nothing known. groundtruth.tum gives the position error after Sim(3) alignment, 
 with --there-and-back among a variant's options the distance of each image's two poses is shown as well. The largest value counts
 as the worst, but for tracked frames, planes and folding the smallest; "share folded", "frames with a plane" and "rows saved" are
 means over tracked frames from frame 60 on; a run that failed is worse than any, and shows as
-"none". Runs that are already in DIR, made by the same program, are not made again.
+"none". With --copies: runs on the copies of tools/copies, with both back ends (so no --backend among the options; a
+VARIANT may be "NAME=FOLDER" that holds pf-capture), one table by kind: share of frames tracked, runs below 90 %, maps a run,
+frames lost, and, where there is truth, frames of the largest map that have turned since its first by more than 5 degrees and
+5 of their own sigmas from it, and the rotation error after alignment, median (largest). Runs that are already in DIR, made by the same program, are not made again.
 
 Exit code: 0 done, 1 something cannot be used (one line says what), 2 the command line is wrong."""
 
@@ -30,7 +34,8 @@ def arguments(words):
     parser.add_argument("variants", metavar="VARIANT", nargs="*")
     parser.add_argument("--out", metavar="DIR", help="folder for the runs")
     parser.add_argument("--show", metavar="DIR", nargs="+", help="print the tables of one or two such folders; runs nothing")
-    parser.add_argument("--starts", metavar="N", type=int, default=5, help="starts per sequence (default 5)")
+    parser.add_argument("--copies", metavar="DIR", help="folder that tools/copies made")
+    parser.add_argument("--starts", metavar="N", type=int, help="starts per sequence (default 5; with --copies 1, and each 10 frames after the other)")
     parser.add_argument("--data", metavar="DIR", help="folder of the sequences (default: $PLANEFOLD_DATA)")
     parser.add_argument("--only", metavar="NAME", action="append", help="a sequence to run, may be repeated (default: all)")
     parser.add_argument("--jobs", metavar="N", type=int, default=1, help="runs at a time (default 1; more make times worthless)")
@@ -39,6 +44,9 @@ def arguments(words):
         parser.error("give either --out or --show")
     if options.show and (options.variants or len(options.show) > 2):
         parser.error("--show takes one or two folders and no variants")
+    if options.copies and options.show:
+        parser.error("--copies runs, and --show runs nothing")
+    options.starts = options.starts if options.starts is not None else 1 if options.copies else 5
     if options.starts < 1 or options.jobs < 1:
         parser.error("--starts and --jobs must be at least 1")
     return options

@@ -10,7 +10,7 @@ import statistics
 import subprocess
 import sys
 
-from . import Refused
+from . import Refused, compare_copies
 from .camera import camera_of_run
 from .compare_options import arguments
 from .corners import compare_corners, read_target
@@ -41,6 +41,8 @@ def read_variants(words):
         parts = shlex.split(command)
         if not equals or not name or not parts:
             raise Refused(f"'{word}': write NAME=PROGRAM, options in the same word")
+        if (pathlib.Path(parts[0]) / "pf-capture").is_file():
+            parts[0] = str(pathlib.Path(parts[0]) / "pf-capture")
         if not os.access(parts[0], os.X_OK) or pathlib.Path(parts[0]).is_dir():
             raise Refused(f"{parts[0]}: is no program; build pf-capture first")
         if name in [known for known, _, _ in variants]:
@@ -209,6 +211,9 @@ def table(rows):
 def main(words=None):
     options = arguments(words)
     try:
+        if options.copies:
+            print(compare_copies.table(compare_copies.run_all(options, read_variants(options.variants))))
+            return 0
         if options.show:
             labels = [""] if len(options.show) == 1 else [pathlib.Path(folder).name + ": " for folder in options.show]
             rows = [row for folder, label in zip(options.show, labels) for row in read_rows(folder, label)]

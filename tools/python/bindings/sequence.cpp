@@ -119,6 +119,8 @@ void add_sequences(nb::module_& module) {
            [](const pf_sequence_info_t& info) { return info.truth_path; });
   add_text(sequence, "imu_path", "Inertial samples beside the images, for read_imu; empty where there are none.",
            [](const pf_sequence_info_t& info) { return info.imu_path; });
+  add_text(sequence, "mask_path", "A mask beside the images, for Slam.set_mask; empty where there is none.",
+           [](const pf_sequence_info_t& info) { return info.mask_path; });
   add_text(sequence, "warning", "One line on what had to be assumed; empty where nothing had.",
            [](const pf_sequence_info_t& info) { return info.warning; });
 }

@@ -54,6 +54,39 @@ pf_status_t push_arrays(Context& self, const ArrayLike& t_ns, const ArrayLike& g
   return push_samples(self, samples);
 }
 
+/// Columns x, y, width, height.
+std::vector<pf_rectangle_t> rectangles_of(const ArrayLike& given) {
+  using Quadruples = nb::ndarray<const int32_t, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
+  std::vector<pf_rectangle_t> rectangles;
+  if (given.given.is_none()) return rectangles;
+  Quadruples rows;
+  if (!nb::try_cast<Quadruples>(made_of(given, "int32"), rows)) {
+    throw nb::value_error("rectangles: takes x, y, width and height of each");
+  }
+  for (size_t i = 0; i < rows.shape(0); ++i) {
+    rectangles.push_back({rows(i, 0), rows(i, 1), rows(i, 2), rows(i, 3)});
+  }
+  return rectangles;
+}
+
+pf_status_t set_mask(Context& self, nb::handle pixels, const ArrayLike& rectangles) {
+  const std::vector<pf_rectangle_t> masked = rectangles_of(rectangles);
+  const pf_camera_t& camera = self.config().camera;
+  pf_mask_t mask{};
+  mask.width = camera.width;
+  mask.height = camera.height;
+  if (!pixels.is_none()) {
+    const pf_image_t image = to_image(pixels, 0);
+    mask.pixels = image.pixels;
+    mask.width = image.width;
+    mask.height = image.height;
+    mask.stride = image.stride;
+  }
+  mask.num_rectangles = static_cast<int32_t>(masked.size());
+  mask.rectangles = masked.empty() ? nullptr : masked.data();
+  return self.run("set_mask", [&](pf_slam_t* context) { return pf_set_mask(context, &mask); });
+}
+
 }  // namespace
 
 void add_inputs(nb::class_<Context>& slam) {
@@ -66,6 +99,10 @@ void add_inputs(nb::class_<Context>& slam) {
       nb::arg("image"), nb::arg("t_ns"),
       nb::sig("def push_frame(self, image: numpy.typing.NDArray[numpy.uint8], t_ns: int) -> Status"),
       doc::pf_push_frame);
+  slam.def("set_mask", set_mask, nb::arg("pixels").none() = nb::none(), nb::arg("rectangles") = nb::none(),
+           nb::sig("def set_mask(self, pixels: numpy.typing.NDArray[numpy.uint8] | None = None, "
+                   "rectangles: numpy.typing.ArrayLike | None = None) -> Status"),
+           doc::pf_set_mask);
   slam.def(
       "push_observations",
       [](Context& self, int64_t t_ns, const std::vector<pf_observation_t>& observations) {

@@ -110,29 +110,39 @@ struct Count {
   static constexpr int value = kValue;
 };
 
+/// Whether strips of kMost vectors can leave so many vectors, but not one more, of columns that are a multiple of eight.
+template <int kMost>
+constexpr bool may_leave(int vectors) {
+  constexpr int kWhole = kMost * Wide::kWidth;
+  constexpr int kStep = kWhole % kGroup == 0 ? kGroup : kWhole % 4 == 0 ? 4 : kWhole % 2 == 0 ? 2 : 1;
+  if (kMost > 5) return true;
+  return kMost > vectors && ((vectors + 1) * Wide::kWidth - 1) / kStep * kStep >= vectors * Wide::kWidth;
+}
+
 template <int kMost = kTileVectors, class Work>
 PF_INLINE void for_strips(int first, int columns, const Work& work) {
   int j = 0;
   for (; j + kMost * Wide::kWidth <= columns; j += kMost * Wide::kWidth) {
     work(Wide{}, Count<kMost>{}, first + j);
   }
-  if (kMost > 4 && j + 4 * Wide::kWidth <= columns) {
+  if (may_leave<kMost>(4) && j + 4 * Wide::kWidth <= columns) {
     work(Wide{}, Count<4>{}, first + j);
     j += 4 * Wide::kWidth;
   }
-  if (kMost > 3 && j + 3 * Wide::kWidth <= columns) {
+  if (may_leave<kMost>(3) && j + 3 * Wide::kWidth <= columns) {
     work(Wide{}, Count<3>{}, first + j);
     j += 3 * Wide::kWidth;
   }
-  if (kMost > 2 && j + 2 * Wide::kWidth <= columns) {
+  if (may_leave<kMost>(2) && j + 2 * Wide::kWidth <= columns) {
     work(Wide{}, Count<2>{}, first + j);
     j += 2 * Wide::kWidth;
   }
-  if (kMost > 1 && j + Wide::kWidth <= columns) {
+  if (may_leave<kMost>(1) && j + Wide::kWidth <= columns) {
     work(Wide{}, Count<1>{}, first + j);
     j += Wide::kWidth;
   }
-  if (j < columns) work(Narrow{}, Count<1>{}, first + j);
+  if ((Wide::kWidth > Narrow::kWidth || kGroup % Wide::kWidth != 0) && j < columns)
+    work(Narrow{}, Count<1>{}, first + j);
 }
 
 /// Eight columns, in strips of two registers at most.

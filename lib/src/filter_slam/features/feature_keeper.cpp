@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/table_entries.h"
 #include "filter_slam/features/tuning.h"
 #include "filter_slam/features/wall_rays.h"
 #include "frame/feature_upkeep.h"
@@ -26,8 +27,7 @@ void FeatureKeeper::convert_linear() {
   ScaleRow l;
   filter_.scale_row(&l);
   const Vec3 c_W = camera_at(filter_.state(), Scalar(0)).p_W;
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i)) continue;
+  for (const int i : used_entries(map_.features)) {
     const Block& block = filter_.state().block[map_.features[i].slot];
     if (block.kind != BlockKind::kInverseDepth) continue;
     // The unknown global scale is common to all points, so it must not delay conversion.
@@ -42,8 +42,7 @@ void FeatureKeeper::convert_linear() {
 
 void FeatureKeeper::drop_failing(bool is_tracked) {
   int count = 0;
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i)) continue;
+  for (const int i : used_entries(map_.features)) {
     const Feature& f = map_.features[i];
     if (!filter_.block_is_sound(f.slot)) {
       scratch_[count++] = i;
@@ -78,8 +77,7 @@ void FeatureKeeper::drop(const int* entries, int count) {
 }
 
 void FeatureKeeper::drop_all() {
-  for (int i = 0; i < map_.features.capacity(); ++i)
-    if (map_.features.used(i)) drop(&i, 1);
+  for (const int i : used_entries(map_.features)) drop(&i, 1);
 }
 
 void FeatureKeeper::release(int entry) {
@@ -184,12 +182,12 @@ int FeatureKeeper::add(int anchor, const Vec2& pixel, const Mat2& noise) {
 int FeatureKeeper::plane_at(const Vec2& pixel) const {
   Vec3 ray_C;
   if (!settings_.planes || !unproject(filter_.lens(), pixel, &ray_C)) return -1;
-  const CameraAt camera = camera_at(filter_.state(), row_time(filter_.lens(), pixel.y()));
+  const CameraAt camera = camera_of_row(filter_.state(), filter_.lens(), pixel.y());
   const Vec3 ray_W = camera.q_WC * ray_C;
   int nearest = -1;
   Scalar range2 = 0;
-  for (int i = 0; i < map_.planes.capacity(); ++i) {
-    if (!map_.planes.used(i) || !map_.planes[i].is_proven(settings_.plane_min_points)) continue;
+  for (const int i : used_entries(map_.planes)) {
+    if (!map_.planes[i].is_proven(settings_.plane_min_points)) continue;
     const Block& block = filter_.state().block[map_.planes[i].slot];
     const PlaneFrame& frame = filter_.state().frame_of(block);
     Vec3 at;

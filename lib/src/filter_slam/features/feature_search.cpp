@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elapsed.h"
+#include "belief/pose_evidence.h"
 #include "frame/ellipse.h"
 #include "frame/feature_upkeep.h"
 #include "frame/tuning.h"
@@ -120,6 +121,8 @@ int FeatureSearch::search(int first, int count) {
     match.measured = outcome.pixel;
     match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
     o.measured = outcome.pixel;
+    const Scalar nis = squared_distance(outcome.pixel - task.predicted, task.innovation);
+    update_.candidate(i).log_density = log_normal_density(nis, std::log(task.innovation.determinant()), 1);
     noise_.set(i, outcome);
     if (found != i) update_.swap(found, i);
     ++found;
@@ -135,7 +138,7 @@ SearchTask FeatureSearch::task_of(int feature) const {
   task.appearance = &map_.appearance(feature);
   task.first_view = map_.first_view(feature);
   // Where a surface is in other images needs its depth. The target is matched as without masks (lib/docs/templates.md).
-  if (map_.has_templates() && !map_.features[feature].is_target && state.block[slot].kind != BlockKind::kInverseDepth)
+  if (map_.has_templates() && !map_.features[feature].is_target && !state.has_inverse_depth(slot))
     ImageSearch::use_template(map_, feature, &task);
   task.gate = settings_.gate;
   task.p_W = filter_.point(slot);
@@ -186,7 +189,7 @@ const Scalar* FeatureSearch::searched_areas(int first, int count) {
 bool FeatureSearch::begin_following(int count) {
   int wide = 0;
   for (int i = 0; i < count; ++i) wide += is_wide(frame_.match(update_.candidate(i).match).innovation) ? 1 : 0;
-  if (wide == 0 || 2 * wide < count) return false;
+  if (wide == 0 || tuning::image_front_end::kMinWide * wide < count) return false;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   is_following_ = followed_.find(filter_.lens(), search_.tracker().pyramid());
   return is_following_;

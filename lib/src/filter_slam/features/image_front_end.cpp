@@ -1,10 +1,10 @@
 #include "filter_slam/features/image_front_end.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/elapsed.h"
 #include "filter_slam/pose/consensus.h"
-#include "filter_slam/pose/triple_consensus.h"
 #include "frame/tracking_state.h"
 #include "frame/tuning.h"
 
@@ -27,75 +27,89 @@ bool ImageFrontEnd::begin_frame(const ImageView& image) {
   return search_.begin_frame(image);
 }
 
-void ImageFrontEnd::measure(ConsensusRule rule, Scalar median_depth, bool parallax_lasts) {
-  noise_.set_parallax_lasts(parallax_lasts);
-  is_learnt_ = rule != ConsensusRule::kStart && same_view_.is_learnt(filter_.state().body, median_depth,
-                                                                     settings_.camera.fx, noise_.correlation_frames());
+void ImageFrontEnd::measure(const MeasureMode& mode) {
+  noise_.set_parallax_lasts(mode.parallax_lasts);
+  is_learnt_ = !mode.starts && same_view_.is_learnt(filter_.state().body, mode.median_depth, settings_.camera.fx,
+                                                    noise_.correlation_frames());
   filter_.estimate_motion_only(is_learnt_);
-  measure_visible(rule, rule == ConsensusRule::kStart);
+  is_measured_ = true;
+  hypotheses_ = 1;
+  listed_ = list_candidates();
+  if (!mode.is_vague) measure_listed(mode, mode.starts);
   const bool followed = search_.is_following();
   if (frame_.report.inliers == 0 && (followed || search_.begin_following(listed_))) {
+    hypotheses_ += mode.is_vague ? 0 : 1;
     search_.set_following(!followed);
-    measure_visible(rule, false);
+    if (!mode.is_vague) listed_ = list_candidates();
+    measure_listed(mode, false);
   }
   search_.set_following(false);
   filter_.estimate_motion_only(false);
 }
 
-/// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
-/// anything is used. follows: where few of those first ones are found, searches go about the places where the picture as a whole has gone.
-void ImageFrontEnd::measure_visible(ConsensusRule rule, bool follows) {
+/// Lists what should be in view, and predicts where.
+int ImageFrontEnd::list_candidates() {
   frame_.forget_searches();
   const int count = search_.list_visible();
-  listed_ = count;
-  is_measured_ = true;
-  {
-    StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
-    search_.predict_pixels(0, count);
-  }
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
+  search_.predict_pixels(0, count);
+  return count;
+}
+
+/// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
+/// anything is used. follows: where few of those first ones are found, searches go about the places where the picture as a whole has gone.
+void ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows) {
+  const int count = listed_;
   const int scouts = search_.widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
   int found = search_.search(0, scouts > 0 ? scouts : count);
-  if (follows && Scalar(found) < kFewFound * Scalar(frame_.report.attempts) && search_.begin_following(listed_))
-    return measure_visible(rule, false);
+  if (follows && Scalar(found) < kFewFound * Scalar(frame_.report.attempts) && search_.begin_following(count)) {
+    listed_ = list_candidates();
+    return measure_listed(mode, false);
+  }
+  const int scouted = frame_.report.attempts;
   if (scouts > 0) {
-    const bool scouted = update_with_consensus(0, found, rule);
-    if (scouted) {
+    const bool used = update_with_consensus({0, found, scouted, false}, mode);
+    if (used) {
       StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
       search_.predict_pixels(scouts, count - scouts);
     }
     const int more = search_.search(scouts, count - scouts);
-    if (scouted) {
-      update_with_consensus(scouts, more, rule);
+    if (used) {
+      update_with_consensus({scouts, more, frame_.report.attempts - scouted, true}, mode);
       return;
     }
     for (int k = 0; k < more; ++k, ++found)
       if (found != scouts + k) update_.swap(found, scouts + k);
   }
-  update_with_consensus(0, found, rule);
+  update_with_consensus({0, found, frame_.report.attempts, true}, mode);
 }
 
-/// Finds the consensus of matches and updates the filter with it. False if it may be chance; nothing is used then.
-bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule rule) {
-  if (found == 0) return false;
+/// Finds the consensus of the matches of a range, and updates the filter with it. False if that is not enough to believe the
+/// pose; nothing is used then.
+bool ImageFrontEnd::update_with_consensus(const Range& range, const MeasureMode& mode) {
+  const int first = range.first, found = range.found;
+  const bool is_first = frame_.report.inliers == 0;
   update_.begin(first, found);
   unsigned char* keep = update_.keep();
+  JointFit fit;
+  PoseConsensus consensus;
+  Scalar log_odds;
   bool accepted;
-  double nis = 0;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
-    const PixelMeasurement* observations = update_.observations() + first;
-    const int inliers = find_inliers(filter_, observations, found, settings_.gate, keep + first);
-    int least = 1;  // if an earlier range has given inliers, any consensus is accepted
-    accepted = inliers > 0;
-    if (frame_.report.inliers == 0 && rule == ConsensusRule::kStart) {
-      least = std::min(kMinConsensus, map_.features.count());
-    } else if (frame_.report.inliers == 0) {
-      least = settings_.min_inliers;
-      accepted = inliers >= least && ((rule == ConsensusRule::kMostAgree && most_agree(first, found)) ||
-                                      is_beyond_chance(first, found, rule));
-    }
+    find_inliers(filter_, update_.observations() + first, found, settings_.gate, keep + first);
     // A match that all the others contradict supports nothing.
-    if (accepted) accepted = update_.reject_contradicted(first, found, &nis) >= least;
+    const int inliers = found > 0 ? update_.reject_contradicted(first, found, &fit) : 0;
+    consensus = consensus_of(range, inliers, fit);
+    const Scalar evidence = belief_.evidence(consensus);
+    if (is_first) {
+      log_odds = weigh(range, inliers, evidence, mode.median_depth);
+      accepted = mode.starts ? inliers >= std::min(kMinConsensus, map_.features.count())
+                             : inliers >= settings_.min_inliers && PoseBelief::is_enough(log_odds);
+    } else {  // beside those that were believed, any consensus is
+      log_odds = PoseBelief::updated(belief_.log_odds(), evidence);
+      accepted = inliers > 0;
+    }
   }
   for (int i = first; i < first + found; ++i) {
     const PixelMeasurement& o = update_.observation(i);
@@ -107,34 +121,39 @@ bool ImageFrontEnd::update_with_consensus(int first, int found, ConsensusRule ru
   }
   // Jointly, with the noise of the gate: that of the update allows for errors that come again in later frames.
   if (!accepted || !update_.apply(first, found, nullptr)) return false;
-  frame_.report.nis += nis;
+  frame_.report.nis += static_cast<double>(fit.nis);
+  belief_.use(log_odds, consensus);
   return true;
 }
 
-/// Whether at least half of what was searched for is among the inliers. Half of all corners are never found again, so the new ones say
-/// little by being missed, and do not count where enough others were searched for.
-bool ImageFrontEnd::most_agree(int first, int found) const {
-  int searched = 0, agree = 0;
-  for (int i = 0; i < listed_; ++i) {
-    const Candidate& candidate = update_.candidate(i);
-    if (map_.features[candidate.feature].observations < 2 || !frame_.match(candidate.match).searched) continue;
-    ++searched;
-    agree += i >= first && i < first + found && update_.keep()[i] != 0 ? 1 : 0;
+/// Where the picture as a whole says where it has gone, that is where the pose of this hypothesis has each pixel, and not the prediction.
+PoseConsensus ImageFrontEnd::consensus_of(const Range& range, int inliers, const JointFit& fit) {
+  const int first = range.first, found = range.found;
+  PoseConsensus consensus;
+  consensus.searched = range.searched;
+  consensus.inliers = inliers;
+  consensus.log_density = log_normal_density(fit.nis, fit.log_det, inliers);
+  if (search_.is_following()) consensus.log_density = 0;
+  const Scalar* const searched_px2 = search_.searched_areas(first, found);
+  for (int i = 0; i < found; ++i) {
+    if (update_.keep()[first + i] == 0) continue;
+    consensus.log_chance += log_chance_density(searched_px2[i]);
+    if (search_.is_following()) consensus.log_density += update_.candidate(first + i).log_density;
   }
-  if (searched >= settings_.min_inliers) return 2 * agree >= searched;
-  const int inliers = static_cast<int>(std::count(update_.keep() + first, update_.keep() + first + found, 1));
-  return 2 * inliers >= frame_.report.attempts;
+  return consensus;
 }
 
-/// Whether chance would hardly let as many matches agree as keep says.
-bool ImageFrontEnd::is_beyond_chance(int first, int found, ConsensusRule rule) {
-  const Scalar* const searched_px2 = search_.searched_areas(first, found);
-  const auto is_beyond = [&](int levels) {
-    return find_triple_consensus(filter_, update_.observations() + first, searched_px2, found, frame_.report.attempts,
-                                 settings_.gate, tuning::tracking::kTriples, levels, update_.keep() + first, nullptr)
-               .log_false < tuning::tracking::kMaxLogFalse;
-  };
-  return is_beyond(1) || (rule == ConsensusRule::kFollowed && is_beyond(tuning::chance::kLevels));
+/// Log-odds of the pose with the evidence of the frame's first consensus. A pose that is not believed yet is proposed to the next frame,
+/// once all features have been searched for.
+Scalar ImageFrontEnd::weigh(const Range& range, int inliers, Scalar evidence, Scalar depth) {
+  evidence -= std::log(static_cast<Scalar>(hypotheses_));
+  Scalar log_odds = PoseBelief::updated(belief_.predicted(), evidence);
+  const bool is_enough = PoseBelief::is_enough(log_odds);
+  if (!range.is_last && !is_enough) return log_odds;
+  if (inliers >= settings_.min_inliers && evidence > Scalar(0) && (!is_enough || update_.proposals().last().is_set))
+    log_odds = update_.propose(range.first, range.found, depth, belief_.predicted(), evidence);
+  belief_.note(log_odds);
+  return log_odds;
 }
 
 void ImageFrontEnd::note_view(bool taught, Scalar median_depth) {

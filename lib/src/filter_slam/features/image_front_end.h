@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "belief/pose_belief.h"
 #include "filter/filter.h"
 #include "filter_slam/features/corner_features.h"
 #include "filter_slam/features/feature_keeper.h"
@@ -17,23 +18,25 @@
 
 namespace pf {
 
-/// When a frame's consensus is believed.
-enum class ConsensusRule {
-  kStart,         ///< five agree: there is no map yet that could be spoilt
-  kMostAgree,     ///< as below, or at least eight and half of what was searched for: the map is too young to show more
-  kBeyondChance,  ///< at least eight, far more than chance would give
-  kFollowed,      ///< likewise, where what agrees closely says more: of a camera that was tracked up to here
+/// How a frame is measured.
+struct MeasureMode {
+  bool starts = false;    ///< five inliers are enough: there is no map yet that could be spoilt
+  bool is_vague = false;  ///< of a prediction too vague to search about it: only where the picture as a whole has gone
+  Scalar median_depth = 1;  ///< of the last tracked frame's inliers
+  /// What baseline and open depth make wrong together counts as an error that stays with its feature.
+  bool parallax_lasts = false;
 };
 
 class ImageFrontEnd {
  public:
   ImageFrontEnd(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features,
-                PixelUpdate& update, NoiseModel& noise)
+                PixelUpdate& update, PoseBelief& belief, NoiseModel& noise)
       : settings_(settings),
         filter_(filter),
         map_(map),
         frame_(frame),
         update_(update),
+        belief_(belief),
         noise_(filter, map, frame, update, noise),
         search_(settings, filter, map, frame, update, noise_),
         corners_(settings, filter, map, frame, features, search_) {}
@@ -43,10 +46,8 @@ class ImageFrontEnd {
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);
-  /// Finds the map's features in the image and updates the filter with them.
-  /// median_depth: of the last tracked frame's inliers. parallax_lasts: what baseline and open depth make wrong together counts as an error
-  /// that stays with its feature.
-  void measure(ConsensusRule rule, Scalar median_depth, bool parallax_lasts);
+  /// Finds the map's features in the image, and updates the filter with them where that is enough to believe the pose.
+  void measure(const MeasureMode& mode);
   /// Where the camera is after a frame, and whether that taught the map. SameView
   void note_view(bool taught, Scalar median_depth);
   /// Updates the noise model with the inliers' residuals after measure().
@@ -58,16 +59,23 @@ class ImageFrontEnd {
   CornerFeatures& corners() { return corners_; }
 
  private:
-  void measure_visible(ConsensusRule rule, bool follows);
-  bool update_with_consensus(int first, int found, ConsensusRule rule);
-  bool most_agree(int first, int found) const;
-  bool is_beyond_chance(int first, int found, ConsensusRule rule);
+  int list_candidates();
+  void measure_listed(const MeasureMode& mode, bool follows);
+  /// Of the listed candidates, those that were searched for at once; what was found stands first.
+  struct Range {
+    int first, found, searched;
+    bool is_last;  ///< all have been searched for
+  };
+  bool update_with_consensus(const Range& range, const MeasureMode& mode);
+  PoseConsensus consensus_of(const Range& range, int inliers, const JointFit& fit);
+  Scalar weigh(const Range& range, int inliers, Scalar evidence, Scalar depth);
 
   const Settings& settings_;
   Filter& filter_;
   Map& map_;
   Frame& frame_;
   PixelUpdate& update_;
+  PoseBelief& belief_;
   MatchNoise noise_;
   FeatureSearch search_;
   CornerFeatures corners_;
@@ -75,6 +83,7 @@ class ImageFrontEnd {
   bool is_learnt_ = false;    ///< the map has learnt from this frame's view already
   bool is_measured_ = false;  ///< by measure(), so that candidates and matches are this frame's
   int listed_ = 0;            ///< candidates of the last frame that measure() has measured
+  int hypotheses_ = 1;        ///< of where this frame is, tried by measure() so far
 };
 
 }  // namespace pf

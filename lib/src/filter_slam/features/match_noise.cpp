@@ -15,14 +15,14 @@ void MatchNoise::set(int i, const SearchOutcome& found) const {
 /// Whether a feature's matches add up to coordinates that are averaged over frames, so that errors which stay with the feature count. The
 /// target's coordinates are given, and an inverse depth has been seen from about its first view only, which its matches are compared with.
 bool MatchNoise::is_averaged(const Feature& f) const {
-  return !f.is_target && filter_.state().block[f.slot].kind != BlockKind::kInverseDepth;
+  return !f.is_target && !filter_.state().has_inverse_depth(f.slot);
 }
 
 /// R_update of a match with this noise, without bend. What the linearisation leaves out is new in each frame, but for the product of an
 /// open depth and a baseline that is wrong for as long: where that lasts, it counts twice (lib/docs/lens.md).
 Mat2 MatchNoise::update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise) const {
   Mat2 R = (is_averaged(f) ? model_.correlation_frames() : Scalar(1)) * noise + o.second_order;
-  if (parallax_lasts_ && filter_.state().block[f.slot].kind == BlockKind::kInverseDepth) R += o.second_order;
+  if (parallax_lasts_ && filter_.state().has_inverse_depth(f.slot)) R += o.second_order;
   return R;
 }
 

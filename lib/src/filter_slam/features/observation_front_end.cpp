@@ -1,7 +1,9 @@
 #include "filter_slam/features/observation_front_end.h"
 
 #include "base/elapsed.h"
+#include "base/table_entries.h"
 #include "filter_slam/pose/consensus.h"
+#include "frame/tuning.h"
 
 namespace pf {
 
@@ -20,7 +22,8 @@ bool ObservationFrontEnd::layout(Arena& arena, int max_features, int max_observa
 void ObservationFrontEnd::measure(const PixelObservation* observations, int count, bool again) {
   const int known = gate(observations, count, again);
   // Where the prediction is in doubt, the few that pass a gate which refuses most of them pass it by chance.
-  if (known == 0 || (update_.limits_pose_nis() && 2 * known < frame_.report.matches)) return;
+  if (known == 0 || (update_.limits_pose_nis() && tuning::image_front_end::kFewPassing * known < frame_.report.matches))
+    return;
   update_.begin(0, known);
   update_.apply(0, known, &frame_.report.nis);
 }
@@ -90,8 +93,8 @@ void ObservationFrontEnd::add_features(const PixelObservation* observations, int
 }
 
 int ObservationFrontEnd::find(std::uint32_t external_id) const {
-  for (int i = 0; i < map_.features.capacity(); ++i)
-    if (map_.features.used(i) && map_.features[i].external_id == external_id) return i;
+  for (const int i : used_entries(map_.features))
+    if (map_.features[i].external_id == external_id) return i;
   return -1;
 }
 

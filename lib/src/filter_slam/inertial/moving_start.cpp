@@ -65,11 +65,8 @@ bool MovingStart::locate(View* view) const {
   PnpPoint point[kMaxPixels];
   int count = 0;
   for (int i = 0; i < view->count; ++i) {
-    int entry = 0;
-    while (entry < map_.features.capacity() &&
-           !(map_.features.used(entry) && map_.features[entry].id == view->seen[i].id))
-      ++entry;
-    if (entry == map_.features.capacity() || !has_depth(entry)) continue;
+    const int entry = map_.features.entry_of(view->seen[i].id);
+    if (entry < 0 || !has_depth(entry)) continue;
     point[count++] = {filter_.point(map_.features[entry].slot), Scalar(1),
                       Vec2(static_cast<Scalar>(view->seen[i].x), static_cast<Scalar>(view->seen[i].y))};
   }

@@ -210,7 +210,7 @@ bool RestDetector::motion_since(const Seen* before, int count_before, Vec4* moti
     c[count] = c[i];
     d[count++] = d[i];
   }
-  if (count < kMinPixels || 2 * count < all) return false;
+  if (count < kMinPixels || kMinTogether * count < all) return false;
   for (int i = 0; i < count; ++i) {
     centre += c[i] / static_cast<Scalar>(count);
     shift += d[i] / static_cast<Scalar>(count);

@@ -33,6 +33,7 @@ inline constexpr Scalar kMaxScatter = Scalar(1.5);  ///< of gyro less rate, in v
 inline constexpr Scalar kMaxShare = Scalar(0.1);    ///< of the rate's own scatter that gyro less rate may have
 inline constexpr Scalar kMinPower = Scalar(100);    ///< of the rate over its variance, summed: rest proves nothing
 inline constexpr int kMinFrames = 30;               ///< that such a test wants
+inline constexpr int kFewPassing = 2;               ///< matches for each inlier, above which the gate has refused most
 }  // namespace unit_watch
 
 /// Standing still.
@@ -52,6 +53,7 @@ inline constexpr Scalar kMeanGain = Scalar(0.1);          ///< of that running m
 inline constexpr Scalar kMaxNis = Scalar(38.3);  ///< chi-square of six, 1 - 1e-6: beyond it samples say it moves
 inline constexpr Scalar kAnyNis = Scalar(1e9);   ///< the same, once the frame has shown no motion
 inline constexpr Scalar kHidden = Scalar(2);     ///< sigmas of a frame's mean acceleration that pass for none
+inline constexpr int kMinTogether = 2;           ///< one in so many pixels moves with the median
 }  // namespace rest
 
 /// A start in metres from a moving camera.

@@ -140,7 +140,8 @@ void UnitWatch::return_to_samples(const ImuReading& reading) {
 Scalar UnitWatch::contradiction(bool before_was_tracked, bool is_tracked) const {
   const FrameReport& report = frame_.report;
   if (data_->taken_back) return kMaxOfFrame;
-  if (!is_tracked && report.matches >= settings_.min_inliers && 2 * report.inliers < report.matches) return kMaxOfFrame;
+  if (!is_tracked && report.matches >= settings_.min_inliers && kFewPassing * report.inliers < report.matches)
+    return kMaxOfFrame;
   if (!before_was_tracked || !is_tracked || report.pose_nis_dof == 0) return kSlack;
   return std::min(static_cast<Scalar>(report.pose_nis * Body::kPoseDim / report.pose_nis_dof), kMaxOfFrame);
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "base/limits.h"
 #include "filter/filter.h"
 #include "filter_slam/patches/patch_finder.h"
 #include "filter_slam/patches/patch_update.h"
@@ -59,6 +60,6 @@ class PatchConsensus {
   std::uint32_t found_ = 0;      ///< a bit for each entry
   bool is_contested_ = false;
 };
-static_assert(PatchNoise::kMaxPatches <= 32, "a bit for each entry");
+static_assert(kMaxPatches <= 32, "a bit for each entry");
 
 }  // namespace pf

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "base/limits.h"
+#include "base/table_entries.h"
 #include "filter_slam/patches/patch_sight.h"
 #include "filter_slam/patches/patch_walls.h"
 #include "filter_slam/patches/tuning.h"
@@ -58,8 +60,7 @@ void PatchKeeper::follow_filter() {
 
 int PatchKeeper::list_in_order(int* order) const {
   int count = 0;
-  for (int i = 0; i < store_.capacity(); ++i) {
-    if (!store_.used(i)) continue;
+  for (const int i : used_entries(store_)) {
     int at = count++;
     for (; at > 0 && store_[order[at - 1]].frames < store_[i].frames; --at) order[at] = order[at - 1];
     order[at] = i;
@@ -85,8 +86,7 @@ void PatchKeeper::measure(const Pyramid& image, bool is_young) {
 }
 
 void PatchKeeper::learn_noise() {
-  for (int i = 0; i < store_.capacity(); ++i) {
-    if (!store_.used(i)) continue;
+  for (const int i : used_entries(store_)) {
     const StoredPatch& patch = store_[i];
     if (patch.status != PatchStatus::kInlier || patch.frames < kSettledFrames) continue;
     const int wall = wall_of(map_.planes, patch);
@@ -170,8 +170,7 @@ bool PatchKeeper::count_failures(StoredPatch* patch, int wall) {
 }
 
 void PatchKeeper::drop_failing(bool supported) {
-  for (int i = 0; i < store_.capacity(); ++i) {
-    if (!store_.used(i)) continue;
+  for (const int i : used_entries(store_)) {
     StoredPatch& patch = store_[i];
     const int own = patch.is_proven() ? patch.block : patch.camera;
     const int wall = wall_of(map_.planes, patch);

@@ -26,8 +26,6 @@ namespace pf {
 /// Servant 2008, sections 2.3 and 2.4 (lib/docs/homography.md).
 class PatchKeeper {
  public:
-  static constexpr int kMaxPatches = PatchNoise::kMaxPatches;  ///< capacity.max_patches at most
-
   PatchKeeper(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features,
               TrackingState& tracking);
   PatchKeeper(const PatchKeeper&) = delete;  // its parts refer to each other

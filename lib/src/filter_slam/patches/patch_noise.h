@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/limits.h"
 #include "filter/filter.h"
 #include "frame/noise_model.h"
 #include "track/patch_store.h"
@@ -9,8 +10,6 @@ namespace pf {
 /// Noise of the corners of patches, learnt from the residuals of all patches together. Each corner has its own trace of residuals.
 class PatchNoise {
  public:
-  static constexpr int kMaxPatches = 32;  ///< capacity.max_patches at most
-
   void init();
   /// Forgets the residuals of an entry of the store, which gets another patch.
   void forget(int entry);

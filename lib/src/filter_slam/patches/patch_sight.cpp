@@ -19,14 +19,14 @@ bool expect_patch(const Filter& filter, const PlaneTable& planes, const StoredPa
   const Camera& lens = filter.lens();
   const Block &reference = state.block[patch.camera], &plane = state.block[planes[wall].slot];
   const PlaneFrame& frame = state.frame_of(plane);
-  const bool rolls = lens.readout != Scalar(0) && state.layout.has(BodyPart::kVelocity);
+  const int rounds = rows_roll(state, lens) ? 3 : 1;  // where a corner lies says when its row is read out
   Vec3 from[4], to[4];
   sight->middle_W.setZero();
   for (int k = 0; k < 4; ++k) {
     RayPoint point;
     CameraAt camera = camera_at(state, Scalar(0));
-    for (int round = 0; round < (rolls ? 3 : 1); ++round) {
-      if (round > 0) camera = camera_at(state, row_time(lens, point.z.y()));
+    for (int round = 0; round < rounds; ++round) {
+      if (round > 0) camera = camera_of_row(state, lens, point.z.y());
       if (!point.observe(lens, camera, ReferenceCamera::q_WC(reference), ReferenceCamera::p_WC(reference), frame,
                          plane.xyz(), patch.reference_px[k], false))
         return false;

@@ -17,11 +17,10 @@ bool fit_plane_to(const Filter& filter, const StoredPatch& patch, PlaneFit* fit,
   const Block& reference = state.block[patch.camera];
   const Quat q_WK = ReferenceCamera::q_WC(reference);
   const Vec3 p_WK = ReferenceCamera::p_WC(reference);
-  const bool rolls = lens.readout != Scalar(0) && state.layout.has(BodyPart::kVelocity);
   Vec3 ray_K[4], ray_C[4], t_CK[4], corner_W[4];
   Mat3 R_CK[4];
   for (int k = 0; k < 4; ++k) {
-    const CameraAt camera = camera_at(state, rolls ? row_time(lens, patch.corner[k].y()) : Scalar(0));
+    const CameraAt camera = camera_of_row(state, lens, patch.corner[k].y());
     if (!unproject(lens, patch.reference_px[k], &ray_K[k]) || !unproject(lens, patch.corner[k], &ray_C[k]))
       return false;
     R_CK[k] = (camera.q_WC.conjugate() * q_WK).toRotationMatrix();

@@ -21,14 +21,8 @@ constexpr int kMaxMost = 128;  // points that are asked
 
 }  // namespace
 
-int plane_with_id(const PlaneTable& planes, std::uint32_t id) {
-  for (int k = 0; k < planes.capacity() && id != 0; ++k)
-    if (planes.used(k) && planes[k].id == id) return k;
-  return -1;
-}
-
 int wall_of(const PlaneTable& planes, const StoredPatch& patch) {
-  const int entry = plane_with_id(planes, planes.find(patch.plane));
+  const int entry = planes.entry_of(planes.find(patch.plane));
   return entry >= 0 && planes[entry].counts() ? entry : -1;
 }
 
@@ -97,7 +91,7 @@ bool is_off_most_points(const Filter& filter, const Map& map, std::int64_t t_ns,
       ratio[count++] = range;
   }
   const CommonRatio most = find_common_ratio(ratio, count, kMostWidth);
-  if (most.votes < kMinMost || 2 * most.votes < count) return false;
+  if (most.votes < kMinMost || kMinVoting * most.votes < count) return false;
   PlaneFit fit;
   Vec3 m, ray_C, hit_W;
   if (!fit_plane_to(filter, patch, &fit, &of_patch, &m) || !unproject(filter.lens(), middle_of(patch.corner), &ray_C))

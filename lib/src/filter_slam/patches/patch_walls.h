@@ -10,9 +10,6 @@
 
 namespace pf {
 
-/// Entry of the plane with this id, or -1.
-int plane_with_id(const PlaneTable& planes, std::uint32_t id);
-
 /// Entry of the plane that a patch lies on, which may have been merged; -1: it is gone or doubted.
 int wall_of(const PlaneTable& planes, const StoredPatch& patch);
 

@@ -49,6 +49,7 @@ inline constexpr Scalar kFromMost = Scalar(1.05);   ///< likewise of a patch to 
 inline constexpr int kMinMost = 8;                  ///< such points, that tell where the wall is
 inline constexpr int kYoungEvery = 2;               ///< frame that counts before the first depths are sure
 inline constexpr int kFoundEvery = 20;              ///< frames, in the middle of which a patch may found a plane
+inline constexpr int kMinVoting = 2;                ///< one in so many points before a wall agrees on where they are
 }  // namespace patch_waiting
 
 /// A patch on a wall that is far from its plan.

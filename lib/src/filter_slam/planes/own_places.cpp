@@ -51,13 +51,10 @@ void OwnPlaces::update() {
       if (map_.features[i].last_seen_ns == frame_.report.t_ns) begin(i, plane);
     }
   }
-  const bool rolls = filter_.lens().readout != Scalar(0) && state.layout.has(BodyPart::kVelocity);
-  CameraAt camera = camera_at(state, Scalar(0));
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
     if (match.feature < 0 || match.status != MatchStatus::kInlier || own_[match.feature].plane == 0) continue;
-    if (rolls) camera = camera_at(state, row_time(filter_.lens(), match.measured.y()));
-    add(match, camera);
+    add(match, camera_of_row(state, filter_.lens(), match.measured.y()));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/table_entries.h"
 #include "filter_slam/planes/plane_points.h"
 #include "frame/plane_settings.h"
 #include "frame/tuning.h"
@@ -12,8 +13,8 @@ namespace pf {
 using namespace tuning::plane_keeper;
 
 void unfold_outliers(const Settings& settings, Filter& filter, Map& map) {
-  for (int i = 0; i < map.features.capacity(); ++i) {
-    if (!map.features.used(i) || map.features[i].rejections < kMaxRejections) continue;
+  for (const int i : used_entries(map.features)) {
+    if (map.features[i].rejections < kMaxRejections) continue;
     const int slot = map.features[i].slot;
     if (!is_planar(filter.state().block[slot].kind)) continue;
     const int plane = filter.state().plane_of(slot);

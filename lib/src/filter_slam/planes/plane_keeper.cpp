@@ -1,5 +1,6 @@
 #include "filter_slam/planes/plane_keeper.h"
 
+#include "base/table_entries.h"
 #include "filter_slam/planes/plane_folding.h"
 #include "filter_slam/planes/plane_lifecycle.h"
 #include "filter_slam/planes/plane_merger.h"
@@ -103,11 +104,9 @@ Status PlaneKeeper::add_wall(const PlanePrior& prior, int reserved_rows, bool ma
 
 void PlaneKeeper::meet_walls() {
   walls_.note_late_walls();
-  for (int i = 0; i < map_.planes.capacity(); ++i)
-    if (map_.planes.used(i) && !map_.planes[i].known)
-      dissolve_plane(filter_, map_, features_, settings_.fold.roughness, i);
-  for (int i = 0; i < map_.planes.capacity(); ++i) {
-    if (!map_.planes.used(i)) continue;
+  for (const int i : used_entries(map_.planes))
+    if (!map_.planes[i].known) dissolve_plane(filter_, map_, features_, settings_.fold.roughness, i);
+  for (const int i : used_entries(map_.planes)) {
     certain_.update_scale();
     walls_.fold_by_consensus(i);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/table_entries.h"
 #include "filter_slam/planes/plane_folding.h"
 #include "filter_slam/planes/plane_points.h"
 #include "frame/tuning.h"
@@ -48,8 +49,8 @@ void dissolve_plane(Filter& filter, Map& map, FeatureKeeper& features, Scalar si
 }
 
 void dissolve_weak(const Settings& settings, Filter& filter, Map& map, FeatureKeeper& features) {
-  for (int i = 0; i < map.planes.capacity(); ++i) {
-    if (!map.planes.used(i) || map.planes[i].known) continue;
+  for (const int i : used_entries(map.planes)) {
+    if (map.planes[i].known) continue;
     const PlanePoints on = outline_plane(filter, map, i, nullptr);
     const int points = on.folded - on.on_trial;
     map.planes[i].max_points = std::max<int>(map.planes[i].max_points, points);

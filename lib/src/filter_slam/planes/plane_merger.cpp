@@ -37,7 +37,7 @@ bool PlaneMerger::is_same_plane(int entry, int other) const {
     if (d * d < kSamePlaneGate * near) ++close;
   });
   // Both tests: every point passes the gate of a plane that is hardly known.
-  return points >= kMinPoints && 10 * inliers >= 9 * points && 10 * close >= 9 * points;
+  return points >= kMinPoints && kPerOutlier * (points - inliers) <= points && kPerOutlier * (points - close) <= points;
 }
 
 void PlaneMerger::merge_into(int plane_entry) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/table_entries.h"
 #include "filter_slam/planes/plane_points.h"
 #include "filter_slam/planes/tuning.h"
 #include "frame/tuning.h"
@@ -35,8 +36,8 @@ Scalar PlaneTrials::log_odds(int entry, int plane_entry) const {
 }
 
 void PlaneTrials::judge() {
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i) || !map_.features[i].on_trial) continue;
+  for (const int i : used_entries(map_.features)) {
+    if (!map_.features[i].on_trial) continue;
     Feature& f = map_.features[i];
     const int entry = map_.planes.entry_at(filter_.state().plane_of(f.slot));
     const Scalar odds = entry < 0 ? Scalar(0) : log_odds(i, entry);

@@ -1,5 +1,6 @@
 #include "filter_slam/planes/vertical_table.h"
 
+#include "base/table_entries.h"
 #include "filter_slam/planes/tuning.h"
 
 namespace pf {
@@ -31,8 +32,8 @@ Status VerticalTable::tell(int plane_entry, Scalar sigma) {
     const VerticalRow gone = *told;
     forget_vertical(filter_, slot, gone);
     *told = VerticalRow();
-    for (int i = 0; i < map_.planes.capacity(); ++i)
-      if (map_.planes.used(i) && row(i)->is_told()) allow_for_forgotten(gone, row(i));
+    for (const int i : used_entries(map_.planes))
+      if (row(i)->is_told()) allow_for_forgotten(gone, row(i));
   }
   return Status::kOk;
 }

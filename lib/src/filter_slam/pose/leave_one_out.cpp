@@ -39,7 +39,7 @@ bool LeaveOneOut::layout(Arena& arena, int max_observations) {
 }
 
 bool LeaveOneOut::reject(Filter& filter, const PixelMeasurement* observations, int count, Scalar gate,
-                         const MatchAges& ages, unsigned char* keep, Scalar* nis) {
+                         const MatchAges& ages, unsigned char* keep, JointFit* fit) {
   filter_ = &filter;
   kept_ = 0;
   for (int i = 0; i < count; ++i)
@@ -57,8 +57,11 @@ bool LeaveOneOut::reject(Filter& filter, const PixelMeasurement* observations, i
   const int older = ages.frames != nullptr ? group_begin(ages) : kept_;
   for (int a = older; a < kept_; ++a) keep[index_[a]] = 0;
   kept_ = older;
-  Scalar sum = 0;
-  for (int i = 2 * kept_ - 1; i >= 0; --i) sum += g_[i] * g_[i];
+  Scalar sum = 0, log_det = 0;
+  for (int i = 2 * kept_ - 1; i >= 0; --i) {
+    sum += g_[i] * g_[i];
+    log_det -= 2 * std::log(row(i)[i]);
+  }
   for (int i = 0; i < 2 * kept_; ++i) {  // g <- L^-T g
     const Scalar v = g_[i];
     g_[i] = 0;
@@ -69,9 +72,10 @@ bool LeaveOneOut::reject(Filter& filter, const PixelMeasurement* observations, i
   if (worst >= 0) complete_inverse();
   for (; worst >= 0; worst = find_worst(gate)) {
     keep[index_[worst]] = 0;
+    log_det += std::log(diagonal_[worst].determinant());  // det S = det S_rest det G_ii^-1
     sum = std::max(sum - remove(worst), Scalar(0));
   }
-  *nis = sum;
+  *fit = {sum, log_det};
   return true;
 }
 

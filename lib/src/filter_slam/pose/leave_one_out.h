@@ -29,15 +29,21 @@ struct MatchAges {
   int least = 0;  ///< matches that a group of young ones is tested against, at least
 };
 
+/// Residuals of matches under their joint covariance.
+struct JointFit {
+  Scalar nis = 0;      ///< r^T S^-1 r
+  Scalar log_det = 0;  ///< ln det S
+};
+
 class LeaveOneOut {
  public:
   bool layout(Arena& arena, int max_observations);
 
   /// Clears keep of the matches that it rejects. Between begin_update with the same observations, max_observations at most as in the
-  /// filter, and finish_update. nis: r^T S^-1 r of those that stay.
-  /// False if S is not positive definite; then keep and nis are untouched.
+  /// filter, and finish_update. fit: of those that stay.
+  /// False if S is not positive definite; then keep and fit are untouched.
   bool reject(Filter& filter, const PixelMeasurement* observations, int count, Scalar gate, const MatchAges& ages,
-              unsigned char* keep, Scalar* nis);
+              unsigned char* keep, JointFit* fit);
 
  private:
   /// Row i of G, i + 1 numbers. All but the last lie in the filter's scratch.

@@ -34,15 +34,14 @@ void PixelUpdate::begin(int first, int count) {
   filter_.begin_update(observation_ + first, count);
 }
 
-int PixelUpdate::reject_contradicted(int first, int count, double* nis) {
-  Scalar sum = 0;
+int PixelUpdate::reject_contradicted(int first, int count, JointFit* fit) {
+  *fit = JointFit();
   for (int i = 0; i < count; ++i) {
     const Feature& feature = map_.features[candidate_[first + i].feature];
     age_[i] = static_cast<unsigned char>(feature.is_target ? kOldest : std::min(feature.observations, kOldest));
   }
   others_.reject(filter_, observation_ + first, count, tuning::pixel_update::kOthersGate * settings_.gate,
-                 {age_, settings_.min_inliers}, keep_ + first, &sum);
-  *nis = static_cast<double>(sum);
+                 {age_, settings_.min_inliers}, keep_ + first, fit);
   return static_cast<int>(std::count(keep_ + first, keep_ + first + count, static_cast<unsigned char>(1)));
 }
 
@@ -57,26 +56,22 @@ bool PixelUpdate::are_depths_open(int first, int count) const {
     if (block.kind == BlockKind::kInverseDepth)
       open += !(std::sqrt(filter_.block_variance(slot, 2)) < kOpenDepth * block.inverse_depth().rho);
   }
-  return 2 * open > all;
+  return tuning::pixel_update::kMinOpen * open > all;
 }
 
-int PixelUpdate::propose(int first, int count, Scalar depth) {
+Scalar PixelUpdate::propose(int first, int count, Scalar depth, Scalar before, Scalar evidence) {
   const bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, nullptr);
   const Scalar* dx = filter_.solved_step();
   const Body& body = filter_.state().body;
   const Vec3 e_theta(dx[Body::kTheta], dx[Body::kTheta + 1], dx[Body::kTheta + 2]);
   const Vec3 e_p(dx[Body::kPosition], dx[Body::kPosition + 1], dx[Body::kPosition + 2]);
   filter_.begin_update(observation_ + first, count);  // what was gathered is used up by solving
-  if (!solved) return 0;
-  return proposals_.propose(exp_so3(e_theta) * body.q_WC, body.p_W + e_p, depth);
+  if (!solved) return before;
+  return proposals_.propose(exp_so3(e_theta) * body.q_WC, body.p_W + e_p, depth, before, evidence);
 }
 
 bool PixelUpdate::apply(int first, int count, double* nis) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
-  if (asked_frames_ > 0 && frame_.report.inliers == 0 && propose(first, count, depth_) < asked_frames_) {
-    reject(first, count);
-    return false;
-  }
   const bool depths_only = puts_depths_first_ && are_depths_open(first, count);
   filter_.estimate_map_only(depths_only);
   const bool applied = apply_to(first, count, nis);

@@ -19,6 +19,7 @@ struct Candidate {
   int feature;                ///< entry of the feature table
   int match;                  ///< index in the frame's matches
   Mat2 noise = Mat2::Zero();  ///< of a match in an image by itself, NoiseModel::match
+  Scalar log_density = 0;     ///< of the found pixel about where the picture has gone [ln px^-2]
 };
 
 class PixelUpdate {
@@ -45,9 +46,9 @@ class PixelUpdate {
   Mat2 expected_innovation(PixelMeasurement* o) const;
   /// Computes H P H^T of `count` observations from `first` on.
   void begin(int first, int count);
-  /// Stops keeping matches of the range that begin() got which all the other kept ones contradict. Returns how many stay. *nis: their
-  /// normalised innovation squared, jointly, with R_gate.
-  int reject_contradicted(int first, int count, double* nis);
+  /// Stops keeping matches of the range that begin() got which all the other kept ones contradict. Returns how many stay. fit: of these,
+  /// with R_gate.
+  int reject_contradicted(int first, int count, JointFit* fit);
   /// Until the next call: apply() refuses the first update of a frame where the pose NIS is above this. 0: no bound.
   void limit_pose_nis(Scalar most) {
     max_pose_nis_ = most;
@@ -61,17 +62,11 @@ class PixelUpdate {
   void put_depths_first(bool first) { puts_depths_first_ = first; }
   /// False once pixels have contradicted the pose that this relies on.
   bool puts_depths_first() const { return puts_depths_first_; }
-  /// Until the next call: apply() refuses the first update of a frame while the poses that frames in a row propose are fewer than this.
-  /// depth: of what is seen, median.
-  void ask_frames(int frames, Scalar depth) {
-    asked_frames_ = frames;
-    depth_ = depth;
-  }
   ProposedPoses& proposals() { return proposals_; }
   const ProposedPoses& proposals() const { return proposals_; }
-  /// Proposes the pose that an update with the kept ones of the range that begin() got would give. Returns how many frames in a row have
-  /// proposed poses that follow each other; 0 where the update cannot be made.
-  int propose(int first, int count, Scalar depth);
+  /// Proposes the pose that an update with the kept ones of the range that begin() got would give; evidence: what they say for it, depth:
+  /// median, of what is seen. Returns its log-odds; `before` where the update cannot be made.
+  Scalar propose(int first, int count, Scalar depth, Scalar before, Scalar evidence);
   /// Updates with the kept ones of the range that begin() got. False if the update could not be made; then nothing has changed.
   /// Adds their normalised innovation squared to *nis where it is not null.
   bool apply(int first, int count, double* nis);
@@ -97,8 +92,6 @@ class PixelUpdate {
       nullptr;  ///< scratch behind keep_: frames in which the feature of each match was measured, up to 255
   LeaveOneOut others_;
   ProposedPoses proposals_{settings_, filter_};
-  int asked_frames_ = 0;
-  Scalar depth_ = 1;
   Scalar max_pose_nis_ = 0;
   bool puts_depths_first_ = false;
   bool is_contradicted_ = false;

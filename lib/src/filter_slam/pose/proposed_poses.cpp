@@ -17,10 +17,11 @@ void ProposedPoses::begin_frame(std::int64_t dt_ns) {
   dt_ns_ = dt_ns;
 }
 
-int ProposedPoses::propose(const Quat& q_WC, const Vec3& p_W, Scalar depth) {
-  now_ = {1, q_WC, p_W, depth};
-  if (last_.frames > 0 && depth > 0 && follows(now_)) now_.frames = last_.frames + 1;
-  return now_.frames;
+Scalar ProposedPoses::propose(const Quat& q_WC, const Vec3& p_W, Scalar depth, Scalar before, Scalar evidence) {
+  now_ = {true, 0, q_WC, p_W, depth};
+  if (last_.is_set) before = depth > 0 && follows(now_) ? last_.log_odds : std::min(before, PoseBelief::anew());
+  now_.log_odds = PoseBelief::updated(before, evidence);
+  return now_.log_odds;
 }
 
 /// Whether the camera can have moved here from the last frame's proposal.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "belief/pose_belief.h"
 #include "filter/filter.h"
 #include "frame/settings.h"
 
@@ -17,7 +18,8 @@ class ProposedPoses {
   ProposedPoses(const Settings& settings, const Filter& filter) : settings_(settings), filter_(filter) {}
 
   struct Proposal {
-    int frames = 0;  ///< in a row, up to this one, whose proposals follow each other; 0: none
+    bool is_set = false;
+    Scalar log_odds = 0;  ///< that it is right
     Quat q_WC = Quat::Identity();
     Vec3 p_W = Vec3::Zero();
     Scalar depth = 1;  ///< of what is seen, median
@@ -28,8 +30,10 @@ class ProposedPoses {
   void begin_frame(std::int64_t dt_ns);
   /// That of the frame before.
   const Proposal& last() const { return last_; }
-  /// This frame's proposal; a second one takes the place of the first. Returns Proposal::frames.
-  int propose(const Quat& q_WC, const Vec3& p_W, Scalar depth);
+  /// This frame's proposal; a second one takes the place of the first. before: log-odds that a pose near the prediction has before this
+  /// frame's evidence. The last frame's proposal counts in its place: where the camera can have moved here from there, that one's log-odds;
+  /// where not, one of the two is wrong. Returns the log-odds with this frame's evidence.
+  Scalar propose(const Quat& q_WC, const Vec3& p_W, Scalar depth, Scalar before, Scalar evidence);
 
  private:
   bool follows(const Proposal& next) const;

@@ -3,88 +3,88 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/false_alarms.h"
+#include "base/limits.h"
 #include "base/random_triples.h"
 #include "filter_slam/pose/consensus.h"
-#include "frame/tuning.h"
+#include "filter_slam/pose/tuning.h"
 #include "geometry/small_cholesky.h"
 
 namespace pf {
 namespace {
 
-constexpr Scalar kLogLevelCost = Scalar(6.9);  // ln 1,000, of a smaller ellipse
-constexpr int kMaxMatches = 200;               // capacity.max_observations at most
+/// Three matches, and what all pixels are given them.
+struct Triple {
+  const int* index;  ///< of the three
+  SmallCholesky<6> S;
+  Vec6 a;  ///< S_T^-1 r_T
+};
+
+/// False where the three contradict each other.
+bool condition_on(const Filter& filter, const PixelMeasurement* matches, const int* index, Triple* out) {
+  Mat6 S;
+  Vec6 r;
+  for (int a = 0; a < 3; ++a) {
+    const PixelMeasurement& o = matches[index[a]];
+    r.segment<2>(2 * a) = o.measured - o.predicted;
+    for (int b = 0; b < 3; ++b) S.block<2, 2>(2 * a, 2 * b) = filter.innovation_block(index[a], index[b]);
+    S.block<2, 2>(2 * a, 2 * a) += o.R_gate;
+  }
+  out->index = index;
+  if (!out->S.factor(S)) return false;
+  out->a = out->S.solve<1>(r);
+  return r.dot(out->a) < tuning::triple_consensus::kGateOfThree;
+}
+
+/// Compares a match with what the three predict. False outside of the gate.
+bool agrees(const Filter& filter, const PixelMeasurement* matches, const Triple& three, int j, Scalar gate,
+            Scalar* log_density) {
+  Eigen::Matrix<Scalar, 6, 2> S_Tj;
+  for (int a = 0; a < 3; ++a) S_Tj.block<2, 2>(2 * a, 0) = filter.innovation_block(three.index[a], j);
+  const Eigen::Matrix<Scalar, 6, 2> X = three.S.solve<2>(S_Tj);
+  const Vec2 r = matches[j].measured - matches[j].predicted - S_Tj.transpose().lazyProduct(three.a);
+  const Mat2 S = filter.innovation_block(j, j) + matches[j].R_gate - S_Tj.transpose().lazyProduct(X);
+  const Scalar nis = squared_distance(r, S);
+  if (!(nis < gate)) return false;
+  *log_density = log_normal_density(nis, std::log(S.determinant()), 1);
+  return true;
+}
 
 }  // namespace
 
-TripleConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement* matches, const Scalar* searched_px2,
-                                      int found, int attempts, Scalar gate, int triples, int levels,
-                                      const unsigned char* among, unsigned char* keep) {
-  using namespace tuning::chance;
-  TripleConsensus best;
-  short pool[kMaxMatches];
-  int size = 0;
-  found = std::min(found, kMaxMatches);
-  for (int i = 0; i < found; ++i)
-    if (among == nullptr || among[i] != 0) pool[size++] = static_cast<short>(i);
-  if (size < 4) {
-    if (keep != nullptr) std::fill(keep, keep + found, static_cast<unsigned char>(0));
-    return best;
-  }
-  RandomTriples random(size, 1);
-  bool any = false;
+PoseConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement* matches, const Scalar* searched_px2,
+                                    int found, int attempts, const FindShare& share, Scalar gate, int triples,
+                                    unsigned char* keep) {
+  PoseConsensus best;
+  best.searched = attempts;
+  found = std::min(found, kMaxObservations);
+  std::fill(keep, keep + found, static_cast<unsigned char>(0));
+  if (found < 4) return best;
+  RandomTriples random(found, 1);
+  Scalar best_evidence = 0;
   for (int trial = 0; trial < triples; ++trial) {
     int three[3];
     random.draw(three);
-    for (int& index : three) index = pool[index];
-    Mat6 S_T;
-    Vec6 r_T;
-    for (int a = 0; a < 3; ++a) {
-      const PixelMeasurement& o = matches[three[a]];
-      r_T.segment<2>(2 * a) = o.measured - o.predicted;
-      for (int b = 0; b < 3; ++b) S_T.block<2, 2>(2 * a, 2 * b) = filter.innovation_block(three[a], three[b]);
-      S_T.block<2, 2>(2 * a, 2 * a) += o.R_gate;
-    }
-    SmallCholesky<6> cholesky;
-    if (!cholesky.factor(S_T)) continue;
-    const Vec6 a_T = cholesky.solve<1>(r_T);
-    if (!(r_T.dot(a_T) < kGateOfThree)) continue;
-    int inliers[kLevels];
-    Scalar share[kLevels] = {};
-    std::fill(inliers, inliers + kLevels, 3);
-    unsigned char is_inlier[kMaxMatches] = {};
+    Triple fixed;
+    if (!condition_on(filter, matches, three, &fixed)) continue;
+    PoseConsensus consensus;
+    consensus.searched = attempts;
+    consensus.inliers = 3;
+    unsigned char is_inlier[kMaxObservations] = {};
     for (int j = 0; j < found; ++j) {
-      if (j == three[0] || j == three[1] || j == three[2]) {
-        is_inlier[j] = 1;
-        continue;
-      }
-      Eigen::Matrix<Scalar, 6, 2> S_Tj;
-      for (int a = 0; a < 3; ++a) S_Tj.block<2, 2>(2 * a, 0) = filter.innovation_block(three[a], j);
-      const Eigen::Matrix<Scalar, 6, 2> X = cholesky.solve<2>(S_Tj);
-      const Vec2 r = matches[j].measured - matches[j].predicted - S_Tj.transpose().lazyProduct(a_T);
-      const Mat2 S = filter.innovation_block(j, j) + matches[j].R_gate - S_Tj.transpose().lazyProduct(X);
-      const Scalar distance2 = squared_distance(r, S), area = ellipse_area(S, gate);
-      is_inlier[j] = distance2 < gate ? 1 : 0;
-      Scalar part = 1;
-      for (int level = 0; level < levels; ++level, part /= 2) {
-        share[level] += kMaxFindShare * std::min(Scalar(1), part * area / std::max(searched_px2[j], kMinArea));
-        inliers[level] += distance2 < part * gate ? 1 : 0;
-      }
+      const bool is_of_three = j == three[0] || j == three[1] || j == three[2];
+      Scalar log_density;
+      is_inlier[j] = is_of_three || agrees(filter, matches, fixed, j, gate, &log_density) ? 1 : 0;
+      if (is_inlier[j] == 0 || is_of_three) continue;
+      ++consensus.inliers;
+      consensus.log_density += log_density;
+      consensus.log_chance += log_chance_density(searched_px2[j]);
     }
-    Scalar log_false = 0;
-    for (int level = 0; level < levels; ++level) {
-      const Scalar mean = std::clamp(share[level] / static_cast<Scalar>(std::max(1, found - 3)), kMinShare, kMaxShare);
-      Scalar at_level = log_false_alarms(inliers[level], std::max(attempts, found), mean, found);
-      if (level > 0) at_level += kLogLevelCost;
-      if (level == 0 || at_level < log_false) log_false = at_level;
-    }
-    if (any && log_false >= best.log_false) continue;
-    any = true;
-    best.inliers = inliers[0];
-    best.log_false = log_false;
-    if (keep != nullptr) std::copy(is_inlier, is_inlier + found, keep);
+    const Scalar evidence = pose_evidence(consensus, share);
+    if (best.inliers > 0 && evidence <= best_evidence) continue;
+    best = consensus;
+    best_evidence = evidence;
+    std::copy(is_inlier, is_inlier + found, keep);
   }
-  if (!any && keep != nullptr) std::fill(keep, keep + found, static_cast<unsigned char>(0));
   return best;
 }
 

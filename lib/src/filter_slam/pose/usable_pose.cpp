@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/limits.h"
 #include "frame/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "geometry/so3.h"
@@ -10,8 +11,6 @@
 namespace pf {
 namespace {
 
-constexpr int kMaxInliers = 200;    // capacity.max_observations at most
-constexpr int kMaxPatches = 32;     // capacity.max_patches at most
 constexpr int kMaxReferences = 12;  // points against which the camera is measured
 constexpr Scalar kMinVariance = Scalar(1e-12);
 
@@ -116,12 +115,12 @@ bool spread_against_points(const Filter& filter, const int* slots, int count, Po
 bool is_pose_usable(const Filter& filter, const Map& map, const Frame& frame, const Scalar* patch_depth, int patches,
                     Scalar* median_depth) {
   using namespace tuning::usable_pose;
-  Scalar depths[kMaxInliers + kMaxPatches];
-  int slots[kMaxInliers];
+  Scalar depths[kMaxObservations + kMaxPatches];
+  int slots[kMaxObservations];
   int count = 0;
   const Body& body = filter.state().body;
   const Vec3 forward = body.q_WC.toRotationMatrix().col(2);
-  for (int t = 0; t < frame.match_count() && count < kMaxInliers; ++t) {
+  for (int t = 0; t < frame.match_count() && count < kMaxObservations; ++t) {
     const Match& match = frame.match(t);
     if (match.feature < 0 || match.status != MatchStatus::kInlier) continue;
     slots[count] = map.features[match.feature].slot;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/limits.h"
 #include "base/random_triples.h"
 #include "filter_slam/recovery/tuning.h"
 #include "geometry/small_cholesky.h"
@@ -12,8 +13,6 @@ namespace pf {
 namespace {
 
 using namespace tuning::pose_proposal;
-
-constexpr int kMaxMatches = 200;  // capacity.max_observations at most
 
 struct Problem {
   const Camera& camera;
@@ -73,14 +72,14 @@ struct Problem {
 
 int propose_pose(const Camera& camera, const Mat6& P, const Vec3* f_W, const Vec2* pixel, int count, Scalar sigma_px,
                  Body* pose) {
-  count = std::min(count, kMaxMatches);
+  count = std::min(count, kMaxObservations);
   if (count < 4) return 0;
   const Body prior = *pose;
   Mat6 information = Mat6::Zero();
   SmallCholesky<6> cholesky;
   if (cholesky.factor(P)) information = cholesky.solve<6>(Mat6::Identity());
   const Problem problem{camera, prior, information, f_W, pixel, Scalar(1) / (sigma_px * sigma_px)};
-  short index[kMaxMatches];
+  short index[kMaxObservations];
   int inliers = 0;
   Scalar best = problem.judge(prior, count, index, &inliers);
   RandomTriples random(count, 7);

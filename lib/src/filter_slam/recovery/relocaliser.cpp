@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "filter_slam/pose/consensus.h"
+#include "base/limits.h"
+#include "filter_slam/pose/triple_consensus.h"
 #include "filter_slam/recovery/pose_proposal.h"
+#include "frame/ellipse.h"
 #include "frame/tracking_state.h"
 #include "frame/tuning.h"
 
@@ -48,18 +50,15 @@ void Relocaliser::remember_view(Scalar median_depth) {
 
 void Relocaliser::recover() {
   const SearchPose about = choose_search_pose();
-  const bool anywhere = about.given || !is_prediction_narrow();
   const Body estimate = filter_.state().body;
+  frame_.forget_searches();
   set_pose(about.body);
   int count = search_.list_visible();
   search_.predict_pixels(0, count);
-  if (anywhere) count = keep_placed(about, count);
+  count = keep_placed(about, count);
   const int found = search_.search(0, count);
   set_pose(estimate);
-  if (anywhere)
-    recover_anywhere(about, found);
-  else
-    recover_nearby(found);
+  measure_about(about, found);
 }
 
 /// The prediction is good enough for a linear consensus.
@@ -69,17 +68,15 @@ bool Relocaliser::is_prediction_narrow() const {
   return variance < kNearbySigma * kNearbySigma;
 }
 
-/// About the prediction where its rotation is known well enough; otherwise about the last frame's proposal, or about a kept view that looks
-/// like this image.
+/// About the last frame's proposal, or about a kept view that looks like this image; where there is neither, about the prediction.
 Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
   SearchPose about;
   about.body = filter_.state().body;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) about.P(i, j) = filter_.covariance()(std::max(i, j), std::min(i, j));
-  if (is_prediction_narrow()) return about;
   Scalar rotation = kAboutProposal, position = kAboutProposal;
   const ProposedPoses::Proposal& last = update_.proposals().last();
-  if (last.frames > 0) {
+  if (last.is_set) {
     about.body.q_WC = last.q_WC;
     about.body.p_W = last.p_W;
     position *= last.depth;
@@ -107,24 +104,8 @@ void Relocaliser::set_pose(const Body& pose) {
   filter_.set_mean(body);
 }
 
-/// After a short gap: a consensus about the prediction, in which features of unknown depth count as well.
-void Relocaliser::recover_nearby(int found) {
-  if (found < settings_.min_inliers) return;
-  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
-  for (int i = 0; i < found; ++i) searched_px2_[i] = search_.searched_area(i);
-  update_.begin(0, found);
-  const int inliers = find_inliers(filter_, update_.observations(), found, settings_.gate, update_.keep());
-  const TripleConsensus consensus =
-      find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
-                            settings_.gate, kTriples, 1, update_.keep(), nullptr);
-  if (!is_beyond_chance({inliers, consensus.log_false}, found)) return;
-  if (update_.propose(0, found, depth_) < kFramesNearby) return;
-  mark_matches(found);
-  update_.apply(0, found, &frame_.report.nis);
-}
-
 /// Proposes a pose from the matches of a search about another pose, and tests it in the filter's own covariance.
-void Relocaliser::recover_anywhere(const SearchPose& about, int found) {
+void Relocaliser::measure_about(const SearchPose& about, int found) {
   if (found < settings_.min_inliers) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int i = 0; i < found; ++i) {
@@ -138,15 +119,16 @@ void Relocaliser::recover_anywhere(const SearchPose& about, int found) {
   found = linearise_at(pose, found);
   if (found < settings_.min_inliers) return;
   update_.begin(0, found);
-  const TripleConsensus consensus =
+  const PoseConsensus consensus =
       find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
-                            settings_.gate, kTriples, 1, nullptr, update_.keep());
-  if (!is_beyond_chance(consensus, found)) return;
-  const Scalar depth = median_depth(pose, found);
-  if (update_.proposals().propose(pose.q_WC, pose.p_W, depth) < kFramesAnywhere) return;
+                            belief_.share(), settings_.gate, kTriples, update_.keep());
+  if (consensus.inliers < settings_.min_inliers) return;
+  const Scalar log_odds = update_.proposals().propose(pose.q_WC, pose.p_W, median_depth(pose, found),
+                                                      PoseBelief::elsewhere(), belief_.evidence(consensus));
+  if (!PoseBelief::is_enough(log_odds)) return;
   mark_matches(found);
   hold_back(found);
-  update_.apply(0, found, &frame_.report.nis);
+  if (update_.apply(0, found, &frame_.report.nis)) belief_.use(log_odds, consensus);
 }
 
 /// Keeps the candidates that can tell where the camera is, and sets the search ellipses about a given pose. Returns how many.
@@ -202,33 +184,12 @@ int Relocaliser::linearise_at(const Body& pose, int found) {
   return seen;
 }
 
-/// Whether inliers are enough, far beyond chance, and not in one corner of the image.
-bool Relocaliser::is_beyond_chance(const TripleConsensus& consensus, int found) const {
-  return consensus.inliers >= settings_.min_inliers && consensus.log_false < kMaxLogFalse && is_spread(found);
-}
-
-/// Whether inliers are in enough cells of the image.
-bool Relocaliser::is_spread(int found) const {
-  bool filled[kRows][kColumns] = {};
-  int cells = 0;
-  for (int i = 0; i < found; ++i) {
-    if (update_.keep()[i] == 0) continue;
-    const Vec2& z = update_.observation(i).measured;
-    const int column = std::clamp(static_cast<int>(z.x()) * kColumns / settings_.camera.width, 0, kColumns - 1);
-    const int row = std::clamp(static_cast<int>(z.y()) * kRows / settings_.camera.height, 0, kRows - 1);
-    cells += filled[row][column] ? 0 : 1;
-    filled[row][column] = true;
-  }
-  return cells >= kMinCells;
-}
-
 /// Of the inliers, seen from a pose; 0 without any.
 Scalar Relocaliser::median_depth(const Body& pose, int found) const {
-  constexpr int kMaxMatches = 200;  // capacity.max_observations at most
-  Scalar depth[kMaxMatches];
+  Scalar depth[kMaxObservations];
   int count = 0;
   const Vec3 forward = pose.q_WC.toRotationMatrix().col(2);
-  for (int i = 0; i < found && count < kMaxMatches; ++i)
+  for (int i = 0; i < found && count < kMaxObservations; ++i)
     if (update_.keep()[i] != 0)
       depth[count++] = forward.dot(filter_.point(map_.features[update_.candidate(i).feature].slot) - pose.p_W);
   if (count == 0) return 0;

@@ -6,29 +6,36 @@
 #include "filter/filter.h"
 #include "filter_slam/features/feature_search.h"
 #include "filter_slam/pose/pixel_update.h"
-#include "filter_slam/pose/triple_consensus.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
 #include "map/map.h"
 #include "track/view_memory.h"
 
-/// Finds the map again after frames that did not support the pose. Updates the filter only after frames in a row were consistent with the
-/// map, and with each other, far beyond chance. See lib/docs/states.md.
+/// Finds the map again where the prediction is too vague to search about it. Updates the filter once frames say enough for a pose to
+/// believe it (lib/docs/belief.md).
 
 namespace pf {
 
 class Relocaliser {
  public:
   Relocaliser(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureSearch& search,
-              PixelUpdate& update)
-      : settings_(settings), filter_(filter), map_(map), frame_(frame), search_(search), update_(update) {}
+              PixelUpdate& update, PoseBelief& belief)
+      : settings_(settings),
+        filter_(filter),
+        map_(map),
+        frame_(frame),
+        search_(search),
+        update_(update),
+        belief_(belief) {}
 
   bool layout(Arena& arena, int max_observations, int max_kept_views);
   void init();
 
   /// Keeps the view of a tracked frame, and how far away its features are.
   void remember_view(Scalar median_depth);
-  /// Searches where the pose may be.
+  /// The prediction is good enough for a linear consensus about it.
+  bool is_prediction_narrow() const;
+  /// Searches where the pose may be when the prediction is not.
   void recover();
 
   int kept_views() const { return views_.count(); }
@@ -41,15 +48,11 @@ class Relocaliser {
     Mat6 P = Mat6::Zero();  ///< of (theta, p)
   };
 
-  bool is_prediction_narrow() const;
   SearchPose choose_search_pose() const;
-  void recover_nearby(int found);
-  void recover_anywhere(const SearchPose& about, int found);
+  void measure_about(const SearchPose& about, int found);
   void set_pose(const Body& pose);
   int keep_placed(const SearchPose& about, int count);
   int linearise_at(const Body& pose, int found);
-  bool is_beyond_chance(const TripleConsensus& consensus, int found) const;
-  bool is_spread(int found) const;
   Scalar median_depth(const Body& pose, int found) const;
   void mark_matches(int found);
   void hold_back(int found);
@@ -60,6 +63,7 @@ class Relocaliser {
   Frame& frame_;
   FeatureSearch& search_;
   PixelUpdate& update_;
+  PoseBelief& belief_;
   ViewMemory views_;
   Scalar depth_ = 1;                ///< median, of the last tracked frame
   Scalar* searched_px2_ = nullptr;  ///< max_observations each

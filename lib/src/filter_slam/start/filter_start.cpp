@@ -1,6 +1,7 @@
 #include "filter_slam/start/filter_start.h"
 
 #include "base/elapsed.h"
+#include "base/table_entries.h"
 #include "filter_slam/inertial/tuning.h"
 #include "filter_slam/start/walls_apart.h"
 
@@ -31,7 +32,8 @@ void FilterStart::start_over() {
 
 /// Whether the target's points fit into the capacities.
 bool FilterStart::fits(const Target& target) const {
-  return target.count <= settings_.max_features && 3 * target.count <= filter_.room();
+  constexpr int kRows = 3;  // of a point
+  return target.count <= settings_.max_features && kRows * target.count <= filter_.room();
 }
 
 Status FilterStart::use_target(const Target& target) {
@@ -113,8 +115,8 @@ void FilterStart::begin_without_target() {
 /// The target's points are matched in the frame that shows them first.
 void FilterStart::add_target_matches(const TargetSighting& sighting) {
   FrameReport& report = frame_.report;
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i) || !map_.features[i].is_target) continue;
+  for (const int i : used_entries(map_.features)) {
+    if (!map_.features[i].is_target) continue;
     Feature& f = map_.features[i];
     const Vec2 z = sighting.pixel[f.external_id];
     search_.remember(i, z, {sighting.pose.q_WC, sighting.pose.p_WC});

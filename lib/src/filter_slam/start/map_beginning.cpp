@@ -1,5 +1,6 @@
 #include "filter_slam/start/map_beginning.h"
 
+#include "base/limits.h"
 #include "filter_slam/inertial/tuning.h"
 #include "filter_slam/start/tuning.h"
 #include "frame/start/tuning.h"
@@ -39,7 +40,7 @@ void MapBeginning::empty_filter() {
 void MapBeginning::clear_all_but_walls() {
   PlaneTable& planes = map_.planes;
   const State& state = filter_.state();
-  int frame[tuning::start_before_walls::kMaxPlanes];
+  int frame[kMaxPlanes];
   for (int k = 0; k < planes.capacity(); ++k)
     frame[k] = planes.used(k) && planes[k].known ? state.block[planes[k].slot].frame : -1;
   empty_filter();

@@ -47,7 +47,7 @@ bool depths_agree(const Filter& filter, const Map& map, const StartWithoutTarget
     ++compared;
     agree += of_filter * kSameDepth > of_record && of_filter < of_record * kSameDepth ? 1 : 0;
   }
-  return 2 * agree >= compared;
+  return tuning::filter_start::kMinSame * agree >= compared;
 }
 
 bool motion_agrees(const Filter& filter, const StartWithoutTarget& record, Scalar unit) {

@@ -1,3 +1,4 @@
+#include "base/table_entries.h"
 #include "filter/baseline.h"
 #include "filter_slam/start/record_replay.h"
 #include "filter_slam/start/start_recorder.h"
@@ -47,8 +48,8 @@ void StartRecorder::bound_baseline() {
   Mat3 covariance;
   if (!record_.baseline_covariance(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth, &covariance))
     return;
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i) || record_.index_of(map_.features[i].id) < 0) continue;
+  for (const int i : used_entries(map_.features)) {
+    if (record_.index_of(map_.features[i].id) < 0) continue;
     const Block& block = filter_.state().block[map_.features[i].slot];
     if (block.kind != BlockKind::kInverseDepth) continue;
     take_baseline(filter_, block.parent, covariance);
@@ -71,8 +72,7 @@ void StartRecorder::stay_at_base() {
 template <typename Rho>
 void StartRecorder::restart_features(Rho&& rho_of, Scalar relative_sigma) {
   const int anchor = filter_.add_anchor();
-  for (int i = 0; i < map_.features.capacity(); ++i) {
-    if (!map_.features.used(i)) continue;
+  for (const int i : used_entries(map_.features)) {
     Feature& f = map_.features[i];
     if (f.is_target) {
       f.slot = features_.add_target_point(target_.target(), static_cast<int>(f.external_id));

@@ -9,7 +9,6 @@ namespace pf::tuning {
 
 /// First depths against those of a record, where walls are known.
 namespace start_before_walls {
-inline constexpr int kMaxPlanes = 64;             ///< the largest capacity.max_planes
 inline constexpr Scalar kOneWall = Scalar(1.12);  ///< ratio of distances of points that lie on walls of the plan
 inline constexpr int kMinOnWall = 8;              ///< points that tell the record's unit of length
 inline constexpr int kClearMajority = 2;          ///< of these to the points that tell another one

@@ -1,5 +1,6 @@
 #include "filter_slam/start/walls_apart.h"
 
+#include "base/table_entries.h"
 #include "filter_slam/features/wall_rays.h"
 #include "filter_slam/start/tuning.h"
 #include "geometry/common_ratio.h"
@@ -22,8 +23,7 @@ bool sees_walls(const Filter& filter, const Map& map, const Body& body) {
 }
 
 void set_walls_apart(PlaneTable* planes) {
-  for (int k = 0; k < planes->capacity(); ++k)
-    if (planes->used(k)) (*planes)[k].apart = (*planes)[k].known;
+  for (const int k : used_entries(*planes)) (*planes)[k].apart = (*planes)[k].known;
 }
 
 ///   u = n . (o - c0) / n . (f - c0)      a wall through o, a point at f: c0 + u (f - c0) lies on it
@@ -32,14 +32,14 @@ Scalar find_scale_by_walls(const Filter& filter, const Map& map, std::int64_t t_
   const Vec3 c_W = camera_at(state, Scalar(0)).p_W;
   Scalar ratio[kMaxRatios];
   int count = 0;
-  for (int k = 0; k < map.planes.capacity(); ++k) {
-    if (!map.planes.used(k) || !map.planes[k].apart) continue;
+  for (const int k : used_entries(map.planes)) {
+    if (!map.planes[k].apart) continue;
     const PlaneFrame& frame = state.frame_of(state.block[map.planes[k].slot]);
     const Vec3 n_W = frame.R_WP.col(2);
     for (int i = 0; i < map.features.capacity() && count < kMaxRatios; ++i) {
       const Feature& f = map.features[i];
       if (!map.features.used(i) || f.last_seen_ns != t_ns) continue;
-      if (state.block[f.slot].kind == BlockKind::kInverseDepth) continue;
+      if (state.has_inverse_depth(f.slot)) continue;
       const Vec3 to_W = filter.point(f.slot) - c0_W;
       const Scalar u = n_W.dot(frame.o_W - c0_W) / n_W.dot(to_W);
       if (!(u > Scalar(0)) || !outline_contains(map.planes[k].plan, plane_coordinates(frame, Vec3(c0_W + u * to_W))))
@@ -54,8 +54,8 @@ Scalar find_scale_by_walls(const Filter& filter, const Map& map, std::int64_t t_
 }
 
 void scale_tables(Scalar scale, const Vec3& pivot_W, Map* map) {
-  for (int i = 0; i < map->features.capacity(); ++i)
-    if (map->features.used(i) && map->features[i].has_appearance) {
+  for (const int i : used_entries(map->features))
+    if (map->features[i].has_appearance) {
       Vec3& c_W = map->first_view(i).c_W;
       c_W = pivot_W + scale * (c_W - pivot_W);
     }

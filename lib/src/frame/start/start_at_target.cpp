@@ -58,7 +58,7 @@ void StartAtTarget::put_in_place(TargetSighting* sighting) {
 bool StartAtTarget::find_rectangle(const Camera& camera, const Tracker& tracker, TargetSighting* sighting) const {
   RectangleSighting found;
   if (!find_dark_rectangle(tracker.image(), camera, target_.width, target_.height, kCornerSigma, quad_workspace_,
-                           &found))
+                           &found, tracker.pyramid().mask))
     return false;
   std::copy(found.quad.corners, found.quad.corners + 4, sighting->pixel);
   const Scalar sigma = pixel_sigma(camera, target_.sigma_m, found.pose.p_WC.norm());
@@ -79,7 +79,7 @@ bool StartAtTarget::find_points(const Camera& camera, const Tracker& tracker, Ta
     Quad quad[kMaxQuads];
     const int quads = find_dark_quads(tracker.image(), quad_workspace_, quad, kMaxQuads);
     for (int k = 0; k < quads; ++k) {
-      if (!refine_quad(tracker.image(), camera, &quad[k])) continue;
+      if (!is_in_scene(quad[k], tracker.pyramid().mask) || !refine_quad(tracker.image(), camera, &quad[k])) continue;
       if (match_quad(quad[k], predicted, reach, z) && fit(camera, z, sigma, sighting)) return true;
     }
   }

@@ -16,6 +16,7 @@ inline constexpr Scalar kDefinedSigma = Scalar(1e-5);  ///< [rad, m] of a pose t
 inline constexpr Scalar kWideDepth = Scalar(0.5);      ///< relative sigma of the depths with which the filter restarts
 inline constexpr int kProven = 4;                      ///< frames that found a feature: in none of them by chance
 inline constexpr Scalar kSameDepth = Scalar(1.25);     ///< ratio of two; right: 0.91 .. 1.06, wrong: 0.3 .. 0.4
+inline constexpr int kMinSame = 2;                     ///< one in so many depths agrees with those of the record
 }  // namespace filter_start
 
 /// Starting at known points.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/table_entries.h"
 #include "bundle/bearing.h"
 #include "bundle/tuning.h"
 #include "keyframe_slam/adjustment/tuning.h"
@@ -27,8 +28,8 @@ bool fits_plane(const KeyframeMap& map, const BundlePlane& plane, int i, Scalar 
 
 void add_plane_points(const KeyframeMap& map, AdjustedPoints* points) {
   const std::int16_t *begin = points->row, *end = points->row + points->seen;
-  for (int i = 0; i < map.capacity(); ++i) {
-    if (!map.used(i) || !map.point(i).has_depth || map.point(i).plane < 0) continue;
+  for (const int i : used_entries(map)) {
+    if (!map.point(i).has_depth || map.point(i).plane < 0) continue;
     if (std::find(begin, end, i) != end) continue;
     const auto is_on_same = [&](int row) { return map.point(row).plane == map.point(i).plane; };
     if (std::any_of(begin, end, is_on_same)) points->row[points->count++] = static_cast<std::int16_t>(i);
@@ -39,8 +40,7 @@ void add_planes(const KeyframeMap& map, const KeyframePlanes& planes, const Fold
                 AdjustedPoints* points, AdjustedPlanes* adjusted) {
   int* plane_of = points->plane_of;
   std::fill(plane_of, plane_of + points->count, -1);
-  for (int k = 0; k < planes.capacity(); ++k) {
-    if (!planes.used(k)) continue;
+  for (const int k : used_entries(planes)) {
     BundlePlane& plane = adjusted->plane[adjusted->count];
     plane = {planes.plane(k).frame, Vec3::Zero(), fold.roughness, true};
     int members = 0;

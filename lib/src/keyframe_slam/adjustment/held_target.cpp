@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/table_entries.h"
 #include "keyframe_slam/adjustment/tuning.h"
 
 namespace pf {
@@ -26,8 +27,8 @@ void HeldTarget::add_to(const KeyframeMap& map, AdjustedPoses* poses, AdjustedPo
 }
 
 void HeldTarget::put_back(KeyframeMap* map) const {
-  for (int i = 0; i < map->capacity(); ++i)
-    if (map->used(i) && map->feature(i).is_target) map->place(i, target_.point_W[map->feature(i).external_id]);
+  for (const int i : used_entries(*map))
+    if (map->feature(i).is_target) map->place(i, target_.point_W[map->feature(i).external_id]);
 }
 
 }  // namespace pf

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/table_entries.h"
 #include "keyframe_slam/adjustment/tuning.h"
 #include "keyframe_slam/map/covisible.h"
 #include "keyframe_slam/map/tuning.h"
@@ -63,8 +64,8 @@ bool KeyframeChoice::sees_target(int keyframe) const {
 /// keyframe, the oldest six, since one keyframe and a distance would force their own errors on all others.
 int KeyframeChoice::num_held(bool settled) const {
   if (is_held_by_target_) return 0;
-  if (is_away_ && connected_ >= 2 * kHeldAway) return kHeldAway;
-  if (settled && settings_.lens.rows.count == 0 && connected_ >= 2 * kHeldKeyframes) return kHeldKeyframes;
+  if (is_away_ && connected_ >= kMinPerHeld * kHeldAway) return kHeldAway;
+  if (settled && settings_.lens.rows.count == 0 && connected_ >= kMinPerHeld * kHeldKeyframes) return kHeldKeyframes;
   return 1;
 }
 
@@ -90,8 +91,8 @@ void KeyframeChoice::choose_free(bool settled, AdjustedPoses* poses) const {
 /// Points with a depth that a free keyframe sees, and another one.
 void KeyframeChoice::choose_points(const AdjustedPoses& poses, AdjustedPoints* points) const {
   points->seen = 0;
-  for (int i = 0; i < map_.capacity(); ++i) {
-    if (!map_.used(i) || !map_.point(i).has_depth) continue;
+  for (const int i : used_entries(map_)) {
+    if (!map_.point(i).has_depth) continue;
     int in_free = 0, in_all = 0;
     for (int c = 0; c < poses.free; ++c) in_free += map_.keyframes.pixels(poses.keyframe[c])[i].seen ? 1 : 0;
     for (int k = 0; k < map_.keyframes.capacity(); ++k)
@@ -122,7 +123,7 @@ void KeyframeChoice::choose_fixed(const AdjustedPoints& points, int max_fixed, A
 }
 
 bool KeyframeChoice::needs_distance(const AdjustedPoses& poses) const {
-  return poses.seen_in == poses.free + 1 && !is_held_by_target_ && connected_ >= 2 * kHeldKeyframes;
+  return poses.seen_in == poses.free + 1 && !is_held_by_target_ && connected_ >= kMinPerHeld * kHeldKeyframes;
 }
 
 }  // namespace pf

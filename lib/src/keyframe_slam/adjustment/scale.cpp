@@ -1,18 +1,18 @@
 #include "keyframe_slam/adjustment/scale.h"
 
+#include "base/table_entries.h"
+
 namespace pf {
 
 void scale_window(Scalar s, const Vec3& c_W, KeyframeMap* map, KeyframePlanes* planes, KeyframeMotion* motion) {
   const auto move = [&](Vec3* p_W) { *p_W = c_W + s * (*p_W - c_W); };
-  for (int k = 0; k < map->keyframes.capacity(); ++k) {
-    if (!map->keyframes.used(k)) continue;
+  for (const int k : used_entries(map->keyframes)) {
     Keyframe& keyframe = map->keyframes[k];
     move(&keyframe.p_W);
     keyframe.covariance.bottomRows<3>() *= s;
     keyframe.covariance.rightCols<3>() *= s;
   }
-  for (int i = 0; i < map->capacity(); ++i) {
-    if (!map->used(i)) continue;
+  for (const int i : used_entries(*map)) {
     KeyframePoint& point = map->point(i);
     point.rho /= s;
     point.variance /= s * s;

@@ -27,6 +27,7 @@ inline constexpr Scalar kPriorSigma = Scalar(10);       ///< of the prior on inv
 inline constexpr Scalar kBehindWeight = Scalar(1e4);    ///< of the prior in addition, where a point is behind its host
 inline constexpr Scalar kNoPixelPenalty = Scalar(100);  ///< of a seen point that does not project [chi-square]
 inline constexpr Scalar kTargetSigma = Scalar(1e-4);    ///< of the distance of a target's point, in distances, at least
+inline constexpr int kMinPerHeld = 2;                   ///< keyframes that are connected, for each that is held
 }  // namespace keyframe_adjustment
 
 }  // namespace pf::tuning

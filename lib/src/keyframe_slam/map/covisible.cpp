@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/table_entries.h"
+
 namespace pf {
 namespace {
 
@@ -29,8 +31,8 @@ int connected_keyframes(const KeyframeMap& map, int least, bool* connected, bool
   int count = 1;
   for (bool grows = true; grows;) {
     grows = false;
-    for (int k = 0; k < keyframes.capacity(); ++k) {
-      if (!keyframes.used(k) || connected[k]) continue;
+    for (const int k : used_entries(keyframes)) {
+      if (connected[k]) continue;
       int shared = 0;
       for_each_point(map, k, [&](int i) { shared += seen[i] ? 1 : 0; });
       if (shared < least) continue;

@@ -1,5 +1,6 @@
 #include "keyframe_slam/map/keyframe_upkeep.h"
 
+#include "base/table_entries.h"
 #include "frame/feature_upkeep.h"
 
 namespace pf {
@@ -8,8 +9,8 @@ namespace {
 /// The one that saw the fewest of the points that there are, and is not among the newest; the older one among equals.
 int least_useful_keyframe(const KeyframeMap& map, int kept) {
   int worst = -1, fewest = 0;
-  for (int k = 0; k < map.keyframes.capacity(); ++k) {
-    if (!map.keyframes.used(k) || map.keyframes[k].number > map.keyframes.numbered() - kept) continue;
+  for (const int k : used_entries(map.keyframes)) {
+    if (map.keyframes[k].number > map.keyframes.numbered() - kept) continue;
     int seen = 0;
     for (int i = 0; i < map.capacity(); ++i) seen += map.keyframes.pixels(k)[i].seen ? 1 : 0;
     if (worst >= 0 && (seen > fewest || (seen == fewest && map.keyframes[k].number > map.keyframes[worst].number)))
@@ -22,8 +23,8 @@ int least_useful_keyframe(const KeyframeMap& map, int kept) {
 
 /// Its points go to the newest keyframe that saw them; where there is none they are dropped.
 void remove_keyframe(int k, KeyframeMap* map) {
-  for (int i = 0; i < map->capacity(); ++i) {
-    if (!map->used(i) || map->point(i).host != k) continue;
+  for (const int i : used_entries(*map)) {
+    if (map->point(i).host != k) continue;
     int host = -1;
     for (int other = 0; other < map->keyframes.capacity(); ++other) {
       if (other == k || !map->keyframes.used(other) || !map->keyframes.pixels(other)[i].seen) continue;
@@ -61,17 +62,17 @@ int add_keyframe(const Frame& frame, const CameraView& view, int kept, KeyframeM
 }
 
 void keep_first_keyframe(KeyframeMap* map) {
-  for (int k = 0; k < map->keyframes.capacity(); ++k) {
-    if (!map->keyframes.used(k) || map->keyframes[k].number == 1) continue;
-    for (int i = 0; i < map->capacity(); ++i)
-      if (map->used(i) && map->point(i).host == k) map->drop(i);
+  for (const int k : used_entries(map->keyframes)) {
+    if (map->keyframes[k].number == 1) continue;
+    for (const int i : used_entries(*map))
+      if (map->point(i).host == k) map->drop(i);
     map->keyframes.remove(k);
   }
 }
 
 void drop_failing(KeyframeMap* map) {
-  for (int i = 0; i < map->capacity(); ++i) {
-    if (!map->used(i) || map->feature(i).is_target) continue;
+  for (const int i : used_entries(*map)) {
+    if (map->feature(i).is_target) continue;
     const KeyframePoint& point = map->point(i);
     if (fails_too_often(map->feature(i)) || (point.has_depth && !(point.rho > Scalar(0)))) map->drop(i);
   }
@@ -80,8 +81,8 @@ void drop_failing(KeyframeMap* map) {
 void move_views(const CameraView& newest_before, KeyframeMap* map) {
   const Keyframe& newest = map->keyframes[map->keyframes.newest()];
   const Quat q = newest.q_WC * newest_before.q_WC.conjugate();
-  for (int i = 0; i < map->capacity(); ++i) {
-    if (!map->used(i) || map->point(i).has_depth) continue;
+  for (const int i : used_entries(*map)) {
+    if (map->point(i).has_depth) continue;
     CameraView& seen_from = map->point(i).seen_from;
     seen_from.c_W = newest.p_W + q * (seen_from.c_W - newest_before.c_W);
     seen_from.q_WC = (q * seen_from.q_WC).normalized();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/table_entries.h"
 #include "frame/plane_settings.h"
 #include "frame/tuning.h"
 #include "keyframe_slam/planes/tuning.h"
@@ -22,8 +23,7 @@ bool KeyframePlanes::layout(Arena& arena) {
 
 void KeyframePlanes::maintain(const Vec3& viewer_W) {
   viewer_W_ = viewer_W;
-  for (int k = 0; k < table_.capacity(); ++k) {
-    if (!table_.used(k)) continue;
+  for (const int k : used_entries(table_)) {
     ++table_[k].age;
     if (plane_[k].adjusted)
       drop_distant_points(k);
@@ -41,8 +41,8 @@ void KeyframePlanes::maintain(const Vec3& viewer_W) {
 /// Lists the points on a plane. Returns how many.
 int KeyframePlanes::list_points(int k) {
   int count = 0;
-  for (int i = 0; i < map_.capacity(); ++i) {
-    if (!map_.used(i) || !map_.point(i).has_depth || map_.point(i).plane != k) continue;
+  for (const int i : used_entries(map_)) {
+    if (!map_.point(i).has_depth || map_.point(i).plane != k) continue;
     candidate_[count].name = i;
     point_W_[count++] = map_.position(i);
   }
@@ -75,7 +75,8 @@ bool KeyframePlanes::lies_on(int k, const Vec3& p_W, const Mat3& covariance) con
   const Scalar near = distance_at(settings_, (p_W - viewer_W_).norm()), limit = near * near;
   const Scalar noise = settings_.fold.roughness * settings_.fold.roughness;
   const Scalar d2 = r.z() * r.z();
-  return d2 < 4 * limit && of_point <= limit && d2 < settings_.fold.gate * (of_point + of_plane + noise);
+  return d2 < tuning::keyframe_planes::kReach2 * limit && of_point <= limit &&
+         d2 < settings_.fold.gate * (of_point + of_plane + noise);
 }
 
 /// Gives a plane another frame, with the first axis along the old one's, and its outlines in it.
@@ -107,8 +108,7 @@ bool KeyframePlanes::take_adjusted(int k, const Vec3& x, const Mat3& covariance)
 }
 
 void KeyframePlanes::scale(Scalar s, const Vec3& c_W) {
-  for (int k = 0; k < table_.capacity(); ++k) {
-    if (!table_.used(k)) continue;
+  for (const int k : used_entries(table_)) {
     KeyframePlane& plane = plane_[k];
     plane.frame.o_W = c_W + s * (plane.frame.o_W - c_W);
     plane.covariance.row(2) *= s;
@@ -125,7 +125,7 @@ int KeyframePlanes::drop_distant_points(int k) {
   int kept = 0;
   for (int c = 0; c < count; ++c) {
     const Scalar near = distance_at(settings_, (point_W_[c] - viewer_W_).norm());
-    if (std::abs(plane_distance(frame, Vec3::Zero(), point_W_[c])) > 3 * near) {
+    if (std::abs(plane_distance(frame, Vec3::Zero(), point_W_[c])) > tuning::keyframe_planes::kOff * near) {
       map_.point(candidate_[c].name).plane = -1;
       ++table_[k].outliers;
       continue;
@@ -241,8 +241,11 @@ void KeyframePlanes::merge() {
       const int count = list_points(other);
       int close = 0;
       for (int c = 0; c < count; ++c)
-        close += std::abs(plane_distance(to, Vec3::Zero(), point_W_[c])) < 3 * settings_.plane_distance ? 1 : 0;
-      if (count < same::kMinPoints || 10 * close < 9 * count) continue;
+        close += std::abs(plane_distance(to, Vec3::Zero(), point_W_[c])) <
+                         tuning::keyframe_planes::kOff * settings_.plane_distance
+                     ? 1
+                     : 0;
+      if (count < same::kMinPoints || same::kPerOutlier * (count - close) > count) continue;
       for (int c = 0; c < count; ++c) put_on(k, candidate_[c].name);
       for (int i = 0; i < table_[other].seen.count; ++i) {
         const Vec2 uv = plane_coordinates(to, plane_point(from, Vec3::Zero(), table_[other].seen.uv[i]));
@@ -257,8 +260,7 @@ void KeyframePlanes::merge() {
 }
 
 void KeyframePlanes::dissolve_weak() {
-  for (int k = 0; k < table_.capacity(); ++k) {
-    if (!table_.used(k)) continue;
+  for (const int k : used_entries(table_)) {
     const int points = points_on(k);
     PlaneEntry& entry = table_[k];
     entry.max_points = std::max<int>(entry.max_points, points);
@@ -269,8 +271,8 @@ void KeyframePlanes::dissolve_weak() {
 }
 
 void KeyframePlanes::dissolve(int k) {
-  for (int i = 0; i < map_.capacity(); ++i)
-    if (map_.used(i) && map_.point(i).plane == k) map_.point(i).plane = -1;
+  for (const int i : used_entries(map_))
+    if (map_.point(i).plane == k) map_.point(i).plane = -1;
   table_.remove(k);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "base/table_entries.h"
 #include "frame/start/tuning.h"
 #include "frame/tuning.h"
 #include "geometry/so3.h"
@@ -54,6 +55,7 @@ bool KeyframeRecord::follow() {
     case StartOutcome::kSolved:
     case StartOutcome::kSettled:
       take_solution();
+      tracking_.belief().trust();
       settings_.hooks.say("started without a target: the first depths are known");
       return true;
     case StartOutcome::kStill:  // what moves has drawn the pose along
@@ -105,8 +107,7 @@ StartOutcome KeyframeRecord::record_frame() {
 void KeyframeRecord::wait() {
   const CameraView now = solver_.follow(map_.camera(), tuning::noise::kSearchSigma, settings_.start_depth, rho_);
   motion_.move(now.q_WC, now.c_W);
-  for (int i = 0; i < map_.capacity(); ++i)
-    if (map_.used(i)) move_view(&map_.point(i), map_.feature(i).last_seen_ns);
+  for (const int i : used_entries(map_)) move_view(&map_.point(i), map_.feature(i).last_seen_ns);
   Body body = motion_.body();
   set_speeds(&body);
   motion_.set_velocities(body.v_W, body.w_C);
@@ -155,8 +156,7 @@ void KeyframeRecord::note_second_pose() {
 /// Depths of the solution. Points that it has none for leave the map; those that are not in the record lose theirs.
 void KeyframeRecord::take_points() {
   const StartRecord& record = solver_.record();
-  for (int i = 0; i < map_.capacity(); ++i) {
-    if (!map_.used(i)) continue;
+  for (const int i : used_entries(map_)) {
     const int index = solver_.index_of(map_.feature(i).id);
     KeyframePoint& point = map_.point(i);
     if (index >= 0 && !solver_.bundle().good(index)) {
@@ -190,9 +190,8 @@ void KeyframeRecord::take_solution() {
     const Match& match = frame_.match(t);
     if (match.feature >= 0 && match.status == MatchStatus::kInlier) map_.point(match.feature).seen_from = now;
   }
-  for (int i = 0; i < map_.capacity(); ++i)
-    if (map_.used(i) && map_.point(i).has_depth)
-      map_.point(i).variance = depth_by_pixels(map_, i, noise_.sigma_info()).variance;
+  for (const int i : used_entries(map_))
+    if (map_.point(i).has_depth) map_.point(i).variance = depth_by_pixels(map_, i, noise_.sigma_info()).variance;
   if (!progress().recording) solver_.init();
 }
 

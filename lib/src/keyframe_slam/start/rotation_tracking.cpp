@@ -28,7 +28,7 @@ int RotationTracking::find_points() {
   const Scalar depth = settings_.start_depth;
   const PosePrior at = prior_of(motion_);
   int found = search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
-  if (2 * found < frame_.report.attempts && search_.begin_following()) {
+  if (kMinFound * found < frame_.report.attempts && search_.begin_following()) {
     frame_.forget_searches();
     found = search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
     search_.end_following();

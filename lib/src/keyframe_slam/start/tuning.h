@@ -15,6 +15,7 @@ inline constexpr Scalar kPositionSigma = Scalar(0.1);   ///< [depths] while noth
 inline constexpr Scalar kSpeedSigma = Scalar(0.2);      ///< [depths/s] of the speed that a record tells
 inline constexpr int kPatience = 8;     ///< frames without a better solution that end a record at the next keyframe
 inline constexpr int kSpeedFrames = 3;  ///< that tell it
+inline constexpr int kMinFound = 2;     ///< one in so many points is found without following the picture
 }  // namespace keyframe_start
 
 /// A second pose that the caller says, from which the scale follows.

@@ -20,11 +20,13 @@ void KeyframeTracking::measure(Scalar median_depth) {
   const PosePrior prior = prior_of(motion_);
   CameraPose pose;
   Mat6 information;
-  if (measure_about(prior, &pose, &information) == 0) {
+  hypotheses_ = 1;
+  if (!measure_placed(prior, &pose, &information)) {
     measure_all(median_depth);
     if (frame_.report.inliers > 0 || !search_.begin_following()) return;
     frame_.forget_searches();
-    const bool found = measure_about(prior, &pose, &information) > 0;
+    ++hypotheses_;
+    const bool found = measure_placed(prior, &pose, &information);
     if (!found) measure_all(median_depth);
     search_.end_following();
     if (!found) return;
@@ -36,14 +38,35 @@ void KeyframeTracking::measure(Scalar median_depth) {
   measure_unplaced(median_depth);
 }
 
-int KeyframeTracking::measure_about(const PosePrior& about, CameraPose* pose, Mat6* information) {
+/// Finds points with a depth about the predicted pose. False where what they say is not enough to believe the pose.
+bool KeyframeTracking::measure_placed(const PosePrior& prior, CameraPose* pose, Mat6* information) {
+  PoseConsensus consensus;
+  return measure_about(prior, pose, information, &consensus) > 0 && is_believed(consensus);
+}
+
+/// Weighs what was found about the prediction.
+bool KeyframeTracking::is_believed(const PoseConsensus& consensus) {
+  const Scalar evidence = belief_.evidence(consensus) - std::log(static_cast<Scalar>(hypotheses_));
+  const Scalar log_odds = PoseBelief::updated(belief_.predicted(), evidence);
+  if (consensus.inliers < settings_.min_inliers || !PoseBelief::is_enough(log_odds)) {
+    belief_.note(log_odds);
+    return false;
+  }
+  belief_.use(log_odds, consensus);
+  return true;
+}
+
+int KeyframeTracking::measure_about(const PosePrior& about, CameraPose* pose, Mat6* information,
+                                    PoseConsensus* consensus) {
   const int listed = search_.list_placed(about);
   PosePrior moving = about;  // with the velocities that are known best
   if (settings_.gate * search_.widest(listed) > kWideEllipse * kWideEllipse && listed > kScouts)
     found_ = search_by_scouts(about, pose, information, &moving);
   else
     found_ = search_.search(0, 0, listed, about, Scalar(1));
-  return pose_.find(found_, moving, pose, information);
+  const int inliers = pose_.find(found_, moving, pose, information);
+  *consensus = pose_.consensus(inliers, found_, about, *pose, *information);
+  return inliers;
 }
 
 /// Searches for a few points first: with their pose the others are searched for in small ellipses. moving gets the velocities that follow
@@ -52,7 +75,9 @@ int KeyframeTracking::search_by_scouts(const PosePrior& about, CameraPose* pose,
   const int others = search_.placed() - kScouts;
   const int found = search_.search(0, 0, kScouts, about, Scalar(1));
   PosePrior scouted = about;
-  const int inliers = pose_.find(found, about, pose, information);
+  int inliers = pose_.find(found, about, pose, information);
+  if (!PoseBelief::is_enough(belief_.evidence(pose_.consensus(inliers, found, about, *pose, *information))))
+    inliers = 0;
   SmallCholesky<6> factored, prior;
   KeyframeMotion after = motion_;
   if (inliers > 0 && has_rows(map_.camera()) && about.with_velocities != nullptr &&
@@ -137,6 +162,7 @@ void KeyframeTracking::measure_unplaced(Scalar depth) {
 
 void KeyframeTracking::measure_young(Scalar median_depth) {
   const PosePrior prior = prior_of(motion_);
+  hypotheses_ = 1;
   const int placed = search_.list_placed(prior);
   const int count = placed + search_.list_unplaced(prior, median_depth);
   fit_all(search_.search(0, 0, count, prior, median_depth), prior, median_depth);
@@ -157,7 +183,7 @@ void KeyframeTracking::fit_all(int found, const PosePrior& prior, Scalar median_
   for (int c = 0; c < found; ++c) open += map_.point(search_.match(c).feature).has_depth ? 0 : 1;
   const int inliers = pose_.fit(found, prior, median_depth, open, &pose, &information);
   PosePrior at;
-  if (!pose_.is_supported(inliers, found) || !apply(pose, information, &at)) return;
+  if (!is_believed(pose_.consensus(inliers, found, prior, pose, information)) || !apply(pose, information, &at)) return;
   for (int c = 0; c < found; ++c) {
     Match& match = search_.match(c);
     if (!pose_.is_inlier(c)) continue;

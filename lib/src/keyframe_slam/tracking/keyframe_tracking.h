@@ -1,5 +1,6 @@
 #pragma once
 
+#include "belief/pose_belief.h"
 #include "keyframe_slam/tracking/motion.h"
 #include "keyframe_slam/tracking/point_search.h"
 #include "keyframe_slam/tracking/pose_measurement.h"
@@ -11,8 +12,15 @@ namespace pf {
 class KeyframeTracking {
  public:
   KeyframeTracking(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion, NoiseModel& noise,
-                   PointSearch& search, PoseMeasurement& pose)
-      : settings_(settings), map_(map), frame_(frame), motion_(motion), noise_(noise), search_(search), pose_(pose) {}
+                   PointSearch& search, PoseMeasurement& pose, PoseBelief& belief)
+      : settings_(settings),
+        map_(map),
+        frame_(frame),
+        motion_(motion),
+        noise_(noise),
+        search_(search),
+        pose_(pose),
+        belief_(belief) {}
 
   /// Finds points with a depth about the predicted pose, and corrects the body by the pose that they say; then finds those without. Where
   /// those with a depth say none, all say it together.
@@ -21,8 +29,8 @@ class KeyframeTracking {
   /// point without a depth says where the camera is but for a translation along its epipolar line.
   void measure_young(Scalar median_depth);
   /// Finds points with a depth about another pose than the predicted one. Changes nothing but the frame's matches. Returns the number of
-  /// inliers, and the pose with its information.
-  int measure_about(const PosePrior& about, CameraPose* pose, Mat6* information);
+  /// inliers, the pose with its information, and what the searches say for it.
+  int measure_about(const PosePrior& about, CameraPose* pose, Mat6* information, PoseConsensus* consensus);
   /// Corrects the body by a pose that measure_about() returned, and says which matches agree with it.
   void correct(const CameraPose& pose, const Mat6& information);
   /// Updates the noise model with the residuals of this frame's inliers.
@@ -34,8 +42,10 @@ class KeyframeTracking {
   bool apply(const CameraPose& pose, const Mat6& information, PosePrior* now);
   void mark(const PosePrior& at);
   void accept(const Vec2& pixel, Match* match);
+  bool measure_placed(const PosePrior& prior, CameraPose* pose, Mat6* information);
   void measure_all(Scalar median_depth);
   void fit_all(int found, const PosePrior& prior, Scalar median_depth);
+  bool is_believed(const PoseConsensus& consensus);
   void measure_unplaced(Scalar depth);
 
   const Settings& settings_;
@@ -45,7 +55,9 @@ class KeyframeTracking {
   NoiseModel& noise_;
   PointSearch& search_;
   PoseMeasurement& pose_;
-  int found_ = 0;  ///< points with a depth, by the last measure_about(), at the front of the search's list
+  PoseBelief& belief_;
+  int hypotheses_ = 1;  ///< of where this frame is, tried so far
+  int found_ = 0;       ///< points with a depth, by the last measure_about(), at the front of the search's list
 };
 
 }  // namespace pf

@@ -145,7 +145,7 @@ bool PointSearch::is_wide(const Mat2& innovation) const {
 bool PointSearch::begin_following() {
   int wide = 0;
   for (int t = 0; t < frame_.match_count(); ++t) wide += is_wide(frame_.match(t).innovation) ? 1 : 0;
-  if (wide == 0 || 2 * wide < frame_.match_count()) return false;
+  if (wide == 0 || tuning::image_front_end::kMinWide * wide < frame_.match_count()) return false;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   is_following_ = followed_.find(map_.camera(), images_.tracker().pyramid());
   return is_following_;

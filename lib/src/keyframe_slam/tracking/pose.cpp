@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "belief/pose_evidence.h"
 #include "bundle/bearing.h"
 #include "frame/ellipse.h"
 #include "frame/tuning.h"
@@ -14,6 +15,8 @@ namespace pf {
 namespace {
 
 using namespace tuning::keyframe_pose;
+
+constexpr Scalar kImpossible = Scalar(-1e6);  ///< ln of a density
 
 Mat2 inverse2(const Mat2& S) {
   Mat2 inverse;
@@ -59,6 +62,24 @@ bool fit_pose(const Camera& camera, const PoseMatch* matches, int count, const u
   *inout = pose;
   *information = A;
   return true;
+}
+
+Scalar log_density(const Camera& camera, const PoseMatch* matches, int count, const unsigned char* use,
+                   const PosePrior& prior, const CameraPose& pose, const Mat6& information) {
+  SmallCholesky<6> P, posterior;
+  if (!P.factor(prior.covariance) || !posterior.factor(Mat6(P.inverse() + information))) return kImpossible;
+  Vec6 e;
+  e << log_so3(prior.q_WC * pose.q_WC.conjugate()), prior.p_W - pose.p_WC;
+  Scalar sum = -(e.dot(P.solve<1>(e)) + P.log_det() + posterior.log_det()) / 2;
+  for (int i = 0; i < count; ++i) {
+    if (use[i] == 0) continue;
+    const PnpPoint& point = matches[i].point;
+    Vec2 z;
+    if (!project_from_pose(camera, pose.q_WC, pose.p_WC, point.m, point.w, pose.p_WC, &z)) return kImpossible;
+    const Vec2 r = point.pixel - z;
+    sum += log_normal_density(squared_distance(r, matches[i].noise), std::log(matches[i].noise.determinant()), 1);
+  }
+  return sum;
 }
 
 bool KeyframePose::layout(Arena& arena, int capacity) {

@@ -26,6 +26,14 @@ struct PoseMatch {
 bool fit_pose(const Camera& camera, const PoseMatch* matches, int count, const unsigned char* use,
               const PosePrior& prior, Scalar huber, CameraPose* inout, Mat6* information);
 
+/// ln N(r; 0, S) of matches that count, jointly, where S has the noise of each and what the prior leaves open of the pose:
+///
+///   ln N(r; 0, S) = sum ln N(r_i; 0, R_i) - (eᵀ P⁻¹ e + ln det(I + P A)) / 2        r_i, e at the fitted pose, A its information
+///
+/// exact where the projection is linear. Hardly likely, kImpossible, where P is no covariance.
+Scalar log_density(const Camera& camera, const PoseMatch* matches, int count, const unsigned char* use,
+                   const PosePrior& prior, const CameraPose& pose, const Mat6& information);
+
 /// Finds the pose that most matches support (geometry/pnp.h), from the prior's and from triples of them.
 class KeyframePose {
  public:
@@ -35,6 +43,7 @@ class KeyframePose {
   PoseMatch& match(int i) { return match_[i]; }
   const PoseMatch& match(int i) const { return match_[i]; }
   bool is_inlier(int i) const { return inlier_[i] != 0; }
+  const unsigned char* inliers() const { return inlier_; }
 
   /// Consensus and fit over the first `count` matches. bound_px: of an inlier. least: inliers that are enough.
   /// Returns the number of inliers, 0 where they are too few; pose and information are then untouched.

@@ -1,9 +1,10 @@
 #pragma once
 
+#include "belief/pose_evidence.h"
 #include "keyframe_slam/tracking/point_search.h"
 #include "keyframe_slam/tracking/pose.h"
 
-/// The pose of a frame that its found points say, and whether it may be chance.
+/// The pose of a frame that its found points say, and how much they say for it.
 
 namespace pf {
 
@@ -17,14 +18,15 @@ class PoseMeasurement {
   bool layout(Arena& arena) { return pose_.layout(arena, settings_.max_features); }
   void init() { pose_.init(); }
 
-  /// Pose that most of the points support, all of which have a depth. Returns the number of inliers, 0 where the pose may be chance.
+  /// Pose that most of the points support, all of which have a depth. Returns the number of inliers, 0 where they are too few.
   int find(int found, const PosePrior& prior, CameraPose* pose, Mat6* information);
   /// Pose that all points say together, those without a depth as well. Pixels are taken to the frame's time by how far they have moved.
   /// depth: of points without one. shared: how many these are; they may all be nearer or farther together, and then their mean is known no
   /// better than one of them. 0: their median is the unit of length, and each is wrong by itself. Returns the number of inliers.
   int fit(int found, const PosePrior& prior, Scalar depth, int shared, CameraPose* pose, Mat6* information);
-  /// Whether the pose of the last fit() is more than chance.
-  bool is_supported(int inliers, int found) const;
+  /// What this frame's searches say for the pose that the last find() or fit() gave, about the same prior.
+  PoseConsensus consensus(int inliers, int found, const PosePrior& prior, const CameraPose& pose,
+                          const Mat6& information) const;
 
   bool is_inlier(int c) const { return pose_.is_inlier(c); }
   /// Within which a match supports a pose [px].
@@ -32,9 +34,7 @@ class PoseMeasurement {
 
  private:
   void make_match(int c, const PosePrior& prior, Scalar depth, int shared);
-  bool is_believed(int inliers, int found, Scalar shares) const;
-  Scalar agreeing_area(int c) const;
-  bool most_agree(int found) const;
+  Mat2 noise_of(int c, const PosePrior& prior, Scalar depth, int shared) const;
 
   const Settings& settings_;
   const KeyframeMap& map_;

@@ -28,12 +28,10 @@ bool KeyframeRelocaliser::is_prediction_narrow(Scalar median_depth) const {
 
 /// Where to search; false where nothing says it.
 bool KeyframeRelocaliser::choose(Scalar median_depth, PosePrior* about) const {
-  if (data_.frames > 0) {
+  if (data_.is_set) {
     *about = {data_.q_WC, data_.p_W, sphere(kAboutProposal, kAboutProposal * median_depth)};
     return true;
   }
-  *about = prior_of(motion_);
-  if (is_prediction_narrow(median_depth)) return true;
   const Recognition place = views_.recognise(tracker_.pyramid(), map_.camera());
   if (place.score < kMinRecognition) return false;
   *about = {place.q_WC, place.p_W, sphere(kAboutView, kAboutView * median_depth)};
@@ -41,21 +39,23 @@ bool KeyframeRelocaliser::choose(Scalar median_depth, PosePrior* about) const {
 }
 
 void KeyframeRelocaliser::recover(Scalar median_depth) {
-  const bool nearby = data_.frames == 0 && is_prediction_narrow(median_depth);
   const Data before = data_;
   PosePrior about;
   CameraPose pose;
   Mat6 information;
-  if (!choose(median_depth, &about) || measuring_.measure_about(about, &pose, &information) < settings_.min_inliers) {
-    data_ = Data();
-    return;
-  }
-  const bool follows = before.frames > 0 && log_so3(pose.q_WC * before.q_WC.conjugate()).norm() < kAboutView &&
+  PoseConsensus consensus;
+  const bool chosen = choose(median_depth, &about);
+  data_ = Data();
+  if (!chosen || measuring_.measure_about(about, &pose, &information, &consensus) < settings_.min_inliers) return;
+  const bool follows = before.is_set && log_so3(pose.q_WC * before.q_WC.conjugate()).norm() < kAboutView &&
                        (pose.p_WC - before.p_W).norm() < kAboutView * median_depth;
-  data_ = {follows ? before.frames + 1 : 1, pose.q_WC, pose.p_WC};
-  if (data_.frames < (nearby ? kFramesNearby : kFramesAnywhere)) return;
-  if (!nearby) motion_.set_pose_covariance(about.covariance);
+  const Scalar log_odds =
+      PoseBelief::updated(follows ? before.log_odds : PoseBelief::elsewhere(), belief_.evidence(consensus));
+  data_ = {true, log_odds, pose.q_WC, pose.p_WC};
+  if (!PoseBelief::is_enough(log_odds)) return;
+  motion_.set_pose_covariance(about.covariance);
   measuring_.correct(pose, information);
+  belief_.use(log_odds, consensus);
   data_ = Data();
 }
 

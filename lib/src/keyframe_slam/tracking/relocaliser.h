@@ -10,8 +10,8 @@ namespace pf {
 class KeyframeRelocaliser {
  public:
   KeyframeRelocaliser(const Settings& settings, const KeyframeMap& map, KeyframeMotion& motion, const Tracker& tracker,
-                      KeyframeTracking& measuring)
-      : settings_(settings), map_(map), motion_(motion), tracker_(tracker), measuring_(measuring) {}
+                      KeyframeTracking& measuring, PoseBelief& belief)
+      : settings_(settings), map_(map), motion_(motion), tracker_(tracker), measuring_(measuring), belief_(belief) {}
 
   bool layout(Arena& arena) { return views_.layout(arena, settings_.max_kept_views); }
   void init() {
@@ -23,8 +23,9 @@ class KeyframeRelocaliser {
   void remember_view() { views_.keep_if_new(tracker_.pyramid(), motion_.body().q_WC, motion_.body().p_W); }
   /// The map is tracked: forgets what earlier frames proposed.
   void clear_proposal() { data_ = Data(); }
-  /// Searches where the pose may be: about the prediction as long as it is narrow, else about a kept view that looks like this image. A
-  /// pose is taken when several frames in a row propose it.
+  /// The prediction is good enough to search about it.
+  bool is_prediction_narrow(Scalar median_depth) const;
+  /// Searches where the pose may be when the prediction is not: about the last frame's proposal, or a kept view that looks like this image.
   void recover(Scalar median_depth);
 
   int kept_views() const { return views_.count(); }
@@ -32,19 +33,20 @@ class KeyframeRelocaliser {
  private:
   /// What earlier frames proposed.
   struct Data {
-    int frames = 0;  ///< in a row
+    bool is_set = false;
+    Scalar log_odds = 0;  ///< that it is right
     Quat q_WC = Quat::Identity();
     Vec3 p_W = Vec3::Zero();
   };
 
   bool choose(Scalar median_depth, PosePrior* about) const;
-  bool is_prediction_narrow(Scalar median_depth) const;
 
   const Settings& settings_;
   const KeyframeMap& map_;
   KeyframeMotion& motion_;
   const Tracker& tracker_;
   KeyframeTracking& measuring_;
+  PoseBelief& belief_;
   ViewMemory views_;
   Data data_;
 };

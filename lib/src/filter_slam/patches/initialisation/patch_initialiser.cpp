@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/table_entries.h"
 #include "geometry/ray_plane.h"
 #include "model/camera_at.h"
 
@@ -29,8 +30,7 @@ bool PatchInitialiser::initialise(const ImageView& image, int wall, const PatchS
   patch.plane = wall < 0 ? 0 : map_.planes[wall].id;
   patch.born = frame_.report.frames;
   patch.last_seen_ns = frame_.report.t_ns;
-  if (filter_.lens().readout != Scalar(0) && filter_.state().layout.has(BodyPart::kVelocity))
-    correct_rows(wall, &patch);
+  if (rows_roll(filter_.state(), filter_.lens())) correct_rows(wall, &patch);
   return true;
 }
 
@@ -39,7 +39,7 @@ void PatchInitialiser::correct_rows(int wall, StoredPatch* patch) const {
   const CameraAt now = camera_at(filter_.state(), Scalar(0));
   for (int k = 0; k < 4; ++k) {
     const Vec2 pixel = patch->pixels.corner(k);
-    const CameraAt then = camera_at(filter_.state(), row_time(lens, pixel.y()));
+    const CameraAt then = camera_of_row(filter_.state(), lens, pixel.y());
     Vec3 ray_C, from_camera_W;
     if (!unproject(lens, pixel, &ray_C)) continue;
     from_camera_W = then.q_WC * ray_C;  // far away, where there is no wall
@@ -56,12 +56,11 @@ void PatchInitialiser::correct_rows(int wall, StoredPatch* patch) const {
 bool PatchInitialiser::drop_oldest_camera() {
   int oldest = -1;
   std::int64_t oldest_ns = 0;
-  for (int i = 0; i < store_.capacity(); ++i) {
-    if (!store_.used(i)) continue;
+  for (const int i : used_entries(store_)) {
     std::int64_t last_ns = 0;
     bool in_view = false;
-    for (int k = 0; k < store_.capacity(); ++k) {
-      if (!store_.used(k) || store_[k].camera != store_[i].camera) continue;
+    for (const int k : used_entries(store_)) {
+      if (store_[k].camera != store_[i].camera) continue;
       in_view = in_view || store_[k].was_found();
       last_ns = std::max(last_ns, store_[k].last_seen_ns);
     }
@@ -70,8 +69,8 @@ bool PatchInitialiser::drop_oldest_camera() {
     oldest_ns = last_ns;
   }
   if (oldest < 0) return false;
-  for (int i = 0; i < store_.capacity(); ++i)
-    if (store_.used(i) && store_[i].camera == oldest) drop_patch(filter_, store_, i);
+  for (const int i : used_entries(store_))
+    if (store_[i].camera == oldest) drop_patch(filter_, store_, i);
   return true;
 }
 

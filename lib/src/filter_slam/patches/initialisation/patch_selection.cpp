@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/table_entries.h"
 #include "filter_slam/features/wall_rays.h"
 #include "filter_slam/patches/patch_sight.h"
 #include "filter_slam/patches/patch_walls.h"
@@ -35,14 +36,14 @@ Scalar texture(const ImageView& image, int left, int top, int side) {
 }  // namespace
 
 void PatchSelection::init() {
-  std::fill(in_vain_, in_vain_ + kMaxWalls, 0);
+  std::fill(in_vain_, in_vain_ + kMaxPlanes, 0);
   in_vain_beside_ = 0;
 }
 
 int PatchSelection::wanted_on(int wall) const {
   int good = 0, born = 0;
-  for (int i = 0; i < store_.capacity(); ++i) {
-    if (!store_.used(i) || wall_of(map_.planes, store_[i]) != wall) continue;
+  for (const int i : used_entries(store_)) {
+    if (wall_of(map_.planes, store_[i]) != wall) continue;
     born = std::max(born, store_[i].born);
     PatchSight sight;
     good += store_[i].was_found() && expect_patch(filter_, map_.planes, store_[i], wall, &sight) &&
@@ -83,8 +84,8 @@ bool PatchSelection::is_on_wall(int wall, const PatchSquare& square, Scalar* cos
 bool PatchSelection::is_free(const PatchSquare& square) const {
   const Scalar apart = kApart * static_cast<Scalar>(square.side);
   const Vec2 middle = square.middle();
-  for (int i = 0; i < store_.capacity(); ++i) {
-    if (!store_.used(i) || store_[i].status == PatchStatus::kUnseen) continue;
+  for (const int i : used_entries(store_)) {
+    if (store_[i].status == PatchStatus::kUnseen) continue;
     if (!((middle_of(store_[i].corner) - middle).norm() > apart)) return false;
   }
   return true;
@@ -94,9 +95,11 @@ int PatchSelection::list_squares(const Pyramid& image, int wall, int side, const
                                  PatchSquare* square) const {
   const int level = std::min(side >= kCoarseSide ? 2 : 1, image.levels - 1), border = settings_.border_px;
   const int step = std::max(1, side / 4);
+  const ImageMask* mask = in_use(image.mask);
   int count = 0;
   for (int top = border; top + side + border <= image.level[0].height; top += step)
     for (int left = border; left + side + border <= image.level[0].width; left += step) {
+      if (mask != nullptr && !mask->is_clear(Rect{left, top, side, side})) continue;
       PatchSquare candidate{left, top, side, 0};
       Scalar cosine = 0;
       if (!is_free(candidate) || obstacles.are_in(candidate) || !is_on_wall(wall, candidate, &cosine)) continue;
@@ -116,8 +119,8 @@ int PatchSelection::list_squares(const Pyramid& image, int wall, int side, const
 
 void PatchSelection::begin_patches(const Pyramid& image) {
   int camera = -1;
-  for (int wall = 0; wall < map_.planes.capacity(); ++wall) {
-    if (!map_.planes.used(wall) || !map_.planes[wall].known || !map_.planes[wall].counts()) continue;
+  for (const int wall : used_entries(map_.planes)) {
+    if (!map_.planes[wall].known || !map_.planes[wall].counts()) continue;
     const int wanted = wanted_on(wall);
     // The lattice costs as much as a patch: where it had no place, or the store no room, not again in the next frame.
     if (wanted > 0 && in_vain_[wall] > 0 && frame_.report.frames < in_vain_[wall] + kRetryFrames) continue;
@@ -146,8 +149,7 @@ bool PatchSelection::begin_on_wall(const Pyramid& image, int wall, int wanted, i
 bool PatchSelection::may_begin_beside_walls(bool has_camera) const {
   if (in_vain_beside_ > 0 && frame_.report.frames < in_vain_beside_ + kBetween) return false;
   int beside = 0, youngest = 0;
-  for (int i = 0; i < store_.capacity(); ++i) {
-    if (!store_.used(i)) continue;
+  for (const int i : used_entries(store_)) {
     const int entry = wall_of(map_.planes, store_[i]);
     if (entry >= 0 && map_.planes[entry].known) continue;
     beside += store_[i].was_found();

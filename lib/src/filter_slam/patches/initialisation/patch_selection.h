@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/limits.h"
 #include "filter/filter.h"
 #include "filter_slam/patches/initialisation/patch_initialiser.h"
 #include "filter_slam/patches/initialisation/patch_obstacles.h"
@@ -31,7 +32,6 @@ class PatchSelection {
 
  private:
   static constexpr int kMaxSquares = 6;
-  static constexpr int kMaxWalls = 64;  ///< capacity.max_planes at most
 
   /// Initialises patches on one wall. Returns whether it has all that it wants.
   bool begin_on_wall(const Pyramid& image, int wall, int wanted, int* camera);
@@ -56,8 +56,8 @@ class PatchSelection {
   const PatchStore& store_;
   const PatchRefusals& refusals_;
   PatchInitialiser& initialiser_;
-  int in_vain_[kMaxWalls] = {};  ///< frame in which each plane's wall had no place for a patch that it wants
-  int in_vain_beside_ = 0;       ///< likewise what no wall covers
+  int in_vain_[kMaxPlanes] = {};  ///< frame in which each plane's wall had no place for a patch that it wants
+  int in_vain_beside_ = 0;        ///< likewise what no wall covers
 };
 
 }  // namespace pf

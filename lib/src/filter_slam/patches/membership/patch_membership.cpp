@@ -22,7 +22,7 @@ void give_up(StoredPatch* patch) {
 }  // namespace
 
 bool PatchMembership::expect(const StoredPatch& patch, PatchSight* sight) const {
-  const int likely = plane_with_id(map_.planes, patch.is_proven() ? patch.wait.likely() : patch.plane);
+  const int likely = map_.planes.entry_of(patch.is_proven() ? patch.wait.likely() : patch.plane);
   if (likely >= 0 && map_.planes[likely].counts() && expect_patch(filter_, map_.planes, patch, likely, sight))
     return true;
   const Camera& lens = filter_.lens();
@@ -111,7 +111,7 @@ void PatchMembership::decide(StoredPatch* patch) {
 }
 
 void PatchMembership::join(StoredPatch* patch, std::uint32_t id) {
-  const int entry = plane_with_id(map_.planes, id);
+  const int entry = map_.planes.entry_of(id);
   if (entry < 0) return;
   if (is_seen_through(filter_, map_, *patch, entry)) refuse(patch);
   if (is_off_most_points(filter_, map_, frame_.report.t_ns, *patch, entry) ||

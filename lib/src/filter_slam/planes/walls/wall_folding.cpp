@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/limits.h"
 #include "filter_slam/features/tuning.h"
 #include "filter_slam/features/wall_rays.h"
 #include "filter_slam/planes/plane_points.h"
@@ -49,7 +50,7 @@ int WallFolding::list_before_wall(int plane_entry, int* slots, int capacity) {
 bool WallFolding::may_set_scale(int plane_entry) const {
   if (certain_.knows_scale()) return true;
   const Vec3 c_W = camera_at(filter_.state(), Scalar(0)).p_W;
-  int before_this = 0, before_other[kMaxOthers] = {};
+  int before_this = 0, before_other[kMaxPlanes] = {};
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!certain_.is_settled(i)) continue;
     Scalar range = 0;
@@ -118,7 +119,7 @@ void WallFolding::fold_by_consensus(int plane_entry) {
   if (count <= settings_.plane_min_points) return;
   int size;
   const unsigned consensus = find_consensus(plane_entry, slots, count, &size);
-  if (size <= settings_.plane_min_points || 2 * size < count) return;
+  if (size <= settings_.plane_min_points || kMinOnWall * size < count) return;
   size = 0;
   for (int j = 0; j < count; ++j)
     if ((consensus >> j & 1u) != 0) chosen[size++] = slots[j];

@@ -1,0 +1,11 @@
+#pragma once
+
+/// The largest capacities that a config may ask for (api/config.cpp). Arrays on the stack have room for them.
+
+namespace pf {
+
+inline constexpr int kMaxObservations = 200;  ///< capacity.max_observations
+inline constexpr int kMaxPlanes = 64;         ///< capacity.max_planes
+inline constexpr int kMaxPatches = 32;        ///< capacity.max_patches
+
+}  // namespace pf

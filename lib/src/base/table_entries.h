@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+
+/// What tables have in common, whose entries are used or free: capacity() of them, and used(i) which says so.
+
+namespace pf {
+
+/// The entries of a table that are used, by ascending index:
+///
+///   for (const int i : used_entries(table)) ...
+///
+/// Each is asked for when its turn comes, so that the loop may remove and add entries.
+template <typename Table>
+class UsedEntries {
+ public:
+  class Iterator {
+   public:
+    Iterator(const Table& table, int i) : table_(table), i_(i) { pass_free(); }
+    int operator*() const { return i_; }
+    Iterator& operator++() {
+      ++i_;
+      pass_free();
+      return *this;
+    }
+    bool operator!=(const Iterator& other) const { return i_ != other.i_; }
+
+   private:
+    void pass_free() {
+      while (i_ < table_.capacity() && !table_.used(i_)) ++i_;
+    }
+    const Table& table_;
+    int i_;
+  };
+
+  explicit UsedEntries(const Table& table) : table_(table) {}
+  Iterator begin() const { return {table_, 0}; }
+  Iterator end() const { return {table_, table_.capacity()}; }
+
+ private:
+  const Table& table_;
+};
+
+template <typename Table>
+UsedEntries<Table> used_entries(const Table& table) {
+  return UsedEntries<Table>(table);
+}
+
+/// The entry that has an id, or -1. No entry has 0.
+template <typename Table>
+int entry_with_id(const Table& table, std::uint32_t id) {
+  if (id != 0)
+    for (const int i : used_entries(table))
+      if (table[i].id == id) return i;
+  return -1;
+}
+
+}  // namespace pf

@@ -1,0 +1,53 @@
+#include "belief/pose_belief.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "belief/tuning.h"
+
+namespace pf {
+
+using namespace tuning::pose_belief;
+
+void PoseBelief::init() {
+  share_.init();
+  log_odds_ = predicted_ = kAnew;
+  is_noted_ = false;
+}
+
+void PoseBelief::begin_frame(double dt_s) {
+  const double before = static_cast<double>(log_odds());
+  // 1 - p of what was right, and has ended since: e^-L + (1 - e^(-h dt)) (1 + e^-L) over e^(-h dt).
+  const double kept = std::exp(-kHazard * dt_s);
+  const double odds = kept / (std::exp(-before) + (1 - kept));
+  predicted_ = std::max(kAnew, static_cast<Scalar>(std::log(odds)));
+  log_odds_ = predicted_;
+  is_noted_ = false;
+}
+
+void PoseBelief::spend() { predicted_ = log_odds_ = std::min(predicted_, kAnew); }
+
+Scalar PoseBelief::anew() { return kAnew; }
+
+Scalar PoseBelief::elsewhere() { return kElsewhere; }
+
+Scalar PoseBelief::most() { return kMost; }
+
+Scalar PoseBelief::updated(Scalar before, Scalar evidence) {
+  return std::clamp(before + std::clamp(evidence, -kMaxFrame, kMaxFrame), kElsewhere, kMost);
+}
+
+void PoseBelief::note(Scalar log_odds) {
+  log_odds_ = is_noted_ ? std::max(log_odds_, log_odds) : log_odds;
+  is_noted_ = true;
+}
+
+void PoseBelief::use(Scalar log_odds, const PoseConsensus& consensus) {
+  log_odds_ = log_odds;
+  is_noted_ = true;
+  share_.learn(consensus.searched, consensus.inliers);
+}
+
+bool PoseBelief::is_enough(Scalar log_odds) { return log_odds >= kTracked; }
+
+}  // namespace pf

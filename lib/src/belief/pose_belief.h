@@ -1,0 +1,56 @@
+#pragma once
+
+#include "base/scalar.h"
+#include "belief/pose_evidence.h"
+
+/// Whether the pose is right: its log-odds, from frame to frame.
+
+namespace pf {
+
+/// A running log-odds L = ln(p / (1 - p)) that the pose is that of the camera in the map (lib/docs/belief.md):
+///
+///   predicted   p <- p exp(-kHazard dt),  and no less than kAnew: where the camera should be may be right at any time
+///   a frame     L <- L + E,   |E| <= kMaxFrame,   kElsewhere <= L <= kMost
+///
+/// E is pose_evidence() of the best hypothesis of the frame. A pose is used, and the frame tracked, where L reaches kTracked.
+class PoseBelief {
+ public:
+  PoseBelief() { init(); }
+  void init();
+  /// Begins a frame, dt_s after the one before.
+  void begin_frame(double dt_s);
+
+  /// The prediction is too vague to be searched about: what it was worth before is spent.
+  void spend();
+  /// Log-odds before this frame's evidence.
+  Scalar predicted() const { return predicted_; }
+  /// Log-odds of a pose that nothing supports yet.
+  static Scalar anew();
+  /// Likewise, of a pose that is not the predicted one.
+  static Scalar elsewhere();
+  static Scalar most();
+  /// Log-odds of a pose with what this frame says for it, from those before it.
+  static Scalar updated(Scalar before, Scalar evidence);
+  /// Evidence of a consensus of this frame.
+  Scalar evidence(const PoseConsensus& consensus) const { return pose_evidence(consensus, share_); }
+  const FindShare& share() const { return share_; }
+  /// Notes the log-odds of a hypothesis of this frame; the greatest counts.
+  void note(Scalar log_odds);
+  /// Replaces what was noted: this pose has been used.
+  void use(Scalar log_odds, const PoseConsensus& consensus);
+  /// The pose comes from a target, from the record of a start that has been solved as a whole, or from pixels that the caller has matched.
+  void trust() { use(most(), PoseConsensus()); }
+  /// Log-odds of the pose, with what this frame has said so far.
+  Scalar log_odds() const { return is_noted_ ? log_odds_ : predicted_; }
+
+  static bool is_enough(Scalar log_odds);
+  /// The pose of the frame is believed.
+  bool is_tracked() const { return is_enough(log_odds()); }
+
+ private:
+  FindShare share_;
+  Scalar log_odds_ = 0, predicted_ = 0;
+  bool is_noted_ = false;  ///< in this frame
+};
+
+}  // namespace pf

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "base/scalar.h"
+
+/// What one frame says for or against a pose: the ratio of two likelihoods of what its searches have found.
+
+namespace pf {
+
+/// What the searches of a frame have found, and how much of it agrees with one pose.
+struct PoseConsensus {
+  int searched = 0;        ///< features
+  int inliers = 0;         ///< of them: found where the pose has them
+  Scalar log_density = 0;  ///< ln N(r; 0, S) of the inliers' pixels, jointly [ln px^-2 each]
+  Scalar log_chance = 0;   ///< sum of log_chance_density() over the inliers
+};
+
+/// ln of the density with which a search of this area finds something where its feature is not [ln px^-2].
+///
+///   c = q / max(A, A_0)      q = tuning::chance::kMaxFindShare, A_0 = kMinArea
+Scalar log_chance_density(Scalar searched_px2);
+
+/// ln N(r; 0, S) of 2n residuals from their normalised square r^T S^-1 r and ln det S.
+Scalar log_normal_density(Scalar nis, Scalar log_det, int n);
+
+/// Chance that a feature in view is found where it is. It is the picture's and not the feature's: under smear all are missed alike, so a
+/// frame's own share counts more than what earlier ones say: Beta(kWeight m, kWeight (1 - m)) about their mean m.
+class FindShare {
+ public:
+  void init();
+  /// After a frame whose pose is used.
+  void learn(int searched, int inliers);
+  /// ln of the probability that just these `inliers` of `searched` features are found:
+  ///
+  ///   ln B(a + k, b + n - k) - ln B(a, b),   a = kWeight m,  b = kWeight (1 - m)
+  Scalar log_probability(int searched, int inliers) const;
+
+ private:
+  Scalar mean_ = 0;
+};
+
+/// ln of how much more likely this is where the pose is right than where it is wrong and all that was found is chance:
+///
+///   E = ln P(k of n found) + ln N(r; 0, S) - sum over the inliers of ln c_i
+///
+/// What was found elsewhere is chance under both and cancels, as does what was missed but for P.
+Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share);
+
+}  // namespace pf

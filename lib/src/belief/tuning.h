@@ -1,0 +1,35 @@
+#pragma once
+
+#include "base/scalar.h"
+
+/// Tuned numbers of the belief in the pose, each with the probability that it stands for. tools/sweep-tuning halves and doubles them;
+/// what no sweep has measured has no figure here.
+
+namespace pf::tuning {
+
+/// Log-odds that the pose is right, natural logarithms (lib/docs/belief.md).
+namespace pose_belief {
+inline constexpr Scalar kTracked = Scalar(6.2);      ///< from which a pose is used: wrong in 0.2 %
+inline constexpr Scalar kMost = Scalar(13.8);        ///< that a pose can have: wrong once in a million
+inline constexpr Scalar kMaxFrame = Scalar(6.9);     ///< that one frame says: one place in 1,000 looks like another
+inline constexpr Scalar kAnew = Scalar(-6.9);        ///< of a prediction that nothing supports: right once in 1,000
+inline constexpr Scalar kElsewhere = Scalar(-13.8);  ///< of any other pose: pictures may be of another place altogether
+inline constexpr double kHazard = 0.005;  ///< [1/s] that what a prediction relies on ends: a cut, a grip, a blow
+}  // namespace pose_belief
+
+/// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/states.md).
+namespace chance {
+inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that find something; found: 0.04 .. 0.24
+inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in small ellipses, times kMaxFindShare
+}  // namespace chance
+
+/// Chance that a feature which is in view is found.
+namespace find_share {
+inline constexpr Scalar kPrior = Scalar(0.7);   ///< mean, before any frame
+inline constexpr Scalar kWeight = Scalar(4);    ///< searches that earlier frames' mean counts as, of this frame's own
+inline constexpr Scalar kGain = Scalar(0.3);    ///< of a frame, in the mean
+inline constexpr Scalar kLeast = Scalar(0.05);  ///< mean, at least
+inline constexpr Scalar kGreatest = Scalar(0.95);  ///< mean, at most
+}  // namespace find_share
+
+}  // namespace pf::tuning

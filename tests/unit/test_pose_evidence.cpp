@@ -1,0 +1,106 @@
+// What one frame says for a pose: right matches for it, chance against it, and how much misses count.
+#include <cmath>
+
+#include "belief/pose_evidence.h"
+#include "belief/tuning.h"
+#include "support/seeded_random.h"
+#include "unity.h"
+
+using namespace pf;
+
+void setUp(void) {}
+void tearDown(void) {}
+
+namespace {
+
+constexpr Scalar kGate = Scalar(9.2103);
+constexpr Scalar kPi = Scalar(3.14159265358979);
+
+/// `inliers` matches of `searched` features with independent residuals of standard deviation s: as the model says, or anywhere in the gate.
+PoseConsensus consensus_of(SeededRandom& random, int searched, int inliers, Scalar s, bool anywhere) {
+  PoseConsensus c;
+  c.searched = searched;
+  c.inliers = inliers;
+  for (int i = 0; i < inliers; ++i) {
+    Vec2 r = random.normals<2>(1);
+    if (anywhere) {
+      do r << static_cast<Scalar>(random.uniform(-1, 1)), static_cast<Scalar>(random.uniform(-1, 1));
+      while (r.squaredNorm() > 1);
+      r *= std::sqrt(kGate);
+    }
+    c.log_density += log_normal_density(r.squaredNorm(), 4 * std::log(s), 1);
+    c.log_chance += log_chance_density(kPi * kGate * s * s);
+  }
+  return c;
+}
+
+void test_normal_density_should_be_that_of_its_integral() {
+  Scalar sum = 0;
+  const Scalar step = Scalar(0.05), s = 2;
+  for (Scalar x = -12; x < 12; x += step)
+    for (Scalar y = -12; y < 12; y += step)
+      sum += step * step * std::exp(log_normal_density((x * x + y * y) / (s * s), 4 * std::log(s), 1));
+  TEST_ASSERT_DOUBLE_WITHIN(1e-4, static_cast<double>(1), static_cast<double>(sum));
+}
+
+void test_chance_should_be_bounded_in_small_areas() {
+  using namespace tuning::chance;
+  TEST_ASSERT_DOUBLE_WITHIN(1e-9, static_cast<double>(kMaxFindShare / kMinArea),
+                            static_cast<double>(std::exp(log_chance_density(1))));
+  TEST_ASSERT_DOUBLE_WITHIN(1e-9, static_cast<double>(kMaxFindShare / 5000),
+                            static_cast<double>(std::exp(log_chance_density(5000))));
+}
+
+void test_probability_of_all_shares_should_sum_to_one() {
+  FindShare share;
+  share.init();
+  constexpr int kSearched = 12;
+  Scalar sum = 0, ways = 1;
+  for (int k = 0; k <= kSearched; ++k) {
+    sum += ways * std::exp(share.log_probability(kSearched, k));
+    ways *= static_cast<Scalar>(kSearched - k) / static_cast<Scalar>(k + 1);
+  }
+  TEST_ASSERT_DOUBLE_WITHIN(1e-5, static_cast<double>(1), static_cast<double>(sum));
+}
+
+/// In ellipses as wide as those of features whose depths are open, so that all that is found passes their gates.
+void test_right_matches_should_speak_for_a_pose_and_chance_against_it() {
+  SeededRandom random(301);
+  FindShare share;
+  share.init();
+  int right = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    right += pose_evidence(consensus_of(random, 33, 20, 15, false), share) > Scalar(3) ? 1 : 0;
+    TEST_ASSERT_TRUE(pose_evidence(consensus_of(random, 33, 8, 15, true), share) < Scalar(-3));
+  }
+  TEST_ASSERT_GREATER_OR_EQUAL_INT(97, right);
+}
+
+void test_misses_should_say_less_once_frames_have_missed_much() {
+  FindShare sharp, smeared;
+  sharp.init();
+  smeared.init();
+  for (int frame = 0; frame < 10; ++frame) {
+    sharp.learn(40, 34);
+    smeared.learn(40, 8);
+  }
+  PoseConsensus none;
+  none.searched = 30;
+  TEST_ASSERT_TRUE(pose_evidence(none, sharp) < pose_evidence(none, smeared) - 3);
+  const FindShare before = sharp;
+  sharp.learn(0, 0);  // a frame without a search says nothing of it
+  TEST_ASSERT_DOUBLE_WITHIN(1e-12, static_cast<double>(pose_evidence(none, before)),
+                            static_cast<double>(pose_evidence(none, sharp)));
+}
+
+}  // namespace
+
+int main() {
+  UNITY_BEGIN();
+  RUN_TEST(test_normal_density_should_be_that_of_its_integral);
+  RUN_TEST(test_chance_should_be_bounded_in_small_areas);
+  RUN_TEST(test_probability_of_all_shares_should_sum_to_one);
+  RUN_TEST(test_right_matches_should_speak_for_a_pose_and_chance_against_it);
+  RUN_TEST(test_misses_should_say_less_once_frames_have_missed_much);
+  return UNITY_END();
+}
