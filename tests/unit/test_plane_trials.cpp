@@ -1,4 +1,5 @@
 // Features that began on a plane because their corner lies in its outline: what makes them believed, and what makes them go.
+#include "filter_slam/planes/plane_trials.h"
 #include "same.h"
 #include "support/plane_keeper_bench.h"
 
@@ -51,6 +52,7 @@ struct Bench : PlaneKeeperBench {
     ++f.observations;
     ++f.attempts;
     f.failures = f.rejections = 0;
+    f.last_seen_ns = frame.report.t_ns;
     Vec2 z;
     TEST_ASSERT_TRUE(project(settings.camera, Vec3(depth * kDepth * ray_W - body.p_W), &z));
     frame.add({entry, f.id, MatchStatus::kInlier, BlockKind::kPlanePoint, true, z, Mat2::Identity(), z, Scalar(1)});
@@ -90,6 +92,36 @@ void test_feature_should_be_believed_when_it_is_hardly_off_the_plane() {
   }
 }
 
+void test_log_odds_should_say_nothing_when_there_is_no_parallax() {
+  for (const Scalar s : {Scalar(0), Scalar(0.3)}) {
+    TEST_ASSERT_TRUE(std::abs(log_odds_of_depth(s, Scalar(25), Scalar(0.01), Scalar(0.5))) < Scalar(0.1));
+  }
+}
+
+void test_log_odds_should_grow_with_what_is_known_of_the_depth() {
+  Scalar before = 0;
+  for (const Scalar sigma : {Scalar(0.3), Scalar(0.1), Scalar(0.03), Scalar(0.01)}) {
+    const Scalar odds = log_odds_of_depth(Scalar(0), sigma * sigma, Scalar(0.002), Scalar(0.5));
+    TEST_ASSERT_TRUE(odds > before);
+    TEST_ASSERT_TRUE(log_odds_of_depth(6 * sigma, sigma * sigma, Scalar(0.002), Scalar(0.5)) < odds);
+    before = odds;
+  }
+  TEST_ASSERT_TRUE(before > Scalar(3));
+  TEST_ASSERT_TRUE(log_odds_of_depth(Scalar(0.06), Scalar(1e-4), Scalar(0.002), Scalar(0.5)) < Scalar(-10));
+}
+
+void test_outliers_of_a_plane_should_count_features_that_began_on_it_and_are_elsewhere() {
+  Bench bench;
+  const int plane = bench.map.planes.entry_at(bench.filter->state().plane_of(bench.map.features[bench.entry].slot));
+  bench.map.planes[plane].outliers = 2;
+  for (int k = 1; k <= 15; ++k) bench.see(Scalar(0.02) * Scalar(k), 1);
+  TEST_ASSERT_EQUAL_INT(1, bench.map.planes[plane].outliers);
+  Bench other;
+  for (int k = 1; k <= 15 && other.map.features.used(other.entry); ++k)
+    other.see(Scalar(0.02) * Scalar(k), Scalar(0.9));
+  TEST_ASSERT_EQUAL_INT(1, other.map.planes[plane].outliers);
+}
+
 /// A point of the map that lies on the plane, as certain as the plane is: folded in the next frame or not.
 bool is_folded(int failures, int rejections) {
   Bench bench;
@@ -119,6 +151,9 @@ int main(void) {
   RUN_TEST(test_feature_should_stay_on_trial_when_another_depth_would_not_show);
   RUN_TEST(test_feature_should_go_when_its_pixels_say_that_it_is_nearer_or_farther);
   RUN_TEST(test_feature_should_be_believed_when_it_is_hardly_off_the_plane);
+  RUN_TEST(test_log_odds_should_say_nothing_when_there_is_no_parallax);
+  RUN_TEST(test_log_odds_should_grow_with_what_is_known_of_the_depth);
+  RUN_TEST(test_outliers_of_a_plane_should_count_features_that_began_on_it_and_are_elsewhere);
   RUN_TEST(test_point_should_be_folded_when_it_was_missed_but_not_when_it_was_found_elsewhere);
   return UNITY_END();
 }

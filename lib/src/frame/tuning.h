@@ -124,16 +124,13 @@ inline constexpr Scalar kMaxResidual = Scalar(3);        ///< [sigma] per axis, 
 
 /// Points of planes.
 namespace plane_keeper {
-inline constexpr int kConverged = 10;                ///< observations before a point may be folded
-inline constexpr int kDiscoverEvery = 5;             ///< frames
-inline constexpr int kMaxRejections = 4;             ///< in a row, before a folded point is unfolded
-inline constexpr int kTrialMatches = 10;             ///< of a feature that began on a plane, before it is believed
-inline constexpr int kTrialRejections = 2;           ///< in a row, before it is dropped
-inline constexpr Scalar kTrialDepth = Scalar(0.05);  ///< of its depth, which must show before it is believed
-inline constexpr Scalar kTrialPixels = Scalar(1.8);  ///< [px] that show: three sigma of a match
-inline constexpr int kMinFixed = 4;                  ///< points that a point group needs
-inline constexpr Scalar kReach = Scalar(0.5);        ///< beyond the outline of a plane, in square roots of its area
-inline constexpr Scalar kUnfoldSigma = Scalar(10);   ///< of an unfolded point along the normal, in plane.max_distance
+inline constexpr int kConverged = 10;               ///< observations before a point may be folded
+inline constexpr int kDiscoverEvery = 5;            ///< frames
+inline constexpr int kMaxRejections = 4;            ///< in a row, before a folded point is unfolded
+inline constexpr int kTrialRejections = 2;          ///< in a row, before it is dropped
+inline constexpr int kMinFixed = 4;                 ///< points that a point group needs
+inline constexpr Scalar kReach = Scalar(0.5);       ///< beyond the outline of a plane, in square roots of its area
+inline constexpr Scalar kUnfoldSigma = Scalar(10);  ///< of an unfolded point along the normal, in plane.max_distance
 }  // namespace plane_keeper
 
 /// Whole planes.

@@ -73,8 +73,8 @@ void KeyframeMapping::adjust() {
   if (!adjustment_.run(!record_.progress().recording)) return;
   move_views(before, &map_);
   motion_.move(newest.q_WC, newest.p_W);
-  // During a start the map may begin again; ids of planes found before would then name nothing.
-  if (settings_.planes && !record_.progress().recording) planes_.maintain(newest.p_W);
+  // From the first depths on. While a start's record goes on the map may begin again, which removes the planes.
+  if (settings_.planes && !record_.progress().pending()) planes_.maintain(newest.p_W);
 }
 
 }  // namespace pf

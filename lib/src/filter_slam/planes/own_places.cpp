@@ -43,8 +43,7 @@ void OwnPlaces::begin(int feature, std::uint32_t plane) {
 void OwnPlaces::update() {
   const State& state = filter_.state();
   for (int i = 0; i < map_.features.capacity(); ++i) {
-    const bool folded = map_.features.used(i) && !map_.features[i].on_trial &&
-                        state.block[map_.features[i].slot].kind == BlockKind::kPlanePoint;
+    const bool folded = map_.features.used(i) && state.block[map_.features[i].slot].kind == BlockKind::kPlanePoint;
     const std::uint32_t plane = folded ? map_.planes.id_at(state.plane_of(map_.features[i].slot)) : 0;
     if (plane == 0) {
       own_[i].plane = 0;
@@ -81,6 +80,16 @@ void OwnPlaces::add(const Match& match, const CameraAt& camera) {
 
 void OwnPlaces::forget(int plane_slot) {
   filter_.state().for_each_planar(plane_slot, [&](int slot) { own_[filter_.state().block[slot].owner].plane = 0; });
+}
+
+bool OwnPlaces::depth(int feature, Scalar* farther, Scalar* variance, Vec3* ray_W) const {
+  const Own& own = own_[feature];
+  if (own.plane == 0 || own.id != map_.features[feature].id || !(own.N > 0)) return false;
+  const Scalar N = static_cast<Scalar>(own.N);
+  *ray_W = vector(own.ray_W);
+  *farther = static_cast<Scalar>(own.b) / N;
+  *variance = 1 / N;
+  return std::isfinite(*farther) && std::isfinite(*variance);
 }
 
 bool OwnPlaces::find(int feature, const Vec3& n_W, Vec3* p_W, Scalar* variance) const {

@@ -7,11 +7,11 @@
 #include "frame/frame.h"
 #include "map/map.h"
 
-/// Where folded points are by themselves. A folded point has no depth of its own: from then on its pixels update the plane, and a point not
-/// on the plane bends it until they fit. So the depth is estimated beside the filter as well, along the ray on which the point
-/// was seen when it was folded, from its pixels alone, at the poses that the filter has:
+/// Where points on planes are by themselves. Such a point has no depth of its own: its pixels update the plane, and a point not on the
+/// plane bends it until they fit. So the depth is estimated beside the filter as well, along the ray on which the point was seen
+/// when it was folded or began on the plane, from its pixels alone, at the poses that the filter has:
 ///
-///   p(s) = x + s d,   d = (x - c) / |x - c|            x, c  places of point and camera at the fold
+///   p(s) = x + s d,   d = (x - c) / |x - c|            x, c  places of point and camera at the fold, or at the first match
 ///   N += J^T J,   b += J^T (z - pi(p(s_k)) + J s_k),   J = d pi(p(s)) / ds,   s = b / N [m],  its variance sigma_z^2 / N
 ///
 /// Drifted poses move all of these places alike, so a comparison of the places with each other is not affected (map/plane_majority.h).
@@ -25,13 +25,17 @@ class OwnPlaces {
   bool layout(Arena& arena, int max_features);
   void init();
 
-  /// Takes in this frame's matches of folded points.
+  /// Takes in this frame's matches of points on planes.
   void update();
   /// Begins again with the points of a plane, which has moved.
   void forget(int plane_slot);
   /// Place of a folded feature, and the variance of its distance from a plane with this normal, for pixels that are known to one pixel.
   /// False where its pixels have told nothing yet.
   bool find(int feature, const Vec3& n_W, Vec3* p_W, Scalar* variance) const;
+
+  /// What the pixels of a feature say of its depth along the ray: how much farther than where it was put [m], its variance for pixels that
+  /// are known to one pixel, and the ray. False where they have told nothing yet.
+  bool depth(int feature, Scalar* farther, Scalar* variance, Vec3* ray_W) const;
 
  private:
   /// In float in both libraries.

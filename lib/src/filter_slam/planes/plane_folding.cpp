@@ -5,6 +5,7 @@
 
 #include "base/table_entries.h"
 #include "filter_slam/planes/plane_points.h"
+#include "frame/plane_settings.h"
 #include "frame/tuning.h"
 
 namespace pf {
@@ -53,7 +54,8 @@ void fold_into(const Settings& settings, Filter& filter, Map& map, const Certain
     const int slot = map.features[i].slot;
     const Vec3 p_W = filter.point(slot);
     if (!is_in_reach(settings, filter, map, plane_entry, p_W)) continue;
-    if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(2) * near) continue;
+    const Scalar farther = distance_at(settings, (p_W - filter.state().body.p_W).norm()) / settings.plane_distance;
+    if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(2) * near * farther) continue;
     Mat3 covariance;
     if (!lies_on(settings, filter, map, plane, slot) || !certain.is_certain(i, &covariance)) continue;
     slots[count++] = slot;

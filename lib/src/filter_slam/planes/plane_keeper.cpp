@@ -38,7 +38,7 @@ void PlaneKeeper::init() {
 
 void PlaneKeeper::maintain(bool may_doubt) {
   places_.update();
-  judge_trials(filter_, map_, frame_, features_);
+  PlaneTrials(settings_, filter_, map_, features_, places_).judge();
   unfold_outliers(settings_, filter_, map_);
   certain_.update_scale();
   const int planes = map_.planes.capacity(), turn = frame_.report.frames % planes;

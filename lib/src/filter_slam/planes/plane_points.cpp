@@ -21,8 +21,9 @@ PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry,
   state.for_each_planar(plane, [&](int slot) {
     ++points.folded;
     if (state.block[slot].kind == BlockKind::kGroupedPoint) ++points.fixed;
-    if (map.features[state.block[slot].owner].on_trial) ++points.on_trial;
-    if (outline == nullptr) return;
+    const bool on_trial = map.features[state.block[slot].owner].on_trial;
+    points.on_trial += on_trial ? 1 : 0;
+    if (outline == nullptr || on_trial) return;
     uv[count++] = plane_coordinates(state.frame_of(state.block[plane]), filter.point(slot));
     if (count < kBatch) return;
     extend_outline(outline, uv, reject_isolated(uv, count));
@@ -65,7 +66,8 @@ bool lies_on(const Settings& settings, const Filter& filter, const Map& map, int
   if (!filter.distance(plane, slot, &d, &variance)) return false;
   const int entry = map.planes.entry_at(plane);
   const FoldRule rule = entry < 0 ? settings.fold : fold_rule(settings, map.planes[entry]);
-  const Scalar limit = settings.plane_distance * settings.plane_distance;
+  const Scalar range = (filter.point(slot) - filter.state().body.p_W).norm();
+  const Scalar most = distance_at(settings, range), limit = most * most;
   const Scalar noise = rule.roughness * rule.roughness;
   const Scalar near = entry >= 0 && map.planes[entry].known ? limit + noise : limit;
   return d * d <= near * Scalar(4) && variance <= limit && d * d < rule.gate * (variance + noise);

@@ -16,7 +16,7 @@ struct PlanePoints {
 };
 
 /// Outline of a plane (entry of the table) in the coordinates of its frame: the part that was seen before, extended by the points that
-/// are on it now, without isolated ones. outline may be null.
+/// are on it now, without isolated ones and those on trial. outline may be null.
 PlanePoints outline_plane(const Filter& filter, const Map& map, int plane_entry, PlaneOutline* outline);
 
 /// Extends a plane's support to a point that has been folded.
@@ -34,7 +34,7 @@ bool is_before_wall(const Filter& filter, const Map& map, int plane_entry, const
 bool is_in_reach(const Settings& settings, const Filter& filter, const Map& map, int plane_entry, const Vec3& p_W);
 
 /// Whether a point is near the plane (block), its distance is known, and it passes the gate of folding. A passed gate means little if the
-/// variance of the distance is large, so that is bounded by plane_distance.
+/// variance of the distance is large, so that is bounded by distance_at its range.
 bool lies_on(const Settings& settings, const Filter& filter, const Map& map, int plane, int slot);
 
 }  // namespace pf

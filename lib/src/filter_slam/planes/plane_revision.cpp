@@ -28,6 +28,7 @@ int PlaneRevision::list_places(int plane, const Vec3& n_W, JudgedPoint* points, 
   const Scalar limit = kMaxSigma * settings_.plane_distance;
   int count = 0;
   state.for_each_planar(plane, [&](int slot) {
+    if (map_.features[state.block[slot].owner].on_trial) return;
     JudgedPoint* p = points + count;
     if (count == kMaxJudged || !places_.find(state.block[slot].owner, n_W, &p->p_W, &p->variance)) return;
     p->variance *= kPixel * kPixel;

@@ -1,64 +1,54 @@
 #include "filter_slam/planes/plane_trials.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/table_entries.h"
 #include "filter_slam/planes/plane_points.h"
+#include "filter_slam/planes/tuning.h"
 #include "frame/tuning.h"
-#include "model/camera_at.h"
 
 namespace pf {
-namespace {
 
-using namespace tuning::plane_keeper;
+using namespace tuning::plane_trials;
 
-enum class TrialVerdict { kOpen, kThere, kElsewhere };
-
-/// The pixel at which this frame has found a feature; null: it has not.
-const Match* find_inlier(const Frame& frame, int feature) {
-  for (int t = 0; t < frame.match_count(); ++t)
-    if (frame.match(t).feature == feature && frame.match(t).status == MatchStatus::kInlier) return &frame.match(t);
-  return nullptr;
+Scalar log_odds_of_depth(Scalar s, Scalar v, Scalar t, Scalar w) {
+  const Scalar on = v + t * t, somewhere = v + w * w;
+  return Scalar(0.5) * (std::log(somewhere / on) - s * s * (1 / on - 1 / somewhere));
 }
 
-/// What this frame's pixel of a feature says of the plane on which it began, against a depth that is kTrialDepth smaller or larger:
-///
-///   z nearer to pi(p) than to either of pi(p_1 + (1 +- kTrialDepth) (p - p_1)),   p_1: the camera's place when it began
-///
-/// kOpen: there is no pixel, or the three are less than kTrialPixels apart.
-TrialVerdict judge_depth(const Filter& filter, const Map& map, const Frame& frame, int entry) {
-  const Vec3 p_W = filter.point(map.features[entry].slot), first_W = map.first_view(entry).c_W;
-  const Match* match = find_inlier(frame, entry);
-  if (match == nullptr) return TrialVerdict::kOpen;
-  const CameraAt camera = camera_of_row(filter.state(), filter.lens(), match->measured.y());
-  const auto pixel = [&](Scalar depth, Vec2* at) {
-    const Vec3 moved_W = first_W + depth * (p_W - first_W);
-    return project(filter.lens(), Vec3(camera.q_WC.conjugate() * (moved_W - camera.p_W)), at);
-  };
-  Vec2 here, nearer, farther;
-  if (!pixel(1, &here) || !pixel(1 - kTrialDepth, &nearer) || !pixel(1 + kTrialDepth, &farther))
-    return TrialVerdict::kOpen;
-  const Scalar apart2 = std::min((nearer - here).squaredNorm(), (farther - here).squaredNorm());
-  if (apart2 <= kTrialPixels * kTrialPixels) return TrialVerdict::kOpen;
-  const Scalar off2 = (match->measured - here).squaredNorm();
-  const bool elsewhere =
-      (match->measured - nearer).squaredNorm() < off2 || (match->measured - farther).squaredNorm() < off2;
-  return elsewhere ? TrialVerdict::kElsewhere : TrialVerdict::kThere;
+Scalar PlaneTrials::log_odds(int entry, int plane_entry) const {
+  Scalar s, v;
+  Vec3 ray_W, n_W;
+  Scalar d_W;
+  if (!places_.depth(entry, &s, &v, &ray_W)) return Scalar(0);
+  const int plane = map_.planes[plane_entry].slot;
+  const Block& block = filter_.state().block[plane];
+  plane_normal(filter_.state().frame_of(block), block.xyz(), &n_W, &d_W);
+  const Scalar range = ray_W.norm(), slant = std::abs(n_W.dot(ray_W)) / range;
+  if (!(slant > kMinSlant)) return Scalar(0);
+  // The plane's variance has the drift of the whole world in it, which the feature shares: at most what its points may be off by.
+  const Scalar limit = settings_.plane_distance * settings_.plane_distance;
+  const Scalar of_plane = std::min(filter_.plane_variance(plane, filter_.point(map_.features[entry].slot)), limit);
+  const Scalar roughness = settings_.fold.roughness;
+  const Scalar t = std::sqrt(of_plane + roughness * roughness) / slant;
+  return log_odds_of_depth(s, v * kPixel * kPixel, t, settings_.inverse_depth_relative_sigma * range);
 }
 
-}  // namespace
-
-void judge_trials(const Filter& filter, Map& map, const Frame& frame, FeatureKeeper& features) {
-  for (const int i : used_entries(map.features)) {
-    if (!map.features[i].on_trial) continue;
-    Feature& f = map.features[i];
-    const TrialVerdict verdict = judge_depth(filter, map, frame, i);
-    if (f.rejections >= kTrialRejections || verdict == TrialVerdict::kElsewhere) {
-      features.drop(&i, 1);
-    } else if (f.failures == 0 && f.observations > kTrialMatches && verdict == TrialVerdict::kThere) {
+void PlaneTrials::judge() {
+  for (const int i : used_entries(map_.features)) {
+    if (!map_.features[i].on_trial) continue;
+    Feature& f = map_.features[i];
+    const int entry = map_.planes.entry_at(filter_.state().plane_of(f.slot));
+    const Scalar odds = entry < 0 ? Scalar(0) : log_odds(i, entry);
+    const bool elsewhere = odds < -kDoubt;
+    if (elsewhere) ++map_.planes[entry].outliers;
+    if (f.rejections >= tuning::plane_keeper::kTrialRejections || elsewhere) {
+      features_.drop(&i, 1);
+    } else if (f.failures == 0 && odds > kSure) {
       f.on_trial = false;
-      const int entry = map.planes.entry_at(filter.state().plane_of(f.slot));
-      if (entry >= 0) support(filter, map, entry, f.slot);
+      if (map_.planes[entry].outliers > 0) map_.planes[entry].outliers = map_.planes[entry].outliers - 1;
+      support(filter_, map_, entry, f.slot);
     }
   }
 }

@@ -27,6 +27,14 @@ inline constexpr Scalar kTold = Scalar(1000);     ///< N range^2: a hundredth of
 inline constexpr Scalar kElsewhere = Scalar(10);  ///< [px] of a match from there, where that says nothing any more
 }  // namespace own_places
 
+/// Features that began on a plane.
+namespace plane_trials {
+inline constexpr Scalar kPixel = 1;           ///< [px] of a match, with what it has in common with other frames'
+inline constexpr Scalar kSure = Scalar(4.6);  ///< log-odds from which on a feature is believed: ln 100
+inline constexpr Scalar kDoubt = Scalar(1);   ///< log-odds against it from which on it goes, since it bends the plane
+inline constexpr Scalar kMinSlant = Scalar(0.05);  ///< sine between plane and ray, below which a depth tells nothing
+}  // namespace plane_trials
+
 namespace plane_places {
 inline constexpr Scalar kPixel = 1;              ///< [px] of a match, before the points have said what it is
 inline constexpr Scalar kMaxSigma = Scalar(30);  ///< of a height at one pixel that is looked at, in plane.max_distance

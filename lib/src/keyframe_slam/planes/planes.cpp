@@ -22,6 +22,7 @@ bool KeyframePlanes::layout(Arena& arena) {
 }
 
 void KeyframePlanes::maintain(const Vec3& viewer_W) {
+  viewer_W_ = viewer_W;
   for (const int k : used_entries(table_)) {
     ++table_[k].age;
     if (plane_[k].adjusted)
@@ -58,20 +59,20 @@ int KeyframePlanes::points_on(int k) const {
 bool KeyframePlanes::is_settled(int i, Mat3* covariance) const {
   if (!map_.used(i) || !map_.point(i).has_depth || map_.point(i).plane >= 0) return false;
   const Feature& f = map_.feature(i);
-  if (f.is_target || f.failures > 0 || f.observations < member::kConverged) return false;
+  if (f.is_target || f.rejections > 0 || f.observations < member::kConverged) return false;
   if (!(map_.point(i).variance > Scalar(0))) return false;
   *covariance = map_.covariance(i);
   return covariance->trace() < settings_.fold_sigma * settings_.fold_sigma;
 }
 
-///   d² < gate (nᵀ Sigma n + roughness² + variance of the plane there),   |d| < 2 max_distance,   nᵀ Sigma n <= max_distance²
+///   d² < gate (nᵀ Sigma n + roughness² + variance of the plane there),   |d| < 2 D,   nᵀ Sigma n <= D²,   D: distance_at its range
 bool KeyframePlanes::lies_on(int k, const Vec3& p_W, const Mat3& covariance) const {
   const KeyframePlane& plane = plane_[k];
   const Vec3 n = plane.frame.R_WP.col(2);
   const Vec3 r = plane.frame.R_WP.transpose() * (p_W - plane.frame.o_W);
   const Vec3 J(-r.x(), -r.y(), -1);  // of the distance by (a, b, h)
   const Scalar of_point = n.dot(covariance * n), of_plane = J.dot(plane.covariance * J);
-  const Scalar limit = settings_.plane_distance * settings_.plane_distance;
+  const Scalar near = distance_at(settings_, (p_W - viewer_W_).norm()), limit = near * near;
   const Scalar noise = settings_.fold.roughness * settings_.fold.roughness;
   const Scalar d2 = r.z() * r.z();
   return d2 < tuning::keyframe_planes::kReach2 * limit && of_point <= limit &&
@@ -123,8 +124,8 @@ int KeyframePlanes::drop_distant_points(int k) {
   const int count = list_points(k);
   int kept = 0;
   for (int c = 0; c < count; ++c) {
-    if (std::abs(plane_distance(frame, Vec3::Zero(), point_W_[c])) >
-        tuning::keyframe_planes::kOff * settings_.plane_distance) {
+    const Scalar near = distance_at(settings_, (point_W_[c] - viewer_W_).norm());
+    if (std::abs(plane_distance(frame, Vec3::Zero(), point_W_[c])) > tuning::keyframe_planes::kOff * near) {
       map_.point(candidate_[c].name).plane = -1;
       ++table_[k].outliers;
       continue;
@@ -202,6 +203,8 @@ void KeyframePlanes::discover(const Vec3& viewer_W) {
   int count = 0;
   const Scalar near = 2 * settings_.plane_distance;
   for (int i = 0; i < map_.capacity(); ++i) {
+    if (map_.used(i) && map_.feature(i).failures > 0)
+      continue;  // what decides about whole planes was found when last looked for
     if (!is_settled(i, &candidate_[count].covariance)) continue;
     const Vec3 p_W = map_.position(i);
     bool taken = false;

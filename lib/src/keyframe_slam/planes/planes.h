@@ -59,6 +59,7 @@ class KeyframePlanes {
   KeyframePlane* plane_ = nullptr;       ///< max_planes
   PlaneCandidate* candidate_ = nullptr;  ///< one for each point that is listed; its name is its row
   Vec3* point_W_ = nullptr;              ///< likewise
+  Vec3 viewer_W_ = Vec3::Zero();         ///< of this keyframe
   std::uint32_t searches_ = 0;           ///< for new planes, so far
 };
 
