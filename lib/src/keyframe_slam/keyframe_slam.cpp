@@ -64,10 +64,12 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   }
   if (!usable) return unusable_status(end_frame());
   tracking_.note_usable_image(data_.since_last_ns);
-  if (tracking_.needs_new_map(settings_.restart_ns))
-    begin_new_map("not found again for too long: the old map is discarded, a new map begins");
-  else if (data_.is_map_fixed && tracking_.has_pose())
-    begin_new_map("part of the picture stands still while the rest moves: it is masked, and a new map begins");
+  const bool is_gone = tracking_.needs_new_map(settings_.restart_ns);
+  if (is_gone || (data_.is_map_fixed && tracking_.has_pose())) {
+    discard_map(is_gone ? "not found again for too long: the old map is discarded, a new map begins"
+                        : "part of the picture stands still while the rest moves: it is masked, and a new map begins");
+    tracking_.begin_map();
+  }
   measure();
   data_.is_map_fixed = search_.note_fixed();
   learn();
@@ -80,14 +82,6 @@ Status KeyframeSlam::mark_pose() {
   const Body& body = motion_.body();
   data_.mark = {true, frame_.report.t_ns, body.q_WC, body.p_W, motion_.pose_covariance()};
   return Status::kOk;
-}
-
-void KeyframeSlam::begin_new_map(const char* why) {
-  discard_map();
-  mapping_.init();
-  data_.mark = Mark();
-  tracking_.begin_map();
-  settings_.hooks.say(why);
 }
 
 /// Begins the report and predicts the body to the new time.
@@ -165,9 +159,8 @@ void KeyframeSlam::scale_by_second_pose() {
 /// Returns the status of the frame.
 Status KeyframeSlam::end_frame() {
   if (tracking_.has_pose() && !motion_.is_sound()) {
-    discard_map();
+    discard_map("the estimate is no longer finite: starting again without it");
     tracking_.start_over();
-    settings_.hooks.say("the estimate is no longer finite: starting again without it");
   }
   if (tracking_.is_tracked(frame_.report) && !record_.progress().pending()) {
     const Scalar depth = map_.median_depth(motion_.body().q_WC, motion_.body().p_W);
@@ -184,11 +177,14 @@ Status KeyframeSlam::end_frame() {
 }
 
 /// Clears the map, and all that refers to poses in it.
-void KeyframeSlam::discard_map() {
+void KeyframeSlam::discard_map(const char* why) {
   start_.start_over();
   motion_.init();
   relocaliser_.init();
   search_.forget_view();
+  mapping_.init();
+  data_.mark = Mark();
+  settings_.hooks.say(why);
 }
 
 }  // namespace pf

@@ -73,12 +73,11 @@ class KeyframeSlam {
   };
 
   void begin_frame(std::int64_t t_ns);
-  void begin_new_map(const char* why);
   Status end_frame();
   void measure();
   void learn();
   void scale_by_second_pose();
-  void discard_map();
+  void discard_map(const char* why);
 
   const Settings& settings_;
   Frame frame_;
