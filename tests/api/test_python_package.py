@@ -60,7 +60,7 @@ class Masks(unittest.TestCase):
             if number == 12:
                 break
             slam.push_frame(image, t_ns)
-            count += sum(match.predicted_px[1] >= row for match in slam.matches)
+            count += sum(match.status != planefold.MatchStatus.MISSED and match.measured_px[1] >= row - 1 for match in slam.matches)
         return count
 
     def test_what_is_masked_should_not_be_measured(self):

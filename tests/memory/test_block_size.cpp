@@ -62,6 +62,20 @@ void test_default_config_should_need_at_most_two_mebibytes_at_640x480() {
   TEST_ASSERT_LESS_OR_EQUAL_size_t(std::size_t{2} << 20, bytes_of("default_640x480"));
 }
 
+void test_a_mask_should_take_one_bit_for_sixteen_pixels() {
+  pf_config_t config;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
+  config.camera = {PF_CAMERA_PINHOLE,  640, 480, 512, 512, 320, 240, {}, 0, PF_CAMERA_EXACT,
+                   PF_TIMESTAMPS_REAL, 0,   0,   0,   {}};
+  pf_memory_t without, with;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &without));
+  config.capacity.mask = 640 * 480;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &with));
+  constexpr std::size_t kBits = 160 * 120, kAlignment = 64, kZone = 64;  // a zone with the address sanitizer alone
+  TEST_ASSERT_GREATER_OR_EQUAL_size_t(kBits / 8, with.bytes - without.bytes);
+  TEST_ASSERT_LESS_OR_EQUAL_size_t(kBits / 8 + kAlignment + kZone, with.bytes - without.bytes);
+}
+
 void test_memory_should_depend_on_capacities_and_image_size_alone() {
   pf_config_t config;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_default(&config));
@@ -93,6 +107,7 @@ int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_memory_should_be_within_three_percent_of_the_golden_numbers);
   RUN_TEST(test_default_config_should_need_at_most_two_mebibytes_at_640x480);
+  RUN_TEST(test_a_mask_should_take_one_bit_for_sixteen_pixels);
   RUN_TEST(test_memory_should_depend_on_capacities_and_image_size_alone);
   return UNITY_END();
 }

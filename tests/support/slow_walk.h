@@ -62,8 +62,8 @@ inline void SlowWalk::run(std::uint64_t seed) {
   map.layout(*arena, settings.max_features, settings.max_planes);
   map.init();
   ImuLog imu;
-  imu.layout(*arena, settings.imu_buffer);
-  imu.init(settings.imu_buffer, settings.imu_ranges);
+  imu.layout(*arena, settings.imu.buffer);
+  imu.init(settings.imu.buffer, settings.imu.ranges);
   FilterSlam loop(settings, map, imu);
   TEST_ASSERT_TRUE(loop.layout(*arena));
   loop.init();

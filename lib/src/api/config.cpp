@@ -261,7 +261,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   if (bad != nullptr) return *field = bad, Status::kConfig;
   if (config.capacity.mask != 0 && config.capacity.mask < c.width * c.height)
     return *field = "capacity.mask", Status::kConfig;
-  settings->has_mask_room = config.capacity.mask != 0;
+  settings->mask.is_asked_for = config.capacity.mask != 0;
   const bool moves = settings->body.has(BodyPart::kVelocity);
   if (!(c.readout_s >= 0 && c.readout_s <= (moves ? kLongestReadout : 0)))
     return *field = "camera.readout_s", Status::kConfig;
@@ -315,8 +315,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->max_coast_ns = static_cast<std::int64_t>(config.motion.coast_s * 1e9);
   settings->restart_ns = static_cast<std::int64_t>(config.motion.restart_s * 1e9);
   settings->keep_gauge = research.keep_gauge != 0;
-  settings->imu_buffer = config.capacity.max_imu_samples;
-  settings->imu_ranges = {static_cast<Scalar>(config.imu.gyro_range), static_cast<Scalar>(config.imu.accel_range)};
+  settings->imu.buffer = config.capacity.max_imu_samples;
+  settings->imu.ranges = {static_cast<Scalar>(config.imu.gyro_range), static_cast<Scalar>(config.imu.accel_range)};
   settings->hooks.clock_ns = config.clock_ns;
   settings->hooks.log = config.log;
   settings->hooks.user = config.user;

@@ -15,9 +15,11 @@ void ImageTracking::init() {
   relocaliser_.init();
   noise_.init(settings_.sigma_px);
   warnings_ = FitWarnings();
+  is_map_fixed_ = false;
 }
 
 void ImageTracking::forget_map() {
+  is_map_fixed_ = false;
   front_end_.search().forget_view();
   relocaliser_.init();
 }
@@ -28,6 +30,7 @@ void ImageTracking::recover_or_measure(const MeasureMode& mode, bool is_lost) {
   if (now.is_vague) tracking_.belief().spend();
   front_end_.measure(now);
   if (now.is_vague && frame_.report.inliers == 0) relocaliser_.recover();
+  is_map_fixed_ = front_end_.search().note_fixed();
   // What was measured first may have been believed, and the rest of the frame contradicts it.
   if (!mode.starts && frame_.report.inliers > 0 && !tracking_.belief().is_tracked()) tracking_.set_unusable();
 }

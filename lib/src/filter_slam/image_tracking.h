@@ -38,6 +38,8 @@ class ImageTracking {
   /// Measures the frame, ImageFrontEnd::measure. is_lost: the last frame did not support its pose; the map is then searched for about other
   /// poses too where the prediction is vague.
   void recover_or_measure(const MeasureMode& mode, bool is_lost);
+  /// The last frame has shown that the map comes from what stands still in the picture (FixedFeatures).
+  bool is_map_fixed() const { return is_map_fixed_; }
   /// Learns the noise of matches from the inliers' residuals, and warns where they fit badly.
   void learn_noise();
   /// After a frame of any kind. image_usable: it is an image that shows something to track.
@@ -55,6 +57,7 @@ class ImageTracking {
   TrackingState& tracking_;
   NoiseModel noise_;
   FitWarnings warnings_;  ///< kept between frames
+  bool is_map_fixed_ = false;
   ImageFrontEnd front_end_;
   Relocaliser relocaliser_;
 };

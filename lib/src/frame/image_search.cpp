@@ -7,11 +7,13 @@ namespace pf {
 bool ImageSearch::layout(Arena& arena, const Settings& settings) {
   if (kHasMasks && settings.masks != MaskMode::kNone)
     templates_ = arena.place<TemplateMatcher>([&](TemplateMatcher& made) { made.layout(arena, settings.template_px); });
+  fixed_.layout(arena, settings.camera.width, settings.camera.height, settings.max_features);
   return tracker_.layout(arena, settings.camera.width, settings.camera.height);
 }
 
 void ImageSearch::init(const Settings& settings) {
-  tracker_.init(settings.camera, settings.mask);
+  fixed_.init(settings.mask.mask);
+  tracker_.init(settings.camera, fixed_.mask());
   if (has_templates()) templates_->init(settings.camera, settings.masks, settings.max_misfit);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "frame/fixed_features.h"
 #include "frame/settings.h"
 #include "map/map.h"
 #include "track/tracker.h"
@@ -28,11 +29,15 @@ class ImageSearch {
   /// Updates mask and normal of a feature's template, which was found at this pixel. False where nothing was learnt.
   bool learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const;
 
+  /// After a frame's searches: leaves out what stands still in the picture from the next one on. True where the map comes from that.
+  bool note_fixed(const Camera& camera, const Frame& frame) { return fixed_.note(camera, tracker_.pyramid(), frame); }
+
   bool has_templates() const { return templates_ != nullptr; }
   const Tracker& tracker() const { return tracker_; }
 
  private:
   Tracker tracker_;
+  FixedFeatures fixed_;
   PartPointer<TemplateMatcher, kHasMasks> templates_;  ///< in the block, with masks alone
 };
 

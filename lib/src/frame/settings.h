@@ -18,6 +18,18 @@ namespace pf {
 /// With the numbers of pf_backend_t.
 enum class BackEnd : std::uint8_t { kFilter = 1, kWindow = 2 };
 
+/// Room for a mask of the images, and the session's mask in it, which pf_set_mask writes.
+struct MaskRoom {
+  bool is_asked_for = false;
+  ImageMask* mask = nullptr;  ///< null: no room
+};
+
+/// Inertial samples that are kept, and what their unit can measure.
+struct ImuRoom {
+  int buffer = 0;
+  ImuRanges ranges;
+};
+
 /// The config after it was checked, in the library's own types.
 struct Settings {
   Camera camera;
@@ -29,8 +41,7 @@ struct Settings {
   int max_observations = 0;
   int max_planes = 0;
   int max_kept_views = 0;
-  bool has_mask_room = false;
-  const ImageMask* mask = nullptr;  ///< the session's, of the images; null: no room for one
+  MaskRoom mask;
 
   bool constant_velocity = true;
   PartSwitch<kHasInertial>
@@ -70,8 +81,7 @@ struct Settings {
   std::uint8_t template_px = 0;  ///< side of templates with masks
   BackEnd backend = BackEnd::kFilter;
 
-  int imu_buffer = 0;
-  ImuRanges imu_ranges;
+  ImuRoom imu;
 
   Hooks hooks;
 };

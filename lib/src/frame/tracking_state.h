@@ -38,9 +38,10 @@ class TrackingState {
   }
   /// This frame shows something to track; dt_ns since the frame before.
   void note_usable_image(std::int64_t dt_ns) { data_.usable_ns += data_.lost ? dt_ns : 0; }
-  /// The filter has a pose from this time on.
+  /// There is a pose from this time on. The first one is where W is; after a loss the pictures have to show that they go on from one to the next.
   void set_has_pose(std::int64_t t_ns) {
     data_.has_pose = true;
+    if (!data_.may_skip_target) data_.belief.trust();
     data_.last_tracked_ns = t_ns;
   }
   /// This frame's pose comes from the target.

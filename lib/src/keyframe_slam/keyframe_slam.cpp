@@ -64,14 +64,12 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   }
   if (!usable) return unusable_status(end_frame());
   tracking_.note_usable_image(data_.since_last_ns);
-  if (tracking_.needs_new_map(settings_.restart_ns)) {
-    discard_map();
-    mapping_.init();
-    data_.mark = Mark();
-    tracking_.begin_map();
-    settings_.hooks.say("not found again for too long: the old map is discarded, a new map begins");
-  }
+  if (tracking_.needs_new_map(settings_.restart_ns))
+    begin_new_map("not found again for too long: the old map is discarded, a new map begins");
+  else if (data_.is_map_fixed && tracking_.has_pose())
+    begin_new_map("part of the picture stands still while the rest moves: it is masked, and a new map begins");
   measure();
+  data_.is_map_fixed = search_.note_fixed();
   learn();
   if (data_.second.given && data_.second.has_come(t_ns)) scale_by_second_pose();
   return end_frame();
@@ -82,6 +80,14 @@ Status KeyframeSlam::mark_pose() {
   const Body& body = motion_.body();
   data_.mark = {true, frame_.report.t_ns, body.q_WC, body.p_W, motion_.pose_covariance()};
   return Status::kOk;
+}
+
+void KeyframeSlam::begin_new_map(const char* why) {
+  discard_map();
+  mapping_.init();
+  data_.mark = Mark();
+  tracking_.begin_map();
+  settings_.hooks.say(why);
 }
 
 /// Begins the report and predicts the body to the new time.

@@ -65,13 +65,15 @@ class KeyframeSlam {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     Mark mark;
-    bool young = false;  ///< in this frame so few points have a depth that those without must help
+    bool is_map_fixed = false;  ///< it comes from what stands still in the picture
+    bool young = false;         ///< in this frame so few points have a depth that those without must help
     SecondPose second;
     FrozenCamera frozen;
     FitWarnings warnings;
   };
 
   void begin_frame(std::int64_t t_ns);
+  void begin_new_map(const char* why);
   Status end_frame();
   void measure();
   void learn();

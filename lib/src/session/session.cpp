@@ -7,9 +7,9 @@ bool Session::layout(Arena& arena, const Settings& settings) {
   const bool has_window = kHasWindow && settings.backend == BackEnd::kWindow;
   map_.layout(arena, settings.max_features, settings.max_planes,
               settings.masks == MaskMode::kNone ? 0 : settings.template_px);
-  imu_.layout(arena, settings.imu_buffer);
-  if (settings.has_mask_room) mask_.layout(arena, settings.camera.width, settings.camera.height);
-  settings_.mask = mask();
+  imu_.layout(arena, settings.imu.buffer);
+  if (settings.mask.is_asked_for) mask_.layout(arena, settings.camera.width, settings.camera.height);
+  settings_.mask.mask = settings.mask.is_asked_for ? &mask_ : nullptr;
   const auto lay_out = [&](auto& back_end) { back_end.layout(arena); };
   if (has_window)
     window_ = arena.place<KeyframeSlam>(lay_out, settings_, map_);
@@ -21,8 +21,8 @@ bool Session::layout(Arena& arena, const Settings& settings) {
 void Session::init() {
   data_ = Data();
   map_.init();
-  if (settings_.has_mask_room) mask_.init();
-  imu_.init(settings_.imu_buffer, settings_.imu_ranges);
+  if (settings_.mask.mask != nullptr) mask_.init();
+  imu_.init(settings_.imu.buffer, settings_.imu.ranges);
   if (has_filter())
     filter_->init();
   else

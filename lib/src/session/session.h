@@ -40,8 +40,6 @@ class Session {
   Status set_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
     return !has_filter() ? window_->start().use_second_pose(t_ns, p_W, sigma) : Status::kState;
   }
-  /// Room for a mask of the images; null: none.
-  ImageMask* mask() { return settings_.has_mask_room ? &mask_ : nullptr; }
   void withdraw_target() { map_.target_withdrawn = true; }
 
   // --- what comes in

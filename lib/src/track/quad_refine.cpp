@@ -166,14 +166,14 @@ bool refine_quad(const ImageView& image, const Camera& camera, Quad* quad) {
 bool is_in_scene(const Quad& quad, const ImageMask* mask) {
   mask = in_use(mask);
   if (mask == nullptr) return true;
-  constexpr int kPlaces = 20, kMinClear = 10, kAround = 2;  // of a side; of them; [px]
+  constexpr int kPlaces = 20, kAround = 2;  // of a side; [px]
   for (int i = 0; i < 4; ++i) {
     const Vec2 &from = quad.corners[i], &to = quad.corners[(i + 1) % 4];
     if (!mask->is_clear(from, kAround)) return false;
     int clear = 0;
     for (int k = 0; k < kPlaces; ++k)
       clear += mask->is_clear(Vec2(from + (to - from) * (static_cast<Scalar>(k) / kPlaces)), kAround);
-    if (clear < kMinClear) return false;
+    if (kMinClear * clear < kPlaces) return false;
   }
   return true;
 }

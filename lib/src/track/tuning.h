@@ -58,6 +58,7 @@ inline constexpr Scalar kMinMeeting = Scalar(0.05);    ///< sine between two sid
 inline constexpr Scalar kMisfitSigmas = Scalar(1.5);   ///< of a rectangle's corners, in their sigma
 inline constexpr Scalar kMisfitShare = Scalar(0.003);  ///< likewise in addition, in its diagonals
 inline constexpr int kMinRises = 2;                    ///< one in so many places of a side has a rise
+inline constexpr int kMinClear = 2;                    ///< one in so many places of a side lies on no masked cell
 }  // namespace quad_refine
 
 /// Search for a patch on a plane that is far from where it is expected.

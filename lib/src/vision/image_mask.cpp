@@ -25,6 +25,18 @@ ImageMask::Span ImageMask::span_of(const Rect& rect) const {
           cells_to(rect.y + rect.height, rows_)};
 }
 
+void ImageMask::add(const Rect& rect) {
+  const Span span = span_of(rect);
+  for (int row = span.top; row < span.bottom; ++row)
+    for (int column = span.left; column < span.right; ++column) {
+      const int at = row * columns_ + column;
+      std::uint32_t& bits = bits_[at / 32];
+      const std::uint32_t bit = 1u << (at % 32);
+      masked_ += (bits & bit) == 0 ? 1 : 0;
+      bits |= bit;
+    }
+}
+
 bool ImageMask::is_clear(const Rect& rect) const {
   const Span span = span_of(rect);
   for (int row = span.top; row < span.bottom; ++row)

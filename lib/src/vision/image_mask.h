@@ -19,7 +19,12 @@ class ImageMask {
   /// Nothing is masked.
   void init();
 
-  bool has_masked() const { return masked_ > 0; }
+  /// What another mask masks counts as well; null: nothing. init() keeps it.
+  void set_also(const ImageMask* also) { also_ = also; }
+  /// Masks the cells that a rectangle touches.
+  void add(const Rect& rect);
+
+  bool has_masked() const { return masked_ > 0 || (also_ != nullptr && also_->has_masked()); }
   int cells() const { return columns_ * rows_; }
   /// The pixels of a cell; its right and lower edge may lie outside of the image.
   Rect cell(int index) const { return {index % columns_ * kCell, index / columns_ * kCell, kCell, kCell}; }
@@ -41,12 +46,13 @@ class ImageMask {
   Span span_of(const Rect& rect) const;
   bool is_masked(int column, int row) const {
     const int at = row * columns_ + column;
-    return (bits_[at / 32] >> (at % 32) & 1u) != 0;
+    return (bits_[at / 32] >> (at % 32) & 1u) != 0 || (also_ != nullptr && also_->is_masked(column, row));
   }
 
   std::uint32_t* bits_ = nullptr;
   int columns_ = 0, rows_ = 0;
   int masked_ = 0;  ///< cells
+  const ImageMask* also_ = nullptr;
 };
 
 /// The mask where there is one and it masks anything, else null: what asks for each pixel asks this first.

@@ -44,6 +44,8 @@ class FeatureSearch {
   bool begin_following(int count);
   void set_following(bool is_following) { is_following_ = is_following; }
   bool is_following() const { return is_following_; }
+  /// After a frame's searches: ImageSearch::note_fixed.
+  bool note_fixed() { return search_.note_fixed(filter_.lens(), frame_); }
   /// After a frame that used matches: the next one may be followed from it.
   void keep_view() { followed_.keep(search_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W); }
   /// The map is given up, and with it all poses.

@@ -51,6 +51,8 @@ class PointSearch {
   /// are not wide, or the picture does not say it.
   bool begin_following();
   void end_following() { is_following_ = false; }
+  /// After a frame's searches: ImageSearch::note_fixed.
+  bool note_fixed() { return images_.note_fixed(map_.camera(), frame_); }
   /// After a frame that supported its pose: the next one may be followed from it.
   void keep_view(const CameraView& view) { followed_.keep(images_.tracker().pyramid(), view.q_WC, view.c_W); }
   /// The map is given up, and with it all poses.
