@@ -71,6 +71,13 @@ struct FreeStrip {
   }
 };
 
+/// Vectors of a strip of the border: as many as its groups of eight hold whole, since it is a small part of the triangle and each width is
+/// code of its own.
+constexpr int kBorderVectors = kTileVectors * Wide::kWidth % kGroup == 0 || kGroup % (kTileVectors * Wide::kWidth) == 0
+                                   ? kTileVectors
+                                   : kGroup / Wide::kWidth;
+static_assert(kBorderVectors >= 1 && kBorderVectors <= kTileVectors, "no wider than a tile");
+
 /// Where held rows and others share groups of eight: the group c0 that the range begins in, as columns, and the group q1 that it ends
 /// in, as rows. Whole groups are c0 + 1 .. q1 - 1.
 ///
@@ -104,7 +111,7 @@ inline void downdate_border(const Triangle& P, const Thin& all, int held_first, 
       for (int q = c0 + 1; q < q1 + int(ends_whole); ++q) {
         const std::ptrdiff_t stride = kGroup * (q + 1);
         Scalar* rows = P.data + group_offset(q);
-        for_strips(strip.first, strip.width, [&](auto v, auto count, int at) PF_LAMBDA {
+        for_strips<kBorderVectors>(strip.first, strip.width, [&](auto v, auto count, int at) PF_LAMBDA {
           downdate_tile<decltype(v), decltype(count)::value>(t, {t.k, t.k}, t.W + q * kGroup, t.ld,
                                                              strip.values + at - strip.first, FreeStrip::kColumns,
                                                              rows + at, stride, q * kGroup, at);
@@ -117,10 +124,11 @@ inline void downdate_border(const Triangle& P, const Thin& all, int held_first, 
     const int from = (c0 + int(!begins_whole)) * kGroup;
     Scalar* rows = P.data + group_offset(q1);
     for (int j = from; j < q1 * kGroup; j += FreeStrip::kColumns) {
-      for_strips(j, smaller(FreeStrip::kColumns, q1 * kGroup - j), [&](auto v, auto count, int at) PF_LAMBDA {
-        downdate_tile<decltype(v), decltype(count)::value>(t, {t.k, t.k}, last.free, kGroup, t.W + at, t.ld, rows + at,
-                                                           kGroup * (q1 + 1), q1 * kGroup, at);
-      });
+      for_strips<kBorderVectors>(
+          j, smaller(FreeStrip::kColumns, q1 * kGroup - j), [&](auto v, auto count, int at) PF_LAMBDA {
+            downdate_tile<decltype(v), decltype(count)::value>(t, {t.k, t.k}, last.free, kGroup, t.W + at, t.ld,
+                                                               rows + at, kGroup * (q1 + 1), q1 * kGroup, at);
+          });
     }
     square(q1, q1);
   }
