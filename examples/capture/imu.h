@@ -23,6 +23,8 @@ class Imu {
   virtual ~Imu() = default;
   /// From here on samples are collected. false: error is one line.
   virtual bool start(std::string& error) = 0;
+  /// The time of the first frame, before samples are taken: for units whose clock begins with it.
+  virtual void begin_at(int64_t /*t_ns*/) {}
   /// Moves the samples up to a time to the end of the list. A unit that measures now is waited for, but not for long.
   virtual void take(int64_t until_ns, std::vector<pf_imu_sample_t>& samples) = 0;
   /// One line that the user should know, if there is one (unplugged, back again).
@@ -37,8 +39,8 @@ class Imu {
   virtual std::string report() const { return ""; }
 };
 
-/// A table in EuRoC layout. null: error is one line.
-std::unique_ptr<Imu> open_imu_file(const std::string& path, int64_t offset_ns, std::string& error);
+/// A table in EuRoC layout. first_at_frame: its first sample has the time of the first frame that is asked for. null: error is one line.
+std::unique_ptr<Imu> open_imu_file(const std::string& path, int64_t offset_ns, bool first_at_frame, std::string& error);
 
 /// A unit of this machine through the kernel's IIO. rate_hz 0: as it is.
 std::unique_ptr<Imu> open_imu_device(const std::string& name, double rate_hz, int64_t offset_ns, std::string& error);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "context.h"
+#include "phone.h"
 #include "statistics.h"
 #include "update_cost.h"
 #include "vio_planes.h"
@@ -41,7 +42,7 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   pf_config_t config;
   pf_config_default(&config);
   config.camera = camera;
-  config.camera.readout_s = o.as_global ? 0 : o.readout_s - o.sigma_readout_s;
+  config.camera.readout_s = o.as_global ? 0 : o.told_readout_s >= 0 ? o.told_readout_s : o.readout_s - o.sigma_readout_s;
   config.capacity.max_imu_samples = 2000;
   config.clock_ns = thread_clock;
   if (!o.rendered) {
@@ -62,16 +63,18 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   config.imu.accel_density = o.imu.accel_density;
   config.imu.gyro_walk = o.imu.gyro_walk;
   config.imu.accel_walk = o.imu.accel_walk;
-  const auto q = pf::sim::quaternion_of(o.imu.R_BC);
-  std::copy(q.begin(), q.end(), config.imu.q_BC);
-  config.imu.p_BC[0] = o.imu.p_BC.x;
-  config.imu.p_BC[1] = o.imu.p_BC.y;
-  config.imu.p_BC[2] = o.imu.p_BC.z;
+  if (o.axes < 0) {
+    const auto q = pf::sim::quaternion_of(o.imu.R_BC);
+    std::copy(q.begin(), q.end(), config.imu.q_BC);
+    config.imu.p_BC[0] = o.imu.p_BC.x;
+    config.imu.p_BC[1] = o.imu.p_BC.y;
+    config.imu.p_BC[2] = o.imu.p_BC.z;
+  }
   config.imu.delay_s = o.imu.delay_s;
   config.imu.gravity = o.imu.gravity_W.norm();
-  config.imu.sigma_mount_rad = o.sigma_mount_rad;
-  config.imu.sigma_mount_m = o.sigma_mount_m;
-  config.imu.sigma_delay_s = o.sigma_delay_s;
+  config.imu.sigma_mount_rad = o.told_mount_rad;
+  config.imu.sigma_mount_m = o.told_mount_m;
+  config.imu.sigma_delay_s = o.told_delay_s;
   config.imu.sigma_readout_s = o.sigma_readout_s;
   return config;
 }
@@ -127,6 +130,8 @@ class Run {
       imu.p_BC = imu.R_BC * (origin_C + shift) * -1;
     }
     imu.delay_s += delay;
+    if (o.axes >= 0) turn_axes(o.axes, &imu);
+    if (o.phone) make_phone(seed, &imu);
     if (o.fault == VioFault::kGap) {
       imu.gap_at_s = o.fault_at_s;
       imu.gap_s = kStill;
@@ -168,7 +173,7 @@ class Run {
     const bool wrong = o_.fault != VioFault::kNone && t_ns >= in_ns(o_.fault_at_s);
     const std::int64_t until_ns = wrong && o_.fault == VioFault::kLate ? t_ns - in_ns(kLateBy) : t_ns;
     std::vector<pf_imu_sample_t> samples;
-    while (sensor_.next_ns() <= until_ns + in_ns(kAhead * o_.sigma_delay_s)) {
+    while (sensor_.next_ns() <= until_ns + in_ns(kAhead * o_.told_delay_s)) {
       samples.push_back(sensor_.next());
       if (wrong && o_.fault == VioFault::kClockJump) samples.back().t_ns += in_ns(kClockJump);
       if (wrong && o_.fault == VioFault::kReversed && t_ns < in_ns(o_.fault_at_s + kReversed)) reverse(&samples.back());
@@ -320,9 +325,9 @@ class Run {
     const Vec3 turn = pf::sim::rotation_log(unit_.R_BC * pf::sim::rotation_of(unit.q_BC).transposed());
     const Vec3 shift = unit_.p_BC - Vec3{unit.p_BC[0], unit.p_BC[1], unit.p_BC[2]};
     const double delay = unit_.delay_s - unit.delay_s;
-    if (o_.sigma_mount_rad > 0) out_.mount_error_rad = turn.norm();
-    if (o_.sigma_mount_m > 0) out_.mount_error_m = shift.norm();
-    if (o_.sigma_delay_s > 0) out_.delay_error_s = std::fabs(delay);
+    if (o_.told_mount_rad > 0) out_.mount_error_rad = turn.norm();
+    if (o_.told_mount_m > 0) out_.mount_error_m = shift.norm();
+    if (o_.told_delay_s > 0) out_.delay_error_s = std::fabs(delay);
     const double e[7] = {turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, delay};
     const auto& s = unit.sigma;
     const double sigma[7] = {s.mount_rad[0], s.mount_rad[1], s.mount_rad[2], s.mount_m[0],

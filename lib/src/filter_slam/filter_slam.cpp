@@ -145,7 +145,7 @@ void FilterSlam::begin_frame(std::int64_t t_ns) {
   const bool nothing_measured = frame_.report.inliers == 0;
   data_.follows = tracking_.has_pose() && !tracking_.coasting_or_lost() && !start_.recorder().progress().pending();
   frame_.begin(t_ns);
-  if (data_.map_discredited) begin_new_map("the map's scale came from a unit that is doubted: a new map begins");
+  if (data_.map_discredited) begin_new_map(unit_.why_discredited());
   tracking_.begin_frame();
   if (!tracking_.has_pose()) {
     motion_.init();  // control input is for one frame only

@@ -38,6 +38,7 @@ struct FrameReport {
   double nis = 0;
   int nis_dof = 0;
   double pose_nis = 0;  ///< of the pose alone, Filter::pose_nis; only with an inertial unit
+  double rotation_nis = 0;  ///< its part that is the rotation's, with half the degrees of freedom
   int pose_nis_dof = 0;
   int templates = 0;        ///< that learnt from this frame
   float template_area = 0;  ///< sum of their masks, in parts of a template

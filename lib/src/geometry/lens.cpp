@@ -93,6 +93,7 @@ void lens_difference(const LensRows& rows, const Camera& from, const Camera& to,
 
 void move_lens(const LensRows& rows, const Scalar* e, Camera* camera) {
   for (int i = 0; i < rows.count; ++i) *parameter_of(camera, rows.parameter[i]) += e[i];
+  if (rows.has_readout()) camera->readout = std::max(camera->readout, kLeastReadout);
   init_camera(camera);
 }
 

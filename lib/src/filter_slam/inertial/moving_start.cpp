@@ -14,6 +14,32 @@ namespace pf {
 
 using namespace tuning::moving_verdict;
 
+/// What the samples say between a time and the view. False where they are missing.
+bool MovingStart::integrate(std::int64_t from_ns, View* view) const {
+  const Body& body = filter_.state().body;
+  const Vec3 gyro_bias = filter_.uses_samples() ? body.gyro_bias : Vec3(Vec3::Zero());
+  Preintegral samples(motion_.unit_noise().now(), gyro_bias, Vec3::Zero());
+  ImuReading now;
+  if (integrate_samples(imu_, motion_.on_unit_clock(from_ns), motion_.on_unit_clock(view->t_ns), Coasting(), &samples,
+                        &now) > Scalar(0))
+    return false;
+  view->dt = samples.dt();
+  view->gyro_bias = gyro_bias;
+  view->dq_B = Quat(samples.R());
+  view->v = samples.v();
+  view->p = samples.p();
+  view->by_bias = samples.by_bias().cast<float>();
+  return true;
+}
+
+void MovingStart::integrate_again() {
+  int first = data_.count > 0 ? data_.count - 1 : 0;
+  while (first > 0 && integrate(data_.view[first - 1].t_ns, &data_.view[first])) --first;
+  std::copy(data_.view + first, data_.view + data_.count, data_.view);
+  data_.count -= first;
+  data_.left = data_.first = data_.end = 0;
+}
+
 /// Keeps this frame: its inliers, and the samples since the last one that is kept. False where samples are missing.
 bool MovingStart::add() {
   const State& state = filter_.state();
@@ -26,19 +52,8 @@ bool MovingStart::add() {
   view.q_WC = state.body.q_WC;
   view.p_W = state.body.p_W;
   const std::int64_t t_ns = frame_.report.t_ns;
-  if (data_.count > 0) {
-    Preintegral samples(settings_.unit.noise, state.body.gyro_bias, Vec3::Zero());
-    ImuReading now;
-    if (integrate_samples(imu_, motion_.on_unit_clock(data_.t_ns), motion_.on_unit_clock(t_ns), Coasting(), &samples,
-                          &now) > Scalar(0))
-      return false;
-    view.dt = samples.dt();
-    view.gyro_bias = state.body.gyro_bias;
-    view.dq_B = Quat(samples.R());
-    view.v = samples.v();
-    view.p = samples.p();
-    view.by_bias = samples.by_bias().cast<float>();
-  }
+  view.t_ns = t_ns;
+  if (data_.count > 0 && !integrate(data_.t_ns, &view)) return false;
   for (int i = 0; i < frame_.match_count() && view.count < kMaxPixels; ++i) {
     const Match& match = frame_.match(i);
     if (match.status != MatchStatus::kInlier || match.feature < 0) continue;  // it may have left the map since
@@ -104,7 +119,7 @@ Vec3 MovingStart::smooth() {
   const Mat3& R_CB = filter_.state().mounting.R_CB;
   const Quat q_CB(R_CB);
   const Vec3 gyro_bias = filter_.state().body.gyro_bias;
-  const Scalar density = std::max(kTiltDensity, settings_.unit.noise.gyro_density);
+  const Scalar density = std::max(kTiltDensity, motion_.unit_noise().now().gyro_density);
   for (int k = data_.first; k < data_.end; ++k) {
     const View& view = data_.view[k];
     RotationLink& link = data_.link[k];
@@ -149,12 +164,34 @@ int MovingStart::collect() {
   return count;
 }
 
-bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingStartNoise& noise,
-                              MovingSolution* solution) const {
+/// Whether the opposite accelerations would explain the motion.
+void MovingStart::look_for_sign(int count, const MovingStartNoise& noise) {
+  const auto reverse = [&] {
+    for (int k = 0; k < count; ++k)
+      for (Vec3* of : {&data_.pose[k].Rv, &data_.pose[k].Rp}) *of = -*of;
+  };
+  MovingSolution solution;
+  reverse();
+  data_.reversed = solve_moving_start(data_.pose, count, noise, &solution) &&
+                   solution.sigma_scale() < kLateSigmaScale && solution.misfit < kMaxMisfit;
+  reverse();
+}
+
+bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingStartNoise& noise, bool patient,
+                              MovingSolution* solution) {
   MovingSolution half[2];
   const int middle = count / 2;
-  if (!solve_moving_start(pose, count, noise, solution)) return false;
-  if (!(solution->sigma_scale() < kMaxSigmaScale) || !(solution->sigma_gravity() < kMaxSigmaGravity)) return false;
+  data_.sigma_scale = 0;
+  if (!solve_moving_start(pose, count, noise, solution)) {
+    if (++data_.refused % kLocated == 0) look_for_sign(count, noise);
+    return false;
+  }
+  data_.refused = 0;
+  data_.reversed = false;
+  data_.sigma_scale = solution->sigma_scale();
+  if (!(solution->sigma_scale() < (patient ? kMaxSigmaScale : kLateSigmaScale)) ||
+      !(solution->sigma_gravity() < (patient ? kMaxSigmaGravity : kLateSigmaGravity)))
+    return false;
   if (!(solution->misfit < kMaxMisfit)) return false;
   if (!solve_moving_start(pose, middle + 1, noise, &half[0]) ||
       !solve_moving_start(pose + middle, count - middle, noise, &half[1]))
@@ -197,11 +234,11 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
   MovingStartNoise noise;
   noise.gravity = settings_.unit.gravity;
   noise.drift = kDrift * told.depth;
-  noise.accel_density = std::hypot(settings_.unit.noise.accel_density, settings_.unit.gravity * kRotation);
-  noise.tilt_density = std::max(kTiltDensity, settings_.unit.noise.gyro_density);
+  noise.accel_density = std::hypot(motion_.unit_noise().now().accel_density, settings_.unit.gravity * kRotation);
+  noise.tilt_density = std::max(kTiltDensity, motion_.unit_noise().now().gyro_density);
   noise.turn = turn_rate_sigma(span);
   noise.accel_bias = tuning::inertial::kAccelBias;
-  return is_accepted(data_.pose, collect(), noise, solution);
+  return is_accepted(data_.pose, collect(), noise, told.patient, solution);
 }
 
 }  // namespace pf
