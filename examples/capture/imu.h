@@ -23,8 +23,6 @@ class Imu {
   virtual ~Imu() = default;
   /// From here on samples are collected. false: error is one line.
   virtual bool start(std::string& error) = 0;
-  /// The time of the first frame, before samples are taken: for units whose clock begins with it.
-  virtual void begin_at(int64_t /*t_ns*/) {}
   /// Moves the samples up to a time to the end of the list. A unit that measures now is waited for, but not for long.
   virtual void take(int64_t until_ns, std::vector<pf_imu_sample_t>& samples) = 0;
   /// One line that the user should know, if there is one (unplugged, back again).
@@ -37,6 +35,8 @@ class Imu {
   virtual const pf_imu_model_t* model() const { return nullptr; }
   /// JSON for report.json, "" where there is nothing to say.
   virtual std::string report() const { return ""; }
+  /// The time of the first frame, before samples are taken: for units whose clock begins with it.
+  virtual void begin_at(int64_t /*t_ns*/) {}
 };
 
 /// A table in EuRoC layout. first_at_frame: its first sample has the time of the first frame that is asked for. null: error is one line.

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "filter_slam/inertial/rate_alignment.h"
-#include "support/arena_block.h"
 #include "support/seeded_random.h"
+#include "support/textured_images.h"
 #include "unity.h"
 
 using namespace pf;
@@ -23,7 +23,7 @@ Vec3 rate(double t) {
 
 /// A recording of a unit with `by` in place of R_BC, whose samples are stamped `delay` early.
 struct Recording {
-  ArenaBlock arena{1 << 20};
+  TestArena arena;
   ImuLog log;
   RateAlignment rates;
   SeededRandom random{411};

@@ -3,8 +3,8 @@
 
 #include "filter_slam/inertial/force_check.h"
 #include "filter_slam/pose/unit_noise.h"
-#include "support/arena_block.h"
 #include "support/seeded_random.h"
+#include "support/textured_images.h"
 #include "unity.h"
 
 using namespace pf;
@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t kSampleNs = 5000000;
 
 struct Bench {
-  ArenaBlock arena{1 << 20};
+  TestArena arena;
   Settings settings;
   ImuLog log;
   UnitNoise noise{settings, log};

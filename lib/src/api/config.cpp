@@ -267,7 +267,10 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   // Rows hang on the camera's speeds, and these on the frames' times; but with an inertial unit on its samples.
   const bool timeless = c.timestamps == PF_TIMESTAMPS_NOMINAL && !settings->inertial;
   settings->camera.readout = timeless ? Scalar(0) : static_cast<Scalar>(c.readout_s);
-  if (settings->lens.rows.has_readout()) settings->camera.readout = std::max(settings->camera.readout, kLeastReadout);
+  if (settings->lens.rows.has_readout()) {
+    constexpr Scalar kStays[pf::kLensParameters] = {};
+    move_lens(settings->lens.rows, kStays, &settings->camera);  // as every step of it, to one that is possible
+  }
   settings->readout_ignored = timeless && c.readout_s > 0;
 
   settings->backend = static_cast<BackEnd>(config.backend);

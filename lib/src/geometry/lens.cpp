@@ -9,6 +9,8 @@
 namespace pf {
 namespace {
 
+constexpr Scalar kLeastReadout = Scalar(1e-6);  ///< [s] of one that is estimated: there are no rows below zero
+
 Scalar* parameter_of(Camera* camera, int index) {
   Scalar* const intrinsics[4] = {&camera->fx, &camera->fy, &camera->cx, &camera->cy};
   if (index == kReadoutParameter) return &camera->readout;

@@ -8,7 +8,6 @@
 
 namespace pf {
 
-inline constexpr Scalar kLeastReadout = Scalar(1e-6);  ///< [s] of one that is estimated: rows below zero there are none
 inline constexpr int kLensParameters = 10;  ///< fx fy cx cy, distortion[0 .. 4], readout
 inline constexpr int kReadoutParameter = 9;
 

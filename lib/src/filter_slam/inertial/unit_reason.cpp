@@ -22,6 +22,10 @@ Scalar angle_between(const Mat3& a, const Mat3& b) {
   return log_so3(Quat(Mat3(a.transpose().lazyProduct(b)))).norm();
 }
 
+bool is_other_clock(const RateFit& fit, double at_s) {
+  return fit.at_end || std::abs(fit.delay - static_cast<Scalar>(at_s)) > std::max(kClock, 3 * fit.sigma_delay);
+}
+
 }  // namespace
 
 UnitReason UnitWatch::reason(Scalar* value, Mat3* R_CB) const {
@@ -60,8 +64,8 @@ void UnitWatch::compare_rates(bool follows) {
   const bool finds_delay = settings_.body.has(BodyPart::kDelay), finds_axes = settings_.unit.sigma_turn > kOpenTurn;
   const Mat3& R_CB = filter_.state().mounting.R_CB;
   const double at_s = seconds(settings_.unit.delay_ns) + (finds_delay ? static_cast<double>(filter_.state().mounting.delay) : 0);
-  data_->passed = data_->rates.fit(imu_, at_s, finds_delay ? RateAlignment::kReach : 0, finds_axes ? nullptr : &R_CB, &data_->fit) &&
-                  is_believed(data_->fit);
+  data_->passed = data_->rates.fit(imu_, at_s, RateAlignment::kReach, finds_axes ? nullptr : &R_CB, &data_->fit) &&
+                  is_believed(data_->fit) && (finds_delay || !is_other_clock(data_->fit, at_s));
   if (!data_->passed && data_->rates.span() > kVerdict) find_reason(at_s);
 }
 
@@ -91,7 +95,7 @@ void UnitWatch::find_reason(double at_s) {
     say(UnitReason::kGyroScale, times);
   } else if (knows_axes && off > kOtherAxes && !(settings_.unit.sigma_turn > kOpenTurn)) {
     say(UnitReason::kAxes, off * kDegrees);
-  } else if (fit.at_end || std::abs(fit.delay - static_cast<Scalar>(at_s)) > std::max(kClock, 3 * fit.sigma_delay)) {
+  } else if (is_other_clock(fit, at_s)) {
     say(UnitReason::kClock, fit.delay);
   }
   if (data_->reason == before || data_->reason <= UnitReason::kContradicts) return;

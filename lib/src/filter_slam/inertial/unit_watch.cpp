@@ -11,6 +11,12 @@ namespace pf {
 
 using namespace tuning::unit_watch;
 
+namespace {
+
+constexpr double kRateChange = 4;  ///< sample intervals, of which the angular acceleration is taken
+
+}  // namespace
+
 void UnitWatch::layout(Arena& arena) {
   if (settings_.inertial) data_ = arena.take<Data>(1);
 }
@@ -38,9 +44,10 @@ void UnitWatch::begin_frame(std::int64_t before_ns, std::int64_t t_ns) {
   ImuReading reading;
   if (data_->fresh || (filter_.uses_samples() && (leaves_out() || is_silent(t_ns)))) {
     leave_samples(before_ns);
-  } else if (!filter_.uses_samples() && (!leaves_out() || data_->passed) && !is_silent(t_ns) &&
-             reading_at(imu_, motion_.on_unit_clock(before_ns), &reading)) {
-    return_to_samples(reading);
+  } else if (!filter_.uses_samples() && (!leaves_out() || data_->passed) && !is_silent(t_ns)) {
+    if (data_->passed) use_alignment();
+    data_->prior_ns = before_ns;
+    if (reading_at(imu_, motion_.on_unit_clock(before_ns), &reading)) return_to_samples(reading);
   }
   data_->fresh = false;
   data_->follows = data_->contradicted = data_->taken_back = false;
@@ -124,14 +131,15 @@ void UnitWatch::leave_samples(std::int64_t before_ns) {
 }
 
 void UnitWatch::return_to_samples(ImuReading reading) {
-  if (data_->passed) {
-    use_alignment();
-    reading_at(imu_, motion_.on_unit_clock(data_->prior_ns), &reading);
-  }
   FreshReading fresh;
   fresh.gyro = reading.gyro;
+  const double interval = seconds(imu_.counts().median_ns), T = kRateChange * interval;
+  ImuReading before;
+  Scalar by_delay = 0;  // the reading is of another time by the delay's error
+  if (data_->passed && reading_at(imu_, motion_.on_unit_clock(data_->prior_ns) - nanoseconds(T), &before))
+    by_delay = data_->fit.sigma_delay * (reading.gyro - before.gyro).norm() / static_cast<Scalar>(T);
   fresh.sigma_gyro =
-      motion_.unit_noise().now().gyro_density / std::sqrt(static_cast<Scalar>(seconds(imu_.counts().median_ns)));
+      std::hypot(motion_.unit_noise().now().gyro_density / std::sqrt(static_cast<Scalar>(interval)), by_delay);
   fresh.anew = data_->doubted;
   fresh.gravity_W = filter_.state().body.gravity_W();
   fresh.sigma_gravity = tuning::inertial::kGravity;
