@@ -177,11 +177,12 @@ void ImuFeed::choose_sigmas(const Options& options) {
   model_.sigma_mount_m = sigma("mount", kSigmaMountM, open_axes_ ? kAnyMountM : kUsualMountM);
   model_.sigma_delay_s = sigma("delay", kSigmaDelayS, kUsualDelayS);
   model_.sigma_readout_s = has(options.estimate, "readout") ? kSigmaReadoutS : 0.0;
+  sigma_delay_s_ = inertial_ ? model_.sigma_delay_s : 0.0;
   tries_readout_ = !near_only && options.imu_exact.empty();
   readout_given_ = options.readout_s >= 0.0;
 }
 
-void ImuFeed::configure(pf_config_t& config) {
+void ImuFeed::configure(pf_config_t& config) const {
   if (imu_ == nullptr) {
     return;
   }
@@ -190,11 +191,9 @@ void ImuFeed::configure(pf_config_t& config) {
     const double gravity = config.imu.gravity;
     config.imu = model_;
     config.imu.gravity = model_.gravity > 0.0 ? model_.gravity : gravity;
-    config.imu.sigma_readout_s = tries_readout_ && !(config.camera.readout_s > 0.0) && !readout_given_
-                                     ? kUsualReadoutS
-                                     : model_.sigma_readout_s;
+    config.imu.sigma_readout_s =
+        tries_readout_ && !(config.camera.readout_s > 0.0) && !readout_given_ ? kUsualReadoutS : model_.sigma_readout_s;
   }
-  sigma_delay_s_ = inertial_ ? config.imu.sigma_delay_s : 0.0;
   config.capacity.max_imu_samples = inertial_ ? kKeptToMove : kKept;
   config.imu.gyro_range = imu_->gyro_range();
   config.imu.accel_range = imu_->accel_range();

@@ -20,7 +20,7 @@ class ImuFeed {
   /// false: error is one line and code the exit code. beside is the file that lies beside the frames, or "".
   bool open(const Options& options, const Source& source, const std::string& beside, std::string& error, int& code);
   /// For the library's config.
-  void configure(pf_config_t& config);
+  void configure(pf_config_t& config) const;
   bool start(std::string& error) { return imu_ == nullptr || imu_->start(error); }
   /// The same folder as the frames'. false: error is one line.
   bool record_to(const std::string& folder, std::string& error);
@@ -59,11 +59,11 @@ class ImuFeed {
   bool open_axes_ = false;  ///< no mounting was given
   double sigma_delay_s_ = 0.0;
   bool inertial_ = false;
-  double vertical_rad_ = 0.0;     ///< to which planes are told to be vertical; 0: they are not
-  std::set<uint32_t> looked_at_;  ///< planes that were told, or that contradict it
-  int64_t vertical_ = 0;          ///< planes that were told
-  int64_t metric_frame_ = -1;     ///< the first one whose lengths the samples tell
-  bool moving_ = false;           ///< .. from a camera that moved
+  double vertical_rad_ = 0.0;                 ///< to which planes are told to be vertical; 0: they are not
+  std::set<uint32_t> looked_at_;              ///< planes that were told, or that contradict it
+  int64_t vertical_ = 0;                      ///< planes that were told
+  int64_t metric_frame_ = -1;                 ///< the first one whose lengths the samples tell
+  bool moving_ = false;                       ///< .. from a camera that moved
   double metric_at_s_ = 0.0, first_s_ = 0.0;  ///< [s] of the frames' clock
   double offset_s_ = 0.0;
   bool live_ = false, tries_readout_ = false, readout_given_ = false;

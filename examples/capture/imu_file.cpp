@@ -34,7 +34,8 @@ class ImuFile : public Imu {
       samples_.get()[i].t_ns += shift_ns;
     }
     char line[160];
-    std::snprintf(line, sizeof(line), "its first sample is put at the first frame, %.3f s on: its clock is not the camera's",
+    std::snprintf(line, sizeof(line),
+                  "its first sample is put at the first frame, %.3f s on: its clock is not the camera's",
                   1e-9 * static_cast<double>(shift_ns));
     note_ += (note_.empty() ? path_ + ": " : "; ") + std::string(line);
   }

@@ -32,9 +32,10 @@ void add_imu_options(CLI::App& app, Options& options) {
          "or that of VINS-Fusion, VINS-Mono or ORB-SLAM")
       ->check(not_empty())
       ->group(group);
-  app.add_option("--estimate", options.estimate,
-                 "mount, delay, readout: estimated from 2 degrees and 2 cm, 10 ms, 10 ms about what is given, the others\n"
-                 "exact; without it mounting and delay are estimated from 3 degrees, 3 cm and any delay within 0.2 s")
+  app.add_option(
+         "--estimate", options.estimate,
+         "mount, delay, readout: estimated from 2 degrees and 2 cm, 10 ms, 10 ms about what is given, the others\n"
+         "exact; without it mounting and delay are estimated from 3 degrees, 3 cm and any delay within 0.2 s")
       ->delimiter(',')
       ->group(group);
   app.add_option("--imu-exact", options.imu_exact, "mount, delay: taken as they are given, and not estimated")

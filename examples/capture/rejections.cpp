@@ -74,9 +74,11 @@ void add_rejected_unit(const pf_slam_t* slam, const UnitCheck& unit, std::vector
          std::string("the inertial unit contradicts the pictures and was left out, ") +
              text_of(long_ago ? "for %.1f s in all" : "for %.1f s and at the end", report.rejected_s, 0.0) +
              (long_ago ? "" : "; lengths are not metres then") + "; " +
-             (tells ? reason_in_words(report)
-                    : std::string("check --imu-mount, the axes and signs (at rest the accelerometer shows +9.81 m/s^2 upwards), "
-                                  "units and --imu-offset"))});
+             (tells
+                  ? reason_in_words(report)
+                  : std::string(
+                        "check --imu-mount, the axes and signs (at rest the accelerometer shows +9.81 m/s^2 upwards), "
+                        "units and --imu-offset"))});
   } else if (tells) {
     rejections.push_back({"inertial unit", "the inertial unit is not used in full: " + reason_in_words(report)});
   }

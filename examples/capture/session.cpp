@@ -66,7 +66,7 @@ std::string wrong_capacity(const std::string& field, const Options& options, con
 
 Session::~Session() { std::free(block_); }
 
-bool Session::open(const Options& options, const Source& source, ImuFeed& imu, std::string& error, int& code) {
+bool Session::open(const Options& options, const Source& source, const ImuFeed& imu, std::string& error, int& code) {
   code = kExitRun;
   if (pf_config_default(&config_) != PF_OK) {
     error = "the library gives no default configuration";

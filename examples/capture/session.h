@@ -23,7 +23,7 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// false: error is one line and code the exit code.
-  bool open(const Options& options, const Source& source, ImuFeed& imu, std::string& error, int& code);
+  bool open(const Options& options, const Source& source, const ImuFeed& imu, std::string& error, int& code);
 
   /// Pushes a frame and copies what it left into view. false: the library refused it, and error is one line.
   /// The time of pf_push_frame alone goes to view.ms.

@@ -18,7 +18,8 @@ constexpr int kFrames = 60;
 
 /// Of the camera, in its axes [rad/s].
 Vec3 rate(double t) {
-  return Vec3(Scalar(0.5 * std::sin(5.1 * t)), Scalar(0.4 * std::sin(3.7 * t + 1)), Scalar(0.3 * std::sin(7.3 * t + 2)));
+  return Vec3(Scalar(0.5 * std::sin(5.1 * t)), Scalar(0.4 * std::sin(3.7 * t + 1)),
+              Scalar(0.3 * std::sin(7.3 * t + 2)));
 }
 
 /// A recording of a unit with `by` in place of R_BC, whose samples are stamped `delay` early.
@@ -32,13 +33,15 @@ struct Recording {
     log.layout(*arena, 1000);
     log.init(1000, {});
     for (std::int64_t t_ns = 0; t_ns < (kFrames + 10) * kFrameNs; t_ns += kSampleNs) {
-      const Vec3 g = by * rate(1e-9 * static_cast<double>(t_ns)) + Vec3(Scalar(0.02), Scalar(-0.01), 0) + random.normals<3>(2e-3);
+      const Vec3 g =
+          by * rate(1e-9 * static_cast<double>(t_ns)) + Vec3(Scalar(0.02), Scalar(-0.01), 0) + random.normals<3>(2e-3);
       log.add({t_ns - static_cast<std::int64_t>(1e9 * delay), {g.x(), g.y(), g.z()}, {0, 0, 0}});
     }
     for (int k = 5; k < kFrames; ++k) {
       const std::int64_t begin_ns = k * kFrameNs;
       Vec3 mean = Vec3::Zero();
-      for (int i = 0; i < 8; ++i) mean += rate(1e-9 * (static_cast<double>(begin_ns) + (i + 0.5) * 0.125 * kFrameNs)) / 8;
+      for (int i = 0; i < 8; ++i)
+        mean += rate(1e-9 * (static_cast<double>(begin_ns) + (i + 0.5) * 0.125 * kFrameNs)) / 8;
       rates.add(begin_ns, begin_ns + kFrameNs, mean + random.normals<3>(5e-3));
     }
   }

@@ -39,7 +39,8 @@ struct Bench {
     const std::int64_t end_ns = t_ns + static_cast<std::int64_t>(1e9 * seconds);
     for (int k = 0; t_ns < end_ns; t_ns += kSampleNs) {
       const double t = 1e-9 * static_cast<double>(t_ns);
-      const Vec3 hand = Vec3(Scalar(std::sin(9 * t)), Scalar(std::sin(13 * t)), Scalar(std::sin(5 * t))) * Scalar(motion);
+      const Vec3 hand =
+          Vec3(Scalar(std::sin(9 * t)), Scalar(std::sin(13 * t)), Scalar(std::sin(5 * t))) * Scalar(motion);
       const Vec3 g = hand + random.normals<3>(2e-4 * root), a = force + 3 * hand + random.normals<3>(2e-3 * root);
       log.add({t_ns, {g.x(), g.y(), g.z()}, {a.x(), a.y(), a.z()}});
       if (++k % 8 == 0) {

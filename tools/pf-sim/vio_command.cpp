@@ -371,8 +371,10 @@ std::string choose_unit(Choices* c) {
     if (what != "mount" && what != "delay" && what != "readout")
       return "--estimate " + what + ": write mount, delay, readout or some of them, as mount,delay";
   for (const std::string& what : c->imu_exact) {
-    if (what != "mount" && what != "delay") return "--imu-exact " + what + ": write mount, delay or both, as mount,delay";
-    if (has(c->estimate, what.c_str())) return "--imu-exact " + what + " and --estimate " + what + " exclude each other";
+    if (what != "mount" && what != "delay")
+      return "--imu-exact " + what + ": write mount, delay or both, as mount,delay";
+    if (has(c->estimate, what.c_str()))
+      return "--imu-exact " + what + " and --estimate " + what + " exclude each other";
   }
   if (c->unit != "laboratory" && c->unit != "phone") return "--unit " + c->unit + ": write laboratory or phone";
   if (o.axes > 23) return "--axes is 0 to 23";

@@ -42,7 +42,9 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   pf_config_t config;
   pf_config_default(&config);
   config.camera = camera;
-  config.camera.readout_s = o.as_global ? 0 : o.told_readout_s >= 0 ? o.told_readout_s : o.readout_s - o.sigma_readout_s;
+  config.camera.readout_s = o.as_global             ? 0
+                            : o.told_readout_s >= 0 ? o.told_readout_s
+                                                    : o.readout_s - o.sigma_readout_s;
   config.capacity.max_imu_samples = 2000;
   config.clock_ns = thread_clock;
   if (!o.rendered) {
@@ -264,7 +266,8 @@ class Run {
     if (judged && out_.start_s == t) out_.start_scale_error = scale_error();
     const Vec3 e = truth.p_WC - Vec3{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
     out_.end_error_m = e.norm();
-    if (out_.scale_error_5s < 0 && t >= begin_s() + kScaleAfter) out_.scale_error_5s = scale_error();
+    if ((judged || !o_.use_imu) && out_.scale_error_5s < 0 && t >= begin_s() + kScaleAfter)
+      out_.scale_error_5s = scale_error();
     if (out_.readout_error_s < 0 && t >= begin_s() + kReadoutAfter) note_readout();
     return true;
   }

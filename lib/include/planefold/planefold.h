@@ -832,18 +832,18 @@ typedef enum pf_imu_reason {
   PF_IMU_REASON_WAITS_FOR_ROTATION = 1, /* the delay or the axes are open, and nothing tells yet */
   /* gravity and scale are not known yet: relative sigma of the scale so far, 0: none */
   PF_IMU_REASON_WAITS_FOR_MOTION = 2,
-  PF_IMU_REASON_CONTRADICTS = 3,           /* innovations that no plausible noise explains */
-  PF_IMU_REASON_GYRO_IN_DEGREES = 4,       /* rates are too large by this factor, about 57.3 */
-  PF_IMU_REASON_GYRO_SCALE = 5,            /* likewise, some other factor */
-  PF_IMU_REASON_AXES = 6,                  /* other axes fit (reason_q_BC), so many degrees away */
-  PF_IMU_REASON_LEFT_HANDED = 7,           /* only a reflection fits: an axis has the wrong sign */
-  PF_IMU_REASON_CLOCK = 8,                 /* the delay that would fit [s] */
-  PF_IMU_REASON_RATES_DO_NOT_FIT = 9,      /* share of the camera's rotations not explained */
-  PF_IMU_REASON_COLUMNS_SWAPPED = 10,      /* the rates read like gravity: their mean length */
-  PF_IMU_REASON_ACCEL_IN_G = 11,           /* mean specific force, about 1 */
+  PF_IMU_REASON_CONTRADICTS = 3,            /* innovations that no plausible noise explains */
+  PF_IMU_REASON_GYRO_IN_DEGREES = 4,        /* rates are too large by this factor, about 57.3 */
+  PF_IMU_REASON_GYRO_SCALE = 5,             /* likewise, some other factor */
+  PF_IMU_REASON_AXES = 6,                   /* other axes fit (reason_q_BC), so many degrees away */
+  PF_IMU_REASON_LEFT_HANDED = 7,            /* only a reflection fits: an axis has the wrong sign */
+  PF_IMU_REASON_CLOCK = 8,                  /* the delay that would fit [s] */
+  PF_IMU_REASON_RATES_DO_NOT_FIT = 9,       /* share of the camera's rotations not explained */
+  PF_IMU_REASON_COLUMNS_SWAPPED = 10,       /* the rates read like gravity: their mean length */
+  PF_IMU_REASON_ACCEL_IN_G = 11,            /* mean specific force, about 1 */
   PF_IMU_REASON_ACCEL_WITHOUT_GRAVITY = 12, /* mean specific force, about 0 */
-  PF_IMU_REASON_ACCEL_UNIT = 13,           /* mean specific force, neither */
-  PF_IMU_REASON_ACCEL_SIGN = 14            /* accelerations have the opposite sign */
+  PF_IMU_REASON_ACCEL_UNIT = 13,            /* mean specific force, neither */
+  PF_IMU_REASON_ACCEL_SIGN = 14             /* accelerations have the opposite sign */
 } pf_imu_reason_t;
 
 /* What came in through pf_push_imu since create or reset. */

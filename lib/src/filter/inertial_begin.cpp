@@ -37,8 +37,8 @@ void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounti
   set_gravity_by_rotation(rows, false, transition);
 }
 
-void begin_mounting(const Body& body, const BodyLayout& layout, const Mat3& turned, Scalar sigma_turn, Scalar sigma_delay,
-                    Transition* transition) {
+void begin_mounting(const Body& body, const BodyLayout& layout, const Mat3& turned, Scalar sigma_turn,
+                    Scalar sigma_delay, Transition* transition) {
   const PartRows rows(layout);
   clear(transition, body, rows.dim);
   set_block<3>(transition->F, rows.dim, rows.gyro, rows.gyro, turned);

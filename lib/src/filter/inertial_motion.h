@@ -68,8 +68,8 @@ void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounti
 /// of the gyro's bias are those of the angular velocity in the old axes, and go over to the new ones.
 ///
 /// turned: R_CB_newᵀ R_CB_old
-void begin_mounting(const Body& body, const BodyLayout& layout, const Mat3& turned, Scalar sigma_turn, Scalar sigma_delay,
-                    Transition* transition);
+void begin_mounting(const Body& body, const BodyLayout& layout, const Mat3& turned, Scalar sigma_turn,
+                    Scalar sigma_delay, Transition* transition);
 
 /// What a second at rest says. Readings are means over it.
 struct RestReading {

@@ -12,8 +12,9 @@ void UnitKeeper::layout(Arena& arena) {
   if (!settings_.inertial) return;
   Parts* const place = arena.take<Parts>(1);
   if (place != nullptr)
-    parts_ = new (place)
-        Parts{{settings_, filter_, rest_, imu_, motion_}, {settings_, filter_, map_, frame_, imu_, motion_}, {settings_, imu_}};
+    parts_ = new (place) Parts{{settings_, filter_, rest_, imu_, motion_},
+                               {settings_, filter_, map_, frame_, imu_, motion_},
+                               {settings_, imu_}};
 }
 
 void UnitKeeper::init() {
@@ -53,10 +54,11 @@ std::int64_t UnitKeeper::motion_begin_ns(std::int64_t now_ns) const {
   return parts_ != nullptr ? parts_->hold.motion_begin_ns(now_ns) : now_ns;
 }
 
-/// A rest tells the scale whatever the delay and the axes are.
+/// A rest tells the scale whatever the delay is, and gravity where the axes are known.
 bool UnitKeeper::begins_at_rest() {
   RestReading rest;
-  const bool was_used = filter_.uses_samples(), open = watch_.is_open() && !watch_.doubted();
+  const bool was_used = filter_.uses_samples(), open = watch_.is_open() && !watch_.doubted() &&
+                                                       !(settings_.unit.sigma_turn > tuning::rate_alignment::kOpenTurn);
   if ((!was_used && !open) || !rest_.note(tracking_.is_tracked(frame_.report), &rest)) return false;
   if (!was_used) watch_.use_at_rest(true);
   if (reads_force() && metric_.use_rest(rest, rest_.begin_ns())) return true;

@@ -119,6 +119,8 @@ Vec3 MovingStart::smooth() {
   const Mat3& R_CB = filter_.state().mounting.R_CB;
   const Quat q_CB(R_CB);
   const Vec3 gyro_bias = filter_.state().body.gyro_bias;
+  const Scalar of_turn = turn_variance(), of_delay = delay_variance();
+  Vec3 rate = Vec3::Zero();
   const Scalar density = std::max(kTiltDensity, motion_.unit_noise().now().gyro_density);
   for (int k = data_.first; k < data_.end; ++k) {
     const View& view = data_.view[k];
@@ -128,7 +130,11 @@ Vec3 MovingStart::smooth() {
     link.q_WC = view.q_WC;
     link.variance = data_.correlation * static_cast<Scalar>(view.covariance.topLeftCorner<3, 3>().trace()) / 3;
     link.dq = q_CB * dq_B * q_CB.conjugate();
-    link.step_variance = density * density * view.dt;
+    // Axes that are off by mu turn the step by mu x step, and a delay that is off by e moves both its ends: (w_0 - w_1) e.
+    const Vec3 step = log_so3(dq_B), rate_before = rate;
+    if (view.dt > Scalar(0)) rate = step / view.dt;
+    link.step_variance = density * density * view.dt + of_turn * step.squaredNorm() +
+                         (k > data_.first + 1 ? of_delay * (rate - rate_before).squaredNorm() : Scalar(0));
     link.by_bias = R_CB * dq_B.conjugate().toRotationMatrix() * by_bias;
   }
   const Scalar of_bias = mean_variance(settings_.body.row(BodyPart::kGyroBias));
@@ -209,6 +215,27 @@ Scalar MovingStart::mean_variance(int row) const {
   return (filter_.variance(row) + filter_.variance(row + 1) + filter_.variance(row + 2)) / 3;
 }
 
+/// Of the unit's axes, about one of them, and of its delay; 0 where they are exact.
+Scalar MovingStart::turn_variance() const {
+  return settings_.body.has(BodyPart::kMountRotation) ? mean_variance(settings_.body.row(BodyPart::kMountRotation))
+                                                      : Scalar(0);
+}
+
+Scalar MovingStart::delay_variance() const {
+  return settings_.body.has(BodyPart::kDelay) ? filter_.variance(settings_.body.row(BodyPart::kDelay)) : Scalar(0);
+}
+
+/// Of the unit's rate over the sweep's views, squared.
+Scalar MovingStart::mean_rate2() const {
+  Scalar sum = 0, time = 0;
+  for (int k = data_.first + 1; k < data_.end; ++k) {
+    const View& view = data_.view[k];
+    sum += log_so3(view.dq_B).squaredNorm() / view.dt;
+    time += view.dt;
+  }
+  return time > Scalar(0) ? sum / time : Scalar(0);
+}
+
 /// How well the rate at which the poses turn away from the truth is known: by the map, which turns with them, or by the gyro.
 Scalar MovingStart::turn_rate_sigma(Scalar span) const {
   const Scalar by_map = mean_variance(Body::kTheta) / (span * span);
@@ -227,6 +254,12 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
     init();
     return false;
   }
+  const Scalar delay_sigma = std::sqrt(delay_variance());
+  if (data_.count == 1) data_.delay_sigma = delay_sigma;
+  if (told.judge && 2 * delay_sigma < data_.delay_sigma) {
+    data_.delay_sigma = delay_sigma;
+    integrate_again();
+  }
   if (!told.judge || data_.count < kMinPoses || !sweep()) return false;
   Scalar span = 0;
   for (int k = data_.first + 1; k < data_.end; ++k) span += data_.view[k].dt;
@@ -236,6 +269,9 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
   noise.drift = kDrift * told.depth;
   noise.accel_density = std::hypot(motion_.unit_noise().now().accel_density, settings_.unit.gravity * kRotation);
   noise.tilt_density = std::max(kTiltDensity, motion_.unit_noise().now().gyro_density);
+  // Axes that are off by mu tilt gravity by what the camera turns them, mu w a second; a delay that is off by e by e w.
+  const Scalar of_unit = (turn_variance() + 2 * delay_variance()) * mean_rate2();
+  noise.tilt_density = std::sqrt(noise.tilt_density * noise.tilt_density + of_unit);
   noise.turn = turn_rate_sigma(span);
   noise.accel_bias = tuning::inertial::kAccelBias;
   return is_accepted(data_.pose, collect(), noise, told.patient, solution);

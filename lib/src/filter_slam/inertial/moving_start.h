@@ -76,7 +76,8 @@ class MovingStart {
     std::uint32_t map_id = 0;
     Scalar sigma_scale = 0;
     bool reversed = false;
-    int refused = 0;  ///< solutions in a row
+    Scalar delay_sigma = 0;  ///< [s] when the views were integrated
+    int refused = 0;         ///< solutions in a row
     // Poses are found anew in sweeps over the views, from the last to the first, a part of them a frame.
     int left = 0;            ///< views that the sweep has not reached
     int first = 0, end = 0;  ///< those that it has given a pose
@@ -94,6 +95,9 @@ class MovingStart {
   Vec3 smooth();
   int collect();
   Scalar mean_variance(int row) const;
+  Scalar turn_variance() const;
+  Scalar delay_variance() const;
+  Scalar mean_rate2() const;
   Scalar turn_rate_sigma(Scalar span) const;
   bool is_accepted(const MovingPose* pose, int count, const MovingStartNoise& noise, bool patient,
                    MovingSolution* solution);

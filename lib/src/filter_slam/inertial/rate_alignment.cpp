@@ -76,7 +76,8 @@ bool RateAlignment::gather(const ImuLog& log, double delay_s) {
       }
       const ImuSample &a = log[k - 1], &b = log[k];
       const std::int64_t end_ns = std::min(to_ns, b.t_ns);
-      const Scalar step = static_cast<Scalar>(seconds(end_ns - t_ns)), whole = static_cast<Scalar>(seconds(b.t_ns - a.t_ns));
+      const Scalar step = static_cast<Scalar>(seconds(end_ns - t_ns)),
+                   whole = static_cast<Scalar>(seconds(b.t_ns - a.t_ns));
       const Scalar middle = static_cast<Scalar>(seconds(t_ns - a.t_ns) + seconds(end_ns - a.t_ns)) / 2 / whole;
       for (int j = 0; j < 3; ++j) sum(j) += step * (a.gyro[j] + middle * (b.gyro[j] - a.gyro[j]));
       t_ns = end_ns;
@@ -130,16 +131,19 @@ bool RateAlignment::search(const ImuLog& log, double at_s, double reach_s, const
   out->at_end = best == 0 || best == steps - 1;
   out->next_left = 1;
   for (int k = 1; k + 1 < steps; ++k)
-    if (std::abs(k - best) * kCoarse > kApart && left[k] >= Scalar(0) && left[k] <= left[k - 1] && left[k] <= left[k + 1])
+    if (std::abs(k - best) * kCoarse > kApart && left[k] >= Scalar(0) && left[k] <= left[k - 1] &&
+        left[k] <= left[k + 1])
       out->next_left = std::min(out->next_left, left[k]);
   double at = at_s + (best - side) * kCoarse, step = kCoarse;
   while (step > kFine) {
     step /= 2;
-    const Scalar here = left_at(log, at, R_CB), before = left_at(log, at - step, R_CB), after = left_at(log, at + step, R_CB);
+    const Scalar here = left_at(log, at, R_CB), before = left_at(log, at - step, R_CB),
+                 after = left_at(log, at + step, R_CB);
     if (before >= Scalar(0) && before < here) at -= step;
     if (after >= Scalar(0) && after < here && !(before >= Scalar(0) && before < after && before < here)) at += step;
   }
-  const Scalar before = left_at(log, at - step, R_CB), after = left_at(log, at + step, R_CB), here = left_at(log, at, R_CB);
+  const Scalar before = left_at(log, at - step, R_CB), after = left_at(log, at + step, R_CB),
+               here = left_at(log, at, R_CB);
   if (here < Scalar(0)) return false;
   const Scalar bend = before - 2 * here + after;
   if (before >= Scalar(0) && after >= Scalar(0) && bend > Scalar(0))
@@ -189,10 +193,9 @@ void RateAlignment::explain(const ImuLog& log, double delay_s, bool delay_known,
   }
   clustered += cluster * cluster;
   const Scalar variance = squares / static_cast<Scalar>(std::max(1, 3 * m.n - 7));
-  out->sigma_delay = delay_known ? Scalar(0)
-                     : information > Scalar(0)
-                         ? std::sqrt(std::max(variance * information, clustered)) / information
-                         : Scalar(1);
+  out->sigma_delay = delay_known               ? Scalar(0)
+                     : information > Scalar(0) ? std::sqrt(std::max(variance * information, clustered)) / information
+                                               : Scalar(1);
   Vec3 lambda;
   Mat3 V;
   symmetric_eigen(m.gg, &lambda, &V);  // about the axis of the largest, the other two tell the rotation

@@ -11,9 +11,9 @@ namespace pf {
 
 /// c = scale R_CB g(t - delay) + b over the intervals between frames, c the camera's rates and g the gyroscope's means.
 struct RateFit {
-  int count = 0;             ///< intervals
-  Scalar delay = 0;          ///< [s] t_frame = t_sample + delay
-  Scalar sigma_delay = 0;    ///< of what the rates leave
+  int count = 0;           ///< intervals
+  Scalar delay = 0;        ///< [s] t_frame = t_sample + delay
+  Scalar sigma_delay = 0;  ///< of what the rates leave
   Mat3 R_CB = Mat3::Identity();
   Scalar sigma_turn = 0;     ///< [rad] of its worst axis
   Scalar scale = 0;          ///< of the camera's rates to the gyroscope's

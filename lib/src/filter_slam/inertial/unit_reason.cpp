@@ -14,13 +14,11 @@ using namespace tuning::rate_alignment;
 namespace {
 
 constexpr Scalar kDegrees = Scalar(57.29578);
-constexpr Scalar kNear = Scalar(0.25);     ///< share by which a factor of 57.3 may be off
+constexpr Scalar kNear = Scalar(0.25);        ///< share by which a factor of 57.3 may be off
 constexpr Scalar kLikeGravity = Scalar(0.3);  ///< likewise of a reading that is as large as gravity
-constexpr Scalar kClock = Scalar(0.005);   ///< [s] that a clock is off before it is named
+constexpr Scalar kClock = Scalar(0.005);      ///< [s] that a clock is off before it is named
 
-Scalar angle_between(const Mat3& a, const Mat3& b) {
-  return log_so3(Quat(Mat3(a.transpose().lazyProduct(b)))).norm();
-}
+Scalar angle_between(const Mat3& a, const Mat3& b) { return log_so3(Quat(Mat3(a.transpose().lazyProduct(b)))).norm(); }
 
 bool is_other_clock(const RateFit& fit, double at_s) {
   return fit.at_end || std::abs(fit.delay - static_cast<Scalar>(at_s)) > std::max(kClock, 3 * fit.sigma_delay);
@@ -63,7 +61,8 @@ void UnitWatch::compare_rates(bool follows) {
   data_->until_fit = 0;
   const bool finds_delay = settings_.body.has(BodyPart::kDelay), finds_axes = settings_.unit.sigma_turn > kOpenTurn;
   const Mat3& R_CB = filter_.state().mounting.R_CB;
-  const double at_s = seconds(settings_.unit.delay_ns) + (finds_delay ? static_cast<double>(filter_.state().mounting.delay) : 0);
+  const double at_s =
+      seconds(settings_.unit.delay_ns) + (finds_delay ? static_cast<double>(filter_.state().mounting.delay) : 0);
   data_->passed = data_->rates.fit(imu_, at_s, RateAlignment::kReach, finds_axes ? nullptr : &R_CB, &data_->fit) &&
                   is_believed(data_->fit) && (finds_delay || !is_other_clock(data_->fit, at_s));
   if (!data_->passed && data_->rates.span() > kVerdict) find_reason(at_s);
@@ -100,7 +99,8 @@ void UnitWatch::find_reason(double at_s) {
   }
   if (data_->reason == before || data_->reason <= UnitReason::kContradicts) return;
   if (!data_->doubted) data_->doubted = true;
-  settings_.hooks.say("the inertial unit's rates do not fit the camera's rotations: it is left out; the report says why");
+  settings_.hooks.say(
+      "the inertial unit's rates do not fit the camera's rotations: it is left out; the report says why");
 }
 
 /// Mean length of the rates that are held.

@@ -169,8 +169,8 @@ void UnitWatch::use_alignment() {
     mounting.delay = fit.delay - static_cast<Scalar>(seconds(settings_.unit.delay_ns));
   Transition transition;
   begin_mounting(filter_.state().body, settings_.body, finds_axes ? turned : Mat3(Mat3::Identity()),
-                 finds_axes ? std::hypot(fit.sigma_turn, kFloorTurn) : Scalar(0), std::hypot(fit.sigma_delay, kFloorDelay),
-                 &transition);
+                 finds_axes ? std::hypot(fit.sigma_turn, kFloorTurn) : Scalar(0),
+                 std::hypot(fit.sigma_delay, kFloorDelay), &transition);
   filter_.predict(transition);
   filter_.set_mounting(mounting);
   data_->aligned = true;

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "filter/filter.h"
-#include "filter/imu_path.h"
 #include "filter/imu_log.h"
+#include "filter/imu_path.h"
 #include "filter_slam/inertial/rate_alignment.h"
 #include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"

@@ -50,8 +50,7 @@ void UnitNoise::close_window() {
 
 void UnitNoise::note_innovation(Sensor sensor, Scalar nis, int dof) {
   const Scalar share = std::min(nis / static_cast<Scalar>(dof), kMostOfFrame);
-  data_.excess[sensor] =
-      std::clamp(data_.excess[sensor] + kRate * (share - kSlack), Scalar(0), 2 * std::log(kMost));
+  data_.excess[sensor] = std::clamp(data_.excess[sensor] + kRate * (share - kSlack), Scalar(0), 2 * std::log(kMost));
 }
 
 Scalar UnitNoise::ratio(Sensor sensor) const {

@@ -36,12 +36,12 @@ class UnitNoise {
 
  private:
   struct Data {
-    std::int64_t last_ns = INT64_MIN;   ///< of the last sample that was taken in
-    Scalar second[2] = {0, 0};          ///< sums of squared second and third differences over the axes
+    std::int64_t last_ns = INT64_MIN;  ///< of the last sample that was taken in
+    Scalar second[2] = {0, 0};         ///< sums of squared second and third differences over the axes
     Scalar third[2] = {0, 0};
-    int count = 0;                      ///< of them
-    Scalar white[2] = {1, 1};           ///< variance of the samples to the stated one
-    Scalar excess[2] = {0, 0};          ///< log of the factor on the variance that innovations ask for; never below 0
+    int count = 0;              ///< of them
+    Scalar white[2] = {1, 1};   ///< variance of the samples to the stated one
+    Scalar excess[2] = {0, 0};  ///< log of the factor on the variance that innovations ask for; never below 0
   };
 
   void close_window();
