@@ -216,7 +216,7 @@ class Run {
     push_samples(t_ns);
     rows_[k].nees_position = rows_[k].nees_pose = -1;
     if (o_.fault == VioFault::kFramesStop && t >= o_.fault_at_s && t < o_.fault_at_s + kStill) return true;
-    const Pose truth = truth_at(t);
+    Pose truth = truth_at(t);
     const bool dark = is_dark(t);
     const pf_status_t status = o_.rendered ? push_picture(t_ns, dark) : push_points(t_ns, dark);
     pf_pose_t pose;
@@ -233,6 +233,10 @@ class Run {
     out_.imu_seconds += 1e-9 * static_cast<double>(report.stage_ns[PF_STAGE_IMU]);
     for (const std::int64_t ns : report.stage_ns) out_.frame_seconds += 1e-9 * static_cast<double>(ns);
     note_blackout(k, dark, status);
+    if (begins_anew(pose.map_id)) {
+      first_ = world_.path()(t);
+      last_ = truth = truth_at(t);
+    }
     note_doubt(t, pose);
     const bool judged = note_unit(k, report);
     if (judged && out_.start_s < 0) {
@@ -276,6 +280,13 @@ class Run {
     if (dark) out_.dark_end_frame = k + 1;
     if (out_.dark_end_frame > 0 && !dark && out_.tracked_again_frame < 0 && status == PF_OK)
       out_.tracked_again_frame = k;
+  }
+
+  /// A new map up to scale begins with this frame's camera; one that goes on in metres, or begins at rest, stays where it is.
+  bool begins_anew(std::uint32_t map_id) const {
+    pf_inertial_t unit;
+    return o_.use_imu && map_id_ != 0 && map_id != map_id_ && pf_get_inertial(context_.slam, &unit) == PF_OK &&
+           unit.metric == 0;
   }
 
   void note_doubt(double t, const pf_pose_t& pose) {
@@ -406,7 +417,7 @@ class Run {
   const pf::sim::ImuOptions unit_;
   pf::sim::ImuSensor sensor_;
   const Context context_;
-  const Pose first_;
+  Pose first_;  ///< W of the library's map
   VioPlaneWatch planes_;
   double tilt_squares_ = 0;
   Pose last_;
