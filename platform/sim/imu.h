@@ -22,7 +22,7 @@ struct ImuOptions {
 
   // What is wrong with it.
   double gyro_scale = 0, accel_scale = 0;  ///< relative errors of scale
-  /// Errors of scale and of the directions of the axes: a reading is (1 + E) times the truth. Ones by which they are multiplied stand above.
+  /// Errors of scale and of the directions of the axes: a reading is (1 + E) times the truth.
   std::array<double, 9> gyro_error{}, accel_error{};  ///< E, row-major
   double gyro_range = 0, accel_range = 0;             ///< [rad/s], [m/s^2] at which readings end; 0: nowhere
   double jitter_s = 0;             ///< standard deviation of time stamps, at most a quarter of the interval [s]

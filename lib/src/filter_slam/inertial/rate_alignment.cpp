@@ -13,7 +13,8 @@ using namespace tuning::rate_alignment;
 
 namespace {
 
-/// The rotation that takes g to c best, by the moments K = sum c gᵀ, and what it explains, tr(Rᵀ K). *mirrored: the same with a reflection.
+/// The rotation that takes g to c best, by the moments K = sum c gᵀ, and what it explains, tr(Rᵀ K). mirrored: the same with a
+/// reflection.
 struct BestTurn {
   Mat3 R = Mat3::Identity();
   Scalar along = 0, mirrored = 0;

@@ -5,7 +5,8 @@
 #include "filter/imu_log.h"
 #include "geometry/so3.h"
 
-/// What the camera's own rotations, from pictures alone, say of a gyroscope: its delay, its axes and its scale (lib/docs/inertial.md, "Rates").
+/// What the camera's own rotations, from pictures alone, say of a gyroscope: its delay, its axes and its scale
+/// (lib/docs/inertial.md, "Rates").
 
 namespace pf {
 

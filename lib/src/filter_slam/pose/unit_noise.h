@@ -8,7 +8,8 @@
 
 /// How noisy the inertial unit is: the stated densities are the prior, and two things correct them (lib/docs/inertial.md, "Noise"):
 ///
-/// - what its own samples scatter by: third differences of white noise have 20 times its variance, those of a hand's motion none to speak of;
+/// - what its own samples scatter by: third differences of white noise have 20 times its variance, those of a hand's motion next to
+///   none;
 /// - innovations that P does not explain: errors of scale, of axes, of stamps. A likelihood ratio in the variance, by its gradient.
 ///
 /// Of each density, both together stay between a third and ten times what was stated.
