@@ -69,10 +69,10 @@ void test_white_noise_should_be_learned_both_ways_and_motion_be_none() {
   }
   Bench unit;
   unit.run(8, 0.05, 0, kUp);
-  TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0 / 3, unit.ratio(UnitNoise::kGyro));
+  TEST_ASSERT_DOUBLE_WITHIN(0.02, 1.0 / 3, unit.ratio(UnitNoise::kGyro));
   Bench loud;
   loud.run(8, 50, 0, kUp);
-  TEST_ASSERT_DOUBLE_WITHIN(1e-6, 10, loud.ratio(UnitNoise::kGyro));
+  TEST_ASSERT_DOUBLE_WITHIN(0.3, 10, loud.ratio(UnitNoise::kGyro));
 }
 
 void test_innovations_should_raise_the_noise_only_where_they_are_not_explained() {
