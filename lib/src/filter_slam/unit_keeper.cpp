@@ -6,6 +6,12 @@
 
 namespace pf {
 
+namespace {
+
+constexpr double kPatience = 5;  ///< [s] of a map, after which waiting for a better scale costs more than it brings
+
+}  // namespace
+
 void UnitKeeper::layout(Arena& arena) {
   watch_.layout(arena);
   rest_.layout(arena);
@@ -85,7 +91,7 @@ ScaleChange UnitKeeper::look_for_scale_in_motion(Scalar depth, Scalar correlatio
   told.keep = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && (filter_.uses_samples() || open) &&
               reads_force();
   told.judge = !start_.recorder().progress().recording && filter_.uses_samples();
-  told.patient = start_.map_age() < tuning::moving_verdict::kPatience;
+  told.patient = start_.map_age() < kPatience;
   told.map_id = tracking_.map_id();
   told.depth = depth;
   told.correlation = correlation_frames;

@@ -9,6 +9,12 @@ namespace pf {
 
 using namespace tuning::force_check;
 
+namespace {
+
+constexpr double kTime = 2;  ///< [s] over which a hand's accelerations average out
+
+}  // namespace
+
 void ForceCheck::note(const Mat3& R_WB, bool follows) {
   if (imu_.held() == 0) return;
   int first = imu_.held();

@@ -13,6 +13,12 @@ using namespace tuning::rate_alignment;
 
 namespace {
 
+constexpr double kCoarse = 0.01;           ///< [s] step of the delay
+constexpr double kFine = 0.00125;          ///< [s] the last one, halved from there
+constexpr double kApart = 0.05;            ///< [s] what is nearer to the best delay is part of the same minimum
+constexpr Scalar kTiny = Scalar(1e-12);    ///< of the largest singular value
+constexpr Scalar kNotAlong = Scalar(0.6);  ///< component below which an axis is not along another
+
 /// The rotation that takes g to c best, by the moments K = sum c gᵀ, and what it explains, tr(Rᵀ K). mirrored: the same with a
 /// reflection.
 struct BestTurn {
@@ -30,8 +36,8 @@ BestTurn best_turn(const Mat3& K) {
   const Vec3 u_2 = K * V.col(2) / s_2;
   Vec3 u_1 = K * V.col(1);
   u_1 -= u_2 * u_2.dot(u_1);
-  if (!(u_1.norm() > Scalar(1e-12) * s_2)) {
-    const Vec3 other = std::abs(u_2.x()) < Scalar(0.6) ? Vec3::UnitX() : Vec3::UnitY();
+  if (!(u_1.norm() > kTiny * s_2)) {
+    const Vec3 other = std::abs(u_2.x()) < kNotAlong ? Vec3::UnitX() : Vec3::UnitY();
     u_1 = other - u_2 * u_2.dot(other);
   }
   u_1.normalize();

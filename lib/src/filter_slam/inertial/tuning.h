@@ -21,7 +21,6 @@ inline constexpr Scalar kSlack = Scalar(9);              ///< that a frame may a
 inline constexpr Scalar kBound = Scalar(100);            ///< of the sum, above which the unit is doubted
 inline constexpr Scalar kBoundOnProbation = Scalar(30);  ///< in the first kTrial of its use after a doubt
 inline constexpr Scalar kMaxOfFrame = Scalar(50);        ///< no single frame is enough
-inline constexpr double kFrozen = 1;                     ///< [s] of use, or in metres, before noise is learned
 inline constexpr Scalar kMaxPoseNis = Scalar(38.3);      ///< chi-square of six, 1 - 1e-6: samples are not used for it
 inline constexpr Scalar kSilence = Scalar(0.1);          ///< [s] without a sample, after which none is waited for
 inline constexpr Scalar kRate = Scalar(1);               ///< [rad/s] sigma of the rate where samples were wrong
@@ -34,8 +33,6 @@ inline constexpr int kMaxDoublings = 8;       ///< of that
 
 /// Gravity in the accelerometer's readings.
 namespace force_check {
-inline constexpr double kTime =
-    2;  ///< [s] over which a hand's accelerations average out to a change of velocity by that
 inline constexpr int kMinSamples = 20;         ///< in that time
 inline constexpr Scalar kNear = Scalar(0.3);   ///< share of gravity that their mean may be off: 6 m/s in that time
 inline constexpr Scalar kNone = Scalar(0.08);  ///< share of gravity below which there is none in it
@@ -43,30 +40,20 @@ inline constexpr Scalar kNone = Scalar(0.08);  ///< share of gravity below which
 
 /// The camera's rates against the gyroscope's.
 namespace rate_alignment {
-inline constexpr int kMinIntervals = 15;  ///< between frames
-inline constexpr double kCoarse = 0.01;   ///< [s] step of the delay
-inline constexpr double kFine = 0.00125;  ///< [s] the last one, halved from there
-inline constexpr double kApart = 0.05;    ///< [s] what is nearer to the best delay is part of the same minimum
-inline constexpr Scalar kMirrored =
-    Scalar(0.2);  ///< of what a rotation leaves, where a reflection leaves less: 5 sigma of 3 x 15 numbers
+inline constexpr int kMinIntervals = 15;                 ///< between frames
+inline constexpr Scalar kMirrored = Scalar(0.2);         ///< of what a rotation leaves, where a reflection leaves less
 inline constexpr Scalar kMaxLeft = Scalar(0.35);         ///< of an alignment that is believed: a correlation of 0.8
 inline constexpr Scalar kClearly = Scalar(1.3);          ///< what the next best delay leaves, in what the best one does
 inline constexpr Scalar kMaxSigmaDelay = Scalar(0.004);  ///< [s] of a clock that is known, to begin with
-inline constexpr Scalar kMaxSigmaTurn =
-    Scalar(0.07);  ///< [rad] of axes that are, 4 degrees: errors are linear within it
-inline constexpr Scalar kFloorDelay = Scalar(0.001);  ///< [s] sigma, beside what the rates leave: rows and exposure
-inline constexpr Scalar kFloorTurn = Scalar(0.01);    ///< [rad] likewise
-inline constexpr Scalar kMaxScale = Scalar(1.25);     ///< of a gyroscope that is used, and its inverse
-inline constexpr Scalar kMinTurning =
-    Scalar(0.05);                        ///< [rad/s] standard deviation of the rates, below which nothing is told
-inline constexpr double kMinSpan = 0.8;  ///< [s] of an alignment
-inline constexpr double kVerdict = 2.5;  ///< [s] after which one that does not fit is a contradiction
-inline constexpr double kLongest = 4;    ///< [s] that is asked of one at most, since no more is kept
-inline constexpr int kEvery = 5;         ///< frames from fit to fit
-inline constexpr Scalar kOpenDelay =
-    Scalar(0.02);                                 ///< [s] sigma above which the delay is not linear in a hand's motion
-inline constexpr Scalar kOpenTurn = Scalar(0.2);  ///< [rad] likewise of the axes
-inline constexpr Scalar kOtherAxes = Scalar(0.35);  ///< [rad] that axes are off before they are named: 20 degrees
+inline constexpr Scalar kMaxSigmaTurn = Scalar(0.07);    ///< [rad] of axes that are: errors are linear within it
+inline constexpr Scalar kFloorDelay = Scalar(0.001);     ///< [s] sigma, beside what the rates leave: rows and exposure
+inline constexpr Scalar kFloorTurn = Scalar(0.01);       ///< [rad] likewise
+inline constexpr Scalar kMaxScale = Scalar(1.25);        ///< of a gyroscope that is used, and its inverse
+inline constexpr Scalar kMinTurning = Scalar(0.05);      ///< [rad/s] sigma of the rates that tells something
+inline constexpr int kEvery = 5;                         ///< frames from fit to fit
+inline constexpr Scalar kOpenDelay = Scalar(0.02);       ///< [s] sigma above which the delay is not linear
+inline constexpr Scalar kOpenTurn = Scalar(0.2);         ///< [rad] likewise of the axes
+inline constexpr Scalar kOtherAxes = Scalar(0.35);       ///< [rad] that axes are off before they are named: 20 degrees
 }  // namespace rate_alignment
 
 /// Standing still.
@@ -103,8 +90,6 @@ inline constexpr Scalar kTiltDensity = Scalar(0.00005);  ///< [rad/sqrt(s)] of t
 inline constexpr Scalar kRotation = Scalar(0.0001);  ///< [rad/sqrt(Hz)] of their noise: 0.1 mrad that last for a second
 inline constexpr Scalar kMaxSigmaScale = Scalar(0.025);    ///< of the log scale
 inline constexpr Scalar kMaxSigmaGravity = Scalar(0.015);  ///< [rad] of its direction
-inline constexpr double kPatience =
-    5;  ///< [s] of a map, after which the scale may be known worse: waiting costs more than it brings
 inline constexpr Scalar kLateSigmaScale = Scalar(0.1);     ///< of the log scale then
 inline constexpr Scalar kLateSigmaGravity = Scalar(0.03);  ///< [rad] of gravity's direction then
 inline constexpr Scalar kMaxMisfit = Scalar(3);            ///< chi-square over its degrees of freedom

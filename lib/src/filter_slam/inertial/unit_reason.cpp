@@ -6,6 +6,7 @@
 #include "filter_slam/inertial/unit_watch.h"
 
 /// The camera's rates against the gyroscope's, while samples do not move the body: whether they fit, and if not, why.
+/// What each reason means to a user: lib/docs/unknown_unit.md.
 
 namespace pf {
 
@@ -13,6 +14,9 @@ using namespace tuning::rate_alignment;
 
 namespace {
 
+constexpr double kMinSpan = 0.8;  ///< [s] of an alignment
+constexpr double kVerdict = 2.5;  ///< [s] after which one that does not fit is a contradiction
+constexpr double kLongest = 4;    ///< [s] that is asked of one at most, since no more is kept
 constexpr Scalar kDegrees = Scalar(57.29578);
 constexpr Scalar kNear = Scalar(0.25);        ///< share by which a factor of 57.3 may be off
 constexpr Scalar kLikeGravity = Scalar(0.3);  ///< likewise of a reading that is as large as gravity

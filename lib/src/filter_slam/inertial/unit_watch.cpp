@@ -13,6 +13,7 @@ using namespace tuning::unit_watch;
 
 namespace {
 
+constexpr double kFrozen = 1;      ///< [s] of use, or in metres, before noise is learned
 constexpr double kRateChange = 4;  ///< sample intervals, of which the angular acceleration is taken
 
 }  // namespace
