@@ -105,7 +105,8 @@ std::string reason_in_words(const pf_imu_report_t& report) {
           "the accelerometer reads %.3g m/s^2 in place of 9.81: which unit is it in? Only the gyroscope is used",
           value);
     case PF_IMU_REASON_ACCEL_SIGN:
-      return "the accelerations have the opposite sign (iOS gives gravity's direction): at rest they must show +9.81 "
+      return "its accelerations contradict the pictures: they have the opposite sign (iOS gives gravity's direction): "
+             "at rest they must show +9.81 "
              "m/s^2 "
              "upwards; only the gyroscope is used";
     default:

@@ -14,6 +14,12 @@ namespace pf {
 
 using namespace tuning::moving_verdict;
 
+namespace {
+
+constexpr int kSignEvery = 4;  ///< solutions in a row that there are none of, from test to test of the sign
+
+}  // namespace
+
 /// What the samples say between a time and the view. False where they are missing.
 bool MovingStart::integrate(std::int64_t from_ns, View* view) const {
   const Body& body = filter_.state().body;
@@ -189,7 +195,7 @@ bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingSta
   const int middle = count / 2;
   data_.sigma_scale = 0;
   if (!solve_moving_start(pose, count, noise, solution)) {
-    if (++data_.refused % kLocated == 0) look_for_sign(count, noise);
+    if (++data_.refused % kSignEvery == 0) look_for_sign(count, noise);
     return false;
   }
   data_.refused = 0;
