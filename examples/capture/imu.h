@@ -35,10 +35,12 @@ class Imu {
   virtual const pf_imu_model_t* model() const { return nullptr; }
   /// JSON for report.json, "" where there is nothing to say.
   virtual std::string report() const { return ""; }
+  /// The time of the first frame, before samples are taken: for units whose clock begins with it.
+  virtual void begin_at(int64_t /*t_ns*/) {}
 };
 
-/// A table in EuRoC layout. null: error is one line.
-std::unique_ptr<Imu> open_imu_file(const std::string& path, int64_t offset_ns, std::string& error);
+/// A table in EuRoC layout. first_at_frame: its first sample has the time of the first frame that is asked for. null: error is one line.
+std::unique_ptr<Imu> open_imu_file(const std::string& path, int64_t offset_ns, bool first_at_frame, std::string& error);
 
 /// A unit of this machine through the kernel's IIO. rate_hz 0: as it is.
 std::unique_ptr<Imu> open_imu_device(const std::string& name, double rate_hz, int64_t offset_ns, std::string& error);

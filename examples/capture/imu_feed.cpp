@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "imu_reason.h"
 #include "source.h"
 
 namespace pf::capture {
@@ -19,9 +20,14 @@ constexpr int32_t kKeptToMove = 2000;  ///< likewise where poses depend on them:
 
 constexpr double kSigmaMountRad = 0.035;  ///< of --estimate mount: 2 degrees
 constexpr double kSigmaMountM = 0.02;
-constexpr double kSigmaDelayS = 0.01;  ///< of --estimate delay
-constexpr auto kAheadNs = static_cast<int64_t>(3e9 * kSigmaDelayS);
+constexpr double kSigmaDelayS = 0.01;    ///< of --estimate delay
 constexpr double kSigmaReadoutS = 0.01;  ///< of --estimate readout
+// Of what is not told.
+constexpr double kUsualMountRad = 0.052, kUsualMountM = 0.03;  ///< 3 degrees
+constexpr double kAnyMountRad = 3.0, kAnyMountM = 0.1;
+constexpr double kUsualDelayS = 0.06;
+constexpr double kUsualReadoutS = 0.015;
+constexpr double kAheadSigmas = 3.0, kLiveAheadS = 0.03;
 
 constexpr double kRadians = 3.14159265358979 / 180.0;
 constexpr size_t kPlanes = 64;  ///< the largest capacity.max_planes
@@ -83,6 +89,7 @@ void add_inertial(const pf_slam_t* slam, int64_t metric_frame, bool moving, cons
   } else {
     json["mount"] = {{"q_BC", model.q_BC}, {"p_BC", model.p_BC}};
   }
+  json["scale_sigma"] = any && sigma.log_scale >= 0.0 ? nlohmann::ordered_json(rounded(sigma.log_scale)) : nullptr;
   json["delay_s"] = rounded(estimated(sigma.delay_s) ? known.delay_s : model.delay_s);
   if (estimated(sigma.delay_s)) {
     json["delay_sigma_s"] = rounded(sigma.delay_s);
@@ -116,11 +123,6 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
     error = "--imu-offset: there are no inertial samples beside these frames; add --imu, or leave it away";
     code = kExitUsage;
   }
-  for (const std::string& what : options.estimate) {
-    estimate_mount_ |= what == "mount";
-    estimate_delay_ |= what == "delay";
-    estimate_readout_ |= what == "readout";
-  }
   if (!error.empty() || !options.inertial) {
     return error.empty();
   }
@@ -138,7 +140,11 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
         notices_.add(message);
       }
       const std::string& camera = options.camera.empty() ? source.info().camera_name : options.camera;
-      if (pf_read_imu_mount_of(options.imu_mount.c_str(), camera.c_str(), &model_, message) != 0) {
+      if (options.imu_mount.empty()) {
+        open_axes_ = true;
+        model_.q_BC[0] = 1.0;
+        notices_.add("no --imu-mount: the unit's axes are found from the first seconds of handling");
+      } else if (pf_read_imu_mount_of(options.imu_mount.c_str(), camera.c_str(), &model_, message) != 0) {
         error = std::string("--imu-mount ") + message;
       } else if (message[0] != '\0') {
         notices_.add(message);
@@ -146,13 +152,34 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
     }
     inertial_ = error.empty();
     code = inertial_ ? code : kExitUsage;
+    live_ = options.imu.rfind("iio:", 0) == 0;
   } else if (imu_ != nullptr) {
     notices_.add(
         imu_->name() +
         ": its noise is not known, so poses do not depend on it; add --imu-noise FILE and --imu-mount FILE, or "
         "--no-inertial");
   }
+  choose_sigmas(options);
   return error.empty();
+}
+
+/// Exact where --imu-exact says so, near what is given where --estimate does, and else as people know it. Of a scene's own unit all is
+/// known.
+void ImuFeed::choose_sigmas(const Options& options) {
+  const auto has = [](const std::vector<std::string>& list, const char* what) {
+    return std::find(list.begin(), list.end(), what) != list.end();
+  };
+  const bool near_only = !options.estimate.empty() || (imu_ != nullptr && imu_->model() != nullptr);
+  const auto sigma = [&](const char* what, double near, double usual) {
+    return has(options.estimate, what) ? near : near_only || has(options.imu_exact, what) ? 0.0 : usual;
+  };
+  model_.sigma_mount_rad = sigma("mount", kSigmaMountRad, open_axes_ ? kAnyMountRad : kUsualMountRad);
+  model_.sigma_mount_m = sigma("mount", kSigmaMountM, open_axes_ ? kAnyMountM : kUsualMountM);
+  model_.sigma_delay_s = sigma("delay", kSigmaDelayS, kUsualDelayS);
+  model_.sigma_readout_s = has(options.estimate, "readout") ? kSigmaReadoutS : 0.0;
+  sigma_delay_s_ = inertial_ ? model_.sigma_delay_s : 0.0;
+  tries_readout_ = !near_only && options.imu_exact.empty();
+  readout_given_ = options.readout_s >= 0.0;
 }
 
 void ImuFeed::configure(pf_config_t& config) const {
@@ -164,10 +191,8 @@ void ImuFeed::configure(pf_config_t& config) const {
     const double gravity = config.imu.gravity;
     config.imu = model_;
     config.imu.gravity = model_.gravity > 0.0 ? model_.gravity : gravity;
-    config.imu.sigma_mount_rad = estimate_mount_ ? kSigmaMountRad : 0.0;
-    config.imu.sigma_mount_m = estimate_mount_ ? kSigmaMountM : 0.0;
-    config.imu.sigma_delay_s = estimate_delay_ ? kSigmaDelayS : 0.0;
-    config.imu.sigma_readout_s = estimate_readout_ ? kSigmaReadoutS : 0.0;
+    config.imu.sigma_readout_s =
+        tries_readout_ && !(config.camera.readout_s > 0.0) && !readout_given_ ? kUsualReadoutS : model_.sigma_readout_s;
   }
   config.capacity.max_imu_samples = inertial_ ? kKeptToMove : kKept;
   config.imu.gyro_range = imu_->gyro_range();
@@ -179,8 +204,24 @@ void ImuFeed::add_frame(int64_t index, const pf_slam_t* slam, const pf_pose_t& p
   pf_inertial_t known{};
   if (inertial_ && metric_frame_ < 0 && pf_get_inertial(slam, &known) == PF_OK && known.metric != 0) {
     metric_frame_ = index;
+    metric_at_s_ = 1e-9 * static_cast<double>(pose.t_ns) - first_s_;
     moving_ = known.from_motion != 0;
   }
+  if (inertial_ && open_axes_) {
+    note_axes(slam);
+  }
+}
+
+/// Says once which way the unit lies, as soon as that is found.
+void ImuFeed::note_axes(const pf_slam_t* slam) {
+  pf_inertial_t known{};
+  constexpr double kFound = 0.1;  // [rad]
+  if (pf_get_inertial(slam, &known) != PF_OK || !(known.sigma.mount_rad[0] > 0.0) ||
+      *std::max_element(known.sigma.mount_rad, known.sigma.mount_rad + 3) > kFound) {
+    return;
+  }
+  open_axes_ = false;
+  notices_.add("the inertial unit's axes are found: " + axes_in_words(known.q_BC));
 }
 
 bool ImuFeed::record_to(const std::string& folder, std::string& error) {
@@ -209,8 +250,13 @@ void ImuFeed::push_until(int64_t t_ns, pf_slam_t* slam) {
     tell_vertical(slam);
   }
   samples_.clear();
+  if (frames_ == 0) {
+    first_s_ = 1e-9 * static_cast<double>(t_ns);
+    imu_->begin_at(t_ns);
+  }
   // Where the delay is not known, a frame hangs on samples that may be as much later.
-  const int64_t ahead_ns = inertial_ && estimate_delay_ ? kAheadNs : 0;
+  const double ahead_s = kAheadSigmas * sigma_delay_s_;
+  const auto ahead_ns = static_cast<int64_t>(1e9 * (live_ ? std::min(ahead_s, kLiveAheadS) : ahead_s));
   imu_->take(std::min(t_ns, std::numeric_limits<int64_t>::max() - ahead_ns) + ahead_ns, samples_);
   // All that came before the first frame tells nothing: they may be of another clock altogether.
   between_ += frames_ > 0 ? static_cast<int64_t>(samples_.size()) : 0;
@@ -261,6 +307,11 @@ std::string ImuFeed::report(const pf_slam_t* slam, std::string& advice) const {
     json["rejected_s"] = rounded(r.rejected_s);
     json["doubted"] = json["rejected"];  // the names until 0.2
     json["doubted_s"] = json["rejected_s"];
+    json["reason"] = reason_name(r.reason);
+    json["reason_text"] = reason_in_words(r);
+    json["gyro_density"] = r.gyro_density;
+    json["accel_density"] = r.accel_density;
+    json["metric_at_s"] = metric_frame_ >= 0 ? nlohmann::ordered_json(rounded(metric_at_s_)) : nullptr;
     json["vertical_planes"] = vertical_;
     add_inertial(slam, metric_frame_, moving_, model_, json);
   }

@@ -45,6 +45,8 @@ class ImuFeed {
   void add_rejections(const pf_slam_t* slam, std::vector<Rejection>& rejections) const;
 
  private:
+  void choose_sigmas(const Options& options);
+  void note_axes(const pf_slam_t* slam);
   void tell_vertical(pf_slam_t* slam);
 
   std::unique_ptr<Imu> imu_;
@@ -54,14 +56,17 @@ class ImuFeed {
   Notices notices_;
   std::string failure_;  ///< of the recording
   pf_imu_model_t model_{};
-  bool estimate_mount_ = false, estimate_delay_ = false, estimate_readout_ = false;
+  bool open_axes_ = false;  ///< no mounting was given
+  double sigma_delay_s_ = 0.0;
   bool inertial_ = false;
-  double vertical_rad_ = 0.0;     ///< to which planes are told to be vertical; 0: they are not
-  std::set<uint32_t> looked_at_;  ///< planes that were told, or that contradict it
-  int64_t vertical_ = 0;          ///< planes that were told
-  int64_t metric_frame_ = -1;     ///< the first one whose lengths the samples tell
-  bool moving_ = false;           ///< .. from a camera that moved
+  double vertical_rad_ = 0.0;                 ///< to which planes are told to be vertical; 0: they are not
+  std::set<uint32_t> looked_at_;              ///< planes that were told, or that contradict it
+  int64_t vertical_ = 0;                      ///< planes that were told
+  int64_t metric_frame_ = -1;                 ///< the first one whose lengths the samples tell
+  bool moving_ = false;                       ///< .. from a camera that moved
+  double metric_at_s_ = 0.0, first_s_ = 0.0;  ///< [s] of the frames' clock
   double offset_s_ = 0.0;
+  bool live_ = false, tries_readout_ = false, readout_given_ = false;
   int64_t frames_ = 0, between_ = 0, refused_ = 0;  ///< between_: samples after the first frame
 };
 

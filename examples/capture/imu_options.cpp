@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "checked_options.h"
@@ -31,9 +32,20 @@ void add_imu_options(CLI::App& app, Options& options) {
          "or that of VINS-Fusion, VINS-Mono or ORB-SLAM")
       ->check(not_empty())
       ->group(group);
-  app.add_option("--estimate", options.estimate,
-                 "mount, delay, readout: estimated from 2 degrees and 2 cm, 10 ms, 10 ms about what is given")
+  app.add_option(
+         "--estimate", options.estimate,
+         "mount, delay, readout: estimated from 2 degrees and 2 cm, 10 ms, 10 ms about what is given, the others\n"
+         "exact; without it mounting and delay are estimated from 3 degrees, 3 cm and any delay within 0.2 s")
       ->delimiter(',')
+      ->group(group);
+  app.add_option("--imu-exact", options.imu_exact, "mount, delay: taken as they are given, and not estimated")
+      ->delimiter(',')
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--imu-clock",
+         [&options](const std::string& clock) { options.imu_clock_first_sample = clock == "first-sample"; },
+         "camera (the clock of the frames) or first-sample: the unit's first sample is as old as the first frame")
+      ->check(CLI::IsMember({"camera", "first-sample"}))
       ->group(group);
   app.add_option(
          "--vertical", options.vertical_deg,
@@ -61,13 +73,27 @@ std::string check_imu_options(const Options& options) {
   if (options.imu_noise.empty() && !options.imu_mount.empty() && options.inertial) {
     return "--imu-mount: poses depend on the samples only where their noise is known; add --imu-noise FILE";
   }
-  if (options.imu_mount.empty() && !options.imu_noise.empty() && options.inertial) {
-    return "--imu-noise: where the unit is mounted is not known; add --imu-mount FILE (T_BS, T_cam_imu or T_imu_cam)";
-  }
   for (const std::string& what : options.estimate) {
     if (what != "mount" && what != "delay" && what != "readout") {
       return "--estimate " + what + ": write mount, delay, readout or some of them, as mount,delay";
     }
+  }
+  for (const std::string& what : options.imu_exact) {
+    if (what != "mount" && what != "delay") {
+      return "--imu-exact " + what + ": write mount, delay or both, as mount,delay";
+    }
+    if (std::find(options.estimate.begin(), options.estimate.end(), what) != options.estimate.end()) {
+      return "--imu-exact " + what + " and --estimate " + what + " exclude each other; leave one of them away";
+    }
+    if (what == "mount" && options.imu_mount.empty() && imu != "sim") {
+      return "--imu-exact mount: no mounting is given; add --imu-mount FILE";
+    }
+  }
+  if (!options.imu_exact.empty() && (!options.inertial || (imu != "sim" && options.imu_noise.empty()))) {
+    return "--imu-exact: poses depend on the samples only where their noise is known; add --imu-noise FILE";
+  }
+  if (options.imu_clock_first_sample && (imu == "none" || imu == "sim" || imu.rfind("iio:", 0) == 0)) {
+    return "--imu-clock first-sample is for files of samples; leave it away";
   }
   if (!options.estimate.empty() && !options.inertial) {
     return "--estimate: poses depend on no samples with --no-inertial; leave one of them away";
@@ -99,13 +125,13 @@ std::unique_ptr<Imu> open_imu(const Options& options, const Source& source, cons
     return imu;
   }
   if (options.imu.rfind("csv:", 0) == 0) {
-    return open_imu_file(options.imu.substr(4), offset_ns, error);
+    return open_imu_file(options.imu.substr(4), offset_ns, options.imu_clock_first_sample, error);
   }
   if (options.imu.rfind("iio:", 0) == 0) {
     return open_imu_device(options.imu.substr(4), options.imu_rate_hz, offset_ns, error);
   }
   if (options.imu == "auto" && !beside.empty()) {
-    std::unique_ptr<Imu> imu = open_imu_file(beside, offset_ns, error);
+    std::unique_ptr<Imu> imu = open_imu_file(beside, offset_ns, options.imu_clock_first_sample, error);
     if (imu == nullptr) {
       error += "; --imu none leaves it alone";
     }

@@ -56,7 +56,7 @@ struct Options {
   double imu_offset_s = 0.0;
   std::string imu_noise;              ///< file; "": none
   std::string imu_mount;              ///< likewise
-  std::vector<std::string> estimate;  ///< of the unit: mount, delay
+  std::vector<std::string> estimate;  ///< of the unit: mount, delay, readout, near what is given
   double vertical_deg = 0.0;          ///< to which planes of that class are told to be vertical; 0: they are not
   bool inertial = true;               ///< where samples and their noise are there
   double sim_rest_s = 0.0;            ///< of a sim: source, at its beginning
@@ -95,6 +95,8 @@ struct Options {
   bool film = true;
   bool tracks = false;
   bool quiet = false;
+  std::vector<std::string> imu_exact;   ///< of the unit: mount, delay, taken as given
+  bool imu_clock_first_sample = false;  ///< the unit's first sample has the time of the first frame
 };
 
 enum class Parsed { kRun, kExit };

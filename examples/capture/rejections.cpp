@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "imu_reason.h"
+
 namespace pf::capture {
 
 namespace {
@@ -64,15 +66,21 @@ void add_rejected_unit(const pf_slam_t* slam, const UnitCheck& unit, std::vector
   if (!unit.inertial || pf_get_imu_report(slam, &report) != PF_OK) {
     return;
   }
+  const bool tells = report.reason > PF_IMU_REASON_CONTRADICTS;
   const bool long_ago = report.rejected == 0 && report.rejected_s > kLeastDoubt_s;
   if (report.rejected != 0 || long_ago) {
     rejections.push_back(
         {"inertial unit",
          std::string("the inertial unit contradicts the pictures and was left out, ") +
              text_of(long_ago ? "for %.1f s in all" : "for %.1f s and at the end", report.rejected_s, 0.0) +
-             (long_ago ? "" : "; lengths are not metres then") +
-             "; check --imu-mount, the axes and signs (at rest the accelerometer shows +9.81 m/s^2 upwards), units and "
-             "--imu-offset"});
+             (long_ago ? "" : "; lengths are not metres then") + "; " +
+             (tells
+                  ? reason_in_words(report)
+                  : std::string(
+                        "check --imu-mount, the axes and signs (at rest the accelerometer shows +9.81 m/s^2 upwards), "
+                        "units and --imu-offset"))});
+  } else if (tells) {
+    rejections.push_back({"inertial unit", "the inertial unit is not used in full: " + reason_in_words(report)});
   }
   const double off = unit.offset_s - unit.delay_s;
   if (unit.sigma_s > 0.0 && std::fabs(off) > kLeastOffset_s && std::fabs(off) > kOffsetSigmas * unit.sigma_s) {

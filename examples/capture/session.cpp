@@ -131,9 +131,6 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
       error = wrong;
     } else if (has_window && pf_config_check(&by_filter, nullptr) == PF_OK) {
       error = "--backend window cannot have this " + name + " yet: leave away what sets it, or take --backend filter";
-    } else if (name == "imu.sigma_readout_s" && config_.camera.readout_s == 0.0) {
-      error =
-          "--estimate readout: the calibration has no readout_s to begin with; add --readout S, about what it may be";
     } else if (name == "kernels") {
       error = "--kernels: this build or this processor has no such kernels; take --kernels auto";
     } else {

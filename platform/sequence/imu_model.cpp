@@ -22,12 +22,12 @@ struct Density {
 
 constexpr Density kDensities[] = {
     {"gyroscope_noise_density", "gyro_noise_density", "rad/s/sqrt(Hz)", 5e-6, 1e-2, &pf_imu_model_t::gyro_density},
-    {"accelerometer_noise_density", "accel_noise_density", "m/s^2/sqrt(Hz)", 5e-5, 1e-1,
-     &pf_imu_model_t::accel_density},
+    {"accelerometer_noise_density", "accel_noise_density", "m/s^2/sqrt(Hz)", 5e-5, 1.0, &pf_imu_model_t::accel_density},
     {"gyroscope_random_walk", "gyro_random_walk", "rad/s^2/sqrt(Hz)", 1e-8, 1e-3, &pf_imu_model_t::gyro_walk},
     {"accelerometer_random_walk", "accel_random_walk", "m/s^3/sqrt(Hz)", 1e-7, 1e-1, &pf_imu_model_t::accel_walk},
 };
 
+constexpr double kInflated = 0.1;  ///< [m/s^2/sqrt(Hz)] a density of the accelerometer that no unit has
 constexpr double kMinGravity = 9.0, kMaxGravity = 11.0;  ///< [m/s^2] that the library takes
 
 std::string format(double value) {
@@ -61,6 +61,11 @@ void read_imu_noise(const Fields& top, pf_imu_model_t* imu, std::vector<std::str
                                    ". Is it in degrees or g, or the noise of single samples?");
     }
     imu->*density.field = value;
+  }
+  if (imu->accel_density >= kInflated) {
+    notes.push_back(
+        top.file() + ": an accelerometer's density of " + format(imu->accel_density) +
+        " m/s^2/sqrt(Hz) is far above what units have; it is learned from the samples, down to a third of that");
   }
   if (fields.has("gravity")) {
     const double gravity = fields.number("gravity");

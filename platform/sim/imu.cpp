@@ -59,6 +59,11 @@ pf_imu_sample_t ImuSensor::next() {
   Vec3 gyro, accel;
   true_reading(options_, path_, static_cast<double>(t_ns) * 1e-9, gyro, accel);
   const double root = std::sqrt(options_.rate_hz);
+  Mat3 of_gyro, of_accel;
+  of_gyro.m = options_.gyro_error;
+  of_accel.m = options_.accel_error;
+  gyro += of_gyro * gyro;
+  accel += of_accel * accel;
   gyro += gyro * options_.gyro_scale;
   accel += accel * options_.accel_scale;
   gyro += gyro_bias_ + noise_.normal3() * (options_.gyro_density * root);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "planefold/planefold.h"
@@ -21,9 +22,11 @@ struct ImuOptions {
 
   // What is wrong with it.
   double gyro_scale = 0, accel_scale = 0;  ///< relative errors of scale
-  double gyro_range = 0, accel_range = 0;  ///< [rad/s], [m/s^2] at which readings end; 0: nowhere
-  double jitter_s = 0;                     ///< standard deviation of time stamps, at most a quarter of the interval [s]
-  double gap_at_s = 0, gap_s = 0;          ///< no samples from here on for this long [s]
+  /// Errors of scale and of the directions of the axes: a reading is (1 + E) times the truth.
+  std::array<double, 9> gyro_error{}, accel_error{};  ///< E, row-major
+  double gyro_range = 0, accel_range = 0;             ///< [rad/s], [m/s^2] at which readings end; 0: nowhere
+  double jitter_s = 0;             ///< standard deviation of time stamps, at most a quarter of the interval [s]
+  double gap_at_s = 0, gap_s = 0;  ///< no samples from here on for this long [s]
 };
 
 /// Samples of a unit that is carried along a camera's path, from its derivatives: one after the other, with white noise of

@@ -186,14 +186,16 @@ static void test_check_should_name_what_the_inertial_model_lacks(void) {
   NAMES_REAL(imu.accel_walk, 0, 10.1);
   NAMES_REAL(imu.delay_s, -0.51, 0.51);
   NAMES_REAL(imu.gravity, 8.9, 11.1);
-  NAMES_REAL(imu.sigma_mount_rad, -1e-3, 0.51);
+  NAMES_REAL(imu.sigma_mount_rad, -1e-3, 4.1);
   NAMES_REAL(imu.sigma_mount_m, -1e-3, 1.1);
-  NAMES_REAL(imu.sigma_delay_s, -1e-3, 0.11);
+  NAMES_REAL(imu.sigma_delay_s, -1e-3, 0.21);
   NAMES(imu.sigma_delay_s, 1e-9); /* less than float can hold */
   config.imu.sigma_mount_rad = config.imu.sigma_mount_m = 0.02;
   config.imu.sigma_delay_s = 0.01;
   NAMES_REAL(imu.sigma_readout_s, -1e-3, 0.11);
-  NAMES(imu.sigma_readout_s, 1e-3); /* of a camera whose rows are read out at once */
+  config.imu.sigma_readout_s = 1e-3; /* also of rows of which nothing else is known */
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
+  config.imu.sigma_readout_s = 0;
   TEST_ASSERT_EQUAL_INT(PF_OK, pf_config_check(&config, NULL));
   const int32_t rows = config.capacity.max_state_dim;
   config.capacity.max_state_dim = 32; /* the body alone has 24 */

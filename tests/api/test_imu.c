@@ -267,6 +267,32 @@ static void test_an_uncertain_readout_should_be_a_number_of_the_camera(void) {
   config.imu.sigma_readout_s = 0;
 }
 
+static void test_a_readout_that_nobody_knows_should_begin_at_zero_and_never_fall_below(void) {
+  const double known = config.camera.readout_s;
+  pf_inertial_t inertial;
+  config.camera.readout_s = 0;
+  config.imu.sigma_readout_s = 0.015;
+  use_inertial_model();
+  stand_still(40);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_inertial(slam, &inertial));
+  TEST_ASSERT_TRUE(inertial.readout_s > 0 && inertial.readout_s < 5e-3);
+  TEST_ASSERT_DOUBLE_WITHIN(5e-3, 0.015, inertial.sigma.readout_s);
+  config.camera.readout_s = known;
+  config.imu.sigma_readout_s = 0;
+}
+
+static void test_a_delay_that_is_open_should_wait_for_rotation_and_say_so(void) {
+  pf_imu_report_t report;
+  config.imu.sigma_delay_s = 0.06;
+  use_inertial_model();
+  stand_still(10);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_imu_report(slam, &report));
+  TEST_ASSERT_EQUAL_INT(PF_IMU_REASON_WAITS_FOR_ROTATION, report.reason);
+  TEST_ASSERT_EQUAL_INT(0, report.rejected);
+  TEST_ASSERT_TRUE(report.gyro_density > 0 && report.accel_density > 0);
+  config.imu.sigma_delay_s = 0;
+}
+
 static void test_poses_should_go_on_with_the_samples_when_no_frame_shows_anything(void) {
   pf_pose_t before, after, predicted;
   use_inertial_model();
@@ -360,6 +386,8 @@ int main(void) {
   RUN_TEST(test_poses_should_be_the_same_with_and_without_samples);
   RUN_TEST(test_a_second_at_rest_should_tell_gravity_and_the_gyro_s_bias);
   RUN_TEST(test_an_uncertain_readout_should_be_a_number_of_the_camera);
+  RUN_TEST(test_a_readout_that_nobody_knows_should_begin_at_zero_and_never_fall_below);
+  RUN_TEST(test_a_delay_that_is_open_should_wait_for_rotation_and_say_so);
   RUN_TEST(test_poses_should_go_on_with_the_samples_when_no_frame_shows_anything);
   RUN_TEST(test_asking_for_the_unit_should_leave_the_block_as_it_was);
   RUN_TEST(test_reset_should_forget_the_samples);

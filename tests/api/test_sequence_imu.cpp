@@ -259,7 +259,7 @@ static void test_noise_should_be_refused_when_a_field_is_missing_or_in_other_uni
   noise_refused("gyroscope_noise_density: 1.87e-04\n", "", "gyroscope_noise_density");
   noise_refused("1.87e-04", "1.87e-02", "degrees");
   noise_refused("1.87e-04", "1.87e-06", "gyroscope_noise_density");
-  noise_refused("1.86e-03", "1.86e-01", "accelerometer_noise_density");
+  noise_refused("1.86e-03", "1.86", "accelerometer_noise_density");
   noise_refused("1.86e-03", "1.86e-05", "accelerometer_noise_density");
   noise_refused("2.66e-05", "nan", "finite");
   noise_refused("gyroscope_random_walk", "gyroscope_random_wlak", "meant");

@@ -137,7 +137,7 @@ def inertial(root):
     q, p = imu["mount"]["q_BC"], imu["mount"]["p_BC"]
     rows = [[*row, length] for row, length in zip(rotation_of(q), p)] + [[0, 0, 0, 1]]
     (root / "mount.yaml").write_text(f"T_imu_cam: {[number for row in rows for number in row]}\n")
-    again = ["--source", f"euroc:{root}/unit", "--imu-noise", root / "noise.yaml", "--imu-mount", root / "mount.yaml"]
+    again = ["--source", f"euroc:{root}/unit", "--imu-noise", root / "noise.yaml", "--imu-mount", root / "mount.yaml", "--imu-exact", "mount,delay"]
     replayed = capture(root / "vio again", *again, start=FREE)["imu"]
     expect(replayed["start_frame"] == imu["start_frame"] and replayed["metric"], f"replay: {replayed}")
     apart = [abs(a - b) for one, two in zip(positions(root / "vio again"), positions(root / "vio"), strict=True) for a, b in zip(one, two)]
@@ -172,7 +172,10 @@ def refusals(root):
     bad.write_text("".join(f"{i},0,0,{0 if i != 3 else 5000},0,0,1\n" for i in range(1, 10)))
     report = capture(root / "absurd", "--source", "sim:desk", "--frames", "5", "--imu", f"csv:{bad}", "--imu-offset", "-1")
     expect(report["imu"]["samples"] == 8 and report["imu"]["refused"] == 1, f"absurd: {report['imu']}")
-    for arguments, part in [(["--imu", "csv:x", "--imu-noise", "x"], "--imu-mount"), (["--imu", "csv:x", "--imu-mount", "x"], "--imu-noise"),
+    for arguments, part in [(["--imu", "csv:x", "--imu-noise", "x", "--imu-exact", "mount"], "--imu-mount"),
+                            (["--imu-noise", "x", "--imu-mount", "x", "--imu-exact", "delay", "--estimate", "delay"], "exclude each other"),
+                            (["--imu-noise", "x", "--imu-mount", "x", "--imu-exact", "colour"], "mount, delay"),
+                            (["--imu", "sim", "--imu-clock", "first-sample"], "--imu-clock"), (["--imu", "csv:x", "--imu-mount", "x"], "--imu-noise"),
                             (["--imu", "none", "--imu-noise", "x"], "--imu none"), (["--imu", "sim", "--imu-noise", "x", "--imu-mount", "x"], "--imu sim"),
                             (["--imu", "sim", "--realtime"], "--realtime"), (["--imu-noise", "x", "--imu-mount", "x"], "--imu"),
                             (["--rest", "-1"], "--rest"), (["--imu", "magic"], "csv:FILE"), (["--imu", "csv:"], "csv:FILE"), (["--imu-offset", "nan"], "--imu-offset"),

@@ -11,6 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, fail, run  # noqa: E402
 
 SEEDS = 4
+EXACT = ("--imu-exact", "mount,delay")
 
 
 def require(condition, message):
@@ -20,6 +21,7 @@ def require(condition, message):
 
 def report(folder, *options):
     path = folder / "vio.json"
+    options = options if "--estimate" in options or "--unit" in options or "--axes" in options else (*options, *EXACT)
     text = run(BIN / "pf-sim", "vio", "--seeds", str(SEEDS), "--json", path, *options)
     print(text)
     return json.loads(path.read_text()), text
@@ -60,7 +62,7 @@ with tempfile.TemporaryDirectory() as name:
     require(drawn["lost_runs"] == 0 and drawn["doubt"]["runs"] == 0, f"rows in pictures: {drawn['doubt']}")
     require(drawn["readout_error_ms"]["max"] < 2 and drawn["readout_sigmas"]["max"] < 5, f"{drawn['readout_error_ms']}")
     require(1.5 < drawn["nees_pose"]["mean"] < 12, f"pose NEES {drawn['nees_pose']['mean']} with rows in pictures")
-    run(BIN / "pf-sim", "vio", "--rendered", "--seeds", "1", "--seconds", "14", "--readout", "0.03", "--as-global", "--json", path)
+    run(BIN / "pf-sim", "vio", "--rendered", "--seeds", "1", "--seconds", "14", "--readout", "0.03", "--as-global", *EXACT, "--json", path)
     require(json.loads(path.read_text())["doubt"]["runs"] == 1, "rows that nobody tells of pass for none")
 
     dark, _ = report(folder, "--seconds", "12", "--blackout-at", "7", "--blackout", "1")
@@ -76,7 +78,7 @@ with tempfile.TemporaryDirectory() as name:
     require(moving["gauge_growth"] < 1e-9, f"information about six directions grew by {moving['gauge_growth']}")
     for seed in ("10", "20"):
         path = folder / "poor.json"
-        run(BIN / "pf-sim", "vio", "--start", "moving", "--seeds", "1", "--first-seed", seed, "--seconds", "8", "--json", path)
+        run(BIN / "pf-sim", "vio", "--start", "moving", "--seeds", "1", "--first-seed", seed, "--seconds", "8", *EXACT, "--json", path)
         poor = json.loads(path.read_text())["starts"]
         require(poor["accepted_poor"] == 0 and poor["good"] == 0, f"metres from a camera that tells nothing: {poor}")
 
@@ -112,10 +114,18 @@ with tempfile.TemporaryDirectory() as name:
 
     # Search ellipses about a wrong prediction hold nothing.
     path = folder / "rendered.json"
-    run(BIN / "pf-sim", "vio", "--rendered", "--seeds", "1", "--seconds", "13", "--fault", "reversed", "--fault-at", "6", "--json", path)
+    run(BIN / "pf-sim", "vio", "--rendered", "--seeds", "1", "--seconds", "13", "--fault", "reversed", "--fault-at", "6", *EXACT, "--json", path)
     seen = json.loads(path.read_text())
     require(seen["lost_runs"] == 0 and seen["doubt"]["runs"] == 1, f"reversed in pictures: {seen['doubt']}")
     require(seen["fault"]["tracked_after"] > 0.99 and seen["fault"]["worst_sigmas_after"] < 4, f"{seen['fault']}")
+
+    # A unit as phones have it, of which nothing but a third of its noise and about how it is mounted is told.
+    phone, _ = report(folder, "--seconds", "14", "--unit", "phone")
+    require(phone["doubt"]["runs"] == 0 and phone["lost_runs"] == 0, f"a phone's unit: {phone['doubt']}")
+    require(phone["starts"]["accepted"] == SEEDS, f"a phone's unit: {phone['starts']}")
+    # Axes of which nothing is told are found.
+    turned, _ = report(folder, "--seconds", "10", "--axes", "13")
+    require(turned["starts"]["accepted"] == SEEDS and turned["mount_error_deg"]["max"] < 1, f"any axes: {turned['mount_error_deg']}")
 
     unknown = subprocess.run([BIN / "pf-sim", "vio", "--fault", "magic"], capture_output=True, text=True)
     require(unknown.returncode == 2 and "clock-jump" in unknown.stderr, f"{unknown.returncode}: {unknown.stderr}")

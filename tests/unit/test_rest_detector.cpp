@@ -19,7 +19,8 @@ struct Bench {
   Settings settings;
   Frame frame;
   ImuLog log;
-  RestDetector detector{settings, frame, log};
+  UnitNoise noise{settings, log};
+  RestDetector detector{settings, frame, log, noise};
   SeededRandom random{321};
   Vec3 gyro = Vec3(Scalar(0.02), Scalar(-0.01), Scalar(0.03));
   Scalar shake = 0;           ///< [m/s^2] on top of the unit's noise

@@ -10,6 +10,7 @@
 #include "../lib/command_line.h"
 #include "backend_option.h"
 #include "commands.h"
+#include "phone.h"
 #include "planefold_platform/sim.h"
 #include "report.h"
 #include "statistics.h"
@@ -22,6 +23,9 @@ using nlohmann::json;
 
 constexpr double kSigmaMountRad = 2 * 3.14159265358979 / 180, kSigmaMountM = 0.02, kSigmaDelayS = 0.01,
                  kSigmaReadoutS = 0.01;
+// Of what nobody tells, as pf-capture takes it.
+constexpr double kUsualMountRad = 0.052, kUsualMountM = 0.03, kUsualDelayS = 0.06, kUsualReadoutS = 0.015;
+constexpr double kAnyMountRad = 3, kAnyMountM = 0.1;
 
 struct Choices {
   BackendOption backend;
@@ -30,7 +34,9 @@ struct Choices {
   std::uint64_t first_seed = 1;
   double turn_deg_s = 0, vertical_deg = 0;
   bool no_imu = false, still = false;
-  std::vector<std::string> estimate;  ///< of the unit: mount, delay
+  std::vector<std::string> estimate;   ///< of the unit: mount, delay
+  std::vector<std::string> imu_exact;  ///< likewise, taken as told
+  std::string unit = "laboratory";
   double noise_scale = 1;
   std::string json_file, csv, fault = "none", start = "rest";
 };
@@ -173,11 +179,11 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
     if (one.mount_error_rad >= 0) one.mount_error_rad *= 180 / 3.14159265358979;
     if (one.delay_error_s >= 0) one.delay_error_s *= 1e3;
   }
-  if (c.vio.sigma_mount_rad > 0) {
+  if (c.vio.told_mount_rad > 0) {
     out["mount_error_deg"] = of_all(units.data(), c.seeds, &VioSummary::mount_error_rad);
     out["mount_error_m"] = of_all(s, c.seeds, &VioSummary::mount_error_m);
   }
-  if (c.vio.sigma_delay_s > 0) out["delay_error_ms"] = of_all(units.data(), c.seeds, &VioSummary::delay_error_s);
+  if (c.vio.told_delay_s > 0) out["delay_error_ms"] = of_all(units.data(), c.seeds, &VioSummary::delay_error_s);
   if (c.vio.sigma_readout_s > 0) {
     std::vector<VioSummary> readouts(s, s + c.seeds);
     for (VioSummary& one : readouts)
@@ -185,7 +191,7 @@ json summarise_vio(const Choices& c, const FrameRow* rows, const VioSummary* s) 
     out["readout_error_ms"] = of_all(readouts.data(), c.seeds, &VioSummary::readout_error_s);
     out["readout_sigmas"] = of_all(readouts.data(), c.seeds, &VioSummary::readout_sigmas);
   }
-  if (c.vio.sigma_mount_rad > 0 || c.vio.sigma_delay_s > 0)
+  if (c.vio.told_mount_rad > 0 || c.vio.told_delay_s > 0)
     out["mount_sigmas"] = of_all(s, c.seeds, &VioSummary::mount_sigmas);
   for (VioSummary& one : units) {
     one.tilt_rad *= 180 / 3.14159265358979;
@@ -364,6 +370,48 @@ std::string refused_by_window(const Choices& c) {
   return "";
 }
 
+/// "" when all is well. Near what is told where --estimate says so, as told where --imu-exact does, and else as people know it.
+std::string choose_unit(Choices* c) {
+  const auto has = [](const std::vector<std::string>& list, const char* what) {
+    return std::find(list.begin(), list.end(), what) != list.end();
+  };
+  VioOptions& o = c->vio;
+  for (const std::string& what : c->estimate)
+    if (what != "mount" && what != "delay" && what != "readout")
+      return "--estimate " + what + ": write mount, delay, readout or some of them, as mount,delay";
+  for (const std::string& what : c->imu_exact) {
+    if (what != "mount" && what != "delay")
+      return "--imu-exact " + what + ": write mount, delay or both, as mount,delay";
+    if (has(c->estimate, what.c_str()))
+      return "--imu-exact " + what + " and --estimate " + what + " exclude each other";
+  }
+  if (c->unit != "laboratory" && c->unit != "phone") return "--unit " + c->unit + ": write laboratory or phone";
+  if (o.axes > 23) return "--axes is 0 to 23";
+  if (o.axes >= 0 && (has(c->imu_exact, "mount") || has(c->estimate, "mount")))
+    return "--axes: nothing is told of them; leave mount out of --imu-exact and --estimate";
+  o.phone = c->unit == "phone";
+  const bool usual = c->estimate.empty();
+  if (has(c->estimate, "mount")) {
+    o.sigma_mount_rad = o.told_mount_rad = kSigmaMountRad;
+    o.sigma_mount_m = o.told_mount_m = kSigmaMountM;
+  } else if (o.axes >= 0 || (usual && !has(c->imu_exact, "mount"))) {
+    o.told_mount_rad = o.axes >= 0 ? kAnyMountRad : kUsualMountRad;
+    o.told_mount_m = o.axes >= 0 ? kAnyMountM : kUsualMountM;
+  }
+  if (has(c->estimate, "delay"))
+    o.sigma_delay_s = o.told_delay_s = kSigmaDelayS;
+  else if (usual && !has(c->imu_exact, "delay"))
+    o.told_delay_s = kUsualDelayS;
+  if (has(c->estimate, "readout")) o.sigma_readout_s = kSigmaReadoutS;
+  if (!o.phone) return "";
+  if (o.sigma_readout_s > 0 || o.as_global || o.readout_s > 0)
+    return "--unit phone has rows of its own; leave --readout, --as-global and --estimate readout away";
+  o.readout_s = kPhoneReadout;
+  o.told_readout_s = 0;
+  o.sigma_readout_s = kUsualReadoutS;
+  return "";
+}
+
 int run(Choices c) {
   const VioOptions& o = c.vio;
   const std::string refused = c.backend.is_window() ? refused_by_window(c) : "";
@@ -392,21 +440,11 @@ int run(Choices c) {
   if (c.vio.moving && c.still) return fail("--start moving does not go with --still");
   if (c.still) c.vio.rest_s = o.seconds + 1;
   c.vio.use_imu = !c.no_imu;
-  for (const std::string& what : c.estimate) {
-    if (what == "mount") {
-      c.vio.sigma_mount_rad = kSigmaMountRad;
-      c.vio.sigma_mount_m = kSigmaMountM;
-    } else if (what == "delay") {
-      c.vio.sigma_delay_s = kSigmaDelayS;
-    } else if (what == "readout") {
-      c.vio.sigma_readout_s = kSigmaReadoutS;
-    } else {
-      return fail("--estimate " + what + ": write mount, delay, readout or some of them, as mount,delay");
-    }
-  }
+  const std::string wrong = choose_unit(&c);
+  if (!wrong.empty()) return fail(wrong);
   if (!(o.readout_s >= 0 && o.readout_s <= 0.1)) return fail("--readout is 0 to 0.1 seconds");
   if (o.as_global && o.sigma_readout_s > 0) return fail("--as-global does not go with --estimate readout");
-  if (o.sigma_readout_s > 0 && o.readout_s <= kSigmaReadoutS)
+  if (o.told_readout_s < 0 && o.sigma_readout_s > 0 && o.readout_s <= kSigmaReadoutS)
     return fail(
         "--estimate readout: the rows of a camera that is known to take 10 ms less; add --readout S above 0.01");
   pf_sim_options_t scene;
@@ -478,8 +516,15 @@ void add_vio(CLI::App& app, int& result) {
   command
       ->add_option("--estimate", c->estimate,
                    "mount, delay: drawn with 2 degrees, 2 cm and 10 ms, and estimated from there on; readout: known as "
-                   "10 ms less than --readout, and estimated")
+                   "10 ms less than --readout, and estimated; the others as told. Without it mounting and delay are "
+                   "estimated from 3 degrees, 3 cm and any delay within 0.2 s")
       ->delimiter(',');
+  command->add_option("--imu-exact", c->imu_exact, "mount, delay: as told, and not estimated")->delimiter(',');
+  command->add_option("--unit", c->unit,
+                      "laboratory; or phone: scales off by 1 %, axes by 0.5 %, three times the noise, 50 ms early with "
+                      "a jitter of 1 ms, 2 degrees off, and rows read out over 20 ms, of all of which nothing is told");
+  command->add_option("--axes", c->vio.axes, "0 to 23: the unit's axes, of which nothing is told")
+      ->check(CLI::Range(0, 23));
   command->add_option(
       "--start", c->start,
       "rest; or moving: it moves from the first frame on, in every tenth run too evenly to tell the scale");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "context.h"
+#include "phone.h"
 #include "statistics.h"
 #include "update_cost.h"
 #include "vio_planes.h"
@@ -41,7 +42,9 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   pf_config_t config;
   pf_config_default(&config);
   config.camera = camera;
-  config.camera.readout_s = o.as_global ? 0 : o.readout_s - o.sigma_readout_s;
+  config.camera.readout_s = o.as_global             ? 0
+                            : o.told_readout_s >= 0 ? o.told_readout_s
+                                                    : o.readout_s - o.sigma_readout_s;
   config.capacity.max_imu_samples = 2000;
   config.clock_ns = thread_clock;
   if (!o.rendered) {
@@ -63,16 +66,18 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   config.imu.accel_density = o.imu.accel_density;
   config.imu.gyro_walk = o.imu.gyro_walk;
   config.imu.accel_walk = o.imu.accel_walk;
-  const auto q = pf::sim::quaternion_of(o.imu.R_BC);
-  std::copy(q.begin(), q.end(), config.imu.q_BC);
-  config.imu.p_BC[0] = o.imu.p_BC.x;
-  config.imu.p_BC[1] = o.imu.p_BC.y;
-  config.imu.p_BC[2] = o.imu.p_BC.z;
+  if (o.axes < 0) {
+    const auto q = pf::sim::quaternion_of(o.imu.R_BC);
+    std::copy(q.begin(), q.end(), config.imu.q_BC);
+    config.imu.p_BC[0] = o.imu.p_BC.x;
+    config.imu.p_BC[1] = o.imu.p_BC.y;
+    config.imu.p_BC[2] = o.imu.p_BC.z;
+  }
   config.imu.delay_s = o.imu.delay_s;
   config.imu.gravity = o.imu.gravity_W.norm();
-  config.imu.sigma_mount_rad = o.sigma_mount_rad;
-  config.imu.sigma_mount_m = o.sigma_mount_m;
-  config.imu.sigma_delay_s = o.sigma_delay_s;
+  config.imu.sigma_mount_rad = o.told_mount_rad;
+  config.imu.sigma_mount_m = o.told_mount_m;
+  config.imu.sigma_delay_s = o.told_delay_s;
   config.imu.sigma_readout_s = o.sigma_readout_s;
   return config;
 }
@@ -128,6 +133,8 @@ class Run {
       imu.p_BC = imu.R_BC * (origin_C + shift) * -1;
     }
     imu.delay_s += delay;
+    if (o.axes >= 0) turn_axes(o.axes, &imu);
+    if (o.phone) make_phone(seed, &imu);
     if (o.fault == VioFault::kGap) {
       imu.gap_at_s = o.fault_at_s;
       imu.gap_s = kStill;
@@ -169,7 +176,7 @@ class Run {
     const bool wrong = o_.fault != VioFault::kNone && t_ns >= in_ns(o_.fault_at_s);
     const std::int64_t until_ns = wrong && o_.fault == VioFault::kLate ? t_ns - in_ns(kLateBy) : t_ns;
     std::vector<pf_imu_sample_t> samples;
-    while (sensor_.next_ns() <= until_ns + in_ns(kAhead * o_.sigma_delay_s)) {
+    while (sensor_.next_ns() <= until_ns + in_ns(kAhead * o_.told_delay_s)) {
       samples.push_back(sensor_.next());
       if (wrong && o_.fault == VioFault::kClockJump) samples.back().t_ns += in_ns(kClockJump);
       if (wrong && o_.fault == VioFault::kReversed && t_ns < in_ns(o_.fault_at_s + kReversed)) reverse(&samples.back());
@@ -210,7 +217,7 @@ class Run {
     push_samples(t_ns);
     rows_[k].nees_position = rows_[k].nees_pose = -1;
     if (o_.fault == VioFault::kFramesStop && t >= o_.fault_at_s && t < o_.fault_at_s + kStill) return true;
-    const Pose truth = truth_at(t);
+    Pose truth = truth_at(t);
     const bool dark = is_dark(t);
     const pf_status_t status = o_.rendered ? push_picture(t_ns, dark) : push_points(t_ns, dark);
     pf_pose_t pose;
@@ -227,6 +234,10 @@ class Run {
     out_.imu_seconds += 1e-9 * static_cast<double>(report.stage_ns[PF_STAGE_IMU]);
     for (const std::int64_t ns : report.stage_ns) out_.frame_seconds += 1e-9 * static_cast<double>(ns);
     note_blackout(k, dark, status);
+    if (begins_anew(pose.map_id)) {
+      first_ = world_.path()(t);
+      last_ = truth = truth_at(t);
+    }
     note_doubt(t, pose);
     const bool judged = note_unit(k, report);
     if (judged && out_.start_s < 0) {
@@ -260,7 +271,8 @@ class Run {
     if (judged && out_.start_s == t) out_.start_scale_error = scale_error();
     const Vec3 e = truth.p_WC - Vec3{pose.p_WC[0], pose.p_WC[1], pose.p_WC[2]};
     out_.end_error_m = e.norm();
-    if (out_.scale_error_5s < 0 && t >= begin_s() + kScaleAfter) out_.scale_error_5s = scale_error();
+    if ((judged || !o_.use_imu) && out_.scale_error_5s < 0 && t >= begin_s() + kScaleAfter)
+      out_.scale_error_5s = scale_error();
     if (out_.readout_error_s < 0 && t >= begin_s() + kReadoutAfter) note_readout();
     return true;
   }
@@ -269,6 +281,13 @@ class Run {
     if (dark) out_.dark_end_frame = k + 1;
     if (out_.dark_end_frame > 0 && !dark && out_.tracked_again_frame < 0 && status == PF_OK)
       out_.tracked_again_frame = k;
+  }
+
+  /// A new map up to scale begins with this frame's camera; one that goes on in metres, or begins at rest, stays where it is.
+  bool begins_anew(std::uint32_t map_id) const {
+    pf_inertial_t unit;
+    return o_.use_imu && map_id_ != 0 && map_id != map_id_ && pf_get_inertial(context_.slam, &unit) == PF_OK &&
+           unit.metric == 0;
   }
 
   void note_doubt(double t, const pf_pose_t& pose) {
@@ -321,9 +340,9 @@ class Run {
     const Vec3 turn = pf::sim::rotation_log(unit_.R_BC * pf::sim::rotation_of(unit.q_BC).transposed());
     const Vec3 shift = unit_.p_BC - Vec3{unit.p_BC[0], unit.p_BC[1], unit.p_BC[2]};
     const double delay = unit_.delay_s - unit.delay_s;
-    if (o_.sigma_mount_rad > 0) out_.mount_error_rad = turn.norm();
-    if (o_.sigma_mount_m > 0) out_.mount_error_m = shift.norm();
-    if (o_.sigma_delay_s > 0) out_.delay_error_s = std::fabs(delay);
+    if (o_.told_mount_rad > 0) out_.mount_error_rad = turn.norm();
+    if (o_.told_mount_m > 0) out_.mount_error_m = shift.norm();
+    if (o_.told_delay_s > 0) out_.delay_error_s = std::fabs(delay);
     const double e[7] = {turn.x, turn.y, turn.z, shift.x, shift.y, shift.z, delay};
     const auto& s = unit.sigma;
     const double sigma[7] = {s.mount_rad[0], s.mount_rad[1], s.mount_rad[2], s.mount_m[0],
@@ -399,7 +418,7 @@ class Run {
   const pf::sim::ImuOptions unit_;
   pf::sim::ImuSensor sensor_;
   const Context context_;
-  const Pose first_;
+  Pose first_;  ///< W of the library's map
   VioPlaneWatch planes_;
   double tilt_squares_ = 0;
   Pose last_;

@@ -38,10 +38,16 @@ struct VioOptions {
   double sigma_px = 0.5;
   double sigma_gyro_bias = 0.02;  ///< from which a run's biases are drawn [rad/s]
   double sigma_accel_bias = 0.1;  ///< [m/s^2]
-  /// From which the errors of the unit's mounting and delay are drawn, and with which they are estimated [rad], [m], [s]; 0: exact.
+  /// From which the errors of the unit's mounting and delay are drawn [rad], [m], [s]; 0: none.
   double sigma_mount_rad = 0, sigma_mount_m = 0, sigma_delay_s = 0;
+  /// With which they are estimated; 0: taken as exact.
+  double told_mount_rad = 0, told_mount_m = 0, told_delay_s = 0;
+  int axes =
+      -1;  ///< of the unit, that nothing is told of: one of the 24 rotations of a cube on top of its mounting; negative: as they are
+  bool phone = false;          ///< the unit is one of a phone (phone.h)
   double readout_s = 0;        ///< of the frames' rows
   double sigma_readout_s = 0;  ///< known as that much less, and estimated; 0: known exactly
+  double told_readout_s = -1;  ///< known as that, and estimated; negative: as above
   bool as_global = false;      ///< the readout is not known at all
   int points = 300;
   double turn_rad_s = 0;  ///< of a camera on a turntable that rests otherwise

@@ -238,14 +238,16 @@ typedef struct pf_imu_model {
   double delay_s; /* t_frame = t_sample + delay, -0.5 .. 0.5. Default 0 */
   double gravity; /* [m/s^2] 9 .. 11. Default 9.81 */
   /* How far the mounting and the delay may be off, of each axis: standard deviations, from which
-   * they are then estimated (pf_get_inertial). 0: taken as exact; else at least 1e-6. Defaults 0 */
-  double sigma_mount_rad; /* of the unit's axes, up to 0.5. Three rows of the state */
+   * they are then estimated (pf_get_inertial). 0: taken as exact; else at least 1e-6. Defaults 0.
+   * Axes above 0.2 and a delay above 0.02 are open: the camera moves as without a unit until its
+   * rotations have told them, a second of handling or two. A delay is found within 0.2 s. */
+  double sigma_mount_rad; /* of the unit's axes, up to 4 (any). Three rows of the state */
   double sigma_mount_m;   /* of its origin in C, up to 1. Three rows */
-  /* Of the delay, up to 0.1. One row. A frame then hangs on samples that may be as much later: push
+  /* Of the delay, up to 0.2. One row. A frame then hangs on samples that may be as much later: push
    * those of up to three sigma behind its time before it, as far as they have come. */
   double sigma_delay_s;
-  /* Of camera.readout_s, which must be above 0 then; up to 0.1. One more row of the lens, which is
-   * considered where camera.estimate says so, and else estimated. */
+  /* Of camera.readout_s, which may be 0 then; up to 0.1. One more row of the lens, which is
+   * considered where camera.estimate says so, and else estimated. It never falls below 0. */
   double sigma_readout_s;
 } pf_imu_model_t;
 
@@ -862,6 +864,27 @@ typedef struct pf_report {
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);
 
+/* Why samples do not move the pose, or why lengths are not metres. Behind each, what reason_value
+ * of pf_imu_report_t is. */
+typedef enum pf_imu_reason {
+  PF_IMU_REASON_NONE = 0,
+  PF_IMU_REASON_WAITS_FOR_ROTATION = 1, /* the delay or the axes are open, and nothing tells yet */
+  /* gravity and scale are not known yet: relative sigma of the scale so far, 0: none */
+  PF_IMU_REASON_WAITS_FOR_MOTION = 2,
+  PF_IMU_REASON_CONTRADICTS = 3,            /* innovations that no plausible noise explains */
+  PF_IMU_REASON_GYRO_IN_DEGREES = 4,        /* rates are too large by this factor, about 57.3 */
+  PF_IMU_REASON_GYRO_SCALE = 5,             /* likewise, some other factor */
+  PF_IMU_REASON_AXES = 6,                   /* other axes fit (reason_q_BC), so many degrees away */
+  PF_IMU_REASON_LEFT_HANDED = 7,            /* only a reflection fits: an axis has the wrong sign */
+  PF_IMU_REASON_CLOCK = 8,                  /* the delay that would fit [s] */
+  PF_IMU_REASON_RATES_DO_NOT_FIT = 9,       /* share of the camera's rotations not explained */
+  PF_IMU_REASON_COLUMNS_SWAPPED = 10,       /* the rates read like gravity: their mean length */
+  PF_IMU_REASON_ACCEL_IN_G = 11,            /* mean specific force, about 1 */
+  PF_IMU_REASON_ACCEL_WITHOUT_GRAVITY = 12, /* mean specific force, about 0 */
+  PF_IMU_REASON_ACCEL_UNIT = 13,            /* mean specific force, neither */
+  PF_IMU_REASON_ACCEL_SIGN = 14             /* accelerations have the opposite sign */
+} pf_imu_reason_t;
+
 /* What came in through pf_push_imu since create or reset. */
 typedef struct pf_imu_report {
   int64_t samples;
@@ -883,6 +906,12 @@ typedef struct pf_imu_report {
    * scale. */
   int32_t rejected;
   double rejected_s; /* for how long in all */
+  int32_t reason;    /* pf_imu_reason_t, now */
+  double reason_value;
+  double reason_q_BC[4]; /* w x y z; of the axes that fit, where the reason is about axes */
+  /* Densities as they are known now, learned from samples and innovations: between a third and ten
+   * times those of the config. 0 without PF_MOTION_INERTIAL */
+  double gyro_density, accel_density;
 } pf_imu_report_t;
 
 PF_API pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report);

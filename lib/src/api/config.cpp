@@ -87,9 +87,9 @@ constexpr Range kUnit[] = {
 };
 
 constexpr Range kUnitSigmas[] = {
-    PF_FIELD(imu.sigma_mount_rad, 1e-6, 0.5),
+    PF_FIELD(imu.sigma_mount_rad, 1e-6, 4),
     PF_FIELD(imu.sigma_mount_m, 1e-6, 1),
-    PF_FIELD(imu.sigma_delay_s, 1e-6, 0.1),
+    PF_FIELD(imu.sigma_delay_s, 1e-6, 0.2),
     PF_FIELD(imu.sigma_readout_s, 1e-6, 0.1),
 };
 
@@ -128,7 +128,6 @@ const char* lens_from(const pf_camera_t& c, const pf_config_t& config, Settings*
   const char* bad = c.estimate == PF_CAMERA_EXACT ? nullptr : shape_from(c, config, &sigmas);
   if (bad != nullptr) return bad;
   if (config.motion.model == PF_MOTION_INERTIAL) sigmas.readout = static_cast<Scalar>(config.imu.sigma_readout_s);
-  if (sigmas.readout > Scalar(0) && !(c.readout_s > 0)) return "imu.sigma_readout_s";
   settings->lens = make_lens_prior(sigmas, &settings->camera);
   if (settings->lens.rows.count > 0 && config.backend != PF_BACKEND_WINDOW)
     settings->body.add_constant(BodyPart::kLens, settings->lens.rows.count, c.estimate == PF_CAMERA_CONSIDER);
@@ -274,6 +273,10 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   // Rows hang on the camera's speeds, and these on the frames' times; but with an inertial unit on its samples.
   const bool timeless = c.timestamps == PF_TIMESTAMPS_NOMINAL && !settings->inertial;
   settings->camera.readout = timeless ? Scalar(0) : static_cast<Scalar>(c.readout_s);
+  if (settings->lens.rows.has_readout()) {
+    constexpr Scalar kStays[pf::kLensParameters] = {};
+    move_lens(settings->lens.rows, kStays, &settings->camera);  // as every step of it, to one that is possible
+  }
   settings->readout_ignored = timeless && c.readout_s > 0;
 
   settings->backend = static_cast<BackEnd>(config.backend);

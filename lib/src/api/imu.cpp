@@ -13,6 +13,12 @@ bool within(const double* v, double max) {
   return std::fabs(v[0]) <= max && std::fabs(v[1]) <= max && std::fabs(v[2]) <= max;
 }
 
+/// With w not negative.
+void copy_rotation(const pf::Quat& q, double* out) {
+  const pf::Scalar sign = q.w() < 0 ? pf::Scalar(-1) : pf::Scalar(1), parts[4] = {q.w(), q.x(), q.y(), q.z()};
+  for (int i = 0; i < 4; ++i) out[i] = static_cast<double>(sign * parts[i]);
+}
+
 }  // namespace
 
 pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count) {
@@ -58,6 +64,11 @@ pf_status_t pf_get_imu_report(const pf_slam_t* slam, pf_imu_report_t* report) {
   const pf::UnitDoubt doubt = slam->session.view().unit_doubt();
   report->rejected = doubt.doubted ? 1 : 0;
   report->rejected_s = 1e-9 * static_cast<double>(doubt.doubted_ns);
+  report->reason = static_cast<int32_t>(doubt.reason);
+  report->reason_value = static_cast<double>(doubt.reason_value);
+  copy_rotation(pf::Quat(doubt.reason_R_CB.transpose()), report->reason_q_BC);
+  report->gyro_density = static_cast<double>(doubt.gyro_density);
+  report->accel_density = static_cast<double>(doubt.accel_density);
   return PF_OK;
 }
 
@@ -80,9 +91,7 @@ pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial) {
   inertial->resting = unit.resting ? 1 : 0;
   inertial->rests = static_cast<uint32_t>(unit.rests);
   inertial->map_id = view.tracking().map_id();
-  const double q[4] = {static_cast<double>(unit.q_BC.w()), static_cast<double>(unit.q_BC.x()),
-                       static_cast<double>(unit.q_BC.y()), static_cast<double>(unit.q_BC.z())};
-  for (int i = 0; i < 4; ++i) inertial->q_BC[i] = q[0] < 0 ? -q[i] : q[i];
+  copy_rotation(unit.q_BC, inertial->q_BC);
   pf::copy(unit.p_BC, 3, inertial->p_BC);
   inertial->delay_s = unit.delay_s;
   inertial->readout_s = unit.readout_s;

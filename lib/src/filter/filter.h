@@ -219,8 +219,8 @@ class Filter {
   ///
   ///   nis = y^T A (A^T A)^-1 A^T y = e^T (P_before - P_after)^-1 e,   e the correction of the pose
   ///
-  /// chi-square with six degrees of freedom. False where it does not say all of the pose.
-  bool pose_nis(Scalar* nis) const;
+  /// chi-square with six degrees of freedom; *of_rotation: the rotation's, with three. False where it does not say all of the pose.
+  bool pose_nis(Scalar* nis, Scalar* of_rotation) const;
 
   /// What a unit at rest should read, with R = R_WB and g = gravity R_WG e_z:
   ///

@@ -37,6 +37,21 @@ void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounti
   set_gravity_by_rotation(rows, false, transition);
 }
 
+void begin_mounting(const Body& body, const BodyLayout& layout, const Mat3& turned, Scalar sigma_turn,
+                    Scalar sigma_delay, Transition* transition) {
+  const PartRows rows(layout);
+  clear(transition, body, rows.dim);
+  set_block<3>(transition->F, rows.dim, rows.gyro, rows.gyro, turned);
+  if (rows.turn >= 0 && sigma_turn > Scalar(0)) {
+    forget_rows(transition, rows.turn, 3);
+    add_variance(transition, rows.turn, 3, sigma_turn);
+  }
+  if (rows.delay >= 0 && sigma_delay > Scalar(0)) {
+    forget_rows(transition, rows.delay, 1);
+    add_variance(transition, rows.delay, 1, sigma_delay);
+  }
+}
+
 void predict_at_rest(const Body& body, const BodyLayout& layout, Scalar dt, const ImuNoise& noise, Scalar sigma_rad,
                      Scalar sigma_m, Transition* transition) {
   const PartRows rows(layout);

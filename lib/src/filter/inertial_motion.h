@@ -64,6 +64,13 @@ struct FreshReading {
 void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, const FreshReading& fresh,
                         Transition* transition);
 
+/// The unit's axes and its delay become known anew, each with its sigma where that is above 0, while samples do not move the body: the rows
+/// of the gyro's bias are those of the angular velocity in the old axes, and go over to the new ones.
+///
+/// turned: R_CB_newᵀ R_CB_old
+void begin_mounting(const Body& body, const BodyLayout& layout, const Mat3& turned, Scalar sigma_turn,
+                    Scalar sigma_delay, Transition* transition);
+
 /// What a second at rest says. Readings are means over it.
 struct RestReading {
   Vec3 gyro = Vec3::Zero();   ///< [rad/s]

@@ -82,7 +82,7 @@ bool Filter::finish_update_near(const Measurement& z, const Body& near, Scalar* 
   return true;
 }
 
-bool Filter::pose_nis(Scalar* nis) const {
+bool Filter::pose_nis(Scalar* nis, Scalar* of_rotation) const {
   Mat6 A = Mat6::Zero();
   Vec6 b = Vec6::Zero();
   for (int k = 0; k < blocks_.gained_rows(); ++k) {
@@ -92,7 +92,11 @@ bool Filter::pose_nis(Scalar* nis) const {
   }
   SmallCholesky<Body::kPoseDim> cholesky;
   if (!cholesky.factor(A)) return false;
+  SmallCholesky<3> rotation;
+  if (!rotation.factor(Mat3(A.topLeftCorner<3, 3>()))) return false;
+  const Vec3 b_theta = b.head<3>();
   *nis = b.dot(cholesky.solve<1>(b));
+  *of_rotation = b_theta.dot(rotation.solve<1>(b_theta));
   return true;
 }
 

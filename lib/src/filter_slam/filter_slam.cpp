@@ -146,7 +146,7 @@ void FilterSlam::begin_frame(std::int64_t t_ns) {
   const bool nothing_measured = frame_.report.inliers == 0;
   data_.follows = tracking_.has_pose() && !tracking_.coasting_or_lost() && !start_.recorder().progress().pending();
   frame_.begin(t_ns);
-  if (data_.map_discredited) begin_new_map("the map's scale came from a unit that is doubted: a new map begins");
+  if (data_.map_discredited) begin_new_map(unit_.why_discredited());
   if (images_.is_map_fixed() && tracking_.has_pose() && !map_.planes.has_known())
     begin_new_map("part of the picture stands still while the rest moves: it is masked, and a new map begins");
   tracking_.begin_frame(data_.since_last_ns);

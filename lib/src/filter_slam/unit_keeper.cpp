@@ -2,7 +2,15 @@
 
 #include <new>
 
+#include "filter_slam/inertial/tuning.h"
+
 namespace pf {
+
+namespace {
+
+constexpr double kPatience = 5;  ///< [s] of a map, after which waiting for a better scale costs more than it brings
+
+}  // namespace
 
 void UnitKeeper::layout(Arena& arena) {
   watch_.layout(arena);
@@ -10,12 +18,15 @@ void UnitKeeper::layout(Arena& arena) {
   if (!settings_.inertial) return;
   Parts* const place = arena.take<Parts>(1);
   if (place != nullptr)
-    parts_ = new (place)
-        Parts{{settings_, filter_, rest_, imu_, motion_}, {settings_, filter_, map_, frame_, imu_, motion_}};
+    parts_ = new (place) Parts{{settings_, filter_, rest_, imu_, motion_},
+                               {settings_, filter_, map_, frame_, imu_, motion_},
+                               {settings_, imu_}};
 }
 
 void UnitKeeper::init() {
   watch_.init();
+  motion_.unit_noise().init();
+  if (parts_ != nullptr) parts_->forces.init();
   begin_map();
 }
 
@@ -30,6 +41,10 @@ void UnitKeeper::begin_map() {
 void UnitKeeper::predict(std::int64_t before_ns, bool follows, bool nothing_measured, Scalar depth) {
   const std::int64_t t_ns = frame_.report.t_ns;
   watch_.begin_frame(before_ns, t_ns);
+  if (watch_.take_alignment()) {
+    start_.mounting().keep();
+    parts_->moving.integrate_again();
+  }
   if (parts_ == nullptr || !parts_->hold.predict(follows, before_ns, t_ns, depth))
     advance(before_ns, tracking_.coasting_or_lost(), nothing_measured);
 }
@@ -45,23 +60,38 @@ std::int64_t UnitKeeper::motion_begin_ns(std::int64_t now_ns) const {
   return parts_ != nullptr ? parts_->hold.motion_begin_ns(now_ns) : now_ns;
 }
 
-ScaleChange UnitKeeper::look_for_scale(Scalar depth, Scalar correlation_frames) {
-  if (!settings_.inertial || !tracking_.has_pose() || !filter_.uses_samples()) return ScaleChange::kNone;
+/// A rest tells the scale whatever the delay is, and gravity where the axes are known.
+bool UnitKeeper::begins_at_rest() {
   RestReading rest;
-  if (rest_.note(tracking_.is_tracked(frame_.report), &rest) && metric_.use_rest(rest, rest_.begin_ns())) {
+  const bool was_used = filter_.uses_samples(), open = watch_.is_open() && !watch_.doubted() &&
+                                                       !(settings_.unit.sigma_turn > tuning::rate_alignment::kOpenTurn);
+  if ((!was_used && !open) || !rest_.note(tracking_.is_tracked(frame_.report), &rest)) return false;
+  if (!was_used) watch_.use_at_rest(true);
+  if (reads_force() && metric_.use_rest(rest, rest_.begin_ns())) return true;
+  if (!was_used) watch_.use_at_rest(false);
+  return false;
+}
+
+ScaleChange UnitKeeper::look_for_scale(Scalar depth, Scalar correlation_frames) {
+  if (!settings_.inertial || !tracking_.has_pose()) return ScaleChange::kNone;
+  note_forces();
+  if (begins_at_rest()) {
     if (map_.features.count() > 0) return ScaleChange::kMetric;
     rest_.begin_pixels_anew();
     return ScaleChange::kNewMap;
   }
-  parts_->hold.end_frame(frame_.report.t_ns);
+  if (filter_.uses_samples()) parts_->hold.end_frame(frame_.report.t_ns);
   return look_for_scale_in_motion(depth, correlation_frames);
 }
 
-/// A unit that was ever doubted does not tell it.
+/// Frames are kept while the delay is open, and judged once it is not.
 ScaleChange UnitKeeper::look_for_scale_in_motion(Scalar depth, Scalar correlation_frames) {
   MovingFrame told;
-  told.keep = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && watch_.doubted_ns() == 0;
-  told.judge = !start_.recorder().progress().recording;
+  const bool open = watch_.is_open() && !watch_.doubted();
+  told.keep = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && (filter_.uses_samples() || open) &&
+              reads_force();
+  told.judge = !start_.recorder().progress().recording && filter_.uses_samples();
+  told.patient = start_.map_age() < kPatience;
   told.map_id = tracking_.map_id();
   told.depth = depth;
   told.correlation = correlation_frames;
@@ -71,10 +101,46 @@ ScaleChange UnitKeeper::look_for_scale_in_motion(Scalar depth, Scalar correlatio
   return ScaleChange::kRescaled;
 }
 
+void UnitKeeper::note_forces() {
+  const bool has_axes = !watch_.is_open() || !(settings_.unit.sigma_turn > tuning::rate_alignment::kOpenTurn);
+  parts_->forces.note(filter_.state().body.q_WC.toRotationMatrix() * filter_.state().mounting.R_CB,
+                      has_axes && tracking_.is_tracked(frame_.report));
+}
+
+bool UnitKeeper::reads_force() const {
+  Scalar value;
+  return parts_->forces.reason(&value) == UnitReason::kNone;
+}
+
+UnitReason UnitKeeper::reason(Scalar* value, Mat3* R_CB) const {
+  if (parts_ == nullptr) return UnitReason::kNone;
+  const UnitReason of_watch = watch_.reason(value, R_CB);
+  if (of_watch > UnitReason::kContradicts) return of_watch;
+  Scalar read = 0;
+  const UnitReason of_force = parts_->forces.reason(&read);
+  if (of_force != UnitReason::kNone) {
+    *value = read;
+    return of_force;
+  }
+  if (parts_->moving.is_reversed() && !filter_.is_metric()) return UnitReason::kAccelSign;
+  if (of_watch != UnitReason::kNone || filter_.is_metric() || !tracking_.has_pose()) return of_watch;
+  *value = parts_->moving.sigma_scale();
+  return UnitReason::kWaitsForMotion;
+}
+
+/// A map that begun at rest with a unit of unknown delay has no size from motion yet, so nothing is lost with it.
 bool UnitKeeper::discredits_map(bool follows, std::int64_t dt_ns) {
   if (!settings_.inertial || !tracking_.has_pose()) return false;
-  if (!watch_.note(follows && !holds(), tracking_.is_tracked(frame_.report), dt_ns)) return false;
-  if (!watch_.is_map_on_trial() || start_.knows_scale() || map_.planes.has_known()) return false;
+  const bool left_rest = watch_.is_used_at_rest() && !rest_.is_resting();
+  if (left_rest) watch_.use_at_rest(false);
+  const bool doubted = watch_.note(follows && !holds(), tracking_.is_tracked(frame_.report), dt_ns);
+  if (!left_rest && !(doubted && watch_.is_map_on_trial())) return false;
+  if (start_.knows_scale() || map_.planes.has_known()) {
+    if (left_rest) filter_.use_samples(true);  // until the next frame leaves them
+    return false;
+  }
+  why_discredited_ = left_rest ? "it moves, and the inertial unit's clock or axes are not known yet: a new map begins"
+                               : "the map's scale came from a unit that is doubted: a new map begins";
   watch_.begin_without();
   return true;
 }

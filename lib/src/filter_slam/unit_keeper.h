@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "filter/filter.h"
 #include "filter/imu_log.h"
+#include "filter_slam/inertial/force_check.h"
 #include "filter_slam/inertial/moving_start.h"
 #include "filter_slam/inertial/rest_detector.h"
 #include "filter_slam/inertial/rest_hold.h"
@@ -44,7 +45,7 @@ class UnitKeeper {
         motion_(motion),
         update_(update),
         start_(start),
-        rest_(settings, frame, imu),
+        rest_(settings, frame, imu, motion.unit_noise()),
         watch_(settings, filter, frame, imu, motion, update),
         metric_(settings, filter, map, tracking, start) {}
 
@@ -69,10 +70,16 @@ class UnitKeeper {
 
   /// From when on a prediction from now_ns has to go through samples.
   std::int64_t motion_begin_ns(std::int64_t now_ns) const;
+  /// Why, for the log.
+  const char* why_discredited() const { return why_discredited_; }
   const UnitWatch& watch() const { return watch_; }
+  /// Why samples do not move the body, or why lengths are not metres. *value, *R_CB: its numbers, as far as it has them.
+  UnitReason reason(Scalar* value, Mat3* R_CB) const;
   /// With the inertial motion model.
   const RestHold& hold() const { return parts_->hold; }
   const MetricStart& metric() const { return metric_; }
+  /// As it is known now.
+  ImuNoise noise() const { return motion_.unit_noise().now(); }
   /// Where the unit is on the camera, as far as it is known.
   Mounting mounting() const { return start_.mounting().now(); }
 
@@ -80,8 +87,12 @@ class UnitKeeper {
   struct Parts {
     RestHold hold;
     MovingStart moving;
+    ForceCheck forces;
   };
 
+  void note_forces();
+  bool reads_force() const;
+  bool begins_at_rest();
   bool holds() const { return parts_ != nullptr && parts_->hold.holds(); }
   void advance(std::int64_t before_ns, bool coasting_or_lost, bool nothing_measured);
   ScaleChange look_for_scale_in_motion(Scalar depth, Scalar correlation_frames);
@@ -98,6 +109,7 @@ class UnitKeeper {
   RestDetector rest_;
   UnitWatch watch_;
   MetricStart metric_;
+  const char* why_discredited_ = "";
   PartPointer<Parts, kHasInertial> parts_;  ///< with the inertial motion model, in the block
 };
 

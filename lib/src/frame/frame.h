@@ -37,7 +37,8 @@ struct FrameReport {
   int attempts = 0, matches = 0, inliers = 0, new_features = 0, evicted = 0;
   double nis = 0;
   int nis_dof = 0;
-  double pose_nis = 0;  ///< of the pose alone, Filter::pose_nis; only with an inertial unit
+  double pose_nis = 0;      ///< of the pose alone, Filter::pose_nis; only with an inertial unit
+  double rotation_nis = 0;  ///< its part that is the rotation's, with half the degrees of freedom
   int pose_nis_dof = 0;
   int templates = 0;        ///< that learnt from this frame
   float template_area = 0;  ///< sum of their masks, in parts of a template

@@ -9,6 +9,8 @@
 namespace pf {
 namespace {
 
+constexpr Scalar kLeastReadout = Scalar(1e-6);  ///< [s] of one that is estimated: there are no rows below zero
+
 Scalar* parameter_of(Camera* camera, int index) {
   Scalar* const intrinsics[4] = {&camera->fx, &camera->fy, &camera->cx, &camera->cy};
   if (index == kReadoutParameter) return &camera->readout;
@@ -93,6 +95,7 @@ void lens_difference(const LensRows& rows, const Camera& from, const Camera& to,
 
 void move_lens(const LensRows& rows, const Scalar* e, Camera* camera) {
   for (int i = 0; i < rows.count; ++i) *parameter_of(camera, rows.parameter[i]) += e[i];
+  if (rows.has_readout()) camera->readout = std::max(camera->readout, kLeastReadout);
   init_camera(camera);
 }
 

@@ -54,6 +54,18 @@ void describe_mounting(const Settings& settings, const FilterSlam& slam, Inertia
 
 }  // namespace
 
+UnitDoubt read_unit_doubt(const Settings& settings, const FilterSlam& slam) {
+  UnitDoubt doubt;
+  doubt.doubted = slam.unit().watch().doubted();
+  doubt.doubted_ns = slam.unit().watch().doubted_ns();
+  if (!settings.inertial) return doubt;
+  doubt.reason = static_cast<int>(slam.unit().reason(&doubt.reason_value, &doubt.reason_R_CB));
+  const ImuNoise noise = slam.unit().noise();
+  doubt.gyro_density = noise.gyro_density;
+  doubt.accel_density = noise.accel_density;
+  return doubt;
+}
+
 bool read_inertial(const Settings& settings, const FilterSlam& slam, InertialView* out) {
   if (!settings.inertial || !slam.tracking().has_pose()) return false;
   const Filter& filter = slam.filter();

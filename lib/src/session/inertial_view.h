@@ -28,7 +28,13 @@ struct InertialView {
 struct UnitDoubt {
   bool doubted = false;
   std::int64_t doubted_ns = 0;
+  int reason = 0;  ///< as pf_imu_reason_t says
+  Scalar reason_value = 0;
+  Mat3 reason_R_CB = Mat3::Identity();
+  Scalar gyro_density = 0, accel_density = 0;  ///< as they are known now
 };
+
+UnitDoubt read_unit_doubt(const Settings& settings, const FilterSlam& slam);
 
 /// False without the inertial motion model, or without a pose.
 bool read_inertial(const Settings& settings, const FilterSlam& slam, InertialView* out);

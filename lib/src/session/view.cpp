@@ -130,10 +130,7 @@ bool View::template_of(std::uint32_t id, TemplateView* out) const {
 
 bool View::inertial(InertialView* out) const { return filter_ != nullptr && read_inertial(settings_, *filter_, out); }
 
-UnitDoubt View::unit_doubt() const {
-  return filter_ != nullptr ? UnitDoubt{filter_->unit().watch().doubted(), filter_->unit().watch().doubted_ns()}
-                            : UnitDoubt();
-}
+UnitDoubt View::unit_doubt() const { return filter_ != nullptr ? read_unit_doubt(settings_, *filter_) : UnitDoubt(); }
 
 bool View::gauge_information(double* scratch, double* information) const {
   return pf::gauge_information(filter_->filter(), scratch, information);

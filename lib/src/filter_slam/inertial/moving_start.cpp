@@ -14,6 +14,38 @@ namespace pf {
 
 using namespace tuning::moving_verdict;
 
+namespace {
+
+constexpr int kSignEvery = 4;  ///< solutions in a row that there are none of, from test to test of the sign
+
+}  // namespace
+
+/// What the samples say between a time and the view. False where they are missing.
+bool MovingStart::integrate(std::int64_t from_ns, View* view) const {
+  const Body& body = filter_.state().body;
+  const Vec3 gyro_bias = filter_.uses_samples() ? body.gyro_bias : Vec3(Vec3::Zero());
+  Preintegral samples(motion_.unit_noise().now(), gyro_bias, Vec3::Zero());
+  ImuReading now;
+  if (integrate_samples(imu_, motion_.on_unit_clock(from_ns), motion_.on_unit_clock(view->t_ns), Coasting(), &samples,
+                        &now) > Scalar(0))
+    return false;
+  view->dt = samples.dt();
+  view->gyro_bias = gyro_bias;
+  view->dq_B = Quat(samples.R());
+  view->v = samples.v();
+  view->p = samples.p();
+  view->by_bias = samples.by_bias().cast<float>();
+  return true;
+}
+
+void MovingStart::integrate_again() {
+  int first = data_.count > 0 ? data_.count - 1 : 0;
+  while (first > 0 && integrate(data_.view[first - 1].t_ns, &data_.view[first])) --first;
+  std::copy(data_.view + first, data_.view + data_.count, data_.view);
+  data_.count -= first;
+  data_.left = data_.first = data_.end = 0;
+}
+
 /// Keeps this frame: its inliers, and the samples since the last one that is kept. False where samples are missing.
 bool MovingStart::add() {
   const State& state = filter_.state();
@@ -26,19 +58,8 @@ bool MovingStart::add() {
   view.q_WC = state.body.q_WC;
   view.p_W = state.body.p_W;
   const std::int64_t t_ns = frame_.report.t_ns;
-  if (data_.count > 0) {
-    Preintegral samples(settings_.unit.noise, state.body.gyro_bias, Vec3::Zero());
-    ImuReading now;
-    if (integrate_samples(imu_, motion_.on_unit_clock(data_.t_ns), motion_.on_unit_clock(t_ns), Coasting(), &samples,
-                          &now) > Scalar(0))
-      return false;
-    view.dt = samples.dt();
-    view.gyro_bias = state.body.gyro_bias;
-    view.dq_B = Quat(samples.R());
-    view.v = samples.v();
-    view.p = samples.p();
-    view.by_bias = samples.by_bias().cast<float>();
-  }
+  view.t_ns = t_ns;
+  if (data_.count > 0 && !integrate(data_.t_ns, &view)) return false;
   for (int i = 0; i < frame_.match_count() && view.count < kMaxPixels; ++i) {
     const Match& match = frame_.match(i);
     if (match.status != MatchStatus::kInlier || match.feature < 0) continue;  // it may have left the map since
@@ -101,7 +122,9 @@ Vec3 MovingStart::smooth() {
   const Mat3& R_CB = filter_.state().mounting.R_CB;
   const Quat q_CB(R_CB);
   const Vec3 gyro_bias = filter_.state().body.gyro_bias;
-  const Scalar density = std::max(kTiltDensity, settings_.unit.noise.gyro_density);
+  const Scalar of_turn = turn_variance(), of_delay = delay_variance();
+  Vec3 rate = Vec3::Zero();
+  const Scalar density = std::max(kTiltDensity, motion_.unit_noise().now().gyro_density);
   for (int k = data_.first; k < data_.end; ++k) {
     const View& view = data_.view[k];
     RotationLink& link = data_.link[k];
@@ -110,7 +133,11 @@ Vec3 MovingStart::smooth() {
     link.q_WC = view.q_WC;
     link.variance = data_.correlation * static_cast<Scalar>(view.covariance.topLeftCorner<3, 3>().trace()) / 3;
     link.dq = q_CB * dq_B * q_CB.conjugate();
-    link.step_variance = density * density * view.dt;
+    // Axes that are off by mu turn the step by mu x step, and a delay that is off by e moves both its ends: (w_0 - w_1) e.
+    const Vec3 step = log_so3(dq_B), rate_before = rate;
+    if (view.dt > Scalar(0)) rate = step / view.dt;
+    link.step_variance = density * density * view.dt + of_turn * step.squaredNorm() +
+                         (k > data_.first + 1 ? of_delay * (rate - rate_before).squaredNorm() : Scalar(0));
     link.by_bias = R_CB * dq_B.conjugate().toRotationMatrix() * by_bias;
   }
   const Scalar of_bias = mean_variance(settings_.body.row(BodyPart::kGyroBias));
@@ -146,12 +173,34 @@ int MovingStart::collect() {
   return count;
 }
 
-bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingStartNoise& noise,
-                              MovingSolution* solution) const {
+/// Whether the opposite accelerations would explain the motion.
+void MovingStart::look_for_sign(int count, const MovingStartNoise& noise) {
+  const auto reverse = [&] {
+    for (int k = 0; k < count; ++k)
+      for (Vec3* of : {&data_.pose[k].Rv, &data_.pose[k].Rp}) *of = -*of;
+  };
+  MovingSolution solution;
+  reverse();
+  data_.reversed = solve_moving_start(data_.pose, count, noise, &solution) &&
+                   solution.sigma_scale() < kLateSigmaScale && solution.misfit < kMaxMisfit;
+  reverse();
+}
+
+bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingStartNoise& noise, bool patient,
+                              MovingSolution* solution) {
   MovingSolution half[2];
   const int middle = count / 2;
-  if (!solve_moving_start(pose, count, noise, solution)) return false;
-  if (!(solution->sigma_scale() < kMaxSigmaScale) || !(solution->sigma_gravity() < kMaxSigmaGravity)) return false;
+  data_.sigma_scale = 0;
+  if (!solve_moving_start(pose, count, noise, solution)) {
+    if (++data_.refused % kSignEvery == 0) look_for_sign(count, noise);
+    return false;
+  }
+  data_.refused = 0;
+  data_.reversed = false;
+  data_.sigma_scale = solution->sigma_scale();
+  if (!(solution->sigma_scale() < (patient ? kMaxSigmaScale : kLateSigmaScale)) ||
+      !(solution->sigma_gravity() < (patient ? kMaxSigmaGravity : kLateSigmaGravity)))
+    return false;
   if (!(solution->misfit < kMaxMisfit)) return false;
   if (!solve_moving_start(pose, middle + 1, noise, &half[0]) ||
       !solve_moving_start(pose + middle, count - middle, noise, &half[1]))
@@ -167,6 +216,27 @@ bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingSta
 /// Of the filter's rows from `row` on, three of them.
 Scalar MovingStart::mean_variance(int row) const {
   return (filter_.variance(row) + filter_.variance(row + 1) + filter_.variance(row + 2)) / 3;
+}
+
+/// Of the unit's axes, about one of them, and of its delay; 0 where they are exact.
+Scalar MovingStart::turn_variance() const {
+  return settings_.body.has(BodyPart::kMountRotation) ? mean_variance(settings_.body.row(BodyPart::kMountRotation))
+                                                      : Scalar(0);
+}
+
+Scalar MovingStart::delay_variance() const {
+  return settings_.body.has(BodyPart::kDelay) ? filter_.variance(settings_.body.row(BodyPart::kDelay)) : Scalar(0);
+}
+
+/// Of the unit's rate over the sweep's views, squared.
+Scalar MovingStart::mean_rate2() const {
+  Scalar sum = 0, time = 0;
+  for (int k = data_.first + 1; k < data_.end; ++k) {
+    const View& view = data_.view[k];
+    sum += log_so3(view.dq_B).squaredNorm() / view.dt;
+    time += view.dt;
+  }
+  return time > Scalar(0) ? sum / time : Scalar(0);
 }
 
 /// How well the rate at which the poses turn away from the truth is known: by the map, which turns with them, or by the gyro.
@@ -187,6 +257,12 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
     init();
     return false;
   }
+  const Scalar delay_sigma = std::sqrt(delay_variance());
+  if (data_.count == 1) data_.delay_sigma = delay_sigma;
+  if (told.judge && 2 * delay_sigma < data_.delay_sigma) {
+    data_.delay_sigma = delay_sigma;
+    integrate_again();
+  }
   if (!told.judge || data_.count < kMinPoses || !sweep()) return false;
   Scalar span = 0;
   for (int k = data_.first + 1; k < data_.end; ++k) span += data_.view[k].dt;
@@ -194,11 +270,14 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
   MovingStartNoise noise;
   noise.gravity = settings_.unit.gravity;
   noise.drift = kDrift * told.depth;
-  noise.accel_density = std::hypot(settings_.unit.noise.accel_density, settings_.unit.gravity * kRotation);
-  noise.tilt_density = std::max(kTiltDensity, settings_.unit.noise.gyro_density);
+  noise.accel_density = std::hypot(motion_.unit_noise().now().accel_density, settings_.unit.gravity * kRotation);
+  noise.tilt_density = std::max(kTiltDensity, motion_.unit_noise().now().gyro_density);
+  // Axes that are off by mu tilt gravity by what the camera turns them, mu w a second; a delay that is off by e by e w.
+  const Scalar of_unit = (turn_variance() + 2 * delay_variance()) * mean_rate2();
+  noise.tilt_density = std::sqrt(noise.tilt_density * noise.tilt_density + of_unit);
   noise.turn = turn_rate_sigma(span);
   noise.accel_bias = tuning::inertial::kAccelBias;
-  return is_accepted(data_.pose, collect(), noise, solution);
+  return is_accepted(data_.pose, collect(), noise, told.patient, solution);
 }
 
 }  // namespace pf

@@ -21,6 +21,7 @@ struct MovingFrame {
   bool judge;            ///< depths of that map are known up to scale
   std::uint32_t map_id;  ///< of that map
   Scalar depth;          ///< the median one of what is seen
+  bool patient;          ///< the map is young: a scale that is known well is waited for
   Scalar correlation;    ///< frames in a row whose pixels have the same errors: 1 where each has its own
 };
 
@@ -30,7 +31,17 @@ class MovingStart {
               const BodyMotion& motion)
       : settings_(settings), filter_(filter), map_(map), frame_(frame), imu_(imu), motion_(motion) {}
 
-  void init() { data_.count = data_.end = data_.left = 0; }
+  void init() {
+    data_.count = data_.end = data_.left = 0;
+    data_.sigma_scale = 0;
+    data_.reversed = false;
+  }
+  /// The unit's delay has become another: what the samples say between the views is integrated again. Views without samples are forgotten.
+  void integrate_again();
+  /// Of the last solution that was not accepted: its sigma of the log scale; 0: there was none.
+  Scalar sigma_scale() const { return data_.sigma_scale; }
+  /// The motion is explained by accelerations with the opposite sign, and not by those that were read.
+  bool is_reversed() const { return data_.reversed; }
   /// After a frame. True where *solution is sure of itself, fits, and both halves of the poses agree.
   bool note(const MovingFrame& told, MovingSolution* solution);
 
@@ -48,6 +59,7 @@ class MovingStart {
     Vec3 p_W = Vec3::Zero();
     Float6 covariance = Float6::Zero();  ///< as of a PoseEstimate
     // Samples since the view before, in axes of the unit there, integrated without accelerometer bias.
+    std::int64_t t_ns = 0;
     Scalar dt = 0;
     Vec3 gyro_bias = Vec3::Zero();
     Quat dq_B = Quat::Identity();
@@ -62,6 +74,10 @@ class MovingStart {
     int frames = 0;         ///< since the last view
     std::int64_t t_ns = 0;  ///< of the last view
     std::uint32_t map_id = 0;
+    Scalar sigma_scale = 0;
+    bool reversed = false;
+    Scalar delay_sigma = 0;  ///< [s] when the views were integrated
+    int refused = 0;         ///< solutions in a row
     // Poses are found anew in sweeps over the views, from the last to the first, a part of them a frame.
     int left = 0;            ///< views that the sweep has not reached
     int first = 0, end = 0;  ///< those that it has given a pose
@@ -72,14 +88,20 @@ class MovingStart {
   };
 
   bool add();
+  bool integrate(std::int64_t from_ns, View* view) const;
   bool has_depth(int entry) const;
   bool locate(View* view) const;
   bool sweep();
   Vec3 smooth();
   int collect();
   Scalar mean_variance(int row) const;
+  Scalar turn_variance() const;
+  Scalar delay_variance() const;
+  Scalar mean_rate2() const;
   Scalar turn_rate_sigma(Scalar span) const;
-  bool is_accepted(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* solution) const;
+  bool is_accepted(const MovingPose* pose, int count, const MovingStartNoise& noise, bool patient,
+                   MovingSolution* solution);
+  void look_for_sign(int count, const MovingStartNoise& noise);
 
   const Settings& settings_;
   Filter& filter_;

@@ -38,7 +38,7 @@ bool RestDetector::note(bool seen, RestReading* rest) {
   if (T < kTime) return false;
   const bool at_rest = covers(data_->count, T) && is_quiet();
   if (at_rest) {
-    const ImuNoise& noise = settings_.unit.noise;
+    const ImuNoise noise = noise_.now();
     const Scalar root = std::sqrt(T);
     rest->gyro = data_->mean[0];
     rest->accel = data_->mean[1];
@@ -127,7 +127,7 @@ bool RestDetector::read_frame(Scalar dt, StillReading* still) const {
     ++count;
   }
   if (count == 0 || imu_.counts().median_ns <= 0 || !covers(count, dt)) return false;
-  const ImuNoise& noise = settings_.unit.noise;
+  const ImuNoise noise = noise_.now();
   const Scalar n = static_cast<Scalar>(count);
   const Scalar root = std::sqrt(n * static_cast<Scalar>(seconds(imu_.counts().median_ns)));
   still->gyro = gyro / n;
@@ -160,7 +160,7 @@ void RestDetector::add(const ImuSample& sample) {
 bool RestDetector::is_quiet() {
   if (data_->count < kMinSamples || imu_.counts().median_ns <= 0) return false;
   const Scalar rate = Scalar(1) / static_cast<Scalar>(seconds(imu_.counts().median_ns));
-  const ImuNoise& noise = settings_.unit.noise;
+  const ImuNoise noise = noise_.now();
   const auto quiet = [&](int k, Scalar density) {
     const Scalar expected = 3 * static_cast<Scalar>(data_->count - 1) * density * density * rate;
     data_->scatter[k] = std::max(Scalar(1), std::sqrt(data_->square[k] / expected));

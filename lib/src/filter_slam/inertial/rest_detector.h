@@ -4,6 +4,7 @@
 
 #include "filter/imu_log.h"
 #include "filter/inertial_motion.h"
+#include "filter_slam/pose/unit_noise.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
 
@@ -14,8 +15,8 @@ namespace pf {
 
 class RestDetector {
  public:
-  RestDetector(const Settings& settings, const Frame& frame, const ImuLog& imu)
-      : settings_(settings), frame_(frame), imu_(imu) {}
+  RestDetector(const Settings& settings, const Frame& frame, const ImuLog& imu, const UnitNoise& noise)
+      : settings_(settings), frame_(frame), imu_(imu), noise_(noise) {}
 
   void layout(Arena& arena);
   void init() {
@@ -82,6 +83,7 @@ class RestDetector {
   const Settings& settings_;
   const Frame& frame_;
   const ImuLog& imu_;
+  const UnitNoise& noise_;
   Seen* seen_ =
       nullptr;  ///< 2 kMaxPixels: of this second, of the first one; null without the inertial motion model, which needs no room then
   Data* data_ = nullptr;  ///< likewise

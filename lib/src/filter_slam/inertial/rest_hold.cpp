@@ -99,7 +99,7 @@ void RestHold::end_rest() {
 /// Predicts the frame, or takes that back.
 void RestHold::move(Scalar sign) {
   Transition transition;
-  predict_at_rest(filter_.state().body, settings_.body, data_.dt, settings_.unit.noise, data_.sigma_rad,
+  predict_at_rest(filter_.state().body, settings_.body, data_.dt, motion_.unit_noise().now(), data_.sigma_rad,
                   data_.sigma_rad * settings_.camera.fx * data_.m_per_px, &transition);
   for (int i = 0; i < transition.dim * transition.dim; ++i) transition.Q[i] *= sign;
   filter_.predict(transition);

@@ -29,12 +29,32 @@ inline constexpr Scalar kTime = Scalar(0.2);             ///< [s] for which the 
 inline constexpr Scalar kTrial = Scalar(5);              ///< [s] in metres, before which a map hangs on the unit alone
 inline constexpr Scalar kWindow = Scalar(3);  ///< [s] for which a doubted gyro must agree; doubles with each doubt
 inline constexpr int kMaxDoublings = 8;       ///< of that
-inline constexpr Scalar kMaxScatter = Scalar(1.5);  ///< of gyro less rate, in variances
-inline constexpr Scalar kMaxShare = Scalar(0.1);    ///< of the rate's own scatter that gyro less rate may have
-inline constexpr Scalar kMinPower = Scalar(100);    ///< of the rate over its variance, summed: rest proves nothing
-inline constexpr int kMinFrames = 30;               ///< that such a test wants
-inline constexpr int kFewPassing = 2;               ///< matches for each inlier, above which the gate has refused most
 }  // namespace unit_watch
+
+/// Gravity in the accelerometer's readings.
+namespace force_check {
+inline constexpr int kMinSamples = 20;         ///< in that time
+inline constexpr Scalar kNear = Scalar(0.3);   ///< share of gravity that their mean may be off: 6 m/s in that time
+inline constexpr Scalar kNone = Scalar(0.08);  ///< share of gravity below which there is none in it
+}  // namespace force_check
+
+/// The camera's rates against the gyroscope's.
+namespace rate_alignment {
+inline constexpr int kMinIntervals = 15;                 ///< between frames
+inline constexpr Scalar kMirrored = Scalar(0.2);         ///< of what a rotation leaves, where a reflection leaves less
+inline constexpr Scalar kMaxLeft = Scalar(0.35);         ///< of an alignment that is believed: a correlation of 0.8
+inline constexpr Scalar kClearly = Scalar(1.3);          ///< what the next best delay leaves, in what the best one does
+inline constexpr Scalar kMaxSigmaDelay = Scalar(0.004);  ///< [s] of a clock that is known, to begin with
+inline constexpr Scalar kMaxSigmaTurn = Scalar(0.07);    ///< [rad] of axes that are: errors are linear within it
+inline constexpr Scalar kFloorDelay = Scalar(0.001);     ///< [s] sigma, beside what the rates leave: rows and exposure
+inline constexpr Scalar kFloorTurn = Scalar(0.01);       ///< [rad] likewise
+inline constexpr Scalar kMaxScale = Scalar(1.25);        ///< of a gyroscope that is used, and its inverse
+inline constexpr Scalar kMinTurning = Scalar(0.05);      ///< [rad/s] sigma of the rates that tells something
+inline constexpr int kEvery = 5;                         ///< frames from fit to fit
+inline constexpr Scalar kOpenDelay = Scalar(0.02);       ///< [s] sigma above which the delay is not linear
+inline constexpr Scalar kOpenTurn = Scalar(0.2);         ///< [rad] likewise of the axes
+inline constexpr Scalar kOtherAxes = Scalar(0.35);       ///< [rad] that axes are off before they are named: 20 degrees
+}  // namespace rate_alignment
 
 /// Standing still.
 namespace rest {
@@ -71,6 +91,8 @@ inline constexpr Scalar kTiltDensity = Scalar(0.00005);  ///< [rad/sqrt(s)] of t
 inline constexpr Scalar kRotation = Scalar(0.0001);  ///< [rad/sqrt(Hz)] of their noise: 0.1 mrad that last for a second
 inline constexpr Scalar kMaxSigmaScale = Scalar(0.025);    ///< of the log scale
 inline constexpr Scalar kMaxSigmaGravity = Scalar(0.015);  ///< [rad] of its direction
+inline constexpr Scalar kLateSigmaScale = Scalar(0.1);     ///< of the log scale then
+inline constexpr Scalar kLateSigmaGravity = Scalar(0.03);  ///< [rad] of gravity's direction then
 inline constexpr Scalar kMaxMisfit = Scalar(3);            ///< chi-square over its degrees of freedom
 inline constexpr Scalar kMaxApart = Scalar(9);             ///< of two halves, in the sum of their variances
 }  // namespace moving_verdict

@@ -11,13 +11,25 @@ namespace pf {
 
 using namespace tuning::unit_watch;
 
+namespace {
+
+constexpr double kFrozen = 1;      ///< [s] of use, or in metres, before noise is learned
+constexpr double kRateChange = 4;  ///< sample intervals, of which the angular acceleration is taken
+
+}  // namespace
+
 void UnitWatch::layout(Arena& arena) {
   if (settings_.inertial) data_ = arena.take<Data>(1);
 }
 
 void UnitWatch::init() {
-  if (data_ != nullptr) *data_ = Data();
-  filter_.use_samples(true);
+  if (data_ != nullptr) {
+    *data_ = Data();
+    using namespace tuning::rate_alignment;
+    data_->open = settings_.unit.sigma_delay > kOpenDelay || settings_.unit.sigma_turn > kOpenTurn;
+    if (data_->open) data_->reason = UnitReason::kWaitsForRotation;
+  }
+  filter_.use_samples(!is_open());
 }
 
 /// Samples stop, or have not begun yet.
@@ -29,12 +41,14 @@ bool UnitWatch::is_silent(std::int64_t t_ns) const {
 
 void UnitWatch::begin_frame(std::int64_t before_ns, std::int64_t t_ns) {
   if (data_ == nullptr) return;
+  motion_.unit_noise().note_samples();
   ImuReading reading;
-  if (data_->fresh || (filter_.uses_samples() && (data_->doubted || is_silent(t_ns)))) {
+  if (data_->fresh || (filter_.uses_samples() && (leaves_out() || is_silent(t_ns)))) {
     leave_samples(before_ns);
-  } else if (!filter_.uses_samples() && (!data_->doubted || data_->passed) && !is_silent(t_ns) &&
-             reading_at(imu_, motion_.on_unit_clock(before_ns), &reading)) {
-    return_to_samples(reading);
+  } else if (!filter_.uses_samples() && (!leaves_out() || data_->passed) && !is_silent(t_ns)) {
+    if (data_->passed) use_alignment();
+    data_->prior_ns = before_ns;
+    if (reading_at(imu_, motion_.on_unit_clock(before_ns), &reading)) return_to_samples(reading);
   }
   data_->fresh = false;
   data_->follows = data_->contradicted = data_->taken_back = false;
@@ -117,11 +131,16 @@ void UnitWatch::leave_samples(std::int64_t before_ns) {
   data_->sum = 0;
 }
 
-void UnitWatch::return_to_samples(const ImuReading& reading) {
+void UnitWatch::return_to_samples(ImuReading reading) {
   FreshReading fresh;
   fresh.gyro = reading.gyro;
+  const double interval = seconds(imu_.counts().median_ns), T = kRateChange * interval;
+  ImuReading before;
+  Scalar by_delay = 0;  // the reading is of another time by the delay's error
+  if (data_->passed && reading_at(imu_, motion_.on_unit_clock(data_->prior_ns) - nanoseconds(T), &before))
+    by_delay = data_->fit.sigma_delay * (reading.gyro - before.gyro).norm() / static_cast<Scalar>(T);
   fresh.sigma_gyro =
-      settings_.unit.noise.gyro_density / std::sqrt(static_cast<Scalar>(seconds(imu_.counts().median_ns)));
+      std::hypot(motion_.unit_noise().now().gyro_density / std::sqrt(static_cast<Scalar>(interval)), by_delay);
   fresh.anew = data_->doubted;
   fresh.gravity_W = filter_.state().body.gravity_W();
   fresh.sigma_gravity = tuning::inertial::kGravity;
@@ -131,47 +150,105 @@ void UnitWatch::return_to_samples(const ImuReading& reading) {
   filter_.predict(transition);
   filter_.use_samples(true);
   if (data_->doubted) settings_.hooks.say("the inertial unit agrees with the pictures again: its samples are used");
-  data_->doubted = data_->passed = false;
+  if (data_->open)
+    settings_.hooks.say("the inertial unit's clock and axes are found by the camera's rotations: its samples are used");
+  data_->doubted = data_->open = data_->passed = false;
+  data_->reason = UnitReason::kNone;
   data_->sum = 0;
+  data_->used_ns = 0;
 }
 
-/// What a frame says against the samples, of a chi-square of six. Where enough is found and the gate refuses most of it, that is as much as
-/// one frame can say.
+/// Takes the delay from the rates, where it is estimated, and the axes where they were open.
+void UnitWatch::use_alignment() {
+  using namespace tuning::rate_alignment;
+  const RateFit& fit = data_->fit;
+  Mounting mounting = filter_.state().mounting;
+  const bool finds_axes = settings_.unit.sigma_turn > kOpenTurn;
+  const Mat3 turned = fit.R_CB.transpose().lazyProduct(mounting.R_CB);
+  if (finds_axes) mounting.R_CB = fit.R_CB;
+  if (settings_.body.has(BodyPart::kDelay))
+    mounting.delay = fit.delay - static_cast<Scalar>(seconds(settings_.unit.delay_ns));
+  Transition transition;
+  begin_mounting(filter_.state().body, settings_.body, finds_axes ? turned : Mat3(Mat3::Identity()),
+                 finds_axes ? std::hypot(fit.sigma_turn, kFloorTurn) : Scalar(0),
+                 std::hypot(fit.sigma_delay, kFloorDelay), &transition);
+  filter_.predict(transition);
+  filter_.set_mounting(mounting);
+  data_->aligned = true;
+}
+
+bool UnitWatch::take_alignment() {
+  const bool aligned = data_ != nullptr && data_->aligned;
+  if (aligned) data_->aligned = false;
+  return aligned;
+}
+
+/// What a frame says against the samples, of a chi-square of six. A frame that needs the prediction without them says as much as one can.
+/// A frame that neither prediction explains says nothing against the samples.
 Scalar UnitWatch::contradiction(bool before_was_tracked, bool is_tracked) const {
   const FrameReport& report = frame_.report;
+  if (!is_tracked) return kSlack;
   if (data_->taken_back) return kMaxOfFrame;
-  if (!is_tracked && report.matches >= settings_.min_inliers && kFewPassing * report.inliers < report.matches)
-    return kMaxOfFrame;
-  if (!before_was_tracked || !is_tracked || report.pose_nis_dof == 0) return kSlack;
+  if (!before_was_tracked || report.pose_nis_dof == 0) return kSlack;
   return std::min(static_cast<Scalar>(report.pose_nis * Body::kPoseDim / report.pose_nis_dof), kMaxOfFrame);
+}
+
+/// Frozen while samples have only begun to be used, or lengths to be metres: what P does not explain then is the start's.
+void UnitWatch::learn_noise(bool before_was_tracked, bool is_tracked, std::int64_t dt_ns) {
+  const FrameReport& report = frame_.report;
+  UnitNoise& noise = motion_.unit_noise();
+  data_->used_ns += dt_ns;
+  if (!is_tracked || seconds(data_->used_ns) < kFrozen) return;
+  const bool forces = filter_.is_metric() && seconds(data_->metric_ns) > kFrozen;
+  if (data_->taken_back) {
+    const bool known = data_->contradicted && update_.is_contradicted();
+    const Scalar rotation = known ? update_.contradicting_rotation() : kMaxOfFrame;
+    noise.note_innovation(UnitNoise::kGyro, rotation, 3);
+    if (forces && known)
+      noise.note_innovation(UnitNoise::kAccel, update_.contradicting_nis() - update_.contradicting_rotation(), 3);
+  } else if (before_was_tracked && report.pose_nis_dof > 0) {
+    const int dof = report.pose_nis_dof / 2;
+    noise.note_innovation(UnitNoise::kGyro, static_cast<Scalar>(report.rotation_nis), dof);
+    if (forces)
+      noise.note_innovation(UnitNoise::kAccel, static_cast<Scalar>(report.pose_nis - report.rotation_nis), dof);
+  }
+}
+
+/// True where the sum is above its bound. Innovations count against the unit once no plausible noise explains them.
+bool UnitWatch::add_evidence(bool before_was_tracked, bool is_tracked, std::int64_t dt_ns) {
+  const UnitNoise& noise = motion_.unit_noise();
+  const bool on_probation = data_->doubts > 0 && seconds(data_->used_ns) < static_cast<double>(kTrial);
+  const bool explained = !noise.is_at_bound(UnitNoise::kGyro) && !noise.is_at_bound(UnitNoise::kAccel);
+  const Scalar more = contradiction(before_was_tracked, is_tracked) - kSlack;
+  data_->sum = std::max(Scalar(0), data_->sum + (explained ? std::min(more, Scalar(0)) : more));
+  if (!(data_->sum < (on_probation ? kBoundOnProbation : kBound))) return true;
+  if (is_tracked) {
+    data_->tracked = filter_.state().body;
+    data_->tracked_ns = frame_.report.t_ns;
+    if (filter_.is_metric()) data_->metric_ns += dt_ns;
+  }
+  if (data_->sum <= 0) data_->sound_ns = data_->metric_ns;
+  return false;
 }
 
 bool UnitWatch::note(bool before_was_tracked, bool is_tracked, std::int64_t dt_ns) {
   if (data_ == nullptr) return false;
-  if (data_->doubted) {
-    data_->doubted_ns += dt_ns;
-    try_again(before_was_tracked && is_tracked);
-    return false;
-  }
+  if (data_->doubted) data_->doubted_ns += dt_ns;
   if (!filter_.is_metric()) data_->metric_ns = data_->sound_ns = 0;
-  if (!filter_.uses_samples()) return false;
-  data_->used_ns += dt_ns;
-  if (data_->taken_back && is_tracked) note_rate();
-  const bool on_probation = data_->doubts > 0 && seconds(data_->used_ns) < static_cast<double>(kTrial);
-  data_->sum = std::max(Scalar(0), data_->sum + contradiction(before_was_tracked, is_tracked) - kSlack);
-  if (data_->sum < (on_probation ? kBoundOnProbation : kBound)) {
-    if (is_tracked) {
-      data_->tracked = filter_.state().body;
-      data_->tracked_ns = frame_.report.t_ns;
-      if (filter_.is_metric()) data_->metric_ns += dt_ns;
-    }
-    if (data_->sum <= 0) data_->sound_ns = data_->metric_ns;
+  if (leaves_out()) {
+    compare_rates(before_was_tracked && is_tracked);
     return false;
   }
+  if (!filter_.uses_samples()) return false;
+  learn_noise(before_was_tracked, is_tracked, dt_ns);
+  if (data_->taken_back && is_tracked) note_rate();
+  if (!add_evidence(before_was_tracked, is_tracked, dt_ns)) return false;
   data_->doubted = data_->fresh = true;
   data_->used_ns = 0;
   data_->doubts = std::min(data_->doubts + 1, kMaxDoublings);
-  data_->trial = Trial();
+  data_->rates.init();
+  data_->rates_ns = 0;
+  data_->reason = UnitReason::kContradicts;
   settings_.hooks.say(
       "the inertial unit contradicts the pictures: it is doubted, and motion goes on without its samples");
   return true;
@@ -182,46 +259,15 @@ void UnitWatch::begin_without() {
   filter_.use_samples(false);
 }
 
-bool UnitWatch::is_map_on_trial() const {
-  return filter_.is_metric() && seconds(data_->sound_ns) < static_cast<double>(kTrial);
+void UnitWatch::use_at_rest(bool use) {
+  data_->at_rest = use;
+  filter_.use_samples(use);
+  data_->rates.init();
+  data_->rates_ns = 0;
 }
 
-/// Takes in one more frame of a doubted unit in a map up to scale, where only its gyro is used: gyro less rate must scatter no more than
-/// the rate is known to, and far less than the rate itself.
-void UnitWatch::try_again(bool follows) {
-  Trial& trial = data_->trial;
-  const std::int64_t t_ns = frame_.report.t_ns;
-  ImuReading reading;
-  if (data_->passed || filter_.is_metric()) return;
-  if (!follows || filter_.uses_samples() || !reading_at(imu_, motion_.on_unit_clock(t_ns), &reading) ||
-      imu_.counts().saturated != trial.saturated || trial.count == 0) {
-    trial = Trial();
-    trial.begin_ns = t_ns;
-    trial.saturated = imu_.counts().saturated;
-    trial.count = follows ? 1 : 0;
-    return;
-  }
-  const Body& body = filter_.state().body;
-  const Mat3& R_CB = filter_.state().mounting.R_CB;
-  const Vec3 rate = R_CB.transpose() * body.w_C, off = reading.gyro - rate;
-  const Scalar n = static_cast<Scalar>(trial.count++);
-  const auto add = [&](const Vec3& value, Vec3* mean, Scalar* square) {
-    const Vec3 before = value - *mean;
-    *mean += before / n;
-    *square += before.dot(value - *mean);
-  };
-  add(off, &trial.off, &trial.off2);
-  add(rate, &trial.rate, &trial.rate2);
-  const Scalar noise = settings_.unit.noise.gyro_density;
-  trial.variance += 3 * noise * noise / static_cast<Scalar>(seconds(imu_.counts().median_ns));
-  for (int i = 0; i < 3; ++i) trial.variance += filter_.variance(settings_.body.row(BodyPart::kGyroBias) + i);
-  const Scalar wanted = kWindow * static_cast<Scalar>(1 << (data_->doubts - 1));
-  const Scalar T = static_cast<Scalar>(seconds(elapsed_ns(trial.begin_ns, t_ns)));
-  if (T < wanted || trial.count < kMinFrames ||
-      trial.rate2 * static_cast<Scalar>(trial.count) < kMinPower * trial.variance)
-    return;
-  data_->passed = trial.off2 <= kMaxScatter * trial.variance && trial.off2 <= kMaxShare * trial.rate2;
-  trial = Trial();
+bool UnitWatch::is_map_on_trial() const {
+  return filter_.is_metric() && seconds(data_->sound_ns) < static_cast<double>(kTrial);
 }
 
 }  // namespace pf

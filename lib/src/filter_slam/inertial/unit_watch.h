@@ -4,22 +4,46 @@
 
 #include "filter/filter.h"
 #include "filter/imu_log.h"
+#include "filter/imu_path.h"
+#include "filter_slam/inertial/rate_alignment.h"
 #include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
 
-/// Watches whether the samples of the inertial unit agree with the pictures, and decides whether they move the body. See
-/// lib/docs/inertial.md.
+/// Decides whether the samples of the inertial unit move the body, and finds out why they may not. See lib/docs/inertial.md.
 ///
-/// While they do, each frame's innovation of the pose is chi-square with six degrees of freedom. Page's sum of what exceeds a slack
-/// finds a change soon and knows no fault by name:   s+ = max(0, s + nis - slack),   doubted where s > bound
+/// While they do, each frame's innovation of the pose is chi-square with six degrees of freedom. The unit's noise is learned from it
+/// (UnitNoise). What noise of ten times the stated does not explain either adds up in Page's sum, which finds a change soon and knows no
+/// fault by name:   s+ = max(0, s + nis - slack),   doubted where s > bound
+///
+/// While they do not, since the unit is doubted or since its delay or its axes are open, the camera's own rates are compared with the
+/// gyroscope's (RateAlignment): where they fit, samples are used; where they do not, the fit says why.
 
 namespace pf {
 
+/// Why the samples are not used, or not all of them; as pf_imu_reason_t says.
+enum class UnitReason : std::uint8_t {
+  kNone,
+  kWaitsForRotation,
+  kWaitsForMotion,
+  kContradicts,
+  kGyroInDegrees,
+  kGyroScale,
+  kAxes,
+  kLeftHanded,
+  kClock,
+  kRatesDoNotFit,
+  kColumnsSwapped,
+  kAccelInG,
+  kAccelWithoutGravity,
+  kAccelUnit,
+  kAccelSign
+};
+
 class UnitWatch {
  public:
-  UnitWatch(const Settings& settings, Filter& filter, const Frame& frame, const ImuLog& imu, const BodyMotion& motion,
+  UnitWatch(const Settings& settings, Filter& filter, const Frame& frame, const ImuLog& imu, BodyMotion& motion,
             PixelUpdate& update)
       : settings_(settings), filter_(filter), frame_(frame), imu_(imu), motion_(motion), update_(update) {}
 
@@ -45,20 +69,21 @@ class UnitWatch {
   /// The map had been in metres for so short a time, when samples may have begun to be wrong, that it hangs on the doubted unit.
   bool is_map_on_trial() const;
 
+  /// The delay or the axes are open, and have not been found yet.
+  bool is_open() const { return data_ != nullptr && data_->open; }
+  /// They are used all the same for as long as the camera rests, where neither matters; or no more.
+  void use_at_rest(bool use);
+  bool is_used_at_rest() const { return data_ != nullptr && data_->at_rest; }
+  /// Once, where this frame's prediction begins with another delay or other axes.
+  bool take_alignment();
+  /// Why the samples do not move the body. *value: its number; *R_CB: the axes that fit, both as far as the reason has them.
+  UnitReason reason(Scalar* value, Mat3* R_CB) const;
+
   bool doubted() const { return data_ != nullptr && data_->doubted; }
   /// In all.
   std::int64_t doubted_ns() const { return data_ != nullptr ? data_->doubted_ns : 0; }
 
  private:
-  /// Of a doubted unit since a test began: Welford's means and sums of squares.
-  struct Trial {
-    std::int64_t begin_ns = 0, saturated = 0;
-    int count = 0;
-    Vec3 off = Vec3::Zero(), rate = Vec3::Zero();  ///< gyro less rate, and the rate, in B [rad/s]
-    Scalar off2 = 0, rate2 = 0;
-    Scalar variance = 0;  ///< sum of those of the rate, over its axes
-  };
-
   struct Data {
     Scalar sum = 0;
     bool doubted = false, fresh = false;  ///< fresh: it has just come into doubt
@@ -75,22 +100,40 @@ class UnitWatch {
     bool taken_back = false;    ///< in this frame
     Body tracked;               ///< at the last tracked frame
     std::int64_t tracked_ns = 0;
-    Trial trial;
+    bool open = false;     ///< the delay or the axes
+    bool at_rest = false;  ///< the samples of such a unit are used, since the camera rests
+    bool aligned = false;  ///< take_alignment() says so
+    RateAlignment rates;
+    std::int64_t rates_ns = 0;  ///< of the frame that the next interval begins at
+    Quat rates_q = Quat::Identity();
+    int until_fit = 0;  ///< frames
+    RateFit fit;        ///< that passed
+    UnitReason reason = UnitReason::kNone;
+    Scalar reason_value = 0;
+    Mat3 reason_R_CB = Mat3::Identity();
   };
 
   bool is_silent(std::int64_t t_ns) const;
+  bool leaves_out() const { return data_->doubted || (data_->open && !data_->at_rest); }
   Scalar contradiction(bool before_was_tracked, bool is_tracked) const;
+  void learn_noise(bool before_was_tracked, bool is_tracked, std::int64_t dt_ns);
+  bool add_evidence(bool before_was_tracked, bool is_tracked, std::int64_t dt_ns);
   void predict_again(bool by_samples);
   void note_rate();
   void leave_samples(std::int64_t before_ns);
-  void return_to_samples(const ImuReading& reading);
-  void try_again(bool follows);
+  void return_to_samples(ImuReading reading);
+  void use_alignment();
+  void compare_rates(bool follows);
+  double wanted_span() const;
+  bool is_believed(const RateFit& fit) const;
+  void find_reason(double at_s);
+  Scalar mean_rate() const;
 
   const Settings& settings_;
   Filter& filter_;
   const Frame& frame_;
   const ImuLog& imu_;
-  const BodyMotion& motion_;
+  BodyMotion& motion_;
   PixelUpdate& update_;
   PartPointer<Data, kHasInertial> data_;  ///< null without the inertial motion model, which needs no room then
 };

@@ -73,13 +73,12 @@ void BodyMotion::predict(const Body& body, std::int64_t before_ns, std::int64_t 
 
 void BodyMotion::predict_by_samples(const Body& body, std::int64_t before_ns, std::int64_t t_ns,
                                     const MotionNoise& noise, Transition* transition) const {
-  const ImuUnit& unit = settings_.unit;
   const Mounting& mounting = filter_.state().mounting;
   if (!filter_.uses_samples()) {
     predict_without_samples(body, settings_.body, mounting, predicted_seconds(before_ns, t_ns), noise, transition);
     return;
   }
-  Preintegral samples(unit.noise, body.gyro_bias, body.accel_bias);
+  Preintegral samples(noise_.now(), body.gyro_bias, body.accel_bias);
   ImuReading now;
   integrate_samples(imu_, on_unit_clock(before_ns), on_unit_clock(t_ns), coasting(body, noise), &samples, &now);
   predict_by(body, samples, noise, transition);
@@ -123,7 +122,7 @@ Bend BodyMotion::bend_of_readout(std::int64_t unit_ns, const ImuReading& now, co
 void BodyMotion::predict_coasting(const Body& body, std::int64_t before_ns, std::int64_t t_ns,
                                   Transition* transition) const {
   const Coasting c = coasting(body, settings_.motion_noise);
-  Preintegral path(settings_.unit.noise, body.gyro_bias, body.accel_bias);
+  Preintegral path(noise_.now(), body.gyro_bias, body.accel_bias);
   path.coast(predicted_seconds(before_ns, t_ns), c.w_B, c.f_B, c.noise.angular, c.noise.linear);
   predict_by(body, path, c.noise, transition);
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "filter/filter.h"
+#include "filter_slam/pose/unit_noise.h"
 #include "frame/settings.h"
 
 /// Predicts the body: to the time of each frame in the filter, and to later times for display.
@@ -12,11 +13,14 @@ namespace pf {
 class BodyMotion {
  public:
   BodyMotion(const Settings& settings, Filter& filter, const ImuLog& imu)
-      : settings_(settings), filter_(filter), imu_(imu) {}
+      : settings_(settings), filter_(filter), imu_(imu), noise_(settings, imu) {}
 
   static constexpr std::int64_t kMaxGapNs = 2000000000;  ///< [ns] longest time between frames that a prediction covers
 
   void init() { data_ = Data(); }
+  /// How noisy the inertial unit is, which outlasts init().
+  UnitNoise& unit_noise() { return noise_; }
+  const UnitNoise& unit_noise() const { return noise_; }
   /// Known change of the velocities in camera axes, until the next frame.
   void push_control(const Vec3& dv_C, const Vec3& dw_C) {
     data_.given = true;
@@ -60,6 +64,7 @@ class BodyMotion {
   const Settings& settings_;
   Filter& filter_;
   const ImuLog& imu_;
+  UnitNoise noise_;
   Data data_;
 };
 

@@ -80,9 +80,9 @@ bool PixelUpdate::apply(int first, int count, double* nis) {
 }
 
 bool PixelUpdate::apply_to(int first, int count, double* nis) {
-  Scalar sum = 0, pose_nis = 0;
+  Scalar sum = 0, pose_nis = 0, of_rotation = 0;
   bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum);
-  const bool says_pose = solved && settings_.inertial && filter_.pose_nis(&pose_nis);
+  const bool says_pose = solved && settings_.inertial && filter_.pose_nis(&pose_nis, &of_rotation);
   if (says_pose && filter_.estimates_map_only() && pose_nis > kMaxFirstNis) {
     puts_depths_first_ = false;
     filter_.estimate_map_only(false);
@@ -90,7 +90,12 @@ bool PixelUpdate::apply_to(int first, int count, double* nis) {
     solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum);
   }
   is_contradicted_ = is_contradicted_ || (says_pose && contradicts(pose_nis));
-  if (!is_contradicted_) tracking_.note_update(solved);
+  if (is_contradicted_) {
+    contradicting_nis_ = pose_nis;
+    contradicting_rotation_ = of_rotation;
+  } else {
+    tracking_.note_update(solved);
+  }
   if (!solved || is_contradicted_) {
     reject(first, count);
     return false;
@@ -100,6 +105,7 @@ bool PixelUpdate::apply_to(int first, int count, double* nis) {
   // What the pose is off stays while depths come first: a frame says nothing that the one before had not said.
   if (says_pose && !filter_.estimates_map_only()) {
     frame_.report.pose_nis += static_cast<double>(pose_nis);
+    frame_.report.rotation_nis += static_cast<double>(of_rotation);
     frame_.report.pose_nis_dof += Body::kPoseDim;
   }
   for (int i = first; i < first + count; ++i) {

@@ -57,6 +57,9 @@ class PixelUpdate {
   bool limits_pose_nis() const { return max_pose_nis_ > Scalar(0); }
   /// It has done so.
   bool is_contradicted() const { return is_contradicted_; }
+  /// The pose NIS of that update, and the rotation's part of it.
+  Scalar contradicting_nis() const { return contradicting_nis_; }
+  Scalar contradicting_rotation() const { return contradicting_rotation_; }
   /// Until the next call: while the depths of most of what a frame measures are open, apply() tells the map alone by it, and the pose not
   /// (lib/docs/inertial.md, "Starting").
   void put_depths_first(bool first) { puts_depths_first_ = first; }
@@ -93,6 +96,7 @@ class PixelUpdate {
   LeaveOneOut others_;
   ProposedPoses proposals_{settings_, filter_};
   Scalar max_pose_nis_ = 0;
+  Scalar contradicting_nis_ = 0, contradicting_rotation_ = 0;
   bool puts_depths_first_ = false;
   bool is_contradicted_ = false;
 };

@@ -141,13 +141,12 @@ Scalar FilterStart::look_for_walls() {
   return scale;
 }
 
-bool FilterStart::is_young() const {
-  const std::int64_t age_ns = elapsed_ns(beginning_.begin_ns(), frame_.report.t_ns);
-  return seconds(age_ns) < static_cast<double>(tuning::inertial::kYoungMap);
-}
+double FilterStart::map_age() const { return seconds(elapsed_ns(beginning_.begin_ns(), frame_.report.t_ns)); }
+
+bool FilterStart::is_young() const { return map_age() < static_cast<double>(tuning::inertial::kYoungMap); }
 
 bool FilterStart::may_become_metric() const {
-  return !filter_.is_metric() && !data_.knows_scale && !map_.planes.has_known() && is_young();
+  return !filter_.is_metric() && !data_.knows_scale && !map_.planes.has_known();
 }
 
 /// A map may be given up while it is young, or where the camera has not moved since its first frame.

@@ -68,8 +68,10 @@ class FilterStart {
   /// Gives up a map of unknown scale that may give way to one in metres: a new one begins with this frame, and the camera has been at rest
   /// since begin_ns. False: the map may not be given up, and nothing has changed.
   bool begin_anew_at_rest(std::int64_t begin_ns);
-  /// A map that samples may scale, once its depths are known: of unknown scale, and not too old for it.
+  /// A map that samples may scale, once its depths are known: of unknown scale.
   bool may_become_metric() const;
+  /// Since the map's first frame [s].
+  double map_age() const;
 
   StartRecorder& recorder() { return recorder_; }
   const StartRecorder& recorder() const { return recorder_; }
