@@ -12,10 +12,12 @@ MAX_METHODS, MAX_MEMBERS, MAX_SOURCES, MAX_LINES = 25, 15, 2, 60
 # (class or function, what is counted): (how many, why).
 ABOVE = {
     ("Settings", "data members"): (46, "the config in the library's own units; a struct for each back end would show half of it to each"),
-    ("KeyframeSlam", "methods"): (26, "the back end's order of work and what the session asks of it"),
-    ("FrameReport", "data members"): (16, "the counts of pf_report_t, each by itself"),
+    ("FrameReport", "data members"): (17, "the counts of pf_report_t, each by itself"),
     ("RestDetector::Data", "data members"): (16, "running sums over the samples of a rest, which begin and end together"),
-    ("UnitWatch::Data", "data members"): (17, "all evidence for and against the unit, which is reset together"),
+    ("UnitWatch::Data", "data members"): (27, "all evidence for and against the unit, which is reset together"),
+    ("UnitWatch", "methods"): (33, "watches the unit, takes its clock and axes from the rates, names what is wrong: to be split"),
+    ("PixelUpdate", "data members"): (16, "what an update of a frame is told until the next call; goes when these are arguments"),
+    ("PixelUpdate", "methods"): (26, "likewise"),
 }
 
 found = {}

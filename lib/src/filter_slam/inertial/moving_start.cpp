@@ -259,7 +259,7 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
   }
   const Scalar delay_sigma = std::sqrt(delay_variance());
   if (data_.count == 1) data_.delay_sigma = delay_sigma;
-  if (told.judge && 2 * delay_sigma < data_.delay_sigma) {
+  if (told.judge && kBetterDelay * delay_sigma < data_.delay_sigma) {
     data_.delay_sigma = delay_sigma;
     integrate_again();
   }

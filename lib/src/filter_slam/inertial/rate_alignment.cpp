@@ -92,7 +92,7 @@ bool RateAlignment::gather(const ImuLog& log, double delay_s) {
     interval.g = sum / static_cast<Scalar>(seconds(elapsed_ns(from_ns, to_ns)));
     found += interval.has_g;
   }
-  return found >= kMinIntervals && 2 * found >= count_;
+  return found >= kMinIntervals && kMinWithGyro * found >= count_;
 }
 
 RateAlignment::Moments RateAlignment::moments() const {

@@ -40,6 +40,7 @@ inline constexpr Scalar kNone = Scalar(0.08);  ///< share of gravity below which
 
 /// The camera's rates against the gyroscope's.
 namespace rate_alignment {
+inline constexpr int kMinWithGyro = 2;                   ///< one in so many of those has samples
 inline constexpr int kMinIntervals = 15;                 ///< between frames
 inline constexpr Scalar kMirrored = Scalar(0.2);         ///< of what a rotation leaves, where a reflection leaves less
 inline constexpr Scalar kMaxLeft = Scalar(0.35);         ///< of an alignment that is believed: a correlation of 0.8
@@ -95,6 +96,7 @@ inline constexpr Scalar kLateSigmaScale = Scalar(0.1);     ///< of the log scale
 inline constexpr Scalar kLateSigmaGravity = Scalar(0.03);  ///< [rad] of gravity's direction then
 inline constexpr Scalar kMaxMisfit = Scalar(3);            ///< chi-square over its degrees of freedom
 inline constexpr Scalar kMaxApart = Scalar(9);             ///< of two halves, in the sum of their variances
+inline constexpr int kBetterDelay = 2;  ///< times better known, before what samples said is integrated again
 }  // namespace moving_verdict
 
 }  // namespace pf::tuning

@@ -28,6 +28,7 @@ inline constexpr Scalar kGateOfThree = Scalar(22.5);  ///< chi-square of six deg
 namespace unit_noise {
 inline constexpr Scalar kLeast = Scalar(1) / 3;    ///< of a density to the stated one
 inline constexpr Scalar kMost = Scalar(10);        ///< likewise
+inline constexpr int kMaxGap = 4;                  ///< median intervals that three samples in a row span, at most
 inline constexpr int kWindow = 100;                ///< samples of which differences are averaged
 inline constexpr Scalar kWhite = Scalar(0.7);      ///< of third to second differences, each over that of white noise
 inline constexpr Scalar kGain = Scalar(0.3);       ///< of the mean over windows

@@ -20,7 +20,7 @@ void UnitNoise::note_samples() {
   int first = imu_.held();
   while (first > 0 && imu_[first - 1].t_ns > data_.last_ns) --first;
   for (int i = std::max(first, 3); i < imu_.held(); ++i) {
-    if (elapsed_ns(imu_[i - 3].t_ns, imu_[i].t_ns) > 4 * median_ns) continue;
+    if (elapsed_ns(imu_[i - 3].t_ns, imu_[i].t_ns) > kMaxGap * median_ns) continue;
     for (int k = 0; k < 2; ++k) {
       const Vec3 d = value(i, k) - 2 * value(i - 1, k) + value(i - 2, k);
       const Vec3 before = value(i - 1, k) - 2 * value(i - 2, k) + value(i - 3, k);
