@@ -157,8 +157,6 @@ def test_usage(root):
     expect("lens", 2, ["--lens", "auto, exact, consider or estimate"], "--source", source, "--lens", "free", *out)
     expect("considered lens of the window", 2, ["--backend window"], "--source", "sim:desk", "--backend", "window", "--lens", "consider", *out)
     expect("mounting without samples", 2, ["--estimate", "--imu-noise"], "--source", source, "--estimate", "mount", *out)
-    expect("readout without one to begin with", 2, ["--estimate readout", "--readout"], "--source", "sim:room", "--imu", "sim", "--estimate",
-           "readout", *out)
     expect("timestamps", 2, ["--timestamps", "real or nominal"], "--source", source, "--timestamps", "counted", *out)
     expect("kernels", 2, ["--kernels"], "--source", source, "--kernels", "fast", *out)
     foreign = "avx2" if platform.machine() in ("aarch64", "armv7l") else "neon"

@@ -86,7 +86,7 @@ def check_files(out, report):
     states = report["frames_by_state"]
     require(sum(states.values()) == report["frames"], f"the states {states} are not {report['frames']} frames")
     table = [row[0].split(",") for row in rows(out / "frames.csv")[1:]]
-    require(states["tracked"] == report["tracked"] == sum(int(row[-1]) for row in table), f"frames.csv has another count than {states}")
+    require(states["tracked"] == report["tracked"] == sum(int(row[15]) for row in table), f"frames.csv has another count than {states}")
     check_folding(table, report)
     trajectory = rows(out / "trajectory.txt")
     require(len(trajectory) == report["tracked"], f"{len(trajectory)} poses, {report['tracked']} tracked")

@@ -76,7 +76,7 @@ def units(root):
     rows = [line.split(",") for line in (record / "mav0/imu0/data.csv").read_text().splitlines() if line[0] != "#"]
     (root / "upside.csv").write_text("".join(",".join([*row[:4], *(str(-float(word)) for word in row[4:])]) + "\n" for row in rows))
     expect("accelerations of the other sign", capture("upside down", *words, "--imu", f"csv:{root}/upside.csv"), "inertial unit", "opposite sign")
-    (root / "degrees.csv").write_text("".join(",".join([row[0], *(str(57.29578 * float(word)) for word in row[1:4]), *row[4:]]) for row in rows))
+    (root / "degrees.csv").write_text("".join(",".join([row[0], *(str(57.29578 * float(word)) for word in row[1:4]), *row[4:]]) + "\n" for row in rows))
     expect("rates in degrees", capture("degrees", *words, "--imu", f"csv:{root}/degrees.csv"), "57", "degrees per second")
     (root / "g.csv").write_text("".join(",".join([*row[:4], *(str(float(word) / 9.80665) for word in row[4:])]) + "\n" for row in rows))
     expect("accelerations in g", capture("g", *words, "--imu", f"csv:{root}/g.csv"), "accelerometer reads", "is it in g")

@@ -63,7 +63,7 @@ with tempfile.TemporaryDirectory() as name:
     require(drawn["readout_error_ms"]["max"] < 2 and drawn["readout_sigmas"]["max"] < 5, f"{drawn['readout_error_ms']}")
     require(1.5 < drawn["nees_pose"]["mean"] < 12, f"pose NEES {drawn['nees_pose']['mean']} with rows in pictures")
     run(BIN / "pf-sim", "vio", "--rendered", "--seeds", "1", "--seconds", "14", "--readout", "0.03", "--as-global", *EXACT, "--json", path)
-    require(json.loads(path.read_text())["doubt"]["runs"] == 1, "rows that nobody tells of pass for none")
+    require(json.loads(path.read_text())["nees_pose"]["mean"] > 12, "rows that nobody tells of pass for none")
 
     dark, _ = report(folder, "--seconds", "12", "--blackout-at", "7", "--blackout", "1")
     require(dark["lost_runs"] == 0, "lost behind a covered lens")

@@ -74,7 +74,7 @@ void test_a_vague_prediction_should_have_no_past() {
   belief.trust();
   belief.begin_frame(kFrame);
   belief.spend();
-  TEST_ASSERT_DOUBLE_WITHIN(1e-12, static_cast<double>(kAnew), static_cast<double>(belief.predicted()));
+  TEST_ASSERT_DOUBLE_WITHIN(1e-12, static_cast<double>(kElsewhere), static_cast<double>(belief.predicted()));
   TEST_ASSERT_FALSE(belief.is_tracked());
 }
 

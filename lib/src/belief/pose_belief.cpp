@@ -11,7 +11,7 @@ using namespace tuning::pose_belief;
 
 void PoseBelief::init() {
   share_.init();
-  log_odds_ = predicted_ = kAnew;
+  log_odds_ = predicted_ = least_ = kAnew;
   is_noted_ = false;
 }
 
@@ -20,12 +20,17 @@ void PoseBelief::begin_frame(double dt_s) {
   // 1 - p of what was right, and has ended since: e^-L + (1 - e^(-h dt)) (1 + e^-L) over e^(-h dt).
   const double kept = std::exp(-kHazard * dt_s);
   const double odds = kept / (std::exp(-before) + (1 - kept));
-  predicted_ = std::max(kAnew, static_cast<Scalar>(std::log(odds)));
+  predicted_ = std::max(least_, static_cast<Scalar>(std::log(odds)));
   log_odds_ = predicted_;
   is_noted_ = false;
 }
 
-void PoseBelief::spend() { predicted_ = log_odds_ = std::min(predicted_, kAnew); }
+void PoseBelief::begin_elsewhere() {
+  init();
+  log_odds_ = predicted_ = least_ = kElsewhere;
+}
+
+void PoseBelief::spend() { predicted_ = log_odds_ = kElsewhere; }
 
 Scalar PoseBelief::anew() { return kAnew; }
 
@@ -44,6 +49,7 @@ void PoseBelief::note(Scalar log_odds) {
 
 void PoseBelief::use(Scalar log_odds, const PoseConsensus& consensus) {
   log_odds_ = log_odds;
+  if (is_enough(log_odds)) least_ = kAnew;
   is_noted_ = true;
   share_.learn(consensus.searched, consensus.inliers);
 }

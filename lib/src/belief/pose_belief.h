@@ -20,7 +20,9 @@ class PoseBelief {
   /// Begins a frame, dt_s after the one before.
   void begin_frame(double dt_s);
 
-  /// The prediction is too vague to be searched about: what it was worth before is spent.
+  /// A map begins after a loss: pictures that did not go on from one to the next have to show that they do.
+  void begin_elsewhere();
+  /// The prediction is too vague to be searched about: what it was worth is spent, and any pose is as good.
   void spend();
   /// Log-odds before this frame's evidence.
   Scalar predicted() const { return predicted_; }
@@ -50,6 +52,7 @@ class PoseBelief {
  private:
   FindShare share_;
   Scalar log_odds_ = 0, predicted_ = 0;
+  Scalar least_ = 0;       ///< of a prediction
   bool is_noted_ = false;  ///< in this frame
 };
 

@@ -36,7 +36,7 @@ Scalar log_ratio(const Vec2& shift, const Vec2& flow) {
 bool FixedFeatures::layout(Arena& arena, int width, int height, int max_features) {
   capacity_ = max_features;
   entry_ = arena.take<Entry>(static_cast<std::size_t>(max_features));
-  return mask_.layout(arena, width, height);
+  return mask_.layout(arena, width, height, kCell);
 }
 
 void FixedFeatures::init(const ImageMask* also) {
@@ -76,15 +76,17 @@ void FixedFeatures::keep_reference(const Thumbnail& now, const Frame& frame) {
   reference_ = now;
   has_reference_ = true;
   age_ = 0;
-  for (int i = 0; i < capacity_; ++i) entry_[i].is_in_reference = false;
+  for (int i = 0; i < capacity_; ++i) entry_[i].u = kNowhere;
   for (int t = 0; t < frame.match_count(); ++t) {
     const Match& match = frame.match(t);
     if (!is_found(match)) continue;
     Entry& entry = entry_[match.feature];
-    if (entry.id != match.id) entry = {match.id, 0, 0, static_cast<float>(prior()), false};
-    entry.u = static_cast<float>(match.measured.x());
-    entry.v = static_cast<float>(match.measured.y());
-    entry.is_in_reference = true;
+    const std::uint16_t id = static_cast<std::uint16_t>(match.id);
+    const Vec2 at = kPerPixel * match.measured;
+    if (entry.id != id) entry = {id, kNowhere, 0, static_cast<std::int16_t>(kPerOdds * prior())};
+    if (!(at.x() >= 0 && at.y() >= 0 && at.x() < kNowhere && at.y() < kNowhere)) continue;
+    entry.u = static_cast<std::uint16_t>(at.x());
+    entry.v = static_cast<std::uint16_t>(at.y());
   }
 }
 
@@ -94,14 +96,14 @@ int FixedFeatures::weigh(const Camera& camera, const Quat& q_before_now, const F
     const Match& match = frame.match(t);
     if (!is_found(match)) continue;
     Entry& entry = entry_[match.feature];
-    const Vec2 before(static_cast<Scalar>(entry.u), static_cast<Scalar>(entry.v));
+    const Vec2 before = Vec2(static_cast<Scalar>(entry.u), static_cast<Scalar>(entry.v)) / kPerPixel;
     Vec2 flow;
-    if (entry.id != match.id || !entry.is_in_reference || !flow_at(camera, q_before_now, before, &flow) ||
-        flow.squaredNorm() < kMinFlow * kMinFlow / 4)
+    if (entry.id != static_cast<std::uint16_t>(match.id) || entry.u == kNowhere ||
+        !flow_at(camera, q_before_now, before, &flow) || flow.squaredNorm() < kMinFlow * kMinFlow / 4)
       continue;
-    const Scalar known = static_cast<Scalar>(entry.log_odds);
+    const Scalar known = static_cast<Scalar>(entry.log_odds) / kPerOdds;
     const Scalar log_odds = known + log_ratio(match.measured - before, flow);
-    entry.log_odds = static_cast<float>(std::clamp(log_odds, -kFixed, kFixed));
+    entry.log_odds = static_cast<std::int16_t>(kPerOdds * std::clamp(log_odds, -kFixed, kFixed));
     const int x = static_cast<int>(match.measured.x()), y = static_cast<int>(match.measured.y());
     scene_ += log_odds <= -kFixed && known > -kFixed ? 1 : 0;
     if (log_odds < kFixed) continue;

@@ -39,11 +39,13 @@ class FixedFeatures {
 
  private:
   struct Entry {
-    std::uint32_t id = 0;  ///< of the feature; 0: none
-    float u = 0, v = 0;    ///< [px] where it was in the reference frame
-    float log_odds = 0;
-    bool is_in_reference = false;
+    std::uint16_t id = 0;               ///< of the feature, its last digits
+    std::uint16_t u = kNowhere, v = 0;  ///< where it was in the reference frame [1 / kPerPixel px]
+    std::int16_t log_odds = 0;          ///< [1 / kPerOdds]
   };
+  static constexpr std::uint16_t kNowhere = 0xffff;  ///< not in the reference frame
+  static constexpr Scalar kPerPixel = 16, kPerOdds = 1000;
+  static constexpr int kCell = 8;  ///< [px] of the mask
 
   Scalar prior() const;
   void keep_reference(const Thumbnail& now, const Frame& frame);

@@ -66,6 +66,7 @@ class TrackingState {
     data_ = Data();
     data_.map_id = map_id;
     data_.may_skip_target = true;
+    data_.belief.begin_elsewhere();
   }
   /// The same map in other units, and so with another id.
   void rename_map() { ++data_.map_id; }

@@ -5,9 +5,10 @@
 
 namespace pf {
 
-bool ImageMask::layout(Arena& arena, int width, int height) {
-  columns_ = (width + kCell - 1) / kCell;
-  rows_ = (height + kCell - 1) / kCell;
+bool ImageMask::layout(Arena& arena, int width, int height, int side) {
+  side_ = side;
+  columns_ = (width + side - 1) / side;
+  rows_ = (height + side - 1) / side;
   bits_ = arena.take<std::uint32_t>(static_cast<std::size_t>(cells() + 31) / 32);
   return arena.ok();
 }
@@ -18,8 +19,8 @@ void ImageMask::init() {
 }
 
 ImageMask::Span ImageMask::span_of(const Rect& rect) const {
-  const auto cells_from = [](int at, int count) { return std::clamp(at, 0, count * kCell) / kCell; };
-  const auto cells_to = [](int at, int count) { return (std::clamp(at, 0, count * kCell) + kCell - 1) / kCell; };
+  const auto cells_from = [this](int at, int count) { return std::clamp(at, 0, count * side_) / side_; };
+  const auto cells_to = [this](int at, int count) { return (std::clamp(at, 0, count * side_) + side_ - 1) / side_; };
   if (rect.empty()) return {0, 0, 0, 0};
   return {cells_from(rect.x, columns_), cells_from(rect.y, rows_), cells_to(rect.x + rect.width, columns_),
           cells_to(rect.y + rect.height, rows_)};
@@ -42,13 +43,13 @@ bool ImageMask::is_clear(const Rect& rect) const {
   for (int row = span.top; row < span.bottom; ++row)
     for (int column = span.left; column < span.right; ++column)
       if (is_masked(column, row)) return false;
-  return true;
+  return also_ == nullptr || also_->is_clear(rect);
 }
 
 bool ImageMask::is_clear(const Vec2& pixel, int margin) const {
   // Far outside of the image the numbers may not fit, and there is nothing masked.
-  const Scalar width = static_cast<Scalar>(columns_ * kCell + margin);
-  const Scalar height = static_cast<Scalar>(rows_ * kCell + margin);
+  const Scalar width = static_cast<Scalar>(columns_ * side_ + margin);
+  const Scalar height = static_cast<Scalar>(rows_ * side_ + margin);
   const Scalar low = static_cast<Scalar>(-margin - 1);
   if (!(pixel.x() > low && pixel.y() > low && pixel.x() < width && pixel.y() < height)) return true;
   const int x = static_cast<int>(std::floor(pixel.x() + Scalar(0.5)));
@@ -60,7 +61,9 @@ bool ImageMask::has_clear(const Rect& rect) const {
   const Span span = span_of(rect);
   for (int row = span.top; row < span.bottom; ++row)
     for (int column = span.left; column < span.right; ++column)
-      if (!is_masked(column, row)) return true;
+      if (!is_masked(column, row) &&
+          (also_ == nullptr || also_->is_clear(Rect{column * side_, row * side_, side_, side_})))
+        return true;
   return false;
 }
 

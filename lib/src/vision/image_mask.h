@@ -14,8 +14,8 @@ class ImageMask {
  public:
   static constexpr int kCell = 4;  ///< [px] side of a cell
 
-  /// ceil(width / 4) * ceil(height / 4) bits.
-  bool layout(Arena& arena, int width, int height);
+  /// ceil(width / side) * ceil(height / side) bits. side: of a cell [px].
+  bool layout(Arena& arena, int width, int height, int side = kCell);
   /// Nothing is masked.
   void init();
 
@@ -27,7 +27,7 @@ class ImageMask {
   bool has_masked() const { return masked_ > 0 || (also_ != nullptr && also_->has_masked()); }
   int cells() const { return columns_ * rows_; }
   /// The pixels of a cell; its right and lower edge may lie outside of the image.
-  Rect cell(int index) const { return {index % columns_ * kCell, index / columns_ * kCell, kCell, kCell}; }
+  Rect cell(int index) const { return {index % columns_ * side_, index / columns_ * side_, side_, side_}; }
   /// Masks the cells for which is_masked(Rect) is true, and no others.
   template <typename F>
   void assign(F&& is_masked);
@@ -46,11 +46,11 @@ class ImageMask {
   Span span_of(const Rect& rect) const;
   bool is_masked(int column, int row) const {
     const int at = row * columns_ + column;
-    return (bits_[at / 32] >> (at % 32) & 1u) != 0 || (also_ != nullptr && also_->is_masked(column, row));
+    return (bits_[at / 32] >> (at % 32) & 1u) != 0;
   }
 
   std::uint32_t* bits_ = nullptr;
-  int columns_ = 0, rows_ = 0;
+  int columns_ = 0, rows_ = 0, side_ = kCell;
   int masked_ = 0;  ///< cells
   const ImageMask* also_ = nullptr;
 };

@@ -26,7 +26,7 @@ inline constexpr Scalar kGateOfThree = Scalar(22.5);  ///< chi-square of six deg
 
 /// The inertial unit's noise, learned. A frame's innovation over its expectation is a likelihood's slope in the log of the variance.
 namespace unit_noise {
-inline constexpr Scalar kLeast = Scalar(1) / 3;    ///< of a density to the stated one
+inline constexpr Scalar kLeast = Scalar(0.3333);   ///< of a density to the stated one
 inline constexpr Scalar kMost = Scalar(10);        ///< likewise
 inline constexpr int kMaxGap = 4;                  ///< median intervals that three samples in a row span, at most
 inline constexpr int kWindow = 100;                ///< samples of which differences are averaged
