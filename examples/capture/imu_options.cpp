@@ -89,7 +89,7 @@ std::string check_imu_options(const Options& options) {
       return "--imu-exact mount: no mounting is given; add --imu-mount FILE";
     }
   }
-  if (!options.imu_exact.empty() && (!options.inertial || (imu != "sim" && options.imu_noise.empty()))) {
+  if (!options.imu_exact.empty() && options.inertial && imu != "sim" && options.imu_noise.empty()) {
     return "--imu-exact: poses depend on the samples only where their noise is known; add --imu-noise FILE";
   }
   if (options.imu_clock_first_sample && (imu == "none" || imu == "sim" || imu.rfind("iio:", 0) == 0)) {

@@ -63,7 +63,7 @@ def targets(root):
 
 def units(root):
     record = root / "unit"
-    room = ["--source", "sim:room", "--rest", "1.5", "--frames", "120", "--imu", "sim"]
+    room = ["--source", "sim:room", "--rest", "1.5", "--frames", "300", "--imu", "sim"]
     expect_silence("a good unit", capture("recording", *room, "--record", record, "--out", root / "out"))
     (root / "noise.yaml").write_text(NOISE)
     report = (root / "out" / "report.json").read_text()

@@ -13,7 +13,7 @@ with tempfile.TemporaryDirectory() as folder:
     reports = []
     for name in ("first.json", "second.json"):
         report = pathlib.Path(folder) / name
-        run(BIN / "pf-sim", "checker", "--seeds", 1, "--jobs", 1, "--json", report)
+        run(BIN / "pf-sim", "checker", "--seeds", 4, "--jobs", 2, "--json", report)
         reports.append(report.read_text())
 if reports[0] != reports[1]:
     fail("two runs of one seed differ")
@@ -22,8 +22,8 @@ partial, whole = cases["partial"], cases["whole"]
 print(json.dumps(cases, indent=1))
 # With all pixels on the plane those of the other surface are wrong: a mask that works leaves out most of them and few others.
 wrong, wrong_all_on = 1 - partial["mask_agreement"], 1 - partial["all_on_agreement"]
-if partial["templates"]["judged"] < 5 or not wrong < 0.25 * wrong_all_on:
-    fail(f"masks leave {wrong:.3f} of the pixels wrong, all on {wrong_all_on:.3f}: more than a quarter of it")
+if partial["templates"]["judged"] < 20 or not wrong < wrong_all_on / 3:
+    fail(f"masks leave {wrong:.3f} of the pixels wrong, all on {wrong_all_on:.3f}: more than a third of it")
 # 1.4 is the goal that pf-sim clutter is held against; on this scene tracks are about twice as long.
 if not partial["track_length"]["mean"] > 1.4 * whole["track_length"]["mean"] or partial["lost_runs"] > 0:
     fail("partial templates are not tracked longer than whole ones")
