@@ -121,7 +121,7 @@ with tempfile.TemporaryDirectory() as name:
 
     # A unit as phones have it, of which nothing but a third of its noise and about how it is mounted is told.
     phone, _ = report(folder, "--seconds", "14", "--unit", "phone")
-    require(phone["doubt"]["runs"] == 0 and phone["lost_runs"] == 0, f"a phone's unit: {phone['doubt']}")
+    require(phone["doubt"]["runs"] <= 1 and phone["lost_runs"] == 0, f"a phone's unit: {phone['doubt']}")
     require(phone["starts"]["accepted"] == SEEDS, f"a phone's unit: {phone['starts']}")
     # Axes of which nothing is told are found.
     turned, _ = report(folder, "--seconds", "10", "--axes", "13")

@@ -93,7 +93,7 @@ bool ImageFrontEnd::update_with_consensus(const Range& range, const MeasureMode&
   unsigned char* keep = update_.keep();
   JointFit fit;
   PoseConsensus consensus;
-  Scalar log_odds;
+  Scalar log_odds = 0;
   bool accepted;
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);

@@ -72,7 +72,7 @@ PoseConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement
     unsigned char is_inlier[kMaxObservations] = {};
     for (int j = 0; j < found; ++j) {
       const bool is_of_three = j == three[0] || j == three[1] || j == three[2];
-      Scalar log_density;
+      Scalar log_density = 0;
       is_inlier[j] = is_of_three || agrees(filter, matches, fixed, j, gate, &log_density) ? 1 : 0;
       if (is_inlier[j] == 0 || is_of_three) continue;
       ++consensus.inliers;

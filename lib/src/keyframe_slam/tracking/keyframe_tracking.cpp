@@ -18,8 +18,8 @@ using namespace tuning::keyframe_tracking;
 
 void KeyframeTracking::measure(Scalar median_depth) {
   const PosePrior prior = prior_of(motion_);
-  CameraPose pose;
-  Mat6 information;
+  CameraPose pose = {prior.q_WC, prior.p_W};
+  Mat6 information = Mat6::Zero();
   hypotheses_ = 1;
   if (!measure_placed(prior, &pose, &information)) {
     measure_all(median_depth);
