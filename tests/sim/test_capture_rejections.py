@@ -64,6 +64,7 @@ def targets(root):
 def units(root):
     record = root / "unit"
     room = ["--source", "sim:room", "--rest", "1.5", "--frames", "300", "--imu", "sim"]
+    soon = ["--frames", "120"]
     expect_silence("a good unit", capture("recording", *room, "--record", record, "--out", root / "out"))
     (root / "noise.yaml").write_text(NOISE)
     report = (root / "out" / "report.json").read_text()
@@ -75,7 +76,10 @@ def units(root):
     words = ["--source", f"euroc:{record}", "--imu-noise", root / "noise.yaml", "--imu-mount", root / "mount.yaml", "--out", root / "out"]
     rows = [line.split(",") for line in (record / "mav0/imu0/data.csv").read_text().splitlines() if line[0] != "#"]
     (root / "upside.csv").write_text("".join(",".join([*row[:4], *(str(-float(word)) for word in row[4:])]) + "\n" for row in rows))
-    expect("accelerations of the other sign", capture("upside down", *words, "--imu", f"csv:{root}/upside.csv"), "inertial unit", "opposite sign")
+    upside = [*words, "--imu", f"csv:{root}/upside.csv"]
+    expect("accelerations of the other sign, exact clock", capture("upside down", *upside, "--imu-exact", "mount,delay", *soon),
+           "inertial unit contradicts the pictures", "and was left out", "--imu-mount", "signs")
+    expect("accelerations of the other sign", capture("upside down", *upside), "inertial unit", "opposite sign")
     (root / "degrees.csv").write_text("".join(",".join([row[0], *(str(57.29578 * float(word)) for word in row[1:4]), *row[4:]]) + "\n" for row in rows))
     expect("rates in degrees", capture("degrees", *words, "--imu", f"csv:{root}/degrees.csv"), "57", "degrees per second")
     (root / "g.csv").write_text("".join(",".join([*row[:4], *(str(float(word) / 9.80665) for word in row[4:])]) + "\n" for row in rows))
