@@ -91,6 +91,8 @@ def test_wrong_masks_should_be_refused_in_one_line(film, folder):
 skip_in_cross_builds()
 if not CAPTURE.is_file():
     skip("pf-capture was not built")
+if not (BIN / "pf-sim").is_file():
+    skip("pf-sim, which renders the film, was not built")
 with tempfile.TemporaryDirectory(prefix="planefold_") as made:
     root = pathlib.Path(made)
     run(BIN / "pf-sim", "render", "desk", "--out", root / "film", "--frames", FRAMES, "--width", WIDTH)

@@ -61,6 +61,8 @@ class KeyframeMap {
   BlockKind kind(int i) const;
   /// Median depth of this frame's inliers that have one, seen from a pose; 0 without any.
   Scalar median_depth(const Quat& q_WC, const Vec3& p_W) const;
+  /// Room for a number of each point. median_depth() uses it too.
+  Scalar* scratch() { return scratch_; }
 
   /// Adds a point without a depth at a pixel of a keyframe; evicts one that was not seen in this frame where there is no room. Returns its
   /// row, or -1.

@@ -19,7 +19,6 @@ bool RotationTracking::layout(Arena& arena) {
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
   ray_ = arena.take<Vec3>(points);
   pixel_ = arena.take<BundlePixel>(points);
-  scratch_ = arena.take<Scalar>(points);
   return arena.ok();
 }
 
@@ -53,7 +52,7 @@ bool RotationTracking::measure(const Vec3& base_W) {
   const int found = find_points();
   if (found < settings_.min_inliers) return false;
   Quat q_WC = motion_.body().q_WC;
-  const Scalar parallax = fit_rotation(map_.camera(), ray_, pixel_, list_rays(), scratch_, &q_WC);
+  const Scalar parallax = fit_rotation(map_.camera(), ray_, pixel_, list_rays(), map_.scratch(), &q_WC);
   const Scalar bound = kParallaxes * parallax + pose_.bound_px();
   correct_body(found, q_WC, base_W);
   const CameraView seen_from = motion_.view();

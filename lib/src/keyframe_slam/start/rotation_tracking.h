@@ -34,7 +34,6 @@ class RotationTracking {
   // One for each point.
   Vec3* ray_ = nullptr;  ///< in W
   BundlePixel* pixel_ = nullptr;
-  Scalar* scratch_ = nullptr;
 };
 
 }  // namespace pf
