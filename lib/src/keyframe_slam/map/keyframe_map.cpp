@@ -15,6 +15,7 @@ bool KeyframeMap::layout(Arena& arena) {
   const int points = settings_.max_features;
   point_ = arena.take<KeyframePoint>(static_cast<std::size_t>(points));
   scratch_ = arena.take<Scalar>(static_cast<std::size_t>(points));
+  scratch_vector_ = arena.take<Vec3>(static_cast<std::size_t>(points));
   return keyframes.layout(arena, kKeyframes, points);
 }
 

@@ -17,7 +17,6 @@ bool KeyframePlanes::layout(Arena& arena) {
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
   plane_ = arena.take<KeyframePlane>(static_cast<std::size_t>(settings_.max_planes));
   candidate_ = arena.take<PlaneCandidate>(points);
-  point_W_ = arena.take<Vec3>(points);
   return arena.ok();
 }
 
@@ -44,7 +43,7 @@ int KeyframePlanes::list_points(int k) {
   for (const int i : used_entries(map_)) {
     if (!map_.point(i).has_depth || map_.point(i).plane != k) continue;
     candidate_[count].name = i;
-    point_W_[count++] = map_.position(i);
+    points_W()[count++] = map_.position(i);
   }
   return count;
 }
@@ -124,14 +123,14 @@ int KeyframePlanes::drop_distant_points(int k) {
   const int count = list_points(k);
   int kept = 0;
   for (int c = 0; c < count; ++c) {
-    const Scalar near = distance_at(settings_, (point_W_[c] - viewer_W_).norm());
-    if (std::abs(plane_distance(frame, Vec3::Zero(), point_W_[c])) > tuning::keyframe_planes::kOff * near) {
+    const Scalar near = distance_at(settings_, (points_W()[c] - viewer_W_).norm());
+    if (std::abs(plane_distance(frame, Vec3::Zero(), points_W()[c])) > tuning::keyframe_planes::kOff * near) {
       map_.point(candidate_[c].name).plane = -1;
       ++table_[k].outliers;
       continue;
     }
     candidate_[kept].name = candidate_[c].name;
-    point_W_[kept++] = point_W_[c];
+    points_W()[kept++] = points_W()[c];
   }
   return kept;
 }
@@ -144,14 +143,14 @@ void KeyframePlanes::refit(int k) {
   const Vec3 n_old = old.R_WP.col(2);
   const int kept = drop_distant_points(k);
   PlaneFit fit;
-  if (kept < same::kMinPoints || !fit_plane(point_W_, kept, old.o_W + n_old, &fit)) return;
+  if (kept < same::kMinPoints || !fit_plane(points_W(), kept, old.o_W + n_old, &fit)) return;
   const Mat3 axes = fit.frame.R_WP;
   const Vec3 n = axes.col(2);
   if (!(n.dot(n_old) > same::kMinNormalCosine)) return;
   Mat3 P = Mat3::Zero();
   const Scalar roughness2 = settings_.fold.roughness * settings_.fold.roughness;
   for (int c = 0; c < kept; ++c) {
-    const Mat3 J = fit_plane_jacobian(fit, point_W_[c]);
+    const Mat3 J = fit_plane_jacobian(fit, points_W()[c]);
     const Mat3 S = map_.covariance(candidate_[c].name) + roughness2 * n * n.transpose();
     P += J.lazyProduct(S).lazyProduct(J.transpose());
   }
@@ -192,7 +191,7 @@ void KeyframePlanes::outline(int k) {
   Vec2 uv[kOutlineBatch];
   for (int c = 0; c < count;) {
     int batch = 0;
-    while (c < count && batch < kOutlineBatch) uv[batch++] = plane_coordinates(plane_[k].frame, point_W_[c++]);
+    while (c < count && batch < kOutlineBatch) uv[batch++] = plane_coordinates(plane_[k].frame, points_W()[c++]);
     extend_outline(&table_[k].seen, uv, reject_isolated(uv, batch));
   }
 }
@@ -241,7 +240,7 @@ void KeyframePlanes::merge() {
       const int count = list_points(other);
       int close = 0;
       for (int c = 0; c < count; ++c)
-        close += std::abs(plane_distance(to, Vec3::Zero(), point_W_[c])) <
+        close += std::abs(plane_distance(to, Vec3::Zero(), points_W()[c])) <
                          tuning::keyframe_planes::kOff * settings_.plane_distance
                      ? 1
                      : 0;

@@ -52,13 +52,14 @@ class KeyframePlanes {
   void dissolve_weak();
   void dissolve(int k);
   int list_points(int k);
+  /// Places of the points that are listed.
+  Vec3* points_W() { return map_.scratch_vectors(); }
 
   const Settings& settings_;
   KeyframeMap& map_;
   PlaneTable& table_;
   KeyframePlane* plane_ = nullptr;       ///< max_planes
   PlaneCandidate* candidate_ = nullptr;  ///< one for each point that is listed; its name is its row
-  Vec3* point_W_ = nullptr;              ///< likewise
   Vec3 viewer_W_ = Vec3::Zero();         ///< of this keyframe
   std::uint32_t searches_ = 0;           ///< for new planes, so far
 };

@@ -17,7 +17,6 @@ bool is_found(const Match& match) { return match.status == MatchStatus::kOutlier
 
 bool RotationTracking::layout(Arena& arena) {
   const std::size_t points = static_cast<std::size_t>(settings_.max_features);
-  ray_ = arena.take<Vec3>(points);
   pixel_ = arena.take<BundlePixel>(points);
   return arena.ok();
 }
@@ -41,7 +40,7 @@ int RotationTracking::list_rays() {
   for (int t = 0; t < frame_.match_count() && count < settings_.max_features; ++t) {
     const Match& match = frame_.match(t);
     if (!is_found(match)) continue;
-    ray_[count] = map_.ray_W(match.feature);
+    map_.scratch_vectors()[count] = map_.ray_W(match.feature);
     const Vec2 pixel = followed_at_frame_time(map_, match, frame_.report.t_ns);
     pixel_[count++] = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), true};
   }
@@ -52,7 +51,8 @@ bool RotationTracking::measure(const Vec3& base_W) {
   const int found = find_points();
   if (found < settings_.min_inliers) return false;
   Quat q_WC = motion_.body().q_WC;
-  const Scalar parallax = fit_rotation(map_.camera(), ray_, pixel_, list_rays(), map_.scratch(), &q_WC);
+  const int count = list_rays();
+  const Scalar parallax = fit_rotation(map_.camera(), map_.scratch_vectors(), pixel_, count, map_.scratch(), &q_WC);
   const Scalar bound = kParallaxes * parallax + pose_.bound_px();
   correct_body(found, q_WC, base_W);
   const CameraView seen_from = motion_.view();

@@ -31,9 +31,7 @@ class RotationTracking {
   KeyframeMotion& motion_;
   PointSearch& search_;
   PoseMeasurement& pose_;
-  // One for each point.
-  Vec3* ray_ = nullptr;  ///< in W
-  BundlePixel* pixel_ = nullptr;
+  BundlePixel* pixel_ = nullptr;  ///< one for each point
 };
 
 }  // namespace pf
