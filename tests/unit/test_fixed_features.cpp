@@ -3,7 +3,6 @@
 #include "frame/fixed_features.h"
 #include "geometry/so3.h"
 #include "support/filter_cases.h"
-#include "support/panorama.h"
 #include "support/test_cameras.h"
 
 using namespace pf;
@@ -13,13 +12,12 @@ void tearDown(void) {}
 
 namespace {
 
-constexpr int kWidth = Panorama::kWidth, kHeight = Panorama::kHeight;
+constexpr int kWidth = 320, kHeight = 240;
 constexpr int kScene = 20, kFixed = 10, kAll = kScene + kFixed;
 constexpr double kMatchPx = 0.1;
 
 struct Bench {
   SeededRandom random{211};
-  Panorama panorama{random};
   Camera camera = test_camera(CameraModel::kPinhole, kWidth, kHeight, 260, 260, 159.5, 119.5);
   TestArena arena;
   FixedFeatures fixed;
@@ -60,8 +58,7 @@ struct Bench {
     for (int i = 0; i < kFixed; ++i)
       if (fixed.mask()->is_clear(still[i], 0))
         add(kScene + i, still[i], follows_fixed ? MatchStatus::kInlier : MatchStatus::kOutlier);
-    panorama.look(camera, q_WC);
-    discredited = fixed.note(camera, panorama.pyramid, frame) || discredited;
+    discredited = fixed.note(camera, frame) || discredited;
   }
   void turn(int frames, double rad_per_frame, bool follows_fixed) {
     for (int k = 0; k < frames; ++k) {
@@ -105,6 +102,29 @@ void test_nothing_should_be_masked_while_the_camera_rests() {
   TEST_ASSERT_EQUAL_INT(0, bench.masked() + bench.scene_masked());
 }
 
+void test_what_is_fixed_should_be_known_before_the_camera_has_turned_by_two_degrees() {
+  Bench bench;
+  bench.turn(7, 0.005, true);  // 9 px
+  TEST_ASSERT_EQUAL_INT(kFixed, bench.masked());
+  TEST_ASSERT_TRUE(bench.discredited);
+}
+
+void test_things_that_move_before_a_resting_camera_should_mask_nothing() {
+  Bench bench;
+  for (int k = 0; k < 60; ++k) {  // fewer than half of what is found: a person walks by
+    bench.frame.begin(bench.frame.report.t_ns + 33333333);
+    for (int i = 0; i < kFixed; ++i)
+      bench.add(kScene + i, bench.still[i] - Vec2(static_cast<Scalar>(k), 0), MatchStatus::kOutlier);
+    for (int i = 0; i < kScene; ++i) {
+      Vec2 pixel;
+      TEST_ASSERT_TRUE(project(bench.camera, bench.ray_W[i], &pixel));
+      bench.add(i, pixel, MatchStatus::kInlier);
+    }
+    TEST_ASSERT_FALSE(bench.fixed.note(bench.camera, bench.frame));
+  }
+  TEST_ASSERT_EQUAL_INT(0, bench.scene_masked());
+}
+
 void test_what_the_caller_masks_should_be_masked_besides() {
   Bench bench;
   const Vec2 pixel(40, 40);
@@ -125,6 +145,8 @@ int main() {
   RUN_TEST(test_what_is_fixed_should_be_masked_once_the_picture_has_moved);
   RUN_TEST(test_a_map_that_comes_from_what_is_fixed_should_be_discredited);
   RUN_TEST(test_nothing_should_be_masked_while_the_camera_rests);
+  RUN_TEST(test_what_is_fixed_should_be_known_before_the_camera_has_turned_by_two_degrees);
+  RUN_TEST(test_things_that_move_before_a_resting_camera_should_mask_nothing);
   RUN_TEST(test_what_the_caller_masks_should_be_masked_besides);
   return UNITY_END();
 }

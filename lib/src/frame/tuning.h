@@ -84,16 +84,20 @@ inline constexpr int kFewPassing = 2;  ///< matches for each that passes a gate,
 
 /// What is fixed to the picture (FixedFeatures).
 namespace fixed_features {
-inline constexpr int kEvery = 3;                  ///< [frames] in which the picture is compared with the reference once
-inline constexpr int kMaxAge = 90;                ///< [frames] of a reference while the picture stands still
-inline constexpr Scalar kMinFlow = Scalar(2);     ///< [px] by which the picture has moved before features are judged
-inline constexpr Scalar kStill = Scalar(0.25);    ///< [px] sigma of the shift of what is fixed
+inline constexpr int kMaxAge = 90;             ///< [frames] of a reference while the picture stands still
+inline constexpr Scalar kMinFlow = Scalar(2);  ///< [px] by which a feature has moved
+inline constexpr int kMinMoved = 2;   ///< one in so many features has moved, and as one, where others are judged
+inline constexpr int kMinPixels = 8;  ///< of them
+inline constexpr int kRounds = 3;     ///< of the fit of a turn
+inline constexpr Scalar kRegularisation = Scalar(1e-3);  ///< [px^2/rad^2] of that fit
+inline constexpr Scalar kStill = Scalar(0.25);           ///< [px] sigma of the shift of what is fixed
 inline constexpr Scalar kParallax = Scalar(0.7);  ///< sigma of the scene's shift, in that of the picture as a whole
 inline constexpr Scalar kMaxStep = Scalar(4);     ///< log-odds of one comparison, at most
-inline constexpr Scalar kScene = Scalar(50);      ///< features of the scene for each fixed one, before any was judged
-inline constexpr Scalar kFixed = Scalar(6.2);     ///< log-odds from which a feature is masked: wrong in 0.2 %
-inline constexpr int kMargin = 16;                ///< [px] about such a feature
-inline constexpr int kDiscredits = 3;  ///< one in so many inliers, from which the map comes from what is fixed
+inline constexpr Scalar kMost = Scalar(12);    ///< log-odds of all comparisons, at most: three in favour undo any past
+inline constexpr Scalar kScene = Scalar(50);   ///< features of the scene for each fixed one, before any was judged
+inline constexpr Scalar kFixed = Scalar(6.2);  ///< log-odds from which a feature is masked: wrong in 0.2 %
+inline constexpr int kMargin = 16;             ///< [px] about such a feature
+inline constexpr int kDiscredits = 3;          ///< one in so many inliers, from which the map comes from what is fixed
 }  // namespace fixed_features
 
 /// Where the picture as a whole has gone.
