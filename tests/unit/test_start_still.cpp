@@ -75,6 +75,11 @@ void test_few_features_that_stay_should_not_hold_a_camera() {
   TEST_ASSERT_FALSE(grid.stands_still_after([](int i) { return i % 4 == 0 ? Scalar(0.3) : Scalar(10); }));
 }
 
+void test_marks_on_a_picture_that_moves_should_not_hold_a_camera() {
+  Grid grid;
+  TEST_ASSERT_FALSE(grid.stands_still_after([](int i) { return i % 5 < 2 ? Scalar(0.3) : Scalar(10); }));
+}
+
 void test_horizon_that_stays_should_not_hold_a_camera() {
   Grid grid;
   TEST_ASSERT_FALSE(grid.stands_still_after([](int i) { return i < kColumns ? Scalar(0.3) : Scalar(10); }));
@@ -104,6 +109,7 @@ int main(void) {
   RUN_TEST(test_pose_that_turns_by_itself_should_not_be_told);
   RUN_TEST(test_camera_that_moves_should_not_stand_still);
   RUN_TEST(test_few_features_that_stay_should_not_hold_a_camera);
+  RUN_TEST(test_marks_on_a_picture_that_moves_should_not_hold_a_camera);
   RUN_TEST(test_horizon_that_stays_should_not_hold_a_camera);
   RUN_TEST(test_empty_record_should_tell_nothing);
   return UNITY_END();

@@ -22,8 +22,8 @@ bool stands_still(const Camera& camera, const StartRecord& record, int others) {
   const auto cell_along = [](Scalar at, int size, int cells) {
     return std::clamp(static_cast<int>(at * static_cast<Scalar>(cells)) / size, 0, cells - 1);
   };
-  int seen = 0, still = 0, moved = 0, cells = 0, rows = 0;
-  bool has_still[kRows][kColumns] = {}, row_has_still[kRows] = {};
+  int seen = 0, still = 0, moved = 0, cells = 0, rows = 0, other_cells = 0;
+  bool has_still[kRows][kColumns] = {}, row_has_still[kRows] = {}, has_other[kRows][kColumns] = {};
   const auto count_once = [](bool* counted, int* count) {
     *count += *counted ? 0 : 1;
     *counted = true;
@@ -32,14 +32,18 @@ bool stands_still(const Camera& camera, const StartRecord& record, int others) {
     Vec2 first;
     if (!record.seen(last, i) || !project(camera, record.ray(i), &first)) continue;
     ++seen;
-    moved += (record.pixel(last, i) - first).squaredNorm() > kMovedPx * kMovedPx ? 1 : 0;
-    if (!is_still(camera, record, i)) continue;
-    ++still;
+    const bool stays = is_still(camera, record, i);
     const int row = cell_along(first.y(), camera.height, kRows);
-    count_once(&has_still[row][cell_along(first.x(), camera.width, kColumns)], &cells);
+    const int column = cell_along(first.x(), camera.width, kColumns);
+    moved += (record.pixel(last, i) - first).squaredNorm() > kMovedPx * kMovedPx ? 1 : 0;
+    count_once(stays ? &has_still[row][column] : &has_other[row][column], stays ? &cells : &other_cells);
+    if (!stays) continue;
+    ++still;
     count_once(&row_has_still[row], &rows);
   }
   if (kShare * still < seen || cells < kMinCells || rows < 2) return false;
+  // The scene is what most features are on, and most of the picture. What stands still is else a mark on the picture.
+  if (2 * still < seen && other_cells >= cells) return false;
   if (moved >= kMinMoved) return true;
   return others >= kMinMoved && log_so3(record.frame(last).q_WC).norm() * camera.fx > kTurnedPx;
 }
