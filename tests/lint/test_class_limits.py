@@ -16,8 +16,6 @@ ABOVE = {
     ("RestDetector::Data", "data members"): (16, "running sums over the samples of a rest, which begin and end together"),
     ("UnitWatch::Data", "data members"): (27, "all evidence for and against the unit, which is reset together"),
     ("UnitWatch", "methods"): (33, "watches the unit, takes its clock and axes from the rates, names what is wrong: to be split"),
-    ("PixelUpdate", "data members"): (16, "what an update of a frame is told until the next call; goes when these are arguments"),
-    ("PixelUpdate", "methods"): (26, "likewise"),
 }
 
 found = {}

@@ -61,18 +61,17 @@ void UnitWatch::keep_prior(std::int64_t before_ns) {
   data_->prior_ns = before_ns;
 }
 
-void UnitWatch::begin_measuring(bool follows) {
-  if (data_ == nullptr) return;
+Scalar UnitWatch::begin_measuring(bool follows) {
+  if (data_ == nullptr) return 0;
   data_->follows = follows && filter_.uses_samples();
-  update_.limit_pose_nis(data_->follows ? kMaxPoseNis : Scalar(0));
+  return data_->follows ? kMaxPoseNis : Scalar(0);
 }
 
-bool UnitWatch::is_refused() {
+bool UnitWatch::is_refused(const UpdateOutcome& outcome) {
   if (data_ == nullptr || !data_->follows) return false;
   const FrameReport& report = frame_.report;
   const bool nothing_used = report.inliers == 0;
-  data_->contradicted = update_.is_contradicted() || (nothing_used && report.matches >= settings_.min_inliers);
-  update_.limit_pose_nis(Scalar(0));
+  data_->contradicted = outcome.is_contradicted || (nothing_used && report.matches >= settings_.min_inliers);
   return data_->contradicted || (nothing_used && report.attempts >= settings_.min_inliers);
 }
 
@@ -201,11 +200,7 @@ void UnitWatch::learn_noise(bool before_was_tracked, bool is_tracked, std::int64
   if (!is_tracked || seconds(data_->used_ns) < kFrozen) return;
   const bool forces = filter_.is_metric() && seconds(data_->metric_ns) > kFrozen;
   if (data_->taken_back) {
-    const bool known = data_->contradicted && update_.is_contradicted();
-    const Scalar rotation = known ? update_.contradicting_rotation() : kMaxOfFrame;
-    noise.note_innovation(UnitNoise::kGyro, rotation, 3);
-    if (forces && known)
-      noise.note_innovation(UnitNoise::kAccel, update_.contradicting_nis() - update_.contradicting_rotation(), 3);
+    noise.note_innovation(UnitNoise::kGyro, kMaxOfFrame, 3);
   } else if (before_was_tracked && report.pose_nis_dof > 0) {
     const int dof = report.pose_nis_dof / 2;
     noise.note_innovation(UnitNoise::kGyro, static_cast<Scalar>(report.rotation_nis), dof);

@@ -43,9 +43,8 @@ enum class UnitReason : std::uint8_t {
 
 class UnitWatch {
  public:
-  UnitWatch(const Settings& settings, Filter& filter, const Frame& frame, const ImuLog& imu, BodyMotion& motion,
-            PixelUpdate& update)
-      : settings_(settings), filter_(filter), frame_(frame), imu_(imu), motion_(motion), update_(update) {}
+  UnitWatch(const Settings& settings, Filter& filter, const Frame& frame, const ImuLog& imu, BodyMotion& motion)
+      : settings_(settings), filter_(filter), frame_(frame), imu_(imu), motion_(motion) {}
 
   void layout(Arena& arena);
   void init();
@@ -53,11 +52,12 @@ class UnitWatch {
   void begin_frame(std::int64_t before_ns, std::int64_t t_ns);
   /// The body as it is now is what this frame's prediction begins from.
   void keep_prior(std::int64_t before_ns);
-  /// Before the frame is measured. follows: the frame before was tracked, and so was the pose that this one's prediction begins at.
-  void begin_measuring(bool follows);
+  /// Before the frame is measured. follows: the frame before was tracked, and so was the pose that this one's prediction begins at. Returns
+  /// UpdateMode::max_pose_nis.
+  Scalar begin_measuring(bool follows);
   /// After it was measured. True where nothing was used of it, since it says so much against the prediction or since hardly anything was
   /// found: then it is to be measured again from another prediction.
-  bool is_refused();
+  bool is_refused(const UpdateOutcome& outcome);
   /// Predicts the body as if no samples had come.
   void leave_prediction();
   /// After it was measured again: whether it is tracked now. Where nothing was found this time either, samples are as good as before.
@@ -134,7 +134,6 @@ class UnitWatch {
   const Frame& frame_;
   const ImuLog& imu_;
   BodyMotion& motion_;
-  PixelUpdate& update_;
   PartPointer<Data, kHasInertial> data_;  ///< null without the inertial motion model, which needs no room then
 };
 
