@@ -31,8 +31,6 @@ UpdateOutcome ImageTracking::recover_or_measure(const MeasureMode& mode, bool is
   UpdateOutcome outcome = front_end_.measure(now);
   if (now.is_vague && frame_.report.inliers == 0) outcome = relocaliser_.recover(now, outcome);
   is_map_fixed_ = front_end_.search().note_fixed();
-  // What was measured first may have been believed, and the rest of the frame contradicts it.
-  if (!mode.starts && frame_.report.inliers > 0 && !tracking_.belief().is_tracked()) tracking_.set_unusable();
   return outcome;
 }
 

@@ -32,13 +32,15 @@ UpdateOutcome ImageFrontEnd::measure(MeasureMode mode) {
                                                     noise_.correlation_frames());
   mode.update.rows.map = !is_learnt_;
   is_measured_ = true;
-  hypotheses_ = 1;
+  hypotheses_.begin();
   outcome_ = UpdateOutcome();
   listed_ = list_candidates();
   const bool followed = !mode.is_vague && measure_listed(mode, false, mode.starts);
   if (frame_.report.inliers == 0 && (followed || search_.find_followed(listed_))) {
-    hypotheses_ += mode.is_vague ? 0 : 1;
-    if (!mode.is_vague) listed_ = list_candidates();
+    if (!mode.is_vague) {
+      hypotheses_.add();
+      listed_ = list_candidates();
+    }
     measure_listed(mode, !followed, false);
   }
   return outcome_;
@@ -101,13 +103,12 @@ bool ImageFrontEnd::update_with_consensus(const Range& range, const MeasureMode&
     // A match that all the others contradict supports nothing.
     const int inliers = found > 0 ? update_.reject_contradicted(first, found, &fit) : 0;
     consensus = consensus_of(range, inliers, fit);
-    const Scalar evidence = belief_.evidence(consensus);
     if (is_first) {
-      log_odds = weigh(range, inliers, evidence, mode);
+      log_odds = weigh(range, consensus, mode);
       accepted = mode.starts ? inliers >= std::min(kMinConsensus, map_.features.count())
-                             : inliers >= settings_.min_inliers && PoseBelief::is_enough(log_odds);
+                             : hypotheses_.accepts(consensus, log_odds, range.is_last);
     } else {  // beside those that were believed, any consensus is
-      log_odds = PoseBelief::updated(belief_.log_odds(), evidence);
+      log_odds = PoseBelief::updated(belief_.log_odds(), belief_.evidence(consensus));
       accepted = inliers > 0;
     }
   }
@@ -146,12 +147,14 @@ PoseConsensus ImageFrontEnd::consensus_of(const Range& range, int inliers, const
 
 /// Log-odds of the pose with the evidence of the frame's first consensus. A pose that is not believed yet is proposed to the next frame,
 /// once all features have been searched for.
-Scalar ImageFrontEnd::weigh(const Range& range, int inliers, Scalar evidence, const MeasureMode& mode) {
-  evidence -= std::log(static_cast<Scalar>(hypotheses_));
-  Scalar log_odds = PoseBelief::updated(belief_.predicted(), evidence);
+Scalar ImageFrontEnd::weigh(const Range& range, const PoseConsensus& consensus, const MeasureMode& mode) {
+  const Scalar evidence = hypotheses_.evidence(consensus);
+  Scalar log_odds = hypotheses_.weigh(consensus);
+  if (!mode.starts && !range.is_last && !PoseBelief::is_settled(log_odds)) return log_odds;
   const bool is_enough = PoseBelief::is_enough(log_odds);
   if (!range.is_last && !is_enough) return log_odds;
-  if (inliers >= settings_.min_inliers && evidence > Scalar(0) && (!is_enough || update_.proposals().last().is_set))
+  if (consensus.inliers >= settings_.min_inliers && evidence > Scalar(0) &&
+      (!is_enough || update_.proposals().last().is_set))
     log_odds =
         update_.propose(range.first, range.found, mode.update.rows, mode.median_depth, belief_.predicted(), evidence);
   belief_.note(log_odds);

@@ -11,6 +11,7 @@
 #include "filter_slam/pose/pixel_update.h"
 #include "frame/frame.h"
 #include "frame/noise_model.h"
+#include "frame/pose_hypotheses.h"
 #include "frame/settings.h"
 #include "map/map.h"
 
@@ -38,6 +39,7 @@ class ImageFrontEnd {
         frame_(frame),
         update_(update),
         belief_(belief),
+        hypotheses_(settings, belief),
         noise_(filter, map, frame, update, noise),
         search_(settings, filter, map, frame, update, noise_),
         corners_(settings, filter, map, frame, features, search_) {}
@@ -71,7 +73,7 @@ class ImageFrontEnd {
   };
   bool update_with_consensus(const Range& range, const MeasureMode& mode);
   PoseConsensus consensus_of(const Range& range, int inliers, const JointFit& fit);
-  Scalar weigh(const Range& range, int inliers, Scalar evidence, const MeasureMode& mode);
+  Scalar weigh(const Range& range, const PoseConsensus& consensus, const MeasureMode& mode);
 
   const Settings& settings_;
   Filter& filter_;
@@ -79,6 +81,7 @@ class ImageFrontEnd {
   Frame& frame_;
   PixelUpdate& update_;
   PoseBelief& belief_;
+  PoseHypotheses hypotheses_;
   MatchNoise noise_;
   FeatureSearch search_;
   CornerFeatures corners_;
@@ -86,7 +89,6 @@ class ImageFrontEnd {
   bool is_learnt_ = false;    ///< the map has learnt from this frame's view already
   bool is_measured_ = false;  ///< by measure(), so that candidates and matches are this frame's
   int listed_ = 0;            ///< candidates of the last frame that measure() has measured
-  int hypotheses_ = 1;        ///< of where this frame is, tried by measure() so far
   UpdateOutcome outcome_;     ///< of the updates that measure() has made so far
 };
 

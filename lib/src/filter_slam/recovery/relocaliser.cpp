@@ -74,26 +74,13 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
   about.body = filter_.state().body;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) about.P(i, j) = filter_.covariance()(std::max(i, j), std::min(i, j));
-  Scalar rotation = kAboutProposal, position = kAboutProposal;
-  const ProposedPoses::Proposal& last = update_.proposals().last();
-  if (last.is_set) {
-    about.body.q_WC = last.q_WC;
-    about.body.p_W = last.p_W;
-    position *= last.depth;
-  } else {
-    const Recognition place = views_.recognise(search_.tracker().pyramid(), filter_.lens());
-    if (place.score < kMinRecognition) return about;
-    about.body.q_WC = place.q_WC;
-    about.body.p_W = place.p_W;
-    rotation = kAboutView;
-    position = kAboutView * depth_;
-  }
-  about.given = true;
-  about.P.setZero();
-  for (int i = 0; i < 3; ++i) {
-    about.P(i, i) = rotation * rotation;
-    about.P(3 + i, 3 + i) = position * position;
-  }
+  PoseHypothesis elsewhere;
+  about.given = find_elsewhere(update_.proposals().last(), views_, search_.tracker().pyramid(), filter_.lens(), depth_,
+                               &elsewhere);
+  if (!about.given) return about;
+  about.body.q_WC = elsewhere.q_WC;
+  about.body.p_W = elsewhere.p_W;
+  about.P = elsewhere.P;
   return about;
 }
 
