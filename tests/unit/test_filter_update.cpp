@@ -67,14 +67,15 @@ void check_state(const State& before, const TestFilter& filter, const std::vecto
   }
 }
 
-void check_update(Scene& scene, const unsigned char* keep, bool textbook_covariance, int estimated = 0,
-                  int considered = 0) {
-  const Textbook expected(scene, keep, estimated, considered);
+void check_update(Scene& scene, const unsigned char* keep, bool textbook_covariance,
+                  EstimatedRows rows = EstimatedRows()) {
+  const BodyLayout& layout = scene.filter->state().layout;
+  const Textbook expected(scene, keep, rows.map ? 0 : layout.dynamic_rows(), rows.motion ? 0 : layout.rows());
   const State before = scene.filter->state();
   const std::vector<Block> blocks(before.block, before.block + before.slots);
   scene.filter->begin_update(scene.observations.data(), scene.count());
   Scalar nis = 0;
-  TEST_ASSERT_TRUE(scene.filter->finish_update(scene.observations.data(), scene.count(), keep, &nis));
+  TEST_ASSERT_TRUE(scene.filter->finish_update(scene.observations.data(), scene.count(), keep, &nis, rows));
   TEST_ASSERT_DOUBLE_WITHIN(1e-8 * expected.nis, expected.nis, static_cast<double>(nis));
   check_state(before, scene.filter, blocks, expected.dx);
   if (textbook_covariance) TEST_ASSERT_TRUE(difference(scene.filter.P(), expected.P) < kExact);
@@ -105,11 +106,9 @@ void test_update_should_be_schmidts_when_only_motion_is_estimated() {
     Scene scene(random, false);
     const Dense before = scene.filter.P();
     const int moving = scene.filter->state().layout.dynamic_rows(), others = scene.filter.dim() - moving;
-    scene.filter->estimate_motion_only(true);
-    check_update(scene, nullptr, true, moving);
+    check_update(scene, nullptr, true, {true, false});
     TEST_ASSERT_TRUE(
         difference(scene.filter.P().bottomRightCorner(others, others), before.bottomRightCorner(others, others)) == 0);
-    scene.filter->estimate_motion_only(false);
     for (PixelMeasurement& o : scene.observations) {
       const Vec2 measured = o.measured;
       const Mat2 noise = o.R_update;
@@ -127,9 +126,22 @@ void test_update_should_be_schmidts_when_only_the_map_is_estimated() {
     Scene scene(random, false);
     const Dense before = scene.filter.P();
     const int body = scene.filter->state().layout.rows();
-    scene.filter->estimate_map_only(true);
-    check_update(scene, nullptr, true, 0, body);
+    check_update(scene, nullptr, true, {false, true});
     TEST_ASSERT_SAME(0, difference(scene.filter.P().topLeftCorner(body, body), before.topLeftCorner(body, body)));
+  }
+}
+
+void test_update_should_change_nothing_when_neither_motion_nor_map_is_estimated() {
+  SeededRandom random(89);
+  for (int trial = 0; trial < 20; ++trial) {
+    Scene scene(random, trial % 2 == 1);
+    const Dense before = scene.filter.P();
+    const Vec3 p_W = scene.filter->state().body.p_W;
+    scene.filter->begin_update(scene.observations.data(), scene.count());
+    TEST_ASSERT_TRUE(
+        scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr, {false, false}));
+    TEST_ASSERT_TRUE(difference(scene.filter.P(), before) < kExact);
+    TEST_ASSERT_TRUE(scene.filter->state().body.p_W == p_W);
   }
 }
 
@@ -149,11 +161,10 @@ void test_update_should_only_move_the_gauge_of_the_textbook_covariance_when_it_i
     const bool only_motion = trial % 3 == 1, only_map = trial % 3 == 2;
     const BodyLayout& layout = scene.filter->state().layout;
     const Textbook expected(scene, nullptr, only_motion ? layout.dynamic_rows() : 0, only_map ? layout.rows() : 0);
-    scene.filter->estimate_motion_only(only_motion);
-    scene.filter->estimate_map_only(only_map);
     const Dense before = scene.filter.gauge();
     scene.filter->begin_update(scene.observations.data(), scene.count());
-    TEST_ASSERT_TRUE(scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr));
+    TEST_ASSERT_TRUE(scene.filter->finish_update(scene.observations.data(), scene.count(), nullptr, nullptr,
+                                                 {!only_map, !only_motion}));
     const Dense after = scene.filter.gauge();
     const Dense now = after.transpose() * inverse_of(scene.filter.P()) * after;
     const Dense should = before.transpose() * inverse_of(expected.P) * before;
@@ -230,6 +241,7 @@ int main(void) {
   RUN_TEST(test_update_should_be_the_textbook_ekf_of_what_is_kept_when_some_is_rejected);
   RUN_TEST(test_update_should_be_schmidts_when_only_motion_is_estimated);
   RUN_TEST(test_update_should_be_schmidts_when_only_the_map_is_estimated);
+  RUN_TEST(test_update_should_change_nothing_when_neither_motion_nor_map_is_estimated);
   RUN_TEST(test_update_should_move_the_mean_like_the_textbook_when_the_gauge_is_kept);
   RUN_TEST(test_update_should_only_move_the_gauge_of_the_textbook_covariance_when_it_is_kept);
   RUN_TEST(test_joint_innovation_should_be_h_p_ht_in_any_order);

@@ -56,4 +56,6 @@ void PoseBelief::use(Scalar log_odds, const PoseConsensus& consensus) {
 
 bool PoseBelief::is_enough(Scalar log_odds) { return log_odds >= kTracked; }
 
+bool PoseBelief::is_settled(Scalar log_odds) { return is_enough(updated(log_odds, -kMaxFrame)); }
+
 }  // namespace pf

@@ -46,6 +46,8 @@ class PoseBelief {
   Scalar log_odds() const { return is_noted_ ? log_odds_ : predicted_; }
 
   static bool is_enough(Scalar log_odds);
+  /// It is, whatever else this frame says.
+  static bool is_settled(Scalar log_odds);
   /// The pose of the frame is believed.
   bool is_tracked() const { return is_enough(log_odds()); }
 

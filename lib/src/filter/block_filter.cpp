@@ -39,8 +39,6 @@ void BlockFilter::init(const Kernels* kernels, int leading_dim, int considered) 
   leading_dim_ = leading_dim;
   held_dim_ = considered_ = considered;
   P_.n = leading_dim + considered;
-  only_ = 0;
-  considers_leading_ = false;
   gained_ = 0;
   owed_ = 0;
   for (int b = 0; b < blocks_; ++b) at_[b] = {-1, 0};

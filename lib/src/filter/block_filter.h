@@ -8,6 +8,11 @@
 
 namespace pf {
 
+/// Rows from `begin` to before `end`.
+struct RowRange {
+  int begin = 0, end = 0;
+};
+
 /// Owns the covariance P and where each block's rows lie in it. It knows sizes and rows, no kinds and no values; nothing else writes P.
 ///
 ///   rows:  leading block (the body) | held (considered: covariance, but no gain of their own) | all others
@@ -32,6 +37,7 @@ class BlockFilter {
   int leading_dim() const { return leading_dim_; }
   int held_dim() const { return held_dim_; }
   int held_end() const { return leading_dim_ + held_dim_; }
+  RowRange held() const { return {leading_dim_, held_end()}; }
   int room() const { return max_dim_ - P_.n; }
   int max_rows() const { return max_rows_; }
   int ld() const { return ld_; }  ///< of thin matrices over the state
@@ -45,18 +51,6 @@ class BlockFilter {
   /// with Jacobian J (rows x the others, row-major; null: independent):  C + J P_o J^T,  J P_o. Other blocks, which must be
   /// independent of the leading one, stay so.
   void set_leading(const Scalar* covariance, int rows, const Scalar* J);
-  /// Updates estimate the first `rows` rows and consider all others, until the next call. 0: those that are not held, as after init().
-  void estimate_only(int rows) { only_ = rows; }
-  /// Updates consider the leading block too, until the next call.
-  void consider_leading(bool considered) { considers_leading_ = considered; }
-  bool considers_leading() const { return considers_leading_; }
-  /// What updates consider: rows from the first of these to before the second.
-  int considered_begin() const {
-    if (considers_leading_) return 0;
-    return only_ > 0 && only_ < leading_dim_ ? only_ : leading_dim_;
-  }
-  int considered_end() const { return only_ > 0 ? P_.n : held_end(); }
-
   /// So many of the leading block's last rows are considered from now on, and those before them estimated.
   void consider_last(int rows);
   /// Covariance of the leading block's rows from `first` on (row-major), independent of those before. Likewise.
@@ -155,9 +149,10 @@ class BlockFilter {
   }
   /// Scratch of i + 1 numbers above the diagonal of S, 0 <= i < max_rows - 1: the caller's between project() and gain().
   Scalar* scratch_row(int i) { return S_ + (max_rows_ - 2 - i) * lds_ + (max_rows_ - 1 - i); }
-  /// dx = P H^T (S + R)^-1 r of the projected measurements that are kept (null: all); zero for considered rows. Null when S + R cannot be
-  /// factored or nothing is kept; P is as it was then. *nis gets r^T (S + R)^-1 r.
-  const Scalar* gain(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
+  /// dx = P H^T (S + R)^-1 r of the projected measurements that are kept (null: all); zero for the rows that are considered, which at least
+  /// held() are. Null when S + R cannot be factored or nothing is kept; P is as it was then. *nis gets r^T (S + R)^-1 r.
+  const Scalar* gain(const Measurement* z, int count, const unsigned char* keep, const RowRange& considered,
+                     Scalar* nis);
   /// dx of the last gain.
   const Scalar* step() const { return dx_; }
   /// From another estimate than it was gained for, which differs by e in the leading rows.
@@ -171,6 +166,8 @@ class BlockFilter {
   /// Likewise of L^-1 (measured - predicted): white where model and noise are right.
   const Scalar* whitened_innovation() const { return y_; }
   int gained_rows() const { return gained_; }
+  /// What the last gain considers.
+  const RowRange& gain_considers() const { return gain_considers_; }
   /// P -= W^T W, then P += U^T G + G^T U (both rows x ld()).
   void downdate(const Scalar* U, const Scalar* G, int rows);
 
@@ -206,12 +203,11 @@ class BlockFilter {
   int blocks_ = 0;
   int leading_dim_ = 0, held_dim_ = 0;
   int considered_ = 0;  ///< of the held rows: those of the leading block
-  int only_ = 0;        ///< estimate_only()
-  bool considers_leading_ = false;
   int max_dim_ = 0;   ///< of the state; P_ has room for a few more
   int max_rows_ = 0;  ///< of one update
   int ld_ = 0, lds_ = 0;
   int gained_ = 0;
+  RowRange gain_considers_;
   Scalar owed_ = 0;      ///< growth that is too small for a Scalar
   Scalar* W_ = nullptr;  ///< max_rows x ld: H P, then L^-1 H P
   Scalar* S_ = nullptr;  ///< max_rows x lds

@@ -77,7 +77,8 @@ Mat2 BlockFilter::innovation2(int i, int j) const {
   return block;
 }
 
-const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned char* keep, Scalar* nis) {
+const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned char* keep, const RowRange& considered,
+                                Scalar* nis) {
   // Close the gaps that rejected measurements leave in H P and S, and add the noise.
   int m = 0;
   for (int i = 0; i < count; ++i) {
@@ -97,6 +98,7 @@ const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned 
     m += rows;
   }
   gained_ = m;
+  gain_considers_ = considered;
   if (m == 0 || !kernels_->cholesky(S_, m, lds_)) return nullptr;
   kernels_->solve_lower(S_, m, lds_, W_, P_.n, ld_);
   Scalar sum = 0;
@@ -109,12 +111,12 @@ const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned 
   if (!(sum < kMaxNis)) return nullptr;
   *nis = sum;
   kernels_->combine(W_, m, P_.n, ld_, y_, dx_);
-  for (int i = considered_begin(); i < considered_end(); ++i) dx_[i] = Scalar(0);
+  for (int i = considered.begin; i < considered.end; ++i) dx_[i] = Scalar(0);
   return dx_;
 }
 
 void BlockFilter::downdate(const Scalar* U, const Scalar* G, int rows) {
-  kernels_->downdate(P_, W_, gained_, U, G, rows, ld_, considered_begin(), considered_end());
+  kernels_->downdate(P_, W_, gained_, U, G, rows, ld_, gain_considers_.begin, gain_considers_.end);
 }
 
 /// What the downdate took of a variance is w^T w, w its column of L^-1 H P.

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 
 #include "base/arena.h"
 #include "filter/block_filter.h"
+#include "filter/estimated_rows.h"
 #include "filter/fold_rule.h"
 #include "filter/gauge_prior.h"
 #include "filter/inertial_motion.h"
@@ -76,11 +76,6 @@ class Filter {
   bool uses_samples() const { return state_.uses_samples; }
   /// Whether updates leave the lens as it is and allow for its error, whatever the layout says of it.
   void consider_lens(bool only_considered);
-  /// Updates estimate what moves, the body without its constants, and consider the map and the lens (Schmidt), until the next call.
-  void estimate_motion_only(bool only) { blocks_.estimate_only(only ? state_.layout.dynamic_rows() : 0); }
-  /// Likewise: they estimate the map, and consider the body.
-  void estimate_map_only(bool only) { blocks_.consider_leading(only); }
-  bool estimates_map_only() const { return blocks_.considers_leading(); }
   /// The calibration as it is known now.
   const Camera& lens() const { return state_.lens; }
 
@@ -196,18 +191,22 @@ class Filter {
   Scalar* scratch_row(int i) { return blocks_.scratch_row(i); }
   /// Takes the chosen measurements in (keep[i] != 0; null takes all) and moves the state. False, with the state and P unchanged, when
   /// S cannot be factored or the step is no number. *nis (may be null) gets the normalised innovation squared.
-  bool finish_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis) {
-    if (!solve_update(z, count, keep, nis)) return false;
+  bool finish_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis,
+                     EstimatedRows rows = EstimatedRows()) {
+    if (!solve_update(z, count, keep, nis, rows)) return false;
     commit_update();
     return true;
   }
-  bool finish_update(const PixelMeasurement* z, int count, const unsigned char* keep, Scalar* nis) {
-    return finish_update(views_of(z, count), count, keep, nis);
+  bool finish_update(const PixelMeasurement* z, int count, const unsigned char* keep, Scalar* nis,
+                     EstimatedRows rows = EstimatedRows()) {
+    return finish_update(views_of(z, count), count, keep, nis, rows);
   }
   /// finish_update in two steps. The first changes neither the state nor P, and the second need not follow; solved_step: dx, all rows.
-  bool solve_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis);
-  bool solve_update(const PixelMeasurement* z, int count, const unsigned char* keep, Scalar* nis) {
-    return solve_update(views_of(z, count), count, keep, nis);
+  bool solve_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis,
+                    EstimatedRows rows = EstimatedRows());
+  bool solve_update(const PixelMeasurement* z, int count, const unsigned char* keep, Scalar* nis,
+                    EstimatedRows rows = EstimatedRows()) {
+    return solve_update(views_of(z, count), count, keep, nis, rows);
   }
   const Scalar* solved_step() const { return blocks_.step(); }
   void commit_update();
@@ -264,6 +263,7 @@ class Filter {
   int take_slot(BlockKind kind);
   const Measurement* views_of(const PixelMeasurement* z, int count);
   bool is_step(const Scalar* dx) const;
+  RowRange considered(EstimatedRows rows) const;
   void begin_move();
   void end_move();
   // pixels.cpp

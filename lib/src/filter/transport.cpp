@@ -132,7 +132,7 @@ void Transport::finish(const State& state, const BlockFilter& blocks) {
 
 /// P1 takes nothing from P between considered rows c: row v of V there is less (v_e W_e^T) W_c only, with the other rows e.
 void Transport::add_considered(const BlockFilter& blocks) {
-  const int begin = blocks.considered_begin(), end = blocks.considered_end();
+  const int begin = blocks.gain_considers().begin, end = blocks.gain_considers().end;
   const bool considers_body = begin == 0;
   if (end <= blocks.held_end() && !considers_body) return;
   for (int j = 0; j < blocks.gained_rows(); ++j) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "filter/filter.h"
@@ -15,9 +16,16 @@ const Measurement* Filter::views_of(const PixelMeasurement* z, int count) {
   return view_;
 }
 
-bool Filter::solve_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis) {
+RowRange Filter::considered(EstimatedRows rows) const {
+  RowRange range = blocks_.held();
+  if (!rows.map) range = {std::min(state_.layout.dynamic_rows(), range.begin), dim()};
+  if (!rows.motion) range.begin = 0;
+  return range;
+}
+
+bool Filter::solve_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis, EstimatedRows rows) {
   Scalar sum;
-  const Scalar* dx = blocks_.gain(z, count, keep, &sum);
+  const Scalar* dx = blocks_.gain(z, count, keep, considered(rows), &sum);
   if (dx == nullptr) return false;
   if (nis != nullptr) *nis = sum;
   return is_step(dx);

@@ -57,10 +57,13 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   if (first) {
     if (!start_.start_in_image()) return end_frame();
   } else {
-    const MeasureMode mode = {progress.pending(), false, data_.median_depth,
-                              start_.recorder().learns_lens_from_first_depths()};
+    MeasureMode mode = {progress.pending(), false, data_.median_depth,
+                        start_.recorder().learns_lens_from_first_depths(), UpdateMode()};
     const bool is_lost = tracking_.is_relocalising(progress);
-    unit_.measure(data_.follows, [&](bool) { images_.recover_or_measure(mode, is_lost); });
+    unit_.measure(data_.follows, [&](bool, const UpdateMode& update) {
+      mode.update = update;
+      return images_.recover_or_measure(mode, is_lost);
+    });
   }
   // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
   PatchKeeper* const patches = upkeep_.patches();
@@ -105,7 +108,9 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
   begin_frame(t_ns);
   if (tracking_.started_over()) return end_frame();
   if (!tracking_.has_pose()) start_.start_with_observations();
-  unit_.measure(data_.follows, [&](bool again) { observations_.measure(observations, count, again); });
+  unit_.measure(data_.follows, [&](bool again, const UpdateMode& mode) {
+    return observations_.measure(observations, count, again, mode);
+  });
   if (frame_.report.inliers > 0) tracking_.belief().trust();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);

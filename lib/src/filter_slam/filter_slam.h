@@ -39,7 +39,7 @@ class FilterSlam {
         observations_(settings, filter_, map, frame_, upkeep_.features(), update_),
         start_(settings, motion_, filter_, map, frame_, tracking_, upkeep_.features(), images_.front_end().search(),
                images_.front_end().corners(), update_),
-        unit_(settings, filter_, map, frame_, tracking_, imu, motion_, update_, start_) {}
+        unit_(settings, filter_, map, frame_, tracking_, imu, motion_, start_) {}
   FilterSlam(const FilterSlam&) = delete;
   FilterSlam& operator=(const FilterSlam&) = delete;
 

@@ -24,15 +24,14 @@ void ImageTracking::forget_map() {
   relocaliser_.init();
 }
 
-void ImageTracking::recover_or_measure(const MeasureMode& mode, bool is_lost) {
+UpdateOutcome ImageTracking::recover_or_measure(const MeasureMode& mode, bool is_lost) {
   MeasureMode now = mode;
   now.is_vague = is_lost && !relocaliser_.is_prediction_narrow();
   if (now.is_vague) tracking_.belief().spend();
-  front_end_.measure(now);
-  if (now.is_vague && frame_.report.inliers == 0) relocaliser_.recover();
+  UpdateOutcome outcome = front_end_.measure(now);
+  if (now.is_vague && frame_.report.inliers == 0) outcome = relocaliser_.recover(now, outcome);
   is_map_fixed_ = front_end_.search().note_fixed();
-  // What was measured first may have been believed, and the rest of the frame contradicts it.
-  if (!mode.starts && frame_.report.inliers > 0 && !tracking_.belief().is_tracked()) tracking_.set_unusable();
+  return outcome;
 }
 
 void ImageTracking::learn_noise() {

@@ -37,7 +37,7 @@ class ImageTracking {
 
   /// Measures the frame, ImageFrontEnd::measure. is_lost: the last frame did not support its pose; the map is then searched for about other
   /// poses too where the prediction is vague.
-  void recover_or_measure(const MeasureMode& mode, bool is_lost);
+  UpdateOutcome recover_or_measure(const MeasureMode& mode, bool is_lost);
   /// The last frame has shown that the map comes from what stands still in the picture (FixedFeatures).
   bool is_map_fixed() const { return is_map_fixed_; }
   /// Learns the noise of matches from the inliers' residuals, and warns where they fit badly.

@@ -63,12 +63,12 @@ std::int64_t UnitKeeper::motion_begin_ns(std::int64_t now_ns) const {
 /// A rest tells the scale whatever the delay is, and gravity where the axes are known.
 bool UnitKeeper::begins_at_rest() {
   RestReading rest;
-  const bool was_used = filter_.uses_samples(), open = watch_.is_open() && !watch_.doubted() &&
-                                                       !(settings_.unit.sigma_turn > tuning::rate_alignment::kOpenTurn);
+  const bool knows_axes = !(settings_.unit.sigma_turn > tuning::rate_alignment::kOpenTurn);
+  const bool was_used = filter_.uses_samples(), open = watch_.mode() == UnitMode::kUnaligned && knows_axes;
   if ((!was_used && !open) || !rest_.note(tracking_.is_tracked(frame_.report), &rest)) return false;
-  if (!was_used) watch_.use_at_rest(true);
+  if (!was_used) watch_.take(UnitEvent::kRest);
   if (reads_force() && metric_.use_rest(rest, rest_.begin_ns())) return true;
-  if (!was_used) watch_.use_at_rest(false);
+  if (!was_used) watch_.take(UnitEvent::kMotion);
   return false;
 }
 
@@ -87,7 +87,7 @@ ScaleChange UnitKeeper::look_for_scale(Scalar depth, Scalar correlation_frames) 
 /// Frames are kept while the delay is open, and judged once it is not.
 ScaleChange UnitKeeper::look_for_scale_in_motion(Scalar depth, Scalar correlation_frames) {
   MovingFrame told;
-  const bool open = watch_.is_open() && !watch_.doubted();
+  const bool open = watch_.is_open() && !is_rejected(watch_.mode());
   told.keep = tracking_.is_tracked(frame_.report) && start_.may_become_metric() && (filter_.uses_samples() || open) &&
               reads_force();
   told.judge = !start_.recorder().progress().recording && filter_.uses_samples();
@@ -131,17 +131,17 @@ UnitReason UnitKeeper::reason(Scalar* value, Mat3* R_CB) const {
 /// A map that begun at rest with a unit of unknown delay has no size from motion yet, so nothing is lost with it.
 bool UnitKeeper::discredits_map(bool follows, std::int64_t dt_ns) {
   if (!settings_.inertial || !tracking_.has_pose()) return false;
-  const bool left_rest = watch_.is_used_at_rest() && !rest_.is_resting();
-  if (left_rest) watch_.use_at_rest(false);
+  const bool left_rest = watch_.mode() == UnitMode::kAtRest && !rest_.is_resting();
+  if (left_rest) watch_.take(UnitEvent::kMotion);
   const bool doubted = watch_.note(follows && !holds(), tracking_.is_tracked(frame_.report), dt_ns);
   if (!left_rest && !(doubted && watch_.is_map_on_trial())) return false;
   if (start_.knows_scale() || map_.planes.has_known()) {
-    if (left_rest) filter_.use_samples(true);  // until the next frame leaves them
+    if (left_rest) watch_.take(UnitEvent::kGoesOn);
     return false;
   }
   why_discredited_ = left_rest ? "it moves, and the inertial unit's clock or axes are not known yet: a new map begins"
                                : "the map's scale came from a unit that is doubted: a new map begins";
-  watch_.begin_without();
+  watch_.take(UnitEvent::kNewMap);
   return true;
 }
 

@@ -35,7 +35,7 @@ enum class ScaleChange : std::uint8_t {
 class UnitKeeper {
  public:
   UnitKeeper(const Settings& settings, Filter& filter, Map& map, Frame& frame, TrackingState& tracking,
-             const ImuLog& imu, BodyMotion& motion, PixelUpdate& update, FilterStart& start)
+             const ImuLog& imu, BodyMotion& motion, FilterStart& start)
       : settings_(settings),
         filter_(filter),
         map_(map),
@@ -43,10 +43,9 @@ class UnitKeeper {
         tracking_(tracking),
         imu_(imu),
         motion_(motion),
-        update_(update),
         start_(start),
         rest_(settings, frame, imu, motion.unit_noise()),
-        watch_(settings, filter, frame, imu, motion, update),
+        watch_(settings, filter, frame, imu, motion),
         metric_(settings, filter, map, tracking, start) {}
 
   void layout(Arena& arena);
@@ -57,8 +56,8 @@ class UnitKeeper {
   /// Predicts the body to this frame. before_ns: time of the frame before. follows: that one was tracked, and so was the pose that the
   /// prediction begins at. nothing_measured: that one had no inlier. depth: median, of what is seen.
   void predict(std::int64_t before_ns, bool follows, bool nothing_measured, Scalar depth);
-  /// Measures the frame by measure(again). Where a rest or samples may have led the prediction astray: once more, from a prediction without
-  /// them, with again = true.
+  /// Measures the frame by measure(again, mode), which returns what its updates have found. Where a rest or samples may have led the
+  /// prediction astray: once more, from a prediction without them, with again = true.
   template <typename F>
   void measure(bool follows, F&& measure);
   /// After a frame: whether the camera has been at rest, or has moved enough, for samples to tell the scale. correlation_frames: in a row
@@ -104,7 +103,6 @@ class UnitKeeper {
   TrackingState& tracking_;
   const ImuLog& imu_;
   BodyMotion& motion_;
-  PixelUpdate& update_;
   FilterStart& start_;
   RestDetector rest_;
   UnitWatch watch_;
@@ -115,26 +113,24 @@ class UnitKeeper {
 
 template <typename F>
 void UnitKeeper::measure(bool follows, F&& measure) {
+  UpdateMode mode;
   bool again = false;
   if (holds()) {
-    watch_.begin_measuring(follows);
-    measure(again);
-    if (!watch_.is_refused()) return;
+    mode.max_pose_nis = watch_.begin_measuring(follows);
+    if (!watch_.is_refused(measure(again, mode))) return;
     parts_->hold.take_back();
     advance(parts_->hold.before_ns(), false, false);
     frame_.begin_again();
     again = true;
   }
-  watch_.begin_measuring(follows);
-  const bool just_moved = parts_ != nullptr && parts_->hold.has_just_ended(frame_.report.t_ns);
-  update_.put_depths_first(just_moved);
-  measure(again);
-  if (just_moved && !update_.puts_depths_first()) parts_->hold.forget();
-  update_.put_depths_first(false);
-  if (!watch_.is_refused()) return;
+  mode.max_pose_nis = watch_.begin_measuring(follows);
+  mode.depths_first = parts_ != nullptr && parts_->hold.has_just_ended(frame_.report.t_ns);
+  const UpdateOutcome outcome = measure(again, mode);
+  if (outcome.is_pose_open) parts_->hold.forget();
+  if (!watch_.is_refused(outcome)) return;
   watch_.leave_prediction();
   frame_.begin_again();
-  measure(true);
+  measure(true, UpdateMode());
   watch_.settle(tracking_.is_tracked(frame_.report));
 }
 

@@ -56,8 +56,8 @@ void describe_mounting(const Settings& settings, const FilterSlam& slam, Inertia
 
 UnitDoubt read_unit_doubt(const Settings& settings, const FilterSlam& slam) {
   UnitDoubt doubt;
-  doubt.doubted = slam.unit().watch().doubted();
-  doubt.doubted_ns = slam.unit().watch().doubted_ns();
+  doubt.doubted = is_rejected(slam.unit().watch().mode());
+  doubt.doubted_ns = slam.unit().watch().rejected_ns();
   if (!settings.inertial) return doubt;
   doubt.reason = static_cast<int>(slam.unit().reason(&doubt.reason_value, &doubt.reason_R_CB));
   const ImuNoise noise = slam.unit().noise();

@@ -101,7 +101,7 @@ void FeatureSearch::predict_pixels(int first, int count) {
   }
 }
 
-int FeatureSearch::search(int first, int count) {
+int FeatureSearch::search(int first, int count, const SearchMode& mode) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
   int found = first;
   for (int i = first; i < first + count; ++i) {
@@ -111,7 +111,7 @@ int FeatureSearch::search(int first, int count) {
     SearchTask task = task_of(update_.candidate(i).feature);
     task.predicted = o.predicted;
     task.innovation = match.innovation;
-    if (!aim(&task)) continue;
+    if (mode.follows && !aim(&task)) continue;
     const SearchOutcome outcome = search_.search(task);
     if (!outcome.comparable) continue;
     match.searched = true;
@@ -123,7 +123,7 @@ int FeatureSearch::search(int first, int count) {
     o.measured = outcome.pixel;
     const Scalar nis = squared_distance(outcome.pixel - task.predicted, task.innovation);
     update_.candidate(i).log_density = log_normal_density(nis, std::log(task.innovation.determinant()), 1);
-    noise_.set(i, outcome);
+    noise_.set(i, outcome, mode.parallax_lasts);
     if (found != i) update_.swap(found, i);
     ++found;
   }
@@ -157,7 +157,7 @@ SearchTask FeatureSearch::task_of(int feature) const {
 
 /// Directs a search to where the followed view has the feature, unless its own ellipse says as much. False where that has no place for it.
 bool FeatureSearch::aim(SearchTask* task) const {
-  return !is_following_ || !is_wide(task->innovation) || followed_.aim(filter_.lens(), task->p_W, task);
+  return !is_wide(task->innovation) || followed_.aim(filter_.lens(), task->p_W, task);
 }
 
 /// Whether a search ellipse is several times as large as that about a followed pixel.
@@ -174,25 +174,24 @@ Scalar FeatureSearch::widest_ellipse(int count) const {
   return widest;
 }
 
-Scalar FeatureSearch::searched_area(int i) const {
+Scalar FeatureSearch::searched_area(int i, bool follows) const {
   const Mat2& S = frame_.match(update_.candidate(i).match).innovation;
   Scalar most = static_cast<Scalar>(settings_.camera.width) * static_cast<Scalar>(settings_.camera.height);
-  if (is_following_ && is_wide(S)) most = ellipse_area(FollowedView::covariance(filter_.lens()), settings_.gate);
+  if (follows && is_wide(S)) most = ellipse_area(FollowedView::covariance(filter_.lens()), settings_.gate);
   return std::min(most, ellipse_area(S, settings_.gate));
 }
 
-const Scalar* FeatureSearch::searched_areas(int first, int count) {
-  for (int i = 0; i < count; ++i) scratch_[i] = searched_area(first + i);
+const Scalar* FeatureSearch::searched_areas(int first, int count, bool follows) {
+  for (int i = 0; i < count; ++i) scratch_[i] = searched_area(first + i, follows);
   return scratch_;
 }
 
-bool FeatureSearch::begin_following(int count) {
+bool FeatureSearch::find_followed(int count) {
   int wide = 0;
   for (int i = 0; i < count; ++i) wide += is_wide(frame_.match(update_.candidate(i).match).innovation) ? 1 : 0;
   if (wide == 0 || tuning::image_front_end::kMinWide * wide < count) return false;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
-  is_following_ = followed_.find(filter_.lens(), search_.tracker().pyramid());
-  return is_following_;
+  return followed_.find(filter_.lens(), search_.tracker().pyramid());
 }
 
 /// With the pose after the update, and where the features were found.

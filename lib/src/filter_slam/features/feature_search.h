@@ -14,6 +14,14 @@
 
 namespace pf {
 
+/// Where features are searched for, and what their matches are taken for.
+struct SearchMode {
+  /// About the places where the picture as a whole has gone, where the prediction is vague. A match still has to pass the gate about its
+  /// prediction.
+  bool follows = false;
+  bool parallax_lasts = false;  ///< MatchNoise::set
+};
+
 class FeatureSearch {
  public:
   FeatureSearch(const Settings& settings, Filter& filter, Map& map, Frame& frame, PixelUpdate& update,
@@ -31,19 +39,17 @@ class FeatureSearch {
   /// Predicts pixel and search ellipse of candidates.
   void predict_pixels(int first, int count);
   /// Searches for candidates, and moves those that are found to the front of their range. Returns how many.
-  int search(int first, int count);
+  int search(int first, int count, const SearchMode& mode);
   /// Largest semi-axis of the gates of the first `count` candidates [px].
   Scalar widest_ellipse(int count) const;
   /// Area that was searched for a candidate [px^2], at most that of the image.
-  Scalar searched_area(int i) const;
+  Scalar searched_area(int i, bool follows) const;
   /// The same of a range of candidates; valid until the next call and the next list.
-  const Scalar* searched_areas(int first, int count);
+  const Scalar* searched_areas(int first, int count, bool follows);
 
-  /// Where the prediction of the `count` listed candidates is vague: lets searches go about the places where the picture as a whole has
-  /// gone. A match still has to pass the gate about its prediction. False where the prediction is not vague, or the picture does not tell.
-  bool begin_following(int count);
-  void set_following(bool is_following) { is_following_ = is_following; }
-  bool is_following() const { return is_following_; }
+  /// Where the prediction of the `count` listed candidates is vague: finds where the picture as a whole has gone, for searches that follow
+  /// it. False where the prediction is not vague, or the picture does not tell.
+  bool find_followed(int count);
   /// After a frame's searches: ImageSearch::note_fixed.
   bool note_fixed() { return search_.note_fixed(filter_.lens(), frame_); }
   /// After a frame that used matches: the next one may be followed from it.
@@ -75,7 +81,6 @@ class FeatureSearch {
   const MatchNoise& noise_;
   ImageSearch search_;
   FollowedView followed_;
-  bool is_following_ = false;  ///< searches go about the followed view's pixels
   Scalar* scratch_ = nullptr;  ///< max_observations: rates of candidates, then the areas that were searched
 };
 

@@ -27,24 +27,23 @@ bool ImageFrontEnd::begin_frame(const ImageView& image) {
   return search_.begin_frame(image);
 }
 
-void ImageFrontEnd::measure(const MeasureMode& mode) {
-  noise_.set_parallax_lasts(mode.parallax_lasts);
+UpdateOutcome ImageFrontEnd::measure(MeasureMode mode) {
   is_learnt_ = !mode.starts && same_view_.is_learnt(filter_.state().body, mode.median_depth, settings_.camera.fx,
                                                     noise_.correlation_frames());
-  filter_.estimate_motion_only(is_learnt_);
+  mode.update.rows.map = !is_learnt_;
   is_measured_ = true;
-  hypotheses_ = 1;
+  hypotheses_.begin();
+  outcome_ = UpdateOutcome();
   listed_ = list_candidates();
-  if (!mode.is_vague) measure_listed(mode, mode.starts);
-  const bool followed = search_.is_following();
-  if (frame_.report.inliers == 0 && (followed || search_.begin_following(listed_))) {
-    hypotheses_ += mode.is_vague ? 0 : 1;
-    search_.set_following(!followed);
-    if (!mode.is_vague) listed_ = list_candidates();
-    measure_listed(mode, false);
+  const bool followed = !mode.is_vague && measure_listed(mode, false, mode.starts);
+  if (frame_.report.inliers == 0 && (followed || search_.find_followed(listed_))) {
+    if (!mode.is_vague) {
+      hypotheses_.add();
+      listed_ = list_candidates();
+    }
+    measure_listed(mode, !followed, false);
   }
-  search_.set_following(false);
-  filter_.estimate_motion_only(false);
+  return outcome_;
 }
 
 /// Lists what should be in view, and predicts where.
@@ -57,31 +56,34 @@ int ImageFrontEnd::list_candidates() {
 }
 
 /// If the pose is uncertain, a few candidates are measured first. If their consensus is too weak, all candidates are searched before
-/// anything is used. follows: where few of those first ones are found, searches go about the places where the picture as a whole has gone.
-void ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows) {
+/// anything is used. follows: searches go about the places where the picture as a whole has gone; may_follow: where few of those first ones
+/// are found, they do. Returns whether they did.
+bool ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows, bool may_follow) {
+  const SearchMode search = {follows, mode.parallax_lasts};
   const int count = listed_;
   const int scouts = search_.widest_ellipse(count) > kWideEllipse && count > kScouts ? kScouts : 0;
-  int found = search_.search(0, scouts > 0 ? scouts : count);
-  if (follows && Scalar(found) < kFewFound * Scalar(frame_.report.attempts) && search_.begin_following(count)) {
+  int found = search_.search(0, scouts > 0 ? scouts : count, search);
+  if (may_follow && Scalar(found) < kFewFound * Scalar(frame_.report.attempts) && search_.find_followed(count)) {
     listed_ = list_candidates();
-    return measure_listed(mode, false);
+    return measure_listed(mode, true, false);
   }
   const int scouted = frame_.report.attempts;
   if (scouts > 0) {
-    const bool used = update_with_consensus({0, found, scouted, false}, mode);
+    const bool used = update_with_consensus({0, found, scouted, false, follows}, mode);
     if (used) {
       StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
       search_.predict_pixels(scouts, count - scouts);
     }
-    const int more = search_.search(scouts, count - scouts);
+    const int more = search_.search(scouts, count - scouts, search);
     if (used) {
-      update_with_consensus({scouts, more, frame_.report.attempts - scouted, true}, mode);
-      return;
+      update_with_consensus({scouts, more, frame_.report.attempts - scouted, true, follows}, mode);
+      return follows;
     }
     for (int k = 0; k < more; ++k, ++found)
       if (found != scouts + k) update_.swap(found, scouts + k);
   }
-  update_with_consensus({0, found, frame_.report.attempts, true}, mode);
+  update_with_consensus({0, found, frame_.report.attempts, true, follows}, mode);
+  return follows;
 }
 
 /// Finds the consensus of the matches of a range, and updates the filter with it. False if that is not enough to believe the
@@ -101,13 +103,12 @@ bool ImageFrontEnd::update_with_consensus(const Range& range, const MeasureMode&
     // A match that all the others contradict supports nothing.
     const int inliers = found > 0 ? update_.reject_contradicted(first, found, &fit) : 0;
     consensus = consensus_of(range, inliers, fit);
-    const Scalar evidence = belief_.evidence(consensus);
     if (is_first) {
-      log_odds = weigh(range, inliers, evidence, mode.median_depth);
+      log_odds = weigh(range, consensus, mode);
       accepted = mode.starts ? inliers >= std::min(kMinConsensus, map_.features.count())
-                             : inliers >= settings_.min_inliers && PoseBelief::is_enough(log_odds);
+                             : hypotheses_.accepts(consensus, log_odds, range.is_last);
     } else {  // beside those that were believed, any consensus is
-      log_odds = PoseBelief::updated(belief_.log_odds(), evidence);
+      log_odds = PoseBelief::updated(belief_.log_odds(), belief_.evidence(consensus));
       accepted = inliers > 0;
     }
   }
@@ -120,7 +121,8 @@ bool ImageFrontEnd::update_with_consensus(const Range& range, const MeasureMode&
         squared_distance(match.measured - o.predicted, filter_.innovation_block(i - first, i - first) + o.R_gate);
   }
   // Jointly, with the noise of the gate: that of the update allows for errors that come again in later frames.
-  if (!accepted || !update_.apply(first, found, nullptr)) return false;
+  if (accepted) outcome_ = update_.apply(first, found, mode.update, outcome_);
+  if (!accepted || !outcome_.is_applied) return false;
   frame_.report.nis += static_cast<double>(fit.nis);
   belief_.use(log_odds, consensus);
   return true;
@@ -133,25 +135,28 @@ PoseConsensus ImageFrontEnd::consensus_of(const Range& range, int inliers, const
   consensus.searched = range.searched;
   consensus.inliers = inliers;
   consensus.log_density = log_normal_density(fit.nis, fit.log_det, inliers);
-  if (search_.is_following()) consensus.log_density = 0;
-  const Scalar* const searched_px2 = search_.searched_areas(first, found);
+  if (range.follows) consensus.log_density = 0;
+  const Scalar* const searched_px2 = search_.searched_areas(first, found, range.follows);
   for (int i = 0; i < found; ++i) {
     if (update_.keep()[first + i] == 0) continue;
     consensus.log_chance += log_chance_density(searched_px2[i]);
-    if (search_.is_following()) consensus.log_density += update_.candidate(first + i).log_density;
+    if (range.follows) consensus.log_density += update_.candidate(first + i).log_density;
   }
   return consensus;
 }
 
 /// Log-odds of the pose with the evidence of the frame's first consensus. A pose that is not believed yet is proposed to the next frame,
 /// once all features have been searched for.
-Scalar ImageFrontEnd::weigh(const Range& range, int inliers, Scalar evidence, Scalar depth) {
-  evidence -= std::log(static_cast<Scalar>(hypotheses_));
-  Scalar log_odds = PoseBelief::updated(belief_.predicted(), evidence);
+Scalar ImageFrontEnd::weigh(const Range& range, const PoseConsensus& consensus, const MeasureMode& mode) {
+  const Scalar evidence = hypotheses_.evidence(consensus);
+  Scalar log_odds = hypotheses_.weigh(consensus);
+  if (!mode.starts && !range.is_last && !PoseBelief::is_settled(log_odds)) return log_odds;
   const bool is_enough = PoseBelief::is_enough(log_odds);
   if (!range.is_last && !is_enough) return log_odds;
-  if (inliers >= settings_.min_inliers && evidence > Scalar(0) && (!is_enough || update_.proposals().last().is_set))
-    log_odds = update_.propose(range.first, range.found, depth, belief_.predicted(), evidence);
+  if (consensus.inliers >= settings_.min_inliers && evidence > Scalar(0) &&
+      (!is_enough || update_.proposals().last().is_set))
+    log_odds =
+        update_.propose(range.first, range.found, mode.update.rows, mode.median_depth, belief_.predicted(), evidence);
   belief_.note(log_odds);
   return log_odds;
 }

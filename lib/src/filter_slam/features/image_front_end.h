@@ -11,6 +11,7 @@
 #include "filter_slam/pose/pixel_update.h"
 #include "frame/frame.h"
 #include "frame/noise_model.h"
+#include "frame/pose_hypotheses.h"
 #include "frame/settings.h"
 #include "map/map.h"
 
@@ -25,6 +26,7 @@ struct MeasureMode {
   Scalar median_depth = 1;  ///< of the last tracked frame's inliers
   /// What baseline and open depth make wrong together counts as an error that stays with its feature.
   bool parallax_lasts = false;
+  UpdateMode update;
 };
 
 class ImageFrontEnd {
@@ -37,6 +39,7 @@ class ImageFrontEnd {
         frame_(frame),
         update_(update),
         belief_(belief),
+        hypotheses_(settings, belief),
         noise_(filter, map, frame, update, noise),
         search_(settings, filter, map, frame, update, noise_),
         corners_(settings, filter, map, frame, features, search_) {}
@@ -46,8 +49,9 @@ class ImageFrontEnd {
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);
-  /// Finds the map's features in the image, and updates the filter with them where that is enough to believe the pose.
-  void measure(const MeasureMode& mode);
+  /// Finds the map's features in the image, and updates the filter with them where that is enough to believe the pose. Returns what the
+  /// updates have found.
+  UpdateOutcome measure(MeasureMode mode);
   /// Where the camera is after a frame, and whether that taught the map. SameView
   void note_view(bool taught, Scalar median_depth);
   /// Updates the noise model with the inliers' residuals after measure().
@@ -60,15 +64,16 @@ class ImageFrontEnd {
 
  private:
   int list_candidates();
-  void measure_listed(const MeasureMode& mode, bool follows);
+  bool measure_listed(const MeasureMode& mode, bool follows, bool may_follow);
   /// Of the listed candidates, those that were searched for at once; what was found stands first.
   struct Range {
     int first, found, searched;
     bool is_last;  ///< all have been searched for
+    bool follows;  ///< SearchMode
   };
   bool update_with_consensus(const Range& range, const MeasureMode& mode);
   PoseConsensus consensus_of(const Range& range, int inliers, const JointFit& fit);
-  Scalar weigh(const Range& range, int inliers, Scalar evidence, Scalar depth);
+  Scalar weigh(const Range& range, const PoseConsensus& consensus, const MeasureMode& mode);
 
   const Settings& settings_;
   Filter& filter_;
@@ -76,6 +81,7 @@ class ImageFrontEnd {
   Frame& frame_;
   PixelUpdate& update_;
   PoseBelief& belief_;
+  PoseHypotheses hypotheses_;
   MatchNoise noise_;
   FeatureSearch search_;
   CornerFeatures corners_;
@@ -83,7 +89,7 @@ class ImageFrontEnd {
   bool is_learnt_ = false;    ///< the map has learnt from this frame's view already
   bool is_measured_ = false;  ///< by measure(), so that candidates and matches are this frame's
   int listed_ = 0;            ///< candidates of the last frame that measure() has measured
-  int hypotheses_ = 1;        ///< of where this frame is, tried by measure() so far
+  UpdateOutcome outcome_;     ///< of the updates that measure() has made so far
 };
 
 }  // namespace pf

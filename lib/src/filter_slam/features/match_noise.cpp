@@ -4,12 +4,12 @@
 
 namespace pf {
 
-void MatchNoise::set(int i, const SearchOutcome& found) const {
+void MatchNoise::set(int i, const SearchOutcome& found, bool parallax_lasts) const {
   const Mat2 noise = model_.match(found.noise, found.level_scale);
   Candidate& candidate = update_.candidate(i);
   PixelMeasurement& o = update_.observation(i);
   candidate.noise = noise;
-  o.set_noises(noise + o.second_order, update_noise(map_.features[candidate.feature], o, noise));
+  o.set_noises(noise + o.second_order, update_noise(map_.features[candidate.feature], o, noise, parallax_lasts));
 }
 
 /// Whether a feature's matches add up to coordinates that are averaged over frames, so that errors which stay with the feature count. The
@@ -20,9 +20,10 @@ bool MatchNoise::is_averaged(const Feature& f) const {
 
 /// R_update of a match with this noise, without bend. What the linearisation leaves out is new in each frame, but for the product of an
 /// open depth and a baseline that is wrong for as long: where that lasts, it counts twice (lib/docs/lens.md).
-Mat2 MatchNoise::update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise) const {
+Mat2 MatchNoise::update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise,
+                              bool parallax_lasts) const {
   Mat2 R = (is_averaged(f) ? model_.correlation_frames() : Scalar(1)) * noise + o.second_order;
-  if (parallax_lasts_ && filter_.state().has_inverse_depth(f.slot)) R += o.second_order;
+  if (parallax_lasts && filter_.state().has_inverse_depth(f.slot)) R += o.second_order;
   return R;
 }
 

@@ -16,25 +16,22 @@ class MatchNoise {
   MatchNoise(Filter& filter, Map& map, const Frame& frame, PixelUpdate& update, NoiseModel& model)
       : filter_(filter), map_(map), frame_(frame), update_(update), model_(model) {}
 
-  /// Until the next call: whether what baseline and open depth make wrong together counts as an error that stays with its feature.
-  void set_parallax_lasts(bool lasts) { parallax_lasts_ = lasts; }
-
-  /// Sets the noise of candidate i, which was found, and of its observation.
-  void set(int i, const SearchOutcome& found) const;
+  /// Sets the noise of candidate i, which was found, and of its observation. parallax_lasts: what baseline and open depth make wrong
+  /// together counts as an error that stays with its feature.
+  void set(int i, const SearchOutcome& found, bool parallax_lasts) const;
   Scalar correlation_frames() const { return model_.correlation_frames(); }
   /// Updates the noise model with the residuals of the inliers among the first `count` candidates, after the update.
   void learn(int count);
 
  private:
   bool is_averaged(const Feature& f) const;
-  Mat2 update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise) const;
+  Mat2 update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise, bool parallax_lasts) const;
 
   Filter& filter_;
   Map& map_;
   const Frame& frame_;
   PixelUpdate& update_;
   NoiseModel& model_;
-  bool parallax_lasts_ = false;
 };
 
 }  // namespace pf

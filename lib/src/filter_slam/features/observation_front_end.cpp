@@ -19,13 +19,17 @@ bool ObservationFrontEnd::layout(Arena& arena, int max_features, int max_observa
   return arena.ok();
 }
 
-void ObservationFrontEnd::measure(const PixelObservation* observations, int count, bool again) {
+UpdateOutcome ObservationFrontEnd::measure(const PixelObservation* observations, int count, bool again,
+                                           const UpdateMode& mode) {
   const int known = gate(observations, count, again);
   // Where the prediction is in doubt, the few that pass a gate which refuses most of them pass it by chance.
-  if (known == 0 || (update_.limits_pose_nis() && tuning::image_front_end::kFewPassing * known < frame_.report.matches))
-    return;
+  const bool is_in_doubt = mode.max_pose_nis > Scalar(0);
+  if (known == 0 || (is_in_doubt && tuning::image_front_end::kFewPassing * known < frame_.report.matches))
+    return UpdateOutcome();
   update_.begin(0, known);
-  update_.apply(0, known, &frame_.report.nis);
+  const UpdateOutcome outcome = update_.apply(0, known, mode);
+  frame_.report.nis += outcome.nis;
+  return outcome;
 }
 
 /// Lists observations of the map's features as matches, and those inside of their gate as candidates. Returns how many candidates.

@@ -32,7 +32,7 @@ class ObservationFrontEnd {
   int inbox_size() const { return settings_.max_features + settings_.max_observations; }
 
   /// Updates the filter with observations of the map's features. again: of the same frame once more, which is not counted twice.
-  void measure(const PixelObservation* observations, int count, bool again);
+  UpdateOutcome measure(const PixelObservation* observations, int count, bool again, const UpdateMode& mode);
   /// Adds features for observations with unknown ids.
   void add_features(const PixelObservation* observations, int count);
 

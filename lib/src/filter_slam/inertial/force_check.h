@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "filter/imu_log.h"
-#include "filter_slam/inertial/unit_watch.h"
+#include "filter_slam/inertial/unit_reason.h"
 #include "frame/settings.h"
 
 /// Whether the accelerometer reads specific force in m/s². What a hand does averages out over seconds, in axes that do not rotate, and

@@ -59,8 +59,8 @@ bool PixelUpdate::are_depths_open(int first, int count) const {
   return tuning::pixel_update::kMinOpen * open > all;
 }
 
-Scalar PixelUpdate::propose(int first, int count, Scalar depth, Scalar before, Scalar evidence) {
-  const bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, nullptr);
+Scalar PixelUpdate::propose(int first, int count, EstimatedRows rows, Scalar depth, Scalar before, Scalar evidence) {
+  const bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, nullptr, rows);
   const Scalar* dx = filter_.solved_step();
   const Body& body = filter_.state().body;
   const Vec3 e_theta(dx[Body::kTheta], dx[Body::kTheta + 1], dx[Body::kTheta + 2]);
@@ -70,44 +70,43 @@ Scalar PixelUpdate::propose(int first, int count, Scalar depth, Scalar before, S
   return proposals_.propose(exp_so3(e_theta) * body.q_WC, body.p_W + e_p, depth, before, evidence);
 }
 
-bool PixelUpdate::apply(int first, int count, double* nis) {
+UpdateOutcome PixelUpdate::apply(int first, int count, const UpdateMode& mode, const UpdateOutcome& before) {
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kUpdate]);
-  const bool depths_only = puts_depths_first_ && are_depths_open(first, count);
-  filter_.estimate_map_only(depths_only);
-  const bool applied = apply_to(first, count, nis);
-  filter_.estimate_map_only(false);
-  return applied;
-}
-
-bool PixelUpdate::apply_to(int first, int count, double* nis) {
+  UpdateOutcome now = before;
+  bool depths_only = mode.depths_first && !before.is_pose_open && are_depths_open(first, count);
+  EstimatedRows rows = {mode.rows.motion && !depths_only, mode.rows.map};
   Scalar sum = 0, pose_nis = 0, of_rotation = 0;
-  bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum);
+  bool solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum, rows);
   const bool says_pose = solved && settings_.inertial && filter_.pose_nis(&pose_nis, &of_rotation);
-  if (says_pose && filter_.estimates_map_only() && pose_nis > kMaxFirstNis) {
-    puts_depths_first_ = false;
-    filter_.estimate_map_only(false);
+  if (says_pose && depths_only && pose_nis > kMaxFirstNis) {
+    now.is_pose_open = true;
+    depths_only = false;
+    rows = mode.rows;
     filter_.begin_update(observation_ + first, count);
-    solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum);
+    solved = filter_.solve_update(observation_ + first, count, keep_ + first, &sum, rows);
   }
-  is_contradicted_ = is_contradicted_ || (says_pose && contradicts(pose_nis));
-  if (is_contradicted_) {
-    contradicting_nis_ = pose_nis;
-    contradicting_rotation_ = of_rotation;
-  } else {
-    tracking_.note_update(solved);
-  }
-  if (!solved || is_contradicted_) {
+  if (says_pose && mode.max_pose_nis > Scalar(0) && frame_.report.inliers == 0 && pose_nis > mode.max_pose_nis)
+    now.is_contradicted = true;
+  if (!now.is_contradicted) tracking_.note_update(solved);
+  now.is_applied = solved && !now.is_contradicted;
+  now.nis = now.is_applied ? static_cast<double>(sum) : 0;
+  if (!now.is_applied) {
     reject(first, count);
-    return false;
+    return now;
   }
   filter_.commit_update();
-  if (nis != nullptr) *nis += static_cast<double>(sum);
   // What the pose is off stays while depths come first: a frame says nothing that the one before had not said.
-  if (says_pose && !filter_.estimates_map_only()) {
+  if (says_pose && !depths_only) {
     frame_.report.pose_nis += static_cast<double>(pose_nis);
     frame_.report.rotation_nis += static_cast<double>(of_rotation);
     frame_.report.pose_nis_dof += Body::kPoseDim;
   }
+  count_inliers(first, count);
+  relinearise_update(first, count, rows);
+  return now;
+}
+
+void PixelUpdate::count_inliers(int first, int count) {
   for (int i = first; i < first + count; ++i) {
     if (keep_[i] == 0) continue;
     frame_.report.nis_dof += 2;
@@ -119,8 +118,6 @@ bool PixelUpdate::apply_to(int first, int count, double* nis) {
     feature.rejections = 0;
     feature.last_seen_ns = frame_.report.t_ns;
   }
-  relinearise_update(first, count);
-  return true;
 }
 
 void PixelUpdate::reject(int first, int count) {
@@ -141,7 +138,7 @@ Mat2 PixelUpdate::expected_innovation(PixelMeasurement* o) const {
 /// If second-order noise was large in the update, linearises the same pixels again at the updated pose and updates with the information
 /// that this noise had withheld:  R' = (R^-1 - (R + bend I)^-1)^-1 = R + R^2 / bend. Those whose place the update has thrown out of their
 /// gate are left out.
-void PixelUpdate::relinearise_update(int first, int count) {
+void PixelUpdate::relinearise_update(int first, int count, EstimatedRows rows) {
   for (int round = 0; round < kMaxRounds; ++round) {
     bool bent = false;
     for (int i = first; i < first + count; ++i)
@@ -161,7 +158,7 @@ void PixelUpdate::relinearise_update(int first, int count) {
       keep_[i] = squared_distance(o.measured - o.predicted, spread + o.R_update) < settings_.gate ? 1 : 0;
     }
     filter_.begin_update(observation_ + first, count);
-    if (!filter_.finish_update(observation_ + first, count, keep_ + first, nullptr)) return;
+    if (!filter_.finish_update(observation_ + first, count, keep_ + first, nullptr, rows)) return;
   }
 }
 

@@ -22,6 +22,23 @@ struct Candidate {
   Scalar log_density = 0;     ///< of the found pixel about where the picture has gone [ln px^-2]
 };
 
+/// What an update with a frame's pixels does.
+struct UpdateMode {
+  EstimatedRows rows;
+  /// While the depths of most of what a frame measures are open, pixels tell the map alone, and the pose not (lib/docs/inertial.md,
+  /// "Starting").
+  bool depths_first = false;
+  Scalar max_pose_nis = 0;  ///< the first update of a frame is refused where its pose NIS is above this; 0: no bound
+};
+
+/// What the updates of a frame have found.
+struct UpdateOutcome {
+  bool is_applied = false;       ///< the last of them
+  double nis = 0;                ///< normalised innovation squared of the last one
+  bool is_contradicted = false;  ///< one was refused by max_pose_nis; no later one is made
+  bool is_pose_open = false;     ///< pixels contradict the pose that depths_first relies on; depths come first no more
+};
+
 class PixelUpdate {
  public:
   PixelUpdate(const Settings& settings, Filter& filter, Map& map, Frame& frame, TrackingState& tracking)
@@ -49,39 +66,20 @@ class PixelUpdate {
   /// Stops keeping matches of the range that begin() got which all the other kept ones contradict. Returns how many stay. fit: of these,
   /// with R_gate.
   int reject_contradicted(int first, int count, JointFit* fit);
-  /// Until the next call: apply() refuses the first update of a frame where the pose NIS is above this. 0: no bound.
-  void limit_pose_nis(Scalar most) {
-    max_pose_nis_ = most;
-    is_contradicted_ = false;
-  }
-  bool limits_pose_nis() const { return max_pose_nis_ > Scalar(0); }
-  /// It has done so.
-  bool is_contradicted() const { return is_contradicted_; }
-  /// The pose NIS of that update, and the rotation's part of it.
-  Scalar contradicting_nis() const { return contradicting_nis_; }
-  Scalar contradicting_rotation() const { return contradicting_rotation_; }
-  /// Until the next call: while the depths of most of what a frame measures are open, apply() tells the map alone by it, and the pose not
-  /// (lib/docs/inertial.md, "Starting").
-  void put_depths_first(bool first) { puts_depths_first_ = first; }
-  /// False once pixels have contradicted the pose that this relies on.
-  bool puts_depths_first() const { return puts_depths_first_; }
   ProposedPoses& proposals() { return proposals_; }
   const ProposedPoses& proposals() const { return proposals_; }
-  /// Proposes the pose that an update with the kept ones of the range that begin() got would give; evidence: what they say for it, depth:
-  /// median, of what is seen. Returns its log-odds; `before` where the update cannot be made.
-  Scalar propose(int first, int count, Scalar depth, Scalar before, Scalar evidence);
-  /// Updates with the kept ones of the range that begin() got. False if the update could not be made; then nothing has changed.
-  /// Adds their normalised innovation squared to *nis where it is not null.
-  bool apply(int first, int count, double* nis);
+  /// Proposes the pose that an update of these rows with the kept ones of the range that begin() got would give; evidence: what they say
+  /// for it, depth: median, of what is seen. Returns its log-odds; `before` where the update cannot be made.
+  Scalar propose(int first, int count, EstimatedRows rows, Scalar depth, Scalar before, Scalar evidence);
+  /// Updates with the kept ones of the range that begin() got. Where it is not applied, nothing has changed. before: of the updates that
+  /// the frame has had. Returns that with what this one adds.
+  UpdateOutcome apply(int first, int count, const UpdateMode& mode, const UpdateOutcome& before = UpdateOutcome());
 
  private:
-  bool contradicts(Scalar pose_nis) const {
-    return limits_pose_nis() && frame_.report.inliers == 0 && pose_nis > max_pose_nis_;
-  }
-  bool apply_to(int first, int count, double* nis);
   void reject(int first, int count);
+  void count_inliers(int first, int count);
   bool are_depths_open(int first, int count) const;
-  void relinearise_update(int first, int count);
+  void relinearise_update(int first, int count, EstimatedRows rows);
 
   const Settings& settings_;
   Filter& filter_;
@@ -95,10 +93,6 @@ class PixelUpdate {
       nullptr;  ///< scratch behind keep_: frames in which the feature of each match was measured, up to 255
   LeaveOneOut others_;
   ProposedPoses proposals_{settings_, filter_};
-  Scalar max_pose_nis_ = 0;
-  Scalar contradicting_nis_ = 0, contradicting_rotation_ = 0;
-  bool puts_depths_first_ = false;
-  bool is_contradicted_ = false;
 };
 
 }  // namespace pf

@@ -13,7 +13,7 @@ using namespace tuning::relocaliser;
 
 void ProposedPoses::begin_frame(std::int64_t dt_ns) {
   last_ = now_;
-  now_ = Proposal();
+  now_ = PoseProposal();
   dt_ns_ = dt_ns;
 }
 
@@ -25,7 +25,7 @@ Scalar ProposedPoses::propose(const Quat& q_WC, const Vec3& p_W, Scalar depth, S
 }
 
 /// Whether the camera can have moved here from the last frame's proposal.
-bool ProposedPoses::follows(const Proposal& next) const {
+bool ProposedPoses::follows(const PoseProposal& next) const {
   const Scalar dt = static_cast<Scalar>(seconds(dt_ns_));
   const Body& body = filter_.state().body;
   Scalar max_rotation = kProposalRotation, max_shift = kProposalShift * next.depth;

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "belief/pose_belief.h"
 #include "filter/filter.h"
+#include "frame/pose_hypotheses.h"
 #include "frame/settings.h"
 
 /// Poses that the matches of frames in a row propose before any of them is believed.
@@ -17,30 +17,22 @@ class ProposedPoses {
  public:
   ProposedPoses(const Settings& settings, const Filter& filter) : settings_(settings), filter_(filter) {}
 
-  struct Proposal {
-    bool is_set = false;
-    Scalar log_odds = 0;  ///< that it is right
-    Quat q_WC = Quat::Identity();
-    Vec3 p_W = Vec3::Zero();
-    Scalar depth = 1;  ///< of what is seen, median
-  };
-
-  void init() { last_ = now_ = Proposal(); }
+  void init() { last_ = now_ = PoseProposal(); }
   /// A frame begins, dt_ns after the one before, and has proposed nothing yet.
   void begin_frame(std::int64_t dt_ns);
   /// That of the frame before.
-  const Proposal& last() const { return last_; }
+  const PoseProposal& last() const { return last_; }
   /// This frame's proposal; a second one takes the place of the first. before: log-odds that a pose near the prediction has before this
   /// frame's evidence. The last frame's proposal counts in its place: where the camera can have moved here from there, that one's log-odds;
   /// where not, one of the two is wrong. Returns the log-odds with this frame's evidence.
   Scalar propose(const Quat& q_WC, const Vec3& p_W, Scalar depth, Scalar before, Scalar evidence);
 
  private:
-  bool follows(const Proposal& next) const;
+  bool follows(const PoseProposal& next) const;
 
   const Settings& settings_;
   const Filter& filter_;
-  Proposal last_, now_;
+  PoseProposal last_, now_;
   std::int64_t dt_ns_ = 0;
 };
 

@@ -48,7 +48,7 @@ void Relocaliser::remember_view(Scalar median_depth) {
   views_.keep_if_new(search_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W);
 }
 
-void Relocaliser::recover() {
+UpdateOutcome Relocaliser::recover(const MeasureMode& mode, const UpdateOutcome& before) {
   const SearchPose about = choose_search_pose();
   const Body estimate = filter_.state().body;
   frame_.forget_searches();
@@ -56,9 +56,9 @@ void Relocaliser::recover() {
   int count = search_.list_visible();
   search_.predict_pixels(0, count);
   count = keep_placed(about, count);
-  const int found = search_.search(0, count);
+  const int found = search_.search(0, count, {false, mode.parallax_lasts});
   set_pose(estimate);
-  measure_about(about, found);
+  return measure_about(about, found, mode.update, before);
 }
 
 /// The prediction is good enough for a linear consensus.
@@ -74,26 +74,13 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
   about.body = filter_.state().body;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) about.P(i, j) = filter_.covariance()(std::max(i, j), std::min(i, j));
-  Scalar rotation = kAboutProposal, position = kAboutProposal;
-  const ProposedPoses::Proposal& last = update_.proposals().last();
-  if (last.is_set) {
-    about.body.q_WC = last.q_WC;
-    about.body.p_W = last.p_W;
-    position *= last.depth;
-  } else {
-    const Recognition place = views_.recognise(search_.tracker().pyramid(), filter_.lens());
-    if (place.score < kMinRecognition) return about;
-    about.body.q_WC = place.q_WC;
-    about.body.p_W = place.p_W;
-    rotation = kAboutView;
-    position = kAboutView * depth_;
-  }
-  about.given = true;
-  about.P.setZero();
-  for (int i = 0; i < 3; ++i) {
-    about.P(i, i) = rotation * rotation;
-    about.P(3 + i, 3 + i) = position * position;
-  }
+  PoseHypothesis elsewhere;
+  about.given = find_elsewhere(update_.proposals().last(), views_, search_.tracker().pyramid(), filter_.lens(), depth_,
+                               &elsewhere);
+  if (!about.given) return about;
+  about.body.q_WC = elsewhere.q_WC;
+  about.body.p_W = elsewhere.p_W;
+  about.P = elsewhere.P;
   return about;
 }
 
@@ -105,30 +92,35 @@ void Relocaliser::set_pose(const Body& pose) {
 }
 
 /// Proposes a pose from the matches of a search about another pose, and tests it in the filter's own covariance.
-void Relocaliser::measure_about(const SearchPose& about, int found) {
-  if (found < settings_.min_inliers) return;
+UpdateOutcome Relocaliser::measure_about(const SearchPose& about, int found, const UpdateMode& mode,
+                                         const UpdateOutcome& before) {
+  if (found < settings_.min_inliers) return before;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
   for (int i = 0; i < found; ++i) {
     point_W_[i] = filter_.point(map_.features[update_.candidate(i).feature].slot);
     pixel_[i] = update_.observation(i).measured;
-    searched_px2_[i] = search_.searched_area(i);
+    searched_px2_[i] = search_.searched_area(i, false);
   }
   Body pose = about.body;
   const Scalar sigma = std::max(Scalar(1), kProposalPixels * static_cast<Scalar>(settings_.camera.width));
-  if (propose_pose(filter_.lens(), about.P, point_W_, pixel_, found, sigma, &pose) < settings_.min_inliers) return;
+  if (propose_pose(filter_.lens(), about.P, point_W_, pixel_, found, sigma, &pose) < settings_.min_inliers)
+    return before;
   found = linearise_at(pose, found);
-  if (found < settings_.min_inliers) return;
+  if (found < settings_.min_inliers) return before;
   update_.begin(0, found);
   const PoseConsensus consensus =
       find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
                             belief_.share(), settings_.gate, kTriples, update_.keep());
-  if (consensus.inliers < settings_.min_inliers) return;
+  if (consensus.inliers < settings_.min_inliers) return before;
   const Scalar log_odds = update_.proposals().propose(pose.q_WC, pose.p_W, median_depth(pose, found),
                                                       PoseBelief::elsewhere(), belief_.evidence(consensus));
-  if (!PoseBelief::is_enough(log_odds)) return;
+  if (!PoseBelief::is_enough(log_odds)) return before;
   mark_matches(found);
   hold_back(found);
-  if (update_.apply(0, found, &frame_.report.nis)) belief_.use(log_odds, consensus);
+  const UpdateOutcome outcome = update_.apply(0, found, mode, before);
+  if (outcome.is_applied) belief_.use(log_odds, consensus);
+  frame_.report.nis += outcome.nis;
+  return outcome;
 }
 
 /// Keeps the candidates that can tell where the camera is, and sets the search ellipses about a given pose. Returns how many.

@@ -4,7 +4,7 @@
 
 #include "base/arena.h"
 #include "filter/filter.h"
-#include "filter_slam/features/feature_search.h"
+#include "filter_slam/features/image_front_end.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
@@ -35,8 +35,9 @@ class Relocaliser {
   void remember_view(Scalar median_depth);
   /// The prediction is good enough for a linear consensus about it.
   bool is_prediction_narrow() const;
-  /// Searches where the pose may be when the prediction is not.
-  void recover();
+  /// Searches where the pose may be when the prediction is not. before: what the frame's updates have found. Returns that with what this
+  /// one adds.
+  UpdateOutcome recover(const MeasureMode& mode, const UpdateOutcome& before);
 
   int kept_views() const { return views_.count(); }
 
@@ -49,7 +50,7 @@ class Relocaliser {
   };
 
   SearchPose choose_search_pose() const;
-  void measure_about(const SearchPose& about, int found);
+  UpdateOutcome measure_about(const SearchPose& about, int found, const UpdateMode& mode, const UpdateOutcome& before);
   void set_pose(const Body& pose);
   int keep_placed(const SearchPose& about, int count);
   int linearise_at(const Body& pose, int found);

@@ -24,12 +24,12 @@ bool RotationTracking::layout(Arena& arena) {
 /// Returns how many are found.
 int RotationTracking::find_points() {
   const Scalar depth = settings_.start_depth;
-  const PosePrior at = prior_of(motion_);
+  PosePrior at = prior_of(motion_);
   int found = search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
-  if (kMinFound * found < frame_.report.attempts && search_.begin_following()) {
+  if (kMinFound * found < frame_.report.attempts && search_.find_followed()) {
     frame_.forget_searches();
+    at.follows = true;
     found = search_.search(0, 0, search_.list_unplaced(at, depth), at, depth);
-    search_.end_following();
   }
   return found;
 }

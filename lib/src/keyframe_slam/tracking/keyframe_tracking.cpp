@@ -17,19 +17,17 @@ namespace pf {
 using namespace tuning::keyframe_tracking;
 
 void KeyframeTracking::measure(Scalar median_depth) {
-  const PosePrior prior = prior_of(motion_);
+  PosePrior prior = prior_of(motion_);
   CameraPose pose = {prior.q_WC, prior.p_W};
   Mat6 information = Mat6::Zero();
-  hypotheses_ = 1;
+  hypotheses_.begin();
   if (!measure_placed(prior, &pose, &information)) {
-    measure_all(median_depth);
-    if (frame_.report.inliers > 0 || !search_.begin_following()) return;
+    measure_all(prior, median_depth);
+    if (frame_.report.inliers > 0 || !search_.find_followed()) return;
     frame_.forget_searches();
-    ++hypotheses_;
-    const bool found = measure_placed(prior, &pose, &information);
-    if (!found) measure_all(median_depth);
-    search_.end_following();
-    if (!found) return;
+    hypotheses_.add();
+    prior.follows = true;
+    if (!measure_placed(prior, &pose, &information)) return measure_all(prior, median_depth);
   }
   if (has_rows(map_.camera()))
     correct_by_rows(prior, pose, information);
@@ -46,9 +44,8 @@ bool KeyframeTracking::measure_placed(const PosePrior& prior, CameraPose* pose, 
 
 /// Weighs what was found about the prediction.
 bool KeyframeTracking::is_believed(const PoseConsensus& consensus) {
-  const Scalar evidence = belief_.evidence(consensus) - std::log(static_cast<Scalar>(hypotheses_));
-  const Scalar log_odds = PoseBelief::updated(belief_.predicted(), evidence);
-  if (consensus.inliers < settings_.min_inliers || !PoseBelief::is_enough(log_odds)) {
+  const Scalar log_odds = hypotheses_.weigh(consensus);
+  if (!hypotheses_.accepts(consensus, log_odds)) {
     belief_.note(log_odds);
     return false;
   }
@@ -89,6 +86,7 @@ int KeyframeTracking::search_by_scouts(const PosePrior& about, CameraPose* pose,
     scouted = {pose->q_WC, pose->p_WC, factored.inverse(), about.v_W, about.w_C};
     search_.predict_again(kScouts, others, scouted);
   }
+  scouted.follows = about.follows;
   moving->v_W = scouted.v_W;
   moving->w_C = scouted.w_C;
   return search_.search(found, kScouts, others, scouted, Scalar(1));
@@ -162,15 +160,14 @@ void KeyframeTracking::measure_unplaced(Scalar depth) {
 
 void KeyframeTracking::measure_young(Scalar median_depth) {
   const PosePrior prior = prior_of(motion_);
-  hypotheses_ = 1;
+  hypotheses_.begin();
   const int placed = search_.list_placed(prior);
   const int count = placed + search_.list_unplaced(prior, median_depth);
   fit_all(search_.search(0, 0, count, prior, median_depth), prior, median_depth);
 }
 
 /// After measure_about() found no pose: the points without a depth are searched for as well.
-void KeyframeTracking::measure_all(Scalar median_depth) {
-  const PosePrior prior = prior_of(motion_);
+void KeyframeTracking::measure_all(const PosePrior& prior, Scalar median_depth) {
   const int count = search_.list_unplaced(prior, median_depth);
   fit_all(search_.search(found_, search_.placed(), count, prior, median_depth), prior, median_depth);
 }

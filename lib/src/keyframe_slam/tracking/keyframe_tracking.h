@@ -1,6 +1,6 @@
 #pragma once
 
-#include "belief/pose_belief.h"
+#include "frame/pose_hypotheses.h"
 #include "keyframe_slam/tracking/motion.h"
 #include "keyframe_slam/tracking/point_search.h"
 #include "keyframe_slam/tracking/pose_measurement.h"
@@ -20,7 +20,8 @@ class KeyframeTracking {
         noise_(noise),
         search_(search),
         pose_(pose),
-        belief_(belief) {}
+        belief_(belief),
+        hypotheses_(settings, belief) {}
 
   /// Finds points with a depth about the predicted pose, and corrects the body by the pose that they say; then finds those without. Where
   /// those with a depth say none, all say it together.
@@ -43,7 +44,7 @@ class KeyframeTracking {
   void mark(const PosePrior& at);
   void accept(const Vec2& pixel, Match* match);
   bool measure_placed(const PosePrior& prior, CameraPose* pose, Mat6* information);
-  void measure_all(Scalar median_depth);
+  void measure_all(const PosePrior& prior, Scalar median_depth);
   void fit_all(int found, const PosePrior& prior, Scalar median_depth);
   bool is_believed(const PoseConsensus& consensus);
   void measure_unplaced(Scalar depth);
@@ -56,8 +57,8 @@ class KeyframeTracking {
   PointSearch& search_;
   PoseMeasurement& pose_;
   PoseBelief& belief_;
-  int hypotheses_ = 1;  ///< of where this frame is, tried so far
-  int found_ = 0;       ///< points with a depth, by the last measure_about(), at the front of the search's list
+  PoseHypotheses hypotheses_;
+  int found_ = 0;  ///< points with a depth, by the last measure_about(), at the front of the search's list
 };
 
 }  // namespace pf

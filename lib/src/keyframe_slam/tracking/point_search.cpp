@@ -28,7 +28,6 @@ bool PointSearch::layout(Arena& arena) {
 void PointSearch::init() {
   images_.init(settings_);
   followed_.init();
-  is_following_ = false;
   placed_ = 0;
 }
 
@@ -121,7 +120,7 @@ int PointSearch::search(int found, int first, int count, const PosePrior& at, Sc
     task.innovation = match.innovation;
     if (settings_.gate * symmetric_eigenvalues(match.innovation)(1) > kTemplateEllipse * kTemplateEllipse)
       task.shape = nullptr;
-    if (is_following_ && !aim(match.feature, &task)) continue;
+    if (at.follows && !aim(match.feature, &task)) continue;
     const SearchOutcome outcome = images_.search(task);
     if (!outcome.comparable) continue;
     match.searched = true;
@@ -142,13 +141,12 @@ bool PointSearch::is_wide(const Mat2& innovation) const {
   return FollowedView::is_wide(map_.camera(), innovation, settings_.gate);
 }
 
-bool PointSearch::begin_following() {
+bool PointSearch::find_followed() {
   int wide = 0;
   for (int t = 0; t < frame_.match_count(); ++t) wide += is_wide(frame_.match(t).innovation) ? 1 : 0;
   if (wide == 0 || tuning::image_front_end::kMinWide * wide < frame_.match_count()) return false;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kSearch]);
-  is_following_ = followed_.find(map_.camera(), images_.tracker().pyramid());
-  return is_following_;
+  return followed_.find(map_.camera(), images_.tracker().pyramid());
 }
 
 /// Directs a search to where the followed view has the point, unless its own ellipse says as much. False where that has no place for it.

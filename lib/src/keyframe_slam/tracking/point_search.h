@@ -47,10 +47,9 @@ class PointSearch {
   /// Largest variance of the first `count` points along any direction [px^2].
   Scalar widest(int count) const;
 
-  /// Where most ellipses are wide, searches go about the places where the picture as a whole has gone, until end_following(). False: they
-  /// are not wide, or the picture does not say it.
-  bool begin_following();
-  void end_following() { is_following_ = false; }
+  /// Where most ellipses are wide: finds where the picture as a whole has gone, for searches that follow it. False: they are not wide, or the
+  /// picture does not say it.
+  bool find_followed();
   /// After a frame's searches: ImageSearch::note_fixed.
   bool note_fixed() { return images_.note_fixed(map_.camera(), frame_); }
   /// After a frame that supported its pose: the next one may be followed from it.
@@ -77,7 +76,6 @@ class PointSearch {
   const NoiseModel& noise_;
   ImageSearch images_;
   FollowedView followed_;
-  bool is_following_ = false;       ///< searches go about the followed view's pixels
   SearchedPoint* point_ = nullptr;  ///< one for each point of the map
   int placed_ = 0;
 };

@@ -12,6 +12,8 @@ struct PosePrior {
   /// Velocities, which matter to the rows of a rolling shutter alone; covariance of (theta, p, v, w), null: velocities taken as exact.
   Vec3 v_W = Vec3::Zero(), w_C = Vec3::Zero();
   const Eigen::Matrix<Scalar, 12, 12>* with_velocities = nullptr;
+  /// Searches go about the places where the picture as a whole has gone, where the pose leaves them wide (PointSearch::find_followed).
+  bool follows = false;
 
   Body body() const {
     Body body;

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "frame/pose_hypotheses.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
-#include "track/view_memory.h"
 
 /// Finds the window's map again after frames that did not support the pose (lib/docs/states.md).
 
@@ -16,13 +16,13 @@ class KeyframeRelocaliser {
   bool layout(Arena& arena) { return views_.layout(arena, settings_.max_kept_views); }
   void init() {
     views_.init();
-    data_ = Data();
+    proposal_ = PoseProposal();
   }
 
   /// Keeps the view of a tracked frame.
   void remember_view() { views_.keep_if_new(tracker_.pyramid(), motion_.body().q_WC, motion_.body().p_W); }
   /// The map is tracked: forgets what earlier frames proposed.
-  void clear_proposal() { data_ = Data(); }
+  void clear_proposal() { proposal_ = PoseProposal(); }
   /// The prediction is good enough to search about it.
   bool is_prediction_narrow(Scalar median_depth) const;
   /// Searches where the pose may be when the prediction is not: about the last frame's proposal, or a kept view that looks like this image.
@@ -31,16 +31,6 @@ class KeyframeRelocaliser {
   int kept_views() const { return views_.count(); }
 
  private:
-  /// What earlier frames proposed.
-  struct Data {
-    bool is_set = false;
-    Scalar log_odds = 0;  ///< that it is right
-    Quat q_WC = Quat::Identity();
-    Vec3 p_W = Vec3::Zero();
-  };
-
-  bool choose(Scalar median_depth, PosePrior* about) const;
-
   const Settings& settings_;
   const KeyframeMap& map_;
   KeyframeMotion& motion_;
@@ -48,7 +38,7 @@ class KeyframeRelocaliser {
   KeyframeTracking& measuring_;
   PoseBelief& belief_;
   ViewMemory views_;
-  Data data_;
+  PoseProposal proposal_;  ///< of earlier frames
 };
 
 }  // namespace pf

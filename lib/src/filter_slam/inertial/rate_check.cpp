@@ -1,12 +1,10 @@
+#include "filter_slam/inertial/rate_check.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/elapsed.h"
 #include "filter_slam/inertial/tuning.h"
-#include "filter_slam/inertial/unit_watch.h"
-
-/// The camera's rates against the gyroscope's, while samples do not move the body: whether they fit, and if not, why.
-/// What each reason means to a user: lib/docs/unknown_unit.md.
 
 namespace pf {
 
@@ -30,85 +28,94 @@ bool is_other_clock(const RateFit& fit, double at_s) {
 
 }  // namespace
 
-UnitReason UnitWatch::reason(Scalar* value, Mat3* R_CB) const {
-  if (data_ == nullptr) return UnitReason::kNone;
-  *value = data_->reason_value;
-  *R_CB = data_->reason_R_CB;
-  return data_->reason;
+void RateCheck::init() {
+  data_ = Data();
+  data_.is_open = settings_.unit.sigma_delay > kOpenDelay || finds_axes();
+  if (data_.is_open) data_.reason = UnitReason::kWaitsForRotation;
+}
+
+bool RateCheck::finds_axes() const { return settings_.unit.sigma_turn > kOpenTurn; }
+
+UnitReason RateCheck::reason(Scalar* value, Mat3* R_CB) const {
+  *value = data_.value;
+  *R_CB = data_.R_CB;
+  return data_.reason;
 }
 
 /// Longer after each doubt.
-double UnitWatch::wanted_span() const {
-  if (!data_->doubted) return kMinSpan;
-  return static_cast<double>(tuning::unit_watch::kWindow) * (1 << std::max(0, data_->doubts - 1));
+double RateCheck::wanted_span(bool is_rejected, int doubts) const {
+  if (!is_rejected) return kMinSpan;
+  return static_cast<double>(tuning::unit_watch::kWindow) * (1 << std::max(0, doubts - 1));
 }
 
-bool UnitWatch::is_believed(const RateFit& fit) const {
+bool RateCheck::is_believed(const RateFit& fit) const {
   const bool clear = fit.next_left > kClearly * fit.left && !fit.at_end && fit.sigma_delay < kMaxSigmaDelay;
-  const bool axes = !(settings_.unit.sigma_turn > kOpenTurn) || fit.sigma_turn < kMaxSigmaTurn;
+  const bool axes = !finds_axes() || fit.sigma_turn < kMaxSigmaTurn;
   return clear && axes && fit.left < kMaxLeft && fit.scale < kMaxScale && fit.scale * kMaxScale > Scalar(1) &&
          fit.turning > kMinTurning;
 }
 
-/// Takes in one more frame of a unit that is left out. In a map in metres a doubted one stays out.
-void UnitWatch::compare_rates(bool follows) {
+/// In a map in metres a rejected unit stays out.
+bool RateCheck::note(const UnitFrame& frame, bool is_rejected, int doubts) {
   const std::int64_t t_ns = frame_.report.t_ns;
+  const bool follows = frame.before_was_tracked && frame.is_tracked;
   const Quat q_WC = filter_.state().body.q_WC;
-  if (data_->passed || filter_.uses_samples() || (data_->doubted && filter_.is_metric())) return;
-  if (follows && data_->rates_ns != 0 && data_->rates_ns < t_ns)
-    data_->rates.add(data_->rates_ns, t_ns,
-                     log_so3(Quat(data_->rates_q.conjugate() * q_WC)) /
-                         static_cast<Scalar>(seconds(elapsed_ns(data_->rates_ns, t_ns))));
-  data_->rates_ns = follows ? t_ns : 0;
-  data_->rates_q = q_WC;
-  if (!follows || ++data_->until_fit < kEvery || data_->rates.span() < std::min(wanted_span(), kLongest)) return;
-  data_->until_fit = 0;
-  const bool finds_delay = settings_.body.has(BodyPart::kDelay), finds_axes = settings_.unit.sigma_turn > kOpenTurn;
+  if (data_.has_fit || filter_.uses_samples() || (is_rejected && filter_.is_metric())) return false;
+  if (follows && data_.rates_ns != 0 && data_.rates_ns < t_ns)
+    data_.rates.add(data_.rates_ns, t_ns,
+                    log_so3(Quat(data_.rates_q.conjugate() * q_WC)) /
+                        static_cast<Scalar>(seconds(elapsed_ns(data_.rates_ns, t_ns))));
+  data_.rates_ns = follows ? t_ns : 0;
+  data_.rates_q = q_WC;
+  const double span = std::min(wanted_span(is_rejected, doubts), kLongest);
+  if (!follows || ++data_.until_fit < kEvery || data_.rates.span() < span) return false;
+  data_.until_fit = 0;
+  const bool finds_delay = settings_.body.has(BodyPart::kDelay);
   const Mat3& R_CB = filter_.state().mounting.R_CB;
   const double at_s =
       seconds(settings_.unit.delay_ns) + (finds_delay ? static_cast<double>(filter_.state().mounting.delay) : 0);
-  data_->passed = data_->rates.fit(imu_, at_s, RateAlignment::kReach, finds_axes ? nullptr : &R_CB, &data_->fit) &&
-                  is_believed(data_->fit) && (finds_delay || !is_other_clock(data_->fit, at_s));
-  if (!data_->passed && data_->rates.span() > kVerdict) find_reason(at_s);
+  data_.has_fit = data_.rates.fit(imu_, at_s, RateAlignment::kReach, finds_axes() ? nullptr : &R_CB, &data_.fit) &&
+                  is_believed(data_.fit) && (finds_delay || !is_other_clock(data_.fit, at_s));
+  return !data_.has_fit && data_.rates.span() > kVerdict && find_reason(at_s);
 }
 
 /// Whether any delay within reach and any axes would fit.
-void UnitWatch::find_reason(double at_s) {
+bool RateCheck::find_reason(double at_s) {
   RateFit fit;
-  if (!data_->rates.fit(imu_, at_s, RateAlignment::kReach, nullptr, &fit) || !(fit.turning > kMinTurning)) return;
-  const UnitReason before = data_->reason;
+  if (!data_.rates.fit(imu_, at_s, RateAlignment::kReach, nullptr, &fit) || !(fit.turning > kMinTurning)) return false;
+  const UnitReason before = data_.reason;
   const Scalar times = fit.scale > Scalar(0) ? 1 / fit.scale : Scalar(0);
   const Scalar off = angle_between(fit.R_CB, filter_.state().mounting.R_CB);
   const bool knows_axes = fit.sigma_turn < kMaxSigmaTurn;
-  data_->reason_R_CB = fit.R_CB;
+  data_.R_CB = fit.R_CB;
   const auto say = [&](UnitReason reason, Scalar value) {
-    data_->reason = reason;
-    data_->reason_value = value;
+    data_.reason = reason;
+    data_.value = value;
   };
   if (fit.mirrored && fit.left_mirrored < kMaxLeft) {
     say(UnitReason::kLeftHanded, 0);
   } else if (!(fit.left < kMaxLeft)) {
     const Scalar gyro = mean_rate();
     const bool swapped = std::abs(gyro - settings_.unit.gravity) < kLikeGravity * settings_.unit.gravity;
-    if (swapped || data_->rates.span() > 2 * kVerdict)
+    if (swapped || data_.rates.span() > 2 * kVerdict)
       say(swapped ? UnitReason::kColumnsSwapped : UnitReason::kRatesDoNotFit, swapped ? gyro : fit.left);
   } else if (std::abs(times / kDegrees - 1) < kNear) {
     say(UnitReason::kGyroInDegrees, times);
   } else if (times > kMaxScale || times * kMaxScale < Scalar(1)) {
     say(UnitReason::kGyroScale, times);
-  } else if (knows_axes && off > kOtherAxes && !(settings_.unit.sigma_turn > kOpenTurn)) {
+  } else if (knows_axes && off > kOtherAxes && !finds_axes()) {
     say(UnitReason::kAxes, off * kDegrees);
   } else if (is_other_clock(fit, at_s)) {
     say(UnitReason::kClock, fit.delay);
   }
-  if (data_->reason == before || data_->reason <= UnitReason::kContradicts) return;
-  if (!data_->doubted) data_->doubted = true;
+  if (data_.reason == before || data_.reason <= UnitReason::kContradicts) return false;
   settings_.hooks.say(
       "the inertial unit's rates do not fit the camera's rotations: it is left out; the report says why");
+  return true;
 }
 
 /// Mean length of the rates that are held.
-Scalar UnitWatch::mean_rate() const {
+Scalar RateCheck::mean_rate() const {
   Scalar sum = 0;
   for (int i = 0; i < imu_.held(); ++i) {
     const Scalar* v = imu_[i].gyro;

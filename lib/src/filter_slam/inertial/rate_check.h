@@ -1,0 +1,74 @@
+#pragma once
+
+#include "filter/filter.h"
+#include "filter/imu_log.h"
+#include "filter_slam/inertial/rate_alignment.h"
+#include "filter_slam/inertial/unit_evidence.h"
+#include "filter_slam/inertial/unit_reason.h"
+#include "frame/settings.h"
+
+/// While samples do not move the body, since the unit is rejected or since its clock or its axes are not known: compares the camera's own
+/// rates with the gyroscope's (RateAlignment). Where they fit, samples can be used; where they do not, the fit says why.
+/// What each reason means to a user: lib/docs/unknown_unit.md.
+
+namespace pf {
+
+class RateCheck {
+ public:
+  RateCheck(const Settings& settings, const Filter& filter, const ImuLog& imu, const Frame& frame)
+      : settings_(settings), filter_(filter), imu_(imu), frame_(frame) {}
+
+  void init();
+  /// Compares from now on, and forgets what was compared before.
+  void begin() {
+    data_.rates.init();
+    data_.rates_ns = 0;
+  }
+  /// After a frame without samples. doubts: for how often the unit was rejected, it has to agree for longer. True where it has just been
+  /// named why no clock and no axes fit.
+  bool note(const UnitFrame& frame, bool is_rejected, int doubts);
+  /// Clock and axes that fit, null without; use() says that samples are used from now on.
+  const RateFit* fit() const { return data_.has_fit ? &data_.fit : nullptr; }
+  void use() {
+    data_.is_open = data_.has_fit = false;
+    data_.reason = UnitReason::kNone;
+  }
+  /// Pictures contradict the samples.
+  void contradict() {
+    begin();
+    data_.reason = UnitReason::kContradicts;
+  }
+
+  /// The clock or the axes are open, and have not been found yet.
+  bool is_open() const { return data_.is_open; }
+  bool finds_axes() const;
+  /// Why the samples do not move the body. *value: its number; *R_CB: the axes that fit, both as far as the reason has them.
+  UnitReason reason(Scalar* value, Mat3* R_CB) const;
+
+ private:
+  struct Data {
+    RateAlignment rates;
+    std::int64_t rates_ns = 0;  ///< of the frame that the next interval begins at
+    Quat rates_q = Quat::Identity();
+    int until_fit = 0;  ///< frames
+    RateFit fit;
+    bool has_fit = false;
+    bool is_open = false;
+    UnitReason reason = UnitReason::kNone;
+    Scalar value = 0;
+    Mat3 R_CB = Mat3::Identity();
+  };
+
+  double wanted_span(bool is_rejected, int doubts) const;
+  bool is_believed(const RateFit& fit) const;
+  bool find_reason(double at_s);
+  Scalar mean_rate() const;
+
+  const Settings& settings_;
+  const Filter& filter_;
+  const ImuLog& imu_;
+  const Frame& frame_;
+  Data data_;
+};
+
+}  // namespace pf

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+
+#include "filter/filter.h"
+#include "filter_slam/inertial/unit_mode.h"
+#include "filter_slam/pose/unit_noise.h"
+#include "frame/frame.h"
+
+/// Evidence against an inertial unit whose samples move the body, frame by frame. See lib/docs/inertial.md.
+///
+/// Each frame's innovation of the pose is chi-square with six degrees of freedom. The unit's noise is learned from it (UnitNoise). What
+/// noise of ten times the stated does not explain either adds up in Page's sum, which finds a change soon and knows no fault by name:
+///
+///   s+ = max(0, s + nis - slack),   contradicted where s > bound
+
+namespace pf {
+
+/// How a frame was measured.
+struct UnitFrame {
+  bool before_was_tracked = false;  ///< the frame before, and so was the pose that this one's prediction begins at
+  bool is_tracked = false;
+  bool is_taken_back = false;  ///< it was predicted once more, without samples
+  std::int64_t dt_ns = 0;      ///< since the frame before
+};
+
+class UnitEvidence {
+ public:
+  UnitEvidence(const Filter& filter, const Frame& frame, UnitNoise& noise)
+      : filter_(filter), frame_(frame), noise_(noise) {}
+
+  void init() { data_ = Data(); }
+  /// Samples begin to be used.
+  void begin_use() { data_.sum = 0, data_.used_ns = 0; }
+  /// They are left.
+  void end_use() { data_.sum = 0; }
+  /// After any frame.
+  void note_frame() {
+    if (!filter_.is_metric()) data_.metric_ns = data_.sound_ns = 0;
+  }
+  /// After a frame with samples: learns the unit's noise from it.
+  void learn_noise(const UnitFrame& frame);
+  /// Then: true where the sum is above its bound in this mode.
+  bool add(const UnitFrame& frame, UnitMode mode);
+  /// The unit has been contradicted.
+  void count_doubt();
+  /// So often.
+  int doubts() const { return data_.doubts; }
+  UnitUse use() const;
+  /// The map had been in metres for so short a time, when samples may have begun to be wrong, that it hangs on them alone.
+  bool is_map_on_trial() const;
+
+ private:
+  struct Data {
+    Scalar sum = 0;
+    int doubts = 0;
+    std::int64_t used_ns = 0;    ///< since it was doubted last
+    std::int64_t metric_ns = 0;  ///< for how long the map has been tracked in metres
+    std::int64_t sound_ns = 0;   ///< the same when the sum was zero last: since then the samples may have been wrong
+  };
+
+  Scalar contradiction(const UnitFrame& frame) const;
+
+  const Filter& filter_;
+  const Frame& frame_;
+  UnitNoise& noise_;
+  Data data_;
+};
+
+}  // namespace pf

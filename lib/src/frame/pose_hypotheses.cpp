@@ -1,0 +1,42 @@
+#include "frame/pose_hypotheses.h"
+
+#include <cmath>
+
+#include "frame/tuning.h"
+
+namespace pf {
+
+PoseHypothesis PoseHypothesis::about(const Quat& q_WC, const Vec3& p_W, Scalar rotation, Scalar position) {
+  PoseHypothesis out;
+  out.q_WC = q_WC;
+  out.p_W = p_W;
+  for (int i = 0; i < 3; ++i) {
+    out.P(i, i) = rotation * rotation;
+    out.P(3 + i, 3 + i) = position * position;
+  }
+  return out;
+}
+
+bool find_elsewhere(const PoseProposal& last, const ViewMemory& views, const Pyramid& image, const Camera& lens,
+                    Scalar depth, PoseHypothesis* out) {
+  using namespace tuning::relocaliser;
+  if (last.is_set) {
+    *out = PoseHypothesis::about(last.q_WC, last.p_W, kAboutProposal, kAboutProposal * last.depth);
+    return true;
+  }
+  const Recognition place = views.recognise(image, lens);
+  if (place.score < kMinRecognition) return false;
+  *out = PoseHypothesis::about(place.q_WC, place.p_W, kAboutView, kAboutView * depth);
+  return true;
+}
+
+Scalar PoseHypotheses::evidence(const PoseConsensus& consensus) const {
+  return belief_.evidence(consensus) - std::log(static_cast<Scalar>(tried_));
+}
+
+bool PoseHypotheses::accepts(const PoseConsensus& consensus, Scalar log_odds, bool is_last) const {
+  return consensus.inliers >= settings_.min_inliers &&
+         (is_last ? PoseBelief::is_enough(log_odds) : PoseBelief::is_settled(log_odds));
+}
+
+}  // namespace pf
