@@ -10,8 +10,10 @@ namespace pf::capture {
 
 void add_imu_options(CLI::App& app, Options& options) {
   const std::string group = "Inertial samples (poses depend on them where --imu-noise says how good they are)";
-  app.add_option("--imu", options.imu,
-                 "auto (a file beside the frames), none, csv:FILE, iio:NAME, iio:ACCEL+GYRO or sim (of a sim: source)")
+  app.add_option(
+         "--imu", options.imu,
+         "auto (a file beside the frames), none, csv:FILE, csv:GYRO+ACCEL or csv:DIR (a file for each sensor),\n"
+         "iio:NAME, iio:ACCEL+GYRO or sim (of a sim: source)")
       ->capture_default_str()
       ->group(group);
   app.add_option("--imu-rate", options.imu_rate_hz, "samples per second to ask an iio: unit for")
@@ -23,7 +25,7 @@ void add_imu_options(CLI::App& app, Options& options) {
       ->check(number_in(-1e6, 1e6))
       ->group(group);
   app.add_option("--imu-noise", options.imu_noise,
-                 "noise densities: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml or calib.yaml")
+                 "noise densities: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml, of imu_utils, ORB-SLAM3, or calib.yaml")
       ->check(not_empty())
       ->group(group);
   app.add_option(
