@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "checked_options.h"
 #include "imu.h"
@@ -62,9 +64,13 @@ void add_imu_options(CLI::App& app, Options& options) {
 
 std::string check_imu_options(const Options& options) {
   const std::string& imu = options.imu;
+  std::error_code ignored;
   const bool named = (imu.rfind("csv:", 0) == 0 && imu.size() > 4) || imu.rfind("iio:", 0) == 0;
+  if (!named && std::filesystem::exists(imu, ignored)) {
+    return "--imu " + imu + ": of a file or folder write csv:" + imu;
+  }
   if (!named && imu != "auto" && imu != "none" && imu != "sim") {
-    return "--imu " + imu + ": write auto, none, csv:FILE, iio:NAME, iio:ACCEL+GYRO or sim";
+    return "--imu " + imu + ": write auto, none, csv:FILE, csv:GYRO+ACCEL, iio:NAME, iio:ACCEL+GYRO or sim";
   }
   if (imu == "sim" && (!options.imu_noise.empty() || !options.imu_mount.empty())) {
     return "--imu sim: noise and mounting of the simulated unit are known; leave --imu-noise and --imu-mount away";

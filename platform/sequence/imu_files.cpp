@@ -31,7 +31,7 @@ Sensor read_sensor(const fs::path& path, ImuContent content, std::string& note) 
   return sensor;
 }
 
-/// The acceleration at a time, between the two rows about it. at moves on to the later of them. false: there are none, or they are far apart.
+/// The acceleration at a time, between the two rows about it. at moves on to the later of them. false: none, or they are far apart.
 bool accel_at(const std::vector<ImuRow>& rows, int64_t t_ns, size_t& at, double accel[3]) {
   while (at < rows.size() && rows[at].sample.t_ns < t_ns) {
     ++at;

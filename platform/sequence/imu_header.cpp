@@ -1,3 +1,4 @@
+/// Names and units of columns: lib/docs/data_sets.md lists whose they are.
 #include "imu_header.h"
 
 #include <algorithm>

@@ -23,6 +23,9 @@ double number(const Table& table, const TableRow& row, size_t column) {
   const std::string_view word = row.fields[column];
   const std::string where = table.where(row) + "'" + std::string(word) + "' ";
   double value = 0.0;
+  if (word.empty()) {
+    refuse(table.where(row) + name_of_column(table, column) + " is empty");
+  }
   if (!parse_double(word, value)) {
     refuse(where + "is not a number (" + name_of_column(table, column) + ")");
   }

@@ -162,7 +162,7 @@ static void test_names_should_be_refused_that_do_not_say_enough() {
   refused(text("t,gx,gy,gz,userAccelX,userAccelY,userAccelZ", "1,2,3,4,5,6,7"), "'userAccelX' is without gravity");
   refused(text("t,gx,gy,gz,ax,ay,az,temp", "1,2,3,4,5,6,7"), "line 2: expected 8 columns, as its header has, found 7");
   refused(text("t,gx,gy,gz,ax,ay,az,temp", "1,2,3,4,5,up,7,8"), "line 2: 'up' is not a number ('ay')");
-  refused(text("t,gx,gy,gz,ax,ay,az,temp", "1,2,,4,5,6,7,8"), "line 2: '' is not a number ('gy')");
+  refused(text("t,gx,gy,gz,ax,ay,az,temp", "1,2,,4,5,6,7,8"), "line 2: 'gy' is empty");
   refused(Samples::of_text("1,2,3,4,5,6,7,8\n"), "8 columns; name them in a first row");
 }
 

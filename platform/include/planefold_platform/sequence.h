@@ -123,8 +123,8 @@ const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t in
  *
  * The plain form is camera_model: pinhole / width / height / fx / fy / cx / cy / distortion_model / distortion: [..] / rate_hz (optional);
  * without distortion and its model there is none. COLMAP's centre of the first pixel is 0.5, 0.5; it becomes 0, 0, as in the others.
- * KITTI's calib.txt and ETH3D's do not say the size of the images, and those of ORB-SLAM, OpenVSLAM and OpenCV not always: such a file is read by
- * pf_open_sequence only, which takes the size of the first image.
+ * KITTI's calib.txt and ETH3D's do not say the size of the images, and those of ORB-SLAM, OpenVSLAM and OpenCV not always: such a file is
+ * read by pf_open_sequence only, which takes the size of the first image.
  * Each may have readout_s, of a rolling shutter [s], timestamps: real | nominal (pf_timestamps_t; real), and say how well its numbers
  * are known (pf_camera_t): sigma_focal, sigma_aspect, sigma_centre_px, sigma_distortion: [..]; where one is missing, a typical value
  * is filled in: 0.01, 0.001, 1 % of the width, and for distortion zeros, or 0.05 where the file names none. rate_hz (may be null) is 0
@@ -171,8 +171,8 @@ int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SE
 /* Inertial samples: rows of time, rates and accelerations, in columns that a header names, with their units, among any others
  * ("gyro_x [deg/s]", "field.angular_velocity.x", "accelerometerAccelerationX(G)"), or without a header in the order of EuRoC's
  * imu0/data.csv: t, wx, wy, wz [rad/s], ax, ay, az [m/s^2]. Cut by commas, semicolons or blanks.
- *   units   of times s, ms, us, ns, of rates rad/s, deg/s, of accelerations m/s^2, g; without one as above, and times are whole nanoseconds,
- *           or seconds with a decimal point. Where no unit samples at such a rate times are taken as milliseconds or microseconds.
+ *   units   of times s, ms, us, ns, of rates rad/s, deg/s, of accelerations m/s^2, g; without one as above, and times are whole
+ *           nanoseconds, or seconds with a decimal point. Where no unit samples at such a rate times are taken as milliseconds or microseconds.
  *   signs   of iOS (Core Motion), by its names, become those of a specific force: +9.8 upwards at rest
  *   gravity of a column or file of its own is added to accelerations that are without
  *   order   times up to 50 ms late are put in order, and rows that repeat a time passed over; further back, or standing still, is refused
