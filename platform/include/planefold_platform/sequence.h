@@ -172,7 +172,8 @@ int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SE
  * ("gyro_x [deg/s]", "field.angular_velocity.x", "accelerometerAccelerationX(G)"), or without a header in the order of EuRoC's
  * imu0/data.csv: t, wx, wy, wz [rad/s], ax, ay, az [m/s^2]. Cut by commas, semicolons or blanks.
  *   units   of times s, ms, us, ns, of rates rad/s, deg/s, of accelerations m/s^2, g; without one as above, and times are whole
- *           nanoseconds, or seconds with a decimal point. Where no unit samples at such a rate times are taken as milliseconds or microseconds.
+ *           nanoseconds, or seconds with a decimal point. Where no unit samples at such a rate times are taken as milliseconds or
+ *           microseconds.
  *   signs   of iOS (Core Motion), by its names, become those of a specific force: +9.8 upwards at rest
  *   gravity of a column or file of its own is added to accelerations that are without
  *   order   times up to 50 ms late are put in order, and rows that repeat a time passed over; further back, or standing still, is refused

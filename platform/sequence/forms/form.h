@@ -19,8 +19,8 @@ struct Form {
   void (*read)(const Fields& fields, const Asked& asked, Calibration& calibration);
 };
 
-extern const Form kColmapForm, kEth3dForm, kEurocForm, kKalibrForm, kKittiForm, kKittiRawForm, kOpencvForm, kOpenvslamForm,
-    kOrbSlamForm, kOrbSlam3Form, kPlainForm, kRosForm, kRosMessageForm, kVinsForm;
+extern const Form kColmapForm, kEth3dForm, kEurocForm, kKalibrForm, kKittiForm, kKittiRawForm, kOpencvForm,
+    kOpenvslamForm, kOrbSlamForm, kOrbSlam3Form, kPlainForm, kRosForm, kRosMessageForm, kVinsForm;
 
 /// In the order in which they are tried.
 const std::vector<const Form*>& all_forms();
