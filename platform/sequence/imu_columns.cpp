@@ -49,13 +49,14 @@ Axes find_axes(const ImuHeader& header, std::initializer_list<ImuRole> roles, st
 }
 
 /// The factor to rad/s or m/s^2 of three columns, by the unit in the header; without one they are taken as they are.
-void set_factor(const ImuHeader& header, bool rates, Axes& axes) {
+void set_factor(const ImuHeader& header, bool rates, bool is_ios, Axes& axes) {
   if (!axes.found) {
     return;
   }
   const std::vector<std::string>& names = header.table.header();
   const ImuColumn& first = header.columns[axes.column[0]];
-  const bool counts_g = !rates && (first.family == "gf" || first.family == "gforce");  // Physics Toolbox: gFx
+  // Physics Toolbox: gFx; Core Motion counts in g as well.
+  const bool counts_g = !rates && (first.family == "gf" || first.family == "gforce" || is_ios);
   axes.factor = counts_g ? kStandardGravity : 1.0;
   size_t said = ImuColumns::kNone;
   for (const size_t k : axes.column) {
@@ -74,7 +75,7 @@ void set_factor(const ImuHeader& header, bool rates, Axes& axes) {
     axes.factor = factor;
     said = k;
   }
-  axes.factor *= first.is_ios ? -1.0 : 1.0;
+  axes.factor *= is_ios ? -1.0 : 1.0;
 }
 
 void add_note(std::string& note, const std::string& part) { note += (note.empty() ? "" : "; ") + part; }
@@ -148,7 +149,7 @@ bool can_be_in_order(const ImuHeader& header) {
 bool find_both(const ImuHeader& header, ImuColumns& columns) {
   std::string family, other;
   columns.gyro = find_axes(header, {ImuRole::kGyro}, family);
-  columns.accel = find_axes(header, {ImuRole::kAccel}, other);
+  columns.accel = find_axes(header, {ImuRole::kTotal, ImuRole::kAccel}, other);
   if (columns.gyro.found && !columns.accel.found) {
     columns.accel = find_axes(header, {ImuRole::kMotion, ImuRole::kAccelOrMotion}, other);
     columns.gravity = columns.accel.found ? find_axes(header, {ImuRole::kGravity}, other) : Axes();
@@ -173,7 +174,8 @@ bool find_one(const ImuHeader& header, ImuContent content, ImuColumns& columns) 
   } else if (content == ImuContent::kGravity) {
     columns.accel = find_axes(header, {ImuRole::kGravity, ImuRole::kPlain}, family);
   } else {
-    columns.accel = find_axes(header, {ImuRole::kAccel, ImuRole::kAccelOrMotion, ImuRole::kPlain}, family);
+    columns.accel =
+        find_axes(header, {ImuRole::kTotal, ImuRole::kAccel, ImuRole::kAccelOrMotion, ImuRole::kPlain}, family);
   }
   if (!columns.gyro.found && !columns.accel.found) {
     return false;
@@ -184,7 +186,8 @@ bool find_one(const ImuHeader& header, ImuContent content, ImuColumns& columns) 
 
 [[noreturn]] void refuse_names(const ImuHeader& header, ImuContent content) {
   const bool none = std::none_of(header.columns.begin(), header.columns.end(), [](const ImuColumn& column) {
-    return column.role == ImuRole::kAccel || column.role == ImuRole::kAccelOrMotion || column.role == ImuRole::kMotion;
+    return column.role == ImuRole::kTotal || column.role == ImuRole::kAccel || column.role == ImuRole::kAccelOrMotion ||
+           column.role == ImuRole::kMotion;
   });
   const bool rates = std::any_of(header.columns.begin(), header.columns.end(),
                                  [](const ImuColumn& column) { return column.role == ImuRole::kGyro; });
@@ -249,9 +252,10 @@ ImuColumns columns_of(const Table& table, ImuContent content) {
     columns.unit_said =
         parse_unit(header.columns[columns.time].unit, columns.unit) && columns.unit != TimeUnit::kFrames;
   }
-  set_factor(header, true, columns.gyro);
-  set_factor(header, false, columns.accel);
-  set_factor(header, false, columns.gravity);
+  const bool is_ios = columns.accel.found && header.columns[columns.accel.column[0]].is_ios;
+  set_factor(header, true, false, columns.gyro);
+  set_factor(header, false, is_ios, columns.accel);
+  set_factor(header, false, is_ios, columns.gravity);
   columns.note = note_of(header, columns);
   return columns;
 }

@@ -133,6 +133,9 @@ ImuRole role_of_axes(const std::string& family) {
   if (has(family, {"lin"})) {
     return ImuRole::kAccelOrMotion;
   }
+  if (has(family, {"total"}) && has(family, {"acc"})) {
+    return ImuRole::kTotal;
+  }
   if (has(family, {"acc", "specificforce", "force"}) || is_one_of(family, {"a", "f", "gf", "sf"}) ||
       family.rfind("ars", 0) == 0) {
     return ImuRole::kAccel;
@@ -179,7 +182,8 @@ ImuColumn read_imu_column(const std::string& written) {
   column.axis = (leads ? letters.front() : letters.back()) - 'x';
   column.family = leads ? letters.substr(1) : letters.substr(0, letters.size() - 1);
   column.role = role_of_axes(column.family);
-  column.is_ios = is_one_of(column.family, {"accelerometeracceleration", "motionuseracceleration", "motiongravity"});
+  column.is_ios = is_one_of(column.family, {"accelerometeracceleration", "motionuseracceleration", "motiongravity",
+                                            "useracceleration", "useraccel"});
   return column;
 }
 

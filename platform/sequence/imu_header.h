@@ -11,6 +11,7 @@ enum class ImuRole {
   kTime,           ///< a time that was recorded with the sample
   kElapsed,        ///< a time for people: since the start, of the log
   kGyro,           ///< angular velocity
+  kTotal,          ///< specific force, where one without gravity may lie beside it
   kAccel,          ///< specific force
   kAccelOrMotion,  ///< linear acceleration: ROS has gravity in it, phones have not
   kMotion,         ///< acceleration of the device, without gravity

@@ -131,6 +131,13 @@ static void test_accelerations_of_ios_should_have_the_sign_of_a_specific_force()
       "motionGravityY(G),motionGravityZ(G)\n7.5,1,2,3,0,0.05,-0.1,0,0.05,-0.9\n");
   require_sample(fused, 0, 7500000000, gyro, accel);
   noted(fused, "gravity is added");
+  // Names of Core Motion itself, and its log with a date alone.
+  const Samples plain = Samples::of_text(
+      "loggingTime,rotationRateX,rotationRateY,rotationRateZ,userAccelerationX,userAccelerationY,userAccelerationZ,"
+      "gravityX,"
+      "gravityY,gravityZ\n1970-01-01 02:00:07.500 +0200,1,2,3,0,0.05,-0.1,0,0.05,-0.9\n");
+  require_sample(plain, 0, 7500000000, gyro, accel);
+  noted(plain, "sign of iOS");
 }
 
 static void test_android_loggers_should_be_read() {
@@ -143,6 +150,14 @@ static void test_android_loggers_should_be_read() {
           "(rad/s);GYROSCOPE Y (rad/s);GYROSCOPE Z (rad/s);MAGNETIC FIELD X (\xce\xbcT);Time since start in ms "
           ";YYYY-MO-DD HH-MI-SS_SSS\n4;5;9,75;0;0;9;0;0;1;0,5;2;3;7;20;2015-08-17 12:00:00:000\n"),
       0, 20000000, gyro, accel);
+}
+
+static void test_whole_accelerations_should_come_before_those_without_gravity() {
+  const double gyro[3] = {1, 2, 3}, accel[3] = {4, 5, 6};
+  require_sample(Samples::of_text(
+                     "time_ns,Accelerometer_x,Accelerometer_y,Accelerometer_z,TotalAcceleration_x,TotalAcceleration_y,"
+                     "TotalAcceleration_z,Gyroscope_z,Gyroscope_y,Gyroscope_x\n20,9,9,9,4,5,6,3,2,1\n"),
+                 0, 20, gyro, accel);
 }
 
 static void test_names_should_be_refused_that_do_not_say_enough() {
@@ -276,6 +291,7 @@ int main() {
   RUN_TEST(test_units_should_be_those_of_the_header);
   RUN_TEST(test_accelerations_of_ios_should_have_the_sign_of_a_specific_force);
   RUN_TEST(test_android_loggers_should_be_read);
+  RUN_TEST(test_whole_accelerations_should_come_before_those_without_gravity);
   RUN_TEST(test_names_should_be_refused_that_do_not_say_enough);
   RUN_TEST(test_samples_should_be_put_in_order_within_50_ms_and_repeated_ones_passed_over);
   RUN_TEST(test_a_clock_that_stands_still_should_be_refused_and_equal_rows_passed_over);
