@@ -91,8 +91,8 @@ class PlotRun(unittest.TestCase):
             self.assertEqual([corners.shape for corners, _ in planes], [(4, 3)] * len(colours))
             np.testing.assert_array_equal(planes[0][0][2], [1.0, 1.0, 1.0])
             self.assertEqual([handle.get_label() for handle in plane_handles(planes)], labels)
-            self.assertEqual(self.plot(self.path), (0, ""))
             self.assertEqual(len(read_map(self.path / "map.ply")[0]), 3)
+        self.assertEqual(self.plot(self.path), (0, ""))
 
     def test_run_should_give_all_pictures_when_truth_lies_beside_it(self):
         self.assertEqual(self.plot(self.path), (0, ""))
