@@ -121,6 +121,8 @@ bool ImuFeed::open(const Options& options, const Source& source, const std::stri
   vertical_rad_ = options.vertical_deg * kRadians;
   if (error.empty() && imu_ == nullptr && offset_s_ != 0.0) {
     error = "--imu-offset: there are no inertial samples beside these frames; add --imu, or leave it away";
+  }
+  if (!error.empty() && options.imu.rfind("iio:", 0) != 0) {
     code = kExitUsage;
   }
   if (!error.empty() || !options.inertial) {

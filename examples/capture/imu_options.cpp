@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "checked_options.h"
 #include "imu.h"
@@ -10,8 +12,10 @@ namespace pf::capture {
 
 void add_imu_options(CLI::App& app, Options& options) {
   const std::string group = "Inertial samples (poses depend on them where --imu-noise says how good they are)";
-  app.add_option("--imu", options.imu,
-                 "auto (a file beside the frames), none, csv:FILE, iio:NAME, iio:ACCEL+GYRO or sim (of a sim: source)")
+  app.add_option(
+         "--imu", options.imu,
+         "auto (a file beside the frames), none, csv:FILE, csv:GYRO+ACCEL or csv:DIR (a file for each sensor),\n"
+         "iio:NAME, iio:ACCEL+GYRO or sim (of a sim: source)")
       ->capture_default_str()
       ->group(group);
   app.add_option("--imu-rate", options.imu_rate_hz, "samples per second to ask an iio: unit for")
@@ -23,7 +27,7 @@ void add_imu_options(CLI::App& app, Options& options) {
       ->check(number_in(-1e6, 1e6))
       ->group(group);
   app.add_option("--imu-noise", options.imu_noise,
-                 "noise densities: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml or calib.yaml")
+                 "noise densities: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml, of imu_utils, ORB-SLAM3, or calib.yaml")
       ->check(not_empty())
       ->group(group);
   app.add_option(
@@ -60,9 +64,13 @@ void add_imu_options(CLI::App& app, Options& options) {
 
 std::string check_imu_options(const Options& options) {
   const std::string& imu = options.imu;
+  std::error_code ignored;
   const bool named = (imu.rfind("csv:", 0) == 0 && imu.size() > 4) || imu.rfind("iio:", 0) == 0;
+  if (!named && std::filesystem::exists(imu, ignored)) {
+    return "--imu " + imu + ": of a file or folder write csv:" + imu;
+  }
   if (!named && imu != "auto" && imu != "none" && imu != "sim") {
-    return "--imu " + imu + ": write auto, none, csv:FILE, iio:NAME, iio:ACCEL+GYRO or sim";
+    return "--imu " + imu + ": write auto, none, csv:FILE, csv:GYRO+ACCEL, iio:NAME, iio:ACCEL+GYRO or sim";
   }
   if (imu == "sim" && (!options.imu_noise.empty() || !options.imu_mount.empty())) {
     return "--imu sim: noise and mounting of the simulated unit are known; leave --imu-noise and --imu-mount away";

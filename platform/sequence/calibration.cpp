@@ -83,7 +83,7 @@ std::string known_forms() {
 
 std::vector<Fields> documents_of(const std::string& text, const std::string& file) {
   try {
-    return Fields::documents(from_colmap(text), file);
+    return Fields::documents(from_eth3d(from_colmap(text)), file);
   } catch (const NoFields& error) {
     refuse(error.what() + std::string(" Known are ") + known_forms());
   }

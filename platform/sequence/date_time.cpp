@@ -1,5 +1,6 @@
 #include "date_time.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "numbers.h"
@@ -33,10 +34,16 @@ int64_t days_of(int64_t year, int64_t month, int64_t day) {
   return 365 * y + y / 4 - y / 100 + y / 400 + (153 * m + 2) / 5 + day - 1 - 719468;
 }
 
-/// Seconds behind UTC of "Z", "+02:00" or nothing.
+/// Seconds behind UTC of "Z", "+02:00", " +0200" or nothing.
 bool read_zone(std::string_view text, int64_t& seconds) {
   int64_t hours = 0, minutes = 0;
   seconds = 0;
+  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  if (text.size() == 5 && (text[0] == '+' || text[0] == '-') && read(text, 1, 2, 14, hours) &&
+      read(text, 3, 2, 59, minutes)) {
+    seconds = (text[0] == '-' ? -1 : 1) * (kHour * hours + kMinute * minutes);
+    return true;
+  }
   if (text.empty() || text == "Z" || text == "z") {
     return true;
   }

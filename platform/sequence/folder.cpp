@@ -1,3 +1,4 @@
+/// Layouts of folders: lib/docs/data_sets.md has a command for each.
 #include "folder.h"
 
 #include <planefold_platform/sequence.h>
@@ -147,15 +148,17 @@ void open_images(Folder& folder, const std::string& calibration, const std::stri
   refuse_other_layouts(root, "images");
   const fs::path times = first_file(root, {"times.txt", "timestamps.txt", "times.csv", "timestamps.csv"});
   const fs::path images = pattern.empty() ? find_images(root, !times.empty(), folder.notes) : root;
-  set_calibration(folder, calibration, root, images,
-                  {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml", "calib.txt"}, true);
+  set_calibration(
+      folder, calibration, root, images,
+      {"calib.yaml", "calib.yml", "camchain.yaml", "sensor.yaml", "camera_info.yaml", "calib.txt", "calibration.txt"},
+      true);
   if (times.empty()) {
     count_frames(folder, images, pattern);
   } else {
     read_frames(folder, times, images, pattern, TimeUnit::kSeconds);
   }
   folder.truth_path = truth_of_images(root, images);
-  folder.imu_path = first_file(root, {"imu.csv"});
+  folder.imu_path = first_file(root, {"imu.csv", "gyro_accel.csv"});
 }
 
 /// Rows "time depth time rgb" of an associations.txt as a table of the images in colour.
@@ -192,7 +195,7 @@ void open_tum(Folder& folder, const std::string& calibration) {
     }
   }
   set_calibration(folder, calibration, root, root / "rgb",
-                  {"calib.yaml", "calib.yml", "camchain.yaml", "camera_info.yaml"}, false);
+                  {"calib.yaml", "calib.yml", "camchain.yaml", "camera_info.yaml", "calibration.txt"}, false);
   if (is_file(table)) {
     read_frames(folder, table, root, "", TimeUnit::kSeconds);
   } else if (!pairs.empty()) {

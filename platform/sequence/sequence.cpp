@@ -442,31 +442,37 @@ int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SE
   });
 }
 
-int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_t** samples, size_t* count,
-                 char message[PF_SEQUENCE_MESSAGE]) {
+/// Hands the samples that a function reads over to the caller, with its note as message.
+template <typename Read>
+static int give_samples(pf_imu_sample_t** samples, size_t* count, char* message, const Read& read) {
   return guarded(message, [&] {
-    require(text, "text");
     require(samples, "samples");
     require(count, "count");
     *samples = nullptr;
     *count = 0;
     std::string note;
-    const auto read = pf::sequence::parse_imu(std::string_view(text, size), name != nullptr ? name : "text", note);
-    auto copy = std::make_unique<pf_imu_sample_t[]>(read.size());
-    std::copy(read.begin(), read.end(), copy.get());
-    *count = read.size();
+    const std::vector<pf_imu_sample_t> all = read(note);
+    auto copy = std::make_unique<pf_imu_sample_t[]>(all.size());
+    std::copy(all.begin(), all.end(), copy.get());
+    *count = all.size();
     *samples = copy.release();
     put(message, note.c_str());
   });
 }
 
-int pf_read_imu(const char* path, pf_imu_sample_t** samples, size_t* count, char message[PF_SEQUENCE_MESSAGE]) {
-  std::string text;
-  const int done = guarded(message, [&] {
-    require(path, "path");
-    text = pf::sequence::read_text(path, pf::sequence::kMaxImuBytes, "inertial samples");
+int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_t** samples, size_t* count,
+                 char message[PF_SEQUENCE_MESSAGE]) {
+  return give_samples(samples, count, message, [&](std::string& note) {
+    require(text, "text");
+    return pf::sequence::parse_imu(std::string_view(text, size), name != nullptr ? name : "text", note);
   });
-  return done != 0 ? done : pf_parse_imu(text.data(), text.size(), path, samples, count, message);
+}
+
+int pf_read_imu(const char* path, pf_imu_sample_t** samples, size_t* count, char message[PF_SEQUENCE_MESSAGE]) {
+  return give_samples(samples, count, message, [&](std::string& note) {
+    require(path, "path");
+    return pf::sequence::read_imu(path, note);
+  });
 }
 
 int pf_parse_imu_noise(const char* text, size_t size, const char* name, pf_imu_model_t* imu,

@@ -127,11 +127,22 @@ bool is_number(std::string_view field) {
   return parse_double(field, value);
 }
 
+/// With a point, as the name of a picture has it; "angular_velocity.x" and "header.stamp.secs" have none.
+bool is_picture(std::string_view field) {
+  constexpr std::string_view kEnds[] = {"png",  "jpg",  "jpeg", "pgm",  "ppm", "bmp", "tif",
+                                        "tiff", "webp", "exr",  "heic", "dng", "gif", "raw"};
+  const size_t point = field.rfind('.');
+  std::string end(point == std::string_view::npos ? std::string_view() : field.substr(point + 1));
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(std::begin(kEnds), std::end(kEnds), end) != std::end(kEnds);
+}
+
 /// A first row that names columns: no field of it is a number or a file.
 bool names_columns(const TableRow& row) {
   return std::none_of(row.fields.begin(), row.fields.end(), [](std::string_view field) {
     return field.empty() || is_number(field) || std::isdigit(static_cast<unsigned char>(field[0])) != 0 ||
-           field.find('.') != std::string_view::npos || field[0] == '-';
+           is_picture(field) || field[0] == '-';
   });
 }
 

@@ -76,7 +76,7 @@ class AsPfEval(unittest.TestCase):
     def test_plots(self):
         comparison = planefold.eval.compare(self.poses, self.truth)
         folder = pathlib.Path(self.folder.name)
-        for picture in (planefold.plot.trajectory(folder / "way.png", self.poses, self.slam.features, comparison=comparison, title="desk"),
+        for picture in (planefold.plot.trajectory(folder / "way.png", self.poses, self.slam.features, planes=self.slam.planes, comparison=comparison, title="desk"),
                         planefold.plot.trajectory(folder / "alone.png", self.poses), planefold.plot.errors(folder / "errors.png", comparison)):
             self.assertEqual(picture.read_bytes()[1:4], b"PNG")
             self.assertGreater(picture.stat().st_size, 10_000)

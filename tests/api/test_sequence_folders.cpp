@@ -107,6 +107,34 @@ static void test_euroc_should_open_from_any_of_its_folders() {
   }
 }
 
+static void test_eth3d_should_open_with_its_calibration_and_truth() {
+  TemporaryFolder folder;
+  folder.write("calibration.txt", "30.5 31 15.25 16\n");
+  folder.write("rgb.txt",
+               "# color images\n4917.101 rgb/4917.101.png\n4917.138 rgb/4917.138.png\n4917.175 rgb/4917.175.png\n");
+  folder.write("groundtruth.txt", "# timestamp tx ty tz qx qy qz qw\n4917.101 0 0 0 0 0 0 1\n");
+  for (const char* name : {"4917.101", "4917.138", "4917.175"}) {
+    folder.write("rgb/" + std::string(name) + ".png", grey_png(7));
+  }
+  {
+    Opened opened("tum:" + folder.path());
+    TEST_ASSERT_NOT_NULL_MESSAGE(opened.sequence, opened.message);
+    TEST_ASSERT_EQUAL_STRING("", opened.info.warning);
+    TEST_ASSERT_EQUAL_STRING("eth3d", opened.info.calibration_form);
+    TEST_ASSERT_EQUAL_INT64(3, opened.info.count);
+    TEST_ASSERT_EQUAL_INT(32, opened.info.camera.width);
+    TEST_ASSERT_EQUAL_DOUBLE(31.0, opened.info.camera.fy);
+    TEST_ASSERT_EQUAL_DOUBLE(15.25, opened.info.camera.cx);
+    require_message(opened.info.truth_path, "groundtruth.txt");
+  }
+  folder.write("calibration.txt", "# fx fy cx cy\n30.5, 31, 15.25, 99\n");
+  open_refused("tum:" + folder.path(), "'fx fy cx cy'");
+  folder.write("calibration.txt", "30.5 31 15.25\n");
+  open_refused("tum:" + folder.path(), "fx fy cx cy");
+  folder.write("calibration.txt", "30.5 31 15.25 nan\n");
+  open_refused("tum:" + folder.path(), "'fx fy cx cy'");
+}
+
 static void test_kitti_should_open_with_the_size_of_its_images() {
   TemporaryFolder folder;
   folder.write("calib.txt", "P0: 30.5 0 15.25 0 0 31 16 0 0 0 1 0\nP1: 30.5 0 15.25 -16 0 31 16 0 0 0 1 0\n");
@@ -234,6 +262,7 @@ int main() {
   RUN_TEST(test_images_folder_should_warn_and_use_the_rate_when_it_has_no_times);
   RUN_TEST(test_images_folder_should_be_refused_when_it_holds_several_cameras);
   RUN_TEST(test_euroc_should_open_from_any_of_its_folders);
+  RUN_TEST(test_eth3d_should_open_with_its_calibration_and_truth);
   RUN_TEST(test_kitti_should_open_with_the_size_of_its_images);
   RUN_TEST(test_tum_should_open_with_a_calibration_that_is_given);
   RUN_TEST(test_times_should_be_refused_when_they_repeat_run_back_or_are_no_times);

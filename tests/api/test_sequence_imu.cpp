@@ -118,8 +118,8 @@ static void test_rows_should_be_refused_by_line_when_they_are_wrong() {
   refused(good + "20,nan,0,0,0,0,0\n", "not finite");
   refused(good + "20,0,0,-inf,0,0,0\n", "not finite");
   refused(good + "20,0,0,1e999,0,0,0\n", "line 3");
-  refused(good + "10,0,0,0,0,0,9.8\n", "repeats");
-  refused(good + "9,0,0,0,0,0,9.8\n", "runs back");
+  refused("100000000,0,0,0,0,0,9.8\n10,0,0,0,0,0,9.8\n", "line 2: the time 10 (column 1) runs back by 0.1 s");
+  refused(good + "10,0,0,0,0,0,1\n10,0,0,0,0,0,2\n", "line 4: the time 10 (column 1) repeats");
   refused(good + "soon,0,0,0,0,0,9.8\n", "not a time in whole nanoseconds");
   refused(good + "99999999999999999999,0,0,0,0,0,9.8\n", "not a time");
   refused("0.5,0,0,0,0,0,0\nnan.,0,0,0,0,0,9.8\n", "not a time in seconds");
@@ -205,6 +205,11 @@ static void test_noise_should_be_read_from_every_known_form() {
        {std::string(kKalibrNoise), "sensor_type: imu\ncomment: x\nrate_hz: 200\n" + std::string(kKalibrNoise),
         std::string("accel_noise_density: 1.86e-03\naccel_random_walk: 4.33e-04\ngyro_noise_density: 1.87e-04\n"
                     "gyro_random_walk: 2.66e-05\nwidth: 752\n"),
+        std::string(
+            "%YAML:1.0\nFile.version: \"1.0\"\nCamera.type: \"PinHole\"\nCamera1.fx: 458.6\nIMU.NoiseGyro: 1.87e-04\n"
+            "IMU.NoiseAcc: 1.86e-03\nIMU.GyroWalk: 2.66e-05\nIMU.AccWalk: 4.33e-04\nIMU.Frequency: 200.0\n"),
+        std::string("accelerometer_noise_density = 1.86e-03\naccelerometer_random_walk   = 4.33e-04\n"
+                    "gyroscope_noise_density     = 1.87e-04\ngyroscope_random_walk       = 2.66e-05\n"),
         std::string("camera_model: pinhole\ndistortion_model: radtan\ndistortion: [0.1, 0, 0, 0]\nrate_hz: 20\n"
                     "accel_noise_density: 1.86e-03\naccel_random_walk: 4.33e-04\ngyro_noise_density: 1.87e-04\n"
                     "gyro_random_walk: 2.66e-05\n")}) {
@@ -231,6 +236,43 @@ static void test_noise_should_be_that_of_the_first_unit_with_a_note_when_a_file_
   TEST_ASSERT_TRUE_MESSAGE(read_noise(one + "imu1:\n  gyroscope_noise_density: 1e-3\n", &imu, message), message);
   require_message(message, "imu0 is taken");
   TEST_ASSERT_SAME(1.87e-4, imu.gyro_density);
+}
+
+static void test_noise_of_imu_utils_should_be_divided_by_the_root_of_its_rate() {
+  const std::string text =
+      "%YAML:1.0\n---\ntype: IMU\nname: some\nGyr:\n   unit: \" rad/s\"\n   avg-axis:\n      gyr_n: 2.0e-03\n      "
+      "gyr_w: 1.5e-05\n"
+      "   x-axis:\n      gyr_n: 9.0e-03\n      gyr_w: 9.0e-05\nAcc:\n   unit: \" m/s^2\"\n   avg-axis:\n      acc_n: "
+      "2.0e-02\n"
+      "      acc_w: 2.5e-04\n";
+  pf_imu_model_t imu{};
+  char message[PF_SEQUENCE_MESSAGE] = "";
+  TEST_ASSERT_TRUE_MESSAGE(read_noise(text + "update_rate: 400\n", &imu, message), message);
+  require_message(message, "the root of 400 Hz");
+  TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-4, imu.gyro_density);
+  TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-3, imu.accel_density);
+  TEST_ASSERT_SAME(1.5e-5, imu.gyro_walk);
+  TEST_ASSERT_SAME(2.5e-4, imu.accel_walk);
+  TEST_ASSERT_TRUE_MESSAGE(read_noise(text, &imu, message), message);
+  require_message(message, "add update_rate");
+  TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2e-3 / std::sqrt(200.0), imu.gyro_density);
+  TEST_ASSERT_FALSE(read_noise(text + "update_rate: 0\n", &imu, message));
+  require_message(message, "'update_rate'");
+  TEST_ASSERT_FALSE(read_noise(text.substr(0, text.find("Acc:")), &imu, message));
+  require_message(message, "'Acc'");
+}
+
+static void test_noise_should_be_refused_with_what_to_give_when_a_file_has_none() {
+  for (const auto& [text, part] :
+       {std::pair<const char*, const char*>{"acc_n: 0.1\ngyr_n: 0.01\nacc_w: 0.001\ngyr_w: 1e-4\n", "by hand"},
+        {"rate: 200\n", "IMU.NoiseGyro (ORB-SLAM3)"},
+        {"IMU configuration\n  Accelerometer:\n    Noise density: 0.01\n    Noise density (discrete): 0.1\n",
+         "-imu.yaml"}}) {
+    pf_imu_model_t imu{};
+    char message[PF_SEQUENCE_MESSAGE] = "";
+    TEST_ASSERT_FALSE_MESSAGE(read_noise(text, &imu, message), text);
+    require_message(message, part);
+  }
 }
 
 static void test_gravity_should_be_read_from_the_noise_of_a_unit() {
@@ -357,6 +399,8 @@ int main() {
   UNITY_BEGIN();
   RUN_TEST(test_noise_should_be_read_from_every_known_form);
   RUN_TEST(test_noise_should_be_that_of_the_first_unit_with_a_note_when_a_file_has_several);
+  RUN_TEST(test_noise_of_imu_utils_should_be_divided_by_the_root_of_its_rate);
+  RUN_TEST(test_noise_should_be_refused_with_what_to_give_when_a_file_has_none);
   RUN_TEST(test_gravity_should_be_read_from_the_noise_of_a_unit);
   RUN_TEST(test_noise_should_be_refused_when_a_field_is_missing_or_in_other_units);
   RUN_TEST(test_mounting_should_be_the_same_in_every_known_form);

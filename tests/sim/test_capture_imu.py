@@ -162,12 +162,12 @@ def positions(folder):
 
 def refusals(root):
     bad = root / "bad.csv"
-    for name, text, part in [("running back", "10,0,0,0,0,0,1\n9,0,0,0,0,0,1\n", "line 2"), ("not finite", "10,0,0,nan,0,0,1\n", "line 1"),
+    for name, text, part in [("running back", "90000000,0,0,0,0,0,1\n9,0,0,0,0,0,1\n", "line 2"), ("not finite", "10,0,0,nan,0,0,1\n", "line 1"),
                              ("empty", "# nothing\n", "no sample")]:
         bad.write_text(text)
         result = subprocess.run([str(word) for word in [PROGRAM, *QUIET, "--source", "sim:desk", "--frames", 5, "--out", root / "bad",
                                                         "--imu", f"csv:{bad}"]], text=True, capture_output=True, check=False)
-        expect(result.returncode == 1 and "bad.csv" in result.stderr and part in result.stderr, f"{name}: {result.returncode} {result.stderr}")
+        expect(result.returncode == 2 and "bad.csv" in result.stderr and part in result.stderr, f"{name}: {result.returncode} {result.stderr}")
     # What no unit can have measured is refused by the library, and the rest goes on.
     bad.write_text("".join(f"{i},0,0,{0 if i != 3 else 5000},0,0,1\n" for i in range(1, 10)))
     report = capture(root / "absurd", "--source", "sim:desk", "--frames", "5", "--imu", f"csv:{bad}", "--imu-offset", "-1")

@@ -164,7 +164,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="planefold_") as name:
         root = pathlib.Path(name)
         scene = Recording(root)
-        for form, calibrated in ((tum_rgbd, False), (eth3d, False), (icl_nuim, False), (seven_scenes, False), (kitti, True), (kitti_colour, True), (tum_vi, True)):
+        for form, calibrated in ((tum_rgbd, False), (eth3d, True), (icl_nuim, False), (seven_scenes, False), (kitti, True), (kitti_colour, True), (tum_vi, True)):
             check(scene, root, form, calibrated)
     if failures:
         fail("\n  ".join([f"{len(failures)} found:", *failures]))

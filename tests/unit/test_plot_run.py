@@ -14,7 +14,7 @@ import venv  # noqa: E402
 venv.enter()
 import numpy as np  # noqa: E402
 
-from pf_eval.plot_trajectory import ellipses, read_map, view_axes  # noqa: E402
+from pf_eval.plot_trajectory import ellipses, plane_handles, read_map, read_planes, view_axes  # noqa: E402
 from pf_eval.plots import main  # noqa: E402
 
 SEED = 7
@@ -71,6 +71,28 @@ class PlotRun(unittest.TestCase):
 
     def pictures(self):
         return sorted(path.name for path in (self.path / "plots").glob("*.png") if path.stat().st_size > 10000)
+
+    def write_faces(self, *colours):
+        """Beside the points a square for each colour."""
+        corners = "0.0 0.0 1.0 {0} 0.02 {1} 40 0\n1.0 0.0 1.0 {0} 0.02 {1} 40 0\n1.0 1.0 1.0 {0} 0.02 {1} 40 0\n0.0 1.0 1.0 {0} 0.02 {1} 40 0\n"
+        faces = "element face {}\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nproperty uint id\n"
+        head, rows = PLY.replace("vertex 3", f"vertex {3 + 4 * len(colours)}").split("end_header\n")
+        rows += "".join(corners.format(colour, k) for k, colour in enumerate(colours))
+        rows += "".join(f"4 {' '.join(str(3 + 4 * k + i) for i in range(4))} {colour} {k}\n" for k, colour in enumerate(colours))
+        (self.path / "map.ply").write_text(head + faces.format(len(colours)) + "end_header\n" + rows)
+
+    def test_planes_should_be_drawn_with_their_classes_where_they_have_one(self):
+        self.assertEqual(read_planes(self.path / "none.ply"), [])
+        self.assertEqual(read_planes(self.path / "map.ply"), [])
+        self.assertEqual(plane_handles([]), [])
+        for colours, labels in ((["133 107 255", "230 153 0"], ["wall", "floor, table"]), (["12 200 90"], ["plane"]), (["12 200 90"] * 2, ["planes"])):
+            self.write_faces(*colours)
+            planes = read_planes(self.path / "map.ply")
+            self.assertEqual([corners.shape for corners, _ in planes], [(4, 3)] * len(colours))
+            np.testing.assert_array_equal(planes[0][0][2], [1.0, 1.0, 1.0])
+            self.assertEqual([handle.get_label() for handle in plane_handles(planes)], labels)
+            self.assertEqual(len(read_map(self.path / "map.ply")[0]), 3)
+        self.assertEqual(self.plot(self.path), (0, ""))
 
     def test_run_should_give_all_pictures_when_truth_lies_beside_it(self):
         self.assertEqual(self.plot(self.path), (0, ""))

@@ -13,7 +13,8 @@ optional_peers=(libopenblas-dev libblis-dev libopencv-core-dev libopencv-imgproc
   libopencv-calib3d-dev libopencv-contrib-dev libceres-dev)
 optional_targets=(g++-aarch64-linux-gnu gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-user qemu-system-arm)
 # Without these pf-capture has no libcamera and no inertial units, and its window is not tried without a screen.
-optional_devices=(libcamera-dev libiio-dev xvfb)
+optional_cameras=(libcamera-dev libiio-dev)
+optional_devices=("${optional_cameras[@]}" xvfb)
 optional_arm=(g++-arm-linux-gnueabihf)
 optional_fuzz=(clang libclang-rt-14-dev llvm)
 optional_all=("${optional_fuzz[@]}" clang-tidy valgrind make xz-utils)

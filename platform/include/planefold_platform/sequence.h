@@ -60,12 +60,12 @@ typedef struct pf_sequence_info {
  *               or grey are taken; previews and single files of another name are left out; what is ambiguous is refused.
  *   images:DIR/left_*.png   the images of that name only
  *   euroc:DIR   mav0/cam0/data, data.csv and sensor.yaml; DIR may also be mav0 or cam0, or of the layout above.
- *   tum:DIR     rgb.txt and rgb/; the calibration is calib.yaml inside, or given.
+ *   tum:DIR     rgb.txt and rgb/; the calibration is calib.yaml inside, or ETH3D's calibration.txt, or given.
  * A table of frames has the columns that its header names (time, name, index, exposure; units as in "time [us]" or timestamp_ns), or one
  * of the forms time | time name | name time | index time name | name or index, time, exposure. It is cut at commas, semicolons or blanks,
  * and may have quotes and byte order marks. Times are seconds (euroc: nanoseconds); where that gives no camera's rate, they are taken in
  * the unit, or as frame numbers, that gives the calibration's rate_hz, with a warning. Other columns are refused.
- * Inertial samples are looked for in imu.csv (images:) and in imu0/data.csv beside cam0 (euroc:).
+ * Inertial samples are looked for in imu.csv or gyro_accel.csv (images:) and in imu0/data.csv beside cam0 (euroc:).
  * PNG, JPEG and binary PGM; colour becomes grey, 16 bits become 8 (of a PNG, 65535 is white, but data of 14 bits or fewer are scaled up and
  * raw thermal images stretched, with a warning). Pixels are taken as stored, whatever EXIF says of the orientation, and so must the
  * calibration. Hidden files are left out. Times must grow from frame to frame.
@@ -117,13 +117,14 @@ const char* pf_get_sequence_frame_path(const pf_sequence_t* sequence, int64_t in
  *               and calib_cam_to_cam.txt              P_rect_00:          the same                               P_rect_00 .. P_rect_03
  *   colmap      COLMAP's cameras.txt                  its rows            (SIMPLE_)PINHOLE, (SIMPLE_)RADIAL,     camera 1, ..
  *                                                                         OPENCV, OPENCV_FISHEYE
+ *   eth3d       ETH3D's calibration.txt               fx fy cx cy, alone  pinhole
  *   plain       this project, and files by hand       fx:                 none, radtan, equidistant,
  *                                                                         harris_division
  *
  * The plain form is camera_model: pinhole / width / height / fx / fy / cx / cy / distortion_model / distortion: [..] / rate_hz (optional);
  * without distortion and its model there is none. COLMAP's centre of the first pixel is 0.5, 0.5; it becomes 0, 0, as in the others.
- * KITTI's calib.txt does not say the size of the images, and those of ORB-SLAM, OpenVSLAM and OpenCV not always: such a file is read by
- * pf_open_sequence only, which takes the size of the first image.
+ * KITTI's calib.txt and ETH3D's do not say the size of the images, and those of ORB-SLAM, OpenVSLAM and OpenCV not always: such a file is
+ * read by pf_open_sequence only, which takes the size of the first image.
  * Each may have readout_s, of a rolling shutter [s], timestamps: real | nominal (pf_timestamps_t; real), and say how well its numbers
  * are known (pf_camera_t): sigma_focal, sigma_aspect, sigma_centre_px, sigma_distortion: [..]; where one is missing, a typical value
  * is filled in: 0.01, 0.001, 1 % of the width, and for distortion zeros, or 0.05 where the file names none. rate_hz (may be null) is 0
@@ -167,10 +168,18 @@ int pf_read_first_pose(const char* path, pf_pose_t* pose, char message[PF_SEQUEN
 /* "0.1832x0.1295" in metres, as a rectangle. */
 int pf_parse_rectangle(const char* text, pf_target_t* target, char message[PF_SEQUENCE_MESSAGE]);
 
-/* Inertial samples in the layout of EuRoC's imu0/data.csv: rows of time, wx, wy, wz [rad/s], ax, ay, az [m/s^2], cut by commas or
- * blanks, or in the order that a header names. Times are whole nanoseconds, or seconds with a decimal point, and must
- * grow; where no unit samples at such a rate they are taken as milliseconds or microseconds. With 0, message says so, or is
- * empty. *samples is to be given to pf_free_imu. */
+/* Inertial samples: rows of time, rates and accelerations, in columns that a header names, with their units, among any others
+ * ("gyro_x [deg/s]", "field.angular_velocity.x", "accelerometerAccelerationX(G)"), or without a header in the order of EuRoC's
+ * imu0/data.csv: t, wx, wy, wz [rad/s], ax, ay, az [m/s^2]. Cut by commas, semicolons or blanks.
+ *   units   of times s, ms, us, ns, of rates rad/s, deg/s, of accelerations m/s^2, g; without one as above, and times are whole
+ *           nanoseconds, or seconds with a decimal point. Where no unit samples at such a rate times are taken as milliseconds or
+ *           microseconds.
+ *   signs   of iOS (Core Motion), by its names, become those of a specific force: +9.8 upwards at rest
+ *   gravity of a column or file of its own is added to accelerations that are without
+ *   order   times up to 50 ms late are put in order, and rows that repeat a time passed over; further back, or standing still, is refused
+ * path  a file; GYRO+ACCEL, a file for each; or a folder with both (Gyroscope.csv, Accelerometer.csv and the like), of which accelerations
+ *       are taken between two, at the times of the rates
+ * With 0, message says in one line what was converted, mended or left out, or is empty. *samples is to be given to pf_free_imu. */
 int pf_read_imu(const char* path, pf_imu_sample_t** samples, size_t* count, char message[PF_SEQUENCE_MESSAGE]);
 void pf_free_imu(pf_imu_sample_t* samples); /* null is welcome */
 
@@ -178,7 +187,8 @@ void pf_free_imu(pf_imu_sample_t* samples); /* null is welcome */
 int pf_parse_imu(const char* text, size_t size, const char* name, pf_imu_sample_t** samples, size_t* count,
                  char message[PF_SEQUENCE_MESSAGE]);
 
-/* Noise densities of an inertial unit: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml (gyroscope_noise_density and so on), or
+/* Noise densities of an inertial unit: Kalibr's imu.yaml, EuRoC's imu0/sensor.yaml (gyroscope_noise_density and so on, with : or =),
+ * ORB-SLAM3's IMU.NoiseGyro and so on, imu_utils' Gyr and Acc (of single samples: divided by the root of its update_rate, or of 200 Hz), or
  * gyro_noise_density, gyro_random_walk, accel_noise_density, accel_random_walk; each may have gravity [m/s^2], 9 .. 11. Sets these fields
  * of *imu, gravity only where the file has it, and none when it is refused. A density that no unit has (degrees, or the noise of single
  * samples) is refused. With 0, message is a note on what was ignored, or empty. */

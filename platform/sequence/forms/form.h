@@ -19,8 +19,8 @@ struct Form {
   void (*read)(const Fields& fields, const Asked& asked, Calibration& calibration);
 };
 
-extern const Form kColmapForm, kEurocForm, kKalibrForm, kKittiForm, kKittiRawForm, kOpencvForm, kOpenvslamForm,
-    kOrbSlamForm, kOrbSlam3Form, kPlainForm, kRosForm, kRosMessageForm, kVinsForm;
+extern const Form kColmapForm, kEth3dForm, kEurocForm, kKalibrForm, kKittiForm, kKittiRawForm, kOpencvForm,
+    kOpenvslamForm, kOrbSlamForm, kOrbSlam3Form, kPlainForm, kRosForm, kRosMessageForm, kVinsForm;
 
 /// In the order in which they are tried.
 const std::vector<const Form*>& all_forms();
@@ -44,6 +44,9 @@ std::vector<NamedCamera> kalibr_cameras(const Fields& fields);
 
 /// Rows of COLMAP's cameras.txt as fields "camera ID: MODEL WIDTH HEIGHT PARAMETERS"; any other text as it is.
 std::string from_colmap(const std::string& text);
+
+/// A row of four numbers, as ETH3D has it, as a field; any other text as it is.
+std::string from_eth3d(const std::string& text);
 
 /// The number of frames per second of a field, or 0 where it is missing.
 double read_rate(const Fields& fields, const char* key);

@@ -4,7 +4,7 @@ import argparse
 
 from .command_line import OneLineParser
 
-DESCRIPTION = """Draws a run of pf-capture into RUN/plots: trajectory.png (from above and from the side, with the map), frames.png
+DESCRIPTION = """Draws a run of pf-capture into RUN/plots: trajectory.png (from above and from the side, with points and planes of the map), frames.png
 (matches, size of the state, milliseconds and innovations over time) and, where truth is known, errors.png: with 3-sigma
 bounds where the run is in the truth's own frame, after alignment otherwise."""
 

@@ -1,10 +1,12 @@
-"""Trajectory and map from above and from the side."""
+"""Trajectory, map and planes from above and from the side."""
 
 import re
 
 import numpy as np
-from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from . import style
 from .tables import read_text
@@ -31,6 +33,39 @@ def read_map(path):
     target = (column.get("red", zero) == 224) & (column.get("blue", zero) == 208)
     in_map = "sigma_in_map" in column
     return p, column.get("sigma_in_map" if in_map else "sigma", zero), column.get("inverse_depth", zero) > 0, target, in_map
+
+
+def read_planes(path):
+    """[(corners (n,3), colour)] of the faces of a map.ply."""
+    if not path.exists():
+        return []
+    head, _, body = read_text(path).partition("end_header\n")
+    count = int(head.partition("element vertex ")[2].split()[0])
+    lines = [line.split() for line in body.splitlines() if line.strip()]
+    planes = []
+    for face in lines[count:]:
+        corners = [[float(word) for word in lines[int(k)][:3]] for k in face[1:1 + int(face[0])]]
+        colour = [int(word) / 255 for word in face[1 + int(face[0]):4 + int(face[0])]]
+        planes.append((np.array(corners), to_hex(colour) if len(colour) == 3 else style.GREY))
+    return planes
+
+
+def draw_planes(axis, planes, a, b):
+    """The outlines, filled; one that is seen from its edge is a line."""
+    for corners, colour in planes:
+        dark = tuple(0.7 * value for value in to_rgb(colour))  # pale ones would be lost on white
+        axis.add_collection(PolyCollection([corners[:, [a, b]]], facecolors=[(*to_rgb(colour), 0.25)], edgecolors=[(*dark, 0.9)],
+                                           linewidths=1.0, zorder=0.5))
+
+
+def plane_handles(planes):
+    """For the legend: a patch for each class of planes, or one for all where gravity gave none a class."""
+    colours = {colour for _, colour in planes}
+    if not colours:
+        return []
+    if not colours <= set(style.PLANE_CLASSES):
+        return [Patch(facecolor=style.LIGHT, edgecolor=style.GREY, label="plane" if len(planes) == 1 else "planes")]
+    return [Patch(facecolor=colour, alpha=0.5, label=name) for colour, name in style.PLANE_CLASSES.items() if colour in colours]
 
 
 def view_axes(rotations):
@@ -65,8 +100,8 @@ def limits(path, points, sigma):
     return low - margin, high + margin
 
 
-def draw(path_png, estimate, rotations, covariance, truth, map_points, unit, title):
-    """estimate (n,3), rotations (n,3,3), covariance (n,3,3) or None, truth (m,3) or None, all in one frame."""
+def draw(path_png, estimate, rotations, covariance, truth, map_points, unit, title, planes=()):
+    """estimate (n,3), rotations (n,3,3), covariance (n,3,3) or None, truth (m,3) or None, planes [(corners, colour)], all in one frame."""
     points, sigma, inverse_depth, target, in_map = map_points
     right, up, forward = view_axes(rotations)
     whole = estimate if truth is None else np.vstack([estimate, truth])
@@ -78,6 +113,7 @@ def draw(path_png, estimate, rotations, covariance, truth, map_points, unit, tit
     figure, axes = style.plt.subplots(1, 2, figsize=(10.5, 5.6 if tall else 4.6), width_ratios=widths, layout="constrained")
     for axis, (name, across, along) in zip(axes, views):
         a, b = across[0], along[0]
+        draw_planes(axis, planes, a, b)
         groups = [(~inverse_depth & ~target, style.GREEN, 0.85, 9), (inverse_depth & ~target, style.BLUE, 0.35, 6),
                   (target, style.VIOLET, 1.0, 16)]
         for kept, colour, alpha, size in groups:
@@ -121,6 +157,7 @@ def draw(path_png, estimate, rotations, covariance, truth, map_points, unit, tit
         if kept.any():
             handles.append(Line2D([], [], marker="o", color="none", markerfacecolor=colour, markeredgewidth=0,
                                   markersize=5, label=label))
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    handles += plane_handles(planes)
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 6))
     figure.suptitle(title, x=0.01, ha="left", fontsize=9, color=style.GREY)
     return style.save(figure, path_png)

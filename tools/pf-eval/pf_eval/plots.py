@@ -47,18 +47,20 @@ def plot(options):
     known_scale = default_alignment(report) != "sim3" or truth is not None
 
     points, sigma, inverse_depth, target, in_map = plot_trajectory.read_map(folder / "map.ply")
+    planes = plot_trajectory.read_planes(folder / "map.ply")
     p, rotations = run.p, run.rotations()
     covariance = None if run.covariance is None else run.covariance[:, 3:, 3:]
     true_path = None
     if comparison:  # into the truth's frame
         s, R, shift = comparison.scale, comparison.turn, comparison.shift
         p, points, sigma = s * p @ R.T + shift, s * points @ R.T + shift, s * sigma
+        planes = [(s * corners @ R.T + shift, colour) for corners, colour in planes]
         rotations = R @ rotations
         covariance = None if covariance is None else s * s * R @ covariance @ R.T
         inside = (truth.t >= run.t[0] - 0.05) & (truth.t <= run.t[-1] + 0.05)
         true_path = truth.p[inside]
     yield plot_trajectory.draw(out / "trajectory.png", p, rotations, covariance, true_path,
-                               (points, sigma, inverse_depth, target, in_map), "m" if known_scale else "first median depth", title)
+                               (points, sigma, inverse_depth, target, in_map), "m" if known_scale else "first median depth", title, planes)
     start = run.t[0]
     if (folder / "frames.csv").exists():
         table = read_table(folder / "frames.csv")

@@ -10,6 +10,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 INK, GREY, LIGHT = "#22262b", "#8a929c", "#e6e9ed"
 BLUE, ORANGE, GREEN, RED, VIOLET = "#1f6fd0", "#e07b1a", "#2a9d5c", "#cf3f3f", "#7f52c4"
+# Of planes, as pf-capture colours them where gravity is known (kPlaneClasses).
+PLANE_CLASSES = {"#856bff": "wall", "#e69900": "floor, table", "#57b5e8": "ceiling", "#f7ed73": "slanted plane", "#9e9e9e": "plane"}
 SHADE = {"starting": "#f3efe2", "coasting": "#fbe6cf", "lost": "#f7d4d4"}
 
 plt.rcParams.update({

@@ -23,6 +23,11 @@ namespace pf::python {
 
 namespace {
 
+/// A note of the library as a warning of Python.
+void warn(const char* note) {
+  if (note[0] != '\0' && PyErr_WarnEx(PyExc_RuntimeWarning, note, 1) != 0) throw nb::python_error();
+}
+
 /// One of the readers that fill in a structure from a file, as a function that returns it.
 template <class T>
 auto reader(int (*read)(const char*, T*, char*)) {
@@ -39,7 +44,7 @@ std::pair<pf_camera_t, double> read_calibration(const Path& path) {
   double rate_hz = 0.0;
   char message[PF_SEQUENCE_MESSAGE] = "";
   if (pf_read_calibration(path.c_str(), &camera, &rate_hz, message) != 0) raise_refused(message);
-  if (message[0] != '\0' && PyErr_WarnEx(PyExc_RuntimeWarning, message, 1) != 0) throw nb::python_error();
+  warn(message);
   return {camera, rate_hz};
 }
 
@@ -54,6 +59,7 @@ std::vector<pf_imu_sample_t> read_imu(const Path& path) {
   size_t count = 0;
   if (pf_read_imu(path.c_str(), &samples, &count, message) != 0) raise_refused(message);
   const std::unique_ptr<pf_imu_sample_t, void (*)(pf_imu_sample_t*)> owner(samples, pf_free_imu);
+  warn(message);
   return {samples, samples + count};
 }
 
@@ -62,6 +68,7 @@ auto imu_reader(int (*read)(const char*, pf_imu_model_t*, char*)) {
   return [read](const Path& path, pf_imu_model_t& imu) {
     char message[PF_SEQUENCE_MESSAGE] = "";
     if (read(path.c_str(), &imu, message) != 0) raise_refused(message);
+    warn(message);
   };
 }
 

@@ -40,7 +40,7 @@ def main(source: str, calibration: str | None = None) -> None:
     except KeyboardInterrupt:
         pass
     print(f"tracked {len(poses)} of {slam.report.frames} frames; {len(slam.planes)} planes, {slam.memory_bytes / 2**20:.1f} MiB")
-    print(planefold.plot.trajectory("trajectory.png", poses, slam.features, title=source))
+    print(planefold.plot.trajectory("trajectory.png", poses, slam.features, planes=slam.planes, title=source))
 
 
 if __name__ == "__main__":
