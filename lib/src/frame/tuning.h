@@ -97,7 +97,7 @@ inline constexpr Scalar kMost = Scalar(12);    ///< log-odds of all comparisons,
 inline constexpr Scalar kScene = Scalar(50);   ///< features of the scene for each fixed one, before any was judged
 inline constexpr Scalar kFixed = Scalar(6.2);  ///< log-odds from which a feature is masked: wrong in 0.2 %
 inline constexpr int kMargin = 16;             ///< [px] about such a feature
-inline constexpr int kDiscredits = 3;          ///< one in so many inliers, from which the map comes from what is fixed
+inline constexpr int kDiscredits = 2;          ///< one in so many inliers, from which the map comes from what is fixed
 }  // namespace fixed_features
 
 /// Where the picture as a whole has gone.
