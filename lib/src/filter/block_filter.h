@@ -203,8 +203,8 @@ class BlockFilter {
   int blocks_ = 0;
   int leading_dim_ = 0, held_dim_ = 0;
   int considered_ = 0;  ///< of the held rows: those of the leading block
-  int max_dim_ = 0;   ///< of the state; P_ has room for a few more
-  int max_rows_ = 0;  ///< of one update
+  int max_dim_ = 0;     ///< of the state; P_ has room for a few more
+  int max_rows_ = 0;    ///< of one update
   int ld_ = 0, lds_ = 0;
   int gained_ = 0;
   RowRange gain_considers_;
