@@ -118,7 +118,7 @@ void UnitWatch::leave_samples(std::int64_t before_ns) {
     body.w_C = data_->tracked.w_C;
   }
   Transition transition;
-  begin_without_samples(body, settings_.body, sigma_rate, data_->fresh, kSpeed, &transition);
+  begin_without_samples(body, settings_.body, filter_.state().mounting, sigma_rate, data_->fresh, kSpeed, &transition);
   if (data_->fresh) {
     const Scalar T = kTime + static_cast<Scalar>(seconds(elapsed_ns(data_->tracked_ns, before_ns)));
     for (int i = 0; i < 3; ++i) {
