@@ -237,6 +237,7 @@ class Run {
     if (begins_anew(pose.map_id)) {
       first_ = world_.path()(t);
       last_ = truth = truth_at(t);
+      has_gauge_ = false;
     }
     note_doubt(t, pose);
     const bool judged = note_unit(k, report);

@@ -116,6 +116,7 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
     observations_.add_features(observations, count);
     recorder.begin_record();
   }
+  unit_.let_samples_begin();
   return end_frame();
 }
 

@@ -33,6 +33,7 @@ void UnitKeeper::init() {
 void UnitKeeper::begin_map() {
   rest_.init();
   metric_.init();
+  has_just_aligned_ = gives_way_ = false;
   if (parts_ == nullptr) return;
   parts_->hold.init();
   parts_->moving.init();
@@ -41,7 +42,8 @@ void UnitKeeper::begin_map() {
 void UnitKeeper::predict(std::int64_t before_ns, bool follows, bool nothing_measured, Scalar depth) {
   const std::int64_t t_ns = frame_.report.t_ns;
   watch_.begin_frame(before_ns, t_ns);
-  if (watch_.take_alignment()) {
+  has_just_aligned_ = watch_.take_alignment();
+  if (has_just_aligned_) {
     start_.mounting().keep();
     parts_->moving.integrate_again();
   }
@@ -131,6 +133,10 @@ UnitReason UnitKeeper::reason(Scalar* value, Mat3* R_CB) const {
 /// A map that begun at rest with a unit of unknown delay has no size from motion yet, so nothing is lost with it.
 bool UnitKeeper::discredits_map(bool follows, std::int64_t dt_ns) {
   if (!settings_.inertial || !tracking_.has_pose()) return false;
+  if (gives_way_) {
+    why_discredited_ = "the inertial unit's clock and axes are found: a new map begins with its samples";
+    return true;
+  }
   const bool left_rest = watch_.is_used_at_rest() && !rest_.is_resting();
   if (left_rest) watch_.use_at_rest(false);
   const bool doubted = watch_.note(follows && !holds(), tracking_.is_tracked(frame_.report), dt_ns);
