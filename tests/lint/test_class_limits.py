@@ -14,7 +14,7 @@ ABOVE = {
     ("Settings", "data members"): (46, "the config in the library's own units; a struct for each back end would show half of it to each"),
     ("FrameReport", "data members"): (17, "the counts of pf_report_t, each by itself"),
     ("RestDetector::Data", "data members"): (16, "running sums over the samples of a rest, which begin and end together"),
-    ("UnitWatch::Data", "data members"): (27, "all evidence for and against the unit, which is reset together"),
+    ("UnitWatch::Data", "data members"): (26, "all evidence for and against the unit, which is reset together"),
     ("UnitWatch", "methods"): (33, "watches the unit, takes its clock and axes from the rates, names what is wrong: to be split"),
     ("PixelUpdate", "data members"): (16, "what an update of a frame is told until the next call; goes when these are arguments"),
     ("PixelUpdate", "methods"): (26, "likewise"),

@@ -247,7 +247,7 @@ bool UnitWatch::note(bool before_was_tracked, bool is_tracked, std::int64_t dt_n
   data_->used_ns = 0;
   data_->doubts = std::min(data_->doubts + 1, kMaxDoublings);
   data_->rates.init();
-  data_->rates_ns = 0;
+  data_->rate_begin.t_ns = 0;
   data_->reason = UnitReason::kContradicts;
   settings_.hooks.say(
       "the inertial unit contradicts the pictures: it is doubted, and motion goes on without its samples");
@@ -263,7 +263,7 @@ void UnitWatch::use_at_rest(bool use) {
   data_->at_rest = use;
   filter_.use_samples(use);
   data_->rates.init();
-  data_->rates_ns = 0;
+  data_->rate_begin.t_ns = 0;
 }
 
 bool UnitWatch::is_map_on_trial() const {

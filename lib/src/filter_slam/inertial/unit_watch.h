@@ -84,6 +84,12 @@ class UnitWatch {
   std::int64_t doubted_ns() const { return data_ != nullptr ? data_->doubted_ns : 0; }
 
  private:
+  /// The frame that the next interval of rates begins at.
+  struct RateBegin {
+    std::int64_t t_ns = 0;  ///< 0: there is none
+    Quat q_WC = Quat::Identity();
+    std::uint32_t generation = 0;  ///< of the filter: once it begins again from a record, its poses are others
+  };
   struct Data {
     Scalar sum = 0;
     bool doubted = false, fresh = false;  ///< fresh: it has just come into doubt
@@ -104,8 +110,7 @@ class UnitWatch {
     bool at_rest = false;  ///< the samples of such a unit are used, since the camera rests
     bool aligned = false;  ///< take_alignment() says so
     RateAlignment rates;
-    std::int64_t rates_ns = 0;  ///< of the frame that the next interval begins at
-    Quat rates_q = Quat::Identity();
+    RateBegin rate_begin;
     int until_fit = 0;  ///< frames
     RateFit fit;        ///< that passed
     UnitReason reason = UnitReason::kNone;
