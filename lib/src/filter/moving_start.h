@@ -52,6 +52,11 @@ struct MovingSolution {
 
   Scalar sigma_scale() const { return std::sqrt(covariance(0, 0)); }  ///< relative
   Scalar sigma_gravity() const { return std::sqrt(covariance(1, 1) + covariance(2, 2)); }
+  /// Likewise without what the intrinsics do, which a longer motion before the start would leave as it is.
+  Scalar sigma_scale_by_motion() const { return std::sqrt(covariance(0, 0) - of_force(0, 0)); }
+  Scalar sigma_gravity_by_motion() const {
+    return std::sqrt(covariance(1, 1) + covariance(2, 2) - of_force(1, 1) - of_force(2, 2));
+  }
 };
 
 inline constexpr int kMaxMovingPoses = 96;

@@ -198,8 +198,8 @@ bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingSta
   data_.refused = 0;
   data_.reversed = false;
   data_.sigma_scale = solution->sigma_scale();
-  if (!(solution->sigma_scale() < (patient ? kMaxSigmaScale : kLateSigmaScale)) ||
-      !(solution->sigma_gravity() < (patient ? kMaxSigmaGravity : kLateSigmaGravity)))
+  if (!(solution->sigma_scale_by_motion() < (patient ? kMaxSigmaScale : kLateSigmaScale)) ||
+      !(solution->sigma_gravity_by_motion() < (patient ? kMaxSigmaGravity : kLateSigmaGravity)))
     return false;
   if (!(solution->misfit < kMaxMisfit)) return false;
   if (!solve_moving_start(pose, middle + 1, noise, &half[0]) ||
