@@ -50,7 +50,8 @@ ByErrors by_errors(const Transition& t) {
   return J;
 }
 
-Preintegral integrated(const std::vector<ImuReading>& readings, const Body& body, const Mounting& mounting, bool coasts) {
+Preintegral integrated(const std::vector<ImuReading>& readings, const Body& body, const Mounting& mounting,
+                       bool coasts) {
   Preintegral sum(kUnitNoise, body.gyro_bias, body.accel_bias, mounting.intrinsics);
   for (std::size_t i = 1; i < readings.size(); ++i)
     sum.add(static_cast<Scalar>(kSampleInterval), readings[i - 1], readings[i]);
@@ -171,7 +172,9 @@ void test_rest_should_be_exact_by_the_intrinsics() {
     // Of an accelerometer whose intrinsics are others and whose bias across gravity is the same.
     const auto says = [&](const Error& e) -> Vec3 {
       const Mat3 D = moved_by(mounting, e).intrinsics.D_a, D_0 = mounting.intrinsics.D_a;
-      const auto force_of = [&](Scalar b) { return Vec3(D * (rest.accel - transition.mean.accel_bias - D_0.inverse() * (b * along))); };
+      const auto force_of = [&](Scalar b) {
+        return Vec3(D * (rest.accel - transition.mean.accel_bias - D_0.inverse() * (b * along)));
+      };
       Scalar b = 0;
       for (int round = 0; round < 20; ++round) b += force_of(b).norm() - rest.gravity;
       const Vec3 u = -(body.q_WC * (mounting.R_CB * force_of(b).normalized()));
@@ -220,8 +223,10 @@ void test_constants_should_move_the_covariance_as_a_full_transition_does() {
     filter.set_P(random_covariance(random, filter.dim(), 0.05));
     const Dense before = filter.P();
     Transition made, other;
-    predict_inertial(body, layout, mounting, integrated(random_readings(random, 7), body, mounting, false), Scalar(9.81), &made);
-    predict_inertial(body, layout, mounting, integrated(random_readings(random, 7), body, mounting, true), Scalar(9.81), &other);
+    predict_inertial(body, layout, mounting, integrated(random_readings(random, 7), body, mounting, false),
+                     Scalar(9.81), &made);
+    predict_inertial(body, layout, mounting, integrated(random_readings(random, 7), body, mounting, true), Scalar(9.81),
+                     &other);
     const auto moved = [&](const Transition& t) {
       Dense F = Dense::Identity(filter.dim(), filter.dim()), Q = Dense::Zero(filter.dim(), filter.dim());
       for (int i = 0; i < kRows; ++i) {

@@ -67,8 +67,8 @@ struct Clip {
   }
 
   bool even = false;
-  double reach = 1;          ///< of the hand
-  Vec3 turn = Vec3::Zero();  ///< of the poses' rotations, away from the truth [rad/s]
+  double reach = 1;                  ///< of the hand
+  Vec3 turn = Vec3::Zero();          ///< of the poses' rotations, away from the truth [rad/s]
   Mat3 by_force = Mat3::Identity();  ///< readings, beside their bias
   Scalar scale = Scalar(2.5);
   Vec3 down = Vec3(Scalar(0.2), Scalar(0.9), Scalar(-0.3)).normalized();

@@ -39,8 +39,8 @@ void turn_axes(int which, ImuOptions* imu) {
 std::string choose_parts(const std::vector<std::string>& names, PhoneParts* parts) {
   if (names.empty()) return "";
   const std::pair<const char*, bool PhoneParts::*> kParts[] = {
-      {"scale", &PhoneParts::scale},   {"cross", &PhoneParts::cross}, {"noise", &PhoneParts::noise},
-      {"delay", &PhoneParts::delay},   {"jitter", &PhoneParts::jitter}, {"mount", &PhoneParts::mount},
+      {"scale", &PhoneParts::scale}, {"cross", &PhoneParts::cross},   {"noise", &PhoneParts::noise},
+      {"delay", &PhoneParts::delay}, {"jitter", &PhoneParts::jitter}, {"mount", &PhoneParts::mount},
       {"rows", &PhoneParts::rows}};
   for (const auto& part : kParts) parts->*part.second = false;
   for (const std::string& name : names) {

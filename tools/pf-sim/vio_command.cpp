@@ -520,17 +520,20 @@ void add_vio(CLI::App& app, int& result) {
   command->add_option("--noise-scale", c->noise_scale, "times the noise of EuRoC's unit, of truth and filter");
   command->add_option("--delay", c->vio.imu.delay_s, "of frames against samples, known [s]");
   command
-      ->add_option("--estimate", c->estimate,
-                   "mount, delay: drawn with 2 degrees, 2 cm and 10 ms, and estimated from there on; readout: known as "
-                   "10 ms less than --readout, and estimated; scale: estimated from 1 %; the others as told. Without it "
-                   "mounting and delay are estimated from 3 degrees, 3 cm and any delay within 0.2 s, and the sensors' "
-                   "scales and axes from 1 %")
+      ->add_option(
+          "--estimate", c->estimate,
+          "mount, delay: drawn with 2 degrees, 2 cm and 10 ms, and estimated from there on; readout: known as "
+          "10 ms less than --readout, and estimated; scale: estimated from 1 %; the others as told. Without it "
+          "mounting and delay are estimated from 3 degrees, 3 cm and any delay within 0.2 s, and the sensors' "
+          "scales and axes from 1 %")
       ->delimiter(',');
   command->add_option("--imu-exact", c->imu_exact, "mount, delay, scale: as told, and not estimated")->delimiter(',');
   command->add_option("--unit", c->unit,
                       "laboratory; or phone: scales off by 1 %, axes by 0.5 %, three times the noise, 50 ms early with "
                       "a jitter of 1 ms, 2 degrees off, and rows read out over 20 ms, of all of which nothing is told");
-  command->add_option("--parts", c->parts, "of that, scale, cross, noise, delay, jitter, mount, rows or some of them; the others are as told")
+  command
+      ->add_option("--parts", c->parts,
+                   "of that, scale, cross, noise, delay, jitter, mount, rows or some of them; the others are as told")
       ->delimiter(',');
   command->add_option("--axes", c->vio.axes, "0 to 23: the unit's axes, of which nothing is told")
       ->check(CLI::Range(0, 23));

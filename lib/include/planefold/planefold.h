@@ -250,7 +250,7 @@ typedef struct pf_imu_model {
    * considered where camera.estimate says so, and else estimated. It never falls below 0. */
   double sigma_readout_s;
   /* Of the scales of both sensors and of the directions of their axes, relative, up to 0.05: what
-   * data sheets call sensitivity and cross-axis errors, 0.01 for a phone's. 15 rows of the state. */
+   * data sheets call sensitivity and cross-axis errors, 0.01 for a phone. 15 rows of the state */
   double sigma_scale;
 } pf_imu_model_t;
 

@@ -87,10 +87,8 @@ constexpr Range kUnit[] = {
 };
 
 constexpr Range kUnitSigmas[] = {
-    PF_FIELD(imu.sigma_mount_rad, 1e-6, 4),
-    PF_FIELD(imu.sigma_mount_m, 1e-6, 1),
-    PF_FIELD(imu.sigma_delay_s, 1e-6, 0.2),
-    PF_FIELD(imu.sigma_readout_s, 1e-6, 0.1),
+    PF_FIELD(imu.sigma_mount_rad, 1e-6, 4), PF_FIELD(imu.sigma_mount_m, 1e-6, 1),
+    PF_FIELD(imu.sigma_delay_s, 1e-6, 0.2), PF_FIELD(imu.sigma_readout_s, 1e-6, 0.1),
     PF_FIELD(imu.sigma_scale, 1e-6, 0.05),
 };
 

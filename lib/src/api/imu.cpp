@@ -96,8 +96,8 @@ pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial) {
   inertial->delay_s = unit.delay_s;
   inertial->readout_s = unit.readout_s;
   for (int i = 0; i < 9; ++i) {
-    inertial->gyro_matrix[i] = static_cast<double>(unit.D_w(i / 3, i % 3));
-    inertial->accel_matrix[i] = static_cast<double>(unit.D_a(i / 3, i % 3));
+    inertial->gyro_matrix[i] = static_cast<double>(unit.intrinsics.D_w(i / 3, i % 3));
+    inertial->accel_matrix[i] = static_cast<double>(unit.intrinsics.D_a(i / 3, i % 3));
   }
   static_assert(sizeof inertial->sigma == 18 * sizeof(double));
   double sigma[18];

@@ -110,8 +110,7 @@ class Walk {
 
   /// What the accelerometer would read of the force that is assumed.
   void read_force() {
-    now_.accel =
-        sum_->intrinsics().D_a.inverse() * (sum_->R().transpose() * coasting_.f_B) + sum_->accel_bias();
+    now_.accel = sum_->intrinsics().D_a.inverse() * (sum_->R().transpose() * coasting_.f_B) + sum_->accel_bias();
   }
 
   void coast_to(std::int64_t to_ns) {

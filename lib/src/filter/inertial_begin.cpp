@@ -19,8 +19,8 @@ void set_rate_by_intrinsics(const Body& body, const Mounting& mounting, Scalar s
   if (rows.intrinsics < 0) return;
   const Mat3 D_inverse = sign * mounting.intrinsics.D_w.inverse();
   set_by_intrinsics(transition, rows.gyro, 0,
-                    Eigen::Matrix<Scalar, 3, Intrinsics::kGyroRows>(D_inverse.lazyProduct(
-                        Intrinsics::gyro_by_errors(mounting.reading_of(body.w_C)))));
+                    Eigen::Matrix<Scalar, 3, Intrinsics::kGyroRows>(
+                        D_inverse.lazyProduct(Intrinsics::gyro_by_errors(mounting.reading_of(body.w_C)))));
 }
 
 }  // namespace

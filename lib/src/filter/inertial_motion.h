@@ -110,8 +110,8 @@ void allow_for_turned_gravity(const Body& body, const BodyLayout& layout, Scalar
 ///   d = E^T (u x R (e_b + n)) / gravity + E^T theta                        E = (R_WG e_x, R_WG e_y)
 ///
 /// so that of e_b the two rows across gravity stay open, and hang together with d, and the one along it is n. Where the unit's axes are
-/// estimated, theta + R_WC mu stands in place of theta. With intrinsics D_a (a - b_a) stands in place of a - b_a, and -dD_a (a - b_a) beside
-/// e_b + n.
+/// estimated, theta + R_WC mu stands in place of theta. With intrinsics, D_a (a - b_a) stands in place of a - b_a, and -dD_a (a - b_a)
+/// beside e_b + n.
 void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& mounting, const RestReading& rest,
                    Transition* transition);
 

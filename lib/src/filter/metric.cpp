@@ -147,11 +147,11 @@ void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
     for (int j = 0; j < 3; ++j)
       transition.F[(rows.accel + kAt[i]) * rows.dim + Body::kTheta + j] += turned.by_theta(i, j);
   if (rows.intrinsics >= 0) {
-    set_by_intrinsics(&transition, rows.velocity, 0,
-                      Eigen::Matrix<Scalar, 3, Intrinsics::kGyroRows>(
-                          -R.lazyProduct(hat(mounting.p_C))
-                               .lazyProduct(mounting.R_CB.lazyProduct(
-                                   Intrinsics::gyro_by_errors(mounting.reading_of(body.w_C))))));
+    set_by_intrinsics(
+        &transition, rows.velocity, 0,
+        Eigen::Matrix<Scalar, 3, Intrinsics::kGyroRows>(
+            -R.lazyProduct(hat(mounting.p_C))
+                 .lazyProduct(mounting.R_CB.lazyProduct(Intrinsics::gyro_by_errors(mounting.reading_of(body.w_C))))));
     set_by_intrinsics(&transition, rows.accel, Intrinsics::kGyroRows,
                       MovingSolution::ByForce<3>(start.by_force.bottomRows<3>()));
     set_by_intrinsics(&transition, rows.gravity, Intrinsics::kGyroRows,
@@ -169,8 +169,8 @@ void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
     const int first = rows.intrinsics + Intrinsics::kGyroRows;
     for (int i = 0; i < Intrinsics::kAccelRows; ++i)
       for (int j = 0; j < Intrinsics::kAccelRows; ++j)
-        shared[first + i] += covariance()(std::max(first + i, first + j), std::min(first + i, first + j)) *
-                             start.by_force(0, j);
+        shared[first + i] +=
+            covariance()(std::max(first + i, first + j), std::min(first + i, first + j)) * start.by_force(0, j);
   }
   blocks_.add_shared(N, shared, 1);
   set_metric();

@@ -18,7 +18,7 @@ struct Transition {
   int dim;
   Scalar F[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
   Scalar Q[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
-  bool has_intrinsics = false;  ///< else nothing hangs on them
+  bool has_intrinsics = false;                                            ///< else nothing hangs on them
   Scalar by_intrinsics[BodyLayout::kMaxDynamicRows * Intrinsics::kRows];  ///< dim x kRows
 };
 

@@ -48,7 +48,7 @@ struct MovingSolution {
   using ByForce = Eigen::Matrix<Scalar, kCount, Intrinsics::kAccelRows>;
   ByForce<kRows> by_force = ByForce<kRows>::Zero();
   Covariance of_force = Covariance::Zero();
-  Scalar misfit = 0;         ///< chi-square over its degrees of freedom
+  Scalar misfit = 0;  ///< chi-square over its degrees of freedom
 
   Scalar sigma_scale() const { return std::sqrt(covariance(0, 0)); }  ///< relative
   Scalar sigma_gravity() const { return std::sqrt(covariance(1, 1) + covariance(2, 2)); }

@@ -33,8 +33,8 @@ void Filter::predict_still(const StillReading& still, Scalar gravity, StillMeasu
     put<3, Intrinsics::kAccelRows>(
         of_accel, columns, scale,
         Eigen::Matrix<Scalar, 3, Intrinsics::kAccelRows>(D_inverse * Intrinsics::accel_by_errors(R_BW * g_W)));
-    out->H.part[out->H.parts++] = Part::body(state_.layout.row(BodyPart::kIntrinsics) + Intrinsics::kGyroRows,
-                                             Intrinsics::kAccelRows);
+    out->H.part[out->H.parts++] =
+        Part::body(state_.layout.row(BodyPart::kIntrinsics) + Intrinsics::kGyroRows, Intrinsics::kAccelRows);
   }
   out->predicted << body.gyro_bias, body.accel_bias - R_BW * g_W;
   out->measured << still.gyro, still.accel;

@@ -46,12 +46,11 @@ void describe_mounting(const Settings& settings, const FilterSlam& slam, Inertia
   if (place >= 0) put_sigmas(11, turn >= 0 ? &by_turn : nullptr, &minus);
   if (layout.has(BodyPart::kDelay))
     out->sigma[14] = std::sqrt(std::max(Scalar(0), filter.variance(layout.row(BodyPart::kDelay))));
-  out->D_w = mounting.intrinsics.D_w;
-  out->D_a = mounting.intrinsics.D_a;
+  out->intrinsics = mounting.intrinsics;
   if (layout.has(BodyPart::kIntrinsics))
     for (int i = 0; i < Intrinsics::kRows; ++i)
-      out->sigma[17] = std::max(
-          out->sigma[17], std::sqrt(std::max(Scalar(0), filter.variance(layout.row(BodyPart::kIntrinsics) + i))));
+      out->sigma[17] = std::max(out->sigma[17],
+                                std::sqrt(std::max(Scalar(0), filter.variance(layout.row(BodyPart::kIntrinsics) + i))));
   out->readout_s = static_cast<double>(filter.lens().readout);
   const LensRows& lens = filter.state().lens_rows;
   if (lens.has_readout())

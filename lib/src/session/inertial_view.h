@@ -21,7 +21,7 @@ struct InertialView {
   Quat q_BC;
   Vec3 p_BC;
   double delay_s, readout_s;
-  Mat3 D_w, D_a;
+  Intrinsics intrinsics;
   Scalar sigma[18];  ///< as pf_inertial_t says
 };
 

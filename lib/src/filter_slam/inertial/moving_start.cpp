@@ -133,7 +133,8 @@ Vec3 MovingStart::smooth() {
     link.q_WC = view.q_WC;
     link.variance = data_.correlation * static_cast<Scalar>(view.covariance.topLeftCorner<3, 3>().trace()) / 3;
     link.dq = q_CB * dq_B * q_CB.conjugate();
-    // Axes that are off by mu turn the step by mu x step, a scale that is off by e makes it e longer, and a delay that is off by e moves both its ends: (w_0 - w_1) e.
+    // Axes that are off by mu turn the step by mu x step, a scale that is off by e makes it e longer, and a
+    // delay that is off by e moves both its ends: (w_0 - w_1) e.
     const Vec3 step = log_so3(dq_B), rate_before = rate;
     if (view.dt > Scalar(0)) rate = step / view.dt;
     link.step_variance = density * density * view.dt + of_turn * step.squaredNorm() +

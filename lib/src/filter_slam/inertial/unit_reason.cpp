@@ -57,9 +57,9 @@ void UnitWatch::compare_rates(bool follows) {
   if (data_->passed || filter_.uses_samples() || (data_->doubted && filter_.is_metric())) return;
   const RateBegin begin = data_->rate_begin;
   if (follows && begin.t_ns != 0 && begin.t_ns < t_ns && begin.generation == filter_.generation())
-    data_->rates.add(begin.t_ns, t_ns,
-                     log_so3(Quat(begin.q_WC.conjugate() * q_WC)) /
-                         static_cast<Scalar>(seconds(elapsed_ns(begin.t_ns, t_ns))));
+    data_->rates.add(
+        begin.t_ns, t_ns,
+        log_so3(Quat(begin.q_WC.conjugate() * q_WC)) / static_cast<Scalar>(seconds(elapsed_ns(begin.t_ns, t_ns))));
   data_->rate_begin = {follows ? t_ns : 0, q_WC, filter_.generation()};
   if (!follows || ++data_->until_fit < kEvery || data_->rates.span() < std::min(wanted_span(), kLongest)) return;
   data_->until_fit = 0;

@@ -114,8 +114,9 @@ Bend BodyMotion::bend_of_readout(std::int64_t unit_ns, const ImuReading& now, co
   bend.alpha_C = mounting.rate_C((now.gyro - before.gyro) / static_cast<Scalar>(T));
   if (!filter_.is_metric()) return bend;
   const Vec3 &w = body.w_C, &m = mounting.p_C, accel = (now.accel + before.accel) / 2 - body.accel_bias;
-  bend.a_C = mounting.R_CB * (mounting.intrinsics.D_a * accel) + body.q_WC.conjugate() * (settings_.unit.gravity * body.gravity_W()) -
-             bend.alpha_C.cross(m) - w.cross(w.cross(m));
+  bend.a_C = mounting.R_CB * (mounting.intrinsics.D_a * accel) +
+             body.q_WC.conjugate() * (settings_.unit.gravity * body.gravity_W()) - bend.alpha_C.cross(m) -
+             w.cross(w.cross(m));
   return bend;
 }
 
@@ -157,8 +158,7 @@ void BodyMotion::damp(Scalar dt) {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) P_speed(i, j) = filter_.covariance()(first + i, first + j);
   const Body& body = filter_.state().body;
-  Vec3 rate =
-      settings_.inertial ? Vec3(-filter_.state().mounting.reading_of(body.w_C)) : body.w_C;  // e_b = -e_w
+  Vec3 rate = settings_.inertial ? Vec3(-filter_.state().mounting.reading_of(body.w_C)) : body.w_C;  // e_b = -e_w
   limit_speed(dt, largest_variance(filter_, Body::kTheta), largest_variance(filter_, Body::kPosition), &rate, &P_speed);
   Transition transition;
   damp_speed(body, settings_.body, speed_decay(dt), rate, P_speed, &transition);
@@ -175,7 +175,8 @@ Mat6 BodyMotion::covariance_by_intrinsics(const Transition& transition) const {
     for (int c = 0; c < kColumns; ++c) {
       Scalar sum = 0;
       for (int k = 0; k < dim; ++k) sum += transition.F[i * dim + k] * P(first + c, k);
-      for (int k = 0; k < kColumns; ++k) sum += transition.by_intrinsics[i * kColumns + k] * P(first + c, first + k) / 2;
+      for (int k = 0; k < kColumns; ++k)
+        sum += transition.by_intrinsics[i * kColumns + k] * P(first + c, first + k) / 2;
       half(i, c) = sum;
     }
   Mat6 out = Mat6::Zero();

@@ -4,7 +4,8 @@
 #include "filter/filter.h"
 #include "filter/imu_path.h"
 
-/// How the inertial unit is mounted on the camera, its delay and its intrinsics: what a map begins with, which earlier maps may have estimated.
+/// How the inertial unit is mounted on the camera, its delay and its intrinsics: what a map begins with, which earlier maps may have
+/// estimated.
 
 namespace pf {
 

@@ -32,8 +32,8 @@ void MapBeginning::empty_filter() {
   filter_.init(settings_.kernels, settings_.body, settings_.keep_gauge);
   filter_.set_lens(settings_.camera, settings_.lens);
   // Where the scale is not known, neither is the unit's place in it.
-  filter_.set_mounting({mounting_.initial().R_CB, Vec3::Zero(), mounting_.initial().delay, false,
-                        mounting_.initial().intrinsics});
+  filter_.set_mounting(
+      {mounting_.initial().R_CB, Vec3::Zero(), mounting_.initial().delay, false, mounting_.initial().intrinsics});
   filter_.set_roughness(settings_.fold.roughness);
   map_.mark = Mark();
 }
@@ -74,8 +74,7 @@ void MapBeginning::begin(const Target* target, bool fitted) {
 }
 
 void MapBeginning::begin_at(const Body& body, const Target* fitted_to) {
-  Scalar J_lens[BodyLayout::kMaxUnitRows * kLensParameters] =
-      {};  // of the pose; velocities do not depend on the lens
+  Scalar J_lens[BodyLayout::kMaxUnitRows * kLensParameters] = {};  // of the pose; velocities do not depend on the lens
   const LensRows& rows = filter_.state().lens_rows;
   PoseEstimate pose;
   pose.q_WC = body.q_WC;
