@@ -226,8 +226,7 @@ class Filter {
   ///
   ///   z = (b_g, b_a - R^T g),   e_bg,   e_ba - R^T [g]x theta - R^T E d          E = gravity (-R_WG e_y, R_WG e_x)
   ///
-  /// and where the unit's axes are estimated, theta + R_WC mu in place of theta; with intrinsics -D_a^-1 R^T g in place of
-  /// -R^T g. A rotation of the world with gravity changes neither.
+  /// and where they are estimated, by axes theta + R_WC mu for theta, by intrinsics D_a^-1 R^T for R^T. A rotation of W changes neither.
   void predict_still(const StillReading& still, Scalar gravity, StillMeasurement* out) const;
   /// Whether the reading is within max_nis of that; updates with it where `commit` says so.
   bool take_still(const StillReading& still, Scalar gravity, Scalar max_nis, bool commit);
