@@ -27,6 +27,7 @@ constexpr double kUsualMountRad = 0.052, kUsualMountM = 0.03;  ///< 3 degrees
 constexpr double kAnyMountRad = 3.0, kAnyMountM = 0.1;
 constexpr double kUsualDelayS = 0.06;
 constexpr double kUsualReadoutS = 0.015;
+constexpr double kUsualScale = 0.01;  ///< sensitivity and cross-axis errors, as data sheets of phones' units state them
 constexpr double kAheadSigmas = 3.0, kLiveAheadS = 0.03;
 
 constexpr double kRadians = 3.14159265358979 / 180.0;
@@ -90,6 +91,11 @@ void add_inertial(const pf_slam_t* slam, int64_t metric_frame, bool moving, cons
     json["mount"] = {{"q_BC", model.q_BC}, {"p_BC", model.p_BC}};
   }
   json["scale_sigma"] = any && sigma.log_scale >= 0.0 ? nlohmann::ordered_json(rounded(sigma.log_scale)) : nullptr;
+  if (estimated(sigma.scale)) {
+    json["gyro_matrix"] = known.gyro_matrix;
+    json["accel_matrix"] = known.accel_matrix;
+    json["matrix_sigma"] = rounded(sigma.scale);
+  }
   json["delay_s"] = rounded(estimated(sigma.delay_s) ? known.delay_s : model.delay_s);
   if (estimated(sigma.delay_s)) {
     json["delay_sigma_s"] = rounded(sigma.delay_s);
@@ -178,6 +184,7 @@ void ImuFeed::choose_sigmas(const Options& options) {
   model_.sigma_mount_rad = sigma("mount", kSigmaMountRad, open_axes_ ? kAnyMountRad : kUsualMountRad);
   model_.sigma_mount_m = sigma("mount", kSigmaMountM, open_axes_ ? kAnyMountM : kUsualMountM);
   model_.sigma_delay_s = sigma("delay", kSigmaDelayS, kUsualDelayS);
+  model_.sigma_scale = sigma("scale", kUsualScale, kUsualScale);
   model_.sigma_readout_s = has(options.estimate, "readout") ? kSigmaReadoutS : 0.0;
   sigma_delay_s_ = inertial_ ? model_.sigma_delay_s : 0.0;
   tries_readout_ = !near_only && options.imu_exact.empty();

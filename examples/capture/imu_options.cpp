@@ -38,11 +38,12 @@ void add_imu_options(CLI::App& app, Options& options) {
       ->group(group);
   app.add_option(
          "--estimate", options.estimate,
-         "mount, delay, readout: estimated from 2 degrees and 2 cm, 10 ms, 10 ms about what is given, the others\n"
-         "exact; without it mounting and delay are estimated from 3 degrees, 3 cm and any delay within 0.2 s")
+         "mount, delay, readout, scale: estimated from 2 degrees and 2 cm, 10 ms, 10 ms, 1 % about what is given, the\n"
+         "others exact; without it mounting and delay are estimated from 3 degrees, 3 cm and any delay within 0.2 s,\n"
+         "and scales and axes of the sensors from 1 %")
       ->delimiter(',')
       ->group(group);
-  app.add_option("--imu-exact", options.imu_exact, "mount, delay: taken as they are given, and not estimated")
+  app.add_option("--imu-exact", options.imu_exact, "mount, delay, scale: taken as they are given, and not estimated")
       ->delimiter(',')
       ->group(group);
   app.add_option_function<std::string>(
@@ -82,13 +83,13 @@ std::string check_imu_options(const Options& options) {
     return "--imu-mount: poses depend on the samples only where their noise is known; add --imu-noise FILE";
   }
   for (const std::string& what : options.estimate) {
-    if (what != "mount" && what != "delay" && what != "readout") {
-      return "--estimate " + what + ": write mount, delay, readout or some of them, as mount,delay";
+    if (what != "mount" && what != "delay" && what != "readout" && what != "scale") {
+      return "--estimate " + what + ": write mount, delay, readout, scale or some of them, as mount,delay";
     }
   }
   for (const std::string& what : options.imu_exact) {
-    if (what != "mount" && what != "delay") {
-      return "--imu-exact " + what + ": write mount, delay or both, as mount,delay";
+    if (what != "mount" && what != "delay" && what != "scale") {
+      return "--imu-exact " + what + ": write mount, delay, scale or some of them, as mount,delay";
     }
     if (std::find(options.estimate.begin(), options.estimate.end(), what) != options.estimate.end()) {
       return "--imu-exact " + what + " and --estimate " + what + " exclude each other; leave one of them away";

@@ -189,6 +189,7 @@ static void test_check_should_name_what_the_inertial_model_lacks(void) {
   NAMES_REAL(imu.sigma_mount_rad, -1e-3, 4.1);
   NAMES_REAL(imu.sigma_mount_m, -1e-3, 1.1);
   NAMES_REAL(imu.sigma_delay_s, -1e-3, 0.21);
+  NAMES_REAL(imu.sigma_scale, -1e-3, 0.06);
   NAMES(imu.sigma_delay_s, 1e-9); /* less than float can hold */
   config.imu.sigma_mount_rad = config.imu.sigma_mount_m = 0.02;
   config.imu.sigma_delay_s = 0.01;

@@ -77,6 +77,7 @@ inline void extend(Bytes& bytes, pf_config_t* config) {
       config->imu.sigma_mount_m = between(bytes, 1e-6, 1);
       config->imu.sigma_delay_s = between(bytes, 1e-6, 0.1);
       if (config->camera.readout_s > 0) config->imu.sigma_readout_s = 0.01;
+      if ((more & 128) != 0) config->imu.sigma_scale = between(bytes, 1e-6, 0.05);
     }
   }
   if ((more & 16) != 0) {

@@ -11,7 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, fail, run  # noqa: E402
 
 SEEDS = 4
-EXACT = ("--imu-exact", "mount,delay")
+EXACT = ("--imu-exact", "mount,delay,scale")
 
 
 def require(condition, message):
@@ -121,7 +121,9 @@ with tempfile.TemporaryDirectory() as name:
 
     # A unit as phones have it, of which nothing but a third of its noise and about how it is mounted is told.
     phone, _ = report(folder, "--seconds", "14", "--unit", "phone")
-    require(phone["doubt"]["runs"] <= 1 and phone["lost_runs"] == 0, f"a phone's unit: {phone['doubt']}")
+    require(phone["doubt"]["runs"] == 0 and phone["lost_runs"] == 0, f"a phone's unit: {phone['doubt']}")
+    require(1.5 < phone["nees_pose"]["mean"] < 12, f"pose NEES {phone['nees_pose']['mean']} with a phone's unit")
+    require(phone["nees_gyro_bias"] < 9 and phone["nees_accel_bias"] < 9, "NEES of a phone's biases")
     require(phone["starts"]["accepted"] == SEEDS, f"a phone's unit: {phone['starts']}")
     # Axes of which nothing is told are found.
     turned, _ = report(folder, "--seconds", "10", "--axes", "13")

@@ -36,7 +36,7 @@ struct Clip {
     ImuReading r;
     r.gyro = log_so3(Quat(Mat3((R_WC(t - h) * R_CB).transpose() * (R_WC(t + h) * R_CB)))) / Scalar(2 * h);
     const Vec3 a = (p_B(t + h) + p_B(t - h) - 2 * p_B(t)) / Scalar(h * h);
-    r.accel = R.transpose() * (a - Scalar(kGravity) * down) + bias;
+    r.accel = by_force * (R.transpose() * (a - Scalar(kGravity) * down)) + bias;
     return r;
   }
   /// interval: 0.1 s or 1 / 30 s.
@@ -67,8 +67,9 @@ struct Clip {
   }
 
   bool even = false;
-  double reach = 1;          ///< of the hand
-  Vec3 turn = Vec3::Zero();  ///< of the poses' rotations, away from the truth [rad/s]
+  double reach = 1;                  ///< of the hand
+  Vec3 turn = Vec3::Zero();          ///< of the poses' rotations, away from the truth [rad/s]
+  Mat3 by_force = Mat3::Identity();  ///< readings, beside their bias
   Scalar scale = Scalar(2.5);
   Vec3 down = Vec3(Scalar(0.2), Scalar(0.9), Scalar(-0.3)).normalized();
   Vec3 bias = Vec3(Scalar(0.05), Scalar(-0.08), Scalar(0.03));
@@ -90,6 +91,42 @@ void test_exact_samples_should_give_the_exact_scale_gravity_and_bias() {
   TEST_ASSERT_TRUE((found.accel_bias - clip.bias).norm() < Scalar(5e-3));
   TEST_ASSERT_TRUE(found.misfit < Scalar(0.1));
   TEST_ASSERT_TRUE(found.sigma_scale() < Scalar(0.02));
+}
+
+/// What the accelerometer's scale and axes are off is in scale, gravity and bias, as by_force says.
+void test_intrinsics_that_are_off_should_put_the_solution_off_by_as_much_as_it_says() {
+  SeededRandom random(332);
+  for (int trial = 0; trial < 5; ++trial) {
+    const Clip exact;
+    Clip clip;
+    Eigen::Matrix<Scalar, 9, 1> e;
+    for (int i = 0; i < 9; ++i) e(i) = Scalar(0.01 * random.normal());
+    Mat3 E;
+    E << e(0), e(1), e(2), e(3), e(4), e(5), e(6), e(7), e(8);
+    clip.by_force = (Mat3::Identity() + E).inverse();
+    const MovingStartNoise::OfForce of_force = Scalar(1e-4) * MovingStartNoise::OfForce::Identity();
+    MovingStartNoise noise = kNoise;
+    noise.of_force = &of_force;
+    const std::vector<MovingPose> poses = clip.poses(28, 0.1, 0, random), at = exact.poses(28, 0.1, 0, random);
+    MovingSolution found, right;
+    TEST_ASSERT_TRUE(solve_moving_start(poses.data(), 28, noise, &found));
+    TEST_ASSERT_TRUE(solve_moving_start(at.data(), 28, noise, &right));
+    Eigen::Matrix<Scalar, 6, 1> off;  // what is missing
+    const Mat3 R_WG = found.q_WG.toRotationMatrix();
+    const Vec3 tilt = R_WG.col(2).cross(right.q_WG.toRotationMatrix().col(2));
+    off << std::log(right.scale / found.scale), tilt.dot(R_WG.col(0)), tilt.dot(R_WG.col(1)),
+        right.accel_bias - found.accel_bias;
+    const Eigen::Matrix<Scalar, 6, 1> expected = found.by_force * e;
+    for (int i = 0; i < 6; ++i) {
+      if (std::abs(off(i) - expected(i)) > Scalar(0.15) * expected.norm() + Scalar(1e-3))
+        std::printf("row %d: %.5f, %.5f expected\n", i, static_cast<double>(off(i)), static_cast<double>(expected(i)));
+      TEST_ASSERT_TRUE(std::abs(off(i) - expected(i)) <= Scalar(0.15) * expected.norm() + Scalar(1e-3));
+    }
+    TEST_ASSERT_TRUE(found.sigma_scale() > Scalar(0.005));
+    noise.of_force = nullptr;
+    TEST_ASSERT_TRUE(solve_moving_start(poses.data(), 28, noise, &right));
+    TEST_ASSERT_TRUE((found.covariance - right.covariance - found.of_force).norm() < Scalar(1e-5));
+  }
 }
 
 struct Honesty {
@@ -211,6 +248,7 @@ void test_too_few_poses_should_be_refused() {
 int main(void) {
   UNITY_BEGIN();
   RUN_TEST(test_exact_samples_should_give_the_exact_scale_gravity_and_bias);
+  RUN_TEST(test_intrinsics_that_are_off_should_put_the_solution_off_by_as_much_as_it_says);
   RUN_TEST(test_noise_of_poses_should_be_that_of_the_solution);
   RUN_TEST(test_poses_that_turn_away_should_be_allowed_for);
   RUN_TEST(test_solution_should_know_what_poses_that_turn_away_put_it_off_by);

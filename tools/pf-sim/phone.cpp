@@ -1,5 +1,9 @@
 #include "phone.h"
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 namespace pfsim {
 namespace {
 
@@ -32,15 +36,37 @@ void turn_axes(int which, ImuOptions* imu) {
   turn(R, imu);
 }
 
-void make_phone(std::uint64_t seed, ImuOptions* imu) {
+std::string choose_parts(const std::vector<std::string>& names, PhoneParts* parts) {
+  if (names.empty()) return "";
+  const std::pair<const char*, bool PhoneParts::*> kParts[] = {
+      {"scale", &PhoneParts::scale}, {"cross", &PhoneParts::cross},   {"noise", &PhoneParts::noise},
+      {"delay", &PhoneParts::delay}, {"jitter", &PhoneParts::jitter}, {"mount", &PhoneParts::mount},
+      {"rows", &PhoneParts::rows}};
+  for (const auto& part : kParts) parts->*part.second = false;
+  for (const std::string& name : names) {
+    const auto* const found =
+        std::find_if(std::begin(kParts), std::end(kParts), [&](const auto& part) { return name == part.first; });
+    if (found == std::end(kParts)) return name;
+    parts->*found->second = true;
+  }
+  return "";
+}
+
+void make_phone(std::uint64_t seed, const PhoneParts& parts, ImuOptions* imu) {
   Random draw(seed, kStream);
   for (auto* error : {&imu->gyro_error, &imu->accel_error})
-    for (std::size_t i = 0; i < 9; ++i) (*error)[i] = draw.normal() * (i % 4 == 0 ? kScale : kCross);
-  for (double* density : {&imu->gyro_density, &imu->accel_density, &imu->gyro_walk, &imu->accel_walk})
-    *density *= kNoise;
-  imu->delay_s += kDelay;
-  imu->jitter_s = kJitter;
-  turn(pf::sim::rotation_exp(draw.normal3().unit() * kTurn), imu);
+    for (std::size_t i = 0; i < 9; ++i) {
+      const bool on_axis = i % 4 == 0;
+      const double drawn = draw.normal() * (on_axis ? kScale : kCross);
+      (*error)[i] = (on_axis ? parts.scale : parts.cross) ? drawn : 0;
+    }
+  if (parts.noise)
+    for (double* density : {&imu->gyro_density, &imu->accel_density, &imu->gyro_walk, &imu->accel_walk})
+      *density *= kNoise;
+  if (parts.delay) imu->delay_s += kDelay;
+  if (parts.jitter) imu->jitter_s = kJitter;
+  const pf::sim::Vec3 axis = draw.normal3().unit();
+  if (parts.mount) turn(pf::sim::rotation_exp(axis * kTurn), imu);
 }
 
 }  // namespace pfsim

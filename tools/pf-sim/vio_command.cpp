@@ -24,7 +24,8 @@ using nlohmann::json;
 constexpr double kSigmaMountRad = 2 * 3.14159265358979 / 180, kSigmaMountM = 0.02, kSigmaDelayS = 0.01,
                  kSigmaReadoutS = 0.01;
 // Of what nobody tells, as pf-capture takes it.
-constexpr double kUsualMountRad = 0.052, kUsualMountM = 0.03, kUsualDelayS = 0.06, kUsualReadoutS = 0.015;
+constexpr double kUsualMountRad = 0.052, kUsualMountM = 0.03, kUsualDelayS = 0.06, kUsualReadoutS = 0.015,
+                 kUsualScale = 0.01;
 constexpr double kAnyMountRad = 3, kAnyMountM = 0.1;
 
 struct Choices {
@@ -37,6 +38,7 @@ struct Choices {
   std::vector<std::string> estimate;   ///< of the unit: mount, delay
   std::vector<std::string> imu_exact;  ///< likewise, taken as told
   std::string unit = "laboratory";
+  std::vector<std::string> parts;  ///< of a phone's unit
   double noise_scale = 1;
   std::string json_file, csv, fault = "none", start = "rest";
 };
@@ -377,11 +379,11 @@ std::string choose_unit(Choices* c) {
   };
   VioOptions& o = c->vio;
   for (const std::string& what : c->estimate)
-    if (what != "mount" && what != "delay" && what != "readout")
-      return "--estimate " + what + ": write mount, delay, readout or some of them, as mount,delay";
+    if (what != "mount" && what != "delay" && what != "readout" && what != "scale")
+      return "--estimate " + what + ": write mount, delay, readout, scale or some of them, as mount,delay";
   for (const std::string& what : c->imu_exact) {
-    if (what != "mount" && what != "delay")
-      return "--imu-exact " + what + ": write mount, delay or both, as mount,delay";
+    if (what != "mount" && what != "delay" && what != "scale")
+      return "--imu-exact " + what + ": write mount, delay, scale or some of them, as mount,delay";
     if (has(c->estimate, what.c_str()))
       return "--imu-exact " + what + " and --estimate " + what + " exclude each other";
   }
@@ -390,6 +392,9 @@ std::string choose_unit(Choices* c) {
   if (o.axes >= 0 && (has(c->imu_exact, "mount") || has(c->estimate, "mount")))
     return "--axes: nothing is told of them; leave mount out of --imu-exact and --estimate";
   o.phone = c->unit == "phone";
+  if (!o.phone && !c->parts.empty()) return "--parts are those of --unit phone; add that";
+  const std::string no_part = choose_parts(c->parts, &o.phone_parts);
+  if (!no_part.empty()) return "--parts " + no_part + ": write some of scale, cross, noise, delay, jitter, mount, rows";
   const bool usual = c->estimate.empty();
   if (has(c->estimate, "mount")) {
     o.sigma_mount_rad = o.told_mount_rad = kSigmaMountRad;
@@ -402,8 +407,9 @@ std::string choose_unit(Choices* c) {
     o.sigma_delay_s = o.told_delay_s = kSigmaDelayS;
   else if (usual && !has(c->imu_exact, "delay"))
     o.told_delay_s = kUsualDelayS;
+  if (has(c->estimate, "scale") || (usual && !has(c->imu_exact, "scale"))) o.told_scale = kUsualScale;
   if (has(c->estimate, "readout")) o.sigma_readout_s = kSigmaReadoutS;
-  if (!o.phone) return "";
+  if (!o.phone || !o.phone_parts.rows) return "";
   if (o.sigma_readout_s > 0 || o.as_global || o.readout_s > 0)
     return "--unit phone has rows of its own; leave --readout, --as-global and --estimate readout away";
   o.readout_s = kPhoneReadout;
@@ -514,15 +520,21 @@ void add_vio(CLI::App& app, int& result) {
   command->add_option("--noise-scale", c->noise_scale, "times the noise of EuRoC's unit, of truth and filter");
   command->add_option("--delay", c->vio.imu.delay_s, "of frames against samples, known [s]");
   command
-      ->add_option("--estimate", c->estimate,
-                   "mount, delay: drawn with 2 degrees, 2 cm and 10 ms, and estimated from there on; readout: known as "
-                   "10 ms less than --readout, and estimated; the others as told. Without it mounting and delay are "
-                   "estimated from 3 degrees, 3 cm and any delay within 0.2 s")
+      ->add_option(
+          "--estimate", c->estimate,
+          "mount, delay: drawn with 2 degrees, 2 cm and 10 ms, and estimated from there on; readout: known as "
+          "10 ms less than --readout, and estimated; scale: estimated from 1 %; the others as told. Without it "
+          "mounting and delay are estimated from 3 degrees, 3 cm and any delay within 0.2 s, and the sensors' "
+          "scales and axes from 1 %")
       ->delimiter(',');
-  command->add_option("--imu-exact", c->imu_exact, "mount, delay: as told, and not estimated")->delimiter(',');
+  command->add_option("--imu-exact", c->imu_exact, "mount, delay, scale: as told, and not estimated")->delimiter(',');
   command->add_option("--unit", c->unit,
                       "laboratory; or phone: scales off by 1 %, axes by 0.5 %, three times the noise, 50 ms early with "
                       "a jitter of 1 ms, 2 degrees off, and rows read out over 20 ms, of all of which nothing is told");
+  command
+      ->add_option("--parts", c->parts,
+                   "of that, scale, cross, noise, delay, jitter, mount, rows or some of them; the others are as told")
+      ->delimiter(',');
   command->add_option("--axes", c->vio.axes, "0 to 23: the unit's axes, of which nothing is told")
       ->check(CLI::Range(0, 23));
   command->add_option(

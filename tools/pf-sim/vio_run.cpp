@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "context.h"
-#include "phone.h"
 #include "statistics.h"
 #include "update_cost.h"
 #include "vio_planes.h"
@@ -78,6 +77,7 @@ pf_config_t config_of(const VioOptions& o, const pf_camera_t& camera) {
   config.imu.sigma_mount_rad = o.told_mount_rad;
   config.imu.sigma_mount_m = o.told_mount_m;
   config.imu.sigma_delay_s = o.told_delay_s;
+  config.imu.sigma_scale = o.told_scale;
   config.imu.sigma_readout_s = o.sigma_readout_s;
   return config;
 }
@@ -134,7 +134,7 @@ class Run {
     }
     imu.delay_s += delay;
     if (o.axes >= 0) turn_axes(o.axes, &imu);
-    if (o.phone) make_phone(seed, &imu);
+    if (o.phone) make_phone(seed, o.phone_parts, &imu);
     if (o.fault == VioFault::kGap) {
       imu.gap_at_s = o.fault_at_s;
       imu.gap_s = kStill;
@@ -237,6 +237,7 @@ class Run {
     if (begins_anew(pose.map_id)) {
       first_ = world_.path()(t);
       last_ = truth = truth_at(t);
+      has_gauge_ = false;
     }
     note_doubt(t, pose);
     const bool judged = note_unit(k, report);
@@ -333,12 +334,19 @@ class Run {
     return true;
   }
 
+  /// The unit's axes where the gyroscope's have no rotation of their own: of a reading (1 + E) w half of E - E^T is one.
+  pf::sim::Mat3 gyro_axes() const {
+    const auto& e = unit_.gyro_error;
+    return pf::sim::rotation_exp(Vec3{e[7] - e[5], e[2] - e[6], e[3] - e[1]} * 0.5);
+  }
+
   /// Of the last frame.
   void note_mounting() {
     pf_inertial_t unit;
     if (pf_get_inertial(context_.slam, &unit) != PF_OK) return;
-    const Vec3 turn = pf::sim::rotation_log(unit_.R_BC * pf::sim::rotation_of(unit.q_BC).transposed());
-    const Vec3 shift = unit_.p_BC - Vec3{unit.p_BC[0], unit.p_BC[1], unit.p_BC[2]};
+    const auto axes = o_.told_scale > 0 ? gyro_axes() : pf::sim::Mat3();
+    const Vec3 turn = pf::sim::rotation_log(axes * unit_.R_BC * pf::sim::rotation_of(unit.q_BC).transposed());
+    const Vec3 shift = axes * unit_.p_BC - Vec3{unit.p_BC[0], unit.p_BC[1], unit.p_BC[2]};
     const double delay = unit_.delay_s - unit.delay_s;
     if (o_.told_mount_rad > 0) out_.mount_error_rad = turn.norm();
     if (o_.told_mount_m > 0) out_.mount_error_m = shift.norm();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "phone.h"
 #include "run.h"
 #include "sim/imu.h"
 
@@ -41,10 +42,11 @@ struct VioOptions {
   /// From which the errors of the unit's mounting and delay are drawn [rad], [m], [s]; 0: none.
   double sigma_mount_rad = 0, sigma_mount_m = 0, sigma_delay_s = 0;
   /// With which they are estimated; 0: taken as exact.
-  double told_mount_rad = 0, told_mount_m = 0, told_delay_s = 0;
+  double told_mount_rad = 0, told_mount_m = 0, told_delay_s = 0, told_scale = 0;
   int axes =
       -1;  ///< of the unit, that nothing is told of: one of the 24 rotations of a cube on top of its mounting; negative: as they are
   bool phone = false;          ///< the unit is one of a phone (phone.h)
+  PhoneParts phone_parts;      ///< of that, what is wrong
   double readout_s = 0;        ///< of the frames' rows
   double sigma_readout_s = 0;  ///< known as that much less, and estimated; 0: known exactly
   double told_readout_s = -1;  ///< known as that, and estimated; negative: as above

@@ -249,6 +249,9 @@ typedef struct pf_imu_model {
   /* Of camera.readout_s, which may be 0 then; up to 0.1. One more row of the lens, which is
    * considered where camera.estimate says so, and else estimated. It never falls below 0. */
   double sigma_readout_s;
+  /* Of the scales of both sensors and of the directions of their axes, relative, up to 0.05: what
+   * data sheets call sensitivity and cross-axis errors, 0.01 for a phone. 15 rows of the state */
+  double sigma_scale;
 } pf_imu_model_t;
 
 /* Fill with pf_config_default, then change what you know better. pf_config_check names a bad field
@@ -939,6 +942,9 @@ typedef struct pf_inertial {
   /* Mounting and delay as they are known now; those of the config where they are not estimated. */
   double q_BC[4], p_BC[3], delay_s;
   double readout_s; /* of the camera's rows */
+  /* What readings become, row-major: w_B = gyro_matrix (gyro - gyro_bias), likewise the specific
+   * force. Identity where they are not estimated. */
+  double gyro_matrix[9], accel_matrix[9];
   /* Standard deviations. Negative: not estimated, or not known yet. */
   struct {
     double gravity_rad[2];           /* about gravity_axes_W */
@@ -947,6 +953,7 @@ typedef struct pf_inertial {
     double mount_rad[3], mount_m[3]; /* of q_BC about the axes of B, and of p_BC */
     double delay_s, readout_s;
     double log_scale; /* of the best known length */
+    double scale;     /* of the two matrices, the largest of their entries */
   } sigma;
 } pf_inertial_t;
 

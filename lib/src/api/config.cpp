@@ -87,10 +87,9 @@ constexpr Range kUnit[] = {
 };
 
 constexpr Range kUnitSigmas[] = {
-    PF_FIELD(imu.sigma_mount_rad, 1e-6, 4),
-    PF_FIELD(imu.sigma_mount_m, 1e-6, 1),
-    PF_FIELD(imu.sigma_delay_s, 1e-6, 0.2),
-    PF_FIELD(imu.sigma_readout_s, 1e-6, 0.1),
+    PF_FIELD(imu.sigma_mount_rad, 1e-6, 4), PF_FIELD(imu.sigma_mount_m, 1e-6, 1),
+    PF_FIELD(imu.sigma_delay_s, 1e-6, 0.2), PF_FIELD(imu.sigma_readout_s, 1e-6, 0.1),
+    PF_FIELD(imu.sigma_scale, 1e-6, 0.05),
 };
 
 #undef PF_FIELD
@@ -159,7 +158,10 @@ const char* unit_from(const pf_config_t& config, ImuUnit* unit, BodyLayout* layo
   unit->sigma_turn = static_cast<Scalar>(imu.sigma_mount_rad);
   unit->sigma_place = static_cast<Scalar>(imu.sigma_mount_m);
   unit->sigma_delay = static_cast<Scalar>(imu.sigma_delay_s);
+  unit->sigma_scale = static_cast<Scalar>(imu.sigma_scale);
+  unit->mounting.intrinsics.open = imu.sigma_scale > 0;
   layout->add_mounting(imu.sigma_mount_rad > 0, imu.sigma_mount_m > 0, imu.sigma_delay_s > 0);
+  if (imu.sigma_scale > 0) layout->add_intrinsics();
   return nullptr;
 }
 

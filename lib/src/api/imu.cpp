@@ -95,9 +95,13 @@ pf_status_t pf_get_inertial(const pf_slam_t* slam, pf_inertial_t* inertial) {
   pf::copy(unit.p_BC, 3, inertial->p_BC);
   inertial->delay_s = unit.delay_s;
   inertial->readout_s = unit.readout_s;
-  static_assert(sizeof inertial->sigma == 17 * sizeof(double));
-  double sigma[17];
-  for (int i = 0; i < 17; ++i) sigma[i] = static_cast<double>(unit.sigma[i]);
+  for (int i = 0; i < 9; ++i) {
+    inertial->gyro_matrix[i] = static_cast<double>(unit.intrinsics.D_w(i / 3, i % 3));
+    inertial->accel_matrix[i] = static_cast<double>(unit.intrinsics.D_a(i / 3, i % 3));
+  }
+  static_assert(sizeof inertial->sigma == 18 * sizeof(double));
+  double sigma[18];
+  for (int i = 0; i < 18; ++i) sigma[i] = static_cast<double>(unit.sigma[i]);
   std::memcpy(&inertial->sigma, sigma, sizeof sigma);
   return PF_OK;
 }

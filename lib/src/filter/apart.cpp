@@ -17,7 +17,7 @@ bool Filter::keeps_apart() const {
 }
 
 void Filter::set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens) {
-  const int rows = state_.layout.dynamic_rows();
+  const int rows = state_.layout.unit_rows();
   state_.body = body;
   apart_.clear();
   if (body.v_W != Vec3::Zero() && told_updates_ == 0) told_updates_ = kSpeedTells;
@@ -28,7 +28,7 @@ void Filter::set_body(const Body& body, const Scalar* covariance, const Scalar* 
     return;
   }
   apart_.set_pose(state_, covariance, rows);
-  Scalar left[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
+  Scalar left[BodyLayout::kMaxUnitRows * BodyLayout::kMaxUnitRows];
   std::copy(covariance, covariance + rows * rows, left);
   for (int i = 0; i < Body::kPoseDim; ++i)
     for (int j = 0; j < Body::kPoseDim; ++j) left[i * rows + j] = i == j ? kLeftSigma * kLeftSigma : Scalar(0);

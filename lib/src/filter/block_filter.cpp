@@ -87,6 +87,32 @@ void BlockFilter::predict(const Scalar* F, const Scalar* Q, int rows) {
   kernels_->predict(P_, F, Q, rows);
 }
 
+/// One row after the other: x_d += B_d c is a transition of its own, which leaves c and the other rows as they are.
+void BlockFilter::add_constants(const Scalar* B, int rows, int first, int columns) {
+  PF_ASSERT(first >= rows && first + columns <= leading_dim_);
+  const auto is_empty = [&](int d) {
+    for (int k = 0; k < columns; ++k)
+      if (B[d * columns + k] != Scalar(0)) return false;
+    return true;
+  };
+  for (int d = 0; d < rows; ++d) {
+    if (is_empty(d)) continue;
+    Scalar own = 0;  // 2 B P_cd + B P_cc B^T
+    for (int k = 0; k < columns; ++k) {
+      Scalar sum = 2 * P_(first + k, d);
+      for (int l = 0; l < columns; ++l) sum += P_(first + k, first + l) * B[d * columns + l];
+      own += sum * B[d * columns + k];
+    }
+    for (int x = 0; x < P_.n; ++x) {
+      if (x == d) continue;
+      Scalar sum = P_(x, d);
+      for (int k = 0; k < columns; ++k) sum += P_(x, first + k) * B[d * columns + k];
+      P_.set(x, d, sum);
+    }
+    P_.set(d, d, P_(d, d) + own);
+  }
+}
+
 void BlockFilter::augment(int block, const Rows& J, const Scalar* Q) {
   PF_ASSERT(J.rows <= room());
   Located located;

@@ -57,6 +57,8 @@ class BlockFilter {
   void set_constants(int first, const Scalar* covariance);
   /// The first `rows` rows move by F, noise Q is added (both rows x rows, row-major).
   void predict(const Scalar* F, const Scalar* Q, int rows);
+  /// Constants c of the leading block, rows `first` and behind, add B c to the first `rows` rows (B: rows x columns, row-major).
+  void add_constants(const Scalar* B, int rows, int first, int columns);
   /// New rows J x + noise for a block, behind all others; those that it has go.
   void augment(int block, const Rows& J, const Scalar* Q);
   /// Likewise with the sum of `count` Jacobians that together touch more blocks than rows can: J(k) -> Rows of `rows` rows over one part.

@@ -46,7 +46,7 @@ void Filter::init(const Kernels* kernels, const BodyLayout& layout, bool keep_ga
 void Filter::set_lens(const Camera& camera, const LensPrior& prior) {
   state_.lens = camera;
   state_.lens_rows = prior.rows;
-  PF_ASSERT(state_.layout.rows() - state_.layout.dynamic_rows() == prior.rows.count);
+  PF_ASSERT(state_.layout.rows() - state_.layout.unit_rows() == prior.rows.count);
   const int n = prior.rows.count;
   Scalar C[kLensParameters * kLensParameters];
   for (int a = 0; a < n; ++a)
@@ -67,6 +67,9 @@ void Filter::predict(const Transition& transition) {
   state_.body = transition.mean;
   state_.bend = transition.bend;
   blocks_.predict(transition.F, transition.Q, transition.dim);
+  if (transition.has_intrinsics)
+    blocks_.add_constants(transition.by_intrinsics, transition.dim, state_.layout.row(BodyPart::kIntrinsics),
+                          Intrinsics::kRows);
 }
 
 int Filter::take_slot(BlockKind kind) {

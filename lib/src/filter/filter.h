@@ -79,8 +79,8 @@ class Filter {
   /// The calibration as it is known now.
   const Camera& lens() const { return state_.lens; }
 
-  /// The parts of the body that move become known as covariance says (over their rows, row-major), and with J_lens (null: not) as the lens
-  /// does. Only while nothing in the map depends on the body.
+  /// The parts of the body that move, with the unit's constants, become known as covariance says (over the unit rows, row-major), and with
+  /// J_lens (null: not) as the lens does. Only while nothing in the map depends on the body.
   void set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens = nullptr);
 
   /// From now on something tells the place or the scale of W. What is apart goes into P, and stays there. (The speed of a start does so
@@ -225,7 +225,7 @@ class Filter {
   ///
   ///   z = (b_g, b_a - R^T g),   e_bg,   e_ba - R^T [g]x theta - R^T E d          E = gravity (-R_WG e_y, R_WG e_x)
   ///
-  /// and where the unit's axes are estimated, theta + R_WC mu in place of theta. A rotation of the world with gravity changes neither.
+  /// and where they are estimated, by axes theta + R_WC mu for theta, by intrinsics D_a^-1 R^T for R^T. A rotation of W changes neither.
   void predict_still(const StillReading& still, Scalar gravity, StillMeasurement* out) const;
   /// Whether the reading is within max_nis of that; updates with it where `commit` says so.
   bool take_still(const StillReading& still, Scalar gravity, Scalar max_nis, bool commit);

@@ -31,7 +31,7 @@ class Walk {
       : log_(log), coasting_(coasting), sum_(sum), t_ns_(from_ns) {
     while (next_ < log.held() && log[next_].t_ns <= from_ns) ++next_;
     hold_ns_ = static_cast<std::int64_t>(kMaxHold * static_cast<Scalar>(log.counts().median_ns));
-    now_.gyro = coasting.w_B + sum->gyro_bias();
+    now_.gyro = sum->intrinsics().D_w.inverse() * coasting.w_B + sum->gyro_bias();
   }
 
   void go_to(std::int64_t to_ns) {
@@ -108,13 +108,18 @@ class Walk {
     if (sum_->dt() <= Scalar(0)) first_ = reading;
   }
 
+  /// What the accelerometer would read of the force that is assumed.
+  void read_force() {
+    now_.accel = sum_->intrinsics().D_a.inverse() * (sum_->R().transpose() * coasting_.f_B) + sum_->accel_bias();
+  }
+
   void coast_to(std::int64_t to_ns) {
     const Scalar left = std::max(kMaxCoast - coasted_, Scalar(0));  // after it no motion is predictable
     const Scalar dt = std::min(seconds_between(t_ns_, to_ns), left);
-    now_.accel = sum_->R().transpose() * coasting_.f_B + sum_->accel_bias();
+    read_force();
     note_first(now_);
-    sum_->coast(dt, now_.gyro - sum_->gyro_bias(), coasting_.f_B, coasting_.noise.angular, coasting_.noise.linear);
-    now_.accel = sum_->R().transpose() * coasting_.f_B + sum_->accel_bias();
+    sum_->coast(dt, sum_->rate(now_.gyro), coasting_.f_B, coasting_.noise.angular, coasting_.noise.linear);
+    read_force();
     coasted_ += dt;
     t_ns_ = to_ns;
   }

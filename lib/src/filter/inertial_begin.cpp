@@ -10,14 +10,31 @@ namespace pf {
 
 using namespace inertial_rows;
 
-void begin_without_samples(const Body& body, const BodyLayout& layout, Scalar sigma_rate, bool anew, Scalar sigma_speed,
-                           Transition* transition) {
+namespace {
+
+/// The rows of the gyro's bias by D_w^-1 dD_w D_w^-1 w_B, with this sign: what the intrinsics make of the rate, which those rows stand for
+/// where samples do not move the body.
+void set_rate_by_intrinsics(const Body& body, const Mounting& mounting, Scalar sign, const PartRows& rows,
+                            Transition* transition) {
+  if (rows.intrinsics < 0) return;
+  const Mat3 D_inverse = sign * mounting.intrinsics.D_w.inverse();
+  set_by_intrinsics(transition, rows.gyro, 0,
+                    Eigen::Matrix<Scalar, 3, Intrinsics::kGyroRows>(
+                        D_inverse.lazyProduct(Intrinsics::gyro_by_errors(mounting.reading_of(body.w_C)))));
+}
+
+}  // namespace
+
+void begin_without_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, Scalar sigma_rate,
+                           bool anew, Scalar sigma_speed, Transition* transition) {
   const PartRows rows(layout);
   clear(transition, body, rows.dim);
   if (anew) {
     forget_rows(transition, rows.velocity, 3);
     forget_rows(transition, rows.gyro, 3);
     add_variance(transition, rows.velocity, 3, sigma_speed);
+  } else {
+    set_rate_by_intrinsics(body, mounting, Scalar(-1), rows, transition);
   }
   add_variance(transition, rows.gyro, 3, sigma_rate);
 }
@@ -26,7 +43,8 @@ void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounti
                         Transition* transition) {
   const PartRows rows(layout);
   clear(transition, body, rows.dim);
-  transition->mean.gyro_bias = fresh.gyro - mounting.R_CB.transpose() * body.w_C;
+  transition->mean.gyro_bias = fresh.gyro - mounting.reading_of(body.w_C);
+  set_rate_by_intrinsics(body, mounting, Scalar(1), rows, transition);
   add_variance(transition, rows.gyro, 3, fresh.sigma_gyro);
   if (!fresh.anew) return;
   transition->mean.accel_bias.setZero();
@@ -85,12 +103,15 @@ void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& m
   Body& mean = transition->mean;
   Scalar* Q = transition->Q;
   const Mat3 R = body.q_WC.toRotationMatrix() * mounting.R_CB;
-  const Scalar length = rest.accel.norm();
-  const Vec3 f_B = rest.accel / length, u = -(R * f_B);
+  const Intrinsics& intrinsics = mounting.intrinsics;
+  const Vec3 accel = intrinsics.D_a * rest.accel;
+  const Scalar length = accel.norm();
+  const Vec3 f_B = accel / length, u = -(R * f_B);
   mean.v_W.setZero();
   mean.w_C.setZero();
   mean.gyro_bias = rest.gyro;
-  mean.accel_bias = (length - rest.gravity) * f_B;
+  const Mat3 D_inverse = intrinsics.D_a.inverse();
+  mean.accel_bias = D_inverse * ((length - rest.gravity) * f_B);
   mean.q_WG = turn_z_to(u);
 
   forget_rows(transition, rows.velocity, rows.gravity + 2 - rows.velocity);  // velocity, biases and gravity begin anew
@@ -101,6 +122,13 @@ void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& m
   const Eigen::Matrix<Scalar, 2, 3> K = E_t * hat(u) * R / rest.gravity;  // d by e_b and n
   const Mat3 Q_accel = open + noise * along;
   const Eigen::Matrix<Scalar, 2, 3> Q_cross = K * open;
+  if (rows.intrinsics >= 0) {
+    const auto by_force = Intrinsics::accel_by_errors(D_inverse * (rest.gravity * f_B));
+    set_by_intrinsics(transition, rows.accel, Intrinsics::kGyroRows,
+                      Eigen::Matrix<Scalar, 3, Intrinsics::kAccelRows>(D_inverse * (along * by_force)));
+    set_by_intrinsics(transition, rows.gravity, Intrinsics::kGyroRows,
+                      Eigen::Matrix<Scalar, 2, Intrinsics::kAccelRows>(-K * by_force));
+  }
   const Mat2 Q_gravity = Q_cross * K.transpose() + noise * K * K.transpose();
   for (int i = 0; i < 3; ++i) {
     Q[(rows.velocity + i) * rows.dim + rows.velocity + i] = rest.sigma_speed * rest.sigma_speed;

@@ -47,6 +47,20 @@ void set_by_mounting(const Body& body, const Mounting& mounting, const PartRows&
   if (rows.place >= 0 && mounting.in_metres) set_block<3>(transition->F, rows.dim, Body::kPosition, rows.place, turned);
 }
 
+/// By the errors of the intrinsics, through (e_phi, e_dv, e_dp). by_force: what the specific force does counts.
+void set_by_intrinsics_of(const Preintegral& samples, const Mat3& R, const Mat3& m_hat, bool by_force,
+                          const PartRows& rows, Transition* transition) {
+  if (rows.intrinsics < 0 || !samples.intrinsics().open) return;
+  using By = Eigen::Matrix<Scalar, 3, Intrinsics::kRows>;
+  const Preintegral::ByIntrinsics& D = samples.by_intrinsics();
+  const By by_phi = R.lazyProduct(D.topRows<3>());
+  By by_p = m_hat.lazyProduct(by_phi);
+  if (by_force) by_p += R.lazyProduct(D.bottomRows<3>());
+  set_by_intrinsics(transition, Body::kTheta, 0, by_phi);
+  set_by_intrinsics(transition, Body::kPosition, 0, by_p);
+  if (by_force) set_by_intrinsics(transition, rows.velocity, 0, By(R.lazyProduct(D.middleRows<3>(3))));
+}
+
 /// Pose and velocity of the mean, from where the unit goes.
 void set_mean(const Mounting& mounting, const Mat3& R, const Preintegral& samples, const Vec3& p_B, const Vec3& v,
               Transition* transition, Vec3* m_W) {
@@ -94,6 +108,7 @@ void predict_inertial(const Body& body, const BodyLayout& layout, const Mounting
     set_block<1>(F, rows.dim, rows.velocity, rows.delay, Vec3(R * samples.by_delay().segment<3>(3)));
     set_block<1>(F, rows.dim, Body::kPosition, rows.delay, Vec3(R * samples.by_delay().tail<3>() + m_hat * by_phi));
   }
+  set_by_intrinsics_of(samples, R, m_hat, true, rows, transition);
   set_noise(samples.covariance(), R, m_hat, rows, transition);
 }
 
@@ -123,6 +138,7 @@ void predict_by_rotation(const Body& body, const BodyLayout& layout, const Mount
     set_block<1>(transition->F, rows.dim, Body::kTheta, rows.delay, by_phi);
     set_block<1>(transition->F, rows.dim, Body::kPosition, rows.delay, Vec3(m_hat * by_phi));
   }
+  set_by_intrinsics_of(samples, R, m_hat, false, rows, transition);
   S.middleRows<6>(Preintegral::kVelocity).setZero();
   S.middleCols<6>(Preintegral::kVelocity).setZero();
   for (int i = 0; i < 3; ++i) {
@@ -132,6 +148,20 @@ void predict_by_rotation(const Body& body, const BodyLayout& layout, const Mount
     S(v, p) = S(p, v) = a * T * T / 2;
   }
   set_noise(S, R, m_hat, rows, transition);
+}
+
+/// What the intrinsics have added was added behind F_made, and goes the same way:   B <- B - F F_made^-1 B_made
+void replace_intrinsics(const Transition& made, const Scalar* X, Transition* transition) {
+  if (!made.has_intrinsics) return;
+  constexpr int kColumns = Intrinsics::kRows;
+  const int dim = made.dim;
+  if (!transition->has_intrinsics)
+    for (int i = 0; i < dim * kColumns; ++i) transition->by_intrinsics[i] = Scalar(0);
+  transition->has_intrinsics = true;
+  for (int i = 0; i < dim; ++i)
+    for (int k = 0; k < dim; ++k)
+      for (int j = 0; j < kColumns; ++j)
+        transition->by_intrinsics[i * kColumns + j] -= X[i * dim + k] * made.by_intrinsics[k * kColumns + j];
 }
 
 }  // namespace
@@ -157,6 +187,7 @@ void replace_transition(const Transition& made, Transition* transition) {
       for (int j = 0; j < dim; ++j) X[i * dim + j] = row[j];
     }
   for (int i = 0; i < dim * dim; ++i) transition->F[i] = X[i];
+  replace_intrinsics(made, X, transition);
   for (int i = 0; i < dim; ++i) {
     for (int j = 0; j < dim; ++j) {
       row[j] = Scalar(0);
@@ -171,7 +202,9 @@ void replace_transition(const Transition& made, Transition* transition) {
 /// phi b T / 3 G G^T, between them b / 2 G T.
 void predict_without_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, Scalar dt,
                              const MotionNoise& noise, Transition* transition) {
-  Preintegral path(ImuNoise(), Vec3::Zero(), Vec3::Zero());
+  Intrinsics intrinsics = mounting.intrinsics;
+  intrinsics.open = false;  // the rate is what it is, whatever the intrinsics are
+  Preintegral path(ImuNoise(), Vec3::Zero(), Vec3::Zero(), intrinsics);
   path.coast(dt, mounting.R_CB.transpose() * body.w_C, Vec3::Zero(), Scalar(0), Scalar(0));
   const Mat3 G = path.by_bias().topLeftCorner<3, 3>();
   const Scalar b = noise.angular * noise.angular;

@@ -21,6 +21,7 @@ namespace pf {
 ///   e_p+   += ([m_W+]x (R_WC - R_WC+) - [R dp]x R_WC) mu + (R_WC - R_WC+) e_m
 ///
 /// gravity [m/s^2]. The mean's w_C is left as it is.
+/// By the errors of the intrinsics, where the layout has them, through (e_phi, e_dv, e_dp) of by_intrinsics, as by the biases.
 void predict_inertial(const Body& body, const BodyLayout& layout, const Mounting& mounting, const Preintegral& samples,
                       Scalar gravity, Transition* transition);
 
@@ -29,17 +30,17 @@ void predict_rotation_only(const Body& body, const BodyLayout& layout, const Mou
                            const Preintegral& samples, Scalar linear_density, Transition* transition);
 
 /// Without samples: constant velocity with white accelerations, as in motion.h. The angular velocity stands in the rows of the gyro's
-/// bias (State::uses_samples), e_w = -e_b, both in the axes of the unit:
+/// bias (State::uses_samples), e_w = -D_w e_b, both in the axes of the unit:
 ///
 ///   R_WB+ = R_WB Exp(w_B T),   v+ = v,   p_B+ = p_B + v T
-///   theta+ = theta - T R J_l(w_B T) e_b,   Q: as that of constant velocity, through the same J
+///   theta+ = theta - T R J_l(w_B T) D_w e_b,   Q: as that of constant velocity, through the same J
 void predict_without_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, Scalar dt,
                              const MotionNoise& noise, Transition* transition);
 
 /// From here on without samples. sigma_rate [rad/s]: of the angular velocity, beside the error of the bias that it was known with; with
 /// `anew` it and the velocity, with sigma_speed [m/s], begin anew about their means.
-void begin_without_samples(const Body& body, const BodyLayout& layout, Scalar sigma_rate, bool anew, Scalar sigma_speed,
-                           Transition* transition);
+void begin_without_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, Scalar sigma_rate,
+                           bool anew, Scalar sigma_speed, Transition* transition);
 
 /// What takes back a transition that was made, and makes another from where it began:
 ///
@@ -58,9 +59,10 @@ struct FreshReading {
   Scalar sigma_accel_bias = 0;  ///< [m/s^2]
 };
 
-/// From here on by samples again: b = gyro - w_B, so that the error of the one is that of the other,
+/// From here on by samples again: b = gyro - D_w^-1 w_B, so that the error of the one is that of the other, but for what the intrinsics
+/// do to both (here as where samples end),
 ///
-///   e_b+ = e_b + n,   anew:  e_a+ = n_a,  d+ = E^T theta + n_g        E = (R_WG e_x, R_WG e_y)
+///   e_b+ = e_b + D_w^-1 dD_w D_w^-1 w_B + n,   anew:  e_a+ = n_a,  d+ = E^T theta + n_g        E = (R_WG e_x, R_WG e_y)
 void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounting& mounting, const FreshReading& fresh,
                         Transition* transition);
 
@@ -108,7 +110,8 @@ void allow_for_turned_gravity(const Body& body, const BodyLayout& layout, Scalar
 ///   d = E^T (u x R (e_b + n)) / gravity + E^T theta                        E = (R_WG e_x, R_WG e_y)
 ///
 /// so that of e_b the two rows across gravity stay open, and hang together with d, and the one along it is n. Where the unit's axes are
-/// estimated, theta + R_WC mu stands in place of theta.
+/// estimated, theta + R_WC mu stands in place of theta. With intrinsics, D_a (a - b_a) stands in place of a - b_a, and -dD_a (a - b_a)
+/// beside e_b + n.
 void begin_at_rest(const Body& body, const BodyLayout& layout, const Mounting& mounting, const RestReading& rest,
                    Transition* transition);
 

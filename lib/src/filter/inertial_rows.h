@@ -16,9 +16,11 @@ struct PartRows {
         gravity(layout.row(BodyPart::kGravity)),
         turn(layout.row(BodyPart::kMountRotation)),
         place(layout.row(BodyPart::kMountPlace)),
-        delay(layout.row(BodyPart::kDelay)) {}
+        delay(layout.row(BodyPart::kDelay)),
+        intrinsics(layout.row(BodyPart::kIntrinsics)) {}
   int dim, velocity, gyro, accel, gravity;
   int turn, place, delay;  ///< of the mounting; negative where it is not estimated
+  int intrinsics;          ///< likewise
 };
 
 inline void clear(Transition* t, const Body& body, int dim) {
@@ -26,6 +28,17 @@ inline void clear(Transition* t, const Body& body, int dim) {
   t->dim = dim;
   for (int i = 0; i < dim * dim; ++i) t->F[i] = t->Q[i] = Scalar(0);
   for (int i = 0; i < dim; ++i) t->F[i * dim + i] = Scalar(1);
+  t->has_intrinsics = false;
+}
+
+/// Some rows by the errors of the unit's intrinsics, beginning with the one of these errors that is `column`.
+template <int kRows, int kColumns>
+inline void set_by_intrinsics(Transition* t, int row, int column, const Eigen::Matrix<Scalar, kRows, kColumns>& value) {
+  if (!t->has_intrinsics)
+    for (int i = 0; i < t->dim * Intrinsics::kRows; ++i) t->by_intrinsics[i] = Scalar(0);
+  t->has_intrinsics = true;
+  for (int i = 0; i < kRows; ++i)
+    for (int j = 0; j < kColumns; ++j) t->by_intrinsics[(row + i) * Intrinsics::kRows + column + j] = value(i, j);
 }
 
 template <int kColumns>

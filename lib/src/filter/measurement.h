@@ -63,7 +63,8 @@ using PatchMeasurement = MeasurementOf<8, 39, 5>;
 /// Distance of a feature from a plane [m], over plane, feature and the row of the scale.
 using DistanceMeasurement = MeasurementOf<1, 24, 8>;
 
-/// What a unit at rest reads: gyro [rad/s] and accelerometer [m/s^2], over rotation, biases, gravity and the unit's axes.
-using StillMeasurement = MeasurementOf<6, 14, 3>;
+/// What a unit at rest reads: gyro [rad/s] and accelerometer [m/s^2], over rotation, biases, gravity, and of the unit its axes and
+/// the accelerometer's intrinsics.
+using StillMeasurement = MeasurementOf<6, 23, 4>;
 
 }  // namespace pf

@@ -69,7 +69,9 @@ TurnedStart apart_from_rotation(const MovingSolution& start, const Mat3& R_WG, S
   Eigen::Matrix<Scalar, 5, 3> J = start.by_turn.bottomRows<5>();
   const Eigen::Matrix<Scalar, 1, 3> J_s = start.by_turn.row(0);
   const Scalar of_rate = start.turn_variance;
-  out.covariance = start.covariance.bottomRightCorner<5, 5>() - of_rate * J.lazyProduct(J.transpose());
+  // What the intrinsics do comes through them.
+  out.covariance = start.covariance.bottomRightCorner<5, 5>() - of_rate * J.lazyProduct(J.transpose()) -
+                   start.of_force.bottomRightCorner<5, 5>();
   out.of_scale = start.covariance.block<5, 1>(1, 0) - of_rate * J.lazyProduct(J_s.transpose());
   J.topRows<2>() -= start.span / 2 * R_WG.leftCols<2>().transpose();
   const Scalar a = variance_theta > Scalar(0) && start.span > Scalar(0)
@@ -124,10 +126,10 @@ void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
   clear(&transition, body, rows.dim);
   transition.mean.accel_bias += start.accel_bias;
   transition.mean.q_WG = start.q_WG;
-  // e_v = e_v_C - [R (w x m)]x theta - R [m]x e_w,   e_w = -R_CB e_b
+  // e_v = e_v_C - [R (w x m)]x theta - R [m]x e_w,   e_w = R_CB (dD_w (gyro - b_g) - D_w e_b)
   const Mat3 R = body.q_WC.toRotationMatrix();
   const Mat3 by_theta = -hat(Vec3(R * body.w_C.cross(mounting.p_C)));
-  const Mat3 by_bias = R.lazyProduct(hat(mounting.p_C)).lazyProduct(mounting.R_CB);
+  const Mat3 by_bias = R.lazyProduct(hat(mounting.p_C)).lazyProduct(mounting.rate_by_reading());
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       transition.F[(rows.velocity + i) * rows.dim + Body::kTheta + j] = by_theta(i, j);
@@ -144,6 +146,17 @@ void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
   for (int i = 0; i < 5; ++i)
     for (int j = 0; j < 3; ++j)
       transition.F[(rows.accel + kAt[i]) * rows.dim + Body::kTheta + j] += turned.by_theta(i, j);
+  if (rows.intrinsics >= 0) {
+    set_by_intrinsics(
+        &transition, rows.velocity, 0,
+        Eigen::Matrix<Scalar, 3, Intrinsics::kGyroRows>(
+            -R.lazyProduct(hat(mounting.p_C))
+                 .lazyProduct(mounting.R_CB.lazyProduct(Intrinsics::gyro_by_errors(mounting.reading_of(body.w_C))))));
+    set_by_intrinsics(&transition, rows.accel, Intrinsics::kGyroRows,
+                      MovingSolution::ByForce<3>(start.by_force.bottomRows<3>()));
+    set_by_intrinsics(&transition, rows.gravity, Intrinsics::kGyroRows,
+                      MovingSolution::ByForce<2>(start.by_force.middleRows<2>(1)));
+  }
   predict(transition);
   state_.mounting = mounting;
 
@@ -152,6 +165,13 @@ void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
   Scalar* const shared = blocks_.row_factors();
   for (int i = 0; i < blocks_.ld(); ++i) shared[i] = Scalar(0);
   for (int i = 0; i < 5; ++i) shared[rows.accel + kAt[i]] = turned.of_scale(i);
+  if (rows.intrinsics >= 0) {  // what the scale has in common with them, and through them with gravity and bias
+    const int first = rows.intrinsics + Intrinsics::kGyroRows;
+    for (int i = 0; i < Intrinsics::kAccelRows; ++i)
+      for (int j = 0; j < Intrinsics::kAccelRows; ++j)
+        shared[first + i] +=
+            covariance()(std::max(first + i, first + j), std::min(first + i, first + j)) * start.by_force(0, j);
+  }
   blocks_.add_shared(N, shared, 1);
   set_metric();
 }

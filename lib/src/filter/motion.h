@@ -11,13 +11,15 @@ struct MotionNoise {
 };
 
 /// What a motion model says: the body afterwards, the transition of its error and the noise that it gains, row-major, leading dimension
-/// dim: the rows of the parts that move.
+/// dim: the rows of the parts that move. x+ = F x + by_intrinsics c + noise, c the errors of an inertial unit's intrinsics, which stay.
 struct Transition {
   Body mean;
   Bend bend;  ///< at its time
   int dim;
   Scalar F[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
   Scalar Q[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
+  bool has_intrinsics = false;                                            ///< else nothing hangs on them
+  Scalar by_intrinsics[BodyLayout::kMaxDynamicRows * Intrinsics::kRows];  ///< dim x kRows
 };
 
 /// Constant velocity with white accelerations over dt > 0 [s].

@@ -150,6 +150,34 @@ Eigen::Matrix<Scalar, kRefined, 3> turned_side(const System<kRefined>& system, c
   return side;
 }
 
+/// A^T C^-1 u S_e of the whitened system, S_e the double sums of what one entry (row, column) of dD_a adds to the specific force: R dD_a dv
+/// and R dD_a dp. R is that of Rv_b = -R dt, which is as good over a few samples.
+Eigen::Matrix<Scalar, kRefined, 1> force_side(const System<kRefined>& system, const Whitener& whitener,
+                                              const MovingPose* pose, int count, int n, int entry) {
+  const int most = (count - 2) / kMaxRows + 1, row = entry / 3, column = entry % 3;  // as in accumulate()
+  Vec3 V = Vec3::Zero(), S = Vec3::Zero();
+  Scalar mean[3][kMaxRows];
+  int k = 1;
+  for (int m = 0; m < n; ++m) {
+    const int size = std::min(most, count - k);
+    Vec3 sum = Vec3::Zero();
+    for (const int end = k + size; k < end; ++k) {
+      const Mat3 R = pose[k].Rv_b / -pose[k].dt;
+      S += V * pose[k].dt + R.col(row) * R.col(column).dot(pose[k].Rp);
+      V += R.col(row) * R.col(column).dot(pose[k].Rv);
+      sum += S / static_cast<Scalar>(size);
+    }
+    for (int axis = 0; axis < 3; ++axis) mean[axis][m] = sum(axis);
+  }
+  Eigen::Matrix<Scalar, kRefined, 1> side = Eigen::Matrix<Scalar, kRefined, 1>::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    whitener.apply(mean[axis], n, 1);
+    for (int m = 0; m < n; ++m)
+      for (int i = 0; i < kRefined; ++i) side(i) += system.a[3 * m + axis][i] * mean[axis][m];
+  }
+  return side;
+}
+
 }  // namespace
 
 bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out) {
@@ -172,6 +200,8 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
   Eigen::Matrix<Scalar, kRefined, 1> b;
   SmallCholesky<kRefined> cholesky;
   Eigen::Matrix<Scalar, kRefined, 3> turned;
+  Eigen::Matrix<Scalar, kRefined, Intrinsics::kAccelRows> forced =
+      Eigen::Matrix<Scalar, kRefined, Intrinsics::kAccelRows>::Zero();
   Scalar chi2 = 0;
   for (int step = 0; step <= kSteps; ++step) {
     System<kRefined> system;
@@ -205,6 +235,8 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
     if (!cholesky.factor(A)) return false;
     if (step == kSteps) {
       turned = turned_side(system, whitener, sum, n, u * g);
+      for (int e = 0; noise.of_force != nullptr && e < Intrinsics::kAccelRows; ++e)
+        forced.col(e) = u * force_side(system, whitener, pose, count, n, e);
       break;
     }
     const Eigen::Matrix<Scalar, kRefined, 1> x = cholesky.solve(b);
@@ -228,10 +260,16 @@ bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNois
   const Eigen::Matrix<Scalar, kRefined, 3> by_turn = -C.lazyProduct(turned);
   for (int i = 0; i < MovingSolution::kRows; ++i) out->by_turn.row(i) = by_turn.row(kAt[i]);
   out->by_turn.row(0) = -out->by_turn.row(0);
+  const Eigen::Matrix<Scalar, kRefined, Intrinsics::kAccelRows> by_force = -C.lazyProduct(forced);
+  for (int i = 0; i < MovingSolution::kRows; ++i) out->by_force.row(i) = by_force.row(kAt[i]);
+  out->by_force.row(0) = -out->by_force.row(0);
   out->turn_variance = noise.turn * noise.turn;
   out->span = sum[n - 1].t;
   for (int i = 1; i < MovingSolution::kRows; ++i)
     out->covariance(0, i) = out->covariance(i, 0) = -out->covariance(i, 0);  // log scale = -log u
+  if (noise.of_force == nullptr) return true;
+  out->of_force = out->by_force.lazyProduct(noise.of_force->lazyProduct(out->by_force.transpose()));
+  out->covariance += out->of_force;
   return true;
 }
 

@@ -25,6 +25,9 @@ struct MovingStartNoise {
   Scalar tilt_density = 0;   ///< of the poses' rotations, which tilts gravity in them [rad/sqrt(s)]
   Scalar turn = 0;           ///< of the rate at which the poses' rotations turn away from the truth, constant [rad/s]
   Scalar accel_bias = 0;     ///< prior sigma of each axis [m/s^2]
+  /// Covariance of the errors of the accelerometer's intrinsics (model/intrinsics.h); null where these are exact.
+  using OfForce = Eigen::Matrix<Scalar, Intrinsics::kAccelRows, Intrinsics::kAccelRows>;
+  const OfForce* of_force = nullptr;
 };
 
 /// What was found. Covariance over (log scale, d, b_a): d as in model/body.h.
@@ -40,10 +43,20 @@ struct MovingSolution {
   Eigen::Matrix<Scalar, kRows, 3> by_turn = Eigen::Matrix<Scalar, kRows, 3>::Zero();
   Scalar turn_variance = 0;  ///< of each axis [rad^2/s^2]
   Scalar span = 0;           ///< of the poses [s]
-  Scalar misfit = 0;         ///< chi-square over its degrees of freedom
+  /// Likewise by the errors of the accelerometer's intrinsics, and what they have put into the covariance.
+  template <int kCount>
+  using ByForce = Eigen::Matrix<Scalar, kCount, Intrinsics::kAccelRows>;
+  ByForce<kRows> by_force = ByForce<kRows>::Zero();
+  Covariance of_force = Covariance::Zero();
+  Scalar misfit = 0;  ///< chi-square over its degrees of freedom
 
   Scalar sigma_scale() const { return std::sqrt(covariance(0, 0)); }  ///< relative
   Scalar sigma_gravity() const { return std::sqrt(covariance(1, 1) + covariance(2, 2)); }
+  /// Likewise without what the intrinsics do, which a longer motion before the start would leave as it is.
+  Scalar sigma_scale_by_motion() const { return std::sqrt(covariance(0, 0) - of_force(0, 0)); }
+  Scalar sigma_gravity_by_motion() const {
+    return std::sqrt(covariance(1, 1) + covariance(2, 2) - of_force(1, 1) - of_force(2, 2));
+  }
 };
 
 inline constexpr int kMaxMovingPoses = 96;

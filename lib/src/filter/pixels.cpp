@@ -38,7 +38,7 @@ Mat2 mounting_noise(const State& state, const CameraAt& camera, const Mat26& J_c
   const int first = state.layout.row(BodyPart::kMountRotation);
   const Mat23 by_bias =
       J_camera.leftCols<3>().lazyProduct(camera.J_theta_w) + J_camera.rightCols<3>().lazyProduct(camera.J_p_w);
-  const Mat23 J = by_bias * (state.mounting.R_CB.transpose() * hat(camera.w_C));
+  const Mat23 J = by_bias * (state.mounting.rate_by_reading().inverse() * hat(camera.w_C));
   Mat3 C;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) C(i, j) = P(first + (i > j ? i : j), first + (i > j ? j : i));

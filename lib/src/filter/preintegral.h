@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/eigen.h"
+#include "model/intrinsics.h"
 
 /// Inertial samples between two times, integrated once, in the axes B of the unit at the first of them (lib/docs/inertial.md).
 
@@ -28,16 +29,18 @@ class Preintegral {
   using Covariance = Eigen::Matrix<Scalar, kRows, kRows>;
   using ByBias = Eigen::Matrix<Scalar, 9, 6>;
   using ByDelay = Eigen::Matrix<Scalar, 9, 1>;
+  using ByIntrinsics = Eigen::Matrix<Scalar, 9, Intrinsics::kRows>;
 
-  Preintegral(const ImuNoise& noise, const Vec3& gyro_bias, const Vec3& accel_bias)
-      : noise_(noise), gyro_bias_(gyro_bias), accel_bias_(accel_bias) {}
+  Preintegral(const ImuNoise& noise, const Vec3& gyro_bias, const Vec3& accel_bias,
+              const Intrinsics& intrinsics = Intrinsics())
+      : noise_(noise), gyro_bias_(gyro_bias), accel_bias_(accel_bias), intrinsics_(intrinsics) {}
 
   /// J S J^T, in loops that stay loops: unrolled, each use is some 10 kB of code.
   static Covariance transformed(const Covariance& J, const Covariance& S);
 
   /// From one reading to the next, dt > 0 [s] later, by the mid-point rule:
   ///
-  ///   R+ = R Exp((g_0 + g_1)/2 dt - b_g dt),   a = (R (a_0 - b_a) + R+ (a_1 - b_a)) / 2
+  ///   R+ = R Exp(D_w ((g_0 + g_1)/2 - b_g) dt),   a = (R D_a (a_0 - b_a) + R+ D_a (a_1 - b_a)) / 2
   ///   v+ = v + a dt,   p+ = p + v dt + a dt^2 / 2
   ///
   /// gyro_more, accel_more: squared densities on top of those of the unit.
@@ -49,11 +52,16 @@ class Preintegral {
   Scalar dt() const { return dt_; }
   const Vec3& gyro_bias() const { return gyro_bias_; }
   const Vec3& accel_bias() const { return accel_bias_; }
+  const Intrinsics& intrinsics() const { return intrinsics_; }
+  /// What a gyroscope's reading says.
+  Vec3 rate(const Vec3& gyro) const { return intrinsics_.D_w * (gyro - gyro_bias_); }
   const Mat3& R() const { return R_; }
   const Vec3& v() const { return v_; }
   const Vec3& p() const { return p_; }
   /// Of (phi, v, p) by (b_g, b_a).
   const ByBias& by_bias() const { return D_; }
+  /// Likewise by the errors of the intrinsics; zero where these are not open.
+  const ByIntrinsics& by_intrinsics() const { return by_intrinsics_; }
   /// The readings at both ends, which tell what a delay does.
   void set_ends(const ImuReading& from, const ImuReading& to);
   /// Of (phi, v, p) by a delay that is longer by e: both ends are e earlier on the clock of the samples. With w and a without bias, at the
@@ -65,14 +73,17 @@ class Preintegral {
 
  private:
   void move_errors(const Covariance& F);
+  void move_intrinsics(const Covariance& F, const ByIntrinsics& more);
 
   ImuNoise noise_;
   Vec3 gyro_bias_, accel_bias_;
+  Intrinsics intrinsics_;
   Scalar dt_ = 0;
   Mat3 R_ = Mat3::Identity();
   Vec3 v_ = Vec3::Zero();
   Vec3 p_ = Vec3::Zero();
   ByBias D_ = ByBias::Zero();
+  ByIntrinsics by_intrinsics_ = ByIntrinsics::Zero();
   ByDelay by_delay_ = ByDelay::Zero();
   Covariance S_ = Covariance::Zero();
 };

@@ -11,6 +11,7 @@ constexpr Scalar kMaxValue = Scalar(1e9);                           ///< of any 
 constexpr Scalar kMaxVariance = Scalar(1e18);                       ///< and of any variance
 constexpr Scalar kMaxReadout = Scalar(0.5);                         ///< [s]
 constexpr Scalar kMaxDelay = Scalar(1);                             ///< [s] beside that of the config
+constexpr Scalar kMaxScale = Scalar(0.3);                           ///< of the unit's intrinsics
 constexpr Scalar kMinNorm2 = Scalar(0.9), kMaxNorm2 = Scalar(1.1);  ///< of a quaternion
 
 bool is_value(Scalar v) { return std::abs(v) < kMaxValue; }
@@ -30,6 +31,10 @@ bool Filter::body_is_sound() const {
         !is_value(b.accel_bias[i]))
       return false;
   const Mounting& m = state_.mounting;
+  const Mat3 identity = Mat3::Identity();
+  if (!((m.intrinsics.D_w - identity).cwiseAbs().maxCoeff() < kMaxScale) ||
+      !((m.intrinsics.D_a - identity).cwiseAbs().maxCoeff() < kMaxScale))
+    return false;
   if (!is_value(m.p_C.squaredNorm()) || !(std::abs(m.delay) < kMaxDelay)) return false;
   const Scalar norm2 = b.q_WC.squaredNorm();
   return norm2 > kMinNorm2 && norm2 < kMaxNorm2 && are_variances(covariance(), 0, state_.layout.rows()) &&

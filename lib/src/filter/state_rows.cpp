@@ -6,6 +6,20 @@
 
 namespace pf {
 
+namespace {
+
+/// The rate is what samples read, where they move the body.
+void move_intrinsics(State& state, const Scalar* dx) {
+  Intrinsics& intrinsics = state.mounting.intrinsics;
+  Intrinsics::Error e;
+  for (int i = 0; i < Intrinsics::kRows; ++i) e(i) = dx[i];
+  const Vec3 reading = state.mounting.reading_of(state.body.w_C);
+  intrinsics.move(e);
+  if (state.uses_samples) state.body.w_C = state.mounting.rate_C(reading);
+}
+
+}  // namespace
+
 void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
   const auto three = [&](int row) { return Vec3(dx[row], dx[row + 1], dx[row + 2]); };
   Body& body = state.body;
@@ -19,7 +33,7 @@ void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
     const Vec3 e_g = three(layout.row(BodyPart::kGyroBias));
     const int gravity = layout.row(BodyPart::kGravity);
     body.gyro_bias += e_g;
-    body.w_C -= state.mounting.R_CB * e_g;  // what the samples say, less the bias
+    body.w_C -= state.mounting.rate_C(e_g);  // what the samples say, less the bias
     body.accel_bias += three(layout.row(BodyPart::kAccelBias));
     body.q_WG = body.q_WG * exp_so3(Vec3(dx[gravity], dx[gravity + 1], Scalar(0)));
     body.q_WG.normalize();
@@ -31,6 +45,7 @@ void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
     }
     if (layout.has(BodyPart::kMountPlace)) mounting.p_C += three(layout.row(BodyPart::kMountPlace));
     if (layout.has(BodyPart::kDelay)) mounting.delay += dx[layout.row(BodyPart::kDelay)];
+    if (layout.has(BodyPart::kIntrinsics)) move_intrinsics(state, dx + layout.row(BodyPart::kIntrinsics));
   }
   if (layout.has(BodyPart::kLens) && layout.considered_rows() == 0)
     move_lens(state.lens_rows, dx + layout.row(BodyPart::kLens), &state.lens);

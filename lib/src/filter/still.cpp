@@ -7,10 +7,11 @@ namespace pf {
 
 void Filter::predict_still(const StillReading& still, Scalar gravity, StillMeasurement* out) const {
   constexpr int kGyro = 3, kAccel = 6, kGravity = 9, kTurn = 11;
-  const bool turns = state_.layout.has(BodyPart::kMountRotation);
-  const int columns = turns ? kTurn + 3 : kTurn;
+  const bool turns = state_.layout.has(BodyPart::kMountRotation), scales = state_.layout.has(BodyPart::kIntrinsics);
+  const int scale = turns ? kTurn + 3 : kTurn, columns = scales ? scale + Intrinsics::kAccelRows : scale;
   const Body& body = state_.body;
-  const Mat3 R_BW = (body.q_WC.toRotationMatrix() * state_.mounting.R_CB).transpose();
+  const Mat3 D_inverse = state_.mounting.intrinsics.D_a.inverse();
+  const Mat3 R_BW = D_inverse * (body.q_WC.toRotationMatrix() * state_.mounting.R_CB).transpose();
   const Mat3 R_WG = body.q_WG.toRotationMatrix();
   const Vec3 g_W = gravity * R_WG.col(2);
   Mat32 E;
@@ -27,6 +28,13 @@ void Filter::predict_still(const StillReading& still, Scalar gravity, StillMeasu
   if (turns) {
     put<3, 3>(of_accel, columns, kTurn, Mat3(-R_BW * hat(g_W) * body.q_WC.toRotationMatrix()));
     out->H.part[out->H.parts++] = Part::body(state_.layout.row(BodyPart::kMountRotation), 3);
+  }
+  if (scales) {
+    put<3, Intrinsics::kAccelRows>(
+        of_accel, columns, scale,
+        Eigen::Matrix<Scalar, 3, Intrinsics::kAccelRows>(D_inverse * Intrinsics::accel_by_errors(R_BW * g_W)));
+    out->H.part[out->H.parts++] =
+        Part::body(state_.layout.row(BodyPart::kIntrinsics) + Intrinsics::kGyroRows, Intrinsics::kAccelRows);
   }
   out->predicted << body.gyro_bias, body.accel_bias - R_BW * g_W;
   out->measured << still.gyro, still.accel;

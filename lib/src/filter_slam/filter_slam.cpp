@@ -87,7 +87,7 @@ void FilterSlam::maintain(bool supported, bool is_first) {
   // While the map starts, residuals are those of a coarse map.
   if (supported && tracking_.state() == SlamState::kTracking && !progress.recording) images_.learn_noise();
   upkeep_.maintain(supported, progress);
-  if (recorder.record_frame()) images_.relocaliser().init();  // its views have poses of the wrong map
+  if (recorder.record_frame(true)) images_.relocaliser().init();  // its views have poses of the wrong map
   const Scalar scale = supported && !is_first ? start_.look_for_walls() : Scalar(0);
   if (scale > Scalar(0)) {  // places and lengths of before no longer hold
     upkeep_.planes().meet_walls();
@@ -114,10 +114,14 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
   if (frame_.report.inliers > 0) tracking_.belief().trust();
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
-    upkeep_.maintain(true, start_.recorder().progress());
+    StartRecorder& recorder = start_.recorder();
+    upkeep_.maintain(true, recorder.progress());
+    recorder.record_frame(false);
     look_for_scale();
     observations_.add_features(observations, count);
+    recorder.begin_record();
   }
+  unit_.let_samples_begin();
   return end_frame();
 }
 

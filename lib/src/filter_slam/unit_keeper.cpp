@@ -8,6 +8,8 @@ namespace pf {
 
 namespace {
 
+constexpr const char* kSamplesBegin = "the inertial unit's clock and axes are found: a new map begins with its samples";
+
 constexpr double kPatience = 5;  ///< [s] of a map, after which waiting for a better scale costs more than it brings
 
 }  // namespace
@@ -33,6 +35,8 @@ void UnitKeeper::init() {
 void UnitKeeper::begin_map() {
   rest_.init();
   metric_.init();
+  has_just_aligned_ = false;
+  why_discredited_ = "";
   if (parts_ == nullptr) return;
   parts_->hold.init();
   parts_->moving.init();
@@ -41,7 +45,8 @@ void UnitKeeper::begin_map() {
 void UnitKeeper::predict(std::int64_t before_ns, bool follows, bool nothing_measured, Scalar depth) {
   const std::int64_t t_ns = frame_.report.t_ns;
   watch_.begin_frame(before_ns, t_ns);
-  if (watch_.take_alignment()) {
+  has_just_aligned_ = watch_.take_alignment();
+  if (has_just_aligned_) {
     start_.mounting().keep();
     parts_->moving.integrate_again();
   }
@@ -128,9 +133,14 @@ UnitReason UnitKeeper::reason(Scalar* value, Mat3* R_CB) const {
   return UnitReason::kWaitsForMotion;
 }
 
+void UnitKeeper::let_samples_begin() {
+  if (has_just_aligned_ && start_.may_become_metric()) why_discredited_ = kSamplesBegin;
+}
+
 /// A map that begun at rest with a unit of unknown delay has no size from motion yet, so nothing is lost with it.
 bool UnitKeeper::discredits_map(bool follows, std::int64_t dt_ns) {
   if (!settings_.inertial || !tracking_.has_pose()) return false;
+  if (why_discredited_ == kSamplesBegin) return true;
   const bool left_rest = watch_.mode() == UnitMode::kAtRest && !rest_.is_resting();
   if (left_rest) watch_.take(UnitEvent::kMotion);
   const bool doubted = watch_.note(follows && !holds(), tracking_.is_tracked(frame_.report), dt_ns);

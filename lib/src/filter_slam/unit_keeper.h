@@ -67,6 +67,9 @@ class UnitKeeper {
   /// Nothing tells how wrong such a map is.
   bool discredits_map(bool follows, std::int64_t dt_ns);
 
+  /// Of pixels without pictures: samples tell the rotations of a start better than a record does. Where their clock or their axes have been
+  /// found before this frame, a map of unknown scale that began without them gives way to another one.
+  void let_samples_begin();
   /// From when on a prediction from now_ns has to go through samples.
   std::int64_t motion_begin_ns(std::int64_t now_ns) const;
   /// Why, for the log.
@@ -108,6 +111,7 @@ class UnitKeeper {
   UnitWatch watch_;
   MetricStart metric_;
   const char* why_discredited_ = "";
+  bool has_just_aligned_ = false;           ///< samples move the body from this frame on
   PartPointer<Parts, kHasInertial> parts_;  ///< with the inertial motion model, in the block
 };
 

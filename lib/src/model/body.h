@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "base/eigen.h"
+#include "model/intrinsics.h"
 
 /// The leading block of the state: the body that carries the camera, made of optional parts.
 
@@ -19,6 +20,7 @@ enum class BodyPart : std::uint8_t {
   kMountRotation,    ///< of the inertial unit's axes against the camera's, where they are estimated
   kMountPlace,       ///< of its origin, likewise
   kDelay,            ///< of its clock, likewise, one row
+  kIntrinsics,       ///< of its sensors, likewise: constants that F and Q leave alone, but which move what moves
   kLens              ///< numbers of the calibration (geometry/lens.h)
 };
 
@@ -26,6 +28,7 @@ enum class BodyPart : std::uint8_t {
 class BodyLayout {
  public:
   static constexpr int kMaxDynamicRows = 24;
+  static constexpr int kMaxUnitRows = kMaxDynamicRows + Intrinsics::kRows;  ///< and the unit's constants behind them
   static constexpr int kVelocityRows =
       12;  ///< pose, velocity and angular velocity: the most that a caller knows at the start
 
@@ -52,8 +55,12 @@ class BodyLayout {
     if (place) add(BodyPart::kMountPlace, 3);
     if (delay) add(BodyPart::kDelay, 1);
   }
-  bool estimates_mounting() const {
-    return has(BodyPart::kMountRotation) || has(BodyPart::kMountPlace) || has(BodyPart::kDelay);
+  /// Behind these and before all other constants.
+  void add_intrinsics() { add_constant(BodyPart::kIntrinsics, Intrinsics::kRows, false); }
+  /// What a map hands on to the next.
+  bool estimates_unit() const {
+    return has(BodyPart::kMountRotation) || has(BodyPart::kMountPlace) || has(BodyPart::kDelay) ||
+           has(BodyPart::kIntrinsics);
   }
 
   /// Adds a part that does not move. Considered: it keeps its covariance and is not estimated (Schmidt); such parts come last, so that
@@ -69,6 +76,8 @@ class BodyLayout {
   int row(BodyPart part) const { return row_[index(part)]; }
   /// Rows of the parts that move.
   int dynamic_rows() const { return dynamic_rows_; }
+  /// Likewise, with the unit's constants behind them.
+  int unit_rows() const { return dynamic_rows_ + (has(BodyPart::kIntrinsics) ? Intrinsics::kRows : 0); }
   /// Rows of what a caller can know at the start: pose, velocity and angular velocity.
   int known_rows() const { return dynamic_rows_ < kVelocityRows ? dynamic_rows_ : kVelocityRows; }
   int rows() const { return dynamic_rows_ + constant_rows_; }
@@ -76,7 +85,7 @@ class BodyLayout {
   int considered_rows() const { return considered_rows_; }
 
  private:
-  static constexpr int kParts = 10;
+  static constexpr int kParts = 11;
   static constexpr int index(BodyPart part) { return static_cast<int>(part); }
 
   void add(BodyPart part, int rows) {
@@ -84,7 +93,7 @@ class BodyLayout {
     dynamic_rows_ = static_cast<std::int8_t>(dynamic_rows_ + rows);
   }
 
-  std::int8_t row_[kParts] = {0, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+  std::int8_t row_[kParts] = {0, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
   std::int8_t dynamic_rows_ = 6, constant_rows_ = 0, considered_rows_ = 0;
 };
 
@@ -123,6 +132,13 @@ struct Mounting {
   Vec3 p_C = Vec3::Zero();  ///< its origin in C [m]
   Scalar delay = 0;         ///< t_frame = t_sample + delay, beside the delay of the config [s]
   bool in_metres = true;    ///< false: p_C is zero and no part of the motion, since lengths have no unit yet
+  Intrinsics intrinsics = {};
+
+  /// The camera's rate by what the gyroscope reads beside its bias.
+  Mat3 rate_by_reading() const { return R_CB * intrinsics.D_w; }
+  Vec3 rate_C(const Vec3& reading) const { return R_CB * (intrinsics.D_w * reading); }
+  /// What the gyroscope reads beside its bias.
+  Vec3 reading_of(const Vec3& rate_C) const { return intrinsics.D_w.inverse() * (R_CB.transpose() * rate_C); }
 };
 
 }  // namespace pf

@@ -25,11 +25,11 @@ void put_unit(const State& state, CameraAt* camera) {
   const Mat3 R = body.q_WC.toRotationMatrix();
   camera->beside = true;
   const Mat3 J_theta_w = camera->J_theta_w;
-  camera->J_theta_w = -J_theta_w.lazyProduct(mounting.R_CB);
+  camera->J_theta_w = -J_theta_w.lazyProduct(mounting.rate_by_reading());
   const Vec3 bend_W = R * (camera->tau * camera->tau / 2 * state.bend.a_C);
   camera->p_W += bend_W;
   camera->J_p_theta = camera->tau * hat(body.v_W - camera->v_W) - hat(bend_W);
-  camera->J_p_w = -camera->tau * R.lazyProduct(hat(mounting.p_C)).lazyProduct(mounting.R_CB);
+  camera->J_p_w = -camera->tau * R.lazyProduct(hat(mounting.p_C)).lazyProduct(mounting.rate_by_reading());
   camera->v_W += camera->tau * (R * state.bend.a_C);
   camera->w_C += camera->tau * state.bend.alpha_C;
 }

@@ -23,7 +23,7 @@ void describe_mounting(const Settings& settings, const FilterSlam& slam, Inertia
   out->q_BC = Quat(R_BC);
   out->p_BC = -(R_BC * mounting.p_C);
   out->delay_s = seconds(settings.unit.delay_ns) + static_cast<double>(mounting.delay);
-  for (int i = 8; i < 17; ++i) out->sigma[i] = Scalar(-1);
+  for (int i = 8; i < 18; ++i) out->sigma[i] = Scalar(-1);
   const int turn = layout.row(BodyPart::kMountRotation), place = layout.row(BodyPart::kMountPlace);
   const auto put_sigmas = [&](int first, const Mat3* by_turn, const Mat3* by_place) {
     RowsOf<3, 6, 2> J;
@@ -46,6 +46,11 @@ void describe_mounting(const Settings& settings, const FilterSlam& slam, Inertia
   if (place >= 0) put_sigmas(11, turn >= 0 ? &by_turn : nullptr, &minus);
   if (layout.has(BodyPart::kDelay))
     out->sigma[14] = std::sqrt(std::max(Scalar(0), filter.variance(layout.row(BodyPart::kDelay))));
+  out->intrinsics = mounting.intrinsics;
+  if (layout.has(BodyPart::kIntrinsics))
+    for (int i = 0; i < Intrinsics::kRows; ++i)
+      out->sigma[17] = std::max(out->sigma[17],
+                                std::sqrt(std::max(Scalar(0), filter.variance(layout.row(BodyPart::kIntrinsics) + i))));
   out->readout_s = static_cast<double>(filter.lens().readout);
   const LensRows& lens = filter.state().lens_rows;
   if (lens.has_readout())

@@ -21,7 +21,8 @@ struct InertialView {
   Quat q_BC;
   Vec3 p_BC;
   double delay_s, readout_s;
-  Scalar sigma[17];  ///< as pf_inertial_t says
+  Intrinsics intrinsics;
+  Scalar sigma[18];  ///< as pf_inertial_t says
 };
 
 /// Whether images contradict the inertial unit, and for how long they have in all.

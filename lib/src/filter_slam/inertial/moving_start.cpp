@@ -24,7 +24,7 @@ constexpr int kSignEvery = 4;  ///< solutions in a row that there are none of, f
 bool MovingStart::integrate(std::int64_t from_ns, View* view) const {
   const Body& body = filter_.state().body;
   const Vec3 gyro_bias = filter_.uses_samples() ? body.gyro_bias : Vec3(Vec3::Zero());
-  Preintegral samples(motion_.unit_noise().now(), gyro_bias, Vec3::Zero());
+  Preintegral samples(motion_.unit_noise().now(), gyro_bias, Vec3::Zero(), filter_.state().mounting.intrinsics);
   ImuReading now;
   if (integrate_samples(imu_, motion_.on_unit_clock(from_ns), motion_.on_unit_clock(view->t_ns), Coasting(), &samples,
                         &now) > Scalar(0))
@@ -122,7 +122,7 @@ Vec3 MovingStart::smooth() {
   const Mat3& R_CB = filter_.state().mounting.R_CB;
   const Quat q_CB(R_CB);
   const Vec3 gyro_bias = filter_.state().body.gyro_bias;
-  const Scalar of_turn = turn_variance(), of_delay = delay_variance();
+  const Scalar of_turn = turn_variance() + scale_variance(), of_delay = delay_variance();
   Vec3 rate = Vec3::Zero();
   const Scalar density = std::max(kTiltDensity, motion_.unit_noise().now().gyro_density);
   for (int k = data_.first; k < data_.end; ++k) {
@@ -133,7 +133,8 @@ Vec3 MovingStart::smooth() {
     link.q_WC = view.q_WC;
     link.variance = data_.correlation * static_cast<Scalar>(view.covariance.topLeftCorner<3, 3>().trace()) / 3;
     link.dq = q_CB * dq_B * q_CB.conjugate();
-    // Axes that are off by mu turn the step by mu x step, and a delay that is off by e moves both its ends: (w_0 - w_1) e.
+    // Axes that are off by mu turn the step by mu x step, a scale that is off by e makes it e longer, and a
+    // delay that is off by e moves both its ends: (w_0 - w_1) e.
     const Vec3 step = log_so3(dq_B), rate_before = rate;
     if (view.dt > Scalar(0)) rate = step / view.dt;
     link.step_variance = density * density * view.dt + of_turn * step.squaredNorm() +
@@ -198,8 +199,8 @@ bool MovingStart::is_accepted(const MovingPose* pose, int count, const MovingSta
   data_.refused = 0;
   data_.reversed = false;
   data_.sigma_scale = solution->sigma_scale();
-  if (!(solution->sigma_scale() < (patient ? kMaxSigmaScale : kLateSigmaScale)) ||
-      !(solution->sigma_gravity() < (patient ? kMaxSigmaGravity : kLateSigmaGravity)))
+  if (!(solution->sigma_scale_by_motion() < (patient ? kMaxSigmaScale : kLateSigmaScale)) ||
+      !(solution->sigma_gravity_by_motion() < (patient ? kMaxSigmaGravity : kLateSigmaGravity)))
     return false;
   if (!(solution->misfit < kMaxMisfit)) return false;
   if (!solve_moving_start(pose, middle + 1, noise, &half[0]) ||
@@ -222,6 +223,22 @@ Scalar MovingStart::mean_variance(int row) const {
 Scalar MovingStart::turn_variance() const {
   return settings_.body.has(BodyPart::kMountRotation) ? mean_variance(settings_.body.row(BodyPart::kMountRotation))
                                                       : Scalar(0);
+}
+
+/// Of the gyroscope's intrinsics, a mean over those on the diagonal.
+Scalar MovingStart::scale_variance() const {
+  return settings_.body.has(BodyPart::kIntrinsics) ? mean_variance(settings_.body.row(BodyPart::kIntrinsics))
+                                                   : Scalar(0);
+}
+
+/// Of the accelerometer's, all of it.
+MovingStartNoise::OfForce MovingStart::force_covariance() const {
+  MovingStartNoise::OfForce C;
+  const int first = settings_.body.row(BodyPart::kIntrinsics) + Intrinsics::kGyroRows;
+  for (int i = 0; i < Intrinsics::kAccelRows; ++i)
+    for (int j = 0; j < Intrinsics::kAccelRows; ++j)
+      C(i, j) = filter_.covariance()(first + std::max(i, j), first + std::min(i, j));
+  return C;
 }
 
 Scalar MovingStart::delay_variance() const {
@@ -273,10 +290,15 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
   noise.accel_density = std::hypot(motion_.unit_noise().now().accel_density, settings_.unit.gravity * kRotation);
   noise.tilt_density = std::max(kTiltDensity, motion_.unit_noise().now().gyro_density);
   // Axes that are off by mu tilt gravity by what the camera turns them, mu w a second; a delay that is off by e by e w.
-  const Scalar of_unit = (turn_variance() + 2 * delay_variance()) * mean_rate2();
+  const Scalar of_unit = (turn_variance() + scale_variance() + 2 * delay_variance()) * mean_rate2();
   noise.tilt_density = std::sqrt(noise.tilt_density * noise.tilt_density + of_unit);
   noise.turn = turn_rate_sigma(span);
   noise.accel_bias = tuning::inertial::kAccelBias;
+  MovingStartNoise::OfForce of_force;
+  if (settings_.body.has(BodyPart::kIntrinsics)) {
+    of_force = force_covariance();
+    noise.of_force = &of_force;
+  }
   return is_accepted(data_.pose, collect(), noise, told.patient, solution);
 }
 

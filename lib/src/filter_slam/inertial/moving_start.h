@@ -96,6 +96,8 @@ class MovingStart {
   int collect();
   Scalar mean_variance(int row) const;
   Scalar turn_variance() const;
+  Scalar scale_variance() const;
+  MovingStartNoise::OfForce force_covariance() const;
   Scalar delay_variance() const;
   Scalar mean_rate2() const;
   Scalar turn_rate_sigma(Scalar span) const;

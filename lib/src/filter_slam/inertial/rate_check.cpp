@@ -61,12 +61,12 @@ bool RateCheck::note(const UnitFrame& frame, bool is_rejected, int doubts) {
   const bool follows = frame.before_was_tracked && frame.is_tracked;
   const Quat q_WC = filter_.state().body.q_WC;
   if (data_.has_fit || filter_.uses_samples() || (is_rejected && filter_.is_metric())) return false;
-  if (follows && data_.rates_ns != 0 && data_.rates_ns < t_ns)
-    data_.rates.add(data_.rates_ns, t_ns,
-                    log_so3(Quat(data_.rates_q.conjugate() * q_WC)) /
-                        static_cast<Scalar>(seconds(elapsed_ns(data_.rates_ns, t_ns))));
-  data_.rates_ns = follows ? t_ns : 0;
-  data_.rates_q = q_WC;
+  const RateBegin begin = data_.begin;
+  if (follows && begin.t_ns != 0 && begin.t_ns < t_ns && begin.generation == filter_.generation())
+    data_.rates.add(
+        begin.t_ns, t_ns,
+        log_so3(Quat(begin.q_WC.conjugate() * q_WC)) / static_cast<Scalar>(seconds(elapsed_ns(begin.t_ns, t_ns))));
+  data_.begin = {follows ? t_ns : 0, q_WC, filter_.generation()};
   const double span = std::min(wanted_span(is_rejected, doubts), kLongest);
   if (!follows || ++data_.until_fit < kEvery || data_.rates.span() < span) return false;
   data_.until_fit = 0;

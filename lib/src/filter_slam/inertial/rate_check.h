@@ -22,7 +22,7 @@ class RateCheck {
   /// Compares from now on, and forgets what was compared before.
   void begin() {
     data_.rates.init();
-    data_.rates_ns = 0;
+    data_.begin.t_ns = 0;
   }
   /// After a frame without samples. doubts: for how often the unit was rejected, it has to agree for longer. True where it has just been
   /// named why no clock and no axes fit.
@@ -46,10 +46,15 @@ class RateCheck {
   UnitReason reason(Scalar* value, Mat3* R_CB) const;
 
  private:
+  /// The frame that the next interval of rates begins at.
+  struct RateBegin {
+    std::int64_t t_ns = 0;  ///< 0: there is none
+    Quat q_WC = Quat::Identity();
+    std::uint32_t generation = 0;  ///< of the filter: once it begins again from a record, its poses are others
+  };
   struct Data {
     RateAlignment rates;
-    std::int64_t rates_ns = 0;  ///< of the frame that the next interval begins at
-    Quat rates_q = Quat::Identity();
+    RateBegin begin;
     int until_fit = 0;  ///< frames
     RateFit fit;
     bool has_fit = false;

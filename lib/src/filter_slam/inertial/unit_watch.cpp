@@ -131,7 +131,7 @@ void UnitWatch::leave_samples(std::int64_t before_ns) {
     body.w_C = parts_->data.tracked.w_C;
   }
   Transition transition;
-  begin_without_samples(body, settings_.body, sigma_rate, was_wrong, kSpeed, &transition);
+  begin_without_samples(body, settings_.body, filter_.state().mounting, sigma_rate, was_wrong, kSpeed, &transition);
   if (was_wrong) {
     const Scalar T = kTime + static_cast<Scalar>(seconds(elapsed_ns(parts_->data.tracked_ns, before_ns)));
     for (int i = 0; i < 3; ++i) {

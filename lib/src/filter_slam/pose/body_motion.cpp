@@ -78,11 +78,11 @@ void BodyMotion::predict_by_samples(const Body& body, std::int64_t before_ns, st
     predict_without_samples(body, settings_.body, mounting, predicted_seconds(before_ns, t_ns), noise, transition);
     return;
   }
-  Preintegral samples(noise_.now(), body.gyro_bias, body.accel_bias);
+  Preintegral samples(noise_.now(), body.gyro_bias, body.accel_bias, mounting.intrinsics);
   ImuReading now;
   integrate_samples(imu_, on_unit_clock(before_ns), on_unit_clock(t_ns), coasting(body, noise), &samples, &now);
   predict_by(body, samples, noise, transition);
-  transition->mean.w_C = mounting.R_CB * (now.gyro - body.gyro_bias);
+  transition->mean.w_C = mounting.rate_C(now.gyro - body.gyro_bias);
   transition->bend = bend_of_readout(on_unit_clock(t_ns), now, transition->mean);
 }
 
@@ -96,12 +96,12 @@ void BodyMotion::begin(std::int64_t t_ns, Body* body) const {
     if (imu_.held() > 1 || std::abs(seconds(elapsed_ns(last.t_ns, unit_ns))) > half) return;
     now.gyro = Vec3(last.gyro[0], last.gyro[1], last.gyro[2]);
   }
-  body->w_C = filter_.state().mounting.R_CB * (now.gyro - body->gyro_bias);
+  body->w_C = filter_.state().mounting.rate_C(now.gyro - body->gyro_bias);
 }
 
 /// How the camera accelerates while the frame's rows are read out, as it did in the half of that time before the frame's:
 ///
-///   alpha = R_CB (gyro - gyro_before) / T,   a = R_CB (accel - b_a) + R_CW g_W - alpha x m - w x (w x m)
+///   alpha = R_CB D_w (gyro - gyro_before) / T,   a = R_CB D_a (accel - b_a) + R_CW g_W - alpha x m - w x (w x m)
 Bend BodyMotion::bend_of_readout(std::int64_t unit_ns, const ImuReading& now, const Body& body) const {
   Bend bend;
   const double readout = static_cast<double>(filter_.lens().readout), interval = seconds(imu_.counts().median_ns);
@@ -111,18 +111,19 @@ Bend BodyMotion::bend_of_readout(std::int64_t unit_ns, const ImuReading& now, co
   std::int64_t before_ns;
   if (__builtin_sub_overflow(unit_ns, nanoseconds(T), &before_ns) || !reading_at(imu_, before_ns, &before)) return bend;
   const Mounting& mounting = filter_.state().mounting;
-  bend.alpha_C = mounting.R_CB * ((now.gyro - before.gyro) / static_cast<Scalar>(T));
+  bend.alpha_C = mounting.rate_C((now.gyro - before.gyro) / static_cast<Scalar>(T));
   if (!filter_.is_metric()) return bend;
   const Vec3 &w = body.w_C, &m = mounting.p_C, accel = (now.accel + before.accel) / 2 - body.accel_bias;
-  bend.a_C = mounting.R_CB * accel + body.q_WC.conjugate() * (settings_.unit.gravity * body.gravity_W()) -
-             bend.alpha_C.cross(m) - w.cross(w.cross(m));
+  bend.a_C = mounting.R_CB * (mounting.intrinsics.D_a * accel) +
+             body.q_WC.conjugate() * (settings_.unit.gravity * body.gravity_W()) - bend.alpha_C.cross(m) -
+             w.cross(w.cross(m));
   return bend;
 }
 
 void BodyMotion::predict_coasting(const Body& body, std::int64_t before_ns, std::int64_t t_ns,
                                   Transition* transition) const {
   const Coasting c = coasting(body, settings_.motion_noise);
-  Preintegral path(noise_.now(), body.gyro_bias, body.accel_bias);
+  Preintegral path(noise_.now(), body.gyro_bias, body.accel_bias, filter_.state().mounting.intrinsics);
   path.coast(predicted_seconds(before_ns, t_ns), c.w_B, c.f_B, c.noise.angular, c.noise.linear);
   predict_by(body, path, c.noise, transition);
 }
@@ -157,16 +158,39 @@ void BodyMotion::damp(Scalar dt) {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) P_speed(i, j) = filter_.covariance()(first + i, first + j);
   const Body& body = filter_.state().body;
-  Vec3 rate =
-      settings_.inertial ? Vec3(-(filter_.state().mounting.R_CB.transpose() * body.w_C)) : body.w_C;  // e_b = -e_w
+  Vec3 rate = settings_.inertial ? Vec3(-filter_.state().mounting.reading_of(body.w_C)) : body.w_C;  // e_b = -e_w
   limit_speed(dt, largest_variance(filter_, Body::kTheta), largest_variance(filter_, Body::kPosition), &rate, &P_speed);
   Transition transition;
   damp_speed(body, settings_.body, speed_decay(dt), rate, P_speed, &transition);
   filter_.predict(transition);
 }
 
+/// With B the rows of the pose by the errors c of the intrinsics:   B P_cb F^T + F P_bc B^T + B P_cc B^T
+Mat6 BodyMotion::covariance_by_intrinsics(const Transition& transition) const {
+  constexpr int kColumns = Intrinsics::kRows;
+  const int first = settings_.body.row(BodyPart::kIntrinsics), dim = transition.dim;
+  const Triangle& P = filter_.covariance();
+  Eigen::Matrix<Scalar, 6, kColumns> half;  // F P_bc + B P_cc / 2
+  for (int i = 0; i < 6; ++i)
+    for (int c = 0; c < kColumns; ++c) {
+      Scalar sum = 0;
+      for (int k = 0; k < dim; ++k) sum += transition.F[i * dim + k] * P(first + c, k);
+      for (int k = 0; k < kColumns; ++k)
+        sum += transition.by_intrinsics[i * kColumns + k] * P(first + c, first + k) / 2;
+      half(i, c) = sum;
+    }
+  Mat6 out = Mat6::Zero();
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      for (int c = 0; c < kColumns; ++c)
+        out(i, j) += half(i, c) * transition.by_intrinsics[j * kColumns + c] +
+                     half(j, c) * transition.by_intrinsics[i * kColumns + c];
+  return out;
+}
+
 void BodyMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body, Mat6* covariance) const {
   *body = filter_.state().body;
+  Mat6 by_unit = Mat6::Zero();
   const int dim = settings_.body.dynamic_rows();
   Scalar P[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
   filter_.body_covariance(dim, P);
@@ -177,6 +201,7 @@ void BodyMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body
     else
       predict_after(*body, static_cast<Scalar>(seconds(elapsed_ns(now_ns, t_ns))), settings_.motion_noise, &transition);
     *body = transition.mean;
+    if (transition.has_intrinsics) by_unit = covariance_by_intrinsics(transition);
     Scalar FP[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j) {
@@ -192,7 +217,7 @@ void BodyMotion::predict_pose(std::int64_t now_ns, std::int64_t t_ns, Body* body
       }
   }
   for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) (*covariance)(i, j) = P[i * dim + j];
+    for (int j = 0; j < 6; ++j) (*covariance)(i, j) = P[i * dim + j] + by_unit(i, j);
 }
 
 }  // namespace pf

@@ -57,6 +57,7 @@ class BodyMotion {
   Coasting coasting(const Body& body, const MotionNoise& noise) const;
   void predict_by(const Body& body, const Preintegral& samples, const MotionNoise& noise, Transition* transition) const;
   void predict_after(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const;
+  Mat6 covariance_by_intrinsics(const Transition& transition) const;
   MotionNoise limited_noise() const;
   bool has_rate() const;
   void damp(Scalar dt);

@@ -75,6 +75,8 @@ void FilterStart::begin(const Target* target, bool fitted) {
 void FilterStart::start_with_observations() {
   begin(target_.has_target() ? &target_.target() : nullptr, false);
   features_.add_target_points(target_.target());
+  // Without samples a camera that is under way has a wrong explanation of its first frames as often as one of pictures.
+  if (settings_.inertial && !filter_.uses_samples() && !data_.knows_scale && needs_record()) recorder_.begin_start();
 }
 
 bool FilterStart::start_in_image() {

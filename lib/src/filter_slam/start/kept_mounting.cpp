@@ -3,7 +3,7 @@
 namespace pf {
 
 bool KeptMounting::layout(Arena& arena) {
-  if (layout_.estimates_mounting()) kept_ = arena.take<Kept>(1);
+  if (layout_.estimates_unit()) kept_ = arena.take<Kept>(1);
   return arena.ok();
 }
 
@@ -20,6 +20,7 @@ void KeptMounting::init() {
   set_sigma(BodyPart::kMountRotation, 3, unit_.sigma_turn);
   set_sigma(BodyPart::kMountPlace, 3, unit_.sigma_place);
   set_sigma(BodyPart::kDelay, 1, unit_.sigma_delay);
+  set_sigma(BodyPart::kIntrinsics, Intrinsics::kRows, unit_.sigma_scale);
 }
 
 void KeptMounting::keep() {
@@ -34,7 +35,7 @@ void KeptMounting::keep() {
 }
 
 void KeptMounting::put_covariance(Scalar* covariance) const {
-  const int first = first_row(), rows = num_rows(), dim = layout_.dynamic_rows();
+  const int first = first_row(), rows = num_rows(), dim = layout_.unit_rows();
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < rows; ++j) covariance[(first + i) * dim + first + j] = kept_->covariance[i * rows + j];
 }

@@ -4,7 +4,8 @@
 #include "filter/filter.h"
 #include "filter/imu_path.h"
 
-/// How the inertial unit is mounted on the camera, and its delay: what a map begins with, which earlier maps may have estimated.
+/// How the inertial unit is mounted on the camera, its delay and its intrinsics: what a map begins with, which earlier maps may have
+/// estimated.
 
 namespace pf {
 
@@ -22,21 +23,21 @@ class KeptMounting {
 
   /// What a map begins with.
   const Mounting& initial() const { return kept_ != nullptr ? kept_->mounting : unit_.mounting; }
-  /// Sets the block of a square row-major covariance of the layout's dynamic rows that belongs to initial().
+  /// Sets the block of a square row-major covariance of the layout's unit rows that belongs to initial().
   void put_covariance(Scalar* covariance) const;
   /// Where the unit is on the camera, as far as it is known; in metres.
   Mounting now() const;
 
  private:
   struct Kept {
-    static constexpr int kRows = 7;
+    static constexpr int kRows = 7 + Intrinsics::kRows;
     Mounting mounting;
     Scalar covariance[kRows * kRows];  ///< row-major, of num_rows() rows
   };
 
   /// Of the mounting and the delay in the body's layout.
   int first_row() const { return layout_.row(BodyPart::kGravity) + 2; }
-  int num_rows() const { return layout_.dynamic_rows() - first_row(); }
+  int num_rows() const { return layout_.unit_rows() - first_row(); }
 
   const BodyLayout& layout_;
   const ImuUnit& unit_;

@@ -32,7 +32,8 @@ void MapBeginning::empty_filter() {
   filter_.init(settings_.kernels, settings_.body, settings_.keep_gauge);
   filter_.set_lens(settings_.camera, settings_.lens);
   // Where the scale is not known, neither is the unit's place in it.
-  filter_.set_mounting({mounting_.initial().R_CB, Vec3::Zero(), mounting_.initial().delay, false});
+  filter_.set_mounting(
+      {mounting_.initial().R_CB, Vec3::Zero(), mounting_.initial().delay, false, mounting_.initial().intrinsics});
   filter_.set_roughness(settings_.fold.roughness);
   map_.mark = Mark();
 }
@@ -73,8 +74,7 @@ void MapBeginning::begin(const Target* target, bool fitted) {
 }
 
 void MapBeginning::begin_at(const Body& body, const Target* fitted_to) {
-  Scalar J_lens[BodyLayout::kMaxDynamicRows * kLensParameters] =
-      {};  // of the pose; velocities do not depend on the lens
+  Scalar J_lens[BodyLayout::kMaxUnitRows * kLensParameters] = {};  // of the pose; velocities do not depend on the lens
   const LensRows& rows = filter_.state().lens_rows;
   PoseEstimate pose;
   pose.q_WC = body.q_WC;
@@ -97,10 +97,10 @@ void MapBeginning::note_covariance() {
 /// known: covariance over the known rows of the layout. Of an inertial unit nothing is known yet.
 void MapBeginning::set_body(const Body& body, const Scalar* known, const Scalar* J_lens) {
   using namespace tuning::inertial;
-  Scalar all[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
+  Scalar all[BodyLayout::kMaxUnitRows * BodyLayout::kMaxUnitRows];
   if (settings_.inertial) {
     const BodyLayout& layout = settings_.body;
-    const int dim = layout.dynamic_rows(), stride = layout.known_rows(), moving = layout.row(BodyPart::kGyroBias);
+    const int dim = layout.unit_rows(), stride = layout.known_rows(), moving = layout.row(BodyPart::kGyroBias);
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j) all[i * dim + j] = i < moving && j < moving ? known[i * stride + j] : Scalar(0);
     const auto set_sigma = [&](BodyPart part, int rows, Scalar sigma) {

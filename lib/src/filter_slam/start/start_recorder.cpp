@@ -28,7 +28,7 @@ void StartRecorder::begin_record() {
   if (progress().checking && record_.empty()) init();
 }
 
-bool StartRecorder::record_frame() {
+bool StartRecorder::record_frame(bool has_image) {
   if (!is_recording() || record_.empty() || frame_.report.inliers < settings_.min_inliers) return false;
   add_pixels();
   const bool first = !progress().depth_known, checks = progress().checking;
@@ -44,7 +44,7 @@ bool StartRecorder::record_frame() {
       if (first) settings_.hooks.say("started without a target: the first depths are known");
       break;
     case StartOutcome::kTooFew:
-      if (first && !checks) begin_anew();  // only rotation so far, or too few features in view
+      if (first && !checks) begin_anew(has_image);  // only rotation so far, or too few features in view
       break;
     case StartOutcome::kStill:
       stay_at_base();
@@ -91,10 +91,10 @@ bool StartRecorder::check_depths(bool settled) {
 
 /// The world stays, and a record begins with this frame. Features that were found in several frames begin again where they are now: where
 /// most corners are never found again (speckles, leaves), a record of corners alone would run out of features before there is parallax.
-void StartRecorder::begin_anew() {
+void StartRecorder::begin_anew(bool has_image) {
   Vec2 proven[StartRecord::kMaxFeatures];
   int count = 0;
-  for (int t = 0; t < frame_.match_count() && count < StartRecord::kMaxFeatures; ++t) {
+  for (int t = 0; has_image && t < frame_.match_count() && count < StartRecord::kMaxFeatures; ++t) {
     const Match& match = frame_.match(t);
     if (match.feature >= 0 && match.status == MatchStatus::kInlier &&
         map_.features[match.feature].observations >= tuning::filter_start::kProven)

@@ -50,8 +50,8 @@ class StartRecorder {
   void begin_record();
   /// While a start without a target is under way: records the frame's pixels, and restarts the filter when the record gives better depths.
   /// After one at a target, or before walls: likewise, until the record shows that the filter's depths are right, or wrong. True: they were
-  /// wrong, and places and poses of before no longer hold.
-  bool record_frame();
+  /// wrong, and places and poses of before no longer hold. has_image: else the caller's own observations begin features again.
+  bool record_frame(bool has_image);
 
  private:
   /// The lens of a start without a target is estimated with its depths, and not only considered.
@@ -59,7 +59,7 @@ class StartRecorder {
   void add_pixels();
   bool check_depths(bool settled);
   void bound_baseline();
-  void begin_anew();
+  void begin_anew(bool has_image);
   void stay_at_base();
   void restart(Scalar unit);
   template <typename Rho>
