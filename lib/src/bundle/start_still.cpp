@@ -43,7 +43,7 @@ bool stands_still(const Camera& camera, const StartRecord& record, int others) {
   }
   if (kShare * still < seen || cells < kMinCells || rows < 2) return false;
   // The scene is what most features are on, and most of the picture. What stands still is else a mark on the picture.
-  if (2 * still < seen && other_cells >= cells) return false;
+  if (kMajority * still < seen && other_cells >= cells) return false;
   if (moved >= kMinMoved) return true;
   return others >= kMinMoved && log_so3(record.frame(last).q_WC).norm() * camera.fx > kTurnedPx;
 }

@@ -59,8 +59,9 @@ inline constexpr Scalar kMovedPx = Scalar(3);    ///< likewise, of a feature tha
 inline constexpr Scalar kTurnedPx = Scalar(2);   ///< of an estimated rotation
 inline constexpr int kMinMoved = 3;              ///< features that have moved, or that are not in the record
 inline constexpr int kShare = 3;                 ///< one of so many that are seen has not moved
-inline constexpr int kColumns = 4;               ///< of cells that the picture is divided into
-inline constexpr int kRows = 3;                  ///< likewise
+inline constexpr int kMajority = 2;  ///< one of so many that are seen, where those that have not moved are most
+inline constexpr int kColumns = 4;   ///< of cells that the picture is divided into
+inline constexpr int kRows = 3;      ///< likewise
 inline constexpr int kMinCells = 4;  ///< that hold features which have not moved; of two rows, or it may be the horizon
 }  // namespace start_still
 

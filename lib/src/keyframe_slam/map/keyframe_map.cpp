@@ -14,8 +14,8 @@ using namespace tuning::keyframe_map;
 bool KeyframeMap::layout(Arena& arena) {
   const int points = settings_.max_features;
   point_ = arena.take<KeyframePoint>(static_cast<std::size_t>(points));
-  scratch_ = arena.take<Scalar>(static_cast<std::size_t>(points));
-  scratch_vector_ = arena.take<Vec3>(static_cast<std::size_t>(points));
+  scratch_.number = arena.take<Scalar>(static_cast<std::size_t>(points));
+  scratch_.vector = arena.take<Vec3>(static_cast<std::size_t>(points));
   return keyframes.layout(arena, kKeyframes, points);
 }
 
@@ -64,15 +64,16 @@ BlockKind KeyframeMap::kind(int i) const {
 
 Scalar KeyframeMap::median_depth(const Quat& q_WC, const Vec3& p_W) const {
   const Vec3 forward = q_WC.toRotationMatrix().col(2);
+  Scalar* const depth = scratch_.number;
   int count = 0;
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
     if (match.feature < 0 || match.status != MatchStatus::kInlier || !point_[match.feature].has_depth) continue;
-    if (count < capacity()) scratch_[count++] = forward.dot(position(match.feature) - p_W);
+    if (count < capacity()) depth[count++] = forward.dot(position(match.feature) - p_W);
   }
   if (count == 0) return 0;
-  std::nth_element(scratch_, scratch_ + count / 2, scratch_ + count);
-  return scratch_[count / 2];
+  std::nth_element(depth, depth + count / 2, depth + count);
+  return depth[count / 2];
 }
 
 int KeyframeMap::add(int host, const Vec2& pixel) {

@@ -61,9 +61,12 @@ class KeyframeMap {
   BlockKind kind(int i) const;
   /// Median depth of this frame's inliers that have one, seen from a pose; 0 without any.
   Scalar median_depth(const Quat& q_WC, const Vec3& p_W) const;
-  /// Room for a number and a vector of each point, within one call. median_depth() uses the first.
-  Scalar* scratch() { return scratch_; }
-  Vec3* scratch_vectors() { return scratch_vector_; }
+  /// Room within one call, one of each for each point. median_depth() uses the numbers.
+  struct Scratch {
+    Scalar* number = nullptr;
+    Vec3* vector = nullptr;
+  };
+  const Scratch& scratch() const { return scratch_; }
 
   /// Adds a point without a depth at a pixel of a keyframe; evicts one that was not seen in this frame where there is no room. Returns its
   /// row, or -1.
@@ -78,9 +81,7 @@ class KeyframeMap {
   Frame& frame_;
   KeyframeLens lens_;
   KeyframePoint* point_ = nullptr;
-  // One for each point.
-  Scalar* scratch_ = nullptr;
-  Vec3* scratch_vector_ = nullptr;
+  Scratch scratch_;
 };
 
 }  // namespace pf

@@ -53,7 +53,7 @@ class KeyframePlanes {
   void dissolve(int k);
   int list_points(int k);
   /// Places of the points that are listed.
-  Vec3* points_W() { return map_.scratch_vectors(); }
+  Vec3* points_W() { return map_.scratch().vector; }
 
   const Settings& settings_;
   KeyframeMap& map_;

@@ -40,7 +40,7 @@ int RotationTracking::list_rays() {
   for (int t = 0; t < frame_.match_count() && count < settings_.max_features; ++t) {
     const Match& match = frame_.match(t);
     if (!is_found(match)) continue;
-    map_.scratch_vectors()[count] = map_.ray_W(match.feature);
+    map_.scratch().vector[count] = map_.ray_W(match.feature);
     const Vec2 pixel = followed_at_frame_time(map_, match, frame_.report.t_ns);
     pixel_[count++] = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), true};
   }
@@ -52,7 +52,8 @@ bool RotationTracking::measure(const Vec3& base_W) {
   if (found < settings_.min_inliers) return false;
   Quat q_WC = motion_.body().q_WC;
   const int count = list_rays();
-  const Scalar parallax = fit_rotation(map_.camera(), map_.scratch_vectors(), pixel_, count, map_.scratch(), &q_WC);
+  const Scalar parallax =
+      fit_rotation(map_.camera(), map_.scratch().vector, pixel_, count, map_.scratch().number, &q_WC);
   const Scalar bound = kParallaxes * parallax + pose_.bound_px();
   correct_body(found, q_WC, base_W);
   const CameraView seen_from = motion_.view();
