@@ -573,11 +573,12 @@ class ContractRun {
                 "samples");
         status(pf_find_plane(slam_, bytes_.take<uint32_t>(), &current));
         pf_inertial_t inertial;
-        static_assert(sizeof(inertial.sigma) == 17 * sizeof(double), "all of sigma is doubles");
+        static_assert(sizeof(inertial.sigma) == 18 * sizeof(double), "all of sigma is doubles");
         if (status(pf_get_inertial(slam_, &inertial)) == PF_OK)
           require(finite(inertial.gravity_W, 3) && finite(inertial.gyro_bias, 3) && finite(inertial.accel_bias, 3) &&
                       finite(inertial.covariance, 64) && finite(inertial.q_BC, 4) && finite(inertial.p_BC, 3) &&
-                      finite(reinterpret_cast<const double*>(&inertial.sigma), 17),
+                      finite(inertial.gyro_matrix, 9) && finite(inertial.accel_matrix, 9) &&
+                      finite(reinterpret_cast<const double*>(&inertial.sigma), 18),
                   "what is known of the unit is finite");
         pf_camera_t camera;
         double lens[100];
