@@ -17,7 +17,7 @@ def require(condition, message):
 
 def report(folder, *options):
     path = folder / "vio.json"
-    print(run(BIN / "pf-sim", "vio", "--start", "moving", "--imu-exact", "mount,delay", "--json", path, *options))
+    print(run(BIN / "pf-sim", "vio", "--start", "moving", "--imu-exact", "mount,delay,scale", "--json", path, *options))
     return json.loads(path.read_text())
 
 
