@@ -5,7 +5,7 @@
  * others. pf_set_mask says which pixels are not the scene, by rectangles or with one byte a pixel: nothing is searched or
  * begun there. Room for it is asked for in the config (capacity.mask), one bit for 4x4 pixels. The program turns the camera
  * by 24 degrees, without and with the mask, and prints what is measured on the body and how far the camera has turned.
- * lib/docs/mask.md says what is left out.
+ * lib/docs/guide/mask.md says what is left out.
  */
 #include <math.h>
 #include <planefold/planefold.h>

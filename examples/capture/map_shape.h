@@ -14,7 +14,7 @@ namespace pf::capture {
 ///
 /// features  as they are in slam now
 /// empty when the filter cannot say: it has no pose
-/// src       lib/docs/gauge.md
+/// src       lib/docs/theory/gauge.md
 std::vector<double> sigmas_in_map(const pf_slam_t* slam, const std::vector<pf_feature_t>& features);
 
 }  // namespace pf::capture

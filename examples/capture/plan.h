@@ -14,7 +14,7 @@
 
 namespace pf::capture {
 
-/// The walls of a plan that the run was given: how they get into the map, and what has become of them (lib/docs/walls.md).
+/// The walls of a plan that the run was given: how they get into the map, and what has become of them (lib/docs/theory/walls.md).
 class Plan {
  public:
   /// No path: no walls. tell_depths: nothing else says how far away the first features are. false: error is one line.

@@ -14,7 +14,7 @@ namespace pf::capture {
 class RelativeMotion {
  public:
   /// 0 frames: no windows.
-  /// has_length  the run has the truth's unit of length; otherwise the scale of each window is free (lib/docs/relative_motion.md)
+  /// has_length  the run has the truth's unit of length; otherwise the scale of each window is free (lib/docs/theory/relative_motion.md)
   void open(int64_t frames, bool has_length) {
     frames_ = frames;
     has_length_ = has_length;

@@ -13,7 +13,7 @@ namespace pf::capture {
 ///
 /// pose  of the camera, with its velocities
 /// false where the camera has no such pixel
-/// src   lib/docs/rolling_shutter.md
+/// src   lib/docs/theory/rolling_shutter.md
 bool project_row(const pf_camera_t& camera, const pf_pose_t& pose, const Vec3& p_C, double pixel[2]);
 
 /// A point of the world in C.

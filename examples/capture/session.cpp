@@ -39,7 +39,7 @@ void keep_line(void* user, const char* line) {
 }
 
 /// A calibration is a measurement too, and estimating what it left gains more where it is poor than it costs where it is good
-/// (lib/docs/lens.md). A scene's is exact, and says so (pf_sim_camera).
+/// (lib/docs/theory/lens.md). A scene's is exact, and says so (pf_sim_camera).
 pf_camera_estimate_t default_estimate(const pf_config_t& config) {
   const bool can = config.motion.model != PF_MOTION_INERTIAL;
   return can && config.camera.sigma_focal > kExactFocal ? PF_CAMERA_ESTIMATE : PF_CAMERA_EXACT;

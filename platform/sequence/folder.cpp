@@ -1,4 +1,4 @@
-/// Layouts of folders: lib/docs/data_sets.md has a command for each.
+/// Layouts of folders: lib/docs/guide/data_sets.md has a command for each.
 #include "folder.h"
 
 #include <planefold_platform/sequence.h>

@@ -1,4 +1,4 @@
-/* What the files of this room share: the camera, and calls of its driver. For users: lib/docs/capture.md. */
+/* What the files of this room share: the camera, and calls of its driver. For users: lib/docs/guide/capture.md. */
 #ifndef PLANEFOLD_PLATFORM_V4L2_DEVICE_H
 #define PLANEFOLD_PLATFORM_V4L2_DEVICE_H
 

@@ -58,7 +58,7 @@ with tempfile.TemporaryDirectory() as name:
     write_bag(folder / "desk.bag", write_files(folder / "desk"))
     os.chdir(folder)
     names = {}
-    page = script.SOURCE / "lib/docs/python.md"
+    page = script.SOURCE / "lib/docs/guide/python.md"
     blocks = re.findall(r"^```python\n(.*?)^```", page.read_text(), re.S | re.M)
     for block in blocks:
         exec(compile(block, str(page), "exec"), names)

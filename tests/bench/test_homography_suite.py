@@ -22,7 +22,7 @@ with tempfile.TemporaryDirectory() as folder:
         row = rows[f"{name} planefold"]
         if not line.startswith(name) or "px RMSE" not in line or name not in document["notes"]:
             script.fail(f"the line of {name} is {line!r}")
-        # Where 30 % is hidden some frames in a thousand are lost (lib/docs/homography.md).
+        # Where 30 % is hidden some frames in a thousand are lost (lib/docs/theory/homography.md).
         most_lost = 1 if name == "occlusion" else 0
         if not (row["rmse_px"] < 0.1 and row["lost"] <= most_lost and 4 < row["nees"] < 16):
             script.fail(f"{name}: {row}")

@@ -38,7 +38,7 @@ class ContractRun {
   };
   const Seen& seen() const { return seen_; }
   /// What a run that says that it repaired its covariance holds inside is not looked at any more: what float cannot hold
-  /// (lib/docs/float.md). What leaves the library is, in any case.
+  /// (lib/docs/theory/float.md). What leaves the library is, in any case.
   void trust_told_repairs() { trusts_told_repairs_ = true; }
 
   void play(int max_steps = 120) {

@@ -7,7 +7,7 @@ import sys
 import rooms
 import source
 
-PAGE = source.ROOT / "lib/docs/architecture.md"
+PAGE = source.ROOT / "lib/docs/theory/architecture.md"
 text = PAGE.read_text()
 problems = []
 

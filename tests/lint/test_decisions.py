@@ -1,5 +1,5 @@
 """Each comparison by which something is accepted or rejected has a row in tools/lib/decisions.tsv that says for which likelihood it stands, each row
-a comparison, and lib/docs/decisions.md is what tools/count-decisions makes of them."""
+a comparison, and lib/docs/results/decisions.md is what tools/count-decisions makes of them."""
 
 import pathlib
 import subprocess
@@ -47,6 +47,6 @@ checked = subprocess.run([sys.executable, TOOL, "--check"], capture_output=True,
 if checked.returncode != 0:
     problems += (checked.stdout + checked.stderr).strip().splitlines()
 page = subprocess.run([sys.executable, TOOL, "--page", "--stdout"], capture_output=True, text=True, check=False).stdout
-if page != (source.ROOT / "lib/docs/decisions.md").read_text():
-    problems.append("lib/docs/decisions.md: is not what the sources say; run tools/count-decisions --page")
+if page != (source.ROOT / "lib/docs/results/decisions.md").read_text():
+    problems.append("lib/docs/results/decisions.md: is not what the sources say; run tools/count-decisions --page")
 source.report(problems)

@@ -1,4 +1,4 @@
-"""Every #include goes down the arrows of lib/docs/architecture.md."""
+"""Every #include goes down the arrows of lib/docs/theory/architecture.md."""
 
 import fnmatch
 import re

@@ -12,7 +12,9 @@ import sizes  # noqa: E402
 
 DOCS = source.ROOT / "lib/docs"
 # Pages about the project as a whole, which no file implements.
-OVERVIEW = {"architecture.md", "decisions.md", "notation.md", "results.md", "devices.md", "where_to_change.md"}
+OVERVIEW = {f"{name}.md" for name in (
+    "guide/devices", "guide/where_to_change", "results/decisions", "results/measured", "theory/architecture", "theory/notation")}
+KINDS = {"adr", "guide", "lab", "results", "theory"}
 problems = []
 
 for page in [*sorted(DOCS.rglob("*.md")), source.ROOT / "README.md"]:
@@ -22,21 +24,25 @@ for page in [*sorted(DOCS.rglob("*.md")), source.ROOT / "README.md"]:
 
 code = {path: path.read_text() for path in source.files("lib", "platform", "examples", "tools", "tests", suffixes=(".c", ".cpp", ".h", ".py", ".sh"))}
 for path, text in code.items():
-    for name in re.findall(r"\blib/docs/([\w/]+\.md)", text):
-        if not (DOCS / name).is_file():
-            problems.append(f"{source.name(path)} names lib/docs/{name}, which does not exist")
+    for named in re.findall(r"\blib/docs/([\w/]+\.md)", text):
+        if not (DOCS / named).is_file():
+            problems.append(f"{source.name(path)} names lib/docs/{named}, which does not exist")
 
-for page in sorted(DOCS.glob("*.md")):
-    if page.name in OVERVIEW:
+for page in sorted(DOCS.rglob("*.md")):
+    name = page.relative_to(DOCS).as_posix()
+    kind = name.split("/")[0]
+    if kind not in KINDS:
+        problems.append(f"lib/docs/{name}: belongs in one of the folders {', '.join(sorted(KINDS))}")
+    if name in OVERVIEW or kind not in ("guide", "results", "theory"):
         continue
     text = page.read_text()
-    linked = [(DOCS / target).resolve() for target in re.findall(r"\]\((\.\./[^)#\s]+)\)", text)]
+    linked = [(page.parent / target).resolve() for target in re.findall(r"\]\((\.\./[^)#\s]+)\)", text)]
     files = [path for path in linked if path.is_file() and path.suffix in (".c", ".cpp", ".h")]
     if not files:
-        problems.append(f"lib/docs/{page.name} links to no source file that does what it describes")
-    elif not any(f"lib/docs/{page.name}" in path.read_text() for path in files):
-        names = ", ".join(source.name(path) for path in files)
-        problems.append(f"lib/docs/{page.name}: none of the files that it links to names it ({names})")
+        problems.append(f"lib/docs/{name} links to no source file that does what it describes")
+    elif not any(f"lib/docs/{name}" in path.read_text() for path in files):
+        links = ", ".join(source.name(path) for path in files)
+        problems.append(f"lib/docs/{name}: none of the files that it links to names it ({links})")
 
 if sizes.PAGE.read_text() != sizes.page_of(sizes.read_golden()):
     problems.append(f"{source.name(sizes.PAGE)}: the table of sizes differs from tests/golden/sizes.txt; tools/update-golden writes both")

@@ -1,5 +1,5 @@
 // Pixels of a pose so wide that they are taken in twice, linearised again: what float makes of their noise and of the map's covariance
-// (lib/docs/float.md).
+// (lib/docs/theory/float.md).
 #include <unity.h>
 
 #include "../fuzz/contract_episode.h"

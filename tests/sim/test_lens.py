@@ -10,7 +10,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, fail, run  # noqa: E402
 
 SEEDS, FRAMES = 2, 150
-# Against gross failure only, since two runs say nothing of honesty; the aim is 3, and over 13 runs the largest was 4.2: lib/docs/lens.md
+# Against gross failure only, since two runs say nothing of honesty; the aim is 3, and over 13 runs the largest was 4.2:
+# lib/docs/theory/lens.md
 MOST_SIGMAS = 10
 
 with tempfile.TemporaryDirectory() as folder:

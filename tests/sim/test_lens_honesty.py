@@ -1,5 +1,6 @@
 """pf-sim room with a camera drawn from its prior: considered or estimated, the filter is as honest as with the right one; taken as exact, it
-is not. A considered calibration stays where it was given, so its errors must be small against what the linearisation bears: lib/docs/lens.md."""
+is not. A considered calibration stays where it was given, so its errors must be small against what the linearisation bears:
+lib/docs/theory/lens.md."""
 
 import json
 import pathlib

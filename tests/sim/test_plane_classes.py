@@ -1,6 +1,6 @@
 """Planes in the film and on the map have the colours of their classes where gravity is known: in the picture they are those that
-lib/docs/capture.md names, a legend says which is which, and people with red-green blindness can tell them apart. Where gravity is not known, a
-plane has the colour of its number, and there is no legend."""
+lib/docs/guide/capture.md names, a legend says which is which, and people with red-green blindness can tell them apart. Where gravity is not
+known, a plane has the colour of its number, and there is no legend."""
 
 import itertools
 import json
@@ -71,7 +71,7 @@ def is_there(rows, colour, left, right, size):
 
 def named_colours():
     """Of the table of classes in capture.md: name in the files, colour."""
-    page = (SOURCE / "lib/docs/capture.md").read_text()
+    page = (SOURCE / "lib/docs/guide/capture.md").read_text()
     return {name: tuple(int(part, 16) for part in parts)
             for name, *parts in re.findall(r"^\| `(\w+)` \|.*`#(..)(..)(..)` \|$", page, re.MULTILINE)}
 

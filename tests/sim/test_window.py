@@ -1,7 +1,7 @@
 """The window of pf-capture, on a screen that is not there (Xvfb): screenshots of a running scene say the same as its files.
 
 Each screenshot is taken while the next frame is tracked; what is asked of it says tests/support/window_picture.py. Run by hand
-with a path, the last screenshot is written there as PNG (see lib/docs/capture.md)."""
+with a path, the last screenshot is written there as PNG (see lib/docs/guide/capture.md)."""
 
 import ctypes
 import json

@@ -2,8 +2,8 @@
 there, and come to the same: the same map and the same rows in every frame, sigma within 2 %, states within 0.1 sigma, and no update
 refused.
 
-The rows are not the same in all frames (lib/docs/kernels.md), and the test says so. Beside that it bounds by how much they differ. What is
-decided about a feature (its conversion to a place, its fold into a plane) falls a few frames earlier or later where it depends on numbers
+The rows are not the same in all frames (lib/docs/theory/kernels.md), and the test says so. Beside that it bounds by how much they differ. What
+is decided about a feature (its conversion to a place, its fold into a plane) falls a few frames earlier or later where it depends on numbers
 that differ by as much as is allowed above; at the end all is decided alike. The bounds follow from what is allowed of the numbers:
 
 - A feature is converted when its linearity index, which is proportional to its sigma, has fallen to a bound. It falls at least as the

@@ -9,7 +9,7 @@
 #include "sim/trajectory.h"
 
 /// A box of 1 m with posters on its four sides, circled by a hand at 2 m, and a plan of it whose angles are wrong by up to 6 degrees: the
-/// first experiment of Servant 2008, section 3 (lib/docs/walls.md).
+/// first experiment of Servant 2008, section 3 (lib/docs/theory/walls.md).
 
 namespace pfsim {
 

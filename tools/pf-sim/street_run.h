@@ -6,7 +6,7 @@
 #include "planefold/planefold.h"
 #include "run.h"
 
-/// A walk of 72 m along a street whose plan is coarse: every front is turned and shifted (lib/docs/walls.md).
+/// A walk of 72 m along a street whose plan is coarse: every front is turned and shifted (lib/docs/theory/walls.md).
 
 namespace pfsim {
 

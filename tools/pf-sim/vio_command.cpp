@@ -330,7 +330,7 @@ void print_fault(const json& j) {
       number("/fault/refused_samples"));
 }
 
-/// Bounds that the simulated unit should meet: lib/docs/inertial.md.
+/// Bounds that the simulated unit should meet: lib/docs/theory/inertial.md.
 bool verdict(const Choices& c, const json& j) {
   const auto number = [&](const char* path) { return j.at(json::json_pointer(path)).get<double>(); };
   const double nees = number("/nees_pose/mean");

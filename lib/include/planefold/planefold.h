@@ -120,7 +120,7 @@ typedef enum pf_camera_model {
   PF_CAMERA_DIVISION = 4
 } pf_camera_model_t;
 
-/* What a context makes of the numbers of a calibration (lib/docs/lens.md). The window cannot
+/* What a context makes of the numbers of a calibration (lib/docs/theory/lens.md). The window cannot
  * consider them. */
 typedef enum pf_camera_estimate {
   PF_CAMERA_EXACT = 0, /* takes them as exact; the default */
@@ -177,8 +177,9 @@ PF_API pf_status_t pf_camera_unproject(const pf_camera_t* camera, const double p
 
 typedef enum pf_motion_model {
   PF_MOTION_CONSTANT_VELOCITY = 1, /* white accelerations; the default */
-  /* By the samples of pf_push_imu (lib/docs/inertial.md). Wants imu and capacity.max_imu_samples >=
-   * 64: as many as come in the longest time between frames that is to be bridged. */
+  /* By the samples of pf_push_imu (lib/docs/theory/inertial.md). Wants imu and
+   * capacity.max_imu_samples >= 64: as many as come in the longest time between frames that is to
+   * be bridged. */
   PF_MOTION_INERTIAL = 4
 } pf_motion_model_t;
 
@@ -198,8 +199,8 @@ typedef enum pf_fix {
   PF_FIX_INFLATE = 2
 } pf_fix_t;
 
-/* Templates that learn which of their pixels belong to their dominant plane (lib/docs/templates.md;
- * Masoud 2015). */
+/* Templates that learn which of their pixels belong to their dominant plane
+ * (lib/docs/theory/templates.md; Masoud 2015). */
 typedef enum pf_masks {
   /* every pixel of a feature counts, and one in five may be wrong; the default */
   PF_MASKS_NONE = 0,
@@ -210,8 +211,8 @@ typedef enum pf_masks {
 /* What estimates pose and map. */
 typedef enum pf_backend {
   PF_BACKEND_FILTER = 1, /* a filter over pose, points and planes (Gee 2007); the default */
-  /* Keyframes that are adjusted with the points that they see (lib/docs/window.md; Masoud 2015).
-   * Images only. PF_ERROR_CONFIG with motion.model inertial, camera.estimate consider,
+  /* Keyframes that are adjusted with the points that they see (lib/docs/theory/window.md; Masoud
+   * 2015). Images only. PF_ERROR_CONFIG with motion.model inertial, camera.estimate consider,
    * plane.fix_sigma above 0 and capacity.max_patches above 0. The pose's covariance takes the map's
    * first keyframes as exact, those of points and planes all keyframes and the lens. The block at
    * its defaults is 2.0 MiB, with camera.estimate estimate 2.1. */
@@ -351,8 +352,8 @@ typedef struct pf_config {
     double max_misfit;
   } map;
 
-  /* Finding planes and folding points into them (lib/docs/planes.md). Names of Gee 2007, section 3,
-   * in brackets. */
+  /* Finding planes and folding points into them (lib/docs/theory/planes.md). Names of Gee 2007,
+   * section 3, in brackets. */
   struct {
     int32_t enabled;     /* 1: finds planes and folds points into them. 0: points only. Default 1 */
     int32_t min_points;  /* a new plane has more points than this (l_T), 4 .. 60. Default 7 */
@@ -488,7 +489,7 @@ PF_API pf_status_t pf_withdraw_target(pf_slam_t* slam);
 #define PF_OUTLINE_MAX 24
 
 /* A wall: a plane that is known beforehand, from a building plan, with how uncertain it is
- * (lib/docs/walls.md). Fields as in pf_plane_t. */
+ * (lib/docs/theory/walls.md). Fields as in pf_plane_t. */
 typedef struct pf_wall_prior {
   double R_WP
       /* the plane's frame, row-major: x and y in the plane, z towards the side that can be seen */
@@ -547,8 +548,8 @@ typedef struct pf_mask {
 
 /* Masks a part of all images from the next one on, in place of the mask before; a mask in which all
  * is scene ends it, and so does pf_reset. What is masked is never searched, and nothing begins, is
- * aligned or is recognised there (lib/docs/mask.md). Of each 4x4 px a masked pixel masks all. Bytes
- * and rectangles are read during the call only. Pushed observations are not masked.
+ * aligned or is recognised there (lib/docs/guide/mask.md). Of each 4x4 px a masked pixel masks all.
+ * Bytes and rectangles are read during the call only. Pushed observations are not masked.
  * PF_NOTE_UNUSABLE: done, but of the 8x6 equal parts of the image, in which features begin, fewer
  * than eight hold any scene, which is too little for tracking.
  * PF_ERROR_FULL: capacity.mask is 0. PF_ERROR_NULL: neither pixels nor rectangles. PF_ERROR_SIZE:
@@ -641,7 +642,7 @@ PF_API pf_status_t pf_get_motion_since_mark(const pf_slam_t* slam, pf_motion_t* 
 
 /* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be
  * null). Of a rolling shutter it is the one at the frame's own time, which its row does not share:
- * lib/docs/rolling_shutter.md says how to go on to that. */
+ * lib/docs/theory/rolling_shutter.md says how to go on to that. */
 PF_API pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double pixel[2],
                                     double covariance[4]);
 
@@ -765,7 +766,7 @@ PF_API pf_status_t pf_get_matches(const pf_slam_t* slam, pf_match_t* matches, si
 enum { PF_PATCH_WAITING = 5 };
 
 /* A patch of a wall, or of a plane that was found, that is followed in images
- * (capacity.max_patches, lib/docs/homography.md). */
+ * (capacity.max_patches, lib/docs/theory/homography.md). */
 typedef struct pf_patch {
   uint32_t id;    /* never used twice */
   uint32_t plane; /* id of the wall or plane that it lies on; 0: not known yet */
@@ -845,14 +846,15 @@ typedef struct pf_report {
   /* of `frames`: images that were byte for byte the one before, see pf_push_frame */
   int64_t duplicates;
   int64_t stage_ns[PF_STAGE_COUNT]; /* all zero without a clock */
-  /* Noise of matches in images, as estimated so far (lib/docs/noise.md): of one match by itself,
-   * root mean square over recent inliers [px]; of what it adds to those of other frames,
+  /* Noise of matches in images, as estimated so far (lib/docs/theory/noise.md): of one match by
+   * itself, root mean square over recent inliers [px]; of what it adds to those of other frames,
    * sigma_gate_px * sqrt(correlation_frames) [px]; and for how many frames an error stays with its
    * feature. Pushed observations have the sigma_px that they state. */
   double sigma_gate_px, sigma_info_px, correlation_frames;
   /* Of `frames`: those at whose end a part of the estimate's covariance was not positive
-   * semidefinite, beyond rounding, and its variances were raised until it was (lib/docs/float.md).
-   * 0 is normal; where it grows, the poses deserve less trust than their covariances say. */
+   * semidefinite, beyond rounding, and its variances were raised until it was
+   * (lib/docs/theory/float.md). 0 is normal; where it grows, the poses deserve less trust than
+   * their covariances say. */
   int64_t covariance_repairs;
   /* With map.masks: templates that learnt from this frame, and the mean share of their pixels on
    * the dominant plane (0 without any). */
@@ -860,8 +862,8 @@ typedef struct pf_report {
   int32_t keyframes; /* of the window: that are kept */
   double template_area;
   /* ln(p / (1 - p)) of the probability that the map's pose in this frame is right, with what the
-   * frame says for it (lib/docs/belief.md): 3 is wrong once in 20, and a frame is tracked from 6.2
-   * on, once in 500. -13.8 .. 13.8; 0 before there is a pose. */
+   * frame says for it (lib/docs/theory/belief.md): 3 is wrong once in 20, and a frame is tracked
+   * from 6.2 on, once in 500. -13.8 .. 13.8; 0 before there is a pose. */
   double log_odds;
 } pf_report_t;
 

@@ -34,8 +34,8 @@ typedef enum pf_fold {
 } pf_fold_t;
 
 typedef struct pf_research {
-  /* 1: keeps the covariance consistent with what a camera alone cannot observe (lib/docs/gauge.md).
-   * 0: the textbook EKF, which is overconfident. Default 1 */
+  /* 1: keeps the covariance consistent with what a camera alone cannot observe
+   * (lib/docs/theory/gauge.md). 0: the textbook EKF, which is overconfident. Default 1 */
   int32_t keep_gauge;
   int32_t fold;        /* pf_fold_t. Default condition */
   double linear_walk;  /* of PF_MOTION_CONSTANT_POSITION [m/sqrt(s)] > 0. Default 0.1 */
@@ -56,7 +56,7 @@ PF_API pf_status_t pf_config_get_research(const pf_config_t* config, pf_research
  * row-major, in the order translation, rotation, log scale of the whole world. It must never grow
  * without absolute data. For tests: cubic in the state's dimension. scratch needs state_dim *
  * (state_dim + 8) doubles. PF_ERROR_RANGE: P is no covariance, by more than rounding leaves
- * (lib/docs/float.md). */
+ * (lib/docs/theory/float.md). */
 PF_API pf_status_t pf_get_gauge_information(const pf_slam_t* slam, double* scratch,
                                             size_t scratch_count, double information[49]);
 

@@ -17,7 +17,7 @@ namespace pf {
 ///
 ///   | piece | zone | piece | zone | ...        a zone only under AddressSanitizer, where it is poisoned
 ///
-/// Pieces begin at multiples of kAlignment and are never returned. lib/docs/memory.md.
+/// Pieces begin at multiples of kAlignment and are never returned. lib/docs/theory/memory.md.
 class Arena {
  public:
   static constexpr std::size_t kAlignment = 64;

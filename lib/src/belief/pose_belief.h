@@ -7,7 +7,7 @@
 
 namespace pf {
 
-/// A running log-odds L = ln(p / (1 - p)) that the pose is that of the camera in the map (lib/docs/belief.md):
+/// A running log-odds L = ln(p / (1 - p)) that the pose is that of the camera in the map (lib/docs/theory/belief.md):
 ///
 ///   predicted   p <- p exp(-kHazard dt),  and no less than kAnew: where the camera should be may be right at any time
 ///   a frame     L <- L + E,   |E| <= kMaxFrame,   kElsewhere <= L <= kMost

@@ -7,7 +7,7 @@
 
 namespace pf::tuning {
 
-/// Log-odds that the pose is right, natural logarithms (lib/docs/belief.md).
+/// Log-odds that the pose is right, natural logarithms (lib/docs/theory/belief.md).
 namespace pose_belief {
 inline constexpr Scalar kTracked = Scalar(6.2);      ///< from which a pose is used: wrong in 0.2 %
 inline constexpr Scalar kMost = Scalar(13.8);        ///< that a pose can have: wrong once in a million
@@ -17,7 +17,7 @@ inline constexpr Scalar kElsewhere = Scalar(-13.8);  ///< of any other pose: pic
 inline constexpr double kHazard = 0.005;  ///< [1/s] that what a prediction relies on ends: a cut, a grip, a blow
 }  // namespace pose_belief
 
-/// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/states.md).
+/// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/theory/states.md).
 namespace chance {
 inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that find something; found: 0.04 .. 0.24
 inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in small ellipses, times kMaxFindShare

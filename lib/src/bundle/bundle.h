@@ -7,7 +7,7 @@
 #include "geometry/plane.h"
 
 /// What a bundle adjustment works on: poses, points by their bearing and inverse depth in a host pose, planes on which some of the points
-/// lie, and the lens that all poses share (lib/docs/window.md, lib/docs/starting.md).
+/// lie, and the lens that all poses share (lib/docs/theory/window.md, lib/docs/theory/starting.md).
 
 namespace pf {
 

@@ -4,7 +4,7 @@
 #include "bundle/start_record.h"
 
 /// The first depths, when nothing is known beforehand: a bundle adjustment over the first frames, from several first
-/// guesses (lib/docs/starting.md).
+/// guesses (lib/docs/theory/starting.md).
 ///
 /// Before the camera has moved, a filter cannot estimate depth: at a baseline of zero the derivative of a pixel by
 /// depth is zero, and the inverted scene fits equally well at first. So the pixels of the first frames are recorded

@@ -4,7 +4,7 @@
 #include "covariance/triangle.h"
 
 /// The O(n^2) work on the covariance, as free functions over raw arrays. One table of function pointers per kernel set
-/// (lib/docs/kernels.md).
+/// (lib/docs/theory/kernels.md).
 /// Thin matrices (rows m or k, columns n) are row-major with leading dimension ld >= padded(n): each row is contiguous in the
 /// state index, and the padding columns are kept at zero by whoever owns the buffer.
 

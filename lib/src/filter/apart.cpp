@@ -4,7 +4,7 @@
 #include "filter/filter.h"
 #include "filter/tuning.h"
 
-/// What is kept apart from P, and how it comes there and back (lib/docs/gauge.md).
+/// What is kept apart from P, and how it comes there and back (lib/docs/theory/gauge.md).
 
 namespace pf {
 

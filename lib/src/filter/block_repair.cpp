@@ -5,7 +5,7 @@
 #include "filter/block_filter.h"
 #include "filter/tuning.h"
 
-/// Whether P can be a covariance, and what is done where it cannot (lib/docs/float.md).
+/// Whether P can be a covariance, and what is done where it cannot (lib/docs/theory/float.md).
 
 namespace pf {
 

@@ -5,7 +5,7 @@
 
 namespace pf {
 
-/// Covariance of gauge directions that is kept apart from P (lib/docs/float.md):
+/// Covariance of gauge directions that is kept apart from P (lib/docs/theory/float.md):
 ///
 ///   covariance of the state = P + N V N^T     N(x): gauge rows of the state (model/gauge.h); V: 7x7, translation, rotation, log scale
 ///

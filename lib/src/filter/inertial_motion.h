@@ -3,7 +3,7 @@
 #include "filter/motion.h"
 #include "filter/preintegral.h"
 
-/// The inertial motion model: how a body moves by the samples of its inertial unit (lib/docs/inertial.md).
+/// The inertial motion model: how a body moves by the samples of its inertial unit (lib/docs/theory/inertial.md).
 
 namespace pf {
 

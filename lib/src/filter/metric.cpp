@@ -6,7 +6,7 @@
 #include "filter/moving_start.h"
 #include "geometry/so3.h"
 
-/// A map up to scale becomes one in metres (lib/docs/inertial.md).
+/// A map up to scale becomes one in metres (lib/docs/theory/inertial.md).
 
 namespace pf {
 namespace {

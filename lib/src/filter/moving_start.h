@@ -2,7 +2,8 @@
 
 #include "filter/preintegral.h"
 
-/// Scale, gravity and the accelerometer's bias from a moving camera: poses up to scale and samples between them (lib/docs/inertial.md).
+/// Scale, gravity and the accelerometer's bias from a moving camera: poses up to scale and samples between them
+/// (lib/docs/theory/inertial.md).
 
 namespace pf {
 

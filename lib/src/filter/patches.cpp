@@ -5,7 +5,7 @@
 #include "model/reference_camera.h"
 #include "observe/ray_point.h"
 
-/// Patches on planes: corners that a reference camera saw, as the camera sees them now (lib/docs/homography.md).
+/// Patches on planes: corners that a reference camera saw, as the camera sees them now (lib/docs/theory/homography.md).
 
 namespace pf {
 

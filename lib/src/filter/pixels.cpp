@@ -5,7 +5,7 @@
 #include "observe/inverse_depth.h"
 #include "observe/point.h"
 
-/// Pixels: what is expected of them, each at the pose of its own row (lib/docs/rolling_shutter.md).
+/// Pixels: what is expected of them, each at the pose of its own row (lib/docs/theory/rolling_shutter.md).
 
 namespace pf {
 namespace {

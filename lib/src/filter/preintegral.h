@@ -3,7 +3,7 @@
 #include "base/eigen.h"
 #include "model/intrinsics.h"
 
-/// Inertial samples between two times, integrated once, in the axes B of the unit at the first of them (lib/docs/inertial.md).
+/// Inertial samples between two times, integrated once, in the axes B of the unit at the first of them (lib/docs/theory/inertial.md).
 
 namespace pf {
 

@@ -1,7 +1,7 @@
 #include "filter/filter.h"
 #include "geometry/so3.h"
 
-/// A body at rest (lib/docs/inertial.md).
+/// A body at rest (lib/docs/theory/inertial.md).
 
 namespace pf {
 

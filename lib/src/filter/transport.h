@@ -6,7 +6,7 @@
 
 namespace pf {
 
-/// Keeps the covariance consistent with what a bare camera cannot observe, when an update moves the state (lib/docs/gauge.md).
+/// Keeps the covariance consistent with what a bare camera cannot observe, when an update moves the state (lib/docs/theory/gauge.md).
 ///
 ///   M = I + U^T V takes the gauge directions N at x- to those at x+:  U = N(x+) - N(x-),  V N(x-) = I
 ///   rows of V:  rotation E_theta,  log scale l,  translation E_p + [p]x E_theta - p l         (body p at x-)

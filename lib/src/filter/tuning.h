@@ -29,7 +29,7 @@ namespace scale {
 inline constexpr int kMaxTried = 12;  ///< log lengths, the best known of which is taken
 }  // namespace scale
 
-/// What is kept apart from P (lib/docs/float.md). Smallest eigenvalue of correlations, 6 walks of 1,500 and 5,000 frames.
+/// What is kept apart from P (lib/docs/theory/float.md). Smallest eigenvalue of correlations, 6 walks of 1,500 and 5,000 frames.
 namespace apart {
 inline constexpr Scalar kMaxScaleVariance = Scalar(4e-4);     ///< of the log scale in P; beyond it the scale leaves P
 inline constexpr Scalar kLeftScaleVariance = Scalar(2.5e-6);  ///< that stays in P. With 0 -2e-4, with 1e-4 -2e-5

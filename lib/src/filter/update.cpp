@@ -42,7 +42,7 @@ void Filter::commit_update() {
   if (keep_gauge_) transport_.finish(state_, blocks_);
   blocks_.downdate(transport_.U(), transport_.G(), transport_.rows());
   // In float the diagonal gets back what rounding may have taken from it. Not in double: a part of a variance against W, which may be
-  // metres along a street, is much of what is known of a point against its neighbours (lib/docs/float.md).
+  // metres along a street, is much of what is known of a point against its neighbours (lib/docs/theory/float.md).
   if constexpr (sizeof(Scalar) == sizeof(float)) {
     blocks_.keep_rounding();
     blocks_.grow(tuning::apart::kGrowth * std::sqrt(static_cast<Scalar>(blocks_.dim())));

@@ -6,7 +6,7 @@
 #include "filter/filter.h"
 #include "filter/tuning.h"
 
-/// Planes that somebody says are vertical (lib/docs/inertial.md).
+/// Planes that somebody says are vertical (lib/docs/theory/inertial.md).
 
 namespace pf {
 

@@ -15,7 +15,7 @@ using VerticalMeasurement = MeasurementOf<1, 5, 2>;
 ///   z = n_W . g,   e_z = g^T J_n_x e_x + n^T E d,   E = (-R_WG e_y, R_WG e_x)
 ///
 /// x is the plane's (a, b, h), d the error of gravity's direction (model/body.h). The state has gravity. A rotation of the world with
-/// gravity, a translation and a change of scale do not change z. src lib/docs/inertial.md
+/// gravity, a translation and a change of scale do not change z. src lib/docs/theory/inertial.md
 void predict_vertical(const State& state, int plane, VerticalMeasurement* out);
 
 /// What a plane that was told to be vertical was told, and about which directions.

@@ -20,7 +20,7 @@
 #include "map/map.h"
 
 /// The inertial unit in the work of a frame: what it says of the body's motion, whether images agree with that, and what it says of the
-/// scale (lib/docs/inertial.md). Without the inertial motion model this only predicts the body.
+/// scale (lib/docs/theory/inertial.md). Without the inertial motion model this only predicts the body.
 
 namespace pf {
 

@@ -10,7 +10,7 @@
 namespace pf {
 
 /// What stands still in the picture while the rest of it moves: the carrier's own body, a date that is written over it. It is no part of
-/// the scene, and is masked from then on (lib/docs/belief.md).
+/// the scene, and is masked from then on (lib/docs/theory/belief.md).
 ///
 /// Since a reference frame most features have moved by kMinFlow or more, as if the camera had turned: the turn that fits these moves what
 /// is at a feature by m. A feature whose pixel has moved by d then adds

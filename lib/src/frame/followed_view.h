@@ -6,7 +6,7 @@
 #include "vision/pyramid.h"
 
 /// Where to look in an image when the motion model cannot tell: by how the whole picture has moved since the last frame that supported its
-/// pose. See lib/docs/matching.md.
+/// pose. See lib/docs/theory/matching.md.
 
 namespace pf {
 

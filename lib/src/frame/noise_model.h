@@ -21,7 +21,7 @@ namespace pf {
 ///           mean m_k = lambda m_(k-1) + (1 - lambda) v_k of a feature's normalised residuals v,
 ///           E v_k . m_(k-1) = (1 - lambda) E v.v sum_j lambda^(j-1) rho_j
 ///
-/// Derivation and measurements: lib/docs/noise.md
+/// Derivation and measurements: lib/docs/theory/noise.md
 class NoiseModel {
  public:
   /// Of the first view, which later ones are compared with.

@@ -106,7 +106,7 @@ inline constexpr Scalar kSigma = Scalar(0.3);   ///< [px of a thumbnail] of a pi
 inline constexpr Scalar kWideArea = Scalar(4);  ///< least area of a wide ellipse in those about followed pixels
 }  // namespace followed_view
 
-/// The noise of matches in images (lib/docs/noise.md).
+/// The noise of matches in images (lib/docs/theory/noise.md).
 namespace noise {
 inline constexpr Scalar kReferenceSigma = Scalar(0.25);  ///< [px] of the first view, which later ones are compared with
 inline constexpr Scalar kSearchSigma = Scalar(0.6);      ///< [px] of a match before the image says how good it is

@@ -4,7 +4,7 @@
 
 #include "geometry/camera.h"
 
-/// The numbers of a calibration as something uncertain (lib/docs/lens.md).
+/// The numbers of a calibration as something uncertain (lib/docs/theory/lens.md).
 
 namespace pf {
 

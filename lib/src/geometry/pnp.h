@@ -4,7 +4,7 @@
 
 #include "geometry/camera.h"
 
-/// Pose of a camera from any number of known points: refinement, and the search among wrong matches (lib/docs/starting.md).
+/// Pose of a camera from any number of known points: refinement, and the search among wrong matches (lib/docs/theory/starting.md).
 
 namespace pf {
 

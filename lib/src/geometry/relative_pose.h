@@ -4,7 +4,7 @@
 
 namespace pf {
 
-/// Pose of a camera C in the frame of another camera K, and its Jacobians (lib/docs/relative_motion.md).
+/// Pose of a camera C in the frame of another camera K, and its Jacobians (lib/docs/theory/relative_motion.md).
 ///
 ///   R_KC = R_WK^T R_WC,   p_KC = R_WK^T (p_WC - p_WK)
 ///   error (theta, p) in K:   R_true = Exp(theta) R_KC,   p_true = p_KC + e_p

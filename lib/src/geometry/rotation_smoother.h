@@ -2,7 +2,8 @@
 
 #include "base/eigen.h"
 
-/// Rotations of a camera of which pictures tell each by itself, and a gyro how it rotated from one to the next (lib/docs/inertial.md).
+/// Rotations of a camera of which pictures tell each by itself, and a gyro how it rotated from one to the next
+/// (lib/docs/theory/inertial.md).
 
 namespace pf {
 

@@ -14,7 +14,7 @@
 namespace pf {
 namespace {
 
-/// Whether rotation and position are known well enough against the map (lib/docs/states.md).
+/// Whether rotation and position are known well enough against the map (lib/docs/theory/states.md).
 bool is_usable(const Mat6& P, Scalar median_depth) {
   using namespace tuning::usable_pose;
   const Scalar position = kMaxPositionSigma * median_depth;

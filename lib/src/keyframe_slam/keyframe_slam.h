@@ -16,7 +16,7 @@
 ///
 ///   predict -> search -> pose -> points without a depth -> triangulate -> keyframe -> adjust -> new points
 ///
-/// Its parts refer to each other, so it is constructed in place and never copied. lib/docs/window.md
+/// Its parts refer to each other, so it is constructed in place and never copied. lib/docs/theory/window.md
 
 namespace pf {
 

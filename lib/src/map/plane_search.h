@@ -4,7 +4,7 @@
 
 #include "geometry/plane.h"
 
-/// Looks for planes among points that lie on none yet: lib/docs/plane_search.md.
+/// Looks for planes among points that lie on none yet: lib/docs/theory/plane_search.md.
 
 namespace pf {
 

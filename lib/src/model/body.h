@@ -40,7 +40,7 @@ class BodyLayout {
     return layout;
   }
 
-  /// The angular velocity is no state: it is that of the samples less their bias (lib/docs/inertial.md).
+  /// The angular velocity is no state: it is that of the samples less their bias (lib/docs/theory/inertial.md).
   static BodyLayout with_inertial_unit() {
     BodyLayout layout;
     layout.add(BodyPart::kVelocity, 3);

@@ -14,7 +14,7 @@ namespace pf {
 /// Of the pose the Jacobian is the identity, and of the velocities zero at tau = 0; neither is stored or multiplied.
 ///
 /// With an inertial unit w = R_CB (gyro - bias), so that e_w = -R_CB e_b stands in the rows of the bias; and the state's velocity v_B is
-/// that of the unit's origin, at m in C (lib/docs/inertial.md):
+/// that of the unit's origin, at m in C (lib/docs/theory/inertial.md):
 ///
 ///   v = v_B - R (w x m),   e_v = e_v_B + [R (w x m)]x theta + R [m]x e_w
 ///

@@ -13,7 +13,8 @@ namespace pf {
 ///   e_q = J_o e_p_K + J_d (-[d]x theta_K + R_WK J_ray_z e_z_K + R_WK J_ray_lens e_lens) + J_x e_x
 ///
 /// Four of these are a homography: for a pinhole, pixels of K (R + t n^T / d) K^-1 with R, t = T_CK and n . p = d in K.
-/// src  Servant 2008 (9)-(13), with the sign of n . p = d; no matrix, so every lens and every row time will do; lib/docs/homography.md
+/// src  Servant 2008 (9)-(13), with the sign of n . p = d; no matrix, so every lens and every row time will do;
+///      lib/docs/theory/homography.md
 struct RayPoint {
   Vec2 z;
   Mat26 J_camera, J_reference;  ///< by (theta, p) of the camera now and of K

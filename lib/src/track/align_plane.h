@@ -53,7 +53,7 @@ struct PlaneAlignment {
 /// of slack |grad T| beside noise. From the coarsest level to the finest; steps are of second order, with the mean of the gradients
 /// of image and template (ESM).
 ///
-/// src  Servant 2008, section 2.3; Benhimane and Malis 2004 (ESM); what is different: lib/docs/homography.md
+/// src  Servant 2008, section 2.3; Benhimane and Malis 2004 (ESM); what is different: lib/docs/theory/homography.md
 class PlaneAligner {
  public:
   static constexpr int kMaxIterations = 12;

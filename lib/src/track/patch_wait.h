@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-/// Which plane a patch lies on: every plane that may explain it is tried in each frame, until one is left (lib/docs/walls.md). It knows
-/// whether planes passed the gate, and no geometry.
+/// Which plane a patch lies on: every plane that may explain it is tried in each frame, until one is left (lib/docs/theory/walls.md). It
+/// knows whether planes passed the gate, and no geometry.
 
 namespace pf {
 

@@ -6,7 +6,7 @@
 #include "vision/template_mask.h"
 
 /// Finds templates whose pixels belong to their dominant plane in part only, and learns which those are, and the plane's normal.
-/// lib/docs/templates.md; what of it is the paper's: lib/docs/masoud2015.md
+/// lib/docs/theory/templates.md; what of it is the paper's: lib/docs/theory/masoud2015.md
 
 namespace pf {
 

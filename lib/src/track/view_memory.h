@@ -4,7 +4,8 @@
 #include "geometry/camera.h"
 #include "track/thumbnail.h"
 
-/// Thumbnails of tracked frames with their poses, by which a place is recognised roughly (Klein and Murray 2008). See lib/docs/states.md.
+/// Thumbnails of tracked frames with their poses, by which a place is recognised roughly (Klein and Murray 2008).
+/// See lib/docs/theory/states.md.
 
 namespace pf {
 

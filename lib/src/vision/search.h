@@ -5,7 +5,7 @@
 
 namespace pf {
 
-/// 8x8 template of the search (lib/docs/matching.md); offset (0, 0) is entry (4, 4): rows and columns -4 .. 3 about the feature.
+/// 8x8 template of the search (lib/docs/theory/matching.md); offset (0, 0) is entry (4, 4): rows and columns -4 .. 3 about the feature.
 struct SearchTemplate {
   static constexpr int kSize = 8;
   static constexpr int kBefore = 4;

@@ -5,7 +5,7 @@
 #include "vision/patch.h"
 #include "vision/planar_template.h"
 
-/// Which pixels of a template belong to its dominant plane (lib/docs/templates.md). What is learnt of a pixel, in a byte:
+/// Which pixels of a template belong to its dominant plane (lib/docs/theory/templates.md). What is learnt of a pixel, in a byte:
 ///
 ///   0: there is no image   255: on the plane, whatever it shows (whole templates)   else its log odds, ln(p / (1 - p)) = (byte - 212) / 10
 

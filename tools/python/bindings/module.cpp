@@ -4,7 +4,7 @@
 #include "functions.h"
 #include "tables.h"
 
-// lib/docs/python.md shows how these are used.
+// lib/docs/guide/python.md shows how these are used.
 NB_MODULE(_core, module) {
   module.doc() = "The C library behind the package planefold.";
   pf::python::add_enums(module);

@@ -1,5 +1,5 @@
 // AArch64: double and float, 32 registers. ARMv7: float, 16 registers, NEON with fused multiply-add (VFPv4).
-// What they cost there: lib/docs/arm.md.
+// What they cost there: lib/docs/results/arm.md.
 #include "covariance/tuned/sets.h"
 
 #if defined(PF_HAS_NEON)

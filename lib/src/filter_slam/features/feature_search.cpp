@@ -137,7 +137,7 @@ SearchTask FeatureSearch::task_of(int feature) const {
   SearchTask task;
   task.appearance = &map_.appearance(feature);
   task.first_view = map_.first_view(feature);
-  // Where a surface is in other images needs its depth. The target is matched as without masks (lib/docs/templates.md).
+  // Where a surface is in other images needs its depth. The target is matched as without masks (lib/docs/theory/templates.md).
   if (map_.has_templates() && !map_.features[feature].is_target && !state.has_inverse_depth(slot))
     ImageSearch::use_template(map_, feature, &task);
   task.gate = settings_.gate;

@@ -19,7 +19,7 @@ bool MatchNoise::is_averaged(const Feature& f) const {
 }
 
 /// R_update of a match with this noise, without bend. What the linearisation leaves out is new in each frame, but for the product of an
-/// open depth and a baseline that is wrong for as long: where that lasts, it counts twice (lib/docs/lens.md).
+/// open depth and a baseline that is wrong for as long: where that lasts, it counts twice (lib/docs/theory/lens.md).
 Mat2 MatchNoise::update_noise(const Feature& f, const PixelMeasurement& o, const Mat2& noise,
                               bool parallax_lasts) const {
   Mat2 R = (is_averaged(f) ? model_.correlation_frames() : Scalar(1)) * noise + o.second_order;

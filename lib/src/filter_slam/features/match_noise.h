@@ -7,7 +7,7 @@
 #include "map/map.h"
 #include "track/tracker.h"
 
-/// Noise with which a match in an image is gated and updates the filter, and learning it from residuals (lib/docs/noise.md).
+/// Noise with which a match in an image is gated and updates the filter, and learning it from residuals (lib/docs/theory/noise.md).
 
 namespace pf {
 

@@ -2,7 +2,7 @@
 
 #include "model/body.h"
 
-/// Whether a frame shows what the map has learnt from already: lib/docs/noise.md, "At rest".
+/// Whether a frame shows what the map has learnt from already: lib/docs/theory/noise.md, "At rest".
 
 namespace pf {
 

@@ -11,7 +11,7 @@
 
 /// Looks for metres and gravity while the camera moves in a map up to scale: keeps the pixels of frames, with what the samples say in
 /// between, finds the poses of these frames anew against the map as it is now, and solves for scale, gravity and the accelerometer's bias.
-/// See lib/docs/inertial.md.
+/// See lib/docs/theory/inertial.md.
 
 namespace pf {
 

@@ -6,7 +6,7 @@
 #include "geometry/so3.h"
 
 /// What the camera's own rotations, from pictures alone, say of a gyroscope: its delay, its axes and its scale
-/// (lib/docs/inertial.md, "Rates").
+/// (lib/docs/theory/inertial.md, "Rates").
 
 namespace pf {
 

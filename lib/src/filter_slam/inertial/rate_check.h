@@ -9,7 +9,7 @@
 
 /// While samples do not move the body, since the unit is rejected or since its clock or its axes are not known: compares the camera's own
 /// rates with the gyroscope's (RateAlignment). Where they fit, samples can be used; where they do not, the fit says why.
-/// What each reason means to a user: lib/docs/unknown_unit.md.
+/// What each reason means to a user: lib/docs/guide/unknown_unit.md.
 
 namespace pf {
 

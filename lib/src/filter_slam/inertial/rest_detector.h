@@ -9,7 +9,7 @@
 #include "frame/settings.h"
 
 /// Detects that the camera lies still, from the samples of its inertial unit and from the picture together: a slow turntable is quiet to
-/// the samples, and a wall that moves along is quiet to the picture. See lib/docs/inertial.md.
+/// the samples, and a wall that moves along is quiet to the picture. See lib/docs/theory/inertial.md.
 
 namespace pf {
 

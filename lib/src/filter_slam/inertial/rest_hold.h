@@ -9,7 +9,7 @@
 #include "frame/settings.h"
 
 /// Holds the body while it is at rest: its pose stays, its velocity is zero, and samples are measurements of biases and gravity instead of
-/// motion. See lib/docs/inertial.md.
+/// motion. See lib/docs/theory/inertial.md.
 
 namespace pf {
 

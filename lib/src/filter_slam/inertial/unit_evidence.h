@@ -7,7 +7,7 @@
 #include "filter_slam/pose/unit_noise.h"
 #include "frame/frame.h"
 
-/// Evidence against an inertial unit whose samples move the body, frame by frame. See lib/docs/inertial.md.
+/// Evidence against an inertial unit whose samples move the body, frame by frame. See lib/docs/theory/inertial.md.
 ///
 /// Each frame's innovation of the pose is chi-square with six degrees of freedom. The unit's noise is learned from it (UnitNoise). What
 /// noise of ten times the stated does not explain either adds up in Page's sum, which finds a change soon and knows no fault by name:

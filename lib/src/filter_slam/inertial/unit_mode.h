@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-/// What the inertial unit is to the filter, and how that changes. See lib/docs/inertial.md, "Modes".
+/// What the inertial unit is to the filter, and how that changes. See lib/docs/theory/inertial.md, "Modes".
 
 namespace pf {
 

@@ -13,7 +13,8 @@
 #include "frame/frame.h"
 #include "frame/settings.h"
 
-/// Decides whether the samples of the inertial unit move the body: UnitMode, by what the frames say of them. See lib/docs/inertial.md.
+/// Decides whether the samples of the inertial unit move the body: UnitMode, by what the frames say of them.
+/// See lib/docs/theory/inertial.md.
 
 namespace pf {
 

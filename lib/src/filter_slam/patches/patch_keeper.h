@@ -23,7 +23,7 @@ namespace pf {
 
 /// Keeps the patches of walls: the order of work of one frame. Measures those that lie on a wall, follows those that wait for their plane
 /// (PatchMembership), drops those that fail, and has new ones initialised (PatchSelection).
-/// Servant 2008, sections 2.3 and 2.4 (lib/docs/homography.md).
+/// Servant 2008, sections 2.3 and 2.4 (lib/docs/theory/homography.md).
 class PatchKeeper {
  public:
   PatchKeeper(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features,

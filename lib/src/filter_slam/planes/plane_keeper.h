@@ -17,7 +17,7 @@
 
 namespace pf {
 
-/// Keeps the planes of the map: the order of work of one frame. Gee 2007, section 3 (lib/docs/planes.md).
+/// Keeps the planes of the map: the order of work of one frame. Gee 2007, section 3 (lib/docs/theory/planes.md).
 class PlaneKeeper {
  public:
   PlaneKeeper(const Settings& settings, Filter& filter, Map& map, Frame& frame, FeatureKeeper& features);

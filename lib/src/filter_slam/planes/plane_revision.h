@@ -9,7 +9,7 @@
 
 namespace pf {
 
-/// Revises planes some of whose points, each by itself, lie elsewhere (lib/docs/planes.md, "What points say by themselves").
+/// Revises planes some of whose points, each by itself, lie elsewhere (lib/docs/theory/planes.md, "What points say by themselves").
 /// Keeps nothing; constructed where it is used.
 class PlaneRevision {
  public:

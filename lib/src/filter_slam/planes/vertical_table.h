@@ -10,8 +10,8 @@
 
 namespace pf {
 
-/// Planes that the caller says are vertical (lib/docs/inertial.md). How far a plane is from vertical is a constant, so telling it again
-/// adds no information.
+/// Planes that the caller says are vertical (lib/docs/theory/inertial.md). How far a plane is from vertical is a constant, so telling it
+/// again adds no information.
 class VerticalTable {
  public:
   VerticalTable(Filter& filter, const Map& map) : filter_(filter), map_(map) {}

@@ -22,7 +22,7 @@ namespace pf {
 /// ones: with the matches in order of age and S = L L^T, v = L^-1 r, the sum of v^2 over the rows of the youngest is their normalised
 /// innovation squared given all the older ones. Where chance does not explain it, all of them are rejected.
 ///
-/// Derivation and measurements: lib/docs/noise.md
+/// Derivation and measurements: lib/docs/theory/noise.md
 struct MatchAges {
   const unsigned char* frames =
       nullptr;    ///< in which the feature of each match was measured, up to 255; null: groups are not tested

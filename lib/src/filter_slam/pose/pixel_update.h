@@ -25,7 +25,7 @@ struct Candidate {
 /// What an update with a frame's pixels does.
 struct UpdateMode {
   EstimatedRows rows;
-  /// While the depths of most of what a frame measures are open, pixels tell the map alone, and the pose not (lib/docs/inertial.md,
+  /// While the depths of most of what a frame measures are open, pixels tell the map alone, and the pose not (lib/docs/theory/inertial.md,
   /// "Starting").
   bool depths_first = false;
   Scalar max_pose_nis = 0;  ///< the first update of a frame is refused where its pose NIS is above this; 0: no bound

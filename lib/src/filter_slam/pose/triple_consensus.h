@@ -3,7 +3,7 @@
 #include "belief/pose_evidence.h"
 #include "filter/filter.h"
 
-/// Consensus of matches where the pose is hardly known: triples of them fix it. See lib/docs/belief.md.
+/// Consensus of matches where the pose is hardly known: triples of them fix it. See lib/docs/theory/belief.md.
 
 namespace pf {
 

@@ -6,7 +6,7 @@
 #include "filter/preintegral.h"
 #include "frame/settings.h"
 
-/// How noisy the inertial unit is: the stated densities are the prior, and two things correct them (lib/docs/inertial.md, "Noise"):
+/// How noisy the inertial unit is: the stated densities are the prior, and two things correct them (lib/docs/theory/inertial.md, "Noise"):
 ///
 /// - what its own samples scatter by: third differences of white noise have 20 times its variance, those of a hand's motion next to
 ///   none;

@@ -4,7 +4,7 @@
 #include "frame/frame.h"
 #include "map/map.h"
 
-/// Whether a measured pose is known well enough to be used. See lib/docs/states.md.
+/// Whether a measured pose is known well enough to be used. See lib/docs/theory/states.md.
 
 namespace pf {
 

@@ -190,7 +190,7 @@ Scalar Relocaliser::median_depth(const Body& pose, int found) const {
 }
 
 /// An update that knows a pose 1e7 times better leaves rounding of its covariance. Half of the digits now, at the proposal; the rest is
-/// taken in with the pixels linearised again (PixelUpdate::apply; lib/docs/float.md).
+/// taken in with the pixels linearised again (PixelUpdate::apply; lib/docs/theory/float.md).
 void Relocaliser::hold_back(int found) {
   const Scalar share = std::sqrt(std::numeric_limits<Scalar>::epsilon());
   Scalar largest = 0;

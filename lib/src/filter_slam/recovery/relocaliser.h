@@ -12,7 +12,7 @@
 #include "track/view_memory.h"
 
 /// Finds the map again where the prediction is too vague to search about it. Updates the filter once frames say enough for a pose to
-/// believe it (lib/docs/belief.md).
+/// believe it (lib/docs/theory/belief.md).
 
 namespace pf {
 

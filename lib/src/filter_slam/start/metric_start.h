@@ -11,7 +11,7 @@
 #include "map/map.h"
 
 /// What a camera at rest, or one that moves, says of gravity, of the biases of its inertial unit, and so of the scale
-/// (lib/docs/inertial.md).
+/// (lib/docs/theory/inertial.md).
 
 namespace pf {
 

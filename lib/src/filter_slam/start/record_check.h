@@ -5,7 +5,8 @@
 #include "frame/start/start_without_target.h"
 #include "map/map.h"
 
-/// Whether the filter's first depths are those of the record that goes on beside it (lib/docs/starting.md, lib/docs/walls.md).
+/// Whether the filter's first depths are those of the record that goes on beside it (lib/docs/theory/starting.md,
+/// lib/docs/theory/walls.md).
 
 namespace pf {
 

@@ -6,7 +6,7 @@
 #include "map/map.h"
 
 /// Walls of the plan that no feature has been compared with yet: a known first pose saw none of them, and the map is one of points until a
-/// wall comes into view (lib/docs/walls.md).
+/// wall comes into view (lib/docs/theory/walls.md).
 
 namespace pf {
 

@@ -3,8 +3,8 @@
 #include "geometry/camera.h"
 #include "model/body.h"
 
-/// Rows of a rolling shutter in the window (lib/docs/rolling_shutter.md): row y is read out tau = row_time(y) after the frame's time, when
-/// the camera is at
+/// Rows of a rolling shutter in the window (lib/docs/theory/rolling_shutter.md): row y is read out tau = row_time(y) after the frame's
+/// time, when the camera is at
 ///
 ///   R_tau = R Exp(w tau),   p_tau = p + v tau
 ///

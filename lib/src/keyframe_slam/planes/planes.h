@@ -5,7 +5,7 @@
 #include "keyframe_slam/map/keyframe_map.h"
 #include "map/plane_search.h"
 
-/// Planes of the window: found among its points, fitted again with every adjustment, merged and dissolved (lib/docs/window.md).
+/// Planes of the window: found among its points, fitted again with every adjustment, merged and dissolved (lib/docs/theory/window.md).
 
 namespace pf {
 

@@ -46,7 +46,8 @@ void KeyframeMotion::predict(const Body& body, Scalar dt, const MotionNoise& noi
     predict_constant_position(body, settings_.body, dt, noise, transition);
 }
 
-/// P+ = F P Fᵀ + Q over the rows that move. In float the diagonal gets back what rounding may have taken from it (lib/docs/float.md).
+/// P+ = F P Fᵀ + Q over the rows that move. In float the diagonal gets back what rounding may have taken from it
+/// (lib/docs/theory/float.md).
 void KeyframeMotion::apply(const Transition& transition, Data* data) {
   const int dim = transition.dim;
   Covariance FP = Covariance::Zero(), P = Covariance::Zero();

@@ -3,7 +3,7 @@
 #include "frame/pose_hypotheses.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
 
-/// Finds the window's map again after frames that did not support the pose (lib/docs/states.md).
+/// Finds the window's map again after frames that did not support the pose (lib/docs/theory/states.md).
 
 namespace pf {
 

@@ -10,7 +10,7 @@
 
 namespace pf {
 
-/// Founds planes by patches that no plane of the map explains (lib/docs/walls.md).
+/// Founds planes by patches that no plane of the map explains (lib/docs/theory/walls.md).
 class PatchFounding {
  public:
   PatchFounding(const Settings& settings, Filter& filter, Map& map, const Frame& frame, FeatureKeeper& features,

@@ -13,7 +13,7 @@
 
 namespace pf {
 
-/// Decides which plane a patch lies on. Until that is known the patch is followed, and is no measurement (lib/docs/walls.md).
+/// Decides which plane a patch lies on. Until that is known the patch is followed, and is no measurement (lib/docs/theory/walls.md).
 /// Servant 2008, section 2.5
 class PatchMembership {
  public:

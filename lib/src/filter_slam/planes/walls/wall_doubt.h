@@ -9,7 +9,8 @@
 
 namespace pf {
 
-/// Decides when a wall of the plan is doubted, and when it counts again (lib/docs/walls.md). Keeps nothing; constructed where it is used.
+/// Decides when a wall of the plan is doubted, and when it counts again (lib/docs/theory/walls.md). Keeps nothing; constructed where it
+/// is used.
 class WallDoubt {
  public:
   WallDoubt(const Settings& settings, Filter& filter, Map& map, const Frame& frame, FeatureKeeper& features,

@@ -9,7 +9,7 @@
 
 namespace pf {
 
-/// Folds points onto walls of the plan that none of them alone is known to lie on. Servant 2008, section 2.2 (lib/docs/walls.md).
+/// Folds points onto walls of the plan that none of them alone is known to lie on. Servant 2008, section 2.2 (lib/docs/theory/walls.md).
 class WallFolding {
  public:
   WallFolding(const Settings& settings, Filter& filter, Map& map, const CertainPoints& certain)
