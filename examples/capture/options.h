@@ -35,6 +35,7 @@ struct Options {
   int64_t withdraw_target_after = -1;
   int64_t frames = -1;
   int64_t skip = 0;
+  int64_t every = 1;     ///< one frame in so many, of a folder
   int64_t relative = 0;  ///< frames of a window over which the motion is written, 0: none
   uint64_t seed = 1;
   int32_t max_features = -1;
@@ -45,8 +46,13 @@ struct Options {
   int32_t features_in_view = -1;
   pf_kernels_t kernels = PF_KERNELS_AUTO;
   bool planes = true;
+  /// Of pf_config_t::plane: fix_sigma, fold_sigma, max_distance, max_radius and roughness [m], min_points.
+  double fix_sigma = -1.0, fold_sigma = -1.0, plane_distance = -1.0, plane_radius = -1.0, plane_roughness = -1.0;
+  int32_t plane_points = -1;
   std::optional<pf_camera_estimate_t> lens;  ///< none: what Session makes of the calibration
   pf_backend_t backend = PF_BACKEND_FILTER;
+  pf_motion_model_t motion = PF_MOTION_CONSTANT_VELOCITY;  ///< where no samples move the body
+  double jerk = -1.0;  ///< of constant acceleration; negative: the library's default
   int32_t masks = PF_MASKS_NONE;
   bool keep_gauge = true;
 

@@ -95,6 +95,13 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   set(config_.capacity.max_state_dim, options.max_state_dim);
   set(config_.capacity.max_observations, options.max_observations);
   set(config_.map.features_in_view, options.features_in_view);
+  set(config_.plane.min_points, options.plane_points);
+  const auto set_length = [](double& field, double value) { field = value >= 0.0 ? value : field; };
+  set_length(config_.plane.fix_sigma, options.fix_sigma);
+  set_length(config_.plane.fold_sigma, options.fold_sigma);
+  set_length(config_.plane.max_distance, options.plane_distance);
+  set_length(config_.plane.max_radius, options.plane_radius);
+  set_length(config_.plane.roughness, options.plane_roughness);
   if (!options.points) config_.map.features_in_view = 0;
   config_.capacity.max_patches = options.patches >= 0 ? options.patches : options.points ? 0 : kPatchesAlone;
   if (!plan_.open(options.walls, options.start.rfind("pose:", 0) == 0, error)) {
@@ -114,7 +121,14 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     code = kExitUsage;
     return false;
   }
+  config_.motion.model = options.motion;
+  set_length(config_.motion.linear_jerk_density, options.jerk);
   imu.configure(config_);
+  if (options.motion == PF_MOTION_CONSTANT_ACCELERATION && config_.motion.model != options.motion) {
+    error = "--motion acceleration: here an inertial unit moves the camera; add --no-inertial, or leave --motion away";
+    code = kExitUsage;
+    return false;
+  }
   config_.camera.estimate = options.lens.value_or(default_estimate(config_));
   config_.clock_ns = clock_ns;
   config_.log = keep_line;

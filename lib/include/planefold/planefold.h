@@ -177,6 +177,10 @@ PF_API pf_status_t pf_camera_unproject(const pf_camera_t* camera, const double p
 
 typedef enum pf_motion_model {
   PF_MOTION_CONSTANT_VELOCITY = 1, /* white accelerations; the default */
+  /* Translational acceleration and angular velocity constant in camera axes, with white jerk and
+   * angular acceleration (Servant 2008, lib/docs/theory/servant2008.md). Three rows more in
+   * capacity.max_state_dim. Filter only. */
+  PF_MOTION_CONSTANT_ACCELERATION = 3,
   /* By the samples of pf_push_imu (lib/docs/theory/inertial.md). Wants imu and
    * capacity.max_imu_samples >= 64: as many as come in the longest time between frames that is to
    * be bridged. */
@@ -212,10 +216,10 @@ typedef enum pf_masks {
 typedef enum pf_backend {
   PF_BACKEND_FILTER = 1, /* a filter over pose, points and planes (Gee 2007); the default */
   /* Keyframes that are adjusted with the points that they see (lib/docs/theory/window.md; Masoud
-   * 2015). Images only. PF_ERROR_CONFIG with motion.model inertial, camera.estimate consider,
-   * plane.fix_sigma above 0 and capacity.max_patches above 0. The pose's covariance takes the map's
-   * first keyframes as exact, those of points and planes all keyframes and the lens. The block at
-   * its defaults is 2.0 MiB, with camera.estimate estimate 2.1. */
+   * 2015). Images only. PF_ERROR_CONFIG with motion.model inertial or constant acceleration,
+   * camera.estimate consider, plane.fix_sigma above 0 and capacity.max_patches above 0. The pose's
+   * covariance takes the map's first keyframes as exact, those of points and planes all keyframes
+   * and the lens. The block at its defaults is 2.0 MiB, with camera.estimate estimate 2.1. */
   PF_BACKEND_WINDOW = 2
 } pf_backend_t;
 
@@ -309,6 +313,9 @@ typedef struct pf_config {
     int32_t model;                       /* pf_motion_model_t. Default constant velocity */
     double linear_acceleration_density;  /* [m/s^2/sqrt(Hz)] > 0. Default 1 */
     double angular_acceleration_density; /* [rad/s^2/sqrt(Hz)] > 0. Default 2 */
+    /* [m/s^3/sqrt(Hz)] > 0, in place of linear_acceleration_density with
+     * PF_MOTION_CONSTANT_ACCELERATION. Default 10 */
+    double linear_jerk_density;
     double coast_s; /* after this time without tracking the state is lost, 0.05 .. 10. Default 1 */
     /* After this time of usable images without finding the map again, counted from when the state
      * was lost, the map is discarded and a new one begins; 0: never. 0 .. 1e4. Default 3 */
@@ -579,7 +586,7 @@ PF_API pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns,
 
 /* Control input: a change of velocity that is known beforehand (a motor, a thruster, a simulation).
  * The next frame's prediction adds it to the velocities, in camera axes: v_W += R_WC dv_C [m/s],
- * w_C += dw_C [rad/s]. Calls add up. PF_ERROR_STATE with the other motion models. */
+ * w_C += dw_C [rad/s]. Calls add up. PF_ERROR_STATE with PF_MOTION_INERTIAL and with the window. */
 PF_API pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]);
 
 /* A sample of an inertial measurement unit, in the unit's own axes. */

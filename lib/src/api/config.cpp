@@ -51,6 +51,7 @@ constexpr double kMaxWalk = 1e4;
 constexpr Range kReals[] = {
     PF_FIELD(motion.linear_acceleration_density, kTiny, 1e4),
     PF_FIELD(motion.angular_acceleration_density, kTiny, 1e4),
+    PF_FIELD(motion.linear_jerk_density, kTiny, 1e5),
     PF_FIELD(measurement.sigma_px, 0.01, 10),
     PF_FIELD(measurement.gate_probability, 0.9, 0.9999),
     PF_FIELD(first_depth.depth, 1e-4, 1e5),
@@ -185,6 +186,7 @@ const char* refused_of_research(const pf_config_t& config, const pf_research_t& 
     return nullptr;
   }
   if (research.keep_gauge != 0 && research.keep_gauge != 1) return "research.keep_gauge";
+  if (research.gate_patches != 0 && research.gate_patches != 1) return "research.gate_patches";
   if (research.fold != PF_FOLD_CONDITION && research.fold != PF_FOLD_DROP) return "research.fold";
   if (!(research.linear_walk >= kTiny && research.linear_walk <= kMaxWalk)) return "research.linear_walk";
   if (!(research.angular_walk >= kTiny && research.angular_walk <= kMaxWalk)) return "research.angular_walk";
@@ -193,16 +195,19 @@ const char* refused_of_research(const pf_config_t& config, const pf_research_t& 
 
 /// The motion model and what it needs. Null, or the name of the first field that makes no sense.
 const char* motion_from(const pf_config_t& config, const pf_research_t& research, Settings* settings) {
-  const bool moves = config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
+  const bool accelerates = config.motion.model == PF_MOTION_CONSTANT_ACCELERATION;
+  const bool moves = accelerates || config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
   settings->constant_velocity = moves;
   settings->inertial = config.motion.model == PF_MOTION_INERTIAL;
   if (!moves && !settings->inertial && config.motion.model != PF_MOTION_CONSTANT_POSITION) return "motion.model";
-  settings->body = moves                ? BodyLayout::with_constant_velocity()
+  settings->body = accelerates          ? BodyLayout::with_constant_acceleration()
+                   : moves              ? BodyLayout::with_constant_velocity()
                    : settings->inertial ? BodyLayout::with_inertial_unit()
                                         : BodyLayout::with_constant_position();
   const bool walks = !settings->body.has(BodyPart::kVelocity);
-  settings->motion_noise.linear =
-      static_cast<Scalar>(walks ? research.linear_walk : config.motion.linear_acceleration_density);
+  settings->motion_noise.linear = static_cast<Scalar>(walks         ? research.linear_walk
+                                                      : accelerates ? config.motion.linear_jerk_density
+                                                                    : config.motion.linear_acceleration_density);
   settings->motion_noise.angular =
       static_cast<Scalar>(walks ? research.angular_walk : config.motion.angular_acceleration_density);
   return unit_from(config, &settings->unit, &settings->body);
@@ -211,7 +216,8 @@ const char* motion_from(const pf_config_t& config, const pf_research_t& research
 /// What the window cannot do. Null, or the name of the first field that asks for it.
 const char* refused_by_window(const pf_config_t& config) {
   if (config.backend != PF_BACKEND_WINDOW) return nullptr;
-  if (config.motion.model == PF_MOTION_INERTIAL) return "motion.model";
+  if (config.motion.model == PF_MOTION_INERTIAL || config.motion.model == PF_MOTION_CONSTANT_ACCELERATION)
+    return "motion.model";
   if (config.camera.estimate == PF_CAMERA_CONSIDER) return "camera.estimate";
   if (config.plane.fix_sigma > 0) return "plane.fix_sigma";
   if (config.capacity.max_patches > 0) return "capacity.max_patches";
@@ -319,7 +325,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->border_px = config.map.border_px;
   settings->max_coast_ns = static_cast<std::int64_t>(config.motion.coast_s * 1e9);
   settings->restart_ns = static_cast<std::int64_t>(config.motion.restart_s * 1e9);
-  settings->keep_gauge = research.keep_gauge != 0;
+  settings->research = {research.keep_gauge != 0, research.gate_patches != 0};
   settings->imu.buffer = config.capacity.max_imu_samples;
   settings->imu.ranges = {static_cast<Scalar>(config.imu.gyro_range), static_cast<Scalar>(config.imu.accel_range)};
   settings->hooks.clock_ns = config.clock_ns;
@@ -363,6 +369,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->motion.model = PF_MOTION_CONSTANT_VELOCITY;
   config->motion.linear_acceleration_density = 1.0;
   config->motion.angular_acceleration_density = 2.0;
+  config->motion.linear_jerk_density = 10.0;
   config->measurement.sigma_px = 0.1;
   config->measurement.gate_probability = 0.99;
   config->first_depth.depth = 1.0;
