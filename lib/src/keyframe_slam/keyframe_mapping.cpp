@@ -46,6 +46,8 @@ bool KeyframeMapping::wants_keyframe(bool young, Scalar median_depth) const {
 /// As a keyframe.
 void KeyframeMapping::add_frame(bool young) {
   record_.note_keyframe();
+  const int leaving = leaving_keyframe(map_, settings_.window_keyframes);
+  if (leaving >= 0) keeper_.keep(leaving);
   const int keyframe = add_keyframe(frame_, motion_.view(), settings_.window_keyframes, &map_);
   map_.keyframes[keyframe].matches_by_motion = !young;
   if (young) triangulate_inliers(young);
