@@ -32,7 +32,10 @@ class KeyframeMapping {
     saving_.layout(arena);
     return adjustment_.layout(arena);
   }
-  void init() { adjustment_.init(); }
+  void init() {
+    adjustment_.init();
+    saving_.init();
+  }
 
   /// The work of one frame. tracked: its matches support its pose; a frame that does not changes nothing in the map, but for a first one.
   /// young: so few points have a depth that those without helped with the pose.
@@ -48,7 +51,7 @@ class KeyframeMapping {
  private:
   void triangulate_inliers(bool young);
   bool wants_keyframe(bool young, Scalar median_depth) const;
-  void add_frame(bool young);
+  void add_frame(bool young, Scalar median_depth);
   void add_points(bool pending, Scalar median_depth);
 
   const Settings& settings_;

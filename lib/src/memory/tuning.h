@@ -11,6 +11,8 @@ namespace pf::tuning {
 namespace place {
 inline constexpr int kMinPoints = 8;                   ///< as many as support a pose
 inline constexpr Scalar kMaxDepthSigma = Scalar(0.3);  ///< relative sigma of the inverse depth of a point that is kept
+inline constexpr Scalar kNear = Scalar(1);             ///< distance of views (place.h) that belong together
+inline constexpr int kMaxReturns = 6;                  ///< places that come back at once, where the map is found again
 inline constexpr Scalar kFarShift = Scalar(0.5);       ///< [median depths] apart, where two views share about half
 inline constexpr Scalar kFarTurn = Scalar(0.4);        ///< [rad] likewise
 }  // namespace place
@@ -22,7 +24,6 @@ inline constexpr Scalar kMaxRatio = Scalar(0.85);     ///< of these to those of 
 inline constexpr int kCellCorners = 12;               ///< of each of the 48 parts of the image that are described
 inline constexpr int kThreshold = 10;                 ///< [grey levels] of a corner
 inline constexpr Scalar kSameCorner = Scalar(8);      ///< [px] between corners that show the same
-inline constexpr Scalar kNeighbour = Scalar(1);       ///< distance of views (place.h) whose points are tried together
 inline constexpr int kMinMatches = 6;                 ///< of a place that is tried
 inline constexpr int kSeed = 1;                       ///< of the generator that draws triples
 inline constexpr int kTrials = 200;                   ///< triples, at most

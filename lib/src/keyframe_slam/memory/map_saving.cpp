@@ -17,7 +17,7 @@ bool MapSaving::layout(Arena& arena) {
 int MapSaving::list_sources() const {
   int count = 0;
   for (const int k : used_entries(map_.keyframes)) {
-    if (!make_place(map_, k, scratch())) continue;
+    if (!make_place(map_, k, nullptr, scratch())) continue;
     source_[count++] = {scratch()->id,
                         -1,
                         static_cast<std::int16_t>(k),
@@ -98,15 +98,20 @@ void MapSaving::write_planes(MapWriter* out) const {
 
 void MapSaving::write_places(int count, MapWriter* out) const {
   KeptPlace* const place = scratch();
+  bool* const taken = keeper_.taken();
+  std::fill(taken, taken + map_.capacity(), false);
+  for (int i = 0; i < count; ++i)
+    if (source_[i].chosen && source_[i].place >= 0) mark_taken(map_, map_.places[source_[i].place], taken);
   begin_places(static_cast<int>(std::count_if(source_, source_ + count, [](const Source& s) { return s.chosen; })),
                out);
   for (int i = 0; i < count; ++i) {
     const Source& source = source_[i];
     if (!source.chosen) continue;
     if (source.keyframe >= 0)
-      make_place(map_, source.keyframe, place);
+      make_place(map_, source.keyframe, taken, place);
     else
       *place = map_.places[source.place];
+    mark_taken(map_, *place, taken);
     for (int k = 0; k < place->count; ++k) {  // a plane that was merged or dissolved since
       std::uint32_t& plane = place->point[k].plane;
       plane = map_.tables().planes.find(plane);
@@ -129,6 +134,7 @@ Status MapSaving::load(const SavedMap& saved) {
   saved.for_each_place(scratch(), [&](const KeptPlace& place) { map_.places.keep(place); });
   tables.features.reserve_ids(saved.last_feature());
   map_.keyframes.number_from(static_cast<int>(saved.last_place()));
+  is_loaded_ = true;
   return Status::kOk;
 }
 

@@ -21,6 +21,9 @@ class MapSaving {
   /// Puts a map that was opened into empty tables. kFull: it has more planes or places than these hold; nothing has changed.
   Status load(const SavedMap& saved);
 
+  void init() { is_loaded_ = false; }
+  /// The map of the window is a loaded one.
+  bool is_loaded() const { return is_loaded_; }
   /// Room for one place, within one call.
   KeptPlace* scratch() const { return keeper_.scratch(); }
 
@@ -45,6 +48,7 @@ class MapSaving {
   KeyframeMap& map_;
   KeyframePlanes& planes_;
   const PlaceKeeper& keeper_;
+  bool is_loaded_ = false;
   Source* source_ = nullptr;  ///< one for each place and keyframe
 };
 

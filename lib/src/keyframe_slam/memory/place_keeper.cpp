@@ -78,24 +78,39 @@ Scalar inverse_depth_variance(const PlacePoint& point) {
 
 }  // namespace
 
-bool make_place(const KeyframeMap& map, int keyframe, KeptPlace* out) {
+bool make_place(const KeyframeMap& map, int keyframe, const bool* taken, KeptPlace* out) {
   const Keyframe& k = map.keyframes[keyframe];
   *out = KeptPlace();
   out->id = static_cast<std::uint32_t>(k.number);
   out->q_WK = k.q_WC;
   out->p_WK = k.p_W;
   out->covariance = k.covariance;
-  for (const int i : used_entries(map))
-    if (map.keyframes.pixels(keyframe)[i].seen && is_worth_keeping(map, i)) add_point(seen_from(map, i, k), out);
+  for (const bool second : {false, true})
+    for (const int i : used_entries(map)) {
+      if (second && out->count >= kMinPoints) break;
+      if ((taken != nullptr && taken[i]) == second && map.keyframes.pixels(keyframe)[i].seen &&
+          is_worth_keeping(map, i))
+        add_point(seen_from(map, i, k), out);
+    }
   if (out->count < kMinPoints) return false;
   out->depth = median_depth(*out);
   return true;
 }
 
+void mark_taken(const KeyframeMap& map, const KeptPlace& place, bool* taken) {
+  for (int i = 0; i < place.count; ++i) {
+    const int row = map.tables().features.entry_of(place.point[i].id);
+    if (row >= 0) taken[row] = true;
+  }
+}
+
 void PlaceKeeper::keep(int keyframe) {
   if (settings_.kept.places == 0) return;
   const int kept = map_.places.entry_of(static_cast<std::uint32_t>(map_.keyframes[keyframe].number));
-  const bool is_place = make_place(map_, keyframe, scratch_);
+  std::fill(taken_, taken_ + map_.capacity(), false);
+  for (const int p : used_entries(map_.places))
+    if (p != kept) mark_taken(map_, map_.places[p], taken_);
+  const bool is_place = make_place(map_, keyframe, taken_, scratch_);
   if (kept >= 0)
     update(*scratch_, &map_.places[kept]);
   else if (is_place)
@@ -116,7 +131,7 @@ void PlaceKeeper::update(const KeptPlace& now, KeptPlace* kept) const {
     else
       add_point(now.point[i], kept);
   }
-  kept->depth = median_depth(*kept);
+  if (kept->count > 0) kept->depth = median_depth(*kept);
 }
 
 bool PlaceKeeper::bring_back(std::uint32_t id) {
@@ -134,6 +149,21 @@ bool PlaceKeeper::bring_back(std::uint32_t id) {
   map_.places.note_return(at);
   for (int i = 0; i < place.count; ++i) bring_point(place, place.point[i], k);
   return true;
+}
+
+void PlaceKeeper::bring_near(const CameraView& view, Scalar depth, int most) {
+  for (int n = 0; n < most; ++n) {
+    std::uint32_t nearest = 0;
+    Scalar least = kNear * kNear;
+    for (const int p : used_entries(map_.places)) {
+      const KeptPlace& place = map_.places[p];
+      const Scalar d2 = view_distance2(view.q_WC, view.c_W, depth, place.q_WK, place.p_WK, place.depth);
+      if (place.in_window || !(d2 < least)) continue;
+      least = d2;
+      nearest = place.id;
+    }
+    if (nearest == 0 || !bring_back(nearest)) return;
+  }
 }
 
 void PlaceKeeper::bring_point(const KeptPlace& place, const PlacePoint& from, int keyframe) {

@@ -6,9 +6,12 @@
 
 namespace pf {
 
-/// What a keyframe saw of points whose depth is known: the most often observed ones, given the keyframe. False: too few of them for a
-/// place; out is then of no use.
-bool make_place(const KeyframeMap& map, int keyframe, KeptPlace* out);
+/// What a keyframe saw of points whose depth is known, given the keyframe: the most often observed ones of those that no other place has,
+/// and of the others as many as a place needs. taken: of each point of the window, whether another place has it; null: none is. False: too
+/// few points for a place; out is then of no use.
+bool make_place(const KeyframeMap& map, int keyframe, const bool* taken, KeptPlace* out);
+/// Marks the points of the window that a place has.
+void mark_taken(const KeyframeMap& map, const KeptPlace& place, bool* taken);
 
 class PlaceKeeper {
  public:
@@ -16,7 +19,9 @@ class PlaceKeeper {
       : settings_(settings), map_(map), frame_(frame) {}
 
   bool layout(Arena& arena) {
-    if (settings_.kept.places > 0) scratch_ = arena.take<KeptPlace>(1);
+    if (settings_.kept.places == 0) return arena.ok();
+    scratch_ = arena.take<KeptPlace>(1);
+    taken_ = arena.take<bool>(static_cast<std::size_t>(settings_.max_features));
     return arena.ok();
   }
 
@@ -27,8 +32,12 @@ class PlaceKeeper {
   /// keyframe that would leave for it.
   bool bring_back(std::uint32_t id);
 
-  /// Room for one place, within one call.
+  /// Brings the places back that see much of what a view sees, the nearest first, as far as they are not in the window: at most so many.
+  void bring_near(const CameraView& view, Scalar depth, int most);
+
+  /// Room within one call: for one place, and for a mark on each point of the window.
   KeptPlace* scratch() const { return scratch_; }
+  bool* taken() const { return taken_; }
 
  private:
   void update(const KeptPlace& now, KeptPlace* kept) const;
@@ -38,6 +47,7 @@ class PlaceKeeper {
   KeyframeMap& map_;
   const Frame& frame_;
   KeptPlace* scratch_ = nullptr;
+  bool* taken_ = nullptr;
 };
 
 }  // namespace pf

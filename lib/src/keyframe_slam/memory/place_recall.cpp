@@ -75,9 +75,8 @@ int PlaceRecall::collect(const Candidate& candidate, PlaceMatches* out) const {
   add_points(place, out);
   for (const int p : used_entries(map_.places)) {
     const KeptPlace& other = map_.places[p];
-    if (p != candidate.place &&
-        view_distance2(place.q_WK, place.p_WK, place.depth, other.q_WK, other.p_WK, other.depth) <
-            tuning::place_search::kNeighbour * tuning::place_search::kNeighbour)
+    if (p != candidate.place && view_distance2(place.q_WK, place.p_WK, place.depth, other.q_WK, other.p_WK,
+                                               other.depth) < tuning::place::kNear * tuning::place::kNear)
       add_points(other, out);
   }
   return out->count;

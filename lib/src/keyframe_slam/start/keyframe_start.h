@@ -36,7 +36,7 @@ class KeyframeStart {
   Status use_pose(const KnownBody& known);
   /// Begins in a map that was opened, lost. kState: another start was chosen. kFull: MapSaving::load.
   Status use_map(const SavedMap& saved);
-  bool is_in_loaded_map() const { return is_in_loaded_map_; }
+  bool is_in_loaded_map() const { return saving_.is_loaded(); }
   /// Of the frame that comes at t_ns. kTime: it has been. kState: the scale is known. kRange: it is where the camera was first.
   Status use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma);
   /// Where the camera was first, as the caller knows it or as it defines W.
@@ -61,7 +61,6 @@ class KeyframeStart {
   SecondPose& second_;
   KnownBody known_;
   StartAtTarget target_;
-  bool is_in_loaded_map_ = false;
 };
 
 }  // namespace pf

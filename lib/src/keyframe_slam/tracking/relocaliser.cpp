@@ -4,6 +4,7 @@
 
 #include "frame/tuning.h"
 #include "geometry/so3.h"
+#include "memory/tuning.h"
 
 namespace pf {
 
@@ -27,6 +28,7 @@ bool KeyframeRelocaliser::recall(PoseHypothesis* place, PoseHypothesis* rival, b
   Recall best, other;
   if (!recall_.find(tracker_, &best, &other) || !keeper_.bring_back(best.place)) return false;
   *has_rival = other.inliers > 0 && keeper_.bring_back(other.place);
+  keeper_.bring_near({best.pose.q_WC, best.pose.p_W}, best.depth, tuning::place::kMaxReturns);
   recalled_ = best.place;
   *place = best.pose;
   *rival = other.pose;
