@@ -286,6 +286,7 @@ void KeyframePlanes::dissolve_weak() {
     PlaneEntry& entry = table_[k];
     entry.max_points = std::max<int>(entry.max_points, points);
     const bool proven = entry.max_points > settings_.plane_min_points;
+    if (entry.remembered && points == 0) continue;
     entry.weak = points < same::kMinPoints || !proven ? entry.weak + 1 : 0;
     if (entry.outliers > points || entry.weak > tuning::keyframe_planes::kMaxWeak) dissolve(k);
   }
