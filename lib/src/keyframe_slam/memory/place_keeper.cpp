@@ -16,7 +16,7 @@ using namespace tuning::place;
 bool is_worth_keeping(const KeyframeMap& map, int i) {
   const KeyframePoint& point = map.point(i);
   const Feature& f = map.feature(i);
-  return point.has_depth && f.has_appearance && !f.is_target && f.failures == 0 && point.variance > Scalar(0) &&
+  return point.has_depth && f.has_appearance && !f.is_target && !f.was_missed && point.variance > Scalar(0) &&
          point.variance < kMaxDepthSigma * kMaxDepthSigma * point.rho * point.rho;
 }
 
