@@ -63,7 +63,8 @@ struct Table : PlaneKeeperBench {
     for (int i = 0; i < kPoints; ++i) {
       Feature& f = map.features[entry[i]];
       ++f.observations;
-      f.failures = f.rejections = 0;
+      f.was_missed = false;
+      f.rejections = 0;
       f.last_seen_ns = frame.report.t_ns;
       Vec2 z;
       TEST_ASSERT_TRUE(project(settings.camera, Vec3(truth[i] - body.p_W), &z));

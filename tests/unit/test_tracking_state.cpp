@@ -80,11 +80,51 @@ void test_a_map_after_a_loss_should_be_tracked_one_frame_after_its_depths() {
   }
 }
 
+/// Reason of a frame with these counts, after a first pose.
+FrameReason reason_of(int attempts, int matches, int consensus, int inliers, bool unusable = false) {
+  Settings settings;
+  settings.min_inliers = 8;
+  TrackingState tracking(settings);
+  tracking.init();
+  tracking.set_has_pose(0);
+  tracking.begin_frame(kFrame);
+  FrameReport report;
+  report.t_ns = kFrame;
+  report.attempts = attempts;
+  report.matches = matches;
+  report.consensus = consensus;
+  report.inliers = inliers;
+  if (unusable) tracking.set_unusable();
+  tracking.conclude(report, StartProgress(), kMaxCoast, settings.hooks);
+  return tracking.reason();
+}
+
+void test_reason_should_be_the_first_condition_that_a_frame_does_not_meet() {
+  TEST_ASSERT_TRUE(reason_of(30, 20, 15, 15) == FrameReason::kNone);
+  TEST_ASSERT_TRUE(reason_of(0, 0, 0, 0) == FrameReason::kNothingInView);
+  TEST_ASSERT_TRUE(reason_of(30, 7, 7, 0) == FrameReason::kFewFound);
+  TEST_ASSERT_TRUE(reason_of(30, 20, 7, 0) == FrameReason::kDisagree);
+  TEST_ASSERT_TRUE(reason_of(30, 20, 15, 0) == FrameReason::kImprobable);
+  TEST_ASSERT_TRUE(reason_of(30, 20, 15, 15, true) == FrameReason::kUncertain);
+}
+
+void test_reason_should_end_with_its_frame() {
+  Settings settings;
+  settings.min_inliers = 8;
+  TrackingState tracking(settings);
+  unsupported_frames(&tracking, settings.hooks, 3);
+  TEST_ASSERT_TRUE(tracking.reason() == FrameReason::kNothingInView);
+  tracking.begin_frame(kFrame);
+  TEST_ASSERT_TRUE(tracking.reason() == FrameReason::kNone);
+}
+
 }  // namespace
 
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_a_start_that_begins_anew_should_be_starting_in_status_and_state);
   RUN_TEST(test_a_map_after_a_loss_should_be_tracked_one_frame_after_its_depths);
+  RUN_TEST(test_reason_should_be_the_first_condition_that_a_frame_does_not_meet);
+  RUN_TEST(test_reason_should_end_with_its_frame);
   return UNITY_END();
 }

@@ -667,6 +667,9 @@ typedef struct pf_feature {
   double covariance[9]; /* 3x3; inverse depth: to first order */
   int32_t observations; /* frames in which it was measured */
   int32_t attempts;     /* frames in which it was looked for */
+  /* Natural log-odds that it is a point of the scene, by how often it was found: 0 when it begins,
+   * at most 6.9 (0.1 % are none); below -4.6 (99 % are none) it is dropped. */
+  double log_odds;
 } pf_feature_t;
 
 /* Copy of the map. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
@@ -823,6 +826,18 @@ enum {
 PF_API pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera,
                                  double covariance[100]);
 
+/* Why a frame was not tracked. */
+typedef enum pf_frame_reason {
+  PF_FRAME_REASON_NONE = 0,            /* it was, or there is no pose yet */
+  PF_FRAME_REASON_NOTHING_IN_VIEW = 1, /* nothing of the map was searched for: none of it is in view
+                                          of the prediction, and no kept view looks like the image */
+  PF_FRAME_REASON_FEW_FOUND = 2,  /* fewer features were found than a pose needs: dark, smeared, covered,
+                                     or elsewhere */
+  PF_FRAME_REASON_DISAGREE = 3,   /* enough were found, and too few of them agree with one pose */
+  PF_FRAME_REASON_IMPROBABLE = 4, /* enough agree, and chance may be the reason: log_odds is below 6.2 */
+  PF_FRAME_REASON_UNCERTAIN = 5   /* the pose's covariance is too large to be used */
+} pf_frame_reason_t;
+
 typedef struct pf_report {
   int64_t t_ns;
   int32_t state;  /* pf_state_t */
@@ -865,6 +880,10 @@ typedef struct pf_report {
    * frame says for it (lib/docs/theory/belief.md): 3 is wrong once in 20, and a frame is tracked
    * from 6.2 on, once in 500. -13.8 .. 13.8; 0 before there is a pose. */
   double log_odds;
+  /* Features that agree with the best of the poses that this frame was searched for; `inliers` of
+   * them were used, if that pose was believed. */
+  int32_t consensus;
+  int32_t reason; /* pf_frame_reason_t */
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

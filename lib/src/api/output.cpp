@@ -117,6 +117,7 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
     out.is_target = f.is_target ? 1 : 0;
     out.observations = f.observations;
     out.attempts = f.attempts;
+    out.log_odds = static_cast<double>(f.log_odds);
     out.kind = feature_kind(f.kind);
     out.plane = f.plane;
     out.on_trial = f.on_trial ? 1 : 0;
@@ -249,6 +250,8 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->duplicates = r.duplicates;
   report->covariance_repairs = r.repairs;
   report->log_odds = view.tracking().has_pose() ? static_cast<double>(view.tracking().belief().log_odds()) : 0.0;
+  report->consensus = r.consensus;
+  report->reason = static_cast<int32_t>(view.tracking().reason());
   report->sigma_gate_px = static_cast<double>(view.noise().sigma_gate());
   report->sigma_info_px = static_cast<double>(view.noise().sigma_info());
   report->correlation_frames = static_cast<double>(view.noise().correlation_frames());

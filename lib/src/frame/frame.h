@@ -35,6 +35,7 @@ struct FrameReport {
   int duplicates = 0;  ///< images since the beginning that were the one before
   int repairs = 0;     ///< frames since the beginning in which P had to be repaired
   int attempts = 0, matches = 0, inliers = 0, new_features = 0, evicted = 0;
+  int consensus = 0;  ///< inliers of the best of the poses about which the frame was searched
   double nis = 0;
   int nis_dof = 0;
   double pose_nis = 0;      ///< of the pose alone, Filter::pose_nis; only with an inertial unit
@@ -48,6 +49,9 @@ struct FrameReport {
 class Frame {
  public:
   FrameReport report;
+
+  /// So many matches agree with a pose about which the frame was searched.
+  void note_consensus(int inliers) { report.consensus = inliers > report.consensus ? inliers : report.consensus; }
 
   bool layout(Arena& arena, int capacity) {
     match_ = arena.take<Match>(static_cast<std::size_t>(capacity));

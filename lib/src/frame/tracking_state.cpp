@@ -1,8 +1,41 @@
 #include "frame/tracking_state.h"
 
+#include <algorithm>
+
 #include "base/elapsed.h"
 
 namespace pf {
+
+namespace {
+
+const char* text_of_loss(FrameReason reason) {
+  switch (reason) {
+    case FrameReason::kNothingInView:
+      return "lost: nothing of the map was in view for too long";
+    case FrameReason::kFewFound:
+      return "lost: too few features were found for too long";
+    case FrameReason::kDisagree:
+      return "lost: too few features agreed with one pose for too long";
+    case FrameReason::kImprobable:
+      return "lost: no pose was believed for too long";
+    case FrameReason::kUncertain:
+      return "lost: the pose was too uncertain for too long";
+    case FrameReason::kNone:
+      break;
+  }
+  return "lost";
+}
+
+}  // namespace
+
+/// Of a frame that is not tracked: the first condition that it does not meet, in the order in which they are asked.
+FrameReason TrackingState::reason_of(const FrameReport& report) const {
+  if (data_.unusable) return FrameReason::kUncertain;
+  if (report.attempts == 0) return FrameReason::kNothingInView;
+  if (report.matches < settings_.min_inliers) return FrameReason::kFewFound;
+  return std::max(report.consensus, report.inliers) < settings_.min_inliers ? FrameReason::kDisagree
+                                                                            : FrameReason::kImprobable;
+}
 
 Status TrackingState::conclude(const FrameReport& report, const StartProgress& start, std::int64_t max_coast_ns,
                                const Hooks& hooks) {
@@ -26,9 +59,10 @@ Status TrackingState::conclude(const FrameReport& report, const StartProgress& s
     d.state = SlamState::kStarting;
     return Status::kStarting;
   }
+  d.reason = reason_of(report);
   if (!d.lost && elapsed_ns(d.last_tracked_ns, report.t_ns) > max_coast_ns) {
     d.lost = true;
-    hooks.say("lost: too few features were found for too long");
+    hooks.say(text_of_loss(d.reason));
   }
   d.state = d.lost ? SlamState::kLost : SlamState::kCoasting;
   return d.lost ? Status::kLost : Status::kCoasting;

@@ -11,11 +11,11 @@ namespace pf {
 
 using namespace tuning::keyframe_slam;
 
-void KeyframeMapping::keep(bool tracked, bool young, Scalar median_depth) {
+void KeyframeMapping::keep(bool tracked, bool young, Scalar median_depth, const FindShare& share) {
   const bool pending = record_.progress().pending();
   // A young map's poses are too coarse for depths of their own: a keyframe's are adjusted with it.
   if (tracked && !pending && !young) triangulate_inliers(young);
-  count_searches(frame_, &map_.tables().features, tracked || pending);
+  count_searches(frame_, share, &map_.tables().features, tracked || pending);
   if (tracked || pending) drop_failing(&map_);
   if (tracked && !pending && wants_keyframe(young, median_depth)) add_frame(young);
   // The first frame, one in which a record began anew, and every other keyframe.

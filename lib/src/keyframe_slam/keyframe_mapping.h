@@ -1,5 +1,6 @@
 #pragma once
 
+#include "belief/pose_evidence.h"
 #include "keyframe_slam/adjustment/keyframe_adjustment.h"
 #include "keyframe_slam/start/keyframe_record.h"
 #include "keyframe_slam/tracking/point_search.h"
@@ -29,8 +30,8 @@ class KeyframeMapping {
   void init() { adjustment_.init(); }
 
   /// The work of one frame. tracked: its matches support its pose; a frame that does not changes nothing in the map, but for a first one.
-  /// young: so few points have a depth that those without helped with the pose.
-  void keep(bool tracked, bool young, Scalar median_depth);
+  /// young: so few points have a depth that those without helped with the pose. share: of searches that find something, in earlier frames.
+  void keep(bool tracked, bool young, Scalar median_depth, const FindShare& share);
   /// Adjusts the map about the newest keyframe, which is this frame, and moves the body with it.
   void adjust();
 

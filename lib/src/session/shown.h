@@ -19,6 +19,7 @@ struct FeatureView {
   BlockKind kind;
   std::uint32_t plane;  ///< id of the plane that it lies on, or 0
   bool on_trial;        ///< it began on that plane, and nothing else says yet that it lies there
+  Scalar log_odds;      ///< that it is a point of the scene
   Vec3 p_W;
   Mat3 covariance;
 };

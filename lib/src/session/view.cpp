@@ -87,6 +87,7 @@ FeatureView View::feature(int i) const {
   out.observations = f.observations;
   out.attempts = f.attempts;
   out.on_trial = f.on_trial;
+  out.log_odds = static_cast<Scalar>(f.log_odds);
   read([&](const auto& reader) { reader.place_feature(i, &out); });
   return out;
 }

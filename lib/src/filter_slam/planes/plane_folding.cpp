@@ -74,7 +74,7 @@ void fix_on(const Settings& settings, Filter& filter, const Map& map, int plane_
   const bool has_group = filter.group_of(plane) >= 0;
   state.for_each_planar(plane, [&](int slot) {
     const Block& block = state.block[slot];
-    if (group_count == Filter::kMaxFolded || map.features[block.owner].failures > 0) return;
+    if (group_count == Filter::kMaxFolded || map.features[block.owner].was_missed) return;
     if (map.features[block.owner].on_trial) return;
     if (block.kind == BlockKind::kPlanePoint) group[group_count++] = slot;
   });

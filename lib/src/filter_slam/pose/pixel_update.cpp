@@ -114,7 +114,6 @@ void PixelUpdate::count_inliers(int first, int count) {
     Feature& feature = map_.features[candidate_[i].feature];
     // A frame that is measured again, without a prediction that led it astray, counts once.
     if (feature.last_seen_ns != frame_.report.t_ns) count_frame(&feature.observations);
-    feature.failures = 0;
     feature.rejections = 0;
     feature.last_seen_ns = frame_.report.t_ns;
   }

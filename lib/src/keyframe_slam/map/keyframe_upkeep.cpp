@@ -1,7 +1,7 @@
 #include "keyframe_slam/map/keyframe_upkeep.h"
 
 #include "base/table_entries.h"
-#include "frame/feature_upkeep.h"
+#include "belief/feature_belief.h"
 
 namespace pf {
 namespace {
@@ -74,7 +74,8 @@ void drop_failing(KeyframeMap* map) {
   for (const int i : used_entries(*map)) {
     if (map->feature(i).is_target) continue;
     const KeyframePoint& point = map->point(i);
-    if (fails_too_often(map->feature(i)) || (point.has_depth && !(point.rho > Scalar(0)))) map->drop(i);
+    if (is_no_point(static_cast<Scalar>(map->feature(i).log_odds)) || (point.has_depth && !(point.rho > Scalar(0))))
+      map->drop(i);
   }
 }
 

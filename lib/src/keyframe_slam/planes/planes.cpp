@@ -202,7 +202,7 @@ void KeyframePlanes::discover(const Vec3& viewer_W) {
   int count = 0;
   const Scalar near = 2 * settings_.plane_distance;
   for (int i = 0; i < map_.capacity(); ++i) {
-    if (map_.used(i) && map_.feature(i).failures > 0)
+    if (map_.used(i) && map_.feature(i).was_missed)
       continue;  // what decides about whole planes was found when last looked for
     if (!is_settled(i, &candidate_[count].covariance)) continue;
     const Vec3 p_W = map_.position(i);
