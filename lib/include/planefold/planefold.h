@@ -828,14 +828,16 @@ PF_API pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera,
 
 /* Why a frame was not tracked. */
 typedef enum pf_frame_reason {
-  PF_FRAME_REASON_NONE = 0,            /* it was, or there is no pose yet */
-  PF_FRAME_REASON_NOTHING_IN_VIEW = 1, /* nothing of the map was searched for: none of it is in view
-                                          of the prediction, and no kept view looks like the image */
-  PF_FRAME_REASON_FEW_FOUND = 2,  /* fewer features were found than a pose needs: dark, smeared, covered,
-                                     or elsewhere */
-  PF_FRAME_REASON_DISAGREE = 3,   /* enough were found, and too few of them agree with one pose */
-  PF_FRAME_REASON_IMPROBABLE = 4, /* enough agree, and chance may be the reason: log_odds is below 6.2 */
-  PF_FRAME_REASON_UNCERTAIN = 5   /* the pose's covariance is too large to be used */
+  PF_FRAME_REASON_NONE = 0, /* it was, or there is no pose yet */
+  /* Nothing was searched for: nothing of the map is in view of the prediction, and no kept view
+   * looks like the image. */
+  PF_FRAME_REASON_NOTHING_IN_VIEW = 1,
+  /* Fewer features were found than a pose needs: dark, smeared, covered, or elsewhere. */
+  PF_FRAME_REASON_FEW_FOUND = 2,
+  PF_FRAME_REASON_DISAGREE = 3, /* enough were found, and too few of them agree with one pose */
+  /* Enough agree, and chance may be the reason: log_odds is below 6.2. */
+  PF_FRAME_REASON_IMPROBABLE = 4,
+  PF_FRAME_REASON_UNCERTAIN = 5 /* the pose's covariance is too large to be used */
 } pf_frame_reason_t;
 
 typedef struct pf_report {

@@ -251,7 +251,7 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->covariance_repairs = r.repairs;
   report->log_odds = view.tracking().has_pose() ? static_cast<double>(view.tracking().belief().log_odds()) : 0.0;
   report->consensus = r.consensus;
-  report->reason = static_cast<int32_t>(view.tracking().reason());
+  report->reason = static_cast<int32_t>(r.reason);
   report->sigma_gate_px = static_cast<double>(view.noise().sigma_gate());
   report->sigma_info_px = static_cast<double>(view.noise().sigma_info());
   report->correlation_frames = static_cast<double>(view.noise().correlation_frames());

@@ -6,9 +6,10 @@
 
 namespace pf {
 
-/// What one search says: ln of how much more likely its result is for a point of the scene than for what is none, as a rim that slides along
-/// what is behind it, a reflection, a thing that has moved away. Such a thing is found where the pose has it as often as chance finds
-/// anything there, q = tuning::chance::kMaxFindShare; a point of the scene with the probability d with which features are found in this picture.
+/// What one search says: ln of how much more likely its result is for a point of the scene than for what is none, as a rim that
+/// slides along what is behind it, a reflection, a thing that has moved away. Such a thing is found where the pose has it as often as
+/// chance finds anything there, q = tuning::chance::kMaxFindShare; a point of the scene with the probability d with which features are
+/// found in this picture.
 ///
 ///   found where the pose has it   ln(d / q)
 ///   not, or found elsewhere       ln((1 - d) / (1 - q))

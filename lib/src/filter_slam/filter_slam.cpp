@@ -193,7 +193,7 @@ Status FilterSlam::end_frame() {
       images_.relocaliser().remember_view(data_.median_depth);
   }
   images_.keep_view(data_.image_usable, progress, data_.median_depth);
-  return tracking_.conclude(frame_.report, progress, settings_.max_coast_ns, settings_.hooks);
+  return tracking_.conclude(progress, settings_.max_coast_ns, settings_.hooks, &frame_.report);
 }
 
 /// The estimate is not finite or P is no covariance: clears everything that came from it.

@@ -16,16 +16,6 @@ namespace pf {
 /// With the numbers of pf_state_t.
 enum class SlamState : int { kStarting = 0, kTracking = 1, kCoasting = 2, kLost = 3 };
 
-/// Why a frame was not tracked. With the numbers of pf_frame_reason_t.
-enum class FrameReason : int {
-  kNone = 0,
-  kNothingInView = 1,
-  kFewFound = 2,
-  kDisagree = 3,
-  kImprobable = 4,
-  kUncertain = 5
-};
-
 /// Progress of a start without a target. No start is under way if `recording` is false.
 struct StartProgress {
   bool recording = false;
@@ -44,7 +34,6 @@ class TrackingState {
   /// dt_ns: since the frame before.
   void begin_frame(std::int64_t dt_ns) {
     data_.from_target = data_.started_over = data_.unusable = false;
-    data_.reason = FrameReason::kNone;
     data_.belief.begin_frame(seconds(dt_ns));
   }
   /// This frame shows something to track; dt_ns since the frame before.
@@ -83,14 +72,12 @@ class TrackingState {
   void rename_map() { ++data_.map_id; }
   /// This frame's pose is measured, but too uncertain to use.
   void set_unusable() { data_.unusable = true; }
-  /// Decides the state at the end of a frame. Returns the status of the frame.
-  Status conclude(const FrameReport& report, const StartProgress& start, std::int64_t max_coast_ns, const Hooks& hooks);
+  /// Decides the state at the end of a frame, and of one that is not tracked the reason. Returns the status of the frame.
+  Status conclude(const StartProgress& start, std::int64_t max_coast_ns, const Hooks& hooks, FrameReport* report);
 
   PoseBelief& belief() { return data_.belief; }
   const PoseBelief& belief() const { return data_.belief; }
   SlamState state() const { return data_.state; }
-  /// Of the last frame.
-  FrameReason reason() const { return data_.reason; }
   bool has_pose() const { return data_.has_pose; }
   bool started_over() const { return data_.started_over; }
   /// So many updates have failed that P is no valid covariance.
@@ -113,14 +100,11 @@ class TrackingState {
   bool may_skip_target() const { return data_.may_skip_target; }
 
  private:
-  FrameReason reason_of(const FrameReport& report) const;
-
   const Settings& settings_;
   static constexpr int kMaxFailedUpdates = 10;  ///< in a row
 
   struct Data {
     SlamState state = SlamState::kStarting;
-    FrameReason reason = FrameReason::kNone;
     bool has_pose = false;
     bool from_target = false;  ///< this frame's pose comes from the target
     bool lost = false;

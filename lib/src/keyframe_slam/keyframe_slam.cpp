@@ -173,7 +173,7 @@ Status KeyframeSlam::end_frame() {
   }
   if (tracking_.has_pose() && (tracking_.is_tracked(frame_.report) || record_.progress().pending()))
     search_.keep_view(motion_.view());
-  return tracking_.conclude(frame_.report, record_.progress(), settings_.max_coast_ns, settings_.hooks);
+  return tracking_.conclude(record_.progress(), settings_.max_coast_ns, settings_.hooks, &frame_.report);
 }
 
 /// Clears the map, and all that refers to poses in it.
