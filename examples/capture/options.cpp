@@ -81,6 +81,38 @@ void add_camera_options(CLI::App& app, Options& options) {
       ->group(group);
 }
 
+/// Thresholds of planes, in the ranges that the library has them in (pf_config_t::plane).
+void add_plane_options(CLI::App& app, Options& options) {
+  const std::string group = "Planes (in metres; in the unit of the map where it has no metres)";
+  const auto add = [&](const char* name, double& value, double low, double high, const char* help) {
+    app.add_option(name, value, help)->check(number_in(low, high))->group(group);
+  };
+  add("--fix-sigma", options.fix_sigma, 0.0, 10.0,
+      "a folded point whose standard deviation in its plane is below this is estimated no more; 0: never");
+  add("--fold-sigma", options.fold_sigma, 1e-5, 10.0,
+      "a point can be folded into a plane when its standard deviation is below this");
+  add("--plane-distance", options.plane_distance, 1e-5, 10.0, "largest distance of a point from a new plane");
+  add("--plane-radius", options.plane_radius, 0.01, 1e4, "largest distance of a point from a new plane's origin");
+  add("--plane-roughness", options.plane_roughness, 1e-6, 1.0,
+      "standard deviation of the points of a real surface from their plane");
+  app.add_option("--plane-points", options.plane_points, "a new plane has more points than this")
+      ->check(whole_number_in(4, 60))
+      ->group(group);
+}
+
+/// The first option of planes that was given; "" when none was.
+std::string given_plane_option(const Options& options) {
+  const std::pair<const char*, double> all[] = {{"--fix-sigma", options.fix_sigma},
+                                                {"--fold-sigma", options.fold_sigma},
+                                                {"--plane-distance", options.plane_distance},
+                                                {"--plane-radius", options.plane_radius},
+                                                {"--plane-roughness", options.plane_roughness},
+                                                {"--plane-points", options.plane_points}};
+  for (const auto& [name, value] : all)
+    if (value >= 0.0) return name;
+  return "";
+}
+
 int refuse(const std::string& line) {
   std::fprintf(stderr, "pf-capture: %s\n", line.c_str());
   return kExitUsage;
@@ -157,6 +189,9 @@ std::string check(const Options& options, const std::string& backend) {
   }
   if (options.skip > 0 && is_camera) {
     return "--skip is for folders and scenes; a camera has no frames to leave out";
+  }
+  if (options.every > 1 && kind != "images" && kind != "euroc" && kind != "tum") {
+    return "--every is for folders: images:DIR, euroc:DIR or tum:DIR";
   }
   if (options.rate_hz > 0.0 && !is_camera) {
     return "--rate is for cameras; of images without times it is rate_hz in their calibration";
@@ -258,6 +293,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   std::string kernels = "auto";
   std::string lens = "auto";
   std::string masks = "none";
+  std::string motion = "velocity";
   std::string timestamps;
   std::vector<double> gravity;
   std::vector<std::string> taps;
@@ -302,6 +338,10 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "of the window: file (TUM) with the pose of a later frame at its time; its distance from the first is "
                  "the scale")
       ->check(not_empty());
+  app.add_option("--map", options.map, "of the window: file of a saved map, in which the run begins lost")
+      ->check(not_empty());
+  app.add_option("--save-map", options.save_map, "of the window: file for the map at the end, for --map")
+      ->check(not_empty());
   app.add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start (JSON)")
       ->check(not_empty());
   app.add_option("--patches", options.patches, "patches of walls that are followed, beside points")
@@ -311,6 +351,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->check(at_least(0));
   app.add_option("--frames", options.frames, "at most N frames")->check(at_least(1));
   app.add_option("--skip", options.skip, "leave out the first N frames")->check(at_least(0));
+  app.add_option("--every", options.every, "of a folder, one frame in N, as from a slower camera")->check(at_least(1));
   app.add_option("--loop", options.loop,
                  "the first N images there and back, again and again, from memory: for runs of a day")
       ->check(at_least(2));
@@ -346,6 +387,13 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       app.add_option("--backend", backend,
                      "filter: a filter over pose and map; window: keyframes and bundle adjustment")
           ->capture_default_str();
+  app.add_option(
+         "--motion", motion,
+         "velocity or acceleration: what stays the same between frames, where no inertial unit moves the camera; the\n"
+         "window has velocity")
+      ->capture_default_str();
+  app.add_option("--jerk", options.jerk, "with --motion acceleration: density of its change, m/s^3/sqrt(Hz)")
+      ->check(number_in(1e-9, 1e5));
   const CLI::Option* seed = app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
   app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
       ->check(number_in(0.0, 1000.0));
@@ -358,6 +406,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--max-features", options.max_features, "capacity of the map; of the window at least 50")
       ->check(whole_number_in(8, 1000));
   app.add_option("--max-planes", options.max_planes, "likewise")->check(whole_number_in(1, 64));
+  app.add_option("--max-places", options.max_places, "of the window: places that are kept, and saved, 0 to 200")
+      ->check(whole_number_in(0, 200));
   app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(whole_number_in(32, 2000));
   app.add_option("--max-observations", options.max_observations, "features measured in one frame")
       ->check(whole_number_in(8, 200));
@@ -390,6 +440,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->capture_default_str();
   app.add_flag("--no-planes", no_planes, "points only");
   app.add_flag("--plain-ekf", no_gauge, "the textbook filter, which is overconfident; for comparison");
+  add_plane_options(app, options);
   add_camera_options(app, options);
   add_imu_options(app, options);
   try {
@@ -420,11 +471,18 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     code = refuse("--no-points follows patches and no features: leave --patches 0 and --features-in-view away");
     return Parsed::kExit;
   }
+  if (no_planes && !given_plane_option(options).empty()) {
+    code = refuse(given_plane_option(options) + " is for planes: leave --no-planes away");
+    return Parsed::kExit;
+  }
   if (given_backend->count() == 0 && is_uncalibrated(options)) backend = "window";
   const auto set = kernel_names.find(kernels);
   std::string wrong = check(options, backend);
   if (wrong.empty() && seed->count() > 0 && options.source.rfind("sim:", 0) != 0) {
     wrong = "--seed is for sim: sources; images of a folder or camera are as they are";
+  }
+  if (wrong.empty() && backend != "window" && !(options.map.empty() && options.save_map.empty())) {
+    wrong = std::string(options.map.empty() ? "--save-map" : "--map") + " needs --backend window";
   }
   if (wrong.empty() && !timestamps.empty() && timestamps != "real" && timestamps != "nominal") {
     wrong = "--timestamps " + timestamps + ": write real or nominal";
@@ -435,6 +493,12 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   const auto estimate = lens_names.find(lens);
   if (wrong.empty() && lens != "auto" && estimate == lens_names.end()) {
     wrong = "--lens " + lens + ": write auto, exact, consider or estimate";
+  }
+  if (wrong.empty() && motion != "velocity" && motion != "acceleration") {
+    wrong = "--motion " + motion + ": write velocity or acceleration";
+  }
+  if (wrong.empty() && options.jerk > 0.0 && motion != "acceleration") {
+    wrong = "--jerk is for --motion acceleration";
   }
   const auto mask = mask_names.find(masks);
   if (wrong.empty() && mask == mask_names.end()) {
@@ -453,6 +517,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   options.kernels = set->second;
   if (estimate != lens_names.end()) options.lens = estimate->second;
   options.masks = mask->second;
+  if (motion == "acceleration") options.motion = PF_MOTION_CONSTANT_ACCELERATION;
   options.backend = backend == "window" ? PF_BACKEND_WINDOW : PF_BACKEND_FILTER;
   options.film = !no_film;
   options.keep_gauge = !no_gauge;

@@ -26,27 +26,35 @@ struct Options {
   double fov_deg = 0.0;  ///< horizontal, of a source that is tracked without its calibration; 0: not given
   std::optional<pf_camera_t> guess;  ///< in place of a calibration, once the size of the images is known
   std::string start = "auto";
-  std::string second_pose;  ///< file of a second known pose; "": none
-  std::string walls;        ///< file of a plan; "": none
-  int patches = -1;         ///< of walls that are followed; negative: none beside points, kPatchesAlone without
-  bool points = true;       ///< false: patches of walls alone
+  std::string second_pose;    ///< file of a second known pose; "": none
+  std::string walls;          ///< file of a plan; "": none
+  std::string map, save_map;  ///< files of the map that the run begins in, and of the one that it leaves; "": none
+  int patches = -1;           ///< of walls that are followed; negative: none beside points, kPatchesAlone without
+  bool points = true;         ///< false: patches of walls alone
   std::string out = "out/capture";
   std::string title;  ///< of window and film; "": the source
   int64_t withdraw_target_after = -1;
   int64_t frames = -1;
   int64_t skip = 0;
+  int64_t every = 1;     ///< one frame in so many, of a folder
   int64_t relative = 0;  ///< frames of a window over which the motion is written, 0: none
   uint64_t seed = 1;
   int32_t max_features = -1;
   int32_t max_planes = -1;
+  int32_t max_places = -1;
   int32_t window_keyframes = -1, window_fixed = -1;
   int32_t max_state_dim = -1;
   int32_t max_observations = -1;
   int32_t features_in_view = -1;
   pf_kernels_t kernels = PF_KERNELS_AUTO;
   bool planes = true;
+  /// Of pf_config_t::plane: fix_sigma, fold_sigma, max_distance, max_radius and roughness [m], min_points.
+  double fix_sigma = -1.0, fold_sigma = -1.0, plane_distance = -1.0, plane_radius = -1.0, plane_roughness = -1.0;
+  int32_t plane_points = -1;
   std::optional<pf_camera_estimate_t> lens;  ///< none: what Session makes of the calibration
   pf_backend_t backend = PF_BACKEND_FILTER;
+  pf_motion_model_t motion = PF_MOTION_CONSTANT_VELOCITY;  ///< where no samples move the body
+  double jerk = -1.0;  ///< of constant acceleration; negative: the library's default
   int32_t masks = PF_MASKS_NONE;
   bool keep_gauge = true;
 

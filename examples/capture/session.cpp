@@ -92,9 +92,17 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   set(config_.window.keyframes, options.window_keyframes);
   if (options.window_fixed >= 0) config_.window.fixed_keyframes = options.window_fixed;
   set(config_.capacity.max_planes, options.max_planes);
+  if (options.max_places >= 0) config_.capacity.max_places = options.max_places;
   set(config_.capacity.max_state_dim, options.max_state_dim);
   set(config_.capacity.max_observations, options.max_observations);
   set(config_.map.features_in_view, options.features_in_view);
+  set(config_.plane.min_points, options.plane_points);
+  const auto set_length = [](double& field, double value) { field = value >= 0.0 ? value : field; };
+  set_length(config_.plane.fix_sigma, options.fix_sigma);
+  set_length(config_.plane.fold_sigma, options.fold_sigma);
+  set_length(config_.plane.max_distance, options.plane_distance);
+  set_length(config_.plane.max_radius, options.plane_radius);
+  set_length(config_.plane.roughness, options.plane_roughness);
   if (!options.points) config_.map.features_in_view = 0;
   config_.capacity.max_patches = options.patches >= 0 ? options.patches : options.points ? 0 : kPatchesAlone;
   if (!plan_.open(options.walls, options.start.rfind("pose:", 0) == 0, error)) {
@@ -114,7 +122,18 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     code = kExitUsage;
     return false;
   }
+  if (!map_file_.read(options.map, error)) {
+    code = kExitUsage;
+    return false;
+  }
+  config_.motion.model = options.motion;
+  set_length(config_.motion.linear_jerk_density, options.jerk);
   imu.configure(config_);
+  if (options.motion == PF_MOTION_CONSTANT_ACCELERATION && config_.motion.model != options.motion) {
+    error = "--motion acceleration: here an inertial unit moves the camera; add --no-inertial, or leave --motion away";
+    code = kExitUsage;
+    return false;
+  }
   config_.camera.estimate = options.lens.value_or(default_estimate(config_));
   config_.clock_ns = clock_ns;
   config_.log = keep_line;
@@ -178,7 +197,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     return false;
   }
   if (!begin(error)) {
-    code = plan_.empty() && mask_.empty() ? code : kExitUsage;
+    code = plan_.empty() && mask_.empty() && map_file_.empty() ? code : kExitUsage;
     return false;
   }
   return true;
@@ -199,6 +218,9 @@ bool Session::is_metric() const {
 
 bool Session::begin(std::string& error) {
   if (!mask_.set(slam_, start_note_, error)) {
+    return false;
+  }
+  if (!map_file_.load(slam_, log_, error)) {
     return false;
   }
   if (has_gravity_ && pf_set_gravity(slam_, gravity_W_) < PF_OK) {
@@ -232,6 +254,10 @@ bool Session::begin(std::string& error) {
                                         : pf_status_text(status));
       return false;
     }
+  }
+  if (!plan_.empty() && !map_file_.empty()) {
+    error = "--walls: a map says where the run starts, so that a plan cannot";
+    return false;
   }
   return plan_.add_to(slam_, error);
 }

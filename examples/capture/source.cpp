@@ -161,6 +161,9 @@ std::unique_ptr<Source> open_source(const Options& options, std::string& error) 
     return open_camera_source(options, error);
   }
   std::unique_ptr<Source> stored = open_stored(options, error);
+  if (stored != nullptr && options.every > 1) {
+    stored = open_every(options, std::move(stored));
+  }
   if (stored != nullptr && !options.cover_s.empty()) {
     stored = open_cover(options, std::move(stored));
   }

@@ -86,6 +86,9 @@ std::unique_ptr<Source> open_camera_source(const Options& options, std::string& 
 /// The frames of source, black for the time of --cover.
 std::unique_ptr<Source> open_cover(const Options& options, std::unique_ptr<Source> source);
 
+/// One frame in options.every of source.
+std::unique_ptr<Source> open_every(const Options& options, std::unique_ptr<Source> source);
+
 /// The first options.loop images of the source there and back, again and again. null: error is one line.
 std::unique_ptr<Source> open_loop(const Options& options, std::unique_ptr<Source> source, std::string& error);
 

@@ -87,6 +87,19 @@ def test_usage(root):
     expect("number", 2, ["--frames"], "--source", source, "--frames", "many")
     for option in ("--readout", "--report-every", "--delay", "--rest", "--rate", "--exposure", "--imu-rate", "--imu-offset", "--vertical"):
         expect(f"no number for {option}", 2, [f"{option}: 'nan' is not a number from"], "--source", source, option, "nan", *out)
+    for option, low, high in (("--fix-sigma", "-0.001", "11"), ("--fold-sigma", "0", "11"), ("--plane-distance", "0", "11"), ("--plane-radius", "0", "1e5"),
+                              ("--plane-roughness", "0", "2"), ("--jerk", "0", "1e6")):
+        for wrong in (low, high, "nan", "much"):
+            expect(f"{option} {wrong}", 2, [option, wrong], "--source", source, option, wrong, *out)
+    expect("points of a plane", 2, ["--plane-points", "'3'"], "--source", source, "--plane-points", "3", *out)
+    expect("a threshold without planes", 2, ["--fold-sigma is for planes", "--no-planes"], "--source", source, "--no-planes", "--fold-sigma", "0.1", *out)
+    expect("fixed in the window", 2, ["--backend window", "plane.fix_sigma"], "--source", source, "--backend", "window", "--fix-sigma", "0.01", *out)
+    expect("no such motion", 2, ["--motion walk", "velocity or acceleration"], "--source", source, "--motion", "walk", *out)
+    expect("jerk without acceleration", 2, ["--jerk is for --motion acceleration"], "--source", source, "--jerk", "1", *out)
+    expect("acceleration in the window", 2, ["--backend window", "motion.model"], "--source", source, "--backend", "window", "--motion", "acceleration", *out)
+    expect("acceleration with a unit", 2, ["--motion acceleration", "--no-inertial"], "--source", "sim:desk", "--imu", "sim", "--motion", "acceleration", "--frames", "2", *out)
+    expect("every scene", 2, ["--every is for folders"], "--source", "sim:desk", "--every", "3", *out)
+    expect("every none", 2, ["--every", "'0'"], "--source", source, "--every", "0", *out)
     for option in ("--calib", "--walls", "--second-pose", "--record", "--imu-noise", "--imu-mount"):
         expect(f"no name for {option}", 2, [option, "is empty"], "--source", source, option, "", *out)
     expect("zero frames", 2, ["--frames"], "--source", source, "--frames", "0")

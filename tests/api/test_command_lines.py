@@ -9,9 +9,9 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from script import BIN, SOURCE, fail, skip, skip_in_cross_builds  # noqa: E402
 
-NEED_NOTHING = ("adjust-run", "adjust-tags", "compare-runs", "compare-trees", "demo", "fuzz", "package", "plot-gee2007", "plot-masoud", "plot-run", "plot-sim",
-                "ray-sequence", "sweep-tuning", "test", "update-golden", "walls-from-geojson", "walls-from-obj")
-IN_ENVIRONMENT = ("compare-runs", "plot-gee2007", "plot-masoud", "plot-run", "plot-sim", "ray-sequence")
+NEED_NOTHING = ("adjust-run", "adjust-tags", "compare-runs", "compare-trees", "demo", "fuzz", "package", "plot-gee2007", "plot-masoud", "plot-run", "plot-servant",
+                "plot-sim", "ray-sequence", "sweep-tuning", "test", "update-golden", "walls-from-geojson", "walls-from-obj")
+IN_ENVIRONMENT = ("compare-runs", "plot-gee2007", "plot-masoud", "plot-run", "plot-servant", "plot-sim", "ray-sequence")
 COMMANDS = ("pf-bench", "pf-replay", "pf-sim")
 WRITE = {  # what cannot be written
     "pf-bench": [["frame", "--json", "/dev/null/x.json"]], "pf-replay": [["follow", "x", "--json", "/"]],

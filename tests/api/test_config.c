@@ -63,6 +63,7 @@ static void test_check_should_name_the_field_of_research_that_is_out_of_range(vo
   NAMES_RESEARCH(fold, 0);
   NAMES_RESEARCH(fold, 3);
   NAMES_RESEARCH(linear_walk, 0);
+  NAMES_RESEARCH(gate_patches, 2);
   NAMES_RESEARCH(linear_walk, NAN);
   NAMES_RESEARCH(angular_walk, 1e5);
   NAMES_RESEARCH(angular_walk, -INFINITY);
@@ -119,6 +120,7 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES(kernels, -1);
   NAMES(kernels, 99);
   NAMES_REAL(motion.linear_acceleration_density, 0, 1e5);
+  NAMES_REAL(motion.linear_jerk_density, 0, 1e6);
   NAMES_REAL(motion.angular_acceleration_density, 0, 1e5);
   NAMES_REAL(measurement.sigma_px, 0.009, 10.1);
   NAMES_REAL(measurement.gate_probability, 0.89, 1);

@@ -30,16 +30,27 @@ struct HomographyOptions {
   double hidden = 0.3;  ///< share of the patch with kOcclusion
 };
 
+/// Frames in order with a square patch of the first one, and where it is.
+class PatchFrames {
+ public:
+  virtual ~PatchFrames() = default;
+  virtual int left() const = 0;
+  virtual int top() const = 0;
+  virtual const Homography& truth(int frame) const = 0;
+  /// Pixels, width * height; frames in order.
+  virtual const std::vector<std::uint8_t>& draw(int frame) = 0;
+};
+
 /// One sequence, drawn from one seed. Every trouble has the same plane, motion and noise.
-class HomographyFrames {
+class HomographyFrames : public PatchFrames {
  public:
   HomographyFrames(const HomographyOptions& options, PatchTrouble trouble, std::uint64_t seed);
 
-  int left() const { return (options_.width - options_.side) / 2; }
-  int top() const { return (options_.height - options_.side) / 2; }
-  const Homography& truth(int frame) const { return truth_[static_cast<std::size_t>(frame)]; }
-  /// Pixels, width * height; frames in order. Only the patch and its surroundings are drawn.
-  const std::vector<std::uint8_t>& draw(int frame);
+  int left() const override { return (options_.width - options_.side) / 2; }
+  int top() const override { return (options_.height - options_.side) / 2; }
+  const Homography& truth(int frame) const override { return truth_[static_cast<std::size_t>(frame)]; }
+  /// Only the patch and its surroundings are drawn.
+  const std::vector<std::uint8_t>& draw(int frame) override;
 
  private:
   pf::sim::Pose pose(double s) const;

@@ -15,6 +15,7 @@
 #include "filter_slam/patches/tuning.h"
 #include "geometry/small_cholesky.h"
 #include "homography_frames.h"
+#include "homography_images.h"
 #include "suite.h"
 #include "thread_time.h"
 #include "track/align_plane.h"
@@ -44,7 +45,7 @@ class PatchTracker {
   virtual ~PatchTracker() = default;
   virtual std::string name() const = 0;
   /// The patch in its first frame, whose pixels stay valid.
-  virtual void begin(const HomographyOptions& options, const HomographyFrames& frames, const std::uint8_t* first) = 0;
+  virtual void begin(const HomographyOptions& options, const PatchFrames& frames, const std::uint8_t* first) = 0;
   /// H: from where it was last to where it is. truth: of the corners, for the NEES.
   virtual Tracked follow(const std::uint8_t* image, const Homography& truth, Homography& H) = 0;
 };
@@ -61,7 +62,7 @@ class OwnTracker : public PatchTracker {
  public:
   std::string name() const override { return "planefold"; }
 
-  void begin(const HomographyOptions& options, const HomographyFrames& frames, const std::uint8_t* first) override {
+  void begin(const HomographyOptions& options, const PatchFrames& frames, const std::uint8_t* first) override {
     camera_ = camera_of(options);
     if (!block_) {
       constexpr std::size_t kBytes = std::size_t{1} << 20;
@@ -131,7 +132,7 @@ class OpenCvTracker : public PatchTracker {
  public:
   OpenCvTracker(PeerCall call, int method) : call_(call), method_(method) {}
   std::string name() const override { return method_ == 0 ? "ECC" : "KLT"; }
-  void begin(const HomographyOptions& options, const HomographyFrames& frames, const std::uint8_t* first) override {
+  void begin(const HomographyOptions& options, const PatchFrames& frames, const std::uint8_t* first) override {
     options_ = options;
     left_ = frames.left();
     top_ = frames.top();
@@ -154,7 +155,7 @@ class OpenCvTracker : public PatchTracker {
 };
 
 /// Root mean square of the corners' errors [px^2 summed over x and y], and the largest.
-double corner_error2(const HomographyOptions& o, const HomographyFrames& f, const Homography& a, const Homography& b) {
+double corner_error2(const HomographyOptions& o, const PatchFrames& f, const Homography& a, const Homography& b) {
   double sum = 0;
   for (int k = 0; k < 4; ++k) {
     const double x = f.left() + (k == 1 || k == 2 ? o.side - 1 : 0), y = f.top() + (k >= 2 ? o.side - 1 : 0);
@@ -194,21 +195,44 @@ class HomographySuite {
   }
 
   int run() {
+    return options_.sources.empty() && options_.patch.empty() && options_.truth.empty() ? run_drawn() : run_stored();
+  }
+
+ private:
+  int run_drawn() {
     const std::pair<const char*, PatchTrouble> kinds[] = {
         {"plain", PatchTrouble::kNone}, {"occlusion", PatchTrouble::kOcclusion}, {"light", PatchTrouble::kLight}};
     std::vector<std::string> last;
-    for (const auto& [name, trouble] : kinds) last.push_back(run_kind(name, trouble));
+    HomographyOptions what;
+    what.frames = std::min(what.frames, options_.frames);
+    what.hidden = options_.hidden;
+    for (const auto& [name, trouble] : kinds) {
+      std::vector<Outcome> outcomes(trackers_.size());
+      for (int seed = 1; seed <= options_.seeds; ++seed) {
+        HomographyFrames frames(what, trouble, static_cast<std::uint64_t>(seed));
+        run_frames(what, frames, outcomes);
+      }
+      last.push_back(add_rows(name, what, outcomes, options_.seeds));
+    }
     for (std::size_t i = 0; i < last.size(); ++i) report_.note(kinds[i].first, last[i]);
     return report_.finish();
   }
 
- private:
-  std::string run_kind(const std::string& name, PatchTrouble trouble) {
-    HomographyOptions what;
-    what.frames = std::min(what.frames, options_.frames);
+  int run_stored() {
+    std::string message;
+    const std::unique_ptr<StoredPatchFrames> frames = StoredPatchFrames::read(options_, message);
+    if (!frames) {
+      std::fprintf(stderr, "pf-bench homography: %s\n", message.c_str());
+      return 2;
+    }
     std::vector<Outcome> outcomes(trackers_.size());
-    for (int seed = 1; seed <= options_.seeds; ++seed)
-      run_seed(what, trouble, static_cast<std::uint64_t>(seed), outcomes);
+    run_frames(frames->options(), *frames, outcomes);
+    report_.note(frames->name(), add_rows(frames->name(), frames->options(), outcomes, 1));
+    return report_.finish();
+  }
+
+  std::string add_rows(const std::string& name, const HomographyOptions& what, const std::vector<Outcome>& outcomes,
+                       int runs) {
     double fastest = 0;  // of the peers that keep the patch
     std::string peer;
     for (std::size_t t = 1; t < trackers_.size(); ++t) {
@@ -237,13 +261,11 @@ class HomographySuite {
     char line[160];
     std::snprintf(line, sizeof line, "%.4f px RMSE of four corners (worst seed %.4f), %d of %d frames lost, %.2f ms",
                   median(own.rmse), *std::max_element(own.rmse.begin(), own.rmse.end()), own.lost,
-                  options_.seeds * (what.frames - 1), 1e-3 * median(own.us));
+                  runs * (what.frames - 1), 1e-3 * median(own.us));
     return line;
   }
 
-  void run_seed(const HomographyOptions& what, PatchTrouble trouble, std::uint64_t seed,
-                std::vector<Outcome>& outcomes) {
-    HomographyFrames frames(what, trouble, seed);
+  void run_frames(const HomographyOptions& what, PatchFrames& frames, std::vector<Outcome>& outcomes) {
     const std::vector<std::uint8_t> first = frames.draw(0);
     std::vector<Homography> H(trackers_.size(), frames.truth(0));
     for (Outcome& outcome : outcomes) outcome.square_sum = 0;
@@ -274,7 +296,7 @@ int run_homography(const SuiteOptions& options) { return HomographySuite(options
 
 const Suite homography_suite("homography",
                              "a patch on a plane in rendered frames, beside OpenCV's ECC and Lucas-Kanade",
-                             run_homography, Suite::kSeeds);
+                             run_homography, Suite::kPatch);
 
 }  // namespace
 }  // namespace bench

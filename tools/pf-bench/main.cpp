@@ -16,7 +16,21 @@ int main(int argc, char** argv) {
   for (const bench::Suite* s = bench::Suite::first(); s != nullptr; s = s->next) {
     CLI::App* sub = app.add_subcommand(s->name, s->description);
     sub->add_option("--json", options.json, "write the rows to this file")->check(pf::tools::writable_file());
-    if (s->input == bench::Suite::kSeeds) {
+    const bool has_patch = s->input == bench::Suite::kPatch;
+    if (has_patch) {
+      sub->add_option("--source", options.sources,
+                      "stored frames in place of drawn ones: images:DIR, euroc:DIR, tum:DIR or video:FILE");
+      sub->add_option("--patch", options.patch,
+                      "of stored frames: X,Y,W,H in the first one [px]; the square in its middle is followed");
+      sub->add_option("--truth", options.truth,
+                      "of stored frames: file with nine numbers a line, row by row the homography from the first "
+                      "frame's pixels to this one's");
+      sub->add_option("--hidden", options.hidden, "of drawn frames: share of the patch that something passes before")
+          ->check(CLI::Range(0.0, 0.9))
+          ->capture_default_str();
+      options.calibration.add_to(*sub);
+    }
+    if (has_patch || s->input == bench::Suite::kSeeds) {
       sub->add_option("--seeds", options.seeds, "runs of each kind")->check(CLI::Range(1, 1000))->capture_default_str();
       sub->add_option("--frames", options.frames, "at most N of every run")->check(CLI::Range(2, 100000));
     } else if (s->input == bench::Suite::kSequences) {

@@ -37,6 +37,11 @@ struct SuiteOptions {
   int passes = 3;       ///< through every sequence
   int seeds = 10;       ///< of suites that draw what they run on
   int frames = 100000;  ///< at most, of every sequence
+
+  /// Of the suite that follows a patch: one of stored frames where source, patch and truth are given.
+  std::string patch;    ///< X,Y,W,H in the first frame [px]
+  std::string truth;    ///< file of homographies, nine numbers for each frame
+  double hidden = 0.3;  ///< share of a drawn patch that something passes before
 };
 
 /// Tables on stdout as rows come, and a JSON file at the end.
@@ -55,7 +60,7 @@ class Report {
 
 /// A suite is one file named *_suite.cpp with one of these at namespace scope; main finds it by itself.
 struct Suite {
-  enum Input { kNone, kSequences, kSeeds };  ///< what it runs on, besides what it makes for itself
+  enum Input { kNone, kSequences, kSeeds, kPatch };  ///< what it runs on, besides what it makes for itself
   Suite(const char* suite_name, const char* what, int (*entry)(const SuiteOptions&), Input takes_input = kNone);
   static const Suite* first();
 

@@ -108,7 +108,7 @@ Box::Box(const BoxOptions& options, const pf_camera_t& camera, double sigma_px, 
 std::vector<pf_wall_prior_t> Box::walls(Plan plan) const {
   if (plan == Plan::kNone) return {};
   std::vector<pf_wall_prior_t> walls(plan_, plan_ + kBoxSides);
-  if (plan == Plan::kExact)
+  if (plan == Plan::kExact || plan == Plan::kUngated)
     for (pf_wall_prior_t& wall : walls)
       for (int i = 0; i < 9; i += 4) wall.covariance[i] = kExactSigma * kExactSigma;
   if (plan == Plan::kAbsent) {

@@ -18,6 +18,7 @@ enum class Plan {
   kNone,     ///< nothing: points only
   kRefined,  ///< four walls, with the standard deviations that their errors are drawn from
   kExact,    ///< the same wrong walls, as if they were exact (sigmas of 1e-6)
+  kUngated,  ///< likewise, and patches are taken in whatever their innovation, as in the paper's comparison
   kAbsent,   ///< likewise refined, and a fifth wall half a metre before one side, which is not there
   kShifted,  ///< one of the four is 1 m off, and its sigma is that of the others
   kMissing,  ///< three walls: what kShifted is compared with

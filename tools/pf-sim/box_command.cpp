@@ -1,3 +1,5 @@
+#include <planefold/planefold_research.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +11,7 @@
 #include "backend_option.h"
 #include "box_run.h"
 #include "commands.h"
+#include "motion_option.h"
 #include "report.h"
 #include "statistics.h"
 
@@ -27,12 +30,13 @@ constexpr double kGoodDeg = 2;  // of a wall that was discovered
 constexpr double kDepth =
     1.6;  // of the sides when they are first seen, roughly: what a point without a wall begins with [m]
 
-const Case kCases[] = {{"refined", Plan::kRefined}, {"exact", Plan::kExact},     {"points", Plan::kNone},
-                       {"absent", Plan::kAbsent},   {"shifted", Plan::kShifted}, {"missing", Plan::kMissing},
-                       {"half", Plan::kHalf}};
+const Case kCases[] = {{"refined", Plan::kRefined}, {"exact", Plan::kExact},   {"points", Plan::kNone},
+                       {"ungated", Plan::kUngated}, {"absent", Plan::kAbsent}, {"shifted", Plan::kShifted},
+                       {"missing", Plan::kMissing}, {"half", Plan::kHalf}};
 
 struct Choices {
   BackendOption backend;
+  MotionOption motion;
   std::vector<std::string> cases;  ///< none: all that the back end can do of kDefaultCases
   int seeds = 10;
   std::uint64_t first_seed = 1;
@@ -101,6 +105,7 @@ pf_config_t config_of(const Choices& c) {
   config.capacity.max_features = kBoxSides * c.box.points_on_side;
   config.capacity.max_observations = std::min(200, config.capacity.max_features);
   config.capacity.max_state_dim = 60 + 6 * config.capacity.max_features;
+  c.motion.apply(config);
   return config;
 }
 
@@ -126,11 +131,18 @@ pf_config_t rendered_config(const Choices& c, Plan plan) {
   config.capacity.max_state_dim = 500;
   config.clock_ns = clock_ns;
   c.backend.apply(config);
+  c.motion.apply(config);
   if (plan == Plan::kNone) return config;
   config.capacity.max_patches = c.patches;
   config.capacity.max_cameras = c.cameras;
   config.capacity.patch_side_px = c.patch_side_px;
   if (c.no_points) config.map.features_in_view = 0;
+  if (plan == Plan::kUngated) {
+    pf_research_t research;
+    pf_research_default(&research);
+    research.gate_patches = 0;
+    pf_config_set_research(&config, &research);
+  }
   return config;
 }
 
@@ -298,6 +310,7 @@ int run(Choices c) {
                {{"backend", c.backend.name},
                 {"geometric", c.geometric},
                 {"points", !c.no_points},
+                {"motion", c.motion.name},
                 {"first_seed", c.first_seed},
                 {"frames", c.box.frames},
                 {"points_on_side", c.box.points_on_side},
@@ -324,6 +337,7 @@ void add_box(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("box", "A box with posters and a wrong plan of its sides, circled by hand");
   c->backend.add_to(*command);
+  c->motion.add_to(*command);
   command->add_flag("--geometric", c->geometric, "points of the posters and no pictures");
   command->add_flag("--no-points", c->no_points, "patches on the walls alone, without points");
   command->add_option("--patches", c->patches, "that are followed at a time, at most");
@@ -333,10 +347,10 @@ void add_box(CLI::App& app, int& result) {
   command->add_option("--black", c->box.black_s, "for how long frames are black [s]");
   command->add_option("--gross", c->box.gross,
                       "share of patches that are moved in a rendered frame, so that they are found there");
-  command->add_option(
-      "--cases", c->cases,
-      "one or more: refined, exact, points; absent, shifted (a wrong wall), missing (without it) and half (two "
-      "walls of four)");
+  command->add_option("--cases", c->cases,
+                      "one or more: refined, exact, ungated (exact, and every patch is taken in), points; absent, "
+                      "shifted (a wrong wall), missing (without it) and half (two "
+                      "walls of four)");
   command->add_option("--seeds", c->seeds, "how many runs of each case");
   command->add_option("--first-seed", c->first_seed, "seed of the first run");
   command->add_option("--frames", c->box.frames, "of each run");

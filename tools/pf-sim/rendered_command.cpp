@@ -10,6 +10,7 @@
 #include "backend_option.h"
 #include "commands.h"
 #include "context.h"
+#include "motion_option.h"
 #include "rendered_run.h"
 #include "report.h"
 
@@ -21,6 +22,7 @@ using nlohmann::json;
 struct Choices {
   std::string scene = "desk", json_file, csv;
   BackendOption backend;
+  MotionOption motion;
   std::vector<std::string> starts{"rectangle"};
   std::vector<double> sigma_pixels{0};
   int seeds = 20, frames = 300, jobs = 2, blur = 2, relative = 0;
@@ -244,6 +246,7 @@ bool prepare(const Choices& c, RenderedOptions& o) {
           v.config.camera.readout_s = c.as_global ? 0 : c.readout_s;
           if (sigma > 0) v.config.measurement.sigma_px = sigma;
           c.backend.apply(v.config, c.max_features);
+          c.motion.apply(v.config);
           if (c.no_planes) v.config.plane.enabled = 0;
           if (c.max_state_dim > 0) v.config.capacity.max_state_dim = c.max_state_dim;
           if (c.max_planes > 0) v.config.capacity.max_planes = c.max_planes;
@@ -337,6 +340,7 @@ void add_rendered(CLI::App& app, int& result) {
   CLI::App* command = app.add_subcommand("rendered", "Honesty of the whole library on rendered frames");
   command->add_option("--scene", c->scene, "desk room corridor wall person exposure repeat bushes road");
   c->backend.add_to(*command);
+  c->motion.add_to(*command);
   command->add_option("--start", c->starts,
                       "rectangle: found by itself; points: its corners, about a pose from its prior");
   command->add_option("--seeds", c->seeds, "how many runs");

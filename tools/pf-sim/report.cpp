@@ -2,6 +2,7 @@
 
 #include <planefold_platform/sequence.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -32,6 +33,11 @@ RunMean run_mean(const Runs& x, int frame, Get get) {
   }
   if (mean.runs > 0) mean.value /= mean.runs;
   return mean;
+}
+
+/// Whether a run's time mean lies below what 95 % of single errors of a perfect filter lie below.
+auto below_95(double dof) {
+  return [limit = chi_square_quantile(0.95, dof)](double mean) { return mean < limit; };
 }
 
 /// Time mean of a normalised error, and how its run averages lie against the chi-square bounds of a run average.
@@ -71,6 +77,8 @@ json nees_json(const Runs& x, int dof, Get get) {
           {"standard_error", std::sqrt(square / (runs - 1) / runs)},
           {"median", median(all)},
           {"median_of_runs", median(means)},
+          {"seeds", means},
+          {"seeds_below_95", std::count_if(means.begin(), means.end(), below_95(dof))},
           {"above_share", above / n},
           {"below_share", below / n},
           {"inside_share", 1 - (above + below) / n},
@@ -280,7 +288,7 @@ bool write_csv(const Runs& x, const std::string& directory, const std::string& l
   if (!claim_files(directory, {label + ".csv", label + "_runs.csv"})) return false;
   std::ofstream means(directory + "/" + label + ".csv"), runs(directory + "/" + label + "_runs.csv");
   means << "frame,nees_position,nees_pose,bound_low,bound_high,rmse_m,sigma_m,state_dim,inliers,runs\n";
-  runs << "seed,frame,nees_position,nees_pose,error_m,sigma_m,state_dim,inliers\n";
+  runs << "seed,frame,nees_position,nees_pose,error_m,sigma_m,state_dim,inliers,x,y,z,true_x,true_y,true_z\n";
   for (int f = 0; f < x.frames; ++f) {
     const RunMean position = run_mean(x, f, [](const FrameRow& r) { return r.nees_position; });
     const double n = std::max(1, position.runs);
@@ -295,7 +303,10 @@ bool write_csv(const Runs& x, const std::string& directory, const std::string& l
     for (int f = 0; f < x.frames; ++f) {
       const FrameRow& r = x.row(s, f);
       runs << x.first_seed + static_cast<std::uint64_t>(s) << ',' << f << ',' << r.nees_position << ',' << r.nees_pose
-           << ',' << r.error_m << ',' << r.sigma_m << ',' << r.state_dim << ',' << r.inliers << '\n';
+           << ',' << r.error_m << ',' << r.sigma_m << ',' << r.state_dim << ',' << r.inliers;
+      for (const float p : r.p_W) runs << ',' << p;
+      for (const float p : r.true_W) runs << ',' << p;
+      runs << '\n';
     }
   return means.good() && runs.good();
 }

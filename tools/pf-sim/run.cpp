@@ -119,6 +119,10 @@ FrameRow judge(const pf::sim::Pose& truth, const pf_pose_t& pose, const pf_repor
   row.inliers = static_cast<float>(report.inliers);
   row.nis = static_cast<float>(report.nis);
   row.nis_dof = static_cast<float>(report.nis_dof);
+  for (int i = 0; i < 3; ++i) row.p_W[i] = static_cast<float>(pose.p_WC[i]);
+  row.true_W[0] = static_cast<float>(truth.p_WC.x);
+  row.true_W[1] = static_cast<float>(truth.p_WC.y);
+  row.true_W[2] = static_cast<float>(truth.p_WC.z);
   row.nees_motion = row.nees_motion_rotation = row.nees_motion_translation = -1;
   return row;
 }

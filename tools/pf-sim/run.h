@@ -19,6 +19,7 @@ struct FrameRow {
   float nis, nis_dof;
   float nees_motion;  ///< over the window that ends here, 6 dof; negative where none does
   float nees_motion_rotation, nees_motion_translation;  ///< likewise, 3 dof each
+  float p_W[3], true_W[3];                              ///< where the camera is for the filter, and in truth [m]
 };
 
 /// A frame's pose against the truth, both in the truth's own frame: theta of R_true = Exp(theta) R, then p_true - p.

@@ -7,6 +7,7 @@
 #include "../lib/command_line.h"
 #include "backend_option.h"
 #include "commands.h"
+#include "motion_option.h"
 #include "report.h"
 #include "statistics.h"
 #include "street_run.h"
@@ -32,6 +33,7 @@ const Case kCases[] = {{"refined", StreetPlan::kRefined, true},
 
 struct Choices {
   BackendOption backend;
+  MotionOption motion;
   std::vector<std::string> cases;  ///< none: all that the back end can do of kDefaultCases
   int seeds = 5, jobs = 1, patches = 16, cameras = 8, max_state_dim = 0, max_features = 0;
   std::uint64_t first_seed = 1;
@@ -73,6 +75,7 @@ pf_config_t config_of(const Choices& c, const Case& of) {
   config.capacity.max_state_dim = c.max_state_dim > 0 ? c.max_state_dim : kStateDim;
   config.capacity.max_features = std::max(config.capacity.max_features, config.capacity.max_state_dim / 3);
   c.backend.apply(config, c.max_features);
+  c.motion.apply(config);
   config.plane.enabled = of.planes;
   if (of.plan == StreetPlan::kNone) return config;
   config.capacity.max_patches = c.patches;
@@ -199,6 +202,7 @@ int run(Choices c) {
               {"settings",
                {{"backend", c.backend.name},
                 {"points", !c.no_points},
+                {"motion", c.motion.name},
                 {"first_seed", c.first_seed},
                 {"frames", c.street.frames},
                 {"rate_hz", c.street.rate_hz},
@@ -222,6 +226,7 @@ void add_street(CLI::App& app, int& result) {
   auto c = std::make_shared<Choices>();
   CLI::App* command = app.add_subcommand("street", "A walk of 72 m along fronts that a coarse plan knows");
   c->backend.add_to(*command);
+  c->motion.add_to(*command);
   command->add_flag("--no-points", c->no_points, "patches on the fronts alone, without points");
   command->add_option("--patches", c->patches, "that are followed at a time, at most");
   command->add_option("--cameras", c->cameras, "reference cameras of patches, at most");

@@ -39,7 +39,8 @@
  * it was found again; after motion.coast_s it is lost.
  * MAPS. There is one map at a time, with a map_id. If it is lost for motion.restart_s of usable
  * images, it is discarded and a new one begins: a new map_id, a new W, and, without a target in
- * view, a new unit of length. With walls (pf_add_wall) it is searched for until it is found.
+ * view, a new unit of length. With walls (pf_add_wall) it is searched for until it is found, and so
+ * is a map that was loaded (pf_load_map).
  */
 #ifndef PLANEFOLD_PLANEFOLD_H
 #define PLANEFOLD_PLANEFOLD_H
@@ -103,7 +104,9 @@ typedef enum pf_status {
   PF_ERROR_RANGE = -11,   /* a number that was passed in is outside of its domain */
   PF_ERROR_CONTEXT = -12, /* not a context, or one whose block was overwritten */
   /* there is no room for it, see capacity.max_state_dim and capacity.max_planes */
-  PF_ERROR_FULL = -13
+  PF_ERROR_FULL = -13,
+  /* no saved map, or one that is damaged or of another format; the log says what is wrong */
+  PF_ERROR_MAP = -14
 } pf_status_t;
 
 /* One line in English for a status; never null. */
@@ -177,6 +180,10 @@ PF_API pf_status_t pf_camera_unproject(const pf_camera_t* camera, const double p
 
 typedef enum pf_motion_model {
   PF_MOTION_CONSTANT_VELOCITY = 1, /* white accelerations; the default */
+  /* Translational acceleration and angular velocity constant in camera axes, with white jerk and
+   * angular acceleration (Servant 2008, lib/docs/theory/servant2008.md). Three rows more in
+   * capacity.max_state_dim. Filter only. */
+  PF_MOTION_CONSTANT_ACCELERATION = 3,
   /* By the samples of pf_push_imu (lib/docs/theory/inertial.md). Wants imu and
    * capacity.max_imu_samples >= 64: as many as come in the longest time between frames that is to
    * be bridged. */
@@ -212,10 +219,10 @@ typedef enum pf_masks {
 typedef enum pf_backend {
   PF_BACKEND_FILTER = 1, /* a filter over pose, points and planes (Gee 2007); the default */
   /* Keyframes that are adjusted with the points that they see (lib/docs/theory/window.md; Masoud
-   * 2015). Images only. PF_ERROR_CONFIG with motion.model inertial, camera.estimate consider,
-   * plane.fix_sigma above 0 and capacity.max_patches above 0. The pose's covariance takes the map's
-   * first keyframes as exact, those of points and planes all keyframes and the lens. The block at
-   * its defaults is 2.0 MiB, with camera.estimate estimate 2.1. */
+   * 2015). Images only. PF_ERROR_CONFIG with motion.model inertial or constant acceleration,
+   * camera.estimate consider, plane.fix_sigma above 0 and capacity.max_patches above 0. The pose's
+   * covariance takes the map's first keyframes as exact, those of points and planes all keyframes
+   * and the lens. The block at its defaults is 2.0 MiB, with camera.estimate estimate 2.1. */
   PF_BACKEND_WINDOW = 2
 } pf_backend_t;
 
@@ -291,6 +298,11 @@ typedef struct pf_config {
     /* Pixels of the mask that pf_set_mask may set: 0 (none), or camera.width * camera.height at
      * least. It is kept as one bit for 4x4 of them: 2.4 kB for 640x480. Default 0 */
     int32_t mask;
+    /* Places: what keyframes saw that have left the window, each with up to 24 points and what they
+     * look like, by which a lost camera finds itself, and of which a saved map is made (MAPS). 0 ..
+     * 200, of 15 kB each. With PF_BACKEND_WINDOW only; with the filter they take nothing. Default
+     * 16 */
+    int32_t max_places;
   } capacity;
 
   /* Capacities of PF_BACKEND_WINDOW, of no meaning with the filter. With the window, max_state_dim,
@@ -309,6 +321,9 @@ typedef struct pf_config {
     int32_t model;                       /* pf_motion_model_t. Default constant velocity */
     double linear_acceleration_density;  /* [m/s^2/sqrt(Hz)] > 0. Default 1 */
     double angular_acceleration_density; /* [rad/s^2/sqrt(Hz)] > 0. Default 2 */
+    /* [m/s^3/sqrt(Hz)] > 0, in place of linear_acceleration_density with
+     * PF_MOTION_CONSTANT_ACCELERATION. Default 10 */
+    double linear_jerk_density;
     double coast_s; /* after this time without tracking the state is lost, 0.05 .. 10. Default 1 */
     /* After this time of usable images without finding the map again, counted from when the state
      * was lost, the map is discarded and a new one begins; 0: never. 0 .. 1e4. Default 3 */
@@ -579,7 +594,7 @@ PF_API pf_status_t pf_push_observations(pf_slam_t* slam, int64_t t_ns,
 
 /* Control input: a change of velocity that is known beforehand (a motor, a thruster, a simulation).
  * The next frame's prediction adds it to the velocities, in camera axes: v_W += R_WC dv_C [m/s],
- * w_C += dw_C [rad/s]. Calls add up. PF_ERROR_STATE with the other motion models. */
+ * w_C += dw_C [rad/s]. Calls add up. PF_ERROR_STATE with PF_MOTION_INERTIAL and with the window. */
 PF_API pf_status_t pf_push_control(pf_slam_t* slam, const double dv_C[3], const double dw_C[3]);
 
 /* A sample of an inertial measurement unit, in the unit's own axes. */
@@ -594,6 +609,40 @@ typedef struct pf_imu_sample {
  * PF_ERROR_NONFINITE, PF_ERROR_RANGE beyond what any unit measures. They are kept
  * (capacity.max_imu_samples) and reported; poses depend on them with PF_MOTION_INERTIAL only. */
 PF_API pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count);
+
+/* ---------------------------------------------------------------------------------- maps -- */
+
+typedef enum pf_map_kind {
+  /* Places, planes, gravity and the lens, in a format that any build reads
+   * (lib/docs/map_format.md). */
+  PF_MAP_PORTABLE = 1,
+  /* The context as it stands, to go on with the very next frame. Not in this release */
+  PF_MAP_CONTINUE = 2
+} pf_map_kind_t;
+
+/* Bytes that pf_save_map needs at most, now. Errors as of pf_save_map. */
+PF_API pf_status_t pf_map_size(const pf_slam_t* slam, int32_t kind, size_t* bytes);
+
+/* Writes the map into a buffer, of which *used is then the map. What is kept are places: those that
+ * the map has, and keyframes of the window; of more than capacity.max_places the least redundant
+ * ones. PF_NOTE_NOTHING: no place or keyframe has enough points yet, and nothing is written.
+ * PF_ERROR_STATE: with PF_BACKEND_FILTER, with capacity.max_places 0, and while starting.
+ * PF_ERROR_RANGE: the kind is unknown, or PF_MAP_CONTINUE. PF_ERROR_MEMORY: the buffer is too
+ * small, and nothing was written. */
+PF_API pf_status_t pf_save_map(const pf_slam_t* slam, int32_t kind, void* buffer, size_t bytes,
+                               size_t* used);
+
+/* Begins in a saved map: W, lengths and planes are those of the map, and the camera is lost in it
+ * until pf_push_frame recognises one of its places; the first tracked frame says so. Before the
+ * first frame only. The map may come from another config, build, scalar or camera of about the same
+ * focal length in pixels. The lens is that of the config. The map is searched for until it is
+ * found, also after later losses: no new one begins before pf_reset, which drops it. The buffer is
+ * read during the call only. All of it is checked first: where it is refused nothing changes, and
+ * the log says why. PF_ERROR_MAP: no map, damaged, of another version, or with a number out of its
+ * domain. PF_ERROR_FULL: more places or planes than capacity.max_places and capacity.max_planes.
+ * PF_ERROR_STATE: after the first frame, with a start that was set or a wall, or with
+ * PF_BACKEND_FILTER. */
+PF_API pf_status_t pf_load_map(pf_slam_t* slam, const void* buffer, size_t bytes);
 
 /* -------------------------------------------------------------------------------- output -- */
 
@@ -886,6 +935,8 @@ typedef struct pf_report {
    * them were used, if that pose was believed. */
   int32_t consensus;
   int32_t reason; /* pf_frame_reason_t */
+  int32_t places;          /* of capacity.max_places: that are kept */
+  int32_t places_returned; /* since the beginning: how often a place has come back to the window */
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

@@ -40,6 +40,9 @@ typedef struct pf_research {
   int32_t fold;        /* pf_fold_t. Default condition */
   double linear_walk;  /* of PF_MOTION_CONSTANT_POSITION [m/sqrt(s)] > 0. Default 0.1 */
   double angular_walk; /* likewise [rad/sqrt(s)] > 0. Default 0.2 */
+  /* 1: a patch of a wall is taken in where its corners pass the gate. 0: always, on the nearest
+   * wall that it may lie on. Default 1 */
+  int32_t gate_patches;
 } pf_research_t;
 
 PF_API pf_status_t pf_research_default(pf_research_t* research);

@@ -30,6 +30,7 @@ constexpr Range kIntegers[] = {
     PF_FIELD(capacity.max_observations, 8, pf::kMaxObservations),
     PF_FIELD(capacity.max_planes, 1, pf::kMaxPlanes),
     PF_FIELD(capacity.max_kept_views, 0, 200),
+    PF_FIELD(capacity.max_places, 0, pf::kMaxPlaces),
     PF_FIELD(capacity.max_patches, 0, pf::kMaxPatches),
     PF_FIELD(capacity.patch_side_px, 32, 128),
     PF_FIELD(capacity.max_cameras, 0, 64),
@@ -51,6 +52,7 @@ constexpr double kMaxWalk = 1e4;
 constexpr Range kReals[] = {
     PF_FIELD(motion.linear_acceleration_density, kTiny, 1e4),
     PF_FIELD(motion.angular_acceleration_density, kTiny, 1e4),
+    PF_FIELD(motion.linear_jerk_density, kTiny, 1e5),
     PF_FIELD(measurement.sigma_px, 0.01, 10),
     PF_FIELD(measurement.gate_probability, 0.9, 0.9999),
     PF_FIELD(first_depth.depth, 1e-4, 1e5),
@@ -171,6 +173,7 @@ const char* refused_by_build(const pf_config_t& config) {
   if (!kHasInertial && config.motion.model == PF_MOTION_INERTIAL)
     return "motion.model (built without PLANEFOLD_INERTIAL)";
   if (!kHasWalls && config.capacity.max_patches > 0) return "capacity.max_patches (built without PLANEFOLD_WALLS)";
+  if (!kHasMemory && config.capacity.max_places > 0) return "capacity.max_places (built without PLANEFOLD_MEMORY)";
   if (!kHasMasks && config.map.masks != PF_MASKS_NONE) return "map.masks (built without PLANEFOLD_MASKS)";
   return nullptr;
 }
@@ -185,6 +188,7 @@ const char* refused_of_research(const pf_config_t& config, const pf_research_t& 
     return nullptr;
   }
   if (research.keep_gauge != 0 && research.keep_gauge != 1) return "research.keep_gauge";
+  if (research.gate_patches != 0 && research.gate_patches != 1) return "research.gate_patches";
   if (research.fold != PF_FOLD_CONDITION && research.fold != PF_FOLD_DROP) return "research.fold";
   if (!(research.linear_walk >= kTiny && research.linear_walk <= kMaxWalk)) return "research.linear_walk";
   if (!(research.angular_walk >= kTiny && research.angular_walk <= kMaxWalk)) return "research.angular_walk";
@@ -193,16 +197,19 @@ const char* refused_of_research(const pf_config_t& config, const pf_research_t& 
 
 /// The motion model and what it needs. Null, or the name of the first field that makes no sense.
 const char* motion_from(const pf_config_t& config, const pf_research_t& research, Settings* settings) {
-  const bool moves = config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
+  const bool accelerates = config.motion.model == PF_MOTION_CONSTANT_ACCELERATION;
+  const bool moves = accelerates || config.motion.model == PF_MOTION_CONSTANT_VELOCITY;
   settings->constant_velocity = moves;
   settings->inertial = config.motion.model == PF_MOTION_INERTIAL;
   if (!moves && !settings->inertial && config.motion.model != PF_MOTION_CONSTANT_POSITION) return "motion.model";
-  settings->body = moves                ? BodyLayout::with_constant_velocity()
+  settings->body = accelerates          ? BodyLayout::with_constant_acceleration()
+                   : moves              ? BodyLayout::with_constant_velocity()
                    : settings->inertial ? BodyLayout::with_inertial_unit()
                                         : BodyLayout::with_constant_position();
   const bool walks = !settings->body.has(BodyPart::kVelocity);
-  settings->motion_noise.linear =
-      static_cast<Scalar>(walks ? research.linear_walk : config.motion.linear_acceleration_density);
+  settings->motion_noise.linear = static_cast<Scalar>(walks         ? research.linear_walk
+                                                      : accelerates ? config.motion.linear_jerk_density
+                                                                    : config.motion.linear_acceleration_density);
   settings->motion_noise.angular =
       static_cast<Scalar>(walks ? research.angular_walk : config.motion.angular_acceleration_density);
   return unit_from(config, &settings->unit, &settings->body);
@@ -211,7 +218,8 @@ const char* motion_from(const pf_config_t& config, const pf_research_t& research
 /// What the window cannot do. Null, or the name of the first field that asks for it.
 const char* refused_by_window(const pf_config_t& config) {
   if (config.backend != PF_BACKEND_WINDOW) return nullptr;
-  if (config.motion.model == PF_MOTION_INERTIAL) return "motion.model";
+  if (config.motion.model == PF_MOTION_INERTIAL || config.motion.model == PF_MOTION_CONSTANT_ACCELERATION)
+    return "motion.model";
   if (config.camera.estimate == PF_CAMERA_CONSIDER) return "camera.estimate";
   if (config.plane.fix_sigma > 0) return "plane.fix_sigma";
   if (config.capacity.max_patches > 0) return "capacity.max_patches";
@@ -288,7 +296,10 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->max_features = has_window ? config.window.points : config.capacity.max_features;
   settings->max_observations = config.capacity.max_observations;
   settings->max_planes = config.capacity.max_planes;
-  settings->max_kept_views = config.capacity.max_kept_views;
+  settings->kept.views = config.capacity.max_kept_views;
+  // What a mask has learnt of a template goes with its point.
+  const bool has_places = kHasMemory && has_window && config.map.masks == PF_MASKS_NONE;
+  settings->kept.places = has_places ? config.capacity.max_places : 0;
   settings->max_patches = static_cast<std::uint8_t>(config.capacity.max_patches);
   settings->patch_side_px = static_cast<std::uint8_t>(config.capacity.patch_side_px);
   settings->max_cameras = static_cast<std::uint8_t>(config.capacity.max_cameras);
@@ -319,7 +330,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->border_px = config.map.border_px;
   settings->max_coast_ns = static_cast<std::int64_t>(config.motion.coast_s * 1e9);
   settings->restart_ns = static_cast<std::int64_t>(config.motion.restart_s * 1e9);
-  settings->keep_gauge = research.keep_gauge != 0;
+  settings->research = {research.keep_gauge != 0, research.gate_patches != 0};
   settings->imu.buffer = config.capacity.max_imu_samples;
   settings->imu.ranges = {static_cast<Scalar>(config.imu.gyro_range), static_cast<Scalar>(config.imu.accel_range)};
   settings->hooks.clock_ns = config.clock_ns;
@@ -363,6 +374,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->motion.model = PF_MOTION_CONSTANT_VELOCITY;
   config->motion.linear_acceleration_density = 1.0;
   config->motion.angular_acceleration_density = 2.0;
+  config->motion.linear_jerk_density = 10.0;
   config->measurement.sigma_px = 0.1;
   config->measurement.gate_probability = 0.99;
   config->first_depth.depth = 1.0;
@@ -377,6 +389,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->motion.restart_s = 3.0;
   config->capacity.max_imu_samples = 0;
   config->capacity.mask = 0;
+  config->capacity.max_places = pf::kHasMemory ? 16 : 0;
   config->imu.gyro_range = 0;
   config->imu.accel_range = 0;
   config->imu.q_BC[0] = 1;

@@ -258,6 +258,8 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->kernels = static_cast<int32_t>(pf::kernels_id(slam->session.settings().kernels));
   for (int i = 0; i < PF_STAGE_COUNT; ++i) report->stage_ns[i] = r.stage_ns[i];
   report->keyframes = map.keyframes;
+  report->places = map.places;
+  report->places_returned = map.places_returned;
   report->templates = r.templates;
   if (r.templates > 0) report->template_area = static_cast<double>(r.template_area / static_cast<float>(r.templates));
   return PF_OK;

@@ -7,7 +7,7 @@
 namespace pf {
 namespace {
 
-constexpr std::uint64_t kMark = 0x706672657331ULL;  // grows with the layout of pf_research_t
+constexpr std::uint64_t kMark = 0x706672657332ULL;  // grows with the layout of pf_research_t
 
 static_assert(sizeof(pf_research_t) + sizeof(kMark) <= sizeof(pf_config_t::research));
 
@@ -16,7 +16,7 @@ static_assert(sizeof(pf_research_t) + sizeof(kMark) <= sizeof(pf_config_t::resea
 bool holds_research(const pf_config_t& config) { return config.research[0] != 0; }
 
 Status research_from(const pf_config_t& config, pf_research_t* research) {
-  *research = {1, PF_FOLD_CONDITION, 0.1, 0.2};
+  *research = {1, PF_FOLD_CONDITION, 0.1, 0.2, 1};
   if (!holds_research(config)) return Status::kOk;
   if (config.research[0] != kMark) return Status::kVersion;
   std::memcpy(research, &config.research[1], sizeof *research);

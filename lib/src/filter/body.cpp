@@ -21,6 +21,11 @@ int body_gauge_rows(const Body& body, const BodyLayout& layout, const Mounting& 
   N.leftCols<3>().setZero();
   if (layout.has(BodyPart::kGravity)) N.col(gauge::kScale) -= body.q_WC * body.w_C.cross(mounting.p_C);
   add(layout.row(BodyPart::kVelocity), 3, N);
+  if (layout.has(BodyPart::kAcceleration)) {
+    N.setZero();
+    N.col(gauge::kScale) = body.a_C;
+    add(layout.row(BodyPart::kAcceleration), 3, N);
+  }
   if (!layout.has(BodyPart::kGravity)) return count;
   N.setZero();
   N.block<2, 3>(0, gauge::kRotation) = body.q_WG.toRotationMatrix().leftCols<2>().transpose();

@@ -28,6 +28,10 @@ void Filter::join_planes_apart(Scalar scale, const Vec3& pivot) {
     for (int i = 0; i < 3; ++i) factor[state_.layout.row(BodyPart::kVelocity) + i] = scale;
     state_.body.v_W *= scale;
   }
+  if (state_.layout.has(BodyPart::kAcceleration)) {
+    for (int i = 0; i < 3; ++i) factor[state_.layout.row(BodyPart::kAcceleration) + i] = scale;
+    state_.body.a_C *= scale;
+  }
   scale_map(scale, factor);
   blocks_.scale_rows(factor);
   translate((Scalar(1) - scale) * pivot);

@@ -6,8 +6,9 @@ namespace pf {
 
 /// White-noise densities of the motion models.
 struct MotionNoise {
-  Scalar linear;   ///< constant velocity: [m/s^2/sqrt(Hz)]; constant position: [m/sqrt(s)]
-  Scalar angular;  ///< constant velocity: [rad/s^2/sqrt(Hz)]; constant position: [rad/sqrt(s)]
+  /// Constant velocity: [m/s^2/sqrt(Hz)]; constant acceleration: [m/s^3/sqrt(Hz)]; constant position: [m/sqrt(s)]
+  Scalar linear;
+  Scalar angular;  ///< [rad/s^2/sqrt(Hz)]; constant position: [rad/sqrt(s)]
 };
 
 /// What a motion model says: the body afterwards, the transition of its error and the noise that it gains, row-major, leading dimension
@@ -31,6 +32,28 @@ struct Transition {
 /// Rotating or scaling the world before or after is the same, so gauge directions go to gauge directions.
 void predict_constant_velocity(const Body& body, const BodyLayout& layout, Scalar dt, const MotionNoise& noise,
                                Transition* transition);
+
+/// Constant acceleration and angular velocity in camera axes with white jerk and angular acceleration over dt > 0 [s]. With v_C = R^T v
+/// and the integrals S, T of turn_integrals.h at w dt:
+///
+///   R+ = R Exp(w dt),   p+ = p + R d,   d = S v_C dt + T a dt^2/2,   v+ = R+ (v_C + a dt),   w+ = w,   a+ = a
+///   theta+ = theta + J e_w dt,   J = R S,   E = R+ R^T
+///   e_p+ = e_p + (R S R^T [v]x dt - [R d]x) theta + R S R^T e_v dt + R (dd/dw) e_w + R T e_a dt^2/2
+///   e_v+ = (E [v]x - [v+]x) theta + E e_v - [v+]x J e_w dt + R+ e_a dt
+///   Q: acceleration q^2 dt I, velocity q^2 dt^3/3 I, position q^2 dt^5/20 I, between them q^2 dt^2/2 R+ and so on; the rotation and the
+///   angular velocity as with constant velocity; what rotates the camera rotates its velocity: (-[v+]x) of the rotation's noise
+///
+/// Where nothing accelerates, the camera flies along the arc that its own turn makes. Rotating or scaling the world before or after is the
+/// same.
+/// src Servant 2008 (2), (3): the state has the camera in the world in place of the world in the camera; the velocity is kept in axes of
+/// the world, as with every other model, and the error of the rotation is on the world's side.
+void predict_constant_acceleration(const Body& body, const BodyLayout& layout, Scalar dt, const MotionNoise& noise,
+                                   Transition* transition);
+
+/// An acceleration of which nothing is measured goes back to its prior, zero with standard deviation sigma, by a factor f of 0 .. 1:
+///
+///   a+ = f a,   e_a+ = f e_a,   Q = (1 - f^2) sigma^2 I
+void damp_acceleration(const Body& body, const BodyLayout& layout, Scalar factor, Scalar sigma, Transition* transition);
 
 /// Known change of the velocities, in camera axes:
 ///

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/limits.h"
 #include "filter/tuning.h"
+#include "geometry/plane.h"
 #include "model/kinds.h"
 
 /// The row that picks the world's log scale out of an error, and what is known against it.
@@ -49,16 +51,31 @@ struct FarthestPoint {
   }
 };
 
-/// The best known of the first few lengths. length(slot, row): whether that block gives one.
+/// The log of the camera's distance from a plane. False where the block is none, or the camera is on it.
+bool add_distance_from_plane(const State& state, int slot, ScaleRow* row) {
+  const Block& plane = state.block[slot];
+  row->parts = 0;
+  if (plane.kind != BlockKind::kPlane) return false;
+  Mat13 J_x, J_p;
+  const Scalar distance = plane_distance(state.frame_of(plane), plane.xyz(), state.body.p_W, &J_x, &J_p);
+  if (!(distance * distance > kMinDistance2)) return false;
+  J_x /= distance;
+  J_p /= distance;
+  add_part(row, Part::body(Body::kPosition, 3), J_p.data());
+  add_part(row, Part::of(slot, 0, 3), J_x.data());
+  return true;
+}
+
+/// The best known of the first `most` lengths. length(slot, row): whether that block gives one.
 template <typename Length>
-bool best_length(const Filter& filter, ScaleRow* row, Length length) {
+bool best_length(const Filter& filter, int most, ScaleRow* row, Length length) {
   const State& state = filter.state();
   row->parts = 0;
   if (!gauge::contains(state.unobservable, gauge::kScale)) return false;
   Scalar best = Scalar(0);
   bool found = false;
   int tried = 0;
-  for (int s = 0; s < state.slots && tried < tuning::scale::kMaxTried; ++s) {
+  for (int s = 0; s < state.slots && tried < most; ++s) {
     ScaleRow candidate;
     if (!length(s, &candidate)) continue;
     ++tried;
@@ -138,15 +155,18 @@ bool Filter::scale_candidate(int slot, int* places, ScaleRow* row) const {
   return farthest.add_length(state_, slot, row);
 }
 
-/// The best known of a few log lengths. There is none where the scale is observable.
+/// The best known of a few log lengths; where no point gives one, as with patches of walls alone, of all distances from planes. There is
+/// none where the scale is observable.
 bool Filter::scale_row(ScaleRow* row) const {
   int places = -1;
-  return best_length(*this, row, [&](int slot, ScaleRow* length) { return scale_candidate(slot, &places, length); });
+  const auto of_points = [&](int slot, ScaleRow* length) { return scale_candidate(slot, &places, length); };
+  const auto of_planes = [&](int slot, ScaleRow* length) { return add_distance_from_plane(state_, slot, length); };
+  return best_length(*this, tuning::scale::kMaxTried, row, of_points) || best_length(*this, kMaxPlanes, row, of_planes);
 }
 
 bool find_scale_row(const Filter& filter, ScaleRow* row) {
   const State& state = filter.state();
-  return best_length(filter, row, [&](int slot, ScaleRow* length) {
+  return best_length(filter, tuning::scale::kMaxTried, row, [&](int slot, ScaleRow* length) {
     const ScaleSource source = info(state.block[slot].kind).scale;
     length->parts = 0;
     bool has = false;

@@ -27,8 +27,8 @@ bool are_variances(const Triangle& P, int first, int count) {
 bool Filter::body_is_sound() const {
   const Body& b = state_.body;
   for (int i = 0; i < 3; ++i)
-    if (!is_value(b.p_W[i]) || !is_value(b.v_W[i]) || !is_value(b.w_C[i]) || !is_value(b.gyro_bias[i]) ||
-        !is_value(b.accel_bias[i]))
+    if (!is_value(b.p_W[i]) || !is_value(b.v_W[i]) || !is_value(b.w_C[i]) || !is_value(b.a_C[i]) ||
+        !is_value(b.gyro_bias[i]) || !is_value(b.accel_bias[i]))
       return false;
   const Mounting& m = state_.mounting;
   const Mat3 identity = Mat3::Identity();

@@ -29,6 +29,7 @@ void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
   const BodyLayout& layout = state.layout;
   if (layout.has(BodyPart::kVelocity)) body.v_W += three(layout.row(BodyPart::kVelocity));
   if (layout.has(BodyPart::kAngularVelocity)) body.w_C += three(layout.row(BodyPart::kAngularVelocity));
+  if (layout.has(BodyPart::kAcceleration)) body.a_C += three(layout.row(BodyPart::kAcceleration));
   if (layout.has(BodyPart::kGyroBias)) {
     const Vec3 e_g = three(layout.row(BodyPart::kGyroBias));
     const int gravity = layout.row(BodyPart::kGravity);

@@ -24,10 +24,22 @@ struct MaskRoom {
   ImageMask* mask = nullptr;  ///< null: no room
 };
 
+/// What is kept of where the camera was.
+struct KeptRoom {
+  int views = 0;
+  int places = 0;  ///< of the window
+};
+
 /// Inertial samples that are kept, and what their unit can measure.
 struct ImuRoom {
   int buffer = 0;
   ImuRanges ranges;
+};
+
+/// What comparisons turn off (planefold_research.h).
+struct ResearchForms {
+  bool keep_gauge = true;    ///< keeps the covariance consistent with what a camera cannot observe
+  bool gate_patches = true;  ///< refuses patches whose corners are not where they should be
 };
 
 /// The config after it was checked, in the library's own types.
@@ -40,10 +52,11 @@ struct Settings {
   int max_features = 0;  ///< of the window, its points
   int max_observations = 0;
   int max_planes = 0;
-  int max_kept_views = 0;
+  KeptRoom kept;
   MaskRoom mask;
 
-  bool constant_velocity = true;
+  bool constant_velocity =
+      true;  ///< velocities of the state move the body, with accelerations where its layout has them
   PartSwitch<kHasInertial>
       inertial;  ///< the samples of an inertial unit move the body; else one of the other two models
   ImuUnit unit;
@@ -76,7 +89,7 @@ struct Settings {
   float max_misfit = 1;  ///< of a template with a mask, TemplateMatcher::init
   std::int64_t max_coast_ns = 0;
   std::int64_t restart_ns = 0;  ///< of usable images while lost, after which a new map begins; 0: never
-  bool keep_gauge = true;
+  ResearchForms research;
   MaskMode masks = MaskMode::kNone;
   std::uint8_t template_px = 0;  ///< side of templates with masks
   BackEnd backend = BackEnd::kFilter;

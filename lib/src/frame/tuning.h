@@ -45,6 +45,7 @@ inline constexpr Scalar kMaxSpeedSigma = Scalar(1);       ///< [m/s] of an axis;
 inline constexpr Scalar kAnyRotation = Scalar(1.8);       ///< [rad] uniform over a full rotation: the most that grows
 inline constexpr Scalar kAnyPosition = Scalar(100);       ///< [m] likewise
 inline constexpr Scalar kLeastSpeedSigma = Scalar(1e-3);  ///< [m/s, rad/s] of an axis whose speed has decayed
+inline constexpr Scalar kAcceleration = Scalar(1);        ///< [m/s^2] prior sigma of a hand's acceleration
 }  // namespace body_motion
 
 /// The depth of new features.

@@ -68,6 +68,15 @@ class FeatureTable {
     }
     return -1;
   }
+  /// A feature that was here before comes back under its id, in place of the new one of an entry that add() has just given out.
+  void come_back(int i, std::uint32_t id) {
+    if (feature_[i].id + 1 == next_id_) --next_id_;
+    feature_[i].id = id;
+  }
+  /// Ids up to this one are never given out.
+  void reserve_ids(std::uint32_t last) {
+    if (next_id_ <= last) next_id_ = last + 1;
+  }
   void remove(int i) {
     feature_[i] = Feature();
     --count_;

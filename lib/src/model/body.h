@@ -14,6 +14,7 @@ enum class BodyPart : std::uint8_t {
   kPose,             ///< theta, p
   kVelocity,         ///< v; of the inertial unit where there is one
   kAngularVelocity,  ///< w
+  kAcceleration,     ///< a
   kGyroBias,         ///< of the inertial unit, in its axes
   kAccelBias,        ///< likewise
   kGravity,          ///< its direction in W, two rows
@@ -37,6 +38,12 @@ class BodyLayout {
     BodyLayout layout;
     layout.add(BodyPart::kVelocity, 3);
     layout.add(BodyPart::kAngularVelocity, 3);
+    return layout;
+  }
+
+  static BodyLayout with_constant_acceleration() {
+    BodyLayout layout = with_constant_velocity();
+    layout.add(BodyPart::kAcceleration, 3);
     return layout;
   }
 
@@ -85,7 +92,7 @@ class BodyLayout {
   int considered_rows() const { return considered_rows_; }
 
  private:
-  static constexpr int kParts = 11;
+  static constexpr int kParts = 12;
   static constexpr int index(BodyPart part) { return static_cast<int>(part); }
 
   void add(BodyPart part, int rows) {
@@ -93,13 +100,15 @@ class BodyLayout {
     dynamic_rows_ = static_cast<std::int8_t>(dynamic_rows_ + rows);
   }
 
-  std::int8_t row_[kParts] = {0, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+  std::int8_t row_[kParts] = {0, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
   std::int8_t dynamic_rows_ = 6, constant_rows_ = 0, considered_rows_ = 0;
 };
 
 /// Pose and velocities of the camera. Error: of the pose theta (3), p (3); of velocity and angular velocity v (3) and w (3).
 ///
 ///   R_true = Exp(theta) R_WC,   p_true = p + e_p,   v_true = v + e_v,   w_true = w + e_w
+///
+/// With constant acceleration: a_true = a + e_a (3).
 ///
 /// With an inertial unit: biases b_true = b + e_b, and gravity's direction R_WG e_z,
 ///
@@ -112,6 +121,7 @@ struct Body {
   Quat q_WC = Quat::Identity();
   Vec3 p_W = Vec3::Zero();         ///< [m]
   Vec3 v_W = Vec3::Zero();         ///< [m/s]
+  Vec3 a_C = Vec3::Zero();         ///< [m/s^2] how the velocity's coordinates in C change
   Vec3 w_C = Vec3::Zero();         ///< [rad/s]; with an inertial unit no state, but what its samples say at the frame
   Vec3 gyro_bias = Vec3::Zero();   ///< [rad/s], in the unit's axes
   Vec3 accel_bias = Vec3::Zero();  ///< [m/s^2], likewise

@@ -46,9 +46,9 @@ struct BodyGaugeRows {
 };
 
 /// The body's gauge rows, one entry for each of its parts that has any. Velocities in W rotate and scale but are not translated; angular
-/// velocities and biases, in axes of the body, do nothing. Gravity rotates with the world, about all axes but its own. An inertial unit
-/// rotates with the world, and keeps its distance from the camera when the world is scaled: of its velocity that part scales which is the
-/// camera's. Returns how many.
+/// velocities and biases, in axes of the body, do nothing; accelerations in such axes scale. Gravity rotates with the world, about all axes
+/// but its own. An inertial unit rotates with the world, and keeps its distance from the camera when the world is scaled: of its velocity
+/// that part scales which is the camera's. Returns how many.
 inline constexpr int kMaxBodyGaugeParts = 4;
 int body_gauge_rows(const Body& body, const BodyLayout& layout, const Mounting& mounting, BodyGaugeRows* out);
 

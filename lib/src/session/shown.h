@@ -78,6 +78,7 @@ struct MapCounts {
   int features = 0, points = 0, inverse_depths = 0, folded = 0, fixed = 0, trial = 0;
   int planes = 0;
   int patches = 0, cameras = 0, keyframes = 0;
+  int places = 0, places_returned = 0;
   int state_dim = 0, state_dim_held = 0;
   int state_dim_points_only = 0;  ///< rows of the same map without planes
 };

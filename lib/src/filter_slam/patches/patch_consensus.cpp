@@ -10,8 +10,6 @@
 
 namespace pf {
 
-using tuning::patch_keeper::kCornersGate;
-
 bool PatchConsensus::find(const Pyramid& image, int wall, bool is_first, StoredPatch* patch) {
   PatchSight sight;
   if (!expect_patch(filter_, map_.planes, *patch, wall, &sight) || !is_in_view(filter_.lens(), sight)) return false;
@@ -52,11 +50,11 @@ bool PatchConsensus::are_consistent(const StoredPatch& a, const StoredPatch& b, 
   SmallCholesky<8> cholesky;
   if (!cholesky.factor(blocks.innovation_of<8>(0, 0) + z.R_gate)) return false;
   const Vec8 r_a = z.measured - z.predicted, weighted = cholesky.solve<1>(r_a);
-  if (!(r_a.dot(weighted) < kCornersGate)) return false;
+  if (!(r_a.dot(weighted) < update_.gate())) return false;
   const Mat8 S_ba = blocks.innovation_of<8>(1, 0), S_ab = S_ba.transpose();
   const Vec8 r_b = of_another_.measured - of_another_.predicted - S_ba.lazyProduct(weighted);
   const Mat8 S_b = blocks.innovation_of<8>(1, 1) + of_another_.R_gate - S_ba.lazyProduct(cholesky.solve<8>(S_ab));
-  return cholesky.factor(S_b) && r_b.dot(cholesky.solve<1>(r_b)) < kCornersGate;
+  return cholesky.factor(S_b) && r_b.dot(cholesky.solve<1>(r_b)) < update_.gate();
 }
 
 unsigned PatchConsensus::largest_set(const Witnesses& found, int* size) {

@@ -29,7 +29,7 @@ PatchKeeper::PatchKeeper(const Settings& settings, Filter& filter, Map& map, Fra
       map_(map),
       frame_(frame),
       finder_(filter, settings.gate),
-      update_(filter, map, frame, tracking, noise_),
+      update_(filter, map, frame, tracking, noise_, settings.research.gate_patches),
       consensus_(filter, map, store_, finder_, update_),
       refusals_(filter, map),
       founding_(settings, filter, map, frame, features, update_),

@@ -1,5 +1,6 @@
 #include "filter_slam/patches/patch_sight.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "filter_slam/features/wall_rays.h"
@@ -61,6 +62,13 @@ bool is_in_view(const Camera& lens, const PatchSight& sight) {
   const Vec2 middle = middle_of(sight.corner);
   return sight.cosine > tuning::patch_keeper::kMinCosine && middle.x() > Scalar(0) && middle.y() > Scalar(0) &&
          middle.x() < static_cast<Scalar>(lens.width) && middle.y() < static_cast<Scalar>(lens.height);
+}
+
+bool is_whole_in_view(const Camera& lens, const PatchSight& sight) {
+  return std::all_of(sight.corner, sight.corner + 4, [&](const Vec2& at) {
+    return at.x() > Scalar(0) && at.y() > Scalar(0) && at.x() < static_cast<Scalar>(lens.width) &&
+           at.y() < static_cast<Scalar>(lens.height);
+  });
 }
 
 int hiding_wall(const Filter& filter, const Map& map, int wall, const PatchSight& sight) {

@@ -1,6 +1,7 @@
 #include "filter_slam/patches/patch_update.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "filter_slam/patches/patch_linearisation.h"
 #include "filter_slam/patches/patch_views.h"
@@ -11,7 +12,6 @@
 namespace pf {
 
 using namespace tuning::patch_bend;
-using tuning::patch_keeper::kCornersGate;
 using tuning::patch_keeper::kLinearReach;
 using tuning::patch_keeper::kUpheldFrames;
 
@@ -47,6 +47,10 @@ Scalar PatchUpdate::chi_square(const Mat8& R) const {
   return r.dot(cholesky.solve<1>(r));
 }
 
+Scalar PatchUpdate::gate() const {
+  return has_gate_ ? tuning::patch_keeper::kCornersGate : std::numeric_limits<Scalar>::max();
+}
+
 Scalar PatchUpdate::misfit(const StoredPatch& patch, int entry, Body* near) {
   *near = filter_.state().body;
   const bool is_far = (z_.measured - z_.predicted).cwiseAbs().maxCoeff() > kLinearReach;
@@ -58,14 +62,14 @@ bool PatchUpdate::may_explain(const StoredPatch& patch, int entry) {
   Scalar range;
   Body near;
   return may_lie_on(filter_, map_, patch, entry, &range) && predict_measured(patch, entry) &&
-         !(misfit(patch, entry, &near) >= kCornersGate);
+         !(misfit(patch, entry, &near) >= gate());
 }
 
 void PatchUpdate::update(StoredPatch* patch, int entry) {
   patch->status = PatchStatus::kOutlier;
   Body near;
   const Scalar chi2 = misfit(*patch, entry, &near);
-  if (!(chi2 >= Scalar(0) && chi2 < kCornersGate)) return;
+  if (!(chi2 >= Scalar(0) && chi2 < gate())) return;
   const Body& estimate = filter_.state().body;
   const bool is_far = near.p_W != estimate.p_W || near.q_WC.coeffs() != estimate.q_WC.coeffs();
   if (!is_far && !update_in_parts(*patch, entry)) return;
@@ -116,7 +120,7 @@ bool PatchUpdate::update_in_parts(const StoredPatch& patch, int entry) {
     if (!done || !predict(patch, entry)) return false;
     z_.R_update = R + R.lazyProduct(R) / bend;
     const Scalar chi2 = chi_square(z_.R_update);
-    if (!(chi2 >= Scalar(0) && chi2 < kCornersGate)) return false;
+    if (!(chi2 >= Scalar(0) && chi2 < gate())) return false;
   }
   return true;
 }

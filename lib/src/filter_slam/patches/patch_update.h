@@ -15,8 +15,9 @@ class PatchUpdate {
  public:
   static constexpr int kWorth = 8;  ///< inliers that a patch counts as
 
-  PatchUpdate(Filter& filter, Map& map, Frame& frame, TrackingState& tracking, const PatchNoise& noise)
-      : filter_(filter), map_(map), frame_(frame), tracking_(tracking), noise_(noise) {}
+  /// has_gate: false takes every patch that is found for what it seems to be, for comparisons.
+  PatchUpdate(Filter& filter, Map& map, Frame& frame, TrackingState& tracking, const PatchNoise& noise, bool has_gate)
+      : filter_(filter), map_(map), frame_(frame), tracking_(tracking), noise_(noise), has_gate_(has_gate) {}
 
   /// Predicts the corners on a plane. False where one does not project.
   bool predict(const StoredPatch& patch, int entry);
@@ -34,6 +35,8 @@ class PatchUpdate {
   /// Chi-square of the corners after predict_measured(): eight degrees of freedom, with the gate's noise. Negative where it cannot be
   /// told. *near: the pose that they are linearised at.
   Scalar misfit(const StoredPatch& patch, int entry, Body* near);
+  /// Bound of that chi-square, and of all others of corners.
+  Scalar gate() const;
   /// Whether the patch may lie on this plane, for all that its corners in this frame tell. Predicts it there.
   bool may_explain(const StoredPatch& patch, int entry);
 
@@ -64,6 +67,7 @@ class PatchUpdate {
   Frame& frame_;
   TrackingState& tracking_;
   const PatchNoise& noise_;
+  const bool has_gate_;
   PatchMeasurement z_;
 };
 

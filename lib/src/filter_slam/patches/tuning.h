@@ -37,6 +37,8 @@ inline constexpr int kSizes = 4;                ///< parts of the side: a patch 
 inline constexpr int kSmallest = 1;             ///< fewer, but more than this
 inline constexpr int kMinSide = 32;             ///< [px]
 inline constexpr Scalar kObstacleGate = Scalar(6.63);  ///< chi-square, 0.99: above it a point is not on the wall
+inline constexpr int kStaySteps = 4;                   ///< times at which it is asked whether a place is in view still
+inline constexpr Scalar kStayStep = Scalar(0.25);      ///< [s] between them
 inline constexpr int kCoarseSide = 52;                 ///< [px] from which texture is judged on level 2
 }  // namespace patch_selection
 

@@ -145,13 +145,15 @@ void BodyMotion::predict_by(const Body& body, const Preintegral& samples, const 
 
 /// What a model without samples says of a body after dt [s].
 void BodyMotion::predict_after(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const {
-  if (settings_.constant_velocity)
+  if (settings_.body.has(BodyPart::kAcceleration))
+    predict_constant_acceleration(body, settings_.body, dt, noise, transition);
+  else if (settings_.constant_velocity)
     predict_constant_velocity(body, settings_.body, dt, noise, transition);
   else
     predict_constant_position(body, settings_.body, dt, noise, transition);
 }
 
-/// Lets the speed decay while nothing is measured.
+/// Lets the speed decay while nothing is measured, and what accelerates it.
 void BodyMotion::damp(Scalar dt) {
   Mat6 P_speed;
   const int first = settings_.body.row(BodyPart::kVelocity);  // the angular velocity follows
@@ -162,6 +164,10 @@ void BodyMotion::damp(Scalar dt) {
   limit_speed(dt, largest_variance(filter_, Body::kTheta), largest_variance(filter_, Body::kPosition), &rate, &P_speed);
   Transition transition;
   damp_speed(body, settings_.body, speed_decay(dt), rate, P_speed, &transition);
+  filter_.predict(transition);
+  if (!settings_.body.has(BodyPart::kAcceleration)) return;
+  const Scalar sigma = limited_noise().linear > Scalar(0) ? tuning::body_motion::kAcceleration : Scalar(0);
+  damp_acceleration(filter_.state().body, settings_.body, speed_decay(dt), sigma, &transition);
   filter_.predict(transition);
 }
 

@@ -4,6 +4,7 @@
 #include "filter_slam/inertial/tuning.h"
 #include "filter_slam/start/tuning.h"
 #include "frame/start/tuning.h"
+#include "frame/tuning.h"
 #include "geometry/planar_pose.h"
 
 namespace pf {
@@ -29,7 +30,7 @@ void MapBeginning::clear_filter() {
 }
 
 void MapBeginning::empty_filter() {
-  filter_.init(settings_.kernels, settings_.body, settings_.keep_gauge);
+  filter_.init(settings_.kernels, settings_.body, settings_.research.keep_gauge);
   filter_.set_lens(settings_.camera, settings_.lens);
   // Where the scale is not known, neither is the unit's place in it.
   filter_.set_mounting(
@@ -94,7 +95,7 @@ void MapBeginning::note_covariance() {
   set_initial_velocities(kStartSpeed * settings_.start_depth);
 }
 
-/// known: covariance over the known rows of the layout. Of an inertial unit nothing is known yet.
+/// known: covariance over the known rows of the layout. Of an inertial unit, or of accelerations, nothing is known yet.
 void MapBeginning::set_body(const Body& body, const Scalar* known, const Scalar* J_lens) {
   using namespace tuning::inertial;
   Scalar all[BodyLayout::kMaxUnitRows * BodyLayout::kMaxUnitRows];
@@ -110,6 +111,13 @@ void MapBeginning::set_body(const Body& body, const Scalar* known, const Scalar*
     set_sigma(BodyPart::kAccelBias, 3, kAccelBias);
     set_sigma(BodyPart::kGravity, 2, kGravity);
     mounting_.put_covariance(all);
+    known = all;
+  } else if (settings_.body.has(BodyPart::kAcceleration)) {
+    constexpr Scalar kVariance = tuning::body_motion::kAcceleration * tuning::body_motion::kAcceleration;
+    const int dim = settings_.body.dynamic_rows(), stride = settings_.body.known_rows();
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        all[i * dim + j] = i < stride && j < stride ? known[i * stride + j] : i == j ? kVariance : Scalar(0);
     known = all;
   }
   Body now = body;

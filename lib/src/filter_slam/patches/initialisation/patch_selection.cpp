@@ -8,6 +8,7 @@
 #include "filter_slam/patches/patch_sight.h"
 #include "filter_slam/patches/patch_walls.h"
 #include "filter_slam/patches/tuning.h"
+#include "geometry/so3.h"
 #include "model/camera_at.h"
 
 namespace pf {
@@ -47,14 +48,14 @@ int PatchSelection::wanted_on(int wall) const {
     born = std::max(born, store_[i].born);
     PatchSight sight;
     good += store_[i].was_found() && expect_patch(filter_, map_.planes, store_[i], wall, &sight) &&
-            sight.cosine > kLastingCosine;
+            sight.cosine > kLastingCosine && is_whole_in_view(filter_.lens(), sight);
   }
   const int since = frame_.report.frames - born;
   if (good == 0) return born == 0 || since >= kRetryFrames ? kOnWall : 0;
   return good < kOnWall && since >= kBetween ? 1 : 0;
 }
 
-bool PatchSelection::is_on_wall(int wall, const PatchSquare& square, Scalar* cosine) const {
+bool PatchSelection::is_on_wall(int wall, const PatchSquare& square, Scalar* cosine, Vec3* middle_W) const {
   const CameraAt camera = camera_at(filter_.state(), Scalar(0));
   const Vec2 middle = square.middle();
   Vec3 n_W;
@@ -73,12 +74,29 @@ bool PatchSelection::is_on_wall(int wall, const PatchSquare& square, Scalar* cos
     Scalar range = 0;
     if (first_wall(filter_, map_, camera.p_W, ray_W, &range) != wall) return false;
     if (k > 0) continue;
+    *middle_W = camera.p_W + range * ray_W;
     *cosine = Scalar(1);  // how slanted it is where there is no wall, nobody knows
     if (wall < 0) continue;
     *cosine = std::abs(n_W.dot(ray_W)) / ray_W.norm();
     if (!(*cosine > kMinBirthCosine)) return false;
   }
   return true;
+}
+
+/// At the velocities that the camera has now.
+Scalar PatchSelection::stay_in_view(const Vec3& middle_W) const {
+  const Body& body = filter_.state().body;
+  const Camera& lens = filter_.lens();
+  int stays = 1;
+  for (int k = 1; k <= kStaySteps; ++k) {
+    const Scalar t = static_cast<Scalar>(k) * kStayStep;
+    const Quat q_WC = body.q_WC * exp_so3(Vec3(body.w_C * t));
+    Vec2 at;
+    stays += project(lens, Vec3(q_WC.conjugate() * (middle_W - body.p_W - t * body.v_W)), &at) && at.x() > Scalar(0) &&
+             at.y() > Scalar(0) && at.x() < static_cast<Scalar>(lens.width) &&
+             at.y() < static_cast<Scalar>(lens.height);
+  }
+  return static_cast<Scalar>(stays) / static_cast<Scalar>(kStaySteps + 1);
 }
 
 bool PatchSelection::is_free(const PatchSquare& square) const {
@@ -102,8 +120,11 @@ int PatchSelection::list_squares(const Pyramid& image, int wall, int side, const
       if (mask != nullptr && !mask->is_clear(Rect{left, top, side, side})) continue;
       PatchSquare candidate{left, top, side, 0};
       Scalar cosine = 0;
-      if (!is_free(candidate) || obstacles.are_in(candidate) || !is_on_wall(wall, candidate, &cosine)) continue;
+      Vec3 middle_W;
+      if (!is_free(candidate) || obstacles.are_in(candidate) || !is_on_wall(wall, candidate, &cosine, &middle_W))
+        continue;
       candidate.score = cosine * texture(image.level[level], left >> level, top >> level, side >> level);
+      if (wall >= 0) candidate.score *= stay_in_view(middle_W);
       int at = count;
       if (count == kMaxSquares) {
         if (!(square[count - 1].score < candidate.score)) continue;

@@ -38,14 +38,16 @@ class PatchSelection {
   /// Initialises one patch where the plan has no wall, which waits for the plane that it lies on. It takes nobody else's room.
   void begin_beside_walls(const Pyramid& image, int* camera);
   bool may_begin_beside_walls(bool has_camera) const;
-  /// How many patches should begin on a wall now. Those that will soon be too slanted do not count, so that the next ones have frames in
-  /// common with them.
+  /// How many patches should begin on a wall now. Those that will soon be too slanted or out of the image do not count, so that the next
+  /// ones have frames in common with them.
   int wanted_on(int wall) const;
+  /// How long a place stays in the image, of a second: 1, or less where it leaves it before. Never 0: a hand may turn back.
+  Scalar stay_in_view(const Vec3& middle_W) const;
   /// Lists the best squares of a lattice, the best first. Returns how many.
   int list_squares(const Pyramid& image, int wall, int side, const PatchObstacles& obstacles,
                    PatchSquare* square) const;
   /// Whether the wall (-1: no wall) is what is seen first in all of a square; *cosine: how slanted in its middle.
-  bool is_on_wall(int wall, const PatchSquare& square, Scalar* cosine) const;
+  bool is_on_wall(int wall, const PatchSquare& square, Scalar* cosine, Vec3* middle_W) const;
   /// Whether no patch that is in view has its middle near the square's.
   bool is_free(const PatchSquare& square) const;
 

@@ -10,7 +10,6 @@ namespace pf {
 namespace {
 
 using namespace tuning::patch_waiting;
-using tuning::patch_keeper::kCornersGate;
 using tuning::patch_keeper::kMaxRejections;
 
 /// It lies on nothing, and is dropped at the end of the frame.
@@ -55,8 +54,8 @@ int PatchMembership::try_planes(StoredPatch* patch, bool counts) {
     if (!(chi2 >= Scalar(0))) continue;
     if (counts)
       patch->wait.try_plane(map_.planes[k].id, map_.planes[k].known, static_cast<float>(chi2),
-                            static_cast<float>(kCornersGate));
-    if (!(chi2 < kCornersGate) || (nearest >= 0 && range >= least)) continue;
+                            static_cast<float>(update_.gate()));
+    if (!(chi2 < update_.gate()) || (nearest >= 0 && range >= least)) continue;
     nearest = k;
     least = range;
   }
