@@ -4,7 +4,7 @@
  * map: it is lost in it until an image shows one of the map's places, and then goes on in the same world, with the same
  * lengths. The program prints how large the map is, in which frame it was found again, and how far the new poses are from those
  * that the first context had for the same images. A program would write the buffer to a file: beside the old one, synced,
- * and renamed. lib/docs/save_a_map.md says more.
+ * and renamed. lib/docs/guide/save_a_map.md says more.
  */
 #include <math.h>
 #include <planefold/planefold.h>

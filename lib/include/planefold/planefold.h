@@ -614,7 +614,7 @@ PF_API pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, 
 
 typedef enum pf_map_kind {
   /* Places, planes, gravity and the lens, in a format that any build reads
-   * (lib/docs/map_format.md). */
+   * (lib/docs/theory/map_format.md). */
   PF_MAP_PORTABLE = 1,
   /* The context as it stands, to go on with the very next frame. Not in this release */
   PF_MAP_CONTINUE = 2

@@ -6,7 +6,7 @@
 #include "vision/appearance.h"
 #include "vision/descriptor.h"
 
-/// A place: a camera that has left the window, with what is known of the points that it saw (lib/docs/places.md).
+/// A place: a camera that has left the window, with what is known of the points that it saw (lib/docs/theory/places.md).
 
 namespace pf {
 

@@ -6,7 +6,7 @@
 #include "track/tracker.h"
 
 /// Which places an image may show: corners of the image and points of places with descriptors that are alike, and the pose from which most
-/// of them are where they should be (lib/docs/places.md).
+/// of them are where they should be (lib/docs/theory/places.md).
 
 namespace pf {
 

@@ -2,7 +2,7 @@
 
 #include "keyframe_slam/map/keyframe_map.h"
 
-/// Keyframes become places when they leave the window, and come back from there (lib/docs/places.md).
+/// Keyframes become places when they leave the window, and come back from there (lib/docs/theory/places.md).
 
 namespace pf {
 

@@ -4,7 +4,7 @@
 #include "keyframe_slam/map/keyframe_map.h"
 #include "memory/place_search.h"
 
-/// Which part of the map an image may show, by how its points look: places, and keyframes of the window (lib/docs/places.md).
+/// Which part of the map an image may show, by how its points look: places, and keyframes of the window (lib/docs/theory/places.md).
 
 namespace pf {
 
