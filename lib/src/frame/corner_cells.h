@@ -46,10 +46,10 @@ struct CornerStrength {
   int threshold;  ///< of the segment test [grey levels]
   float score;    ///< min_eigenvalue
 };
-constexpr CornerStrength kPlainCorner = {tuning::image_corners::kCornerThreshold,
+const CornerStrength kPlainCorner = {tuning::image_corners::kCornerThreshold,
                                          tuning::image_corners::kMinCornerScore};
 /// Of a picture that has too few others: a dim one, or one of a bare wall.
-constexpr CornerStrength kFaintCorner = {tuning::image_corners::kFaintThreshold, tuning::image_corners::kFaintScore};
+const CornerStrength kFaintCorner = {tuning::image_corners::kFaintThreshold, tuning::image_corners::kFaintScore};
 
 /// Offers the corners of a cell that are near no feature of the frame, the best first, to take(pixel), until it takes one. False: it took
 /// none.

@@ -113,7 +113,7 @@ void MapBeginning::set_body(const Body& body, const Scalar* known, const Scalar*
     mounting_.put_covariance(all);
     known = all;
   } else if (settings_.body.has(BodyPart::kAcceleration)) {
-    constexpr Scalar kVariance = tuning::body_motion::kAcceleration * tuning::body_motion::kAcceleration;
+    const Scalar kVariance = tuning::body_motion::kAcceleration * tuning::body_motion::kAcceleration;
     const int dim = settings_.body.dynamic_rows(), stride = settings_.body.known_rows();
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j)

@@ -36,7 +36,7 @@ void StartRecorder::restart(Scalar unit) {
   if (settings_.body.has(BodyPart::kVelocity)) replay.set_velocities();
   if (map_.planes.has_apart()) {
     // The record's unit of length is a guess, which is as good as any.
-    constexpr Scalar kSigma = tuning::start_before_walls::kOpenScale;
+    const Scalar kSigma = tuning::start_before_walls::kOpenScale;
     filter_.open_scale(kSigma * kSigma, beginning_.known().body.p_W);
   }
   if (progress().checking) update_with_target();

@@ -66,7 +66,7 @@ bool PatchFounding::found_plane(StoredPatch* patch) {
 }
 
 bool PatchFounding::found_or_wait(StoredPatch* patch) {
-  constexpr int kEvery = tuning::patch_waiting::kFoundEvery;
+  const int kEvery = tuning::patch_waiting::kFoundEvery;
   const int frames = patch->wait.frames_without(), phase = frames % kEvery;
   if (phase == 0) note_plane(patch);
   const bool is_time = phase == kEvery / 2 && parallax_of(filter_, *patch) > kFoundingParallax;
