@@ -26,10 +26,11 @@ struct Options {
   double fov_deg = 0.0;  ///< horizontal, of a source that is tracked without its calibration; 0: not given
   std::optional<pf_camera_t> guess;  ///< in place of a calibration, once the size of the images is known
   std::string start = "auto";
-  std::string second_pose;  ///< file of a second known pose; "": none
-  std::string walls;        ///< file of a plan; "": none
-  int patches = -1;         ///< of walls that are followed; negative: none beside points, kPatchesAlone without
-  bool points = true;       ///< false: patches of walls alone
+  std::string second_pose;    ///< file of a second known pose; "": none
+  std::string walls;          ///< file of a plan; "": none
+  std::string map, save_map;  ///< files of the map that the run begins in, and of the one that it leaves; "": none
+  int patches = -1;           ///< of walls that are followed; negative: none beside points, kPatchesAlone without
+  bool points = true;         ///< false: patches of walls alone
   std::string out = "out/capture";
   std::string title;  ///< of window and film; "": the source
   int64_t withdraw_target_after = -1;
@@ -40,6 +41,7 @@ struct Options {
   uint64_t seed = 1;
   int32_t max_features = -1;
   int32_t max_planes = -1;
+  int32_t max_places = -1;
   int32_t window_keyframes = -1, window_fixed = -1;
   int32_t max_state_dim = -1;
   int32_t max_observations = -1;

@@ -479,6 +479,11 @@ int Run::finish() {
               filming ? " (overlay.mp4 is the film)" : "");
   tell_focal();
   std::fflush(stdout);
+  std::string saved;
+  if (!options_.save_map.empty() && !MapFile::save(session_.slam(), options_.save_map, saved, error)) {
+    return fail(error);
+  }
+  note(saved);
   tell_rejections(rejections);
   return lost.empty() ? kExitDone : fail(lost + (rejected.empty() ? "" : " (" + rejected + ")"));
 }
@@ -514,8 +519,8 @@ std::string without_pattern(const std::string& path) {
 
 /// No file that is read may be one that an earlier run left in the folders that are written, and that goes.
 bool spares_inputs(const Options& options, std::string& error) {
-  std::vector<std::string> inputs = {options.calibration, options.second_pose, options.walls, options.imu_noise,
-                                     options.imu_mount};
+  std::vector<std::string> inputs = {options.calibration, options.second_pose, options.walls,
+                                     options.imu_noise,   options.imu_mount,   options.map};
   for (const std::string* text : {&options.source, &options.start, &options.imu}) {
     const std::string kind = text->substr(0, text->find(':'));
     for (const char* reads : {"images", "euroc", "tum", "video", "target", "pose", "csv"}) {

@@ -92,6 +92,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   set(config_.window.keyframes, options.window_keyframes);
   if (options.window_fixed >= 0) config_.window.fixed_keyframes = options.window_fixed;
   set(config_.capacity.max_planes, options.max_planes);
+  if (options.max_places >= 0) config_.capacity.max_places = options.max_places;
   set(config_.capacity.max_state_dim, options.max_state_dim);
   set(config_.capacity.max_observations, options.max_observations);
   set(config_.map.features_in_view, options.features_in_view);
@@ -118,6 +119,10 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
         std::min(config_.map.features_in_view, has_window ? config_.window.points : config_.capacity.max_observations);
   }
   if (!mask_.read(options.mask, source.info(), config_, error)) {
+    code = kExitUsage;
+    return false;
+  }
+  if (!map_file_.read(options.map, error)) {
     code = kExitUsage;
     return false;
   }
@@ -192,7 +197,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
     return false;
   }
   if (!begin(error)) {
-    code = plan_.empty() && mask_.empty() ? code : kExitUsage;
+    code = plan_.empty() && mask_.empty() && map_file_.empty() ? code : kExitUsage;
     return false;
   }
   return true;
@@ -213,6 +218,9 @@ bool Session::is_metric() const {
 
 bool Session::begin(std::string& error) {
   if (!mask_.set(slam_, start_note_, error)) {
+    return false;
+  }
+  if (!map_file_.load(slam_, log_, error)) {
     return false;
   }
   if (has_gravity_ && pf_set_gravity(slam_, gravity_W_) < PF_OK) {
@@ -246,6 +254,10 @@ bool Session::begin(std::string& error) {
                                         : pf_status_text(status));
       return false;
     }
+  }
+  if (!plan_.empty() && !map_file_.empty()) {
+    error = "--walls: a map says where the run starts, so that a plan cannot";
+    return false;
   }
   return plan_.add_to(slam_, error);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "imu_feed.h"
+#include "map_file.h"
 #include "mask.h"
 #include "options.h"
 #include "plan.h"
@@ -62,6 +63,7 @@ class Session {
   bool has_second_pose_ = false;
   pf_pose_t second_pose_{};
   FrameMask mask_;
+  MapFile map_file_;
   Plan plan_;
   bool has_gravity_ = false;
   double gravity_W_[3] = {0.0, 0.0, 0.0};

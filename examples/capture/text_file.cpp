@@ -31,6 +31,17 @@ bool write_all(int file, const std::string& text) {
   return true;
 }
 
+/// So that the new name is on the disk as well. Some file systems cannot, and then have nothing to sync.
+void sync_folder_of(const std::string& path) {
+  const size_t slash = path.find_last_of('/');
+  const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file >= 0) {
+    ::fsync(file);
+    ::close(file);
+  }
+}
+
 }  // namespace
 
 void append(std::string& text, const char* format, ...) {
@@ -83,15 +94,18 @@ void TextFile::close() {
   }
 }
 
-bool replace_file(const std::string& path, const std::string& text, std::string& error) {
+bool replace_file(const std::string& path, const std::string& text, std::string& error, bool synced) {
   const std::string beside = path + ".part";
   const int file = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  bool done = file >= 0 && write_all(file, text);
+  bool done = file >= 0 && write_all(file, text) && (!synced || ::fsync(file) == 0);
   const int why = errno;
   if (file >= 0) {
     done = ::close(file) == 0 && done;
   }
   if (done && std::rename(beside.c_str(), path.c_str()) == 0) {
+    if (synced) {
+      sync_folder_of(path);
+    }
     return true;
   }
   errno = done ? errno : why;

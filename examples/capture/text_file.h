@@ -33,8 +33,8 @@ class TextFile {
 };
 
 /// Replaces a file by a new one with this text: written beside it (path.part) and renamed, so that a reader at any time sees the old or the
-/// new one, whole. false: error is one line, and the old file is still there.
-bool replace_file(const std::string& path, const std::string& text, std::string& error);
+/// new one, whole. synced: so does one after the power was lost. false: error is one line, and the old file is still there.
+bool replace_file(const std::string& path, const std::string& text, std::string& error, bool synced = false);
 
 }  // namespace pf::capture
 

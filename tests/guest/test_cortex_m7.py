@@ -35,11 +35,11 @@ with tempfile.TemporaryDirectory() as folder:
     block, stack = (int(re.search(rf"{what}_bytes (\d+)", said).group(1)) for what in ("block", "stack"))
     sizes = script.run("arm-none-eabi-size", folder / "firmware.elf").splitlines()[1].split()
     print(f"flash {sizes[0]} bytes of code and constants; RAM {block} bytes of block and {stack} bytes of stack")
-    page = (script.SOURCE / "lib" / "docs" / "guide" / "devices.md").read_text()
+    page = (script.SOURCE / "lib" / "docs" / "results" / "devices.md").read_text()
     told = re.search(r"takes ([\d,]+) bytes of flash.*?([\d,]+) bytes of block.*?([\d,]+) bytes of stack", page, re.S).groups()
     for what, is_now, was in zip(("flash", "block", "stack"), (int(sizes[0]), block, stack), told):
         if abs(is_now - int(was.replace(",", ""))) > 0.05 * is_now:
-            script.fail(f"{what} takes {is_now} bytes, and lib/docs/guide/devices.md says {was}")
+            script.fail(f"{what} takes {is_now} bytes, and lib/docs/results/devices.md says {was}")
     names = script.run("arm-none-eabi-nm", folder / "firmware.elf")
     for heap in ("malloc", "_malloc_r", "free", "_sbrk", "_Znwj"):
         if re.search(rf" [TtWD] {heap}$", names, re.M):

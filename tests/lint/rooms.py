@@ -6,9 +6,10 @@ SHARED = GROUND + ["model", "observe", "filter", "bundle", "track", "map"]
 FRAME = SHARED + ["belief", "frame", "frame/start"]
 POSE = FRAME + ["filter_slam/pose"]
 FEATURES = POSE + ["filter_slam/features"]
-KEYFRAME_MAP = FRAME + ["keyframe_slam/map"]
+KEYFRAME_MAP = FRAME + ["memory", "keyframe_slam/map"]
 KEYFRAME_PLANES = KEYFRAME_MAP + ["keyframe_slam/planes"]
-KEYFRAME_TRACKING = KEYFRAME_PLANES + ["keyframe_slam/tracking"]
+KEYFRAME_MEMORY = KEYFRAME_PLANES + ["keyframe_slam/memory"]
+KEYFRAME_TRACKING = KEYFRAME_MEMORY + ["keyframe_slam/tracking"]
 
 # Rooms of lib/src, each with the other rooms of lib/src that it may include. A folder that is not named is part of the one that it is in.
 LIBRARY = {
@@ -23,6 +24,7 @@ LIBRARY = {
     "track": GROUND,
     "map": GROUND,
     "belief": ["base"],
+    "memory": GROUND + ["track", "map"],
     "frame": SHARED + ["belief"],
     "frame/start": SHARED + ["belief", "frame"],
     "filter_slam/pose": FRAME,
@@ -33,13 +35,14 @@ LIBRARY = {
     "filter_slam/recovery": FEATURES,
     "filter_slam/start": FEATURES + ["filter_slam/inertial"],
     "filter_slam": FEATURES + [f"filter_slam/{part}" for part in ("planes", "patches", "inertial", "recovery", "start")],
-    "keyframe_slam/map": FRAME,
+    "keyframe_slam/map": FRAME + ["memory"],
     "keyframe_slam/planes": KEYFRAME_MAP,
-    "keyframe_slam/tracking": KEYFRAME_PLANES,
+    "keyframe_slam/memory": KEYFRAME_PLANES,
+    "keyframe_slam/tracking": KEYFRAME_MEMORY,
     "keyframe_slam/adjustment": KEYFRAME_TRACKING,
     "keyframe_slam/start": KEYFRAME_TRACKING + ["keyframe_slam/adjustment"],
     "keyframe_slam": KEYFRAME_TRACKING + ["keyframe_slam/adjustment", "keyframe_slam/start"],
-    "session": FRAME + ["filter_slam", "keyframe_slam"],
+    "session": FRAME + ["memory", "filter_slam", "keyframe_slam"],
     "api": FRAME + ["session"],
 }
 

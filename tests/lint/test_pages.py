@@ -1,5 +1,6 @@
-"""Pages and code find each other: links lead somewhere, pages that comments name exist, and every page that describes code links to a file
-that names the page. The sizes that a page tells are the golden ones."""
+"""Pages and code find each other: links lead somewhere, pages that comments name exist, and every page of theory/ links to a file that names
+the page. A guide begins with a command and ends with what can go wrong, a page of results/ has a command beside its numbers, each page is reached
+from README.md in three clicks, and the sizes on a page are the golden ones."""
 
 import pathlib
 import re
@@ -12,15 +13,35 @@ import sizes  # noqa: E402
 
 DOCS = source.ROOT / "lib/docs"
 # Pages about the project as a whole, which no file implements.
-OVERVIEW = {f"{name}.md" for name in (
-    "guide/devices", "guide/where_to_change", "results/decisions", "results/measured", "theory/architecture", "theory/notation")}
+OVERVIEW = {"theory/architecture.md", "theory/notation.md"}
 KINDS = {"adr", "guide", "lab", "results", "theory"}
+LAST = "\n## What can go wrong\n"  # section of a guide
+COMMAND = r"`(pf-|tools/|python3 |PLANEFOLD_|tests/)[^`]+`|^```(sh|console)$|`--[a-z]"
+CLICKS = 3
 problems = []
 
-for page in [*sorted(DOCS.rglob("*.md")), source.ROOT / "README.md"]:
-    for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", page.read_text()):
-        if not re.match(r"[a-z]+:", target) and not (page.parent / target).exists():
-            problems.append(f"{source.name(page)} links to {target}, which does not exist")
+
+
+def anchors(path):
+    """Names of a page's headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.+)$", re.sub(r"^```.*?^```$", "", path.read_text(), flags=re.M | re.S), re.M)
+    return {re.sub(r"[^\w\- ]", "", re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).lower()).replace(" ", "-") for heading in headings}
+
+
+def links(page):
+    """Where a page's links lead, as (path, anchor)."""
+    for target, anchor in re.findall(r"\]\(([^)#\s]*)(?:#([^)\s]+))?\)", page.read_text()):
+        if not re.match(r"[a-z]+:", target):
+            yield (page.parent / target).resolve() if target else page, anchor
+
+
+README = source.ROOT / "README.md"
+for page in [*sorted(DOCS.rglob("*.md")), README]:
+    for path, anchor in links(page):
+        if not path.exists():
+            problems.append(f"{source.name(page)} links to {path}, which does not exist")
+        elif anchor and path.suffix == ".md" and anchor not in anchors(path):
+            problems.append(f"{source.name(page)} links to #{anchor}, which {source.name(path)} does not have")
 
 code = {path: path.read_text() for path in source.files("lib", "platform", "examples", "tools", "tests", suffixes=(".c", ".cpp", ".h", ".py", ".sh"))}
 for path, text in code.items():
@@ -28,21 +49,33 @@ for path, text in code.items():
         if not (DOCS / named).is_file():
             problems.append(f"{source.name(path)} names lib/docs/{named}, which does not exist")
 
+reached = {README}
+for _ in range(CLICKS):
+    reached |= {path for page in reached if page.suffix == ".md" for path, _ in links(page) if path.exists()}
+
 for page in sorted(DOCS.rglob("*.md")):
     name = page.relative_to(DOCS).as_posix()
     kind = name.split("/")[0]
+    text = page.read_text()
     if kind not in KINDS:
         problems.append(f"lib/docs/{name}: belongs in one of the folders {', '.join(sorted(KINDS))}")
-    if name in OVERVIEW or kind not in ("guide", "results", "theory"):
+    if page not in reached:
+        problems.append(f"lib/docs/{name}: more than {CLICKS} clicks from README.md")
+    if kind == "guide":
+        if not re.match(r"# .+\n\n```(sh|console)\n", text):
+            problems.append(f"lib/docs/{name}: a guide begins with a command")
+        if LAST not in text or "\n## " in text[text.index(LAST) + 1:].replace(LAST.strip(), "", 1):
+            problems.append(f"lib/docs/{name}: a guide ends with the section{LAST.rstrip()}")
+    if kind == "results" and not re.search(COMMAND, text, re.M) and page.name not in ("missed.md", "README.md"):
+        problems.append(f"lib/docs/{name}: no command is beside its numbers")
+    if kind != "theory" or name in OVERVIEW:
         continue
-    text = page.read_text()
-    linked = [(page.parent / target).resolve() for target in re.findall(r"\]\((\.\./[^)#\s]+)\)", text)]
-    files = [path for path in linked if path.is_file() and path.suffix in (".c", ".cpp", ".h")]
+    files = [path for path, _ in links(page) if path.is_file() and path.suffix in (".c", ".cpp", ".h")]
     if not files:
         problems.append(f"lib/docs/{name} links to no source file that does what it describes")
     elif not any(f"lib/docs/{name}" in path.read_text() for path in files):
-        links = ", ".join(source.name(path) for path in files)
-        problems.append(f"lib/docs/{name}: none of the files that it links to names it ({links})")
+        named = ", ".join(source.name(path) for path in files)
+        problems.append(f"lib/docs/{name}: none of the files that it links to names it ({named})")
 
 if sizes.PAGE.read_text() != sizes.page_of(sizes.read_golden()):
     problems.append(f"{source.name(sizes.PAGE)}: the table of sizes differs from tests/golden/sizes.txt; tools/update-golden writes both")

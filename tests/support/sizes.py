@@ -10,7 +10,7 @@ import re
 import script
 
 GOLDEN = script.SOURCE / "tests" / "golden" / "sizes.txt"
-PAGE = script.SOURCE / "lib" / "docs" / "guide" / "devices.md"
+PAGE = script.SOURCE / "lib" / "docs" / "results" / "devices.md"
 # Rows of the page's table, by what they are called there, and its columns.
 PAGE_TARGETS = {"x86_64": "x86_64", "64-bit ARM": "aarch64", "ARMv7": "armhf", "Cortex-M7": "cortex-m7"}
 PAGE_COLUMNS = ("text", "block_tiny", "block_handheld", "block_room")

@@ -1,5 +1,6 @@
 // What stands still in the picture while it moves: a rotating camera, features of the scene and features that are fixed to the picture.
 #include "base/arena.h"
+#include "belief/feature_belief.h"
 #include "frame/fixed_features.h"
 #include "geometry/so3.h"
 #include "support/filter_cases.h"
@@ -22,6 +23,7 @@ struct Bench {
   TestArena arena;
   FixedFeatures fixed;
   ImageMask callers;
+  FeatureTable features;
   Frame frame;
   Vec3 ray_W[kScene];
   Vec2 still[kFixed];
@@ -32,6 +34,9 @@ struct Bench {
     TEST_ASSERT_TRUE(fixed.layout(*arena, kWidth, kHeight, kAll));
     TEST_ASSERT_TRUE(callers.layout(*arena, kWidth, kHeight));
     TEST_ASSERT_TRUE(frame.layout(*arena, kAll));
+    TEST_ASSERT_TRUE(features.layout(*arena, kAll));
+    features.init();
+    for (int i = 0; i < kAll; ++i) TEST_ASSERT_EQUAL_INT(i, features.add(i));
     callers.init();
     frame.init();
     fixed.init(&callers);
@@ -58,7 +63,7 @@ struct Bench {
     for (int i = 0; i < kFixed; ++i)
       if (fixed.mask()->is_clear(still[i], 0))
         add(kScene + i, still[i], follows_fixed ? MatchStatus::kInlier : MatchStatus::kOutlier);
-    discredited = fixed.note(camera, frame) || discredited;
+    discredited = fixed.note(camera, frame, &features) || discredited;
   }
   void turn(int frames, double rad_per_frame, bool follows_fixed) {
     for (int k = 0; k < frames; ++k) {
@@ -87,6 +92,8 @@ void test_what_is_fixed_should_be_masked_once_the_picture_has_moved() {
   TEST_ASSERT_EQUAL_INT(kFixed, bench.masked());
   TEST_ASSERT_EQUAL_INT(0, bench.scene_masked());
   TEST_ASSERT_FALSE(bench.discredited);
+  for (int i = 0; i < kAll; ++i)
+    TEST_ASSERT_EQUAL_INT(i >= kScene, is_no_point(static_cast<Scalar>(bench.features[i].log_odds)));
 }
 
 void test_a_map_that_comes_from_what_is_fixed_should_be_discredited() {
@@ -120,7 +127,7 @@ void test_things_that_move_before_a_resting_camera_should_mask_nothing() {
       TEST_ASSERT_TRUE(project(bench.camera, bench.ray_W[i], &pixel));
       bench.add(i, pixel, MatchStatus::kInlier);
     }
-    TEST_ASSERT_FALSE(bench.fixed.note(bench.camera, bench.frame));
+    TEST_ASSERT_FALSE(bench.fixed.note(bench.camera, bench.frame, &bench.features));
   }
   TEST_ASSERT_EQUAL_INT(0, bench.scene_masked());
 }

@@ -1,4 +1,5 @@
-// Folded points whose pixels say that they lie elsewhere leave their plane, and it turns to where the others are.
+// Folded points whose pixels say that they lie elsewhere leave their plane, and it turns to where the others are. Where the map begins again
+// with them, their plane goes on.
 #include "same.h"
 #include "support/plane_keeper_bench.h"
 
@@ -63,7 +64,8 @@ struct Table : PlaneKeeperBench {
     for (int i = 0; i < kPoints; ++i) {
       Feature& f = map.features[entry[i]];
       ++f.observations;
-      f.failures = f.rejections = 0;
+      f.was_missed = false;
+      f.rejections = 0;
       f.last_seen_ns = frame.report.t_ns;
       Vec2 z;
       TEST_ASSERT_TRUE(project(settings.camera, Vec3(truth[i] - body.p_W), &z));
@@ -72,6 +74,20 @@ struct Table : PlaneKeeperBench {
           {entry[i], f.id, MatchStatus::kInlier, BlockKind::kPlanePoint, true, z, Mat2::Identity(), z, Scalar(1)});
     }
     planes.maintain();
+  }
+  /// The map begins again with the same features, as points: where they are, or each so much of its depth farther or nearer in turn.
+  void begin_again(Scalar apart) {
+    map.planes.keep_known();
+    filter->init(settings.kernels, settings.body, settings.keep_gauge);
+    filter->set_lens(settings.camera, LensPrior());
+    filter->set_roughness(settings.fold.roughness);
+    for (int i = 0; i < kPoints; ++i) {
+      const Scalar farther = (i % 2 == 0 ? apart : -apart) * static_cast<Scalar>(1 + i % 3);
+      const int slot = filter->add_point(truth[i] * (1 + farther), Mat3(Mat3::Identity() * Scalar(1e-6)));
+      TEST_ASSERT_TRUE(slot >= 0);
+      map.features[entry[i]].slot = slot;
+      filter->set_owner(slot, entry[i]);
+    }
   }
   bool is_folded(int i) const {
     return (*filter).state().block[map.features[entry[i]].slot].kind == BlockKind::kPlanePoint;
@@ -125,6 +141,29 @@ void test_points_should_stay_on_a_plane_on_which_they_lie() {
   }
 }
 
+void test_plane_should_go_on_when_the_map_begins_again_with_its_points() {
+  SeededRandom random(1);
+  Table table(random, 0, 1);
+  for (int k = 0; k < 12; ++k) table.see(Scalar(0.008) * static_cast<Scalar>(k), random, 0.2);
+  const std::uint32_t id = table.map.planes[0].id;
+  table.begin_again(0);
+  TEST_ASSERT_EQUAL_INT(-1, table.map.planes.entry_of(id));
+  table.see(0, random, 0.1);
+  TEST_ASSERT_TRUE(table.map.planes.entry_of(id) >= 0);
+  table.see(0, random, 0.1);
+  for (int i = 0; i < kPoints; ++i) TEST_ASSERT_TRUE(table.is_folded(i));
+}
+
+void test_plane_should_be_given_up_when_the_map_begins_again_without_it() {
+  SeededRandom random(1);
+  Table table(random, 0, 1);
+  for (int k = 0; k < 12; ++k) table.see(Scalar(0.008) * static_cast<Scalar>(k), random, 0.2);
+  const std::uint32_t id = table.map.planes[0].id;
+  table.begin_again(Scalar(0.1));
+  for (int k = 0; k < 10; ++k) table.see(0, random, 0.1);
+  TEST_ASSERT_EQUAL_INT(-1, table.map.planes.entry_of(id));
+}
+
 }  // namespace
 
 int main() {
@@ -132,5 +171,7 @@ int main() {
   RUN_TEST(test_points_should_leave_the_plane_that_they_do_not_lie_on);
   RUN_TEST(test_plane_should_turn_to_where_most_of_its_points_are);
   RUN_TEST(test_points_should_stay_on_a_plane_on_which_they_lie);
+  RUN_TEST(test_plane_should_go_on_when_the_map_begins_again_with_its_points);
+  RUN_TEST(test_plane_should_be_given_up_when_the_map_begins_again_without_it);
   return UNITY_END();
 }

@@ -20,7 +20,7 @@ Status unsupported_frames(TrackingState* tracking, const Hooks& hooks, int frame
     FrameReport report;
     report.t_ns = i * kFrame;
     tracking->begin_frame(kFrame);
-    status = tracking->conclude(report, StartProgress(), kMaxCoast, hooks);
+    status = tracking->conclude(StartProgress(), kMaxCoast, hooks, &report);
   }
   return status;
 }
@@ -38,11 +38,11 @@ void test_a_start_that_begins_anew_should_be_starting_in_status_and_state() {
     tracking.set_has_pose(report.t_ns);
     StartProgress start;
     start.recording = true;
-    TEST_ASSERT_TRUE(tracking.conclude(report, start, kMaxCoast, settings.hooks) == Status::kStarting);
+    TEST_ASSERT_TRUE(tracking.conclude(start, kMaxCoast, settings.hooks, &report) == Status::kStarting);
     TEST_ASSERT_TRUE(tracking.state() == SlamState::kStarting);
     report.t_ns += kFrame;  // and what was lost before is not lost now
     tracking.begin_frame(kFrame);
-    TEST_ASSERT_TRUE(tracking.conclude(report, start, kMaxCoast, settings.hooks) == Status::kCoasting);
+    TEST_ASSERT_TRUE(tracking.conclude(start, kMaxCoast, settings.hooks, &report) == Status::kCoasting);
   }
 }
 
@@ -57,7 +57,7 @@ void start_with_depths(TrackingState* tracking, const Settings& settings, SlamSt
     start.recording = true;
     start.depth_known = i > 0;
     tracking->begin_frame(kFrame);
-    tracking->conclude(report, start, kMaxCoast, settings.hooks);
+    tracking->conclude(start, kMaxCoast, settings.hooks, &report);
     state[i] = tracking->state();
   }
 }
@@ -80,11 +80,40 @@ void test_a_map_after_a_loss_should_be_tracked_one_frame_after_its_depths() {
   }
 }
 
+/// Reason of a frame with these counts, after a first pose.
+FrameReason reason_of(int attempts, int matches, int consensus, int inliers, bool unusable = false) {
+  Settings settings;
+  settings.min_inliers = 8;
+  TrackingState tracking(settings);
+  tracking.init();
+  tracking.set_has_pose(0);
+  tracking.begin_frame(kFrame);
+  FrameReport report;
+  report.t_ns = kFrame;
+  report.attempts = attempts;
+  report.matches = matches;
+  report.consensus = consensus;
+  report.inliers = inliers;
+  if (unusable) tracking.set_unusable();
+  tracking.conclude(StartProgress(), kMaxCoast, settings.hooks, &report);
+  return report.reason;
+}
+
+void test_reason_should_be_the_first_condition_that_a_frame_does_not_meet() {
+  TEST_ASSERT_TRUE(reason_of(30, 20, 15, 15) == FrameReason::kNone);
+  TEST_ASSERT_TRUE(reason_of(0, 0, 0, 0) == FrameReason::kNothingInView);
+  TEST_ASSERT_TRUE(reason_of(30, 7, 7, 0) == FrameReason::kFewFound);
+  TEST_ASSERT_TRUE(reason_of(30, 20, 7, 0) == FrameReason::kDisagree);
+  TEST_ASSERT_TRUE(reason_of(30, 20, 15, 0) == FrameReason::kImprobable);
+  TEST_ASSERT_TRUE(reason_of(30, 20, 15, 15, true) == FrameReason::kUncertain);
+}
+
 }  // namespace
 
 int main() {
   UNITY_BEGIN();
   RUN_TEST(test_a_start_that_begins_anew_should_be_starting_in_status_and_state);
   RUN_TEST(test_a_map_after_a_loss_should_be_tracked_one_frame_after_its_depths);
+  RUN_TEST(test_reason_should_be_the_first_condition_that_a_frame_does_not_meet);
   return UNITY_END();
 }

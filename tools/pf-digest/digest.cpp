@@ -103,7 +103,7 @@ void add(Hash& h, const pf_report_t& r) {  // without the cost of stages
     << r.features_fixed << r.planes << r.state_dim << r.state_dim_held << r.state_dim_points_only << r.map_id
     << r.kept_views << r.nis << r.nis_dof << r.kernels << r.patches << r.cameras << static_cast<double>(r.duplicates)
     << r.sigma_gate_px << r.sigma_info_px << r.correlation_frames << static_cast<double>(r.covariance_repairs)
-    << r.templates << r.keyframes << r.template_area;
+    << r.templates << r.keyframes << r.template_area << r.places << r.places_returned;
 }
 
 void add(Hash& h, const pf_patch_t& p) {

@@ -39,7 +39,8 @@
  * it was found again; after motion.coast_s it is lost.
  * MAPS. There is one map at a time, with a map_id. If it is lost for motion.restart_s of usable
  * images, it is discarded and a new one begins: a new map_id, a new W, and, without a target in
- * view, a new unit of length. With walls (pf_add_wall) it is searched for until it is found.
+ * view, a new unit of length. With walls (pf_add_wall) it is searched for until it is found, and so
+ * is a map that was loaded (pf_load_map).
  */
 #ifndef PLANEFOLD_PLANEFOLD_H
 #define PLANEFOLD_PLANEFOLD_H
@@ -103,7 +104,9 @@ typedef enum pf_status {
   PF_ERROR_RANGE = -11,   /* a number that was passed in is outside of its domain */
   PF_ERROR_CONTEXT = -12, /* not a context, or one whose block was overwritten */
   /* there is no room for it, see capacity.max_state_dim and capacity.max_planes */
-  PF_ERROR_FULL = -13
+  PF_ERROR_FULL = -13,
+  /* no saved map, or one that is damaged or of another format; the log says what is wrong */
+  PF_ERROR_MAP = -14
 } pf_status_t;
 
 /* One line in English for a status; never null. */
@@ -295,6 +298,11 @@ typedef struct pf_config {
     /* Pixels of the mask that pf_set_mask may set: 0 (none), or camera.width * camera.height at
      * least. It is kept as one bit for 4x4 of them: 2.4 kB for 640x480. Default 0 */
     int32_t mask;
+    /* Places: what keyframes saw that have left the window, each with up to 24 points and what they
+     * look like, by which a lost camera finds itself, and of which a saved map is made (MAPS). 0 ..
+     * 200, of 15 kB each. With PF_BACKEND_WINDOW only; with the filter they take nothing. Default
+     * 16 */
+    int32_t max_places;
   } capacity;
 
   /* Capacities of PF_BACKEND_WINDOW, of no meaning with the filter. With the window, max_state_dim,
@@ -602,6 +610,40 @@ typedef struct pf_imu_sample {
  * (capacity.max_imu_samples) and reported; poses depend on them with PF_MOTION_INERTIAL only. */
 PF_API pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, size_t count);
 
+/* ---------------------------------------------------------------------------------- maps -- */
+
+typedef enum pf_map_kind {
+  /* Places, planes, gravity and the lens, in a format that any build reads
+   * (lib/docs/theory/map_format.md). */
+  PF_MAP_PORTABLE = 1,
+  /* The context as it stands, to go on with the very next frame. Not in this release */
+  PF_MAP_CONTINUE = 2
+} pf_map_kind_t;
+
+/* Bytes that pf_save_map needs at most, now. Errors as of pf_save_map. */
+PF_API pf_status_t pf_map_size(const pf_slam_t* slam, int32_t kind, size_t* bytes);
+
+/* Writes the map into a buffer, of which *used is then the map. What is kept are places: those that
+ * the map has, and keyframes of the window; of more than capacity.max_places the least redundant
+ * ones. PF_NOTE_NOTHING: no place or keyframe has enough points yet, and nothing is written.
+ * PF_ERROR_STATE: with PF_BACKEND_FILTER, with capacity.max_places 0, and while starting.
+ * PF_ERROR_RANGE: the kind is unknown, or PF_MAP_CONTINUE. PF_ERROR_MEMORY: the buffer is too
+ * small, and nothing was written. */
+PF_API pf_status_t pf_save_map(const pf_slam_t* slam, int32_t kind, void* buffer, size_t bytes,
+                               size_t* used);
+
+/* Begins in a saved map: W, lengths and planes are those of the map, and the camera is lost in it
+ * until pf_push_frame recognises one of its places; the first tracked frame says so. Before the
+ * first frame only. The map may come from another config, build, scalar or camera of about the same
+ * focal length in pixels. The lens is that of the config. The map is searched for until it is
+ * found, also after later losses: no new one begins before pf_reset, which drops it. The buffer is
+ * read during the call only. All of it is checked first: where it is refused nothing changes, and
+ * the log says why. PF_ERROR_MAP: no map, damaged, of another version, or with a number out of its
+ * domain. PF_ERROR_FULL: more places or planes than capacity.max_places and capacity.max_planes.
+ * PF_ERROR_STATE: after the first frame, with a start that was set or a wall, or with
+ * PF_BACKEND_FILTER. */
+PF_API pf_status_t pf_load_map(pf_slam_t* slam, const void* buffer, size_t bytes);
+
 /* -------------------------------------------------------------------------------- output -- */
 
 typedef enum pf_state {
@@ -674,6 +716,9 @@ typedef struct pf_feature {
   double covariance[9]; /* 3x3; inverse depth: to first order */
   int32_t observations; /* frames in which it was measured */
   int32_t attempts;     /* frames in which it was looked for */
+  /* Natural log-odds that it is a point of the scene, by how often it was found: 0 when it begins,
+   * at most 6.9 (0.1 % are none); below -4.6 (99 % are none) it is dropped. */
+  double log_odds;
 } pf_feature_t;
 
 /* Copy of the map. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
@@ -830,6 +875,20 @@ enum {
 PF_API pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera,
                                  double covariance[100]);
 
+/* Why a frame was not tracked. */
+typedef enum pf_frame_reason {
+  PF_FRAME_REASON_NONE = 0, /* it was, or there is no pose yet */
+  /* Nothing was searched for: nothing of the map is in view of the prediction, and no kept view
+   * looks like the image. */
+  PF_FRAME_REASON_NOTHING_IN_VIEW = 1,
+  /* Fewer features were found than a pose needs: dark, smeared, covered, or elsewhere. */
+  PF_FRAME_REASON_FEW_FOUND = 2,
+  PF_FRAME_REASON_DISAGREE = 3, /* enough were found, and too few of them agree with one pose */
+  /* Enough agree, and chance may be the reason: log_odds is below 6.2. */
+  PF_FRAME_REASON_IMPROBABLE = 4,
+  PF_FRAME_REASON_UNCERTAIN = 5 /* the pose's covariance is too large to be used */
+} pf_frame_reason_t;
+
 typedef struct pf_report {
   int64_t t_ns;
   int32_t state;  /* pf_state_t */
@@ -872,6 +931,12 @@ typedef struct pf_report {
    * frame says for it (lib/docs/theory/belief.md): 3 is wrong once in 20, and a frame is tracked
    * from 6.2 on, once in 500. -13.8 .. 13.8; 0 before there is a pose. */
   double log_odds;
+  /* Features that agree with the best of the poses that this frame was searched for; `inliers` of
+   * them were used, if that pose was believed. */
+  int32_t consensus;
+  int32_t reason; /* pf_frame_reason_t */
+  int32_t places;          /* of capacity.max_places: that are kept */
+  int32_t places_returned; /* since the beginning: how often a place has come back to the window */
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

@@ -117,6 +117,7 @@ pf_status_t pf_get_features(const pf_slam_t* slam, pf_feature_t* features, size_
     out.is_target = f.is_target ? 1 : 0;
     out.observations = f.observations;
     out.attempts = f.attempts;
+    out.log_odds = static_cast<double>(f.log_odds);
     out.kind = feature_kind(f.kind);
     out.plane = f.plane;
     out.on_trial = f.on_trial ? 1 : 0;
@@ -249,12 +250,16 @@ pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report) {
   report->duplicates = r.duplicates;
   report->covariance_repairs = r.repairs;
   report->log_odds = view.tracking().has_pose() ? static_cast<double>(view.tracking().belief().log_odds()) : 0.0;
+  report->consensus = r.consensus;
+  report->reason = static_cast<int32_t>(r.reason);
   report->sigma_gate_px = static_cast<double>(view.noise().sigma_gate());
   report->sigma_info_px = static_cast<double>(view.noise().sigma_info());
   report->correlation_frames = static_cast<double>(view.noise().correlation_frames());
   report->kernels = static_cast<int32_t>(pf::kernels_id(slam->session.settings().kernels));
   for (int i = 0; i < PF_STAGE_COUNT; ++i) report->stage_ns[i] = r.stage_ns[i];
   report->keyframes = map.keyframes;
+  report->places = map.places;
+  report->places_returned = map.places_returned;
   report->templates = r.templates;
   if (r.templates > 0) report->template_area = static_cast<double>(r.template_area / static_cast<float>(r.templates));
   return PF_OK;

@@ -7,5 +7,6 @@ namespace pf {
 inline constexpr int kMaxObservations = 200;  ///< capacity.max_observations
 inline constexpr int kMaxPlanes = 64;         ///< capacity.max_planes
 inline constexpr int kMaxPatches = 32;        ///< capacity.max_patches
+inline constexpr int kMaxPlaces = 200;        ///< capacity.max_places
 
 }  // namespace pf

@@ -1,8 +1,8 @@
 #pragma once
 
-/// Which optional parts of the library this build has: the CMake options PLANEFOLD_WINDOW, PLANEFOLD_INERTIAL, PLANEFOLD_WALLS and
-/// PLANEFOLD_MASKS. What hangs on a part that is not there is behind a condition that the compiler knows to be false, so that the linker
-/// leaves it out of the archive; a config that asks for it is refused (api/config.cpp).
+/// Which optional parts of the library this build has: the CMake options PLANEFOLD_WINDOW, PLANEFOLD_INERTIAL, PLANEFOLD_WALLS,
+/// PLANEFOLD_MASKS and PLANEFOLD_MEMORY. What hangs on a part that is not there is behind a condition that the compiler knows to be false,
+/// so that the linker leaves it out of the archive; a config that asks for it is refused (api/config.cpp).
 
 #ifndef PLANEFOLD_WINDOW
 #define PLANEFOLD_WINDOW 1
@@ -16,6 +16,9 @@
 #ifndef PLANEFOLD_MASKS
 #define PLANEFOLD_MASKS 1
 #endif
+#ifndef PLANEFOLD_MEMORY
+#define PLANEFOLD_MEMORY 1
+#endif
 
 namespace pf {
 
@@ -23,6 +26,7 @@ inline constexpr bool kHasWindow = PLANEFOLD_WINDOW != 0;      ///< the keyframe
 inline constexpr bool kHasInertial = PLANEFOLD_INERTIAL != 0;  ///< the inertial motion model
 inline constexpr bool kHasWalls = PLANEFOLD_WALLS != 0;        ///< walls of a plan, and patches
 inline constexpr bool kHasMasks = PLANEFOLD_MASKS != 0;        ///< templates with masks
+inline constexpr bool kHasMemory = PLANEFOLD_MEMORY != 0;  ///< places, and maps that are saved
 
 /// A setting that is always false, and known to be, in builds without its part.
 template <bool kPart>

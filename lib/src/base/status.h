@@ -24,6 +24,7 @@ enum class Status : int {
   kRange = -11,
   kContext = -12,
   kFull = -13,
+  kMap = -14,
 };
 
 }  // namespace pf

@@ -42,6 +42,11 @@ Scalar FindShare::log_probability(int searched, int inliers) const {
   return log_rising(a, inliers) + log_rising(b, searched - inliers) - log_rising(a + b, searched);
 }
 
+Scalar FindShare::in_frame(int searched, int inliers) const {
+  using namespace tuning::find_share;
+  return (kWeight * mean_ + static_cast<Scalar>(inliers)) / (kWeight + static_cast<Scalar>(searched));
+}
+
 Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share) {
   return share.log_probability(consensus.searched, consensus.inliers) + consensus.log_density - consensus.log_chance;
 }

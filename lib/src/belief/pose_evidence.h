@@ -33,6 +33,8 @@ class FindShare {
   ///
   ///   ln B(a + k, b + n - k) - ln B(a, b),   a = kWeight m,  b = kWeight (1 - m)
   Scalar log_probability(int searched, int inliers) const;
+  /// d of a frame in which `inliers` of `searched` features are found: the mean of Beta(a + k, b + n - k).
+  Scalar in_frame(int searched, int inliers) const;
 
  private:
   Scalar mean_ = 0;

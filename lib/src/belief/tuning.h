@@ -17,6 +17,12 @@ inline constexpr Scalar kElsewhere = Scalar(-13.8);  ///< of any other pose: pic
 inline constexpr double kHazard = 0.005;  ///< [1/s] that what a prediction relies on ends: a cut, a grip, a blow
 }  // namespace pose_belief
 
+/// Log-odds that a feature is a point of the scene (feature_belief.h). A new one has zero: half of them are never measured again.
+namespace feature_belief {
+inline constexpr Scalar kMost = Scalar(6.9);   ///< that a feature can have: none once in a thousand
+inline constexpr Scalar kNone = Scalar(-4.6);  ///< below which it is none: wrong in 1 %
+}  // namespace feature_belief
+
 /// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/theory/states.md).
 namespace chance {
 inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that find something; found: 0.04 .. 0.24

@@ -83,7 +83,7 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
 void FilterSlam::maintain(bool supported, bool is_first) {
   StartRecorder& recorder = start_.recorder();
   const StartProgress& progress = recorder.progress();
-  if (supported) count_searches(frame_, &map_.features);
+  if (supported) count_searches(frame_, tracking_.belief().share(), &map_.features);
   // While the map starts, residuals are those of a coarse map.
   if (supported && tracking_.state() == SlamState::kTracking && !progress.recording) images_.learn_noise();
   upkeep_.maintain(supported, progress);
@@ -112,6 +112,7 @@ Status FilterSlam::push_observations(const PixelObservation* observations, int c
     return observations_.measure(observations, count, again, mode);
   });
   if (frame_.report.inliers > 0) tracking_.belief().trust();
+  observations_.count(tracking_.belief().share());
   {
     StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);
     StartRecorder& recorder = start_.recorder();
@@ -192,7 +193,7 @@ Status FilterSlam::end_frame() {
       images_.relocaliser().remember_view(data_.median_depth);
   }
   images_.keep_view(data_.image_usable, progress, data_.median_depth);
-  return tracking_.conclude(frame_.report, progress, settings_.max_coast_ns, settings_.hooks);
+  return tracking_.conclude(progress, settings_.max_coast_ns, settings_.hooks, &frame_.report);
 }
 
 /// The estimate is not finite or P is no covariance: clears everything that came from it.

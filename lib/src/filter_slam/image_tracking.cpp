@@ -7,7 +7,7 @@ namespace pf {
 
 bool ImageTracking::layout(Arena& arena) {
   front_end_.layout(arena, settings_.max_observations);
-  return relocaliser_.layout(arena, settings_.max_observations, settings_.max_kept_views);
+  return relocaliser_.layout(arena, settings_.max_observations, settings_.kept.views);
 }
 
 void ImageTracking::init() {

@@ -3,11 +3,12 @@
 #include <algorithm>
 
 #include "base/elapsed.h"
+#include "belief/feature_belief.h"
+#include "belief/pose_evidence.h"
 #include "frame/frame.h"
-#include "frame/tuning.h"
 #include "map/map.h"
 
-/// What both back ends count of features, and what follows from it.
+/// What both back ends learn of features from the searches of a frame.
 
 namespace pf {
 
@@ -17,25 +18,30 @@ inline float reliability(const Feature& f) {
   return static_cast<float>(rated) * static_cast<float>(f.observations + 1) / static_cast<float>(f.attempts + 1);
 }
 
-/// Whether a feature is found too seldom to be kept, or was not found too many times in a row.
-inline bool fails_too_often(const Feature& f) {
-  using namespace tuning::feature_keeper;
-  const bool seldom = f.attempts >= kMinAttempts && kMaxAttempts * f.observations < f.attempts;
-  const bool in_a_row = f.failures >= (f.observations < kMinAttempts ? kMaxEarlyFailures : kMaxFailures);
-  return (f.failures > 0 && seldom) || in_a_row;
+/// A feature was searched for and was an inlier, or was not. share: of the frame's searches that found something.
+inline void note_search(bool found, Scalar share, Feature* feature) {
+  feature->log_odds =
+      static_cast<float>(updated_feature(static_cast<Scalar>(feature->log_odds), feature_evidence(found, share)));
+  feature->was_missed = !found;
 }
 
-/// Counts the searches of a frame: attempts, failures and rejections. Of one that does not support its pose: attempts of what was taken all
-/// the same, and no failures.
-inline void count_searches(const Frame& frame, FeatureTable* features, bool supported = true) {
+/// Counts the searches of a frame, and what they say of their features. Of one that does not support its pose only what was taken all the
+/// same: what it did not find may have been elsewhere.
+inline void count_searches(const Frame& frame, const FindShare& mean, FeatureTable* features, bool supported = true) {
+  int searched = 0, inliers = 0;
+  for (int t = 0; t < frame.match_count(); ++t) {
+    if (!frame.match(t).searched) continue;
+    ++searched;
+    inliers += frame.match(t).status == MatchStatus::kInlier ? 1 : 0;
+  }
+  const Scalar share = mean.in_frame(searched, inliers);
   for (int t = 0; t < frame.match_count(); ++t) {
     const Match& match = frame.match(t);
-    if (match.feature < 0 || !match.searched) continue;
-    if (!supported && match.status != MatchStatus::kInlier) continue;
+    const bool found = match.status == MatchStatus::kInlier;
+    if (match.feature < 0 || !match.searched || !(supported || found)) continue;
     Feature& f = (*features)[match.feature];
     count_frame(&f.attempts);
-    if (match.status == MatchStatus::kInlier) continue;
-    count_frame(&f.failures);
+    note_search(found, share, &f);
     if (match.status == MatchStatus::kOutlier) count_frame(&f.rejections);
   }
 }

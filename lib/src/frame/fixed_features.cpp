@@ -48,7 +48,7 @@ void FixedFeatures::init(const ImageMask* also) {
   estimate_share();
 }
 
-bool FixedFeatures::note(const Camera& camera, const Frame& frame) {
+bool FixedFeatures::note(const Camera& camera, const Frame& frame, FeatureTable* features) {
   Quat q_before_now;
   bool is_fixed = false;
   if (has_reference(frame)) {
@@ -56,7 +56,7 @@ bool FixedFeatures::note(const Camera& camera, const Frame& frame) {
     if (!find_turn(camera, frame, &q_before_now)) return false;
     weigh(camera, q_before_now, frame);
     estimate_share();
-    const int fixed = mask_fixed(frame);
+    const int fixed = mask_fixed(frame, features);
     is_fixed = fixed > 0 && kDiscredits * fixed >= frame.report.inliers;
   }
   keep_reference(frame);
@@ -160,7 +160,7 @@ void FixedFeatures::estimate_share() {
 }
 
 /// Masks the surroundings of features that are fixed. Returns how many of them are inliers.
-int FixedFeatures::mask_fixed(const Frame& frame) {
+int FixedFeatures::mask_fixed(const Frame& frame, FeatureTable* features) {
   int fixed = 0;
   for (int t = 0; t < frame.match_count(); ++t) {
     const Match& match = frame.match(t);
@@ -168,6 +168,7 @@ int FixedFeatures::mask_fixed(const Frame& frame) {
     if (!before(match, &pixel) || log_odds(entry_[match.feature]) < kFixed) continue;
     const int x = static_cast<int>(match.measured.x()), y = static_cast<int>(match.measured.y());
     mask_.add({x - kMargin, y - kMargin, 2 * kMargin, 2 * kMargin});
+    (*features)[match.feature].log_odds = static_cast<float>(-log_odds(entry_[match.feature]));
     fixed += match.status == MatchStatus::kInlier ? 1 : 0;
   }
   return fixed;

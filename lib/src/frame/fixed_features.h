@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "frame/frame.h"
 #include "geometry/camera.h"
+#include "map/feature_table.h"
 #include "vision/image_mask.h"
 
 namespace pf {
@@ -29,9 +30,9 @@ class FixedFeatures {
   bool layout(Arena& arena, int width, int height, int max_features);
   /// Nothing is fixed. also: masked besides, by the caller; may be null.
   void init(const ImageMask* also);
-  /// After a frame's searches. Masks the surroundings of features that are fixed. True where so many of the frame's inliers have turned out
-  /// to be that pose and map come from them, and are wrong.
-  bool note(const Camera& camera, const Frame& frame);
+  /// After a frame's searches. Masks the surroundings of features that are fixed, which are no points of the scene then. True where so many
+  /// of the frame's inliers have turned out to be that pose and map come from them, and are wrong.
+  bool note(const Camera& camera, const Frame& frame, FeatureTable* features);
 
   /// What is fixed, and what the caller has masked.
   const ImageMask* mask() const { return &mask_; }
@@ -53,7 +54,7 @@ class FixedFeatures {
   void keep_reference(const Frame& frame);
   void weigh(const Camera& camera, const Quat& q_before_now, const Frame& frame);
   void estimate_share();
-  int mask_fixed(const Frame& frame);
+  int mask_fixed(const Frame& frame, FeatureTable* features);
 
   Entry* entry_ = nullptr;
   int capacity_ = 0;

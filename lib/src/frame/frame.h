@@ -29,17 +29,34 @@ struct Match {
 
 enum Stage { kPyramid, kPredict, kSearch, kGate, kUpdate, kMap, kImu, kPatch, kTemplate, kAdjust, kStageCount };
 
+/// Why a frame was not tracked. With the numbers of pf_frame_reason_t.
+enum class FrameReason : int {
+  kNone = 0,
+  kNothingInView = 1,
+  kFewFound = 2,
+  kDisagree = 3,
+  kImprobable = 4,
+  kUncertain = 5
+};
+
+/// Normalised innovation squared of the pose alone, Filter::pose_nis.
+struct PoseNis {
+  double nis = 0;
+  double of_rotation = 0;  ///< its part that is the rotation's, with half the degrees of freedom
+  int dof = 0;
+};
+
 struct FrameReport {
   std::int64_t t_ns = 0;
   int frames = 0;
   int duplicates = 0;  ///< images since the beginning that were the one before
   int repairs = 0;     ///< frames since the beginning in which P had to be repaired
   int attempts = 0, matches = 0, inliers = 0, new_features = 0, evicted = 0;
+  int consensus = 0;  ///< inliers of the best of the poses about which the frame was searched
+  FrameReason reason = FrameReason::kNone;
   double nis = 0;
   int nis_dof = 0;
-  double pose_nis = 0;      ///< of the pose alone, Filter::pose_nis; only with an inertial unit
-  double rotation_nis = 0;  ///< its part that is the rotation's, with half the degrees of freedom
-  int pose_nis_dof = 0;
+  PoseNis pose;             ///< only with an inertial unit
   int templates = 0;        ///< that learnt from this frame
   float template_area = 0;  ///< sum of their masks, in parts of a template
   std::int64_t stage_ns[kStageCount] = {};
@@ -48,6 +65,9 @@ struct FrameReport {
 class Frame {
  public:
   FrameReport report;
+
+  /// So many matches agree with a pose about which the frame was searched.
+  void note_consensus(int inliers) { report.consensus = inliers > report.consensus ? inliers : report.consensus; }
 
   bool layout(Arena& arena, int capacity) {
     match_ = arena.take<Match>(static_cast<std::size_t>(capacity));

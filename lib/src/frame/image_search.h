@@ -30,7 +30,9 @@ class ImageSearch {
   bool learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const;
 
   /// After a frame's searches: leaves out what stands still in the picture from the next one on. True where the map comes from that.
-  bool note_fixed(const Camera& camera, const Frame& frame) { return fixed_.note(camera, frame); }
+  bool note_fixed(const Camera& camera, const Frame& frame, FeatureTable* features) {
+    return fixed_.note(camera, frame, features);
+  }
 
   bool has_templates() const { return templates_ != nullptr; }
   const Tracker& tracker() const { return tracker_; }

@@ -24,6 +24,12 @@ struct MaskRoom {
   ImageMask* mask = nullptr;  ///< null: no room
 };
 
+/// What is kept of where the camera was.
+struct KeptRoom {
+  int views = 0;
+  int places = 0;  ///< of the window
+};
+
 /// Inertial samples that are kept, and what their unit can measure.
 struct ImuRoom {
   int buffer = 0;
@@ -46,7 +52,7 @@ struct Settings {
   int max_features = 0;  ///< of the window, its points
   int max_observations = 0;
   int max_planes = 0;
-  int max_kept_views = 0;
+  KeptRoom kept;
   MaskRoom mask;
 
   bool constant_velocity =

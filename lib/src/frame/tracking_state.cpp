@@ -1,34 +1,67 @@
 #include "frame/tracking_state.h"
 
+#include <algorithm>
+
 #include "base/elapsed.h"
 
 namespace pf {
 
-Status TrackingState::conclude(const FrameReport& report, const StartProgress& start, std::int64_t max_coast_ns,
-                               const Hooks& hooks) {
+namespace {
+
+const char* text_of_loss(FrameReason reason) {
+  switch (reason) {
+    case FrameReason::kNothingInView:
+      return "lost: nothing of the map was in view for too long";
+    case FrameReason::kFewFound:
+      return "lost: too few features were found for too long";
+    case FrameReason::kDisagree:
+      return "lost: too few features agreed with one pose for too long";
+    case FrameReason::kImprobable:
+      return "lost: no pose was believed for too long";
+    case FrameReason::kUncertain:
+      return "lost: the pose was too uncertain for too long";
+    case FrameReason::kNone:
+      break;
+  }
+  return "lost";
+}
+
+/// Of a frame that is not tracked: the first condition that it does not meet, in the order in which they are asked.
+FrameReason reason_of(const FrameReport& report, int min_inliers, bool unusable) {
+  if (unusable) return FrameReason::kUncertain;
+  if (report.attempts == 0) return FrameReason::kNothingInView;
+  if (report.matches < min_inliers) return FrameReason::kFewFound;
+  return std::max(report.consensus, report.inliers) < min_inliers ? FrameReason::kDisagree : FrameReason::kImprobable;
+}
+
+}  // namespace
+
+Status TrackingState::conclude(const StartProgress& start, std::int64_t max_coast_ns, const Hooks& hooks,
+                               FrameReport* report) {
   Data& d = data_;
   if (!d.has_pose) return Status::kStarting;
-  const bool tracked = is_tracked(report);
+  const bool tracked = is_tracked(*report);
   if (tracked) {
     if (d.lost) hooks.say("found the map again");
     d.lost = false;
     d.usable_ns = 0;
-    d.last_tracked_ns = report.t_ns;
+    d.last_tracked_ns = report->t_ns;
     // A map that begins after a loss is believed when a frame agrees with the one that gave it its depths.
     const bool starting = start.pending() || (d.may_skip_target && !d.depths_known);
     d.depths_known = !start.pending();
     d.state = starting ? SlamState::kStarting : SlamState::kTracking;
     return starting ? Status::kStarting : Status::kOk;
   }
-  if (start.recording && d.last_tracked_ns == report.t_ns) {  // the start has just begun, perhaps anew
+  if (start.recording && d.last_tracked_ns == report->t_ns) {  // the start has just begun, perhaps anew
     d.lost = false;
     d.usable_ns = 0;
     d.state = SlamState::kStarting;
     return Status::kStarting;
   }
-  if (!d.lost && elapsed_ns(d.last_tracked_ns, report.t_ns) > max_coast_ns) {
+  report->reason = reason_of(*report, settings_.min_inliers, d.unusable);
+  if (!d.lost && elapsed_ns(d.last_tracked_ns, report->t_ns) > max_coast_ns) {
     d.lost = true;
-    hooks.say("lost: too few features were found for too long");
+    hooks.say(text_of_loss(report->reason));
   }
   d.state = d.lost ? SlamState::kLost : SlamState::kCoasting;
   return d.lost ? Status::kLost : Status::kCoasting;

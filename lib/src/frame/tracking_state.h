@@ -39,9 +39,12 @@ class TrackingState {
   /// This frame shows something to track; dt_ns since the frame before.
   void note_usable_image(std::int64_t dt_ns) { data_.usable_ns += data_.lost ? dt_ns : 0; }
   /// There is a pose from this time on. The first one says where W is; after a loss pictures have to show that they go on from one to the
-  /// next.
-  void set_has_pose(std::int64_t t_ns) {
+  /// next. lost: in a map that was loaded, where it may be anywhere.
+  void set_has_pose(std::int64_t t_ns, bool lost = false) {
     data_.has_pose = true;
+    data_.lost = lost;
+    if (lost) data_.state = SlamState::kLost;
+    if (lost) return data_.belief.begin_elsewhere();
     if (!data_.may_skip_target) data_.belief.trust();
     data_.last_tracked_ns = t_ns;
   }
@@ -72,8 +75,8 @@ class TrackingState {
   void rename_map() { ++data_.map_id; }
   /// This frame's pose is measured, but too uncertain to use.
   void set_unusable() { data_.unusable = true; }
-  /// Decides the state at the end of a frame. Returns the status of the frame.
-  Status conclude(const FrameReport& report, const StartProgress& start, std::int64_t max_coast_ns, const Hooks& hooks);
+  /// Decides the state at the end of a frame, and of one that is not tracked the reason. Returns the status of the frame.
+  Status conclude(const StartProgress& start, std::int64_t max_coast_ns, const Hooks& hooks, FrameReport* report);
 
   PoseBelief& belief() { return data_.belief; }
   const PoseBelief& belief() const { return data_.belief; }

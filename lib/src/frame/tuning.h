@@ -48,15 +48,11 @@ inline constexpr Scalar kLeastSpeedSigma = Scalar(1e-3);  ///< [m/s, rad/s] of a
 inline constexpr Scalar kAcceleration = Scalar(1);        ///< [m/s^2] prior sigma of a hand's acceleration
 }  // namespace body_motion
 
-/// Features that fail, and the depth of new ones.
+/// The depth of new features.
 namespace feature_keeper {
-inline constexpr int kMinAttempts = 10;         ///< before a feature is judged
-inline constexpr int kMaxFailures = 12;         ///< in a row, of a feature that was measured often
-inline constexpr int kMaxEarlyFailures = 4;     ///< in a row, of a feature with fewer than kMinAttempts measurements
 inline constexpr int kMinDepths = 8;            ///< for a median
 inline constexpr Scalar kBehindTarget = 2;      ///< assumed depth of the scene, in depths of the target
 inline constexpr Scalar kSureSign = Scalar(9);  ///< chi-square of an inverse depth, above which its sign is certain
-inline constexpr int kMaxAttempts = 2;          ///< for each measurement of a feature that is kept
 }  // namespace feature_keeper
 
 /// New features.

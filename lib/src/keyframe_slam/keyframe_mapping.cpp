@@ -11,13 +11,13 @@ namespace pf {
 
 using namespace tuning::keyframe_slam;
 
-void KeyframeMapping::keep(bool tracked, bool young, Scalar median_depth) {
+void KeyframeMapping::keep(bool tracked, bool young, Scalar median_depth, const FindShare& share) {
   const bool pending = record_.progress().pending();
   // A young map's poses are too coarse for depths of their own: a keyframe's are adjusted with it.
   if (tracked && !pending && !young) triangulate_inliers(young);
-  count_searches(frame_, &map_.tables().features, tracked || pending);
+  count_searches(frame_, share, &map_.tables().features, tracked || pending);
   if (tracked || pending) drop_failing(&map_);
-  if (tracked && !pending && wants_keyframe(young, median_depth)) add_frame(young);
+  if (tracked && !pending && wants_keyframe(young, median_depth)) add_frame(young, median_depth);
   // The first frame, one in which a record began anew, and every other keyframe.
   const int newest = map_.keyframes.newest();
   if (newest >= 0 && map_.keyframes[newest].t_ns == frame_.report.t_ns) add_points(pending, median_depth);
@@ -43,13 +43,16 @@ bool KeyframeMapping::wants_keyframe(bool young, Scalar median_depth) const {
           (moved > kMinKeyframeShift || turned > kMinKeyframeTurn));
 }
 
-/// As a keyframe.
-void KeyframeMapping::add_frame(bool young) {
+/// As a keyframe. In a map that was loaded, where the pose is against its places, one that is near comes back.
+void KeyframeMapping::add_frame(bool young, Scalar median_depth) {
   record_.note_keyframe();
+  const int leaving = leaving_keyframe(map_, settings_.window_keyframes);
+  if (leaving >= 0) keeper_.keep(leaving);
   const int keyframe = add_keyframe(frame_, motion_.view(), settings_.window_keyframes, &map_);
   map_.keyframes[keyframe].matches_by_motion = !young;
   if (young) triangulate_inliers(young);
   adjust();
+  if (saving_.is_loaded()) keeper_.bring_near(motion_.view(), median_depth, 1);
 }
 
 /// New points at corners of the newest keyframe's image, which is this frame's.

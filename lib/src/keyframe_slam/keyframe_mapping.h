@@ -1,6 +1,8 @@
 #pragma once
 
+#include "belief/pose_evidence.h"
 #include "keyframe_slam/adjustment/keyframe_adjustment.h"
+#include "keyframe_slam/memory/map_saving.h"
 #include "keyframe_slam/start/keyframe_record.h"
 #include "keyframe_slam/tracking/point_search.h"
 #include "keyframe_slam/tracking/pose_measurement.h"
@@ -13,7 +15,7 @@ class KeyframeMapping {
  public:
   KeyframeMapping(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion,
                   KeyframePlanes& planes, const NoiseModel& noise, const PointSearch& search,
-                  const PoseMeasurement& pose, KeyframeRecord& record)
+                  const PoseMeasurement& pose, KeyframeRecord& record, PlaceKeeper& keeper)
       : settings_(settings),
         map_(map),
         frame_(frame),
@@ -23,24 +25,34 @@ class KeyframeMapping {
         search_(search),
         pose_(pose),
         record_(record),
-        adjustment_(settings, map, planes, noise) {}
+        keeper_(keeper),
+        adjustment_(settings, map, planes, noise),
+        saving_(settings, map, planes, keeper) {}
 
-  bool layout(Arena& arena) { return adjustment_.layout(arena); }
-  void init() { adjustment_.init(); }
+  bool layout(Arena& arena) {
+    saving_.layout(arena);
+    return adjustment_.layout(arena);
+  }
+  void init() {
+    adjustment_.init();
+    saving_.init();
+  }
 
   /// The work of one frame. tracked: its matches support its pose; a frame that does not changes nothing in the map, but for a first one.
-  /// young: so few points have a depth that those without helped with the pose.
-  void keep(bool tracked, bool young, Scalar median_depth);
+  /// young: so few points have a depth that those without helped with the pose. share: of searches that find something, in earlier frames.
+  void keep(bool tracked, bool young, Scalar median_depth, const FindShare& share);
   /// Adjusts the map about the newest keyframe, which is this frame, and moves the body with it.
   void adjust();
 
   KeyframeAdjustment& adjustment() { return adjustment_; }
   const KeyframeAdjustment& adjustment() const { return adjustment_; }
+  MapSaving& saving() { return saving_; }
+  const MapSaving& saving() const { return saving_; }
 
  private:
   void triangulate_inliers(bool young);
   bool wants_keyframe(bool young, Scalar median_depth) const;
-  void add_frame(bool young);
+  void add_frame(bool young, Scalar median_depth);
   void add_points(bool pending, Scalar median_depth);
 
   const Settings& settings_;
@@ -52,7 +64,9 @@ class KeyframeMapping {
   const PointSearch& search_;
   const PoseMeasurement& pose_;
   KeyframeRecord& record_;
+  PlaceKeeper& keeper_;
   KeyframeAdjustment adjustment_;
+  MapSaving saving_;
 };
 
 }  // namespace pf

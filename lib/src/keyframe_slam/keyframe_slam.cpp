@@ -41,6 +41,7 @@ void KeyframeSlam::init() {
   noise_.init(settings_.sigma_px);
   tracking_.init();
   map_.init();
+  map_.places.init();
   motion_.init();
   search_.init();
   pose_.init();
@@ -64,7 +65,7 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   }
   if (!usable) return unusable_status(end_frame());
   tracking_.note_usable_image(data_.since_last_ns);
-  const bool is_gone = tracking_.needs_new_map(settings_.restart_ns);
+  const bool is_gone = !start_.is_in_loaded_map() && tracking_.needs_new_map(settings_.restart_ns);
   if (is_gone || (data_.is_map_fixed && tracking_.has_pose())) {
     discard_map(is_gone ? "not found again for too long: the old map is discarded, a new map begins"
                         : "part of the picture stands still while the rest moves: it is masked, and a new map begins");
@@ -92,7 +93,7 @@ void KeyframeSlam::begin_frame(std::int64_t t_ns) {
   const bool nothing_measured = frame_.report.inliers == 0;
   frame_.begin(t_ns);
   tracking_.begin_frame(data_.since_last_ns);
-  if (!tracking_.has_pose()) return;
+  if (!tracking_.has_pose() || data_.since_last_ns == 0) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kPredict]);
   motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
 }
@@ -104,11 +105,14 @@ void KeyframeSlam::measure() {
     start_.start_in_image();
   } else if (record_.progress().pending()) {
     if (record_.follow()) mapping_.adjust();
-  } else if (data_.young) {
+  } else if (data_.young && !start_.is_in_loaded_map()) {
     measuring_.measure_young(data_.median_depth);
   } else if (tracking_.is_relocalising(record_.progress()) && !relocaliser_.is_prediction_narrow(data_.median_depth)) {
     tracking_.belief().spend();
     relocaliser_.recover(data_.median_depth);
+    const Mat6* place = relocaliser_.found_covariance();
+    if (place != nullptr && tracking_.is_tracked(frame_.report)) mapping_.adjustment().begin_at(*place);
+    data_.young = num_placed(map_) < tuning::keyframe_tracking::kYoung;
   } else {
     relocaliser_.clear_proposal();
     measuring_.measure(data_.median_depth);
@@ -128,7 +132,7 @@ void KeyframeSlam::learn() {
     measuring_.learn_noise();
     data_.warnings.check(settings_, noise_, map_.camera());
   }
-  mapping_.keep(tracked, data_.young, data_.median_depth);
+  mapping_.keep(tracked, data_.young, data_.median_depth, tracking_.belief().share());
 }
 
 /// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known, its
@@ -173,7 +177,7 @@ Status KeyframeSlam::end_frame() {
   }
   if (tracking_.has_pose() && (tracking_.is_tracked(frame_.report) || record_.progress().pending()))
     search_.keep_view(motion_.view());
-  return tracking_.conclude(frame_.report, record_.progress(), settings_.max_coast_ns, settings_.hooks);
+  return tracking_.conclude(record_.progress(), settings_.max_coast_ns, settings_.hooks, &frame_.report);
 }
 
 /// Clears the map, and all that refers to poses in it.

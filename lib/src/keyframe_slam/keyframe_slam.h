@@ -40,6 +40,7 @@ class KeyframeSlam {
   const NoiseModel& noise() const { return noise_; }
   const KeyframeMap& map() const { return map_; }
   const KeyframePlanes& planes() const { return planes_; }
+  const MapSaving& saving() const { return mapping_.saving(); }
   const KeyframeMotion& motion() const { return motion_; }
   /// Time of the body: that of the last frame, or of the one that it repeats.
   std::int64_t body_ns() const { return data_.body_ns; }
@@ -90,13 +91,14 @@ class KeyframeSlam {
   PointSearch search_{settings_, map_, planes_, frame_, noise_};
   PoseMeasurement pose_{settings_, map_, frame_, noise_, search_};
   KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_, tracking_.belief()};
-  KeyframeRelocaliser relocaliser_{settings_,         map_, motion_, search_.images().tracker(), measuring_,
+  KeyframeRelocaliser relocaliser_{settings_,         map_, frame_, motion_, search_.images().tracker(), measuring_,
                                    tracking_.belief()};
   KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
-  KeyframeMapping mapping_{settings_, map_, frame_, motion_, planes_, noise_, search_, pose_, record_};
+  KeyframeMapping mapping_{settings_, map_,    frame_, motion_, planes_,
+                           noise_,    search_, pose_,  record_, relocaliser_.keeper()};
   KeyframeStart start_{
-      settings_, map_,        frame_, tracking_, motion_, search_.images(), mapping_.adjustment().target(),
-      record_,   data_.second};
+      settings_,         map_,    frame_,      tracking_, motion_, search_.images(), mapping_.adjustment().target(),
+      mapping_.saving(), record_, data_.second};
 };
 
 }  // namespace pf

@@ -24,12 +24,13 @@ struct Feature {
   int slot = -1;                  ///< block in the filter; -1: this entry is free
   int observations = 0;           ///< frames in which it was an inlier
   int attempts = 0;               ///< frames in which it was searched for
-  int failures = 0;               ///< attempts since it was last an inlier
+  float log_odds = 0;             ///< that it is a point of the scene (belief/feature_belief.h)
   ResidualTrace residuals;
-  std::uint8_t rejections = 0;  ///< of these failures, matches that were outliers; up to 255
+  std::uint8_t rejections = 0;  ///< matches that were outliers, since it was last an inlier; up to 255
   bool is_target = false;
   bool has_appearance = false;
-  bool on_trial = false;  ///< began on a plane, which nothing but its place in the image says yet
+  bool on_trial = false;    ///< began on a plane, which nothing but its place in the image says yet
+  bool was_missed = false;  ///< no inlier when it was last searched for
 };
 
 class FeatureTable {
@@ -66,6 +67,15 @@ class FeatureTable {
       return i;
     }
     return -1;
+  }
+  /// A feature that was here before comes back under its id, in place of the new one of an entry that add() has just given out.
+  void come_back(int i, std::uint32_t id) {
+    if (feature_[i].id + 1 == next_id_) --next_id_;
+    feature_[i].id = id;
+  }
+  /// Ids up to this one are never given out.
+  void reserve_ids(std::uint32_t last) {
+    if (next_id_ <= last) next_id_ = last + 1;
   }
   void remove(int i) {
     feature_[i] = Feature();

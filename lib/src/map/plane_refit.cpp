@@ -47,6 +47,7 @@ void PlaneRefit::collect(const Vec3& o_W, const Vec3& n_W) {
   member_count_ = 0;
   const Scalar radius2 = settings_.radius * settings_.radius;
   for (int i = 0; i < count_; ++i) {
+    if (candidates_[i].is_explained && settings_.known != nullptr && !may_be_plane(*settings_.known, n_W)) continue;
     const Vec3 r = candidates_[i].p_W - o_W;
     const Scalar d = n_W.dot(r);
     const Scalar variance = n_W.dot(candidates_[i].covariance * n_W) + settings_.normal_variance;

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "geometry/plane.h"
+#include "map/known_surface.h"
 
 /// Looks for planes among points that lie on none yet: lib/docs/theory/plane_search.md.
 
@@ -10,9 +10,10 @@ namespace pf {
 
 /// A point that may lie on a plane that has not been found yet.
 struct PlaneCandidate {
-  Vec3 p_W;         ///< [m]
-  Mat3 covariance;  ///< of p_W itself [m²]
-  int name;         ///< in all searches: the caller's row of it
+  Vec3 p_W;                   ///< [m]
+  Mat3 covariance;            ///< of p_W itself [m²]
+  int name;                   ///< in all searches: the caller's row of it
+  bool is_explained = false;  ///< by the known surface: it belongs to no plane but that one
 };
 
 /// When points are called a plane. In the words of Gee 2007, section 3.3: l_T, d_T, d_max, lambda_T.
@@ -23,6 +24,7 @@ struct PlaneSearchSettings {
   Scalar normal_variance = Scalar(2.5e-5);  ///< of the points about the plane, λ0 / count [m²]
   int trials = 100;                         ///< minimal sets that are drawn
   Scalar chi2 = Scalar(6.63);               ///< d² < chi2 (nᵀ Σ n + normal_variance)
+  const KnownSurface* known = nullptr;      ///< beside the planes that are looked for; null: none
 };
 
 /// Largest number of points that a new plane starts with; others are folded later.

@@ -37,6 +37,7 @@ struct PlaneEntry {
   PartSwitch<kHasWalls>
       apart;  ///< a wall that nothing in the map has been compared with yet, since the scale is not known
   bool two_sided = false;
+  bool remembered = false;  ///< of a loaded map: stays while none of its points are in the window
   Scalar roughness = 0;  ///< [m] of its surface
   Scalar prior[6] = {};  ///< of a wall: covariance of (a, b, h), lower triangle; zero: it no longer counts
   PlaneOutline plan;     ///< of a wall, as it was given
@@ -126,6 +127,15 @@ class PlaneTable {
       return i;
     }
     return -1;
+  }
+  /// Entry of a plane of a loaded map, under its own id, or -1 when the table is full. It is never dissolved for want of points.
+  int restore(std::uint32_t id) {
+    const int i = add(0);
+    if (i < 0) return -1;
+    entry_[i].id = id;
+    entry_[i].remembered = true;
+    next_id_ = (next_id_ - 1 > id ? next_id_ - 1 : id) + 1;
+    return i;
   }
   void remove(int i) { entry_[i] = PlaneEntry(); }
   bool has_known() const {

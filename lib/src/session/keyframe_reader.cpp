@@ -94,6 +94,8 @@ MapCounts KeyframeReader::counts() const {
   }
   for (int k = 0; k < map_.planes.capacity(); ++k) counts.planes += map_.planes.used(k) ? 1 : 0;
   counts.keyframes = map.keyframes.count();
+  counts.places = map.places.count();
+  counts.places_returned = map.places.returned();
   counts.state_dim =
       6 * std::min(static_cast<int>(settings_.window_keyframes), counts.keyframes) + counts.points + counts.folded;
   counts.state_dim_points_only = counts.state_dim;

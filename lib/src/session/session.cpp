@@ -41,6 +41,16 @@ Status Session::start_from_pose(const KnownBody& known) {
   return has_filter() ? filter_->start().use_pose(known) : window_->start().use_pose(known);
 }
 
+Status Session::load_map(const std::uint8_t* buffer, std::size_t bytes, const char** wrong) {
+  if (!kHasMemory || has_filter() || settings_.kept.places == 0 || view().used()) return Status::kState;
+  SavedMap saved;
+  *wrong = saved.open(buffer, bytes, window_->saving().scratch());
+  if (*wrong != nullptr) return Status::kMap;
+  const Status status = window_->start().use_map(saved);
+  if (status == Status::kOk && saved.gravity_W().squaredNorm() > Scalar(0)) set_gravity(saved.gravity_W());
+  return status;
+}
+
 Vec3 Session::given_gravity_W() const {
   return data_.gravity_map == view().tracking().map_id() ? data_.gravity_W : Vec3::Zero();
 }

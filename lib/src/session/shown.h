@@ -19,6 +19,7 @@ struct FeatureView {
   BlockKind kind;
   std::uint32_t plane;  ///< id of the plane that it lies on, or 0
   bool on_trial;        ///< it began on that plane, and nothing else says yet that it lies there
+  Scalar log_odds;      ///< that it is a point of the scene
   Vec3 p_W;
   Mat3 covariance;
 };
@@ -77,6 +78,7 @@ struct MapCounts {
   int features = 0, points = 0, inverse_depths = 0, folded = 0, fixed = 0, trial = 0;
   int planes = 0;
   int patches = 0, cameras = 0, keyframes = 0;
+  int places = 0, places_returned = 0;
   int state_dim = 0, state_dim_held = 0;
   int state_dim_points_only = 0;  ///< rows of the same map without planes
 };

@@ -70,6 +70,12 @@ bool View::motion_since_mark(MotionView* out) const {
   return read([&](const auto& reader) { return reader.motion_since_mark(out); });
 }
 
+Status View::save_map(const Vec3& gravity_W, MapWriter* out) const {
+  const bool is_there = kHasMemory && keyframes_ != nullptr && settings_.kept.places > 0 && tracking_.has_pose() &&
+                        tracking_.state() != SlamState::kStarting;
+  return is_there ? keyframes_->saving().save(gravity_W, out) : Status::kState;
+}
+
 bool View::project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const {
   return read([&](const auto& reader) { return reader.project(p_W, pixel, covariance); });
 }
@@ -87,6 +93,7 @@ FeatureView View::feature(int i) const {
   out.observations = f.observations;
   out.attempts = f.attempts;
   out.on_trial = f.on_trial;
+  out.log_odds = static_cast<Scalar>(f.log_odds);
   read([&](const auto& reader) { reader.place_feature(i, &out); });
   return out;
 }

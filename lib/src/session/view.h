@@ -7,6 +7,7 @@
 #include "frame/settings.h"
 #include "frame/tracking_state.h"
 #include "map/map.h"
+#include "memory/map_bytes.h"
 #include "session/inertial_view.h"
 #include "session/shown.h"
 #include "track/patch_store.h"
@@ -40,6 +41,8 @@ class View {
   void pose_at(std::int64_t t_ns, Body* body, Mat6* covariance) const;
   /// False if there is no mark in this map.
   bool motion_since_mark(MotionView* out) const;
+  /// Writes the map (MapSaving::save). kState: there is nothing to save, or the back end cannot.
+  Status save_map(const Vec3& gravity_W, MapWriter* out) const;
   /// Projects a known point; covariance may be null. False if the point does not project.
   bool project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const;
   MapCounts counts() const;

@@ -11,6 +11,7 @@ DESCRIPTION = """Compares a run of pf-capture with ground truth.
   pf-eval RUN --planes-truth [--truth FILE] [--depth DIR [--depth-unit M]] [--json [FILE]]
   pf-eval RUN --there-and-back [--json [FILE]]
   pf-eval RUN --relative [--truth FILE] [--align none|sim3] [--json [FILE]]
+  pf-eval map FILE [--ply FILE.ply] [--json [FILE]]
 
 RUN is an output folder of pf-capture, or a trajectory. Trajectories (RUN and --truth) are read in these forms, with blanks, commas or
 semicolons, byte order marks and quotes: TUM (timestamp tx ty tz qx qy qz qw), EuRoC's CSV, KITTI's rows of twelve (with the times.txt

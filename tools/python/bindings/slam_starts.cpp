@@ -1,3 +1,5 @@
+#include <string>
+
 #include "arrays.h"
 #include "context.h"
 #include "docs.h"
@@ -39,6 +41,27 @@ void add_starts(nb::class_<Context>& slam) {
         return id;
       },
       nb::arg("wall"), doc::pf_add_wall);
+  slam.def(
+      "save_map",
+      [](Context& self) -> nb::object {
+        nb::object map = nb::none();
+        self.run("save_map", [&](pf_slam_t* context) {
+          size_t bytes = 0;
+          pf_status_t status = pf_map_size(context, PF_MAP_PORTABLE, &bytes);
+          std::string buffer(bytes, '\0');
+          if (status == PF_OK) status = pf_save_map(context, PF_MAP_PORTABLE, buffer.data(), bytes, &bytes);
+          if (status == PF_OK) map = nb::bytes(buffer.data(), bytes);
+          return status;
+        });
+        return map;
+      },
+      doc::pf_save_map);
+  slam.def(
+      "load_map",
+      [](Context& self, const nb::bytes& map) {
+        self.run("load_map", [&](pf_slam_t* context) { return pf_load_map(context, map.c_str(), map.size()); });
+      },
+      nb::arg("map"), doc::pf_load_map);
   slam.def(
       "set_gravity",
       [](Context& self, const ArrayLike& gravity_W) {

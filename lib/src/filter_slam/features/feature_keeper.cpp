@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "base/table_entries.h"
+#include "belief/feature_belief.h"
 #include "filter_slam/features/tuning.h"
 #include "filter_slam/features/wall_rays.h"
-#include "frame/feature_upkeep.h"
 #include "frame/start/target_surface.h"
 #include "frame/tuning.h"
 #include "geometry/ray_plane.h"
@@ -54,7 +54,7 @@ void FeatureKeeper::drop_failing(bool is_tracked) {
     const bool inverted =
         block.kind == BlockKind::kInverseDepth && block.inverse_depth().rho < Scalar(0) &&
         block.inverse_depth().rho * block.inverse_depth().rho > kSureSign * filter_.block_variance(f.slot, 2);
-    if (fails_too_often(f) || inverted) scratch_[count++] = i;
+    if (is_no_point(static_cast<Scalar>(f.log_odds)) || inverted) scratch_[count++] = i;
   }
   drop(scratch_, count);
 }

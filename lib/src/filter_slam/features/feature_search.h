@@ -51,7 +51,7 @@ class FeatureSearch {
   /// it. False where the prediction is not vague, or the picture does not tell.
   bool find_followed(int count);
   /// After a frame's searches: ImageSearch::note_fixed.
-  bool note_fixed() { return search_.note_fixed(filter_.lens(), frame_); }
+  bool note_fixed() { return search_.note_fixed(filter_.lens(), frame_, &map_.features); }
   /// After a frame that used matches: the next one may be followed from it.
   void keep_view() { followed_.keep(search_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W); }
   /// The map is given up, and with it all poses.

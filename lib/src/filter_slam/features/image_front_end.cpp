@@ -148,6 +148,7 @@ PoseConsensus ImageFrontEnd::consensus_of(const Range& range, int inliers, const
 /// Log-odds of the pose with the evidence of the frame's first consensus. A pose that is not believed yet is proposed to the next frame,
 /// once all features have been searched for.
 Scalar ImageFrontEnd::weigh(const Range& range, const PoseConsensus& consensus, const MeasureMode& mode) {
+  frame_.note_consensus(consensus.inliers);
   const Scalar evidence = hypotheses_.evidence(consensus);
   Scalar log_odds = hypotheses_.weigh(consensus);
   if (!mode.starts && !range.is_last && !PoseBelief::is_settled(log_odds)) return log_odds;

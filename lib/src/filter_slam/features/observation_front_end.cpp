@@ -1,8 +1,11 @@
 #include "filter_slam/features/observation_front_end.h"
 
+#include <algorithm>
+
 #include "base/elapsed.h"
 #include "base/table_entries.h"
 #include "filter_slam/pose/consensus.h"
+#include "frame/feature_upkeep.h"
 #include "frame/tuning.h"
 
 namespace pf {
@@ -53,25 +56,18 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count, b
     PixelMeasurement& o = update_.observation(known);
     count_up(&feature.attempts);
     ++frame_.report.attempts;
-    if (!filter_.predict_pixel(filter_.lens(), feature.slot, &o)) {
-      count_up(&feature.failures);
-      continue;
-    }
+    if (!filter_.predict_pixel(filter_.lens(), feature.slot, &o)) continue;
     const Mat2 spread = update_.expected_innovation(&o);
     o.measured = observations[i].pixel;
     o.set_noise(Mat2::Identity() * (observations[i].sigma_px * observations[i].sigma_px) + o.second_order);
     const Mat2 S = spread + o.R_gate;
-    if (!is_covariance(S)) {
-      count_up(&feature.failures);
-      continue;
-    }
+    if (!is_covariance(S)) continue;
     const Scalar nis = squared_distance(o.measured - o.predicted, S);
     const bool is_inlier = nis < settings_.gate;
     const int match = frame_.add({entry, feature.id, is_inlier ? MatchStatus::kInlier : MatchStatus::kOutlier,
                                   filter_.state().block[feature.slot].kind, false, o.predicted, S, o.measured, nis});
     ++frame_.report.matches;
     if (!is_inlier) {
-      count_up(&feature.failures);
       count_up(&feature.rejections);
       continue;
     }
@@ -79,6 +75,15 @@ int ObservationFrontEnd::gate(const PixelObservation* observations, int count, b
     update_.candidate(known++) = {entry, match};
   }
   return known;
+}
+
+void ObservationFrontEnd::count(const FindShare& mean) {
+  int observed = 0;
+  for (int i = 0; i < map_.features.capacity(); ++i) observed += (seen_[i] & kSeen) != 0 ? 1 : 0;
+  const Scalar share = mean.in_frame(observed, std::min(frame_.report.inliers, observed));
+  for (const int i : used_entries(map_.features))
+    if ((seen_[i] & kSeen) != 0)
+      note_search(map_.features[i].last_seen_ns == frame_.report.t_ns, share, &map_.features[i]);
 }
 
 void ObservationFrontEnd::add_features(const PixelObservation* observations, int count) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "belief/pose_evidence.h"
 #include "filter/filter.h"
 #include "filter_slam/features/feature_keeper.h"
 #include "filter_slam/pose/pixel_update.h"
@@ -33,6 +34,8 @@ class ObservationFrontEnd {
 
   /// Updates the filter with observations of the map's features. again: of the same frame once more, which is not counted twice.
   UpdateOutcome measure(const PixelObservation* observations, int count, bool again, const UpdateMode& mode);
+  /// What the frame says of the features that were observed. mean: of earlier frames.
+  void count(const FindShare& mean);
   /// Adds features for observations with unknown ids.
   void add_features(const PixelObservation* observations, int count);
 

@@ -25,8 +25,8 @@ Scalar UnitEvidence::contradiction(const UnitFrame& frame) const {
   const FrameReport& report = frame_.report;
   if (!frame.is_tracked) return kSlack;
   if (frame.is_taken_back) return kMaxOfFrame;
-  if (!frame.before_was_tracked || report.pose_nis_dof == 0) return kSlack;
-  return std::min(static_cast<Scalar>(report.pose_nis * Body::kPoseDim / report.pose_nis_dof), kMaxOfFrame);
+  if (!frame.before_was_tracked || report.pose.dof == 0) return kSlack;
+  return std::min(static_cast<Scalar>(report.pose.nis * Body::kPoseDim / report.pose.dof), kMaxOfFrame);
 }
 
 /// Frozen while samples have only begun to be used, or lengths to be metres: what P does not explain then is the start's.
@@ -36,11 +36,11 @@ void UnitEvidence::learn_noise(const UnitFrame& frame) {
   if (!frame.is_tracked || seconds(data_.used_ns) < kFrozen) return;
   if (frame.is_taken_back) {
     noise_.note_innovation(UnitNoise::kGyro, kMaxOfFrame, 3);
-  } else if (frame.before_was_tracked && report.pose_nis_dof > 0) {
-    const int dof = report.pose_nis_dof / 2;
-    noise_.note_innovation(UnitNoise::kGyro, static_cast<Scalar>(report.rotation_nis), dof);
+  } else if (frame.before_was_tracked && report.pose.dof > 0) {
+    const int dof = report.pose.dof / 2;
+    noise_.note_innovation(UnitNoise::kGyro, static_cast<Scalar>(report.pose.of_rotation), dof);
     if (filter_.is_metric() && seconds(data_.metric_ns) > kFrozen)
-      noise_.note_innovation(UnitNoise::kAccel, static_cast<Scalar>(report.pose_nis - report.rotation_nis), dof);
+      noise_.note_innovation(UnitNoise::kAccel, static_cast<Scalar>(report.pose.nis - report.pose.of_rotation), dof);
   }
 }
 

@@ -28,7 +28,7 @@ bool CertainPoints::is_converged(int entry) const {
          f.observations >= tuning::plane_keeper::kConverged;
 }
 
-bool CertainPoints::is_settled(int entry) const { return is_converged(entry) && map_.features[entry].failures == 0; }
+bool CertainPoints::is_settled(int entry) const { return is_converged(entry) && !map_.features[entry].was_missed; }
 
 bool CertainPoints::is_certain(int entry, Mat3* covariance) const {
   *covariance = filter_.relative_covariance(map_.features[entry].slot, scale_);

@@ -46,16 +46,34 @@ void OwnPlaces::update() {
     const bool folded = map_.features.used(i) && state.block[map_.features[i].slot].kind == BlockKind::kPlanePoint;
     const std::uint32_t plane = folded ? map_.planes.id_at(state.plane_of(map_.features[i].slot)) : 0;
     if (plane == 0) {
-      own_[i].plane = 0;
-    } else if (own_[i].plane != plane || own_[i].id != map_.features[i].id) {
+      const bool goes_on = own_[i].plane != 0 && map_.planes.entry_of(own_[i].plane) < 0;
+      if (!goes_on || !map_.features.used(i)) own_[i] = Own();
+      if (own_[i].plane != 0) own_[i].N = -1;
+    } else if (is_lost(i) || own_[i].plane != plane || own_[i].id != map_.features[i].id) {
       if (map_.features[i].last_seen_ns == frame_.report.t_ns) begin(i, plane);
     }
   }
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
     if (match.feature < 0 || match.status != MatchStatus::kInlier || own_[match.feature].plane == 0) continue;
+    if (is_lost(match.feature)) continue;
     add(match, camera_of_row(state, filter_.lens(), match.measured.y()));
   }
+}
+
+void OwnPlaces::end_with_planes() {
+  for (int i = 0; i < map_.features.capacity(); ++i)
+    if (!is_lost(i) && map_.planes.entry_of(own_[i].plane) < 0) own_[i].plane = 0;
+}
+
+std::uint32_t OwnPlaces::lost_plane(int feature) const {
+  const Own& own = own_[feature];
+  return is_lost(feature) && own.id == map_.features[feature].id ? own.plane : 0;
+}
+
+void OwnPlaces::give_up(std::uint32_t plane) {
+  for (int i = 0; i < map_.features.capacity(); ++i)
+    if (is_lost(i) && own_[i].plane == plane) own_[i] = Own();
 }
 
 void OwnPlaces::add(const Match& match, const CameraAt& camera) {

@@ -25,8 +25,14 @@ class OwnPlaces {
   bool layout(Arena& arena, int max_features);
   void init();
 
-  /// Takes in this frame's matches of points on planes.
+  /// Takes in this frame's matches of points on planes. A plane that has gone since end_with_planes() went because the map began again.
   void update();
+  /// Points of planes that ended in this frame were on none.
+  void end_with_planes();
+  /// Id of the plane that a feature was on when the map began again with the same features, and that has not been found since; 0: none.
+  std::uint32_t lost_plane(int feature) const;
+  /// It is not looked for any more.
+  void give_up(std::uint32_t plane);
   /// Begins again with the points of a plane, which has moved.
   void forget(int plane_slot);
   /// Place of a folded feature, and the variance of its distance from a plane with this normal, for pixels that are known to one pixel.
@@ -43,10 +49,11 @@ class OwnPlaces {
     std::uint32_t id = 0, plane = 0;  ///< of the feature and its plane; 0: there is none
     float place_W[3] = {0, 0, 0};     ///< x
     float ray_W[3] = {0, 0, 0};       ///< x - c
-    float N = 0, b = 0;               ///< [px²/m², px²/m]
+    float N = 0, b = 0;               ///< [px²/m², px²/m]; N < 0: the map began again without the plane
   };
 
   void begin(int feature, std::uint32_t plane);
+  bool is_lost(int feature) const { return own_[feature].N < 0; }
   void add(const Match& match, const struct CameraAt& camera);
 
   const Filter& filter_;

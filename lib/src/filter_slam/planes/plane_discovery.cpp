@@ -1,9 +1,13 @@
 #include "filter_slam/planes/plane_discovery.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "base/table_entries.h"
 #include "filter_slam/planes/plane_points.h"
+#include "filter_slam/planes/tuning.h"
 #include "frame/plane_settings.h"
+#include "map/plane_refit.h"
 
 namespace pf {
 
@@ -14,6 +18,7 @@ bool PlaneDiscovery::layout(Arena& arena, int max_features) {
 
 int PlaneDiscovery::list_candidates() {
   int count = 0;
+  target_ = surface_of_target(filter_, map_);
   const Scalar limit = Scalar(2) * settings_.plane_distance;
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!certain_.is_settled(i)) continue;
@@ -27,36 +32,90 @@ int PlaneDiscovery::list_candidates() {
           std::abs(plane_distance(frame, plane.xyz(), p_W)) < limit && is_in_reach(settings_, filter_, map_, k, p_W);
     }
     if (taken || !certain_.is_certain(i, &candidate_[count].covariance)) continue;
+    const Mat3& covariance = candidate_[count].covariance;
+    candidate_[count].is_explained = explains(target_, p_W, covariance, settings_.fold.roughness, settings_.fold.gate);
     candidate_[count].p_W = p_W;
     candidate_[count++].name = i;
   }
   return count;
 }
 
-void PlaneDiscovery::discover() {
-  const std::uint32_t number = searches_++;  // whatever is found, and whether there is anything to search
-  if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
-  const int count = list_candidates();
-  if (count <= settings_.plane_min_points) return;
-  const PlaneSearchSettings search = plane_search_settings(settings_);
-  PlaneFit fit;
-  int member[kMaxPlaneMembers];
-  int members = 0;
-  if (!search_plane(candidate_, count, search, filter_.state().body.p_W, number, &fit, member, &members)) return;
+bool PlaneDiscovery::take(const PlaneFit& fit, int* member, int members, std::uint32_t id) {
   for (int k = 0; k < members; ++k) member[k] = map_.features[candidate_[member[k]].name].slot;
   const int slot = filter_.add_plane(fit, member, members, settings_.fold.roughness);
-  if (slot < 0) return;
+  if (slot < 0) return false;
   // By the filter's own covariance, enough members must lie on it.
   int kept = 0;
   for (int k = 0; k < members; ++k) kept += lies_on(settings_, filter_, map_, slot, member[k]) ? 1 : 0;
   const int entry = kept > settings_.plane_min_points ? map_.planes.add(slot) : -1;
   if (entry < 0) {
     filter_.remove(&slot, 1);
-    return;
+    return false;
   }
+  if (id != 0) map_.planes[entry].id = id;
   filter_.set_owner(slot, entry);
   for (int k = 0; k < members; ++k) support(filter_, map_, entry, member[k]);
-  settings_.hooks.say("found a plane");
+  settings_.hooks.say(id != 0 ? "found a plane again" : "found a plane");
+  return true;
+}
+
+void PlaneDiscovery::discover() {
+  const std::uint32_t number = searches_++;  // whatever is found, and whether there is anything to search
+  has_found_ = false;
+  if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
+  const int count = list_candidates();
+  if (count <= settings_.plane_min_points) return;
+  PlaneSearchSettings search = plane_search_settings(settings_);
+  search.known = &target_;
+  PlaneFit fit;
+  int member[kMaxPlaneMembers];
+  int members = 0;
+  if (!search_plane(candidate_, count, search, filter_.state().body.p_W, number, &fit, member, &members)) return;
+  has_found_ = take(fit, member, members, 0);
+}
+
+void PlaneDiscovery::resume() {
+  std::uint32_t before = 0;
+  for (std::uint32_t id = next_lost(before); id != 0; id = next_lost(before)) {
+    before = id;
+    int on = 0, known = 0;
+    const int count = list_candidates();
+    for (const int i : used_entries(map_.features)) on += places_.lost_plane(i) == id ? 1 : 0;
+    for (int c = 0; c < count; ++c) known += places_.lost_plane(candidate_[c].name) == id ? 1 : 0;
+    if (on > settings_.plane_min_points && known <= settings_.plane_min_points) continue;  // not yet
+    const bool is_back = known > settings_.plane_min_points && resume_plane(id, count);
+    if (is_back || tuning::plane_resumption::kKnownShare * known > on || on <= settings_.plane_min_points)
+      places_.give_up(id);
+  }
+}
+
+/// The least id of a lost plane above this one; 0: there is none.
+std::uint32_t PlaneDiscovery::next_lost(std::uint32_t above) const {
+  std::uint32_t least = 0;
+  for (const int i : used_entries(map_.features)) {
+    const std::uint32_t id = places_.lost_plane(i);
+    if (id > above && (least == 0 || id < least)) least = id;
+  }
+  return least;
+}
+
+/// With the plane through its points for a hypothesis.
+bool PlaneDiscovery::resume_plane(std::uint32_t id, int count) {
+  if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return false;
+  Vec3 points[kMaxPlaneMembers];
+  int known = 0;
+  for (int c = 0; c < count && known < kMaxPlaneMembers; ++c)
+    if (places_.lost_plane(candidate_[c].name) == id) points[known++] = candidate_[c].p_W;
+  const Vec3 viewer_W = filter_.state().body.p_W;
+  PlaneFit fit;
+  if (!fit_plane(points, known, viewer_W, &fit)) return false;
+  PlaneSearchSettings search = plane_search_settings(settings_);
+  search.known = &target_;
+  PlaneRefit refit(candidate_, count, search, viewer_W);
+  if (!refit.run({fit.frame.o_W, fit.frame.R_WP.col(2), 0})) return false;
+  int member[kMaxPlaneMembers];
+  std::copy(refit.members(), refit.members() + refit.member_count(), member);
+  return take(refit.fit(), member, refit.member_count(), id);
 }
 
 }  // namespace pf

@@ -5,7 +5,9 @@
 #include "base/arena.h"
 #include "filter/filter.h"
 #include "filter_slam/planes/certain_points.h"
+#include "filter_slam/planes/own_places.h"
 #include "frame/settings.h"
+#include "frame/tuning.h"
 #include "map/map.h"
 #include "map/plane_search.h"
 
@@ -14,25 +16,42 @@ namespace pf {
 /// Finds new planes among points that lie on none. Gee 2007, section 3.3.
 class PlaneDiscovery {
  public:
-  PlaneDiscovery(const Settings& settings, Filter& filter, Map& map, const CertainPoints& certain)
-      : settings_(settings), filter_(filter), map_(map), certain_(certain) {}
+  PlaneDiscovery(const Settings& settings, Filter& filter, Map& map, const CertainPoints& certain, OwnPlaces& places)
+      : settings_(settings), filter_(filter), map_(map), certain_(certain), places_(places) {}
 
   bool layout(Arena& arena, int max_features);
-  void init() { searches_ = 0; }
+  void init() {
+    searches_ = 0;
+    has_found_ = false;
+  }
+  /// Whether it is time to look for one: every few frames, and where the last search found one, since there may be more.
+  bool is_due(int frame) const { return has_found_ || frame % tuning::plane_keeper::kDiscoverEvery == 0; }
 
   /// Looks for one new plane.
   void discover();
+  /// Whether there are planes that the map had when it began again, and that have not been found since.
+  bool has_lost() const { return next_lost(0) != 0; }
+  /// Finds them again, from the points that were on them. Each is tested as a new one, and keeps its id. One is given up where no plane is
+  /// found though most of its points are known again.
+  void resume();
 
  private:
   /// Lists converged, well known points that lie on no plane yet. Returns how many.
   int list_candidates();
+  std::uint32_t next_lost(std::uint32_t above) const;
+  bool resume_plane(std::uint32_t id, int count);
+  /// Takes a plane that the search has found, if the filter's own covariance says so too. id: of one that goes on; 0: it is new.
+  bool take(const PlaneFit& fit, int* member, int members, std::uint32_t id);
 
   const Settings& settings_;
   Filter& filter_;
   Map& map_;
   const CertainPoints& certain_;
+  OwnPlaces& places_;
   PlaneCandidate* candidate_ = nullptr;  ///< max_features; their names are entries of the feature table
+  KnownSurface target_;                  ///< that the target is on, as in this frame
   std::uint32_t searches_ = 0;           ///< so far
+  bool has_found_ = false;               ///< the last one has
 };
 
 }  // namespace pf

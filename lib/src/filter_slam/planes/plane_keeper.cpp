@@ -19,7 +19,7 @@ PlaneKeeper::PlaneKeeper(const Settings& settings, Filter& filter, Map& map, Fra
       features_(features),
       places_(filter, map, frame),
       certain_(settings, filter, map),
-      discovery_(settings, filter, map, certain_),
+      discovery_(settings, filter, map, certain_, places_),
       walls_(settings, filter, map, certain_),
       verticals_(filter, map) {}
 
@@ -51,9 +51,12 @@ void PlaneKeeper::maintain(bool may_doubt) {
     if (maintained++ == 0) maintain_plane(i, may_doubt);
   }
   dissolve_weak(settings_, filter_, map_, features_);
-  if (frame_.report.frames % tuning::plane_keeper::kDiscoverEvery != 0) return;
+  places_.end_with_planes();
+  const bool is_due = discovery_.is_due(frame_.report.frames);
+  if (!is_due && !discovery_.has_lost()) return;
   certain_.update_scale();  // its points may be gone or planar since
-  discovery_.discover();
+  discovery_.resume();
+  if (is_due) discovery_.discover();
 }
 
 void PlaneKeeper::maintain_plane(int entry, bool may_doubt) {
@@ -110,6 +113,7 @@ void PlaneKeeper::meet_walls() {
     certain_.update_scale();
     walls_.fold_by_consensus(i);
   }
+  places_.end_with_planes();
 }
 
 }  // namespace pf

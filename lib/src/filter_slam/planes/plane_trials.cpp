@@ -45,7 +45,7 @@ void PlaneTrials::judge() {
     if (elsewhere) ++map_.planes[entry].outliers;
     if (f.rejections >= tuning::plane_keeper::kTrialRejections || elsewhere) {
       features_.drop(&i, 1);
-    } else if (f.failures == 0 && odds > kSure) {
+    } else if (!f.was_missed && odds > kSure) {
       f.on_trial = false;
       if (map_.planes[entry].outliers > 0) map_.planes[entry].outliers = map_.planes[entry].outliers - 1;
       support(filter_, map_, entry, f.slot);

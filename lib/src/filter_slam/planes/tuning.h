@@ -35,6 +35,11 @@ inline constexpr Scalar kDoubt = Scalar(1);   ///< log-odds against it from whic
 inline constexpr Scalar kMinSlant = Scalar(0.05);  ///< sine between plane and ray, below which a depth tells nothing
 }  // namespace plane_trials
 
+/// Planes that the map had when it began again.
+namespace plane_resumption {
+inline constexpr int kKnownShare = 2;  ///< one in so many of its points is known again, where the search for it decides
+}  // namespace plane_resumption
+
 namespace plane_places {
 inline constexpr Scalar kPixel = 1;              ///< [px] of a match, before the points have said what it is
 inline constexpr Scalar kMaxSigma = Scalar(30);  ///< of a height at one pixel that is looked at, in plane.max_distance

@@ -97,9 +97,9 @@ UpdateOutcome PixelUpdate::apply(int first, int count, const UpdateMode& mode, c
   filter_.commit_update();
   // What the pose is off stays while depths come first: a frame says nothing that the one before had not said.
   if (says_pose && !depths_only) {
-    frame_.report.pose_nis += static_cast<double>(pose_nis);
-    frame_.report.rotation_nis += static_cast<double>(of_rotation);
-    frame_.report.pose_nis_dof += Body::kPoseDim;
+    frame_.report.pose.nis += static_cast<double>(pose_nis);
+    frame_.report.pose.of_rotation += static_cast<double>(of_rotation);
+    frame_.report.pose.dof += Body::kPoseDim;
   }
   count_inliers(first, count);
   relinearise_update(first, count, rows);
@@ -114,7 +114,6 @@ void PixelUpdate::count_inliers(int first, int count) {
     Feature& feature = map_.features[candidate_[i].feature];
     // A frame that is measured again, without a prediction that led it astray, counts once.
     if (feature.last_seen_ns != frame_.report.t_ns) count_frame(&feature.observations);
-    feature.failures = 0;
     feature.rejections = 0;
     feature.last_seen_ns = frame_.report.t_ns;
   }

@@ -111,6 +111,7 @@ UpdateOutcome Relocaliser::measure_about(const SearchPose& about, int found, con
   const PoseConsensus consensus =
       find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
                             belief_.share(), settings_.gate, kTriples, update_.keep());
+  frame_.note_consensus(consensus.inliers);
   if (consensus.inliers < settings_.min_inliers) return before;
   const Scalar log_odds = update_.proposals().propose(pose.q_WC, pose.p_W, median_depth(pose, found),
                                                       PoseBelief::elsewhere(), belief_.evidence(consensus));

@@ -28,6 +28,8 @@ class KeyframeAdjustment {
   bool run(bool settled);
   /// Of the newest keyframe's (theta, p) in W, and with it of the map about it, given the map's first keyframe.
   const Mat6& map_covariance() const { return map_covariance_; }
+  /// The camera has been found at a place of this covariance: what it sees is known no better, until the next adjustment.
+  void begin_at(const Mat6& place) { map_covariance_ = place; }
   /// The map's lengths were multiplied by s.
   void scale(Scalar s) {
     map_covariance_.bottomRows<3>() *= s;

@@ -79,6 +79,10 @@ RhoPrior weak_prior(const AdjustedPoints& points) {
 }
 
 void hold_by_pixels(const KeyframeMap& map, Scalar sigma_px, AdjustedPoints* points) {
+  for (int p = 0; p < points->seen; ++p) {
+    const RhoPrior& remembered = map.point(points->row[p]).remembered;
+    if (remembered.sigma > Scalar(0)) points->prior[p] = remembered;
+  }
   for (int p = points->seen; p < points->count; ++p) {
     const PixelDepth depth = depth_by_pixels(map, points->row[p], sigma_px);
     points->prior[p] =

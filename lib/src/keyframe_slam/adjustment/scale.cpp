@@ -16,9 +16,11 @@ void scale_window(Scalar s, const Vec3& c_W, KeyframeMap* map, KeyframePlanes* p
     KeyframePoint& point = map->point(i);
     point.rho /= s;
     point.variance /= s * s;
+    point.remembered = {point.remembered.mean / s, point.remembered.sigma / s};
     move(&point.seen_from.c_W);
     move(&map->tables().first_view(i).c_W);
   }
+  map->places.scale(s, c_W);
   planes->scale(s, c_W);
   motion->scale(s, c_W);
 }

@@ -78,6 +78,12 @@ PixelDepth depth_by_pixels(const KeyframeMap& map, int i, Scalar sigma_px) {
   const Scalar rho = map.point(i).rho;
   DepthSums sums;
   add_keyframes(map.camera(), map, i, rho, false, &sums);
+  const RhoPrior& remembered = map.point(i).remembered;
+  if (remembered.sigma > Scalar(0)) {
+    const Scalar information = sigma_px * sigma_px / (remembered.sigma * remembered.sigma);
+    sums.information += information;
+    sums.gradient += information * (remembered.mean - rho);
+  }
   if (!(sums.information > Scalar(0))) return {rho, Scalar(0)};
   return {rho + sums.gradient / sums.information, sigma_px * sigma_px / sums.information};
 }

@@ -27,7 +27,7 @@ struct PixelDepth {
   Scalar variance;  ///< 0: no pixel says anything
 };
 
-/// By the pixels of the keyframes alone, in one step of Gauss-Newton from where the point is:
+/// By the pixels of the keyframes, and by what its place knew of a point that has come back, in one step of Gauss-Newton from where it is:
 ///
 ///   rho + sum J.r / sum J²,   variance sigma² / sum J²
 PixelDepth depth_by_pixels(const KeyframeMap& map, int i, Scalar sigma_px);

@@ -16,12 +16,14 @@ bool KeyframeMap::layout(Arena& arena) {
   point_ = arena.take<KeyframePoint>(static_cast<std::size_t>(points));
   scratch_.number = arena.take<Scalar>(static_cast<std::size_t>(points));
   scratch_.vector = arena.take<Vec3>(static_cast<std::size_t>(points));
+  places.layout(arena, settings_.kept.places);
   return keyframes.layout(arena, kKeyframes, points);
 }
 
 void KeyframeMap::init() {
   lens_.init(settings_.camera, settings_.lens);
   keyframes.init();
+  places.clear();
   for (int i = 0; i < capacity(); ++i) point_[i] = KeyframePoint();
 }
 

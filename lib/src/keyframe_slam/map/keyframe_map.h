@@ -5,6 +5,7 @@
 #include "keyframe_slam/map/keyframe_table.h"
 #include "keyframe_slam/map/lens.h"
 #include "map/map.h"
+#include "memory/place_table.h"
 
 /// Points and keyframes of the window. A point is a bearing and an inverse depth in the keyframe that saw it first, its host.
 
@@ -19,6 +20,7 @@ struct KeyframePoint {
   bool has_depth = false;     ///< rho was triangulated, or is the target's
   bool faces_host = false;    ///< its appearance is the host's
   std::int8_t plane = -1;     ///< entry of the plane that it lies on, or -1
+  RhoPrior remembered = {0, 0};  ///< of a point that a place brought back: what it knew of rho then
   Vec2 pixel = Vec2::Zero();  ///< where it was last seen, and from where
   CameraView seen_from;
 };
@@ -33,6 +35,7 @@ class KeyframeMap {
   void clear();
 
   KeyframeTable keyframes;
+  PlaceTable places;
 
   /// As it is known now.
   const Camera& camera() const { return lens_.camera(); }

@@ -41,6 +41,8 @@ class KeyframeTable {
     newest_ = -1;
   }
 
+  static constexpr std::int64_t kLongAgo = INT64_MIN;  ///< time of a keyframe that has come back
+
   int capacity() const { return capacity_; }
   int count() const { return count_; }
   /// How many there have been.
@@ -62,6 +64,20 @@ class KeyframeTable {
     }
     return -1;
   }
+  /// A keyframe that has been removed comes back, and has seen no point yet. Its number is none of those in the table, and at most that of
+  /// the last one. Entry, or -1 when the table is full.
+  int add_again(int number, const Quat& q_WC, const Vec3& p_W, const Mat6& covariance) {
+    const int newest = newest_, last_number = last_number_;
+    const int k = add(kLongAgo, q_WC, p_W);
+    if (k < 0) return -1;
+    last_number_ = last_number;
+    keyframe_[k].number = number;
+    keyframe_[k].covariance = covariance;
+    if (newest >= 0 && keyframe_[newest].number > number) newest_ = newest;
+    return k;
+  }
+  /// The next one is counted from here on.
+  void number_from(int last) { last_number_ = last; }
   void remove(int k) {
     keyframe_[k] = Keyframe();
     --count_;

@@ -1,7 +1,7 @@
 #include "keyframe_slam/map/keyframe_upkeep.h"
 
 #include "base/table_entries.h"
-#include "frame/feature_upkeep.h"
+#include "belief/feature_belief.h"
 
 namespace pf {
 namespace {
@@ -21,7 +21,12 @@ int least_useful_keyframe(const KeyframeMap& map, int kept) {
   return worst;
 }
 
-/// Its points go to the newest keyframe that saw them; where there is none they are dropped.
+}  // namespace
+
+int leaving_keyframe(const KeyframeMap& map, int kept) {
+  return map.keyframes.count() < map.keyframes.capacity() ? -1 : least_useful_keyframe(map, kept);
+}
+
 void remove_keyframe(int k, KeyframeMap* map) {
   for (const int i : used_entries(*map)) {
     if (map->point(i).host != k) continue;
@@ -43,15 +48,15 @@ void remove_keyframe(int k, KeyframeMap* map) {
     point.ray_K = at * rho;
     point.rho = rho;
     point.variance *= ratio * ratio * ratio * ratio;
+    point.remembered = {point.remembered.mean * ratio, point.remembered.sigma * ratio * ratio};
     point.faces_host = false;
   }
   map->keyframes.remove(k);
 }
 
-}  // namespace
-
 int add_keyframe(const Frame& frame, const CameraView& view, int kept, KeyframeMap* map) {
-  if (map->keyframes.count() >= map->keyframes.capacity()) remove_keyframe(least_useful_keyframe(*map, kept), map);
+  const int leaving = leaving_keyframe(*map, kept);
+  if (leaving >= 0) remove_keyframe(leaving, map);
   const int k = map->keyframes.add(frame.report.t_ns, view.q_WC, view.c_W);
   for (int t = 0; t < frame.match_count(); ++t) {
     const Match& match = frame.match(t);
@@ -74,7 +79,8 @@ void drop_failing(KeyframeMap* map) {
   for (const int i : used_entries(*map)) {
     if (map->feature(i).is_target) continue;
     const KeyframePoint& point = map->point(i);
-    if (fails_too_often(map->feature(i)) || (point.has_depth && !(point.rho > Scalar(0)))) map->drop(i);
+    if (is_no_point(static_cast<Scalar>(map->feature(i).log_odds)) || (point.has_depth && !(point.rho > Scalar(0))))
+      map->drop(i);
   }
 }
 

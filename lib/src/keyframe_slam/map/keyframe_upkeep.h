@@ -6,8 +6,12 @@
 
 namespace pf {
 
-/// Adds the pose as a keyframe with the frame's inliers. Where there is no room, the one that sees the fewest points leaves, but none of
-/// the newest `kept` ones; its points go to other keyframes. Returns the entry of the new one.
+/// The one that leaves for the next: that sees the fewest points, but none of the newest `kept` ones. -1: there is room.
+int leaving_keyframe(const KeyframeMap& map, int kept);
+/// Its points go to the newest keyframe that saw them; where there is none they are dropped.
+void remove_keyframe(int k, KeyframeMap* map);
+/// Adds the pose as a keyframe with the frame's inliers. Where there is no room, leaving_keyframe() is removed. Returns the entry of the
+/// new one.
 int add_keyframe(const Frame& frame, const CameraView& view, int kept, KeyframeMap* map);
 /// Removes all keyframes but the first, and the points that they host.
 void keep_first_keyframe(KeyframeMap* map);

@@ -5,10 +5,25 @@
 
 #include "base/table_entries.h"
 #include "frame/plane_settings.h"
+#include "frame/start/start.h"
 #include "frame/tuning.h"
 #include "keyframe_slam/planes/tuning.h"
 
 namespace pf {
+
+namespace {
+
+/// The surface of the target, by its points in the map.
+KnownSurface surface_of_target(const KeyframeMap& map) {
+  Vec3 points_W[Target::kMaxPoints];
+  int count = 0;
+  for (const int i : used_entries(map))
+    if (map.feature(i).is_target && map.point(i).has_depth && count < Target::kMaxPoints)
+      points_W[count++] = map.position(i);
+  return known_surface(map.tables().target_normal_W, points_W, count, tuning::plane_keeper::kReach);
+}
+
+}  // namespace
 
 namespace same = tuning::plane_lifecycle;
 namespace member = tuning::plane_keeper;
@@ -175,10 +190,13 @@ void KeyframePlanes::put_on(int k, int i) {
 /// Points that lie on the plane, near to what is known of it.
 void KeyframePlanes::take_points(int k) {
   const Scalar reach = std::min(member::kReach * std::sqrt(outline_area(table_[k].support)), settings_.plane_radius);
+  const KnownSurface target = surface_of_target(map_);
+  const bool may_be_target = may_be_plane(target, plane_[k].frame.R_WP.col(2));
   for (int i = 0; i < map_.capacity(); ++i) {
     Mat3 covariance;
     if (!is_settled(i, &covariance)) continue;
     const Vec3 p_W = map_.position(i);
+    if (!may_be_target && explains(target, p_W, covariance, settings_.fold.roughness, settings_.fold.gate)) continue;
     if (outline_contains(table_[k].support, plane_coordinates(plane_[k].frame, p_W), reach) &&
         lies_on(k, p_W, covariance))
       put_on(k, i);
@@ -200,9 +218,10 @@ void KeyframePlanes::outline(int k) {
 void KeyframePlanes::discover(const Vec3& viewer_W) {
   const std::uint32_t search_number = searches_++;
   int count = 0;
+  const KnownSurface target = surface_of_target(map_);
   const Scalar near = 2 * settings_.plane_distance;
   for (int i = 0; i < map_.capacity(); ++i) {
-    if (map_.used(i) && map_.feature(i).failures > 0)
+    if (map_.used(i) && map_.feature(i).was_missed)
       continue;  // what decides about whole planes was found when last looked for
     if (!is_settled(i, &candidate_[count].covariance)) continue;
     const Vec3 p_W = map_.position(i);
@@ -211,11 +230,14 @@ void KeyframePlanes::discover(const Vec3& viewer_W) {
       taken = table_.used(k) && std::abs(plane_distance(plane_[k].frame, Vec3::Zero(), p_W)) < near &&
               outline_contains(table_[k].support, plane_coordinates(plane_[k].frame, p_W), settings_.plane_radius);
     if (taken) continue;
+    const Mat3& covariance = candidate_[count].covariance;
+    candidate_[count].is_explained = explains(target, p_W, covariance, settings_.fold.roughness, settings_.fold.gate);
     candidate_[count].p_W = p_W;
     candidate_[count++].name = i;
   }
   if (count <= settings_.plane_min_points) return;
-  const PlaneSearchSettings search = plane_search_settings(settings_);
+  PlaneSearchSettings search = plane_search_settings(settings_);
+  search.known = &target;
   PlaneFit fit;
   int members[kMaxPlaneMembers];
   int number = 0;
@@ -264,6 +286,7 @@ void KeyframePlanes::dissolve_weak() {
     PlaneEntry& entry = table_[k];
     entry.max_points = std::max<int>(entry.max_points, points);
     const bool proven = entry.max_points > settings_.plane_min_points;
+    if (entry.remembered && points == 0) continue;
     entry.weak = points < same::kMinPoints || !proven ? entry.weak + 1 : 0;
     if (entry.outliers > points || entry.weak > tuning::keyframe_planes::kMaxWeak) dissolve(k);
   }

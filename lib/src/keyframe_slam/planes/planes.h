@@ -27,6 +27,9 @@ class KeyframePlanes {
   /// The work of one keyframe, after its adjustment.
   void maintain(const Vec3& viewer_W);
 
+  /// Of a loaded map, an entry that the table has restored.
+  void restore(int k, const PlaneFrame& frame, const Mat3& covariance) { plane_[k] = {frame, covariance, false}; }
+
   const KeyframePlane& plane(int k) const { return plane_[k]; }
   int points_on(int k) const;
   bool used(int k) const { return table_.used(k); }

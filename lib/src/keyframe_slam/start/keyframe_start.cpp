@@ -5,6 +5,7 @@
 #include "frame/frame_entry.h"
 #include "frame/start/target_surface.h"
 #include "frame/start/tuning.h"
+#include "frame/tuning.h"
 #include "keyframe_slam/map/keyframe_upkeep.h"
 
 namespace pf {
@@ -39,14 +40,14 @@ void KeyframeStart::start_over() {
 }
 
 Status KeyframeStart::use_target(const Target& target) {
-  if (second_.given) return Status::kState;
+  if (second_.given || is_in_loaded_map()) return Status::kState;
   if (known_.given && target.kind == TargetKind::kRectangle) return Status::kState;
   target_.set_target(target);
   return Status::kOk;
 }
 
 Status KeyframeStart::use_pose(const KnownBody& known) {
-  if (target_.target().kind == TargetKind::kRectangle) return Status::kState;
+  if (target_.target().kind == TargetKind::kRectangle || is_in_loaded_map()) return Status::kState;
   known_ = known;
   known_.given = true;
   return Status::kOk;
@@ -55,11 +56,29 @@ Status KeyframeStart::use_pose(const KnownBody& known) {
 Status KeyframeStart::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma) {
   if (!is_next_frame(frame_, t_ns)) return Status::kTime;
   if (!((p_W - first_place_W()).norm() > sigma)) return Status::kRange;
-  if (target_.target().kind != TargetKind::kNone || second_.given) return Status::kState;
+  if (target_.target().kind != TargetKind::kNone || second_.given || is_in_loaded_map()) return Status::kState;
   second_ = SecondPose();
   second_.given = true;
   second_.t_ns = t_ns;
   second_.p_W = p_W;
+  return Status::kOk;
+}
+
+/// The pose is that of any place, with a covariance that says nothing.
+Status KeyframeStart::use_map(const SavedMap& saved) {
+  using namespace tuning::body_motion;
+  const bool is_chosen = known_.given || second_.given || target_.target().kind != TargetKind::kNone;
+  if (is_chosen || is_in_loaded_map()) return Status::kState;
+  const Status status = saving_.load(saved);
+  if (status != Status::kOk) return status;
+  const KeptPlace& place = map_.places[0];
+  Mat6 anywhere = Mat6::Identity() * (kAnyRotation * kAnyRotation);
+  anywhere.bottomRightCorner<3, 3>() = Mat3::Identity() * (kAnyPosition * kAnyPosition * place.depth * place.depth);
+  Body body;
+  body.q_WC = place.q_WK;
+  body.p_W = place.p_WK;
+  motion_.set(body, anywhere, kStartSpeed * place.depth, kStartRate);
+  tracking_.set_has_pose(frame_.report.t_ns, true);
   return Status::kOk;
 }
 

@@ -4,6 +4,7 @@
 #include "frame/start/start.h"
 #include "frame/start/start_at_target.h"
 #include "keyframe_slam/adjustment/held_target.h"
+#include "keyframe_slam/memory/map_saving.h"
 #include "keyframe_slam/start/keyframe_record.h"
 
 /// Starts the window in the way that the caller chose: at a known pose, at a target, or from a record of the first frames.
@@ -13,8 +14,8 @@ namespace pf {
 class KeyframeStart {
  public:
   KeyframeStart(const Settings& settings, KeyframeMap& map, Frame& frame, TrackingState& tracking,
-                KeyframeMotion& motion, const ImageSearch& images, HeldTarget& held, KeyframeRecord& record,
-                SecondPose& second)
+                KeyframeMotion& motion, const ImageSearch& images, HeldTarget& held, MapSaving& saving,
+                KeyframeRecord& record, SecondPose& second)
       : settings_(settings),
         map_(map),
         frame_(frame),
@@ -22,6 +23,7 @@ class KeyframeStart {
         motion_(motion),
         images_(images),
         held_(held),
+        saving_(saving),
         record_(record),
         second_(second) {}
 
@@ -32,6 +34,9 @@ class KeyframeStart {
 
   Status use_target(const Target& target);
   Status use_pose(const KnownBody& known);
+  /// Begins in a map that was opened, lost. kState: another start was chosen. kFull: MapSaving::load.
+  Status use_map(const SavedMap& saved);
+  bool is_in_loaded_map() const { return saving_.is_loaded(); }
   /// Of the frame that comes at t_ns. kTime: it has been. kState: the scale is known. kRange: it is where the camera was first.
   Status use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma);
   /// Where the camera was first, as the caller knows it or as it defines W.
@@ -51,6 +56,7 @@ class KeyframeStart {
   KeyframeMotion& motion_;
   const ImageSearch& images_;
   HeldTarget& held_;
+  MapSaving& saving_;
   KeyframeRecord& record_;
   SecondPose& second_;
   KnownBody known_;

@@ -51,7 +51,6 @@ void accept_match(const CameraView& seen_from, const Vec2& pixel, std::int64_t t
   Feature& f = map->feature(match->feature);
   if (has_rows(map->camera()) && is_seen_again(*map, *match)) correct_first_pixel(*match, t_ns, map);
   count_frame(&f.observations);
-  f.failures = 0;
   f.rejections = 0;
   f.last_seen_ns = t_ns;
   KeyframePoint& point = map->point(match->feature);

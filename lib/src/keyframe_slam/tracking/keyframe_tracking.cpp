@@ -63,6 +63,7 @@ int KeyframeTracking::measure_about(const PosePrior& about, CameraPose* pose, Ma
     found_ = search_.search(0, 0, listed, about, Scalar(1));
   const int inliers = pose_.find(found_, moving, pose, information);
   *consensus = pose_.consensus(inliers, found_, about, *pose, *information);
+  frame_.note_consensus(inliers);
   return inliers;
 }
 

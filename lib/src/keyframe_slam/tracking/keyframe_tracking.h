@@ -32,6 +32,8 @@ class KeyframeTracking {
   /// Finds points with a depth about another pose than the predicted one. Changes nothing but the frame's matches. Returns the number of
   /// inliers, the pose with its information, and what the searches say for it.
   int measure_about(const PosePrior& about, CameraPose* pose, Mat6* information, PoseConsensus* consensus);
+  /// The frame is searched about yet another pose: takes back what the last measure_about() searched for.
+  void forget_searches() { frame_.forget_searches(); }
   /// Corrects the body by a pose that measure_about() returned, and says which matches agree with it.
   void correct(const CameraPose& pose, const Mat6& information);
   /// Updates the noise model with the residuals of this frame's inliers.

@@ -51,7 +51,7 @@ class PointSearch {
   /// the picture does not say it.
   bool find_followed();
   /// After a frame's searches: ImageSearch::note_fixed.
-  bool note_fixed() { return images_.note_fixed(map_.camera(), frame_); }
+  bool note_fixed() { return images_.note_fixed(map_.camera(), frame_, &map_.tables().features); }
   /// After a frame that supported its pose: the next one may be followed from it.
   void keep_view(const CameraView& view) { followed_.keep(images_.tracker().pyramid(), view.q_WC, view.c_W); }
   /// The map is given up, and with it all poses.

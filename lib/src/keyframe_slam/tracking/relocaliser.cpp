@@ -1,7 +1,10 @@
 #include "keyframe_slam/tracking/relocaliser.h"
 
+#include <cmath>
+
 #include "frame/tuning.h"
 #include "geometry/so3.h"
+#include "memory/tuning.h"
 
 namespace pf {
 
@@ -13,26 +16,69 @@ bool KeyframeRelocaliser::is_prediction_narrow(Scalar median_depth) const {
   return P(0, 0) + P(1, 1) + P(2, 2) < kNearbySigma * kNearbySigma && P(3, 3) + P(4, 4) + P(5, 5) < position * position;
 }
 
+const Mat6* KeyframeRelocaliser::found_covariance() const {
+  const int place = map_.places.entry_of(recalled_);
+  return place >= 0 ? &map_.places[place].covariance : nullptr;
+}
+
+/// Brings the place back that the image may show, and its rival, so that they can be searched for.
+bool KeyframeRelocaliser::recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival) {
+  recalled_ = 0;
+  if (recalled_in_vain_) return recalled_in_vain_ = false;  // it is the kept views' turn
+  Recall best, other;
+  if (!recall_.find(tracker_, &best, &other) || !keeper_.bring_back(best.place)) return false;
+  *has_rival = other.inliers > 0 && keeper_.bring_back(other.place);
+  keeper_.bring_near({best.pose.q_WC, best.pose.p_W}, best.depth, tuning::place::kMaxReturns);
+  recalled_ = best.place;
+  *place = best.pose;
+  *rival = other.pose;
+  return true;
+}
+
+KeyframeRelocaliser::Tried KeyframeRelocaliser::try_pose(const PoseHypothesis& about, const PoseProposal& before,
+                                                         Scalar median_depth) {
+  Tried out;
+  const PosePrior prior = {about.q_WC, about.p_W, about.P};
+  out.found = measuring_.measure_about(prior, &out.pose, &out.information, &out.consensus) >= settings_.min_inliers;
+  const bool follows = before.is_set && log_so3(out.pose.q_WC * before.q_WC.conjugate()).norm() < kAboutView &&
+                       (out.pose.p_WC - before.p_W).norm() < kAboutView * median_depth;
+  out.log_odds =
+      PoseBelief::updated(follows ? before.log_odds : PoseBelief::elsewhere(), belief_.evidence(out.consensus));
+  return out;
+}
+
+/// The rival is one of the other places where the camera may be, with odds of its own:
+///
+///   L = L_1 - ln(1 + exp(L_2))
 void KeyframeRelocaliser::recover(Scalar median_depth) {
-  const PoseProposal before = proposal_;
-  PoseHypothesis elsewhere;
-  CameraPose pose;
-  Mat6 information;
-  PoseConsensus consensus;
-  const bool chosen = find_elsewhere(before, views_, tracker_.pyramid(), map_.camera(), median_depth, &elsewhere);
-  const PosePrior about = {elsewhere.q_WC, elsewhere.p_W, elsewhere.P};
-  proposal_ = PoseProposal();
-  if (!chosen || measuring_.measure_about(about, &pose, &information, &consensus) < settings_.min_inliers) return;
-  const bool follows = before.is_set && log_so3(pose.q_WC * before.q_WC.conjugate()).norm() < kAboutView &&
-                       (pose.p_WC - before.p_W).norm() < kAboutView * median_depth;
-  const Scalar log_odds =
-      PoseBelief::updated(follows ? before.log_odds : PoseBelief::elsewhere(), belief_.evidence(consensus));
-  proposal_ = {true, log_odds, pose.q_WC, pose.p_WC, median_depth};
-  if (!PoseBelief::is_enough(log_odds)) return;
-  motion_.set_pose_covariance(about.covariance);
-  measuring_.correct(pose, information);
-  belief_.use(log_odds, consensus);
-  proposal_ = PoseProposal();
+  const PoseProposal before = proposal_, rival_before = rival_;
+  const std::uint32_t recalled = recalled_;
+  PoseHypothesis elsewhere, other;
+  bool has_other = false;
+  clear_proposal();
+  bool chosen = !before.is_set && recall(&elsewhere, &other, &has_other);
+  if (!chosen) {
+    recalled_ = recalled;
+    chosen = find_elsewhere(before, views_, tracker_.pyramid(), map_.camera(), median_depth, &elsewhere);
+    has_other = rival_before.is_set &&
+                find_elsewhere(rival_before, views_, tracker_.pyramid(), map_.camera(), median_depth, &other);
+  }
+  if (!chosen) return;
+  Scalar against = 0;
+  if (has_other) {
+    const Tried rival = try_pose(other, rival_before, median_depth);
+    rival_ = rival.proposal(median_depth);
+    if (rival.found) against = std::log1p(std::exp(rival.log_odds));
+    measuring_.forget_searches();
+  }
+  const Tried tried = try_pose(elsewhere, before, median_depth);
+  recalled_in_vain_ = recalled_ != 0 && !tried.found;
+  proposal_ = tried.proposal(median_depth);
+  if (!tried.found || !PoseBelief::is_enough(tried.log_odds - against)) return;
+  motion_.set_pose_covariance(elsewhere.P);
+  measuring_.correct(tried.pose, tried.information);
+  belief_.use(tried.log_odds - against, tried.consensus);
+  proposal_ = rival_ = PoseProposal();
 }
 
 }  // namespace pf

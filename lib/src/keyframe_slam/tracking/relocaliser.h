@@ -1,6 +1,8 @@
 #pragma once
 
 #include "frame/pose_hypotheses.h"
+#include "keyframe_slam/memory/place_keeper.h"
+#include "keyframe_slam/memory/place_recall.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
 
 /// Finds the window's map again after frames that did not support the pose (lib/docs/theory/states.md).
@@ -9,36 +11,74 @@ namespace pf {
 
 class KeyframeRelocaliser {
  public:
-  KeyframeRelocaliser(const Settings& settings, const KeyframeMap& map, KeyframeMotion& motion, const Tracker& tracker,
-                      KeyframeTracking& measuring, PoseBelief& belief)
-      : settings_(settings), map_(map), motion_(motion), tracker_(tracker), measuring_(measuring), belief_(belief) {}
+  KeyframeRelocaliser(const Settings& settings, KeyframeMap& map, const Frame& frame, KeyframeMotion& motion,
+                      const Tracker& tracker, KeyframeTracking& measuring, PoseBelief& belief)
+      : settings_(settings),
+        map_(map),
+        motion_(motion),
+        tracker_(tracker),
+        measuring_(measuring),
+        belief_(belief),
+        keeper_(settings, map, frame) {}
 
-  bool layout(Arena& arena) { return views_.layout(arena, settings_.max_kept_views); }
+  bool layout(Arena& arena) {
+    keeper_.layout(arena);
+    recall_.layout(arena);
+    return views_.layout(arena, settings_.kept.views);
+  }
   void init() {
     views_.init();
-    proposal_ = PoseProposal();
+    recall_.init();
+    clear_proposal();
   }
 
   /// Keeps the view of a tracked frame.
   void remember_view() { views_.keep_if_new(tracker_.pyramid(), motion_.body().q_WC, motion_.body().p_W); }
   /// The map is tracked: forgets what earlier frames proposed.
-  void clear_proposal() { proposal_ = PoseProposal(); }
+  void clear_proposal() {
+    proposal_ = rival_ = PoseProposal();
+    recalled_ = 0;
+  }
   /// The prediction is good enough to search about it.
   bool is_prediction_narrow(Scalar median_depth) const;
-  /// Searches where the pose may be when the prediction is not: about the last frame's proposal, or a kept view that looks like this image.
+  /// Searches where the pose may be when the prediction is not: about the last frame's proposal, where a place looks like this image, or
+  /// where a kept view does. A place is searched for together with its rival, the one that says most for another pose.
   void recover(Scalar median_depth);
+  /// Of the place by which the map was found again in this frame; null: by none.
+  const Mat6* found_covariance() const;
 
   int kept_views() const { return views_.count(); }
+  PlaceKeeper& keeper() { return keeper_; }
 
  private:
+  /// What a frame says for a pose.
+  struct Tried {
+    bool found = false;
+    CameraPose pose;
+    Mat6 information = Mat6::Zero();
+    PoseConsensus consensus;
+    Scalar log_odds = 0;
+
+    PoseProposal proposal(Scalar depth) const {
+      return found ? PoseProposal{true, log_odds, pose.q_WC, pose.p_WC, depth} : PoseProposal();
+    }
+  };
+
+  bool recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival);
+  Tried try_pose(const PoseHypothesis& about, const PoseProposal& before, Scalar median_depth);
+
   const Settings& settings_;
-  const KeyframeMap& map_;
+  KeyframeMap& map_;
   KeyframeMotion& motion_;
   const Tracker& tracker_;
   KeyframeTracking& measuring_;
   PoseBelief& belief_;
   ViewMemory views_;
-  PoseProposal proposal_;  ///< of earlier frames
+  PlaceKeeper keeper_;
+  PlaceRecall recall_{settings_, map_};
+  PoseProposal proposal_, rival_;  ///< of earlier frames
+  std::uint32_t recalled_ = 0;     ///< place that the proposal comes from; 0: none
+  bool recalled_in_vain_ = false;  ///< the last frame's place was not where it said
 };
 
 }  // namespace pf

@@ -1,0 +1,31 @@
+#ifndef PLANEFOLD_CAPTURE_MAP_FILE_H
+#define PLANEFOLD_CAPTURE_MAP_FILE_H
+
+#include <planefold/planefold.h>
+
+#include <string>
+#include <vector>
+
+namespace pf::capture {
+
+/// A saved map that the run begins in, and the one that it leaves.
+class MapFile {
+ public:
+  /// Reads the file that the run begins in; "": none. false: error is one line.
+  bool read(const std::string& path, std::string& error);
+  /// Puts it into a context that has no frames yet. log: what the library has said, of which the last line is the reason where it is
+  /// refused. false: error is one line.
+  bool load(pf_slam_t* slam, const std::vector<std::string>& log, std::string& error) const;
+  /// Saves the map of a context: written beside the file, synced and renamed, so that the file is always the old map or the new one. note:
+  /// a line for the user. false: there is no new file, and error is one line.
+  static bool save(const pf_slam_t* slam, const std::string& path, std::string& note, std::string& error);
+
+  bool empty() const { return path_.empty(); }
+
+ private:
+  std::string path_, bytes_;
+};
+
+}  // namespace pf::capture
+
+#endif

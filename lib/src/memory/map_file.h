@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/limits.h"
+#include "geometry/camera.h"
+#include "geometry/plane.h"
+#include "map/plane_outline.h"
+#include "memory/map_bytes.h"
+#include "memory/place.h"
+
+/// What a saved map holds, section by section (lib/docs/theory/map_format.md). Knows no back end.
+
+namespace pf {
+
+constexpr std::uint32_t kPortableMap = 1;           ///< PF_MAP_PORTABLE
+constexpr std::uint32_t kMaxSavedId = 0x7fffffffu;  ///< of features, planes and places
+
+/// A plane that lies in its frame.
+struct SavedPlane {
+  std::uint32_t id = 0;
+  std::uint32_t max_points = 0;  ///< most that it had at one time
+  PlaneFrame frame;
+  Mat3 covariance = Mat3::Zero();  ///< of (a, b, h)
+  PlaneOutline outline;
+};
+
+void write_lens(const Camera& camera, MapWriter* out);
+/// gravity_W: zero where it is not known.
+void write_world(const Vec3& gravity_W, MapWriter* out);
+/// Sections of many things, in the order of their ids: this, all of them, end_section().
+void begin_planes(int count, MapWriter* out);
+void write_plane(const SavedPlane& plane, MapWriter* out);
+void begin_places(int count, MapWriter* out);
+void write_place(const KeptPlace& place, MapWriter* out);
+
+/// Reads a saved map. Nothing of it is to be used before open() has said that all of it is good.
+class SavedMap {
+ public:
+  /// Reads and checks every number. Null, or what is wrong with it. scratch: for one place.
+  const char* open(const std::uint8_t* buffer, std::size_t bytes, KeptPlace* scratch);
+
+  const Vec3& gravity_W() const { return gravity_W_; }
+  int num_planes() const { return num_planes_; }
+  int num_places() const { return num_places_; }
+  /// The greatest ids.
+  std::uint32_t last_feature() const { return last_feature_; }
+  std::uint32_t last_place() const { return last_place_; }
+
+  /// use(plane), and use(place) with each place read into the scratch, in the order of their ids.
+  template <typename F>
+  void for_each_plane(F&& use) const {
+    MapReader in(planes_.bytes, planes_.count);
+    in.u32();
+    for (int k = 0; k < num_planes_; ++k) {
+      SavedPlane plane;
+      read_plane(&in, &plane);
+      use(plane);
+    }
+  }
+  template <typename F>
+  void for_each_place(KeptPlace* scratch, F&& use) const {
+    MapReader in(places_.bytes, places_.count);
+    in.u32();
+    for (int k = 0; k < num_places_; ++k) {
+      read_place(&in, scratch);
+      use(*scratch);
+    }
+  }
+
+ private:
+  static const char* read_lens(const MapSection& section);
+  const char* read_world(const MapSection& section);
+  const char* check_planes(const MapSection& section);
+  const char* check_places(const MapSection& section, KeptPlace* scratch);
+  bool has_plane(std::uint32_t id) const;
+  /// Null, or what is wrong with it.
+  static const char* read_plane(MapReader* in, SavedPlane* plane);
+  static const char* read_place(MapReader* in, KeptPlace* place);
+  static const char* read_point(MapReader* in, PlacePoint* point);
+
+  MapSection planes_, places_;
+  Vec3 gravity_W_ = Vec3::Zero();
+  int num_planes_ = 0, num_places_ = 0;
+  std::uint32_t plane_id_[kMaxPlanes] = {};
+  std::uint32_t last_feature_ = 0, last_place_ = 0;
+};
+
+}  // namespace pf

@@ -1,0 +1,45 @@
+#include "memory/place.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "memory/tuning.h"
+
+namespace pf {
+
+void crop_patch(const SourcePatch& from, PlacePatch* to) {
+  constexpr int kSize = PlacePatch::kSize;
+  constexpr int kFirst = (SourcePatch::kSize - PlacePatch::kSize) / 2;  // a feature is about in the middle of its patch
+  const auto within = [](int x) { return static_cast<std::uint8_t>(std::clamp(x - kFirst, 0, PlacePatch::kSize)); };
+  to->centre[0] = from.centre_x[0] - static_cast<float>(kFirst);
+  to->centre[1] = from.centre_y[0] - static_cast<float>(kFirst);
+  to->begin[0] = within(from.begin_x[0]);
+  to->begin[1] = within(from.begin_y[0]);
+  to->end[0] = within(from.end_x[0]);
+  to->end[1] = within(from.end_y[0]);
+  for (int y = 0; y < kSize; ++y)
+    std::memcpy(to->pixels + y * kSize, from.pixels[0] + (y + kFirst) * SourcePatch::kSize + kFirst, kSize);
+}
+
+void restore_patch(const PlacePatch& from, SourcePatch* to) {
+  std::memset(to, 0, sizeof *to);
+  to->centre_x[0] = from.centre[0];
+  to->centre_y[0] = from.centre[1];
+  to->begin_x[0] = from.begin[0];
+  to->begin_y[0] = from.begin[1];
+  to->end_x[0] = from.end[0];
+  to->end_y[0] = from.end[1];
+  for (int y = 0; y < PlacePatch::kSize; ++y)
+    std::memcpy(to->pixels[0] + y * SourcePatch::kSize, from.pixels + y * PlacePatch::kSize, PlacePatch::kSize);
+}
+
+Scalar view_distance2(const Quat& q_a, const Vec3& p_a, Scalar depth_a, const Quat& q_b, const Vec3& p_b,
+                      Scalar depth_b) {
+  using namespace tuning::place;
+  const Scalar far = kFarShift * std::min(depth_a, depth_b);
+  const Vec3 z_a = q_a * Vec3::UnitZ(), z_b = q_b * Vec3::UnitZ();
+  return (p_a - p_b).squaredNorm() / (far * far) + 2 * (1 - z_a.dot(z_b)) / (kFarTurn * kFarTurn);
+}
+
+}  // namespace pf

@@ -1,0 +1,56 @@
+#include "memory/place_table.h"
+
+namespace pf {
+
+int PlaceTable::count() const {
+  int count = 0;
+  for (int i = 0; i < capacity_; ++i) count += used(i) ? 1 : 0;
+  return count;
+}
+
+/// Entry of the most redundant one of a full table and of one more, which is the entry behind the last.
+int PlaceTable::most_redundant(const KeptPlace& another) const {
+  const auto at = [&](int i) -> const KeptPlace& { return i < capacity_ ? place_[i] : another; };
+  int worst = capacity_;
+  Scalar nearest = -1;
+  for (int i = 0; i <= capacity_; ++i)
+    for (int j = i + 1; j <= capacity_; ++j) {
+      const KeptPlace &a = at(i), &b = at(j);
+      const Scalar d2 = view_distance2(a.q_WK, a.p_WK, a.depth, b.q_WK, b.p_WK, b.depth);
+      if (nearest >= Scalar(0) && !(d2 < nearest)) continue;
+      nearest = d2;
+      const bool a_goes = a.count != b.count ? a.count < b.count : j == capacity_ || a.id < b.id;
+      worst = a_goes ? i : j;
+    }
+  return worst;
+}
+
+int PlaceTable::keep(const KeptPlace& place) {
+  if (capacity_ == 0) return -1;
+  int at = -1;
+  for (int i = capacity_ - 1; i >= 0; --i)
+    if (!used(i)) at = i;
+  if (at < 0) at = most_redundant(place);
+  if (at == capacity_) return -1;
+  place_[at] = place;
+  return at;
+}
+
+void PlaceTable::scale(Scalar s, const Vec3& c_W) {
+  const float f = static_cast<float>(s);
+  for (const int i : used_entries(*this)) {
+    KeptPlace& place = place_[i];
+    place.p_WK = c_W + s * (place.p_WK - c_W);
+    place.covariance.bottomRows<3>() *= s;
+    place.covariance.rightCols<3>() *= s;
+    place.depth *= s;
+    for (int k = 0; k < place.count; ++k) {
+      PlacePoint& point = place.point[k];
+      point.rho /= f;
+      for (float& c : point.covariance) c *= f * f;
+      for (float& c : point.c_K) c *= f;
+    }
+  }
+}
+
+}  // namespace pf

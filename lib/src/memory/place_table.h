@@ -1,0 +1,56 @@
+#pragma once
+
+#include "base/arena.h"
+#include "base/elapsed.h"
+#include "base/table_entries.h"
+#include "memory/place.h"
+
+/// Table of places: as many as the config says, the least redundant ones.
+
+namespace pf {
+
+class PlaceTable {
+ public:
+  bool layout(Arena& arena, int capacity) {
+    place_ = arena.take<KeptPlace>(static_cast<std::size_t>(capacity));
+    capacity_ = capacity;
+    return arena.ok();
+  }
+  void init() {
+    clear();
+    returned_ = 0;
+  }
+  void clear() {
+    for (int i = 0; i < capacity_; ++i) place_[i] = KeptPlace();
+  }
+
+  int capacity() const { return capacity_; }
+  int count() const;
+  bool used(int i) const { return place_[i].id != 0; }
+  KeptPlace& operator[](int i) { return place_[i]; }
+  const KeptPlace& operator[](int i) const { return place_[i]; }
+  /// Entry of the place with this id, or -1.
+  int entry_of(std::uint32_t id) const { return entry_with_id(*this, id); }
+
+  /// Keeps a place in a free entry, or in that of the one that is then most redundant: of the two of all that are nearest to each other,
+  /// the one with fewer points, the older one among equals. Where that is the new one it is not kept. Returns its entry, or -1.
+  int keep(const KeptPlace& place);
+  /// Multiplies lengths by s about a place that stays.
+  void scale(Scalar s, const Vec3& c_W);
+
+  /// A place comes back to the window as a keyframe.
+  void note_return(int i) {
+    place_[i].in_window = true;
+    count_frame(&returned_);
+  }
+  int returned() const { return returned_; }
+
+ private:
+  int most_redundant(const KeptPlace& another) const;
+
+  KeptPlace* place_ = nullptr;
+  int capacity_ = 0;
+  int returned_ = 0;  ///< since the beginning
+};
+
+}  // namespace pf

@@ -1,0 +1,227 @@
+"""pf-eval map: what a saved map holds. Reads the format of lib/docs/theory/map_format.md by itself, and needs nothing but Python."""
+
+import argparse
+import json
+import pathlib
+import struct
+import sys
+
+from . import Refused
+from .command_line import OneLineParser
+
+DESCRIPTION = """Says what is in a map that pf-capture --save-map or pf_save_map has written.
+
+  pf-eval map FILE [--ply FILE.ply] [--json [FILE]]"""
+
+MAGIC = b"\x89PFMAP\r\n"
+HEADER, SECTION = struct.Struct("<8sIIQII"), struct.Struct("<IIQII")
+TAGS = ["LENS", "WRLD", "PLAN", "PLAC"]
+PATCH = 22 * 22
+MODELS = {1: "pinhole", 2: "radtan", 3: "equidistant", 4: "division"}
+
+
+def crc_table():
+    table = []
+    for value in range(256):
+        for _ in range(8):
+            value = value >> 1 ^ (0x82F63B78 if value & 1 else 0)
+        table.append(value)
+    return table
+
+
+CRC = crc_table()
+
+
+def crc32c(data):
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc = CRC[(crc ^ byte) & 255] ^ crc >> 8
+    return crc ^ 0xFFFFFFFF
+
+
+class Numbers:
+    """Numbers of a section, one after the other."""
+
+    def __init__(self, name, data):
+        self.name, self.data, self.at = name, data, 0
+
+    def take(self, form):
+        form = struct.Struct("<" + form)
+        if self.at + form.size > len(self.data):
+            raise Refused(f"{self.name} is too short")
+        values = form.unpack_from(self.data, self.at)
+        self.at += form.size
+        return values
+
+    def end(self):
+        if self.at != len(self.data):
+            raise Refused(f"{self.name} has another length")
+
+
+def sections_of(data):
+    if len(data) < HEADER.size or data[:8] != MAGIC:
+        raise Refused("it is no saved map")
+    _, version, kind, total, count, crc = HEADER.unpack_from(data)
+    if version != 0:
+        raise Refused(f"its format has version {version}; this program reads version 0")
+    if crc != crc32c(data[:HEADER.size - 4]):
+        raise Refused("its header is damaged")
+    if kind != 1:
+        raise Refused("it is not portable")
+    if total != len(data):
+        raise Refused(f"it has {len(data)} bytes and should have {total}")
+    at, found = HEADER.size, {}
+    for _ in range(count):
+        if at + SECTION.size > len(data):
+            raise Refused("a section is missing")
+        tag, version, length, crc, _ = SECTION.unpack_from(data, at)
+        name = tag.to_bytes(4, "little").decode("ascii", "replace")
+        payload = data[at + SECTION.size:at + SECTION.size + length]
+        if len(payload) != length or crc != crc32c(data[at:at + 16] + payload):
+            raise Refused(f"section {name} is damaged")
+        found[name] = Numbers(name, payload)
+        at += SECTION.size + length
+    if list(found) != TAGS or at != len(data):
+        raise Refused("it has not the sections of a portable map")
+    return found
+
+
+def read_lens(numbers):
+    model, width, height, _ = numbers.take("4I")
+    values = numbers.take("12d")
+    numbers.end()
+    return {"model": MODELS.get(model, str(model)), "width": width, "height": height,
+            "fx": values[0], "fy": values[1], "cx": values[2], "cy": values[3], "distortion": list(values[4:])}
+
+
+def read_planes(numbers):
+    planes = []
+    for _ in range(numbers.take("I")[0]):
+        plane, points, vertices, _ = numbers.take("4I")
+        R = numbers.take("9d")
+        origin = numbers.take("3d")
+        covariance = numbers.take("6d")
+        outline = [numbers.take("2d") for _ in range(vertices)]
+        normal = [R[2], R[5], R[8]]
+        corners = [[origin[i] + R[3 * i] * u + R[3 * i + 1] * v for i in range(3)] for u, v in outline]
+        area = 0.5 * sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(outline, outline[1:] + outline[:1]))
+        planes.append({"id": plane, "max_points": points, "normal": normal,
+                       "distance": sum(n * p for n, p in zip(normal, origin)), "area": area,
+                       "sigma_distance": covariance[5] ** 0.5, "outline": corners})
+    numbers.end()
+    return planes
+
+
+def rotate(q, v):
+    """Of a quaternion w x y z."""
+    w, u = q[0], q[1:]
+    cross = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    t = [2 * x for x in cross(u, v)]
+    return [x + w * y + z for x, y, z in zip(v, t, cross(u, t))]
+
+
+def read_places(numbers):
+    places = []
+    for _ in range(numbers.take("I")[0]):
+        place, count = numbers.take("2I")
+        (depth,), q, p = numbers.take("d"), numbers.take("4d"), numbers.take("3d")
+        numbers.take("21d")
+        points = []
+        for _ in range(count):
+            feature, plane, observations, _, _, _, _ = numbers.take("3I4B")
+            ray, (rho,) = numbers.take("3d"), numbers.take("d")
+            covariance = numbers.take("6d")
+            numbers.take("9d")
+            numbers.take("4Q")
+            pixels = numbers.take(f"{PATCH}s")[0]
+            at = rotate(q, [x / rho for x in ray])
+            points.append({"id": feature, "plane": plane, "observations": observations,
+                           "p_W": [x + y for x, y in zip(p, at)], "grey": pixels[PATCH // 2 + 11],
+                           "sigma": (covariance[0] + covariance[2] + covariance[5]) ** 0.5})
+        places.append({"id": place, "q_WK": list(q), "p_WK": list(p), "depth": depth, "points": points})
+    numbers.end()
+    return places
+
+
+def read(path):
+    try:
+        data = pathlib.Path(path).read_bytes()
+    except OSError as error:
+        raise Refused(f"{path}: {error.strerror}") from error
+    try:
+        found = sections_of(data)
+        gravity = list(found["WRLD"].take("3d"))
+        found["WRLD"].end()
+        return {"bytes": len(data), "lens": read_lens(found["LENS"]), "gravity_W": gravity if any(gravity) else None,
+                "planes": read_planes(found["PLAN"]), "places": read_places(found["PLAC"])}
+    except Refused as refused:
+        raise Refused(f"{path}: {refused}") from refused
+
+
+def points_of(saved):
+    """Each point once, as the place knows it that is least uncertain."""
+    best = {}
+    for place in saved["places"]:
+        for point in place["points"]:
+            if point["id"] not in best or point["sigma"] < best[point["id"]]["sigma"]:
+                best[point["id"]] = point
+    return [best[key] for key in sorted(best)]
+
+
+def to_ply(saved):
+    """Points in their grey level, and places in red."""
+    rows = [(*point["p_W"], point["grey"], point["grey"], point["grey"]) for point in points_of(saved)]
+    rows += [(*place["p_WK"], 255, 0, 0) for place in saved["places"]]
+    head = ["ply", "format ascii 1.0", "comment pf-eval map", f"element vertex {len(rows)}"]
+    head += [f"property float {axis}" for axis in "xyz"] + [f"property uchar {c}" for c in ("red", "green", "blue")]
+    return "\n".join(head + ["end_header"] + [f"{x:.6g} {y:.6g} {z:.6g} {r} {g} {b}" for x, y, z, r, g, b in rows]) + "\n"
+
+
+def summary_of(saved):
+    points = points_of(saved)
+    return {"bytes": saved["bytes"], "lens": saved["lens"], "gravity_W": saved["gravity_W"],
+            "places": [{"id": place["id"], "points": len(place["points"]), "p_WK": place["p_WK"], "depth": place["depth"]}
+                       for place in saved["places"]],
+            "points": len(points), "points_on_planes": sum(point["plane"] != 0 for point in points),
+            "planes": [{key: value for key, value in plane.items() if key != "outline"} for plane in saved["planes"]]}
+
+
+def text_of(summary):
+    lens, lines = summary["lens"], []
+    lines.append(f"  {summary['bytes'] / 1000:.1f} kB, of a {lens['model']} camera of {lens['width']} x {lens['height']} "
+                 f"pixels, f {lens['fx']:.1f}")
+    lines.append(f"  {len(summary['places'])} places with {summary['points']} points, {summary['points_on_planes']} of them on planes")
+    for place in summary["places"]:
+        x, y, z = place["p_WK"]
+        lines.append(f"  place {place['id']:5d}  {place['points']:3d} points, at {x:.3f} {y:.3f} {z:.3f}, median depth {place['depth']:.3g}")
+    for plane in summary["planes"]:
+        x, y, z = plane["normal"]
+        lines.append(f"  plane {plane['id']:5d}  normal {x:.3f} {y:.3f} {z:.3f}, distance {plane['distance']:.3f}, area {plane['area']:.3g}")
+    if summary["gravity_W"] is not None:
+        lines.append("  gravity {:.3f} {:.3f} {:.3f}".format(*summary["gravity_W"]))
+    return "\n".join(lines)
+
+
+def main(words):
+    parser = OneLineParser(prog="pf-eval map", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", metavar="FILE")
+    parser.add_argument("--ply", metavar="FILE.ply", help="points and places as a cloud")
+    parser.add_argument("--json", metavar="FILE", nargs="?", const="-", help="as JSON, to a file or the output")
+    options = parser.parse_args(words)
+    try:
+        saved = read(options.file)
+        summary = summary_of(saved)
+        for path, text in ((options.ply, to_ply(saved)), (options.json, json.dumps(summary, indent=2) + "\n")):
+            if path == "-":
+                sys.stdout.write(text)
+            elif path:
+                try:
+                    pathlib.Path(path).write_text(text)
+                except OSError as error:
+                    raise Refused(f"{path}: cannot be written ({error.strerror})") from error
+        if options.json != "-":
+            print(f"{options.file}\n{text_of(summary)}")
+    except Refused as refused:
+        print(f"pf-eval: {refused}", file=sys.stderr)
+        return 1
+    return 0
