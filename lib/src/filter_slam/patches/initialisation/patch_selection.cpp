@@ -48,7 +48,8 @@ int PatchSelection::wanted_on(int wall) const {
     born = std::max(born, store_[i].born);
     PatchSight sight;
     good += store_[i].was_found() && expect_patch(filter_, map_.planes, store_[i], wall, &sight) &&
-            sight.cosine > kLastingCosine && is_whole_in_view(filter_.lens(), sight);
+            sight.cosine > kLastingCosine && is_whole_in_view(filter_.lens(), sight) &&
+            stay_in_view(sight.middle_W) == Scalar(1);
   }
   const int since = frame_.report.frames - born;
   if (good == 0) return born == 0 || since >= kRetryFrames ? kOnWall : 0;
