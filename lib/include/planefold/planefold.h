@@ -222,7 +222,7 @@ typedef enum pf_backend {
    * 2015). Images only. PF_ERROR_CONFIG with motion.model inertial or constant acceleration,
    * camera.estimate consider, plane.fix_sigma above 0 and capacity.max_patches above 0. The pose's
    * covariance takes the map's first keyframes as exact, those of points and planes all keyframes
-   * and the lens. The block at its defaults is 2.0 MiB, with camera.estimate estimate 2.1. */
+   * and the lens. The block at its defaults is 2.4 MiB, with camera.estimate estimate 2.5. */
   PF_BACKEND_WINDOW = 2
 } pf_backend_t;
 

@@ -26,7 +26,7 @@ inline constexpr bool kHasWindow = PLANEFOLD_WINDOW != 0;      ///< the keyframe
 inline constexpr bool kHasInertial = PLANEFOLD_INERTIAL != 0;  ///< the inertial motion model
 inline constexpr bool kHasWalls = PLANEFOLD_WALLS != 0;        ///< walls of a plan, and patches
 inline constexpr bool kHasMasks = PLANEFOLD_MASKS != 0;        ///< templates with masks
-inline constexpr bool kHasMemory = PLANEFOLD_MEMORY != 0;  ///< places, and maps that are saved
+inline constexpr bool kHasMemory = PLANEFOLD_MEMORY != 0;      ///< places, and maps that are saved
 
 /// A setting that is always false, and known to be, in builds without its part.
 template <bool kPart>

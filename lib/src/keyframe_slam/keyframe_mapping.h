@@ -6,6 +6,7 @@
 #include "keyframe_slam/start/keyframe_record.h"
 #include "keyframe_slam/tracking/point_search.h"
 #include "keyframe_slam/tracking/pose_measurement.h"
+#include "keyframe_slam/tracking/relocaliser.h"
 
 /// Keeps the map of the window: gives points depths, adds keyframes and adjusts them, and adds new points.
 
@@ -15,7 +16,7 @@ class KeyframeMapping {
  public:
   KeyframeMapping(const Settings& settings, KeyframeMap& map, Frame& frame, KeyframeMotion& motion,
                   KeyframePlanes& planes, const NoiseModel& noise, const PointSearch& search,
-                  const PoseMeasurement& pose, KeyframeRecord& record, PlaceKeeper& keeper)
+                  const PoseMeasurement& pose, KeyframeRecord& record, KeyframeRelocaliser& relocaliser)
       : settings_(settings),
         map_(map),
         frame_(frame),
@@ -25,9 +26,9 @@ class KeyframeMapping {
         search_(search),
         pose_(pose),
         record_(record),
-        keeper_(keeper),
+        keeper_(relocaliser.keeper()),
         adjustment_(settings, map, planes, noise),
-        saving_(settings, map, planes, keeper) {}
+        saving_(settings, map, planes, keeper_) {}
 
   bool layout(Arena& arena) {
     saving_.layout(arena);

@@ -40,12 +40,11 @@ class KeyframeSlam {
   const NoiseModel& noise() const { return noise_; }
   const KeyframeMap& map() const { return map_; }
   const KeyframePlanes& planes() const { return planes_; }
-  const MapSaving& saving() const { return mapping_.saving(); }
   const KeyframeMotion& motion() const { return motion_; }
   /// Time of the body: that of the last frame, or of the one that it repeats.
   std::int64_t body_ns() const { return data_.body_ns; }
-  /// Covariance of the map about the last frame, given the keyframes that the last adjustment held fixed.
-  const Mat6& map_covariance() const { return mapping_.adjustment().map_covariance(); }
+  /// What keeps the map: its adjustment says how sure the map is, and it saves it.
+  const KeyframeMapping& mapping() const { return mapping_; }
   int kept_views() const { return relocaliser_.kept_views(); }
   /// Of the inliers of the last tracked frame.
   Scalar median_depth() const { return data_.median_depth; }
@@ -94,8 +93,7 @@ class KeyframeSlam {
   KeyframeRelocaliser relocaliser_{settings_,         map_, frame_, motion_, search_.images().tracker(), measuring_,
                                    tracking_.belief()};
   KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
-  KeyframeMapping mapping_{settings_, map_,    frame_, motion_, planes_,
-                           noise_,    search_, pose_,  record_, relocaliser_.keeper()};
+  KeyframeMapping mapping_{settings_, map_, frame_, motion_, planes_, noise_, search_, pose_, record_, relocaliser_};
   KeyframeStart start_{
       settings_,         map_,    frame_,      tracking_, motion_, search_.images(), mapping_.adjustment().target(),
       mapping_.saving(), record_, data_.second};

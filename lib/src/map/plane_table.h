@@ -38,9 +38,9 @@ struct PlaneEntry {
       apart;  ///< a wall that nothing in the map has been compared with yet, since the scale is not known
   bool two_sided = false;
   bool remembered = false;  ///< of a loaded map: stays while none of its points are in the window
-  Scalar roughness = 0;  ///< [m] of its surface
-  Scalar prior[6] = {};  ///< of a wall: covariance of (a, b, h), lower triangle; zero: it no longer counts
-  PlaneOutline plan;     ///< of a wall, as it was given
+  Scalar roughness = 0;     ///< [m] of its surface
+  Scalar prior[6] = {};     ///< of a wall: covariance of (a, b, h), lower triangle; zero: it no longer counts
+  PlaneOutline plan;        ///< of a wall, as it was given
   PlaneOutline support;  ///< of all points that it was found by or that ever joined it, in the coordinates of its frame
 
   /// Whether points and patches may lie on it, and it hides what is behind it.

@@ -44,7 +44,7 @@ Status Session::start_from_pose(const KnownBody& known) {
 Status Session::load_map(const std::uint8_t* buffer, std::size_t bytes, const char** wrong) {
   if (!kHasMemory || has_filter() || settings_.kept.places == 0 || view().used()) return Status::kState;
   SavedMap saved;
-  *wrong = saved.open(buffer, bytes, window_->saving().scratch());
+  *wrong = saved.open(buffer, bytes, window_->mapping().saving().scratch());
   if (*wrong != nullptr) return Status::kMap;
   const Status status = window_->start().use_map(saved);
   if (status == Status::kOk && saved.gravity_W().squaredNorm() > Scalar(0)) set_gravity(saved.gravity_W());

@@ -15,13 +15,13 @@ namespace pf {
 struct KeyframePoint {
   int host = -1;  ///< keyframe
   Vec3 ray_K = Vec3::UnitZ();
-  Scalar rho = 0;             ///< [1/m] along ray_K, which has length 1
-  Scalar variance = 0;        ///< of rho, keyframes taken as exact
-  bool has_depth = false;     ///< rho was triangulated, or is the target's
-  bool faces_host = false;    ///< its appearance is the host's
-  std::int8_t plane = -1;     ///< entry of the plane that it lies on, or -1
+  Scalar rho = 0;                ///< [1/m] along ray_K, which has length 1
+  Scalar variance = 0;           ///< of rho, keyframes taken as exact
+  bool has_depth = false;        ///< rho was triangulated, or is the target's
+  bool faces_host = false;       ///< its appearance is the host's
+  std::int8_t plane = -1;        ///< entry of the plane that it lies on, or -1
   RhoPrior remembered = {0, 0};  ///< of a point that a place brought back: what it knew of rho then
-  Vec2 pixel = Vec2::Zero();  ///< where it was last seen, and from where
+  Vec2 pixel = Vec2::Zero();     ///< where it was last seen, and from where
   CameraView seen_from;
 };
 
