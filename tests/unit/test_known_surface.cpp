@@ -79,7 +79,7 @@ void test_plane_should_not_take_what_the_surface_explains() {
 }
 
 /// A wall that carries the target is made of what the target's surface explains.
-void test_plane_may_be_the_surface() {
+void test_plane_should_be_found_when_it_is_the_surface() {
   SeededRandom random(2);
   std::vector<PlaneCandidate> candidates;
   const KnownSurface surface = plate();
@@ -104,6 +104,6 @@ int main() {
   RUN_TEST(test_surface_should_explain_what_lies_on_it_and_near_its_points);
   RUN_TEST(test_surface_should_explain_nothing_where_there_is_none);
   RUN_TEST(test_plane_should_not_take_what_the_surface_explains);
-  RUN_TEST(test_plane_may_be_the_surface);
+  RUN_TEST(test_plane_should_be_found_when_it_is_the_surface);
   return UNITY_END();
 }

@@ -1,5 +1,5 @@
-// Folded points whose pixels say that they lie elsewhere leave their plane, and it turns to where the others are. Where the map begins again
-// with them, their plane goes on.
+// Folded points whose pixels say that they lie elsewhere leave their plane, and it turns to where the others are. Where the map begins
+// again with them, their plane goes on.
 #include "same.h"
 #include "support/plane_keeper_bench.h"
 

@@ -18,7 +18,6 @@ bool PlaneDiscovery::layout(Arena& arena, int max_features) {
 
 int PlaneDiscovery::list_candidates() {
   int count = 0;
-  target_ = surface_of_target(filter_, map_);
   const Scalar limit = Scalar(2) * settings_.plane_distance;
   for (int i = 0; i < map_.features.capacity(); ++i) {
     if (!certain_.is_settled(i)) continue;
@@ -32,8 +31,7 @@ int PlaneDiscovery::list_candidates() {
           std::abs(plane_distance(frame, plane.xyz(), p_W)) < limit && is_in_reach(settings_, filter_, map_, k, p_W);
     }
     if (taken || !certain_.is_certain(i, &candidate_[count].covariance)) continue;
-    const Mat3& covariance = candidate_[count].covariance;
-    candidate_[count].is_explained = explains(target_, p_W, covariance, settings_.fold.roughness, settings_.fold.gate);
+    candidate_[count].is_explained = false;
     candidate_[count].p_W = p_W;
     candidate_[count++].name = i;
   }
@@ -65,8 +63,7 @@ void PlaneDiscovery::discover() {
   if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
   const int count = list_candidates();
   if (count <= settings_.plane_min_points) return;
-  PlaneSearchSettings search = plane_search_settings(settings_);
-  search.known = &target_;
+  const PlaneSearchSettings search = plane_search_settings(settings_);
   PlaneFit fit;
   int member[kMaxPlaneMembers];
   int members = 0;
@@ -109,8 +106,7 @@ bool PlaneDiscovery::resume_plane(std::uint32_t id, int count) {
   const Vec3 viewer_W = filter_.state().body.p_W;
   PlaneFit fit;
   if (!fit_plane(points, known, viewer_W, &fit)) return false;
-  PlaneSearchSettings search = plane_search_settings(settings_);
-  search.known = &target_;
+  const PlaneSearchSettings search = plane_search_settings(settings_);
   PlaneRefit refit(candidate_, count, search, viewer_W);
   if (!refit.run({fit.frame.o_W, fit.frame.R_WP.col(2), 0})) return false;
   int member[kMaxPlaneMembers];

@@ -49,7 +49,6 @@ class PlaneDiscovery {
   const CertainPoints& certain_;
   OwnPlaces& places_;
   PlaneCandidate* candidate_ = nullptr;  ///< max_features; their names are entries of the feature table
-  KnownSurface target_;                  ///< that the target is on, as in this frame
   std::uint32_t searches_ = 0;           ///< so far
   bool has_found_ = false;               ///< the last one has
 };

@@ -46,11 +46,6 @@ void fold_into(const Settings& settings, Filter& filter, Map& map, const Certain
   const PlaneFrame& frame = filter.state().frame_of(block);
   const FoldRule rule = fold_rule(settings, entry);
   const Scalar near = settings.plane_distance + (entry.known ? rule.roughness : Scalar(0));
-  Vec3 n_W;
-  Scalar d_W;
-  plane_normal(frame, block.xyz(), &n_W, &d_W);
-  const KnownSurface target = surface_of_target(filter, map);
-  const bool may_be_target = may_be_plane(target, n_W);
   int slots[Filter::kMaxFolded];
   const int limit = std::min(Filter::kMaxFolded, settings.max_observations);
   int count = 0;
@@ -63,7 +58,6 @@ void fold_into(const Settings& settings, Filter& filter, Map& map, const Certain
     if (std::abs(plane_distance(frame, block.xyz(), p_W)) > Scalar(2) * near * farther) continue;
     Mat3 covariance;
     if (!lies_on(settings, filter, map, plane, slot) || !certain.is_certain(i, &covariance)) continue;
-    if (!may_be_target && explains(target, p_W, covariance, rule.roughness, rule.gate)) continue;
     slots[count++] = slot;
   }
   unsigned char folded[Filter::kMaxFolded];

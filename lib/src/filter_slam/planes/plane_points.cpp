@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/table_entries.h"
 #include "filter_slam/features/wall_rays.h"
 #include "frame/plane_settings.h"
-#include "frame/start/start.h"
 #include "frame/tuning.h"
 #include "model/camera_at.h"
 
@@ -61,14 +59,6 @@ bool is_in_reach(const Settings& settings, const Filter& filter, const Map& map,
   const PlaneOutline& known = map.planes[plane_entry].support;
   const Scalar reach = std::min(tuning::plane_keeper::kReach * std::sqrt(outline_area(known)), settings.plane_radius);
   return outline_contains(known, plane_coordinates(frame, p_W), reach);
-}
-
-KnownSurface surface_of_target(const Filter& filter, const Map& map) {
-  Vec3 points_W[Target::kMaxPoints];
-  int count = 0;
-  for (const int i : used_entries(map.features))
-    if (map.features[i].is_target && count < Target::kMaxPoints) points_W[count++] = filter.point(map.features[i].slot);
-  return known_surface(map.target_normal_W, points_W, count, tuning::plane_keeper::kReach);
 }
 
 bool lies_on(const Settings& settings, const Filter& filter, const Map& map, int plane, int slot) {

@@ -2,7 +2,6 @@
 
 #include "filter/filter.h"
 #include "frame/settings.h"
-#include "map/known_surface.h"
 #include "map/map.h"
 
 /// Points of a plane of the table: which are on it, and which may be.
@@ -33,9 +32,6 @@ bool is_before_wall(const Filter& filter, const Map& map, int plane_entry, const
 /// Whether a point is near the known part of a plane; far from it, a point lies in the plane by chance. The paper limits the distance
 /// from the plane's origin instead, since it has no variance for the distance of far points; here there is one.
 bool is_in_reach(const Settings& settings, const Filter& filter, const Map& map, int plane_entry, const Vec3& p_W);
-
-/// The surface of the target, by its points in the map.
-KnownSurface surface_of_target(const Filter& filter, const Map& map);
 
 /// Whether a point is near the plane (block), its distance is known, and it passes the gate of folding. A passed gate means little if the
 /// variance of the distance is large, so that is bounded by distance_at its range.
