@@ -11,7 +11,7 @@ namespace {
 using gauge::kDirections;
 constexpr double kTolerance = sizeof(Scalar) == 8 ? 1e-10 : 1e-4;  ///< of a pivot, relative to its variance
 /// Of variances: what rounding may have left missing (below).
-constexpr double kMissing =
+const double kMissing =
     static_cast<double>(sizeof(Scalar) == 8 ? tuning::soundness::kRounding : tuning::soundness::kRoundingFloat);
 constexpr int kColumns = 8;  ///< of N: the last one holds the variances
 

@@ -21,7 +21,7 @@ inline constexpr Scalar kFarTurn = Scalar(0.4);        ///< [rad] likewise
 namespace place_search {
 inline constexpr int kMaxBits = 70;                   ///< that differ between two views of a point, nine times in ten
 inline constexpr Scalar kMaxRatio = Scalar(0.85);     ///< of these to those of the second best corner
-inline constexpr int kCellCorners = 12;               ///< of each of the 48 parts of the image that are described
+static constexpr int kCellCorners = 12;               ///< of each of the 48 parts of the image that are described
 inline constexpr int kThreshold = 10;                 ///< [grey levels] of a corner
 inline constexpr Scalar kSameCorner = Scalar(8);      ///< [px] between corners that show the same
 inline constexpr int kMinMatches = 6;                 ///< of a place that is tried
