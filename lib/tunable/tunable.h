@@ -2,8 +2,8 @@
 
 #include <type_traits>
 
-/// Tuned numbers of a build with PLANEFOLD_TUNABLE, read from a table when the program starts, so that trying one needs no build. No release
-/// has this: it reads a file, and its numbers are no constants to the compiler.
+/// Tuned numbers of a build with PLANEFOLD_TUNABLE, read from a table when the program starts, so that trying one needs no build. No
+/// release has this: it reads a file, and its numbers are no constants to the compiler.
 
 namespace pf {
 
