@@ -78,7 +78,7 @@ struct Table : PlaneKeeperBench {
   /// The map begins again with the same features, as points: where they are, or each so much of its depth farther or nearer in turn.
   void begin_again(Scalar apart) {
     map.planes.keep_known();
-    filter->init(settings.kernels, settings.body, settings.keep_gauge);
+    filter->init(settings.kernels, settings.body, settings.research.keep_gauge);
     filter->set_lens(settings.camera, LensPrior());
     filter->set_roughness(settings.fold.roughness);
     for (int i = 0; i < kPoints; ++i) {

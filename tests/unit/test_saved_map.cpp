@@ -143,7 +143,7 @@ std::uint64_t number_at(const Bytes& bytes, std::size_t at, int count) {
 
 void set_number(Bytes* bytes, std::size_t at, std::uint64_t value, int count) {
   for (int i = 0; i < count; ++i)
-    (*bytes)[at + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(value >> (8 * i));
+    bytes->at(at + static_cast<std::size_t>(i)) = static_cast<std::uint8_t>(value >> (8 * i));
 }
 
 /// Makes all CRCs fit, as far as the sections lead.
