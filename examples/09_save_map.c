@@ -106,6 +106,7 @@ int main(void) {
     return 1;
   }
   printf("a map of %lu kB with %d places\n", (unsigned long)(used / 1000), (int)report.places);
+  printf("the second run begins in it: its state is %d, lost, until it finds itself\n", (int)report.state);
   for (frame = AGAIN_FROM; frame < FRAMES; ++frame) {
     const pf_status_t status = push(second, frame);
     if (status < PF_OK || pf_get_pose(second, &pose) < PF_OK) {

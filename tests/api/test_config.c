@@ -106,7 +106,7 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES(map.border_px, 3);
   NAMES(map.border_px, 65);
   NAMES(motion.model, 0);
-  NAMES(motion.model, 3);
+  NAMES(motion.model, 5);
   NAMES(first_depth.from_map, 2);
   NAMES(first_depth.from_map, -1);
   NAMES(plane.enabled, 2);

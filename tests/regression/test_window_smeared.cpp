@@ -29,8 +29,9 @@ double turn_error(const RenderedRun::Frame& first, const RenderedRun::Frame& las
   return 2 * std::acos(std::min(1.0, same));
 }
 
-/// From nothing; from frame `first` on some frames are smeared by 9 px. Returns how many of these are tracked.
-int follow_smeared(std::size_t first) {
+/// From nothing; from frame `first` on some frames are smeared by 9 px. Returns how many of these are tracked, and how far
+/// the rotation is off at worst [rad].
+int follow_smeared(std::size_t first, double* off) {
   RenderedRun::backend = PF_BACKEND_WINDOW;
   RenderedRun run("room", 60, RenderedRun::Start::kNone);
   run.tracked_until(first);
@@ -42,14 +43,19 @@ int follow_smeared(std::size_t first) {
     if (run.frames[i].status == PF_OK) worst = std::fmax(worst, turn_error(run.frames[first - 1], run.frames[i]));
   std::printf("smeared from frame %d on: %d of %d tracked, rotation off by up to %.4f\n", static_cast<int>(first),
               tracked, static_cast<int>(kFrames), worst);
-  TEST_ASSERT_TRUE(worst < 0.02);
+  TEST_ASSERT_TRUE_MESSAGE(worst < 0.03, "rotation is off");
+  *off = worst;
   return tracked;
 }
 
 void test_window_should_follow_by_what_a_smeared_picture_leaves() {
   int tracked = 0;
-  for (const std::size_t first : {32, 35, 40, 45, 50}) tracked += follow_smeared(first);
-  TEST_ASSERT_GREATER_OR_EQUAL_INT(static_cast<int>(4 * kFrames), tracked);
+  constexpr std::size_t kFirst = 32, kRuns = 20;
+  double off[kRuns];
+  for (std::size_t k = 0; k < kRuns; ++k) tracked += follow_smeared(kFirst + k, &off[k]);
+  TEST_ASSERT_GREATER_OR_EQUAL_INT(static_cast<int>(kRuns * kFrames * 4 / 5), tracked);
+  std::nth_element(off, off + kRuns / 2, off + kRuns);
+  TEST_ASSERT_TRUE_MESSAGE(off[kRuns / 2] < 0.012, "rotations are off in the median run");
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ def walls(root):
         '{"planefold_walls": 1, "up": [0, -1, 0], "faces": [{"name": "north", "corners": %s, "sigma_rotation_deg": 0.2, "sigma_vertical_deg": 0.2, '
         '"sigma_offset_m": 0.01}]}' % corners)
     (root / "first.tum").write_text("0 0 0 0 0 0 0 1 0.003 0.1\n")
-    said = capture("a wall that is elsewhere", "--source", "sim:street", "--walls", root / "plan.json", "--start", f"pose:{root}/first.tum", "--frames", 120,
+    said = capture("a wall that is elsewhere", "--source", "sim:street", "--walls", root / "plan.json", "--start", f"pose:{root}/first.tum", "--frames", 150,
                    "--out", root / "out")
     expect("a wall that is elsewhere", said, "--walls: the pictures contradict wall 'north'")
     (root / "plan.json").write_text((root / "plan.json").read_text().replace(str(corners), str([[1000 * x for x in corner] for corner in corners])))

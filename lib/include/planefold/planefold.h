@@ -934,7 +934,7 @@ typedef struct pf_report {
   /* Features that agree with the best of the poses that this frame was searched for; `inliers` of
    * them were used, if that pose was believed. */
   int32_t consensus;
-  int32_t reason; /* pf_frame_reason_t */
+  int32_t reason;          /* pf_frame_reason_t */
   int32_t places;          /* of capacity.max_places: that are kept */
   int32_t places_returned; /* since the beginning: how often a place has come back to the window */
 } pf_report_t;

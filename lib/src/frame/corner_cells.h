@@ -46,8 +46,7 @@ struct CornerStrength {
   int threshold;  ///< of the segment test [grey levels]
   float score;    ///< min_eigenvalue
 };
-const CornerStrength kPlainCorner = {tuning::image_corners::kCornerThreshold,
-                                         tuning::image_corners::kMinCornerScore};
+const CornerStrength kPlainCorner = {tuning::image_corners::kCornerThreshold, tuning::image_corners::kMinCornerScore};
 /// Of a picture that has too few others: a dim one, or one of a bare wall.
 const CornerStrength kFaintCorner = {tuning::image_corners::kFaintThreshold, tuning::image_corners::kFaintScore};
 

@@ -59,7 +59,6 @@ bool PlaneDiscovery::take(const PlaneFit& fit, int* member, int members, std::ui
 
 void PlaneDiscovery::discover() {
   const std::uint32_t number = searches_++;  // whatever is found, and whether there is anything to search
-  has_found_ = false;
   if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
   const int count = list_candidates();
   if (count <= settings_.plane_min_points) return;
@@ -68,7 +67,7 @@ void PlaneDiscovery::discover() {
   int member[kMaxPlaneMembers];
   int members = 0;
   if (!search_plane(candidate_, count, search, filter_.state().body.p_W, number, &fit, member, &members)) return;
-  has_found_ = take(fit, member, members, 0);
+  take(fit, member, members, 0);
 }
 
 void PlaneDiscovery::resume() {

@@ -20,12 +20,7 @@ class PlaneDiscovery {
       : settings_(settings), filter_(filter), map_(map), certain_(certain), places_(places) {}
 
   bool layout(Arena& arena, int max_features);
-  void init() {
-    searches_ = 0;
-    has_found_ = false;
-  }
-  /// Whether it is time to look for one: every few frames, and where the last search found one, since there may be more.
-  bool is_due(int frame) const { return has_found_ || frame % tuning::plane_keeper::kDiscoverEvery == 0; }
+  void init() { searches_ = 0; }
 
   /// Looks for one new plane.
   void discover();
@@ -50,7 +45,6 @@ class PlaneDiscovery {
   OwnPlaces& places_;
   PlaneCandidate* candidate_ = nullptr;  ///< max_features; their names are entries of the feature table
   std::uint32_t searches_ = 0;           ///< so far
-  bool has_found_ = false;               ///< the last one has
 };
 
 }  // namespace pf

@@ -52,7 +52,7 @@ void PlaneKeeper::maintain(bool may_doubt) {
   }
   dissolve_weak(settings_, filter_, map_, features_);
   places_.end_with_planes();
-  const bool is_due = discovery_.is_due(frame_.report.frames);
+  const bool is_due = frame_.report.frames % tuning::plane_keeper::kDiscoverEvery == 0;
   if (!is_due && !discovery_.has_lost()) return;
   certain_.update_scale();  // its points may be gone or planar since
   discovery_.resume();

@@ -68,7 +68,7 @@ void KeyframeRelocaliser::recover(Scalar median_depth) {
   if (has_other) {
     const Tried rival = try_pose(other, rival_before, median_depth);
     rival_ = rival.proposal(median_depth);
-    if (rival.found) against = std::log1p(std::exp(rival.log_odds));
+    if (rival.found) against = std::log(1 + std::exp(rival.log_odds));
     measuring_.forget_searches();
   }
   const Tried tried = try_pose(elsewhere, before, median_depth);
