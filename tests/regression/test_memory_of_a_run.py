@@ -14,8 +14,8 @@ from script import BIN, SOURCE, c_compiler, fail, run, skip, skip_unless_plain_n
 from small_camera import CALIBRATION  # noqa: E402
 
 PROGRAM = BIN / "pf-capture"
-FRAMES = 40000
-FIRST, LAST = (20500, 25000), (35500, 40000)  # four laps each: how many features are in view makes some kilobytes
+FRAMES = 60000
+FIRST, LAST = (30500, 35000), (55500, 60000)  # four laps each: how many features are in view makes some kilobytes
 BYTES_PER_FRAME = 0.4  # a megabyte in a day of 30 frames a second
 
 
