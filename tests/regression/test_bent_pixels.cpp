@@ -28,7 +28,7 @@ void test_maps_found_again_from_far_should_keep_their_covariance() {
   play_episode(455001, 129, &seen);
   play_episode(455004, 40, &seen);
   TEST_ASSERT_GREATER_THAN_INT(400, seen.frames);
-  TEST_ASSERT_GREATER_THAN_INT(150, seen.tracked);
+  TEST_ASSERT_GREATER_THAN_INT(190, seen.tracked);
   TEST_ASSERT_EQUAL_INT(0, seen.repaired);
 }
 

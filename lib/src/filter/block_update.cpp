@@ -11,6 +11,9 @@
 namespace pf {
 namespace {
 
+// A row of H P H^T is a sum whose terms cancel where camera and point are wide together, so in float what rounding leaves of it may be
+// larger than the noise of its pixel; then that is noise too. In double it is far below any noise.
+constexpr bool kNoisyRounding = sizeof(Scalar) == sizeof(float);
 constexpr Scalar kMaxNis = Scalar(1e12);  ///< a sum of squares that is larger is no number any more
 
 }  // namespace
@@ -93,6 +96,7 @@ const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned 
         for (int c = row_[j]; c < row_[j + 1]; ++c) S_[to * lds_ + column++] = S_[from * lds_ + c];
       }
       for (int b = 0; b <= a; ++b) S_[to * lds_ + m + b] += z[i].R_update[a + b * rows];
+      if (kNoisyRounding) S_[to * lds_ + to] += tuning::soundness::kDigits * rounding_of(z[i].H, a);
       y_[to] = z[i].measured[a] - z[i].predicted[a];
     }
     m += rows;
