@@ -5,7 +5,7 @@
 
 namespace pf {
 
-/// Says what fits badly, once each: matches far beyond their noise, a lens far from its calibration.
+/// Logs what fits badly, once each: matches far beyond their noise, a lens far from its calibration.
 class FitWarnings {
  public:
   /// lens: as it is estimated now.

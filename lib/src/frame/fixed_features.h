@@ -10,11 +10,11 @@
 
 namespace pf {
 
-/// What stands still in the picture while the rest of it moves: the carrier's own body, a date that is written over it. It is no part of
-/// the scene, and is masked from then on (lib/docs/theory/belief.md).
+/// Finds features that stand still in the image while the rest moves: the carrier's own body, a date that is written over the image. They
+/// are no part of the scene, and their surroundings are masked from then on (lib/docs/theory/belief.md).
 ///
-/// Since a reference frame most features have moved by kMinFlow or more, as if the camera had turned: the turn that fits these moves what
-/// is at a feature by m. A feature whose pixel has moved by d then adds
+/// Since a reference frame most features have moved by kMinFlow or more, as if the camera had rotated; this rotation moves the image at a
+/// feature by m. A feature whose pixel has moved by d then adds
 ///
 ///   ln N(d; 0, kStill^2 I) - ln N(d; m, (kParallax |m|)^2 I),   bounded by +-kMaxStep
 ///

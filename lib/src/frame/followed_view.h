@@ -5,13 +5,14 @@
 #include "track/tracker.h"
 #include "vision/pyramid.h"
 
-/// Where to look in an image when the motion model cannot tell: by how the whole picture has moved since the last frame that supported its
-/// pose. See lib/docs/theory/matching.md.
+/// Where to search in an image when the motion model is too vague: where the image as a whole has moved since the last frame that supported
+/// its pose (lib/docs/theory/matching.md).
 
 namespace pf {
 
-/// The camera may have turned by more, or stopped more suddenly, than the motion model allows for, and searches about the prediction then
-/// find nothing. The picture itself says how it has moved, to a fraction of a pixel of its thumbnail, as if the camera had only turned.
+/// A camera that rotates or stops faster than the motion model allows leaves the search ellipses, and searches about the prediction find
+/// nothing. The thumbnails of both images give the rotation between them, to a fraction of a thumbnail's pixel, as if the camera had only
+/// rotated.
 class FollowedView {
  public:
   void init() { data_.is_kept = false; }

@@ -117,7 +117,7 @@ class Frame {
   void forget_all() {
     for (int i = 0; i < count_; ++i) match_[i].feature = -1;
   }
-  /// What was searched for in vain is searched once more: takes its matches back.
+  /// Removes this frame's matches, so that the same features can be searched for again.
   void forget_searches() {
     count_ = 0;
     report.attempts = report.matches = 0;

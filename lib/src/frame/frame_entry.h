@@ -10,9 +10,9 @@
 namespace pf {
 
 enum class FrameEntry : std::uint8_t {
-  kLate,      ///< not after the last frame: refused
+  kLate,      ///< not after the last frame: rejected
   kRepeated,  ///< the image before again: so are its pose and status, under the new time
-  kFrozen,    ///< likewise, for so long that nobody knows where the camera is now
+  kFrozen,    ///< the same, for so long that the camera may be anywhere
   kNew
 };
 

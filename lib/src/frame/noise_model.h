@@ -28,7 +28,7 @@ class NoiseModel {
   static Mat2 reference() {
     return Mat2::Identity() * (tuning::noise::kReferenceSigma * tuning::noise::kReferenceSigma);
   }
-  /// Of a match before the image has said how good it is: search, and the first depths without a target.
+  /// Prior of a match, before the template's fit gives its covariance: for the search, and for the first depths without a target.
   static Mat2 search() { return Mat2::Identity() * (tuning::noise::kSearchSigma * tuning::noise::kSearchSigma); }
   /// R_update of such a match.
   static Mat2 search_update() { return search() * tuning::noise::kPriorFrames; }

@@ -36,10 +36,10 @@ struct ImuRoom {
   ImuRanges ranges;
 };
 
-/// What comparisons turn off (planefold_research.h).
+/// Parts of the method that comparisons switch off (planefold_research.h).
 struct ResearchForms {
   bool keep_gauge = true;    ///< keeps the covariance consistent with what a camera cannot observe
-  bool gate_patches = true;  ///< refuses patches whose corners are not where they should be
+  bool gate_patches = true;  ///< rejects patches whose corners fail their gate
 };
 
 /// The config after it was checked, in the library's own types.

@@ -38,8 +38,8 @@ class TrackingState {
   }
   /// This frame shows something to track; dt_ns since the frame before.
   void note_usable_image(std::int64_t dt_ns) { data_.usable_ns += data_.lost ? dt_ns : 0; }
-  /// There is a pose from this time on. The first one says where W is; after a loss pictures have to show that they go on from one to the
-  /// next. lost: in a map that was loaded, where it may be anywhere.
+  /// There is a pose from this time on. The first one defines W; after a loss several images must agree on the motion between them first.
+  /// lost: in a loaded map, where the camera may be anywhere.
   void set_has_pose(std::int64_t t_ns, bool lost = false) {
     data_.has_pose = true;
     data_.lost = lost;
