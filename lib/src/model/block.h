@@ -7,7 +7,7 @@
 #include "geometry/plane.h"
 #include "model/rows.h"
 
-/// A block of the state: its kind, its values, and how it hangs on other blocks.
+/// A block of the state: its kind, its values, and the blocks that it depends on.
 
 namespace pf {
 
@@ -46,7 +46,7 @@ struct KindInfo {
   int values = 0;  ///< in Block::value
   FeatureForm form = FeatureForm::kNone;
   ScaleSource scale = ScaleSource::kNone;
-  bool planar = false;          ///< hangs on a plane, directly or through a point group
+  bool planar = false;          ///< depends on a plane, directly or through a point group
   bool dies_childless = false;  ///< goes with its last child, unless it is pinned
   bool carries_points = false;  ///< no feature, but rows that features share
 };
@@ -94,7 +94,7 @@ struct Block {
   std::int16_t next_sibling = -1;    ///< in the list of its parent
   std::int16_t next_of_second = -1;  ///< in the list of its second parent
   std::int16_t frame = -1;           ///< of a plane: index into State::plane_frame
-  Scalar value[kMaxValues] = {};     ///< what they are, the kind's file says
+  Scalar value[kMaxValues] = {};     ///< meaning: the kind's file
 
   Vec3 xyz() const { return Vec3(value[0], value[1], value[2]); }
   void set_xyz(const Vec3& p) {

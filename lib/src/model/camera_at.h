@@ -18,7 +18,7 @@ namespace pf {
 ///
 ///   v = v_B - R (w x m),   e_v = e_v_B + [R (w x m)]x theta + R [m]x e_w
 ///
-/// Its samples tell accelerations too, of which the errors do not matter over half a readout:
+/// Its samples measure accelerations too, whose errors do not matter over half a readout:
 ///
 ///   R_tau = R Exp(w tau + alpha tau^2 / 2),   p_tau = p + v tau + R a tau^2 / 2
 struct CameraAt {
@@ -32,13 +32,13 @@ struct CameraAt {
   Mat3 J_theta_w;                      ///< R J_l(w tau) tau, by the rows at rate_row; only where tau is not 0
   bool beside = false;                 ///< the state's velocity is that of another point; the two below only then
   Mat3 J_p_theta, J_p_w;               ///< of p_tau, beside the identity and tau
-  int velocity_row = 0, rate_row = 0;  ///< of the velocity; of the angular velocity, or of the bias that it hangs on
+  int velocity_row = 0, rate_row = 0;  ///< of the velocity; of the angular velocity, or of the bias on which it depends
 
   /// Rows of the body that its error depends on, from the first one on.
   int columns() const { return tau == Scalar(0) ? Body::kPoseDim : rate_row + 3; }
   Part part() const { return Part::body(0, columns()); }
 
-  /// What J over (theta, p) of this camera says of the readout that tau is a part of:
+  /// The column of the readout, of which tau is a part, for a J over (theta, p) of this camera:
   ///
   ///   d(theta_tau, p_tau) = (R_tau w, v) tau / readout d_readout
   template <int kRows>

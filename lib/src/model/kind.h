@@ -6,7 +6,7 @@
 
 namespace pf::model {
 
-/// What a kind does where its file says nothing else. A kind has kKind and kInfo, and what it does otherwise:
+/// Defaults of a kind. A kind has kKind and kInfo, and replaces of these what it does otherwise:
 ///
 ///   retract    x [+] e of its values, e over its rows
 ///   add_gauge  its gauge rows over the whole state; planar kinds get theirs with their parent's
