@@ -43,7 +43,7 @@ class KeyframeSlam {
   const KeyframeMotion& motion() const { return motion_; }
   /// Time of the body: that of the last frame, or of the one that it repeats.
   std::int64_t body_ns() const { return data_.body_ns; }
-  /// What keeps the map: its adjustment says how sure the map is, and it saves it.
+  /// Keeps the map: its adjustment has the map's covariance, and it saves the map.
   const KeyframeMapping& mapping() const { return mapping_; }
   int kept_views() const { return relocaliser_.kept_views(); }
   /// Of the inliers of the last tracked frame.
