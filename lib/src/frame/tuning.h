@@ -99,8 +99,7 @@ inline constexpr int kDiscredits = 2;          ///< one in so many inliers, from
 
 /// Where the picture as a whole has gone.
 namespace followed_view {
-inline constexpr Scalar kSigma =
-    Scalar(0.3);  ///< [px of a thumbnail] of a pixel, since a translation is taken as a rotation
+inline constexpr Scalar kSigma = Scalar(0.3);   ///< [px of a thumbnail], for a translation counts as a rotation
 inline constexpr Scalar kWideArea = Scalar(4);  ///< least area of a wide ellipse in those about followed pixels
 }  // namespace followed_view
 
