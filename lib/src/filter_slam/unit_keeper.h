@@ -81,9 +81,9 @@ class UnitKeeper {
   /// With the inertial motion model.
   const RestHold& hold() const { return parts_->hold; }
   const MetricStart& metric() const { return metric_; }
-  /// As it is known now.
+  /// Present estimate.
   ImuNoise noise() const { return motion_.unit_noise().now(); }
-  /// Where the unit is on the camera, as far as it is known.
+  /// Present estimate of the unit's mounting on the camera.
   Mounting mounting() const { return start_.mounting().now(); }
 
  private:

@@ -34,24 +34,24 @@ class CornerCells {
   Rect rect_of(int row, int column) const;
 
   int width_, height_, border_;
-  int in_view_ = 0;  ///< inliers and what this frame has added
+  int in_view_ = 0;  ///< inliers, and features that this frame has added
   int in_cell_[kCells] = {};
   bool on_plane_[kCells] = {};
 };
 
 enum class CornerUse { kTaken, kNotHere, kNoRoom };
 
-/// What a corner must have, at least.
+/// Least contrast of a corner.
 struct CornerStrength {
   int threshold;  ///< of the segment test [grey levels]
   float score;    ///< min_eigenvalue
 };
 const CornerStrength kPlainCorner = {tuning::image_corners::kCornerThreshold, tuning::image_corners::kMinCornerScore};
-/// Of a picture that has too few others: a dim one, or one of a bare wall.
+/// For an image with too few plain corners: a dim one, or one of a bare wall.
 const CornerStrength kFaintCorner = {tuning::image_corners::kFaintThreshold, tuning::image_corners::kFaintScore};
 
-/// Offers the corners of a cell that are near no feature of the frame, the best first, to take(pixel), until it takes one. False: it took
-/// none.
+/// Calls take(pixel) for the corners of a cell that are near no feature of the frame, the best first, until it returns true. False: it
+/// never did.
 template <typename F>
 bool take_corner(const Tracker& tracker, const Rect& cell, const CornerStrength& least, const Frame& frame, int width,
                  F&& take);

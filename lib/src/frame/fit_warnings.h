@@ -8,7 +8,7 @@ namespace pf {
 /// Logs what fits badly, once each: matches far beyond their noise, a lens far from its calibration.
 class FitWarnings {
  public:
-  /// lens: as it is estimated now.
+  /// lens: the present estimate.
   void check(const Settings& settings, const NoiseModel& noise, const Camera& lens);
 
  private:

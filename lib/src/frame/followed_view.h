@@ -19,12 +19,12 @@ class FollowedView {
 
   /// Keeps the view of a frame that supported its pose.
   void keep(const Pyramid& image, const Quat& q_WC, const Vec3& p_W);
-  /// Finds the kept view in an image. False if there is none, or the pictures do not match.
+  /// Finds the kept view in an image. False if there is none, or the images do not match.
   bool find(const Camera& camera, const Pyramid& image);
 
-  /// Centre of the camera in whose image the view was found: that of the kept one, as if it had only turned.
+  /// Centre of the camera in whose image the view was found: that of the kept one, as if it had only rotated.
   const Vec3& p_W() const { return data_.p_W; }
-  /// Directs a search to where that camera has a point. False where it is not in front of it.
+  /// Directs a search to where that camera sees a point. False where the point is not in front of it.
   bool aim(const Camera& camera, const Vec3& point_W, SearchTask* task) const;
   /// Covariance of the pixel there [px^2].
   static Mat2 covariance(const Camera& camera);

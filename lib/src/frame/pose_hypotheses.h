@@ -17,7 +17,7 @@ struct PoseHypothesis {
   Vec3 p_W = Vec3::Zero();
   Mat6 P = Mat6::Zero();  ///< covariance of (theta, p)
 
-  /// Known to so much in any direction.
+  /// Hypothesis with the same sigma about each axis: rotation [rad], position [m].
   static PoseHypothesis about(const Quat& q_WC, const Vec3& p_W, Scalar rotation, Scalar position);
 };
 
@@ -27,7 +27,7 @@ struct PoseProposal {
   Scalar log_odds = 0;  ///< that it is right
   Quat q_WC = Quat::Identity();
   Vec3 p_W = Vec3::Zero();
-  Scalar depth = 1;  ///< of what is seen, median
+  Scalar depth = 1;  ///< median, of the measured points
 };
 
 /// Where the camera may be when it is not where it was predicted: at the last frame's proposal, else at the kept view that is most like the
@@ -35,19 +35,19 @@ struct PoseProposal {
 bool find_elsewhere(const PoseProposal& last, const ViewMemory& views, const Pyramid& image, const Camera& lens,
                     Scalar depth, PoseHypothesis* out);
 
-/// Those of a frame that have been tried: several halve, third, ... the odds of each.
+/// The hypotheses of a frame that have been tried. n of them divide the odds of each by n.
 class PoseHypotheses {
  public:
   PoseHypotheses(const Settings& settings, PoseBelief& belief) : settings_(settings), belief_(belief) {}
 
-  /// A frame begins with its first hypothesis.
+  /// Begins a frame with its first hypothesis.
   void begin() { tried_ = 1; }
-  /// The frame is searched about another one.
+  /// Adds a hypothesis about which the frame is searched.
   void add() { ++tried_; }
 
-  /// Evidence for the present one.
+  /// Evidence for the present hypothesis.
   Scalar evidence(const PoseConsensus& consensus) const;
-  /// Log-odds of its pose with that, before which it had those of the prediction.
+  /// Log-odds of its pose with that evidence, from those of the prediction.
   Scalar weigh(const PoseConsensus& consensus) const {
     return PoseBelief::updated(belief_.predicted(), evidence(consensus));
   }

@@ -37,7 +37,7 @@ inline constexpr Scalar kMaxRateSigma = Scalar(1);          ///< [rad/s] of a ha
 inline constexpr Scalar kMaxSpeedSigma = Scalar(0.5);       ///< [depths/s] of a hand
 }  // namespace relocaliser
 
-/// How far a body that nothing measures may be predicted.
+/// Bounds of the prediction of a body without measurements.
 namespace body_motion {
 inline constexpr Scalar kSpeedDecay = Scalar(0.25);       ///< [s] time constant of a speed that is not measured
 inline constexpr Scalar kMaxRotationSigma = Scalar(0.5);  ///< [rad] of an axis; beyond, angular noise is left out
@@ -60,7 +60,7 @@ namespace image_corners {
 inline constexpr int kCornerThreshold = 8;       ///< [grey levels] of the segment test
 inline constexpr float kMinCornerScore = 12.0f;  ///< smaller eigenvalue of the gradients [grey levels^2/px^2]
 inline constexpr int kFaintThreshold = 3;        ///< [grey levels] the same, where such corners leave too few in view
-inline constexpr float kFaintScore = 1.5f;       ///< likewise
+inline constexpr float kFaintScore = 1.5f;       ///< the same
 inline constexpr int kFaintBelow = 2;            ///< tracked frames' least inliers in view, below which it is that
 inline constexpr int kMinNewFeatures = 4;        ///< in one frame; new features share an anchor
 inline constexpr int kMaxInCell = 3;             ///< features in a cell of the image; one more where it shows a plane
@@ -69,26 +69,26 @@ inline constexpr int kPlaneAhead = 2;  ///< features that do not count there whe
 
 /// The order in which features are searched.
 namespace image_front_end {
-inline constexpr float kIncomparable = 1000;  ///< taken off the rate of what cannot be compared: more than any rate
+inline constexpr float kIncomparable = 1000;  ///< subtracted from the rate of incomparable features: more than any rate
 inline constexpr int kScouts = 12;            ///< candidates that are measured first when the pose is uncertain
 inline constexpr Scalar kWideEllipse = Scalar(6);  ///< [px] largest semi-axis above which scouts are measured first
 inline constexpr int kMinConsensus = 5;            ///< inliers that a consensus needs during a start
-inline constexpr Scalar kFewFound = Scalar(0.75);  ///< share below which searches of a start follow the picture
+inline constexpr Scalar kFewFound = Scalar(0.75);  ///< share below which searches of a start follow the image
 inline constexpr int kSettled = 5;     ///< measurements of a feature whose residuals are those of its matches
-inline constexpr int kMinWide = 2;     ///< one in so many ellipses is wide where searches follow the picture
+inline constexpr int kMinWide = 2;     ///< one in so many ellipses is wide where searches follow the image
 inline constexpr int kFewPassing = 2;  ///< matches for each that passes a gate, above which chance lets those pass
 }  // namespace image_front_end
 
-/// What is fixed to the picture (FixedFeatures).
+/// Features that are fixed to the image (FixedFeatures).
 namespace fixed_features {
-inline constexpr int kMaxAge = 90;             ///< [frames] of a reference while the picture stands still
+inline constexpr int kMaxAge = 90;             ///< [frames] of a reference while the image stands still
 inline constexpr Scalar kMinFlow = Scalar(2);  ///< [px] by which a feature has moved
 inline constexpr int kMinMoved = 2;   ///< one in so many features has moved, and as one, where others are judged
 inline constexpr int kMinPixels = 8;  ///< of them
 inline constexpr int kRounds = 3;     ///< of the fit of a rotation
 inline constexpr Scalar kRegularisation = Scalar(1e-3);  ///< [px^2/rad^2] of that fit
-inline constexpr Scalar kStill = Scalar(0.25);           ///< [px] sigma of the shift of what is fixed
-inline constexpr Scalar kParallax = Scalar(0.7);  ///< sigma of the scene's shift, in that of the picture as a whole
+inline constexpr Scalar kStill = Scalar(0.25);           ///< [px] sigma of the shift of a fixed feature
+inline constexpr Scalar kParallax = Scalar(0.7);  ///< sigma of the scene's shift, in that of the image as a whole
 inline constexpr Scalar kMaxStep = Scalar(4);     ///< log-odds of one comparison, at most
 inline constexpr Scalar kMost = Scalar(12);    ///< log-odds of all comparisons, at most: three in favour undo any past
 inline constexpr Scalar kScene = Scalar(50);   ///< features of the scene for each fixed one, before any was judged

@@ -65,8 +65,8 @@ class KeyframeSlam {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     Mark mark;
-    bool is_map_fixed = false;  ///< it comes from what stands still in the picture
-    bool young = false;         ///< in this frame so few points have a depth that those without must help
+    bool is_map_fixed = false;  ///< the map has come from what stands still in the image
+    bool young = false;         ///< in this frame so few points have a depth that those without are used for the pose
     SecondPose second;
     FrozenCamera frozen;
     FitWarnings warnings;

@@ -15,7 +15,7 @@ namespace pf::model {
 ///   scale_row  the row that picks the log scale; only with ScaleSource::kOwnRow
 struct Kind {
   static constexpr bool kHasPlace = false;
-  static constexpr bool kSharesGauge = false;  ///< children have gauge rows that are made of its own
+  static constexpr bool kSharesGauge = false;  ///< gauge rows of children are made of its own
 
   static void retract(Block* block, const Scalar* e) {
     for (int i = 0; i < block->size; ++i) block->value[i] += e[i];

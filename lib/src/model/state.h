@@ -22,11 +22,11 @@ struct State {
   BodyLayout layout;
   gauge::Set unobservable = gauge::kBareCamera;  ///< directions that no measurement constrains
   bool metric = false;                           ///< samples of the inertial unit give lengths and gravity
-  /// The samples of the inertial unit move the body. Without them its velocity goes on, and the rows of the gyro's bias are those of the
-  /// angular velocity: w_B = c - b, where c does not matter.
+  /// True while the samples of the inertial unit move the body. Without them its velocity stays constant, and the rows of the gyroscope's
+  /// bias are those of the angular velocity: w_B = c - b with any constant c.
   bool uses_samples = true;
   Mounting mounting;       ///< of the inertial unit
-  Camera lens;             ///< calibration as it is known now
+  Camera lens;             ///< present calibration
   LensRows lens_rows;      ///< of BodyPart::kLens
   Block* block = nullptr;  ///< slots
   int slots = 0;
