@@ -28,7 +28,7 @@ class ObservationFrontEnd {
 
   bool layout(Arena& arena, int max_features, int max_observations);
 
-  /// Where the observations of a frame are written; holds as many as the map and a frame together.
+  /// Buffer for the observations of a frame; as large as the map and a frame together.
   PixelObservation* inbox() { return inbox_; }
   int inbox_size() const { return settings_.max_features + settings_.max_observations; }
 

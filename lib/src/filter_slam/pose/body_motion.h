@@ -18,7 +18,7 @@ class BodyMotion {
   static constexpr std::int64_t kMaxGapNs = 2000000000;  ///< [ns] longest time between frames that a prediction covers
 
   void init() { data_ = Data(); }
-  /// How noisy the inertial unit is, which outlasts init().
+  /// Noise of the inertial unit; init() keeps it.
   UnitNoise& unit_noise() { return noise_; }
   const UnitNoise& unit_noise() const { return noise_; }
   /// Known change of the velocities in camera axes, until the next frame.

@@ -25,7 +25,7 @@ namespace pf {
 /// Derivation and measurements: lib/docs/theory/noise.md
 struct MatchAges {
   const unsigned char* frames =
-      nullptr;    ///< in which the feature of each match was measured, up to 255; null: groups are not tested
+      nullptr;    ///< in which each match's feature was measured, up to 255; null: groups are not tested
   int least = 0;  ///< matches that a group of new ones is tested against, at least
 };
 

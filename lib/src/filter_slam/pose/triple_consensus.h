@@ -7,7 +7,7 @@
 
 namespace pf {
 
-/// Three matches fix a pose. The other matches are compared with where the joint covariance of all pixels, given the three, predicts them:
+/// Three matches fix a pose. The other matches are compared with their prediction by the joint covariance of all pixels, given the three:
 ///
 ///   r_j|T = r_j - S_jT S_T^-1 r_T,   S_j|T = S_jj - S_jT S_T^-1 S_Tj
 ///
