@@ -19,13 +19,13 @@ class RateCheck {
       : settings_(settings), filter_(filter), imu_(imu), frame_(frame) {}
 
   void init();
-  /// Compares from now on, and forgets what was compared before.
+  /// Starts the comparison anew.
   void begin() {
     data_.rates.init();
     data_.begin.t_ns = 0;
   }
-  /// After a frame without samples. doubts: how often the unit was rejected; each rejection lengthens the agreement that is required. True
-  /// where the reason why no clock and no axes fit has just been found.
+  /// Notes a frame whose prediction had no samples. doubts: how often the unit was rejected; each rejection lengthens the agreement that is
+  /// required. True where the reason why no clock and no axes fit has just been found.
   bool note(const UnitFrame& frame, bool is_rejected, int doubts);
   /// Clock and axes that fit; null: none. After use() samples are used.
   const RateFit* fit() const { return data_.has_fit ? &data_.fit : nullptr; }
@@ -33,13 +33,13 @@ class RateCheck {
     data_.is_open = data_.has_fit = false;
     data_.reason = UnitReason::kNone;
   }
-  /// Pictures contradict the samples.
+  /// Images contradict the samples: starts the comparison anew, with that as the reason.
   void contradict() {
     begin();
     data_.reason = UnitReason::kContradicts;
   }
 
-  /// The clock or the axes are open, and have not been found yet.
+  /// True where the clock or the axes are open and not found yet.
   bool is_open() const { return data_.is_open; }
   bool finds_axes() const;
   /// Why the samples do not move the body. *value: its number; *R_CB: the axes that fit, both as far as the reason has them.

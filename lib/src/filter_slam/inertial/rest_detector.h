@@ -8,8 +8,8 @@
 #include "frame/frame.h"
 #include "frame/settings.h"
 
-/// Detects that the camera lies still, from the samples of its inertial unit and from the picture together: a slow turntable is quiet to
-/// the samples, and a wall that moves along is quiet to the picture. See lib/docs/theory/inertial.md.
+/// Detects a camera at rest from the samples of its inertial unit and the image together: samples do not show a slow turntable, and the
+/// image does not show motion together with the scene (lib/docs/theory/inertial.md).
 
 namespace pf {
 
@@ -33,7 +33,7 @@ class RestDetector {
   /// How far the image has moved since this rest began, as a mean over some frames; at least the least motion that can be distinguished
   /// from none [px].
   Scalar motion_px() const;
-  /// The map has begun anew while the rest goes on: the picture is compared with that of the next second from now on.
+  /// After a map that began anew during the rest: compares the image with the mean of the next second.
   void begin_pixels_anew();
   /// The camera moves, by other evidence.
   void end_rest() { data_->rested = 0; }
@@ -44,7 +44,7 @@ class RestDetector {
 
   using Vec4 = Eigen::Matrix<Scalar, 4, 1>;
 
-  /// Where a feature was at the beginning of this second, or in the mean of the first second of this rest or of this map.
+  /// Pixel of a feature at the beginning of this second, or its mean over the first second of this rest or map.
   struct Seen {
     std::uint32_t id;
     int count;
@@ -55,7 +55,7 @@ class RestDetector {
     bool begun = false;
     std::int64_t begin_ns = 0;  ///< of this second
     std::int64_t rest_begin_ns = 0;
-    std::int64_t sample_ns = 0;  ///< time of the last sample that was taken in
+    std::int64_t sample_ns = 0;  ///< time of the last sample that was added
     int count = 0;
     int seen = 0;
     Scalar motion2 = 0;                           ///< [px^2] of the picture since this second began

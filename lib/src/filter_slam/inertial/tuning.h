@@ -7,22 +7,23 @@
 
 namespace pf::tuning {
 
-/// An inertial unit before anything is known of it.
+/// Priors of an inertial unit.
 namespace inertial {
 inline constexpr Scalar kGyroBias = Scalar(0.1);   ///< [rad/s] sigma of each axis
 inline constexpr Scalar kAccelBias = Scalar(0.2);  ///< [m/s^2] sigma of each axis
-inline constexpr Scalar kGravity = Scalar(1);      ///< [rad] sigma of its direction: nothing is known
-inline constexpr Scalar kYoungMap = Scalar(15);    ///< [s] age of a map of unknown scale that gives way to a metric one
+inline constexpr Scalar kGravity = Scalar(1);      ///< [rad] sigma of its direction, which is open
+inline constexpr Scalar kYoungMap = Scalar(15);    ///< [s] oldest map of unknown scale that a metric one replaces
 }  // namespace inertial
 
-/// Whether samples and pictures agree. Slack and bound are from six healthy runs of 60 s (largest sum 38) and wrong units (pf-sim --fault).
+/// Agreement of samples and images. Slack and bound are from six runs of 60 s without faults (largest sum 38) and wrong units (pf-sim
+/// --fault).
 namespace unit_watch {
-inline constexpr Scalar kSlack = Scalar(9);              ///< that a frame may add to the sum, of a chi-square of six
+inline constexpr Scalar kSlack = Scalar(9);              ///< subtracted from each frame's chi-square of six
 inline constexpr Scalar kBound = Scalar(100);            ///< of the sum, above which the unit is rejected
 inline constexpr Scalar kBoundOnProbation = Scalar(30);  ///< in the first kTrial of its use after a rejection
-inline constexpr Scalar kMaxOfFrame = Scalar(50);        ///< no single frame is enough
+inline constexpr Scalar kMaxOfFrame = Scalar(50);        ///< of a frame's chi-square: no single frame is enough
 inline constexpr Scalar kMaxPoseNis = Scalar(38.3);      ///< chi-square of six, 1 - 1e-6: samples are not used for it
-inline constexpr Scalar kSilence = Scalar(0.1);          ///< [s] without a sample, after which none is waited for
+inline constexpr Scalar kSilence = Scalar(0.1);          ///< [s] without a sample, after which the mode is silent
 inline constexpr Scalar kRate = Scalar(1);               ///< [rad/s] sigma of the rate where samples were wrong
 inline constexpr Scalar kSpeed = Scalar(1);              ///< [m/s] the same of the velocity, or in units of W
 inline constexpr Scalar kTime = Scalar(0.2);             ///< [s] for which the pose may have followed wrong samples
@@ -40,14 +41,14 @@ inline constexpr Scalar kNone = Scalar(0.08);  ///< share of gravity below which
 
 /// The camera's rates against the gyroscope's.
 namespace rate_alignment {
-inline constexpr int kMinWithGyro = 2;                   ///< one in so many of those has samples
-inline constexpr int kMinIntervals = 15;                 ///< between frames
-inline constexpr Scalar kMirrored = Scalar(0.2);         ///< of what a rotation leaves, where a reflection leaves less
-inline constexpr Scalar kMaxLeft = Scalar(0.35);         ///< of an accepted alignment: a correlation of 0.8
-inline constexpr Scalar kClearly = Scalar(1.3);          ///< what the next best delay leaves, in what the best one does
+inline constexpr int kMinWithGyro = 2;            ///< one in so many of those has samples
+inline constexpr int kMinIntervals = 15;          ///< between frames
+inline constexpr Scalar kMirrored = Scalar(0.2);  ///< share of a rotation's residuals, below which a reflection fits
+inline constexpr Scalar kMaxLeft = Scalar(0.35);  ///< of an accepted alignment: a correlation of 0.8
+inline constexpr Scalar kClearly = Scalar(1.3);   ///< residuals of the next best delay over those of the best
 inline constexpr Scalar kMaxSigmaDelay = Scalar(0.004);  ///< [s] of a clock that is known, to begin with
 inline constexpr Scalar kMaxSigmaTurn = Scalar(0.07);    ///< [rad] of axes that are: errors are linear within it
-inline constexpr Scalar kFloorDelay = Scalar(0.001);     ///< [s] sigma, beside what the rates leave: rows and exposure
+inline constexpr Scalar kFloorDelay = Scalar(0.001);     ///< [s] least sigma, for rows and exposure
 inline constexpr Scalar kFloorTurn = Scalar(0.01);       ///< [rad] the same
 inline constexpr Scalar kMaxScale = Scalar(1.25);        ///< of a gyroscope that is used, and its inverse
 inline constexpr Scalar kMinTurning = Scalar(0.05);      ///< [rad/s] sigma of the rates, at least, for an alignment
@@ -57,7 +58,7 @@ inline constexpr Scalar kOpenTurn = Scalar(0.2);         ///< [rad] the same of 
 inline constexpr Scalar kOtherAxes = Scalar(0.35);       ///< [rad] that axes are off before they are named: 20 degrees
 }  // namespace rate_alignment
 
-/// Standing still.
+/// A camera at rest.
 namespace rest {
 inline constexpr Scalar kTime = Scalar(1);                ///< [s] at rest before it counts
 inline constexpr int kMinSamples = 20;                    ///< in that time

@@ -17,7 +17,7 @@
 #include "frame/tracking_state.h"
 #include "map/map.h"
 
-/// Starts the filter in the way that the caller chose: at a known pose, at a target, or from a record of the first frames.
+/// Starts the filter by the caller's method: at a known pose, at a target, or from a record of the first frames.
 
 namespace pf {
 
@@ -40,8 +40,8 @@ class FilterStart {
 
   bool layout(Arena& arena, int width, int height);
   void init();
-  /// Clears everything that came from the estimate, and the first pose that the caller gave, which does not hold here. A target that
-  /// was not withdrawn is kept and may be found again.
+  /// Clears everything that came from the estimate, and the caller's first pose, which belongs to the first map. A target that was not
+  /// withdrawn is kept and may be found again.
   void start_over();
 
   // --- what the caller chooses
@@ -55,7 +55,7 @@ class FilterStart {
   bool takes_images_only() const { return target_.target().kind == TargetKind::kRectangle; }
 
   // --- the first frame
-  /// Sets the pose of the first frame. False: not possible in this frame.
+  /// Sets the pose of the first frame. False where that is not possible in this frame.
   bool start_in_image();
   void start_with_observations();
 
@@ -68,9 +68,9 @@ class FilterStart {
   /// Replaces a map of unknown scale by one in metres that begins with this frame, of a camera that has been at rest since begin_ns. False,
   /// with nothing changed, where the map has to stay.
   bool begin_anew_at_rest(std::int64_t begin_ns);
-  /// A map that samples may scale, once its depths are known: of unknown scale.
+  /// True for a map of unknown scale, which samples may scale once its depths are known.
   bool may_become_metric() const;
-  /// Since the map's first frame [s].
+  /// Time since the map's first frame [s].
   double map_age() const;
 
   StartRecorder& recorder() { return recorder_; }
