@@ -9,18 +9,18 @@
 
 namespace pf {
 
-/// Remembers where patches of a plane were found elsewhere, and counts that against the plane.
+/// Stores where patches of a plane were found elsewhere, and counts them as evidence against the plane.
 class PatchRefusals {
  public:
   PatchRefusals(const Filter& filter, Map& map) : filter_(filter), map_(map) {}
 
   void init();
 
-  /// The gate rejects a patch of this wall.
+  /// Notes a patch of this wall that the gate rejects.
   void note(const StoredPatch& patch, int wall);
-  /// The patch is measured on another plane, though the plan has a wall before it (hiding; -1: none). Five such frames in a row are
-  /// evidence against this wall, since it is seen through. is_contested: nothing supports the pose of this frame, which is then no evidence
-  /// against a wall.
+  /// Notes a frame in which the patch is measured on another plane, though the plan has a wall before it (hiding; -1: none). Five such
+  /// frames in a row are evidence against this wall, since it is seen through. is_contested: nothing supports the pose of this frame, which
+  /// is then no evidence against a wall.
   void count_through(StoredPatch* patch, int hiding, const Vec3& middle_W, bool is_contested);
 
   /// Calls f(middle_W) for each stored patch that was evidence against the plane with this id.
@@ -43,7 +43,7 @@ class PatchRefusals {
   bool is_told_already(std::uint32_t plane, int born) const;
   /// Whether two views of the patch show that it is before the wall.
   bool is_before(const StoredPatch& patch, int wall) const;
-  /// Keeps it in place of the oldest.
+  /// Stores it in place of the oldest.
   void keep(const Refusal& refusal);
 
   const Filter& filter_;

@@ -15,13 +15,13 @@ class PatchUpdate {
  public:
   static constexpr int kWorth = 8;  ///< inliers that a patch counts as
 
-  /// has_gate: false takes every patch that is found for what it seems to be, for comparisons.
+  /// has_gate: false accepts every patch that is found, for comparisons.
   PatchUpdate(Filter& filter, Map& map, Frame& frame, TrackingState& tracking, const PatchNoise& noise, bool has_gate)
       : filter_(filter), map_(map), frame_(frame), tracking_(tracking), noise_(noise), has_gate_(has_gate) {}
 
   /// Predicts the corners on a plane. False where one does not project.
   bool predict(const StoredPatch& patch, int entry);
-  /// Sets the corners that were found, with their noise, as what was measured.
+  /// Sets the corners that were found, with their noise, as the measurement.
   void set_measured(const StoredPatch& patch);
   /// Both. False where a corner does not project.
   bool predict_measured(const StoredPatch& patch, int entry);
@@ -42,7 +42,7 @@ class PatchUpdate {
 
   /// Updates the filter where the corners pass the gate, after predict_measured().
   void update(StoredPatch* patch, int entry);
-  /// From now on the patch is measured on this plane, and already in this frame.
+  /// Makes the patch a member of this plane, on which it is measured from this frame on.
   void join(StoredPatch* patch, int entry);
 
  private:
@@ -52,8 +52,8 @@ class PatchUpdate {
   /// Variance of the linearisation's error where the plane causes the innovation r. Corners move in proportion to the parallax p and to 1 /
   /// depth, so the depth is wrong by a share r / p, and the rows by the same share: (r r / p)^2. [px^2]
   Scalar nonlinearity(const StoredPatch& patch) const;
-  /// For a plane that is far from where the filter has it. Updates with a part of the information, as much as it is worth where the
-  /// linearisation is bad, and predicts the corners again; z_ has the rest of the information then: with B = nonlinearity I
+  /// For a plane that is far from its estimate. Updates with the part of the information that the linearisation's error allows, and
+  /// predicts the corners again; z_ then has the rest of the information. With B = nonlinearity I
   ///
   ///   R^-1 = (R + B)^-1 + (R + R B^-1 R)^-1
   ///

@@ -13,11 +13,11 @@ namespace pf {
 /// Entry of the plane that a patch lies on, which may have been merged; -1: it is gone or rejected.
 int wall_of(const PlaneTable& planes, const StoredPatch& patch);
 
-/// Whether this is a wall of the plan that nothing lies on yet, neither points nor patches that were measured for long.
+/// Whether this is a wall of the plan without members: neither points nor patches that were measured for long.
 bool is_known_by_plan_alone(const Filter& filter, const PlaneEntry& wall);
 
 /// Whether a plane's outline contains the patch's middle as its reference camera saw it; a plane that was found may be larger than its
-/// outline. *range: how far it is along the ray of the middle, from the reference camera [m].
+/// outline. *range: its distance along the ray of the middle, from the reference camera [m].
 bool may_lie_on(const Filter& filter, const Map& map, const StoredPatch& patch, int entry, Scalar* range);
 
 /// Distance of the plane along the ray of the patch's middle, relative to that of the plane m = n / d, in the reference camera, which two

@@ -5,7 +5,7 @@
 #include "keyframe_slam/tracking/point_search.h"
 #include "keyframe_slam/tracking/pose_measurement.h"
 
-/// Measures an image with the window's map: which points are searched for about which pose, and how the body is corrected by what is found.
+/// Measures an image with the window's map: searches for points about a pose, fits the pose, and updates the body.
 
 namespace pf {
 
@@ -32,7 +32,7 @@ class KeyframeTracking {
   /// Finds points with a depth about another pose than the predicted one. Changes nothing but the frame's matches. Returns the number of
   /// inliers, the pose with its information, and the consensus, for its evidence.
   int measure_about(const PosePrior& about, CameraPose* pose, Mat6* information, PoseConsensus* consensus);
-  /// The frame is searched about yet another pose: takes back what the last measure_about() searched for.
+  /// Removes the matches of the last measure_about(), before the frame is searched about another pose.
   void forget_searches() { frame_.forget_searches(); }
   /// Updates the body with a pose that measure_about() returned, and marks the matches that agree with it.
   void correct(const CameraPose& pose, const Mat6& information);

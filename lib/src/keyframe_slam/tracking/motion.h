@@ -24,13 +24,13 @@ class KeyframeMotion {
 
   /// Predicts the body from one frame's time to the next. Without measurements its speed decays.
   void advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured);
-  /// Corrects the body by a pose that was measured with covariance R. The pose becomes the measured one, which allows for the prediction
+  /// Updates the body with a pose that was measured with covariance R. The pose becomes the measured one, which allows for the prediction
   /// already; velocities and covariance follow by Kalman's gain
   ///
   ///   K = P Hᵀ S⁻¹,   P+ = P - K S Kᵀ,   S = P_pp + R,   H = (I 0)
   ///
   /// where the pose's part is (I - K_p) P_pp (I - K_p)ᵀ + K_p R K_pᵀ with I - K_p = R S⁻¹, and its covariance with the velocities
-  /// K_v R: of a pose that was hardly known before, rounding leaves nothing in the difference. In double in both libraries, and R with
+  /// K_v R: where the pose was hardly known before, rounding would leave nothing of the difference. In double in both libraries, and R with
   /// it: where matches leave a direction open, float inverts their information to what is no covariance.
   ///
   /// False where P_pp + R is no covariance; nothing has changed then.

@@ -16,7 +16,7 @@ struct PoseMatch {
   Mat2 noise;  ///< covariance of the pixel, the point's depth included [px^2]
 };
 
-/// Fits the pose to the matches that count, and to the prior:
+/// Fits the pose to the matches in use, and to the prior:
 ///
 ///   min over (theta, p) of  sum rho(r_iᵀ R_i⁻¹ r_i) + eᵀ P⁻¹ e,   e = (theta, p) of the pose against the prior;  rho of Huber
 ///

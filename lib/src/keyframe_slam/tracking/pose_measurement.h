@@ -29,7 +29,7 @@ class PoseMeasurement {
                           const Mat6& information) const;
 
   bool is_inlier(int c) const { return pose_.is_inlier(c); }
-  /// Within which a match supports a pose [px].
+  /// Bound within which a match supports a pose [px].
   Scalar bound_px() const;
 
  private:

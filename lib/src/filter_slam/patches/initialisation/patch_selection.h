@@ -35,7 +35,7 @@ class PatchSelection {
 
   /// Initialises patches on one wall. Returns whether the wall has as many as wanted.
   bool begin_on_wall(const Pyramid& image, int wall, int wanted, int* camera);
-  /// Initialises one patch where the plan has no wall, which waits for the plane that it lies on. It takes nobody else's room.
+  /// Initialises one patch where the plan has no wall; it waits for its plane. It never evicts another patch.
   void begin_beside_walls(const Pyramid& image, int* camera);
   bool may_begin_beside_walls(bool has_camera) const;
   /// How many patches should begin on a wall now. Those that will soon be too slanted or out of the image do not count, so that the next
@@ -46,7 +46,7 @@ class PatchSelection {
   /// Lists the best squares of a lattice, the best first. Returns how many.
   int list_squares(const Pyramid& image, int wall, int side, const PatchObstacles& obstacles,
                    PatchSquare* square) const;
-  /// Whether the wall (-1: no wall) is what is seen first in all of a square; *cosine: how slanted in its middle.
+  /// Whether the wall (-1: no wall) is the nearest surface in all of a square; *cosine: of its slant in the middle.
   bool is_on_wall(int wall, const PatchSquare& square, Scalar* cosine, Vec3* middle_W) const;
   /// Whether no patch that is in view has its middle near the square's.
   bool is_free(const PatchSquare& square) const;

@@ -20,8 +20,8 @@ class PatchFounding {
   /// Notes the plane that two views give. Two views do not exclude a moving plane or another surface, so the plane must be the same some
   /// frames later.
   void note_plane(StoredPatch* patch) const;
-  /// Founds a plane where there is enough parallax, 10 frames after the plane was noted; waits for that, but not for ever. False: the
-  /// patch lies on nothing.
+  /// Founds a plane where there is enough parallax, 10 frames after the plane was noted; waits for that up to a bound. False: no plane
+  /// explains the patch.
   bool found_or_wait(StoredPatch* patch);
 
  private:
