@@ -1,6 +1,7 @@
 #pragma once
 
 #include "belief/pose_belief.h"
+#include "bundle/zoom_fit.h"
 #include "frame/settings.h"
 #include "geometry/camera.h"
 #include "track/view_memory.h"
@@ -35,6 +36,9 @@ struct PoseProposal {
 bool find_elsewhere(const PoseProposal& last, const ViewMemory& views, const Pyramid& image, const Camera& lens,
                     Scalar depth, PoseHypothesis* out);
 
+/// Adds to a consensus what its pixels say of the lens. Nothing where they do not say.
+void note_zoom(const ZoomFit& fit, const Settings& settings, PoseConsensus* consensus);
+
 /// Those of a frame that have been tried: several halve, third, ... the odds of each.
 class PoseHypotheses {
  public:
@@ -53,7 +57,7 @@ class PoseHypotheses {
   }
   /// Whether a pose of these log-odds may move the estimate: it is believed, by enough inliers. is_last: all of the frame has been searched
   /// for. Else nothing that the rest of it can say may take that belief away again.
-  bool accepts(const PoseConsensus& consensus, Scalar log_odds, bool is_last = true) const;
+  bool accepts(const PoseConsensus& consensus, Scalar log_odds, bool is_last = true);
 
  private:
   const Settings& settings_;
