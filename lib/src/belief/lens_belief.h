@@ -2,7 +2,7 @@
 
 #include "base/scalar.h"
 
-/// Whether the lens is the one of the calibration: log-odds that it has changed (zoom, focus, another sensor of a phone), from frame to frame.
+/// Whether the lens is the one of the calibration: log-odds that it has changed (zoom, focus, another sensor), from frame to frame.
 
 namespace pf {
 

@@ -47,7 +47,7 @@ class PoseBelief {
   Scalar log_odds() const { return is_noted_ ? log_odds_ : predicted_; }
 
   static bool is_enough(Scalar log_odds);
-  /// A pose of this consensus may move the estimate: its log-odds are enough, and the lens with which it was measured is the calibrated one.
+  /// A pose of this consensus may move the estimate: its log-odds are enough, and its lens is the calibrated one.
   bool may_use(Scalar log_odds, const PoseConsensus& consensus);
   const LensBelief& lens() const { return lens_; }
   /// It is, whatever else this frame says.

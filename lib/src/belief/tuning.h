@@ -25,8 +25,7 @@ inline constexpr Scalar kNone = Scalar(-4.6);  ///< below which it is none: wron
 
 /// Log-odds that the lens has changed (lens_belief.h).
 namespace lens_belief {
-inline constexpr Scalar kKept =
-    Scalar(0.01);  ///< sigma of one picture against the map, whose errors look like it, relative
+inline constexpr Scalar kKept = Scalar(0.01);       ///< relative sigma of one picture against the map's own errors
 inline constexpr Scalar kChange = Scalar(0.2);      ///< likewise of a change
 inline constexpr Scalar kLeast = Scalar(-6.9);      ///< a lens changes once in 1,000 pictures at most
 inline constexpr Scalar kMost = Scalar(6.9);        ///< so that pictures can also show that it has changed back

@@ -67,11 +67,10 @@ inline constexpr int kMinCells = 4;  ///< that hold features which have not move
 
 /// The focal length that one picture shows (zoom_fit.h).
 namespace zoom_fit {
-inline constexpr int kLeastPoints = 12;  ///< two for each unknown, but for one
-inline constexpr int kRounds = 4;        ///< of Gauss-Newton
-inline constexpr Scalar kLeastShare =
-    Scalar(1e-4);                           ///< of its information that the pose leaves to the zoom; less is rounding
-inline constexpr Scalar kMost = Scalar(1);  ///< log ratio; beyond it the rounds have left the picture
+inline constexpr int kLeastPoints = 12;              ///< two for each unknown, but for one
+inline constexpr int kRounds = 4;                    ///< of Gauss-Newton
+inline constexpr Scalar kLeastShare = Scalar(1e-4);  ///< of the zoom's information, beside the pose; less is rounding
+inline constexpr Scalar kMost = Scalar(1);           ///< log ratio; beyond it the rounds have left the picture
 }  // namespace zoom_fit
 
 }  // namespace pf::tuning

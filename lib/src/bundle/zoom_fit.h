@@ -28,8 +28,9 @@ class ZoomPoints {
   /// variance: of each coordinate of the pixel, its own noise and that of the point's depth [px^2].
   void add(const PnpPoint& point, Scalar variance);
 
-  /// Least squares of the pixels over pose and log ratio s together, from a pose nearby. A lens that turns with the camera and a scene of one depth look alike as the camera comes nearer; the variance, with the pose
-  /// eliminated, says so. It grows with what the points leave over, as that is what the map's own errors leave:
+  /// Least squares of the pixels over pose and log ratio s together, from a pose nearby. A longer lens and a camera that comes nearer to a
+  /// scene of one depth look alike; the variance, with the pose eliminated, allows for it, and grows with what the points leave over, as
+  /// that is what the map's own errors leave:
   ///
   ///   var(s) = max(1, chi^2 / (2n - 7)) / (c_ss - a^T A^-1 a)
   ///
