@@ -2,7 +2,7 @@
 
 #include "base/scalar.h"
 
-/// What one frame says for or against a pose: the ratio of two likelihoods of what its searches have found.
+/// Evidence of one frame for a pose: the ratio of two likelihoods of what its searches have found.
 
 namespace pf {
 
@@ -24,8 +24,8 @@ Scalar log_chance_density(Scalar searched_px2);
 /// ln N(r; 0, S) of 2n residuals from their normalised square r^T S^-1 r and ln det S.
 Scalar log_normal_density(Scalar nis, Scalar log_det, int n);
 
-/// Chance that a feature in view is found where it is. It is the picture's and not the feature's: under smear all are missed alike, so a
-/// frame's own share counts more than what earlier ones say: Beta(kWeight m, kWeight (1 - m)) about their mean m.
+/// Probability that a feature in view is found. It belongs to the image, not to the feature, since smear hides all alike. A frame's own
+/// share therefore counts more than that of earlier ones: the prior is Beta(kWeight m, kWeight (1 - m)) about their mean m.
 class FindShare {
  public:
   void init();
@@ -42,7 +42,7 @@ class FindShare {
   Scalar mean_ = 0;
 };
 
-/// ln of how much more likely this is where the pose is right than where it is wrong and all that was found is chance:
+/// ln of the ratio of the likelihoods of this consensus: of a right pose, and of a wrong one whose finds are all chance.
 ///
 ///   E = ln P(k of n found) + ln N(r; 0, S) - sum over the inliers of ln c_i
 ///

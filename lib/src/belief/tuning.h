@@ -11,7 +11,7 @@ namespace pf::tuning {
 namespace pose_belief {
 inline constexpr Scalar kTracked = Scalar(6.2);      ///< from which a pose is used: wrong in 0.2 %
 inline constexpr Scalar kMost = Scalar(13.8);        ///< that a pose can have: wrong once in a million
-inline constexpr Scalar kMaxFrame = Scalar(6.9);     ///< that one frame says: one place in 1,000 looks like another
+inline constexpr Scalar kMaxFrame = Scalar(6.9);     ///< of one frame: one place in 1,000 looks like another
 inline constexpr Scalar kAnew = Scalar(-6.9);        ///< of a prediction that nothing supports: right once in 1,000
 inline constexpr Scalar kElsewhere = Scalar(-13.8);  ///< of any other pose: pictures may be of another place altogether
 inline constexpr double kHazard = 0.005;  ///< [1/s] that what a prediction relies on ends: a cut, a grip, a blow

@@ -73,7 +73,7 @@ struct Bundle {
   int poses;
   const Vec3* ray;  ///< of each point in its host pose; any length, which is the unit of 1 / rho
   const int*
-      host;  ///< pose of each point; null: pose 0 for all. Pixels of a point in its own host say nothing and are skipped
+      host;  ///< pose of each point; null: pose 0 for all. Pixels of a point in its own host have no information and are skipped
   Scalar* rho;
   int points;
   const RhoPrior* prior = nullptr;  ///< of each point; null: the options' for all

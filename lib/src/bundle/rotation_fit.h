@@ -21,7 +21,7 @@ Scalar fit_rotation(const Camera& camera, const Vec3* ray, const BundlePixel* pi
 ///   A = (H_tt - H_tr H_rr⁻¹ H_rt) / n,   H = sum [J_r J_t]ᵀ [J_r J_t]                       [px^2 per squared distance]
 ///
 /// A translation by t leaves a residual of sqrt(tᵀ A t) px (root of the mean square), and more where distances differ.
-/// False where no pixel can be used or they do not tell a rotation.
+/// False where no pixel can be used or they do not determine a rotation.
 bool translation_left(const Camera& camera, const Vec3* ray, const BundlePixel* pixel, int count, const Quat& q_WC,
                       Mat3* A);
 

@@ -15,7 +15,7 @@ using BaselineMeasurement = MeasurementOf<3, 6, 2>;
 ///   z = p - o_W,   e_z = e_p - e_o
 ///
 /// anchor      its block
-/// covariance  of the baseline, as far as something else than the pixels' linearisation tells it [m^2]
+/// covariance  of the baseline, from another source than the pixels' linearisation [m^2]
 void predict_baseline(const State& state, int anchor, const Mat3& covariance, BaselineMeasurement* out);
 
 /// Updates the filter with it. False, with nothing changed, where that is impossible.

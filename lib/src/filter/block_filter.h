@@ -47,13 +47,13 @@ class BlockFilter {
   int row(const Part& part) const { return first(part.block) + part.offset; }
 
   // --- moves of the covariance
-  /// The first `rows` rows of the leading block become known as covariance says (rows x rows, row-major), and as the rows behind them do
-  /// with Jacobian J (rows x the others, row-major; null: independent):  C + J P_o J^T,  J P_o. Other blocks, which must be
-  /// independent of the leading one, stay so.
+  /// Gives the first `rows` rows of the leading block the covariance C (rows x rows, row-major) plus a dependence J on the rows behind them
+  /// (rows x the others, row-major; null: independent): C + J P_o J^T, J P_o. Other blocks, which must be independent of the leading one,
+  /// stay so.
   void set_leading(const Scalar* covariance, int rows, const Scalar* J);
   /// So many of the leading block's last rows are considered from now on, and those before them estimated.
   void consider_last(int rows);
-  /// Covariance of the leading block's rows from `first` on (row-major), independent of those before. Likewise.
+  /// Sets the covariance of the leading block's rows from `first` on (row-major), independent of those before and of other blocks.
   void set_constants(int first, const Scalar* covariance);
   /// The first `rows` rows move by F, noise Q is added (both rows x rows, row-major).
   void predict(const Scalar* F, const Scalar* Q, int rows);
@@ -61,8 +61,8 @@ class BlockFilter {
   void add_constants(const Scalar* B, int rows, int first, int columns);
   /// New rows J x + noise for a block, behind all others; those that it has go.
   void augment(int block, const Rows& J, const Scalar* Q);
-  /// Likewise with the sum of `count` Jacobians that together touch more blocks than rows can: J(k) -> Rows of `rows` rows over one part.
-  /// The noise becomes Q plus own times the variance.
+  /// The same with the sum of `count` Jacobians that together touch more blocks than one Rows can: J(k) -> Rows of `rows` rows over one
+  /// part. The noise becomes Q plus own times the variance.
   template <typename Jacobian>
   void augment_dense(int block, int rows, int count, Jacobian&& J, Scalar* Q, Scalar own) {
     dense_begin(rows);
@@ -72,7 +72,7 @@ class BlockFilter {
   }
   /// A block's rows become J x.
   void transform(int block, const Rows& J);
-  /// Likewise for many blocks (at most kBatch), all of them from the state as it is, in one pass; they are left in the order of their rows.
+  /// The same for many blocks (at most kBatch) in one pass, all of them from the present state; they are left in the order of their rows.
   void transform(int* blocks, Rows* J, int count);
   /// Rows of blocks become what `project` holds of as many measurements, and go to the end of the held range.
   void hold(const int* blocks, int count);
@@ -89,7 +89,7 @@ class BlockFilter {
   void inflate_through(const Rows& J, const Vec3& sigma);
   /// P += P_xp M P_px, P_xp the columns of a part of three rows; M is symmetric and positive semidefinite.
   void inflate_by(const Part& part, const Mat3& M);
-  /// Likewise along one row h of a Jacobian: the variance of h x grows by so much.
+  /// The same along one row h of a Jacobian: the variance of h x grows by `variance`.
   void inflate_along(const Rows& row, Scalar variance);
   /// P_ij <- f_i f_j P_ij: rows in other units.
   void scale_rows(const Scalar* factor) {
@@ -131,8 +131,8 @@ class BlockFilter {
   /// A variance of which a downdate has left less than what its rounding hides is as large as that. Spends the step.
   void keep_rounding();
   enum class Repair { kNone, kDone, kImpossible };
-  /// Checks a sample of P, another one for each turn: the leading rows with some of the others. Where it is not positive semidefinite,
-  /// beyond rounding, the variances of its rows grow until it is. Needs neither project() nor gain() kept.
+  /// Checks a sample of P, which depends on turn: the leading rows with some of the others. Where it is not positive semidefinite, beyond
+  /// rounding, the variances of its rows grow until it is. Needs neither project() nor gain() kept.
   Repair repair(int turn);
 
   // --- update
@@ -165,7 +165,7 @@ class BlockFilter {
   void forget_gain() { gained_ = 0; }
   /// Rows of L^-1 H P that the gain left, S + R = L L^T.
   const Scalar* whitened(int row) const { return W_ + row * ld_; }
-  /// Likewise of L^-1 (measured - predicted): white where model and noise are right.
+  /// L^-1 (measured - predicted) of the same update: white where model and noise are right.
   const Scalar* whitened_innovation() const { return y_; }
   int gained_rows() const { return gained_; }
   /// What the last gain considers.

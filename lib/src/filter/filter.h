@@ -33,11 +33,11 @@ class Filter {
   void set_roughness(Scalar roughness) { roughness_ = roughness; }
   void keep_gauge(bool keep) { keep_gauge_ = keep; }
   bool keeps_gauge() const { return keep_gauge_; }
-  /// Another number after each init(): what others know of blocks does not hold any more.
+  /// Changes with each init(), after which slots that others keep are not valid.
   std::uint32_t generation() const { return generation_; }
   const State& state() const { return state_; }
   const BlockFilter& blocks() const { return blocks_; }
-  /// P, which is the covariance of the state but for what apart() holds.
+  /// P: the covariance of the state without what apart() holds.
   const Triangle& covariance() const { return blocks_.P(); }
   /// Covariance of gauge directions that is not in P.
   const GaugePrior& apart() const { return apart_; }
@@ -67,24 +67,24 @@ class Filter {
   void set_lens(const Camera& camera, const LensPrior& prior);
   /// Where the inertial unit is. Before anything is added.
   void set_mounting(const Mounting& mounting) { state_.mounting = mounting; }
-  /// From now on the samples of the inertial unit tell the scale. With a start: of a map up to scale that is scaled by it first.
+  /// From now on the samples of the inertial unit measure the scale. With `start`, the map has been one up to scale and is scaled first.
   void set_metric();
   void set_metric(const struct MovingSolution& start, const Mounting& mounting);
   bool is_metric() const { return state_.metric; }
   /// Whether samples move the body from now on (State::uses_samples), with what is known of it then. It outlasts init().
   void use_samples(bool use) { state_.uses_samples = use; }
   bool uses_samples() const { return state_.uses_samples; }
-  /// Whether updates leave the lens as it is and allow for its error, whatever the layout says of it.
+  /// Whether updates consider the lens, even where the layout has it as estimated.
   void consider_lens(bool only_considered);
   /// The calibration as it is known now.
   const Camera& lens() const { return state_.lens; }
 
-  /// The parts of the body that move, with the unit's constants, become known as covariance says (over the unit rows, row-major), and with
-  /// J_lens (null: not) as the lens does. Only while nothing in the map depends on the body.
+  /// Sets the parts of the body that move and the unit's constants, with their covariance (over the unit rows, row-major) and, with J_lens,
+  /// their dependence on the lens (null: none). Only while nothing in the map depends on the body.
   void set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens = nullptr);
 
-  /// From now on something tells the place or the scale of W. What is apart goes into P, and stays there. (The speed of a start does so
-  /// for kSpeedTells updates: then the noise of the motion has replaced it.)
+  /// From now on something measures the place or the scale of W, so what is apart goes into P and stays there. (The speed of a start does
+  /// so for kSpeedTells updates; by then process noise has replaced it.)
   void tell_gauge();
 
   /// Which entry of the map's table a block belongs to.
@@ -115,9 +115,9 @@ class Filter {
   /// of a rough surface leave in it. Nothing is folded yet.
   int add_plane(const PlaneFit& fit, const int* slots, int count, Scalar roughness);
   /// Plane known beforehand, independent of all else. covariance is of (a, b, h) about the frame; roughness is of its surface [m].
-  /// apart: nothing is compared with it until join_planes_apart, and until then it tells nothing of the gauge.
+  /// apart: until join_planes_apart no measurement uses it, and it does not constrain the gauge.
   int add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Scalar roughness, bool apart = false);
-  /// The map becomes so many times as large, about pivot, and planes that are apart are planes like all others from now on.
+  /// Multiplies the map by `scale` about pivot; planes that are apart become planes like all others.
   void join_planes_apart(Scalar scale, const Vec3& pivot);
   /// The log scale is less known by this variance, with pivot as the place that does not depend on it.
   void open_scale(Scalar variance, const Vec3& pivot) { apart_.add_scale(variance, pivot); }
@@ -128,8 +128,8 @@ class Filter {
 
   static constexpr int kMaxFolded = BlockFilter::kBatch;  ///< in one call
 
-  /// 3-D points, or points of another plane, become points of this one: those that pass the gate are conditioned on a distance of zero
-  /// together, then lose it. folded[i] says which. Returns how many.
+  /// 3-D points, or points of another plane, become points of this one: those that pass the gate are conditioned together on a distance of
+  /// zero, which is then dropped. folded[i]: whether the i-th was. Returns how many.
   int fold(int plane, const int* slots, int count, const FoldRule& rule, unsigned char* folded);
   /// Distance of a feature from a plane, and its variance without roughness. False where it has no place.
   bool distance(int plane, int slot, Scalar* d, Scalar* variance) const;
@@ -140,7 +140,7 @@ class Filter {
   /// Gathers S = H P H^T (without noise) of the distances of features from a plane, measured as zero. Then innovation_of<1> of blocks()
   /// is valid until the state changes. Every feature must have a place.
   void begin_distances(int plane, const int* slots, int count, Scalar noise, DistanceMeasurement* z);
-  /// Likewise, and it is farther along its ray from the camera, by so much [m], which is known to sigma_along [m]: its pixel stays.
+  /// The same, and moves the point along its ray from the camera by `along` [m], known to sigma_along [m]: its pixel stays.
   bool unfold_along(int slot, Scalar along, Scalar sigma_along);
   /// A plane without a point group is elsewhere: (a, b, h) is x, known to Q beside what P had. Its points follow along their rays, and are
   /// as unsure as the plane, and by sigma_uv [m] each. False where Q is no covariance; nothing has changed then.
@@ -151,10 +151,10 @@ class Filter {
   void forget_through(int plane, const Vec3& sigma);
   /// A known plane was wrong: its prior's covariance becomes (1 + widening) times as large. False where it is tighter than the plane.
   bool forget_prior(int plane, const Mat3& prior, Scalar widening);
-  /// What an update by this row has told of it is taken back: its variance grows by so much, and all else with what it has learnt.
+  /// Undoes what an update by this row contributed: its variance grows by `variance`, and that of all else by its share.
   void forget_row(const Rows& row, Scalar variance) { blocks_.inflate_along(row, variance); }
-  /// The plane, and the points that hang on it directly, about another frame. False when the frame is too slanted or a point group
-  /// hangs on the plane; nothing is changed then.
+  /// Moves the plane, and the points that depend on it directly, to another frame. False, with nothing changed, when the frame is too
+  /// slanted or a point group depends on the plane.
   bool reanchor(int plane, const PlaneFrame& frame);
 
   /// Largest variance of a plane point's coordinates [m^2] against the other points of its plane: in the point group, or
@@ -213,12 +213,12 @@ class Filter {
   /// The same of a measurement that is linearised at another pose, near, and predicted for the estimate: h(near) + H (x [-] near). Before
   /// it, what the pose shares with the gauge moves to near, so that H N = 0 there too.
   bool finish_update_near(const Measurement& z, const Body& near, Scalar* nis);
-  /// Of the update that solve_update has just solved: the part of its innovation that says something of the pose. With L L^T = S + R,
-  /// A = L^-1 H P_x and y = L^-1 (measured - predicted), x the rows of the pose,
+  /// The part of the innovation that concerns the pose, of the update that solve_update has just solved. With L L^T = S + R, A = L^-1 H P_x
+  /// and y = L^-1 (measured - predicted), x the rows of the pose,
   ///
   ///   nis = y^T A (A^T A)^-1 A^T y = e^T (P_before - P_after)^-1 e,   e the correction of the pose
   ///
-  /// chi-square with six degrees of freedom; *of_rotation: the rotation's, with three. False where it does not say all of the pose.
+  /// chi-square with six degrees of freedom; *of_rotation: the rotation's, with three. False where it does not constrain all of the pose.
   bool pose_nis(Scalar* nis, Scalar* of_rotation) const;
 
   /// What a unit at rest should read, with R = R_WB and g = gravity R_WG e_z:
@@ -227,7 +227,7 @@ class Filter {
   ///
   /// and where they are estimated, by axes theta + R_WC mu for theta, by intrinsics D_a^-1 R^T for R^T. A rotation of W changes neither.
   void predict_still(const StillReading& still, Scalar gravity, StillMeasurement* out) const;
-  /// Whether the reading is within max_nis of that; updates with it where `commit` says so.
+  /// Whether the NIS of the reading is within max_nis; updates with it where `commit` is set.
   bool take_still(const StillReading& still, Scalar gravity, Scalar max_nis, bool commit);
 
   /// Pose (q_KC, p_KC) of the camera in the frame of a reference camera K, and the covariance of its (theta, p), in K (relative_pose.h).
@@ -253,10 +253,10 @@ class Filter {
   int room() const { return blocks_.room(); }  ///< rows that are still free
 
   // --- soundness: finite, bounded, and no variance below zero
-  /// Checks a part of P, another one for each turn, and repairs it where it is no covariance.
+  /// Checks a part of P, which depends on turn, and repairs it where it is no covariance.
   BlockFilter::Repair repair(int turn) { return blocks_.repair(turn); }
   bool body_is_sound() const;
-  /// Likewise for a block and the anchor that it hangs on.
+  /// The same for a block and the anchor that it depends on.
   bool block_is_sound(int slot) const;
 
  private:
@@ -289,7 +289,7 @@ class Filter {
   Transport transport_;
   GaugePrior apart_;
   bool keep_gauge_ = true;
-  int told_updates_ = 0;  ///< for which something still tells the gauge; -1: for good
+  int told_updates_ = 0;  ///< for which something still measures the gauge; -1: for good
   std::uint32_t generation_ = 0;
   Scalar roughness_ = 0;
   Measurement* view_ = nullptr;  ///< observations; of pixels

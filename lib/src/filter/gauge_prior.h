@@ -9,8 +9,8 @@ namespace pf {
 ///
 ///   covariance of the state = P + N V N^T     N(x): gauge rows of the state (model/gauge.h); V: 7x7, translation, rotation, log scale
 ///
-/// No pixel says anything about these directions (H N = 0), so updates leave V as it is, and N(x) follows the state as the transport of P
-/// does. P then holds only what is shared by few rows, which float can tell from zero, and the prior depth of a new point says nothing of
+/// Pixels do not measure these directions (H N = 0), so updates do not change V, and N(x) follows the state as the transport of P does. P
+/// then has only errors that few rows share, which float can distinguish from zero, and the prior depth of a new point does not constrain
 /// the scale of all others.
 class GaugePrior {
  public:

@@ -18,10 +18,10 @@ struct ImuSample {
 
 struct ImuRanges {
   Scalar gyro = 0;   ///< [rad/s] 0: not known
-  Scalar accel = 0;  ///< [m/s^2] likewise
+  Scalar accel = 0;  ///< [m/s^2] the same
 };
 
-/// Since the beginning, where nothing else is said.
+/// Counts since the beginning, unless stated otherwise.
 struct ImuCounts {
   std::int64_t samples = 0, since_frame = 0;
   std::int64_t last_interval = 0;  ///< samples between the last two frames

@@ -14,7 +14,7 @@ struct ImuUnit {
   Scalar gravity = 0;         ///< [m/s^2]
   /// Of the mounting and the delay [rad], [m], [s]; 0: constant.
   Scalar sigma_turn = 0, sigma_place = 0, sigma_delay = 0;
-  Scalar sigma_scale = 0;  ///< of the entries of its intrinsics; 0: likewise
+  Scalar sigma_scale = 0;  ///< of the entries of its intrinsics; 0: the same
 };
 
 /// Without samples: the rate and the specific force that the body would have with constant velocity, and its accelerations.

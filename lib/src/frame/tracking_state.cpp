@@ -28,7 +28,7 @@ const char* text_of_loss(FrameReason reason) {
   return "lost";
 }
 
-/// Of a frame that is not tracked: the first condition that it does not meet, in the order in which they are asked.
+/// Of a frame that is not tracked: the first condition that it does not meet, in the order in which they are tested.
 FrameReason reason_of(const FrameReport& report, int min_inliers, bool unusable, bool lens_kept) {
   if (unusable) return FrameReason::kUncertain;
   if (!lens_kept) return FrameReason::kLens;
@@ -56,7 +56,7 @@ Status TrackingState::conclude(const StartProgress& start, std::int64_t max_coas
     d.lost = false;
     d.usable_ns = 0;
     d.last_tracked_ns = report->t_ns;
-    // A map that begins after a loss is believed when a frame agrees with the one that gave it its depths.
+    // A map that begins after a loss is tracked once a further frame agrees with the one that gave it its depths.
     const bool starting = start.pending() || (d.may_skip_target && !d.depths_known);
     d.depths_known = !start.pending();
     d.state = starting ? SlamState::kStarting : SlamState::kTracking;

@@ -27,7 +27,7 @@ struct Camera {
 };
 
 /// Copies the numbers, with their types, and finds the domain. Null when all is well, else the name of the first field
-/// that makes no sense, as check_camera says; the camera is then not to be used.
+/// that check_camera rejects; the camera is then not to be used.
 const char* make_camera(int model, int width, int height, const double intrinsics[4], const double distortion[8],
                         Camera* camera);
 

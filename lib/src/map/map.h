@@ -61,9 +61,9 @@ class Map {
  private:
   int mask_size_ = 0;
   Appearance* appearance_ = nullptr;    ///< of each row of the feature table
-  CameraView* first_view_ = nullptr;    ///< likewise
-  PlanarTemplate* template_ = nullptr;  ///< likewise; null without masks
-  std::uint8_t* mask_ = nullptr;        ///< likewise, mask_size_ each
+  CameraView* first_view_ = nullptr;    ///< the same
+  PlanarTemplate* template_ = nullptr;  ///< the same; null without masks
+  std::uint8_t* mask_ = nullptr;        ///< the same, mask_size_ each
 };
 
 }  // namespace pf

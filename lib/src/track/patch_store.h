@@ -36,7 +36,7 @@ struct StoredPatch {
   PatchWait wait;              ///< for the plane that it lies on
   Vec3 early_plane =
       Vec3::Zero();  ///< n / d in its reference camera, from an early view while it waits; zero: not known
-  Vec3 last_plane = Vec3::Zero();  ///< likewise from the last frame in which it waited and had parallax
+  Vec3 last_plane = Vec3::Zero();  ///< the same from the last frame in which it waited and had parallax
   PlanePatch pixels;
 
   bool is_proven() const { return block >= 0; }

@@ -54,7 +54,7 @@ class TemplateMatcher {
   MaskMode mode_ = MaskMode::kNone;
   float max_misfit_ = 1;
   int side_ = 0;
-  float noise_ = -1;                           ///< of this frame's image [grey levels]; negative: not asked for yet
+  float noise_ = -1;                           ///< of this frame's image [grey levels]; negative: not computed yet
   PlaneAligner* aligner_ = nullptr;            ///< all of these null without templates
   PlanePatch* patch_ = nullptr;                ///< the pixels of a template with one more on each side
   std::uint8_t* learnt_ = nullptr;             ///< mask after the frame

@@ -32,11 +32,11 @@ class FeatureKeeper {
   bool make_rows(int rows, std::int64_t not_since_ns);
   /// Makes room for one more feature on *anchor, and a new anchor if *anchor is -1 or was removed by an eviction. False: no room.
   bool make_room_at(int* anchor);
-  /// Likewise for a feature that begins on a plane.
+  /// The same for a feature that begins on a plane.
   bool make_room_on_plane() { return make_room(2); }
   /// Adds an inverse-depth feature at a pixel. Returns its table entry, or -1.
   int add(int anchor, const Vec2& pixel, const Mat2& noise);
-  /// Slot of the nearest proven plane that the pixel's ray meets inside of its outline, or -1.
+  /// Slot of the nearest established plane that the pixel's ray meets inside of its outline, or -1.
   int plane_at(const Vec2& pixel) const;
   /// Adds a feature at a pixel that is taken to lie on this plane, on trial. Returns its table entry, or -1.
   int add_on_plane(int plane, const Vec2& pixel, const Mat2& noise);

@@ -116,7 +116,7 @@ int FeatureSearch::search(int first, int count, const SearchMode& mode) {
     if (!outcome.found || squared_distance(outcome.pixel - o.predicted, match.innovation) > settings_.gate) continue;
     ++frame_.report.matches;
     match.measured = outcome.pixel;
-    match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
+    match.status = MatchStatus::kOutlier;  // until the consensus has it as an inlier
     o.measured = outcome.pixel;
     const Scalar nis = squared_distance(outcome.pixel - task.predicted, task.innovation);
     update_.candidate(i).log_density = log_normal_density(nis, std::log(task.innovation.determinant()), 1);
@@ -152,7 +152,8 @@ SearchTask FeatureSearch::task_of(int feature) const {
   return task;
 }
 
-/// Directs a search to where the followed view has the feature, unless its own ellipse says as much. False where that has no place for it.
+/// Directs a search to where the followed view has the feature, unless its own ellipse is as small. False where the followed view has no
+/// place for it.
 bool FeatureSearch::aim(SearchTask* task) const {
   return !is_wide(task->innovation) || followed_.aim(filter_.lens(), task->p_W, task);
 }

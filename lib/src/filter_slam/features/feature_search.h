@@ -47,8 +47,8 @@ class FeatureSearch {
   /// The same of a range of candidates; valid until the next call and the next list.
   const Scalar* searched_areas(int first, int count, bool follows);
 
-  /// Where the prediction of the `count` listed candidates is vague: finds where the picture as a whole has gone, for searches that follow
-  /// it. False where the prediction is not vague, or the picture does not tell.
+  /// Where the prediction of the `count` listed candidates is vague: finds where the image as a whole has moved, for searches that follow
+  /// it. False where the prediction is not vague, or the image does not show its motion.
   bool find_followed(int count);
   /// After a frame's searches: ImageSearch::note_fixed.
   bool note_fixed() { return search_.note_fixed(filter_.lens(), frame_, &map_.features); }

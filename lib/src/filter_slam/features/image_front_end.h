@@ -49,10 +49,10 @@ class ImageFrontEnd {
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);
-  /// Finds the map's features in the image, and updates the filter with them where that is enough to believe the pose. Returns what the
-  /// updates have found.
+  /// Finds the map's features in the image, and updates the filter with them where the evidence is enough to accept the pose. Returns what
+  /// the updates have found.
   UpdateOutcome measure(MeasureMode mode);
-  /// Where the camera is after a frame, and whether that taught the map. SameView
+  /// Notes the view of a frame, and whether the frame updated the map (SameView).
   void note_view(bool taught, Scalar median_depth);
   /// Updates the noise model with the inliers' residuals after measure().
   void learn_noise();

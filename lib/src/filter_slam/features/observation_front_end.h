@@ -34,7 +34,7 @@ class ObservationFrontEnd {
 
   /// Updates the filter with observations of the map's features. again: of the same frame once more, which is not counted twice.
   UpdateOutcome measure(const PixelObservation* observations, int count, bool again, const UpdateMode& mode);
-  /// What the frame says of the features that were observed. mean: of earlier frames.
+  /// Counts the observations and updates the log-odds of their features. mean: of earlier frames.
   void count(const FindShare& mean);
   /// Adds features for observations with unknown ids.
   void add_features(const PixelObservation* observations, int count);

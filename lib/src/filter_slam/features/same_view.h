@@ -6,9 +6,9 @@
 
 namespace pf {
 
-/// What is wrong with a match (lens, warp, first view) hangs on the view, and comes again in every frame of a camera at rest. So a view
-/// counts as often as it takes to be worth one independent measurement, tau frames; in those after them the map is considered and not
-/// estimated (Schmidt), until the camera sees something else.
+/// The error of a match (lens, warp, first view) depends on the view, and repeats in every frame of a camera at rest. So a view counts as
+/// often as it takes to be worth one independent measurement, tau frames; in those after them the map is considered and not estimated
+/// (Schmidt), until the camera sees something else.
 class SameView {
  public:
   void init() { data_ = Data(); }

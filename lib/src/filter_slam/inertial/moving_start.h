@@ -9,19 +9,19 @@
 #include "geometry/rotation_smoother.h"
 #include "map/map.h"
 
-/// Looks for metres and gravity while the camera moves in a map up to scale: keeps the pixels of frames, with what the samples say in
-/// between, finds the poses of these frames anew against the map as it is now, and solves for scale, gravity and the accelerometer's bias.
-/// See lib/docs/theory/inertial.md.
+/// Looks for metres and gravity while the camera moves in a map up to scale: keeps the pixels of frames and the integrals of the samples in
+/// between, estimates the poses of these frames anew against the present map, and solves for scale, gravity and the accelerometer's bias
+/// (lib/docs/theory/inertial.md).
 
 namespace pf {
 
-/// What is told of a frame beside its matches.
+/// Inputs of a frame beside its matches.
 struct MovingFrame {
   bool keep;             ///< it is tracked in a map that samples may scale
   bool judge;            ///< depths of that map are known up to scale
   std::uint32_t map_id;  ///< of that map
   Scalar depth;          ///< the median one of what is seen
-  bool patient;          ///< the map is young: a scale that is known well is waited for
+  bool patient;          ///< the map is new: the start waits for a scale that is known well
   Scalar correlation;    ///< frames in a row whose pixels have the same errors: 1 where each has its own
 };
 
@@ -36,7 +36,7 @@ class MovingStart {
     data_.sigma_scale = 0;
     data_.reversed = false;
   }
-  /// The unit's delay has become another: what the samples say between the views is integrated again. Views without samples are forgotten.
+  /// After a change of the unit's delay: integrates the samples between the views again. Views without samples are dropped.
   void integrate_again();
   /// Of the last solution that was not accepted: its sigma of the log scale; 0: there was none.
   Scalar sigma_scale() const { return data_.sigma_scale; }

@@ -5,7 +5,7 @@
 #include "filter/imu_log.h"
 #include "geometry/so3.h"
 
-/// What the camera's own rotations, from pictures alone, say of a gyroscope: its delay, its axes and its scale
+/// Estimates a gyroscope's delay, axes and scale from the camera's own rotations, which come from images alone
 /// (lib/docs/theory/inertial.md, "Rates").
 
 namespace pf {

@@ -8,8 +8,8 @@
 #include "frame/settings.h"
 
 /// While samples do not move the body, since the unit is rejected or since its clock or its axes are not known: compares the camera's own
-/// rates with the gyroscope's (RateAlignment). Where they fit, samples can be used; where they do not, the fit says why.
-/// What each reason means to a user: lib/docs/guide/unknown_unit.md.
+/// rates with the gyroscope's (RateAlignment). Where they fit, samples can be used; where they do not, the fit gives the reason. What each
+/// reason means to a user: lib/docs/guide/unknown_unit.md.
 
 namespace pf {
 
@@ -24,10 +24,10 @@ class RateCheck {
     data_.rates.init();
     data_.begin.t_ns = 0;
   }
-  /// After a frame without samples. doubts: for how often the unit was rejected, it has to agree for longer. True where it has just been
-  /// named why no clock and no axes fit.
+  /// After a frame without samples. doubts: how often the unit was rejected; each rejection lengthens the agreement that is required. True
+  /// where the reason why no clock and no axes fit has just been found.
   bool note(const UnitFrame& frame, bool is_rejected, int doubts);
-  /// Clock and axes that fit, null without; use() says that samples are used from now on.
+  /// Clock and axes that fit; null: none. After use() samples are used.
   const RateFit* fit() const { return data_.has_fit ? &data_.fit : nullptr; }
   void use() {
     data_.is_open = data_.has_fit = false;

@@ -22,19 +22,20 @@ class RestDetector {
   void init() {
     if (data_ != nullptr) *data_ = Data();
   }
-  /// After a frame. seen: its measurements support its pose. True when the camera has been at rest for a second up to this frame; then
-  /// *rest is what the samples said in that time, and the next second begins.
+  /// After a frame. seen: its measurements support its pose. True when the camera has been at rest for a second up to this frame; *rest
+  /// then has the means of that second's samples, and the next second begins.
   bool note(bool seen, RestReading* rest);
   /// When the last second at rest began, in the time of frames.
   std::int64_t begin_ns() const { return data_->rest_begin_ns; }
-  /// Before a frame is measured, dt [s] after the last one: what samples since then say, where the camera has been at rest until then, for
-  /// a second at least. False where there are none, or too few for that time.
+  /// Before a frame is measured, dt [s] after the last one, of a camera that has been at rest for at least a second: the means of the
+  /// samples since then. False where they are too few for that time.
   bool read_frame(Scalar dt, StillReading* still) const;
-  /// How far the picture has moved since this rest began, as a mean over some frames; what it can tell from none at least [px].
+  /// How far the image has moved since this rest began, as a mean over some frames; at least the least motion that can be distinguished
+  /// from none [px].
   Scalar motion_px() const;
   /// The map has begun anew while the rest goes on: the picture is compared with that of the next second from now on.
   void begin_pixels_anew();
-  /// It moves, as something else says.
+  /// The camera moves, by other evidence.
   void end_rest() { data_->rested = 0; }
   bool is_resting() const { return data_ != nullptr && data_->rested > Scalar(0); }
 
@@ -86,7 +87,7 @@ class RestDetector {
   const UnitNoise& noise_;
   Seen* seen_ =
       nullptr;  ///< 2 kMaxPixels: of this second, of the first one; null without the inertial motion model, which needs no room then
-  Data* data_ = nullptr;  ///< likewise
+  Data* data_ = nullptr;  ///< the same
 };
 
 }  // namespace pf

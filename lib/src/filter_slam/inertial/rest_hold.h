@@ -35,7 +35,7 @@ class RestHold {
   void note_motion() { data_.late_count = 0; }
   /// The rest has ended, and samples alone know well where the camera has gone since then.
   bool has_just_ended(std::int64_t t_ns);
-  /// Samples do not know that well, as something else says.
+  /// Ends the time in which samples alone are taken to measure motion well, by other evidence.
   void forget() { data_.last_ns = INT64_MIN; }
   /// When its prediction began.
   std::int64_t before_ns() const { return data_.before_ns; }
@@ -45,7 +45,7 @@ class RestHold {
  private:
   static constexpr int kMaxLate = 8;
 
-  /// What the samples of a held frame said, which no later one has yet shown to be of a body at rest.
+  /// Readings of a held frame that no later frame has confirmed to be of a body at rest yet.
   struct Late {
     std::int64_t before_ns;
     StillReading still;

@@ -47,14 +47,14 @@ class UnitEvidence {
   /// So often.
   int doubts() const { return data_.doubts; }
   UnitUse use() const;
-  /// The map had been in metres for so short a time, when samples may have begun to be wrong, that it hangs on them alone.
+  /// True where samples may have been wrong since so soon after the map became metric that its scale depends on them alone.
   bool is_map_on_trial() const;
 
  private:
   struct Data {
     Scalar sum = 0;
     int doubts = 0;
-    std::int64_t used_ns = 0;    ///< since it was doubted last
+    std::int64_t used_ns = 0;    ///< since it was last rejected
     std::int64_t metric_ns = 0;  ///< for how long the map has been tracked in metres
     std::int64_t sound_ns = 0;   ///< the same when the sum was zero last: since then the samples may have been wrong
   };

@@ -9,21 +9,21 @@ namespace pf {
 enum class UnitMode : std::uint8_t {
   kAbsent,        ///< the motion model has no unit
   kUnaligned,     ///< its clock or its axes are not known yet: left out
-  kAtRest,        ///< likewise, but the camera rests, where neither matters: used for as long as it does
+  kAtRest,        ///< the same, but the camera rests, where neither matters: used for as long as it does
   kMoves,         ///< it rests no more: left out from the next frame on
   kSilent,        ///< no samples come
   kGyroOnly,      ///< samples move the body; lengths are not metres
-  kMetric,        ///< likewise, and lengths are metres
-  kProbation,     ///< likewise, with metres or without, for a while after it was rejected
+  kMetric,        ///< the same, and lengths are metres
+  kProbation,     ///< the same, with metres or without, for a while after it was rejected
   kContradicted,  ///< pictures contradict it: left out from the next frame on
-  kRejected       ///< likewise: left out
+  kRejected       ///< the same: not used
 };
 
 enum class UnitEvent : std::uint8_t {
   kLeft,           ///< a frame's prediction begins without samples
   kUsed,           ///< a frame's prediction begins with them
   kFrame,          ///< a frame has been measured with them
-  kRest,           ///< the camera rests, and that tells the scale
+  kRest,           ///< the camera rests, which gives the scale
   kMotion,         ///< it rests no more
   kGoesOn,         ///< the map that began in that rest goes on
   kContradiction,  ///< pictures contradict the unit
@@ -31,7 +31,7 @@ enum class UnitEvent : std::uint8_t {
   kNewMap          ///< a new map begins without samples
 };
 
-/// What the modes of a unit that is used tell apart.
+/// What distinguishes the modes of a unit that is used.
 struct UnitUse {
   bool is_metric = false;    ///< lengths are metres
   bool is_on_trial = false;  ///< it was rejected, and has not been used for long since

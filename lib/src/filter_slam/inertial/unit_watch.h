@@ -13,8 +13,7 @@
 #include "frame/frame.h"
 #include "frame/settings.h"
 
-/// Decides whether the samples of the inertial unit move the body: UnitMode, by what the frames say of them.
-/// See lib/docs/theory/inertial.md.
+/// Decides whether the samples of the inertial unit move the body (UnitMode), by the frames' evidence (lib/docs/theory/inertial.md).
 
 namespace pf {
 
@@ -33,7 +32,7 @@ class UnitWatch {
   /// Before the frame is measured. follows: the frame before was tracked, and so was the pose that this one's prediction begins at. Returns
   /// UpdateMode::max_pose_nis.
   Scalar begin_measuring(bool follows);
-  /// After it was measured. True where nothing was used of it, since it says so much against the prediction or since hardly anything was
+  /// After it was measured. True where none of it was used, because it contradicts the prediction too strongly or hardly anything was
   /// found: then it is to be measured again from another prediction.
   bool is_refused(const UpdateOutcome& outcome);
   /// Predicts the body as if no samples had come.
@@ -42,7 +41,7 @@ class UnitWatch {
   void settle(bool is_tracked);
   /// After a frame, dt_ns after the one before. True when pictures have just contradicted the unit.
   bool note(bool before_was_tracked, bool is_tracked, std::int64_t dt_ns);
-  /// What something else says of the unit. Rates are compared anew where it rests, or rests no more.
+  /// An event that concerns the unit. At the beginning and the end of a rest the comparison of rates starts anew.
   void take(UnitEvent event);
   /// UnitEvidence
   bool is_map_on_trial() const { return parts_->evidence.is_map_on_trial(); }
@@ -69,7 +68,7 @@ class UnitWatch {
     bool is_taken_back = false;    ///< in this frame
     Body tracked;                  ///< at the last tracked frame
     std::int64_t tracked_ns = 0;
-    bool is_aligned = false;  ///< take_alignment() says so
+    bool is_aligned = false;  ///< set by take_alignment()
   };
 
   struct Parts {

@@ -40,7 +40,7 @@ class PatchConsensus {
     int entry[kMax];
     Body near[kMax];  ///< the pose that the prior and this patch's corners make most likely
   };
-  /// The first one tells where the others are looked for.
+  /// The first one gives where the others are searched for.
   Witnesses find_witnesses(const Pyramid& image, const int* order, int count);
   /// Finds one patch in the image. is_first: it is searched for in all of its gate.
   bool find(const Pyramid& image, int wall, bool is_first, StoredPatch* patch);

@@ -47,7 +47,7 @@ class PatchKeeper {
  private:
   /// Where the filter began anew, the patches' blocks are gone.
   void follow_filter();
-  /// The most proven patches first: what they say makes the others easier to find. Returns how many.
+  /// The patches most often measured first, since their updates make the others easier to find. Returns how many.
   int list_in_order(int* order) const;
   void measure_patch(const Pyramid& image, int i);
   /// Finds a patch that is expected there and sets it as measured. hiding: as hiding_wall. *is_through: that wall does not explain it.

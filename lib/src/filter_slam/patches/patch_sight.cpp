@@ -20,7 +20,7 @@ bool expect_patch(const Filter& filter, const PlaneTable& planes, const StoredPa
   const Camera& lens = filter.lens();
   const Block &reference = state.block[patch.camera], &plane = state.block[planes[wall].slot];
   const PlaneFrame& frame = state.frame_of(plane);
-  const int rounds = rows_roll(state, lens) ? 3 : 1;  // where a corner lies says when its row is read out
+  const int rounds = rows_roll(state, lens) ? 3 : 1;  // the time of a corner's row depends on where it is
   Vec3 from[4], to[4];
   sight->middle_W.setZero();
   for (int k = 0; k < 4; ++k) {

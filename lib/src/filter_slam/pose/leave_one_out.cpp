@@ -114,8 +114,9 @@ void LeaveOneOut::sort(const unsigned char* frames) {
     for (int b = a; b > 0 && frames[index_[b]] > frames[index_[b - 1]]; --b) std::swap(index_[b], index_[b - 1]);
 }
 
-/// Where the group of the youngest begins that the older ones contradict most; kept_ if they contradict none. With n rows in the group,
-/// N in all, q = sum of v^2 over the group and s that of the older ones per row, at least 1 (where the model is wrong, it is so for all):
+/// Index at which the group of the newest features begins that the older ones contradict most; kept_ if they contradict none. With n rows
+/// in the group, N in all, q = sum of v^2 over the group and s that of the older ones per row, at least 1 (where the model is wrong, it is
+/// so for all):
 ///
 ///   z = ((q / (n s))^(1/3) - (1 - 2 / (9 n))) / sqrt(2 / (9 n))       Wilson and Hilferty 1931: normal, if q / s is chi-square
 int LeaveOneOut::group_begin(const MatchAges& ages) const {
@@ -124,7 +125,7 @@ int LeaveOneOut::group_begin(const MatchAges& ages) const {
   for (int i = 0; i < 2 * kept_; ++i) all += g_[i] * g_[i];
   for (int a = kept_ - 1; a >= ages.least && 2 * a >= kept_ && ages.frames[index_[a]] < kYoung; --a) {
     q += g_[2 * a] * g_[2 * a] + g_[2 * a + 1] * g_[2 * a + 1];
-    if (ages.frames[index_[a]] == ages.frames[index_[a - 1]]) continue;  // no younger than the next one
+    if (ages.frames[index_[a]] == ages.frames[index_[a - 1]]) continue;  // measured as often as the next one
     const Scalar n = static_cast<Scalar>(2 * (kept_ - a)), spread = 2 / (9 * n);
     const Scalar s = std::max(Scalar(1), (all - q) / static_cast<Scalar>(2 * a));
     const Scalar z = (std::pow(q / (n * s), Scalar(1) / 3) - (1 - spread)) / std::sqrt(spread);

@@ -25,17 +25,16 @@ struct Candidate {
 /// What an update with a frame's pixels does.
 struct UpdateMode {
   EstimatedRows rows;
-  /// While the depths of most of what a frame measures are open, pixels tell the map alone, and the pose not (lib/docs/theory/inertial.md,
-  /// "Starting").
+  /// While most measured depths are open, pixels update the map, and the pose is considered (lib/docs/theory/inertial.md, "Depths first").
   bool depths_first = false;
-  Scalar max_pose_nis = 0;  ///< the first update of a frame is refused where its pose NIS is above this; 0: no bound
+  Scalar max_pose_nis = 0;  ///< the first update of a frame is rejected where its pose NIS is above this; 0: no bound
 };
 
 /// What the updates of a frame have found.
 struct UpdateOutcome {
   bool is_applied = false;       ///< the last of them
   double nis = 0;                ///< normalised innovation squared of the last one
-  bool is_contradicted = false;  ///< one was refused by max_pose_nis; no later one is made
+  bool is_contradicted = false;  ///< one was rejected by max_pose_nis; no later one is made
   bool is_pose_open = false;     ///< pixels contradict the pose that depths_first relies on; depths come first no more
 };
 
@@ -68,8 +67,8 @@ class PixelUpdate {
   int reject_contradicted(int first, int count, JointFit* fit);
   ProposedPoses& proposals() { return proposals_; }
   const ProposedPoses& proposals() const { return proposals_; }
-  /// Proposes the pose that an update of these rows with the kept ones of the range that begin() got would give; evidence: what they say
-  /// for it, depth: median, of what is seen. Returns its log-odds; `before` where the update cannot be made.
+  /// Proposes the pose that an update of these rows with the kept ones of the range that begin() got would give; evidence: for this pose;
+  /// depth: median, of the measured points. Returns its log-odds; `before` where the update cannot be made.
   Scalar propose(int first, int count, EstimatedRows rows, Scalar depth, Scalar before, Scalar evidence);
   /// Updates with the kept ones of the range that begin() got. Where it is not applied, nothing has changed. before: of the updates that
   /// the frame has had. Returns that with what this one adds.

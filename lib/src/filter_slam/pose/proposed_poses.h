@@ -6,13 +6,13 @@
 #include "frame/pose_hypotheses.h"
 #include "frame/settings.h"
 
-/// Poses that the matches of frames in a row propose before any of them is believed.
+/// Poses that the matches of consecutive frames propose before one is accepted.
 
 namespace pf {
 
 /// After a gap a single frame may agree with the map by chance, or because a picture like the last one is shown once more: of frames in
-/// random order one in twenty is a neighbour of the one before. What tells is that the next frame proposes a pose to which a hand can have
-/// moved the camera in the meantime.
+/// random order one in twenty is a neighbour of the one before. The distinction is whether the next frame proposes a pose to which a hand
+/// can have moved the camera in the meantime.
 class ProposedPoses {
  public:
   ProposedPoses(const Settings& settings, const Filter& filter) : settings_(settings), filter_(filter) {}

@@ -42,7 +42,7 @@ class UnitNoise {
     Scalar third[2] = {0, 0};
     int count = 0;              ///< of them
     Scalar white[2] = {1, 1};   ///< variance of the samples to the stated one
-    Scalar excess[2] = {0, 0};  ///< log of the factor on the variance that innovations ask for; never below 0
+    Scalar excess[2] = {0, 0};  ///< log of the factor on the variance, from innovations; never below 0
   };
 
   void close_window();

@@ -69,7 +69,7 @@ bool Relocaliser::is_prediction_narrow() const {
   return variance < kNearbySigma * kNearbySigma;
 }
 
-/// About the last frame's proposal, or about a kept view that looks like this image; where there is neither, about the prediction.
+/// About the last frame's proposal, or about a kept view that is like this image; where there is neither, about the prediction.
 Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
   SearchPose about;
   about.body = filter_.state().body;
@@ -126,7 +126,7 @@ UpdateOutcome Relocaliser::measure_about(const SearchPose& about, int found, con
   return outcome;
 }
 
-/// Keeps the candidates that can tell where the camera is, and sets the search ellipses about a given pose. Returns how many.
+/// Keeps the candidates that constrain the pose, and sets their search ellipses about a given pose. Returns how many.
 int Relocaliser::keep_placed(const SearchPose& about, int count) {
   int placed = 0;
   for (int i = 0; i < count; ++i) {

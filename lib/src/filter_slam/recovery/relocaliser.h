@@ -11,8 +11,8 @@
 #include "map/map.h"
 #include "track/view_memory.h"
 
-/// Finds the map again where the prediction is too vague to search about it. Updates the filter once frames say enough for a pose to
-/// believe it (lib/docs/theory/belief.md).
+/// Finds the map again where the prediction is too vague to search about it. Updates the filter once the evidence of frames is enough to
+/// accept a pose (lib/docs/theory/belief.md).
 
 namespace pf {
 

@@ -34,7 +34,7 @@ class MapBeginning {
   void use(const KnownBody& known);
   /// What the caller knew of the first frame's body does not hold for the next map.
   void forget_known() { data_.known = KnownBody(); }
-  /// Whether the caller's velocity is large enough, and certain enough, to tell the scale.
+  /// Whether the caller's velocity is large enough, and certain enough, to fix the scale.
   bool has_known_speed() const;
   /// Time at which the map got its first pose.
   std::int64_t begin_ns() const { return data_.begin_ns; }

@@ -24,7 +24,7 @@ bool fit_depth(const Camera& camera, const KeyframeMap& map, int i, const Camera
 
 struct PixelDepth {
   Scalar rho;       ///< [1/m]
-  Scalar variance;  ///< 0: no pixel says anything
+  Scalar variance;  ///< 0: no pixel measures it
 };
 
 /// By the pixels of the keyframes, and by what its place knew of a point that has come back, in one step of Gauss-Newton from where it is:

@@ -74,7 +74,7 @@ class KeyframeMap {
   /// Adds a point without a depth at a pixel of a keyframe; evicts one that was not seen in this frame where there is no room. Returns its
   /// row, or -1.
   int add(int host, const Vec2& pixel);
-  /// Says where a point is, seen from its host.
+  /// Sets bearing and inverse depth of a point in its host.
   void place(int i, const Vec3& p_W);
   void drop(int i);
 

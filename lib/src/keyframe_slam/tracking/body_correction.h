@@ -3,7 +3,7 @@
 #include "geometry/p3p.h"
 #include "keyframe_slam/tracking/pose_prior.h"
 
-/// Corrects the body by a pose that matches say, with their information.
+/// Updates the body with a pose that was fitted to matches, with its information.
 
 namespace pf {
 

@@ -35,7 +35,7 @@ class KeyframeMotion {
   ///
   /// False where P_pp + R is no covariance; nothing has changed then.
   bool correct(const Quat& q_WC, const Vec3& p_W, const Wide6& R);
-  /// Puts the body in another place, where the map was moved by an adjustment. The velocities turn and scale with it.
+  /// Moves the body with the map after an adjustment. The velocities rotate and scale with it.
   void move(const Quat& q_WC, const Vec3& p_W) {
     data_.body.v_W = q_WC * (data_.body.q_WC.conjugate() * data_.body.v_W);
     data_.body.q_WC = q_WC;
@@ -48,7 +48,7 @@ class KeyframeMotion {
   }
   /// Multiplies lengths by s about a place that stays.
   void scale(Scalar s, const Vec3& c_W);
-  /// Sets the pose's covariance alone, and forgets how it hangs on the velocities.
+  /// Sets the pose's covariance alone, and drops its correlation with the velocities.
   void set_pose_covariance(const Mat6& pose);
 
   const Body& body() const { return data_.body; }

@@ -47,8 +47,8 @@ class PointSearch {
   /// Largest variance of the first `count` points along any direction [px^2].
   Scalar widest(int count) const;
 
-  /// Where most ellipses are wide: finds where the picture as a whole has gone, for searches that follow it. False: they are not wide, or
-  /// the picture does not say it.
+  /// Where most ellipses are wide: finds where the image as a whole has moved, for searches that follow it. False: they are not wide, or
+  /// the image does not show its motion.
   bool find_followed();
   /// After a frame's searches: ImageSearch::note_fixed.
   bool note_fixed() { return images_.note_fixed(map_.camera(), frame_, &map_.tables().features); }

@@ -49,8 +49,8 @@ class KeyframePose {
   /// Returns the number of inliers, 0 where they are too few; pose and information are then untouched.
   int find(const Camera& camera, int count, const PosePrior& prior, Scalar bound_px, int least, CameraPose* pose,
            Mat6* information);
-  /// Fit to all of the first `count` matches from the prior, for which no triple says enough; those beyond the gate then leave it.
-  /// Returns the number of inliers, 0 where it fails.
+  /// Fit to all of the first `count` matches from the prior, where no triple has enough evidence; matches beyond the gate are then
+  /// rejected. Returns the number of inliers, 0 where it fails.
   int fit(const Camera& camera, int count, const PosePrior& prior, Scalar gate, CameraPose* pose, Mat6* information);
 
  private:

@@ -34,8 +34,8 @@ void PoseMeasurement::make_match(int c, const PosePrior& prior, Scalar depth, in
   out.noise = noise_of(c, prior, depth, shared);
 }
 
-/// Of a point with the median depth for want of its own, as much again as standard deviation, times the baseline, the prior's and the
-/// uncertain part of it:
+/// Noise of a point without a depth of its own, taken at the median depth with the same standard deviation, times the baseline (the prior's
+/// and its uncertain part):
 ///
 ///   R += var(rho) (J_rho J_rhoᵀ + J_p P_p J_pᵀ / rho²)
 Mat2 PoseMeasurement::noise_of(int c, const PosePrior& prior, Scalar depth, int shared) const {

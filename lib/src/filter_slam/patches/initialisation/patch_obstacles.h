@@ -33,7 +33,7 @@ struct PatchObstacles {
   bool are_in(const PatchSquare& square) const;
 };
 
-/// Lists pixels of this frame's features that the gate refuses on the wall, and of places where patches of it were found elsewhere.
+/// Lists pixels of this frame's features that the gate of the wall rejects, and of places where patches of it were found elsewhere.
 PatchObstacles find_obstacles(const Filter& filter, const Map& map, const Frame& frame, const PatchRefusals& refusals,
                               int wall);
 

@@ -18,7 +18,7 @@ using namespace tuning::patch_selection;
 
 constexpr int kPlaneRows = 3;
 
-/// The weaker eigenvalue of the sum of g g^T over a square of a level, which says how well it can be aligned in the worse direction.
+/// The weaker eigenvalue of the sum of g g^T over a square of a level, which bounds how well it can be aligned in the worse direction.
 Scalar texture(const ImageView& image, int left, int top, int side) {
   int xx = 0, xy = 0, yy = 0;
   for (int y = top + 1; y < top + side - 1; ++y) {

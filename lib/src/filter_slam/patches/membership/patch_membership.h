@@ -43,11 +43,11 @@ class PatchMembership {
   bool follow(const Pyramid& image, bool supported, StoredPatch* patch);
   /// Adds the rows of a patch that is found for the first time: then it is known how well the reference's noise lets its corners be placed.
   bool add_block(StoredPatch* patch, const PatchMeasurement::Matrix& covariance);
-  /// Tries the planes that the patch may lie on, at most kMaxTrials. counts: what this frame says is kept. Returns the nearest one that
-  /// passes, or -1.
+  /// Tries the planes that the patch may lie on, at most kMaxTrials. counts: this frame's results count for the decision. Returns the
+  /// nearest plane that passes, or -1.
   int try_planes(StoredPatch* patch, bool counts);
   void decide(StoredPatch* patch);
-  /// Joins the plane with this id, unless other things that were seen say that the patch stands before it.
+  /// Joins the plane with this id, unless other measurements show that the patch is before it.
   void join(StoredPatch* patch, std::uint32_t id);
   /// The wall that was seen there when it began does not explain it.
   void refuse(StoredPatch* patch);
