@@ -886,7 +886,9 @@ typedef enum pf_frame_reason {
   PF_FRAME_REASON_DISAGREE = 3, /* enough were found, and too few of them agree with one pose */
   /* Enough agree, and chance may be the reason: log_odds is below 6.2. */
   PF_FRAME_REASON_IMPROBABLE = 4,
-  PF_FRAME_REASON_UNCERTAIN = 5 /* the pose's covariance is too large to be used */
+  PF_FRAME_REASON_UNCERTAIN = 5, /* the pose's covariance is too large to be used */
+  /* The picture is larger or smaller than the calibration says: zoom, focus, another sensor. */
+  PF_FRAME_REASON_LENS = 6
 } pf_frame_reason_t;
 
 typedef struct pf_report {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/scalar.h"
+#include "belief/lens_belief.h"
 #include "belief/pose_evidence.h"
 
 /// Whether the pose is right: its log-odds, from frame to frame.
@@ -46,6 +47,9 @@ class PoseBelief {
   Scalar log_odds() const { return is_noted_ ? log_odds_ : predicted_; }
 
   static bool is_enough(Scalar log_odds);
+  /// A pose of this consensus may move the estimate: its log-odds are enough, and its lens is the calibrated one.
+  bool may_use(Scalar log_odds, const PoseConsensus& consensus);
+  const LensBelief& lens() const { return lens_; }
   /// It reaches kTracked even if the rest of the frame contradicts as much as one frame can (kMaxFrame).
   static bool is_settled(Scalar log_odds);
   /// The frame's pose is accepted: its log-odds reach kTracked.
@@ -53,6 +57,7 @@ class PoseBelief {
 
  private:
   FindShare share_;
+  LensBelief lens_;
   Scalar log_odds_ = 0, predicted_ = 0;
   Scalar least_ = 0;       ///< of a prediction
   bool is_noted_ = false;  ///< in this frame

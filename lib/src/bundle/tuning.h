@@ -65,4 +65,12 @@ inline constexpr int kRows = 3;      ///< the same
 inline constexpr int kMinCells = 4;  ///< that hold features which have not moved; of two rows, or it may be the horizon
 }  // namespace start_still
 
+/// The focal length that one picture shows (zoom_fit.h).
+namespace zoom_fit {
+inline constexpr int kLeastPoints = 12;              ///< two for each unknown, but for one
+inline constexpr int kRounds = 4;                    ///< of Gauss-Newton
+inline constexpr Scalar kLeastShare = Scalar(1e-4);  ///< of the zoom's information, beside the pose; less is rounding
+inline constexpr Scalar kMost = Scalar(1);           ///< log ratio; beyond it the rounds have left the picture
+}  // namespace zoom_fit
+
 }  // namespace pf::tuning

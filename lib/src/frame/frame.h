@@ -36,7 +36,8 @@ enum class FrameReason : int {
   kFewFound = 2,
   kDisagree = 3,
   kImprobable = 4,
-  kUncertain = 5
+  kUncertain = 5,
+  kLens = 6
 };
 
 /// Normalised innovation squared of the pose alone, Filter::pose_nis.

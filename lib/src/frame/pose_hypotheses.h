@@ -1,6 +1,7 @@
 #pragma once
 
 #include "belief/pose_belief.h"
+#include "bundle/zoom_fit.h"
 #include "frame/settings.h"
 #include "geometry/camera.h"
 #include "track/view_memory.h"
@@ -35,6 +36,9 @@ struct PoseProposal {
 bool find_elsewhere(const PoseProposal& last, const ViewMemory& views, const Pyramid& image, const Camera& lens,
                     Scalar depth, PoseHypothesis* out);
 
+/// Adds to a consensus what its pixels say of the lens. Nothing where they do not say.
+void note_zoom(const ZoomFit& fit, const Settings& settings, PoseConsensus* consensus);
+
 /// The hypotheses of a frame that have been tried. n of them divide the odds of each by n.
 class PoseHypotheses {
  public:
@@ -53,7 +57,7 @@ class PoseHypotheses {
   }
   /// Whether a pose of these log-odds may update the estimate: it has enough inliers, and its log-odds reach kTracked. is_last: all
   /// features of the frame have been searched for; otherwise no evidence of the remaining ones may take the log-odds below that bound.
-  bool accepts(const PoseConsensus& consensus, Scalar log_odds, bool is_last = true) const;
+  bool accepts(const PoseConsensus& consensus, Scalar log_odds, bool is_last = true);
 
  private:
   const Settings& settings_;

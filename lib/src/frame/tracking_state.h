@@ -93,8 +93,9 @@ class TrackingState {
   }
   /// True where the last frame did not support its pose, so that the map has to be found again before anything is measured.
   bool is_relocalising(const StartProgress& start) const { return coasting_or_lost() && !start.pending(); }
+  /// Not while the lens is another one than the calibrated: the new map would be as wrong as the old one's poses.
   bool needs_new_map(std::int64_t restart_ns) const {
-    return restart_ns > 0 && data_.lost && data_.usable_ns >= restart_ns;
+    return restart_ns > 0 && data_.lost && data_.usable_ns >= restart_ns && data_.belief.lens().is_kept();
   }
   /// Id of the current map; never used twice.
   std::uint32_t map_id() const { return data_.map_id; }
@@ -114,6 +115,7 @@ class TrackingState {
     bool unusable = false;  ///< this frame's pose
     bool may_skip_target = false;
     bool depths_known = false;  ///< in the last frame
+    bool lens_said = false;     ///< that it has changed
     std::uint32_t map_id = 1;
     std::int64_t usable_ns = 0;  ///< of usable images while lost
     bool started_over = false;   ///< in this frame

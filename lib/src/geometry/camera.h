@@ -47,4 +47,10 @@ bool project(const Camera& camera, const Vec3& p_C, Vec2* pixel, Mat23* J_pixel_
 /// False where the model has none; outputs untouched.
 bool unproject(const Camera& camera, const Vec2& pixel, Vec3* ray_C, Mat32* J_ray_pixel = nullptr);
 
+/// Whether a pixel lies in the image, so far or farther from the centres of its outermost pixels. False for what is no number.
+inline bool is_in_image(const Camera& camera, const Vec2& pixel, Scalar margin = 0) {
+  return pixel.x() >= margin && pixel.y() >= margin && pixel.x() <= static_cast<Scalar>(camera.width - 1) - margin &&
+         pixel.y() <= static_cast<Scalar>(camera.height - 1) - margin;
+}
+
 }  // namespace pf

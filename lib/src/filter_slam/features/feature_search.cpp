@@ -29,11 +29,8 @@ bool FeatureSearch::is_visible(int feature, Vec2* pixel) const {
   if ((f.is_target && map_.target_withdrawn) || !f.has_appearance) return false;
   PixelMeasurement o;
   if (!filter_.predict_pixel(filter_.lens(), f.slot, &o)) return false;
-  const Scalar margin = static_cast<Scalar>(settings_.border_px);
   *pixel = o.predicted;
-  return !(o.predicted.x() < margin || o.predicted.y() < margin ||
-           o.predicted.x() > static_cast<Scalar>(settings_.camera.width - 1) - margin ||
-           o.predicted.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
+  return is_in_image(settings_.camera, o.predicted, static_cast<Scalar>(settings_.border_px));
 }
 
 /// How reliable a feature is; negative where this view cannot be compared with its first.

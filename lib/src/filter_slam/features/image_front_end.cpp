@@ -142,6 +142,7 @@ PoseConsensus ImageFrontEnd::consensus_of(const Range& range, int inliers, const
     consensus.log_chance += log_chance_density(searched_px2[i]);
     if (range.follows) consensus.log_density += update_.candidate(first + i).log_density;
   }
+  note_zoom(fit.zoom, settings_, &consensus);
   return consensus;
 }
 

@@ -59,16 +59,11 @@ bool fit_homography(const Camera& lens, const PlanePatch& pixels, PatchSight* si
 }
 
 bool is_in_view(const Camera& lens, const PatchSight& sight) {
-  const Vec2 middle = middle_of(sight.corner);
-  return sight.cosine > tuning::patch_keeper::kMinCosine && middle.x() > Scalar(0) && middle.y() > Scalar(0) &&
-         middle.x() < static_cast<Scalar>(lens.width) && middle.y() < static_cast<Scalar>(lens.height);
+  return sight.cosine > tuning::patch_keeper::kMinCosine && is_in_image(lens, middle_of(sight.corner));
 }
 
 bool is_whole_in_view(const Camera& lens, const PatchSight& sight) {
-  return std::all_of(sight.corner, sight.corner + 4, [&](const Vec2& at) {
-    return at.x() > Scalar(0) && at.y() > Scalar(0) && at.x() < static_cast<Scalar>(lens.width) &&
-           at.y() < static_cast<Scalar>(lens.height);
-  });
+  return std::all_of(sight.corner, sight.corner + 4, [&](const Vec2& at) { return is_in_image(lens, at); });
 }
 
 int hiding_wall(const Filter& filter, const Map& map, int wall, const PatchSight& sight) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "bundle/zoom_fit.h"
 #include "filter/filter.h"
 
 namespace pf {
@@ -33,6 +34,7 @@ struct MatchAges {
 struct JointFit {
   Scalar nis = 0;      ///< r^T S^-1 r
   Scalar log_det = 0;  ///< ln det S
+  ZoomFit zoom;        ///< by all that were kept before any of them was rejected
 };
 
 class LeaveOneOut {
@@ -49,6 +51,7 @@ class LeaveOneOut {
   /// Row i of G, i + 1 numbers. All but the last lie in the filter's scratch.
   Scalar* row(int i) { return i + 1 < max_rows_ ? filter_->scratch_row(i) : last_row_; }
   void fill(const PixelMeasurement* observations);
+  ZoomFit zoom_of(const PixelMeasurement* observations, const Scalar* v);
   void sort(const unsigned char* frames);
   int group_begin(const MatchAges& ages) const;
   bool factor();

@@ -37,10 +37,7 @@ bool PointSearch::begin_frame(const ImageView& image) {
 }
 
 bool PointSearch::is_inside(const Vec2& pixel) const {
-  const Scalar margin = static_cast<Scalar>(settings_.border_px);
-  return !(pixel.x() < margin || pixel.y() < margin ||
-           pixel.x() > static_cast<Scalar>(settings_.camera.width - 1) - margin ||
-           pixel.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
+  return is_in_image(settings_.camera, pixel, static_cast<Scalar>(settings_.border_px));
 }
 
 int PointSearch::list_placed(const PosePrior& at) {

@@ -33,6 +33,7 @@ class PoseMeasurement {
   Scalar bound_px() const;
 
  private:
+  void weigh_lens(int found, const CameraPose& pose, PoseConsensus* consensus) const;
   void make_match(int c, const PosePrior& prior, Scalar depth, int shared);
   Mat2 noise_of(int c, const PosePrior& prior, Scalar depth, int shared) const;
 

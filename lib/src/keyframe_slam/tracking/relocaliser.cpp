@@ -74,7 +74,7 @@ void KeyframeRelocaliser::recover(Scalar median_depth) {
   const Tried tried = try_pose(elsewhere, before, median_depth);
   recalled_in_vain_ = recalled_ != 0 && !tried.found;
   proposal_ = tried.proposal(median_depth);
-  if (!tried.found || !PoseBelief::is_enough(tried.log_odds - against)) return;
+  if (!tried.found || !belief_.may_use(tried.log_odds - against, tried.consensus)) return;
   motion_.set_pose_covariance(elsewhere.P);
   measuring_.correct(tried.pose, tried.information);
   belief_.use(tried.log_odds - against, tried.consensus);
