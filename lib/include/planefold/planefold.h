@@ -22,9 +22,9 @@
  * COVARIANCES are row-major, finite and positive semidefinite. A row is zero only where something
  * is exactly known: where rounding has left nothing of a variance, or less, it is given as large as
  * rounding may be, and 1e12 stands for unknown.
- * UNITS. SI and radians. Times, pixels and angles in other units say so in the name (_s, _ns, _px).
- * TYPES. In a structure, kinds and switches are int32_t, and the comment names the enum; a switch
- * is 0 or 1. Ids are uint32_t.
+ * UNITS. SI and radians. Times, pixels and angles in other units have them in the name (_s, _ns,
+ * _px). TYPES. In a structure, kinds and switches are int32_t, and the comment names the enum; a
+ * switch is 0 or 1. Ids are uint32_t.
  *
  * STATUS. 0 is done. Positive: done, with something to know. Negative: rejected, and nothing was
  * changed.
@@ -887,7 +887,7 @@ typedef enum pf_frame_reason {
   /* Enough agree, and chance may be the reason: log_odds is below 6.2. */
   PF_FRAME_REASON_IMPROBABLE = 4,
   PF_FRAME_REASON_UNCERTAIN = 5, /* the pose's covariance is too large to be used */
-  /* The picture is larger or smaller than the calibration says: zoom, focus, another sensor. */
+  /* The image is larger or smaller than by the calibration: zoom, focus, another sensor. */
   PF_FRAME_REASON_LENS = 6
 } pf_frame_reason_t;
 
@@ -950,15 +950,15 @@ typedef enum pf_imu_reason {
   PF_IMU_REASON_WAITS_FOR_ROTATION = 1, /* the delay or the axes are open, and not measured yet */
   /* gravity and scale are not known yet: relative sigma of the scale so far, 0: none */
   PF_IMU_REASON_WAITS_FOR_MOTION = 2,
-  PF_IMU_REASON_CONTRADICTS = 3,            /* innovations that no plausible noise explains */
-  PF_IMU_REASON_GYRO_IN_DEGREES = 4,        /* rates are too large by this factor, about 57.3 */
-  PF_IMU_REASON_GYRO_SCALE = 5,             /* the same, another factor */
-  PF_IMU_REASON_AXES = 6,                   /* other axes fit (reason_q_BC), so many degrees away */
-  PF_IMU_REASON_LEFT_HANDED = 7,            /* only a reflection fits: an axis has the wrong sign */
-  PF_IMU_REASON_CLOCK = 8,                  /* the delay that would fit [s] */
-  PF_IMU_REASON_RATES_DO_NOT_FIT = 9,       /* share of the camera's rotations not explained */
-  PF_IMU_REASON_COLUMNS_SWAPPED = 10,       /* the rates read like gravity: their mean length */
-  PF_IMU_REASON_ACCEL_IN_G = 11,            /* mean specific force, about 1 */
+  PF_IMU_REASON_CONTRADICTS = 3,      /* innovations that no plausible noise explains */
+  PF_IMU_REASON_GYRO_IN_DEGREES = 4,  /* rates are too large by this factor, about 57.3 */
+  PF_IMU_REASON_GYRO_SCALE = 5,       /* the same, another factor */
+  PF_IMU_REASON_AXES = 6,             /* other axes fit (reason_q_BC), so many degrees away */
+  PF_IMU_REASON_LEFT_HANDED = 7,      /* only a reflection fits: an axis has the wrong sign */
+  PF_IMU_REASON_CLOCK = 8,            /* the delay that would fit [s] */
+  PF_IMU_REASON_RATES_DO_NOT_FIT = 9, /* share of the camera's rotations not explained */
+  PF_IMU_REASON_COLUMNS_SWAPPED = 10, /* the rates are as large as gravity: their mean length */
+  PF_IMU_REASON_ACCEL_IN_G = 11,      /* mean specific force, about 1 */
   PF_IMU_REASON_ACCEL_WITHOUT_GRAVITY = 12, /* mean specific force, about 0 */
   PF_IMU_REASON_ACCEL_UNIT = 13,            /* mean specific force, neither */
   PF_IMU_REASON_ACCEL_SIGN = 14             /* accelerations have the opposite sign */

@@ -13,7 +13,7 @@ struct PoseConsensus {
   Scalar log_density = 0;    ///< ln N(r; 0, S) of the inliers' pixels, jointly [ln px^-2 each]
   Scalar log_chance = 0;     ///< sum of log_chance_density() over the inliers
   Scalar log_zoom = 0;       ///< ln of the focal length over the calibrated one, by the inliers' pixels
-  Scalar lens_evidence = 0;  ///< lens_evidence() of it; 0: they do not say
+  Scalar lens_evidence = 0;  ///< lens_evidence() of the pixels; 0: they do not measure it
 };
 
 /// ln of the density with which a search of this area finds something where its feature is not [ln px^-2].

@@ -26,11 +26,11 @@ inline constexpr Scalar kNone = Scalar(-4.6);  ///< below which it is none: wron
 /// Log-odds that the lens has changed (lens_belief.h).
 namespace lens_belief {
 inline constexpr Scalar kKept = Scalar(0.01);       ///< relative sigma of one picture against the map's own errors
-inline constexpr Scalar kChange = Scalar(0.2);      ///< likewise of a change
+inline constexpr Scalar kChange = Scalar(0.2);      ///< the same of a change
 inline constexpr Scalar kLeast = Scalar(-6.9);      ///< a lens changes once in 1,000 pictures at most
 inline constexpr Scalar kMost = Scalar(6.9);        ///< so that pictures can also show that it has changed back
 inline constexpr Scalar kSuspected = Scalar(-2.2);  ///< from which a pose is not used: changed in 10 %
-inline constexpr Scalar kCertain = Scalar(4.6);     ///< from which it is said: in 99 %
+inline constexpr Scalar kCertain = Scalar(4.6);     ///< from which the log has it: in 99 %
 }  // namespace lens_belief
 
 /// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/theory/states.md).

@@ -36,7 +36,7 @@ struct PoseProposal {
 bool find_elsewhere(const PoseProposal& last, const ViewMemory& views, const Pyramid& image, const Camera& lens,
                     Scalar depth, PoseHypothesis* out);
 
-/// Adds to a consensus what its pixels say of the lens. Nothing where they do not say.
+/// Adds the evidence of its pixels about the lens to a consensus; nothing where they do not measure it.
 void note_zoom(const ZoomFit& fit, const Settings& settings, PoseConsensus* consensus);
 
 /// The hypotheses of a frame that have been tried. n of them divide the odds of each by n.
