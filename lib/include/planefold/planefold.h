@@ -22,9 +22,9 @@
  * COVARIANCES are row-major, finite and positive semidefinite. A row is zero only where something
  * is exactly known: where rounding has left nothing of a variance, or less, it is given as large as
  * rounding may be, and 1e12 stands for unknown.
- * UNITS. SI and radians. Times, pixels and angles in other units have them in the name (_s, _ns,
- * _px). TYPES. In a structure, kinds and switches are int32_t, and the comment names the enum; a
- * switch is 0 or 1. Ids are uint32_t.
+ * UNITS. SI and radians. Times, pixels and angles in other units name them (_s, _ns, _px).
+ * TYPES. In a structure, kinds and switches are int32_t, and the comment names the enum; a switch
+ * is 0 or 1. Ids are uint32_t.
  *
  * STATUS. 0 is done. Positive: done, with something to know. Negative: rejected, and nothing was
  * changed.

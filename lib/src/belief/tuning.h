@@ -33,7 +33,7 @@ inline constexpr Scalar kSuspected = Scalar(-2.2);  ///< from which a pose is no
 inline constexpr Scalar kCertain = Scalar(4.6);     ///< from which the log has it: in 99 %
 }  // namespace lens_belief
 
-/// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/theory/states.md).
+/// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/lab/2026-11/belief.md).
 namespace chance {
 inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that find something; found: 0.04 .. 0.24
 inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in small ellipses, times kMaxFindShare
