@@ -19,9 +19,10 @@ class GaugePrior {
   bool any() const { return any_; }
   const Matrix& V() const { return V_; }
   void clear();
-  /// The log scale is less known by this variance, independently of all else; pivot: the place in W that it leaves where it is.
+  /// Adds this variance to the log scale, independently of all else; pivot: the place in W that the scale does not move.
   void add_scale(Scalar variance, const Vec3& pivot = Vec3::Zero());
-  /// Pose of the body (theta, p; row-major with leading dimension ld), which nothing else depends on yet: all of it becomes an error of W.
+  /// Pose of the body (theta, p; row-major with leading dimension ld), on which nothing else depends yet: takes all of its covariance as
+  /// one of W.
   void set_pose(const State& state, const Scalar* covariance, int ld);
 
   /// Adds N V N^T over the first `rows` rows of the body (rows x rows, row-major).
