@@ -65,7 +65,7 @@ inline constexpr int kRows = 3;      ///< the same
 inline constexpr int kMinCells = 4;  ///< that hold features which have not moved; of two rows, or it may be the horizon
 }  // namespace start_still
 
-/// The focal length that one picture shows (zoom_fit.h).
+/// The focal length from one image (zoom_fit.h).
 namespace zoom_fit {
 inline constexpr int kLeastPoints = 12;              ///< two for each unknown, but for one
 inline constexpr int kRounds = 4;                    ///< of Gauss-Newton

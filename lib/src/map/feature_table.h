@@ -6,7 +6,7 @@
 #include "base/eigen.h"
 #include "base/table_entries.h"
 
-/// Table of features: what is kept about each beside its block in the filter.
+/// Table of features: the data of each beside its block in the filter.
 
 namespace pf {
 

@@ -45,7 +45,7 @@ class Map {
     target_withdrawn = false;
   }
 
-  /// How a feature looked when it was first seen. Valid if the feature `has_appearance`.
+  /// Appearance of a feature at first sight. Valid if the feature `has_appearance`.
   Appearance& appearance(int feature) { return appearance_[feature]; }
   const Appearance& appearance(int feature) const { return appearance_[feature]; }
   /// The camera that saw it then: a constant in W that does not follow when the map moves.

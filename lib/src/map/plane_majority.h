@@ -11,7 +11,7 @@ namespace pf {
 /// Largest number of points that are judged together.
 inline constexpr int kMaxJudged = 64;
 
-/// Where a point is, by itself.
+/// A point's own place, independent of its plane.
 struct JudgedPoint {
   Vec3 p_W = Vec3::Zero();  ///< [m]
   Scalar variance = 0;      ///< of its height above the plane, up to a factor that all points share [m²]

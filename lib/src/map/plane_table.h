@@ -9,7 +9,7 @@
 #include "geometry/plane.h"
 #include "map/plane_outline.h"
 
-/// Table of planes: what is kept about each beside its block in the filter.
+/// Table of planes: the data of each beside its block in the filter.
 
 namespace pf {
 
@@ -150,7 +150,7 @@ class PlaneTable {
       if (used(i) && entry_[i].apart) return true;
     return false;
   }
-  /// What patches have held against walls so far no longer counts.
+  /// Clears the evidence of patches against walls.
   void forget_refusals() {
     for (int i = 0; i < capacity_; ++i) entry_[i].refused = 0;
   }

@@ -17,7 +17,7 @@ struct PlaneStart {
   int level = PlanePatch::kLevels - 1;  ///< coarsest, where it begins; the finest is 0
 };
 
-/// What became of it.
+/// Result of an alignment.
 enum class PlaneVerdict {
   kAligned,
   kNotConverged,  ///< H_CK may still be a better place to begin than the start; also: it leaves what can be computed

@@ -27,7 +27,7 @@ struct PixelDepth {
   Scalar variance;  ///< 0: no pixel measures it
 };
 
-/// By the pixels of the keyframes, and by what its place knew of a point that has come back, in one step of Gauss-Newton from where it is:
+/// From the pixels of the keyframes, and the prior of a place that has come back, in one step of Gauss-Newton from the present depth:
 ///
 ///   rho + sum J.r / sum J²,   variance sigma² / sum J²
 PixelDepth depth_by_pixels(const KeyframeMap& map, int i, Scalar sigma_px);

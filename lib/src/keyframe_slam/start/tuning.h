@@ -7,7 +7,7 @@
 
 namespace pf::tuning {
 
-/// What a start of the window assumes.
+/// Assumptions of the window's start.
 namespace keyframe_start {
 inline constexpr Scalar kParallaxes = Scalar(4);        ///< of a match from the rotation that explains the picture best
 inline constexpr Scalar kRotationSigma = Scalar(0.01);  ///< [rad] of that rotation
