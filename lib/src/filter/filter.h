@@ -103,8 +103,8 @@ class Filter {
   /// tau: when the pixel's row was read out, from the frame's time [s].
   int add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho,
                         Scalar sigma_rho, Scalar tau = Scalar(0));
-  /// The same at the distance of a plane along the pixel's ray (correlated with all that this depends on), with an independent sigma of
-  /// relative_sigma of the distance. -1 too where the ray does not meet it.
+  /// The same at the distance of a plane along the pixel's ray (with its correlations), with an independent relative_sigma of that
+  /// distance. -1 too where the ray does not meet it.
   int add_before_plane(int anchor, int plane, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px,
                        Scalar relative_sigma, Scalar tau = Scalar(0));
   int add_point(const Vec3& p_W, const Mat3& covariance);
@@ -147,8 +147,7 @@ class Filter {
   bool slide_plane(int plane, const Vec3& x, const Mat3& Q, Scalar sigma_uv);
   /// Adds Q to the covariance of a plane's (a, b, h).
   void inflate(int plane, const Mat3& Q);
-  /// Inflates: a plane was wrong by about sigma of (a, b, h), seen from the camera, which is added to its covariance, and to all else
-  /// through its correlation with it.
+  /// Inflates a plane that was wrong by sigma of (a, b, h), seen from the camera, and all else through its correlation with it.
   void forget_through(int plane, const Vec3& sigma);
   /// Multiplies the covariance of a wrong known plane's prior by (1 + widening). False where the prior is tighter than the plane.
   bool forget_prior(int plane, const Mat3& prior, Scalar widening);
