@@ -32,8 +32,8 @@ void FilterStart::start_over() {
 
 /// Whether the target's points fit into the capacities.
 bool FilterStart::fits(const Target& target) const {
-  constexpr int kRows = 3;  // of a point
-  return target.count <= settings_.max_features && kRows * target.count <= filter_.room();
+  constexpr int kPointRows = 3;  // of a point
+  return target.count <= settings_.max_features && kPointRows * target.count <= filter_.room();
 }
 
 Status FilterStart::use_target(const Target& target) {
