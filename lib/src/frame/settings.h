@@ -24,10 +24,11 @@ struct MaskRoom {
   ImageMask* mask = nullptr;  ///< null: no room
 };
 
-/// What is kept of where the camera was.
+/// What is kept of where the camera was, and of what the caller has set there.
 struct KeptRoom {
   int views = 0;
   int places = 0;  ///< of the window
+  int anchors = 0;
 };
 
 /// Inertial samples that are kept, and what their unit can measure.
