@@ -19,12 +19,13 @@ typedef struct profile {
   int32_t max_observations; /* measured in one frame */
   int32_t max_planes;
   int32_t max_kept_views; /* to find the map again from elsewhere */
+  int32_t max_anchors;
 } profile_t;
 
 static const profile_t profiles[] = {
-    {"tiny", 320, 240, 30, 112, 20, 4, 0},
-    {"handheld", 320, 240, 60, 260, 40, 8, 24},
-    {"room", 640, 480, 200, 700, 60, 16, 60},
+    {"tiny", 320, 240, 30, 112, 20, 4, 0, 0},
+    {"handheld", 320, 240, 60, 260, 40, 8, 24, 8},
+    {"room", 640, 480, 200, 700, 60, 16, 60, 16},
 };
 
 static void fill_in(const profile_t* profile, pf_config_t* config) {
@@ -40,6 +41,7 @@ static void fill_in(const profile_t* profile, pf_config_t* config) {
   config->capacity.max_observations = profile->max_observations;
   config->capacity.max_planes = profile->max_planes;
   config->capacity.max_kept_views = profile->max_kept_views;
+  config->capacity.max_anchors = profile->max_anchors;
   config->map.features_in_view = profile->max_observations;
 }
 

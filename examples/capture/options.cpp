@@ -22,11 +22,13 @@ namespace pf::capture {
 namespace {
 
 constexpr const char* kFooter =
-    "In the window: space pauses, r resets, s saves the picture, q quits; a click or tap shows which plane it hits.\n"
+    "In the window: space pauses, r resets, s saves the picture, q quits; a click or tap shows which plane it hits,\n"
+    "a sets an anchor where the pointer or the last tap is.\n"
     "Writes into --out: report.json, trajectory.txt (TUM), covariance.csv, trajectory_all.txt, frames.csv, map.ply,\n"
     "calib.yaml, overlay.mp4, overlay_mid.png, overlay_last.png, lens.csv where the lens is estimated,\n"
     "calib_found.yaml where there was no calibration,\n"
-    "inertial.csv where a unit's samples are used, and truth.tum and truth_planes.json where the source knows them.\n"
+    "inertial.csv where a unit's samples are used, anchors.csv where an anchor was set, and truth.tum and "
+    "truth_planes.json where the source knows them.\n"
     "Poses in a second map, which has a world of its own, go into trajectory_2.txt and so on.\n"
     "Exit code: 0 done, 1 the run failed, ended early, tracked nothing, or was lost at the end or most of the time,\n"
     "2 the command line is wrong, or a file that it names beside the frames: calibration, start, walls, noise, mount.";
@@ -147,17 +149,18 @@ std::string read_gravity(const std::vector<double>& numbers, Options& options) {
   return options.has_gravity ? "" : "--gravity needs a direction: three finite numbers that are not all 0, as in 0,1,0";
 }
 
-std::string read_taps(const std::vector<std::string>& texts, Options& options) {
+std::string read_taps(const std::string& option, const std::vector<std::string>& texts,
+                      std::vector<Options::Tap>& taps) {
   for (const std::string& text : texts) {
     long long frame = -1;
     Options::Tap tap{};
     char rest = '\0';
     if (std::sscanf(text.c_str(), "%lld,%lf,%lf%c", &frame, &tap.pixel[0], &tap.pixel[1], &rest) != 3 || frame < 0 ||
         !std::isfinite(tap.pixel[0]) || !std::isfinite(tap.pixel[1])) {
-      return "--tap " + text + ": write FRAME,U,V, as in 120,160.5,90";
+      return option + " " + text + ": write FRAME,U,V, as in 120,160.5,90";
     }
     tap.frame = frame;
-    options.taps.push_back(tap);
+    taps.push_back(tap);
   }
   return "";
 }
@@ -296,7 +299,7 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   std::string motion = "velocity";
   std::string timestamps;
   std::vector<double> gravity;
-  std::vector<std::string> taps;
+  std::vector<std::string> taps, anchors;
   bool no_film = false;
   bool no_gauge = false;
   bool no_planes = false;
@@ -375,6 +378,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "FRAME,U,V: as a click on that pixel of frame FRAME of the run; may come again and again")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--anchor", anchors, "FRAME,U,V: sets an anchor there, as key a; may come again and again")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_flag("--headless", options.headless, "no window");
   app.add_option("--title", options.title,
                  "what window, film and pictures say at the lower edge, in place of the source")
@@ -408,6 +414,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--max-planes", options.max_planes, "likewise")->check(whole_number_in(1, 64));
   app.add_option("--max-places", options.max_places, "of the window: places that are kept, and saved, 0 to 200")
       ->check(whole_number_in(0, 200));
+  app.add_option("--max-anchors", options.max_anchors, "anchors that are kept, and saved with the map, 0 to 64")
+      ->check(whole_number_in(0, 64));
   app.add_option("--max-state-dim", options.max_state_dim, "rows of the covariance")->check(whole_number_in(32, 2000));
   app.add_option("--max-observations", options.max_observations, "features measured in one frame")
       ->check(whole_number_in(8, 200));
@@ -509,7 +517,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
     return Parsed::kExit;
   }
   wrong = read_gravity(gravity, options);
-  wrong = wrong.empty() ? read_taps(taps, options) : wrong;
+  wrong = wrong.empty() ? read_taps("--tap", taps, options.taps) : wrong;
+  wrong = wrong.empty() ? read_taps("--anchor", anchors, options.anchors) : wrong;
   if (!wrong.empty()) {
     code = refuse(wrong);
     return Parsed::kExit;

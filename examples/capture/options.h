@@ -42,6 +42,7 @@ struct Options {
   int32_t max_features = -1;
   int32_t max_planes = -1;
   int32_t max_places = -1;
+  int32_t max_anchors = -1;
   int32_t window_keyframes = -1, window_fixed = -1;
   int32_t max_state_dim = -1;
   int32_t max_observations = -1;
@@ -98,7 +99,8 @@ struct Options {
     int64_t frame;
     double pixel[2];
   };
-  std::vector<Tap> taps;  ///< as if the user had clicked
+  std::vector<Tap> taps;     ///< as if the user had clicked
+  std::vector<Tap> anchors;  ///< as if the user had set one there
   bool headless = false;
   bool film = true;
   bool tracks = false;

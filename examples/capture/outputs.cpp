@@ -6,6 +6,7 @@
 #include <cinttypes>
 #include <cstring>
 
+#include "anchors.h"
 #include "plane_outputs.h"
 
 namespace pf::capture {
@@ -171,6 +172,18 @@ bool Outputs::open_map(int map, std::string& error) {
   return true;
 }
 
+bool Outputs::open_anchors(std::string& error) {
+  if (!create(anchors_, "anchors.csv", error)) {
+    return false;
+  }
+  anchors_.rows() = kAnchorsHeader;
+  for (int i = 0; i < 36; ++i) {
+    append(anchors_.rows(), ",c%d%d", i / 6, i % 6);
+  }
+  anchors_.rows() += '\n';
+  return true;
+}
+
 bool Outputs::write(const FrameView& view, Source& source, const MotionWindow* window, std::string& error) {
   pf_pose_t truth{};
   const pf_report_t& report = view.report;
@@ -212,10 +225,16 @@ bool Outputs::write(const FrameView& view, Source& source, const MotionWindow* w
   if (patches_.is_open()) {
     for (const pf_patch_t& patch : view.patches) put_patch(patches_.rows(), view.index, patch);
   }
+  if (!view.anchors.empty() && !anchors_.is_open() && !open_anchors(error)) {
+    return false;
+  }
+  if (anchors_.is_open()) {
+    put_anchors(anchors_.rows(), view);
+  }
   bool written = true;
   // The covariance before the trajectory, so that whatever ends the program leaves one for every pose.
   for (TextFile* file : {&covariance_, &trajectory_, &trajectory_all_, &tracks_, &planes_, &patches_, &truth_,
-                         &relative_, &lens_, &inertial_, &frames_}) {
+                         &relative_, &lens_, &inertial_, &anchors_, &frames_}) {
     written = file->write_rows(error) && written;
   }
   return written;

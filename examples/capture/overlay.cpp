@@ -7,6 +7,7 @@
 #include "maths.h"
 #include "plane_drawing.h"
 #include "rows.h"
+#include "text_file.h"
 
 namespace pf::capture {
 
@@ -107,6 +108,7 @@ const Canvas& Overlay::draw(const FrameView& view) {
   draw_patches(view);
   draw_tracks(view);
   draw_hits(view);
+  draw_anchors(view);
   draw_horizon(canvas_, view, zoom_, zoom_ * view.image.height);
   cairo_restore(pen);
   map_.draw(canvas_, view, image_width_, 0, panel_width_, panel_width_);
@@ -142,6 +144,47 @@ void Overlay::draw_hits(const FrameView& view) {
     canvas_.rectangle(left - 3.0, y - 20.0, width + 6.0, 15.0, kGround, 0.7);
     canvas_.colour(kPath);
     canvas_.text(left, y - 9.0, text, 11.0, true);
+  }
+}
+
+/// Axes of the anchors of this map, x, y and z in red, green and blue, of a tenth of their distance, and their ids.
+void Overlay::draw_anchors(const FrameView& view) {
+  constexpr double kLength = 0.1;
+  constexpr Colour kAxes[] = {{1.0, 0.3, 0.3}, {0.3, 1.0, 0.4}, {0.4, 0.6, 1.0}};
+  const auto place = [&](const Vec3& p_W, double at[2]) {
+    double pixel[2];
+    const Vec3 p_C = to_camera(view.pose, p_W);
+    if (p_C[2] <= 0.0 || !project_row(view.camera, view.pose, p_C, pixel)) {
+      return false;
+    }
+    at[0] = zoom_ * (pixel[0] + 0.5);
+    at[1] = zoom_ * (pixel[1] + 0.5);
+    return true;
+  };
+  for (const pf_anchor_t& anchor : view.anchors) {
+    const Vec3 origin_W{anchor.p_WA[0], anchor.p_WA[1], anchor.p_WA[2]};
+    double from[2];
+    if (!view.has_pose || anchor.map_id != view.report.map_id || !place(origin_W, from)) {
+      continue;
+    }
+    const double length = kLength * to_camera(view.pose, origin_W)[2];
+    cairo_set_line_width(canvas_.pen(), 2.5);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 along = rotation_column(anchor.q_WA, axis);
+      double to[2];
+      if (place({origin_W[0] + length * along[0], origin_W[1] + length * along[1], origin_W[2] + length * along[2]},
+                to)) {
+        canvas_.colour(kAxes[axis]);
+        canvas_.line(from[0], from[1], to[0], to[1]);
+      }
+    }
+    std::string text;
+    append(text, "anchor %u", anchor.id);
+    const double width = canvas_.text_width(text, 11.0, true);
+    const double left = std::clamp(from[0] + 8.0, 2.0, std::max(2.0, image_width_ - width - 4.0));
+    canvas_.rectangle(left - 3.0, from[1] + 5.0, width + 6.0, 15.0, kGround, 0.7);
+    canvas_.colour(kText);
+    canvas_.text(left, from[1] + 16.0, text, 11.0, true);
   }
 }
 

@@ -54,6 +54,7 @@ class Overlay {
   void draw_patches(const FrameView& view);
   void draw_tracks(const FrameView& view);
   void draw_hits(const FrameView& view);
+  void draw_anchors(const FrameView& view);
   void draw_numbers(const FrameView& view, double x, double y, double width);
   void draw_strip(const FrameView& view);
   void draw_time_line(const FrameView& view);

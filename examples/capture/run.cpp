@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "anchors.h"
 #include "focal_search.h"
 #include "imu_feed.h"
 #include "map_shape.h"
@@ -75,6 +76,9 @@ class Run {
   void tell_notices();
   void handle_keys();
   void point_at(const double pixel[2]);
+  void anchor_at(const double pixel[2]);
+  void point_at_pointer(void (Run::*act)(const double pixel[2]));
+  bool begin_line_on(const double pixel[2], std::string& line);
   void save(const std::string& name);
   bool write_down(std::string& error);
   bool refresh_report();
@@ -229,6 +233,11 @@ Read Run::step(int64_t index) {
       point_at(tap.pixel);
     }
   }
+  for (const Options::Tap& tap : options_.anchors) {
+    if (tap.frame == index) {
+      anchor_at(tap.pixel);
+    }
+  }
   track_slowly(begin_ns);
   source_.pushed();
   if (recorder_.is_open()) {
@@ -332,18 +341,48 @@ void Run::handle_keys() {
       case Key::kQuit:
         quit_ = true;
         break;
-      case Key::kClick: {
-        double pixel[2];
-        if (done_any_ && show_.clicked_pixel(pixel)) {
-          point_at(pixel);
-          show_.redraw(view_);
-        }
+      case Key::kClick:
+        point_at_pointer(&Run::point_at);
         break;
-      }
+      case Key::kAnchor:
+        point_at_pointer(&Run::anchor_at);
+        break;
       case Key::kNone:
         break;
     }
   } while (paused_ && !quit_ && g_interrupted == 0);
+}
+
+void Run::point_at_pointer(void (Run::*act)(const double pixel[2])) {
+  double pixel[2];
+  if (done_any_ && show_.clicked_pixel(pixel)) {
+    (this->*act)(pixel);
+    show_.redraw(view_);
+  }
+}
+
+/// What a line about a pixel begins with. false: the pixel is outside of the picture, and the line has been told.
+bool Run::begin_line_on(const double pixel[2], std::string& line) {
+  progress_.end();
+  append(line, "pixel %.1f, %.1f of frame %lld: ", pixel[0], pixel[1], static_cast<long long>(view_.index));
+  const pf_camera_t& camera = session_.config().camera;
+  if (!(pixel[0] >= -0.5 && pixel[1] >= -0.5 && pixel[0] < camera.width - 0.5 && pixel[1] < camera.height - 0.5)) {
+    append(line, "lies outside of the picture of %d x %d pixels", camera.width, camera.height);
+    note(line);
+    return false;
+  }
+  return true;
+}
+
+/// An anchor on the plane that is there. It stays in the pictures, and in the map.
+void Run::anchor_at(const double pixel[2]) {
+  std::string line;
+  if (!begin_line_on(pixel, line)) {
+    return;
+  }
+  set_anchor(session_.slam(), pixel, session_.is_metric(), line);
+  view_.anchors = read_anchors(session_.slam());
+  note(line);
 }
 
 /// Which plane is there, where, and how sure that is. The last few stay in the pictures.
@@ -351,12 +390,7 @@ void Run::point_at(const double pixel[2]) {
   constexpr size_t kShown = 12;
   Hit hit;
   std::string line;
-  progress_.end();
-  append(line, "pixel %.1f, %.1f of frame %lld: ", pixel[0], pixel[1], static_cast<long long>(view_.index));
-  const pf_camera_t& camera = session_.config().camera;
-  if (!(pixel[0] >= -0.5 && pixel[1] >= -0.5 && pixel[0] < camera.width - 0.5 && pixel[1] < camera.height - 0.5)) {
-    append(line, "lies outside of the picture of %d x %d pixels", camera.width, camera.height);
-    note(line);
+  if (!begin_line_on(pixel, line)) {
     return;
   }
   if (!cast_ray(session_.slam(), view_.index, view_.pose, pixel, hit)) {
@@ -437,9 +471,12 @@ int Run::finish() {
       save("overlay_mid.png");
     }
   }
-  for (const Options::Tap& tap : options_.taps) {
-    if (!done_any_ || tap.frame > view_.index) {
-      note("--tap: the run ended before frame " + std::to_string(tap.frame) + "; its first frame is 0");
+  for (const auto& [option, taps] : {std::pair("--tap", &options_.taps), std::pair("--anchor", &options_.anchors)}) {
+    for (const Options::Tap& tap : *taps) {
+      if (!done_any_ || tap.frame > view_.index) {
+        note(std::string(option) + ": the run ended before frame " + std::to_string(tap.frame) +
+             "; its first frame is 0");
+      }
     }
   }
   if (options_.relative > 0 && relative_.windows() == 0) {

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "anchors.h"
 #include "steady.h"
 
 namespace pf::capture {
@@ -93,6 +94,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   if (options.window_fixed >= 0) config_.window.fixed_keyframes = options.window_fixed;
   set(config_.capacity.max_planes, options.max_planes);
   if (options.max_places >= 0) config_.capacity.max_places = options.max_places;
+  if (options.max_anchors >= 0) config_.capacity.max_anchors = options.max_anchors;
   set(config_.capacity.max_state_dim, options.max_state_dim);
   set(config_.capacity.max_observations, options.max_observations);
   set(config_.map.features_in_view, options.features_in_view);
@@ -320,6 +322,7 @@ bool Session::push(const pf_image_t& image, FrameView& view, std::string& error)
   pf_get_patches(slam_, view.patches.data(), view.patches.size(), &count);
   view.patches.resize(std::min(count, view.patches.size()));
   view.planes = read_planes(slam_);
+  view.anchors = read_anchors(slam_);
   // A new map forgets the direction that the user gave.
   view.has_gravity = (has_gravity_ && view.map == 1) || (view.has_inertial && view.inertial.metric != 0);
   return true;

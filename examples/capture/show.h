@@ -11,7 +11,7 @@
 
 namespace pf::capture {
 
-enum class Key { kNone, kPause, kReset, kSave, kQuit, kClick };
+enum class Key { kNone, kPause, kReset, kSave, kQuit, kClick, kAnchor };
 
 /// Everything that is drawn: the overlay, its film, its window and single pictures of it. In a build without Cairo (on a board
 /// without a screen, say) nothing is.
@@ -33,7 +33,7 @@ class Show {
   bool save(const FrameView& view, const std::string& path);
   /// The next key that was pressed; waits for up to wait_ms.
   Key poll(int wait_ms);
-  /// Where the last kClick was, as a pixel of the frame. false: outside of it.
+  /// Where the last kClick was, or of kAnchor the pointer, as a pixel of the frame. false: outside of it.
   bool clicked_pixel(double pixel[2]) const;
   bool is_filming() const;
   /// The film ended early, on a full disk say.

@@ -43,6 +43,7 @@ struct FrameView {
   std::vector<pf_patch_t> patches;
   std::vector<PlaneView> planes;
   std::vector<Hit> hits;  ///< what the user pointed at so far
+  std::vector<pf_anchor_t> anchors;
 };
 
 /// Of a plane in this frame: that of its class where gravity is known, else that of its number.

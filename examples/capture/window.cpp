@@ -75,6 +75,10 @@ Key Window::poll(int wait_ms) {
       return Key::kQuit;
     }
     // A tap comes as a click of the left button. The renderer's logical size makes these places of the picture.
+    if (event.type == SDL_MOUSEMOTION) {
+      click_[0] = event.motion.x;
+      click_[1] = event.motion.y;
+    }
     if (event.type == SDL_MOUSEBUTTONDOWN && event.button.button == SDL_BUTTON_LEFT) {
       click_[0] = event.button.x;
       click_[1] = event.button.y;
@@ -84,6 +88,8 @@ Key Window::poll(int wait_ms) {
       switch (event.key.keysym.sym) {
         case SDLK_SPACE:
           return Key::kPause;
+        case SDLK_a:
+          return Key::kAnchor;
         case SDLK_r:
           return Key::kReset;
         case SDLK_s:

@@ -20,7 +20,7 @@ class Window {
   void show(const Canvas& canvas);
   /// Next key that was pressed; waits for up to wait_ms.
   Key poll(int wait_ms);
-  /// Where the last click or tap was, in the picture that is shown [px].
+  /// Where the pointer is, or the last click or tap was, in the picture that is shown [px].
   void clicked_place(double place[2]) const {
     place[0] = click_[0];
     place[1] = click_[1];

@@ -138,6 +138,8 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES(capacity.max_kept_views, 201);
   NAMES(capacity.max_places, -1);
   NAMES(capacity.max_places, 201);
+  NAMES(capacity.max_anchors, -1);
+  NAMES(capacity.max_anchors, 65);
   NAMES(capacity.max_patches, -1);
   NAMES(capacity.max_patches, 33);
   NAMES(capacity.patch_side_px, 31);

@@ -96,6 +96,83 @@ void test_a_map_that_was_loaded_should_be_saved_as_the_same_bytes() {
   TEST_ASSERT_TRUE(saved(fresh.run.slam) == map);
 }
 
+std::vector<pf_anchor_t> anchors_of(const pf_slam_t* slam) {
+  std::vector<pf_anchor_t> all(64);
+  std::size_t count = 0;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_anchors(slam, all.data(), all.size(), &count));
+  all.resize(count);
+  return all;
+}
+
+/// One on a plane, and one beside the camera.
+void set_two(pf_slam_t* slam, std::uint32_t id[2]) {
+  pf_hit_t hit;
+  pf_status_t found = PF_NOTE_NOTHING;
+  for (int k = 1; found != PF_OK && k < 64; ++k) {
+    const double pixel[2] = {40.0 * (k % 8), 30.0 * (k / 8)};
+    found = pf_hit_test(slam, pixel, &hit);
+  }
+  TEST_ASSERT_EQUAL_INT(PF_OK, found);
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_anchor_hit(slam, &hit, &id[0]));
+  pf_anchor_t anchor;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_anchor(slam, id[0], &anchor));
+  TEST_ASSERT_EQUAL_UINT32(hit.plane, anchor.plane);
+  for (int i = 0; i < 3; ++i) {
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, hit.p_W[i], anchor.p_WA[i]);
+    // That of the camera is carried from the keyframe that holds it to where the camera is.
+    TEST_ASSERT_DOUBLE_WITHIN(0.5 * hit.covariance[4 * i], hit.covariance[4 * i], anchor.covariance[21 + 7 * i]);
+  }
+  pf_pose_t pose;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_pose(slam, &pose));
+  pose.p_WC[0] += 0.3;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_add_anchor_pose(slam, &pose, &id[1]));
+}
+
+void test_anchors_should_be_saved_and_come_back() {
+  pf_slam_t* const slam = walked().slam;
+  const Bytes without = saved(slam);
+  std::uint32_t id[2];
+  set_two(slam, id);
+  const Bytes map = saved(slam);
+  TEST_ASSERT_EQUAL_size_t(without.size() + 24 + 4 + 2 * 464, map.size());
+  Fresh fresh;
+  TEST_ASSERT_EQUAL_INT(PF_OK, fresh.load(map));
+  const std::vector<pf_anchor_t> was = anchors_of(slam), now = anchors_of(fresh.run.slam);
+  TEST_ASSERT_EQUAL_size_t(2, now.size());
+  for (std::size_t k = 0; k < 2; ++k) {
+    TEST_ASSERT_EQUAL_UINT32(id[k], now[k].id);
+    TEST_ASSERT_EQUAL_UINT32(was[k].plane, now[k].plane);
+    TEST_ASSERT_EQUAL_UINT32(fresh.report().map_id, now[k].map_id);
+    for (int i = 0; i < 4; ++i) TEST_ASSERT_DOUBLE_WITHIN(1e-5, was[k].q_WA[i], now[k].q_WA[i]);
+    for (int i = 0; i < 3; ++i) TEST_ASSERT_DOUBLE_WITHIN(1e-5, was[k].p_WA[i], now[k].p_WA[i]);
+    for (int i = 0; i < 6; ++i) TEST_ASSERT_TRUE(now[k].covariance[7 * i] > 0.9 * was[k].covariance[7 * i]);
+  }
+  TEST_ASSERT_TRUE(saved(fresh.run.slam) == map);
+  pf_pose_t pose;
+  std::uint32_t none = 77;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_get_pose(fresh.run.slam, &pose));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_add_anchor_pose(fresh.run.slam, &pose, &none));  // lost
+  fresh.run.skip(20);
+  while (fresh.run.step() && fresh.run.frames.back().status != PF_OK) continue;
+  for (int k = 0; k < 60; ++k) TEST_ASSERT_TRUE(fresh.run.step());
+  const std::vector<pf_anchor_t> later = anchors_of(fresh.run.slam);
+  for (std::size_t k = 0; k < 2; ++k)
+    for (int i = 0; i < 3; ++i) TEST_ASSERT_DOUBLE_WITHIN(0.05, was[k].p_WA[i], later[k].p_WA[i]);
+  std::uint32_t third[2];
+  set_two(fresh.run.slam, third);
+  TEST_ASSERT_TRUE(third[0] > id[1]);
+  Fresh few;
+  few.run.config.capacity.max_anchors = 1;
+  few.run.create();
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_FULL, few.load(map));
+  TEST_ASSERT_EQUAL_INT32(0, few.report().places);
+  TEST_ASSERT_EQUAL_INT(PF_STATE_STARTING, few.report().state);
+  TEST_ASSERT_EQUAL_INT(PF_OK, few.load(without));
+  TEST_ASSERT_EQUAL_size_t(0, anchors_of(few.run.slam).size());
+  for (const std::uint32_t one : id) TEST_ASSERT_EQUAL_INT(PF_OK, pf_remove_anchor(slam, one));
+  TEST_ASSERT_TRUE(saved(slam) == without);
+}
+
 void test_saving_should_change_nothing() {
   RenderedRun& run = walked();
   pf_report_t before, after;
@@ -225,6 +302,7 @@ int main() {
   UNITY_BEGIN();
   RUN_TEST(test_a_saved_map_should_be_found_again);
   RUN_TEST(test_a_map_that_was_loaded_should_be_saved_as_the_same_bytes);
+  RUN_TEST(test_anchors_should_be_saved_and_come_back);
   RUN_TEST(test_saving_should_change_nothing);
   RUN_TEST(test_a_small_buffer_should_stay_as_it_is);
   RUN_TEST(test_kinds_and_null_pointers_should_be_refused);

@@ -123,6 +123,7 @@ class ContractRun {
       }
       case 5:
         changing([&] { return bytes_.take<uint8_t>() % 4 != 0 ? pf_mark_pose(slam_) : pf_withdraw_target(slam_); });
+        changing([&] { return change_anchors(); });
         break;
       case 6:
         if (bytes_.take<uint8_t>() % 8 == 0) {
@@ -422,6 +423,25 @@ class ContractRun {
     return pf_start_from_pose(slam_, &pose, how % 16 == 7 ? nullptr : velocity_covariance);
   }
 
+  /// Sets an anchor at the camera, at a pixel or anywhere, or removes one.
+  pf_status_t change_anchors() {
+    const uint8_t how = bytes_.take<uint8_t>();
+    uint32_t id = 0;
+    if (how % 4 == 0) return pf_remove_anchor(slam_, how / 4 % 16);
+    pf_pose_t pose{};
+    pf_hit_t hit{};
+    const double pixel[2] = {between(bytes_, 0, config_.camera.width), between(bytes_, 0, config_.camera.height)};
+    if (how % 4 == 1) {
+      if (pf_get_pose(slam_, &pose) != PF_OK) pose.q_WC[0] = 1;
+      if (how >= 192) pose.q_WC[how / 4 % 4] = hostile(bytes_);
+      if (how >= 128) pose.p_WC[how / 4 % 3] = hostile(bytes_);
+      return pf_add_anchor_pose(slam_, &pose, &id);
+    }
+    if (pf_hit_test(slam_, pixel, &hit) != PF_OK) hit.plane = 1 + how / 4 % 4;
+    if (how % 4 == 3) hit.p_W[how / 4 % 3] = hostile(bytes_);
+    return pf_add_anchor_hit(slam_, &hit, &id);
+  }
+
   /// What every context shows, whatever it went through.
   void look() {
     pf_report_t report;
@@ -446,6 +466,7 @@ class ContractRun {
     if (posed == PF_OK) require_pose(pose);
     look_at_map(report);
     look_at_patches(report);
+    look_at_anchors(report);
     if (!trusts_told_repairs_ || report.covariance_repairs == 0) look_inside();
   }
 
@@ -463,6 +484,23 @@ class ContractRun {
     for (int i = 0; i < view.map().planes.capacity(); ++i)
       if (view.map().planes.used(i))
         require_nearly(view.plane(i).covariance, kSmallestOfOthers, "a plane has a covariance before it is mended");
+  }
+
+  void look_at_anchors(const pf_report_t& report) const {
+    std::vector<pf_anchor_t> anchors(static_cast<size_t>(config_.capacity.max_anchors));
+    size_t count = 0;
+    require(pf_get_anchors(slam_, anchors.data(), anchors.size(), &count) == PF_OK, "anchors keep to their capacity");
+    for (size_t i = 0; i < count; ++i) {
+      const pf_anchor_t& anchor = anchors[i];
+      pf_anchor_t same{};
+      require(pf_get_anchor(slam_, anchor.id, &same) == PF_OK && std::memcmp(&same, &anchor, sizeof(same)) == 0,
+              "an anchor is found by its id");
+      const double* q = anchor.q_WA;
+      require(std::fabs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-4 && finite(anchor.p_WA, 3),
+              "an anchor is finite");
+      require(anchor.map_id <= report.map_id, "an anchor belongs to a map that there has been");
+      require_covariance(anchor.covariance, 6, "an anchor has a covariance");
+    }
   }
 
   void look_at_patches(const pf_report_t& report) const {

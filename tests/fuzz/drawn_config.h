@@ -111,6 +111,7 @@ inline pf_config_t config_from(Bytes& bytes, bool calm, bool* extended) {
   config.capacity.max_planes = 1 + bytes.take<uint8_t>() % 4;
   config.capacity.max_imu_samples = bytes.take<uint8_t>() % 16;
   config.capacity.max_kept_views = config.capacity.max_imu_samples % 4;
+  config.capacity.max_anchors = config.capacity.max_imu_samples % 5;
   config.map.features_in_view = config.capacity.max_observations;
   config.plane.min_points = 4 + bytes.take<uint8_t>() % 5;
   config.plane.max_distance = between(bytes, 0.005, 0.05);

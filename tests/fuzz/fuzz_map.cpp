@@ -2,6 +2,7 @@
 // was. Half of the inputs get CRCs that fit, so that the numbers behind them are reached.
 #include <planefold/planefold.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
@@ -70,6 +71,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     return 0;
   }
   require(after.state == PF_STATE_LOST && after.places > 0, "a run begins lost in a map");
+  pf_anchor_t anchors[64];
+  size_t num_anchors = 0;
+  require(pf_get_anchors(slam, anchors, 64, &num_anchors) == PF_OK, "anchors that were loaded");
+  for (size_t i = 0; i < num_anchors; ++i) {
+    for (const double number : anchors[i].covariance) require(std::isfinite(number), "an anchor has a covariance");
+    for (const double number : anchors[i].p_WA) require(std::isfinite(number), "an anchor is somewhere");
+  }
   std::vector<uint8_t> again(map.size());
   size_t used = 0;
   const pf_status_t saved = pf_save_map(slam, PF_MAP_PORTABLE, again.data(), again.size(), &used);

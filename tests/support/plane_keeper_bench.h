@@ -24,7 +24,7 @@ struct PlaneKeeperBench {
     config.camera = {PF_CAMERA_PINHOLE,  640, 480, 525, 525, 320, 240, {0}, 0, PF_CAMERA_EXACT,
                      PF_TIMESTAMPS_REAL, 0,   0,   0,   {0}};
     TEST_ASSERT_SAME(Status::kOk, settings_from(config, &settings, nullptr));
-    TEST_ASSERT_TRUE(map.layout(*arena, 40, 4));
+    TEST_ASSERT_TRUE(map.layout(*arena, 40, 4, 0, 8));
     TEST_ASSERT_TRUE(frame.layout(*arena, 80));
     TEST_ASSERT_TRUE(features.layout(*arena, 40));
     TEST_ASSERT_TRUE(planes.layout(*arena, 40));

@@ -124,6 +124,8 @@ class RenderedRun {
     TEST_ASSERT_EQUAL_INT(PF_OK, pf_start_from_target(slam, &target));
   }
 
+  const pf_sim_t* scene() const { return film_->scene(); }
+
   /// The first frames of the film are not shown.
   void skip(int count) {
     pf_image_t image;

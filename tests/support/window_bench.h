@@ -38,7 +38,7 @@ struct KeyframeBench {
     settings.fold_sigma = Scalar(0.05);
     settings.fold.roughness = Scalar(0.002);
     settings.fold.gate = Scalar(6.63);
-    TEST_ASSERT_TRUE(tables.layout(*arena, kPoints, settings.max_planes));
+    TEST_ASSERT_TRUE(tables.layout(*arena, kPoints, settings.max_planes, 0, 8));
     TEST_ASSERT_TRUE(frame.layout(*arena, 2 * kPoints));
     TEST_ASSERT_TRUE(map.layout(*arena));
     TEST_ASSERT_TRUE(planes.layout(*arena));

@@ -41,6 +41,7 @@ struct Content {
   Vec3 gravity_W = Vec3::Zero();
   std::vector<SavedPlane> planes;
   std::vector<KeptPlace> places;
+  std::vector<Anchor> anchors;
 };
 
 Content random_content(SeededRandom* random) {
@@ -94,6 +95,18 @@ Content random_content(SeededRandom* random) {
     }
     out.places.push_back(place);
   }
+  const int anchors = static_cast<int>(4 * random->uniform(0, 1));
+  for (int k = 0; k < anchors; ++k) {
+    Anchor anchor;
+    anchor.id = static_cast<std::uint32_t>(2 * k + 1);
+    anchor.place = random->uniform(0, 1) < 0.8 ? out.places[0].id : 0;
+    anchor.plane = planes > 0 && random->uniform(0, 1) < 0.5 ? out.planes[0].id : 0;
+    for (RelativePlace* T : {&anchor.T_KV, &anchor.T_VA})
+      *T = {random_rotation(random), Vec3(length(), length(), length())};
+    anchor.between = random_covariance<6>(random);
+    if (anchor.plane == 0) anchor.beside = random_covariance<6>(random);
+    out.anchors.push_back(anchor);
+  }
   return out;
 }
 
@@ -107,6 +120,9 @@ void write(const Content& content, MapWriter* out) {
   begin_places(static_cast<int>(content.places.size()), out);
   for (const KeptPlace& place : content.places) write_place(place, out);
   out->end_section();
+  if (!content.anchors.empty()) begin_anchors(static_cast<int>(content.anchors.size()), out);
+  for (const Anchor& anchor : content.anchors) write_anchor(anchor, out);
+  if (!content.anchors.empty()) out->end_section();
   out->end();
 }
 
@@ -187,7 +203,9 @@ void test_what_is_read_should_be_written_again_to_the_last_bit() {
     back.gravity_W = map.gravity_W();
     map.for_each_plane([&](const SavedPlane& plane) { back.planes.push_back(plane); });
     map.for_each_place(scratch.get(), [&](const KeptPlace& place) { back.places.push_back(place); });
+    map.for_each_anchor([&](const Anchor& anchor) { back.anchors.push_back(anchor); });
     TEST_ASSERT_EQUAL_size_t(content.planes.size(), back.planes.size());
+    TEST_ASSERT_EQUAL_size_t(content.anchors.size(), back.anchors.size());
     TEST_ASSERT_EQUAL_size_t(content.places.size(), back.places.size());
     TEST_ASSERT_TRUE(bytes == written(back));
   }
@@ -259,6 +277,14 @@ void test_forged_bytes_should_be_refused_or_be_numbers_of_a_map() {
       TEST_ASSERT_TRUE(plane.frame.R_WP.allFinite() && plane.frame.o_W.allFinite() && plane.covariance.allFinite());
       TEST_ASSERT_TRUE(plane.outline.count >= 0 && plane.outline.count <= kMaxOutline);
     });
+    TEST_ASSERT_TRUE(map.num_anchors() <= kMaxAnchors);
+    map.for_each_anchor([](const Anchor& read) {
+      Anchor anchor = read;
+      const AnchorPlane plane;
+      place_by(RelativePlace(), Mat6::Identity(), anchor.plane != 0 ? &plane : nullptr, &anchor);
+      TEST_ASSERT_TRUE(anchor.T_WA.p.allFinite() && anchor.T_WA.q.coeffs().allFinite() &&
+                       anchor.covariance.allFinite());
+    });
     map.for_each_place(scratch.get(), [](const KeptPlace& place) {
       TEST_ASSERT_TRUE(place.count >= 0 && place.count <= KeptPlace::kMaxPoints && place.covariance.allFinite());
       for (int i = 0; i < place.count; ++i) {
@@ -276,7 +302,8 @@ void test_forged_bytes_should_be_refused_or_be_numbers_of_a_map() {
 void test_what_is_wrong_should_be_named() {
   SeededRandom random(46);
   Content content = random_content(&random);
-  while (content.planes.size() < 2 || content.places.size() < 2 || content.places[0].count < 2)
+  while (content.planes.size() < 2 || content.places.size() < 2 || content.places[0].count < 2 ||
+         content.anchors.size() < 2)
     content = random_content(&random);
   const Bytes good = written(content);
   TEST_ASSERT_NULL(refused(good));
@@ -313,6 +340,32 @@ void test_what_is_wrong_should_be_named() {
   wrong = content;
   wrong.places[0].point[1].id = wrong.places[0].point[0].id;
   names("twice", written(wrong));
+  wrong = content;
+  wrong.anchors[1].id = wrong.anchors[0].id;
+  names("ANCH: ids", written(wrong));
+  wrong = content;
+  wrong.anchors[1].place = 77;
+  names("ANCH: an anchor is held by a place that there is not", written(wrong));
+  wrong = content;
+  wrong.anchors[1].plane = 77;
+  names("ANCH: an anchor lies on a plane that there is not", written(wrong));
+  wrong = content;
+  wrong.anchors[0].between(3, 3) = -1;
+  names("ANCH: a covariance", written(wrong));
+  wrong = content;
+  wrong.anchors[0].T_VA.q.coeffs() *= 2;
+  names("ANCH: a number", written(wrong));
+  wrong = content;
+  wrong.anchors.clear();
+  TEST_ASSERT_NULL(refused(written(wrong)));  // as maps of before there were anchors
+  bytes = written(wrong);
+  const std::size_t end = bytes.size();
+  bytes.insert(bytes.end(), good.begin() + static_cast<std::ptrdiff_t>(section_at(good, 4)), good.end());
+  set_number(&bytes, 16, bytes.size(), 8);
+  names("section", bytes);  // that nothing announces
+  set_number(&bytes, 24, 5, 4);
+  set_number(&bytes, end + kSectionHeader, 65, 4);
+  names("ANCH", bytes);
   wrong = content;
   wrong.places[0].covariance(0, 0) = -1;
   names("covariance", written(wrong));

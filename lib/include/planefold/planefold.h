@@ -103,7 +103,7 @@ typedef enum pf_status {
   PF_ERROR_STATE = -10,
   PF_ERROR_RANGE = -11,   /* a number that was passed in is outside of its domain */
   PF_ERROR_CONTEXT = -12, /* not a context, or one whose block was overwritten */
-  /* there is no room for it, see capacity.max_state_dim and capacity.max_planes */
+  /* there is no room for it, see capacity.max_state_dim, max_planes and max_anchors */
   PF_ERROR_FULL = -13,
   /* no saved map, or one that is damaged or of another format; the log has the reason */
   PF_ERROR_MAP = -14
@@ -303,6 +303,8 @@ typedef struct pf_config {
      * by which a lost camera finds itself, and of which a saved map is made (MAPS). 0 .. 200, of 15
      * kB each. With PF_BACKEND_WINDOW only; with the filter they take nothing. Default 16 */
     int32_t max_places;
+    /* Anchors (pf_add_anchor_hit), 0 .. 64, of about 2 kB each. Default 8 */
+    int32_t max_anchors;
   } capacity;
 
   /* Capacities of PF_BACKEND_WINDOW, of no meaning with the filter. With the window, max_state_dim,
@@ -612,7 +614,7 @@ PF_API pf_status_t pf_push_imu(pf_slam_t* slam, const pf_imu_sample_t* samples, 
 /* ---------------------------------------------------------------------------------- maps -- */
 
 typedef enum pf_map_kind {
-  /* Places, planes, gravity and the lens, in a format that any build reads
+  /* Places, planes, anchors, gravity and the lens, in a format that any build reads
    * (lib/docs/theory/map_format.md). */
   PF_MAP_PORTABLE = 1,
   /* The context as it stands, to go on with the very next frame. Not in this release */
@@ -638,9 +640,9 @@ PF_API pf_status_t pf_save_map(const pf_slam_t* slam, int32_t kind, void* buffer
  * until it is found, also after later losses: no new one begins before pf_reset, which drops it.
  * The buffer is read during the call only. All of it is checked first: where it is rejected nothing
  * changes, and the log has the reason. PF_ERROR_MAP: no map, damaged, of another version, or with a
- * number out of its domain. PF_ERROR_FULL: more places or planes than capacity.max_places and
- * capacity.max_planes. PF_ERROR_STATE: after the first frame, with a start that was set or a wall,
- * or with PF_BACKEND_FILTER. */
+ * number out of its domain. PF_ERROR_FULL: more places, planes or anchors than
+ * capacity.max_places, max_planes and max_anchors. PF_ERROR_STATE: after the first frame, with a
+ * start that was set or a wall, or with PF_BACKEND_FILTER. */
 PF_API pf_status_t pf_load_map(pf_slam_t* slam, const void* buffer, size_t bytes);
 
 /* -------------------------------------------------------------------------------- output -- */
@@ -790,6 +792,46 @@ typedef struct pf_hit {
 /* Where the ray through a pixel of the last frame meets the nearest plane, inside of its outline.
  * PF_NOTE_NOTHING when it meets none. */
 PF_API pf_status_t pf_hit_test(const pf_slam_t* slam, const double pixel[2], pf_hit_t* hit);
+
+/* A pose that stays where it was set while the map is corrected: something that is shown, measured
+ * or returned to (lib/docs/theory/anchors.md, lib/docs/guide/anchors.md). As of the last frame of
+ * its map. */
+typedef struct pf_anchor {
+  uint32_t id; /* never used twice; of a map that was loaded, the one that it had there */
+  /* As in pf_pose_t, of the map that it belongs to. After that map is discarded it stays as it was,
+   * in a W that is no more. */
+  uint32_t map_id;
+  uint32_t plane;        /* id of the plane that it lies on; 0: of none, or that plane is gone */
+  uint32_t reserved;     /* 0 */
+  double q_WA[4];        /* w x y z; on a plane the third axis is its normal */
+  double p_WA[3];        /* [m] */
+  double covariance[36]; /* 6x6 of (theta, p) [rad, m], as in pf_pose_t */
+} pf_anchor_t;
+
+/* Sets an anchor at a pose in W: rotation and position count, the rest is ignored. What is held is
+ * where it is seen from the camera of the last frame, so its covariance is that of the camera,
+ * carried there. PF_ERROR_STATE: unless the last frame is tracked. PF_ERROR_FULL: there are
+ * capacity.max_anchors, or with the filter no room: there the first anchor of a frame takes six
+ * rows of the state (capacity.max_state_dim), for which features are evicted that were not seen in
+ * the last frame. PF_ERROR_RANGE: q_WC is not of unit length, or a coordinate is above 1e6. */
+PF_API pf_status_t pf_add_anchor_pose(pf_slam_t* slam, const pf_pose_t* pose, uint32_t* id);
+
+/* Sets an anchor where a ray of the last frame meets a plane, as pf_hit_test says: plane and p_W
+ * count. It stays on that plane and on that ray as both are corrected. Its third axis is the
+ * plane's normal, and the first one points to the right in the image as far as that allows (down
+ * where the plane is seen along its right). Errors as of pf_add_anchor_pose. PF_NOTE_NOTHING: no
+ * plane has this id. PF_ERROR_RANGE: the ray to p_W does not meet it. */
+PF_API pf_status_t pf_add_anchor_hit(pf_slam_t* slam, const pf_hit_t* hit, uint32_t* id);
+
+/* PF_NOTE_NOTHING, and *anchor is as it was: no anchor has this id. */
+PF_API pf_status_t pf_get_anchor(const pf_slam_t* slam, uint32_t id, pf_anchor_t* anchor);
+
+/* Copy of the anchors. *count is how many there are; PF_NOTE_TRUNCATED if capacity was smaller. */
+PF_API pf_status_t pf_get_anchors(const pf_slam_t* slam, pf_anchor_t* anchors, size_t capacity,
+                                  size_t* count);
+
+/* PF_NOTE_NOTHING: no anchor has this id. */
+PF_API pf_status_t pf_remove_anchor(pf_slam_t* slam, uint32_t id);
 
 typedef enum pf_match_status {
   PF_MATCH_INLIER = 1,  /* measured and used */

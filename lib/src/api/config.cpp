@@ -31,6 +31,7 @@ constexpr Range kIntegers[] = {
     PF_FIELD(capacity.max_planes, 1, pf::kMaxPlanes),
     PF_FIELD(capacity.max_kept_views, 0, 200),
     PF_FIELD(capacity.max_places, 0, pf::kMaxPlaces),
+    PF_FIELD(capacity.max_anchors, 0, pf::kMaxAnchors),
     PF_FIELD(capacity.max_patches, 0, pf::kMaxPatches),
     PF_FIELD(capacity.patch_side_px, 32, 128),
     PF_FIELD(capacity.max_cameras, 0, 64),
@@ -174,6 +175,7 @@ const char* refused_by_build(const pf_config_t& config) {
     return "motion.model (built without PLANEFOLD_INERTIAL)";
   if (!kHasWalls && config.capacity.max_patches > 0) return "capacity.max_patches (built without PLANEFOLD_WALLS)";
   if (!kHasMemory && config.capacity.max_places > 0) return "capacity.max_places (built without PLANEFOLD_MEMORY)";
+  if (!kHasMemory && config.capacity.max_anchors > 0) return "capacity.max_anchors (built without PLANEFOLD_MEMORY)";
   if (!kHasMasks && config.map.masks != PF_MASKS_NONE) return "map.masks (built without PLANEFOLD_MASKS)";
   return nullptr;
 }
@@ -300,6 +302,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   // What a mask has learnt of a template goes with its point.
   const bool has_places = kHasMemory && has_window && config.map.masks == PF_MASKS_NONE;
   settings->kept.places = has_places ? config.capacity.max_places : 0;
+  settings->kept.anchors = config.capacity.max_anchors;
   settings->max_patches = static_cast<std::uint8_t>(config.capacity.max_patches);
   settings->patch_side_px = static_cast<std::uint8_t>(config.capacity.patch_side_px);
   settings->max_cameras = static_cast<std::uint8_t>(config.capacity.max_cameras);
@@ -390,6 +393,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->capacity.max_imu_samples = 0;
   config->capacity.mask = 0;
   config->capacity.max_places = pf::kHasMemory ? 16 : 0;
+  config->capacity.max_anchors = pf::kHasMemory ? 8 : 0;
   config->imu.gyro_range = 0;
   config->imu.accel_range = 0;
   config->imu.q_BC[0] = 1;

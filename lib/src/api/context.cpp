@@ -95,7 +95,7 @@ const char* pf_status_text(pf_status_t status) {
     case PF_ERROR_CONTEXT:
       return "not a planefold context, or its block was overwritten or moved";
     case PF_ERROR_FULL:
-      return "there is no room for more rows of the state, planes or places";
+      return "there is no room for more rows of the state, planes, places or anchors";
     case PF_ERROR_MAP:
       return "no saved map, or one that is damaged or of another format";
   }

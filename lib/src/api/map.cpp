@@ -40,7 +40,10 @@ pf_status_t pf_load_map(pf_slam_t* slam, const void* buffer, size_t bytes) {
   PF_REQUIRE_IDLE(slam);
   if (buffer == nullptr) return PF_ERROR_NULL;
   const char* wrong = nullptr;
-  const pf::Status status = slam->session.load_map(static_cast<const std::uint8_t*>(buffer), bytes, &wrong);
+  pf::Vec3 gravity_W = pf::Vec3::Zero();
+  const pf::Status status =
+      slam->session.map_calls().load(static_cast<const std::uint8_t*>(buffer), bytes, &wrong, &gravity_W);
+  if (status == pf::Status::kOk && gravity_W.squaredNorm() > pf::Scalar(0)) slam->session.set_gravity(gravity_W);
   const pf::Hooks& hooks = slam->session.settings().hooks;
   if (wrong != nullptr) {
     hooks.say("the map is refused:");

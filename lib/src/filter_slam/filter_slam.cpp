@@ -132,6 +132,11 @@ Status FilterSlam::mark_pose() {
   return upkeep_.mark().set(frame_.report.t_ns, tracking_.state() == SlamState::kTracking, data_.filter_ns);
 }
 
+Status FilterSlam::add_anchor(const AnchorRequest& asked, std::uint32_t* id) {
+  if (tracking_.state() != SlamState::kTracking) return Status::kState;
+  return upkeep_.anchors().add(asked, tracking_.map_id(), frame_.report.t_ns, data_.filter_ns, id);
+}
+
 Status FilterSlam::add_wall(const PlanePrior& prior, std::uint32_t* id) {
   if (!kHasWalls || !settings_.planes || !start_.has_place()) return Status::kState;
   const int reserved = tracking_.has_pose() ? 0 : start_.target_rows();
@@ -193,6 +198,7 @@ Status FilterSlam::end_frame() {
       images_.relocaliser().remember_view(data_.median_depth);
   }
   images_.keep_view(data_.image_usable, progress, data_.median_depth);
+  upkeep_.anchors().follow(tracking_.map_id(), data_.filter_ns);
   return tracking_.conclude(progress, settings_.max_coast_ns, settings_.hooks, &frame_.report);
 }
 

@@ -50,6 +50,8 @@ class FilterSlam {
   Status push_observations(const PixelObservation* observations, int count, std::int64_t t_ns);
   /// Marks the pose of the last frame. kState: there is none; kFull: there is no room for it.
   Status mark_pose();
+  /// Sets an anchor from the camera of the last frame. kState: it is not tracked. Others: FilterAnchors::add.
+  Status add_anchor(const AnchorRequest& asked, std::uint32_t* id);
   /// Adds a wall. kState: planes are off, or W is not the plan's; kFull: there is no room for it.
   Status add_wall(const PlanePrior& prior, std::uint32_t* id);
 

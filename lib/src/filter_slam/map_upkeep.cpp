@@ -53,7 +53,10 @@ bool MapUpkeep::repair_estimate() {
 Status MapUpkeep::set_plane_vertical(std::uint32_t id, Scalar sigma) {
   if (!settings_.inertial || !tracking_.has_pose() || !filter_.is_metric()) return Status::kState;
   const int entry = map_.planes.entry_of(id);
-  return entry < 0 ? Status::kNothing : planes_.verticals().tell(entry, sigma);
+  if (entry < 0) return Status::kNothing;
+  const Status status = planes_.verticals().tell(entry, sigma);
+  if (status == Status::kOk) anchors_.follow(tracking_.map_id(), frame_.report.t_ns);
+  return status;
 }
 
 }  // namespace pf

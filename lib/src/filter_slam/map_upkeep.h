@@ -4,6 +4,7 @@
 #include "base/status.h"
 #include "filter/filter.h"
 #include "filter_slam/features/feature_keeper.h"
+#include "filter_slam/filter_anchors.h"
 #include "filter_slam/patches/patch_keeper.h"
 #include "filter_slam/planes/plane_keeper.h"
 #include "filter_slam/pose_mark.h"
@@ -12,7 +13,7 @@
 #include "frame/tracking_state.h"
 #include "map/map.h"
 
-/// Maintains what the map holds: features, planes, patches and the marked pose.
+/// Maintains what the map holds: features, planes, patches, anchors and the marked pose.
 
 namespace pf {
 
@@ -26,7 +27,8 @@ class MapUpkeep {
         tracking_(tracking),
         features_(settings, filter, map, frame),
         planes_(settings, filter, map, frame, features_),
-        mark_(filter, map, features_) {}
+        mark_(filter, map, features_),
+        anchors_(filter, map, features_) {}
 
   bool layout(Arena& arena);
   void init();
@@ -46,6 +48,7 @@ class MapUpkeep {
   FeatureKeeper& features() { return features_; }
   PlaneKeeper& planes() { return planes_; }
   PoseMark& mark() { return mark_; }
+  FilterAnchors& anchors() { return anchors_; }
   /// Null where the config has no room for patches.
   PatchKeeper* patches() { return patches_; }
   const PatchKeeper* patches() const { return patches_; }
@@ -61,6 +64,7 @@ class MapUpkeep {
   FeatureKeeper features_;
   PlaneKeeper planes_;
   PoseMark mark_;
+  FilterAnchors anchors_;
   PartPointer<PatchKeeper, kHasWalls> patches_;  ///< in the block, where the config has room for patches
 };
 

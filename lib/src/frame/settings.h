@@ -24,10 +24,11 @@ struct MaskRoom {
   ImageMask* mask = nullptr;  ///< null: no room
 };
 
-/// What is kept of earlier views.
+/// What is kept of earlier views, and of what the caller has set in them.
 struct KeptRoom {
   int views = 0;
   int places = 0;  ///< of the window
+  int anchors = 0;
 };
 
 /// Number of inertial samples that are kept, and the ranges of their unit.

@@ -117,9 +117,13 @@ void KeyframeSlam::measure() {
     relocaliser_.clear_proposal();
     measuring_.measure(data_.median_depth);
   }
-  if (record_.progress().recording && record_.progress().depth_known && tracking_.is_tracked(frame_.report) &&
-      record_.improve())
+  if (record_.progress().recording && record_.progress().depth_known && tracking_.is_tracked(frame_.report)) {
+    const CameraView before = motion_.view();
+    if (!record_.improve()) return;
+    const CameraView now = motion_.view();
+    anchors_.move({before.q_WC, before.c_W}, {now.q_WC, now.c_W}, tracking_.map_id());
     mapping_.adjust();
+  }
 }
 
 /// Learns noise and templates from the frame, and updates the map. A frame that does not support its pose changes nothing in the map.
@@ -154,6 +158,7 @@ void KeyframeSlam::scale_by_second_pose() {
   }
   scale_window(scale, first_W, &map_, &planes_, &motion_);
   mapping_.adjustment().scale(scale);
+  map_.tables().anchors.scale(tracking_.map_id(), tracking_.map_id(), scale, first_W);
   relocaliser_.init();
   data_.median_depth *= scale;
   if (data_.mark.is_set) data_.mark = Mark();
@@ -177,6 +182,7 @@ Status KeyframeSlam::end_frame() {
   }
   if (tracking_.has_pose() && (tracking_.is_tracked(frame_.report) || record_.progress().pending()))
     search_.keep_view(motion_.view());
+  anchors_.follow(tracking_.map_id(), data_.median_depth);
   return tracking_.conclude(record_.progress(), settings_.max_coast_ns, settings_.hooks, &frame_.report);
 }
 

@@ -7,6 +7,7 @@
 #include "frame/fit_warnings.h"
 #include "frame/frozen_camera.h"
 #include "keyframe_slam/keyframe_mapping.h"
+#include "keyframe_slam/memory/keyframe_anchors.h"
 #include "keyframe_slam/planes/planes.h"
 #include "keyframe_slam/start/keyframe_start.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
@@ -22,7 +23,8 @@ namespace pf {
 
 class KeyframeSlam {
  public:
-  KeyframeSlam(const Settings& settings, Map& map) : settings_(settings), map_{settings, map, frame_} {}
+  KeyframeSlam(const Settings& settings, Map& map)
+      : settings_(settings), map_{settings, map, frame_}, anchors_{map.anchors, map_, planes_} {}
   KeyframeSlam(const KeyframeSlam&) = delete;
   KeyframeSlam& operator=(const KeyframeSlam&) = delete;
 
@@ -87,6 +89,7 @@ class KeyframeSlam {
   KeyframeMap map_;
   KeyframeMotion motion_{settings_};
   KeyframePlanes planes_{settings_, map_};
+  KeyframeAnchors anchors_;
   PointSearch search_{settings_, map_, planes_, frame_, noise_};
   PoseMeasurement pose_{settings_, map_, frame_, noise_, search_};
   KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_, tracking_.belief()};

@@ -1,11 +1,12 @@
 #pragma once
 
+#include "map/anchor_table.h"
 #include "map/feature_table.h"
 #include "map/plane_table.h"
 #include "vision/appearance.h"
 #include "vision/planar_template.h"
 
-/// The map beside the filter: features, their appearances, and planes, as plain tables behind one handle. Rows hold no pointers, so
+/// The map beside the filter: features, their appearances, planes and anchors, as plain tables behind one handle. Rows hold no pointers, so
 /// that they can be copied and written to a file.
 
 namespace pf {
@@ -20,14 +21,16 @@ class Map {
  public:
   FeatureTable features;
   PlaneTable planes;
+  AnchorTable anchors;
   Mark mark;
   Vec3 target_normal_W = Vec3::Zero();  ///< of the plane of the target's points; zero: they have none
   bool target_withdrawn = false;        ///< the target's points are no longer measured
 
   /// template_px: side of templates with masks; 0: there are none, and they take no memory.
-  bool layout(Arena& arena, int max_features, int max_planes, int template_px = 0) {
+  bool layout(Arena& arena, int max_features, int max_planes, int template_px = 0, int max_anchors = 0) {
     features.layout(arena, max_features);
     planes.layout(arena, max_planes);
+    anchors.layout(arena, max_anchors);
     appearance_ = arena.take<Appearance>(static_cast<std::size_t>(max_features));
     first_view_ = arena.take<CameraView>(static_cast<std::size_t>(max_features));
     mask_size_ = template_px * template_px;
@@ -40,6 +43,7 @@ class Map {
   void init() {
     features.init();
     planes.init();
+    anchors.init();
     mark = Mark();
     target_normal_W.setZero();
     target_withdrawn = false;

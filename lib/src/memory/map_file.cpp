@@ -9,9 +9,10 @@ namespace pf {
 namespace {
 
 constexpr std::uint32_t kLensTag = section_tag("LENS"), kWorldTag = section_tag("WRLD"),
-                        kPlanesTag = section_tag("PLAN"), kPlacesTag = section_tag("PLAC");
-constexpr std::uint32_t kTags[] = {kLensTag, kWorldTag, kPlanesTag, kPlacesTag};
-constexpr int kNumTags = 4;
+                        kPlanesTag = section_tag("PLAN"), kPlacesTag = section_tag("PLAC"),
+                        kAnchorsTag = section_tag("ANCH");
+constexpr std::uint32_t kTags[] = {kLensTag, kWorldTag, kPlanesTag, kPlacesTag, kAnchorsTag};
+constexpr int kNumTags = 5, kMinTags = 4;  // a map without anchors has no section for them
 
 constexpr double kMaxLength = 1e6;        // [m]
 constexpr double kMaxVariance = 1e12;     // as of numbers that the caller passes in
@@ -99,6 +100,20 @@ void write_point(const PlacePoint& p, MapWriter* out) {
   out->bytes(p.patch.pixels, sizeof p.patch.pixels);
 }
 
+void write_relative(const RelativePlace& T, MapWriter* out) {
+  write_quaternion(T.q, out);
+  out->reals(T.p.data(), 3);
+}
+
+/// False: a number is out of its domain.
+bool read_relative(MapReader* in, RelativePlace* T) {
+  double q[4] = {1, 0, 0, 0};
+  const bool turned = in->reals(q, 4, 1 + kUnitTolerance), placed = in->reals(T->p.data(), 3, kMaxLength);
+  T->q =
+      Quat(static_cast<Scalar>(q[0]), static_cast<Scalar>(q[1]), static_cast<Scalar>(q[2]), static_cast<Scalar>(q[3]));
+  return turned && placed && is_unit(q, 4);
+}
+
 }  // namespace
 
 void write_lens(const Camera& camera, MapWriter* out) {
@@ -151,18 +166,36 @@ void write_place(const KeptPlace& place, MapWriter* out) {
   for (int i = 0; i < place.count; ++i) write_point(place.point[i], out);
 }
 
+void begin_anchors(int count, MapWriter* out) {
+  out->begin_section(kAnchorsTag);
+  out->u32(static_cast<std::uint32_t>(count));
+}
+
+void write_anchor(const Anchor& anchor, MapWriter* out) {
+  out->u32(anchor.id);
+  out->u32(anchor.place);
+  out->u32(anchor.plane);
+  out->u32(0);
+  write_relative(anchor.T_KV, out);
+  write_lower(anchor.between, 6, out);
+  write_relative(anchor.T_VA, out);
+  write_lower(anchor.plane == 0 ? anchor.beside : Mat6(Mat6::Zero()), 6,
+              out);  // on a plane it follows from V and the plane
+}
+
 const char* SavedMap::open(const std::uint8_t* buffer, std::size_t bytes, KeptPlace* scratch) {
   MapSection section[kMaxSections];
   int sections = 0;
   const char* wrong = open_map(buffer, bytes, kPortableMap, section, &sections);
   if (wrong != nullptr) return wrong;
-  if (sections != kNumTags) return "it has not the sections of a portable map";
-  for (int s = 0; s < kNumTags; ++s)
+  if (sections < kMinTags || sections > kNumTags) return "it has not the sections of a portable map";
+  for (int s = 0; s < sections; ++s)
     if (section[s].tag != kTags[s]) return "its sections are not in order";
   wrong = read_lens(section[0]);
   if (wrong == nullptr) wrong = read_world(section[1]);
   if (wrong == nullptr) wrong = check_planes(section[2]);
   if (wrong == nullptr) wrong = check_places(section[3], scratch);
+  if (wrong == nullptr && sections == kNumTags) wrong = check_anchors(section[4]);
   return wrong;
 }
 
@@ -295,7 +328,7 @@ const char* SavedMap::check_places(const MapSection& section, KeptPlace* scratch
     const char* wrong = read_place(&in, scratch);
     if (wrong != nullptr) return wrong;
     if (scratch->id <= last) return "PLAC: ids are not in order";
-    last = last_place_ = scratch->id;
+    last = last_place_ = place_id_[k] = scratch->id;
     for (int i = 0; i < scratch->count; ++i) {
       const PlacePoint& point = scratch->point[i];
       if (point.plane != 0 && !has_plane(point.plane)) return "PLAC: a point lies on a plane that there is not";
@@ -305,6 +338,44 @@ const char* SavedMap::check_places(const MapSection& section, KeptPlace* scratch
   if (in.failed() || in.left() != 0) return "PLAC has another length";
   num_places_ = static_cast<int>(count);
   return count > 0 ? nullptr : "it holds no place";
+}
+
+bool SavedMap::has_place(std::uint32_t id) const {
+  return std::find(place_id_, place_id_ + num_places_, id) != place_id_ + num_places_;
+}
+
+const char* SavedMap::read_anchor(MapReader* in, Anchor* anchor) {
+  *anchor = Anchor();
+  anchor->id = in->u32();
+  anchor->place = in->u32();
+  anchor->plane = in->u32();
+  const std::uint32_t reserved = in->u32();
+  bool good = read_relative(in, &anchor->T_KV);
+  if (!read_covariance(in, &anchor->between)) return "ANCH: a covariance is none";
+  good = read_relative(in, &anchor->T_VA) && good;
+  if (!read_covariance(in, &anchor->beside)) return "ANCH: a covariance is none";
+  if (in->failed()) return "ANCH is too short";
+  return good && is_id(anchor->id) && reserved == 0 ? nullptr : "ANCH: a number is out of its domain";
+}
+
+const char* SavedMap::check_anchors(const MapSection& section) {
+  anchors_ = section;
+  MapReader in(section.bytes, section.count);
+  const std::uint32_t count = in.u32();
+  if (count == 0 || count > kMaxAnchors) return "ANCH: no anchors, or more than any config holds";
+  std::uint32_t last = 0;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    Anchor anchor;
+    const char* wrong = read_anchor(&in, &anchor);
+    if (wrong != nullptr) return wrong;
+    if (anchor.id <= last) return "ANCH: ids are not in order";
+    last = anchor.id;
+    if (anchor.plane != 0 && !has_plane(anchor.plane)) return "ANCH: an anchor lies on a plane that there is not";
+    if (anchor.place != 0 && !has_place(anchor.place)) return "ANCH: an anchor is held by a place that there is not";
+  }
+  if (in.failed() || in.left() != 0) return "ANCH has another length";
+  num_anchors_ = static_cast<int>(count);
+  return nullptr;
 }
 
 }  // namespace pf

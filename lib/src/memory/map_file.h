@@ -6,6 +6,7 @@
 #include "base/limits.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"
+#include "map/anchor_table.h"
 #include "map/plane_outline.h"
 #include "memory/map_bytes.h"
 #include "memory/place.h"
@@ -34,6 +35,9 @@ void begin_planes(int count, MapWriter* out);
 void write_plane(const SavedPlane& plane, MapWriter* out);
 void begin_places(int count, MapWriter* out);
 void write_place(const KeptPlace& place, MapWriter* out);
+void begin_anchors(int count, MapWriter* out);
+/// One that a place, or W, holds.
+void write_anchor(const Anchor& anchor, MapWriter* out);
 
 /// Reads a saved map. Nothing of it is to be used before open() has said that all of it is good.
 class SavedMap {
@@ -44,6 +48,7 @@ class SavedMap {
   const Vec3& gravity_W() const { return gravity_W_; }
   int num_planes() const { return num_planes_; }
   int num_places() const { return num_places_; }
+  int num_anchors() const { return num_anchors_; }
   /// The greatest ids.
   std::uint32_t last_feature() const { return last_feature_; }
   std::uint32_t last_place() const { return last_place_; }
@@ -68,22 +73,36 @@ class SavedMap {
       use(*scratch);
     }
   }
+  /// use(anchor): what was written of it.
+  template <typename F>
+  void for_each_anchor(F&& use) const {
+    MapReader in(anchors_.bytes, anchors_.count);
+    if (num_anchors_ > 0) in.u32();
+    for (int k = 0; k < num_anchors_; ++k) {
+      Anchor anchor;
+      read_anchor(&in, &anchor);
+      use(anchor);
+    }
+  }
 
  private:
   static const char* read_lens(const MapSection& section);
   const char* read_world(const MapSection& section);
   const char* check_planes(const MapSection& section);
   const char* check_places(const MapSection& section, KeptPlace* scratch);
+  const char* check_anchors(const MapSection& section);
   bool has_plane(std::uint32_t id) const;
+  bool has_place(std::uint32_t id) const;
   /// Null, or what is wrong with it.
   static const char* read_plane(MapReader* in, SavedPlane* plane);
   static const char* read_place(MapReader* in, KeptPlace* place);
   static const char* read_point(MapReader* in, PlacePoint* point);
+  static const char* read_anchor(MapReader* in, Anchor* anchor);
 
-  MapSection planes_, places_;
+  MapSection planes_, places_, anchors_;
   Vec3 gravity_W_ = Vec3::Zero();
-  int num_planes_ = 0, num_places_ = 0;
-  std::uint32_t plane_id_[kMaxPlanes] = {};
+  int num_planes_ = 0, num_places_ = 0, num_anchors_ = 0;
+  std::uint32_t plane_id_[kMaxPlanes] = {}, place_id_[kMaxPlaces] = {};
   std::uint32_t last_feature_ = 0, last_place_ = 0;
 };
 

@@ -6,7 +6,7 @@ bool Session::layout(Arena& arena, const Settings& settings) {
   settings_ = settings;
   const bool has_window = kHasWindow && settings.backend == BackEnd::kWindow;
   map_.layout(arena, settings.max_features, settings.max_planes,
-              settings.masks == MaskMode::kNone ? 0 : settings.template_px);
+              settings.masks == MaskMode::kNone ? 0 : settings.template_px, settings.kept.anchors);
   imu_.layout(arena, settings.imu.buffer);
   if (settings.mask.is_asked_for) mask_.layout(arena, settings.camera.width, settings.camera.height);
   settings_.mask.mask = settings.mask.is_asked_for ? &mask_ : nullptr;
@@ -39,16 +39,6 @@ Status Session::start_from_target(const Target& target) {
 Status Session::start_from_pose(const KnownBody& known) {
   if (view().used()) return Status::kState;
   return has_filter() ? filter_->start().use_pose(known) : window_->start().use_pose(known);
-}
-
-Status Session::load_map(const std::uint8_t* buffer, std::size_t bytes, const char** wrong) {
-  if (!kHasMemory || has_filter() || settings_.kept.places == 0 || view().used()) return Status::kState;
-  SavedMap saved;
-  *wrong = saved.open(buffer, bytes, window_->mapping().saving().scratch());
-  if (*wrong != nullptr) return Status::kMap;
-  const Status status = window_->start().use_map(saved);
-  if (status == Status::kOk && saved.gravity_W().squaredNorm() > Scalar(0)) set_gravity(saved.gravity_W());
-  return status;
 }
 
 Vec3 Session::given_gravity_W() const {

@@ -9,6 +9,7 @@
 #include "frame/settings.h"
 #include "keyframe_slam/keyframe_slam.h"
 #include "map/map.h"
+#include "session/map_calls.h"
 #include "session/view.h"
 
 /// What the API calls act on: input, choice of the start, and the back end that does the work.
@@ -58,8 +59,8 @@ class Session {
   /// Known change of the velocities in camera axes, until the next frame.
   void push_control(const Vec3& dv_C, const Vec3& dw_C) { filter_->motion().push_control(dv_C, dw_C); }
   Status mark_pose() { return has_filter() ? filter_->mark_pose() : window_->mark_pose(); }
-  /// Begins in a saved map. kState: with the filter, or something else has begun. wrong: what is wrong with it, where it is kMap.
-  Status load_map(const std::uint8_t* buffer, std::size_t bytes, const char** wrong);
+  /// What a map holds beside what images tell.
+  MapCalls map_calls() { return MapCalls(settings_, map_, filter_, window_); }
   void push_imu(const ImuSample& sample) { imu_.add(sample); }
   void set_gravity(const Vec3& gravity_W) {
     data_.gravity_W = gravity_W, data_.gravity_map = view().tracking().map_id();

@@ -119,5 +119,9 @@ CHANGES = {
     "noise-3": noise(3), "noise-5": noise(5), "noise-8": noise(8), "blur-1": blur(1), "blur-2": blur(2), "gamma-bright": gamma(0.6),
     "gamma-dark": gamma(1.7), "half-light": light(0.5), "low-contrast": light(0.25, 90), "flicker": flicker, "exposure": exposure,
     "vignette": vignette, "speckles": speckles, "dust": dust, "compressed": compressed, "body": body, "date": date, "frame": frame,
-    "zoom": zoom(100, 1), "zoom-slow": zoom(60, 60),
+}
+# Those that need to know how many pictures there are.
+CHANGES_OF_LENGTH = {
+    "zoom": lambda length: zoom(min(100, length // 2), 1),
+    "zoom-slow": lambda length: zoom(min(60, length // 3), min(60, length // 3)),
 }

@@ -15,7 +15,7 @@ DESCRIPTION = """Says what is in a map that pf-capture --save-map or pf_save_map
 
 MAGIC = b"\x89PFMAP\r\n"
 HEADER, SECTION = struct.Struct("<8sIIQII"), struct.Struct("<IIQII")
-TAGS = ["LENS", "WRLD", "PLAN", "PLAC"]
+TAGS = ["LENS", "WRLD", "PLAN", "PLAC"]  # and ANCH behind them, where there are anchors
 PATCH = 22 * 22
 MODELS = {1: "pinhole", 2: "radtan", 3: "equidistant", 4: "division"}
 
@@ -81,7 +81,7 @@ def sections_of(data):
             raise Refused(f"section {name} is damaged")
         found[name] = Numbers(name, payload)
         at += SECTION.size + length
-    if list(found) != TAGS or at != len(data):
+    if list(found) not in (TAGS, [*TAGS, "ANCH"]) or at != len(data):
         raise Refused("it has not the sections of a portable map")
     return found
 
@@ -143,6 +143,34 @@ def read_places(numbers):
     return places
 
 
+def product(q, r):
+    """Of quaternions w x y z."""
+    w, x, y, z = q
+    W, X, Y, Z = r
+    return [w * W - x * X - y * Y - z * Z, w * X + x * W + y * Z - z * Y, w * Y - x * Z + y * W + z * X,
+            w * Z + x * Y - y * X + z * W]
+
+
+def read_anchors(numbers, places):
+    """Where the view that an anchor was set from has it: one on a plane has not been put onto that as the map has it."""
+    by_id = {place["id"]: place for place in places}
+    world = {"q_WK": [1.0, 0.0, 0.0, 0.0], "p_WK": [0.0, 0.0, 0.0]}
+    anchors = []
+    for _ in range(numbers.take("I")[0]):
+        anchor, place, plane, _ = numbers.take("4I")
+        if place and place not in by_id:
+            raise Refused(f"place {place} holds anchor {anchor}, and there is no such place")
+        q, p = (by_id[place] if place else world)["q_WK"], (by_id[place] if place else world)["p_WK"]
+        for _ in range(2):  # from the place to the view, and from there to the anchor
+            relative_q, relative_p = numbers.take("4d"), numbers.take("3d")
+            numbers.take("21d")
+            p = [a + b for a, b in zip(p, rotate(q, relative_p))]
+            q = product(q, relative_q)
+        anchors.append({"id": anchor, "place": place, "plane": plane, "q_WA": list(q), "p_WA": p})
+    numbers.end()
+    return anchors
+
+
 def read(path):
     try:
         data = pathlib.Path(path).read_bytes()
@@ -152,8 +180,10 @@ def read(path):
         found = sections_of(data)
         gravity = list(found["WRLD"].take("3d"))
         found["WRLD"].end()
+        places = read_places(found["PLAC"])
         return {"bytes": len(data), "lens": read_lens(found["LENS"]), "gravity_W": gravity if any(gravity) else None,
-                "planes": read_planes(found["PLAN"]), "places": read_places(found["PLAC"])}
+                "planes": read_planes(found["PLAN"]), "places": places,
+                "anchors": read_anchors(found["ANCH"], places) if "ANCH" in found else []}
     except Refused as refused:
         raise Refused(f"{path}: {refused}") from refused
 
@@ -169,9 +199,10 @@ def points_of(saved):
 
 
 def to_ply(saved):
-    """Points in their grey level, and places in red."""
+    """Points in their grey level, places in red, and anchors in blue."""
     rows = [(*point["p_W"], point["grey"], point["grey"], point["grey"]) for point in points_of(saved)]
     rows += [(*place["p_WK"], 255, 0, 0) for place in saved["places"]]
+    rows += [(*anchor["p_WA"], 64, 128, 255) for anchor in saved["anchors"]]
     head = ["ply", "format ascii 1.0", "comment pf-eval map", f"element vertex {len(rows)}"]
     head += [f"property float {axis}" for axis in "xyz"] + [f"property uchar {c}" for c in ("red", "green", "blue")]
     return "\n".join(head + ["end_header"] + [f"{x:.6g} {y:.6g} {z:.6g} {r} {g} {b}" for x, y, z, r, g, b in rows]) + "\n"
@@ -183,7 +214,8 @@ def summary_of(saved):
             "places": [{"id": place["id"], "points": len(place["points"]), "p_WK": place["p_WK"], "depth": place["depth"]}
                        for place in saved["places"]],
             "points": len(points), "points_on_planes": sum(point["plane"] != 0 for point in points),
-            "planes": [{key: value for key, value in plane.items() if key != "outline"} for plane in saved["planes"]]}
+            "planes": [{key: value for key, value in plane.items() if key != "outline"} for plane in saved["planes"]],
+            "anchors": saved["anchors"]}
 
 
 def text_of(summary):
@@ -197,6 +229,10 @@ def text_of(summary):
     for plane in summary["planes"]:
         x, y, z = plane["normal"]
         lines.append(f"  plane {plane['id']:5d}  normal {x:.3f} {y:.3f} {z:.3f}, distance {plane['distance']:.3f}, area {plane['area']:.3g}")
+    for anchor in summary["anchors"]:
+        x, y, z = anchor["p_WA"]
+        lies = f"on plane {anchor['plane']}" if anchor["plane"] else "on no plane"
+        lines.append(f"  anchor {anchor['id']:4d}  at {x:.3f} {y:.3f} {z:.3f}, {lies}")
     if summary["gravity_W"] is not None:
         lines.append("  gravity {:.3f} {:.3f} {:.3f}".format(*summary["gravity_W"]))
     return "\n".join(lines)

@@ -32,6 +32,8 @@ void add_maps(nb::class_<Context>& slam) {
   slam.def_prop_ro(
       "planes", [](Context& self) { return list<pf_plane_t>(self, "planes", pf_get_planes); }, doc::pf_get_planes);
   slam.def_prop_ro(
+      "anchors", [](Context& self) { return list<pf_anchor_t>(self, "anchors", pf_get_anchors); }, doc::pf_get_anchors);
+  slam.def_prop_ro(
       "matches", [](Context& self) { return list<pf_match_t>(self, "matches", pf_get_matches); }, doc::pf_get_matches);
   slam.def_prop_ro(
       "patches", [](Context& self) { return list<pf_patch_t>(self, "patches", pf_get_patches); }, doc::pf_get_patches);

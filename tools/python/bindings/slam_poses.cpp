@@ -71,6 +71,38 @@ void add_poses(nb::class_<Context>& slam) {
         });
       },
       nb::arg("pixel"), doc::pf_hit_test);
+  slam.def(
+      "add_anchor_pose",
+      [](Context& self, const pf_pose_t& pose) {
+        uint32_t id = 0;
+        self.run("add_anchor_pose", [&](pf_slam_t* context) { return pf_add_anchor_pose(context, &pose, &id); });
+        return id;
+      },
+      nb::arg("pose"), doc::pf_add_anchor_pose);
+  slam.def(
+      "add_anchor_hit",
+      [](Context& self, const pf_hit_t& hit) -> nb::object {
+        uint32_t id = 0;
+        const pf_status_t status =
+            self.run("add_anchor_hit", [&](pf_slam_t* context) { return pf_add_anchor_hit(context, &hit, &id); });
+        if (status == PF_NOTE_NOTHING) return nb::none();
+        return nb::int_(id);
+      },
+      nb::arg("hit"), doc::pf_add_anchor_hit);
+  slam.def(
+      "anchor",
+      [](Context& self, uint32_t id) {
+        return maybe<pf_anchor_t>(self, "anchor", [&](const pf_slam_t* context, pf_anchor_t* anchor) {
+          return pf_get_anchor(context, id, anchor);
+        });
+      },
+      nb::arg("id"), doc::pf_get_anchor);
+  slam.def(
+      "remove_anchor",
+      [](Context& self, uint32_t id) {
+        return self.run("remove_anchor", [&](pf_slam_t* context) { return pf_remove_anchor(context, id); });
+      },
+      nb::arg("id"), doc::pf_remove_anchor);
   slam.def_prop_ro(
       "inertial", [](Context& self) { return maybe<pf_inertial_t>(self, "inertial", pf_get_inertial); },
       doc::pf_get_inertial);

@@ -138,7 +138,9 @@ Scalar FilterStart::look_for_walls() {
   scale_tables(scale, first_W, &map_);
   for (int k = 0; k < map_.planes.capacity(); ++k) map_.planes[k].apart = false;
   data_.knows_scale = true;
+  const std::uint32_t before = tracking_.map_id();
   tracking_.rename_map();
+  map_.anchors.scale(before, tracking_.map_id(), scale, first_W);
   settings_.hooks.say("a wall of the plan came into view: the map has its size from here on");
   return scale;
 }

@@ -1,11 +1,14 @@
 #include "filter_slam/start/map_beginning.h"
 
 #include "base/limits.h"
+#include "base/table_entries.h"
 #include "filter_slam/inertial/tuning.h"
 #include "filter_slam/start/tuning.h"
 #include "frame/start/tuning.h"
 #include "frame/tuning.h"
 #include "geometry/planar_pose.h"
+#include "model/camera_at.h"
+#include "model/reference_camera.h"
 
 namespace pf {
 
@@ -29,7 +32,33 @@ void MapBeginning::clear_filter() {
   map_.planes.clear();
 }
 
+/// Anchors stay where they are before the camera of this frame, which holds them once the filter knows it again:
+///
+///   T_KV <- T_WCᵀ T_WK T_KV,   covariance of A_V e_K - A_C e_C        A_V, A_C: by what K and C hold (held_pose)
+void MapBeginning::leave_anchors() {
+  using model::ReferenceCamera;
+  const CameraAt camera = camera_at(filter_.state(), Scalar(0));
+  const RelativePlace T_WC = {camera.q_WC, camera.p_W};
+  for (const int i : used_entries(map_.anchors)) {
+    Anchor& anchor = map_.anchors[i];
+    if (anchor.camera < 0) continue;
+    const Block& block = filter_.state().block[anchor.camera];
+    const HeldPose view = held_pose({ReferenceCamera::q_WC(block), ReferenceCamera::p_WC(block)}, anchor.T_KV);
+    const RelativePlace T_WV = {view.q_WA, view.p_WA}, T_CV = T_WC.inverse().of(T_WV);
+    RowsOf<6, 12, 2> J;
+    J.parts = 2;
+    J.part[0] = camera.part();
+    J.part[1] = Part::of(anchor.camera, 0, 6);
+    put<6, 6>(J.h, 12, 0, Mat6(-held_pose(T_WC, T_CV).J_V));
+    put<6, 6>(J.h, 12, 6, view.J_V);
+    anchor.between += filter_.rounded_covariance_of<6>(J);
+    anchor.T_KV = T_CV;
+    anchor.camera = Anchor::kAwaitsCamera;
+  }
+}
+
 void MapBeginning::empty_filter() {
+  leave_anchors();
   filter_.init(settings_.kernels, settings_.body, settings_.research.keep_gauge);
   filter_.set_lens(settings_.camera, settings_.lens);
   // Where the scale is not known, neither is the unit's place in it.

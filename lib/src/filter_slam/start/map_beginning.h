@@ -54,6 +54,7 @@ class MapBeginning {
   void note_covariance();
 
  private:
+  void leave_anchors();
   void empty_filter();
   void set_body(const Body& body, const Scalar* known, const Scalar* J_lens = nullptr);
   void set_initial_velocities(Scalar speed);

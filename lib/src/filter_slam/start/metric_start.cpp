@@ -26,7 +26,9 @@ void MetricStart::use_motion(const MovingSolution& solution) {
   filter_.set_metric(solution, start_.mounting().now());
   is_from_motion_ = true;
   scale_tables(solution.scale, Vec3::Zero(), &map_);
+  const std::uint32_t before = tracking_.map_id();
   tracking_.rename_map();
+  map_.anchors.scale(before, tracking_.map_id(), solution.scale, Vec3::Zero());
   settings_.hooks.say("from motion: gravity and the biases are known, lengths are in metres from here on");
 }
 

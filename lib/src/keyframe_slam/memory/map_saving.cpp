@@ -4,6 +4,7 @@
 
 #include "base/table_entries.h"
 #include "keyframe_slam/map/tuning.h"
+#include "keyframe_slam/memory/keyframe_anchors.h"
 
 namespace pf {
 
@@ -61,7 +62,7 @@ void MapSaving::thin_out(int count) const {
   }
 }
 
-Status MapSaving::save(const Vec3& gravity_W, MapWriter* out) const {
+Status MapSaving::save(const Vec3& gravity_W, std::uint32_t map_id, MapWriter* out) const {
   const int count = list_sources();
   if (count == 0) return Status::kNothing;
   thin_out(count);
@@ -70,6 +71,7 @@ Status MapSaving::save(const Vec3& gravity_W, MapWriter* out) const {
   write_world(gravity_W, out);
   write_planes(out);
   write_places(count, out);
+  write_anchors(count, map_id, out);
   out->end();
   return Status::kOk;
 }
@@ -121,8 +123,49 @@ void MapSaving::write_places(int count, MapWriter* out) const {
   out->end_section();
 }
 
-Status MapSaving::load(const SavedMap& saved) {
-  if (saved.num_places() > settings_.kept.places || saved.num_planes() > settings_.max_planes) return Status::kFull;
+/// In the order of their ids. A map without anchors has no section for them.
+void MapSaving::write_anchors(int count, std::uint32_t map_id, MapWriter* out) const {
+  const AnchorTable& anchors = map_.tables().anchors;
+  const auto next_after = [&](std::uint32_t id) {
+    int next = -1;
+    for (const int i : used_entries(anchors))
+      if (anchors[i].map_id == map_id && anchors[i].id > id && (next < 0 || anchors[i].id < anchors[next].id)) next = i;
+    return next;
+  };
+  int num = 0;
+  for (int i = next_after(0); i >= 0; i = next_after(anchors[i].id)) ++num;
+  if (num == 0) return;
+  begin_anchors(num, out);
+  for (int i = next_after(0); i >= 0; i = next_after(anchors[i].id))
+    write_anchor(held_by_chosen(anchors[i], count), out);
+  out->end_section();
+}
+
+/// The anchor as one of the places that are saved holds it: its own, or else the nearest.
+Anchor MapSaving::held_by_chosen(const Anchor& anchor, int count) const {
+  Anchor saved = anchor;
+  saved.plane = map_.tables().planes.find(anchor.plane);
+  if (saved.plane == 0) saved.leave_plane();
+  int nearest = -1;
+  Scalar least = 0;
+  for (int i = 0; i < count; ++i) {
+    const Source& source = source_[i];
+    if (!source.chosen) continue;
+    if (source.id == anchor.place || anchor.place == 0) return saved;
+    const Scalar d2 =
+        view_distance2(anchor.T_WV.q, anchor.T_WV.p, source.depth, source.q_WK, source.p_WK, source.depth);
+    if (nearest >= 0 && !(d2 < least)) continue;
+    least = d2;
+    nearest = i;
+  }
+  saved.hold_by(source_[nearest].id, {source_[nearest].q_WK, source_[nearest].p_WK});
+  return saved;
+}
+
+Status MapSaving::load(const SavedMap& saved, std::uint32_t map_id) {
+  if (saved.num_places() > settings_.kept.places || saved.num_planes() > settings_.max_planes ||
+      saved.num_anchors() > settings_.kept.anchors)
+    return Status::kFull;
   Map& tables = map_.tables();
   saved.for_each_plane([&](const SavedPlane& plane) {
     const int k = tables.planes.restore(plane.id);
@@ -132,8 +175,14 @@ Status MapSaving::load(const SavedMap& saved) {
     planes_.restore(k, plane.frame, plane.covariance);
   });
   saved.for_each_place(scratch(), [&](const KeptPlace& place) { map_.places.keep(place); });
+  saved.for_each_anchor([&](const Anchor& anchor) {
+    const int entry = tables.anchors.find_free();
+    tables.anchors.restore(entry, anchor);
+    tables.anchors[entry].map_id = map_id;
+  });
   tables.features.reserve_ids(saved.last_feature());
   map_.keyframes.number_from(static_cast<int>(saved.last_place()));
+  KeyframeAnchors(tables.anchors, map_, planes_).follow(map_id, map_.places[0].depth);
   is_loaded_ = true;
   return Status::kOk;
 }

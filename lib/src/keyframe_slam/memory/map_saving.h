@@ -16,10 +16,10 @@ class MapSaving {
 
   bool layout(Arena& arena);
 
-  /// Writes the map. Changes nothing but scratch. kNothing: there is no place worth keeping; nothing is written.
-  Status save(const Vec3& gravity_W, MapWriter* out) const;
-  /// Puts a map that was opened into empty tables. kFull: it has more planes or places than these hold; nothing has changed.
-  Status load(const SavedMap& saved);
+  /// Writes the map that has this id. Changes nothing but scratch. kNothing: there is no place worth keeping; nothing is written.
+  Status save(const Vec3& gravity_W, std::uint32_t map_id, MapWriter* out) const;
+  /// Puts a map that was opened into empty tables. kFull: it has more planes, places or anchors than these hold; nothing has changed.
+  Status load(const SavedMap& saved, std::uint32_t map_id);
 
   void init() { is_loaded_ = false; }
   /// The map of the window is a loaded one.
@@ -43,6 +43,8 @@ class MapSaving {
   void thin_out(int count) const;
   void write_planes(MapWriter* out) const;
   void write_places(int count, MapWriter* out) const;
+  void write_anchors(int count, std::uint32_t map_id, MapWriter* out) const;
+  Anchor held_by_chosen(const Anchor& anchor, int count) const;
 
   const Settings& settings_;
   KeyframeMap& map_;

@@ -69,7 +69,7 @@ Status KeyframeStart::use_map(const SavedMap& saved) {
   using namespace tuning::body_motion;
   const bool is_chosen = known_.given || second_.given || target_.target().kind != TargetKind::kNone;
   if (is_chosen || is_in_loaded_map()) return Status::kState;
-  const Status status = saving_.load(saved);
+  const Status status = saving_.load(saved, tracking_.map_id());
   if (status != Status::kOk) return status;
   const KeptPlace& place = map_.places[0];
   Mat6 anywhere = Mat6::Identity() * (kAnyRotation * kAnyRotation);
