@@ -96,7 +96,7 @@ const Scalar* BlockFilter::gain(const Measurement* z, int count, const unsigned 
         for (int c = row_[j]; c < row_[j + 1]; ++c) S_[to * lds_ + column++] = S_[from * lds_ + c];
       }
       for (int b = 0; b <= a; ++b) S_[to * lds_ + m + b] += z[i].R_update[a + b * rows];
-      if (kNoisyRounding) S_[to * lds_ + to] += tuning::soundness::kDigits * rounding_of(z[i].H, a);
+      if (kNoisyRounding) S_[to * lds_ + to] += static_cast<Scalar>(z[i].H.columns()) * rounding_of(z[i].H, a);
       y_[to] = z[i].measured[a] - z[i].predicted[a];
     }
     m += rows;
