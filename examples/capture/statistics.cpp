@@ -120,7 +120,7 @@ void Statistics::add(const FrameView& view) {
   lost_ += untracked && report.state == PF_STATE_LOST ? 1 : 0;
   coasting_ += untracked && report.state != PF_STATE_STARTING && report.state != PF_STATE_LOST ? 1 : 0;
   losses_ += report.state == PF_STATE_LOST && last_state_ != PF_STATE_LOST ? 1 : 0;
-  ++reasons_[std::clamp<int32_t>(report.reason, 0, PF_FRAME_REASON_UNCERTAIN)];
+  ++reasons_[std::clamp<int32_t>(report.reason, 0, PF_FRAME_REASON_LENS)];
   unusable_ += view.status == PF_NOTE_UNUSABLE ? 1 : 0;
   evicted_ += report.evicted;
   new_features_ += report.new_features;
@@ -278,7 +278,7 @@ std::string Statistics::to_json(const Session& session, const Options& options, 
                              {"fixed", last_report_.features_fixed},
                              {"trial", last_report_.features_trial}};
   Json not_tracked = Json::object();
-  for (int32_t reason = PF_FRAME_REASON_NONE + 1; reason <= PF_FRAME_REASON_UNCERTAIN; ++reason)
+  for (int32_t reason = PF_FRAME_REASON_NONE + 1; reason <= PF_FRAME_REASON_LENS; ++reason)
     not_tracked[reason_name(reason)] = reasons_[reason];
   json["not_tracked"] = not_tracked;
   json["new_features"] = new_features_;

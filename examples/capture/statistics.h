@@ -98,7 +98,7 @@ class Statistics {
   std::map<uint32_t, int32_t> last_patches_;  ///< status of each by its id
   int64_t lost_patches_ = 0, refound_patches_ = 0;
   CountHistogram patches_, cameras_;
-  int reasons_[PF_FRAME_REASON_UNCERTAIN + 1] = {};  ///< frames by pf_frame_reason_t
+  int reasons_[PF_FRAME_REASON_LENS + 1] = {};  ///< frames by pf_frame_reason_t
   CountHistogram inliers_, attempts_, state_dim_, planes_, folded_;
   Histogram stage_ms_[PF_STAGE_COUNT];
 };

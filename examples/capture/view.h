@@ -64,8 +64,9 @@ inline const char* state_name(int32_t state) {
 
 /// Why a frame was not tracked; "none" where it was.
 inline const char* reason_name(int32_t reason) {
-  static const char* const kNames[] = {"none", "nothing_in_view", "few_found", "disagree", "improbable", "uncertain"};
-  return reason >= 0 && reason <= PF_FRAME_REASON_UNCERTAIN ? kNames[reason] : "unknown";
+  static const char* const kNames[] = {"none",       "nothing_in_view", "few_found", "disagree",
+                                       "improbable", "uncertain",       "lens"};
+  return reason >= 0 && reason <= PF_FRAME_REASON_LENS ? kNames[reason] : "unknown";
 }
 
 }  // namespace pf::capture

@@ -149,6 +149,10 @@ class RenderedRun {
       for (std::uint8_t& grey : seen_) grey = static_cast<std::uint8_t>(std::lround(110 + contrast * (grey - 110)));
       image.pixels = seen_.data();
     }
+    if (zoom > 1) {
+      zoom_of(image);
+      image.pixels = seen_.data();
+    }
     if (smear > 1) {
       smeared_ = seen_;
       for (int v = 0; v < image.height; ++v)
@@ -200,6 +204,7 @@ class RenderedRun {
 
   double contrast = 1;  ///< of what is left of it
   double flicker = 0;   ///< share of the picture, from its right side, whose texture is another one in every frame
+  double zoom = 1;      ///< times as long as the scene's lens
   int smear = 1;        ///< [px] along the rows, of a camera that turns while it exposes
   pf_config_t config;
   pf_memory_t need;
@@ -219,6 +224,23 @@ class RenderedRun {
           out[static_cast<std::size_t>((v + i / kFlickerSide) * image.stride + u + i % kFlickerSide)] = grey;
       }
     smeared_ = std::move(out);
+  }
+
+  /// Bilinear, about the middle.
+  void zoom_of(const pf_image_t& image) {
+    const std::vector<std::uint8_t> from = seen_;
+    const auto grey = [&](int u, int v) { return 1.0 * from[static_cast<std::size_t>(v * image.stride + u)]; };
+    const double cx = config.camera.cx, cy = config.camera.cy;
+    for (int v = 0; v < image.height; ++v)
+      for (int u = 0; u < image.width; ++u) {
+        const double x = std::clamp(cx + (u - cx) / zoom, 0.0, image.width - 1.001);
+        const double y = std::clamp(cy + (v - cy) / zoom, 0.0, image.height - 1.001);
+        const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+        const double a = x - x0, b = y - y0;
+        seen_[static_cast<std::size_t>(v * image.stride + u)] =
+            static_cast<std::uint8_t>(std::lround((1 - b) * ((1 - a) * grey(x0, y0) + a * grey(x0 + 1, y0)) +
+                                                  b * ((1 - a) * grey(x0, y0 + 1) + a * grey(x0 + 1, y0 + 1))));
+      }
   }
 
   void push(const pf_image_t& image) {

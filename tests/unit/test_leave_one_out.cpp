@@ -226,7 +226,9 @@ void test_nothing_should_change_when_there_is_nothing_to_test() {
   Tester tester;
   Matches m(random, 5, 0);
   std::vector<unsigned char> keep(5, 0);
-  JointFit fit = {7, 8};
+  JointFit fit;
+  fit.nis = 7;
+  fit.log_det = 8;
   TEST_ASSERT_FALSE(tester.others.reject(*m.filter, m.observation.data(), m.count(), kGate, {}, keep.data(), &fit));
   TEST_ASSERT_TRUE(fit.nis == Scalar(7) && fit.log_det == Scalar(8));
   keep[2] = 1;  // one match has no others: its own ellipse

@@ -22,11 +22,11 @@
  * COVARIANCES are row-major, finite and positive semidefinite. A row is zero only where something
  * is exactly known: where rounding has left nothing of a variance, or less, it is given as large as
  * rounding may be, and 1e12 stands for unknown.
- * UNITS. SI and radians. Times, pixels and angles in other units say so in the name (_s, _ns, _px).
+ * UNITS. SI and radians. Times, pixels and angles in other units name them (_s, _ns, _px).
  * TYPES. In a structure, kinds and switches are int32_t, and the comment names the enum; a switch
  * is 0 or 1. Ids are uint32_t.
  *
- * STATUS. 0 is done. Positive: done, with something to know. Negative: refused, and nothing was
+ * STATUS. 0 is done. Positive: done, with something to know. Negative: rejected, and nothing was
  * changed.
  * THREADS. A context belongs to one thread at a time. Contexts are independent. There are no
  * globals.
@@ -73,8 +73,8 @@ typedef enum pf_status {
   PF_OK = 0,
 
   /* Taken. There is no pose yet, or known depths do not support it yet. Also after an estimate that
-   * was no longer finite was given up, and when a new map begins: a new start follows, with a new W
-   * (the log says so). */
+   * was no longer finite was discarded, and when a new map begins: a new start follows, with a new
+   * W and a line in the log. */
   PF_NOTE_STARTING = 1,
   /* taken; too few measurements, the pose is a prediction with growing covariance */
   PF_NOTE_COASTING = 2,
@@ -82,7 +82,7 @@ typedef enum pf_status {
   PF_NOTE_LOST = 3,
   /* taken; the image shows nothing usable (black, white, blurred, frozen); pose coasts */
   PF_NOTE_UNUSABLE = 4,
-  /* done; there was more than your array holds, *count says how many there are */
+  /* done; there was more than your array holds; *count has the full number */
   PF_NOTE_TRUNCATED = 5,
   /* done; there is nothing (no plane under the pixel or with that id any more, no mark) */
   PF_NOTE_NOTHING = 6,
@@ -93,7 +93,7 @@ typedef enum pf_status {
   PF_ERROR_VERSION = -3,
   /* the config was made for the other library (planefold: double, planefoldf: float) */
   PF_ERROR_SCALAR = -4,
-  PF_ERROR_MEMORY = -5,    /* the block is smaller than pf_memory_query said */
+  PF_ERROR_MEMORY = -5,    /* the block is smaller than pf_memory_query returned */
   PF_ERROR_ALIGNMENT = -6, /* the block does not begin at a multiple of pf_memory_t.alignment */
   PF_ERROR_SIZE = -7,      /* width, height or stride of the image do not fit the calibration */
   PF_ERROR_TIME = -8,      /* the timestamp is not after the last one */
@@ -105,7 +105,7 @@ typedef enum pf_status {
   PF_ERROR_CONTEXT = -12, /* not a context, or one whose block was overwritten */
   /* there is no room for it, see capacity.max_state_dim, max_planes and max_anchors */
   PF_ERROR_FULL = -13,
-  /* no saved map, or one that is damaged or of another format; the log says what is wrong */
+  /* no saved map, or one that is damaged or of another format; the log has the reason */
   PF_ERROR_MAP = -14
 } pf_status_t;
 
@@ -143,7 +143,7 @@ typedef struct pf_camera {
   int32_t model;         /* pf_camera_model_t */
   int32_t width, height; /* [px] 32 .. 4096 */
   double fx, fy, cx, cy; /* [px] */
-  double distortion[8];  /* as the model says; unused entries are zero */
+  double distortion[8];  /* in the order of the model; unused entries are zero */
   /* Rolling shutter: from the first row to the last, 0 .. 0.2; 0 is a global shutter. A frame has
    * the time of its middle row. Needs constant velocity or the inertial model: rows differ by how
    * the camera moves. */
@@ -153,9 +153,9 @@ typedef struct pf_camera {
    * row of the filter's state, up to nine (ten with imu.sigma_readout_s): count them in
    * capacity.max_state_dim. Only read where estimate is not PF_CAMERA_EXACT. */
   int32_t estimate; /* pf_camera_estimate_t */
-  /* pf_timestamps_t. With nominal ones readout_s counts as 0, since the rows hang on a velocity
-   * that such times do not give; the log says so. Not so with PF_MOTION_INERTIAL, where they hang
-   * on the gyro. */
+  /* pf_timestamps_t. With nominal ones readout_s counts as 0, with a line in the log, since the
+   * rows depend on a velocity that such times do not give. Not so with PF_MOTION_INERTIAL, where
+   * they depend on the gyroscope. */
   int32_t timestamps;
   double sigma_focal;     /* of fx and fy together, relative: 1e-5 .. 0.2. Typical 0.01 */
   double sigma_aspect;    /* of fx against fy, relative: 1e-6 .. 0.2. Typical 0.001 */
@@ -184,9 +184,9 @@ typedef enum pf_motion_model {
    * angular acceleration (Servant 2008, lib/docs/theory/servant2008.md). Three rows more in
    * capacity.max_state_dim. Filter only. */
   PF_MOTION_CONSTANT_ACCELERATION = 3,
-  /* By the samples of pf_push_imu (lib/docs/theory/inertial.md). Wants imu and
-   * capacity.max_imu_samples >= 64: as many as come in the longest time between frames that is to
-   * be bridged. */
+  /* By the samples of pf_push_imu (lib/docs/theory/inertial.md). Needs imu and
+   * capacity.max_imu_samples >= 64: as many samples as come in the longest time between frames that
+   * is to be bridged. */
   PF_MOTION_INERTIAL = 4
 } pf_motion_model_t;
 
@@ -202,7 +202,7 @@ typedef enum pf_kernels {
 /* What becomes of a folded point that is known well enough among the others of its plane. */
 typedef enum pf_fix {
   PF_FIX_CONSIDER = 1, /* keeps its covariance and is estimated no more (Schmidt) */
-  /* leaves the state; its variance becomes noise of its pixels. Saves memory, costs honesty */
+  /* leaves the state; its variance becomes noise of its pixels. Saves memory; overconfident */
   PF_FIX_INFLATE = 2
 } pf_fix_t;
 
@@ -234,11 +234,11 @@ typedef struct pf_imu_model {
   double accel_range; /* [m/s^2] 0 (not known) .. 1e5. Default 0 */
 
   /* Only read with PF_MOTION_INERTIAL. Noise as Kalibr and EuRoC state it; no default fits a unit,
-   * and 0 is refused. */
+   * and 0 is rejected. */
   double gyro_density;  /* white noise [rad/s/sqrt(Hz)], up to 1 */
-  double accel_density; /* likewise [m/s^2/sqrt(Hz)], up to 10 */
+  double accel_density; /* the same [m/s^2/sqrt(Hz)], up to 10 */
   double gyro_walk;     /* of its bias [rad/s^2/sqrt(Hz)], up to 1 */
-  double accel_walk;    /* likewise [m/s^3/sqrt(Hz)], up to 10 */
+  double accel_walk;    /* the same [m/s^3/sqrt(Hz)], up to 10 */
   /* Mounting, p_B = R_BC p_C + p_BC: EuRoC's T_BS of the camera, the inverse of Kalibr's T_cam_imu.
    * Default: axes and origin of the camera. */
   double q_BC[4]; /* w x y z */
@@ -248,14 +248,15 @@ typedef struct pf_imu_model {
   /* How far the mounting and the delay may be off, of each axis: standard deviations, from which
    * they are then estimated (pf_get_inertial). 0: taken as exact; else at least 1e-6. Defaults 0.
    * Axes above 0.2 and a delay above 0.02 are open: the camera moves as without a unit until its
-   * rotations have told them, a second of handling or two. A delay is found within 0.2 s. */
+   * rotations have fixed them, a second or two of rotating by hand. A delay is found within 0.2
+   * s. */
   double sigma_mount_rad; /* of the unit's axes, up to 4 (any). Three rows of the state */
   double sigma_mount_m;   /* of its origin in C, up to 1. Three rows */
-  /* Of the delay, up to 0.2. One row. A frame then hangs on samples that may be as much later: push
-   * those of up to three sigma behind its time before it, as far as they have come. */
+  /* Of the delay, up to 0.2. One row. A frame then depends on samples that may be as much later:
+   * push those of up to three sigma behind its time before it, as far as they have come. */
   double sigma_delay_s;
   /* Of camera.readout_s, which may be 0 then; up to 0.1. One more row of the lens, which is
-   * considered where camera.estimate says so, and else estimated. It never falls below 0. */
+   * considered with PF_CAMERA_CONSIDER, and else estimated. It never falls below 0. */
   double sigma_readout_s;
   /* Of the scales of both sensors and of the directions of their axes, relative, up to 0.05: what
    * data sheets call sensitivity and cross-axis errors, 0.01 for a phone. 15 rows of the state */
@@ -298,10 +299,9 @@ typedef struct pf_config {
     /* Pixels of the mask that pf_set_mask may set: 0 (none), or camera.width * camera.height at
      * least. It is kept as one bit for 4x4 of them: 2.4 kB for 640x480. Default 0 */
     int32_t mask;
-    /* Places: what keyframes saw that have left the window, each with up to 24 points and what they
-     * look like, by which a lost camera finds itself, and of which a saved map is made (MAPS). 0 ..
-     * 200, of 15 kB each. With PF_BACKEND_WINDOW only; with the filter they take nothing. Default
-     * 16 */
+    /* Places: keyframes that have left the window, each with up to 24 points and their appearance,
+     * by which a lost camera finds itself, and of which a saved map is made (MAPS). 0 .. 200, of 15
+     * kB each. With PF_BACKEND_WINDOW only; with the filter they take nothing. Default 16 */
     int32_t max_places;
     /* Anchors (pf_add_anchor_hit), 0 .. 64, of about 1.5 kB each. Default 8 */
     int32_t max_anchors;
@@ -402,8 +402,7 @@ typedef struct pf_config {
    * Default null */
   void (*log)(void* user, const char* line);
   void*
-      /* handed to both. Both may call what only asks (const pf_slam_t*); what changes is
-       * PF_ERROR_STATE */
+      /* handed to both. Both may call functions of a const pf_slam_t*; others are PF_ERROR_STATE */
       user;
 } pf_config_t;
 
@@ -442,7 +441,7 @@ typedef struct pf_pose {
   double p_WC[3];        /* [m] */
   double covariance[36]; /* 6x6 of (theta, p) [rad, m] */
   double v_W[3];         /* velocity [m/s]; zero with the constant-position model */
-  double w_C[3];         /* angular velocity [rad/s], in C; likewise */
+  double w_C[3];         /* angular velocity [rad/s], in C; the same */
   /* of the map that W belongs to; never used twice. Ignored in a pose that you pass in */
   uint32_t map_id;
   uint32_t reserved; /* 0 */
@@ -478,22 +477,22 @@ typedef struct pf_target {
 PF_API pf_status_t pf_start_from_target(pf_slam_t* slam, const pf_target_t* target);
 
 /* Start from a known pose, with its covariance and velocity; velocity_covariance is 6x6 of (v_W,
- * w_C). Before the first frame. In images the state is starting until the first frames have told
- * the depths, unless walls or a speed above twice its sigma tell them; the scale is that of
- * first_depth where nothing else says it. PF_ERROR_STATE together with a rectangle as target, which
- * gives the pose itself. With a target of points both may be given: the known pose then counts if
- * the points are seen in the first frame, and their own sighting later. With neither start, W is
- * the first camera. PF_ERROR_RANGE: a standard deviation below 1e-9, or numbers that are no
- * covariance. */
+ * w_C). Before the first frame. With images the state is starting until the first frames have
+ * measured the depths, unless walls or a speed above twice its sigma fix them; the scale is that of
+ * first_depth where nothing else gives it. PF_ERROR_STATE together with a rectangle as target,
+ * which gives the pose itself. With a target of points both may be given: the known pose then
+ * counts if the points are seen in the first frame, and their own sighting later. With neither
+ * start, W is the first camera. PF_ERROR_RANGE: a standard deviation below 1e-9, or numbers that
+ * are no covariance. */
 PF_API pf_status_t pf_start_from_pose(pf_slam_t* slam, const pf_pose_t* pose,
                                       const double velocity_covariance[36]);
 
-/* Says where the camera is in the frame at t_ns (to a millisecond), which is still to come: its
- * distance from the first camera (that of pf_start_from_pose, else the origin of W) is the scale,
- * and the map is scaled about the first camera in that frame, or when the depths are known. Of the
- * pose the position counts. Poses that were told before keep the old scale, and a mark
- * (pf_mark_pose) is lost. Nothing is scaled, and the log says so, where the frame does not come, is
- * not tracked, or the camera has hardly moved. PF_ERROR_STATE: with PF_BACKEND_FILTER, with a
+/* Gives the place of the camera in the frame at t_ns (to a millisecond), which is still to come:
+ * its distance from the first camera (that of pf_start_from_pose, else the origin of W) is the
+ * scale, and the map is scaled about the first camera in that frame, or when the depths are known.
+ * Of the pose the position counts. Poses that were returned before keep the old scale, and a mark
+ * (pf_mark_pose) is lost. Nothing is scaled, with a line in the log, where the frame does not come,
+ * is not tracked, or the camera has hardly moved. PF_ERROR_STATE: with PF_BACKEND_FILTER, with a
  * target, or while another one is waited for. PF_ERROR_TIME: the frame is not after the last one.
  * PF_ERROR_RANGE: it is nearer to the first place than its own standard deviation. */
 PF_API pf_status_t pf_set_second_pose(pf_slam_t* slam, int64_t t_ns, const pf_pose_t* pose);
@@ -635,16 +634,15 @@ PF_API pf_status_t pf_save_map(const pf_slam_t* slam, int32_t kind, void* buffer
                                size_t* used);
 
 /* Begins in a saved map: W, lengths and planes are those of the map, and the camera is lost in it
- * until pf_push_frame recognises one of its places; the first tracked frame says so. Before the
- * first frame only. The map may come from another config, build, scalar or camera of about the same
- * focal length in pixels. The lens is that of the config. The map is searched for until it is
- * found, also after later losses: no new one begins before pf_reset, which drops it. The buffer is
- * read during the call only. All of it is checked first: where it is refused nothing changes, and
- * the log says why. PF_ERROR_MAP: no map, damaged, of another version, or with a number out of its
- * domain. PF_ERROR_FULL: more places, planes or anchors than capacity.max_places,
- * capacity.max_planes and capacity.max_anchors.
- * PF_ERROR_STATE: after the first frame, with a start that was set or a wall, or with
- * PF_BACKEND_FILTER. */
+ * until pf_push_frame recognises one of its places; the log has a line with the first tracked
+ * frame. Before the first frame only. The map may come from another config, build, scalar or camera
+ * of about the same focal length in pixels. The lens is that of the config. The map is searched for
+ * until it is found, also after later losses: no new one begins before pf_reset, which drops it.
+ * The buffer is read during the call only. All of it is checked first: where it is rejected nothing
+ * changes, and the log has the reason. PF_ERROR_MAP: no map, damaged, of another version, or with a
+ * number out of its domain. PF_ERROR_FULL: more places, planes or anchors than
+ * capacity.max_places, max_planes and max_anchors. PF_ERROR_STATE: after the first frame, with a
+ * start that was set or a wall, or with PF_BACKEND_FILTER. */
 PF_API pf_status_t pf_load_map(pf_slam_t* slam, const void* buffer, size_t bytes);
 
 /* -------------------------------------------------------------------------------- output -- */
@@ -666,8 +664,8 @@ PF_API pf_status_t pf_get_pose(const pf_slam_t* slam, pf_pose_t* pose);
 PF_API pf_status_t pf_predict_pose(const pf_slam_t* slam, int64_t t_ns, pf_pose_t* pose);
 
 /* How the camera moved between two frames of one map. Unlike the pose in W, which drifts as a
- * whole, this is as good as the measurements in between: for odometry, and to check how honest the
- * covariance is over short times. */
+ * whole, this is as good as the measurements in between: for odometry, and to test the covariance
+ * over short times (NEES). */
 typedef struct pf_motion {
   int64_t mark_t_ns; /* of the frame whose pose was marked: K is the camera there */
   int64_t t_ns;      /* of the last frame: C is the camera there */
@@ -694,7 +692,7 @@ PF_API pf_status_t pf_get_motion_since_mark(const pf_slam_t* slam, pf_motion_t* 
 
 /* Pixel of a point in the world at the last frame, and its 2x2 covariance from the pose's (may be
  * null). Of a rolling shutter it is the one at the frame's own time, which its row does not share:
- * lib/docs/theory/rolling_shutter.md says how to go on to that. */
+ * lib/docs/theory/rolling_shutter.md has the way to it. */
 PF_API pf_status_t pf_project_point(const pf_slam_t* slam, const double p_W[3], double pixel[2],
                                     double covariance[4]);
 
@@ -750,7 +748,7 @@ typedef struct pf_plane {
   /* of the convex outline of its points, 0 .. PF_OUTLINE_MAX; of a wall, with the plan's */
   int32_t outline_count;
   int32_t is_wall;    /* 1: a wall, see pf_add_wall */
-  int32_t rejected;   /* 1: a wall, and the gate refuses what should be on it */
+  int32_t rejected;   /* 1: a wall that is rejected: the images contradict its place */
   double normal_W[3]; /* unit, towards the side that was seen */
   double distance;    /* n . p of its points */
   double R_WP[9];     /* the plane's frame, row-major: x and y in the plane, z the normal */
@@ -776,11 +774,12 @@ PF_API pf_status_t pf_find_plane(const pf_slam_t* slam, uint32_t id, uint32_t* c
  * (pf_get_inertial), and this goes before that. */
 PF_API pf_status_t pf_set_gravity(pf_slam_t* slam, const double gravity_W[3]);
 
-/* Says that a plane is vertical within a standard deviation of sigma_rad, 1e-6 .. 0.5, which tells
- * gravity's direction and the plane's. It counts once: to say it again changes nothing, until 0 has
- * forgotten it, which adds back what it took from the plane's tilt. PF_ERROR_STATE where gravity is
- * not estimated and known (pf_inertial_t.metric). PF_NOTE_NOTHING: no plane has this id.
- * PF_ERROR_RANGE too where gravity and plane contradict it by their covariances (1 in 10,000). */
+/* States that a plane is vertical within a standard deviation of sigma_rad, 1e-6 .. 0.5, which
+ * constrains gravity's direction and the plane's. It counts once: a second call changes nothing
+ * until a call with 0 has removed it, which adds back what it took from the variance of the plane's
+ * tilt. PF_ERROR_STATE where gravity is not estimated and known (pf_inertial_t.metric).
+ * PF_NOTE_NOTHING: no plane has this id. PF_ERROR_RANGE too where gravity and plane contradict it
+ * by their covariances (1 in 10,000). */
 PF_API pf_status_t pf_set_plane_vertical(pf_slam_t* slam, uint32_t plane, double sigma_rad);
 
 typedef struct pf_hit {
@@ -921,15 +920,17 @@ PF_API pf_status_t pf_get_camera(const pf_slam_t* slam, pf_camera_t* camera,
 /* Why a frame was not tracked. */
 typedef enum pf_frame_reason {
   PF_FRAME_REASON_NONE = 0, /* it was, or there is no pose yet */
-  /* Nothing was searched for: nothing of the map is in view of the prediction, and no kept view
-   * looks like the image. */
+  /* Nothing was searched for: nothing of the map is in view of the prediction, and no kept view is
+   * like the image. */
   PF_FRAME_REASON_NOTHING_IN_VIEW = 1,
   /* Fewer features were found than a pose needs: dark, smeared, covered, or elsewhere. */
   PF_FRAME_REASON_FEW_FOUND = 2,
   PF_FRAME_REASON_DISAGREE = 3, /* enough were found, and too few of them agree with one pose */
   /* Enough agree, and chance may be the reason: log_odds is below 6.2. */
   PF_FRAME_REASON_IMPROBABLE = 4,
-  PF_FRAME_REASON_UNCERTAIN = 5 /* the pose's covariance is too large to be used */
+  PF_FRAME_REASON_UNCERTAIN = 5, /* the pose's covariance is too large to be used */
+  /* The image is larger or smaller than by the calibration: zoom, focus, another sensor. */
+  PF_FRAME_REASON_LENS = 6
 } pf_frame_reason_t;
 
 typedef struct pf_report {
@@ -962,20 +963,20 @@ typedef struct pf_report {
   double sigma_gate_px, sigma_info_px, correlation_frames;
   /* Of `frames`: those at whose end a part of the estimate's covariance was not positive
    * semidefinite, beyond rounding, and its variances were raised until it was
-   * (lib/docs/theory/float.md). 0 is normal; where it grows, the poses deserve less trust than
-   * their covariances say. */
+   * (lib/docs/theory/float.md). 0 is normal; where it grows, the covariances of poses are too
+   * small. */
   int64_t covariance_repairs;
   /* With map.masks: templates that learnt from this frame, and the mean share of their pixels on
    * the dominant plane (0 without any). */
   int32_t templates;
   int32_t keyframes; /* of the window: that are kept */
   double template_area;
-  /* ln(p / (1 - p)) of the probability that the map's pose in this frame is right, with what the
-   * frame says for it (lib/docs/theory/belief.md): 3 is wrong once in 20, and a frame is tracked
-   * from 6.2 on, once in 500. -13.8 .. 13.8; 0 before there is a pose. */
+  /* ln(p / (1 - p)) of the probability that the map's pose in this frame is right, with the frame's
+   * evidence (lib/docs/theory/belief.md): 3 is wrong once in 20, and a frame is tracked from 6.2
+   * on, once in 500. -13.8 .. 13.8; 0 before there is a pose. */
   double log_odds;
   /* Features that agree with the best of the poses that this frame was searched for; `inliers` of
-   * them were used, if that pose was believed. */
+   * them were used, if that pose was accepted. */
   int32_t consensus;
   int32_t reason;          /* pf_frame_reason_t */
   int32_t places;          /* of capacity.max_places: that are kept */
@@ -988,18 +989,18 @@ PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);
  * of pf_imu_report_t is. */
 typedef enum pf_imu_reason {
   PF_IMU_REASON_NONE = 0,
-  PF_IMU_REASON_WAITS_FOR_ROTATION = 1, /* the delay or the axes are open, and nothing tells yet */
+  PF_IMU_REASON_WAITS_FOR_ROTATION = 1, /* the delay or the axes are open, and not measured yet */
   /* gravity and scale are not known yet: relative sigma of the scale so far, 0: none */
   PF_IMU_REASON_WAITS_FOR_MOTION = 2,
-  PF_IMU_REASON_CONTRADICTS = 3,            /* innovations that no plausible noise explains */
-  PF_IMU_REASON_GYRO_IN_DEGREES = 4,        /* rates are too large by this factor, about 57.3 */
-  PF_IMU_REASON_GYRO_SCALE = 5,             /* likewise, some other factor */
-  PF_IMU_REASON_AXES = 6,                   /* other axes fit (reason_q_BC), so many degrees away */
-  PF_IMU_REASON_LEFT_HANDED = 7,            /* only a reflection fits: an axis has the wrong sign */
-  PF_IMU_REASON_CLOCK = 8,                  /* the delay that would fit [s] */
-  PF_IMU_REASON_RATES_DO_NOT_FIT = 9,       /* share of the camera's rotations not explained */
-  PF_IMU_REASON_COLUMNS_SWAPPED = 10,       /* the rates read like gravity: their mean length */
-  PF_IMU_REASON_ACCEL_IN_G = 11,            /* mean specific force, about 1 */
+  PF_IMU_REASON_CONTRADICTS = 3,      /* innovations that no plausible noise explains */
+  PF_IMU_REASON_GYRO_IN_DEGREES = 4,  /* rates are too large by this factor, about 57.3 */
+  PF_IMU_REASON_GYRO_SCALE = 5,       /* the same, another factor */
+  PF_IMU_REASON_AXES = 6,             /* other axes fit (reason_q_BC), so many degrees away */
+  PF_IMU_REASON_LEFT_HANDED = 7,      /* only a reflection fits: an axis has the wrong sign */
+  PF_IMU_REASON_CLOCK = 8,            /* the delay that would fit [s] */
+  PF_IMU_REASON_RATES_DO_NOT_FIT = 9, /* share of the camera's rotations not explained */
+  PF_IMU_REASON_COLUMNS_SWAPPED = 10, /* the rates are as large as gravity: their mean length */
+  PF_IMU_REASON_ACCEL_IN_G = 11,      /* mean specific force, about 1 */
   PF_IMU_REASON_ACCEL_WITHOUT_GRAVITY = 12, /* mean specific force, about 0 */
   PF_IMU_REASON_ACCEL_UNIT = 13,            /* mean specific force, neither */
   PF_IMU_REASON_ACCEL_SIGN = 14             /* accelerations have the opposite sign */
@@ -1019,7 +1020,7 @@ typedef struct pf_imu_report {
   double rate_hz;     /* mean from the first sample to the last; 0 of fewer than two */
   double median_s;    /* interval, a running median; 0 of fewer than two */
   int32_t kept;       /* samples in the buffer */
-  int32_t used; /* 1 when poses hang on the samples: PF_MOTION_INERTIAL, and samples have come */
+  int32_t used; /* 1 when poses depend on the samples: PF_MOTION_INERTIAL, and samples have come */
   /* With PF_MOTION_INERTIAL. 1: pictures contradict the samples, which this map does not use any
    * more (up to scale: until the gyro agrees again); the motion is that of
    * PF_MOTION_CONSTANT_VELOCITY. A map that had been in metres for less than 5 s begins anew, up to
@@ -1045,22 +1046,22 @@ typedef struct pf_inertial {
    * gravity_true = Exp(g1 axis1 + g2 axis2) gravity_W. */
   double covariance[64];
   double gravity_axes_W[2][3]; /* unit, across gravity and each other */
-  /* 1: the samples tell lengths, which are metres; 0: gravity is not known yet, and only the gyro
-   * is used. It becomes 1 when the camera has been at rest for a second: a map of unknown scale
-   * that is younger than 15 s begins anew then; or when such a map has seen enough motion to tell:
-   * it goes on in metres, under another map_id. */
+  /* 1: lengths are metres, by the samples; 0: gravity is not known yet, and only the gyroscope is
+   * used. It becomes 1 when the camera has been at rest for a second (a map of unknown scale that
+   * began less than 15 s ago begins anew then), or when such a map has seen enough motion (it goes
+   * on in metres, under another map_id). */
   uint32_t metric;
   uint32_t from_motion; /* 1: it became 1 by motion, 0: at rest, or not yet */
   uint32_t map_id;      /* as in pf_pose_t */
   /* 1: in this frame the pose is held, since samples and pictures have been at rest for a second at
-   * least. A picture alone or samples alone never say so. */
+   * least. Images alone or samples alone are never enough. */
   uint32_t resting;
   uint32_t rests; /* begun since the beginning */
   /* Mounting and delay as they are known now; those of the config where they are not estimated. */
   double q_BC[4], p_BC[3], delay_s;
   double readout_s; /* of the camera's rows */
-  /* What readings become, row-major: w_B = gyro_matrix (gyro - gyro_bias), likewise the specific
-   * force. Identity where they are not estimated. */
+  /* What readings become, row-major: w_B = gyro_matrix (gyro - gyro_bias), and in the same way the
+   * specific force. Identity where they are not estimated. */
   double gyro_matrix[9], accel_matrix[9];
   /* Standard deviations. Negative: not estimated, or not known yet. */
   struct {

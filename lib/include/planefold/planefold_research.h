@@ -5,7 +5,7 @@
  *   research.keep_gauge = 0;                     the textbook EKF
  *   pf_config_set_research(&config, &research);  then pf_create as ever
  *
- * The values below that belong to enums of planefold.h are refused by pf_config_check, by the name
+ * The values below that belong to enums of planefold.h are rejected by pf_config_check, by the name
  * of the field, in a config without research.
  */
 #ifndef PLANEFOLD_PLANEFOLD_RESEARCH_H
@@ -39,7 +39,7 @@ typedef struct pf_research {
   int32_t keep_gauge;
   int32_t fold;        /* pf_fold_t. Default condition */
   double linear_walk;  /* of PF_MOTION_CONSTANT_POSITION [m/sqrt(s)] > 0. Default 0.1 */
-  double angular_walk; /* likewise [rad/sqrt(s)] > 0. Default 0.2 */
+  double angular_walk; /* the same [rad/sqrt(s)] > 0. Default 0.2 */
   /* 1: a patch of a wall is taken in where its corners pass the gate. 0: always, on the nearest
    * wall that it may lie on. Default 1 */
   int32_t gate_patches;

@@ -19,11 +19,11 @@ inline Vec3 vec3(const double* v) {
   return Vec3(static_cast<Scalar>(v[0]), static_cast<Scalar>(v[1]), static_cast<Scalar>(v[2]));
 }
 
-/// Larger distances, speeds and variances are refused: their squares would leave the range of float.
+/// Larger distances, speeds and variances are rejected: their squares would leave the range of float.
 inline constexpr double kMaxMetres = 1e6;  // also [m/s]
 inline constexpr double kMaxRate = 1e4;    // [rad/s]
 inline constexpr double kMaxVariance = 1e12;
-/// Smaller standard deviations are refused: float could not hold the information, which is their inverse square, beside other numbers.
+/// Smaller standard deviations are rejected: their information, the inverse square, leaves float no digits for other numbers.
 inline constexpr double kMinSigma = 1e-9;  // [m] or [rad], and their rates
 
 inline bool within(const double* v, int n, double max) {

@@ -168,7 +168,7 @@ const char* unit_from(const pf_config_t& config, ImuUnit* unit, BodyLayout* layo
   return nullptr;
 }
 
-/// A field that asks for a part that this build lacks: its name with the option that would bring it. Null: there is none.
+/// A field that needs a part which this build lacks: its name, with the CMake option of that part. Null: there is none.
 const char* refused_by_build(const pf_config_t& config) {
   if (!kHasWindow && config.backend == PF_BACKEND_WINDOW) return "backend (built without PLANEFOLD_WINDOW)";
   if (!kHasInertial && config.motion.model == PF_MOTION_INERTIAL)
@@ -217,7 +217,7 @@ const char* motion_from(const pf_config_t& config, const pf_research_t& research
   return unit_from(config, &settings->unit, &settings->body);
 }
 
-/// What the window cannot do. Null, or the name of the first field that asks for it.
+/// Name of the first field that needs a feature which the window lacks, or null.
 const char* refused_by_window(const pf_config_t& config) {
   if (config.backend != PF_BACKEND_WINDOW) return nullptr;
   if (config.motion.model == PF_MOTION_INERTIAL || config.motion.model == PF_MOTION_CONSTANT_ACCELERATION)
@@ -282,7 +282,7 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
     return *field = "capacity.max_state_dim", Status::kConfig;
   if (c.timestamps != PF_TIMESTAMPS_REAL && c.timestamps != PF_TIMESTAMPS_NOMINAL)
     return *field = "camera.timestamps", Status::kConfig;
-  // Rows hang on the camera's speeds, and these on the frames' times; but with an inertial unit on its samples.
+  // Rows depend on the camera's speeds, and these on the frames' times; with an inertial unit they depend on its samples.
   const bool timeless = c.timestamps == PF_TIMESTAMPS_NOMINAL && !settings->inertial;
   settings->camera.readout = timeless ? Scalar(0) : static_cast<Scalar>(c.readout_s);
   if (settings->lens.rows.has_readout()) {

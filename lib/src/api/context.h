@@ -9,10 +9,10 @@
 
 struct pf_slam {
   std::uint64_t magic;
-  pf_slam* self;  ///< own address: tells a block that was copied or moved
+  pf_slam* self;  ///< own address, by which a block that was copied or moved is detected
   pf_config_t config;
   pf::Session session;
-  bool in_call;  ///< a frame is being processed: calls from its callbacks that change the context are refused
+  bool in_call;  ///< a frame is being processed: calls from its callbacks that change the context are rejected
 };
 
 namespace pf {
@@ -48,7 +48,7 @@ class InCall {
     if (!pf::is_context(slam)) return PF_ERROR_CONTEXT; \
   } while (false)
 
-/// Likewise, for a call that changes the context: also refused from inside a callback of the same context.
+/// The same for a call that changes the context: also rejected from inside a callback of the same context.
 #define PF_REQUIRE_IDLE(slam)                   \
   PF_REQUIRE_CONTEXT(slam);                     \
   do {                                          \

@@ -20,7 +20,7 @@ void copy_matrix(const Matrix& from, double* to) {
 
 /// A covariance, n x n, for the caller: finite, symmetric, positive semidefinite, and zero only in rows that are zero. Rounding may leave
 /// something else. Where the two sides of the diagonal differ, their mean counts. A variance that is not positive is wrong by its own size
-/// at least, and no smaller than its covariances ask for:
+/// at least, and at least as large as its covariances need:
 ///
 ///   v_i <- max(|v_i|, max_j c_ij^2 / v_j),   |c_ij| <= sqrt(v_i v_j)
 ///

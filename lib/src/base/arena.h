@@ -25,7 +25,7 @@ class Arena {
   Arena() = default;
   Arena(void* block, std::size_t bytes) : block_(static_cast<std::uint8_t*>(block)), capacity_(bytes) {}
 
-  /// Null when counting, and when the block is too small: ask ok() after the layout.
+  /// Null when counting, and when the block is too small: test ok() after the layout.
   template <typename T>
   T* take(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The largest capacities that a config may ask for (api/config.cpp). Arrays on the stack have room for them.
+/// The largest capacities that a config may have (api/config.cpp). Arrays on the stack have room for them.
 
 namespace pf {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 /// Which optional parts of the library this build has: the CMake options PLANEFOLD_WINDOW, PLANEFOLD_INERTIAL, PLANEFOLD_WALLS,
-/// PLANEFOLD_MASKS and PLANEFOLD_MEMORY. What hangs on a part that is not there is behind a condition that the compiler knows to be false,
-/// so that the linker leaves it out of the archive; a config that asks for it is refused (api/config.cpp).
+/// PLANEFOLD_MASKS and PLANEFOLD_MEMORY. Code of a missing part is behind a condition that is false at compile time, so that the linker
+/// leaves it out of the archive; a config that needs it is rejected (api/config.cpp).
 
 #ifndef PLANEFOLD_WINDOW
 #define PLANEFOLD_WINDOW 1

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-/// What tables have in common, whose entries are used or free: capacity() of them, and used(i) which says so.
+/// Common to tables whose entries are used or free: capacity(), the number of entries, and used(i), whether one is used.
 
 namespace pf {
 
@@ -10,7 +10,7 @@ namespace pf {
 ///
 ///   for (const int i : used_entries(table)) ...
 ///
-/// Each is asked for when its turn comes, so that the loop may remove and add entries.
+/// Each entry is tested when the loop reaches it, so that the loop may remove and add entries.
 template <typename Table>
 class UsedEntries {
  public:

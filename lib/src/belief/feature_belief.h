@@ -6,23 +6,23 @@
 
 namespace pf {
 
-/// What one search says: ln of how much more likely its result is for a point of the scene than for what is none, as a rim that
-/// slides along what is behind it, a reflection, a thing that has moved away. Such a thing is found where the pose has it as often as
+/// Evidence of one search: ln of the ratio of two likelihoods of its result, of a point of the scene and of a feature that is none (a rim
+/// that slides along what is behind it, a reflection, a thing that has moved away). The latter is found at its predicted place as often as
 /// chance finds anything there, q = tuning::chance::kMaxFindShare; a point of the scene with the probability d with which features are
-/// found in this picture.
+/// found in this image.
 ///
 ///   found where the pose has it   ln(d / q)
 ///   not, or found elsewhere       ln((1 - d) / (1 - q))
 ///
-/// with d no less than q: of a picture in which next to nothing is found, neither says anything.
+/// with d >= q: in an image in which hardly anything is found, neither result is evidence.
 ///
 /// share: d, FindShare::in_frame()
 Scalar feature_evidence(bool found, Scalar share);
 
-/// The log-odds with one more search, no more than kMost: what many searches have found a dozen in vain undo.
+/// The log-odds after one more search, at most kMost: a dozen misses undo any number of finds.
 Scalar updated_feature(Scalar log_odds, Scalar evidence);
 
-/// It is no point of the scene, with a probability of 99 %.
+/// True where the feature is no point of the scene with a probability of 99 %.
 bool is_no_point(Scalar log_odds);
 
 }  // namespace pf

@@ -11,6 +11,7 @@ using namespace tuning::pose_belief;
 
 void PoseBelief::init() {
   share_.init();
+  lens_ = LensBelief();
   log_odds_ = predicted_ = least_ = kAnew;
   is_noted_ = false;
 }
@@ -23,6 +24,7 @@ void PoseBelief::begin_frame(double dt_s) {
   predicted_ = std::max(least_, static_cast<Scalar>(std::log(odds)));
   log_odds_ = predicted_;
   is_noted_ = false;
+  lens_.begin_frame();
 }
 
 void PoseBelief::begin_elsewhere() {
@@ -55,6 +57,12 @@ void PoseBelief::use(Scalar log_odds, const PoseConsensus& consensus) {
 }
 
 bool PoseBelief::is_enough(Scalar log_odds) { return log_odds >= kTracked; }
+
+bool PoseBelief::may_use(Scalar log_odds, const PoseConsensus& consensus) {
+  if (!is_enough(log_odds)) return false;
+  lens_.note(consensus.lens_evidence, consensus.log_zoom);
+  return lens_.is_kept();
+}
 
 bool PoseBelief::is_settled(Scalar log_odds) { return is_enough(updated(log_odds, -kMaxFrame)); }
 

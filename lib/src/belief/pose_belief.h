@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/scalar.h"
+#include "belief/lens_belief.h"
 #include "belief/pose_evidence.h"
 
 /// Whether the pose is right: its log-odds, from frame to frame.
@@ -20,18 +21,18 @@ class PoseBelief {
   /// Begins a frame, dt_s after the one before.
   void begin_frame(double dt_s);
 
-  /// A map begins after a loss: pictures that did not go on from one to the next have to show that they do.
+  /// A map begins after a loss: the log-odds begin at kElsewhere, so that several images must agree on the motion between them.
   void begin_elsewhere();
-  /// The prediction is too vague to be searched about: what it was worth is spent, and any pose is as good.
+  /// The prediction is too vague to search about: its log-odds fall to those of any other pose.
   void spend();
   /// Log-odds before this frame's evidence.
   Scalar predicted() const { return predicted_; }
   /// Log-odds of a pose that nothing supports yet.
   static Scalar anew();
-  /// Likewise, of a pose that is not the predicted one.
+  /// Log-odds of a pose that is not the predicted one.
   static Scalar elsewhere();
   static Scalar most();
-  /// Log-odds of a pose with what this frame says for it, from those before it.
+  /// Log-odds of a pose after this frame's evidence, from those before it.
   static Scalar updated(Scalar before, Scalar evidence);
   /// Evidence of a consensus of this frame.
   Scalar evidence(const PoseConsensus& consensus) const { return pose_evidence(consensus, share_); }
@@ -42,17 +43,21 @@ class PoseBelief {
   void use(Scalar log_odds, const PoseConsensus& consensus);
   /// The pose comes from a target, from the record of a start that has been solved as a whole, or from pixels that the caller has matched.
   void trust() { use(most(), PoseConsensus()); }
-  /// Log-odds of the pose, with what this frame has said so far.
+  /// Log-odds of the pose, with this frame's evidence so far.
   Scalar log_odds() const { return is_noted_ ? log_odds_ : predicted_; }
 
   static bool is_enough(Scalar log_odds);
-  /// It is, whatever else this frame says.
+  /// A pose of this consensus may move the estimate: its log-odds are enough, and its lens is the calibrated one.
+  bool may_use(Scalar log_odds, const PoseConsensus& consensus);
+  const LensBelief& lens() const { return lens_; }
+  /// It reaches kTracked even if the rest of the frame contradicts as much as one frame can (kMaxFrame).
   static bool is_settled(Scalar log_odds);
-  /// The pose of the frame is believed.
+  /// The frame's pose is accepted: its log-odds reach kTracked.
   bool is_tracked() const { return is_enough(log_odds()); }
 
  private:
   FindShare share_;
+  LensBelief lens_;
   Scalar log_odds_ = 0, predicted_ = 0;
   Scalar least_ = 0;       ///< of a prediction
   bool is_noted_ = false;  ///< in this frame

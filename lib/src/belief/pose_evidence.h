@@ -2,16 +2,18 @@
 
 #include "base/scalar.h"
 
-/// What one frame says for or against a pose: the ratio of two likelihoods of what its searches have found.
+/// Evidence of one frame for a pose: the ratio of two likelihoods of what its searches have found.
 
 namespace pf {
 
 /// What the searches of a frame have found, and how much of it agrees with one pose.
 struct PoseConsensus {
-  int searched = 0;        ///< features
-  int inliers = 0;         ///< of them: found where the pose has them
-  Scalar log_density = 0;  ///< ln N(r; 0, S) of the inliers' pixels, jointly [ln px^-2 each]
-  Scalar log_chance = 0;   ///< sum of log_chance_density() over the inliers
+  int searched = 0;          ///< features
+  int inliers = 0;           ///< of them: found where the pose has them
+  Scalar log_density = 0;    ///< ln N(r; 0, S) of the inliers' pixels, jointly [ln px^-2 each]
+  Scalar log_chance = 0;     ///< sum of log_chance_density() over the inliers
+  Scalar log_zoom = 0;       ///< ln of the focal length over the calibrated one, by the inliers' pixels
+  Scalar lens_evidence = 0;  ///< lens_evidence() of the pixels; 0: they do not measure it
 };
 
 /// ln of the density with which a search of this area finds something where its feature is not [ln px^-2].
@@ -22,8 +24,8 @@ Scalar log_chance_density(Scalar searched_px2);
 /// ln N(r; 0, S) of 2n residuals from their normalised square r^T S^-1 r and ln det S.
 Scalar log_normal_density(Scalar nis, Scalar log_det, int n);
 
-/// Chance that a feature in view is found where it is. It is the picture's and not the feature's: under smear all are missed alike, so a
-/// frame's own share counts more than what earlier ones say: Beta(kWeight m, kWeight (1 - m)) about their mean m.
+/// Probability that a feature in view is found. It belongs to the image, not to the feature, since smear hides all alike. A frame's own
+/// share therefore counts more than that of earlier ones: the prior is Beta(kWeight m, kWeight (1 - m)) about their mean m.
 class FindShare {
  public:
   void init();
@@ -40,7 +42,7 @@ class FindShare {
   Scalar mean_ = 0;
 };
 
-/// ln of how much more likely this is where the pose is right than where it is wrong and all that was found is chance:
+/// ln of the ratio of the likelihoods of this consensus: of a right pose, and of a wrong one whose finds are all chance.
 ///
 ///   E = ln P(k of n found) + ln N(r; 0, S) - sum over the inliers of ln c_i
 ///

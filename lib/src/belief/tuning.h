@@ -11,7 +11,7 @@ namespace pf::tuning {
 namespace pose_belief {
 inline constexpr Scalar kTracked = Scalar(6.2);      ///< from which a pose is used: wrong in 0.2 %
 inline constexpr Scalar kMost = Scalar(13.8);        ///< that a pose can have: wrong once in a million
-inline constexpr Scalar kMaxFrame = Scalar(6.9);     ///< that one frame says: one place in 1,000 looks like another
+inline constexpr Scalar kMaxFrame = Scalar(6.9);     ///< of one frame: one place in 1,000 looks like another
 inline constexpr Scalar kAnew = Scalar(-6.9);        ///< of a prediction that nothing supports: right once in 1,000
 inline constexpr Scalar kElsewhere = Scalar(-13.8);  ///< of any other pose: pictures may be of another place altogether
 inline constexpr double kHazard = 0.005;  ///< [1/s] that what a prediction relies on ends: a cut, a grip, a blow
@@ -23,7 +23,17 @@ inline constexpr Scalar kMost = Scalar(6.9);   ///< that a feature can have: non
 inline constexpr Scalar kNone = Scalar(-4.6);  ///< below which it is none: wrong in 1 %
 }  // namespace feature_belief
 
-/// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/theory/states.md).
+/// Log-odds that the lens has changed (lens_belief.h).
+namespace lens_belief {
+inline constexpr Scalar kKept = Scalar(0.01);       ///< relative sigma of one picture against the map's own errors
+inline constexpr Scalar kChange = Scalar(0.2);      ///< the same of a change
+inline constexpr Scalar kLeast = Scalar(-6.9);      ///< a lens changes once in 1,000 pictures at most
+inline constexpr Scalar kMost = Scalar(6.9);        ///< so that pictures can also show that it has changed back
+inline constexpr Scalar kSuspected = Scalar(-2.2);  ///< from which a pose is not used: changed in 10 %
+inline constexpr Scalar kCertain = Scalar(4.6);     ///< from which the log has it: in 99 %
+}  // namespace lens_belief
+
+/// What chance finds in wrong places of real images, measured in 48,000 searches (lib/docs/lab/2026-11/belief.md).
 namespace chance {
 inline constexpr Scalar kMaxFindShare = Scalar(0.25);  ///< of searches that find something; found: 0.04 .. 0.24
 inline constexpr Scalar kMinArea = Scalar(250);        ///< [px^2] per find in small ellipses, times kMaxFindShare

@@ -6,12 +6,12 @@
 #include "geometry/lens.h"
 #include "geometry/plane.h"
 
-/// What a bundle adjustment works on: poses, points by their bearing and inverse depth in a host pose, planes on which some of the points
-/// lie, and the lens that all poses share (lib/docs/theory/window.md, lib/docs/theory/starting.md).
+/// Data of a bundle adjustment: poses, points by their bearing and inverse depth in a host pose, planes on which some of the points lie,
+/// and the lens that all poses share (lib/docs/theory/window.md, lib/docs/theory/starting.md).
 
 namespace pf {
 
-/// Where a pose saw a point.
+/// Pixel of a point in a pose.
 struct BundlePixel {
   float x, y;  ///< [px]
   bool seen;
@@ -35,13 +35,13 @@ struct BundlePlane {
   bool free;         ///< false: not adjusted
 };
 
-/// What is known of an inverse depth beforehand.
+/// Prior of an inverse depth.
 struct RhoPrior {
   Scalar mean;
   Scalar sigma;  ///< not above zero: nothing is known
 };
 
-/// Where a point's host saw it, which gives its bearing; not given: the bearing does not depend on the lens.
+/// Pixel of a point in its host, which gives its bearing; not given: the bearing does not depend on the lens.
 struct HostPixel {
   Vec2 pixel;
   bool given;
@@ -73,7 +73,7 @@ struct Bundle {
   int poses;
   const Vec3* ray;  ///< of each point in its host pose; any length, which is the unit of 1 / rho
   const int*
-      host;  ///< pose of each point; null: pose 0 for all. Pixels of a point in its own host say nothing and are skipped
+      host;  ///< pose of each point; null: pose 0 for all. Pixels of a point in its own host have no information and are skipped
   Scalar* rho;
   int points;
   const RhoPrior* prior = nullptr;  ///< of each point; null: the options' for all

@@ -14,7 +14,7 @@ namespace pf {
 ///   sum h(|z - pi|² / sigma²) + sum h(e² / roughness²) + sum ((rho - mean) / sigma_rho)² + (c - prior)ᵀ Λ (c - prior) + e_held²
 ///
 /// c are the parameters of the lens that are adjusted. A pixel outside the camera's domain, a pixel whose bearing is, and a point on a
-/// plane that is nearer to infinity than tuning says, cost no_pixel_penalty and have no derivative.
+/// plane whose inverse depth is below the tuned bound, cost no_pixel_penalty and have no derivative.
 class BundleTerms {
  public:
   static constexpr int kMaxPoses = 32;  ///< of a bundle: as many as a mask has bits

@@ -13,7 +13,7 @@ namespace pf {
 ///   | Wᵀ    D  | drho |g|      S dx = b - W D⁻¹ g,   drho = D⁻¹ (g - Wᵀ dx)
 ///
 /// x holds (a, b, h) of each free plane, the lens, and then (theta, p) of each free pose. Planes and poses are numbered among the free
-/// ones. Where a function is told the plane of a point, -1 is none that is free.
+/// ones. A plane index of -1 means no free plane.
 struct NormalEquations {
   int ld = 0;             ///< 3 max_planes + max_lens_rows + 6 max_free_poses
   int w_ld = 0;           ///< plane_part + max_lens_rows + 6 max_free_poses

@@ -76,8 +76,8 @@ Scalar StartBundle::adjust(const Camera& camera, const StartRecord& record, cons
   return adjuster_.adjust(camera, options, bundle);
 }
 
-/// Likewise of all cameras, and the lens with them. What a wrong lens does to depths would otherwise be left for the filter, which believes
-/// some of it: it cannot repeat what an adjustment has made of a record to the last digit.
+/// The same for all cameras, with the lens. The effect of a wrong lens on the depths would otherwise be left to the filter, which cannot
+/// undo it in full: its linearisation differs from the adjustment's.
 Scalar StartBundle::adjust_with_lens(StartRecord& record, const int* frame, int cameras, Scalar sigma_px) {
   const BundleLens lens = {lens_->rows, lens_->information, lens_->prior, &lens_->camera, lens_->pixel, record.rays()};
   return adjust(lens_->camera, record, frame, cameras, kRounds, sigma_px, &lens);
@@ -198,7 +198,7 @@ bool StartBundle::adjust_spread(const Camera& camera, StartRecord& record, const
   return total <= kMaxCost * static_cast<Scalar>(pixels);
 }
 
-/// Which depths can be trusted. Returns how many.
+/// Lists the depths that are good enough to use. Returns how many.
 int StartBundle::list_good(const Camera& camera, const StartRecord& record, const Spread& spread, Scalar sigma_px,
                            bool* is_good) const {
   int good = 0;
@@ -220,8 +220,8 @@ int StartBundle::list_good(const Camera& camera, const StartRecord& record, cons
   return good;
 }
 
-/// What lengths are divided by: so that those of the last solution stay where both have enough depths, else so that the median depth is as
-/// asked for.
+/// Divisor of all lengths: keeps the lengths of the last solution where both have enough depths, else makes the median depth
+/// `median_depth`.
 Scalar StartBundle::unit_of_length(const bool* is_good, int count, Scalar median_depth) const {
   Scalar sorted[StartRecord::kMaxFeatures];
   int good = 0, common = 0;

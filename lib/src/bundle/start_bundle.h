@@ -32,8 +32,8 @@ class StartBundle {
   const Camera* lens() const { return is_free_ ? &lens_->camera : nullptr; }
 
   /// On kSolved and kSettled the record's frames hold the poses (W is frame 0's camera), rho() the inverse depths and
-  /// good() which features can be trusted. The first solution sets the unit of length so that the median depth is
-  /// `median_depth`; later ones keep it.
+  /// good() the features whose depths can be used. The first solution sets the unit of length so that the median depth is `median_depth`;
+  /// later ones keep it.
   StartOutcome solve(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar median_depth);
 
   /// Improves the last frame's pose while the depths are open: one adjustment with others spread over the record, from the poses that are
@@ -41,8 +41,8 @@ class StartBundle {
   /// depth: of an inverse depth of one.
   void follow(const Camera& camera, StartRecord& record, Scalar sigma_px, Scalar depth, Scalar* rho);
 
-  /// Covariance of the camera's place in the record's last frame, about that of frame 0 and in its axes, as what a rotation leaves of its
-  /// pixels tells it: how far the camera may have moved for that. False where it tells nothing.
+  /// Covariance of the camera's position in the record's last frame, about that of frame 0 and in its axes, from the residuals of its
+  /// pixels after the best rotation: how far the camera may have moved for these. False where they do not constrain it.
   bool baseline_covariance(const Camera& camera, const StartRecord& record, Scalar sigma_px, Scalar median_depth,
                            Mat3* covariance) const;
 

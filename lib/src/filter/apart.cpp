@@ -4,13 +4,13 @@
 #include "filter/filter.h"
 #include "filter/tuning.h"
 
-/// What is kept apart from P, and how it comes there and back (lib/docs/theory/gauge.md).
+/// What is kept apart from P, and moves between both (lib/docs/theory/gauge.md).
 
 namespace pf {
 
 using namespace tuning::apart;
 
-/// Whether nothing tells the place or the scale of W, as an inertial unit would, so that what is not known of them may be kept apart.
+/// Whether nothing measures the place or the scale of W, as an inertial unit would, so that their uncertainty may be kept apart.
 bool Filter::keeps_apart() const {
   return keep_gauge_ && told_updates_ == 0 && state_.unobservable == gauge::kBareCamera &&
          !state_.layout.has(BodyPart::kGravity);
@@ -49,7 +49,7 @@ void Filter::tell_gauge() {
   apart_.clear();
 }
 
-/// After an update: the scale leaves P where l, the best known log length, says that it is known too little.
+/// After an update: the scale leaves P where the variance of l, the best known log length, is too large.
 void Filter::end_update_apart(const ScaleRow& l) {
   if (l.parts > 0 && blocks_.variance(l) > kMaxScaleVariance) apart_.add_scale(replace_scale(kLeftScaleVariance));
 }
@@ -58,9 +58,8 @@ void Filter::end_update_apart(const ScaleRow& l) {
 ///
 ///   P <- (I - N_s l) P (I - N_s l)^T + left N_s N_s^T
 ///
-/// Returns l P l^T as it was; 0, with nothing changed, where there is no log length. What does not change with the scale has J N_s = 0, and
-/// keeps its J P J^T. Left out is the covariance of l with such things, which is zero where all that P knows of the scale are independent
-/// priors of depths.
+/// Returns the former l P l^T; 0, with nothing changed, where there is no log length. Rows with J N_s = 0, which do not see the scale, keep
+/// their J P J^T. Their covariance with l is dropped; it is zero where P has nothing of the scale but independent priors of depths.
 Scalar Filter::replace_scale(Scalar left) {
   int places = -1;
   Scalar total = 0;

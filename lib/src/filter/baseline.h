@@ -7,7 +7,7 @@ namespace pf {
 class Filter;
 struct State;
 
-/// How far the camera is from an anchor, over the body and the anchor.
+/// Measurement of the camera's position against an anchor's, over the body and the anchor.
 using BaselineMeasurement = MeasurementOf<3, 6, 2>;
 
 /// The baseline between an anchor and the camera, measured as zero:
@@ -15,10 +15,10 @@ using BaselineMeasurement = MeasurementOf<3, 6, 2>;
 ///   z = p - o_W,   e_z = e_p - e_o
 ///
 /// anchor      its block
-/// covariance  of the baseline, as far as something else than the pixels' linearisation tells it [m^2]
+/// covariance  of the baseline, from another source than the pixels' linearisation [m^2]
 void predict_baseline(const State& state, int anchor, const Mat3& covariance, BaselineMeasurement* out);
 
-/// Updates the filter with it. False, with nothing changed, where that is impossible.
+/// Updates the filter with the baseline. False, with nothing changed, where S is no covariance.
 bool take_baseline(Filter& filter, int anchor, const Mat3& covariance);
 
 }  // namespace pf

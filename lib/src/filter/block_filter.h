@@ -23,12 +23,12 @@ class BlockFilter {
   static constexpr int kBatch = 16;  ///< blocks in one transform or hold
   struct Capacity {
     int dim;     ///< rows of the state
-    int blocks;  ///< that can have rows
+    int blocks;  ///< blocks that can have rows
     int rows;    ///< of one update
   };
 
   bool layout(Arena& arena, const Capacity& capacity);
-  /// The leading block has so many rows that are estimated, and behind them considered ones.
+  /// Begins with a leading block of so many estimated rows, and considered ones behind them.
   void init(const Kernels* kernels, int leading_dim, int considered);
 
   const Kernels& kernels() const { return *kernels_; }
@@ -47,22 +47,22 @@ class BlockFilter {
   int row(const Part& part) const { return first(part.block) + part.offset; }
 
   // --- moves of the covariance
-  /// The first `rows` rows of the leading block become known as covariance says (rows x rows, row-major), and as the rows behind them do
-  /// with Jacobian J (rows x the others, row-major; null: independent):  C + J P_o J^T,  J P_o. Other blocks, which must be
-  /// independent of the leading one, stay so.
+  /// Gives the first `rows` rows of the leading block the covariance C (rows x rows, row-major) plus a dependence J on the rows behind them
+  /// (rows x the others, row-major; null: independent): C + J P_o J^T, J P_o. Other blocks, which must be independent of the leading one,
+  /// stay so.
   void set_leading(const Scalar* covariance, int rows, const Scalar* J);
-  /// So many of the leading block's last rows are considered from now on, and those before them estimated.
+  /// Considers so many of the leading block's last rows from now on, and estimates those before them.
   void consider_last(int rows);
-  /// Covariance of the leading block's rows from `first` on (row-major), independent of those before. Likewise.
+  /// Sets the covariance of the leading block's rows from `first` on (row-major), independent of those before and of other blocks.
   void set_constants(int first, const Scalar* covariance);
-  /// The first `rows` rows move by F, noise Q is added (both rows x rows, row-major).
+  /// Predicts: x <- F x + noise Q for the first `rows` rows (both rows x rows, row-major).
   void predict(const Scalar* F, const Scalar* Q, int rows);
-  /// Constants c of the leading block, rows `first` and behind, add B c to the first `rows` rows (B: rows x columns, row-major).
+  /// Adds B c to the first `rows` rows, c the constants of the leading block from row `first` on (B: rows x columns, row-major).
   void add_constants(const Scalar* B, int rows, int first, int columns);
-  /// New rows J x + noise for a block, behind all others; those that it has go.
+  /// Gives a block new rows J x + noise, behind all others, in place of those that it has.
   void augment(int block, const Rows& J, const Scalar* Q);
-  /// Likewise with the sum of `count` Jacobians that together touch more blocks than rows can: J(k) -> Rows of `rows` rows over one part.
-  /// The noise becomes Q plus own times the variance.
+  /// The same with the sum of `count` Jacobians that together touch more blocks than one Rows can: J(k) -> Rows of `rows` rows over one
+  /// part. The noise becomes Q plus own times the variance.
   template <typename Jacobian>
   void augment_dense(int block, int rows, int count, Jacobian&& J, Scalar* Q, Scalar own) {
     dense_begin(rows);
@@ -70,13 +70,13 @@ class BlockFilter {
     for (int k = 0; k < count; ++k) dense_square(J(k), Q);
     dense_end(block, rows, Q, own);
   }
-  /// A block's rows become J x.
+  /// Replaces a block's rows by J x.
   void transform(int block, const Rows& J);
-  /// Likewise for many blocks (at most kBatch), all of them from the state as it is, in one pass; they are left in the order of their rows.
+  /// The same for many blocks (at most kBatch) in one pass, all of them from the present state; they are left in the order of their rows.
   void transform(int* blocks, Rows* J, int count);
-  /// Rows of blocks become what `project` holds of as many measurements, and go to the end of the held range.
+  /// Replaces rows of blocks by those of as many projected measurements, at the end of the held range.
   void hold(const int* blocks, int count);
-  /// Rows of blocks go, in one pass; blocks without rows are passed over.
+  /// Removes the rows of blocks, in one pass; skips blocks without rows.
   void remove(const int* blocks, int count);
   /// Adds Q (size x size, row-major) to the covariance of a part.
   void inflate(const Part& part, const Scalar* Q);
@@ -84,12 +84,12 @@ class BlockFilter {
   void begin_spread();
   void set_spread(const Part& part, const Scalar* rows);
   void end_spread();
-  /// J x was wrong by sigma, J of three rows: that much is added to its covariance, and to all else what it owes to J x.
+  /// Inflates: J x, three rows, was wrong by sigma, which is added to its covariance, and to all else through its correlation with J x:
   ///   P += G diag(sigma^2) G^T,   G = P J^T (J P J^T)^-1
   void inflate_through(const Rows& J, const Vec3& sigma);
   /// P += P_xp M P_px, P_xp the columns of a part of three rows; M is symmetric and positive semidefinite.
   void inflate_by(const Part& part, const Mat3& M);
-  /// Likewise along one row h of a Jacobian: the variance of h x grows by so much.
+  /// The same along one row h of a Jacobian: the variance of h x grows by `variance`.
   void inflate_along(const Rows& row, Scalar variance);
   /// P_ij <- f_i f_j P_ij: rows in other units.
   void scale_rows(const Scalar* factor) {
@@ -120,7 +120,7 @@ class BlockFilter {
   }
 
   // --- soundness
-  /// Variances grow by this share of themselves. What rounds to nothing beside 1 is owed until it does not.
+  /// Lets variances grow by this share. Growth that a Scalar rounds to nothing beside 1 is accumulated until it does not.
   void grow(Scalar share) {
     owed_ += share;
     const Scalar factor = Scalar(1) + owed_;
@@ -128,11 +128,11 @@ class BlockFilter {
     owed_ = 0;
     for (int i = 0; i < P_.n; ++i) P_.set(i, i, factor * P_(i, i));
   }
-  /// A variance of which a downdate has left less than what its rounding hides is as large as that. Spends the step.
+  /// Raises variances that a downdate has left smaller than its rounding to the size of that. Invalidates the step.
   void keep_rounding();
   enum class Repair { kNone, kDone, kImpossible };
-  /// Checks a sample of P, another one for each turn: the leading rows with some of the others. Where it is not positive semidefinite,
-  /// beyond rounding, the variances of its rows grow until it is. Needs neither project() nor gain() kept.
+  /// Checks a sample of P, which depends on turn: the leading rows with some of the others. Where it is not positive semidefinite, beyond
+  /// rounding, the variances of its rows grow until it is. Needs neither project() nor gain() kept.
   Repair repair(int turn);
 
   // --- update
@@ -157,18 +157,18 @@ class BlockFilter {
                      Scalar* nis);
   /// dx of the last gain.
   const Scalar* step() const { return dx_; }
-  /// From another estimate than it was gained for, which differs by e in the leading rows.
+  /// Moves the last gain's step to another estimate, which differs by e in the leading rows.
   void shift_step(const Vec6& e) {
     for (int i = 0; i < 6; ++i) dx_[i] += e(i);
   }
-  /// There is no last gain.
+  /// Invalidates the last gain.
   void forget_gain() { gained_ = 0; }
   /// Rows of L^-1 H P that the gain left, S + R = L L^T.
   const Scalar* whitened(int row) const { return W_ + row * ld_; }
-  /// Likewise of L^-1 (measured - predicted): white where model and noise are right.
+  /// L^-1 (measured - predicted) of the same update: white where model and noise are right.
   const Scalar* whitened_innovation() const { return y_; }
   int gained_rows() const { return gained_; }
-  /// What the last gain considers.
+  /// Rows that the last gain considers.
   const RowRange& gain_considers() const { return gain_considers_; }
   /// P -= W^T W, then P += U^T G + G^T U (both rows x ld()).
   void downdate(const Scalar* U, const Scalar* G, int rows);
@@ -180,7 +180,7 @@ class BlockFilter {
   Eigen::Matrix<Scalar, kRows, kRows> covariance_of(const Rows& J) const;
   /// Of a single row.
   Scalar variance(const Rows& row) const;
-  /// What rounding of P may add to row r of J P J^T, or take away.
+  /// Bound of the rounding error of row r of J P J^T.
   Scalar rounding_of(const Rows& J, int r) const;
   /// Columns of the state that rows touch, in their order. Returns how many.
   int columns(const Rows& J, int* column) const;
@@ -210,7 +210,7 @@ class BlockFilter {
   int ld_ = 0, lds_ = 0;
   int gained_ = 0;
   RowRange gain_considers_;
-  Scalar owed_ = 0;      ///< growth that is too small for a Scalar
+  Scalar owed_ = 0;      ///< accumulated growth, too small for a Scalar
   Scalar* W_ = nullptr;  ///< max_rows x ld: H P, then L^-1 H P
   Scalar* S_ = nullptr;  ///< max_rows x lds
   Scalar *dx_ = nullptr, *y_ = nullptr;

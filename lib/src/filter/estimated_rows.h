@@ -2,9 +2,9 @@
 
 namespace pf {
 
-/// What an update estimates; all else it considers (Schmidt). The body's constants and the lens are estimated where both are.
+/// Parts that an update estimates; it considers all others (Schmidt). The body's constants and the lens are estimated where both are.
 struct EstimatedRows {
-  bool motion = true;  ///< what moves of the body
+  bool motion = true;  ///< the moving parts of the body
   bool map = true;
 };
 

@@ -33,11 +33,11 @@ class Filter {
   void set_roughness(Scalar roughness) { roughness_ = roughness; }
   void keep_gauge(bool keep) { keep_gauge_ = keep; }
   bool keeps_gauge() const { return keep_gauge_; }
-  /// Another number after each init(): what others know of blocks does not hold any more.
+  /// Changes with each init(), after which slots that others keep are not valid.
   std::uint32_t generation() const { return generation_; }
   const State& state() const { return state_; }
   const BlockFilter& blocks() const { return blocks_; }
-  /// P, which is the covariance of the state but for what apart() holds.
+  /// P: the covariance of the state without what apart() holds.
   const Triangle& covariance() const { return blocks_.P(); }
   /// Covariance of gauge directions that is not in P.
   const GaugePrior& apart() const { return apart_; }
@@ -48,7 +48,7 @@ class Filter {
     if (apart_.any()) C += apart_.covariance_of<kRows>(state_, J);
     return C;
   }
-  /// The same where somebody outside relies on it: a difference of numbers is not known better than each of them is rounded,
+  /// The same for covariances that leave the library: a difference of numbers is known no better than their rounding,
   ///   C_rr >= epsilon sum_i h_ri^2 P_ii
   template <int kRows>
   Eigen::Matrix<Scalar, kRows, kRows> rounded_covariance_of(const Rows& J) const {
@@ -63,123 +63,123 @@ class Filter {
   /// Sets the mean of the body and leaves its covariance, where the mean comes from elsewhere (a restart).
   void set_mean(const Body& body) { state_.body = body; }
 
-  /// The calibration, and where the layout has a lens its prior. Before anything is added.
+  /// Sets the calibration and, where the layout has a lens, its prior. Before any block is added.
   void set_lens(const Camera& camera, const LensPrior& prior);
-  /// Where the inertial unit is. Before anything is added.
+  /// Sets the mounting of the inertial unit. Before any block is added.
   void set_mounting(const Mounting& mounting) { state_.mounting = mounting; }
-  /// From now on the samples of the inertial unit tell the scale. With a start: of a map up to scale that is scaled by it first.
+  /// From now on the samples of the inertial unit measure the scale. With `start`, the map has been one up to scale and is scaled first.
   void set_metric();
   void set_metric(const struct MovingSolution& start, const Mounting& mounting);
   bool is_metric() const { return state_.metric; }
-  /// Whether samples move the body from now on (State::uses_samples), with what is known of it then. It outlasts init().
+  /// Sets whether samples move the body from now on (State::uses_samples). init() keeps it.
   void use_samples(bool use) { state_.uses_samples = use; }
   bool uses_samples() const { return state_.uses_samples; }
-  /// Whether updates leave the lens as it is and allow for its error, whatever the layout says of it.
+  /// Whether updates consider the lens, even where the layout has it as estimated.
   void consider_lens(bool only_considered);
-  /// The calibration as it is known now.
+  /// Present calibration.
   const Camera& lens() const { return state_.lens; }
 
-  /// The parts of the body that move, with the unit's constants, become known as covariance says (over the unit rows, row-major), and with
-  /// J_lens (null: not) as the lens does. Only while nothing in the map depends on the body.
+  /// Sets the parts of the body that move and the unit's constants, with their covariance (over the unit rows, row-major) and, with J_lens,
+  /// their dependence on the lens (null: none). Only while nothing in the map depends on the body.
   void set_body(const Body& body, const Scalar* covariance, const Scalar* J_lens = nullptr);
 
-  /// From now on something tells the place or the scale of W. What is apart goes into P, and stays there. (The speed of a start does so
-  /// for kSpeedTells updates: then the noise of the motion has replaced it.)
+  /// From now on something measures the place or the scale of W, so what is apart goes into P and stays there. (The speed of a start does
+  /// so for kSpeedTells updates; by then process noise has replaced it.)
   void tell_gauge();
 
-  /// Which entry of the map's table a block belongs to.
+  /// Sets the entry of the map's table that a block belongs to.
   void set_owner(int slot, int owner) { state_.set_owner(slot, owner); }
 
   // --- predict
-  /// Moves the body to the transition's mean, and P by its F and Q.
+  /// Predicts the body: mean, F and Q of the transition.
   void predict(const Transition& transition);
 
   // --- augment; -1 where there is no room
   int add_anchor();
-  /// A copy of the camera at the frame's time, with its full correlation.
+  /// Adds a copy of the camera at the frame's time, fully correlated with it.
   int add_reference_camera();
-  /// Patch whose corners a reference camera has seen with this covariance [px^2]; it lives no longer than that camera.
+  /// Adds a patch whose corners a reference camera has seen with this covariance [px^2]; it is removed with that camera.
   int add_patch(int camera, const PatchMeasurement::Matrix& covariance);
   /// tau: when the pixel's row was read out, from the frame's time [s].
   int add_inverse_depth(int anchor, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar rho,
                         Scalar sigma_rho, Scalar tau = Scalar(0));
-  /// The same where the pixel's ray meets a plane, as far from the camera as that is (with all that this depends on), and independently
-  /// relative_sigma of that nearer or farther. -1 too where the ray does not meet it.
+  /// The same at the distance of a plane along the pixel's ray (with its correlations), with an independent relative_sigma of that
+  /// distance. -1 too where the ray does not meet it.
   int add_before_plane(int anchor, int plane, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px,
                        Scalar relative_sigma, Scalar tau = Scalar(0));
   int add_point(const Vec3& p_W, const Mat3& covariance);
-  /// A point of a plane, where the ray of a pixel meets it. -1 too where the ray does not meet it.
+  /// Adds a point of a plane, where the ray of a pixel meets it. -1 too where the ray does not meet it.
   int add_plane_point(int plane, const Vec3& ray_C, const Mat32& J_ray_z, const Mat2& noise_px, Scalar tau = Scalar(0));
 
-  /// Plane through 3-D points, about the frame of their fit, with the fit's Jacobian (Gee 2007, eq 3 and 8) and the noise that points
-  /// of a rough surface leave in it. Nothing is folded yet.
+  /// Adds a plane through 3-D points, about the frame of their fit, with the fit's Jacobian (Gee 2007, eq 3 and 8) and the noise of a rough
+  /// surface. Folds no point.
   int add_plane(const PlaneFit& fit, const int* slots, int count, Scalar roughness);
-  /// Plane known beforehand, independent of all else. covariance is of (a, b, h) about the frame; roughness is of its surface [m].
-  /// apart: nothing is compared with it until join_planes_apart, and until then it tells nothing of the gauge.
+  /// Adds a plane known beforehand, independent of all else. covariance is of (a, b, h) about the frame; roughness is of its surface [m].
+  /// apart: until join_planes_apart no measurement uses it, and it does not constrain the gauge.
   int add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Scalar roughness, bool apart = false);
-  /// The map becomes so many times as large, about pivot, and planes that are apart are planes like all others from now on.
+  /// Multiplies the map by `scale` about pivot; planes that are apart become planes like all others.
   void join_planes_apart(Scalar scale, const Vec3& pivot);
-  /// The log scale is less known by this variance, with pivot as the place that does not depend on it.
+  /// Adds this variance to the log scale, with pivot as the place that does not depend on it.
   void open_scale(Scalar variance, const Vec3& pivot) { apart_.add_scale(variance, pivot); }
 
   // --- transform
-  /// Inverse depth to 3-D point, in its slot; the anchor goes when nothing needs it.
+  /// Converts an inverse depth to a 3-D point, in its slot; the anchor is removed with its last child.
   void convert_to_point(int slot);
 
   static constexpr int kMaxFolded = BlockFilter::kBatch;  ///< in one call
 
-  /// 3-D points, or points of another plane, become points of this one: those that pass the gate are conditioned on a distance of zero
-  /// together, then lose it. folded[i] says which. Returns how many.
+  /// 3-D points, or points of another plane, become points of this one: those that pass the gate are conditioned together on a distance of
+  /// zero, which is then dropped. folded[i]: whether the i-th was. Returns how many.
   int fold(int plane, const int* slots, int count, const FoldRule& rule, unsigned char* folded);
   /// Distance of a feature from a plane, and its variance without roughness. False where it has no place.
   bool distance(int plane, int slot, Scalar* d, Scalar* variance) const;
   /// Variance of the distance of an exactly known point from a plane.
   Scalar plane_variance(int plane, const Vec3& p_W) const;
-  /// A planar feature becomes a 3-D point, sigma_normal [m] more uncertain along the plane's normal. False without room.
+  /// Unfolds: a planar feature becomes a 3-D point, sigma_normal [m] more uncertain along the plane's normal. False without room.
   bool unfold(int slot, Scalar sigma_normal);
   /// Gathers S = H P H^T (without noise) of the distances of features from a plane, measured as zero. Then innovation_of<1> of blocks()
   /// is valid until the state changes. Every feature must have a place.
   void begin_distances(int plane, const int* slots, int count, Scalar noise, DistanceMeasurement* z);
-  /// Likewise, and it is farther along its ray from the camera, by so much [m], which is known to sigma_along [m]: its pixel stays.
+  /// The same, and moves the point along its ray from the camera by `along` [m], known to sigma_along [m]: its pixel stays.
   bool unfold_along(int slot, Scalar along, Scalar sigma_along);
-  /// A plane without a point group is elsewhere: (a, b, h) is x, known to Q beside what P had. Its points follow along their rays, and are
-  /// as unsure as the plane, and by sigma_uv [m] each. False where Q is no covariance; nothing has changed then.
+  /// Moves a plane without a point group to (a, b, h) = x, and adds Q to its covariance. Its points follow along their rays, with the
+  /// plane's uncertainty and sigma_uv [m] each. False, with nothing changed, where Q is no covariance.
   bool slide_plane(int plane, const Vec3& x, const Mat3& Q, Scalar sigma_uv);
-  /// What is known of a plane shrinks: Q is added to the covariance of (a, b, h).
+  /// Adds Q to the covariance of a plane's (a, b, h).
   void inflate(int plane, const Mat3& Q);
-  /// A plane was wrong by about sigma of (a, b, h), seen from the camera: that much is added to it, and to all else what it has learnt.
+  /// Inflates a plane that was wrong by sigma of (a, b, h), seen from the camera, and all else through its correlation with it.
   void forget_through(int plane, const Vec3& sigma);
-  /// A known plane was wrong: its prior's covariance becomes (1 + widening) times as large. False where it is tighter than the plane.
+  /// Multiplies the covariance of a wrong known plane's prior by (1 + widening). False where the prior is tighter than the plane.
   bool forget_prior(int plane, const Mat3& prior, Scalar widening);
-  /// What an update by this row has told of it is taken back: its variance grows by so much, and all else with what it has learnt.
+  /// Undoes what an update by this row contributed: its variance grows by `variance`, and that of all else by its share.
   void forget_row(const Rows& row, Scalar variance) { blocks_.inflate_along(row, variance); }
-  /// The plane, and the points that hang on it directly, about another frame. False when the frame is too slanted or a point group
-  /// hangs on the plane; nothing is changed then.
+  /// Moves the plane, and the points that depend on it directly, to another frame. False, with nothing changed, when the frame is too
+  /// slanted or a point group depends on the plane.
   bool reanchor(int plane, const PlaneFrame& frame);
 
   /// Largest variance of a plane point's coordinates [m^2] against the other points of its plane: in the point group, or
   /// where there is none yet against the similarity that fits `members` (slots of plane points of the same plane, it among them).
   Scalar variance_in_group(int slot, const int* members, int num_members) const;
-  /// Fixes plane points of one plane in its point group, which is made from `members` where there is none. False without room; then
-  /// nothing changed.
+  /// Fixes plane points of one plane in its point group, which is made from `members` where there is none. False, with nothing changed,
+  /// without room.
   bool fix(const int* slots, int count, FixForm form, const int* members, int num_members);
-  /// A fixed point becomes a plane point again. False without room.
+  /// Releases a fixed point, which becomes a plane point again. False without room.
   bool release(int slot);
   /// The point group of a plane, or -1.
   int group_of(int plane) const;
 
   // --- remove; anchors, point groups and reference cameras that nothing needs any more go with them, all in one pass
   void remove(const int* slots, int count);
-  /// Something outside of the state needs this block, which then stays without children.
+  /// Pins a block for a use outside of the state: it stays without children.
   void pin(int slot) { ++state_.block[slot].pins; }
-  /// It does not need it any more; the block goes where nothing else needs it.
+  /// Removes a pin; the block is removed where nothing else needs it.
   void unpin(int slot);
 
   // --- update
   /// Prediction, Jacobian and columns of a feature's pixel; false when it does not project.
   bool predict_pixel(const Camera& lens, int slot, PixelMeasurement* out) const;
-  /// Where the corners of a patch are, which lies on a plane and whose corners were at these pixels of its reference camera: prediction,
-  /// Jacobian and columns. False where one of them does not project.
+  /// Prediction, Jacobian and columns of the corners of a patch on a plane, whose corners were at these pixels of its reference camera.
+  /// False where one of them does not project.
   bool predict_patch(const Camera& lens, int patch, int plane, const Vec2* reference_px, PatchMeasurement* out) const;
   /// H P H^T of one pixel, without noise.
   Mat2 innovation(const PixelMeasurement& pixel) const;
@@ -189,8 +189,8 @@ class Filter {
   Mat2 innovation_block(int i, int j) const { return blocks_.innovation2(i, j); }
   /// Scratch of i + 1 numbers for all but the last row of S: the caller's between begin_update and finish_update.
   Scalar* scratch_row(int i) { return blocks_.scratch_row(i); }
-  /// Takes the chosen measurements in (keep[i] != 0; null takes all) and moves the state. False, with the state and P unchanged, when
-  /// S cannot be factored or the step is no number. *nis (may be null) gets the normalised innovation squared.
+  /// Updates the state with the chosen measurements (keep[i] != 0; null: all). False, with the state and P unchanged, when S cannot be
+  /// factored or the step is no number. *nis (may be null) gets the normalised innovation squared.
   bool finish_update(const Measurement* z, int count, const unsigned char* keep, Scalar* nis,
                      EstimatedRows rows = EstimatedRows()) {
     if (!solve_update(z, count, keep, nis, rows)) return false;
@@ -213,21 +213,21 @@ class Filter {
   /// The same of a measurement that is linearised at another pose, near, and predicted for the estimate: h(near) + H (x [-] near). Before
   /// it, what the pose shares with the gauge moves to near, so that H N = 0 there too.
   bool finish_update_near(const Measurement& z, const Body& near, Scalar* nis);
-  /// Of the update that solve_update has just solved: the part of its innovation that says something of the pose. With L L^T = S + R,
-  /// A = L^-1 H P_x and y = L^-1 (measured - predicted), x the rows of the pose,
+  /// The part of the innovation that concerns the pose, of the update that solve_update has just solved. With L L^T = S + R, A = L^-1 H P_x
+  /// and y = L^-1 (measured - predicted), x the rows of the pose,
   ///
   ///   nis = y^T A (A^T A)^-1 A^T y = e^T (P_before - P_after)^-1 e,   e the correction of the pose
   ///
-  /// chi-square with six degrees of freedom; *of_rotation: the rotation's, with three. False where it does not say all of the pose.
+  /// chi-square with six degrees of freedom; *of_rotation: the rotation's, with three. False where it does not constrain all of the pose.
   bool pose_nis(Scalar* nis, Scalar* of_rotation) const;
 
-  /// What a unit at rest should read, with R = R_WB and g = gravity R_WG e_z:
+  /// Predicted reading of a unit at rest, with R = R_WB and g = gravity R_WG e_z:
   ///
   ///   z = (b_g, b_a - R^T g),   e_bg,   e_ba - R^T [g]x theta - R^T E d          E = gravity (-R_WG e_y, R_WG e_x)
   ///
   /// and where they are estimated, by axes theta + R_WC mu for theta, by intrinsics D_a^-1 R^T for R^T. A rotation of W changes neither.
   void predict_still(const StillReading& still, Scalar gravity, StillMeasurement* out) const;
-  /// Whether the reading is within max_nis of that; updates with it where `commit` says so.
+  /// Whether the NIS of the reading is within max_nis; updates with it where `commit` is set.
   bool take_still(const StillReading& still, Scalar gravity, Scalar max_nis, bool commit);
 
   /// Pose (q_KC, p_KC) of the camera in the frame of a reference camera K, and the covariance of its (theta, p), in K (relative_pose.h).
@@ -236,10 +236,10 @@ class Filter {
   Mat3 covariance3(int slot) const;
   /// The best known of a few log lengths, as a row over the state: l N = (0, 0, 1). False, and no parts, where there is none.
   bool scale_row(ScaleRow* row) const;
-  /// Covariance of a 3-D point against the camera's position and the world's size: of f - p - (f - p) l e. What all points share
-  /// because the world may drift or change its scale is not in it.
+  /// Covariance of a 3-D point against the camera's position and the world's scale: of f - p - (f - p) l e, without the drift and scale
+  /// that all points share.
   Mat3 relative_covariance(int slot, const ScaleRow& l) const;
-  /// Standard deviation of an inverse depth against the world's size: of e_rho + rho l e.
+  /// Standard deviation of an inverse depth against the world's scale: of e_rho + rho l e.
   Scalar relative_sigma_rho(int slot, const ScaleRow& l) const;
   /// A feature's place in W; an inverse depth that is not positive counts as far away.
   Vec3 point(int slot) const;
@@ -253,10 +253,10 @@ class Filter {
   int room() const { return blocks_.room(); }  ///< rows that are still free
 
   // --- soundness: finite, bounded, and no variance below zero
-  /// Checks a part of P, another one for each turn, and repairs it where it is no covariance.
+  /// Checks a part of P, which depends on turn, and repairs it where it is no covariance.
   BlockFilter::Repair repair(int turn) { return blocks_.repair(turn); }
   bool body_is_sound() const;
-  /// Likewise for a block and the anchor that it hangs on.
+  /// The same for a block and the anchor that it depends on.
   bool block_is_sound(int slot) const;
 
  private:
@@ -289,7 +289,7 @@ class Filter {
   Transport transport_;
   GaugePrior apart_;
   bool keep_gauge_ = true;
-  int told_updates_ = 0;  ///< for which something still tells the gauge; -1: for good
+  int told_updates_ = 0;  ///< for which something still measures the gauge; -1: for good
   std::uint32_t generation_ = 0;
   Scalar roughness_ = 0;
   Measurement* view_ = nullptr;  ///< observations; of pixels

@@ -6,14 +6,14 @@
 
 namespace pf {
 
-/// How points enter a plane.
+/// Rule for folding points into a plane.
 struct FoldRule {
   Scalar roughness = 0;   ///< of real surfaces: standard deviation of a point's distance from its plane [m]
   Scalar gate = 0;        ///< chi-square bound of the distance, one degree of freedom
-  bool condition = true;  ///< take the distance in as a measurement of zero; else only drop it (Gee 2007, eq 4 and 6)
+  bool condition = true;  ///< measure the distance as zero, then drop it; else only drop it (Gee 2007, eq 4 and 6)
 };
 
-/// What becomes of a point that is known well enough in its point group.
+/// How a point is fixed that is known well enough in its point group.
 enum class FixForm {
   kConsider,  ///< keeps its rows, without gain of its own (Schmidt)
   kInflate,   ///< loses its rows; its variance stays as noise of its pixels

@@ -97,7 +97,7 @@ bool is_nothing(const double* S, const double* N, int n) {
 ///
 ///   A += N_p^T N_p / S_pp,   N_i -= (S_ip / S_pp) N_p,   S_ij -= S_ip S_pj / S_pp,   S = P with P_ii (1 + growth) at first
 ///
-/// A row that others determine (a new anchor is the body's position) says nothing new; one below zero is no covariance.
+/// A row that others determine (a new anchor is the body's position) adds no information; a pivot below zero means that P is no covariance.
 bool eliminate(const Filter& filter, double growth, double* scratch, double* information) {
   const int n = filter.dim();
   double* S = scratch;

@@ -9,8 +9,8 @@ namespace pf {
 ///
 ///   covariance of the state = P + N V N^T     N(x): gauge rows of the state (model/gauge.h); V: 7x7, translation, rotation, log scale
 ///
-/// No pixel says anything about these directions (H N = 0), so updates leave V as it is, and N(x) follows the state as the transport of P
-/// does. P then holds only what is shared by few rows, which float can tell from zero, and the prior depth of a new point says nothing of
+/// Pixels do not measure these directions (H N = 0), so updates do not change V, and N(x) follows the state as the transport of P does. P
+/// then has only errors that few rows share, which float can distinguish from zero, and the prior depth of a new point does not constrain
 /// the scale of all others.
 class GaugePrior {
  public:
@@ -19,9 +19,10 @@ class GaugePrior {
   bool any() const { return any_; }
   const Matrix& V() const { return V_; }
   void clear();
-  /// The log scale is less known by this variance, independently of all else; pivot: the place in W that it leaves where it is.
+  /// Adds this variance to the log scale, independently of all else; pivot: the place in W that the scale does not move.
   void add_scale(Scalar variance, const Vec3& pivot = Vec3::Zero());
-  /// Pose of the body (theta, p; row-major with leading dimension ld), which nothing else depends on yet: all of it becomes an error of W.
+  /// Pose of the body (theta, p; row-major with leading dimension ld), on which nothing else depends yet: takes all of its covariance as
+  /// one of W.
   void set_pose(const State& state, const Scalar* covariance, int ld);
 
   /// Adds N V N^T over the first `rows` rows of the body (rows x rows, row-major).

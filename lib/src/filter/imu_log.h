@@ -5,8 +5,7 @@
 #include "base/arena.h"
 #include "base/scalar.h"
 
-/// Samples of an inertial measurement unit as they come in: the newest in a ring, all of them counted.
-/// imu_path.h integrates them.
+/// Samples of an inertial measurement unit in their order: the newest in a ring, all of them counted. imu_path.h integrates them.
 
 namespace pf {
 
@@ -18,10 +17,10 @@ struct ImuSample {
 
 struct ImuRanges {
   Scalar gyro = 0;   ///< [rad/s] 0: not known
-  Scalar accel = 0;  ///< [m/s^2] likewise
+  Scalar accel = 0;  ///< [m/s^2] the same
 };
 
-/// Since the beginning, where nothing else is said.
+/// Counts since the beginning, unless stated otherwise.
 struct ImuCounts {
   std::int64_t samples = 0, since_frame = 0;
   std::int64_t last_interval = 0;  ///< samples between the last two frames
@@ -35,9 +34,9 @@ class ImuLog {
   void layout(Arena& arena, int capacity);
   void init(int capacity, const ImuRanges& ranges);
 
-  /// A sample after every earlier one; the caller has checked it.
+  /// Adds a sample, later than all before; the caller has checked it.
   void add(const ImuSample& sample);
-  /// A frame at this time: samples up to it have been there before it.
+  /// Notes a frame at this time, before which samples up to it have come.
   void mark_frame(std::int64_t t_ns);
 
   bool any() const { return counts_.samples > 0; }
@@ -46,7 +45,7 @@ class ImuLog {
   double rate_hz() const;
 
   int held() const { return held_; }
-  /// 0 is the oldest that is held.
+  /// 0: the oldest sample that is held.
   const ImuSample& operator[](int i) const { return ring_[(begin_ + i) % capacity_]; }
 
  private:

@@ -14,7 +14,7 @@ struct ImuUnit {
   Scalar gravity = 0;         ///< [m/s^2]
   /// Of the mounting and the delay [rad], [m], [s]; 0: constant.
   Scalar sigma_turn = 0, sigma_place = 0, sigma_delay = 0;
-  Scalar sigma_scale = 0;  ///< of the entries of its intrinsics; 0: likewise
+  Scalar sigma_scale = 0;  ///< of the entries of its intrinsics; 0: the same
 };
 
 /// Without samples: the rate and the specific force that the body would have with constant velocity, and its accelerations.
@@ -25,13 +25,13 @@ struct Coasting {
 };
 
 /// Integrates the samples between two times on their own clock, each end interpolated. Where samples are missing for more than kMaxGap of
-/// their median interval, it interpolates with the noise of what may lie between; behind the last sample it goes on along the last two for
-/// at most kMaxHold intervals, then coasts. *at_end gets the reading at the end. Returns how much of the time was coasted [s].
+/// their median interval, it interpolates, with noise for the unknown readings; behind the last sample it extrapolates the last two for at
+/// most kMaxHold intervals, then coasts. *at_end gets the reading at the end. Returns how much of the time was coasted [s].
 Scalar integrate_samples(const ImuLog& log, std::int64_t from_ns, std::int64_t to_ns, const Coasting& coasting,
                          Preintegral* sum, ImuReading* at_end);
 
-/// What the unit reads at a time on its own clock: on the line through two samples that no gap parts, at most kMaxHold intervals behind
-/// them. False where there are none.
+/// Reading at a time on the unit's own clock: on the line through two samples without a gap, at most kMaxHold intervals behind them. False
+/// where there are none.
 bool reading_at(const ImuLog& log, std::int64_t t_ns, ImuReading* reading);
 
 }  // namespace pf

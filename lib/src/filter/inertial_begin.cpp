@@ -4,7 +4,7 @@
 #include "filter/inertial_rows.h"
 #include "geometry/so3.h"
 
-/// Samples begin or end to move the body, and what a rest says of it.
+/// Begins and ends the prediction by samples, and takes up the readings of a rest.
 
 namespace pf {
 

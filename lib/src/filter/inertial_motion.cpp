@@ -114,7 +114,7 @@ void predict_inertial(const Body& body, const BodyLayout& layout, const Mounting
 
 namespace {
 
-/// Rotation as `samples` say with covariance S, translation with white accelerations.
+/// Rotation by `samples`, with covariance S; translation with white accelerations.
 void predict_by_rotation(const Body& body, const BodyLayout& layout, const Mounting& mounting,
                          const Preintegral& samples, Preintegral::Covariance S, Scalar linear_density,
                          Transition* transition) {

@@ -49,7 +49,7 @@ void begin_without_samples(const Body& body, const BodyLayout& layout, const Mou
 /// F_made - I is nilpotent, as in the models above: biases and gravity move the rotation and the velocity, these the position.
 void replace_transition(const Transition& made, Transition* transition);
 
-/// What samples say that are used again.
+/// Readings of samples that are used again after a gap.
 struct FreshReading {
   Vec3 gyro = Vec3::Zero();  ///< at the body's time
   Scalar sigma_gyro = 0;     ///< [rad/s] of each axis
@@ -73,7 +73,7 @@ void begin_with_samples(const Body& body, const BodyLayout& layout, const Mounti
 void begin_mounting(const Body& body, const BodyLayout& layout, const Mat3& turned, Scalar sigma_turn,
                     Scalar sigma_delay, Transition* transition);
 
-/// What a second at rest says. Readings are means over it.
+/// Readings of a second at rest: means over it.
 struct RestReading {
   Vec3 gyro = Vec3::Zero();   ///< [rad/s]
   Vec3 accel = Vec3::Zero();  ///< [m/s^2]
@@ -84,7 +84,7 @@ struct RestReading {
   Scalar gravity = 0;           ///< [m/s^2]
 };
 
-/// What the samples of a frame say, while a rest goes on: means since the last frame.
+/// Readings of a frame while a rest goes on: means since the last frame.
 struct StillReading {
   Vec3 gyro = Vec3::Zero();   ///< [rad/s]
   Vec3 accel = Vec3::Zero();  ///< [m/s^2]
@@ -100,8 +100,8 @@ void predict_at_rest(const Body& body, const BodyLayout& layout, Scalar dt, cons
 /// A rest begins or ends: the velocity is zero within sigma_speed [m/s].
 void begin_speed(const Body& body, const BodyLayout& layout, Scalar sigma_speed, Transition* transition);
 
-/// What a rest says of gravity and of the unit's axes together is linear in both only to first order. Of a rotation mu of the axes, with
-/// variance s^2 about each, its part along gravity b and that across it a leave [a]x b / 2:  Q = s^4 / 4 in both rows of gravity.
+/// Noise for the second-order term of a rest's reading in gravity and the unit's axes. A rotation mu of the axes, with variance s^2 about
+/// each, has a part b along gravity and a part a across it, which leave [a]x b / 2:  Q = s^4 / 4 in both rows of gravity.
 void allow_for_turned_gravity(const Body& body, const BodyLayout& layout, Scalar variance, Transition* transition);
 
 /// The gyro's bias is its reading, the velocity zero. Gravity and the accelerometer's bias become known together: with u = -R a / |a| in W,

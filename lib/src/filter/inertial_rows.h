@@ -20,7 +20,7 @@ struct PartRows {
         intrinsics(layout.row(BodyPart::kIntrinsics)) {}
   int dim, velocity, gyro, accel, gravity;
   int turn, place, delay;  ///< of the mounting; negative where it is not estimated
-  int intrinsics;          ///< likewise
+  int intrinsics;          ///< the same
 };
 
 inline void clear(Transition* t, const Body& body, int dim) {

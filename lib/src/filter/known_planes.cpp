@@ -19,7 +19,7 @@ int Filter::add_known_plane(const PlaneFrame& frame, const Mat3& covariance, Sca
   return slot;
 }
 
-/// Means and P in the new lengths; what is apart is of W's directions and stays. Then the planes see what the map has of the gauge.
+/// Scales means and P; what is apart belongs to W's directions and stays. Then the planes are correlated with the gauge of the map.
 void Filter::join_planes_apart(Scalar scale, const Vec3& pivot) {
   Scalar* factor = blocks_.row_factors();
   for (int i = 0; i < 3; ++i) factor[Body::kPosition + i] = scale;
@@ -40,7 +40,7 @@ void Filter::join_planes_apart(Scalar scale, const Vec3& pivot) {
     if (state_.block[s].kind == BlockKind::kPlaneApart) state_.block[s].kind = BlockKind::kPlane;
 }
 
-/// All places but those of planes that are apart; no error changes.
+/// Translates all places but those of planes that are apart; no error changes.
 void Filter::translate(const Vec3& t) {
   state_.body.p_W += t;
   for (int s = 0; s < state_.slots; ++s) {
@@ -52,7 +52,7 @@ void Filter::translate(const Vec3& t) {
   }
 }
 
-/// What the prior of the plane, zero with covariance C, has taught is taken back but for 1 / widening of it. Information D goes,
+/// Removes what the plane's prior, zero with covariance C, contributed, but for 1 / widening of it. The information D is removed:
 ///
 ///   D = C^-1 - ((1 + w) C)^-1,   P' = (P^-1 - E D E^T)^-1 = P + P_xp M P_px,   M = ((1 + 1/w) C - P_pp)^-1,
 ///

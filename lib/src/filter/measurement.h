@@ -2,7 +2,7 @@
 
 #include "model/rows.h"
 
-/// What the filter is told: a few rows with what was measured, what was predicted, and the noise of both.
+/// A measurement for the filter: a few rows with measured and predicted values and their noise.
 
 namespace pf {
 
@@ -11,9 +11,9 @@ struct Measurement {
   int block = -1;  ///< that it is of, so that it can be predicted again
   Rows H;
   const Scalar* measured = nullptr;   ///< H.rows entries
-  const Scalar* predicted = nullptr;  ///< likewise
+  const Scalar* predicted = nullptr;  ///< the same
   const Scalar* R_gate = nullptr;     ///< H.rows x H.rows; what it is gated with
-  const Scalar* R_update = nullptr;   ///< likewise; what it is taken in with
+  const Scalar* R_update = nullptr;   ///< the same; noise of the update
 
   int rows() const { return H.rows; }
 };

@@ -103,13 +103,13 @@ void Filter::scale_map(Scalar s, Scalar* factor) {
   }
 }
 
-/// Mean and P in metres; then the log scale, gravity and the accelerometer's bias are as known as `start` says, the scale in place of what
-/// P held of it:
+/// Scales mean and P to metres, then sets the log scale, gravity and the accelerometer's bias with the covariance of `start`, which
+/// replaces P's variance of the scale:
 ///
 ///   P <- (I - N_s l) P (I - N_s l)^T + C_ss N_s N_s^T + N_s c^T + c N_s^T       c: C_(g a)s over the rows of gravity and bias
 ///
-/// Gravity and bias hang on the rotation that the poses had (above); had they not turned: d = E^T theta + n. The velocity is that
-/// of the unit's origin, v = v_C + R (w x m), with what is open of w.
+/// Gravity and bias depend on the rotation of the poses (above); without their drift: d = E^T theta + n. The velocity is that of the unit's
+/// origin, v = v_C + R (w x m), with the uncertainty of w.
 void Filter::set_metric(const MovingSolution& start, const Mounting& mounting) {
   using namespace inertial_rows;
   const Scalar s = start.scale;

@@ -11,7 +11,7 @@ struct MotionNoise {
   Scalar angular;  ///< [rad/s^2/sqrt(Hz)]; constant position: [rad/sqrt(s)]
 };
 
-/// What a motion model says: the body afterwards, the transition of its error and the noise that it gains, row-major, leading dimension
+/// Prediction of a motion model: the body afterwards, the transition of its error and the noise that it gains, row-major, leading dimension
 /// dim: the rows of the parts that move. x+ = F x + by_intrinsics c + noise, c the errors of an inertial unit's intrinsics, which stay.
 struct Transition {
   Body mean;
@@ -19,7 +19,7 @@ struct Transition {
   int dim;
   Scalar F[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
   Scalar Q[BodyLayout::kMaxDynamicRows * BodyLayout::kMaxDynamicRows];
-  bool has_intrinsics = false;                                            ///< else nothing hangs on them
+  bool has_intrinsics = false;                                            ///< otherwise nothing depends on them
   Scalar by_intrinsics[BodyLayout::kMaxDynamicRows * Intrinsics::kRows];  ///< dim x kRows
 };
 
@@ -27,7 +27,7 @@ struct Transition {
 ///
 ///   R+ = R Exp(w dt),  p+ = p + v dt,  v+ = v,  w+ = w
 ///   theta+ = theta + J dt e_w,  e_p+ = e_p + dt e_v        J = R J_l(w dt)
-///   Q: velocity q^2 dt I, position q^2 dt^3/3 I, between them q^2 dt^2/2 I; likewise for the rotation, through J
+///   Q: velocity q^2 dt I, position q^2 dt^3/3 I, between them q^2 dt^2/2 I; the same for the rotation, through J
 ///
 /// Rotating or scaling the world before or after is the same, so gauge directions go to gauge directions.
 void predict_constant_velocity(const Body& body, const BodyLayout& layout, Scalar dt, const MotionNoise& noise,
@@ -43,8 +43,7 @@ void predict_constant_velocity(const Body& body, const BodyLayout& layout, Scala
 ///   Q: acceleration q^2 dt I, velocity q^2 dt^3/3 I, position q^2 dt^5/20 I, between them q^2 dt^2/2 R+ and so on; the rotation and the
 ///   angular velocity as with constant velocity; what rotates the camera rotates its velocity: (-[v+]x) of the rotation's noise
 ///
-/// Where nothing accelerates, the camera flies along the arc that its own turn makes. Rotating or scaling the world before or after is the
-/// same.
+/// Without accelerations the camera flies along the arc of its own rotation. Rotating or scaling the world before or after is the same.
 /// src Servant 2008 (2), (3): the state has the camera in the world in place of the world in the camera; the velocity is kept in axes of
 /// the world, as with every other model, and the error of the rotation is on the world's side.
 void predict_constant_acceleration(const Body& body, const BodyLayout& layout, Scalar dt, const MotionNoise& noise,

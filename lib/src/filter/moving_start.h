@@ -7,7 +7,7 @@
 
 namespace pf {
 
-/// A pose of the camera in a map up to scale, and what the samples since the one before say, in W. R: R_WB of the one before.
+/// A pose of the camera in a map up to scale, and the integrals of the samples since the pose before, in W. R: R_WB of the one before.
 struct MovingPose {
   Scalar dt = 0;             ///< since the one before [s]
   Vec3 p_W = Vec3::Zero();   ///< of the camera, in units of the map
@@ -16,7 +16,7 @@ struct MovingPose {
   Vec3 Rv = Vec3::Zero();    ///< R dv
   Vec3 Rp = Vec3::Zero();    ///< R dp
   Mat3 Rv_b = Mat3::Zero();  ///< of R dv by the accelerometer's bias
-  Mat3 Rp_b = Mat3::Zero();  ///< of R dp likewise
+  Mat3 Rp_b = Mat3::Zero();  ///< of R dp, the same
 };
 
 struct MovingStartNoise {
@@ -24,7 +24,7 @@ struct MovingStartNoise {
   Scalar drift = 0;          ///< of p_W, as the points that it is known by change, in units of the map [/sqrt(s)]
   Scalar accel_density = 0;  ///< white, of the accelerometer [m/s^2/sqrt(Hz)]
   Scalar tilt_density = 0;   ///< of the poses' rotations, which tilts gravity in them [rad/sqrt(s)]
-  Scalar turn = 0;           ///< of the rate at which the poses' rotations turn away from the truth, constant [rad/s]
+  Scalar turn = 0;           ///< of the constant rate at which the poses' rotations drift from the truth [rad/s]
   Scalar accel_bias = 0;     ///< prior sigma of each axis [m/s^2]
   /// Covariance of the errors of the accelerometer's intrinsics (model/intrinsics.h); null where these are exact.
   using OfForce = Eigen::Matrix<Scalar, Intrinsics::kAccelRows, Intrinsics::kAccelRows>;
@@ -40,11 +40,11 @@ struct MovingSolution {
   Quat q_WG = Quat::Identity();
   Vec3 accel_bias = Vec3::Zero();  ///< beside the one that the samples were integrated with
   Covariance covariance = Covariance::Zero();
-  /// Its errors by the rate at which the poses turn away from the truth; the covariance has their share, with turn_variance.
+  /// Jacobian of its errors by the rate at which the poses' rotations drift; the covariance includes it, with turn_variance.
   Eigen::Matrix<Scalar, kRows, 3> by_turn = Eigen::Matrix<Scalar, kRows, 3>::Zero();
   Scalar turn_variance = 0;  ///< of each axis [rad^2/s^2]
   Scalar span = 0;           ///< of the poses [s]
-  /// Likewise by the errors of the accelerometer's intrinsics, and what they have put into the covariance.
+  /// The same by the errors of the accelerometer's intrinsics, and their part of the covariance.
   template <int kCount>
   using ByForce = Eigen::Matrix<Scalar, kCount, Intrinsics::kAccelRows>;
   ByForce<kRows> by_force = ByForce<kRows>::Zero();
@@ -53,7 +53,7 @@ struct MovingSolution {
 
   Scalar sigma_scale() const { return std::sqrt(covariance(0, 0)); }  ///< relative
   Scalar sigma_gravity() const { return std::sqrt(covariance(1, 1) + covariance(2, 2)); }
-  /// Likewise without what the intrinsics do, which a longer motion before the start would leave as it is.
+  /// The same without the part of the intrinsics, which a longer motion before the start would not reduce.
   Scalar sigma_scale_by_motion() const { return std::sqrt(covariance(0, 0) - of_force(0, 0)); }
   Scalar sigma_gravity_by_motion() const {
     return std::sqrt(covariance(1, 1) + covariance(2, 2) - of_force(1, 1) - of_force(2, 2));
@@ -73,9 +73,9 @@ inline constexpr int kMaxMovingPoses = 96;
 ///
 ///   C_jk = sigma_0^2 + sigma_k^2 delta_jk + q_d^2 min(t_j, t_k) + (u q_a)^2 G2_jk + (u gravity)^2 (q_r^2 G3_jk + q_t^2 h_j h_k)
 ///
-/// Gn: covariance of an n times integrated white noise; h = t^3 / 6 - T t^2 / 4: gravity in poses that turn, right at T / 2. A rate rho of
-/// that, theta = rho (t - T / 2), leaves r = u h [g]x rho, and the solution off by by_turn rho. Of many poses, rows are means over a few
-/// neighbours. A misfit above one widens the covariance. False where there are too few poses or the system is singular.
+/// Gn: covariance of an n times integrated white noise; h = t^3 / 6 - T t^2 / 4: gravity in poses whose rotation drifts, right at T / 2. A
+/// rate rho of that, theta = rho (t - T / 2), leaves r = u h [g]x rho and an error by_turn rho of the solution. With many poses, rows are
+/// means over a few neighbours. A misfit above one widens the covariance. False where there are too few poses or the system is singular.
 bool solve_moving_start(const MovingPose* pose, int count, const MovingStartNoise& noise, MovingSolution* out);
 
 }  // namespace pf

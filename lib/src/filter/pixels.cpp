@@ -21,7 +21,7 @@ Mat2 planar_noise(const State& state, const Block& block, const Place& at, const
   return noise;
 }
 
-/// The pixel's rows allow for what its place says about its row.
+/// Extends the pixel's Jacobian by the dependence of its row's time on the pixel.
 void follow_row(const CameraAt& camera, const Mat26& J_camera, Scalar k, PixelMeasurement* out) {
   const Mat2 M = row_follow(camera, J_camera, k);
   const int columns = out->H.columns();
@@ -117,7 +117,7 @@ bool Filter::predict_pixel(const Camera& lens, int slot, PixelMeasurement* out) 
   Mat26 J_camera;
   if (!predict_at(lens, camera_at(state_, Scalar(0)), slot, out, &J_camera)) return false;
   if (!rows_roll(state_, lens)) return true;
-  // Where the pixel is says when it was read out, which says where it is: the camera moves little in that time.
+  // The pixel's row gives its time, and its time the pixel: two iterations, since the camera moves little in between.
   CameraAt camera;
   for (int round = 0; round < 2; ++round) {
     camera = camera_of_row(state_, lens, out->predicted.y());

@@ -5,7 +5,7 @@
 #include "geometry/small_cholesky.h"
 #include "model/camera_at.h"
 
-/// A plane, or a point of one, is somewhere else than it was taken for. What pixels have told of it is its ray.
+/// Moves a plane, or a point of one, whose place was wrong. Points move along their rays, which pixels have measured.
 
 namespace pf {
 

@@ -193,7 +193,7 @@ bool Filter::unfold(int slot, Scalar sigma_normal) {
   block.kind = BlockKind::kPoint;
   block.size = 3;
   block.set_xyz(at.o);
-  remove(nullptr, 0);  // a point group that nothing hangs on any more
+  remove(nullptr, 0);  // a point group without children
   return true;
 }
 

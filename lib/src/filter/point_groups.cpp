@@ -196,7 +196,7 @@ bool Filter::release(int slot) {
   block.size = 2;
   block.kind = BlockKind::kPlanePoint;
   block.set_uv(uv);
-  remove(nullptr, 0);  // a point group that nothing hangs on any more
+  remove(nullptr, 0);  // a point group without children
   return true;
 }
 

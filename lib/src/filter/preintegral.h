@@ -46,23 +46,23 @@ class Preintegral {
   /// gyro_more, accel_more: squared densities on top of those of the unit.
   void add(Scalar dt, const ImuReading& from, const ImuReading& to, Scalar gyro_more = 0, Scalar accel_more = 0);
   /// Without readings: the rotation goes on as w_B [rad/s] in axes at the end, the specific force is f_B in axes at the beginning.
-  /// angular_density [rad/s^2/sqrt(Hz)], linear_density [m/s^2/sqrt(Hz)]: of accelerations, which nothing says.
+  /// angular_density [rad/s^2/sqrt(Hz)], linear_density [m/s^2/sqrt(Hz)]: of the accelerations, which nothing measures.
   void coast(Scalar dt, const Vec3& w_B, const Vec3& f_B, Scalar angular_density, Scalar linear_density);
 
   Scalar dt() const { return dt_; }
   const Vec3& gyro_bias() const { return gyro_bias_; }
   const Vec3& accel_bias() const { return accel_bias_; }
   const Intrinsics& intrinsics() const { return intrinsics_; }
-  /// What a gyroscope's reading says.
+  /// Angular velocity of a gyroscope's reading.
   Vec3 rate(const Vec3& gyro) const { return intrinsics_.D_w * (gyro - gyro_bias_); }
   const Mat3& R() const { return R_; }
   const Vec3& v() const { return v_; }
   const Vec3& p() const { return p_; }
   /// Of (phi, v, p) by (b_g, b_a).
   const ByBias& by_bias() const { return D_; }
-  /// Likewise by the errors of the intrinsics; zero where these are not open.
+  /// The same by the errors of the intrinsics; zero where these are known.
   const ByIntrinsics& by_intrinsics() const { return by_intrinsics_; }
-  /// The readings at both ends, which tell what a delay does.
+  /// The readings at both ends, for the Jacobian by the delay.
   void set_ends(const ImuReading& from, const ImuReading& to);
   /// Of (phi, v, p) by a delay that is longer by e: both ends are e earlier on the clock of the samples. With w and a without bias, at the
   /// beginning (0) and at the end (1); zero where set_ends was not called.

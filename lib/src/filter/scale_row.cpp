@@ -116,7 +116,7 @@ Scalar Filter::relative_sigma_rho(int slot, const ScaleRow& l) const {
   const Block& block = state_.block[slot];
   PF_ASSERT(block.kind == BlockKind::kInverseDepth);
   const Scalar rho = block.inverse_depth().rho;
-  for (int p = 0; p < l.parts; ++p)  // the row hangs on this very point: it cannot be its own measure
+  for (int p = 0; p < l.parts; ++p)  // the row depends on this point itself, which cannot measure its own scale
     if (l.part[p].block == slot) return std::sqrt(block_variance(slot, 2));
   RowsOf<1, 13, 5> row;  // those of l, and rho
   for (int p = 0, c = 0; p < l.parts; ++p) {

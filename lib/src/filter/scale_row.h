@@ -4,7 +4,7 @@
 
 namespace pf {
 
-/// As Filter::scale_row, for who only asks and may not write the filter's scratch: without its list of points, so that it takes longer.
+/// Filter::scale_row for const callers, which may not write the filter's scratch: slower, since it has no list of points.
 bool find_scale_row(const Filter& filter, ScaleRow* row);
 
 }  // namespace pf

@@ -34,7 +34,7 @@ void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
     const Vec3 e_g = three(layout.row(BodyPart::kGyroBias));
     const int gravity = layout.row(BodyPart::kGravity);
     body.gyro_bias += e_g;
-    body.w_C -= state.mounting.rate_C(e_g);  // what the samples say, less the bias
+    body.w_C -= state.mounting.rate_C(e_g);  // the samples less the bias
     body.accel_bias += three(layout.row(BodyPart::kAccelBias));
     body.q_WG = body.q_WG * exp_so3(Vec3(dx[gravity], dx[gravity + 1], Scalar(0)));
     body.q_WG.normalize();
@@ -58,7 +58,7 @@ void apply_error(State& state, const BlockFilter& blocks, const Scalar* dx) {
 
 namespace {
 
-/// What hangs on a plane or point group shares the rows that its own are made of.
+/// Gauge rows of the children of a plane or point group, made of their parent's rows.
 void add_children(const State& state, const BlockFilter& blocks, int parent, const model::PlanarRows& rows,
                   const GaugeSum& sum) {
   for (int t = state.block[parent].first_child; t >= 0; t = state.next_child(parent, t)) {

@@ -25,7 +25,7 @@ class Transport {
   void finish(const State& state, const BlockFilter& blocks);
   /// The log scale's direction N_s at the state as it is (ld numbers), until the next update.
   const Scalar* scale_direction(const State& state, const BlockFilter& blocks);
-  /// For P + N V N^T, over the directions of gauge.h: U = N and G = V N / 2, as rows() says.
+  /// For P + N V N^T, over the directions of gauge.h: U = N and G = V N / 2, by rows().
   void spread(const State& state, const BlockFilter& blocks, const GaugePrior::Matrix& V);
   /// No transport in this update.
   void skip() { rows_ = 0; }

@@ -20,7 +20,7 @@ inline constexpr Scalar kOwnNoise = Scalar(1e-10);  ///< relative variance of it
 
 /// A plane, or a point of one, that is somewhere else.
 namespace plane_slide {
-inline constexpr Scalar kMinSlant = Scalar(0.02);  ///< sine between plane and ray that still says where a point is
+inline constexpr Scalar kMinSlant = Scalar(0.02);  ///< sine between plane and ray, at least, for a place of the point
 inline constexpr Scalar kLateral = Scalar(1e-5);   ///< [m] a point that moves along its ray is unsure across it
 }  // namespace plane_slide
 
@@ -34,7 +34,7 @@ namespace apart {
 inline constexpr Scalar kMaxScaleVariance = Scalar(4e-4);     ///< of the log scale in P; beyond it the scale leaves P
 inline constexpr Scalar kLeftScaleVariance = Scalar(2.5e-6);  ///< that stays in P. With 0 -2e-4, with 1e-4 -2e-5
 inline constexpr Scalar kGrowth = Scalar(6e-9);  ///< of a variance in float, by update and root of rows; 2e-9: -1e-5
-inline constexpr int kSpeedTells = 30;  ///< updates after which the speed of a start says nothing of the scale any more
+inline constexpr int kSpeedTells = 30;  ///< updates after which the speed of a start no longer constrains the scale
 inline constexpr Scalar kMinPoseSigma = Scalar(1e-3);  ///< [rad, m] of a given pose, below which it stays in P
 inline constexpr Scalar kLeftSigma = Scalar(1e-5);     ///< [rad, m] of a given pose, that stays in P in any case
 }  // namespace apart
@@ -42,7 +42,7 @@ inline constexpr Scalar kLeftSigma = Scalar(1e-5);     ///< [rad, m] of a given 
 /// Whether P is a covariance.
 namespace soundness {
 inline constexpr Scalar kRounding = Scalar(1e-6);       ///< that an eigenvalue of correlations may be below 0
-inline constexpr Scalar kRoundingFloat = Scalar(5e-5);  ///< likewise in float
+inline constexpr Scalar kRoundingFloat = Scalar(5e-5);  ///< the same in float
 inline constexpr Scalar kDigits = Scalar(4);            ///< last digits of a variance that an update's rounding hides
 inline constexpr int kSample = 48;                      ///< rows of P that are checked in a frame
 inline constexpr Scalar kStep = Scalar(4);              ///< factor by which a repair grows until it is enough
@@ -58,7 +58,7 @@ inline constexpr Scalar kMaxStep = Scalar(20);  ///< of the log scale in one of 
 
 /// Inertial samples.
 namespace imu {
-inline constexpr Scalar kSaturation = Scalar(0.995);  ///< of the range: a sample that reaches it says "at least this"
+inline constexpr Scalar kSaturation = Scalar(0.995);  ///< of the range: a sample that reaches it is only a lower bound
 inline constexpr Scalar kMaxGap = Scalar(1.5);        ///< median intervals, above which samples are missing
 inline constexpr Scalar kMaxHold = Scalar(1.5);  ///< median intervals behind the last sample, before the body coasts
 inline constexpr Scalar kMaxCoast = Scalar(2);   ///< [s] without samples that a prediction covers

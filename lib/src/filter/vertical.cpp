@@ -6,7 +6,7 @@
 #include "filter/filter.h"
 #include "filter/tuning.h"
 
-/// Planes that somebody says are vertical (lib/docs/theory/inertial.md).
+/// Planes that the caller states to be vertical (lib/docs/theory/inertial.md).
 
 namespace pf {
 
@@ -70,11 +70,12 @@ bool take_vertical(Filter& filter, int plane, Scalar sigma, Scalar max_nis, Vert
   return true;
 }
 
-/// Of the row's information, 1 / (h P h^T), that of what was told goes, 1 / sigma^2, so that nothing goes that others have told. Tilt
-/// and gravity do not change: what was known before is known still, whatever rounding and other linearisations leave of the difference.
+/// Of the row's information, 1 / (h P h^T), that of the statement is removed, 1 / sigma^2, and none that others contributed. The means of
+/// tilt and gravity do not change, and what was known before stays known, whatever rounding and other linearisations leave of the
+/// difference.
 ///
-/// The row is the one that P holds. It was told as h0, about n0 and g0 with h0 N(x0) = 0 for rotations phi of the world; transport has
-/// since taken N(x0) to N(x), so it is h0 less what h0 sees of such a rotation, which the body's rotation stands for:
+/// The row is the one that P has now. The update was made with h0, about n0 and g0, with h0 N(x0) = 0 for rotations phi of the world;
+/// transport has since taken N(x0) to N(x), so h is h0 less its part along such a rotation, for which the body's rotation stands:
 ///
 ///   h = h0 - h0 N(x) e_theta,   h0 N(x) phi = (g x n0 + n x g0) . phi
 ///

@@ -18,25 +18,25 @@ using VerticalMeasurement = MeasurementOf<1, 5, 2>;
 /// gravity, a translation and a change of scale do not change z. src lib/docs/theory/inertial.md
 void predict_vertical(const State& state, int plane, VerticalMeasurement* out);
 
-/// What a plane that was told to be vertical was told, and about which directions.
+/// What a plane was stated to be vertical with: sigma and directions.
 struct VerticalRow {
-  Scalar sigma = 0;         ///< [rad] of what was told; 0: nothing was
+  Scalar sigma = 0;         ///< [rad] as stated; 0: not stated
   Scalar before = 0;        ///< [rad] of the plane's tilt before
   Vec3 n_W = Vec3::Zero();  ///< the plane's normal, as it was estimated then
-  Vec3 g_W = Vec3::Zero();  ///< gravity's direction, likewise
+  Vec3 g_W = Vec3::Zero();  ///< gravity's direction then
 
   bool is_told() const { return sigma > Scalar(0); }
 };
 
 /// Updates the filter with a plane that is vertical within sigma [rad]. False, with nothing changed, where the plane's NIS is above
-/// max_nis. *told: what forget_vertical needs.
+/// max_nis. *told: for forget_vertical.
 bool take_vertical(Filter& filter, int plane, Scalar sigma, Scalar max_nis, VerticalRow* told);
 
-/// Takes back what take_vertical has told of a plane's tilt against gravity, and of all that has learnt from it, and nothing that others
-/// have told of them since.
+/// Removes what take_vertical contributed to a plane's tilt against gravity and to all that is correlated with it, and nothing that came
+/// from others since.
 void forget_vertical(Filter& filter, int plane, const VerticalRow& told);
 
-/// After `gone` was forgotten: what was known before another plane was told may have come from it.
+/// After `gone` was removed: what was known before another plane was stated to be vertical may have come from it.
 void allow_for_forgotten(const VerticalRow& gone, VerticalRow* other);
 
 }  // namespace pf

@@ -65,7 +65,7 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
       return images_.recover_or_measure(mode, is_lost);
     });
   }
-  // Behind the points: a patch is found all the better where they have told the pose, and supports it where they have not.
+  // Behind the points: after their update a patch has a smaller search area, and where they do not support the pose it does.
   PatchKeeper* const patches = upkeep_.patches();
   if (patches != nullptr && !first)
     patches->measure(images_.front_end().search().tracker().pyramid(), progress.checking);
@@ -174,7 +174,7 @@ void FilterSlam::begin_frame(std::int64_t t_ns) {
   if (!filter_.body_is_sound()) start_over();
 }
 
-/// True where this frame is the first one whose samples tell the scale.
+/// True where this frame is the first one whose samples give the scale.
 bool FilterSlam::look_for_scale() {
   if (!settings_.inertial) return false;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kImu]);

@@ -32,13 +32,13 @@ class ImageTracking {
 
   bool layout(Arena& arena);
   void init();
-  /// The map is given up, and with it all poses.
+  /// The map is discarded, and with it all poses.
   void forget_map();
 
   /// Measures the frame, ImageFrontEnd::measure. is_lost: the last frame did not support its pose; the map is then searched for about other
   /// poses too where the prediction is vague.
   UpdateOutcome recover_or_measure(const MeasureMode& mode, bool is_lost);
-  /// The last frame has shown that the map comes from what stands still in the picture (FixedFeatures).
+  /// True where the map has come from features that stand still in the image (FixedFeatures).
   bool is_map_fixed() const { return is_map_fixed_; }
   /// Learns the noise of matches from the inliers' residuals, and warns where they fit badly.
   void learn_noise();

@@ -28,8 +28,8 @@ void MapUpkeep::maintain(bool supported, const StartProgress& start) {
     return;
   }
   features_.convert_linear();
-  // From the first depths on. While a start's record goes on the filter may restart, which removes the planes; nothing begins on them
-  // then, since the record wants features of open depth.
+  // From the first depths on. While a start's record goes on the filter may restart, which removes the planes; nothing begins on them then,
+  // since the record needs features of open depth.
   if (settings_.planes && !start.pending()) planes_.maintain(!start.checking);
   for (int i = 0; start.recording && i < map_.planes.capacity(); ++i) map_.planes[i].age = 0;
   features_.drop_failing(true);

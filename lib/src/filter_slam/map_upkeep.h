@@ -35,13 +35,14 @@ class MapUpkeep {
 
   /// After a frame is measured. supported: its measurements support its pose; else nothing is decided about the map.
   void maintain(bool supported, const StartProgress& start);
-  /// The same for patches, of which the frame may begin new ones where is_first, or where it is tracked, or where there is nothing to lose.
+  /// The same for patches. New ones may begin where is_first, where the frame is tracked, or while the map is empty.
   void maintain_patches(const Pyramid& image, bool supported, const StartProgress& start, bool is_first);
 
   /// Repairs the covariance where it has to. False where the estimate is not finite, or P is no covariance and nothing helps.
   bool repair_estimate();
 
-  /// Plane with this id is vertical within sigma [rad], VerticalTable::tell. kState: gravity is not known. kNothing: no such plane.
+  /// The caller states that the plane with this id is vertical within sigma [rad] (VerticalTable::tell). kState: gravity is not known.
+  /// kNothing: no such plane.
   Status set_plane_vertical(std::uint32_t id, Scalar sigma);
 
   FeatureKeeper& features() { return features_; }

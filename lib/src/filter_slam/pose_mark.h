@@ -13,8 +13,8 @@ class PoseMark {
  public:
   PoseMark(Filter& filter, Map& map, FeatureKeeper& features) : filter_(filter), map_(map), features_(features) {}
 
-  /// Marks the filter's pose under this time, in place of an older mark. Room is made by evicting features that were not seen since
-  /// not_since_ns, where features may go. kFull: there is no room; nothing has changed then.
+  /// Marks the filter's pose under this time, in place of an older mark. With may_evict, features that were not seen since not_since_ns are
+  /// evicted to make room. kFull: there is no room; nothing has changed then.
   Status set(std::int64_t t_ns, bool may_evict, std::int64_t not_since_ns);
   /// Removes a mark whose numbers are no longer finite and bounded.
   void drop_unsound();

@@ -65,7 +65,7 @@ std::int64_t UnitKeeper::motion_begin_ns(std::int64_t now_ns) const {
   return parts_ != nullptr ? parts_->hold.motion_begin_ns(now_ns) : now_ns;
 }
 
-/// A rest tells the scale whatever the delay is, and gravity where the axes are known.
+/// A rest gives the scale whatever the delay is, and gravity where the axes are known.
 bool UnitKeeper::begins_at_rest() {
   RestReading rest;
   const bool knows_axes = !(settings_.unit.sigma_turn > tuning::rate_alignment::kOpenTurn);
@@ -137,7 +137,7 @@ void UnitKeeper::let_samples_begin() {
   if (has_just_aligned_ && start_.may_become_metric()) why_discredited_ = kSamplesBegin;
 }
 
-/// A map that begun at rest with a unit of unknown delay has no size from motion yet, so nothing is lost with it.
+/// A map that began at rest, with a unit of unknown delay, has no scale from motion yet, so discarding it loses nothing.
 bool UnitKeeper::discredits_map(bool follows, std::int64_t dt_ns) {
   if (!settings_.inertial || !tracking_.has_pose()) return false;
   if (why_discredited_ == kSamplesBegin) return true;

@@ -19,17 +19,17 @@
 #include "frame/tracking_state.h"
 #include "map/map.h"
 
-/// The inertial unit in the work of a frame: what it says of the body's motion, whether images agree with that, and what it says of the
-/// scale (lib/docs/theory/inertial.md). Without the inertial motion model this only predicts the body.
+/// The inertial unit's part of a frame: predicts the body from samples, tests whether images agree with them, and starts metric scale and
+/// gravity (lib/docs/theory/inertial.md). Without the inertial motion model this only predicts the body.
 
 namespace pf {
 
-/// What has become of the map's scale in a frame.
+/// What a frame did to the map's scale.
 enum class ScaleChange : std::uint8_t {
   kNone,
   kMetric,   ///< gravity is known, and lengths are in metres; places and lengths are as before
-  kNewMap,   ///< likewise, and a new map begins with this frame
-  kRescaled  ///< likewise, and the map has been scaled
+  kNewMap,   ///< the same, and a new map begins with this frame
+  kRescaled  ///< the same, and the map has been scaled
 };
 
 class UnitKeeper {
@@ -50,39 +50,40 @@ class UnitKeeper {
 
   void layout(Arena& arena);
   void init();
-  /// The map is given up.
+  /// The map is discarded.
   void begin_map();
 
   /// Predicts the body to this frame. before_ns: time of the frame before. follows: that one was tracked, and so was the pose that the
   /// prediction begins at. nothing_measured: that one had no inlier. depth: median, of what is seen.
   void predict(std::int64_t before_ns, bool follows, bool nothing_measured, Scalar depth);
-  /// Measures the frame by measure(again, mode), which returns what its updates have found. Where a rest or samples may have led the
-  /// prediction astray: once more, from a prediction without them, with again = true.
+  /// Measures the frame by measure(again, mode), which returns what its updates have found. Where images contradict a rest or samples,
+  /// measures once more with again = true, from a prediction without them.
   template <typename F>
   void measure(bool follows, F&& measure);
-  /// After a frame: whether the camera has been at rest, or has moved enough, for samples to tell the scale. correlation_frames: in a row
-  /// whose pixels have the same errors.
+  /// After a frame: starts metric scale where the camera has been at rest, or has moved enough. correlation_frames: for how many frames
+  /// errors of pixels stay the same.
   ScaleChange look_for_scale(Scalar depth, Scalar correlation_frames);
-  /// At the end of a frame, dt_ns after the one before: true where images contradict the unit, and the map is in metres by that unit alone.
-  /// Nothing tells how wrong such a map is.
+  /// At the end of a frame, dt_ns after the one before: true where a new map has to begin. Images contradict the unit that alone gave this
+  /// one its metres, or the camera left its first rest before the unit's clock and axes were known: the error of such a map is not known.
   bool discredits_map(bool follows, std::int64_t dt_ns);
 
-  /// Of pixels without pictures: samples tell the rotations of a start better than a record does. Where their clock or their axes have been
-  /// found before this frame, a map of unknown scale that began without them gives way to another one.
+  /// For pushed observations: samples measure the rotations of a start better than a record does. Where their clock or axes were found
+  /// before this frame, a map of unknown scale that began without them is replaced.
   void let_samples_begin();
-  /// From when on a prediction from now_ns has to go through samples.
+  /// Time from which on a prediction from now_ns goes through samples.
   std::int64_t motion_begin_ns(std::int64_t now_ns) const;
-  /// Why, for the log.
+  /// Reason of discredits_map, for the log.
   const char* why_discredited() const { return why_discredited_; }
   const UnitWatch& watch() const { return watch_; }
-  /// Why samples do not move the body, or why lengths are not metres. *value, *R_CB: its numbers, as far as it has them.
+  /// Why samples do not move the body, or why lengths are not metres. *value, *R_CB: the numbers that belong to the reason, where it has
+  /// any.
   UnitReason reason(Scalar* value, Mat3* R_CB) const;
   /// With the inertial motion model.
   const RestHold& hold() const { return parts_->hold; }
   const MetricStart& metric() const { return metric_; }
-  /// As it is known now.
+  /// Present estimate.
   ImuNoise noise() const { return motion_.unit_noise().now(); }
-  /// Where the unit is on the camera, as far as it is known.
+  /// Present estimate of the unit's mounting on the camera.
   Mounting mounting() const { return start_.mounting().now(); }
 
  private:

@@ -19,12 +19,12 @@ class CornerCells {
 
   /// Counts the features of a frame by where they are predicted. Returns how many of them are inliers.
   int count(const Frame& frame);
-  /// Marks the cells that show a plane: is_on_plane(pixel) is asked for a few pixels of each.
+  /// Marks the cells that show a plane: is_on_plane(pixel) is called for a few pixels of each cell.
   template <typename F>
   void mark_planes(F&& is_on_plane);
-  /// Adds features until so many are in view: at plain corners; where those leave fewer than kFaintBelow times min_inliers, the least of a
-  /// tracked frame, at faint ones as well. add_in(cell, least) adds one in a cell, and says whether it could. max_in_cell: features of a
-  /// cell, one more where it shows a plane. turn: changes which cells come first.
+  /// Adds features at plain corners until so many are in view; at faint corners too, where fewer than kFaintBelow times min_inliers (the
+  /// least of a tracked frame) are. add_in(cell, least) adds one in a cell and returns whether it could. max_in_cell: features of a cell,
+  /// one more where it shows a plane. turn: changes which cells come first.
   template <typename F>
   void fill(int in_view, int min_inliers, int turn, int max_in_cell, F&& add_in);
 
@@ -34,24 +34,24 @@ class CornerCells {
   Rect rect_of(int row, int column) const;
 
   int width_, height_, border_;
-  int in_view_ = 0;  ///< inliers and what this frame has added
+  int in_view_ = 0;  ///< inliers, and features that this frame has added
   int in_cell_[kCells] = {};
   bool on_plane_[kCells] = {};
 };
 
 enum class CornerUse { kTaken, kNotHere, kNoRoom };
 
-/// What a corner must have, at least.
+/// Least contrast of a corner.
 struct CornerStrength {
   int threshold;  ///< of the segment test [grey levels]
   float score;    ///< min_eigenvalue
 };
 const CornerStrength kPlainCorner = {tuning::image_corners::kCornerThreshold, tuning::image_corners::kMinCornerScore};
-/// Of a picture that has too few others: a dim one, or one of a bare wall.
+/// For an image with too few plain corners: a dim one, or one of a bare wall.
 const CornerStrength kFaintCorner = {tuning::image_corners::kFaintThreshold, tuning::image_corners::kFaintScore};
 
-/// Offers the corners of a cell that are near no feature of the frame, the best first, to take(pixel), until it takes one. False: it took
-/// none.
+/// Calls take(pixel) for the corners of a cell that are near no feature of the frame, the best first, until it returns true. False: it
+/// never did.
 template <typename F>
 bool take_corner(const Tracker& tracker, const Rect& cell, const CornerStrength& least, const Frame& frame, int width,
                  F&& take);
@@ -79,8 +79,8 @@ void CornerCells::fill(int in_view, int min_inliers, int turn, int max_in_cell, 
   fill_cells(at_least, turn, max_in_cell, [&](const Rect& cell) { return add_in(cell, kFaintCorner); });
 }
 
-/// Calls add_in(cell) for the emptiest cells until so many features are in view. Cells take turns: pass `level` takes those that hold
-/// that many features, or kPlaneAhead more on a plane, where one is cheap and known at once.
+/// Calls add_in(cell) for the emptiest cells until so many features are in view. Pass `level` takes the cells that hold that many features,
+/// or kPlaneAhead more on a plane, where a feature has two rows and a known depth.
 template <typename F>
 void CornerCells::fill_cells(int in_view, int turn, int max_in_cell, F&& add_in) {
   constexpr int kPlaneAhead = tuning::image_corners::kPlaneAhead;

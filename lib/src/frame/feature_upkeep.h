@@ -12,7 +12,7 @@
 
 namespace pf {
 
-/// How reliable a feature is: the rate of its successes, of proven ones more.
+/// Reliability of a feature: the rate of its successes times its number of measurements, which counts up to 20.
 inline float reliability(const Feature& f) {
   const int rated = std::min(f.observations, 20);
   return static_cast<float>(rated) * static_cast<float>(f.observations + 1) / static_cast<float>(f.attempts + 1);
@@ -25,8 +25,8 @@ inline void note_search(bool found, Scalar share, Feature* feature) {
   feature->was_missed = !found;
 }
 
-/// Counts the searches of a frame, and what they say of their features. Of one that does not support its pose only what was taken all the
-/// same: what it did not find may have been elsewhere.
+/// Counts the searches of a frame and updates the log-odds of their features. In a frame that does not support its pose only inliers count:
+/// a feature that it did not find may have been elsewhere.
 inline void count_searches(const Frame& frame, const FindShare& mean, FeatureTable* features, bool supported = true) {
   int searched = 0, inliers = 0;
   for (int t = 0; t < frame.match_count(); ++t) {

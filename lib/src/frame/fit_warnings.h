@@ -5,10 +5,10 @@
 
 namespace pf {
 
-/// Says what fits badly, once each: matches far beyond their noise, a lens far from its calibration.
+/// Logs what fits badly, once each: matches far beyond their noise, a lens far from its calibration.
 class FitWarnings {
  public:
-  /// lens: as it is estimated now.
+  /// lens: the present estimate.
   void check(const Settings& settings, const NoiseModel& noise, const Camera& lens);
 
  private:

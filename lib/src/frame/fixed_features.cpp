@@ -82,7 +82,8 @@ bool FixedFeatures::before(const Match& match, Vec2* pixel) const {
   return entry.id == static_cast<std::uint16_t>(match.id) && entry.u != kNowhere;
 }
 
-/// The turn since the reference frame that explains what has moved. False where most of the features have not, or not as one.
+/// Rotation since the reference frame that explains the features which have moved. False where most features have not moved, or do not
+/// agree with one rotation.
 ///
 ///   sum w |pixel - project(R^T ray)|^2,   w = 1 / (1 + |r|^2 / (kParallax |d|)^2)
 bool FixedFeatures::find_turn(const Camera& camera, const Frame& frame, Quat* q_before_now) const {

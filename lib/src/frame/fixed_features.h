@@ -10,31 +10,30 @@
 
 namespace pf {
 
-/// What stands still in the picture while the rest of it moves: the carrier's own body, a date that is written over it. It is no part of
-/// the scene, and is masked from then on (lib/docs/theory/belief.md).
+/// Finds features that stand still in the image while the rest moves: the carrier's own body, a date that is written over the image. They
+/// are no part of the scene, and their surroundings are masked from then on (lib/docs/theory/belief.md).
 ///
-/// Since a reference frame most features have moved by kMinFlow or more, as if the camera had turned: the turn that fits these moves what
-/// is at a feature by m. A feature whose pixel has moved by d then adds
+/// Since a reference frame most features have moved by kMinFlow or more, as if the camera had rotated; this rotation moves the image at a
+/// feature by m. A feature whose pixel has moved by d then adds
 ///
 ///   ln N(d; 0, kStill^2 I) - ln N(d; m, (kParallax |m|)^2 I),   bounded by +-kMaxStep
 ///
-/// to the evidence that it is fixed to the picture, where parallax may add to m or take from it. Its log-odds are this and those of the
-/// share of all features that are fixed, which is estimated by their own probabilities: one that stands still among many that do is soon
-/// known. A point that the camera keeps in view, moving around it, stands still for a while too; a hand does not hold it to half a pixel.
-/// No pose is needed, so it works before there is one.
+/// to the evidence that it is fixed to the image; parallax may add to m or subtract from it. Its log-odds are this evidence plus those of
+/// the share of fixed features, which is estimated from the features' own probabilities, so that one among many is recognised soon. A point
+/// around which the camera moves stands still for a while, too, but a hand does not hold it to half a pixel. No pose is needed.
 ///
 /// src  sequential test of two hypotheses (Wald 1947); share as in expectation maximisation (Dempster 1977)
 class FixedFeatures {
  public:
   /// max_features: entries of the feature table.
   bool layout(Arena& arena, int width, int height, int max_features);
-  /// Nothing is fixed. also: masked besides, by the caller; may be null.
+  /// Begins without fixed features. also: the caller's mask; may be null.
   void init(const ImageMask* also);
-  /// After a frame's searches. Masks the surroundings of features that are fixed, which are no points of the scene then. True where so many
-  /// of the frame's inliers have turned out to be that pose and map come from them, and are wrong.
+  /// After a frame's searches: masks the surroundings of features that are fixed, and counts these as no points of the scene. True where so
+  /// many of the frame's inliers are fixed that pose and map have come from them.
   bool note(const Camera& camera, const Frame& frame, FeatureTable* features);
 
-  /// What is fixed, and what the caller has masked.
+  /// Mask of what is fixed, and of what the caller has masked.
   const ImageMask* mask() const { return &mask_; }
 
  private:
@@ -60,7 +59,7 @@ class FixedFeatures {
   int capacity_ = 0;
   ImageMask mask_;
   int age_ = 0;       ///< [frames] of the reference; 0: there is none
-  Scalar prior_ = 0;  ///< log-odds of a feature of which nothing is known
+  Scalar prior_ = 0;  ///< log-odds of a feature without evidence
 };
 
 }  // namespace pf

@@ -36,20 +36,21 @@ enum class FrameReason : int {
   kFewFound = 2,
   kDisagree = 3,
   kImprobable = 4,
-  kUncertain = 5
+  kUncertain = 5,
+  kLens = 6
 };
 
 /// Normalised innovation squared of the pose alone, Filter::pose_nis.
 struct PoseNis {
   double nis = 0;
-  double of_rotation = 0;  ///< its part that is the rotation's, with half the degrees of freedom
+  double of_rotation = 0;  ///< the rotation's part, with half the degrees of freedom
   int dof = 0;
 };
 
 struct FrameReport {
   std::int64_t t_ns = 0;
   int frames = 0;
-  int duplicates = 0;  ///< images since the beginning that were the one before
+  int duplicates = 0;  ///< images since the beginning that repeated the one before
   int repairs = 0;     ///< frames since the beginning in which P had to be repaired
   int attempts = 0, matches = 0, inliers = 0, new_features = 0, evicted = 0;
   int consensus = 0;  ///< inliers of the best of the poses about which the frame was searched
@@ -57,7 +58,7 @@ struct FrameReport {
   double nis = 0;
   int nis_dof = 0;
   PoseNis pose;             ///< only with an inertial unit
-  int templates = 0;        ///< that learnt from this frame
+  int templates = 0;        ///< templates that were updated in this frame
   float template_area = 0;  ///< sum of their masks, in parts of a template
   std::int64_t stage_ns[kStageCount] = {};
 };
@@ -66,7 +67,7 @@ class Frame {
  public:
   FrameReport report;
 
-  /// So many matches agree with a pose about which the frame was searched.
+  /// Notes the inliers of a pose about which the frame was searched; the largest count stays in the report.
   void note_consensus(int inliers) { report.consensus = inliers > report.consensus ? inliers : report.consensus; }
 
   bool layout(Arena& arena, int capacity) {
@@ -91,7 +92,7 @@ class Frame {
     count_ = 0;
   }
 
-  /// Measures the same frame once more: as begin() left it, but for the time that it has cost.
+  /// Begins the same frame once more: as begin() left it, but keeps the times of its stages.
   void begin_again() {
     const FrameReport before = report;
     begin(before.t_ns);
@@ -104,7 +105,7 @@ class Frame {
   Match& match(int i) { return match_[i]; }
   const Match& match(int i) const { return match_[i]; }
   const Match* matches() const { return match_; }
-  /// Index of the new match. Only while not full.
+  /// Adds a match and returns its index. Only while not full().
   int add(const Match& match) {
     match_[count_] = match;
     return count_++;
@@ -117,7 +118,7 @@ class Frame {
   void forget_all() {
     for (int i = 0; i < count_; ++i) match_[i].feature = -1;
   }
-  /// What was searched for in vain is searched once more: takes its matches back.
+  /// Removes this frame's matches, so that the same features can be searched for again.
   void forget_searches() {
     count_ = 0;
     report.attempts = report.matches = 0;

@@ -5,14 +5,14 @@
 #include "frame/settings.h"
 #include "frame/tracking_state.h"
 
-/// What both back ends do with an image before its frame begins, and what an image without use ends with.
+/// What both back ends do with an image before its frame begins, and the status of an unusable image.
 
 namespace pf {
 
 enum class FrameEntry : std::uint8_t {
-  kLate,      ///< not after the last frame: refused
-  kRepeated,  ///< the image before again: so are its pose and status, under the new time
-  kFrozen,    ///< likewise, for so long that nobody knows where the camera is now
+  kLate,      ///< not after the last frame: rejected
+  kRepeated,  ///< repeats the image before, and so its pose and status, under the new time
+  kFrozen,    ///< the same, for so long that the camera may be anywhere
   kNew
 };
 
@@ -20,7 +20,7 @@ inline bool is_next_frame(const Frame& frame, std::int64_t t_ns) {
   return frame.report.frames == 0 || t_ns > frame.report.t_ns;
 }
 
-/// Of kRepeated the frame is done. The next prediction begins where this one did not go on.
+/// Classifies an image. After kRepeated the frame is finished, and the next prediction begins at the body of the repeated frame.
 inline FrameEntry enter_frame(const Settings& settings, const ImageView& image, std::int64_t t_ns, FrozenCamera* frozen,
                               Frame* frame, TrackingState* tracking) {
   if (!is_next_frame(*frame, t_ns)) return FrameEntry::kLate;
@@ -32,13 +32,13 @@ inline FrameEntry enter_frame(const Settings& settings, const ImageView& image, 
   return FrameEntry::kRepeated;
 }
 
-/// Of a frame that is late or repeated.
+/// Status of a frame that is late or repeated.
 inline Status entry_status(FrameEntry entry, const TrackingState& tracking) {
   if (entry == FrameEntry::kLate) return Status::kTime;
   return tracking.state() == SlamState::kTracking ? Status::kOk : Status::kStarting;
 }
 
-/// Of a frame whose image was of no use, from the status that it ended with.
+/// Status of a frame whose image was unusable, from the status that the frame ended with.
 inline Status unusable_status(Status ended) {
   return ended == Status::kLost || ended == Status::kStarting ? ended : Status::kUnusable;
 }

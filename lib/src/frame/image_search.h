@@ -14,22 +14,22 @@ class TemplateMatcher;
 
 class ImageSearch {
  public:
-  /// Templates take nothing where the config has no masks.
+  /// Without masks in the config templates take no memory.
   bool layout(Arena& arena, const Settings& settings);
   void init(const Settings& settings);
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);
-  /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
+  /// Stores the pixels around this pixel as the feature's appearance. False if the pixel is too near to the border.
   bool remember(Map* map, int feature, const Vec2& pixel, const CameraView& view) const;
-  /// Lets a task search with the feature's template. Its point has a depth.
+  /// Makes a task search with the feature's template. Only for points with a depth.
   static void use_template(const Map& map, int feature, SearchTask* task);
-  /// What is expected at something that is masked, or found there, cannot be compared.
+  /// Searches for a feature in the image. Where it is predicted or found at masked pixels it counts as not comparable.
   SearchOutcome search(const SearchTask& task) const;
-  /// Updates mask and normal of a feature's template, which was found at this pixel. False where nothing was learnt.
+  /// Updates mask and normal of the template of a feature that was found at this pixel. False where they do not change.
   bool learn(const SearchTask& task, const Vec2& pixel, Map* map, int feature) const;
 
-  /// After a frame's searches: leaves out what stands still in the picture from the next one on. True where the map comes from that.
+  /// After a frame's searches: masks what stands still in the image from the next frame on. True where the map has come from it.
   bool note_fixed(const Camera& camera, const Frame& frame, FeatureTable* features) {
     return fixed_.note(camera, frame, features);
   }

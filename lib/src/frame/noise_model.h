@@ -4,7 +4,7 @@
 #include "frame/tuning.h"
 #include "map/feature_table.h"
 
-/// All pixel noise of matches in images: how wrong a match is, and for how many frames it stays wrong.
+/// Pixel noise of matches in images: its covariance, and for how many frames an error lasts.
 
 namespace pf {
 
@@ -24,11 +24,11 @@ namespace pf {
 /// Derivation and measurements: lib/docs/theory/noise.md
 class NoiseModel {
  public:
-  /// Of the first view, which later ones are compared with.
+  /// Noise of the first view, with which later ones are compared.
   static Mat2 reference() {
     return Mat2::Identity() * (tuning::noise::kReferenceSigma * tuning::noise::kReferenceSigma);
   }
-  /// Of a match before the image has said how good it is: search, and the first depths without a target.
+  /// Prior of a match, before the template's fit gives its covariance: for the search, and for the first depths without a target.
   static Mat2 search() { return Mat2::Identity() * (tuning::noise::kSearchSigma * tuning::noise::kSearchSigma); }
   /// R_update of such a match.
   static Mat2 search_update() { return search() * tuning::noise::kPriorFrames; }
@@ -45,13 +45,13 @@ class NoiseModel {
   /// Root mean square over recent inliers [px].
   Scalar sigma_gate() const;
   Scalar sigma_info() const;
-  /// Whether matches are so far off that their noise alone cannot be the reason.
+  /// Whether residuals are so large that noise alone cannot be the reason.
   bool is_implausible() const { return scale_ > tuning::noise::kMaxPlausible; }
 
-  /// An inlier's residual after the update. R_gate as match() gave it, before. trace: of the feature, or null if its matches entered the
-  /// update as independent of each other.
+  /// Adds an inlier's residual after the update. R_gate: from match(), before the update. trace: of the feature, or null if its matches
+  /// entered the update as independent of each other.
   void learn(int frame, const Vec2& residual, const Mat2& R_gate, Scalar leverage, ResidualTrace* trace);
-  /// Takes in what learn() has gathered from this frame.
+  /// Updates g and tau with the residuals that learn() has gathered in this frame.
   void end_frame();
 
  private:

@@ -7,7 +7,7 @@
 
 namespace pf {
 
-/// How the config asks for planes to be found, for either back end.
+/// Settings of the plane search from the config, for both back ends.
 inline PlaneSearchSettings plane_search_settings(const Settings& settings) {
   PlaneSearchSettings search;
   search.min_points = settings.plane_min_points;
@@ -17,8 +17,8 @@ inline PlaneSearchSettings plane_search_settings(const Settings& settings) {
   return search;
 }
 
-/// The distance that a point so far from the camera may have from a plane. plane.max_distance is one at the depth of the start; what is
-/// farther is known, and its surface told from others, in proportion to its depth.
+/// Largest distance from a plane of a point at this range from the camera. plane.max_distance is that at the depth of the start; for
+/// farther points it grows in proportion, as the uncertainty of their depth does.
 inline Scalar distance_at(const Settings& settings, Scalar range) {
   return settings.plane_distance * std::max(Scalar(1), range / settings.start_depth);
 }

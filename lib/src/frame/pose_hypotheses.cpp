@@ -30,13 +30,22 @@ bool find_elsewhere(const PoseProposal& last, const ViewMemory& views, const Pyr
   return true;
 }
 
+void note_zoom(const ZoomFit& fit, const Settings& settings, PoseConsensus* consensus) {
+  if (!(fit.variance > Scalar(0))) return;
+  const LensPrior& lens = settings.lens;
+  const bool is_uncertain = lens.rows.count > 0 && lens.rows.parameter[0] == 0;
+  const Scalar known = is_uncertain ? std::sqrt(lens.variance[0]) / settings.camera.fx : Scalar(0);
+  consensus->log_zoom = fit.log_ratio;
+  consensus->lens_evidence = lens_evidence(fit.log_ratio, fit.variance, known);
+}
+
 Scalar PoseHypotheses::evidence(const PoseConsensus& consensus) const {
   return belief_.evidence(consensus) - std::log(static_cast<Scalar>(tried_));
 }
 
-bool PoseHypotheses::accepts(const PoseConsensus& consensus, Scalar log_odds, bool is_last) const {
-  return consensus.inliers >= settings_.min_inliers &&
-         (is_last ? PoseBelief::is_enough(log_odds) : PoseBelief::is_settled(log_odds));
+bool PoseHypotheses::accepts(const PoseConsensus& consensus, Scalar log_odds, bool is_last) {
+  return consensus.inliers >= settings_.min_inliers && (is_last || PoseBelief::is_settled(log_odds)) &&
+         belief_.may_use(log_odds, consensus);
 }
 
 }  // namespace pf

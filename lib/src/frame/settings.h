@@ -24,29 +24,29 @@ struct MaskRoom {
   ImageMask* mask = nullptr;  ///< null: no room
 };
 
-/// What is kept of where the camera was, and of what the caller has set there.
+/// What is kept of earlier views, and of what the caller has set in them.
 struct KeptRoom {
   int views = 0;
   int places = 0;  ///< of the window
   int anchors = 0;
 };
 
-/// Inertial samples that are kept, and what their unit can measure.
+/// Number of inertial samples that are kept, and the ranges of their unit.
 struct ImuRoom {
   int buffer = 0;
   ImuRanges ranges;
 };
 
-/// What comparisons turn off (planefold_research.h).
+/// Parts of the method that comparisons switch off (planefold_research.h).
 struct ResearchForms {
   bool keep_gauge = true;    ///< keeps the covariance consistent with what a camera cannot observe
-  bool gate_patches = true;  ///< refuses patches whose corners are not where they should be
+  bool gate_patches = true;  ///< rejects patches whose corners fail their gate
 };
 
 /// The config after it was checked, in the library's own types.
 struct Settings {
   Camera camera;
-  LensPrior lens;  ///< what is uncertain of it; no rows where it is taken as exact
+  LensPrior lens;  ///< its prior; no rows where the lens is exact
   const Kernels* kernels = nullptr;
 
   int max_state_dim = 0;

@@ -5,9 +5,9 @@
 #include "filter/motion.h"
 #include "frame/tuning.h"
 
-/// A hand does not keep its speed for long, and half a radian of rotation uncertainty already means searching everywhere. Without these
-/// limits, one second without an image would predict the camera out of the room. A variance of three axes is that of the least known one:
-/// a camera that turns about one axis alone is as lost as one that turns about all.
+/// A hand does not keep its speed for long, and with a rotation sigma of half a radian every feature is searched for everywhere. Without
+/// these limits one second without an image would predict the camera out of the room. The variance of three axes is that of the least known
+/// one: one unknown axis is as bad as three.
 
 namespace pf {
 
@@ -25,11 +25,11 @@ inline MotionNoise limited_noise(MotionNoise noise, bool has_velocity, Scalar ro
 /// Factor by which a speed that is not measured decays in dt [s].
 inline Scalar speed_decay(Scalar dt) { return std::exp(-dt / tuning::body_motion::kSpeedDecay); }
 
-/// Beyond any position and any rotation the speeds decay to kLeastSpeedSigma, without noise that keeps them up: a variance that halves in
-/// each frame would be no normal number after some seconds. P: of (v, w).
+/// Where position and rotation are fully unknown the speeds decay to kLeastSpeedSigma, without process noise; a variance that went on
+/// halving in each frame would be denormal after some seconds. P: of (v, w).
 ///
-/// rate: w, which counts up to what leads to any rotation in dt [s], and for nothing beyond that. What decays of a faster one would give
-/// the rotation a variance beside which float cannot hold what the next images tell.
+/// rate: w, which is cut at the rate that leads to any rotation in dt [s]. The decay of a faster one would give the rotation a variance so
+/// large that float has no digits left for what the next images measure.
 inline void limit_speed(Scalar dt, Scalar rotation_variance, Scalar position_variance, Vec3* rate, Mat6* P) {
   using namespace tuning::body_motion;
   const bool any_rotation = rotation_variance > kAnyRotation * kAnyRotation;

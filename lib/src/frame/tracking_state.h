@@ -22,7 +22,7 @@ struct StartProgress {
   bool depth_known = false;
   bool checking = false;  ///< a record goes on beside a start at a target, to check the depths that came of it
 
-  /// No depth has been solved yet, so the map has no scale and no reliable depths.
+  /// True while no depth has been solved, so that the map has neither scale nor reliable depths.
   bool pending() const { return recording && !depth_known; }
 };
 
@@ -31,15 +31,15 @@ class TrackingState {
   explicit TrackingState(const Settings& settings) : settings_(settings) {}
 
   void init() { data_ = Data(); }
-  /// dt_ns: since the frame before.
+  /// Begins a frame, dt_ns after the one before.
   void begin_frame(std::int64_t dt_ns) {
     data_.from_target = data_.started_over = data_.unusable = false;
     data_.belief.begin_frame(seconds(dt_ns));
   }
-  /// This frame shows something to track; dt_ns since the frame before.
+  /// Notes that this frame's image is usable. While lost, its dt_ns (since the frame before) count towards motion.restart_s.
   void note_usable_image(std::int64_t dt_ns) { data_.usable_ns += data_.lost ? dt_ns : 0; }
-  /// There is a pose from this time on. The first one says where W is; after a loss pictures have to show that they go on from one to the
-  /// next. lost: in a map that was loaded, where it may be anywhere.
+  /// Sets the time of the map's first pose. The first pose of all defines W; after a loss several images must agree on the motion between
+  /// them first. lost: in a loaded map, where the camera may be anywhere.
   void set_has_pose(std::int64_t t_ns, bool lost = false) {
     data_.has_pose = true;
     data_.lost = lost;
@@ -53,17 +53,17 @@ class TrackingState {
     data_.from_target = true;
     data_.belief.trust();
   }
-  /// The frame repeats the one before.
+  /// Gives the last pose the time of a frame that repeats the one before.
   void repeat(std::int64_t t_ns) { data_.last_tracked_ns = t_ns; }
   void note_update(bool done) { data_.failed_updates = done ? 0 : data_.failed_updates + 1; }
-  /// The estimate was discarded in this frame.
+  /// Begins anew after the estimate was discarded in this frame. A target is not skipped by the next start.
   void start_over() {
     begin_map();
     data_.may_skip_target = false;
     data_.started_over = true;
   }
-  /// The old map was discarded because it was not found again. The new one need not begin at a target. A W in which there was a pose keeps
-  /// its id.
+  /// Begins a new map after the old one was discarded because it was not found again. It may begin without a target. The id of a W in which
+  /// there was a pose is not used again.
   void begin_map() {
     const std::uint32_t map_id = data_.map_id + (data_.has_pose ? 1 : 0);
     data_ = Data();
@@ -71,9 +71,9 @@ class TrackingState {
     data_.may_skip_target = true;
     data_.belief.begin_elsewhere();
   }
-  /// The same map in other units, and so with another id.
+  /// Gives the map another id, since its unit of length has changed.
   void rename_map() { ++data_.map_id; }
-  /// This frame's pose is measured, but too uncertain to use.
+  /// Marks this frame's pose as measured, but too uncertain to use.
   void set_unusable() { data_.unusable = true; }
   /// Decides the state at the end of a frame, and of one that is not tracked the reason. Returns the status of the frame.
   Status conclude(const StartProgress& start, std::int64_t max_coast_ns, const Hooks& hooks, FrameReport* report);
@@ -83,18 +83,19 @@ class TrackingState {
   SlamState state() const { return data_.state; }
   bool has_pose() const { return data_.has_pose; }
   bool started_over() const { return data_.started_over; }
-  /// So many updates have failed that P is no valid covariance.
+  /// True where so many updates in a row have failed that P is no valid covariance.
   bool updates_fail() const { return data_.failed_updates >= kMaxFailedUpdates; }
-  /// The pose is a prediction.
+  /// True where the pose is only a prediction.
   bool coasting_or_lost() const { return data_.state == SlamState::kCoasting || data_.state == SlamState::kLost; }
-  /// This frame's measurements support its pose.
+  /// True where this frame's measurements support its pose.
   bool is_tracked(const FrameReport& report) const {
     return (report.inliers >= settings_.min_inliers || data_.from_target) && !data_.unusable;
   }
-  /// The last frame did not support its pose: the map has to be found again before anything is measured.
+  /// True where the last frame did not support its pose, so that the map has to be found again before anything is measured.
   bool is_relocalising(const StartProgress& start) const { return coasting_or_lost() && !start.pending(); }
+  /// Not while the lens is another one than the calibrated: the new map would be as wrong as the old one's poses.
   bool needs_new_map(std::int64_t restart_ns) const {
-    return restart_ns > 0 && data_.lost && data_.usable_ns >= restart_ns;
+    return restart_ns > 0 && data_.lost && data_.usable_ns >= restart_ns && data_.belief.lens().is_kept();
   }
   /// Id of the current map; never used twice.
   std::uint32_t map_id() const { return data_.map_id; }
@@ -114,6 +115,7 @@ class TrackingState {
     bool unusable = false;  ///< this frame's pose
     bool may_skip_target = false;
     bool depths_known = false;  ///< in the last frame
+    bool lens_said = false;     ///< that it has changed
     std::uint32_t map_id = 1;
     std::int64_t usable_ns = 0;  ///< of usable images while lost
     bool started_over = false;   ///< in this frame

@@ -27,7 +27,7 @@ struct Camera {
 };
 
 /// Copies the numbers, with their types, and finds the domain. Null when all is well, else the name of the first field
-/// that makes no sense, as check_camera says; the camera is then not to be used.
+/// that check_camera rejects; the camera is then not to be used.
 const char* make_camera(int model, int width, int height, const double intrinsics[4], const double distortion[8],
                         Camera* camera);
 
@@ -46,5 +46,11 @@ bool project(const Camera& camera, const Vec3& p_C, Vec2* pixel, Mat23* J_pixel_
 /// Unit ray in C that projects to a pixel, and its Jacobian (3x2, [1/px]; null to skip).
 /// False where the model has none; outputs untouched.
 bool unproject(const Camera& camera, const Vec2& pixel, Vec3* ray_C, Mat32* J_ray_pixel = nullptr);
+
+/// Whether a pixel lies in the image, so far or farther from the centres of its outermost pixels. False for what is no number.
+inline bool is_in_image(const Camera& camera, const Vec2& pixel, Scalar margin = 0) {
+  return pixel.x() >= margin && pixel.y() >= margin && pixel.x() <= static_cast<Scalar>(camera.width - 1) - margin &&
+         pixel.y() <= static_cast<Scalar>(camera.height - 1) - margin;
+}
 
 }  // namespace pf

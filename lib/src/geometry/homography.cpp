@@ -31,7 +31,7 @@ bool homography_from_4(const Vec3 from[4], const Vec3 to[4], Mat3* H) {
   const Vec3 a = A_inverse * from[3], b = B_inverse * to[3];
   const Scalar floor = 8 * std::numeric_limits<Scalar>::epsilon();
   for (int i = 0; i < 3; ++i) {
-    // A zero says that from[3] (or to[3]) is in line with two others; a change of sign, that a point changes side.
+    // A zero means that from[3] (or to[3]) is in line with two others; a change of sign, that a point changes side.
     if (!(std::abs(a(i)) > floor * a.norm()) || !(std::abs(b(i)) > floor * b.norm())) return false;
     if (!(a(i) * b(i) > 0)) return false;
     B.col(i) *= b(i) / a(i);

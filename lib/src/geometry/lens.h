@@ -21,7 +21,7 @@ using LensJacobian = Eigen::Matrix<Scalar, 2, kLensParameters>;
 ///   radtan       dm'/dk1 = m r²,  k2 m r⁴,  p1 (2 mx my, r² + 2 my²),  p2 (r² + 2 mx², 2 mx my),  k3 m r⁶
 ///   equidistant  dm'/dki = m θ^(2i+1) / r
 ///   division     m' = s m, s = 1 / sqrt(1 + 2 k |u|²), u = (fx mx, fy my):  ds/dk = -|u|² s³,
-///                ds/dfx = -2 k s³ fx mx²,  ds/dfy likewise
+///                ds/dfx = -2 k s³ fx mx²,  ds/dfy in the same way
 LensJacobian lens_jacobian(const Camera& camera, const Vec3& p_C);
 
 /// Of the unit ray of a given pixel, from its derivative by the pixel:  J_ray_lens = -J_ray_pixel J_pixel_lens.
@@ -57,7 +57,7 @@ struct LensSigmas {
   Scalar aspect = 0;                        ///< of fx against fy, relative
   Scalar centre = 0;                        ///< of cx and of cy [px]
   Scalar distortion[kLensDistortion] = {};  ///< 0: exact, and no row
-  Scalar readout = 0;                       ///< likewise [s]
+  Scalar readout = 0;                       ///< the same [s]
 };
 
 /// The prior of a camera. A pinhole whose first distortion coefficient is uncertain becomes a radial-tangential camera without distortion.
@@ -66,8 +66,8 @@ LensPrior make_lens_prior(const LensSigmas& sigmas, Camera* camera);
 /// The same without the readout: for who compares pictures that are taken at once.
 LensPrior shape_prior(const LensPrior& prior);
 
-/// Inverse of a prior's covariance, rows x rows. inflation: how many times too much an adjustment believes its pixels; it must believe the
-/// prior as many times too much.
+/// Inverse of a prior's covariance, rows x rows. inflation: how many times too much an adjustment weights its pixels; the prior must have
+/// the same factor.
 void lens_information(const LensPrior& prior, Scalar inflation, Scalar* information);
 
 /// Moves a camera's parameters by an error over these rows, and finds its domain anew.

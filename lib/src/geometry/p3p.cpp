@@ -159,7 +159,7 @@ int solve_p3p(const Vec3 points_W[3], const Vec3 rays_C[3], CameraPose* poses) {
     const double v = reversed ? 1 / roots[k] : roots[k];
     if (!(v > 0) || !(v < 1e10)) continue;
     const double s0 = std::sqrt(t.side2[1] / (1 + v * v - 2 * v * t.cosine[1]));
-    // u² - 2 u cosine[2] + 1 = side2[2] / s0²; which of its roots, the third equation says.
+    // u² - 2 u cosine[2] + 1 = side2[2] / s0²; the third equation decides between its roots.
     double u[2];
     const int two = add_quadratic_roots(-2 * t.cosine[2], 1 - t.side2[2] / (s0 * s0), u);
     for (int i = 0; i < two; ++i) {

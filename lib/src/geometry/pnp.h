@@ -28,7 +28,7 @@ struct PnpPoint {
 ///
 ///   p_C ~ R_WCᵀ (m - w p_WC),   J_pC = R_WCᵀ [ [m - w pivot]x   -w I ]
 ///
-/// J_pixel_pose  2x6 (null to skip). False where project says so; outputs untouched.
+/// J_pixel_pose  2x6 (null to skip). False where project() is; outputs untouched.
 bool project_from_pose(const Camera& camera, const Quat& q_WC, const Vec3& p_WC, const Vec3& m, Scalar w,
                        const Vec3& pivot, Vec2* pixel, Mat26* J_pixel_pose = nullptr);
 

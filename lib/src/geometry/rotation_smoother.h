@@ -2,8 +2,7 @@
 
 #include "base/eigen.h"
 
-/// Rotations of a camera of which pictures tell each by itself, and a gyro how it rotated from one to the next
-/// (lib/docs/theory/inertial.md).
+/// Smooths rotations of a camera: images measure each of them, and a gyroscope the rotation between two (lib/docs/theory/inertial.md).
 
 namespace pf {
 

@@ -15,8 +15,8 @@ Quat exp_so3(const Vec3& theta);
 /// Unit quaternion to rotation vector [rad], angle in [0, pi].
 Vec3 log_so3(const Quat& q);
 
-/// Shortest turn that takes the z axis to the unit vector b: (1 + b_z, z x b), normalised. Where b is almost -z any half turn about an
-/// axis across z does; it is the one about x.
+/// Shortest rotation that takes the z axis to the unit vector b: (1 + b_z, z x b), normalised. Where b is almost -z, half a turn about x,
+/// one of many.
 Quat turn_z_to(const Vec3& b);
 
 /// Left Jacobian: Exp(phi + d) = Exp(J_l(phi) d) Exp(phi) to first order; any angle.

@@ -23,7 +23,7 @@ Mat3 TurnIntegral::matrix() const {
   return Mat3::Identity() + b * h + c * h.lazyProduct(h);
 }
 
-/// b hat(phi) x by phi: -b hat(x) + db (phi x x) phiᵀ; hat(phi)^2 x likewise: -(hat(phi x x) + hat(phi) hat(x)).
+/// b hat(phi) x by phi: -b hat(x) + db (phi x x) phiᵀ; hat(phi)^2 x by phi: -(hat(phi x x) + hat(phi) hat(x)).
 Mat3 TurnIntegral::by_phi(const Vec3& x) const {
   const Vec3 once = phi.cross(x), twice = phi.cross(once);
   const Vec3 along = db * once + dc * twice;

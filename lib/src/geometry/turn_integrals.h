@@ -4,7 +4,7 @@
 
 namespace pf {
 
-/// An integral of the rotation along a turn by phi [rad], any angle (lib/docs/theory/servant2008.md):
+/// An integral along a rotation by phi [rad], any angle (lib/docs/theory/servant2008.md):
 ///
 ///   M(phi) = I + b hat(phi) + c hat(phi)^2
 struct TurnIntegral {
@@ -20,8 +20,8 @@ struct TurnIntegral {
 /// S(phi) = int_0^1 Exp(s phi) ds, which is the left Jacobian.                                    src Servant 2008 (3)
 TurnIntegral turn_integral(const Vec3& phi);
 
-/// T(phi) = 2 int_0^1 s Exp(s phi) ds.   src Servant 2008 (3): there 2 int_0^1 (1 - s) Exp(-s phi) ds, which is the same seen from
-/// the end of the turn, Exp(-phi) T(phi)
+/// T(phi) = 2 int_0^1 s Exp(s phi) ds.   src Servant 2008 (3): there 2 int_0^1 (1 - s) Exp(-s phi) ds, which is the same from
+/// the end of the rotation, Exp(-phi) T(phi)
 TurnIntegral turn_integral_of_ramp(const Vec3& phi);
 
 }  // namespace pf

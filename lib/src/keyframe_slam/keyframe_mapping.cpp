@@ -13,7 +13,7 @@ using namespace tuning::keyframe_slam;
 
 void KeyframeMapping::keep(bool tracked, bool young, Scalar median_depth, const FindShare& share) {
   const bool pending = record_.progress().pending();
-  // A young map's poses are too coarse for depths of their own: a keyframe's are adjusted with it.
+  // Poses of a map with few depths are too coarse to triangulate from; the adjustment of a keyframe gives depths.
   if (tracked && !pending && !young) triangulate_inliers(young);
   count_searches(frame_, share, &map_.tables().features, tracked || pending);
   if (tracked || pending) drop_failing(&map_);

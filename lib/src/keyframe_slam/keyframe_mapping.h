@@ -39,8 +39,8 @@ class KeyframeMapping {
     saving_.init();
   }
 
-  /// The work of one frame. tracked: its matches support its pose; a frame that does not changes nothing in the map, but for a first one.
-  /// young: so few points have a depth that those without helped with the pose. share: of searches that find something, in earlier frames.
+  /// The work of one frame. tracked: its matches support its pose; other frames change nothing in the map, but for the first one. young: so
+  /// few points have a depth that those without took part in the pose. share: of searches that find something, in earlier frames.
   void keep(bool tracked, bool young, Scalar median_depth, const FindShare& share);
   /// Adjusts the map about the newest keyframe, which is this frame, and moves the body with it.
   void adjust();

@@ -98,7 +98,7 @@ void KeyframeSlam::begin_frame(std::int64_t t_ns) {
   motion_.advance(before_ns, t_ns, tracking_.coasting_or_lost(), nothing_measured);
 }
 
-/// Finds the pose of the frame, in the way that the state asks for.
+/// Finds the pose of the frame, by the method that belongs to the state.
 void KeyframeSlam::measure() {
   data_.young = num_placed(map_) < tuning::keyframe_tracking::kYoung;
   if (!tracking_.has_pose()) {
@@ -126,7 +126,7 @@ void KeyframeSlam::measure() {
   }
 }
 
-/// What the frame says of noise, templates and the map. A frame that does not support its pose changes nothing in the map.
+/// Learns noise and templates from the frame, and updates the map. A frame that does not support its pose changes nothing in the map.
 void KeyframeSlam::learn() {
   if (!tracking_.has_pose()) return;
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kMap]);

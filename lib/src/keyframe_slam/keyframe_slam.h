@@ -45,7 +45,7 @@ class KeyframeSlam {
   const KeyframeMotion& motion() const { return motion_; }
   /// Time of the body: that of the last frame, or of the one that it repeats.
   std::int64_t body_ns() const { return data_.body_ns; }
-  /// What keeps the map: its adjustment says how sure the map is, and it saves it.
+  /// Keeps the map: its adjustment has the map's covariance, and it saves the map.
   const KeyframeMapping& mapping() const { return mapping_; }
   int kept_views() const { return relocaliser_.kept_views(); }
   /// Of the inliers of the last tracked frame.
@@ -67,8 +67,8 @@ class KeyframeSlam {
     std::int64_t since_last_ns = 0;  ///< from the frame before this one
     Scalar median_depth = 1;         ///< of the inliers of the last tracked frame
     Mark mark;
-    bool is_map_fixed = false;  ///< it comes from what stands still in the picture
-    bool young = false;         ///< in this frame so few points have a depth that those without must help
+    bool is_map_fixed = false;  ///< the map has come from what stands still in the image
+    bool young = false;         ///< in this frame so few points have a depth that those without are used for the pose
     SecondPose second;
     FrozenCamera frozen;
     FitWarnings warnings;

@@ -6,7 +6,7 @@
 
 namespace pf {
 
-/// How depths are given to points.
+/// Rule by which points get depths.
 struct TriangulationRule {
   Scalar sigma_px;  ///< of a pixel
   Scalar bound_px;  ///< within which a depth explains a pixel

@@ -6,7 +6,7 @@
 #include "base/eigen.h"
 #include "base/table_entries.h"
 
-/// Table of features: what is kept about each beside its block in the filter.
+/// Table of features: the data of each beside its block in the filter.
 
 namespace pf {
 
@@ -29,7 +29,7 @@ struct Feature {
   std::uint8_t rejections = 0;  ///< matches that were outliers, since it was last an inlier; up to 255
   bool is_target = false;
   bool has_appearance = false;
-  bool on_trial = false;    ///< began on a plane, which nothing but its place in the image says yet
+  bool on_trial = false;    ///< began on a plane that its own parallax does not confirm yet
   bool was_missed = false;  ///< no inlier when it was last searched for
 };
 
@@ -88,8 +88,8 @@ class FeatureTable {
   bool may_evict(int i, std::int64_t not_since_ns) const {
     return used(i) && !feature_[i].is_target && feature_[i].last_seen_ns < not_since_ns;
   }
-  /// The feature to evict first: the least proven, among equals the longest unseen; -1 if there is none. Most new features are never
-  /// measured again, and must not evict those that may come back into view.
+  /// The feature to evict first: the least often measured class (proof()), among equals the longest unseen; -1 if there is none. Most new
+  /// features are never measured again, and must not evict those that may come back into view.
   int least_useful(std::int64_t not_since_ns) const {
     int worst = -1;
     for (int i = 0; i < capacity_; ++i) {
@@ -100,7 +100,8 @@ class FeatureTable {
   }
 
  private:
-  /// How proven a feature is: 0 hardly ever measured again, 1 not yet, and then one more each time that it was measured twice as often.
+  /// Class of a feature by its measurements: 0 with fewer than kAgain, 1 with fewer than kProven, then one more for each doubling up to
+  /// kMaxProof.
   static int proof(const Feature& feature) {
     constexpr int kAgain = 3, kProven = 10, kMaxProof = 80;  // frames
     if (feature.observations < kProven) return feature.observations < kAgain ? 0 : 1;

@@ -49,7 +49,7 @@ class Map {
     target_withdrawn = false;
   }
 
-  /// How a feature looked when it was first seen. Valid if the feature `has_appearance`.
+  /// Appearance of a feature at first sight. Valid if the feature `has_appearance`.
   Appearance& appearance(int feature) { return appearance_[feature]; }
   const Appearance& appearance(int feature) const { return appearance_[feature]; }
   /// The camera that saw it then: a constant in W that does not follow when the map moves.
@@ -65,9 +65,9 @@ class Map {
  private:
   int mask_size_ = 0;
   Appearance* appearance_ = nullptr;    ///< of each row of the feature table
-  CameraView* first_view_ = nullptr;    ///< likewise
-  PlanarTemplate* template_ = nullptr;  ///< likewise; null without masks
-  std::uint8_t* mask_ = nullptr;        ///< likewise, mask_size_ each
+  CameraView* first_view_ = nullptr;    ///< the same
+  PlanarTemplate* template_ = nullptr;  ///< the same; null without masks
+  std::uint8_t* mask_ = nullptr;        ///< the same, mask_size_ each
 };
 
 }  // namespace pf

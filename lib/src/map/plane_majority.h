@@ -11,7 +11,7 @@ namespace pf {
 /// Largest number of points that are judged together.
 inline constexpr int kMaxJudged = 64;
 
-/// Where a point is, by itself.
+/// A point's own place, independent of its plane.
 struct JudgedPoint {
   Vec3 p_W = Vec3::Zero();  ///< [m]
   Scalar variance = 0;      ///< of its height above the plane, up to a factor that all points share [m²]
@@ -22,7 +22,7 @@ struct MajoritySettings {
   int min_points = 7;                  ///< more than so many have to be known well
   Scalar distance = Scalar(0.01);      ///< twice the standard deviation of a height that is known well [m]
   Scalar roughness = Scalar(0.002);    ///< standard deviation of a point's own height [m]
-  Scalar least_factor = Scalar(0.04);  ///< of the variances, whatever the points say
+  Scalar least_factor = Scalar(0.04);  ///< of the variances, at least
 };
 
 /// Heights above it have the error h + t1 u1 + t2 u2, u the coordinates of a place about c_W along e_W.
@@ -35,8 +35,8 @@ struct MajorityPlane {
 };
 
 /// The plane whose median point is nearest, in standard deviations, among those through three of the better known half (least median of
-/// squares), fitted again to what lies within three of them. What all points share, as a world that has drifted, is in that plane, and does
-/// not tell one point from another.
+/// squares), fitted again to what lies within three of them. An error that all points share, as the drift of the world, is in that plane,
+/// and does not separate points.
 ///
 ///   sigma_i^2 = factor variance_i + roughness^2
 ///   factor      (1 + 5 / (n - 3))^2 median r_i^2 / variance_i over the median of a chi-square, 0.455; with each further fit that times

@@ -31,7 +31,7 @@ class PlaneRefit {
   PlaneRefit(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings, const Vec3& viewer_W)
       : candidates_(candidates), count_(count), settings_(settings), viewer_W_(viewer_W) {}
 
-  /// Fits and collects in turn, rejects points of high leverage, and tests the rest. False if it is no plane.
+  /// Alternates between fitting and collecting points, rejects points of high leverage, and tests the rest. False if it is no plane.
   bool run(const PlaneHypothesis& hypothesis);
 
   const PlaneFit& fit() const { return fit_; }

@@ -36,7 +36,7 @@ inline constexpr int kMaxPlaneMembers = 64;
 /// its points against those in the layers beside it. The best sets are refitted, and the first that passes is returned:
 ///
 ///   count > min_points,  λ0 / count < normal_variance,  the points span an area and not a line
-///   every point is where the plane through the *other* points says      |r| / (1 - leverage) < distance
+///   every point is on the plane through the *other* points      |r| / (1 - leverage) < distance
 ///   the points hang together                                             steps of at most radius / 2
 ///   the plane stands out of what is around it, and chance cannot explain it    false_alarms.h
 ///
@@ -45,8 +45,8 @@ inline constexpr int kMaxPlaneMembers = 64;
 /// members       room for kMaxPlaneMembers indices of candidates, which belong to the plane; the fit is theirs
 /// false         nothing passed; outputs untouched
 /// work          at most about trials x count steps, and no memory but some 3 kB of stack
-/// src           Gee 2007, section 3.3. There the origin's set decides; here sets far from all others do not, points that
-///               decide the plane alone are left out, and planes that clutter makes by chance are refused
+/// src           Gee 2007, section 3.3. There the origin's set decides; here isolated sets do not, points of high leverage are rejected,
+///               and so are planes that clutter makes by chance
 bool search_plane(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings,
                   const Vec3& viewer_W, std::uint32_t search, PlaneFit* fit, int* members, int* member_count);
 

@@ -9,7 +9,7 @@
 #include "geometry/plane.h"
 #include "map/plane_outline.h"
 
-/// Table of planes: what is kept about each beside its block in the filter.
+/// Table of planes: the data of each beside its block in the filter.
 
 namespace pf {
 
@@ -30,10 +30,10 @@ struct PlaneEntry {
   SmallCount max_points;  ///< most points that it had at one time
   SmallCount outliers;    ///< points that were unfolded because they do not lie on it
   SmallCount upheld;      ///< patches that were measured on it for long
-  SmallCount refused;     ///< patches that were dropped because they were found elsewhere, in parts: see refuse()
+  SmallCount refused;     ///< patches that were dropped because they were found elsewhere, in parts (refuse())
   PlaneOutline seen;  ///< of points that were on it when it was last tended to, many of them gone from the map since
   PartSwitch<kHasWalls> known;  ///< a wall: known beforehand, and never dissolved
-  bool doubted = false;         ///< a wall that the gate refuses what should be on it; it takes no points
+  bool doubted = false;         ///< a wall that is rejected by its gate; it takes no points
   PartSwitch<kHasWalls>
       apart;  ///< a wall that nothing in the map has been compared with yet, since the scale is not known
   bool two_sided = false;
@@ -56,10 +56,10 @@ struct PlaneEntry {
   static constexpr int kOutlierShare = 4;  ///< one in so many
   static constexpr int kRefusedParts = 4;  ///< of a patch that is found behind a wall; before it: one
   static constexpr int kUpheldWorth = 8;   ///< points that a patch counts as which was measured on it for long
-  /// A patch of it was found elsewhere. What is behind a wall says that it is not where the plan has it. What is before it may stand there,
-  /// and is only a part of that: many of these leave nothing else to be seen.
+  /// A patch of it was found elsewhere. A patch behind a wall is evidence that the wall is not at its place. One before it may be on an
+  /// obstacle and counts only in part: many of these mean that nothing of the wall is seen.
   void refuse(bool is_before) { refused = refused + (is_before ? 1 : kRefusedParts); }
-  /// Whether patches say that a wall is not where the plan has it. Things before a wall that is there refuse some as well.
+  /// Whether patches reject the wall's place. Obstacles before a wall at its right place cause some rejections, too.
   bool is_refused_by_patches() const {
     constexpr int kMinRefused = 3, kShare = 4;
     const int patches = refused / kRefusedParts;
@@ -128,7 +128,7 @@ class PlaneTable {
     }
     return -1;
   }
-  /// Entry of a plane of a loaded map, under its own id, or -1 when the table is full. It is never dissolved for want of points.
+  /// Entry of a plane of a loaded map, under its own id, or -1 when the table is full. It is not dissolved when it has few points.
   int restore(std::uint32_t id) {
     const int i = add(0);
     if (i < 0) return -1;
@@ -150,7 +150,7 @@ class PlaneTable {
       if (used(i) && entry_[i].apart) return true;
     return false;
   }
-  /// What patches have held against walls so far no longer counts.
+  /// Clears the evidence of patches against walls.
   void forget_refusals() {
     for (int i = 0; i < capacity_; ++i) entry_[i].refused = 0;
   }

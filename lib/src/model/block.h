@@ -7,11 +7,11 @@
 #include "geometry/plane.h"
 #include "model/rows.h"
 
-/// A block of the state: its kind, its values, and how it hangs on other blocks.
+/// A block of the state: its kind, its values, and the blocks that it depends on.
 
 namespace pf {
 
-/// What a block stands for; each kind is a file of this folder, and kinds.h lists them.
+/// Kinds of blocks; each has a file in this folder, and kinds.h lists them.
 enum class BlockKind : std::uint8_t {
   kNone = 0,
   kAnchor = 1,
@@ -27,10 +27,10 @@ enum class BlockKind : std::uint8_t {
 };
 inline constexpr int kBlockKinds = 11;
 
-/// Whether blocks of this kind have a frame and a place among the planes.
+/// Whether blocks of this kind have a plane's frame.
 inline bool is_plane(BlockKind kind) { return kind == BlockKind::kPlane || kind == BlockKind::kPlaneApart; }
 
-/// What a feature is to the caller of the library.
+/// The kind of a feature for the caller of the library.
 enum class FeatureForm : std::uint8_t { kNone, kPoint, kInverseDepth, kFolded, kFixed };
 
 /// Where a kind's log length comes from, which picks the world's scale out of an error.
@@ -40,33 +40,33 @@ enum class ScaleSource : std::uint8_t {
   kDistance  ///< the distance to another block of such a kind
 };
 
-/// What the filter needs to know of a kind without its values.
+/// Properties of a kind that the filter uses.
 struct KindInfo {
   int rows = 0;    ///< in the covariance
   int values = 0;  ///< in Block::value
   FeatureForm form = FeatureForm::kNone;
   ScaleSource scale = ScaleSource::kNone;
-  bool planar = false;          ///< hangs on a plane, directly or through a point group
-  bool dies_childless = false;  ///< goes with its last child, unless it is pinned
-  bool carries_points = false;  ///< no feature, but rows that features share
+  bool planar = false;          ///< depends on a plane, directly or through a point group
+  bool dies_childless = false;  ///< is removed with its last child, unless it is pinned
+  bool carries_points = false;  ///< not a feature, but rows that features share
 };
 
 /// Bearing b = R_b e_z from the anchor, with the tangent basis B = R_b [e_x e_y]; inverse depth rho along it [1/m].
 ///
 ///   p_W = o_W + b / rho,   error (e_1, e_2, e_rho):  b_true = Exp(B_2 e_1 - B_1 e_2) b = b + B e,   rho_true = rho + e_rho
 ///
-/// No angles, so no pole; the basis is carried along with b.
+/// No angles, so no pole; the basis rotates with b.
 struct InverseDepth {
   Quat q_b;
   Scalar rho;
 };
 
-/// Points of a plane that are translated, rotated and scaled as one: what is fixed in the group moves with it, and only with it.
+/// Points of a plane that are translated, rotated and scaled together: a point that is fixed in the group moves with the group only.
 ///
 ///   (u, v) = t + exp(lambda) Rot(phi) c            c: coordinates in the group
 ///   error (e_t, e_phi, e_lambda), additive
 ///
-/// Coordinates in a group know nothing of the drift that the whole plane shares, so they can be known well.
+/// Coordinates in a group do not contain the drift that the whole plane shares, so they can become certain.
 struct PointGroup {
   Vec2 t;
   Scalar phi, lambda;
@@ -84,9 +84,9 @@ struct Block {
   static constexpr int kMaxValues = 10;  ///< a reference camera has seven, a lens ten
 
   BlockKind kind = BlockKind::kNone;
-  std::uint8_t pins = 0;            ///< uses from outside of the state, such as a mark; while there are any, it stays
-  std::int16_t size = 0;            ///< rows that it has: those of its kind, or none
-  std::int16_t parent = -1;         ///< slot of the block that its coordinates are in: an anchor, plane or point group
+  std::uint8_t pins = 0;     ///< uses from outside of the state, such as a mark; the block stays while there are any
+  std::int16_t size = 0;     ///< its rows: those of its kind, or none
+  std::int16_t parent = -1;  ///< slot of the block that its coordinates are in: an anchor, plane or point group
   std::int16_t second_parent = -1;  ///< slot of another block that its place depends on
   std::int16_t children = 0;        ///< blocks that have this one as a parent
   std::int16_t owner = -1;  ///< entry of the map's table that this block belongs to; orders the children of a parent
@@ -94,7 +94,7 @@ struct Block {
   std::int16_t next_sibling = -1;    ///< in the list of its parent
   std::int16_t next_of_second = -1;  ///< in the list of its second parent
   std::int16_t frame = -1;           ///< of a plane: index into State::plane_frame
-  Scalar value[kMaxValues] = {};     ///< what they are, the kind's file says
+  Scalar value[kMaxValues] = {};     ///< meaning: the kind's file
 
   Vec3 xyz() const { return Vec3(value[0], value[1], value[2]); }
   void set_xyz(const Vec3& p) {

@@ -16,12 +16,12 @@ enum class BodyPart : std::uint8_t {
   kAngularVelocity,  ///< w
   kAcceleration,     ///< a
   kGyroBias,         ///< of the inertial unit, in its axes
-  kAccelBias,        ///< likewise
+  kAccelBias,        ///< the same
   kGravity,          ///< its direction in W, two rows
   kMountRotation,    ///< of the inertial unit's axes against the camera's, where they are estimated
-  kMountPlace,       ///< of its origin, likewise
-  kDelay,            ///< of its clock, likewise, one row
-  kIntrinsics,       ///< of its sensors, likewise: constants that F and Q leave alone, but which move what moves
+  kMountPlace,       ///< of its origin, the same
+  kDelay,            ///< of its clock, one row
+  kIntrinsics,       ///< of its sensors: constants without F and Q of their own, on which the motion depends
   kLens              ///< numbers of the calibration (geometry/lens.h)
 };
 
@@ -56,7 +56,7 @@ class BodyLayout {
     layout.add(BodyPart::kGravity, 2);
     return layout;
   }
-  /// How the unit is mounted, and its delay, which stay as they are, but which its samples hang on: F covers them.
+  /// Mounting and delay of the unit: constants on which its samples depend, so F has columns for them.
   void add_mounting(bool rotation, bool place, bool delay) {
     if (rotation) add(BodyPart::kMountRotation, 3);
     if (place) add(BodyPart::kMountPlace, 3);
@@ -83,7 +83,7 @@ class BodyLayout {
   int row(BodyPart part) const { return row_[index(part)]; }
   /// Rows of the parts that move.
   int dynamic_rows() const { return dynamic_rows_; }
-  /// Likewise, with the unit's constants behind them.
+  /// The same, with the unit's constants behind them.
   int unit_rows() const { return dynamic_rows_ + (has(BodyPart::kIntrinsics) ? Intrinsics::kRows : 0); }
   /// Rows of what a caller can know at the start: pose, velocity and angular velocity.
   int known_rows() const { return dynamic_rows_ < kVelocityRows ? dynamic_rows_ : kVelocityRows; }
@@ -122,14 +122,14 @@ struct Body {
   Vec3 p_W = Vec3::Zero();         ///< [m]
   Vec3 v_W = Vec3::Zero();         ///< [m/s]
   Vec3 a_C = Vec3::Zero();         ///< [m/s^2] how the velocity's coordinates in C change
-  Vec3 w_C = Vec3::Zero();         ///< [rad/s]; with an inertial unit no state, but what its samples say at the frame
+  Vec3 w_C = Vec3::Zero();         ///< [rad/s]; with an inertial unit no state, but the frame's sample less the bias
   Vec3 gyro_bias = Vec3::Zero();   ///< [rad/s], in the unit's axes
-  Vec3 accel_bias = Vec3::Zero();  ///< [m/s^2], likewise
+  Vec3 accel_bias = Vec3::Zero();  ///< [m/s^2], in the unit's axes
   Quat q_WG = Quat::Identity();    ///< z is where gravity points
   Vec3 gravity_W() const;
 };
 
-/// How the camera accelerates about the frame's time, as its samples say: for rows that are read out earlier and later. No state.
+/// Accelerations of the camera about the frame's time, from its samples, for rows that are read out earlier and later. No state.
 struct Bend {
   Vec3 alpha_C = Vec3::Zero();  ///< [rad/s^2]; zero without samples
   Vec3 a_C = Vec3::Zero();      ///< [m/s^2]; zero too where lengths have no unit

@@ -5,20 +5,19 @@
 
 namespace pf {
 
-/// The camera as a link between the body and what it sees: where it is tau seconds from the frame's time, how it moves there, and how its
-/// error follows from the parts of the body.
+/// The camera tau seconds from the frame's time: its pose, its velocities, and the Jacobian of its error by the parts of the body.
 ///
 ///   R_tau = R Exp(w tau),  p_tau = p + v tau
 ///   theta_tau = theta + R J_l(w tau) tau e_w,  e_p_tau = e_p + tau e_v
 ///
-/// Of the pose the Jacobian is the identity, and of the velocities zero at tau = 0; neither is stored or multiplied.
+/// The Jacobian by the pose is the identity, and that by the velocities is zero at tau = 0; neither is stored or multiplied.
 ///
 /// With an inertial unit w = R_CB (gyro - bias), so that e_w = -R_CB e_b stands in the rows of the bias; and the state's velocity v_B is
 /// that of the unit's origin, at m in C (lib/docs/theory/inertial.md):
 ///
 ///   v = v_B - R (w x m),   e_v = e_v_B + [R (w x m)]x theta + R [m]x e_w
 ///
-/// Its samples tell accelerations too, of which the errors do not matter over half a readout:
+/// Its samples measure accelerations too, whose errors do not matter over half a readout:
 ///
 ///   R_tau = R Exp(w tau + alpha tau^2 / 2),   p_tau = p + v tau + R a tau^2 / 2
 struct CameraAt {
@@ -32,13 +31,13 @@ struct CameraAt {
   Mat3 J_theta_w;                      ///< R J_l(w tau) tau, by the rows at rate_row; only where tau is not 0
   bool beside = false;                 ///< the state's velocity is that of another point; the two below only then
   Mat3 J_p_theta, J_p_w;               ///< of p_tau, beside the identity and tau
-  int velocity_row = 0, rate_row = 0;  ///< of the velocity; of the angular velocity, or of the bias that it hangs on
+  int velocity_row = 0, rate_row = 0;  ///< of the velocity; of the angular velocity, or of the bias on which it depends
 
   /// Rows of the body that its error depends on, from the first one on.
   int columns() const { return tau == Scalar(0) ? Body::kPoseDim : rate_row + 3; }
   Part part() const { return Part::body(0, columns()); }
 
-  /// What J over (theta, p) of this camera says of the readout that tau is a part of:
+  /// The column of the readout, of which tau is a part, for a J over (theta, p) of this camera:
   ///
   ///   d(theta_tau, p_tau) = (R_tau w, v) tau / readout d_readout
   template <int kRows>
@@ -76,7 +75,7 @@ CameraAt camera_at(const Body& body);
 /// Velocity of the camera where the body's is that of the inertial unit.
 Vec3 camera_velocity(const Body& body, const Mounting& mounting);
 
-/// What follows from the unit's place and axes, for a camera tau seconds from the frame's time.
+/// Fills in what depends on the unit's place and axes, for a camera tau seconds from the frame's time.
 void put_unit(const State& state, CameraAt* camera);
 
 /// The camera tau seconds from the frame's time; at the frame's time where the body has no velocities.
@@ -90,11 +89,11 @@ inline void put_lens(const Eigen::Matrix<Scalar, kRows, kLensParameters>& J, con
     for (int a = 0; a < kRows; ++a) h[a * stride + first + i] = J(a, rows.parameter[i]);
 }
 
-/// When a row is read out, from the frame's time, which is that of the middle of the image [s]. What lies far outside of the image
-/// is taken to be just outside of it.
+/// Time at which a row is read out, from the frame's time, which is that of the middle row [s]. Rows far outside of the image count as just
+/// outside of it.
 Scalar row_time(const Camera& camera, Scalar y);
 
-/// Whether rows have cameras of their own: they are read out one after the other, and the body's velocities are known.
+/// Whether each row has a camera of its own: rows are read out one after the other, and the state has velocities.
 inline bool rows_roll(const State& state, const Camera& lens) {
   return lens.readout != Scalar(0) && state.layout.has(BodyPart::kVelocity);
 }

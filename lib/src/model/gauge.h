@@ -9,11 +9,11 @@
 namespace pf {
 
 /// How an error changes when the whole world is translated (columns 0-2), rotated (3-5) and scaled by exp(s) (6). A model cannot
-/// observe some of these directions. They keep their columns, whatever is observable.
+/// observe some of these directions. Observable directions keep their columns, too.
 namespace gauge {
 inline constexpr int kTranslation = 0, kRotation = 3, kScale = 6, kDirections = 7;
 
-/// A bit for each direction that a model cannot observe; State keeps that of its own.
+/// A bit for each direction that a model cannot observe; State::unobservable has the model's.
 using Set = std::uint8_t;
 inline constexpr Set kBareCamera = 0x7f;  ///< all of them
 inline constexpr Set kMetric = 0x3f;      ///< all but the scale
@@ -45,10 +45,10 @@ struct BodyGaugeRows {
   GaugeRowsOf<3> N;
 };
 
-/// The body's gauge rows, one entry for each of its parts that has any. Velocities in W rotate and scale but are not translated; angular
-/// velocities and biases, in axes of the body, do nothing; accelerations in such axes scale. Gravity rotates with the world, about all axes
-/// but its own. An inertial unit rotates with the world, and keeps its distance from the camera when the world is scaled: of its velocity
-/// that part scales which is the camera's. Returns how many.
+/// The body's gauge rows, one entry for each of its parts that has any. Velocities in W rotate and scale with the world; angular velocities
+/// and biases, in axes of the body, do not change; accelerations in such axes scale. Gravity rotates with the world, about all axes but its
+/// own. An inertial unit keeps its distance from the camera when the world is scaled, so only the camera's part of its velocity scales.
+/// Returns how many.
 inline constexpr int kMaxBodyGaugeParts = 4;
 int body_gauge_rows(const Body& body, const BodyLayout& layout, const Mounting& mounting, BodyGaugeRows* out);
 
@@ -60,7 +60,7 @@ void for_each_body_gauge(const Body& body, const BodyLayout& layout, const Mount
   for (int k = 0; k < count; ++k) f(part[k].first, part[k].size, part[k].N);
 }
 
-/// Where gauge rows over the whole state are added up, one dense row per direction; sign times each.
+/// Sums gauge rows over the whole state, one dense row per direction, each times sign.
 struct GaugeSum {
   Scalar sign;
   Scalar* N_T;  ///< null where translations are left out

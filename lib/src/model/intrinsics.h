@@ -4,12 +4,12 @@
 
 namespace pf {
 
-/// What a unit's readings are in its axes B, beside biases: errors of scale, and of axes that are not at right angles (IMU intrinsics).
+/// Errors of scale and of axes that are not at right angles, of an inertial unit with axes B (IMU intrinsics), beside its biases.
 ///
 ///   w_B = D_w (gyro - b_g),   f_B = D_a (accel - b_a)
 ///
-/// D_w is symmetric: what is left of its axes is a rotation, and B are the axes that have none, as the mounting knows them. D_a is any
-/// matrix, since the accelerometer may be rotated against the gyroscope. Errors, additive:
+/// D_w is symmetric: a rotation of the gyroscope's axes belongs to the mounting, which defines B. D_a is any matrix, since the
+/// accelerometer may be rotated against the gyroscope. Errors, additive:
 ///
 ///   D_w: e_1 .. e_6 of (xx, yy, zz, yz, xz, xy), those off the diagonal in both places;   D_a: e_7 .. e_15, row-major
 struct Intrinsics {

@@ -6,7 +6,7 @@
 
 namespace pf::model {
 
-/// What a kind does where its file says nothing else. A kind has kKind and kInfo, and what it does otherwise:
+/// Defaults of a kind. A kind has kKind and kInfo, and replaces of these what it does otherwise:
 ///
 ///   retract    x [+] e of its values, e over its rows
 ///   add_gauge  its gauge rows over the whole state; planar kinds get theirs with their parent's
@@ -15,7 +15,7 @@ namespace pf::model {
 ///   scale_row  the row that picks the log scale; only with ScaleSource::kOwnRow
 struct Kind {
   static constexpr bool kHasPlace = false;
-  static constexpr bool kSharesGauge = false;  ///< children have gauge rows that are made of its own
+  static constexpr bool kSharesGauge = false;  ///< gauge rows of children are made of its own
 
   static void retract(Block* block, const Scalar* e) {
     for (int i = 0; i < block->size; ++i) block->value[i] += e[i];

@@ -13,7 +13,7 @@
 
 namespace pf {
 
-/// The kinds that there are. A new one is its file, its line here and its name in BlockKind.
+/// All kinds. A new one needs its file, its line here and its name in BlockKind.
 #define PF_KINDS(X)           \
   X(model::Anchor)            \
   X(model::Point)             \
@@ -26,7 +26,7 @@ namespace pf {
   X(model::PatchCorners)      \
   X(model::PlaneApart)
 
-/// Calls f with an object of the kind's type; with none, does nothing.
+/// Calls f with an object of the kind's type; nothing for BlockKind without one.
 template <typename F>
 inline void visit(BlockKind kind, F&& f) {
   switch (kind) {

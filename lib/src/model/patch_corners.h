@@ -5,7 +5,7 @@
 namespace pf::model {
 
 /// What the noise of a reference image did to the four corners of a patch: errors of their pixels in it, the same in every frame, additive.
-/// It hangs on its reference camera. value: x y of each corner [px]
+/// It depends on its reference camera. value: x y of each corner [px]
 struct PatchCorners : Kind {
   static constexpr BlockKind kKind = BlockKind::kPatchCorners;
   static constexpr KindInfo kInfo{8, 8, FeatureForm::kNone, ScaleSource::kNone, false, false, false};

@@ -19,7 +19,7 @@ struct Place {
   Scalar w = Scalar(1);
   int parts = 0;
   int columns = 0;
-  int w_column = -1;  ///< -1: w is 1, and b and J_b are not there
+  int w_column = -1;  ///< -1: w is 1, and there is no b or J_b
   Part part[kMaxParts];
   Jacobian J_o, J_b;
   int plane = -1;        ///< slot of the plane that it lies on
@@ -46,7 +46,7 @@ struct Place {
     return J;
   }
 
-  /// Makes it a point o of W (w = 1, b = 0):  o + b / w. False where there is none; it is as it was then.
+  /// Converts to a point o of W (w = 1, b = 0): o + b / w. False, with nothing changed, where there is none.
   bool resolve();
 };
 

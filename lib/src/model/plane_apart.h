@@ -4,8 +4,8 @@
 
 namespace pf::model {
 
-/// A known plane that nothing in the map has been compared with yet. Its place does not depend on where and how large the map is, so it has
-/// no gauge rows, and P has no covariance between it and all else. value: as of a plane
+/// A known plane that no measurement of the map has used yet. Its place does not depend on the map's gauge, so it has no gauge rows, and P
+/// has no covariance between it and all else. value: as of a plane
 struct PlaneApart : Kind {
   static constexpr BlockKind kKind = BlockKind::kPlaneApart;
   static constexpr KindInfo kInfo{3, 3, FeatureForm::kNone, ScaleSource::kNone, false, false, false};

@@ -10,7 +10,7 @@ struct Group : Kind {
   static constexpr KindInfo kInfo{4, 4, FeatureForm::kNone, ScaleSource::kOwnRow, false, true, true};
   static constexpr bool kSharesGauge = true;
 
-  /// What each direction does to (u, v) = t, and how it rotates and scales the coordinates about it.
+  /// Change of (u, v) = t by each direction, and rotation and scale of the coordinates about it.
   template <typename Rows>
   static void rows(const State& state, const Block& block, Rows* N) {
     PlanarRows plane;
@@ -24,9 +24,9 @@ struct Group : Kind {
   }
   static void gauge(const State& state, const Block& block, GaugeRows* N);
   static void add_gauge(const State& state, const Block& block, int first, const GaugeSum& sum);
-  /// Of coordinates in it: the shear that is left.
+  /// For coordinates in the group: the remaining shear.
   static void share(const State& state, const Block& block, PlanarRows* rows);
-  /// e_lambda, less what a rotation of the world does to it.
+  /// e_lambda, less its change by a rotation of the world.
   static bool scale_row(const State& state, int slot, ScaleRow* row);
 };
 

@@ -4,8 +4,8 @@
 
 namespace pf::model {
 
-/// A copy of the camera at the time of a frame: the pose that a mark stands for, or in which image patches and points begin.
-/// value: q_WC (w x y z), p_WC
+/// A copy of the camera at the time of a frame: the pose of a mark, or the one in which patches and points begin. value: q_WC (w x y z),
+/// p_WC
 ///
 ///   R_true = Exp(theta) R_WC,   p_true = p_WC + e_p         as the body's pose
 struct ReferenceCamera : Kind {

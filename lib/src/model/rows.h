@@ -21,7 +21,7 @@ struct Part {
   static Part body(int offset, int size) { return of(kBodyBlock, offset, size); }
 };
 
-/// Dense over the columns of its parts, in their order. A view: whoever makes it keeps what it points to.
+/// Dense over the columns of its parts, in their order. A view: the caller owns the data.
 struct Rows {
   int rows = 0;
   int parts = 0;
@@ -54,7 +54,7 @@ inline void put(Scalar* h, int stride, int column, const Eigen::Matrix<Scalar, k
     for (int j = 0; j < kColumns; ++j) h[i * stride + column + j] = J(i, j);
 }
 
-/// Adds to a single row what it has over one more part, into the columns that it has already where they begin alike.
+/// Adds the columns of one more part to a single row, into existing columns where both begin at the same row.
 template <int kMaxColumns, int kMaxParts>
 inline void add_part(RowsOf<1, kMaxColumns, kMaxParts>* row, const Part& part, const Scalar* h) {
   int at = 0, column = 0;

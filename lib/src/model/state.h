@@ -5,14 +5,14 @@
 #include "model/body.h"
 #include "model/gauge.h"
 
-/// What the filter estimates: kinds and values of blocks, and how they hang on each other. Where their rows lie, BlockFilter knows.
+/// What the filter estimates: kinds and values of blocks, and which depends on which. BlockFilter has their rows.
 
 namespace pf {
 
-/// What the kinds say of themselves (kinds.h), for who need not know them.
+/// Properties of all kinds (kinds.h), for code that does not include them.
 extern const KindInfo kKindInfo[kBlockKinds];
 inline const KindInfo& info(BlockKind kind) { return kKindInfo[static_cast<int>(kind)]; }
-/// Planar features hang on a plane, directly or through a point group.
+/// Planar features depend on a plane, directly or through a point group.
 inline bool is_planar(BlockKind kind) { return info(kind).planar; }
 
 /// Blocks live in slots that do not move.
@@ -20,13 +20,13 @@ struct State {
   Body body;
   Bend bend;
   BodyLayout layout;
-  gauge::Set unobservable = gauge::kBareCamera;  ///< directions about which no measurement says anything
-  bool metric = false;                           ///< samples of the inertial unit tell lengths and gravity
-  /// The samples of the inertial unit move the body. Without them its velocity goes on, and the rows of the gyro's bias are those of the
-  /// angular velocity: w_B = c - b, where c does not matter.
+  gauge::Set unobservable = gauge::kBareCamera;  ///< directions that no measurement constrains
+  bool metric = false;                           ///< samples of the inertial unit give lengths and gravity
+  /// True while the samples of the inertial unit move the body. Without them its velocity stays constant, and the rows of the gyroscope's
+  /// bias are those of the angular velocity: w_B = c - b with any constant c.
   bool uses_samples = true;
   Mounting mounting;       ///< of the inertial unit
-  Camera lens;             ///< calibration as it is known now
+  Camera lens;             ///< present calibration
   LensRows lens_rows;      ///< of BodyPart::kLens
   Block* block = nullptr;  ///< slots
   int slots = 0;
@@ -47,7 +47,7 @@ struct State {
       if (block[i].kind == BlockKind::kNone) return i;
     return -1;
   }
-  /// Slot of the plane that a planar feature or a point group hangs on.
+  /// Slot of the plane that a planar feature or a point group depends on.
   int plane_of(int slot) const {
     while (block[slot].kind != BlockKind::kPlane) slot = block[slot].parent;
     return slot;
@@ -55,7 +55,7 @@ struct State {
 
   /// Makes a block without a parent a child of this one.
   void adopt(int parent, int child);
-  /// Likewise one without a second parent.
+  /// Makes `parent` the second parent of a block that has none.
   void adopt_as_second(int parent, int child);
   /// Takes a block out of its parent's list; nothing where it has no parent. Its second parent stays.
   void leave_parent(int child);
@@ -64,10 +64,10 @@ struct State {
   int next_child(int parent, int child) const {
     return block[child].parent == parent ? block[child].next_sibling : block[child].next_of_second;
   }
-  /// Says which entry of the map's table a block belongs to.
+  /// Sets the entry of the map's table that a block belongs to.
   void set_owner(int slot, int owner);
 
-  /// Calls f(slot) for the features that hang on a plane, directly or through its point group, by ascending owner. f may remove the block
+  /// Calls f(slot) for the features that depend on a plane, directly or through its point group, by ascending owner. f may remove the block
   /// that it is given, unfold it or release it.
   template <typename F>
   void for_each_planar(int plane, F&& f) const {

@@ -10,7 +10,7 @@ namespace pf::tuning {
 /// Inverse depths.
 namespace inverse_depth {
 inline constexpr Scalar kMinRho = Scalar(1e-6);       ///< [1/m] below which a point has no place
-inline constexpr Scalar kMinShownRho = Scalar(1e-3);  ///< [1/m] what is farther, or not positive, is shown here
+inline constexpr Scalar kMinShownRho = Scalar(1e-3);  ///< [1/m] farther or negative depths are shown at this one
 inline constexpr Scalar kNever = Scalar(1e6);         ///< linearity index of a depth that is not well above zero
 }  // namespace inverse_depth
 

@@ -5,7 +5,7 @@
 #include "frame/settings.h"
 #include "geometry/so3.h"
 
-/// What the filter back end knows of its inertial unit.
+/// The inertial unit's values in the filter back end.
 
 namespace pf {
 
@@ -22,14 +22,14 @@ struct InertialView {
   Vec3 p_BC;
   double delay_s, readout_s;
   Intrinsics intrinsics;
-  Scalar sigma[18];  ///< as pf_inertial_t says
+  Scalar sigma[18];  ///< in the order of pf_inertial_t
 };
 
 /// Whether images contradict the inertial unit, and for how long they have in all.
 struct UnitDoubt {
   bool doubted = false;
   std::int64_t doubted_ns = 0;
-  int reason = 0;  ///< as pf_imu_reason_t says
+  int reason = 0;  ///< pf_imu_reason_t
   Scalar reason_value = 0;
   Mat3 reason_R_CB = Mat3::Identity();
   Scalar gyro_density = 0, accel_density = 0;  ///< as they are known now

@@ -75,7 +75,7 @@ class Session {
   View view() const { return has_filter() ? View(settings_, map_, *filter_) : View(settings_, map_, *window_); }
   const Settings& settings() const { return settings_; }
   const ImuLog& imu() const { return imu_; }
-  /// Gravity in the W of the current map as the caller said it; zero: not said.
+  /// Gravity in the W of the current map as the caller gave it; zero: not given.
   Vec3 given_gravity_W() const;
 
  private:

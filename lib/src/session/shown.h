@@ -18,7 +18,7 @@ struct FeatureView {
   int observations, attempts;
   BlockKind kind;
   std::uint32_t plane;  ///< id of the plane that it lies on, or 0
-  bool on_trial;        ///< it began on that plane, and nothing else says yet that it lies there
+  bool on_trial;        ///< it began on that plane, and its own parallax has not confirmed it yet
   Scalar log_odds;      ///< that it is a point of the scene
   Vec3 p_W;
   Mat3 covariance;

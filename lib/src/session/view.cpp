@@ -126,7 +126,7 @@ bool View::template_of(std::uint32_t id, TemplateView* out) const {
   warp.ray_0 = ray.head<2>() / ray.z();
   const Vec2 slope = shape.has_normal ? Vec2(shape.slope[0], shape.slope[1]) : warp.facing();
   out->normal_W = first.q_WC * warp.normal_of(slope);
-  // A slope turns the normal by no more than itself over the normal's length.
+  // A slope rotates the normal by no more than itself over the normal's length.
   const Scalar trace = static_cast<Scalar>(shape.covariance[0] + shape.covariance[2]) / 2;
   const Scalar apart = static_cast<Scalar>(shape.covariance[0] - shape.covariance[2]) / 2;
   const Scalar cross = static_cast<Scalar>(shape.covariance[1]);

@@ -57,7 +57,7 @@ class View {
   bool template_of(std::uint32_t id, TemplateView* out) const;
 
   // --- of the filter alone
-  /// There is a state whose covariance can be asked for.
+  /// True where there is a state with a covariance.
   bool has_state() const { return filter_ != nullptr && tracking_.has_pose(); }
   /// False without the inertial motion model, or without a pose.
   bool inertial(InertialView* out) const;

@@ -17,7 +17,7 @@ struct PlaneStart {
   int level = PlanePatch::kLevels - 1;  ///< coarsest, where it begins; the finest is 0
 };
 
-/// What became of it.
+/// Result of an alignment.
 enum class PlaneVerdict {
   kAligned,
   kNotConverged,  ///< H_CK may still be a better place to begin than the start; also: it leaves what can be computed
@@ -38,7 +38,7 @@ struct PlaneAlignment {
   float gain = 1, offset = 0;
   float sigma = 0;                      ///< of the noise of a pixel of the image [grey levels]
   Mat8 covariance;                      ///< of the corners (x, y of each), from the noise of this image [px^2]
-  Mat8 reference_covariance;            ///< likewise from the noise of the reference: the same error in every frame
+  Mat8 reference_covariance;            ///< the same from the noise of the reference: one error in every frame
   Mat2 step_covariance = Mat2::Zero();  ///< of the step of a warp with two parameters, from both noises
 
   bool is_aligned() const { return verdict == PlaneVerdict::kAligned; }
@@ -69,7 +69,7 @@ class PlaneAligner {
                        Warp warp, const std::uint8_t* mask = nullptr);
 
   /// Reads the image where a homography puts the pixels of level 0, and fits gain and bias to those that agree. samples() then holds the
-  /// residuals. False where too little of the patch is in the image or the light cannot be told.
+  /// residuals. False where too little of the patch is in the image or gain and bias cannot be fitted.
   bool compare(const Pyramid& image, const Camera& camera, const PlanePatch& patch, const PlaneStart& start,
                const std::uint8_t* mask, float* gain);
   /// Of the last align() or compare().

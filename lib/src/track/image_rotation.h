@@ -3,7 +3,7 @@
 #include "geometry/camera.h"
 #include "track/thumbnail.h"
 
-/// How a camera has turned between two images, from the images alone. A shift of the camera counts as the turn that explains it best.
+/// Rotation of a camera between two images, from the images alone. A translation counts as the rotation that explains it best.
 
 namespace pf {
 
@@ -14,11 +14,11 @@ Vec2 to_thumbnail(const Camera& camera, const Vec2& pixel);
 /// Rotation that takes unit vector a to unit vector b by the shortest way.
 Quat shortest_rotation(const Vec3& a, const Vec3& b);
 
-/// Rotation by which an image whose pixels have moved by `shift` [px of the thumbnail] since another one turns into that: what was at the
-/// centre minus half of the shift is now at the centre plus half of it. Identity where the lens has no ray there.
+/// Rotation that a shift of the pixels by `shift` [px of the thumbnail] between two images stands for: what was at the centre minus half of
+/// the shift is now at the centre plus half of it. Identity where the lens has no ray there.
 Quat rotation_of_shift(const Camera& camera, const Vec2& shift);
 
-/// Rotation that takes rays of the camera now to rays of the camera before, by which the thumbnails differ least, gain and bias apart:
+/// Rotation that takes rays of the camera now to rays of the camera before, by which the thumbnails differ least, up to gain and bias:
 ///
 ///   sum_x (now(x) - g before(w(x)) - b)^2,   w(x) = pixel of R ray(x)
 ///

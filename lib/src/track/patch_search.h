@@ -14,7 +14,7 @@ class PatchSearch {
 
   /// H_CK        rays of the reference at depth 1 to rays of this image, where the patch is expected
   /// innovation  covariance of its middle [px^2]; gate: chi-square bound of the ellipse
-  /// *shift      from where it is expected to where it is like the image [px]; valid where true is returned
+  /// *shift      from where it is expected to where it matches the image [px]; valid where true is returned
   bool find(const Pyramid& image, const Camera& camera, const PlanePatch& patch, const Mat3& H_CK,
             const Mat2& innovation, Scalar gate, Vec2* shift);
 

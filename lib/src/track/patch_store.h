@@ -10,7 +10,7 @@
 
 namespace pf {
 
-/// What became of a patch in the last frame. With the numbers of pf_match_status_t, one for a patch that was not looked for, and
+/// Result for a patch in the last frame. With the numbers of pf_match_status_t, one for a patch that was not searched for, and
 /// PF_PATCH_WAITING: found, and no measurement yet.
 enum class PatchStatus : std::uint8_t { kUnseen = 0, kInlier = 1, kOutlier = 2, kMissed = 3, kNew = 4, kWaiting = 5 };
 
@@ -36,7 +36,7 @@ struct StoredPatch {
   PatchWait wait;              ///< for the plane that it lies on
   Vec3 early_plane =
       Vec3::Zero();  ///< n / d in its reference camera, from an early view while it waits; zero: not known
-  Vec3 last_plane = Vec3::Zero();  ///< likewise from the last frame in which it waited and had parallax
+  Vec3 last_plane = Vec3::Zero();  ///< the same from the last frame in which it waited and had parallax
   PlanePatch pixels;
 
   bool is_proven() const { return block >= 0; }
@@ -83,7 +83,7 @@ class PatchStore {
   StoredPatch& begin(int i);
   void remove(int i) { entry_[i].id = 0; }
 
-  /// How many reference cameras the patches have.
+  /// Number of reference cameras of the patches.
   int cameras() const;
   int patches_of(int camera) const {
     int n = 0;

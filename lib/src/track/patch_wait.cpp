@@ -86,7 +86,7 @@ WaitVerdict PatchWait::decide(bool has_parallax, std::uint32_t* joined) {
   else
     count(&without_);
   const bool has_waited = frames_ >= kMaxFrames;
-  // What was found may lie in the wall itself: then nothing will ever tell them apart.
+  // A found plane may lie in the wall itself, and no parallax distinguishes them then.
   const Trial* only = only_open(false);
   if (only == nullptr && has_waited) only = only_open(true);
   if (only != nullptr && only->over == 0 && (only->under >= kPersist || has_waited)) {

@@ -37,7 +37,7 @@ class PatchWait {
   std::uint32_t likely() const;
   /// Whether this plane explains the last frame.
   bool passes(std::uint32_t plane) const;
-  /// How many planes are not refused.
+  /// Number of planes that are not rejected.
   int open() const;
 
  private:

@@ -87,8 +87,7 @@ bool collect(const ImageView& image, const Camera& camera, const Vec3& a, const 
   return side->count >= 4 && kMinRises * side->count >= places;
 }
 
-/// Plane through the optical centre, n · ray = 0: small turns of the first n about the two directions in it.
-/// rms in radians.
+/// Plane through the optical centre, n · ray = 0: small rotations of the first n about the two directions in it. rms in radians.
 bool fit_plane(const Side& side, const Vec3& a, const Vec3& b, Scalar robust, Vec3* normal, Scalar* rms) {
   Vec3 n = a.cross(b).normalized();
   const Vec3 across = (a + b).normalized();

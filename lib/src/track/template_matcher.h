@@ -26,13 +26,12 @@ class TemplateMatcher {
   /// A view with which it cannot be compared, and an ellipse of more than kReach px, are the tracker's.
   SearchOutcome search(const Tracker& tracker, const SearchTask& task);
 
-  /// Learns from a template that was found at `pixel`: its normal, where it is the template's own, and its mask. Task: as it is known after
-  /// the frame's update.
-  /// False where nothing was learnt.
+  /// Updates normal (where it is the template's own) and mask of a template that was found at `pixel`. task: after the frame's update.
+  /// False where neither changes.
   bool learn(const Tracker& tracker, const SearchTask& task, const Vec2& pixel, PlanarTemplate* shape,
              std::uint8_t* mask);
 
-  /// Slopes by which a template is warped: of a normal that is known otherwise, its own, or facing the first camera.
+  /// Slopes by which a template is warped: of its plane's normal, of its own, or facing the first camera.
   static Vec2 slope_of(const SearchTask& task, const TemplateWarp& warp);
 
  private:
@@ -54,7 +53,7 @@ class TemplateMatcher {
   MaskMode mode_ = MaskMode::kNone;
   float max_misfit_ = 1;
   int side_ = 0;
-  float noise_ = -1;                           ///< of this frame's image [grey levels]; negative: not asked for yet
+  float noise_ = -1;                           ///< of this frame's image [grey levels]; negative: not computed yet
   PlaneAligner* aligner_ = nullptr;            ///< all of these null without templates
   PlanePatch* patch_ = nullptr;                ///< the pixels of a template with one more on each side
   std::uint8_t* learnt_ = nullptr;             ///< mask after the frame

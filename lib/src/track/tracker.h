@@ -12,7 +12,7 @@
 
 namespace pf {
 
-/// Where a feature is expected in this frame, and how it was seen first.
+/// Prediction of a feature in this frame, and its first view.
 struct SearchTask {
   const Appearance* appearance = nullptr;
   CameraView first_view;               ///< that the appearance was taken from
@@ -52,7 +52,7 @@ class Tracker {
   /// Builds the pyramid of an image. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);
 
-  /// Copies the surroundings of a pixel of this image. False, appearance untouched, if the pixel is too near to the border.
+  /// Copies the pixels around a pixel of this image. False, appearance untouched, if the pixel is too near to the border.
   bool remember(const Vec2& pixel, Appearance* appearance) const;
 
   SearchOutcome search(const SearchTask& task) const;

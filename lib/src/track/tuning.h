@@ -30,7 +30,7 @@ inline constexpr int kMaxShift = 8;        ///< [px of the thumbnail] to each si
 inline constexpr float kKnownView = 0.8f;  ///< correlation above which a view is kept already
 }  // namespace view_memory
 
-/// The turn between two thumbnails.
+/// The rotation between two thumbnails.
 namespace image_rotation {
 inline constexpr int kReach = 12;                   ///< [px of the thumbnail] to each side that are searched first
 inline constexpr float kMinShiftScore = 0.5f;       ///< correlation at the best shift
@@ -51,12 +51,12 @@ inline constexpr Scalar kMaxMove = 4;                  ///< of a corner [px]
 inline constexpr Scalar kMinFrontal = Scalar(0.34);    ///< cosine between the view and the normal: 70 degrees
 inline constexpr Scalar kMinSlope = Scalar(0.08);      ///< of the steepest; the rise ends below
 inline constexpr Scalar kCornerMargin = Scalar(3.5);   ///< left out at the ends of a side [px]
-inline constexpr Scalar kMinMargin = Scalar(0.08);     ///< likewise at least, in parts of its length
-inline constexpr Scalar kMaxMargin = Scalar(0.4);      ///< likewise at most: a shorter side is not refined
+inline constexpr Scalar kMinMargin = Scalar(0.08);     ///< the same at least, in parts of its length
+inline constexpr Scalar kMaxMargin = Scalar(0.4);      ///< the same at most: a shorter side is not refined
 inline constexpr Scalar kAhead = Scalar(0.02);         ///< in parts of a side, for its direction there
 inline constexpr Scalar kMinMeeting = Scalar(0.05);    ///< sine between two sides
 inline constexpr Scalar kMisfitSigmas = Scalar(1.5);   ///< of a rectangle's corners, in their sigma
-inline constexpr Scalar kMisfitShare = Scalar(0.003);  ///< likewise in addition, in its diagonals
+inline constexpr Scalar kMisfitShare = Scalar(0.003);  ///< the same in addition, in its diagonals
 inline constexpr int kMinRises = 2;                    ///< one in so many places of a side has a rise
 inline constexpr int kMinClear = 2;                    ///< one in so many places of a side lies on no masked cell
 }  // namespace quad_refine
@@ -80,8 +80,8 @@ inline constexpr float kCutOff = 4.685f;        ///< of the weights [standard de
 inline constexpr float kMinSigma = 0.5f;        ///< of residuals [grey levels]
 inline constexpr float kNominalNoise = 2.0f;    ///< of a pixel, against which slack is weighed [grey levels]
 inline constexpr float kSmallStep = 0.03f;      ///< of a corner on the finest level [px]
-inline constexpr float kLastStep = 0.15f;       ///< likewise of the last iteration that there may be
-inline constexpr float kCoarseStep = 0.15f;     ///< likewise on the other levels [px of the level]
+inline constexpr float kLastStep = 0.15f;       ///< the same of the last iteration that there may be
+inline constexpr float kCoarseStep = 0.15f;     ///< the same on the other levels [px of the level]
 inline constexpr float kMaxStep = 0.5f;         ///< of a corner in one iteration [sides of the patch]
 inline constexpr float kNoWay = 1e6f;           ///< of a corner, where it is no number [half sides]
 inline constexpr float kMinGain = 0.05f;        ///< of the image against the patch
@@ -90,17 +90,17 @@ inline constexpr float kMinCorrelation = 0.85f;    ///< of what has weight
 inline constexpr float kMinWeight = 0.33f;         ///< of the samples, those that have weight
 inline constexpr float kMinAspect = 0.4f;          ///< smaller to larger stretch of the patch: a slant of 66 degrees
 inline constexpr float kMinStretch = 0.3f;         ///< larger stretch of the patch, image against reference
-inline constexpr float kMaxStretch = 3.0f;         ///< likewise
+inline constexpr float kMaxStretch = 3.0f;         ///< the same
 }  // namespace align_plane
 
 /// Slopes of a template's surface.
 namespace template_normal {
-inline constexpr Scalar kMinLeverage = Scalar(0.8);  ///< [px] at the rim by a unit of slope; below, it says nothing
+inline constexpr Scalar kMinLeverage = Scalar(0.8);  ///< [px] at the rim by a unit of slope, at least, to be measured
 inline constexpr Scalar kWarpError = Scalar(0.1);    ///< [px] at the rim that comes from elsewhere
 inline constexpr Scalar kMaxSigma = Scalar(0.7);     ///< of a measured slope
 inline constexpr Scalar kMaxStep = 1;                ///< of a slope in one frame
 inline constexpr Scalar kWalk = Scalar(0.01);        ///< of a slope from frame to frame
-inline constexpr Scalar kCorrelation = 4;            ///< frames that say the same
+inline constexpr Scalar kCorrelation = 4;            ///< frames that have the same error
 }  // namespace template_normal
 
 /// Templates with a mask.
@@ -127,8 +127,8 @@ inline constexpr float kMinArea = 30.0f;               ///< [px] of a mask
 
 /// Which plane a patch lies on.
 namespace patch_wait {
-inline constexpr int kPersist = 3;     ///< frames in a row that say the same of a plane, before it counts
-inline constexpr int kMaxFrames = 30;  ///< before it joins without parallax; likewise of none, before one is founded
+inline constexpr int kPersist = 3;     ///< frames in a row with the same result for a plane, before it counts
+inline constexpr int kMaxFrames = 30;  ///< before it joins without parallax; and without a plane, before one is founded
 }  // namespace patch_wait
 
 }  // namespace pf::tuning

@@ -9,7 +9,7 @@
 
 namespace pf {
 
-/// A kept view that looks like the current image.
+/// A kept view that is like the current image.
 struct Recognition {
   float score = 0;  ///< correlation, -1 .. 1
   Quat q_WC = Quat::Identity();
@@ -26,7 +26,7 @@ class ViewMemory {
   void init() { count_ = next_ = 0; }
   int count() const { return count_; }
 
-  /// Keeps the thumbnail of an image with its pose if it looks like none that is kept. A full memory replaces its oldest.
+  /// Keeps the thumbnail of an image with its pose if no kept one is like it. A full memory replaces its oldest.
   void keep_if_new(const Pyramid& image, const Quat& q_WC, const Vec3& p_W);
   /// The kept view that correlates best with an image, turned as the image is against it. Score 0 without any.
   Recognition recognise(const Pyramid& image, const Camera& camera) const;

@@ -110,7 +110,7 @@ void project(const float* grey, const float* ones, float energy, float* g) {
 /// pixels of image and source. Two things would make them too good:
 /// - Interpolation averages the image's noise away (to (1 - 2 f (1 - f)) of its variance in each direction), but not
 ///   where it matters, since gradients are smoother than noise.
-/// - Noise in the template adds half its variance to that of each gradient, which tells nothing about the place.
+/// - Noise in the template adds half its variance to that of each gradient, without information about the place.
 void judge(const AlignTemplate& pattern, float squares, float x, float y, AlignResult* result) {
   const float fx = x - std::floor(x);
   const float fy = y - std::floor(y);

@@ -15,7 +15,7 @@ struct Corner {
 /// Minimum distance of a corner from the image's edge [px], which the score of a 7x7 window needs.
 constexpr int kCornerBorder = 5;
 
-/// Likewise from what a mask leaves out [px]: half of the template that is cut there.
+/// The same from what a mask leaves out [px]: half of the template that is cut there.
 constexpr int kMaskMargin = 6;
 
 /// Scratch for detect_corners: three rows of scores and of candidates, about 18 bytes per column.

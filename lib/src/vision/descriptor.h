@@ -6,8 +6,8 @@
 #include "vision/image.h"
 #include "vision/patch.h"
 
-/// 256 bits of how the surroundings of a point look, which stay much the same when the image is rotated, lit otherwise or a little larger.
-/// They say which points of a map may be seen, where nothing says where to look for them.
+/// 256 bits that describe the surroundings of a point and hardly change when the image is rotated, lit otherwise or a little larger. They
+/// recognise points of a map whose place in the image is not predicted.
 
 namespace pf {
 

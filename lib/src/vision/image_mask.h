@@ -55,7 +55,7 @@ class ImageMask {
   const ImageMask* also_ = nullptr;
 };
 
-/// The mask where there is one and it masks anything, else null: what asks for each pixel asks this first.
+/// The mask where there is one and it masks anything, else null: called once before loops over pixels.
 inline const ImageMask* in_use(const ImageMask* mask) { return mask != nullptr && mask->has_masked() ? mask : nullptr; }
 
 template <typename F>

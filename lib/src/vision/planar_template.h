@@ -22,7 +22,7 @@ struct PlanarTemplate {
   bool has_normal = false;         ///< the slopes were measured
   std::int16_t frames = 0;         ///< that the mask has learnt from
   float sigma_plane = 0;           ///< of residuals on the dominant plane [grey levels]
-  float sigma_other = 0;           ///< likewise off it
+  float sigma_other = 0;           ///< the same off it
   float area = 0;                  ///< sum of the mask [px]
   float slope[2] = {0, 0};
   float covariance[3] = {0, 0, 0};  ///< of the slopes: xx, xy, yy

@@ -35,8 +35,8 @@ struct PlanePatch {
 static_assert(sizeof(PlanePatch) <= 24 * 1024);
 
 /// Copies a square of an image, makes its levels, and chooses the pixels of level 0 that are compared: those with the largest gradients,
-/// since with a noise that is the same everywhere they say most about the place.
-/// False, patch undefined: it leaves the image, its side is not in kMinSide .. kMaxSide, or it has too little texture in some direction.
+/// since at equal noise they have most information about the place. False, patch undefined: it leaves the image, its side is not in
+/// kMinSide .. kMaxSide, or it has too little texture in some direction.
 bool extract_plane_patch(const ImageView& image, int left, int top, int side, PlanePatch* patch);
 
 }  // namespace pf

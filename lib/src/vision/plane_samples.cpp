@@ -154,7 +154,7 @@ float robust_sigma(const PlaneSamples& s, float valid) {
     const int at = scaled < static_cast<float>(kBins - 1) ? static_cast<int>(scaled) : kBins - 1;
     bin[at] += s.valid[i];
   }
-  // Of the samples within kTrim sigma, which for normal residuals are nearly all, the median says sigma; what does not fit is beyond.
+  // Of the samples within kTrim sigma, which for normal residuals are nearly all, the median gives sigma; outliers are beyond.
   const auto quantile = [&bin](float wanted) {
     float below = 0;
     int at = 0;

@@ -53,7 +53,7 @@ void leave_out_masked(const ImageMask& mask, int level, const PlaneReading& read
                       PlaneCounts* counts);
 
 /// Takes gain and bias from mean and standard deviation of all valid samples where that makes the residuals much smaller; they are changed
-/// with it. What begins with the light of another frame would else settle on the few grey levels that both share.
+/// with it. Otherwise a fit that begins with another frame's light converges on the few grey levels that both share.
 void fit_light(PlaneSamples* samples, PlaneReading* reading);
 
 /// Standard deviation of the residuals of the samples that fit, from the median of |r| among those within 2.5 of it.

@@ -21,8 +21,8 @@ struct Pyramid {
   ImageView level[kMaxLevels];
   const ImageMask* mask = nullptr;  ///< of level 0, what is not the scene; null: all is
 
-  /// Takes about width * height / 3 bytes. No level is made with a side below kSmallestSide, so `levels` may end up
-  /// smaller than asked for. False: a side or the count of levels is not positive.
+  /// Takes about width * height / 3 bytes. No level is made with a side below kSmallestSide, so `levels` may end up smaller than
+  /// wanted_levels. False: a side or the count of levels is not positive.
   bool layout(Arena& arena, int width, int height, int wanted_levels);
 
   /// Fills all levels from an image of the size that layout was given.

@@ -1,8 +1,8 @@
 #pragma once
 
 /// Vectors of 16 bytes: GCC's own, which every target has (as scalars where the processor has none), and the two
-/// instruction sets that are the baseline of 64-bit processors, for what the language cannot say.
-/// PLANEFOLD_PLAIN_VISION leaves the plain loops only.
+/// instruction sets that are the baseline of 64-bit processors, for operations that the language does not have. PLANEFOLD_PLAIN_VISION
+/// leaves the plain loops only.
 
 #include <cstdint>
 #include <cstring>

@@ -13,7 +13,7 @@ using namespace tuning::template_mask;
 
 constexpr float kByte = 255.0f;
 constexpr float kOddsStep = 0.1f;          ///< log odds of one in a byte
-constexpr int kStrideX = 5, kStrideY = 3;  ///< of the pixels that say how noisy an image is
+constexpr int kStrideX = 5, kStrideY = 3;  ///< of the pixels from which an image's noise is estimated
 constexpr int kBins = 512;                 ///< of |L|, L = [1 -2 1; -2 4 -2; 1 -2 1] * I
 constexpr float kNoiseGain = 6.0f;         ///< standard deviation of L, of noise of unit variance
 constexpr float kQuarter = 0.31864f;       ///< of |x|, x of unit variance, below which a quarter lies

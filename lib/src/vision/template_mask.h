@@ -20,20 +20,20 @@ std::uint8_t mask_probability(std::uint8_t odds);
 ///
 ///   p' = p N(r; 0, sigma_D) / (p N(r; 0, sigma_D) + (1 - p) N(r; 0, sigma_B)),   log odds kept in -21 .. 3.9
 ///
-/// A pixel on the plane (.98) leaves it by one frame; one that has been off it for long comes back by ten or more in a row, since what is
-/// behind looks like the template in some frames.   sigma_D < sigma_B
+/// A pixel on the plane (.98) leaves it by one frame; one that has been off it for long comes back by ten or more in a row, since
+/// the background resembles the template in some frames.   sigma_D < sigma_B
 /// src  Masoud 2015 (7)-(8), which has no bounds
 std::uint8_t updated_odds(std::uint8_t odds, float residual, float sigma_plane, float sigma_other);
 
-/// What one frame says of one pixel.
+/// Evidence of one frame for one pixel.
 struct MaskEvidence {
   float residual = 0;  ///< template less image, its shift and light taken out [grey levels of the template]
   float slack = 0;     ///< what the uncertainty of the warp makes of the gradient there [grey levels]
   bool valid = false;  ///< in the image, and saturated in neither
 };
 
-/// Log odds after a frame. Unchanged where the pixel is not valid, and where the slack explains a residual that would speak against the
-/// plane.
+/// Log odds after a frame. Unchanged where the pixel is not valid, and where the slack explains a residual that would be evidence against
+/// the plane.
 std::uint8_t learn_pixel(std::uint8_t odds, const MaskEvidence& evidence, float sigma_plane, float sigma_other);
 
 /// Sum of the probabilities [px].

@@ -53,7 +53,7 @@ def make_copy(sequence, kind, target, frames):
 
     from .frames import CHOSEN, rate_of
     from .geometry import PLACES
-    from .pictures import CHANGES
+    from .pictures import CHANGES, CHANGES_OF_LENGTH
 
     rows = rows_of(sequence / "times.txt")[:frames]
     seed = zlib.crc32(f"{sequence.name} {kind}".encode())
@@ -69,7 +69,8 @@ def make_copy(sequence, kind, target, frames):
         adapt(camera)
     if camera.get("rate_hz"):
         camera["rate_hz"] = rate_of(kind, camera["rate_hz"], len(rows), len(chosen))
-    backwards, change = kind == "backwards", CHANGES.get(kind)
+    backwards = kind == "backwards"
+    change = CHANGES_OF_LENGTH[kind](len(chosen)) if kind in CHANGES_OF_LENGTH else CHANGES.get(kind)
     (target / "images").mkdir(parents=True)
     lines, before = [], None
     for number, index in enumerate(chosen):

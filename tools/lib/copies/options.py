@@ -39,6 +39,8 @@ KINDS = {
     "rate-5": (True, "5 frames a second"),
     "body": (True, "a dark textured shape fixed in the lower fifth, as the carrier's own body"),
     "date": (True, "a date and a clock drawn over the picture"),
+    "zoom": (False, "a lens that is 1.18 times as long from frame 100 on, beside the calibration; from the middle on of less than 200"),
+    "zoom-slow": (False, "the same, reached over 60 frames, or the second third of less than 180"),
     "frame": (True, "a recorder's frame and cross drawn over the picture"),
 }
 SHORT_SEQUENCES = 3

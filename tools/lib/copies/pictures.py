@@ -103,8 +103,25 @@ def frame(image, *_):
     return out
 
 
+def zoom(first, frames):
+    """From frame `first` on the middle 85 % fill the picture, reached over so many frames."""
+    def change(image, number, _):
+        share = min(max((number - first + 1) / frames, 0), 1)
+        left, up = (side * 0.075 * share for side in (image.shape[1], image.shape[0]))
+        if share == 0:
+            return image
+        box = (left, up, image.shape[1] - left, image.shape[0] - up)
+        return np.asarray(Image.fromarray(image).resize((image.shape[1], image.shape[0]), Image.BICUBIC, box=box))
+    return change
+
+
 CHANGES = {
     "noise-3": noise(3), "noise-5": noise(5), "noise-8": noise(8), "blur-1": blur(1), "blur-2": blur(2), "gamma-bright": gamma(0.6),
     "gamma-dark": gamma(1.7), "half-light": light(0.5), "low-contrast": light(0.25, 90), "flicker": flicker, "exposure": exposure,
     "vignette": vignette, "speckles": speckles, "dust": dust, "compressed": compressed, "body": body, "date": date, "frame": frame,
+}
+# Those that need to know how many pictures there are.
+CHANGES_OF_LENGTH = {
+    "zoom": lambda length: zoom(min(100, length // 2), 1),
+    "zoom-slow": lambda length: zoom(min(60, length // 3), min(60, length // 3)),
 }

@@ -2,8 +2,7 @@
 
 #include "covariance/kernels.h"
 
-/// The plain twins: one loop nest per formula, no blocking. They say what the tuned sets must compute, and nothing is faster
-/// to read.
+/// The plain twins: one loop nest per formula, no blocking. They define what the tuned sets must compute, and are the easiest to read.
 
 namespace pf::reference {
 

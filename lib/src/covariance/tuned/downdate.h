@@ -14,7 +14,7 @@ struct Thin {
   int k;
   std::ptrdiff_t ld;
   const unsigned char* touched;  ///< see below
-  bool far;                      ///< the triangle is too large for the caches near the core: ask for it early
+  bool far;                      ///< the triangle is too large for the caches near the core: prefetch it
 };
 
 /// Which groups of columns hold anything in the rows of U behind the dense ones; those far behind count as if they did.

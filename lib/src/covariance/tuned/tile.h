@@ -26,7 +26,7 @@ struct Tile {
     }
   }
 
-  /// Ask for the memory that the tile will be taken from when its product is done.
+  /// Prefetches the memory that the tile will be subtracted from when its product is done.
   static PF_INLINE void prefetch(const Scalar* to, std::ptrdiff_t stride) {
     constexpr int kLine = 64 / static_cast<int>(sizeof(Scalar));
 #pragma GCC unroll 8

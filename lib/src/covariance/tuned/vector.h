@@ -4,7 +4,7 @@
 
 #include "covariance/kernels.h"
 
-/// The vectors that tuned kernels are written in, as wide as the file that includes this says:
+/// The vectors that tuned kernels are written in, whose width the including file defines:
 ///
 ///   PF_VECTOR_BYTES   of a register
 ///   PF_TILE_ROWS      register tile: rows of the eight of a group (8, 4 or 2) ...

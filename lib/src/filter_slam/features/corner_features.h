@@ -20,7 +20,7 @@ class CornerFeatures {
 
   /// Adds features in the emptiest cells of the image until enough are in view.
   void add();
-  /// Adds features at these pixels, which are those of others that have just left the map.
+  /// Adds features at these pixels, at which others have just left the map.
   void add_at(const Vec2* pixel, int count);
 
  private:

@@ -158,7 +158,7 @@ Scalar FeatureKeeper::median_inverse_depth() const {
   return on_target > 0 ? target_rho / (kBehindTarget * Scalar(on_target)) : start;
 }
 
-/// A point begins before the wall that its ray meets, since the plan says that something is there; a wall is no better known for that.
+/// A point begins at the wall that its ray meets, by the plan; that does not reduce the wall's covariance.
 int FeatureKeeper::add(int anchor, const Vec2& pixel, const Mat2& noise) {
   Vec3 ray_C;
   Mat32 J_ray_pixel;

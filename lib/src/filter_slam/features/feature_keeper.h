@@ -20,23 +20,22 @@ class FeatureKeeper {
   /// Converts inverse depths whose linearity index is small enough to 3-D points.
   void convert_linear();
   /// Drops features that fail too often, lie behind their first camera, or whose values are not finite and bounded.
-  /// Unsound ones only if this frame does not support its pose: then a feature that is not found may still be there.
+  /// In a frame that does not support its pose only features with unsound values: one that was not found may still be there.
   void drop_failing(bool is_tracked);
   void drop(const int* entries, int count);
   void drop_all();
   /// Removes a table entry whose block is no longer in the filter.
   void release(int entry);
 
-  /// Makes so many rows free by evicting features that were not seen since this time. False: not enough of them; nothing has changed
-  /// then.
+  /// Frees so many rows by evicting features that were not seen since this time. False, with nothing changed, where these are too few.
   bool make_rows(int rows, std::int64_t not_since_ns);
   /// Makes room for one more feature on *anchor, and a new anchor if *anchor is -1 or was removed by an eviction. False: no room.
   bool make_room_at(int* anchor);
-  /// Likewise for a feature that begins on a plane.
+  /// The same for a feature that begins on a plane.
   bool make_room_on_plane() { return make_room(2); }
   /// Adds an inverse-depth feature at a pixel. Returns its table entry, or -1.
   int add(int anchor, const Vec2& pixel, const Mat2& noise);
-  /// Slot of the nearest proven plane that the pixel's ray meets inside of its outline, or -1.
+  /// Slot of the nearest established plane that the pixel's ray meets inside of its outline, or -1.
   int plane_at(const Vec2& pixel) const;
   /// Adds a feature at a pixel that is taken to lie on this plane, on trial. Returns its table entry, or -1.
   int add_on_plane(int plane, const Vec2& pixel, const Mat2& noise);

@@ -29,11 +29,8 @@ bool FeatureSearch::is_visible(int feature, Vec2* pixel) const {
   if ((f.is_target && map_.target_withdrawn) || !f.has_appearance) return false;
   PixelMeasurement o;
   if (!filter_.predict_pixel(filter_.lens(), f.slot, &o)) return false;
-  const Scalar margin = static_cast<Scalar>(settings_.border_px);
   *pixel = o.predicted;
-  return !(o.predicted.x() < margin || o.predicted.y() < margin ||
-           o.predicted.x() > static_cast<Scalar>(settings_.camera.width - 1) - margin ||
-           o.predicted.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
+  return is_in_image(settings_.camera, o.predicted, static_cast<Scalar>(settings_.border_px));
 }
 
 /// How reliable a feature is; negative where this view cannot be compared with its first.
@@ -119,7 +116,7 @@ int FeatureSearch::search(int first, int count, const SearchMode& mode) {
     if (!outcome.found || squared_distance(outcome.pixel - o.predicted, match.innovation) > settings_.gate) continue;
     ++frame_.report.matches;
     match.measured = outcome.pixel;
-    match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
+    match.status = MatchStatus::kOutlier;  // until the consensus has it as an inlier
     o.measured = outcome.pixel;
     const Scalar nis = squared_distance(outcome.pixel - task.predicted, task.innovation);
     update_.candidate(i).log_density = log_normal_density(nis, std::log(task.innovation.determinant()), 1);
@@ -155,7 +152,8 @@ SearchTask FeatureSearch::task_of(int feature) const {
   return task;
 }
 
-/// Directs a search to where the followed view has the feature, unless its own ellipse says as much. False where that has no place for it.
+/// Directs a search to where the followed view has the feature, unless its own ellipse is as small. False where the followed view has no
+/// place for it.
 bool FeatureSearch::aim(SearchTask* task) const {
   return !is_wide(task->innovation) || followed_.aim(filter_.lens(), task->p_W, task);
 }

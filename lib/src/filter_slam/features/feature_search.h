@@ -14,10 +14,9 @@
 
 namespace pf {
 
-/// Where features are searched for, and what their matches are taken for.
+/// Where features are searched for, and how their matches are treated.
 struct SearchMode {
-  /// About the places where the picture as a whole has gone, where the prediction is vague. A match still has to pass the gate about its
-  /// prediction.
+  /// Searches where the image as a whole has moved, where the prediction is vague. A match still has to pass the gate about its prediction.
   bool follows = false;
   bool parallax_lasts = false;  ///< MatchNoise::set
 };
@@ -47,17 +46,17 @@ class FeatureSearch {
   /// The same of a range of candidates; valid until the next call and the next list.
   const Scalar* searched_areas(int first, int count, bool follows);
 
-  /// Where the prediction of the `count` listed candidates is vague: finds where the picture as a whole has gone, for searches that follow
-  /// it. False where the prediction is not vague, or the picture does not tell.
+  /// Where the prediction of the `count` listed candidates is vague: finds where the image as a whole has moved, for searches that follow
+  /// it. False where the prediction is not vague, or the image does not show its motion.
   bool find_followed(int count);
   /// After a frame's searches: ImageSearch::note_fixed.
   bool note_fixed() { return search_.note_fixed(filter_.lens(), frame_, &map_.features); }
-  /// After a frame that used matches: the next one may be followed from it.
+  /// Keeps the view of a frame that used matches, from which the next one may be followed.
   void keep_view() { followed_.keep(search_.tracker().pyramid(), filter_.state().body.q_WC, filter_.state().body.p_W); }
-  /// The map is given up, and with it all poses.
+  /// The map is discarded, and with it all poses.
   void forget_view() { followed_.init(); }
 
-  /// Stores how a feature looks at this pixel of the image. False if the pixel is too near to the border.
+  /// Stores the pixels around this pixel as the feature's appearance. False if the pixel is too near to the border.
   bool remember(int feature, const Vec2& pixel, const CameraView& view) {
     return search_.remember(&map_, feature, pixel, view);
   }

@@ -86,8 +86,8 @@ bool ImageFrontEnd::measure_listed(const MeasureMode& mode, bool follows, bool m
   return follows;
 }
 
-/// Finds the consensus of the matches of a range, and updates the filter with it. False if that is not enough to believe the
-/// pose; nothing is used then.
+/// Finds the consensus of the matches of a range, and updates the filter with it. False, with nothing used, where its evidence is not
+/// enough to accept the pose.
 bool ImageFrontEnd::update_with_consensus(const Range& range, const MeasureMode& mode) {
   const int first = range.first, found = range.found;
   const bool is_first = frame_.report.inliers == 0;
@@ -107,7 +107,7 @@ bool ImageFrontEnd::update_with_consensus(const Range& range, const MeasureMode&
       log_odds = weigh(range, consensus, mode);
       accepted = mode.starts ? inliers >= std::min(kMinConsensus, map_.features.count())
                              : hypotheses_.accepts(consensus, log_odds, range.is_last);
-    } else {  // beside those that were believed, any consensus is
+    } else {  // beside accepted matches any consensus is enough
       log_odds = PoseBelief::updated(belief_.log_odds(), belief_.evidence(consensus));
       accepted = inliers > 0;
     }
@@ -128,7 +128,7 @@ bool ImageFrontEnd::update_with_consensus(const Range& range, const MeasureMode&
   return true;
 }
 
-/// Where the picture as a whole says where it has gone, that is where the pose of this hypothesis has each pixel, and not the prediction.
+/// Where the searches followed the image as a whole, the hypothesis has each pixel there, and not at the prediction.
 PoseConsensus ImageFrontEnd::consensus_of(const Range& range, int inliers, const JointFit& fit) {
   const int first = range.first, found = range.found;
   PoseConsensus consensus;
@@ -142,10 +142,11 @@ PoseConsensus ImageFrontEnd::consensus_of(const Range& range, int inliers, const
     consensus.log_chance += log_chance_density(searched_px2[i]);
     if (range.follows) consensus.log_density += update_.candidate(first + i).log_density;
   }
+  note_zoom(fit.zoom, settings_, &consensus);
   return consensus;
 }
 
-/// Log-odds of the pose with the evidence of the frame's first consensus. A pose that is not believed yet is proposed to the next frame,
+/// Log-odds of the pose with the evidence of the frame's first consensus. A pose that is not accepted yet is proposed to the next frame,
 /// once all features have been searched for.
 Scalar ImageFrontEnd::weigh(const Range& range, const PoseConsensus& consensus, const MeasureMode& mode) {
   frame_.note_consensus(consensus.inliers);

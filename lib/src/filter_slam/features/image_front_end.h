@@ -21,10 +21,10 @@ namespace pf {
 
 /// How a frame is measured.
 struct MeasureMode {
-  bool starts = false;    ///< five inliers are enough: there is no map yet that could be spoilt
-  bool is_vague = false;  ///< of a prediction too vague to search about it: only where the picture as a whole has gone
+  bool starts = false;      ///< five inliers are enough: there is no map yet that a wrong pose could corrupt
+  bool is_vague = false;    ///< the prediction is too vague: searches only where the image as a whole has moved
   Scalar median_depth = 1;  ///< of the last tracked frame's inliers
-  /// What baseline and open depth make wrong together counts as an error that stays with its feature.
+  /// The second-order error of baseline and open depth counts as one that stays with its feature.
   bool parallax_lasts = false;
   UpdateMode update;
 };
@@ -49,10 +49,10 @@ class ImageFrontEnd {
 
   /// Prepares an image for the search. False if it shows nothing to track: black, white or blurred.
   bool begin_frame(const ImageView& image);
-  /// Finds the map's features in the image, and updates the filter with them where that is enough to believe the pose. Returns what the
-  /// updates have found.
+  /// Finds the map's features in the image, and updates the filter with them where the evidence is enough to accept the pose. Returns what
+  /// the updates have found.
   UpdateOutcome measure(MeasureMode mode);
-  /// Where the camera is after a frame, and whether that taught the map. SameView
+  /// Notes the view of a frame, and whether the frame updated the map (SameView).
   void note_view(bool taught, Scalar median_depth);
   /// Updates the noise model with the inliers' residuals after measure().
   void learn_noise();
@@ -65,7 +65,7 @@ class ImageFrontEnd {
  private:
   int list_candidates();
   bool measure_listed(const MeasureMode& mode, bool follows, bool may_follow);
-  /// Of the listed candidates, those that were searched for at once; what was found stands first.
+  /// A run of listed candidates that were searched for together; those that were found come first.
   struct Range {
     int first, found, searched;
     bool is_last;  ///< all have been searched for
@@ -86,7 +86,7 @@ class ImageFrontEnd {
   FeatureSearch search_;
   CornerFeatures corners_;
   SameView same_view_;
-  bool is_learnt_ = false;    ///< the map has learnt from this frame's view already
+  bool is_learnt_ = false;    ///< the map has been updated from this frame's view already
   bool is_measured_ = false;  ///< by measure(), so that candidates and matches are this frame's
   int listed_ = 0;            ///< candidates of the last frame that measure() has measured
   UpdateOutcome outcome_;     ///< of the updates that measure() has made so far

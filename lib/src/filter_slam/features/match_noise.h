@@ -16,8 +16,8 @@ class MatchNoise {
   MatchNoise(Filter& filter, Map& map, const Frame& frame, PixelUpdate& update, NoiseModel& model)
       : filter_(filter), map_(map), frame_(frame), update_(update), model_(model) {}
 
-  /// Sets the noise of candidate i, which was found, and of its observation. parallax_lasts: what baseline and open depth make wrong
-  /// together counts as an error that stays with its feature.
+  /// Sets the noise of candidate i, which was found, and of its observation. parallax_lasts: the second-order error of baseline and open
+  /// depth counts as one that stays with its feature.
   void set(int i, const SearchOutcome& found, bool parallax_lasts) const;
   Scalar correlation_frames() const { return model_.correlation_frames(); }
   /// Updates the noise model with the residuals of the inliers among the first `count` candidates, after the update.

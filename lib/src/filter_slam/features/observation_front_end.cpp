@@ -25,7 +25,7 @@ bool ObservationFrontEnd::layout(Arena& arena, int max_features, int max_observa
 UpdateOutcome ObservationFrontEnd::measure(const PixelObservation* observations, int count, bool again,
                                            const UpdateMode& mode) {
   const int known = gate(observations, count, again);
-  // Where the prediction is in doubt, the few that pass a gate which refuses most of them pass it by chance.
+  // Where the prediction may be wrong, the few that pass a gate which rejects most pass it by chance.
   const bool is_in_doubt = mode.max_pose_nis > Scalar(0);
   if (known == 0 || (is_in_doubt && tuning::image_front_end::kFewPassing * known < frame_.report.matches))
     return UpdateOutcome();

@@ -28,13 +28,13 @@ class ObservationFrontEnd {
 
   bool layout(Arena& arena, int max_features, int max_observations);
 
-  /// Where the observations of a frame are written; holds as many as the map and a frame together.
+  /// Buffer for the observations of a frame; as large as the map and a frame together.
   PixelObservation* inbox() { return inbox_; }
   int inbox_size() const { return settings_.max_features + settings_.max_observations; }
 
   /// Updates the filter with observations of the map's features. again: of the same frame once more, which is not counted twice.
   UpdateOutcome measure(const PixelObservation* observations, int count, bool again, const UpdateMode& mode);
-  /// What the frame says of the features that were observed. mean: of earlier frames.
+  /// Counts the observations and updates the log-odds of their features. mean: of earlier frames.
   void count(const FindShare& mean);
   /// Adds features for observations with unknown ids.
   void add_features(const PixelObservation* observations, int count);

@@ -10,8 +10,8 @@ void SameView::note(const Body& body, Scalar median_depth, Scalar focal_px) {
   count_frame(&data_.frames);
 }
 
-/// Whether a point near the median depth moves by more than 2 px in the picture, or is behind the camera. Rotation and place together: the
-/// estimate of a camera at rest drifts about what it looks at, where neither tells anything by itself.
+/// Whether a point near the median depth moves by more than 2 px in the image, or is behind the camera. Rotation and position are tested
+/// together, since the estimate of a camera at rest drifts about the point that it looks at.
 bool SameView::has_moved(const Body& body, Scalar median_depth, Scalar focal_px) const {
   namespace near = tuning::same_view;
   const Quat q_CW = body.q_WC.conjugate();

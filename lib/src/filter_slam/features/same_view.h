@@ -2,24 +2,24 @@
 
 #include "model/body.h"
 
-/// Whether a frame shows what the map has learnt from already: lib/docs/theory/noise.md, "At rest".
+/// Whether a frame shows a view that has updated the map already: lib/docs/theory/noise.md, "At rest".
 
 namespace pf {
 
-/// What is wrong with a match (lens, warp, first view) hangs on the view, and comes again in every frame of a camera at rest. So a view
-/// counts as often as it takes to be worth one independent measurement, tau frames; in those after them the map is considered and not
-/// estimated (Schmidt), until the camera sees something else.
+/// The error of a match (lens, warp, first view) depends on the view, and repeats in every frame of a camera at rest. So a view counts as
+/// often as it takes to be worth one independent measurement, tau frames; in those after them the map is considered and not estimated
+/// (Schmidt), until the camera sees something else.
 class SameView {
  public:
   void init() { data_ = Data(); }
 
-  /// Whether the camera at this pose, predicted for a frame, has been in its view for `enough` tracked frames.
+  /// Whether the camera at this predicted pose has been in the present view for `enough` tracked frames.
   bool is_learnt(const Body& body, Scalar median_depth, Scalar focal_px, Scalar enough) const {
     return static_cast<Scalar>(data_.frames) >= enough && !has_moved(body, median_depth, focal_px);
   }
-  /// After a tracked frame.
+  /// Notes a tracked frame.
   void note(const Body& body, Scalar median_depth, Scalar focal_px);
-  /// After any other.
+  /// Notes any other frame.
   void forget() { data_.frames = 0; }
 
  private:

@@ -9,9 +9,9 @@ namespace pf::tuning {
 
 /// A camera at rest.
 namespace same_view {
-inline constexpr Scalar kMaxMotionPx = Scalar(2);   ///< [px] of points near the median depth; errors come again
-inline constexpr Scalar kDepthRatio = Scalar(1.5);  ///< how near: the median depth divided by it, and times it
-inline constexpr Scalar kCorner = Scalar(0.4);      ///< tangent of the angles at which such points are looked at
+inline constexpr Scalar kMaxMotionPx = Scalar(2);   ///< [px] of points near the median depth; errors repeat below it
+inline constexpr Scalar kDepthRatio = Scalar(1.5);  ///< depths from the median divided by it to the median times it
+inline constexpr Scalar kCorner = Scalar(0.4);      ///< tangent of the angles at which such points are tested
 }  // namespace same_view
 
 /// Planes known beforehand.

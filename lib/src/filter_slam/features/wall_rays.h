@@ -12,11 +12,11 @@ namespace pf {
 bool meets_wall(const Filter& filter, const Map& map, int plane_entry, const Vec3& origin_W, const Vec3& direction_W,
                 Scalar* range);
 
-/// The first wall that a ray meets, not counting doubted ones; -1: none. *range as above; untouched where there is none.
+/// The first wall that a ray meets, not counting rejected ones; -1: none. *range as above; untouched where there is none.
 int first_wall(const Filter& filter, const Map& map, const Vec3& origin_W, const Vec3& direction_W, Scalar* range);
 
-/// How far along a ray the plan has a wall, in lengths of direction_W; zero where it has none there. The filter may have moved a wall to
-/// where its depths are, or doubt it; here it is where it was when it came.
+/// Distance along a ray to a wall of the plan, in lengths of direction_W; zero where it has none there. The wall's place is that of the
+/// plan, even where the filter has moved or rejected the wall.
 Scalar range_in_plan(const Filter& filter, const Map& map, const Vec3& origin_W, const Vec3& direction_W);
 
 }  // namespace pf

@@ -6,8 +6,8 @@
 #include "filter_slam/inertial/unit_reason.h"
 #include "frame/settings.h"
 
-/// Whether the accelerometer reads specific force in m/s². What a hand does averages out over seconds, in axes that do not rotate, and
-/// gravity stays: about 9.81, whatever else is known.
+/// Tests whether the accelerometer reads specific force in m/s². Over seconds, in axes that do not rotate, a hand's accelerations average
+/// out, and the mean is gravity's: about 9.81.
 
 namespace pf {
 
@@ -16,9 +16,9 @@ class ForceCheck {
   ForceCheck(const Settings& settings, const ImuLog& imu) : settings_(settings), imu_(imu) {}
 
   void init() { data_ = Data(); }
-  /// After a frame. R_WB: of the unit, as the pictures have it; follows: they have it since the frame before.
+  /// Notes a frame. R_WB: rotation of the unit, from images; follows: the frame before had one too.
   void note(const Mat3& R_WB, bool follows);
-  /// kNone where gravity is seen or nothing is known yet. *value: what was read [m/s^2].
+  /// kNone where the mean is gravity's, or is not known yet. *value: the mean reading [m/s^2].
   UnitReason reason(Scalar* value) const {
     *value = data_.value;
     return data_.reason;

@@ -20,7 +20,7 @@ constexpr int kSignEvery = 4;  ///< solutions in a row that there are none of, f
 
 }  // namespace
 
-/// What the samples say between a time and the view. False where they are missing.
+/// Integrates the samples between a time and the view. False where they are missing.
 bool MovingStart::integrate(std::int64_t from_ns, View* view) const {
   const Body& body = filter_.state().body;
   const Vec3 gyro_bias = filter_.uses_samples() ? body.gyro_bias : Vec3(Vec3::Zero());
@@ -81,7 +81,7 @@ bool MovingStart::has_depth(int entry) const {
   return rho > Scalar(0) && std::sqrt(filter_.block_variance(slot, 2)) < kMaxDepthSigma * rho;
 }
 
-/// The pose of a view by what the map says of its features now, with the noise that its pixels show.
+/// Pose of a view against the present map, with the noise that its pixels show.
 bool MovingStart::locate(View* view) const {
   PnpPoint point[kMaxPixels];
   int count = 0;
@@ -117,7 +117,7 @@ bool MovingStart::sweep() {
   return data_.left == 0;
 }
 
-/// The rotations of the views by their pixels and by the gyro together. Returns the gyro's bias that they tell.
+/// Smooths the rotations of the views by pixels and gyroscope together. Returns the gyroscope's bias.
 Vec3 MovingStart::smooth() {
   const Mat3& R_CB = filter_.state().mounting.R_CB;
   const Quat q_CB(R_CB);
@@ -133,8 +133,8 @@ Vec3 MovingStart::smooth() {
     link.q_WC = view.q_WC;
     link.variance = data_.correlation * static_cast<Scalar>(view.covariance.topLeftCorner<3, 3>().trace()) / 3;
     link.dq = q_CB * dq_B * q_CB.conjugate();
-    // Axes that are off by mu turn the step by mu x step, a scale that is off by e makes it e longer, and a
-    // delay that is off by e moves both its ends: (w_0 - w_1) e.
+    // An error mu of the axes rotates the step by mu x step, an error e of the scale lengthens it by e, and an error e of the delay moves
+    // both ends: (w_0 - w_1) e.
     const Vec3 step = log_so3(dq_B), rate_before = rate;
     if (view.dt > Scalar(0)) rate = step / view.dt;
     link.step_variance = density * density * view.dt + of_turn * step.squaredNorm() +
@@ -256,7 +256,7 @@ Scalar MovingStart::mean_rate2() const {
   return time > Scalar(0) ? sum / time : Scalar(0);
 }
 
-/// How well the rate at which the poses turn away from the truth is known: by the map, which turns with them, or by the gyro.
+/// Sigma of the rate at which the poses' rotations drift from the truth: by the map, which drifts with them, or by the gyroscope.
 Scalar MovingStart::turn_rate_sigma(Scalar span) const {
   const Scalar by_map = mean_variance(Body::kTheta) / (span * span);
   return std::sqrt(std::min(by_map, mean_variance(settings_.body.row(BodyPart::kGyroBias))));
@@ -289,7 +289,7 @@ bool MovingStart::note(const MovingFrame& told, MovingSolution* solution) {
   noise.drift = kDrift * told.depth;
   noise.accel_density = std::hypot(motion_.unit_noise().now().accel_density, settings_.unit.gravity * kRotation);
   noise.tilt_density = std::max(kTiltDensity, motion_.unit_noise().now().gyro_density);
-  // Axes that are off by mu tilt gravity by what the camera turns them, mu w a second; a delay that is off by e by e w.
+  // An error mu of the axes tilts gravity by mu w a second as the camera rotates, an error e of the delay by e w.
   const Scalar of_unit = (turn_variance() + scale_variance() + 2 * delay_variance()) * mean_rate2();
   noise.tilt_density = std::sqrt(noise.tilt_density * noise.tilt_density + of_unit);
   noise.turn = turn_rate_sigma(span);

@@ -9,20 +9,20 @@
 #include "geometry/rotation_smoother.h"
 #include "map/map.h"
 
-/// Looks for metres and gravity while the camera moves in a map up to scale: keeps the pixels of frames, with what the samples say in
-/// between, finds the poses of these frames anew against the map as it is now, and solves for scale, gravity and the accelerometer's bias.
-/// See lib/docs/theory/inertial.md.
+/// Looks for metres and gravity while the camera moves in a map up to scale: keeps the pixels of frames and the integrals of the samples in
+/// between, estimates the poses of these frames anew against the present map, and solves for scale, gravity and the accelerometer's bias
+/// (lib/docs/theory/inertial.md).
 
 namespace pf {
 
-/// What is told of a frame beside its matches.
+/// Inputs of a frame beside its matches.
 struct MovingFrame {
   bool keep;             ///< it is tracked in a map that samples may scale
   bool judge;            ///< depths of that map are known up to scale
   std::uint32_t map_id;  ///< of that map
-  Scalar depth;          ///< the median one of what is seen
-  bool patient;          ///< the map is young: a scale that is known well is waited for
-  Scalar correlation;    ///< frames in a row whose pixels have the same errors: 1 where each has its own
+  Scalar depth;          ///< median, of the measured points
+  bool patient;          ///< the map is new: the start waits for a scale that is known well
+  Scalar correlation;    ///< number of consecutive frames whose pixels have the same errors: 1 where each has its own
 };
 
 class MovingStart {
@@ -36,20 +36,20 @@ class MovingStart {
     data_.sigma_scale = 0;
     data_.reversed = false;
   }
-  /// The unit's delay has become another: what the samples say between the views is integrated again. Views without samples are forgotten.
+  /// After a change of the unit's delay: integrates the samples between the views again. Views without samples are dropped.
   void integrate_again();
-  /// Of the last solution that was not accepted: its sigma of the log scale; 0: there was none.
+  /// Sigma of the log scale of the last solution that was not accepted; 0: there was none.
   Scalar sigma_scale() const { return data_.sigma_scale; }
-  /// The motion is explained by accelerations with the opposite sign, and not by those that were read.
+  /// True where accelerations with the opposite sign explain the motion, and the readings do not.
   bool is_reversed() const { return data_.reversed; }
-  /// After a frame. True where *solution is sure of itself, fits, and both halves of the poses agree.
+  /// Notes a frame. True where *solution has small sigmas, fits, and both halves of the poses agree.
   bool note(const MovingFrame& told, MovingSolution* solution);
 
  private:
   static constexpr int kMaxPixels = 64;
   using Float6 = Eigen::Matrix<float, 6, 6>;
 
-  /// A frame that is kept. Floats where there are many numbers that need no more.
+  /// A frame that is kept, with large arrays in float.
   struct View {
     struct Seen {
       std::uint32_t id;
@@ -78,9 +78,9 @@ class MovingStart {
     bool reversed = false;
     Scalar delay_sigma = 0;  ///< [s] when the views were integrated
     int refused = 0;         ///< solutions in a row
-    // Poses are found anew in sweeps over the views, from the last to the first, a part of them a frame.
-    int left = 0;            ///< views that the sweep has not reached
-    int first = 0, end = 0;  ///< those that it has given a pose
+    // Poses are estimated anew in sweeps over the views, from the last to the first, some views in each frame.
+    int left = 0;            ///< views that this sweep has not reached
+    int first = 0, end = 0;  ///< views that it has given a pose
     Scalar correlation = 1;  ///< of the pixels of neighbouring views
     View view[kMaxMovingPoses];
     RotationLink link[kMaxMovingPoses];

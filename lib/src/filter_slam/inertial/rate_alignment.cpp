@@ -205,7 +205,7 @@ void RateAlignment::explain(const ImuLog& log, double delay_s, bool delay_known,
                                                : Scalar(1);
   Vec3 lambda;
   Mat3 V;
-  symmetric_eigen(m.gg, &lambda, &V);  // about the axis of the largest, the other two tell the rotation
+  symmetric_eigen(m.gg, &lambda, &V);  // about the axis of the largest, the rotation follows from the other two
   const Scalar of_turn = out->scale * out->scale * (lambda(0) + lambda(1));
   const Scalar widen = information > Scalar(0) ? std::max(Scalar(1), clustered / (variance * information)) : Scalar(1);
   out->sigma_turn = of_turn > Scalar(0) ? std::min(Scalar(3), std::sqrt(widen * variance / of_turn)) : Scalar(3);

@@ -5,7 +5,7 @@
 #include "filter/imu_log.h"
 #include "geometry/so3.h"
 
-/// What the camera's own rotations, from pictures alone, say of a gyroscope: its delay, its axes and its scale
+/// Estimates a gyroscope's delay, axes and scale from the camera's own rotations, which come from images alone
 /// (lib/docs/theory/inertial.md, "Rates").
 
 namespace pf {
@@ -14,31 +14,31 @@ namespace pf {
 struct RateFit {
   int count = 0;           ///< intervals
   Scalar delay = 0;        ///< [s] t_frame = t_sample + delay
-  Scalar sigma_delay = 0;  ///< of what the rates leave
+  Scalar sigma_delay = 0;  ///< from the residuals of the rates
   Mat3 R_CB = Mat3::Identity();
-  Scalar sigma_turn = 0;     ///< [rad] of its worst axis
+  Scalar sigma_turn = 0;     ///< [rad] about the worst axis
   Scalar scale = 0;          ///< of the camera's rates to the gyroscope's
   Scalar left = 1;           ///< share of the squares of c that is not explained
   Scalar next_left = 1;      ///< the same at the next best delay
   Scalar turning = 0;        ///< standard deviation of c, over the axes [rad/s]
   Scalar left_mirrored = 1;  ///< share that left-handed axes leave
-  bool mirrored = false;     ///< they fit far better than any rotation
+  bool mirrored = false;     ///< a reflection fits far better than any rotation
   bool at_end = false;       ///< the best delay is the last that was tried
 };
 
 class RateAlignment {
  public:
-  static constexpr double kReach = 0.2;  ///< [s] that a delay may be off
+  static constexpr double kReach = 0.2;  ///< [s] largest error of the delay that is searched
 
   void init() { count_ = 0; }
-  /// The camera's rate between two frames, in its axes.
+  /// Adds the camera's rate between two frames, in its axes.
   void add(std::int64_t begin_ns, std::int64_t end_ns, const Vec3& rate_C);
   int count() const { return count_; }
-  /// From the first interval to the last [s].
+  /// Time from the first interval to the last [s].
   double span() const;
 
-  /// R_CB: the axes are known; null: they are found too. at_s: about this delay. reach_s: to either side; 0: it is known.
-  /// False where samples are missing or nothing rotates.
+  /// Fits rates. R_CB: known axes; null: they are estimated too. at_s: delay about which is searched, by reach_s to either side (0: it is
+  /// known). False where samples are missing or nothing rotates.
   bool fit(const ImuLog& log, double at_s, double reach_s, const Mat3* R_CB, RateFit* out);
 
  private:

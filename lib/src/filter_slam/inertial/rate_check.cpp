@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kMinSpan = 0.8;  ///< [s] of an alignment
 constexpr double kVerdict = 2.5;  ///< [s] after which one that does not fit is a contradiction
-constexpr double kLongest = 4;    ///< [s] that is asked of one at most, since no more is kept
+constexpr double kLongest = 4;    ///< [s] of agreement that is required at most, since no more is kept
 constexpr Scalar kDegrees = Scalar(57.29578);
 constexpr Scalar kNear = Scalar(0.25);        ///< share by which a factor of 57.3 may be off
-constexpr Scalar kLikeGravity = Scalar(0.3);  ///< likewise of a reading that is as large as gravity
+constexpr Scalar kLikeGravity = Scalar(0.3);  ///< the same of a reading that is as large as gravity
 constexpr Scalar kClock = Scalar(0.005);      ///< [s] that a clock is off before it is named
 
 Scalar angle_between(const Mat3& a, const Mat3& b) { return log_so3(Quat(Mat3(a.transpose().lazyProduct(b)))).norm(); }
@@ -42,7 +42,7 @@ UnitReason RateCheck::reason(Scalar* value, Mat3* R_CB) const {
   return data_.reason;
 }
 
-/// Longer after each doubt.
+/// The required time [s] grows with each rejection.
 double RateCheck::wanted_span(bool is_rejected, int doubts) const {
   if (!is_rejected) return kMinSpan;
   return static_cast<double>(tuning::unit_watch::kWindow) * (1 << std::max(0, doubts - 1));

@@ -8,8 +8,8 @@
 #include "frame/settings.h"
 
 /// While samples do not move the body, since the unit is rejected or since its clock or its axes are not known: compares the camera's own
-/// rates with the gyroscope's (RateAlignment). Where they fit, samples can be used; where they do not, the fit says why.
-/// What each reason means to a user: lib/docs/guide/unknown_unit.md.
+/// rates with the gyroscope's (RateAlignment). Where they fit, samples can be used; where they do not, the fit gives the reason. What each
+/// reason means to a user: lib/docs/guide/unknown_unit.md.
 
 namespace pf {
 
@@ -19,27 +19,27 @@ class RateCheck {
       : settings_(settings), filter_(filter), imu_(imu), frame_(frame) {}
 
   void init();
-  /// Compares from now on, and forgets what was compared before.
+  /// Starts the comparison anew.
   void begin() {
     data_.rates.init();
     data_.begin.t_ns = 0;
   }
-  /// After a frame without samples. doubts: for how often the unit was rejected, it has to agree for longer. True where it has just been
-  /// named why no clock and no axes fit.
+  /// Notes a frame whose prediction had no samples. doubts: how often the unit was rejected; each rejection lengthens the agreement that is
+  /// required. True where the reason why no clock and no axes fit has just been found.
   bool note(const UnitFrame& frame, bool is_rejected, int doubts);
-  /// Clock and axes that fit, null without; use() says that samples are used from now on.
+  /// Clock and axes that fit; null: none. After use() samples are used.
   const RateFit* fit() const { return data_.has_fit ? &data_.fit : nullptr; }
   void use() {
     data_.is_open = data_.has_fit = false;
     data_.reason = UnitReason::kNone;
   }
-  /// Pictures contradict the samples.
+  /// Images contradict the samples: starts the comparison anew, with that as the reason.
   void contradict() {
     begin();
     data_.reason = UnitReason::kContradicts;
   }
 
-  /// The clock or the axes are open, and have not been found yet.
+  /// True where the clock or the axes are open and not found yet.
   bool is_open() const { return data_.is_open; }
   bool finds_axes() const;
   /// Why the samples do not move the body. *value: its number; *R_CB: the axes that fit, both as far as the reason has them.

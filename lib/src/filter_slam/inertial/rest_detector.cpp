@@ -44,7 +44,7 @@ bool RestDetector::note(bool seen, RestReading* rest) {
     rest->accel = data_->mean[1];
     rest->sigma_gyro = noise.gyro_density / root + noise.gyro_walk * root;
     rest->sigma_accel = noise.accel_density / root + noise.accel_walk * root;
-    // What the picture can vouch for: its motion at the depth that is assumed before any is known.
+    // The motion that the image can exclude, at the depth that is assumed before any is known.
     const Scalar motion_px = std::max(std::sqrt(data_->motion2), kMinMotionPx);
     rest->sigma_speed = motion_px * settings_.start_depth / (settings_.camera.fx * T);
     rest->sigma_accel_bias = tuning::inertial::kAccelBias;
@@ -137,7 +137,7 @@ bool RestDetector::read_frame(Scalar dt, StillReading* still) const {
   return true;
 }
 
-/// Whether so many samples tell of a time T [s]. Nobody saw what happened in a longer gap, and a clock may have jumped.
+/// Whether so many samples cover a time T [s]. Nothing is known of what happened in a longer gap, or of a clock that jumped.
 bool RestDetector::covers(int count, Scalar T) const {
   return T <=
          static_cast<Scalar>(count) * static_cast<Scalar>(seconds(imu_.counts().median_ns)) + tuning::imu::kMaxCoast;
@@ -156,7 +156,7 @@ void RestDetector::add(const ImuSample& sample) {
   }
 }
 
-/// Both sensors scatter as their densities say, at the rate at which samples come, and the specific force is about gravity.
+/// True where both sensors scatter as their densities predict at the samples' rate, and the specific force is about gravity.
 bool RestDetector::is_quiet() {
   if (data_->count < kMinSamples || imu_.counts().median_ns <= 0) return false;
   const Scalar rate = Scalar(1) / static_cast<Scalar>(seconds(imu_.counts().median_ns));
@@ -171,7 +171,7 @@ bool RestDetector::is_quiet() {
          off < kMaxGravityError;
 }
 
-/// Whether the picture has moved since the second began. Too few features say nothing, which counts as moved.
+/// Whether the image has moved since the second began. With too few features it counts as moved.
 bool RestDetector::has_moved() {
   Vec4 motion_px;
   if (!motion_since(seen_, data_->seen, &motion_px)) return true;

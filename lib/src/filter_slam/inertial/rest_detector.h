@@ -8,8 +8,8 @@
 #include "frame/frame.h"
 #include "frame/settings.h"
 
-/// Detects that the camera lies still, from the samples of its inertial unit and from the picture together: a slow turntable is quiet to
-/// the samples, and a wall that moves along is quiet to the picture. See lib/docs/theory/inertial.md.
+/// Detects a camera at rest from the samples of its inertial unit and the image together: samples do not show a slow turntable, and the
+/// image does not show motion together with the scene (lib/docs/theory/inertial.md).
 
 namespace pf {
 
@@ -22,19 +22,20 @@ class RestDetector {
   void init() {
     if (data_ != nullptr) *data_ = Data();
   }
-  /// After a frame. seen: its measurements support its pose. True when the camera has been at rest for a second up to this frame; then
-  /// *rest is what the samples said in that time, and the next second begins.
+  /// After a frame. seen: its measurements support its pose. True when the camera has been at rest for a second up to this frame; *rest
+  /// then has the means of that second's samples, and the next second begins.
   bool note(bool seen, RestReading* rest);
   /// When the last second at rest began, in the time of frames.
   std::int64_t begin_ns() const { return data_->rest_begin_ns; }
-  /// Before a frame is measured, dt [s] after the last one: what samples since then say, where the camera has been at rest until then, for
-  /// a second at least. False where there are none, or too few for that time.
+  /// Before a frame is measured, dt [s] after the last one, of a camera that has been at rest for at least a second: the means of the
+  /// samples since then. False where they are too few for that time.
   bool read_frame(Scalar dt, StillReading* still) const;
-  /// How far the picture has moved since this rest began, as a mean over some frames; what it can tell from none at least [px].
+  /// How far the image has moved since this rest began, as a mean over some frames; at least the least motion that can be distinguished
+  /// from none [px].
   Scalar motion_px() const;
-  /// The map has begun anew while the rest goes on: the picture is compared with that of the next second from now on.
+  /// After a map that began anew during the rest: compares the image with the mean of the next second.
   void begin_pixels_anew();
-  /// It moves, as something else says.
+  /// The camera moves, by other evidence.
   void end_rest() { data_->rested = 0; }
   bool is_resting() const { return data_ != nullptr && data_->rested > Scalar(0); }
 
@@ -43,7 +44,7 @@ class RestDetector {
 
   using Vec4 = Eigen::Matrix<Scalar, 4, 1>;
 
-  /// Where a feature was at the beginning of this second, or in the mean of the first second of this rest or of this map.
+  /// Pixel of a feature at the beginning of this second, or its mean over the first second of this rest or map.
   struct Seen {
     std::uint32_t id;
     int count;
@@ -54,7 +55,7 @@ class RestDetector {
     bool begun = false;
     std::int64_t begin_ns = 0;  ///< of this second
     std::int64_t rest_begin_ns = 0;
-    std::int64_t sample_ns = 0;  ///< time of the last sample that was taken in
+    std::int64_t sample_ns = 0;  ///< time of the last sample that was added
     int count = 0;
     int seen = 0;
     Scalar motion2 = 0;                           ///< [px^2] of the picture since this second began
@@ -86,7 +87,7 @@ class RestDetector {
   const UnitNoise& noise_;
   Seen* seen_ =
       nullptr;  ///< 2 kMaxPixels: of this second, of the first one; null without the inertial motion model, which needs no room then
-  Data* data_ = nullptr;  ///< likewise
+  Data* data_ = nullptr;  ///< the same
 };
 
 }  // namespace pf

@@ -14,7 +14,7 @@ using namespace tuning::rest;
 namespace {
 
 constexpr double kLate = 0.1;                         ///< [s] for which a motion may begin unseen
-constexpr double kBySamples = 3;                      ///< [s] for which samples alone tell motion well,
+constexpr double kBySamples = 3;                      ///< [s] for which samples alone measure motion well,
 constexpr Scalar kRotationBySamples = Scalar(0.002);  ///< [rad] and as long as the rotation is known so well
 constexpr Scalar kSpeedBySamples = Scalar(0.02);      ///< [m/s] and the velocity
 
@@ -60,15 +60,15 @@ void RestHold::begin_rest() {
   filter_.predict(transition);
 }
 
-/// What the oldest late frame said is taken in: it was one of a rest.
+/// Applies the readings of the oldest late frame, which belonged to the rest.
 void RestHold::take_late() {
   filter_.take_still(data_.late[0].still, settings_.unit.gravity, kAnyNis, true);
   std::copy(data_.late + 1, data_.late + data_.late_count, data_.late);
   --data_.late_count;
 }
 
-/// A hand begins to move by less than a frame's samples can tell from their noise, for some frames, and the samples of all of these
-/// together tell it: the body goes through them again as one that moves, from the velocity of the rest on.
+/// For some frames a hand moves by less than the noise of one frame's samples, while the samples of all these frames together show it. So
+/// the body is predicted through them again, from the velocity of the rest on.
 std::int64_t RestHold::motion_begin_ns(std::int64_t now_ns) const {
   if (!filter_.uses_samples() || imu_.held() == 0) return now_ns;
   for (int i = 0; i < data_.late_count; ++i)

@@ -19,33 +19,33 @@ class RestHold {
       : settings_(settings), filter_(filter), rest_(rest), imu_(imu), motion_(motion) {}
 
   void init() { data_ = Data(); }
-  /// Predicts the body from one frame's time to the next where it is at rest. follows: the frame before was tracked. depth: the median
-  /// one of what is seen. False, with nothing changed, where it is not: by what the detector saw until the last frame, or by this
-  /// frame's samples.
+  /// Predicts the body from one frame's time to the next where it is at rest. follows: the frame before was tracked. depth: median, of the
+  /// measured points. False, with nothing changed, where the body is not at rest, by the detector until the last frame, or by this frame's
+  /// samples.
   bool predict(bool follows, std::int64_t before_ns, std::int64_t t_ns, Scalar depth);
-  /// The picture contradicts that: nothing is predicted yet.
+  /// Undoes the prediction of a frame whose image contradicts the rest.
   void take_back();
-  /// After the detector has seen the frame too.
+  /// Ends a frame, after the detector has noted it.
   void end_frame(std::int64_t t_ns);
   /// In this frame.
   bool holds() const { return data_.holds; }
-  /// Where motion has to begin for who predicts from now_ns on: there, or as much earlier as it may have begun unseen.
+  /// Time at which motion begins in a prediction from now_ns: there, or earlier by the time in which samples may have missed its beginning.
   std::int64_t motion_begin_ns(std::int64_t now_ns) const;
-  /// The body has been predicted from there.
+  /// Notes that the body has been predicted from motion_begin_ns.
   void note_motion() { data_.late_count = 0; }
-  /// The rest has ended, and samples alone know well where the camera has gone since then.
+  /// True after a rest while samples alone still measure the camera's motion well.
   bool has_just_ended(std::int64_t t_ns);
-  /// Samples do not know that well, as something else says.
+  /// Ends the time in which samples alone are taken to measure motion well, by other evidence.
   void forget() { data_.last_ns = INT64_MIN; }
-  /// When its prediction began.
+  /// Time at which this frame's prediction began.
   std::int64_t before_ns() const { return data_.before_ns; }
-  /// Rests that have begun, in all.
+  /// Number of rests that have begun.
   int rests() const { return rests_; }
 
  private:
   static constexpr int kMaxLate = 8;
 
-  /// What the samples of a held frame said, which no later one has yet shown to be of a body at rest.
+  /// Readings of a held frame that no later frame has confirmed to be of a body at rest yet.
   struct Late {
     std::int64_t before_ns;
     StillReading still;
@@ -55,7 +55,7 @@ class RestHold {
     bool holds = false;
     std::int64_t before_ns = 0;
     std::int64_t last_ns = INT64_MIN;  ///< of the last frame that was held; INT64_MIN: there was none
-    Scalar moved_px = 0;               ///< that the pose has been allowed since the rest began
+    Scalar moved_px = 0;               ///< motion that the pose was given as noise since the rest began
     Scalar sigma_rad = 0, dt = 0;      ///< of this frame's prediction
     Scalar m_per_px = 0;
     StillReading still;

@@ -19,8 +19,8 @@ UnitUse UnitEvidence::use() const {
   return {filter_.is_metric(), data_.doubts > 0 && seconds(data_.used_ns) < static_cast<double>(kTrial)};
 }
 
-/// What a frame says against the samples, of a chi-square of six. A frame that needs the prediction without them says as much as one can.
-/// A frame that neither prediction explains says nothing against the samples.
+/// Evidence of a frame against the samples: a chi-square of six. A frame that needs the prediction without them contributes the most that
+/// one frame can. A frame that neither prediction explains contributes nothing.
 Scalar UnitEvidence::contradiction(const UnitFrame& frame) const {
   const FrameReport& report = frame_.report;
   if (!frame.is_tracked) return kSlack;

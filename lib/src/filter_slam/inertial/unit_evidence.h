@@ -9,8 +9,8 @@
 
 /// Evidence against an inertial unit whose samples move the body, frame by frame. See lib/docs/theory/inertial.md.
 ///
-/// Each frame's innovation of the pose is chi-square with six degrees of freedom. The unit's noise is learned from it (UnitNoise). What
-/// noise of ten times the stated does not explain either adds up in Page's sum, which finds a change soon and knows no fault by name:
+/// Each frame's innovation of the pose is chi-square with six degrees of freedom. The unit's noise is learned from it (UnitNoise).
+/// Innovations that not even ten times the stated noise explains add up in Page's sum (CUSUM), which detects any fault soon:
 ///
 ///   s+ = max(0, s + nis - slack),   contradicted where s > bound
 
@@ -20,7 +20,7 @@ namespace pf {
 struct UnitFrame {
   bool before_was_tracked = false;  ///< the frame before, and so was the pose that this one's prediction begins at
   bool is_tracked = false;
-  bool is_taken_back = false;  ///< it was predicted once more, without samples
+  bool is_taken_back = false;  ///< it was predicted again without samples
   std::int64_t dt_ns = 0;      ///< since the frame before
 };
 
@@ -30,31 +30,31 @@ class UnitEvidence {
       : filter_(filter), frame_(frame), noise_(noise) {}
 
   void init() { data_ = Data(); }
-  /// Samples begin to be used.
+  /// Samples are used from now on.
   void begin_use() { data_.sum = 0, data_.used_ns = 0; }
-  /// They are left.
+  /// Samples are not used from now on.
   void end_use() { data_.sum = 0; }
-  /// After any frame.
+  /// Notes any frame.
   void note_frame() {
     if (!filter_.is_metric()) data_.metric_ns = data_.sound_ns = 0;
   }
-  /// After a frame with samples: learns the unit's noise from it.
+  /// Updates the unit's noise from a frame with samples.
   void learn_noise(const UnitFrame& frame);
-  /// Then: true where the sum is above its bound in this mode.
+  /// After learn_noise(): adds the frame to the sum. True where the sum is above its bound in this mode.
   bool add(const UnitFrame& frame, UnitMode mode);
-  /// The unit has been contradicted.
+  /// Counts a rejection of the unit.
   void count_doubt();
-  /// So often.
+  /// How often the unit was rejected.
   int doubts() const { return data_.doubts; }
   UnitUse use() const;
-  /// The map had been in metres for so short a time, when samples may have begun to be wrong, that it hangs on them alone.
+  /// True where samples may have been wrong since so soon after the map became metric that its scale depends on them alone.
   bool is_map_on_trial() const;
 
  private:
   struct Data {
     Scalar sum = 0;
     int doubts = 0;
-    std::int64_t used_ns = 0;    ///< since it was doubted last
+    std::int64_t used_ns = 0;    ///< since it was last rejected
     std::int64_t metric_ns = 0;  ///< for how long the map has been tracked in metres
     std::int64_t sound_ns = 0;   ///< the same when the sum was zero last: since then the samples may have been wrong
   };

@@ -4,7 +4,7 @@
 
 namespace pf {
 
-/// Why the samples are not used, or not all of them; as pf_imu_reason_t says.
+/// Why the samples are not used, or not all of them; the same numbers as pf_imu_reason_t.
 enum class UnitReason : std::uint8_t {
   kNone,
   kWaitsForRotation,

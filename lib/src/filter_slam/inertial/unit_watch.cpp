@@ -109,7 +109,7 @@ void UnitWatch::predict_again(bool by_samples) {
   filter_.predict(transition[1]);
 }
 
-/// Without samples only the two poses say how fast the body rotates, which the next prediction may want again.
+/// Without samples only the two poses give the body's angular velocity, which the next prediction may need.
 void UnitWatch::note_rate() {
   Body body = filter_.state().body;
   const Scalar T = static_cast<Scalar>(seconds(elapsed_ns(parts_->data.prior_ns, frame_.report.t_ns)));

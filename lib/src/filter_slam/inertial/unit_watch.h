@@ -13,8 +13,7 @@
 #include "frame/frame.h"
 #include "frame/settings.h"
 
-/// Decides whether the samples of the inertial unit move the body: UnitMode, by what the frames say of them.
-/// See lib/docs/theory/inertial.md.
+/// Decides whether the samples of the inertial unit move the body (UnitMode), by the frames' evidence (lib/docs/theory/inertial.md).
 
 namespace pf {
 
@@ -26,36 +25,36 @@ class UnitWatch {
   void layout(Arena& arena);
   void init();
   UnitMode mode() const { return parts_ != nullptr ? parts_->data.mode : UnitMode::kAbsent; }
-  /// Before the body goes from one frame to the next: whether samples move it, which it is prepared for.
+  /// Begins a frame: decides whether samples move the body from one frame to the next, and prepares it.
   void begin_frame(std::int64_t before_ns, std::int64_t t_ns);
-  /// The body as it is now is what this frame's prediction begins from.
+  /// Keeps the body from which this frame's prediction begins.
   void keep_prior(std::int64_t before_ns);
   /// Before the frame is measured. follows: the frame before was tracked, and so was the pose that this one's prediction begins at. Returns
   /// UpdateMode::max_pose_nis.
   Scalar begin_measuring(bool follows);
-  /// After it was measured. True where nothing was used of it, since it says so much against the prediction or since hardly anything was
+  /// After it was measured. True where none of it was used, because it contradicts the prediction too strongly or hardly anything was
   /// found: then it is to be measured again from another prediction.
   bool is_refused(const UpdateOutcome& outcome);
   /// Predicts the body as if no samples had come.
   void leave_prediction();
-  /// After it was measured again: whether it is tracked now. Where nothing was found this time either, samples are as good as before.
+  /// After the frame was measured again. is_tracked: it is tracked now. If not, the frame is no evidence against the samples.
   void settle(bool is_tracked);
-  /// After a frame, dt_ns after the one before. True when pictures have just contradicted the unit.
+  /// Notes a frame, dt_ns after the one before. True when images have just contradicted the unit.
   bool note(bool before_was_tracked, bool is_tracked, std::int64_t dt_ns);
-  /// What something else says of the unit. Rates are compared anew where it rests, or rests no more.
+  /// An event that concerns the unit. At the beginning and the end of a rest the comparison of rates starts anew.
   void take(UnitEvent event);
   /// UnitEvidence
   bool is_map_on_trial() const { return parts_->evidence.is_map_on_trial(); }
 
-  /// The clock or the axes are open, and have not been found yet.
+  /// True where the clock or the axes are open and not found yet.
   bool is_open() const { return parts_ != nullptr && parts_->rates.is_open(); }
-  /// Once, where this frame's prediction begins with another delay or other axes.
+  /// True once, when this frame's prediction begins with another delay or other axes.
   bool take_alignment();
   /// RateCheck
   UnitReason reason(Scalar* value, Mat3* R_CB) const {
     return parts_ != nullptr ? parts_->rates.reason(value, R_CB) : UnitReason::kNone;
   }
-  /// For how long it has been rejected, in all.
+  /// Total time for which the unit has been rejected.
   std::int64_t rejected_ns() const { return parts_ != nullptr ? parts_->data.rejected_ns : 0; }
 
  private:
@@ -69,7 +68,7 @@ class UnitWatch {
     bool is_taken_back = false;    ///< in this frame
     Body tracked;                  ///< at the last tracked frame
     std::int64_t tracked_ns = 0;
-    bool is_aligned = false;  ///< take_alignment() says so
+    bool is_aligned = false;  ///< set by take_alignment()
   };
 
   struct Parts {

@@ -11,9 +11,9 @@
 
 namespace pf {
 
-/// Compares patches with each other where nothing else supports the pose. The first one to update the filter would have no gate but that of
-/// the motion, which is pixels wide: an outlier passes it, the inliers are rejected after it, and what is initialised in that frame has a
-/// wrong camera.
+/// Compares patches with each other where nothing else supports the pose. The first patch to update the filter would have the motion's gate
+/// only, which is many pixels wide: an outlier passes it, the gates then reject the inliers, and patches that begin in that frame get a
+/// wrong reference camera.
 class PatchConsensus {
  public:
   PatchConsensus(Filter& filter, const Map& map, PatchStore& store, PatchFinder& finder, PatchUpdate& update)
@@ -40,7 +40,7 @@ class PatchConsensus {
     int entry[kMax];
     Body near[kMax];  ///< the pose that the prior and this patch's corners make most likely
   };
-  /// The first one tells where the others are looked for.
+  /// The first one gives where the others are searched for.
   Witnesses find_witnesses(const Pyramid& image, const int* order, int count);
   /// Finds one patch in the image. is_first: it is searched for in all of its gate.
   bool find(const Pyramid& image, int wall, bool is_first, StoredPatch* patch);
@@ -56,7 +56,7 @@ class PatchConsensus {
   PatchStore& store_;
   PatchFinder& finder_;
   PatchUpdate& update_;
-  PatchMeasurement of_another_;  ///< scratch: a patch that another one is compared with
+  PatchMeasurement of_another_;  ///< scratch: a patch with which another one is compared
   std::uint32_t found_ = 0;      ///< a bit for each entry
   bool is_contested_ = false;
 };

@@ -18,16 +18,16 @@ class PatchFinder {
 
   void layout(Arena& arena);
 
-  /// Aligns the patch with the image, from where it is expected. Then it has its corners, their covariance and its light.
+  /// Aligns the patch with the image, from its predicted place, and sets its corners, their covariance, gain and bias.
   /// *reference_covariance: of the corners, by the noise of the reference; null to skip. False where it is not found.
   bool align(const Pyramid& image, const PatchSight& sight, StoredPatch* patch, Mat8* reference_covariance = nullptr);
 
-  /// Where the patch is expected (z, predicted) within more pixels than the aligner reaches, searches for it and moves the sight there.
-  /// False where it is not there.
+  /// Where the prediction (z) is uncertain by more pixels than the aligner reaches, searches for the patch and moves the sight there. False
+  /// where it is not found.
   bool search(const Pyramid& image, const StoredPatch& patch, const PatchMeasurement& z, PatchSight* sight);
 
-  /// As align() of a patch that has no prediction. Where nothing else supports the pose, that of a camera that has just begun to move is
-  /// uncertain by more than the aligner reaches: then the patch is searched for as far as it moves from one frame to the next.
+  /// align() for a patch without a prediction. Where nothing else supports the pose, a camera that has just begun to move is uncertain by
+  /// more than the aligner reaches, and the patch is searched for as far as it can move from one frame to the next.
   bool follow(const Pyramid& image, bool supported, PatchSight* sight, StoredPatch* patch, Mat8* reference_covariance);
 
  private:

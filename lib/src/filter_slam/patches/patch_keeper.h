@@ -34,7 +34,7 @@ class PatchKeeper {
   bool layout(Arena& arena);
   void init();
 
-  /// Finds the patches in the image, and updates the filter with each that passes its gate. is_young: the map's depths are not sure yet,
+  /// Finds the patches in the image, and updates the filter with each that passes its gate. is_young: the map's depths are still uncertain,
   /// and a patch without parallax waits twice as long.
   void measure(const Pyramid& image, bool is_young);
   /// Drops patches that fail; supported: the frame's measurements support its pose. Begins new ones where it may.
@@ -45,17 +45,17 @@ class PatchKeeper {
   int inlier_depths(Scalar* depth) const;
 
  private:
-  /// Where the filter began anew, the patches' blocks are gone.
+  /// Drops all patches where the filter began anew, since their blocks are gone.
   void follow_filter();
-  /// The most proven patches first: what they say makes the others easier to find. Returns how many.
+  /// The patches most often measured first, since their updates make the others easier to find. Returns how many.
   int list_in_order(int* order) const;
   void measure_patch(const Pyramid& image, int i);
-  /// Finds a patch that is expected there and sets it as measured. hiding: as hiding_wall. *is_through: that wall does not explain it.
+  /// Finds a patch at its prediction and sets its measurement. hiding: from hiding_wall. *is_through: that wall does not explain the patch.
   bool find(const Pyramid& image, int i, int wall, int hiding, PatchSight* sight, bool* is_through);
-  /// From the residuals of inliers after the update.
+  /// Updates the noise with the residuals of inliers after the update.
   void learn_noise();
   void drop_failing(bool supported);
-  /// Counts what became of the patch in this frame. Returns whether it has failed too often.
+  /// Counts this frame's result for the patch. Returns whether it has failed too often.
   bool count_failures(StoredPatch* patch, int wall);
 
   const Settings& settings_;

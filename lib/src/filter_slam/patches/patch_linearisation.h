@@ -7,7 +7,7 @@
 
 namespace pf {
 
-/// Moves the estimate's rotation and place to this pose; all else stays.
+/// Moves the estimate's rotation and position to this pose; all else stays.
 void set_camera_pose(Filter& filter, const Body& pose);
 
 /// Prediction of a patch's corners for the estimate, linearised at another pose: h(x) + H (x^ [-] x). plane: a block. The estimate is the

@@ -7,19 +7,19 @@
 
 namespace pf {
 
-/// Noise of the corners of patches, learnt from the residuals of all patches together. Each corner has its own trace of residuals.
+/// Noise of the corners of patches, estimated from the residuals of all patches together. Each corner has its own trace of residuals.
 class PatchNoise {
  public:
   void init();
-  /// Forgets the residuals of an entry of the store, which gets another patch.
+  /// Clears the residuals of an entry of the store that gets another patch.
   void forget(int entry);
 
   /// Sets R_gate and R_update of the corners of a patch that was found.
   void set_noise(const StoredPatch& patch, PatchMeasurement* z) const;
 
-  /// Takes in an inlier's residuals after the update. z: its corners, predicted then. trace_HPH: of their covariance [px^2].
+  /// Adds an inlier's residuals after the update. z: its corners as predicted then. trace_HPH: of their covariance [px^2].
   void learn(int frame, int entry, const StoredPatch& patch, const PatchMeasurement& z, Scalar trace_HPH);
-  /// Uses what learn() has gathered from this frame.
+  /// Updates the noise with the residuals that learn() has gathered in this frame.
   void end_frame() { model_.end_frame(); }
 
  private:

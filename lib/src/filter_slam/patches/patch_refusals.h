@@ -9,20 +9,21 @@
 
 namespace pf {
 
-/// Remembers where patches of a plane were found elsewhere, and counts that against the plane.
+/// Stores where patches of a plane were found elsewhere, and counts them as evidence against the plane.
 class PatchRefusals {
  public:
   PatchRefusals(const Filter& filter, Map& map) : filter_(filter), map_(map) {}
 
   void init();
 
-  /// The gate refuses a patch of this wall.
+  /// Notes a patch of this wall that the gate rejects.
   void note(const StoredPatch& patch, int wall);
-  /// The patch is measured on another plane, though the plan has a wall before it (hiding; -1: none). Five such frames in a row refuse this
-  /// wall, since it is seen through. is_contested: nothing supports the pose of this frame, and no wall is refused.
+  /// Notes a frame in which the patch is measured on another plane, though the plan has a wall before it (hiding; -1: none). Five such
+  /// frames in a row are evidence against this wall, since it is seen through. is_contested: nothing supports the pose of this frame, which
+  /// is then no evidence against a wall.
   void count_through(StoredPatch* patch, int hiding, const Vec3& middle_W, bool is_contested);
 
-  /// Calls f(middle_W) for each patch that has refused the plane with this id, as far back as is remembered.
+  /// Calls f(middle_W) for each stored patch that was evidence against the plane with this id.
   template <typename F>
   void for_each(std::uint32_t plane, F&& f) const {
     for (const Refusal& refusal : refusals_)
@@ -37,11 +38,12 @@ class PatchRefusals {
     Vec3 middle_W;
   };
 
-  /// Whether a patch that began in the same frame has refused the plane: they share its camera, and where that is wrong, all are.
+  /// Whether a patch that began in the same frame has already been evidence against the plane: they share a reference camera, and its
+  /// error.
   bool is_told_already(std::uint32_t plane, int born) const;
-  /// Whether two views of the patch tell that it is before the wall.
+  /// Whether two views of the patch show that it is before the wall.
   bool is_before(const StoredPatch& patch, int wall) const;
-  /// Keeps it in place of the oldest.
+  /// Stores it in place of the oldest.
   void keep(const Refusal& refusal);
 
   const Filter& filter_;

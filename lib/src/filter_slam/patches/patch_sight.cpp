@@ -20,7 +20,7 @@ bool expect_patch(const Filter& filter, const PlaneTable& planes, const StoredPa
   const Camera& lens = filter.lens();
   const Block &reference = state.block[patch.camera], &plane = state.block[planes[wall].slot];
   const PlaneFrame& frame = state.frame_of(plane);
-  const int rounds = rows_roll(state, lens) ? 3 : 1;  // where a corner lies says when its row is read out
+  const int rounds = rows_roll(state, lens) ? 3 : 1;  // the time of a corner's row depends on where it is
   Vec3 from[4], to[4];
   sight->middle_W.setZero();
   for (int k = 0; k < 4; ++k) {
@@ -59,16 +59,11 @@ bool fit_homography(const Camera& lens, const PlanePatch& pixels, PatchSight* si
 }
 
 bool is_in_view(const Camera& lens, const PatchSight& sight) {
-  const Vec2 middle = middle_of(sight.corner);
-  return sight.cosine > tuning::patch_keeper::kMinCosine && middle.x() > Scalar(0) && middle.y() > Scalar(0) &&
-         middle.x() < static_cast<Scalar>(lens.width) && middle.y() < static_cast<Scalar>(lens.height);
+  return sight.cosine > tuning::patch_keeper::kMinCosine && is_in_image(lens, middle_of(sight.corner));
 }
 
 bool is_whole_in_view(const Camera& lens, const PatchSight& sight) {
-  return std::all_of(sight.corner, sight.corner + 4, [&](const Vec2& at) {
-    return at.x() > Scalar(0) && at.y() > Scalar(0) && at.x() < static_cast<Scalar>(lens.width) &&
-           at.y() < static_cast<Scalar>(lens.height);
-  });
+  return std::all_of(sight.corner, sight.corner + 4, [&](const Vec2& at) { return is_in_image(lens, at); });
 }
 
 int hiding_wall(const Filter& filter, const Map& map, int wall, const PatchSight& sight) {

@@ -28,7 +28,7 @@ bool fit_homography(const Camera& lens, const PlanePatch& pixels, PatchSight* si
 /// Whether the patch's middle is in the image, and not too slanted.
 bool is_in_view(const Camera& lens, const PatchSight& sight);
 
-/// Whether all of the patch is in the image; one that is not is about to leave it.
+/// Whether all of the patch is in the image; one that is partly out is about to leave it.
 bool is_whole_in_view(const Camera& lens, const PatchSight& sight);
 
 /// The wall that the plan has between the camera and a patch on another one, or -1.

@@ -17,7 +17,7 @@ namespace {
 using namespace tuning::patch_waiting;
 using model::ReferenceCamera;
 
-constexpr int kMaxMost = 128;  // points that are asked
+constexpr int kMaxMost = 128;  // points that are used
 
 }  // namespace
 

@@ -143,7 +143,7 @@ void BodyMotion::predict_by(const Body& body, const Preintegral& samples, const 
     predict_rotation_only(body, settings_.body, mounting, samples, noise.linear, transition);
 }
 
-/// What a model without samples says of a body after dt [s].
+/// Prediction by a model without samples, dt [s] later.
 void BodyMotion::predict_after(const Body& body, Scalar dt, const MotionNoise& noise, Transition* transition) const {
   if (settings_.body.has(BodyPart::kAcceleration))
     predict_constant_acceleration(body, settings_.body, dt, noise, transition);

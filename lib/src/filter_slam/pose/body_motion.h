@@ -18,7 +18,7 @@ class BodyMotion {
   static constexpr std::int64_t kMaxGapNs = 2000000000;  ///< [ns] longest time between frames that a prediction covers
 
   void init() { data_ = Data(); }
-  /// How noisy the inertial unit is, which outlasts init().
+  /// Noise of the inertial unit; init() keeps it.
   UnitNoise& unit_noise() { return noise_; }
   const UnitNoise& unit_noise() const { return noise_; }
   /// Known change of the velocities in camera axes, until the next frame.
@@ -31,11 +31,11 @@ class BodyMotion {
   /// Predicts the filter's body from one frame's time to the next. coasting_or_lost: the tracking state; nothing_measured: the last frame
   /// had no inlier.
   void advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured);
-  /// The rate at a frame's time, where samples tell it: of a body that begins with this frame, and is not predicted to it.
+  /// Sets the angular velocity at a frame's time from samples, of a body that begins with this frame and is not predicted to it.
   void begin(std::int64_t t_ns, Body* body) const;
   /// The time of a frame on the clock of the samples.
   std::int64_t on_unit_clock(std::int64_t t_ns) const;
-  /// What the configured motion model says of a body between two frames' times.
+  /// Prediction by the configured motion model between two frames' times.
   void predict(const Body& body, std::int64_t before_ns, std::int64_t t_ns, const MotionNoise& noise,
                Transition* transition) const;
   /// The same as if no samples had come: white accelerations about the rate and the velocity.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bundle/tuning.h"
 #include "filter_slam/pose/consensus.h"
 #include "filter_slam/pose/tuning.h"
 
@@ -57,6 +58,7 @@ bool LeaveOneOut::reject(Filter& filter, const PixelMeasurement* observations, i
   const int older = ages.frames != nullptr ? group_begin(ages) : kept_;
   for (int a = older; a < kept_; ++a) keep[index_[a]] = 0;
   kept_ = older;
+  const ZoomFit zoom = zoom_of(observations, g_);
   Scalar sum = 0, log_det = 0;
   for (int i = 2 * kept_ - 1; i >= 0; --i) {
     sum += g_[i] * g_[i];
@@ -75,8 +77,35 @@ bool LeaveOneOut::reject(Filter& filter, const PixelMeasurement* observations, i
     log_det += std::log(diagonal_[worst].determinant());  // det S = det S_rest det G_ii^-1
     sum = std::max(sum - remove(worst), Scalar(0));
   }
-  *fit = {sum, log_det};
+  *fit = {sum, log_det, zoom};
   return true;
+}
+
+/// How much longer the lens is, as one more unknown beside what S has of pose and map. It moves each pixel away from the principal point
+/// c. With w = L^-1 h, h = measured - c:
+///
+///   s = w^T v / w^T w,   var(s) = max(1, (v^T v - s w^T v) / (2n - 1)) / w^T w
+ZoomFit LeaveOneOut::zoom_of(const PixelMeasurement* observations, const Scalar* v) {
+  const Camera& lens = filter_->lens();
+  const int rows = 2 * kept_;
+  Scalar* h = spare_;
+  for (int a = 0; a < kept_; ++a) {
+    const Vec2 from_centre = observations[index_[a]].measured - Vec2(lens.cx, lens.cy);
+    h[2 * a] = from_centre.x();
+    h[2 * a + 1] = from_centre.y();
+  }
+  Scalar ww = 0, wv = 0, vv = 0;
+  for (int i = 0; i < rows; ++i) {
+    const Scalar w = dot(row(i), h, i + 1);
+    ww += w * w;
+    wv += w * v[i];
+    vv += v[i] * v[i];
+  }
+  ZoomFit zoom;
+  if (kept_ < tuning::zoom_fit::kLeastPoints || !(ww > Scalar(0))) return zoom;
+  zoom.log_ratio = wv / ww;
+  zoom.variance = std::max(Scalar(1), (vv - zoom.log_ratio * wv) / static_cast<Scalar>(rows - 1)) / ww;
+  return zoom;
 }
 
 /// Oldest first; equals stay in their order.
@@ -85,8 +114,9 @@ void LeaveOneOut::sort(const unsigned char* frames) {
     for (int b = a; b > 0 && frames[index_[b]] > frames[index_[b - 1]]; --b) std::swap(index_[b], index_[b - 1]);
 }
 
-/// Where the group of the youngest begins that the older ones contradict most; kept_ if they contradict none. With n rows in the group,
-/// N in all, q = sum of v^2 over the group and s that of the older ones per row, at least 1 (where the model is wrong, it is so for all):
+/// Index at which the group of the newest features begins that the older ones contradict most; kept_ if they contradict none. With n rows
+/// in the group, N in all, q = sum of v^2 over the group and s that of the older ones per row, at least 1 (where the model is wrong, it is
+/// so for all):
 ///
 ///   z = ((q / (n s))^(1/3) - (1 - 2 / (9 n))) / sqrt(2 / (9 n))       Wilson and Hilferty 1931: normal, if q / s is chi-square
 int LeaveOneOut::group_begin(const MatchAges& ages) const {
@@ -95,7 +125,7 @@ int LeaveOneOut::group_begin(const MatchAges& ages) const {
   for (int i = 0; i < 2 * kept_; ++i) all += g_[i] * g_[i];
   for (int a = kept_ - 1; a >= ages.least && 2 * a >= kept_ && ages.frames[index_[a]] < kYoung; --a) {
     q += g_[2 * a] * g_[2 * a] + g_[2 * a + 1] * g_[2 * a + 1];
-    if (ages.frames[index_[a]] == ages.frames[index_[a - 1]]) continue;  // no younger than the next one
+    if (ages.frames[index_[a]] == ages.frames[index_[a - 1]]) continue;  // measured as often as the next one
     const Scalar n = static_cast<Scalar>(2 * (kept_ - a)), spread = 2 / (9 * n);
     const Scalar s = std::max(Scalar(1), (all - q) / static_cast<Scalar>(2 * a));
     const Scalar z = (std::pow(q / (n * s), Scalar(1) / 3) - (1 - spread)) / std::sqrt(spread);

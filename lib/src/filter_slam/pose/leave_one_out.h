@@ -1,15 +1,16 @@
 #pragma once
 
 #include "base/arena.h"
+#include "bundle/zoom_fit.h"
 #include "filter/filter.h"
 
 namespace pf {
 
 /// Tests each match against all the others together, and rejects those that the others contradict (data snooping; Baarda 1968).
 ///
-/// A consensus compares matches with one hypothesis, which does not fix the whole pose: the ellipse of a young feature stays wide, since
-/// its depth is unknown. All the others together leave it its epipolar line only. With S = H P H^T + R_gate of the kept matches,
-/// G = S^-1 and g = G r, match i lies at
+/// A consensus compares matches with one hypothesis, which does not fix the whole pose: the ellipse of a new feature stays wide, since its
+/// depth is open. All the others together leave it its epipolar line only. With S = H P H^T + R_gate of the kept matches, G = S^-1 and g =
+/// G r, match i lies at
 ///
 ///   e_i = G_ii^-1 g_i,   cov e_i = G_ii^-1,   d_i^2 = g_i^T G_ii^-1 g_i
 ///
@@ -18,21 +19,22 @@ namespace pf {
 ///
 ///   G <- G - G_:i G_ii^-1 G_i:,   g <- g - G_:i G_ii^-1 g_i
 ///
-/// Points that move together support each other in that test. So before it, the young features are tested as a group against the older
-/// ones: with the matches in order of age and S = L L^T, v = L^-1 r, the sum of v^2 over the rows of the youngest is their normalised
-/// innovation squared given all the older ones. Where chance does not explain it, all of them are rejected.
+/// Points that move together support each other in that test. So before it, the new features are tested as a group against the older ones:
+/// with the matches in order of age and S = L L^T, v = L^-1 r, the sum of v^2 over the rows of the newest is their normalised innovation
+/// squared given all the older ones. Where chance does not explain it, all of them are rejected.
 ///
 /// Derivation and measurements: lib/docs/theory/noise.md
 struct MatchAges {
   const unsigned char* frames =
-      nullptr;    ///< in which the feature of each match was measured, up to 255; null: groups are not tested
-  int least = 0;  ///< matches that a group of young ones is tested against, at least
+      nullptr;    ///< in which each match's feature was measured, up to 255; null: groups are not tested
+  int least = 0;  ///< matches that a group of new ones is tested against, at least
 };
 
 /// Residuals of matches under their joint covariance.
 struct JointFit {
   Scalar nis = 0;      ///< r^T S^-1 r
   Scalar log_det = 0;  ///< ln det S
+  ZoomFit zoom;        ///< by all that were kept before any of them was rejected
 };
 
 class LeaveOneOut {
@@ -49,6 +51,7 @@ class LeaveOneOut {
   /// Row i of G, i + 1 numbers. All but the last lie in the filter's scratch.
   Scalar* row(int i) { return i + 1 < max_rows_ ? filter_->scratch_row(i) : last_row_; }
   void fill(const PixelMeasurement* observations);
+  ZoomFit zoom_of(const PixelMeasurement* observations, const Scalar* v);
   void sort(const unsigned char* frames);
   int group_begin(const MatchAges& ages) const;
   bool factor();

@@ -12,7 +12,7 @@ namespace pf {
 namespace {
 
 constexpr int kMaxRounds = 3;                ///< of relinearisation
-constexpr int kOldest = 255;                 ///< [frames] that are told apart
+constexpr int kOldest = 255;                 ///< [frames] that are distinguished
 constexpr Scalar kOpenDepth = Scalar(0.1);   ///< relative sigma from which a depth is open, and comes first
 constexpr Scalar kMaxFirstNis = Scalar(30);  ///< chi-square of six, 1 - 4e-5: pixels contradict such a pose
 constexpr Scalar kMinBend = Scalar(1e-6);    ///< [px^2] that R^2 is divided by
@@ -95,7 +95,7 @@ UpdateOutcome PixelUpdate::apply(int first, int count, const UpdateMode& mode, c
     return now;
   }
   filter_.commit_update();
-  // What the pose is off stays while depths come first: a frame says nothing that the one before had not said.
+  // While depths come first the pose's error stays, so frames are not independent evidence against the samples.
   if (says_pose && !depths_only) {
     frame_.report.pose.nis += static_cast<double>(pose_nis);
     frame_.report.pose.of_rotation += static_cast<double>(of_rotation);

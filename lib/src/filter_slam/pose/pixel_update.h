@@ -19,24 +19,23 @@ struct Candidate {
   int feature;                ///< entry of the feature table
   int match;                  ///< index in the frame's matches
   Mat2 noise = Mat2::Zero();  ///< of a match in an image by itself, NoiseModel::match
-  Scalar log_density = 0;     ///< of the found pixel about where the picture has gone [ln px^-2]
+  Scalar log_density = 0;     ///< of the found pixel about where the image has moved [ln px^-2]
 };
 
 /// What an update with a frame's pixels does.
 struct UpdateMode {
   EstimatedRows rows;
-  /// While the depths of most of what a frame measures are open, pixels tell the map alone, and the pose not (lib/docs/theory/inertial.md,
-  /// "Starting").
+  /// While most measured depths are open, pixels update the map, and the pose is considered (lib/docs/theory/inertial.md, "Depths first").
   bool depths_first = false;
-  Scalar max_pose_nis = 0;  ///< the first update of a frame is refused where its pose NIS is above this; 0: no bound
+  Scalar max_pose_nis = 0;  ///< the first update of a frame is rejected where its pose NIS is above this; 0: no bound
 };
 
 /// What the updates of a frame have found.
 struct UpdateOutcome {
   bool is_applied = false;       ///< the last of them
   double nis = 0;                ///< normalised innovation squared of the last one
-  bool is_contradicted = false;  ///< one was refused by max_pose_nis; no later one is made
-  bool is_pose_open = false;     ///< pixels contradict the pose that depths_first relies on; depths come first no more
+  bool is_contradicted = false;  ///< one was rejected by max_pose_nis; no later one is made
+  bool is_pose_open = false;     ///< pixels contradict the pose that depths_first considers; depths_first ends
 };
 
 class PixelUpdate {
@@ -63,16 +62,15 @@ class PixelUpdate {
   Mat2 expected_innovation(PixelMeasurement* o) const;
   /// Computes H P H^T of `count` observations from `first` on.
   void begin(int first, int count);
-  /// Stops keeping matches of the range that begin() got which all the other kept ones contradict. Returns how many stay. fit: of these,
-  /// with R_gate.
+  /// Rejects matches of begin()'s range that all the other kept ones contradict. Returns how many stay. fit: of these, with R_gate.
   int reject_contradicted(int first, int count, JointFit* fit);
   ProposedPoses& proposals() { return proposals_; }
   const ProposedPoses& proposals() const { return proposals_; }
-  /// Proposes the pose that an update of these rows with the kept ones of the range that begin() got would give; evidence: what they say
-  /// for it, depth: median, of what is seen. Returns its log-odds; `before` where the update cannot be made.
+  /// Proposes the pose that an update of these rows with the kept matches of begin()'s range would give; evidence: for this pose; depth:
+  /// median, of the measured points. Returns its log-odds; `before` where the update cannot be made.
   Scalar propose(int first, int count, EstimatedRows rows, Scalar depth, Scalar before, Scalar evidence);
-  /// Updates with the kept ones of the range that begin() got. Where it is not applied, nothing has changed. before: of the updates that
-  /// the frame has had. Returns that with what this one adds.
+  /// Updates with the kept matches of begin()'s range. Where the update is not applied, nothing changes. before: outcome of the frame's
+  /// earlier updates. Returns the outcome of all.
   UpdateOutcome apply(int first, int count, const UpdateMode& mode, const UpdateOutcome& before = UpdateOutcome());
 
  private:

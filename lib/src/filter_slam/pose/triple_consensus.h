@@ -7,13 +7,12 @@
 
 namespace pf {
 
-/// Three matches fix a pose. The other matches are compared with where the joint covariance of all pixels, given the three, predicts them:
+/// Three matches fix a pose. The other matches are compared with their prediction by the joint covariance of all pixels, given the three:
 ///
 ///   r_j|T = r_j - S_jT S_T^-1 r_T,   S_j|T = S_jj - S_jT S_T^-1 S_Tj
 ///
-/// Returns the consensus of the triple for which pose_evidence() is largest. Its density is that of the others given the three, which
-/// themselves say nothing for the pose that they fix. BlockFilter::project must have been
-/// called for the matches (PixelUpdate::begin).
+/// Returns the consensus of the triple for which pose_evidence() is largest. Its density is that of the others given the three, which are
+/// no evidence for the pose that they fix. BlockFilter::project must have been called for the matches (PixelUpdate::begin).
 ///
 /// searched_px2  area that was searched, of each match [px^2]
 /// found         matches, at most capacity.max_observations; fewer than four give no inliers

@@ -32,8 +32,8 @@ void UnitNoise::note_samples() {
   data_.last_ns = imu_[imu_.held() - 1].t_ns;
 }
 
-/// White noise of variance s² has second differences of 6 s² and third ones of 20 s². Motion that samples hardly follow has far less in
-/// the third than that relation says, and tells nothing.
+/// White noise of variance s² has second differences of 6 s² and third ones of 20 s². Motion that samples hardly resolve has far less in
+/// the third than this ratio, and such a window is not used.
 void UnitNoise::close_window() {
   const Scalar interval = static_cast<Scalar>(seconds(imu_.counts().median_ns));
   const Scalar density[2] = {settings_.unit.noise.gyro_density, settings_.unit.noise.accel_density};

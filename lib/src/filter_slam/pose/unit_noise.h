@@ -6,13 +6,14 @@
 #include "filter/preintegral.h"
 #include "frame/settings.h"
 
-/// How noisy the inertial unit is: the stated densities are the prior, and two things correct them (lib/docs/theory/inertial.md, "Noise"):
+/// Noise densities of the inertial unit. The stated ones are the prior, and two estimates correct them (lib/docs/theory/inertial.md,
+/// "Noise"):
 ///
-/// - what its own samples scatter by: third differences of white noise have 20 times its variance, those of a hand's motion next to
+/// - the scatter of its samples: third differences of white noise have 20 times its variance, those of a hand's motion next to
 ///   none;
 /// - innovations that P does not explain: errors of scale, of axes, of stamps. A likelihood ratio in the variance, by its gradient.
 ///
-/// Of each density, both together stay between a third and ten times what was stated.
+/// Both together keep each density between a third and ten times the stated one.
 
 namespace pf {
 
@@ -23,26 +24,26 @@ class UnitNoise {
   UnitNoise(const Settings& settings, const ImuLog& imu) : settings_(settings), imu_(imu) { init(); }
 
   void init() { data_ = Data(); }
-  /// Takes in the samples since the last call.
+  /// Adds the samples since the last call.
   void note_samples();
-  /// nis: of a frame's innovation, the part that the sensor's noise should explain; dof: its degrees of freedom.
+  /// Adds a frame's innovation. nis: the part that the sensor's noise should explain; dof: its degrees of freedom.
   void note_innovation(Sensor sensor, Scalar nis, int dof);
 
-  /// Densities as they are known now.
+  /// Present densities.
   ImuNoise now() const;
-  /// Of the density to the stated one.
+  /// Ratio of the density to the stated one.
   Scalar ratio(Sensor sensor) const;
-  /// Innovations are not explained by noise of ten times what was stated either.
+  /// True where not even ten times the stated noise explains the innovations.
   bool is_at_bound(Sensor sensor) const;
 
  private:
   struct Data {
-    std::int64_t last_ns = INT64_MIN;  ///< of the last sample that was taken in
+    std::int64_t last_ns = INT64_MIN;  ///< of the last sample that was added
     Scalar second[2] = {0, 0};         ///< sums of squared second and third differences over the axes
     Scalar third[2] = {0, 0};
     int count = 0;              ///< of them
     Scalar white[2] = {1, 1};   ///< variance of the samples to the stated one
-    Scalar excess[2] = {0, 0};  ///< log of the factor on the variance that innovations ask for; never below 0
+    Scalar excess[2] = {0, 0};  ///< log of the factor on the variance, from innovations; never below 0
   };
 
   void close_window();

@@ -14,8 +14,8 @@ struct PoseSpread {
   Scalar position = 0;  ///< [m^2]
 };
 
-/// Spread of the pose against the best known of these points, without what moves all of them and the camera together (translation,
-/// rotation, scale). False with fewer than three points.
+/// Variances of the pose against the best known of these points, without the part that moves all of them and the camera together
+/// (translation, rotation, scale). False with fewer than three points.
 bool spread_against_points(const Filter& filter, const int* slots, int count, PoseSpread* spread);
 
 /// True if rotation sigma is below 20 degrees and position sigma below half the median depth of this frame's inliers: in the world; or

@@ -6,6 +6,7 @@
 
 #include "base/limits.h"
 #include "filter_slam/pose/triple_consensus.h"
+#include "filter_slam/pose/zoom_evidence.h"
 #include "filter_slam/recovery/pose_proposal.h"
 #include "frame/ellipse.h"
 #include "frame/tracking_state.h"
@@ -68,7 +69,7 @@ bool Relocaliser::is_prediction_narrow() const {
   return variance < kNearbySigma * kNearbySigma;
 }
 
-/// About the last frame's proposal, or about a kept view that looks like this image; where there is neither, about the prediction.
+/// About the last frame's proposal, or about a kept view that is like this image; where there is neither, about the prediction.
 Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
   SearchPose about;
   about.body = filter_.state().body;
@@ -108,14 +109,15 @@ UpdateOutcome Relocaliser::measure_about(const SearchPose& about, int found, con
   found = linearise_at(pose, found);
   if (found < settings_.min_inliers) return before;
   update_.begin(0, found);
-  const PoseConsensus consensus =
+  PoseConsensus consensus =
       find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
                             belief_.share(), settings_.gate, kTriples, update_.keep());
   frame_.note_consensus(consensus.inliers);
   if (consensus.inliers < settings_.min_inliers) return before;
   const Scalar log_odds = update_.proposals().propose(pose.q_WC, pose.p_W, median_depth(pose, found),
                                                       PoseBelief::elsewhere(), belief_.evidence(consensus));
-  if (!PoseBelief::is_enough(log_odds)) return before;
+  weigh_lens(settings_, filter_, update_.observations(), update_.keep(), found, pose, &consensus);
+  if (!belief_.may_use(log_odds, consensus)) return before;
   mark_matches(found);
   hold_back(found);
   const UpdateOutcome outcome = update_.apply(0, found, mode, before);
@@ -124,7 +126,7 @@ UpdateOutcome Relocaliser::measure_about(const SearchPose& about, int found, con
   return outcome;
 }
 
-/// Keeps the candidates that can tell where the camera is, and sets the search ellipses about a given pose. Returns how many.
+/// Keeps the candidates that constrain the pose, and sets their search ellipses about a given pose. Returns how many.
 int Relocaliser::keep_placed(const SearchPose& about, int count) {
   int placed = 0;
   for (int i = 0; i < count; ++i) {

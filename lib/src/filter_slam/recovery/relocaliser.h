@@ -11,8 +11,8 @@
 #include "map/map.h"
 #include "track/view_memory.h"
 
-/// Finds the map again where the prediction is too vague to search about it. Updates the filter once frames say enough for a pose to
-/// believe it (lib/docs/theory/belief.md).
+/// Finds the map again where the prediction is too vague to search about it. Updates the filter once the evidence of frames is enough to
+/// accept a pose (lib/docs/theory/belief.md).
 
 namespace pf {
 
@@ -31,12 +31,11 @@ class Relocaliser {
   bool layout(Arena& arena, int max_observations, int max_kept_views);
   void init();
 
-  /// Keeps the view of a tracked frame, and how far away its features are.
+  /// Keeps the view of a tracked frame, with the median depth of its features.
   void remember_view(Scalar median_depth);
-  /// The prediction is good enough for a linear consensus about it.
+  /// True where the prediction is certain enough for a linear consensus about it.
   bool is_prediction_narrow() const;
-  /// Searches where the pose may be when the prediction is not. before: what the frame's updates have found. Returns that with what this
-  /// one adds.
+  /// Searches where the pose may be if the prediction is wrong. before: outcome of the frame's earlier updates. Returns the outcome of all.
   UpdateOutcome recover(const MeasureMode& mode, const UpdateOutcome& before);
 
   int kept_views() const { return views_.count(); }

@@ -32,8 +32,8 @@ void FilterStart::start_over() {
 
 /// Whether the target's points fit into the capacities.
 bool FilterStart::fits(const Target& target) const {
-  constexpr int kRows = 3;  // of a point
-  return target.count <= settings_.max_features && kRows * target.count <= filter_.room();
+  constexpr int kPointRows = 3;  // of a point
+  return target.count <= settings_.max_features && kPointRows * target.count <= filter_.room();
 }
 
 Status FilterStart::use_target(const Target& target) {
@@ -59,7 +59,7 @@ int FilterStart::target_rows() const {
   return 3 * (target.kind == TargetKind::kRectangle ? kCorners : target.count);
 }
 
-/// Depths come from a record of the first frames, unless walls or a known speed of the first pose tell them.
+/// Depths come from a record of the first frames, unless walls or a known speed of the first pose fix them.
 bool FilterStart::needs_record() const {
   if (!beginning_.known().given) return true;
   if (map_.planes.has_known() && !map_.planes.has_apart()) return false;
@@ -99,7 +99,7 @@ bool FilterStart::start_in_image() {
   return true;
 }
 
-/// Walls that a known pose does not see are set apart. A target needs none of this: it is in view.
+/// Sets walls apart that a known pose does not see. A start at a target does not need this: the target is in view.
 void FilterStart::begin_without_target() {
   const KnownBody& known = beginning_.known();
   const bool may_use_walls = !settings_.inertial && known.given && map_.planes.has_known();
@@ -153,7 +153,7 @@ bool FilterStart::may_become_metric() const {
   return !filter_.is_metric() && !data_.knows_scale && !map_.planes.has_known();
 }
 
-/// A map may be given up while it is young, or where the camera has not moved since its first frame.
+/// A map may be discarded while it is new, or where the camera has not moved since its first frame.
 bool FilterStart::begin_anew_at_rest(std::int64_t begin_ns) {
   const bool pending = recorder_.progress().pending(), moved_before = begin_ns > beginning_.begin_ns();
   if (map_.planes.has_known() || !(pending || !moved_before || is_young())) return false;

@@ -17,7 +17,7 @@
 #include "frame/tracking_state.h"
 #include "map/map.h"
 
-/// Starts the filter in the way that the caller chose: at a known pose, at a target, or from a record of the first frames.
+/// Starts the filter by the caller's method: at a known pose, at a target, or from a record of the first frames.
 
 namespace pf {
 
@@ -40,14 +40,14 @@ class FilterStart {
 
   bool layout(Arena& arena, int width, int height);
   void init();
-  /// Clears everything that came from the estimate, and the first pose that the caller gave, which does not hold here. A target that
-  /// was not withdrawn is kept and may be found again.
+  /// Clears everything that came from the estimate, and the caller's first pose, which belongs to the first map. A target that was not
+  /// withdrawn is kept and may be found again.
   void start_over();
 
   // --- what the caller chooses
   Status use_target(const Target& target);
   Status use_pose(const KnownBody& known);
-  /// W is one that the caller knows, so that the place of other things can be said in it.
+  /// True where the caller defines W, so that walls can be given in it.
   bool has_place() const { return data_.has_place; }
   /// Rows of the state that the target's points will take.
   int target_rows() const;
@@ -55,22 +55,22 @@ class FilterStart {
   bool takes_images_only() const { return target_.target().kind == TargetKind::kRectangle; }
 
   // --- the first frame
-  /// Sets the pose of the first frame. False: not possible in this frame.
+  /// Sets the pose of the first frame. False where that is not possible in this frame.
   bool start_in_image();
   void start_with_observations();
 
   // --- later frames
-  /// A target, walls or a known speed tell the scale, and the samples of a unit did not.
+  /// A target, walls or a known speed fix the scale, not the samples of a unit.
   bool knows_scale() const { return data_.knows_scale; }
-  /// Where most points that this frame saw before walls that were set apart have one ratio of distances in common: the map gets the size
-  /// that the plan says, and the walls count from now on. Returns the factor; 0: not yet.
+  /// Where most points that this frame saw before walls set apart have one ratio of distances in common, scales the map to the plan and
+  /// joins the walls to the state. Returns the factor; 0: not yet.
   Scalar look_for_walls();
-  /// Gives up a map of unknown scale that may give way to one in metres: a new one begins with this frame, and the camera has been at rest
-  /// since begin_ns. False: the map may not be given up, and nothing has changed.
+  /// Replaces a map of unknown scale by one in metres that begins with this frame, of a camera that has been at rest since begin_ns. False,
+  /// with nothing changed, where the map has to stay.
   bool begin_anew_at_rest(std::int64_t begin_ns);
-  /// A map that samples may scale, once its depths are known: of unknown scale.
+  /// True for a map of unknown scale, which samples may scale once its depths are known.
   bool may_become_metric() const;
-  /// Since the map's first frame [s].
+  /// Time since the map's first frame [s].
   double map_age() const;
 
   StartRecorder& recorder() { return recorder_; }
@@ -81,8 +81,8 @@ class FilterStart {
  private:
   /// What is kept between frames.
   struct Data {
-    bool has_place = false;    ///< the caller said where in W the start is
-    bool knows_scale = false;  ///< a target, walls or a known speed tell it
+    bool has_place = false;    ///< the caller gave the place of the start in W
+    bool knows_scale = false;  ///< a target, walls or a known speed fix it
   };
 
   bool fits(const Target& target) const;

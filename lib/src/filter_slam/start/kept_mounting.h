@@ -4,8 +4,7 @@
 #include "filter/filter.h"
 #include "filter/imu_path.h"
 
-/// How the inertial unit is mounted on the camera, its delay and its intrinsics: what a map begins with, which earlier maps may have
-/// estimated.
+/// Mounting, delay and intrinsics of the inertial unit with which a map begins. Earlier maps may have estimated them.
 
 namespace pf {
 
@@ -14,18 +13,18 @@ class KeptMounting {
   KeptMounting(const BodyLayout& layout, const ImuUnit& unit, const Filter& filter)
       : layout_(layout), unit_(unit), filter_(filter) {}
 
-  /// Takes nothing where the mounting is not estimated.
+  /// Takes no memory where the mounting is not estimated.
   bool layout(Arena& arena);
   /// Maps begin with the mounting and the delay of the config.
   void init();
-  /// Maps begin with the mounting and the delay as the filter knows them now. The filter has a pose.
+  /// Maps begin with the filter's present mounting and delay. Only where the filter has a pose.
   void keep();
 
-  /// What a map begins with.
+  /// Values with which a map begins.
   const Mounting& initial() const { return kept_ != nullptr ? kept_->mounting : unit_.mounting; }
   /// Sets the block of a square row-major covariance of the layout's unit rows that belongs to initial().
   void put_covariance(Scalar* covariance) const;
-  /// Where the unit is on the camera, as far as it is known; in metres.
+  /// Present estimate of the unit's mounting on the camera, in metres.
   Mounting now() const;
 
  private:

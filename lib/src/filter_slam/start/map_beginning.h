@@ -11,7 +11,7 @@
 #include "frame/tracking_state.h"
 #include "map/map.h"
 
-/// How a map begins in the filter: empties it, and gives it the first body with what is known of that.
+/// Begins a map in the filter: empties it, and sets the first body with its covariance.
 
 namespace pf {
 
@@ -29,28 +29,28 @@ class MapBeginning {
 
   void init() { data_ = Data(); }
 
-  /// The body of the first frame, as the caller knows it.
+  /// Sets the caller's body of the first frame.
   const KnownBody& known() const { return data_.known; }
   void use(const KnownBody& known);
-  /// What the caller knew of the first frame's body does not hold for the next map.
+  /// Drops the caller's body, which belongs to the first map only.
   void forget_known() { data_.known = KnownBody(); }
-  /// Whether the caller's velocity is large enough, and certain enough, to tell the scale.
+  /// Whether the caller's velocity is large enough, and certain enough, to fix the scale.
   bool has_known_speed() const;
   /// Time at which the map got its first pose.
   std::int64_t begin_ns() const { return data_.begin_ns; }
 
   /// Empties the filter, and with it the table of planes.
   void clear_filter();
-  /// Empties the filter but for the walls of the plan, which are in it again as they were given.
+  /// Empties the filter but for the walls of the plan, which get their priors again.
   void clear_all_but_walls();
 
-  /// Gives the filter the body of a map's first frame: the one that the caller knows, else that of a target, else the one that defines W.
-  /// target: where the map begins at one; else null. fitted: its pose was fitted to pixels of this frame.
+  /// Sets the filter's body for a map's first frame: the caller's, else that of a target, else the one that defines W. target: where the
+  /// map begins at one; else null. fitted: its pose was fitted to pixels of this frame.
   void begin(const Target* target, bool fitted);
-  /// Gives the filter this body, as uncertain as that of the first frame. fitted_to: the target whose pixels the pose was fitted to: the
-  /// pose is wrong where the lens is; null where it does not depend on the lens.
+  /// Sets the filter's body, with the covariance of the first frame's. fitted_to: the target to whose pixels the pose was fitted, so that
+  /// it depends on the lens; null: it does not.
   void begin_at(const Body& body, const Target* fitted_to);
-  /// From here on begin_at() uses the covariance of the pose as it is now. Velocities are unknown: those of a record replace them.
+  /// From here on begin_at() uses the present covariance of the pose. Velocities are unknown, and replaced by those of a record.
   void note_covariance();
 
  private:

@@ -10,8 +10,7 @@
 #include "frame/tracking_state.h"
 #include "map/map.h"
 
-/// What a camera at rest, or one that moves, says of gravity, of the biases of its inertial unit, and so of the scale
-/// (lib/docs/theory/inertial.md).
+/// Starts metric scale, gravity and the unit's biases from a camera at rest, or from one that moves (lib/docs/theory/inertial.md).
 
 namespace pf {
 
@@ -22,10 +21,10 @@ class MetricStart {
 
   void init() { is_from_motion_ = false; }
 
-  /// Whether lengths are in metres since the samples of a moving camera told them.
+  /// Whether lengths are in metres by the samples of a moving camera.
   bool is_from_motion() const { return is_from_motion_; }
-  /// The camera has been at rest since begin_ns. The first time that samples can tell the scale from here on: true, and gravity and biases
-  /// are known. A map whose scale is unknown begins anew with this frame.
+  /// The camera has been at rest since begin_ns. True the first time that samples give the scale from here on: gravity and biases are then
+  /// known, and a map whose scale is unknown begins anew with this frame.
   bool use_rest(const RestReading& rest, std::int64_t begin_ns);
   /// The same for a camera that moves: the map goes on in metres, under another id.
   void use_motion(const MovingSolution& solution);

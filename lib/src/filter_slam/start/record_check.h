@@ -5,8 +5,7 @@
 #include "frame/start/start_without_target.h"
 #include "map/map.h"
 
-/// Whether the filter's first depths are those of the record that goes on beside it (lib/docs/theory/starting.md,
-/// lib/docs/theory/walls.md).
+/// Compares the filter's first depths with those of the record beside it (lib/docs/theory/starting.md, lib/docs/theory/walls.md).
 
 namespace pf {
 

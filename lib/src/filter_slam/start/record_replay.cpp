@@ -25,7 +25,7 @@ void RecordReplay::predict_to(const StartRecord::Frame& frame, std::int64_t befo
   now.v_W = (p_W - now.p_W) / dt;
   now.w_C = log_so3(now.q_WC.conjugate() * q_WC) / dt;
   Transition transition;
-  // Residuals of zero do not say how the gyro agrees with the bundle's rotations, which are those of the pixels alone.
+  // Residuals of zero do not show whether the gyroscope agrees with the bundle's rotations, which come from the pixels alone.
   if (settings_.inertial)
     motion_.predict_coasting(now, before_ns, frame.t_ns, &transition);
   else
@@ -35,7 +35,7 @@ void RecordReplay::predict_to(const StartRecord::Frame& frame, std::int64_t befo
   filter_.predict(transition);
 }
 
-/// Its pixels are those of the frame's own time: rows would say how the camera moves, which nothing has told.
+/// Its pixels are those of the frame's own time: with rows they would constrain the camera's velocity, which nothing has measured.
 void RecordReplay::update_with(int k) {
   Camera global_shutter = filter_.lens();
   global_shutter.readout = Scalar(0);

@@ -66,8 +66,8 @@ void StartRecorder::add_pixels() {
   }
 }
 
-/// After a start at a target, or at a known pose before walls: where the record has other depths than the filter, the filter has settled in
-/// a wrong explanation of the first frames, and begins again with those of the record. Returns whether it did.
+/// After a start at a target, or at a known pose before walls: where the record has other depths than the filter, the filter has converged
+/// to a wrong explanation of the first frames, and begins again with those of the record. Returns whether it did.
 bool StartRecorder::check_depths(bool settled) {
   const bool by_walls = map_.planes.has_known();  // with a target there is no check beside them
   const Scalar unit =
@@ -84,7 +84,7 @@ bool StartRecorder::check_depths(bool settled) {
                  : "the first depths were wrong: the map begins again at the target, with those of all frames since");
   }
   if (agree || settled) init();
-  // Its points lie on walls of the plan. Until now the filter could not tell them from what stands before them.
+  // Its points lie on walls of the plan. Until now the filter could not distinguish them from points before the walls.
   if (agree && by_walls) map_.planes.forget_refusals();
   return !agree;
 }

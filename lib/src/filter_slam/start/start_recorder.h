@@ -49,8 +49,9 @@ class StartRecorder {
   /// Begins an empty record with the features that this frame has added.
   void begin_record();
   /// While a start without a target is under way: records the frame's pixels, and restarts the filter when the record gives better depths.
-  /// After one at a target, or before walls: likewise, until the record shows that the filter's depths are right, or wrong. True: they were
-  /// wrong, and places and poses of before no longer hold. has_image: else the caller's own observations begin features again.
+  /// After a start at a target, or before walls, does the same until the record confirms or contradicts the filter's depths. True: it
+  /// contradicted them, and earlier places and poses are not valid. has_image: otherwise the caller's own observations begin features
+  /// again.
   bool record_frame(bool has_image);
 
  private:

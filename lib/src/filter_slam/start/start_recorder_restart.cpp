@@ -6,7 +6,7 @@
 #include "frame/start/tuning.h"
 #include "frame/tuning.h"
 
-/// StartRecorder: what the record tells the filter, and how the filter begins again from it.
+/// StartRecorder: what the filter takes from the record, and how it begins again from it.
 
 namespace pf {
 
@@ -26,7 +26,7 @@ void StartRecorder::restart(Scalar unit) {
   const bool fitted = progress().checking && !beginning_.known().given;
   beginning_.begin_at(base(), fitted ? &target_.target() : nullptr);
   RecordReplay replay(settings_, motion_, map_, record_, unit, filter_, update_);
-  // Residuals of zero say nothing about the lens: the bundle's solution holds for the one that the filter begins with.
+  // Residuals of zero do not measure the lens: the bundle's solution holds for the lens with which the filter begins.
   filter_.consider_lens(true);
   restart_features(
       [&](int index) { return record_.bundle().good(index) ? record_.bundle().rho(index) / unit : Scalar(0); },
@@ -42,8 +42,8 @@ void StartRecorder::restart(Scalar unit) {
   if (progress().checking) update_with_target();
 }
 
-/// As long as depths are open, no pixel's linearisation tells the baseline (Filter::parallax_noise), and it would grow with the unknown
-/// speed, and with it search ellipses and what passes for a rotation. That a rotation explains all pixels does tell it.
+/// As long as depths are open, no pixel's linearisation constrains the baseline (Filter::parallax_noise). Its variance would grow with the
+/// unknown speed, and search ellipses with it. That a rotation explains all pixels does constrain it.
 void StartRecorder::bound_baseline() {
   Mat3 covariance;
   if (!record_.baseline_covariance(settings_.camera, tuning::noise::kSearchSigma, settings_.start_depth, &covariance))

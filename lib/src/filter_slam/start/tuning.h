@@ -10,8 +10,8 @@ namespace pf::tuning {
 /// First depths against those of a record, where walls are known.
 namespace start_before_walls {
 inline constexpr Scalar kOneWall = Scalar(1.12);  ///< ratio of distances of points that lie on walls of the plan
-inline constexpr int kMinOnWall = 8;              ///< points that tell the record's unit of length
-inline constexpr int kClearMajority = 2;          ///< of these to the points that tell another one
+inline constexpr int kMinOnWall = 8;              ///< points that give the record's unit of length
+inline constexpr int kClearMajority = 2;          ///< of these to the points that give another one
 inline constexpr int kCells = 9;                  ///< of the first image, a side, whose middles are looked at for walls
 inline constexpr int kMaxRatios = 256;            ///< that are compared
 inline constexpr Scalar kOpenScale = 1;           ///< sigma of the log scale until a wall is seen

@@ -103,9 +103,7 @@ bool StartAtTarget::predict_points(const Camera& camera, Vec2* predicted, Scalar
     Mat26 J;
     if (!project_from_pose(camera, first.q_WC, first.p_W, target_.point_W[i], first.p_W, &predicted[i], &J))
       return false;
-    if (!(predicted[i].x() > 0 && predicted[i].x() < static_cast<Scalar>(camera.width) && predicted[i].y() > 0 &&
-          predicted[i].y() < static_cast<Scalar>(camera.height)))
-      return false;
+    if (!is_in_image(camera, predicted[i])) return false;
     const Mat26 JP = J.lazyProduct(target_.first_covariance);
     const Mat2 S = JP.lazyProduct(J.transpose());
     const Scalar widest = symmetric_eigenvalues(S)(1);

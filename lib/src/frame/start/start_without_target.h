@@ -13,7 +13,7 @@
 
 namespace pf {
 
-/// What the log says of StartOutcome::kStill.
+/// Log line of StartOutcome::kStill.
 inline constexpr const char* kStandsStill = "the camera stands still while something moves before it: the start waits";
 
 class StartWithoutTarget {
@@ -32,7 +32,7 @@ class StartWithoutTarget {
 
   /// Begins the record with this frame. Its camera is the record's frame of reference.
   void begin_record(const Quat& q_WC, const Vec3& p_W, std::int64_t t_ns);
-  /// The lens is as uncertain as the prior says, and is adjusted with the depths of this record.
+  /// The lens has this prior, and is adjusted with the depths of this record.
   void free_lens(const Camera& calibration, const LensPrior& prior) { bundle_.free_lens(calibration, prior); }
   /// Adds a feature of the first frame, by its ray there.
   void add_feature(std::uint32_t id, const Vec3& ray_C);

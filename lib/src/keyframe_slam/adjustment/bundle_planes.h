@@ -7,7 +7,7 @@
 
 namespace pf {
 
-/// Adds points of the planes in sight that the poses of the bundle do not see: what they say of their planes belongs there.
+/// Adds points of the visible planes that the bundle's poses do not see, since they constrain these planes.
 void add_plane_points(const KeyframeMap& map, AdjustedPoints* points);
 
 /// Adds planes with enough points in the bundle. Points that do not fit are not held to them: those whose own pixels do not place them on

@@ -5,11 +5,11 @@
 
 namespace pf {
 
-/// The target whose points stay where the caller said they are, while keyframes are adjusted.
+/// Holds the target's points at the caller's coordinates while keyframes are adjusted.
 class HeldTarget {
  public:
   void init() { target_ = Target(); }
-  /// Its points are where it says from now on. seen_from: any pose in front of them.
+  /// Holds the points of this target from now on. seen_from: any pose in front of them.
   void hold(const CameraView& seen_from, const Target& target) {
     view_ = seen_from;
     target_ = target;

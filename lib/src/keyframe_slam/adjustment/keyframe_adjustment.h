@@ -8,7 +8,7 @@
 #include "keyframe_slam/planes/planes.h"
 
 /// Adjusts keyframes and the points that they see, with a few older keyframes that see the same points held fixed. Points on a plane are
-/// held to it, and the plane is adjusted with them; so is the lens, where the settings say that it is uncertain.
+/// held to it, and the plane is adjusted with them; so is the lens, where the settings have it as uncertain.
 
 namespace pf {
 
@@ -23,8 +23,8 @@ class KeyframeAdjustment {
     target_.init();
   }
 
-  /// Adjusts all keyframes of a map that is settled, with the lens where the settings let it be estimated; before, while a record of its
-  /// start goes on, the newest ones with the lens as it is. False: there is nothing to adjust yet.
+  /// settled: the record of the start has ended. Adjusts all keyframes then, with the lens where the settings estimate it; during the
+  /// record the newest ones, with the lens fixed. False: there is nothing to adjust yet.
   bool run(bool settled);
   /// Of the newest keyframe's (theta, p) in W, and with it of the map about it, given the map's first keyframe.
   const Mat6& map_covariance() const { return map_covariance_; }

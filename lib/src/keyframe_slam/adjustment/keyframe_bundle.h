@@ -6,7 +6,7 @@
 #include "bundle/bundle.h"
 #include "keyframe_slam/map/keyframe_map.h"
 
-/// The keyframes, points and planes of one adjustment, as the bundle adjustment wants them.
+/// The keyframes, points and planes of one adjustment, in the form that the bundle adjustment reads.
 
 namespace pf {
 
@@ -57,7 +57,7 @@ void fill_poses(const KeyframeMap& map, int stride, AdjustedPoses* poses);
 void fill_points(const KeyframeMap& map, int stride, AdjustedPoses* poses, AdjustedPoints* points);
 /// A weak prior on inverse depths that leaves the scale where it is: it holds what nothing else does.
 RhoPrior weak_prior(const AdjustedPoints& points);
-/// Holds points that the bundle has no pixels of by what those of their keyframes say.
+/// Holds points that the bundle has no pixels of by the pixels of their own keyframes.
 void hold_by_pixels(const KeyframeMap& map, Scalar sigma_px, AdjustedPoints* points);
 
 }  // namespace pf

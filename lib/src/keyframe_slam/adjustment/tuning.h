@@ -12,12 +12,12 @@ namespace keyframe_adjustment {
 inline constexpr int kMinPoints = 8;          ///< that an adjustment needs
 inline constexpr int kMinShared = 8;          ///< points that a fixed keyframe shares with the free ones
 inline constexpr int kRounds = 10;            ///< of Levenberg-Marquardt
-inline constexpr int kFirstRounds = 30;       ///< likewise, while the window holds all keyframes
+inline constexpr int kFirstRounds = 30;       ///< the same, while the window holds all keyframes
 inline constexpr int kMinPlanePoints = 4;     ///< of a plane that is adjusted
 inline constexpr int kMinScaleKeyframes = 2;  ///< held fixed, so that distances from planes do not shrink the map
 inline constexpr int kMinConnected = 3;   ///< keyframes that are adjusted without those that they share no points with
 inline constexpr int kHeldKeyframes = 3;  ///< the oldest, where all others are adjusted
-inline constexpr int kHeldAway = 6;       ///< likewise, where the first keyframe of the map is not among them
+inline constexpr int kHeldAway = 6;       ///< the same, where the first keyframe of the map is not among them
 inline constexpr Scalar kHeldDistance = Scalar(1e-3);   ///< of a distance that holds the scale: its sigma
 inline constexpr int kMinTargetPoints = 4;              ///< of the target, that hold a keyframe
 inline constexpr Scalar kHuber = Scalar(2);             ///< residuals beyond count linearly [standard deviations]

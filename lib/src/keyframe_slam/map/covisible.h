@@ -12,8 +12,7 @@ namespace pf {
 /// scratch    one for each point
 /// returns    how many they are, the newest one included
 ///
-/// What is connected no other way has a scale and a place of its own: nothing that is adjusted says how long its lengths are in those of
-/// the rest.
+/// Keyframes that are not connected have a scale and a place of their own: the adjustment does not constrain their scale against the rest.
 int connected_keyframes(const KeyframeMap& map, int least, bool* connected, bool* scratch);
 
 }  // namespace pf

@@ -24,10 +24,10 @@ bool fit_depth(const Camera& camera, const KeyframeMap& map, int i, const Camera
 
 struct PixelDepth {
   Scalar rho;       ///< [1/m]
-  Scalar variance;  ///< 0: no pixel says anything
+  Scalar variance;  ///< 0: no pixel measures it
 };
 
-/// By the pixels of the keyframes, and by what its place knew of a point that has come back, in one step of Gauss-Newton from where it is:
+/// From the pixels of the keyframes, and the prior of a place that has come back, in one step of Gauss-Newton from the present depth:
 ///
 ///   rho + sum J.r / sum J²,   variance sigma² / sum J²
 PixelDepth depth_by_pixels(const KeyframeMap& map, int i, Scalar sigma_px);

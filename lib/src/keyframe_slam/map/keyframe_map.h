@@ -11,7 +11,7 @@
 
 namespace pf {
 
-/// Beside its row in the feature table, with the same number.
+/// A point of the window, beside its row in the feature table, with the same number.
 struct KeyframePoint {
   int host = -1;  ///< keyframe
   Vec3 ray_K = Vec3::UnitZ();
@@ -43,7 +43,7 @@ class KeyframeMap {
   const KeyframeLens& lens() const { return lens_; }
   /// Another estimate of the lens: bearings become those of the same pixels of their hosts. Points of the target stay where they are.
   void move_lens(const Camera& camera);
-  /// Where a point's host saw it, by the lens as it is known now.
+  /// Ray of a point in its host, by the present lens.
   HostPixel host_pixel(int i) const;
 
   int capacity() const { return map_.features.capacity(); }
@@ -74,7 +74,7 @@ class KeyframeMap {
   /// Adds a point without a depth at a pixel of a keyframe; evicts one that was not seen in this frame where there is no room. Returns its
   /// row, or -1.
   int add(int host, const Vec2& pixel);
-  /// Says where a point is, seen from its host.
+  /// Sets bearing and inverse depth of a point in its host.
   void place(int i, const Vec3& p_W);
   void drop(int i);
 

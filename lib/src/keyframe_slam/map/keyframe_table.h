@@ -45,7 +45,7 @@ class KeyframeTable {
 
   int capacity() const { return capacity_; }
   int count() const { return count_; }
-  /// How many there have been.
+  /// Number of keyframes that there have been.
   int numbered() const { return last_number_; }
   /// Entry of the newest one, or -1.
   int newest() const { return newest_; }

@@ -2,7 +2,7 @@
 
 #include "keyframe_slam/map/keyframe_map.h"
 
-/// Keyframes that come and go, and the points that go with them.
+/// Adds and removes keyframes, and the points that belong to them.
 
 namespace pf {
 
@@ -20,7 +20,7 @@ void keep_first_keyframe(KeyframeMap* map);
 void drop_failing(KeyframeMap* map);
 /// An adjustment has moved the newest keyframe from this view: the views from which points without a depth were last seen move with it.
 void move_views(const CameraView& newest_before, KeyframeMap* map);
-/// How many points have a depth.
+/// Number of points with a depth.
 int num_placed(const KeyframeMap& map);
 
 }  // namespace pf

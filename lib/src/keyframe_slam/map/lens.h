@@ -2,7 +2,7 @@
 
 #include "geometry/lens.h"
 
-/// The lens as the window knows it: an estimate that all keyframes share, and what the calibration says of it.
+/// The lens of the window: an estimate that all keyframes share, and its prior from the calibration.
 
 namespace pf {
 
@@ -19,7 +19,7 @@ class KeyframeLens {
 
   /// The lens is where an adjustment has found it.
   void move(const Camera& camera) { camera_ = camera; }
-  /// As that adjustment says, which believed its pixels so many times too much.
+  /// Covariance from an adjustment whose pixels were weighted `inflation` times too much.
   void set_covariance(const Scalar* covariance, Scalar inflation);
 
  private:

@@ -24,7 +24,7 @@ bool project_moving(const Camera& camera, const Body& body, Scalar tau, const Ve
 bool project_row(const Camera& camera, const Body& body, const Vec3& m, Scalar w, Vec2* pixel, Mat212* J_pixel_body) {
   Vec2 z;
   if (!project_moving(camera, body, Scalar(0), m, w, &z)) return false;
-  // Where the pixel is says when it was read out, which says where it is: the camera moves little in that time.
+  // The pixel's row gives its time, and its time the pixel: two iterations, since the camera moves little in between.
   if (!project_moving(camera, body, row_time(camera, z.y()), m, w, &z)) return false;
   return project_moving(camera, body, row_time(camera, z.y()), m, w, pixel, J_pixel_body);
 }

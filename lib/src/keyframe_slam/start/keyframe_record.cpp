@@ -95,7 +95,7 @@ StartOutcome KeyframeRecord::record_frame() {
   solver_.begin_frame(body.q_WC, body.p_W, frame_.report.t_ns);
   for (int t = 0; t < frame_.match_count(); ++t) {
     const Match& match = frame_.match(t);
-    // What the last depths refuse, the next ones may explain, and that adjustment is robust.
+    // A match that the last depths reject may fit the next ones, and the adjustment is robust.
     if (match.feature >= 0 && (match.status == MatchStatus::kInlier || match.status == MatchStatus::kOutlier))
       solver_.add_pixel(map_.camera(), match.id, pixel_of(match));
   }

@@ -64,7 +64,7 @@ Status KeyframeStart::use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar
   return Status::kOk;
 }
 
-/// The pose is that of any place, with a covariance that says nothing.
+/// The pose is that of any place, with a covariance that leaves it open.
 Status KeyframeStart::use_map(const SavedMap& saved) {
   using namespace tuning::body_motion;
   const bool is_chosen = known_.given || second_.given || target_.target().kind != TargetKind::kNone;

@@ -7,7 +7,7 @@
 #include "keyframe_slam/memory/map_saving.h"
 #include "keyframe_slam/start/keyframe_record.h"
 
-/// Starts the window in the way that the caller chose: at a known pose, at a target, or from a record of the first frames.
+/// Starts the window by the caller's method: at a known pose, at a target, or from a record of the first frames.
 
 namespace pf {
 
@@ -29,7 +29,7 @@ class KeyframeStart {
 
   bool layout(Arena& arena) { return target_.layout(arena, settings_.camera.width, settings_.camera.height); }
   void init();
-  /// Clears the map and what came from it, and the poses that the caller gave. A target that was not withdrawn may be found again.
+  /// Clears the map, all that came from it, and the caller's poses. A target that was not withdrawn may be found again.
   void start_over();
 
   Status use_target(const Target& target);
@@ -37,12 +37,13 @@ class KeyframeStart {
   /// Begins in a map that was opened, lost. kState: another start was chosen. kFull: MapSaving::load.
   Status use_map(const SavedMap& saved);
   bool is_in_loaded_map() const { return saving_.is_loaded(); }
-  /// Of the frame that comes at t_ns. kTime: it has been. kState: the scale is known. kRange: it is where the camera was first.
+  /// Sets the second pose, of the frame that comes at t_ns. kTime: that frame is past. kState: the scale is known. kRange: it is too near
+  /// to the first place.
   Status use_second_pose(std::int64_t t_ns, const Vec3& p_W, Scalar sigma);
-  /// Where the camera was first, as the caller knows it or as it defines W.
+  /// First place of the camera: the caller's, or the one that defines W.
   Vec3 first_place_W() const { return known_.given ? known_.body.p_W : Vec3::Zero(); }
 
-  /// Sets the pose of the first frame and makes it a keyframe. False: not possible in this frame.
+  /// Sets the pose of the first frame and makes it a keyframe. False where that is not possible in this frame.
   bool start_in_image();
 
  private:

@@ -69,7 +69,7 @@ bool RotationTracking::measure(const Vec3& base_W) {
   return frame_.report.inliers >= settings_.min_inliers;
 }
 
-/// By the pose that all found points say together, about a rotation that is known; where they say none, by that.
+/// Updates the body with the pose fitted to all found points about the known rotation; with the rotation alone where the fit fails.
 void RotationTracking::correct_body(int found, const Quat& q_WC, const Vec3& p_W) {
   const Scalar depth = settings_.start_depth;
   PosePrior about = {q_WC, p_W, Mat6(Mat6::Identity() * (kRotationSigma * kRotationSigma))};

@@ -15,9 +15,9 @@ class RotationTracking {
 
   bool layout(Arena& arena);
 
-  /// Finds points about where they were last, as if the camera had only rotated. Corrects the body by the pose that they say together about
-  /// the rotation that explains the image best, and accepts those that are within a few times the typical parallax of that rotation.
-  /// base_W: place of the record's first frame. False: too few.
+  /// Finds points about where they were last, as if the camera had only rotated. Updates the body with the pose fitted to them about the
+  /// rotation that explains the image best, and accepts those that are within a few times the typical parallax of that rotation. base_W:
+  /// place of the record's first frame. False: too few.
   bool measure(const Vec3& base_W);
 
  private:

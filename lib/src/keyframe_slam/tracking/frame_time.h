@@ -17,7 +17,7 @@ Vec2 match_at_frame_time(const KeyframeMap& map, const Match& match, const PoseP
 ///
 ///   z2 - z1 = u (dt + tau2 - tau1),   tau1 = 0 where z1 is at its frame's time
 ///
-/// In the first keyframe nothing was known of the motion, so its pixel is that of its row.
+/// In the first keyframe the motion was not known, so its pixel is that of its row.
 Vec2 followed_at_frame_time(const KeyframeMap& map, const Match& match, std::int64_t t_ns);
 
 /// Counts a match that was found as an inlier of the frame at t_ns. pixel: at the frame's time; the point's last one from now on.

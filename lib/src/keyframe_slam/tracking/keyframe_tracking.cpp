@@ -36,7 +36,7 @@ void KeyframeTracking::measure(Scalar median_depth) {
   measure_unplaced(median_depth);
 }
 
-/// Finds points with a depth about the predicted pose. False where what they say is not enough to believe the pose.
+/// Finds points with a depth about the predicted pose. False where their evidence is not enough to accept the pose.
 bool KeyframeTracking::measure_placed(const PosePrior& prior, CameraPose* pose, Mat6* information) {
   PoseConsensus consensus;
   return measure_about(prior, pose, information, &consensus) > 0 && is_believed(consensus);
@@ -93,7 +93,8 @@ int KeyframeTracking::search_by_scouts(const PosePrior& about, CameraPose* pose,
   return search_.search(found, kScouts, others, scouted, Scalar(1));
 }
 
-/// Pixels at the frame's time were found with the predicted velocities; a jerk is found once more with those that the pose tells.
+/// Pixels at the frame's time were found with the predicted velocities; after a jerk the pose is found once more, with the velocities that
+/// the pose implies.
 void KeyframeTracking::correct_by_rows(const PosePrior& before, CameraPose pose, Mat6 information) {
   const int found = frame_.report.matches;
   for (int pass = 0; pass < kRowPasses; ++pass) {
@@ -119,7 +120,7 @@ bool KeyframeTracking::apply(const CameraPose& pose, const Mat6& information, Po
   return correct_body(pose, information, &motion_, now);
 }
 
-/// Says of each match whether it is where the pose has it, within its own noise and that of the pose.
+/// Marks each match as inlier or outlier of the pose, within its own noise and that of the pose.
 void KeyframeTracking::mark(const PosePrior& at) {
   const int found = frame_.report.matches;
   const PosePrior now = prior_of(motion_);
@@ -173,7 +174,7 @@ void KeyframeTracking::measure_all(const PosePrior& prior, Scalar median_depth) 
   fit_all(search_.search(found_, search_.placed(), count, prior, median_depth), prior, median_depth);
 }
 
-/// Corrects the body by the pose that the first `found` points say together, those without a depth as well.
+/// Updates the body with the pose fitted to the first `found` points, those without a depth as well.
 void KeyframeTracking::fit_all(int found, const PosePrior& prior, Scalar median_depth) {
   CameraPose pose = {prior.q_WC, prior.p_W};
   Mat6 information;

@@ -5,7 +5,7 @@
 #include "keyframe_slam/tracking/point_search.h"
 #include "keyframe_slam/tracking/pose_measurement.h"
 
-/// Measures an image with the window's map: which points are searched for about which pose, and how the body is corrected by what is found.
+/// Measures an image with the window's map: searches for points about a pose, fits the pose, and updates the body.
 
 namespace pf {
 
@@ -23,18 +23,18 @@ class KeyframeTracking {
         belief_(belief),
         hypotheses_(settings, belief) {}
 
-  /// Finds points with a depth about the predicted pose, and corrects the body by the pose that they say; then finds those without. Where
-  /// those with a depth say none, all say it together.
+  /// Finds points with a depth about the predicted pose, and updates the body with the pose fitted to them; then finds those without a
+  /// depth. Where those with a depth give no pose, it is fitted to all.
   void measure(Scalar median_depth);
-  /// While few points have a depth: finds all points about the predicted pose, and corrects the body by the pose that they say together. A
-  /// point without a depth says where the camera is but for a translation along its epipolar line.
+  /// While few points have a depth: finds all points about the predicted pose, and updates the body with the pose fitted to all. A point
+  /// without a depth constrains the pose but for a translation along its epipolar line.
   void measure_young(Scalar median_depth);
   /// Finds points with a depth about another pose than the predicted one. Changes nothing but the frame's matches. Returns the number of
-  /// inliers, the pose with its information, and what the searches say for it.
+  /// inliers, the pose with its information, and the consensus, for its evidence.
   int measure_about(const PosePrior& about, CameraPose* pose, Mat6* information, PoseConsensus* consensus);
-  /// The frame is searched about yet another pose: takes back what the last measure_about() searched for.
+  /// Removes the matches of the last measure_about(), before the frame is searched about another pose.
   void forget_searches() { frame_.forget_searches(); }
-  /// Corrects the body by a pose that measure_about() returned, and says which matches agree with it.
+  /// Updates the body with a pose that measure_about() returned, and marks the matches that agree with it.
   void correct(const CameraPose& pose, const Mat6& information);
   /// Updates the noise model with the residuals of this frame's inliers.
   void learn_noise();

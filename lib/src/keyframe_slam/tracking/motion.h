@@ -24,18 +24,18 @@ class KeyframeMotion {
 
   /// Predicts the body from one frame's time to the next. Without measurements its speed decays.
   void advance(std::int64_t before_ns, std::int64_t t_ns, bool coasting_or_lost, bool nothing_measured);
-  /// Corrects the body by a pose that was measured with covariance R. The pose becomes the measured one, which allows for the prediction
+  /// Updates the body with a pose that was measured with covariance R. The pose becomes the measured one, which allows for the prediction
   /// already; velocities and covariance follow by Kalman's gain
   ///
   ///   K = P Hᵀ S⁻¹,   P+ = P - K S Kᵀ,   S = P_pp + R,   H = (I 0)
   ///
   /// where the pose's part is (I - K_p) P_pp (I - K_p)ᵀ + K_p R K_pᵀ with I - K_p = R S⁻¹, and its covariance with the velocities
-  /// K_v R: of a pose that was hardly known before, rounding leaves nothing in the difference. In double in both libraries, and R with
+  /// K_v R: where the pose was hardly known before, rounding would leave nothing of the difference. In double in both libraries, and R with
   /// it: where matches leave a direction open, float inverts their information to what is no covariance.
   ///
   /// False where P_pp + R is no covariance; nothing has changed then.
   bool correct(const Quat& q_WC, const Vec3& p_W, const Wide6& R);
-  /// Puts the body in another place, where the map was moved by an adjustment. The velocities turn and scale with it.
+  /// Moves the body with the map after an adjustment. The velocities rotate and scale with it.
   void move(const Quat& q_WC, const Vec3& p_W) {
     data_.body.v_W = q_WC * (data_.body.q_WC.conjugate() * data_.body.v_W);
     data_.body.q_WC = q_WC;
@@ -48,7 +48,7 @@ class KeyframeMotion {
   }
   /// Multiplies lengths by s about a place that stays.
   void scale(Scalar s, const Vec3& c_W);
-  /// Sets the pose's covariance alone, and forgets how it hangs on the velocities.
+  /// Sets the pose's covariance alone, and drops its correlation with the velocities.
   void set_pose_covariance(const Mat6& pose);
 
   const Body& body() const { return data_.body; }

@@ -37,10 +37,7 @@ bool PointSearch::begin_frame(const ImageView& image) {
 }
 
 bool PointSearch::is_inside(const Vec2& pixel) const {
-  const Scalar margin = static_cast<Scalar>(settings_.border_px);
-  return !(pixel.x() < margin || pixel.y() < margin ||
-           pixel.x() > static_cast<Scalar>(settings_.camera.width - 1) - margin ||
-           pixel.y() > static_cast<Scalar>(settings_.camera.height - 1) - margin);
+  return is_in_image(settings_.camera, pixel, static_cast<Scalar>(settings_.border_px));
 }
 
 int PointSearch::list_placed(const PosePrior& at) {
@@ -129,7 +126,7 @@ int PointSearch::search(int found, int first, int count, const PosePrior& at, Sc
       continue;
     ++frame_.report.matches;
     match.measured = outcome.pixel;
-    match.status = MatchStatus::kOutlier;  // until the consensus says otherwise
+    match.status = MatchStatus::kOutlier;  // until the consensus has it as an inlier
     point_[c].noise = noise_.match(outcome.noise, outcome.level_scale);
     point_[c].searched = std::min(image, ellipse_area(task.innovation, settings_.gate));
     std::swap(point_[found++], point_[c]);
@@ -149,7 +146,8 @@ bool PointSearch::find_followed() {
   return followed_.find(map_.camera(), images_.tracker().pyramid());
 }
 
-/// Directs a search to where the followed view has the point, unless its own ellipse says as much. False where that has no place for it.
+/// Directs a search to where the followed view has the point, unless its own ellipse is as small. False where the followed view has no
+/// place for it.
 bool PointSearch::aim(int i, SearchTask* task) const {
   if (!is_wide(task->innovation)) return true;
   const KeyframePoint& point = map_.point(i);

@@ -35,10 +35,10 @@ class PointSearch {
   int list_unplaced(const PosePrior& at, Scalar depth);
   /// Listed points with a depth.
   int placed() const { return placed_; }
-  /// Predicts points with a depth again, from a pose that is known better.
+  /// Predicts points with a depth again, from a better pose.
   void predict_again(int first, int count, const PosePrior& at);
-  /// Searches for a range of the list, and moves what is found behind the first `found` points of the list, which were found before.
-  /// Returns how many there are then.
+  /// Searches for a range of the list, and moves points that are found behind the first `found` ones, which were found before. Returns how
+  /// many have been found in all.
   int search(int found, int first, int count, const PosePrior& at, Scalar depth);
 
   const SearchedPoint& point(int c) const { return point_[c]; }
@@ -47,14 +47,14 @@ class PointSearch {
   /// Largest variance of the first `count` points along any direction [px^2].
   Scalar widest(int count) const;
 
-  /// Where most ellipses are wide: finds where the picture as a whole has gone, for searches that follow it. False: they are not wide, or
-  /// the picture does not say it.
+  /// Where most ellipses are wide: finds where the image as a whole has moved, for searches that follow it. False: they are not wide, or
+  /// the image does not show its motion.
   bool find_followed();
   /// After a frame's searches: ImageSearch::note_fixed.
   bool note_fixed() { return images_.note_fixed(map_.camera(), frame_, &map_.tables().features); }
-  /// After a frame that supported its pose: the next one may be followed from it.
+  /// Keeps the view of a frame that supported its pose, from which the next one may be followed.
   void keep_view(const CameraView& view) { followed_.keep(images_.tracker().pyramid(), view.q_WC, view.c_W); }
-  /// The map is given up, and with it all poses.
+  /// The map is discarded, and with it all poses.
   void forget_view() { followed_.init(); }
 
   /// Updates masks and normals of templates with this frame's inliers.

@@ -16,7 +16,7 @@ struct PoseMatch {
   Mat2 noise;  ///< covariance of the pixel, the point's depth included [px^2]
 };
 
-/// Fits the pose to the matches that count, and to the prior:
+/// Fits the pose to the matches in use, and to the prior:
 ///
 ///   min over (theta, p) of  sum rho(r_iᵀ R_i⁻¹ r_i) + eᵀ P⁻¹ e,   e = (theta, p) of the pose against the prior;  rho of Huber
 ///
@@ -49,8 +49,8 @@ class KeyframePose {
   /// Returns the number of inliers, 0 where they are too few; pose and information are then untouched.
   int find(const Camera& camera, int count, const PosePrior& prior, Scalar bound_px, int least, CameraPose* pose,
            Mat6* information);
-  /// Fit to all of the first `count` matches from the prior, for which no triple says enough; those beyond the gate then leave it.
-  /// Returns the number of inliers, 0 where it fails.
+  /// Fit to all of the first `count` matches from the prior, where no triple has enough evidence; matches beyond the gate are then
+  /// rejected. Returns the number of inliers, 0 where it fails.
   int fit(const Camera& camera, int count, const PosePrior& prior, Scalar gate, CameraPose* pose, Mat6* information);
 
  private:

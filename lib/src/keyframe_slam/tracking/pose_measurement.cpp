@@ -5,6 +5,8 @@
 
 #include "base/elapsed.h"
 #include "bundle/bearing.h"
+#include "bundle/zoom_fit.h"
+#include "frame/pose_hypotheses.h"
 #include "frame/tuning.h"
 #include "keyframe_slam/map/rows.h"
 #include "keyframe_slam/tracking/frame_time.h"
@@ -32,8 +34,8 @@ void PoseMeasurement::make_match(int c, const PosePrior& prior, Scalar depth, in
   out.noise = noise_of(c, prior, depth, shared);
 }
 
-/// Of a point with the median depth for want of its own, as much again as standard deviation, times the baseline, the prior's and the
-/// uncertain part of it:
+/// Noise of a point without a depth of its own, taken at the median depth with the same standard deviation, times the baseline (the prior's
+/// and its uncertain part):
 ///
 ///   R += var(rho) (J_rho J_rhoᵀ + J_p P_p J_pᵀ / rho²)
 Mat2 PoseMeasurement::noise_of(int c, const PosePrior& prior, Scalar depth, int shared) const {
@@ -75,6 +77,17 @@ int PoseMeasurement::fit(int found, const PosePrior& prior, Scalar depth, int sh
   return inliers;
 }
 
+/// By points that have a depth; each with the noise that its depth adds.
+void PoseMeasurement::weigh_lens(int found, const CameraPose& pose, PoseConsensus* consensus) const {
+  ZoomPoints points;
+  for (int c = 0; c < found; ++c) {
+    if (!pose_.is_inlier(c) || !map_.point(search_.match(c).feature).has_depth) continue;
+    const PoseMatch& match = pose_.match(c);
+    points.add(match.point, match.noise.trace() / 2);
+  }
+  note_zoom(points.fit(map_.camera(), pose), settings_, consensus);
+}
+
 PoseConsensus PoseMeasurement::consensus(int inliers, int found, const PosePrior& prior, const CameraPose& pose,
                                          const Mat6& information) const {
   PoseConsensus consensus;
@@ -84,6 +97,7 @@ PoseConsensus PoseMeasurement::consensus(int inliers, int found, const PosePrior
   consensus.log_density = log_density(map_.camera(), &pose_.match(0), found, pose_.inliers(), prior, pose, information);
   for (int c = 0; c < found; ++c)
     if (pose_.is_inlier(c)) consensus.log_chance += log_chance_density(search_.point(c).searched);
+  weigh_lens(found, pose, &consensus);
   return consensus;
 }
 

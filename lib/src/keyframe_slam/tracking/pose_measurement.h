@@ -4,7 +4,7 @@
 #include "keyframe_slam/tracking/point_search.h"
 #include "keyframe_slam/tracking/pose.h"
 
-/// The pose of a frame that its found points say, and how much they say for it.
+/// Pose of a frame from the points that were found, and its evidence.
 
 namespace pf {
 
@@ -20,19 +20,20 @@ class PoseMeasurement {
 
   /// Pose that most of the points support, all of which have a depth. Returns the number of inliers, 0 where they are too few.
   int find(int found, const PosePrior& prior, CameraPose* pose, Mat6* information);
-  /// Pose that all points say together, those without a depth as well. Pixels are taken to the frame's time by how far they have moved.
-  /// depth: of points without one. shared: how many these are; they may all be nearer or farther together, and then their mean is known no
-  /// better than one of them. 0: their median is the unit of length, and each is wrong by itself. Returns the number of inliers.
+  /// Pose fitted to all points, those without a depth as well. Pixels are taken to the frame's time by how far they have moved. depth: of
+  /// points without one. shared: how many these are; their depths may be wrong together, so that their mean is known no better than one of
+  /// them. 0: their median is the unit of length, and each is wrong by itself. Returns the number of inliers.
   int fit(int found, const PosePrior& prior, Scalar depth, int shared, CameraPose* pose, Mat6* information);
-  /// What this frame's searches say for the pose that the last find() or fit() gave, about the same prior.
+  /// Consensus of this frame's searches for the pose of the last find() or fit(), about the same prior.
   PoseConsensus consensus(int inliers, int found, const PosePrior& prior, const CameraPose& pose,
                           const Mat6& information) const;
 
   bool is_inlier(int c) const { return pose_.is_inlier(c); }
-  /// Within which a match supports a pose [px].
+  /// Bound within which a match supports a pose [px].
   Scalar bound_px() const;
 
  private:
+  void weigh_lens(int found, const CameraPose& pose, PoseConsensus* consensus) const;
   void make_match(int c, const PosePrior& prior, Scalar depth, int shared);
   Mat2 noise_of(int c, const PosePrior& prior, Scalar depth, int shared) const;
 

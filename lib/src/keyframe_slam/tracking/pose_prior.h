@@ -4,7 +4,7 @@
 
 namespace pf {
 
-/// A pose with what is known of it.
+/// A pose with its covariance and, for rows, velocities.
 struct PosePrior {
   Quat q_WC = Quat::Identity();
   Vec3 p_W = Vec3::Zero();
@@ -12,7 +12,7 @@ struct PosePrior {
   /// Velocities, which matter to the rows of a rolling shutter alone; covariance of (theta, p, v, w), null: velocities taken as exact.
   Vec3 v_W = Vec3::Zero(), w_C = Vec3::Zero();
   const Eigen::Matrix<Scalar, 12, 12>* with_velocities = nullptr;
-  /// Searches go about the places where the picture as a whole has gone, where the pose leaves them wide (PointSearch::find_followed).
+  /// Wide searches go about the places where the image as a whole has moved (PointSearch::find_followed).
   bool follows = false;
 
   Body body() const {
@@ -25,7 +25,7 @@ struct PosePrior {
   }
 };
 
-/// The body as it is now: before a frame's matches the prediction, after them the estimate. Refers to its covariance.
+/// The present body: before a frame's matches the prediction, after them the estimate. Refers to its covariance.
 inline PosePrior prior_of(const KeyframeMotion& motion) {
   const Body& body = motion.body();
   return {body.q_WC, body.p_W, motion.pose_covariance(), body.v_W, body.w_C, &motion.covariance()};

@@ -24,7 +24,7 @@ const Mat6* KeyframeRelocaliser::found_covariance() const {
 /// Brings the place back that the image may show, and its rival, so that they can be searched for.
 bool KeyframeRelocaliser::recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival) {
   recalled_ = 0;
-  if (recalled_in_vain_) return recalled_in_vain_ = false;  // it is the kept views' turn
+  if (recalled_in_vain_) return recalled_in_vain_ = false;  // now the kept views are tried
   Recall best, other;
   if (!recall_.find(tracker_, &best, &other) || !keeper_.bring_back(best.place)) return false;
   *has_rival = other.inliers > 0 && keeper_.bring_back(other.place);
@@ -74,7 +74,7 @@ void KeyframeRelocaliser::recover(Scalar median_depth) {
   const Tried tried = try_pose(elsewhere, before, median_depth);
   recalled_in_vain_ = recalled_ != 0 && !tried.found;
   proposal_ = tried.proposal(median_depth);
-  if (!tried.found || !PoseBelief::is_enough(tried.log_odds - against)) return;
+  if (!tried.found || !belief_.may_use(tried.log_odds - against, tried.consensus)) return;
   motion_.set_pose_covariance(elsewhere.P);
   measuring_.correct(tried.pose, tried.information);
   belief_.use(tried.log_odds - against, tried.consensus);

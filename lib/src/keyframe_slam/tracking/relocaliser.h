@@ -34,24 +34,24 @@ class KeyframeRelocaliser {
 
   /// Keeps the view of a tracked frame.
   void remember_view() { views_.keep_if_new(tracker_.pyramid(), motion_.body().q_WC, motion_.body().p_W); }
-  /// The map is tracked: forgets what earlier frames proposed.
+  /// Drops the proposals of earlier frames, since the map is tracked.
   void clear_proposal() {
     proposal_ = rival_ = PoseProposal();
     recalled_ = 0;
   }
-  /// The prediction is good enough to search about it.
+  /// True where the prediction is certain enough to search about it.
   bool is_prediction_narrow(Scalar median_depth) const;
-  /// Searches where the pose may be when the prediction is not: about the last frame's proposal, where a place looks like this image, or
-  /// where a kept view does. A place is searched for together with its rival, the one that says most for another pose.
+  /// Searches for the pose where it is not the predicted one: about the last frame's proposal, a place that is recognised in this image, or
+  /// a similar kept view. A place is searched for together with its rival, the place with most evidence for another pose.
   void recover(Scalar median_depth);
-  /// Of the place by which the map was found again in this frame; null: by none.
+  /// The place by which the map was found again in this frame; null: none.
   const Mat6* found_covariance() const;
 
   int kept_views() const { return views_.count(); }
   PlaceKeeper& keeper() { return keeper_; }
 
  private:
-  /// What a frame says for a pose.
+  /// Result of a search about one hypothesis.
   struct Tried {
     bool found = false;
     CameraPose pose;
@@ -78,7 +78,7 @@ class KeyframeRelocaliser {
   PlaceRecall recall_{settings_, map_};
   PoseProposal proposal_, rival_;  ///< of earlier frames
   std::uint32_t recalled_ = 0;     ///< place that the proposal comes from; 0: none
-  bool recalled_in_vain_ = false;  ///< the last frame's place was not where it said
+  bool recalled_in_vain_ = false;  ///< the last frame's place was not confirmed
 };
 
 }  // namespace pf

@@ -27,11 +27,11 @@ inline constexpr Scalar kSmallStep2 = Scalar(1e-12);  ///< [rad^2, m^2] squared 
 namespace keyframe_tracking {
 inline constexpr Scalar kMapSigma = Scalar(1);           ///< [px] of a point of the map beside its depth, in a search
 inline constexpr Scalar kBoundWidth = Scalar(0.004);     ///< of a match that supports a pose, in image widths
-inline constexpr Scalar kBoundSigmas = Scalar(4);        ///< likewise, in standard deviations of a match
+inline constexpr Scalar kBoundSigmas = Scalar(4);        ///< the same, in standard deviations of a match
 inline constexpr int kScouts = 30;                       ///< candidates that are measured first in wide ellipses
 inline constexpr Scalar kWideEllipse = Scalar(12);       ///< [px] largest semi-axis of those
 inline constexpr Scalar kTemplateEllipse = Scalar(4.5);  ///< [px] largest semi-axis in which templates are tried
-inline constexpr int kRowPasses = 2;                     ///< of consensus with velocities that its pose tells
+inline constexpr int kRowPasses = 2;                     ///< of consensus with the velocities that its pose implies
 inline constexpr int kYoung = 16;                        ///< points with a depth, below which the others help
 inline constexpr Scalar kOpenSpread = Scalar(2);         ///< of an inverse depth not known yet, in the median one
 inline constexpr Scalar kWeakPrior = Scalar(1);          ///< weight of the prediction where matches leave a pose open

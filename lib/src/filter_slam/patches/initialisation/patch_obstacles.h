@@ -5,7 +5,7 @@
 #include "frame/frame.h"
 #include "map/map.h"
 
-/// Squares of the image where patches may begin, and what stands before their wall.
+/// Squares of the image where patches may begin, and obstacles before their wall.
 
 namespace pf {
 
@@ -20,7 +20,7 @@ struct PatchSquare {
   Scalar reach() const;
 };
 
-/// What stands before a wall: no patch begins where it is seen.
+/// Obstacles before a wall: no patch begins where one is seen.
 struct PatchObstacles {
   static constexpr int kMax = 128;
   int count = 0;
@@ -29,11 +29,11 @@ struct PatchObstacles {
   void add(const Vec2& at) {
     if (count < kMax) pixel[count++] = at;
   }
-  /// Whether one is in the square, or just beside it.
+  /// Whether an obstacle is in the square, or just beside it.
   bool are_in(const PatchSquare& square) const;
 };
 
-/// Lists pixels of this frame's features that the gate refuses on the wall, and of places where patches of it were found elsewhere.
+/// Lists pixels of this frame's features that the gate of the wall rejects, and of places where patches of it were found elsewhere.
 PatchObstacles find_obstacles(const Filter& filter, const Map& map, const Frame& frame, const PatchRefusals& refusals,
                               int wall);
 

@@ -18,7 +18,7 @@ using namespace tuning::patch_selection;
 
 constexpr int kPlaneRows = 3;
 
-/// The weaker eigenvalue of the sum of g g^T over a square of a level, which says how well it can be aligned in the worse direction.
+/// The weaker eigenvalue of the sum of g g^T over a square of a level, which bounds how well it can be aligned in the worse direction.
 Scalar texture(const ImageView& image, int left, int top, int side) {
   int xx = 0, xy = 0, yy = 0;
   for (int y = top + 1; y < top + side - 1; ++y) {
@@ -93,9 +93,7 @@ Scalar PatchSelection::stay_in_view(const Vec3& middle_W) const {
     const Scalar t = static_cast<Scalar>(k) * kStayStep;
     const Quat q_WC = body.q_WC * exp_so3(Vec3(body.w_C * t));
     Vec2 at;
-    stays += project(lens, Vec3(q_WC.conjugate() * (middle_W - body.p_W - t * body.v_W)), &at) && at.x() > Scalar(0) &&
-             at.y() > Scalar(0) && at.x() < static_cast<Scalar>(lens.width) &&
-             at.y() < static_cast<Scalar>(lens.height);
+    stays += project(lens, Vec3(q_WC.conjugate() * (middle_W - body.p_W - t * body.v_W)), &at) && is_in_image(lens, at);
   }
   return static_cast<Scalar>(stays) / static_cast<Scalar>(kStaySteps + 1);
 }

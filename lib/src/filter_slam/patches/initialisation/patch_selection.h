@@ -33,20 +33,20 @@ class PatchSelection {
  private:
   static constexpr int kMaxSquares = 6;
 
-  /// Initialises patches on one wall. Returns whether it has all that it wants.
+  /// Initialises patches on one wall. Returns whether the wall has as many as wanted.
   bool begin_on_wall(const Pyramid& image, int wall, int wanted, int* camera);
-  /// Initialises one patch where the plan has no wall, which waits for the plane that it lies on. It takes nobody else's room.
+  /// Initialises one patch where the plan has no wall; it waits for its plane. It never evicts another patch.
   void begin_beside_walls(const Pyramid& image, int* camera);
   bool may_begin_beside_walls(bool has_camera) const;
   /// How many patches should begin on a wall now. Those that will soon be too slanted or out of the image do not count, so that the next
   /// ones have frames in common with them.
   int wanted_on(int wall) const;
-  /// How long a place stays in the image, of a second: 1, or less where it leaves it before. Never 0: a hand may turn back.
+  /// Share of the next second for which a place stays in the image. Never 0, since a hand may reverse its motion.
   Scalar stay_in_view(const Vec3& middle_W) const;
   /// Lists the best squares of a lattice, the best first. Returns how many.
   int list_squares(const Pyramid& image, int wall, int side, const PatchObstacles& obstacles,
                    PatchSquare* square) const;
-  /// Whether the wall (-1: no wall) is what is seen first in all of a square; *cosine: how slanted in its middle.
+  /// Whether the wall (-1: no wall) is the nearest surface in all of a square; *cosine: of its slant in the middle.
   bool is_on_wall(int wall, const PatchSquare& square, Scalar* cosine, Vec3* middle_W) const;
   /// Whether no patch that is in view has its middle near the square's.
   bool is_free(const PatchSquare& square) const;
@@ -58,8 +58,8 @@ class PatchSelection {
   const PatchStore& store_;
   const PatchRefusals& refusals_;
   PatchInitialiser& initialiser_;
-  int in_vain_[kMaxPlanes] = {};  ///< frame in which each plane's wall had no place for a patch that it wants
-  int in_vain_beside_ = 0;        ///< likewise what no wall covers
+  int in_vain_[kMaxPlanes] = {};  ///< frame in which each wall last had no place for another patch
+  int in_vain_beside_ = 0;        ///< the same for places that no wall covers
 };
 
 }  // namespace pf

@@ -13,8 +13,8 @@
 
 namespace pf {
 
-/// Decides which plane a patch lies on. Until that is known the patch is followed, and is no measurement (lib/docs/theory/walls.md).
-/// Servant 2008, section 2.5
+/// Decides which plane a patch lies on. Until that is decided the patch is followed and does not update the filter
+/// (lib/docs/theory/walls.md). Servant 2008, section 2.5
 class PatchMembership {
  public:
   PatchMembership(const Settings& settings, Filter& filter, const Map& map, const Frame& frame, const PatchStore& store,
@@ -29,27 +29,27 @@ class PatchMembership {
         refusals_(refusals),
         founding_(founding) {}
 
-  /// Follows a waiting patch, and decides whether it is known by now which plane it lies on. Where nothing else supports the pose, the
-  /// nearest plane that passes counts at once, and nothing is held against the others.
-  /// is_young: as PatchKeeper::measure. is_contested: nothing is decided in this frame.
+  /// Follows a waiting patch, and decides whether its plane is known. Where nothing else supports the pose, the nearest plane that passes
+  /// counts at once, without evidence against the others. is_young: as PatchKeeper::measure. is_contested: nothing is decided in this
+  /// frame.
   void measure(const Pyramid& image, bool is_young, bool is_contested, StoredPatch* patch);
-  /// The filter's pose is that of the frame in which the corners are.
+  /// Keeps the pose of the frame in which the corners were found.
   void end_frame() { q_last_ = filter_.state().body.q_WC; }
 
  private:
-  /// Where a waiting patch is: as the plane has it that explains the last frame, or else where it was, rotated with the camera.
+  /// Predicts a waiting patch: by the plane that explained the last frame, or else at its last place, rotated with the camera.
   bool expect(const StoredPatch& patch, PatchSight* sight) const;
   /// False where the patch is not found.
   bool follow(const Pyramid& image, bool supported, StoredPatch* patch);
-  /// Adds the rows of a patch that is found for the first time: then it is known how well the reference's noise lets its corners be placed.
+  /// Adds the rows of a patch that is found for the first time: only then the reference's noise of its corners is known.
   bool add_block(StoredPatch* patch, const PatchMeasurement::Matrix& covariance);
-  /// Tries the planes that the patch may lie on, at most kMaxTrials. counts: what this frame says is kept. Returns the nearest one that
-  /// passes, or -1.
+  /// Tries the planes that the patch may lie on, at most kMaxTrials. counts: this frame's results count for the decision. Returns the
+  /// nearest plane that passes, or -1.
   int try_planes(StoredPatch* patch, bool counts);
   void decide(StoredPatch* patch);
-  /// Joins the plane with this id, unless other things that were seen say that the patch stands before it.
+  /// Joins the plane with this id, unless other measurements show that the patch is before it.
   void join(StoredPatch* patch, std::uint32_t id);
-  /// The wall that was seen there when it began does not explain it.
+  /// Notes that the wall which was seen there when the patch began does not explain it.
   void refuse(StoredPatch* patch);
 
   const Settings& settings_;
