@@ -126,6 +126,7 @@ def test_usage(root):
     expect("no direction", 2, ["--gravity", "0,1,0"], "--source", source, "--gravity", "0,0,0")
     expect("half a direction", 2, ["--gravity"], "--source", source, "--gravity", "0,1")
     expect("a tap without a place", 2, ["--tap", "FRAME,U,V"], "--source", source, "--tap", "12")
+    expect("an anchor without a place", 2, ["--anchor", "FRAME,U,V"], "--source", source, "--anchor", "12")
     expect("laps of a camera", 2, ["--loop"], "--source", "v4l2:/dev/video0", "--loop", "10")
     expect("laps of one image", 2, ["--loop"], "--source", source, "--loop", "1")
     expect("laps with an IMU", 2, ["--loop", "--imu"], "--source", source, "--loop", "10", "--imu", "csv:x")

@@ -303,7 +303,7 @@ typedef struct pf_config {
      * by which a lost camera finds itself, and of which a saved map is made (MAPS). 0 .. 200, of 15
      * kB each. With PF_BACKEND_WINDOW only; with the filter they take nothing. Default 16 */
     int32_t max_places;
-    /* Anchors (pf_add_anchor_hit), 0 .. 64, of about 2 kB each. Default 8 */
+    /* Anchors (pf_add_anchor_hit), 0 .. 64, of about 1.5 kB each. Default 8 */
     int32_t max_anchors;
   } capacity;
 

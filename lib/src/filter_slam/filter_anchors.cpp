@@ -87,6 +87,7 @@ void FilterAnchors::give_awaited(std::uint32_t map_id, std::int64_t not_since_ns
 }
 
 void FilterAnchors::follow(std::uint32_t map_id, std::int64_t not_since_ns) {
+  if (!kHasMemory) return;
   give_awaited(map_id, not_since_ns);
   for (const int i : used_entries(map_.anchors)) {
     Anchor& anchor = map_.anchors[i];

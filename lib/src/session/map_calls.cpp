@@ -6,7 +6,7 @@
 namespace pf {
 
 Status MapCalls::load(const std::uint8_t* buffer, std::size_t bytes, const char** wrong, Vec3* gravity_W) {
-  const bool is_possible = kHasMemory && window_ != nullptr && settings_.kept.places > 0;
+  const bool is_possible = kHasMemory && kHasWindow && window_ != nullptr && settings_.kept.places > 0;
   if (!is_possible || window_->frame().report.frames > 0) return Status::kState;
   SavedMap saved;
   *wrong = saved.open(buffer, bytes, window_->mapping().saving().scratch());

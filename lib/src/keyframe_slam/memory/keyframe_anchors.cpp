@@ -45,7 +45,7 @@ void KeyframeAnchors::move(const RelativePlace& from_WC, const RelativePlace& to
 
 void KeyframeAnchors::follow(std::uint32_t map_id, Scalar depth) {
   for (const int i : used_entries(anchors_))
-    if (anchors_[i].map_id == map_id) place(depth, &anchors_[i]);
+    if (kHasMemory && anchors_[i].map_id == map_id) place(depth, &anchors_[i]);
 }
 
 void KeyframeAnchors::place(Scalar depth, Anchor* anchor) const {
