@@ -24,7 +24,6 @@ set(PLANEFOLD_FLOAT_TESTS
     unit/test_camera.cpp
     unit/test_dark_quads.cpp
     unit/test_planar_pose.cpp
-    unit/test_plane_evidence.cpp
     unit/test_plane_majority.cpp
     unit/test_plane_places.cpp
     unit/test_plane_search.cpp

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/false_alarms.h"
 #include "map/plane_search.h"
 #include "same.h"
 #include "support/seeded_random.h"
@@ -236,6 +237,17 @@ void test_search_should_find_the_wall_when_some_points_are_not_numbers() {
   for (int k = 0; k < found.count; ++k) TEST_ASSERT_TRUE(found.members[k] < 20);
 }
 
+void test_false_planes_should_be_counted_as_by_hand_when_numbers_are_small() {
+  // On 5 of 7, share 1/4: P(X >= 2), X ~ Binomial(4, 1/4) = 1 - (3/4)^4 - 4 (1/4)(3/4)^3 = 67/256; C(10, 3) = 120 sets.
+  const Scalar tolerance = sizeof(Scalar) == 4 ? Scalar(1e-5) : Scalar(1e-12);
+  const Scalar expected = static_cast<Scalar>(std::log(67.0 / 256 * 120));
+  TEST_ASSERT_TRUE(std::abs(log_false_alarms(5, 7, Scalar(0.25), 10) - expected) < tolerance);
+  // All of 8: share^5.
+  const Scalar all = static_cast<Scalar>(std::log(std::pow(0.05, 5) * 56));
+  TEST_ASSERT_TRUE(std::abs(log_false_alarms(8, 8, Scalar(0.05), 8) - all) < 100 * tolerance);
+  TEST_ASSERT_SAME(0, log_false_alarms(3, 8, Scalar(0.05), 8));
+}
+
 }  // namespace
 
 int main() {
@@ -252,5 +264,6 @@ int main() {
   RUN_TEST(test_search_should_find_the_same_when_there_is_one_point_more_elsewhere);
   RUN_TEST(test_search_should_leave_its_outputs_when_it_finds_nothing);
   RUN_TEST(test_search_should_find_the_wall_when_some_points_are_not_numbers);
+  RUN_TEST(test_false_planes_should_be_counted_as_by_hand_when_numbers_are_small);
   return UNITY_END();
 }

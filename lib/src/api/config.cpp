@@ -364,7 +364,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->window.fixed_keyframes = 5;
   config->window.points = 300;
   config->plane.enabled = 1;
-  config->plane.min_points = 4;
+  config->plane.min_points = 7;
   config->plane.max_distance = 0.01;
   config->plane.max_radius = 1.5;
   config->plane.roughness = 0.002;

@@ -140,9 +140,6 @@ class Filter {
   /// Gathers S = H P H^T (without noise) of the distances of features from a plane, measured as zero. Then innovation_of<1> of blocks()
   /// is valid until the state changes. Every feature must have a place.
   void begin_distances(int plane, const int* slots, int count, Scalar noise, DistanceMeasurement* z);
-  /// Fills rows of the lower half of the covariance of points' distances from a plane that is known exactly, `count` long [m²]. They have to
-  /// have a place; count <= kMaxFolded. Ends a begun update.
-  void fill_distances(const Vec3& n_W, const int* slots, int count, Scalar* S);
   /// Likewise, and it is farther along its ray from the camera, by so much [m], which is known to sigma_along [m]: its pixel stays.
   bool unfold_along(int slot, Scalar along, Scalar sigma_along);
   /// A plane without a point group is elsewhere: (a, b, h) is x, known to Q beside what P had. Its points follow along their rays, and are

@@ -110,26 +110,6 @@ void Filter::begin_distances(int plane, const int* slots, int count, Scalar nois
   begin_update(view, count);
 }
 
-void Filter::fill_distances(const Vec3& n_W, const int* slots, int count, Scalar* S) {
-  PF_ASSERT(count <= kMaxFolded);
-  DistanceMeasurement z[kMaxFolded];
-  Measurement view[kMaxFolded];
-  for (int i = 0; i < count; ++i) {
-    Place at;
-    find_point(state_, slots[i], &at);
-    for (int p = 0, column = 0; p < at.parts; ++p) {
-      Scalar h[Place::kMaxColumns];
-      for (int k = 0; k < at.part[p].size; ++k) h[k] = n_W.dot(at.J_o.col(column++));
-      add_part(&z[i].H, at.part[p], h);
-    }
-    z[i].set_noise(DistanceMeasurement::Matrix::Zero());
-    view[i] = z[i].view();
-  }
-  begin_update(view, count);
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j <= i; ++j) S[i * count + j] = blocks_.innovation_of<1>(i, j)(0, 0);
-}
-
 /// Takes in a distance of zero of the chosen ones together.
 bool Filter::condition_on(int plane, const int* slots, int count, Scalar noise, const unsigned char* folded) {
   int chosen[kMaxFolded];

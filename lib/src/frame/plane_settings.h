@@ -14,9 +14,6 @@ inline PlaneSearchSettings plane_search_settings(const Settings& settings) {
   search.distance = settings.plane_distance;
   search.radius = settings.plane_radius;
   search.normal_variance = settings.plane_distance * settings.plane_distance / Scalar(4);
-  search.roughness = settings.fold.roughness;
-  search.depth = settings.start_depth;
-  search.first_sigma = settings.inverse_depth_relative_sigma;
   return search;
 }
 

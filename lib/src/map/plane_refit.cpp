@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "map/plane_evidence.h"
+#include "base/false_alarms.h"
 #include "map/tuning.h"
 
 namespace pf {
@@ -23,8 +23,10 @@ PlaneLayers count_layers(const PlaneCandidate* candidates, int count, const Plan
     const Vec3 r = candidates[i].p_W - o_W;
     if (!(r.squaredNorm() < radius2)) continue;
     const Scalar h = n_W.dot(r), d = std::abs(h) / settings.distance;
+    ++layers.around;
     if (d <= 1) ++layers.on;
     if (d > 1 && d <= kPlaneLayer) ++layers.side[h > 0 ? 1 : 0];
+    if (d <= kSurroundings) ++layers.near;
   }
   return layers;
 }
@@ -146,36 +148,42 @@ bool PlaneRefit::passes() const {
   const Scalar density = n / 2,
                beside = static_cast<Scalar>(std::max(layers.side[0], layers.side[1])) / (kPlaneLayer - 1);
   if (!(density >= kContrast * beside)) return false;
-  return is_evident();
+  return !chance_explains(layers);
 }
 
-/// Whether its points, or some of them where they are many, say together that they lie on it: the density of their distances is so much
-/// larger than that of first depths that no choice among the points explains it.
-bool PlaneRefit::is_evident() const {
+/// Whether chance makes planes like this one. Two families of tests, each with its own allowance of false planes:
+///
+///   among all within the radius     near / distance = kSurroundings, so share = 1 / kSurroundings
+///   among those in a ball about the origin, radius rho, in which points without a plane are spread evenly:
+///   share = (3 h - h³) / 2 with h = e / rho, of a layer of half-thickness e = distance or half of that
+///
+/// A small plane that nothing stands beside, such as a screen, does not show in the first: there are too many points elsewhere.
+bool PlaneRefit::chance_explains(const PlaneLayers& layers) const {
+  const int near = layers.near - layers.on + member_count_;
+  if (log_false_alarms(member_count_, near, Scalar(1) / kSurroundings, layers.around) < kLogFalsePlanes) return false;
   const Vec3& o_W = fit_.frame.o_W;
   const Vec3 n_W = fit_.frame.R_WP.col(2);
-  JointDistances points;
-  int names[kMaxJoint];
-  points.count = std::min(member_count_, kMaxJoint);
-  for (int i = 0; i < points.count; ++i) {
-    const PlaneCandidate& c = candidates_[members_[i * member_count_ / points.count]];
-    names[i] = c.name;
-    points.d[i] = n_W.dot(c.p_W - o_W);
-    points.uv[i] = plane_coordinates(fit_.frame, c.p_W);
-    for (int j = 0; j < i; ++j) points.S[i * points.count + j] = Scalar(0);
-    points.S[i * points.count + i] = n_W.dot(c.covariance * n_W);
+  const Scalar bound = kLogFalseLocalPlanes - std::log(Scalar(2 * kBalls));
+  Scalar rho = kSmallestBall * settings_.distance;
+  for (int ball = 0; ball < kBalls; ++ball, rho *= 2) {
+    int beside = 0, on = 0, close = 0;
+    for (int i = 0; i < count_; ++i) {
+      const Vec3 r = candidates_[i].p_W - o_W;
+      if (r.squaredNorm() < rho * rho && std::abs(n_W.dot(r)) > settings_.distance) ++beside;
+    }
+    for (int k = 0; k < member_count_; ++k) {
+      const Vec3 r = candidates_[members_[k]].p_W - o_W;
+      if (!(r.squaredNorm() < rho * rho)) continue;
+      ++on;
+      if (std::abs(n_W.dot(r)) <= settings_.distance / 2) ++close;
+    }
+    const auto log_false = [&](int inside, Scalar h) {
+      return log_false_alarms(inside, beside + on, (3 * h - h * h * h) / 2, layers.around);
+    };
+    const Scalar h = settings_.distance / rho;
+    if (log_false(on, h) < bound || log_false(close, h / 2) < bound) return false;
   }
-  if (settings_.joint.fill != nullptr)
-    settings_.joint.fill(settings_.joint.owner, n_W, names, points.count, points.S);
-  Scalar reach2 = 0;
-  for (int k = 0; k < member_count_; ++k)
-    reach2 = std::max(reach2, (candidates_[members_[k]].p_W - o_W).squaredNorm());
-  int near = 0;
-  for (int i = 0; i < count_; ++i) near += (candidates_[i].p_W - o_W).squaredNorm() <= reach2 ? 1 : 0;
-  const Vec3 away_W = viewer_W_ - o_W;
-  const Scalar roughness = settings_.roughness * std::max(Scalar(1), away_W.norm() / settings_.depth);
-  const Scalar first = settings_.first_sigma * std::abs(n_W.dot(away_W));
-  return log_odds_of_plane(points, first, roughness) - log_choices(points.count, near, count_) > kLogOdds;
+  return true;
 }
 
 }  // namespace pf

@@ -18,6 +18,8 @@ struct PlaneHypothesis {
 struct PlaneLayers {
   int on = 0;        ///< within the distance
   int side[2] = {};  ///< beyond it, within kPlaneLayer distances, behind the plane and before it
+  int near = 0;      ///< within those that chance is judged against
+  int around = 0;    ///< at any
 };
 
 PlaneLayers count_layers(const PlaneCandidate* candidates, int count, const PlaneSearchSettings& settings,
@@ -43,7 +45,7 @@ class PlaneRefit {
   void keep_connected();
   bool reject_high_leverage();
   bool passes() const;
-  bool is_evident() const;
+  bool chance_explains(const PlaneLayers& layers) const;
 
   const PlaneCandidate* candidates_;
   int count_;

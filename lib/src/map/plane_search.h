@@ -16,25 +16,14 @@ struct PlaneCandidate {
   bool is_explained = false;  ///< by the known surface: it belongs to no plane but that one
 };
 
-/// Covariance of the distances of candidates from a plane, all together. Without it, that of each by itself.
-struct JointCovariance {
-  /// Names of candidates; fills rows of the lower half, `count` long [m²].
-  void (*fill)(void* owner, const Vec3& n_W, const int* names, int count, Scalar* S) = nullptr;
-  void* owner = nullptr;
-};
-
 /// When points are called a plane. In the words of Gee 2007, section 3.3: l_T, d_T, d_max, lambda_T.
 struct PlaneSearchSettings {
-  int min_points = 4;                       ///< a plane has more points than this
+  int min_points = 7;                       ///< a plane has more points than this
   Scalar distance = Scalar(0.01);           ///< of a point from its plane [m]
   Scalar radius = 1;                        ///< of a point from the plane's origin [m]
   Scalar normal_variance = Scalar(2.5e-5);  ///< of the points about the plane, λ0 / count [m²]
   int trials = 100;                         ///< minimal sets that are drawn
   Scalar chi2 = Scalar(6.63);               ///< d² < chi2 (nᵀ Σ n + normal_variance)
-  Scalar roughness = Scalar(0.002);         ///< of a surface, at depth or nearer; farther, in proportion [m]
-  Scalar depth = 1;                         ///< [m]
-  Scalar first_sigma = 2;                   ///< of a first inverse depth, relative
-  JointCovariance joint;                    ///< of candidates
   const KnownSurface* known = nullptr;      ///< beside the planes that are looked for; null: none
 };
 
@@ -49,8 +38,7 @@ inline constexpr int kMaxPlaneMembers = 64;
 ///   count > min_points,  λ0 / count < normal_variance,  the points span an area and not a line
 ///   every point is where the plane through the *other* points says      |r| / (1 - leverage) < distance
 ///   the points hang together                                             steps of at most radius / 2
-///   the plane stands out of the layers beside it
-///   the points say together that it is there, over all sets that could have been chosen     plane_evidence.h
+///   the plane stands out of what is around it, and chance cannot explain it    false_alarms.h
 ///
 /// search        number of this search: another one draws other sets. A set depends on it and on the names of points, not on how many
 ///               candidates there are, so that one point more or less changes few of them (base/draw_by_name.h)

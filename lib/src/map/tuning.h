@@ -8,8 +8,12 @@
 namespace pf::tuning::plane_search {
 
 inline constexpr int kKept = 4;           ///< hypotheses that are refitted
+inline constexpr int kSurroundings = 20;  ///< chance is judged against a layer this many times as thick
 inline constexpr Scalar kContrast = 5;    ///< density of a plane against either layer beside it, at least
-inline constexpr Scalar kLogOdds = Scalar(11.5);  ///< ln of the sets that are no plane for each that is one: ln 100000
+inline constexpr Scalar kLogFalsePlanes = Scalar(-4.6);       ///< ln of the planes that chance may give: ln 0.01
+inline constexpr Scalar kLogFalseLocalPlanes = Scalar(-7.6);  ///< likewise among the points near by: ln 0.0005
+inline constexpr int kBalls = 4;                              ///< sizes of the neighbourhood, each twice the last
+inline constexpr Scalar kSmallestBall = 10;                   ///< radius of the first, in plane.max_distance
 inline constexpr Scalar kMinWidth = 3;               ///< narrow side of the points' spread, in plane.max_distance
 inline constexpr Scalar kMinAspect = Scalar(0.02);   ///< of the points' spread, middle to largest eigenvalue
 inline constexpr Scalar kMinHeight = Scalar(0.15);   ///< of a triangle of points over its longest side

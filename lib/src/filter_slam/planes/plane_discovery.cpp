@@ -7,7 +7,6 @@
 #include "filter_slam/planes/plane_points.h"
 #include "filter_slam/planes/tuning.h"
 #include "frame/plane_settings.h"
-#include "map/plane_evidence.h"
 #include "map/plane_refit.h"
 
 namespace pf {
@@ -39,22 +38,6 @@ int PlaneDiscovery::list_candidates() {
   return count;
 }
 
-/// Points are judged by what the filter knows of them together.
-PlaneSearchSettings PlaneDiscovery::search_settings() {
-  PlaneSearchSettings search = plane_search_settings(settings_);
-  static_assert(kMaxJoint <= Filter::kMaxFolded, "they are projected in one update");
-  if (settings_.max_observations >= kMaxJoint) search.joint = {&PlaneDiscovery::fill_distances, this};
-  return search;
-}
-
-void PlaneDiscovery::fill_distances(void* owner, const Vec3& n_W, const int* entries, int count,
-                                    Scalar* S) {
-  PlaneDiscovery& self = *static_cast<PlaneDiscovery*>(owner);
-  int slots[kMaxJoint];
-  for (int i = 0; i < count; ++i) slots[i] = self.map_.features[entries[i]].slot;
-  self.filter_.fill_distances(n_W, slots, count, S);
-}
-
 bool PlaneDiscovery::take(const PlaneFit& fit, int* member, int members, std::uint32_t id) {
   for (int k = 0; k < members; ++k) member[k] = map_.features[candidate_[member[k]].name].slot;
   const int slot = filter_.add_plane(fit, member, members, settings_.fold.roughness);
@@ -79,7 +62,7 @@ void PlaneDiscovery::discover() {
   if (filter_.state().planes >= filter_.state().max_planes || filter_.room() < 3) return;
   const int count = list_candidates();
   if (count <= settings_.plane_min_points) return;
-  const PlaneSearchSettings search = search_settings();
+  const PlaneSearchSettings search = plane_search_settings(settings_);
   PlaneFit fit;
   int member[kMaxPlaneMembers];
   int members = 0;
@@ -122,7 +105,7 @@ bool PlaneDiscovery::resume_plane(std::uint32_t id, int count) {
   const Vec3 viewer_W = filter_.state().body.p_W;
   PlaneFit fit;
   if (!fit_plane(points, known, viewer_W, &fit)) return false;
-  const PlaneSearchSettings search = search_settings();
+  const PlaneSearchSettings search = plane_search_settings(settings_);
   PlaneRefit refit(candidate_, count, search, viewer_W);
   if (!refit.run({fit.frame.o_W, fit.frame.R_WP.col(2), 0})) return false;
   int member[kMaxPlaneMembers];

@@ -35,8 +35,6 @@ class PlaneDiscovery {
   int list_candidates();
   std::uint32_t next_lost(std::uint32_t above) const;
   bool resume_plane(std::uint32_t id, int count);
-  PlaneSearchSettings search_settings();
-  static void fill_distances(void* owner, const Vec3& n_W, const int* entries, int count, Scalar* S);
   /// Takes a plane that the search has found, if the filter's own covariance says so too. id: of one that goes on; 0: it is new.
   bool take(const PlaneFit& fit, int* member, int members, std::uint32_t id);
 
