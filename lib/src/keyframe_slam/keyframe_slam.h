@@ -93,7 +93,7 @@ class KeyframeSlam {
   PointSearch search_{settings_, map_, planes_, frame_, noise_};
   PoseMeasurement pose_{settings_, map_, frame_, noise_, search_};
   KeyframeTracking measuring_{settings_, map_, frame_, motion_, noise_, search_, pose_, tracking_.belief()};
-  KeyframeRelocaliser relocaliser_{settings_,         map_, frame_, motion_, search_.images().tracker(), measuring_,
+  KeyframeRelocaliser relocaliser_{settings_,         map_, motion_, search_.images().tracker(), measuring_,
                                    tracking_.belief()};
   KeyframeRecord record_{settings_, map_, frame_, tracking_, motion_, noise_, search_, pose_, data_.second};
   KeyframeMapping mapping_{settings_, map_, frame_, motion_, planes_, noise_, search_, pose_, record_, relocaliser_};

@@ -15,8 +15,7 @@ void mark_taken(const KeyframeMap& map, const KeptPlace& place, bool* taken);
 
 class PlaceKeeper {
  public:
-  PlaceKeeper(const Settings& settings, KeyframeMap& map, const Frame& frame)
-      : settings_(settings), map_(map), frame_(frame) {}
+  PlaceKeeper(const Settings& settings, KeyframeMap& map) : settings_(settings), map_(map) {}
 
   bool layout(Arena& arena) {
     if (settings_.kept.places == 0) return arena.ok();
@@ -45,7 +44,6 @@ class PlaceKeeper {
 
   const Settings& settings_;
   KeyframeMap& map_;
-  const Frame& frame_;
   KeptPlace* scratch_ = nullptr;
   bool* taken_ = nullptr;
 };

@@ -11,15 +11,15 @@ namespace pf {
 
 class KeyframeRelocaliser {
  public:
-  KeyframeRelocaliser(const Settings& settings, KeyframeMap& map, const Frame& frame, KeyframeMotion& motion,
-                      const Tracker& tracker, KeyframeTracking& measuring, PoseBelief& belief)
+  KeyframeRelocaliser(const Settings& settings, KeyframeMap& map, KeyframeMotion& motion, const Tracker& tracker,
+                      KeyframeTracking& measuring, PoseBelief& belief)
       : settings_(settings),
         map_(map),
         motion_(motion),
         tracker_(tracker),
         measuring_(measuring),
         belief_(belief),
-        keeper_(settings, map, frame) {}
+        keeper_(settings, map) {}
 
   bool layout(Arena& arena) {
     keeper_.layout(arena);
