@@ -519,6 +519,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   wrong = read_gravity(gravity, options);
   wrong = wrong.empty() ? read_taps("--tap", taps, options.taps) : wrong;
   wrong = wrong.empty() ? read_taps("--anchor", anchors, options.anchors) : wrong;
+  if (wrong.empty() && !options.anchors.empty() && options.max_anchors == 0) {
+    wrong = "--anchor needs room for one: leave out --max-anchors 0, or give it more";
+  }
   if (!wrong.empty()) {
     code = refuse(wrong);
     return Parsed::kExit;

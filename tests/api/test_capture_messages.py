@@ -85,6 +85,7 @@ def test_usage(root):
     expect("no source", 2, ["--source", "--help"])
     expect("unknown option", 2, ["--nonsense"], "--source", source, "--nonsense", "1")
     expect("number", 2, ["--frames"], "--source", source, "--frames", "many")
+    expect("anchor without room", 2, ["--anchor", "--max-anchors"], "--source", source, "--anchor", "5,9,9", "--max-anchors", 0)
     for option in ("--readout", "--report-every", "--delay", "--rest", "--rate", "--exposure", "--imu-rate", "--imu-offset", "--vertical"):
         expect(f"no number for {option}", 2, [f"{option}: 'nan' is not a number from"], "--source", source, option, "nan", *out)
     for option, low, high in (("--fix-sigma", "-0.001", "11"), ("--fold-sigma", "0", "11"), ("--plane-distance", "0", "11"), ("--plane-radius", "0", "1e5"),
