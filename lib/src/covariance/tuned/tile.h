@@ -141,8 +141,8 @@ PF_INLINE void for_strips(int first, int columns, const Work& work) {
     work(Wide{}, Count<1>{}, first + j);
     j += Wide::kWidth;
   }
-  if ((Wide::kWidth > Narrow::kWidth || kGroup % Wide::kWidth != 0) && j < columns)
-    work(Narrow{}, Count<1>{}, first + j);
+  constexpr int kWide = Wide::kWidth, kNarrow = Narrow::kWidth;  // of one type where there is none narrower
+  if ((kWide > kNarrow || kGroup % kWide != 0) && j < columns) work(Narrow{}, Count<1>{}, first + j);
 }
 
 /// Eight columns, in strips of two registers at most.
