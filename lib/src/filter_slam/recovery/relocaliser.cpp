@@ -116,6 +116,7 @@ UpdateOutcome Relocaliser::measure_about(const SearchPose& about, int found, con
   if (consensus.inliers < settings_.min_inliers) return before;
   const Scalar log_odds = update_.proposals().propose(pose.q_WC, pose.p_W, median_depth(pose, found),
                                                       PoseBelief::elsewhere(), belief_.evidence(consensus));
+  if (!PoseBelief::is_enough(log_odds)) return before;
   weigh_lens(settings_, filter_, update_.observations(), update_.keep(), found, pose, &consensus);
   if (!belief_.may_use(log_odds, consensus)) return before;
   mark_matches(found);

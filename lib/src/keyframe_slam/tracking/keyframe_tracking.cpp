@@ -63,6 +63,7 @@ int KeyframeTracking::measure_about(const PosePrior& about, CameraPose* pose, Ma
     found_ = search_.search(0, 0, listed, about, Scalar(1));
   const int inliers = pose_.find(found_, moving, pose, information);
   *consensus = pose_.consensus(inliers, found_, about, *pose, *information);
+  if (inliers > 0) pose_.weigh_lens(found_, *pose, consensus);
   frame_.note_consensus(inliers);
   return inliers;
 }
@@ -182,7 +183,9 @@ void KeyframeTracking::fit_all(int found, const PosePrior& prior, Scalar median_
   for (int c = 0; c < found; ++c) open += map_.point(search_.match(c).feature).has_depth ? 0 : 1;
   const int inliers = pose_.fit(found, prior, median_depth, open, &pose, &information);
   PosePrior at;
-  if (!is_believed(pose_.consensus(inliers, found, prior, pose, information)) || !apply(pose, information, &at)) return;
+  PoseConsensus consensus = pose_.consensus(inliers, found, prior, pose, information);
+  if (inliers > 0) pose_.weigh_lens(found, pose, &consensus);
+  if (!is_believed(consensus) || !apply(pose, information, &at)) return;
   for (int c = 0; c < found; ++c) {
     Match& match = search_.match(c);
     if (!pose_.is_inlier(c)) continue;

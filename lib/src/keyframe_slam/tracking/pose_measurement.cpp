@@ -97,7 +97,6 @@ PoseConsensus PoseMeasurement::consensus(int inliers, int found, const PosePrior
   consensus.log_density = log_density(map_.camera(), &pose_.match(0), found, pose_.inliers(), prior, pose, information);
   for (int c = 0; c < found; ++c)
     if (pose_.is_inlier(c)) consensus.log_chance += log_chance_density(search_.point(c).searched);
-  weigh_lens(found, pose, &consensus);
   return consensus;
 }
 

@@ -28,12 +28,14 @@ class PoseMeasurement {
   PoseConsensus consensus(int inliers, int found, const PosePrior& prior, const CameraPose& pose,
                           const Mat6& information) const;
 
+  /// Adds what the inliers of that pose contribute to the belief in the lens; before the pose is used.
+  void weigh_lens(int found, const CameraPose& pose, PoseConsensus* consensus) const;
+
   bool is_inlier(int c) const { return pose_.is_inlier(c); }
   /// Bound within which a match supports a pose [px].
   Scalar bound_px() const;
 
  private:
-  void weigh_lens(int found, const CameraPose& pose, PoseConsensus* consensus) const;
   void make_match(int c, const PosePrior& prior, Scalar depth, int shared);
   Mat2 noise_of(int c, const PosePrior& prior, Scalar depth, int shared) const;
 
