@@ -93,9 +93,9 @@ class TrackingState {
   }
   /// True where the last frame did not support its pose, so that the map has to be found again before anything is measured.
   bool is_relocalising(const StartProgress& start) const { return coasting_or_lost() && !start.pending(); }
-  /// Not while the lens is another one than the calibrated: the new map would be as wrong as the old one's poses.
+  /// Not while it is certain that the lens has changed: the new map would be as wrong as the old one's poses.
   bool needs_new_map(std::int64_t restart_ns) const {
-    return restart_ns > 0 && data_.lost && data_.usable_ns >= restart_ns && data_.belief.lens().is_kept();
+    return restart_ns > 0 && data_.lost && data_.usable_ns >= restart_ns && !data_.belief.lens().has_changed();
   }
   /// Id of the current map; never used twice.
   std::uint32_t map_id() const { return data_.map_id; }
