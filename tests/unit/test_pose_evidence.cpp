@@ -93,6 +93,41 @@ void test_misses_should_say_less_once_frames_have_missed_much() {
                             static_cast<double>(pose_evidence(none, sharp)));
 }
 
+/// In ellipses so wide that chance explains nothing of what agrees: what is left is a place that looks like the right one in a few points.
+void test_few_of_many_should_be_another_place_however_well_they_agree() {
+  SeededRandom random(302);
+  FindShare share, smeared;
+  share.init();
+  smeared.init();
+  for (int frame = 0; frame < 20; ++frame) {
+    share.learn(200, 190);
+    smeared.learn(200, 12);
+  }
+  constexpr Scalar kWide = 15;
+  const PoseConsensus few = consensus_of(random, 200, 10, kWide, false);
+  PoseConsensus exact = few;  // they agree to a pixel
+  exact.log_density = 10 * log_normal_density(2, 0, 1);
+  TEST_ASSERT_TRUE(evidence_against_chance(exact, smeared) > 20);
+  TEST_ASSERT_TRUE(pose_evidence(exact, share) < -2);
+  TEST_ASSERT_TRUE(pose_evidence(exact, smeared) > 6);  // of a smeared film ten are many
+  PoseConsensus most = consensus_of(random, 200, 190, kWide, false);
+  most.log_density = 190 * log_normal_density(2, 0, 1);
+  TEST_ASSERT_TRUE(pose_evidence(most, share) > tuning::pose_belief::kMaxFrame);
+}
+
+/// Any share of n: the sum over the ways to find k, and over k.
+void test_any_share_should_sum_to_one() {
+  constexpr int kSearched = 12;
+  Scalar sum = 0, ways = 1;
+  for (int k = 0; k <= kSearched; ++k) {
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1.0 / (kSearched + 1),
+                              static_cast<double>(ways * std::exp(log_any_share(kSearched, k))));
+    sum += ways * std::exp(log_any_share(kSearched, k));
+    ways *= static_cast<Scalar>(kSearched - k) / static_cast<Scalar>(k + 1);
+  }
+  TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1.0, static_cast<double>(sum));
+}
+
 }  // namespace
 
 int main() {
@@ -102,5 +137,7 @@ int main() {
   RUN_TEST(test_probability_of_all_shares_should_sum_to_one);
   RUN_TEST(test_right_matches_should_speak_for_a_pose_and_chance_against_it);
   RUN_TEST(test_misses_should_say_less_once_frames_have_missed_much);
+  RUN_TEST(test_few_of_many_should_be_another_place_however_well_they_agree);
+  RUN_TEST(test_any_share_should_sum_to_one);
   return UNITY_END();
 }
