@@ -31,6 +31,6 @@ with tempfile.TemporaryDirectory(prefix="planefold_") as name:
         now = digest(script.BIN / "pf-digest", backend, table)
         if digest(build / "bin/pf-digest", backend, table) != now:
             script.fail(f"{backend}: with an untouched table the numbers differ from those of a build without one")
-        table.write_text("belief.pose_belief.kTracked 3\nframe.noise.kPriorSigma 2\n")
+        table.write_text("frame.noise.kPriorFrames 16\n")
         if digest(build / "bin/pf-digest", backend, table) == now:
             script.fail(f"{backend}: the table has no effect")
