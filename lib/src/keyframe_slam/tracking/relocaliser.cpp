@@ -25,13 +25,13 @@ const Mat6* KeyframeRelocaliser::found_covariance() const {
 bool KeyframeRelocaliser::recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival) {
   recalled_ = 0;
   if (recalled_in_vain_) return recalled_in_vain_ = false;  // now the kept views are tried
-  Recall best, other;
+  Recalled best, other;
   if (!recall_.find(tracker_, &best, &other) || !keeper_.bring_back(best.place)) return false;
   *has_rival = other.inliers > 0 && keeper_.bring_back(other.place);
-  keeper_.bring_near({best.pose.q_WC, best.pose.p_W}, best.depth, tuning::place::kMaxReturns);
+  keeper_.bring_near({best.pose.q_WC, best.pose.p_WC}, best.depth, tuning::place::kMaxReturns);
   recalled_ = best.place;
-  *place = best.pose;
-  *rival = other.pose;
+  *place = PoseHypothesis::of(best.pose);
+  *rival = PoseHypothesis::of(other.pose);
   return true;
 }
 

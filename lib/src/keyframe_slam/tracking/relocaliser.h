@@ -2,7 +2,7 @@
 
 #include "frame/pose_hypotheses.h"
 #include "keyframe_slam/memory/place_keeper.h"
-#include "keyframe_slam/memory/place_recall.h"
+#include "keyframe_slam/memory/keyframe_recall.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
 
 /// Finds the window's map again after frames that did not support the pose (lib/docs/theory/states.md).
@@ -75,7 +75,7 @@ class KeyframeRelocaliser {
   PoseBelief& belief_;
   ViewMemory views_;
   PlaceKeeper keeper_;
-  PlaceRecall recall_{settings_, map_};
+  KeyframeRecall recall_{settings_, map_};
   PoseProposal proposal_, rival_;  ///< of earlier frames
   std::uint32_t recalled_ = 0;     ///< place that the proposal comes from; 0: none
   bool recalled_in_vain_ = false;  ///< the last frame's place was not confirmed
