@@ -55,10 +55,10 @@ Scalar log_any_share(int searched, int inliers) {
   return log_rising(1, inliers) + log_rising(1, searched - inliers) - log_rising(2, searched);
 }
 
-Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share) {
+Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike) {
   const Scalar against_chance = evidence_against_chance(consensus, share);
   const Scalar against_alike = share.log_probability(consensus.searched, consensus.inliers) -
-                               log_any_share(consensus.searched, consensus.inliers) + tuning::pose_belief::kMaxFrame;
+                               log_any_share(consensus.searched, consensus.inliers) - alike.log_share();
   const Scalar least = std::min(against_chance, against_alike);
   return least - std::log1p(std::exp(least - std::max(against_chance, against_alike)));
 }

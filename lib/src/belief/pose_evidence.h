@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/scalar.h"
+#include "belief/alike_share.h"
 
 /// Evidence of one frame for a pose: the ratio of two likelihoods of what its searches have found.
 
@@ -55,9 +56,9 @@ Scalar log_any_share(int searched, int inliers);
 /// The same ratio, where a wrong pose may also be that of a place that looks like another one. What is found there agrees as well as in the
 /// right place; but how much of it is found may be anything, where of the right place most is:
 ///
-///   E = -ln(exp(-E_c) + exp(-E_a)),   E_a = ln P(k of n found) - ln B(k + 1, n - k + 1) + kMaxFrame
+///   E = -ln(exp(-E_c) + exp(-E_a)),   E_a = ln P(k of n found) - ln B(k + 1, n - k + 1) - ln s
 ///
-/// e^-kMaxFrame is the share of places that look like another one.
-Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share);
+/// s: share of places that look like another one.
+Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike);
 
 }  // namespace pf

@@ -18,8 +18,13 @@ class KeyframeRecall {
   /// The place that most of the image agrees with, and as its rival the one that agrees most with another pose; its inliers are 0 where
   /// there is none. False: no place.
   bool find(const Tracker& tracker, Recalled* best, Recalled* rival);
+  /// Whether the image of a keyframe looks like another part of the map. median_depth: of what it sees.
+  bool is_alike(const Tracker& tracker, int keyframe, Scalar median_depth);
 
  private:
+  int sources() const;
+  PlaceSource collect(int source, PlaceMatches* out) const;
+  bool describe_point(int i, Descriptor* out) const;
   void match_window();
 
   const Settings& settings_;
