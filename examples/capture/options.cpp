@@ -343,10 +343,8 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
                  "of the window: file (TUM) with the pose of a later frame at its time; its distance from the first is "
                  "the scale")
       ->check(not_empty());
-  app.add_option("--map", options.map, "of the window: file of a saved map, in which the run begins lost")
-      ->check(not_empty());
-  app.add_option("--save-map", options.save_map, "of the window: file for the map at the end, for --map")
-      ->check(not_empty());
+  app.add_option("--map", options.map, "file of a saved map, in which the run begins lost")->check(not_empty());
+  app.add_option("--save-map", options.save_map, "file for the map at the end, for --map")->check(not_empty());
   app.add_option("--walls", options.walls, "file of walls known beforehand, in the frame of the start (JSON)")
       ->check(not_empty());
   app.add_option("--patches", options.patches, "patches of walls that are followed, beside points")
@@ -422,7 +420,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--max-features", options.max_features, "capacity of the map; of the window at least 50")
       ->check(whole_number_in(8, 1000));
   app.add_option("--max-planes", options.max_planes, "likewise")->check(whole_number_in(1, 64));
-  app.add_option("--max-places", options.max_places, "of the window: places that are kept, and saved, 0 to 200")
+  app.add_option("--max-places", options.max_places,
+                 "places that are kept, and saved, 0 to 200; the filter keeps some with --map and --save-map alone,\n"
+                 "or with this")
       ->check(whole_number_in(0, 200));
   app.add_option("--max-anchors", options.max_anchors, "anchors that are kept, and saved with the map, 0 to 64")
       ->check(whole_number_in(0, 64));
@@ -499,8 +499,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   if (wrong.empty() && seed->count() > 0 && options.source.rfind("sim:", 0) != 0) {
     wrong = "--seed is for sim: sources; images of a folder or camera are as they are";
   }
-  if (wrong.empty() && backend != "window" && !(options.map.empty() && options.save_map.empty())) {
-    wrong = std::string(options.map.empty() ? "--save-map" : "--map") + " needs --backend window";
+  if (wrong.empty() && options.max_places == 0 && !(options.map.empty() && options.save_map.empty())) {
+    wrong = std::string(options.map.empty() ? "--save-map" : "--map") +
+            " needs room for places, and --max-places 0 leaves none";
   }
   if (wrong.empty() && !timestamps.empty() && timestamps != "real" && timestamps != "nominal") {
     wrong = "--timestamps " + timestamps + ": write real or nominal";

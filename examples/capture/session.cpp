@@ -22,6 +22,7 @@ constexpr double kRateSigma = 0.5;
 constexpr double kExactFocal = 1e-4;  ///< relative; a calibration that states less is taken as exact
 
 constexpr int32_t kWindowFeatures = 150;  ///< in view, with the window
+constexpr int32_t kPlaces = 16;           ///< of a map that is begun in or saved
 
 constexpr int32_t kPatchesAlone = 16;  ///< of walls, where there are no points
 
@@ -94,6 +95,7 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   set(config_.window.keyframes, options.window_keyframes);
   if (options.window_fixed >= 0) config_.window.fixed_keyframes = options.window_fixed;
   set(config_.capacity.max_planes, options.max_planes);
+  if (!options.map.empty() || !options.save_map.empty()) config_.capacity.max_places = kPlaces;  // the filter's too
   if (options.max_places >= 0) config_.capacity.max_places = options.max_places;
   if (options.max_anchors >= 0) config_.capacity.max_anchors = options.max_anchors;
   set(config_.capacity.max_state_dim, options.max_state_dim);

@@ -30,7 +30,7 @@ constexpr Range kIntegers[] = {
     PF_FIELD(capacity.max_observations, 8, pf::kMaxObservations),
     PF_FIELD(capacity.max_planes, 1, pf::kMaxPlanes),
     PF_FIELD(capacity.max_kept_views, 0, 200),
-    PF_FIELD(capacity.max_places, 0, pf::kMaxPlaces),
+    PF_FIELD(capacity.max_places, -1, pf::kMaxPlaces),
     PF_FIELD(capacity.max_anchors, 0, pf::kMaxAnchors),
     PF_FIELD(capacity.max_patches, 0, pf::kMaxPatches),
     PF_FIELD(capacity.patch_side_px, 32, 128),
@@ -168,6 +168,13 @@ const char* unit_from(const pf_config_t& config, ImuUnit* unit, BodyLayout* layo
   return nullptr;
 }
 
+/// capacity.max_places, or what stands for it where the config does not say.
+int places_of(const pf_config_t& config) {
+  constexpr int kOfWindow = 16;
+  if (config.capacity.max_places >= 0) return config.capacity.max_places;
+  return config.backend == PF_BACKEND_WINDOW ? kOfWindow : 0;
+}
+
 /// A field that needs a part which this build lacks: its name, with the CMake option of that part. Null: there is none.
 const char* refused_by_build(const pf_config_t& config) {
   if (!kHasWindow && config.backend == PF_BACKEND_WINDOW) return "backend (built without PLANEFOLD_WINDOW)";
@@ -300,8 +307,8 @@ Status settings_from(const pf_config_t& config, Settings* settings, const char**
   settings->max_planes = config.capacity.max_planes;
   settings->kept.views = config.capacity.max_kept_views;
   // What a mask has learnt of a template goes with its point.
-  const bool has_places = kHasMemory && has_window && config.map.masks == PF_MASKS_NONE;
-  settings->kept.places = has_places ? config.capacity.max_places : 0;
+  const bool has_places = kHasMemory && config.map.masks == PF_MASKS_NONE;
+  settings->kept.places = has_places ? places_of(config) : 0;
   settings->kept.anchors = config.capacity.max_anchors;
   settings->max_patches = static_cast<std::uint8_t>(config.capacity.max_patches);
   settings->patch_side_px = static_cast<std::uint8_t>(config.capacity.patch_side_px);
@@ -392,7 +399,7 @@ pf_status_t pf_config_default(pf_config_t* config) {
   config->motion.restart_s = 3.0;
   config->capacity.max_imu_samples = 0;
   config->capacity.mask = 0;
-  config->capacity.max_places = pf::kHasMemory ? 16 : 0;
+  config->capacity.max_places = pf::kHasMemory ? -1 : 0;
   config->capacity.max_anchors = pf::kHasMemory ? 8 : 0;
   config->imu.gyro_range = 0;
   config->imu.accel_range = 0;

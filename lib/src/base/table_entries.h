@@ -55,4 +55,17 @@ int entry_with_id(const Table& table, std::uint32_t id) {
   return -1;
 }
 
+/// f(entry) for the used entries of a table, by ascending id.
+template <typename Table, typename F>
+void for_each_by_id(const Table& table, F&& f) {
+  for (std::uint32_t last = 0;;) {
+    int next = -1;
+    for (const int i : used_entries(table))
+      if (table[i].id > last && (next < 0 || table[i].id < table[next].id)) next = i;
+    if (next < 0) return;
+    last = table[next].id;
+    f(next);
+  }
+}
+
 }  // namespace pf

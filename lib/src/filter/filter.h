@@ -98,6 +98,10 @@ class Filter {
   int add_anchor();
   /// Adds a copy of the camera at the frame's time, fully correlated with it.
   int add_reference_camera();
+  /// Adds a camera that was known before, independent of all else; covariance is of (theta, p).
+  int add_known_camera(const Quat& q_WK, const Vec3& p_WK, const Mat6& covariance);
+  /// Adds a point x_K that a reference camera knows: beside its covariance in K it has the camera's errors, with all that see them.
+  int add_point_of_camera(int camera, const Vec3& x_K, const Mat3& covariance_K);
   /// Adds a patch whose corners a reference camera has seen with this covariance [px^2]; it is removed with that camera.
   int add_patch(int camera, const PatchMeasurement::Matrix& covariance);
   /// tau: when the pixel's row was read out, from the frame's time [s].
@@ -232,6 +236,8 @@ class Filter {
 
   /// Pose (q_KC, p_KC) of the camera in the frame of a reference camera K, and the covariance of its (theta, p), in K (relative_pose.h).
   void motion_since(int camera, Quat* q_KC, Vec3* p_KC, Mat6* covariance) const;
+  /// Place x_K of a feature in a reference camera K, and its covariance there given K. False where it has no place.
+  bool point_given(int camera, int slot, Vec3* x_K, Mat3* covariance_K) const;
   /// Covariance of a feature's place, to first order.
   Mat3 covariance3(int slot) const;
   /// The best known of a few log lengths, as a row over the state: l N = (0, 0, 1). False, and no parts, where there is none.

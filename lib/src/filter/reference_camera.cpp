@@ -2,7 +2,9 @@
 
 #include "filter/filter.h"
 #include "geometry/relative_pose.h"
+#include "geometry/small_cholesky.h"
 #include "model/camera_at.h"
+#include "model/kinds.h"
 
 /// Reference cameras: copies of the camera that stay in the state.
 
@@ -20,6 +22,66 @@ int Filter::add_reference_camera() {
   blocks_.augment(slot, J, none);
   model::ReferenceCamera::set(&state_.block[slot], camera.q_WC, camera.p_W);
   return slot;
+}
+
+int Filter::add_known_camera(const Quat& q_WK, const Vec3& p_WK, const Mat6& covariance) {
+  tell_gauge();
+  const int slot = take_slot(BlockKind::kReferenceCamera);
+  if (slot < 0) return -1;
+  Rows known;  // depends on nothing
+  known.rows = 6;
+  Scalar raw[36];
+  put<6, 6>(raw, 6, 0, covariance);
+  blocks_.augment(slot, known, raw);
+  model::ReferenceCamera::set(&state_.block[slot], q_WK, p_WK);
+  return slot;
+}
+
+///   f = p_K + R_K x_K,   e_f = e_p - [R_K x_K]x theta + R_K e_x
+int Filter::add_point_of_camera(int camera, const Vec3& x_K, const Mat3& covariance_K) {
+  using model::ReferenceCamera;
+  const int slot = take_slot(BlockKind::kPoint);
+  if (slot < 0) return -1;
+  const Mat3 R_WK = ReferenceCamera::q_WC(state_.block[camera]).toRotationMatrix();
+  const Vec3 along_W = R_WK * x_K;
+  RowsOf<3, 6, 1> J;
+  J.parts = 1;
+  J.part[0] = Part::of(camera, 0, 6);
+  put<3, 3>(J.h, 6, 0, Mat3(-hat(along_W)));
+  put<3, 3>(J.h, 6, 3, Mat3::Identity());
+  Scalar raw[9];
+  put<3, 3>(raw, 3, 0, Mat3(R_WK * covariance_K * R_WK.transpose()));
+  blocks_.augment(slot, J, raw);
+  state_.block[slot].set_xyz(ReferenceCamera::p_WC(state_.block[camera]) + along_W);
+  return slot;
+}
+
+///   C_f|K = C_ff - C_fK C_KK^-1 C_Kf,   x_K = R_K^T (f - p_K)
+bool Filter::point_given(int camera, int slot, Vec3* x_K, Mat3* covariance_K) const {
+  using model::ReferenceCamera;
+  Place at;
+  if (!find_point(state_, slot, &at)) return false;
+  const Block& block = state_.block[camera];
+  const Mat3 R_KW = ReferenceCamera::q_WC(block).conjugate().toRotationMatrix();
+  constexpr int kColumns = Place::kMaxColumns + 6;
+  RowsOf<9, kColumns, Place::kMaxParts + 1> J;
+  const int columns = at.columns + 6;
+  J.parts = at.parts + 1;
+  for (int p = 0; p < at.parts; ++p) J.part[p] = at.part[p];
+  J.part[at.parts] = Part::of(camera, 0, 6);
+  for (int i = 0; i < 9 * columns; ++i) J.h[i] = Scalar(0);
+  for (int c = 0; c < at.columns; ++c)
+    for (int r = 0; r < 3; ++r) J.h[r * columns + c] = at.J_o(r, c);
+  for (int r = 0; r < 6; ++r) J.h[(3 + r) * columns + at.columns + r] = Scalar(1);
+  const Eigen::Matrix<Scalar, 9, 9> C = blocks_.covariance_of<9>(J);
+  SmallCholesky<6> cholesky;
+  if (!cholesky.factor(C.bottomRightCorner<6, 6>())) return false;
+  const Eigen::Matrix<Scalar, 6, 3> G = cholesky.solve<3>(C.bottomLeftCorner<6, 3>());
+  Mat3 left = C.topLeftCorner<3, 3>() - C.topRightCorner<3, 6>().lazyProduct(G);
+  if (!at.has_rows) left += at.J_own * state_.block[slot].inside() * at.J_own.transpose();
+  *x_K = R_KW * (at.o - ReferenceCamera::p_WC(block));
+  *covariance_K = R_KW * left * R_KW.transpose();
+  return true;
 }
 
 void Filter::unpin(int slot) {

@@ -5,9 +5,9 @@
 
 namespace pf {
 
-bool ImageTracking::layout(Arena& arena) {
+bool ImageTracking::layout(Arena& arena, FilterMemory* memory) {
   front_end_.layout(arena, settings_.max_observations);
-  return relocaliser_.layout(arena, settings_.max_observations, settings_.kept.views);
+  return relocaliser_.layout(arena, settings_.max_observations, settings_.kept.views, memory);
 }
 
 void ImageTracking::init() {

@@ -30,7 +30,8 @@ class ImageTracking {
         front_end_(settings, filter, map, frame, features, update, tracking.belief(), noise_),
         relocaliser_(settings, filter, map, frame, front_end_.search(), update, tracking.belief()) {}
 
-  bool layout(Arena& arena);
+  /// memory: may be null.
+  bool layout(Arena& arena, FilterMemory* memory);
   void init();
   /// The map is discarded, and with it all poses.
   void forget_map();

@@ -4,6 +4,7 @@
 #include "bundle/zoom_fit.h"
 #include "frame/settings.h"
 #include "geometry/camera.h"
+#include "geometry/pnp.h"
 #include "track/view_memory.h"
 
 /// Where a frame's pose is searched for, and whether a pose that is found is accepted. Both back ends search in the order of prior: about
@@ -20,6 +21,7 @@ struct PoseHypothesis {
 
   /// Hypothesis with the same sigma about each axis: rotation [rad], position [m].
   static PoseHypothesis about(const Quat& q_WC, const Vec3& p_W, Scalar rotation, Scalar position);
+  static PoseHypothesis of(const PoseEstimate& pose) { return {pose.q_WC, pose.p_WC, pose.covariance}; }
 };
 
 /// A pose that the matches of earlier frames propose and that is not accepted yet.

@@ -139,7 +139,8 @@ void KeyframeSlam::learn() {
     measuring_.learn_noise();
     data_.warnings.check(settings_, noise_, map_.camera());
   }
-  mapping_.keep(tracked, data_.young, data_.median_depth, tracking_.belief().share());
+  if (mapping_.keep(tracked, data_.young, data_.median_depth, tracking_.belief().share()))
+    relocaliser_.note_keyframe(map_.keyframes.newest(), data_.median_depth);
 }
 
 /// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known, its

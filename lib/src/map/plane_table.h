@@ -37,7 +37,7 @@ struct PlaneEntry {
   PartSwitch<kHasWalls>
       apart;  ///< a wall that nothing in the map has been compared with yet, since the scale is not known
   bool two_sided = false;
-  bool remembered = false;  ///< of a loaded map: stays while none of its points are in the window
+  bool remembered = false;  ///< of a loaded map: stays while none of its points are with the back end
   Scalar roughness = 0;     ///< [m] of its surface
   Scalar prior[6] = {};     ///< of a wall: covariance of (a, b, h), lower triangle; zero: it no longer counts
   PlaneOutline plan;        ///< of a wall, as it was given

@@ -38,6 +38,18 @@ void write_place(const KeptPlace& place, MapWriter* out);
 void begin_anchors(int count, MapWriter* out);
 /// One that a place, or W, holds.
 void write_anchor(const Anchor& anchor, MapWriter* out);
+/// The section of the anchors of a map, hold(anchor) -> Anchor: as it is held by a place that is written. Nothing where there are none.
+template <typename Hold>
+void write_anchors(const AnchorTable& anchors, std::uint32_t map_id, MapWriter* out, Hold&& hold) {
+  int count = 0;
+  for (const int i : used_entries(anchors)) count += anchors[i].map_id == map_id ? 1 : 0;
+  if (count == 0) return;
+  begin_anchors(count, out);
+  for_each_by_id(anchors, [&](int i) {
+    if (anchors[i].map_id == map_id) write_anchor(hold(anchors[i]), out);
+  });
+  out->end_section();
+}
 
 /// Reads a saved map. Nothing of it is to be used before open() has said that all of it is good.
 class SavedMap {

@@ -34,6 +34,39 @@ void restore_patch(const PlacePatch& from, SourcePatch* to) {
     std::memcpy(to->pixels[0] + y * SourcePatch::kSize, from.pixels + y * PlacePatch::kSize, PlacePatch::kSize);
 }
 
+void set_place_point(const Vec3& x_K, const Mat3& covariance_K, const Quat& q_KV, const Vec3& c_K,
+                     const SourcePatch& patch, PlacePoint* out) {
+  const Scalar rho = 1 / x_K.norm();
+  out->rho = static_cast<float>(rho);
+  for (int a = 0, n = 0; a < 3; ++a) {
+    out->ray_K[a] = static_cast<float>(x_K(a) * rho);
+    out->c_K[a] = static_cast<float>(c_K(a));
+    out->q_KV[a + 1] = static_cast<float>(q_KV.vec()(a));
+    for (int b = 0; b <= a; ++b) out->covariance[n++] = static_cast<float>(covariance_K(a, b));
+  }
+  out->q_KV[0] = static_cast<float>(q_KV.w());
+  crop_patch(patch, &out->patch);
+  describe(patch, &out->descriptor);
+}
+
+void add_point(const PlacePoint& point, KeptPlace* place) {
+  if (place->count < KeptPlace::kMaxPoints) {
+    place->point[place->count++] = point;
+    return;
+  }
+  int least = 0;
+  for (int i = 1; i < place->count; ++i)
+    if (place->point[i].observations < place->point[least].observations) least = i;
+  if (point.observations > place->point[least].observations) place->point[least] = point;
+}
+
+Scalar median_depth(const KeptPlace& place) {
+  Scalar depth[KeptPlace::kMaxPoints];
+  for (int i = 0; i < place.count; ++i) depth[i] = 1 / static_cast<Scalar>(place.point[i].rho);
+  std::nth_element(depth, depth + place.count / 2, depth + place.count);
+  return depth[place.count / 2];
+}
+
 Scalar view_distance2(const Quat& q_a, const Vec3& p_a, Scalar depth_a, const Quat& q_b, const Vec3& p_b,
                       Scalar depth_b) {
   using namespace tuning::place;

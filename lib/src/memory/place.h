@@ -39,10 +39,10 @@ struct PlacePoint {
 struct KeptPlace {
   static constexpr int kMaxPoints = 24;
 
-  std::uint32_t id = 0;    ///< number of the keyframe that it was; 0: this entry is free
-  bool in_window = false;  ///< it has come back as a keyframe
-  int count = 0;           ///< points
-  Scalar depth = 1;        ///< of them, median [m]
+  std::uint32_t id = 0;  ///< number of the keyframe that it was; 0: this entry is free
+  bool is_back = false;  ///< its points are those of the back end: of the window, or of the state
+  int count = 0;         ///< points
+  Scalar depth = 1;      ///< of them, median [m]
   Quat q_WK = Quat::Identity();
   Vec3 p_WK = Vec3::Zero();
   Mat6 covariance = Mat6::Zero();  ///< of (theta, p) in W
@@ -50,6 +50,14 @@ struct KeptPlace {
 
   Vec3 position_W(int i) const { return p_WK + q_WK * point[i].position_K(); }
 };
+
+/// Sets where a point is in K, with the covariance of that, and its appearance, in which V saw it first: q_KV, c_K.
+void set_place_point(const Vec3& x_K, const Mat3& covariance_K, const Quat& q_KV, const Vec3& c_K,
+                     const SourcePatch& patch, PlacePoint* out);
+/// Puts a point among those of a place; where it is full in place of the one that was seen least, if it was seen more often.
+void add_point(const PlacePoint& point, KeptPlace* place);
+/// Of a place that has points.
+Scalar median_depth(const KeptPlace& place);
 
 /// Copies the middle of a patch, and back. What comes back has no second level.
 void crop_patch(const SourcePatch& from, PlacePatch* to);

@@ -25,12 +25,14 @@ int PlaceTable::most_redundant(const KeptPlace& another) const {
   return worst;
 }
 
+int PlaceTable::entry_for(const KeptPlace& place) const {
+  for (int i = 0; i < capacity_; ++i)
+    if (!used(i)) return i;
+  return most_redundant(place);
+}
+
 int PlaceTable::keep(const KeptPlace& place) {
-  if (capacity_ == 0) return -1;
-  int at = -1;
-  for (int i = capacity_ - 1; i >= 0; --i)
-    if (!used(i)) at = i;
-  if (at < 0) at = most_redundant(place);
+  const int at = entry_for(place);
   if (at == capacity_) return -1;
   place_[at] = place;
   return at;

@@ -32,6 +32,8 @@ class PlaceTable {
   /// Entry of the place with this id, or -1.
   int entry_of(std::uint32_t id) const { return entry_with_id(*this, id); }
 
+  /// The entry that a place would take: a free one, or that of the one that is then most redundant; capacity(): of this one itself.
+  int entry_for(const KeptPlace& place) const;
   /// Keeps a place in a free entry, or in that of the one that is then most redundant: of the two of all that are nearest to each other,
   /// the one with fewer points, the older one among equals. Where that is the new one it is not kept. Returns its entry, or -1.
   int keep(const KeptPlace& place);
@@ -40,7 +42,7 @@ class PlaceTable {
 
   /// A place comes back to the window as a keyframe.
   void note_return(int i) {
-    place_[i].in_window = true;
+    place_[i].is_back = true;
     count_frame(&returned_);
   }
   int returned() const { return returned_; }

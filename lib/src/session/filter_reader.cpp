@@ -111,6 +111,10 @@ MapCounts FilterReader::counts() const {
     counts.patches = keeper->patches().count();
     counts.cameras = keeper->patches().cameras();
   }
+  if (const FilterMemory* const memory = slam_.memory()) {
+    counts.places = memory->table().count();
+    counts.places_returned = memory->table().returned();
+  }
   counts.state_dim = filter_.dim();
   counts.state_dim_held = filter_.blocks().held_dim();
   counts.state_dim_points_only = filter_.dim() + unfolded_rows;

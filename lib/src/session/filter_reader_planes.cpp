@@ -4,6 +4,7 @@
 #include "base/table_entries.h"
 #include "filter/vertical.h"
 #include "filter_slam/filter_slam.h"
+#include "filter_slam/planes/lying_plane.h"
 #include "geometry/ray_plane.h"
 #include "geometry/so3.h"
 #include "model/camera_at.h"
@@ -14,40 +15,24 @@
 namespace pf {
 
 PlaneView FilterReader::plane(int i) const {
-  const State& state = filter_.state();
-  const Block& block = state.block[map_.planes[i].slot];
-  const PlaneFrame& frame = state.frame_of(block);
-  const Vec3 x = block.xyz();
+  const int slot = map_.planes[i].slot;
+  const LyingPlane plane = lying_plane(filter_, slot);
   PlaneView out;
   out.id = map_.planes[i].id;
   out.known = map_.planes[i].known;
   out.doubted = map_.planes[i].doubted;
-  Mat3 J_n_x;
-  plane_normal(frame, x, &out.normal_W, &out.distance, &J_n_x);
-  const Vec3 e1 = frame.R_WP.col(0);
-  out.R_WP.col(0) = (e1 - out.normal_W * out.normal_W.dot(e1)).normalized();
-  out.R_WP.col(1) = out.normal_W.cross(out.R_WP.col(0));
-  out.R_WP.col(2) = out.normal_W;
-  out.p_WP = frame.o_W + x(2) * frame.R_WP.col(2);
-  Mat3 J_out_x;  // of (alpha, beta, delta) with respect to (a, b, h)
-  J_out_x.row(0) = out.R_WP.col(0).transpose() * J_n_x;
-  J_out_x.row(1) = out.R_WP.col(1).transpose() * J_n_x;
-  J_out_x.row(2) << 0, 0, out.normal_W.dot(frame.R_WP.col(2));
-  RowsOf<3, 3, 1> J;
-  J.parts = 1;
-  J.part[0] = Part::of(map_.planes[i].slot, 0, 3);
-  put<3, 3>(J.h, 3, 0, J_out_x);
-  out.covariance = filter_.rounded_covariance_of<3>(J);
+  out.normal_W = plane.frame.R_WP.col(2);
+  out.distance = plane.distance;
+  out.R_WP = plane.frame.R_WP;
+  out.p_WP = plane.frame.o_W;
+  out.covariance = plane.covariance;
   PlaneOutline outline;
   const PlanePoints points = outline_plane(filter_, map_, i, &outline);
   out.points = points.folded;
   out.fixed_points = points.fixed;
   out.trial = points.on_trial;
   out.outline = outline;
-  for (int k = 0; k < outline.count; ++k) {
-    const Vec3 d = plane_point(frame, x, outline.uv[k]) - out.p_WP;
-    out.outline.uv[k] = Vec2(out.R_WP.col(0).dot(d), out.R_WP.col(1).dot(d));
-  }
+  for (int k = 0; k < outline.count; ++k) out.outline.uv[k] = to_lying(filter_, slot, plane, outline.uv[k]);
   return out;
 }
 

@@ -6,13 +6,15 @@
 namespace pf {
 
 Status MapCalls::load(const std::uint8_t* buffer, std::size_t bytes, const char** wrong, Vec3* gravity_W) {
-  const bool is_possible = kHasMemory && kHasWindow && window_ != nullptr && settings_.kept.places > 0;
-  if (!is_possible || window_->frame().report.frames > 0) return Status::kState;
+  if (!kHasMemory || settings_.kept.places == 0) return Status::kState;
+  const bool has_window = kHasWindow && window_ != nullptr;
+  const Frame& frame = has_window ? window_->frame() : filter_->frame();
+  if (frame.report.frames > 0) return Status::kState;
   SavedMap saved;
-  *wrong = saved.open(buffer, bytes, window_->mapping().saving().scratch());
+  *wrong = saved.open(buffer, bytes, has_window ? window_->mapping().saving().scratch() : filter_->memory()->scratch());
   if (*wrong != nullptr) return Status::kMap;
   *gravity_W = saved.gravity_W();
-  return window_->start().use_map(saved);
+  return has_window ? window_->start().use_map(saved) : filter_->use_map(saved);
 }
 
 Status MapCalls::add_anchor(const AnchorRequest& asked, std::uint32_t* id) {

@@ -71,9 +71,11 @@ bool View::motion_since_mark(MotionView* out) const {
 }
 
 Status View::save_map(const Vec3& gravity_W, MapWriter* out) const {
-  const bool is_there = kHasMemory && keyframes_ != nullptr && settings_.kept.places > 0 && tracking_.has_pose() &&
+  const bool is_there = kHasMemory && settings_.kept.places > 0 && tracking_.has_pose() &&
                         tracking_.state() != SlamState::kStarting;
-  return is_there ? keyframes_->mapping().saving().save(gravity_W, tracking_.map_id(), out) : Status::kState;
+  if (!is_there) return Status::kState;
+  return !kHasWindow || filter_ != nullptr ? filter_->memory()->save(gravity_W, tracking_.map_id(), out)
+                                           : keyframes_->mapping().saving().save(gravity_W, tracking_.map_id(), out);
 }
 
 bool View::project(const Vec3& p_W, Vec2* pixel, Mat2* covariance) const {

@@ -33,6 +33,8 @@ class FeatureKeeper {
   bool make_room_at(int* anchor);
   /// The same for a feature that begins on a plane.
   bool make_room_on_plane() { return make_room(2); }
+  /// The same for a 3-D point.
+  bool make_room_for_point() { return make_room(3); }
   /// Adds an inverse-depth feature at a pixel. Returns its table entry, or -1.
   int add(int anchor, const Vec2& pixel, const Mat2& noise);
   /// Slot of the nearest established plane that the pixel's ray meets inside of its outline, or -1.

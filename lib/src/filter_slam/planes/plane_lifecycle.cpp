@@ -53,6 +53,7 @@ void dissolve_weak(const Settings& settings, Filter& filter, Map& map, FeatureKe
     if (map.planes[i].known) continue;
     const PlanePoints on = outline_plane(filter, map, i, nullptr);
     const int points = on.folded - on.on_trial;
+    if (map.planes[i].remembered && points == 0) continue;
     map.planes[i].max_points = std::max<int>(map.planes[i].max_points, points);
     const int upheld = map.planes[i].upheld;
     const bool proven = map.planes[i].max_points > settings.plane_min_points || upheld > 0;

@@ -47,9 +47,10 @@ void PlaneMerger::merge_into(int plane_entry) {
   for (int k = 0; k < map_.planes.capacity(); ++k) {
     if (k == plane_entry || !map_.planes.used(k) || map_.planes[k].known) continue;
     const int other = map_.planes[k].slot;
-    // A wall takes the other plane in, however few points it has.
+    // A wall takes the other plane in, however few points it has, and so does a plane of a loaded map.
     const bool smaller = filter_.state().block[other].children > filter_.state().block[plane].children;
-    if ((smaller && !known) || !is_same_plane(plane_entry, other)) continue;
+    const bool stays = known || (map_.planes[plane_entry].remembered && !map_.planes[k].remembered);
+    if ((smaller && !stays) || !is_same_plane(plane_entry, other)) continue;
     if (!give_points(k, plane_entry)) return;
     give_outline(k, plane_entry);
     verticals_.merge(k, plane_entry);

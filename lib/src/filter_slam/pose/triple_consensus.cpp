@@ -79,13 +79,56 @@ PoseConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement
       consensus.log_density += log_density;
       consensus.log_chance += log_chance_density(searched_px2[j]);
     }
-    const Scalar evidence = pose_evidence(consensus, share);
+    const Scalar evidence = evidence_against_chance(consensus, share);
     if (best.inliers > 0 && evidence <= best_evidence) continue;
     best = consensus;
     best_evidence = evidence;
     std::copy(is_inlier, is_inlier + found, keep);
   }
   return best;
+}
+
+void weigh_jointly(const Filter& filter, const PixelMeasurement* matches, const Scalar* searched_px2, int found,
+                   int triples, const unsigned char* keep, const JointFit& fit, PoseConsensus* consensus) {
+  int index[kMaxObservations], inliers = 0;
+  Scalar log_chance = 0;
+  for (int i = 0; i < found; ++i) {
+    if (keep[i] == 0) continue;
+    log_chance += log_chance_density(searched_px2[i]);
+    index[inliers++] = i;
+  }
+  const bool has_fit = fit.nis > Scalar(0);
+  consensus->inliers = inliers;
+  if (inliers < 4 || !has_fit) return;
+  RandomTriples random(inliers, 1);
+  Scalar widest = 0, log_density = 0, chance_of_three = 0;
+  bool has_triple = false;
+  for (int trial = 0; trial < triples; ++trial) {
+    int three[3];
+    random.draw(three);
+    for (int& a : three) a = index[a];
+    Mat6 S;
+    Vec6 r;
+    Scalar chance = 0;
+    for (int a = 0; a < 3; ++a) {
+      const PixelMeasurement& o = matches[three[a]];
+      r.segment<2>(2 * a) = o.measured - o.predicted;
+      for (int b = 0; b < 3; ++b) S.block<2, 2>(2 * a, 2 * b) = filter.innovation_block(three[a], three[b]);
+      S.block<2, 2>(2 * a, 2 * a) += o.R_gate;
+      chance += log_chance_density(searched_px2[three[a]]);
+    }
+    SmallCholesky<6> cholesky;
+    if (!cholesky.factor(S)) continue;
+    const Scalar log_det = cholesky.log_det();
+    if (has_triple && !(log_det > widest)) continue;
+    has_triple = true;
+    widest = log_det;
+    log_density = log_normal_density(r.dot(cholesky.solve<1>(r)), log_det, 3);
+    chance_of_three = chance;
+  }
+  if (!has_triple) return;
+  consensus->log_density = log_normal_density(fit.nis, fit.log_det, inliers) - log_density;
+  consensus->log_chance = log_chance - chance_of_three;
 }
 
 }  // namespace pf

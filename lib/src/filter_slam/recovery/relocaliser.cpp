@@ -29,7 +29,8 @@ Mat26 pose_columns(const PixelMeasurement& o) {
 
 }  // namespace
 
-bool Relocaliser::layout(Arena& arena, int max_observations, int max_kept_views) {
+bool Relocaliser::layout(Arena& arena, int max_observations, int max_kept_views, FilterMemory* memory) {
+  memory_ = memory;
   const std::size_t count = static_cast<std::size_t>(max_observations);
   views_.layout(arena, max_kept_views);
   searched_px2_ = arena.take<Scalar>(count);
@@ -41,6 +42,7 @@ bool Relocaliser::layout(Arena& arena, int max_observations, int max_kept_views)
 void Relocaliser::init() {
   depth_ = 1;
   update_.proposals().init();
+  rivals_.init();
   views_.init();
 }
 
@@ -50,16 +52,24 @@ void Relocaliser::remember_view(Scalar median_depth) {
 }
 
 UpdateOutcome Relocaliser::recover(const MeasureMode& mode, const UpdateOutcome& before) {
-  const SearchPose about = choose_search_pose();
+  SearchPose rival;
+  const SearchPose about = choose_search_pose(&rival);
+  const Scalar against = rival.given ? odds_against(rival, mode.parallax_lasts) : Scalar(0);
+  const int found = search_about(about, mode.parallax_lasts);
+  return measure_about(about, found, against, mode.update, before);
+}
+
+/// Returns how many features were found.
+int Relocaliser::search_about(const SearchPose& about, bool parallax_lasts) {
   const Body estimate = filter_.state().body;
   frame_.forget_searches();
   set_pose(about.body);
   int count = search_.list_visible();
   search_.predict_pixels(0, count);
   count = keep_placed(about, count);
-  const int found = search_.search(0, count, {false, mode.parallax_lasts});
+  const int found = search_.search(0, count, {false, parallax_lasts});
   set_pose(estimate);
-  return measure_about(about, found, mode.update, before);
+  return found;
 }
 
 /// The prediction is good enough for a linear consensus.
@@ -69,19 +79,28 @@ bool Relocaliser::is_prediction_narrow() const {
   return variance < kNearbySigma * kNearbySigma;
 }
 
-/// About the last frame's proposal, or about a kept view that is like this image; where there is neither, about the prediction.
-Relocaliser::SearchPose Relocaliser::choose_search_pose() const {
+/// About the last frame's proposal, about a place that the image may show, or about a kept view that is like it; where there is none of
+/// these, about the prediction. rival: the pose of the last frame's rival, or of the second best place.
+Relocaliser::SearchPose Relocaliser::choose_search_pose(SearchPose* rival) {
   SearchPose about;
   about.body = filter_.state().body;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) about.P(i, j) = filter_.covariance()(std::max(i, j), std::min(i, j));
-  PoseHypothesis elsewhere;
-  about.given = find_elsewhere(update_.proposals().last(), views_, search_.tracker().pyramid(), filter_.lens(), depth_,
-                               &elsewhere);
-  if (!about.given) return about;
-  about.body.q_WC = elsewhere.q_WC;
-  about.body.p_W = elsewhere.p_W;
-  about.P = elsewhere.P;
+  const PoseProposal &last = update_.proposals().last(), &last_rival = rivals_.last();
+  const Pyramid& image = search_.tracker().pyramid();
+  PoseHypothesis elsewhere, other;
+  bool has_other = false;
+  if (memory_ != nullptr && !last.is_set && memory_->recall(search_.tracker(), &elsewhere, &other, &has_other)) {
+    about.set(elsewhere);
+  } else {
+    if (find_elsewhere(last, views_, image, filter_.lens(), depth_, &elsewhere)) about.set(elsewhere);
+    has_other = last.is_set && last_rival.is_set &&
+                find_elsewhere(last_rival, views_, image, filter_.lens(), depth_, &other);
+  }
+  if (has_other) {
+    rival->body = about.body;
+    rival->set(other);
+  }
   return about;
 }
 
@@ -92,30 +111,59 @@ void Relocaliser::set_pose(const Body& pose) {
   filter_.set_mean(body);
 }
 
-/// Proposes a pose from the matches of a search about another pose, and tests it in the filter's own covariance.
-UpdateOutcome Relocaliser::measure_about(const SearchPose& about, int found, const UpdateMode& mode,
-                                         const UpdateOutcome& before) {
-  if (found < settings_.min_inliers) return before;
-  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
+/// Proposes a pose from the matches of a search about another pose, and tests it in the filter's own covariance. False: too few agree.
+bool Relocaliser::try_pose(const SearchPose& about, int found, Tried* out) {
+  if (found < settings_.min_inliers) return false;
   for (int i = 0; i < found; ++i) {
     point_W_[i] = filter_.point(map_.features[update_.candidate(i).feature].slot);
     pixel_[i] = update_.observation(i).measured;
     searched_px2_[i] = search_.searched_area(i, false);
   }
-  Body pose = about.body;
+  out->pose = about.body;
   const Scalar sigma = std::max(Scalar(1), kProposalPixels * static_cast<Scalar>(settings_.camera.width));
-  if (propose_pose(filter_.lens(), about.P, point_W_, pixel_, found, sigma, &pose) < settings_.min_inliers)
-    return before;
-  found = linearise_at(pose, found);
-  if (found < settings_.min_inliers) return before;
+  if (propose_pose(filter_.lens(), about.P, point_W_, pixel_, found, sigma, &out->pose) < settings_.min_inliers)
+    return false;
+  // Where nothing has been measured of a loaded map yet, the camera may as well be there.
+  if (memory_ != nullptr && memory_->is_loaded() && !memory_->is_found()) set_pose(out->pose);
+  out->found = found = linearise_at(out->pose, found);
+  if (found < settings_.min_inliers) return false;
   update_.begin(0, found);
-  PoseConsensus consensus =
-      find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
-                            belief_.share(), settings_.gate, kTriples, update_.keep());
-  frame_.note_consensus(consensus.inliers);
-  if (consensus.inliers < settings_.min_inliers) return before;
+  out->consensus = find_triple_consensus(filter_, update_.observations(), searched_px2_, found, frame_.report.attempts,
+                                         belief_.share(), settings_.gate, kTriples, update_.keep());
+  if (memory_ != nullptr && out->consensus.inliers >= settings_.min_inliers) {
+    JointFit fit;
+    update_.reject_contradicted(0, found, &fit);
+    weigh_jointly(filter_, update_.observations(), searched_px2_, found, kTriples, update_.keep(), fit,
+                  &out->consensus);
+  }
+  frame_.note_consensus(out->consensus.inliers);
+  return out->consensus.inliers >= settings_.min_inliers;
+}
+
+/// What the rival, another place where the camera may be, takes from the log-odds:
+///
+///   L = L_1 - ln(1 + exp(L_2))
+Scalar Relocaliser::odds_against(const SearchPose& rival, bool parallax_lasts) {
+  Tried tried;
+  if (!try_pose(rival, search_about(rival, parallax_lasts), &tried)) return 0;
+  const Scalar log_odds = rivals_.propose(tried.pose.q_WC, tried.pose.p_W, median_depth(tried.pose, tried.found),
+                                          PoseBelief::elsewhere(), belief_.evidence(tried.consensus));
+  return std::log(1 + std::exp(log_odds));
+}
+
+UpdateOutcome Relocaliser::measure_about(const SearchPose& about, int found, Scalar against, const UpdateMode& mode,
+                                         const UpdateOutcome& before) {
+  StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kGate]);
+  Tried tried;
+  const bool is_found = try_pose(about, found, &tried);
+  if (memory_ != nullptr) memory_->note_tried(is_found);
+  if (!is_found) return before;
+  found = tried.found;
+  const Body& pose = tried.pose;
+  PoseConsensus& consensus = tried.consensus;
   const Scalar log_odds = update_.proposals().propose(pose.q_WC, pose.p_W, median_depth(pose, found),
-                                                      PoseBelief::elsewhere(), belief_.evidence(consensus));
+                                                      PoseBelief::elsewhere(), belief_.evidence(consensus)) -
+                          against;
   if (!PoseBelief::is_enough(log_odds)) return before;
   weigh_lens(settings_, filter_, update_.observations(), update_.keep(), found, pose, &consensus);
   if (!belief_.may_use(log_odds, consensus)) return before;

@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "filter/filter.h"
 #include "filter_slam/features/image_front_end.h"
+#include "filter_slam/memory/filter_memory.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "frame/frame.h"
 #include "frame/settings.h"
@@ -26,10 +27,17 @@ class Relocaliser {
         frame_(frame),
         search_(search),
         update_(update),
-        belief_(belief) {}
+        belief_(belief),
+        rivals_(settings, filter) {}
 
-  bool layout(Arena& arena, int max_observations, int max_kept_views);
+  /// memory: may be null.
+  bool layout(Arena& arena, int max_observations, int max_kept_views, FilterMemory* memory);
   void init();
+  /// Begins a frame, dt_ns after the one before.
+  void begin_frame(std::int64_t dt_ns) {
+    update_.proposals().begin_frame(dt_ns);
+    rivals_.begin_frame(dt_ns);
+  }
 
   /// Keeps the view of a tracked frame, with the median depth of its features.
   void remember_view(Scalar median_depth);
@@ -46,10 +54,27 @@ class Relocaliser {
     bool given = false;
     Body body;
     Mat6 P = Mat6::Zero();  ///< of (theta, p)
+
+    void set(const PoseHypothesis& pose) {
+      given = true;
+      body.q_WC = pose.q_WC;
+      body.p_W = pose.p_W;
+      P = pose.P;
+    }
+  };
+  /// What a search about a pose has found.
+  struct Tried {
+    int found = 0;  ///< matches
+    Body pose;      ///< that they propose
+    PoseConsensus consensus;
   };
 
-  SearchPose choose_search_pose() const;
-  UpdateOutcome measure_about(const SearchPose& about, int found, const UpdateMode& mode, const UpdateOutcome& before);
+  SearchPose choose_search_pose(SearchPose* rival);
+  int search_about(const SearchPose& about, bool parallax_lasts);
+  bool try_pose(const SearchPose& about, int found, Tried* out);
+  Scalar odds_against(const SearchPose& rival, bool parallax_lasts);
+  UpdateOutcome measure_about(const SearchPose& about, int found, Scalar against, const UpdateMode& mode,
+                              const UpdateOutcome& before);
   void set_pose(const Body& pose);
   int keep_placed(const SearchPose& about, int count);
   int linearise_at(const Body& pose, int found);
@@ -65,6 +90,8 @@ class Relocaliser {
   PixelUpdate& update_;
   PoseBelief& belief_;
   ViewMemory views_;
+  ProposedPoses rivals_;  ///< poses of the second best places
+  PartPointer<FilterMemory, kHasMemory> memory_;
   Scalar depth_ = 1;                ///< median, of the last tracked frame
   Scalar* searched_px2_ = nullptr;  ///< max_observations each
   Vec3* point_W_ = nullptr;

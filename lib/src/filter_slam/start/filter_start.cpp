@@ -30,6 +30,12 @@ void FilterStart::start_over() {
   if (map_.target_withdrawn) target_.init();
 }
 
+void FilterStart::begin_anywhere(const Quat& q_WC, const Vec3& p_W, Scalar depth) {
+  data_.knows_scale = true;
+  beginning_.begin_anywhere(q_WC, p_W, depth);
+  tracking_.set_has_pose(frame_.report.t_ns, true);
+}
+
 /// Whether the target's points fit into the capacities.
 bool FilterStart::fits(const Target& target) const {
   constexpr int kPointRows = 3;  // of a point

@@ -54,6 +54,15 @@ class FilterStart {
   /// A rectangle can only be found in an image, not in a list of observations.
   bool takes_images_only() const { return target_.target().kind == TargetKind::kRectangle; }
 
+  /// The caller has chosen a start, or the state has one.
+  bool is_chosen() const {
+    return beginning_.known().given || target_.target().kind != TargetKind::kNone || map_.planes.has_known() ||
+           tracking_.has_pose();
+  }
+  /// Gives the state a pose of which nothing is known, before the first frame; lost. depth: median, of the place there. Lengths are those of
+  /// the map.
+  void begin_anywhere(const Quat& q_WC, const Vec3& p_W, Scalar depth);
+
   // --- the first frame
   /// Sets the pose of the first frame. False where that is not possible in this frame.
   bool start_in_image();

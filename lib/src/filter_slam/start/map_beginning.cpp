@@ -114,6 +114,22 @@ void MapBeginning::begin_at(const Body& body, const Target* fitted_to) {
   set_body(body, data_.covariance, by_lens ? J_lens : nullptr);
 }
 
+void MapBeginning::begin_anywhere(const Quat& q_WC, const Vec3& p_W, Scalar depth) {
+  using namespace tuning::body_motion;
+  const int dim = settings_.body.known_rows();
+  for (Scalar& c : data_.covariance) c = Scalar(0);
+  for (int i = 0; i < 3; ++i) {
+    data_.covariance[i * dim + i] = kAnyRotation * kAnyRotation;
+    data_.covariance[(3 + i) * dim + 3 + i] = kAnyPosition * kAnyPosition * depth * depth;
+  }
+  set_initial_velocities(kStartSpeed * depth);
+  Body body;
+  body.q_WC = q_WC;
+  body.p_W = p_W;
+  filter_.tell_gauge();  // W is that of a map
+  begin_at(body, nullptr);
+}
+
 void MapBeginning::note_covariance() {
   const int dim = settings_.body.known_rows();
   Scalar P[Body::kPoseDim * Body::kPoseDim];

@@ -50,6 +50,8 @@ class MapBeginning {
   /// Sets the filter's body, with the covariance of the first frame's. fitted_to: the target to whose pixels the pose was fitted, so that
   /// it depends on the lens; null: it does not.
   void begin_at(const Body& body, const Target* fitted_to);
+  /// The same for a camera that may be anywhere. depth: median, of what it sees.
+  void begin_anywhere(const Quat& q_WC, const Vec3& p_W, Scalar depth);
   /// From here on begin_at() uses the present covariance of the pose. Velocities are unknown, and replaced by those of a record.
   void note_covariance();
 

@@ -100,7 +100,7 @@ KeyframeAnchors::Reference KeyframeAnchors::nearest(const RelativePlace& T_WV, S
   }
   for (const int p : used_entries(map_.places)) {
     const KeptPlace& kept = map_.places[p];
-    if (!kept.in_window) offer({kept.id, {kept.q_WK, kept.p_WK}, kept.covariance}, kept.depth);
+    if (!kept.is_back) offer({kept.id, {kept.q_WK, kept.p_WK}, kept.covariance}, kept.depth);
   }
   return best;
 }

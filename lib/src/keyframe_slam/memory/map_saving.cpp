@@ -71,7 +71,8 @@ Status MapSaving::save(const Vec3& gravity_W, std::uint32_t map_id, MapWriter* o
   write_world(gravity_W, out);
   write_planes(out);
   write_places(count, out);
-  write_anchors(count, map_id, out);
+  write_anchors(map_.tables().anchors, map_id, out,
+                [&](const Anchor& anchor) { return held_by_chosen(anchor, count); });
   out->end();
   return Status::kOk;
 }
@@ -81,20 +82,16 @@ void MapSaving::write_planes(MapWriter* out) const {
   int count = 0;
   for (const int k : used_entries(table)) count += k >= 0 ? 1 : 0;
   begin_planes(count, out);
-  std::uint32_t last = 0;
-  for (int n = 0; n < count; ++n) {
-    int next = -1;
-    for (const int k : used_entries(table))
-      if (table[k].id > last && (next < 0 || table[k].id < table[next].id)) next = k;
-    const KeyframePlane& plane = planes_.plane(next);
+  for_each_by_id(table, [&](int k) {
+    const KeyframePlane& plane = planes_.plane(k);
     SavedPlane saved;
-    saved.id = last = table[next].id;
-    saved.max_points = static_cast<std::uint32_t>(static_cast<int>(table[next].max_points));
+    saved.id = table[k].id;
+    saved.max_points = static_cast<std::uint32_t>(static_cast<int>(table[k].max_points));
     saved.frame = plane.frame;
     saved.covariance = plane.covariance;
-    saved.outline = table[next].seen;
+    saved.outline = table[k].seen;
     write_plane(saved, out);
-  }
+  });
   out->end_section();
 }
 
@@ -120,24 +117,6 @@ void MapSaving::write_places(int count, MapWriter* out) const {
     }
     write_place(*place, out);
   }
-  out->end_section();
-}
-
-/// In the order of their ids. A map without anchors has no section for them.
-void MapSaving::write_anchors(int count, std::uint32_t map_id, MapWriter* out) const {
-  const AnchorTable& anchors = map_.tables().anchors;
-  const auto next_after = [&](std::uint32_t id) {
-    int next = -1;
-    for (const int i : used_entries(anchors))
-      if (anchors[i].map_id == map_id && anchors[i].id > id && (next < 0 || anchors[i].id < anchors[next].id)) next = i;
-    return next;
-  };
-  int num = 0;
-  for (int i = next_after(0); i >= 0; i = next_after(anchors[i].id)) ++num;
-  if (num == 0) return;
-  begin_anchors(num, out);
-  for (int i = next_after(0); i >= 0; i = next_after(anchors[i].id))
-    write_anchor(held_by_chosen(anchors[i], count), out);
   out->end_section();
 }
 

@@ -43,7 +43,6 @@ class MapSaving {
   void thin_out(int count) const;
   void write_planes(MapWriter* out) const;
   void write_places(int count, MapWriter* out) const;
-  void write_anchors(int count, std::uint32_t map_id, MapWriter* out) const;
   Anchor held_by_chosen(const Anchor& anchor, int count) const;
 
   const Settings& settings_;

@@ -24,7 +24,6 @@ bool is_worth_keeping(const KeyframeMap& map, int i) {
 PlacePoint seen_from(const KeyframeMap& map, int i, const Keyframe& k) {
   const Mat3 R_KW = k.q_WC.conjugate().toRotationMatrix();
   const Vec3 at_K = R_KW * (map.position(i) - k.p_W);
-  const Scalar rho = 1 / at_K.norm();
   const Mat3 P = R_KW * map.covariance(i) * R_KW.transpose();
   const CameraView& first = map.tables().first_view(i);
   const Quat q_KV = (k.q_WC.conjugate() * first.q_WC).normalized();
@@ -33,36 +32,8 @@ PlacePoint seen_from(const KeyframeMap& map, int i, const Keyframe& k) {
   out.id = map.feature(i).id;
   out.plane = map.point(i).plane >= 0 ? map.tables().planes[map.point(i).plane].id : 0;
   out.observations = map.feature(i).observations;
-  out.rho = static_cast<float>(rho);
-  for (int a = 0, n = 0; a < 3; ++a) {
-    out.ray_K[a] = static_cast<float>(at_K(a) * rho);
-    out.c_K[a] = static_cast<float>(c_K(a));
-    out.q_KV[a + 1] = static_cast<float>(q_KV.vec()(a));
-    for (int b = 0; b <= a; ++b) out.covariance[n++] = static_cast<float>(P(a, b));
-  }
-  out.q_KV[0] = static_cast<float>(q_KV.w());
-  crop_patch(map.tables().appearance(i).patch, &out.patch);
-  describe(map.tables().appearance(i).patch, &out.descriptor);
+  set_place_point(at_K, P, q_KV, c_K, map.tables().appearance(i).patch, &out);
   return out;
-}
-
-Scalar median_depth(const KeptPlace& place) {
-  Scalar depth[KeptPlace::kMaxPoints];
-  for (int i = 0; i < place.count; ++i) depth[i] = 1 / static_cast<Scalar>(place.point[i].rho);
-  std::nth_element(depth, depth + place.count / 2, depth + place.count);
-  return depth[place.count / 2];
-}
-
-/// Puts a point among those of a place; where it is full in place of the one that was seen least, if it was seen more often.
-void add_point(const PlacePoint& point, KeptPlace* place) {
-  if (place->count < KeptPlace::kMaxPoints) {
-    place->point[place->count++] = point;
-    return;
-  }
-  int least = 0;
-  for (int i = 1; i < place->count; ++i)
-    if (place->point[i].observations < place->point[least].observations) least = i;
-  if (point.observations > place->point[least].observations) place->point[least] = point;
 }
 
 /// Variance of the inverse depth of a point by the covariance of its position:  rho^4 rᵀ P r.
@@ -119,7 +90,7 @@ void PlaceKeeper::keep(int keyframe) {
 
 /// A place leaves the window once more: where it is now, with the points that it has now, and those of before that are gone since.
 void PlaceKeeper::update(const KeptPlace& now, KeptPlace* kept) const {
-  kept->in_window = false;
+  kept->is_back = false;
   kept->q_WK = now.q_WK;
   kept->p_WK = now.p_WK;
   for (int i = 0; i < now.count; ++i) {
@@ -158,7 +129,7 @@ void PlaceKeeper::bring_near(const CameraView& view, Scalar depth, int most) {
     for (const int p : used_entries(map_.places)) {
       const KeptPlace& place = map_.places[p];
       const Scalar d2 = view_distance2(view.q_WC, view.c_W, depth, place.q_WK, place.p_WK, place.depth);
-      if (place.in_window || !(d2 < least)) continue;
+      if (place.is_back || !(d2 < least)) continue;
       least = d2;
       nearest = place.id;
     }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "frame/pose_hypotheses.h"
+#include "keyframe_slam/memory/keyframe_recall.h"
 #include "keyframe_slam/memory/place_keeper.h"
-#include "keyframe_slam/memory/place_recall.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
 
 /// Finds the window's map again after frames that did not support the pose (lib/docs/theory/states.md).
@@ -29,11 +29,16 @@ class KeyframeRelocaliser {
   void init() {
     views_.init();
     recall_.init();
+    asked_ = CameraView();
+    asked_depth_ = 0;
     clear_proposal();
   }
 
   /// Keeps the view of a tracked frame.
   void remember_view() { views_.keep_if_new(tracker_.pyramid(), motion_.body().q_WC, motion_.body().p_W); }
+  /// A new keyframe. Where it sees another part of the map than the last one that was asked about, the belief learns whether it looks like
+  /// a part that is elsewhere.
+  void note_keyframe(int keyframe, Scalar median_depth);
   /// Drops the proposals of earlier frames, since the map is tracked.
   void clear_proposal() {
     proposal_ = rival_ = PoseProposal();
@@ -75,10 +80,12 @@ class KeyframeRelocaliser {
   PoseBelief& belief_;
   ViewMemory views_;
   PlaceKeeper keeper_;
-  PlaceRecall recall_{settings_, map_};
+  KeyframeRecall recall_{settings_, map_};
   PoseProposal proposal_, rival_;  ///< of earlier frames
   std::uint32_t recalled_ = 0;     ///< place that the proposal comes from; 0: none
   bool recalled_in_vain_ = false;  ///< the last frame's place was not confirmed
+  CameraView asked_;  ///< of the last keyframe that note_keyframe() asked about, and its median depth; 0: none
+  Scalar asked_depth_ = 0;
 };
 
 }  // namespace pf
