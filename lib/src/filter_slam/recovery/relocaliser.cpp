@@ -94,8 +94,8 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose(SearchPose* rival) {
     about.set(elsewhere);
   } else {
     if (find_elsewhere(last, views_, image, filter_.lens(), depth_, &elsewhere)) about.set(elsewhere);
-    has_other = last.is_set && last_rival.is_set &&
-                find_elsewhere(last_rival, views_, image, filter_.lens(), depth_, &other);
+    has_other =
+        last.is_set && last_rival.is_set && find_elsewhere(last_rival, views_, image, filter_.lens(), depth_, &other);
   }
   if (has_other) {
     rival->body = about.body;

@@ -61,8 +61,8 @@ KeyframeRelocaliser::Tried KeyframeRelocaliser::try_pose(const PoseHypothesis& a
   out.found = measuring_.measure_about(prior, &out.pose, &out.information, &out.consensus) >= settings_.min_inliers;
   const bool follows = before.is_set && log_so3(out.pose.q_WC * before.q_WC.conjugate()).norm() < kAboutView &&
                        (out.pose.p_WC - before.p_W).norm() < kAboutView * median_depth;
-  out.log_odds =
-      PoseBelief::updated(follows ? before.log_odds : PoseBelief::elsewhere(), belief_.evidence(out.consensus));
+  out.log_odds = PoseBelief::updated(follows ? before.log_odds : PoseBelief::elsewhere(),
+                                     belief_.evidence_elsewhere(out.consensus));
   return out;
 }
 
