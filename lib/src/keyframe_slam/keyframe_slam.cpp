@@ -139,8 +139,9 @@ void KeyframeSlam::learn() {
     measuring_.learn_noise();
     data_.warnings.check(settings_, noise_, map_.camera());
   }
-  if (mapping_.keep(tracked, data_.young, data_.median_depth, tracking_.belief().share()))
-    relocaliser_.note_keyframe(map_.keyframes.newest(), data_.median_depth);
+  const bool is_keyframe = mapping_.keep(tracked, data_.young, data_.median_depth, tracking_.belief().share());
+  // A keyframe has work enough.
+  if (tracked && !is_keyframe && !record_.progress().pending()) relocaliser_.note_view(data_.median_depth);
 }
 
 /// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known, its

@@ -35,11 +35,6 @@ bool PlaceRecall::layout(Arena& arena, int places) {
 
 int PlaceRecall::least_matches() { return tuning::place_search::kMinMatches; }
 
-void PlaceRecall::describe_image(const Tracker& tracker, const PlaceTable& places) {
-  search_.describe_image(tracker);
-  match_places(places);
-}
-
 void PlaceRecall::match_places(const PlaceTable& places) {
   for (const int p : used_entries(places))
     for (int i = 0; i < places[p].count; ++i)
@@ -77,6 +72,11 @@ void PlaceRecall::find_pose_of(const Camera& camera, const PlaceSource& source, 
   out->depth = median_distance(matches, out->pose.p_WC);
   for (int i = 0; i < matches.count; ++i)
     if (out->inliers == 0 || is_inlier[i]) explained->add(matches.id[i]);
+}
+
+bool PlaceRecall::is_elsewhere(const Recalled& a, const Recalled& b) {
+  return view_distance2(a.pose.q_WC, a.pose.p_WC, a.depth, b.pose.q_WC, b.pose.p_WC, b.depth) >=
+         tuning::place::kNear * tuning::place::kNear;
 }
 
 /// Whether two places say that the camera is in two places.

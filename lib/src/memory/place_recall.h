@@ -43,8 +43,9 @@ class PlaceRecall {
   bool layout(Arena& arena, int places);
   void init() { search_.init(); }
 
-  /// Describes an image, and matches the points of all places with it.
-  void describe_image(const Tracker& tracker, const PlaceTable& places);
+  void describe_image(const Tracker& tracker) { search_.describe_image(tracker); }
+  /// Matches the points of all places with the described image.
+  void match_places(const PlaceTable& places);
   const PlaceSearch& search() const { return search_; }
   /// Adds the points of a place, and of those that belong to it, that what is described may show.
   void collect_place(const PlaceTable& places, int place, PlaceMatches* out) const;
@@ -66,22 +67,16 @@ class PlaceRecall {
     return best->inliers > 0;
   }
 
-  /// Leaves out points of places in what follows: those for which is_own(id).
-  template <typename IsOwn>
-  void leave_out(const PlaceTable& places, IsOwn&& is_own) {
-    for (const int p : used_entries(places))
-      for (int i = 0; i < places[p].count; ++i)
-        if (is_own(places[p].point[i].id)) corner_[p * KeptPlace::kMaxPoints + i] = -1;
-  }
-  /// Whether an image whose pose is known looks like another part of the map. view: its pose, with the median depth. The others are as in
-  /// find(); the points that are seen in the image must have been left out.
+  /// Whether an image whose pose is known looks like another part of the map, which shares little with its own view: D >= kNear, so that the
+  /// drift of a map which comes back to its beginning does not count. view: its pose, with the median depth. The others are as in find(),
+  /// and most matches are those of its own points.
   template <typename Collect>
-  bool is_alike(const Camera& camera, int count, Scalar apart, const Recalled& view, Collect&& collect) {
+  bool is_alike(const Camera& camera, int count, const Recalled& view, Collect&& collect) {
     ExplainedPoints explained;
     for (int tried = 0; tried < kMaxTried; ++tried) {
       Recalled one;
       if (!try_next(camera, count, collect, &explained, &one)) return false;
-      if (one.inliers > 0 && is_apart(one, view, apart)) return true;
+      if (one.inliers > 0 && is_elsewhere(one, view)) return true;
     }
     return false;
   }
@@ -112,11 +107,11 @@ class PlaceRecall {
   }
 
   static int least_matches();
-  void match_places(const PlaceTable& places);
   void add_points(const PlaceTable& places, int place, PlaceMatches* out) const;
   void find_pose_of(const Camera& camera, const PlaceSource& source, const PlaceMatches& matches,
                     ExplainedPoints* explained, Recalled* out);
   static bool is_apart(const Recalled& a, const Recalled& b, Scalar apart);
+  static bool is_elsewhere(const Recalled& a, const Recalled& b);
 
   PlaceSearch search_;
   std::int16_t* corner_ = nullptr;  ///< of each point of each place: what it may be in what is described, -1: nothing

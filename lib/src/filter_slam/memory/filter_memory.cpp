@@ -85,7 +85,8 @@ bool FilterMemory::recall(const Tracker& tracker, PoseHypothesis* place, PoseHyp
   if (recalled_in_vain_) return recalled_in_vain_ = false;  // now the kept views are tried
   const PlaceTable& table = places_.table();
   if (table.count() == 0) return false;
-  recall_.describe_image(tracker, table);
+  recall_.describe_image(tracker);
+  recall_.match_places(table);
   const auto collect = [&](int p, PlaceMatches* out) {
     if (!table.used(p)) return PlaceSource();
     recall_.collect_place(table, p, out);

@@ -15,31 +15,22 @@ bool KeyframeRecall::layout(Arena& arena) {
 bool KeyframeRecall::find(const Tracker& tracker, Recalled* best, Recalled* rival) {
   *best = *rival = Recalled();
   if (settings_.kept.places == 0) return false;
-  recall_.describe_image(tracker, map_.places);
+  recall_.describe_image(tracker);
+  recall_.match_places(map_.places);
   match_window();
   return recall_.find(
       map_.camera(), sources(), tuning::relocaliser::kAboutView,
       [&](int i, PlaceMatches* out) { return collect(i, out); }, best, rival);
 }
 
-bool KeyframeRecall::is_alike(const Tracker& tracker, int keyframe, Scalar median_depth) {
-  const Keyframe& k = map_.keyframes[keyframe];
-  recall_.describe_image(tracker, map_.places);
+bool KeyframeRecall::is_alike(const CameraView& view, Scalar median_depth) {
+  recall_.match_places(map_.places);
   match_window();
-  const BundlePixel* pixels = map_.keyframes.pixels(keyframe);
-  for (const int p : used_entries(map_))
-    if (pixels[p].seen) corner_[p] = -1;
-  recall_.leave_out(map_.places, [&](std::uint32_t id) {
-    for (const int p : used_entries(map_))
-      if (pixels[p].seen && map_.feature(p).id == id) return true;
-    return false;
-  });
-  Recalled view;
-  view.pose.q_WC = k.q_WC;
-  view.pose.p_WC = k.p_W;
-  view.depth = median_depth;
-  return recall_.is_alike(map_.camera(), sources(), tuning::relocaliser::kAboutView, view,
-                          [&](int i, PlaceMatches* out) { return collect(i, out); });
+  Recalled at;
+  at.pose.q_WC = view.q_WC;
+  at.pose.p_WC = view.c_W;
+  at.depth = median_depth;
+  return recall_.is_alike(map_.camera(), sources(), at, [&](int i, PlaceMatches* out) { return collect(i, out); });
 }
 
 /// Keyframes, and behind them places.

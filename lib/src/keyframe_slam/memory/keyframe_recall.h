@@ -18,8 +18,10 @@ class KeyframeRecall {
   /// The place that most of the image agrees with, and as its rival the one that agrees most with another pose; its inliers are 0 where
   /// there is none. False: no place.
   bool find(const Tracker& tracker, Recalled* best, Recalled* rival);
-  /// Whether the image of a keyframe looks like another part of the map. median_depth: of what it sees.
-  bool is_alike(const Tracker& tracker, int keyframe, Scalar median_depth);
+  /// Describes the image of a tracked frame, for is_alike().
+  void describe_image(const Tracker& tracker) { recall_.describe_image(tracker); }
+  /// Whether the described image looks like another part of the map. view: its pose. median_depth: of what it sees.
+  bool is_alike(const CameraView& view, Scalar median_depth);
 
  private:
   int sources() const;

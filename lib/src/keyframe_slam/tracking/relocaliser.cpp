@@ -22,20 +22,27 @@ const Mat6* KeyframeRelocaliser::found_covariance() const {
   return place >= 0 ? &map_.places[place].covariance : nullptr;
 }
 
-void KeyframeRelocaliser::note_keyframe(int keyframe, Scalar median_depth) {
+/// One frame describes its image, and the next one compares: neither has much more to do than a keyframe.
+void KeyframeRelocaliser::note_view(Scalar median_depth) {
   if (settings_.kept.places == 0) return;
-  const CameraView view = map_.keyframes[keyframe].view();
+  if (is_described_) {
+    is_described_ = false;
+    return belief_.note_view(recall_.is_alike(asked_, asked_depth_));
+  }
+  const CameraView view = motion_.view();
   if (asked_depth_ > Scalar(0) && view_distance2(view.q_WC, view.c_W, median_depth, asked_.q_WC, asked_.c_W,
                                                  asked_depth_) < tuning::place::kNear * tuning::place::kNear)
     return;
   asked_ = view;
   asked_depth_ = median_depth;
-  belief_.note_view(recall_.is_alike(tracker_, keyframe, median_depth));
+  recall_.describe_image(tracker_);
+  is_described_ = true;
 }
 
 /// Brings the place back that the image may show, and its rival, so that they can be searched for.
 bool KeyframeRelocaliser::recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival) {
   recalled_ = 0;
+  is_described_ = false;
   if (recalled_in_vain_) return recalled_in_vain_ = false;  // now the kept views are tried
   Recalled best, other;
   if (!recall_.find(tracker_, &best, &other) || !keeper_.bring_back(best.place)) return false;
