@@ -60,17 +60,18 @@ class Run:
         agree, log_odds = max(consensus, inliers), float(row["log_odds"])
         if attempts == 0:
             why = "nothing was searched for"
-        elif max(matches, agree) < MIN_INLIERS:
-            why = f"{matches} of {attempts} features found, {MIN_INLIERS} needed"
+        elif row["tracked"] == "1":
+            why = f"tracked by {inliers} of {matches} features"
+        elif matches < MIN_INLIERS:
+            why = f"{matches} features found, {MIN_INLIERS} needed"
         elif agree < MIN_INLIERS:
-            why = f"{matches} found, {agree} agree with one pose, {MIN_INLIERS} needed"
+            why = f"{agree} features agree with one pose, {MIN_INLIERS} needed"
         elif log_odds < TRACKED:
-            why = f"{agree} of {matches} agree, log-odds {log_odds:.2f} of the pose, {TRACKED} needed"
-        elif row["tracked"] != "1":
-            why = f"{agree} of {matches} agree, log-odds {log_odds:.2f}, and the pose is not used"
+            why = f"{TRACKED} needed of the log-odds"
         else:
-            why = f"tracked by {inliers} of {matches} features, log-odds {log_odds:.2f}"
-        return f"frame {frame} ({row['state']}, reason {row['reason']}): {why}"
+            why = "the pose is not used"
+        numbers = f"{attempts} searched for, {matches} found, {agree} agree with one pose, log-odds {log_odds:.2f}"
+        return f"frame {frame} ({row['state']}, reason {row['reason']}): {why} ({numbers})"
 
     def decisions(self, begin, end):
         return "\n  ".join(self.decision(k) for k in range(max(0, begin), min(end, len(self))))
