@@ -126,7 +126,7 @@ def check_target_of_a_folder(root):
     """--start target takes target.yaml of the folder: the run is that of target:FILE, to the last digit."""
     file = root / "recorded" / "target.yaml"
     file.write_text("width: 0.21\nheight: 0.1485\n")
-    beside, named = (capture(root / ("target_beside" if start == "target" else "target_named"), "--no-film", "--start", start, "--frames", "10", source=f"euroc:{root / 'recorded'}")
+    beside, _ = (capture(root / ("target_beside" if start == "target" else "target_named"), "--no-film", "--start", start, "--frames", "10", source=f"euroc:{root / 'recorded'}")
                      for start in ("target", f"target:{file}"))
     require(beside["start"] == "target" and beside["tracked"] > 5, f"a target beside the frames: {beside['tracked']} frames tracked")
     texts = [path.read_text() for path in sorted(root.glob("target_*/trajectory.txt"))]
@@ -142,11 +142,10 @@ def check_motion_noise(root):
         return sum(last[7 * k] for k in range(3)), sum(last[7 * k] for k in range(3, 6))
 
     for backend in ("filter", "window"):
-        turn, shift = variances(f"motion_{backend}", backend)
-        turn_a, shift_a = variances(f"motion_{backend}_a", backend, "--motion-acceleration", "20")
-        turn_b, shift_b = variances(f"motion_{backend}_b", backend, "--motion-angular-acceleration", "40")
-        print(f"{backend}: sigmas over the default's: {(shift_a / shift) ** 0.5:.3f} with more acceleration, {(turn_b / turn) ** 0.5:.3f} with more of rotation")
-        require(shift_a > shift and turn_b > turn, f"{backend}: motion noise does not reach the covariance: {shift_a / shift}, {turn_b / turn}")
+        shifts = [variances(f"shift_{backend}_{density}", backend, "--motion-acceleration", density)[1] for density in ("0.01", "100")]
+        turns = [variances(f"turn_{backend}_{density}", backend, "--motion-angular-acceleration", density)[0] for density in ("0.01", "100")]
+        print(f"{backend}: variances with a density of 100 over those with 0.01: {shifts[1] / shifts[0]:.3f} of position, {turns[1] / turns[0]:.3f} of rotation")
+        require(shifts[1] > 1.01 * shifts[0] and turns[1] > 1.01 * turns[0], f"{backend}: motion noise does not reach the covariance: {shifts}, {turns}")
 
 
 def main():
