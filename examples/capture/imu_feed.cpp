@@ -81,10 +81,17 @@ void add_inertial(const pf_slam_t* slam, int64_t metric_frame, bool moving, cons
     }
     return sigmas;
   };
+  const auto all_rounded = [](const auto& values) {
+    nlohmann::ordered_json numbers;
+    for (const double value : values) {
+      numbers.push_back(rounded(value));
+    }
+    return numbers;
+  };
   const auto& sigma = known.sigma;
   if (estimated(sigma.mount_rad[0])) {
-    json["mount"] = {{"q_BC", known.q_BC},
-                     {"p_BC", known.p_BC},
+    json["mount"] = {{"q_BC", all_rounded(known.q_BC)},
+                     {"p_BC", all_rounded(known.p_BC)},
                      {"sigma_rad", three_sigmas(sigma.mount_rad)},
                      {"sigma_m", three_sigmas(sigma.mount_m)}};
   } else {
@@ -92,8 +99,8 @@ void add_inertial(const pf_slam_t* slam, int64_t metric_frame, bool moving, cons
   }
   json["scale_sigma"] = any && sigma.log_scale >= 0.0 ? nlohmann::ordered_json(rounded(sigma.log_scale)) : nullptr;
   if (estimated(sigma.scale)) {
-    json["gyro_matrix"] = known.gyro_matrix;
-    json["accel_matrix"] = known.accel_matrix;
+    json["gyro_matrix"] = all_rounded(known.gyro_matrix);
+    json["accel_matrix"] = all_rounded(known.accel_matrix);
     json["matrix_sigma"] = rounded(sigma.scale);
   }
   json["delay_s"] = rounded(estimated(sigma.delay_s) ? known.delay_s : model.delay_s);

@@ -16,7 +16,7 @@ optional_targets=(g++-aarch64-linux-gnu gcc-arm-none-eabi libstdc++-arm-none-eab
 optional_cameras=(libcamera-dev libiio-dev)
 optional_devices=("${optional_cameras[@]}" xvfb)
 optional_arm=(g++-arm-linux-gnueabihf)
-optional_fuzz=(clang libclang-rt-14-dev llvm)
+optional_fuzz=(clang libclang-rt-dev llvm)
 optional_all=("${optional_fuzz[@]}" clang-tidy valgrind make xz-utils)
 
 # missing_packages NAME...   prints those that are not installed
