@@ -24,8 +24,7 @@ bool KeyframeRecall::find(const Tracker& tracker, Recalled* best, Recalled* riva
       if (!map_.keyframes.used(i)) return PlaceSource();
       const BundlePixel* pixels = map_.keyframes.pixels(i);
       for (int p = 0; p < map_.capacity(); ++p)
-        if (corner_[p] >= 0 && pixels[p].seen)
-          out->add(map_.feature(p).id, map_.position(p), search.pixel(corner_[p]));
+        if (corner_[p] >= 0 && pixels[p].seen) out->add(map_.feature(p).id, map_.position(p), search.pixel(corner_[p]));
       const Keyframe& keyframe = map_.keyframes[i];
       return PlaceSource{static_cast<std::uint32_t>(keyframe.number), keyframe.q_WC, keyframe.p_W};
     }

@@ -71,7 +71,8 @@ Status MapSaving::save(const Vec3& gravity_W, std::uint32_t map_id, MapWriter* o
   write_world(gravity_W, out);
   write_planes(out);
   write_places(count, out);
-  write_anchors(map_.tables().anchors, map_id, out, [&](const Anchor& anchor) { return held_by_chosen(anchor, count); });
+  write_anchors(map_.tables().anchors, map_id, out,
+                [&](const Anchor& anchor) { return held_by_chosen(anchor, count); });
   out->end();
   return Status::kOk;
 }

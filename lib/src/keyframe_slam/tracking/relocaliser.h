@@ -1,8 +1,8 @@
 #pragma once
 
 #include "frame/pose_hypotheses.h"
-#include "keyframe_slam/memory/place_keeper.h"
 #include "keyframe_slam/memory/keyframe_recall.h"
+#include "keyframe_slam/memory/place_keeper.h"
 #include "keyframe_slam/tracking/keyframe_tracking.h"
 
 /// Finds the window's map again after frames that did not support the pose (lib/docs/theory/states.md).
