@@ -335,7 +335,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   app.add_option("--readout", options.readout_s, "rolling shutter: seconds from the first row to the last; 0: global")
       ->check(number_in(0.0, 0.2));
   app.add_option("--start", options.start,
-                 "auto, pose:FILE, target:FILE, rectangle:WxH in metres, or target for what a sim: scene shows")
+                 "auto, pose:FILE, target:FILE, rectangle:WxH in metres, or target: what a sim: scene shows, or "
+                 "target.yaml in\n"
+                 "the folder")
       ->capture_default_str();
   app.add_option("--second-pose", options.second_pose,
                  "of the window: file (TUM) with the pose of a later frame at its time; its distance from the first is "
@@ -398,6 +400,14 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
       ->capture_default_str();
   app.add_option("--jerk", options.jerk, "with --motion acceleration: density of its change, m/s^3/sqrt(Hz)")
       ->check(number_in(1e-9, 1e5));
+  app.add_option(
+         "--motion-acceleration", options.motion_acceleration,
+         "with --motion velocity: density of the acceleration by which the camera may leave it, m/s^2/sqrt(Hz)\n"
+         "(1); larger for a shaky hand or robot: wider search ellipses")
+      ->check(number_in(1e-9, 1e4));
+  app.add_option("--motion-angular-acceleration", options.motion_angular_acceleration,
+                 "the same of rotation, rad/s^2/sqrt(Hz) (2)")
+      ->check(number_in(1e-9, 1e4));
   const CLI::Option* seed = app.add_option("--seed", options.seed, "of a sim: source")->capture_default_str();
   app.add_option("--rest", options.sim_rest_s, "of a sim: source: seconds for which the camera stands still at first")
       ->check(number_in(0.0, 1000.0));
@@ -508,6 +518,9 @@ Parsed parse_options(int argc, char** argv, Options& options, int& code) {
   }
   if (wrong.empty() && options.jerk > 0.0 && motion != "acceleration") {
     wrong = "--jerk is for --motion acceleration";
+  }
+  if (wrong.empty() && options.motion_acceleration > 0.0 && motion != "velocity") {
+    wrong = "--motion-acceleration is for --motion velocity; with --motion acceleration write --jerk";
   }
   const auto mask = mask_names.find(masks);
   if (wrong.empty() && mask == mask_names.end()) {

@@ -55,7 +55,10 @@ struct Options {
   std::optional<pf_camera_estimate_t> lens;  ///< none: what Session makes of the calibration
   pf_backend_t backend = PF_BACKEND_FILTER;
   pf_motion_model_t motion = PF_MOTION_CONSTANT_VELOCITY;  ///< where no samples move the body
-  double jerk = -1.0;  ///< of constant acceleration; negative: the library's default
+  // Densities of the motion's noise; negative: the library's default.
+  double jerk = -1.0;                         ///< of constant acceleration
+  double motion_acceleration = -1.0;          ///< of constant velocity
+  double motion_angular_acceleration = -1.0;  ///< of both
   int32_t masks = PF_MASKS_NONE;
   bool keep_gauge = true;
 

@@ -30,14 +30,15 @@ int64_t clock_ns(void*) { return steady_ns(); }
 
 constexpr size_t kMaxLines = 400;
 
-/// The first and the last lines of a long run; those between them are left out.
+/// With the frame that is being pushed. The first and the last lines of a long run; those between them are left out.
 void keep_line(void* user, const char* line) {
-  auto& lines = *static_cast<std::vector<std::string>*>(user);
+  auto& log = *static_cast<Session::Log*>(user);
+  std::vector<std::string>& lines = log.lines;
   if (lines.size() >= kMaxLines) {
     lines.erase(lines.begin() + kMaxLines / 2);
     lines[kMaxLines / 2 - 1] = "(lines are left out here)";
   }
-  lines.emplace_back(line);
+  lines.emplace_back((log.frame < 0 ? "" : "frame " + std::to_string(log.frame) + ": ") + line);
 }
 
 /// A calibration is a measurement too, and estimating what it left gains more where it is poor than it costs where it is good
@@ -132,6 +133,8 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   }
   config_.motion.model = options.motion;
   set_length(config_.motion.linear_jerk_density, options.jerk);
+  set_length(config_.motion.linear_acceleration_density, options.motion_acceleration);
+  set_length(config_.motion.angular_acceleration_density, options.motion_angular_acceleration);
   imu.configure(config_);
   if (options.motion == PF_MOTION_CONSTANT_ACCELERATION && config_.motion.model != options.motion) {
     error = "--motion acceleration: here an inertial unit moves the camera; add --no-inertial, or leave --motion away";
@@ -165,15 +168,20 @@ bool Session::open(const Options& options, const Source& source, const ImuFeed& 
   }
   char message[PF_SEQUENCE_MESSAGE] = "";
   start_ = options.start;
-  if (options.start.rfind("target:", 0) == 0) {
-    has_target_ = pf_read_target(options.start.c_str() + 7, &target_, message) == 0;
+  const bool by_file = options.start == "target" && !source.info().target_path.empty();
+  if (by_file || options.start.rfind("target:", 0) == 0) {
+    const std::string file = by_file ? source.info().target_path : options.start.substr(7);
+    has_target_ = pf_read_target(file.c_str(), &target_, message) == 0;
   } else if (options.start.rfind("rectangle:", 0) == 0) {
     has_target_ = pf_parse_rectangle(options.start.c_str() + 10, &target_, message) == 0;
   } else if (options.start.rfind("pose:", 0) == 0) {
     has_pose_ = pf_read_first_pose(options.start.c_str() + 5, &pose_, message) == 0;
   } else if (options.start == "target") {
     has_target_ = source.target(target_);
-    std::snprintf(message, sizeof(message), "--start target: this source knows no target; write target:FILE");
+    if (!has_target_)
+      std::snprintf(message, sizeof(message),
+                    "--start target: a folder has its target in target.yaml, a scene shows one or not, and here there "
+                    "is none; write target:FILE");
   }
   if (!has_target_ && !has_pose_ && options.start != "auto") {
     error = message;
@@ -224,7 +232,7 @@ bool Session::begin(std::string& error) {
   if (!mask_.set(slam_, start_note_, error)) {
     return false;
   }
-  if (!map_file_.load(slam_, log_, error)) {
+  if (!map_file_.load(slam_, log_.lines, error)) {
     return false;
   }
   if (has_gravity_ && pf_set_gravity(slam_, gravity_W_) < PF_OK) {
@@ -289,7 +297,9 @@ void Session::count_map(const FrameView& view) {
 
 bool Session::push(const pf_image_t& image, FrameView& view, std::string& error) {
   const int64_t before = steady_ns();
+  log_.frame = view.index;
   view.status = pf_push_frame(slam_, &image);
+  log_.frame = -1;
   view.ms = 1e-6 * static_cast<double>(steady_ns() - before);
   if (view.status < 0) {
     error = std::string("the library refused it: ") + pf_status_text(view.status);

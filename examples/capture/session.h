@@ -46,7 +46,13 @@ class Session {
   const Plan& plan() const { return plan_; }
   /// A line for the user about what this frame has shown. false: there is none.
   bool take_notice(const FrameView& view, std::string& line);
-  const std::vector<std::string>& log() const { return log_; }
+  const std::vector<std::string>& log() const { return log_.lines; }
+
+  /// Lines of the library's log.
+  struct Log {
+    std::vector<std::string> lines;
+    int64_t frame = -1;  ///< that is being pushed, from 0; negative: none
+  };
 
  private:
   bool begin(std::string& error);
@@ -69,7 +75,7 @@ class Session {
   double gravity_W_[3] = {0.0, 0.0, 0.0};
   std::string start_;
   std::string start_note_;  ///< of the target's file or the mask, until it was told
-  std::vector<std::string> log_;
+  Log log_;
   int map_ = 1;               ///< of the run
   uint32_t map_id_ = 1;       ///< the library's, since the last reset
   bool map_tracked_ = false;  ///< some frame in this map was tracked

@@ -22,8 +22,9 @@ namespace {
 
 class FolderSource : public Source {
  public:
+  /// name   as in --source
   /// guess  of the camera, where there is no calibration
-  FolderSource(pf_sequence_t* sequence, const std::optional<pf_camera_t>& guess)
+  FolderSource(pf_sequence_t* sequence, const std::string& name, const std::optional<pf_camera_t>& guess)
       : sequence_(sequence, pf_close_sequence) {
     pf_sequence_info_t info{};
     pf_get_sequence_info(sequence, &info);
@@ -35,6 +36,7 @@ class FolderSource : public Source {
     info_.camera_name = info.camera_name;
     info_.imu_path = info.imu_path;
     info_.mask_path = info.mask_path;
+    info_.target_path = target_beside(name.substr(name.find(':') + 1));
     in_order_ = info.in_order != 0;
   }
 
@@ -96,6 +98,13 @@ class FolderSource : public Source {
   std::string name(int64_t index) const override { return pf_get_sequence_frame_path(sequence_.get(), number(index)); }
 
  private:
+  /// path  a folder, a film, or a folder with a pattern of names
+  static std::string target_beside(const std::filesystem::path& path) {
+    std::error_code ignored;
+    const bool is_folder = std::filesystem::is_directory(path, ignored);
+    const std::filesystem::path file = (is_folder ? path : path.parent_path()) / "target.yaml";
+    return std::filesystem::is_regular_file(file, ignored) ? file.string() : "";
+  }
   int64_t number(int64_t index) const { return kept_.empty() ? index : kept_[static_cast<size_t>(index)]; }
 
   std::vector<int64_t> kept_;
@@ -122,7 +131,7 @@ std::unique_ptr<Source> open_stored(const Options& options, std::string& error) 
     error = message;
     return nullptr;
   }
-  auto folder = std::make_unique<FolderSource>(sequence, options.guess);
+  auto folder = std::make_unique<FolderSource>(sequence, options.source, options.guess);
   if (options.as_recorded && !folder->keep_tracked(options.source, error)) {
     return nullptr;
   }

@@ -26,6 +26,7 @@ struct SourceInfo {
   std::string truth_path;    ///< a trajectory that lies beside the source; "" where there is none
   std::string imu_path;      ///< inertial samples that lie beside the source; likewise
   std::string mask_path;     ///< a mask of its images; likewise
+  std::string target_path;   ///< target.yaml in its folder; likewise
   std::string warning;       ///< lines that the user should know; "" where there are none
   std::string camera_name;   ///< in a calibration of several cameras; "" where it is not known
   std::string device;        ///< of a camera

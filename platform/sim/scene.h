@@ -53,6 +53,10 @@ Scene make_two_depths(Random& random, const SceneOptions& options);
 Scene make_clutter(Random& random, const SceneOptions& options);
 /// Leaves anywhere in a volume, at all slants, before nothing: no plane holds more than a few points. The target hangs in the middle.
 Scene make_bushes(Random& random, const SceneOptions& options);
+/// A room of 4 m x 4 m x 2.6 m whose four walls look the same; no target.
+Scene make_equal_room(Random& random, const SceneOptions& options);
+/// A corridor of 2 m x 18 m whose walls repeat every 2 m; no target.
+Scene make_equal_doors(Random& random, const SceneOptions& options);
 /// A checker board of `square` metres in the plane z = 0, its corner of squares at the origin.
 Scene make_checker(double square, int squares);
 

@@ -37,6 +37,15 @@ class Builder {
     scene.quads.push_back({corner, u, v, width, height, std::make_shared<Texture>(canvas), Shape::kRectangle});
   }
 
+  /// The last rectangle once more, elsewhere.
+  void add_like_last(const Vec3& corner, const Vec3& u, const Vec3& v) {
+    Quad quad = scene.quads.back();
+    quad.corner_W = corner;
+    quad.u_W = u;
+    quad.v_W = v;
+    scene.quads.push_back(std::move(quad));
+  }
+
   /// The five faces of a box that stand free: not the one that it stands on. Size is x, y, z before turning by yaw
   /// about the vertical; `foot` is the centre of the bottom.
   void add_box(const Vec3& foot, const Vec3& size, double yaw, double texel, float base, double scale, double contrast,

@@ -69,6 +69,8 @@ const SceneKind kScenes[] = {
     {"clutter", make_clutter, clutter_path, 240, nullptr},
     {"bushes", make_bushes, bushes_path, 600, nullptr},
     {"road", make_road, road_path, 600, adjust_ride},
+    {"equal-room", make_equal_room, room_path, 840, [](pf_sim_options_t* o) { o->target = 0; }},
+    {"equal-doors", make_equal_doors, corridor_path, 480, [](pf_sim_options_t* o) { o->target = 0; }},
 };
 
 const SceneKind* find_scene(const char* name) {

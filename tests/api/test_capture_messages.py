@@ -89,7 +89,8 @@ def test_usage(root):
     for option in ("--readout", "--report-every", "--delay", "--rest", "--rate", "--exposure", "--imu-rate", "--imu-offset", "--vertical"):
         expect(f"no number for {option}", 2, [f"{option}: 'nan' is not a number from"], "--source", source, option, "nan", *out)
     for option, low, high in (("--fix-sigma", "-0.001", "11"), ("--fold-sigma", "0", "11"), ("--plane-distance", "0", "11"), ("--plane-radius", "0", "1e5"),
-                              ("--plane-roughness", "0", "2"), ("--jerk", "0", "1e6")):
+                              ("--plane-roughness", "0", "2"), ("--jerk", "0", "1e6"),
+                              ("--motion-acceleration", "0", "2e4"), ("--motion-angular-acceleration", "-1", "2e4")):
         for wrong in (low, high, "nan", "much"):
             expect(f"{option} {wrong}", 2, [option, wrong], "--source", source, option, wrong, *out)
     expect("points of a plane", 2, ["--plane-points", "'3'"], "--source", source, "--plane-points", "3", *out)
@@ -97,6 +98,8 @@ def test_usage(root):
     expect("fixed in the window", 2, ["--backend window", "plane.fix_sigma"], "--source", source, "--backend", "window", "--fix-sigma", "0.01", *out)
     expect("no such motion", 2, ["--motion walk", "velocity or acceleration"], "--source", source, "--motion", "walk", *out)
     expect("jerk without acceleration", 2, ["--jerk is for --motion acceleration"], "--source", source, "--jerk", "1", *out)
+    expect("noise of a velocity that is not kept", 2, ["--motion-acceleration is for --motion velocity", "--jerk"], "--source", source, "--motion", "acceleration",
+           "--motion-acceleration", "2", *out)
     expect("acceleration in the window", 2, ["--backend window", "motion.model"], "--source", source, "--backend", "window", "--motion", "acceleration", *out)
     expect("acceleration with a unit", 2, ["--motion acceleration", "--no-inertial"], "--source", "sim:desk", "--imu", "sim", "--motion", "acceleration", "--frames", "2", *out)
     expect("every scene", 2, ["--every is for folders"], "--source", "sim:desk", "--every", "3", *out)
@@ -273,6 +276,10 @@ def test_sources(root):
         expect(name, 2, ["calib.yaml", f"'{field}'"], "--source", f"images:{path}", *out)
     path = folder(root, "target", [frame])
     (root / "nan.yaml").write_text("width: 0.2\nheight: .nan\n")
+    expect("no target in the folder", 2, ["--start target", "target.yaml", "target:FILE"], "--source", f"images:{path}", "--start", "target", *out)
+    expect("a scene without a target", 2, ["--start target", "target:FILE"], "--source", "sim:box", "--start", "target", *out)
+    (path / "target.yaml").write_text("width: 0.2\nheight: .nan\n")
+    expect("NaN in the folder's target", 2, ["target.yaml", "'height'"], "--source", f"images:{path}", "--start", "target", *out)
     expect("NaN in a target", 2, ["nan.yaml", "'height'"], "--source", f"images:{path}", "--start",
            f"target:{root}/nan.yaml", *out)
     expect("missing target", 2, ["none.yaml"], "--source", f"images:{path}", "--start", f"target:{root}/none.yaml", *out)

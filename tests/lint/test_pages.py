@@ -1,6 +1,6 @@
 """Pages and code find each other: links lead somewhere, pages that comments name exist, and every page of theory/ links to a file that names
-the page. A guide begins with a command and ends with what can go wrong, a page of results/ has a command beside its numbers, each page is reached
-from README.md in three clicks, and the sizes on a page are the golden ones."""
+the page. A guide begins with a command and ends with what can go wrong, a page of results/ has a command beside its numbers, each of its tables is remade by
+a tool or has a date, each page is reached from README.md in three clicks, and the sizes on a page are the golden ones."""
 
 import pathlib
 import re
@@ -15,6 +15,9 @@ DOCS = source.ROOT / "lib/docs"
 # Pages about the project as a whole, which no file implements.
 OVERVIEW = {"theory/architecture.md", "theory/notation.md"}
 KINDS = {"adr", "guide", "lab", "results", "theory"}
+# Tables of results/ that other tools write, or that repeat what other pages measure.
+NOT_MEASURED = {"README.md", "decisions.md", "devices.md", "missed.md"}
+OLD = r"\*Old numbers, \d{4}-\d\d-\d\d( to \d{4}-\d\d-\d\d)?\.\*\n"  # above a table that tools/remake-results does not make
 LAST = "\n## What can go wrong\n"  # section of a guide
 COMMAND = r"`(pf-|tools/|python3 |PLANEFOLD_|tests/)[^`]+`|^```(sh|console)$|`--[a-z]"
 CLICKS = 3
@@ -68,6 +71,11 @@ for page in sorted(DOCS.rglob("*.md")):
             problems.append(f"lib/docs/{name}: a guide ends with the section{LAST.rstrip()}")
     if kind == "results" and not re.search(COMMAND, text, re.M) and page.name not in ("missed.md", "README.md"):
         problems.append(f"lib/docs/{name}: no command is beside its numbers")
+    if kind == "results" and page.name not in NOT_MEASURED:
+        made = re.sub(r"<!-- remake \w+ -->.*?<!-- end -->", "", text, flags=re.S)
+        for before, head in re.findall(r"((?:.*\n){2})(\|.*)\n\|[-|: ]+\|\n", made):
+            if not re.search(OLD + "$", before.rstrip("\n") + "\n") and "<!-- no measurement -->" not in before:
+                problems.append(f"lib/docs/{name}: '{head[:60]}' is neither made by tools/remake-results nor has a line with the date of its numbers")
     if kind != "theory" or name in OVERVIEW:
         continue
     files = [path for path, _ in links(page) if path.is_file() and path.suffix in (".c", ".cpp", ".h")]

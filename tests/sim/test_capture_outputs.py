@@ -122,6 +122,33 @@ def check_lens(out, report):
         require(error < 1e-6 * report["lens"][name] and sigma > 0, f"{name}: {lens[-1]} and {report['lens']}")
 
 
+def check_target_of_a_folder(root):
+    """--start target takes target.yaml of the folder: the run is that of target:FILE, to the last digit."""
+    file = root / "recorded" / "target.yaml"
+    file.write_text("width: 0.21\nheight: 0.1485\n")
+    beside, named = (capture(root / ("target_beside" if start == "target" else "target_named"), "--no-film", "--start", start, "--frames", "10", source=f"euroc:{root / 'recorded'}")
+                     for start in ("target", f"target:{file}"))
+    require(beside["start"] == "target" and beside["tracked"] > 5, f"a target beside the frames: {beside['tracked']} frames tracked")
+    texts = [path.read_text() for path in sorted(root.glob("target_*/trajectory.txt"))]
+    require(len(texts) == 2 and texts[0] == texts[1], "target.yaml of the folder gives another run than target:FILE")
+    require("starts at the target" in beside["log"][0] and beside["log"][0].startswith("frame 0: "), f"the log: {beside['log'][:1]}")
+
+
+def check_motion_noise(root):
+    """A pose is less certain, the more its motion may change between frames. Both densities reach both back ends."""
+    def variances(name, backend, *words):
+        capture(root / name, "--no-film", "--start", "target", "--frames", "15", "--backend", backend, *words)
+        last = [float(word) for word in rows(root / name / "covariance.csv")[-1][0].split(",")[1:]]
+        return sum(last[7 * k] for k in range(3)), sum(last[7 * k] for k in range(3, 6))
+
+    for backend in ("filter", "window"):
+        turn, shift = variances(f"motion_{backend}", backend)
+        turn_a, shift_a = variances(f"motion_{backend}_a", backend, "--motion-acceleration", "20")
+        turn_b, shift_b = variances(f"motion_{backend}_b", backend, "--motion-angular-acceleration", "40")
+        print(f"{backend}: sigmas over the default's: {(shift_a / shift) ** 0.5:.3f} with more acceleration, {(turn_b / turn) ** 0.5:.3f} with more of rotation")
+        require(shift_a > shift and turn_b > turn, f"{backend}: motion noise does not reach the covariance: {shift_a / shift}, {turn_b / turn}")
+
+
 def main():
     if not PROGRAM.is_file():
         skip("pf-capture was not built")
@@ -144,6 +171,8 @@ def main():
         for folder in ("a", "f"):
             for file in (path.name for path in (root / folder).iterdir() if not path.name.startswith(".")):
                 require(file in said, f"{file} was written, and pf-capture --help does not name it")
+        check_target_of_a_folder(root)
+        check_motion_noise(root)
         # A target tells place, turn and scale; without, they are most of what is not known.
         capture(root / "e", "--frames", str(FRAMES), "--no-film")
         shares = share_within_map(root / "a"), share_within_map(root / "e")

@@ -70,8 +70,8 @@ void test_right_matches_should_speak_for_a_pose_and_chance_against_it() {
   share.init();
   int right = 0;
   for (int trial = 0; trial < 100; ++trial) {
-    right += pose_evidence(consensus_of(random, 33, 20, 15, false), share) > Scalar(3) ? 1 : 0;
-    TEST_ASSERT_TRUE(pose_evidence(consensus_of(random, 33, 8, 15, true), share) < Scalar(-3));
+    right += pose_evidence(consensus_of(random, 33, 20, 15, false), share, AlikeShare()) > Scalar(3) ? 1 : 0;
+    TEST_ASSERT_TRUE(pose_evidence(consensus_of(random, 33, 8, 15, true), share, AlikeShare()) < Scalar(-3));
   }
   TEST_ASSERT_GREATER_OR_EQUAL_INT(97, right);
 }
@@ -86,11 +86,65 @@ void test_misses_should_say_less_once_frames_have_missed_much() {
   }
   PoseConsensus none;
   none.searched = 30;
-  TEST_ASSERT_TRUE(pose_evidence(none, sharp) < pose_evidence(none, smeared) - 3);
+  TEST_ASSERT_TRUE(pose_evidence(none, sharp, AlikeShare()) < pose_evidence(none, smeared, AlikeShare()) - 3);
   const FindShare before = sharp;
   sharp.learn(0, 0);  // a frame without a search says nothing of it
-  TEST_ASSERT_DOUBLE_WITHIN(1e-12, static_cast<double>(pose_evidence(none, before)),
-                            static_cast<double>(pose_evidence(none, sharp)));
+  TEST_ASSERT_DOUBLE_WITHIN(1e-12, static_cast<double>(pose_evidence(none, before, AlikeShare())),
+                            static_cast<double>(pose_evidence(none, sharp, AlikeShare())));
+}
+
+/// In ellipses so wide that chance explains nothing of what agrees: what is left is a place that looks like the right one in a few points.
+void test_few_of_many_should_be_another_place_however_well_they_agree() {
+  SeededRandom random(302);
+  FindShare share, smeared;
+  share.init();
+  smeared.init();
+  for (int frame = 0; frame < 20; ++frame) {
+    share.learn(200, 190);
+    smeared.learn(200, 12);
+  }
+  constexpr Scalar kWide = 15;
+  const PoseConsensus few = consensus_of(random, 200, 10, kWide, false);
+  PoseConsensus exact = few;  // they agree to a pixel
+  exact.log_density = 10 * log_normal_density(2, 0, 1);
+  TEST_ASSERT_TRUE(evidence_against_chance(exact, smeared) > 20);
+  TEST_ASSERT_TRUE(pose_evidence(exact, share, AlikeShare()) < -2);
+  TEST_ASSERT_TRUE(pose_evidence(exact, smeared, AlikeShare()) > 6);  // of a smeared film ten are many
+  PoseConsensus most = consensus_of(random, 200, 190, kWide, false);
+  most.log_density = 190 * log_normal_density(2, 0, 1);
+  TEST_ASSERT_TRUE(pose_evidence(most, share, AlikeShare()) > tuning::pose_belief::kMaxFrame);
+}
+
+void test_alike_views_should_take_from_what_agrees() {
+  AlikeShare alike;
+  alike.init();
+  TEST_ASSERT_DOUBLE_WITHIN(1e-5, -6.9, static_cast<double>(alike.log_share()));
+  for (int view = 0; view < 9; ++view) alike.note(false);
+  TEST_ASSERT_DOUBLE_WITHIN(1e-5, -6.9, static_cast<double>(alike.log_share()));
+  for (int view = 0; view < 10; ++view) alike.note(true);
+  TEST_ASSERT_DOUBLE_WITHIN(1e-3, std::log(0.5), static_cast<double>(alike.log_share()));
+  FindShare share;
+  share.init();
+  PoseConsensus all;
+  all.searched = all.inliers = 40;
+  all.log_density = 40 * log_normal_density(2, 0, 1);
+  all.log_chance = 40 * log_chance_density(20000);
+  TEST_ASSERT_TRUE(pose_evidence(all, share, AlikeShare()) > 6);
+  TEST_ASSERT_TRUE(pose_evidence(all, share, alike) < 4);
+  TEST_ASSERT_TRUE(pose_evidence(all, share, alike) > 0);
+}
+
+/// Any share of n: the sum over the ways to find k, and over k.
+void test_any_share_should_sum_to_one() {
+  constexpr int kSearched = 12;
+  Scalar sum = 0, ways = 1;
+  for (int k = 0; k <= kSearched; ++k) {
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1.0 / (kSearched + 1),
+                              static_cast<double>(ways * std::exp(log_any_share(kSearched, k))));
+    sum += ways * std::exp(log_any_share(kSearched, k));
+    ways *= static_cast<Scalar>(kSearched - k) / static_cast<Scalar>(k + 1);
+  }
+  TEST_ASSERT_DOUBLE_WITHIN(1e-5, 1.0, static_cast<double>(sum));
 }
 
 }  // namespace
@@ -102,5 +156,8 @@ int main() {
   RUN_TEST(test_probability_of_all_shares_should_sum_to_one);
   RUN_TEST(test_right_matches_should_speak_for_a_pose_and_chance_against_it);
   RUN_TEST(test_misses_should_say_less_once_frames_have_missed_much);
+  RUN_TEST(test_few_of_many_should_be_another_place_however_well_they_agree);
+  RUN_TEST(test_alike_views_should_take_from_what_agrees);
+  RUN_TEST(test_any_share_should_sum_to_one);
   return UNITY_END();
 }

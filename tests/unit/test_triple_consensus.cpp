@@ -61,7 +61,7 @@ struct Matches {
   }
   Scalar evidence(int found, int attempts) const {
     unsigned char keep[kMatches];
-    return pose_evidence(find(found, attempts, keep), prior_share());
+    return evidence_against_chance(find(found, attempts, keep), prior_share());
   }
   static FindShare prior_share() {
     FindShare share;
@@ -78,7 +78,7 @@ void test_right_matches_should_speak_for_a_pose_also_when_half_are_wrong() {
     const Matches m(random, kRight);
     unsigned char keep[kMatches];
     const PoseConsensus consensus = m.find(kMatches, kMatches, keep);
-    far += pose_evidence(consensus, Matches::prior_share()) > kEnough && consensus.inliers >= 8 ? 1 : 0;
+    far += evidence_against_chance(consensus, Matches::prior_share()) > kEnough && consensus.inliers >= 8 ? 1 : 0;
     int kept = 0;
     for (int i = 0; i < kMatches; ++i) {
       kept += keep[i];

@@ -12,8 +12,7 @@ using nlohmann::json;
 
 constexpr int kManyInView = 20;  // old features, projected or measured, that make a place one that can be found again
 constexpr double kFoundWithin_s = 1;
-constexpr double kFiveSigma = 5.733e-7;  // probability that a normal variable lies beyond five standard deviations
-constexpr double kRounding = 1e-6;       // of a ratio of standard deviations
+constexpr double kRounding = 1e-6;  // of a ratio of standard deviations
 
 const char* name_of(Return then) { return then == Return::kOn ? "on" : then == Return::kBack ? "back" : "elsewhere"; }
 
@@ -22,12 +21,6 @@ std::string label_of(const GapCase& c) {
   std::snprintf(text, sizeof text, "%s_%gs_%s", c.picture == GapPicture::kBlack ? "black" : "elsewhere", c.seconds,
                 name_of(c.then));
   return text;
-}
-
-/// A tracked frame was wrong, and by more than five of its own standard deviations.
-bool is_wrong_and_confident(const Trial& t) {
-  static const double bound = chi_square_quantile(1 - kFiveSigma, 6);
-  return t.wrong_normalised > bound;
 }
 
 bool is_found(const Trial& t, double interval_s) {
@@ -62,7 +55,7 @@ struct Tally {
   std::vector<double> delay_s;
 
   void add(const Trial& t, double interval_s) {
-    static const double bound = chi_square_quantile(1 - kFiveSigma, 6);
+    const double bound = five_sigma_bound();
     if (!t.done) return;
     ++trials;
     tracking_again += t.tracked_after >= 0;
@@ -114,13 +107,26 @@ void print_row(const std::string& label, const json& j) {
 
 json summarise_random(const KidnapResult& job) {
   const std::size_t starts = job.reference.starts.size();
-  int frames = 0, tracking = 0, in_map = 0, judged = 0, right = 0, turns = 0, turns_wrong = 0;
+  int frames = 0, tracking = 0, in_map = 0, judged = 0, right = 0, confident = 0, turns = 0, turns_wrong = 0;
+  json wrong = json::array();
   for (int r = 0; r < job.options.random_runs && starts > 0; ++r) {
     frames += job.random[r].frames;
     tracking += job.random[r].tracking;
     in_map += job.random[r].in_map;
     judged += job.random[r].judged;
     right += job.random[r].right;
+    confident += job.random[r].confident;
+    const int listed = std::min(job.random[r].judged - job.random[r].right, RandomOrder::kMaxWrong);
+    for (int k = 0; k < listed; ++k) {
+      const RandomOrder::Wrong& w = job.random[r].wrong[k];
+      wrong.push_back({{"run", r},
+                       {"at", w.at},
+                       {"frame", w.frame},
+                       {"deg", w.deg},
+                       {"depths", w.depths},
+                       {"normalised", w.normalised},
+                       {"log_odds", w.log_odds}});
+    }
     turns += job.random[r].turns;
     turns_wrong += job.random[r].turns_wrong;
   }
@@ -129,13 +135,16 @@ json summarise_random(const KidnapResult& job) {
               {"in_the_old_map", in_map},
               {"judged", judged},
               {"right", right},
+              {"wrong_and_confident", confident},
+              {"wrong", wrong},
               {"turns", turns},
               {"turns_wrong", turns_wrong},
               {"tracking_share", frames > 0 ? static_cast<double>(tracking) / frames : 0.0}};
   std::printf(
       "random order: %d of %d frames tracking (%.2f %%), %d of them in the old map; %d of %d that can be judged are "
-      "where they should be; %d of %d turns between two of them are wrong\n",
-      tracking, frames, frames > 0 ? 100.0 * tracking / frames : 0.0, in_map, right, judged, turns_wrong, turns);
+      "where they should be, %d are wrong and confident; %d of %d turns between two of them are wrong\n",
+      tracking, frames, frames > 0 ? 100.0 * tracking / frames : 0.0, in_map, right, judged, confident, turns_wrong,
+      turns);
   return out;
 }
 

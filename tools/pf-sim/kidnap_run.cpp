@@ -13,6 +13,7 @@ namespace {
 using pf::sim::Vec3;
 
 constexpr double kWrongDeg = 5, kWrongDepths = 0.1;
+constexpr double kFiveSigma = 5.733e-7;  // probability that a normal variable lies beyond five standard deviations
 constexpr double kDegrees = 57.29577951308232;  // in a radian
 constexpr double kTruthShare =
     0.2;  // of these bounds, that the reference's own sigmas may reach where it serves as truth
@@ -221,6 +222,13 @@ std::vector<int> shown_after(const Film& film, int start, int gap, Return then, 
 
 }  // namespace
 
+double five_sigma_bound() {
+  static const double bound = chi_square_quantile(1 - kFiveSigma, 6);
+  return bound;
+}
+
+bool is_wrong_and_confident(const Trial& t) { return t.wrong_normalised > five_sigma_bound(); }
+
 bool is_wrong(double deg, double depths) { return deg > kWrongDeg || depths > kWrongDepths; }
 
 const std::vector<GapCase>& gap_cases() {
@@ -352,7 +360,18 @@ RandomOrder play_random(const Film& film, const KidnapOptions& options, const Re
     }
     result.in_map += in_map;
     result.judged += frame.judged;
-    result.right += in_map && frame.judged > 0 && !is_wrong(frame.worst_deg, frame.worst_depths);
+    if (!in_map || frame.judged == 0) continue;
+    if (!is_wrong(frame.worst_deg, frame.worst_depths)) {
+      ++result.right;
+      continue;
+    }
+    pf_report_t report;
+    pf_get_report(context.slam, &report);
+    const int wrong = result.judged - result.right - 1;
+    if (wrong < RandomOrder::kMaxWrong)
+      result.wrong[wrong] = {result.frames,          shown,          frame.worst_deg, frame.worst_depths,
+                             frame.wrong_normalised, report.log_odds};
+    result.confident += is_wrong_and_confident(frame);
   }
   return result;
 }

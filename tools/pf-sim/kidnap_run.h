@@ -79,12 +79,22 @@ struct Survival {
 struct RandomOrder {
   std::int32_t frames = 0, tracking = 0, in_map = 0;  ///< in_map: tracking in the map of the beginning
   std::int32_t judged = 0;                            ///< of those in the old map where the truth is known
-  std::int32_t right = 0;  ///< of those right: within 5 degrees and 10 % of depth of the truth
+  std::int32_t right = 0;      ///< of those right: within 5 degrees and 10 % of depth of the truth
+  std::int32_t confident = 0;  ///< of those that are wrong: by more than five of their own standard deviations
+  static constexpr int kMaxWrong = 100;
+  struct Wrong {
+    std::int32_t at = 0, frame = 0;  ///< shown so many frames after the beginning, and its number in the film
+    double deg = 0, depths = 0, normalised = 0, log_odds = 0;
+  } wrong[kMaxWrong];  ///< the first of those that are wrong
   std::int32_t turns = 0,
                turns_wrong = 0;  ///< from a tracked frame to the next one in the same map; wrong by over 5 degrees
 };
 
 bool is_wrong(double deg, double depths);
+/// Normalised error of a pose, squared, that five standard deviations of one normal variable correspond to.
+double five_sigma_bound();
+/// A tracked frame was wrong, and by more than five of its own standard deviations.
+bool is_wrong_and_confident(const Trial& t);
 
 /// Plays the film once and keeps the context where trials begin.
 bool play_reference(const Film& film, const KidnapOptions& options, Context& context, Reference* reference);

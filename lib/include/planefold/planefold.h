@@ -398,7 +398,7 @@ typedef struct pf_config {
   /* Nanoseconds of any steady clock, for the cost of each stage in the report; null reads no clock.
    * Default null */
   int64_t (*clock_ns)(void* user);
-  /* One line of plain text on what the library decided (a start, a reset, a loss); null: no log.
+  /* One line of plain text, up to 239 characters, on what the library decided; null: no log.
    * Default null */
   void (*log)(void* user, const char* line);
   void*

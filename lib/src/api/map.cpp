@@ -45,9 +45,6 @@ pf_status_t pf_load_map(pf_slam_t* slam, const void* buffer, size_t bytes) {
       slam->session.map_calls().load(static_cast<const std::uint8_t*>(buffer), bytes, &wrong, &gravity_W);
   if (status == pf::Status::kOk && gravity_W.squaredNorm() > pf::Scalar(0)) slam->session.set_gravity(gravity_W);
   const pf::Hooks& hooks = slam->session.settings().hooks;
-  if (wrong != nullptr) {
-    hooks.say("the map is refused:");
-    hooks.say(wrong);
-  }
+  if (wrong != nullptr) hooks.say("map rejected: ", wrong);
   return pf::to_c(status);
 }

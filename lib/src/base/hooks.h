@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "base/log_line.h"
+
 namespace pf {
 
 /// The caller's functions: a clock and a log for lines of text. Either may be null.
@@ -11,9 +13,16 @@ struct Hooks {
   void* user = nullptr;
 
   std::int64_t now() const { return clock_ns != nullptr ? clock_ns(user) : 0; }
-  void say(const char* line) const {
-    if (log != nullptr) log(user, line);
+  /// Logs one line of texts, whole numbers and fixed() ones. Without a log nothing is built.
+  template <class... Parts>
+  void say(const Parts&... parts) const {
+    if (log == nullptr) return;
+    const LogPart part[] = {parts...};
+    write(part, sizeof...(parts));
   }
+
+ private:
+  [[gnu::cold]] void write(const LogPart* part, int parts) const;
 };
 
 /// Adds the time that a scope takes to a stage.

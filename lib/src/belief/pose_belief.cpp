@@ -11,6 +11,7 @@ using namespace tuning::pose_belief;
 
 void PoseBelief::init() {
   share_.init();
+  alike_.init();
   lens_ = LensBelief();
   log_odds_ = predicted_ = least_ = kAnew;
   is_noted_ = false;

@@ -35,8 +35,12 @@ class PoseBelief {
   /// Log-odds of a pose after this frame's evidence, from those before it.
   static Scalar updated(Scalar before, Scalar evidence);
   /// Evidence of a consensus of this frame.
-  Scalar evidence(const PoseConsensus& consensus) const { return pose_evidence(consensus, share_); }
+  Scalar evidence(const PoseConsensus& consensus) const { return pose_evidence(consensus, share_, alike_); }
   const FindShare& share() const { return share_; }
+  /// Most that the log-odds of a pose elsewhere can be: however many images agree, the place may be another one that looks alike.
+  Scalar most_elsewhere() const { return -alike_.log_share(); }
+  /// A new part of the map: whether it looks like one that is elsewhere.
+  void note_view(bool is_alike) { alike_.note(is_alike); }
   /// Notes the log-odds of a hypothesis of this frame; the greatest counts.
   void note(Scalar log_odds);
   /// Replaces what was noted: this pose has been used.
@@ -57,6 +61,7 @@ class PoseBelief {
 
  private:
   FindShare share_;
+  AlikeShare alike_;
   LensBelief lens_;
   Scalar log_odds_ = 0, predicted_ = 0;
   Scalar least_ = 0;       ///< of a prediction

@@ -47,8 +47,20 @@ Scalar FindShare::in_frame(int searched, int inliers) const {
   return (kWeight * mean_ + static_cast<Scalar>(inliers)) / (kWeight + static_cast<Scalar>(searched));
 }
 
-Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share) {
+Scalar evidence_against_chance(const PoseConsensus& consensus, const FindShare& share) {
   return share.log_probability(consensus.searched, consensus.inliers) + consensus.log_density - consensus.log_chance;
+}
+
+Scalar log_any_share(int searched, int inliers) {
+  return log_rising(1, inliers) + log_rising(1, searched - inliers) - log_rising(2, searched);
+}
+
+Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike) {
+  const Scalar against_chance = evidence_against_chance(consensus, share);
+  const Scalar against_alike = share.log_probability(consensus.searched, consensus.inliers) -
+                               log_any_share(consensus.searched, consensus.inliers) - alike.log_share();
+  const Scalar least = std::min(against_chance, against_alike);
+  return least - std::log1p(std::exp(least - std::max(against_chance, against_alike)));
 }
 
 }  // namespace pf

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/scalar.h"
+#include "belief/alike_share.h"
 
 /// Evidence of one frame for a pose: the ratio of two likelihoods of what its searches have found.
 
@@ -44,9 +45,20 @@ class FindShare {
 
 /// ln of the ratio of the likelihoods of this consensus: of a right pose, and of a wrong one whose finds are all chance.
 ///
-///   E = ln P(k of n found) + ln N(r; 0, S) - sum over the inliers of ln c_i
+///   E_c = ln P(k of n found) + ln N(r; 0, S) - sum over the inliers of ln c_i
 ///
 /// What was found elsewhere is chance under both and cancels, as does what was missed but for P.
-Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share);
+Scalar evidence_against_chance(const PoseConsensus& consensus, const FindShare& share);
+
+/// ln of the probability that just these `inliers` of `searched` features are found where any share of them may be: ln B(k + 1, n - k + 1).
+Scalar log_any_share(int searched, int inliers);
+
+/// The same ratio, where a wrong pose may also be that of a place that looks like another one. What is found there agrees as well as in the
+/// right place; but how much of it is found may be anything, where of the right place most is:
+///
+///   E = -ln(exp(-E_c) + exp(-E_a)),   E_a = ln P(k of n found) - ln B(k + 1, n - k + 1) - ln s
+///
+/// s: share of places that look like another one.
+Scalar pose_evidence(const PoseConsensus& consensus, const FindShare& share, const AlikeShare& alike);
 
 }  // namespace pf

@@ -17,6 +17,11 @@ inline constexpr Scalar kElsewhere = Scalar(-13.8);  ///< of any other pose: pic
 inline constexpr double kHazard = 0.005;  ///< [1/s] that what a prediction relies on ends: a cut, a grip, a blow
 }  // namespace pose_belief
 
+/// Share of views that look like another part of the map (alike_share.h).
+namespace alike_share {
+inline constexpr Scalar kWeight = Scalar(1);  ///< views that are not alike, which are assumed before any is known
+}  // namespace alike_share
+
 /// Log-odds that a feature is a point of the scene (feature_belief.h). A new one has zero: half of them are never measured again.
 namespace feature_belief {
 inline constexpr Scalar kMost = Scalar(6.9);   ///< that a feature can have: none once in a thousand

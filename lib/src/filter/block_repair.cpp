@@ -13,7 +13,7 @@ using namespace tuning::soundness;
 
 namespace {
 
-constexpr Scalar kBelowZero = sizeof(Scalar) == sizeof(float) ? kRoundingFloat : kRounding;
+const Scalar kBelowZero = sizeof(Scalar) == sizeof(float) ? kRoundingFloat : kRounding;
 
 }  // namespace
 

@@ -125,7 +125,7 @@ void BlockFilter::downdate(const Scalar* U, const Scalar* G, int rows) {
 
 /// What the downdate took of a variance is w^T w, w its column of L^-1 H P.
 void BlockFilter::keep_rounding() {
-  constexpr Scalar kLeast = tuning::soundness::kDigits * std::numeric_limits<Scalar>::epsilon();
+  const Scalar kLeast = tuning::soundness::kDigits * std::numeric_limits<Scalar>::epsilon();
   Scalar* taken = dx_;
   std::fill(taken, taken + P_.n, Scalar(0));
   for (int k = 0; k < gained_; ++k)

@@ -50,7 +50,7 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   tracking_.note_usable_image(data_.since_last_ns);
   // W is the plan's as long as there are walls: a new map would begin somewhere else.
   if (tracking_.needs_new_map(settings_.restart_ns) && !map_.planes.has_known() && !upkeep_.is_in_loaded_map())
-    begin_new_map("not found again for too long: the old map is discarded, a new map begins");
+    begin_new_map("it was not found again within motion.restart_s");
   const StartProgress& progress = start_.recorder().progress();
   const bool first = !tracking_.has_pose();
   images_.relocaliser().begin_frame(data_.since_last_ns);
@@ -165,7 +165,7 @@ void FilterSlam::begin_frame(std::int64_t t_ns) {
   frame_.begin(t_ns);
   if (data_.map_discredited) begin_new_map(unit_.why_discredited());
   if (images_.is_map_fixed() && tracking_.has_pose() && !map_.planes.has_known())
-    begin_new_map("part of the picture stands still while the rest moves: it is masked, and a new map begins");
+    begin_new_map("part of the image stands still while the rest moves, and is masked from now on");
   tracking_.begin_frame(data_.since_last_ns);
   if (!tracking_.has_pose()) {
     motion_.init();  // control input is for one frame only
@@ -209,19 +209,22 @@ Status FilterSlam::end_frame() {
 
 /// The estimate is not finite or P is no covariance: clears everything that came from it.
 void FilterSlam::start_over() {
+  const std::uint32_t map_id = tracking_.map_id();
   clear_estimate();
   tracking_.start_over();
-  settings_.hooks.say("the estimate is no longer finite: starting again without it");
+  settings_.hooks.say("the estimate of map ", map_id, " is not finite, or its covariance is invalid: map ",
+                      tracking_.map_id(), " starts without it");
 }
 
 /// The map was not found again for too long, although the images were usable, or its scale is discredited: a new one begins with this
 /// frame.
 void FilterSlam::begin_new_map(const char* why) {
+  const std::uint32_t map_id = tracking_.map_id();
   if (!data_.map_discredited && tracking_.has_pose()) start_.mounting().keep();
   clear_estimate();
   tracking_.begin_map();
   data_.map_discredited = false;
-  settings_.hooks.say(why);
+  settings_.hooks.say("map ", map_id, " is discarded, map ", tracking_.map_id(), " begins: ", why);
 }
 
 void FilterSlam::clear_estimate() {

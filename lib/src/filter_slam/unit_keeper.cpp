@@ -8,7 +8,7 @@ namespace pf {
 
 namespace {
 
-constexpr const char* kSamplesBegin = "the inertial unit's clock and axes are found: a new map begins with its samples";
+constexpr const char* kSamplesBegin = "the inertial unit's clock and axes are found, and the new map uses its samples";
 
 constexpr double kPatience = 5;  ///< [s] of a map, after which waiting for a better scale costs more than it brings
 
@@ -149,8 +149,8 @@ bool UnitKeeper::discredits_map(bool follows, std::int64_t dt_ns) {
     if (left_rest) watch_.take(UnitEvent::kGoesOn);
     return false;
   }
-  why_discredited_ = left_rest ? "it moves, and the inertial unit's clock or axes are not known yet: a new map begins"
-                               : "the map's scale came from a unit that is doubted: a new map begins";
+  why_discredited_ = left_rest ? "the camera leaves its rest before the inertial unit's clock and axes are known"
+                               : "its scale came from an inertial unit that is rejected";
   watch_.take(UnitEvent::kNewMap);
   return true;
 }

@@ -83,7 +83,7 @@ void CornerCells::fill(int in_view, int min_inliers, int turn, int max_in_cell, 
 /// or kPlaneAhead more on a plane, where a feature has two rows and a known depth.
 template <typename F>
 void CornerCells::fill_cells(int in_view, int turn, int max_in_cell, F&& add_in) {
-  constexpr int kPlaneAhead = tuning::image_corners::kPlaneAhead;
+  const int kPlaneAhead = tuning::image_corners::kPlaneAhead;
   for (int level = -kPlaneAhead; level < max_in_cell && in_view_ < in_view; ++level) {
     for (int cell = 0; cell < kCells && in_view_ < in_view; ++cell) {
       // This order visits no neighbours one after the other.

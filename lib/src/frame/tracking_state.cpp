@@ -1,32 +1,13 @@
 #include "frame/tracking_state.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/elapsed.h"
 
 namespace pf {
 
 namespace {
-
-const char* text_of_loss(FrameReason reason) {
-  switch (reason) {
-    case FrameReason::kNothingInView:
-      return "lost: nothing of the map was in view for too long";
-    case FrameReason::kFewFound:
-      return "lost: too few features were found for too long";
-    case FrameReason::kDisagree:
-      return "lost: too few features agreed with one pose for too long";
-    case FrameReason::kImprobable:
-      return "lost: no pose was believed for too long";
-    case FrameReason::kUncertain:
-      return "lost: the pose was too uncertain for too long";
-    case FrameReason::kLens:
-      return "lost: pictures have not been those of the calibrated lens for too long";
-    case FrameReason::kNone:
-      break;
-  }
-  return "lost";
-}
 
 /// Of a frame that is not tracked: the first condition that it does not meet, in the order in which they are tested.
 FrameReason reason_of(const FrameReport& report, int min_inliers, bool unusable, bool lens_kept) {
@@ -37,11 +18,24 @@ FrameReason reason_of(const FrameReport& report, int min_inliers, bool unusable,
   return std::max(report.consensus, report.inliers) < min_inliers ? FrameReason::kDisagree : FrameReason::kImprobable;
 }
 
-const char* text_of_change(Scalar log_ratio) {
-  return log_ratio > 0 ? "the picture is larger than the calibration says: the lens has changed (zoom, focus, another "
-                         "sensor); it has to be calibrated, or held as it was"
-                       : "the picture is smaller than the calibration says: the lens has changed (zoom, focus, another "
-                         "sensor); it has to be calibrated, or held as it was";
+/// With the numbers that the reason depends on. since_s: the last tracked frame.
+void log_loss(const Hooks& hooks, const FrameReport& report, const PoseBelief& belief, int min_inliers,
+              std::uint32_t map_id, double since_s) {
+  const auto log = [&](const auto&... parts) {
+    hooks.say("map ", map_id, " lost, ", fixed(since_s, 2), " s after its last tracked frame: ", parts...);
+  };
+  if (report.reason == FrameReason::kNothingInView)
+    log("nothing of the map is in view");
+  else if (report.reason == FrameReason::kFewFound)
+    log(report.matches, " of ", report.attempts, " features are found, ", min_inliers, " are needed");
+  else if (report.reason == FrameReason::kDisagree)
+    log(std::max(report.consensus, report.inliers), " features agree with one pose, ", min_inliers, " are needed");
+  else if (report.reason == FrameReason::kUncertain)
+    log("the pose is too uncertain, by ", report.inliers, " features");
+  else if (report.reason == FrameReason::kLens)
+    log("the image is not that of the calibrated lens, log-odds ", fixed(belief.lens().log_odds(), 1));
+  else
+    log("the pose is improbable, log-odds ", fixed(belief.log_odds(), 1));
 }
 
 }  // namespace
@@ -52,7 +46,9 @@ Status TrackingState::conclude(const StartProgress& start, std::int64_t max_coas
   if (!d.has_pose) return Status::kStarting;
   const bool tracked = is_tracked(*report);
   if (tracked) {
-    if (d.lost) hooks.say("found the map again");
+    if (d.lost)
+      hooks.say("map ", d.map_id, " found again: ", report->inliers, " of ", report->matches,
+                " found features agree with the pose, log-odds ", fixed(d.belief.log_odds(), 1));
     d.lost = false;
     d.usable_ns = 0;
     d.last_tracked_ns = report->t_ns;
@@ -71,11 +67,14 @@ Status TrackingState::conclude(const StartProgress& start, std::int64_t max_coas
   report->reason = reason_of(*report, settings_.min_inliers, d.unusable, d.belief.lens().is_kept());
   if (d.belief.lens().has_changed() && !d.lens_said) {
     d.lens_said = true;
-    hooks.say(text_of_change(d.belief.lens().log_ratio()));
+    hooks.say("the lens has changed (zoom, focus, another sensor), log-odds ", fixed(d.belief.lens().log_odds(), 1),
+              ": the image is that of ", fixed(std::exp(d.belief.lens().log_ratio()), 3),
+              " times the calibrated focal length; calibrate it, or keep it fixed");
   }
   if (!d.lost && elapsed_ns(d.last_tracked_ns, report->t_ns) > max_coast_ns) {
     d.lost = true;
-    hooks.say(text_of_loss(report->reason));
+    log_loss(hooks, *report, d.belief, settings_.min_inliers, d.map_id,
+             seconds(elapsed_ns(d.last_tracked_ns, report->t_ns)));
   }
   d.state = d.lost ? SlamState::kLost : SlamState::kCoasting;
   return d.lost ? Status::kLost : Status::kCoasting;

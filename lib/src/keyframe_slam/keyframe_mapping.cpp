@@ -11,16 +11,18 @@ namespace pf {
 
 using namespace tuning::keyframe_slam;
 
-void KeyframeMapping::keep(bool tracked, bool young, Scalar median_depth, const FindShare& share) {
+bool KeyframeMapping::keep(bool tracked, bool young, Scalar median_depth, const FindShare& share) {
   const bool pending = record_.progress().pending();
   // Poses of a map with few depths are too coarse to triangulate from; the adjustment of a keyframe gives depths.
   if (tracked && !pending && !young) triangulate_inliers(young);
   count_searches(frame_, share, &map_.tables().features, tracked || pending);
   if (tracked || pending) drop_failing(&map_);
-  if (tracked && !pending && wants_keyframe(young, median_depth)) add_frame(young, median_depth);
+  const bool is_keyframe = tracked && !pending && wants_keyframe(young, median_depth);
+  if (is_keyframe) add_frame(young, median_depth);
   // The first frame, one in which a record began anew, and every other keyframe.
   const int newest = map_.keyframes.newest();
   if (newest >= 0 && map_.keyframes[newest].t_ns == frame_.report.t_ns) add_points(pending, median_depth);
+  return is_keyframe;
 }
 
 void KeyframeMapping::triangulate_inliers(bool young) {

@@ -40,8 +40,9 @@ class KeyframeMapping {
   }
 
   /// The work of one frame. tracked: its matches support its pose; other frames change nothing in the map, but for the first one. young: so
-  /// few points have a depth that those without took part in the pose. share: of searches that find something, in earlier frames.
-  void keep(bool tracked, bool young, Scalar median_depth, const FindShare& share);
+  /// few points have a depth that those without took part in the pose. share: of searches that find something, in earlier frames. Returns
+  /// whether the frame became a keyframe.
+  bool keep(bool tracked, bool young, Scalar median_depth, const FindShare& share);
   /// Adjusts the map about the newest keyframe, which is this frame, and moves the body with it.
   void adjust();
 

@@ -67,9 +67,12 @@ Status KeyframeSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   tracking_.note_usable_image(data_.since_last_ns);
   const bool is_gone = !start_.is_in_loaded_map() && tracking_.needs_new_map(settings_.restart_ns);
   if (is_gone || (data_.is_map_fixed && tracking_.has_pose())) {
-    discard_map(is_gone ? "not found again for too long: the old map is discarded, a new map begins"
-                        : "part of the picture stands still while the rest moves: it is masked, and a new map begins");
+    const std::uint32_t map_id = tracking_.map_id();
+    discard_map();
     tracking_.begin_map();
+    settings_.hooks.say("map ", map_id, " is discarded, map ", tracking_.map_id(), " begins: ",
+                        is_gone ? "it was not found again within motion.restart_s"
+                                : "part of the image stands still while the rest moves, and is masked from now on");
   }
   measure();
   data_.is_map_fixed = search_.note_fixed();
@@ -136,7 +139,9 @@ void KeyframeSlam::learn() {
     measuring_.learn_noise();
     data_.warnings.check(settings_, noise_, map_.camera());
   }
-  mapping_.keep(tracked, data_.young, data_.median_depth, tracking_.belief().share());
+  const bool is_keyframe = mapping_.keep(tracked, data_.young, data_.median_depth, tracking_.belief().share());
+  // A keyframe has work enough.
+  if (tracked && !is_keyframe && !record_.progress().pending()) relocaliser_.note_view(data_.median_depth);
 }
 
 /// The map keeps its shape: the distance of the frame from the first place becomes the known one. Of a frame before depths were known, its
@@ -153,7 +158,8 @@ void KeyframeSlam::scale_by_second_pose() {
   record_.init();
   if (!(is_now || second.estimated) || !(moved > tuning::second_pose::kMinSecondShift * data_.median_depth) ||
       !std::isfinite(scale)) {
-    settings_.hooks.say("the second pose gives no scale: its frame was not tracked, or the camera had not moved");
+    settings_.hooks.say("the second pose gives no scale: its frame was not tracked, or the camera moved too little (",
+                        fixed(moved, 4), " with a median depth of ", fixed(data_.median_depth, 2), ")");
     return;
   }
   scale_window(scale, first_W, &map_, &planes_, &motion_);
@@ -162,14 +168,18 @@ void KeyframeSlam::scale_by_second_pose() {
   relocaliser_.init();
   data_.median_depth *= scale;
   if (data_.mark.is_set) data_.mark = Mark();
-  settings_.hooks.say("the scale is that of the second pose");
+  settings_.hooks.say("map ", tracking_.map_id(), " is scaled by ", fixed(scale, 3),
+                      ", to the distance of the second pose");
 }
 
 /// Returns the status of the frame.
 Status KeyframeSlam::end_frame() {
   if (tracking_.has_pose() && !motion_.is_sound()) {
-    discard_map("the estimate is no longer finite: starting again without it");
+    const std::uint32_t map_id = tracking_.map_id();
+    discard_map();
     tracking_.start_over();
+    settings_.hooks.say("the estimate of map ", map_id, " is not finite, or its covariance is invalid: map ",
+                        tracking_.map_id(), " starts without it");
   }
   if (tracking_.is_tracked(frame_.report) && !record_.progress().pending()) {
     const Scalar depth = map_.median_depth(motion_.body().q_WC, motion_.body().p_W);
@@ -187,14 +197,13 @@ Status KeyframeSlam::end_frame() {
 }
 
 /// Clears the map, and all that refers to poses in it.
-void KeyframeSlam::discard_map(const char* why) {
+void KeyframeSlam::discard_map() {
   start_.start_over();
   motion_.init();
   relocaliser_.init();
   search_.forget_view();
   mapping_.init();
   data_.mark = Mark();
-  settings_.hooks.say(why);
 }
 
 }  // namespace pf

@@ -79,7 +79,7 @@ class KeyframeSlam {
   void measure();
   void learn();
   void scale_by_second_pose();
-  void discard_map(const char* why);
+  void discard_map();
 
   const Settings& settings_;
   Frame frame_;

@@ -70,12 +70,13 @@ int PlaceSearch::corner_of(const Descriptor& point) const {
   return static_cast<Scalar>(bits[best]) < kMaxRatio * static_cast<Scalar>(second) ? best : -1;
 }
 
-int PlaceSearch::find_pose_of(const Camera& camera, const PlaceMatches& matches, PoseEstimate* pose) {
+int PlaceSearch::find_pose_of(const Camera& camera, const PlaceMatches& matches, PoseEstimate* pose, bool* is_inlier) {
   const Scalar width = static_cast<Scalar>(camera.width);
   const PnpSearch search = {kBoundWidth * width, kTrials, kMinMatches, {kSigmaWidth * width, kHuber, kRounds}};
   unsigned char inlier[PlaceMatches::kMax];
   const int inliers = find_pose(camera, matches.point, matches.count, search, &random_, pose, inlier);
   if (inliers > 0) pose->covariance *= kInflation;
+  for (int i = 0; i < matches.count; ++i) is_inlier[i] = inliers > 0 && inlier[i] != 0;
   return inliers;
 }
 

@@ -42,8 +42,8 @@ class PlaceSearch {
   Vec2 pixel(int corner) const { return corner_[corner].pixel; }
 
   /// The pose from which most of the matches are where they should be. Its covariance allows for what the points share. Returns the number
-  /// of inliers, 0 where they are too few. pose: where the place was seen from.
-  int find_pose_of(const Camera& camera, const PlaceMatches& matches, PoseEstimate* pose);
+  /// of inliers, 0 where they are too few. pose: where the place was seen from. is_inlier: of each match.
+  int find_pose_of(const Camera& camera, const PlaceMatches& matches, PoseEstimate* pose, bool* is_inlier);
 
  private:
   static constexpr int kLevels = 3;  ///< of the image's pyramid, that are described

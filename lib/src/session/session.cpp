@@ -28,7 +28,7 @@ void Session::init() {
   else
     window_->init();
   if (settings_.readout_ignored)
-    settings_.hooks.say("nominal timestamps give rows no time of their own: the rolling shutter counts as global");
+    settings_.hooks.say("camera.readout_s counts as 0: nominal timestamps give rows no time of their own");
 }
 
 Status Session::start_from_target(const Target& target) {

@@ -43,8 +43,8 @@ inline constexpr Scalar kSmallTurn = Scalar(1e-3);  ///< [rad] of the last one: 
 
 /// Sub-pixel sides of a quadrilateral.
 namespace quad_refine {
-inline constexpr Scalar kReach = 5;                    ///< across a side, each way [px]
-inline constexpr Scalar kStep = Scalar(0.5);           ///< between samples [px]
+static constexpr Scalar kReach = 5;                    ///< across a side, each way [px]
+static constexpr Scalar kStep = Scalar(0.5);           ///< between samples [px]
 inline constexpr Scalar kRobust = Scalar(0.4);         ///< residual that counts half [px]
 inline constexpr Scalar kMaxRms = Scalar(1.0);         ///< of a side [px]
 inline constexpr Scalar kMaxMove = 4;                  ///< of a corner [px]
@@ -105,7 +105,7 @@ inline constexpr Scalar kCorrelation = 4;            ///< frames that have the s
 
 /// Templates with a mask.
 namespace template_match {
-inline constexpr int kReach = 4;                       ///< [px] to each side that are searched
+static constexpr int kReach = 4;                       ///< [px] to each side that are searched
 inline constexpr Scalar kFloor = Scalar(0.1);          ///< [px^2] added to the ellipse that is searched
 inline constexpr float kMinPeak = 0.5f;                ///< correlation by the mask's weights, of the peak
 inline constexpr float kMinPeakLead = 0.04f;           ///< of the first peak over the second

@@ -22,6 +22,8 @@
  *         clutter   boards and posts at many depths before a wall
  *         bushes    leaves anywhere in a volume: no plane
  *         road      72 m past poles, parked boxes and fronts
+ *         equal-room    a room whose four walls look the same; no target
+ *         equal-doors   a corridor whose walls repeat every 2 m; no target
  *
  * W is the centre of the target: x right, y down, z into the wall; of the box, its middle; of the street, where the camera
  * begins. The same seed and options give the same pixels.

@@ -50,7 +50,8 @@ void ForceCheck::judge() {
   else if (mean < kNone * g && length < g / 2)
     reason = UnitReason::kAccelWithoutGravity;
   if (reason != UnitReason::kNone && reason != data_.reason)
-    settings_.hooks.say("the accelerometer does not read gravity: only the gyroscope is used; the report says why");
+    settings_.hooks.say("the accelerometer's mean specific force is ", fixed(mean, 2), " in place of ", fixed(g, 2),
+                        " m/s^2: only the gyroscope is used");
   data_.reason = reason;
 }
 

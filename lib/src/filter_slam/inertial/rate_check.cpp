@@ -26,6 +26,23 @@ bool is_other_clock(const RateFit& fit, double at_s) {
   return fit.at_end || std::abs(fit.delay - static_cast<Scalar>(at_s)) > std::max(kClock, 3 * fit.sigma_delay);
 }
 
+/// value: as find_reason() sets it.
+void log_reason(const Hooks& hooks, UnitReason reason, Scalar value) {
+  const auto log = [&](const auto&... parts) { hooks.say("samples of the inertial unit are not used: ", parts...); };
+  if (reason == UnitReason::kLeftHanded)
+    log("its rates fit the camera's by a reflection, and by no rotation");
+  else if (reason == UnitReason::kColumnsSwapped)
+    log("its mean rate of ", fixed(value, 2), " reads like gravity");
+  else if (reason == UnitReason::kRatesDoNotFit)
+    log("of the camera's rates ", fixed(100 * value, 0), " % are explained by no delay and no axes");
+  else if (reason == UnitReason::kAxes)
+    log("its rates fit the camera's by axes that are ", fixed(value, 1), " deg off");
+  else if (reason == UnitReason::kClock)
+    log("its rates fit the camera's with a delay of ", fixed(1000 * value, 1), " ms");
+  else  // kGyroInDegrees, kGyroScale
+    log("its rates are ", fixed(value, 2), " times the camera's");
+}
+
 }  // namespace
 
 void RateCheck::init() {
@@ -88,29 +105,28 @@ bool RateCheck::find_reason(double at_s) {
   const Scalar off = angle_between(fit.R_CB, filter_.state().mounting.R_CB);
   const bool knows_axes = fit.sigma_turn < kMaxSigmaTurn;
   data_.R_CB = fit.R_CB;
-  const auto say = [&](UnitReason reason, Scalar value) {
+  const auto set = [&](UnitReason reason, Scalar value) {
     data_.reason = reason;
     data_.value = value;
   };
   if (fit.mirrored && fit.left_mirrored < kMaxLeft) {
-    say(UnitReason::kLeftHanded, 0);
+    set(UnitReason::kLeftHanded, 0);
   } else if (!(fit.left < kMaxLeft)) {
     const Scalar gyro = mean_rate();
     const bool swapped = std::abs(gyro - settings_.unit.gravity) < kLikeGravity * settings_.unit.gravity;
     if (swapped || data_.rates.span() > 2 * kVerdict)
-      say(swapped ? UnitReason::kColumnsSwapped : UnitReason::kRatesDoNotFit, swapped ? gyro : fit.left);
+      set(swapped ? UnitReason::kColumnsSwapped : UnitReason::kRatesDoNotFit, swapped ? gyro : fit.left);
   } else if (std::abs(times / kDegrees - 1) < kNear) {
-    say(UnitReason::kGyroInDegrees, times);
+    set(UnitReason::kGyroInDegrees, times);
   } else if (times > kMaxScale || times * kMaxScale < Scalar(1)) {
-    say(UnitReason::kGyroScale, times);
+    set(UnitReason::kGyroScale, times);
   } else if (knows_axes && off > kOtherAxes && !finds_axes()) {
-    say(UnitReason::kAxes, off * kDegrees);
+    set(UnitReason::kAxes, off * kDegrees);
   } else if (is_other_clock(fit, at_s)) {
-    say(UnitReason::kClock, fit.delay);
+    set(UnitReason::kClock, fit.delay);
   }
   if (data_.reason == before || data_.reason <= UnitReason::kContradicts) return false;
-  settings_.hooks.say(
-      "the inertial unit's rates do not fit the camera's rotations: it is left out; the report says why");
+  log_reason(settings_.hooks, data_.reason, data_.value);
   return true;
 }
 

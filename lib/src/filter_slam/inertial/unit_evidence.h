@@ -42,6 +42,8 @@ class UnitEvidence {
   void learn_noise(const UnitFrame& frame);
   /// After learn_noise(): adds the frame to the sum. True where the sum is above its bound in this mode.
   bool add(const UnitFrame& frame, UnitMode mode);
+  /// Page's sum.
+  Scalar sum() const { return data_.sum; }
   /// Counts a rejection of the unit.
   void count_doubt();
   /// How often the unit was rejected.

@@ -162,9 +162,14 @@ void UnitWatch::return_to_samples(ImuReading reading) {
   Transition transition;
   begin_with_samples(filter_.state().body, settings_.body, filter_.state().mounting, fresh, &transition);
   filter_.predict(transition);
-  if (fresh.anew) settings_.hooks.say("the inertial unit agrees with the pictures again: its samples are used");
-  if (is_open())
-    settings_.hooks.say("the inertial unit's clock and axes are found by the camera's rotations: its samples are used");
+  if (fresh.anew)
+    settings_.hooks.say("the inertial unit agrees with the camera's motion again, after ",
+                        fixed(seconds(parts_->data.rejected_ns), 1), " s of rejection in all: its samples are used");
+  if (is_open() && fit != nullptr)
+    settings_.hooks.say("the inertial unit's clock and axes are found from ", fit->count,
+                        " rotations of the camera: delay ", fixed(1000 * fit->delay, 1), " ms (sigma ",
+                        fixed(1000 * fit->sigma_delay, 1), "), axes within ", degrees(fit->sigma_turn),
+                        " deg; its samples are used");
   parts_->rates.use();
   parts_->evidence.begin_use();
   take(UnitEvent::kUsed);
@@ -209,11 +214,13 @@ bool UnitWatch::note(bool before_was_tracked, bool is_tracked, std::int64_t dt_n
   take(UnitEvent::kFrame);
   if (frame.is_taken_back && is_tracked) note_rate();
   if (evidence.add(frame, parts_->data.mode)) {
+    settings_.hooks.say(
+        "the inertial unit contradicts the camera's motion and is rejected: the sum of its innovations is ",
+        fixed(evidence.sum(), 1), ", that of this frame ", fixed(frame_.report.pose.nis, 1), " with ",
+        frame_.report.pose.dof, " degrees of freedom; motion goes on without samples");
     evidence.count_doubt();
     parts_->rates.contradict();
     take(UnitEvent::kContradiction);
-    settings_.hooks.say(
-        "the inertial unit contradicts the pictures: it is doubted, and motion goes on without its samples");
     return true;
   }
   if (is_tracked) {

@@ -7,7 +7,7 @@ namespace pf {
 
 bool FilterMemory::layout(Arena& arena) {
   places_.layout(arena);
-  recall_.layout(arena, true);
+  recall_.layout(arena, settings_.kept.places);
   scratch_ = arena.take<KeptPlace>(1);
   record_ = arena.take<PlaneRecord>(static_cast<std::size_t>(settings_.max_planes));
   return arena.ok();
@@ -87,9 +87,10 @@ bool FilterMemory::recall(const Tracker& tracker, PoseHypothesis* place, PoseHyp
   const PlaceTable& table = places_.table();
   if (table.count() == 0) return false;
   recall_.describe_image(tracker);
+  recall_.match_places(table);
   const auto collect = [&](int p, PlaceMatches* out) {
     if (!table.used(p)) return PlaceSource();
-    collect_place(recall_.search(), table, p, out);
+    recall_.collect_place(table, p, out);
     return PlaceSource{table[p].id, table[p].q_WK, table[p].p_WK};
   };
   Recalled best, other;

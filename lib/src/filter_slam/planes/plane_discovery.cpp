@@ -53,7 +53,8 @@ bool PlaneDiscovery::take(const PlaneFit& fit, int* member, int members, std::ui
   if (id != 0) map_.planes[entry].id = id;
   filter_.set_owner(slot, entry);
   for (int k = 0; k < members; ++k) support(filter_, map_, entry, member[k]);
-  settings_.hooks.say(id != 0 ? "found a plane again" : "found a plane");
+  settings_.hooks.say("plane ", map_.planes[entry].id, id != 0 ? " found again: " : " found: ", kept, " of ", members,
+                      " points lie on it");
   return true;
 }
 

@@ -54,9 +54,11 @@ void PlaneMerger::merge_into(int plane_entry) {
     if (!give_points(k, plane_entry)) return;
     give_outline(k, plane_entry);
     verticals_.merge(k, plane_entry);
-    map_.planes.remember_merge(map_.planes[k].id, map_.planes[plane_entry].id);
+    const std::uint32_t merged = map_.planes[k].id;
+    map_.planes.remember_merge(merged, map_.planes[plane_entry].id);
     dissolve_plane(filter_, map_, features_, settings_.plane_distance, k);
-    settings_.hooks.say("merged two planes");
+    settings_.hooks.say("plane ", merged, " merged into ", known ? "wall " : "plane ", map_.planes[plane_entry].id,
+                        ", which has ", filter_.state().block[plane].children, " points now");
     return;
   }
 }

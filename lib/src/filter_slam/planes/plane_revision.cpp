@@ -58,7 +58,11 @@ void PlaneRevision::revise(int plane_entry) {
   for (int k = 0; k < count; ++k)
     if (points[k].is_off) leave(plane_entry, slots[k], points[k].p_W, found.n_W);
   move_to(plane_entry, found);
-  settings_.hooks.say("some points of a plane do not lie on it: they leave it, and it turns to where the others are");
+  Vec3 now_W;
+  plane_normal(state.frame_of(state.block[plane]), state.block[plane].xyz(), &now_W, &d_W);
+  settings_.hooks.say("plane ", entry.id, ": ", found.off, " of ", count,
+                      " points rejected, plane refitted: normal by ",
+                      degrees(std::atan2(n_W.cross(now_W).norm(), n_W.dot(now_W))), " deg");
 }
 
 void PlaneRevision::leave(int plane_entry, int slot, const Vec3& p_W, const Vec3& n_W) {

@@ -79,7 +79,7 @@ PoseConsensus find_triple_consensus(const Filter& filter, const PixelMeasurement
       consensus.log_density += log_density;
       consensus.log_chance += log_chance_density(searched_px2[j]);
     }
-    const Scalar evidence = pose_evidence(consensus, share);
+    const Scalar evidence = evidence_against_chance(consensus, share);
     if (best.inliers > 0 && evidence <= best_evidence) continue;
     best = consensus;
     best_evidence = evidence;

@@ -12,8 +12,8 @@ namespace pf {
 ///
 ///   r_j|T = r_j - S_jT S_T^-1 r_T,   S_j|T = S_jj - S_jT S_T^-1 S_Tj
 ///
-/// Returns the consensus of the triple for which pose_evidence() is largest. Its density is that of the others given the three, which are
-/// no evidence for the pose that they fix. BlockFilter::project must have been called for the matches (PixelUpdate::begin).
+/// Returns the consensus of the triple for which evidence_against_chance() is largest. Its density is that of the others given the three,
+/// which are no evidence for the pose that they fix. BlockFilter::project must have been called for the matches (PixelUpdate::begin).
 ///
 /// searched_px2  area that was searched, of each match [px^2]
 /// found         matches, at most capacity.max_observations; fewer than four give no inliers

@@ -112,7 +112,8 @@ bool FilterStart::start_in_image() {
   add_target_matches(sighting);
   if (!settings_.inertial && !map_.planes.has_known()) recorder_.begin_check();
   tracking_.set_from_target();
-  settings_.hooks.say("started at the target");
+  settings_.hooks.say("map ", tracking_.map_id(), " starts at the target: ", frame_.report.inliers,
+                      " of its points are found");
   return true;
 }
 
@@ -158,7 +159,8 @@ Scalar FilterStart::look_for_walls() {
   const std::uint32_t before = tracking_.map_id();
   tracking_.rename_map();
   map_.anchors.scale(before, tracking_.map_id(), scale, first_W);
-  settings_.hooks.say("a wall of the plan came into view: the map has its size from here on");
+  settings_.hooks.say("walls of the plan come into view: map ", before, " is scaled by ", fixed(scale, 3),
+                      " and goes on as map ", tracking_.map_id(), " in metres");
   return scale;
 }
 

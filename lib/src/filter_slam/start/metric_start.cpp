@@ -18,7 +18,9 @@ bool MetricStart::use_rest(const RestReading& rest, std::int64_t begin_ns) {
   }
   filter_.set_metric();
   is_from_motion_ = false;
-  settings_.hooks.say("at rest: gravity and the biases are known, lengths are in metres from here on");
+  settings_.hooks.say("map ", tracking_.map_id(), " is in metres, from a rest: gravity of ", fixed(rest.gravity, 2),
+                      " m/s^2 by a mean specific force of ", fixed(rest.accel.norm(), 2), ", gyroscope bias ",
+                      degrees(filter_.state().body.gyro_bias.norm(), 2), " deg/s");
   return true;
 }
 
@@ -29,7 +31,10 @@ void MetricStart::use_motion(const MovingSolution& solution) {
   const std::uint32_t before = tracking_.map_id();
   tracking_.rename_map();
   map_.anchors.scale(before, tracking_.map_id(), solution.scale, Vec3::Zero());
-  settings_.hooks.say("from motion: gravity and the biases are known, lengths are in metres from here on");
+  settings_.hooks.say("map ", before, " is in metres, from ", fixed(solution.span, 1), " s of motion: scaled by ",
+                      fixed(solution.scale, 3), " (sigma ", fixed(100 * solution.sigma_scale(), 1),
+                      " %), gravity within ", degrees(solution.sigma_gravity()), " deg; it goes on as map ",
+                      tracking_.map_id());
 }
 
 }  // namespace pf

@@ -40,15 +40,15 @@ bool StartRecorder::record_frame(bool has_image) {
     case StartOutcome::kSolved:
     case StartOutcome::kSettled:
       if (checks) return check_depths(outcome == StartOutcome::kSettled);
+      if (first) record_.log(outcome, settings_.hooks);
       restart(Scalar(1));
-      if (first) settings_.hooks.say("started without a target: the first depths are known");
       break;
     case StartOutcome::kTooFew:
       if (first && !checks) begin_anew(has_image);  // only rotation so far, or too few features in view
       break;
     case StartOutcome::kStill:
       stay_at_base();
-      if (record_.is_first_still()) settings_.hooks.say(kStandsStill);
+      record_.log(outcome, settings_.hooks);
       break;
   }
   return false;
@@ -78,10 +78,10 @@ bool StartRecorder::check_depths(bool settled) {
   }
   const bool agree = depths_agree(filter_, map_, record_, unit) && (!by_walls || motion_agrees(filter_, record_, unit));
   if (!agree) {
+    settings_.hooks.say("first depths rejected by a record of ", record_.record().frames() + 1,
+                        " frames: the map begins again ", by_walls ? "at the first pose" : "at the target",
+                        " with depths of the record");
     restart(unit);
-    settings_.hooks.say(
-        by_walls ? "the first depths were wrong: the map begins again at the first pose, with those of all frames since"
-                 : "the first depths were wrong: the map begins again at the target, with those of all frames since");
   }
   if (agree || settled) init();
   // Its points lie on walls of the plan. Until now the filter could not distinguish them from points before the walls.

@@ -60,6 +60,18 @@ void StartWithoutTarget::move_ray(const Camera& camera, int index, const Vec2& p
   if (unproject(camera, first - row_time(camera, first.y()) * moved, &ray_C)) record_.set_ray(index, ray_C);
 }
 
+void StartWithoutTarget::log(StartOutcome outcome, const Hooks& hooks) const {
+  if (outcome == StartOutcome::kStill) {
+    if (data_.stills > 1) return;
+    return hooks.say("the camera stands still while something moves in the image, by a record of ", record_.features(),
+                     " features in ", record_.frames() + 1, " frames: the start waits");
+  }
+  int known = 0;
+  for (int i = 0; i < record_.features(); ++i) known += bundle_.good(i) ? 1 : 0;
+  hooks.say("first depths without a target: ", known, " of ", record_.features(), " features have one, from ",
+            record_.frames() + 1, " frames in ", fixed(seconds(elapsed_ns(data_.begin_ns, data_.t_ns)), 2), " s");
+}
+
 StartOutcome StartWithoutTarget::solve(const Camera& camera, Scalar sigma_px, Scalar median_depth) {
   if (stands_still(lens_of_record(camera), record_, data_.others)) {
     if (data_.progress.checking || data_.progress.depth_known) return StartOutcome::kWait;

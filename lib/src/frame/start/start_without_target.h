@@ -13,9 +13,6 @@
 
 namespace pf {
 
-/// Log line of StartOutcome::kStill.
-inline constexpr const char* kStandsStill = "the camera stands still while something moves before it: the start waits";
-
 class StartWithoutTarget {
  public:
   /// lens_rows: of a lens that a start adjusts with its depths; 0: it is exact.
@@ -24,8 +21,8 @@ class StartWithoutTarget {
   void init();
   /// Begins a start.
   void begin() { data_.progress.recording = true; }
-  /// Whether the last solve() gave kStill for the first time since init().
-  bool is_first_still() const { return data_.stills == 1; }
+  /// Logs what solve() has just given: kStill for the first time since init(), or the first depths of a map.
+  void log(StartOutcome outcome, const Hooks& hooks) const;
   /// Begins a record beside a filter that has a scale, to check its depths.
   void begin_check() { data_.progress.checking = true; }
   const StartProgress& progress() const { return data_.progress; }

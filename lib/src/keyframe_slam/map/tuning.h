@@ -9,7 +9,7 @@ namespace pf::tuning {
 
 /// Tables of the window.
 namespace keyframe_map {
-inline constexpr int kKeyframes = 30;  ///< that are kept; the adjuster takes 32 poses, and one is the target's host
+static constexpr int kKeyframes = 30;  ///< that are kept; the adjuster takes 32 poses, and one is the target's host
 }  // namespace keyframe_map
 
 /// Depths of the window's points.

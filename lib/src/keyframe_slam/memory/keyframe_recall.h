@@ -18,8 +18,15 @@ class KeyframeRecall {
   /// The place that most of the image agrees with, and as its rival the one that agrees most with another pose; its inliers are 0 where
   /// there is none. False: no place.
   bool find(const Tracker& tracker, Recalled* best, Recalled* rival);
+  /// Describes the image of a tracked frame, for is_alike().
+  void describe_image(const Tracker& tracker) { recall_.describe_image(tracker); }
+  /// Whether the described image looks like another part of the map. view: its pose. median_depth: of what it sees.
+  bool is_alike(const CameraView& view, Scalar median_depth);
 
  private:
+  int sources() const;
+  PlaceSource collect(int source, PlaceMatches* out) const;
+  bool describe_point(int i, Descriptor* out) const;
   void match_window();
 
   const Settings& settings_;

@@ -249,7 +249,7 @@ void KeyframePlanes::discover(const Vec3& viewer_W) {
   for (int m = 0; m < number; ++m) put_on(k, members[m]);
   refit(k);
   outline(k);
-  settings_.hooks.say("found a plane");
+  settings_.hooks.say("plane ", table_[k].id, " found: ", number, " points");
 }
 
 /// Merges one plane into another that its points lie on as well.
@@ -272,10 +272,12 @@ void KeyframePlanes::merge() {
         const Vec2 uv = plane_coordinates(to, plane_point(from, Vec3::Zero(), table_[other].seen.uv[i]));
         extend_outline(&table_[k].seen, &uv, 1);
       }
-      table_.remember_merge(table_[other].id, table_[k].id);
+      const std::uint32_t merged = table_[other].id;
+      table_.remember_merge(merged, table_[k].id);
       table_.remove(other);
       refit(k);
-      settings_.hooks.say("merged two planes");
+      settings_.hooks.say("plane ", merged, " merged into plane ", table_[k].id, ": ", close, " of its ", count,
+                          " points are near it");
       return;
     }
 }

@@ -54,13 +54,13 @@ bool KeyframeRecord::follow() {
       return false;
     case StartOutcome::kSolved:
     case StartOutcome::kSettled:
+      solver_.log(outcome, settings_.hooks);
       take_solution();
       tracking_.belief().trust();
-      settings_.hooks.say("started without a target: the first depths are known");
       return true;
     case StartOutcome::kStill:  // what moves has drawn the pose along
       motion_.move(solver_.base_q_WC(), solver_.base_p_W());
-      if (solver_.is_first_still()) settings_.hooks.say(kStandsStill);
+      solver_.log(outcome, settings_.hooks);
       return false;
     case StartOutcome::kTooFew:
       begin_again();

@@ -122,7 +122,8 @@ bool KeyframeStart::start_in_image() {
   add_target(keyframe, sighting);
   held_.hold(motion_.view(), target_.target());
   tracking_.set_from_target();
-  settings_.hooks.say("started at the target");
+  settings_.hooks.say("map ", tracking_.map_id(), " starts at the target: ", frame_.report.inliers,
+                      " of its points are found");
   return true;
 }
 

@@ -1,5 +1,6 @@
 #include "keyframe_slam/tracking/relocaliser.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "frame/tuning.h"
@@ -21,9 +22,27 @@ const Mat6* KeyframeRelocaliser::found_covariance() const {
   return place >= 0 ? &map_.places[place].covariance : nullptr;
 }
 
+/// One frame describes its image, and the next one compares: neither has much more to do than a keyframe.
+void KeyframeRelocaliser::note_view(Scalar median_depth) {
+  if (settings_.kept.places == 0) return;
+  if (is_described_) {
+    is_described_ = false;
+    return belief_.note_view(recall_.is_alike(asked_, asked_depth_));
+  }
+  const CameraView view = motion_.view();
+  if (asked_depth_ > Scalar(0) && view_distance2(view.q_WC, view.c_W, median_depth, asked_.q_WC, asked_.c_W,
+                                                 asked_depth_) < tuning::place::kNear * tuning::place::kNear)
+    return;
+  asked_ = view;
+  asked_depth_ = median_depth;
+  recall_.describe_image(tracker_);
+  is_described_ = true;
+}
+
 /// Brings the place back that the image may show, and its rival, so that they can be searched for.
 bool KeyframeRelocaliser::recall(PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival) {
   recalled_ = 0;
+  is_described_ = false;
   if (recalled_in_vain_) return recalled_in_vain_ = false;  // now the kept views are tried
   Recalled best, other;
   if (!recall_.find(tracker_, &best, &other) || !keeper_.bring_back(best.place)) return false;
@@ -49,7 +68,7 @@ KeyframeRelocaliser::Tried KeyframeRelocaliser::try_pose(const PoseHypothesis& a
 
 /// The rival is one of the other places where the camera may be, with odds of its own:
 ///
-///   L = L_1 - ln(1 + exp(L_2))
+///   L = min(L_1, -ln s) - ln(1 + exp(L_2)),   s: share of views that look like another part of the map
 void KeyframeRelocaliser::recover(Scalar median_depth) {
   const PoseProposal before = proposal_, rival_before = rival_;
   const std::uint32_t recalled = recalled_;
@@ -74,10 +93,11 @@ void KeyframeRelocaliser::recover(Scalar median_depth) {
   const Tried tried = try_pose(elsewhere, before, median_depth);
   recalled_in_vain_ = recalled_ != 0 && !tried.found;
   proposal_ = tried.proposal(median_depth);
-  if (!tried.found || !belief_.may_use(tried.log_odds - against, tried.consensus)) return;
+  const Scalar log_odds = std::min(tried.log_odds, belief_.most_elsewhere()) - against;
+  if (!tried.found || !belief_.may_use(log_odds, tried.consensus)) return;
   motion_.set_pose_covariance(elsewhere.P);
   measuring_.correct(tried.pose, tried.information);
-  belief_.use(tried.log_odds - against, tried.consensus);
+  belief_.use(log_odds, tried.consensus);
   proposal_ = rival_ = PoseProposal();
 }
 

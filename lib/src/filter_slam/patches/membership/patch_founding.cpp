@@ -57,7 +57,8 @@ bool PatchFounding::found_plane(StoredPatch* patch) {
   const bool told = would_tell(*patch, entry, prior);
   if (told) update_.join(patch, entry);
   if (told && patch->status == PatchStatus::kInlier && filter_.forget_prior(slot, prior, kWidening)) {
-    settings_.hooks.say("found a plane by a patch that no wall explains");
+    settings_.hooks.say("plane ", map_.planes[entry].id, " found by patch ", patch->id, ", which no wall explains, ",
+                        frame_.report.frames - patch->born, " frames after it began");
     return true;
   }
   filter_.remove(&slot, 1);

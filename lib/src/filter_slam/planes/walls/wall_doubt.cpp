@@ -84,11 +84,14 @@ void WallDoubt::judge(int plane_entry) {
   const bool denied =
       (wall.outliers >= kMinRefused && wall.outliers > on_it) || (wall.is_refused_by_patches() && !vouched);
   if (!wall.doubted && (denied || contradict(behind) || (contradict(refused) && cover.is_wide()))) {
+    settings_.hooks.say("wall ", wall.id, " rejected: ", on_it, " points lie on it, ", refused, " do not (", behind,
+                        " behind it); ", static_cast<int>(wall.outliers), " points left it, ",
+                        wall.refused / PlaneEntry::kRefusedParts, " patches were found elsewhere");
     doubt(plane_entry);
   } else if (wall.doubted && on_it >= kMinRefused && on_it > refused) {
     wall.doubted = false;
     wall.outliers = wall.upheld = wall.refused = 0;
-    settings_.hooks.say("points lie on a wall of the plan that was doubted: it counts again");
+    settings_.hooks.say("wall ", wall.id, " accepted again: ", on_it, " points lie on it, ", refused, " do not");
   }
 }
 
@@ -107,7 +110,6 @@ void WallDoubt::doubt(int plane_entry) {
   wall.doubted = true;
   wall.outliers = wall.upheld = wall.refused = 0;
   wall.seen = wall.support = wall.plan;
-  settings_.hooks.say("a wall of the plan is not where it should be: it is doubted, and takes no points");
 }
 
 }  // namespace pf
