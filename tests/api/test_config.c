@@ -136,7 +136,7 @@ static void test_check_should_name_the_field_that_is_out_of_range(void) {
   NAMES_REAL(plane.fix_sigma, -1, 10.1);
   NAMES(capacity.max_kept_views, -1);
   NAMES(capacity.max_kept_views, 201);
-  NAMES(capacity.max_places, -1);
+  NAMES(capacity.max_places, -2);
   NAMES(capacity.max_places, 201);
   NAMES(capacity.max_anchors, -1);
   NAMES(capacity.max_anchors, 65);

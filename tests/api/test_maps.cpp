@@ -23,14 +23,19 @@ std::string last_line;
 
 void keep_line(void*, const char* line) { last_line = line; }
 
-/// A window that has seen the first frames of a rendered room.
-RenderedRun& walked() {
-  static RenderedRun* run = [] {
-    RenderedRun::backend = PF_BACKEND_WINDOW;
-    auto* made = new RenderedRun("room", kLength, RenderedRun::Start::kRectangle);
-    TEST_ASSERT_TRUE(made->tracked_until(kFrames) > kFrames / 2);
-    return made;
-  }();
+/// A run of a back end that has seen the first frames of a rendered room.
+RenderedRun& walked(pf_backend_t backend = RenderedRun::backend) {
+  static RenderedRun* runs[PF_BACKEND_WINDOW + 1] = {};
+  RenderedRun*& run = runs[backend];
+  if (run != nullptr) return *run;
+  const pf_backend_t before = RenderedRun::backend;
+  RenderedRun::backend = backend;
+  run = new RenderedRun("room", kLength, RenderedRun::Start::kNone);
+  RenderedRun::backend = before;
+  run->config.capacity.max_places = 16;
+  run->create();
+  run->start_at_rectangle();
+  TEST_ASSERT_TRUE(run->tracked_until(kFrames) > kFrames / 2);
   return *run;
 }
 
@@ -44,7 +49,7 @@ Bytes saved(const pf_slam_t* slam) {
   return map;
 }
 
-/// A window without frames, whose log is kept.
+/// A context without frames, whose log is kept.
 struct Fresh {
   RenderedRun run{"room", kLength, RenderedRun::Start::kNone};
 
@@ -62,8 +67,9 @@ struct Fresh {
   }
 };
 
-void test_a_saved_map_should_be_found_again() {
-  RenderedRun& first = walked();
+/// Of a map that was saved by a back end, in a context of the present one.
+void find_again(pf_backend_t by) {
+  RenderedRun& first = walked(by);
   const Bytes map = saved(first.slam);
   TEST_ASSERT_TRUE(map.size() <= 300000);
   Fresh second;
@@ -87,6 +93,12 @@ void test_a_saved_map_should_be_found_again() {
   TEST_ASSERT_TRUE(tracked >= 150);
   TEST_ASSERT_TRUE(worst < 0.1);
   TEST_ASSERT_TRUE(second.report().places_returned > 0);
+}
+
+void test_a_saved_map_should_be_found_again() { find_again(RenderedRun::backend); }
+
+void test_a_map_of_the_other_back_end_should_be_found() {
+  find_again(RenderedRun::backend == PF_BACKEND_FILTER ? PF_BACKEND_WINDOW : PF_BACKEND_FILTER);
 }
 
 void test_a_map_that_was_loaded_should_be_saved_as_the_same_bytes() {
@@ -230,12 +242,25 @@ void test_a_map_should_be_refused_where_something_else_has_begun() {
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, without.load(map));
   std::size_t bytes = 0;
   TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_map_size(without.run.slam, PF_MAP_PORTABLE, &bytes));
-  Fresh filter;
-  filter.run.config.backend = PF_BACKEND_FILTER;
-  filter.run.config.map.features_in_view = 45;
-  filter.run.create();
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, filter.load(map));
-  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_map_size(filter.run.slam, PF_MAP_PORTABLE, &bytes));
+}
+
+/// A filter that was not asked for places has none.
+void test_a_filter_without_places_should_refuse_maps() {
+  if (RenderedRun::backend != PF_BACKEND_FILTER) return;
+  const Bytes map = saved(walked().slam);
+  Fresh fresh(-1);
+  std::size_t bytes = 0;
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, fresh.load(map));
+  TEST_ASSERT_EQUAL_INT(PF_ERROR_STATE, pf_map_size(fresh.run.slam, PF_MAP_PORTABLE, &bytes));
+  pf_memory_t without, with;
+  pf_config_t config = fresh.run.config;
+  config.capacity.max_places = 0;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &without));
+  TEST_ASSERT_EQUAL_size_t(without.bytes, fresh.run.need.bytes);
+  config.capacity.max_places = 16;
+  TEST_ASSERT_EQUAL_INT(PF_OK, pf_memory_query(&config, &with));
+  std::printf("16 places add %zu bytes\n", with.bytes - without.bytes);
+  TEST_ASSERT_TRUE(with.bytes - without.bytes < 360000);
 }
 
 void test_a_start_should_be_refused_in_a_map_that_was_loaded() {
@@ -300,16 +325,22 @@ void test_a_loaded_map_should_be_searched_for_without_end() {
 
 int main() {
   UNITY_BEGIN();
-  RUN_TEST(test_a_saved_map_should_be_found_again);
-  RUN_TEST(test_a_map_that_was_loaded_should_be_saved_as_the_same_bytes);
-  RUN_TEST(test_anchors_should_be_saved_and_come_back);
-  RUN_TEST(test_saving_should_change_nothing);
-  RUN_TEST(test_a_small_buffer_should_stay_as_it_is);
-  RUN_TEST(test_kinds_and_null_pointers_should_be_refused);
-  RUN_TEST(test_a_map_should_be_refused_where_something_else_has_begun);
-  RUN_TEST(test_a_start_should_be_refused_in_a_map_that_was_loaded);
-  RUN_TEST(test_a_map_beyond_the_capacities_should_be_refused);
-  RUN_TEST(test_a_damaged_map_should_be_refused_and_change_nothing);
-  RUN_TEST(test_a_loaded_map_should_be_searched_for_without_end);
+  for (const pf_backend_t backend : {PF_BACKEND_WINDOW, PF_BACKEND_FILTER}) {
+    RenderedRun::backend = backend;
+    std::printf("%s\n", backend == PF_BACKEND_FILTER ? "filter" : "window");
+    RUN_TEST(test_a_saved_map_should_be_found_again);
+    RUN_TEST(test_a_map_of_the_other_back_end_should_be_found);
+    RUN_TEST(test_a_map_that_was_loaded_should_be_saved_as_the_same_bytes);
+    RUN_TEST(test_anchors_should_be_saved_and_come_back);
+    RUN_TEST(test_saving_should_change_nothing);
+    RUN_TEST(test_a_small_buffer_should_stay_as_it_is);
+    RUN_TEST(test_kinds_and_null_pointers_should_be_refused);
+    RUN_TEST(test_a_map_should_be_refused_where_something_else_has_begun);
+    RUN_TEST(test_a_filter_without_places_should_refuse_maps);
+    RUN_TEST(test_a_start_should_be_refused_in_a_map_that_was_loaded);
+    RUN_TEST(test_a_map_beyond_the_capacities_should_be_refused);
+    RUN_TEST(test_a_damaged_map_should_be_refused_and_change_nothing);
+    RUN_TEST(test_a_loaded_map_should_be_searched_for_without_end);
+  }
   return UNITY_END();
 }

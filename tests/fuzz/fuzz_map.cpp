@@ -13,21 +13,25 @@
 
 namespace {
 
-pf_slam_t* fresh() {
-  static pf_slam_t* slam = [] {
-    pf_config_t config;
-    require(pf_config_default(&config) == PF_OK, "a default config");
-    config.camera = {PF_CAMERA_PINHOLE,  320, 240, 205, 205, 159.5, 119.5, {}, 0, PF_CAMERA_EXACT,
-                     PF_TIMESTAMPS_REAL, 0,   0,   0,   {}};
-    config.backend = PF_BACKEND_WINDOW;
-    pf_memory_t need;
-    require(pf_memory_query(&config, &need) == PF_OK, "a possible config");
-    void* block =
-        std::aligned_alloc(need.alignment, (need.bytes + need.alignment - 1) / need.alignment * need.alignment);
-    pf_slam_t* created = nullptr;
-    require(block != nullptr && pf_create(&config, block, need.bytes, &created) == PF_OK, "a context");
-    return created;
-  }();
+pf_slam_t* created(int32_t backend) {
+  pf_config_t config;
+  require(pf_config_default(&config) == PF_OK, "a default config");
+  config.camera = {PF_CAMERA_PINHOLE,  320, 240, 205, 205, 159.5, 119.5, {}, 0, PF_CAMERA_EXACT,
+                   PF_TIMESTAMPS_REAL, 0,   0,   0,   {}};
+  config.backend = backend;
+  config.capacity.max_places = 16;
+  pf_memory_t need;
+  require(pf_memory_query(&config, &need) == PF_OK, "a possible config");
+  void* block = std::aligned_alloc(need.alignment, (need.bytes + need.alignment - 1) / need.alignment * need.alignment);
+  pf_slam_t* slam = nullptr;
+  require(block != nullptr && pf_create(&config, block, need.bytes, &slam) == PF_OK, "a context");
+  return slam;
+}
+
+pf_slam_t* fresh(int32_t backend) {
+  static pf_slam_t* const filter = created(PF_BACKEND_FILTER);
+  static pf_slam_t* const window = created(PF_BACKEND_WINDOW);
+  pf_slam_t* const slam = backend == PF_BACKEND_FILTER ? filter : window;
   require(pf_reset(slam) == PF_OK, "a reset");
   return slam;
 }
@@ -60,7 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   std::vector<uint8_t> map(data + 1, data + size);
   if (data[0] % 2 == 1) forge(&map);
-  pf_slam_t* slam = fresh();
+  pf_slam_t* slam = fresh(data[0] / 2 % 2 == 1 ? PF_BACKEND_FILTER : PF_BACKEND_WINDOW);
   pf_report_t before, after;
   require(pf_get_report(slam, &before) == PF_OK, "a report");
   const pf_status_t status = pf_load_map(slam, map.data(), map.size());

@@ -34,7 +34,7 @@ LIBRARY = {
     "filter_slam/memory": FEATURES + ["memory", "filter_slam/planes"],
     "filter_slam/inertial": POSE,
     "filter_slam/recovery": FEATURES + ["memory", "filter_slam/planes", "filter_slam/memory"],
-    "filter_slam/start": FEATURES + ["filter_slam/inertial"],
+    "filter_slam/start": FEATURES + ["memory", "filter_slam/planes", "filter_slam/memory", "filter_slam/inertial"],
     "filter_slam": FEATURES + ["memory"] + [f"filter_slam/{part}" for part in ("planes", "patches", "memory", "inertial", "recovery", "start")],
     "keyframe_slam/map": FRAME + ["memory"],
     "keyframe_slam/planes": KEYFRAME_MAP,

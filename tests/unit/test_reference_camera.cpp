@@ -1,4 +1,5 @@
 // A reference camera: begun with all that the camera has in common with the rest, kept while it is needed, removed without a trace.
+#include "filter/known_camera.h"
 #include "model/reference_camera.h"
 #include "same.h"
 #include "support/filter_scene.h"
@@ -138,6 +139,66 @@ void test_a_full_filter_should_refuse_it_and_stay_as_it_is() {
   TEST_ASSERT_SAME(bits_of(filter), before);
 }
 
+Mat6 drawn_covariance(SeededRandom& random) {
+  Mat6 A;
+  for (int c = 0; c < 6; ++c) A.col(c) = random.normals<6>(Scalar(0.05));
+  return A * A.transpose();
+}
+
+/// A known camera K, with its anchor and a point that it knows.
+struct KnownPoint {
+  int camera, anchor, slot;
+};
+
+KnownPoint add_known(TestFilter& filter, const Quat& q_WK, const Vec3& p_WK, const Mat6& C_K, const Vec3& x_K,
+                     const Mat3& C_x) {
+  KnownPoint out;
+  out.camera = filter->add_known_camera(q_WK, p_WK, C_K);
+  filter->pin(out.camera);
+  out.anchor = filter->add_anchor(out.camera);
+  out.slot = filter->add_point_of(out.camera, out.anchor, x_K, C_x);
+  return out;
+}
+
+/// J C J^T with J by central differences of where the point is, and given K what it was before.
+void test_a_point_of_a_known_camera_should_share_its_errors() {
+  SeededRandom random(517);
+  for (int trial = 0; trial < 20; ++trial) {
+    TestFilter filter(true, BodyLayout::with_constant_velocity(), 60, 12);
+    const Quat q_WK = exp_so3(random.normals<3>(1));
+    const Vec3 p_WK = random.normals<3>(2), x_K = random.normals<3>(Scalar(0.3)) + Vec3(0, 0, 2);
+    const Mat6 C_K = drawn_covariance(random);
+    const Mat3 C_x = drawn_covariance(random).topLeftCorner<3, 3>();
+    const KnownPoint known = add_known(filter, q_WK, p_WK, C_K, x_K, C_x);
+    TEST_ASSERT_TRUE((filter->point(known.slot) - (p_WK + q_WK * x_K)).norm() < Scalar(1e-9));
+    const Scalar h = Scalar(1e-5);
+    Eigen::Matrix<Scalar, 3, 9> J;
+    for (int k = 0; k < 9; ++k) {
+      const auto at = [&](Scalar step) {
+        Eigen::Matrix<Scalar, 9, 1> e = Eigen::Matrix<Scalar, 9, 1>::Zero();
+        e(k) = step;
+        return Vec3(p_WK + e.segment<3>(3) + exp_so3(Vec3(e.head<3>())) * (q_WK * (x_K + e.tail<3>())));
+      };
+      J.col(k) = (at(h) - at(-h)) / (2 * h);
+    }
+    Eigen::Matrix<Scalar, 9, 9> C = Eigen::Matrix<Scalar, 9, 9>::Zero();
+    C.topLeftCorner<6, 6>() = C_K;
+    C.bottomRightCorner<3, 3>() = C_x;
+    const Mat3 expected = J * C * J.transpose();
+    TEST_ASSERT_TRUE((filter->covariance3(known.slot) - expected).norm() < Scalar(1e-6) * expected.norm());
+    const KnownPoint second = {known.camera, known.anchor,
+                               filter->add_point_of(known.camera, known.anchor, 2 * x_K, C_x)};
+    for (const int slot : {known.slot, second.slot}) {
+      Vec3 given_K;
+      Mat3 given;
+      if (slot == second.slot) filter->convert_to_point(slot);
+      TEST_ASSERT_TRUE(point_given(*filter, known.camera, slot, &given_K, &given));
+      TEST_ASSERT_TRUE((given_K - (slot == known.slot ? x_K : Vec3(2 * x_K))).norm() < Scalar(1e-9));
+      TEST_ASSERT_TRUE((given - C_x).norm() < Scalar(1e-6) * C_x.norm());
+    }
+  }
+}
+
 }  // namespace
 
 int main(void) {
@@ -147,6 +208,7 @@ int main(void) {
   RUN_TEST(test_it_should_stay_while_it_is_pinned_and_go_without_a_trace);
   RUN_TEST(test_one_that_nothing_needs_should_go_with_the_next_removal);
   RUN_TEST(test_an_update_should_move_it_by_its_own_rows);
+  RUN_TEST(test_a_point_of_a_known_camera_should_share_its_errors);
   RUN_TEST(test_a_full_filter_should_refuse_it_and_stay_as_it_is);
   return UNITY_END();
 }

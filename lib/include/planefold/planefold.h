@@ -299,9 +299,9 @@ typedef struct pf_config {
     /* Pixels of the mask that pf_set_mask may set: 0 (none), or camera.width * camera.height at
      * least. It is kept as one bit for 4x4 of them: 2.4 kB for 640x480. Default 0 */
     int32_t mask;
-    /* Places: keyframes that have left the window, each with up to 24 points and their appearance,
-     * by which a lost camera finds itself, and of which a saved map is made (MAPS). 0 .. 200, of 15
-     * kB each. With PF_BACKEND_WINDOW only; with the filter they take nothing. Default 16 */
+    /* Places: cameras that are kept with up to 24 points and their appearance, by which a lost
+     * camera finds itself, and of which a saved map is made (MAPS). 0 .. 200, of 15 kB each and 90
+     * kB for all; -1: 16 with PF_BACKEND_WINDOW, and none with the filter. Default -1 */
     int32_t max_places;
     /* Anchors (pf_add_anchor_hit), 0 .. 64, of about 1.5 kB each. Default 8 */
     int32_t max_anchors;
@@ -625,9 +625,9 @@ typedef enum pf_map_kind {
 PF_API pf_status_t pf_map_size(const pf_slam_t* slam, int32_t kind, size_t* bytes);
 
 /* Writes the map into a buffer, of which *used is then the map. What is kept are places: those that
- * the map has, and keyframes of the window; of more than capacity.max_places the least redundant
- * ones. PF_NOTE_NOTHING: no place or keyframe has enough points yet, and nothing is written.
- * PF_ERROR_STATE: with PF_BACKEND_FILTER, with capacity.max_places 0, and while starting.
+ * the map has, and what keyframes of the window or the filter's camera see; of more than
+ * capacity.max_places the least redundant ones. PF_NOTE_NOTHING: none has enough points yet, and
+ * nothing is written. PF_ERROR_STATE: without room for places, and while starting.
  * PF_ERROR_RANGE: the kind is unknown, or PF_MAP_CONTINUE. PF_ERROR_MEMORY: the buffer is too
  * small, and nothing was written. */
 PF_API pf_status_t pf_save_map(const pf_slam_t* slam, int32_t kind, void* buffer, size_t bytes,
@@ -642,7 +642,7 @@ PF_API pf_status_t pf_save_map(const pf_slam_t* slam, int32_t kind, void* buffer
  * changes, and the log has the reason. PF_ERROR_MAP: no map, damaged, of another version, or with a
  * number out of its domain. PF_ERROR_FULL: more places, planes or anchors than
  * capacity.max_places, max_planes and max_anchors. PF_ERROR_STATE: after the first frame, with a
- * start that was set or a wall, or with PF_BACKEND_FILTER. */
+ * start that was set or a wall, or without room for places (capacity.max_places). */
 PF_API pf_status_t pf_load_map(pf_slam_t* slam, const void* buffer, size_t bytes);
 
 /* -------------------------------------------------------------------------------- output -- */
@@ -980,7 +980,7 @@ typedef struct pf_report {
   int32_t consensus;
   int32_t reason;          /* pf_frame_reason_t */
   int32_t places;          /* of capacity.max_places: that are kept */
-  int32_t places_returned; /* since the beginning: how often a place has come back to the window */
+  int32_t places_returned; /* since the beginning: how often one has come back to window or state */
 } pf_report_t;
 
 PF_API pf_status_t pf_get_report(const pf_slam_t* slam, pf_report_t* report);

@@ -82,16 +82,17 @@ int Filter::take_slot(BlockKind kind) {
   return slot;
 }
 
-int Filter::add_anchor() {
+int Filter::add_anchor(int reference) {
   const int slot = take_slot(BlockKind::kAnchor);
   if (slot < 0) return -1;
   RowsOf<3, 3, 1> J;  // o = p
   J.parts = 1;
-  J.part[0] = Part::body(Body::kPosition, 3);
+  J.part[0] = reference == kBodyBlock ? Part::body(Body::kPosition, 3) : Part::of(reference, 3, 3);
   put<3, 3>(J.h, 3, 0, Mat3::Identity());
   const Scalar none[9] = {};
   blocks_.augment(slot, J, none);
-  state_.block[slot].set_xyz(camera_at(state_, Scalar(0)).p_W);
+  state_.block[slot].set_xyz(reference == kBodyBlock ? camera_at(state_, Scalar(0)).p_W
+                                                     : model::ReferenceCamera::p_WC(state_.block[reference]));
   return slot;
 }
 

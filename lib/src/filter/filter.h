@@ -56,16 +56,14 @@ class Filter {
     for (int r = 0; r < kRows; ++r) C(r, r) = std::max(C(r, r), blocks_.rounding_of(J, r));
     return C;
   }
-  /// Of a single row.
-  Scalar variance_of(const Rows& row) const;
+  Scalar variance_of(const Rows& row) const;  ///< of a single row
   /// Of the first rows of the body (rows x rows, row-major).
   void body_covariance(int rows, Scalar* out) const;
   /// Sets the mean of the body and leaves its covariance, where the mean comes from elsewhere (a restart).
   void set_mean(const Body& body) { state_.body = body; }
 
-  /// Sets the calibration and, where the layout has a lens, its prior. Before any block is added.
+  /// Set the calibration and, where the layout has a lens, its prior; the mounting of the inertial unit. Before any block is added.
   void set_lens(const Camera& camera, const LensPrior& prior);
-  /// Sets the mounting of the inertial unit. Before any block is added.
   void set_mounting(const Mounting& mounting) { state_.mounting = mounting; }
   /// From now on the samples of the inertial unit measure the scale. With `start`, the map has been one up to scale and is scaled first.
   void set_metric();
@@ -76,8 +74,7 @@ class Filter {
   bool uses_samples() const { return state_.uses_samples; }
   /// Whether updates consider the lens, even where the layout has it as estimated.
   void consider_lens(bool only_considered);
-  /// Present calibration.
-  const Camera& lens() const { return state_.lens; }
+  const Camera& lens() const { return state_.lens; }  ///< present calibration
 
   /// Sets the parts of the body that move and the unit's constants, with their covariance (over the unit rows, row-major) and, with J_lens,
   /// their dependence on the lens (null: none). Only while nothing in the map depends on the body.
@@ -95,13 +92,14 @@ class Filter {
   void predict(const Transition& transition);
 
   // --- augment; -1 where there is no room
-  int add_anchor();
+  /// Adds an anchor where the camera is, or a reference camera.
+  int add_anchor(int reference = kBodyBlock);
   /// Adds a copy of the camera at the frame's time, fully correlated with it.
   int add_reference_camera();
   /// Adds a camera that was known before, independent of all else; covariance is of (theta, p).
   int add_known_camera(const Quat& q_WK, const Vec3& p_WK, const Mat6& covariance);
-  /// Adds a point x_K that a reference camera knows: beside its covariance in K it has the camera's errors, with all that see them.
-  int add_point_of_camera(int camera, const Vec3& x_K, const Mat3& covariance_K);
+  /// Adds a point x_K that a reference camera K knows, as an inverse depth of an anchor at K, with K's errors beside its own covariance.
+  int add_point_of(int camera, int anchor, const Vec3& x_K, const Mat3& covariance_K);
   /// Adds a patch whose corners a reference camera has seen with this covariance [px^2]; it is removed with that camera.
   int add_patch(int camera, const PatchMeasurement::Matrix& covariance);
   /// tau: when the pixel's row was read out, from the frame's time [s].
@@ -185,8 +183,7 @@ class Filter {
   /// Prediction, Jacobian and columns of the corners of a patch on a plane, whose corners were at these pixels of its reference camera.
   /// False where one of them does not project.
   bool predict_patch(const Camera& lens, int patch, int plane, const Vec2* reference_px, PatchMeasurement* out) const;
-  /// H P H^T of one pixel, without noise.
-  Mat2 innovation(const PixelMeasurement& pixel) const;
+  Mat2 innovation(const PixelMeasurement& pixel) const;  ///< H P H^T of one pixel, without noise
   /// Gathers H P and S = H P H^T (without noise) of measurements. Then innovation_block is valid until the state changes.
   void begin_update(const Measurement* z, int count) { blocks_.project(z, count); }
   void begin_update(const PixelMeasurement* z, int count) { begin_update(views_of(z, count), count); }
@@ -236,8 +233,6 @@ class Filter {
 
   /// Pose (q_KC, p_KC) of the camera in the frame of a reference camera K, and the covariance of its (theta, p), in K (relative_pose.h).
   void motion_since(int camera, Quat* q_KC, Vec3* p_KC, Mat6* covariance) const;
-  /// Place x_K of a feature in a reference camera K, and its covariance there given K. False where it has no place.
-  bool point_given(int camera, int slot, Vec3* x_K, Mat3* covariance_K) const;
   /// Covariance of a feature's place, to first order.
   Mat3 covariance3(int slot) const;
   /// The best known of a few log lengths, as a row over the state: l N = (0, 0, 1). False, and no parts, where there is none.
@@ -253,7 +248,6 @@ class Filter {
   Scalar variance(int row) const { return covariance()(row, row); }
   /// Of the rotation of the unit's axes, a mean over them [rad^2]; 0 where it is not estimated.
   Scalar unit_turn_variance() const;
-  /// Variance of one row of a block.
   Scalar block_variance(int slot, int offset) const { return variance(first_row(slot) + offset); }
   int dim() const { return blocks_.dim(); }
   int room() const { return blocks_.room(); }  ///< rows that are still free

@@ -17,14 +17,11 @@ bool FilterSlam::layout(Arena& arena) {
                  {settings.max_state_dim, settings.max_features, settings.max_observations, settings.max_planes});
   frame_.layout(arena, settings.max_features + settings.max_observations);
   update_.layout(arena, settings.max_observations);
-  if (kHasMemory && settings.kept.places > 0)
-    memory_ = arena.place<FilterMemory>([&](FilterMemory& made) { made.layout(arena); }, settings_, filter_, map_,
-                                        frame_, upkeep_.features());
-  images_.layout(arena, memory_);
+  upkeep_.layout(arena);
+  images_.layout(arena, upkeep_.memory());
   observations_.layout(arena, settings.max_features, settings.max_observations);
   unit_.layout(arena);
-  start_.layout(arena, settings.camera.width, settings.camera.height);
-  return upkeep_.layout(arena);
+  return start_.layout(arena, settings.camera.width, settings.camera.height);
 }
 
 void FilterSlam::init() {
@@ -36,7 +33,6 @@ void FilterSlam::init() {
   images_.init();
   start_.init();
   upkeep_.init();
-  if (memory_ != nullptr) memory_->init();
 }
 
 Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
@@ -53,7 +49,7 @@ Status FilterSlam::push_frame(const ImageView& image, std::int64_t t_ns) {
   data_.image_usable = true;
   tracking_.note_usable_image(data_.since_last_ns);
   // W is the plan's as long as there are walls: a new map would begin somewhere else.
-  if (tracking_.needs_new_map(settings_.restart_ns) && !map_.planes.has_known() && !is_in_loaded_map())
+  if (tracking_.needs_new_map(settings_.restart_ns) && !map_.planes.has_known() && !upkeep_.is_in_loaded_map())
     begin_new_map("it was not found again within motion.restart_s");
   const StartProgress& progress = start_.recorder().progress();
   const bool first = !tracking_.has_pose();
@@ -96,38 +92,16 @@ void FilterSlam::maintain(bool supported, bool is_first) {
   if (scale > Scalar(0)) {  // places and lengths of before no longer hold
     upkeep_.planes().meet_walls();
     data_.median_depth *= scale;
-    forget_places();
+    images_.relocaliser().init();
+    upkeep_.forget_places();
   }
   const bool begins_anew = look_for_scale() && map_.features.count() == 0;
-  follow_places();
+  upkeep_.follow_places(recorder.is_recording(), data_.median_depth);
   // A frame that does not support its pose adds features only to a map that has none to lose.
-  const bool empty = is_first || progress.pending() || (map_.features.count() == 0 && !is_in_loaded_map());
+  const bool empty = is_first || progress.pending() || (map_.features.count() == 0 && !upkeep_.is_in_loaded_map());
   if (tracking_.is_tracked(frame_.report) || (empty && frame_.report.attempts == 0) || begins_anew)
     images_.front_end().corners().add();
   recorder.begin_record();
-}
-
-/// Views and places have poses and lengths of before.
-void FilterSlam::forget_places() {
-  images_.relocaliser().init();
-  if (memory_ != nullptr) memory_->clear();
-}
-
-/// Places belong to a map whose depths are known.
-void FilterSlam::follow_places() {
-  if (memory_ == nullptr || start_.recorder().is_recording() || !tracking_.is_tracked(frame_.report)) return;
-  const Body& body = filter_.state().body;
-  memory_->follow({body.q_WC, body.p_W}, data_.median_depth);
-}
-
-Status FilterSlam::use_map(const SavedMap& saved) {
-  if (memory_ == nullptr || is_in_loaded_map() || start_.is_chosen()) return Status::kState;
-  const Status status = memory_->load(saved, tracking_.map_id());
-  if (status != Status::kOk) return status;
-  const KeptPlace& place = memory_->table()[0];
-  data_.median_depth = place.depth;
-  start_.begin_anywhere(place.q_WK, place.p_WK, place.depth);
-  return Status::kOk;
 }
 
 Status FilterSlam::push_observations(const PixelObservation* observations, int count, std::int64_t t_ns) {
@@ -204,11 +178,14 @@ void FilterSlam::begin_frame(std::int64_t t_ns) {
 
 /// True where this frame is the first one whose samples give the scale.
 bool FilterSlam::look_for_scale() {
-  if (!settings_.inertial || is_in_loaded_map()) return false;  // lengths are those of the map
+  if (!settings_.inertial || upkeep_.is_in_loaded_map()) return false;  // lengths are those of the map
   StageTimer timer(settings_.hooks, &frame_.report.stage_ns[kImu]);
   const Scalar correlation = data_.image_usable ? images_.noise().correlation_frames() : Scalar(1);
   const ScaleChange change = unit_.look_for_scale(data_.median_depth, correlation);
-  if (change == ScaleChange::kNewMap || change == ScaleChange::kRescaled) forget_places();
+  if (change == ScaleChange::kNewMap || change == ScaleChange::kRescaled) {
+    images_.relocaliser().init();
+    upkeep_.forget_places();
+  }
   return change != ScaleChange::kNone;
 }
 
@@ -256,7 +233,7 @@ void FilterSlam::clear_estimate() {
   motion_.init();
   unit_.begin_map();
   images_.forget_map();
-  if (memory_ != nullptr) memory_->clear();
+  upkeep_.forget_places();
   frame_.forget_all();
 }
 

@@ -8,7 +8,6 @@
 #include "filter_slam/features/observation_front_end.h"
 #include "filter_slam/image_tracking.h"
 #include "filter_slam/map_upkeep.h"
-#include "filter_slam/memory/filter_memory.h"
 #include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "filter_slam/start/filter_start.h"
@@ -56,12 +55,6 @@ class FilterSlam {
   /// Adds a wall. kState: planes are off, or W is not the plan's; kFull: there is no room for it.
   Status add_wall(const PlanePrior& prior, std::uint32_t* id);
 
-  /// Begins in a saved map that was opened, lost. kState: a start was chosen, or there is no room for places. Others: FilterMemory::load.
-  Status use_map(const SavedMap& saved);
-  /// Null where the config has no room for places.
-  FilterMemory* memory() { return memory_; }
-  const FilterMemory* memory() const { return memory_; }
-
   FilterStart& start() { return start_; }
   BodyMotion& motion() { return motion_; }
   ObservationFrontEnd& observations() { return observations_; }
@@ -91,9 +84,6 @@ class FilterSlam {
   void begin_frame(std::int64_t t_ns);
   Status end_frame();
   void maintain(bool supported, bool is_first);
-  void follow_places();
-  void forget_places();
-  bool is_in_loaded_map() const { return memory_ != nullptr && memory_->is_loaded(); }
   bool look_for_scale();
   void start_over();
   void begin_new_map(const char* why);
@@ -111,7 +101,6 @@ class FilterSlam {
   ObservationFrontEnd observations_;
   FilterStart start_;
   UnitKeeper unit_;
-  PartPointer<FilterMemory, kHasMemory> memory_;  ///< in the block, where the config has room for places
   Data data_;
 };
 

@@ -5,6 +5,9 @@ namespace pf {
 bool MapUpkeep::layout(Arena& arena) {
   features_.layout(arena, settings_.max_features);
   planes_.layout(arena, settings_.max_features);
+  if (kHasMemory && settings_.kept.places > 0)
+    memory_ = arena.place<FilterMemory>([&](FilterMemory& made) { made.layout(arena); }, settings_, filter_, map_,
+                                        frame_, features_);
   return layout_patches(arena);
 }
 
@@ -19,6 +22,13 @@ bool MapUpkeep::layout_patches(Arena& arena) {
 void MapUpkeep::init() {
   planes_.init();
   if (patches_ != nullptr) patches_->init();
+  if (memory_ != nullptr) memory_->init();
+}
+
+void MapUpkeep::follow_places(bool is_starting, Scalar depth) {
+  if (memory_ == nullptr || is_starting || !tracking_.is_tracked(frame_.report)) return;
+  const Body& body = filter_.state().body;
+  memory_->follow({body.q_WC, body.p_W}, depth);
 }
 
 void MapUpkeep::maintain(bool supported, const StartProgress& start) {

@@ -5,6 +5,7 @@
 #include "filter/filter.h"
 #include "filter_slam/features/feature_keeper.h"
 #include "filter_slam/filter_anchors.h"
+#include "filter_slam/memory/filter_memory.h"
 #include "filter_slam/patches/patch_keeper.h"
 #include "filter_slam/planes/plane_keeper.h"
 #include "filter_slam/pose_mark.h"
@@ -45,6 +46,17 @@ class MapUpkeep {
   /// kNothing: no such plane.
   Status set_plane_vertical(std::uint32_t id, Scalar sigma);
 
+  /// After a frame: places follow the view of a tracked one, in a map whose depths are known. depth: median, of what is seen.
+  void follow_places(bool is_starting, Scalar depth);
+  /// The map is discarded, or its lengths have changed.
+  void forget_places() {
+    if (memory_ != nullptr) memory_->clear();
+  }
+  bool is_in_loaded_map() const { return memory_ != nullptr && memory_->is_loaded(); }
+  /// Null where the config has no room for places.
+  FilterMemory* memory() { return memory_; }
+  const FilterMemory* memory() const { return memory_; }
+
   FeatureKeeper& features() { return features_; }
   PlaneKeeper& planes() { return planes_; }
   PoseMark& mark() { return mark_; }
@@ -65,7 +77,8 @@ class MapUpkeep {
   PlaneKeeper planes_;
   PoseMark mark_;
   FilterAnchors anchors_;
-  PartPointer<PatchKeeper, kHasWalls> patches_;  ///< in the block, where the config has room for patches
+  PartPointer<FilterMemory, kHasMemory> memory_;  ///< in the block, where the config has room for places
+  PartPointer<PatchKeeper, kHasWalls> patches_;   ///< in the block, where the config has room for patches
 };
 
 }  // namespace pf

@@ -12,7 +12,7 @@ namespace place {
 inline constexpr int kMinPoints = 8;                   ///< as many as support a pose
 inline constexpr Scalar kMaxDepthSigma = Scalar(0.3);  ///< relative sigma of the inverse depth of a point that is kept
 inline constexpr Scalar kNear = Scalar(1);             ///< distance of views (place.h) that belong together
-inline constexpr Scalar kApart = Scalar(0.5);          ///< the same, from which the filter makes another place
+inline constexpr Scalar kApart = Scalar(0.25);         ///< the same, from which the filter makes another place
 inline constexpr Scalar kGone = Scalar(2);             ///< the same, beyond which a place leaves the filter's state
 inline constexpr int kMaxReturns = 6;                  ///< places that come back at once, where the map is found again
 inline constexpr Scalar kFarShift = Scalar(0.5);       ///< [median depths] apart, where two views share about half

@@ -111,7 +111,7 @@ MapCounts FilterReader::counts() const {
     counts.patches = keeper->patches().count();
     counts.cameras = keeper->patches().cameras();
   }
-  if (const FilterMemory* const memory = slam_.memory()) {
+  if (const FilterMemory* const memory = slam_.upkeep().memory()) {
     counts.places = memory->table().count();
     counts.places_returned = memory->table().returned();
   }

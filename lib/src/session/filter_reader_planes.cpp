@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "base/table_entries.h"
+#include "filter/lying_plane.h"
 #include "filter/vertical.h"
 #include "filter_slam/filter_slam.h"
-#include "filter_slam/planes/lying_plane.h"
 #include "geometry/ray_plane.h"
 #include "geometry/so3.h"
 #include "model/camera_at.h"

@@ -11,10 +11,11 @@ Status MapCalls::load(const std::uint8_t* buffer, std::size_t bytes, const char*
   const Frame& frame = has_window ? window_->frame() : filter_->frame();
   if (frame.report.frames > 0) return Status::kState;
   SavedMap saved;
-  *wrong = saved.open(buffer, bytes, has_window ? window_->mapping().saving().scratch() : filter_->memory()->scratch());
+  *wrong = saved.open(buffer, bytes,
+                      has_window ? window_->mapping().saving().scratch() : filter_->upkeep().memory()->scratch());
   if (*wrong != nullptr) return Status::kMap;
   *gravity_W = saved.gravity_W();
-  return has_window ? window_->start().use_map(saved) : filter_->use_map(saved);
+  return has_window ? window_->start().use_map(saved) : filter_->start().use_map(saved, filter_->upkeep().memory());
 }
 
 Status MapCalls::add_anchor(const AnchorRequest& asked, std::uint32_t* id) {

@@ -71,10 +71,10 @@ bool View::motion_since_mark(MotionView* out) const {
 }
 
 Status View::save_map(const Vec3& gravity_W, MapWriter* out) const {
-  const bool is_there = kHasMemory && settings_.kept.places > 0 && tracking_.has_pose() &&
-                        tracking_.state() != SlamState::kStarting;
+  const bool is_there =
+      kHasMemory && settings_.kept.places > 0 && tracking_.has_pose() && tracking_.state() != SlamState::kStarting;
   if (!is_there) return Status::kState;
-  return !kHasWindow || filter_ != nullptr ? filter_->memory()->save(gravity_W, tracking_.map_id(), out)
+  return !kHasWindow || filter_ != nullptr ? filter_->upkeep().memory()->save(gravity_W, tracking_.map_id(), out)
                                            : keyframes_->mapping().saving().save(gravity_W, tracking_.map_id(), out);
 }
 

@@ -17,6 +17,7 @@ void FilterMemory::init() {
   places_.init();
   maker_.init();
   recall_.init();
+  rivals_.init();
   clear();
 }
 
@@ -97,15 +98,17 @@ bool FilterMemory::recall(const Tracker& tracker, PoseHypothesis* place, PoseHyp
     return false;
   const CameraView view = {best.pose.q_WC, best.pose.p_WC};
   if (!places_.try_place(table.entry_of(best.place), view)) return false;
-  *has_rival = other.inliers > 0 &&
-               places_.try_place(table.entry_of(other.place), CameraView{other.pose.q_WC, other.pose.p_WC});
+  *has_rival =
+      other.inliers > 0 && places_.try_place(table.entry_of(other.place), CameraView{other.pose.q_WC, other.pose.p_WC});
   places_.try_near(view, best.depth);
   *place = PoseHypothesis::of(best.pose);
   *rival = PoseHypothesis::of(other.pose);
+  depth_ = best.depth;
   return is_recalled_ = true;
 }
 
 void FilterMemory::follow(const CameraView& view, Scalar depth) {
+  if (is_loaded_ && !is_found_) depth = depth_;
   is_found_ = true;
   places_.follow(view, depth);
   maker_.follow(view, depth, scratch_);

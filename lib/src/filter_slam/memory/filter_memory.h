@@ -3,11 +3,13 @@
 #include "base/status.h"
 #include "filter_slam/memory/place_maker.h"
 #include "filter_slam/memory/state_places.h"
+#include "filter_slam/pose/proposed_poses.h"
 #include "frame/pose_hypotheses.h"
 #include "memory/map_file.h"
 #include "memory/place_recall.h"
 
-/// What the filter keeps of places: it makes them, saves a map of them, begins in one, and finds itself there (lib/docs/theory/places.md, "In the filter").
+/// What the filter keeps of places: it makes them, saves a map of them, begins in one, and finds itself there (lib/docs/theory/places.md,
+/// "In the filter").
 
 namespace pf {
 
@@ -18,7 +20,8 @@ class FilterMemory {
         filter_(filter),
         map_(map),
         places_(settings, filter, map, frame, features),
-        maker_(settings, filter, map, frame, features, places_.table()) {}
+        maker_(settings, filter, map, frame, features, places_.table()),
+        rivals_(settings, filter) {}
 
   bool layout(Arena& arena);
   void init();
@@ -37,9 +40,11 @@ class FilterMemory {
 
   /// Lost: the place that the image may show enters the state on trial, and its rival, which has_rival says there is. False: there is none.
   bool recall(const Tracker& tracker, PoseHypothesis* place, PoseHypothesis* rival, bool* has_rival);
+  /// Poses of the second best places.
+  ProposedPoses& rivals() { return rivals_; }
   /// Whether enough of the place was found where it was recalled.
   void note_tried(bool found) { recalled_in_vain_ = is_recalled_ && !found; }
-  /// After a tracked frame.
+  /// After a tracked frame. depth: of what is seen, median; in the first one of a loaded map it is not known yet.
   void follow(const CameraView& view, Scalar depth);
 
   const PlaceTable& table() const { return places_.table(); }
@@ -65,8 +70,10 @@ class FilterMemory {
   StatePlaces places_;
   PlaceMaker maker_;
   PlaceRecall recall_;
+  ProposedPoses rivals_;
   KeptPlace* scratch_ = nullptr;
   PlaneRecord* record_ = nullptr;  ///< as the table of planes
+  Scalar depth_ = 1;               ///< of what is seen, median, as it was recalled last
   bool is_loaded_ = false, is_found_ = false;
   bool is_recalled_ = false, recalled_in_vain_ = false;  ///< in the last frame that recall() was called in
 };

@@ -1,6 +1,6 @@
 #include "base/table_entries.h"
+#include "filter/lying_plane.h"
 #include "filter_slam/memory/filter_memory.h"
-#include "filter_slam/planes/lying_plane.h"
 #include "filter_slam/planes/plane_points.h"
 
 /// FilterMemory: what it writes (lib/docs/theory/map_format.md).
@@ -71,8 +71,8 @@ int FilterMemory::write_places(MapWriter* out) const {
   return at;
 }
 
-/// The anchor as one of the places that are written holds it: its own, or else the nearest. The scratch has the new one, where left_out says
-/// that there is one.
+/// The anchor as one of the places that are written holds it: its own, or else the nearest. The scratch has the new one, where left_out
+/// says that there is one.
 Anchor FilterMemory::held_by_place(const Anchor& anchor, int left_out) const {
   const PlaceTable& table = places_.table();
   Anchor saved = anchor;

@@ -1,6 +1,7 @@
 #include "filter_slam/memory/place_maker.h"
 
 #include "base/table_entries.h"
+#include "filter/known_camera.h"
 #include "memory/tuning.h"
 #include "model/reference_camera.h"
 
@@ -78,7 +79,7 @@ bool PlaceMaker::make_point(int i, PlacePoint* out) const {
   Vec3 x_K;
   Mat3 C;
   Vec2 pixel;
-  if (!filter_.point_given(data_.camera, f.slot, &x_K, &C) || !project(filter_.lens(), x_K, &pixel) ||
+  if (!point_given(filter_, data_.camera, f.slot, &x_K, &C) || !project(filter_.lens(), x_K, &pixel) ||
       !is_in_image(settings_.camera, pixel, static_cast<Scalar>(settings_.border_px)))
     return false;
   const Scalar along = x_K.dot(C * x_K) / x_K.squaredNorm();

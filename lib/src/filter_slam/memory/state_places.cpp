@@ -12,7 +12,7 @@ using namespace tuning::place;
 
 static_assert(KeptPlace::kMaxPoints <= 32, "a bit for each point");
 
-constexpr int kCameraRows = 6, kPointRows = 3;
+constexpr int kCameraRows = 6 + 3, kPointRows = 3;  // with an anchor
 
 /// 1 / w_n
 Scalar inverse_weight(int n) { return static_cast<Scalar>(n) * static_cast<Scalar>(n + 1); }
@@ -120,7 +120,14 @@ bool StatePlaces::enter(int p) {
       filter_.add_known_camera(place.q_WK, place.p_WK, share_ * inverse_weight(entered_ + 1) * place.covariance);
   if (camera < 0) return false;
   filter_.pin(camera);
+  const int origin = filter_.add_anchor(camera);
+  if (origin < 0) {
+    filter_.unpin(camera);
+    return false;
+  }
+  filter_.pin(origin);
   link.camera = camera;
+  link.anchor = origin;
   link.entry = ++entered_;
   link.passed = link.brought = 0;
   ++link.uses;
@@ -144,8 +151,9 @@ void StatePlaces::leave(int p) {
     anchor.camera = Anchor::kNoCamera;
     filter_.unpin(link.camera);
   }
+  filter_.unpin(link.anchor);
   filter_.unpin(link.camera);
-  link.camera = -1;
+  link.camera = link.anchor = -1;
   table_[p].is_back = false;
 }
 
@@ -195,8 +203,8 @@ bool StatePlaces::bring(int p, const CameraView& view, bool may_evict) {
 
 /// Returns its entry, or -1.
 int StatePlaces::bring_point(const KeptPlace& place, const PlacePoint& from, const Link& link) {
-  const int slot = filter_.add_point_of_camera(link.camera, from.position_K(),
-                                               share_ * inverse_weight(link.uses) * covariance_of(from));
+  const int slot = filter_.add_point_of(link.camera, link.anchor, from.position_K(),
+                                        share_ * inverse_weight(link.uses) * covariance_of(from));
   const int entry = slot < 0 ? -1 : map_.features.add(slot);
   if (entry < 0) {
     if (slot >= 0) filter_.remove(&slot, 1);

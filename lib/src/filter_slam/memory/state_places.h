@@ -51,12 +51,13 @@ class StatePlaces {
  private:
   /// Of an entry of the table.
   struct Link {
-    int camera = -1;             ///< slot of its reference camera; -1: it is not in the state
-    int entry = 0;               ///< number n of its entry
-    std::uint32_t passed = 0;    ///< a bit for each point that has come into view since
-    std::uint32_t brought = 0;   ///< likewise: that has come into the state by it
-    std::uint8_t uses = 0;       ///< how often it has entered
-    bool is_on_trial = false;    ///< nothing has been measured of it
+    int camera = -1;            ///< slot of its reference camera; -1: it is not in the state
+    int anchor = -1;            ///< slot of that of its inverse depths, where the camera is
+    int entry = 0;              ///< number n of its entry
+    std::uint32_t passed = 0;   ///< a bit for each point that has come into view since
+    std::uint32_t brought = 0;  ///< likewise: that has come into the state by it
+    std::uint8_t uses = 0;      ///< how often it has entered
+    bool is_on_trial = false;   ///< nothing has been measured of it
   };
 
   void meet_state();

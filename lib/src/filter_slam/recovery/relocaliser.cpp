@@ -42,7 +42,7 @@ bool Relocaliser::layout(Arena& arena, int max_observations, int max_kept_views,
 void Relocaliser::init() {
   depth_ = 1;
   update_.proposals().init();
-  rivals_.init();
+  if (memory_ != nullptr) memory_->rivals().init();
   views_.init();
 }
 
@@ -86,7 +86,7 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose(SearchPose* rival) {
   about.body = filter_.state().body;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) about.P(i, j) = filter_.covariance()(std::max(i, j), std::min(i, j));
-  const PoseProposal &last = update_.proposals().last(), &last_rival = rivals_.last();
+  const PoseProposal& last = update_.proposals().last();
   const Pyramid& image = search_.tracker().pyramid();
   PoseHypothesis elsewhere, other;
   bool has_other = false;
@@ -94,8 +94,8 @@ Relocaliser::SearchPose Relocaliser::choose_search_pose(SearchPose* rival) {
     about.set(elsewhere);
   } else {
     if (find_elsewhere(last, views_, image, filter_.lens(), depth_, &elsewhere)) about.set(elsewhere);
-    has_other =
-        last.is_set && last_rival.is_set && find_elsewhere(last_rival, views_, image, filter_.lens(), depth_, &other);
+    has_other = memory_ != nullptr && last.is_set && memory_->rivals().last().is_set &&
+                find_elsewhere(memory_->rivals().last(), views_, image, filter_.lens(), depth_, &other);
   }
   if (has_other) {
     rival->body = about.body;
@@ -146,8 +146,9 @@ bool Relocaliser::try_pose(const SearchPose& about, int found, Tried* out) {
 Scalar Relocaliser::odds_against(const SearchPose& rival, bool parallax_lasts) {
   Tried tried;
   if (!try_pose(rival, search_about(rival, parallax_lasts), &tried)) return 0;
-  const Scalar log_odds = rivals_.propose(tried.pose.q_WC, tried.pose.p_W, median_depth(tried.pose, tried.found),
-                                          PoseBelief::elsewhere(), belief_.evidence(tried.consensus));
+  const Scalar log_odds =
+      memory_->rivals().propose(tried.pose.q_WC, tried.pose.p_W, median_depth(tried.pose, tried.found),
+                                PoseBelief::elsewhere(), belief_.evidence(tried.consensus));
   return std::log(1 + std::exp(log_odds));
 }
 

@@ -27,8 +27,7 @@ class Relocaliser {
         frame_(frame),
         search_(search),
         update_(update),
-        belief_(belief),
-        rivals_(settings, filter) {}
+        belief_(belief) {}
 
   /// memory: may be null.
   bool layout(Arena& arena, int max_observations, int max_kept_views, FilterMemory* memory);
@@ -36,7 +35,7 @@ class Relocaliser {
   /// Begins a frame, dt_ns after the one before.
   void begin_frame(std::int64_t dt_ns) {
     update_.proposals().begin_frame(dt_ns);
-    rivals_.begin_frame(dt_ns);
+    if (memory_ != nullptr) memory_->rivals().begin_frame(dt_ns);
   }
 
   /// Keeps the view of a tracked frame, with the median depth of its features.
@@ -90,7 +89,6 @@ class Relocaliser {
   PixelUpdate& update_;
   PoseBelief& belief_;
   ViewMemory views_;
-  ProposedPoses rivals_;  ///< poses of the second best places
   PartPointer<FilterMemory, kHasMemory> memory_;
   Scalar depth_ = 1;                ///< median, of the last tracked frame
   Scalar* searched_px2_ = nullptr;  ///< max_observations each

@@ -6,6 +6,15 @@
 #include "filter_slam/start/walls_apart.h"
 
 namespace pf {
+namespace {
+
+/// Whether the target's points fit into the capacities.
+bool fits(const Settings& settings, const Filter& filter, const Target& target) {
+  constexpr int kPointRows = 3;  // of a point
+  return target.count <= settings.max_features && kPointRows * target.count <= filter.room();
+}
+
+}  // namespace
 
 bool FilterStart::layout(Arena& arena, int width, int height) {
   target_.layout(arena, width, height);
@@ -30,21 +39,23 @@ void FilterStart::start_over() {
   if (map_.target_withdrawn) target_.init();
 }
 
-void FilterStart::begin_anywhere(const Quat& q_WC, const Vec3& p_W, Scalar depth) {
+Status FilterStart::use_map(const SavedMap& saved, FilterMemory* memory) {
+  const bool is_chosen =
+      beginning_.known().given || target_.target().kind != TargetKind::kNone || map_.planes.has_known();
+  if (is_chosen || tracking_.has_pose()) return Status::kState;
+  const Status status = memory->load(saved, tracking_.map_id());
+  if (status != Status::kOk) return status;
+  const KeptPlace& place = memory->table()[0];
   data_.knows_scale = true;
-  beginning_.begin_anywhere(q_WC, p_W, depth);
+  beginning_.begin_anywhere(place.q_WK, place.p_WK, place.depth);
   tracking_.set_has_pose(frame_.report.t_ns, true);
-}
-
-/// Whether the target's points fit into the capacities.
-bool FilterStart::fits(const Target& target) const {
-  constexpr int kPointRows = 3;  // of a point
-  return target.count <= settings_.max_features && kPointRows * target.count <= filter_.room();
+  return Status::kOk;
 }
 
 Status FilterStart::use_target(const Target& target) {
+  if (tracking_.has_pose()) return Status::kState;  // in a loaded map
   if (beginning_.known().given && target.kind == TargetKind::kRectangle) return Status::kState;
-  if (!fits(target)) return Status::kRange;
+  if (!fits(settings_, filter_, target)) return Status::kRange;
   const bool has_place = target.kind == TargetKind::kPoints || target.has_place;
   if (!has_place && map_.planes.has_known()) return Status::kState;  // they would be in another W
   target_.set_target(target);
@@ -53,7 +64,7 @@ Status FilterStart::use_target(const Target& target) {
 }
 
 Status FilterStart::use_pose(const KnownBody& known) {
-  if (takes_images_only()) return Status::kState;
+  if (takes_images_only() || tracking_.has_pose()) return Status::kState;
   beginning_.use(known);
   data_.has_place = true;
   return Status::kOk;

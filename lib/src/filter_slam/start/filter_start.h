@@ -5,6 +5,7 @@
 #include "filter_slam/features/corner_features.h"
 #include "filter_slam/features/feature_keeper.h"
 #include "filter_slam/features/feature_search.h"
+#include "filter_slam/memory/filter_memory.h"
 #include "filter_slam/pose/body_motion.h"
 #include "filter_slam/pose/pixel_update.h"
 #include "filter_slam/start/kept_mounting.h"
@@ -54,14 +55,9 @@ class FilterStart {
   /// A rectangle can only be found in an image, not in a list of observations.
   bool takes_images_only() const { return target_.target().kind == TargetKind::kRectangle; }
 
-  /// The caller has chosen a start, or the state has one.
-  bool is_chosen() const {
-    return beginning_.known().given || target_.target().kind != TargetKind::kNone || map_.planes.has_known() ||
-           tracking_.has_pose();
-  }
-  /// Gives the state a pose of which nothing is known, before the first frame; lost. depth: median, of the place there. Lengths are those of
-  /// the map.
-  void begin_anywhere(const Quat& q_WC, const Vec3& p_W, Scalar depth);
+  /// Begins in a saved map that was opened, before the first frame: lost, and with the lengths of the map. kState: a start was chosen.
+  /// Others: FilterMemory::load.
+  Status use_map(const SavedMap& saved, FilterMemory* memory);
 
   // --- the first frame
   /// Sets the pose of the first frame. False where that is not possible in this frame.
@@ -94,7 +90,6 @@ class FilterStart {
     bool knows_scale = false;  ///< a target, walls or a known speed fix it
   };
 
-  bool fits(const Target& target) const;
   bool needs_record() const;
   bool is_young() const;
   void begin(const Target* target, bool fitted);

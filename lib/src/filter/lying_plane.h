@@ -1,7 +1,6 @@
 #pragma once
 
 #include "filter/filter.h"
-#include "map/map.h"
 
 namespace pf {
 

@@ -1,4 +1,4 @@
-#include "filter_slam/planes/lying_plane.h"
+#include "filter/lying_plane.h"
 
 namespace pf {
 
